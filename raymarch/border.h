@@ -1,0 +1,36 @@
+#pragma once
+// The outline seam: a method is a pure function of what is seen. One file in raymarch/border/ and one line in its registry.
+
+#include "raymarch/gbuffer.h"
+#include "sdf/descriptor.h"
+
+namespace limn {
+
+/// Everything a method may read. Plain references; a method keeps none of them.
+struct BorderInput {
+  const GBuffer& gbuffer;
+  const Camera& camera;
+  const SceneModel& model;
+  const Scene& scene;
+};
+
+/// Ink of one method. `coverage` in [0, 1], finite, the G-buffer's size.
+struct Border {
+  Image<float> coverage;
+  glm::vec3 color{0.0f};           ///< Linear.
+  std::vector<std::string> notes;  ///< What failed here, in words with numbers; empty where nothing did.
+};
+
+struct BorderMethod {
+  Description about;
+  std::vector<std::string> inputs;  ///< Layers it reads ("NdotV", "Z", …) and "mesh" where it needs one.
+  std::vector<Parameter> parameters;
+  /// Empty where it can run on the model, else the reason why not.
+  std::string (*unsupported)(const SceneModel& model, const Scene& scene);
+  Border (*draw)(const BorderInput& input, const Parameters& parameters);
+};
+
+std::span<const BorderMethod> border_methods();
+const BorderMethod& find_border_method(const std::string& name, const std::string& file = {}, const std::string& field = {});
+
+}  // namespace limn

@@ -1,0 +1,29 @@
+#pragma once
+// Pictures in and out through OpenImageIO. Files are written whole: to a temporary file beside the target, then renamed.
+
+#include <filesystem>
+#include <map>
+
+#include "raymarch/picture.h"
+
+namespace limn {
+
+/// Every layer of a picture as one EXR: R G B A, Z, P, N, NdotV, border, id, material, status (float32 for Z, P, N, NdotV; half elsewhere,
+/// 32-bit unsigned for ids above 2048). The header carries the program's version, `call` (limn:call), worldToCamera, worldToNDC, and no
+/// time stamp.
+void write_exr(const Picture& picture, const Camera& camera, const std::string& call, const std::filesystem::path& file);
+
+/// The composite as .png, .tif or .jpg: un-premultiplied where the format has alpha, laid over white where it has none; sRGB, 8 bit.
+void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesystem::path& file);
+/// The same PNG in memory, for pages that hold their pictures.
+std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied);
+
+/// One named channel of an image file, top row first. Throws InputError.
+Image<float> read_channel(const std::filesystem::path& file, const std::string& channel);
+std::vector<std::string> channel_names(const std::filesystem::path& file);
+
+/// IEC 61966-2-1.
+float srgb_from_linear(float linear);
+float linear_from_srgb(float srgb);
+
+}  // namespace limn

@@ -1,0 +1,36 @@
+#pragma once
+// From a scene model to a finished picture: G-buffer, border, composite.
+
+#include "raymarch/border.h"
+
+namespace limn {
+
+struct Picture {
+  GBuffer gbuffer;                 ///< Of the pixel centres.
+  Image<float> border;             ///< Ink coverage in [0, 1]: mean over the samples; all methods together.
+  Image<glm::vec4> composite;      ///< Linear, premultiplied RGBA.
+  std::vector<std::string> notes;  ///< Of the methods.
+  double trace_ms = 0.0, border_ms = 0.0;
+};
+
+struct MethodCall {
+  const BorderMethod* method = nullptr;
+  Parameters parameters;
+};
+
+struct PictureSettings {
+  std::vector<MethodCall> methods;      ///< Inks in order, the last on top.
+  int samples = 1;                      ///< Per pixel, 1..1024: 1 is the centre; more follow the R2 sequence (Roberts 2018).
+  std::optional<glm::vec3> background;  ///< Linear; unset: transparent.
+};
+
+/// Throws InputError where a method cannot run on the model.
+Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
+                     const ExecutionSettings& how);
+
+/// The object's colour under a light at the eye: color * (0.25 + 0.75 N.V), alpha 1 where something is hit.
+Image<glm::vec4> shade_headlight(const GBuffer& gbuffer, const SceneModel& model);
+/// Lays ink over a premultiplied picture: mix(picture, ink, coverage).
+void lay_ink(Image<glm::vec4>& picture, const Image<float>& coverage, const glm::vec3& color);
+
+}  // namespace limn

@@ -1,0 +1,1 @@
+#include "raymarch/scene.h"

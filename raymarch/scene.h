@@ -1,0 +1,48 @@
+#pragma once
+// What is to be drawn: objects and a camera, before anyone has decided how to model them.
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "sdf/camera.h"
+#include "sdf/level_set.h"
+#include "sdf/shape.h"
+#include "subdiv/mesh.h"
+#include "subdiv/refine.h"
+
+namespace limn {
+
+/// A subdivision cage (`scheme` set) or a mesh taken as it is (`scheme` empty: level 0, its own facets).
+struct MeshSource {
+  Mesh mesh;
+  std::optional<Scheme> scheme;
+  std::string file;  ///< For messages.
+};
+
+struct LevelSetSource {
+  LevelSet level_set;
+  std::string file;  ///< For messages.
+};
+
+struct SceneObject {
+  std::string name;
+  std::variant<Field, MeshSource, LevelSetSource> source;  ///< A closed set: what files and shapes can give.
+  Affine world_from_object;           ///< Applied to meshes and level sets; a Field has its transforms folded in (identity here).
+  glm::vec3 color{0.8f, 0.8f, 0.8f};  ///< Linear.
+  int material = 0;                   ///< For material edges; mesh faces with materials of their own add their index to it.
+  std::optional<int> level;           ///< Subdivision level of this object, over the settings'.
+};
+
+struct Scene {
+  std::string name;
+  CameraSettings camera;
+  std::vector<SceneObject> objects;
+};
+
+/// World bounds of one object's surface / of all. Unbounded fields (planes) count as empty in the scene's bounds, so they are not framed.
+Box bounds(const SceneObject& object);
+Box bounds(const Scene& scene);
+
+}  // namespace limn

@@ -1,0 +1,102 @@
+#pragma once
+// The surface seam: batches of rays in, batches of hits out. A representation is one file in raymarch/surface/ and one registry line.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "raymarch/scene.h"
+#include "sdf/descriptor.h"
+
+namespace limn {
+
+/// Rays of one tile. Render space: world axes, origin at the scene's centre (so that float keeps its digits wherever the scene is).
+inline constexpr int kRayBatchSize = 256;
+struct RayBatch {
+  int count = 0;  ///< At most kRayBatchSize; lanes beyond it hold no meaning.
+  alignas(64) float origin_x[kRayBatchSize], origin_y[kRayBatchSize], origin_z[kRayBatchSize];
+  alignas(64) float direction_x[kRayBatchSize], direction_y[kRayBatchSize], direction_z[kRayBatchSize];  ///< Unit.
+  alignas(64) float t_min[kRayBatchSize];  ///< World units from the origin; a hit lies in [t_min, t_max).
+  alignas(64) float t_max[kRayBatchSize];
+  glm::vec3 origin(int i) const { return {origin_x[i], origin_y[i], origin_z[i]}; }
+  glm::vec3 direction(int i) const { return {direction_x[i], direction_y[i], direction_z[i]}; }
+};
+
+enum class HitStatus : std::uint8_t { miss = 0, hit = 1, out_of_steps = 2 };
+
+/// Hits of a batch. A surface writes a lane only where it found a hit nearer than t_max (or ran out of steps there).
+struct HitBatch {
+  alignas(64) float t[kRayBatchSize];
+  alignas(64) float normal_x[kRayBatchSize], normal_y[kRayBatchSize], normal_z[kRayBatchSize];  ///< Unit, outwards.
+  std::int32_t face[kRayBatchSize];                                                             ///< Polygon of a mesh, -1 elsewhere.
+  std::int32_t material[kRayBatchSize];  ///< Added to the object's own; 0 where the surface has none.
+  HitStatus status[kRayBatchSize];
+};
+
+/// What building it cost and how large it came out.
+struct SurfaceInfo {
+  std::string kind;
+  double voxel_size = 0.0;  ///< World; 0 where there is no grid.
+  std::int64_t voxels = 0;  ///< Active ones.
+  std::int64_t triangles = 0;
+  std::int64_t bytes = 0;
+  double build_ms = 0.0;
+  std::vector<std::string> warnings;
+};
+
+/// One object, modelled. `trace` is called once for each batch and from many threads at a time; scratch memory is the callee's, on its
+/// stack or per call.
+struct Surface {
+  std::shared_ptr<const void> state;
+  void (*trace)(const void* state, const RayBatch& rays, HitBatch& hits) = nullptr;
+  Box bounds;  ///< Render space; infinite where the object is.
+  SurfaceInfo info;
+};
+
+/// How to model, whatever the object. What a representation does not use is ignored by it.
+struct SurfaceSettings {
+  std::string kind = "analytic";
+  int voxels = 256;                ///< Along the longest side of the object's bounds; used where voxel_size is 0.
+  double voxel_size = 0.0;         ///< World; overrides `voxels`.
+  double half_width_voxels = 0.0;  ///< 0: what the gradient needs.
+  std::string gradient = "central";
+  int level = 3;                      ///< Subdivision or tessellation level.
+  std::optional<Scheme> scheme;       ///< Overrides the objects'.
+  std::optional<NormalKind> normals;  ///< Unset: limit where there is a limit surface or a field, else vertex.
+  std::int64_t max_bytes = std::int64_t{8} << 30;
+  int max_steps = 10'000;                ///< Per ray; beyond it the pixel's status is out_of_steps.
+  std::function<void(double)> progress;  ///< 0..1 while building; may be empty.
+};
+
+struct SurfaceDescriptor {
+  Description about;
+  std::vector<std::string> settings;  ///< The fields of SurfaceSettings it reads, as command-line names ("voxels", "gradient").
+  /// Empty where it can model the object, else the reason why not, for a recorded skip or an error.
+  std::string (*unsupported)(const SceneObject& object);
+  /// Throws InputError. `render_origin` (world) is subtracted in double precision before anything becomes float.
+  Surface (*build)(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin);
+};
+
+std::span<const SurfaceDescriptor> surface_kinds();
+const SurfaceDescriptor& find_surface(const std::string& name, const std::string& file = {}, const std::string& field = {});
+/// The representation a source is closest to: analytic, mesh or level_set.
+std::string natural_surface(const SceneObject& object);
+
+/// A whole scene, modelled.
+struct SceneModel {
+  std::vector<Surface> surfaces;  ///< One for each object, in order.
+  std::vector<glm::vec3> colors;
+  std::vector<int> materials;
+  glm::dvec3 render_origin{0.0};  ///< World.
+  Box bounds;                     ///< World, of the bounded objects.
+};
+
+/// Models every object. `settings.kind` empty: each in its natural representation. Throws InputError where one cannot be.
+SceneModel build_model(const Scene& scene, const SurfaceSettings& settings);
+
+/// Sums of bytes, build times and so on; `kind` is the common one or "mixed".
+SurfaceInfo total(const SceneModel& model);
+
+}  // namespace limn

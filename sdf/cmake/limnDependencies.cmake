@@ -1,0 +1,33 @@
+# Every library limn stands on, found in one place: by the build, and by find_package(limn) in other projects.
+# Debian 12 needs three detours; each is explained where it is taken.
+include(CMakeFindDependencyMacro)
+
+find_dependency(Threads)
+find_dependency(TBB)
+find_dependency(glm)
+find_dependency(fmt)
+
+# OpenVDB ships only a find module. Its folder holds find modules for other libraries too, which would shadow CMake's, so it is
+# on the path for this one call.
+if(NOT TARGET OpenVDB::openvdb)
+  find_path(LIMN_OPENVDB_MODULES FindOpenVDB.cmake
+    PATH_SUFFIXES lib/cmake/OpenVDB lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB lib64/cmake/OpenVDB REQUIRED)
+  mark_as_advanced(LIMN_OPENVDB_MODULES)
+  list(PREPEND CMAKE_MODULE_PATH ${LIMN_OPENVDB_MODULES})
+  find_dependency(OpenVDB)
+  list(REMOVE_ITEM CMAKE_MODULE_PATH ${LIMN_OPENVDB_MODULES})
+endif()
+
+# OpenSubdiv's config file names a static library that Debian does not ship.
+if(NOT TARGET limn_opensubdiv)
+  find_path(LIMN_OPENSUBDIV_INCLUDE opensubdiv/version.h REQUIRED)
+  find_library(LIMN_OPENSUBDIV_LIBRARY osdCPU REQUIRED)
+  mark_as_advanced(LIMN_OPENSUBDIV_INCLUDE LIMN_OPENSUBDIV_LIBRARY)
+  add_library(limn_opensubdiv UNKNOWN IMPORTED)
+  set_target_properties(limn_opensubdiv PROPERTIES
+    IMPORTED_LOCATION ${LIMN_OPENSUBDIV_LIBRARY}
+    INTERFACE_INCLUDE_DIRECTORIES ${LIMN_OPENSUBDIV_INCLUDE})
+endif()
+
+find_dependency(embree 3)
+find_dependency(OpenImageIO)

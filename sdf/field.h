@@ -1,0 +1,78 @@
+#pragma once
+// The field contract. A Field is an immutable expression: shapes at the leaves, CSG and offsets above, every transform folded into
+// the leaves. It is negative inside, zero on the surface, positive outside. Copying a Field copies a pointer.
+
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "sdf/geometry.h"
+
+namespace limn {
+
+struct FieldProgram;  // sdf/field_program.h: the flat list of instructions behind a Field
+
+/// What is true of a field everywhere.
+struct FieldTraits {
+  double lipschitz = 1.0;       ///< |f(p) - f(q)| <= lipschitz * |p - q|; finite and above 0.
+  bool exact_distance = false;  ///< Outside and inside, |f| is the Euclidean distance to the surface.
+  Box bounds;                   ///< Holds the surface; infinite for planes and unbounded lattices; empty for an empty surface.
+};
+
+class Field {
+ public:
+  explicit Field(std::shared_ptr<const FieldProgram> program) : program_(std::move(program)) {}
+  const FieldProgram& program() const { return *program_; }
+  const FieldTraits& traits() const;
+
+ private:
+  std::shared_ptr<const FieldProgram> program_;
+};
+
+/// Value and slope bounds along a stretch of a ray.
+struct RayBounds {
+  Interval value;  ///< Holds f at every point of the stretch.
+  Interval slope;  ///< Holds every one-sided derivative of f by t on the stretch (Clarke), so 0 outside it means monotone.
+};
+
+/// Value, gradient and Hessian at a point.
+struct FieldJet {
+  double value = 0.0;
+  glm::dvec3 gradient{0.0};
+  glm::dmat3 hessian{0.0};  ///< Symmetric. At a crease or a CSG seam: that of one of the two sides.
+};
+
+/// Evaluates one field; owns its scratch memory, so keep one for each thread. All points are world points.
+/// At a crease the gradient is that of one of the two sides; where it is undefined (centre of a sphere) it is finite.
+class FieldEvaluator {
+ public:
+  explicit FieldEvaluator(const Field& field);
+  ~FieldEvaluator();
+  FieldEvaluator(FieldEvaluator&&) noexcept;
+  FieldEvaluator& operator=(FieldEvaluator&&) noexcept;
+
+  const Field& field() const { return field_; }
+
+  /// f at each point; sizes equal. Double, and float for marching (relative error about 1e-6 of the field's extent).
+  void values(std::span<const glm::dvec3> points, std::span<double> values);
+  void values(std::span<const glm::vec3> points, std::span<float> values);
+  /// f and grad f at each point.
+  void gradients(std::span<const glm::dvec3> points, std::span<double> values, std::span<glm::dvec3> gradients);
+  void jets(std::span<const glm::dvec3> points, std::span<FieldJet> jets);
+
+  double value(const glm::dvec3& point);
+  FieldJet jet(const glm::dvec3& point);
+
+  /// Bounds of f over a box: never too narrow; the tighter of interval arithmetic and the Lipschitz bound about the centre.
+  Interval bounds(const Box& box);
+  /// Bounds of f and of its slope on origin + t * direction, t in `t`.
+  RayBounds bounds_along(const glm::dvec3& origin, const glm::dvec3& direction, Interval t);
+
+ private:
+  struct Scratch;
+  Field field_;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+}  // namespace limn

@@ -1,0 +1,108 @@
+#pragma once
+// Narrow-band level sets: built and edited with OpenVDB, read through NanoVDB. No OpenVDB type leaves this folder's .cpp files.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sdf/descriptor.h"
+#include "sdf/field.h"
+#include "sdf/geometry.h"
+
+namespace limn {
+
+struct LevelSetData;  // sdf/level_set_data.h
+
+struct LevelSetInfo {
+  std::string name;                ///< The grid's name.
+  Affine world_from_index;         ///< Voxel (i, j, k) has its node at world_from_index.point(i, j, k).
+  double voxel_size = 0.0;         ///< World; the smallest of the three where they differ.
+  double half_width_voxels = 0.0;  ///< Of the band that is really there, inside and outside (the smaller).
+  std::int64_t active_voxels = 0;
+  std::int64_t bytes = 0;  ///< Of the NanoVDB grid that is read.
+  Box bounds;              ///< World, around the zero crossings; empty where there are none.
+  double build_ms = 0.0;
+};
+
+/// An immutable grid; copying copies a pointer.
+class LevelSet {
+ public:
+  explicit LevelSet(std::shared_ptr<const LevelSetData> data) : data_(std::move(data)) {}
+  const LevelSetData& data() const { return *data_; }
+  const LevelSetInfo& info() const;
+
+ private:
+  std::shared_ptr<const LevelSetData> data_;
+};
+
+/// How a gradient is read from a grid: one file in sdf/gradients/ and one line in sdf/gradients/registry.cpp.
+struct GradientDescriptor {
+  Description about;
+  double half_width_voxels;  ///< Of the band it needs around a surface point, so that no stencil leaves the band.
+  int order;                 ///< Of the normal's angle, by voxel size.
+  /// Gradients (world, not normalised) at world points within one voxel of the surface; sizes equal.
+  void (*gradients)(const LevelSetData&, std::span<const glm::dvec3> points, std::span<glm::dvec3> gradients);
+  /// The Hessian too, or null where the reconstruction has none worth having.
+  void (*hessians)(const LevelSetData&, std::span<const glm::dvec3> points, std::span<FieldJet> jets);
+};
+
+std::span<const GradientDescriptor> gradients();
+const GradientDescriptor& find_gradient(const std::string& name, const std::string& file = {}, const std::string& field = {});
+
+struct LevelSetSettings {
+  double voxel_size = 0.0;                         ///< World, > 0.
+  double half_width_voxels = 3.0;                  ///< At least 1.8 (so that every cell on the surface lies in the band).
+  std::int64_t max_bytes = std::int64_t{8} << 30;  ///< Refuses (InputError, with the estimate) what would be larger.
+  std::function<void(double)> progress;            ///< Called with 0..1 from any one thread at a time; may be empty.
+};
+
+/// Samples the field where |distance| <= half width and nowhere else: blocks that interval bounds prove empty are never evaluated.
+/// A field that is not an exact distance is turned into one to third order from value, gradient and Hessian.
+/// Throws InputError for an unbounded field (with `bounds` to give), a surface thinner than nothing, or a grid beyond max_bytes.
+LevelSet level_set_from_field(const Field& field, const LevelSetSettings& settings);
+
+/// Values at the nodes of a band given as blocks of 8^3, for makers that compute distances themselves (mesh to level set).
+struct LevelSetBlock {
+  glm::ivec3 origin;        ///< Index coordinates, multiples of 8.
+  std::uint64_t active[8];  ///< Bit (x*64 + y*8 + z), as OpenVDB numbers leaf nodes: word x, bit y*8+z.
+  float values[512];        ///< World distance, negative inside; inactive ones hold +-background.
+};
+/// Joins blocks into a level set, flood-filling the sign. Blocks are unique by origin; `background` is the half width in world units.
+LevelSet level_set_from_blocks(std::span<const LevelSetBlock> blocks, double voxel_size, double half_width_voxels, const std::string& name);
+
+/// One grid of a .vdb file, as `limn info` and error messages list them.
+struct GridSummary {
+  std::string name, value_type, grid_class;
+  std::int64_t active_voxels = 0;
+  double voxel_size = 0.0;
+};
+
+/// Guarded: the file is read by a child process with limits on memory and time (sdf/guard.h).
+std::vector<GridSummary> list_grids(const std::filesystem::path& file);
+
+/// `grid` empty: the only level set, or InputError with the names. Reads float, double and half; refuses, saying what would be right:
+/// a fog volume, an empty or uninitialised grid, other value types, frustum transforms, a band below `needed_half_width_voxels`.
+LevelSet read_level_set(const std::filesystem::path& file, const std::string& grid, double needed_half_width_voxels = 0.0);
+
+/// Writes one grid, 32-bit, class "level set", zipped with active-mask compression; whole or not at all.
+void write_level_set(const LevelSet& level_set, const std::filesystem::path& file);
+
+/// Throws InputError where the band is too thin for `gradient`, with the width that would be right.
+void check_half_width(const LevelSet& level_set, const GradientDescriptor& gradient, const std::string& file);
+
+/// Trilinear value at world points (background outside the band).
+void level_set_values(const LevelSet& level_set, std::span<const glm::dvec3> points, std::span<double> values);
+
+/// The zero surface as polygons, by dual contouring on the grid (OpenVDB volumeToMesh): positions in world, faces wound outwards.
+struct PolygonSoup {
+  std::vector<glm::dvec3> positions;
+  std::vector<std::int32_t> face_sizes;
+  std::vector<std::int32_t> corner_vertices;
+};
+PolygonSoup mesh_from_level_set(const LevelSet& level_set);
+
+}  // namespace limn

@@ -1,0 +1,1 @@
+#include "subdiv/mesh.h"

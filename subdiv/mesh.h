@@ -1,0 +1,72 @@
+#pragma once
+// Polygon meshes: as loaded (n-gons, creases, groups kept) and as triangles ready to trace.
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "sdf/geometry.h"
+
+namespace limn {
+
+/// Semi-sharp edge or vertex of a subdivision cage; sharpness 0 is smooth, 10 and above is infinitely sharp (OpenSubdiv).
+struct Crease {
+  std::int32_t vertex_a = 0;
+  std::int32_t vertex_b = 0;
+  float sharpness = 0.0f;
+};
+struct CornerTag {
+  std::int32_t vertex = 0;
+  float sharpness = 0.0f;
+};
+
+/// What happens to open edges under subdivision: OpenSubdiv's VTX_BOUNDARY_NONE, EDGE_ONLY, EDGE_AND_CORNER.
+enum class BoundaryRule { none, edge_only, edge_and_corner };
+
+/// A polygon mesh. Vertices are welded by index only; nothing is merged by position, so what the file says stays as found.
+struct Mesh {
+  std::vector<glm::dvec3> positions;          ///< In the file's units and axes.
+  std::vector<std::int32_t> face_sizes;       ///< Corners of each face, >= 3.
+  std::vector<std::int32_t> corner_vertices;  ///< All faces' corners one after the other, counter-clockwise seen from outside.
+  std::vector<glm::vec3> corner_normals;      ///< As found in the file, one for each corner; empty where it has none.
+  std::vector<glm::vec3> vertex_colors;       ///< Linear, one for each vertex; or empty.
+  std::vector<std::int32_t> face_materials;   ///< Index into material_names for each face; or empty.
+  std::vector<std::int32_t> face_groups;      ///< Index into group_names for each face; or empty.
+  std::vector<std::string> material_names;
+  std::vector<std::string> group_names;
+  std::vector<Crease> creases;
+  std::vector<CornerTag> corners;
+  BoundaryRule boundary = BoundaryRule::edge_and_corner;
+
+  size_t face_count() const { return face_sizes.size(); }
+  size_t vertex_count() const { return positions.size(); }
+};
+
+Box bounds(const Mesh& mesh);
+/// Index of each face's first corner, with one past the end at the back: size face_count() + 1.
+std::vector<std::int32_t> first_corners(const Mesh& mesh);
+
+/// Throws InputError (naming `file`) unless every index is in range, every position finite, every face has 3 or more corners,
+/// the optional arrays have the right sizes and there is at least one face.
+void validate(const Mesh& mesh, const std::string& file);
+
+/// How normals are made: `flat` a face's own; `vertex` averaged by corner angle, split at infinitely sharp creases;
+/// `limit` those of the limit surface (subdivision) or of the field (a tessellated shape).
+enum class NormalKind { flat, vertex, limit };
+
+/// Triangles ready to trace.
+struct TriangleMesh {
+  std::vector<glm::dvec3> positions;
+  std::vector<glm::uvec3> triangles;             ///< Counter-clockwise seen from outside.
+  std::vector<glm::vec3> corner_normals;         ///< Unit; three for each triangle, or empty: the facets' own.
+  std::vector<std::int32_t> triangle_faces;      ///< The polygon each came from.
+  std::vector<std::int32_t> triangle_materials;  ///< Or empty.
+  std::int64_t bytes() const;
+};
+
+/// The polygons of `mesh` as triangles: fans for convex faces, ear clipping for the others; zero-area triangles are dropped and counted.
+/// `kind` flat or vertex (limit normals come from subdiv/refine.h, as corner_normals: a mesh's own are used where `use_mesh_normals`).
+TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, bool use_mesh_normals = false);
+
+}  // namespace limn

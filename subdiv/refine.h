@@ -1,0 +1,65 @@
+#pragma once
+// Subdivision surfaces by OpenSubdiv: uniform refinement, limit positions, normals and curvature. No OpenSubdiv type leaves the .cpp files.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "subdiv/mesh.h"
+
+namespace limn {
+
+enum class Scheme { catmark, loop, bilinear };
+const char* name_of(Scheme scheme);
+
+struct RefineSettings {
+  Scheme scheme = Scheme::catmark;
+  int level = 2;         ///< 0..8; 0 leaves the cage's faces as they are.
+  bool to_limit = true;  ///< Vertices moved onto the limit surface (what the renderer wants); false keeps the refined cage.
+  NormalKind normals = NormalKind::limit;
+  std::int64_t max_bytes = std::int64_t{8} << 30;
+};
+
+/// What a refinement would hold, known before memory is taken.
+struct RefinedSize {
+  std::int64_t vertices = 0, faces = 0, bytes = 0;
+};
+/// Exact for Catmull-Clark, Loop and bilinear: counted from vertices, edges and corners. Level outside 0..8 is an InputError.
+RefinedSize predict_refined_size(const Mesh& cage, Scheme scheme, int level);
+
+/// The cage refined uniformly. Corner normals are filled for `limit` (split at infinitely sharp creases) and left empty otherwise.
+/// Level 0 with `limit` normals projects the cage's own vertices. Loop wants triangles (others are an InputError naming the first face).
+/// Faces keep their material and group. Throws InputError for a level outside 0..8 and for a prediction beyond max_bytes (with the size).
+Mesh refine(const Mesh& cage, const RefineSettings& settings, const std::string& file = {});
+
+/// A point of the limit surface with its derivatives by the face's own (u, v); Bfr parametrises n-gons as sub-quads.
+struct LimitPoint {
+  glm::dvec3 position{0.0}, du{0.0}, dv{0.0}, duu{0.0}, duv{0.0}, dvv{0.0};
+};
+/// Curvatures from the first and second fundamental forms; positive where the surface bends away from its outward normal (sphere: 1/R).
+struct SurfaceCurvature {
+  glm::dvec3 normal{0.0};      ///< Unit.
+  double k1 = 0.0, k2 = 0.0;   ///< Principal, k1 >= k2.
+  glm::dvec3 direction1{0.0};  ///< Unit, of k1.
+};
+SurfaceCurvature curvature(const LimitPoint& point);
+/// Normal curvature along a tangent direction (need not be unit): Euler's formula.
+double curvature_along(const SurfaceCurvature& surface, const glm::dvec3& direction);
+
+struct LimitSurfaceData;
+/// The limit surface of a cage, evaluated face by face (Bfr). Immutable; evaluation is thread-safe.
+class LimitSurface {
+ public:
+  LimitSurface(const Mesh& cage, Scheme scheme, const std::string& file = {});
+  int face_count() const;
+  /// Corners of the parametric domain: 4 for a quad, 3 for a triangle, n sub-quads otherwise.
+  int face_size(int face) const;
+  /// False where the face has no limit surface (a hole, a degenerate vertex). (u, v) in [0,1]^2 for quads; n-gons: sub-face by corner.
+  bool evaluate(int face, int sub_face, double u, double v, LimitPoint& out) const;
+
+ private:
+  std::shared_ptr<const LimitSurfaceData> data_;
+};
+
+}  // namespace limn

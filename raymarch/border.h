@@ -16,15 +16,15 @@ struct BorderInput {
 
 /// Ink of one method. `coverage` in [0, 1], finite, the G-buffer's size.
 struct Border {
-  Image<float> coverage;
+  Image<float> coverage{};
   glm::vec3 color{0.0f};           ///< Linear.
-  std::vector<std::string> notes;  ///< What failed here, in words with numbers; empty where nothing did.
+  std::vector<std::string> notes{};  ///< What failed here, in words with numbers; empty where nothing did.
 };
 
 struct BorderMethod {
-  Description about;
-  std::vector<std::string> inputs;  ///< Layers it reads ("NdotV", "Z", …) and "mesh" where it needs one.
-  std::vector<Parameter> parameters;
+  Description about{};
+  std::vector<std::string> inputs{};  ///< Layers it reads ("NdotV", "Z", …) and "mesh" where it needs one.
+  std::vector<Parameter> parameters{};
   /// Empty where it can run on the model, else the reason why not.
   std::string (*unsupported)(const SceneModel& model, const Scene& scene);
   Border (*draw)(const BorderInput& input, const Parameters& parameters);

@@ -11,22 +11,22 @@ namespace limn {
 /// What is seen at each pixel, as plain buffers. Nothing hit: Z and position infinite, normal 0, NdotV 0, id 0.
 struct GBuffer {
   int width = 0, height = 0;
-  Image<float> depth;         ///< Z along the view axis, world units, > 0 in front of a pinhole.
-  Image<glm::vec3> position;  ///< World.
-  Image<glm::vec3> normal;    ///< World, unit.
-  Image<float> n_dot_v;       ///< saturate(N.V), V the unit vector to the eye.
-  Image<std::int32_t> id;     ///< Object index from 1.
-  Image<std::int32_t> material;
-  Image<std::int32_t> face;    ///< Polygon of a mesh, -1 elsewhere.
-  Image<std::uint8_t> status;  ///< HitStatus.
+  Image<float> depth{};         ///< Z along the view axis, world units, > 0 in front of a pinhole.
+  Image<glm::vec3> position{};  ///< World.
+  Image<glm::vec3> normal{};    ///< World, unit.
+  Image<float> n_dot_v{};       ///< saturate(N.V), V the unit vector to the eye.
+  Image<std::int32_t> id{};     ///< Object index from 1.
+  Image<std::int32_t> material{};
+  Image<std::int32_t> face{};    ///< Polygon of a mesh, -1 elsewhere.
+  Image<std::uint8_t> status{};  ///< HitStatus.
 };
 
 /// What a picture's pixels must not depend on.
 struct ExecutionSettings {
   int threads = 0;                       ///< 0: all.
   int tile_px = 16;                      ///< Side of a square tile, 1..16 (a tile is one ray batch).
-  std::function<void(double)> progress;  ///< 0..1, from one thread at a time; may be empty.
-  std::function<bool()> cancelled;       ///< Polled for each tile; true throws Cancelled.
+  std::function<void(double)> progress{};  ///< 0..1, from one thread at a time; may be empty.
+  std::function<bool()> cancelled{};       ///< Polled for each tile; true throws Cancelled.
 };
 
 /// Thrown out of long work when ExecutionSettings::cancelled says so.

@@ -12,14 +12,14 @@ struct MetricInput {
 };
 
 struct MetricValue {
-  std::string name;    ///< "normal_error_mean"
+  std::string name{};    ///< "normal_error_mean"
   double value = 0.0;  ///< NaN where there is nothing to measure.
-  std::string unit;    ///< "px", "deg", ""
+  std::string unit{};    ///< "px", "deg", ""
 };
 
 struct Metric {
-  Description about;
-  std::vector<std::string> values;  ///< Names of the values it yields, with units: "normal_error_mean [deg]".
+  Description about{};
+  std::vector<std::string> values{};  ///< Names of the values it yields, with units: "normal_error_mean [deg]".
   bool lower_is_better = true;
   std::vector<MetricValue> (*measure)(const MetricInput& input);
 };

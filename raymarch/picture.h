@@ -6,22 +6,22 @@
 namespace limn {
 
 struct Picture {
-  GBuffer gbuffer;                 ///< Of the pixel centres.
-  Image<float> border;             ///< Ink coverage in [0, 1]: mean over the samples; all methods together.
-  Image<glm::vec4> composite;      ///< Linear, premultiplied RGBA.
-  std::vector<std::string> notes;  ///< Of the methods.
+  GBuffer gbuffer{};                 ///< Of the pixel centres.
+  Image<float> border{};             ///< Ink coverage in [0, 1]: mean over the samples; all methods together.
+  Image<glm::vec4> composite{};      ///< Linear, premultiplied RGBA.
+  std::vector<std::string> notes{};  ///< Of the methods.
   double trace_ms = 0.0, border_ms = 0.0;
 };
 
 struct MethodCall {
   const BorderMethod* method = nullptr;
-  Parameters parameters;
+  Parameters parameters{};
 };
 
 struct PictureSettings {
-  std::vector<MethodCall> methods;      ///< Inks in order, the last on top.
+  std::vector<MethodCall> methods{};      ///< Inks in order, the last on top.
   int samples = 1;                      ///< Per pixel, 1..1024: 1 is the centre; more follow the R2 sequence (Roberts 2018).
-  std::optional<glm::vec3> background;  ///< Linear; unset: transparent.
+  std::optional<glm::vec3> background{};  ///< Linear; unset: transparent.
 };
 
 /// Throws InputError where a method cannot run on the model.

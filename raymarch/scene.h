@@ -16,29 +16,29 @@ namespace limn {
 
 /// A subdivision cage (`scheme` set) or a mesh taken as it is (`scheme` empty: level 0, its own facets).
 struct MeshSource {
-  Mesh mesh;
-  std::optional<Scheme> scheme;
-  std::string file;  ///< For messages.
+  Mesh mesh{};
+  std::optional<Scheme> scheme{};
+  std::string file{};  ///< For messages.
 };
 
 struct LevelSetSource {
   LevelSet level_set;
-  std::string file;  ///< For messages.
+  std::string file{};  ///< For messages.
 };
 
 struct SceneObject {
-  std::string name;
+  std::string name{};
   std::variant<Field, MeshSource, LevelSetSource> source;  ///< A closed set: what files and shapes can give.
-  Affine world_from_object;           ///< Applied to meshes and level sets; a Field has its transforms folded in (identity here).
+  Affine world_from_object{};           ///< Applied to meshes and level sets; a Field has its transforms folded in (identity here).
   glm::vec3 color{0.8f, 0.8f, 0.8f};  ///< Linear.
   int material = 0;                   ///< For material edges; mesh faces with materials of their own add their index to it.
-  std::optional<int> level;           ///< Subdivision level of this object, over the settings'.
+  std::optional<int> level{};           ///< Subdivision level of this object, over the settings'.
 };
 
 struct Scene {
-  std::string name;
-  CameraSettings camera;
-  std::vector<SceneObject> objects;
+  std::string name{};
+  CameraSettings camera{};
+  std::vector<SceneObject> objects{};
 };
 
 /// World bounds of one object's surface / of all. Unbounded fields (planes) count as empty in the scene's bounds, so they are not framed.

@@ -37,22 +37,22 @@ struct HitBatch {
 
 /// What building it cost and how large it came out.
 struct SurfaceInfo {
-  std::string kind;
+  std::string kind{};
   double voxel_size = 0.0;  ///< World; 0 where there is no grid.
   std::int64_t voxels = 0;  ///< Active ones.
   std::int64_t triangles = 0;
   std::int64_t bytes = 0;
   double build_ms = 0.0;
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings{};
 };
 
 /// One object, modelled. `trace` is called once for each batch and from many threads at a time; scratch memory is the callee's, on its
 /// stack or per call.
 struct Surface {
-  std::shared_ptr<const void> state;
+  std::shared_ptr<const void> state{};
   void (*trace)(const void* state, const RayBatch& rays, HitBatch& hits) = nullptr;
-  Box bounds;  ///< Render space; infinite where the object is.
-  SurfaceInfo info;
+  Box bounds{};  ///< Render space; infinite where the object is.
+  SurfaceInfo info{};
 };
 
 /// How to model, whatever the object. What a representation does not use is ignored by it.
@@ -63,16 +63,16 @@ struct SurfaceSettings {
   double half_width_voxels = 0.0;  ///< 0: what the gradient needs.
   std::string gradient = "central";
   int level = 3;                      ///< Subdivision or tessellation level.
-  std::optional<Scheme> scheme;       ///< Overrides the objects'.
-  std::optional<NormalKind> normals;  ///< Unset: limit where there is a limit surface or a field, else vertex.
+  std::optional<Scheme> scheme{};       ///< Overrides the objects'.
+  std::optional<NormalKind> normals{};  ///< Unset: limit where there is a limit surface or a field, else vertex.
   std::int64_t max_bytes = std::int64_t{8} << 30;
   int max_steps = 10'000;                ///< Per ray; beyond it the pixel's status is out_of_steps.
-  std::function<void(double)> progress;  ///< 0..1 while building; may be empty.
+  std::function<void(double)> progress{};  ///< 0..1 while building; may be empty.
 };
 
 struct SurfaceDescriptor {
-  Description about;
-  std::vector<std::string> settings;  ///< The fields of SurfaceSettings it reads, as command-line names ("voxels", "gradient").
+  Description about{};
+  std::vector<std::string> settings{};  ///< The fields of SurfaceSettings it reads, as command-line names ("voxels", "gradient").
   /// Empty where it can model the object, else the reason why not, for a recorded skip or an error.
   std::string (*unsupported)(const SceneObject& object);
   /// Throws InputError. `render_origin` (world) is subtracted in double precision before anything becomes float.
@@ -86,11 +86,11 @@ std::string natural_surface(const SceneObject& object);
 
 /// A whole scene, modelled.
 struct SceneModel {
-  std::vector<Surface> surfaces;  ///< One for each object, in order.
-  std::vector<glm::vec3> colors;
-  std::vector<int> materials;
+  std::vector<Surface> surfaces{};  ///< One for each object, in order.
+  std::vector<glm::vec3> colors{};
+  std::vector<int> materials{};
   glm::dvec3 render_origin{0.0};  ///< World.
-  Box bounds;                     ///< World, of the bounded objects.
+  Box bounds{};                     ///< World, of the bounded objects.
 };
 
 /// Models every object. `settings.kind` empty: each in its natural representation. Throws InputError where one cannot be.

@@ -12,12 +12,12 @@ enum class Projection { perspective, orthographic };
 
 /// What a user says of a camera. Missing eye, target or height are framed from the scene's bounds.
 struct CameraSettings {
-  std::optional<glm::dvec3> eye;     ///< World.
-  std::optional<glm::dvec3> target;  ///< World.
+  std::optional<glm::dvec3> eye{};     ///< World.
+  std::optional<glm::dvec3> target{};  ///< World.
   glm::dvec3 up{0.0, 1.0, 0.0};
   Projection projection = Projection::perspective;
   double vertical_fov = 0.6108652381980153;  ///< Radians, in (0, pi); perspective only. Default 35 degrees.
-  std::optional<double> ortho_height;        ///< World units from the bottom to the top of the picture; orthographic only.
+  std::optional<double> ortho_height{};        ///< World units from the bottom to the top of the picture; orthographic only.
   int width_px = 1280;
   int height_px = 720;
 };

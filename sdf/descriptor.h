@@ -22,22 +22,22 @@ enum class ParameterKind {
 
 /// One tunable of a shape, method, gradient or metric. Every value is held as reals: a flag is 0 or 1, a choice its index.
 struct Parameter {
-  std::string name;
+  std::string name{};
   ParameterKind kind = ParameterKind::number;
-  std::string unit;  ///< "px", "deg", "world", "voxels"; empty where there is none.
-  std::vector<double> default_value;
+  std::string unit{};  ///< "px", "deg", "world", "voxels"; empty where there is none.
+  std::vector<double> default_value{};
   double min = -std::numeric_limits<double>::infinity();  ///< Inclusive, for each component.
   double max = std::numeric_limits<double>::infinity();   ///< Inclusive, for each component.
-  std::string help;
-  std::vector<std::string> choices;  ///< For `choice`.
+  std::string help{};
+  std::vector<std::string> choices{};  ///< For `choice`.
   int group = 1;                     ///< For `list`: numbers an item takes (2 for [r, y]).
 };
 
 /// The value of a parameter as a file or a command line gave it: numbers, or a word (choice, or text still to be parsed).
 struct ParameterInput {
-  std::vector<double> numbers;
-  std::string word;   ///< Set for a string value; then `numbers` is empty.
-  std::string where;  ///< File with line and column, for messages; empty on the command line.
+  std::vector<double> numbers{};
+  std::string word{};   ///< Set for a string value; then `numbers` is empty.
+  std::string where{};  ///< File with line and column, for messages; empty on the command line.
 };
 
 /// Values by name, complete and in range. Reading a name that the descriptor does not have is our own fault (LIMN_CHECK).
@@ -62,7 +62,7 @@ class Parameters {
     std::vector<double> numbers;
   };
   const Value& value(const std::string& name) const;
-  std::vector<Value> values_;
+  std::vector<Value> values_{};
 };
 
 /// Defaults overridden by `given`, checked. `file` and `field_prefix` ("object[0].", "--set ") go into the message.
@@ -72,9 +72,9 @@ Parameters resolve(std::span<const Parameter> parameters, const std::map<std::st
 
 /// What every entry of every registry has. Kept as the first member `about` of the particular descriptors.
 struct Description {
-  std::string name;
-  std::string help;    ///< One line.
-  std::string source;  ///< Where the method or formula comes from, with the year; "limn" for our own.
+  std::string name{};
+  std::string help{};    ///< One line.
+  std::string source{};  ///< Where the method or formula comes from, with the year; "limn" for our own.
 };
 
 }  // namespace limn

@@ -37,7 +37,7 @@ class ByteWriter {
     append(values.data(), values.size_bytes());
   }
   void put_text(const std::string& text) { put_span(std::span<const char>(text)); }
-  std::vector<std::byte> bytes;
+  std::vector<std::byte> bytes{};
 
  private:
   void append(const void* data, size_t size) {
@@ -73,7 +73,7 @@ class ByteReader {
   void take(void* target, size_t size);
   [[noreturn]] void damaged() const;
   std::span<const std::byte> bytes_;
-  std::string file_;
+  std::string file_{};
 };
 
 /// For the helper programs: sends the answer and returns the exit code; `reason` must be one line.

@@ -18,7 +18,7 @@ template <class T>
 struct Image {
   int width = 0;
   int height = 0;
-  std::vector<T> pixels;
+  std::vector<T> pixels{};
 
   Image() = default;
   Image(int width_px, int height_px, const T& fill = T{})

@@ -10,8 +10,8 @@ namespace limn {
 
 /// A registry entry: one file in sdf/shapes/ and one line in sdf/shapes/registry.cpp.
 struct ShapeDescriptor {
-  Description about;
-  std::vector<Parameter> parameters;
+  Description about{};
+  std::vector<Parameter> parameters{};
   Field (*make)(const Parameters&);  ///< Throws InputError for combinations that no single range can exclude.
 };
 

@@ -12,10 +12,10 @@ enum class Severity { info, warning, error };
 
 /// One finding of an audit: what was looked for, how much of it there is, and what follows from it, in a sentence.
 struct Finding {
-  std::string check;
+  std::string check{};
   Severity severity = Severity::info;
   double value = 0.0;
-  std::string message;
+  std::string message{};
 };
 
 /// Edges, built once: every undirected edge with the faces on it.

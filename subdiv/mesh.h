@@ -26,17 +26,17 @@ enum class BoundaryRule { none, edge_only, edge_and_corner };
 
 /// A polygon mesh. Vertices are welded by index only; nothing is merged by position, so what the file says stays as found.
 struct Mesh {
-  std::vector<glm::dvec3> positions;          ///< In the file's units and axes.
-  std::vector<std::int32_t> face_sizes;       ///< Corners of each face, >= 3.
-  std::vector<std::int32_t> corner_vertices;  ///< All faces' corners one after the other, counter-clockwise seen from outside.
-  std::vector<glm::vec3> corner_normals;      ///< As found in the file, one for each corner; empty where it has none.
-  std::vector<glm::vec3> vertex_colors;       ///< Linear, one for each vertex; or empty.
-  std::vector<std::int32_t> face_materials;   ///< Index into material_names for each face; or empty.
-  std::vector<std::int32_t> face_groups;      ///< Index into group_names for each face; or empty.
-  std::vector<std::string> material_names;
-  std::vector<std::string> group_names;
-  std::vector<Crease> creases;
-  std::vector<CornerTag> corners;
+  std::vector<glm::dvec3> positions{};          ///< In the file's units and axes.
+  std::vector<std::int32_t> face_sizes{};       ///< Corners of each face, >= 3.
+  std::vector<std::int32_t> corner_vertices{};  ///< All faces' corners one after the other, counter-clockwise seen from outside.
+  std::vector<glm::vec3> corner_normals{};      ///< As found in the file, one for each corner; empty where it has none.
+  std::vector<glm::vec3> vertex_colors{};       ///< Linear, one for each vertex; or empty.
+  std::vector<std::int32_t> face_materials{};   ///< Index into material_names for each face; or empty.
+  std::vector<std::int32_t> face_groups{};      ///< Index into group_names for each face; or empty.
+  std::vector<std::string> material_names{};
+  std::vector<std::string> group_names{};
+  std::vector<Crease> creases{};
+  std::vector<CornerTag> corners{};
   BoundaryRule boundary = BoundaryRule::edge_and_corner;
 
   size_t face_count() const { return face_sizes.size(); }
@@ -57,11 +57,11 @@ enum class NormalKind { flat, vertex, limit };
 
 /// Triangles ready to trace.
 struct TriangleMesh {
-  std::vector<glm::dvec3> positions;
-  std::vector<glm::uvec3> triangles;             ///< Counter-clockwise seen from outside.
-  std::vector<glm::vec3> corner_normals;         ///< Unit; three for each triangle, or empty: the facets' own.
-  std::vector<std::int32_t> triangle_faces;      ///< The polygon each came from.
-  std::vector<std::int32_t> triangle_materials;  ///< Or empty.
+  std::vector<glm::dvec3> positions{};
+  std::vector<glm::uvec3> triangles{};             ///< Counter-clockwise seen from outside.
+  std::vector<glm::vec3> corner_normals{};         ///< Unit; three for each triangle, or empty: the facets' own.
+  std::vector<std::int32_t> triangle_faces{};      ///< The polygon each came from.
+  std::vector<std::int32_t> triangle_materials{};  ///< Or empty.
   std::int64_t bytes() const;
 };
 

@@ -9,7 +9,7 @@ namespace limn {
 /// ray parity on closed meshes, closes small holes sensibly, and does not depend on the order of faces.
 struct MeshLevelSet {
   LevelSet level_set;
-  std::vector<std::string> warnings;  ///< Open edges, sheets thinner than two voxels: each with its number.
+  std::vector<std::string> warnings{};  ///< Open edges, sheets thinner than two voxels: each with its number.
 };
 
 /// The narrow band of a mesh: exact distance to the closest point of the triangles at every node of the band; sign by `winding`.
@@ -29,7 +29,7 @@ class ClosestPointQuery {
   ClosestPoint closest(const glm::dvec3& point) const;  ///< Thread-safe.
 
  private:
-  std::shared_ptr<const ClosestPointData> data_;
+  std::shared_ptr<const ClosestPointData> data_{};
 };
 
 }  // namespace limn

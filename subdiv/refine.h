@@ -59,7 +59,7 @@ class LimitSurface {
   bool evaluate(int face, int sub_face, double u, double v, LimitPoint& out) const;
 
  private:
-  std::shared_ptr<const LimitSurfaceData> data_;
+  std::shared_ptr<const LimitSurfaceData> data_{};
 };
 
 }  // namespace limn

@@ -1,1 +1,28 @@
-int main() { return 2; }
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "raymarch/gbuffer.h"
+#include "samples/interrupt.h"
+#include "samples/program.h"
+#include "sdf/error.h"
+
+int main(int argc, char** argv) {
+  limn::install_interrupt_handlers();
+  try {
+    return limn::run_program(argc, argv);
+  } catch (const limn::Cancelled&) {
+    return limn::interrupt_exit_code();
+  } catch (const limn::InputError& error) {
+    // Whatever failed after the interrupt failed because of it: a child process ended, a file was not written.
+    if (limn::interrupted()) return limn::interrupt_exit_code();
+    std::fprintf(stderr, "limn: %s\n", error.what());
+    return 2;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "limn: out of memory; fewer voxels or levels need less\n");
+  } catch (const std::exception& error) {
+    if (limn::interrupted()) return limn::interrupt_exit_code();
+    std::fprintf(stderr, "limn: %s\n", error.what());
+  }
+  return 1;
+}

@@ -1,0 +1,24 @@
+#include <array>
+
+#include "samples/commands/command.h"
+
+namespace limn {
+
+Command render_command();
+Command compare_command();
+Command export_command();
+Command info_command();
+Command list_command();
+
+std::span<const Command> commands() {
+  static const std::array all = {
+      render_command(),
+      compare_command(),
+      export_command(),
+      info_command(),
+      list_command(),
+  };
+  return all;
+}
+
+}  // namespace limn

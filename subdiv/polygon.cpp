@@ -1,0 +1,159 @@
+#include "subdiv/polygon.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace limn {
+namespace {
+
+double cross2(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) { return cross2(b - a, c - a); }
+
+std::vector<glm::dvec2> in_best_fit_plane(std::span<const glm::dvec3> corners) {
+  const glm::dvec3 area = vector_area(corners);
+  const double length = glm::length(area);
+  const glm::dvec3 n = length > 0.0 ? area / length : glm::dvec3(0.0, 0.0, 1.0);
+  const glm::dvec3 away = std::abs(n.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+  const glm::dvec3 u = glm::normalize(glm::cross(away, n));
+  const glm::dvec3 v = glm::cross(n, u);
+  std::vector<glm::dvec2> flat;
+  flat.reserve(corners.size());
+  for (const glm::dvec3& p : corners) flat.emplace_back(glm::dot(p - corners[0], u), glm::dot(p - corners[0], v));
+  return flat;
+}
+
+double extent_squared(std::span<const glm::dvec2> points) {
+  glm::dvec2 lower = points[0], upper = points[0];
+  for (const glm::dvec2& p : points) lower = glm::min(lower, p), upper = glm::max(upper, p);
+  return glm::dot(upper - lower, upper - lower);
+}
+
+/// Every corner turns left, and once round in all (a pentagram turns left twice round).
+bool strictly_convex(std::span<const glm::dvec2> p, double tolerance) {
+  double total = 0.0;
+  for (size_t i = 0; i < p.size(); ++i) {
+    const glm::dvec2 a = p[(i + 1) % p.size()] - p[i], b = p[(i + 2) % p.size()] - p[(i + 1) % p.size()];
+    if (cross2(a, b) <= tolerance) return false;
+    total += std::atan2(cross2(a, b), glm::dot(a, b));
+  }
+  return total < 3.0 * std::numbers::pi;
+}
+
+/// A ring of corners that shrinks as ears are clipped.
+class EarClipper {
+ public:
+  EarClipper(std::span<const glm::dvec2> points, double tolerance) : points_(points), tolerance_(tolerance) {
+    const size_t n = points.size();
+    next_.resize(n), previous_.resize(n), is_ear_.resize(n);
+    for (size_t i = 0; i < n; ++i) next_[i] = (i + 1) % n, previous_[i] = (i + n - 1) % n;
+  }
+
+  void run(std::vector<std::array<std::int32_t, 3>>& triangles) {
+    size_t left = points_.size(), at = 0;
+    refresh_all(at, left);
+    while (left > 3) {
+      size_t ear = find(at, left);
+      if (ear == kNone) {
+        // Clipping may have freed a corner that is no neighbour; failing that the outline crosses itself and any corner will do.
+        refresh_all(at, left);
+        ear = find(at, left);
+        if (ear == kNone) ear = at;
+      }
+      emit(ear, triangles);
+      next_[previous_[ear]] = next_[ear];
+      previous_[next_[ear]] = previous_[ear];
+      at = next_[ear];
+      --left;
+      is_ear_[previous_[ear]] = ear_at(previous_[ear]);
+      is_ear_[next_[ear]] = ear_at(next_[ear]);
+    }
+    emit(at, triangles);
+  }
+
+ private:
+  static constexpr size_t kNone = static_cast<size_t>(-1);
+
+  void emit(size_t i, std::vector<std::array<std::int32_t, 3>>& triangles) const {
+    triangles.push_back({static_cast<std::int32_t>(previous_[i]), static_cast<std::int32_t>(i), static_cast<std::int32_t>(next_[i])});
+  }
+  void refresh_all(size_t at, size_t left) {
+    for (size_t k = 0; k < left; ++k, at = next_[at]) is_ear_[at] = ear_at(at);
+  }
+  size_t find(size_t at, size_t left) const {
+    for (size_t k = 0; k < left; ++k, at = next_[at])
+      if (is_ear_[at]) return at;
+    return kNone;
+  }
+  bool ear_at(size_t i) const {
+    const glm::dvec2 &a = points_[previous_[i]], &b = points_[i], &c = points_[next_[i]];
+    if (turn(a, b, c) <= tolerance_) return false;
+    for (size_t k = next_[next_[i]]; k != previous_[i]; k = next_[k]) {
+      const glm::dvec2& p = points_[k];
+      if (p == a || p == b || p == c) continue;
+      if (turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0) return false;
+    }
+    return true;
+  }
+
+  std::span<const glm::dvec2> points_;
+  double tolerance_;
+  std::vector<size_t> next_, previous_;
+  std::vector<char> is_ear_;
+};
+
+}  // namespace
+
+glm::dvec3 vector_area(std::span<const glm::dvec3> corners) {
+  glm::dvec3 sum(0.0);
+  for (size_t i = 2; i < corners.size(); ++i) sum += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+  return 0.5 * sum;
+}
+
+std::span<const std::int32_t> face_corners(const Mesh& mesh, std::int32_t first, size_t face) {
+  return std::span(mesh.corner_vertices).subspan(static_cast<size_t>(first), static_cast<size_t>(mesh.face_sizes[face]));
+}
+
+void gather_corners(const Mesh& mesh, std::span<const std::int32_t> vertices, std::vector<glm::dvec3>& out) {
+  out.clear();
+  for (const std::int32_t v : vertices) out.push_back(mesh.positions[static_cast<size_t>(v)]);
+}
+
+bool zero_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 corners[3] = {a, b, c};
+  return zero_area(corners);
+}
+
+bool zero_area(std::span<const glm::dvec3> corners) {
+  double longest = 0.0;
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec3 edge = corners[(i + 1) % corners.size()] - corners[i];
+    longest = std::max(longest, glm::dot(edge, edge));
+  }
+  return !(glm::length(vector_area(corners)) > 1e-14 * longest);
+}
+
+double corner_angle(std::span<const glm::dvec3> corners, size_t i, const glm::dvec3& normal) {
+  const size_t n = corners.size();
+  const glm::dvec3 a = corners[(i + 1) % n] - corners[i], b = corners[(i + n - 1) % n] - corners[i];
+  const glm::dvec3 across = glm::cross(a, b);
+  const double angle = std::atan2(glm::length(across), glm::dot(a, b));
+  return glm::dot(across, normal) < 0.0 ? 2.0 * std::numbers::pi - angle : angle;
+}
+
+void triangulate_polygon(std::span<const glm::dvec3> corners, std::vector<std::array<std::int32_t, 3>>& triangles) {
+  triangles.clear();
+  if (corners.size() == 3) {
+    triangles.push_back({0, 1, 2});
+    return;
+  }
+  const std::vector<glm::dvec2> flat = in_best_fit_plane(corners);
+  const double tolerance = 1e-14 * extent_squared(flat);
+  if (strictly_convex(flat, tolerance)) {
+    for (std::int32_t i = 2; i < static_cast<std::int32_t>(corners.size()); ++i) triangles.push_back({0, i - 1, i});
+  } else {
+    EarClipper(flat, tolerance).run(triangles);
+  }
+}
+
+}  // namespace limn

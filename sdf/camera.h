@@ -17,7 +17,7 @@ struct CameraSettings {
   glm::dvec3 up{0.0, 1.0, 0.0};
   Projection projection = Projection::perspective;
   double vertical_fov = 0.6108652381980153;  ///< Radians, in (0, pi); perspective only. Default 35 degrees.
-  std::optional<double> ortho_height{};        ///< World units from the bottom to the top of the picture; orthographic only.
+  std::optional<double> ortho_height{};      ///< World units from the bottom to the top of the picture; orthographic only.
   int width_px = 1280;
   int height_px = 720;
 };
@@ -38,7 +38,8 @@ struct CameraRay {
   glm::dvec3 direction;  ///< World, unit.
 };
 
-/// Completes `settings`: where eye or target is missing the picture is filled by `bounds` (world) with a margin of 6 %.
+/// Completes `settings`: where eye or target is missing the picture is filled by `bounds` (world) with a margin of 6 % on each
+/// side: all eight corners lie inside the margin and touch it. Bounds that are empty or infinite count as the cube [-1, 1]^3.
 /// Throws InputError (fields --size, --fov, --ortho, --eye, --up) for sizes outside 1..16384, a field of view outside (0, 180) degrees,
 /// an eye on the target, an up vector along the view, and for anything not finite.
 Camera resolve_camera(const CameraSettings& settings, const Box& bounds);

@@ -14,6 +14,8 @@ enum class Projection { perspective, orthographic };
 struct CameraSettings {
   std::optional<glm::dvec3> eye{};     ///< World.
   std::optional<glm::dvec3> target{};  ///< World.
+  /// World, from the target towards the eye, any length: where to look from when `eye` is missing (view_direction gives a set of them).
+  std::optional<glm::dvec3> direction{};
   glm::dvec3 up{0.0, 1.0, 0.0};
   Projection projection = Projection::perspective;
   double vertical_fov = 0.6108652381980153;  ///< Radians, in (0, pi); perspective only. Default 35 degrees.

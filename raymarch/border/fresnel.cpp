@@ -1,0 +1,50 @@
+// Fresnel outline: a power of 1 - N.V, cut by a smooth step.
+
+#include <algorithm>
+#include <cmath>
+
+#include "raymarch/border/registry.h"
+#include "raymarch/border/surface_notes.h"
+
+namespace limn {
+namespace {
+
+struct Curve {
+  double width, softness, power, strength;
+};
+
+double outline(const Curve& curve, double n_dot_v) {
+  const double f = std::pow(1.0 - n_dot_v, curve.power);
+  // The smooth step would fade the outline near f = 0 although everything is meant to be outline.
+  const double step = curve.width >= 1.0 ? 1.0 : smoothstep(1.0 - curve.width, 1.0 - curve.width + curve.softness, f);
+  return std::clamp(step * curve.strength, 0.0, 1.0);
+}
+
+Border draw(const BorderInput& input, const Parameters& parameters) {
+  const GBuffer& seen = input.gbuffer;
+  const Curve curve{parameters.number("width"), parameters.number("softness"), parameters.number("power"), parameters.number("strength")};
+  Border border;
+  border.color = glm::vec3(parameters.vector3("color"));
+  border.coverage = {seen.width, seen.height, 0.0f};
+  for (size_t i = 0; i < seen.id.size(); ++i) {
+    if (seen.id.pixels[i] != 0) border.coverage.pixels[i] = static_cast<float>(outline(curve, double{seen.n_dot_v.pixels[i]}));
+  }
+  border.notes = surface_notes("fresnel", seen, border.coverage);
+  return border;
+}
+
+}  // namespace
+
+BorderMethod fresnel_method() {
+  return {{"fresnel", "border where (1 - N.V)^power is high, with a soft edge", "Schlick 1994 (the power); limn (the step)"},
+          {"NdotV", "N", "id"},
+          {{"width", ParameterKind::number, "", {0.4}, 0.0, 1.0, "outline where (1 - N.V)^power exceeds 1 - width; 1 is everything", {}},
+           {"softness", ParameterKind::number, "", {0.1}, 0.0, 1.0, "over how much of it the outline fades in; 0 is hard", {}},
+           {"power", ParameterKind::number, "", {1.0}, 0.01, 64.0, "exponent of 1 - N.V", {}},
+           {"strength", ParameterKind::number, "", {1.0}, 0.0, 16.0, "factor of the outline; the ink ends at 1", {}},
+           {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}},
+          [](const SceneModel&, const Scene&) { return std::string(); },
+          draw};
+}
+
+}  // namespace limn

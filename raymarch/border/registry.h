@@ -1,0 +1,11 @@
+#pragma once
+// The list of outline methods. A new one is a file in this folder and a line in registry.cpp.
+
+#include "raymarch/border.h"
+
+namespace limn {
+
+BorderMethod rim_method();
+BorderMethod fresnel_method();
+
+}  // namespace limn

@@ -1,0 +1,36 @@
+// Rim: border where N.V falls below a threshold.
+
+#include "raymarch/border/registry.h"
+#include "raymarch/border/surface_notes.h"
+
+namespace limn {
+namespace {
+
+Border draw(const BorderInput& input, const Parameters& parameters) {
+  const GBuffer& seen = input.gbuffer;
+  const double threshold = parameters.number("threshold"), half = 0.5 * parameters.number("softness");
+  Border border;
+  border.color = glm::vec3(parameters.vector3("color"));
+  border.coverage = {seen.width, seen.height, 0.0f};
+  for (size_t i = 0; i < seen.id.size(); ++i) {
+    if (seen.id.pixels[i] == 0) continue;
+    border.coverage.pixels[i] = static_cast<float>(1.0 - smoothstep(threshold - half, threshold + half, double{seen.n_dot_v.pixels[i]}));
+  }
+  border.notes = surface_notes("rim", seen, border.coverage);
+  return border;
+}
+
+}  // namespace
+
+BorderMethod rim_method() {
+  return {{"rim", "border where the surface turns away from the eye: N.V below a threshold; its width follows the curvature",
+           "Gooch et al. 1999; width: Kindlmann et al. 2003"},
+          {"NdotV", "N", "id"},
+          {{"threshold", ParameterKind::number, "", {0.4}, 0.0, 1.0, "border where N.V is below this", {}},
+           {"softness", ParameterKind::number, "", {0.0}, 0.0, 1.0, "N.V over which the border fades, about the threshold; 0 is hard", {}},
+           {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}},
+          [](const SceneModel&, const Scene&) { return std::string(); },
+          draw};
+}
+
+}  // namespace limn

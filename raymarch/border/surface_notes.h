@@ -1,0 +1,24 @@
+#pragma once
+// Where methods that only look at N.V fail, found in the picture itself: flat faces, and normals that point away.
+
+#include "raymarch/border.h"
+
+namespace limn {
+
+/// A connected region of one object whose normal does not change from pixel to pixel.
+struct FlatFace {
+  std::int32_t id = 0;  ///< Object, from 1.
+  std::int64_t pixels = 0;
+  std::int64_t inked = 0;  ///< Of them, with coverage above 1/2.
+};
+
+/// Regions of at least `min_pixels` pixels (4-connected, normals equal to 3e-5 between neighbours), largest first.
+std::vector<FlatFace> flat_faces(const GBuffer& gbuffer, const Image<float>& coverage, std::int64_t min_pixels = 16);
+
+/// The sentences, with their numbers, for a method called `name`; empty where nothing failed.
+std::vector<std::string> surface_notes(const std::string& name, const GBuffer& gbuffer, const Image<float>& coverage);
+
+/// Hermite step from 0 at `edge0` to 1 at `edge1`; a hard step (x >= edge1) where they coincide.
+double smoothstep(double edge0, double edge1, double x);
+
+}  // namespace limn

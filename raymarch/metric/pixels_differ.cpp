@@ -1,0 +1,33 @@
+// How many pixels of the border are wrong, and which way.
+
+#include <algorithm>
+
+#include "raymarch/metric/registry.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+std::vector<MetricValue> measure(const MetricInput& input) {
+  const Image<float>&ink = input.picture.border, &reference = input.reference.border;
+  LIMN_CHECK(ink.width == reference.width && ink.height == reference.height);
+  double differ = 0.0, missing = 0.0, false_ink = 0.0;
+  for (size_t i = 0; i < ink.size(); ++i) {
+    const double difference = double{ink.pixels[i]} - double{reference.pixels[i]};
+    differ += difference != 0.0;
+    missing += std::max(-difference, 0.0);
+    false_ink += std::max(difference, 0.0);
+  }
+  return {{"pixels_differ", differ, "px"}, {"pixels_missing", missing, "px"}, {"pixels_false", false_ink, "px"}};
+}
+
+}  // namespace
+
+Metric pixels_differ_metric() {
+  return {{"pixels_differ", "pixels whose ink is not the reference's; area of ink that is missing, and of ink that is false", "limn"},
+          {"pixels_differ [px]", "pixels_missing [px]", "pixels_false [px]"},
+          true,
+          measure};
+}
+
+}  // namespace limn

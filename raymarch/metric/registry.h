@@ -1,0 +1,13 @@
+#pragma once
+// The list of metrics. A new one is a file in this folder and a line in registry.cpp.
+
+#include "raymarch/metric.h"
+
+namespace limn {
+
+Metric pixels_differ_metric();
+Metric overlap_metric();
+Metric normal_error_metric();
+Metric depth_error_metric();
+
+}  // namespace limn

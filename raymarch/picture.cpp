@@ -1,0 +1,123 @@
+#include "raymarch/picture.h"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+
+/// The R2 sequence (Roberts 2018), whose generator is the plastic number; starts at the pixel's centre.
+glm::dvec2 r2_offset(int index) {
+  constexpr double plastic = 1.32471795724474602596;
+  const double x = 0.5 + index / plastic, y = 0.5 + index / (plastic * plastic);
+  return {x - std::floor(x), y - std::floor(y)};
+}
+
+void check_methods(const Scene& scene, const SceneModel& model, const PictureSettings& settings) {
+  if (settings.samples < 1 || settings.samples > 1024) {
+    throw InputError({{}, "--samples", std::to_string(settings.samples), "out of range", "1 to 1024"});
+  }
+  for (const MethodCall& call : settings.methods) {
+    LIMN_CHECK(call.method != nullptr);
+    const std::string reason = call.method->unsupported(model, scene);
+    if (!reason.empty()) throw InputError({{}, "--method", call.method->about.name, "cannot run here: " + reason, {}});
+  }
+}
+
+/// One sample of every pixel.
+struct Layer {
+  Image<float> ink;
+  Image<glm::vec4> composite;
+  std::vector<std::string> notes;
+};
+
+Layer draw_layer(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
+                 const GBuffer& gbuffer) {
+  Layer layer{{gbuffer.width, gbuffer.height, 0.0f}, shade_headlight(gbuffer, model), {}};
+  for (const MethodCall& call : settings.methods) {
+    Border border = call.method->draw({gbuffer, camera, model, scene}, call.parameters);
+    LIMN_CHECK(border.coverage.size() == layer.ink.size());
+    lay_ink(layer.composite, border.coverage, border.color);
+    for (size_t i = 0; i < layer.ink.size(); ++i) {
+      layer.ink.pixels[i] = 1.0f - (1.0f - layer.ink.pixels[i]) * (1.0f - border.coverage.pixels[i]);
+    }
+    layer.notes.insert(layer.notes.end(), border.notes.begin(), border.notes.end());
+  }
+  return layer;
+}
+
+void add(const Layer& layer, Picture& sum) {
+  for (size_t i = 0; i < layer.ink.size(); ++i) {
+    sum.border.pixels[i] += layer.ink.pixels[i];
+    sum.composite.pixels[i] += layer.composite.pixels[i];
+  }
+}
+
+void finish(const PictureSettings& settings, Picture& picture) {
+  const float share = 1.0f / static_cast<float>(settings.samples);
+  for (float& ink : picture.border.pixels) ink *= share;
+  for (glm::vec4& color : picture.composite.pixels) {
+    color *= share;
+    if (settings.background) color += (1.0f - color.a) * glm::vec4(*settings.background, 1.0f);
+  }
+}
+
+}  // namespace
+
+Image<glm::vec4> shade_headlight(const GBuffer& gbuffer, const SceneModel& model) {
+  Image<glm::vec4> picture(gbuffer.width, gbuffer.height, glm::vec4(0.0f));
+  for (size_t i = 0; i < picture.size(); ++i) {
+    const std::int32_t id = gbuffer.id.pixels[i];
+    if (id == 0) continue;
+    const glm::vec3 color = model.colors[static_cast<size_t>(id - 1)];
+    picture.pixels[i] = glm::vec4(color * (0.25f + 0.75f * gbuffer.n_dot_v.pixels[i]), 1.0f);
+  }
+  return picture;
+}
+
+void lay_ink(Image<glm::vec4>& picture, const Image<float>& coverage, const glm::vec3& color) {
+  LIMN_CHECK(picture.size() == coverage.size());
+  const glm::vec4 ink(color, 1.0f);
+  for (size_t i = 0; i < picture.size(); ++i) {
+    const float share = coverage.pixels[i];
+    picture.pixels[i] = (1.0f - share) * picture.pixels[i] + share * ink;
+  }
+}
+
+Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
+                     const ExecutionSettings& how) {
+  check_methods(scene, model, settings);
+  Picture picture;
+  for (int sample = 0; sample < settings.samples; ++sample) {
+    ExecutionSettings part = how;
+    if (how.progress) {
+      part.progress = [&how, sample, &settings](double done) { how.progress((sample + done) / settings.samples); };
+    }
+    auto start = Clock::now();
+    GBuffer gbuffer = render_gbuffer(model, camera, part, r2_offset(sample));
+    picture.trace_ms += ms_since(start);
+    start = Clock::now();
+    Layer layer = draw_layer(scene, model, camera, settings, gbuffer);
+    if (sample == 0) {
+      picture.border = std::move(layer.ink);
+      picture.composite = std::move(layer.composite);
+      picture.notes = std::move(layer.notes);
+      picture.gbuffer = std::move(gbuffer);
+    } else {
+      add(layer, picture);
+    }
+    picture.border_ms += ms_since(start);
+  }
+  finish(settings, picture);
+  return picture;
+}
+
+}  // namespace limn

@@ -26,6 +26,7 @@ struct LevelSetInfo {
   std::int64_t bytes = 0;  ///< Of the NanoVDB grid that is read.
   Box bounds{};              ///< World, around the zero crossings; empty where there are none.
   double build_ms = 0.0;
+  std::vector<std::string> warnings;  ///< What a person should know before trusting it, each with its number.
 };
 
 /// An immutable grid; copying copies a pointer.
@@ -71,8 +72,10 @@ struct LevelSetBlock {
   std::uint64_t active[8];  ///< Bit (x*64 + y*8 + z), as OpenVDB numbers leaf nodes: word x, bit y*8+z.
   float values[512];        ///< World distance, negative inside; inactive ones hold +-background.
 };
-/// Joins blocks into a level set, flood-filling the sign. Blocks are unique by origin; `background` is the half width in world units.
-LevelSet level_set_from_blocks(std::span<const LevelSetBlock> blocks, double voxel_size, double half_width_voxels, const std::string& name);
+/// Joins blocks into a level set, flood-filling the sign; the background is the half width. Blocks are unique by origin; those without
+/// an active voxel are dropped. `origin` (world) is where the node (0, 0, 0) stands.
+LevelSet level_set_from_blocks(std::span<const LevelSetBlock> blocks, double voxel_size, double half_width_voxels, const std::string& name,
+                               const glm::dvec3& origin = glm::dvec3(0.0));
 
 /// One grid of a .vdb file, as `limn info` and error messages list them.
 struct GridSummary {

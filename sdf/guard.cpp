@@ -1,0 +1,255 @@
+#include "sdf/guard.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <thread>
+
+#include "sdf/error.h"
+#include "sdf/guard_helper.h"
+
+extern char** environ;
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// Room for the program, its libraries and its threads, in the backstop limit that is set from outside.
+constexpr std::int64_t kStartAllowance = std::int64_t{2} << 30;
+
+std::string reason_of(int error) { return std::generic_category().message(error); }
+
+std::string megabytes(std::int64_t bytes) { return std::to_string(std::max<std::int64_t>(bytes >> 20, 1)) + " MB"; }
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& problem, const std::string& expected) {
+  throw InputError({.file = file.string(), .field = {}, .value = {}, .problem = problem, .expected = expected});
+}
+
+fs::path find_helper(const std::string& name) {
+  std::vector<fs::path> folders;
+  if (const char* given = std::getenv("LIMN_HELPERS"); given && *given) folders.emplace_back(given);
+  std::error_code error;
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  if (!error) folders.push_back(self.parent_path());
+#ifdef LIMN_HELPERS_INSTALLED
+  folders.emplace_back(LIMN_HELPERS_INSTALLED);
+#endif
+#ifdef LIMN_HELPERS_BUILD
+  folders.emplace_back(LIMN_HELPERS_BUILD);
+#endif
+  std::string looked_in;
+  for (const fs::path& folder : folders) {
+    const fs::path candidate = folder / name;
+    if (::access(candidate.c_str(), X_OK) == 0) return candidate;
+    looked_in += (looked_in.empty() ? "" : ", ") + folder.string();
+  }
+  throw MachineError("the helper program " + name + " is not installed (looked in " + looked_in + "); set LIMN_HELPERS to its folder");
+}
+
+struct Pipe {
+  int read_end = -1;
+  int write_end = -1;
+  Pipe() {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) throw MachineError("cannot open a pipe: " + reason_of(errno));
+    read_end = ends[0];
+    write_end = ends[1];
+    ::fcntl(read_end, F_SETFL, O_NONBLOCK);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  ~Pipe() {
+    ::close(read_end);
+    close_write_end();
+  }
+  void close_write_end() {
+    if (write_end >= 0) ::close(write_end);
+    write_end = -1;
+  }
+};
+
+/// The helper's environment: ours, and the limits that it sets on itself first thing.
+std::vector<std::string> helper_environment(const GuardLimits& limits) {
+  std::vector<std::string> all;
+  for (char** entry = environ; entry && *entry; ++entry)
+    if (std::strncmp(*entry, kMemoryVariable, std::strlen(kMemoryVariable)) != 0) all.emplace_back(*entry);
+  all.push_back(std::string(kMemoryVariable) + "=" + std::to_string(limits.memory_bytes));
+  return all;
+}
+
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+  std::vector<char*> result;
+  for (std::string& text : texts) result.push_back(text.data());
+  result.push_back(nullptr);
+  return result;
+}
+
+/// A program and not a fork of ourselves: a fork of a process with threads may not allocate, and would inherit all our memory.
+pid_t start(const fs::path& program, std::span<const std::string> arguments, const GuardLimits& limits, Pipe& answer) {
+  std::vector<std::string> argv_text{program.string()};
+  argv_text.insert(argv_text.end(), arguments.begin(), arguments.end());
+  std::vector<std::string> environment_text = helper_environment(limits);
+
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, answer.write_end, kAnswerHandle);
+  posix_spawn_file_actions_addclosefrom_np(&actions, kAnswerHandle + 1);
+
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none, defaults;
+  sigemptyset(&none);
+  sigemptyset(&defaults);
+  for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGHUP, SIGXCPU}) sigaddset(&defaults, signal);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &defaults);
+  // A group of its own, so that whatever the helper starts can be ended with it.
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+
+  pid_t child = -1;
+  const int error =
+      ::posix_spawn(&child, program.c_str(), &actions, &attributes, pointers(argv_text).data(), pointers(environment_text).data());
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) throw MachineError("cannot start " + program.string() + ": " + reason_of(error));
+  answer.close_write_end();
+  return child;
+}
+
+/// The limits that hold even for a helper that does not set its own.
+void limit_from_outside(pid_t child, const GuardLimits& limits) {
+  const auto seconds = static_cast<rlim_t>(limits.time.count() / 1000 + 1) * std::max(1u, std::thread::hardware_concurrency());
+  const rlimit cpu{seconds, seconds + 1}, no_core{0, 0};
+  ::prlimit(child, RLIMIT_CPU, &cpu, nullptr);
+  ::prlimit(child, RLIMIT_CORE, &no_core, nullptr);
+  if (!kAddressSpaceCanBeLimited) return;
+  const auto bytes = static_cast<rlim_t>(limits.memory_bytes + kStartAllowance);
+  const rlimit memory{bytes, bytes};
+  ::prlimit(child, RLIMIT_AS, &memory, nullptr);
+}
+
+enum class Ending { ended, out_of_time, answer_too_long };
+
+bool has_ended(pid_t child) {
+  siginfo_t info{};
+  return ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == child;
+}
+
+/// Takes what is in the pipe now. False at its end.
+bool drain(int pipe, std::vector<std::byte>& answer, std::int64_t at_most) {
+  std::byte buffer[1 << 16];
+  while (static_cast<std::int64_t>(answer.size()) <= at_most) {
+    const ssize_t count = ::read(pipe, buffer, sizeof buffer);
+    if (count == 0) return false;
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return true;
+    answer.insert(answer.end(), buffer, buffer + count);
+  }
+  return true;
+}
+
+Ending receive(pid_t child, int pipe, const GuardLimits& limits, std::vector<std::byte>& answer) {
+  const Clock::time_point deadline = Clock::now() + limits.time;
+  bool open = true;
+  while (true) {
+    // Asked before the pipe is drained: what a helper wrote before it ended is then all there.
+    const bool ended = has_ended(child);
+    if (open) open = drain(pipe, answer, limits.answer_bytes);
+    if (static_cast<std::int64_t>(answer.size()) > limits.answer_bytes) return Ending::answer_too_long;
+    if (ended) return Ending::ended;
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    if (left <= 0) return Ending::out_of_time;
+    // With the pipe closed the helper is about to end; its end makes no event that poll would see.
+    pollfd wait{open ? pipe : -1, POLLIN, 0};
+    ::poll(&wait, 1, static_cast<int>(std::min<std::int64_t>(left, open ? 50 : 1)));
+  }
+}
+
+/// Ends the helper and all it started, and leaves no zombie. The group is signalled before the leader is reaped: until then its number
+/// cannot belong to anyone else.
+int reap(pid_t child) {
+  ::kill(-child, SIGKILL);
+  ::kill(child, SIGKILL);
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+std::string one_line_of(std::span<const std::byte> answer) {
+  std::string text(reinterpret_cast<const char*>(answer.data()), std::min<size_t>(answer.size(), 2000));
+  return text.empty() ? "cannot be read" : text;
+}
+
+void judge(Ending ending, int status, std::span<const std::byte> answer, const fs::path& file, const GuardLimits& limits) {
+  if (ending == Ending::out_of_time)
+    refuse(file, "reading it took longer than " + std::to_string(limits.time.count() / 1000) + " s; it is damaged or far too large",
+           "an undamaged file");
+  if (ending == Ending::answer_too_long)
+    refuse(file, "what is in it takes more than " + megabytes(limits.answer_bytes), "a smaller or an undamaged file");
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+    refuse(file, "reading it used up its processor time; it is damaged or far too large", "an undamaged file");
+  if (WIFSIGNALED(status))
+    refuse(file, std::string("the reader crashed on it (") + ::strsignal(WTERMSIG(status)) + "); it is damaged", "an undamaged file");
+  const int code = WEXITSTATUS(status);
+  if (code == kExitAnswer) return;
+  if (code == kExitRefusal) throw InputError({.file = file.string(), .field = {}, .value = {}, .problem = one_line_of(answer), .expected = {}});
+  if (code == kExitMemory)
+    refuse(file, "reading it needs more than " + megabytes(limits.memory_bytes) + " of memory; it is damaged or far too large",
+           "a smaller or an undamaged file");
+  refuse(file, "the reader gave up on it (exit code " + std::to_string(code) + "); it is damaged", "an undamaged file");
+}
+
+}  // namespace
+
+std::vector<std::byte> run_guarded(const std::string& name, std::span<const std::string> arguments, const fs::path& file,
+                                   const GuardLimits& limits) {
+  Pipe pipe;
+  std::vector<std::byte> answer;
+  const pid_t child = start(find_helper(name), arguments, limits, pipe);
+  limit_from_outside(child, limits);
+  Ending ending;
+  try {
+    ending = receive(child, pipe.read_end, limits, answer);
+  } catch (...) {
+    reap(child);
+    throw;
+  }
+  judge(ending, reap(child), answer, file, limits);
+  return answer;
+}
+
+void ByteReader::take(void* target, size_t size) {
+  if (size > bytes_.size()) damaged();
+  if (size > 0) std::memcpy(target, bytes_.data(), size);
+  bytes_ = bytes_.subspan(size);
+}
+
+void ByteReader::damaged() const { refuse(file_, "the reader's answer breaks off; the file is damaged", "an undamaged file"); }
+
+void check_readable(const fs::path& file, const std::string& what) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) refuse(file, error && error != std::errc::no_such_file_or_directory ? error.message() : "no such file", what);
+  if (fs::is_directory(status)) refuse(file, "is a directory", what);
+  if (!fs::is_regular_file(status)) refuse(file, "is not a regular file", what);
+  if (::access(file.c_str(), R_OK) != 0) refuse(file, "may not be read (" + reason_of(errno) + ")", what);
+  if (fs::file_size(file, error) == 0) refuse(file, "is empty", what);
+}
+
+}  // namespace limn

@@ -1,0 +1,66 @@
+#include "sdf/level_set_distance.h"
+
+#include <array>
+#include <cmath>
+
+#include "sdf/error.h"
+#include "sdf/shape.h"
+
+namespace limn {
+
+// With q the closest point and n the normal there, f(q + d n) = d |g(q)| + d^2 n'Hn / 2 + O(d^3) and |g(q)| = |g(p)| - d n'Hn + O(d^2),
+// so f = d |g| - d^2 n'Hn / 2 at p; n at p differs from n at q by O(d), which moves n'Hn d^2 by O(d^3). The root nearest to f / |g|.
+JetDistance distance_from_jet(const FieldJet& jet) {
+  const double slope = glm::length(jet.gradient);
+  const double first = jet.value / slope;
+  if (!std::isfinite(first)) return {std::copysign(std::numeric_limits<double>::infinity(), jet.value), false};
+  const glm::dvec3 n = jet.gradient / slope;
+  const double bend = glm::dot(n, jet.hessian * n);
+  const double root = 1.0 - 2.0 * bend * first / slope;  // of the discriminant, relative to slope^2
+  if (!(root >= 0.25 && root <= 4.0)) return {first, false};
+  return {2.0 * first / (1.0 + std::sqrt(root)), true};
+}
+
+namespace {
+
+/// Where the jet tells nothing: as far as Newton's method has to go. Never below the true distance, as it ends on the surface.
+double projected_distance(FieldEvaluator& evaluator, const glm::dvec3& point, double at_least, double otherwise) {
+  glm::dvec3 foot = point;
+  if (!project_to_surface(evaluator, foot, 1e-9)) return std::max(at_least, otherwise);
+  return std::max(at_least, glm::distance(foot, point));
+}
+
+}  // namespace
+
+void signed_distances(FieldEvaluator& evaluator, std::span<const glm::dvec3> points, double half_width, std::span<double> distances) {
+  LIMN_CHECK(points.size() == distances.size() && points.size() <= 512);
+  const FieldTraits& traits = evaluator.field().traits();
+  evaluator.values(points, distances);
+  if (traits.exact_distance) return;
+
+  std::array<glm::dvec3, 512> near;
+  std::array<size_t, 512> index;
+  size_t count = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double at_least = std::abs(distances[i]) / traits.lipschitz;
+    if (at_least > half_width) {
+      distances[i] = std::copysign(at_least, distances[i]);
+      continue;
+    }
+    near[count] = points[i];
+    index[count++] = i;
+  }
+  std::array<FieldJet, 512> jets;
+  evaluator.jets(std::span(near).first(count), std::span(jets).first(count));
+  for (size_t k = 0; k < count; ++k) {
+    const double value = distances[index[k]];
+    const double at_least = std::abs(value) / traits.lipschitz;
+    const JetDistance estimate = distance_from_jet(jets[k]);
+    double size = std::max(std::abs(estimate.distance), at_least);
+    // Far out by its first-order estimate as well, it is not worth the iteration.
+    if (!estimate.reasonable && at_least < half_width) size = projected_distance(evaluator, near[k], at_least, size);
+    distances[index[k]] = std::copysign(size, value);
+  }
+}
+
+}  // namespace limn

@@ -1,0 +1,189 @@
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <mutex>
+
+#include "sdf/error.h"
+#include "sdf/level_set_data.h"
+#include "sdf/level_set_distance.h"
+
+namespace limn {
+namespace {
+
+constexpr int kBlock = 8;
+/// What a block costs while it is built: ours, OpenVDB's leaf and NanoVDB's.
+constexpr std::int64_t kBlockBytes = static_cast<std::int64_t>(sizeof(LevelSetBlock)) + 2200 + 2176;
+
+[[noreturn]] void refuse(const std::string& field, const std::string& value, const std::string& problem, const std::string& expected) {
+  throw InputError({.file = {}, .field = field, .value = value, .problem = problem, .expected = expected});
+}
+
+using Evaluators = tbb::enumerable_thread_specific<FieldEvaluator>;
+
+/// Progress of parallel work, told by one thread at a time and never backwards.
+class Progress {
+ public:
+  Progress(const std::function<void(double)>& tell, size_t total) : tell_(tell), total_(total) {}
+  void step() {
+    if (!tell_) return;
+    const std::lock_guard lock(mutex_);
+    ++done_;
+    if (done_ * 100 / total_ != (done_ - 1) * 100 / total_) tell_(static_cast<double>(done_) / static_cast<double>(total_));
+  }
+
+ private:
+  const std::function<void(double)>& tell_;
+  size_t total_, done_ = 0;
+  std::mutex mutex_;
+};
+
+/// The lattice of one build: node (i, j, k) stands at origin + h (i, j, k).
+struct Lattice {
+  glm::dvec3 origin;
+  double h = 0.0;
+  double half_width = 0.0;  ///< World.
+  glm::dvec3 node(const glm::ivec3& index) const { return origin + h * glm::dvec3(index); }
+};
+
+/// Multiples of 8h near the centre: index numbers stay small far from the world's origin, and the nodes do not depend on the bounds.
+Lattice lattice_for(const Box& bounds, const LevelSetSettings& settings) {
+  const double step = kBlock * settings.voxel_size;
+  return {glm::round(bounds.center() / step) * step, settings.voxel_size, settings.voxel_size * settings.half_width_voxels};
+}
+
+/// A cube of nodes, `size` to a side (8 times a power of two).
+struct Cube {
+  glm::ivec3 origin;
+  int size;
+};
+
+/// False only where no node of the cube lies within the half width of the surface.
+bool may_hold_band(FieldEvaluator& evaluator, const Lattice& lattice, const Cube& cube) {
+  const FieldTraits& traits = evaluator.field().traits();
+  const Box nodes{lattice.node(cube.origin), lattice.node(cube.origin + (cube.size - 1))};
+  const Box reach = dilate(nodes, lattice.half_width);
+  if (intersect(reach, traits.bounds).empty()) return false;
+  const Interval here = evaluator.bounds(nodes);
+  const double limit = traits.lipschitz * lattice.half_width;
+  if (here.lower > limit || here.upper < -limit) return false;
+  return evaluator.bounds(reach).contains(0.0);
+}
+
+std::string gigabytes(double bytes) { return fmt::format("{:.2f} GB", bytes / 1e9); }
+
+/// Refused before the memory is taken. Halving the cubes multiplies those on a surface by four.
+void check_size(size_t cubes, int size, const LevelSetSettings& settings) {
+  if (static_cast<double>(cubes) * static_cast<double>(kBlockBytes) <= static_cast<double>(settings.max_bytes)) return;
+  const double blocks = static_cast<double>(cubes) * std::pow(static_cast<double>(size / kBlock), 2.0);
+  const double bytes = blocks * static_cast<double>(kBlockBytes);
+  const double factor = std::sqrt(bytes / static_cast<double>(settings.max_bytes));
+  refuse("voxel size", fmt::format("{:.4g}", settings.voxel_size),
+         fmt::format("building the level set would take about {} of memory, the limit is {}", gigabytes(bytes),
+                     gigabytes(static_cast<double>(settings.max_bytes))),
+         fmt::format("a voxel size of about {:.2g} or more", settings.voxel_size * factor * 1.05));
+}
+
+std::vector<Cube> split(const std::vector<Cube>& cubes, const Lattice& lattice, Evaluators& evaluators) {
+  std::vector<std::array<bool, 8>> keep(cubes.size());
+  const auto child = [&](size_t i, int octant) {
+    const int half = cubes[i].size / 2;
+    return Cube{cubes[i].origin + half * glm::ivec3(octant & 1, (octant >> 1) & 1, octant >> 2), half};
+  };
+  tbb::parallel_for(size_t{0}, cubes.size(), [&](size_t i) {
+    FieldEvaluator& evaluator = evaluators.local();
+    for (int octant = 0; octant < 8; ++octant)
+      keep[i][static_cast<size_t>(octant)] = may_hold_band(evaluator, lattice, child(i, octant));
+  });
+  std::vector<Cube> result;
+  for (size_t i = 0; i < cubes.size(); ++i)
+    for (int octant = 0; octant < 8; ++octant)
+      if (keep[i][static_cast<size_t>(octant)]) result.push_back(child(i, octant));
+  return result;
+}
+
+/// The blocks that may hold a part of the band, in an order that depends on nothing but the field and the lattice.
+std::vector<Cube> band_blocks(const Box& bounds, const Lattice& lattice, const LevelSetSettings& settings, Evaluators& evaluators) {
+  const Box reach = dilate(bounds, lattice.half_width + lattice.h);
+  const glm::dvec3 lower = glm::floor((reach.lower - lattice.origin) / lattice.h / double{kBlock});
+  const glm::dvec3 upper = glm::ceil((reach.upper - lattice.origin) / lattice.h / double{kBlock});
+  const glm::dvec3 extent = upper - lower;
+  const double longest = std::max({extent.x, extent.y, extent.z, 1.0});
+  if (longest > double{1 << 25})
+    refuse("voxel size", fmt::format("{:.4g}", settings.voxel_size), fmt::format("{:.3g} voxels along the longest side", longest * kBlock),
+           fmt::format("above {:.2g}", bounds.longest_side() * 1e-8));
+  int size = kBlock;
+  while (size < longest * kBlock) size *= 2;
+  std::vector<Cube> cubes{{kBlock * glm::ivec3(lower), size}};
+  while (!cubes.empty() && cubes.front().size > kBlock) {
+    cubes = split(cubes, lattice, evaluators);
+    check_size(cubes.size(), cubes.empty() ? kBlock : cubes.front().size, settings);
+  }
+  return cubes;
+}
+
+void fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, FieldEvaluator& evaluator) {
+  std::array<glm::dvec3, 512> points;
+  std::array<double, 512> distances;
+  for (int n = 0; n < 512; ++n)
+    points[static_cast<size_t>(n)] = lattice.node(cube.origin + glm::ivec3(n >> 6, (n >> 3) & 7, n & 7));
+  signed_distances(evaluator, points, lattice.half_width, distances);
+
+  block.origin = cube.origin;
+  std::memset(block.active, 0, sizeof block.active);
+  for (size_t n = 0; n < 512; ++n) {
+    const bool active = std::abs(distances[n]) <= lattice.half_width;
+    if (active) block.active[n >> 6] |= std::uint64_t{1} << (n & 63);
+    block.values[n] = static_cast<float>(active ? distances[n] : std::copysign(lattice.half_width, distances[n]));
+  }
+}
+
+void check(const Field& field, const LevelSetSettings& settings) {
+  const auto number = [](double x) { return fmt::format("{:.6g}", x); };
+  if (!std::isfinite(settings.voxel_size) || settings.voxel_size <= 0.0)
+    refuse("voxel size", number(settings.voxel_size), "not a length", "above 0");
+  if (!(settings.half_width_voxels >= 1.8) || settings.half_width_voxels > 1000.0)
+    refuse("half width", number(settings.half_width_voxels), "out of range", "between 1.8 and 1000 voxels");
+  const Box& bounds = field.traits().bounds;
+  if (bounds.empty()) refuse("field", "", "has no surface", "a shape that is not empty");
+  if (!bounds.finite()) refuse("field", "", "has no bounds, so that no grid can hold it", "its intersection with a box or a sphere");
+}
+
+/// The sign at a node is the surface's only witness.
+[[noreturn]] void refuse_thin(double voxel_size, const Box& bounds) {
+  const glm::dvec3 size = bounds.size();
+  refuse("voxel size", fmt::format("{:.4g}", voxel_size), "no voxel lies inside the surface: it is thinner than a voxel, or empty",
+         fmt::format("well below the smallest side of the bounds ({:.4g})", std::min({size.x, size.y, size.z})));
+}
+
+}  // namespace
+
+LevelSet level_set_from_field(const Field& field, const LevelSetSettings& settings) {
+  check(field, settings);
+  const auto started = std::chrono::steady_clock::now();
+  const Box& bounds = field.traits().bounds;
+  const Lattice lattice = lattice_for(bounds, settings);
+  Evaluators evaluators([&] { return FieldEvaluator(field); });
+
+  const std::vector<Cube> cubes = band_blocks(bounds, lattice, settings, evaluators);
+  std::vector<LevelSetBlock> blocks(cubes.size());
+  Progress progress(settings.progress, cubes.size());
+  tbb::parallel_for(size_t{0}, cubes.size(), [&](size_t i) {
+    fill(blocks[i], cubes[i], lattice, evaluators.local());
+    progress.step();
+  });
+  const bool any_active = std::any_of(blocks.begin(), blocks.end(), [](const LevelSetBlock& block) {
+    return std::any_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word != 0; });
+  });
+  if (!any_active) refuse_thin(settings.voxel_size, bounds);
+
+  const auto data = join_blocks(blocks, settings.voxel_size, settings.half_width_voxels, "surface", lattice.origin);
+  if (data->info.bounds.empty()) refuse_thin(settings.voxel_size, bounds);
+  data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
+  return LevelSet(data);
+}
+
+}  // namespace limn

@@ -1,0 +1,38 @@
+#include <nanovdb/util/NanoToOpenVDB.h>
+#include <nanovdb/util/OpenToNanoVDB.h>
+
+#include <mutex>
+
+#include "sdf/openvdb_grid.h"
+
+namespace limn {
+
+void initialize_openvdb() {
+  static std::once_flag once;
+  std::call_once(once, [] { openvdb::initialize(); });
+}
+
+std::shared_ptr<LevelSetData> freeze(const openvdb::FloatGrid& grid, const Affine& world_from_index, const std::string& name,
+                                     double nominal_half_width) {
+  auto handle = nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree>(grid, nanovdb::StatsMode::BBox,
+                                                                                nanovdb::ChecksumMode::Disable, 0);
+  return make_level_set(std::move(handle), world_from_index, name, nominal_half_width);
+}
+
+openvdb::FloatGrid::Ptr thaw(const LevelSet& level_set) {
+  initialize_openvdb();
+  auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(nanovdb::nanoToOpenVDB(level_set.data().handle, 0));
+  const Affine& map = level_set.info().world_from_index;
+  openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
+  // OpenVDB multiplies row vectors from the left: its rows are our columns.
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int k = 0; k < 3; ++k) matrix(axis, k) = map.linear[axis][k];
+    matrix(3, axis) = map.translation[axis];
+  }
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  grid->setName(level_set.info().name);
+  return grid;
+}
+
+}  // namespace limn

@@ -1,0 +1,234 @@
+#include "raymarch/image_io.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "sdf/error.h"
+#include "sdf/output_file.h"
+#include "sdf/version.h"
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string extension_of(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+bool has_alpha(const std::string& extension) { return extension != ".jpg" && extension != ".jpeg"; }
+
+std::uint8_t to_byte(float value) {
+  // The comparison is false for NaN, which becomes 0.
+  return static_cast<std::uint8_t>(value > 0.0f ? std::lround(255.0f * std::min(value, 1.0f)) : 0);
+}
+
+std::uint8_t srgb_byte(float linear) { return to_byte(linear > 0.0f ? srgb_from_linear(std::min(linear, 1.0f)) : 0.0f); }
+
+/// Interleaved 8-bit sRGB: RGBA with alpha kept apart, or RGB over white.
+std::vector<std::uint8_t> srgb_pixels(const Image<glm::vec4>& picture, bool alpha) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(picture.size() * (alpha ? 4 : 3));
+  for (const glm::vec4& color : picture.pixels) {
+    glm::vec3 rgb(color);
+    if (!alpha) rgb += 1.0f - color.a;
+    if (alpha && color.a > 0.0f) rgb /= color.a;
+    for (int channel = 0; channel < 3; ++channel) bytes.push_back(srgb_byte(rgb[channel]));
+    if (alpha) bytes.push_back(to_byte(color.a));
+  }
+  return bytes;
+}
+
+OIIO::ImageSpec srgb_spec(const Image<glm::vec4>& picture, bool alpha) {
+  OIIO::ImageSpec spec(picture.width, picture.height, alpha ? 4 : 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  spec.attribute("Compression", alpha ? "zip" : "jpeg:95");
+  spec.attribute("jpeg:subsampling", "4:4:4");
+  spec.attribute("Software", std::string("limn ") + kVersion);
+  return spec;
+}
+
+/// Writes through an output that is open; the messages are OpenImageIO's.
+void finish_image(OIIO::ImageOutput& output, OIIO::TypeDesc type, const void* pixels, const std::string& what) {
+  if (!output.write_image(type, pixels) || !output.close()) throw MachineError("cannot write " + what + ": " + output.geterror());
+}
+
+void save(const fs::path& file, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
+  write_whole(file, [&](const fs::path& temporary) {
+    const auto output = OIIO::ImageOutput::create(temporary.string());
+    if (!output) throw MachineError("cannot write " + file.string() + ": " + OIIO::geterror());
+    if (!output->open(temporary.string(), spec)) throw MachineError("cannot write " + file.string() + ": " + output->geterror());
+    finish_image(*output, type, pixels, file.string());
+  });
+}
+
+/// One channel of the EXR on its way: its name, its type in the file and its values.
+struct Channel {
+  std::string name;
+  OIIO::TypeDesc type;
+  std::vector<float> values;
+};
+
+template <class T, class Get>
+void add_channel(std::vector<Channel>& channels, const std::string& name, OIIO::TypeDesc type, const Image<T>& image, Get get) {
+  Channel channel{name, type, {}};
+  channel.values.reserve(image.size());
+  for (const T& pixel : image.pixels) channel.values.push_back(static_cast<float>(get(pixel)));
+  channels.push_back(std::move(channel));
+}
+
+/// Half holds whole numbers to 2048; beyond it ids are 32-bit.
+OIIO::TypeDesc type_of_ids(const Image<std::int32_t>& ids) {
+  const auto [least, most] = std::minmax_element(ids.pixels.begin(), ids.pixels.end());
+  if (ids.pixels.empty() || (*least >= -2048 && *most <= 2048)) return OIIO::TypeDesc::HALF;
+  return *least >= 0 ? OIIO::TypeDesc::UINT32 : OIIO::TypeDesc::FLOAT;
+}
+
+std::vector<Channel> channels_of(const Picture& picture) {
+  const auto half = OIIO::TypeDesc::HALF, full = OIIO::TypeDesc::FLOAT;
+  const GBuffer& seen = picture.gbuffer;
+  std::vector<Channel> channels;
+  const auto component = [](int axis) { return [axis](const auto& v) { return v[axis]; }; };
+  const auto itself = [](auto value) { return value; };
+  const char* const rgba[] = {"R", "G", "B", "A"};
+  const char* const xyz[] = {"X", "Y", "Z"};
+  for (int i = 0; i < 4; ++i) add_channel(channels, rgba[i], half, picture.composite, component(i));
+  add_channel(channels, "Z", full, seen.depth, itself);
+  for (int i = 0; i < 3; ++i) add_channel(channels, std::string("P.") + xyz[i], full, seen.position, component(i));
+  for (int i = 0; i < 3; ++i) add_channel(channels, std::string("N.") + xyz[i], full, seen.normal, component(i));
+  add_channel(channels, "NdotV.Y", full, seen.n_dot_v, itself);
+  add_channel(channels, "border.Y", half, picture.border, itself);
+  add_channel(channels, "id.Y", type_of_ids(seen.id), seen.id, itself);
+  add_channel(channels, "material.Y", type_of_ids(seen.material), seen.material, itself);
+  add_channel(channels, "status.Y", half, seen.status, itself);
+  return channels;
+}
+
+/// EXR matrices multiply row vectors from the right: row after row, they hold what ours hold column after column.
+void add_matrix(OIIO::ImageSpec& spec, const char* name, const glm::dmat4& matrix) {
+  float values[16];
+  for (int i = 0; i < 16; ++i) values[i] = static_cast<float>(matrix[i / 4][i % 4]);
+  spec.attribute(name, OIIO::TypeMatrix, values);
+}
+
+OIIO::ImageSpec exr_spec(const std::vector<Channel>& channels, const Picture& picture, const Camera& camera, const std::string& call) {
+  OIIO::ImageSpec spec(picture.gbuffer.width, picture.gbuffer.height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
+  spec.channelnames.clear();
+  for (const Channel& channel : channels) {
+    spec.channelnames.push_back(channel.name);
+    spec.channelformats.push_back(channel.type);
+  }
+  spec.alpha_channel = 3;
+  spec.z_channel = 4;
+  spec.attribute("compression", "zip");
+  spec.attribute("oiio:ColorSpace", "linear");
+  spec.attribute("limn:version", kVersion);
+  spec.attribute("limn:call", call);
+  spec.attribute("Software", std::string("limn ") + kVersion);
+  // OpenImageIO would write the time of day; equal runs must give equal bytes.
+  spec.attribute("DateTime", "1970:01:01 00:00:00");
+  add_matrix(spec, "worldToCamera", camera_from_world_matrix(camera));
+  add_matrix(spec, "worldToNDC", ndc_from_world_matrix(camera));
+  return spec;
+}
+
+/// Pixels in the file's own types, channel after channel within each pixel.
+std::vector<char> native_pixels(const std::vector<Channel>& channels, size_t pixel_count) {
+  size_t pixel_size = 0;
+  for (const Channel& channel : channels) pixel_size += channel.type.size();
+  std::vector<char> bytes(pixel_size * pixel_count);
+  size_t offset = 0;
+  for (const Channel& channel : channels) {
+    // Float to 32-bit unsigned would be scaled to its range by OpenImageIO, so that one is copied here.
+    if (channel.type == OIIO::TypeDesc::UINT32) {
+      for (size_t i = 0; i < pixel_count; ++i) {
+        const auto value = static_cast<std::uint32_t>(channel.values[i]);
+        std::memcpy(&bytes[i * pixel_size + offset], &value, sizeof value);
+      }
+    } else {
+      OIIO::convert_image(1, static_cast<int>(pixel_count), 1, 1, channel.values.data(), OIIO::TypeDesc::FLOAT, sizeof(float),
+                          sizeof(float), OIIO::AutoStride, bytes.data() + offset, channel.type, static_cast<OIIO::stride_t>(pixel_size),
+                          static_cast<OIIO::stride_t>(pixel_size), OIIO::AutoStride);
+    }
+    offset += channel.type.size();
+  }
+  return bytes;
+}
+
+std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) throw InputError({file.string(), {}, {}, "no such file", "an image"});
+  auto input = OIIO::ImageInput::open(file.string());
+  if (!input) throw InputError({file.string(), {}, {}, "not a readable image: " + OIIO::geterror(), "an .exr, .png, .tif or .jpg"});
+  return input;
+}
+
+}  // namespace
+
+float srgb_from_linear(float linear) { return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f; }
+
+float linear_from_srgb(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
+
+void write_exr(const Picture& picture, const Camera& camera, const std::string& call, const std::filesystem::path& file) {
+  if (extension_of(file) != ".exr") {
+    throw InputError({file.string(), {}, extension_of(file), "unknown extension for all layers", "known: .exr"});
+  }
+  const std::vector<Channel> channels = channels_of(picture);
+  const std::vector<char> pixels = native_pixels(channels, picture.gbuffer.id.size());
+  save(file, exr_spec(channels, picture, camera, call), OIIO::TypeDesc::UNKNOWN, pixels.data());
+}
+
+void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesystem::path& file) {
+  const std::string extension = extension_of(file);
+  const std::vector<std::string> known = {".png", ".tif", ".tiff", ".jpg", ".jpeg"};
+  if (std::find(known.begin(), known.end(), extension) == known.end()) {
+    throw InputError({file.string(), {}, extension, "unknown extension for a picture", known_names(extension, known)});
+  }
+  const bool alpha = has_alpha(extension);
+  const std::vector<std::uint8_t> pixels = srgb_pixels(linear_premultiplied, alpha);
+  save(file, srgb_spec(linear_premultiplied, alpha), OIIO::TypeDesc::UINT8, pixels.data());
+}
+
+std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied) {
+  const std::vector<std::uint8_t> pixels = srgb_pixels(linear_premultiplied, true);
+  std::vector<unsigned char> encoded;
+  OIIO::Filesystem::IOVecOutput memory(encoded);
+  const auto output = OIIO::ImageOutput::create("png");
+  if (!output || !output->set_ioproxy(&memory) || !output->open("memory.png", srgb_spec(linear_premultiplied, true))) {
+    throw MachineError("cannot encode a PNG: " + (output ? output->geterror() : OIIO::geterror()));
+  }
+  finish_image(*output, OIIO::TypeDesc::UINT8, pixels.data(), "a PNG in memory");
+  const auto* first = reinterpret_cast<const std::byte*>(encoded.data());
+  return {first, first + encoded.size()};
+}
+
+Image<float> read_channel(const std::filesystem::path& file, const std::string& channel) {
+  const auto input = open_image(file);
+  const OIIO::ImageSpec& spec = input->spec();
+  const auto found = std::find(spec.channelnames.begin(), spec.channelnames.end(), channel);
+  if (found == spec.channelnames.end()) {
+    throw InputError({file.string(), "channel", channel, "no such channel", known_names(channel, spec.channelnames)});
+  }
+  const auto index = static_cast<int>(found - spec.channelnames.begin());
+  // Whole numbers of 32 bits would come scaled to [0, 1] as floats.
+  const bool whole = spec.channelformat(index) == OIIO::TypeDesc::UINT32;
+  Image<float> image(spec.width, spec.height);
+  std::vector<std::uint32_t> numbers(whole ? image.size() : 0);
+  void* target = whole ? static_cast<void*>(numbers.data()) : static_cast<void*>(image.pixels.data());
+  if (!input->read_image(0, 0, index, index + 1, whole ? OIIO::TypeDesc::UINT32 : OIIO::TypeDesc::FLOAT, target)) {
+    throw InputError({file.string(), "channel", channel, "damaged: " + input->geterror(), "a complete image"});
+  }
+  std::transform(numbers.begin(), numbers.end(), image.pixels.begin(), [](std::uint32_t value) { return static_cast<float>(value); });
+  return image;
+}
+
+std::vector<std::string> channel_names(const std::filesystem::path& file) { return open_image(file)->spec().channelnames; }
+
+}  // namespace limn

@@ -62,7 +62,7 @@ struct TriangleMesh {
   std::vector<glm::vec3> corner_normals{};         ///< Unit; three for each triangle, or empty: the facets' own.
   std::vector<std::int32_t> triangle_faces{};      ///< The polygon each came from.
   std::vector<std::int32_t> triangle_materials{};  ///< Or empty.
-  std::int64_t dropped_triangles = 0;            ///< Without area; they are in none of the arrays above.
+  std::int64_t dropped_triangles = 0;              ///< Without area; they are in none of the arrays above.
   std::int64_t bytes() const;
 };
 

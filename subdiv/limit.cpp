@@ -1,0 +1,81 @@
+#include <opensubdiv/bfr/refinerSurfaceFactory.h>
+#include <opensubdiv/bfr/surface.h>
+#include <opensubdiv/far/topologyLevel.h>
+
+#include "sdf/error.h"
+#include "subdiv/cage_topology.h"
+
+namespace limn {
+
+namespace Bfr = OpenSubdiv::Bfr;
+
+/// Surfaces and their patch points, face by face, in the given cage's numbering.
+struct LimitSurfaceData {
+  std::unique_ptr<Far::TopologyRefiner> refiner;
+  std::unique_ptr<Bfr::RefinerSurfaceFactory<>> factory;
+  std::vector<Bfr::Surface<double>> surfaces;
+  std::vector<std::vector<double>> patch_points;
+  std::vector<int> face_sizes;
+};
+
+namespace {
+
+/// Around extraordinary vertices and semi-sharp features the patches approximate the limit; each level of isolation brings them nearer,
+/// and sharpness wears off by 1 a level, so that 10 levels hold every semi-sharp crease.
+constexpr int kSmoothLevels = 5, kSharpLevels = 10;
+
+}  // namespace
+
+LimitSurface::LimitSurface(const Mesh& cage, Scheme scheme, const std::string& file) {
+  const CleanCage clean = clean_cage(cage, scheme, file);
+  auto data = std::make_shared<LimitSurfaceData>();
+  data->refiner = make_refiner(clean.mesh, scheme, file);
+  Bfr::SurfaceFactory::Options options;
+  options.SetApproxLevelSmooth(kSmoothLevels).SetApproxLevelSharp(kSharpLevels);
+  data->factory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*data->refiner, options);
+  data->surfaces.resize(cage.face_count());
+  data->patch_points.resize(cage.face_count());
+  data->face_sizes.assign(cage.face_sizes.begin(), cage.face_sizes.end());
+  static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
+  const double* mesh_points = &clean.mesh.positions[0].x;
+  for (size_t f = 0; f < clean.face_of.size(); ++f) {
+    const auto face = static_cast<size_t>(clean.face_of[f]);
+    // Of a face that was cut in two the first piece stands for it.
+    if (data->surfaces[face].IsValid()) continue;
+    Bfr::Surface<double>& surface = data->surfaces[face];
+    if (!data->factory->InitVertexSurface(static_cast<int>(f), &surface)) continue;
+    data->face_sizes[face] = surface.GetFaceSize();
+    data->patch_points[face].resize(3 * static_cast<size_t>(surface.GetNumPatchPoints()));
+    surface.PreparePatchPoints(mesh_points, 3, data->patch_points[face].data(), 3);
+  }
+  data_ = std::move(data);
+}
+
+int LimitSurface::face_count() const { return static_cast<int>(data_->surfaces.size()); }
+
+int LimitSurface::face_size(int face) const {
+  LIMN_CHECK(face >= 0 && face < face_count());
+  return data_->face_sizes[static_cast<size_t>(face)];
+}
+
+bool LimitSurface::evaluate(int face, int sub_face, double u, double v, LimitPoint& out) const {
+  LIMN_CHECK(face >= 0 && face < face_count());
+  const Bfr::Surface<double>& surface = data_->surfaces[static_cast<size_t>(face)];
+  if (!surface.IsValid()) return false;
+  const Bfr::Parameterization parameters = surface.GetParameterization();
+  double uv[2] = {u, v};
+  double scale = 1.0;
+  if (parameters.HasSubFaces()) {
+    if (sub_face < 0 || sub_face >= parameters.GetFaceSize()) return false;
+    const double normalized[2] = {u, v};
+    parameters.ConvertNormalizedSubFaceToCoord(sub_face, normalized, uv);
+    scale = 0.5;  // A sub-quad is half a unit wide in its face's coordinates.
+  }
+  surface.Evaluate(uv, data_->patch_points[static_cast<size_t>(face)].data(), 3, &out.position.x, &out.du.x, &out.dv.x, &out.duu.x,
+                   &out.duv.x, &out.dvv.x);
+  out.du *= scale, out.dv *= scale;
+  out.duu *= scale * scale, out.duv *= scale * scale, out.dvv *= scale * scale;
+  return true;
+}
+
+}  // namespace limn

@@ -1,0 +1,210 @@
+// Normals of the limit surface at the corners of a refined level. On smooth vertices the two limit tangents span them. Along infinitely
+// sharp edges the surface on one side does not depend on the other, so each side is a surface with a border of its own: the sectors of
+// all such vertices are gathered into one mesh of loose fans, whose limit tangents OpenSubdiv's border masks give exactly.
+#include <opensubdiv/far/primvarRefiner.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sdf/error.h"
+#include "subdiv/cage_topology.h"
+
+namespace limn {
+namespace {
+
+namespace Sdc = OpenSubdiv::Sdc;
+
+/// One run of faces around a vertex between two infinitely sharp or open edges.
+struct Sector {
+  int vertex = 0;
+  std::vector<int> faces, edges;  ///< Counter-clockwise; one edge more than faces.
+};
+
+int other_end(const Far::TopologyLevel& level, int edge, int vertex) {
+  const Far::ConstIndexArray ends = level.GetEdgeVertices(edge);
+  return ends[0] == vertex ? ends[1] : ends[0];
+}
+
+/// Faces and edges around a manifold vertex run counter-clockwise: face i lies between edges i and i + 1.
+std::vector<Sector> sectors_at(const Far::TopologyLevel& level, int vertex) {
+  const Far::ConstIndexArray faces = level.GetVertexFaces(vertex), edges = level.GetVertexEdges(vertex);
+  const int n = faces.size();
+  std::vector<int> starts;
+  for (int i = 0; i < n; ++i)
+    if (level.IsEdgeInfSharp(edges[i]) || level.IsEdgeBoundary(edges[i])) starts.push_back(i);
+  std::vector<Sector> sectors;
+  for (size_t s = 0; s < starts.size(); ++s) {
+    const int begin = starts[s];
+    const int end = s + 1 < starts.size() ? starts[s + 1] : (edges.size() > n ? n : starts[0] + n);
+    Sector sector{vertex, {}, {}};
+    for (int i = begin; i < end; ++i) sector.faces.push_back(faces[i % n]), sector.edges.push_back(edges[i % edges.size()]);
+    sector.edges.push_back(edges[end % edges.size()]);
+    sectors.push_back(std::move(sector));
+  }
+  return sectors;
+}
+
+class Normals {
+ public:
+  Normals(const Far::TopologyRefiner& refiner, Scheme scheme, const std::vector<WeightedPoint>& refined, const LimitFrame& limit,
+          const LimitSurface* surface)
+      : refiner_(refiner),
+        level_(refiner.GetLevel(refiner.GetMaxLevel())),
+        scheme_(scheme),
+        refined_(refined),
+        limit_(limit),
+        surface_(surface) {
+    first_.reserve(static_cast<size_t>(level_.GetNumFaces()) + 1);
+    int sum = 0;
+    for (int f = 0; f < level_.GetNumFaces(); ++f) first_.push_back(sum), sum += level_.GetFaceVertices(f).size();
+    normals_.assign(static_cast<size_t>(sum), glm::vec3(0.0f));
+  }
+
+  std::vector<glm::vec3> run() {
+    for (int v = 0; v < level_.GetNumVertices(); ++v) at_vertex(v);
+    border_sectors();
+    return std::move(normals_);
+  }
+
+ private:
+  glm::dvec3 point(int v) const { return refined_[static_cast<size_t>(v)].p; }
+
+  int corner_of(int face, int vertex) const {
+    const Far::ConstIndexArray vertices = level_.GetFaceVertices(face);
+    return static_cast<int>(std::find(vertices.begin(), vertices.end(), vertex) - vertices.begin());
+  }
+
+  void set(int face, int vertex, const glm::dvec3& normal) {
+    const double length = glm::length(normal);
+    glm::dvec3 unit = length > 0.0 && std::isfinite(length) ? normal / length : facet(face);
+    normals_[static_cast<size_t>(first_[static_cast<size_t>(face)] + corner_of(face, vertex))] = glm::vec3(unit);
+  }
+
+  /// The normal of the face as a polygon: where tangents vanish (collapsed edges) it is the best there is.
+  glm::dvec3 facet(int face) const {
+    std::vector<glm::dvec3> corners;
+    for (const int v : level_.GetFaceVertices(face)) corners.push_back(point(v));
+    const glm::dvec3 area = vector_area(corners);
+    const double length = glm::length(area);
+    return length > 0.0 ? area / length : glm::dvec3(0.0, 0.0, 1.0);
+  }
+
+  /// The face's own plane at the corner, from the two edges there: exact for a bilinear patch.
+  void set_from_corner(int face, int vertex) {
+    const Far::ConstIndexArray vertices = level_.GetFaceVertices(face);
+    const int i = corner_of(face, vertex), n = vertices.size();
+    set(face, vertex, glm::cross(point(vertices[(i + 1) % n]) - point(vertex), point(vertices[(i + n - 1) % n]) - point(vertex)));
+  }
+
+  void set_from_surface(int face, int vertex) {
+    const CageLocation at = locate_corner(refiner_, scheme_, face, corner_of(face, vertex));
+    LimitPoint p;
+    if (surface_ != nullptr && surface_->evaluate(at.face, at.sub_face, at.uv.x, at.uv.y, p)) {
+      set(face, vertex, glm::cross(p.du, p.dv));
+    } else {
+      set_from_corner(face, vertex);
+    }
+  }
+
+  void at_vertex(int v) {
+    const Far::ConstIndexArray faces = level_.GetVertexFaces(v);
+    const Sdc::Crease::Rule rule = level_.GetVertexRule(v);
+    const bool smooth = rule == Sdc::Crease::RULE_SMOOTH || rule == Sdc::Crease::RULE_DART;
+    if (scheme_ == Scheme::bilinear || level_.IsVertexNonManifold(v)) {
+      for (const int f : faces) set_from_corner(f, v);
+    } else if (still_semi_sharp(level_, v)) {
+      for (const int f : faces) set_from_surface(f, v);
+    } else if (smooth) {
+      const auto i = static_cast<size_t>(v);
+      const glm::dvec3 normal = glm::cross(limit_.tangent1[i].p, limit_.tangent2[i].p);
+      for (const int f : faces) set(f, v, normal);
+    } else {
+      std::vector<Sector> sectors = sectors_at(level_, v);
+      if (sectors.empty())
+        for (const int f : faces) set_from_corner(f, v);  // the tip of a spike: each face has its own side
+      for (Sector& sector : sectors) {
+        if (rule == Sdc::Crease::RULE_CORNER) {
+          at_corner(sector);
+        } else {
+          borders_.push_back(std::move(sector));
+        }
+      }
+    }
+  }
+
+  /// A corner's tangent plane holds its two border curves (Biermann, Levin & Zorin 2000); where these form one line, the faces decide.
+  void at_corner(const Sector& sector) {
+    const glm::dvec3 center = point(sector.vertex);
+    const glm::dvec3 a = point(other_end(level_, sector.edges.front(), sector.vertex)) - center;
+    const glm::dvec3 b = point(other_end(level_, sector.edges.back(), sector.vertex)) - center;
+    glm::dvec3 around(0.0);
+    for (const int f : sector.faces) around += facet(f);
+    glm::dvec3 normal = glm::cross(a, b);
+    if (glm::dot(normal, around) < 0.0) normal = -normal;  // a reflex sector
+    if (sector.faces.size() > 1 && glm::length(normal) < 1e-6 * glm::length(a) * glm::length(b)) normal = around;
+    for (const int f : sector.faces) set(f, sector.vertex, normal);
+  }
+
+  /// One loose fan of a sector, its centre first.
+  void add_fan(const Sector& sector, Mesh& fans) const {
+    const auto base = static_cast<std::int32_t>(fans.vertex_count());
+    const auto n = static_cast<std::int32_t>(sector.faces.size());
+    fans.positions.push_back(point(sector.vertex));
+    for (const int e : sector.edges) fans.positions.push_back(point(other_end(level_, e, sector.vertex)));
+    for (std::int32_t i = 0; i < n; ++i) {
+      if (scheme_ == Scheme::loop) {
+        fans.face_sizes.push_back(3);
+        fans.corner_vertices.insert(fans.corner_vertices.end(), {base, base + 1 + i, base + 2 + i});
+        continue;
+      }
+      const int face = sector.faces[static_cast<size_t>(i)];
+      const Far::ConstIndexArray vertices = level_.GetFaceVertices(face);
+      fans.positions.push_back(point(vertices[(corner_of(face, sector.vertex) + 2) % vertices.size()]));
+      fans.face_sizes.push_back(4);
+      fans.corner_vertices.insert(fans.corner_vertices.end(), {base, base + 1 + i, base + n + 2 + i, base + 2 + i});
+    }
+  }
+
+  void border_sectors() {
+    if (borders_.empty()) return;
+    Mesh fans;
+    fans.boundary = BoundaryRule::edge_only;
+    std::vector<size_t> centers;
+    for (const Sector& sector : borders_) centers.push_back(fans.vertex_count()), add_fan(sector, fans);
+    const std::unique_ptr<Far::TopologyRefiner> refiner = make_refiner(fans, scheme_, {});
+    const Far::PrimvarRefinerReal<double> primvars(*refiner);
+    std::vector<WeightedPoint> source(fans.vertex_count()), position(source), tangent1(source), tangent2(source);
+    for (size_t i = 0; i < source.size(); ++i) source[i].p = fans.positions[i];
+    primvars.Limit(source, position, tangent1, tangent2);
+    for (size_t s = 0; s < borders_.size(); ++s) {
+      const glm::dvec3 normal = glm::cross(tangent1[centers[s]].p, tangent2[centers[s]].p);
+      for (const int f : borders_[s].faces) set(f, borders_[s].vertex, normal);
+    }
+  }
+
+  const Far::TopologyRefiner& refiner_;
+  const Far::TopologyLevel& level_;
+  Scheme scheme_;
+  const std::vector<WeightedPoint>& refined_;
+  const LimitFrame& limit_;
+  const LimitSurface* surface_;
+  std::vector<int> first_;
+  std::vector<glm::vec3> normals_;
+  std::vector<Sector> borders_;
+};
+
+}  // namespace
+
+bool still_semi_sharp(const Far::TopologyLevel& level, int vertex) {
+  if (level.IsVertexSemiSharp(vertex)) return true;
+  for (const int e : level.GetVertexEdges(vertex))
+    if (level.IsEdgeSemiSharp(e)) return true;
+  return false;
+}
+
+std::vector<glm::vec3> limit_normals(const Far::TopologyRefiner& refiner, Scheme scheme, const std::vector<WeightedPoint>& refined,
+                                     const LimitFrame& limit, const LimitSurface* surface) {
+  return Normals(refiner, scheme, refined, limit, surface).run();
+}
+
+}  // namespace limn

@@ -1,0 +1,223 @@
+#include "subdiv/refine.h"
+
+#include <fmt/format.h>
+#include <opensubdiv/far/primvarRefiner.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "sdf/error.h"
+#include "subdiv/cage_topology.h"
+
+namespace limn {
+namespace {
+
+using Points = std::vector<WeightedPoint>;
+using Primvars = Far::PrimvarRefinerReal<double>;
+
+void check_size(const RefinedSize& size, const RefineSettings& settings, const std::string& file) {
+  // Corner indices are 32-bit; four corners a face.
+  const bool countable = size.faces <= std::numeric_limits<std::int32_t>::max() / 4;
+  if (size.bytes <= settings.max_bytes && countable) return;
+  throw InputError({file, "--level", fmt::format("{}", settings.level),
+                    fmt::format("the refined mesh would have {} vertices and {} faces and take {:.1f} GB", size.vertices, size.faces,
+                                static_cast<double>(size.bytes) * 1e-9),
+                    fmt::format("a lower level (at most {:.1f} GB)", static_cast<double>(settings.max_bytes) * 1e-9)});
+}
+
+/// The points of the last level, from those of the cage.
+Points interpolate(const Far::TopologyRefiner& refiner, Points points) {
+  const Primvars primvars(refiner);
+  for (int l = 1; l <= refiner.GetMaxLevel(); ++l) {
+    Points finer(static_cast<size_t>(refiner.GetLevel(l).GetNumVertices()));
+    primvars.Interpolate(l, points, finer);
+    points = std::move(finer);
+  }
+  return points;
+}
+
+Points cage_points(const Mesh& cage) {
+  Points points(cage.vertex_count());
+  for (size_t v = 0; v < points.size(); ++v) points[v].p = cage.positions[v];
+  return points;
+}
+
+bool any_semi_sharp(const Far::TopologyLevel& level) {
+  for (int v = 0; v < level.GetNumVertices(); ++v)
+    if (still_semi_sharp(level, v)) return true;
+  return false;
+}
+
+/// The masks of the limit hold for smooth and for infinitely sharp vertices; the rest is read from the limit surface itself.
+void limit_of_semi_sharp(const Far::TopologyRefiner& refiner, Scheme scheme, const LimitSurface& surface, Points& positions) {
+  const Far::TopologyLevel& level = refiner.GetLevel(refiner.GetMaxLevel());
+  for (int v = 0; v < level.GetNumVertices(); ++v) {
+    if (!still_semi_sharp(level, v) || level.GetVertexFaces(v).size() == 0) continue;
+    const CageLocation at = locate_corner(refiner, scheme, level.GetVertexFaces(v)[0], level.GetVertexFaceLocalIndices(v)[0]);
+    LimitPoint point;
+    if (surface.evaluate(at.face, at.sub_face, at.uv.x, at.uv.y, point)) positions[static_cast<size_t>(v)].p = point.position;
+  }
+}
+
+/// A refined level about to become a Mesh: OpenSubdiv's last level, and what was computed on it.
+struct Refined {
+  const Far::TopologyRefiner& refiner;
+  Points positions;
+  Points colors;
+  std::vector<glm::vec3> normals;
+};
+
+/// The base face of each face of the last level.
+std::vector<std::int32_t> ancestors(const Far::TopologyRefiner& refiner) {
+  std::vector<std::int32_t> of(static_cast<size_t>(refiner.GetLevel(0).GetNumFaces()));
+  for (size_t f = 0; f < of.size(); ++f) of[f] = static_cast<std::int32_t>(f);
+  for (int l = 1; l <= refiner.GetMaxLevel(); ++l) {
+    const Far::TopologyLevel& level = refiner.GetLevel(l);
+    std::vector<std::int32_t> finer(static_cast<size_t>(level.GetNumFaces()));
+    for (size_t f = 0; f < finer.size(); ++f) finer[f] = of[static_cast<size_t>(level.GetFaceParentFace(static_cast<int>(f)))];
+    of = std::move(finer);
+  }
+  return of;
+}
+
+/// Sharpness that is left, for edges and vertices that have it by their own and not by lying on a border.
+void copy_tags(const Far::TopologyLevel& level, const std::vector<std::int32_t>& number, Mesh& mesh) {
+  for (int e = 0; e < level.GetNumEdges(); ++e) {
+    const float sharpness = level.GetEdgeSharpness(e);
+    const Far::ConstIndexArray ends = level.GetEdgeVertices(e);
+    const std::int32_t a = number[static_cast<size_t>(ends[0])], b = number[static_cast<size_t>(ends[1])];
+    if (sharpness > 0.0f && !level.IsEdgeBoundary(e) && a >= 0 && b >= 0) mesh.creases.push_back({a, b, sharpness});
+  }
+  for (int v = 0; v < level.GetNumVertices(); ++v) {
+    const float sharpness = level.GetVertexSharpness(v);
+    if (sharpness > 0.0f && number[static_cast<size_t>(v)] >= 0) mesh.corners.push_back({number[static_cast<size_t>(v)], sharpness});
+  }
+}
+
+void copy_faces(const Far::TopologyLevel& level, const std::vector<std::int32_t>& ancestor, const std::vector<std::int32_t>& number,
+                const std::vector<glm::vec3>& normals, const Mesh& cage, Mesh& mesh) {
+  size_t corner = 0;
+  for (int f = 0; f < level.GetNumFaces(); ++f) {
+    const Far::ConstIndexArray vertices = level.GetFaceVertices(f);
+    const size_t first = corner;
+    corner += static_cast<size_t>(vertices.size());
+    if (level.IsFaceHole(f)) continue;
+    mesh.face_sizes.push_back(vertices.size());
+    for (const int v : vertices) mesh.corner_vertices.push_back(number[static_cast<size_t>(v)]);
+    if (!normals.empty())
+      for (size_t i = first; i < corner; ++i) mesh.corner_normals.push_back(normals[i]);
+    const auto parent = static_cast<size_t>(ancestor[static_cast<size_t>(f)]);
+    if (!cage.face_materials.empty()) mesh.face_materials.push_back(cage.face_materials[parent]);
+    if (!cage.face_groups.empty()) mesh.face_groups.push_back(cage.face_groups[parent]);
+  }
+}
+
+Mesh as_mesh(const Refined& refined, const Mesh& cage, int level_number) {
+  const Far::TopologyLevel& level = refined.refiner.GetLevel(level_number);
+  Mesh mesh;
+  std::vector<std::int32_t> number(static_cast<size_t>(level.GetNumVertices()), -1);
+  const std::vector<char> used = used_vertices(level);
+  std::int32_t count = 0;
+  for (size_t v = 0; v < number.size(); ++v) {
+    if (!used[v]) continue;
+    number[v] = count++;
+    mesh.positions.push_back(refined.positions[v].p);
+    if (!refined.colors.empty()) mesh.vertex_colors.push_back(glm::vec3(glm::max(refined.colors[v].p, 0.0)));
+  }
+  std::vector<std::int32_t> ancestor;
+  if (level_number == 0) {
+    ancestor.resize(static_cast<size_t>(level.GetNumFaces()));
+    for (size_t f = 0; f < ancestor.size(); ++f) ancestor[f] = static_cast<std::int32_t>(f);
+  } else {
+    ancestor = ancestors(refined.refiner);
+  }
+  copy_faces(level, ancestor, number, refined.normals, cage, mesh);
+  copy_tags(level, number, mesh);
+  mesh.material_names = cage.material_names;
+  mesh.group_names = cage.group_names;
+  mesh.boundary = cage.boundary;
+  return mesh;
+}
+
+/// Level 0 on the limit: the masks need quads, so one refinement is made and read at the children of the cage's vertices and corners.
+void pull_back_to_cage(Refined& refined) {
+  const Far::TopologyLevel &base = refined.refiner.GetLevel(0), &children = refined.refiner.GetLevel(1);
+  Points positions(static_cast<size_t>(base.GetNumVertices())), colors;
+  if (!refined.colors.empty()) colors.resize(positions.size());
+  for (int v = 0; v < base.GetNumVertices(); ++v) {
+    const auto child = static_cast<size_t>(base.GetVertexChildVertex(v));
+    positions[static_cast<size_t>(v)] = refined.positions[child];
+    if (!colors.empty()) colors[static_cast<size_t>(v)] = refined.colors[child];
+  }
+  std::vector<glm::vec3> normals;
+  std::vector<size_t> first;
+  size_t sum = 0;
+  for (int f = 0; f < children.GetNumFaces(); ++f) first.push_back(sum), sum += static_cast<size_t>(children.GetFaceVertices(f).size());
+  for (int f = 0; f < base.GetNumFaces() && !refined.normals.empty(); ++f) {
+    const Far::ConstIndexArray vertices = base.GetFaceVertices(f), pieces = base.GetFaceChildFaces(f);
+    for (int i = 0; i < vertices.size(); ++i) {
+      const Far::ConstIndexArray corners = children.GetFaceVertices(pieces[i]);
+      const auto at = std::find(corners.begin(), corners.end(), base.GetVertexChildVertex(vertices[i])) - corners.begin();
+      normals.push_back(refined.normals[first[static_cast<size_t>(pieces[i])] + static_cast<size_t>(at)]);
+    }
+  }
+  refined.positions = std::move(positions), refined.colors = std::move(colors), refined.normals = std::move(normals);
+}
+
+/// Moves onto the limit what is to be there, and finds the normals.
+void to_limit(const Mesh& cage, const RefineSettings& settings, const std::string& file, Refined& refined) {
+  const Far::TopologyLevel& level = refined.refiner.GetLevel(refined.refiner.GetMaxLevel());
+  std::optional<LimitSurface> surface;
+  if (settings.scheme != Scheme::bilinear && any_semi_sharp(level)) surface.emplace(cage, settings.scheme, file);
+  const size_t count = refined.positions.size();
+  LimitFrame limit{Points(count), Points(count), Points(count)};
+  const Primvars primvars(refined.refiner);
+  primvars.Limit(refined.positions, limit.positions, limit.tangent1, limit.tangent2);
+  if (surface) limit_of_semi_sharp(refined.refiner, settings.scheme, *surface, limit.positions);
+  if (settings.normals == NormalKind::limit)
+    refined.normals = limit_normals(refined.refiner, settings.scheme, refined.positions, limit, surface ? &*surface : nullptr);
+  if (!settings.to_limit) return;
+  refined.positions = std::move(limit.positions);
+  if (refined.colors.empty()) return;
+  Points colors(count);
+  primvars.Limit(refined.colors, colors);
+  refined.colors = std::move(colors);
+}
+
+}  // namespace
+
+Mesh refine(const Mesh& cage, const RefineSettings& settings, const std::string& file) {
+  if (settings.level < 0 || settings.level > 8)
+    throw InputError({file, "--level", fmt::format("{}", settings.level), "the subdivision level is out of range", "0 to 8"});
+  const CleanCage clean = clean_cage(cage, settings.scheme, file);
+  const std::unique_ptr<Far::TopologyRefiner> refiner = make_refiner(clean.mesh, settings.scheme, file);
+  const bool limit = settings.to_limit || settings.normals == NormalKind::limit;
+  const int levels = limit ? std::max(settings.level, 1) : settings.level;
+  RefinedSize size = predict_from_base(*refiner, settings.scheme, settings.level, !cage.vertex_colors.empty());
+  if (size.faces == 0)
+    throw InputError({file, "boundary", "none", "every face touches an open edge, where this rule leaves no surface",
+                      "the boundary rule edge_only or edge_and_corner"});
+  size.bytes = std::max(size.bytes, predict_from_base(*refiner, settings.scheme, levels, !cage.vertex_colors.empty()).bytes);
+  check_size(size, settings, file);
+
+  if (levels > 0) {
+    Far::TopologyRefiner::UniformOptions options(levels);
+    options.fullTopologyInLastLevel = true;
+    refiner->RefineUniform(options);
+  }
+  Refined refined{*refiner, interpolate(*refiner, cage_points(clean.mesh)), {}, {}};
+  if (!clean.mesh.vertex_colors.empty()) {
+    Points colors(clean.mesh.vertex_count());
+    for (size_t v = 0; v < colors.size(); ++v) colors[v].p = clean.mesh.vertex_colors[v];
+    refined.colors = interpolate(*refiner, std::move(colors));
+  }
+  if (limit) to_limit(clean.mesh, settings, file, refined);
+  if (levels != settings.level) {
+    pull_back_to_cage(refined);
+    if (!settings.to_limit) refined.positions = cage_points(clean.mesh);
+  }
+  return as_mesh(refined, clean.mesh, settings.level);
+}
+
+}  // namespace limn

@@ -17,7 +17,9 @@ struct BorderInput {
 /// Ink of one method. `coverage` in [0, 1], finite, the G-buffer's size.
 struct Border {
   Image<float> coverage{};
-  glm::vec3 color{0.0f};           ///< Linear.
+  glm::vec3 color{0.0f};             ///< Linear.
+  Image<glm::vec3> colors{};         ///< Linear ink colour of each pixel, where a method inks in more than one; empty: `color` everywhere.
+  Image<std::uint8_t> status{};      ///< Non-zero where the method is undefined and what it drew is clamped; empty where it never is.
   std::vector<std::string> notes{};  ///< What failed here, in words with numbers; empty where nothing did.
 };
 

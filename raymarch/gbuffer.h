@@ -19,12 +19,14 @@ struct GBuffer {
   Image<std::int32_t> material{};
   Image<std::int32_t> face{};    ///< Polygon of a mesh, -1 elsewhere.
   Image<std::uint8_t> status{};  ///< HitStatus.
+  Image<glm::vec3>
+      custom{};  ///< What the scene fills for edge methods (a section map): vertex colours, face groups, world position; or empty.
 };
 
 /// What a picture's pixels must not depend on.
 struct ExecutionSettings {
-  int threads = 0;                       ///< 0: all.
-  int tile_px = 16;                      ///< Side of a square tile, 1..16 (a tile is one ray batch).
+  int threads = 0;                         ///< 0: all.
+  int tile_px = 16;                        ///< Side of a square tile, 1..16 (a tile is one ray batch).
   std::function<void(double)> progress{};  ///< 0..1, from one thread at a time; may be empty.
   std::function<bool()> cancelled{};       ///< Polled for each tile; true throws Cancelled.
 };

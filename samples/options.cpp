@@ -98,7 +98,8 @@ void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& need
     options.surfaces.push_back(text);
   };
   if (needs.surface && needs.repeatable)
-    add_repeatable(app, {"--surface", "NAME", "only this representation (limn list surfaces), repeatable; default: all", kSurface}, surface);
+    add_repeatable(app, {"--surface", "NAME", "only this representation (limn list surfaces), repeatable; default: all", kSurface},
+                   surface);
   else if (needs.surface)
     add(app, {"--surface", "NAME", "representation (limn list surfaces); default: what the input is by itself", kSurface}, surface);
   auto* voxels = add(app, {"--voxels", "N", "voxels along the longest side, 4..8192; default 256", kSurface},
@@ -132,10 +133,10 @@ void add_border(CLI::App& app, Options& options) {
                    find_border_method(text, "", "--method");
                    options.methods.push_back(text);
                  });
-  add_repeatable(app,
-                 {"--set", "KEY=VALUE",
-                  "a parameter of the methods, such as threshold=0.4; METHOD.KEY=VALUE for one of several; repeatable", kBorder},
-                 [&options](const std::string& text) { options.sets.push_back(parse_key_value("--set", text)); });
+  add_repeatable(
+      app,
+      {"--set", "KEY=VALUE", "a parameter of the methods, such as threshold=0.4; METHOD.KEY=VALUE for one of several; repeatable", kBorder},
+      [&options](const std::string& text) { options.sets.push_back(parse_key_value("--set", text)); });
   add(app, {"--samples", "N", "rays a pixel, 1..1024; default 1", kBorder},
       [&options](const std::string& text) { options.samples = parse_integer("--samples", text, 1, 1024); });
   add(app, {"--background", "R,G,B", "linear colour behind everything; default: transparent (compare: white)", kBorder},

@@ -103,9 +103,12 @@ Scheme parse_scheme(const std::string& name, const std::string& file, const std:
 
 const char* name_of(NormalKind kind) {
   switch (kind) {
-    case NormalKind::flat: return "flat";
-    case NormalKind::vertex: return "vertex";
-    case NormalKind::limit: break;
+    case NormalKind::flat:
+      return "flat";
+    case NormalKind::vertex:
+      return "vertex";
+    case NormalKind::limit:
+      break;
   }
   return "limit";
 }

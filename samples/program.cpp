@@ -44,10 +44,12 @@ std::vector<std::string> command_names() {
     const std::vector<std::string> known = option_names(chosen.empty() ? app : *chosen.front());
     const std::string near = nearest_name(name, known);
     const std::string command = chosen.empty() ? std::string() : chosen.front()->get_name() + " ";
-    throw InputError({"", name, "", "unknown option", (near.empty() ? "" : "did you mean '" + near + "'? ") + "limn " + command + "--help names them all"});
+    throw InputError({"", name, "", "unknown option",
+                      (near.empty() ? "" : "did you mean '" + near + "'? ") + "limn " + command + "--help names them all"});
   }
   if (chosen.empty()) throw InputError({"", extra, "", "unknown command", known_names(extra, command_names())});
-  throw InputError({"", extra, "", "one argument too many", "one call takes one; limn " + chosen.front()->get_name() + " --help says which"});
+  throw InputError(
+      {"", extra, "", "one argument too many", "one call takes one; limn " + chosen.front()->get_name() + " --help says which"});
 }
 
 // CLI11's own complaints that are left: missing values, missing arguments, options that exclude each other.

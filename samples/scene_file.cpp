@@ -1,1 +1,199 @@
-#include "raymarch/scene.h"
+#include "samples/scene_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <sstream>
+
+#include "raymarch/border.h"
+#include "raymarch/surface.h"
+#include "samples/field_reader.h"
+#include "samples/toml_reader.h"
+#include "sdf/guard.h"
+#include "subdiv/import.h"
+
+namespace limn {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+CameraSettings read_camera(TomlReader& reader) {
+  CameraSettings camera;
+  camera.eye = reader.vector3("eye");
+  camera.target = reader.vector3("target");
+  if (const auto up = reader.vector3("up")) camera.up = *up;
+  if (const auto fov = reader.number_between("fov", 0.0, 180.0, "degrees above 0 and below 180 would be right")) {
+    camera.vertical_fov = *fov * std::numbers::pi / 180.0;
+  }
+  if (const auto height = reader.number_between("ortho", 0.0, kInfinity, "the picture's height, above 0 in world units, would be right")) {
+    if (reader.has("fov")) reader.fail("both fov and ortho", "one of the two would be right");
+    camera.projection = Projection::orthographic;
+    camera.ortho_height = *height;
+  }
+  const std::string size_expected = "[width, height] in whole pixels, 1 to 16384 each, would be right";
+  if (const auto size = reader.numbers("size", 2, size_expected)) {
+    for (const double side : *size) {
+      if (side < 1.0 || side > 16384.0 || side != std::floor(side))
+        reader.fail(*reader.take("size"), "size", "out of range", size_expected);
+    }
+    camera.width_px = static_cast<int>((*size)[0]);
+    camera.height_px = static_cast<int>((*size)[1]);
+  }
+  reader.finish();
+  return camera;
+}
+
+SurfaceDefaults read_surface(TomlReader& reader) {
+  SurfaceDefaults surface;
+  const auto place = [&reader](const std::string& key) { return reader.where(*reader.take(key)); };
+  surface.kind = reader.text("kind");
+  if (surface.kind) find_surface(*surface.kind, place("kind"), "surface.kind");
+  surface.voxels = reader.integer("voxels", 4, 8192);
+  surface.voxel_size = reader.number_between("voxel_size", 0.0, kInfinity, "a length above 0 in world units would be right");
+  if (surface.voxels && surface.voxel_size) reader.fail("both voxels and voxel_size", "one of the two would be right");
+  surface.half_width_voxels = reader.number("half_width", 1.8, kInfinity, "at least 1.8 voxels would be right");
+  surface.gradient = reader.text("gradient");
+  if (surface.gradient) find_gradient(*surface.gradient, place("gradient"), "surface.gradient");
+  surface.level = reader.integer("level", 0, 8);
+  if (const auto scheme = reader.text("scheme")) surface.scheme = parse_scheme(*scheme, place("scheme"), "surface.scheme");
+  if (const auto normals = reader.text("normals")) surface.normals = parse_normals(*normals, place("normals"), "surface.normals");
+  reader.finish();
+  return surface;
+}
+
+BorderDefaults read_border(TomlReader& reader) {
+  BorderDefaults border;
+  border.method = reader.text("method").value_or("rim");
+  const toml::node* method_node = reader.take("method");
+  const BorderMethod& method =
+      find_border_method(border.method, method_node ? reader.where(*method_node) : reader.file(), reader.field("method"));
+  border.parameters = reader.parameters(method.parameters);
+  reader.finish();
+  resolve(method.parameters, border.parameters, reader.file(), reader.field(""));
+  return border;
+}
+
+std::filesystem::path beside(const TomlReader& reader, const std::string& name) {
+  return std::filesystem::path(reader.file()).parent_path() / name;
+}
+
+MeshSource read_mesh(TomlReader& reader, std::optional<int>& level) {
+  const std::string name = *reader.text("mesh");
+  std::optional<Scheme> scheme;
+  if (const auto text = reader.text("scheme")) {
+    scheme = parse_scheme(*text, reader.where(*reader.take("scheme")), reader.field("scheme"));
+  }
+  level = reader.integer("level", 0, 8);
+  // A level without a scheme still asks for subdivision; Catmull-Clark takes any polygons.
+  if (level && *level > 0 && !scheme) scheme = Scheme::catmark;
+  const std::filesystem::path path = beside(reader, name);
+  return mesh_source(load_mesh(path), scheme, path.string());
+}
+
+LevelSetSource read_volume(TomlReader& reader) {
+  const std::string name = *reader.text("vdb");
+  const std::string grid = reader.text("grid").value_or("");
+  const std::filesystem::path path = beside(reader, name);
+  return {read_level_set(path, grid), path.string()};
+}
+
+using Source = decltype(SceneObject::source);
+
+SceneObject read_object(TomlReader& reader, size_t index) {
+  int kinds = 0;
+  for (const char* key : {"shape", "csg", "mesh", "vdb"}) kinds += reader.has(key) ? 1 : 0;
+  if (kinds != 1) {
+    reader.fail(kinds == 0 ? "no shape, csg, mesh or vdb" : "more than one of shape, csg, mesh and vdb",
+                "exactly one of them says what the object is");
+  }
+  std::optional<int> level;
+  Affine world_from_object;
+  const auto read_source = [&]() -> Source {
+    if (reader.has("mesh")) return read_mesh(reader, level);
+    if (reader.has("vdb")) return read_volume(reader);
+    return read_field(reader);
+  };
+  // Cheap keys first, so that a slip in them is told before a large file is read.
+  const std::string name = reader.text("name").value_or(fmt::format("object {}", index + 1));
+  const glm::vec3 color = reader.color("color").value_or(glm::vec3(0.8f));
+  const int material = reader.integer("material", 0, 1'000'000).value_or(0);
+  if (reader.has("mesh") || reader.has("vdb")) world_from_object = read_placement(reader);
+  Source source = read_source();
+  reader.finish();
+  return {name, std::move(source), world_from_object, color, material, level};
+}
+
+toml::table parse_toml(const std::string& text, const std::string& file) {
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    throw InputError(
+        {fmt::format("{}:{}:{}", file, at.line, at.column), "", "", std::string(error.description()), "valid TOML would be right"});
+  }
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  check_readable(file, "a scene file");
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw InputError({file.string(), "", "", "cannot be read", "a readable scene file would be right"});
+  return text.str();
+}
+
+}  // namespace
+
+MeshSource mesh_source(Mesh mesh, std::optional<Scheme> scheme, const std::string& file) {
+  const bool tagged = !mesh.creases.empty() || !mesh.corners.empty();
+  if (tagged && !scheme) scheme = Scheme::catmark;
+  return {std::move(mesh), scheme, file};
+}
+
+SceneInput parse_scene_file(const std::string& text, const std::filesystem::path& file) {
+  const toml::table root = parse_toml(text, file.string());
+  SceneInput input;
+  input.kind = InputKind::scene_file;
+  input.name = file.stem().string();
+  input.file = file.string();
+  input.scene.name = input.name;
+
+  TomlReader reader(root, file.string(), "");
+  const auto single = [&reader](const std::string& key) -> const toml::table* {
+    const toml::node* node = reader.take(key);
+    if (node == nullptr) return nullptr;
+    if (!node->is_table()) reader.fail(*node, key, "not a table", "[" + key + "] would be right");
+    return node->as_table();
+  };
+  const toml::table* camera = single("camera");
+  const toml::table* surface = single("surface");
+  const auto borders = reader.tables("border");
+  const auto objects = reader.tables("object");
+  reader.finish();
+  if (objects.empty()) throw InputError({file.string(), "object", "", "no objects", "at least one [[object]] would be right"});
+
+  if (camera != nullptr) {
+    TomlReader table(*camera, file.string(), "camera.");
+    input.scene.camera = read_camera(table);
+  }
+  if (surface != nullptr) {
+    TomlReader table(*surface, file.string(), "surface.");
+    input.surface = read_surface(table);
+  }
+  for (size_t i = 0; i < borders.size(); ++i) {
+    TomlReader table(*borders[i], file.string(), borders.size() == 1 ? "border." : fmt::format("border[{}].", i));
+    input.borders.push_back(read_border(table));
+  }
+  for (size_t i = 0; i < objects.size(); ++i) {
+    TomlReader table(*objects[i], file.string(), fmt::format("object[{}].", i));
+    input.scene.objects.push_back(read_object(table, i));
+  }
+  return input;
+}
+
+SceneInput load_scene_file(const std::filesystem::path& file) { return parse_scene_file(read_text(file), file); }
+
+}  // namespace limn

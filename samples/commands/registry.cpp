@@ -12,11 +12,7 @@ Command list_command();
 
 std::span<const Command> commands() {
   static const std::array all = {
-      render_command(),
-      compare_command(),
-      export_command(),
-      info_command(),
-      list_command(),
+      render_command(), compare_command(), export_command(), info_command(), list_command(),
   };
   return all;
 }

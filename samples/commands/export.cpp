@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "samples/commands/command.h"
+#include "samples/job.h"
+#include "samples/output.h"
+#include "samples/threads.h"
+#include "samples/world_model.h"
+#include "sdf/error.h"
+#include "subdiv/import.h"
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kEndings = {".obj", ".ply", ".vdb"};
+
+fs::path output_of(const Options& options, const std::string& name, InputKind kind) {
+  if (!options.outputs.empty()) return options.outputs.back();
+  return default_output("export", name).string() + (kind == InputKind::level_set ? ".vdb" : ".obj");
+}
+
+void add_options(CLI::App& app, Options& options) {
+  add_input(app, options);
+  add_surface(app, options, {.surface = true, .repeatable = false});
+  add_output(app, options, ".obj .ply (refined mesh) or .vdb (level set); default limn-out/export/<name>.obj, .vdb for a volume", false);
+  add_json(app, options);
+  add_execution(app, options, true);
+}
+
+// --surface says by which way: mesh or level_set straight, mesh_level_set through both.
+void check_kind(const SurfaceSettings& settings) {
+  if (settings.kind == "analytic") {
+    throw InputError(
+        {"", "--surface", settings.kind, "a formula cannot be written to a file", "mesh, level_set or mesh_level_set would be right"});
+  }
+}
+
+Mesh exported_mesh(const Scene& scene, const SurfaceSettings& settings, std::vector<std::string>& warnings) {
+  if (settings.kind != "level_set" && settings.kind != "mesh_level_set") return world_mesh(scene, settings);
+  SceneObject remeshed{.name = scene.name, .source = LevelSetSource{world_level_set(scene, settings, warnings), scene.name}};
+  return world_mesh(remeshed, settings);
+}
+
+int run(const Options& options) {
+  const ThreadLimit threads(options.threads);
+  ProgressBar bar(wants_progress(options.quiet, options.no_progress));
+  input_kind(options.input);
+  if (!options.outputs.empty()) check_output_file(options.outputs.back(), options, kEndings);
+  SceneInput input = load_input(options);
+  const fs::path file = output_of(options, input.name, input.kind);
+  check_output_file(file, options, kEndings);
+  SurfaceSettings settings = surface_settings(options, input);
+  check_kind(settings);
+  settings.progress = bar.stage("building the surface");
+
+  std::vector<std::string> warnings;
+  Json document;
+  std::string text;
+  if (ending_of(file) == ".vdb") {
+    const LevelSet level_set = world_level_set(input.scene, settings, warnings);
+    const LevelSetInfo& info = level_set.info();
+    write_level_set(level_set, file);
+    document = {{"kind", "level_set"},
+                {"voxels", info.active_voxels},
+                {"voxel_size", info.voxel_size},
+                {"half_width_voxels", info.half_width_voxels}};
+    text = fmt::format("{} voxels of {:g}, half width {:g} voxels", info.active_voxels, info.voxel_size, info.half_width_voxels);
+  } else {
+    const Mesh mesh = exported_mesh(input.scene, settings, warnings);
+    write_mesh(mesh, file);
+    document = {{"kind", "mesh"}, {"vertices", mesh.vertex_count()}, {"faces", mesh.face_count()}};
+    text = fmt::format("{} vertices, {} faces", mesh.vertex_count(), mesh.face_count());
+  }
+  bar.clear();
+  document["files"] = {file.string()};
+  document["warnings"] = warnings;
+  if (!options.quiet) {
+    for (const std::string& warning : warnings) print_note(warning);
+  }
+  if (options.json)
+    print_json(document);
+  else if (!options.quiet)
+    print_text(file.string() + "\n" + text + "\n");
+  return 0;
+}
+
+}  // namespace
+
+Command export_command() {
+  return {"export", "writes the surface as modelled, for other tools",
+          "  limn export teacup --level 4 -o teacup.obj\n"
+          "  limn export gyroid --voxels 300 -o gyroid.vdb",
+          add_options, run};
+}
+
+}  // namespace limn

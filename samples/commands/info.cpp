@@ -1,0 +1,237 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "samples/commands/command.h"
+#include "samples/input.h"
+#include "samples/output.h"
+#include "sdf/error.h"
+#include "subdiv/audit.h"
+
+namespace limn {
+namespace {
+
+const char* name_of(Severity severity) {
+  switch (severity) {
+    case Severity::info:
+      return "info";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      break;
+  }
+  return "error";
+}
+
+Json vector_json(const glm::dvec3& v) { return {number_or_null(v.x), number_or_null(v.y), number_or_null(v.z)}; }
+Json bounds_json(const Box& box) {
+  if (box.empty()) return nullptr;
+  return {{"lower", vector_json(box.lower)}, {"upper", vector_json(box.upper)}};
+}
+
+struct Report {
+  std::string name, kind;
+  Box bounds;
+  Json counts = Json::object();
+  std::vector<Finding> audit;
+};
+
+void report_field(const Field& field, Report& report) {
+  const FieldTraits& traits = field.traits();
+  report.kind = "field";
+  report.audit.push_back({"lipschitz_constant", Severity::info, traits.lipschitz,
+                          fmt::format("the field grows by at most {:g} per unit of length", traits.lipschitz)});
+  report.audit.push_back(
+      {"exact_distance", Severity::info, traits.exact_distance ? 1.0 : 0.0,
+       traits.exact_distance ? "the value is the distance to the surface" : "the value is not everywhere the distance to the surface"});
+  if (traits.bounds.empty()) report.audit.push_back({"empty", Severity::error, 0.0, "the field has no surface at all"});
+  if (!traits.bounds.empty() && !traits.bounds.finite())
+    report.audit.push_back({"unbounded", Severity::warning, 0.0, "the surface has no end: it can be drawn, but not meshed or voxelised"});
+}
+
+void report_mesh(const MeshSource& source, Report& report) {
+  const Mesh& mesh = source.mesh;
+  report.kind = source.scheme ? "cage" : "mesh";
+  size_t triangles = 0, quads = 0;
+  for (const std::int32_t size : mesh.face_sizes) {
+    triangles += size == 3 ? 1 : 0;
+    quads += size == 4 ? 1 : 0;
+  }
+  report.counts = {{"vertices", mesh.vertex_count()},
+                   {"faces", mesh.face_count()},
+                   {"triangles", triangles},
+                   {"quads", quads},
+                   {"n_gons", mesh.face_count() - triangles - quads},
+                   {"creases", mesh.creases.size()},
+                   {"corners", mesh.corners.size()},
+                   {"materials", mesh.material_names.size()},
+                   {"groups", mesh.group_names.size()}};
+  if (source.scheme) report.counts["scheme"] = limn::name_of(*source.scheme);
+  report.audit = audit(mesh);
+}
+
+void report_level_set(const LevelSetSource& source, Report& report) {
+  const LevelSetInfo& info = source.level_set.info();
+  report.kind = "level_set";
+  report.counts = {{"active_voxels", info.active_voxels},
+                   {"voxel_size", info.voxel_size},
+                   {"half_width_voxels", info.half_width_voxels},
+                   {"bytes", info.bytes}};
+  for (const GradientDescriptor& gradient : gradients()) {
+    const bool enough = info.half_width_voxels >= gradient.half_width_voxels;
+    report.audit.push_back({"band_for_" + gradient.about.name, enough ? Severity::info : Severity::warning, gradient.half_width_voxels,
+                            fmt::format("the gradient {} needs a half width of {:g} voxels: {}", gradient.about.name,
+                                        gradient.half_width_voxels, enough ? "there is enough" : "the band is too thin")});
+  }
+}
+
+Report report_of(const SceneObject& object) {
+  Report report{.name = object.name, .kind = {}, .bounds = bounds(object), .counts = Json::object(), .audit = {}};
+  if (const Field* field = std::get_if<Field>(&object.source)) report_field(*field, report);
+  if (const auto* mesh = std::get_if<MeshSource>(&object.source)) report_mesh(*mesh, report);
+  if (const auto* level_set = std::get_if<LevelSetSource>(&object.source)) report_level_set(*level_set, report);
+  return report;
+}
+
+Json audit_json(const std::vector<Finding>& findings) {
+  Json audit = Json::array();
+  for (const Finding& finding : findings) {
+    audit.push_back({{"check", finding.check},
+                     {"severity", name_of(finding.severity)},
+                     {"value", number_or_null(finding.value)},
+                     {"message", finding.message}});
+  }
+  return audit;
+}
+
+std::string bounds_text(const Box& box) {
+  if (box.empty()) return "nothing";
+  return fmt::format("[{:g}, {:g}, {:g}] to [{:g}, {:g}, {:g}]", box.lower.x, box.lower.y, box.lower.z, box.upper.x, box.upper.y,
+                     box.upper.z);
+}
+
+std::string report_text(const Report& report) {
+  std::string text = fmt::format("{}: {}, {}\n", report.name, report.kind, bounds_text(report.bounds));
+  std::string counts;
+  for (const auto& [key, value] : report.counts.items()) {
+    std::string label = key;
+    std::replace(label.begin(), label.end(), '_', ' ');
+    counts += (counts.empty() ? "  " : ", ") + label + " " + (value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  if (!counts.empty()) text += counts + "\n";
+  for (const Finding& finding : report.audit)
+    text += fmt::format("  {:<8} {:<22} {}\n", name_of(finding.severity), finding.check, finding.message);
+  return text;
+}
+
+Json grids_json(const std::vector<GridSummary>& grids) {
+  Json list = Json::array();
+  for (const GridSummary& grid : grids) {
+    list.push_back({{"name", grid.name},
+                    {"type", grid.value_type},
+                    {"class", grid.grid_class},
+                    {"active_voxels", grid.active_voxels},
+                    {"voxel_size", grid.voxel_size}});
+  }
+  return list;
+}
+
+std::string grids_text(const std::vector<GridSummary>& grids) {
+  std::string text;
+  for (const GridSummary& grid : grids) {
+    text += fmt::format("  grid     {:<22} {} {}, {} active voxels of {:g}\n", grid.name.empty() ? "(no name)" : grid.name, grid.grid_class,
+                        grid.value_type, grid.active_voxels, grid.voxel_size);
+  }
+  return text;
+}
+
+const char* kind_name(InputKind kind) {
+  switch (kind) {
+    case InputKind::mesh:
+      return "mesh";
+    case InputKind::level_set:
+      return "level_set";
+    case InputKind::scene_file:
+    case InputKind::built_in:
+      break;
+  }
+  return "scene";
+}
+
+// A volume that cannot be drawn as a level set is still worth a look: its grids, and the reason.
+int report_volume_without_level_set(const Options& options, const std::vector<GridSummary>& grids, const InputError& error) {
+  const Finding finding{"level_set", Severity::error, 0.0, error.what()};
+  if (options.json) {
+    print_json({{"kind", "level_set"},
+                {"bounds", nullptr},
+                {"counts", {{"grids", grids.size()}}},
+                {"audit", audit_json({finding})},
+                {"grids", grids_json(grids)}});
+  } else {
+    print_text(fmt::format("{}: {} grids\n{}  {:<8} {:<22} {}\n", options.input, grids.size(), grids_text(grids), "error", finding.check,
+                           finding.message));
+  }
+  return 0;
+}
+
+void print_report(const Options& options, const SceneInput& input, const std::vector<GridSummary>& grids) {
+  std::vector<Report> reports;
+  for (const SceneObject& object : input.scene.objects) reports.push_back(report_of(object));
+  const Box all = bounds(input.scene);
+  if (!options.json) {
+    std::string text;
+    if (reports.size() > 1)
+      text = fmt::format("{}: {}, {} objects, {}\n", options.input, kind_name(input.kind), reports.size(), bounds_text(all));
+    for (const Report& report : reports) text += report_text(report);
+    print_text(text + grids_text(grids));
+    return;
+  }
+  Json document = {
+      {"kind", kind_name(input.kind)}, {"bounds", bounds_json(all)}, {"counts", {{"objects", reports.size()}}}, {"audit", Json::array()}};
+  Json objects = Json::array();
+  for (const Report& report : reports) {
+    for (const auto& [key, value] : report.counts.items()) {
+      if (value.is_number_integer()) document["counts"][key] = document["counts"].value(key, std::int64_t{0}) + value.get<std::int64_t>();
+    }
+    for (Json finding : audit_json(report.audit)) {
+      if (reports.size() > 1) finding["object"] = report.name;
+      document["audit"].push_back(std::move(finding));
+    }
+    objects.push_back({{"name", report.name}, {"kind", report.kind}, {"bounds", bounds_json(report.bounds)}, {"counts", report.counts}});
+  }
+  document["objects"] = std::move(objects);
+  if (input.kind == InputKind::level_set) document["grids"] = grids_json(grids);
+  print_json(document);
+}
+
+void add_options(CLI::App& app, Options& options) {
+  add_input(app, options);
+  add_grid(app, options);
+  add_json(app, options);
+}
+
+int run(const Options& options) {
+  std::vector<GridSummary> grids;
+  if (input_kind(options.input) == InputKind::level_set) {
+    grids = list_grids(options.input);
+    if (options.grid.empty()) {
+      try {
+        print_report(options, load_input(options), grids);
+        return 0;
+      } catch (const InputError& error) {
+        return report_volume_without_level_set(options, grids, error);
+      }
+    }
+  }
+  print_report(options, load_input(options), grids);
+  return 0;
+}
+
+}  // namespace
+
+Command info_command() {
+  return {"info", "says what is in a file, and what is wrong with it", "  limn info bunny.obj\n  limn info smoke.vdb --json", add_options,
+          run};
+}
+
+}  // namespace limn

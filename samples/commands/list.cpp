@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "raymarch/border.h"
+#include "raymarch/metric.h"
+#include "raymarch/surface.h"
+#include "samples/commands/command.h"
+#include "samples/output.h"
+#include "samples/scenes/scenes.h"
+#include "sdf/error.h"
+#include "sdf/level_set.h"
+#include "sdf/shape.h"
+
+namespace limn {
+namespace {
+
+struct Entry {
+  Description about;
+  std::vector<std::string> inputs;
+  std::vector<Parameter> parameters;
+};
+
+std::vector<Entry> list_shapes() {
+  std::vector<Entry> entries;
+  for (const ShapeDescriptor& shape : shapes()) entries.push_back({shape.about, {}, shape.parameters});
+  return entries;
+}
+
+std::vector<Entry> list_surfaces() {
+  std::vector<Entry> entries;
+  for (const SurfaceDescriptor& surface : surface_kinds()) entries.push_back({surface.about, surface.settings, {}});
+  return entries;
+}
+
+std::vector<Entry> list_gradients() {
+  std::vector<Entry> entries;
+  for (const GradientDescriptor& gradient : gradients()) {
+    Description about = gradient.about;
+    about.help += fmt::format("; half width {} voxels, order {}", gradient.half_width_voxels, gradient.order);
+    entries.push_back({about, {}, {}});
+  }
+  return entries;
+}
+
+std::vector<Entry> list_normals() {
+  return {
+      {{"flat", "a face's own normal", "limn"}, {"mesh"}, {}},
+      {{"vertex", "averaged at vertices by corner angle, split at infinitely sharp creases", "Thuermer and Wuethrich 1998"}, {"mesh"}, {}},
+      {{"limit", "those of the limit surface (cages) or of the field (tessellated shapes)", "Stam 1998; OpenSubdiv"}, {"mesh"}, {}},
+  };
+}
+
+std::vector<Entry> list_methods() {
+  std::vector<Entry> entries;
+  for (const BorderMethod& method : border_methods()) entries.push_back({method.about, method.inputs, method.parameters});
+  return entries;
+}
+
+std::vector<Entry> list_metrics() {
+  std::vector<Entry> entries;
+  for (const Metric& metric : metrics()) {
+    Entry entry{metric.about, {"picture", "reference"}, {}};
+    std::string values;
+    for (const std::string& value : metric.values) values += (values.empty() ? "" : ", ") + value;
+    entry.about.help += "; yields " + values;
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+std::vector<Entry> list_scenes() {
+  std::vector<Entry> entries;
+  for (const SceneDescriptor& scene : scenes()) entries.push_back({scene.about, {}, {}});
+  return entries;
+}
+
+struct Kind {
+  const char* name;
+  std::vector<Entry> (*entries)();
+};
+constexpr Kind kKinds[] = {
+    {"shapes", list_shapes},   {"surfaces", list_surfaces}, {"gradients", list_gradients}, {"normals", list_normals},
+    {"methods", list_methods}, {"metrics", list_metrics},   {"scenes", list_scenes},
+};
+
+std::string value_text(const Parameter& parameter, double value) {
+  if (parameter.kind == ParameterKind::flag) return value != 0.0 ? "true" : "false";
+  if (parameter.kind == ParameterKind::choice) return parameter.choices.at(static_cast<size_t>(value));
+  return fmt::format("{}", value);
+}
+
+Json default_json(const Parameter& parameter) {
+  const std::vector<double>& values = parameter.default_value;
+  if (parameter.kind == ParameterKind::flag) return !values.empty() && values[0] != 0.0;
+  if (parameter.kind == ParameterKind::choice) return value_text(parameter, values.at(0));
+  if (parameter.kind == ParameterKind::number || parameter.kind == ParameterKind::integer) return number_or_null(values.at(0));
+  if (parameter.kind != ParameterKind::list || parameter.group == 1) return Json(values);
+  Json groups = Json::array();
+  for (size_t i = 0; i < values.size(); i += static_cast<size_t>(parameter.group)) {
+    groups.push_back(std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(i),
+                                         values.begin() + static_cast<std::ptrdiff_t>(i) + parameter.group));
+  }
+  return groups;
+}
+
+Json to_json(const Entry& entry) {
+  Json parameters = Json::array();
+  for (const Parameter& parameter : entry.parameters) {
+    Json one = {{"name", parameter.name},
+                {"unit", parameter.unit},
+                {"default", default_json(parameter)},
+                {"min", number_or_null(parameter.min)},
+                {"max", number_or_null(parameter.max)},
+                {"help", parameter.help}};
+    if (!parameter.choices.empty()) one["choices"] = parameter.choices;
+    parameters.push_back(std::move(one));
+  }
+  return {{"name", entry.about.name},
+          {"help", entry.about.help},
+          {"source", entry.about.source},
+          {"inputs", entry.inputs},
+          {"parameters", parameters}};
+}
+
+std::string range_text(const Parameter& parameter) {
+  if (!parameter.choices.empty()) {
+    std::string text;
+    for (const std::string& choice : parameter.choices) text += (text.empty() ? "" : " | ") + choice;
+    return text;
+  }
+  if (parameter.kind == ParameterKind::flag) return "true | false";
+  const bool below = std::isfinite(parameter.min), above = std::isfinite(parameter.max);
+  if (below && above) return fmt::format("{:g} .. {:g}", parameter.min, parameter.max);
+  if (below) return fmt::format("from {:g}", parameter.min);
+  if (above) return fmt::format("up to {:g}", parameter.max);
+  return "any";
+}
+
+std::string default_text(const Parameter& parameter) {
+  constexpr size_t kMost = 4;
+  std::string text;
+  for (size_t i = 0; i < std::min(kMost, parameter.default_value.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + value_text(parameter, parameter.default_value[i]);
+  }
+  return parameter.default_value.size() > kMost ? text + ", ..." : text;
+}
+
+std::string to_text(const std::vector<Entry>& entries) {
+  std::string text;
+  for (const Entry& entry : entries) {
+    text += fmt::format("{:<16} {}\n", entry.about.name, entry.about.help);
+    for (const Parameter& parameter : entry.parameters) {
+      const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
+      text += fmt::format("    {:<12} {} (default {}{}; {})\n", parameter.name, parameter.help, default_text(parameter), unit,
+                          range_text(parameter));
+    }
+    if (!entry.about.source.empty() && entry.about.source != "limn") text += fmt::format("{:<16} after {}\n", "", entry.about.source);
+  }
+  return text;
+}
+
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("KIND", options.kind, "shapes, surfaces, gradients, normals, methods, metrics or scenes")->type_name("")->required();
+  add_json(app, options);
+}
+
+int run(const Options& options) {
+  std::vector<std::string> known;
+  for (const Kind& kind : kKinds) {
+    known.emplace_back(kind.name);
+    if (options.kind != kind.name) continue;
+    const std::vector<Entry> entries = kind.entries();
+    if (options.json) {
+      Json document = Json::array();
+      for (const Entry& entry : entries) document.push_back(to_json(entry));
+      print_json(document);
+    } else {
+      print_text(to_text(entries));
+    }
+    return 0;
+  }
+  throw InputError({"", "KIND", options.kind, "nothing of that kind to list", known_names(options.kind, known)});
+}
+
+}  // namespace
+
+Command list_command() {
+  return {"list", "names what there is to choose from: shapes, surfaces, gradients, normals, methods, metrics, scenes",
+          "  limn list shapes\n  limn list methods --json", add_options, run};
+}
+
+}  // namespace limn

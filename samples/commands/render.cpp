@@ -1,0 +1,163 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+
+#include "raymarch/image_io.h"
+#include "samples/commands/command.h"
+#include "samples/job.h"
+#include "samples/output.h"
+#include "samples/threads.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kEndings = {".exr", ".png", ".tif", ".tiff", ".jpg", ".jpeg"};
+
+struct Timings {
+  double load_ms = 0.0, build_ms = 0.0, trace_ms = 0.0, border_ms = 0.0, write_ms = 0.0;
+};
+
+double since_ms(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+// name.png, or name_v03.png for one of several views.
+fs::path view_file(const fs::path& file, int view, int views) {
+  if (views == 1) return file;
+  const auto digits = std::to_string(views - 1).size();
+  fs::path out = file;
+  out.replace_filename(fmt::format("{}_v{:0{}}{}", file.stem().string(), view, digits, file.extension().string()));
+  return out;
+}
+
+std::vector<fs::path> outputs_of(const Options& options, const SceneInput& input) {
+  if (!options.outputs.empty()) return options.outputs;
+  const std::string name = default_output("render", input.name).string();
+  return {name + ".exr", name + ".png"};
+}
+
+void check_outputs(const std::vector<fs::path>& outputs, const Options& options) {
+  for (const fs::path& file : outputs) {
+    for (int view = 0; view < options.views; ++view) check_output_file(view_file(file, view, options.views), options, kEndings);
+  }
+}
+
+Json surface_json(const SurfaceInfo& info) {
+  return {{"kind", info.kind},   {"voxels", info.voxels},     {"voxel_size", info.voxel_size}, {"triangles", info.triangles},
+          {"bytes", info.bytes}, {"build_ms", info.build_ms}, {"warnings", info.warnings}};
+}
+
+std::string summary(const SurfaceInfo& info, const Camera& camera, const HitCounts& counts, const Timings& timings) {
+  std::string text = fmt::format("{}x{}, {}, {} hits, {} misses", camera.width_px, camera.height_px, info.kind, counts.hits, counts.misses);
+  if (counts.out_of_steps > 0) text += fmt::format(", {} out of steps", counts.out_of_steps);
+  return text + fmt::format("; load {}, build {}, trace {}, border {}, write {}; {}\n", time_text(timings.load_ms),
+                            time_text(timings.build_ms), time_text(timings.trace_ms), time_text(timings.border_ms),
+                            time_text(timings.write_ms), bytes_text(static_cast<double>(info.bytes)));
+}
+
+void add_options(CLI::App& app, Options& options) {
+  add_input(app, options);
+  add_camera(app, options, true);
+  add_surface(app, options, {.surface = true, .repeatable = false});
+  add_border(app, options);
+  add_output(app, options, ".exr (all layers) or .png .tif .jpg (the composite), repeatable; default limn-out/render/<name>.exr and .png",
+             true);
+  add_json(app, options);
+  add_execution(app, options, true);
+}
+
+int run(const Options& options) {
+  const ThreadLimit threads(options.threads);
+  ProgressBar bar(wants_progress(options.quiet, options.no_progress));
+  input_kind(options.input);
+  // A wrong output name must not cost the wait for a large model; the input's own name is known without reading it.
+  if (!options.outputs.empty()) check_outputs(options.outputs, options);
+
+  SceneInput input = load_input(options);
+  const std::vector<fs::path> outputs = outputs_of(options, input);
+  check_outputs(outputs, options);
+  Timings timings{.load_ms = input.load_ms};
+
+  SurfaceSettings surface = surface_settings(options, input);
+  surface.progress = bar.stage("building the surface");
+  const PictureSettings picture_of = picture_settings(options, input);
+  const CameraSettings camera_of = camera_settings(options, input.scene);
+  const Box scene_bounds = bounds(input.scene);
+  camera_of_view(camera_of, scene_bounds, 0, 1);  // a camera that is wrong is told before the surface is built
+
+  const auto build_start = std::chrono::steady_clock::now();
+  const SceneModel model = build_model(input.scene, surface);
+  timings.build_ms = since_ms(build_start);
+  const SurfaceInfo info = total(model);
+
+  HitCounts counts;
+  Json files = Json::array();
+  std::vector<std::string> notes = info.warnings;
+  std::string text;
+  Camera camera;
+  for (int view = 0; view < options.views; ++view) {
+    camera = camera_of_view(camera_of, scene_bounds, view, options.views);
+    ExecutionSettings how = execution_settings(options);
+    how.progress = bar.stage(options.views == 1 ? "tracing" : fmt::format("tracing view {} of {}", view + 1, options.views));
+    const Picture picture = draw_picture(input.scene, model, camera, picture_of, how);
+    timings.trace_ms += picture.trace_ms;
+    timings.border_ms += picture.border_ms;
+    const HitCounts seen = count_hits(picture.gbuffer);
+    counts.hits += seen.hits;
+    counts.misses += seen.misses;
+    counts.out_of_steps += seen.out_of_steps;
+    notes.insert(notes.end(), picture.notes.begin(), picture.notes.end());
+
+    const auto write_start = std::chrono::steady_clock::now();
+    const std::string call = resolved_call("render", options, surface, camera, picture_of);
+    for (const fs::path& name : outputs) {
+      const fs::path file = view_file(name, view, options.views);
+      if (how.cancelled()) throw Cancelled{};
+      if (ending_of(file) == ".exr")
+        write_exr(picture, camera, call, file);
+      else
+        write_image(picture.composite, file);
+      files.push_back(file.string());
+      text += file.string() + "\n";
+    }
+    timings.write_ms += since_ms(write_start);
+  }
+  bar.clear();
+
+  if (!options.quiet) {
+    for (const std::string& note : notes) print_note(note);
+  }
+  if (options.verbose) print_note(resolved_call("render", options, surface, camera, picture_of));
+  if (options.json) {
+    print_json({{"hits", counts.hits},
+                {"misses", counts.misses},
+                {"out_of_steps", counts.out_of_steps},
+                {"timings_ms",
+                 {{"load", timings.load_ms},
+                  {"build", timings.build_ms},
+                  {"trace", timings.trace_ms},
+                  {"border", timings.border_ms},
+                  {"write", timings.write_ms}}},
+                {"surface", surface_json(info)},
+                {"files", files},
+                {"notes", notes}});
+  } else if (!options.quiet) {
+    print_text(text + summary(info, camera, counts, timings));
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command render_command() {
+  return {"render", "draws one picture: G-buffer, border and composite",
+          "  limn render gyroid --size 800x600 --set threshold=0.3 -o gyroid.png\n"
+          "  limn render bunny.obj --surface mesh_level_set --voxels 400 -o bunny.exr --json",
+          add_options, run};
+}
+
+}  // namespace limn

@@ -1,0 +1,112 @@
+#include "samples/field_reader.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <numbers>
+
+#include "sdf/shape.h"
+
+namespace limn {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct Placement {
+  glm::dvec3 scale{1.0};
+  bool uniform = true;
+  glm::dvec3 axis{0.0, 1.0, 0.0};
+  double angle = 0.0;  ///< Radians.
+  glm::dvec3 translation{0.0};
+};
+
+Placement read_transform(TomlReader& reader) {
+  Placement placement;
+  if (const auto by = reader.vector3("translate")) placement.translation = *by;
+  if (const auto turn = reader.numbers("rotate", 4, "[axis x, axis y, axis z, degrees] would be right")) {
+    placement.axis = {(*turn)[0], (*turn)[1], (*turn)[2]};
+    placement.angle = (*turn)[3] * std::numbers::pi / 180.0;
+    if (glm::length(placement.axis) == 0.0) {
+      reader.fail(*reader.take("rotate"), "rotate", "the axis has no length", "an axis such as [0, 1, 0, degrees] would be right");
+    }
+  }
+  const toml::node* scale = reader.take("scale");
+  if (scale == nullptr) return placement;
+  const std::string expected = "a number above 0, or [x, y, z], each above 0, would be right";
+  if (scale->is_array()) {
+    placement.scale = *reader.vector3("scale");
+    placement.uniform = placement.scale.x == placement.scale.y && placement.scale.y == placement.scale.z;
+  } else {
+    placement.scale = glm::dvec3(*reader.number("scale", -kInfinity, kInfinity, expected));
+  }
+  if (!glm::all(glm::greaterThan(placement.scale, glm::dvec3(0.0)))) reader.fail(*scale, "scale", "out of range", expected);
+  return placement;
+}
+
+Field place(Field field, const Placement& placement) {
+  if (placement.uniform && placement.scale.x != 1.0) field = scale(field, placement.scale.x);
+  if (!placement.uniform) field = scale(field, placement.scale);
+  if (placement.angle != 0.0) field = rotate(field, placement.axis, placement.angle);
+  if (placement.translation != glm::dvec3(0.0)) field = translate(field, placement.translation);
+  return field;
+}
+
+Field read_shape(TomlReader& reader) {
+  const std::string name = *reader.text("shape");
+  const ShapeDescriptor& shape = find_shape(name, reader.where(*reader.take("shape")), reader.field("shape"));
+  const std::string prefix = reader.field("");
+  return shape.make(resolve(shape.parameters, reader.parameters(shape.parameters), reader.file(), prefix));
+}
+
+Csg read_operation(TomlReader& reader) {
+  const std::string name = *reader.text("csg");
+  const std::vector<std::string> known = {"union", "intersection", "difference"};
+  for (size_t i = 0; i < known.size(); ++i) {
+    if (name == known[i]) return std::array{Csg::union_, Csg::intersection, Csg::difference}[i];
+  }
+  throw InputError({reader.where(*reader.take("csg")), reader.field("csg"), name, "unknown operation", known_names(name, known)});
+}
+
+Field read_csg(TomlReader& reader) {
+  const Csg operation = read_operation(reader);
+  const double smooth =
+      reader.number("smooth", 0.0, kInfinity, "the blend's radius, 0 or more in world units, would be right").value_or(0.0);
+  const auto tables = reader.tables("of");
+  if (tables.empty()) reader.fail("csg without of", "of = [ { shape = … }, … ] would be right");
+  std::vector<Field> fields;
+  for (size_t i = 0; i < tables.size(); ++i) {
+    TomlReader item(*tables[i], reader.file(), reader.field(fmt::format("of[{}].", i)));
+    fields.push_back(read_field(item));
+    item.finish();
+  }
+  return combine(operation, fields, smooth);
+}
+
+}  // namespace
+
+Field read_field(TomlReader& reader) {
+  if (reader.has("shape") == reader.has("csg")) {
+    reader.fail(reader.has("shape") ? "both shape and csg" : "neither shape nor csg", "one of the two would be right");
+  }
+  Field field = reader.has("shape") ? read_shape(reader) : read_csg(reader);
+  if (const auto by = reader.number("grow", -kInfinity, kInfinity, "a length in world units would be right")) field = offset(field, *by);
+  if (const auto thickness = reader.number_between("shell", 0.0, kInfinity, "a thickness above 0 in world units would be right")) {
+    field = shell(field, *thickness);
+  }
+  return place(field, read_transform(reader));
+}
+
+Affine read_placement(TomlReader& reader) {
+  const Placement placement = read_transform(reader);
+  const glm::dmat4 turn =
+      placement.angle == 0.0 ? glm::dmat4(1.0) : glm::rotate(glm::dmat4(1.0), placement.angle, glm::normalize(placement.axis));
+  Affine world_from_object;
+  world_from_object.linear = glm::dmat3(turn);
+  for (int i = 0; i < 3; ++i) world_from_object.linear[i] *= placement.scale[i];
+  world_from_object.translation = placement.translation;
+  return world_from_object;
+}
+
+}  // namespace limn

@@ -1,0 +1,88 @@
+#include "samples/input.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "samples/scene_file.h"
+#include "samples/scenes/scenes.h"
+#include "sdf/error.h"
+#include "sdf/guard.h"
+#include "subdiv/import.h"
+
+namespace limn {
+namespace {
+
+constexpr const char* kExpected = "a scene (.toml), a mesh (.obj .ply .stl .off .gltf .glb) or a volume (.vdb) would be right";
+
+std::string extension_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+SceneInput from_mesh(const Options& options) {
+  std::optional<Scheme> scheme = options.scheme;
+  if (!scheme && options.level && *options.level > 0) scheme = Scheme::catmark;
+  SceneInput input;
+  input.scene.objects.push_back({.name = std::filesystem::path(options.input).stem().string(),
+                                 .source = mesh_source(load_mesh(options.input), scheme, options.input)});
+  return input;
+}
+
+SceneInput from_volume(const Options& options) {
+  LevelSet level_set = read_level_set(options.input, options.grid);
+  const std::string name = level_set.info().name;
+  SceneInput input;
+  input.scene.objects.push_back({.name = name.empty() ? std::filesystem::path(options.input).stem().string() : name,
+                                 .source = LevelSetSource{std::move(level_set), options.input}});
+  return input;
+}
+
+}  // namespace
+
+InputKind input_kind(const std::string& input) {
+  if (find_scene(input) != nullptr) return InputKind::built_in;
+  const std::filesystem::path path(input);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw InputError({input, "", "", "is a folder", kExpected});
+  const std::string extension = extension_of(path);
+  const bool exists = std::filesystem::exists(path, ignored);
+  if (!exists && extension.empty()) {
+    throw InputError({input, "", "", "no such file and no built-in scene of that name", known_names(input, scene_names())});
+  }
+  if (extension == ".toml") return InputKind::scene_file;
+  if (extension == ".vdb") return InputKind::level_set;
+  if (is_mesh_file(path)) return InputKind::mesh;
+  throw InputError({input, "", extension, exists ? "unknown kind of file" : "no such file", kExpected});
+}
+
+SceneInput load_input(const Options& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const InputKind kind = input_kind(options.input);
+  if (!options.grid.empty() && kind != InputKind::level_set) {
+    throw InputError({"", "--grid", options.grid, "the input has no grids", "a .vdb would be right"});
+  }
+  SceneInput input;
+  switch (kind) {
+    case InputKind::scene_file:
+      input = load_scene_file(options.input);
+      break;
+    case InputKind::mesh:
+      input = from_mesh(options);
+      break;
+    case InputKind::level_set:
+      input = from_volume(options);
+      break;
+    case InputKind::built_in:
+      input.scene = find_scene(options.input)->make();
+      break;
+  }
+  input.kind = kind;
+  input.name = kind == InputKind::built_in ? options.input : std::filesystem::path(options.input).stem().string();
+  input.file = kind == InputKind::built_in ? "" : options.input;
+  input.scene.name = input.name;
+  input.load_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return input;
+}
+
+}  // namespace limn

@@ -1,0 +1,53 @@
+#pragma once
+// INPUT of the command line, whatever it is: a scene file, a mesh, a volume or the name of a built-in scene.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "raymarch/scene.h"
+#include "samples/options.h"
+#include "sdf/descriptor.h"
+#include "subdiv/refine.h"
+
+namespace limn {
+
+/// [surface] of a scene file: what it says and nothing else.
+struct SurfaceDefaults {
+  std::optional<std::string> kind;
+  std::optional<int> voxels;
+  std::optional<double> voxel_size;
+  std::optional<double> half_width_voxels;
+  std::optional<std::string> gradient;
+  std::optional<int> level;
+  std::optional<Scheme> scheme;
+  std::optional<NormalKind> normals;
+};
+
+/// One [border] of a scene file: a method and the parameters it sets.
+struct BorderDefaults {
+  std::string method;
+  std::map<std::string, ParameterInput> parameters;
+};
+
+enum class InputKind { scene_file, mesh, level_set, built_in };
+
+struct SceneInput {
+  InputKind kind = InputKind::scene_file;
+  std::string name;  ///< Of the built-in scene, or the file's without folder and extension: names the default outputs.
+  std::string file;  ///< As given; empty for a built-in scene.
+  Scene scene;
+  SurfaceDefaults surface;
+  std::vector<BorderDefaults> borders;
+  double load_ms = 0.0;
+};
+
+/// What an INPUT is, before anything of it is read. Throws InputError: nothing of that name, a folder, an unknown extension.
+InputKind input_kind(const std::string& input);
+
+/// Reads it. The command line's `grid`, `scheme` and `level` go into what they mean for a file of that kind:
+/// a mesh is drawn as it is unless one of the latter two, or crease and corner tags in the file, make it a subdivision cage.
+SceneInput load_input(const Options& options);
+
+}  // namespace limn

@@ -1,0 +1,178 @@
+#include "samples/job.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "samples/interrupt.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+template <class T>
+void override_with(T& target, const std::optional<T>& file, const std::optional<T>& command_line) {
+  if (file) target = *file;
+  if (command_line) target = *command_line;
+}
+
+std::string vector_text(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+bool has_parameter(const BorderMethod& method, const std::string& key) {
+  for (const Parameter& parameter : method.parameters) {
+    if (parameter.name == key) return true;
+  }
+  return false;
+}
+
+struct PendingMethod {
+  const BorderMethod* method;
+  std::map<std::string, ParameterInput> parameters;
+};
+
+std::vector<PendingMethod> chosen_methods(const Options& options, const SceneInput& input) {
+  std::vector<PendingMethod> pending;
+  if (options.methods.empty()) {
+    for (const BorderDefaults& border : input.borders) pending.push_back({&find_border_method(border.method), border.parameters});
+    if (pending.empty()) pending.push_back({&find_border_method("rim"), {}});
+    return pending;
+  }
+  for (const std::string& name : options.methods) {
+    PendingMethod one{&find_border_method(name, "", "--method"), {}};
+    for (const BorderDefaults& border : input.borders) {
+      if (border.method == name) one.parameters = border.parameters;
+    }
+    pending.push_back(std::move(one));
+  }
+  return pending;
+}
+
+// `key` or `method.key`; a key that none of the chosen methods has is an error that names those that they have.
+void apply_set(const KeyValue& set, std::vector<PendingMethod>& pending) {
+  const size_t dot = set.key.find('.');
+  const std::string method = dot == std::string::npos ? "" : set.key.substr(0, dot);
+  const std::string key = dot == std::string::npos ? set.key : set.key.substr(dot + 1);
+  std::vector<std::string> known;
+  bool used = false;
+  for (PendingMethod& one : pending) {
+    for (const Parameter& parameter : one.method->parameters)
+      known.push_back(dot == std::string::npos ? parameter.name : one.method->about.name + "." + parameter.name);
+    if (!method.empty() && method != one.method->about.name) continue;
+    if (!has_parameter(*one.method, key)) continue;
+    one.parameters[key] = parse_parameter(set.value);
+    used = true;
+  }
+  if (!used) throw InputError({"", "--set " + set.key, "", "no method of this call has that parameter", known_names(set.key, known)});
+}
+
+}  // namespace
+
+SurfaceSettings surface_settings(const Options& options, SceneInput& input) {
+  const SurfaceDefaults& file = input.surface;
+  SurfaceSettings settings;
+  settings.kind = file.kind.value_or("");
+  if (!options.surfaces.empty()) settings.kind = options.surfaces.back();
+  override_with(settings.voxels, file.voxels, options.voxels);
+  override_with(settings.voxel_size, file.voxel_size, options.voxel_size);
+  if (options.voxels) settings.voxel_size = 0.0;
+  override_with(settings.half_width_voxels, file.half_width_voxels, options.half_width_voxels);
+  override_with(settings.gradient, file.gradient, options.gradient);
+  override_with(settings.level, file.level, options.level);
+  settings.scheme = options.scheme ? options.scheme : file.scheme;
+  settings.normals = options.normals ? options.normals : file.normals;
+  for (SceneObject& object : input.scene.objects) {
+    if (options.level) object.level.reset();
+    auto* mesh = std::get_if<MeshSource>(&object.source);
+    if (mesh != nullptr && !mesh->scheme && options.level && *options.level > 0) mesh->scheme = Scheme::catmark;
+  }
+  return settings;
+}
+
+CameraSettings camera_settings(const Options& options, const Scene& scene) {
+  CameraSettings camera = scene.camera;
+  if (options.size_px) {
+    camera.width_px = options.size_px->x;
+    camera.height_px = options.size_px->y;
+  }
+  if (options.eye) camera.eye = options.eye;
+  if (options.target) camera.target = options.target;
+  if (options.up) camera.up = *options.up;
+  if (options.fov_deg) {
+    camera.projection = Projection::perspective;
+    camera.vertical_fov = *options.fov_deg * std::numbers::pi / 180.0;
+  }
+  if (options.ortho_height) {
+    camera.projection = Projection::orthographic;
+    camera.ortho_height = options.ortho_height;
+  }
+  return camera;
+}
+
+Camera camera_of_view(const CameraSettings& settings, const Box& bounds, int index, int count) {
+  if (count <= 1) return resolve_camera(settings, bounds);
+  CameraSettings view = settings;
+  view.eye.reset();
+  view.direction = view_direction(index, count);
+  return resolve_camera(view, bounds);
+}
+
+std::vector<MethodCall> method_calls(const Options& options, const SceneInput& input) {
+  std::vector<PendingMethod> pending = chosen_methods(options, input);
+  for (const KeyValue& set : options.sets) apply_set(set, pending);
+  std::vector<MethodCall> calls;
+  for (const PendingMethod& one : pending) {
+    calls.push_back({one.method, resolve(one.method->parameters, one.parameters, "", "--set " + one.method->about.name + ".")});
+  }
+  return calls;
+}
+
+PictureSettings picture_settings(const Options& options, const SceneInput& input) {
+  PictureSettings settings;
+  settings.methods = method_calls(options, input);
+  settings.samples = options.samples;
+  if (options.background) settings.background = glm::vec3(*options.background);
+  return settings;
+}
+
+ExecutionSettings execution_settings(const Options& options) {
+  ExecutionSettings how;
+  how.threads = options.threads;
+  how.cancelled = interrupted;
+  return how;
+}
+
+std::string methods_text(const std::vector<MethodCall>& methods) {
+  std::string text;
+  for (const MethodCall& call : methods) {
+    text += (text.empty() ? "" : ", ") + call.method->about.name;
+    if (const std::string parameters = call.parameters.text(); !parameters.empty()) text += " " + parameters;
+  }
+  return text;
+}
+
+std::string resolved_call(const std::string& command, const Options& options, const SurfaceSettings& surface, const Camera& camera,
+                          const PictureSettings& picture) {
+  std::string call =
+      fmt::format("limn {} {} --size {}x{} --eye {} --target {} --up {}", command, options.input, camera.width_px, camera.height_px,
+                  vector_text(camera.eye), vector_text(camera.eye - camera.world_from_camera[2]), vector_text(camera.world_from_camera[1]));
+  if (camera.projection == Projection::perspective) {
+    call += fmt::format(" --fov {}", 2.0 * std::atan(0.5 * camera.height_px / camera.focal_px) * 180.0 / std::numbers::pi);
+  } else {
+    call += fmt::format(" --ortho {}", camera.height_px / camera.pixels_per_unit);
+  }
+  if (!surface.kind.empty()) call += " --surface " + surface.kind;
+  call += surface.voxel_size > 0.0 ? fmt::format(" --voxel-size {}", surface.voxel_size) : fmt::format(" --voxels {}", surface.voxels);
+  if (surface.half_width_voxels > 0.0) call += fmt::format(" --half-width {}", surface.half_width_voxels);
+  call += fmt::format(" --gradient {} --level {}", surface.gradient, surface.level);
+  if (surface.scheme) call += fmt::format(" --scheme {}", name_of(*surface.scheme));
+  if (surface.normals) call += fmt::format(" --normals {}", name_of(*surface.normals));
+  if (!options.grid.empty()) call += " --grid " + options.grid;
+  for (const MethodCall& method : picture.methods)
+    call += fmt::format(" --method {} [{}]", method.method->about.name, method.parameters.text());
+  call += fmt::format(" --samples {}", picture.samples);
+  if (picture.background) call += " --background " + vector_text(*picture.background);
+  return call;
+}
+
+}  // namespace limn

@@ -1,0 +1,101 @@
+#include "samples/output.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+// The nearest folder above that exists decides whether the missing ones can be made.
+void check_place(const fs::path& file) {
+  fs::path folder = fs::absolute(file).parent_path();
+  std::error_code ignored;
+  while (!fs::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();
+  if (!fs::is_directory(folder, ignored)) {
+    throw InputError({file.string(), "--output", "", folder.string() + " is not a folder", "a path below a folder would be right"});
+  }
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw InputError(
+        {file.string(), "--output", "", folder.string() + " cannot be written to", "a folder that you may write to would be right"});
+  }
+}
+
+}  // namespace
+
+fs::path default_output(const std::string& command, const std::string& name) { return fs::path("limn-out") / command / name; }
+
+std::string ending_of(const fs::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+void check_output_file(const fs::path& file, const Options& options, const std::vector<std::string>& endings) {
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) {
+    throw InputError({file.string(), "--output", "", "is a folder", "a file ending in one of " + joined(endings) + " would be right"});
+  }
+  if (std::find(endings.begin(), endings.end(), ending_of(file)) == endings.end()) {
+    throw InputError({file.string(), "--output", file.extension().string().empty() ? "no ending" : file.extension().string(),
+                      "unknown kind of file", "one of " + joined(endings) + " would be right"});
+  }
+  if (options.no_clobber && fs::exists(file, ignored)) {
+    throw InputError({file.string(), "--no-clobber", "", "exists already", "another name, or no --no-clobber, would be right"});
+  }
+  check_place(file);
+}
+
+void check_output_folder(const fs::path& folder, const Options& options) {
+  std::error_code ignored;
+  if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored)) {
+    throw InputError({folder.string(), "--output", "", "is a file", "a folder would be right"});
+  }
+  if (options.no_clobber && fs::exists(folder, ignored) && !fs::is_empty(folder, ignored)) {
+    throw InputError(
+        {folder.string(), "--no-clobber", "", "exists already and is not empty", "another name, or no --no-clobber, would be right"});
+  }
+  check_place(folder / "file");
+}
+
+void print_text(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) throw MachineError("cannot write to standard output");
+}
+
+void print_json(const Json& document) { print_text(document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"); }
+
+void print_note(const std::string& text) {
+  std::string line = text;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  std::fprintf(stderr, "limn: %s\n", line.c_str());
+}
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+std::string bytes_text(double bytes) {
+  if (bytes < 1e3) return fmt::format("{:.0f} B", bytes);
+  if (bytes < 1e6) return fmt::format("{:.1f} kB", bytes / 1e3);
+  if (bytes < 1e9) return fmt::format("{:.1f} MB", bytes / 1e6);
+  return fmt::format("{:.2f} GB", bytes / 1e9);
+}
+
+std::string time_text(double milliseconds) {
+  if (milliseconds < 10.0) return fmt::format("{:.1f} ms", milliseconds);
+  if (milliseconds < 1000.0) return fmt::format("{:.0f} ms", milliseconds);
+  return fmt::format("{:.2f} s", milliseconds / 1e3);
+}
+
+}  // namespace limn

@@ -1,0 +1,41 @@
+#pragma once
+// Where results go, checked before any work is done for them.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "samples/options.h"
+
+namespace limn {
+
+using Json = nlohmann::ordered_json;
+
+/// limn-out/<command>/<name>.
+std::filesystem::path default_output(const std::string& command, const std::string& name);
+
+/// Lower-case, with the dot.
+std::string ending_of(const std::filesystem::path& file);
+
+/// Throws InputError unless `file` can be written: a known ending, not a folder, a place where files can be made, and, with --no-clobber,
+/// not there yet.
+void check_output_file(const std::filesystem::path& file, const Options& options, const std::vector<std::string>& endings);
+/// The same for a folder that will hold several files.
+void check_output_folder(const std::filesystem::path& folder, const Options& options);
+
+/// One JSON document on stdout.
+void print_json(const Json& document);
+void print_text(const std::string& text);
+/// A line on stderr, kept to one line.
+void print_note(const std::string& text);
+
+/// A finite number, or null: JSON has no NaN.
+Json number_or_null(double value);
+
+/// "12.3 MB".
+std::string bytes_text(double bytes);
+/// "850 ms", "1.24 s".
+std::string time_text(double milliseconds);
+
+}  // namespace limn

@@ -1,0 +1,19 @@
+#pragma once
+// The scene file (TOML). Every key that nobody reads is an InputError with file:line:column and the nearest known key.
+
+#include <filesystem>
+
+#include "samples/input.h"
+
+namespace limn {
+
+/// Reads a scene file and the meshes and volumes it names (relative to it). Throws InputError.
+SceneInput load_scene_file(const std::filesystem::path& file);
+
+/// The same from text; `file` goes into messages and its folder is where relative paths start.
+SceneInput parse_scene_file(const std::string& text, const std::filesystem::path& file);
+
+/// An object from a mesh: a cage where `scheme` is set or the mesh has crease or corner tags, else the mesh as it is.
+MeshSource mesh_source(Mesh mesh, std::optional<Scheme> scheme, const std::string& file);
+
+}  // namespace limn

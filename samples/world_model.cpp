@@ -1,0 +1,146 @@
+#include "samples/world_model.h"
+
+#include <glm/gtc/matrix_inverse.hpp>
+
+#include "sdf/error.h"
+#include "subdiv/mesh_level_set.h"
+#include "subdiv/tessellate.h"
+
+namespace limn {
+namespace {
+
+Mesh local_mesh(const SceneObject& object, const SurfaceSettings& settings) {
+  const NormalKind normals = settings.normals.value_or(NormalKind::limit);
+  const int level = object.level.value_or(settings.level);
+  if (const Field* field = std::get_if<Field>(&object.source)) {
+    return tessellate(*field, {.level = level, .normals = normals, .max_bytes = settings.max_bytes});
+  }
+  if (const auto* source = std::get_if<MeshSource>(&object.source)) {
+    if (!source->scheme && !settings.scheme) return source->mesh;
+    const Scheme scheme = settings.scheme ? *settings.scheme : *source->scheme;
+    return refine(source->mesh, {.scheme = scheme, .level = level, .normals = normals, .max_bytes = settings.max_bytes}, source->file);
+  }
+  PolygonSoup soup = mesh_from_level_set(std::get<LevelSetSource>(object.source).level_set);
+  Mesh mesh;
+  mesh.positions = std::move(soup.positions);
+  mesh.face_sizes = std::move(soup.face_sizes);
+  mesh.corner_vertices = std::move(soup.corner_vertices);
+  return mesh;
+}
+
+// A mirrored object (negative determinant) would come out inside out.
+void turn_faces(Mesh& mesh) {
+  size_t first = 0;
+  for (const std::int32_t size : mesh.face_sizes) {
+    const auto count = static_cast<size_t>(size);
+    std::reverse(mesh.corner_vertices.begin() + static_cast<std::ptrdiff_t>(first),
+                 mesh.corner_vertices.begin() + static_cast<std::ptrdiff_t>(first + count));
+    if (!mesh.corner_normals.empty()) {
+      std::reverse(mesh.corner_normals.begin() + static_cast<std::ptrdiff_t>(first),
+                   mesh.corner_normals.begin() + static_cast<std::ptrdiff_t>(first + count));
+    }
+    first += count;
+  }
+}
+
+// Materials are dropped where any of the parts has none: an array covers all faces or does not exist.
+void append(Mesh& all, const Mesh& part, const std::string& name) {
+  const bool first = all.positions.empty();
+  const auto vertex_offset = static_cast<std::int32_t>(all.positions.size());
+  const bool normals = (first || !all.corner_normals.empty()) && !part.corner_normals.empty();
+  const bool colors = (first || !all.vertex_colors.empty()) && !part.vertex_colors.empty();
+  const bool materials = (first || !all.face_materials.empty()) && !part.face_materials.empty();
+  const auto material_offset = static_cast<std::int32_t>(all.material_names.size());
+  all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
+  all.face_sizes.insert(all.face_sizes.end(), part.face_sizes.begin(), part.face_sizes.end());
+  for (const std::int32_t vertex : part.corner_vertices) all.corner_vertices.push_back(vertex_offset + vertex);
+  all.face_groups.resize(all.face_sizes.size(), static_cast<std::int32_t>(all.group_names.size()));
+  all.group_names.push_back(name);
+  const auto join = [](auto& target, const auto& source, bool keep) {
+    if (keep)
+      target.insert(target.end(), source.begin(), source.end());
+    else
+      target.clear();
+  };
+  join(all.corner_normals, part.corner_normals, normals);
+  join(all.vertex_colors, part.vertex_colors, colors);
+  if (materials) {
+    for (const std::int32_t material : part.face_materials) all.face_materials.push_back(material_offset + material);
+    all.material_names.insert(all.material_names.end(), part.material_names.begin(), part.material_names.end());
+  } else {
+    all.face_materials.clear();
+    all.material_names.clear();
+  }
+  for (const Crease& crease : part.creases) {
+    all.creases.push_back({vertex_offset + crease.vertex_a, vertex_offset + crease.vertex_b, crease.sharpness});
+  }
+  for (const CornerTag& corner : part.corners) all.corners.push_back({vertex_offset + corner.vertex, corner.sharpness});
+}
+
+template <class T>
+size_t count_of(const Scene& scene) {
+  size_t count = 0;
+  for (const SceneObject& object : scene.objects) count += std::holds_alternative<T>(object.source) ? 1 : 0;
+  return count;
+}
+
+}  // namespace
+
+Mesh world_mesh(const SceneObject& object, const SurfaceSettings& settings) {
+  Mesh mesh = local_mesh(object, settings);
+  if (std::holds_alternative<Field>(object.source)) return mesh;
+  const Affine& world_from_object = object.world_from_object;
+  for (glm::dvec3& position : mesh.positions) position = world_from_object.point(position);
+  for (glm::vec3& normal : mesh.corner_normals) {
+    const glm::dvec3 turned = world_from_object.normal(normal);
+    const double length = glm::length(turned);
+    normal = length > 0.0 ? glm::vec3(turned / length) : normal;
+  }
+  if (glm::determinant(world_from_object.linear) < 0.0) turn_faces(mesh);
+  return mesh;
+}
+
+Mesh world_mesh(const Scene& scene, const SurfaceSettings& settings) {
+  if (scene.objects.size() == 1) return world_mesh(scene.objects.front(), settings);
+  Mesh all;
+  for (const SceneObject& object : scene.objects) append(all, world_mesh(object, settings), object.name);
+  return all;
+}
+
+LevelSetSettings level_set_settings(const SurfaceSettings& settings, const Box& bounds) {
+  LevelSetSettings level_set;
+  level_set.voxel_size = settings.voxel_size > 0.0 ? settings.voxel_size : bounds.longest_side() / settings.voxels;
+  // 3 is what other programs expect of a level set; more only where the gradient asked for needs it.
+  level_set.half_width_voxels =
+      settings.half_width_voxels > 0.0 ? settings.half_width_voxels : std::max(3.0, find_gradient(settings.gradient).half_width_voxels);
+  level_set.max_bytes = settings.max_bytes;
+  level_set.progress = settings.progress;
+  return level_set;
+}
+
+LevelSet world_level_set(const Scene& scene, const SurfaceSettings& settings, std::vector<std::string>& warnings) {
+  const size_t volumes = count_of<LevelSetSource>(scene);
+  const size_t fields = count_of<Field>(scene);
+  const Box scene_bounds = bounds(scene);
+  if (volumes > 0) {
+    const SceneObject& object = scene.objects.front();
+    const Affine& placed = object.world_from_object;
+    if (scene.objects.size() > 1 || placed.linear != glm::dmat3(1.0) || placed.translation != glm::dvec3(0.0)) {
+      throw InputError({scene.name, "object", "",
+                        "a volume that is moved or stands beside other objects cannot be written as one level set",
+                        "an .obj or .ply would be right"});
+    }
+    return std::get<LevelSetSource>(object.source).level_set;
+  }
+  if (fields == scene.objects.size() && settings.kind != "mesh_level_set") {
+    std::vector<Field> all;
+    for (const SceneObject& object : scene.objects) all.push_back(std::get<Field>(object.source));
+    return level_set_from_field(combine(Csg::union_, all), level_set_settings(settings, scene_bounds));
+  }
+  const TriangleMesh triangles = triangulate(world_mesh(scene, settings), NormalKind::flat);
+  MeshLevelSet made = level_set_from_mesh(triangles, level_set_settings(settings, scene_bounds));
+  warnings.insert(warnings.end(), made.warnings.begin(), made.warnings.end());
+  return made.level_set;
+}
+
+}  // namespace limn

@@ -1,0 +1,22 @@
+#pragma once
+// A scene's objects as one mesh or one level set in world space: what `limn export` writes and `limn info` looks at.
+
+#include "raymarch/surface.h"
+#include "samples/input.h"
+
+namespace limn {
+
+/// Polygons of one object in world space. A cage comes refined, a mesh as it is, a field tessellated, a level set as its zero surface.
+Mesh world_mesh(const SceneObject& object, const SurfaceSettings& settings);
+
+/// All objects as one mesh; each is a group of its own, named after it.
+Mesh world_mesh(const Scene& scene, const SurfaceSettings& settings);
+
+/// All objects as one level set: the union of fields, or of meshes; a single volume as it is. `warnings` are added to.
+/// Throws InputError for mixtures and for several volumes.
+LevelSet world_level_set(const Scene& scene, const SurfaceSettings& settings, std::vector<std::string>& warnings);
+
+/// The level set settings that `settings` come to for something of the given bounds.
+LevelSetSettings level_set_settings(const SurfaceSettings& settings, const Box& bounds);
+
+}  // namespace limn

@@ -1,1 +1,15 @@
-int main() { return 2; }
+// limn-read-vdb list FILE | grid FILE NAME: reads a .vdb that nobody vouches for and sends it through the answer pipe (sdf/guard.h).
+#include "sdf/read_vdb.h"
+
+#include <cstdio>
+#include <string_view>
+
+#include "sdf/guard_helper.h"
+
+int main(int count, char** arguments) {
+  const std::string_view verb = count > 1 ? arguments[1] : "";
+  if (verb == "list" && count == 3) return limn::run_helper([&] { return limn::vdb_list_answer(arguments[2]); });
+  if (verb == "grid" && count == 4) return limn::run_helper([&] { return limn::vdb_grid_answer(arguments[2], arguments[3]); });
+  std::fputs("usage: limn-read-vdb list FILE | grid FILE NAME (started by limn, answers on file descriptor 3)\n", stderr);
+  return 2;
+}

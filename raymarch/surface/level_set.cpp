@@ -1,0 +1,46 @@
+#include "raymarch/surface/level_set_marcher.h"
+#include "raymarch/surface/registry.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+std::string unsupported(const SceneObject& object) {
+  if (std::holds_alternative<MeshSource>(object.source)) return "a mesh has no distances of its own; 'mesh_level_set' computes them";
+  if (const Field* field = std::get_if<Field>(&object.source); field && !field->traits().bounds.finite())
+    return "the field has no bounds; intersect it with a box";
+  return {};
+}
+
+Surface build(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
+  const GradientDescriptor& gradient = find_gradient(settings.gradient, {}, "--gradient");
+  Surface surface;
+  if (const LevelSetSource* source = std::get_if<LevelSetSource>(&object.source)) {
+    check_half_width(source->level_set, gradient, source->file);
+    surface = level_set_marcher(source->level_set, object.world_from_object, gradient, render_origin, settings.max_steps);
+  } else if (const Field* field = std::get_if<Field>(&object.source)) {
+    const LevelSetSettings grid{.voxel_size = voxel_size_for(settings, field->traits().bounds),
+                                .half_width_voxels = half_width_for(settings, gradient),
+                                .max_bytes = settings.max_bytes,
+                                .progress = settings.progress};
+    // A field has its transforms folded in.
+    surface = level_set_marcher(level_set_from_field(*field, grid), Affine{}, gradient, render_origin, settings.max_steps);
+  } else {
+    throw InputError({.file = {}, .field = object.name, .value = {}, .problem = unsupported(object), .expected = {}});
+  }
+  surface.info.kind = "level_set";
+  return surface;
+}
+
+}  // namespace
+
+SurfaceDescriptor level_set_surface() {
+  return {.about = {.name = "level_set",
+                    .help = "the field, or the file, as a narrow band of voxels; exact first root of the trilinear interpolant",
+                    .source = "OpenVDB: Museth 2013; cell roots: Parker et al. 1998"},
+          .settings = {"voxels", "voxel-size", "half-width", "gradient"},
+          .unsupported = unsupported,
+          .build = build};
+}
+
+}  // namespace limn

@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "sdf/error.h"
+#include "sdf/guard.h"
+#include "sdf/level_set_data.h"
+#include "sdf/read_vdb.h"
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& problem, const std::string& expected) {
+  throw InputError({.file = file.string(), .field = "grid", .value = {}, .problem = problem, .expected = expected});
+}
+
+/// In proportion to the file: what takes longer or more than this is no honest volume of that size.
+GuardLimits limits_for(const fs::path& file) {
+  const auto bytes = static_cast<std::int64_t>(fs::file_size(file));
+  GuardLimits limits;
+  limits.memory_bytes = std::clamp<std::int64_t>((std::int64_t{1} << 30) + 32 * bytes, 0, std::int64_t{64} << 30);
+  limits.answer_bytes = limits.memory_bytes / 2;
+  limits.time = std::chrono::seconds(20 + bytes / 4'000'000);
+  return limits;
+}
+
+std::vector<std::byte> ask(const fs::path& file, std::vector<std::string> arguments) {
+  check_readable(file, "a volume (.vdb)");
+  // An absolute path is never taken for anything else by whoever reads it.
+  arguments.insert(arguments.begin() + 1, fs::absolute(file).string());
+  return run_guarded("limn-read-vdb", arguments, file, limits_for(file));
+}
+
+Affine read_map(ByteReader& answer, const fs::path& file) {
+  Affine map;
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 3; ++row) (column < 3 ? map.linear[column][row] : map.translation[row]) = answer.get<double>();
+  const Affine back = inverse(map);
+  for (const Affine& each : {map, back})
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 4; ++column)
+        if (!std::isfinite(column < 3 ? each.linear[column][row] : each.translation[row]))
+          refuse(file, "its transform from voxels to world cannot be inverted", "voxels of a size above 0");
+  return map;
+}
+
+/// A root node's tile is 4096 wide; beyond this index the arithmetic of coordinates would overflow.
+constexpr int kLargestIndex = 1 << 28;
+
+bool well_placed(const glm::ivec3& origin, int multiple) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (origin[axis] % multiple != 0 || std::abs(static_cast<std::int64_t>(origin[axis])) > kLargestIndex) return false;
+  return true;
+}
+
+void check_blocks(std::span<const LevelSetBlock> blocks, std::span<const VdbTile> tiles, const fs::path& file) {
+  std::vector<std::array<int, 3>> origins;
+  origins.reserve(blocks.size());
+  bool good = true;
+  for (const LevelSetBlock& block : blocks) {
+    good = good && well_placed(block.origin, 8) &&
+           std::all_of(std::begin(block.values), std::end(block.values), [](float value) { return std::isfinite(value); });
+    origins.push_back({block.origin.x, block.origin.y, block.origin.z});
+  }
+  std::sort(origins.begin(), origins.end());
+  good = good && std::adjacent_find(origins.begin(), origins.end()) == origins.end();
+  for (const VdbTile& tile : tiles) good = good && tile.level >= 1 && tile.level <= 3 && well_placed(tile.origin, 8);
+  if (!good) refuse(file, "its tree of voxels is not in order", "an undamaged file");
+}
+
+void check_band(const LevelSetData& data, double needed, const fs::path& file) {
+  if (data.info.bounds.empty()) refuse(file, "the grid '" + data.info.name + "' has no surface: its values never change sign", "a level set with an inside");
+  const double there = data.info.half_width_voxels;
+  const double least = std::max(1.8, needed);
+  if (data.holes > 0 || there < least - 1e-3)
+    throw InputError({.file = file.string(),
+                      .field = "grid",
+                      .value = fmt::format("{:.2f} voxels", there),
+                      .problem = data.holes > 0 ? fmt::format("the narrow band of '{}' is torn: {} cells on the surface reach beyond it",
+                                                              data.info.name, data.holes)
+                                                : fmt::format("the narrow band of '{}' is too thin", data.info.name),
+                      .expected = fmt::format("a band of at least {:.2f} voxels on each side", least)});
+}
+
+}  // namespace
+
+std::vector<GridSummary> list_grids(const fs::path& file) {
+  const std::vector<std::byte> bytes = ask(file, {"list"});
+  ByteReader answer(bytes, file.string());
+  std::vector<GridSummary> grids;
+  const auto count = answer.get<std::uint64_t>();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    GridSummary& grid = grids.emplace_back();
+    grid.name = answer.get_text();
+    grid.value_type = answer.get_text();
+    grid.grid_class = answer.get_text();
+    grid.active_voxels = answer.get<std::int64_t>();
+    grid.voxel_size = answer.get<double>();
+  }
+  return grids;
+}
+
+LevelSet read_level_set(const fs::path& file, const std::string& grid, double needed_half_width_voxels) {
+  const auto started = std::chrono::steady_clock::now();
+  const std::vector<std::byte> bytes = ask(file, {"grid", grid});
+  ByteReader answer(bytes, file.string());
+  const std::string name = answer.get_text();
+  const Affine world_from_index = read_map(answer, file);
+  const auto background = answer.get<float>();
+  const auto blocks = answer.get_vector<LevelSetBlock>();
+  const auto tiles = answer.get_vector<VdbTile>();
+  if (!answer.done() || !std::isfinite(background) || !(background > 0.0f) || blocks.empty())
+    refuse(file, "the reader's answer is not in order", "an undamaged file");
+  check_blocks(blocks, tiles, file);
+
+  const auto data = rebuild(blocks, tiles, background, world_from_index, name);
+  check_band(*data, needed_half_width_voxels, file);
+  data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
+  return LevelSet(data);
+}
+
+}  // namespace limn

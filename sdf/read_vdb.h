@@ -1,0 +1,35 @@
+#pragma once
+// Internal: what the helper program limn-read-vdb sends, written in openvdb_read.cpp (the helper's side) and read in
+// level_set_file.cpp (ours).
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sdf/level_set.h"
+
+namespace limn {
+
+/// A constant block of the tree that lies inside the surface; those outside go without saying.
+struct VdbTile {
+  glm::ivec3 origin;   ///< Index coordinates.
+  std::int32_t level;  ///< 1: 8 nodes to a side, 2: 128, 3: 4096.
+};
+
+/// Answer: count, then name, value type, class, active voxels (int64), voxel size (double) of each grid. Throws InputError.
+std::vector<std::byte> vdb_list_answer(const std::filesystem::path& file);
+
+/// Answer: name, linear part of world_from_index by columns and translation (12 doubles), background (float), blocks, tiles.
+/// Throws InputError, without the name of the file, for all that read_level_set refuses but the width of the band.
+std::vector<std::byte> vdb_grid_answer(const std::filesystem::path& file, const std::string& grid);
+
+/// Our side: the tree as it was, from checked parts. Throws what OpenVDB throws.
+std::shared_ptr<LevelSetData> rebuild(std::span<const LevelSetBlock> blocks, std::span<const VdbTile> tiles, float background,
+                                      const Affine& world_from_index, const std::string& name);
+
+}  // namespace limn

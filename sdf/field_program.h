@@ -1,0 +1,110 @@
+#pragma once
+// The flat program behind a Field: shapes at the leaves, and a list of instructions over slots. The list is plain data, so that it can be
+// shortened (instructions whose outcome interval bounds decide) or run with wider number types without touching any shape.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "sdf/field.h"
+#include "sdf/number.h"
+
+namespace limn {
+
+/// Evaluates one shape at `count` points of its own space, given as one array for each coordinate.
+template <class T>
+using ShapeFunction = void (*)(const void* shape, const T* x, const T* y, const T* z, T* values, size_t count);
+
+/// A shape's formula for every number type.
+struct ShapeFunctions {
+  std::tuple<ShapeFunction<float>, ShapeFunction<double>, ShapeFunction<Dual>, ShapeFunction<Jet>, ShapeFunction<Interval>,
+             ShapeFunction<Slope>>
+      evaluate;
+  /// The greatest dot(direction, p) over the points p with f(p) <= level, or more; -infinity where there are none.
+  /// `direction` need not be unit.
+  double (*support)(const void* shape, const glm::dvec3& direction, double level);
+};
+
+/// f(p) = value_scale * shape(object_from_world p).
+struct FieldLeaf {
+  std::shared_ptr<const void> shape;
+  const ShapeFunctions* functions = nullptr;
+  Affine object_from_world;
+  double value_scale = 1.0;
+  double lipschitz = 1.0;  ///< Of f, in world space.
+};
+
+enum class FieldOperation : std::uint8_t {
+  leaf,            ///< target = leaf[index]
+  minimum,         ///< target = min(left, right)
+  maximum,         ///< target = max(left, right)
+  smooth_minimum,  ///< ... with the blend radius `constant`
+  smooth_maximum,
+  negate,    ///< target = -left
+  add,       ///< target = left + constant
+  absolute,  ///< target = |left|
+};
+
+/// A slot may be overwritten by the instruction that reads it. Slots below `target` are left alone.
+struct FieldInstruction {
+  FieldOperation operation = FieldOperation::leaf;
+  std::uint32_t target = 0;
+  std::uint32_t left = 0;
+  std::uint32_t right = 0;
+  std::uint32_t leaf = 0;
+  double constant = 0.0;  ///< World units: carries every scale around it.
+};
+
+struct FieldProgram {
+  std::vector<FieldLeaf> leaves;
+  std::vector<FieldInstruction> instructions;  ///< The result is in slot 0 after the last one.
+  std::uint32_t slots = 1;
+  FieldTraits traits;
+};
+
+/// A box that holds {f <= level}: the leaves' support functions, joined and cut as the instructions join and cut.
+Box sublevel_bounds(const FieldProgram& program, double level);
+
+/// Wraps a shape: a struct with
+///   template <class T> T operator()(const Vector3<T>& p) const;          its value in object space
+///   double support(const glm::dvec3& direction, double level) const;     see ShapeFunctions
+/// `lipschitz` and `exact` are as in FieldTraits; object_from_world must be rigid.
+template <class Shape>
+Field field_from_shape(Shape shape, double lipschitz, bool exact, const Affine& object_from_world = {});
+
+Field field_from_leaf(FieldLeaf leaf, bool exact);
+
+template <class Shape, class T>
+void evaluate_shape(const void* shape, const T* x, const T* y, const T* z, T* values, size_t count) {
+  // A copy on the stack tells the compiler that writing values does not change the shape, so that it may vectorise.
+  const auto evaluate = [=](const Shape& s) {
+    for (size_t i = 0; i < count; ++i) values[i] = s(Vector3<T>{x[i], y[i], z[i]});
+  };
+  if constexpr (std::is_trivially_copyable_v<Shape>) {
+    const Shape copy = *static_cast<const Shape*>(shape);
+    evaluate(copy);
+  } else {
+    evaluate(*static_cast<const Shape*>(shape));
+  }
+}
+
+template <class Shape>
+Field field_from_shape(Shape shape, double lipschitz, bool exact, const Affine& object_from_world) {
+  static constexpr ShapeFunctions functions{
+      {evaluate_shape<Shape, float>, evaluate_shape<Shape, double>, evaluate_shape<Shape, Dual>, evaluate_shape<Shape, Jet>,
+       evaluate_shape<Shape, Interval>, evaluate_shape<Shape, Slope>},
+      [](const void* s, const glm::dvec3& direction, double level) { return static_cast<const Shape*>(s)->support(direction, level); }};
+  FieldLeaf leaf;
+  leaf.shape = std::make_shared<const Shape>(std::move(shape));
+  leaf.functions = &functions;
+  leaf.object_from_world = object_from_world;
+  leaf.lipschitz = lipschitz;
+  return field_from_leaf(std::move(leaf), exact);
+}
+
+}  // namespace limn

@@ -1,0 +1,24 @@
+#include "sdf/shapes/entry.h"
+
+namespace limn {
+namespace {
+
+struct Sphere {
+  double radius;
+
+  template <class T>
+  T operator()(const Vector3<T>& p) const {
+    return norm(p) - scalar<T>(radius);
+  }
+  double support(const glm::dvec3& direction, double level) const { return (radius + level) * glm::length(direction); }
+};
+
+Field make(const Parameters& p) { return field_from_shape(Sphere{p.number("radius")}, 1.0, true); }
+
+}  // namespace
+
+ShapeDescriptor describe_sphere() {
+  return {{"sphere", "a ball about the origin", "closed form"}, {length_parameter("radius", 1.0, "distance from the origin")}, make};
+}
+
+}  // namespace limn

@@ -1,0 +1,47 @@
+// An object's mesh, turned into a level set and traced as one.
+
+#include "subdiv/mesh_level_set.h"
+
+#include <chrono>
+
+#include "raymarch/surface/level_set_marcher.h"
+#include "raymarch/surface/object_mesh.h"
+#include "raymarch/surface/registry.h"
+
+namespace limn {
+namespace {
+
+Surface build(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
+  const auto start = std::chrono::steady_clock::now();
+  const GradientDescriptor& gradient = find_gradient(settings.gradient, {}, "--gradient");
+  ObjectMesh source = object_mesh(object, settings, render_origin);
+  Box box;
+  for (const glm::dvec3& position : source.triangles.positions) box = include(box, position);
+  LevelSetSettings grid;
+  grid.voxel_size = voxel_size_for(settings, box);
+  grid.half_width_voxels = half_width_for(settings, gradient);
+  grid.max_bytes = settings.max_bytes;
+  grid.progress = settings.progress;
+  MeshLevelSet made = level_set_from_mesh(source.triangles, grid);
+  // The grid lies in render space, so that its voxels fall the same way wherever the object is.
+  Surface surface = level_set_marcher(made.level_set, Affine{}, gradient, glm::dvec3(0.0), settings.max_steps);
+  surface.info.kind = "mesh_level_set";
+  surface.info.triangles = static_cast<std::int64_t>(source.triangles.triangles.size());
+  for (const std::vector<std::string>* warnings : {&source.warnings, &made.warnings}) {
+    surface.info.warnings.insert(surface.info.warnings.end(), warnings->begin(), warnings->end());
+  }
+  surface.info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return surface;
+}
+
+}  // namespace
+
+SurfaceDescriptor mesh_level_set_surface() {
+  return {{"mesh_level_set", "the mesh as a narrow band of voxels: exact distances, sign by winding number",
+           "Jacobson et al. 2013 (winding number); Museth 2013 (OpenVDB)"},
+          {"level", "scheme", "normals", "voxels", "voxel-size", "half-width", "gradient"},
+          cannot_mesh,
+          build};
+}
+
+}  // namespace limn

@@ -1,0 +1,90 @@
+#include <CLI/CLI.hpp>
+
+#include "raymarch/image_io.h"
+#include "samples/commands/command.h"
+#include "samples/compare/comparison.h"
+#include "samples/threads.h"
+#include "sdf/output_file.h"
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+
+void add_options(CLI::App& app, Options& options) {
+  add_input(app, options);
+  add_camera(app, options, false);
+  add_surface(app, options, {.surface = true, .repeatable = true});
+  add_border(app, options);
+  add_output(app, options, "folder for sheet.png, report.html, rows.json and each picture's EXR; default limn-out/compare/<name>", false);
+  add_json(app, options);
+  add_execution(app, options, true);
+}
+
+Comparison plan(const Options& options, SceneInput& input) {
+  SurfaceSettings settings = surface_settings(options, input);
+  settings.kind.clear();
+  const bool gradient_chosen = options.gradient.has_value() || input.surface.gradient.has_value();
+  Comparison comparison = plan_comparison(input, settings, options.surfaces, gradient_chosen);
+  comparison.picture = picture_settings(options, input);
+  if (!comparison.picture.background) comparison.picture.background = glm::vec3(1.0f);
+  comparison.method_words = methods_text(comparison.picture.methods);
+  comparison.camera = resolve_camera(camera_settings(options, input.scene), bounds(input.scene));
+  comparison.call = resolved_call("compare", options, settings, comparison.camera, comparison.picture);
+  return comparison;
+}
+
+// Without a font the sheet has no words; the page has them all.
+void write_all(const Comparison& comparison, const fs::path& folder, const Options& options, std::vector<fs::path>& files) {
+  const Sheet sheet = contact_sheet(comparison);
+  if (!sheet.has_labels && !options.quiet)
+    print_note("no font found, so sheet.png has no labels; the package fonts-dejavu-core brings one");
+  write_image(sheet.picture, folder / "sheet.png");
+  write_whole(folder / "rows.json", rows_json(comparison).dump(1) + "\n");
+  write_whole(folder / "report.html", report_page(comparison));
+  for (const char* name : {"sheet.png", "report.html", "rows.json"}) files.push_back(folder / name);
+}
+
+int run(const Options& options) {
+  const ThreadLimit threads(options.threads);
+  ProgressBar bar(wants_progress(options.quiet, options.no_progress));
+  input_kind(options.input);
+  if (!options.outputs.empty()) check_output_folder(options.outputs.back(), options);
+  SceneInput input = load_input(options);
+  const fs::path folder = options.outputs.empty() ? default_output("compare", input.name) : options.outputs.back();
+  check_output_folder(folder, options);
+
+  Comparison comparison = plan(options, input);
+  draw_comparison(comparison, folder, execution_settings(options), bar);
+  bar.clear();
+  std::vector<fs::path> files;
+  files.push_back(comparison.reference.exr);
+  for (const Cell& cell : comparison.cells) {
+    if (cell.skipped.empty()) files.push_back(cell.exr);
+  }
+  write_all(comparison, folder, options, files);
+
+  if (options.verbose) print_note(comparison.call);
+  if (options.json) {
+    print_json(comparison_json(comparison, files));
+  } else if (!options.quiet) {
+    std::string text;
+    for (const std::string& sentence : summary_sentences(comparison)) text += sentence + "\n";
+    for (const Cell& cell : comparison.cells) {
+      if (!cell.skipped.empty()) text += "not compared: " + cell.title + ": " + cell.skipped + "\n";
+    }
+    print_text(text + (folder / "report.html").string() + "\n" + (folder / "sheet.png").string() + "\n");
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command compare_command() {
+  return {"compare", "draws the same border from every representation of the surface, side by side, with differences and a report page",
+          "  limn compare machined_part\n"
+          "  limn compare cow.obj --voxels 128 --size 960x540 -o cow-compared",
+          add_options, run};
+}
+
+}  // namespace limn

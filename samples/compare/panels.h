@@ -1,0 +1,28 @@
+#pragma once
+// Pictures made small or large for people to look at.
+
+#include "raymarch/picture.h"
+
+namespace limn {
+
+/// Fits into width x height by averaging; never enlarged beyond a whole factor. Keeps the aspect ratio.
+Image<glm::vec4> fitted(const Image<glm::vec4>& picture, int width, int height);
+
+/// A difference picture made small so that a single wrong pixel still shows: the strongest difference of a block counts, not the mean.
+Image<glm::vec4> fitted_difference(const Image<glm::vec4>& difference, const Image<float>& border, const Image<float>& reference, int width,
+                                   int height);
+
+/// The part of a picture where the borders differ most.
+struct Window {
+  int x = 0, y = 0, width = 0, height = 0;
+  double wrong_px = 0.0;  ///< Ink that differs in it.
+};
+Window worst_window(const Image<float>& border, const Image<float>& reference, int width, int height);
+
+/// A window enlarged by a whole factor, its pixels as squares.
+Image<glm::vec4> enlarged(const Image<glm::vec4>& picture, const Window& window, int factor);
+
+/// Ink on white.
+Image<glm::vec4> ink_on_paper(const Image<float>& border);
+
+}  // namespace limn

@@ -1,0 +1,187 @@
+// Which representations are compared, and what they are measured against.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "samples/compare/comparison.h"
+
+namespace limn {
+namespace {
+
+// The finest refinement that serves as the limit surface: a million faces take about a second and 300 MB to refine and trace.
+constexpr std::int64_t kAffordableFaces = 1'200'000;
+constexpr int kFinestLevel = 8;
+
+template <class T>
+bool all_are(const Scene& scene) {
+  return std::all_of(scene.objects.begin(), scene.objects.end(),
+                     [](const SceneObject& object) { return std::holds_alternative<T>(object.source); });
+}
+
+bool all_cages(const Scene& scene, const SurfaceSettings& settings) {
+  return std::all_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
+    const auto* mesh = std::get_if<MeshSource>(&object.source);
+    return mesh != nullptr && (mesh->scheme || settings.scheme);
+  });
+}
+
+bool any_cage(const Scene& scene, const SurfaceSettings& settings) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
+    const auto* mesh = std::get_if<MeshSource>(&object.source);
+    return mesh != nullptr && (mesh->scheme || settings.scheme);
+  });
+}
+
+std::int64_t faces_at(const Scene& scene, const SurfaceSettings& settings, int level) {
+  std::int64_t faces = 0;
+  for (const SceneObject& object : scene.objects) {
+    const auto* mesh = std::get_if<MeshSource>(&object.source);
+    if (mesh == nullptr || !(mesh->scheme || settings.scheme)) continue;
+    const Scheme scheme = settings.scheme ? *settings.scheme : *mesh->scheme;
+    faces += predict_refined_size(mesh->mesh, scheme, level).faces;
+  }
+  return faces;
+}
+
+int used_level(const Scene& scene, const SurfaceSettings& settings) {
+  int level = settings.level;
+  for (const SceneObject& object : scene.objects) level = std::max(level, object.level.value_or(0));
+  return level;
+}
+
+int finest_level(const Scene& scene, const SurfaceSettings& settings) {
+  int level = used_level(scene, settings);
+  while (level < kFinestLevel && faces_at(scene, settings, level + 1) <= kAffordableFaces) ++level;
+  return level;
+}
+
+// Of the gradients that the bands of all volumes carry, the one of the highest order.
+std::string best_gradient(const Scene& scene, const std::string& fallback) {
+  const GradientDescriptor* best = nullptr;
+  for (const GradientDescriptor& gradient : gradients()) {
+    const bool fits = std::all_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
+      const auto* source = std::get_if<LevelSetSource>(&object.source);
+      return source == nullptr || source->level_set.info().half_width_voxels >= gradient.half_width_voxels;
+    });
+    if (fits && (best == nullptr || gradient.order > best->order)) best = &gradient;
+  }
+  return best == nullptr ? fallback : best->about.name;
+}
+
+std::string with_spaces(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::string grid_text(const SurfaceSettings& settings) {
+  if (settings.voxel_size > 0.0) return fmt::format("voxels of {:g}", settings.voxel_size);
+  return fmt::format("{} voxels", settings.voxels);
+}
+
+std::string details_of(const SceneInput& input, const SurfaceSettings& settings) {
+  const bool refined = !all_are<MeshSource>(input.scene) || any_cage(input.scene, settings);
+  const bool volumes = all_are<LevelSetSource>(input.scene);
+  const std::string gradient = settings.gradient + " gradient";
+  const std::string level = volumes   ? "dual contouring"
+                            : refined ? fmt::format("level {}", used_level(input.scene, settings))
+                                      : "as loaded";
+  if (settings.kind == "analytic") return "";
+  if (settings.kind == "level_set") return volumes ? gradient : grid_text(settings) + ", " + gradient;
+  if (settings.kind == "mesh") return level;
+  if (settings.kind == "mesh_level_set") return level + ", " + grid_text(settings) + ", " + gradient;
+  return settings.kind.empty() ? "each object in its own representation" : "";
+}
+
+Cell make_cell(const SceneInput& input, const SurfaceSettings& settings) {
+  Cell cell;
+  cell.name = settings.kind.empty() ? "natural" : settings.kind;
+  cell.title = with_spaces(cell.name);
+  cell.details = details_of(input, settings);
+  cell.scene = input.scene;
+  cell.surface = settings;
+  return cell;
+}
+
+std::string why_not(const SurfaceDescriptor& kind, const Scene& scene) {
+  for (const SceneObject& object : scene.objects) {
+    if (const std::string reason = kind.unsupported(object); !reason.empty()) {
+      return scene.objects.size() == 1 ? reason : object.name + ": " + reason;
+    }
+  }
+  return "";
+}
+
+bool wanted(const std::string& kind, const std::vector<std::string>& only) {
+  return only.empty() || std::find(only.begin(), only.end(), kind) != only.end();
+}
+
+// A volume's only choice is how its normals are read: one cell a gradient.
+void add_gradient_cells(const SceneInput& input, const SurfaceSettings& settings, Comparison& comparison) {
+  for (const GradientDescriptor& gradient : gradients()) {
+    if (gradient.about.name == comparison.reference.surface.gradient) continue;
+    SurfaceSettings own = settings;
+    own.kind = "level_set";
+    own.gradient = gradient.about.name;
+    Cell cell = make_cell(input, own);
+    cell.name += "_" + gradient.about.name;
+    comparison.cells.push_back(std::move(cell));
+  }
+}
+
+void set_reference(const SceneInput& input, SurfaceSettings settings, bool gradient_chosen, Comparison& comparison) {
+  settings.kind = input.scene.objects.empty() ? "" : natural_surface(input.scene.objects.front());
+  for (const SceneObject& object : input.scene.objects) {
+    if (natural_surface(object) != settings.kind) settings.kind = "";
+  }
+  const bool cages = any_cage(input.scene, settings);
+  if (!gradient_chosen && all_are<LevelSetSource>(input.scene)) settings.gradient = best_gradient(input.scene, settings.gradient);
+  SceneInput copy = input;
+  if (cages) {
+    settings.level = finest_level(input.scene, settings);
+    for (SceneObject& object : copy.scene.objects) object.level.reset();
+    settings.normals = NormalKind::limit;
+  }
+  comparison.reference = make_cell(copy, settings);
+  comparison.reference.name = "reference_" + comparison.reference.name;
+  if (all_are<Field>(input.scene)) {
+    comparison.reference_words = "the analytic surface itself";
+  } else if (all_cages(input.scene, settings)) {
+    comparison.reference_words =
+        fmt::format("the limit surface (the cage refined {} times, its vertices and normals on the limit)", settings.level);
+    comparison.reference.title = "limit surface";
+  } else if (all_are<MeshSource>(input.scene)) {
+    comparison.reference_words = "the mesh as it is in the file";
+  } else if (all_are<LevelSetSource>(input.scene)) {
+    comparison.reference_words = "the level set in the file, its normals read with the " + settings.gradient + " gradient";
+  } else {
+    comparison.reference_words = "every object in the representation that it came in";
+  }
+}
+
+}  // namespace
+
+Comparison plan_comparison(const SceneInput& input, const SurfaceSettings& settings, const std::vector<std::string>& only,
+                           bool gradient_chosen) {
+  Comparison comparison;
+  comparison.input_name = input.name;
+  set_reference(input, settings, gradient_chosen, comparison);
+  const std::string& own = comparison.reference.surface.kind;
+  const bool cages = any_cage(input.scene, settings);
+  for (const SurfaceDescriptor& kind : surface_kinds()) {
+    if (!wanted(kind.about.name, only)) continue;
+    const bool same_as_reference = kind.about.name == own && !cages;
+    if (same_as_reference) {
+      if (all_are<LevelSetSource>(input.scene)) add_gradient_cells(input, settings, comparison);
+      continue;
+    }
+    SurfaceSettings cell_settings = settings;
+    cell_settings.kind = kind.about.name;
+    Cell cell = make_cell(input, cell_settings);
+    cell.skipped = why_not(kind, input.scene);
+    comparison.cells.push_back(std::move(cell));
+  }
+  return comparison;
+}
+
+}  // namespace limn

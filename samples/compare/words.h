@@ -1,0 +1,20 @@
+#pragma once
+// Numbers of a cell in words, the same on the sheet and on the page.
+
+#include <string>
+#include <vector>
+
+#include "samples/compare/comparison.h"
+
+namespace limn {
+
+/// 23456.0 -> "23,456".
+std::string counted(double value);
+/// "0.53 %".
+std::string share_text(double share);
+/// "level set (256 voxels, central gradient)".
+std::string full_title(const Cell& cell);
+/// A few short lines for a caption.
+std::vector<std::string> caption_lines(const Cell& cell, double reference_area_px);
+
+}  // namespace limn

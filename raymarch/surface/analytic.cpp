@@ -26,14 +26,16 @@ constexpr double kDirectionSlack = 1.0 + 1e-6;
 struct AnalyticState {
   AnalyticState(Field render_field, int max) : field(std::move(render_field)), max_steps(max), evaluators(field) {
     const FieldTraits& traits = field.traits();
+    if (traits.bounds.empty()) clip = {};
     bounded = traits.bounds.finite();
     extent = bounded ? traits.bounds.radius() : 0.0;
-    // Flat faces lie in the bounds: starting beyond them tells outside from inside.
-    clip = bounded ? dilate(traits.bounds, 1e-3 * extent) : traits.bounds;
+    // Flat faces lie in the bounds: starting beyond them tells outside from inside. Bounds that are open on a side give no measure
+    // of "beyond".
+    if (bounded) clip = dilate(traits.bounds, 1e-3 * extent);
     lipschitz = traits.lipschitz * kDirectionSlack;
   }
   Field field;
-  Box clip;
+  Box clip{glm::dvec3(-std::numeric_limits<double>::infinity()), glm::dvec3(std::numeric_limits<double>::infinity())};
   bool bounded = false;
   double extent = 0.0;
   double lipschitz = 1.0;

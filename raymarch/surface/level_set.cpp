@@ -23,8 +23,9 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
                                 .half_width_voxels = half_width_for(settings, gradient),
                                 .max_bytes = settings.max_bytes,
                                 .progress = settings.progress};
-    // A field has its transforms folded in.
-    surface = level_set_marcher(level_set_from_field(*field, grid), Affine{}, gradient, render_origin, settings.max_steps);
+    // The grid lies in render space, so that its voxels fall the same way wherever the object is.
+    const LevelSet made = level_set_from_field(translate(*field, -render_origin), grid);
+    surface = level_set_marcher(made, Affine{}, gradient, glm::dvec3(0.0), settings.max_steps);
   } else {
     throw InputError({.file = {}, .field = object.name, .value = {}, .problem = unsupported(object), .expected = {}});
   }

@@ -107,22 +107,22 @@ TEST(Rim, OfASphereIsARing) {
   CameraSettings settings = view(21, 11, Projection::orthographic);
   settings.eye = glm::dvec3(0, 0, 5);
   settings.target = glm::dvec3(0.0);
-  settings.ortho_height = 2.2;
+  settings.ortho_height = 11.0 / 4.6;
   const Scene scene = scene_of({object_of(make_shape("sphere", {{"radius", {1.0}}}))});
   const Picture picture =
       draw_picture(scene, model_of(scene), framing(scene, settings), {{call_of("rim", numbers({{"threshold", 0.6}}))}, 1, {}}, {});
-  // Radius 5 px, border beyond 4 px (sqrt(1 - 0.36) = 0.8).
+  // Radius 4.6 px, border beyond 3.68 px (sqrt(1 - 0.36) = 0.8).
   EXPECT_EQ(text_of(picture),
             "                     \n"
-            "       #######       \n"
-            "      ##.....##      \n"
+            "        #####        \n"
+            "       #.....#       \n"
             "      #.......#      \n"
-            "     ##.......##     \n"
-            "     #.........#     \n"
-            "     ##.......##     \n"
             "      #.......#      \n"
-            "      ##.....##      \n"
-            "       #######       \n"
+            "      #.......#      \n"
+            "      #.......#      \n"
+            "      #.......#      \n"
+            "       #.....#       \n"
+            "        #####        \n"
             "                     \n");
 }
 

@@ -133,7 +133,9 @@ TEST(GBuffer, WhereNothingIsHitTheBuffersSayNothing) {
 
 TEST(GBuffer, OnePixelSeesTheMiddle) {
   const Scene scene = scene_of({object_of(make_shape("sphere", {{"radius", {1.0}}}))});
-  const GBuffer seen = render_gbuffer(model_of(scene), framing(scene, view(1, 1)), {});
+  CameraSettings settings = view(1, 1);
+  settings.target = glm::dvec3(0.0);
+  const GBuffer seen = render_gbuffer(model_of(scene), framing(scene, settings), {});
   EXPECT_EQ(count_hits(seen).hits, 1);
   EXPECT_NEAR(seen.n_dot_v.at(0, 0), 1.0f, 1e-6f);
 }

@@ -24,7 +24,9 @@ Picture sphere_picture(int samples = 1, std::optional<glm::vec3> background = st
 TEST(Picture, TheHeadlightShadesFromAQuarterToTheWholeColour) {
   const Scene scene = scene_of({object_of(make_shape("sphere"))});
   const SceneModel model = model_of(scene);
-  const GBuffer seen = render_gbuffer(model, framing(scene, view(33, 33)), {});
+  CameraSettings settings = view(33, 33);
+  settings.target = glm::dvec3(0.0);
+  const GBuffer seen = render_gbuffer(model, framing(scene, settings), {});
   const Image<glm::vec4> shaded = shade_headlight(seen, model);
   EXPECT_NEAR(shaded.at(16, 16).r, 0.8f, 1e-5f);
   EXPECT_EQ(shaded.at(0, 0), glm::vec4(0.0f));

@@ -37,7 +37,7 @@ concept Bounding = std::same_as<T, Interval> || std::same_as<T, Slope>;
 /// Widened by a few units in the last place: more than the rounding of one operation.
 inline Interval outward(double lower, double upper) {
   constexpr double relative = 4.0 * std::numeric_limits<double>::epsilon();
-  constexpr double absolute = 1e-290;  // covers results that underflow
+  constexpr double absolute = 1e-150;  // squares that underflow in a norm
   return {lower - relative * std::fabs(lower) - absolute, upper + relative * std::fabs(upper) + absolute};
 }
 inline Interval hull(const Interval& a, const Interval& b) { return {std::min(a.lower, b.lower), std::max(a.upper, b.upper)}; }
@@ -106,10 +106,13 @@ inline Interval smooth_minimum(const Interval& a, const Interval& b, double radi
   return outward(smooth_minimum(a.lower, b.lower, radius) - 1e-15 * radius, smooth_minimum(a.upper, b.upper, radius) + 1e-15 * radius);
 }
 
+/// Below this the square of a length underflows.
+constexpr double vanishing = 1e-140;
+
 /// Bounds of x / |(x, y)| where |y| lies in `others`: it grows with x, and shrinks in size with |y|.
 inline Interval unit_component(const Interval& x, const Interval& others) {
   const double least = mignitude(others), most = magnitude(others);
-  if (least == 0.0 && x.contains(0.0)) return {-1.0, 1.0};  // the direction of a vector that may vanish: any
+  if (norm(least, mignitude(x)) < vanishing) return {-1.0, 1.0};  // the direction of a vector that may vanish: any
   const auto at = [](double a, double b) { return a == 0.0 ? 0.0 : a / norm(a, b); };
   const Interval r = outward(at(x.lower, x.lower > 0.0 ? most : least), at(x.upper, x.upper > 0.0 ? least : most));
   return {std::max(r.lower, -1.0), std::min(r.upper, 1.0)};
@@ -152,8 +155,8 @@ inline Slope norm(const Slope& x, const Slope& y, const Slope& z) {
 inline Interval positive_share(const Slope& a, const Interval& others) {
   if (a.value.upper <= 0.0) return {0.0, 0.0};
   if (others.upper == 0.0) return a.slope;
-  const auto at = [](double x, double y) { return x == 0.0 ? 0.0 : x / norm(x, y); };
-  const Interval share = outward(at(std::max(a.value.lower, 0.0), others.upper), at(a.value.upper, others.lower));
+  const auto at = [](double x, double y, double degenerate) { return norm(x, y) < vanishing ? degenerate : x / norm(x, y); };
+  const Interval share = outward(at(std::max(a.value.lower, 0.0), others.upper, 0.0), at(a.value.upper, others.lower, 1.0));
   return Interval{std::max(share.lower, 0.0), std::min(share.upper, 1.0)} * a.slope;
 }
 inline Interval positive_part(const Slope& a) { return {std::max(a.value.lower, 0.0), std::max(a.value.upper, 0.0)}; }

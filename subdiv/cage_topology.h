@@ -38,24 +38,50 @@ struct WeightedPoint {
   void AddWithWeight(const WeightedPoint& other, double weight) { p += weight * other.p; }
 };
 
-/// Positions and tangents of the limit at the vertices of the last level.
+/// The limit at the vertices of a refiner's last level (whose faces are all quads, or triangles for Loop).
 struct LimitFrame {
-  std::vector<WeightedPoint> positions, tangent1, tangent2;
+  std::vector<WeightedPoint> positions, tangent1, tangent2;  ///< Tangents hold where the vertex has one tangent plane.
+  /// Where a semi-sharp feature had not worn off: the vertex, and a unit normal for each of its faces in OpenSubdiv's order.
+  struct Ring {
+    int vertex = 0;
+    std::vector<glm::vec3> normals;
+  };
+  std::vector<Ring> semi_sharp;
 };
 
-/// Where a corner of the last level lies on the cage: its face, for n-gons the sub-quad, and (u, v) as LimitSurface::evaluate takes them.
-struct CageLocation {
-  int face = 0, sub_face = 0;
-  glm::dvec2 uv{0.0};
-};
-CageLocation locate_corner(const Far::TopologyRefiner& refiner, Scheme scheme, int face, int corner);
+/// OpenSubdiv's masks for smooth, creased and corner vertices. Its masks take darts (ends of creases) for smooth vertices and semi-sharp
+/// ones for infinitely sharp ones; these two are worked out from the subdivision of their one-rings.
+LimitFrame limit_frame(const Far::TopologyRefiner& refiner, Scheme scheme, const std::vector<WeightedPoint>& points);
 
-/// True where a semi-sharp feature has not yet worn off at the last level, so that the masks for the limit do not apply.
+/// Unit normals of the limit at the corners of the last level's faces, in the order of its faces; those at `vertices` only if given.
+std::vector<glm::vec3> limit_normals(const Far::TopologyRefiner& refiner, Scheme scheme, const std::vector<WeightedPoint>& points,
+                                     const LimitFrame& limit, const std::vector<int>* vertices = nullptr);
+
+/// True where a semi-sharp feature has not yet worn off.
 bool still_semi_sharp(const Far::TopologyLevel& level, int vertex);
 
-/// Unit normals of the limit at every corner of the last level's faces, in the order of its faces. `refined` holds the last level's
-/// vertices, `limit` their limits, `surface` the limit surface (needed where a vertex is still semi-sharp; may be null elsewhere).
-std::vector<glm::vec3> limit_normals(const Far::TopologyRefiner& refiner, Scheme scheme, const std::vector<WeightedPoint>& refined,
-                                     const LimitFrame& limit, const LimitSurface* surface);
+/// The faces around one vertex: its neighbours along edges and, for quads, across faces, counter-clockwise. A closed ring has as many
+/// edges as faces, an open one has one more.
+struct OneRing {
+  glm::dvec3 center{0.0};
+  std::vector<glm::dvec3> edges, diagonals;
+  std::vector<float> sharpness;  ///< Of the edges.
+  float center_sharpness = 0.0f;
+  size_t face_total = 0;
+};
+OneRing one_ring(const Far::TopologyLevel& level, Scheme scheme, const std::vector<WeightedPoint>& points, int vertex);
+
+/// Loose fans of several one-rings as one mesh, centre first in each.
+struct Fans {
+  Mesh mesh;
+  std::vector<int> centers;
+};
+Fans gather_fans(const std::vector<OneRing>& rings, Scheme scheme);
+
+/// Limit and tangents at the end of one infinitely sharp crease: invariant subspaces of the ring's subdivision matrix.
+struct VertexLimit {
+  glm::dvec3 position{0.0}, tangent1{0.0}, tangent2{0.0};
+};
+VertexLimit dart_limit(const OneRing& ring, Scheme scheme);
 
 }  // namespace limn

@@ -2,6 +2,8 @@
 #include <opensubdiv/bfr/surface.h>
 #include <opensubdiv/far/topologyLevel.h>
 
+#include <algorithm>
+
 #include "sdf/error.h"
 #include "subdiv/cage_topology.h"
 
@@ -24,6 +26,27 @@ namespace {
 /// and sharpness wears off by 1 a level, so that 10 levels hold every semi-sharp crease.
 constexpr int kSmoothLevels = 5, kSharpLevels = 10;
 
+/// Bfr gathers a face's neighbours corner by corner, and overruns its buffers where one neighbour is met again at a corner that is not
+/// the next (two faces that share two edges, tubes of fewer than three faces) or where an edge has more than two faces.
+bool simple_neighbourhood(const Far::TopologyLevel& level, int face) {
+  const Far::ConstIndexArray corners = level.GetFaceVertices(face);
+  std::vector<std::pair<int, int>> met;
+  for (int i = 0; i < corners.size(); ++i) {
+    if (level.IsVertexNonManifold(corners[i])) return false;
+    for (const int neighbour : level.GetVertexFaces(corners[i]))
+      if (neighbour != face) met.emplace_back(neighbour, i);
+  }
+  std::sort(met.begin(), met.end());
+  const int n = corners.size();
+  for (size_t first = 0, end = 0; first < met.size(); first = end) {
+    while (end < met.size() && met[end].first == met[first].first) ++end;
+    if (end - first == 1) continue;
+    const int gap = met[first + 1].second - met[first].second;
+    if (end - first > 2 || (gap != 1 && gap != n - 1)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 LimitSurface::LimitSurface(const Mesh& cage, Scheme scheme, const std::string& file) {
@@ -41,7 +64,7 @@ LimitSurface::LimitSurface(const Mesh& cage, Scheme scheme, const std::string& f
   for (size_t f = 0; f < clean.face_of.size(); ++f) {
     const auto face = static_cast<size_t>(clean.face_of[f]);
     // Of a face that was cut in two the first piece stands for it.
-    if (data->surfaces[face].IsValid()) continue;
+    if (data->surfaces[face].IsValid() || !simple_neighbourhood(data->refiner->GetLevel(0), static_cast<int>(f))) continue;
     Bfr::Surface<double>& surface = data->surfaces[face];
     if (!data->factory->InitVertexSurface(static_cast<int>(f), &surface)) continue;
     data->face_sizes[face] = surface.GetFaceSize();

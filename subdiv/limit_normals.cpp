@@ -46,28 +46,30 @@ std::vector<Sector> sectors_at(const Far::TopologyLevel& level, int vertex) {
 
 class Normals {
  public:
-  Normals(const Far::TopologyRefiner& refiner, Scheme scheme, const std::vector<WeightedPoint>& refined, const LimitFrame& limit,
-          const LimitSurface* surface)
-      : refiner_(refiner),
-        level_(refiner.GetLevel(refiner.GetMaxLevel())),
-        scheme_(scheme),
-        refined_(refined),
-        limit_(limit),
-        surface_(surface) {
+  Normals(const Far::TopologyRefiner& refiner, Scheme scheme, const std::vector<WeightedPoint>& points, const LimitFrame& limit)
+      : level_(refiner.GetLevel(refiner.GetMaxLevel())), scheme_(scheme), points_(points), limit_(limit) {
     first_.reserve(static_cast<size_t>(level_.GetNumFaces()) + 1);
     int sum = 0;
     for (int f = 0; f < level_.GetNumFaces(); ++f) first_.push_back(sum), sum += level_.GetFaceVertices(f).size();
     normals_.assign(static_cast<size_t>(sum), glm::vec3(0.0f));
   }
 
-  std::vector<glm::vec3> run() {
-    for (int v = 0; v < level_.GetNumVertices(); ++v) at_vertex(v);
+  std::vector<glm::vec3> run(const std::vector<int>* vertices) {
+    if (vertices != nullptr) {
+      for (const int v : *vertices) at_vertex(v);
+    } else {
+      for (int v = 0; v < level_.GetNumVertices(); ++v) at_vertex(v);
+    }
     border_sectors();
+    for (const LimitFrame::Ring& ring : limit_.semi_sharp) {
+      const Far::ConstIndexArray faces = level_.GetVertexFaces(ring.vertex);
+      for (int i = 0; i < faces.size(); ++i) set(faces[i], ring.vertex, ring.normals[static_cast<size_t>(i)]);
+    }
     return std::move(normals_);
   }
 
  private:
-  glm::dvec3 point(int v) const { return refined_[static_cast<size_t>(v)].p; }
+  glm::dvec3 point(int v) const { return points_[static_cast<size_t>(v)].p; }
 
   int corner_of(int face, int vertex) const {
     const Far::ConstIndexArray vertices = level_.GetFaceVertices(face);
@@ -76,7 +78,7 @@ class Normals {
 
   void set(int face, int vertex, const glm::dvec3& normal) {
     const double length = glm::length(normal);
-    glm::dvec3 unit = length > 0.0 && std::isfinite(length) ? normal / length : facet(face);
+    const glm::dvec3 unit = length > 0.0 && std::isfinite(length) ? normal / length : facet(face);
     normals_[static_cast<size_t>(first_[static_cast<size_t>(face)] + corner_of(face, vertex))] = glm::vec3(unit);
   }
 
@@ -96,25 +98,14 @@ class Normals {
     set(face, vertex, glm::cross(point(vertices[(i + 1) % n]) - point(vertex), point(vertices[(i + n - 1) % n]) - point(vertex)));
   }
 
-  void set_from_surface(int face, int vertex) {
-    const CageLocation at = locate_corner(refiner_, scheme_, face, corner_of(face, vertex));
-    LimitPoint p;
-    if (surface_ != nullptr && surface_->evaluate(at.face, at.sub_face, at.uv.x, at.uv.y, p)) {
-      set(face, vertex, glm::cross(p.du, p.dv));
-    } else {
-      set_from_corner(face, vertex);
-    }
-  }
-
   void at_vertex(int v) {
     const Far::ConstIndexArray faces = level_.GetVertexFaces(v);
     const Sdc::Crease::Rule rule = level_.GetVertexRule(v);
-    const bool smooth = rule == Sdc::Crease::RULE_SMOOTH || rule == Sdc::Crease::RULE_DART;
     if (scheme_ == Scheme::bilinear || level_.IsVertexNonManifold(v)) {
       for (const int f : faces) set_from_corner(f, v);
     } else if (still_semi_sharp(level_, v)) {
-      for (const int f : faces) set_from_surface(f, v);
-    } else if (smooth) {
+      return;  // among limit_.semi_sharp
+    } else if (rule == Sdc::Crease::RULE_SMOOTH || rule == Sdc::Crease::RULE_DART) {
       const auto i = static_cast<size_t>(v);
       const glm::dvec3 normal = glm::cross(limit_.tangent1[i].p, limit_.tangent2[i].p);
       for (const int f : faces) set(f, v, normal);
@@ -145,49 +136,41 @@ class Normals {
     for (const int f : sector.faces) set(f, sector.vertex, normal);
   }
 
-  /// One loose fan of a sector, its centre first.
-  void add_fan(const Sector& sector, Mesh& fans) const {
-    const auto base = static_cast<std::int32_t>(fans.vertex_count());
-    const auto n = static_cast<std::int32_t>(sector.faces.size());
-    fans.positions.push_back(point(sector.vertex));
-    for (const int e : sector.edges) fans.positions.push_back(point(other_end(level_, e, sector.vertex)));
-    for (std::int32_t i = 0; i < n; ++i) {
-      if (scheme_ == Scheme::loop) {
-        fans.face_sizes.push_back(3);
-        fans.corner_vertices.insert(fans.corner_vertices.end(), {base, base + 1 + i, base + 2 + i});
-        continue;
-      }
-      const int face = sector.faces[static_cast<size_t>(i)];
-      const Far::ConstIndexArray vertices = level_.GetFaceVertices(face);
-      fans.positions.push_back(point(vertices[(corner_of(face, sector.vertex) + 2) % vertices.size()]));
-      fans.face_sizes.push_back(4);
-      fans.corner_vertices.insert(fans.corner_vertices.end(), {base, base + 1 + i, base + n + 2 + i, base + 2 + i});
+  OneRing ring_of(const Sector& sector) const {
+    OneRing ring;
+    ring.center = point(sector.vertex);
+    ring.face_total = sector.faces.size();
+    for (const int e : sector.edges) ring.edges.push_back(point(other_end(level_, e, sector.vertex)));
+    ring.sharpness.assign(ring.edges.size(), 0.0f);
+    if (scheme_ == Scheme::loop) return ring;
+    for (const int f : sector.faces) {
+      const Far::ConstIndexArray vertices = level_.GetFaceVertices(f);
+      ring.diagonals.push_back(point(vertices[(corner_of(f, sector.vertex) + 2) % vertices.size()]));
     }
+    return ring;
   }
 
   void border_sectors() {
     if (borders_.empty()) return;
-    Mesh fans;
-    fans.boundary = BoundaryRule::edge_only;
-    std::vector<size_t> centers;
-    for (const Sector& sector : borders_) centers.push_back(fans.vertex_count()), add_fan(sector, fans);
-    const std::unique_ptr<Far::TopologyRefiner> refiner = make_refiner(fans, scheme_, {});
+    std::vector<OneRing> rings;
+    for (const Sector& sector : borders_) rings.push_back(ring_of(sector));
+    const Fans fans = gather_fans(rings, scheme_);
+    const std::unique_ptr<Far::TopologyRefiner> refiner = make_refiner(fans.mesh, scheme_, {});
     const Far::PrimvarRefinerReal<double> primvars(*refiner);
-    std::vector<WeightedPoint> source(fans.vertex_count()), position(source), tangent1(source), tangent2(source);
-    for (size_t i = 0; i < source.size(); ++i) source[i].p = fans.positions[i];
+    std::vector<WeightedPoint> source(fans.mesh.vertex_count()), position(source), tangent1(source), tangent2(source);
+    for (size_t i = 0; i < source.size(); ++i) source[i].p = fans.mesh.positions[i];
     primvars.Limit(source, position, tangent1, tangent2);
     for (size_t s = 0; s < borders_.size(); ++s) {
-      const glm::dvec3 normal = glm::cross(tangent1[centers[s]].p, tangent2[centers[s]].p);
+      const auto center = static_cast<size_t>(fans.centers[s]);
+      const glm::dvec3 normal = glm::cross(tangent1[center].p, tangent2[center].p);
       for (const int f : borders_[s].faces) set(f, borders_[s].vertex, normal);
     }
   }
 
-  const Far::TopologyRefiner& refiner_;
   const Far::TopologyLevel& level_;
   Scheme scheme_;
-  const std::vector<WeightedPoint>& refined_;
+  const std::vector<WeightedPoint>& points_;
   const LimitFrame& limit_;
-  const LimitSurface* surface_;
   std::vector<int> first_;
   std::vector<glm::vec3> normals_;
   std::vector<Sector> borders_;
@@ -195,16 +178,9 @@ class Normals {
 
 }  // namespace
 
-bool still_semi_sharp(const Far::TopologyLevel& level, int vertex) {
-  if (level.IsVertexSemiSharp(vertex)) return true;
-  for (const int e : level.GetVertexEdges(vertex))
-    if (level.IsEdgeSemiSharp(e)) return true;
-  return false;
-}
-
-std::vector<glm::vec3> limit_normals(const Far::TopologyRefiner& refiner, Scheme scheme, const std::vector<WeightedPoint>& refined,
-                                     const LimitFrame& limit, const LimitSurface* surface) {
-  return Normals(refiner, scheme, refined, limit, surface).run();
+std::vector<glm::vec3> limit_normals(const Far::TopologyRefiner& refiner, Scheme scheme, const std::vector<WeightedPoint>& points,
+                                     const LimitFrame& limit, const std::vector<int>* vertices) {
+  return Normals(refiner, scheme, points, limit).run(vertices);
 }
 
 }  // namespace limn

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 
 #include "sdf/error.h"
 #include "subdiv/cage_topology.h"
@@ -41,23 +40,6 @@ Points cage_points(const Mesh& cage) {
   Points points(cage.vertex_count());
   for (size_t v = 0; v < points.size(); ++v) points[v].p = cage.positions[v];
   return points;
-}
-
-bool any_semi_sharp(const Far::TopologyLevel& level) {
-  for (int v = 0; v < level.GetNumVertices(); ++v)
-    if (still_semi_sharp(level, v)) return true;
-  return false;
-}
-
-/// The masks of the limit hold for smooth and for infinitely sharp vertices; the rest is read from the limit surface itself.
-void limit_of_semi_sharp(const Far::TopologyRefiner& refiner, Scheme scheme, const LimitSurface& surface, Points& positions) {
-  const Far::TopologyLevel& level = refiner.GetLevel(refiner.GetMaxLevel());
-  for (int v = 0; v < level.GetNumVertices(); ++v) {
-    if (!still_semi_sharp(level, v) || level.GetVertexFaces(v).size() == 0) continue;
-    const CageLocation at = locate_corner(refiner, scheme, level.GetVertexFaces(v)[0], level.GetVertexFaceLocalIndices(v)[0]);
-    LimitPoint point;
-    if (surface.evaluate(at.face, at.sub_face, at.uv.x, at.uv.y, point)) positions[static_cast<size_t>(v)].p = point.position;
-  }
 }
 
 /// A refined level about to become a Mesh: OpenSubdiv's last level, and what was computed on it.
@@ -166,21 +148,14 @@ void pull_back_to_cage(Refined& refined) {
 }
 
 /// Moves onto the limit what is to be there, and finds the normals.
-void to_limit(const Mesh& cage, const RefineSettings& settings, const std::string& file, Refined& refined) {
-  const Far::TopologyLevel& level = refined.refiner.GetLevel(refined.refiner.GetMaxLevel());
-  std::optional<LimitSurface> surface;
-  if (settings.scheme != Scheme::bilinear && any_semi_sharp(level)) surface.emplace(cage, settings.scheme, file);
-  const size_t count = refined.positions.size();
-  LimitFrame limit{Points(count), Points(count), Points(count)};
-  const Primvars primvars(refined.refiner);
-  primvars.Limit(refined.positions, limit.positions, limit.tangent1, limit.tangent2);
-  if (surface) limit_of_semi_sharp(refined.refiner, settings.scheme, *surface, limit.positions);
-  if (settings.normals == NormalKind::limit)
-    refined.normals = limit_normals(refined.refiner, settings.scheme, refined.positions, limit, surface ? &*surface : nullptr);
+void to_limit(const RefineSettings& settings, Refined& refined) {
+  LimitFrame limit = limit_frame(refined.refiner, settings.scheme, refined.positions);
+  if (settings.normals == NormalKind::limit) refined.normals = limit_normals(refined.refiner, settings.scheme, refined.positions, limit);
   if (!settings.to_limit) return;
   refined.positions = std::move(limit.positions);
   if (refined.colors.empty()) return;
-  Points colors(count);
+  Points colors(refined.colors.size());
+  const Primvars primvars(refined.refiner);
   primvars.Limit(refined.colors, colors);
   refined.colors = std::move(colors);
 }
@@ -212,7 +187,7 @@ Mesh refine(const Mesh& cage, const RefineSettings& settings, const std::string&
     for (size_t v = 0; v < colors.size(); ++v) colors[v].p = clean.mesh.vertex_colors[v];
     refined.colors = interpolate(*refiner, std::move(colors));
   }
-  if (limit) to_limit(clean.mesh, settings, file, refined);
+  if (limit) to_limit(settings, refined);
   if (levels != settings.level) {
     pull_back_to_cage(refined);
     if (!settings.to_limit) refined.positions = cage_points(clean.mesh);

@@ -15,6 +15,15 @@ Field part() {
   return combine(Csg::union_, combine(Csg::difference, box, bore), translate(make_shape("torus"), {0.5, 0.4, 0.0}), 0.15);
 }
 
+/// At a sharp seam rounding alone decides which side a voxel's node belongs to, so that equal pictures want a part without one.
+Field smooth_part() {
+  const Field box = make_shape("rounded_box", {{"half", {0.8, 0.6, 0.5}}, {"rounding", {0.2}}});
+  return combine(Csg::union_, translate(make_shape("torus"), {0.5, 0.4, 0.0}),
+                 combine(Csg::difference, box, make_shape("sphere", {{"radius", {0.62}}}), 0.1), 0.15);
+}
+
+Field part_for(const std::string& kind) { return kind.ends_with("level_set") ? smooth_part() : part(); }
+
 template <class T>
 bool same_bytes(const Image<T>& a, const Image<T>& b) {
   return a.pixels.size() == b.pixels.size() && std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(T)) == 0;
@@ -52,7 +61,7 @@ TEST(GBuffer, AMillionUnitsAwayThePictureIsTheSame) {
     settings.voxels = 64;
     settings.level = 2;
     settings.normals = NormalKind::limit;
-    const Scene here = scene_of({object_of(part())}), there = scene_of({object_of(translate(part(), far))});
+    const Scene here = scene_of({object_of(part_for(kind))}), there = scene_of({object_of(translate(part_for(kind), far))});
     const Camera camera = framing(here, view(80, 60));
     Camera far_camera = camera;
     far_camera.eye += far;
@@ -83,11 +92,11 @@ TEST(GBuffer, ScaledByAThousandBothWaysThePictureIsTheSame) {
     settings.voxels = 64;
     settings.level = 2;
     settings.normals = NormalKind::limit;
-    const Scene unit = scene_of({object_of(part())});
+    const Scene unit = scene_of({object_of(part_for(kind))});
     const Camera camera = framing(unit, view(80, 60));
     const GBuffer a = render_gbuffer(build_model(unit, settings), camera, {});
     for (const double factor : {1e-3, 1e3}) {
-      const Scene scene = scene_of({object_of(scale(part(), factor))});
+      const Scene scene = scene_of({object_of(scale(part_for(kind), factor))});
       Camera scaled = camera;
       scaled.eye *= factor;
       const GBuffer b = render_gbuffer(build_model(scene, settings), scaled, {});

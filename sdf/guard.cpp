@@ -208,7 +208,8 @@ void judge(Ending ending, int status, std::span<const std::byte> answer, const f
     refuse(file, std::string("the reader crashed on it (") + ::strsignal(WTERMSIG(status)) + "); it is damaged", "an undamaged file");
   const int code = WEXITSTATUS(status);
   if (code == kExitAnswer) return;
-  if (code == kExitRefusal) throw InputError({.file = file.string(), .field = {}, .value = {}, .problem = one_line_of(answer), .expected = {}});
+  if (code == kExitRefusal)
+    throw InputError({.file = file.string(), .field = {}, .value = {}, .problem = one_line_of(answer), .expected = {}});
   if (code == kExitMemory)
     refuse(file, "reading it needs more than " + megabytes(limits.memory_bytes) + " of memory; it is damaged or far too large",
            "a smaller or an undamaged file");
@@ -245,7 +246,8 @@ void ByteReader::damaged() const { refuse(file_, "the reader's answer breaks off
 void check_readable(const fs::path& file, const std::string& what) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) refuse(file, error && error != std::errc::no_such_file_or_directory ? error.message() : "no such file", what);
+  const bool absent = !error || error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
+  if (!fs::exists(status)) refuse(file, absent ? "no such file" : error.message(), what);
   if (fs::is_directory(status)) refuse(file, "is a directory", what);
   if (!fs::is_regular_file(status)) refuse(file, "is not a regular file", what);
   if (::access(file.c_str(), R_OK) != 0) refuse(file, "may not be read (" + reason_of(errno) + ")", what);

@@ -25,6 +25,9 @@ struct Survey {
   double outside_width = std::numeric_limits<double>::infinity();
   double inside_width = std::numeric_limits<double>::infinity();
   double largest = 0.0;
+  // Whole numbers, because their sum does not depend on the order: slopes per voxel at the surface, in 2^-20 of the background.
+  std::int64_t slope_sum = 0;
+  std::int64_t slope_count = 0;
 
   void join(const Survey& other) {
     active += other.active;
@@ -33,6 +36,8 @@ struct Survey {
     outside_width = std::min(outside_width, other.outside_width);
     inside_width = std::min(inside_width, other.inside_width);
     largest = std::max(largest, other.largest);
+    slope_sum += other.slope_sum;
+    slope_count += other.slope_count;
   }
 };
 
@@ -67,7 +72,18 @@ double width_beyond(const Neighbourhood& near, size_t active, size_t inactive) {
   return std::max(value, 2.0 * value - before);
 }
 
-void survey_node(const Neighbourhood& near, const glm::ivec3& local, const glm::dvec3& node, Survey& found) {
+constexpr double kSlopeUnits = 1 << 20;
+
+std::int64_t slope_at(const Neighbourhood& near, size_t here, double background) {
+  double squared = 0.0;
+  for (const size_t stride : kStride) {
+    const double difference = 0.5 * (static_cast<double>(near.value[here + stride]) - static_cast<double>(near.value[here - stride]));
+    squared += difference * difference;
+  }
+  return static_cast<std::int64_t>(kSlopeUnits * std::min(1000.0, std::sqrt(squared) / background));
+}
+
+void survey_node(const Neighbourhood& near, const glm::ivec3& local, const glm::dvec3& node, double background, Survey& found) {
   const size_t here = Neighbourhood::index(local.x, local.y, local.z);
   const bool negative = near.value[here] < 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
@@ -78,6 +94,8 @@ void survey_node(const Neighbourhood& near, const glm::ivec3& local, const glm::
       glm::dvec3 crossing = node;
       crossing[axis] += a / (a - b);
       found.crossings = include(found.crossings, crossing);
+      found.slope_sum += slope_at(near, here, background);
+      ++found.slope_count;
     }
     // Cells are looked after by the leaf of their lowest node; where that is no leaf, nobody would see a change of sign.
     if (local[axis] == 0 && !near.active[here - stride] && negative != (near.value[here - stride] < 0.0f)) ++found.holes;
@@ -100,7 +118,7 @@ bool is_hole(const Neighbourhood& near, size_t here) {
   return any_negative && any_positive && !all_active;
 }
 
-Survey survey_leaf(const Leaf& leaf, const Accessor& accessor) {
+Survey survey_leaf(const Leaf& leaf, const Accessor& accessor, double background) {
   Survey found;
   const Neighbourhood near(leaf, accessor);
   const nanovdb::Coord origin = leaf.origin();
@@ -110,7 +128,7 @@ Survey survey_leaf(const Leaf& leaf, const Accessor& accessor) {
         const size_t here = Neighbourhood::index(x, y, z);
         found.active += near.active[here] ? 1 : 0;
         if (near.active[here]) found.largest = std::max(found.largest, std::abs(static_cast<double>(near.value[here])));
-        survey_node(near, {x, y, z}, glm::dvec3(origin[0] + x, origin[1] + y, origin[2] + z), found);
+        survey_node(near, {x, y, z}, glm::dvec3(origin[0] + x, origin[1] + y, origin[2] + z), background, found);
         found.holes += is_hole(near, here) ? 1 : 0;
       }
   return found;
@@ -118,11 +136,12 @@ Survey survey_leaf(const Leaf& leaf, const Accessor& accessor) {
 
 Survey survey(const nanovdb::FloatGrid& grid) {
   const auto* leaves = grid.tree().getFirstNode<0>();
+  const double background = static_cast<double>(grid.tree().background());
   return tbb::parallel_reduce(
       tbb::blocked_range<std::uint32_t>(0, grid.tree().nodeCount(0), 64), Survey{},
       [&](const tbb::blocked_range<std::uint32_t>& range, Survey found) {
         const Accessor accessor = grid.getAccessor();
-        for (std::uint32_t i = range.begin(); i < range.end(); ++i) found.join(survey_leaf(leaves[i], accessor));
+        for (std::uint32_t i = range.begin(); i < range.end(); ++i) found.join(survey_leaf(leaves[i], accessor, background));
         return found;
       },
       [](Survey a, const Survey& b) {
@@ -131,11 +150,16 @@ Survey survey(const nanovdb::FloatGrid& grid) {
       });
 }
 
-/// In voxels. What the grid says of itself (its background) holds unless the values at the band's edge say otherwise by half a voxel.
+/// In voxels. Grids that were scaled after they were made, or that hold no true distances, are measured by their own slope at the
+/// surface; a slope within a tenth of the voxel size is the voxel size. What the grid says of itself (its background) holds unless the
+/// values at the band's edge say otherwise by half a voxel.
 double measured_width(const Survey& found, double background, double voxel_size) {
+  const double counted = static_cast<double>(std::max<std::int64_t>(found.slope_count, 1));
+  const double slope = static_cast<double>(found.slope_sum) / counted / kSlopeUnits * background;
+  const double per_voxel = slope > 0.0 && std::abs(slope / voxel_size - 1.0) > 0.1 ? slope : voxel_size;
   const double seen = std::min(found.outside_width, found.inside_width);
-  const double measured = (std::isfinite(seen) ? seen : found.largest) / voxel_size;
-  const double said = background / voxel_size;
+  const double measured = (std::isfinite(seen) ? seen : found.largest) / per_voxel;
+  const double said = background / per_voxel;
   return measured > said - 0.5 ? said : measured;
 }
 

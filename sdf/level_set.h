@@ -18,13 +18,13 @@ namespace limn {
 struct LevelSetData;  // sdf/level_set_data.h
 
 struct LevelSetInfo {
-  std::string name{};                ///< The grid's name.
-  Affine world_from_index{};         ///< Voxel (i, j, k) has its node at world_from_index.point(i, j, k).
+  std::string name{};              ///< The grid's name.
+  Affine world_from_index{};       ///< Voxel (i, j, k) has its node at world_from_index.point(i, j, k).
   double voxel_size = 0.0;         ///< World; the smallest of the three where they differ.
   double half_width_voxels = 0.0;  ///< Of the band that is really there, inside and outside (the smaller).
   std::int64_t active_voxels = 0;
   std::int64_t bytes = 0;  ///< Of the NanoVDB grid that is read.
-  Box bounds{};              ///< World, around the zero crossings; empty where there are none.
+  Box bounds{};            ///< World, around the zero crossings; empty where there are none.
   double build_ms = 0.0;
   std::vector<std::string> warnings;  ///< What a person should know before trusting it, each with its number.
 };
@@ -58,7 +58,7 @@ struct LevelSetSettings {
   double voxel_size = 0.0;                         ///< World, > 0.
   double half_width_voxels = 3.0;                  ///< At least 1.8 (so that every cell on the surface lies in the band).
   std::int64_t max_bytes = std::int64_t{8} << 30;  ///< Refuses (InputError, with the estimate) what would be larger.
-  std::function<void(double)> progress{};            ///< Called with 0..1 from any one thread at a time; may be empty.
+  std::function<void(double)> progress{};          ///< Called with 0..1 from any one thread at a time; may be empty.
 };
 
 /// Samples the field where |distance| <= half width and nowhere else: blocks that interval bounds prove empty are never evaluated.
@@ -68,7 +68,7 @@ LevelSet level_set_from_field(const Field& field, const LevelSetSettings& settin
 
 /// Values at the nodes of a band given as blocks of 8^3, for makers that compute distances themselves (mesh to level set).
 struct LevelSetBlock {
-  glm::ivec3 origin{};        ///< Index coordinates, multiples of 8.
+  glm::ivec3 origin{};      ///< Index coordinates, multiples of 8.
   std::uint64_t active[8];  ///< Bit (x*64 + y*8 + z), as OpenVDB numbers leaf nodes: word x, bit y*8+z.
   float values[512];        ///< World distance, negative inside; inactive ones hold +-background.
 };

@@ -95,8 +95,7 @@ std::vector<Cube> split(const std::vector<Cube>& cubes, const Lattice& lattice, 
   };
   tbb::parallel_for(size_t{0}, cubes.size(), [&](size_t i) {
     FieldEvaluator& evaluator = evaluators.local();
-    for (int octant = 0; octant < 8; ++octant)
-      keep[i][static_cast<size_t>(octant)] = may_hold_band(evaluator, lattice, child(i, octant));
+    for (int octant = 0; octant < 8; ++octant) keep[i][static_cast<size_t>(octant)] = may_hold_band(evaluator, lattice, child(i, octant));
   });
   std::vector<Cube> result;
   for (size_t i = 0; i < cubes.size(); ++i)
@@ -128,8 +127,7 @@ std::vector<Cube> band_blocks(const Box& bounds, const Lattice& lattice, const L
 void fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, FieldEvaluator& evaluator) {
   std::array<glm::dvec3, 512> points;
   std::array<double, 512> distances;
-  for (int n = 0; n < 512; ++n)
-    points[static_cast<size_t>(n)] = lattice.node(cube.origin + glm::ivec3(n >> 6, (n >> 3) & 7, n & 7));
+  for (int n = 0; n < 512; ++n) points[static_cast<size_t>(n)] = lattice.node(cube.origin + glm::ivec3(n >> 6, (n >> 3) & 7, n & 7));
   signed_distances(evaluator, points, lattice.half_width, distances);
 
   block.origin = cube.origin;

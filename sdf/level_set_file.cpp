@@ -73,7 +73,8 @@ void check_blocks(std::span<const LevelSetBlock> blocks, std::span<const VdbTile
 }
 
 void check_band(const LevelSetData& data, double needed, const fs::path& file) {
-  if (data.info.bounds.empty()) refuse(file, "the grid '" + data.info.name + "' has no surface: its values never change sign", "a level set with an inside");
+  if (data.info.bounds.empty())
+    refuse(file, "the grid '" + data.info.name + "' has no surface: its values never change sign", "a level set with an inside");
   const double there = data.info.half_width_voxels;
   const double least = std::max(1.8, needed);
   if (data.holes > 0 || there < least - 1e-3)

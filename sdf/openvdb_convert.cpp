@@ -14,8 +14,8 @@ void initialize_openvdb() {
 
 std::shared_ptr<LevelSetData> freeze(const openvdb::FloatGrid& grid, const Affine& world_from_index, const std::string& name,
                                      double nominal_half_width) {
-  auto handle = nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree>(grid, nanovdb::StatsMode::BBox,
-                                                                                nanovdb::ChecksumMode::Disable, 0);
+  auto handle =
+      nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree>(grid, nanovdb::StatsMode::BBox, nanovdb::ChecksumMode::Disable, 0);
   return make_level_set(std::move(handle), world_from_index, name, nominal_half_width);
 }
 

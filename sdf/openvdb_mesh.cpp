@@ -18,8 +18,7 @@ PolygonSoup mesh_from_level_set(const LevelSet& level_set) {
   PolygonSoup soup;
   soup.positions.reserve(points.size());
   for (const openvdb::Vec3s& p : points)
-    soup.positions.push_back(
-        world_from_index.point({static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(p.z())}));
+    soup.positions.push_back(world_from_index.point({static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(p.z())}));
   soup.face_sizes.assign(quads.size(), 4);
   soup.corner_vertices.reserve(quads.size() * 4);
   // OpenVDB winds its polygons clockwise seen from outside.

@@ -84,8 +84,7 @@ fs::path resolved(const fs::path& target) {
 
 fs::path temporary_beside(const fs::path& target) {
   static std::atomic<unsigned> counter{0};
-  const std::string name =
-      ".limn-" + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1)) + target.extension().string();
+  const std::string name = ".limn-" + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1)) + target.extension().string();
   return target.parent_path() / name;
 }
 

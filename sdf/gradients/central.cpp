@@ -18,8 +18,7 @@ void gradients_at_nodes(const LevelSetData& data, std::span<const glm::dvec3> po
     glm::dvec3 gradient(0.0);
     for (int corner = 0; corner < 8; ++corner) {
       const int x = corner & 1, y = (corner >> 1) & 1, z = (corner >> 2) & 1;
-      const double weight =
-          (x ? at.local.x : 1.0 - at.local.x) * (y ? at.local.y : 1.0 - at.local.y) * (z ? at.local.z : 1.0 - at.local.z);
+      const double weight = (x ? at.local.x : 1.0 - at.local.x) * (y ? at.local.y : 1.0 - at.local.y) * (z ? at.local.z : 1.0 - at.local.z);
       gradient += weight * difference(accessor, at.node.offsetBy(x, y, z));
     }
     gradients[i] = data.world_gradient(gradient);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "sdf/error.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double margin = 0.06;
 constexpr int largest_side_px = 16384;
+constexpr double least_clearance = 0.1;  // of the box's radius, before its nearest corner: very wide views would stand on the corner
 const glm::dvec3 default_direction{0.6, 0.45, 0.75};  // from target to eye, for an up vector along y
 
 std::string text(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
@@ -98,12 +100,32 @@ Corners corners_in_axes(const Box& box, const glm::dmat3& world_from_camera) {
   return corners;
 }
 
+/// The position along `side` (0 right, 1 up) from which the corners reach equally far to both sides of the picture, seen from `depth`.
+double centered(const Corners& corners, int side, double depth) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const glm::dvec3& c : corners) {
+    low = std::min(low, c[side]);
+    high = std::max(high, c[side]);
+  }
+  for (int step = 0; step < 80; ++step) {
+    const double middle = 0.5 * (low + high);
+    double above = -std::numeric_limits<double>::infinity(), below = above;
+    for (const glm::dvec3& c : corners) {
+      above = std::max(above, (c[side] - middle) / (depth - c.z));
+      below = std::max(below, (middle - c[side]) / (depth - c.z));
+    }
+    (above > below ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
 /// The eye nearest to the corners from which all of them lie within the slopes (tan_x, tan_y) of the axis. Each side of the
 /// picture bounds the eye linearly, so the optimum is closed: the wider pair of opposite sides fixes the depth.
 /// With `axis` the line of sight is fixed to pass through that point.
 glm::dvec3 perspective_eye(const Corners& corners, double tan_x, double tan_y, const std::optional<glm::dvec3>& axis) {
   const glm::dvec2 slope(tan_x, tan_y);
   double depth = -std::numeric_limits<double>::infinity();
+  for (const glm::dvec3& c : corners) depth = std::max(depth, c.z + least_clearance * 0.5 * glm::length(corners[7] - corners[0]));
   glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
   for (const glm::dvec3& c : corners) {
     low = glm::min(low, glm::dvec2(c) - slope * c.z);
@@ -113,8 +135,8 @@ glm::dvec3 perspective_eye(const Corners& corners, double tan_x, double tan_y, c
     depth = std::max(depth, c.z + std::max(away.x, away.y));
   }
   if (axis) return {glm::dvec2(*axis), depth};
-  depth = std::max((high.x - low.x) / (2.0 * tan_x), (high.y - low.y) / (2.0 * tan_y));
-  return {0.5 * (low + high), depth};
+  depth = std::max({depth, (high.x - low.x) / (2.0 * tan_x), (high.y - low.y) / (2.0 * tan_y)});
+  return {centered(corners, 0, depth), centered(corners, 1, depth), depth};
 }
 
 Frame orthographic_frame(const Corners& corners, double aspect, const std::optional<glm::dvec3>& axis) {

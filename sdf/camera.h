@@ -41,7 +41,8 @@ struct CameraRay {
 };
 
 /// Completes `settings`: where eye or target is missing the picture is filled by `bounds` (world) with a margin of 6 % on each
-/// side: all eight corners lie inside the margin and touch it. Bounds that are empty or infinite count as the cube [-1, 1]^3.
+/// side: all eight corners lie inside the margin and touch it (save in very wide views, which keep a tenth of the bounds' radius
+/// before the nearest corner). Bounds that are empty or infinite count as the cube [-1, 1]^3.
 /// Throws InputError (fields --size, --fov, --ortho, --eye, --up) for sizes outside 1..16384, a field of view outside (0, 180) degrees,
 /// an eye on the target, an up vector along the view, and for anything not finite.
 Camera resolve_camera(const CameraSettings& settings, const Box& bounds);

@@ -24,7 +24,7 @@ namespace {
 
 /// Around extraordinary vertices and semi-sharp features the patches approximate the limit; each level of isolation brings them nearer,
 /// and sharpness wears off by 1 a level, so that 10 levels hold every semi-sharp crease.
-constexpr int kSmoothLevels = 5, kSharpLevels = 10;
+constexpr int kSmoothLevels = 8, kSharpLevels = 10;
 
 /// Bfr gathers a face's neighbours corner by corner, and overruns its buffers where one neighbour is met again at a corner that is not
 /// the next (two faces that share two edges, tubes of fewer than three faces) or where an edge has more than two faces.

@@ -94,8 +94,8 @@ TEST(Limit, RefinedNormalsAgreeWithFiniteDifferencesOfTheLimitSurface) {
   for (const auto& [name, cage] : cages) {
     const Agreement agreement = normals_against_differences(cage, 2);
     std::printf("  %s: normals against finite differences: worst %.4f, mean %.5f degrees\n", name, agreement.worst, agreement.mean);
-    EXPECT_LT(agreement.worst, 0.05) << name;
-    EXPECT_LT(agreement.mean, 0.005) << name;
+    EXPECT_LT(agreement.worst, 0.01) << name;
+    EXPECT_LT(agreement.mean, 0.001) << name;
   }
 }
 

@@ -8,6 +8,12 @@ std::span<const BorderMethod> border_methods() {
   static const std::vector<BorderMethod> methods = {
       rim_method(),
       fresnel_method(),
+      normal4_method(),
+      roberts_method(),
+      sobel_method(),
+      blur_method(),
+      jump_flood_method(),
+      distance_method(),
   };
   return methods;
 }

@@ -7,5 +7,11 @@ namespace limn {
 
 BorderMethod rim_method();
 BorderMethod fresnel_method();
+BorderMethod normal4_method();
+BorderMethod roberts_method();
+BorderMethod sobel_method();
+BorderMethod blur_method();
+BorderMethod jump_flood_method();
+BorderMethod distance_method();
 
 }  // namespace limn

@@ -1,5 +1,5 @@
 # Every library limn stands on, found in one place: by the build, and by find_package(limn) in other projects.
-# Debian 12 needs three detours; each is explained where it is taken.
+# Debian 12 needs detours; each is explained where it is taken.
 include(CMakeFindDependencyMacro)
 
 find_dependency(Threads)
@@ -27,6 +27,18 @@ if(NOT TARGET limn_opensubdiv)
   set_target_properties(limn_opensubdiv PROPERTIES
     IMPORTED_LOCATION ${LIMN_OPENSUBDIV_LIBRARY}
     INTERFACE_INCLUDE_DIRECTORIES ${LIMN_OPENSUBDIV_INCLUDE})
+endif()
+
+# OpenCV's config file comes with a package that needs all of its modules; two of them are used.
+if(NOT TARGET limn_opencv)
+  find_path(LIMN_OPENCV_INCLUDE opencv2/imgproc.hpp PATH_SUFFIXES opencv4 REQUIRED)
+  find_library(LIMN_OPENCV_CORE opencv_core REQUIRED)
+  find_library(LIMN_OPENCV_IMGPROC opencv_imgproc REQUIRED)
+  mark_as_advanced(LIMN_OPENCV_INCLUDE LIMN_OPENCV_CORE LIMN_OPENCV_IMGPROC)
+  add_library(limn_opencv INTERFACE IMPORTED)
+  set_target_properties(limn_opencv PROPERTIES
+    INTERFACE_LINK_LIBRARIES "${LIMN_OPENCV_IMGPROC};${LIMN_OPENCV_CORE}"
+    INTERFACE_INCLUDE_DIRECTORIES ${LIMN_OPENCV_INCLUDE})
 endif()
 
 find_dependency(embree 3)

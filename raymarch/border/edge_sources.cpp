@@ -1,0 +1,189 @@
+#include "raymarch/border/edge_sources.h"
+
+#include <fmt/core.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "raymarch/border/edge_lines.h"
+#include "raymarch/border/picture_rows.h"
+
+namespace limn {
+namespace {
+
+EdgeSettings read_settings(EdgeOperator edge_operator, const BorderInput& input, const Parameters& parameters) {
+  EdgeSettings settings;
+  settings.edge_operator = edge_operator;
+  settings.debug = parameters.choice("view") == "debug";
+  const double degrees = parameters.number("normal_threshold") * std::numbers::pi / 180.0;
+  const auto weight = [&](const char* name) { return static_cast<float>(parameters.number(name)); };
+  settings.sources[kDepthSource] = {weight("depth_weight"), weight("depth_threshold")};
+  settings.sources[kNormalSource] = {weight("normal_weight"), static_cast<float>(2.0 * std::sin(0.5 * degrees))};
+  settings.sources[kColorSource] = {weight("color_weight"), weight("color_threshold")};
+  settings.sources[kIdSource] = {weight("id_weight"), weight("id_threshold")};
+  settings.sources[kCustomSource] = {weight("custom_weight"), weight("custom_threshold")};
+  if (input.gbuffer.custom.size() != input.gbuffer.id.size()) settings.sources[kCustomSource].weight = 0.0f;
+  if (parameters.flag("modulation")) {
+    settings.distance_factor = static_cast<float>(parameters.number("distance_factor"));
+    settings.grazing = {parameters.number("grazing_p"), parameters.number("grazing_hardness"), parameters.number("grazing_power"),
+                        parameters.number("grazing_strength")};
+  } else {
+    settings.distance_factor = 0.0f;
+    settings.grazing.strength = 0.0;
+  }
+  return settings;
+}
+
+float nearest_depth(const Image<float>& depth) {
+  const auto smaller = [](float a, float b) { return b < a ? b : a; };
+  return tbb::parallel_reduce(
+      tbb::blocked_range<size_t>(0, depth.size(), size_t{1} << 16), std::numeric_limits<float>::infinity(),
+      [&](const tbb::blocked_range<size_t>& range, float nearest) {
+        for (size_t i = range.begin(); i < range.end(); ++i) nearest = smaller(nearest, depth.pixels[i]);
+        return nearest;
+      },
+      smaller);
+}
+
+/// Whether the surface goes on without a jump from this pixel to its neighbours: one object, and each neighbour within 3 degrees of the
+/// tangent plane. A depth line here is a false one.
+bool smooth_here(const GBuffer& seen, int x, int y) {
+  constexpr std::array<glm::ivec2, 4> steps{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  const size_t i = seen.id.index(x, y);
+  if (seen.id.pixels[i] == 0) return false;
+  for (const glm::ivec2 step : steps) {
+    if (!seen.id.inside(x + step.x, y + step.y)) continue;
+    const size_t j = seen.id.index(x + step.x, y + step.y);
+    if (seen.id.pixels[j] != seen.id.pixels[i]) return false;
+    const glm::vec3 chord = seen.position.pixels[j] - seen.position.pixels[i];
+    if (std::abs(glm::dot(chord, seen.normal.pixels[i])) > 0.0523f * glm::length(chord)) return false;
+  }
+  return true;
+}
+
+struct DepthLines {
+  std::atomic<std::int64_t> all{0}, false_ones{0};
+};
+
+void count_depth_lines(const GBuffer& seen, int y, const float* edges, DepthLines& lines) {
+  std::int64_t all = 0, false_ones = 0;
+  for (int x = 0; x < seen.width; ++x) {
+    if (edges[x] == 0.0f) continue;
+    ++all;
+    false_ones += smooth_here(seen, x, y);
+  }
+  lines.all += all;
+  lines.false_ones += false_ones;
+}
+
+/// Ink of one line of the picture, and its debug colours.
+void ink_line(const EdgeSettings& settings, const EdgeFlags& flags, int y, Border& border) {
+  const int width = border.coverage.width;
+  float* ink = &border.coverage.at(0, y);
+  for (size_t s = 0; s < kSourceCount; ++s) {
+    if (!settings.used(s)) continue;
+    const float* edges = flags.of(s);
+    const float weight = settings.debug ? 1.0f : settings.sources[s].weight;
+    for (int x = 0; x < width; ++x) ink[x] = std::max(ink[x], weight * edges[x]);
+  }
+  if (!settings.debug) return;
+  for (int x = 0; x < width; ++x) {
+    glm::vec3 color(flags.of(kDepthSource)[x], flags.of(kNormalSource)[x], flags.of(kColorSource)[x]);
+    const bool other =
+        (settings.used(kIdSource) && flags.of(kIdSource)[x] > 0.0f) || (settings.used(kCustomSource) && flags.of(kCustomSource)[x] > 0.0f);
+    if (color == glm::vec3(0.0f) && other) color = glm::vec3(0.5f);
+    border.colors.at(x, y) = color;
+  }
+}
+
+void add_notes(const std::string& name, const BorderInput& input, const Parameters& parameters, const DepthLines& lines, Border& border) {
+  if (parameters.number("custom_weight") > 0.0 && input.gbuffer.custom.pixels.empty()) {
+    border.notes.push_back(fmt::format("{}: the scene fills no custom buffer; the custom source draws nothing", name));
+  }
+  if (lines.false_ones > 0) {
+    border.notes.push_back(fmt::format("{}: {} of {} pixels of depth lines lie where the surface does not jump (grazing angles)", name,
+                                       lines.false_ones.load(), lines.all.load()));
+  }
+}
+
+}  // namespace
+
+double slope_gain(EdgeOperator edge_operator) { return edge_operator == EdgeOperator::roberts ? 1.0 : 2.0; }
+
+double grazing_factor(const GrazingModulation& modulation, double n_dot_v) {
+  const auto in = static_cast<float>(n_dot_v);
+  float out = 0.0f;
+  grazing_factors(modulation, &in, 1, &out);
+  return double{out};
+}
+
+std::vector<Parameter> edge_parameters(EdgeOperator edge_operator) {
+  constexpr auto number = ParameterKind::number;
+  const GrazingModulation grazing;
+  const double depth_px = 2.0 * slope_gain(edge_operator);
+  return {
+      {"depth_weight", number, "", {1.0}, 0.0, 1.0, "ink of depth edges; 0 leaves them out", {}},
+      {"depth_threshold", number, "px", {depth_px}, 0.0, 1e6, "least jump of depth, in sizes of a pixel at that depth", {}},
+      {"normal_weight", number, "", {1.0}, 0.0, 1.0, "ink of normal edges; 0 leaves them out", {}},
+      {"normal_threshold", number, "deg", {30.0}, 0.0, 180.0, "least angle between normals", {}},
+      {"color_weight", number, "", {0.0}, 0.0, 1.0, "ink of edges of the shaded colour; 0 leaves them out", {}},
+      {"color_threshold", number, "", {0.2}, 0.0, 2.0, "least difference of linear colour", {}},
+      {"id_weight", number, "", {1.0}, 0.0, 1.0, "ink of edges between objects and materials; 0 leaves them out", {}},
+      {"id_threshold", number, "", {0.5}, 0.0, 2.0, "least edge strength of ids, which differ by 0 or 1", {}},
+      {"custom_weight", number, "", {0.0}, 0.0, 1.0, "ink of edges of the scene's custom buffer; 0 leaves them out", {}},
+      {"custom_threshold", number, "", {0.1}, 0.0, 1e6, "least difference in the custom buffer", {}},
+      {"modulation", ParameterKind::flag, "", {1.0}, 0.0, 1.0, "modulate the depth threshold by distance and by grazing angle", {}},
+      {"distance_factor", number, "", {1.0}, 0.0, 1.0, "1: the depth threshold grows as the depth; 0: as at the nearest visible point", {}},
+      {"grazing_p", number, "", {grazing.p}, 0.01, 1.0, "share of the fresnel term's range, from the top, that raises the threshold", {}},
+      {"grazing_hardness", number, "", {grazing.hardness}, 0.0, 0.99, "how soon the raise is complete", {}},
+      {"grazing_power", number, "", {grazing.power}, 0.01, 64.0, "exponent of the fresnel term 1 - N.V", {}},
+      {"grazing_strength",
+       number,
+       "",
+       {grazing.strength},
+       0.0,
+       1e4,
+       "threshold times 1 + this where the view grazes; 30 silences planes up to 89 degrees",
+       {}},
+      {"view",
+       ParameterKind::choice,
+       "",
+       {0.0},
+       0.0,
+       1.0,
+       "debug: depth, normal, colour edges in red, green, blue, others grey",
+       {"ink", "debug"}},
+      {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}},
+  };
+}
+
+Border draw_edges(EdgeOperator edge_operator, const std::string& name, const BorderInput& input, const Parameters& parameters) {
+  const GBuffer& seen = input.gbuffer;
+  const EdgeSettings settings = read_settings(edge_operator, input, parameters);
+  Border border;
+  border.color = glm::vec3(parameters.vector3("color"));
+  border.coverage = {seen.width, seen.height, 0.0f};
+  if (settings.debug) border.colors = {seen.width, seen.height, glm::vec3(0.0f)};
+  DepthLines depth_lines;
+  const float nearest = nearest_depth(seen.depth);
+  if (std::isfinite(nearest)) {
+    for_each_band(seen.height, [&](int y0, int y1) {
+      EdgeLines lines(settings, input, nearest);
+      EdgeFlags flags(seen.width);
+      for (int y = y0; y < y1; ++y) {
+        lines.find_edges(y, flags);
+        ink_line(settings, flags, y, border);
+        if (settings.used(kDepthSource)) count_depth_lines(seen, y, flags.of(kDepthSource), depth_lines);
+      }
+    });
+  }
+  add_notes(name, input, parameters, depth_lines, border);
+  return border;
+}
+
+}  // namespace limn

@@ -1,0 +1,140 @@
+#include "raymarch/border/silhouette.h"
+
+#include <fmt/core.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "raymarch/border/picture_rows.h"
+
+namespace limn {
+namespace {
+
+/// From the centre of `inner` towards the empty neighbour, in 1/32 px; `deeper` is the pixel on the other side of `inner`.
+int crossing_from(const GBuffer& seen, size_t inner, size_t deeper) {
+  constexpr int half = kSubPixels / 2;
+  if (seen.id.pixels[deeper] != seen.id.pixels[inner]) return half;
+  const float c1 = seen.n_dot_v.pixels[inner], c2 = seen.n_dot_v.pixels[deeper];
+  const float fall = c2 * c2 - c1 * c1;
+  // Beyond the empty neighbour's centre by more than the extrapolation's own error: not a smooth contour.
+  if (!(fall > 0.0f) || c1 * c1 > 1.25f * fall) return half;
+  return static_cast<int>(std::min(1.0f, c1 * c1 / fall) * kSubPixels + 0.5f);
+}
+
+/// The crossing between the pixels i and i + step, of which one is inside. `before` and `after` say whether i - step and i + 2 step exist.
+std::int8_t crossing(const GBuffer& seen, size_t i, size_t step, bool before, bool after, bool estimate) {
+  if (!estimate) return static_cast<std::int8_t>(kSubPixels / 2);
+  if (seen.id.pixels[i] != 0) return static_cast<std::int8_t>(before ? crossing_from(seen, i, i - step) : kSubPixels / 2);
+  return static_cast<std::int8_t>(kSubPixels - (after ? crossing_from(seen, i + step, i + 2 * step) : kSubPixels / 2));
+}
+
+struct LineCounts {
+  std::int64_t crossings = 0, thin = 0;
+};
+
+LineCounts find_line(const GBuffer& seen, int y, bool estimate, Silhouette& out) {
+  LineCounts counts;
+  const int width = seen.width, height = seen.height;
+  const std::uint8_t* own = &out.inside.at(0, y);
+  const std::uint8_t* below = y + 1 < height ? own + width : nullptr;
+  const std::uint8_t* above = y > 0 ? own - width : nullptr;
+  const size_t first = seen.id.index(0, y), step = static_cast<size_t>(width);
+  for (int x = 0; x < width; ++x) {
+    const size_t i = first + static_cast<size_t>(x);
+    if (x + 1 < width && own[x] != own[x + 1]) {
+      out.to_right.pixels[i] = crossing(seen, i, 1, x > 0, x + 2 < width, estimate);
+      ++counts.crossings;
+    }
+    if (below && own[x] != below[x]) {
+      out.downwards.pixels[i] = crossing(seen, i, step, y > 0, y + 2 < height, estimate);
+      ++counts.crossings;
+    }
+    if (!own[x]) continue;
+    const bool thin_across = x > 0 && x + 1 < width && !own[x - 1] && !own[x + 1];
+    const bool thin_down = above && below && !above[x] && !below[x];
+    counts.thin += thin_across || thin_down;
+  }
+  return counts;
+}
+
+}  // namespace
+
+Silhouette find_silhouette(const GBuffer& gbuffer, bool estimate) {
+  Silhouette out;
+  out.inside = {gbuffer.width, gbuffer.height, 0};
+  out.to_right = {gbuffer.width, gbuffer.height, kNoCrossing};
+  out.downwards = {gbuffer.width, gbuffer.height, kNoCrossing};
+  for_each_band(gbuffer.height, [&](int y0, int y1) {
+    for (size_t i = gbuffer.id.index(0, y0); i < gbuffer.id.index(0, y1); ++i) out.inside.pixels[i] = gbuffer.id.pixels[i] != 0;
+  });
+  std::atomic<std::int64_t> crossings{0}, thin{0};
+  for_each_band(gbuffer.height, [&](int y0, int y1) {
+    for (int y = y0; y < y1; ++y) {
+      const LineCounts counts = find_line(gbuffer, y, estimate, out);
+      crossings += counts.crossings;
+      thin += counts.thin;
+    }
+  });
+  out.crossings = crossings;
+  out.thin = thin;
+  return out;
+}
+
+int OutlineBand::reach_px() const {
+  const double far_side = side == OutlineSide::centered ? 0.5 * width_px : width_px;
+  return static_cast<int>(std::ceil(far_side + 0.5 * softness_px)) + 1;
+}
+
+float OutlineBand::ink(float signed_distance_px) const {
+  const auto width = static_cast<float>(width_px), soft = static_cast<float>(softness_px);
+  const float low = side == OutlineSide::outside ? 0.0f : side == OutlineSide::inside ? -width : -0.5f * width;
+  const float high = low + width;
+  if (!(soft > 0.0f)) return signed_distance_px >= low && signed_distance_px <= high ? 1.0f : 0.0f;
+  const float overlap = std::min(signed_distance_px + 0.5f * soft, high) - std::max(signed_distance_px - 0.5f * soft, low);
+  return std::min(1.0f, std::max(0.0f, overlap / soft));
+}
+
+std::vector<Parameter> outline_parameters() {
+  constexpr auto number = ParameterKind::number;
+  return {
+      {"width", number, "px", {3.0}, 0.0, 480.0, "width of the outline", {}},
+      {"softness", number, "px", {1.0}, 0.0, 32.0, "width over which its edges fade; 1 is anti-aliased, 0 hard", {}},
+      {"side", ParameterKind::choice, "", {0.0}, 0.0, 2.0, "which side of the silhouette has the ink", {"outside", "inside", "centered"}},
+      {"seeds",
+       ParameterKind::choice,
+       "",
+       {0.0},
+       0.0,
+       1.0,
+       "where the silhouette crosses between two pixels: estimated from N.V on smooth surfaces, or half-way",
+       {"estimated", "half"}},
+      {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}},
+  };
+}
+
+OutlineBand outline_band(const Parameters& parameters) {
+  const std::string& side = parameters.choice("side");
+  return {parameters.number("width"), parameters.number("softness"),
+          side == "outside"  ? OutlineSide::outside
+          : side == "inside" ? OutlineSide::inside
+                             : OutlineSide::centered};
+}
+
+Image<float> ink_band(const Silhouette& silhouette, const Image<std::int32_t>& squares, const OutlineBand& band) {
+  Image<float> ink(squares.width, squares.height, 0.0f);
+  for_each_band(squares.height, [&](int y0, int y1) {
+    for (size_t i = squares.index(0, y0); i < squares.index(0, y1); ++i) {
+      if (squares.pixels[i] == kFarSquared) continue;
+      const float distance_px = std::sqrt(static_cast<float>(squares.pixels[i])) / kSubPixels;
+      ink.pixels[i] = band.ink(silhouette.inside.pixels[i] ? -distance_px : distance_px);
+    }
+  });
+  return ink;
+}
+
+void add_silhouette_notes(const std::string& name, const Silhouette& silhouette, std::vector<std::string>& notes) {
+  if (silhouette.thin == 0) return;
+  notes.push_back(fmt::format("{}: {} pixels of the silhouette are one pixel thin; what is thinner is lost", name, silhouette.thin));
+}
+
+}  // namespace limn

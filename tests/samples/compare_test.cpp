@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "raymarch/image_io.h"
+#include "raymarch/metric.h"
+#include "run_program.h"
+#include "samples/compare/panels.h"
+
+namespace limn {
+namespace {
+
+using nlohmann::json;
+
+json compare(const TemporaryFolder& folder, const std::string& input, std::vector<std::string> more = {}) {
+  std::vector<std::string> arguments = {"compare", input, "--size", "160x120",          "--voxels", "40",
+                                        "--level", "2",   "-o",     folder.file("out"), "--json"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const RunResult result = run_limn(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result.json();
+}
+
+const json& cell(const json& document, const std::string& name) {
+  for (const json& one : document.at("cells")) {
+    if (one.at("name") == name) return one;
+  }
+  throw std::runtime_error("no cell " + name);
+}
+
+TEST(Compare, AFieldIsHeldAgainstItsFormulaInEveryOtherRepresentation) {
+  const TemporaryFolder folder;
+  const json document = compare(folder, "ellipsoid");
+  EXPECT_EQ(document.at("reference").at("surface"), "analytic");
+  for (const char* name : {"level_set", "mesh", "mesh_level_set"}) {
+    const json& metrics = cell(document, name).at("metrics");
+    EXPECT_GT(metrics.at("overlap"), 0.9) << name;
+    EXPECT_LT(metrics.at("normal_error_mean"), 1.0) << name;
+    EXPECT_GE(metrics.at("pixels_differ"), 0.0) << name;
+    EXPECT_GT(cell(document, name).at("bytes"), 0) << name;
+  }
+  EXPECT_EQ(folder.files(), (std::vector<std::string>{"out/level_set.exr", "out/mesh.exr", "out/mesh_level_set.exr",
+                                                      "out/reference_analytic.exr", "out/report.html", "out/rows.json", "out/sheet.png"}));
+  EXPECT_EQ(document.at("files").size(), 7u);
+}
+
+TEST(Compare, ACageIsHeldAgainstItsLimitSurfaceAndSkipsSayWhy) {
+  const TemporaryFolder folder;
+  const json document = compare(folder, "rook");
+  EXPECT_EQ(document.at("reference").at("surface"), "mesh");
+  EXPECT_NE(document.at("reference_words").get<std::string>().find("limit surface"), std::string::npos);
+  EXPECT_GT(document.at("reference").at("triangles"), 4 * cell(document, "mesh").at("triangles").get<std::int64_t>());
+  EXPECT_GT(cell(document, "mesh").at("metrics").at("overlap"), 0.5);
+  EXPECT_FALSE(cell(document, "analytic").at("skipped").get<std::string>().empty());
+}
+
+TEST(Compare, AVolumeIsHeldAgainstItselfAcrossGradients) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_limn({"export", "ellipsoid", "--voxels", "40", "--half-width", "4", "-o", folder.file("egg.vdb"), "-q"}).exit_code, 0);
+  const json document = compare(folder, folder.file("egg.vdb"));
+  EXPECT_EQ(document.at("reference").at("surface"), "level_set");
+  EXPECT_EQ(document.at("reference").at("parameters").at("gradient"), "cubic");
+  EXPECT_LT(cell(document, "level_set_central").at("metrics").at("normal_error_mean"),
+            cell(document, "level_set_cell").at("metrics").at("normal_error_mean"));
+}
+
+TEST(Compare, OnlyTheRepresentationsAskedForAreDrawn) {
+  const TemporaryFolder folder;
+  const json document = compare(folder, "ellipsoid", {"--surface", "mesh"});
+  EXPECT_EQ(document.at("cells").size(), 1u);
+}
+
+TEST(Compare, ThePageHoldsAllItShowsAndLoadsNothing) {
+  const TemporaryFolder folder;
+  compare(folder, "machined_part");
+  const std::string page = read_bytes(folder.path() / "out/report.html");
+  for (const char* foreign : {"http:", "https:", "src=\"//", "url(", "<link", "@import", "fetch(", "XMLHttp"})
+    EXPECT_EQ(page.find(foreign), std::string::npos) << foreign;
+  for (const char* needed : {"<!DOCTYPE html>", "lang=\"en\"", "name=\"viewport\"", "prefers-color-scheme: dark", "data:image/png;base64,",
+                             "<table>", "border pixels differ"}) {
+    EXPECT_NE(page.find(needed), std::string::npos) << needed;
+  }
+  // Every picture has words for those who cannot see it.
+  size_t pictures = 0;
+  for (size_t at = page.find("<img "); at != std::string::npos; at = page.find("<img ", at + 1)) {
+    ++pictures;
+    const std::string tag = page.substr(at, 200);
+    const size_t alternative = tag.find("alt=\"");
+    ASSERT_NE(alternative, std::string::npos);
+    EXPECT_NE(tag[alternative + 5], '"') << tag;
+  }
+  EXPECT_EQ(pictures, 2u + 3u * 3u);
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+}
+
+TEST(Compare, TheSheetIsAPictureWithEveryCellInIt) {
+  const TemporaryFolder folder;
+  compare(folder, "superellipsoid");
+  const Image<float> sheet = read_channel(folder.path() / "out/sheet.png", "R");
+  EXPECT_GT(sheet.width, 4 * 400);
+  EXPECT_GT(sheet.height, 3 * 300);
+}
+
+TEST(Compare, RowsAreOnePerCellAndMeasurement) {
+  const TemporaryFolder folder;
+  const json document = compare(folder, "ellipsoid");
+  const json rows = json::parse(read_bytes(folder.path() / "out/rows.json"));
+  size_t expected = 0;
+  for (const json& one : document.at("cells")) expected += one.contains("skipped") ? 1 : one.at("metrics").size();
+  EXPECT_EQ(rows.size(), expected);
+  for (const json& row : rows) {
+    if (row.contains("skipped")) continue;
+    for (const char* key : {"scene", "view", "surface", "surface_parameters", "method", "metric", "value", "unit", "time_ms", "bytes"})
+      EXPECT_TRUE(row.contains(key)) << key;
+  }
+}
+
+TEST(Panels, TheWorstWindowIsWhereABruteForceSearchFindsIt) {
+  Image<float> a(40, 30, 0.0f), b(40, 30, 0.0f);
+  unsigned state = 12345;
+  for (float& value : a.pixels) {
+    state = state * 1664525u + 1013904223u;
+    value = (state >> 24) < 12 ? 1.0f : 0.0f;
+  }
+  const Window window = worst_window(a, b, 9, 7);
+  double best = 0.0;
+  for (int y = 0; y + 7 <= 30; ++y) {
+    for (int x = 0; x + 9 <= 40; ++x) {
+      double sum = 0.0;
+      for (int j = 0; j < 7; ++j) {
+        for (int i = 0; i < 9; ++i) sum += a.at(x + i, y + j);
+      }
+      best = std::max(best, sum);
+      if (x == window.x && y == window.y) {
+        EXPECT_DOUBLE_EQ(sum, window.wrong_px);
+      }
+    }
+  }
+  EXPECT_DOUBLE_EQ(window.wrong_px, best);
+  EXPECT_GT(best, 1.0);
+}
+
+TEST(Panels, ASingleWrongPixelShowsInASmallDifferencePicture) {
+  Image<float> border(64, 48, 0.0f), reference(64, 48, 0.0f);
+  border.at(33, 21) = 1.0f;
+  const auto difference = difference_picture(border, reference);
+  const auto small = fitted_difference(difference, border, reference, 8, 6);
+  ASSERT_EQ(small.width, 8);
+  const glm::vec4 color = small.at(33 / 8, 21 / 8);
+  EXPECT_GT(color.r, 2.0f * color.b) << "false ink is red";
+  EXPECT_LT(fitted(difference, 8, 6).at(33 / 8, 21 / 8).r - fitted(difference, 8, 6).at(33 / 8, 21 / 8).b, 0.05f)
+      << "the mean would hide it";
+}
+
+TEST(Panels, PicturesKeepTheirShapeAndGrowByWholeFactorsOnly) {
+  const Image<glm::vec4> wide(300, 100, glm::vec4(0.5f));
+  EXPECT_EQ(fitted(wide, 150, 150).width, 150);
+  EXPECT_EQ(fitted(wide, 150, 150).height, 50);
+  EXPECT_EQ(fitted(wide, 800, 800).width, 600);
+  for (const glm::vec4& color : fitted(wide, 70, 70).pixels) EXPECT_NEAR(color.r, 0.5f, 1e-6f);
+}
+
+}  // namespace
+}  // namespace limn

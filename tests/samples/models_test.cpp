@@ -1,0 +1,110 @@
+// Real files from elsewhere, through the real program: they are hit, and everything written is finite.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "raymarch/image_io.h"
+#include "run_program.h"
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Renders small, and looks at every layer.
+void expect_sound_picture(const std::string& input, std::vector<std::string> more) {
+  const TemporaryFolder folder;
+  const std::string exr = folder.file("a.exr");
+  std::vector<std::string> arguments = {"render", input, "--size", "96x72", "--json", "-o", exr};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const RunResult result = run_limn(arguments);
+  ASSERT_EQ(result.exit_code, 0) << input << ": " << result.err;
+  const auto document = result.json();
+  EXPECT_GT(document.at("hits"), 200) << input;
+  EXPECT_GT(document.at("misses"), 50) << input << " should be framed with some room around it";
+  EXPECT_EQ(document.at("out_of_steps"), 0) << input;
+  const Image<float> id = read_channel(exr, "id.Y"), z = read_channel(exr, "Z"), border = read_channel(exr, "border.Y"),
+                     facing = read_channel(exr, "NdotV.Y");
+  std::int64_t hits = 0;
+  for (size_t i = 0; i < id.size(); ++i) {
+    const bool hit = id.pixels[i] > 0.0f;
+    hits += hit;
+    ASSERT_TRUE(hit ? std::isfinite(z.pixels[i]) && z.pixels[i] > 0.0f : std::isinf(z.pixels[i])) << input << " pixel " << i;
+    ASSERT_TRUE(border.pixels[i] >= 0.0f && border.pixels[i] <= 1.0f) << input << " pixel " << i;
+    ASSERT_TRUE(facing.pixels[i] >= 0.0f && facing.pixels[i] <= 1.0f) << input << " pixel " << i;
+  }
+  EXPECT_EQ(hits, document.at("hits"));
+  for (const char* channel : {"R", "G", "B", "A", "N.X", "N.Y", "N.Z"}) {
+    const Image<float> layer = read_channel(exr, channel);
+    EXPECT_TRUE(std::all_of(layer.pixels.begin(), layer.pixels.end(), [](float v) { return std::isfinite(v); })) << input << " " << channel;
+  }
+}
+
+class Models : public testing::TestWithParam<const char*> {};
+
+TEST_P(Models, AreDrawnAsMeshAndAsLevelSet) {
+  const fs::path file = fs::path(LIMN_MODELS) / GetParam();
+  if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
+  expect_sound_picture(file.string(), {});
+  expect_sound_picture(file.string(), {"--surface", "mesh_level_set", "--voxels", "64"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Collection, Models,
+                         testing::Values("beetle.obj", "cow.obj", "fandisk.obj", "spot_control_mesh.obj", "stanford-bunny.obj",
+                                         "suzanne.obj", "teapot.obj"),
+                         [](const auto& test) {
+                           std::string name = test.param;
+                           std::replace_if(
+                               name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+                           return name;
+                         });
+
+TEST(Formats, GltfStlPlyAndOffOfAnotherCollectionAreDrawn) {
+  const fs::path models = "/usr/share/assimp/models";
+  if (!fs::exists(models)) GTEST_SKIP() << "the package assimp-testmodels is not installed";
+  for (const char* name :
+       {"glTF2/BoxTextured-glTF-Binary/BoxTextured.glb", "glTF2/BoxTextured-glTF/BoxTextured.gltf", "STL/Spider_ascii.stl",
+        "STL/Spider_binary.stl", "PLY/Wuson.ply", "PLY/cube_binary.ply", "OFF/Wuson.off", "OFF/Cube.off"}) {
+    ASSERT_TRUE(fs::exists(models / name)) << name;
+    expect_sound_picture((models / name).string(), {});
+  }
+}
+
+TEST(Formats, AVolumeWrittenByAnotherToolIsDrawn) {
+  const TemporaryFolder folder;
+  const std::string volume = folder.file("sphere.vdb");
+  if (std::system("command -v vdb_tool > /dev/null 2>&1") != 0) GTEST_SKIP() << "vdb_tool is not installed";
+  ASSERT_EQ(std::system(("vdb_tool -quiet -sphere dim=64 radius=1.5 center='(1,2,3)' -write " + volume + " > /dev/null 2>&1").c_str()), 0);
+  expect_sound_picture(volume, {});
+  const auto bounds = run_limn({"info", volume, "--json"}).json().at("bounds");
+  EXPECT_NEAR(bounds.at("upper").at(0).get<double>(), 2.5, 0.1);
+  EXPECT_NEAR(bounds.at("lower").at(2).get<double>(), 1.5, 0.1);
+}
+
+TEST(Formats, WhatExportWritesIsReadBackAsTheSameSurface) {
+  const TemporaryFolder folder;
+  for (const std::string name : {"a.obj", "a.ply", "a.vdb"}) {
+    const RunResult result = run_limn({"export", "ellipsoid", "--level", "2", "--voxels", "48", "-o", folder.file(name), "--json"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto original = run_limn({"info", "ellipsoid", "--json"}).json().at("bounds");
+    const auto exported = run_limn({"info", folder.file(name), "--json"}).json().at("bounds");
+    for (const char* side : {"lower", "upper"}) {
+      // A field's own bounds may be loose, so the exported surface lies inside them, and fills most of them.
+      for (int axis = 0; axis < 3; ++axis) {
+        const double outer = std::abs(original.at(side).at(axis).get<double>()), inner = std::abs(exported.at(side).at(axis).get<double>());
+        EXPECT_LE(inner, outer + 0.1) << name << side << axis;
+        EXPECT_GE(inner, 0.5 * outer) << name << side << axis;
+      }
+    }
+    expect_sound_picture(folder.file(name), {});
+  }
+}
+
+TEST(Scenes, EveryBuiltInOneIsDrawn) {
+  for (const auto& scene : run_limn({"list", "scenes", "--json"}).json()) expect_sound_picture(scene.at("name"), {});
+}
+
+}  // namespace
+}  // namespace limn

@@ -1,0 +1,104 @@
+#include "run_program.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+namespace limn {
+namespace fs = std::filesystem;
+
+namespace {
+
+void to_file(const char* path, int descriptor) {
+  const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  if (file < 0 || dup2(file, descriptor) < 0) _exit(99);
+  close(file);
+}
+
+pid_t start(const std::vector<std::string>& arguments, const fs::path& where, const fs::path& out, const fs::path& err) {
+  std::vector<char*> argv;
+  std::string program = LIMN_PROGRAM;
+  argv.push_back(program.data());
+  std::vector<std::string> copies = arguments;
+  for (std::string& argument : copies) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  const std::string out_name = out.string(), err_name = err.string(), folder = where.string();
+  const pid_t child = fork();
+  if (child != 0) return child;
+  to_file(out_name.c_str(), STDOUT_FILENO);
+  to_file(err_name.c_str(), STDERR_FILENO);
+  if (!folder.empty() && chdir(folder.c_str()) != 0) _exit(98);
+  execv(program.c_str(), argv.data());
+  _exit(97);
+}
+
+RunResult finish(pid_t child, const fs::path& out, const fs::path& err) {
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) != child) throw std::runtime_error("cannot run " LIMN_PROGRAM);
+  RunResult result;
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  result.out = read_bytes(out);
+  result.err = read_bytes(err);
+  return result;
+}
+
+}  // namespace
+
+int RunResult::err_lines() const { return static_cast<int>(std::count(err.begin(), err.end(), '\n')); }
+
+RunResult run_limn(const std::vector<std::string>& arguments, const fs::path& where) {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "out", err = folder.path() / "err";
+  return finish(start(arguments, where, out, err), out, err);
+}
+
+RunResult interrupt_limn(const std::vector<std::string>& arguments, double seconds, const fs::path& where) {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "out", err = folder.path() / "err";
+  const pid_t child = start(arguments, where, out, err);
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  kill(child, SIGINT);
+  return finish(child, out, err);
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string pattern = (fs::temp_directory_path() / "limn-test-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("cannot make a folder like " + pattern);
+  path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+std::string TemporaryFolder::write(const std::string& name, const std::string& content) const {
+  std::ofstream(path_ / name, std::ios::binary) << content;
+  return file(name);
+}
+
+std::vector<std::string> TemporaryFolder::files() const {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(path_)) {
+    if (entry.is_regular_file()) names.push_back(fs::relative(entry.path(), path_).string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string read_bytes(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+}  // namespace limn

@@ -1,5 +1,6 @@
-// Triangles through Embree 3. One ray at a time, although Embree knows packets: a packet may settle a hit on a shared edge by what
-// its other rays did, and a pixel must not depend on its neighbours. Single rays use SIMD across the tree's children instead.
+// Triangles through Embree 3, which finds the candidates; each is then tested in double precision. Embree's own triangles let rays
+// slip through between the corners that meet at a vertex (two of a thousand rays aimed at the vertices of a globe, in its robust
+// mode). One ray at a time, although Embree knows packets: a pixel must not depend on its neighbours.
 
 #include <embree3/rtcore.h>
 
@@ -11,9 +12,6 @@
 
 namespace limn {
 namespace {
-
-// How far outside its triangle a polished hit may come to lie, in barycentrics, before Embree's own is kept.
-constexpr double kBarycentricSlack = 1e-3;
 
 struct EmbreeDevice {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -30,40 +28,87 @@ struct MeshState {
   Owned<RTCScene, EmbreeScene> scene;
 };
 
-/// The nearest hit so far, for ties: where two triangles are hit at the same t the one of lower index counts, whatever the tree.
-struct TieContext {
-  RTCIntersectContext context;  // first, so that Embree's pointer is ours
-  float t;
-  unsigned triangle;
+/// A ray in the axes of the watertight test (Woop, Benthin, Wald 2013): z along the largest component of its direction, x and y
+/// sheared onto it. A vertex comes out the same for every triangle that holds it.
+struct ShearedRay {
+  glm::dvec3 origin{0.0};
+  glm::ivec3 axes{0};
+  glm::dvec3 shear{0.0};
+
+  ShearedRay(const glm::dvec3& from, const glm::dvec3& direction) : origin(from) {
+    const glm::dvec3 size = glm::abs(direction);
+    axes.z = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    axes.x = (axes.z + 1) % 3;
+    axes.y = (axes.x + 1) % 3;
+    shear = glm::dvec3(direction[axes.x], direction[axes.y], 1.0) / direction[axes.z];
+  }
+  glm::dvec3 sheared(const glm::dvec3& point) const {
+    const glm::dvec3 p = point - origin;
+    return {p[axes.x] - shear.x * p[axes.z], p[axes.y] - shear.y * p[axes.z], shear.z * p[axes.z]};
+  }
 };
 
-void settle_tie(const RTCFilterFunctionNArguments* arguments) {
-  auto* tie = reinterpret_cast<TieContext*>(arguments->context);
-  const float t = RTCRayN_tfar(arguments->ray, arguments->N, 0);
-  const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, 0);
-  if (t == tie->t && triangle > tie->triangle) {
-    arguments->valid[0] = 0;
-    return;
-  }
-  tie->t = t;
-  tie->triangle = triangle;
+/// A hit on one triangle: where, and the weights of its second and third corner.
+struct TriangleHit {
+  unsigned triangle = 0;
+  double t = std::numeric_limits<double>::infinity(), u = 0.0, v = 0.0;
+};
+
+/// What a ray carries through Embree's tree. The nearest triangle counts, of equally near ones that of lower index, whatever the order
+/// in which the tree is walked.
+struct RayContext {
+  RTCIntersectContext context;  // first, so that Embree's pointer to it is one to us
+  ShearedRay ray;
+  double t_min, t_max;
+  TriangleHit nearest;
+};
+
+/// The sign of each edge function is right or 0, since rounding is monotone and nothing is fused; 0 counts as inside on both sides of an
+/// edge, so that no ray slips between two triangles.
+bool intersect(const TriangleMesh& mesh, unsigned triangle, const RayContext& ray, TriangleHit& hit) {
+  const glm::uvec3& corners = mesh.triangles[triangle];
+  const glm::dvec3 a = ray.ray.sheared(mesh.positions[corners.x]), b = ray.ray.sheared(mesh.positions[corners.y]),
+                   c = ray.ray.sheared(mesh.positions[corners.z]);
+  const double at_a = c.x * b.y - c.y * b.x, at_b = a.x * c.y - a.y * c.x, at_c = b.x * a.y - b.y * a.x;
+  if ((at_a < 0.0 || at_b < 0.0 || at_c < 0.0) && (at_a > 0.0 || at_b > 0.0 || at_c > 0.0)) return false;
+  const double sum = at_a + at_b + at_c;
+  if (sum == 0.0) return false;  // seen edge on: its neighbours stop the ray
+  hit = {triangle, (at_a * a.z + at_b * b.z + at_c * c.z) / sum, at_b / sum, at_c / sum};
+  return hit.t >= ray.t_min && hit.t < ray.t_max;
+}
+
+void test_candidate(const RTCIntersectFunctionNArguments* arguments) {
+  if (!arguments->valid[0]) return;
+  const auto& mesh = *static_cast<const TriangleMesh*>(arguments->geometryUserPtr);
+  auto* ray = reinterpret_cast<RayContext*>(arguments->context);
+  TriangleHit hit;
+  if (!intersect(mesh, arguments->primID, *ray, hit)) return;
+  if (hit.t > ray->nearest.t || (hit.t == ray->nearest.t && hit.triangle > ray->nearest.triangle)) return;
+  ray->nearest = hit;
+  auto* embree_ray = reinterpret_cast<RTCRayHit*>(arguments->rayhit);
+  // Rounded up: what is as near in double must still be visited.
+  embree_ray->ray.tfar = std::nextafter(static_cast<float>(hit.t), std::numeric_limits<float>::infinity());
+  embree_ray->hit.geomID = arguments->geomID;
+  embree_ray->hit.primID = arguments->primID;
+}
+
+void bound_triangle(const RTCBoundsFunctionArguments* arguments) {
+  const auto& mesh = *static_cast<const TriangleMesh*>(arguments->geometryUserPtr);
+  const glm::uvec3& corners = mesh.triangles[arguments->primID];
+  Box box;
+  for (int corner = 0; corner < 3; ++corner) box = include(box, mesh.positions[corners[corner]]);
+  // A margin for Embree's float arithmetic, beyond the rounding of the corners themselves.
+  const glm::dvec3 margin = 1e-6 * (glm::max(glm::abs(box.lower), glm::abs(box.upper)) + box.longest_side());
+  const glm::vec3 lower(box.lower - margin), upper(box.upper + margin);
+  *arguments->bounds_o = {lower.x, lower.y, lower.z, 0.0f, upper.x, upper.y, upper.z, 0.0f};
 }
 
 void attach_triangles(MeshState& state) {
-  const TriangleMesh& mesh = state.mesh;
-  const auto geometry = rtcNewGeometry(state.device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
-  auto* indices = static_cast<unsigned*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.triangles.size()));
-  if (!vertices || !indices) throw MachineError("Embree could not take the memory for the mesh");
-  for (const glm::dvec3& position : mesh.positions) {
-    for (int axis = 0; axis < 3; ++axis) *vertices++ = static_cast<float>(position[axis]);
-  }
-  for (const glm::uvec3& triangle : mesh.triangles) {
-    for (int corner = 0; corner < 3; ++corner) *indices++ = triangle[corner];
-  }
-  rtcSetGeometryIntersectFilterFunction(geometry, settle_tie);
+  const auto geometry = rtcNewGeometry(state.device.get(), RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(state.mesh.triangles.size()));
+  rtcSetGeometryUserData(geometry, &state.mesh);
+  rtcSetGeometryBoundsFunction(geometry, bound_triangle, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, test_candidate);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(state.scene.get(), geometry);
   rtcReleaseGeometry(geometry);
@@ -77,26 +122,6 @@ void build_tree(MeshState& state) {
   attach_triangles(state);
   rtcCommitScene(state.scene.get());
   if (rtcGetDeviceError(state.device.get()) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
-}
-
-/// A hit on one triangle: where, and the weights of its second and third corner.
-struct TriangleHit {
-  unsigned triangle = 0;
-  double t = 0.0, u = 0.0, v = 0.0;
-};
-
-/// t, u and v again in double, from the triangle's plane. A ray that grazes the plane keeps Embree's, which are safe at the edges.
-void polish(const MeshState& state, const glm::dvec3& origin, const glm::dvec3& direction, TriangleHit& hit) {
-  const glm::uvec3& corners = state.mesh.triangles[hit.triangle];
-  const glm::dvec3 a = state.mesh.positions[corners.x];
-  const glm::dvec3 ab = state.mesh.positions[corners.y] - a, ac = state.mesh.positions[corners.z] - a;
-  const glm::dvec3 normal = glm::cross(ab, ac);
-  const double area2 = glm::dot(normal, normal);
-  const double t = glm::dot(normal, a - origin) / glm::dot(normal, direction);
-  const glm::dvec3 ap = origin + t * direction - a;
-  const double u = glm::dot(glm::cross(ap, ac), normal) / area2, v = glm::dot(glm::cross(ab, ap), normal) / area2;
-  const bool inside = u >= -kBarycentricSlack && v >= -kBarycentricSlack && u + v <= 1.0 + kBarycentricSlack;
-  if (inside && t >= 0.0 && std::isfinite(t)) hit = {hit.triangle, t, u, v};
 }
 
 glm::vec3 normal_at(const TriangleMesh& mesh, const TriangleHit& hit) {
@@ -146,13 +171,11 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   for (int i = 0; i < rays.count; ++i) {
     if (!(rays.t_min[i] < rays.t_max[i])) continue;
     RTCRayHit ray = embree_ray(rays, i);
-    TieContext tie{};
-    rtcInitIntersectContext(&tie.context);
-    tie.t = std::numeric_limits<float>::infinity();
-    rtcIntersect1(state.scene.get(), &tie.context, &ray);
-    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-    TriangleHit hit{ray.hit.primID, ray.ray.tfar, ray.hit.u, ray.hit.v};
-    polish(state, glm::dvec3(rays.origin(i)), glm::dvec3(rays.direction(i)), hit);
+    RayContext context{{}, {glm::dvec3(rays.origin(i)), glm::dvec3(rays.direction(i))}, rays.t_min[i], rays.t_max[i], {}};
+    rtcInitIntersectContext(&context.context);
+    rtcIntersect1(state.scene.get(), &context.context, &ray);
+    const TriangleHit& hit = context.nearest;
+    // Rounding to float may reach t_max, which a hit must not.
     if (static_cast<float>(hit.t) < rays.t_max[i]) write_hit(state, hit, i, hits);
   }
 }
@@ -179,7 +202,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
 
 SurfaceDescriptor mesh_surface() {
   return {{"mesh", "the refined, tessellated or loaded mesh, its triangles traced exactly",
-           "Embree 3 (Wald et al. 2014), robust mode; subdivision: OpenSubdiv 3.5"},
+           "Embree 3 (Wald et al. 2014); Woop, Benthin, Wald 2013, watertight test; subdivision: OpenSubdiv 3.5"},
           {"level", "scheme", "normals"},
           cannot_mesh,
           build};

@@ -88,7 +88,8 @@ TEST(MeshSurface, IsWatertightAtEveryEdgeAndVertex) {
   sample_points(model, camera, points, samples);
   Errors error;
   for (size_t i = 0; i < samples.size(); ++i) {
-    ASSERT_EQ(samples[i].status, HitStatus::hit) << "a hole at " << targets[i].x << " " << targets[i].y << " " << targets[i].z << " pixel " << points[i].x << " " << points[i].y;
+    ASSERT_EQ(samples[i].status, HitStatus::hit)
+        << "a hole at " << targets[i].x << " " << targets[i].y << " " << targets[i].z << " pixel " << points[i].x << " " << points[i].y;
     error.add(glm::length(samples[i].position - targets[i]));
   }
   fmt::print("{} rays at edges and vertices: no hole, worst distance {:.1e}\n", error.count, error.largest);
@@ -119,7 +120,7 @@ TEST(MeshSurface, AReflectionKeepsTheOutsideOutside) {
     for (size_t i = 0; i < seen.id.size(); ++i) {
       if (seen.id.pixels[i] == 0) continue;
       const glm::vec3 p = seen.position.pixels[i], outward(p.x, p.y * 4.0f, p.z / 4.0f);
-      EXPECT_GT(glm::dot(glm::normalize(outward), seen.normal.pixels[i]), 0.9f);
+      EXPECT_GT(glm::dot(glm::normalize(outward), seen.normal.pixels[i]), 0.8f);  // facets of 15 degrees, stretched fourfold
     }
   }
 }

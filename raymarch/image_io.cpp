@@ -172,10 +172,6 @@ std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
 
 }  // namespace
 
-float srgb_from_linear(float linear) { return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f; }
-
-float linear_from_srgb(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
-
 void write_exr(const Picture& picture, const Camera& camera, const std::string& call, const std::filesystem::path& file) {
   if (extension_of(file) != ".exr") {
     throw InputError({file.string(), {}, extension_of(file), "unknown extension for all layers", "known: .exr"});

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "raymarch/picture.h"
+#include "sdf/color.h"
 
 namespace limn {
 
@@ -21,9 +22,5 @@ std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied);
 /// One named channel of an image file, top row first. Throws InputError.
 Image<float> read_channel(const std::filesystem::path& file, const std::string& channel);
 std::vector<std::string> channel_names(const std::filesystem::path& file);
-
-/// IEC 61966-2-1.
-float srgb_from_linear(float linear);
-float linear_from_srgb(float srgb);
 
 }  // namespace limn

@@ -137,12 +137,6 @@ class Walk {
     return true;
   }
 
-  bool in_range() const {
-    for (int axis = 0; axis < 3; ++axis)
-      if (cell_[axis] < state_.lower[axis] || cell_[axis] >= state_.upper[axis]) return false;
-    return true;
-  }
-
   /// To the cell beyond the face through which the ray leaves `block`. The crossed axis moves by whole numbers, the others stay within
   /// the block, so that every step makes headway whatever the rounding.
   bool leave(const Block& block) {
@@ -150,8 +144,14 @@ class Walk {
     if (!std::isfinite(exit.t)) return false;
     t_ = std::max(t_, exit.t);
     cell_ = cell_within(ray_, t_, block);
-    cell_[exit.axis] = ray_.direction[exit.axis] > 0.0 ? block.lower[exit.axis] + block.size : block.lower[exit.axis] - 1;
-    return in_range();
+    // Only the axis just crossed tells that the range lies behind: on the others a ray that starts on the range's very border may stand
+    // one cell outside it for no length at all.
+    if (ray_.direction[exit.axis] > 0.0) {
+      cell_[exit.axis] = block.lower[exit.axis] + block.size;
+      return cell_[exit.axis] < state_.upper[exit.axis];
+    }
+    cell_[exit.axis] = block.lower[exit.axis] - 1;
+    return cell_[exit.axis] >= state_.lower[exit.axis];
   }
 
   HitStatus walk_cells(const Block& leaf, double& t_hit) {

@@ -85,12 +85,25 @@ TEST_P(LevelSetPictures, OfAJitteredEllipsoidConvergeOnTheClosedForm) {
       EXPECT_EQ(e[k].missed, 0) << seed;
       EXPECT_EQ(e[k].spurious, 0) << seed;
     }
-    EXPECT_LT(e[2].depth_p99, 0.02) << seed;
     const double least = gradient.order == 3 ? 2.7 : gradient.order - 0.2;
     EXPECT_GE(0.5 * std::log2(e[0].normal_rms / e[2].normal_rms), least) << gradient.about.name << " seed " << seed;
     EXPECT_GE(0.5 * std::log2(e[0].normal_worst / e[2].normal_worst), least) << gradient.about.name << " seed " << seed;
   }
 }
+
+// Along the ray a trilinear surface is off by the chord's h^2 / 8 times the curvatures, and more where the ray grazes: in voxels the
+// error is in proportion to the voxel. On this ellipsoid 0.025 at 200 voxels along the longest side; 0.02 takes 260.
+TEST_P(LevelSetPictures, DepthIsWithinAFiftiethOfAVoxelForNinetyNineOfAHundredPixels) {
+  const std::uint64_t seed = fresh_seed();
+  const Ellipsoid shape = Ellipsoid::jittered(seed);
+  const Camera camera = resolve_camera({.projection = GetParam(), .width_px = 240, .height_px = 180}, shape.field().traits().bounds);
+  const PictureErrors e = compare(shape, camera, "cell", 0.005);
+  std::printf("h 0.005: depth in voxels mean %.1e p99 %.1e worst %.1e\n", e.depth_mean, e.depth_p99, e.depth_worst);
+  EXPECT_EQ(e.missed + e.spurious, 0) << seed;
+  EXPECT_LT(e.depth_p99, 0.02) << seed;
+  EXPECT_LT(e.depth_mean, 0.006) << seed;
+}
+
 INSTANTIATE_TEST_SUITE_P(Projections, LevelSetPictures, testing::Values(Projection::perspective, Projection::orthographic));
 
 }  // namespace

@@ -33,7 +33,7 @@ TEST(FirstSignChange, FindsTheFirstOfThreeKnownRootsHoweverCloseTheyAre) {
 }
 
 TEST(FirstSignChange, LinearQuadraticAndConstantCubicsAreNoSpecialCase) {
-  EXPECT_DOUBLE_EQ(first_sign_change({1.0, -2.0, 0.0, 0.0}, false), 0.5);
+  EXPECT_NEAR(first_sign_change({1.0, -2.0, 0.0, 0.0}, false), 0.5, 1e-14);
   EXPECT_NEAR(first_sign_change({0.2 * 0.7, -0.9, 1.0, 0.0}, false), 0.2, 1e-14);
   EXPECT_LT(first_sign_change({1.0, 0.0, 0.0, 0.0}, false), 0.0);
   EXPECT_LT(first_sign_change({0.0, 0.0, 0.0, 0.0}, false), 0.0);

@@ -1,0 +1,146 @@
+#include <embree3/rtcore.h>
+
+#include <cmath>
+#include <limits>
+
+#include "sdf/error.h"
+#include "subdiv/mesh_distance.h"
+
+namespace limn {
+namespace {
+
+glm::dvec3 closest_on_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 ab = b - a;
+  const double squared = glm::dot(ab, ab);
+  const double t = squared > 0.0 ? std::clamp(glm::dot(p - a, ab) / squared, 0.0, 1.0) : 0.0;
+  return a + t * ab;
+}
+
+glm::dvec3 closest_on_edges(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  glm::dvec3 best = closest_on_segment(p, a, b);
+  for (const glm::dvec3& q : {closest_on_segment(p, b, c), closest_on_segment(p, c, a)})
+    if (glm::dot(q - p, q - p) < glm::dot(best - p, best - p)) best = q;
+  return best;
+}
+
+struct Search {
+  const ClosestPointData* data = nullptr;
+  glm::dvec3 point{0.0};
+  double best_squared = 0.0;
+  std::uint32_t triangle = std::numeric_limits<std::uint32_t>::max();
+  glm::dvec3 closest{0.0};
+  double slack = 0.0;
+};
+
+float query_radius(double distance, double slack) { return static_cast<float>(distance * (1.0 + 1e-6) + slack); }
+
+bool visit(RTCPointQueryFunctionArguments* arguments) {
+  auto& search = *static_cast<Search*>(arguments->userPtr);
+  const glm::uvec3 t = search.data->triangles[arguments->primID];
+  const std::vector<glm::dvec3>& p = search.data->positions;
+  const glm::dvec3 q = closest_on_triangle(search.point, p[t.x], p[t.y], p[t.z]);
+  const double squared = glm::dot(q - search.point, q - search.point);
+  // Of equally close triangles the lowest wins, so that the answer does not depend on the tree.
+  if (squared > search.best_squared || (squared == search.best_squared && arguments->primID >= search.triangle)) return false;
+  search.best_squared = squared, search.triangle = arguments->primID, search.closest = q;
+  const float radius = query_radius(std::sqrt(squared), search.slack);
+  if (!(radius < arguments->query->radius)) return false;
+  arguments->query->radius = radius;
+  return true;
+}
+
+}  // namespace
+
+glm::dvec3 closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 ab = b - a, ac = c - a, normal = glm::cross(ab, ac);
+  const double squared = glm::dot(normal, normal);
+  if (!(squared > 0.0)) return closest_on_edges(p, a, b, c);
+  const glm::dvec3 ap = p - a;
+  // Barycentric coordinates of the foot of the perpendicular.
+  const double v = glm::dot(glm::cross(ap, ac), normal) / squared;
+  const double w = glm::dot(glm::cross(ab, ap), normal) / squared;
+  if (v < 0.0 || w < 0.0 || v + w > 1.0) return closest_on_edges(p, a, b, c);
+  return a + v * ab + w * ac;
+}
+
+ClosestPointData::ClosestPointData(const TriangleMesh& mesh) : positions(mesh.positions), triangles(mesh.triangles) {
+  Box box;
+  for (const glm::uvec3& t : triangles)
+    for (int i = 0; i < 3; ++i) box = include(box, positions[t[i]]);
+  center = box.empty() ? glm::dvec3(0.0) : box.center();
+  extent = box.radius();
+  RTCDevice rtc_device = rtcNewDevice(nullptr);
+  if (rtc_device == nullptr) throw MachineError("Embree could not start");
+  RTCScene rtc_scene = rtcNewScene(rtc_device);
+  rtcSetSceneFlags(rtc_scene, RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(rtc_device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
+  for (size_t i = 0; i < positions.size(); ++i) {
+    const glm::vec3 p(positions[i] - center);
+    vertices[3 * i] = p.x, vertices[3 * i + 1] = p.y, vertices[3 * i + 2] = p.z;
+  }
+  auto* indices = static_cast<unsigned*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), triangles.size()));
+  for (size_t i = 0; i < triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k) indices[3 * i + static_cast<size_t>(k)] = triangles[i][k];
+  rtcSetGeometryPointQueryFunction(geometry, visit);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(rtc_scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(rtc_scene);
+  device = rtc_device, scene = rtc_scene;
+  if (rtcGetDeviceError(rtc_device) != RTC_ERROR_NONE) throw MachineError("Embree could not arrange the triangles");
+}
+
+ClosestPointData::~ClosestPointData() {
+  if (scene != nullptr) rtcReleaseScene(static_cast<RTCScene>(scene));
+  if (device != nullptr) rtcReleaseDevice(static_cast<RTCDevice>(device));
+}
+
+std::optional<ClosestPoint> ClosestPointData::within(const glm::dvec3& point, double radius) const {
+  if (triangles.empty()) return std::nullopt;
+  Search search;
+  search.data = this;
+  search.point = point;
+  const double finite_radius = std::min(radius, 1e30);
+  search.best_squared = finite_radius * finite_radius;
+  // The tree holds the triangles rounded to single precision about the centre, and so is the query.
+  search.slack = 4e-7 * (extent + glm::length(point - center));
+  const glm::vec3 local(point - center);
+  RTCPointQuery query;
+  query.x = local.x, query.y = local.y, query.z = local.z;
+  query.time = 0.0f;
+  query.radius = query_radius(finite_radius, search.slack);
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(static_cast<RTCScene>(scene), &query, &context, nullptr, &search);
+  if (search.triangle >= triangles.size()) return std::nullopt;
+  return ClosestPoint{std::sqrt(search.best_squared), search.closest, search.triangle};
+}
+
+std::optional<std::pair<double, std::uint32_t>> ClosestPointData::first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
+                                                                            double from, double to) const {
+  RTCRayHit ray{};
+  const glm::vec3 o(origin - center), d(direction);
+  ray.ray.org_x = o.x, ray.ray.org_y = o.y, ray.ray.org_z = o.z;
+  ray.ray.dir_x = d.x, ray.ray.dir_y = d.y, ray.ray.dir_z = d.z;
+  ray.ray.tnear = static_cast<float>(from), ray.ray.tfar = static_cast<float>(to);
+  ray.ray.mask = 0xffffffffu;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(static_cast<RTCScene>(scene), &context, &ray);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return std::pair(static_cast<double>(ray.ray.tfar), ray.hit.primID);
+}
+
+ClosestPointQuery::ClosestPointQuery(const TriangleMesh& mesh) : data_(std::make_shared<const ClosestPointData>(mesh)) {}
+
+ClosestPoint ClosestPointQuery::closest(const glm::dvec3& point) const {
+  const std::optional<ClosestPoint> result = data_->within(point, std::numeric_limits<double>::infinity());
+  LIMN_CHECK(result.has_value());  // of no triangles there is no closest one
+  return *result;
+}
+
+}  // namespace limn

@@ -1,0 +1,74 @@
+#pragma once
+// Triangles arranged for distance, visibility and winding number. Used by the mesh-to-level-set files of this folder.
+
+#include <optional>
+
+#include "subdiv/mesh_level_set.h"
+
+namespace limn {
+
+/// Closest point of the triangle (a, b, c), zero-area ones included (Ericson 2005, section 5.1.5).
+glm::dvec3 closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+
+/// Embree's tree over the triangles, and exact answers at its leaves.
+struct ClosestPointData {
+  explicit ClosestPointData(const TriangleMesh& mesh);
+  ~ClosestPointData();
+  ClosestPointData(const ClosestPointData&) = delete;
+  ClosestPointData& operator=(const ClosestPointData&) = delete;
+
+  /// The closest triangle within `radius` (of equally close ones the lowest), or nothing.
+  std::optional<ClosestPoint> within(const glm::dvec3& point, double radius) const;
+  /// Distance to the first triangle along a ray in (from, to), and the triangle; in single precision.
+  std::optional<std::pair<double, std::uint32_t>> first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double from,
+                                                            double to) const;
+
+  std::vector<glm::dvec3> positions;
+  std::vector<glm::uvec3> triangles;
+  glm::dvec3 center{0.0};
+  double extent = 0.0;
+  void* device = nullptr;
+  void* scene = nullptr;
+};
+
+/// The generalised winding number (Jacobson, Kavan & Sorkine-Hornung 2013) by a tree of dipoles (Barill et al. 2018), and the border that
+/// makes it change away from the triangles.
+class Winding {
+ public:
+  explicit Winding(const TriangleMesh& mesh);
+
+  double number(const glm::dvec3& point) const;
+
+  /// A stretch of the surface's border (corners welded by position, opposite uses cancelled), `multiplicity` times over.
+  struct BorderEdge {
+    glm::dvec3 a{0.0}, b{0.0};
+    int multiplicity = 1;
+  };
+  const std::vector<BorderEdge>& border() const { return border_; }
+  bool closed() const { return border_.empty(); }
+  /// Gradient of the number away from the triangles: it depends on the border alone (Biot and Savart's law).
+  glm::dvec3 gradient(const glm::dvec3& point) const;
+  /// No gradient within `radius` of `center` is longer than this.
+  double gradient_bound(const glm::dvec3& center, double radius) const;
+
+ private:
+  struct Node {
+    glm::dvec3 center{0.0}, dipole{0.0};
+    double radius = 0.0;
+    std::uint32_t first = 0, count = 0;  ///< Triangles of a leaf, in order_.
+    std::uint32_t left = 0, right = 0;   ///< Both 0 for a leaf.
+  };
+  std::uint32_t build(const TriangleMesh& mesh, std::uint32_t first, std::uint32_t count);
+  void find_border(const TriangleMesh& mesh);
+
+  std::vector<Node> nodes_;
+  std::vector<glm::dvec3> corners_;  ///< Three a triangle, in the order of the leaves.
+  std::vector<std::uint32_t> order_;
+  std::vector<BorderEdge> border_;
+};
+
+/// Origins (multiples of 8) of the blocks of 8^3 nodes that come within `reach` (world) of a triangle, sorted; nodes lie at
+/// voxel_size * (i, j, k). Throws InputError once there are more than `max_blocks`.
+std::vector<glm::ivec3> blocks_near_triangles(const TriangleMesh& mesh, double voxel_size, double reach, std::int64_t max_blocks);
+
+}  // namespace limn

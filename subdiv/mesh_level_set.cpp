@@ -1,0 +1,191 @@
+#include "subdiv/mesh_level_set.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <tuple>
+
+#include "sdf/error.h"
+#include "subdiv/mesh_block.h"
+#include "subdiv/mesh_distance.h"
+
+namespace limn {
+namespace {
+
+constexpr std::int64_t kMaxIndex = std::int64_t{1} << 30;
+
+/// The triangles moved so that the middle of their box is the origin: far from it double precision and 32-bit indices would run out.
+TriangleMesh recentred(const TriangleMesh& mesh, const glm::dvec3& origin) {
+  TriangleMesh moved;
+  moved.positions.reserve(mesh.positions.size());
+  for (const glm::dvec3& p : mesh.positions) moved.positions.push_back(p - origin);
+  moved.triangles = mesh.triangles;
+  return moved;
+}
+
+double signed_volume(const TriangleMesh& mesh) {
+  double volume = 0.0;
+  for (const glm::uvec3& t : mesh.triangles)
+    volume += glm::dot(mesh.positions[t.x], glm::cross(mesh.positions[t.y], mesh.positions[t.z])) / 6.0;
+  return volume;
+}
+
+Box used_bounds(const TriangleMesh& mesh) {
+  Box box;
+  for (const glm::uvec3& t : mesh.triangles)
+    for (int i = 0; i < 3; ++i) box = include(box, mesh.positions[t[i]]);
+  return box;
+}
+
+std::int64_t max_blocks(const LevelSetSettings& settings) {
+  return std::max<std::int64_t>(1, settings.max_bytes / static_cast<std::int64_t>(sizeof(LevelSetBlock)));
+}
+
+void check(const TriangleMesh& mesh, const LevelSetSettings& settings) {
+  if (mesh.triangles.empty()) throw InputError({"", "", "", "the mesh has no triangle with an area", "at least one"});
+  if (!(settings.voxel_size > 0.0) || !std::isfinite(settings.voxel_size))
+    throw InputError(
+        {"", "--voxel-size", fmt::format("{}", settings.voxel_size), "the voxel size is out of range", "above 0, in world units"});
+  if (!(settings.half_width_voxels >= 1.8) || settings.half_width_voxels > 1000.0)
+    throw InputError(
+        {"", "--half-width", fmt::format("{}", settings.half_width_voxels), "the half-width is out of range", "1.8 to 1000 voxels"});
+  const double side = used_bounds(mesh).longest_side() / settings.voxel_size;
+  if (side > static_cast<double>(kMaxIndex))
+    throw InputError(
+        {"", "--voxel-size", fmt::format("{}", settings.voxel_size), fmt::format("the mesh is {:.3g} voxels long", side), "larger voxels"});
+}
+
+/// Progress from many threads, handed on by one at a time.
+class Progress {
+ public:
+  Progress(const std::function<void(double)>& report, size_t total) : report_(report), total_(total) {}
+  void step() {
+    const size_t done = ++done_;
+    if (!report_ || done % 64 != 0) return;
+    if (const std::unique_lock lock(mutex_, std::try_to_lock); lock.owns_lock())
+      report_(std::min(1.0, static_cast<double>(done) / static_cast<double>(total_)));
+  }
+
+ private:
+  const std::function<void(double)>& report_;
+  size_t total_;
+  std::atomic<size_t> done_{0};
+  std::mutex mutex_;
+};
+
+struct Band {
+  std::vector<LevelSetBlock> blocks;
+  bool any_inside = false;
+};
+
+bool before(const glm::ivec3& a, const glm::ivec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
+
+/// Neighbours of the blocks that the surface's continuation over its holes runs through, as far as they are new.
+std::vector<glm::ivec3> next_wave(const std::vector<glm::ivec3>& wave, const std::vector<char>& has_membrane,
+                                  std::vector<glm::ivec3>& known) {
+  std::vector<glm::ivec3> next;
+  for (size_t i = 0; i < wave.size(); ++i) {
+    if (!has_membrane[i]) continue;
+    for (int x = -8; x <= 8; x += 8)
+      for (int y = -8; y <= 8; y += 8)
+        for (int z = -8; z <= 8; z += 8) next.push_back(wave[i] + glm::ivec3(x, y, z));
+  }
+  std::sort(next.begin(), next.end(), before);
+  next.erase(std::unique(next.begin(), next.end()), next.end());
+  std::erase_if(next, [&known](const glm::ivec3& o) { return std::binary_search(known.begin(), known.end(), o, before); });
+  const size_t middle = known.size();
+  known.insert(known.end(), next.begin(), next.end());
+  std::inplace_merge(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(middle), known.end(), before);
+  return next;
+}
+
+Band make_band(const TriangleMesh& mesh, const ClosestPointData& distance, const Winding& winding, const LevelSetSettings& settings,
+               double shell) {
+  const BlockSettings block_settings{settings.voxel_size, settings.voxel_size * settings.half_width_voxels, shell};
+  Band band;
+  std::vector<glm::ivec3> wave = blocks_near_triangles(mesh, settings.voxel_size, block_settings.half_width + shell, max_blocks(settings));
+  std::vector<glm::ivec3> known = wave;
+  Progress progress(settings.progress, wave.size());
+  while (!wave.empty()) {
+    if (static_cast<std::int64_t>(known.size()) > max_blocks(settings))
+      throw InputError({"", "--voxel-size", fmt::format("{}", settings.voxel_size),
+                        "closing the mesh's holes takes more memory than allowed", "larger voxels, or a closed mesh"});
+    std::vector<LevelSetBlock> blocks(wave.size());
+    std::vector<char> membrane(wave.size(), 0), active(wave.size(), 0), inside(wave.size(), 0);
+    tbb::parallel_for(size_t{0}, wave.size(), [&](size_t i) {
+      const BlockResult result = fill_block(wave[i], distance, winding, block_settings, blocks[i]);
+      membrane[i] = result.membrane, active[i] = result.any_active, inside[i] = result.any_inside;
+      progress.step();
+    });
+    for (size_t i = 0; i < wave.size(); ++i) {
+      if (!active[i]) continue;
+      band.blocks.push_back(blocks[i]);
+      band.any_inside |= inside[i] != 0;
+    }
+    wave = next_wave(wave, membrane, known);
+  }
+  return band;
+}
+
+/// Walls thinner than two voxels and gaps thinner than one, seen from the middles of the triangles along their normals.
+void warn_of_thin_sheets(const TriangleMesh& mesh, const ClosestPointData& distance, double voxel_size,
+                         std::vector<std::string>& warnings) {
+  std::atomic<std::int64_t> thin{0}, narrow{0};
+  const auto normal_of = [&mesh](std::uint32_t index) {
+    const glm::uvec3 t = mesh.triangles[index];
+    return glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
+  };
+  tbb::parallel_for(size_t{0}, mesh.triangles.size(), [&](size_t i) {
+    const glm::uvec3 t = mesh.triangles[i];
+    const glm::dvec3 area = normal_of(static_cast<std::uint32_t>(i));
+    if (!(glm::length(area) > 0.0)) return;
+    const glm::dvec3 normal = glm::normalize(area);
+    const glm::dvec3 middle = (mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0;
+    const double start = 1e-5 * voxel_size + 1e-6 * distance.extent;
+    const auto opposite = [&](double sign, double reach) {
+      const auto hit = distance.first_hit(middle, sign * normal, start, reach);
+      return hit && glm::dot(normal_of(hit->second), normal) < 0.0;
+    };
+    if (opposite(-1.0, 2.0 * voxel_size)) ++thin;
+    if (opposite(1.0, voxel_size)) ++narrow;
+  });
+  if (thin > 0)
+    warnings.push_back(fmt::format("{} triangles lie on walls thinner than two voxels ({:.3g}), which may break up: use smaller voxels",
+                                   thin.load(), 2.0 * voxel_size));
+  if (narrow > 0)
+    warnings.push_back(fmt::format("{} triangles lie at gaps narrower than one voxel ({:.3g}), which may close: use smaller voxels",
+                                   narrow.load(), voxel_size));
+}
+
+}  // namespace
+
+MeshLevelSet level_set_from_mesh(const TriangleMesh& mesh, const LevelSetSettings& settings) {
+  check(mesh, settings);
+  const glm::dvec3 origin = used_bounds(mesh).center();
+  TriangleMesh local = recentred(mesh, origin);
+  std::vector<std::string> warnings;
+  if (const double volume = signed_volume(local); volume < 0.0) {
+    for (glm::uvec3& t : local.triangles) std::swap(t.y, t.z);
+    warnings.push_back(fmt::format("the mesh is turned inside out (its volume is {:.4g}): its faces were turned round", volume));
+  }
+  const ClosestPointData distance(local);
+  const Winding winding(local);
+  if (!winding.closed())
+    warnings.push_back(
+        fmt::format("{} open edges: inside is where the winding number is above 1/2, which closes the holes", winding.border().size()));
+  Band band = make_band(local, distance, winding, settings, 0.0);
+  if (!band.any_inside) {
+    warnings.emplace_back("the mesh has no inside (a sheet, or thinner than a voxel): drawn as a shell, one voxel to each side");
+    band = make_band(local, distance, winding, settings, settings.voxel_size);
+  }
+  warn_of_thin_sheets(local, distance, settings.voxel_size, warnings);
+  return {level_set_from_blocks(band.blocks, settings.voxel_size, settings.half_width_voxels, "mesh", origin), std::move(warnings)};
+}
+
+}  // namespace limn

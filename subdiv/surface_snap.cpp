@@ -1,0 +1,222 @@
+#include "subdiv/surface_snap.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sdf/shape.h"
+#include "subdiv/audit.h"
+#include "subdiv/polygon.h"
+
+namespace limn {
+namespace {
+
+/// Neighbouring normals that differ by more than this (25 degrees) at a hundredth of an edge belong to two sides of a crease.
+const double kCreaseCosine = std::cos(25.0 * 3.14159265358979323846 / 180.0);
+
+glm::dvec3 unit_gradient(FieldEvaluator& evaluator, const glm::dvec3& p) {
+  const glm::dvec3 gradient = evaluator.jet(p).gradient;
+  const double length = glm::length(gradient);
+  return length > 0.0 && std::isfinite(length) ? gradient / length : glm::dvec3(0.0);
+}
+
+/// The middles of the faces around each vertex, and the mean length of its edges.
+struct Surroundings {
+  std::vector<std::vector<glm::dvec3>> middles;
+  std::vector<double> edge_length;
+};
+
+Surroundings surroundings_of(const Mesh& mesh) {
+  Surroundings around{std::vector<std::vector<glm::dvec3>>(mesh.vertex_count()), std::vector<double>(mesh.vertex_count(), 0.0)};
+  std::int32_t first = 0;
+  std::vector<int> count(mesh.vertex_count(), 0);
+  for (size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto corners = face_corners(mesh, first, f);
+    first += mesh.face_sizes[f];
+    glm::dvec3 middle(0.0);
+    for (const std::int32_t v : corners) middle += mesh.positions[static_cast<size_t>(v)];
+    middle /= static_cast<double>(corners.size());
+    for (size_t i = 0; i < corners.size(); ++i) {
+      const auto v = static_cast<size_t>(corners[i]), next = static_cast<size_t>(corners[(i + 1) % corners.size()]);
+      around.middles[v].push_back(middle);
+      around.edge_length[v] += glm::distance(mesh.positions[v], mesh.positions[next]);
+      ++count[v];
+    }
+  }
+  for (size_t v = 0; v < count.size(); ++v)
+    if (count[v] > 0) around.edge_length[v] /= count[v];
+  return around;
+}
+
+/// Points of the surface a fraction of the way to the faces' middles, with their normals; true where the normals differ as at a crease.
+bool sample_sides(FieldEvaluator& evaluator, const glm::dvec3& x, const std::vector<glm::dvec3>& middles, double fraction,
+                  std::vector<glm::dvec3>& points, std::vector<glm::dvec3>& normals) {
+  points.clear(), normals.clear();
+  for (const glm::dvec3& middle : middles) {
+    glm::dvec3 p = x + fraction * (middle - x);
+    if (!project_to_surface(evaluator, p)) continue;
+    const glm::dvec3 normal = unit_gradient(evaluator, p);
+    if (normal == glm::dvec3(0.0)) continue;
+    points.push_back(p), normals.push_back(normal);
+  }
+  for (size_t i = 1; i < normals.size(); ++i)
+    for (size_t j = 0; j < i; ++j)
+      if (glm::dot(normals[i], normals[j]) < kCreaseCosine) return true;
+  return false;
+}
+
+struct Snapped {
+  glm::dvec3 position{0.0};
+  bool feature = false;
+};
+
+/// From far to near: sides are sampled ever closer to the vertex while it walks onto their meeting line. On a smooth surface the normals
+/// soon agree and the vertex is projected; on a crease they never do.
+Snapped snap(FieldEvaluator& evaluator, const glm::dvec3& start, const std::vector<glm::dvec3>& middles, double edge) {
+  glm::dvec3 plain = start;
+  const bool reached = project_to_surface(evaluator, plain);
+  std::vector<glm::dvec3> points, normals;
+  glm::dvec3 x = start;
+  bool creased = false;
+  for (const double fraction : {0.5, 0.2, 0.05, 0.01, 1e-3, 1e-5, 1e-7}) {
+    creased = sample_sides(evaluator, x, middles, fraction, points, normals);
+    if (!creased) break;
+    const glm::dvec3 next = meet_planes(points, normals, x);
+    // Planes that nearly agree meet far away: that is no crease of this vertex.
+    if (!(glm::distance(next, start) < 0.75 * edge)) {
+      creased = false;
+      break;
+    }
+    x = next;
+  }
+  if (creased) return {x, true};
+  return {reached ? plain : start, false};
+}
+
+using Evaluators = tbb::enumerable_thread_specific<FieldEvaluator>;
+
+void snap_some(const Field& field, Mesh& mesh, const std::vector<char>* which, SnapResult& result) {
+  const Surroundings around = surroundings_of(mesh);
+  Evaluators evaluators([&field] { return FieldEvaluator(field); });
+  std::vector<double> left(mesh.vertex_count(), 0.0);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.vertex_count(), 64), [&](const tbb::blocked_range<size_t>& range) {
+    FieldEvaluator& evaluator = evaluators.local();
+    for (size_t v = range.begin(); v < range.end(); ++v) {
+      if (which != nullptr && !(*which)[v]) continue;
+      const Snapped snapped = snap(evaluator, mesh.positions[v], around.middles[v], around.edge_length[v]);
+      mesh.positions[v] = snapped.position;
+      result.feature[v] = snapped.feature;
+      const FieldJet jet = evaluator.jet(snapped.position);
+      const double slope = glm::length(jet.gradient);
+      left[v] = slope > 0.0 ? std::abs(jet.value) / slope : std::abs(jet.value);
+    }
+  });
+  for (const double value : left) result.worst_value = std::max(result.worst_value, value);
+}
+
+/// Means of the neighbours along edges.
+std::vector<glm::dvec3> neighbour_means(const Mesh& mesh) {
+  std::vector<glm::dvec3> sum(mesh.vertex_count(), glm::dvec3(0.0));
+  std::vector<int> count(mesh.vertex_count(), 0);
+  for (const Edge& edge : build_edges(mesh)) {
+    const auto a = static_cast<size_t>(edge.vertex_a), b = static_cast<size_t>(edge.vertex_b);
+    sum[a] += mesh.positions[b], sum[b] += mesh.positions[a];
+    ++count[a], ++count[b];
+  }
+  for (size_t v = 0; v < sum.size(); ++v) sum[v] = count[v] > 0 ? sum[v] / static_cast<double>(count[v]) : mesh.positions[v];
+  return sum;
+}
+
+}  // namespace
+
+SnapResult snap_to_surface(const Field& field, Mesh& mesh) {
+  SnapResult result{std::vector<char>(mesh.vertex_count(), 0), 0.0};
+  snap_some(field, mesh, nullptr, result);
+  return result;
+}
+
+std::vector<glm::vec3> field_normals(const Field& field, const Mesh& mesh, const std::vector<char>& feature) {
+  std::vector<glm::vec3> normals = face_normals_at_corners(mesh);
+  const std::vector<std::int32_t> first = first_corners(mesh);
+  Evaluators evaluators([&field] { return FieldEvaluator(field); });
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.face_count(), 64), [&](const tbb::blocked_range<size_t>& range) {
+    FieldEvaluator& evaluator = evaluators.local();
+    for (size_t f = range.begin(); f < range.end(); ++f) {
+      const auto corners = face_corners(mesh, first[f], f);
+      glm::dvec3 middle(0.0);
+      for (const std::int32_t v : corners) middle += mesh.positions[static_cast<size_t>(v)];
+      middle /= static_cast<double>(corners.size());
+      for (size_t i = 0; i < corners.size(); ++i) {
+        const auto v = static_cast<size_t>(corners[i]);
+        glm::dvec3 p = mesh.positions[v];
+        if (feature[v]) {
+          // A little way into the face, where one side of the crease has the word.
+          p += 1e-3 * (middle - p);
+          project_to_surface(evaluator, p);
+        }
+        const glm::dvec3 normal = unit_gradient(evaluator, p);
+        if (normal != glm::dvec3(0.0)) normals[static_cast<size_t>(first[f]) + i] = glm::vec3(normal);
+      }
+    }
+  });
+  return normals;
+}
+
+std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh) {
+  const std::vector<std::int32_t> first = first_corners(mesh);
+  FieldEvaluator evaluator(field);
+  std::vector<std::int32_t> folded;
+  std::vector<glm::dvec3> corners;
+  for (size_t f = 0; f < mesh.face_count(); ++f) {
+    gather_corners(mesh, face_corners(mesh, first[f], f), corners);
+    glm::dvec3 middle(0.0);
+    for (const glm::dvec3& p : corners) middle += p;
+    middle /= static_cast<double>(corners.size());
+    const glm::dvec3 area = vector_area(corners);
+    project_to_surface(evaluator, middle);
+    const glm::dvec3 outward = unit_gradient(evaluator, middle);
+    bool bad = glm::dot(area, outward) < 0.0;
+    // A quad bent like a bow tie has the right area as a whole and a corner that is turned over.
+    for (size_t i = 0; i < corners.size() && !bad; ++i) {
+      const size_t n = corners.size();
+      const glm::dvec3 turn = glm::cross(corners[(i + 1) % n] - corners[i], corners[(i + n - 1) % n] - corners[i]);
+      bad = glm::dot(turn, area) < -1e-3 * glm::dot(area, area);
+    }
+    if (bad) folded.push_back(static_cast<std::int32_t>(f));
+  }
+  return folded;
+}
+
+void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
+    const std::vector<std::int32_t> folded = folded_faces(field, mesh);
+    if (folded.empty()) return;
+    const std::vector<std::int32_t> first = first_corners(mesh);
+    std::vector<char> moves(mesh.vertex_count(), 0);
+    for (const std::int32_t f : folded)
+      for (const std::int32_t v : face_corners(mesh, first[static_cast<size_t>(f)], static_cast<size_t>(f)))
+        // After a few rounds creased vertices take part: the surface matters more than the line.
+        if (!snapped.feature[static_cast<size_t>(v)] || round >= rounds / 2) moves[static_cast<size_t>(v)] = 1;
+    const std::vector<glm::dvec3> means = neighbour_means(mesh);
+    for (size_t v = 0; v < moves.size(); ++v)
+      if (moves[v]) mesh.positions[v] = 0.5 * (mesh.positions[v] + means[v]);
+    snap_some(field, mesh, &moves, snapped);
+  }
+}
+
+void relax(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<char> moves(mesh.vertex_count(), 0);
+    const std::vector<glm::dvec3> means = neighbour_means(mesh);
+    for (size_t v = 0; v < moves.size(); ++v) {
+      if (snapped.feature[v]) continue;
+      moves[v] = 1;
+      mesh.positions[v] = 0.5 * (mesh.positions[v] + means[v]);
+    }
+    snap_some(field, mesh, &moves, snapped);
+  }
+}
+
+}  // namespace limn

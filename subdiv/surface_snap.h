@@ -1,0 +1,34 @@
+#pragma once
+// Bringing the vertices of a mesh onto the surface of a field, creases and corners included.
+
+#include "sdf/field.h"
+#include "subdiv/mesh.h"
+
+namespace limn {
+
+struct SnapResult {
+  std::vector<char> feature;  ///< For each vertex: it lies on a crease or corner, where the field's gradient jumps.
+  double worst_value = 0.0;   ///< Largest |f|/|grad f| left, world units.
+};
+
+/// Moves every vertex onto the surface: along the gradient where the surface is smooth, onto the meeting of the tangent planes of both
+/// sides (least squares as in Ju et al. 2002) where it is creased. Vertices are moved one by one from where they are, in parallel.
+SnapResult snap_to_surface(const Field& field, Mesh& mesh);
+
+/// Unit normals at the corners: the gradient at the vertex, at creases that of the corner's own side.
+std::vector<glm::vec3> field_normals(const Field& field, const Mesh& mesh, const std::vector<char>& feature);
+
+/// Faces whose normal disagrees with the gradient at their middle by more than a right angle.
+std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh);
+
+/// Vertices of folded faces moved to the middle of their neighbours (creased ones stay), then snapped again; at most `rounds` times.
+void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds);
+
+/// All smooth vertices moved half way to the middle of their neighbours and snapped again: evens out a cage.
+void relax(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds);
+
+/// The point that is nearest to all planes (point, unit normal) in the least squares sense; in directions that they leave open, nearest to
+/// `start`. Directions with singular values below a tenth of the largest count as open.
+glm::dvec3 meet_planes(const std::vector<glm::dvec3>& points, const std::vector<glm::dvec3>& normals, const glm::dvec3& start);
+
+}  // namespace limn

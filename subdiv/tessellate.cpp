@@ -1,0 +1,83 @@
+#include "subdiv/tessellate.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "sdf/error.h"
+#include "subdiv/dual_contour.h"
+#include "subdiv/surface_snap.h"
+
+namespace limn {
+namespace {
+
+/// Cells along the longest side, tried in turn. Finer than the last the cage would have more faces than a surface needs to start from.
+constexpr std::array kCells = {8, 12, 16, 24, 32, 48, 64, 96, 128};
+
+struct Cage {
+  Mesh mesh;
+  SnapResult snapped;
+};
+
+Cage snapped_cage(const Field& field, Mesh mesh) {
+  Cage cage{std::move(mesh), {}};
+  cage.snapped = snap_to_surface(field, cage.mesh);
+  relax(field, cage.mesh, cage.snapped, 2);
+  unfold(field, cage.mesh, cage.snapped, 12);
+  return cage;
+}
+
+/// The coarsest sampling whose topology the next finer one confirms and whose faces lie the right way up; failing that, the best met.
+Cage find_cage(const Field& field) {
+  const Box& box = field.traits().bounds;
+  if (box.empty()) throw InputError({"", "shape", "", "the surface is empty: there is nothing to tessellate", "a shape with a surface"});
+  if (!box.finite())
+    throw InputError({"", "shape", "", "an unbounded surface cannot be tessellated", "a bounded shape, or its intersection with one"});
+  Mesh previous;
+  std::optional<Topology> previous_topology;
+  Cage best;
+  size_t best_folded = 0;
+  for (const int cells : kCells) {
+    Mesh mesh = dual_contour(field, cells);
+    const std::optional<Topology> topology = topology_of(mesh);
+    if (topology && topology == previous_topology) {
+      Cage cage = snapped_cage(field, std::move(previous));
+      const size_t folded = folded_faces(field, cage.mesh).size();
+      if (best.mesh.face_sizes.empty() || folded < best_folded) best = std::move(cage), best_folded = folded;
+      if (best_folded == 0) return best;
+    }
+    previous = std::move(mesh);
+    previous_topology = topology;
+  }
+  if (!best.mesh.face_sizes.empty()) return best;
+  if (!previous_topology)
+    throw InputError({"", "shape", "", fmt::format("no closed surface was found with {} cells along its longest side", kCells.back()),
+                      "a shape without details thinner than that, or the surface kind level_set"});
+  return snapped_cage(field, std::move(previous));
+}
+
+}  // namespace
+
+Mesh cage_of(const Field& field) { return find_cage(field).mesh; }
+
+Mesh tessellate(const Field& field, const TessellateSettings& settings) {
+  if (settings.level < 0 || settings.level > 8)
+    throw InputError({"", "--level", fmt::format("{}", settings.level), "the subdivision level is out of range", "0 to 8"});
+  Cage cage = find_cage(field);
+  const RefinedSize size = predict_refined_size(cage.mesh, Scheme::bilinear, settings.level);
+  if (size.bytes > settings.max_bytes)
+    throw InputError({"", "--level", fmt::format("{}", settings.level),
+                      fmt::format("the mesh would have {} faces and take {:.1f} GB", size.faces, static_cast<double>(size.bytes) * 1e-9),
+                      fmt::format("a lower level (at most {:.1f} GB)", static_cast<double>(settings.max_bytes) * 1e-9)});
+  // The scheme's topology with vertices half way between their neighbours; where they belong the field says.
+  const RefineSettings once{Scheme::bilinear, 1, false, NormalKind::flat, settings.max_bytes};
+  for (int level = 0; level < settings.level; ++level) {
+    cage.mesh = refine(cage.mesh, once);
+    cage.snapped = snap_to_surface(field, cage.mesh);
+    unfold(field, cage.mesh, cage.snapped, 8);
+  }
+  if (settings.normals == NormalKind::limit) cage.mesh.corner_normals = field_normals(field, cage.mesh, cage.snapped.feature);
+  return std::move(cage.mesh);
+}
+
+}  // namespace limn

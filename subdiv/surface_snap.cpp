@@ -22,43 +22,86 @@ glm::dvec3 unit_gradient(FieldEvaluator& evaluator, const glm::dvec3& p) {
   return length > 0.0 && std::isfinite(length) ? gradient / length : glm::dvec3(0.0);
 }
 
-/// The middles of the faces around each vertex, and the mean length of its edges.
+/// Around a vertex: the middles of its faces, the mean length of its edges, and which way its faces look on the whole (unit, or zero).
 struct Surroundings {
-  std::vector<std::vector<glm::dvec3>> middles;
-  std::vector<double> edge_length;
+  std::vector<glm::dvec3> middles;
+  double edge_length = 0.0;
+  glm::dvec3 outward{0.0};
 };
 
-Surroundings surroundings_of(const Mesh& mesh) {
-  Surroundings around{std::vector<std::vector<glm::dvec3>>(mesh.vertex_count()), std::vector<double>(mesh.vertex_count(), 0.0)};
+std::vector<Surroundings> surroundings_of(const Mesh& mesh) {
+  std::vector<Surroundings> around(mesh.vertex_count());
+  std::vector<glm::dvec3> points;
   std::int32_t first = 0;
-  std::vector<int> count(mesh.vertex_count(), 0);
   for (size_t f = 0; f < mesh.face_count(); ++f) {
     const auto corners = face_corners(mesh, first, f);
     first += mesh.face_sizes[f];
+    gather_corners(mesh, corners, points);
     glm::dvec3 middle(0.0);
-    for (const std::int32_t v : corners) middle += mesh.positions[static_cast<size_t>(v)];
-    middle /= static_cast<double>(corners.size());
-    for (size_t i = 0; i < corners.size(); ++i) {
-      const auto v = static_cast<size_t>(corners[i]), next = static_cast<size_t>(corners[(i + 1) % corners.size()]);
-      around.middles[v].push_back(middle);
-      around.edge_length[v] += glm::distance(mesh.positions[v], mesh.positions[next]);
-      ++count[v];
+    for (const glm::dvec3& p : points) middle += p;
+    middle /= static_cast<double>(points.size());
+    for (size_t i = 0; i < points.size(); ++i) {
+      Surroundings& at = around[static_cast<size_t>(corners[i])];
+      at.middles.push_back(middle);
+      at.edge_length += glm::distance(points[i], points[(i + 1) % points.size()]);
+      at.outward += vector_area(points);
     }
   }
-  for (size_t v = 0; v < count.size(); ++v)
-    if (count[v] > 0) around.edge_length[v] /= count[v];
+  for (Surroundings& at : around) {
+    if (at.middles.empty()) continue;
+    at.edge_length /= static_cast<double>(at.middles.size());
+    const double length = glm::length(at.outward);
+    at.outward = length > 0.0 ? at.outward / length : glm::dvec3(0.0);
+  }
   return around;
 }
 
+/// In a thin wall the nearest sheet may be the wrong one, whose outside is the other way. Along the outward direction the right one is
+/// where the field turns from negative to positive; the crossing nearest to `start` within one edge length is taken.
+bool project_along(FieldEvaluator& evaluator, glm::dvec3& point, const Surroundings& around) {
+  constexpr int kSteps = 24;
+  const double step = around.edge_length / kSteps;
+  const auto at = [&](double t) { return point + t * around.outward; };
+  double best = 2.0 * around.edge_length;
+  double previous = evaluator.value(at(-around.edge_length));
+  for (int i = -kSteps + 1; i <= kSteps; ++i) {
+    const double value = evaluator.value(at(i * step));
+    if (previous < 0.0 && value >= 0.0) {
+      double in = (i - 1) * step, out = i * step;
+      for (int k = 0; k < 60; ++k) {
+        const double middle = 0.5 * (in + out);
+        (evaluator.value(at(middle)) < 0.0 ? in : out) = middle;
+      }
+      if (std::abs(out) < std::abs(best)) best = out;
+    }
+    previous = value;
+  }
+  if (best > around.edge_length) return false;
+  point = at(best);
+  return true;
+}
+
+/// Onto the sheet of the surface that looks the same way as the faces around the vertex.
+bool project(FieldEvaluator& evaluator, glm::dvec3& point, const Surroundings& around) {
+  const glm::dvec3 start = point;
+  const bool reached = project_to_surface(evaluator, point);
+  if (reached && glm::dot(unit_gradient(evaluator, point), around.outward) > -0.1) return true;
+  glm::dvec3 along = start;
+  if (!project_along(evaluator, along, around)) return reached;
+  point = along;
+  return true;
+}
+
 /// Points of the surface a fraction of the way to the faces' middles, with their normals; true where the normals differ as at a crease.
-bool sample_sides(FieldEvaluator& evaluator, const glm::dvec3& x, const std::vector<glm::dvec3>& middles, double fraction,
+bool sample_sides(FieldEvaluator& evaluator, const glm::dvec3& x, const Surroundings& around, double fraction,
                   std::vector<glm::dvec3>& points, std::vector<glm::dvec3>& normals) {
   points.clear(), normals.clear();
-  for (const glm::dvec3& middle : middles) {
+  for (const glm::dvec3& middle : around.middles) {
     glm::dvec3 p = x + fraction * (middle - x);
     if (!project_to_surface(evaluator, p)) continue;
     const glm::dvec3 normal = unit_gradient(evaluator, p);
-    if (normal == glm::dvec3(0.0)) continue;
+    // The other side of a thin wall is no side of this vertex.
+    if (normal == glm::dvec3(0.0) || glm::dot(normal, around.outward) < -0.5) continue;
     points.push_back(p), normals.push_back(normal);
   }
   for (size_t i = 1; i < normals.size(); ++i)
@@ -74,18 +117,18 @@ struct Snapped {
 
 /// From far to near: sides are sampled ever closer to the vertex while it walks onto their meeting line. On a smooth surface the normals
 /// soon agree and the vertex is projected; on a crease they never do.
-Snapped snap(FieldEvaluator& evaluator, const glm::dvec3& start, const std::vector<glm::dvec3>& middles, double edge) {
+Snapped snap(FieldEvaluator& evaluator, const glm::dvec3& start, const Surroundings& around) {
   glm::dvec3 plain = start;
-  const bool reached = project_to_surface(evaluator, plain);
+  const bool reached = project(evaluator, plain, around);
   std::vector<glm::dvec3> points, normals;
   glm::dvec3 x = start;
   bool creased = false;
   for (const double fraction : {0.5, 0.2, 0.05, 0.01, 1e-3, 1e-5, 1e-7}) {
-    creased = sample_sides(evaluator, x, middles, fraction, points, normals);
+    creased = sample_sides(evaluator, x, around, fraction, points, normals);
     if (!creased) break;
     const glm::dvec3 next = meet_planes(points, normals, x);
     // Planes that nearly agree meet far away: that is no crease of this vertex.
-    if (!(glm::distance(next, start) < 0.75 * edge)) {
+    if (!(glm::distance(next, start) < 0.75 * around.edge_length)) {
       creased = false;
       break;
     }
@@ -98,14 +141,14 @@ Snapped snap(FieldEvaluator& evaluator, const glm::dvec3& start, const std::vect
 using Evaluators = tbb::enumerable_thread_specific<FieldEvaluator>;
 
 void snap_some(const Field& field, Mesh& mesh, const std::vector<char>* which, SnapResult& result) {
-  const Surroundings around = surroundings_of(mesh);
+  const std::vector<Surroundings> around = surroundings_of(mesh);
   Evaluators evaluators([&field] { return FieldEvaluator(field); });
   std::vector<double> left(mesh.vertex_count(), 0.0);
   tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.vertex_count(), 64), [&](const tbb::blocked_range<size_t>& range) {
     FieldEvaluator& evaluator = evaluators.local();
     for (size_t v = range.begin(); v < range.end(); ++v) {
       if (which != nullptr && !(*which)[v]) continue;
-      const Snapped snapped = snap(evaluator, mesh.positions[v], around.middles[v], around.edge_length[v]);
+      const Snapped snapped = snap(evaluator, mesh.positions[v], around[v]);
       mesh.positions[v] = snapped.position;
       result.feature[v] = snapped.feature;
       const FieldJet jet = evaluator.jet(snapped.position);
@@ -164,7 +207,7 @@ std::vector<glm::vec3> field_normals(const Field& field, const Mesh& mesh, const
   return normals;
 }
 
-std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh) {
+std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh, bool reflex_too) {
   const std::vector<std::int32_t> first = first_corners(mesh);
   FieldEvaluator evaluator(field);
   std::vector<std::int32_t> folded;
@@ -178,8 +221,8 @@ std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh) {
     project_to_surface(evaluator, middle);
     const glm::dvec3 outward = unit_gradient(evaluator, middle);
     bool bad = glm::dot(area, outward) < 0.0;
-    // A quad bent like a bow tie has the right area as a whole and a corner that is turned over.
-    for (size_t i = 0; i < corners.size() && !bad; ++i) {
+    // A quad bent like a bow tie has the right area as a whole and a corner that is turned over; so has a quad with a reflex corner.
+    for (size_t i = 0; i < corners.size() && !bad && reflex_too; ++i) {
       const size_t n = corners.size();
       const glm::dvec3 turn = glm::cross(corners[(i + 1) % n] - corners[i], corners[(i + n - 1) % n] - corners[i]);
       bad = glm::dot(turn, area) < -1e-3 * glm::dot(area, area);
@@ -191,7 +234,7 @@ std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh) {
 
 void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds) {
   for (int round = 0; round < rounds; ++round) {
-    const std::vector<std::int32_t> folded = folded_faces(field, mesh);
+    const std::vector<std::int32_t> folded = folded_faces(field, mesh, true);
     if (folded.empty()) return;
     const std::vector<std::int32_t> first = first_corners(mesh);
     std::vector<char> moves(mesh.vertex_count(), 0);

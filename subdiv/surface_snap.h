@@ -18,8 +18,9 @@ SnapResult snap_to_surface(const Field& field, Mesh& mesh);
 /// Unit normals at the corners: the gradient at the vertex, at creases that of the corner's own side.
 std::vector<glm::vec3> field_normals(const Field& field, const Mesh& mesh, const std::vector<char>& feature);
 
-/// Faces whose normal disagrees with the gradient at their middle by more than a right angle.
-std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh);
+/// Faces whose normal disagrees with the gradient at their middle by more than a right angle; with `reflex_too` also those with a corner
+/// that is turned over or reflex.
+std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh, bool reflex_too = false);
 
 /// Vertices of folded faces moved to the middle of their neighbours (creased ones stay), then snapped again; at most `rounds` times.
 void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds);

@@ -27,6 +27,22 @@ Cage snapped_cage(const Field& field, Mesh mesh) {
   return cage;
 }
 
+/// One refinement, its vertices on the surface. The scheme's topology with vertices half way between their neighbours; where they belong
+/// the field says.
+Cage refined_once(const Field& field, const Mesh& mesh, std::int64_t max_bytes) {
+  Cage finer{refine(mesh, {Scheme::bilinear, 1, false, NormalKind::flat, max_bytes}), {}};
+  finer.snapped = snap_to_surface(field, finer.mesh);
+  unfold(field, finer.mesh, finer.snapped, 8);
+  return finer;
+}
+
+/// Faces that lie the wrong way up, now or after the next refinement: walls thinner than an edge show themselves there.
+size_t count_folded(const Field& field, const Cage& cage) {
+  const size_t now = folded_faces(field, cage.mesh).size();
+  if (now > 0) return now;
+  return folded_faces(field, refined_once(field, cage.mesh, std::int64_t{8} << 30).mesh).size();
+}
+
 /// The coarsest sampling whose topology the next finer one confirms and whose faces lie the right way up; failing that, the best met.
 Cage find_cage(const Field& field) {
   const Box& box = field.traits().bounds;
@@ -42,7 +58,7 @@ Cage find_cage(const Field& field) {
     const std::optional<Topology> topology = topology_of(mesh);
     if (topology && topology == previous_topology) {
       Cage cage = snapped_cage(field, std::move(previous));
-      const size_t folded = folded_faces(field, cage.mesh).size();
+      const size_t folded = count_folded(field, cage);
       if (best.mesh.face_sizes.empty() || folded < best_folded) best = std::move(cage), best_folded = folded;
       if (best_folded == 0) return best;
     }
@@ -69,13 +85,7 @@ Mesh tessellate(const Field& field, const TessellateSettings& settings) {
     throw InputError({"", "--level", fmt::format("{}", settings.level),
                       fmt::format("the mesh would have {} faces and take {:.1f} GB", size.faces, static_cast<double>(size.bytes) * 1e-9),
                       fmt::format("a lower level (at most {:.1f} GB)", static_cast<double>(settings.max_bytes) * 1e-9)});
-  // The scheme's topology with vertices half way between their neighbours; where they belong the field says.
-  const RefineSettings once{Scheme::bilinear, 1, false, NormalKind::flat, settings.max_bytes};
-  for (int level = 0; level < settings.level; ++level) {
-    cage.mesh = refine(cage.mesh, once);
-    cage.snapped = snap_to_surface(field, cage.mesh);
-    unfold(field, cage.mesh, cage.snapped, 8);
-  }
+  for (int level = 0; level < settings.level; ++level) cage = refined_once(field, cage.mesh, settings.max_bytes);
   if (settings.normals == NormalKind::limit) cage.mesh.corner_normals = field_normals(field, cage.mesh, cage.snapped.feature);
   return std::move(cage.mesh);
 }

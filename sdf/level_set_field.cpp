@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <mutex>
@@ -10,6 +11,7 @@
 #include "sdf/error.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_distance.h"
+#include "sdf/level_set_thin.h"
 
 namespace limn {
 namespace {
@@ -124,7 +126,7 @@ std::vector<Cube> band_blocks(const Box& bounds, const Lattice& lattice, const L
   return cubes;
 }
 
-void fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, FieldEvaluator& evaluator) {
+ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, FieldEvaluator& evaluator) {
   std::array<glm::dvec3, 512> points;
   std::array<double, 512> distances;
   for (int n = 0; n < 512; ++n) points[static_cast<size_t>(n)] = lattice.node(cube.origin + glm::ivec3(n >> 6, (n >> 3) & 7, n & 7));
@@ -137,6 +139,7 @@ void fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, FieldE
     if (active) block.active[n >> 6] |= std::uint64_t{1} << (n & 63);
     block.values[n] = static_cast<float>(active ? distances[n] : std::copysign(lattice.half_width, distances[n]));
   }
+  return find_thin_places(evaluator, points, distances, lattice.h);
 }
 
 void check(const Field& field, const LevelSetSettings& settings) {
@@ -157,6 +160,18 @@ void check(const Field& field, const LevelSetSettings& settings) {
          fmt::format("well below the smallest side of the bounds ({:.4g})", std::min({size.x, size.y, size.z})));
 }
 
+void warn_of_thin_places(const ThinPlaces& found, double voxel_size, std::vector<std::string>& warnings) {
+  const auto share = [&](std::int64_t count) {
+    return fmt::format("{:.2g} % of the surface", 100.0 * static_cast<double>(count) / static_cast<double>(found.looked_at));
+  };
+  if (found.walls > 0)
+    warnings.push_back(fmt::format("{} lies on walls thinner than two voxels ({:.3g}), which may break up: use smaller voxels",
+                                   share(found.walls), 2.0 * voxel_size));
+  if (found.gaps > 0)
+    warnings.push_back(fmt::format("{} lies at gaps narrower than one voxel ({:.3g}), which may close: use smaller voxels",
+                                   share(found.gaps), voxel_size));
+}
+
 }  // namespace
 
 LevelSet level_set_from_field(const Field& field, const LevelSetSettings& settings) {
@@ -169,8 +184,12 @@ LevelSet level_set_from_field(const Field& field, const LevelSetSettings& settin
   const std::vector<Cube> cubes = band_blocks(bounds, lattice, settings, evaluators);
   std::vector<LevelSetBlock> blocks(cubes.size());
   Progress progress(settings.progress, cubes.size());
+  std::atomic<std::int64_t> looked_at{0}, walls{0}, gaps{0};
   tbb::parallel_for(size_t{0}, cubes.size(), [&](size_t i) {
-    fill(blocks[i], cubes[i], lattice, evaluators.local());
+    const ThinPlaces found = fill(blocks[i], cubes[i], lattice, evaluators.local());
+    looked_at += found.looked_at;
+    walls += found.walls;
+    gaps += found.gaps;
     progress.step();
   });
   const bool any_active = std::any_of(blocks.begin(), blocks.end(), [](const LevelSetBlock& block) {
@@ -180,6 +199,7 @@ LevelSet level_set_from_field(const Field& field, const LevelSetSettings& settin
 
   const auto data = join_blocks(blocks, settings.voxel_size, settings.half_width_voxels, "surface", lattice.origin);
   if (data->info.bounds.empty()) refuse_thin(settings.voxel_size, bounds);
+  warn_of_thin_places({looked_at, walls, gaps}, settings.voxel_size, data->info.warnings);
   data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
   return LevelSet(data);
 }

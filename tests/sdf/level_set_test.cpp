@@ -138,7 +138,6 @@ TEST(LevelSetFromField, CreasesAndBlendsKeepTheirSignAndTheirSurfaceCells) {
   for (const Field& field : {part, blend, flat}) {
     const LevelSet level_set = level_set_from_field(field, {.voxel_size = 0.03, .half_width_voxels = 2.5});
     EXPECT_EQ(level_set.data().holes, 0);
-    EXPECT_TRUE(level_set.info().warnings.empty());
     FieldEvaluator evaluator(field);
     const auto accessor = level_set.data().accessor();
     const Box reach = dilate(field.traits().bounds, 0.2);
@@ -167,6 +166,27 @@ TEST(LevelSetFromField, WhatCannotBeBuiltIsRefusedWithTheFigure) {
   const std::string huge = refusal(sphere, {.voxel_size = 1e-4, .max_bytes = 50'000'000});
   EXPECT_NE(huge.find("of memory, the limit is 0.05 GB"), std::string::npos) << huge;
   EXPECT_NE(refusal(sphere, {.voxel_size = 1e-12}).find("voxels along the longest side"), std::string::npos);
+}
+
+TEST(LevelSetFromField, WallsBelowTwoVoxelsAndGapsBelowOneAreWarnedOfAndNothingElseIs) {
+  const double h = 0.05;
+  const auto warnings = [&](const Field& field) {
+    std::string text;
+    const LevelSet level_set = level_set_from_field(field, {.voxel_size = h});
+    for (const std::string& warning : level_set.info().warnings) text += warning + "\n";
+    return text;
+  };
+  const auto slab = [](double thickness) { return make_shape("box", {{"half", {0.7, 0.6, 0.5 * thickness}}}); };
+  const auto pair = [](double gap) {
+    const Field box = make_shape("box", {{"half", {0.5, 0.5, 0.5}}});
+    return combine(Csg::union_, translate(box, {0.5 + 0.5 * gap, 0.0, 0.0}), translate(box, {-0.5 - 0.5 * gap, 0.0, 0.0}));
+  };
+  EXPECT_NE(warnings(slab(1.2 * h)).find("walls thinner than two voxels (0.1)"), std::string::npos);
+  EXPECT_EQ(warnings(slab(2.2 * h)), "");
+  EXPECT_NE(warnings(pair(0.6 * h)).find("gaps narrower than one voxel (0.05)"), std::string::npos);
+  EXPECT_EQ(warnings(pair(1.3 * h)), "");
+  EXPECT_EQ(warnings(Ellipsoid::jittered(2).field()), "");
+  EXPECT_EQ(warnings(make_shape("torus")), "");
 }
 
 TEST(LevelSetFromField, ProgressRisesToOne) {

@@ -1,0 +1,22 @@
+#pragma once
+// Internal: walls and gaps that a grid is too coarse for.
+
+#include <cstdint>
+#include <span>
+
+#include "sdf/field.h"
+
+namespace limn {
+
+struct ThinPlaces {
+  std::int64_t looked_at = 0;
+  std::int64_t walls = 0;  ///< Within two voxels the inward normal comes out again.
+  std::int64_t gaps = 0;   ///< Within one voxel the outward normal meets the surface again.
+};
+
+/// Looks from every fourth of the nodes nearest to the surface, along its normal. `points` and their signed `distances` are those of a
+/// block of at most 512 nodes.
+ThinPlaces find_thin_places(FieldEvaluator& evaluator, std::span<const glm::dvec3> points, std::span<const double> distances,
+                            double voxel_size);
+
+}  // namespace limn

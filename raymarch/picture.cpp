@@ -1,6 +1,7 @@
 #include "raymarch/picture.h"
 
 #include <fmt/core.h>
+#include <tbb/task_arena.h>
 
 #include <chrono>
 #include <cmath>
@@ -45,7 +46,7 @@ Layer draw_layer(const Scene& scene, const SceneModel& model, const Camera& came
   for (const MethodCall& call : settings.methods) {
     Border border = call.method->draw({gbuffer, camera, model, scene}, call.parameters);
     LIMN_CHECK(border.coverage.size() == layer.ink.size());
-    lay_ink(layer.composite, border.coverage, border.color);
+    lay_ink(layer.composite, border);
     for (size_t i = 0; i < layer.ink.size(); ++i) {
       layer.ink.pixels[i] = 1.0f - (1.0f - layer.ink.pixels[i]) * (1.0f - border.coverage.pixels[i]);
     }
@@ -92,10 +93,23 @@ void lay_ink(Image<glm::vec4>& picture, const Image<float>& coverage, const glm:
   }
 }
 
+void lay_ink(Image<glm::vec4>& picture, const Border& border) {
+  if (border.colors.pixels.empty()) {
+    lay_ink(picture, border.coverage, border.color);
+    return;
+  }
+  LIMN_CHECK(picture.size() == border.coverage.size() && picture.size() == border.colors.size());
+  for (size_t i = 0; i < picture.size(); ++i) {
+    const float share = border.coverage.pixels[i];
+    picture.pixels[i] = (1.0f - share) * picture.pixels[i] + share * glm::vec4(border.colors.pixels[i], 1.0f);
+  }
+}
+
 Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
                      const ExecutionSettings& how) {
   check_methods(scene, model, settings);
   Picture picture;
+  tbb::task_arena arena(how.threads > 0 ? how.threads : tbb::task_arena::automatic);
   for (int sample = 0; sample < settings.samples; ++sample) {
     ExecutionSettings part = how;
     if (how.progress) {
@@ -105,7 +119,7 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
     GBuffer gbuffer = render_gbuffer(model, camera, part, r2_offset(sample));
     picture.trace_ms += ms_since(start);
     start = Clock::now();
-    Layer layer = draw_layer(scene, model, camera, settings, gbuffer);
+    Layer layer = arena.execute([&] { return draw_layer(scene, model, camera, settings, gbuffer); });
     if (sample == 0) {
       picture.border = std::move(layer.ink);
       picture.composite = std::move(layer.composite);

@@ -32,5 +32,7 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
 Image<glm::vec4> shade_headlight(const GBuffer& gbuffer, const SceneModel& model);
 /// Lays ink over a premultiplied picture: mix(picture, ink, coverage).
 void lay_ink(Image<glm::vec4>& picture, const Image<float>& coverage, const glm::vec3& color);
+/// A method's border: in its colour, or in its colours where it has more than one.
+void lay_ink(Image<glm::vec4>& picture, const Border& border);
 
 }  // namespace limn

@@ -50,18 +50,18 @@ float nearest_depth(const Image<float>& depth) {
       smaller);
 }
 
-/// Whether the surface goes on without a jump from this pixel to its neighbours: one object, and each neighbour within 3 degrees of the
-/// tangent plane. A depth line here is a false one.
+/// Whether the surface runs on straight through this pixel, along the line and along the column: the chords to both neighbours within 3
+/// degrees of each other, and of like lengths. A depth line here is a false one. (The normals are not asked: they may be the cause.)
 bool smooth_here(const GBuffer& seen, int x, int y) {
-  constexpr std::array<glm::ivec2, 4> steps{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  if (x < 1 || y < 1 || x + 1 >= seen.width || y + 1 >= seen.height) return false;
   const size_t i = seen.id.index(x, y);
   if (seen.id.pixels[i] == 0) return false;
-  for (const glm::ivec2 step : steps) {
-    if (!seen.id.inside(x + step.x, y + step.y)) continue;
-    const size_t j = seen.id.index(x + step.x, y + step.y);
-    if (seen.id.pixels[j] != seen.id.pixels[i]) return false;
-    const glm::vec3 chord = seen.position.pixels[j] - seen.position.pixels[i];
-    if (std::abs(glm::dot(chord, seen.normal.pixels[i])) > 0.0523f * glm::length(chord)) return false;
+  for (const size_t step : {size_t{1}, static_cast<size_t>(seen.width)}) {
+    if (seen.id.pixels[i - step] != seen.id.pixels[i] || seen.id.pixels[i + step] != seen.id.pixels[i]) return false;
+    const glm::vec3 before = seen.position.pixels[i] - seen.position.pixels[i - step];
+    const glm::vec3 after = seen.position.pixels[i + step] - seen.position.pixels[i];
+    const float a = glm::length(before), b = glm::length(after);
+    if (std::max(a, b) > 3.0f * std::min(a, b) || glm::dot(before, after) < 0.9986f * a * b) return false;
   }
   return true;
 }
@@ -106,7 +106,7 @@ void add_notes(const std::string& name, const BorderInput& input, const Paramete
     border.notes.push_back(fmt::format("{}: the scene fills no custom buffer; the custom source draws nothing", name));
   }
   if (lines.false_ones > 0) {
-    border.notes.push_back(fmt::format("{}: {} of {} pixels of depth lines lie where the surface does not jump (grazing angles)", name,
+    border.notes.push_back(fmt::format("{}: {} of {} pixels of depth lines are false: the surface is steep there but does not jump", name,
                                        lines.false_ones.load(), lines.all.load()));
   }
 }
@@ -125,7 +125,7 @@ double grazing_factor(const GrazingModulation& modulation, double n_dot_v) {
 std::vector<Parameter> edge_parameters(EdgeOperator edge_operator) {
   constexpr auto number = ParameterKind::number;
   const GrazingModulation grazing;
-  const double depth_px = 2.0 * slope_gain(edge_operator);
+  const double depth_px = 5.0 * slope_gain(edge_operator);
   return {
       {"depth_weight", number, "", {1.0}, 0.0, 1.0, "ink of depth edges; 0 leaves them out", {}},
       {"depth_threshold", number, "px", {depth_px}, 0.0, 1e6, "least jump of depth, in sizes of a pixel at that depth", {}},
@@ -148,7 +148,7 @@ std::vector<Parameter> edge_parameters(EdgeOperator edge_operator) {
        {grazing.strength},
        0.0,
        1e4,
-       "threshold times 1 + this where the view grazes; 30 silences planes up to 89 degrees",
+       "threshold times 1 + this where the view grazes; 12 silences planes up to 89 degrees",
        {}},
       {"view",
        ParameterKind::choice,

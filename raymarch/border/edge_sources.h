@@ -14,7 +14,7 @@ enum class EdgeOperator { roberts, sobel };
 /// The factor of the depth threshold at grazing angles:
 /// 1 + strength * smoothstep(0, 1 - hardness, saturate((fresnel + p - 1) / p)), fresnel = (1 - N.V)^power.
 struct GrazingModulation {
-  double p = 1.0, hardness = 0.0, power = 5.0, strength = 30.0;
+  double p = 1.0, hardness = 0.0, power = 5.0, strength = 12.0;
 };
 double grazing_factor(const GrazingModulation& modulation, double n_dot_v);
 
@@ -25,9 +25,10 @@ double grazing_factor(const GrazingModulation& modulation, double n_dot_v);
 /// pixels is tan(theta). So with the operator applied to 1/Z (perspective) or Z (orthographic), the depth threshold `t` growing as Z
 /// (which makes it a number of pixel sizes at that depth) and the grazing factor `m`, a plane gives no line wherever
 ///     t m(theta) >= slope_gain / cos(theta),
-/// whatever the picture's size and the focal length. With t = 2 slope_gain this asks for m >= 1/(2 cos(theta)): power 5 (Schlick's) with
-/// p = 1 and hardness 0 follows that curve within what a strength of 28.2 allows at 89 degrees; the default is 30. A strength of 1, the
-/// factor of two at most, would need t = 29 slope_gain.
+/// whatever the picture's size and the focal length. The default t = 5 slope_gain needs no factor up to 78 degrees, so that normals which
+/// are off (averaged over a hard edge) do little harm; from there m >= 1/(5 cos(theta)) is asked for. Power 5 (Schlick's) with p = 1 and
+/// hardness 0 keeps above that curve up to 89 degrees with a strength of 10.7; the default is 12. With a strength of 1, a factor of two
+/// at most, t would have to be 29 slope_gain.
 double slope_gain(EdgeOperator edge_operator);
 
 std::vector<Parameter> edge_parameters(EdgeOperator edge_operator);

@@ -19,9 +19,9 @@ TEST(FirstSignChange, FindsTheFirstOfThreeKnownRootsHoweverCloseTheyAre) {
     std::sort(r.begin(), r.end());
     const double k = (i % 3 ? 1.0 : -1.0) * std::pow(10.0, static_cast<double>(i % 7) - 3.0);
     const std::array<double, 4> c{-k * r[0] * r[1] * r[2], k * (r[0] * r[1] + r[0] * r[2] + r[1] * r[2]), -k * (r[0] + r[1] + r[2]), k};
-    const double first = *std::find_if(r.begin(), r.end(), [](double root) { return root > 0.0; });
-    const bool any = r[2] > 0.0 && first <= 1.0;
     if (r[2] <= 0.0 || std::any_of(r.begin(), r.end(), [](double x) { return std::abs(x) < 1e-9 || std::abs(x - 1.0) < 1e-9; })) continue;
+    const double first = *std::find_if(r.begin(), r.end(), [](double root) { return root > 0.0; });
+    const bool any = first <= 1.0;
     const double found = first_sign_change(c, c[0] < 0.0);
     if (!any) {
       EXPECT_LT(found, 0.0);

@@ -43,7 +43,7 @@ size_t count_folded(const Field& field, const Cage& cage) {
   return folded_faces(field, refined_once(field, cage.mesh, std::int64_t{8} << 30).mesh).size();
 }
 
-/// The coarsest sampling whose topology the next finer one confirms and whose faces lie the right way up; failing that, the best met.
+/// The coarsest sampling whose topology a neighbouring one confirms and whose faces lie the right way up; failing that, the best met.
 Cage find_cage(const Field& field) {
   const Box& box = field.traits().bounds;
   if (box.empty()) throw InputError({"", "shape", "", "the surface is empty: there is nothing to tessellate", "a shape with a surface"});
@@ -57,10 +57,12 @@ Cage find_cage(const Field& field) {
     Mesh mesh = dual_contour(field, cells);
     const std::optional<Topology> topology = topology_of(mesh);
     if (topology && topology == previous_topology) {
-      Cage cage = snapped_cage(field, std::move(previous));
-      const size_t folded = count_folded(field, cage);
-      if (best.mesh.face_sizes.empty() || folded < best_folded) best = std::move(cage), best_folded = folded;
-      if (best_folded == 0) return best;
+      for (const Mesh* candidate : {&previous, &mesh}) {
+        Cage cage = snapped_cage(field, *candidate);
+        const size_t folded = count_folded(field, cage);
+        if (best.mesh.face_sizes.empty() || folded < best_folded) best = std::move(cage), best_folded = folded;
+        if (best_folded == 0) return best;
+      }
     }
     previous = std::move(mesh);
     previous_topology = topology;

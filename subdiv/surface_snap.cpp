@@ -138,6 +138,16 @@ Snapped snap(FieldEvaluator& evaluator, const glm::dvec3& start, const Surroundi
   return {reached ? plain : start, false};
 }
 
+/// A quad bent like a bow tie has the right area as a whole and a corner that is turned over; so has one with a reflex corner.
+bool has_reflex_corner(const std::vector<glm::dvec3>& corners, const glm::dvec3& area) {
+  const size_t n = corners.size();
+  for (size_t i = 0; i < n; ++i) {
+    const glm::dvec3 turn = glm::cross(corners[(i + 1) % n] - corners[i], corners[(i + n - 1) % n] - corners[i]);
+    if (glm::dot(turn, area) < -1e-3 * glm::dot(area, area)) return true;
+  }
+  return false;
+}
+
 using Evaluators = tbb::enumerable_thread_specific<FieldEvaluator>;
 
 void snap_some(const Field& field, Mesh& mesh, const std::vector<char>* which, SnapResult& result) {
@@ -209,26 +219,24 @@ std::vector<glm::vec3> field_normals(const Field& field, const Mesh& mesh, const
 
 std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh, bool reflex_too) {
   const std::vector<std::int32_t> first = first_corners(mesh);
-  FieldEvaluator evaluator(field);
-  std::vector<std::int32_t> folded;
-  std::vector<glm::dvec3> corners;
-  for (size_t f = 0; f < mesh.face_count(); ++f) {
-    gather_corners(mesh, face_corners(mesh, first[f], f), corners);
-    glm::dvec3 middle(0.0);
-    for (const glm::dvec3& p : corners) middle += p;
-    middle /= static_cast<double>(corners.size());
-    const glm::dvec3 area = vector_area(corners);
-    project_to_surface(evaluator, middle);
-    const glm::dvec3 outward = unit_gradient(evaluator, middle);
-    bool bad = glm::dot(area, outward) < 0.0;
-    // A quad bent like a bow tie has the right area as a whole and a corner that is turned over; so has a quad with a reflex corner.
-    for (size_t i = 0; i < corners.size() && !bad && reflex_too; ++i) {
-      const size_t n = corners.size();
-      const glm::dvec3 turn = glm::cross(corners[(i + 1) % n] - corners[i], corners[(i + n - 1) % n] - corners[i]);
-      bad = glm::dot(turn, area) < -1e-3 * glm::dot(area, area);
+  Evaluators evaluators([&field] { return FieldEvaluator(field); });
+  std::vector<char> bad(mesh.face_count(), 0);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.face_count(), 64), [&](const tbb::blocked_range<size_t>& range) {
+    FieldEvaluator& evaluator = evaluators.local();
+    std::vector<glm::dvec3> corners;
+    for (size_t f = range.begin(); f < range.end(); ++f) {
+      gather_corners(mesh, face_corners(mesh, first[f], f), corners);
+      glm::dvec3 middle(0.0);
+      for (const glm::dvec3& p : corners) middle += p;
+      middle /= static_cast<double>(corners.size());
+      const glm::dvec3 area = vector_area(corners);
+      project_to_surface(evaluator, middle);
+      bad[f] = glm::dot(area, unit_gradient(evaluator, middle)) < 0.0 || (reflex_too && has_reflex_corner(corners, area));
     }
-    if (bad) folded.push_back(static_cast<std::int32_t>(f));
-  }
+  });
+  std::vector<std::int32_t> folded;
+  for (size_t f = 0; f < bad.size(); ++f)
+    if (bad[f]) folded.push_back(static_cast<std::int32_t>(f));
   return folded;
 }
 

@@ -1,0 +1,303 @@
+#include "subdiv/import.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "sdf/error.h"
+#include "subdiv/audit.h"
+#include "subdiv/refine.h"
+#include "test_meshes.h"
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Import : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("limn-import-" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path write(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_ / name, std::ios::binary) << content;
+    return folder_ / name;
+  }
+
+  /// The file is refused with a message of one line that holds `part`.
+  void expect_refused(const fs::path& file, const std::string& part) const {
+    try {
+      load_mesh(file);
+      ADD_FAILURE() << file << " was accepted";
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      EXPECT_EQ(message.find('\n'), std::string::npos);
+      EXPECT_NE(message.find(file.filename().string()), std::string::npos) << message;
+      EXPECT_NE(message.find(part), std::string::npos) << message;
+      EXPECT_FALSE(error.fault().expected.empty() && message.find(';') == std::string::npos) << message;
+    }
+  }
+
+  fs::path folder_;
+};
+
+const char* const kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+std::string slurp(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+TEST_F(Import, ObjKeepsPolygonsNamesTagsAndDoublePrecision) {
+  const Mesh mesh = load_mesh(write("all.obj",
+                                    "# a pentagon and a triangle\r\nmtllib none.mtl\n"
+                                    "v 0.1234567890123456 0 0\nv 1 0 0\nv 1.5 1 0\nv .5 1.5e0 0\nv -0.5 1 0\n"
+                                    "vn 0 0 1\n\ng left wing\nusemtl shiny red\nf 1//1 2//1 3//1 \\\n 4//1 5//1\n"
+                                    "g right\nusemtl dull\nf -5/7/-1 -4/8/-1 -3/9/-1\n"
+                                    "t crease 3/1/0 0 1 2 2.5\nt crease 2/1/0 3 4 10\nt corner 2/2/0 0 3 1.5 10\n"
+                                    "t interpolateboundary 1/0/0 2\n"));
+  EXPECT_EQ(mesh.face_sizes, (std::vector<std::int32_t>{5, 3}));
+  EXPECT_EQ(mesh.corner_vertices, (std::vector<std::int32_t>{0, 1, 2, 3, 4, 0, 1, 2}));
+  EXPECT_EQ(mesh.positions[0].x, 0.1234567890123456);
+  EXPECT_EQ(mesh.positions[3].y, 1.5);
+  EXPECT_EQ(mesh.corner_normals.size(), 8u);
+  EXPECT_EQ(mesh.group_names, (std::vector<std::string>{"left wing", "right"}));
+  EXPECT_EQ(mesh.face_groups, (std::vector<std::int32_t>{0, 1}));
+  EXPECT_EQ(mesh.material_names, (std::vector<std::string>{"shiny red", "dull"}));
+  EXPECT_EQ(mesh.face_materials, (std::vector<std::int32_t>{0, 1}));
+  ASSERT_EQ(mesh.creases.size(), 3u);
+  EXPECT_EQ(mesh.creases[1].vertex_a, 1);
+  EXPECT_EQ(mesh.creases[1].vertex_b, 2);
+  EXPECT_EQ(mesh.creases[1].sharpness, 2.5f);
+  EXPECT_EQ(mesh.creases[2].sharpness, 10.0f);
+  ASSERT_EQ(mesh.corners.size(), 2u);
+  EXPECT_EQ(mesh.corners[1].sharpness, 10.0f);
+  EXPECT_EQ(mesh.boundary, BoundaryRule::edge_only);
+}
+
+TEST_F(Import, ObjFacesMayComeBeforeTheirVertices) {
+  EXPECT_EQ(load_mesh(write("late.obj", std::string("f 1 2 3\n") + kTriangle)).face_count(), 1u);
+}
+
+TEST_F(Import, ObjPolygonsMayBeLarge) {
+  std::string text, face = "f";
+  for (int i = 0; i < 300; ++i) {
+    text += "v " + std::to_string(std::cos(i * 0.0209)) + " " + std::to_string(std::sin(i * 0.0209)) + " 0\n";
+    face += " " + std::to_string(i + 1);
+  }
+  EXPECT_EQ(load_mesh(write("large.obj", text + face + "\n")).face_sizes[0], 300);
+}
+
+TEST_F(Import, ObjFaultsAreNamedWithTheirLine) {
+  const std::string v = kTriangle;
+  expect_refused(write("range.obj", v + "f 1 2 4\n"), "range.obj:4");
+  expect_refused(write("back.obj", v + "f -1 -2 -4\n"), "out of range");
+  expect_refused(write("zero.obj", v + "f 0 1 2\n"), "out of range");
+  expect_refused(write("huge.obj", v + "f 1 2 99999999999999999999\n"), "is not a vertex number");
+  expect_refused(write("normal.obj", v + "f 1//1 2//1 3//1\n"), "normal index out of range");
+  expect_refused(write("two.obj", v + "f 1 2\n"), "fewer than 3 corners");
+  expect_refused(write("word.obj", v + "f 1 2 x\n"), "is not a vertex number");
+  expect_refused(write("nan.obj", "v 0 nan 0\n" + v + "f 1 2 3\n"), "nan.obj:1");
+  expect_refused(write("inf.obj", "v 0 0 -inf\n" + v + "f 1 2 3\n"), "finite");
+  expect_refused(write("over.obj", "v 0 0 1e999\n" + v + "f 1 2 3\n"), "not a number");
+  expect_refused(write("short.obj", "v 0 0\n" + v + "f 1 2 3\n"), "three coordinates");
+  expect_refused(write("none.obj", v), "no faces");
+  expect_refused(write("tag.obj", v + "f 1 2 3\nt crease 2/1/0 0 9 1\n"), "crease 1");
+  expect_refused(write("tags.obj", v + "f 1 2 3\nt crease 2/1/0 0\n"), "tag");
+  expect_refused(write("sharp.obj", v + "f 1 2 3\nt corner 1/1/0 0 -2\n"), "sharpness");
+  expect_refused(write("binary.obj", std::string("v 0 0 0\n\0\1\2", 11)), "binary");
+}
+
+TEST_F(Import, WhatIsNoMeshFileIsRefused) {
+  expect_refused(folder_ / "missing.obj", "no such file");
+  expect_refused(folder_ / "missing.ply", "no such file");
+  fs::create_directories(folder_ / "folder.obj");
+  expect_refused(folder_ / "folder.obj", "directory");
+  for (const char* extension : {".obj", ".ply", ".stl", ".off", ".gltf", ".glb"}) {
+    EXPECT_TRUE(is_mesh_file("x" + std::string(extension)));
+    expect_refused(write("empty" + std::string(extension), ""), "empty");
+    expect_refused(write("noise" + std::string(extension), "\x89PNG this is no mesh at all, whatever its name says\n"), "noise");
+  }
+  EXPECT_TRUE(is_mesh_file("X.PLY"));
+  EXPECT_FALSE(is_mesh_file("x.fbx"));
+  expect_refused(write("model.fbx", "anything"), "extension");
+  expect_refused(write("really.stl", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), "really.stl");
+}
+
+TEST_F(Import, DamagedPlyOffAndStlAreRefused) {
+  const std::string header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  expect_refused(
+      write("range.ply", header + "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"),
+      "out of range");
+  expect_refused(
+      write("nan.ply", header + "element face 1\nproperty list uchar int vertex_indices\nend_header\nnan 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+      "finite");
+  expect_refused(write("points.ply", header + "end_header\n0 0 0\n1 0 0\n0 1 0\n"), "face");
+  expect_refused(write("range.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n"), "range");
+  expect_refused(write("none.off", "OFF\n0 0 0\n"), "none.off");
+  expect_refused(write("none.stl", "solid nothing\nendsolid nothing\n"), "none.stl");
+}
+
+TEST_F(Import, ElementsBeyondTheLimitAreRefused) {
+  ImportSettings settings;
+  settings.max_elements = 20;
+  write_mesh(test::cube(), folder_ / "cube.ply");
+  write_mesh(test::cube(), folder_ / "cube.obj");
+  EXPECT_THROW(load_mesh(folder_ / "cube.ply", settings), InputError);
+  EXPECT_THROW(load_mesh(folder_ / "cube.obj", settings), InputError);
+}
+
+TEST_F(Import, WrittenMeshesReadBackTheSame) {
+  Mesh mesh = test::jittered(test::prism(5), 0.3, 51);
+  mesh.creases = {{0, 1, 2.5f}, {5, 6, 10.0f}};
+  mesh.corners = {{2, 10.0f}};
+  mesh.boundary = BoundaryRule::edge_only;
+  mesh.group_names = {"side", "cap"};
+  mesh.face_groups = {0, 0, 0, 0, 0, 1, 1};
+  mesh.material_names = {"steel"};
+  mesh.face_materials.assign(7, 0);
+  for (size_t v = 0; v < mesh.vertex_count(); ++v) mesh.vertex_colors.emplace_back(0.1f * static_cast<float>(v), 0.5f, 1.0f);
+  for (size_t c = 0; c < mesh.corner_vertices.size(); ++c) mesh.corner_normals.emplace_back(0.0f, 0.6f, 0.8f);
+  for (const char* name : {"back.obj", "back.ply"}) {
+    write_mesh(mesh, folder_ / name);
+    const Mesh back = load_mesh(folder_ / name);
+    EXPECT_EQ(back.face_sizes, mesh.face_sizes) << name;
+    EXPECT_EQ(back.corner_vertices, mesh.corner_vertices) << name;
+    const bool obj = std::string(name) == "back.obj";
+    for (size_t v = 0; v < mesh.vertex_count(); ++v) {
+      EXPECT_LT(glm::distance(back.positions[v], mesh.positions[v]), obj ? 1e-300 : 1e-6) << name;
+      EXPECT_LT(glm::length(back.vertex_colors.at(v) - mesh.vertex_colors[v]), obj ? 1e-5f : 0.01f) << name;
+    }
+    ASSERT_EQ(back.corner_normals.size(), mesh.corner_normals.size()) << name;
+    EXPECT_LT(glm::length(back.corner_normals[3] - mesh.corner_normals[3]), 1e-6f);
+    if (!obj) continue;
+    EXPECT_EQ(back.creases.size(), 2u);
+    EXPECT_EQ(back.creases[0].sharpness, 2.5f);
+    EXPECT_EQ(back.corners.at(0).vertex, 2);
+    EXPECT_EQ(back.boundary, BoundaryRule::edge_only);
+    EXPECT_EQ(back.face_groups, mesh.face_groups);
+    EXPECT_EQ(back.material_names, mesh.material_names);
+  }
+  EXPECT_THROW(write_mesh(mesh, folder_ / "back.stl"), InputError);
+  EXPECT_FALSE(fs::exists(folder_ / "back.stl"));
+}
+
+TEST_F(Import, MutatedFilesAreRefusedOrReadAsValidMeshes) {
+  const Mesh mesh = test::sphere(2);
+  write_mesh(mesh, folder_ / "good.ply");
+  write_mesh(mesh, folder_ / "good.obj");
+  std::mt19937 random(4711);
+  int refused = 0, read = 0;
+  for (const char* name : {"good.ply", "good.obj"}) {
+    const std::string good = slurp(folder_ / name);
+    for (int round = 0; round < 40; ++round) {
+      std::string bad = good;
+      const unsigned kind = random() % 4;
+      if (kind == 0) bad.resize(1 + random() % bad.size());
+      for (unsigned k = 0; k < 1 + random() % 8 && kind == 1; ++k) bad[random() % bad.size()] = static_cast<char>(random());
+      for (unsigned k = 0; k < 4 && kind == 2; ++k) bad[random() % 300] = static_cast<char>('0' + random() % 10);
+      if (kind == 3) bad.erase(random() % bad.size(), 1 + random() % 40);
+      const fs::path file = write("bad" + fs::path(name).extension().string(), bad);
+      ImportSettings settings;
+      settings.limits.time = std::chrono::milliseconds(5000);
+      settings.limits.memory_bytes = std::int64_t{1} << 30;
+      try {
+        validate(load_mesh(file, settings), file.string());
+        ++read;
+      } catch (const InputError&) {
+        ++refused;
+      }
+    }
+  }
+  EXPECT_EQ(refused + read, 80);
+  EXPECT_GT(refused, 20);
+  EXPECT_GT(read, 5);
+}
+
+/// Debian's assimp-testmodels.
+fs::path sample(const std::string& name) { return fs::path("/usr/share/assimp/models") / name; }
+
+TEST_F(Import, FilesOfEveryFormatFromElsewhere) {
+  struct Case {
+    const char* name;
+    size_t vertices, faces;
+    int open_edges;  // -1: not looked at
+  };
+  // BoxTextured has 24 vertices for 8 corners: glTF splits them by normal, and nothing is welded by position.
+  const Case cases[] = {{"PLY/cube.ply", 8, 6, 0},
+                        {"PLY/cube_binary.ply", 8, 12, 0},
+                        {"OFF/Cube.off", 8, 6, 0},
+                        {"STL/Spider_binary.stl", 722, 1368, -1},
+                        {"STL/sphereWithHole.stl", 146, 285, 9},
+                        {"glTF2/BoxTextured-glTF/BoxTextured.gltf", 24, 12, 24},
+                        {"glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf", 24, 12, 24},
+                        {"glTF2/BoxTextured-glTF-Binary/BoxTextured.glb", 24, 12, 24}};
+  for (const Case& c : cases) {
+    if (!fs::exists(sample(c.name))) GTEST_SKIP() << "assimp-testmodels is not installed";
+    const Mesh mesh = load_mesh(sample(c.name));
+    EXPECT_EQ(mesh.vertex_count(), c.vertices) << c.name;
+    EXPECT_EQ(mesh.face_count(), c.faces) << c.name;
+    int open = 0;
+    for (const Edge& edge : build_edges(mesh)) open += edge.face_count == 1;
+    if (c.open_edges >= 0) EXPECT_EQ(open, c.open_edges) << c.name;
+    for (const glm::dvec3& size = bounds(mesh).size(); const double side : {size.x, size.y, size.z}) EXPECT_GT(side, 0.0) << c.name;
+  }
+}
+
+TEST_F(Import, DamagedGltfFromElsewhereIsRefused) {
+  if (!fs::exists(sample("glTF2"))) GTEST_SKIP() << "assimp-testmodels is not installed";
+  expect_refused(sample("glTF2/IndexOutOfRange/IndexOutOfRange.gltf"), "out of range");
+  expect_refused(sample("glTF2/IndexOutOfRange/AllIndicesOutOfRange.gltf"), "damaged");
+  expect_refused(sample("glTF2/MissingBin/BoxTextured.gltf"), "BoxTextured0.bin");
+  expect_refused(sample("glTF2/RecursiveNodes/RecursiveNodes.gltf"), "recursive");
+  expect_refused(sample("glTF2/BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb"), "finite");
+  expect_refused(sample("OFF/invalid.off"), "3 corners");
+}
+
+TEST_F(Import, GltfMayNotReachOutOfItsFolder) {
+  if (!fs::exists(sample("glTF2/BoxTextured-glTF/BoxTextured.gltf"))) GTEST_SKIP() << "assimp-testmodels is not installed";
+  std::string text = slurp(sample("glTF2/BoxTextured-glTF/BoxTextured.gltf"));
+  const std::string uri = "BoxTextured0.bin";
+  const size_t at = text.find(uri);
+  ASSERT_NE(at, std::string::npos);
+  fs::create_directories(folder_ / "inner");
+  fs::copy_file(sample("glTF2/BoxTextured-glTF/BoxTextured0.bin"), folder_ / uri);
+  std::ofstream(folder_ / "inner/box.gltf") << std::string(text).replace(at, uri.size(), "../" + uri);
+  EXPECT_THROW(load_mesh(folder_ / "inner/box.gltf"), InputError);
+  fs::copy_file(folder_ / uri, folder_ / "inner" / uri);
+  std::ofstream(folder_ / "inner/box.gltf") << text;
+  EXPECT_EQ(load_mesh(folder_ / "inner/box.gltf").face_count(), 12u);
+}
+
+TEST_F(Import, SpotRefinesToTheKnownCounts) {
+  const fs::path file = fs::path(LIMN_MODELS) / "spot_control_mesh.obj";
+  if (!fs::exists(file)) GTEST_SKIP() << "no models at " << LIMN_MODELS;
+  const Mesh cage = load_mesh(file);
+  EXPECT_EQ(cage.vertex_count(), 188u);
+  EXPECT_EQ(cage.face_count(), 180u);
+  const Mesh mesh = refine(cage, {Scheme::catmark, 2}, file.string());
+  EXPECT_EQ(mesh.vertex_count(), 2930u);
+  EXPECT_EQ(mesh.face_count(), 2928u);
+}
+
+TEST_F(Import, EveryModelLoadsAndTriangulates) {
+  if (!fs::exists(LIMN_MODELS)) GTEST_SKIP() << "no models at " << LIMN_MODELS;
+  for (const auto& entry : fs::directory_iterator(LIMN_MODELS)) {
+    if (!is_mesh_file(entry.path())) continue;
+    const Mesh mesh = load_mesh(entry.path());
+    const TriangleMesh triangles = triangulate(mesh, NormalKind::vertex);
+    EXPECT_GE(triangles.triangles.size(), mesh.face_count() - static_cast<size_t>(triangles.dropped_triangles)) << entry.path();
+    for (const glm::vec3& n : triangles.corner_normals) ASSERT_NEAR(glm::length(n), 1.0f, 1e-5f) << entry.path();
+  }
+}
+
+}  // namespace
+}  // namespace limn

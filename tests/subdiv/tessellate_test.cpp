@@ -1,0 +1,172 @@
+#include "subdiv/tessellate.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cstdio>
+#include <map>
+#include <numbers>
+
+#include "sdf/error.h"
+#include "sdf/shape.h"
+#include "subdiv/audit.h"
+#include "subdiv/dual_contour.h"
+#include "subdiv/surface_snap.h"
+
+namespace limn {
+namespace {
+
+struct Quality {
+  double worst_off = 0.0;  // |f|/|grad f| by the radius of the bounds
+  size_t folded = 0;
+};
+
+Quality quality_of(const Field& field, const Mesh& mesh) {
+  Quality quality;
+  FieldEvaluator evaluator(field);
+  const double radius = field.traits().bounds.radius();
+  for (const glm::dvec3& p : mesh.positions) {
+    const FieldJet jet = evaluator.jet(p);
+    quality.worst_off = std::max(quality.worst_off, std::abs(jet.value) / std::max(glm::length(jet.gradient), 1e-9) / radius);
+  }
+  quality.folded = folded_faces(field, mesh).size();
+  return quality;
+}
+
+Mesh tessellated(const Field& field, int level) {
+  TessellateSettings settings;
+  settings.level = level;
+  return tessellate(field, settings);
+}
+
+Field carved_box() { return combine(Csg::difference, make_shape("box", {{"half", {1, 1, 1}}}), make_shape("sphere", {{"radius", {1.2}}})); }
+
+TEST(Tessellate, EveryBoundedShapeIsAClosedManifoldOnItsSurfaceWithTheRightTopology) {
+  // Euler numbers of the shapes as their defaults make them; the gyroid's is not known beforehand.
+  const std::map<std::string, std::int64_t> euler = {{"torus", 0}, {"cyclide", 0}};
+  int checked = 0;
+  for (const ShapeDescriptor& shape : shapes()) {
+    const std::string& name = shape.about.name;
+    const Field field = make_shape(name);
+    if (!field.traits().bounds.finite()) {
+      EXPECT_THROW(cage_of(field), InputError) << name;
+      continue;
+    }
+    const Mesh mesh = tessellated(field, 1);
+    const std::optional<Topology> topology = topology_of(mesh);
+    ASSERT_TRUE(topology.has_value()) << name << " is not a closed manifold";
+    EXPECT_EQ(topology->parts, 1) << name;
+    if (name != "gyroid") EXPECT_EQ(topology->euler, euler.count(name) ? euler.at(name) : 2) << name;
+    const Quality quality = quality_of(field, mesh);
+    std::printf("  %-15s %6zu faces, euler %3d, worst vertex off by %.1e of the radius, %zu folded\n", name.c_str(), mesh.face_count(),
+                static_cast<int>(topology->euler), quality.worst_off, quality.folded);
+    EXPECT_LT(quality.worst_off, 1e-9) << name;
+    EXPECT_EQ(quality.folded, 0u) << name;
+    ASSERT_EQ(mesh.corner_normals.size(), mesh.corner_vertices.size()) << name;
+    for (const glm::vec3& n : mesh.corner_normals) ASSERT_NEAR(glm::length(n), 1.0f, 1e-5f) << name;
+    EXPECT_NO_THROW(validate(mesh, name));
+    ++checked;
+  }
+  EXPECT_GE(checked, 10);
+}
+
+TEST(Tessellate, CagesHaveAboutAHundredFacesAndMore) {
+  for (const char* name : {"sphere", "torus", "box", "capsule"}) {
+    const Mesh cage = cage_of(make_shape(name));
+    EXPECT_GE(cage.face_count(), 80u) << name;
+    EXPECT_LE(cage.face_count(), 1000u) << name;
+  }
+}
+
+TEST(Tessellate, ABoxKeepsItsEdgesAndCornersAndFlatNormals) {
+  for (const double angle : {0.0, 0.7}) {
+    const Field box = rotate(make_shape("box", {{"half", {1.0, 0.8, 0.6}}}), {1.0, 2.0, 3.0}, angle);
+    const Mesh mesh = tessellated(box, 2);
+    double area = 0.0;
+    const TriangleMesh triangles = triangulate(mesh, NormalKind::limit, true);
+    double worst = 0.0;
+    for (size_t i = 0; i < triangles.triangles.size(); ++i) {
+      const glm::uvec3 t = triangles.triangles[i];
+      const glm::dvec3 cross =
+          glm::cross(triangles.positions[t.y] - triangles.positions[t.x], triangles.positions[t.z] - triangles.positions[t.x]);
+      area += 0.5 * glm::length(cross);
+      for (size_t k = 0; k < 3; ++k)
+        worst = std::max(worst, glm::length(glm::dvec3(triangles.corner_normals[3 * i + k]) - glm::normalize(cross)));
+    }
+    // Cut edges would lose area: 2 * 4 * (1*0.8 + 0.8*0.6 + 0.6*1).
+    std::printf("  box turned by %.1f: area %.12f, worst normal off by %.2g\n", angle, area, worst);
+    EXPECT_NEAR(area, 8.0 * (0.8 + 0.48 + 0.6), 1e-9);
+    EXPECT_LT(worst, 1e-5);
+  }
+}
+
+TEST(Tessellate, CsgEdgesAreKept) {
+  // The carved box has 24 circular arcs where the sphere cuts the faces: vertices of the mesh must lie on them.
+  const Field field = carved_box();
+  const Mesh mesh = tessellated(field, 2);
+  EXPECT_EQ(topology_of(mesh), (Topology{1, -8}));
+  const Quality quality = quality_of(field, mesh);
+  EXPECT_EQ(quality.folded, 0u);
+  EXPECT_LT(quality.worst_off, 1e-9);
+  int on_arcs = 0, on_edges = 0;
+  for (const glm::dvec3& p : mesh.positions) {
+    const glm::dvec3 q = glm::abs(p);
+    const int faces = (std::abs(q.x - 1.0) < 1e-9) + (std::abs(q.y - 1.0) < 1e-9) + (std::abs(q.z - 1.0) < 1e-9);
+    on_arcs += faces >= 1 && std::abs(glm::length(p) - 1.2) < 1e-9;
+    on_edges += faces >= 2;
+  }
+  EXPECT_GT(on_arcs, 200);
+  EXPECT_GT(on_edges, 200);
+}
+
+TEST(Tessellate, PositionsConvergeToTheSurfaceByTheSquareOfTheEdge) {
+  const Field field = make_shape("ellipsoid");
+  FieldEvaluator evaluator(field);
+  double previous = 0.0;
+  for (const int level : {1, 2, 3}) {
+    const Mesh mesh = tessellated(field, level);
+    const std::vector<std::int32_t> first = first_corners(mesh);
+    double worst = 0.0;
+    for (size_t f = 0; f < mesh.face_count(); ++f) {
+      glm::dvec3 middle(0.0);
+      for (std::int32_t c = first[f]; c < first[f + 1]; ++c)
+        middle += 0.25 * mesh.positions[static_cast<size_t>(mesh.corner_vertices[static_cast<size_t>(c)])];
+      const FieldJet jet = evaluator.jet(middle);
+      worst = std::max(worst, std::abs(jet.value) / glm::length(jet.gradient));
+    }
+    std::printf("  ellipsoid level %d: %zu faces, middles off by %.2g\n", level, mesh.face_count(), worst);
+    if (previous > 0.0) EXPECT_GT(previous / worst, 3.0);
+    previous = worst;
+  }
+}
+
+TEST(Tessellate, SeveralPartsAndHollowOnes) {
+  const Field shell_of_ball = shell(make_shape("sphere", {{"radius", {1.0}}}), 0.2);
+  EXPECT_EQ(topology_of(tessellated(shell_of_ball, 1)), (Topology{2, 4}));
+  const Field two = combine(Csg::union_, translate(make_shape("sphere", {{"radius", {0.5}}}), {-1, 0, 0}),
+                            translate(make_shape("torus", {{"major", {0.5}}, {"minor", {0.15}}}), {1, 0, 0}));
+  EXPECT_EQ(topology_of(tessellated(two, 1)), (Topology{2, 2}));
+}
+
+TEST(Tessellate, ThreadsDoNotChangeIt) {
+  const Field field = carved_box();
+  const Mesh many = tessellated(field, 1);
+  const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
+  const Mesh one = tessellated(field, 1);
+  EXPECT_EQ(many.positions, one.positions);
+  EXPECT_EQ(many.corner_vertices, one.corner_vertices);
+  EXPECT_EQ(many.corner_normals, one.corner_normals);
+}
+
+TEST(Tessellate, RefusesLevelsAndSizes) {
+  TessellateSettings settings;
+  settings.level = 9;
+  EXPECT_THROW(tessellate(make_shape("sphere"), settings), InputError);
+  settings.level = 8;
+  settings.max_bytes = 1 << 20;
+  EXPECT_THROW(tessellate(make_shape("sphere"), settings), InputError);
+  EXPECT_THROW(tessellate(make_shape("plane"), {}), InputError);
+}
+
+}  // namespace
+}  // namespace limn

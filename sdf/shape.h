@@ -22,6 +22,9 @@ const ShapeDescriptor& find_shape(const std::string& name, const std::string& fi
 /// Shape with defaults overridden by name, for code: make_shape("torus", {{"major", {1.0}}, {"minor", {0.3}}}).
 Field make_shape(const std::string& name, const std::map<std::string, std::vector<double>>& values = {});
 
+// The operations throw InputError for numbers that are not finite or out of the ranges given (fields "smooth", "shell", "offset",
+// "translate", "rotate", "scale").
+
 enum class Csg { union_, intersection, difference };
 
 /// `smooth_radius` (world, >= 0): 0 is sharp (min, max); above it a polynomial blend of second-order contact (C2), whose zones
@@ -38,7 +41,9 @@ Field scale(const Field& field, double factor);                          ///< Ex
 Field scale(const Field& field, const glm::dvec3& factors);  ///< Each > 0; lower bound of the distance, keeps the Lipschitz constant.
 
 /// Brings `point` onto the surface: damped Newton along the gradient in double precision.
-/// Returns false (and the best point) where it does not reach |f| <= tolerance * traits' extent within 50 steps.
+/// Returns false (and the best point) where it does not reach |f| <= tolerance * radius of the bounds (or a few units in the last place of
+/// the coordinates, where that is more) within 50 steps: in a centre, or caught in a crease. Unbounded fields count as max(1, |point|)
+/// large.
 bool project_to_surface(FieldEvaluator& evaluator, glm::dvec3& point, double tolerance = 1e-12);
 
 }  // namespace limn

@@ -13,7 +13,7 @@ namespace {
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
 [[noreturn]] void fail(const std::string& value, const std::string& problem, const std::string& expected) {
-  throw InputError({{}, "profile", value, problem, expected});
+  throw InputError({{}, "revolution.profile", value, problem, expected});
 }
 
 std::string text(const glm::dvec2& p) { return fmt::format("[{}, {}]", p.x, p.y); }

@@ -120,7 +120,7 @@ struct Profile {
 };
 
 /// From the points of a polygon, either way round; the last point joins the first. Points on the axis close the solid there.
-/// Throws InputError (field "profile") for fewer than three points, a negative r, no area, or sides that cross or fold back.
+/// Throws InputError (field "revolution.profile") for fewer than three points, a negative r, no area, or sides that cross or fold back.
 Profile make_profile(std::vector<glm::dvec2> points);
 
 }  // namespace limn

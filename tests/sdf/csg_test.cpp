@@ -158,6 +158,7 @@ TEST(Csg, BoundsFollowTheOperations) {
   EXPECT_TRUE(combine(Csg::union_, combine(Csg::intersection, ball, far), ball).traits().bounds.finite());
   expect_box(combine(Csg::difference, ball, far).traits().bounds, {-1, -1, -1}, {1, 1, 1});
   expect_box(combine(Csg::intersection, ball, plane).traits().bounds, {-1, -1, -1}, {1, 0, 1});
+  expect_box(combine(Csg::union_, ball, ball, 0.6).traits().bounds, glm::dvec3(-1.1), glm::dvec3(1.1));  // a blend bulges by a sixth
   expect_box(offset(ball, 0.5).traits().bounds, glm::dvec3(-1.5), glm::dvec3(1.5));
   EXPECT_TRUE(offset(ball, -1.5).traits().bounds.empty());
   expect_box(shell(ball, 0.2).traits().bounds, glm::dvec3(-1.1), glm::dvec3(1.1));

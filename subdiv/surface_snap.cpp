@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "sdf/shape.h"
 #include "subdiv/audit.h"
@@ -14,7 +15,10 @@ namespace limn {
 namespace {
 
 /// Neighbouring normals that differ by more than this (25 degrees) at a hundredth of an edge belong to two sides of a crease.
-const double kCreaseCosine = std::cos(25.0 * 3.14159265358979323846 / 180.0);
+const double kCreaseCosine = std::cos(25.0 * std::numbers::pi / 180.0);
+
+/// On a smooth surface a thousandth of an edge does not turn the normal by 5 degrees.
+const double kSameSideCosine = std::cos(5.0 * std::numbers::pi / 180.0);
 
 glm::dvec3 unit_gradient(FieldEvaluator& evaluator, const glm::dvec3& p) {
   const glm::dvec3 gradient = evaluator.jet(p).gradient;
@@ -203,13 +207,12 @@ std::vector<glm::vec3> field_normals(const Field& field, const Mesh& mesh, const
       middle /= static_cast<double>(corners.size());
       for (size_t i = 0; i < corners.size(); ++i) {
         const auto v = static_cast<size_t>(corners[i]);
-        glm::dvec3 p = mesh.positions[v];
-        if (feature[v]) {
-          // A little way into the face, where one side of the crease has the word.
-          p += 1e-3 * (middle - p);
-          project_to_surface(evaluator, p);
-        }
-        const glm::dvec3 normal = unit_gradient(evaluator, p);
+        glm::dvec3 normal = unit_gradient(evaluator, mesh.positions[v]);
+        // A little way into the face, where one side of a crease has the word. Vertices can lie on a crease by chance, too.
+        glm::dvec3 beside = mesh.positions[v] + 1e-3 * (middle - mesh.positions[v]);
+        project_to_surface(evaluator, beside);
+        const glm::dvec3 own_side = unit_gradient(evaluator, beside);
+        if (feature[v] || glm::dot(normal, own_side) < kSameSideCosine) normal = own_side;
         if (normal != glm::dvec3(0.0)) normals[static_cast<size_t>(first[f]) + i] = glm::vec3(normal);
       }
     }

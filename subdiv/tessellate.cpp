@@ -23,6 +23,8 @@ Cage snapped_cage(const Field& field, Mesh mesh) {
   Cage cage{std::move(mesh), {}};
   cage.snapped = snap_to_surface(field, cage.mesh);
   relax(field, cage.mesh, cage.snapped, 2);
+  // Neighbours that have moved show a vertex more sides: one beside a corner of three faces may have seen only two of them.
+  for (int round = 0; round < 2; ++round) cage.snapped = snap_to_surface(field, cage.mesh);
   unfold(field, cage.mesh, cage.snapped, 12);
   return cage;
 }

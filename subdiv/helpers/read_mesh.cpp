@@ -216,7 +216,9 @@ std::vector<std::byte> read(const std::string& file, std::int64_t max_elements) 
   keep_readers(importer, extension);
   importer.SetIOHandler(new OwnFolderOnly(file));
   const aiScene* scene = importer.ReadFile(file, 0);
-  if (scene == nullptr) refuse("damaged or not a ." + extension + " file: " + importer.GetErrorString());
+  if (scene == nullptr)
+    refuse("damaged or not a ." + extension + " file: " + importer.GetErrorString() + "; an undamaged ." + extension +
+           " file with all that it refers to beside it");
   if (!complaint.empty()) refuse("a face's index is out of range; indices below the number of vertices");
   if (scene->mRootNode == nullptr) refuse("the mesh has no faces; at least one face with 3 or more corners");
   limn::ByteWriter writer;

@@ -82,7 +82,9 @@ TEST(Refine, CreaseRingIsTheCubicBSplineOfItsVertices) {
       const glm::dvec3 c = cage.positions[static_cast<size_t>(ring[(i + 2) % 4])],
                        d = cage.positions[static_cast<size_t>(ring[(i + 3) % 4])];
       EXPECT_LT(nearest(mesh, (a + 4.0 * b + c) / 6.0), 1e-12);
-      if (level > 0) EXPECT_LT(nearest(mesh, (a + 23.0 * b + 23.0 * c + d) / 48.0), 1e-12);
+      if (level > 0) {
+        EXPECT_LT(nearest(mesh, (a + 23.0 * b + 23.0 * c + d) / 48.0), 1e-12);
+      }
     }
   }
 }
@@ -148,8 +150,9 @@ TEST(Refine, LoopVertexMasksOfRegularSolids) {
         const glm::dvec3 limit = (1.0 - n * chi + chi * ring) * p;
         EXPECT_LT(nearest(mesh, limit), 1e-14);
         for (size_t i = 0; i < mesh.corner_vertices.size(); ++i)
-          if (glm::distance(mesh.positions[static_cast<size_t>(mesh.corner_vertices[i])], limit) < 1e-12)
+          if (glm::distance(mesh.positions[static_cast<size_t>(mesh.corner_vertices[i])], limit) < 1e-12) {
             EXPECT_LT(glm::length(glm::dvec3(mesh.corner_normals[i]) - glm::normalize(p)), 1e-6);
+          }
       }
     }
   }

@@ -56,7 +56,9 @@ TEST(Tessellate, EveryBoundedShapeIsAClosedManifoldOnItsSurfaceWithTheRightTopol
     const std::optional<Topology> topology = topology_of(mesh);
     ASSERT_TRUE(topology.has_value()) << name << " is not a closed manifold";
     EXPECT_EQ(topology->parts, 1) << name;
-    if (name != "gyroid") EXPECT_EQ(topology->euler, euler.count(name) ? euler.at(name) : 2) << name;
+    if (name != "gyroid") {
+      EXPECT_EQ(topology->euler, euler.count(name) ? euler.at(name) : 2) << name;
+    }
     const Quality quality = quality_of(field, mesh);
     std::printf("  %-15s %6zu faces, euler %3d, worst vertex off by %.1e of the radius, %zu folded\n", name.c_str(), mesh.face_count(),
                 static_cast<int>(topology->euler), quality.worst_off, quality.folded);
@@ -90,6 +92,7 @@ TEST(Tessellate, ABoxKeepsItsEdgesAndCornersAndFlatNormals) {
       const glm::dvec3 cross =
           glm::cross(triangles.positions[t.y] - triangles.positions[t.x], triangles.positions[t.z] - triangles.positions[t.x]);
       area += 0.5 * glm::length(cross);
+      if (glm::length(cross) < 1e-8) continue;  // three corners along one edge of the box: a sliver's own normal is rounding
       for (size_t k = 0; k < 3; ++k)
         worst = std::max(worst, glm::length(glm::dvec3(triangles.corner_normals[3 * i + k]) - glm::normalize(cross)));
     }
@@ -135,7 +138,9 @@ TEST(Tessellate, PositionsConvergeToTheSurfaceByTheSquareOfTheEdge) {
       worst = std::max(worst, std::abs(jet.value) / glm::length(jet.gradient));
     }
     std::printf("  ellipsoid level %d: %zu faces, middles off by %.2g\n", level, mesh.face_count(), worst);
-    if (previous > 0.0) EXPECT_GT(previous / worst, 3.0);
+    if (previous > 0.0) {
+      EXPECT_GT(previous / worst, 3.0);
+    }
     previous = worst;
   }
 }

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <sstream>
 
 #include "samples/interrupt.h"
 #include "sdf/error.h"
@@ -18,6 +20,11 @@ void override_with(T& target, const std::optional<T>& file, const std::optional<
 }
 
 std::string vector_text(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
 
 bool has_parameter(const BorderMethod& method, const std::string& key) {
   for (const Parameter& parameter : method.parameters) {
@@ -89,11 +96,18 @@ SurfaceSettings surface_settings(const Options& options, SceneInput& input) {
   return settings;
 }
 
-CameraSettings camera_settings(const Options& options, const Scene& scene) {
-  CameraSettings camera = scene.camera;
+CameraSettings camera_settings(const Options& options, const SceneInput& input) {
+  CameraSettings camera = input.scene.camera;
   if (options.size_px) {
     camera.width_px = options.size_px->x;
     camera.height_px = options.size_px->y;
+  }
+  // A built-in scene's own camera is made for wide pictures.
+  const bool narrow = 3 * camera.width_px < 4 * camera.height_px;
+  if (input.kind == InputKind::built_in && narrow && camera.eye && camera.target) {
+    camera.direction = *camera.eye - *camera.target;
+    camera.eye.reset();
+    camera.target.reset();
   }
   if (options.eye) camera.eye = options.eye;
   if (options.target) camera.target = options.target;
@@ -146,7 +160,12 @@ std::string methods_text(const std::vector<MethodCall>& methods) {
   std::string text;
   for (const MethodCall& call : methods) {
     text += (text.empty() ? "" : ", ") + call.method->about.name;
-    if (const std::string parameters = call.parameters.text(); !parameters.empty()) text += " " + parameters;
+    const std::vector<std::string> given = words_of(call.parameters.text());
+    const std::vector<std::string> defaults = words_of(resolve(call.method->parameters, {}).text());
+    for (size_t i = 0; i < given.size(); ++i) {
+      // The first parameter is what a method is known by; of the others only what differs is worth a caption.
+      if (i == 0 || given[i] != defaults.at(i)) text += " " + given[i];
+    }
   }
   return text;
 }
@@ -168,8 +187,10 @@ std::string resolved_call(const std::string& command, const Options& options, co
   if (surface.scheme) call += fmt::format(" --scheme {}", name_of(*surface.scheme));
   if (surface.normals) call += fmt::format(" --normals {}", name_of(*surface.normals));
   if (!options.grid.empty()) call += " --grid " + options.grid;
-  for (const MethodCall& method : picture.methods)
-    call += fmt::format(" --method {} [{}]", method.method->about.name, method.parameters.text());
+  for (const MethodCall& method : picture.methods) {
+    call += " --method " + method.method->about.name;
+    for (const std::string& pair : words_of(method.parameters.text())) call += " --set " + method.method->about.name + "." + pair;
+  }
   call += fmt::format(" --samples {}", picture.samples);
   if (picture.background) call += " --background " + vector_text(*picture.background);
   return call;

@@ -12,7 +12,7 @@ namespace limn {
 SurfaceSettings surface_settings(const Options& options, SceneInput& input);
 
 /// Camera of the scene with the command line over it.
-CameraSettings camera_settings(const Options& options, const Scene& scene);
+CameraSettings camera_settings(const Options& options, const SceneInput& input);
 /// View `index` of `count`: the camera's own where count is 1, else framed from view_direction().
 Camera camera_of_view(const CameraSettings& settings, const Box& bounds, int index, int count);
 

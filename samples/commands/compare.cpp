@@ -29,7 +29,7 @@ Comparison plan(const Options& options, SceneInput& input) {
   comparison.picture = picture_settings(options, input);
   if (!comparison.picture.background) comparison.picture.background = glm::vec3(1.0f);
   comparison.method_words = methods_text(comparison.picture.methods);
-  comparison.camera = resolve_camera(camera_settings(options, input.scene), bounds(input.scene));
+  comparison.camera = resolve_camera(camera_settings(options, input), bounds(input.scene));
   comparison.call = resolved_call("compare", options, settings, comparison.camera, comparison.picture);
   return comparison;
 }

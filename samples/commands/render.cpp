@@ -5,6 +5,7 @@
 
 #include "raymarch/image_io.h"
 #include "samples/commands/command.h"
+#include "samples/interrupt.h"
 #include "samples/job.h"
 #include "samples/output.h"
 #include "samples/threads.h"
@@ -54,9 +55,10 @@ Json surface_json(const SurfaceInfo& info) {
 std::string summary(const SurfaceInfo& info, const Camera& camera, const HitCounts& counts, const Timings& timings) {
   std::string text = fmt::format("{}x{}, {}, {} hits, {} misses", camera.width_px, camera.height_px, info.kind, counts.hits, counts.misses);
   if (counts.out_of_steps > 0) text += fmt::format(", {} out of steps", counts.out_of_steps);
-  return text + fmt::format("; load {}, build {}, trace {}, border {}, write {}; {}\n", time_text(timings.load_ms),
-                            time_text(timings.build_ms), time_text(timings.trace_ms), time_text(timings.border_ms),
-                            time_text(timings.write_ms), bytes_text(static_cast<double>(info.bytes)));
+  text += fmt::format("; load {}, build {}, trace {}, border {}, write {}", time_text(timings.load_ms), time_text(timings.build_ms),
+                      time_text(timings.trace_ms), time_text(timings.border_ms), time_text(timings.write_ms));
+  if (info.bytes > 0) text += "; " + bytes_text(static_cast<double>(info.bytes));
+  return text + "\n";
 }
 
 void add_options(CLI::App& app, Options& options) {
@@ -70,72 +72,58 @@ void add_options(CLI::App& app, Options& options) {
   add_execution(app, options, true);
 }
 
-int run(const Options& options) {
-  const ThreadLimit threads(options.threads);
-  ProgressBar bar(wants_progress(options.quiet, options.no_progress));
-  input_kind(options.input);
-  // A wrong output name must not cost the wait for a large model; the input's own name is known without reading it.
-  if (!options.outputs.empty()) check_outputs(options.outputs, options);
-
-  SceneInput input = load_input(options);
-  const std::vector<fs::path> outputs = outputs_of(options, input);
-  check_outputs(outputs, options);
-  Timings timings{.load_ms = input.load_ms};
-
-  SurfaceSettings surface = surface_settings(options, input);
-  surface.progress = bar.stage("building the surface");
-  const PictureSettings picture_of = picture_settings(options, input);
-  const CameraSettings camera_of = camera_settings(options, input.scene);
-  const Box scene_bounds = bounds(input.scene);
-  camera_of_view(camera_of, scene_bounds, 0, 1);  // a camera that is wrong is told before the surface is built
-
-  const auto build_start = std::chrono::steady_clock::now();
-  const SceneModel model = build_model(input.scene, surface);
-  timings.build_ms = since_ms(build_start);
-  const SurfaceInfo info = total(model);
-
+// What all views of one call share, and what they add up to.
+struct Render {
+  SceneInput input;
+  std::vector<fs::path> outputs;
+  SurfaceSettings surface;
+  PictureSettings picture;
+  Camera camera;  ///< Of the last view.
+  Timings timings;
   HitCounts counts;
+  std::vector<std::string> notes;
   Json files = Json::array();
-  std::vector<std::string> notes = info.warnings;
-  std::string text;
-  Camera camera;
-  for (int view = 0; view < options.views; ++view) {
-    camera = camera_of_view(camera_of, scene_bounds, view, options.views);
-    ExecutionSettings how = execution_settings(options);
-    how.progress = bar.stage(options.views == 1 ? "tracing" : fmt::format("tracing view {} of {}", view + 1, options.views));
-    const Picture picture = draw_picture(input.scene, model, camera, picture_of, how);
-    timings.trace_ms += picture.trace_ms;
-    timings.border_ms += picture.border_ms;
-    const HitCounts seen = count_hits(picture.gbuffer);
-    counts.hits += seen.hits;
-    counts.misses += seen.misses;
-    counts.out_of_steps += seen.out_of_steps;
-    notes.insert(notes.end(), picture.notes.begin(), picture.notes.end());
+};
 
-    const auto write_start = std::chrono::steady_clock::now();
-    const std::string call = resolved_call("render", options, surface, camera, picture_of);
-    for (const fs::path& name : outputs) {
-      const fs::path file = view_file(name, view, options.views);
-      if (how.cancelled()) throw Cancelled{};
-      if (ending_of(file) == ".exr")
-        write_exr(picture, camera, call, file);
-      else
-        write_image(picture.composite, file);
-      files.push_back(file.string());
-      text += file.string() + "\n";
-    }
-    timings.write_ms += since_ms(write_start);
+void write_picture(const Picture& picture, int view, const Options& options, Render& render) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string call = resolved_call("render", options, render.surface, render.camera, render.picture);
+  for (const fs::path& name : render.outputs) {
+    const fs::path file = view_file(name, view, options.views);
+    if (interrupted()) throw Cancelled{};
+    if (ending_of(file) == ".exr")
+      write_exr(picture, render.camera, call, file);
+    else
+      write_image(picture.composite, file);
+    render.files.push_back(file.string());
   }
-  bar.clear();
+  render.timings.write_ms += since_ms(start);
+}
 
+void draw_view(const SceneModel& model, int view, const Options& options, ProgressBar& bar, Render& render) {
+  ExecutionSettings how = execution_settings(options);
+  how.progress = bar.stage(options.views == 1 ? "tracing" : fmt::format("tracing view {} of {}", view + 1, options.views));
+  const Picture picture = draw_picture(render.input.scene, model, render.camera, render.picture, how);
+  const HitCounts seen = count_hits(picture.gbuffer);
+  render.timings.trace_ms += picture.trace_ms;
+  render.timings.border_ms += picture.border_ms;
+  render.counts.hits += seen.hits;
+  render.counts.misses += seen.misses;
+  render.counts.out_of_steps += seen.out_of_steps;
+  render.notes.insert(render.notes.end(), picture.notes.begin(), picture.notes.end());
+  write_picture(picture, view, options, render);
+}
+
+void report(const Options& options, const Render& render, const SurfaceInfo& info) {
+  const Timings& timings = render.timings;
   if (!options.quiet) {
-    for (const std::string& note : notes) print_note(note);
+    for (const std::string& note : render.notes) print_note(note);
   }
-  if (options.verbose) print_note(resolved_call("render", options, surface, camera, picture_of));
+  if (options.verbose) print_note(resolved_call("render", options, render.surface, render.camera, render.picture));
   if (options.json) {
-    print_json({{"hits", counts.hits},
-                {"misses", counts.misses},
-                {"out_of_steps", counts.out_of_steps},
+    print_json({{"hits", render.counts.hits},
+                {"misses", render.counts.misses},
+                {"out_of_steps", render.counts.out_of_steps},
                 {"timings_ms",
                  {{"load", timings.load_ms},
                   {"build", timings.build_ms},
@@ -143,11 +131,45 @@ int run(const Options& options) {
                   {"border", timings.border_ms},
                   {"write", timings.write_ms}}},
                 {"surface", surface_json(info)},
-                {"files", files},
-                {"notes", notes}});
+                {"files", render.files},
+                {"notes", render.notes}});
   } else if (!options.quiet) {
-    print_text(text + summary(info, camera, counts, timings));
+    std::string text;
+    for (const Json& file : render.files) text += file.get<std::string>() + "\n";
+    print_text(text + summary(info, render.camera, render.counts, timings));
   }
+}
+
+int run(const Options& options) {
+  const ThreadLimit threads(options.threads);
+  ProgressBar bar(wants_progress(options.quiet, options.no_progress));
+  input_kind(options.input);
+  // A wrong output name must not cost the wait for a large model.
+  if (!options.outputs.empty()) check_outputs(options.outputs, options);
+
+  Render render;
+  render.input = load_input(options);
+  render.outputs = outputs_of(options, render.input);
+  check_outputs(render.outputs, options);
+  render.timings.load_ms = render.input.load_ms;
+  render.surface = surface_settings(options, render.input);
+  render.surface.progress = bar.stage("building the surface");
+  render.picture = picture_settings(options, render.input);
+  const CameraSettings camera_of = camera_settings(options, render.input);
+  const Box scene_bounds = bounds(render.input.scene);
+  camera_of_view(camera_of, scene_bounds, 0, 1);  // a camera that is wrong is told before the surface is built
+
+  const auto build_start = std::chrono::steady_clock::now();
+  const SceneModel model = build_model(render.input.scene, render.surface);
+  render.timings.build_ms = since_ms(build_start);
+  const SurfaceInfo info = total(model);
+  render.notes = info.warnings;
+  for (int view = 0; view < options.views; ++view) {
+    render.camera = camera_of_view(camera_of, scene_bounds, view, options.views);
+    draw_view(model, view, options, bar, render);
+  }
+  bar.clear();
+  report(options, render, info);
   return 0;
 }
 

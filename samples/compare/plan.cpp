@@ -9,8 +9,8 @@
 namespace limn {
 namespace {
 
-// The finest refinement that serves as the limit surface: a million faces take about a second and 300 MB to refine and trace.
-constexpr std::int64_t kAffordableFaces = 1'200'000;
+// The finest refinement that serves as the limit surface: 400,000 faces take about a second and 50 MB.
+constexpr std::int64_t kAffordableFaces = 400'000;
 constexpr int kFinestLevel = 8;
 
 template <class T>

@@ -15,7 +15,8 @@ std::string cell_sentence(const Cell& cell, double reference_area) {
   std::string text = fmt::format("{}: {} border pixels differ{}", full_title(cell), counted(differ), differ > 0.0 ? share : "");
   if (const double overlap = value_of(cell, "overlap"); std::isfinite(overlap)) text += fmt::format(", overlap {:.4f}", overlap);
   const double mean = value_of(cell, "normal_error_mean"), worst = value_of(cell, "normal_error_max");
-  if (std::isfinite(mean)) text += fmt::format("; normals are off by {:.2g}° on average and {:.2g}° at worst", mean, worst);
+  if (std::isfinite(mean))
+    text += fmt::format("; normals are off by {} degrees on average and {} at worst", short_number(mean), short_number(worst));
   return text + fmt::format("; built in {}, traced in {}, {} held.", time_text(cell.info.build_ms), time_text(cell.trace_ms),
                             bytes_text(static_cast<double>(cell.info.bytes)));
 }

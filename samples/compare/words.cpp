@@ -18,6 +18,8 @@ std::string share_text(double share) {
   return share < 0.1 ? fmt::format("{:.2f} %", 100.0 * share) : fmt::format("{:.0f} %", 100.0 * share);
 }
 
+std::string short_number(double value) { return std::abs(value) >= 10.0 ? fmt::format("{:.0f}", value) : fmt::format("{:.2g}", value); }
+
 std::string full_title(const Cell& cell) { return cell.details.empty() ? cell.title : cell.title + " (" + cell.details + ")"; }
 
 std::vector<std::string> caption_lines(const Cell& cell, double reference_area_px) {
@@ -29,7 +31,7 @@ std::vector<std::string> caption_lines(const Cell& cell, double reference_area_p
     lines.push_back(fmt::format("{} border px differ ({})", counted(differ), share_text(differ / std::max(1.0, reference_area_px))));
     lines.push_back(fmt::format("overlap (IoU) {:.4f}", value_of(cell, "overlap")));
     const double mean = value_of(cell, "normal_error_mean"), worst = value_of(cell, "normal_error_max");
-    if (std::isfinite(mean)) lines.push_back(fmt::format("normals off by {:.2g}°, worst {:.2g}°", mean, worst));
+    if (std::isfinite(mean)) lines.push_back(fmt::format("normals off by {} deg, worst {} deg", short_number(mean), short_number(worst)));
   }
   lines.push_back(fmt::format("build {}, trace {}", time_text(cell.info.build_ms), time_text(cell.trace_ms)));
   if (cell.info.bytes > 0) lines.push_back(bytes_text(static_cast<double>(cell.info.bytes)) + " held");

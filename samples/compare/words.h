@@ -12,6 +12,8 @@ namespace limn {
 std::string counted(double value);
 /// "0.53 %".
 std::string share_text(double share);
+/// Two digits: "0.0034", "1.2", "104".
+std::string short_number(double value);
 /// "level set (256 voxels, central gradient)".
 std::string full_title(const Cell& cell);
 /// A few short lines for a caption.

@@ -71,7 +71,12 @@ class Sheet {
       // Vertices around a hole go onto its circle.
       if (i < hole.along || i > hole.along + hole.cells || j < hole.across || j > hole.across + hole.cells) continue;
       const glm::dvec2 center(hole.center_along(), hole.center_across());
-      const glm::dvec2 index(i - hole.along - 0.5 * hole.cells, j - hole.across - 0.5 * hole.cells);
+      glm::dvec2 index(i - hole.along - 0.5 * hole.cells, j - hole.across - 0.5 * hole.cells);
+      // Twelve vertices stand 30 degrees apart, so the two between corners are 15 degrees off the axis.
+      if (hole.cells == 3 && std::abs(index.x) != std::abs(index.y)) {
+        double& lesser = std::abs(index.x) < std::abs(index.y) ? index.x : index.y;
+        lesser = std::copysign(1.5 * std::tan(std::numbers::pi / 12.0), lesser);
+      }
       const glm::dvec2 on_circle = center + hole.radius * glm::normalize(index);
       along = on_circle.x;
       across = on_circle.y;
@@ -104,7 +109,7 @@ class Sheet {
 Scene make() {
   Scene scene;
   scene.objects.push_back(cage_object("bracket", Sheet().make(), {0.34f, 0.42f, 0.50f}));
-  scene.camera.direction = glm::dvec3(0.75, 0.62, 1.0);
+  scene.camera = look_at({0.0, 0.85, -1.1}, {0.75, 0.62, 1.0}, 5.2);
   return scene;
 }
 

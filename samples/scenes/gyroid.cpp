@@ -5,10 +5,10 @@ namespace {
 
 Scene make() {
   Scene scene;
-  const Field lattice = make_shape("gyroid", {{"period", {1.0}}, {"thickness", {0.12}}, {"bound", {1.4}}});
+  const Field lattice = make_shape("gyroid", {{"period", {0.9}}, {"thickness", {0.10}}, {"bound", {1.4}}});
   const Field ball = make_shape("sphere", {{"radius", {1.0}}});
   scene.objects.push_back({.name = "gyroid", .source = combine(Csg::intersection, lattice, ball), .color = {0.30f, 0.48f, 0.66f}});
-  scene.camera.direction = glm::dvec3(0.7, 0.5, 1.0);
+  scene.camera = look_at({0.0, 0.0, 0.0}, {0.7, 0.5, 1.0}, 3.6);
   return scene;
 }
 

@@ -1,4 +1,4 @@
-// A flanged hub as a lathe and a mill would make it: a disc, a boss with a fillet to it, four ribs blended in, a bore with a keyway,
+// A flanged hub as a lathe and a mill would make it: a disc, a boss with a fillet to it, three ribs blended in, a bore with a keyway,
 // and six counterbored bolt holes. Blends are smooth, cuts are sharp.
 
 #include <cmath>
@@ -22,9 +22,11 @@ Field body() {
   Field part = offset(cylinder(1.16, kFlangeTop - 0.04, {0.0, 0.0, 0.0}), 0.04);
   const Field boss = offset(cylinder(0.44, 0.44, {0.0, 0.36, 0.0}), 0.03);
   std::vector<Field> ribs;
-  for (int i = 0; i < 2; ++i) {
-    const Field bar = make_shape("rounded_box", {{"half", {0.86, 0.17, 0.055}}, {"rounding", {0.03}}});
-    ribs.push_back(rotate(translate(bar, {0.0, kFlangeTop + 0.08, 0.0}), {0.0, 1.0, 0.0}, 90.0 * i * kDegree));
+  for (int i = 0; i < 3; ++i) {
+    // A bar laid aslant from the boss down to the flange; what would stick out below is inside the flange.
+    Field rib = make_shape("rounded_box", {{"half", {0.34, 0.17, 0.055}}, {"rounding", {0.03}}});
+    rib = translate(rotate(rib, {0.0, 0.0, 1.0}, -41.0 * kDegree), {0.588, 0.247, 0.0});
+    ribs.push_back(rotate(rib, {0.0, 1.0, 0.0}, (120.0 * i + 60.0) * kDegree));
   }
   part = combine(Csg::union_, part, combine(Csg::union_, ribs), 0.06);
   return combine(Csg::union_, part, boss, 0.10);
@@ -37,7 +39,7 @@ std::vector<Field> cuts() {
   tools.push_back(translate(key, {0.0, 0.0, 0.26}));
   for (int i = 0; i < 6; ++i) {
     const double angle = (30.0 + 60.0 * i) * kDegree;
-    // Ribs stand at 0, 90, 180 and 270 degrees, holes between or beside them.
+    // Ribs stand at 60, 180 and 300 degrees: no hole meets one.
     const glm::dvec3 at = 0.92 * glm::dvec3(std::cos(angle), 0.0, -std::sin(angle));
     tools.push_back(cylinder(0.085, 1.0, at));
     tools.push_back(cylinder(0.145, 0.10, at + glm::dvec3(0.0, kFlangeTop + 0.04, 0.0)));
@@ -50,7 +52,7 @@ Scene make() {
   for (const Field& tool : cuts()) part.push_back(tool);
   Scene scene;
   scene.objects.push_back({.name = "flanged hub", .source = combine(Csg::difference, part), .color = {0.50f, 0.53f, 0.56f}});
-  scene.camera.direction = glm::dvec3(0.45, 0.95, 1.0);
+  scene.camera = look_at({0.0, 0.2, 0.0}, {0.45, 0.95, 1.0}, 3.9);
   return scene;
 }
 

@@ -22,6 +22,13 @@ std::span<const SceneDescriptor> scenes() {
   return all;
 }
 
+CameraSettings look_at(const glm::dvec3& target, const glm::dvec3& direction, double distance) {
+  CameraSettings camera;
+  camera.target = target;
+  camera.eye = target + distance * glm::normalize(direction);
+  return camera;
+}
+
 std::vector<std::string> scene_names() {
   std::vector<std::string> names;
   for (const SceneDescriptor& scene : scenes()) names.push_back(scene.about.name);

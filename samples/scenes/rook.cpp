@@ -41,7 +41,7 @@ Mesh rook() {
 Scene make() {
   Scene scene;
   scene.objects.push_back(cage_object("rook", rook(), {0.55f, 0.36f, 0.20f}));
-  scene.camera.direction = glm::dvec3(0.35, 0.52, 1.0);
+  scene.camera = look_at({0.0, 0.98, 0.0}, {0.35, 0.52, 1.0}, 4.4);
   return scene;
 }
 

@@ -13,6 +13,10 @@ struct SceneDescriptor {
   Scene (*make)();
 };
 
+/// A camera that looks at `target` from `direction` (any length) at `distance` (world): tighter than framing by bounds, in pictures at
+/// least 4:3 wide.
+CameraSettings look_at(const glm::dvec3& target, const glm::dvec3& direction, double distance);
+
 std::span<const SceneDescriptor> scenes();
 std::vector<std::string> scene_names();
 /// Null where no scene has that name.

@@ -10,7 +10,7 @@ Scene make() {
   Field pillow = make_shape("superellipsoid", {{"radii", {1.0, 0.75, 0.85}}, {"exponents", {0.45, 0.6}}});
   pillow = rotate(pillow, {0.0, 1.0, 0.0}, 20.0 * std::numbers::pi / 180.0);
   scene.objects.push_back({.name = "superellipsoid", .source = pillow, .color = {0.55f, 0.30f, 0.50f}});
-  scene.camera.direction = glm::dvec3(0.5, 0.55, 1.0);
+  scene.camera = look_at({0.0, 0.0, 0.0}, {0.55, 0.85, 1.0}, 4.1);
   return scene;
 }
 

@@ -63,11 +63,11 @@ Mesh saucer() {
   const std::array<ProfilePoint, 10> profile = {{{0.50, 0.03, 0.0f},
                                                  {0.62, 0.00, 2.0f},
                                                  {0.72, 0.00, 2.0f},
-                                                 {0.78, 0.07, 0.0f},
-                                                 {1.35, 0.18, 0.0f},
-                                                 {1.80, 0.34, 1.5f},
-                                                 {1.78, 0.40, 1.5f},
-                                                 {1.30, 0.26, 0.0f},
+                                                 {0.78, 0.06, 0.0f},
+                                                 {1.35, 0.13, 0.0f},
+                                                 {1.80, 0.25, 1.5f},
+                                                 {1.78, 0.31, 1.5f},
+                                                 {1.30, 0.20, 0.0f},
                                                  {0.72, 0.15, 1.0f},
                                                  {0.58, 0.11, 1.0f}}};
   CageBuilder cage;
@@ -81,7 +81,7 @@ Scene make() {
   cup_object.world_from_object.translation = {0.0, 0.13, 0.0};
   scene.objects.push_back(std::move(cup_object));
   scene.objects.push_back(cage_object("saucer", saucer(), {0.16f, 0.33f, 0.52f}));
-  scene.camera.direction = glm::dvec3(0.55, 0.62, 1.0);
+  scene.camera = look_at({0.0, 0.55, 0.1}, {0.5, 0.80, 1.0}, 5.3);
   return scene;
 }
 

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# The demo: every built-in scene as a picture, three of them compared in every representation, and one page that leads to all of it.
+#   demo.sh PROGRAM FOLDER
+set -euo pipefail
+limn=$1
+out=$2
+compared=(ellipsoid machined_part teacup)
+mkdir -p "$out"
+
+echo "Drawing the built-in scenes"
+mapfile -t scenes < <("$limn" list scenes --json | sed -n 's/^ *"name": "\(.*\)",\{0,1\}$/\1/p')
+[ ${#scenes[@]} -gt 0 ] || { echo "demo: '$limn list scenes --json' named no scene" >&2; exit 1; }
+for scene in "${scenes[@]}"; do
+  "$limn" render "$scene" --size 640x480 --samples 8 -q -o "$out/$scene.png"
+done
+for scene in "${compared[@]}"; do
+  echo
+  echo "Comparing the representations of '$scene'"
+  "$limn" compare "$scene" -o "$out/compare-$scene"
+done
+
+{
+  cat <<'HTML'
+<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<title>limn: demo</title>
+<style>
+  :root { color-scheme: light dark; }
+  body { font: 16px/1.5 system-ui, sans-serif; max-width: 72rem; margin: 2rem auto; padding: 0 1rem; }
+  .grid { display: grid; grid-template-columns: repeat(auto-fill, minmax(16rem, 1fr)); gap: 1rem; }
+  figure { margin: 0; } img { width: 100%; height: auto; background: #fff; border-radius: .4rem; }
+  a { color: inherit; }
+</style>
+<h1>The border of a surface, and how far to trust it</h1>
+<p>The dark rim is drawn where the surface turns away from the eye. It depends on how the surface is modelled: a formula, a grid of
+distances, or triangles. Each comparison below draws one shape in every representation and counts the pixels where the border is wrong.</p>
+<h2>Comparisons</h2><div class="grid">
+HTML
+  for scene in "${compared[@]}"; do
+    printf '<figure><a href="compare-%s/report.html"><img src="%s.png" alt="%s">Compare: %s</a></figure>\n' "$scene" "$scene" "$scene" "${scene//_/ }"
+  done
+  echo '</div><h2>All scenes</h2><div class="grid">'
+  for scene in "${scenes[@]}"; do
+    printf '<figure><img src="%s.png" alt="%s" loading="lazy"><figcaption>%s</figcaption></figure>\n' "$scene" "$scene" "${scene//_/ }"
+  done
+  echo '</div></html>'
+} > "$out/index.html"
+echo
+echo "Open $out/index.html"

@@ -36,7 +36,7 @@ bool same_bytes(const GBuffer& a, const GBuffer& b) {
 }
 
 TEST(GBuffer, TheSameBytesForAnyThreadsAndTiles) {
-  const Scene scene = scene_of({object_of(part()), object_of(translate(make_shape("gyroid"), {2.0, 0.0, 0.0}))});
+  const Scene scene = scene_of({object_of(part()), object_of(translate(make_shape("superellipsoid"), {2.0, 0.0, 0.0}))});
   for (const std::string kind : {"analytic", "level_set", "mesh", "mesh_level_set"}) {
     SurfaceSettings settings = surface_kind(kind);
     settings.voxels = 48;

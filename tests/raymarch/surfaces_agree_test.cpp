@@ -148,7 +148,7 @@ TEST(SurfacesAgree, InTheirBordersToo) {
   const Camera camera = framing(scene, view(320, 240));
   const auto draw = [&](const std::string& kind) {
     SurfaceSettings settings = surface_kind(kind);
-    settings.voxels = 192;
+    settings.voxels = 128;
     settings.level = 4;
     return draw_picture(scene, build_model(scene, settings), camera, {{call_of("rim")}, 1, {}}, {});
   };

@@ -24,20 +24,28 @@ BlurSettings read_settings(const Parameters& parameters) {
           static_cast<float>(parameters.number("strength"))};
 }
 
-Image<float> blurred(const Image<float>& plane, const BlurSettings& settings) {
-  if (settings.scale == 1) return blur_separable(plane, settings.kernel, settings.radius_px);
-  const int radius = std::max(1, (settings.radius_px + settings.scale / 2) / settings.scale);
-  return enlarged(blur_separable(reduced(plane, settings.scale), settings.kernel, radius), settings.scale, plane.width, plane.height);
-}
-
-/// Calls `value(id)` for every pixel's object.
+/// Blurs what `value(id)` makes of the objects, and hands on `write(y, line)`. A smaller buffer needs whole pictures in between.
 template <class Value>
-Image<float> plane_of(const GBuffer& seen, const Value& value) {
+void blur_objects(const GBuffer& seen, const BlurSettings& settings, const Value& value,
+                  const std::function<void(int, const float*)>& write) {
+  const auto read = [&](int y, float* line) {
+    const std::int32_t* id = &seen.id.at(0, y);
+    for (int x = 0; x < seen.width; ++x) line[x] = value(id[x]);
+  };
+  if (settings.scale == 1) {
+    blur_lines(seen.width, seen.height, settings.kernel, settings.radius_px, read, write);
+    return;
+  }
   Image<float> plane(seen.width, seen.height);
   for_each_band(seen.height, [&](int y0, int y1) {
-    for (size_t i = plane.index(0, y0); i < plane.index(0, y1); ++i) plane.pixels[i] = value(seen.id.pixels[i]);
+    for (int y = y0; y < y1; ++y) read(y, &plane.at(0, y));
   });
-  return plane;
+  const int radius = std::max(1, (settings.radius_px + settings.scale / 2) / settings.scale);
+  const Image<float> small = blur_separable(reduced(plane, settings.scale), settings.kernel, radius);
+  plane = enlarged(small, settings.scale, seen.width, seen.height);
+  for_each_band(seen.height, [&](int y0, int y1) {
+    for (int y = y0; y < y1; ++y) write(y, &plane.at(0, y));
+  });
 }
 
 /// Of the blurred silhouette: on a straight edge it is 1/2, so that a glow starts there at 1. Over the object it fades inwards alike.
@@ -48,17 +56,25 @@ float ink_of(const BlurSettings& settings, float blurred_silhouette, bool inside
   return std::min(1.0f, std::max(0.0f, 2.0f * settings.strength * amount));
 }
 
+Image<float> silhouette_plane(const GBuffer& seen, const BlurSettings& settings) {
+  Image<float> plane(seen.width, seen.height);
+  blur_objects(
+      seen, settings, [](std::int32_t id) { return id != 0 ? 1.0f : 0.0f; },
+      [&](int y, const float* line) { std::copy_n(line, static_cast<size_t>(seen.width), &plane.at(0, y)); });
+  return plane;
+}
+
 /// The silhouette buffer in the objects' colours, blurred and divided by its coverage.
-Image<glm::vec3> object_colors(const BorderInput& input, const BlurSettings& settings, const Image<float>& silhouette) {
+Image<glm::vec3> object_colors(const BorderInput& input, const BlurSettings& settings) {
   const GBuffer& seen = input.gbuffer;
+  const Image<float> silhouette = silhouette_plane(seen, settings);
   Image<glm::vec3> colors(seen.width, seen.height, glm::vec3(0.0f));
   for (int channel = 0; channel < 3; ++channel) {
-    const Image<float> plane =
-        blurred(plane_of(seen, [&](std::int32_t id) { return id == 0 ? 0.0f : input.model.colors[static_cast<size_t>(id - 1)][channel]; }),
-                settings);
-    for_each_band(seen.height, [&](int y0, int y1) {
-      for (size_t i = plane.index(0, y0); i < plane.index(0, y1); ++i) {
-        if (silhouette.pixels[i] > 1e-6f) colors.pixels[i][channel] = std::min(1.0f, plane.pixels[i] / silhouette.pixels[i]);
+    const auto value = [&](std::int32_t id) { return id == 0 ? 0.0f : input.model.colors[static_cast<size_t>(id - 1)][channel]; };
+    blur_objects(seen, settings, value, [&](int y, const float* line) {
+      const float* share = &silhouette.at(0, y);
+      for (int x = 0; x < seen.width; ++x) {
+        if (share[x] > 1e-6f) colors.at(x, y)[channel] = std::min(1.0f, line[x] / share[x]);
       }
     });
   }
@@ -68,16 +84,17 @@ Image<glm::vec3> object_colors(const BorderInput& input, const BlurSettings& set
 Border draw(const BorderInput& input, const Parameters& parameters) {
   const GBuffer& seen = input.gbuffer;
   const BlurSettings settings = read_settings(parameters);
-  const Image<float> silhouette = blurred(plane_of(seen, [](std::int32_t id) { return id != 0 ? 1.0f : 0.0f; }), settings);
   Border border;
   border.color = glm::vec3(parameters.vector3("color"));
   border.coverage = {seen.width, seen.height, 0.0f};
-  for_each_band(seen.height, [&](int y0, int y1) {
-    for (size_t i = silhouette.index(0, y0); i < silhouette.index(0, y1); ++i) {
-      border.coverage.pixels[i] = ink_of(settings, silhouette.pixels[i], seen.id.pixels[i] != 0);
-    }
-  });
-  if (parameters.choice("colors") == "objects") border.colors = object_colors(input, settings, silhouette);
+  blur_objects(
+      seen, settings, [](std::int32_t id) { return id != 0 ? 1.0f : 0.0f; },
+      [&](int y, const float* line) {
+        const std::int32_t* id = &seen.id.at(0, y);
+        float* ink = &border.coverage.at(0, y);
+        for (int x = 0; x < seen.width; ++x) ink[x] = ink_of(settings, line[x], id[x] != 0);
+      });
+  if (parameters.choice("colors") == "objects") border.colors = object_colors(input, settings);
   return border;
 }
 

@@ -1,5 +1,8 @@
 #include "raymarch/border/blur_passes.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -7,23 +10,7 @@
 #include "raymarch/border/picture_rows.h"
 
 namespace limn {
-namespace {
-
-/// A plane as OpenCV sees it, without a copy. OpenCV has no header for const pixels; sources are never written.
-cv::Mat as_matrix(const Image<float>& image) { return {image.height, image.width, CV_32F, const_cast<float*>(image.pixels.data())}; }
-
-/// Runs `filter(from, to)` on bands of lines. A band is part of the whole matrix, so a filter sees the true lines beyond it.
-template <class Filter>
-void filter_bands(const Image<float>& source, Image<float>& target, const Filter& filter) {
-  const cv::Mat from = as_matrix(source), to = as_matrix(target);
-  for_each_band(source.height, [&](int y0, int y1) {
-    cv::Mat part = to.rowRange(y0, y1);
-    filter(from.rowRange(y0, y1), part);
-    LIMN_CHECK(part.data == to.ptr(y0));  // OpenCV would have allocated anew for another size or type
-  });
-}
-
-}  // namespace
+namespace {}  // namespace
 
 std::vector<float> blur_taps(BlurKernel kernel, int radius_px) {
   const double sigma = radius_px / 3.0;
@@ -38,27 +25,41 @@ std::vector<float> blur_taps(BlurKernel kernel, int radius_px) {
   return weights;
 }
 
-Image<float> blur_separable(const Image<float>& source, BlurKernel kernel, int radius_px) {
-  Image<float> across(source.width, source.height), both(source.width, source.height);
+void blur_lines(int width, int height, BlurKernel kernel, int radius_px, const std::function<void(int, float*)>& read,
+                const std::function<void(int, const float*)>& write) {
   const int taps = 2 * radius_px + 1;
-  const cv::Point middle(-1, -1);
-  if (kernel == BlurKernel::box) {
-    filter_bands(source, across, [&](const cv::Mat& from, cv::Mat& to) {
-      cv::boxFilter(from, to, CV_32F, {taps, 1}, middle, true, cv::BORDER_REPLICATE);
-    });
-    filter_bands(across, both, [&](const cv::Mat& from, cv::Mat& to) {
-      cv::boxFilter(from, to, CV_32F, {1, taps}, middle, true, cv::BORDER_REPLICATE);
-    });
-    return both;
-  }
-  const std::vector<float> weights = blur_taps(kernel, radius_px), one{1.0f};
-  filter_bands(source, across, [&](const cv::Mat& from, cv::Mat& to) {
-    cv::sepFilter2D(from, to, CV_32F, weights, one, middle, 0.0, cv::BORDER_REPLICATE);
+  // Twice the radius and more, or the lines that neighbouring bands both filter would be most of the work.
+  const int band_rows = std::max(64, 2 * taps);
+  const std::vector<float> weights = blur_taps(kernel, radius_px);
+  tbb::parallel_for(0, (height + band_rows - 1) / band_rows, [&](int band) {
+    const int y0 = band * band_rows, y1 = std::min(height, y0 + band_rows);
+    cv::Mat source(y1 - y0 + 2 * radius_px, width, CV_32F), blurred(y1 - y0, width, CV_32F);
+    for (int row = 0; row < source.rows; ++row) {
+      const int y = std::clamp(y0 - radius_px + row, 0, height - 1);
+      if (row > 0 && y == std::clamp(y0 - radius_px + row - 1, 0, height - 1)) {
+        source.row(row - 1).copyTo(source.row(row));
+      } else {
+        read(y, source.ptr<float>(row));
+      }
+    }
+    // A part of a matrix: the filters see the true lines above and below it.
+    const cv::Mat middle = source.rowRange(radius_px, radius_px + y1 - y0);
+    if (kernel == BlurKernel::box) {
+      cv::boxFilter(middle, blurred, CV_32F, {taps, taps}, {-1, -1}, true, cv::BORDER_REPLICATE);
+    } else {
+      cv::sepFilter2D(middle, blurred, CV_32F, weights, weights, {-1, -1}, 0.0, cv::BORDER_REPLICATE);
+    }
+    for (int y = y0; y < y1; ++y) write(y, blurred.ptr<float>(y - y0));
   });
-  filter_bands(across, both, [&](const cv::Mat& from, cv::Mat& to) {
-    cv::sepFilter2D(from, to, CV_32F, one, weights, middle, 0.0, cv::BORDER_REPLICATE);
-  });
-  return both;
+}
+
+Image<float> blur_separable(const Image<float>& source, BlurKernel kernel, int radius_px) {
+  Image<float> blurred(source.width, source.height);
+  const auto width = static_cast<size_t>(source.width);
+  blur_lines(
+      source.width, source.height, kernel, radius_px, [&](int y, float* line) { std::copy_n(&source.at(0, y), width, line); },
+      [&](int y, const float* line) { std::copy_n(line, width, &blurred.at(0, y)); });
+  return blurred;
 }
 
 Image<float> reduced(const Image<float>& source, int scale) {

@@ -2,56 +2,59 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace limn {
 namespace {
 
-constexpr size_t kDepthPlane = 0, kTolerancePlane = 1, kNormalPlane = 2, kColorPlane = 5, kCustomPlane = 8;
+// Where a source's row starts, in floats for each pixel, and how many it has.
+constexpr size_t kDepthRow = 0, kToleranceRow = 1, kNormalRow = 2, kColorRow = 5, kCustomRow = 8, kVector = 3;
 
-/// Adds the square of the operator's answer, times 2 (Roberts) or 16 (Sobel), to `sum`. Lines a, b, c from the top; b is the pixel's own.
-void add_roberts(const float* __restrict b, const float* __restrict c, int n, float* __restrict sum) {
+/// The square of the operator's answer, times 2 (Roberts) or 16 (Sobel). Lines a, b, c from the top; b is the pixel's own. `n` floats,
+/// neighbouring pixels kStep floats apart.
+template <int kStep>
+void roberts(const float* __restrict b, const float* __restrict c, int n, float* __restrict squares) {
   for (int x = 0; x < n; ++x) {
-    const float h = b[x] - c[x + 1], v = b[x + 1] - c[x];
-    sum[x] += h * h + v * v;
+    const float h = b[x] - c[x + kStep], v = b[x + kStep] - c[x];
+    squares[x] = h * h + v * v;
   }
 }
 
-void add_sobel(const float* __restrict a, const float* __restrict b, const float* __restrict c, int n, float* __restrict sum) {
+template <int kStep>
+void sobel(const float* __restrict a, const float* __restrict b, const float* __restrict c, int n, float* __restrict squares) {
   for (int x = 0; x < n; ++x) {
-    const float gx = (a[x + 1] - a[x - 1]) + 2.0f * (b[x + 1] - b[x - 1]) + (c[x + 1] - c[x - 1]);
-    const float gy = (c[x - 1] - a[x - 1]) + 2.0f * (c[x] - a[x]) + (c[x + 1] - a[x + 1]);
-    sum[x] += gx * gx + gy * gy;
+    const float left = a[x - kStep], right = a[x + kStep], lower_left = c[x - kStep], lower_right = c[x + kStep];
+    const float gx = (right - left) + 2.0f * (b[x + kStep] - b[x - kStep]) + (lower_right - lower_left);
+    const float gy = (lower_left - left) + 2.0f * (c[x] - a[x]) + (lower_right - right);
+    squares[x] = gx * gx + gy * gy;
   }
+}
+
+void sum_vectors(const float* __restrict wide, int n, float* __restrict squares) {
+  for (int x = 0; x < n; ++x) squares[x] = wide[3 * x] + wide[3 * x + 1] + wide[3 * x + 2];
 }
 
 /// Ids have no size: the operator sees 1 where a pixel's id is another than the first pixel's (Sobel: the middle's), else 0.
-void add_id_roberts(const std::uint32_t* __restrict b, const std::uint32_t* __restrict c, int n, float* __restrict sum) {
-  for (int x = 0; x < n; ++x) sum[x] += (b[x] != c[x + 1] ? 1.0f : 0.0f) + (b[x + 1] != c[x] ? 1.0f : 0.0f);
+void id_roberts(const std::uint32_t* __restrict b, const std::uint32_t* __restrict c, int n, float* __restrict squares) {
+  for (int x = 0; x < n; ++x) squares[x] = (b[x] != c[x + 1] ? 1.0f : 0.0f) + (b[x + 1] != c[x] ? 1.0f : 0.0f);
 }
 
-void add_id_sobel(const std::uint32_t* __restrict a, const std::uint32_t* __restrict b, const std::uint32_t* __restrict c, int n,
-                  float* __restrict sum) {
+void id_sobel(const std::uint32_t* __restrict a, const std::uint32_t* __restrict b, const std::uint32_t* __restrict c, int n,
+              float* __restrict squares) {
   for (int x = 0; x < n; ++x) {
     const std::uint32_t own = b[x];
     const auto other = [own](std::uint32_t key) { return key != own ? 1.0f : 0.0f; };
     const float top_left = other(a[x - 1]), top_right = other(a[x + 1]), bottom_left = other(c[x - 1]), bottom_right = other(c[x + 1]);
     const float gx = (top_right - top_left) + 2.0f * (other(b[x + 1]) - other(b[x - 1])) + (bottom_right - bottom_left);
     const float gy = (bottom_left - top_left) + 2.0f * (other(c[x]) - other(a[x])) + (bottom_right - top_right);
-    sum[x] += gx * gx + gy * gy;
+    squares[x] = gx * gx + gy * gy;
   }
 }
 
-void repeat_ends(float* plane, int n) {
-  plane[-1] = plane[0];
-  plane[n] = plane[n - 1];
-}
-
-void split(const glm::vec3* __restrict from, int n, float* __restrict x, float* __restrict y, float* __restrict z) {
-  for (int i = 0; i < n; ++i) {
-    x[i] = from[i].x;
-    y[i] = from[i].y;
-    z[i] = from[i].z;
-  }
+void repeat_ends(float* row, int n, size_t floats) {
+  std::copy_n(row, floats, row - floats);
+  float* end = row + static_cast<size_t>(n) * floats;
+  std::copy_n(end - floats, floats, end);
 }
 
 void raise(const float* __restrict base, int count, double power, float* __restrict out) {
@@ -97,10 +100,12 @@ EdgeLines::EdgeLines(const EdgeSettings& settings, const BorderInput& input, flo
       width_(input.gbuffer.width),
       stride_(static_cast<size_t>(width_) + 2),
       squares_(static_cast<size_t>(width_)),
-      scratch_(stride_) {
+      wide_squares_(kVector * squares_.size()),
+      least_(stride_) {
   for (Line& each : lines_) {
-    each.planes.resize(kPlanes * stride_);
+    each.floats.reset(new float[kFloatsPerPixel * stride_]);
     each.keys.resize(stride_);
+    each.grazed.resize(static_cast<size_t>((width_ + kChunk - 1) / kChunk));
   }
 }
 
@@ -112,20 +117,19 @@ EdgeLines::Line& EdgeLines::line(int y) {
 }
 
 /// Depth as edge_sources.h derives it: 1/Z in units of the nearest, which is 0 where nothing is hit; without perspective Z in pixels. The
-/// tolerance is the largest edge strength that a surface through this very pixel explains. Where nothing is hit it explains none.
+/// tolerance is the largest edge strength that a surface through this very pixel explains, still without its grazing factor. Where nothing
+/// is hit it explains none.
 void EdgeLines::fill_depth(size_t first, Line& out) {
-  const GBuffer& seen = input_.gbuffer;
-  const float* z = seen.depth.pixels.data() + first;
-  float* depth = plane(out, kDepthPlane);
-  float* tolerance = plane(out, kTolerancePlane);
-  grazing_factors(settings_.grazing, seen.n_dot_v.pixels.data() + first, width_, tolerance);
+  const float* __restrict z = input_.gbuffer.depth.pixels.data() + first;
+  float* __restrict depth = row_of(out, kDepthRow, 1);
+  float* __restrict tolerance = row_of(out, kToleranceRow, 1);
   const float threshold = settings_.sources[kDepthSource].threshold, growth = settings_.distance_factor, nearest = nearest_;
   if (input_.camera.projection == Projection::perspective) {
     const float scale = threshold / static_cast<float>(input_.camera.focal_px);
     for (int x = 0; x < width_; ++x) {
       const float inverse = nearest / z[x];
       depth[x] = inverse;
-      tolerance[x] *= scale * inverse * (inverse * (1.0f - growth) + growth);
+      tolerance[x] = scale * inverse * (inverse * (1.0f - growth) + growth);
     }
   } else {
     const auto scale = static_cast<float>(input_.camera.pixels_per_unit);
@@ -133,23 +137,50 @@ void EdgeLines::fill_depth(size_t first, Line& out) {
     for (int x = 0; x < width_; ++x) {
       const bool hit = z[x] < std::numeric_limits<float>::infinity();
       depth[x] = hit ? (z[x] - nearest) * scale : kNothing;
-      tolerance[x] = hit ? tolerance[x] * threshold : 0.0f;
+      tolerance[x] = hit ? threshold : 0.0f;
     }
   }
-  repeat_ends(depth, width_);
-  repeat_ends(tolerance, width_);
+  repeat_ends(depth, width_, 1);
+  repeat_ends(tolerance, width_, 1);
+  std::fill(out.grazed.begin(), out.grazed.end(), std::uint8_t{0});
+}
+
+void EdgeLines::graze(Line& of, int chunk) {
+  if (of.grazed[static_cast<size_t>(chunk)]) return;
+  of.grazed[static_cast<size_t>(chunk)] = 1;
+  const int first = chunk * kChunk, count = std::min(kChunk, width_ - first);
+  float factors[kChunk];
+  grazing_factors(settings_.grazing, &input_.gbuffer.n_dot_v.at(first, of.row), count, factors);
+  float* tolerance = row_of(of, kToleranceRow, 1);
+  for (int i = 0; i < count; ++i) tolerance[first + i] *= factors[i];
+  repeat_ends(tolerance, width_, 1);
+}
+
+void EdgeLines::fill_normals(size_t first, Line& out) {
+  const glm::vec3 clear(input_.camera.world_from_camera[2]);
+  const std::int32_t* __restrict id = input_.gbuffer.id.pixels.data() + first;
+  const auto* __restrict from = reinterpret_cast<const float*>(input_.gbuffer.normal.pixels.data() + first);
+  float* __restrict to = row_of(out, kNormalRow, kVector);
+  for (int x = 0; x < width_; ++x) {
+    const bool hit = id[x] != 0;
+    to[3 * x] = hit ? from[3 * x] : clear.x;
+    to[3 * x + 1] = hit ? from[3 * x + 1] : clear.y;
+    to[3 * x + 2] = hit ? from[3 * x + 2] : clear.z;
+  }
+  repeat_ends(to, width_, kVector);
 }
 
 void EdgeLines::fill_colors(size_t first, Line& out) {
   const GBuffer& seen = input_.gbuffer;
+  float* to = row_of(out, kColorRow, kVector);
   for (int x = 0; x < width_; ++x) {
     const size_t i = first + static_cast<size_t>(x);
     const std::int32_t id = seen.id.pixels[i];
     const glm::vec3 color =
         id == 0 ? glm::vec3(0.0f) : input_.model.colors[static_cast<size_t>(id - 1)] * (0.25f + 0.75f * seen.n_dot_v.pixels[i]);
-    for (size_t k = 0; k < 3; ++k) plane(out, kColorPlane + k)[x] = color[static_cast<int>(k)];
+    for (int k = 0; k < 3; ++k) to[3 * x + k] = color[k];
   }
-  for (size_t k = 0; k < 3; ++k) repeat_ends(plane(out, kColorPlane + k), width_);
+  repeat_ends(to, width_, kVector);
 }
 
 void EdgeLines::fill(int y, Line& out) {
@@ -157,19 +188,8 @@ void EdgeLines::fill(int y, Line& out) {
   const size_t first = seen.id.index(0, y);
   out.row = y;
   if (settings_.used(kDepthSource)) fill_depth(first, out);
+  if (settings_.used(kNormalSource)) fill_normals(first, out);
   if (settings_.used(kColorSource)) fill_colors(first, out);
-  if (settings_.used(kNormalSource)) {
-    float *nx = plane(out, kNormalPlane), *ny = plane(out, kNormalPlane + 1), *nz = plane(out, kNormalPlane + 2);
-    split(seen.normal.pixels.data() + first, width_, nx, ny, nz);
-    const glm::vec3 clear(input_.camera.world_from_camera[2]);
-    const std::int32_t* id = seen.id.pixels.data() + first;
-    for (int x = 0; x < width_; ++x) {
-      nx[x] = id[x] == 0 ? clear.x : nx[x];
-      ny[x] = id[x] == 0 ? clear.y : ny[x];
-      nz[x] = id[x] == 0 ? clear.z : nz[x];
-    }
-    for (float* n : {nx, ny, nz}) repeat_ends(n, width_);
-  }
   if (settings_.used(kIdSource)) {
     // One key of object and material; the odd multiplier keeps keys of different objects far apart (Knuth's multiplicative hashing).
     std::uint32_t* keys = out.keys.data() + 1;
@@ -179,52 +199,68 @@ void EdgeLines::fill(int y, Line& out) {
     keys[width_] = keys[width_ - 1];
   }
   if (settings_.used(kCustomSource)) {
-    float *cx = plane(out, kCustomPlane), *cy = plane(out, kCustomPlane + 1), *cz = plane(out, kCustomPlane + 2);
-    split(seen.custom.pixels.data() + first, width_, cx, cy, cz);
-    for (float* c : {cx, cy, cz}) repeat_ends(c, width_);
+    float* to = row_of(out, kCustomRow, kVector);
+    std::copy_n(&seen.custom.pixels[first].x, kVector * static_cast<size_t>(width_), to);
+    repeat_ends(to, width_, kVector);
   }
 }
 
-void EdgeLines::strength(size_t first_plane, size_t count, const std::array<Line*, 3>& rows) {
-  std::fill(squares_.begin(), squares_.end(), 0.0f);
-  for (size_t k = first_plane; k < first_plane + count; ++k) {
-    if (settings_.edge_operator == EdgeOperator::roberts) {
-      add_roberts(plane(*rows[1], k), plane(*rows[2], k), width_, squares_.data());
-    } else {
-      add_sobel(plane(*rows[0], k), plane(*rows[1], k), plane(*rows[2], k), width_, squares_.data());
-    }
+void EdgeLines::strength(size_t floats_before, size_t floats, const Rows& rows) {
+  const float *a = row_of(*rows[0], floats_before, floats), *b = row_of(*rows[1], floats_before, floats),
+              *c = row_of(*rows[2], floats_before, floats);
+  const bool cross = settings_.edge_operator == EdgeOperator::roberts;
+  if (floats == 1) {
+    cross ? roberts<1>(b, c, width_, squares_.data()) : sobel<1>(a, b, c, width_, squares_.data());
+    return;
   }
+  float* wide = wide_squares_.data();
+  cross ? roberts<3>(b, c, 3 * width_, wide) : sobel<3>(a, b, c, 3 * width_, wide);
+  sum_vectors(wide, width_, squares_.data());
 }
 
-void EdgeLines::id_strength(const std::array<Line*, 3>& rows) {
-  std::fill(squares_.begin(), squares_.end(), 0.0f);
+void EdgeLines::id_strength(const Rows& rows) {
+  const std::uint32_t *a = rows[0]->keys.data() + 1, *b = rows[1]->keys.data() + 1, *c = rows[2]->keys.data() + 1;
   if (settings_.edge_operator == EdgeOperator::roberts) {
-    add_id_roberts(rows[1]->keys.data() + 1, rows[2]->keys.data() + 1, width_, squares_.data());
+    id_roberts(b, c, width_, squares_.data());
   } else {
-    add_id_sobel(rows[0]->keys.data() + 1, rows[1]->keys.data() + 1, rows[2]->keys.data() + 1, width_, squares_.data());
+    id_sobel(a, b, c, width_, squares_.data());
   }
 }
 
 /// A jump counts where no pixel of the neighbourhood explains it: the smallest tolerance decides, so that what lies behind a rounded edge,
 /// seen straight, keeps the line that the grazing rim in front of it would suppress.
-void EdgeLines::depth_edges(const std::array<Line*, 3>& rows, float* __restrict edges) {
-  strength(kDepthPlane, 1, rows);
-  const bool roberts = settings_.edge_operator == EdgeOperator::roberts;
-  const float *a = plane(*rows[roberts ? 1 : 0], kTolerancePlane), *b = plane(*rows[1], kTolerancePlane),
-              *c = plane(*rows[2], kTolerancePlane);
-  float* least = scratch_.data() + 1;
-  const int reach = roberts ? 0 : 1;
-  for (int x = -1; x <= width_; ++x) least[x] = std::min(std::min(a[x], b[x]), c[x]);
-  const float scale = roberts ? 2.0f : 16.0f;
+void EdgeLines::compare_depth(const Rows& rows, int x0, int x1, float* __restrict edges) {
+  const bool cross = settings_.edge_operator == EdgeOperator::roberts;
+  const float *a = row_of(*rows[cross ? 1 : 0], kToleranceRow, 1), *b = row_of(*rows[1], kToleranceRow, 1),
+              *c = row_of(*rows[2], kToleranceRow, 1);
+  float* least = least_.data() + 1;
+  const int reach = cross ? 0 : 1;
+  for (int x = x0 - 1; x <= x1; ++x) least[x] = std::min(std::min(a[x], b[x]), c[x]);
+  const float scale = cross ? 2.0f : 16.0f;
   const float* squares = squares_.data();
-  for (int x = 0; x < width_; ++x) {
+  for (int x = x0; x < x1; ++x) {
     const float tolerance = std::min(std::min(least[x - reach], least[x]), least[x + 1]);
     edges[x] = squares[x] > scale * tolerance * tolerance ? 1.0f : 0.0f;
   }
 }
 
+/// The grazing factor is 1 or more: it is worked out only about jumps that the bare threshold lets through.
+void EdgeLines::depth_edges(const Rows& rows, float* edges) {
+  strength(kDepthRow, 1, rows);
+  compare_depth(rows, 0, width_, edges);
+  const auto chunks = static_cast<int>(rows[1]->grazed.size());
+  for (int chunk = 0; chunk < chunks; ++chunk) {
+    const int x0 = chunk * kChunk, x1 = std::min(width_, x0 + kChunk);
+    if (std::find(edges + x0, edges + x1, 1.0f) == edges + x1) continue;
+    for (Line* each : rows) {
+      for (int near = std::max(0, chunk - 1); near <= std::min(chunks - 1, chunk + 1); ++near) graze(*each, near);
+    }
+    compare_depth(rows, x0, x1, edges);
+  }
+}
+
 void EdgeLines::find_edges(int y, EdgeFlags& flags) {
-  const std::array<Line*, 3> rows{&line(y - 1), &line(y), &line(y + 1)};
+  const Rows rows{&line(y - 1), &line(y), &line(y + 1)};
   const float scale = settings_.edge_operator == EdgeOperator::roberts ? 2.0f : 16.0f;
   for (size_t source = 0; source < kSourceCount; ++source) {
     if (!settings_.used(source)) continue;
@@ -236,7 +272,7 @@ void EdgeLines::find_edges(int y, EdgeFlags& flags) {
     if (source == kIdSource) {
       id_strength(rows);
     } else {
-      strength(source == kNormalSource ? kNormalPlane : source == kColorSource ? kColorPlane : kCustomPlane, 3, rows);
+      strength(source == kNormalSource ? kNormalRow : source == kColorSource ? kColorRow : kCustomRow, kVector, rows);
     }
     const float threshold = settings_.sources[source].threshold, least = scale * threshold * threshold;
     const float* squares = squares_.data();

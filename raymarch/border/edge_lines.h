@@ -1,8 +1,9 @@
 #pragma once
-// The arithmetic of draw_edges, line by line: every source as planes of float with one repeated pixel on each side, so that the operators
-// are plain loops that the compiler turns into vector code.
+// The arithmetic of draw_edges, line by line: every source as a row of floats (vectors interleaved) with one repeated pixel on each side,
+// so that the operators are plain loops that the compiler turns into vector code.
 
 #include <array>
+#include <memory>
 
 #include "raymarch/border/edge_sources.h"
 
@@ -47,20 +48,27 @@ class EdgeLines {
   void find_edges(int y, EdgeFlags& flags);
 
  private:
-  static constexpr size_t kPlanes = 11;  // depth, its tolerance, normal, colour, custom
+  static constexpr int kChunk = 64;              // pixels whose grazing factors are worked out together, where they matter
+  static constexpr size_t kFloatsPerPixel = 11;  // depth, its tolerance, normal, colour, custom
   struct Line {
     int row = -1;
-    std::vector<float> planes;
+    std::unique_ptr<float[]> floats;  ///< Not initialised: only the rows of used sources are written and read.
     std::vector<std::uint32_t> keys;
+    std::vector<std::uint8_t> grazed;  ///< Chunks whose tolerance has its grazing factor.
   };
+  using Rows = std::array<Line*, 3>;
   Line& line(int y);
   void fill(int y, Line& out);
   void fill_depth(size_t first, Line& out);
+  void fill_normals(size_t first, Line& out);
   void fill_colors(size_t first, Line& out);
-  float* plane(Line& of, size_t index) { return of.planes.data() + index * stride_ + 1; }
-  void strength(size_t first_plane, size_t count, const std::array<Line*, 3>& rows);
-  void id_strength(const std::array<Line*, 3>& rows);
-  void depth_edges(const std::array<Line*, 3>& rows, float* edges);
+  void graze(Line& of, int chunk);
+  /// The row that starts `floats_before` floats into each pixel's share; its element 0 is the picture's first pixel.
+  float* row_of(Line& of, size_t floats_before, size_t floats) { return of.floats.get() + floats_before * stride_ + floats; }
+  void strength(size_t floats_before, size_t floats, const Rows& rows);
+  void id_strength(const Rows& rows);
+  void depth_edges(const Rows& rows, float* edges);
+  void compare_depth(const Rows& rows, int x0, int x1, float* edges);
 
   const EdgeSettings& settings_;
   const BorderInput& input_;
@@ -68,7 +76,7 @@ class EdgeLines {
   int width_;
   size_t stride_;
   std::array<Line, 3> lines_;
-  std::vector<float> squares_, scratch_;
+  std::vector<float> squares_, wide_squares_, least_;
 };
 
 }  // namespace limn

@@ -70,7 +70,10 @@ struct DepthLines {
   std::atomic<std::int64_t> all{0}, false_ones{0};
 };
 
+bool any_of(const float* edges, int width) { return std::find(edges, edges + width, 1.0f) != edges + width; }
+
 void count_depth_lines(const GBuffer& seen, int y, const float* edges, DepthLines& lines) {
+  if (!any_of(edges, seen.width)) return;
   std::int64_t all = 0, false_ones = 0;
   for (int x = 0; x < seen.width; ++x) {
     if (edges[x] == 0.0f) continue;

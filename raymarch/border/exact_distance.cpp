@@ -13,8 +13,8 @@
 namespace limn {
 namespace {
 
-constexpr std::uint16_t kFar = 0xffff;
-constexpr int kColumns = 16;  // columns worked on together: a cache line of results
+constexpr std::int16_t kFar = 32700;  // beyond any reach, with room for one more pixel
+constexpr int kColumns = 16;          // columns worked on together: a cache line of results
 constexpr std::int64_t kUnit = kSubPixels, kUnitSquared = kUnit * kUnit;
 
 /// Envelope of the parabolas height[i]^2 + (32 (x - i))^2 over one line or column, merged into `squares` by minimum.
@@ -22,14 +22,15 @@ class Envelope {
  public:
   Envelope(int length, int reach_px)
       : length_(length),
-        reach_squared_(std::int64_t{reach_px} * reach_px * kUnitSquared),
+        reach_(reach_px * kSubPixels),
+        reach_squared_(std::int64_t{reach_} * reach_),
         apex_(static_cast<size_t>(length)),
         start_(static_cast<size_t>(length)) {}
 
-  void merge(const std::uint16_t* heights, std::int32_t* squares) {
+  void merge(const std::int16_t* heights, std::int32_t* squares) {
     int count = 0;
     for (int q = 0; q < length_; ++q) {
-      if (heights[q] == kFar) continue;
+      if (heights[q] > reach_) continue;
       int from = 0;
       while (count > 0) {
         const int p = apex_[static_cast<size_t>(count - 1)];
@@ -69,17 +70,16 @@ class Envelope {
     }
   }
 
-  int length_;
+  int length_, reach_;
   std::int64_t reach_squared_;
   std::vector<int> apex_, start_;
 };
 
-/// Distance along the line from every pixel centre to the nearest crossing on it, in 1/32 px.
-void scan_line(const std::int8_t* crossings, int width, int reach, std::uint16_t* out) {
+/// Distance along the line from every pixel centre to the nearest crossing on it, in 1/32 px; kFar or about that where it is beyond reach.
+void scan_line(const std::int8_t* crossings, int width, std::int16_t* out) {
   const auto lay = [&](int from, int to, int previous, int next) {
     for (int x = from; x < to; ++x) {
-      const int distance = std::min(kSubPixels * x - previous, next - kSubPixels * x);
-      out[x] = distance <= reach ? static_cast<std::uint16_t>(distance) : kFar;
+      out[x] = static_cast<std::int16_t>(std::min(std::min(kSubPixels * x - previous, next - kSubPixels * x), int{kFar}));
     }
   };
   constexpr int nowhere = 1 << 24;
@@ -94,36 +94,28 @@ void scan_line(const std::int8_t* crossings, int width, int reach, std::uint16_t
   lay(from, width, previous, nowhere);
 }
 
-/// The same along columns, for the columns [x0, x1): one sweep down, one up.
-void scan_columns(const Image<std::int8_t>& crossings, int x0, int x1, int reach, Image<std::uint16_t>& out) {
-  const int height = crossings.height;
-  const auto count = static_cast<size_t>(x1 - x0);
-  std::vector<std::int32_t> past(count, kFar);
-  const auto step = [&](int y, bool up) {
-    std::uint16_t* distances = &out.at(x0, y);
-    for (size_t x = 0; x < count; ++x) {
-      const std::int32_t own = past[x] <= reach ? past[x] : kFar;
-      distances[x] = static_cast<std::uint16_t>(up ? std::min<std::int32_t>(own, distances[x]) : own);
+/// The same along columns, for the columns [x0, x1): one sweep down, one up. 16-bit arithmetic throughout, for the width of registers.
+void scan_columns(const Image<std::int8_t>& crossings, int x0, int x1, Image<std::int16_t>& out) {
+  const int height = crossings.height, count = x1 - x0;
+  std::vector<std::int16_t> from_above(static_cast<size_t>(count), kFar);
+  std::int16_t* __restrict past = from_above.data();
+  const auto step = [&](const std::int8_t* __restrict crossing, int sign, int base) {
+    for (int x = 0; x < count; ++x) {
+      const auto older = static_cast<std::int16_t>(std::min(past[x], kFar) + kSubPixels);
+      const auto fresh = static_cast<std::int16_t>(base + sign * crossing[x]);
+      past[x] = crossing[x] >= 0 ? fresh : older;
     }
   };
-  for (int y = 0; y < height; ++y) {
-    if (y > 0) {
-      const std::int8_t* crossing = &crossings.at(x0, y - 1);
-      for (size_t x = 0; x < count; ++x) {
-        const std::int32_t older = std::min<std::int32_t>(past[x] + kSubPixels, kFar);
-        past[x] = crossing[x] >= 0 ? kSubPixels - crossing[x] : older;
-      }
-    }
-    step(y, false);
+  std::copy_n(past, count, &out.at(x0, 0));
+  for (int y = 1; y < height; ++y) {
+    step(&crossings.at(x0, y - 1), -1, kSubPixels);
+    std::copy_n(past, count, &out.at(x0, y));
   }
-  std::fill(past.begin(), past.end(), kFar);
+  std::fill_n(past, count, kFar);
   for (int y = height - 1; y >= 0; --y) {
-    const std::int8_t* crossing = &crossings.at(x0, y);
-    for (size_t x = 0; x < count; ++x) {
-      const std::int32_t older = std::min<std::int32_t>(past[x] + kSubPixels, kFar);
-      past[x] = crossing[x] >= 0 ? crossing[x] : older;
-    }
-    step(y, true);
+    step(&crossings.at(x0, y), 1, 0);
+    std::int16_t* __restrict distances = &out.at(x0, y);
+    for (int x = 0; x < count; ++x) distances[x] = std::min(distances[x], past[x]);
   }
 }
 
@@ -139,17 +131,17 @@ void for_each_columns(int width, int together, const Columns& columns) {
 }
 
 /// Envelopes down the columns [x0, x1) of `heights`, through a transposed copy.
-void merge_columns(const Image<std::uint16_t>& heights, int x0, int x1, int reach_px, Image<std::int32_t>& squares) {
+void merge_columns(const Image<std::int16_t>& heights, int x0, int x1, int reach_px, Image<std::int32_t>& squares) {
   const auto height = static_cast<size_t>(heights.height);
   Envelope envelope(heights.height, reach_px);
-  std::vector<std::uint16_t> columns(kColumns * height);
+  std::vector<std::int16_t> columns(kColumns * height);
   std::vector<std::int32_t> results(kColumns * height);
   bool any[kColumns] = {};
   for (int y = 0; y < heights.height; ++y) {
     for (int x = x0; x < x1; ++x) {
       const size_t k = static_cast<size_t>(x - x0), at = k * height + static_cast<size_t>(y);
       columns[at] = heights.at(x, y);
-      any[k] |= columns[at] != kFar;
+      any[k] |= columns[at] <= reach_px * kSubPixels;
     }
   }
   if (std::find(any, any + kColumns, true) == any + kColumns) return;
@@ -171,14 +163,13 @@ Image<std::int32_t> exact_squares(const Silhouette& silhouette, int reach_px) {
   const int width = silhouette.inside.width, height = silhouette.inside.height;
   Image<std::int32_t> squares(width, height, kFarSquared);
   if (silhouette.crossings == 0) return squares;
-  const int reach = reach_px * kSubPixels;
-  Image<std::uint16_t> along(width, height, kFar);
-  for_each_columns(width, 128, [&](int x0, int x1) { scan_columns(silhouette.downwards, x0, x1, reach, along); });
+  Image<std::int16_t> along(width, height, kFar);
+  for_each_columns(width, 256, [&](int x0, int x1) { scan_columns(silhouette.downwards, x0, x1, along); });
   for_each_band(height, [&](int y0, int y1) {
     Envelope envelope(width, reach_px);
     for (int y = y0; y < y1; ++y) {
       envelope.merge(&along.at(0, y), &squares.at(0, y));
-      scan_line(&silhouette.to_right.at(0, y), width, reach, &along.at(0, y));
+      scan_line(&silhouette.to_right.at(0, y), width, &along.at(0, y));
     }
   });
   for_each_columns(width, kColumns, [&](int x0, int x1) { merge_columns(along, x0, x1, reach_px, squares); });

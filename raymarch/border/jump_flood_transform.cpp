@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
+#include <memory>
 
 #include "raymarch/border/picture_rows.h"
 #include "raymarch/border/silhouette.h"
@@ -16,107 +18,149 @@ namespace limn {
 namespace {
 
 struct Offset {
-  std::int16_t x = 32767, y = 32767;  ///< Unknown: farther than any reach, even after all steps have been added to it.
+  std::int16_t x, y;
+};
+/// Farther than any reach, even after all steps have been added to it.
+constexpr Offset kUnknown{32767, 32767};
+
+/// A picture of offsets whose lines go on with unknown ones on both sides, so that no step has to look where the picture ends.
+class OffsetLines {
+ public:
+  OffsetLines(int width, int height, int margin)
+      : width_(static_cast<size_t>(width)),
+        margin_(static_cast<size_t>(margin)),
+        stride_(width_ + 2 * margin_),
+        offsets_(new Offset[stride_ * static_cast<size_t>(height)]) {}
+  Offset* line(int y) { return offsets_.get() + static_cast<size_t>(y) * stride_ + margin_; }
+  void clear_margins(int y) {
+    std::fill_n(line(y) - margin_, margin_, kUnknown);
+    std::fill_n(line(y) + width_, margin_, kUnknown);
+  }
+
+ private:
+  size_t width_, margin_, stride_;
+  std::unique_ptr<Offset[]> offsets_;
 };
 
-/// The part of the picture within reach of any crossing; nothing outside it is looked at.
-struct Region {
-  int x0 = std::numeric_limits<int>::max(), y0 = x0, x1 = 0, y1 = 0;
+/// The crossings about a pixel, in a fixed order: their offsets, and the pixels on their other sides.
+struct Crossings {
+  std::array<Offset, 4> offsets;
+  std::array<glm::ivec2, 4> partners;
+  int count = 0;
+  int nearest = -1;
 };
 
-Offset nearest_crossing(const Silhouette& silhouette, int x, int y) {
-  Offset nearest;
-  int distance = std::numeric_limits<int>::max();
-  const auto offer = [&](int along, bool across) {
-    if (std::abs(along) >= distance) return;
-    distance = std::abs(along);
-    nearest = {static_cast<std::int16_t>(across ? along : 0), static_cast<std::int16_t>(across ? 0 : along)};
+Crossings crossings_about(const Silhouette& silhouette, int x, int y) {
+  Crossings found;
+  const auto add = [&](int along, bool across, glm::ivec2 partner) {
+    const auto k = static_cast<size_t>(found.count);
+    found.offsets[k] = {static_cast<std::int16_t>(across ? along : 0), static_cast<std::int16_t>(across ? 0 : along)};
+    found.partners[k] = partner;
+    const auto length = [&](int i) {
+      const Offset offset = found.offsets[static_cast<size_t>(i)];
+      return std::abs(offset.x) + std::abs(offset.y);
+    };
+    if (found.nearest < 0 || length(found.count) < length(found.nearest)) found.nearest = found.count;
+    ++found.count;
   };
   const auto& right = silhouette.to_right;
   const auto& down = silhouette.downwards;
-  if (right.at(x, y) >= 0) offer(right.at(x, y), true);
-  if (x > 0 && right.at(x - 1, y) >= 0) offer(right.at(x - 1, y) - kSubPixels, true);
-  if (down.at(x, y) >= 0) offer(down.at(x, y), false);
-  if (y > 0 && down.at(x, y - 1) >= 0) offer(down.at(x, y - 1) - kSubPixels, false);
-  return nearest;
+  if (right.at(x, y) >= 0) add(right.at(x, y), true, {x + 1, y});
+  if (x > 0 && right.at(x - 1, y) >= 0) add(right.at(x - 1, y) - kSubPixels, true, {x - 1, y});
+  if (down.at(x, y) >= 0) add(down.at(x, y), false, {x, y + 1});
+  if (y > 0 && down.at(x, y - 1) >= 0) add(down.at(x, y - 1) - kSubPixels, false, {x, y - 1});
+  return found;
 }
 
-std::int32_t square(Offset offset) { return std::int32_t{offset.x} * offset.x + std::int32_t{offset.y} * offset.y; }
-
-std::int16_t add_saturated(std::int16_t a, std::int16_t b) {
-  return static_cast<std::int16_t>(std::clamp(std::int32_t{a} + b, -32768, 32767));
+/// A pixel holds one crossing and has up to four. The outer pixels hold their nearest; the inner ones the nearest that its outer pixel
+/// leaves out, so that few crossings are lost: the greater part of what jump flooding gets wrong otherwise.
+Offset first_crossing(const Silhouette& silhouette, int x, int y) {
+  const Crossings own = crossings_about(silhouette, x, y);
+  if (own.count == 0) return kUnknown;
+  const Offset nearest = own.offsets[static_cast<size_t>(own.nearest)];
+  if (!silhouette.inside.at(x, y)) return nearest;
+  Offset best = nearest;
+  int best_length = std::numeric_limits<int>::max();
+  for (size_t k = 0; k < static_cast<size_t>(own.count); ++k) {
+    const glm::ivec2 partner = own.partners[k], step = partner - glm::ivec2(x, y);
+    const Crossings theirs = crossings_about(silhouette, partner.x, partner.y);
+    const Offset held = theirs.offsets[static_cast<size_t>(theirs.nearest)];
+    const bool taken = held.x + kSubPixels * step.x == own.offsets[k].x && held.y + kSubPixels * step.y == own.offsets[k].y;
+    const int length = std::abs(own.offsets[k].x) + std::abs(own.offsets[k].y);
+    if (taken || length >= best_length) continue;
+    best = own.offsets[k];
+    best_length = length;
+  }
+  return best;
 }
 
-/// Takes over each neighbour's offset, moved by `step`, where it leads to a nearer crossing.
-void take_nearer(const Offset* from, Offset step, int count, Offset* best, std::int32_t* squares) {
-  int i = 0;
-#if LIMN_SIMD && defined(__SSE2__)
-  const __m128i move = _mm_set1_epi32(static_cast<int>(static_cast<std::uint16_t>(step.x)) |
-                                      static_cast<int>(static_cast<std::uint32_t>(static_cast<std::uint16_t>(step.y)) << 16));
-  for (; i + 4 <= count; i += 4) {
-    auto* to = reinterpret_cast<__m128i*>(best + i);
-    auto* to_squares = reinterpret_cast<__m128i*>(squares + i);
-    const __m128i offer = _mm_adds_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from + i)), move);
-    const __m128i offer_squares = _mm_madd_epi16(offer, offer);
-    const __m128i own_squares = _mm_loadu_si128(to_squares);
-    const __m128i nearer = _mm_cmplt_epi32(offer_squares, own_squares);
-    _mm_storeu_si128(to_squares, _mm_or_si128(_mm_and_si128(nearer, offer_squares), _mm_andnot_si128(nearer, own_squares)));
-    _mm_storeu_si128(to, _mm_or_si128(_mm_and_si128(nearer, offer), _mm_andnot_si128(nearer, _mm_loadu_si128(to))));
-  }
-#endif
-  for (; i < count; ++i) {
-    const Offset offer{add_saturated(from[i].x, step.x), add_saturated(from[i].y, step.y)};
-    const std::int32_t offer_square = square(offer);
-    if (offer_square >= squares[i]) continue;
-    squares[i] = offer_square;
-    best[i] = offer;
-  }
-}
-
-/// One line of one pass with the given step.
-void flood_line(const Image<Offset>& from, const Region& region, int y, int step, Image<Offset>& to, std::int32_t* squares) {
-  const int width = region.x1 - region.x0;
-  const Offset* own = &from.at(region.x0, y);
-  Offset* best = &to.at(region.x0, y);
-  for (int x = 0; x < width; ++x) {
-    best[x] = own[x];
-    squares[x] = square(own[x]);
-  }
-  for (int dy = -step; dy <= step; dy += step) {
-    if (y + dy < region.y0 || y + dy >= region.y1) continue;
-    const Offset* line = &from.at(region.x0, y + dy);
-    for (int dx = -step; dx <= step; dx += step) {
-      if (dx == 0 && dy == 0) continue;
-      const int first = std::max(0, -dx), last = std::min(width, width - dx);
-      const Offset move{static_cast<std::int16_t>(kSubPixels * dx), static_cast<std::int16_t>(kSubPixels * dy)};
-      if (first < last) take_nearer(line + first + dx, move, last - first, best + first, squares + first);
+/// Most of a line is far from any crossing; eight pixels at a time are passed over.
+void first_crossings(const Silhouette& silhouette, int y, Offset* out) {
+  const int width = silhouette.inside.width;
+  const std::int8_t* right = &silhouette.to_right.at(0, y);
+  const std::int8_t* down = &silhouette.downwards.at(0, y);
+  const std::int8_t* up = y > 0 ? down - width : down;
+  const auto none = [](const std::int8_t* eight) {
+    std::uint64_t bits;
+    std::memcpy(&bits, eight, 8);
+    return bits == ~std::uint64_t{0};  // kNoCrossing is -1
+  };
+  for (int x = 0; x < width;) {
+    if (x + 8 <= width && none(right + x) && none(down + x) && none(up + x) && (x == 0 || right[x - 1] == kNoCrossing)) {
+      std::fill_n(out + x, 8, kUnknown);
+      x += 8;
+    } else {
+      out[x] = first_crossing(silhouette, x, y);
+      ++x;
     }
   }
 }
 
-Region reach_of(const Silhouette& silhouette, int reach_px) {
-  Region region;
-  const int width = silhouette.inside.width, height = silhouette.inside.height;
-  for (int y = 0; y < height; ++y) {
-    const std::int8_t *right = &silhouette.to_right.at(0, y), *down = &silhouette.downwards.at(0, y);
-    const auto crosses = [&](int x) { return right[x] >= 0 || down[x] >= 0; };
-    int x0 = 0, x1 = width;
-    while (x0 < width && !crosses(x0)) ++x0;
-    if (x0 == width) continue;
-    while (!crosses(x1 - 1)) --x1;
-    region.y0 = std::min(region.y0, y);
-    region.y1 = std::max(region.y1, y + 2);
-    region.x0 = std::min(region.x0, x0);
-    region.x1 = std::max(region.x1, x1 + 1);
-  }
-  return {std::max(0, region.x0 - reach_px), std::max(0, region.y0 - reach_px), std::min(width, region.x1 + reach_px),
-          std::min(height, region.y1 + reach_px)};
-}
+std::int32_t square(Offset offset) { return std::int32_t{offset.x} * offset.x + std::int32_t{offset.y} * offset.y; }
 
-/// Calls `band(y0, y1)` over the region's lines.
-template <class Band>
-void for_each_band_of(const Region& region, const Band& band) {
-  for_each_band(region.y1 - region.y0, [&](int y0, int y1) { band(region.y0 + y0, region.y0 + y1); });
+std::int16_t add_saturated(std::int16_t a, int b) { return static_cast<std::int16_t>(std::clamp(a + b, -32768, 32767)); }
+
+/// One line of one pass: the pixel's own offset and those of its eight neighbours at distance `step`, moved by it; the shortest stays.
+/// Ties go to the first: the own, then the neighbours in order.
+void flood_line(const std::array<const Offset*, 3>& lines, int width, int step, Offset* out) {
+  constexpr std::array<glm::ivec2, 8> directions{{{-1, 0}, {1, 0}, {-1, -1}, {0, -1}, {1, -1}, {-1, 1}, {0, 1}, {1, 1}}};
+  std::array<const Offset*, 8> from;
+  std::array<glm::ivec2, 8> move;
+  for (size_t k = 0; k < 8; ++k) {
+    from[k] = lines[static_cast<size_t>(directions[k].y + 1)] + directions[k].x * step;
+    move[k] = directions[k] * step * kSubPixels;
+  }
+  int x = 0;
+#if LIMN_SIMD && defined(__SSE2__)
+  struct Packed {
+    __m128i value;
+  };
+  std::array<Packed, 8> moves;
+  for (size_t k = 0; k < 8; ++k) {
+    moves[k].value =
+        _mm_set1_epi32(static_cast<int>((static_cast<std::uint32_t>(move[k].x) & 0xffffu) | (static_cast<std::uint32_t>(move[k].y) << 16)));
+  }
+  for (; x + 4 <= width; x += 4) {
+    __m128i best = _mm_loadu_si128(reinterpret_cast<const __m128i*>(lines[1] + x));
+    __m128i best_square = _mm_madd_epi16(best, best);
+    for (size_t k = 0; k < 8; ++k) {
+      const __m128i offer = _mm_adds_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from[k] + x)), moves[k].value);
+      const __m128i offer_square = _mm_madd_epi16(offer, offer);
+      const __m128i nearer = _mm_cmplt_epi32(offer_square, best_square);
+      best_square = _mm_xor_si128(best_square, _mm_and_si128(nearer, _mm_xor_si128(best_square, offer_square)));
+      best = _mm_xor_si128(best, _mm_and_si128(nearer, _mm_xor_si128(best, offer)));
+    }
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out + x), best);
+  }
+#endif
+  for (; x < width; ++x) {
+    Offset best = lines[1][x];
+    for (size_t k = 0; k < 8; ++k) {
+      const Offset offer{add_saturated(from[k][x].x, move[k].x), add_saturated(from[k][x].y, move[k].y)};
+      if (square(offer) < square(best)) best = offer;
+    }
+    out[x] = best;
+  }
 }
 
 std::vector<int> steps_for(int reach_px, int extra_passes) {
@@ -135,26 +179,31 @@ Image<std::int32_t> jump_flood_squares(const Silhouette& silhouette, int reach_p
   const int width = silhouette.inside.width, height = silhouette.inside.height;
   Image<std::int32_t> squares(width, height, kFarSquared);
   if (silhouette.crossings == 0) return squares;
-  const Region region = reach_of(silhouette, reach_px);
-  Image<Offset> from(width, height), to(width, height);
-  for_each_band_of(region, [&](int y0, int y1) {
+  const std::vector<int> steps = steps_for(reach_px, extra_passes);
+  OffsetLines from(width, height, steps.front()), to(width, height, steps.front());
+  for_each_band(height, [&](int y0, int y1) {
     for (int y = y0; y < y1; ++y) {
-      for (int x = region.x0; x < region.x1; ++x) from.at(x, y) = nearest_crossing(silhouette, x, y);
+      from.clear_margins(y);
+      to.clear_margins(y);
+      first_crossings(silhouette, y, from.line(y));
     }
   });
-  for (const int step : steps_for(reach_px, extra_passes)) {
-    for_each_band_of(region, [&](int y0, int y1) {
-      std::vector<std::int32_t> line(static_cast<size_t>(region.x1 - region.x0));
-      for (int y = y0; y < y1; ++y) flood_line(from, region, y, step, to, line.data());
+  const std::vector<Offset> beyond(static_cast<size_t>(width + 2 * steps.front()), kUnknown);
+  for (const int step : steps) {
+    const auto line = [&](int y) -> const Offset* { return y >= 0 && y < height ? from.line(y) : beyond.data() + steps.front(); };
+    for_each_band(height, [&](int y0, int y1) {
+      for (int y = y0; y < y1; ++y) flood_line({line(y - step), line(y), line(y + step)}, width, step, to.line(y));
     });
     std::swap(from, to);
   }
   const std::int32_t largest = reach_px * reach_px * kSubPixels * kSubPixels;
-  for_each_band_of(region, [&](int y0, int y1) {
+  for_each_band(height, [&](int y0, int y1) {
     for (int y = y0; y < y1; ++y) {
-      for (int x = region.x0; x < region.x1; ++x) {
-        const std::int32_t distance = square(from.at(x, y));
-        if (distance <= largest) squares.at(x, y) = distance;
+      const Offset* offsets = from.line(y);
+      std::int32_t* out = &squares.at(0, y);
+      for (int x = 0; x < width; ++x) {
+        const std::int32_t distance = square(offsets[x]);
+        out[x] = distance <= largest ? distance : kFarSquared;
       }
     }
   });

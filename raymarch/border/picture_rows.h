@@ -10,7 +10,7 @@
 namespace limn {
 
 /// Lines that one task takes. Fixed, so that the bytes of a result never depend on how many threads there are.
-inline constexpr int kBandRows = 16;
+inline constexpr int kBandRows = 32;
 
 /// Calls `band(y0, y1)` for all bands of `kBandRows` lines [y0, y1) of a picture of `height` lines.
 template <class Band>

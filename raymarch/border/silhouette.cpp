@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstring>
 
 #include "raymarch/border/picture_rows.h"
 
@@ -28,6 +29,8 @@ std::int8_t crossing(const GBuffer& seen, size_t i, size_t step, bool before, bo
   return static_cast<std::int8_t>(kSubPixels - (after ? crossing_from(seen, i + step, i + 2 * step) : kSubPixels / 2));
 }
 
+bool same_eight(const std::uint8_t* a, const std::uint8_t* b) { return std::memcmp(a, b, 8) == 0; }
+
 struct LineCounts {
   std::int64_t crossings = 0, thin = 0;
 };
@@ -40,6 +43,7 @@ LineCounts find_line(const GBuffer& seen, int y, bool estimate, Silhouette& out)
   const std::uint8_t* above = y > 0 ? own - width : nullptr;
   const size_t first = seen.id.index(0, y), step = static_cast<size_t>(width);
   for (int x = 0; x < width; ++x) {
+    while (x + 8 < width && same_eight(own + x, own + x + 1) && (!below || same_eight(own + x, below + x))) x += 8;
     const size_t i = first + static_cast<size_t>(x);
     if (x + 1 < width && own[x] != own[x + 1]) {
       out.to_right.pixels[i] = crossing(seen, i, 1, x > 0, x + 2 < width, estimate);

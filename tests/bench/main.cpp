@@ -17,6 +17,7 @@
 #include "sdf/output_file.h"
 #include "sdf/version.h"
 #include "tests/bench/contestant.h"
+#include "tests/bench/image_methods.h"
 
 namespace limn::bench {
 
@@ -33,8 +34,11 @@ struct Settings {
   std::vector<std::string> objects{"sphere", "torus"};
   int runs = 7;
   int width_px = 1920, height_px = 1080;
+  std::string suite = "all";
   std::string output;
   bool json = false;
+  bool march() const { return suite != "images"; }
+  bool images() const { return suite != "march"; }
 };
 
 /// With --json the document alone goes to stdout.
@@ -179,26 +183,41 @@ Settings parse(int argc, char** argv) {
       settings.voxels = {std::max(8, std::atoi(argv[++i]))};
     else if (flag == "--object" && has_value)
       settings.objects = {argv[++i]};
-    else if (flag == "--width" && has_value) {
+    else if (flag == "--suite" && has_value) {
+      settings.suite = argv[++i];
+      if (settings.suite != "march" && settings.suite != "images" && settings.suite != "all")
+        throw InputError({.field = flag, .value = settings.suite, .problem = "unknown suite", .expected = "march, images or all"});
+    } else if (flag == "--width" && has_value) {
       settings.width_px = std::clamp(std::atoi(argv[++i]), 16, 16384);
       settings.height_px = std::max(1, settings.width_px * 9 / 16);
     } else if (flag == "--json")
       settings.json = true;
     else
-      throw InputError({.field = flag,
-                        .problem = "unknown option or missing value",
-                        .expected = "known: --output FILE, --runs N, --voxels N, --object NAME, --width PX, --json"});
+      throw InputError(
+          {.field = flag,
+           .problem = "unknown option or missing value",
+           .expected = "known: --suite march|images|all, --output FILE, --runs N, --voxels N, --object NAME, --width PX, --json"});
   }
   return settings;
 }
 
-int run(const Settings& settings) {
+nlohmann::json march_rows(const Settings& settings) {
   fmt::print(table(settings), "{:8} {:>5} {:>3} {:44} {:>9} {:>9} {:>9} {:>9} {:>11} {:>11} {:>7}\n", "object", "vox", "thr", "contestant",
              "median_ms", "min_ms", "hits", "wrong", "normal_p99", "depth_p99", "ratio");
   nlohmann::json rows = nlohmann::json::array();
   for (int voxels : settings.voxels)
     for (const std::string& object : settings.objects)
       for (auto& row : run_case(object, voxels, settings)) rows.push_back(row);
+  return rows;
+}
+
+int run(const Settings& settings) {
+  nlohmann::json rows = settings.march() ? march_rows(settings) : nlohmann::json::array();
+  if (settings.images()) {
+    for (auto& row : bench_image_methods(
+             {.runs = settings.runs, .width_px = settings.width_px, .height_px = settings.height_px, .table = table(settings)}))
+      rows.push_back(row);
+  }
   const nlohmann::json document = {{"machine", {{"hardware_threads", std::thread::hardware_concurrency()}, {"limn", kVersion}}},
                                    {"rows", rows}};
   if (!settings.output.empty()) write_whole(settings.output, document.dump(2) + "\n");

@@ -1,15 +1,12 @@
 #include "raymarch/gbuffer.h"
 
-#include <tbb/global_control.h>
-#include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
 #include <mutex>
-#include <optional>
 
+#include "raymarch/threads.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -177,12 +174,7 @@ GBuffer render_gbuffer(const SceneModel& model, const Camera& camera, const Exec
   const std::int64_t tiles = std::int64_t{columns} * rows;
   std::mutex progress_mutex;
   std::int64_t done = 0;
-  // More threads than cores are granted too: an arena alone would keep to the cores, with a warning.
-  std::optional<tbb::global_control> grant;
-  if (how.threads > tbb::info::default_concurrency()) {
-    grant.emplace(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(how.threads));
-  }
-  tbb::task_arena arena(how.threads > 0 ? how.threads : tbb::task_arena::automatic);
+  ThreadArena arena(how.threads);
   arena.execute([&] {
     tbb::parallel_for(std::int64_t{0}, tiles, [&](std::int64_t tile) {
       if (how.cancelled && how.cancelled()) throw Cancelled{};

@@ -1,11 +1,11 @@
 #include "raymarch/picture.h"
 
 #include <fmt/core.h>
-#include <tbb/task_arena.h>
 
 #include <chrono>
 #include <cmath>
 
+#include "raymarch/threads.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -109,7 +109,7 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
                      const ExecutionSettings& how) {
   check_methods(scene, model, settings);
   Picture picture;
-  tbb::task_arena arena(how.threads > 0 ? how.threads : tbb::task_arena::automatic);
+  ThreadArena arena(how.threads);
   for (int sample = 0; sample < settings.samples; ++sample) {
     ExecutionSettings part = how;
     if (how.progress) {

@@ -17,7 +17,8 @@ int edge_between(const Far::TopologyLevel& level, int a, int b) {
     const Far::ConstIndexArray ends = level.GetEdgeVertices(e);
     if (ends[0] == b || ends[1] == b) return e;
   }
-  LIMN_CHECK(!"the fan's spokes are edges");
+  constexpr bool kSpokesAreEdges = false;
+  LIMN_CHECK(kSpokesAreEdges);
   return -1;
 }
 

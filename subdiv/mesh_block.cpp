@@ -60,16 +60,12 @@ class BlockFiller {
     gradient_bound_ = winding_.gradient_bound(center, 3.5 * std::sqrt(3.0) * settings_.voxel_size + settings_.half_width);
   }
 
-  /// The nodes that can be reached from `first` without a chance to cross a triangle, and the longest way to one of them in steps.
-  int gather(int first) {
+  /// The nodes that can be reached from `first` without a chance to cross a triangle.
+  void gather(int first) {
     members_.assign(1, first);
-    steps_.assign(1, 0);
     component_[static_cast<size_t>(first)] = first;
-    int longest = 0;
     for (size_t i = 0; i < members_.size(); ++i) {
       const glm::ivec3 at = node_at(members_[i]);
-      const int steps = steps_[i];
-      longest = std::max(longest, steps);
       for (int axis = 0; axis < 3; ++axis)
         for (const int direction : {-1, 1}) {
           glm::ivec3 next = at;
@@ -80,14 +76,13 @@ class BlockFiller {
           const double room = distances_[static_cast<size_t>(members_[i])] + distances_[static_cast<size_t>(node)];
           if (!(room > 1.000001 * settings_.voxel_size)) continue;
           component_[static_cast<size_t>(node)] = first;
-          members_.push_back(node), steps_.push_back(steps + 1);
+          members_.push_back(node);
         }
     }
-    return longest;
   }
 
   void settle_component(int first) {
-    const int longest = gather(first);
+    gather(first);
     // The farthest from the surface answers: there the number is nearest to a whole one.
     int speaker = first;
     for (const int node : members_)
@@ -97,9 +92,12 @@ class BlockFiller {
       for (const int node : members_) apply_sign(node, number > 0.5);
       return;
     }
-    // Both ways through the first node; and the membrane must be out of the band's reach as well.
-    const double change = gradient_bound_ * (2.0 * longest * settings_.voxel_size + settings_.half_width);
-    constexpr double kTreeError = 0.02;
+    // Within the block, which no border enters, the number is a smooth potential and whole numbers: along the component's ways only the
+    // potential changes, by no more than its slope times the straight distance. The membrane must be out of the band's reach as well.
+    double farthest = 0.0;
+    for (const int node : members_) farthest = std::max(farthest, glm::distance(world(speaker), world(node)));
+    const double change = gradient_bound_ * (farthest + settings_.half_width);
+    constexpr double kTreeError = 0.03;
     if (std::abs(number - 0.5) > change + kTreeError) {
       for (const int node : members_) apply_sign(node, number > 0.5);
       return;
@@ -143,7 +141,7 @@ class BlockFiller {
   double gradient_bound_ = 0.0;
   std::array<double, kNodes> distances_{};
   std::array<int, kNodes> component_{};
-  std::vector<int> members_, steps_;
+  std::vector<int> members_;
   BlockResult result_;
 };
 

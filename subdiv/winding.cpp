@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <tuple>
@@ -136,15 +137,19 @@ glm::dvec3 Winding::gradient(const glm::dvec3& point) const {
   return sum / (4.0 * std::numbers::pi);
 }
 
+// Either the border's pieces at their nearest, all pulling one way; or the gradient at the centre and as much as it can change from there,
+// the derivative of r/|r|^3 being no larger than 2/|r|^3: far from a hole its two sides cancel, and only the second bound knows.
 double Winding::gradient_bound(const glm::dvec3& center, double radius) const {
-  double sum = 0.0;
+  double largest = 0.0, change = 0.0;
   for (const BorderEdge& edge : border_) {
     const double length = glm::distance(edge.a, edge.b);
     const double distance = glm::distance(center, 0.5 * (edge.a + edge.b)) - 0.5 * length - radius;
     if (distance <= 0.0) return std::numeric_limits<double>::infinity();
-    sum += std::abs(edge.multiplicity) * length / (distance * distance);
+    const double weight = std::abs(edge.multiplicity) * length / (4.0 * std::numbers::pi);
+    largest += weight / (distance * distance);
+    change += 2.0 * weight / (distance * distance * distance);
   }
-  return sum / (4.0 * std::numbers::pi);
+  return std::min(largest, glm::length(gradient(center)) + radius * change);
 }
 
 }  // namespace limn

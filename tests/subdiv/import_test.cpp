@@ -122,9 +122,9 @@ TEST_F(Import, WhatIsNoMeshFileIsRefused) {
   fs::create_directories(folder_ / "folder.obj");
   expect_refused(folder_ / "folder.obj", "directory");
   for (const char* extension : {".obj", ".ply", ".stl", ".off", ".gltf", ".glb"}) {
-    EXPECT_TRUE(is_mesh_file("x" + std::string(extension)));
-    expect_refused(write("empty" + std::string(extension), ""), "empty");
-    expect_refused(write("noise" + std::string(extension), "\x89PNG this is no mesh at all, whatever its name says\n"), "noise");
+    EXPECT_TRUE(is_mesh_file(std::string("x") + extension));
+    expect_refused(write(std::string("empty") + extension, ""), "empty");
+    expect_refused(write(std::string("noise") + extension, "\x89PNG this is no mesh at all, whatever its name says\n"), "noise");
   }
   EXPECT_TRUE(is_mesh_file("X.PLY"));
   EXPECT_FALSE(is_mesh_file("x.fbx"));
@@ -205,7 +205,7 @@ TEST_F(Import, MutatedFilesAreRefusedOrReadAsValidMeshes) {
       for (unsigned k = 0; k < 1 + random() % 8 && kind == 1; ++k) bad[random() % bad.size()] = static_cast<char>(random());
       for (unsigned k = 0; k < 4 && kind == 2; ++k) bad[random() % 300] = static_cast<char>('0' + random() % 10);
       if (kind == 3) bad.erase(random() % bad.size(), 1 + random() % 40);
-      const fs::path file = write("bad" + fs::path(name).extension().string(), bad);
+      const fs::path file = write(std::string("bad") + fs::path(name).extension().c_str(), bad);
       ImportSettings settings;
       settings.limits.time = std::chrono::milliseconds(5000);
       settings.limits.memory_bytes = std::int64_t{1} << 30;
@@ -272,7 +272,7 @@ TEST_F(Import, GltfMayNotReachOutOfItsFolder) {
   ASSERT_NE(at, std::string::npos);
   fs::create_directories(folder_ / "inner");
   fs::copy_file(sample("glTF2/BoxTextured-glTF/BoxTextured0.bin"), folder_ / uri);
-  std::ofstream(folder_ / "inner/box.gltf") << std::string(text).replace(at, uri.size(), "../" + uri);
+  std::ofstream(folder_ / "inner/box.gltf") << std::string(text).insert(at, "../");
   EXPECT_THROW(load_mesh(folder_ / "inner/box.gltf"), InputError);
   fs::copy_file(folder_ / uri, folder_ / "inner" / uri);
   std::ofstream(folder_ / "inner/box.gltf") << text;

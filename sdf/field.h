@@ -17,7 +17,7 @@ struct FieldProgram;  // sdf/field_program.h: the flat list of instructions behi
 struct FieldTraits {
   double lipschitz = 1.0;       ///< |f(p) - f(q)| <= lipschitz * |p - q|; finite and above 0.
   bool exact_distance = false;  ///< Outside and inside, |f| is the Euclidean distance to the surface.
-  Box bounds{};                   ///< Holds the surface; infinite for planes and unbounded lattices; empty for an empty surface.
+  Box bounds{};                 ///< Holds the surface; infinite for planes and unbounded lattices; empty for an empty surface.
 };
 
 class Field {

@@ -170,6 +170,7 @@ GBuffer render_gbuffer(const SceneModel& model, const Camera& camera, const Exec
   LIMN_CHECK(how.tile_px >= 1 && how.tile_px <= 16 && how.threads >= 0);
   const Setup setup = make_setup(model, camera);
   GBuffer out = empty_gbuffer(camera.width_px, camera.height_px);
+  out.sample = offset;
   const int columns = (out.width + how.tile_px - 1) / how.tile_px, rows = (out.height + how.tile_px - 1) / how.tile_px;
   const std::int64_t tiles = std::int64_t{columns} * rows;
   std::mutex progress_mutex;

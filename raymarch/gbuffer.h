@@ -11,6 +11,7 @@ namespace limn {
 /// What is seen at each pixel, as plain buffers. Nothing hit: Z and position infinite, normal 0, NdotV 0, id 0.
 struct GBuffer {
   int width = 0, height = 0;
+  glm::dvec2 sample{0.5, 0.5};  ///< Where in each pixel its ray went.
   Image<float> depth{};         ///< Z along the view axis, world units, > 0 in front of a pinhole.
   Image<glm::vec3> position{};  ///< World.
   Image<glm::vec3> normal{};    ///< World, unit.

@@ -46,6 +46,23 @@ struct SurfaceInfo {
   std::vector<std::string> warnings{};
 };
 
+class Polygons;  // raymarch/polygons.h
+
+/// How far an offset surface stands off: constant + dot(slope, p) at the point p of render space; world units, above 0 on the surface.
+struct OffsetWidth {
+  double constant = 0.0;
+  glm::dvec3 slope{0.0};
+  double at(const glm::dvec3& p) const { return constant + glm::dot(slope, p); }
+};
+
+/// The surfaces at a distance from one that knows distances. Its trace finds the first place, in either direction, where the distance
+/// crosses the width.
+struct SurfaceOffset {
+  std::shared_ptr<const void> state{};
+  /// Null where the surface has no distances. Throws InputError where they do not reach that far.
+  struct Surface (*make)(const void* state, const OffsetWidth& width) = nullptr;
+};
+
 /// One object, modelled. `trace` is called once for each batch and from many threads at a time; scratch memory is the callee's, on its
 /// stack or per call.
 struct Surface {
@@ -53,6 +70,8 @@ struct Surface {
   void (*trace)(const void* state, const RayBatch& rays, HitBatch& hits) = nullptr;
   Box bounds{};  ///< Render space; infinite where the object is.
   SurfaceInfo info{};
+  std::shared_ptr<const Polygons> polygons{};  ///< What is traced, where it is made of polygons.
+  SurfaceOffset offset{};
 };
 
 /// How to model, whatever the object. What a representation does not use is ignored by it.
@@ -62,11 +81,11 @@ struct SurfaceSettings {
   double voxel_size = 0.0;         ///< World; overrides `voxels`.
   double half_width_voxels = 0.0;  ///< 0: what the gradient needs.
   std::string gradient = "central";
-  int level = 3;                      ///< Subdivision or tessellation level.
+  int level = 3;                        ///< Subdivision or tessellation level.
   std::optional<Scheme> scheme{};       ///< Overrides the objects'.
   std::optional<NormalKind> normals{};  ///< Unset: limit where there is a limit surface or a field, else vertex.
   std::int64_t max_bytes = std::int64_t{8} << 30;
-  int max_steps = 10'000;                ///< Per ray; beyond it the pixel's status is out_of_steps.
+  int max_steps = 10'000;                  ///< Per ray; beyond it the pixel's status is out_of_steps.
   std::function<void(double)> progress{};  ///< 0..1 while building; may be empty.
 };
 
@@ -90,7 +109,7 @@ struct SceneModel {
   std::vector<glm::vec3> colors{};
   std::vector<int> materials{};
   glm::dvec3 render_origin{0.0};  ///< World.
-  Box bounds{};                     ///< World, of the bounded objects.
+  Box bounds{};                   ///< World, of the bounded objects.
 };
 
 /// Models every object. `settings.kind` empty: each in its natural representation. Throws InputError where one cannot be.

@@ -6,6 +6,7 @@
 
 #include <chrono>
 
+#include "raymarch/polygons.h"
 #include "raymarch/surface/object_mesh.h"
 #include "raymarch/surface/registry.h"
 #include "sdf/error.h"
@@ -193,6 +194,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   surface.info.triangles = static_cast<std::int64_t>(state->mesh.triangles.size());
   surface.info.bytes = state->mesh.bytes();
   surface.info.warnings = std::move(source.warnings);
+  surface.polygons = std::make_shared<const Polygons>(std::move(source.polygons), source.normals);
   surface.info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   surface.state = std::move(state);
   return surface;

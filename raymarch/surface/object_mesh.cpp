@@ -6,8 +6,9 @@
 namespace limn {
 namespace {
 
-/// Moves a mesh by `render_from_mesh`; a reflection turns the winding so that faces go on showing outwards.
-void move_mesh(const Affine& render_from_mesh, TriangleMesh& mesh) {
+/// Triangles or polygons: what they have in common.
+template <class AnyMesh>
+void move_points(const Affine& render_from_mesh, AnyMesh& mesh) {
   for (glm::dvec3& position : mesh.positions) position = render_from_mesh.point(position);
   if (render_from_mesh.linear == glm::dmat3(1.0)) return;
   const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(render_from_mesh.linear));
@@ -16,6 +17,22 @@ void move_mesh(const Affine& render_from_mesh, TriangleMesh& mesh) {
     const double length = glm::length(moved);
     if (length > 0.0) normal = glm::vec3(moved / length);
   }
+}
+
+/// A reflection turns the winding so that faces go on showing outwards.
+void move_polygons(const Affine& render_from_mesh, Mesh& mesh) {
+  move_points(render_from_mesh, mesh);
+  if (glm::determinant(render_from_mesh.linear) > 0.0) return;
+  std::ptrdiff_t first = 0;
+  for (const std::int32_t size : mesh.face_sizes) {
+    std::reverse(mesh.corner_vertices.begin() + first, mesh.corner_vertices.begin() + first + size);
+    if (!mesh.corner_normals.empty()) std::reverse(mesh.corner_normals.begin() + first, mesh.corner_normals.begin() + first + size);
+    first += size;
+  }
+}
+
+void move_mesh(const Affine& render_from_mesh, TriangleMesh& mesh) {
+  move_points(render_from_mesh, mesh);
   if (glm::determinant(render_from_mesh.linear) > 0.0) return;
   for (size_t i = 0; i < mesh.triangles.size(); ++i) {
     std::swap(mesh.triangles[i].y, mesh.triangles[i].z);
@@ -25,9 +42,13 @@ void move_mesh(const Affine& render_from_mesh, TriangleMesh& mesh) {
 
 int level_of(const SceneObject& object, const SurfaceSettings& settings) { return object.level.value_or(settings.level); }
 
-TriangleMesh triangles_with(const Mesh& mesh, NormalKind kind) {
-  return triangulate(mesh, kind == NormalKind::flat ? NormalKind::flat : NormalKind::vertex,
-                     kind == NormalKind::limit && !mesh.corner_normals.empty());
+ObjectMesh triangles_with(Mesh mesh, NormalKind kind) {
+  ObjectMesh result;
+  result.normals = kind == NormalKind::flat ? NormalKind::flat : NormalKind::vertex;
+  if (kind != NormalKind::limit) mesh.corner_normals.clear();
+  result.triangles = triangulate(mesh, result.normals, !mesh.corner_normals.empty());
+  result.polygons = std::move(mesh);
+  return result;
 }
 
 ObjectMesh from_field(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
@@ -35,7 +56,7 @@ ObjectMesh from_field(const SceneObject& object, const SurfaceSettings& settings
   how.level = level_of(object, settings);
   how.normals = settings.normals.value_or(NormalKind::limit);
   how.max_bytes = settings.max_bytes;
-  return {triangles_with(tessellate(translate(std::get<Field>(object.source), -render_origin), how), how.normals), {}};
+  return triangles_with(tessellate(translate(std::get<Field>(object.source), -render_origin), how), how.normals);
 }
 
 ObjectMesh from_cage(const SceneObject& object, const MeshSource& source, const SurfaceSettings& settings, Scheme scheme) {
@@ -44,18 +65,19 @@ ObjectMesh from_cage(const SceneObject& object, const MeshSource& source, const 
   how.level = level_of(object, settings);
   how.normals = settings.normals.value_or(NormalKind::limit);
   how.max_bytes = settings.max_bytes;
-  return {triangles_with(refine(source.mesh, how, source.file), how.normals), {}};
+  return triangles_with(refine(source.mesh, how, source.file), how.normals);
 }
 
 /// A mesh as it is: the file's own normals unless others are asked for.
 ObjectMesh from_facets(const SceneObject& object, const MeshSource& source, const SurfaceSettings& settings) {
-  ObjectMesh result;
+  std::vector<std::string> warnings;
   NormalKind kind = settings.normals.value_or(source.mesh.corner_normals.empty() ? NormalKind::vertex : NormalKind::limit);
   if (settings.normals == NormalKind::limit && source.mesh.corner_normals.empty()) {
-    result.warnings.push_back("'" + object.name + "' has no limit surface (no scheme): vertex normals instead of limit normals");
+    warnings.push_back("'" + object.name + "' has no limit surface (no scheme): vertex normals instead of limit normals");
     kind = NormalKind::vertex;
   }
-  result.triangles = triangles_with(source.mesh, kind);
+  ObjectMesh result = triangles_with(source.mesh, kind);
+  result.warnings = std::move(warnings);
   return result;
 }
 
@@ -66,7 +88,7 @@ ObjectMesh from_level_set(const LevelSetSource& source, const SurfaceSettings& s
   mesh.face_sizes = std::move(soup.face_sizes);
   mesh.corner_vertices = std::move(soup.corner_vertices);
   validate(mesh, source.file);
-  return {triangles_with(mesh, settings.normals.value_or(NormalKind::vertex)), {}};
+  return triangles_with(std::move(mesh), settings.normals.value_or(NormalKind::vertex));
 }
 
 /// Refinement and triangulation happen about the mesh's own middle, so that no float in them meets large coordinates.
@@ -93,6 +115,7 @@ ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& setting
   }
   render_from_mesh.translation -= render_origin;
   move_mesh(render_from_mesh, result.triangles);
+  move_polygons(render_from_mesh, result.polygons);
   return result;
 }
 

@@ -8,6 +8,8 @@ namespace limn {
 
 struct ObjectMesh {
   TriangleMesh triangles;  ///< Render space: world minus `render_origin`, in double.
+  Mesh polygons{};         ///< What the triangles came from, in render space too; corner normals only where those are traced.
+  NormalKind normals = NormalKind::vertex;  ///< Of the triangles.
   std::vector<std::string> warnings;
 };
 

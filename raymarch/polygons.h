@@ -1,0 +1,34 @@
+#pragma once
+// What a mesh surface is made of, for methods that need faces and edges rather than rays.
+
+#include <mutex>
+#include <span>
+
+#include "subdiv/edge_topology.h"
+#include "subdiv/mesh.h"
+
+namespace limn {
+
+/// The polygons of one surface in render space, and what follows from them whatever the view: made when first asked for, then kept. All
+/// members may be called from many threads.
+class Polygons {
+ public:
+  /// `traced` says which normals the surface is traced with; `mesh.corner_normals`, where there are any, are those.
+  Polygons(Mesh mesh, NormalKind traced) : mesh_(std::move(mesh)), traced_(traced) {}
+
+  const Mesh& mesh() const { return mesh_; }
+  /// Unit, one for each corner: the normals that the surface is traced with.
+  std::span<const glm::vec3> corner_normals() const;
+  /// Unit, one for each vertex, the same for all vertices at one position (bake_smooth_normals).
+  std::span<const glm::vec3> smooth_normals() const;
+  const EdgeTopology& edges() const;
+
+ private:
+  Mesh mesh_;
+  NormalKind traced_;
+  mutable std::once_flag corners_made_, smooth_made_, edges_made_;
+  mutable std::vector<glm::vec3> corner_normals_, smooth_normals_;
+  mutable EdgeTopology edges_;
+};
+
+}  // namespace limn

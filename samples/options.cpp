@@ -148,9 +148,8 @@ void add_border(CLI::App& app, Options& options) {
       });
 }
 
-void add_execution(CLI::App& app, Options& options, bool long_work) {
+void add_execution(CLI::App& app, Options& options) {
   add_switch(app, {"-q,--quiet", "", "nothing but errors on stderr, nothing but --json on stdout", kExecution}, options.quiet);
-  if (!long_work) return;
   add_switch(app, {"-v,--verbose", "", "timings and sizes on stderr", kExecution}, options.verbose);
   add_switch(app, {"--no-progress", "", "no progress bar (there is none unless stderr is a terminal)", kExecution}, options.no_progress);
   add(app, {"--threads", "N", "threads, 0..1024; default 0: all", kExecution},

@@ -63,6 +63,6 @@ void add_camera(CLI::App& app, Options& options, bool with_views);
 void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& needs);
 void add_grid(CLI::App& app, Options& options);
 void add_border(CLI::App& app, Options& options);
-void add_execution(CLI::App& app, Options& options, bool long_work);
+void add_execution(CLI::App& app, Options& options);
 
 }  // namespace limn

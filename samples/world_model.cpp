@@ -1,6 +1,6 @@
 #include "samples/world_model.h"
 
-#include <glm/gtc/matrix_inverse.hpp>
+#include <algorithm>
 
 #include "sdf/error.h"
 #include "subdiv/mesh_level_set.h"
@@ -18,7 +18,12 @@ Mesh local_mesh(const SceneObject& object, const SurfaceSettings& settings) {
   if (const auto* source = std::get_if<MeshSource>(&object.source)) {
     if (!source->scheme && !settings.scheme) return source->mesh;
     const Scheme scheme = settings.scheme ? *settings.scheme : *source->scheme;
-    return refine(source->mesh, {.scheme = scheme, .level = level, .normals = normals, .max_bytes = settings.max_bytes}, source->file);
+    Mesh refined =
+        refine(source->mesh, {.scheme = scheme, .level = level, .normals = normals, .max_bytes = settings.max_bytes}, source->file);
+    // Its vertices lie on the limit surface: whoever subdivided it once more by the tags would get another one.
+    refined.creases.clear();
+    refined.corners.clear();
+    return refined;
   }
   PolygonSoup soup = mesh_from_level_set(std::get<LevelSetSource>(object.source).level_set);
   Mesh mesh;

@@ -18,7 +18,7 @@ void add_options(CLI::App& app, Options& options) {
   add_border(app, options);
   add_output(app, options, "folder for sheet.png, report.html, rows.json and each picture's EXR; default limn-out/compare/<name>", false);
   add_json(app, options);
-  add_execution(app, options, true);
+  add_execution(app, options);
 }
 
 Comparison plan(const Options& options, SceneInput& input) {

@@ -27,7 +27,7 @@ void add_options(CLI::App& app, Options& options) {
   add_surface(app, options, {.surface = true, .repeatable = false});
   add_output(app, options, ".obj .ply (refined mesh) or .vdb (level set); default limn-out/export/<name>.obj, .vdb for a volume", false);
   add_json(app, options);
-  add_execution(app, options, true);
+  add_execution(app, options);
 }
 
 // --surface says by which way: mesh or level_set straight, mesh_level_set through both.

@@ -39,10 +39,10 @@ struct Report {
 void report_field(const Field& field, Report& report) {
   const FieldTraits& traits = field.traits();
   report.kind = "field";
-  report.audit.push_back({"lipschitz_constant", Severity::info, traits.lipschitz,
+  report.audit.push_back({"lipschitz constant", Severity::info, traits.lipschitz,
                           fmt::format("the field grows by at most {:g} per unit of length", traits.lipschitz)});
   report.audit.push_back(
-      {"exact_distance", Severity::info, traits.exact_distance ? 1.0 : 0.0,
+      {"exact distance", Severity::info, traits.exact_distance ? 1.0 : 0.0,
        traits.exact_distance ? "the value is the distance to the surface" : "the value is not everywhere the distance to the surface"});
   if (traits.bounds.empty()) report.audit.push_back({"empty", Severity::error, 0.0, "the field has no surface at all"});
   if (!traits.bounds.empty() && !traits.bounds.finite())
@@ -79,7 +79,7 @@ void report_level_set(const LevelSetSource& source, Report& report) {
                    {"bytes", info.bytes}};
   for (const GradientDescriptor& gradient : gradients()) {
     const bool enough = info.half_width_voxels >= gradient.half_width_voxels;
-    report.audit.push_back({"band_for_" + gradient.about.name, enough ? Severity::info : Severity::warning, gradient.half_width_voxels,
+    report.audit.push_back({"band for " + gradient.about.name, enough ? Severity::info : Severity::warning, gradient.half_width_voxels,
                             fmt::format("the gradient {} needs a half width of {:g} voxels: {}", gradient.about.name,
                                         gradient.half_width_voxels, enough ? "there is enough" : "the band is too thin")});
   }
@@ -116,11 +116,14 @@ std::string report_text(const Report& report) {
   for (const auto& [key, value] : report.counts.items()) {
     std::string label = key;
     std::replace(label.begin(), label.end(), '_', ' ');
-    counts += (counts.empty() ? "  " : ", ") + label + " " + (value.is_string() ? value.get<std::string>() : value.dump());
+    counts += (counts.empty() ? "  " : ", ") + label + " " +
+              (value.is_string()         ? value.get<std::string>()
+               : value.is_number_float() ? fmt::format("{:g}", value.get<double>())
+                                         : value.dump());
   }
   if (!counts.empty()) text += counts + "\n";
   for (const Finding& finding : report.audit)
-    text += fmt::format("  {:<8} {:<22} {}\n", name_of(finding.severity), finding.check, finding.message);
+    text += fmt::format("  {:<8} {:<24} {}\n", name_of(finding.severity), finding.check, finding.message);
   return text;
 }
 
@@ -139,7 +142,7 @@ Json grids_json(const std::vector<GridSummary>& grids) {
 std::string grids_text(const std::vector<GridSummary>& grids) {
   std::string text;
   for (const GridSummary& grid : grids) {
-    text += fmt::format("  grid     {:<22} {} {}, {} active voxels of {:g}\n", grid.name.empty() ? "(no name)" : grid.name, grid.grid_class,
+    text += fmt::format("  grid     {:<24} {} {}, {} active voxels of {:g}\n", grid.name.empty() ? "(no name)" : grid.name, grid.grid_class,
                         grid.value_type, grid.active_voxels, grid.voxel_size);
   }
   return text;
@@ -168,7 +171,7 @@ int report_volume_without_level_set(const Options& options, const std::vector<Gr
                 {"audit", audit_json({finding})},
                 {"grids", grids_json(grids)}});
   } else {
-    print_text(fmt::format("{}: {} grids\n{}  {:<8} {:<22} {}\n", options.input, grids.size(), grids_text(grids), "error", finding.check,
+    print_text(fmt::format("{}: {} grids\n{}  {:<8} {:<24} {}\n", options.input, grids.size(), grids_text(grids), "error", finding.check,
                            finding.message));
   }
   return 0;

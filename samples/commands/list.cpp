@@ -37,7 +37,7 @@ std::vector<Entry> list_gradients() {
   std::vector<Entry> entries;
   for (const GradientDescriptor& gradient : gradients()) {
     Description about = gradient.about;
-    about.help += fmt::format("; half width {} voxels, order {}", gradient.half_width_voxels, gradient.order);
+    about.help += fmt::format("; half width {:.3g} voxels, order {}", gradient.half_width_voxels, gradient.order);
     entries.push_back({about, {}, {}});
   }
   return entries;

@@ -69,7 +69,7 @@ void add_options(CLI::App& app, Options& options) {
   add_output(app, options, ".exr (all layers) or .png .tif .jpg (the composite), repeatable; default limn-out/render/<name>.exr and .png",
              true);
   add_json(app, options);
-  add_execution(app, options, true);
+  add_execution(app, options);
 }
 
 // What all views of one call share, and what they add up to.

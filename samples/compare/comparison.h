@@ -6,6 +6,7 @@
 
 #include "raymarch/metric.h"
 #include "raymarch/picture.h"
+#include "samples/compare/panels.h"
 #include "samples/input.h"
 #include "samples/job.h"
 #include "samples/output.h"
@@ -41,6 +42,7 @@ struct Comparison {
   PictureSettings picture;
   Cell reference;
   std::vector<Cell> cells;
+  Window seen;  ///< The part of the pictures where any cell hits something, with a margin; panels show that.
 };
 
 /// What is to be compared with what, before anything is drawn. `only` restricts the cells to those representations.
@@ -50,6 +52,8 @@ Comparison plan_comparison(const SceneInput& input, const SurfaceSettings& setti
 /// Draws the reference and every cell, writes each one's EXR into `folder`, measures. A cell that cannot be drawn keeps its reason.
 void draw_comparison(Comparison& comparison, const std::filesystem::path& folder, const ExecutionSettings& how, ProgressBar& bar);
 
+/// Input name as a heading: "machined part".
+std::string heading(const std::string& name);
 /// Value of a metric by name; NaN where there is none.
 double value_of(const Cell& cell, const std::string& name);
 /// Area of ink in the picture, pixels.

@@ -38,6 +38,7 @@ Picture draw_cell(Cell& cell, const Comparison& comparison, const std::filesyste
 
 void draw_comparison(Comparison& comparison, const std::filesystem::path& folder, const ExecutionSettings& how, ProgressBar& bar) {
   const Picture reference = draw_cell(comparison.reference, comparison, folder, how, bar);
+  comparison.seen = hit_window(reference.gbuffer);
   for (Cell& cell : comparison.cells) {
     if (!cell.skipped.empty()) continue;
     try {
@@ -46,6 +47,7 @@ void draw_comparison(Comparison& comparison, const std::filesystem::path& folder
         const std::vector<MetricValue> values = metric.measure({picture, reference, comparison.camera});
         cell.values.insert(cell.values.end(), values.begin(), values.end());
       }
+      if (cell.counts.hits > 0) comparison.seen = merge(comparison.seen, hit_window(picture.gbuffer));
       cell.difference = difference_picture(cell.border, comparison.reference.border);
     } catch (const InputError& error) {
       // What one representation cannot do is part of the answer, not the end of the comparison.

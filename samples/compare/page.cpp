@@ -62,11 +62,6 @@ std::string picture_tag(const Image<glm::vec4>& picture, const std::string& alte
                      picture.height, escaped(alternative), base64(encode_png(picture)));
 }
 
-std::string capitalised(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
-
 std::string numbers_list(const Cell& cell, double area) {
   std::string html = "<ul class=\"numbers\">";
   for (const std::string& line : caption_lines(cell, area)) html += "<li>" + escaped(line) + "</li>";
@@ -78,22 +73,26 @@ std::string reference_card(const Comparison& comparison) {
   const int height = kPictureWidth;
   std::string html =
       fmt::format("<figure class=\"cell\"><h3>Reference: {}</h3><p class=\"details\">{}</p>\n", escaped(cell.title), escaped(cell.details));
-  html += picture_tag(fitted(cell.composite, kPictureWidth, height), comparison.input_name + " drawn from " + comparison.reference_words);
-  html += picture_tag(fitted(ink_on_paper(cell.border), kPictureWidth, height), "The reference's border alone");
-  html += "<figcaption>The border alone.</figcaption>\n";
+  html += picture_tag(fitted(cropped(cell.composite, comparison.seen), kPictureWidth, height),
+                      comparison.input_name + " drawn from " + comparison.reference_words);
+  html += picture_tag(fitted(ink_on_paper(cropped(cell.border, comparison.seen)), kPictureWidth, height), "The reference's border alone");
+  html += "<figcaption>The border alone. Pictures are cropped to what is seen.</figcaption>\n";
   return html + numbers_list(cell, border_area_px(cell)) + "</figure>\n";
 }
 
 std::string cell_card(const Comparison& comparison, const Cell& cell) {
   const Image<float>& reference = comparison.reference.border;
+  const Window& seen = comparison.seen;
   const int height = kPictureWidth;
   const double differ = value_of(cell, "pixels_differ");
   const Window window = worst_window(cell.border, reference, kZoomWidth / kEnlarge, kZoomWidth / kEnlarge * 9 / 16);
-  std::string html = fmt::format("<figure class=\"cell\"><h3>{}</h3><p class=\"details\">{}</p>\n", escaped(capitalised(cell.title)),
-                                 escaped(cell.details));
-  html += picture_tag(fitted(cell.composite, kPictureWidth, height), comparison.input_name + " drawn from the " + full_title(cell));
-  html += picture_tag(fitted_difference(cell.difference, cell.border, reference, kPictureWidth, height),
-                      fmt::format("Where its border differs from the reference: {} pixels", counted(differ)));
+  std::string html =
+      fmt::format("<figure class=\"cell\"><h3>{}</h3><p class=\"details\">{}</p>\n", escaped(heading(cell.title)), escaped(cell.details));
+  html += picture_tag(fitted(cropped(cell.composite, comparison.seen), kPictureWidth, height),
+                      comparison.input_name + " drawn from the " + full_title(cell));
+  html += picture_tag(
+      fitted_difference(cropped(cell.difference, seen), cropped(cell.border, seen), cropped(reference, seen), kPictureWidth, height),
+      fmt::format("Where its border differs from the reference: {} pixels", counted(differ)));
   html += "<figcaption>Its border against the reference's.</figcaption>\n";
   html += picture_tag(enlarged(cell.difference, window, kEnlarge),
                       fmt::format("The worst place, at pixel {}, {}, enlarged", window.x + window.width / 2, window.y + window.height / 2),
@@ -171,7 +170,8 @@ std::string table(const Comparison& comparison) {
         const double rival = column_value(column, other);
         if (column.lower_is_better ? rival < value : rival > value) best = false;
       }
-      html += fmt::format("<td data-value=\"{}\"{}>{}</td>", value, best && !alone ? " class=\"best\"" : "", column.text(value));
+      html += fmt::format("<td data-value=\"{}\"{}>{}</td>", std::isfinite(value) ? fmt::format("{}", value) : "",
+                          best && !alone ? " class=\"best\"" : "", column.text(value));
     }
     html += "</tr>\n";
   }
@@ -181,7 +181,7 @@ std::string table(const Comparison& comparison) {
 std::string skipped_list(const Comparison& comparison) {
   std::string items;
   for (const Cell& cell : comparison.cells) {
-    if (!cell.skipped.empty()) items += "<li>" + escaped(capitalised(cell.title)) + ": " + escaped(cell.skipped) + "</li>\n";
+    if (!cell.skipped.empty()) items += "<li>" + escaped(heading(cell.title)) + ": " + escaped(cell.skipped) + "</li>\n";
   }
   return items.empty() ? "" : "<h2>Not compared</h2>\n<ul class=\"results\">\n" + items + "</ul>\n";
 }
@@ -189,7 +189,7 @@ std::string skipped_list(const Comparison& comparison) {
 std::string notes_list(const Comparison& comparison) {
   std::string items;
   const auto add = [&items](const Cell& cell) {
-    for (const std::string& note : cell.notes) items += "<li>" + escaped(capitalised(cell.title)) + ": " + escaped(note) + "</li>\n";
+    for (const std::string& note : cell.notes) items += "<li>" + escaped(heading(cell.title)) + ": " + escaped(note) + "</li>\n";
   };
   add(comparison.reference);
   for (const Cell& cell : comparison.cells) add(cell);
@@ -198,14 +198,14 @@ std::string notes_list(const Comparison& comparison) {
 
 std::string results_list(const Comparison& comparison) {
   const std::vector<std::string> sentences = summary_sentences(comparison);
-  std::string html = "<p class=\"lead\">" + escaped(sentences.front());
+  std::string html = fmt::format("<p class=\"lead\">{}", escaped(sentences.front()));
   size_t next = 1;
-  const bool has_ranking = sentences.size() > 2 && sentences.size() >= 3 && comparison.cells.size() > 1;
-  if (sentences.size() == 2 || has_ranking) html += " " + escaped(sentences[next++]);
+  const bool has_ranking = sentences.size() > 3;
+  if (sentences.size() == 2 || has_ranking) html.append(1, ' ').append(escaped(sentences[next++]));
   html += "</p>\n";
   if (next < sentences.size()) {
     html += "<ul class=\"results\">\n";
-    for (; next < sentences.size(); ++next) html += "<li>" + escaped(capitalised(sentences[next])) + "</li>\n";
+    for (; next < sentences.size(); ++next) html += "<li>" + escaped(sentences[next]) + "</li>\n";
     html += "</ul>\n";
   }
   return html;
@@ -219,7 +219,7 @@ std::string report_page(const Comparison& comparison) {
       "initial-scale=1\">\n";
   html +=
       "<title>limn compare: " + escaped(comparison.input_name) + "</title>\n<style>" + kPageStyle + "</style>\n</head>\n<body>\n<main>\n";
-  html += "<h1>" + escaped(capitalised(comparison.input_name)) + ": the border, drawn from different models of one surface</h1>\n";
+  html += "<h1>" + escaped(heading(comparison.input_name)) + ": the border, drawn from different models of one surface</h1>\n";
   html += results_list(comparison);
   html +=
       "<h2>Pictures</h2>\n<p class=\"legend\"><span><i style=\"background:#aaaaaa\"></i>border in both</span><span><i "

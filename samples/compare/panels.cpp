@@ -94,6 +94,31 @@ Window worst_window(const Image<float>& border, const Image<float>& reference, i
   return best;
 }
 
+Window hit_window(const GBuffer& gbuffer) {
+  int x0 = gbuffer.width, x1 = -1, y0 = gbuffer.height, y1 = -1;
+  for (int y = 0; y < gbuffer.height; ++y) {
+    for (int x = 0; x < gbuffer.width; ++x) {
+      if (gbuffer.id.at(x, y) == 0) continue;
+      x0 = std::min(x0, x);
+      x1 = std::max(x1, x);
+      y0 = std::min(y0, y);
+      y1 = std::max(y1, y);
+    }
+  }
+  if (x1 < 0) return {0, 0, gbuffer.width, gbuffer.height, 0.0};
+  const int margin = 1 + gbuffer.height * 3 / 100;
+  x0 = std::max(x0 - margin, 0);
+  y0 = std::max(y0 - margin, 0);
+  x1 = std::min(x1 + margin, gbuffer.width - 1);
+  y1 = std::min(y1 + margin, gbuffer.height - 1);
+  return {x0, y0, x1 - x0 + 1, y1 - y0 + 1, 0.0};
+}
+
+Window merge(const Window& a, const Window& b) {
+  const int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
+  return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y, a.wrong_px + b.wrong_px};
+}
+
 Image<glm::vec4> enlarged(const Image<glm::vec4>& picture, const Window& window, int factor) {
   Image<glm::vec4> out(window.width * factor, window.height * factor);
   for (int y = 0; y < out.height; ++y) {

@@ -19,6 +19,21 @@ struct Window {
 };
 Window worst_window(const Image<float>& border, const Image<float>& reference, int width, int height);
 
+/// The pixels of a picture inside a window.
+template <class T>
+Image<T> cropped(const Image<T>& picture, const Window& window) {
+  Image<T> out(window.width, window.height);
+  for (int y = 0; y < out.height; ++y) {
+    for (int x = 0; x < out.width; ++x) out.at(x, y) = picture.at(window.x + x, window.y + y);
+  }
+  return out;
+}
+
+/// The window around all hits, grown by 3 % of the picture's height; the whole picture where nothing is hit.
+Window hit_window(const GBuffer& gbuffer);
+/// The smallest window around both.
+Window merge(const Window& a, const Window& b);
+
 /// A window enlarged by a whole factor, its pixels as squares.
 Image<glm::vec4> enlarged(const Image<glm::vec4>& picture, const Window& window, int factor);
 

@@ -84,21 +84,22 @@ void draw_reference(Canvas& canvas, const Comparison& comparison, const Layout& 
   draw_head(canvas, x, y, "Reference: " + cell.title, cell.details);
   y += layout.head;
   const int height = layout.panel_height;
-  place(canvas, fitted(cell.composite, kPanel, height), x, y, kPanel, height);
-  place(canvas, fitted(ink_on_paper(cell.border), kPanel, height), x, y + height + 10, kPanel, height);
+  place(canvas, fitted(cropped(cell.composite, comparison.seen), kPanel, height), x, y, kPanel, height);
+  place(canvas, fitted(ink_on_paper(cropped(cell.border, comparison.seen)), kPanel, height), x, y + height + 10, kPanel, height);
   draw_legend(canvas, x, y + 2 * (height + 10), kPanel, height);
   draw_captions(canvas, x, y + 3 * (height + 10), caption_lines(cell, border_area_px(cell)));
 }
 
 void draw_cell(Canvas& canvas, const Comparison& comparison, const Cell& cell, const Layout& layout, int x, int y) {
   const Image<float>& reference = comparison.reference.border;
-  std::string title = cell.title;
-  if (!title.empty()) title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-  draw_head(canvas, x, y, title, cell.details);
+  const Window& seen = comparison.seen;
+  draw_head(canvas, x, y, heading(cell.title), cell.details);
   y += layout.head;
   const int height = layout.panel_height;
-  place(canvas, fitted(cell.composite, kPanel, height), x, y, kPanel, height);
-  place(canvas, fitted_difference(cell.difference, cell.border, reference, kPanel, height), x, y + height + 10, kPanel, height);
+  place(canvas, fitted(cropped(cell.composite, seen), kPanel, height), x, y, kPanel, height);
+  const auto difference =
+      fitted_difference(cropped(cell.difference, seen), cropped(cell.border, seen), cropped(reference, seen), kPanel, height);
+  place(canvas, difference, x, y + height + 10, kPanel, height);
   const Window window = worst_window(cell.border, reference, kPanel / kEnlarge, height / kEnlarge);
   place(canvas, enlarged(cell.difference, window, kEnlarge), x, y + 2 * (height + 10), kPanel, height);
   draw_captions(canvas, x, y + 3 * (height + 10), caption_lines(cell, border_area_px(comparison.reference)));
@@ -108,7 +109,7 @@ std::vector<std::string> heading_lines(const Comparison& comparison, int width) 
   const std::vector<std::string> sentences = summary_sentences(comparison);
   std::string text = sentences.front();
   if (sentences.size() > 1) text += " " + sentences[1];
-  text += " Below: the pictures; where their borders differ; the worst place, eight times enlarged.";
+  text += " Below: the pictures, cropped to what is seen; where their borders differ; the worst place, eight times enlarged.";
   return wrapped(text, kBody, width);
 }
 
@@ -133,20 +134,21 @@ Sheet contact_sheet(const Comparison& comparison) {
   Layout layout;
   layout.columns = std::min(count, kMostColumns);
   layout.rows = (count + layout.columns - 1) / layout.columns;
-  const double aspect = static_cast<double>(comparison.camera.height_px) / comparison.camera.width_px;
+  const double aspect = static_cast<double>(comparison.seen.height) / comparison.seen.width;
   layout.panel_height = std::clamp(static_cast<int>(kPanel * aspect), 160, kPanel);
 
   // Two columns at least, so that the words above them have room.
   const int width = kGap + std::max(layout.columns, 2) * (kPanel + kGap);
-  const auto heading = heading_lines(comparison, width - 2 * kGap);
+  const auto intro = heading_lines(comparison, width - 2 * kGap);
   const auto skipped = skipped_lines(comparison, width - 2 * kGap);
-  const int top = kGap + 40 + 23 * static_cast<int>(heading.size()) + 8;
+  const int top = kGap + 40 + 23 * static_cast<int>(intro.size()) + 8;
   const int bottom = skipped.empty() ? 0 : 20 * static_cast<int>(skipped.size()) + 10;
   Canvas canvas(width, top + layout.rows * layout.column_height() + bottom + kGap, glm::vec4(kPaper, 1.0f));
 
-  draw_text(canvas, kGap, kGap + 24, comparison.input_name + ": one border, " + std::to_string(count) + " models of the surface", kTitle);
+  draw_text(canvas, kGap, kGap + 24, heading(comparison.input_name) + ": one border, " + std::to_string(count) + " models of the surface",
+            kTitle);
   int y = kGap + 40;
-  for (const std::string& line : heading) draw_text(canvas, kGap, y += 23, line, kBody);
+  for (const std::string& line : intro) draw_text(canvas, kGap, y += 23, line, kBody);
   for (int i = 0; i < count; ++i) {
     const int x = kGap + (i % layout.columns) * (kPanel + kGap);
     const int row_y = top + (i / layout.columns) * layout.column_height();

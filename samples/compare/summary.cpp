@@ -12,7 +12,7 @@ namespace {
 std::string cell_sentence(const Cell& cell, double reference_area) {
   const double differ = value_of(cell, "pixels_differ");
   const std::string share = reference_area > 0.0 ? " (" + share_text(differ / reference_area) + " of the border)" : "";
-  std::string text = fmt::format("{}: {} border pixels differ{}", full_title(cell), counted(differ), differ > 0.0 ? share : "");
+  std::string text = fmt::format("{}: {} border pixels differ{}", heading(full_title(cell)), counted(differ), differ > 0.0 ? share : "");
   if (const double overlap = value_of(cell, "overlap"); std::isfinite(overlap)) text += fmt::format(", overlap {:.4f}", overlap);
   const double mean = value_of(cell, "normal_error_mean"), worst = value_of(cell, "normal_error_max");
   if (std::isfinite(mean))

@@ -109,7 +109,7 @@ class Sheet {
 Scene make() {
   Scene scene;
   scene.objects.push_back(cage_object("bracket", Sheet().make(), {0.34f, 0.42f, 0.50f}));
-  scene.camera = look_at({0.0, 0.85, -1.1}, {0.75, 0.62, 1.0}, 5.2);
+  scene.camera = look_at({0.0, 0.72, -1.1}, {0.75, 0.62, 1.0}, 5.7);
   return scene;
 }
 

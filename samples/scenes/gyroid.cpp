@@ -8,7 +8,7 @@ Scene make() {
   const Field lattice = make_shape("gyroid", {{"period", {0.9}}, {"thickness", {0.10}}, {"bound", {1.4}}});
   const Field ball = make_shape("sphere", {{"radius", {1.0}}});
   scene.objects.push_back({.name = "gyroid", .source = combine(Csg::intersection, lattice, ball), .color = {0.30f, 0.48f, 0.66f}});
-  scene.camera = look_at({0.0, 0.0, 0.0}, {0.7, 0.5, 1.0}, 3.6);
+  scene.camera = look_at({0.0, 0.0, 0.0}, {0.7, 0.5, 1.0}, 3.75);
   return scene;
 }
 

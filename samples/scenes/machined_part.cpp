@@ -52,7 +52,7 @@ Scene make() {
   for (const Field& tool : cuts()) part.push_back(tool);
   Scene scene;
   scene.objects.push_back({.name = "flanged hub", .source = combine(Csg::difference, part), .color = {0.50f, 0.53f, 0.56f}});
-  scene.camera = look_at({0.0, 0.2, 0.0}, {0.45, 0.95, 1.0}, 3.9);
+  scene.camera = look_at({0.0, 0.13, 0.0}, {-0.36, 0.95, 1.0}, 4.1);
   return scene;
 }
 

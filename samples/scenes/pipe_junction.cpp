@@ -105,7 +105,7 @@ Mesh junction() {
 Scene make() {
   Scene scene;
   scene.objects.push_back(cage_object("junction", junction(), {0.62f, 0.30f, 0.12f}));
-  scene.camera = look_at({0.0, 0.45, 0.1}, {0.62, 0.62, 1.0}, 5.3);
+  scene.camera = look_at({0.0, 0.28, 0.1}, {0.62, 0.62, 1.0}, 5.9);
   return scene;
 }
 

@@ -81,7 +81,7 @@ Scene make() {
   cup_object.world_from_object.translation = {0.0, 0.13, 0.0};
   scene.objects.push_back(std::move(cup_object));
   scene.objects.push_back(cage_object("saucer", saucer(), {0.16f, 0.33f, 0.52f}));
-  scene.camera = look_at({0.0, 0.55, 0.1}, {0.5, 0.80, 1.0}, 5.3);
+  scene.camera = look_at({0.0, 0.47, 0.1}, {0.5, 0.80, 1.0}, 5.5);
   return scene;
 }
 

@@ -109,7 +109,8 @@ TEST(Info, ReportsAnOpenMeshAsAFault) {
   const TemporaryFolder folder;
   const std::string sheet = folder.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
   bool complained = false;
-  for (const json& finding : run_limn({"info", sheet, "--json"}).json().at("audit")) {
+  const json document = run_limn({"info", sheet, "--json"}).json();
+  for (const json& finding : document.at("audit")) {
     complained = complained || (finding.at("check").get<std::string>().find("open") != std::string::npos &&
                                 finding.at("severity") != "info" && finding.at("value") == 4);
   }

@@ -102,6 +102,16 @@ TEST(Formats, WhatExportWritesIsReadBackAsTheSameSurface) {
   }
 }
 
+TEST(Formats, AnExportedCageIsNoCageAnyMore) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_limn({"export", "rook", "--level", "1", "-o", folder.file("a.obj"), "-q"}).exit_code, 0);
+  const auto document = run_limn({"info", folder.file("a.obj"), "--json"}).json();
+  EXPECT_EQ(document.at("counts").at("creases"), 0);
+  EXPECT_EQ(document.at("objects").at(0).at("kind"), "mesh");
+}
+
+TEST(Scenes, TheExampleFileIsDrawn) { expect_sound_picture(LIMN_SOURCE_DIR "/samples/scenes/still_life.toml", {}); }
+
 TEST(Scenes, EveryBuiltInOneIsDrawn) {
   for (const auto& scene : run_limn({"list", "scenes", "--json"}).json()) expect_sound_picture(scene.at("name"), {});
 }

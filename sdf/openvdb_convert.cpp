@@ -21,7 +21,8 @@ std::shared_ptr<LevelSetData> freeze(const openvdb::FloatGrid& grid, const Affin
 
 openvdb::FloatGrid::Ptr thaw(const LevelSet& level_set) {
   initialize_openvdb();
-  auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(nanovdb::nanoToOpenVDB(level_set.data().handle, 0));
+  // The typed overload: the one on handles would instantiate every grid type there is.
+  openvdb::FloatGrid::Ptr grid = nanovdb::nanoToOpenVDB(*level_set.data().handle.grid<float>(), 0);
   const Affine& map = level_set.info().world_from_index;
   openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
   // OpenVDB multiplies row vectors from the left: its rows are our columns.

@@ -69,6 +69,7 @@ std::vector<std::int32_t> first_vertex_at_position(const Mesh& mesh) {
 EdgeTopology build_edge_topology(const Mesh& mesh) {
   EdgeTopology topology;
   topology.face_normals = area_normals(mesh);
+  topology.first_corners = first_corners(mesh);
   Mesh welded;
   welded.positions = mesh.positions;
   welded.face_sizes = mesh.face_sizes;

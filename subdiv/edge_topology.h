@@ -16,9 +16,10 @@ struct TopologyEdge {
 struct EdgeTopology {
   std::vector<TopologyEdge> edges{};
   std::vector<glm::dvec3>
-      face_normals{};             ///< Newell's, as long as the area; of a face without area: that of the face beyond its longest edge.
-  std::int64_t non_manifold = 0;  ///< Edges with more than two faces; the first two count.
-  std::int64_t flat_faces = 0;    ///< Without area and without a neighbour to take a normal from: their edges are in no kind but border.
+      face_normals{};  ///< Newell's, as long as the area; of a face without area: that of the face beyond its longest edge.
+  std::vector<std::int32_t> first_corners{};  ///< As first_corners(mesh).
+  std::int64_t non_manifold = 0;              ///< Edges with more than two faces; the first two count.
+  std::int64_t flat_faces = 0;  ///< Without area and without a neighbour to take a normal from: their edges are in no kind but border.
 };
 
 /// Vertices at exactly the same position count as one, so that a seam of doubled vertices is no border of the surface.

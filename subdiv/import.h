@@ -14,7 +14,7 @@ struct ImportSettings {
 
 /// Reads .obj (n-gons, `t crease / corner / interpolateboundary` tags, materials, groups, vertex colours; double precision), and
 /// .ply, .stl, .off, .gltf, .glb through assimp (parts joined with their transforms; STL vertices welded by equal position, since the
-/// format has no indices). Reading happens in a guarded child process; the result is validated.
+/// format has no indices). assimp reads in a guarded child process, .obj is read by our own reader; the result is validated.
 /// Throws InputError: no such file, a folder, empty, unknown extension, damaged, no faces, non-finite vertices, indices out of range.
 Mesh load_mesh(const std::filesystem::path& file, const ImportSettings& settings = {});
 

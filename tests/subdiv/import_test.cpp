@@ -88,12 +88,11 @@ TEST_F(Import, ObjFacesMayComeBeforeTheirVertices) {
 }
 
 TEST_F(Import, ObjPolygonsMayBeLarge) {
-  std::string text, face = "f";
-  for (int i = 0; i < 300; ++i) {
-    text += "v " + std::to_string(std::cos(i * 0.0209)) + " " + std::to_string(std::sin(i * 0.0209)) + " 0\n";
-    face += " " + std::to_string(i + 1);
-  }
-  EXPECT_EQ(load_mesh(write("large.obj", text + face + "\n")).face_sizes[0], 300);
+  std::ostringstream text;
+  for (int i = 0; i < 300; ++i) text << "v " << std::cos(i * 0.0209) << " " << std::sin(i * 0.0209) << " 0\n";
+  text << "f";
+  for (int i = 1; i <= 300; ++i) text << " " << i;
+  EXPECT_EQ(load_mesh(write("large.obj", text.str())).face_sizes[0], 300);
 }
 
 TEST_F(Import, ObjFaultsAreNamedWithTheirLine) {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "subdiv/cage_topology.h"
+#include "subdiv/opensubdiv_cage.h"
 
 namespace limn {
 namespace {

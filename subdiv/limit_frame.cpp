@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "sdf/error.h"
-#include "subdiv/cage_topology.h"
+#include "subdiv/opensubdiv_cage.h"
 
 namespace limn {
 namespace {

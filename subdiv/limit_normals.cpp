@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "sdf/error.h"
-#include "subdiv/cage_topology.h"
+#include "subdiv/opensubdiv_cage.h"
 
 namespace limn {
 namespace {

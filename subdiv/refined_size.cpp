@@ -2,7 +2,7 @@
 #include <opensubdiv/far/topologyLevel.h>
 
 #include "sdf/error.h"
-#include "subdiv/cage_topology.h"
+#include "subdiv/opensubdiv_cage.h"
 
 namespace limn {
 namespace {

@@ -1,3 +1,4 @@
+cmake_minimum_required(VERSION 3.25)
 # Dependencies point one way: sdf <- subdiv <- raymarch <- samples, and each folder's library types stay inside its .cpp files.
 #   cmake -DROOT=<checkout> -P include_directions.cmake
 set(allowed_sdf sdf)
@@ -20,9 +21,15 @@ foreach(folder sdf subdiv raymarch samples)
       elseif(line MATCHES "\"")
         message(SEND_ERROR "${file}: ${line}\n  includes name their folder, as in \"sdf/field.h\"")
       endif()
-      # Heavy types behind the .cpp files: a header that names them makes every reader pay for them.
-      if(file MATCHES "\\.h$" AND line MATCHES "<(openvdb|opensubdiv|embree3|OpenImageIO|assimp|CLI|toml)")
-        message(SEND_ERROR "${file}: ${line}\n  this library's types stay in .cpp files")
+      # Heavy types stay behind .cpp files: a header that names them makes every reader pay. The exceptions carry the library's name
+      # (openvdb_grid.h), are included by .cpp files alone and are not installed.
+      if(file MATCHES "\\.h$" AND line MATCHES "<(openvdb|opensubdiv|embree|OpenImageIO|opencv|assimp|CLI|toml)")
+        if(NOT file MATCHES "/${CMAKE_MATCH_1}_[^/]*$")
+          message(SEND_ERROR "${file}: ${line}\n  this library's types stay in .cpp files, or in a header named ${CMAKE_MATCH_1}_*.h")
+        endif()
+      endif()
+      if(file MATCHES "\\.h$" AND line MATCHES "\"[a-z]+/(openvdb|opensubdiv)_")
+        message(SEND_ERROR "${file}: ${line}\n  only .cpp files may include it")
       endif()
     endforeach()
   endforeach()

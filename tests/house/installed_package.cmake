@@ -1,3 +1,4 @@
+cmake_minimum_required(VERSION 3.25)
 # `cmake --install` into an empty folder, then another project finds limn there, links it and runs.
 #   cmake -DBUILD=<build folder> -DSOURCE=<consumer project> -P installed_package.cmake
 set(work ${BUILD}/installed_package)

@@ -1,4 +1,4 @@
-#include "subdiv/cage_topology.h"
+#include "subdiv/opensubdiv_cage.h"
 
 #include <fmt/format.h>
 #include <opensubdiv/far/topologyDescriptor.h>

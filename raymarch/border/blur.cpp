@@ -48,12 +48,17 @@ void blur_objects(const GBuffer& seen, const BlurSettings& settings, const Value
   });
 }
 
-/// Of the blurred silhouette: on a straight edge it is 1/2, so that a glow starts there at 1. Over the object it fades inwards alike.
-float ink_of(const BlurSettings& settings, float blurred_silhouette, bool inside) {
-  if (inside && !settings.over) return 0.0f;
-  const float amount = settings.over ? std::min(blurred_silhouette, 1.0f - blurred_silhouette) : blurred_silhouette;
-  if (settings.hard) return amount > settings.level ? 1.0f : 0.0f;
-  return std::min(1.0f, std::max(0.0f, 2.0f * settings.strength * amount));
+/// Ink of one line of the blurred silhouette. On a straight edge that is 1/2, so that a glow starts there at 1; over the object it fades
+/// inwards alike.
+void ink_line(const BlurSettings& settings, const float* __restrict blurred, const std::int32_t* __restrict id, int width,
+              float* __restrict ink) {
+  const bool hard = settings.hard, over = settings.over;
+  const float level = settings.level, factor = 2.0f * settings.strength;
+  for (int x = 0; x < width; ++x) {
+    const float amount = over ? std::min(blurred[x], 1.0f - blurred[x]) : blurred[x];
+    const float value = hard ? (amount > level ? 1.0f : 0.0f) : std::min(1.0f, std::max(0.0f, factor * amount));
+    ink[x] = over || id[x] == 0 ? value : 0.0f;
+  }
 }
 
 Image<float> silhouette_plane(const GBuffer& seen, const BlurSettings& settings) {
@@ -89,11 +94,7 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
   border.coverage = {seen.width, seen.height, 0.0f};
   blur_objects(
       seen, settings, [](std::int32_t id) { return id != 0 ? 1.0f : 0.0f; },
-      [&](int y, const float* line) {
-        const std::int32_t* id = &seen.id.at(0, y);
-        float* ink = &border.coverage.at(0, y);
-        for (int x = 0; x < seen.width; ++x) ink[x] = ink_of(settings, line[x], id[x] != 0);
-      });
+      [&](int y, const float* line) { ink_line(settings, line, &seen.id.at(0, y), seen.width, &border.coverage.at(0, y)); });
   if (parameters.choice("colors") == "objects") border.colors = object_colors(input, settings);
   return border;
 }

@@ -25,4 +25,23 @@ const EdgeTopology& Polygons::edges() const {
   return edges_;
 }
 
+std::span<const glm::uvec3> Polygons::corner_triangles() const {
+  std::call_once(triangles_made_, [this] {
+    std::vector<glm::dvec3> corners;
+    std::vector<std::array<std::int32_t, 3>> pieces;
+    std::int32_t first = 0;
+    for (size_t f = 0; f < mesh_.face_count(); ++f) {
+      gather_corners(mesh_, face_corners(mesh_, first, f), corners);
+      triangulate_polygon(corners, pieces);
+      for (const auto& piece : pieces) {
+        const auto a = static_cast<size_t>(piece[0]), b = static_cast<size_t>(piece[1]), c = static_cast<size_t>(piece[2]);
+        if (!zero_area(corners[a], corners[b], corners[c]))
+          corner_triangles_.push_back(glm::uvec3(glm::ivec3(first) + glm::ivec3(piece[0], piece[1], piece[2])));
+      }
+      first += mesh_.face_sizes[f];
+    }
+  });
+  return corner_triangles_;
+}
+
 }  // namespace limn

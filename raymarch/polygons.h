@@ -22,13 +22,16 @@ class Polygons {
   /// Unit, one for each vertex, the same for all vertices at one position (bake_smooth_normals).
   std::span<const glm::vec3> smooth_normals() const;
   const EdgeTopology& edges() const;
+  /// Triangles as numbers of corners (into mesh().corner_vertices), those without area left out.
+  std::span<const glm::uvec3> corner_triangles() const;
 
  private:
   Mesh mesh_;
   NormalKind traced_;
-  mutable std::once_flag corners_made_, smooth_made_, edges_made_;
+  mutable std::once_flag corners_made_, smooth_made_, edges_made_, triangles_made_;
   mutable std::vector<glm::vec3> corner_normals_, smooth_normals_;
   mutable EdgeTopology edges_;
+  mutable std::vector<glm::uvec3> corner_triangles_;
 };
 
 }  // namespace limn

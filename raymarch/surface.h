@@ -48,11 +48,39 @@ struct SurfaceInfo {
 
 class Polygons;  // raymarch/polygons.h
 
-/// How far an offset surface stands off: constant + dot(slope, p) at the point p of render space; world units, above 0 on the surface.
+/// A point of a surface whose curvature is asked for.
+struct SurfacePoint {
+  glm::dvec3 position{0.0};  ///< Render space, as near to the surface as float hits are.
+  glm::dvec3 normal{0.0};    ///< Unit, outwards, as traced.
+  std::int32_t face = -1;    ///< HitBatch's.
+};
+
+/// Where a surface's curvature comes from.
+struct CurvatureSource {
+  std::shared_ptr<const void> state{};
+  /// Curvatures in render space; NaN k1 and k2 where a point has none. Sizes equal. Called once a batch of points of any size, from many
+  /// threads at a time. Null where the representation has none.
+  void (*evaluate)(const void* state, std::span<const SurfacePoint> points, std::span<SurfaceCurvature> curvatures) = nullptr;
+  std::string from{};  ///< What it is taken from, in words; where there is none, why not.
+};
+
+/// How far an offset surface stands off at a point of render space, world units: everywhere the same, or as many pixels at the point.
 struct OffsetWidth {
-  double constant = 0.0;
-  glm::dvec3 slope{0.0};
-  double at(const glm::dvec3& p) const { return constant + glm::dot(slope, p); }
+  double world = 0.0;
+  /// Tangent of the angle that a pixel-width spans on the axis (px / focal_px); 0: none.
+  double per_depth = 0.0;
+  glm::dvec3 eye{0.0}, backward{0.0, 0.0, 1.0};
+
+  double at(const glm::dvec3& p) const {
+    if (per_depth == 0.0) return world;
+    const glm::dvec3 from_eye = p - eye;
+    const double z = -glm::dot(from_eye, backward), distance = glm::length(from_eye);
+    // The tangent plane at a contour point holds the eye; moved by w, it moves in the image by f w / (z |n_xy|), n_xy being the part of its
+    // normal across the axis. Towards and away from the picture's middle |n_xy| is z / distance.
+    return distance > 0.0 ? world + per_depth * z * std::abs(z) / distance : world;
+  }
+  bool zero() const { return world == 0.0 && per_depth == 0.0; }
+  double slope_bound() const { return 3.0 * per_depth; }  ///< Of |grad at|.
 };
 
 /// The surfaces at a distance from one that knows distances. Its trace finds the first place, in either direction, where the distance
@@ -72,6 +100,7 @@ struct Surface {
   SurfaceInfo info{};
   std::shared_ptr<const Polygons> polygons{};  ///< What is traced, where it is made of polygons.
   SurfaceOffset offset{};
+  CurvatureSource curvature{};
 };
 
 /// How to model, whatever the object. What a representation does not use is ignored by it.

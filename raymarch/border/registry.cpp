@@ -8,6 +8,9 @@ std::span<const BorderMethod> border_methods() {
   static const std::vector<BorderMethod> methods = {
       rim_method(),
       fresnel_method(),
+      rim_width_method(),
+      extrude_method(),
+      edge_quads_method(),
       normal4_method(),
       roberts_method(),
       sobel_method(),

@@ -7,6 +7,9 @@ namespace limn {
 
 BorderMethod rim_method();
 BorderMethod fresnel_method();
+BorderMethod rim_width_method();
+BorderMethod extrude_method();
+BorderMethod edge_quads_method();
 BorderMethod normal4_method();
 BorderMethod roberts_method();
 BorderMethod sobel_method();

@@ -6,6 +6,8 @@
 #include <array>
 #include <chrono>
 
+#include "raymarch/curvature.h"
+#include "raymarch/surface/offset.h"
 #include "raymarch/surface/registry.h"
 #include "sdf/error.h"
 
@@ -257,6 +259,11 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   polish_all(evaluator, rays, scratch, hits);
 }
 
+void evaluate_curvatures(const void* opaque, std::span<const SurfacePoint> points, std::span<SurfaceCurvature> curvatures) {
+  FieldEvaluator& evaluator = static_cast<const AnalyticState*>(opaque)->evaluators.local();
+  for (size_t i = 0; i < points.size(); ++i) curvatures[i] = facing(curvature_of_jet(evaluator.jet(points[i].position)), points[i].normal);
+}
+
 std::string unsupported(const SceneObject& object) {
   return std::holds_alternative<Field>(object.source) ? "" : "it comes as a mesh or a volume, not as a formula";
 }
@@ -268,6 +275,8 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   surface.bounds = state->field.traits().bounds;
   surface.state = state;
   surface.trace = trace;
+  surface.curvature = {state, evaluate_curvatures, "Hessian of the field"};
+  surface.offset = field_offset(state->field, settings.max_steps);
   surface.info.kind = "analytic";
   surface.info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return surface;

@@ -1,4 +1,4 @@
-#include "raymarch/surface/level_set_marcher.h"
+#include "raymarch/surface/offset.h"
 #include "raymarch/surface/registry.h"
 #include "sdf/error.h"
 
@@ -18,14 +18,23 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   if (const LevelSetSource* source = std::get_if<LevelSetSource>(&object.source)) {
     check_half_width(source->level_set, gradient, source->file);
     surface = level_set_marcher(source->level_set, object.world_from_object, gradient, render_origin, settings.max_steps);
+    surface.offset = level_set_offset({source->level_set, object.world_from_object, render_origin, settings.max_steps, source->file, {}});
   } else if (const Field* field = std::get_if<Field>(&object.source)) {
     const LevelSetSettings grid{.voxel_size = voxel_size_for(settings, field->traits().bounds),
                                 .half_width_voxels = half_width_for(settings, gradient),
                                 .max_bytes = settings.max_bytes,
                                 .progress = settings.progress};
     // The grid lies in render space, so that its voxels fall the same way wherever the object is.
-    const LevelSet made = level_set_from_field(translate(*field, -render_origin), grid);
+    const Field moved = translate(*field, -render_origin);
+    const LevelSet made = level_set_from_field(moved, grid);
     surface = level_set_marcher(made, Affine{}, gradient, glm::dvec3(0.0), settings.max_steps);
+    const auto widen = [moved, grid](double half_width_voxels) {
+      LevelSetSettings wider = grid;
+      wider.half_width_voxels = half_width_voxels;
+      wider.progress = {};
+      return level_set_from_field(moved, wider);
+    };
+    surface.offset = level_set_offset({made, Affine{}, glm::dvec3(0.0), settings.max_steps, {}, widen});
   } else {
     throw InputError({.file = {}, .field = object.name, .value = {}, .problem = unsupported(object), .expected = {}});
   }

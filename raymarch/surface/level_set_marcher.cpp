@@ -1,7 +1,10 @@
 #include "raymarch/surface/level_set_marcher.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "raymarch/curvature.h"
 #include "sdf/level_set_data.h"
 
 namespace limn {
@@ -18,6 +21,17 @@ struct State {
   glm::dmat3 normal_from_grid;    ///< Grid's world gradients to render-space normals.
   glm::ivec3 lower, upper;        ///< Cells that may hold the surface: lower <= cell < upper, index coordinates.
   int max_steps;
+  OffsetWidth level{};  ///< Taken from every value.
+  double grid_from_render_length = 1.0;
+  Affine render_from_index{};
+
+  /// Taking it at the nodes is exact for a constant, and for pixels good to the second order of a voxel seen from the eye.
+  void subtract_level(const glm::ivec3& cell, std::array<double, 8>& values) const {
+    for (size_t k = 0; k < values.size(); ++k) {
+      const glm::ivec3 node = cell + glm::ivec3(k & 1, (k >> 1) & 1, (k >> 2) & 1);
+      values[k] -= grid_from_render_length * level.at(render_from_index.point(glm::dvec3(node)));
+    }
+  }
 };
 
 /// A ray in index space. `t` keeps its meaning (world units along the render-space ray), so `direction` is not unit.
@@ -172,7 +186,8 @@ class Walk {
   /// A change of sign in [t_, t1]. The side is carried from cell to cell: were it asked for anew at every face, a root that rounding
   /// puts on neither side of the face would be lost.
   bool hit_in_cell(double t1, double& t_hit) {
-    const std::array<double, 8> v = cell_values(accessor_, nanovdb::Coord(cell_.x, cell_.y, cell_.z));
+    std::array<double, 8> v = cell_values(accessor_, nanovdb::Coord(cell_.x, cell_.y, cell_.z));
+    if (!state_.level.zero()) state_.subtract_level(cell_, v);
     bool any_inside = false, any_outside = false;
     for (const double value : v) (value < 0.0 ? any_inside : any_outside) = true;
     if (known_ && !(inside_ ? any_outside : any_inside)) return false;
@@ -242,16 +257,42 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   }
 }
 
+/// From the cubic gradient's Hessian, whatever the gradient of the normals: no other has one worth having.
+void evaluate_curvatures(const void* opaque, std::span<const SurfacePoint> points, std::span<SurfaceCurvature> curvatures) {
+  const State& state = *static_cast<const State*>(opaque);
+  const glm::dmat3& linear = state.grid_world_from_render.linear;
+  std::vector<glm::dvec3> at(points.size());
+  std::vector<FieldJet> jets(points.size());
+  for (size_t i = 0; i < points.size(); ++i) at[i] = state.grid_world_from_render.point(points[i].position);
+  find_gradient("cubic").hessians(state.level_set.data(), at, jets);
+  for (size_t i = 0; i < points.size(); ++i) {
+    jets[i].gradient = state.normal_from_grid * jets[i].gradient;
+    jets[i].hessian = glm::transpose(linear) * jets[i].hessian * linear;
+    curvatures[i] = facing(curvature_of_jet(jets[i]), points[i].normal);
+  }
+}
+
+CurvatureSource curvature_source(const std::shared_ptr<const State>& state) {
+  const double needed = find_gradient("cubic").half_width_voxels, there = state->level_set.info().half_width_voxels;
+  if (there >= needed - 1e-2) return {state, evaluate_curvatures, "Hessian of the cubic spline through the voxels"};
+  return {{},
+          nullptr,
+          fmt::format("the band's half width of {:.2f} voxels is too thin for the cubic spline's Hessian: {:.2f} are needed "
+                      "(--gradient cubic, or --half-width)",
+                      there, needed)};
+}
+
 }  // namespace
 
 Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_object, const GradientDescriptor& gradient,
-                          const glm::dvec3& render_origin, int max_steps) {
+                          const glm::dvec3& render_origin, int max_steps, const MarchedLevel& level) {
   const LevelSetData& data = level_set.data();
   const Affine object_from_world = inverse(world_from_object);
   const Affine object_from_render = {object_from_world.linear, object_from_world.point(render_origin)};
   // One cell around the crossings of the grid's edges: the interpolant changes sign in no cell without such an edge.
-  const Box cells = dilate(transform(data.index_from_world, data.info.bounds), 1.0);
+  const Box cells = dilate(transform(data.index_from_world, data.info.bounds), 1.0 + level.largest_voxels);
 
+  const double length_scale = std::cbrt(std::abs(glm::determinant(world_from_object.linear)));
   auto state = std::make_shared<State>(State{.level_set = level_set,
                                              .gradient = &gradient,
                                              .index_from_render = compose(data.index_from_world, object_from_render),
@@ -259,7 +300,10 @@ Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_ob
                                              .normal_from_grid = glm::transpose(object_from_world.linear),
                                              .lower = glm::ivec3(0),
                                              .upper = glm::ivec3(0),
-                                             .max_steps = max_steps});
+                                             .max_steps = max_steps,
+                                             .level = level.width,
+                                             .grid_from_render_length = 1.0 / length_scale,
+                                             .render_from_index = inverse(compose(data.index_from_world, object_from_render))});
   if (!cells.empty()) {
     state->lower = glm::ivec3(glm::floor(cells.lower));
     state->upper = glm::ivec3(glm::ceil(cells.upper));
@@ -268,11 +312,12 @@ Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_ob
   surface.trace = trace;
   const Box world = transform(world_from_object, transform(data.info.world_from_index, cells));
   surface.bounds = {world.lower - render_origin, world.upper - render_origin};
-  surface.info.voxel_size = data.info.voxel_size * std::cbrt(std::abs(glm::determinant(world_from_object.linear)));
+  surface.info.voxel_size = data.info.voxel_size * length_scale;
   surface.info.voxels = data.info.active_voxels;
   surface.info.bytes = data.info.bytes;
   surface.info.build_ms = data.info.build_ms;
   surface.info.warnings = data.info.warnings;
+  surface.curvature = curvature_source(state);
   surface.state = std::move(state);
   return surface;
 }

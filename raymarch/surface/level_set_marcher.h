@@ -9,11 +9,17 @@
 
 namespace limn {
 
+/// The level that is traced instead of 0.
+struct MarchedLevel {
+  OffsetWidth width{};
+  double largest_voxels = 0.0;  ///< Of the width, wherever the surface is.
+};
+
 /// A surface that traces `level_set`, placed in the world by `world_from_object` and seen from `render_origin` (world). Normals by
 /// `gradient`. Fills bounds and info (kind is left to the caller). The hit is the first change of sign along the ray, in either
-/// direction; f < 0 is inside, f >= 0 outside.
+/// direction; f < 0 is inside, f >= 0 outside. With a `level`: of f minus its width, which the band must hold.
 Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_object, const GradientDescriptor& gradient,
-                          const glm::dvec3& render_origin, int max_steps);
+                          const glm::dvec3& render_origin, int max_steps, const MarchedLevel& level = {});
 
 /// The band's half width for these settings, in voxels: what the gradient needs, or what the user asks for. Throws InputError
 /// (field --half-width) where that is too little.

@@ -4,8 +4,8 @@
 
 #include <chrono>
 
-#include "raymarch/surface/level_set_marcher.h"
 #include "raymarch/surface/object_mesh.h"
+#include "raymarch/surface/offset.h"
 #include "raymarch/surface/registry.h"
 
 namespace limn {
@@ -22,11 +22,19 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   grid.half_width_voxels = half_width_for(settings, gradient);
   grid.max_bytes = settings.max_bytes;
   grid.progress = settings.progress;
-  MeshLevelSet made = level_set_from_mesh(source.triangles, grid);
+  const auto triangles = std::make_shared<const TriangleMesh>(std::move(source.triangles));
+  MeshLevelSet made = level_set_from_mesh(*triangles, grid);
   // The grid lies in render space, so that its voxels fall the same way wherever the object is.
   Surface surface = level_set_marcher(made.level_set, Affine{}, gradient, glm::dvec3(0.0), settings.max_steps);
+  const auto widen = [triangles, grid](double half_width_voxels) {
+    LevelSetSettings wider = grid;
+    wider.half_width_voxels = half_width_voxels;
+    wider.progress = {};
+    return level_set_from_mesh(*triangles, wider).level_set;
+  };
+  surface.offset = level_set_offset({made.level_set, Affine{}, glm::dvec3(0.0), settings.max_steps, {}, widen});
   surface.info.kind = "mesh_level_set";
-  surface.info.triangles = static_cast<std::int64_t>(source.triangles.triangles.size());
+  surface.info.triangles = static_cast<std::int64_t>(triangles->triangles.size());
   for (const std::vector<std::string>* warnings : {&source.warnings, &made.warnings}) {
     surface.info.warnings.insert(surface.info.warnings.end(), warnings->begin(), warnings->end());
   }

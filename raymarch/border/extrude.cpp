@@ -1,0 +1,147 @@
+// Extrude: the object again, behind itself, grown.
+
+#include "raymarch/border/extrude.h"
+
+#include <fmt/core.h>
+
+#include "raymarch/border/edge_visibility.h"
+#include "raymarch/border/hull_raster.h"
+#include "raymarch/border/registry.h"
+
+namespace limn {
+namespace {
+
+ExtrudeSettings read_settings(const Parameters& parameters) {
+  ExtrudeSettings settings;
+  settings.direction_name = parameters.choice("direction");
+  settings.direction = settings.direction_name == "position"              ? ExtrudeDirection::position
+                       : settings.direction_name == "normalized_position" ? ExtrudeDirection::normalized_position
+                       : settings.direction_name == "vertex_normal"       ? ExtrudeDirection::vertex_normal
+                                                                          : ExtrudeDirection::smooth_normal;
+  settings.space = parameters.choice("space") == "clip" ? ExtrudeSpace::clip : ExtrudeSpace::object;
+  settings.mask = parameters.choice("mask") == "back_faces" ? ExtrudeMask::back_faces : ExtrudeMask::stencil;
+  settings.width_px = parameters.number("width");
+  settings.object_width = parameters.number("object_width");
+  return settings;
+}
+
+/// Of a mesh about its own origin, of a field (which has no object space left) about the middle of its bounds.
+Affine render_from_object(const BorderInput& input, size_t object) {
+  Affine result;
+  if (object < input.scene.objects.size()) {
+    const SceneObject& source = input.scene.objects[object];
+    result = source.world_from_object;
+    if (std::holds_alternative<Field>(source.source)) result.translation = bounds(source).center();
+  }
+  result.translation -= input.model.render_origin;
+  return result;
+}
+
+void ink_hull(const BorderInput& input, size_t object, const ExtrudedCorners& corners, const ExtrudeSettings& settings, double near,
+              Image<float>& coverage) {
+  const GBuffer& seen = input.gbuffer;
+  const bool back = settings.mask == ExtrudeMask::back_faces;
+  std::vector<HullTriangle> triangles;
+  const std::span<const glm::uvec3> numbers = input.model.surfaces[object].polygons->corner_triangles();
+  triangles.reserve(numbers.size());
+  for (const glm::uvec3& t : numbers) triangles.push_back({corners.grown[t.x], corners.grown[t.y], corners.grown[t.z]});
+  Camera camera = input.camera;
+  camera.width_px = seen.width;
+  camera.height_px = seen.height;
+  const Image<double> depth = rasterize_hull(triangles, back ? HullFaces::back : HullFaces::all, camera, near, seen.sample);
+  const auto id = static_cast<std::int32_t>(object) + 1;
+  for (size_t i = 0; i < depth.size(); ++i) {
+    if (!std::isfinite(depth.pixels[i]) || (!back && seen.id.pixels[i] == id)) continue;
+    if (static_cast<float>(depth.pixels[i]) <= seen.depth.pixels[i]) coverage.pixels[i] = 1.0f;
+  }
+}
+
+Border draw(const BorderInput& input, const Parameters& parameters) {
+  const ExtrudeSettings settings = read_settings(parameters);
+  Border border;
+  border.color = glm::vec3(parameters.vector3("color"));
+  border.coverage = {input.gbuffer.width, input.gbuffer.height, 0.0f};
+  const EdgeVisibility view(input);
+  HullNotes notes;
+  size_t without = 0;
+  for (size_t object = 0; object < input.model.surfaces.size(); ++object) {
+    const Surface& surface = input.model.surfaces[object];
+    if (surface.polygons) {
+      const ExtrudedCorners corners = extrude_corners(*surface.polygons, render_from_object(input, object), settings, view.camera());
+      ink_hull(input, object, corners, settings, view.near(), border.coverage);
+      notes.add(input, object, corners, settings);
+    } else if (surface.offset.make) {
+      ink_offset(input, object, settings, border.coverage);
+    } else {
+      ++without;
+    }
+  }
+  if (without > 0)
+    border.notes.push_back(
+        fmt::format("extrude: {} of {} objects have neither polygons nor distances", without, input.model.surfaces.size()));
+  const OutlineGaps gaps = outline_gaps(input.gbuffer, border.coverage);
+  if (gaps.gaps > 0) {
+    const bool hull = !input.model.surfaces.empty() && input.model.surfaces[0].polygons;
+    border.notes.push_back(fmt::format("extrude {}: {} gap{}, longest {} px, {:.1f} % of the outline",
+                                       hull ? "by " + settings.direction_name : "by exact offset", gaps.gaps, gaps.gaps == 1 ? "" : "s",
+                                       gaps.longest_px,
+                                       100.0 * static_cast<double>(gaps.gap_pixels) / static_cast<double>(gaps.outline_pixels)));
+  }
+  notes.write(settings, border.notes);
+  return border;
+}
+
+std::string unsupported(const SceneModel& model, const Scene&) {
+  for (const Surface& surface : model.surfaces) {
+    if (surface.polygons || surface.offset.make) return {};
+  }
+  return "it grows polygons or distances, and no object is modelled by either";
+}
+
+}  // namespace
+
+BorderMethod extrude_method() {
+  constexpr auto number = ParameterKind::number, choice = ParameterKind::choice;
+  return {
+      {"extrude", "the object again, grown and behind itself: an inverted hull of a mesh, the exact offset f = w of a field or level set",
+       "Rossignac and van Emmerik 1992; Raskar and Cohen 1999"},
+      {"Z", "id", "mesh or distances"},
+      {{"width", number, "px", {3.0}, 0.0, 256.0, "in clip space", {}},
+       {"object_width",
+        number,
+        "world",
+        {0.02},
+        0.0,
+        1e9,
+        "in object space, where it grows with the object and shrinks with distance; by position: a share of the distance to the origin",
+        {}},
+       {"space",
+        choice,
+        "",
+        {0.0},
+        0.0,
+        1.0,
+        "clip: as many pixels everywhere; object: as much of the object's own units",
+        {"clip", "object"}},
+       {"direction",
+        choice,
+        "",
+        {3.0},
+        0.0,
+        3.0,
+        "of meshes: away from the origin, along the normals, or along normals baked smooth",
+        {"position", "normalized_position", "vertex_normal", "smooth_normal"}},
+       {"mask",
+        choice,
+        "",
+        {0.0},
+        0.0,
+        1.0,
+        "draw back faces only (inner contours too), or everything beside the object",
+        {"back_faces", "stencil"}},
+       {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}},
+      unsupported,
+      draw};
+}
+
+}  // namespace limn

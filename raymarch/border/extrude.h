@@ -1,0 +1,60 @@
+#pragma once
+// The parts of the method `extrude`.
+
+#include "raymarch/border.h"
+#include "raymarch/polygons.h"
+
+namespace limn {
+
+enum class ExtrudeDirection { position, normalized_position, vertex_normal, smooth_normal };
+enum class ExtrudeSpace { clip, object };
+enum class ExtrudeMask { back_faces, stencil };
+
+struct ExtrudeSettings {
+  ExtrudeDirection direction = ExtrudeDirection::smooth_normal;
+  ExtrudeSpace space = ExtrudeSpace::clip;
+  ExtrudeMask mask = ExtrudeMask::back_faces;
+  double width_px = 3.0, object_width = 0.02;
+  std::string direction_name{};
+};
+
+/// A mesh grown: one point for each corner, in camera axes (x right, y up, z the depth).
+struct ExtrudedCorners {
+  std::vector<glm::dvec3> rest{}, grown{};
+};
+/// `render_from_object` is about the object's origin; `camera` is in render space.
+ExtrudedCorners extrude_corners(const Polygons& polygons, const Affine& render_from_object, const ExtrudeSettings& settings,
+                                const Camera& camera);
+
+/// Ink of the offset surface of object `object` (index from 0), laid over `coverage`. Throws InputError where it does not reach that far.
+void ink_offset(const BorderInput& input, size_t object, const ExtrudeSettings& settings, Image<float>& coverage);
+
+/// Pixels of objects beside what lies farther back, and runs (8-connected) of those without ink (> 1/2) on any such neighbour.
+struct OutlineGaps {
+  std::int64_t outline_pixels = 0, gap_pixels = 0;
+  std::int64_t gaps = 0, longest_px = 0;
+};
+OutlineGaps outline_gaps(const GBuffer& gbuffer, const Image<float>& coverage);
+
+/// Widths of the drawn line along the visible contour edges of meshes, in pixels across the edge, negative inwards.
+struct DrawnWidths {
+  double low = 0.0, median = 0.0, high = 0.0;  ///< 5 %, 50 % and 95 % of the outline's length.
+  double inward_share = 0.0;
+};
+
+/// Gathers, for all objects, what can be said of the hull where the contour is.
+class HullNotes {
+ public:
+  void add(const BorderInput& input, size_t object, const ExtrudedCorners& corners, const ExtrudeSettings& settings);
+  DrawnWidths widths() const;
+  void write(const ExtrudeSettings& settings, std::vector<std::string>& notes) const;
+
+ private:
+  struct Sample {
+    double width_px, length_px;
+  };
+  std::vector<Sample> samples_{};
+  std::int64_t corners_ = 0, wrong_corners_ = 0, inverted_objects_ = 0;
+};
+
+}  // namespace limn

@@ -1,0 +1,191 @@
+// Where an extruded outline fails, in numbers taken from the picture and from the hull.
+
+#include <fmt/core.h>
+
+#include <numeric>
+
+#include "raymarch/border/edge_visibility.h"
+#include "raymarch/border/extrude.h"
+
+namespace limn {
+namespace {
+
+/// (u, v) lies outwards of a pixel of object `id` at depth `depth`: it shows nothing, or something else farther back.
+bool outwards(const GBuffer& seen, int u, int v, std::int32_t id, float depth) {
+  return seen.id.inside(u, v) && seen.id.at(u, v) != id && (seen.id.at(u, v) == 0 || seen.depth.at(u, v) > depth);
+}
+
+enum class OutlinePixel : std::uint8_t { none, inked, gap };
+
+OutlinePixel outline_pixel(const GBuffer& seen, const Image<float>& coverage, int x, int y) {
+  const std::int32_t id = seen.id.at(x, y);
+  if (id == 0) return OutlinePixel::none;
+  const float depth = seen.depth.at(x, y);
+  if (!outwards(seen, x - 1, y, id, depth) && !outwards(seen, x + 1, y, id, depth) && !outwards(seen, x, y - 1, id, depth) &&
+      !outwards(seen, x, y + 1, id, depth))
+    return OutlinePixel::none;
+  for (int v = y - 1; v <= y + 1; ++v) {
+    for (int u = x - 1; u <= x + 1; ++u) {
+      if (outwards(seen, u, v, id, depth) && coverage.at(u, v) > 0.5f) return OutlinePixel::inked;
+    }
+  }
+  return OutlinePixel::gap;
+}
+
+/// Pixels of the 8-connected run from (x, y), which it removes.
+std::int64_t take_run(Image<OutlinePixel>& kind, int x, int y) {
+  std::vector<glm::ivec2> stack{{x, y}};
+  kind.at(x, y) = OutlinePixel::none;
+  std::int64_t pixels = 0;
+  while (!stack.empty()) {
+    const glm::ivec2 p = stack.back();
+    stack.pop_back();
+    ++pixels;
+    for (int v = p.y - 1; v <= p.y + 1; ++v) {
+      for (int u = p.x - 1; u <= p.x + 1; ++u) {
+        if (!kind.inside(u, v) || kind.at(u, v) != OutlinePixel::gap) continue;
+        kind.at(u, v) = OutlinePixel::none;
+        stack.emplace_back(u, v);
+      }
+    }
+  }
+  return pixels;
+}
+
+/// Six times the volume of the mesh, about its first corner.
+double signed_volume(const Polygons& polygons) {
+  const Mesh& mesh = polygons.mesh();
+  const auto at = [&mesh](std::uint32_t corner) { return mesh.positions[static_cast<size_t>(mesh.corner_vertices[corner])]; };
+  const glm::dvec3 origin = at(0);
+  double sum = 0.0;
+  for (const glm::uvec3& t : polygons.corner_triangles()) sum += glm::dot(at(t.x) - origin, glm::cross(at(t.y) - origin, at(t.z) - origin));
+  return sum;
+}
+
+bool closed(const EdgeTopology& topology) {
+  return std::all_of(topology.edges.begin(), topology.edges.end(), [](const TopologyEdge& edge) { return edge.face_b >= 0; });
+}
+
+glm::dvec2 image_of(const Camera& camera, const glm::dvec3& in_camera) {
+  const double scale = pixels_per_unit_at(camera, in_camera.z);
+  return {0.5 * camera.width_px + scale * in_camera.x, 0.5 * camera.height_px - scale * in_camera.y};
+}
+
+/// The corner of a face at a vertex, or at another one in the same place.
+std::int32_t corner_at(const Polygons& polygons, std::int32_t face, std::int32_t vertex) {
+  const Mesh& mesh = polygons.mesh();
+  const std::vector<std::int32_t>& first = polygons.edges().first_corners;
+  const auto place = [&mesh](std::int32_t v) { return mesh.positions[static_cast<size_t>(v)]; };
+  for (std::int32_t c = first[static_cast<size_t>(face)]; c < first[static_cast<size_t>(face) + 1]; ++c) {
+    if (place(mesh.corner_vertices[static_cast<size_t>(c)]) == place(vertex)) return c;
+  }
+  return first[static_cast<size_t>(face)];
+}
+
+/// Across the image of the edge from a to b, away from the face that is seen from the front.
+glm::dvec2 outward_normal(const Polygons& polygons, std::int32_t front, const glm::dvec2& a, const glm::dvec2& b, const Camera& camera,
+                          const std::vector<glm::dvec3>& rest) {
+  const std::vector<std::int32_t>& first = polygons.edges().first_corners;
+  glm::dvec2 middle(0.0);
+  const std::int32_t begin = first[static_cast<size_t>(front)], end = first[static_cast<size_t>(front) + 1];
+  for (std::int32_t c = begin; c < end; ++c) middle += image_of(camera, rest[static_cast<size_t>(c)]) / static_cast<double>(end - begin);
+  const glm::dvec2 along = glm::normalize(b - a), normal(-along.y, along.x);
+  return glm::dot(middle - a, normal) > 0.0 ? -normal : normal;
+}
+
+}  // namespace
+
+OutlineGaps outline_gaps(const GBuffer& gbuffer, const Image<float>& coverage) {
+  OutlineGaps result;
+  Image<OutlinePixel> kind(gbuffer.width, gbuffer.height, OutlinePixel::none);
+  for (int y = 0; y < gbuffer.height; ++y) {
+    for (int x = 0; x < gbuffer.width; ++x) {
+      kind.at(x, y) = outline_pixel(gbuffer, coverage, x, y);
+      result.outline_pixels += kind.at(x, y) != OutlinePixel::none;
+      result.gap_pixels += kind.at(x, y) == OutlinePixel::gap;
+    }
+  }
+  for (int y = 0; y < gbuffer.height; ++y) {
+    for (int x = 0; x < gbuffer.width; ++x) {
+      if (kind.at(x, y) != OutlinePixel::gap) continue;
+      ++result.gaps;
+      result.longest_px = std::max(result.longest_px, take_run(kind, x, y));
+    }
+  }
+  return result;
+}
+
+void HullNotes::add(const BorderInput& input, size_t object, const ExtrudedCorners& corners, const ExtrudeSettings& settings) {
+  const Polygons& polygons = *input.model.surfaces[object].polygons;
+  const Mesh& mesh = polygons.mesh();
+  const EdgeTopology& topology = polygons.edges();
+  inverted_objects_ += closed(topology) && signed_volume(polygons) < 0.0;
+  if (settings.direction == ExtrudeDirection::vertex_normal) {
+    const std::span<const glm::vec3> normals = polygons.corner_normals();
+    for (size_t f = 0; f < mesh.face_count(); ++f) {
+      for (std::int32_t c = topology.first_corners[f]; c < topology.first_corners[f + 1]; ++c)
+        wrong_corners_ += glm::dot(glm::dvec3(normals[static_cast<size_t>(c)]), topology.face_normals[f]) < 0.0;
+    }
+    corners_ += static_cast<std::int64_t>(normals.size());
+  }
+  const EdgeVisibility view(input);
+  for (const TopologyEdge& edge : topology.edges) {
+    if (edge.face_b < 0 || edge.opposed) continue;
+    const glm::dvec3 &a = mesh.positions[static_cast<size_t>(edge.vertex_a)], &b = mesh.positions[static_cast<size_t>(edge.vertex_b)];
+    const glm::dvec3 to_eye = view_vector(view.camera(), 0.5 * (a + b));
+    const bool a_front = glm::dot(topology.face_normals[static_cast<size_t>(edge.face_a)], to_eye) > 0.0;
+    const bool b_front = glm::dot(topology.face_normals[static_cast<size_t>(edge.face_b)], to_eye) > 0.0;
+    if (a_front == b_front) continue;
+    ImageEdge image;
+    image.object = static_cast<std::int32_t>(object);
+    image.face_a = edge.face_a;
+    image.face_b = edge.face_b;
+    if (!view.place(a, b, 0.0, image) || !view.visible(image, 0.5) || image.a == image.b) continue;
+    const std::int32_t front = a_front ? edge.face_a : edge.face_b, back = a_front ? edge.face_b : edge.face_a;
+    const glm::dvec2 out = outward_normal(polygons, front, image.a, image.b, view.camera(), corners.rest);
+    for (const std::int32_t vertex : {edge.vertex_a, edge.vertex_b}) {
+      double width = -std::numeric_limits<double>::infinity();
+      // The back face alone is drawn, or both are and the wider one shows.
+      for (const std::int32_t face : {back, settings.mask == ExtrudeMask::stencil ? front : back}) {
+        const auto c = static_cast<size_t>(corner_at(polygons, face, vertex));
+        if (!(corners.rest[c].z > view.near() && corners.grown[c].z > view.near())) continue;
+        width = std::max(width, glm::dot(image_of(view.camera(), corners.grown[c]) - image_of(view.camera(), corners.rest[c]), out));
+      }
+      if (std::isfinite(width)) samples_.push_back({width, 0.5 * glm::length(image.b - image.a)});
+    }
+  }
+}
+
+DrawnWidths HullNotes::widths() const {
+  std::vector<Sample> sorted = samples_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Sample& a, const Sample& b) { return a.width_px < b.width_px; });
+  const double total = std::accumulate(sorted.begin(), sorted.end(), 0.0, [](double sum, const Sample& s) { return sum + s.length_px; });
+  DrawnWidths result;
+  double below = 0.0;
+  for (const Sample& sample : sorted) {
+    const double before = below / total;
+    below += sample.length_px;
+    if (before <= 0.05) result.low = sample.width_px;
+    if (before <= 0.5) result.median = sample.width_px;
+    if (before <= 0.95) result.high = sample.width_px;
+    if (sample.width_px < 0.0) result.inward_share = below / total;
+  }
+  return result;
+}
+
+void HullNotes::write(const ExtrudeSettings& settings, std::vector<std::string>& notes) const {
+  const std::string name = "extrude by " + settings.direction_name;
+  if (inverted_objects_ > 0)
+    notes.push_back(fmt::format("{}: {} object{} with faces wound inwards: the outline turns inwards", name, inverted_objects_,
+                                inverted_objects_ == 1 ? "" : "s"));
+  if (wrong_corners_ > 0)
+    notes.push_back(fmt::format("{}: {} of {} corner normals point against their faces", name, wrong_corners_, corners_));
+  if (samples_.empty()) return;
+  const DrawnWidths drawn = widths();
+  if (drawn.inward_share > 0.0) notes.push_back(fmt::format("{}: inwards on {:.1f} % of the outline", name, 100.0 * drawn.inward_share));
+  if (drawn.high - drawn.low > std::max(0.25, 0.05 * std::abs(drawn.median)))
+    notes.push_back(fmt::format("{}: {:.2f} to {:.2f} px wide along the outline (5 % to 95 % of it), median {:.2f} px", name, drawn.low,
+                                drawn.high, drawn.median));
+}
+
+}  // namespace limn

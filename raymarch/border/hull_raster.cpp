@@ -1,0 +1,147 @@
+#include "raymarch/border/hull_raster.h"
+
+#include <array>
+#include <cmath>
+
+#include "raymarch/border/picture_rows.h"
+
+namespace limn {
+namespace {
+
+constexpr double kSubPixels = 1024.0;
+// With image points below 2^20 px, differences take 31 bits and edge functions 63.
+constexpr double kGuard_px = 1 << 19;
+
+/// A triangle on the picture: whole 1/1024 px, and 1/Z (perspective) or Z (parallel) as an affine function of them.
+struct FlatTriangle {
+  std::array<glm::i64vec2, 3> p;  ///< Turned so that the interior is on the left with y up: area > 0.
+  std::array<double, 3> q;
+  std::int64_t area = 0;
+  int top = 0, bottom = 0;  ///< Lines of pixels.
+};
+
+struct Frame {
+  const Camera& camera;
+  glm::dvec2 sample;
+  HullFaces faces;
+  double near;
+  bool perspective() const { return camera.projection == Projection::perspective; }
+  double scale() const { return perspective() ? camera.focal_px : camera.pixels_per_unit; }
+};
+
+using Polygon = std::vector<glm::dvec3>;
+
+/// Keeps the side of the polygon where `inside` is not negative (Sutherland & Hodgman 1974). Every crossing is computed from the kept end,
+/// so that neighbours agree on it to the last bit.
+template <class Inside>
+void clip(const Inside& inside, Polygon& polygon, Polygon& scratch) {
+  scratch.clear();
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double at_a = inside(a), at_b = inside(b);
+    if (at_a >= 0.0) scratch.push_back(a);
+    if (at_a >= 0.0 && at_b < 0.0) scratch.push_back(a + at_a / (at_a - at_b) * (b - a));
+    if (at_a < 0.0 && at_b >= 0.0) scratch.push_back(b + at_b / (at_b - at_a) * (a - b));
+  }
+  polygon.swap(scratch);
+}
+
+void clip_to_view(const Frame& frame, Polygon& polygon, Polygon& scratch) {
+  const bool perspective = frame.perspective();
+  const double near = perspective ? frame.near : 0.0;
+  clip([near](const glm::dvec3& p) { return p.z - near; }, polygon, scratch);
+  const double reach = kGuard_px / frame.scale();
+  for (int axis = 0; axis < 2; ++axis) {
+    for (const double side : {-1.0, 1.0})
+      clip([=](const glm::dvec3& p) { return reach * (perspective ? p.z : 1.0) - side * p[axis]; }, polygon, scratch);
+  }
+}
+
+/// Image point relative to the sample of pixel (0, 0), y up, in whole 1/1024 px.
+glm::i64vec2 snapped(const Frame& frame, const glm::dvec3& p) {
+  const double scale = frame.perspective() ? frame.scale() / p.z : frame.scale();
+  const glm::dvec2 at(0.5 * frame.camera.width_px + scale * p.x - frame.sample.x,
+                      0.5 * frame.camera.height_px - scale * p.y - frame.sample.y);
+  return {std::llround(at.x * kSubPixels), -std::llround(at.y * kSubPixels)};
+}
+
+std::int64_t cross(const glm::i64vec2& a, const glm::i64vec2& b) { return a.x * b.y - a.y * b.x; }
+
+void add_flat(const Frame& frame, std::array<glm::dvec3, 3> corners, std::vector<FlatTriangle>& out) {
+  FlatTriangle flat;
+  for (size_t i = 0; i < 3; ++i) {
+    flat.p[i] = snapped(frame, corners[i]);
+    flat.q[i] = frame.perspective() ? 1.0 / corners[i].z : corners[i].z;
+  }
+  flat.area = cross(flat.p[1] - flat.p[0], flat.p[2] - flat.p[0]);
+  if (flat.area == 0 || (flat.area > 0 && frame.faces == HullFaces::back)) return;
+  if (flat.area < 0) {
+    std::swap(flat.p[1], flat.p[2]);
+    std::swap(flat.q[1], flat.q[2]);
+    flat.area = -flat.area;
+  }
+  const auto [low, high] = std::minmax({flat.p[0].y, flat.p[1].y, flat.p[2].y});
+  const double rows = frame.camera.height_px;
+  flat.top = static_cast<int>(std::clamp(std::ceil(-static_cast<double>(high) / kSubPixels), 0.0, rows));
+  flat.bottom = static_cast<int>(std::clamp(std::floor(-static_cast<double>(low) / kSubPixels), -1.0, rows - 1.0));
+  if (flat.top <= flat.bottom) out.push_back(flat);
+}
+
+/// Of two triangles that share the edge from a to b exactly one owns the points on it.
+bool owns_border(const glm::i64vec2& a, const glm::i64vec2& b) { return b.y < a.y || (b.y == a.y && b.x < a.x); }
+
+void fill_row(const FlatTriangle& flat, int y, bool perspective, Image<double>& depth) {
+  const std::int64_t step = static_cast<std::int64_t>(kSubPixels);
+  const auto [left, right] = std::minmax({flat.p[0].x, flat.p[1].x, flat.p[2].x});
+  const double columns = depth.width;
+  const int x0 = static_cast<int>(std::clamp(std::ceil(static_cast<double>(left) / kSubPixels), 0.0, columns));
+  const int x1 = static_cast<int>(std::clamp(std::floor(static_cast<double>(right) / kSubPixels), -1.0, columns - 1.0));
+  std::array<std::int64_t, 3> edge{}, slope{};
+  const glm::i64vec2 start(x0 * step, -y * step);
+  for (size_t i = 0; i < 3; ++i) {
+    const glm::i64vec2 &a = flat.p[(i + 1) % 3], &b = flat.p[(i + 2) % 3];
+    // Points on an edge that the triangle does not own are put outside by one.
+    edge[i] = cross(b - a, start - a) - (owns_border(a, b) ? 0 : 1);
+    slope[i] = -(b.y - a.y) * step;
+  }
+  const double inverse = 1.0 / static_cast<double>(flat.area);
+  for (int x = x0; x <= x1; ++x) {
+    if ((edge[0] | edge[1] | edge[2]) >= 0) {
+      const double u = static_cast<double>(edge[1]) * inverse, v = static_cast<double>(edge[2]) * inverse;
+      const double q = flat.q[0] + u * (flat.q[1] - flat.q[0]) + v * (flat.q[2] - flat.q[0]);
+      double& z = depth.at(x, y);
+      z = std::min(z, perspective ? 1.0 / q : q);
+    }
+    for (size_t i = 0; i < 3; ++i) edge[i] += slope[i];
+  }
+}
+
+}  // namespace
+
+Image<double> rasterize_hull(std::span<const HullTriangle> triangles, HullFaces faces, const Camera& camera, double near,
+                             const glm::dvec2& sample) {
+  const Frame frame{camera, sample, faces, near};
+  Image<double> depth(camera.width_px, camera.height_px, std::numeric_limits<double>::infinity());
+  std::vector<FlatTriangle> flat;
+  flat.reserve(triangles.size());
+  Polygon polygon, scratch;
+  for (const HullTriangle& triangle : triangles) {
+    polygon = {triangle.a, triangle.b, triangle.c};
+    clip_to_view(frame, polygon, scratch);
+    for (size_t i = 2; i < polygon.size(); ++i) add_flat(frame, {polygon[0], polygon[i - 1], polygon[i]}, flat);
+  }
+  const size_t bands = static_cast<size_t>((camera.height_px + kBandRows - 1) / kBandRows);
+  std::vector<std::vector<std::uint32_t>> of_band(bands);
+  for (size_t i = 0; i < flat.size(); ++i) {
+    for (int band = flat[i].top / kBandRows; band <= flat[i].bottom / kBandRows; ++band)
+      of_band[static_cast<size_t>(band)].push_back(static_cast<std::uint32_t>(i));
+  }
+  for_each_band(camera.height_px, [&](int y0, int y1) {
+    for (const std::uint32_t i : of_band[static_cast<size_t>(y0 / kBandRows)]) {
+      for (int y = std::max(flat[i].top, y0); y <= std::min(flat[i].bottom, y1 - 1); ++y) fill_row(flat[i], y, frame.perspective(), depth);
+    }
+  });
+  return depth;
+}
+
+}  // namespace limn

@@ -1,0 +1,27 @@
+#pragma once
+// Triangles on a picture with depth: a small exact rasteriser.
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "sdf/camera.h"
+#include "sdf/image.h"
+
+namespace limn {
+
+/// Corners in camera axes: x right, y up, z = depth Z along the view (positive in front).
+struct HullTriangle {
+  glm::dvec3 a{0.0}, b{0.0}, c{0.0};
+};
+
+enum class HullFaces { all, back };
+
+/// Depth Z of the nearest triangle at the point `sample` of each pixel; infinite where there is none. Image points are rounded to
+/// 1/1024 px and edges are then decided in whole numbers by the top-left rule, so that triangles with a common edge leave no pixel between
+/// them and share none. Clipped at depth `near` in perspective and at 0 in parallel projection. Front faces are those whose corners run
+/// counter-clockwise. The same bytes for any number of threads.
+Image<double> rasterize_hull(std::span<const HullTriangle> triangles, HullFaces faces, const Camera& camera, double near,
+                             const glm::dvec2& sample);
+
+}  // namespace limn

@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "raymarch/polygons.h"
+#include "raymarch/surface/mesh_curvature.h"
 #include "raymarch/surface/object_mesh.h"
 #include "raymarch/surface/registry.h"
 #include "sdf/error.h"
@@ -27,6 +28,8 @@ struct MeshState {
   TriangleMesh mesh;  ///< Render space.
   Owned<RTCDevice, EmbreeDevice> device;
   Owned<RTCScene, EmbreeScene> scene;
+  std::shared_ptr<const Polygons> polygons;
+  std::optional<MeshCurvature> curvature;  ///< Refers to the two above.
 };
 
 /// A ray in the axes of the watertight test (Woop, Benthin, Wald 2013): z along the largest component of its direction, x and y
@@ -194,7 +197,16 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   surface.info.triangles = static_cast<std::int64_t>(state->mesh.triangles.size());
   surface.info.bytes = state->mesh.bytes();
   surface.info.warnings = std::move(source.warnings);
-  surface.polygons = std::make_shared<const Polygons>(std::move(source.polygons), source.normals);
+  state->polygons = std::make_shared<const Polygons>(std::move(source.polygons), source.normals);
+  surface.polygons = state->polygons;
+  state->curvature.emplace(state->mesh, state->polygons->mesh(), std::move(source.smooth));
+  surface.curvature.from = state->curvature->from();
+  if (state->curvature->available()) {
+    surface.curvature.state = {state, &*state->curvature};
+    surface.curvature.evaluate = [](const void* opaque, std::span<const SurfacePoint> points, std::span<SurfaceCurvature> curvatures) {
+      static_cast<const MeshCurvature*>(opaque)->evaluate(points, curvatures);
+    };
+  }
   surface.info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   surface.state = std::move(state);
   return surface;

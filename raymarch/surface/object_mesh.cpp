@@ -56,7 +56,10 @@ ObjectMesh from_field(const SceneObject& object, const SurfaceSettings& settings
   how.level = level_of(object, settings);
   how.normals = settings.normals.value_or(NormalKind::limit);
   how.max_bytes = settings.max_bytes;
-  return triangles_with(tessellate(translate(std::get<Field>(object.source), -render_origin), how), how.normals);
+  const Field field = translate(std::get<Field>(object.source), -render_origin);
+  ObjectMesh result = triangles_with(tessellate(field, how), how.normals);
+  result.smooth = field;
+  return result;
 }
 
 ObjectMesh from_cage(const SceneObject& object, const MeshSource& source, const SurfaceSettings& settings, Scheme scheme) {
@@ -65,7 +68,9 @@ ObjectMesh from_cage(const SceneObject& object, const MeshSource& source, const 
   how.level = level_of(object, settings);
   how.normals = settings.normals.value_or(NormalKind::limit);
   how.max_bytes = settings.max_bytes;
-  return triangles_with(refine(source.mesh, how, source.file), how.normals);
+  ObjectMesh result = triangles_with(refine(source.mesh, how, source.file), how.normals);
+  result.smooth = CageSource{source.mesh, scheme, how.level, {}, false, source.file};
+  return result;
 }
 
 /// A mesh as it is: the file's own normals unless others are asked for.
@@ -116,6 +121,10 @@ ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& setting
   render_from_mesh.translation -= render_origin;
   move_mesh(render_from_mesh, result.triangles);
   move_polygons(render_from_mesh, result.polygons);
+  if (CageSource* cage = std::get_if<CageSource>(&result.smooth)) {
+    cage->render_from_cage = render_from_mesh;
+    cage->mirrored = glm::determinant(render_from_mesh.linear) < 0.0;
+  }
   return result;
 }
 

@@ -1,15 +1,30 @@
 #pragma once
 // An object as triangles, whatever it was: the first step of `mesh` and `mesh_level_set`.
 
+#include <variant>
+
 #include "raymarch/surface.h"
 #include "subdiv/mesh.h"
 
 namespace limn {
 
+/// The cage that a mesh was refined from.
+struct CageSource {
+  Mesh cage{};
+  Scheme scheme = Scheme::catmark;
+  int level = 0;
+  Affine render_from_cage{};
+  bool mirrored = false;  ///< By render_from_cage: the refined faces were turned round.
+  std::string file{};     ///< For messages.
+};
+/// The smooth surface that a mesh stands for: a field, a limit surface, or none.
+using SmoothSource = std::variant<std::monostate, Field, CageSource>;
+
 struct ObjectMesh {
   TriangleMesh triangles;  ///< Render space: world minus `render_origin`, in double.
   Mesh polygons{};         ///< What the triangles came from, in render space too; corner normals only where those are traced.
   NormalKind normals = NormalKind::vertex;  ///< Of the triangles.
+  SmoothSource smooth{};
   std::vector<std::string> warnings;
 };
 

@@ -22,6 +22,10 @@ struct Offset {
 };
 /// Farther than any reach, even after all steps have been added to it.
 constexpr Offset kUnknown{32767, 32767};
+bool known(Offset offset) { return offset.x != kUnknown.x || offset.y != kUnknown.y; }
+
+constexpr int kWideStep = 16;
+constexpr std::array<glm::ivec2, 8> kDirections{{{-1, 0}, {1, 0}, {-1, -1}, {0, -1}, {1, -1}, {-1, 1}, {0, 1}, {1, 1}}};
 
 /// A picture of offsets whose lines go on with unknown ones on both sides, so that no step has to look where the picture ends.
 class OffsetLines {
@@ -94,8 +98,14 @@ Offset first_crossing(const Silhouette& silhouette, int x, int y) {
   return best;
 }
 
+/// A pixel that knows a crossing.
+struct Carrier {
+  int x, y;
+  Offset offset;
+};
+
 /// Most of a line is far from any crossing; eight pixels at a time are passed over.
-void first_crossings(const Silhouette& silhouette, int y, Offset* out) {
+void first_crossings(const Silhouette& silhouette, int y, Offset* out, std::vector<Carrier>& carriers) {
   const int width = silhouette.inside.width;
   const std::int8_t* right = &silhouette.to_right.at(0, y);
   const std::int8_t* down = &silhouette.downwards.at(0, y);
@@ -111,6 +121,7 @@ void first_crossings(const Silhouette& silhouette, int y, Offset* out) {
       x += 8;
     } else {
       out[x] = first_crossing(silhouette, x, y);
+      if (known(out[x])) carriers.push_back({x, y, out[x]});
       ++x;
     }
   }
@@ -123,12 +134,11 @@ std::int16_t add_saturated(std::int16_t a, int b) { return static_cast<std::int1
 /// One line of one pass: the pixel's own offset and those of its eight neighbours at distance `step`, moved by it; the shortest stays.
 /// Ties go to the first: the own, then the neighbours in order.
 void flood_line(const std::array<const Offset*, 3>& lines, int width, int step, Offset* out) {
-  constexpr std::array<glm::ivec2, 8> directions{{{-1, 0}, {1, 0}, {-1, -1}, {0, -1}, {1, -1}, {-1, 1}, {0, 1}, {1, 1}}};
   std::array<const Offset*, 8> from;
   std::array<glm::ivec2, 8> move;
   for (size_t k = 0; k < 8; ++k) {
-    from[k] = lines[static_cast<size_t>(directions[k].y + 1)] + directions[k].x * step;
-    move[k] = directions[k] * step * kSubPixels;
+    from[k] = lines[static_cast<size_t>(kDirections[k].y + 1)] + kDirections[k].x * step;
+    move[k] = kDirections[k] * step * kSubPixels;
   }
   int x = 0;
 #if LIMN_SIMD && defined(__SSE2__)
@@ -163,6 +173,59 @@ void flood_line(const std::array<const Offset*, 3>& lines, int width, int step, 
   }
 }
 
+/// A pass the other way round, from the pixels that know a crossing to their neighbours, in place: before the first of the wide steps
+/// there are few of them. Wide outlines thus cost little more than narrow ones.
+void scatter(int step, int width, int height, OffsetLines& offsets, std::vector<Carrier>& carriers) {
+  std::vector<Carrier> reached;
+  for (const Carrier& carrier : carriers) {
+    for (const glm::ivec2& direction : kDirections) {
+      const int x = carrier.x + direction.x * step, y = carrier.y + direction.y * step;
+      if (x < 0 || x >= width || y < 0 || y >= height) continue;
+      Offset& own = offsets.line(y)[x];
+      const Offset offer{add_saturated(carrier.offset.x, -direction.x * step * kSubPixels),
+                         add_saturated(carrier.offset.y, -direction.y * step * kSubPixels)};
+      if (square(offer) >= square(own)) continue;
+      if (!known(own)) reached.push_back({x, y, offer});
+      own = offer;
+    }
+  }
+  carriers.insert(carriers.end(), reached.begin(), reached.end());
+  for (Carrier& carrier : carriers) carrier.offset = offsets.line(carrier.y)[carrier.x];
+}
+
+/// A pass in which every pixel looks at its neighbours.
+void gather(int step, int width, int height, OffsetLines& from, OffsetLines& to) {
+  const std::vector<Offset> beyond(static_cast<size_t>(width + 2 * step), kUnknown);
+  const auto line = [&](int y) -> const Offset* { return y >= 0 && y < height ? from.line(y) : beyond.data() + step; };
+  const auto flood = [&](int y) { flood_line({line(y - step), line(y), line(y + step)}, width, step, to.line(y)); };
+  if (step < 8) {
+    for_each_band(height, [&](int y0, int y1) {
+      for (int y = y0; y < y1; ++y) flood(y);
+    });
+  } else {
+    // Lines `step` apart share two of the three that they read: taken one after the other, each is fetched once.
+    tbb::parallel_for(0, step, [&](int first) {
+      for (int y = first; y < height; y += step) flood(y);
+    });
+  }
+}
+
+/// Every pixel's first offset; returns the pixels that have one, in order.
+std::vector<Carrier> start(const Silhouette& silhouette, OffsetLines& from, OffsetLines& to) {
+  const int height = silhouette.inside.height;
+  std::vector<std::vector<Carrier>> of_bands(static_cast<size_t>(height / kBandRows + 1));
+  for_each_band(height, [&](int y0, int y1) {
+    for (int y = y0; y < y1; ++y) {
+      from.clear_margins(y);
+      to.clear_margins(y);
+      first_crossings(silhouette, y, from.line(y), of_bands[static_cast<size_t>(y0 / kBandRows)]);
+    }
+  });
+  std::vector<Carrier> carriers;
+  for (const auto& band : of_bands) carriers.insert(carriers.end(), band.begin(), band.end());
+  return carriers;
+}
+
 std::vector<int> steps_for(int reach_px, int extra_passes) {
   int step = 1;
   while (2 * step - 1 < reach_px + 1) step *= 2;
@@ -181,27 +244,15 @@ Image<std::int32_t> jump_flood_squares(const Silhouette& silhouette, int reach_p
   if (silhouette.crossings == 0) return squares;
   const std::vector<int> steps = steps_for(reach_px, extra_passes);
   OffsetLines from(width, height, steps.front()), to(width, height, steps.front());
-  for_each_band(height, [&](int y0, int y1) {
-    for (int y = y0; y < y1; ++y) {
-      from.clear_margins(y);
-      to.clear_margins(y);
-      first_crossings(silhouette, y, from.line(y));
-    }
-  });
-  const std::vector<Offset> beyond(static_cast<size_t>(width + 2 * steps.front()), kUnknown);
+  std::vector<Carrier> carriers = start(silhouette, from, to);
+  bool few = true;
   for (const int step : steps) {
-    const auto line = [&](int y) -> const Offset* { return y >= 0 && y < height ? from.line(y) : beyond.data() + steps.front(); };
-    const auto flood = [&](int y) { flood_line({line(y - step), line(y), line(y + step)}, width, step, to.line(y)); };
-    if (step < 8) {
-      for_each_band(height, [&](int y0, int y1) {
-        for (int y = y0; y < y1; ++y) flood(y);
-      });
-    } else {
-      // Lines `step` apart share two of the three that they read: taken one after the other, each is fetched once.
-      tbb::parallel_for(0, step, [&](int first) {
-        for (int y = first; y < height; y += step) flood(y);
-      });
+    few = few && step >= kWideStep && carriers.size() < squares.size() / 128;
+    if (few) {
+      scatter(step, width, height, from, carriers);
+      continue;
     }
+    gather(step, width, height, from, to);
     std::swap(from, to);
   }
   const std::int32_t largest = reach_px * reach_px * kSubPixels * kSubPixels;

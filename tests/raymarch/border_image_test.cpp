@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
-#include <tbb/task_arena.h>
 
 #include "raymarch/border/blur_passes.h"
+#include "raymarch/threads.h"
 #include "tests/raymarch/image_buffers.h"
 
 namespace limn {
@@ -163,7 +163,7 @@ TEST(BorderImage, BytesAreTheSameForOneThreadAndForMany) {
   for (const std::string& method : test::image_methods()) {
     for (const auto& given : settings_of(find_border_method(method))) {
       const auto with_threads = [&](int threads) {
-        tbb::task_arena arena(threads);
+        ThreadArena arena(threads);
         return arena.execute([&] {
           return find_border_method(method).draw({seen, camera, model, scene}, test::parameters_of(method, given));
         });

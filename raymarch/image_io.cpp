@@ -91,23 +91,36 @@ OIIO::TypeDesc type_of_ids(const Image<std::int32_t>& ids) {
   return *least >= 0 ? OIIO::TypeDesc::UINT32 : OIIO::TypeDesc::FLOAT;
 }
 
+const auto kItself = [](auto value) { return value; };
+auto component(int axis) {
+  return [axis](const auto& v) { return v[axis]; };
+}
+
+void add_layer(std::vector<Channel>& channels, const NamedLayer& layer) {
+  const auto half = OIIO::TypeDesc::HALF;
+  const char* const rgba[] = {".R", ".G", ".B", ".A"};
+  for (int i = 0; i < 4; ++i) add_channel(channels, layer.name + rgba[i], half, layer.picture->composite, component(i));
+  add_channel(channels, layer.name + ".Y", half, layer.picture->border, kItself);
+  if (!layer.picture->border_status.pixels.empty())
+    add_channel(channels, layer.name + ".status", half, layer.picture->border_status, kItself);
+}
+
 std::vector<Channel> channels_of(const Picture& picture) {
   const auto half = OIIO::TypeDesc::HALF, full = OIIO::TypeDesc::FLOAT;
   const GBuffer& seen = picture.gbuffer;
   std::vector<Channel> channels;
-  const auto component = [](int axis) { return [axis](const auto& v) { return v[axis]; }; };
-  const auto itself = [](auto value) { return value; };
   const char* const rgba[] = {"R", "G", "B", "A"};
   const char* const xyz[] = {"X", "Y", "Z"};
   for (int i = 0; i < 4; ++i) add_channel(channels, rgba[i], half, picture.composite, component(i));
-  add_channel(channels, "Z", full, seen.depth, itself);
+  add_channel(channels, "Z", full, seen.depth, kItself);
   for (int i = 0; i < 3; ++i) add_channel(channels, std::string("P.") + xyz[i], full, seen.position, component(i));
   for (int i = 0; i < 3; ++i) add_channel(channels, std::string("N.") + xyz[i], full, seen.normal, component(i));
-  add_channel(channels, "NdotV.Y", full, seen.n_dot_v, itself);
-  add_channel(channels, "border.Y", half, picture.border, itself);
-  add_channel(channels, "id.Y", type_of_ids(seen.id), seen.id, itself);
-  add_channel(channels, "material.Y", type_of_ids(seen.material), seen.material, itself);
-  add_channel(channels, "status.Y", half, seen.status, itself);
+  add_channel(channels, "NdotV.Y", full, seen.n_dot_v, kItself);
+  add_channel(channels, "border.Y", half, picture.border, kItself);
+  add_channel(channels, "id.Y", type_of_ids(seen.id), seen.id, kItself);
+  add_channel(channels, "material.Y", type_of_ids(seen.material), seen.material, kItself);
+  add_channel(channels, "status.Y", half, seen.status, kItself);
+  if (!picture.border_status.pixels.empty()) add_channel(channels, "border_status.Y", half, picture.border_status, kItself);
   return channels;
 }
 
@@ -172,11 +185,13 @@ std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
 
 }  // namespace
 
-void write_exr(const Picture& picture, const Camera& camera, const std::string& call, const std::filesystem::path& file) {
+void write_exr(const Picture& picture, const Camera& camera, const std::string& call, const std::filesystem::path& file,
+               std::span<const NamedLayer> layers) {
   if (extension_of(file) != ".exr") {
     throw InputError({file.string(), {}, extension_of(file), "unknown extension for all layers", "known: .exr"});
   }
-  const std::vector<Channel> channels = channels_of(picture);
+  std::vector<Channel> channels = channels_of(picture);
+  for (const NamedLayer& layer : layers) add_layer(channels, layer);
   const std::vector<char> pixels = native_pixels(channels, picture.gbuffer.id.size());
   save(file, exr_spec(channels, picture, camera, call), OIIO::TypeDesc::UNKNOWN, pixels.data());
 }

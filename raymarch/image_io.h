@@ -9,10 +9,17 @@
 
 namespace limn {
 
+/// A picture that shares another one's G-buffer, as a layer of that one's file: <name>.R .G .B .A and <name>.Y, its ink.
+struct NamedLayer {
+  std::string name{};
+  const Picture* picture = nullptr;
+};
+
 /// Every layer of a picture as one EXR: R G B A, Z, P, N, NdotV, border, id, material, status (float32 for Z, P, N, NdotV; half elsewhere,
-/// 32-bit unsigned for ids above 2048). The header carries the program's version, `call` (limn:call), worldToCamera, worldToNDC, and no
-/// time stamp.
-void write_exr(const Picture& picture, const Camera& camera, const std::string& call, const std::filesystem::path& file);
+/// 32-bit unsigned for ids above 2048), border_status where a method has one; then the `layers`. The header carries the program's version,
+/// `call` (limn:call), worldToCamera, worldToNDC, and no time stamp.
+void write_exr(const Picture& picture, const Camera& camera, const std::string& call, const std::filesystem::path& file,
+               std::span<const NamedLayer> layers = {});
 
 /// The composite as .png, .tif or .jpg: un-premultiplied where the format has alpha, laid over white where it has none; sRGB, 8 bit.
 void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesystem::path& file);

@@ -12,9 +12,9 @@ struct MetricInput {
 };
 
 struct MetricValue {
-  std::string name{};    ///< "normal_error_mean"
+  std::string name{};  ///< "normal_error_mean"
   double value = 0.0;  ///< NaN where there is nothing to measure.
-  std::string unit{};    ///< "px", "deg", ""
+  std::string unit{};  ///< "px", "deg", ""
 };
 
 struct Metric {
@@ -22,6 +22,7 @@ struct Metric {
   std::vector<std::string> values{};  ///< Names of the values it yields, with units: "normal_error_mean [deg]".
   bool lower_is_better = true;
   std::vector<MetricValue> (*measure)(const MetricInput& input);
+  bool of_border = false;  ///< It reads the ink; else the G-buffer alone, and is the same for every method.
 };
 
 std::span<const Metric> metrics();

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -15,13 +16,6 @@ using Clock = std::chrono::steady_clock;
 
 double ms_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
 
-/// The R2 sequence (Roberts 2018), whose generator is the plastic number; starts at the pixel's centre.
-glm::dvec2 r2_offset(int index) {
-  constexpr double plastic = 1.32471795724474602596;
-  const double x = 0.5 + index / plastic, y = 0.5 + index / (plastic * plastic);
-  return {x - std::floor(x), y - std::floor(y)};
-}
-
 void check_methods(const Scene& scene, const SceneModel& model, const PictureSettings& settings) {
   if (settings.samples < 1 || settings.samples > 1024) {
     throw InputError({{}, "--samples", std::to_string(settings.samples), "out of range", "1 to 1024"});
@@ -33,42 +27,10 @@ void check_methods(const Scene& scene, const SceneModel& model, const PictureSet
   }
 }
 
-/// One sample of every pixel.
-struct Layer {
-  Image<float> ink;
-  Image<glm::vec4> composite;
-  std::vector<std::string> notes;
-};
-
-Layer draw_layer(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
-                 const GBuffer& gbuffer) {
-  Layer layer{{gbuffer.width, gbuffer.height, 0.0f}, shade_headlight(gbuffer, model), {}};
-  for (const MethodCall& call : settings.methods) {
-    Border border = call.method->draw({gbuffer, camera, model, scene}, call.parameters);
-    LIMN_CHECK(border.coverage.size() == layer.ink.size());
-    lay_ink(layer.composite, border);
-    for (size_t i = 0; i < layer.ink.size(); ++i) {
-      layer.ink.pixels[i] = 1.0f - (1.0f - layer.ink.pixels[i]) * (1.0f - border.coverage.pixels[i]);
-    }
-    layer.notes.insert(layer.notes.end(), border.notes.begin(), border.notes.end());
-  }
-  return layer;
-}
-
-void add(const Layer& layer, Picture& sum) {
-  for (size_t i = 0; i < layer.ink.size(); ++i) {
-    sum.border.pixels[i] += layer.ink.pixels[i];
-    sum.composite.pixels[i] += layer.composite.pixels[i];
-  }
-}
-
-void finish(const PictureSettings& settings, Picture& picture) {
-  const float share = 1.0f / static_cast<float>(settings.samples);
-  for (float& ink : picture.border.pixels) ink *= share;
-  for (glm::vec4& color : picture.composite.pixels) {
-    color *= share;
-    if (settings.background) color += (1.0f - color.a) * glm::vec4(*settings.background, 1.0f);
-  }
+void add_status(const Border& border, Image<std::uint8_t>& status) {
+  if (border.status.pixels.empty()) return;
+  if (status.pixels.empty()) status = Image<std::uint8_t>(border.status.width, border.status.height, 0);
+  for (size_t i = 0; i < status.size(); ++i) status.pixels[i] = std::max(status.pixels[i], border.status.pixels[i]);
 }
 
 }  // namespace
@@ -105,6 +67,48 @@ void lay_ink(Image<glm::vec4>& picture, const Border& border) {
   }
 }
 
+// The R2 sequence (Roberts 2018), whose generator is the plastic number; starts at the pixel's centre.
+glm::dvec2 sample_offset(int sample) {
+  constexpr double plastic = 1.32471795724474602596;
+  const double x = 0.5 + sample / plastic, y = 0.5 + sample / (plastic * plastic);
+  return {x - std::floor(x), y - std::floor(y)};
+}
+
+void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture) {
+  const auto start = Clock::now();
+  const bool first = picture.border.pixels.empty();
+  Image<float> ink(input.gbuffer.width, input.gbuffer.height, 0.0f);
+  Image<glm::vec4> composite = shade_headlight(input.gbuffer, input.model);
+  for (const MethodCall& call : methods) {
+    const Border border = call.method->draw(input, call.parameters);
+    LIMN_CHECK(border.coverage.size() == ink.size());
+    lay_ink(composite, border);
+    for (size_t i = 0; i < ink.size(); ++i) ink.pixels[i] = 1.0f - (1.0f - ink.pixels[i]) * (1.0f - border.coverage.pixels[i]);
+    if (!first) continue;
+    add_status(border, picture.border_status);
+    picture.notes.insert(picture.notes.end(), border.notes.begin(), border.notes.end());
+  }
+  if (first) {
+    picture.border = std::move(ink);
+    picture.composite = std::move(composite);
+  } else {
+    for (size_t i = 0; i < ink.size(); ++i) {
+      picture.border.pixels[i] += ink.pixels[i];
+      picture.composite.pixels[i] += composite.pixels[i];
+    }
+  }
+  picture.border_ms += ms_since(start);
+}
+
+void finish_samples(const PictureSettings& settings, Picture& picture) {
+  const float share = 1.0f / static_cast<float>(settings.samples);
+  for (float& ink : picture.border.pixels) ink *= share;
+  for (glm::vec4& color : picture.composite.pixels) {
+    color *= share;
+    if (settings.background) color += (1.0f - color.a) * glm::vec4(*settings.background, 1.0f);
+  }
+}
+
 Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
                      const ExecutionSettings& how) {
   check_methods(scene, model, settings);
@@ -115,22 +119,13 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
     if (how.progress) {
       part.progress = [&how, sample, &settings](double done) { how.progress((sample + done) / settings.samples); };
     }
-    auto start = Clock::now();
-    GBuffer gbuffer = render_gbuffer(model, camera, part, r2_offset(sample));
+    const auto start = Clock::now();
+    GBuffer gbuffer = render_gbuffer(model, camera, part, sample_offset(sample));
     picture.trace_ms += ms_since(start);
-    start = Clock::now();
-    Layer layer = arena.execute([&] { return draw_layer(scene, model, camera, settings, gbuffer); });
-    if (sample == 0) {
-      picture.border = std::move(layer.ink);
-      picture.composite = std::move(layer.composite);
-      picture.notes = std::move(layer.notes);
-      picture.gbuffer = std::move(gbuffer);
-    } else {
-      add(layer, picture);
-    }
-    picture.border_ms += ms_since(start);
+    arena.execute([&] { add_sample({gbuffer, camera, model, scene}, settings.methods, picture); });
+    if (sample == 0) picture.gbuffer = std::move(gbuffer);
   }
-  finish(settings, picture);
+  finish_samples(settings, picture);
   return picture;
 }
 

@@ -6,10 +6,11 @@
 namespace limn {
 
 struct Picture {
-  GBuffer gbuffer{};                 ///< Of the pixel centres.
-  Image<float> border{};             ///< Ink coverage in [0, 1]: mean over the samples; all methods together.
-  Image<glm::vec4> composite{};      ///< Linear, premultiplied RGBA.
-  std::vector<std::string> notes{};  ///< Of the methods.
+  GBuffer gbuffer{};                    ///< Of the pixel centres.
+  Image<float> border{};                ///< Ink coverage in [0, 1]: mean over the samples; all methods together.
+  Image<std::uint8_t> border_status{};  ///< Border::status of the methods at the pixel centres, the largest; empty where none has one.
+  Image<glm::vec4> composite{};         ///< Linear, premultiplied RGBA.
+  std::vector<std::string> notes{};     ///< Of the methods.
   double trace_ms = 0.0, border_ms = 0.0;
 };
 
@@ -20,13 +21,21 @@ struct MethodCall {
 
 struct PictureSettings {
   std::vector<MethodCall> methods{};      ///< Inks in order, the last on top.
-  int samples = 1;                      ///< Per pixel, 1..1024: 1 is the centre; more follow the R2 sequence (Roberts 2018).
+  int samples = 1;                        ///< Per pixel, 1..1024: 1 is the centre; more follow the R2 sequence (Roberts 2018).
   std::optional<glm::vec3> background{};  ///< Linear; unset: transparent.
 };
 
 /// Throws InputError where a method cannot run on the model.
 Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
                      const ExecutionSettings& how);
+
+/// For several pictures from rays traced once: where in its pixel the ray of a sample goes, the centre for sample 0.
+glm::dvec2 sample_offset(int sample);
+/// Adds what the methods draw from one sample's G-buffer to the sums in `picture` (its own G-buffer stays as it is).
+/// Throws InputError where a method finds that it cannot run on the model.
+void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture);
+/// Sums of `settings.samples` samples into means, over the background.
+void finish_samples(const PictureSettings& settings, Picture& picture);
 
 /// The object's colour under a light at the eye: color * (0.25 + 0.75 N.V), alpha 1 where something is hit.
 Image<glm::vec4> shade_headlight(const GBuffer& gbuffer, const SceneModel& model);

@@ -27,7 +27,8 @@ Metric overlap_metric() {
       {"overlap", "intersection over union of the inks (of partial coverage: least over largest); 1 is the same border", "Jaccard 1912"},
       {"overlap"},
       false,
-      measure};
+      measure,
+      true};
 }
 
 }  // namespace limn

@@ -28,7 +28,8 @@ Metric pixels_differ_metric() {
   return {{"pixels_differ", "pixels whose ink differs visibly (by 1/510); area of ink that is missing, and of ink that is false", "limn"},
           {"pixels_differ [px]", "pixels_missing [px]", "pixels_false [px]"},
           true,
-          measure};
+          measure,
+          true};
 }
 
 }  // namespace limn

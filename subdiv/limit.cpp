@@ -3,6 +3,7 @@
 #include <opensubdiv/far/topologyLevel.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "sdf/error.h"
 #include "subdiv/opensubdiv_cage.h"
@@ -18,6 +19,7 @@ struct LimitSurfaceData {
   std::vector<Bfr::Surface<double>> surfaces;
   std::vector<std::vector<double>> patch_points;
   std::vector<int> face_sizes;
+  Scheme scheme = Scheme::catmark;
 };
 
 namespace {
@@ -47,11 +49,27 @@ bool simple_neighbourhood(const Far::TopologyLevel& level, int face) {
   return true;
 }
 
+/// OpenSubdiv 3.5 gives second derivatives of the wrong sign in the triangular patches that lie upside down in their face (it scales them
+/// by the cube of what it scales first derivatives by, which is negative there). The change of the first derivatives tells.
+void mend_sign(const Bfr::Surface<double>& surface, const double* patch_points, double u, double v, LimitPoint& point) {
+  constexpr double kStep = 1e-3;
+  double step_u = kStep * (1.0 / 3.0 - u), step_v = kStep * (1.0 / 3.0 - v);
+  if (std::abs(step_u) + std::abs(step_v) < 0.01 * kStep) step_u = 0.1 * kStep;
+  const double uv[2] = {u + step_u, v + step_v};
+  LimitPoint near;
+  surface.Evaluate(uv, patch_points, 3, &near.position.x, &near.du.x, &near.dv.x);
+  const double agreement = glm::dot(near.du - point.du, step_u * point.duu + step_v * point.duv) +
+                           glm::dot(near.dv - point.dv, step_u * point.duv + step_v * point.dvv);
+  if (agreement >= 0.0) return;
+  point.duu = -point.duu, point.duv = -point.duv, point.dvv = -point.dvv;
+}
+
 }  // namespace
 
 LimitSurface::LimitSurface(const Mesh& cage, Scheme scheme, const std::string& file) {
   const CleanCage clean = clean_cage(cage, scheme, file);
   auto data = std::make_shared<LimitSurfaceData>();
+  data->scheme = scheme;
   data->refiner = make_refiner(clean.mesh, scheme, file);
   Bfr::SurfaceFactory::Options options;
   options.SetApproxLevelSmooth(kSmoothLevels).SetApproxLevelSharp(kSharpLevels);
@@ -96,6 +114,7 @@ bool LimitSurface::evaluate(int face, int sub_face, double u, double v, LimitPoi
   }
   surface.Evaluate(uv, data_->patch_points[static_cast<size_t>(face)].data(), 3, &out.position.x, &out.du.x, &out.dv.x, &out.duu.x,
                    &out.duv.x, &out.dvv.x);
+  if (data_->scheme == Scheme::loop) mend_sign(surface, data_->patch_points[static_cast<size_t>(face)].data(), uv[0], uv[1], out);
   out.du *= scale, out.dv *= scale;
   out.duu *= scale * scale, out.duv *= scale * scale, out.dvv *= scale * scale;
   return true;

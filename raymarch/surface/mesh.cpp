@@ -199,7 +199,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   surface.info.warnings = std::move(source.warnings);
   state->polygons = std::make_shared<const Polygons>(std::move(source.polygons), source.normals);
   surface.polygons = state->polygons;
-  state->curvature.emplace(state->mesh, state->polygons->mesh(), std::move(source.smooth));
+  state->curvature.emplace(state->mesh, state->polygons->mesh(), source.normals, std::move(source.smooth));
   surface.curvature.from = state->curvature->from();
   if (state->curvature->available()) {
     surface.curvature.state = {state, &*state->curvature};

@@ -141,11 +141,13 @@ struct MeshCurvature::Made {
   }
 };
 
-MeshCurvature::MeshCurvature(const TriangleMesh& triangles, const Mesh& polygons, SmoothSource source)
-    : triangles_(triangles), polygons_(polygons), source_(std::move(source)) {}
+MeshCurvature::MeshCurvature(const TriangleMesh& triangles, const Mesh& polygons, NormalKind normals, SmoothSource source)
+    : triangles_(triangles), polygons_(polygons), normals_(normals), source_(std::move(source)) {}
 MeshCurvature::~MeshCurvature() = default;
 
-bool MeshCurvature::available() const { return !std::holds_alternative<std::monostate>(source_) || !triangles_.corner_normals.empty(); }
+bool MeshCurvature::available() const {
+  return !std::holds_alternative<std::monostate>(source_) || (normals_ != NormalKind::flat && !triangles_.corner_normals.empty());
+}
 
 std::string MeshCurvature::from() const {
   if (std::holds_alternative<Field>(source_)) return "Hessian of the field that was tessellated";

@@ -13,8 +13,8 @@ namespace limn {
 /// Made when first asked for, then kept; thread-safe. Refers to the mesh and the polygons it was made for.
 class MeshCurvature {
  public:
-  /// `polygons` are those that `triangles` came from.
-  MeshCurvature(const TriangleMesh& triangles, const Mesh& polygons, SmoothSource source);
+  /// `polygons` are those that `triangles` came from, traced with `normals`.
+  MeshCurvature(const TriangleMesh& triangles, const Mesh& polygons, NormalKind normals, SmoothSource source);
   ~MeshCurvature();
 
   /// As CurvatureSource::evaluate.
@@ -27,6 +27,7 @@ class MeshCurvature {
   struct Made;
   const TriangleMesh& triangles_;
   const Mesh& polygons_;
+  NormalKind normals_;
   SmoothSource source_;
   mutable std::once_flag once_;
   mutable std::unique_ptr<const Made> made_;

@@ -163,5 +163,19 @@ TEST(Limit, LoopSurfaceHasTriangularDomains) {
   }
 }
 
+/// Middle triangles of refined triangles lie upside down, where OpenSubdiv 3.5 turns the sign of second derivatives.
+TEST(Limit, LoopSecondDerivativesAreTheChangeOfFirstOnes) {
+  const LimitSurface surface(test::octahedron(), Scheme::loop);
+  const double h = 1e-5;
+  for (const glm::dvec2 uv : {glm::dvec2(0.31, 0.32), glm::dvec2(0.2, 0.21), glm::dvec2(0.3, 0.1), glm::dvec2(0.46, 0.43)}) {
+    LimitPoint at, u, v;
+    ASSERT_TRUE(surface.evaluate(0, 0, uv.x, uv.y, at));
+    surface.evaluate(0, 0, uv.x + h, uv.y, u), surface.evaluate(0, 0, uv.x, uv.y + h, v);
+    EXPECT_LT(glm::distance((u.du - at.du) / h, at.duu), 1e-3);
+    EXPECT_LT(glm::distance((v.du - at.du) / h, at.duv), 1e-3);
+    EXPECT_LT(glm::distance((v.dv - at.dv) / h, at.dvv), 1e-3);
+  }
+}
+
 }  // namespace
 }  // namespace limn

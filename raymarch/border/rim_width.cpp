@@ -46,6 +46,18 @@ struct Pixel {
   std::uint8_t status = fine;
 };
 
+/// False where the pixel just beyond the guessed contour shows the same sheet. At a crease the normals turn within a pixel, and the circle
+/// that they make has a contour that the surface has not.
+bool ends_there(const BorderInput& input, int x, int y, const ContourGuess& guess) {
+  const double beyond = guess.distance_px + 1.5;
+  const int nx = static_cast<int>(std::lround(x + beyond * guess.outward.x)),
+            ny = static_cast<int>(std::lround(y - beyond * guess.outward.y));
+  const Image<std::int32_t>& id = input.gbuffer.id;
+  if (!id.inside(nx, ny)) return true;
+  const size_t here = id.index(x, y), there = id.index(nx, ny);
+  return id.pixels[there] != id.pixels[here] || !same_sheet(input, here, there, static_cast<int>(std::ceil(beyond)));
+}
+
 Pixel measure(const BorderInput& input, const Image<double>& curvature, const Settings& settings, int x, int y) {
   const SeenPoint seen = seen_at(input, x, y);
   if (seen.n_dot_v < 1e-6) return {0.0, fine};
@@ -56,7 +68,10 @@ Pixel measure(const BorderInput& input, const Image<double>& curvature, const Se
   }
   if (kr * kFlatRadius_px <= seen.scale) return {std::numeric_limits<double>::infinity(), not_convex};
   const ContourGuess guess = circle_contour(input.camera, seen, kr);
-  if (kr * settings.width_px >= seen.scale) return {guess.distance_px, wider_than_radius};
+  if (kr * settings.width_px >= seen.scale) {
+    const bool reached = guess.distance_px <= settings.reach() && ends_there(input, x, y, guess);
+    return {reached ? guess.distance_px : std::numeric_limits<double>::infinity(), wider_than_radius};
+  }
   if (guess.distance_px > 2.0 * settings.reach()) return {guess.distance_px, fine};
   return {corrected(input, curvature, settings, x, y, seen, guess), fine};
 }
@@ -76,7 +91,7 @@ void add_notes(const BorderInput& input, const Settings& settings, const std::ar
     };
     add(counts[not_convex], "where the radial curvature is not above 0 (no border there)");
     add(counts[wider_than_radius],
-        fmt::format("where {:.6g} px are more than the radius of curvature (border as wide as that)", settings.width_px));
+        fmt::format("where {:.6g} px are more than the radius of curvature (no border wider than that)", settings.width_px));
     add(counts[no_source], "without a curvature (estimated from the screen instead)");
     notes.push_back(text);
   }

@@ -204,8 +204,7 @@ TEST(RimWidth, CircleIsExactOnSpheresInBothProjections) {
     const glm::dvec3 middle = project(camera, glm::dvec3(0.0));
     Errors errors;
     for (int k = 0; k < 200; ++k) {
-      // Along lines through the sphere's image the nearest contour point of a perspective image is that of the tangent plane only on its
-      // two axes: towards the principal point and across.
+      // A sphere's perspective image is an ellipse; along its long axis the contour nearest to a pixel is the one straight outwards.
       const glm::dvec2 off = glm::normalize(glm::dvec2(middle.x, middle.y) - glm::dvec2(310.0));
       const glm::dvec2 along = k % 2 ? off : -off;
       const auto inside_at = [&](double t) { return discriminant(camera, glm::dvec3(radius), glm::dvec2(middle) + t * along) > 0.0; };

@@ -46,8 +46,9 @@ struct Pixel {
   std::uint8_t status = fine;
 };
 
-/// False where the pixel just beyond the guessed contour shows the same sheet. At a crease the normals turn within a pixel, and the circle
-/// that they make has a contour that the surface has not.
+/// False where the pixel just beyond the guessed contour shows the same sheet, turned away a little more. At a crease the normals turn
+/// within a pixel or two, and the circle that they make has a contour that the surface has not. A sheet behind the contour most often faces
+/// the eye more.
 bool ends_there(const BorderInput& input, int x, int y, const ContourGuess& guess) {
   const double beyond = guess.distance_px + 1.5;
   const int nx = static_cast<int>(std::lround(x + beyond * guess.outward.x)),
@@ -55,7 +56,9 @@ bool ends_there(const BorderInput& input, int x, int y, const ContourGuess& gues
   const Image<std::int32_t>& id = input.gbuffer.id;
   if (!id.inside(nx, ny)) return true;
   const size_t here = id.index(x, y), there = id.index(nx, ny);
-  return id.pixels[there] != id.pixels[here] || !same_sheet(input, here, there, static_cast<int>(std::ceil(beyond)));
+  if (id.pixels[there] != id.pixels[here]) return true;
+  const float ratio = input.gbuffer.n_dot_v.pixels[there] / input.gbuffer.n_dot_v.pixels[here];
+  return ratio < 0.5f || ratio > 1.1f || !same_sheet(input, here, there, static_cast<int>(std::ceil(beyond)));
 }
 
 Pixel measure(const BorderInput& input, const Image<double>& curvature, const Settings& settings, int x, int y) {
@@ -68,12 +71,11 @@ Pixel measure(const BorderInput& input, const Image<double>& curvature, const Se
   }
   if (kr * kFlatRadius_px <= seen.scale) return {std::numeric_limits<double>::infinity(), not_convex};
   const ContourGuess guess = circle_contour(input.camera, seen, kr);
-  if (kr * settings.width_px >= seen.scale) {
-    const bool reached = guess.distance_px <= settings.reach() && ends_there(input, x, y, guess);
-    return {reached ? guess.distance_px : std::numeric_limits<double>::infinity(), wider_than_radius};
-  }
-  if (guess.distance_px > 2.0 * settings.reach()) return {guess.distance_px, fine};
-  return {corrected(input, curvature, settings, x, y, seen, guess), fine};
+  Pixel pixel{guess.distance_px, kr * settings.width_px >= seen.scale ? wider_than_radius : fine};
+  if (guess.distance_px > 2.0 * settings.reach()) return pixel;
+  if (pixel.status == fine) pixel.distance_px = corrected(input, curvature, settings, x, y, seen, guess);
+  if (pixel.distance_px <= settings.reach() && !ends_there(input, x, y, guess)) pixel.distance_px = std::numeric_limits<double>::infinity();
+  return pixel;
 }
 
 /// What is undefined, in one sentence; and for every object without curvature why it has none.

@@ -228,9 +228,9 @@ TEST(RimWidth, OfASphereIsARingOfItsWidth) {
   for (const std::string estimator : {"screen", "curvature"}) {
     for (const std::string kind : {"analytic", "level_set", "mesh"}) {
       SurfaceSettings surface = surface_kind(kind);
-      surface.voxels = 96;
+      surface.voxels = 64;
       surface.gradient = "cubic";
-      surface.level = 4;
+      surface.level = 3;
       const glm::dvec3 direction = glm::normalize(glm::dvec3(1.9, 2.3, 2.9));
       const Drawn picture =
           drawn(make_shape("sphere", {{"radius", {0.8}}}), surface, camera_towards(direction, {}, 4.0, Projection::perspective));
@@ -339,6 +339,27 @@ TEST(RimWidth, WithoutACurvatureSourceUsesTheScreenAndSaysWhy) {
   ASSERT_EQ(border.notes.size(), 2u);
   EXPECT_NE(border.notes[1].find("too thin"), std::string::npos) << border.notes[1];
   EXPECT_TRUE(screen.notes.empty()) << screen.notes[0];
+}
+
+/// A crease that both sides show is not a contour, however sharply the normals turn there; the silhouette beside it is.
+TEST(RimWidth, DrawsNoBorderAtACreaseBetweenFacesThatShow) {
+  // The top edge of a cylinder, seen from above: its caps' rim lies between two visible sides in front, and on the silhouette behind.
+  CameraSettings settings = view(400, 400);
+  settings.eye = glm::dvec3(0, 3, 5);
+  settings.target = glm::dvec3(0.0);
+  const Field field = make_shape("cylinder", {{"radius", {0.8}}, {"half_height", {0.6}}});
+  const Drawn picture = drawn(field, surface_kind("analytic"), framing(scene_of({object_of(field)}), settings));
+  const glm::dvec3 front = project(picture.camera, {0.0, 0.6, 0.8}), side = project(picture.camera, {0.8, 0.0, 0.0});
+  for (const std::string estimator : {"screen", "curvature"}) {
+    const Border border = picture.border("rim_width", asked(estimator, 3.0, 0.0));
+    int at_crease = 0, at_side = 0;
+    for (int k = -8; k <= 8; ++k) {
+      at_crease += border.coverage.at(static_cast<int>(front.x), static_cast<int>(front.y) + k) > 0.0f;
+      at_side += border.coverage.at(static_cast<int>(side.x) + k, static_cast<int>(side.y)) > 0.0f;
+    }
+    EXPECT_EQ(at_crease, 0) << estimator;
+    EXPECT_GE(at_side, 2) << estimator;
+  }
 }
 
 TEST(RimWidth, IsFiniteAndTheSameForAnyThreadsOnEveryShapeAndSurface) {

@@ -27,23 +27,22 @@ bool known(Offset offset) { return offset.x != kUnknown.x || offset.y != kUnknow
 constexpr int kWideStep = 16;
 constexpr std::array<glm::ivec2, 8> kDirections{{{-1, 0}, {1, 0}, {-1, -1}, {0, -1}, {1, -1}, {-1, 1}, {0, 1}, {1, 1}}};
 
-/// A picture of offsets whose lines go on with unknown ones on both sides, so that no step has to look where the picture ends.
+/// A picture of offsets whose lines go on with unknown ones on both sides, so that no step has to look where the picture ends. In memory
+/// of somebody else.
 class OffsetLines {
  public:
-  OffsetLines(int width, int height, int margin)
-      : width_(static_cast<size_t>(width)),
-        margin_(static_cast<size_t>(margin)),
-        stride_(width_ + 2 * margin_),
-        offsets_(new Offset[stride_ * static_cast<size_t>(height)]) {}
-  Offset* line(int y) { return offsets_.get() + static_cast<size_t>(y) * stride_ + margin_; }
+  static size_t count(int width, int height, int margin) { return static_cast<size_t>(width + 2 * margin) * static_cast<size_t>(height); }
+  OffsetLines(int width, int margin, Offset* offsets)
+      : width_(static_cast<size_t>(width)), margin_(static_cast<size_t>(margin)), offsets_(offsets) {}
+  Offset* line(int y) { return offsets_ + static_cast<size_t>(y) * (width_ + 2 * margin_) + margin_; }
   void clear_margins(int y) {
     std::fill_n(line(y) - margin_, margin_, kUnknown);
     std::fill_n(line(y) + width_, margin_, kUnknown);
   }
 
  private:
-  size_t width_, margin_, stride_;
-  std::unique_ptr<Offset[]> offsets_;
+  size_t width_, margin_;
+  Offset* offsets_;
 };
 
 /// The crossings about a pixel, in a fixed order: their offsets, and the pixels on their other sides.
@@ -243,7 +242,10 @@ Image<std::int32_t> jump_flood_squares(const Silhouette& silhouette, int reach_p
   Image<std::int32_t> squares(width, height, kFarSquared);
   if (silhouette.crossings == 0) return squares;
   const std::vector<int> steps = steps_for(reach_px, extra_passes);
-  OffsetLines from(width, height, steps.front()), to(width, height, steps.front());
+  const int margin = steps.front();
+  const size_t count = OffsetLines::count(width, height, margin);
+  const std::unique_ptr<Offset[]> memory(new Offset[2 * count]);  // not initialised: every line is written before it is read
+  OffsetLines from(width, margin, memory.get()), to(width, margin, memory.get() + count);
   std::vector<Carrier> carriers = start(silhouette, from, to);
   bool few = true;
   for (const int step : steps) {

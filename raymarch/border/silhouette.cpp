@@ -124,13 +124,40 @@ OutlineBand outline_band(const Parameters& parameters) {
                              : OutlineSide::centered};
 }
 
+namespace {
+
+/// Squared distances from..to have full ink: most of a wide outline, and no root is needed for it.
+struct FullInk {
+  double from, to;
+};
+
+FullInk full_ink(const OutlineBand& band, double sign) {
+  const double half = 0.5 * band.softness_px;
+  const double low = band.side == OutlineSide::outside ? 0.0 : band.side == OutlineSide::inside ? -band.width_px : -0.5 * band.width_px;
+  const double high = low + band.width_px;
+  const double nearest = (sign > 0.0 ? low : -high) + half, farthest = (sign > 0.0 ? high : -low) - half;
+  const auto squared = [](double distance_px) { return distance_px * distance_px * kSubPixels * kSubPixels; };
+  if (farthest < 0.0 || nearest > farthest) return {1.0, 0.0};
+  return {nearest > 0.0 ? squared(nearest) : 0.0, squared(farthest)};
+}
+
+}  // namespace
+
 Image<float> ink_band(const Silhouette& silhouette, const Image<std::int32_t>& squares, const OutlineBand& band) {
   Image<float> ink(squares.width, squares.height, 0.0f);
+  const FullInk full[2] = {full_ink(band, 1.0), full_ink(band, -1.0)};
+  const bool soft = band.softness_px > 0.0;
   for_each_band(squares.height, [&](int y0, int y1) {
     for (size_t i = squares.index(0, y0); i < squares.index(0, y1); ++i) {
-      if (squares.pixels[i] == kFarSquared) continue;
-      const float distance_px = std::sqrt(static_cast<float>(squares.pixels[i])) / kSubPixels;
-      ink.pixels[i] = band.ink(silhouette.inside.pixels[i] ? -distance_px : distance_px);
+      const std::int32_t square = squares.pixels[i];
+      if (square == kFarSquared) continue;
+      const std::uint8_t inside = silhouette.inside.pixels[i];
+      if (soft && square >= full[inside].from && square <= full[inside].to) {
+        ink.pixels[i] = 1.0f;
+        continue;
+      }
+      const float distance_px = std::sqrt(static_cast<float>(square)) / kSubPixels;
+      ink.pixels[i] = band.ink(inside ? -distance_px : distance_px);
     }
   });
   return ink;

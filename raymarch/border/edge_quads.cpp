@@ -93,12 +93,16 @@ void add_object(const EdgeSettings& settings, const Polygons& polygons, std::int
       const TopologyEdge& edge = topology.edges[i];
       const glm::dvec3 &a = mesh.positions[static_cast<size_t>(edge.vertex_a)], &b = mesh.positions[static_cast<size_t>(edge.vertex_b)];
       // Both faces hold the edge, so that any point of it tells their sides.
-      if (!is_line(settings, edge, topology, view_vector(view.camera(), 0.5 * (a + b)))) continue;
+      const glm::dvec3 to_eye = view_vector(view.camera(), 0.5 * (a + b));
+      if (!is_line(settings, edge, topology, to_eye)) continue;
       ImageEdge image;
       if (!view.place(a, b, margin_px, image)) continue;
       image.object = object;
       image.face_a = edge.face_a;
       image.face_b = edge.face_b;
+      image.turned_away = edge.face_b >= 0 && !edge.opposed &&
+                          !faces_eye(topology.face_normals[static_cast<size_t>(edge.face_a)], to_eye) &&
+                          !faces_eye(topology.face_normals[static_cast<size_t>(edge.face_b)], to_eye);
       seen.clear();
       view.visible_stretches(image, seen);
       add_pieces(image, seen, width, of_block[block]);

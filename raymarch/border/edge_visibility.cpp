@@ -126,8 +126,19 @@ bool EdgeVisibility::hides(size_t pixel, const ImageEdge& edge, const glm::dvec2
   return z > seen_depth(pixel, ray) + bias;
 }
 
-/// Seen where one of the four samples around the point sees nothing nearer: about a point of the outline some of them look past the
-/// object, about a hidden point all of them are on what hides it.
+/// The pixel sees a polygon of this object from behind.
+bool EdgeVisibility::shows_back(size_t pixel, std::int32_t object) const {
+  const GBuffer& seen = input_.gbuffer;
+  const std::int32_t face = seen.face.pixels[pixel];
+  if (seen.id.pixels[pixel] != object + 1 || face < 0) return false;
+  const Polygons& polygons = *input_.model.surfaces[static_cast<size_t>(object)].polygons;
+  const glm::dvec3 point = glm::dvec3(seen.position.pixels[pixel]) - input_.model.render_origin;
+  return glm::dot(polygons.edges().face_normals[static_cast<size_t>(face)], view_vector(camera_, point)) <= 0.0;
+}
+
+// Seen where one of the four samples around the point sees nothing nearer: about a point of the outline some of them look past the
+// object, about a hidden point all of them are on what hides it. An edge both of whose faces are turned away is no outline, and a sample
+// that looks past the object says nothing about it: it is seen where backs are seen.
 bool EdgeVisibility::visible(const ImageEdge& edge, double s) const {
   const GBuffer& seen = input_.gbuffer;
   const glm::dvec2 at = edge.a + s * (edge.b - edge.a);
@@ -137,7 +148,9 @@ bool EdgeVisibility::visible(const ImageEdge& edge, double s) const {
     for (int x = x0; x <= x0 + 1; ++x) {
       // Beyond the picture's sides the nearest pixel speaks for the margin.
       const int u = std::clamp(x, 0, seen.width - 1), v = std::clamp(y, 0, seen.height - 1);
-      if (!hides(seen.id.index(u, v), edge, at, z)) return true;
+      const size_t pixel = seen.id.index(u, v);
+      if (edge.turned_away && !shows_back(pixel, edge.object)) continue;
+      if (!hides(pixel, edge, at, z)) return true;
     }
   }
   return false;

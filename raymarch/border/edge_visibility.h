@@ -15,6 +15,7 @@ struct ImageEdge {
   double q_a = 0.0, q_b = 0.0;
   std::int32_t object = 0;                ///< Index from 0.
   std::int32_t face_a = -1, face_b = -1;  ///< Polygons of that object.
+  bool turned_away = false;               ///< Both faces show their backs: seen through an opening, or not at all.
 };
 
 /// A stretch of an image edge, from 0 at `a` to 1 at `b`.
@@ -41,6 +42,7 @@ class EdgeVisibility {
   double near() const;
 
  private:
+  bool shows_back(size_t pixel, std::int32_t object) const;
   bool hides(size_t pixel, const ImageEdge& edge, const glm::dvec2& at_px, double z) const;
   double seen_depth(size_t pixel, const CameraRay& ray) const;
 

@@ -10,7 +10,8 @@
 namespace limn {
 namespace {
 
-// A ray hits where it comes this near to the offset surface, and leaves the shell no later than this much beyond: shares of the width.
+// Shares of the width: a ray enters the shell where it comes this near to the offset surface, and leaves it where it is twice as far
+// beyond, to the least step within.
 constexpr double kTouch = 1e-3;
 constexpr double kLeast = 1.0 / 32.0;
 
@@ -51,10 +52,11 @@ enum class Fate { going, missed, hit };
 /// nothing. Distances that are right to third order only get shorter steps.
 Fate advance(const State& state, double distance, Lane& lane) {
   const double width = state.width.at(lane.origin + lane.t * lane.direction);
-  const double beyond = distance - width;
-  if (lane.side == 0.0) lane.side = beyond < 0.0 ? -1.0 : 1.0;
-  const double left = lane.side * beyond, touch = lane.side > 0.0 ? kTouch * width : 0.0;
-  if (left <= touch && (lane.side > 0.0 || lane.steps > 0)) return Fate::hit;
+  const double beyond = distance - width, touch = kTouch * width;
+  // A ray that grazes the surface hovers about it; between entering and leaving lies as much again, or it would do both at every step.
+  if (lane.side == 0.0) lane.side = beyond <= touch ? -1.0 : 1.0;
+  const double left = lane.side > 0.0 ? beyond - touch : 2.0 * touch - beyond;
+  if (left <= 0.0) return Fate::hit;
   if (++lane.steps > state.max_steps) return Fate::hit;  // it has crept along the surface all the way
   const double trust = state.field.traits().exact_distance ? 1.0 : 0.8;
   const double least = lane.side > 0.0 ? 0.5 * touch : kLeast * width;

@@ -15,10 +15,11 @@ namespace {
 constexpr double kCellReach = 1.8;
 
 struct Maker {
-  explicit Maker(LevelSetOffsetSource from) : source(std::move(from)), widest(source.level_set) {}
+  explicit Maker(LevelSetOffsetSource from) : source(std::move(from)), widest(source.level_set), reach(widest.info().half_width_voxels) {}
   LevelSetOffsetSource source;
   mutable std::mutex mutex;
   mutable LevelSet widest;  ///< With the widest band asked for up to now: each view and sample asks again.
+  mutable double reach;     ///< Of that band as asked for; a thin object has none as wide inside, nor needs it.
 };
 
 double scale_of(const Affine& world_from_object) { return std::cbrt(std::abs(glm::determinant(world_from_object.linear))); }
@@ -36,14 +37,16 @@ double largest_width_voxels(const LevelSetOffsetSource& source, const OffsetWidt
 
 LevelSet wide_enough(const Maker& maker, double needed) {
   const std::lock_guard lock(maker.mutex);
-  if (maker.widest.info().half_width_voxels >= needed) return maker.widest;
+  if (maker.reach >= needed) return maker.widest;
   if (!maker.source.widen) {
     throw InputError({maker.source.file, "grid", fmt::format("{:.2f} voxels", maker.widest.info().half_width_voxels),
                       "the band is too narrow for an offset this wide",
                       fmt::format("a half width of {:.2f} voxels, or a narrower outline", needed)});
   }
   // A little more than asked for, so that a camera that moves back slightly finds it still wide enough.
-  maker.widest = maker.source.widen(std::ceil(1.1 * needed));
+  const double wider = std::ceil(1.1 * needed);
+  maker.widest = maker.source.widen(wider);
+  maker.reach = wider;
   return maker.widest;
 }
 

@@ -1,0 +1,378 @@
+// Edge lines against the edges themselves: which are drawn follows from the faces' sides and the kinds asked for, which parts of them are
+// seen from rays cast at polygons one by one.
+
+#include <fmt/core.h>
+
+#include <numbers>
+#include <random>
+
+#include "raymarch/border/line_raster.h"
+#include "subdiv/edge_topology.h"
+#include "tests/raymarch/image_buffers.h"
+
+namespace limn::test {
+namespace {
+
+using Given = std::map<std::string, ParameterInput>;
+
+/// Convex flat faces, and their edges found anew from equal positions.
+struct Solid {
+  std::vector<std::vector<glm::dvec3>> faces;
+  std::vector<int> materials;
+};
+struct SolidEdge {
+  glm::dvec3 a, b;
+  std::vector<size_t> faces;
+};
+
+glm::dvec3 normal_of(const std::vector<glm::dvec3>& face) { return glm::normalize(glm::cross(face[1] - face[0], face[2] - face[0])); }
+
+std::vector<SolidEdge> edges_of(const Solid& solid) {
+  std::vector<SolidEdge> edges;
+  for (size_t f = 0; f < solid.faces.size(); ++f) {
+    const auto& face = solid.faces[f];
+    for (size_t i = 0; i < face.size(); ++i) {
+      const glm::dvec3 a = face[i], b = face[(i + 1) % face.size()];
+      const auto known =
+          std::find_if(edges.begin(), edges.end(), [&](const SolidEdge& e) { return (e.a == a && e.b == b) || (e.a == b && e.b == a); });
+      if (known == edges.end()) {
+        edges.push_back({a, b, {f}});
+      } else {
+        known->faces.push_back(f);
+      }
+    }
+  }
+  return edges;
+}
+
+Solid solid_of(const Mesh& mesh, const glm::dvec3& moved = glm::dvec3(0.0)) {
+  Solid solid;
+  size_t first = 0;
+  for (size_t f = 0; f < mesh.face_count(); ++f) {
+    std::vector<glm::dvec3> face;
+    for (std::int32_t k = 0; k < mesh.face_sizes[f]; ++k)
+      face.push_back(mesh.positions[static_cast<size_t>(mesh.corner_vertices[first + static_cast<size_t>(k)])] + moved);
+    first += static_cast<size_t>(mesh.face_sizes[f]);
+    solid.faces.push_back(face);
+    solid.materials.push_back(mesh.face_materials.empty() ? 0 : mesh.face_materials[f]);
+  }
+  return solid;
+}
+
+struct Kinds {
+  bool contour = true, boundary = true, crease = true, material = true;
+  double crease_deg = 40.0;
+  Given given() const {
+    return {{"contour", value(contour)},   {"boundary", value(boundary)},       {"crease", value(crease)},
+            {"material", value(material)}, {"crease_angle", value(crease_deg)}, {"width", value(3.0)}};
+  }
+};
+
+bool wanted(const Solid& solid, const SolidEdge& edge, const Kinds& kinds, const Camera& camera) {
+  if (edge.faces.size() == 1) return kinds.boundary;
+  const glm::dvec3 n1 = normal_of(solid.faces[edge.faces[0]]), n2 = normal_of(solid.faces[edge.faces[1]]);
+  const glm::dvec3 v = view_vector(camera, edge.a);
+  return (kinds.contour && glm::dot(n1, v) * glm::dot(n2, v) < 0.0) ||
+         (kinds.crease && std::acos(std::clamp(glm::dot(n1, n2), -1.0, 1.0)) * 180.0 / std::numbers::pi > kinds.crease_deg) ||
+         (kinds.material && solid.materials[edge.faces[0]] != solid.materials[edge.faces[1]]);
+}
+
+/// Nothing but the edge's own faces stands between the point and the eye.
+bool seen(const std::vector<Solid>& solids, const Solid* own, const SolidEdge& edge, const glm::dvec3& point, const Camera& camera) {
+  const glm::dvec3 to_eye = view_vector(camera, point);
+  for (const Solid& solid : solids) {
+    for (size_t f = 0; f < solid.faces.size(); ++f) {
+      if (&solid == own && std::find(edge.faces.begin(), edge.faces.end(), f) != edge.faces.end()) continue;
+      const auto& face = solid.faces[f];
+      const glm::dvec3 n = normal_of(face);
+      const double t = glm::dot(n, face[0] - point) / glm::dot(n, to_eye);
+      if (!std::isfinite(t) || t < 1e-9) continue;
+      const glm::dvec3 q = point + t * to_eye;
+      bool inside = true;
+      for (size_t i = 0; i < face.size(); ++i)
+        inside = inside && glm::dot(n, glm::cross(face[(i + 1) % face.size()] - face[i], q - face[i])) > 0.0;
+      if (inside) return false;
+    }
+  }
+  return true;
+}
+
+/// Seen from a place in the image less than a pixel's diagonal away: a depth buffer of one sample a pixel cannot tell.
+bool seen_nearby(const std::vector<Solid>& solids, const Solid* own, const SolidEdge& edge, const glm::dvec3& point, const Camera& camera) {
+  const glm::dvec3 at = project(camera, point);
+  for (int i = 0; i < 16; ++i) {
+    const double angle = std::numbers::pi * i / 8.0, radius = 1.0 / pixels_per_unit_at(camera, at.z);
+    for (const double px : {0.5, 1.0, 1.45}) {
+      const glm::dvec3 shift = camera.world_from_camera * glm::dvec3(std::cos(angle), std::sin(angle), 0.0);
+      if (seen(solids, own, edge, point + px * radius * shift, camera)) return true;
+    }
+  }
+  return false;
+}
+
+struct Comparison {
+  std::int64_t points = 0, points_without_ink = 0, ink_far_from_edges = 0, ink_beyond_width = 0;
+  double farthest_px = 0.0;
+};
+
+/// Every seen point of every wanted edge against the ink, and every inked pixel against those points.
+Comparison compare(const std::vector<Solid>& solids, const Kinds& kinds, const Camera& camera, const Image<float>& ink) {
+  constexpr double width_px = 3.0;
+  Comparison result;
+  std::vector<glm::dvec2> expected, maybe;
+  for (const Solid& solid : solids) {
+    for (const SolidEdge& edge : edges_of(solid)) {
+      if (!wanted(solid, edge, kinds, camera)) continue;
+      const double length = glm::length(glm::dvec2(project(camera, edge.b) - project(camera, edge.a)));
+      const int count = std::max(2, static_cast<int>(length * 8.0));
+      for (int i = 0; i < count; ++i) {
+        const glm::dvec3 point = glm::mix(edge.a, edge.b, (i + 0.5) / count);
+        const glm::dvec2 at(project(camera, point));
+        if (!seen(solids, &solid, edge, point, camera)) {
+          if (seen_nearby(solids, &solid, edge, point, camera)) maybe.push_back(at);
+          continue;
+        }
+        expected.push_back(at);
+        const auto x = static_cast<int>(std::floor(at.x)), y = static_cast<int>(std::floor(at.y));
+        ++result.points;
+        if (ink.inside(x, y) && ink.at(x, y) < 0.99f) ++result.points_without_ink;
+      }
+    }
+  }
+  for (int y = 0; y < ink.height; ++y) {
+    for (int x = 0; x < ink.width; ++x) {
+      if (ink.at(x, y) <= 0.0f) continue;
+      double nearest = 1e30;
+      for (const glm::dvec2& at : expected) nearest = std::min(nearest, glm::distance(at, glm::dvec2(x + 0.5, y + 0.5)));
+      result.ink_beyond_width += nearest > width_px;
+      for (const glm::dvec2& at : maybe) nearest = std::min(nearest, glm::distance(at, glm::dvec2(x + 0.5, y + 0.5)));
+      result.farthest_px = std::max(result.farthest_px, nearest);
+      // Half the width, half a pixel of fading, and the step at which visibility is asked for.
+      result.ink_far_from_edges += nearest > 0.5 * width_px + 0.5 + 0.5;
+    }
+  }
+  return result;
+}
+
+Border drawn_edges(const Scene& scene, const SceneModel& model, const Camera& camera, const Given& given) {
+  const GBuffer gbuffer = render_gbuffer(model, camera, {});
+  return find_border_method("edge_quads").draw({gbuffer, camera, model, scene}, parameters_of("edge_quads", given));
+}
+
+struct View {
+  std::mt19937 random;
+  explicit View(std::uint32_t seed) : random(seed) {}
+  CameraSettings next() {
+    std::normal_distribution<double> normal;
+    CameraSettings settings = view(180, 140, normal(random) > 0.0 ? Projection::perspective : Projection::orthographic);
+    settings.direction = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+    if (std::abs(settings.direction->y) > 0.98) settings.up = glm::dvec3(0, 0, 1);
+    return settings;
+  }
+};
+
+void expect_exact(const std::string& what, const std::vector<Mesh>& meshes, const std::vector<glm::dvec3>& places, const Kinds& kinds) {
+  const std::uint32_t seed = std::random_device{}();
+  View views(seed);
+  std::vector<SceneObject> objects;
+  std::vector<Solid> solids;
+  for (size_t i = 0; i < meshes.size(); ++i) {
+    objects.push_back(object_of(meshes[i]));
+    objects.back().world_from_object.translation = places[i];
+    solids.push_back(solid_of(meshes[i], places[i]));
+  }
+  const Scene scene = scene_of(objects);
+  const SceneModel model = model_of(scene, "mesh");
+  Comparison sum;
+  for (int round = 0; round < 12; ++round) {
+    const Camera camera = framing(scene, views.next());
+    const Border border = drawn_edges(scene, model, camera, kinds.given());
+    const Comparison result = compare(solids, kinds, camera, border.coverage);
+    EXPECT_EQ(result.points_without_ink, 0) << what << ", seed " << seed << ", view " << round;
+    EXPECT_EQ(result.ink_far_from_edges, 0) << what << ", seed " << seed << ", view " << round << ": " << result.farthest_px << " px";
+    sum.points += result.points;
+    sum.ink_beyond_width += result.ink_beyond_width;
+    sum.farthest_px = std::max(sum.farthest_px, result.farthest_px);
+  }
+  fmt::print("{}: seed {}, {} points of edges all inked, no ink farther than {:.2f} px from one\n", what, seed, sum.points,
+             sum.farthest_px);
+}
+
+const std::vector<glm::dvec3> kOrigin{glm::dvec3(0.0)};
+
+TEST(EdgeQuads, OfACubeAreExactlyTheSilhouetteAndCreasesSeen) {
+  const Mesh cube = box_mesh({1.0, 0.9, 0.8});
+  expect_exact("all kinds", {cube}, kOrigin, {});
+  expect_exact("contour", {cube}, kOrigin, {.boundary = false, .crease = false, .material = false});
+  expect_exact("crease", {cube}, kOrigin, {.contour = false, .boundary = false, .material = false});
+  expect_exact("crease beyond 100 degrees: none", {cube}, kOrigin,
+               {.contour = false, .boundary = false, .material = false, .crease_deg = 100.0});
+}
+
+TEST(EdgeQuads, OfACubeWithAFaceTakenOffHaveItsBoundary) {
+  Mesh open = box_mesh({1.0, 0.9, 0.8});
+  open.corner_vertices.erase(open.corner_vertices.begin() + 12, open.corner_vertices.begin() + 16);
+  open.face_sizes.pop_back();
+  expect_exact("open box", {open}, kOrigin, {});
+  expect_exact("its boundary", {open}, kOrigin, {.contour = false, .crease = false, .material = false});
+}
+
+TEST(EdgeQuads, OfACubeOfTwoMaterialsHaveTheLineBetweenThem) {
+  Mesh cube = box_mesh({1.0, 0.9, 0.8});
+  cube.material_names = {"a", "b"};
+  cube.face_materials = {0, 1, 0, 1, 0, 0};
+  expect_exact("material", {cube}, kOrigin, {.contour = false, .boundary = false, .crease = false});
+}
+
+TEST(EdgeQuads, BehindAnotherObjectAreHidden) {
+  expect_exact("three boxes", {box_mesh({0.7, 0.6, 0.5}), box_mesh({0.4, 0.8, 0.3}), box_mesh({0.3, 0.3, 0.9})},
+               {glm::dvec3(0.0), glm::dvec3(1.6, 0.3, 0.4), glm::dvec3(-0.2, 1.3, -1.1)}, {});
+}
+
+TEST(EdgeQuads, OfABoxSeenStraightOnStillHaveItsOutline) {
+  const Scene scene = scene_of({object_of(box_mesh({1.0, 0.8, 0.6}))});
+  CameraSettings settings = view(120, 100, Projection::orthographic);
+  settings.direction = glm::dvec3(0, 0, 1);
+  const Camera camera = framing(scene, settings);
+  const Border border = drawn_edges(scene, model_of(scene, "mesh"), camera, Kinds{true, false, false, false, 40.0}.given());
+  for (double s = -1.0; s <= 1.0; s += 0.01) {
+    for (const glm::dvec3& p :
+         {glm::dvec3(s, 0.8, 0.6), glm::dvec3(s, -0.8, 0.6), glm::dvec3(1.0, 0.8 * s, 0.6), glm::dvec3(-1.0, 0.8 * s, 0.6)}) {
+      const glm::dvec3 at = project(camera, p);
+      ASSERT_GT(border.coverage.at(static_cast<int>(at.x), static_cast<int>(at.y)), 0.99f);
+    }
+  }
+}
+
+TEST(EdgeQuads, DecideCreasesWithoutASquareRootAsTheAngleDoes) {
+  const std::uint32_t seed = std::random_device{}();
+  fmt::print("seed {}\n", seed);
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> size(-8.0, 8.0), degrees(0.0, 180.0);
+  int close = 0, above = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    const glm::dvec3 a = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+    glm::dvec3 b = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+    if (i % 4 == 0) b = glm::normalize(a + 0.01 * b);
+    const double angle = std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)), alpha = degrees(random) * std::numbers::pi / 180.0;
+    // Where acos itself is uncertain there is nothing to compare.
+    if (std::abs(angle - alpha) < 1e-7) {
+      ++close;
+      continue;
+    }
+    const double scale_a = std::pow(10.0, size(random)), scale_b = std::pow(10.0, size(random));
+    above += angle > alpha;
+    ASSERT_EQ(angle_exceeds(scale_a * a, scale_b * b, std::cos(alpha)), angle > alpha) << angle << " against " << alpha;
+  }
+  EXPECT_LT(close, 100);
+  EXPECT_GT(above, 50'000);
+}
+
+/// Ink across a vertical line at the height y.
+double ink_of_row(const Image<float>& ink, int y) {
+  double sum = 0.0;
+  for (int x = 0; x < ink.width; ++x) sum += double{ink.at(x, y)};
+  return sum;
+}
+
+TEST(EdgeQuads, TaperFromNearToFar) {
+  // A strip that leads away from the eye: its two long borders, thick in front.
+  Mesh strip;
+  strip.positions = {{-0.5, -1.0, 0.0}, {0.5, -1.0, 0.0}, {0.5, -1.0, -12.0}, {-0.5, -1.0, -12.0}};
+  strip.corner_vertices = {0, 1, 2, 3};
+  strip.face_sizes = {4};
+  const Scene scene = scene_of({object_of(strip)});
+  CameraSettings settings = view(200, 200);
+  settings.eye = glm::dvec3(0.0, 0.4, 4.0);
+  settings.target = glm::dvec3(0.0, -0.9, 0.0);
+  const Camera camera = framing(scene, settings);
+  Given given{{"width", value(8.0)}, {"taper", value(1.0)}, {"far_width", value(2.0)}};
+  const Border border = drawn_edges(scene, model_of(scene, "mesh"), camera, given);
+  const auto width_at = [&](double z) {
+    const glm::dvec3 left = project(camera, {-0.5, -1.0, z}), further = project(camera, {-0.5, -1.0, z - 0.01});
+    const glm::dvec2 along = glm::normalize(glm::dvec2(further - left));
+    return 0.5 * ink_of_row(border.coverage, static_cast<int>(left.y)) * std::abs(along.y);
+  };
+  const auto q = [&](double z) { return 1.0 / project(camera, {-0.5, -1.0, z}).z; };
+  for (const double z : {-1.0, -3.0, -6.0, -10.0}) {
+    const double expected = 8.0 + (q(0.0) - q(z)) / (q(0.0) - q(-12.0)) * (2.0 - 8.0);
+    fmt::print("z {}: {:.2f} px wide, {:.2f} expected\n", z, width_at(z), expected);
+    EXPECT_NEAR(width_at(z), expected, 0.25);
+  }
+}
+
+TEST(EdgeQuads, CoverageIsTheBoxFilteredLine) {
+  EXPECT_DOUBLE_EQ(line_coverage(0.0, 3.0), 1.0);
+  EXPECT_DOUBLE_EQ(line_coverage(1.5, 3.0), 0.5);
+  EXPECT_DOUBLE_EQ(line_coverage(2.0, 3.0), 0.0);
+  EXPECT_DOUBLE_EQ(line_coverage(0.0, 0.25), 0.25);  // thinner than a pixel: paler
+  Image<float> ink(40, 20, 0.0f);
+  const std::vector<LinePiece> pieces{{{5.0, 10.25}, {20.0, 10.25}, 2.5, 2.5}, {{20.0, 10.25}, {35.0, 10.25}, 2.5, 2.5}};
+  draw_lines(pieces, ink);
+  for (int x = 7; x < 33; ++x) {  // over the joint as elsewhere
+    double column = 0.0;
+    for (int y = 0; y < 20; ++y) column += double{ink.at(x, y)};
+    EXPECT_NEAR(column, 2.5, 1e-6) << x;
+  }
+}
+
+TEST(EdgeQuads, AreTheSameForAnyNumberOfThreadsAndFromWithin) {
+  const Scene scene = scene_of({object_of(make_shape("torus")), object_of(box_mesh({0.4, 0.9, 0.4}))});
+  const SceneModel model = model_of(scene, "mesh");
+  for (const bool within : {false, true}) {
+    CameraSettings settings = view(130, 90);
+    if (within) {  // in the box, which reaches behind the eye
+      settings.eye = glm::dvec3(0.1, 0.2, 0.1);
+      settings.target = glm::dvec3(1.0, 0.1, 0.3);
+      settings.vertical_fov = 2.2;
+    }
+    const Camera camera = framing(scene, settings);
+    ExecutionSettings one, three;
+    one.threads = 1;
+    three.threads = 3;
+    const PictureSettings pictures{{call_of("edge_quads")}, 2, {}};
+    const Picture a = draw_picture(scene, model, camera, pictures, one), b = draw_picture(scene, model, camera, pictures, three);
+    EXPECT_EQ(a.border.pixels, b.border.pixels);
+    for (const float ink : a.border.pixels) ASSERT_TRUE(ink >= 0.0f && ink <= 1.0f);
+    EXPECT_GT(area(a.border), 100.0);
+  }
+}
+
+TEST(EdgeQuads, AreRefusedWithAReasonWhereThereAreNoPolygons) {
+  const Scene scene = scene_of({object_of(make_shape("sphere"))});
+  EXPECT_NE(find_border_method("edge_quads").unsupported(model_of(scene, "analytic"), scene).find("polygons"), std::string::npos);
+  EXPECT_TRUE(find_border_method("edge_quads").unsupported(model_of(scene, "mesh"), scene).empty());
+}
+
+TEST(EdgeTopology, WeldsByPositionBridgesSliversAndCountsWhatItCannot) {
+  Mesh box = box_mesh({1.0, 1.0, 1.0});
+  EXPECT_EQ(build_edge_topology(box).edges.size(), 12u);
+  Mesh soup;
+  for (size_t c = 0; c < box.corner_vertices.size(); ++c) {
+    soup.positions.push_back(box.positions[static_cast<size_t>(box.corner_vertices[c])]);
+    soup.corner_vertices.push_back(static_cast<std::int32_t>(c));
+  }
+  soup.face_sizes = box.face_sizes;
+  const EdgeTopology welded = build_edge_topology(soup);
+  EXPECT_EQ(welded.edges.size(), 12u);
+  for (const TopologyEdge& edge : welded.edges) EXPECT_GE(edge.face_b, 0);
+
+  // Two triangles that meet in a sliver without area: it takes the normal of the one along its long side.
+  Mesh sliver;
+  sliver.positions = {{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, 1, 1}};
+  sliver.corner_vertices = {0, 3, 1, 0, 1, 2, 0, 2, 4};
+  sliver.face_sizes = {3, 3, 3};
+  const EdgeTopology bridged = build_edge_topology(sliver);
+  EXPECT_EQ(bridged.flat_faces, 0);
+  EXPECT_GT(glm::dot(bridged.face_normals[1], bridged.face_normals[0]), 0.0);
+  // Three sheets on one edge.
+  Mesh book;
+  book.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
+  book.corner_vertices = {0, 1, 2, 0, 1, 3, 0, 1, 4};
+  book.face_sizes = {3, 3, 3};
+  EXPECT_EQ(build_edge_topology(book).non_manifold, 1);
+}
+
+}  // namespace
+}  // namespace limn::test

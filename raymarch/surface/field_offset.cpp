@@ -126,7 +126,8 @@ Surface make(const void* opaque, const OffsetWidth& width) {
   auto state = std::make_shared<State>(maker.field, width, maker.max_steps);
   const FieldTraits& traits = maker.field.traits();
   state->largest_width = largest_width(width, traits.bounds);
-  state->clip = traits.bounds.empty() ? traits.bounds : dilate(traits.bounds, 1.01 * state->largest_width);
+  // With room for the last step, which leaves the shell by up to kLeast.
+  state->clip = traits.bounds.empty() ? traits.bounds : dilate(traits.bounds, 1.1 * state->largest_width);
   Surface surface;
   surface.bounds = state->clip;
   surface.trace = trace;

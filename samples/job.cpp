@@ -40,13 +40,14 @@ struct PendingMethod {
 
 std::vector<PendingMethod> chosen_methods(const Options& options, const SceneInput& input) {
   std::vector<PendingMethod> pending;
-  if (options.methods.empty()) {
+  const bool compared = !options.compared_methods.empty();
+  if (options.methods.empty() && !compared) {
     for (const BorderDefaults& border : input.borders) pending.push_back({&find_border_method(border.method), border.parameters});
     if (pending.empty()) pending.push_back({&find_border_method("rim"), {}});
     return pending;
   }
-  for (const std::string& name : options.methods) {
-    PendingMethod one{&find_border_method(name, "", "--method"), {}};
+  for (const std::string& name : compared ? options.compared_methods : options.methods) {
+    PendingMethod one{&find_border_method(name), {}};
     for (const BorderDefaults& border : input.borders) {
       if (border.method == name) one.parameters = border.parameters;
     }

@@ -1,6 +1,7 @@
 #include "samples/options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 
 #include "raymarch/border.h"
@@ -37,6 +38,39 @@ CLI::Option* add_repeatable(CLI::App& app, const OptionText& text, std::function
   CLI::Option* option = app.add_option_function<std::vector<std::string>>(text.flags, std::move(each), text.help);
   option->type_name(text.value)->group(text.group)->type_size(1)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   return option;
+}
+
+// "a,b,c"; empty names are kept, so that they are complained about.
+std::vector<std::string> names_of(const std::string& text) {
+  std::vector<std::string> names;
+  for (size_t at = 0; at <= text.size();) {
+    const size_t comma = std::min(text.find(',', at), text.size());
+    names.push_back(text.substr(at, comma - at));
+    at = comma + 1;
+  }
+  return names;
+}
+
+void add_unless_there(const std::string& name, std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+void read_compared_methods(const std::string& text, Options& options) {
+  if (text == "all") {
+    for (const BorderMethod& method : border_methods()) add_unless_there(method.about.name, options.compared_methods);
+    return;
+  }
+  for (const std::string& name : names_of(text)) {
+    find_border_method(name, "", "--methods");
+    add_unless_there(name, options.compared_methods);
+  }
+}
+
+void read_compared_surfaces(const std::string& text, Options& options) {
+  for (const std::string& name : names_of(text)) {
+    find_surface(name, "", "--surfaces");
+    add_unless_there(name, options.surfaces);
+  }
 }
 
 void add_switch(CLI::App& app, const OptionText& text, bool& target) { app.add_flag(text.flags, target, text.help)->group(text.group); }
@@ -97,10 +131,12 @@ void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& need
     find_surface(text, "", "--surface");
     options.surfaces.push_back(text);
   };
-  if (needs.surface && needs.repeatable)
+  if (needs.surface && needs.repeatable) {
     add_repeatable(app, {"--surface", "NAME", "only this representation (limn list surfaces), repeatable; default: all", kSurface},
                    surface);
-  else if (needs.surface)
+    add_repeatable(app, {"--surfaces", "A,B,...", "the same for several", kSurface},
+                   [&options](const std::string& text) { read_compared_surfaces(text, options); });
+  } else if (needs.surface)
     add(app, {"--surface", "NAME", "representation (limn list surfaces); default: what the input is by itself", kSurface}, surface);
   auto* voxels = add(app, {"--voxels", "N", "voxels along the longest side, 4..8192; default 256", kSurface},
                      [&options](const std::string& text) { options.voxels = parse_integer("--voxels", text, 4, 8192); });
@@ -127,12 +163,19 @@ void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& need
   add_grid(app, options);
 }
 
-void add_border(CLI::App& app, Options& options) {
-  add_repeatable(app, {"--method", "NAME", "outline method (limn list methods), repeatable, the last on top; default rim", kBorder},
-                 [&options](const std::string& text) {
-                   find_border_method(text, "", "--method");
-                   options.methods.push_back(text);
-                 });
+void add_border(CLI::App& app, Options& options, bool compared) {
+  auto* method =
+      add_repeatable(app, {"--method", "NAME", "outline method (limn list methods), repeatable, the last on top; default rim", kBorder},
+                     [&options](const std::string& text) {
+                       find_border_method(text, "", "--method");
+                       options.methods.push_back(text);
+                     });
+  if (compared) {
+    add_repeatable(
+        app, {"--methods", "A,B,...|all", "a picture of every model by each of these methods, as a matrix; default: one method", kBorder},
+        [&options](const std::string& text) { read_compared_methods(text, options); })
+        ->excludes(method);
+  }
   add_repeatable(
       app,
       {"--set", "KEY=VALUE", "a parameter of the methods, such as threshold=0.4; METHOD.KEY=VALUE for one of several; repeatable", kBorder},

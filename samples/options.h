@@ -45,7 +45,8 @@ struct Options {
   std::optional<NormalKind> normals;
   std::string grid;
 
-  std::vector<std::string> methods;
+  std::vector<std::string> methods;           ///< Of one picture, in order.
+  std::vector<std::string> compared_methods;  ///< `limn compare` only: each makes pictures of its own.
   std::vector<KeyValue> sets;
   int samples = 1;
   std::optional<glm::dvec3> background;  ///< Linear.
@@ -62,7 +63,7 @@ void add_json(CLI::App& app, Options& options);
 void add_camera(CLI::App& app, Options& options, bool with_views);
 void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& needs);
 void add_grid(CLI::App& app, Options& options);
-void add_border(CLI::App& app, Options& options);
+void add_border(CLI::App& app, Options& options, bool compared = false);
 void add_execution(CLI::App& app, Options& options);
 
 }  // namespace limn

@@ -15,7 +15,7 @@ void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_camera(app, options, false);
   add_surface(app, options, {.surface = true, .repeatable = true});
-  add_border(app, options);
+  add_border(app, options, true);
   add_output(app, options, "folder for sheet.png, report.html, rows.json and each picture's EXR; default limn-out/compare/<name>", false);
   add_json(app, options);
   add_execution(app, options);
@@ -28,7 +28,13 @@ Comparison plan(const Options& options, SceneInput& input) {
   Comparison comparison = plan_comparison(input, settings, options.surfaces, gradient_chosen);
   comparison.picture = picture_settings(options, input);
   if (!comparison.picture.background) comparison.picture.background = glm::vec3(1.0f);
-  comparison.method_words = methods_text(comparison.picture.methods);
+  std::vector<std::vector<MethodCall>> columns;
+  if (options.compared_methods.empty()) {
+    columns.push_back(comparison.picture.methods);
+  } else {
+    for (const MethodCall& call : comparison.picture.methods) columns.push_back({call});
+  }
+  plan_methods(columns, comparison);
   comparison.camera = resolve_camera(camera_settings(options, input), bounds(input.scene));
   comparison.call = resolved_call("compare", options, settings, comparison.camera, comparison.picture);
   return comparison;
@@ -58,9 +64,8 @@ int run(const Options& options) {
   draw_comparison(comparison, folder, execution_settings(options), bar);
   bar.clear();
   std::vector<fs::path> files;
-  files.push_back(comparison.reference.exr);
-  for (const Cell& cell : comparison.cells) {
-    if (cell.skipped.empty()) files.push_back(cell.exr);
+  for (const ComparedModel& model : comparison.models) {
+    if (model.skipped.empty()) files.push_back(model.exr);
   }
   write_all(comparison, folder, options, files);
 
@@ -70,9 +75,7 @@ int run(const Options& options) {
   } else if (!options.quiet) {
     std::string text;
     for (const std::string& sentence : summary_sentences(comparison)) text += sentence + "\n";
-    for (const Cell& cell : comparison.cells) {
-      if (!cell.skipped.empty()) text += "not compared: " + cell.title + ": " + cell.skipped + "\n";
-    }
+    for (const std::string& line : skipped_sentences(comparison)) text += "not compared: " + line + "\n";
     print_text(text + (folder / "report.html").string() + "\n" + (folder / "sheet.png").string() + "\n");
   }
   return 0;
@@ -81,8 +84,11 @@ int run(const Options& options) {
 }  // namespace
 
 Command compare_command() {
-  return {"compare", "draws the same border from every representation of the surface, side by side, with differences and a report page",
+  return {"compare",
+          "draws the border from every representation of the surface, by one method or by many, side by side, with differences and a "
+          "report page",
           "  limn compare machined_part\n"
+          "  limn compare rook --methods rim,rim_width,edge_quads\n"
           "  limn compare cow.obj --voxels 128 --size 960x540 -o cow-compared",
           add_options, run};
 }

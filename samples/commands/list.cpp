@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "raymarch/border.h"
@@ -149,13 +150,15 @@ std::string default_text(const Parameter& parameter) {
 std::string to_text(const std::vector<Entry>& entries) {
   std::string text;
   for (const Entry& entry : entries) {
-    text += fmt::format("{:<16} {}\n", entry.about.name, entry.about.help);
+    const bool has_source = !entry.about.source.empty() && entry.about.source != "limn";
+    text += fmt::format("{:<16} {}{}\n", entry.about.name, entry.about.help, has_source ? " [" + entry.about.source + "]" : "");
+    size_t width = 12;
+    for (const Parameter& parameter : entry.parameters) width = std::max(width, parameter.name.size());
     for (const Parameter& parameter : entry.parameters) {
       const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
-      text += fmt::format("    {:<12} {} (default {}{}; {})\n", parameter.name, parameter.help, default_text(parameter), unit,
+      text += fmt::format("    {:<{}} {} (default {}{}; {})\n", parameter.name, width, parameter.help, default_text(parameter), unit,
                           range_text(parameter));
     }
-    if (!entry.about.source.empty() && entry.about.source != "limn") text += fmt::format("{:<16} after {}\n", "", entry.about.source);
   }
   return text;
 }

@@ -1,6 +1,8 @@
 #pragma once
-// A comparison: one reference, and cells that are each measured against it. Cells become rows of numbers, a sheet and a page.
+// A comparison: one reference, and other models of the same scene, each drawn by one or several methods. A cell is one method on one model,
+// measured against the same method on the reference. Cells become rows of numbers, a sheet and a page.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,54 +15,93 @@
 
 namespace limn {
 
-/// One way to model and draw the scene.
-struct Cell {
-  std::string name;     ///< Of its files: "level_set".
+/// One way to model the scene.
+struct ComparedModel {
+  std::string name;     ///< Of its file: "level_set".
   std::string title;    ///< For people: "level set".
   std::string details;  ///< "256 voxels, central gradient".
-  Scene scene;          ///< The input's, with levels set as this cell needs them.
+  Scene scene;          ///< The input's, with levels set as this model needs them.
   SurfaceSettings surface;
   std::string skipped;  ///< Why there is nothing to show; then nothing below is filled.
 
   SurfaceInfo info;
-  double trace_ms = 0.0, border_ms = 0.0;
+  double trace_ms = 0.0;
   HitCounts counts;
-  Image<float> border;
-  Image<glm::vec4> composite;
-  Image<glm::vec4> difference;      ///< Against the reference; empty for the reference itself.
-  std::vector<MetricValue> values;  ///< All metrics, in the registry's order; empty for the reference.
-  std::vector<std::string> notes;
+  std::vector<MetricValue> values;  ///< Of the G-buffer, in the registry's order; empty for the reference.
   std::filesystem::path exr;
+};
+
+/// One way to draw it.
+struct ComparedMethod {
+  std::string name;   ///< "rim"; "rim+edge_quads" where several make one picture.
+  std::string words;  ///< "rim threshold=0.4".
+  std::string help;   ///< What it does, in a line.
+  std::vector<MethodCall> calls;
+};
+
+/// One method on one model.
+struct Cell {
+  std::string name;  ///< "level_set", or "level_set-rim" where there are several methods.
+  size_t model = 0, method = 0;
+  std::string skipped;  ///< Why there is no picture; then nothing below is filled.
+
+  double border_ms = 0.0;
+  double ink_px = 0.0;  ///< Area of ink.
+  Image<float> border;
+  Image<glm::u8vec4> composite;     ///< sRGB, opaque or not: as it goes into a PNG.
+  std::vector<MetricValue> values;  ///< Of the border, in the registry's order; empty where there is no reference.
+  std::vector<std::string> notes;   ///< What failed, as the method measured it.
 };
 
 struct Comparison {
   std::string input_name;
   std::string reference_words;  ///< "the analytic surface itself".
-  std::string method_words;     ///< "rim threshold=0.4".
   std::string call;             ///< The resolved call.
   Camera camera;
-  PictureSettings picture;
-  Cell reference;
-  std::vector<Cell> cells;
-  Window seen;  ///< The part of the pictures where any cell hits something, with a margin; panels show that.
+  PictureSettings picture;  ///< Samples and background; the methods are those below.
+  std::vector<ComparedMethod> methods;
+  std::vector<ComparedModel> models;  ///< The first is the reference.
+  std::vector<Cell> cells;            ///< All methods of the first model, then of the next.
+  Window seen;                        ///< The part of the pictures where any model hits something, with a margin; panels show that.
+
+  const ComparedModel& reference() const { return models.front(); }
+  bool is_matrix() const { return methods.size() > 1; }
+  const Cell& at(size_t model, size_t method) const { return cells[model * methods.size() + method]; }
+  Cell& at(size_t model, size_t method) { return cells[model * methods.size() + method]; }
+  const ComparedModel& model_of(const Cell& cell) const { return models[cell.model]; }
+  const ComparedMethod& method_of(const Cell& cell) const { return methods[cell.method]; }
+  /// The same method on the reference; may have been skipped.
+  const Cell& reference_of(const Cell& cell) const { return at(0, cell.method); }
+  /// True where there is something to measure against.
+  bool is_measured(const Cell& cell) const { return cell.model > 0 && cell.skipped.empty() && reference_of(cell).skipped.empty(); }
 };
 
-/// What is to be compared with what, before anything is drawn. `only` restricts the cells to those representations.
+/// What is to be compared with what, before anything is drawn: models, no methods yet. `only` restricts the models to those
+/// representations.
 Comparison plan_comparison(const SceneInput& input, const SurfaceSettings& settings, const std::vector<std::string>& only,
                            bool gradient_chosen);
+/// Makes a method a column and fills the cells.
+void plan_methods(const std::vector<std::vector<MethodCall>>& columns, Comparison& comparison);
 
-/// Draws the reference and every cell, writes each one's EXR into `folder`, measures. A cell that cannot be drawn keeps its reason.
+/// Draws every cell, writes each model's EXR into `folder`, measures. Each model is built and traced once. A cell that cannot be drawn
+/// keeps its reason.
 void draw_comparison(Comparison& comparison, const std::filesystem::path& folder, const ExecutionSettings& how, ProgressBar& bar);
 
+/// The composite as it was drawn, linear.
+Image<glm::vec4> linear_composite(const Cell& cell);
 /// Input name as a heading: "machined part".
 std::string heading(const std::string& name);
-/// Value of a metric by name; NaN where there is none.
-double value_of(const Cell& cell, const std::string& name);
-/// Area of ink in the picture, pixels.
-double border_area_px(const Cell& cell);
+/// Value of a metric by name, the cell's or its model's; NaN where there is none.
+double value_of(const Comparison& comparison, const Cell& cell, const std::string& name);
+/// Build, trace and border together.
+double time_ms_of(const Comparison& comparison, const Cell& cell);
 
 /// The result in a few sentences with numbers, for someone who has never seen the program; plain text.
 std::vector<std::string> summary_sentences(const Comparison& comparison);
+/// What is not there and why, model by model and, where only a method is missing, method by method: "analytic: the cage has no field".
+std::vector<std::string> skipped_sentences(const Comparison& comparison);
+/// What failed where, in the methods' own words: "rim on the mesh: 3 of 3 visible faces flipped whole".
+std::vector<std::string> note_sentences(const Comparison& comparison);
 
 /// The rows as a study would write them, and the document of --json.
 Json rows_json(const Comparison& comparison);

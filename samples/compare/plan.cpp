@@ -1,4 +1,4 @@
-// Which representations are compared, and what they are measured against.
+// Which representations are compared, by which methods, and what they are measured against.
 
 #include <fmt/format.h>
 
@@ -93,14 +93,14 @@ std::string details_of(const SceneInput& input, const SurfaceSettings& settings)
   return settings.kind.empty() ? "each object in its own representation" : "";
 }
 
-Cell make_cell(const SceneInput& input, const SurfaceSettings& settings) {
-  Cell cell;
-  cell.name = settings.kind.empty() ? "natural" : settings.kind;
-  cell.title = with_spaces(cell.name);
-  cell.details = details_of(input, settings);
-  cell.scene = input.scene;
-  cell.surface = settings;
-  return cell;
+ComparedModel make_model(const SceneInput& input, const SurfaceSettings& settings) {
+  ComparedModel model;
+  model.name = settings.kind.empty() ? "natural" : settings.kind;
+  model.title = with_spaces(model.name);
+  model.details = details_of(input, settings);
+  model.scene = input.scene;
+  model.surface = settings;
+  return model;
 }
 
 std::string why_not(const SurfaceDescriptor& kind, const Scene& scene) {
@@ -116,20 +116,20 @@ bool wanted(const std::string& kind, const std::vector<std::string>& only) {
   return only.empty() || std::find(only.begin(), only.end(), kind) != only.end();
 }
 
-// A volume's only choice is how its normals are read: one cell a gradient.
-void add_gradient_cells(const SceneInput& input, const SurfaceSettings& settings, Comparison& comparison) {
+// A volume's only choice is how its normals are read: one model a gradient.
+void add_gradients(const SceneInput& input, const SurfaceSettings& settings, Comparison& comparison) {
   for (const GradientDescriptor& gradient : gradients()) {
-    if (gradient.about.name == comparison.reference.surface.gradient) continue;
+    if (gradient.about.name == comparison.reference().surface.gradient) continue;
     SurfaceSettings own = settings;
     own.kind = "level_set";
     own.gradient = gradient.about.name;
-    Cell cell = make_cell(input, own);
-    cell.name += "_" + gradient.about.name;
-    comparison.cells.push_back(std::move(cell));
+    ComparedModel model = make_model(input, own);
+    model.name += "_" + gradient.about.name;
+    comparison.models.push_back(std::move(model));
   }
 }
 
-void set_reference(const SceneInput& input, SurfaceSettings settings, bool gradient_chosen, Comparison& comparison) {
+void add_reference(const SceneInput& input, SurfaceSettings settings, bool gradient_chosen, Comparison& comparison) {
   settings.kind = input.scene.objects.empty() ? "" : natural_surface(input.scene.objects.front());
   for (const SceneObject& object : input.scene.objects) {
     if (natural_surface(object) != settings.kind) settings.kind = "";
@@ -142,14 +142,14 @@ void set_reference(const SceneInput& input, SurfaceSettings settings, bool gradi
     for (SceneObject& object : copy.scene.objects) object.level.reset();
     settings.normals = NormalKind::limit;
   }
-  comparison.reference = make_cell(copy, settings);
-  comparison.reference.name = "reference_" + comparison.reference.name;
+  ComparedModel reference = make_model(copy, settings);
+  reference.name = "reference_" + reference.name;
   if (all_are<Field>(input.scene)) {
     comparison.reference_words = "the analytic surface itself";
   } else if (all_cages(input.scene, settings)) {
     comparison.reference_words =
         fmt::format("the limit surface (the cage refined {} times, its vertices and normals on the limit)", settings.level);
-    comparison.reference.title = "limit surface";
+    reference.title = "limit surface";
   } else if (all_are<MeshSource>(input.scene)) {
     comparison.reference_words = "the mesh as it is in the file";
   } else if (all_are<LevelSetSource>(input.scene)) {
@@ -157,6 +157,7 @@ void set_reference(const SceneInput& input, SurfaceSettings settings, bool gradi
   } else {
     comparison.reference_words = "every object in the representation that it came in";
   }
+  comparison.models.push_back(std::move(reference));
 }
 
 }  // namespace
@@ -165,23 +166,43 @@ Comparison plan_comparison(const SceneInput& input, const SurfaceSettings& setti
                            bool gradient_chosen) {
   Comparison comparison;
   comparison.input_name = input.name;
-  set_reference(input, settings, gradient_chosen, comparison);
-  const std::string& own = comparison.reference.surface.kind;
+  add_reference(input, settings, gradient_chosen, comparison);
+  const std::string own = comparison.reference().surface.kind;
   const bool cages = any_cage(input.scene, settings);
   for (const SurfaceDescriptor& kind : surface_kinds()) {
     if (!wanted(kind.about.name, only)) continue;
     const bool same_as_reference = kind.about.name == own && !cages;
     if (same_as_reference) {
-      if (all_are<LevelSetSource>(input.scene)) add_gradient_cells(input, settings, comparison);
+      if (all_are<LevelSetSource>(input.scene)) add_gradients(input, settings, comparison);
       continue;
     }
-    SurfaceSettings cell_settings = settings;
-    cell_settings.kind = kind.about.name;
-    Cell cell = make_cell(input, cell_settings);
-    cell.skipped = why_not(kind, input.scene);
-    comparison.cells.push_back(std::move(cell));
+    SurfaceSettings own_settings = settings;
+    own_settings.kind = kind.about.name;
+    ComparedModel model = make_model(input, own_settings);
+    model.skipped = why_not(kind, input.scene);
+    comparison.models.push_back(std::move(model));
   }
   return comparison;
+}
+
+void plan_methods(const std::vector<std::vector<MethodCall>>& columns, Comparison& comparison) {
+  for (const std::vector<MethodCall>& calls : columns) {
+    ComparedMethod method;
+    for (const MethodCall& call : calls) method.name += (method.name.empty() ? "" : "+") + call.method->about.name;
+    method.words = methods_text(calls);
+    if (calls.size() == 1) method.help = calls.front().method->about.help;
+    method.calls = calls;
+    comparison.methods.push_back(std::move(method));
+  }
+  for (size_t model = 0; model < comparison.models.size(); ++model) {
+    for (size_t column = 0; column < comparison.methods.size(); ++column) {
+      Cell cell;
+      cell.name = comparison.models[model].name + (comparison.is_matrix() ? "-" + comparison.methods[column].name : "");
+      cell.model = model;
+      cell.method = column;
+      comparison.cells.push_back(std::move(cell));
+    }
+  }
 }
 
 }  // namespace limn

@@ -3,81 +3,103 @@
 namespace limn {
 namespace {
 
-Json parameters_json(const Cell& cell) {
+Json parameters_json(const ComparedModel& model) {
   Json parameters = Json::object();
   for (const SurfaceDescriptor& kind : surface_kinds()) {
-    if (kind.about.name != cell.surface.kind) continue;
+    if (kind.about.name != model.surface.kind) continue;
     for (const std::string& name : kind.settings) {
-      if (name == "voxels" && cell.surface.voxel_size <= 0.0) parameters["voxels"] = cell.surface.voxels;
-      if ((name == "voxel_size" || name == "voxel-size") && cell.surface.voxel_size > 0.0)
-        parameters["voxel_size"] = cell.surface.voxel_size;
-      if (name == "gradient") parameters["gradient"] = cell.surface.gradient;
-      if (name == "level") parameters["level"] = cell.surface.level;
-      if (name == "scheme" && cell.surface.scheme) parameters["scheme"] = name_of(*cell.surface.scheme);
-      if (name == "normals" && cell.surface.normals) parameters["normals"] = name_of(*cell.surface.normals);
+      if (name == "voxels" && model.surface.voxel_size <= 0.0) parameters["voxels"] = model.surface.voxels;
+      if ((name == "voxel_size" || name == "voxel-size") && model.surface.voxel_size > 0.0)
+        parameters["voxel_size"] = model.surface.voxel_size;
+      if (name == "gradient") parameters["gradient"] = model.surface.gradient;
+      if (name == "level") parameters["level"] = model.surface.level;
+      if (name == "scheme" && model.surface.scheme) parameters["scheme"] = name_of(*model.surface.scheme);
+      if (name == "normals" && model.surface.normals) parameters["normals"] = name_of(*model.surface.normals);
     }
   }
   return parameters;
 }
 
-Json cell_json(const Cell& cell) {
-  Json json = {{"name", cell.name}, {"surface", cell.surface.kind}, {"details", cell.details}, {"parameters", parameters_json(cell)}};
+Json cell_json(const Comparison& comparison, const Cell& cell) {
+  const ComparedModel& model = comparison.model_of(cell);
+  Json json = {{"name", cell.name},
+               {"surface", model.surface.kind},
+               {"details", model.details},
+               {"parameters", parameters_json(model)},
+               {"method", comparison.method_of(cell).name}};
   if (!cell.skipped.empty()) {
     json["skipped"] = cell.skipped;
     return json;
   }
-  json["hits"] = cell.counts.hits;
-  json["out_of_steps"] = cell.counts.out_of_steps;
-  json["build_ms"] = cell.info.build_ms;
-  json["trace_ms"] = cell.trace_ms;
-  json["bytes"] = cell.info.bytes;
-  json["voxels"] = cell.info.voxels;
-  json["triangles"] = cell.info.triangles;
-  json["border_px"] = border_area_px(cell);
+  json["hits"] = model.counts.hits;
+  json["out_of_steps"] = model.counts.out_of_steps;
+  json["build_ms"] = model.info.build_ms;
+  json["trace_ms"] = model.trace_ms;
+  json["border_ms"] = cell.border_ms;
+  json["bytes"] = model.info.bytes;
+  json["voxels"] = model.info.voxels;
+  json["triangles"] = model.info.triangles;
+  json["border_px"] = cell.ink_px;
   json["metrics"] = Json::object();
-  for (const MetricValue& value : cell.values) json["metrics"][value.name] = number_or_null(value.value);
-  json["notes"] = cell.notes;
-  json["exr"] = cell.exr.string();
+  for (const auto* values : {&cell.values, &model.values}) {
+    for (const MetricValue& value : *values) json["metrics"][value.name] = number_or_null(value.value);
+  }
+  std::vector<std::string> notes = model.info.warnings;
+  notes.insert(notes.end(), cell.notes.begin(), cell.notes.end());
+  json["notes"] = notes;
+  json["exr"] = model.exr.string();
   return json;
+}
+
+void add_rows(const Comparison& comparison, const Cell& cell, Json& rows) {
+  const ComparedModel& model = comparison.model_of(cell);
+  const Json head = {{"scene", comparison.input_name},
+                     {"view", 0},
+                     {"cell", cell.name},
+                     {"surface", model.surface.kind},
+                     {"surface_parameters", parameters_json(model)},
+                     {"method", comparison.method_of(cell).words}};
+  if (!cell.skipped.empty()) {
+    Json row = head;
+    row["skipped"] = cell.skipped;
+    rows.push_back(row);
+    return;
+  }
+  std::vector<MetricValue> values = {{"border_px", cell.ink_px, "px"}};
+  values.insert(values.end(), cell.values.begin(), cell.values.end());
+  values.insert(values.end(), model.values.begin(), model.values.end());
+  for (const MetricValue& value : values) {
+    Json row = head;
+    row["reference"] = comparison.reference().name;
+    row["metric"] = value.name;
+    row["value"] = number_or_null(value.value);
+    row["unit"] = value.unit;
+    row["time_ms"] = time_ms_of(comparison, cell);
+    row["bytes"] = model.info.bytes;
+    rows.push_back(row);
+  }
 }
 
 }  // namespace
 
 Json rows_json(const Comparison& comparison) {
   Json rows = Json::array();
-  for (const Cell& cell : comparison.cells) {
-    for (const MetricValue& value : cell.values) {
-      rows.push_back({{"scene", comparison.input_name},
-                      {"view", 0},
-                      {"cell", cell.name},
-                      {"surface", cell.surface.kind},
-                      {"surface_parameters", parameters_json(cell)},
-                      {"method", comparison.method_words},
-                      {"reference", comparison.reference.name},
-                      {"metric", value.name},
-                      {"value", number_or_null(value.value)},
-                      {"unit", value.unit},
-                      {"time_ms", cell.info.build_ms + cell.trace_ms + cell.border_ms},
-                      {"bytes", cell.info.bytes}});
-    }
-    if (!cell.skipped.empty()) {
-      rows.push_back(
-          {{"scene", comparison.input_name}, {"view", 0}, {"cell", cell.name}, {"surface", cell.surface.kind}, {"skipped", cell.skipped}});
-    }
-  }
+  for (const Cell& cell : comparison.cells) add_rows(comparison, cell, rows);
   return rows;
 }
 
 Json comparison_json(const Comparison& comparison, const std::vector<std::filesystem::path>& files) {
-  Json cells = Json::array();
-  for (const Cell& cell : comparison.cells) cells.push_back(cell_json(cell));
-  Json names = Json::array();
+  Json cells = Json::array(), reference_cells = Json::array(), names = Json::array();
+  for (const Cell& cell : comparison.cells) (cell.model == 0 ? reference_cells : cells).push_back(cell_json(comparison, cell));
   for (const std::filesystem::path& file : files) names.push_back(file.string());
+  Json methods = Json::array();
+  for (const ComparedMethod& method : comparison.methods) methods.push_back(method.words);
   return {{"input", comparison.input_name},
-          {"reference", cell_json(comparison.reference)},
+          {"reference", reference_cells.front()},
           {"reference_words", comparison.reference_words},
-          {"method", comparison.method_words},
+          {"methods", methods},
           {"summary", summary_sentences(comparison)},
+          {"reference_cells", reference_cells},
           {"cells", cells},
           {"files", names}};
 }

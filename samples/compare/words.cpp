@@ -29,22 +29,38 @@ std::string share_text(double share) {
 
 std::string short_number(double value) { return std::abs(value) >= 10.0 ? fmt::format("{:.0f}", value) : fmt::format("{:.2g}", value); }
 
-std::string full_title(const Cell& cell) { return cell.details.empty() ? cell.title : cell.title + " (" + cell.details + ")"; }
+std::string full_title(const ComparedModel& model) {
+  return model.details.empty() ? model.title : model.title + " (" + model.details + ")";
+}
 
-std::vector<std::string> caption_lines(const Cell& cell, double reference_area_px) {
+std::string cell_title(const Comparison& comparison, const Cell& cell) {
+  const ComparedModel& model = comparison.model_of(cell);
+  if (!comparison.is_matrix()) return model.title;
+  return comparison.method_of(cell).name + " on the " + (cell.model == 0 ? "reference" : model.title);
+}
+
+std::vector<std::string> caption_lines(const Comparison& comparison, const Cell& cell) {
+  const ComparedModel& model = comparison.model_of(cell);
   std::vector<std::string> lines;
-  if (cell.values.empty()) {
-    lines.push_back(fmt::format("border: {} px", counted(border_area_px(cell))));
+  if (comparison.is_measured(cell)) {
+    const double differ = value_of(comparison, cell, "pixels_differ");
+    const double area = comparison.reference_of(cell).ink_px;
+    lines.push_back(fmt::format("{} border px differ ({})", counted(differ), share_text(differ / std::max(1.0, area))));
+    lines.push_back(fmt::format("overlap (IoU) {:.4f}", value_of(comparison, cell, "overlap")));
   } else {
-    const double differ = value_of(cell, "pixels_differ");
-    lines.push_back(fmt::format("{} border px differ ({})", counted(differ), share_text(differ / std::max(1.0, reference_area_px))));
-    lines.push_back(fmt::format("overlap (IoU) {:.4f}", value_of(cell, "overlap")));
-    const double mean = value_of(cell, "normal_error_mean"), worst = value_of(cell, "normal_error_max");
-    if (std::isfinite(mean)) lines.push_back(fmt::format("normals off by {} deg, worst {} deg", short_number(mean), short_number(worst)));
+    lines.push_back(fmt::format("border: {} px", counted(cell.ink_px)));
+    if (cell.model > 0) lines.push_back("no reference: the method cannot run there");
   }
-  lines.push_back(fmt::format("build {}, trace {}", time_text(cell.info.build_ms), time_text(cell.trace_ms)));
-  if (cell.info.bytes > 0) lines.push_back(bytes_text(static_cast<double>(cell.info.bytes)) + " held");
-  if (cell.counts.out_of_steps > 0) lines.push_back(fmt::format("{} rays out of steps", cell.counts.out_of_steps));
+  if (comparison.is_matrix()) {
+    const double ms = time_ms_of(comparison, cell);
+    lines.push_back(fmt::format("drawn in {}, with its model {}", time_text(cell.border_ms), time_text(ms)));
+  } else {
+    const double mean = value_of(comparison, cell, "normal_error_mean"), worst = value_of(comparison, cell, "normal_error_max");
+    if (std::isfinite(mean)) lines.push_back(fmt::format("normals off by {} deg, worst {} deg", short_number(mean), short_number(worst)));
+    lines.push_back(fmt::format("build {}, trace {}", time_text(model.info.build_ms), time_text(model.trace_ms)));
+  }
+  if (model.info.bytes > 0) lines.push_back(bytes_text(static_cast<double>(model.info.bytes)) + " held");
+  if (model.counts.out_of_steps > 0) lines.push_back(fmt::format("{} rays out of steps", model.counts.out_of_steps));
   return lines;
 }
 

@@ -15,8 +15,10 @@ std::string share_text(double share);
 /// Two digits: "0.0034", "1.2", "104".
 std::string short_number(double value);
 /// "level set (256 voxels, central gradient)".
-std::string full_title(const Cell& cell);
+std::string full_title(const ComparedModel& model);
+/// "rim on the level set", or "level set" where there is one method only.
+std::string cell_title(const Comparison& comparison, const Cell& cell);
 /// A few short lines for a caption.
-std::vector<std::string> caption_lines(const Cell& cell, double reference_area_px);
+std::vector<std::string> caption_lines(const Comparison& comparison, const Cell& cell);
 
 }  // namespace limn

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "raymarch/picture.h"
+
+namespace limn {
+
+/// Text as it may stand in HTML, attributes included.
+std::string escaped(const std::string& text);
+/// An <img> that holds its picture. `attributes` go before the others: "class=\"pixels\" ".
+std::string picture_tag(const Image<glm::vec4>& picture, const std::string& alternative, const char* attributes = "");
+
+}  // namespace limn

@@ -1,0 +1,117 @@
+// The contact sheet of several methods: a row for each, a column for each model, and under each picture what it cost and what failed.
+
+#include <algorithm>
+
+#include "samples/compare/sheet_canvas.h"
+#include "samples/compare/words.h"
+
+namespace limn {
+namespace {
+
+constexpr int kPanel = 380;      ///< Width of a panel, px.
+constexpr int kRowHead = 58;     ///< Method and what it does.
+constexpr int kColumnHead = 60;  ///< Model.
+constexpr int kLine = 21;
+constexpr size_t kMostNoteLines = 4;
+
+// The models that have any picture.
+std::vector<size_t> columns_of(const Comparison& comparison) {
+  std::vector<size_t> columns;
+  for (size_t model = 0; model < comparison.models.size(); ++model) {
+    if (comparison.models[model].skipped.empty()) columns.push_back(model);
+  }
+  return columns;
+}
+
+std::vector<std::string> shortened(std::vector<std::string> lines) {
+  if (lines.size() > kMostNoteLines) {
+    lines.resize(kMostNoteLines);
+    lines.back() += " ...";
+  }
+  return lines;
+}
+
+std::vector<std::string> note_lines(const Cell& cell) {
+  std::vector<std::string> lines;
+  for (const std::string& note : cell.notes) {
+    const auto more = wrapped(note, kNote, kPanel);
+    lines.insert(lines.end(), more.begin(), more.end());
+  }
+  return shortened(std::move(lines));
+}
+
+int row_height(const Comparison& comparison, size_t method, int panel_height) {
+  size_t lines = 0;
+  for (const size_t model : columns_of(comparison)) {
+    const Cell& cell = comparison.at(model, method);
+    if (cell.skipped.empty()) lines = std::max(lines, caption_lines(comparison, cell).size() + note_lines(cell).size());
+  }
+  return kRowHead + panel_height + kLine * static_cast<int>(lines) + kSheetGap;
+}
+
+void draw_cell(Canvas& canvas, const Comparison& comparison, const Cell& cell, int panel_height, int x, int y) {
+  if (!cell.skipped.empty()) {
+    place(canvas, {}, x, y, kPanel, panel_height);
+    int line_y = y + panel_height / 2 - 20;
+    draw_text(canvas, x + 20, line_y, "Skipped", kHead);
+    for (const std::string& line : shortened(wrapped(cell.skipped, kNote, kPanel - 40)))
+      draw_text(canvas, x + 20, line_y += 20, line, kNote);
+    return;
+  }
+  place(canvas, fitted(cropped(linear_composite(cell), comparison.seen), kPanel, panel_height), x, y, kPanel, panel_height);
+  const std::vector<std::string> captions = caption_lines(comparison, cell);
+  draw_captions(canvas, x, y + panel_height, captions);
+  int line_y = y + panel_height + kLine * static_cast<int>(captions.size());
+  for (const std::string& line : note_lines(cell)) draw_text(canvas, x, line_y += kLine, line, kNote);
+}
+
+std::string one_line(const std::string& text, const TextStyle& style, int width) {
+  const std::vector<std::string> lines = wrapped(text, style, width);
+  return lines.empty() ? "" : lines.front() + (lines.size() > 1 ? " ..." : "");
+}
+
+}  // namespace
+
+Canvas matrix_sheet(const Comparison& comparison) {
+  const std::vector<size_t> columns = columns_of(comparison);
+  const double aspect = static_cast<double>(comparison.seen.height) / comparison.seen.width;
+  const int panel_height = std::clamp(static_cast<int>(kPanel * aspect), 140, kPanel);
+  const int width = kSheetGap + std::max(static_cast<int>(columns.size()), 2) * (kPanel + kSheetGap);
+  const auto intro = wrapped(summary_sentences(comparison).front(), kBody, width - 2 * kSheetGap);
+  const int top = kSheetGap + 40 + 23 * static_cast<int>(intro.size()) + 8;
+  std::vector<std::string> skipped;
+  for (const ComparedModel& model : comparison.models) {
+    if (model.skipped.empty()) continue;
+    const auto more = wrapped("Not shown: " + model.title + ": " + model.skipped, kNote, width - 2 * kSheetGap);
+    skipped.insert(skipped.end(), more.begin(), more.end());
+  }
+  int height = top + kColumnHead;
+  for (size_t method = 0; method < comparison.methods.size(); ++method) height += row_height(comparison, method, panel_height);
+  Canvas canvas(width, height + 20 * static_cast<int>(skipped.size()) + kSheetGap, glm::vec4(kPaper, 1.0f));
+
+  draw_text(canvas, kSheetGap, kSheetGap + 24,
+            heading(comparison.input_name) + ": " + std::to_string(comparison.methods.size()) + " methods, " +
+                std::to_string(columns.size()) + (columns.size() == 1 ? " model" : " models"),
+            kTitle);
+  int y = kSheetGap + 40;
+  for (const std::string& line : intro) draw_text(canvas, kSheetGap, y += 23, line, kBody);
+  const auto x_of = [](size_t column) { return kSheetGap + static_cast<int>(column) * (kPanel + kSheetGap); };
+  for (size_t column = 0; column < columns.size(); ++column) {
+    const ComparedModel& model = comparison.models[columns[column]];
+    draw_head(canvas, x_of(column), top, (column == 0 ? "Reference: " : "") + heading(model.title), model.details);
+  }
+  y = top + kColumnHead;
+  for (size_t method = 0; method < comparison.methods.size(); ++method) {
+    fill(canvas, kSheetGap, y, width - 2 * kSheetGap, 1, kFrame);
+    const ComparedMethod& one = comparison.methods[method];
+    draw_head(canvas, kSheetGap, y + 2, one.name, one_line(one.help, kNote, width - 2 * kSheetGap - 40));
+    for (size_t column = 0; column < columns.size(); ++column) {
+      draw_cell(canvas, comparison, comparison.at(columns[column], method), panel_height, x_of(column), y + kRowHead);
+    }
+    y += row_height(comparison, method, panel_height);
+  }
+  for (const std::string& line : skipped) draw_text(canvas, kSheetGap, y += 20, line, kNote);
+  return canvas;
+}
+
+}  // namespace limn

@@ -200,7 +200,7 @@ void EdgeLines::fill(int y, Line& out) {
   }
   if (settings_.used(kCustomSource)) {
     float* to = row_of(out, kCustomRow, kVector);
-    std::copy_n(&seen.custom.pixels[first].x, kVector * static_cast<size_t>(width_), to);
+    std::copy_n(&settings_.custom->pixels[first].x, kVector * static_cast<size_t>(width_), to);
     repeat_ends(to, width_, kVector);
   }
 }

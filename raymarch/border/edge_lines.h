@@ -22,6 +22,7 @@ struct EdgeSettings {
   float distance_factor = 1.0f;
   GrazingModulation grazing{};
   bool debug = false;
+  const Image<glm::vec3>* custom = nullptr;  ///< The custom source; read where its weight is above 0.
   bool used(size_t source) const { return sources[source].weight > 0.0f || (debug && source <= kColorSource); }
 };
 

@@ -12,11 +12,12 @@
 
 #include "raymarch/border/edge_lines.h"
 #include "raymarch/border/picture_rows.h"
+#include "raymarch/section_map.h"
 
 namespace limn {
 namespace {
 
-EdgeSettings read_settings(EdgeOperator edge_operator, const BorderInput& input, const Parameters& parameters) {
+EdgeSettings read_settings(EdgeOperator edge_operator, const Parameters& parameters) {
   EdgeSettings settings;
   settings.edge_operator = edge_operator;
   settings.debug = parameters.choice("view") == "debug";
@@ -27,7 +28,6 @@ EdgeSettings read_settings(EdgeOperator edge_operator, const BorderInput& input,
   settings.sources[kColorSource] = {weight("color_weight"), weight("color_threshold")};
   settings.sources[kIdSource] = {weight("id_weight"), weight("id_threshold")};
   settings.sources[kCustomSource] = {weight("custom_weight"), weight("custom_threshold")};
-  if (input.gbuffer.custom.size() != input.gbuffer.id.size()) settings.sources[kCustomSource].weight = 0.0f;
   if (parameters.flag("modulation")) {
     settings.distance_factor = static_cast<float>(parameters.number("distance_factor"));
     settings.grazing = {parameters.number("grazing_p"), parameters.number("grazing_hardness"), parameters.number("grazing_power"),
@@ -37,6 +37,31 @@ EdgeSettings read_settings(EdgeOperator edge_operator, const BorderInput& input,
     settings.grazing.strength = 0.0;
   }
   return settings;
+}
+
+/// The custom source: the caller's buffer, or a section map made here. Its weight falls to 0, with a note, where there is nothing to read.
+SectionMap choose_custom(const std::string& name, const BorderInput& input, const Parameters& parameters, EdgeSettings& settings,
+                         Border& border) {
+  SectionMap made;
+  EdgeSource& source = settings.sources[kCustomSource];
+  if (source.weight == 0.0f) return made;
+  const std::string& from = parameters.choice("custom_from");
+  if (from == "buffer") {
+    settings.custom = &input.gbuffer.custom;
+    if (input.gbuffer.custom.size() != input.gbuffer.id.size()) {
+      made.missing = "the scene fills no custom buffer; custom_from names other sources";
+    }
+  } else {
+    const SectionSource sections = from == "groups"     ? SectionSource::groups
+                                   : from == "position" ? SectionSource::position
+                                                        : SectionSource::vertex_colors;
+    made = section_map(input, sections, parameters.number("section_size"));
+  }
+  if (!made.missing.empty()) {
+    source.weight = 0.0f;
+    border.notes.push_back(fmt::format("{}: {}; the custom source draws nothing", name, made.missing));
+  }
+  return made;
 }
 
 float nearest_depth(const Image<float>& depth) {
@@ -104,10 +129,7 @@ void ink_line(const EdgeSettings& settings, const EdgeFlags& flags, int y, Borde
   }
 }
 
-void add_notes(const std::string& name, const BorderInput& input, const Parameters& parameters, const DepthLines& lines, Border& border) {
-  if (parameters.number("custom_weight") > 0.0 && input.gbuffer.custom.pixels.empty()) {
-    border.notes.push_back(fmt::format("{}: the scene fills no custom buffer; the custom source draws nothing", name));
-  }
+void add_notes(const std::string& name, const DepthLines& lines, Border& border) {
   if (lines.false_ones > 0) {
     border.notes.push_back(fmt::format("{}: {} of {} pixels of depth lines are false: the surface is steep there but does not jump", name,
                                        lines.false_ones.load(), lines.all.load()));
@@ -140,6 +162,15 @@ std::vector<Parameter> edge_parameters(EdgeOperator edge_operator) {
       {"id_threshold", number, "", {0.5}, 0.0, 2.0, "least edge strength of ids, which differ by 0 or 1", {}},
       {"custom_weight", number, "", {0.0}, 0.0, 1.0, "ink of edges of the scene's custom buffer; 0 leaves them out", {}},
       {"custom_threshold", number, "", {0.1}, 0.0, 1e6, "least difference in the custom buffer", {}},
+      {"custom_from",
+       ParameterKind::choice,
+       "",
+       {0.0},
+       0.0,
+       3.0,
+       "what fills the custom buffer: the caller, the mesh's vertex colours or face groups, or cells of a world grid",
+       {"buffer", "vertex_colors", "groups", "position"}},
+      {"section_size", number, "world", {0.25}, 1e-6, 1e9, "side of the grid's cells for custom_from=position", {}},
       {"modulation", ParameterKind::flag, "", {1.0}, 0.0, 1.0, "modulate the depth threshold by distance and by grazing angle", {}},
       {"distance_factor", number, "", {1.0}, 0.0, 1.0, "1: the depth threshold grows as the depth; 0: as at the nearest visible point", {}},
       {"grazing_p", number, "", {grazing.p}, 0.01, 1.0, "share of the fresnel term's range, from the top, that raises the threshold", {}},
@@ -167,8 +198,10 @@ std::vector<Parameter> edge_parameters(EdgeOperator edge_operator) {
 
 Border draw_edges(EdgeOperator edge_operator, const std::string& name, const BorderInput& input, const Parameters& parameters) {
   const GBuffer& seen = input.gbuffer;
-  const EdgeSettings settings = read_settings(edge_operator, input, parameters);
+  EdgeSettings settings = read_settings(edge_operator, parameters);
   Border border;
+  const SectionMap sections = choose_custom(name, input, parameters, settings, border);
+  if (!sections.sections.pixels.empty()) settings.custom = &sections.sections;
   border.color = glm::vec3(parameters.vector3("color"));
   border.coverage = {seen.width, seen.height, 0.0f};
   if (settings.debug) border.colors = {seen.width, seen.height, glm::vec3(0.0f)};
@@ -185,7 +218,7 @@ Border draw_edges(EdgeOperator edge_operator, const std::string& name, const Bor
       }
     });
   }
-  add_notes(name, input, parameters, depth_lines, border);
+  add_notes(name, depth_lines, border);
   return border;
 }
 

@@ -82,6 +82,17 @@ std::int32_t corner_at(const Polygons& polygons, std::int32_t face, std::int32_t
   return first[static_cast<size_t>(face)];
 }
 
+/// The faces meet in a valley. What turns away there lies behind what is before the valley, whatever single samples say.
+bool concave(const Polygons& polygons, const TopologyEdge& edge) {
+  const Mesh& mesh = polygons.mesh();
+  const std::vector<std::int32_t>& first = polygons.edges().first_corners;
+  const glm::dvec3& on_edge = mesh.positions[static_cast<size_t>(edge.vertex_a)];
+  glm::dvec3 sum(0.0);
+  for (std::int32_t c = first[static_cast<size_t>(edge.face_b)]; c < first[static_cast<size_t>(edge.face_b) + 1]; ++c)
+    sum += mesh.positions[static_cast<size_t>(mesh.corner_vertices[static_cast<size_t>(c)])] - on_edge;
+  return glm::dot(sum, polygons.edges().face_normals[static_cast<size_t>(edge.face_a)]) > 0.0;
+}
+
 /// Across the image of the edge from a to b, away from the face that is seen from the front.
 glm::dvec2 outward_normal(const Polygons& polygons, std::int32_t front, const glm::dvec2& a, const glm::dvec2& b, const Camera& camera,
                           const std::vector<glm::dvec3>& rest) {
@@ -135,7 +146,7 @@ void HullNotes::add(const BorderInput& input, size_t object, const ExtrudedCorne
     const glm::dvec3 to_eye = view_vector(view.camera(), 0.5 * (a + b));
     const bool a_front = glm::dot(topology.face_normals[static_cast<size_t>(edge.face_a)], to_eye) > 0.0;
     const bool b_front = glm::dot(topology.face_normals[static_cast<size_t>(edge.face_b)], to_eye) > 0.0;
-    if (a_front == b_front) continue;
+    if (a_front == b_front || concave(polygons, edge)) continue;
     ImageEdge image;
     image.object = static_cast<std::int32_t>(object);
     image.face_a = edge.face_a;

@@ -22,11 +22,18 @@ struct State {
   glm::ivec3 lower, upper;        ///< Cells that may hold the surface: lower <= cell < upper, index coordinates.
   int max_steps;
   OffsetWidth level{};  ///< Taken from every value.
+  double largest_level = 0.0;
   double grid_from_render_length = 1.0;
   Affine render_from_index{};
 
   /// Taking it at the nodes is exact for a constant, and for pixels good to the second order of a voxel seen from the eye.
   void subtract_level(const glm::ivec3& cell, std::array<double, 8>& values) const {
+    const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+    // Far to either side only the sign counts.
+    if (*greatest < 0.0 || *least > largest_level) {
+      for (double& value : values) value -= *greatest < 0.0 ? 0.0 : largest_level;
+      return;
+    }
     for (size_t k = 0; k < values.size(); ++k) {
       const glm::ivec3 node = cell + glm::ivec3(k & 1, (k >> 1) & 1, (k >> 2) & 1);
       values[k] -= grid_from_render_length * level.at(render_from_index.point(glm::dvec3(node)));
@@ -302,6 +309,7 @@ Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_ob
                                              .upper = glm::ivec3(0),
                                              .max_steps = max_steps,
                                              .level = level.width,
+                                             .largest_level = 1.01 * level.largest_voxels * data.info.voxel_size,
                                              .grid_from_render_length = 1.0 / length_scale,
                                              .render_from_index = inverse(compose(data.index_from_world, object_from_render))});
   if (!cells.empty()) {

@@ -51,12 +51,13 @@ struct ConvexImage {
   /// Distance of points outside; negative inside.
   double distance(const glm::dvec2& p) const {
     // Coarsely, then finely about the best: a tangent half a degree off passes far from the end of a long side.
-    constexpr int step = 50;
+    constexpr int step = 40;
     const int count = static_cast<int>(reach.size());
     const auto at = [&](int i) { return glm::dot(p, direction[static_cast<size_t>(i)]) - reach[static_cast<size_t>(i)]; };
     int best = 0;
     for (int i = 0; i < count; i += step) best = at(i) > at(best) ? i : best;
     double largest = at(best);
+    if (largest > 8.0 || largest < -8.0) return largest;
     for (int i = best - step; i <= best + step; ++i) largest = std::max(largest, at((i + count) % count));
     return largest;
   }
@@ -64,7 +65,7 @@ struct ConvexImage {
 
 ConvexImage convex_image(const Camera& camera, const Support& support) {
   ConvexImage image;
-  constexpr int count = 36000;
+  constexpr int count = 14400;
   for (int i = 0; i < count; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / count;
     const glm::dvec2 d(std::cos(angle), std::sin(angle));

@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# The demo: every built-in scene as a picture, three of them compared in every representation, and one page that leads to all of it.
+# The demo: every built-in scene as a picture, three of them compared in every representation, every outline method on one of them, and one
+# page that leads to all of it.
 #   demo.sh PROGRAM FOLDER
 set -euo pipefail
 limn=$1
 out=$2
 compared=(ellipsoid machined_part teacup)
-mkdir -p "$out"
+drawn=rook # by every method: it is a mesh, as some of them need, with flat faces, round ones and edges
+mkdir -p "$out/methods"
 
 echo "Drawing the built-in scenes"
 mapfile -t scenes < <("$limn" list scenes --json | sed -n 's/^ *"name": "\(.*\)",\{0,1\}$/\1/p')
@@ -18,6 +20,15 @@ for scene in "${compared[@]}"; do
   echo "Comparing the representations of '$scene'"
   "$limn" compare "$scene" -o "$out/compare-$scene"
 done
+echo
+echo "Drawing '$drawn' by every outline method"
+# Entries are indented once, their parameters deeper.
+mapfile -t methods < <("$limn" list methods --json | sed -n 's/^ \{2,4\}"name": "\(.*\)",\{0,1\}$/\1/p')
+[ ${#methods[@]} -gt 0 ] || { echo "demo: '$limn list methods --json' named no method" >&2; exit 1; }
+for method in "${methods[@]}"; do
+  "$limn" render "$drawn" --method "$method" --size 480x480 --samples 4 --background 1,1,1 -q -o "$out/methods/$method.png"
+done
+"$limn" compare "$drawn" --methods all --size 960x720 -o "$out/compare-methods"
 
 {
   cat <<'HTML'
@@ -37,6 +48,13 @@ distances, or triangles. Each comparison below draws one shape in every represen
 HTML
   for scene in "${compared[@]}"; do
     printf '<figure><a href="compare-%s/report.html"><img src="%s.png" alt="%s">Compare: %s</a></figure>\n' "$scene" "$scene" "$scene" "${scene//_/ }"
+  done
+  echo '</div><h2>Outline methods</h2>'
+  echo '<p><a href="compare-methods/report.html">All of them on every model of one shape, with what differs and what fails</a></p>'
+  echo '<div class="grid">'
+  for method in "${methods[@]}"; do
+    printf '<figure><img src="methods/%s.png" alt="%s drawn by %s" loading="lazy"><figcaption>%s</figcaption></figure>\n' \
+      "$method" "${drawn//_/ }" "$method" "$method"
   done
   echo '</div><h2>All scenes</h2><div class="grid">'
   for scene in "${scenes[@]}"; do

@@ -92,7 +92,7 @@ TEST(Formats, WhatExportWritesIsReadBackAsTheSameSurface) {
     const auto exported = run_limn({"info", folder.file(name), "--json"}).json().at("bounds");
     for (const char* side : {"lower", "upper"}) {
       // A field's own bounds may be loose, so the exported surface lies inside them, and fills most of them.
-      for (int axis = 0; axis < 3; ++axis) {
+      for (size_t axis = 0; axis < 3; ++axis) {
         const double outer = std::abs(original.at(side).at(axis).get<double>()), inner = std::abs(exported.at(side).at(axis).get<double>());
         EXPECT_LE(inner, outer + 0.1) << name << side << axis;
         EXPECT_GE(inner, 0.5 * outer) << name << side << axis;

@@ -56,6 +56,18 @@ void ink_hull(const BorderInput& input, size_t object, const ExtrudedCorners& co
   }
 }
 
+void add_mitre_note(const BorderInput& input, const ExtrudeSettings& settings, Border& border) {
+  const bool by_offset = std::any_of(input.model.surfaces.begin(), input.model.surfaces.end(),
+                                     [](const Surface& surface) { return !surface.polygons && surface.offset.make; });
+  if (!by_offset || settings.space != ExtrudeSpace::clip || input.gbuffer.id.size() == 0) return;
+  const InkBeyond beyond = ink_beyond(input.gbuffer, border.coverage, settings.width_px);
+  if (beyond.beyond_pixels == 0) return;
+  border.notes.push_back(
+      fmt::format("extrude by exact offset: {} of {} pixels beside the object lie beyond the {:.4g} px asked for, up to {:.1f} px: "
+                  "f is no distance at corners cut sharply",
+                  beyond.beyond_pixels, beyond.ink_pixels, settings.width_px, beyond.farthest_px));
+}
+
 Border draw(const BorderInput& input, const Parameters& parameters) {
   const ExtrudeSettings settings = read_settings(parameters);
   Border border;
@@ -88,6 +100,7 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
                                        100.0 * static_cast<double>(gaps.gap_pixels) / static_cast<double>(gaps.outline_pixels)));
   }
   notes.write(settings, border.notes);
+  add_mitre_note(input, settings, border);
   return border;
 }
 

@@ -36,6 +36,14 @@ struct OutlineGaps {
 };
 OutlineGaps outline_gaps(const GBuffer& gbuffer, const Image<float>& coverage);
 
+/// Pixels of ink beside all objects, and those of them that lie farther from the silhouette than `width_px` and a pixel: where f is no
+/// distance (sharp CSG), its offset is mitred instead of round.
+struct InkBeyond {
+  std::int64_t ink_pixels = 0, beyond_pixels = 0;
+  double farthest_px = 0.0;
+};
+InkBeyond ink_beyond(const GBuffer& gbuffer, const Image<float>& coverage, double width_px);
+
 /// Widths of the drawn line along the visible contour edges of meshes, in pixels across the edge, negative inwards.
 struct DrawnWidths {
   double low = 0.0, median = 0.0, high = 0.0;  ///< 5 %, 50 % and 95 % of the outline's length.

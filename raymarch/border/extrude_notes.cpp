@@ -6,6 +6,7 @@
 
 #include "raymarch/border/edge_visibility.h"
 #include "raymarch/border/extrude.h"
+#include "raymarch/border/silhouette.h"
 
 namespace limn {
 namespace {
@@ -122,6 +123,22 @@ OutlineGaps outline_gaps(const GBuffer& gbuffer, const Image<float>& coverage) {
       ++result.gaps;
       result.longest_px = std::max(result.longest_px, take_run(kind, x, y));
     }
+  }
+  return result;
+}
+
+InkBeyond ink_beyond(const GBuffer& gbuffer, const Image<float>& coverage, double width_px) {
+  InkBeyond result;
+  const int reach = std::min(kLargestReach_px, static_cast<int>(std::ceil(4.0 * width_px)) + 4);
+  const Image<std::int32_t> squares = exact_squares(find_silhouette(gbuffer, false), reach);
+  for (size_t i = 0; i < squares.size(); ++i) {
+    if (gbuffer.id.pixels[i] != 0 || coverage.pixels[i] <= 0.5f) continue;
+    ++result.ink_pixels;
+    const std::int32_t square = squares.pixels[i];
+    const double distance = square == kFarSquared ? static_cast<double>(reach) : std::sqrt(static_cast<double>(square)) / kSubPixels;
+    if (distance <= width_px + 1.0) continue;
+    ++result.beyond_pixels;
+    result.farthest_px = std::max(result.farthest_px, distance);
   }
   return result;
 }

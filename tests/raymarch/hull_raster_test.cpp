@@ -1,0 +1,77 @@
+// The rasteriser behind extruded meshes, and the normals along which they grow.
+
+#include "raymarch/border/hull_raster.h"
+
+#include <fmt/core.h>
+
+#include <random>
+
+#include "subdiv/edge_topology.h"
+#include "tests/raymarch/image_buffers.h"
+
+namespace limn::test {
+namespace {
+
+TEST(HullRaster, TrianglesThatShareAnEdgeShareNoPixelAndLeaveNone) {
+  const std::uint32_t seed = std::random_device{}();
+  fmt::print("seed {}\n", seed);
+  std::mt19937 random(seed);
+  Camera camera = straight_camera(40, 30, Projection::orthographic, 1.0);
+  for (int round = 0; round < 300; ++round) {
+    // Corners on whole and half pixels meet samples exactly.
+    const auto corner = [&] {
+      return glm::dvec3(std::round(std::uniform_real_distribution(-50.0, 50.0)(random)) * 0.5,
+                        std::round(std::uniform_real_distribution(-50.0, 50.0)(random)) * 0.5, 1.0);
+    };
+    const glm::dvec3 a = corner(), b = corner(), c = corner(), inside = (a + b + c) / 3.0;
+    const auto covered = [&](const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& r) {
+      const HullTriangle triangle{p, q, r};
+      return rasterize_hull({&triangle, 1}, HullFaces::all, camera, 0.0, {0.5, 0.5});
+    };
+    const Image<double> whole = covered(a, b, c), first = covered(a, b, inside), second = covered(b, c, inside),
+                        third = covered(c, a, inside);
+    for (size_t i = 0; i < whole.size(); ++i) {
+      const int count = std::isfinite(first.pixels[i]) + std::isfinite(second.pixels[i]) + std::isfinite(third.pixels[i]);
+      // `inside` is rounded to 1/1024 px, which the whole triangle's edges do not see.
+      ASSERT_EQ(count, std::isfinite(whole.pixels[i]) ? 1 : 0) << "round " << round << ", pixel " << i;
+    }
+  }
+}
+
+TEST(HullRaster, DepthIsThatOfThePlaneAndTheNearPlaneCuts) {
+  const Camera camera = straight_camera(64, 48, Projection::perspective, 60.0);
+  // The plane Z = 2 + x / 2, from before the eye to far behind it.
+  const HullTriangle triangle{{-8.0, -6.0, -2.0}, {10.0, -6.0, 7.0}, {1.0, 12.0, 2.5}};
+  const Image<double> depth = rasterize_hull({&triangle, 1}, HullFaces::all, camera, 0.5, {0.5, 0.5});
+  int filled = 0;
+  for (int y = 0; y < depth.height; ++y) {
+    for (int x = 0; x < depth.width; ++x) {
+      if (!std::isfinite(depth.at(x, y))) continue;
+      ++filled;
+      const double slope = (x + 0.5 - 32.0) / 60.0, expected = 2.0 / (1.0 - 0.5 * slope);
+      ASSERT_NEAR(depth.at(x, y), expected, 0.02 * expected) << x << ' ' << y;
+      ASSERT_GE(depth.at(x, y), 0.49);
+    }
+  }
+  EXPECT_GT(filled, 1000);
+}
+
+TEST(SmoothNormals, AreOnePerPositionWhateverTheTriangulationAndDoubledVertices) {
+  Mesh box = box_mesh({1.0, 1.0, 1.0});
+  Mesh soup;  // every face its own vertices, and each quad as two triangles
+  std::int32_t first = 0;
+  for (size_t f = 0; f < 6; ++f) {
+    for (const int k : {0, 1, 2, 0, 2, 3})
+      soup.positions.push_back(box.positions[static_cast<size_t>(box.corner_vertices[4 * f + static_cast<size_t>(k)])]);
+    for (int t = 0; t < 2; ++t) soup.face_sizes.push_back(3);
+    for (int k = 0; k < 6; ++k) soup.corner_vertices.push_back(first++);
+  }
+  for (const Mesh* mesh : {&box, &soup}) {
+    const std::vector<glm::vec3> normals = bake_smooth_normals(*mesh);
+    ASSERT_EQ(normals.size(), mesh->positions.size());
+    for (size_t v = 0; v < normals.size(); ++v) EXPECT_LT(angle_between(glm::dvec3(normals[v]), glm::normalize(mesh->positions[v])), 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace limn::test

@@ -84,7 +84,9 @@ std::string row_html(const Comparison& comparison, const std::vector<Column>& co
   const ComparedModel& model = comparison.model_of(cell);
   std::string html = "<tr>";
   if (comparison.is_matrix()) html += "<td class=\"text\">" + escaped(comparison.method_of(cell).name) + "</td>";
-  html += "<td class=\"text\">" + escaped(cell.model == 0 ? "reference: " + full_title(model) : full_title(model)) + "</td>";
+  // The cards above say the details of each model; many rows of them would be nothing but them.
+  const std::string title = comparison.is_matrix() ? model.title : full_title(model);
+  html += "<td class=\"text\">" + escaped(cell.model == 0 ? "reference: " + title : title) + "</td>";
   for (const Column& column : columns) {
     const double value = column_value(comparison, column, cell);
     html += fmt::format("<td data-value=\"{}\"{}>{}</td>", std::isfinite(value) ? fmt::format("{}", value) : "",

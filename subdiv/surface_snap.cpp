@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "sdf/shape.h"
 #include "subdiv/audit.h"
@@ -21,7 +22,9 @@ const double kCreaseCosine = std::cos(25.0 * std::numbers::pi / 180.0);
 const double kSameSideCosine = std::cos(5.0 * std::numbers::pi / 180.0);
 
 glm::dvec3 unit_gradient(FieldEvaluator& evaluator, const glm::dvec3& p) {
-  const glm::dvec3 gradient = evaluator.jet(p).gradient;
+  glm::dvec3 gradient;
+  double value = 0.0;
+  evaluator.gradients(std::span(&p, 1), std::span(&value, 1), std::span(&gradient, 1));
   const double length = glm::length(gradient);
   return length > 0.0 && std::isfinite(length) ? gradient / length : glm::dvec3(0.0);
 }
@@ -220,34 +223,63 @@ std::vector<glm::vec3> field_normals(const Field& field, const Mesh& mesh, const
   return normals;
 }
 
-std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh, bool reflex_too) {
-  const std::vector<std::int32_t> first = first_corners(mesh);
+namespace {
+
+/// Which of `candidates` lie folded, in their order.
+std::vector<std::int32_t> folded_among(const Field& field, const Mesh& mesh, const std::vector<std::int32_t>& first,
+                                       const std::vector<std::int32_t>& candidates, bool reflex_too) {
   Evaluators evaluators([&field] { return FieldEvaluator(field); });
-  std::vector<char> bad(mesh.face_count(), 0);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.face_count(), 64), [&](const tbb::blocked_range<size_t>& range) {
+  std::vector<char> bad(candidates.size(), 0);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, candidates.size(), 64), [&](const tbb::blocked_range<size_t>& range) {
     FieldEvaluator& evaluator = evaluators.local();
     std::vector<glm::dvec3> corners;
-    for (size_t f = range.begin(); f < range.end(); ++f) {
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      const auto f = static_cast<size_t>(candidates[i]);
       gather_corners(mesh, face_corners(mesh, first[f], f), corners);
       glm::dvec3 middle(0.0);
       for (const glm::dvec3& p : corners) middle += p;
       middle /= static_cast<double>(corners.size());
       const glm::dvec3 area = vector_area(corners);
       project_to_surface(evaluator, middle);
-      bad[f] = glm::dot(area, unit_gradient(evaluator, middle)) < 0.0 || (reflex_too && has_reflex_corner(corners, area));
+      bad[i] = glm::dot(area, unit_gradient(evaluator, middle)) < 0.0 || (reflex_too && has_reflex_corner(corners, area));
     }
   });
   std::vector<std::int32_t> folded;
-  for (size_t f = 0; f < bad.size(); ++f)
-    if (bad[f]) folded.push_back(static_cast<std::int32_t>(f));
+  for (size_t i = 0; i < bad.size(); ++i)
+    if (bad[i]) folded.push_back(candidates[i]);
   return folded;
 }
 
+std::vector<std::int32_t> all_faces(const Mesh& mesh) {
+  std::vector<std::int32_t> faces(mesh.face_count());
+  std::iota(faces.begin(), faces.end(), 0);
+  return faces;
+}
+
+/// Faces with a vertex that has moved: only they can have changed.
+std::vector<std::int32_t> faces_touching(const Mesh& mesh, const std::vector<std::int32_t>& first, const std::vector<char>& moved) {
+  std::vector<std::int32_t> faces;
+  for (size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto corners = face_corners(mesh, first[f], f);
+    if (std::any_of(corners.begin(), corners.end(), [&](std::int32_t v) { return moved[static_cast<size_t>(v)] != 0; })) {
+      faces.push_back(static_cast<std::int32_t>(f));
+    }
+  }
+  return faces;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh, bool reflex_too) {
+  return folded_among(field, mesh, first_corners(mesh), all_faces(mesh), reflex_too);
+}
+
 void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds) {
+  const std::vector<std::int32_t> first = first_corners(mesh);
+  std::vector<std::int32_t> candidates = all_faces(mesh);
   for (int round = 0; round < rounds; ++round) {
-    const std::vector<std::int32_t> folded = folded_faces(field, mesh, true);
+    const std::vector<std::int32_t> folded = folded_among(field, mesh, first, candidates, true);
     if (folded.empty()) return;
-    const std::vector<std::int32_t> first = first_corners(mesh);
     std::vector<char> moves(mesh.vertex_count(), 0);
     for (const std::int32_t f : folded)
       for (const std::int32_t v : face_corners(mesh, first[static_cast<size_t>(f)], static_cast<size_t>(f)))
@@ -257,6 +289,11 @@ void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds) {
     for (size_t v = 0; v < moves.size(); ++v)
       if (moves[v]) mesh.positions[v] = 0.5 * (mesh.positions[v] + means[v]);
     snap_some(field, mesh, &moves, snapped);
+    // A folded face whose vertices all stayed is folded still.
+    for (const std::int32_t f : folded)
+      for (const std::int32_t v : face_corners(mesh, first[static_cast<size_t>(f)], static_cast<size_t>(f)))
+        moves[static_cast<size_t>(v)] = 1;
+    candidates = faces_touching(mesh, first, moves);
   }
 }
 

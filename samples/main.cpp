@@ -1,3 +1,5 @@
+#include <opensubdiv/far/error.h>
+
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -9,6 +11,8 @@
 
 int main(int argc, char** argv) {
   limn::install_interrupt_handlers();
+  // It would print lines of its own about meshes that the audit and our errors speak of.
+  OpenSubdiv::Far::SetWarningCallback([](const char*) {});
   try {
     return limn::run_program(argc, argv);
   } catch (const limn::Cancelled&) {

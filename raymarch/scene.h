@@ -29,10 +29,10 @@ struct LevelSetSource {
 struct SceneObject {
   std::string name{};
   std::variant<Field, MeshSource, LevelSetSource> source;  ///< A closed set: what files and shapes can give.
-  Affine world_from_object{};           ///< Applied to meshes and level sets; a Field has its transforms folded in (identity here).
+  Affine world_from_object{};         ///< Applied to meshes and level sets; a Field has its transforms folded in (identity here).
   glm::vec3 color{0.8f, 0.8f, 0.8f};  ///< Linear.
   int material = 0;                   ///< For material edges; mesh faces with materials of their own add their index to it.
-  std::optional<int> level{};           ///< Subdivision level of this object, over the settings'.
+  std::optional<int> level{};         ///< Subdivision level of this object, over the settings'.
 };
 
 struct Scene {

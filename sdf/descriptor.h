@@ -30,7 +30,7 @@ struct Parameter {
   double max = std::numeric_limits<double>::infinity();   ///< Inclusive, for each component.
   std::string help{};
   std::vector<std::string> choices{};  ///< For `choice`.
-  int group = 1;                     ///< For `list`: numbers an item takes (2 for [r, y]).
+  int group = 1;                       ///< For `list`: numbers an item takes (2 for [r, y]).
 };
 
 /// The value of a parameter as a file or a command line gave it: numbers, or a word (choice, or text still to be parsed).

@@ -6,17 +6,8 @@ namespace limn {
 
 std::span<const BorderMethod> border_methods() {
   static const std::vector<BorderMethod> methods = {
-      rim_method(),
-      fresnel_method(),
-      rim_width_method(),
-      extrude_method(),
-      edge_quads_method(),
-      normal4_method(),
-      roberts_method(),
-      sobel_method(),
-      blur_method(),
-      jump_flood_method(),
-      distance_method(),
+      rim_method(),     fresnel_method(), rim_width_method(), extrude_method(),    edge_quads_method(), normal4_method(),
+      roberts_method(), sobel_method(),   blur_method(),      jump_flood_method(), distance_method(),
   };
   return methods;
 }

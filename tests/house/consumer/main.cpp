@@ -1,8 +1,8 @@
 // Another project's unit test: the silhouette of a sphere, drawn through the installed library, has the area of its disc.
-#include <cmath>
-#include <cstdio>
 #include <raymarch/picture.h>
 #include <sdf/shape.h>
+#include <cmath>
+#include <cstdio>
 
 int main() {
   limn::Scene scene;

@@ -45,6 +45,10 @@ size_t count_folded(const Field& field, const Cage& cage) {
   return folded_faces(field, refined_once(field, cage.mesh, std::int64_t{8} << 30).mesh).size();
 }
 
+/// Where walls end in knife edges some faces fold whatever the sampling: one in this many is accepted, since finer samplings only make
+/// the cage larger.
+constexpr size_t kFacesPerFold = 500;
+
 /// The coarsest sampling whose topology a neighbouring one confirms and whose faces lie the right way up; failing that, the best met.
 Cage find_cage(const Field& field) {
   const Box& box = field.traits().bounds;
@@ -63,7 +67,7 @@ Cage find_cage(const Field& field) {
         Cage cage = snapped_cage(field, *candidate);
         const size_t folded = count_folded(field, cage);
         if (best.mesh.face_sizes.empty() || folded < best_folded) best = std::move(cage), best_folded = folded;
-        if (best_folded == 0) return best;
+        if (best_folded * kFacesPerFold <= best.mesh.face_count()) return best;
       }
     }
     previous = std::move(mesh);

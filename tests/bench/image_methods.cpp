@@ -98,7 +98,7 @@ std::vector<Work> all_work(const Input& input) {
     work.push_back({name, std::move(run)});
     work.push_back({peer, std::move(peer_run), static_cast<int>(work.size()) - 1});
   };
-  const int taps = 2 * kBlurRadius_px + 1;
+  constexpr int taps = 2 * kBlurRadius_px + 1;
   const auto precise = [&input] {
     cv::Mat distances;
     cv::distanceTransform(input.empty, distances, cv::DIST_L2, cv::DIST_MASK_PRECISE);
@@ -106,11 +106,11 @@ std::vector<Work> all_work(const Input& input) {
   pair("normal4", ours(input, "normal4", {}), "OpenCV 2 Sobel x 3 channels", sobel_passes(input, 1, 4));
   pair("roberts (depth, normal, id)", ours(input, "roberts", {}), "OpenCV 2 Sobel x 5 channels", sobel_passes(input, 0, 5));
   pair("sobel (depth, normal, id)", ours(input, "sobel", {}), "OpenCV 2 Sobel x 5 channels", sobel_passes(input, 0, 5));
-  pair("blur box 8 px", ours(input, "blur", {{"radius", kBlurRadius_px}}, {{"kernel", "box"}}), "OpenCV blur", [&input, taps] {
+  pair("blur box 8 px", ours(input, "blur", {{"radius", kBlurRadius_px}}, {{"kernel", "box"}}), "OpenCV blur", [&input] {
     cv::Mat out;
     cv::blur(input.mask, out, {taps, taps});
   });
-  pair("blur gaussian 8 px", ours(input, "blur", {{"radius", kBlurRadius_px}}), "OpenCV GaussianBlur", [&input, taps] {
+  pair("blur gaussian 8 px", ours(input, "blur", {{"radius", kBlurRadius_px}}), "OpenCV GaussianBlur", [&input] {
     cv::Mat out;
     cv::GaussianBlur(input.mask, out, {taps, taps}, kBlurRadius_px / 3.0);
   });

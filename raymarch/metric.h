@@ -2,19 +2,33 @@
 // Numbers that say how far a picture is from a reference. One file in raymarch/metric/ and one line in its registry.
 
 #include "raymarch/picture.h"
+#include "raymarch/truth.h"
 
 namespace limn {
+
+/// What a metric looks at. One that finds its subject missing measures nothing: NaN.
+enum class MetricSubject {
+  gbuffer,  ///< `picture` and `reference`, their G-buffers: the same for every outline method.
+  ink,      ///< `picture` and `reference`, their ink.
+  curves,   ///< `curves` and `truth`.
+  motion,   ///< `moved` and `reference_moved`.
+};
 
 struct MetricInput {
   const Picture& picture;
   const Picture& reference;  ///< Same camera and size.
   const Camera& camera;
+  const BorderCurves* curves = nullptr;  ///< The model's border (raymarch/measured_border.h).
+  const BorderTruth* truth = nullptr;    ///< Same camera and threshold.
+  /// Ink after sub-pixel moves of the camera, one picture a move; the same moves for both.
+  std::span<const Image<float>> moved{};
+  std::span<const Image<float>> reference_moved{};
 };
 
 struct MetricValue {
   std::string name{};  ///< "normal_error_mean"
   double value = 0.0;  ///< NaN where there is nothing to measure.
-  std::string unit{};  ///< "px", "deg", ""
+  std::string unit{};  ///< "px", "deg", "" for a share, a ratio or a count
 };
 
 struct Metric {
@@ -22,7 +36,7 @@ struct Metric {
   std::vector<std::string> values{};  ///< Names of the values it yields, with units: "normal_error_mean [deg]".
   bool lower_is_better = true;
   std::vector<MetricValue> (*measure)(const MetricInput& input);
-  bool of_border = false;  ///< It reads the ink; else the G-buffer alone, and is the same for every method.
+  MetricSubject subject = MetricSubject::gbuffer;
 };
 
 std::span<const Metric> metrics();

@@ -28,7 +28,7 @@ Metric overlap_metric() {
       {"overlap"},
       false,
       measure,
-      true};
+      MetricSubject::ink};
 }
 
 }  // namespace limn

@@ -29,7 +29,7 @@ Metric pixels_differ_metric() {
           {"pixels_differ [px]", "pixels_missing [px]", "pixels_false [px]"},
           true,
           measure,
-          true};
+          MetricSubject::ink};
 }
 
 }  // namespace limn

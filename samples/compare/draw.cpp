@@ -115,10 +115,10 @@ void keep_cells(size_t row, Comparison& comparison, Drawn& drawn) {
   }
 }
 
-std::vector<MetricValue> measured(const Picture& picture, const Picture& reference, const Camera& camera, bool of_border) {
+std::vector<MetricValue> measured(const Picture& picture, const Picture& reference, const Camera& camera, MetricSubject subject) {
   std::vector<MetricValue> all;
   for (const Metric& metric : metrics()) {
-    if (metric.of_border != of_border) continue;
+    if (metric.subject != subject) continue;
     const std::vector<MetricValue> values = metric.measure({picture, reference, camera});
     all.insert(all.end(), values.begin(), values.end());
   }
@@ -126,13 +126,13 @@ std::vector<MetricValue> measured(const Picture& picture, const Picture& referen
 }
 
 void measure_cells(size_t row, Picture& picture, Picture& reference, Comparison& comparison) {
-  comparison.models[row].values = measured(picture, reference, comparison.camera, false);
+  comparison.models[row].values = measured(picture, reference, comparison.camera, MetricSubject::gbuffer);
   for (size_t column = 0; column < comparison.methods.size(); ++column) {
     Cell &cell = comparison.at(row, column), &truth = comparison.at(0, column);
     if (!comparison.is_measured(cell)) continue;
     std::swap(picture.border, cell.border);
     std::swap(reference.border, truth.border);
-    cell.values = measured(picture, reference, comparison.camera, true);
+    cell.values = measured(picture, reference, comparison.camera, MetricSubject::ink);
     std::swap(picture.border, cell.border);
     std::swap(reference.border, truth.border);
   }

@@ -1,0 +1,36 @@
+#pragma once
+// The border as it really is, solved in double precision from what the scene is and never from a picture of it: the reference of every
+// metric.
+
+#include <string>
+#include <vector>
+
+#include "raymarch/border_curves.h"
+#include "raymarch/gbuffer.h"
+#include "raymarch/scene.h"
+
+namespace limn {
+
+struct TruthSettings {
+  double threshold = 0.4;       ///< Of the rim: its level curve is N.V = threshold; 0 leaves the silhouette alone. In [0, 1).
+  double tolerance_px = 0.005;  ///< How far the polylines may lie from the curves.
+  std::int64_t max_bytes = std::int64_t{4} << 30;  ///< For stand-ins of what has no closed description.
+};
+
+/// The visible border of a scene.
+struct BorderTruth {
+  BorderCurves curves{};  ///< Visible parts only.
+  /// Share of each pixel that is ink of the rim: hit, and N.V below the threshold.
+  Image<float> coverage{};
+  /// Closed curves on the surfaces, hidden ones and parts included: contour generators, and level curves N.V = threshold.
+  int contour_generators = 0, level_curves = 0;
+  bool exact = true;                 ///< False where a finest affordable version stands in for the surface itself.
+  double bound_px = 0.0;             ///< No point of `curves` lies farther from the true border than this; an estimate where not `exact`.
+  std::string from{};                ///< What it was solved on, in words: "the field", "the limit surface", "a mesh of level 6".
+  std::vector<std::string> notes{};  ///< What the bound does not cover, with numbers.
+};
+
+/// Throws InputError for a threshold outside [0, 1) and for a scene that nothing affordable can stand in for.
+BorderTruth solve_truth(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how);
+
+}  // namespace limn

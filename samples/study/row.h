@@ -1,0 +1,70 @@
+#pragma once
+// One measurement of a study: a line of rows.csv and of rows.jsonl, and what every chart is drawn from.
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "samples/output.h"
+
+namespace limn {
+
+/// One metric of one cell. A cell is one model, seen from one view, drawn by one method. A cell that failed is one row without a metric,
+/// its reason in `failed`.
+struct StudyRow {
+  std::string key{};  ///< Of the cell: a hash of all that determines it, the program's version included. Rows of one cell share it.
+  std::string scene{};
+  int view = 0;
+  std::string surface{};  ///< "mesh", "level_set", …
+  std::map<std::string, std::string>
+      surface_parameters{};  ///< {"level", "3"}, {"normals", "vertex"}; {"voxels", "128"}, {"gradient", "cubic"}.
+  std::string method{};
+  std::map<std::string, std::string> method_parameters{};  ///< {"threshold", "0.4"}.
+  std::string metric{};
+  double value = std::numeric_limits<double>::quiet_NaN();
+  std::string unit{};
+  double resolution = std::numeric_limits<double>::quiet_NaN();  ///< Mean edge or voxel, as a share of the scene's longest side.
+  double build_ms = 0.0, trace_ms = 0.0, border_ms = 0.0;
+  std::int64_t bytes = 0;
+  std::string failed{};  ///< Why there is no value; empty where there is one.
+  double time_ms() const { return build_ms + trace_ms + border_ms; }
+};
+
+/// "mesh, vertex normals": the model without its resolution, the same for all rows of one line in a chart.
+std::string series_of(const StudyRow& row);
+/// "level 3", "128 voxels".
+std::string resolution_text(const StudyRow& row);
+
+/// The header of rows.csv, and a row as a line of either file, without the line's end. Numbers are written so that they read back the same.
+std::string csv_header();
+std::string csv_line(const StudyRow& row);
+std::string json_line(const StudyRow& row);
+/// Throws InputError with file and line.
+StudyRow row_from_json(const std::string& line, const std::filesystem::path& file, int line_number);
+
+/// What a study is about, in its folder as study.json: what shards must agree on, and what the report says about it.
+struct StudyHead {
+  std::string id{};  ///< Hash of all that determines the study's cells.
+  std::string input{};
+  std::string scene{};
+  std::string call{};   ///< The resolved call.
+  std::string truth{};  ///< "the field itself, within 0.005 px".
+  bool exact = true;
+  int views = 1;
+  std::vector<std::string> surfaces{};  ///< Series in order.
+  std::int64_t cells = 0;
+};
+
+/// A small picture of one cell: the border on white, wrong ink red, missing ink blue. PNG bytes, at most 320 px wide.
+/// In the study's folder as cells/<key>.png.
+std::filesystem::path thumbnail_file(const std::filesystem::path& folder, const std::string& key);
+
+/// Writes report.html and the charts (.svg and .png) into the study's folder, from its rows alone, in any order; the same files for the
+/// same rows. Returns what it wrote.
+std::vector<std::filesystem::path> write_study_report(const StudyHead& head, const std::vector<StudyRow>& rows,
+                                                      const std::filesystem::path& folder);
+
+}  // namespace limn

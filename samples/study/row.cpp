@@ -1,0 +1,200 @@
+#include "samples/study/row.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+// What changes along a line of a chart; every other parameter makes another line.
+constexpr const char* kResolutionNames[] = {"level", "voxels", "voxel_size"};
+
+bool is_resolution(const std::string& name) {
+  return std::find(std::begin(kResolutionNames), std::end(kResolutionNames), name) != std::end(kResolutionNames);
+}
+
+std::string spaced(std::string text) {
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+std::string parameter_text(const std::string& name, const std::string& value) {
+  if (name == "normals") return value == "flat" ? "flat facets" : spaced(value) + " normals";
+  if (name == "gradient") return spaced(value) + " gradient";
+  if (name == "scheme") return spaced(value);
+  return spaced(name) + " " + value;
+}
+
+// The shortest text that reads back as the same number.
+std::string number_text(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
+
+std::string list_text(const std::map<std::string, std::string>& parameters) {
+  std::string text;
+  for (const auto& [name, value] : parameters) text += (text.empty() ? "" : ";") + name + "=" + value;
+  return text;
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c == '\n' || c == '\r' ? ' ' : c;  // one row, one line: what reads lines must not lose count
+  }
+  return out + "\"";
+}
+
+// JSON knows finite numbers only.
+Json number_json(double value) {
+  if (std::isnan(value)) return nullptr;
+  if (std::isinf(value)) return value > 0.0 ? "inf" : "-inf";
+  return value;
+}
+
+struct LineReader {
+  const Json& row;
+  std::string place;
+
+  [[noreturn]] void fail(const char* name, const char* expected) const {
+    const auto found = row.find(name);
+    throw InputError(
+        {place, name, found == row.end() ? "" : found->dump(), found == row.end() ? "missing" : "of the wrong type", expected});
+  }
+  const Json& at(const char* name, const char* expected) const {
+    const auto found = row.find(name);
+    if (found == row.end()) fail(name, expected);
+    return *found;
+  }
+  std::string text(const char* name) const {
+    const Json& value = at(name, "a text");
+    if (!value.is_string()) fail(name, "a text");
+    return value.get<std::string>();
+  }
+  double number(const char* name) const {
+    const Json& value = at(name, "a number or null");
+    if (value.is_number()) return value.get<double>();
+    if (value.is_null()) return std::numeric_limits<double>::quiet_NaN();
+    if (value == "inf") return std::numeric_limits<double>::infinity();
+    if (value == "-inf") return -std::numeric_limits<double>::infinity();
+    fail(name, "a number or null");
+  }
+  template <class Integer>
+  Integer integer(const char* name) const {
+    const Json& value = at(name, "a whole number");
+    if (!value.is_number_integer()) fail(name, "a whole number");
+    return value.get<Integer>();
+  }
+  std::map<std::string, std::string> parameters(const char* name) const {
+    std::map<std::string, std::string> all;
+    const Json& object = at(name, "an object of texts");
+    if (!object.is_object()) fail(name, "an object of texts");
+    for (const auto& [key, value] : object.items()) {
+      if (!value.is_string()) fail(name, "an object of texts");
+      all[key] = value.get<std::string>();
+    }
+    return all;
+  }
+};
+
+}  // namespace
+
+std::string series_of(const StudyRow& row) {
+  std::string text = spaced(row.surface);
+  for (const auto& [name, value] : row.surface_parameters) {
+    if (!is_resolution(name)) text += ", " + parameter_text(name, value);
+  }
+  return text;
+}
+
+std::string resolution_text(const StudyRow& row) {
+  std::string text;
+  for (const char* name : kResolutionNames) {
+    const auto found = row.surface_parameters.find(name);
+    if (found == row.surface_parameters.end()) continue;
+    const std::string& value = found->second;
+    text += (text.empty() ? "" : ", ") + (found->first == "voxels" ? value + " voxels" : spaced(found->first) + " " + value);
+  }
+  return text;
+}
+
+std::string csv_header() {
+  return "key,scene,view,surface,surface_parameters,method,method_parameters,metric,value,unit,resolution,time_ms,build_ms,trace_ms,border_"
+         "ms,bytes,failed";
+}
+
+std::string csv_line(const StudyRow& row) {
+  const std::string fields[] = {row.key,
+                                row.scene,
+                                std::to_string(row.view),
+                                row.surface,
+                                list_text(row.surface_parameters),
+                                row.method,
+                                list_text(row.method_parameters),
+                                row.metric,
+                                number_text(row.value),
+                                row.unit,
+                                number_text(row.resolution),
+                                number_text(row.time_ms()),
+                                number_text(row.build_ms),
+                                number_text(row.trace_ms),
+                                number_text(row.border_ms),
+                                std::to_string(row.bytes),
+                                row.failed};
+  std::string line;
+  for (const std::string& field : fields) line += (&field == fields ? "" : ",") + csv_field(field);
+  return line;
+}
+
+std::string json_line(const StudyRow& row) {
+  Json json = {{"key", row.key}, {"scene", row.scene}, {"view", row.view}, {"surface", row.surface}};
+  json["surface_parameters"] = row.surface_parameters;
+  json["method"] = row.method;
+  json["method_parameters"] = row.method_parameters;
+  json["metric"] = row.metric;
+  json["value"] = number_json(row.value);
+  json["unit"] = row.unit;
+  json["resolution"] = number_json(row.resolution);
+  json["time_ms"] = number_json(row.time_ms());
+  json["build_ms"] = number_json(row.build_ms);
+  json["trace_ms"] = number_json(row.trace_ms);
+  json["border_ms"] = number_json(row.border_ms);
+  json["bytes"] = row.bytes;
+  if (!row.failed.empty()) json["failed"] = row.failed;
+  // A file's name or a reason may hold bytes that are no UTF-8; they must not end a study.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+StudyRow row_from_json(const std::string& line, const std::filesystem::path& file, int line_number) {
+  const std::string place = fmt::format("{}:{}", file.string(), line_number);
+  const Json json = Json::parse(line, nullptr, false);
+  if (!json.is_object()) throw InputError({place, "", line.substr(0, 60), "not a row of a study", "a JSON object on one line"});
+  const LineReader read{json, place};
+  StudyRow row;
+  row.key = read.text("key");
+  row.scene = read.text("scene");
+  row.view = read.integer<int>("view");
+  row.surface = read.text("surface");
+  row.surface_parameters = read.parameters("surface_parameters");
+  row.method = read.text("method");
+  row.method_parameters = read.parameters("method_parameters");
+  row.metric = read.text("metric");
+  row.value = read.number("value");
+  row.unit = read.text("unit");
+  row.resolution = read.number("resolution");
+  row.build_ms = read.number("build_ms");
+  row.trace_ms = read.number("trace_ms");
+  row.border_ms = read.number("border_ms");
+  row.bytes = read.integer<std::int64_t>("bytes");
+  if (json.contains("failed")) row.failed = read.text("failed");
+  return row;
+}
+
+std::filesystem::path thumbnail_file(const std::filesystem::path& folder, const std::string& key) {
+  return folder / "cells" / (key + ".png");
+}
+
+}  // namespace limn

@@ -99,6 +99,12 @@ int LimitSurface::face_size(int face) const {
   return data_->face_sizes[static_cast<size_t>(face)];
 }
 
+bool LimitSurface::has_sub_faces(int face) const {
+  LIMN_CHECK(face >= 0 && face < face_count());
+  const Bfr::Surface<double>& surface = data_->surfaces[static_cast<size_t>(face)];
+  return surface.IsValid() && surface.GetParameterization().HasSubFaces();
+}
+
 bool LimitSurface::evaluate(int face, int sub_face, double u, double v, LimitPoint& out) const {
   LIMN_CHECK(face >= 0 && face < face_count());
   const Bfr::Surface<double>& surface = data_->surfaces[static_cast<size_t>(face)];

@@ -55,6 +55,8 @@ class LimitSurface {
   int face_count() const;
   /// Corners of the parametric domain: 4 for a quad, 3 for a triangle, n sub-quads otherwise.
   int face_size(int face) const;
+  /// True where `evaluate` wants a sub-face: n-gons of a scheme made for quads. False without a limit surface.
+  bool has_sub_faces(int face) const;
   /// False where the face has no limit surface: a hole, a collapsed face, a non-manifold corner, or a neighbour that meets the face in two
   /// places. Around extraordinary vertices the patches approximate the limit (normals within 0.01 degrees where measured), and at the
   /// ends of creases (darts) no better than OpenSubdiv's masks; refine() is exact at its vertices. (u, v) in [0,1]^2 for quads; n-gons:

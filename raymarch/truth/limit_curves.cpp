@@ -1,0 +1,153 @@
+// Segments joined to polylines, and polylines made as fine as the tolerance wants.
+
+#include "raymarch/truth/limit_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "raymarch/truth/limit_segments.h"
+
+namespace limn {
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr int kRefinements = 8;
+
+/// What is traced, and its pieces.
+struct Shape {
+  const PlacedLimitSurface& placed;
+  const Camera& camera;
+  const LimitCurveSettings& settings;
+  std::vector<LimitSegment> segments;
+};
+
+glm::dvec2 outward_at(const Shape& shape, const LimitSegment& segment, const TracedPoint& point) {
+  const glm::dvec2 towards = glm::dvec2(project(shape.camera, segment.beside)) - point.px;
+  if (segment.crease) return segment.beside_is_bounded ? -towards : towards;
+  if (shape.settings.kind == CurveKind::inner) return towards;
+  const glm::dmat3& axes = shape.camera.world_from_camera;
+  const glm::dvec2 n(glm::dot(point.normal, axes[0]), -glm::dot(point.normal, axes[1]));
+  return point.radial_curvature < 0.0 ? -n : n;
+}
+
+TracedPoint point_at(const Shape& shape, const LimitSegment& segment, std::uint32_t patch, const glm::dvec2& uv) {
+  const LimitSample s = sample(shape.placed, patch, uv);
+  const glm::dvec3 image = project(shape.camera, s.position), v = view_vector(shape.camera, s.position);
+  TracedPoint point;
+  point.p = s.position;
+  point.px = glm::dvec2(image);
+  point.depth = image.z;
+  point.crease = segment.crease;
+  point.normal = segment.crease ? segment.crease_normal : s.normal;
+  if (!segment.crease)
+    point.radial_curvature = curvature_along(curvature_at(shape.placed, patch, uv), v - glm::dot(v, s.normal) * s.normal);
+  // A fold that bends towards its normal is seen, if at all, from the surface's other side.
+  point.lift = shape.settings.kind == CurveKind::inner ? v : point.radial_curvature < 0.0 ? -point.normal : point.normal;
+  point.outward = outward_at(shape, segment, point);
+  return point;
+}
+
+/// The place of the curve beside the middle of two others, in their patch; the middle itself on a crease.
+glm::dvec2 middle_of(const Shape& shape, const LimitSegment& segment, std::uint32_t patch, const glm::dvec2& a, const glm::dvec2& b) {
+  const glm::dvec2 middle = 0.5 * (a + b), along = b - a, across(-0.5 * along.y, 0.5 * along.x);
+  if (segment.crease) return middle;
+  const auto clamped = [&](glm::dvec2 p) {
+    p = glm::clamp(p, glm::dvec2(0.0), glm::dvec2(1.0));
+    const double excess = p.x + p.y - 1.0;
+    return shape.placed.patches[patch].triangle && excess > 0.0 ? p - 0.5 * excess : p;
+  };
+  const glm::dvec2 p0 = clamped(middle - across), p1 = clamped(middle + across);
+  const double c = shape.settings.threshold;
+  const double h0 = facing_at(shape.placed, shape.camera, patch, p0) - c, h1 = facing_at(shape.placed, shape.camera, patch, p1) - c;
+  if ((h0 < 0.0) == (h1 < 0.0)) return middle;
+  return glm::mix(p0, p1, root_between(shape.placed, shape.camera, patch, p0, p1, h0, h1, c));
+}
+
+struct Place {
+  glm::dvec2 uv;
+  TracedPoint point;
+};
+
+void refine(const Shape& shape, const LimitSegment& segment, const Place& a, const Place& b, int depth, std::vector<Place>& out) {
+  const std::uint32_t patch = segment.ends[0].patch;
+  Place middle{middle_of(shape, segment, patch, a.uv, b.uv), {}};
+  middle.point = point_at(shape, segment, patch, middle.uv);
+  const glm::dvec2 chord = b.point.px - a.point.px;
+  const double length = glm::length(chord);
+  const glm::dvec2 offset = middle.point.px - 0.5 * (a.point.px + b.point.px);
+  const double deviation = length > 0.0 ? std::abs(chord.x * offset.y - chord.y * offset.x) / length : glm::length(offset);
+  if (depth == 0 || deviation < shape.settings.tolerance_px) {
+    if (deviation > 0.1 * shape.settings.tolerance_px) out.push_back(middle);
+    return;
+  }
+  refine(shape, segment, a, middle, depth - 1, out);
+  out.push_back(middle);
+  refine(shape, segment, middle, b, depth - 1, out);
+}
+
+void append(const Shape& shape, const LimitSegment& segment, bool turned, bool with_last, TracedCurve& curve) {
+  const LimitEnd &first = segment.ends[turned ? 1 : 0], &last = segment.ends[turned ? 0 : 1];
+  std::vector<Place> places{{first.uv, point_at(shape, segment, first.patch, first.uv)}};
+  const Place end{last.uv, point_at(shape, segment, last.patch, last.uv)};
+  refine(shape, segment, places.front(), end, kRefinements, places);
+  if (with_last) places.push_back(end);
+  for (const Place& place : places) curve.points.push_back(place.point);
+}
+
+struct Graph {
+  std::map<LimitEndKey, std::vector<std::uint32_t>> at_end;
+  std::vector<char> used;
+};
+
+std::uint32_t next_segment(const Graph& graph, const LimitEndKey& key) {
+  for (const std::uint32_t s : graph.at_end.at(key)) {
+    if (!graph.used[s]) return s;
+  }
+  return kNone;
+}
+
+TracedCurve walk(const Shape& shape, Graph& graph, std::uint32_t start, const LimitEndKey& from) {
+  TracedCurve out;
+  out.kind = shape.settings.kind;
+  out.object = shape.settings.object;
+  LimitEndKey key = from;
+  for (std::uint32_t s = start; s != kNone;) {
+    graph.used[s] = 1;
+    const LimitSegment& segment = shape.segments[s];
+    const bool turned = !(segment.ends[0].key == key);
+    key = segment.ends[turned ? 0 : 1].key;
+    const std::uint32_t next = key == from ? kNone : next_segment(graph, key);
+    out.closed = key == from;
+    append(shape, segment, turned, next == kNone && !out.closed, out);
+    s = next;
+  }
+  return out;
+}
+
+std::vector<TracedCurve> chained(const Shape& shape) {
+  Graph graph;
+  graph.used.assign(shape.segments.size(), 0);
+  for (std::uint32_t s = 0; s < shape.segments.size(); ++s) {
+    for (const LimitEnd& end : shape.segments[s].ends) graph.at_end[end.key].push_back(s);
+  }
+  std::vector<TracedCurve> curves;
+  for (const auto& [key, here] : graph.at_end) {
+    if (here.size() % 2 == 0) continue;
+    if (const std::uint32_t s = next_segment(graph, key); s != kNone) curves.push_back(walk(shape, graph, s, key));
+  }
+  for (std::uint32_t s = 0; s < shape.segments.size(); ++s) {
+    if (!graph.used[s]) curves.push_back(walk(shape, graph, s, shape.segments[s].ends[0].key));
+  }
+  return curves;
+}
+
+}  // namespace
+
+std::vector<TracedCurve> trace_limit_curves(const PlacedLimitSurface& placed, const LimitGrid& grid, const Camera& camera,
+                                            const LimitCurveSettings& settings) {
+  const Shape shape{placed, camera, settings, limit_segments(placed, grid, camera, settings.kind, settings.threshold)};
+  return chained(shape);
+}
+
+}  // namespace limn

@@ -1,0 +1,232 @@
+#include "raymarch/truth/limit_grid.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace limn {
+namespace {
+
+// Two evaluations of one place differ by rounding, and around extraordinary vertices by what patches approximate.
+constexpr double kSamePlace = 1e-6;   // of the extent
+constexpr double kSameNormal = 2e-3;  // radians; a crease is sharper, a patch's error is not
+constexpr int kFinestSteps = 256;     // along a patch's side
+
+bool has_normal(const glm::dvec3& n) { return std::isfinite(n.x) && glm::dot(n, n) > 0.5; }
+
+/// Where a patch degenerates (a collapsed side, a corner without derivatives) the normal of a point a little inside serves.
+glm::dvec2 inwards(const LimitPatch& patch, const glm::dvec2& uv) {
+  const glm::dvec2 middle(patch.triangle ? 1.0 / 3.0 : 0.5);
+  return glm::mix(uv, middle, 1e-4);
+}
+
+/// Nodes by place: a hash of cells twice as wide as the tolerance, of which a point's neighbourhood touches at most eight.
+class Places {
+ public:
+  explicit Places(double tolerance) : tolerance_(tolerance) {}
+  std::uint32_t find_or_add(const glm::dvec3& p, std::vector<glm::dvec3>& nodes) {
+    const double side = 2.0 * tolerance_;
+    const glm::dvec3 low = glm::floor((p - tolerance_) / side), high = glm::floor((p + tolerance_) / side);
+    for (double x = low.x; x <= high.x; ++x) {
+      for (double y = low.y; y <= high.y; ++y) {
+        for (double z = low.z; z <= high.z; ++z) {
+          const auto [first, last] = cells_.equal_range(key({x, y, z}));
+          for (auto it = first; it != last; ++it) {
+            if (glm::distance(nodes[it->second], p) <= tolerance_) return it->second;
+          }
+        }
+      }
+    }
+    const auto node = static_cast<std::uint32_t>(nodes.size());
+    nodes.push_back(p);
+    cells_.emplace(key(glm::floor(p / side)), node);
+    return node;
+  }
+
+ private:
+  static std::uint64_t key(const glm::dvec3& cell) {
+    const auto mixed = [](double v, std::uint64_t factor) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(v)) * factor; };
+    return mixed(cell.x, 0x9e3779b97f4a7c15u) ^ mixed(cell.y, 0xc2b2ae3d27d4eb4fu) ^ mixed(cell.z, 0x165667b19e3779f9u);
+  }
+  double tolerance_;
+  std::unordered_multimap<std::uint64_t, std::uint32_t> cells_;
+};
+
+/// Steps along a patch's side: even, so that an n-gon's shares, which have half as many, meet the lattices of its neighbours.
+int steps_of(const LimitPatch& patch, int steps) { return patch.share ? steps / 2 : steps; }
+
+std::int64_t triangles_of(const PlacedLimitSurface& placed, int steps) {
+  std::int64_t count = 0;
+  for (const LimitPatch& patch : placed.patches) {
+    const std::int64_t n = steps_of(patch, steps);
+    count += patch.triangle ? n * n : 2 * n * n;
+  }
+  return count;
+}
+
+double longest_side_px(const PlacedLimitSurface& placed, const Camera& camera) {
+  double longest = 0.0;
+  for (size_t k = 0; k < placed.patches.size(); ++k) {
+    const bool quad = !placed.patches[k].triangle, share = placed.patches[k].share;
+    const std::array<glm::dvec2, 4> corners{{{0, 0}, {1, 0}, quad ? glm::dvec2(1, 1) : glm::dvec2(0.5, 0.5), {0, 1}}};
+    for (size_t i = 0; i < 4; ++i) {
+      const LimitSample a = sample(placed, k, corners[i]), b = sample(placed, k, corners[(i + 1) % 4]);
+      if (!a.valid || !b.valid) continue;
+      const double depth = std::max(project(camera, 0.5 * (a.position + b.position)).z, 1e-9);
+      longest = std::max(longest, (share ? 2.0 : 1.0) * glm::distance(a.position, b.position) * pixels_per_unit_at(camera, depth));
+    }
+  }
+  return longest;
+}
+
+struct PatchLattice {
+  int steps = 1;
+  std::vector<LimitSample> samples;  ///< Rows of v, each of u from 0; a triangle's rows grow shorter.
+  bool valid = true;
+};
+
+size_t lattice_index(const LimitPatch& patch, int steps, int i, int j) {
+  const auto row = static_cast<size_t>(j), n = static_cast<size_t>(steps);
+  const size_t before = patch.triangle ? row * (n + 1) - row * (row - 1) / 2 : row * (n + 1);
+  return before + static_cast<size_t>(i);
+}
+
+PatchLattice sample_lattice(const PlacedLimitSurface& placed, size_t k, int steps) {
+  PatchLattice lattice;
+  lattice.steps = steps;
+  const LimitPatch& patch = placed.patches[k];
+  for (int j = 0; j <= steps; ++j) {
+    for (int i = 0; i <= (patch.triangle ? steps - j : steps); ++i) {
+      lattice.samples.push_back(sample(placed, k, glm::dvec2(i, j) / double(steps)));
+      lattice.valid = lattice.valid && lattice.samples.back().valid;
+    }
+  }
+  return lattice;
+}
+
+using SidesOfNodes = std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>;
+
+std::uint32_t add_side(std::uint32_t node, const glm::dvec3& normal, LimitGrid& grid) {
+  grid.normals.push_back(normal);
+  grid.node_of_side.push_back(node);
+  return static_cast<std::uint32_t>(grid.normals.size() - 1);
+}
+
+/// The side of a seam's node that has this normal, or a new one.
+std::uint32_t seam_side(std::uint32_t node, const glm::dvec3& normal, SidesOfNodes& sides, LimitGrid& grid) {
+  std::vector<std::uint32_t>& here = sides[node];
+  for (const std::uint32_t side : here) {
+    if (glm::distance(grid.normals[side], normal) < kSameNormal) return side;
+  }
+  here.push_back(add_side(node, normal, grid));
+  return here.back();
+}
+
+void add_lattice(const PlacedLimitSurface& placed, std::uint32_t k, const PatchLattice& lattice, Places& places, SidesOfNodes& sides,
+                 LimitGrid& grid) {
+  const LimitPatch& patch = placed.patches[k];
+  const int n = lattice.steps;
+  std::vector<LimitCorner> corners;
+  for (int j = 0; j <= n; ++j) {
+    for (int i = 0; i <= (patch.triangle ? n - j : n); ++i) {
+      const LimitSample& s = lattice.samples[lattice_index(patch, n, i, j)];
+      const bool seam = i == 0 || j == 0 || (patch.triangle ? i + j == n : i == n || j == n);
+      LimitCorner corner{static_cast<std::uint32_t>(grid.positions.size()), 0, glm::dvec2(i, j) / double(n)};
+      if (seam) {
+        corner.node = places.find_or_add(s.position, grid.positions);
+        corner.side = seam_side(corner.node, s.normal, sides, grid);
+      } else {
+        grid.positions.push_back(s.position);
+        corner.side = add_side(corner.node, s.normal, grid);
+      }
+      corners.push_back(corner);
+    }
+  }
+  const auto add = [&](std::array<int, 2> a, std::array<int, 2> b, std::array<int, 2> c) {
+    const auto at = [&](std::array<int, 2> ij) { return corners[lattice_index(patch, n, ij[0], ij[1])]; };
+    grid.triangles.push_back({k, {at(a), at(b), at(c)}});
+  };
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < (patch.triangle ? n - j : n); ++i) {
+      add({i, j}, {i + 1, j}, {i, j + 1});
+      if (!patch.triangle || i + j + 1 < n) add({i + 1, j}, {i + 1, j + 1}, {i, j + 1});
+    }
+  }
+}
+
+}  // namespace
+
+PlacedLimitSurface place(const LimitSurface& surface, const Affine& world_from_cage) {
+  PlacedLimitSurface placed{surface, world_from_cage, {}};
+  for (int face = 0; face < surface.face_count(); ++face) {
+    const bool sub_faces = surface.has_sub_faces(face);
+    const int size = surface.face_size(face), parts = sub_faces ? size : 1;
+    for (int part = 0; part < parts; ++part) placed.patches.push_back({face, part, sub_faces, size == 3 && !sub_faces});
+  }
+  return placed;
+}
+
+LimitSample sample(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& uv) {
+  const LimitPatch& patch = placed.patches[k];
+  LimitPoint point;
+  LimitSample out;
+  if (!placed.surface.evaluate(patch.face, patch.sub_face, uv.x, uv.y, point)) return out;
+  out.position = placed.world_from_cage.point(point.position);
+  glm::dvec3 cross = glm::cross(placed.world_from_cage.vector(point.du), placed.world_from_cage.vector(point.dv));
+  if (glm::determinant(placed.world_from_cage.linear) < 0.0) cross = -cross;
+  double length = glm::length(cross);
+  if (!(length > 1e-12 * (glm::dot(point.du, point.du) + glm::dot(point.dv, point.dv)))) {
+    const glm::dvec2 in = inwards(patch, uv);
+    placed.surface.evaluate(patch.face, patch.sub_face, in.x, in.y, point);
+    cross = glm::cross(placed.world_from_cage.vector(point.du), placed.world_from_cage.vector(point.dv));
+    if (glm::determinant(placed.world_from_cage.linear) < 0.0) cross = -cross;
+    length = glm::length(cross);
+  }
+  out.normal = cross / length;
+  out.valid = has_normal(out.normal) && std::isfinite(out.position.x + out.position.y + out.position.z);
+  return out;
+}
+
+SurfaceCurvature curvature_at(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& uv) {
+  const LimitPatch& patch = placed.patches[k];
+  LimitPoint p;
+  SurfaceCurvature none;
+  none.k1 = none.k2 = std::numeric_limits<double>::quiet_NaN();
+  if (!placed.surface.evaluate(patch.face, patch.sub_face, uv.x, uv.y, p)) return none;
+  const Affine& map = placed.world_from_cage;
+  LimitPoint moved{map.point(p.position), map.vector(p.du), map.vector(p.dv), map.vector(p.duu), map.vector(p.duv), map.vector(p.dvv)};
+  if (glm::determinant(map.linear) < 0.0) {
+    std::swap(moved.du, moved.dv);
+    std::swap(moved.duu, moved.dvv);
+  }
+  return curvature(moved);
+}
+
+LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, double cell_px, std::int64_t max_triangles,
+                      double& used_cell_px) {
+  const double longest = longest_side_px(placed, camera);
+  int steps = std::clamp(2 * static_cast<int>(std::ceil(0.5 * longest / cell_px)), 4, kFinestSteps);
+  while (steps > 4 && triangles_of(placed, steps) > max_triangles) steps -= 2;
+  used_cell_px = longest / steps;
+  std::vector<PatchLattice> lattices(placed.patches.size());
+  tbb::parallel_for(size_t{0}, placed.patches.size(),
+                    [&](size_t k) { lattices[k] = sample_lattice(placed, k, steps_of(placed.patches[k], steps)); });
+  LimitGrid grid;
+  Box extent;
+  for (const PatchLattice& lattice : lattices) {
+    if (lattice.valid) extent = include(extent, lattice.samples.front().position);
+  }
+  Places places(std::max(kSamePlace * extent.radius(), 1e-300));
+  SidesOfNodes sides;
+  for (size_t k = 0; k < lattices.size(); ++k) {
+    if (lattices[k].valid)
+      add_lattice(placed, static_cast<std::uint32_t>(k), lattices[k], places, sides, grid);
+    else
+      ++grid.invalid_patches;
+  }
+  return grid;
+}
+
+}  // namespace limn

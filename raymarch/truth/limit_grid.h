@@ -1,0 +1,62 @@
+#pragma once
+// A limit surface sampled on a lattice over each of its patches, as one triangulated sheet whose seams are joined: what curves are traced
+// over.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "sdf/camera.h"
+#include "subdiv/refine.h"
+
+namespace limn {
+
+/// A quad face, a triangle of a Loop cage, or a corner's share of an n-gon.
+struct LimitPatch {
+  int face = 0, sub_face = 0;
+  bool share = false;     ///< Of an n-gon.
+  bool triangle = false;  ///< Its domain is u + v <= 1.
+};
+
+/// A point of a patch and the unit world normal there; `valid` false where the surface has none.
+struct LimitSample {
+  glm::dvec3 position{0.0};  ///< World.
+  glm::dvec3 normal{0.0};    ///< World, unit.
+  bool valid = false;
+};
+
+/// A limit surface in the world.
+struct PlacedLimitSurface {
+  const LimitSurface& surface;
+  Affine world_from_cage{};
+  std::vector<LimitPatch> patches{};
+};
+
+PlacedLimitSurface place(const LimitSurface& surface, const Affine& world_from_cage);
+LimitSample sample(const PlacedLimitSurface& placed, size_t patch, const glm::dvec2& uv);
+/// With its curvature, world units.
+SurfaceCurvature curvature_at(const PlacedLimitSurface& placed, size_t patch, const glm::dvec2& uv);
+
+struct LimitCorner {
+  std::uint32_t node = 0;  ///< The same for all corners at one place.
+  std::uint32_t side = 0;  ///< The same for all corners of one place that share a normal; index into LimitGrid::normals.
+  glm::dvec2 uv{0.0};
+};
+struct LimitTriangle {
+  std::uint32_t patch = 0;
+  std::array<LimitCorner, 3> corners{};
+};
+
+struct LimitGrid {
+  std::vector<glm::dvec3> positions{};  ///< Of nodes, world.
+  std::vector<glm::dvec3> normals{};    ///< Of sides, world, unit.
+  std::vector<std::uint32_t> node_of_side{};
+  std::vector<LimitTriangle> triangles{};
+  std::int64_t invalid_patches = 0;  ///< Without a limit surface; they are left out.
+};
+
+/// The lattice's cells are about `cell_px` wide where the patch is largest in the image, and at most `max_triangles` triangles in all.
+LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, double cell_px, std::int64_t max_triangles,
+                      double& used_cell_px);
+
+}  // namespace limn

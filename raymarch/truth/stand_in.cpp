@@ -1,0 +1,228 @@
+// Scenes with meshes or volumes that are what they are: the border of their finest model, and how far another way of reading the same
+// model puts it.
+
+#include "raymarch/truth/stand_in.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "raymarch/measured_border.h"
+#include "raymarch/truth/parts.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+// Above these a refined cage costs seconds.
+constexpr std::int64_t kMostFaces = 800'000;
+constexpr int kFinestLevel = 8;
+
+const MeshSource* cage_in(const SceneObject& object) {
+  const auto* mesh = std::get_if<MeshSource>(&object.source);
+  return mesh != nullptr && mesh->scheme ? mesh : nullptr;
+}
+
+/// The longest edge of a box's shadow, px: how large an object is in the picture.
+double extent_px(const SceneObject& object, const Camera& camera) {
+  const Box box = bounds(object);
+  const double depth = std::max(project(camera, box.center()).z, 0.25 * box.radius());
+  return box.longest_side() * pixels_per_unit_at(camera, depth);
+}
+
+std::int64_t faces_at(const Scene& scene, int level) {
+  std::int64_t faces = 0;
+  for (const SceneObject& object : scene.objects) {
+    if (const MeshSource* cage = cage_in(object)) faces += predict_refined_size(cage->mesh, *cage->scheme, level).faces;
+  }
+  return faces;
+}
+
+/// A face is about as large as a share of twice the object's extent squared.
+double edge_px_at(const Scene& scene, const Camera& camera, int level) {
+  double longest = 0.0;
+  for (const SceneObject& object : scene.objects) {
+    const MeshSource* cage = cage_in(object);
+    if (cage == nullptr) continue;
+    const auto faces = static_cast<double>(std::max<std::int64_t>(1, predict_refined_size(cage->mesh, *cage->scheme, level).faces));
+    longest = std::max(longest, extent_px(object, camera) * std::sqrt(2.0 / faces));
+  }
+  return longest;
+}
+
+std::string best_gradient(const LevelSetSource& source) {
+  const GradientDescriptor* best = nullptr;
+  for (const GradientDescriptor& gradient : gradients()) {
+    if (source.level_set.info().half_width_voxels >= gradient.half_width_voxels && (best == nullptr || gradient.order > best->order))
+      best = &gradient;
+  }
+  return best == nullptr ? "cell" : best->about.name;
+}
+
+void add_word(const std::string& word, StandIn& out) {
+  if (std::find(out.words.begin(), out.words.end(), word) == out.words.end()) out.words.push_back(word);
+}
+
+/// One object at its finest; `second` asks for the next best reading of what it is: facets for smoothed normals, the next lower gradient.
+Scene only(const Scene& scene, size_t index) {
+  Scene out = scene;
+  out.objects = {scene.objects[index]};
+  out.objects.front().level.reset();
+  return out;
+}
+
+SurfaceSettings finest_settings(const SceneObject& object, int level, StandIn& out) {
+  SurfaceSettings settings;
+  settings.kind = natural_surface(object);
+  settings.level = level;
+  if (const auto* volume = std::get_if<LevelSetSource>(&object.source)) {
+    settings.gradient = best_gradient(*volume);
+    add_word("the volume with the " + settings.gradient + " gradient", out);
+  } else if (cage_in(object) != nullptr) {
+    settings.normals = NormalKind::limit;
+    add_word(fmt::format("the cage refined {} times onto its limit", level), out);
+  } else if (std::holds_alternative<Field>(object.source)) {
+    add_word("the field", out);
+  } else {
+    add_word("the mesh as it is, with smooth normals", out);
+  }
+  return settings;
+}
+
+SurfaceSettings second_settings(const SceneObject& object, int level) {
+  SurfaceSettings settings;
+  settings.kind = natural_surface(object);
+  settings.level = std::max(level - 1, 0);
+  if (const auto* volume = std::get_if<LevelSetSource>(&object.source))
+    settings.gradient = best_gradient(*volume) == "cubic" ? "central" : "cell";
+  else if (std::holds_alternative<MeshSource>(object.source) && cage_in(object) == nullptr)
+    settings.normals = NormalKind::flat;
+  return settings;
+}
+
+template <class Settings>
+SceneModel model_of(const Scene& scene, const Settings& settings_of) {
+  // Built one by one, since each object has settings of its own, and put together about the whole scene's centre.
+  SceneModel model;
+  model.bounds = bounds(scene);
+  if (!model.bounds.empty()) model.render_origin = model.bounds.center();
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    SceneObject object = scene.objects[i];
+    object.level.reset();
+    const SurfaceSettings settings = settings_of(object);
+    model.surfaces.push_back(find_surface(settings.kind).build(object, settings, model.render_origin));
+    model.colors.push_back(object.color);
+    model.materials.push_back(object.material);
+    const Box& reach = model.surfaces.back().bounds;
+    if (reach.finite()) model.bounds = merge(model.bounds, {reach.lower + model.render_origin, reach.upper + model.render_origin});
+  }
+  return model;
+}
+
+/// Normals, depths and curvatures of a measured border: for a silhouette those of the sheet a little inside it.
+void describe_points(const SceneModel& model, const Camera& camera, BorderCurves& border) {
+  constexpr double kInside_px = 0.25;
+  for (BorderCurve& curve : border.curves) {
+    const size_t n = curve.points.size();
+    std::vector<glm::dvec2> places(n);
+    for (size_t i = 0; i < n; ++i) {
+      const glm::dvec2 along = curve.points[std::min(i + 1, n - 1)].px - curve.points[i > 0 ? i - 1 : 0].px;
+      const double length = glm::length(along);
+      const glm::dvec2 outward = length > 0.0 ? glm::dvec2(-along.y, along.x) / length : glm::dvec2(0.0);
+      places[i] = curve.points[i].px - (curve.kind == CurveKind::silhouette ? kInside_px : 0.0) * outward;
+    }
+    std::vector<PointSample> samples(n);
+    sample_points(model, camera, places, samples);
+    for (size_t i = 0; i < n; ++i) {
+      const PointSample& s = samples[i];
+      if (s.status != HitStatus::hit || s.id != curve.object) continue;
+      BorderPoint& point = curve.points[i];
+      point.position = s.position;
+      point.normal = glm::dvec3(s.normal);
+      const CurvatureSource& source = model.surfaces[static_cast<size_t>(s.id - 1)].curvature;
+      if (source.evaluate == nullptr) continue;
+      const SurfacePoint at{s.position - model.render_origin, point.normal, -1};
+      SurfaceCurvature bend;
+      source.evaluate(source.state.get(), std::span(&at, 1), std::span(&bend, 1));
+      const glm::dvec3 v = view_vector(camera, s.position);
+      point.radial_curvature = curvature_along(bend, v - glm::dot(v, point.normal) * point.normal);
+    }
+  }
+}
+
+double nearest_px(const glm::dvec2& p, const BorderCurves& border, CurveKind kind) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const BorderCurve& curve : border.curves) {
+    if (curve.kind != kind) continue;
+    for (const BorderPoint& point : curve.points) best = std::min(best, glm::distance(p, point.px));
+  }
+  return best;
+}
+
+/// How far two readings of one model put the border from each other: the 95th percentile over the first one's points.
+double disagreement_px(const BorderCurves& a, const BorderCurves& b) {
+  std::vector<double> distances;
+  for (const BorderCurve& curve : a.curves) {
+    // A hundred places of a curve tell as much as all of them.
+    const size_t step = std::max<size_t>(1, curve.points.size() / 100);
+    for (size_t i = 0; i < curve.points.size(); i += step) distances.push_back(nearest_px(curve.points[i].px, b, curve.kind));
+  }
+  if (distances.empty()) return 0.0;
+  std::sort(distances.begin(), distances.end());
+  return distances[static_cast<size_t>(0.95 * static_cast<double>(distances.size() - 1))];
+}
+
+}  // namespace
+
+bool all_cages(const Scene& scene) {
+  return !scene.objects.empty() &&
+         std::all_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& object) { return cage_in(object) != nullptr; });
+}
+
+StandIn make_stand_in(const Scene& scene, const Camera& camera, std::int64_t max_bytes, double edge_px) {
+  StandIn out;
+  while (out.level < kFinestLevel && edge_px_at(scene, camera, out.level) > edge_px && faces_at(scene, out.level + 1) <= kMostFaces)
+    ++out.level;
+  out.edge_px = edge_px_at(scene, camera, out.level);
+  out.model = model_of(scene, [&](const SceneObject& object) {
+    SurfaceSettings settings = finest_settings(object, out.level, out);
+    settings.max_bytes = max_bytes;
+    return settings;
+  });
+  return out;
+}
+
+BorderTruth solve_truth_stand_in(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how) {
+  if (all_cages(scene)) return solve_truth_on_cages(scene, camera, settings, how);
+  const StandIn finest = make_stand_in(scene, camera, settings.max_bytes, 1.0);
+  const SceneModel second = model_of(scene, [&](const SceneObject& object) { return second_settings(object, finest.level); });
+  MeasuredBorderSettings measuring;
+  measuring.threshold = settings.threshold;
+  const auto border_of_model = [&](const SceneModel& model) {
+    return measure_border(model, camera, render_gbuffer(model, camera, how), measuring, how);
+  };
+  BorderTruth truth;
+  truth.exact = false;
+  truth.curves = border_of_model(finest.model);
+  truth.bound_px = disagreement_px(truth.curves, border_of_model(second));
+  describe_points(finest.model, camera, truth.curves);
+  for (const BorderCurve& curve : truth.curves.curves) {
+    if (curve.closed) ++(curve.kind == CurveKind::silhouette ? truth.contour_generators : truth.level_curves);
+  }
+  const SeenInk seen = [&](std::span<const glm::dvec2> points, std::span<std::uint8_t> ink) {
+    std::vector<PointSample> samples(points.size());
+    sample_points(finest.model, camera, points, samples);
+    for (size_t i = 0; i < points.size(); ++i)
+      ink[i] = samples[i].status == HitStatus::hit && static_cast<double>(samples[i].n_dot_v) < settings.threshold;
+  };
+  truth.coverage = coverage_of(truth.curves, camera.width_px, camera.height_px, seen, how).share;
+  for (const std::string& word : finest.words) truth.from += (truth.from.empty() ? "" : "; ") + word;
+  truth.notes.push_back(
+      fmt::format("not exact: read another way (facets, a lower gradient), the same model puts 95 % of its border within "
+                  "{:.2g} px of this one",
+                  truth.bound_px));
+  return truth;
+}
+
+}  // namespace limn

@@ -1,0 +1,23 @@
+#pragma once
+// The finest affordable models of a scene: what stands in for surfaces that are not fields, where rays have to be cast against them.
+
+#include "raymarch/truth.h"
+
+namespace limn {
+
+/// Objects as fields where they are fields, cages refined until their edges are about `edge_px` long or `max_faces` are reached, other
+/// meshes and volumes as they are, with their best normals.
+struct StandIn {
+  SceneModel model{};
+  int level = 0;                     ///< Of the refined cages.
+  double edge_px = 0.0;              ///< Mean edge of the cages, where they are seen.
+  std::vector<std::string> words{};  ///< What each kind of object became: "a mesh of level 6".
+};
+StandIn make_stand_in(const Scene& scene, const Camera& camera, std::int64_t max_bytes, double edge_px);
+
+/// True where every object is a subdivision cage.
+bool all_cages(const Scene& scene);
+
+BorderTruth solve_truth_on_cages(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how);
+
+}  // namespace limn

@@ -1,0 +1,46 @@
+#include "samples/commands/command.h"
+#include "samples/plan/job.h"
+#include "samples/threads.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+void add_options(CLI::App& app, Options& options) {
+  add_input(app, options);
+  add_plan(app, options);
+  add_camera(app, options, true);
+  add_surface(app, options, {.surface = true, .repeatable = true, .swept = true});
+  add_border(app, options);
+  add_json(app, options);
+  add_execution(app, options);
+}
+
+int run(const Options& options) {
+  const ThreadLimit threads(options.threads);
+  ProgressBar bar(wants_progress(options.quiet, options.no_progress));
+  if (!options.plan.tolerance_px)
+    throw InputError({"", "--tolerance", "", "missing", "a number of pixels, such as --tolerance 0.5, would be right"});
+  input_kind(options.input);
+  const SceneInput input = load_input(options);
+  const PlanJob job = plan_for(options, input, bar);
+  if (options.json) {
+    print_json(plan_json(job));
+  } else if (!options.quiet) {
+    std::string text;
+    for (const std::string& sentence : plan_sentences(job.answer, job.settings)) text += sentence + "\n";
+    print_text(text);
+  }
+  return job.answer.chosen ? 0 : 1;
+}
+
+}  // namespace
+
+Command plan_command() {
+  return {"plan", "finds the cheapest model whose border is right to a tolerance: the least that will do",
+          "  limn plan teacup --tolerance 0.5\n"
+          "  limn plan gyroid --tolerance 1 --metric silhouette --views 4 --budget 64M",
+          add_options, run};
+}
+
+}  // namespace limn

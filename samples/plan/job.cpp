@@ -1,0 +1,112 @@
+#include "samples/plan/job.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+/// The rim's, whatever else the call draws.
+double threshold_of(const Options& options, const SceneInput& input) {
+  for (const MethodCall& call : method_calls(options, input)) {
+    if (call.method->about.name == "rim") return call.parameters.number("threshold");
+  }
+  return find_border_method("rim").parameters.front().default_value.front();
+}
+
+PlanSettings settings_of(const Options& options, const SceneInput& input) {
+  LIMN_CHECK(options.plan.tolerance_px.has_value());
+  PlanSettings settings;
+  settings.tolerance_px = *options.plan.tolerance_px;
+  settings.metric = options.plan.silhouette ? PlanMetric::silhouette : PlanMetric::border;
+  settings.threshold = threshold_of(options, input);
+  settings.budget_ms = options.plan.budget_ms;
+  settings.budget_bytes = options.plan.budget_bytes;
+  if (settings.budget_bytes) settings.max_bytes = std::min(settings.max_bytes, *settings.budget_bytes);
+  settings.kinds = options.surfaces;
+  return settings;
+}
+
+Json parameters_json(const Ladder& ladder, const PlanTrial& trial) {
+  Json json = Json::object();
+  json[ladder.by_level ? "level" : "voxels"] = ladder.rungs[trial.rung];
+  if (ladder.settings.kind == "mesh")
+    json["normals"] = name_of(ladder.settings.normals.value_or(NormalKind::limit));
+  else
+    json["gradient"] = ladder.settings.gradient;
+  return json;
+}
+
+Json trial_json(const PlanAnswer& answer, const PlanTrial& trial, PlanMetric metric) {
+  const Ladder& ladder = answer.ladders[trial.ladder];
+  Json json = {{"surface", ladder.settings.kind},
+               {"parameters", parameters_json(ladder, trial)},
+               {"predicted_px", number_or_null(trial.predicted.of(metric))},
+               {"measured_px", number_or_null(trial.measured.of(metric))},
+               {"silhouette_px", number_or_null(trial.measured.silhouette_px)},
+               {"inner_px", number_or_null(trial.measured.inner_px)},
+               {"bytes", trial.bytes},
+               {"build_ms", trial.build_ms},
+               {"trace_ms", trial.trace_ms},
+               {"time_ms", trial.time_ms()}};
+  if (!trial.failed.empty()) json["failed"] = trial.failed;
+  return json;
+}
+
+}  // namespace
+
+PlanJob plan_for(const Options& options, const SceneInput& input, ProgressBar& bar) {
+  PlanJob job;
+  job.settings = settings_of(options, input);
+  const CameraSettings camera_of = camera_settings(options, input);
+  const Box scene_bounds = bounds(input.scene);
+  const ExecutionSettings how = execution_settings(options);
+  for (int view = 0; view < options.views; ++view) {
+    PlanView one;
+    one.camera = camera_of_view(camera_of, scene_bounds, view, options.views);
+    ExecutionSettings solving = how;
+    solving.progress = bar.stage(fmt::format("solving the true border, view {} of {}", view + 1, options.views));
+    TruthSettings truth;
+    truth.threshold = job.settings.threshold;
+    one.truth = solve_truth(input.scene, one.camera, truth, solving);
+    job.views.push_back(std::move(one));
+  }
+  job.answer = make_plan(input.scene, job.views, job.settings, how, bar);
+  bar.clear();
+  return job;
+}
+
+Json plan_json(const PlanJob& job) {
+  const PlanAnswer& answer = job.answer;
+  const PlanMetric metric = job.settings.metric;
+  Json json = {
+      {"tolerance_px", job.settings.tolerance_px},
+      {"metric", metric == PlanMetric::silhouette ? "silhouette" : "border"},
+      {"threshold", job.settings.threshold},
+      {"views", job.views.size()},
+      {"truth",
+       {{"from", job.views.front().truth.from}, {"exact", job.views.front().truth.exact}, {"bound_px", job.views.front().truth.bound_px}}}};
+  if (answer.chosen) {
+    const PlanTrial& chosen = answer.trials[*answer.chosen];
+    json["chosen"] = trial_json(answer, chosen, metric);
+    json["predicted_px"] = number_or_null(chosen.predicted.of(metric));
+    json["measured_px"] = number_or_null(chosen.measured.of(metric));
+    json["bytes"] = chosen.bytes;
+    json["time_ms"] = chosen.time_ms();
+    json["finest"] = trial_json(answer, answer.finest, metric);
+    json["finest"]["built"] = answer.finest_was_built;
+  } else {
+    json["chosen"] = nullptr;
+  }
+  json["rejected"] = Json::array();
+  for (size_t k = 0; k < answer.trials.size(); ++k) {
+    if (!answer.chosen || k != *answer.chosen) json["rejected"].push_back(trial_json(answer, answer.trials[k], metric));
+  }
+  json["summary"] = plan_sentences(answer, job.settings);
+  return json;
+}
+
+}  // namespace limn

@@ -1,0 +1,22 @@
+#pragma once
+// From a call to a plan: what `limn plan` and `limn render --tolerance` have in common.
+
+#include "samples/job.h"
+#include "samples/output.h"
+#include "samples/plan/plan.h"
+
+namespace limn {
+
+struct PlanJob {
+  PlanSettings settings{};
+  std::vector<PlanView> views{};  ///< With truth solved.
+  PlanAnswer answer{};
+};
+
+/// `--tolerance` must be set. Throws InputError.
+PlanJob plan_for(const Options& options, const SceneInput& input, ProgressBar& bar);
+
+/// As --json shows it.
+Json plan_json(const PlanJob& job);
+
+}  // namespace limn

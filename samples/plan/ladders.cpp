@@ -1,0 +1,139 @@
+// Which representations have a resolution to choose, and what theory says of each.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "samples/plan/plan.h"
+#include "sdf/error.h"
+#include "subdiv/tessellate.h"
+
+namespace limn {
+namespace {
+
+// Voxels grow by the square root of two from rung to rung, levels halve the edges.
+const std::vector<int> kVoxelRungs = {16, 23, 32, 45, 64, 91, 128, 181, 256, 362, 512, 724, 1024};
+const std::vector<int> kLevelRungs = {0, 1, 2, 3, 4, 5, 6};
+
+// Angle = constant (curvature size)^order. Gradients: measured on the unit sphere at a tenth (0.07, 2.3e-3, 3e-5). Meshes with limit
+// normals: the interpolated normal leaves the true one by the change of curvature within a face.
+constexpr double kMeshConstant = 0.08;
+struct GradientTheory {
+  const char* name;
+  double constant;
+};
+constexpr GradientTheory kGradientTheories[] = {{"cell", 0.7}, {"central", 0.23}, {"cubic", 0.03}};
+
+bool wanted(const std::string& kind, const PlanSettings& settings) {
+  return settings.kinds.empty() || std::find(settings.kinds.begin(), settings.kinds.end(), kind) != settings.kinds.end();
+}
+
+bool all_support(const Scene& scene, const char* kind) {
+  return std::all_of(scene.objects.begin(), scene.objects.end(),
+                     [&](const SceneObject& object) { return find_surface(kind).unsupported(object).empty(); });
+}
+
+/// Objects that are models already and cannot be made finer: volumes, and meshes that are no cages.
+bool is_fixed(const SceneObject& object) {
+  if (std::holds_alternative<LevelSetSource>(object.source)) return true;
+  const auto* mesh = std::get_if<MeshSource>(&object.source);
+  return mesh != nullptr && !mesh->scheme;
+}
+
+double mean_edge(const Mesh& mesh, const Affine& world_from_mesh) {
+  double sum = 0.0;
+  std::int64_t count = 0;
+  size_t first = 0;
+  for (const std::int32_t size : mesh.face_sizes) {
+    for (size_t k = 0; k < static_cast<size_t>(size); ++k) {
+      const auto vertex = [&](size_t corner) {
+        return world_from_mesh.point(mesh.positions[static_cast<size_t>(mesh.corner_vertices[first + corner % static_cast<size_t>(size)])]);
+      };
+      sum += glm::distance(vertex(k), vertex(k + 1));
+      ++count;
+    }
+    first += static_cast<size_t>(size);
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+/// The longest of the objects' mean edges at level 0: that one shows first.
+double edge_at_level_0(const Scene& scene) {
+  double longest = 0.0;
+  for (const SceneObject& object : scene.objects) {
+    if (const auto* field = std::get_if<Field>(&object.source))
+      longest = std::max(longest, mean_edge(cage_of(*field), {}));
+    else if (const auto* mesh = std::get_if<MeshSource>(&object.source))
+      longest = std::max(longest, mean_edge(mesh->mesh, object.world_from_object));
+  }
+  return longest;
+}
+
+Ladder mesh_ladder(const Scene& scene) {
+  Ladder ladder;
+  ladder.title = "mesh, limit normals";
+  ladder.settings.kind = "mesh";
+  ladder.settings.normals = NormalKind::limit;
+  ladder.by_level = true;
+  ladder.rungs = kLevelRungs;
+  ladder.normal_constant = kMeshConstant;
+  ladder.base_size = edge_at_level_0(scene);
+  return ladder;
+}
+
+Ladder grid_ladder(const char* kind, const GradientTheory& theory, double longest_side) {
+  const GradientDescriptor& gradient = find_gradient(theory.name);
+  Ladder ladder;
+  ladder.title = fmt::format("{}, {} gradient", std::string(kind) == "level_set" ? "level set" : "mesh as level set", theory.name);
+  ladder.settings.kind = kind;
+  ladder.settings.gradient = theory.name;
+  // The grid shall be what is measured: the mesh that goes into it is finer than any voxel that matters.
+  ladder.settings.level = 5;
+  ladder.rungs = kVoxelRungs;
+  ladder.normal_order = gradient.order;
+  ladder.normal_constant = theory.constant;
+  ladder.base_size = longest_side;
+  return ladder;
+}
+
+}  // namespace
+
+double Ladder::size_at(size_t rung) const { return by_level ? base_size / std::exp2(rungs[rung]) : base_size / rungs[rung]; }
+
+SurfaceSettings Ladder::at(size_t rung) const {
+  SurfaceSettings own = settings;
+  (by_level ? own.level : own.voxels) = rungs[rung];
+  return own;
+}
+
+std::string Ladder::words_at(size_t rung) const {
+  return by_level ? fmt::format("level {}", rungs[rung]) : fmt::format("{} voxels", rungs[rung]);
+}
+
+double BorderErrors::of(PlanMetric metric) const {
+  return metric == PlanMetric::silhouette ? silhouette_px : std::max(silhouette_px, inner_px);
+}
+
+std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings) {
+  std::vector<Ladder> ladders;
+  const bool fixed = std::any_of(scene.objects.begin(), scene.objects.end(), is_fixed);
+  const bool volumes = std::any_of(scene.objects.begin(), scene.objects.end(),
+                                   [](const SceneObject& object) { return std::holds_alternative<LevelSetSource>(object.source); });
+  double longest_side = 0.0;
+  for (const SceneObject& object : scene.objects) longest_side = std::max(longest_side, bounds(object).longest_side());
+  if (scene.objects.empty() || volumes || !std::isfinite(longest_side)) return ladders;
+  if (!fixed && wanted("mesh", settings) && all_support(scene, "mesh")) ladders.push_back(mesh_ladder(scene));
+  for (const char* kind : {"level_set", "mesh_level_set"}) {
+    // A field goes into a grid as it is; by way of a mesh it would only lose.
+    const bool detour = std::string(kind) == "mesh_level_set" && all_support(scene, "level_set");
+    if (!wanted(kind, settings) || !all_support(scene, kind) || (detour && settings.kinds.empty())) continue;
+    for (const GradientTheory& theory : kGradientTheories) {
+      if (std::string(theory.name) != "cell") ladders.push_back(grid_ladder(kind, theory, longest_side));
+    }
+  }
+  for (Ladder& ladder : ladders) ladder.settings.max_bytes = settings.max_bytes;
+  return ladders;
+}
+
+}  // namespace limn

@@ -1,0 +1,94 @@
+#pragma once
+// The coarsest model whose border is right to a tolerance, and the cheapest of these over all representations: predicted from the true
+// border's curvature, built, measured against truth together with its coarser neighbour, corrected, until the two stand on either side of
+// the tolerance.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "raymarch/truth.h"
+#include "samples/progress.h"
+
+namespace limn {
+
+/// What has to be right.
+enum class PlanMetric { border, silhouette };
+
+struct PlanSettings {
+  double tolerance_px = 0.5;
+  PlanMetric metric = PlanMetric::border;
+  double threshold = 0.4;             ///< Of the rim.
+  std::optional<double> budget_ms{};  ///< Of building and tracing one picture.
+  std::optional<std::int64_t> budget_bytes{};
+  std::int64_t max_bytes = std::int64_t{4} << 30;  ///< Nothing larger is built.
+  std::vector<std::string> kinds{};                ///< Only these representations; empty: all that have a resolution.
+};
+
+/// A representation whose resolution is open, with its resolutions from coarse to fine.
+struct Ladder {
+  std::string title{};         ///< "level set, cubic gradient".
+  SurfaceSettings settings{};  ///< All but the resolution.
+  bool by_level = false;       ///< Rungs are subdivision levels; else voxels along the longest side.
+  std::vector<int> rungs{};
+  int normal_order = 2;          ///< Of the normal's angle, by edge or voxel size.
+  double normal_constant = 0.0;  ///< Angle = constant (curvature * size)^order, as far as theory knows.
+  double base_size = 1.0;        ///< World size of an edge at level 0, or of a voxel times the number of voxels.
+
+  double size_at(size_t rung) const;  ///< World: of an edge or a voxel.
+  SurfaceSettings at(size_t rung) const;
+  std::string words_at(size_t rung) const;  ///< "level 3", "128 voxels".
+};
+
+/// How far a border lies from truth: the largest distance but for the worst twentieth of what was looked at (the 95th percentile), what is
+/// missing or false counting as infinitely far. The worst over all views.
+struct BorderErrors {
+  double silhouette_px = 0.0, inner_px = 0.0;
+  double of(PlanMetric metric) const;
+};
+
+/// One rung, built and measured.
+struct PlanTrial {
+  size_t ladder = 0, rung = 0;
+  BorderErrors predicted{}, measured{};
+  std::int64_t bytes = 0;
+  double build_ms = 0.0, trace_ms = 0.0;  ///< trace_ms: mean over the views.
+  std::string failed{};                   ///< Why there are no figures; empty where there are.
+  double time_ms() const { return build_ms + trace_ms; }
+};
+
+struct PlanView {
+  Camera camera{};
+  BorderTruth truth{};
+};
+
+struct PlanAnswer {
+  std::vector<Ladder> ladders{};
+  std::vector<PlanTrial> trials{};  ///< In the order in which they were made.
+  std::optional<size_t> chosen{};   ///< Index into trials: the fastest that meets tolerance and budget.
+  std::optional<size_t> coarser{};  ///< The next coarser one of its ladder, where there is one.
+  std::optional<size_t> best{};     ///< Where nothing was chosen: the nearest to the tolerance.
+  PlanTrial finest{};               ///< Of the chosen ladder: its last rung; extrapolated from the trials unless it was one.
+  bool finest_was_built = false;
+  std::optional<size_t> silhouette{};  ///< Trial of the chosen ladder that is enough for the silhouette alone, where that is a coarser one.
+  std::vector<std::string> notes{};    ///< Ladders that were given up, and why; what else a person should know.
+};
+
+/// The ladders that a scene can climb; empty where nothing of it has a resolution to choose (a volume from a file).
+std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings);
+
+/// What theory expects of a rung in one view, from curvature, pixel scale and threshold along the true border.
+BorderErrors predict_errors(const Ladder& ladder, size_t rung, const PlanView& view, double threshold);
+
+/// What a model shows, against truth; `trace_ms` of one picture is added to the trial's.
+BorderErrors measure_errors(const SceneModel& model, const PlanView& view, double threshold, const ExecutionSettings& how,
+                            double& trace_ms);
+
+/// Throws InputError where no ladder is left.
+PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings, const ExecutionSettings& how,
+                     ProgressBar& bar);
+
+/// The answer in sentences with numbers, the choice first.
+std::vector<std::string> plan_sentences(const PlanAnswer& answer, const PlanSettings& settings);
+
+}  // namespace limn

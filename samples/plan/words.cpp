@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "samples/output.h"
+#include "samples/plan/plan.h"
+
+namespace limn {
+namespace {
+
+std::string px(double value) { return std::isfinite(value) ? fmt::format("{:.2g} px", value) : std::string("more than can be measured"); }
+
+std::string model_words(const PlanAnswer& answer, const PlanTrial& trial) {
+  const Ladder& ladder = answer.ladders[trial.ladder];
+  return ladder.title + " at " + ladder.words_at(trial.rung);
+}
+
+std::string cost_words(const PlanTrial& trial) {
+  return fmt::format("{} to build and {} to trace, {}", time_text(trial.build_ms), time_text(trial.trace_ms),
+                     bytes_text(static_cast<double>(trial.bytes)));
+}
+
+const char* what(PlanMetric metric) { return metric == PlanMetric::silhouette ? "silhouette" : "border"; }
+
+std::string budget_words(const PlanSettings& settings) {
+  std::string words;
+  if (settings.budget_ms) words += " within " + time_text(*settings.budget_ms);
+  if (settings.budget_bytes) words += (words.empty() ? " within " : " and ") + bytes_text(static_cast<double>(*settings.budget_bytes));
+  return words;
+}
+
+void add_choice(const PlanAnswer& answer, const PlanSettings& settings, std::vector<std::string>& out) {
+  const PlanTrial& chosen = answer.trials[*answer.chosen];
+  out.push_back(fmt::format("{} is the cheapest that puts 95 % of the {} within {}{}: measured {}, predicted {}; {}.",
+                            model_words(answer, chosen), what(settings.metric), px(settings.tolerance_px), budget_words(settings),
+                            px(chosen.measured.of(settings.metric)), px(chosen.predicted.of(settings.metric)), cost_words(chosen)));
+  if (answer.coarser) {
+    const PlanTrial& coarser = answer.trials[*answer.coarser];
+    out.push_back(fmt::format("The next coarser one, {}, is {} off.", answer.ladders[coarser.ladder].words_at(coarser.rung),
+                              px(coarser.measured.of(settings.metric))));
+  }
+  const PlanTrial& finest = answer.finest;
+  if (finest.rung != chosen.rung) {
+    out.push_back(fmt::format("The finest, {}, {} {}: {:.1f} times the time and {:.1f} times the memory.",
+                              answer.ladders[finest.ladder].words_at(finest.rung), answer.finest_was_built ? "took" : "would take about",
+                              cost_words(finest), finest.time_ms() / chosen.time_ms(),
+                              static_cast<double>(finest.bytes) / std::max<double>(1.0, static_cast<double>(chosen.bytes))));
+  }
+  if (settings.metric == PlanMetric::border && answer.silhouette) {
+    const PlanTrial& enough = answer.trials[*answer.silhouette];
+    out.push_back(fmt::format("Silhouette and inner border need different resolutions: for the silhouette alone {} is enough ({}).",
+                              answer.ladders[enough.ladder].words_at(enough.rung), px(enough.measured.silhouette_px)));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> plan_sentences(const PlanAnswer& answer, const PlanSettings& settings) {
+  std::vector<std::string> out;
+  if (answer.chosen) {
+    add_choice(answer, settings, out);
+  } else {
+    std::string sentence =
+        fmt::format("Nothing puts 95 % of the {} within {}{}", what(settings.metric), px(settings.tolerance_px), budget_words(settings));
+    if (answer.best) {
+      const PlanTrial& best = answer.trials[*answer.best];
+      sentence +=
+          fmt::format("; the nearest is {}: {} off (silhouette {}, inner border {}), {}", model_words(answer, best),
+                      px(best.measured.of(settings.metric)), px(best.measured.silhouette_px), px(best.measured.inner_px), cost_words(best));
+    }
+    out.push_back(sentence + ".");
+  }
+  for (const std::string& note : answer.notes) out.push_back("note: " + note);
+  return out;
+}
+
+}  // namespace limn

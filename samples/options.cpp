@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <functional>
+#include <tuple>
 
 #include "raymarch/border.h"
 #include "raymarch/surface.h"
@@ -14,6 +15,9 @@ namespace {
 constexpr const char* kCamera = "Camera";
 constexpr const char* kSurface = "Surface";
 constexpr const char* kBorder = "Border";
+constexpr const char* kSweep = "Sweep (a list: 2,4,6; a range: 2..6)";
+constexpr const char* kStudy = "Study";
+constexpr const char* kPlan = "Plan";
 constexpr const char* kOutput = "Output";
 constexpr const char* kExecution = "Execution (never changes a pixel)";
 
@@ -40,19 +44,9 @@ CLI::Option* add_repeatable(CLI::App& app, const OptionText& text, std::function
   return option;
 }
 
-// "a,b,c"; empty names are kept, so that they are complained about.
-std::vector<std::string> names_of(const std::string& text) {
-  std::vector<std::string> names;
-  for (size_t at = 0; at <= text.size();) {
-    const size_t comma = std::min(text.find(',', at), text.size());
-    names.push_back(text.substr(at, comma - at));
-    at = comma + 1;
-  }
-  return names;
-}
-
-void add_unless_there(const std::string& name, std::vector<std::string>& names) {
-  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+template <class T>
+void add_unless_there(const T& one, std::vector<T>& all) {
+  if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
 }
 
 void read_compared_methods(const std::string& text, Options& options) {
@@ -60,14 +54,14 @@ void read_compared_methods(const std::string& text, Options& options) {
     for (const BorderMethod& method : border_methods()) add_unless_there(method.about.name, options.compared_methods);
     return;
   }
-  for (const std::string& name : names_of(text)) {
+  for (const std::string& name : parse_names(text)) {
     find_border_method(name, "", "--methods");
     add_unless_there(name, options.compared_methods);
   }
 }
 
 void read_compared_surfaces(const std::string& text, Options& options) {
-  for (const std::string& name : names_of(text)) {
+  for (const std::string& name : parse_names(text)) {
     find_surface(name, "", "--surfaces");
     add_unless_there(name, options.surfaces);
   }
@@ -102,8 +96,9 @@ void add_json(CLI::App& app, Options& options) {
   add_switch(app, {"--json", "", "one JSON document on stdout and nothing else there", kOutput}, options.json);
 }
 
-void add_camera(CLI::App& app, Options& options, bool with_views) {
-  add(app, {"--size", "WxH", "picture in pixels, 1..16384 each; default 1280x720", kCamera},
+void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size) {
+  const std::string size_help = "picture in pixels, 1..16384 each; default " + default_size;
+  add(app, {"--size", "WxH", size_help.c_str(), kCamera},
       [&options](const std::string& text) { options.size_px = parse_size("--size", text); });
   add(app, {"--eye", "X,Y,Z", "where the camera stands, world units; default: framed", kCamera},
       [&options](const std::string& text) { options.eye = parse_vector3("--eye", text); });
@@ -126,6 +121,21 @@ void add_grid(CLI::App& app, Options& options) {
       [&options](const std::string& text) { options.grid = text; });
 }
 
+namespace {
+
+// What no study sweeps.
+void add_fixed_surface(CLI::App& app, Options& options) {
+  add(app, {"--half-width", "VOXELS", "half width of the narrow band, voxels, at least 1.8; default: what the gradient needs", kSurface},
+      [&options](const std::string& text) {
+        options.half_width_voxels = parse_number_above("--half-width", text, 1.8, true, "at least 1.8 voxels would be right");
+      });
+  add(app, {"--scheme", "NAME", "catmark, loop or bilinear; default: the scene's, else catmark", kSurface},
+      [&options](const std::string& text) { options.scheme = parse_scheme(text, "", "--scheme"); });
+  add_grid(app, options);
+}
+
+}  // namespace
+
 void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& needs) {
   const auto surface = [&options](const std::string& text) {
     find_surface(text, "", "--surface");
@@ -138,6 +148,10 @@ void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& need
                    [&options](const std::string& text) { read_compared_surfaces(text, options); });
   } else if (needs.surface)
     add(app, {"--surface", "NAME", "representation (limn list surfaces); default: what the input is by itself", kSurface}, surface);
+  if (needs.swept) {
+    add_fixed_surface(app, options);
+    return;
+  }
   auto* voxels = add(app, {"--voxels", "N", "voxels along the longest side, 4..8192; default 256", kSurface},
                      [&options](const std::string& text) { options.voxels = parse_integer("--voxels", text, 4, 8192); });
   auto* voxel_size =
@@ -145,10 +159,6 @@ void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& need
         options.voxel_size = parse_number_above("--voxel-size", text, 0.0, false, "a length above 0 in world units would be right");
       });
   voxels->excludes(voxel_size);
-  add(app, {"--half-width", "VOXELS", "half width of the narrow band, voxels, at least 1.8; default: what the gradient needs", kSurface},
-      [&options](const std::string& text) {
-        options.half_width_voxels = parse_number_above("--half-width", text, 1.8, true, "at least 1.8 voxels would be right");
-      });
   add(app, {"--gradient", "NAME", "how normals are read from a level set (limn list gradients); default central", kSurface},
       [&options](const std::string& text) {
         find_gradient(text, "", "--gradient");
@@ -156,11 +166,9 @@ void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& need
       });
   add(app, {"--level", "N", "refinements of a cage or a tessellation, 0..8; default 3", kSurface},
       [&options](const std::string& text) { options.level = parse_integer("--level", text, 0, 8); });
-  add(app, {"--scheme", "NAME", "catmark, loop or bilinear; default: the scene's, else catmark", kSurface},
-      [&options](const std::string& text) { options.scheme = parse_scheme(text, "", "--scheme"); });
   add(app, {"--normals", "NAME", "flat, vertex or limit; default: limit where there is a limit surface, else vertex", kSurface},
       [&options](const std::string& text) { options.normals = parse_normals(text, "", "--normals"); });
-  add_grid(app, options);
+  add_fixed_surface(app, options);
 }
 
 void add_border(CLI::App& app, Options& options, bool compared) {
@@ -197,6 +205,71 @@ void add_execution(CLI::App& app, Options& options) {
   add_switch(app, {"--no-progress", "", "no progress bar (there is none unless stderr is a terminal)", kExecution}, options.no_progress);
   add(app, {"--threads", "N", "threads, 0..1024; default 0: all", kExecution},
       [&options](const std::string& text) { options.threads = parse_integer("--threads", text, 0, 1024); });
+}
+
+void add_parts(CLI::App& app, Options& options) {
+  app.add_option("DIR", options.study.parts, "folders that hold parts of one study: a part itself, or a folder of parts")
+      ->type_name("")
+      ->required();
+}
+
+void add_study(CLI::App& app, Options& options) {
+  StudyOptions& study = options.study;
+  const auto level = [](const std::string& text) { return parse_integer("--levels", text, 0, 8); };
+  add(app, {"--levels", "LIST", "refinements of a cage or a tessellation, 0..8; default 0..5, fewer where they would be large", kSweep},
+      [&study, level](const std::string& text) { study.levels = parse_integers(text, level, [](int value) { return value + 1; }); });
+  const auto voxels = [](const std::string& text) { return parse_integer("--voxels", text, 4, 8192); };
+  add(app, {"--voxels", "LIST", "voxels along the longest side, 4..8192; a range doubles; default 16..256", kSweep},
+      [&study, voxels](const std::string& text) { study.voxels = parse_integers(text, voxels, [](int value) { return 2 * value; }); });
+  add(app, {"--normals", "LIST", "normals of meshes (limn list normals); default flat,vertex,limit, as far as there are any", kSweep},
+      [&study](const std::string& text) {
+        for (const std::string& name : parse_names(text)) add_unless_there(parse_normals(name, "", "--normals"), study.normals);
+      });
+  add(app, {"--gradients", "LIST", "gradients of level sets (limn list gradients); default all that the band is wide enough for", kSweep},
+      [&study](const std::string& text) {
+        for (const std::string& name : parse_names(text)) {
+          find_gradient(name, "", "--gradients");
+          add_unless_there(name, study.gradients);
+        }
+      });
+  add(app, {"--methods", "A,B,...|all", "outline methods (limn list methods); default rim", kSweep},
+      [&options](const std::string& text) { read_compared_methods(text, options); });
+  add(app, {"--thresholds", "LIST", "of the rim, and of every other method that has a threshold; default the method's own", kSweep},
+      [&study](const std::string& text) { study.thresholds = parse_thresholds("--thresholds", text); });
+  add(app, {"--views", "N", "directions spread evenly on the sphere, 1..10000; 1: the camera's own; default 4", kSweep},
+      [&study](const std::string& text) { study.views = parse_integer("--views", text, 1, 10'000); });
+  add_repeatable(app, {"--set", "KEY=VALUE", "a parameter of the methods; METHOD.KEY=VALUE for one of several; repeatable", kSweep},
+                 [&options](const std::string& text) { options.sets.push_back(parse_key_value("--set", text)); });
+  add_switch(app,
+             {"--flicker", "", "measure flicker too, under four moves of the camera by less than a pixel: five times the tracing", kStudy},
+             study.flicker);
+  add(app,
+      {"--max-memory", "SIZE", "leave out models larger than this, such as 500M or 4G; default 8G, at most 3/4 of the machine's", kStudy},
+      [&study](const std::string& text) { study.max_bytes = parse_bytes("--max-memory", text); });
+  add(app, {"--shard", "I/N", "do only part I of N, into OUT/part-I-of-N; limn merge joins the parts", kStudy},
+      [&study](const std::string& text) { std::tie(study.shard, study.shards) = parse_shard("--shard", text); });
+  add_switch(app, {"--fresh", "", "start over: what an earlier study left in the folder goes; default: go on where it stopped", kStudy},
+             study.fresh);
+}
+
+void add_plan(CLI::App& app, Options& options) {
+  PlanOptions& plan = options.plan;
+  add(app,
+      {"--tolerance", "PX",
+       "how far the border may lie from the true one, pixels, above 0: 95 % of it lies within; picks the cheapest model", kPlan},
+      [&plan](const std::string& text) {
+        plan.tolerance_px = parse_number_above("--tolerance", text, 0.0, false, "a number of pixels above 0 would be right");
+      });
+  add(app, {"--metric", "NAME", "what has to be right: border (the rim's ink, inside and outside) or silhouette; default border", kPlan},
+      [&plan](const std::string& text) { plan.silhouette = parse_plan_metric("--metric", text); });
+  add_repeatable(
+      app, {"--budget", "SIZE|TIME", "what the model may take: memory such as 64M, or time to build and trace such as 200ms or 2s", kPlan},
+      [&plan](const std::string& text) {
+        if (text.empty() || text.back() != 's')
+          plan.budget_bytes = parse_bytes("--budget", text);
+        else
+          plan.budget_ms = parse_milliseconds("--budget", text);
+      });
 }
 
 }  // namespace limn

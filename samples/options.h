@@ -16,6 +16,28 @@ class App;
 
 namespace limn {
 
+/// `limn study` and `limn merge` only: the axes of a sweep (empty: the study's own choice) and how it is run.
+struct StudyOptions {
+  std::vector<int> levels, voxels;  ///< Rising.
+  std::vector<NormalKind> normals;
+  std::vector<std::string> gradients;
+  std::vector<double> thresholds;  ///< Of every method that has one; rising.
+  std::optional<int> views;
+  bool flicker = false;
+  bool fresh = false;                        ///< What an earlier study left in the folder goes.
+  std::optional<std::int64_t> max_bytes;     ///< Of one model.
+  int shard = 1, shards = 1;                 ///< Part `shard` of `shards`, from 1.
+  std::vector<std::filesystem::path> parts;  ///< Folders to merge.
+};
+
+/// `limn plan`, and `limn render --tolerance`.
+struct PlanOptions {
+  std::optional<double> tolerance_px;
+  bool silhouette = false;  ///< Only it has to be right.
+  std::optional<double> budget_ms;
+  std::optional<std::int64_t> budget_bytes;
+};
+
 /// The command line as given; nothing here is a default of the models (an unset value leaves the scene file or the library to choose).
 struct Options {
   std::string input;
@@ -50,20 +72,29 @@ struct Options {
   std::vector<KeyValue> sets;
   int samples = 1;
   std::optional<glm::dvec3> background;  ///< Linear.
+
+  StudyOptions study;
+  PlanOptions plan;
 };
 
 struct SurfaceOptionNeeds {
   bool surface = true;      ///< --surface
   bool repeatable = false;  ///< --surface may be given several times.
+  bool swept = false;       ///< Resolution, normals and gradients are axes (add_study), not settings.
 };
 
 void add_input(CLI::App& app, Options& options);
 void add_output(CLI::App& app, Options& options, const std::string& what, bool repeatable);
 void add_json(CLI::App& app, Options& options);
-void add_camera(CLI::App& app, Options& options, bool with_views);
+void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size = "1280x720");
 void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& needs);
 void add_grid(CLI::App& app, Options& options);
 void add_border(CLI::App& app, Options& options, bool compared = false);
 void add_execution(CLI::App& app, Options& options);
+/// What `limn study` sweeps, how it is shared out and where it starts again; the folders of `limn merge`.
+void add_study(CLI::App& app, Options& options);
+void add_parts(CLI::App& app, Options& options);
+/// --tolerance, --metric and --budget.
+void add_plan(CLI::App& app, Options& options);
 
 }  // namespace limn

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "sdf/error.h"
 
@@ -90,6 +92,70 @@ ParameterInput parse_parameter(std::string_view text) {
     input.numbers.push_back(*value);
   }
   return input;
+}
+
+std::vector<std::string> parse_names(const std::string& text) {
+  std::vector<std::string> names;
+  for (const std::string_view part : split(text, ',')) names.emplace_back(part);
+  return names;
+}
+
+std::vector<int> parse_integers(const std::string& text, const std::function<int(const std::string&)>& read,
+                                const std::function<int(int)>& next) {
+  std::set<int> all;
+  for (const std::string& part : parse_names(text)) {
+    const size_t dots = part.find("..");
+    if (dots == std::string::npos) {
+      all.insert(read(part));
+      continue;
+    }
+    const int first = read(part.substr(0, dots)), last = read(part.substr(dots + 2));
+    for (int value = std::min(first, last); value <= std::max(first, last); value = next(value)) all.insert(value);
+  }
+  return {all.begin(), all.end()};
+}
+
+std::vector<double> parse_thresholds(const std::string& field, const std::string& text) {
+  std::set<double> all;
+  for (const std::string& part : parse_names(text)) {
+    const double value = parse_number(field, part);
+    if (value < 0.0 || value >= 1.0) fail(field, part, "out of range", "numbers from 0 up and below 1, such as 0.2,0.4, would be right");
+    all.insert(value);
+  }
+  return {all.begin(), all.end()};
+}
+
+std::int64_t parse_bytes(const std::string& field, const std::string& text) {
+  const std::string expected = "a size such as 500M, 4G or 2000000 would be right";
+  const std::string_view units = "kMGT";
+  const size_t unit = text.empty() ? std::string_view::npos : units.find(text.back());
+  const bool has_unit = unit != std::string_view::npos;
+  const auto value = to_number(has_unit ? std::string_view(text).substr(0, text.size() - 1) : std::string_view(text));
+  if (!value || !std::isfinite(*value)) fail(field, text, "not a size in bytes", expected);
+  const double bytes = *value * (has_unit ? std::pow(1000.0, static_cast<double>(unit) + 1.0) : 1.0);
+  if (bytes < 1e6 || bytes > 1e18) fail(field, text, "out of range", "1M and more would be right");
+  return static_cast<std::int64_t>(bytes);
+}
+
+double parse_milliseconds(const std::string& field, const std::string& text) {
+  const std::string expected = "a time such as 200ms or 2s would be right";
+  const bool milli = text.size() > 2 && text.ends_with("ms"), seconds = !milli && text.size() > 1 && text.ends_with("s");
+  const auto value = to_number(std::string_view(text).substr(0, text.size() - (milli ? 2 : seconds ? 1 : 0)));
+  if ((!milli && !seconds) || !value || !std::isfinite(*value)) fail(field, text, "not a time", expected);
+  if (!(*value > 0.0)) fail(field, text, "out of range", expected);
+  return *value * (milli ? 1.0 : 1e3);
+}
+
+bool parse_plan_metric(const std::string& field, const std::string& text) {
+  if (text != "border" && text != "silhouette") fail(field, text, "unknown metric", known_names(text, {"border", "silhouette"}));
+  return text == "silhouette";
+}
+
+std::pair<int, int> parse_shard(const std::string& field, const std::string& text) {
+  const auto parts = split(text, '/');
+  if (parts.size() != 2) fail(field, text, "not a part", "I/N such as 2/8, the second part of eight, would be right");
+  const int count = parse_integer(field, parts[1], 1, 10'000);
+  return {parse_integer(field, parts[0], 1, count), count};
 }
 
 Scheme parse_scheme(const std::string& name, const std::string& file, const std::string& field) {

@@ -5,69 +5,10 @@
 #include <algorithm>
 
 #include "samples/compare/comparison.h"
+#include "samples/scene_facts.h"
 
 namespace limn {
 namespace {
-
-// The finest refinement that serves as the limit surface: 400,000 faces take about a second and 50 MB.
-constexpr std::int64_t kAffordableFaces = 400'000;
-constexpr int kFinestLevel = 8;
-
-template <class T>
-bool all_are(const Scene& scene) {
-  return std::all_of(scene.objects.begin(), scene.objects.end(),
-                     [](const SceneObject& object) { return std::holds_alternative<T>(object.source); });
-}
-
-bool all_cages(const Scene& scene, const SurfaceSettings& settings) {
-  return std::all_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
-    const auto* mesh = std::get_if<MeshSource>(&object.source);
-    return mesh != nullptr && (mesh->scheme || settings.scheme);
-  });
-}
-
-bool any_cage(const Scene& scene, const SurfaceSettings& settings) {
-  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
-    const auto* mesh = std::get_if<MeshSource>(&object.source);
-    return mesh != nullptr && (mesh->scheme || settings.scheme);
-  });
-}
-
-std::int64_t faces_at(const Scene& scene, const SurfaceSettings& settings, int level) {
-  std::int64_t faces = 0;
-  for (const SceneObject& object : scene.objects) {
-    const auto* mesh = std::get_if<MeshSource>(&object.source);
-    if (mesh == nullptr || !(mesh->scheme || settings.scheme)) continue;
-    const Scheme scheme = settings.scheme ? *settings.scheme : *mesh->scheme;
-    faces += predict_refined_size(mesh->mesh, scheme, level).faces;
-  }
-  return faces;
-}
-
-int used_level(const Scene& scene, const SurfaceSettings& settings) {
-  int level = settings.level;
-  for (const SceneObject& object : scene.objects) level = std::max(level, object.level.value_or(0));
-  return level;
-}
-
-int finest_level(const Scene& scene, const SurfaceSettings& settings) {
-  int level = used_level(scene, settings);
-  while (level < kFinestLevel && faces_at(scene, settings, level + 1) <= kAffordableFaces) ++level;
-  return level;
-}
-
-// Of the gradients that the bands of all volumes carry, the one of the highest order.
-std::string best_gradient(const Scene& scene, const std::string& fallback) {
-  const GradientDescriptor* best = nullptr;
-  for (const GradientDescriptor& gradient : gradients()) {
-    const bool fits = std::all_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
-      const auto* source = std::get_if<LevelSetSource>(&object.source);
-      return source == nullptr || source->level_set.info().half_width_voxels >= gradient.half_width_voxels;
-    });
-    if (fits && (best == nullptr || gradient.order > best->order)) best = &gradient;
-  }
-  return best == nullptr ? fallback : best->about.name;
-}
 
 std::string with_spaces(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -101,15 +42,6 @@ ComparedModel make_model(const SceneInput& input, const SurfaceSettings& setting
   model.scene = input.scene;
   model.surface = settings;
   return model;
-}
-
-std::string why_not(const SurfaceDescriptor& kind, const Scene& scene) {
-  for (const SceneObject& object : scene.objects) {
-    if (const std::string reason = kind.unsupported(object); !reason.empty()) {
-      return scene.objects.size() == 1 ? reason : object.name + ": " + reason;
-    }
-  }
-  return "";
 }
 
 bool wanted(const std::string& kind, const std::vector<std::string>& only) {

@@ -1,0 +1,161 @@
+#include "samples/study/cost.h"
+
+#include <cmath>
+
+#include "raymarch/surface/level_set_marcher.h"
+#include "samples/scene_facts.h"
+#include "sdf/error.h"
+#include "sdf/field_program.h"
+#include "sdf/level_set.h"
+#include "subdiv/tessellate.h"
+
+namespace limn {
+namespace {
+
+// Milliseconds and bytes of the parts, measured on two cores of 2023 over the built-in scenes; see growth in expected_cost.
+constexpr double kFaceMs = 1.6e-3, kFieldFaceMs = 4e-3, kFaceBytes = 190.0;
+constexpr double kVoxelMs = 2.5e-4, kMeshVoxelMs = 1.2e-3, kVoxelBytes = 9.0;
+constexpr double kMeshRayMs = 4e-4, kGridRayMs = 6e-4, kFieldRayMs = 8e-4;
+
+double area_of(const Mesh& mesh) {
+  double area = 0.0;
+  size_t first = 0;
+  for (const std::int32_t size : mesh.face_sizes) {
+    const auto at = [&](size_t corner) { return mesh.positions[static_cast<size_t>(mesh.corner_vertices[first + corner])]; };
+    for (size_t i = 2; i < static_cast<size_t>(size); ++i) area += 0.5 * glm::length(glm::cross(at(i - 1) - at(0), at(i) - at(0)));
+    first += static_cast<size_t>(size);
+  }
+  return area;
+}
+
+double terms_of(const Field& field) { return std::max(1.0, 0.5 * static_cast<double>(field.program().instructions.size())); }
+
+SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& settings) {
+  SceneSize::Object size;
+  const Box box = bounds(object);
+  if (box.finite()) size.longest_side = box.longest_side();
+  if (const auto* field = std::get_if<Field>(&object.source)) {
+    size.terms = terms_of(*field);
+    if (!box.finite()) return size;
+    const Mesh cage = cage_of(*field);
+    size.faces = static_cast<double>(cage.face_count());
+    size.area = area_of(cage);
+    size.refines = true;
+  } else if (const auto* source = std::get_if<MeshSource>(&object.source)) {
+    const double scale = std::cbrt(std::abs(glm::determinant(object.world_from_object.linear)));
+    const std::optional<Scheme> scheme = cage_scheme(object, settings);
+    size.refines = scheme.has_value();
+    size.faces = scheme ? static_cast<double>(predict_refined_size(source->mesh, *scheme, 1).faces) / 4.0
+                        : static_cast<double>(source->mesh.face_count());
+    size.area = scale * scale * area_of(source->mesh);
+  } else {
+    const LevelSetInfo& info = std::get<LevelSetSource>(object.source).level_set.info();
+    size.own_voxels = static_cast<double>(info.active_voxels);
+    size.area = size.own_voxels * info.voxel_size * info.voxel_size / (2.0 * std::max(info.half_width_voxels, 1.0));
+    size.faces = 2.0 * size.own_voxels / (2.0 * std::max(info.half_width_voxels, 1.0));
+  }
+  return size;
+}
+
+double faces_of(const SceneSize::Object& object, int level) { return object.refines ? object.faces * std::pow(4.0, level) : object.faces; }
+
+double voxels_of(const SceneSize::Object& object, const SurfaceSettings& settings, double half_width) {
+  if (object.longest_side <= 0.0) return 0.0;
+  const double voxel = settings.voxel_size > 0.0 ? settings.voxel_size : object.longest_side / settings.voxels;
+  // Of a grid this coarse most of the box is band.
+  const double side = object.longest_side / voxel + 2.0 * half_width;
+  return std::min(2.0 * half_width * object.area / (voxel * voxel), side * side * side);
+}
+
+void add_mesh(const SceneSize::Object& object, const SurfaceSettings& settings, double pixels, bool traced, ExpectedCost& cost) {
+  const double faces = faces_of(object, settings.level);
+  const bool field = object.refines && object.terms > 0.0 && object.own_voxels == 0.0;
+  cost.build_ms += faces * (kFaceMs + (field ? kFieldFaceMs * (object.terms - 1.0) * 0.1 : 0.0));
+  cost.bytes += static_cast<std::int64_t>(faces * kFaceBytes);
+  if (traced) cost.trace_ms += pixels * kMeshRayMs * (1.0 + 0.05 * std::log2(1.0 + faces));
+}
+
+void add_grid(const SceneSize::Object& object, const SurfaceSettings& settings, double pixels, double voxel_ms, ExpectedCost& cost) {
+  const GradientDescriptor& gradient = find_gradient(settings.gradient);
+  const double half_width = std::max(settings.half_width_voxels, std::max(gradient.half_width_voxels, 1.8));
+  const double voxels = object.own_voxels > 0.0 ? object.own_voxels : voxels_of(object, settings, half_width);
+  if (object.own_voxels == 0.0) cost.build_ms += voxels * voxel_ms;
+  cost.bytes += static_cast<std::int64_t>(voxels * kVoxelBytes);
+  cost.trace_ms += pixels * kGridRayMs * (gradient.order >= 3 ? 2.0 : 1.0);
+}
+
+}  // namespace
+
+SceneSize size_of(const Scene& scene, const SurfaceSettings& settings) {
+  SceneSize size;
+  for (const SceneObject& object : scene.objects) size.objects.push_back(size_of(object, settings));
+  return size;
+}
+
+double faces_at_level(const SceneSize& size, int level) {
+  double faces = 0.0;
+  for (const SceneSize::Object& object : size.objects) faces += object.refines ? faces_of(object, level) : 0.0;
+  return faces;
+}
+
+ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& settings, double pixels) {
+  ExpectedCost cost;
+  // Rays that pass an object by cost little: the picture is shared by the objects.
+  const double share = pixels / std::max<double>(1.0, std::sqrt(static_cast<double>(size.objects.size())));
+  for (const SceneSize::Object& object : size.objects) {
+    std::string kind = settings.kind;
+    if (kind.empty()) kind = object.own_voxels > 0.0 ? "level_set" : object.faces > 0.0 ? "mesh" : "analytic";
+    if (kind == "analytic") cost.trace_ms += share * kFieldRayMs * object.terms;
+    if (kind == "mesh") add_mesh(object, settings, share, true, cost);
+    if (kind == "level_set") add_grid(object, settings, share, kVoxelMs * object.terms, cost);
+    if (kind == "mesh_level_set") {
+      SceneSize::Object remeshed = object;
+      remeshed.own_voxels = 0.0;
+      add_mesh(object, settings, share, false, cost);
+      add_grid(remeshed, settings, share, kMeshVoxelMs, cost);
+    }
+  }
+  return cost;
+}
+
+double Study::measure_ms() const { return 40.0 + pixels() * 1.2e-3; }
+double Study::truth_ms() const { return 300.0 + pixels() * 2e-3; }
+
+void CostLedger::learn(const std::string& kind, double expected_ms, double took_ms) {
+  Entry& entry = entries_[kind];
+  entry.expected_ms += expected_ms;
+  entry.took_ms += took_ms;
+}
+
+void CostLedger::done(const std::string& kind, double expected_ms, double took_ms) {
+  learn(kind, expected_ms, took_ms);
+  drop(kind, expected_ms);
+  entries_[kind].spent_ms += took_ms;
+}
+
+void CostLedger::drop(const std::string& kind, double expected_ms) {
+  Entry& entry = entries_[kind];
+  entry.left_ms = std::max(0.0, entry.left_ms - expected_ms);
+}
+
+double CostLedger::remaining_ms() const {
+  double expected = 0.0, took = 0.0;
+  for (const auto& [kind, entry] : entries_) {
+    expected += entry.expected_ms;
+    took += entry.took_ms;
+  }
+  const double overall = expected > 0.0 ? took / expected : 1.0;
+  double remaining = 0.0;
+  for (const auto& [kind, entry] : entries_) {
+    remaining += entry.left_ms * (entry.expected_ms > 0.0 ? entry.took_ms / entry.expected_ms : overall);
+  }
+  return remaining;
+}
+
+double CostLedger::spent_ms() const {
+  double spent = 0.0;
+  for (const auto& [kind, entry] : entries_) spent += entry.spent_ms;
+  return spent;
+}
+
+}  // namespace limn

@@ -1,0 +1,50 @@
+#pragma once
+// What a study is expected to take: known growth (faces by 4 a level, voxels by the square of the resolution, rays by pixels) with
+// constants of a machine of 2023; what this machine makes of them is learnt as work is done.
+
+#include <map>
+#include <string>
+
+#include "samples/study/study.h"
+
+namespace limn {
+
+/// Sizes from which the growth starts, counted once for a scene.
+struct SceneSize {
+  struct Object {
+    double faces = 0.0;         ///< Of the cage or the mesh as loaded; of the tessellation's cage.
+    bool refines = false;       ///< Levels multiply the faces.
+    double area = 0.0;          ///< World.
+    double longest_side = 0.0;  ///< World.
+    double terms = 1.0;         ///< How much longer than one shape's formula the field takes, roughly.
+    double own_voxels = 0.0;    ///< Of a volume as loaded.
+  };
+  std::vector<Object> objects{};
+};
+SceneSize size_of(const Scene& scene, const SurfaceSettings& settings);
+
+ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& settings, double pixels);
+/// Faces that the objects which refine have at a level.
+double faces_at_level(const SceneSize& size, int level);
+
+/// Work still to be done, in expected milliseconds by kind of work, and how long work of that kind really took.
+class CostLedger {
+ public:
+  void plan(const std::string& kind, double expected_ms) { entries_[kind].left_ms += expected_ms; }
+  /// A measurement that is no part of the plan.
+  void learn(const std::string& kind, double expected_ms, double took_ms);
+  /// Part of the plan is done.
+  void done(const std::string& kind, double expected_ms, double took_ms);
+  /// Part of the plan falls away.
+  void drop(const std::string& kind, double expected_ms);
+  double remaining_ms() const;
+  double spent_ms() const;
+
+ private:
+  struct Entry {
+    double left_ms = 0.0, expected_ms = 0.0, took_ms = 0.0, spent_ms = 0.0;
+  };
+  std::map<std::string, Entry> entries_{};
+};
+
+}  // namespace limn

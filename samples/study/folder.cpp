@@ -1,0 +1,102 @@
+#include "samples/study/folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+
+void refuse_other(const fs::path& folder, const std::string& what) {
+  if (what.empty()) return;
+  throw InputError(
+      {folder.string(), "--output", "", "holds another study: " + what, "another folder, or --fresh to start over, would be right"});
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+void forget(const fs::path& folder) {
+  std::error_code ignored;
+  // Rows first: thumbnails vouch for them.
+  for (const char* name : {"rows.jsonl", "rows.csv", "study.json", "report.html", "cells"}) fs::remove_all(folder / name, ignored);
+}
+
+}  // namespace
+
+std::optional<StudyFolder> read_folder(const fs::path& folder) {
+  std::optional<StudyRecord> record = read_record(folder);
+  if (!record) return std::nullopt;
+  StudyFolder held{std::move(*record), read_cells(folder)};
+  std::set<std::string> planned;
+  for (const PlannedCell& cell : held.record.cells) planned.insert(cell.key);
+  for (const auto& [key, rows] : held.rows) {
+    if (!planned.contains(key))
+      throw InputError({(folder / "rows.jsonl").string(), "key", key, "not a cell of this study", "--fresh to start over would be right"});
+  }
+  return held;
+}
+
+StudyFolder open_folder(const fs::path& folder, const StudyRecord& record, bool fresh) {
+  if (fresh) forget(folder);
+  StudyFolder held{record, {}};
+  if (std::optional<StudyRecord> there = read_record(folder)) {
+    refuse_other(folder, difference(*there, record));
+    held.rows = read_folder(folder)->rows;
+    add_truths(there->truths, held.record);
+  } else if (is_there(folder / "rows.jsonl")) {
+    refuse_other(folder, "rows of nobody knows what");
+  }
+  std::erase_if(held.rows, [](const auto& cell) { return failed(cell.second); });
+  std::vector<std::string> keys;
+  for (const PlannedCell& cell : record.cells) {
+    keys.push_back(cell.key);
+    std::error_code ignored;
+    if (!held.rows.contains(cell.key)) fs::remove(thumbnail_file(folder, cell.key), ignored);
+  }
+  write_record(held.record, folder);
+  write_cells(held.rows, keys, folder);
+  return held;
+}
+
+std::vector<fs::path> finish_folder(const fs::path& folder, const StudyFolder& done, bool with_report) {
+  std::vector<std::string> keys;
+  std::vector<StudyRow> rows;
+  for (const PlannedCell& cell : done.record.cells) {
+    keys.push_back(cell.key);
+    const auto found = done.rows.find(cell.key);
+    if (found != done.rows.end()) rows.insert(rows.end(), found->second.begin(), found->second.end());
+  }
+  write_cells(done.rows, keys, folder);
+  write_record(done.record, folder);
+  std::vector<fs::path> files = {folder / "rows.csv", folder / "rows.jsonl", record_file(folder)};
+  if (!with_report) return files;
+  const std::vector<fs::path> report = write_study_report(done.record.head, rows, folder);
+  files.insert(files.end(), report.begin(), report.end());
+  return files;
+}
+
+std::vector<PlannedCell> missing_cells(const StudyFolder& folder) {
+  std::vector<PlannedCell> missing;
+  for (const PlannedCell& cell : folder.record.cells) {
+    if (!folder.rows.contains(cell.key)) missing.push_back(cell);
+  }
+  return missing;
+}
+
+std::int64_t failed_cells(const StudyFolder& folder) {
+  return std::count_if(folder.rows.begin(), folder.rows.end(), [](const auto& cell) { return failed(cell.second); });
+}
+
+std::string part_name(int shard, int shards) { return fmt::format("part-{}-of-{}", shard, shards); }
+
+fs::path unfinished(const fs::path& part) { return part.string() + ".unfinished"; }
+
+}  // namespace limn

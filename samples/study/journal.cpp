@@ -1,0 +1,120 @@
+#include "samples/study/journal.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "sdf/error.h"
+#include "sdf/output_file.h"
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path journal_file(const fs::path& folder) { return folder / "rows.jsonl"; }
+fs::path table_file(const fs::path& folder) { return folder / "rows.csv"; }
+
+[[noreturn]] void fail(const fs::path& file) {
+  throw MachineError(file.string() + ": writing failed: " + std::generic_category().message(errno));
+}
+
+void write_all(int handle, const std::string& bytes, const fs::path& file) {
+  for (size_t written = 0; written < bytes.size();) {
+    const ssize_t count = ::write(handle, bytes.data() + written, bytes.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) fail(file);
+    written += static_cast<size_t>(count);
+  }
+}
+
+int open_end(const fs::path& file) {
+  const int handle = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
+  if (handle < 0) fail(file);
+  return handle;
+}
+
+}  // namespace
+
+bool failed(const std::vector<StudyRow>& cell) { return cell.size() == 1 && !cell.front().failed.empty(); }
+
+CellRows read_cells(const fs::path& folder) {
+  std::ifstream stream(journal_file(folder), std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  const std::string bytes = text.str();
+  CellRows cells;
+  std::string last;
+  int line_number = 0;
+  for (size_t at = 0; at < bytes.size();) {
+    const size_t end = bytes.find('\n', at);
+    if (end == std::string::npos) break;
+    StudyRow row = row_from_json(bytes.substr(at, end - at), journal_file(folder), ++line_number);
+    last = row.key;
+    cells[last].push_back(std::move(row));
+    at = end + 1;
+  }
+  // A failed cell is one line, and so never torn.
+  if (last.empty() || failed(cells[last])) return cells;
+  std::error_code ignored;
+  if (!fs::exists(thumbnail_file(folder, last), ignored)) cells.erase(last);
+  return cells;
+}
+
+void write_cells(const CellRows& cells, const std::vector<std::string>& keys, const fs::path& folder) {
+  std::string json, csv = csv_header() + "\n";
+  for (const std::string& key : keys) {
+    const auto found = cells.find(key);
+    if (found == cells.end()) continue;
+    for (const StudyRow& row : found->second) {
+      json += json_line(row) + "\n";
+      csv += csv_line(row) + "\n";
+    }
+  }
+  write_whole(journal_file(folder), json);
+  write_whole(table_file(folder), csv);
+}
+
+FolderLock::FolderLock(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InputError({folder.string(), "--output", "", "cannot be made: " + error.message(), "a place where folders can be made"});
+  handle_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  // Some network filesystems have no locks; there nothing is kept out.
+  if (handle_ >= 0 && ::flock(handle_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    ::close(handle_);
+    throw InputError(
+        {folder.string(), "--output", "", "another limn is at work in it", "another folder, or waiting for it, would be right"});
+  }
+}
+
+FolderLock::~FolderLock() {
+  if (handle_ >= 0) ::close(handle_);
+}
+
+StudyJournal::StudyJournal(const fs::path& folder)
+    : folder_(folder), jsonl_(open_end(journal_file(folder))), csv_(open_end(table_file(folder))) {}
+
+StudyJournal::~StudyJournal() {
+  if (jsonl_ >= 0) ::close(jsonl_);
+  if (csv_ >= 0) ::close(csv_);
+}
+
+void StudyJournal::append(const std::vector<StudyRow>& cell) {
+  std::string json, csv;
+  for (const StudyRow& row : cell) {
+    json += json_line(row) + "\n";
+    csv += csv_line(row) + "\n";
+  }
+  write_all(jsonl_, json, journal_file(folder_));
+  if (::fdatasync(jsonl_) != 0 && errno != EINVAL) fail(journal_file(folder_));
+  write_all(csv_, csv, table_file(folder_));
+}
+
+}  // namespace limn

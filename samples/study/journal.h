@@ -1,0 +1,52 @@
+#pragma once
+// The rows of a study as they come: rows.jsonl is the journal, rows.csv follows it. Whatever stops the program, even SIGKILL in the middle
+// of a write, what is there afterwards is whole cells and at most one torn one at the end, which is cut away.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "samples/study/row.h"
+
+namespace limn {
+
+/// Rows of cells by key.
+using CellRows = std::map<std::string, std::vector<StudyRow>>;
+
+bool failed(const std::vector<StudyRow>& cell);
+
+/// The whole cells of a folder's journal; a last cell that may be torn is left out: one that ended in the middle of a line, or that has not
+/// got its thumbnail, which is written after its rows. Empty where there is no journal. Throws InputError for lines that are no rows.
+CellRows read_cells(const std::filesystem::path& folder);
+
+/// Both files anew, whole, in the order of `keys`; cells that are not in `cells` are passed over.
+void write_cells(const CellRows& cells, const std::vector<std::string>& keys, const std::filesystem::path& folder);
+
+/// Makes a folder and keeps other processes out of it as long as it lives. Throws InputError where one is in it.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int handle_ = -1;
+};
+
+/// Appends cells, each in one write that is on the disk when the call returns. Throws MachineError where the disk fails.
+class StudyJournal {
+ public:
+  explicit StudyJournal(const std::filesystem::path& folder);
+  ~StudyJournal();
+  StudyJournal(const StudyJournal&) = delete;
+  StudyJournal& operator=(const StudyJournal&) = delete;
+  void append(const std::vector<StudyRow>& cell);
+
+ private:
+  std::filesystem::path folder_;
+  int jsonl_ = -1, csv_ = -1;
+};
+
+}  // namespace limn

@@ -1,0 +1,123 @@
+#include "samples/study/key.h"
+
+#include <OpenImageIO/hash.h>
+#include <fmt/format.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "raymarch/metric.h"
+#include "sdf/error.h"
+#include "sdf/version.h"
+
+namespace limn {
+namespace {
+
+constexpr size_t kDigits = 32;
+
+std::string file_hash(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << stream.rdbuf();
+  if (!stream) throw InputError({file, "", "", "cannot be read", "a file that you may read would be right"});
+  return content_hash(bytes.str());
+}
+
+template <class T>
+void append(OIIO::SHA1& hash, const std::vector<T>& values) {
+  const auto count = static_cast<std::uint64_t>(values.size());
+  hash.append(&count, sizeof count);
+  if (!values.empty()) hash.append(values.data(), values.size() * sizeof(T));
+}
+
+// A mesh may come from several files (.gltf with its .bin), so what was loaded counts.
+std::string mesh_hash(const Mesh& mesh) {
+  OIIO::SHA1 hash;
+  append(hash, mesh.positions);
+  append(hash, mesh.face_sizes);
+  append(hash, mesh.corner_vertices);
+  append(hash, mesh.corner_normals);
+  append(hash, mesh.face_materials);
+  append(hash, mesh.creases);
+  append(hash, mesh.corners);
+  const auto boundary = static_cast<std::int32_t>(mesh.boundary);
+  hash.append(&boundary, sizeof boundary);
+  return hash.digest().substr(0, kDigits);
+}
+
+std::string vector_text(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+std::string camera_text(const Camera& camera) {
+  return fmt::format("camera {} {}x{} eye {} axes {} {} {} focal {} scale {}", static_cast<int>(camera.projection), camera.width_px,
+                     camera.height_px, vector_text(camera.eye), vector_text(camera.world_from_camera[0]),
+                     vector_text(camera.world_from_camera[1]), vector_text(camera.world_from_camera[2]), camera.focal_px,
+                     camera.pixels_per_unit);
+}
+
+// What the representation reads, whether or not the study varies it.
+std::string surface_text(const SurfaceSettings& settings) {
+  std::vector<std::string> reads;
+  if (settings.kind.empty()) {
+    reads = {"level", "scheme", "normals", "voxels", "voxel-size", "half-width", "gradient"};
+  } else {
+    reads = find_surface(settings.kind).settings;
+  }
+  std::string text = "surface " + settings.kind + fmt::format(" max-steps {}", settings.max_steps);
+  for (const std::string& name : reads) {
+    text += " " + name + " ";
+    if (name == "level") text += std::to_string(settings.level);
+    if (name == "scheme") text += settings.scheme ? name_of(*settings.scheme) : "own";
+    if (name == "normals") text += settings.normals ? name_of(*settings.normals) : "own";
+    if (name == "voxels") text += std::to_string(settings.voxels);
+    if (name == "voxel-size") text += fmt::format("{}", settings.voxel_size);
+    if (name == "half-width") text += fmt::format("{}", settings.half_width_voxels);
+    if (name == "gradient") text += settings.gradient;
+  }
+  return text;
+}
+
+std::string metrics_text() {
+  std::string text = "metrics";
+  for (const Metric& metric : metrics()) text += " " + metric.about.name;
+  return text;
+}
+
+}  // namespace
+
+std::string content_hash(std::string_view bytes) {
+  OIIO::SHA1 hash(bytes.data(), bytes.size());
+  return hash.digest().substr(0, kDigits);
+}
+
+std::string hash_of_input(const SceneInput& input) {
+  std::string text = input.kind == InputKind::built_in ? "built-in " + input.name : "";
+  if (input.kind == InputKind::scene_file) text += "scene " + file_hash(input.file);
+  for (const SceneObject& object : input.scene.objects) {
+    if (const auto* mesh = std::get_if<MeshSource>(&object.source))
+      text += "\nmesh " + mesh_hash(mesh->mesh) + (mesh->scheme ? name_of(*mesh->scheme) : "");
+    if (const auto* volume = std::get_if<LevelSetSource>(&object.source))
+      text += "\nvolume " + file_hash(volume->file) + " " + volume->level_set.info().name;
+  }
+  return content_hash(text);
+}
+
+void name_cells(Study& study) {
+  const std::string common = fmt::format("limn {} study {}\ninput {}\nreference {}\n{}\nflicker {}\n", kVersion, kStudyFormat,
+                                         study.input_hash, surface_text(study.reference), metrics_text(), study.flicker);
+  std::vector<std::string> cameras, models, methods;
+  for (const Camera& camera : study.cameras) cameras.push_back(camera_text(camera));
+  for (const StudyModel& model : study.models) models.push_back(surface_text(model.settings));
+  for (const StudyMethod& method : study.methods) {
+    std::string text = "method " + method.call.method->about.name;
+    for (const auto& [name, value] : method.parameters) text += " " + name + "=" + value;
+    methods.push_back(text);
+  }
+  std::string all;
+  for (StudyCell& cell : study.cells) {
+    cell.key = content_hash(common + cameras[cell.view] + "\n" + models[cell.model] + "\n" + methods[cell.method]);
+    all += cell.key + "\n";
+  }
+  study.head.id = content_hash(all);
+}
+
+}  // namespace limn

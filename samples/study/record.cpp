@@ -1,0 +1,171 @@
+#include "samples/study/record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "sdf/error.h"
+#include "sdf/output_file.h"
+#include "sdf/version.h"
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+
+Json to_json(const TruthRecord& truth) {
+  Json json = {{"view", truth.view}, {"threshold", truth.threshold}};
+  if (!truth.failed.empty()) {
+    json["failed"] = truth.failed;
+    return json;
+  }
+  json["from"] = truth.from;
+  json["exact"] = truth.exact;
+  json["bound_px"] = number_or_null(truth.bound_px);
+  json["notes"] = truth.notes;
+  return json;
+}
+
+TruthRecord truth_from(const Json& json) {
+  TruthRecord truth;
+  truth.view = json.at("view").get<int>();
+  truth.threshold = json.at("threshold").get<double>();
+  truth.failed = json.value("failed", "");
+  if (!truth.failed.empty()) return truth;
+  truth.from = json.at("from").get<std::string>();
+  truth.exact = json.at("exact").get<bool>();
+  truth.bound_px = json.at("bound_px").is_null() ? std::numeric_limits<double>::quiet_NaN() : json.at("bound_px").get<double>();
+  truth.notes = json.at("notes").get<std::vector<std::string>>();
+  return truth;
+}
+
+Json to_json(const StudyRecord& record) {
+  const StudyHead& head = record.head;
+  Json json = {{"id", head.id},         {"limn", record.version},          {"format", record.format}, {"input", head.input},
+               {"scene", head.scene},   {"input_hash", record.input_hash}, {"call", head.call},       {"truth", head.truth},
+               {"exact", head.exact},   {"pictures", record.pictures},     {"views", head.views},     {"surfaces", head.surfaces},
+               {"shard", record.shard}, {"shards", record.shards},         {"truths", Json::array()}, {"cells", Json::array()}};
+  for (const TruthRecord& truth : record.truths) json["truths"].push_back(to_json(truth));
+  for (const PlannedCell& cell : record.cells) json["cells"].push_back({{"key", cell.key}, {"text", cell.text}});
+  return json;
+}
+
+StudyRecord record_from(const Json& json) {
+  StudyRecord record;
+  StudyHead& head = record.head;
+  head.id = json.at("id").get<std::string>();
+  record.version = json.at("limn").get<std::string>();
+  record.format = json.at("format").get<int>();
+  head.input = json.at("input").get<std::string>();
+  head.scene = json.at("scene").get<std::string>();
+  record.input_hash = json.at("input_hash").get<std::string>();
+  head.call = json.at("call").get<std::string>();
+  head.truth = json.at("truth").get<std::string>();
+  head.exact = json.at("exact").get<bool>();
+  record.pictures = json.at("pictures").get<std::string>();
+  head.views = json.at("views").get<int>();
+  head.surfaces = json.at("surfaces").get<std::vector<std::string>>();
+  record.shard = json.at("shard").get<int>();
+  record.shards = json.at("shards").get<int>();
+  for (const Json& truth : json.at("truths")) record.truths.push_back(truth_from(truth));
+  for (const Json& cell : json.at("cells")) record.cells.push_back({cell.at("key").get<std::string>(), cell.at("text").get<std::string>()});
+  head.cells = static_cast<std::int64_t>(record.cells.size());
+  return record;
+}
+
+// "--levels 0,1,2" by option; the same --set with several keys stays apart.
+std::map<std::string, std::string> options_of(const std::string& call) {
+  std::map<std::string, std::string> options;
+  for (size_t at = call.find(" --"); at != std::string::npos;) {
+    const size_t next = call.find(" --", at + 1);
+    const std::string one = call.substr(at + 1, next == std::string::npos ? next : next - at - 1);
+    const size_t split = one.starts_with("--set ") ? one.find('=') : one.find(' ');
+    options[one.substr(0, split)] = split == std::string::npos ? "given" : one.substr(split + 1);
+    at = next;
+  }
+  return options;
+}
+
+}  // namespace
+
+StudyRecord record_of(const Study& study) {
+  StudyRecord record;
+  record.head = study.head;
+  record.version = kVersion;
+  record.input_hash = study.input_hash;
+  record.pictures = study.reference_words;
+  for (const StudyCell& cell : study.cells) record.cells.push_back({cell.key, cell_text(study, cell)});
+  add_truths({}, record);
+  return record;
+}
+
+void add_truths(const std::vector<TruthRecord>& truths, StudyRecord& record) {
+  const auto order = [](const TruthRecord& a, const TruthRecord& b) {
+    return std::pair(a.view, a.threshold) < std::pair(b.view, b.threshold);
+  };
+  for (const TruthRecord& truth : truths) {
+    const auto at = std::lower_bound(record.truths.begin(), record.truths.end(), truth, order);
+    if (at == record.truths.end() || order(truth, *at)) record.truths.insert(at, truth);
+  }
+  StudyHead& head = record.head;
+  head.exact = true;
+  std::string failed, from;
+  double bound_px = 0.0;
+  for (const TruthRecord& truth : record.truths) {
+    if (!truth.failed.empty()) {
+      failed = truth.failed;
+      continue;
+    }
+    head.exact = head.exact && truth.exact;
+    if (from.empty() || truth.bound_px > bound_px) from = truth.from;
+    bound_px = std::max(bound_px, truth.bound_px);
+  }
+  head.truth = "pictures against " + record.pictures;
+  if (!from.empty()) head.truth = fmt::format("{}, within {:.2g} px; {}", from, bound_px, head.truth);
+  if (!failed.empty()) head.truth += fmt::format("; no truth for some borders: {}", failed);
+  if (from.empty()) head.exact = false;
+}
+
+fs::path record_file(const fs::path& folder) { return folder / "study.json"; }
+
+void write_record(const StudyRecord& record, const fs::path& folder) {
+  write_whole(record_file(folder), to_json(record).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+std::optional<StudyRecord> read_record(const fs::path& folder) {
+  const fs::path file = record_file(folder);
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return std::nullopt;
+  std::ifstream stream(file, std::ios::binary);
+  const Json json = Json::parse(stream, nullptr, false);
+  const InputError foreign({file.string(), "", "", "not what limn study writes", "another folder, or --fresh, would be right"});
+  if (!json.is_object()) throw foreign;
+  try {
+    return record_from(json);
+  } catch (const Json::exception&) {
+    throw foreign;
+  }
+}
+
+std::string difference(const StudyRecord& there, const StudyRecord& here) {
+  if (there.head.id == here.head.id) return "";
+  if (there.version != here.version || there.format != here.format)
+    return fmt::format("limn {} (rows of format {}) there, limn {} (rows of format {}) here", there.version, there.format, here.version,
+                       here.format);
+  if (there.head.scene != here.head.scene) return fmt::format("the scene is {} there, {} here", there.head.scene, here.head.scene);
+  if (there.input_hash != here.input_hash) return "the input's content is another";
+  const auto old_options = options_of(there.head.call), new_options = options_of(here.head.call);
+  for (const auto& [name, value] : new_options) {
+    const auto found = old_options.find(name);
+    if (found == old_options.end()) return fmt::format("no {} there, {} here", name, value);
+    if (found->second != value) return fmt::format("{} {} there, {} here", name, found->second, value);
+  }
+  for (const auto& [name, value] : old_options) {
+    if (!new_options.contains(name)) return fmt::format("{} {} there, none here", name, value);
+  }
+  return "what pictures are held against: " + there.pictures + " there, " + here.pictures + " here";
+}
+
+}  // namespace limn

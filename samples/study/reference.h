@@ -1,0 +1,73 @@
+#pragma once
+// What cells are measured against: for each view the reference model's picture, and the truth of the border. Made when first asked for.
+
+#include <optional>
+
+#include "raymarch/metric.h"
+#include "samples/study/cost.h"
+#include "samples/study/record.h"
+#include "sdf/error.h"
+
+namespace limn {
+
+/// Sub-pixel moves of the camera for flicker, as offsets of the rays within the pixels.
+inline constexpr int kMoves = 4;
+glm::dvec2 move_offset(int move);
+
+/// One method's ink on one model, seen from one view.
+struct Ink {
+  Image<float> ink{};
+  std::vector<Image<float>> moved{};  ///< Where flicker is measured.
+  double border_ms = 0.0;
+  std::string refused{};  ///< Why there is none.
+};
+
+/// A model from one view, before any method.
+struct Seen {
+  GBuffer gbuffer{};
+  std::vector<GBuffer> moved{};
+  double trace_ms = 0.0;
+};
+Seen look(const SceneModel& model, const Camera& camera, bool flicker, const ExecutionSettings& how);
+Ink draw(const Study& study, const SceneModel& model, size_t view, size_t method, const Seen& seen);
+
+/// "fewer voxels would be right" and what is wrong, for a row.
+std::string reason_of(const InputError& error);
+
+struct TruthOf {
+  std::optional<BorderTruth> truth{};
+  TruthRecord record{};
+};
+
+class StudyReference {
+ public:
+  StudyReference(const Study& study, const ExecutionSettings& how, CostLedger& ledger) : study_(study), how_(how), ledger_(ledger) {}
+
+  /// Its border is left empty: swap a method's ink in.
+  Picture& picture(size_t view);
+  std::vector<Image<float>>& moved(size_t view, size_t method) { return ink(view, method).moved; }
+  Ink& ink(size_t view, size_t method);
+  const TruthOf& truth(size_t view, double threshold);
+  /// Forgets the pictures of all views; the model stays.
+  void clear() { views_.clear(); }
+
+  /// What holding one view takes, bytes.
+  static double bytes_of_view(const Study& study);
+
+ private:
+  struct View {
+    Seen seen{};
+    Picture picture{};
+    std::map<size_t, Ink> inks{};
+    std::map<double, TruthOf> truths{};
+  };
+  View& view(size_t index);
+
+  const Study& study_;
+  ExecutionSettings how_;
+  CostLedger& ledger_;
+  std::optional<SceneModel> model_{};
+  std::map<size_t, View> views_{};
+};
+
+}  // namespace limn

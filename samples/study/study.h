@@ -1,0 +1,77 @@
+#pragma once
+// A study before anything of it is built: which models, views and methods, the cells that they make, and what each is expected to cost.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "raymarch/picture.h"
+#include "samples/input.h"
+#include "samples/study/row.h"
+
+namespace limn {
+
+/// Of the rows and their metrics, and of how a cell is measured: a change of it makes other cells.
+inline constexpr int kStudyFormat = 1;
+
+/// What something is expected to cost, the same on every machine: what the machine makes of it is for CostLedger to find out.
+struct ExpectedCost {
+  double build_ms = 0.0;
+  double trace_ms = 0.0;  ///< A picture.
+  std::int64_t bytes = 0;
+};
+
+/// One way to model the scene.
+struct StudyModel {
+  std::string surface{};
+  std::map<std::string, std::string> parameters{};  ///< As in the rows: what the representation reads and the study varies.
+  SurfaceSettings settings{};
+  std::string refused{};  ///< Why it cannot be built, where that is known beforehand.
+  ExpectedCost cost{};
+};
+
+struct StudyMethod {
+  MethodCall call{};
+  std::map<std::string, std::string> parameters{};
+  /// The rim's, whose border truth knows; empty for other methods.
+  std::optional<double> truth_threshold{};
+};
+
+/// One model, one view, one method, as indices.
+struct StudyCell {
+  std::string key{};
+  size_t model = 0, view = 0, method = 0;
+};
+
+struct Study {
+  Scene scene{};                ///< Objects' own levels taken away: the models say them.
+  SurfaceSettings reference{};  ///< The model that pictures are held against.
+  std::string reference_words{};
+  ExpectedCost reference_cost{};
+  std::string input_hash{};
+  std::vector<Camera> cameras{};
+  std::vector<StudyMethod> methods{};
+  std::vector<StudyModel> models{};
+  std::vector<StudyCell> cells{};  ///< In the order of work: models, their views, methods.
+  bool flicker = false;
+  StudyHead head{};
+  double longest_side = 0.0;  ///< World, of the scene.
+
+  double looks() const { return flicker ? 5.0 : 1.0; }  ///< Pictures traced of each model in each view.
+  double measure_ms() const;                            ///< Expected for one cell: ink, curves and metrics.
+  double truth_ms() const;                              ///< Expected for one view and threshold.
+  double pixels() const { return double(cameras.front().width_px) * cameras.front().height_px; }
+};
+
+/// Throws InputError for a call that makes no study.
+Study plan_study(const Options& options, SceneInput input);
+
+/// A row of the cell that says who it is and nothing yet of what was measured.
+StudyRow row_of(const Study& study, const StudyCell& cell);
+/// "mesh, vertex normals, level 3, view 2, rim threshold=0.4".
+std::string cell_text(const Study& study, const StudyCell& cell);
+/// "3 min 20 s", "45 s".
+std::string duration_text(double milliseconds);
+
+}  // namespace limn

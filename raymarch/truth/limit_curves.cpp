@@ -27,7 +27,7 @@ glm::dvec2 outward_at(const Shape& shape, const LimitSegment& segment, const Tra
   if (segment.crease) return segment.beside_is_bounded ? -towards : towards;
   if (shape.settings.kind == CurveKind::inner) return towards;
   const glm::dmat3& axes = shape.camera.world_from_camera;
-  const glm::dvec2 n(glm::dot(point.normal, axes[0]), -glm::dot(point.normal, axes[1]));
+  const glm::dvec2 n(glm::dot(point.high, axes[0]), -glm::dot(point.high, axes[1]));
   return point.radial_curvature < 0.0 ? -n : n;
 }
 
@@ -39,11 +39,12 @@ TracedPoint point_at(const Shape& shape, const LimitSegment& segment, std::uint3
   point.px = glm::dvec2(image);
   point.depth = image.z;
   point.crease = segment.crease;
-  point.normal = segment.crease ? segment.crease_normal : s.normal;
+  point.high = segment.crease ? segment.high_normal : s.normal;
+  point.low = segment.crease ? segment.low_normal : s.normal;
   if (!segment.crease)
     point.radial_curvature = curvature_along(curvature_at(shape.placed, patch, uv), v - glm::dot(v, s.normal) * s.normal);
   // A fold that bends towards its normal is seen, if at all, from the surface's other side.
-  point.lift = shape.settings.kind == CurveKind::inner ? v : point.radial_curvature < 0.0 ? -point.normal : point.normal;
+  point.lift = shape.settings.kind == CurveKind::inner ? v : point.radial_curvature < 0.0 ? -point.high : point.high;
   point.outward = outward_at(shape, segment, point);
   return point;
 }

@@ -148,7 +148,11 @@ void follow_crease(Tracer& tracer, const CreaseSide& one, const CreaseSide& two)
     segment.crease = true;
     segment.beside_is_bounded = true;
     segment.beside = covered.third;
-    segment.crease_normal = tracer.grid.normals[covered.triangle->corners[static_cast<size_t>(covered.from)].side];
+    const auto normal = [&](const CreaseSide& side) {
+      return tracer.grid.normals[side.triangle->corners[static_cast<size_t>(side.from)].side];
+    };
+    segment.high_normal = normal(high);
+    segment.low_normal = normal(low);
     for (size_t e = 0; e < 2; ++e) {
       segment.ends[e] = breaks[k + e].end;
       // Both ends in one patch, so that places between them can be asked for.
@@ -165,7 +169,7 @@ void add_open_edge(Tracer& tracer, const CreaseSide& side) {
   segment.beside_is_bounded = true;
   segment.beside = side.third;
   const LimitCorner &a = side.triangle->corners[static_cast<size_t>(side.from)], &b = side.triangle->corners[static_cast<size_t>(side.to)];
-  segment.crease_normal = tracer.grid.normals[a.side] * (side.f0 < 0.0 ? -1.0 : 1.0);
+  segment.high_normal = segment.low_normal = tracer.grid.normals[a.side] * (side.f0 < 0.0 ? -1.0 : 1.0);
   segment.ends[0] = {{a.node, 0, 2}, side.triangle->patch, a.uv};
   segment.ends[1] = {{b.node, 0, 2}, side.triangle->patch, b.uv};
   tracer.segments.push_back(segment);

@@ -15,7 +15,7 @@ struct LimitEndKey {
   bool operator<(const LimitEndKey& o) const { return std::tie(kind, a, b) < std::tie(o.kind, o.a, o.b); }
   bool operator==(const LimitEndKey& o) const { return kind == o.kind && a == o.a && b == o.b; }
 };
-LimitEndKey root_key(std::uint32_t a, std::uint32_t b, int kind) { return {std::min(a, b), std::max(a, b), kind}; }
+inline LimitEndKey root_key(std::uint32_t a, std::uint32_t b, int kind) { return {std::min(a, b), std::max(a, b), kind}; }
 
 struct LimitEnd {
   LimitEndKey key;
@@ -29,7 +29,7 @@ struct LimitSegment {
   glm::dvec3 beside{0.0};  ///< World: a place on the side that is not bounded (inner), or that is (creases and open edges).
   bool beside_is_bounded = false;
   bool crease = false;
-  glm::dvec3 crease_normal{0.0};
+  glm::dvec3 high_normal{0.0}, low_normal{0.0};  ///< Of a crease's sides of higher and lower N.V.
 };
 
 /// N.V at a place of a patch.

@@ -1,0 +1,259 @@
+// Border curves of limit surfaces against roots found line by line, against a cube's known outline, and against what a fine mesh shows.
+
+#include "raymarch/measured_border.h"
+#include "raymarch/truth/limit_curves.h"
+#include "scenes.h"
+
+namespace limn {
+namespace {
+
+using namespace test;
+
+constexpr unsigned kSeed = 20261121;
+
+glm::dvec3 random_direction(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+}
+
+Camera random_camera(const Scene& scene, std::mt19937& random, Projection projection, int width = 320, int height = 240) {
+  CameraSettings settings = view(width, height, projection);
+  settings.direction = random_direction(random);
+  return framing(scene, settings);
+}
+
+/// A ring of quads around y, every vertex moved a little, so that nothing is symmetric.
+Mesh bumpy_torus(std::mt19937& random) {
+  constexpr int kAround = 10, kTube = 6;
+  std::uniform_real_distribution<double> jitter(-0.05, 0.05);
+  Mesh mesh;
+  for (int i = 0; i < kAround; ++i) {
+    for (int j = 0; j < kTube; ++j) {
+      const double a = 2.0 * std::numbers::pi * i / kAround, b = 2.0 * std::numbers::pi * j / kTube, r = 1.0 + 0.35 * std::cos(b);
+      mesh.positions.emplace_back(r * std::cos(a) + jitter(random), 0.35 * std::sin(b) + jitter(random), r * std::sin(a) + jitter(random));
+    }
+  }
+  for (int i = 0; i < kAround; ++i) {
+    for (int j = 0; j < kTube; ++j) {
+      const auto at = [](int x, int y) { return (x % kAround) * kTube + y % kTube; };
+      for (const int corner : {at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)}) mesh.corner_vertices.push_back(corner);
+      mesh.face_sizes.push_back(4);
+    }
+  }
+  return mesh;
+}
+
+Mesh pyramid() {
+  Mesh mesh;
+  mesh.positions = {{-1, -0.6, -1}, {1, -0.6, -1}, {1, -0.6, 1}, {-1, -0.6, 1}, {0.1, 1.1, 0.2}};
+  mesh.face_sizes = {4, 3, 3, 3, 3};
+  mesh.corner_vertices = {0, 1, 2, 3, 4, 1, 0, 4, 2, 1, 4, 3, 2, 4, 0, 3};
+  return mesh;
+}
+
+Mesh octahedron() {
+  Mesh mesh;
+  mesh.positions = {{1.2, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -0.8, 0}, {0, 0, 1}, {0, 0, -1.1}};
+  mesh.face_sizes.assign(8, 3);
+  mesh.corner_vertices = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+  return mesh;
+}
+
+struct Cage {
+  std::string name;
+  Mesh mesh;
+  Scheme scheme;
+};
+
+std::vector<Cage> cages(std::mt19937& random) {
+  Mesh creased = box_mesh(glm::dvec3(1.0, 0.7, 0.8));
+  creased.creases = {{0, 1, 10.0f}, {1, 3, 10.0f}, {3, 2, 10.0f}, {2, 0, 10.0f}, {4, 5, 2.0f}};
+  return {{"box", box_mesh(glm::dvec3(1.0, 0.7, 0.5)), Scheme::catmark},
+          {"creased box", creased, Scheme::catmark},
+          {"torus", bumpy_torus(random), Scheme::catmark},
+          {"pyramid with triangles", pyramid(), Scheme::catmark},
+          {"octahedron", octahedron(), Scheme::loop}};
+}
+
+struct Line {
+  glm::dvec2 a, b;
+};
+std::vector<Line> lines_of(const std::vector<TracedCurve>& curves) {
+  std::vector<Line> lines;
+  for (const TracedCurve& curve : curves) {
+    for (size_t i = 0; i + 1 < curve.points.size(); ++i) lines.push_back({curve.points[i].px, curve.points[i + 1].px});
+    if (curve.closed && !curve.points.empty()) lines.push_back({curve.points.back().px, curve.points.front().px});
+  }
+  return lines;
+}
+
+double distance_px(const glm::dvec2& p, const Line& line) {
+  const glm::dvec2 d = line.b - line.a;
+  const double squared = glm::dot(d, d), t = squared > 0.0 ? std::clamp(glm::dot(p - line.a, d) / squared, 0.0, 1.0) : 0.0;
+  return glm::distance(p, line.a + t * d);
+}
+double distance_px(const glm::dvec2& p, const std::vector<Line>& lines) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const Line& line : lines) best = std::min(best, distance_px(p, line));
+  return best;
+}
+
+/// Image points where N.V = c on lines of the surface, by nothing but bisection.
+std::vector<glm::dvec2> roots_on_lines(const LimitSurface& surface, const Camera& camera, double c) {
+  std::vector<glm::dvec2> roots;
+  for (int face = 0; face < surface.face_count(); ++face) {
+    const bool shares = surface.has_sub_faces(face), triangle = !shares && surface.face_size(face) == 3;
+    for (int share = 0; share < (shares ? surface.face_size(face) : 1); ++share) {
+      const auto facing = [&](double u, double v, glm::dvec2& px) {
+        LimitPoint point;
+        EXPECT_TRUE(surface.evaluate(face, share, u, v, point));
+        px = glm::dvec2(project(camera, point.position));
+        return glm::dot(glm::normalize(glm::cross(point.du, point.dv)), view_vector(camera, point.position)) - c;
+      };
+      for (int line = 0; line < 17; ++line) {
+        const double u = (line + 0.37) / 17.0, reach = triangle ? 1.0 - u : 1.0;
+        constexpr int kSteps = 60;
+        glm::dvec2 px;
+        for (int k = 0; k < kSteps; ++k) {
+          double low = 0.001 + 0.998 * reach * k / kSteps, high = 0.001 + 0.998 * reach * (k + 1) / kSteps;
+          const bool sign = facing(u, low, px) < 0.0;
+          if (sign == (facing(u, high, px) < 0.0)) continue;
+          for (int step = 0; step < 50; ++step) {
+            const double middle = 0.5 * (low + high);
+            ((facing(u, middle, px) < 0.0) == sign ? low : high) = middle;
+          }
+          roots.push_back(px);
+        }
+      }
+    }
+  }
+  return roots;
+}
+
+TEST(TruthLimit, EveryRootOnALineOfTheSurfaceLiesOnACurve) {
+  std::mt19937 random(kSeed);
+  RecordProperty("seed", static_cast<int>(kSeed));
+  double worst = 0.0;
+  size_t roots_seen = 0;
+  for (const Cage& cage : cages(random)) {
+    const Scene scene = scene_of({object_of(cage.mesh, cage.scheme)});
+    const LimitSurface surface(cage.mesh, cage.scheme);
+    for (int turn = 0; turn < 4; ++turn) {
+      const Camera camera = random_camera(scene, random, turn % 2 ? Projection::orthographic : Projection::perspective);
+      const PlacedLimitSurface placed = place(surface, {});
+      double cell_px = 0.0;
+      const LimitGrid grid = sample_grid(placed, camera, 4.0, 1'000'000, cell_px);
+      EXPECT_EQ(grid.invalid_patches, 0) << cage.name;
+      for (const double c : {0.0, 0.15, 0.6}) {
+        const CurveKind kind = c > 0.0 ? CurveKind::inner : CurveKind::silhouette;
+        const std::vector<TracedCurve> curves = trace_limit_curves(placed, grid, camera, {kind, c, 0.002, 1});
+        const std::vector<Line> lines = lines_of(curves);
+        for (const glm::dvec2& root : roots_on_lines(surface, camera, c)) {
+          const double off = distance_px(root, lines);
+          worst = std::max(worst, off);
+          ++roots_seen;
+          ASSERT_LT(off, 0.01) << cage.name << " c " << c << " view " << turn << " seed " << kSeed;
+        }
+        for (const TracedCurve& curve : curves) {
+          // Silhouettes of closed surfaces are closed; so are level curves where no crease cuts them off.
+          EXPECT_TRUE(curve.closed || (c > 0.0 && cage.name == "creased box")) << cage.name << " c " << c;
+          for (const TracedPoint& point : curve.points) {
+            if (!point.crease) {
+              ASSERT_NEAR(glm::dot(point.high, view_vector(camera, point.p)), c, 1e-5) << cage.name;
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(roots_seen, 3000u);
+  std::printf("%zu roots, the worst %.2g px off\n", roots_seen, worst);
+}
+
+TEST(TruthLimit, TheOutlineOfABilinearBoxIsItsShadowsHexagon) {
+  std::mt19937 random(kSeed + 1);
+  const glm::dvec3 half(1.0, 0.7, 0.4);
+  const Scene scene = scene_of({object_of(box_mesh(half), Scheme::bilinear)});
+  for (int turn = 0; turn < 10; ++turn) {
+    const Camera camera = random_camera(scene, random, Projection::orthographic);
+    TruthSettings settings;
+    settings.threshold = 0.0;
+    const BorderTruth truth = solve_truth(scene, camera, settings, {});
+    double expected = 0.0, length = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::dvec3 along(0.0);
+      along[axis] = 2.0 * half[axis];
+      const glm::dvec3 a = project(camera, glm::dvec3(0.0)), b = project(camera, along);
+      expected += 2.0 * glm::distance(glm::dvec2(a), glm::dvec2(b));
+    }
+    for (const BorderCurve& curve : truth.curves.curves) {
+      EXPECT_EQ(curve.kind, CurveKind::silhouette);
+      length += length_px(curve);
+    }
+    EXPECT_NEAR(length, expected, 0.05) << "view " << turn << " seed " << kSeed + 1;
+    EXPECT_EQ(truth.contour_generators, 1);
+    EXPECT_TRUE(truth.exact);
+  }
+}
+
+/// The mesh's border is its own; only how far it may lie from the limit's is asked here.
+TEST(TruthLimit, AFineMeshShowsTheSameBorder) {
+  std::mt19937 random(kSeed + 2);
+  for (const Cage& cage : cages(random)) {
+    const Scene scene = scene_of({object_of(cage.mesh, cage.scheme)});
+    const Camera camera = random_camera(scene, random, Projection::perspective);
+    TruthSettings settings;
+    settings.threshold = 0.4;
+    const BorderTruth truth = solve_truth(scene, camera, settings, {});
+    SurfaceSettings fine = surface_kind("mesh");
+    fine.level = 6;
+    const SceneModel model = build_model(scene, fine);
+    const GBuffer gbuffer = render_gbuffer(model, camera, {});
+    const BorderCurves measured = measure_border(model, camera, gbuffer, {}, {});
+    const auto lines = [](const BorderCurves& border, CurveKind kind) {
+      std::vector<Line> out;
+      for (const BorderCurve& curve : border.curves) {
+        if (curve.kind != kind) continue;
+        for (size_t i = 0; i + 1 < curve.points.size(); ++i) out.push_back({curve.points[i].px, curve.points[i + 1].px});
+        if (curve.closed) out.push_back({curve.points.back().px, curve.points.front().px});
+      }
+      return out;
+    };
+    for (const CurveKind kind : {CurveKind::silhouette, CurveKind::inner}) {
+      const std::vector<Line> truth_lines = lines(truth.curves, kind), mesh_lines = lines(measured, kind);
+      ASSERT_FALSE(truth_lines.empty()) << cage.name;
+      const auto share_off = [](const std::vector<Line>& of, const std::vector<Line>& from) {
+        size_t off = 0;
+        for (const Line& line : of) off += distance_px(0.5 * (line.a + line.b), from) > 0.1;
+        return static_cast<double>(off) / static_cast<double>(of.size());
+      };
+      // Ends of visible parts, where two curves run into each other, are less than a hundredth of all.
+      EXPECT_LT(share_off(truth_lines, mesh_lines), 0.02) << cage.name << (kind == CurveKind::inner ? " inner" : " silhouette");
+      EXPECT_LT(share_off(mesh_lines, truth_lines), 0.02) << cage.name << (kind == CurveKind::inner ? " inner" : " silhouette");
+    }
+    double ink = 0.0, shown = 0.0;
+    for (const float share : truth.coverage.pixels) ink += double{share};
+    for (size_t i = 0; i < gbuffer.n_dot_v.size(); ++i) shown += gbuffer.id.pixels[i] > 0 && gbuffer.n_dot_v.pixels[i] < 0.4f ? 1.0 : 0.0;
+    EXPECT_NEAR(ink, shown, 0.02 * shown + 10.0) << cage.name;
+  }
+}
+
+TEST(TruthLimit, TheSameForAnyNumberOfThreads) {
+  std::mt19937 random(kSeed + 3);
+  const Scene scene = scene_of({object_of(bumpy_torus(random), Scheme::catmark)});
+  const Camera camera = random_camera(scene, random, Projection::perspective);
+  ExecutionSettings one, three;
+  one.threads = 1;
+  three.threads = 3;
+  const BorderTruth a = solve_truth(scene, camera, {}, one), b = solve_truth(scene, camera, {}, three);
+  EXPECT_EQ(a.coverage.pixels, b.coverage.pixels);
+  ASSERT_EQ(a.curves.curves.size(), b.curves.curves.size());
+  for (size_t k = 0; k < a.curves.curves.size(); ++k) {
+    ASSERT_EQ(a.curves.curves[k].points.size(), b.curves.curves[k].points.size());
+    for (size_t i = 0; i < a.curves.curves[k].points.size(); ++i)
+      EXPECT_EQ(a.curves.curves[k].points[i].px, b.curves.curves[k].points[i].px);
+  }
+}
+
+}  // namespace
+}  // namespace limn

@@ -2,7 +2,7 @@
 
 #include "raymarch/measured_border.h"
 #include "raymarch/truth/limit_curves.h"
-#include "scenes.h"
+#include "tests/raymarch/scenes.h"
 
 namespace limn {
 namespace {

@@ -8,6 +8,7 @@
 #include "samples/interrupt.h"
 #include "samples/job.h"
 #include "samples/output.h"
+#include "samples/plan/job.h"
 #include "samples/threads.h"
 #include "sdf/error.h"
 
@@ -65,6 +66,7 @@ void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_camera(app, options, true);
   add_surface(app, options, {.surface = true, .repeatable = false});
+  add_plan(app, options);
   add_border(app, options);
   add_output(app, options, ".exr (all layers) or .png .tif .jpg (the composite), repeatable; default limn-out/render/<name>.exr and .png",
              true);
@@ -83,6 +85,7 @@ struct Render {
   HitCounts counts;
   std::vector<std::string> notes;
   Json files = Json::array();
+  Json plan{};  ///< What --tolerance chose; null without it.
 };
 
 void write_picture(const Picture& picture, int view, const Options& options, Render& render) {
@@ -132,12 +135,26 @@ void report(const Options& options, const Render& render, const SurfaceInfo& inf
                   {"write", timings.write_ms}}},
                 {"surface", surface_json(info)},
                 {"files", render.files},
-                {"notes", render.notes}});
+                {"notes", render.notes},
+                {"plan", render.plan}});
   } else if (!options.quiet) {
     std::string text;
     for (const Json& file : render.files) text += file.get<std::string>() + "\n";
     print_text(text + summary(info, render.camera, render.counts, timings));
   }
+}
+
+// With --tolerance the plan says how to model; nothing is drawn where nothing meets it.
+bool choose_model(const Options& options, ProgressBar& bar, Render& render) {
+  const PlanJob job = plan_for(options, render.input, bar);
+  const std::vector<std::string> sentences = plan_sentences(job.answer, job.settings);
+  render.plan = plan_json(job);
+  if (!options.quiet) print_note(sentences.front());
+  if (!job.answer.chosen) return false;
+  const PlanTrial& chosen = job.answer.trials[*job.answer.chosen];
+  render.surface = job.answer.ladders[chosen.ladder].at(chosen.rung);
+  for (SceneObject& object : render.input.scene.objects) object.level.reset();
+  return true;
 }
 
 int run(const Options& options) {
@@ -153,6 +170,7 @@ int run(const Options& options) {
   check_outputs(render.outputs, options);
   render.timings.load_ms = render.input.load_ms;
   render.surface = surface_settings(options, render.input);
+  if (options.plan.tolerance_px && !choose_model(options, bar, render)) return 1;
   render.surface.progress = bar.stage("building the surface");
   render.picture = picture_settings(options, render.input);
   const CameraSettings camera_of = camera_settings(options, render.input);

@@ -17,8 +17,21 @@ double threshold_of(const Options& options, const SceneInput& input) {
   return find_border_method("rim").parameters.front().default_value.front();
 }
 
+/// What a plan chooses cannot be given.
+void check_open(const Options& options) {
+  const std::pair<bool, const char*> given[] = {{options.voxels.has_value(), "--voxels"},
+                                                {options.voxel_size.has_value(), "--voxel-size"},
+                                                {options.level.has_value(), "--level"},
+                                                {options.gradient.has_value(), "--gradient"},
+                                                {options.normals.has_value(), "--normals"}};
+  for (const auto& [is_given, name] : given) {
+    if (is_given) throw InputError({"", name, "", "is what --tolerance chooses", "one of the two would be right"});
+  }
+}
+
 PlanSettings settings_of(const Options& options, const SceneInput& input) {
   LIMN_CHECK(options.plan.tolerance_px.has_value());
+  check_open(options);
   PlanSettings settings;
   settings.tolerance_px = *options.plan.tolerance_px;
   settings.metric = options.plan.silhouette ? PlanMetric::silhouette : PlanMetric::border;

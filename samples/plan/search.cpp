@@ -213,7 +213,7 @@ PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, con
                       "INPUT",
                       scene.name,
                       "has no resolution to choose: it is a model already",
-                      "a scene of shapes or subdivision cages would be right (--level makes a mesh a cage)"});
+                      "a scene of shapes or subdivision cages would be right (--scheme makes a mesh a cage)"});
   }
   for (size_t ladder = 0; ladder < search.answer.ladders.size(); ++ladder) climb(search, ladder);
   choose(search);

@@ -2,6 +2,7 @@
 // The field contract. A Field is an immutable expression: shapes at the leaves, CSG and offsets above, every transform folded into
 // the leaves. It is negative inside, zero on the surface, positive outside. Copying a Field copies a pointer.
 
+#include <array>
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
@@ -36,6 +37,12 @@ struct RayBounds {
   Interval slope;  ///< Holds every one-sided derivative of f by t on the stretch (Clarke), so 0 outside it means monotone.
 };
 
+/// Value and gradient bounds over a box.
+struct GradientBounds {
+  Interval value{};                    ///< Holds f at every point of the box.
+  std::array<Interval, 3> gradient{};  ///< Holds every element of Clarke's generalised gradient: at creases, the hull of both sides.
+};
+
 /// Value, gradient and Hessian at a point.
 struct FieldJet {
   double value = 0.0;
@@ -68,6 +75,12 @@ class FieldEvaluator {
   Interval bounds(const Box& box);
   /// Bounds of f and of its slope on origin + t * direction, t in `t`.
   RayBounds bounds_along(const glm::dvec3& origin, const glm::dvec3& direction, Interval t);
+  /// Bounds of f and grad f over a box; the whole line for a box that is not finite.
+  GradientBounds gradient_bounds(const Box& box);
+
+  /// A field that equals this one in `box`, to the last bit, without the parts that bounds show to be without influence there (Keeter,
+  /// "Massively parallel rendering of complex closed-form implicit surfaces", 2020). Its traits are those of the whole field.
+  Field restricted(const Box& box);
 
  private:
   struct Scratch;

@@ -1,0 +1,31 @@
+#pragma once
+// Internal: the finest cells that a curve may go through, by interval bounds over an octree, each marched where it is found.
+
+#include "raymarch/gbuffer.h"
+#include "raymarch/truth/march.h"
+
+namespace limn {
+
+struct CellSearch {
+  const Field& field;
+  const Camera& camera;  ///< As it is: the hair that a viewer is turned by is covered by a margin.
+  const Viewer& viewer;
+  CellGrid grid{};  ///< Of the finest level.
+  int level = 0;
+  std::array<double, kCurveFamilies> levels{};
+  FamilyMask families = 0;
+};
+
+struct CellResult {
+  std::array<CellCurves, kCurveFamilies> families{};
+  std::int64_t cells = 0, rough = 0;
+  std::int64_t unsettled = 0;
+};
+
+/// A finest cell is cut this often again where nothing was found in it or beside it.
+inline constexpr int kSettlingCuts = 4;
+
+/// In an order that does not depend on threads. Throws Cancelled.
+CellResult search_cells(const CellSearch& search, const ExecutionSettings& how);
+
+}  // namespace limn

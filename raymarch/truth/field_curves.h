@@ -1,0 +1,46 @@
+#pragma once
+// Contour generators and level curves of N.V on a field's surface, traced whole, hidden parts included. Interval bounds of f and of N.V - c
+// prune an octree (Plantinga & Vegter 2006), so that no cell of the finest grid that holds a curve is left out; marching tetrahedra join
+// the sign changes of N.V - c on the surface from face to face, so that curves come out closed.
+
+#include <cstdint>
+
+#include "raymarch/gbuffer.h"
+#include "raymarch/truth/locate.h"
+
+namespace limn {
+
+struct FieldCurveSettings {
+  double threshold = 0.4;  ///< 0: contour generators only.
+  double tolerance_px = 0.005;
+  double cell_px = 3.0;    ///< Side of the finest cells, where the budget allows.
+  int finest_level = 10;   ///< The budget: the domain's side is cut into at most two to this power.
+  Box unbounded_domain{};  ///< What stands in for bounds that are infinite.
+};
+
+struct FieldCurve {
+  double c = 0.0;  ///< 0: a contour generator.
+  bool closed = false;
+  std::vector<CurvePoint> points{};
+};
+
+struct FieldCurves {
+  std::vector<FieldCurve> curves{};
+  int level = 0;
+  double cell = 0.0;           ///< Side of the finest cells, world units.
+  double cell_px = 0.0;        ///< The same where it is seen largest.
+  std::int64_t cells = 0;      ///< Finest cells that bounds could not exclude.
+  std::int64_t unsettled = 0;  ///< Of those, apart from every curve found and still not excluded when cut into `unsettled_cuts` a side.
+  int unsettled_cuts = 1;
+  std::int64_t rough = 0;           ///< Points that neither Newton nor bisection could place: interpolated in their cell.
+  std::int64_t unrefined = 0;       ///< Steps for which no point between could be found.
+  double worst_unrefined_px = 0.0;  ///< How far the curve may be from such a step, from how it turns.
+  std::int64_t open_ends = 0;
+  bool domain_cut = false;  ///< The field is unbounded: curves are followed within the domain only.
+};
+
+/// `field` in solver space, as `camera`.
+FieldCurves trace_field_curves(const Field& field, const Camera& camera, const Viewer& viewer, const FieldCurveSettings& settings,
+                               const ExecutionSettings& how);
+
+}  // namespace limn

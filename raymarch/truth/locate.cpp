@@ -1,0 +1,182 @@
+#include "raymarch/truth/locate.h"
+
+#include <cmath>
+
+namespace limn {
+namespace {
+
+constexpr double kViewTurn = 1e-10;
+constexpr double kCreaseAngle = 1e-5;  // normals that differ by more where a bisection ended: the surface has a crease there
+constexpr int kRootSteps = 80;
+constexpr int kNewtonSteps = 12;
+
+bool below(double x, double c) { return x < c; }
+
+double value_at(FieldEvaluator& evaluator, const glm::dvec3& p) { return evaluator.value(p); }
+
+glm::dvec3 unit(const glm::dvec3& v) {
+  const double length = glm::length(v);
+  return length > 0.0 ? v / length : v;
+}
+
+CurvePoint smooth_point(const glm::dvec3& p, const FieldJet& jet, const glm::dvec3& v, const glm::dvec3& uphill) {
+  CurvePoint result;
+  result.p = p;
+  const double length = glm::length(jet.gradient);
+  result.high = result.low = jet.gradient / length;
+  const glm::dvec3 w = v - glm::dot(result.high, v) * result.high;
+  result.radial_curvature = glm::dot(w, jet.hessian * w) / (length * glm::dot(w, w));
+  result.uphill = uphill;
+  return result;
+}
+
+}  // namespace
+
+Viewer make_viewer(const Camera& camera, const glm::dvec3& scene_center) {
+  Viewer viewer{camera};
+  const glm::dvec3 across = 0.8 * camera.world_from_camera[0] + 0.6 * camera.world_from_camera[1];
+  if (camera.projection == Projection::perspective) {
+    viewer.facing.eye += kViewTurn * glm::length(camera.eye - scene_center) * across;
+  } else {
+    viewer.facing.world_from_camera[2] += kViewTurn * across;
+  }
+  return viewer;
+}
+
+double facing_of(const Viewer& viewer, const glm::dvec3& p, const glm::dvec3& gradient) {
+  const double length = glm::length(gradient);
+  return length > 0.0 ? glm::dot(gradient, viewer.toward_eye(p)) / length : 0.0;
+}
+
+SurfaceSample sample_surface(FieldEvaluator& evaluator, const Viewer& viewer, const glm::dvec3& p) {
+  SurfaceSample sample;
+  sample.p = p;
+  double value = 0.0;
+  evaluator.gradients(std::span(&p, 1), std::span(&value, 1), std::span(&sample.gradient, 1));
+  sample.facing = facing_of(viewer, p, sample.gradient);
+  return sample;
+}
+
+// The Illinois variant of false position (Dowell & Jarratt 1971), with a bisection where it stalls.
+glm::dvec3 root_between(FieldEvaluator& evaluator, glm::dvec3 a, glm::dvec3 b, double fa, double fb) {
+  double ta = 0.0, tb = 1.0;
+  const glm::dvec3 start = a, way = b - a;
+  int last_side = 0;
+  for (int step = 0; step < kRootSteps && tb - ta > 1e-15; ++step) {
+    double t = ta + (tb - ta) * fa / (fa - fb);
+    if (!(t > ta && t < tb) || step % 16 == 15) t = 0.5 * (ta + tb);
+    const double f = value_at(evaluator, start + t * way);
+    if (f == 0.0) return start + t * way;
+    if (below(f, 0.0) == below(fa, 0.0)) {
+      const double moved = t - ta;
+      ta = t;
+      fa = f;
+      if (last_side == -1) fb *= 0.5;
+      last_side = -1;
+      if (moved < 1e-15) break;
+    } else {
+      const double moved = tb - t;
+      tb = t;
+      fb = f;
+      if (last_side == 1) fa *= 0.5;
+      last_side = 1;
+      if (moved < 1e-15) break;
+    }
+  }
+  return start + (std::fabs(fa) < std::fabs(fb) ? ta : tb) * way;
+}
+
+std::optional<CurvePoint> polish(FieldEvaluator& evaluator, const Viewer& viewer, double c, const glm::dvec3& start, double reach) {
+  glm::dvec3 p = start;
+  const bool perspective = viewer.facing.projection == Projection::perspective;
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    const FieldJet jet = evaluator.jet(p);
+    const double length = glm::length(jet.gradient);
+    if (!(length > 0.0) || !std::isfinite(length)) return {};
+    const glm::dvec3 n = jet.gradient / length, v = viewer.toward_eye(p);
+    const double facing = glm::dot(n, v);
+    const glm::dvec3 hv = jet.hessian * v, hn = jet.hessian * n;
+    glm::dvec3 slope = (hv - facing * hn) / length;
+    if (perspective) slope += (facing * v - n) / glm::length(viewer.facing.eye - p);
+    const double f = jet.value / length, h = facing - c;
+    const double nn = 1.0, ns = glm::dot(n, slope), ss = glm::dot(slope, slope);
+    const double determinant = nn * ss - ns * ns;
+    if (!(determinant > 1e-12 * ss) || !std::isfinite(determinant)) return {};
+    const double on_n = (ss * f - ns * h) / determinant, on_s = (nn * h - ns * f) / determinant;
+    const glm::dvec3 move = on_n * n + on_s * slope;
+    p -= move;
+    if (!(glm::length(p - start) <= reach)) return {};
+    if (glm::length(move) < 1e-7 * reach) return smooth_point(p, jet, v, slope - ns * n);
+  }
+  return {};
+}
+
+std::optional<SurfaceSample> Fan::at(FieldEvaluator& evaluator, const Viewer& viewer, double s) const {
+  const glm::dvec3 far = middle + s * side;
+  const double far_value = value_at(evaluator, far);
+  if (below(far_value, 0.0) == below(apex_value, 0.0)) return {};
+  return sample_surface(evaluator, viewer, root_between(evaluator, apex, far, apex_value, far_value));
+}
+
+std::optional<CurvePoint> bisect(FieldEvaluator& evaluator, const Viewer& viewer, double c, const Fan& fan, double sa, double sb,
+                                 SurfaceSample a, SurfaceSample b, double smooth_reach) {
+  const glm::dvec3 uphill = a.facing > b.facing ? a.p - b.p : b.p - a.p;
+  const bool a_below = below(a.facing, c);
+  for (int step = 0; step < 60; ++step) {
+    // Three guided steps, then Newton; what Newton cannot finish is bisected, whatever it is.
+    const double guess = std::clamp((c - a.facing) / (b.facing - a.facing), 0.1, 0.9);
+    if (step == 3) {
+      auto finished = polish(evaluator, viewer, c, a.p + (c - a.facing) / (b.facing - a.facing) * (b.p - a.p), smooth_reach);
+      if (finished) {
+        finished->uphill = uphill;
+        return finished;
+      }
+    }
+    const double s = step < 3 ? sa + guess * (sb - sa) : 0.5 * (sa + sb);
+    const auto middle = fan.at(evaluator, viewer, s);
+    if (!middle) return {};
+    (below(middle->facing, c) == a_below ? a : b) = *middle;
+    (below(middle->facing, c) == a_below ? sa : sb) = s;
+    if (step > 10 && glm::length(b.p - a.p) < 1e-13 * (glm::length(a.p) + glm::length(fan.middle - fan.apex))) break;
+  }
+  CurvePoint result;
+  const SurfaceSample &high = a_below ? b : a, &low = a_below ? a : b;
+  result.p = 0.5 * (a.p + b.p);
+  result.high = unit(high.gradient);
+  result.low = unit(low.gradient);
+  result.crease = glm::length(result.high - result.low) > kCreaseAngle;
+  result.uphill = uphill;
+  return result;
+}
+
+std::optional<CurvePoint> point_between(FieldEvaluator& evaluator, const Viewer& viewer, double c, const CurvePoint& a, const CurvePoint& b,
+                                        const glm::dvec3& middle) {
+  const double length = glm::length(b.p - a.p);
+  if (!(length > 0.0)) return {};
+  const glm::dvec3 along = (b.p - a.p) / length;
+  if (!a.crease || !b.crease) {
+    auto point = polish(evaluator, viewer, c, middle, 0.5 * length);
+    const double place = point ? glm::dot(point->p - a.p, along) / length : -1.0;
+    if (point && place > 0.0 && place < 1.0) return point;
+  }
+  glm::dvec3 n = a.high + a.low + b.high + b.low;
+  n = unit(n - glm::dot(n, along) * along);
+  const glm::dvec3 u = glm::cross(along, n);
+  for (const double radius : {0.5 * length, 0.1 * length}) {
+    for (const double inward : {1.0, -1.0}) {
+      // A fan of segments from inside the body (or, for a notch, from outside), opened until the signs at its ends differ.
+      Fan fan{middle - inward * radius * n, middle + inward * radius * n, 2.0 * radius * u};
+      fan.apex_value = value_at(evaluator, fan.apex);
+      if (below(fan.apex_value, 0.0) != (inward > 0.0)) continue;
+      for (const double opening : {0.5, 1.0, 2.0, 4.0}) {
+        const auto left = fan.at(evaluator, viewer, -opening), right = fan.at(evaluator, viewer, opening);
+        if (!left || !right || below(left->facing, c) == below(right->facing, c)) continue;
+        auto point = bisect(evaluator, viewer, c, fan, -opening, opening, *left, *right, 0.2 * length);
+        if (point && glm::length(point->p - middle) < length) return point;
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace limn

@@ -1,0 +1,46 @@
+#pragma once
+// Internal: one cell of the finest grid, cut into six tetrahedra around its diagonal (Kuhn), whose faces match those of its neighbours.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "raymarch/truth/locate.h"
+
+namespace limn {
+
+/// Cubes of `side` from `corner`; cell (0, 0, 0) is the first.
+struct CellGrid {
+  glm::dvec3 corner{0.0};
+  double side = 1.0;
+  glm::dvec3 vertex(const glm::ivec3& index) const { return corner + side * glm::dvec3(index); }
+  Box cell(const glm::ivec3& index) const { return {vertex(index), vertex(index + 1)}; }
+};
+
+/// Where a curve goes through a face of a tetrahedron. The key says which face, for both cells that share it.
+struct Crossing {
+  std::uint64_t key = 0;
+  CurvePoint point{};
+};
+struct Link {
+  std::uint64_t from = 0, to = 0;
+};
+struct CellCurves {
+  std::vector<Crossing> crossings{};
+  std::vector<Link> links{};
+};
+
+/// Levels of N.V that are looked for: contour generators and the rim's curve.
+inline constexpr size_t kCurveFamilies = 2;
+using FamilyMask = unsigned;  ///< Bit i: family i.
+
+struct CellOutput {
+  std::array<CellCurves, kCurveFamilies> families{};
+  std::int64_t rough = 0;
+};
+
+/// True where a curve goes through the cell. `evaluator` need be right in the cell only. Cell indices below 2^19.
+bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
+                const std::array<double, kCurveFamilies>& levels, FamilyMask families, CellOutput& output);
+
+}  // namespace limn

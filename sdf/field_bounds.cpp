@@ -1,0 +1,206 @@
+// Bounds of a field: over boxes and along rays.
+
+#include "sdf/field_run.h"
+#include "sdf/number_interval.h"
+
+namespace limn {
+namespace {
+
+Interval row_bounds(const RowMap<double>& map, const Box& box) {
+  const auto term = [](double factor, double low, double high) { return Interval{low, high} * factor; };
+  return term(map.x, box.lower.x, box.upper.x) + term(map.y, box.lower.y, box.upper.y) + term(map.z, box.lower.z, box.upper.z) + map.offset;
+}
+
+/// f(centre) +- lipschitz * radius, with slack for the rounding of f(centre), whose terms are as large as `extent`.
+Interval lipschitz_bounds(double center_value, double lipschitz, double radius, double extent) {
+  const double reach = lipschitz * radius;
+  const double slack = 1e-14 * (std::fabs(center_value) + reach + extent);
+  return {center_value - reach - slack, center_value + reach + slack};
+}
+
+double leaf_value(const FieldLeaf& leaf, const glm::dvec3& world) {
+  const glm::dvec3 p = leaf.object_from_world.point(world);
+  double value = 0.0;
+  std::get<ShapeFunction<double>>(leaf.functions->evaluate)(leaf.shape.get(), &p.x, &p.y, &p.z, &value, 1);
+  return leaf.value_scale * value;
+}
+
+double largest(const glm::dvec3& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
+
+double leaf_extent(const FieldLeaf& leaf, const glm::dvec3& world) {
+  return leaf.lipschitz * largest(world) + leaf.value_scale * largest(leaf.object_from_world.translation);
+}
+
+}  // namespace
+
+Interval FieldEvaluator::bounds(const Box& box) {
+  if (!box.finite()) return {};
+  const FieldProgram& program = field_.program();
+  const glm::dvec3 center = box.center();
+  // Measured from the centre as it was rounded, so that the ball holds every corner.
+  const double radius = glm::length(glm::max(box.upper - center, center - box.lower)) * (1.0 + 1e-15);
+  auto& registers = scratch_->get<Interval>();
+  registers.prepare(program);
+  const auto load = [&](const FieldLeaf& leaf) {
+    for (int axis = 0; axis < 3; ++axis) {
+      registers.coordinate(static_cast<size_t>(axis))[0] = row_bounds(RowMap<double>(leaf.object_from_world, axis), box);
+    }
+  };
+  const auto narrow = [&](const FieldLeaf& leaf, Interval* value) {
+    *value = tighter(*value, lipschitz_bounds(leaf_value(leaf, center), leaf.lipschitz, radius, leaf_extent(leaf, center)));
+  };
+  const Interval result = run(program, registers, 1, load, narrow)[0];
+  if (program.instructions.size() == 1) return result;
+  double extent = 0.0;
+  for (const FieldLeaf& leaf : program.leaves) extent = std::max(extent, leaf_extent(leaf, center));
+  return tighter(result, lipschitz_bounds(value(center), program.traits.lipschitz, radius, extent));
+}
+
+RayBounds FieldEvaluator::bounds_along(const glm::dvec3& origin, const glm::dvec3& direction, Interval t) {
+  LIMN_CHECK(t.lower <= t.upper);
+  if (!std::isfinite(t.width())) return {};
+  const FieldProgram& program = field_.program();
+  const double middle = 0.5 * (t.lower + t.upper);
+  const glm::dvec3 center = origin + middle * direction;
+  const double speed = glm::length(direction);
+  const double radius = speed * std::max(t.upper - middle, middle - t.lower) * (1.0 + 1e-15);
+  auto& registers = scratch_->get<Slope>();
+  registers.prepare(program);
+  const auto load = [&](const FieldLeaf& leaf) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const RowMap<double> map(leaf.object_from_world, axis);
+      const Interval start = row_bounds(map, {origin, origin});
+      const Interval speed_here = Interval{direction.x, direction.x} * map.x + Interval{direction.y, direction.y} * map.y +
+                                  Interval{direction.z, direction.z} * map.z;
+      registers.coordinate(static_cast<size_t>(axis))[0] = {t * speed_here + start, speed_here};
+    }
+  };
+  const double extent_of_ray = largest(origin) + speed * magnitude(t);
+  const auto narrow = [&](const FieldLeaf& leaf, Slope* s) {
+    const double steepest = leaf.lipschitz * speed * (1.0 + 1e-14);
+    const double extent = leaf_extent(leaf, center) + leaf.lipschitz * extent_of_ray;
+    s->value = tighter(s->value, lipschitz_bounds(leaf_value(leaf, center), leaf.lipschitz, radius, extent));
+    s->slope = tighter(s->slope, {-steepest, steepest});
+  };
+  const Slope result = run(program, registers, 1, load, narrow)[0];
+  return {result.value, result.slope};
+}
+
+// One pass for each axis: with a coordinate axis as the direction of the line, the slope that holds everywhere in the box is the partial
+// derivative.
+GradientBounds FieldEvaluator::gradient_bounds(const Box& box) {
+  GradientBounds result;
+  if (!box.finite()) return result;
+  const FieldProgram& program = field_.program();
+  const glm::dvec3 center = box.center();
+  const double radius = glm::length(glm::max(box.upper - center, center - box.lower)) * (1.0 + 1e-15);
+  auto& registers = scratch_->get<Slope>();
+  registers.prepare(program);
+  for (int direction = 0; direction < 3; ++direction) {
+    const auto load = [&](const FieldLeaf& leaf) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const double speed = leaf.object_from_world.linear[direction][axis];
+        registers.coordinate(static_cast<size_t>(axis))[0] = {row_bounds(RowMap<double>(leaf.object_from_world, axis), box),
+                                                              {speed, speed}};
+      }
+    };
+    const auto narrow = [&](const FieldLeaf& leaf, Slope* s) {
+      const double steepest = leaf.lipschitz * (1.0 + 1e-14);
+      s->value = tighter(s->value, lipschitz_bounds(leaf_value(leaf, center), leaf.lipschitz, radius, leaf_extent(leaf, center)));
+      s->slope = tighter(s->slope, {-steepest, steepest});
+    };
+    const Slope along = run(program, registers, 1, load, narrow)[0];
+    result.value = tighter(along.value, result.value);
+    result.gradient[static_cast<size_t>(direction)] = along.slope;
+  }
+  return result;
+}
+
+namespace {
+
+enum class Keeps : std::uint8_t { both, left, right };
+
+Keeps decided(const FieldInstruction& step, const Interval& a, const Interval& b) {
+  const bool smooth = step.operation == FieldOperation::smooth_minimum || step.operation == FieldOperation::smooth_maximum;
+  const double gap = smooth ? step.constant * (1.0 + 1e-12) : 0.0;
+  switch (step.operation) {
+    case FieldOperation::minimum:
+    case FieldOperation::smooth_minimum:
+      return a.upper + gap < b.lower ? Keeps::left : b.upper + gap < a.lower ? Keeps::right : Keeps::both;
+    case FieldOperation::maximum:
+    case FieldOperation::smooth_maximum:
+      return b.upper + gap < a.lower ? Keeps::left : a.upper + gap < b.lower ? Keeps::right : Keeps::both;
+    default:
+      return Keeps::both;
+  }
+}
+
+bool is_binary(FieldOperation operation) {
+  return operation == FieldOperation::minimum || operation == FieldOperation::maximum || operation == FieldOperation::smooth_minimum ||
+         operation == FieldOperation::smooth_maximum;
+}
+
+/// `program` with the decided choices made and what nobody reads any more left out.
+FieldProgram shortened(const FieldProgram& program, const std::vector<Keeps>& keeps) {
+  FieldProgram result;
+  result.slots = program.slots;
+  result.traits = program.traits;
+  std::vector<bool> read(program.slots, false);
+  read[0] = true;
+  for (size_t i = program.instructions.size(); i-- > 0;) {
+    FieldInstruction step = program.instructions[i];
+    if (!read[step.target]) continue;
+    if (keeps[i] == Keeps::left) step.right = step.left;
+    if (keeps[i] == Keeps::right) step.left = step.right;
+    if (keeps[i] != Keeps::both) {
+      if (step.left == step.target) continue;
+      step.operation = FieldOperation::minimum;  // of a value and itself: a copy
+    }
+    read[step.target] = false;
+    if (step.operation == FieldOperation::leaf) {
+      result.leaves.push_back(program.leaves[step.leaf]);
+      step.leaf = static_cast<std::uint32_t>(result.leaves.size() - 1);
+    } else {
+      read[step.left] = true;
+      if (is_binary(step.operation)) read[step.right] = true;
+    }
+    result.instructions.push_back(step);
+  }
+  std::reverse(result.instructions.begin(), result.instructions.end());
+  return result;
+}
+
+}  // namespace
+
+Field FieldEvaluator::restricted(const Box& box) {
+  const FieldProgram& program = field_.program();
+  if (program.instructions.size() == 1 || !box.finite()) return field_;
+  const glm::dvec3 center = box.center();
+  const double radius = glm::length(glm::max(box.upper - center, center - box.lower)) * (1.0 + 1e-15);
+  auto& registers = scratch_->get<Interval>();
+  registers.prepare(program);
+  std::vector<Keeps> keeps(program.instructions.size(), Keeps::both);
+  bool any = false;
+  for (size_t i = 0; i < program.instructions.size(); ++i) {
+    const FieldInstruction& step = program.instructions[i];
+    if (step.operation != FieldOperation::leaf) {
+      if (is_binary(step.operation)) keeps[i] = decided(step, *registers.slot(step.left), *registers.slot(step.right));
+      any = any || keeps[i] != Keeps::both;
+      combine_slots(step, registers, 1);
+      continue;
+    }
+    const FieldLeaf& leaf = program.leaves[step.leaf];
+    for (int axis = 0; axis < 3; ++axis) {
+      registers.coordinate(static_cast<size_t>(axis))[0] = row_bounds(RowMap<double>(leaf.object_from_world, axis), box);
+    }
+    Interval* const value = registers.slot(step.target);
+    std::get<ShapeFunction<Interval>>(leaf.functions->evaluate)(leaf.shape.get(), registers.coordinate(0), registers.coordinate(1),
+                                                                registers.coordinate(2), value, 1);
+    if (leaf.value_scale != 1.0) *value = *value * leaf.value_scale;
+    *value = tighter(*value, lipschitz_bounds(leaf_value(leaf, center), leaf.lipschitz, radius, leaf_extent(leaf, center)));
+  }
+  if (!any) return field_;
+  return Field(std::make_shared<const FieldProgram>(shortened(program, keeps)));
+}
+
+}  // namespace limn

@@ -6,10 +6,8 @@ namespace limn {
 
 std::span<const Metric> metrics() {
   static const std::vector<Metric> all = {
-      pixels_differ_metric(),
-      overlap_metric(),
-      normal_error_metric(),
-      depth_error_metric(),
+      pixels_differ_metric(),      overlap_metric(), normal_error_metric(), depth_error_metric(), silhouette_displacement_metric(),
+      inner_displacement_metric(),
   };
   return all;
 }

@@ -9,5 +9,7 @@ Metric pixels_differ_metric();
 Metric overlap_metric();
 Metric normal_error_metric();
 Metric depth_error_metric();
+Metric silhouette_displacement_metric();
+Metric inner_displacement_metric();
 
 }  // namespace limn

@@ -1,0 +1,85 @@
+#pragma once
+// Geometry of border curves that metrics share: equally spaced samples, nearest points, meetings with a normal.
+
+#include <optional>
+
+#include "raymarch/border_curves.h"
+#include "sdf/camera.h"
+
+namespace limn {
+
+/// A point of a curve. `outward` is unit, px, y down: away from what the curve bounds.
+struct CurveSample {
+  glm::dvec2 px{0.0}, outward{0.0};
+  double weight_px = 0.0;  ///< Length of curve it stands for.
+  CurveKind kind = CurveKind::silhouette;
+  int object = 0;
+  size_t curve = 0;       ///< Index into BorderCurves::curves.
+  size_t segment = 0;     ///< From its point of this index to the next.
+  double fraction = 0.0;  ///< Along the segment, 0..1.
+};
+
+/// Samples in the middles of pieces of equal length, about `step_px`, at least one a curve. `kind` empty: both kinds.
+std::vector<CurveSample> resample(const BorderCurves& curves, std::optional<CurveKind> kind, double step_px);
+
+/// Drops samples nearer than `margin_px` to the picture's sides or beyond them: there a measured border, which knows pixel centres
+/// only, has no partner for truth.
+std::vector<CurveSample> within_picture(std::vector<CurveSample> samples, const Camera& camera, double margin_px = 1.0);
+
+struct NearestPoint {
+  double distance_px = 0.0;
+  glm::dvec2 px{0.0};
+  bool open_end = false;  ///< The end of an open curve.
+};
+
+/// Where a straight line through a curve's sample, along its outward normal, meets other curves.
+struct Meeting {
+  double along_px = 0.0;  ///< Positive outwards.
+};
+
+/// The segments of curves in a uniform grid. Answers do not depend on the order of curves but for exact ties.
+class CurveIndex {
+ public:
+  /// `kind` empty: both. Open ends are continued straight by `continue_px`: a measured curve stops up to a pixel short of where it ends.
+  CurveIndex(const BorderCurves& curves, std::optional<CurveKind> kind, double continue_px = 0.0);
+
+  bool empty() const { return segments_.empty(); }
+
+  /// The nearest point of curves of `object` (0: any), within `reach_px`.
+  std::optional<NearestPoint> nearest(const glm::dvec2& px, int object, double reach_px) const;
+
+  /// The nearest meeting within `reach_px` of the line through `px` along `direction` (unit) with curves of `object` (0: any) whose own
+  /// outward normal does not point against `direction`.
+  std::optional<Meeting> meeting(const glm::dvec2& px, const glm::dvec2& direction, int object, double reach_px) const;
+
+ private:
+  struct Segment {
+    glm::dvec2 a{0.0}, b{0.0};
+    int object = 0;
+    bool starts = false, ends = false;  ///< Its first, its last point is the end of an open curve.
+  };
+  void add(const glm::dvec2& a, const glm::dvec2& b, int object, bool starts, bool ends);
+  void build_grid();
+  int column_of(double x) const;
+  int row_of(double y) const;
+  template <class Visit>
+  void visit_cell(int column, int row, const Visit& visit) const;
+
+  std::vector<Segment> segments_{};
+  glm::dvec2 origin_{0.0};
+  double cell_px_ = 4.0;
+  int columns_ = 0, rows_ = 0;
+  std::vector<std::uint32_t> first_{}, members_{};
+};
+
+/// How far the border of `index` lies from a sample, along the sample's outward normal; positive: grown. Where the normal meets nothing
+/// (beside a corner) the nearest point counts, if it lies within 60 degrees of the normal and is no open end. Empty: no partner in reach.
+std::optional<double> displacement_px(const CurveSample& sample, const CurveIndex& index, double reach_px);
+
+/// How far a partner is looked for: 16 px, or 2 % of the picture's diagonal where that is more.
+double search_reach_px(const Camera& camera);
+
+/// By how much measured curves are continued for displacement_px.
+inline constexpr double kContinue_px = 1.5;
+
+}  // namespace limn

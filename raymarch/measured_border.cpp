@@ -1,0 +1,16 @@
+#include "raymarch/measured_border.h"
+
+#include "raymarch/measured_border/chain.h"
+#include "sdf/error.h"
+
+namespace limn {
+
+BorderCurves measure_border(const SceneModel& model, const Camera& camera, const GBuffer& gbuffer, const MeasuredBorderSettings& settings,
+                            const ExecutionSettings& how) {
+  LIMN_CHECK(settings.threshold >= 0.0 && settings.threshold < 1.0 && settings.precision_px > 0.0);
+  LIMN_CHECK(gbuffer.width == camera.width_px && gbuffer.height == camera.height_px);
+  BorderCrossings found = find_crossings(model, camera, gbuffer, settings, how);
+  return chain_crossings(model, camera, gbuffer, settings.threshold, found.crossings, found.rays);
+}
+
+}  // namespace limn

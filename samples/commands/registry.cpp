@@ -9,10 +9,11 @@ Command compare_command();
 Command export_command();
 Command info_command();
 Command list_command();
+Command plan_command();
 
 std::span<const Command> commands() {
   static const std::array all = {
-      render_command(), compare_command(), export_command(), info_command(), list_command(),
+      render_command(), compare_command(), export_command(), info_command(), list_command(), plan_command(),
   };
   return all;
 }

@@ -18,6 +18,7 @@
 #include "sdf/version.h"
 #include "tests/bench/contestant.h"
 #include "tests/bench/image_methods.h"
+#include "tests/bench/plan_suite.h"
 
 namespace limn::bench {
 
@@ -35,10 +36,13 @@ struct Settings {
   int runs = 7;
   int width_px = 1920, height_px = 1080;
   std::string suite = "all";
+  std::vector<std::string> scenes{};  ///< Of the plan suite; empty: all.
+  int views = 4;
   std::string output;
   bool json = false;
-  bool march() const { return suite != "images"; }
-  bool images() const { return suite != "march"; }
+  bool march() const { return suite == "march" || suite == "all"; }
+  bool images() const { return suite == "images" || suite == "all"; }
+  bool plan() const { return suite == "plan"; }  // minutes: only when asked for
 };
 
 /// With --json the document alone goes to stdout.
@@ -183,20 +187,24 @@ Settings parse(int argc, char** argv) {
       settings.voxels = {std::max(8, std::atoi(argv[++i]))};
     else if (flag == "--object" && has_value)
       settings.objects = {argv[++i]};
+    else if (flag == "--scene" && has_value)
+      settings.scenes.push_back(argv[++i]);
+    else if (flag == "--views" && has_value)
+      settings.views = std::max(1, std::atoi(argv[++i]));
     else if (flag == "--suite" && has_value) {
       settings.suite = argv[++i];
-      if (settings.suite != "march" && settings.suite != "images" && settings.suite != "all")
-        throw InputError({.field = flag, .value = settings.suite, .problem = "unknown suite", .expected = "march, images or all"});
+      if (settings.suite != "march" && settings.suite != "images" && settings.suite != "plan" && settings.suite != "all")
+        throw InputError({.field = flag, .value = settings.suite, .problem = "unknown suite", .expected = "march, images, plan or all"});
     } else if (flag == "--width" && has_value) {
       settings.width_px = std::clamp(std::atoi(argv[++i]), 16, 16384);
       settings.height_px = std::max(1, settings.width_px * 9 / 16);
     } else if (flag == "--json")
       settings.json = true;
     else
-      throw InputError(
-          {.field = flag,
-           .problem = "unknown option or missing value",
-           .expected = "known: --suite march|images|all, --output FILE, --runs N, --voxels N, --object NAME, --width PX, --json"});
+      throw InputError({.field = flag,
+                        .problem = "unknown option or missing value",
+                        .expected = "known: --suite march|images|plan|all, --scene NAME, --views N, --output FILE, --runs N, --voxels N, "
+                                    "--object NAME, --width PX, --json"});
   }
   return settings;
 }
@@ -217,6 +225,9 @@ int run(const Settings& settings) {
     for (auto& row : bench_image_methods(
              {.runs = settings.runs, .width_px = settings.width_px, .height_px = settings.height_px, .table = table(settings)}))
       rows.push_back(row);
+  }
+  if (settings.plan()) {
+    for (auto& row : bench_plan({.scenes = settings.scenes, .views = settings.views, .table = table(settings)})) rows.push_back(row);
   }
   const nlohmann::json document = {{"machine", {{"hardware_threads", std::thread::hardware_concurrency()}, {"limn", kVersion}}},
                                    {"rows", rows}};

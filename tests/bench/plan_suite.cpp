@@ -1,0 +1,158 @@
+#include "tests/bench/plan_suite.h"
+
+#include <fmt/core.h>
+
+#include <map>
+#include <optional>
+
+#include "raymarch/truth/stand_in.h"
+#include "samples/job.h"
+#include "samples/output.h"
+#include "samples/scenes/scenes.h"
+#include "tests/plan_check.h"
+
+namespace limn::bench {
+namespace {
+
+constexpr double kTolerances_px[] = {1.0, 0.5, 0.25};
+constexpr double kShare = 0.05;  // of the border that may lie beyond the tolerance
+
+struct Sums {
+  int plans = 0, chosen = 0, meets = 0, with_coarser = 0, coarser_fails = 0, quarter = 0;
+  double time_ms = 0.0, finest_time_ms = 0.0, bytes = 0.0, finest_bytes = 0.0;
+  std::string example{};
+  void add(const Sums& other) {
+    plans += other.plans, chosen += other.chosen, meets += other.meets, with_coarser += other.with_coarser;
+    coarser_fails += other.coarser_fails, quarter += other.quarter, time_ms += other.time_ms, finest_time_ms += other.finest_time_ms;
+    bytes += other.bytes, finest_bytes += other.finest_bytes;
+  }
+};
+
+struct Built {
+  double time_ms = 0.0;
+  double bytes = 0.0;
+};
+
+SceneModel build(const Scene& scene, const Ladder& ladder, size_t rung) {
+  Scene bare = scene;
+  for (SceneObject& object : bare.objects) object.level.reset();
+  return build_model(bare, ladder.at(rung));
+}
+
+/// The last rung, built and traced for real; the last one that fits into memory.
+Built finest_of(const Scene& scene, const Ladder& ladder, const PlanView& view) {
+  for (size_t rung = ladder.rungs.size(); rung-- > 0;) {
+    try {
+      const SceneModel model = build(scene, ladder, rung);
+      double trace_ms = 0.0;
+      measure_errors(model, view, 0.4, {}, trace_ms);
+      const SurfaceInfo info = total(model);
+      return {info.build_ms + trace_ms, static_cast<double>(info.bytes)};
+    } catch (const std::exception&) {
+      continue;
+    }
+  }
+  return {};
+}
+
+struct Case {
+  const Scene& scene;
+  const PlanView& view;
+  const SceneModel& reference;
+  int view_index;
+  std::map<std::string, Built>& finest;
+};
+
+nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
+  PlanSettings settings;
+  settings.tolerance_px = tolerance_px;
+  ProgressBar bar(false);
+  const PlanAnswer answer = make_plan(at.scene, {at.view}, settings, {}, bar);
+  nlohmann::json row = {{"suite", "plan"}, {"scene", at.scene.name}, {"view", at.view_index}, {"tolerance_px", tolerance_px}};
+  ++sums.plans;
+  if (!answer.chosen) {
+    row["chosen"] = nullptr;
+    return row;
+  }
+  const PlanTrial& chosen = answer.trials[*answer.chosen];
+  const Ladder& ladder = answer.ladders[chosen.ladder];
+  const auto beyond = [&](size_t rung) {
+    return test::share_beyond(build(at.scene, ladder, rung), at.reference, at.view, settings.threshold, tolerance_px, settings.metric);
+  };
+  const auto [finest, added] = at.finest.try_emplace(ladder.title);
+  if (added) finest->second = finest_of(at.scene, ladder, at.view);
+  const double share = beyond(chosen.rung);
+  std::optional<double> coarser;
+  if (chosen.rung > 0) coarser = beyond(chosen.rung - 1);
+  ++sums.chosen;
+  sums.meets += share <= kShare;
+  sums.with_coarser += coarser.has_value();
+  sums.coarser_fails += coarser.value_or(0.0) > kShare;
+  sums.quarter += chosen.time_ms() <= 0.25 * finest->second.time_ms;
+  sums.time_ms += chosen.time_ms(), sums.finest_time_ms += finest->second.time_ms;
+  sums.bytes += static_cast<double>(chosen.bytes), sums.finest_bytes += finest->second.bytes;
+  if (tolerance_px == 0.5 && sums.example.empty()) sums.example = ladder.title + ", " + ladder.words_at(chosen.rung);
+  row["chosen"] = ladder.title + ", " + ladder.words_at(chosen.rung);
+  row["measured_px"] = chosen.measured.of(settings.metric);
+  row["predicted_px"] = chosen.predicted.of(settings.metric);
+  row["share_beyond"] = share;
+  row["coarser_share_beyond"] = coarser ? nlohmann::json(*coarser) : nlohmann::json(nullptr);
+  row["time_ms"] = chosen.time_ms(), row["bytes"] = chosen.bytes;
+  row["finest_time_ms"] = finest->second.time_ms, row["finest_bytes"] = finest->second.bytes;
+  row["trials"] = answer.trials.size();
+  return row;
+}
+
+std::string line(const std::string& name, const Sums& sums) {
+  const double n = std::max(1, sums.chosen);
+  return fmt::format("| {} | {}/{} | {}/{} | {}/{} | {} | {} | {:.0f}x | {} | {} | {:.0f}x |\n", name, sums.meets, sums.plans,
+                     sums.coarser_fails, sums.with_coarser, sums.quarter, sums.chosen, time_text(sums.time_ms / n),
+                     time_text(sums.finest_time_ms / n), sums.finest_time_ms / std::max(sums.time_ms, 1e-9), bytes_text(sums.bytes / n),
+                     bytes_text(sums.finest_bytes / n), sums.finest_bytes / std::max(sums.bytes, 1.0));
+}
+
+Sums run_scene(const SceneDescriptor& descriptor, const PlanBenchSettings& settings, nlohmann::json& rows) {
+  Sums sums;
+  Scene scene = descriptor.make();
+  scene.name = descriptor.about.name;
+  CameraSettings camera = scene.camera;
+  camera.width_px = settings.width_px;
+  camera.height_px = settings.height_px;
+  for (int index = 0; index < settings.views; ++index) {
+    PlanView view;
+    view.camera = camera_of_view(camera, bounds(scene), index, settings.views);
+    view.truth = solve_truth(scene, view.camera, {}, {});
+    const StandIn reference = make_stand_in(scene, view.camera, std::int64_t{4} << 30, 1.0);
+    std::map<std::string, Built> finest;
+    for (const double tolerance_px : kTolerances_px) {
+      rows.push_back(run_plan({scene, view, reference.model, index, finest}, tolerance_px, sums));
+      fmt::print(stderr, "{}\n", rows.back().dump());
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+nlohmann::json bench_plan(const PlanBenchSettings& settings) {
+  nlohmann::json rows = nlohmann::json::array();
+  fmt::print(
+      settings.table,
+      "| scene | meets the tolerance | next coarser fails | at most a quarter of the finest's time | time | finest | saved | memory | "
+      "finest | saved |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  Sums all;
+  for (const SceneDescriptor& scene : scenes()) {
+    const auto wanted = [&] {
+      return std::find(settings.scenes.begin(), settings.scenes.end(), scene.about.name) != settings.scenes.end();
+    };
+    if (!settings.scenes.empty() && !wanted()) continue;
+    const Sums sums = run_scene(scene, settings, rows);
+    fmt::print(settings.table, "{}", line(scene.about.name, sums));
+    std::fflush(settings.table);
+    all.add(sums);
+  }
+  fmt::print(settings.table, "{}", line("all", all));
+  return rows;
+}
+
+}  // namespace limn::bench

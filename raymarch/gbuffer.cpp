@@ -112,6 +112,7 @@ PointSample sample_of(const Setup& setup, const TracedBatch& batch, int i) {
   const CameraRay& ray = batch.camera_rays[k];
   const glm::dvec3 position = ray.origin + (batch.shift[k] + static_cast<double>(batch.hits.t[i])) * ray.direction;
   sample.id = batch.object[k] + 1;
+  sample.face = batch.hits.face[i];
   sample.position = position + setup.model.render_origin;
   sample.normal = {batch.hits.normal_x[i], batch.hits.normal_y[i], batch.hits.normal_z[i]};
   sample.n_dot_v = static_cast<float>(glm::dot(glm::dvec3(sample.normal), view_vector(setup.camera, position)));
@@ -131,7 +132,7 @@ void write_pixel(const Setup& setup, const TracedBatch& batch, int i, size_t pix
   out.id.pixels[pixel] = sample.id;
   const auto object = static_cast<size_t>(sample.id - 1);
   out.material.pixels[pixel] = setup.model.materials[object] + batch.hits.material[i];
-  out.face.pixels[pixel] = batch.hits.face[i];
+  out.face.pixels[pixel] = sample.face;
 }
 
 void render_tile(const Setup& setup, int tile_x, int tile_y, int tile_px, glm::dvec2 offset, GBuffer& out) {

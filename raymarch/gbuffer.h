@@ -43,6 +43,7 @@ GBuffer render_gbuffer(const SceneModel& model, const Camera& camera, const Exec
 struct PointSample {
   HitStatus status = HitStatus::miss;
   std::int32_t id = 0;
+  std::int32_t face = -1;    ///< Polygon of a mesh, -1 elsewhere.
   glm::dvec3 position{0.0};  ///< World.
   glm::vec3 normal{0.0f};
   float n_dot_v = 0.0f;

@@ -89,6 +89,7 @@ void add_object(const EdgeSettings& settings, const Polygons& polygons, std::int
   std::vector<std::vector<LinePiece>> of_block(blocks);
   const auto work = [&](size_t block) {
     std::vector<Stretch> seen;
+    EdgeVisibility::Scratch scratch;
     for (size_t i = block * kBlock; i < std::min(topology.edges.size(), (block + 1) * kBlock); ++i) {
       const TopologyEdge& edge = topology.edges[i];
       const glm::dvec3 &a = mesh.positions[static_cast<size_t>(edge.vertex_a)], &b = mesh.positions[static_cast<size_t>(edge.vertex_b)];
@@ -104,7 +105,7 @@ void add_object(const EdgeSettings& settings, const Polygons& polygons, std::int
                           !faces_eye(topology.face_normals[static_cast<size_t>(edge.face_a)], to_eye) &&
                           !faces_eye(topology.face_normals[static_cast<size_t>(edge.face_b)], to_eye);
       seen.clear();
-      view.visible_stretches(image, seen);
+      view.visible_stretches(image, scratch, seen);
       add_pieces(image, seen, width, of_block[block]);
     }
   };

@@ -1,5 +1,6 @@
 #pragma once
-// Which parts of a mesh's edges are seen, told from a G-buffer.
+// Which parts of a mesh's edges are seen, told by rays through the edges themselves: pixels are too coarse to tell an edge from what lies
+// a pixel beside it.
 
 #include <vector>
 
@@ -30,10 +31,20 @@ class EdgeVisibility {
   /// The edge from `a` to `b` (render space), cut off before the camera and `margin_px` beyond the picture's sides; false where nothing
   /// is left.
   bool place(const glm::dvec3& a, const glm::dvec3& b, double margin_px, ImageEdge& edge) const;
-  /// The stretches that nothing hides, to half a pixel, appended to `seen`.
-  void visible_stretches(const ImageEdge& edge, std::vector<Stretch>& seen) const;
+  /// Memory for visible_stretches, one for each thread; its contents mean nothing to the caller.
+  struct Scratch {
+    std::vector<double> places;
+    std::vector<glm::dvec2> points_px;
+    std::vector<PointSample> samples;
+    std::vector<char> visible;
+    std::vector<Stretch> changes;
+  };
+  /// The stretches that nothing hides, appended to `seen`: their ends to 1/64 px. Rays go through points a quarter of a pixel apart: what
+  /// is drawn of a hidden edge lies within 1/8 px, along the edge, of a point that is seen; a stretch seen is missed only where it is
+  /// shorter than 1/4 px.
+  void visible_stretches(const ImageEdge& edge, Scratch& scratch, std::vector<Stretch>& seen) const;
 
-  /// At one point of the edge, 0 at `a` to 1 at `b`.
+  /// At one point of the edge, 0 at `a` to 1 at `b`: one ray.
   bool visible(const ImageEdge& edge, double s) const;
 
   double depth_of(double q) const { return camera_.projection == Projection::perspective ? 1.0 / q : q; }
@@ -42,13 +53,14 @@ class EdgeVisibility {
   double near() const;
 
  private:
-  bool shows_back(size_t pixel, std::int32_t object) const;
-  bool hides(size_t pixel, const ImageEdge& edge, const glm::dvec2& at_px, double z) const;
-  double seen_depth(size_t pixel, const CameraRay& ray) const;
+  void ask(const ImageEdge& edge, std::span<const double> places, Scratch& scratch) const;
+  bool shows(const PointSample& seen, const ImageEdge& edge, double s) const;
+  double bias(const PointSample& seen, const glm::dvec3& facet, const glm::dvec3& direction, double distance) const;
 
   const BorderInput& input_;
   Camera camera_;
   double radius_ = 0.0;  ///< Of the sphere about the render origin in which rays are single precision.
+  bool bounded_ = true;
 };
 
 }  // namespace limn

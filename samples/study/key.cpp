@@ -3,6 +3,7 @@
 #include <OpenImageIO/hash.h>
 #include <fmt/format.h>
 
+#include <cctype>
 #include <fstream>
 #include <sstream>
 
@@ -14,6 +15,12 @@ namespace limn {
 namespace {
 
 constexpr size_t kDigits = 32;
+
+std::string digits_of(OIIO::SHA1& hash) {
+  std::string digits = hash.digest().substr(0, kDigits);
+  for (char& digit : digits) digit = static_cast<char>(std::tolower(static_cast<unsigned char>(digit)));
+  return digits;
+}
 
 std::string file_hash(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -42,7 +49,7 @@ std::string mesh_hash(const Mesh& mesh) {
   append(hash, mesh.corners);
   const auto boundary = static_cast<std::int32_t>(mesh.boundary);
   hash.append(&boundary, sizeof boundary);
-  return hash.digest().substr(0, kDigits);
+  return digits_of(hash);
 }
 
 std::string vector_text(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
@@ -86,7 +93,7 @@ std::string metrics_text() {
 
 std::string content_hash(std::string_view bytes) {
   OIIO::SHA1 hash(bytes.data(), bytes.size());
-  return hash.digest().substr(0, kDigits);
+  return digits_of(hash);
 }
 
 std::string hash_of_input(const SceneInput& input) {

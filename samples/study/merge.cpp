@@ -60,23 +60,37 @@ std::vector<fs::path> parts_in(const fs::path& folder) {
   return parts;
 }
 
-StudyFolder merge_parts(const std::vector<fs::path>& parts, const fs::path& folder) {
-  std::optional<StudyFolder> merged = read_folder(folder);
-  const fs::path* first = merged ? &folder : nullptr;
+namespace {
+
+// Before anything is written.
+void check_parts(const std::vector<fs::path>& parts, const fs::path& folder) {
+  std::optional<StudyRecord> common = read_record(folder);
+  fs::path first = folder;
   for (const fs::path& part : parts) {
-    std::optional<StudyFolder> held = read_folder(part);
-    if (!held)
+    const std::optional<StudyRecord> record = read_record(part);
+    if (!record)
       throw InputError({part.string(), "", "", "holds no part of a study", "a folder that limn study --shard wrote would be right"});
-    if (!merged) {
-      merged = StudyFolder{held->record, {}};
-      first = &part;
+    if (!common) {
+      common = record;
+      first = part;
     }
-    if (const std::string what = difference(merged->record, held->record); !what.empty()) {
-      throw InputError({part.string(), "", "", "is of another study than " + first->string() + ": " + what,
+    if (const std::string what = difference(*common, *record); !what.empty()) {
+      throw InputError({part.string(), "", "", "is of another study than " + first.string() + ": " + what,
                         "parts of one study, made by the same call, would be right"});
     }
-    add_truths(held->record.truths, merged->record);
-    for (auto& [key, rows] : held->rows) {
+  }
+}
+
+}  // namespace
+
+StudyFolder merge_parts(const std::vector<fs::path>& parts, const fs::path& folder) {
+  check_parts(parts, folder);
+  std::optional<StudyFolder> merged = read_folder(folder);
+  for (const fs::path& part : parts) {
+    StudyFolder held = read_folder(part).value();
+    if (!merged) merged = StudyFolder{held.record, {}};
+    add_truths(held.record.truths, merged->record);
+    for (auto& [key, rows] : held.rows) {
       std::vector<StudyRow>& kept = merged->rows[key];
       if (!kept.empty() && !is_better(rows, kept)) continue;
       kept = std::move(rows);

@@ -64,14 +64,6 @@ void add_word(const std::string& word, StandIn& out) {
   if (std::find(out.words.begin(), out.words.end(), word) == out.words.end()) out.words.push_back(word);
 }
 
-/// One object at its finest; `second` asks for the next best reading of what it is: facets for smoothed normals, the next lower gradient.
-Scene only(const Scene& scene, size_t index) {
-  Scene out = scene;
-  out.objects = {scene.objects[index]};
-  out.objects.front().level.reset();
-  return out;
-}
-
 SurfaceSettings finest_settings(const SceneObject& object, int level, StandIn& out) {
   SurfaceSettings settings;
   settings.kind = natural_surface(object);

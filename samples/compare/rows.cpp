@@ -20,6 +20,13 @@ Json parameters_json(const ComparedModel& model) {
   return parameters;
 }
 
+/// What went wrong, in building the model and in drawing the border.
+std::vector<std::string> notes_of(const Comparison& comparison, const Cell& cell) {
+  std::vector<std::string> notes = comparison.model_of(cell).info.warnings;
+  notes.insert(notes.end(), cell.notes.begin(), cell.notes.end());
+  return notes;
+}
+
 Json cell_json(const Comparison& comparison, const Cell& cell) {
   const ComparedModel& model = comparison.model_of(cell);
   Json json = {{"name", cell.name},
@@ -44,9 +51,7 @@ Json cell_json(const Comparison& comparison, const Cell& cell) {
   for (const auto* values : {&cell.values, &model.values}) {
     for (const MetricValue& value : *values) json["metrics"][value.name] = number_or_null(value.value);
   }
-  std::vector<std::string> notes = model.info.warnings;
-  notes.insert(notes.end(), cell.notes.begin(), cell.notes.end());
-  json["notes"] = notes;
+  json["notes"] = notes_of(comparison, cell);
   json["exr"] = model.exr.string();
   return json;
 }
@@ -68,6 +73,7 @@ void add_rows(const Comparison& comparison, const Cell& cell, Json& rows) {
   std::vector<MetricValue> values = {{"border_px", cell.ink_px, "px"}};
   values.insert(values.end(), cell.values.begin(), cell.values.end());
   values.insert(values.end(), model.values.begin(), model.values.end());
+  const std::vector<std::string> notes = notes_of(comparison, cell);
   for (const MetricValue& value : values) {
     Json row = head;
     row["reference"] = comparison.reference().name;
@@ -76,6 +82,8 @@ void add_rows(const Comparison& comparison, const Cell& cell, Json& rows) {
     row["unit"] = value.unit;
     row["time_ms"] = time_ms_of(comparison, cell);
     row["bytes"] = model.info.bytes;
+    // As time and memory: of the cell, and so on each of its rows, that a row can be judged by itself.
+    row["notes"] = notes;
     rows.push_back(row);
   }
 }

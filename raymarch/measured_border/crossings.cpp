@@ -32,8 +32,9 @@ struct Search {
   int ends = 0;   ///< Ends of sheets found on this edge before.
   int steps = 0;  ///< Rays spent in this mode.
   bool settled = false;
-  int moved = 0;             ///< Ink: which end the last ray replaced: -1 a, +1 b, 0 none.
-  double step_before = 0.0;  ///< Proof: the step of depth when it began, px.
+  bool end_before = false, end_after = false;  ///< The stretch begins, ends at an end of a sheet.
+  int moved = 0;                               ///< Ink: which end the last ray replaced: -1 a, +1 b, 0 none.
+  double step_before = 0.0;                    ///< Proof: the step of depth when it began, px.
 };
 
 /// All searches of one band of the picture, in lockstep, so that rays go out in batches.
@@ -184,6 +185,11 @@ class Band {
   }
 
   void take_end(const Search& search) {
+    // What ends within a hair of an end is the same end: within it a grazing sheet may fall into facets.
+    const double hair = 5.0 * settings_.precision_px;
+    if ((search.end_before && search.a.t - search.first.t < hair) || (search.end_after && search.last.t - search.b.t < hair)) {
+      return begin_ink(search);
+    }
     const bool first_nearer = search.a.depth < search.b.depth;
     const EdgeNode& nearer = first_nearer ? search.a : search.b;
     found.push_back({CurveKind::silhouette, nearer.id, search.edge, 0.5 * (search.a.t + search.b.t), first_nearer, nearer.depth,
@@ -193,6 +199,7 @@ class Band {
       rest.ends = search.ends + 1;
       rest.settled = true;
       (before ? rest.last : rest.first) = before ? search.a : search.b;
+      (before ? rest.end_after : rest.end_before) = true;
       begin(rest);
     }
   }

@@ -13,6 +13,11 @@ constexpr double kTurn = 0.955;
 /// Nearer to edge-on, N.V of a model with interpolated normals says little about its slope.
 constexpr double kEdgeOn = 1e-3;
 
+/// A slope that a sheet may take up within the stretch without being looked at.
+constexpr double kCurving = 4.0;
+/// Beside a contour that is found already, only a step beyond doubt is looked at.
+constexpr double kSettledExcess_px = 0.5;
+
 double depth_slope(const Camera& camera, const EdgeLine& line, double t, const glm::dvec3& normal, double n_dot_v) {
   const glm::dvec2 px = line.start_px + t * line.along;
   const glm::dvec3 side = line.along.x * camera.world_from_camera[0] - line.along.y * camera.world_from_camera[1];
@@ -52,10 +57,14 @@ double depth_step_px(const Camera& camera, const EdgeNode& a, const EdgeNode& b)
 
 double excess_step_px(const Camera& camera, const EdgeNode& a, const EdgeNode& b) {
   const double step = depth_step_px(camera, a, b), length = b.t - a.t;
+  // On an osculating circle, from its contour inwards, depth changes by twice what the slope at the inner point says; the slope at the
+  // contour itself says nothing.
+  const double cap = 2.0 * std::min(std::abs(a.slope), std::abs(b.slope)) + kCurving;
+  // Normals that are turned away have no slope at all: no step is always allowed.
+  const double low = std::max(std::min({a.slope, b.slope, 0.0}), -cap), high = std::min(std::max({a.slope, b.slope, 0.0}), cap);
   // Normals need not be those of the geometry: interpolated ones are off by some of the slope.
-  const double slack = 0.3 + 0.3 * std::max(std::abs(a.slope), std::abs(b.slope));
-  const double low = length * (std::min(a.slope, b.slope) - slack), high = length * (std::max(a.slope, b.slope) + slack);
-  return std::max({0.0, low - step, step - high});
+  const double slack = 0.3 + 0.3 * std::max(std::abs(low), std::abs(high));
+  return std::max({0.0, length * (low - slack) - step, step - length * (high + slack)});
 }
 
 bool may_hold_jump(const Camera& camera, const EdgeNode& a, const EdgeNode& b, bool settled) {
@@ -64,7 +73,7 @@ bool may_hold_jump(const Camera& camera, const EdgeNode& a, const EdgeNode& b, b
   if (std::abs(depth_step_px(camera, a, b)) < kLeastStep_px) return false;
   if (a.id != b.id) return true;
   if (!settled && glm::dot(glm::dvec3(a.normal), glm::dvec3(b.normal)) < kTurn) return true;
-  return excess_step_px(camera, a, b) > 0.0;
+  return excess_step_px(camera, a, b) > (settled ? kSettledExcess_px : 0.0);
 }
 
 }  // namespace limn

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "raymarch/picture.h"
 
@@ -8,6 +9,7 @@ namespace limn {
 
 /// Text as it may stand in HTML, attributes included.
 std::string escaped(const std::string& text);
+std::string base64(std::string_view bytes);
 /// An <img> that holds its picture. `attributes` go before the others: "class=\"pixels\" ".
 std::string picture_tag(const Image<glm::vec4>& picture, const std::string& alternative, const char* attributes = "");
 

@@ -1,0 +1,233 @@
+#include "samples/study/report_data.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "raymarch/metric.h"
+
+namespace limn {
+namespace {
+
+struct RoleNames {
+  MetricRole role;
+  const char* name;
+};
+// The metrics that the report knows by name, the ones to show first first; all others it shows under the names they have.
+constexpr std::array<RoleNames, 5> kRoles = {{
+    {MetricRole::border, "displacement_rms"},
+    {MetricRole::inner, "inner_displacement_rms"},
+    {MetricRole::silhouette, "silhouette_displacement_rms"},
+    {MetricRole::predicted, "predicted_displacement_rms"},
+    {MetricRole::normal, "normal_error_rms"},
+}};
+
+size_t rank_of(const std::string& name) {
+  for (size_t i = 0; i < kRoles.size(); ++i) {
+    if (name == kRoles[i].name) return i;
+  }
+  return kRoles.size();
+}
+
+std::string spaced(std::string text) {
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+std::string parameters_text(const std::map<std::string, std::string>& parameters) {
+  std::string text;
+  for (const auto& [name, value] : parameters) text += (text.empty() ? "" : ", ") + spaced(name) + " " + value;
+  return text;
+}
+
+bool is_lower_better(const std::string& name) {
+  const Metric* best = nullptr;
+  for (const Metric& metric : metrics()) {
+    if (!name.starts_with(metric.about.name)) continue;
+    if (best == nullptr || metric.about.name.size() > best->about.name.size()) best = &metric;
+  }
+  return best == nullptr || best->lower_is_better;
+}
+
+// Places in the picture are neither errors nor sizes.
+bool is_position(const std::string& name) { return name.ends_with("_x") || name.ends_with("_y"); }
+
+bool row_less(const StudyRow& a, const StudyRow& b) {
+  const auto head = [](const StudyRow& row) {
+    return std::tie(row.surface, row.surface_parameters, row.method, row.method_parameters, row.view, row.key, row.metric);
+  };
+  if (head(a) != head(b)) return head(a) < head(b);
+  // Two rows of one metric are the same row written twice, its times aside.
+  return std::make_tuple(a.failed, a.time_ms(), a.bytes) < std::make_tuple(b.failed, b.time_ms(), b.bytes);
+}
+
+struct Collector {
+  ReportData& data;
+  std::map<std::tuple<std::string, std::string>, size_t> models{};  ///< By series and resolution.
+  std::map<std::string, size_t> series{};
+  std::map<std::string, size_t> drawings{};
+  std::map<std::string, size_t> cells{};
+  std::map<std::string, std::string> units{};
+
+  void add_models(const StudyHead& head, const std::vector<const StudyRow*>& rows) {
+    std::set<std::string> seen;
+    for (const StudyRow* row : rows) seen.insert(series_of(*row));
+    for (const std::string& name : head.surfaces) {
+      if (seen.erase(name) > 0) data.series.push_back(name);
+    }
+    std::vector<std::string> rest(seen.begin(), seen.end());
+    std::stable_sort(rest.begin(), rest.end(), natural_less);
+    data.series.insert(data.series.end(), rest.begin(), rest.end());
+    for (size_t i = 0; i < data.series.size(); ++i) series[data.series[i]] = i;
+
+    for (const StudyRow* row : rows) {
+      const auto [place, is_new] = models.try_emplace({series_of(*row), resolution_text(*row)}, data.models.size());
+      if (is_new) {
+        data.models.push_back({series.at(series_of(*row)), resolution_text(*row), row->resolution, row->surface, row->surface_parameters});
+      } else if (std::isnan(data.models[place->second].resolution)) {
+        data.models[place->second].resolution = row->resolution;  // a failed cell may not know it
+      }
+    }
+    std::stable_sort(data.models.begin(), data.models.end(), [](const ReportModel& a, const ReportModel& b) {
+      if (a.series != b.series) return a.series < b.series;
+      return natural_less(a.resolution_text, b.resolution_text);
+    });
+    for (size_t i = 0; i < data.models.size(); ++i) {
+      models[{data.series[data.models[i].series], data.models[i].resolution_text}] = i;
+    }
+  }
+
+  void add_drawings(const std::vector<const StudyRow*>& rows) {
+    std::map<std::string, ReportDrawing> found;
+    for (const StudyRow* row : rows) {
+      ReportDrawing drawing{row->method, parameters_text(row->method_parameters)};
+      const auto threshold = row->method_parameters.find("threshold");
+      if (threshold != row->method_parameters.end()) drawing.threshold = std::strtod(threshold->second.c_str(), nullptr);
+      found.try_emplace(drawing.title(), drawing);
+    }
+    for (const auto& [title, drawing] : found) data.drawings.push_back(drawing);
+    std::stable_sort(data.drawings.begin(), data.drawings.end(),
+                     [](const ReportDrawing& a, const ReportDrawing& b) { return natural_less(a.title(), b.title()); });
+    for (size_t i = 0; i < data.drawings.size(); ++i) drawings[data.drawings[i].title()] = i;
+  }
+
+  void add_cell_row(const StudyRow& row) {
+    const auto [place, is_new] = cells.try_emplace(row.key, data.cells.size());
+    if (is_new) {
+      const size_t drawing = drawings.at(ReportDrawing{row.method, parameters_text(row.method_parameters)}.title());
+      data.cells.push_back(
+          {row.key, models.at({series_of(row), resolution_text(row)}), drawing, row.view, row.time_ms(), row.bytes, row.failed});
+    }
+    ReportCell& cell = data.cells[place->second];
+    if (!row.failed.empty()) cell.failed = row.failed;
+    if (row.metric.empty() || is_position(row.metric)) return;
+    if (cell.values.try_emplace(row.metric, row.value).second) units.try_emplace(row.metric, row.unit);
+  }
+
+  void finish() {
+    std::sort(data.cells.begin(), data.cells.end(), [](const ReportCell& a, const ReportCell& b) {
+      return std::tie(a.model, a.drawing, a.view, a.key) < std::tie(b.model, b.drawing, b.view, b.key);
+    });
+    std::set<int> views;
+    for (const ReportCell& cell : data.cells) views.insert(cell.view);
+    data.views.assign(views.begin(), views.end());
+    for (const auto& [name, unit] : units) data.metrics.push_back({name, unit, is_lower_better(name)});
+    std::stable_sort(data.metrics.begin(), data.metrics.end(),
+                     [](const ReportMetric& a, const ReportMetric& b) { return rank_of(a.name) < rank_of(b.name); });
+  }
+
+  // The border's displacement where it was measured, else the first error there is; drawn by what measured it most often, and among equals
+  // by what is nearest to the threshold that limn draws with when nobody says otherwise.
+  void choose_main() {
+    data.main_metric = data.metric_of(MetricRole::border);
+    for (const ReportMetric& metric : data.metrics) {
+      if (data.main_metric.empty() && metric.lower_is_better) data.main_metric = metric.name;
+    }
+    std::vector<std::pair<double, double>> merit(data.drawings.size());
+    for (const ReportCell& cell : data.cells) {
+      const auto value = cell.values.find(data.main_metric);
+      if (value != cell.values.end() && std::isfinite(value->second)) merit[cell.drawing].first += 1.0;
+    }
+    for (size_t i = 0; i < merit.size(); ++i) {
+      const double threshold = data.drawings[i].threshold;
+      merit[i].second = std::isnan(threshold) ? -1.0 : -std::abs(threshold - 0.4);
+    }
+    if (!merit.empty()) data.main_drawing = static_cast<size_t>(std::max_element(merit.begin(), merit.end()) - merit.begin());
+  }
+};
+
+}  // namespace
+
+bool natural_less(const std::string& a, const std::string& b) {
+  const auto digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (digit(a[i]) && digit(b[j])) {
+      size_t end_a = i, end_b = j;
+      while (end_a < a.size() && digit(a[end_a])) ++end_a;
+      while (end_b < b.size() && digit(b[end_b])) ++end_b;
+      if (end_a - i != end_b - j) return end_a - i < end_b - j;
+      if (const int order = a.compare(i, end_a - i, b, j, end_b - j); order != 0) return order < 0;
+      i = end_a;
+      j = end_b;
+    } else {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i;
+      ++j;
+    }
+  }
+  return a.size() - i < b.size() - j;
+}
+
+std::string ReportMetric::label() const {
+  switch (rank_of(name)) {
+    case 0:
+      return "border displacement, RMS";
+    case 1:
+      return "inner border displacement, RMS";
+    case 2:
+      return "silhouette displacement, RMS";
+    case 3:
+      return "predicted displacement, RMS";
+    case 4:
+      return "normal error, RMS";
+    default:
+      return spaced(name);
+  }
+}
+
+std::string ReportData::title(size_t model) const {
+  const ReportModel& one = models[model];
+  return one.resolution_text.empty() ? series[one.series] : series[one.series] + ", " + one.resolution_text;
+}
+
+std::string ReportData::metric_of(MetricRole role) const {
+  for (const RoleNames& names : kRoles) {
+    if (names.role == role && find_metric(names.name) != nullptr) return names.name;
+  }
+  return "";
+}
+
+const ReportMetric* ReportData::find_metric(const std::string& name) const {
+  const auto found = std::find_if(metrics.begin(), metrics.end(), [&](const ReportMetric& metric) { return metric.name == name; });
+  return found == metrics.end() ? nullptr : &*found;
+}
+
+ReportData collect_report(const StudyHead& head, const std::vector<StudyRow>& rows) {
+  std::vector<const StudyRow*> sorted;
+  for (const StudyRow& row : rows) sorted.push_back(&row);
+  std::sort(sorted.begin(), sorted.end(), [](const StudyRow* a, const StudyRow* b) { return row_less(*a, *b); });
+  ReportData data;
+  Collector collector{data};
+  collector.add_models(head, sorted);
+  collector.add_drawings(sorted);
+  for (const StudyRow* row : sorted) collector.add_cell_row(*row);
+  collector.finish();
+  collector.choose_main();
+  return data;
+}
+
+}  // namespace limn

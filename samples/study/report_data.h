@@ -1,0 +1,76 @@
+#pragma once
+// A study's rows put together for those who draw and write about them: cells, models, what drew them, and metrics.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "samples/study/row.h"
+
+namespace limn {
+
+/// A model whose border is this near to truth is called right.
+inline constexpr double kTolerancePx = 0.5;
+/// Displacements below are at the precision with which borders are found; orders are fitted without them.
+inline constexpr double kFloorPx = 0.005;
+
+/// What a metric says, where the report has something of its own to say about it.
+enum class MetricRole { border, inner, silhouette, predicted, normal };
+
+struct ReportMetric {
+  std::string name{}, unit{};
+  bool lower_is_better = true;
+  /// "border rms displacement": for people.
+  std::string label() const;
+};
+
+struct ReportModel {
+  size_t series = 0;  ///< Into ReportData::series.
+  std::string resolution_text{};
+  double resolution = std::numeric_limits<double>::quiet_NaN();
+  std::string surface{};
+  std::map<std::string, std::string> parameters{};
+};
+
+/// A method with its parameters.
+struct ReportDrawing {
+  std::string method{}, parameters{};  ///< "rim", "threshold 0.4".
+  double threshold = std::numeric_limits<double>::quiet_NaN();
+  std::string title() const { return parameters.empty() ? method : method + ", " + parameters; }
+};
+
+struct ReportCell {
+  std::string key{};
+  size_t model = 0, drawing = 0;
+  int view = 0;
+  double time_ms = 0.0;
+  std::int64_t bytes = 0;
+  std::string failed{};
+  std::map<std::string, double> values{};  ///< By metric.
+};
+
+/// Everything in an order that does not depend on the order of the rows.
+struct ReportData {
+  std::vector<std::string> series{};
+  std::vector<ReportModel> models{};  ///< By series, coarse first.
+  std::vector<ReportDrawing> drawings{};
+  std::vector<ReportMetric> metrics{};  ///< Those with a role first.
+  std::vector<ReportCell> cells{};
+  std::vector<int> views{};
+  size_t main_drawing = 0;  ///< What charts show first.
+  std::string main_metric{};
+
+  /// "mesh, vertex normals, level 3".
+  std::string title(size_t model) const;
+  /// The metric of this role; empty where no row has one.
+  std::string metric_of(MetricRole role) const;
+  const ReportMetric* find_metric(const std::string& name) const;
+};
+
+ReportData collect_report(const StudyHead& head, const std::vector<StudyRow>& rows);
+
+/// "level 9" before "level 10".
+bool natural_less(const std::string& a, const std::string& b);
+
+}  // namespace limn

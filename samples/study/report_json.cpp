@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "samples/study/report_page.h"
+
+namespace limn {
+namespace {
+
+// Six digits are more than a chart shows, and half the page.
+Json short_number(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
+}
+
+std::string hex(const ChartColor& color) {
+  const auto part = [](double value) { return static_cast<int>(std::lround(255.0 * value)); };
+  return fmt::format("#{:02x}{:02x}{:02x}", part(color.red), part(color.green), part(color.blue));
+}
+
+// What a metric's name lets one expect of its order.
+Json expected_json(const ReportData& data, size_t series, const ReportMetric& metric, double threshold) {
+  const std::optional<ExpectedOrder> order = expected_order(data, series, metric.name, threshold);
+  return order ? Json(order->text()) : Json(nullptr);
+}
+
+Json series_json(const ReportData& data) {
+  Json all = Json::array();
+  for (size_t i = 0; i < data.series.size(); ++i)
+    all.push_back({{"name", data.series[i]}, {"color", hex(series_color(i))}, {"marker", i % kMarkers}});
+  return all;
+}
+
+Json expectations_json(const ReportData& data) {
+  Json by_metric = Json::object();
+  for (const ReportMetric& metric : data.metrics) {
+    Json all = Json::array();
+    bool any = false;
+    for (size_t series = 0; series < data.series.size(); ++series) {
+      Json by_drawing = Json::array();
+      for (const ReportDrawing& drawing : data.drawings) by_drawing.push_back(expected_json(data, series, metric, drawing.threshold));
+      for (const Json& one : by_drawing) any = any || !one.is_null();
+      all.push_back(by_drawing);
+    }
+    if (any) by_metric[metric.name] = all;
+  }
+  return by_metric;
+}
+
+Json front_json(const ReportData& data, Cost cost) {
+  Json all = Json::array();
+  if (data.drawings.empty()) return all;
+  const std::vector<ModelPoint> points = points_of(data, data.main_drawing, data.main_metric);
+  for (const size_t i : pareto_front(points, cost)) all.push_back(points[i].model);
+  return all;
+}
+
+Json orders_json(const ReportData& data) {
+  Json all = Json::array();
+  if (data.drawings.empty()) return all;
+  const std::vector<ModelPoint> points = points_of(data, data.main_drawing, data.main_metric);
+  for (size_t series = 0; series < data.series.size(); ++series) {
+    const std::optional<OrderFit> fit = fit_order(data, points, series, data.main_metric);
+    all.push_back(fit ? short_number(fit->order) : Json(nullptr));
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string study_data_json(const ReportData& data) {
+  Json json = {{"tolerance", kTolerancePx},
+               {"floor", kFloorPx},
+               {"least", kLeastShownPx},
+               {"mainDrawing", data.main_drawing},
+               {"mainMetric", data.main_metric}};
+  json["roles"] = {{"inner", data.metric_of(MetricRole::inner)},
+                   {"border", data.metric_of(MetricRole::border)},
+                   {"predicted", data.metric_of(MetricRole::predicted)},
+                   {"normal", data.metric_of(MetricRole::normal)}};
+  json["series"] = series_json(data);
+  json["models"] = Json::array();
+  for (size_t i = 0; i < data.models.size(); ++i)
+    json["models"].push_back(
+        {{"series", data.models[i].series}, {"name", data.title(i)}, {"resolution", short_number(data.models[i].resolution)}});
+  json["drawings"] = Json::array();
+  for (const ReportDrawing& drawing : data.drawings)
+    json["drawings"].push_back({{"method", drawing.method}, {"parameters", drawing.parameters}});
+  json["metrics"] = Json::array();
+  for (const ReportMetric& metric : data.metrics)
+    json["metrics"].push_back({{"name", metric.name}, {"label", metric.label()}, {"unit", metric.unit}, {"lower", metric.lower_is_better}});
+  json["expected"] = expectations_json(data);
+  json["views"] = data.views;
+  // What the page works out itself for its first look; its test holds the two against each other.
+  json["fronts"] = {{"time", front_json(data, Cost::time)}, {"memory", front_json(data, Cost::memory)}};
+  json["orders"] = orders_json(data);
+  json["cells"] = Json::array();
+  for (const ReportCell& cell : data.cells) {
+    if (!cell.failed.empty()) continue;
+    Json values = Json::array();
+    for (const ReportMetric& metric : data.metrics) {
+      const auto found = cell.values.find(metric.name);
+      values.push_back(found == cell.values.end() ? Json(nullptr) : short_number(found->second));
+    }
+    json["cells"].push_back({cell.model, cell.drawing, cell.view, short_number(cell.time_ms), cell.bytes, values});
+  }
+  // A name may hold "</script>".
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace), safe;
+  for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return safe;
+}
+
+}  // namespace limn

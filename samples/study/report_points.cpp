@@ -1,0 +1,146 @@
+#include "samples/study/report_points.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace limn {
+namespace {
+
+double quantile(const std::vector<double>& sorted, double share) {
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const size_t below = static_cast<size_t>(at), above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+ModelPoint point_of(size_t model, std::vector<std::pair<double, const ReportCell*>> values) {
+  std::sort(values.begin(), values.end(),
+            [](const auto& a, const auto& b) { return std::make_pair(a.first, a.second->view) < std::make_pair(b.first, b.second->view); });
+  ModelPoint point;
+  point.model = model;
+  std::vector<double> errors, times;
+  for (const auto& [value, cell] : values) {
+    errors.push_back(value);
+    times.push_back(cell->time_ms);
+    point.bytes = std::max(point.bytes, cell->bytes);
+    point.cells.push_back(cell);
+  }
+  std::sort(times.begin(), times.end());
+  point.low = errors.front();
+  point.low_quartile = quantile(errors, 0.25);
+  point.median = quantile(errors, 0.5);
+  point.high_quartile = quantile(errors, 0.75);
+  point.high = errors.back();
+  point.time_ms = quantile(times, 0.5);
+  return point;
+}
+
+// Order of the angle between the interpolated normal and the surface's, as THEORY of interpolation has it; averaged vertex normals lie
+// between: 1 on jittered meshes, 2 where the mesh is symmetric.
+std::optional<ExpectedOrder> normal_order(const ReportModel& model) {
+  const auto value = [&](const char* name) {
+    const auto found = model.parameters.find(name);
+    return found == model.parameters.end() ? std::string() : found->second;
+  };
+  if (model.surface == "mesh") {
+    if (value("normals") == "flat") return ExpectedOrder{1.0, 1.0};
+    if (value("normals") == "vertex") return ExpectedOrder{1.0, 2.0};
+    if (value("normals") == "limit") return ExpectedOrder{2.0, 2.0};
+  }
+  // A grid made from a mesh that stays as it is converges to that mesh, which is no smooth surface.
+  if (model.surface == "level_set") {
+    if (value("gradient") == "cell") return ExpectedOrder{1.0, 1.0};
+    if (value("gradient") == "central") return ExpectedOrder{2.0, 2.0};
+    if (value("gradient") == "cubic") return ExpectedOrder{3.0, 3.0};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<ModelPoint> points_of(const ReportData& data, size_t drawing, const std::string& metric) {
+  std::vector<std::vector<std::pair<double, const ReportCell*>>> values(data.models.size());
+  for (const ReportCell& cell : data.cells) {
+    if (cell.drawing != drawing) continue;
+    const auto found = cell.values.find(metric);
+    if (found != cell.values.end() && std::isfinite(found->second)) values[cell.model].emplace_back(std::abs(found->second), &cell);
+  }
+  std::vector<ModelPoint> points;
+  for (size_t model = 0; model < values.size(); ++model) {
+    if (!values[model].empty()) points.push_back(point_of(model, std::move(values[model])));
+  }
+  return points;
+}
+
+double cost_of(const ModelPoint& point, Cost cost) { return cost == Cost::time ? point.time_ms : static_cast<double>(point.bytes); }
+
+std::vector<size_t> pareto_front(std::span<const double> costs, std::span<const double> errors) {
+  std::vector<size_t> order;
+  for (size_t i = 0; i < costs.size(); ++i) {
+    if (std::isfinite(costs[i]) && std::isfinite(errors[i])) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(),
+            [&](size_t a, size_t b) { return std::make_tuple(costs[a], errors[a], a) < std::make_tuple(costs[b], errors[b], b); });
+  std::vector<size_t> front;
+  for (const size_t i : order) {
+    if (front.empty() || errors[i] < errors[front.back()]) front.push_back(i);
+  }
+  return front;
+}
+
+std::vector<size_t> pareto_front(const std::vector<ModelPoint>& points, Cost cost) {
+  std::vector<double> costs, errors;
+  for (const ModelPoint& point : points) {
+    costs.push_back(cost_of(point, cost));
+    errors.push_back(point.median);
+  }
+  return pareto_front(costs, errors);
+}
+
+std::optional<OrderFit> fit_order(std::span<const double> resolutions, std::span<const double> errors, double floor) {
+  std::vector<double> x, y;
+  for (size_t i = 0; i < resolutions.size(); ++i) {
+    if (!(resolutions[i] > 0.0 && std::isfinite(resolutions[i]) && errors[i] > floor && std::isfinite(errors[i]))) continue;
+    x.push_back(std::log(resolutions[i]));
+    y.push_back(std::log(errors[i]));
+  }
+  if (x.size() < 3) return std::nullopt;
+  const double count = static_cast<double>(x.size());
+  const double mean_x = std::accumulate(x.begin(), x.end(), 0.0) / count, mean_y = std::accumulate(y.begin(), y.end(), 0.0) / count;
+  double xx = 0.0, xy = 0.0;
+  for (size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mean_x) * (x[i] - mean_x);
+    xy += (x[i] - mean_x) * (y[i] - mean_y);
+  }
+  if (xx < 1e-6) return std::nullopt;
+  const auto [finest, coarsest] = std::minmax_element(x.begin(), x.end());
+  return OrderFit{xy / xx, std::exp(mean_y - xy / xx * mean_x), x.size(), std::exp(*finest), std::exp(*coarsest)};
+}
+
+std::optional<OrderFit> fit_order(const ReportData& data, const std::vector<ModelPoint>& points, size_t series, const std::string& metric) {
+  std::vector<double> resolutions, errors;
+  for (const ModelPoint& point : points) {
+    if (data.models[point.model].series != series) continue;
+    resolutions.push_back(data.models[point.model].resolution);
+    errors.push_back(point.median);
+  }
+  const ReportMetric* about = data.find_metric(metric);
+  return fit_order(resolutions, errors, about != nullptr && about->unit == "px" ? kFloorPx : 0.0);
+}
+
+std::string ExpectedOrder::text() const { return low == high ? fmt::format("{}", low) : fmt::format("{} to {}", low, high); }
+
+std::optional<ExpectedOrder> expected_order(const ReportData& data, size_t series, const std::string& metric, double threshold) {
+  const auto model = std::find_if(data.models.begin(), data.models.end(), [&](const ReportModel& one) { return one.series == series; });
+  if (model == data.models.end()) return std::nullopt;
+  const std::optional<ExpectedOrder> normal = normal_order(*model);
+  if (!normal || metric.starts_with("normal_error")) return normal;
+  if (metric.find("displacement") == std::string::npos) return std::nullopt;
+  // The silhouette knows positions alone: of order 2 even for flat facets.
+  if (metric.starts_with("silhouette") || threshold == 0.0) return ExpectedOrder{2.0, 2.0};
+  return ExpectedOrder{std::min(normal->low, 2.0), std::min(normal->high, 2.0)};
+}
+
+}  // namespace limn

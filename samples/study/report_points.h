@@ -1,0 +1,49 @@
+#pragma once
+// Numbers drawn from cells: a model's error over the views, the Pareto front, orders of convergence.
+
+#include <span>
+
+#include "samples/study/report_data.h"
+
+namespace limn {
+
+/// One model under one drawing, over its views.
+struct ModelPoint {
+  size_t model = 0;
+  double median = 0.0, low = 0.0, low_quartile = 0.0, high_quartile = 0.0, high = 0.0;  ///< Of the metric's absolute value.
+  double time_ms = 0.0;                                                                 ///< Median.
+  std::int64_t bytes = 0;                                                               ///< Largest.
+  std::vector<const ReportCell*> cells{};                                               ///< Those with a finite value, smallest first.
+  /// The view whose error is the median, the lower of two.
+  const ReportCell& typical() const { return *cells[(cells.size() - 1) / 2]; }
+};
+
+/// Models with at least one finite value, in the order of the models.
+std::vector<ModelPoint> points_of(const ReportData& data, size_t drawing, const std::string& metric);
+
+enum class Cost { time, memory };
+double cost_of(const ModelPoint& point, Cost cost);
+
+/// Indices of those that nothing beats in both, cheapest first; of two that are the same in both, the first.
+std::vector<size_t> pareto_front(std::span<const double> costs, std::span<const double> errors);
+std::vector<size_t> pareto_front(const std::vector<ModelPoint>& points, Cost cost);
+
+/// error = factor * resolution^order, by least squares of the logarithms.
+struct OrderFit {
+  double order = 0.0, factor = 0.0;
+  size_t points = 0;
+  double finest = 0.0, coarsest = 0.0;  ///< Resolutions between which it was fitted.
+};
+/// Of the errors above `floor`; nothing where fewer than three are left, or all of one resolution.
+std::optional<OrderFit> fit_order(std::span<const double> resolutions, std::span<const double> errors, double floor);
+/// Of a series' points; the floor is kFloorPx for metrics in pixels, else 0.
+std::optional<OrderFit> fit_order(const ReportData& data, const std::vector<ModelPoint>& points, size_t series, const std::string& metric);
+
+/// What theory lets one expect: the border converges as the smaller of the normals' order and the positions', which is 2.
+struct ExpectedOrder {
+  double low = 0.0, high = 0.0;
+  std::string text() const;  ///< "2", "1 to 2".
+};
+std::optional<ExpectedOrder> expected_order(const ReportData& data, size_t series, const std::string& metric, double threshold);
+
+}  // namespace limn

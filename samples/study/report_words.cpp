@@ -1,0 +1,201 @@
+#include "samples/study/report_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "samples/output.h"
+
+namespace limn {
+namespace {
+
+std::string number(double value) { return fmt::format("{:.2g}", value); }
+std::string count_of(size_t count, const char* one, const char* many) { return fmt::format("{} {}", count, count == 1 ? one : many); }
+std::string listed(const std::vector<std::string>& names, const char* last) {
+  std::string text;
+  for (size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : i + 1 == names.size() ? last : ", ") + names[i];
+  return text;
+}
+std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string first_sentence(const StudyHead& head, const ReportData& data) {
+  const size_t failed =
+      static_cast<size_t>(std::count_if(data.cells.begin(), data.cells.end(), [](const ReportCell& cell) { return !cell.failed.empty(); }));
+  std::string text = fmt::format("{} seen from {} and drawn {}: {}", count_of(data.models.size(), "model", "models"),
+                                 count_of(data.views.size(), "view", "views"), count_of(data.drawings.size(), "way", "ways"),
+                                 count_of(data.cells.size(), "cell", "cells"));
+  text += failed == 0 ? "." : failed == data.cells.size() ? ", all of which failed." : fmt::format(", {} of which failed.", failed);
+  if (head.cells > static_cast<std::int64_t>(data.cells.size()))
+    text += fmt::format(" The study is not complete: {} of {} cells are here.", data.cells.size(), head.cells);
+  if (!head.truth.empty()) {
+    text += head.exact ? " Truth is exact: " + head.truth + "."
+                       : " Truth itself is not exact here: " + head.truth + "; errors below that say nothing.";
+  }
+  return text;
+}
+
+struct Words {
+  const ReportData& data;
+  std::vector<ModelPoint> points;
+  std::vector<std::string> out{};
+
+  std::string cost(const ModelPoint& point) const {
+    return time_text(point.time_ms) + " and " + bytes_text(static_cast<double>(point.bytes));
+  }
+
+  // Only displacements in px can be held against half a pixel.
+  void say_cheapest() {
+    const auto better = [](const ModelPoint& a, const ModelPoint& b) { return a.median < b.median; };
+    const ModelPoint& best = *std::min_element(points.begin(), points.end(), better);
+    const ModelPoint* cheapest = cheapest_within(points, kTolerancePx, Cost::time);
+    if (cheapest == nullptr) {
+      out.push_back(fmt::format("No model comes within {} px of truth in its median view: the nearest, {}, is {} px off, for {}.",
+                                kTolerancePx, data.title(best.model), number(best.median), cost(best)));
+      return;
+    }
+    std::string text = fmt::format("The quickest model whose border is right to {} px (RMS, median of the views) is {}: {} px off",
+                                   kTolerancePx, data.title(cheapest->model), number(cheapest->median));
+    if (cheapest->cells.size() > 1) text += fmt::format(", {} in the worst view", number(cheapest->high));
+    text += ", for " + cost(*cheapest) + ".";
+    const ModelPoint* smallest = cheapest_within(points, kTolerancePx, Cost::memory);
+    if (smallest != cheapest)
+      text += fmt::format(" The smallest is {}: {} px, for {}.", data.title(smallest->model), number(smallest->median), cost(*smallest));
+    if (&best != cheapest && best.time_ms > 0.0 && cheapest->time_ms > 0.0) {
+      text +=
+          fmt::format(" The best of all, {}, is {} px off and takes {}", data.title(best.model), number(best.median),
+                      best.time_ms > 1.05 * cheapest->time_ms ? number(best.time_ms / cheapest->time_ms) + " times the time of the quickest"
+                                                              : time_text(best.time_ms));
+      if (cheapest->bytes > 0 && best.bytes > cheapest->bytes)
+        text += fmt::format(" and {} times its memory", number(static_cast<double>(best.bytes) / static_cast<double>(cheapest->bytes)));
+      text += ".";
+    }
+    out.push_back(text);
+  }
+
+  void say_never() {
+    std::vector<std::string> never;
+    for (size_t series = 0; series < data.series.size(); ++series) {
+      const ModelPoint* best = nullptr;
+      for (const ModelPoint& point : points) {
+        if (data.models[point.model].series == series && (best == nullptr || point.median < best->median)) best = &point;
+      }
+      if (best == nullptr || best->median <= kTolerancePx) continue;
+      const std::string& resolution = data.models[best->model].resolution_text;
+      never.push_back(
+          fmt::format("{} (at best {} px{})", data.series[series], number(best->median), resolution.empty() ? "" : ", at " + resolution));
+    }
+    if (!never.empty()) out.push_back(fmt::format("Never within {} px: {}.", kTolerancePx, listed(never, " and ")));
+  }
+
+  void say_orders() {
+    std::vector<std::string> orders;
+    bool any_expected = false;
+    for (size_t series = 0; series < data.series.size(); ++series) {
+      const std::optional<OrderFit> fit = fit_order(data, points, series, data.main_metric);
+      if (!fit) continue;
+      const std::optional<ExpectedOrder> expected =
+          expected_order(data, series, data.main_metric, data.drawings[data.main_drawing].threshold);
+      any_expected = any_expected || expected;
+      orders.push_back(fmt::format("{} {:.2f}{}", data.series[series], fit->order, expected ? " (expected " + expected->text() + ")" : ""));
+    }
+    if (!orders.empty()) out.push_back(fmt::format("The error falls with the resolution to the power of: {}.", listed(orders, ", ")));
+  }
+
+  // The coarsest model of a series from which on the median stays within the tolerance.
+  std::string needed(const std::vector<ModelPoint>& of, size_t series) const {
+    std::string resolution;
+    for (const ModelPoint& point : of) {
+      if (data.models[point.model].series != series) continue;
+      if (point.median > kTolerancePx) resolution.clear();
+      if (point.median <= kTolerancePx && resolution.empty()) resolution = data.models[point.model].resolution_text;
+    }
+    return resolution;
+  }
+
+  void say_parts() {
+    const std::string inner = data.metric_of(MetricRole::inner), outer = data.metric_of(MetricRole::silhouette);
+    if (inner.empty() || outer.empty()) return;
+    const std::vector<ModelPoint> inside = points_of(data, data.main_drawing, inner), outside = points_of(data, data.main_drawing, outer);
+    std::vector<std::string> differ;
+    for (size_t series = 0; series < data.series.size(); ++series) {
+      const std::string for_inner = needed(inside, series), for_outer = needed(outside, series);
+      if (for_inner == for_outer) continue;
+      differ.push_back(fmt::format("{} needs {} for the silhouette and {} for the inner border", data.series[series],
+                                   for_outer.empty() ? "more than was tried" : for_outer,
+                                   for_inner.empty() ? "more than was tried" : for_inner));
+    }
+    if (!differ.empty())
+      out.push_back(fmt::format("Silhouette and inner border ask for different resolutions to be within {} px: {}.", kTolerancePx,
+                                listed(differ, "; ")));
+  }
+
+  void say_prediction() {
+    const std::string predicted = data.metric_of(MetricRole::predicted), inner = data.metric_of(MetricRole::inner);
+    const std::string measured = inner.empty() ? data.metric_of(MetricRole::border) : inner;
+    if (predicted.empty() || measured.empty()) return;
+    std::vector<double> wrong;
+    for (const ReportCell& cell : data.cells) {
+      const auto p = cell.values.find(predicted), m = cell.values.find(measured);
+      if (cell.drawing != data.main_drawing || p == cell.values.end() || m == cell.values.end()) continue;
+      if (m->second > kFloorPx && m->second < 2.0 && std::isfinite(p->second)) wrong.push_back(std::abs(p->second / m->second - 1.0));
+    }
+    if (wrong.empty()) return;
+    std::sort(wrong.begin(), wrong.end());
+    out.push_back(fmt::format(
+        "What theory predicts from the normals' error, s c eps / kr, is off by {:.0f} % in the median over {} of less than 2 px.",
+        100.0 * wrong[wrong.size() / 2], count_of(wrong.size(), "displacement", "displacements")));
+  }
+
+  void say_failures() {
+    std::map<std::string, size_t> reasons;
+    size_t failed = 0;
+    for (const ReportCell& cell : data.cells) {
+      if (cell.failed.empty()) continue;
+      ++failed;
+      ++reasons[cell.failed];
+    }
+    if (failed == 0) return;
+    const auto common = std::max_element(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    out.push_back(fmt::format("{} failed, {} with: {}.", count_of(failed, "cell", "cells"),
+                              common->second == failed ? "all" : std::to_string(common->second), common->first));
+  }
+};
+
+}  // namespace
+
+const ModelPoint* cheapest_within(const std::vector<ModelPoint>& points, double tolerance, Cost cost) {
+  const ModelPoint* best = nullptr;
+  for (const ModelPoint& point : points) {
+    if (point.median <= tolerance && (best == nullptr || cost_of(point, cost) < cost_of(*best, cost))) best = &point;
+  }
+  return best;
+}
+
+std::vector<std::string> study_sentences(const StudyHead& head, const ReportData& data) {
+  if (data.cells.empty()) return {"The study has no cell yet: there is nothing to say."};
+  Words words{data, points_of(data, data.main_drawing, data.main_metric)};
+  words.out.push_back(capital(first_sentence(head, data)));
+  const ReportMetric* metric = data.find_metric(data.main_metric);
+  const bool in_pixels = metric != nullptr && metric->name.find("displacement") != std::string::npos && metric->unit == "px";
+  if (words.points.empty()) {
+    words.out.push_back("No cell has an error to show, so that nothing can be said of accuracy.");
+  } else {
+    if (data.drawings.size() > 1)
+      words.out.push_back("What follows is for " + data.drawings[data.main_drawing].title() + "; the page below can show the others.");
+    if (in_pixels) words.say_cheapest();
+    if (!in_pixels) words.out.push_back("The border's displacement was not measured; charts show " + metric->label() + ".");
+    if (in_pixels) words.say_never();
+    words.say_orders();
+    words.say_parts();
+    words.say_prediction();
+  }
+  words.say_failures();
+  return words.out;
+}
+
+}  // namespace limn

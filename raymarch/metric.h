@@ -23,6 +23,7 @@ struct MetricInput {
   /// Ink after sub-pixel moves of the camera, one picture a move; the same moves for both.
   std::span<const Image<float>> moved{};
   std::span<const Image<float>> reference_moved{};
+  const SceneModel* model = nullptr;  ///< What `curves` were measured on; `prediction` asks it for its normals.
 };
 
 struct MetricValue {

@@ -7,13 +7,17 @@ namespace limn {
 
 std::vector<MetricValue> summarise_errors(std::vector<PixelError> errors, const std::string& name, const std::string& unit) {
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-  double mean = nothing, p99 = nothing;
+  double mean = nothing, rms = nothing, p99 = nothing;
   PixelError worst{0, 0, nothing};
   double worst_x = nothing, worst_y = nothing;
   if (!errors.empty()) {
-    double sum = 0.0;
-    for (const PixelError& error : errors) sum += error.value;
+    double sum = 0.0, squares = 0.0;
+    for (const PixelError& error : errors) {
+      sum += error.value;
+      squares += error.value * error.value;
+    }
     mean = sum / static_cast<double>(errors.size());
+    rms = std::sqrt(squares / static_cast<double>(errors.size()));
     worst = *std::max_element(errors.begin(), errors.end(), [](const PixelError& a, const PixelError& b) { return a.value < b.value; });
     worst_x = worst.x;
     worst_y = worst.y;
@@ -22,16 +26,13 @@ std::vector<MetricValue> summarise_errors(std::vector<PixelError> errors, const 
     std::nth_element(errors.begin(), at_rank, errors.end(), [](const PixelError& a, const PixelError& b) { return a.value < b.value; });
     p99 = at_rank->value;
   }
-  return {{name + "_mean", mean, unit},
-          {name + "_p99", p99, unit},
-          {name + "_max", worst.value, unit},
-          {name + "_max_x", worst_x, "px"},
-          {name + "_max_y", worst_y, "px"}};
+  return {{name + "_mean", mean, unit},       {name + "_rms", rms, unit},       {name + "_p99", p99, unit},
+          {name + "_max", worst.value, unit}, {name + "_max_x", worst_x, "px"}, {name + "_max_y", worst_y, "px"}};
 }
 
 std::vector<std::string> summary_names(const std::string& name, const std::string& unit) {
-  return {name + "_mean [" + unit + "]", name + "_p99 [" + unit + "]", name + "_max [" + unit + "]", name + "_max_x [px]",
-          name + "_max_y [px]"};
+  return {name + "_mean [" + unit + "]", name + "_rms [" + unit + "]", name + "_p99 [" + unit + "]",
+          name + "_max [" + unit + "]",  name + "_max_x [px]",         name + "_max_y [px]"};
 }
 
 bool both_hit(const MetricInput& input, size_t pixel) {

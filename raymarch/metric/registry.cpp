@@ -6,8 +6,17 @@ namespace limn {
 
 std::span<const Metric> metrics() {
   static const std::vector<Metric> all = {
-      pixels_differ_metric(),      overlap_metric(), normal_error_metric(), depth_error_metric(), silhouette_displacement_metric(),
+      pixels_differ_metric(),
+      overlap_metric(),
+      normal_error_metric(),
+      depth_error_metric(),
+      silhouette_displacement_metric(),
       inner_displacement_metric(),
+      hausdorff_metric(),
+      mean_distance_metric(),
+      width_metric(),
+      prediction_metric(),
+      flicker_metric(),
   };
   return all;
 }

@@ -11,5 +11,12 @@ Metric normal_error_metric();
 Metric depth_error_metric();
 Metric silhouette_displacement_metric();
 Metric inner_displacement_metric();
+Metric hausdorff_metric();
+Metric mean_distance_metric();
+Metric boundary_iou_metric();
+Metric width_metric();
+Metric topology_metric();
+Metric flicker_metric();
+Metric prediction_metric();
 
 }  // namespace limn

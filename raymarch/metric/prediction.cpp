@@ -1,0 +1,52 @@
+// What theory predicts from the model's normals and the true curvature, beside what was measured.
+
+#include "raymarch/prediction.h"
+
+#include "raymarch/metric/registry.h"
+
+namespace limn {
+namespace {
+
+std::vector<MetricValue> measure(const MetricInput& input) {
+  constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+  DisplacementPrediction d{0, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing};
+  WidthPrediction w{0, nothing, nothing, nothing, nothing, nothing, nothing};
+  if (input.curves != nullptr && input.truth != nullptr && input.model != nullptr) {
+    const BorderPrediction prediction = predict_border(*input.model, input.camera, *input.truth, *input.curves);
+    d = prediction.displacement;
+    w = prediction.width;
+  }
+  return {{"prediction_error_rms", d.error_rms_px, "px"},
+          {"prediction_displacement_rms", d.predicted_rms_px, "px"},
+          {"prediction_measured_rms", d.measured_rms_px, "px"},
+          {"prediction_displacement_mean", d.predicted_mean_px, "px"},
+          {"prediction_measured_mean", d.measured_mean_px, "px"},
+          {"prediction_correlation", d.correlation, ""},
+          {"prediction_within_quarter", d.within_quarter, ""},
+          {"prediction_covered", d.covered, ""},
+          {"prediction_normal_error_rms", glm::degrees(d.normal_error_rms), "deg"},
+          {"prediction_width_error_rms", w.error_rms_px, "px"},
+          {"prediction_width_mean", w.exact_mean_px, "px"},
+          {"prediction_width_plain_mean", w.plain_mean_px, "px"},
+          {"prediction_width_measured_mean", w.measured_mean_px, "px"},
+          {"prediction_width_correlation", w.correlation, ""}};
+}
+
+}  // namespace
+
+Metric prediction_metric() {
+  return {{"prediction",
+           "the inner border's displacement s c eps / kr and the ink's width c^2 / (2 kr), predicted from the model's normals and the true "
+           "curvature, beside what was measured: root mean squares and means, correlation, share of what moved less than 2 px that is "
+           "predicted to 25 %, share of the border that could be compared, the normal error eps behind it; likewise the width",
+           "width: Kindlmann et al. 2003; displacement: limn"},
+          {"prediction_error_rms [px]", "prediction_displacement_rms [px]", "prediction_measured_rms [px]",
+           "prediction_displacement_mean [px]", "prediction_measured_mean [px]", "prediction_correlation", "prediction_within_quarter",
+           "prediction_covered", "prediction_normal_error_rms [deg]", "prediction_width_error_rms [px]", "prediction_width_mean [px]",
+           "prediction_width_plain_mean [px]", "prediction_width_measured_mean [px]", "prediction_width_correlation"},
+          true,
+          measure,
+          MetricSubject::curves};
+}
+
+}  // namespace limn

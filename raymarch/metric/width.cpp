@@ -1,0 +1,75 @@
+// How wide the ink is along the contour, and how evenly, for the model and for the truth.
+
+#include <algorithm>
+#include <cmath>
+
+#include "raymarch/border_width.h"
+#include "raymarch/metric/registry.h"
+
+namespace limn {
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+struct Summary {
+  double mean = kNothing, deviation = kNothing, ratio = kNothing, missing = kNothing;
+};
+
+double percentile(const std::vector<WidthSample>& sorted, double share) {
+  const auto rank = static_cast<size_t>(std::max(1.0, std::ceil(share * static_cast<double>(sorted.size()))));
+  return sorted[std::min(rank, sorted.size()) - 1].width_px;
+}
+
+Summary summarise(const BorderCurves& curves, const Camera& camera) {
+  BorderWidths widths = border_widths(curves, camera);
+  Summary summary;
+  summary.missing = widths.missing;
+  if (widths.samples.empty()) return summary;
+  double length = 0.0, sum = 0.0, squares = 0.0;
+  for (const WidthSample& sample : widths.samples) {
+    length += sample.at.weight_px;
+    sum += sample.at.weight_px * sample.width_px;
+  }
+  summary.mean = sum / length;
+  for (const WidthSample& sample : widths.samples) {
+    const double off = sample.width_px - summary.mean;
+    squares += sample.at.weight_px * off * off;
+  }
+  summary.deviation = std::sqrt(squares / length);
+  std::sort(widths.samples.begin(), widths.samples.end(),
+            [](const WidthSample& a, const WidthSample& b) { return a.width_px < b.width_px; });
+  const double low = percentile(widths.samples, 0.01);
+  summary.ratio = low > 0.0 ? percentile(widths.samples, 0.99) / low : kNothing;
+  return summary;
+}
+
+std::vector<MetricValue> measure(const MetricInput& input) {
+  const bool any = input.curves != nullptr && input.truth != nullptr;
+  const Summary own = any ? summarise(*input.curves, input.camera) : Summary{};
+  const Summary truth = any ? summarise(input.truth->curves, input.camera) : Summary{};
+  return {{"width_bias", own.mean - truth.mean, "px"},
+          {"width_mean", own.mean, "px"},
+          {"width_deviation", own.deviation, "px"},
+          {"width_ratio", own.ratio, ""},
+          {"width_missing", own.missing, ""},
+          {"width_truth_mean", truth.mean, "px"},
+          {"width_truth_deviation", truth.deviation, "px"},
+          {"width_truth_ratio", truth.ratio, ""},
+          {"width_truth_missing", truth.missing, ""}};
+}
+
+}  // namespace
+
+Metric width_metric() {
+  return {{"width",
+           "width of the ink from the silhouette to the inner border before it, a sample each px: mean less the truth's; mean, standard "
+           "deviation, 99th over 1st percentile, share of the silhouette without ink before it; the truth's",
+           "width by curvature: Kindlmann et al. 2003"},
+          {"width_bias [px]", "width_mean [px]", "width_deviation [px]", "width_ratio", "width_missing", "width_truth_mean [px]",
+           "width_truth_deviation [px]", "width_truth_ratio", "width_truth_missing"},
+          true,
+          measure,
+          MetricSubject::curves};
+}
+
+}  // namespace limn

@@ -10,6 +10,7 @@ namespace limn {
 namespace {
 
 constexpr double kLeastSide = 1e-7;  // thinner trapezoids weigh nothing
+constexpr size_t kLattice = 4;       // px between the pixels looked at where no curve is
 constexpr size_t kMostCrossed = 24;  // pieces in a pixel beyond which their crossings are left to the trapezoids' middles
 
 /// A piece of a border curve within one pixel.
@@ -73,69 +74,195 @@ std::vector<double> row_cuts(std::span<const Piece> pieces, double top) {
   return cuts;
 }
 
-/// The middles of a batch's trapezoids, and which pixel each weighs for.
-struct Trapezoids {
-  std::vector<glm::dvec2> middles{};
+/// Where a batch's faces are looked at, what they weigh, and for which pixel.
+struct Faces {
+  std::vector<glm::dvec2> places{};
   std::vector<double> areas{};
   std::vector<std::uint64_t> pixels{};
 };
 
-void add_trapezoids(std::span<const Piece> pieces, int width, Trapezoids& out) {
+/// Between two neighbouring pieces along a row, over a height.
+struct Trapezoid {
+  glm::dvec2 middle{0.0};
+  double area = 0.0;
+  double left_top = 0.0, right_top = 0.0, left_bottom = 0.0, right_bottom = 0.0;
+  size_t row = 0;
+  size_t face = 0;
+};
+
+struct Edge {
+  double x = 0.0, top = 0.0, bottom = 0.0;  ///< Along the row's middle, its upper and its lower end.
+};
+
+Edge edge_of(const Piece& piece, double y, double top, double bottom, double left) {
+  const auto at = [&](double height) {
+    const double t = std::clamp((height - piece.a.y) / (piece.b.y - piece.a.y), 0.0, 1.0);
+    return std::clamp(piece.a.x + t * (piece.b.x - piece.a.x), left, left + 1.0);
+  };
+  return {at(y), at(top), at(bottom)};
+}
+
+std::vector<Trapezoid> trapezoids_of(std::span<const Piece> pieces, int width) {
   const std::uint64_t pixel = pieces[0].pixel;
   const double left = static_cast<double>(pixel % static_cast<std::uint64_t>(width));
   const std::vector<double> cuts = row_cuts(pieces, static_cast<double>(pixel / static_cast<std::uint64_t>(width)));
-  std::vector<double> crossings;
+  std::vector<Trapezoid> result;
+  std::vector<Edge> edges;
   for (size_t k = 0; k + 1 < cuts.size(); ++k) {
     const double height = cuts[k + 1] - cuts[k], y = 0.5 * (cuts[k] + cuts[k + 1]);
     if (height < kLeastSide) continue;
-    crossings = {left, left + 1.0};
+    edges = {{left, left, left}, {left + 1.0, left + 1.0, left + 1.0}};
     for (const Piece& piece : pieces) {
-      if ((piece.a.y < y) == (piece.b.y < y)) continue;
-      const double x = piece.a.x + (y - piece.a.y) / (piece.b.y - piece.a.y) * (piece.b.x - piece.a.x);
-      crossings.push_back(std::clamp(x, left, left + 1.0));
+      if ((piece.a.y < y) != (piece.b.y < y)) edges.push_back(edge_of(piece, y, cuts[k], cuts[k + 1], left));
     }
-    std::sort(crossings.begin(), crossings.end());
-    for (size_t i = 0; i + 1 < crossings.size(); ++i) {
-      const double length = crossings[i + 1] - crossings[i];
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.x < b.x; });
+    for (size_t i = 0; i + 1 < edges.size(); ++i) {
+      const double length = edges[i + 1].x - edges[i].x;
       if (length < kLeastSide) continue;
-      out.middles.push_back({0.5 * (crossings[i] + crossings[i + 1]), y});
-      out.areas.push_back(height * length);
-      out.pixels.push_back(pixel);
+      result.push_back({{0.5 * (edges[i].x + edges[i + 1].x), y},
+                        height * length,
+                        edges[i].top,
+                        edges[i + 1].top,
+                        edges[i].bottom,
+                        edges[i + 1].bottom,
+                        k,
+                        result.size()});
     }
+  }
+  return result;
+}
+
+bool on_frame(const glm::dvec2& p, double left, double top) {
+  const double x = std::min(std::fabs(p.x - left), std::fabs(p.x - left - 1.0)),
+               y = std::min(std::fabs(p.y - top), std::fabs(p.y - top - 1.0));
+  return std::min(x, y) < 1e-9;
+}
+
+/// One polyline goes through the pixel from side to side: what touches along a row is then one face.
+bool is_chain(std::span<const Piece> pieces, int width) {
+  for (size_t i = 1; i < pieces.size(); ++i) {
+    if (pieces[i].a != pieces[i - 1].b) return false;
+  }
+  const double left = static_cast<double>(pieces[0].pixel % static_cast<std::uint64_t>(width));
+  const double top = static_cast<double>(pieces[0].pixel / static_cast<std::uint64_t>(width));
+  return on_frame(pieces.front().a, left, top) && on_frame(pieces.back().b, left, top);
+}
+
+void join_faces(std::vector<Trapezoid>& trapezoids) {
+  for (size_t i = 0; i < trapezoids.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      Trapezoid &below = trapezoids[i], &above = trapezoids[j];
+      const double overlap = std::min(below.right_top, above.right_bottom) - std::max(below.left_top, above.left_bottom);
+      if (above.row + 1 != below.row || overlap < kLeastSide || above.face == below.face) continue;
+      const size_t from = below.face, to = above.face;
+      for (Trapezoid& t : trapezoids) t.face = t.face == from ? to : t.face;
+    }
+  }
+}
+
+void add_faces(std::span<const Piece> pieces, int width, Faces& out) {
+  std::vector<Trapezoid> trapezoids = trapezoids_of(pieces, width);
+  if (is_chain(pieces, width)) join_faces(trapezoids);
+  for (size_t face = 0; face < trapezoids.size(); ++face) {
+    double area = 0.0, largest = 0.0;
+    glm::dvec2 place(0.0);
+    for (const Trapezoid& t : trapezoids) {
+      if (t.face != face) continue;
+      area += t.area;
+      if (t.area > largest) {
+        largest = t.area;
+        place = t.middle;
+      }
+    }
+    if (area == 0.0) continue;
+    out.places.push_back(place);
+    out.areas.push_back(area);
+    out.pixels.push_back(pieces[0].pixel);
   }
 }
 
 void fill_touched(const std::vector<Piece>& pieces, const std::vector<size_t>& groups, const SeenInk& seen, Image<float>& share) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, groups.size() - 1, 64), [&](const tbb::blocked_range<size_t>& range) {
-    Trapezoids trapezoids;
+    Faces faces;
     for (size_t g = range.begin(); g < range.end(); ++g) {
-      add_trapezoids(std::span(pieces).subspan(groups[g], groups[g + 1] - groups[g]), share.width, trapezoids);
+      add_faces(std::span(pieces).subspan(groups[g], groups[g + 1] - groups[g]), share.width, faces);
     }
-    std::vector<std::uint8_t> ink(trapezoids.middles.size());
-    seen(trapezoids.middles, ink);
+    std::vector<std::uint8_t> ink(faces.places.size());
+    seen(faces.places, ink);
     for (size_t i = 0; i < ink.size();) {
-      const std::uint64_t pixel = trapezoids.pixels[i];
+      const std::uint64_t pixel = faces.pixels[i];
       double covered = 0.0, whole = 0.0;
-      for (; i < ink.size() && trapezoids.pixels[i] == pixel; ++i) {
-        whole += trapezoids.areas[i];
-        covered += ink[i] ? trapezoids.areas[i] : 0.0;
+      for (; i < ink.size() && faces.pixels[i] == pixel; ++i) {
+        whole += faces.areas[i];
+        covered += ink[i] ? faces.areas[i] : 0.0;
       }
       share.pixels[pixel] = static_cast<float>(whole > 0.0 ? covered / whole : 0.0);
     }
   });
 }
 
-void fill_untouched(const std::vector<std::uint8_t>& touched, const SeenInk& seen, const ExecutionSettings& how, Image<float>& share) {
-  tbb::parallel_for(0, share.height, [&](int y) {
+/// Pixels that no curve separates, as lists of indices: connected by their sides.
+std::vector<std::vector<size_t>> regions_of(std::vector<std::uint8_t> taken, int width, int height) {
+  std::vector<std::vector<size_t>> regions;
+  const auto w = static_cast<size_t>(width);
+  for (size_t first = 0; first < taken.size(); ++first) {
+    if (taken[first]) continue;
+    std::vector<size_t> region = {first};
+    taken[first] = 1;
+    for (size_t k = 0; k < region.size(); ++k) {
+      const size_t at = region[k], x = at % w, y = at / w;
+      const auto visit = [&](bool inside, size_t next) {
+        if (!inside || taken[next]) return;
+        taken[next] = 1;
+        region.push_back(next);
+      };
+      visit(x > 0, at - 1);
+      visit(x + 1 < w, at + 1);
+      visit(y > 0, at - w);
+      visit(y + 1 < static_cast<size_t>(height), at + w);
+    }
+    regions.push_back(std::move(region));
+  }
+  return regions;
+}
+
+void look(const std::vector<size_t>& pixels, const SeenInk& seen, Image<float>& share, const ExecutionSettings& how) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, pixels.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     std::vector<glm::dvec2> centers;
-    for (int x = 0; x < share.width; ++x) {
-      if (!touched[share.index(x, y)]) centers.push_back({x + 0.5, y + 0.5});
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      const auto width = static_cast<size_t>(share.width);
+      centers.push_back({static_cast<double>(pixels[i] % width) + 0.5, static_cast<double>(pixels[i] / width) + 0.5});
     }
     std::vector<std::uint8_t> ink(centers.size());
     seen(centers, ink);
-    for (size_t i = 0; i < centers.size(); ++i) share.at(static_cast<int>(centers[i].x), y) = ink[i] ? 1.0f : 0.0f;
+    for (size_t i = 0; i < ink.size(); ++i) share.pixels[pixels[range.begin() + i]] = ink[i] ? 1.0f : 0.0f;
   });
+}
+
+/// A region that no curve enters is of one kind: a lattice of its pixels is looked at, and all of them where those disagree.
+void fill_untouched(const std::vector<std::uint8_t>& touched, const SeenInk& seen, const ExecutionSettings& how, Image<float>& share) {
+  const auto regions = regions_of(touched, share.width, share.height);
+  std::vector<size_t> lattice;
+  std::vector<size_t> ends;
+  for (const auto& region : regions) {
+    for (size_t k = 0; k < region.size(); ++k) {
+      const size_t x = region[k] % static_cast<size_t>(share.width), y = region[k] / static_cast<size_t>(share.width);
+      if (k == 0 || (x % kLattice == 0 && y % kLattice == 0)) lattice.push_back(region[k]);
+    }
+    ends.push_back(lattice.size());
+  }
+  look(lattice, seen, share, how);
+  std::vector<size_t> unclear;
+  for (size_t r = 0, first = 0; r < regions.size(); first = ends[r++]) {
+    const float ink = share.pixels[lattice[first]];
+    const bool agree =
+        std::all_of(lattice.begin() + static_cast<std::ptrdiff_t>(first), lattice.begin() + static_cast<std::ptrdiff_t>(ends[r]),
+                    [&](size_t pixel) { return share.pixels[pixel] == ink; });
+    if (!agree) unclear.insert(unclear.end(), regions[r].begin(), regions[r].end());
+    for (const size_t pixel : regions[r]) share.pixels[pixel] = ink;
+  }
+  look(unclear, seen, share, how);
 }
 
 std::int64_t count_disputed(const std::vector<std::uint8_t>& touched, const Image<float>& share) {

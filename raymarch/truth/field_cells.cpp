@@ -78,7 +78,7 @@ void descend(Walk& walk, FieldEvaluator& evaluator, int level, const glm::ivec3&
   }
   std::optional<FieldEvaluator> restricted;
   if (level % kRestrictEvery == 0 && evaluator.field().program().instructions.size() > 1) {
-    Field field = evaluator.restricted(box);
+    Field field = evaluator.restricted(dilate(box, kMarchReach * search.grid.side));
     if (&field.program() != &evaluator.field().program()) restricted.emplace(field);
   }
   for (int i = 0; i < 8; ++i) {
@@ -157,7 +157,7 @@ CellResult search_cells(const CellSearch& search, const ExecutionSettings& how) 
   tbb::parallel_for(size_t{0}, tasks.size(), [&](size_t i) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     FieldEvaluator whole(search.field);
-    FieldEvaluator evaluator(whole.restricted(box_of(search, task_level, tasks[i])));
+    FieldEvaluator evaluator(whole.restricted(dilate(box_of(search, task_level, tasks[i]), kMarchReach * search.grid.side)));
     descend(walks[i], evaluator, task_level, tasks[i], search.families);
   });
   CellResult result;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "raymarch/truth/field_cells.h"
 
@@ -80,6 +81,9 @@ class Assembly {
   std::vector<std::array<std::uint32_t, 2>> next_;
 };
 
+/// Where along a step a point between is looked for: beside a corner the middle may have none.
+constexpr std::array<double, 7> kShares = {0.5, 0.3, 0.7, 0.12, 0.88, 0.03, 0.97};
+
 struct Refiner {
   const Field& field;
   const Camera& camera;
@@ -106,7 +110,11 @@ double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::
 /// Points between a and b, in order, until the chord's error is well below the tolerance: the thinning has the rest.
 void halve(const Refiner& refiner, FieldEvaluator& evaluator, double c, const CurvePoint& a, const CurvePoint& b, double sagitta_px,
            int depth, Refined& out) {
-  const auto middle = point_between(evaluator, refiner.viewer, c, a, b, 0.5 * (a.p + b.p));
+  std::optional<CurvePoint> middle;
+  for (const double share : kShares) {
+    middle = point_between(evaluator, refiner.viewer, c, a, b, glm::mix(a.p, b.p, share));
+    if (middle) break;
+  }
   if (!middle) {
     ++out.unrefined;
     out.worst_px = std::max(out.worst_px, sagitta_px);
@@ -116,10 +124,10 @@ void halve(const Refiner& refiner, FieldEvaluator& evaluator, double c, const Cu
   if (glm::dot(point.uphill, a.uphill + b.uphill) < 0.0) point.uphill = a.uphill;
   const glm::dvec2 pa = image_of(refiner.camera, a.p), pb = image_of(refiner.camera, b.p), pm = image_of(refiner.camera, point.p);
   const double error = distance_to_segment(pm, pa, pb);
-  const bool again = depth > 0 && error > 0.5 * refiner.tolerance_px && glm::distance(a.p, b.p) > 1e-9 * refiner.extent;
-  if (again) halve(refiner, evaluator, c, a, point, 0.5 * error, depth - 1, out);
+  const bool again = depth > 0 && error > 0.5 * refiner.tolerance_px && glm::distance(pa, pb) > 2.0 * refiner.tolerance_px;
+  if (again) halve(refiner, evaluator, c, a, point, 0.5 * std::max(error, sagitta_px), depth - 1, out);
   out.points.push_back(point);
-  if (again) halve(refiner, evaluator, c, point, b, 0.5 * error, depth - 1, out);
+  if (again) halve(refiner, evaluator, c, point, b, 0.5 * std::max(error, sagitta_px), depth - 1, out);
 }
 
 double turn_at(const std::vector<glm::dvec2>& px, size_t before, size_t at, size_t after) {
@@ -145,7 +153,15 @@ std::vector<double> sagittas(const FieldCurve& curve, const Camera& camera) {
   return result;
 }
 
+/// Points that are off the curve are left to the refinement, where others remain to start from.
+void drop_rough(FieldCurve& curve) {
+  const auto rough = [](const CurvePoint& point) { return point.rough; };
+  const auto good = std::count_if(curve.points.begin(), curve.points.end(), std::not_fn(rough));
+  if (good >= 4) curve.points.erase(std::remove_if(curve.points.begin(), curve.points.end(), rough), curve.points.end());
+}
+
 void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
+  drop_rough(curve);
   const size_t n = curve.points.size();
   const std::vector<double> sagitta = sagittas(curve, refiner.camera);
   std::vector<Refined> between(sagitta.size());
@@ -155,7 +171,7 @@ void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
       const CurvePoint &a = curve.points[i], &b = curve.points[(i + 1) % n];
       const double length = glm::distance(a.p, b.p);
       if (sagitta[i] <= 0.5 * refiner.tolerance_px || length < 1e-9 * refiner.extent) continue;
-      const Box around = dilate(include(include(Box{}, a.p), b.p), 6.0 * length);
+      const Box around = dilate(include(include(Box{}, a.p), b.p), kFanReach * length);
       FieldEvaluator evaluator(whole.restricted(around));
       halve(refiner, evaluator, curve.c, a, b, sagitta[i], kDeepest, between[i]);
     }

@@ -13,7 +13,7 @@ namespace limn {
 struct FieldCurveSettings {
   double threshold = 0.4;  ///< 0: contour generators only.
   double tolerance_px = 0.005;
-  double cell_px = 3.0;    ///< Side of the finest cells, where the budget allows.
+  double cell_px = 4.0;    ///< Side of the finest cells, where the budget allows.
   int finest_level = 10;   ///< The budget: the domain's side is cut into at most two to this power.
   Box unbounded_domain{};  ///< What stands in for bounds that are infinite.
 };

@@ -73,7 +73,7 @@ TracedPoint point_on_step(const std::vector<Field>& fields, const Camera& camera
   const TracedPoint &a = curve.points[i], &b = curve.points[(i + 1) % curve.points.size()];
   const Field& field = fields[static_cast<size_t>(curve.object - 1)];
   FieldEvaluator whole(field);
-  const Box around = dilate(include(include(Box{}, a.p), b.p), 6.0 * glm::distance(a.p, b.p));
+  const Box around = dilate(include(include(Box{}, a.p), b.p), kFanReach * glm::distance(a.p, b.p));
   FieldEvaluator evaluator(whole.restricted(around));
   const double c = curve.kind == CurveKind::silhouette ? 0.0 : threshold;
   const glm::dvec3 chord_point = glm::mix(a.p, b.p, t);

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kBucketPx = 4.0;
 constexpr double kBeyondFramePx = 8.0;  // steps farther outside the picture are left out
-constexpr double kDepthSlack = 1e-6;
+// What is nearer by less (px, at its depth) is the same place, as where a level curve and a contour follow one crease.
+constexpr double kNearerPx = 0.05;
 
 struct Step {
   std::uint64_t bucket = 0;
@@ -39,15 +40,15 @@ void for_buckets(const Ends& step, const Camera& camera, const Visit& visit) {
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-/// The share of `step` at which `silhouette` crosses it, no farther away; negative where it does not.
-double crossing(const Ends& step, const Ends& silhouette) {
+/// The share of `step` at which `silhouette` crosses it, nearer to the eye; negative where it does not.
+double crossing(const Ends& step, const Ends& silhouette, const Camera& camera) {
   const glm::dvec2 d = step.b.px - step.a.px, e = silhouette.b.px - silhouette.a.px, between = silhouette.a.px - step.a.px;
   const double determinant = cross(d, e);
   if (determinant == 0.0) return -1.0;
   const double t = cross(between, e) / determinant, u = cross(between, d) / determinant;
   if (!(t >= 0.0 && t <= 1.0 && u >= 0.0 && u <= 1.0)) return -1.0;
   const double depth = glm::mix(step.a.depth, step.b.depth, t), nearer = glm::mix(silhouette.a.depth, silhouette.b.depth, u);
-  return nearer <= depth + kDepthSlack * std::fabs(depth) ? t : -1.0;
+  return nearer < depth - kNearerPx / pixels_per_unit_at(camera, depth) ? t : -1.0;
 }
 
 bool neighbours(size_t i, size_t j, size_t count) {
@@ -79,7 +80,7 @@ std::vector<std::vector<std::vector<double>>> image_crossings(const std::vector<
             std::lower_bound(silhouettes.begin(), silhouettes.end(), bucket, [](const Step& s, std::uint64_t b) { return s.bucket < b; });
         for (; other != silhouettes.end() && other->bucket == bucket; ++other) {
           if (other->curve == c && neighbours(other->index, i, count)) continue;
-          const double t = crossing(step, ends_of(curves[other->curve], other->index));
+          const double t = crossing(step, ends_of(curves[other->curve], other->index), camera);
           if (t >= 0.0) result[c][i].push_back(t);
         }
       });

@@ -112,19 +112,46 @@ std::optional<CurvePoint> polish(FieldEvaluator& evaluator, const Viewer& viewer
 }
 
 std::optional<SurfaceSample> Fan::at(FieldEvaluator& evaluator, const Viewer& viewer, double s) const {
-  const glm::dvec3 far = middle + s * side;
-  const double far_value = value_at(evaluator, far);
-  if (below(far_value, 0.0) == below(apex_value, 0.0)) return {};
-  return sample_surface(evaluator, viewer, root_between(evaluator, apex, far, apex_value, far_value));
+  // A sharp edge may reach through the far side: there the segment is followed beyond it.
+  for (const double reach : {1.0, 2.0, 4.0, 8.0}) {
+    const glm::dvec3 far = apex + reach * (middle + s * side - apex);
+    const double far_value = value_at(evaluator, far);
+    if (below(far_value, 0.0) == below(apex_value, 0.0)) continue;
+    return sample_surface(evaluator, viewer, root_between(evaluator, apex, far, apex_value, far_value));
+  }
+  return {};
 }
+
+namespace {
+
+/// Where the tangent planes at a and b meet in the fan's plane, as its parameter: near a crease, off by the square of the distance.
+double crease_guess(const Fan& fan, const SurfaceSample& a, const SurfaceSample& b) {
+  const glm::dvec3 to_middle = fan.middle - fan.apex, m = glm::cross(to_middle, fan.side);
+  const glm::dvec3 tangent = glm::cross(a.gradient, m);
+  const double share = glm::dot(b.gradient, b.p - a.p) / glm::dot(b.gradient, tangent);
+  const glm::dvec3 y = a.p + share * tangent - fan.apex;
+  return -glm::dot(glm::cross(y, to_middle), m) / glm::dot(glm::cross(y, fan.side), m);
+}
+
+/// The next parameter to try between sa and sb. Guesses overshoot a little towards the farther end, so that both ends come near.
+double next_parameter(const Fan& fan, double sa, double sb, const SurfaceSample& a, const SurfaceSample& b, double c, int step) {
+  const double width = std::fabs(sb - sa), middle = 0.5 * (sa + sb);
+  if (step < 3) return sa + std::clamp((c - a.facing) / (b.facing - a.facing), 0.1, 0.9) * (sb - sa);
+  if (step % 4 == 3) return middle;
+  const double guess = crease_guess(fan, a, b), away = std::max(0.1 * width * std::min(width, 1.0), 1e-13);
+  const double tried = guess + (guess < middle ? away : -away);
+  return tried > std::min(sa, sb) && tried < std::max(sa, sb) ? tried : middle;
+}
+
+}  // namespace
 
 std::optional<CurvePoint> bisect(FieldEvaluator& evaluator, const Viewer& viewer, double c, const Fan& fan, double sa, double sb,
                                  SurfaceSample a, SurfaceSample b, double smooth_reach) {
   const glm::dvec3 uphill = a.facing > b.facing ? a.p - b.p : b.p - a.p;
   const bool a_below = below(a.facing, c);
-  for (int step = 0; step < 60; ++step) {
-    // Three guided steps, then Newton; what Newton cannot finish is bisected, whatever it is.
-    const double guess = std::clamp((c - a.facing) / (b.facing - a.facing), 0.1, 0.9);
+  const double near = 1e-11 * (glm::length(a.p) + glm::length(fan.middle - fan.apex));
+  for (int step = 0; step < 80; ++step) {
+    // Three guided steps, then Newton; what Newton cannot finish is cut down, whatever it is.
     if (step == 3) {
       auto finished = polish(evaluator, viewer, c, a.p + (c - a.facing) / (b.facing - a.facing) * (b.p - a.p), smooth_reach);
       if (finished) {
@@ -132,12 +159,12 @@ std::optional<CurvePoint> bisect(FieldEvaluator& evaluator, const Viewer& viewer
         return finished;
       }
     }
-    const double s = step < 3 ? sa + guess * (sb - sa) : 0.5 * (sa + sb);
+    const double s = next_parameter(fan, sa, sb, a, b, c, step);
     const auto middle = fan.at(evaluator, viewer, s);
     if (!middle) return {};
     (below(middle->facing, c) == a_below ? a : b) = *middle;
     (below(middle->facing, c) == a_below ? sa : sb) = s;
-    if (step > 10 && glm::length(b.p - a.p) < 1e-13 * (glm::length(a.p) + glm::length(fan.middle - fan.apex))) break;
+    if (step > 3 && (glm::length(b.p - a.p) < near || std::fabs(sb - sa) < 1e-14)) break;
   }
   CurvePoint result;
   const SurfaceSample &high = a_below ? b : a, &low = a_below ? a : b;
@@ -149,6 +176,24 @@ std::optional<CurvePoint> bisect(FieldEvaluator& evaluator, const Viewer& viewer
   return result;
 }
 
+namespace {
+
+/// A fan of segments from inside the body (or, for a notch, from outside it) outwards along `way`, opened until the signs at its ends
+/// differ.
+std::optional<CurvePoint> search_fan(FieldEvaluator& evaluator, const Viewer& viewer, double c, const glm::dvec3& middle, double radius,
+                                     const glm::dvec3& way, const glm::dvec3& side) {
+  Fan fan{middle - radius * way, middle + radius * way, 2.0 * radius * side};
+  fan.apex_value = value_at(evaluator, fan.apex);
+  for (const double opening : {0.5, 1.0, 2.0}) {
+    const auto left = fan.at(evaluator, viewer, -opening), right = fan.at(evaluator, viewer, opening);
+    if (!left || !right || below(left->facing, c) == below(right->facing, c)) continue;
+    if (auto point = bisect(evaluator, viewer, c, fan, -opening, opening, *left, *right, 0.4 * radius)) return point;
+  }
+  return {};
+}
+
+}  // namespace
+
 std::optional<CurvePoint> point_between(FieldEvaluator& evaluator, const Viewer& viewer, double c, const CurvePoint& a, const CurvePoint& b,
                                         const glm::dvec3& middle) {
   const double length = glm::length(b.p - a.p);
@@ -159,19 +204,12 @@ std::optional<CurvePoint> point_between(FieldEvaluator& evaluator, const Viewer&
     const double place = point ? glm::dot(point->p - a.p, along) / length : -1.0;
     if (point && place > 0.0 && place < 1.0) return point;
   }
-  glm::dvec3 n = a.high + a.low + b.high + b.low;
-  n = unit(n - glm::dot(n, along) * along);
-  const glm::dvec3 u = glm::cross(along, n);
-  for (const double radius : {0.5 * length, 0.1 * length}) {
-    for (const double inward : {1.0, -1.0}) {
-      // A fan of segments from inside the body (or, for a notch, from outside), opened until the signs at its ends differ.
-      Fan fan{middle - inward * radius * n, middle + inward * radius * n, 2.0 * radius * u};
-      fan.apex_value = value_at(evaluator, fan.apex);
-      if (below(fan.apex_value, 0.0) != (inward > 0.0)) continue;
-      for (const double opening : {0.5, 1.0, 2.0, 4.0}) {
-        const auto left = fan.at(evaluator, viewer, -opening), right = fan.at(evaluator, viewer, opening);
-        if (!left || !right || below(left->facing, c) == below(right->facing, c)) continue;
-        auto point = bisect(evaluator, viewer, c, fan, -opening, opening, *left, *right, 0.2 * length);
+  const glm::dvec3 at_a = unit(a.high + a.low), at_b = unit(b.high + b.low);
+  for (const glm::dvec3& outward : {at_a + at_b, a.crease ? at_a : at_b, a.crease ? at_b : at_a}) {
+    const glm::dvec3 n = unit(outward - glm::dot(outward, along) * along);
+    for (const double radius : {0.5 * length, 0.1 * length}) {
+      for (const double inward : {1.0, -1.0}) {
+        auto point = search_fan(evaluator, viewer, c, middle, radius, inward * n, glm::cross(along, n));
         if (point && glm::length(point->p - middle) < length) return point;
       }
     }

@@ -31,6 +31,7 @@ struct CurvePoint {
   glm::dvec3 high{0.0}, low{0.0};
   double radial_curvature = std::numeric_limits<double>::quiet_NaN();
   bool crease = false;
+  bool rough = false;      ///< On the curve to within a cell only.
   glm::dvec3 uphill{0.0};  ///< From lower to higher N.V, across the curve; any length.
 };
 
@@ -42,7 +43,8 @@ std::optional<CurvePoint> polish(FieldEvaluator& evaluator, const Viewer& viewer
 
 /// A stretch of surface curve, as points over a parameter: bisects for the place where N.V crosses c.
 struct Fan {
-  glm::dvec3 apex, middle, side;  ///< Point(s) is the root of f on the segment from apex to middle + s * side.
+  glm::dvec3 apex, middle, side;  ///< Point(s) is the root of f on the segment from apex to middle + s * side,
+                                  ///< or up to eight times as far.
   double apex_value = 0.0;
   std::optional<SurfaceSample> at(FieldEvaluator& evaluator, const Viewer& viewer, double s) const;
 };
@@ -50,6 +52,8 @@ struct Fan {
 std::optional<CurvePoint> bisect(FieldEvaluator& evaluator, const Viewer& viewer, double c, const Fan& fan, double sa, double sb,
                                  SurfaceSample a, SurfaceSample b, double smooth_reach);
 
+/// So many lengths of the step around it does point_between() evaluate the field.
+inline constexpr double kFanReach = 18.0;
 /// The curve's point in the plane through `middle` across the step from a to b: both lie on the curve, not far apart.
 std::optional<CurvePoint> point_between(FieldEvaluator& evaluator, const Viewer& viewer, double c, const CurvePoint& a, const CurvePoint& b,
                                         const glm::dvec3& middle);

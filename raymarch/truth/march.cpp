@@ -86,6 +86,7 @@ class Marcher {
       point = *polished;
     } else {
       ++output_.rough;
+      point.rough = true;
       point.high = point.low = glm::normalize(start.gradient + end.gradient);
     }
     point.uphill = start.facing > end.facing ? start.p - end.p : end.p - start.p;

@@ -39,7 +39,9 @@ struct CellOutput {
   std::int64_t rough = 0;
 };
 
-/// True where a curve goes through the cell. `evaluator` need be right in the cell only. Cell indices below 2^19.
+/// So many cells around the marched one is the field evaluated.
+inline constexpr double kMarchReach = 7.5;
+/// True where a curve goes through the cell. `evaluator` need be right within kMarchReach of it. Cell indices below 2^19.
 bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
                 const std::array<double, kCurveFamilies>& levels, FamilyMask families, CellOutput& output);
 

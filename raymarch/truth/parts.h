@@ -72,7 +72,8 @@ struct Coverage {
   std::int64_t disputed = 0;  ///< Pairs of neighbours no curve touches, of different ink: a border that no curve accounts for.
 };
 
-/// The share of each pixel that is ink. Pixels without a curve are what their centre is; the others are cut into trapezoids at the curves,
+/// The share of each pixel that is ink. Regions of pixels without a curve are what their pixels' centres are (looked at
+/// on a lattice, all of them where those disagree); the others are cut into trapezoids at the curves,
 /// each being what the middle of it is: exact for polylines, so the error is that of the curves, about their bound times their length.
 Coverage coverage_of(const BorderCurves& border, int width_px, int height_px, const SeenInk& seen, const ExecutionSettings& how);
 

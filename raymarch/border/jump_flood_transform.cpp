@@ -1,5 +1,8 @@
-// Jump flooding over the silhouette's crossings. A pixel holds the offset from its centre to the nearest crossing known so far, two
-// 16-bit numbers of 1/32 px, so that one multiply-add makes the squared distance of a pixel, and four pixels fit a register.
+// Jump flooding over the silhouette's crossings. A pixel holds the offset from its centre to the nearest crossing known so far. Passes go
+// over blocks of pixels, and only over those that lie within reach and have a neighbour, at the pass's step, that knows a crossing.
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <array>
 #include <cstdlib>
@@ -7,42 +10,37 @@
 #include <limits>
 #include <memory>
 
+#include "raymarch/border/jump_flood_blocks.h"
+#include "raymarch/border/jump_flood_pass.h"
 #include "raymarch/border/picture_rows.h"
 #include "raymarch/border/silhouette.h"
-
-#if LIMN_SIMD && defined(__SSE2__)
-#include <emmintrin.h>
-#endif
 
 namespace limn {
 namespace {
 
-struct Offset {
-  std::int16_t x, y;
-};
-/// Farther than any reach, even after all steps have been added to it.
-constexpr Offset kUnknown{32767, 32767};
-bool known(Offset offset) { return offset.x != kUnknown.x || offset.y != kUnknown.y; }
-
-constexpr int kWideStep = 16;
 constexpr std::array<glm::ivec2, 8> kDirections{{{-1, 0}, {1, 0}, {-1, -1}, {0, -1}, {1, -1}, {-1, 1}, {0, 1}, {1, 1}}};
 
-/// A picture of offsets whose lines go on with unknown ones on both sides, so that no step has to look where the picture ends. In memory
-/// of somebody else.
-class OffsetLines {
+/// A picture of whole blocks with one more around it, so that reading beside an edge needs no test. In memory of somebody else.
+class OffsetPicture {
  public:
-  static size_t count(int width, int height, int margin) { return static_cast<size_t>(width + 2 * margin) * static_cast<size_t>(height); }
-  OffsetLines(int width, int margin, Offset* offsets)
-      : width_(static_cast<size_t>(width)), margin_(static_cast<size_t>(margin)), offsets_(offsets) {}
-  Offset* line(int y) { return offsets_ + static_cast<size_t>(y) * (width_ + 2 * margin_) + margin_; }
-  void clear_margins(int y) {
-    std::fill_n(line(y) - margin_, margin_, kUnknown);
-    std::fill_n(line(y) + width_, margin_, kUnknown);
+  static std::ptrdiff_t stride(const BlockFlags& blocks) {
+    const std::ptrdiff_t cache_lines = (blocks.columns + 2) * kBlockWidth_px / 16;
+    return 16 * (cache_lines | 1);  // odd: lines above each other fall on different sets of the caches
+  }
+  static size_t count(const BlockFlags& blocks) {
+    return static_cast<size_t>(stride(blocks)) * static_cast<size_t>((blocks.rows + 2) * kBlockHeight_px);
+  }
+  OffsetPicture(const BlockFlags& blocks, Offset* offsets)
+      : stride_(stride(blocks)), first_(offsets + kBlockHeight_px * stride_ + kBlockWidth_px) {}
+  Offset* at(int x, int y) { return first_ + y * stride_ + x; }
+  Offset* block(int column, int row) { return at(column * kBlockWidth_px, row * kBlockHeight_px); }
+  void forget_block(int column, int row) {
+    for (int y = 0; y < kBlockHeight_px; ++y) std::fill_n(block(column, row) + y * stride_, kBlockWidth_px, kUnknownOffset);
   }
 
  private:
-  size_t width_, margin_;
-  Offset* offsets_;
+  std::ptrdiff_t stride_;
+  Offset* first_;
 };
 
 /// The crossings about a pixel, in a fixed order: their offsets, and the pixels on their other sides.
@@ -79,7 +77,7 @@ Crossings crossings_about(const Silhouette& silhouette, int x, int y) {
 /// leaves out, so that few crossings are lost: the greater part of what jump flooding gets wrong otherwise.
 Offset first_crossing(const Silhouette& silhouette, int x, int y) {
   const Crossings own = crossings_about(silhouette, x, y);
-  if (own.count == 0) return kUnknown;
+  if (own.count == 0) return kUnknownOffset;
   const Offset nearest = own.offsets[static_cast<size_t>(own.nearest)];
   if (!silhouette.inside.at(x, y)) return nearest;
   Offset best = nearest;
@@ -97,14 +95,9 @@ Offset first_crossing(const Silhouette& silhouette, int x, int y) {
   return best;
 }
 
-/// A pixel that knows a crossing.
-struct Carrier {
-  int x, y;
-  Offset offset;
-};
-
-/// Most of a line is far from any crossing; eight pixels at a time are passed over.
-void first_crossings(const Silhouette& silhouette, int y, Offset* out, std::vector<Carrier>& carriers) {
+/// Most of a line is far from any crossing; eight pixels at a time are passed over. Writes pixels [x0, x1) of `out`, a line, where there is
+/// a crossing; returns whether there was one.
+bool first_crossings(const Silhouette& silhouette, int x0, int x1, int y, Offset* out) {
   const int width = silhouette.inside.width;
   const std::int8_t* right = &silhouette.to_right.at(0, y);
   const std::int8_t* down = &silhouette.downwards.at(0, y);
@@ -114,115 +107,86 @@ void first_crossings(const Silhouette& silhouette, int y, Offset* out, std::vect
     std::memcpy(&bits, eight, 8);
     return bits == ~std::uint64_t{0};  // kNoCrossing is -1
   };
-  for (int x = 0; x < width;) {
-    if (x + 8 <= width && none(right + x) && none(down + x) && none(up + x) && (x == 0 || right[x - 1] == kNoCrossing)) {
-      std::fill_n(out + x, 8, kUnknown);
+  bool any = false;
+  for (int x = x0; x < x1;) {
+    if (x + 8 <= x1 && none(right + x) && none(down + x) && none(up + x) && (x == 0 || right[x - 1] == kNoCrossing)) {
       x += 8;
-    } else {
-      out[x] = first_crossing(silhouette, x, y);
-      if (known(out[x])) carriers.push_back({x, y, out[x]});
-      ++x;
+      continue;
     }
+    out[x] = first_crossing(silhouette, x, y);
+    any = any || known(out[x]);
+    ++x;
   }
+  return any;
 }
 
-std::int32_t square(Offset offset) { return std::int32_t{offset.x} * offset.x + std::int32_t{offset.y} * offset.y; }
+struct Block {
+  int column, row;
+};
 
-std::int16_t add_saturated(std::int16_t a, int b) { return static_cast<std::int16_t>(std::clamp(a + b, -32768, 32767)); }
-
-/// One line of one pass: the pixel's own offset and those of its eight neighbours at distance `step`, moved by it; the shortest stays.
-/// Ties go to the first: the own, then the neighbours in order.
-void flood_line(const std::array<const Offset*, 3>& lines, int width, int step, Offset* out) {
-  std::array<const Offset*, 8> from;
-  std::array<glm::ivec2, 8> move;
-  for (size_t k = 0; k < 8; ++k) {
-    from[k] = lines[static_cast<size_t>(kDirections[k].y + 1)] + kDirections[k].x * step;
-    move[k] = kDirections[k] * step * kSubPixels;
-  }
-  int x = 0;
-#if LIMN_SIMD && defined(__SSE2__)
-  struct Packed {
-    __m128i value;
-  };
-  std::array<Packed, 8> moves;
-  for (size_t k = 0; k < 8; ++k) {
-    moves[k].value =
-        _mm_set1_epi32(static_cast<int>((static_cast<std::uint32_t>(move[k].x) & 0xffffu) | (static_cast<std::uint32_t>(move[k].y) << 16)));
-  }
-  for (; x + 4 <= width; x += 4) {
-    __m128i best = _mm_loadu_si128(reinterpret_cast<const __m128i*>(lines[1] + x));
-    __m128i best_square = _mm_madd_epi16(best, best);
-    for (size_t k = 0; k < 8; ++k) {
-      const __m128i offer = _mm_adds_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from[k] + x)), moves[k].value);
-      const __m128i offer_square = _mm_madd_epi16(offer, offer);
-      const __m128i nearer = _mm_cmplt_epi32(offer_square, best_square);
-      best_square = _mm_xor_si128(best_square, _mm_and_si128(nearer, _mm_xor_si128(best_square, offer_square)));
-      best = _mm_xor_si128(best, _mm_and_si128(nearer, _mm_xor_si128(best, offer)));
-    }
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(out + x), best);
-  }
-#endif
-  for (; x < width; ++x) {
-    Offset best = lines[1][x];
-    for (size_t k = 0; k < 8; ++k) {
-      const Offset offer{add_saturated(from[k][x].x, move[k].x), add_saturated(from[k][x].y, move[k].y)};
-      if (square(offer) < square(best)) best = offer;
-    }
-    out[x] = best;
-  }
-}
-
-/// A pass the other way round, from the pixels that know a crossing to their neighbours, in place: before the first of the wide steps
-/// there are few of them. Wide outlines thus cost little more than narrow ones.
-void scatter(int step, int width, int height, OffsetLines& offsets, std::vector<Carrier>& carriers) {
-  std::vector<Carrier> reached;
-  for (const Carrier& carrier : carriers) {
-    for (const glm::ivec2& direction : kDirections) {
-      const int x = carrier.x + direction.x * step, y = carrier.y + direction.y * step;
-      if (x < 0 || x >= width || y < 0 || y >= height) continue;
-      Offset& own = offsets.line(y)[x];
-      const Offset offer{add_saturated(carrier.offset.x, -direction.x * step * kSubPixels),
-                         add_saturated(carrier.offset.y, -direction.y * step * kSubPixels)};
-      if (square(offer) >= square(own)) continue;
-      if (!known(own)) reached.push_back({x, y, offer});
-      own = offer;
-    }
-  }
-  carriers.insert(carriers.end(), reached.begin(), reached.end());
-  for (Carrier& carrier : carriers) carrier.offset = offsets.line(carrier.y)[carrier.x];
-}
-
-/// A pass in which every pixel looks at its neighbours.
-void gather(int step, int width, int height, OffsetLines& from, OffsetLines& to) {
-  const std::vector<Offset> beyond(static_cast<size_t>(width + 2 * step), kUnknown);
-  const auto line = [&](int y) -> const Offset* { return y >= 0 && y < height ? from.line(y) : beyond.data() + step; };
-  const auto flood = [&](int y) { flood_line({line(y - step), line(y), line(y + step)}, width, step, to.line(y)); };
-  if (step < 8) {
-    for_each_band(height, [&](int y0, int y1) {
-      for (int y = y0; y < y1; ++y) flood(y);
-    });
-  } else {
-    // Lines `step` apart share two of the three that they read: taken one after the other, each is fetched once.
-    tbb::parallel_for(0, step, [&](int first) {
-      for (int y = first; y < height; y += step) flood(y);
-    });
-  }
-}
-
-/// Every pixel's first offset; returns the pixels that have one, in order.
-std::vector<Carrier> start(const Silhouette& silhouette, OffsetLines& from, OffsetLines& to) {
-  const int height = silhouette.inside.height;
-  std::vector<std::vector<Carrier>> of_bands(static_cast<size_t>(height / kBandRows + 1));
-  for_each_band(height, [&](int y0, int y1) {
-    for (int y = y0; y < y1; ++y) {
-      from.clear_margins(y);
-      to.clear_margins(y);
-      first_crossings(silhouette, y, from.line(y), of_bands[static_cast<size_t>(y0 / kBandRows)]);
-    }
+template <class Work>
+void for_each_block(const std::vector<Block>& blocks, const Work& work) {
+  constexpr size_t together = 16;
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, blocks.size(), together), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) work(blocks[i]);
   });
-  std::vector<Carrier> carriers;
-  for (const auto& band : of_bands) carriers.insert(carriers.end(), band.begin(), band.end());
-  return carriers;
+}
+
+/// Every pixel's first offset, and unknown ones in all that will be read; returns the blocks in which some are known.
+BlockFlags start(const Silhouette& silhouette, const BlockFlags& beside, const BlockFlags& active, OffsetPicture& from, OffsetPicture& to) {
+  const int width = silhouette.inside.width, height = silhouette.inside.height;
+  BlockFlags knowing(beside.columns, beside.rows);
+  std::vector<Block> read;
+  for (int row = -1; row <= active.rows; ++row) {
+    for (int column = -1; column <= active.columns; ++column) {
+      if (active.any(column - 1, row - 1, column + 1, row + 1)) read.push_back({column, row});
+    }
+  }
+  for_each_block(read, [&](const Block& block) {
+    from.forget_block(block.column, block.row);
+    to.forget_block(block.column, block.row);
+    if (!beside.any(block.column, block.row, block.column, block.row)) return;
+    const int x0 = block.column * kBlockWidth_px, y0 = block.row * kBlockHeight_px;
+    bool any = false;
+    for (int y = y0; y < std::min(height, y0 + kBlockHeight_px); ++y) {
+      any |= first_crossings(silhouette, x0, std::min(width, x0 + kBlockWidth_px), y, from.at(0, y));
+    }
+    knowing.flags[knowing.index(block.column, block.row)] = any;
+  });
+  return knowing;
+}
+
+/// Where the neighbours of a block's pixels lie, in blocks from it.
+struct SourceBlocks {
+  int column0, column1, row0, row1;
+};
+
+SourceBlocks source_blocks(const glm::ivec2& shift_px) {
+  const auto floor_divide = [](int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); };
+  return {floor_divide(shift_px.x, kBlockWidth_px), floor_divide(shift_px.x + kBlockWidth_px - 1, kBlockWidth_px),
+          floor_divide(shift_px.y, kBlockHeight_px), floor_divide(shift_px.y + kBlockHeight_px - 1, kBlockHeight_px)};
+}
+
+/// One pass over the blocks, of which `knowing` says whether they know a crossing, before and after.
+void pass(int step, const std::vector<Block>& blocks, FloodBlock flood, OffsetPicture& from, OffsetPicture& to, BlockFlags& knowing) {
+  const BlockFlags before = knowing;
+  std::array<SourceBlocks, 8> offsets;
+  for (size_t k = 0; k < 8; ++k) offsets[k] = source_blocks(kDirections[k] * step);
+  for_each_block(blocks, [&](const Block& block) {
+    const int column = block.column, row = block.row;
+    BlockSources sources;
+    for (size_t k = 0; k < 8; ++k) {
+      const SourceBlocks& at = offsets[k];
+      if (!before.any(column + at.column0, row + at.row0, column + at.column1, row + at.row1)) continue;
+      const auto i = static_cast<size_t>(sources.count++);
+      const glm::ivec2 shift = kDirections[k] * step;
+      sources.from[i] = from.at(column * kBlockWidth_px + shift.x, row * kBlockHeight_px + shift.y);
+      sources.move[i] = {static_cast<std::int16_t>(shift.x * kSubPixels), static_cast<std::int16_t>(shift.y * kSubPixels)};
+    }
+    if (sources.count == 0 && !before.at(column, row)) return;  // unknown in both pictures, as it was at the start
+    flood(from.block(column, row), sources, to.at(0, 1) - to.at(0, 0), to.block(column, row));
+    knowing.flags[knowing.index(column, row)] = 1;
+  });
 }
 
 std::vector<int> steps_for(int reach_px, int extra_passes) {
@@ -234,40 +198,46 @@ std::vector<int> steps_for(int reach_px, int extra_passes) {
   return steps;
 }
 
-}  // namespace
-
-Image<std::int32_t> jump_flood_squares(const Silhouette& silhouette, int reach_px, int extra_passes) {
-  LIMN_CHECK(reach_px >= 0 && reach_px <= kLargestReach_px && extra_passes >= 0 && extra_passes <= 2);
-  const int width = silhouette.inside.width, height = silhouette.inside.height;
-  Image<std::int32_t> squares(width, height, kFarSquared);
-  if (silhouette.crossings == 0) return squares;
-  const std::vector<int> steps = steps_for(reach_px, extra_passes);
-  const int margin = steps.front();
-  const size_t count = OffsetLines::count(width, height, margin);
-  const std::unique_ptr<Offset[]> memory(new Offset[2 * count]);  // not initialised: every line is written before it is read
-  OffsetLines from(width, margin, memory.get()), to(width, margin, memory.get() + count);
-  std::vector<Carrier> carriers = start(silhouette, from, to);
-  bool few = true;
-  for (const int step : steps) {
-    few = few && step >= kWideStep && carriers.size() < squares.size() / 128;
-    if (few) {
-      scatter(step, width, height, from, carriers);
-      continue;
-    }
-    gather(step, width, height, from, to);
-    std::swap(from, to);
-  }
+void write_squares(const std::vector<Block>& blocks, OffsetPicture& offsets, int reach_px, Image<std::int32_t>& squares) {
   const std::int32_t largest = reach_px * reach_px * kSubPixels * kSubPixels;
-  for_each_band(height, [&](int y0, int y1) {
-    for (int y = y0; y < y1; ++y) {
-      const Offset* offsets = from.line(y);
-      std::int32_t* out = &squares.at(0, y);
-      for (int x = 0; x < width; ++x) {
-        const std::int32_t distance = square(offsets[x]);
+  for_each_block(blocks, [&](const Block& block) {
+    const int x0 = block.column * kBlockWidth_px, y0 = block.row * kBlockHeight_px, count = std::min(kBlockWidth_px, squares.width - x0);
+    for (int y = y0; y < std::min(squares.height, y0 + kBlockHeight_px); ++y) {
+      const Offset* own = offsets.at(x0, y);
+      std::int32_t* out = &squares.at(x0, y);
+      for (int x = 0; x < count; ++x) {
+        const std::int32_t distance = square(own[x]);
         out[x] = distance <= largest ? distance : kFarSquared;
       }
     }
   });
+}
+
+}  // namespace
+
+Image<std::int32_t> jump_flood_squares(const Silhouette& silhouette, int reach_px, int extra_passes) {
+  LIMN_CHECK(reach_px >= 0 && reach_px <= kLargestReach_px && extra_passes >= 0 && extra_passes <= 2);
+  Image<std::int32_t> squares(silhouette.inside.width, silhouette.inside.height, kFarSquared);
+  if (silhouette.crossings == 0) return squares;
+  const BlockFlags beside = blocks_beside_crossings(silhouette);
+  // A crossing lies up to a pixel from the pixels beside it.
+  const BlockFlags active = within_reach(beside, reach_px + 1);
+  std::vector<Block> blocks;
+  for (int row = 0; row < active.rows; ++row) {
+    for (int column = 0; column < active.columns; ++column) {
+      if (active.at(column, row)) blocks.push_back({column, row});
+    }
+  }
+  const size_t count = OffsetPicture::count(active);
+  const std::unique_ptr<Offset[]> memory(new Offset[2 * count]);  // not initialised: all that is read is written first
+  OffsetPicture from(active, memory.get()), to(active, memory.get() + count);
+  BlockFlags knowing = start(silhouette, beside, active, from, to);
+  const FloodBlock flood = flood_kernels().back().flood;
+  for (const int step : steps_for(reach_px, extra_passes)) {
+    pass(step, blocks, flood, from, to, knowing);
+    std::swap(from, to);
+  }
+  write_squares(blocks, from, reach_px, squares);
   return squares;
 }
 

@@ -126,33 +126,38 @@ OutlineBand outline_band(const Parameters& parameters) {
 
 namespace {
 
-/// Squared distances from..to have full ink: most of a wide outline, and no root is needed for it.
-struct FullInk {
-  double from, to;
+/// Squared distances full_from..full_to have full ink, those beyond none_beyond have none: most of a wide outline and of what lies on the
+/// other side of the silhouette, and no root is needed for either.
+struct PlainInk {
+  double full_from, full_to, none_beyond;
 };
 
-FullInk full_ink(const OutlineBand& band, double sign) {
+PlainInk plain_ink(const OutlineBand& band, double sign) {
   const double half = 0.5 * band.softness_px;
   const double low = band.side == OutlineSide::outside ? 0.0 : band.side == OutlineSide::inside ? -band.width_px : -0.5 * band.width_px;
   const double high = low + band.width_px;
   const double nearest = (sign > 0.0 ? low : -high) + half, farthest = (sign > 0.0 ? high : -low) - half;
   const auto squared = [](double distance_px) { return distance_px * distance_px * kSubPixels * kSubPixels; };
-  if (farthest < 0.0 || nearest > farthest) return {1.0, 0.0};
-  return {nearest > 0.0 ? squared(nearest) : 0.0, squared(farthest)};
+  // Farther than rounding to float can move a distance, so that what is passed over would have had no ink.
+  constexpr double margin_px = 0.01;
+  const double beyond = squared(std::max(0.0, (sign > 0.0 ? high : -low) + half) + margin_px);
+  if (farthest < 0.0 || nearest > farthest) return {1.0, 0.0, beyond};
+  return {nearest > 0.0 ? squared(nearest) : 0.0, squared(farthest), beyond};
 }
 
 }  // namespace
 
 Image<float> ink_band(const Silhouette& silhouette, const Image<std::int32_t>& squares, const OutlineBand& band) {
   Image<float> ink(squares.width, squares.height, 0.0f);
-  const FullInk full[2] = {full_ink(band, 1.0), full_ink(band, -1.0)};
+  const PlainInk plain[2] = {plain_ink(band, 1.0), plain_ink(band, -1.0)};
   const bool soft = band.softness_px > 0.0;
   for_each_band(squares.height, [&](int y0, int y1) {
     for (size_t i = squares.index(0, y0); i < squares.index(0, y1); ++i) {
       const std::int32_t square = squares.pixels[i];
       if (square == kFarSquared) continue;
       const std::uint8_t inside = silhouette.inside.pixels[i];
-      if (soft && square >= full[inside].from && square <= full[inside].to) {
+      if (square > plain[inside].none_beyond) continue;
+      if (soft && square >= plain[inside].full_from && square <= plain[inside].full_to) {
         ink.pixels[i] = 1.0f;
         continue;
       }

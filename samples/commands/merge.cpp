@@ -5,6 +5,7 @@
 #include "samples/commands/command.h"
 #include "samples/output.h"
 #include "samples/study/folder.h"
+#include "samples/study/summary.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -55,8 +56,7 @@ int run(const Options& options) {
     for (const fs::path& file : files) document["files"].push_back(file.string());
     print_json(document);
   } else if (!options.quiet) {
-    print_text(fmt::format("{} of {} cells from {} folders, {} failed\n{}\n", merged.rows.size(), merged.record.head.cells, parts.size(),
-                           failed_cells(merged), (folder / "report.html").string()));
+    print_text(summary_text(merged) + (folder / "report.html").string() + "\n" + (folder / "rows.csv").string() + "\n");
   }
   return missing.empty() ? 0 : 1;
 }

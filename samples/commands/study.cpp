@@ -8,6 +8,7 @@
 #include "samples/study/folder.h"
 #include "samples/study/run.h"
 #include "samples/study/shard.h"
+#include "samples/study/summary.h"
 #include "samples/threads.h"
 #include "sdf/error.h"
 
@@ -88,8 +89,8 @@ void print_result(const Options& options, const Place& place, const StudyFolder&
     return;
   }
   if (options.quiet) return;
-  std::string text = fmt::format("{} cells{}\n", cells, failed > 0 ? fmt::format(", {} failed", failed) : "");
-  text += "truth: " + held.record.head.truth + "\n";
+  std::string text =
+      place.is_part ? fmt::format("{} cells{}\n", cells, failed > 0 ? fmt::format(", {} failed", failed) : "") : summary_text(held);
   text += place.is_part ? place.final.string() + "\n"
                         : (place.final / "report.html").string() + "\n" + (place.final / "rows.csv").string() + "\n";
   print_text(text);
@@ -127,6 +128,7 @@ StudyFolder do_cells(const Options& options, const Study& study, const Place& pl
   if (!options.quiet) announce(study, work, cells.size() - work.cells.size(), ledger);
   run_cells(work, ledger, held.record, held.rows, bar);
   bar.clear();
+  if (options.verbose) print_note(ledger.text());
   return held;
 }
 

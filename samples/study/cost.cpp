@@ -1,5 +1,7 @@
 #include "samples/study/cost.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "raymarch/surface/level_set_marcher.h"
@@ -12,10 +14,14 @@
 namespace limn {
 namespace {
 
-// Milliseconds and bytes of the parts, measured on two cores of 2023 over the built-in scenes; see growth in expected_cost.
-constexpr double kFaceMs = 1.6e-3, kFieldFaceMs = 4e-3, kFaceBytes = 190.0;
-constexpr double kVoxelMs = 2.5e-4, kMeshVoxelMs = 1.2e-3, kVoxelBytes = 9.0;
-constexpr double kMeshRayMs = 4e-4, kGridRayMs = 6e-4, kFieldRayMs = 8e-4;
+// Milliseconds and bytes of the parts, fitted to the built-in scenes on two cores. Memory is what building takes, not what is left of it.
+constexpr double kModelMs = 5.0, kFaceMs = 2e-3, kFieldFaceMs = 4e-3, kFieldFaceTermMs = 4e-4, kFaceBytes = 600.0;
+constexpr double kVoxelMs = 2.5e-4, kMeshVoxelMs = 1.2e-3, kVoxelBytes = 12.0, kGridBytes = 2.5e6;
+constexpr double kPictureMs = 3.0, kMeshRayMs = 3e-5, kGridRayMs = 1.6e-4, kFieldRayMs = 2e-4;
+/// What a further term adds to a field's cost, as a share of the first: most are skipped by bounds.
+constexpr double kTermShare = 0.1;
+/// Expected milliseconds that a kind of work must have done before its own speed counts more than what was thought of it.
+constexpr double kTrustMs = 200.0;
 
 double area_of(const Mesh& mesh) {
   double area = 0.0;
@@ -35,6 +41,7 @@ SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& sett
   const Box box = bounds(object);
   if (box.finite()) size.longest_side = box.longest_side();
   if (const auto* field = std::get_if<Field>(&object.source)) {
+    size.is_field = true;
     size.terms = terms_of(*field);
     if (!box.finite()) return size;
     const Mesh cage = cage_of(*field);
@@ -67,10 +74,11 @@ double voxels_of(const SceneSize::Object& object, const SurfaceSettings& setting
   return std::min(2.0 * half_width * object.area / (voxel * voxel), side * side * side);
 }
 
+double terms_factor(const SceneSize::Object& object) { return 1.0 + kTermShare * (object.terms - 1.0); }
+
 void add_mesh(const SceneSize::Object& object, const SurfaceSettings& settings, double pixels, bool traced, ExpectedCost& cost) {
   const double faces = faces_of(object, settings.level);
-  const bool field = object.refines && object.terms > 0.0 && object.own_voxels == 0.0;
-  cost.build_ms += faces * (kFaceMs + (field ? kFieldFaceMs * (object.terms - 1.0) * 0.1 : 0.0));
+  cost.build_ms += kModelMs + faces * (object.is_field ? kFieldFaceMs + kFieldFaceTermMs * (object.terms - 1.0) : kFaceMs);
   cost.bytes += static_cast<std::int64_t>(faces * kFaceBytes);
   if (traced) cost.trace_ms += pixels * kMeshRayMs * (1.0 + 0.05 * std::log2(1.0 + faces));
 }
@@ -78,10 +86,11 @@ void add_mesh(const SceneSize::Object& object, const SurfaceSettings& settings, 
 void add_grid(const SceneSize::Object& object, const SurfaceSettings& settings, double pixels, double voxel_ms, ExpectedCost& cost) {
   const GradientDescriptor& gradient = find_gradient(settings.gradient);
   const double half_width = std::max(settings.half_width_voxels, std::max(gradient.half_width_voxels, 1.8));
-  const double voxels = object.own_voxels > 0.0 ? object.own_voxels : voxels_of(object, settings, half_width);
-  if (object.own_voxels == 0.0) cost.build_ms += voxels * voxel_ms;
-  cost.bytes += static_cast<std::int64_t>(voxels * kVoxelBytes);
-  cost.trace_ms += pixels * kGridRayMs * (gradient.order >= 3 ? 2.0 : 1.0);
+  const bool loaded = object.own_voxels > 0.0;
+  const double voxels = loaded ? object.own_voxels : voxels_of(object, settings, half_width);
+  if (!loaded) cost.build_ms += kModelMs + voxels * voxel_ms;
+  cost.bytes += static_cast<std::int64_t>(kGridBytes + voxels * kVoxelBytes);
+  cost.trace_ms += pixels * kGridRayMs * (gradient.order >= 3 ? 1.5 : 1.0);
 }
 
 }  // namespace
@@ -100,14 +109,15 @@ double faces_at_level(const SceneSize& size, int level) {
 
 ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& settings, double pixels) {
   ExpectedCost cost;
+  cost.trace_ms = kPictureMs;
   // Rays that pass an object by cost little: the picture is shared by the objects.
   const double share = pixels / std::max<double>(1.0, std::sqrt(static_cast<double>(size.objects.size())));
   for (const SceneSize::Object& object : size.objects) {
     std::string kind = settings.kind;
     if (kind.empty()) kind = object.own_voxels > 0.0 ? "level_set" : object.faces > 0.0 ? "mesh" : "analytic";
-    if (kind == "analytic") cost.trace_ms += share * kFieldRayMs * object.terms;
+    if (kind == "analytic") cost.trace_ms += share * kFieldRayMs * terms_factor(object);
     if (kind == "mesh") add_mesh(object, settings, share, true, cost);
-    if (kind == "level_set") add_grid(object, settings, share, kVoxelMs * object.terms, cost);
+    if (kind == "level_set") add_grid(object, settings, share, kVoxelMs * terms_factor(object), cost);
     if (kind == "mesh_level_set") {
       SceneSize::Object remeshed = object;
       remeshed.own_voxels = 0.0;
@@ -118,8 +128,8 @@ ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& setting
   return cost;
 }
 
-double Study::measure_ms() const { return 40.0 + pixels() * 1.2e-3; }
-double Study::truth_ms() const { return 300.0 + pixels() * 2e-3; }
+double Study::measure_ms() const { return 10.0 + pixels() * 1.5e-4; }
+double Study::truth_ms() const { return 100.0 + pixels() * 1e-3; }
 
 void CostLedger::learn(const std::string& kind, double expected_ms, double took_ms) {
   Entry& entry = entries_[kind];
@@ -139,16 +149,15 @@ void CostLedger::drop(const std::string& kind, double expected_ms) {
 }
 
 double CostLedger::remaining_ms() const {
-  double expected = 0.0, took = 0.0;
+  double expected = kTrustMs, took = kTrustMs;
   for (const auto& [kind, entry] : entries_) {
     expected += entry.expected_ms;
     took += entry.took_ms;
   }
-  const double overall = expected > 0.0 ? took / expected : 1.0;
+  const double overall = took / expected;
   double remaining = 0.0;
-  for (const auto& [kind, entry] : entries_) {
-    remaining += entry.left_ms * (entry.expected_ms > 0.0 ? entry.took_ms / entry.expected_ms : overall);
-  }
+  for (const auto& [kind, entry] : entries_)
+    remaining += entry.left_ms * (entry.took_ms + overall * kTrustMs) / (entry.expected_ms + kTrustMs);
   return remaining;
 }
 
@@ -156,6 +165,15 @@ double CostLedger::spent_ms() const {
   double spent = 0.0;
   for (const auto& [kind, entry] : entries_) spent += entry.spent_ms;
   return spent;
+}
+
+std::string CostLedger::text() const {
+  std::string text;
+  for (const auto& [kind, entry] : entries_) {
+    if (entry.spent_ms == 0.0) continue;
+    text += fmt::format("{}{} {} (expected {})", text.empty() ? "" : "; ", kind, time_text(entry.took_ms), time_text(entry.expected_ms));
+  }
+  return text;
 }
 
 }  // namespace limn

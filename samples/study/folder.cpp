@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "samples/study/summary.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -68,17 +69,12 @@ StudyFolder open_folder(const fs::path& folder, const StudyRecord& record, bool 
 
 std::vector<fs::path> finish_folder(const fs::path& folder, const StudyFolder& done, bool with_report) {
   std::vector<std::string> keys;
-  std::vector<StudyRow> rows;
-  for (const PlannedCell& cell : done.record.cells) {
-    keys.push_back(cell.key);
-    const auto found = done.rows.find(cell.key);
-    if (found != done.rows.end()) rows.insert(rows.end(), found->second.begin(), found->second.end());
-  }
+  for (const PlannedCell& cell : done.record.cells) keys.push_back(cell.key);
   write_cells(done.rows, keys, folder);
   write_record(done.record, folder);
   std::vector<fs::path> files = {folder / "rows.csv", folder / "rows.jsonl", record_file(folder)};
   if (!with_report) return files;
-  const std::vector<fs::path> report = write_study_report(done.record.head, rows, folder);
+  const std::vector<fs::path> report = write_study_report(done.record.head, rows_in_order(done), folder);
   files.insert(files.end(), report.begin(), report.end());
   return files;
 }

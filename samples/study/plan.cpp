@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kDefaultViews = 4, kDefaultLongestSide_px = 640;
 constexpr int kDefaultFinestLevel = 5;
-constexpr double kDefaultFaces = 200'000.0;  ///< No level beyond is a default.
+constexpr double kDefaultFaces = 200'000.0, kDefaultBuild_ms = 4000.0;  ///< No level beyond is a default.
 
 /// What a study varies, resolved.
 struct Axes {
@@ -55,7 +55,12 @@ Axes resolve_axes(const Options& options, const Scene& scene, const SurfaceSetti
   axes.levels = options.study.levels;
   if (refines && axes.levels.empty()) {
     axes.levels.push_back(0);
-    for (int level = 1; level <= kDefaultFinestLevel && faces_at_level(size, level) <= kDefaultFaces; ++level) axes.levels.push_back(level);
+    SurfaceSettings mesh = settings;
+    mesh.kind = "mesh";
+    for (mesh.level = 1; mesh.level <= kDefaultFinestLevel && faces_at_level(size, mesh.level) <= kDefaultFaces; ++mesh.level) {
+      if (expected_cost(size, mesh, 0.0).build_ms > kDefaultBuild_ms) break;
+      axes.levels.push_back(mesh.level);
+    }
   }
   if (!refines) axes.levels.clear();
   axes.voxels = options.study.voxels.empty() ? std::vector<int>{16, 32, 64, 128, 256} : options.study.voxels;
@@ -198,12 +203,10 @@ void plan_reference(const Options& options, const SceneInput& input, SurfaceSett
   study.reference_words = comparison.reference_words;
   const bool as_fine = any_cage(study.scene, settings) && !axes.levels.empty() && study.reference.level <= axes.levels.back();
   if (as_fine && study.reference.level < 8) ++study.reference.level;
-  study.reference_cost = expected_cost(size, study.reference, study.pixels());
-  if (!as_fine) return;
-  if (study.reference_cost.bytes > settings.max_bytes / 4 && study.reference.level > axes.levels.back()) {
-    --study.reference.level;
-    study.reference_cost = expected_cost(size, study.reference, study.pixels());
-  }
+  const auto cost = [&] { return expected_cost(size, study.reference, study.pixels()); };
+  while (any_cage(study.scene, settings) && study.reference.level > 0 && cost().bytes > settings.max_bytes / 2) --study.reference.level;
+  study.reference_cost = cost();
+  if (!any_cage(study.scene, settings) || !all_cages(study.scene, settings)) return;
   study.reference_words =
       fmt::format("the limit surface (the cage refined {} times, its vertices and normals on the limit)", study.reference.level);
 }

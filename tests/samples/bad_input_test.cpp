@@ -37,6 +37,7 @@ TEST_P(BadFiles, AreRefusedInOneLineAndNothingIsWritten) {
   expect_refused(run_limn({"render", input, "--size", "32x24", "-o", folder.file("kept.png")}, folder.path()), GetParam().hint);
   expect_refused(run_limn({"compare", input, "--size", "32x24", "--voxels", "16"}, folder.path()), GetParam().hint);
   expect_refused(run_limn({"export", input, "--voxels", "16"}, folder.path()), GetParam().hint);
+  expect_refused(run_limn({"study", input, "--size", "32x24", "--voxels", "16"}, folder.path()), GetParam().hint);
   EXPECT_EQ(folder.files(), before);
   EXPECT_EQ(read_bytes(folder.path() / "kept.png"), "old picture");
 }
@@ -156,6 +157,7 @@ TEST(BadInput, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
   expect_refused(run_limn({"render", "ellipsoid", "-o", "/proc/limn/a.png"}), "/proc");
   expect_refused(run_limn({"export", "ellipsoid", "-o", folder.file("a.png")}), ".obj");
   expect_refused(run_limn({"compare", "ellipsoid", "-o", folder.file("file")}), "folder");
+  expect_refused(run_limn({"study", "ellipsoid", "-o", folder.file("file")}), "folder");
   EXPECT_EQ(folder.files(), std::vector<std::string>{"file"});
 }
 

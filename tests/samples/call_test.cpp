@@ -11,13 +11,13 @@ TEST(Call, AloneItPrintsUsageAndSucceeds) {
   const RunResult result = run_limn({});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_TRUE(result.err.empty()) << result.err;
-  for (const char* command : {"render", "compare", "export", "info", "list"})
+  for (const char* command : {"render", "compare", "study", "plan", "export", "info", "merge", "list"})
     EXPECT_NE(result.out.find(command), std::string::npos) << command;
   EXPECT_EQ(run_limn({"--help"}).out, result.out);
 }
 
 TEST(Call, HelpOfEveryCommandHasGroupsDefaultsAndAnExample) {
-  for (const std::string command : {"render", "compare", "export", "info", "list"}) {
+  for (const std::string command : {"render", "compare", "study", "plan", "export", "info", "merge", "list"}) {
     const RunResult result = run_limn({command, "--help"});
     EXPECT_EQ(result.exit_code, 0) << command;
     EXPECT_TRUE(result.err.empty()) << result.err;
@@ -34,6 +34,8 @@ TEST(Call, AnOptionWithoutMeaningForACommandDoesNotExistThere) {
   EXPECT_EQ(run_limn({"info", "ellipsoid", "--fov", "30"}).exit_code, 2);
   EXPECT_EQ(run_limn({"compare", "ellipsoid", "--views", "3"}).exit_code, 2);
   EXPECT_EQ(run_limn({"export", "ellipsoid", "--samples", "3"}).exit_code, 2);
+  EXPECT_EQ(run_limn({"study", "ellipsoid", "--samples", "3"}).exit_code, 2);
+  EXPECT_EQ(run_limn({"merge", "part", "--views", "3"}).exit_code, 2);
 }
 
 TEST(Call, VersionNamesTheLibraries) {
@@ -82,6 +84,16 @@ INSTANTIATE_TEST_SUITE_P(
         Slip{{"render", "ellipsoid", "--samples", "0"}, "1 to 1024"}, Slip{{"render", "ellipsoid", "--half-width", "1"}, "1.8"},
         Slip{{"render", "ellipsoid", "--voxel-size", "-1"}, "above 0"}, Slip{{"render", "ellipsoid", "--threads", "few"}, "whole number"},
         Slip{{"render", "ellipsoid", "--grid", "x"}, ".vdb"}, Slip{{"render", "ellipsoid", "--eye", "0,0,5", "--target", "0,0,5"}, "--eye"},
+        Slip{{"study", "ellipsoid", "--levels", "0..9"}, "0 to 8"}, Slip{{"study", "ellipsoid", "--levels", "a"}, "whole number"},
+        Slip{{"study", "ellipsoid", "--levels", "1,,2"}, "whole number"}, Slip{{"study", "ellipsoid", "--level", "3"}, "'--levels'"},
+        Slip{{"study", "ellipsoid", "--voxels", "2"}, "4 to 8192"}, Slip{{"study", "ellipsoid", "--normals", "smooth"}, "flat"},
+        Slip{{"study", "ellipsoid", "--gradients", "cubics"}, "'cubic'"}, Slip{{"study", "ellipsoid", "--methods", "rimm"}, "'rim'"},
+        Slip{{"study", "ellipsoid", "--thresholds", "0.4,1"}, "below 1"}, Slip{{"study", "ellipsoid", "--views", "0"}, "1 to 10000"},
+        Slip{{"study", "ellipsoid", "--methods", "sobel", "--thresholds", "0.2"}, "rim"},
+        Slip{{"study", "ellipsoid", "--shard", "3"}, "2/8"}, Slip{{"study", "ellipsoid", "--shard", "0/3"}, "1 to 3"},
+        Slip{{"study", "ellipsoid", "--shard", "4/3"}, "1 to 3"}, Slip{{"study", "ellipsoid", "--max-memory", "lots"}, "4G"},
+        Slip{{"study", "elipsoid"}, "'ellipsoid'"}, Slip{{"study"}, "INPUT"}, Slip{{"merge"}, "DIR"},
+        Slip{{"merge", "nowhere"}, "no such folder"}, Slip{{"merge", "."}, "no part"},
         Slip{{"render", "teacup", "--surface", "analytic"}, "mesh"}, Slip{{"export", "ellipsoid", "--surface", "analytic"}, "mesh"}));
 
 TEST(Call, NegativeNumbersAreValuesNotOptions) {

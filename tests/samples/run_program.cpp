@@ -60,13 +60,25 @@ RunResult run_limn(const std::vector<std::string>& arguments, const fs::path& wh
   return finish(start(arguments, where, out, err), out, err);
 }
 
-RunResult interrupt_limn(const std::vector<std::string>& arguments, double seconds, const fs::path& where) {
+namespace {
+
+RunResult stop_limn(const std::vector<std::string>& arguments, double seconds, int signal_number, const fs::path& where) {
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "out", err = folder.path() / "err";
   const pid_t child = start(arguments, where, out, err);
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-  kill(child, SIGINT);
+  kill(child, signal_number);
   return finish(child, out, err);
+}
+
+}  // namespace
+
+RunResult interrupt_limn(const std::vector<std::string>& arguments, double seconds, const fs::path& where) {
+  return stop_limn(arguments, seconds, SIGINT, where);
+}
+
+RunResult kill_limn(const std::vector<std::string>& arguments, double seconds, const fs::path& where) {
+  return stop_limn(arguments, seconds, SIGKILL, where);
 }
 
 TemporaryFolder::TemporaryFolder() {

@@ -20,6 +20,9 @@ RunResult run_limn(const std::vector<std::string>& arguments, const std::filesys
 /// Starts it and sends SIGINT once `seconds` have passed.
 RunResult interrupt_limn(const std::vector<std::string>& arguments, double seconds, const std::filesystem::path& where = {});
 
+/// The same with SIGKILL, which nothing can answer.
+RunResult kill_limn(const std::vector<std::string>& arguments, double seconds, const std::filesystem::path& where = {});
+
 class TemporaryFolder {
  public:
   TemporaryFolder();

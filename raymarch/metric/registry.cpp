@@ -8,6 +8,8 @@ std::span<const Metric> metrics() {
   static const std::vector<Metric> all = {
       pixels_differ_metric(),
       overlap_metric(),
+      boundary_iou_metric(),
+      topology_metric(),
       normal_error_metric(),
       depth_error_metric(),
       silhouette_displacement_metric(),

@@ -221,6 +221,7 @@ struct Runner {
       curves = measure_border(model, camera, picture.gbuffer, settings, work.how);
       input.curves = &curves;
       input.truth = &*truth->truth;
+      input.model = &model;
     }
     input.moved = ink.moved;
     input.reference_moved = reference_ink.moved;

@@ -28,14 +28,13 @@ BorderCurves measured(const SceneModel& model, const Camera& camera, double thre
   return measure_border(model, camera, render_gbuffer(model, camera, how), {threshold, 0.002}, how);
 }
 
-[[maybe_unused]]
 std::map<std::pair<int, CurveKind>, int> counts(const BorderCurves& curves) {
   std::map<std::pair<int, CurveKind>, int> result;
   for (const BorderCurve& curve : curves.curves) ++result[{curve.object, curve.kind}];
   return result;
 }
 
-[[maybe_unused]] double total_length(const BorderCurves& curves, CurveKind kind) {
+double total_length(const BorderCurves& curves, CurveKind kind) {
   double length = 0.0;
   for (const BorderCurve& curve : curves.curves) length += curve.kind == kind ? length_px(curve) : 0.0;
   return length;
@@ -71,6 +70,212 @@ TEST(MeasuredBorder, OfASphereSeenInParallelIsTwoCirclesOfKnownRadius) {
   EXPECT_GT(errors[0].count, 400);
   EXPECT_LT(errors[0].largest, 0.005);
   EXPECT_LT(errors[1].largest, 0.005);
+}
+
+/// The image of the circle of normals N.v = c of an ellipsoid seen in parallel: p = A^-1 N / sqrt(N' A^-1 N).
+BorderCurve ellipsoid_curve(const Camera& camera, const glm::dvec3& radii, double c) {
+  const glm::dvec3 v = camera.world_from_camera[2], a = camera.world_from_camera[0], b = camera.world_from_camera[1];
+  BorderCurve curve{CurveKind::inner, 1, true, {}};
+  for (int i = 0; i < 20000; ++i) {
+    const double angle = i * 2.0 * std::numbers::pi / 20000;
+    const glm::dvec3 n = c * v + std::sqrt(1.0 - c * c) * (std::cos(angle) * a + std::sin(angle) * b);
+    BorderPoint point;
+    point.px = glm::dvec2(project(camera, radii * radii * n / glm::length(radii * n)));
+    curve.points.push_back(point);
+  }
+  return curve;
+}
+
+/// Largest distance of the points of `curves` of `kind` from `form`.
+double worst_distance(const BorderCurves& curves, CurveKind kind, const BorderCurves& form) {
+  const CurveIndex index(form, std::nullopt);
+  double worst = 0.0;
+  for (const BorderCurve& curve : curves.curves) {
+    if (curve.kind != kind) continue;
+    for (const BorderPoint& point : curve.points) worst = std::max(worst, index.nearest(point.px, 0, 1e9)->distance_px);
+  }
+  return worst;
+}
+
+TEST(MeasuredBorder, OfAnEllipsoidLiesOnTheImagesOfItsCirclesOfNormals) {
+  const glm::dvec3 radii(1.0, 0.7, 0.5);
+  const SceneModel model = model_of(scene_of({object_of(make_shape("ellipsoid", {{"radii", {radii.x, radii.y, radii.z}}}))}));
+  for (const double c : {0.15, 0.4, 0.7}) {
+    const Camera camera = camera_at({1.1, -2.3, 1.9}, Projection::orthographic, 2.4);
+    const BorderCurves curves = measured(model, camera, c);
+    const BorderCurves silhouette{{ellipsoid_curve(camera, radii, 0.0)}}, inner{{ellipsoid_curve(camera, radii, c)}};
+    const double outside = worst_distance(curves, CurveKind::silhouette, silhouette),
+                 within = worst_distance(curves, CurveKind::inner, inner);
+    fmt::print("ellipsoid, threshold {}: silhouette worst {:.5f} px, inner worst {:.5f} px\n", c, outside, within);
+    EXPECT_EQ(curves.curves.size(), 2u);
+    EXPECT_LT(outside, 0.005);
+    EXPECT_LT(within, 0.005);
+    // Whole curves, but for what chords cut off.
+    EXPECT_NEAR(total_length(curves, CurveKind::silhouette), length_px(silhouette.curves[0]), 0.2);
+    EXPECT_NEAR(total_length(curves, CurveKind::inner), length_px(inner.curves[0]), 0.2);
+  }
+}
+
+TEST(MeasuredBorder, OfATorusLiesOnTheImagesOfItsCirclesOfNormals) {
+  constexpr double major = 1.0, minor = 0.3;
+  const SceneModel model = model_of(scene_of({object_of(make_shape("torus", {{"major", {major}}, {"minor", {minor}}}))}));
+  // From above all of it is visible; from lower down the far side of the hole hides parts.
+  for (const glm::dvec3 eye : {glm::dvec3(0.6, 3.0, 0.8), glm::dvec3(0.4, 1.0, 2.7)}) {
+    const Camera camera = camera_at(eye, Projection::orthographic, 2.9);
+    const glm::dvec3 v = camera.world_from_camera[2], a = camera.world_from_camera[0], b = camera.world_from_camera[1];
+    BorderCurves forms[2];
+    for (const bool inner : {false, true}) {
+      const double c = inner ? kThreshold : 0.0;
+      for (const double sheet : {-1.0, 1.0}) {
+        BorderCurve curve{CurveKind::inner, 1, true, {}};
+        for (int i = 0; i < 20000; ++i) {
+          const double angle = i * 2.0 * std::numbers::pi / 20000;
+          const glm::dvec3 n = c * v + std::sqrt(1.0 - c * c) * (std::cos(angle) * a + std::sin(angle) * b);
+          BorderPoint point;
+          point.px = glm::dvec2(project(camera, sheet * major * glm::normalize(glm::dvec3(n.x, 0.0, n.z)) + minor * n));
+          curve.points.push_back(point);
+        }
+        forms[inner].curves.push_back(curve);
+      }
+    }
+    const BorderCurves curves = measured(model, camera);
+    const double outside = worst_distance(curves, CurveKind::silhouette, forms[0]),
+                 within = worst_distance(curves, CurveKind::inner, forms[1]);
+    fmt::print("torus: silhouette worst {:.5f} px, inner worst {:.5f} px, {} curves\n", outside, within, curves.curves.size());
+    EXPECT_LT(outside, 0.005);
+    EXPECT_LT(within, 0.005);
+    EXPECT_GT(total_length(curves, CurveKind::silhouette), 0.7 * (length_px(forms[0].curves[0]) + length_px(forms[0].curves[1])));
+  }
+}
+
+TEST(MeasuredBorder, OfASphereInPerspectiveStandsAtItsAngles) {
+  const SceneModel model = model_of(scene_of({object_of(make_shape("sphere", {{"radius", {1.0}}}))}));
+  const Camera camera = camera_at({2.1, 2.2, 2.9}, Projection::perspective, 0.0);
+  const double distance = glm::length(camera.eye);
+  double worst = 0.0;
+  for (const BorderCurve& curve : measured(model, camera).curves) {
+    const double sine = (curve.kind == CurveKind::inner ? std::sqrt(1.0 - kThreshold * kThreshold) : 1.0) / distance;
+    for (const BorderPoint& point : curve.points) {
+      const glm::dvec3 ray = camera_ray(camera, point.px.x, point.px.y).direction;
+      const double angle = std::atan2(glm::length(glm::cross(ray, -camera.eye)), glm::dot(ray, -camera.eye));
+      worst = std::max(worst, std::abs(angle - std::asin(sine)) * camera.focal_px);
+    }
+  }
+  fmt::print("sphere in perspective: worst {:.5f} px\n", worst);
+  EXPECT_LT(worst, 0.005);
+}
+
+TEST(MeasuredBorder, OfASphereBeforeAnotherEndsWhereItIsHidden) {
+  const Field nearer = translate(make_shape("sphere", {{"radius", {0.6}}}), {0.0, 0.0, 1.5});
+  const Field farther = translate(make_shape("sphere", {{"radius", {0.8}}}), {0.5, 0.1, -1.0});
+  const SceneModel model = model_of(scene_of({object_of(farther), object_of(nearer)}));
+  CameraSettings settings = view(240, 180, Projection::orthographic);
+  settings.eye = glm::dvec3(0.0, 0.0, 5.0);
+  settings.target = glm::dvec3(0.2, 0.0, 0.0);
+  settings.eye->x = 0.2;
+  settings.ortho_height = 2.4;
+  const Camera camera = resolve_camera(settings, {});
+  const BorderCurves curves = measured(model, camera);
+  for (const BorderCurve& curve : curves.curves) EXPECT_EQ(curve.closed, curve.object == 2);
+  EXPECT_EQ(counts(curves),
+            (std::map<std::pair<int, CurveKind>, int>{
+                {{1, CurveKind::silhouette}, 1}, {{1, CurveKind::inner}, 1}, {{2, CurveKind::silhouette}, 1}, {{2, CurveKind::inner}, 1}}));
+  // What is left of the farther circles outside the nearer one's, by counting.
+  const double scale = camera.pixels_per_unit;
+  for (const CurveKind kind : {CurveKind::silhouette, CurveKind::inner}) {
+    const double radius = 0.8 * (kind == CurveKind::inner ? std::sqrt(1.0 - kThreshold * kThreshold) : 1.0);
+    int outside = 0;
+    for (int i = 0; i < 100000; ++i) {
+      const double angle = i * 2.0 * std::numbers::pi / 100000;
+      outside += glm::length(glm::dvec2(0.5, 0.1) + radius * glm::dvec2(std::cos(angle), std::sin(angle))) > 0.6;
+    }
+    double length = 0.0;
+    for (const BorderCurve& curve : curves.curves) length += curve.kind == kind && curve.object == 1 ? length_px(curve) : 0.0;
+    // Each end is cut short by less than the diagonal of a pixel.
+    EXPECT_NEAR(length, 2.0 * std::numbers::pi * radius * scale * outside / 100000, 2.9);
+  }
+}
+
+TEST(MeasuredBorder, OfACubeIsItsOutlineOnceThoughNothingIsInked) {
+  const Field cube = make_shape("box", {{"half", {0.5, 0.5, 0.5}}});
+  for (const char* kind : {"analytic", "mesh"}) {
+    const Scene scene = std::string(kind) == "mesh" ? scene_of({object_of(box_mesh(glm::dvec3(0.5)))}) : scene_of({object_of(cube)});
+    SurfaceSettings flat = surface_kind(kind);
+    flat.normals = NormalKind::flat;
+    const SceneModel model = build_model(scene, flat);
+    CameraSettings settings = view(200, 160, Projection::orthographic);
+    settings.eye = glm::dvec3(3.0, 2.9, 3.3);
+    settings.target = glm::dvec3(0.0);
+    settings.ortho_height = 2.0;
+    const Camera camera = resolve_camera(settings, {});
+    const BorderCurves curves = measured(model, camera);
+    ASSERT_EQ(curves.curves.size(), 1u) << kind;
+    const BorderCurve& outline = curves.curves[0];
+    EXPECT_EQ(outline.kind, CurveKind::silhouette);
+    EXPECT_TRUE(outline.closed);
+    EXPECT_GT(left_area(outline), 0.0);
+    // The six edges between a face seen and one not seen.
+    BorderCurve hexagon{CurveKind::silhouette, 1, true, {}};
+    for (const glm::dvec3 corner : {glm::dvec3(1, -1, -1), glm::dvec3(1, 1, -1), glm::dvec3(-1, 1, -1), glm::dvec3(-1, 1, 1),
+                                    glm::dvec3(-1, -1, 1), glm::dvec3(1, -1, 1)}) {
+      BorderPoint point;
+      point.px = glm::dvec2(project(camera, 0.5 * corner));
+      hexagon.points.push_back(point);
+    }
+    const double worst = worst_distance(curves, CurveKind::silhouette, {{hexagon}});
+    fmt::print("cube, {}: worst {:.5f} px\n", kind, worst);
+    EXPECT_LT(worst, 0.005) << kind;
+    // Corners are cut by less than a pixel each.
+    EXPECT_NEAR(length_px(outline), length_px(hexagon), 4.0) << kind;
+    EXPECT_EQ(measured(model, camera, 0.0).curves.size(), 1u) << kind;
+  }
+}
+
+TEST(MeasuredBorder, OfThinInkIsFoundBetweenPixelCentres) {
+  // Ink 0.05 px to 0.6 px wide: no centre need show it, its silhouette's own rays do.
+  const SceneModel model = model_of(scene_of({object_of(make_shape("sphere", {{"radius", {1.0}}}))}));
+  const Camera camera = camera_at({1.9, 2.3, 2.9}, Projection::orthographic, 2.4);
+  for (const double c : {0.04, 0.12}) {
+    const BorderCurves curves = measured(model, camera, c);
+    EXPECT_EQ(curves.curves.size(), 2u) << c;
+    const double circumference = 2.0 * std::numbers::pi * camera.pixels_per_unit * std::sqrt(1.0 - c * c);
+    EXPECT_NEAR(total_length(curves, CurveKind::inner), circumference, 0.1) << c;
+  }
+}
+
+TEST(MeasuredBorder, WithoutAThresholdIsTheSilhouetteAlone) {
+  const SceneModel model = model_of(scene_of({object_of(make_shape("torus"))}));
+  const Camera camera = camera_at({1.9, 1.3, 2.9}, Projection::perspective, 0.0);
+  const BorderCurves all = measured(model, camera), silhouette = measured(model, camera, 0.0);
+  EXPECT_EQ(total_length(silhouette, CurveKind::inner), 0.0);
+  EXPECT_NEAR(total_length(silhouette, CurveKind::silhouette), total_length(all, CurveKind::silhouette), 1e-9);
+}
+
+TEST(MeasuredBorder, IsTheSameForAnyNumberOfThreads) {
+  const SceneModel model = model_of(scene_of({object_of(make_shape("torus"))}), "level_set");
+  const Camera camera = camera_at({1.9, 1.3, 2.9}, Projection::perspective, 0.0);
+  ExecutionSettings one, three;
+  one.threads = 1;
+  three.threads = 3;
+  const BorderCurves a = measured(model, camera, kThreshold, one), b = measured(model, camera, kThreshold, three);
+  ASSERT_EQ(a.curves.size(), b.curves.size());
+  for (size_t i = 0; i < a.curves.size(); ++i) {
+    ASSERT_EQ(a.curves[i].points.size(), b.curves[i].points.size());
+    EXPECT_EQ(a.curves[i].kind, b.curves[i].kind);
+    for (size_t k = 0; k < a.curves[i].points.size(); ++k) {
+      EXPECT_EQ(a.curves[i].points[k].px, b.curves[i].points[k].px);
+      EXPECT_EQ(a.curves[i].points[k].depth, b.curves[i].points[k].depth);
+    }
+  }
+}
+
+TEST(MeasuredBorder, TakesFewRays) {
+  const SceneModel model = model_of(scene_of({object_of(make_shape("ellipsoid"))}));
+  const Camera camera = camera_at({1.9, 2.3, 2.9}, Projection::perspective, 0.0);
+  const BorderCrossings found = find_crossings(model, camera, render_gbuffer(model, camera, {}), {}, {});
+  const double each = static_cast<double>(found.rays) / static_cast<double>(found.crossings.size());
+  fmt::print("{} rays for {} crossings: {:.1f} each\n", found.rays, found.crossings.size(), each);
+  EXPECT_LT(each, 8.0);
 }
 
 }  // namespace

@@ -109,6 +109,11 @@ TEST(Metrics, OfAPictureAgainstItselfAreNought) {
     for (size_t i = 0; i < values.size(); ++i) {
       EXPECT_EQ(metric.values[i], values[i].name + (values[i].unit.empty() ? "" : " [" + values[i].unit + "]"));
       if (values[i].name.ends_with("_x") || values[i].name.ends_with("_y")) continue;  // where the first of many equals lies
+      if (metric.subject == MetricSubject::curves || metric.subject == MetricSubject::motion) {
+        EXPECT_TRUE(std::isnan(values[i].value)) << values[i].name;  // there are no curves and no moves
+        continue;
+      }
+      if (metric.about.name == "topology" && !values[i].name.ends_with("difference")) continue;  // counts
       EXPECT_EQ(values[i].value, metric.lower_is_better ? 0.0 : 1.0) << values[i].name;
     }
   }

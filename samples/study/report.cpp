@@ -42,7 +42,7 @@ std::string sentences_html(const StudyHead& head, const ReportData& data) {
   const std::vector<std::string> sentences = study_sentences(head, data);
   const size_t lead = std::min<size_t>(sentences.size(), data.drawings.size() > 1 ? 3 : 2);
   std::string html = "<p class=\"lead\">";
-  for (size_t i = 0; i < lead; ++i) html += (i == 0 ? "" : " ") + escaped(sentences[i]);
+  for (size_t i = 0; i < lead; ++i) html.append(i == 0 ? "" : " ").append(escaped(sentences[i]));
   html += "</p>\n";
   if (lead == sentences.size()) return html;
   html += "<ul class=\"results\">\n";

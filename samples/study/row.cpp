@@ -145,7 +145,7 @@ std::string csv_line(const StudyRow& row) {
                                 std::to_string(row.bytes),
                                 row.failed};
   std::string line;
-  for (const std::string& field : fields) line += (&field == fields ? "" : ",") + csv_field(field);
+  for (const std::string& field : fields) line.append(&field == fields ? "" : ",").append(csv_field(field));
   return line;
 }
 

@@ -124,7 +124,11 @@ void halve(const Refiner& refiner, FieldEvaluator& evaluator, double c, const Cu
   if (glm::dot(point.uphill, a.uphill + b.uphill) < 0.0) point.uphill = a.uphill;
   const glm::dvec2 pa = image_of(refiner.camera, a.p), pb = image_of(refiner.camera, b.p), pm = image_of(refiner.camera, point.p);
   const double error = distance_to_segment(pm, pa, pb);
-  const bool again = depth > 0 && error > 0.5 * refiner.tolerance_px && glm::distance(pa, pb) > 2.0 * refiner.tolerance_px;
+  // One point says how the whole step bulges where it lies near its middle and the curve is of one kind; where it goes over into a crease
+  // the place is closed in on.
+  const double place = glm::distance(pm, pa) / std::max(glm::distance(pa, pb), 1e-300);
+  const bool telling = a.crease == b.crease && place > 0.2 && place < 0.8;
+  const bool again = depth > 0 && (error > 0.25 * refiner.tolerance_px || !telling) && glm::distance(pa, pb) > 0.5 * refiner.tolerance_px;
   if (again) halve(refiner, evaluator, c, a, point, 0.5 * std::max(error, sagitta_px), depth - 1, out);
   out.points.push_back(point);
   if (again) halve(refiner, evaluator, c, point, b, 0.5 * std::max(error, sagitta_px), depth - 1, out);
@@ -160,8 +164,29 @@ void drop_rough(FieldCurve& curve) {
   if (good >= 4) curve.points.erase(std::remove_if(curve.points.begin(), curve.points.end(), rough), curve.points.end());
 }
 
+/// Where a sharp edge runs along the faces it crosses, neighbouring crossings may come out in the wrong order: of a sharp turn the point is
+/// dropped. Were it a corner of the curve, the refinement would find it again.
+void drop_backward(FieldCurve& curve) {
+  for (bool again = true; again && curve.points.size() > 8;) {
+    again = false;
+    std::vector<CurvePoint> kept = {curve.points[0]};
+    for (size_t i = 1; i + 1 < curve.points.size(); ++i) {
+      const glm::dvec3 before = curve.points[i].p - kept.back().p, after = curve.points[i + 1].p - curve.points[i].p;
+      if (glm::dot(before, after) < 0.0) {
+        again = true;
+      } else {
+        kept.push_back(curve.points[i]);
+      }
+    }
+    kept.push_back(curve.points.back());
+    if (kept.size() < 6) return;
+    curve.points = std::move(kept);
+  }
+}
+
 void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
   drop_rough(curve);
+  drop_backward(curve);
   const size_t n = curve.points.size();
   const std::vector<double> sagitta = sagittas(curve, refiner.camera);
   std::vector<Refined> between(sagitta.size());

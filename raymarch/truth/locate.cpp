@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kViewTurn = 1e-10;
 constexpr double kCreaseAngle = 1e-5;  // normals that differ by more where a bisection ended: the surface has a crease there
+constexpr double kFastestTurn = 20.0;  // of N.V over the reach of Newton's iteration
 constexpr int kRootSteps = 80;
 constexpr int kNewtonSteps = 12;
 
@@ -98,6 +99,8 @@ std::optional<CurvePoint> polish(FieldEvaluator& evaluator, const Viewer& viewer
     const glm::dvec3 hv = jet.hessian * v, hn = jet.hessian * n;
     glm::dvec3 slope = (hv - facing * hn) / length;
     if (perspective) slope += (facing * v - n) / glm::length(viewer.facing.eye - p);
+    // The distance around a sharp edge is rounded outside: what turns that fast is the edge and no smooth surface.
+    if (!(glm::length(slope) * reach < kFastestTurn)) return {};
     const double f = jet.value / length, h = facing - c;
     const double nn = 1.0, ns = glm::dot(n, slope), ss = glm::dot(slope, slope);
     const double determinant = nn * ss - ns * ns;
@@ -166,6 +169,8 @@ std::optional<CurvePoint> bisect(FieldEvaluator& evaluator, const Viewer& viewer
     (below(middle->facing, c) == a_below ? sa : sb) = s;
     if (step > 3 && (glm::length(b.p - a.p) < near || std::fabs(sb - sa) < 1e-14)) break;
   }
+  // Where the fan's segments meet the surface more than once the root may jump from one sheet to the next: that is no crossing.
+  if (!(glm::length(b.p - a.p) < 1e-3 * glm::length(uphill))) return {};
   CurvePoint result;
   const SurfaceSample &high = a_below ? b : a, &low = a_below ? a : b;
   result.p = 0.5 * (a.p + b.p);

@@ -144,11 +144,11 @@ function viewsChart({ points, want, size, theme, narrow }) {
 }
 
 function normalChart({ cells, want, size, theme }) {
-  const border = metricOf(study.roles.inner || study.roles.border), normal = metricOf(study.roles.normal), predicted = metricOf(study.roles.predicted);
+  const border = metricOf(study.roles.compared), normal = metricOf(study.roles.normal), predicted = metricOf(study.roles.predicted);
   const usable = border < 0 || normal < 0 ? [] : cells.filter(cell => cell[5][border] !== null && cell[5][normal] !== null);
   const values = usable.map(cell => [Math.abs(cell[5][normal]), Math.abs(cell[5][border])]);
   const metric = border < 0 ? { label: "displacement", unit: "px" } : study.metrics[border];
-  const x = logAxis(values.map(one => one[0]), "normal error, RMS [deg]", "deg", 0, size.width), y = errorAxis(values.map(one => one[1]), metric, size.height);
+  const x = logAxis(values.map(one => one[0]), `${normal < 0 ? "normal error" : study.metrics[normal].label} [deg]`, "deg", 0, size.width), y = errorAxis(values.map(one => one[1]), metric, size.height);
   const slopes = predicted < 0 ? [] : usable.map(cell => Math.abs(cell[5][predicted]) / Math.abs(cell[5][normal])).filter(one => one > 0 && Number.isFinite(one)).sort(numbersUp);
   const slope = slopes.length ? { low: slopes[0], median: slopes[Math.floor(slopes.length / 2)], high: slopes.at(-1) } : null;
   const points = usable.map((cell, i) => {

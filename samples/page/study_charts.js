@@ -3,7 +3,7 @@
 
 const kShapes = ["circle", "square", "triangle-up", "diamond", "triangle-down", "cross"];
 const kUnits = {
-  ms: value => value >= 1000 ? `${+(value / 1000).toPrecision(4)} s` : `${+value.toPrecision(4)} ms`,
+  ms: value => value >= 1000 ? `${+(value / 1000).toPrecision(3)} s` : `${+value.toPrecision(3)} ms`,
   bytes: value => {
     const [factor, unit] = value >= 1e9 ? [1e9, "GB"] : value >= 1e6 ? [1e6, "MB"] : value >= 1e3 ? [1e3, "kB"] : [1, "B"];
     return `${+(value / factor).toPrecision(4)} ${unit}`;
@@ -150,10 +150,13 @@ function viewsSpec(rows, marks, x, size, series, theme, narrow) {
 function normalSpec(points, slope, x, y, size, series, theme) {
   const layer = [], position = { x: scaled("x", x), y: scaled("y", y) };
   if (slope) {
-    const ends = x.domain.map(degrees => ({ x: degrees, y: slope.median * degrees, low: slope.low * degrees, high: slope.high * degrees }));
+    // What leaves the chart is bent to its edge: the line has many points, and those outside are not among them.
+    const ends = Array.from({ length: 121 }, (_, i) => valueAt(x, i / 120))
+      .map(degrees => ({ x: degrees, y: slope.median * degrees, low: slope.low * degrees, high: slope.high * degrees }));
+    const inside = ends.filter(one => one.y >= y.domain[0] && one.y <= y.domain[1]);
     layer.push({ data: { values: ends }, mark: { type: "area", color: theme.soft, opacity: 0.18, clip: true },
       encoding: { x: scaled("x", x), y: scaled("low", y), y2: { field: "high" } } });
-    layer.push({ data: { values: ends }, mark: { type: "line", color: theme.ink, strokeWidth: 1.8, strokeDash: [6, 4], clip: true }, encoding: position });
+    layer.push({ data: { values: inside }, mark: { type: "line", color: theme.ink, strokeWidth: 1.8, strokeDash: [6, 4], clip: true }, encoding: position });
   }
   layer.push({ data: { values: points }, mark: { type: "point", filled: true, opacity: 0.9, size: 50, stroke: theme.card, strokeWidth: 1, ...kPointer },
     encoding: { ...position, ...bySeries(series) } });

@@ -30,7 +30,7 @@ std::string tick_text(double value, Quantity quantity) {
   }
 }
 
-double LogAxis::share(double value) const { return (std::log(shown(value)) - std::log(low)) / (std::log(high) - std::log(low)); }
+double LogAxis::place(double value) const { return (std::log(value) - std::log(low)) / (std::log(high) - std::log(low)); }
 
 std::vector<double> LogAxis::ticks() const {
   const double decades = std::log10(high / low);

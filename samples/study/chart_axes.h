@@ -22,7 +22,9 @@ struct LogAxis {
 
   double shown(double value) const { return value > floor ? value : floor; }
   /// 0 at `low`, 1 at `high`.
-  double share(double value) const;
+  double share(double value) const { return place(shown(value)); }
+  /// The same without the floor; `value` above 0.
+  double place(double value) const;
   std::vector<double> ticks() const;
 };
 /// An axis around `values`, with some room. `least` is the floor where there is a natural one; 0: half the smallest positive value.

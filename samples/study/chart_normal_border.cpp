@@ -20,12 +20,6 @@ double value_of(const ReportCell& cell, const std::string& metric) {
   return found == cell.values.end() ? std::numeric_limits<double>::quiet_NaN() : std::abs(found->second);
 }
 
-// The inner border is what moves with the normals; the silhouette does not.
-std::string border_metric(const ReportData& data) {
-  const std::string inner = data.metric_of(MetricRole::inner);
-  return inner.empty() ? data.metric_of(MetricRole::border) : inner;
-}
-
 std::vector<NormalPoint> normal_points(const ReportData& data, const std::string& border, const std::string& normal) {
   std::vector<NormalPoint> points;
   for (const ReportCell& cell : data.cells) {
@@ -37,7 +31,11 @@ std::vector<NormalPoint> normal_points(const ReportData& data, const std::string
 }
 
 void draw_prediction(ChartCanvas& canvas, const ChartFrame& frame, const PredictedSlope& slope) {
-  const auto at = [&](double px_per_degree, double degrees) { return frame.at(degrees, px_per_degree * degrees); };
+  // Beyond the axes too: what lies outside is cut, not bent.
+  const auto at = [&](double px_per_degree, double degrees) {
+    return ChartPoint{frame.plot.x + frame.plot.width * frame.x.place(degrees),
+                      frame.plot.y + frame.plot.height * (1.0 - frame.y.place(px_per_degree * degrees))};
+  };
   const double left = frame.x.low, right = frame.x.high;
   canvas.begin_clip(frame.plot);
   canvas.area({at(slope.low, left), at(slope.low, right), at(slope.high, right), at(slope.high, left)}, {0.3, 0.3, 0.3, 0.12});
@@ -78,7 +76,7 @@ StudyChart normal_border_chart(const ReportData& data) {
   StudyChart chart;
   chart.stem = "chart_normal_border";
   chart.title = "Border error against normal error";
-  const std::string border = border_metric(data), normal = data.metric_of(MetricRole::normal);
+  const std::string border = compared_metric(data), normal = data.metric_of(MetricRole::normal);
   const std::vector<NormalPoint> points = normal_points(data, border, normal);
   const std::optional<PredictedSlope> slope = predicted_slope(data, data.main_drawing);
   chart.words = points.empty() ? "No cell has both a normal error and a displacement of the border."

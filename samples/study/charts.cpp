@@ -7,8 +7,8 @@ namespace limn {
 std::vector<StudyChart> study_charts(const ReportData& data) {
   // What nothing drew has no charts' worth of numbers; `main_drawing` would name nothing.
   if (data.drawings.empty()) return {};
-  return {accuracy_chart(data, Cost::time), accuracy_chart(data, Cost::memory), order_chart(data), views_chart(data),
-          normal_border_chart(data)};
+  return {accuracy_chart(data, Cost::time), accuracy_chart(data, Cost::memory), order_chart(data), normal_border_chart(data),
+          views_chart(data)};
 }
 
 std::string drawing_words(const ReportData& data) { return data.drawings[data.main_drawing].title(); }

@@ -15,14 +15,16 @@ namespace {
 struct RoleNames {
   MetricRole role;
   const char* name;
+  const char* label;
 };
 // The metrics that the report knows by name, the ones to show first first; all others it shows under the names they have.
 constexpr std::array<RoleNames, 5> kRoles = {{
-    {MetricRole::border, "displacement_rms"},
-    {MetricRole::inner, "inner_displacement_rms"},
-    {MetricRole::silhouette, "silhouette_displacement_rms"},
-    {MetricRole::predicted, "predicted_displacement_rms"},
-    {MetricRole::normal, "normal_error_rms"},
+    {MetricRole::inner, "inner_displacement_rms", "inner border displacement, RMS"},
+    {MetricRole::silhouette, "silhouette_displacement_rms", "silhouette displacement, RMS"},
+    {MetricRole::predicted, "prediction_displacement_rms", "predicted displacement, RMS"},
+    // Where there is a prediction, and only there: what it is to be held against.
+    {MetricRole::measured, "prediction_measured_rms", "displacement where it was predicted, RMS"},
+    {MetricRole::normal, "prediction_normal_error_rms", "normal error at the border, RMS"},
 }};
 
 size_t rank_of(const std::string& name) {
@@ -139,10 +141,11 @@ struct Collector {
                      [](const ReportMetric& a, const ReportMetric& b) { return rank_of(a.name) < rank_of(b.name); });
   }
 
-  // The border's displacement where it was measured, else the first error there is; drawn by what measured it most often, and among equals
-  // by what is nearest to the threshold that limn draws with when nobody says otherwise.
+  // The displacement of the border, or of the silhouette where there is no more of it, else the first error there is; drawn by what
+  // measured it most often, and among equals by what is nearest to the threshold that limn draws with when nobody says otherwise.
   void choose_main() {
-    data.main_metric = data.metric_of(MetricRole::border);
+    data.main_metric = data.metric_of(MetricRole::inner);
+    if (data.main_metric.empty()) data.main_metric = data.metric_of(MetricRole::silhouette);
     for (const ReportMetric& metric : data.metrics) {
       if (data.main_metric.empty() && metric.lower_is_better) data.main_metric = metric.name;
     }
@@ -183,20 +186,8 @@ bool natural_less(const std::string& a, const std::string& b) {
 }
 
 std::string ReportMetric::label() const {
-  switch (rank_of(name)) {
-    case 0:
-      return "border displacement, RMS";
-    case 1:
-      return "inner border displacement, RMS";
-    case 2:
-      return "silhouette displacement, RMS";
-    case 3:
-      return "predicted displacement, RMS";
-    case 4:
-      return "normal error, RMS";
-    default:
-      return spaced(name);
-  }
+  const size_t rank = rank_of(name);
+  return rank < kRoles.size() ? kRoles[rank].label : spaced(name);
 }
 
 std::string ReportData::title(size_t model) const {
@@ -214,6 +205,11 @@ std::string ReportData::metric_of(MetricRole role) const {
 const ReportMetric* ReportData::find_metric(const std::string& name) const {
   const auto found = std::find_if(metrics.begin(), metrics.end(), [&](const ReportMetric& metric) { return metric.name == name; });
   return found == metrics.end() ? nullptr : &*found;
+}
+
+std::string compared_metric(const ReportData& data) {
+  const std::string measured = data.metric_of(MetricRole::measured);
+  return measured.empty() ? data.metric_of(MetricRole::inner) : measured;
 }
 
 ReportData collect_report(const StudyHead& head, const std::vector<StudyRow>& rows) {

@@ -16,12 +16,12 @@ inline constexpr double kTolerancePx = 0.5;
 inline constexpr double kFloorPx = 0.005;
 
 /// What a metric says, where the report has something of its own to say about it.
-enum class MetricRole { border, inner, silhouette, predicted, normal };
+enum class MetricRole { inner, silhouette, predicted, measured, normal };
 
 struct ReportMetric {
   std::string name{}, unit{};
   bool lower_is_better = true;
-  /// "border rms displacement": for people.
+  /// "inner border displacement, RMS": for people.
   std::string label() const;
 };
 
@@ -67,6 +67,10 @@ struct ReportData {
   std::string metric_of(MetricRole role) const;
   const ReportMetric* find_metric(const std::string& name) const;
 };
+
+/// What a prediction is held against: the displacement where there is one, else that of the whole inner border, which moves with the
+/// normals as the silhouette does not.
+std::string compared_metric(const ReportData& data);
 
 ReportData collect_report(const StudyHead& head, const std::vector<StudyRow>& rows);
 

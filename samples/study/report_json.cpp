@@ -75,8 +75,7 @@ std::string study_data_json(const ReportData& data) {
                {"least", kLeastShownPx},
                {"mainDrawing", data.main_drawing},
                {"mainMetric", data.main_metric}};
-  json["roles"] = {{"inner", data.metric_of(MetricRole::inner)},
-                   {"border", data.metric_of(MetricRole::border)},
+  json["roles"] = {{"compared", compared_metric(data)},
                    {"predicted", data.metric_of(MetricRole::predicted)},
                    {"normal", data.metric_of(MetricRole::normal)}};
   json["series"] = series_json(data);

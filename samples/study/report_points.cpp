@@ -37,7 +37,7 @@ ModelPoint point_of(size_t model, std::vector<std::pair<double, const ReportCell
   return point;
 }
 
-// Order of the angle between the interpolated normal and the surface's, as THEORY of interpolation has it; averaged vertex normals lie
+// Order of the angle between the interpolated normal and the surface's, as the theory of interpolation has it; averaged vertex normals lie
 // between: 1 on jittered meshes, 2 where the mesh is symmetric.
 std::optional<ExpectedOrder> normal_order(const ReportModel& model) {
   const auto value = [&](const char* name) {
@@ -136,8 +136,8 @@ std::optional<ExpectedOrder> expected_order(const ReportData& data, size_t serie
   const auto model = std::find_if(data.models.begin(), data.models.end(), [&](const ReportModel& one) { return one.series == series; });
   if (model == data.models.end()) return std::nullopt;
   const std::optional<ExpectedOrder> normal = normal_order(*model);
-  if (!normal || metric.starts_with("normal_error")) return normal;
-  if (metric.find("displacement") == std::string::npos) return std::nullopt;
+  if (!normal || metric.find("normal_error") != std::string::npos) return normal;
+  if (metric.find("displacement") == std::string::npos || metric.ends_with("_mean")) return std::nullopt;
   // The silhouette knows positions alone: of order 2 even for flat facets.
   if (metric.starts_with("silhouette") || threshold == 0.0) return ExpectedOrder{2.0, 2.0};
   return ExpectedOrder{std::min(normal->low, 2.0), std::min(normal->high, 2.0)};

@@ -6,16 +6,17 @@
 #include <cmath>
 #include <map>
 
+#include "samples/compare/words.h"
 #include "samples/output.h"
 
 namespace limn {
 namespace {
 
-std::string number(double value) { return fmt::format("{:.2g}", value); }
+std::string number(double value) { return value >= 100.0 ? counted(value) : fmt::format("{:.2g}", value); }
 std::string count_of(size_t count, const char* one, const char* many) { return fmt::format("{} {}", count, count == 1 ? one : many); }
-std::string listed(const std::vector<std::string>& names, const char* last) {
+std::string listed(const std::vector<std::string>& names, const char* between) {
   std::string text;
-  for (size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : i + 1 == names.size() ? last : ", ") + names[i];
+  for (size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : between) + names[i];
   return text;
 }
 std::string capital(std::string text) {
@@ -89,7 +90,7 @@ struct Words {
       never.push_back(
           fmt::format("{} (at best {} px{})", data.series[series], number(best->median), resolution.empty() ? "" : ", at " + resolution));
     }
-    if (!never.empty()) out.push_back(fmt::format("Never within {} px: {}.", kTolerancePx, listed(never, " and ")));
+    if (!never.empty()) out.push_back(fmt::format("Never within {} px: {}.", kTolerancePx, listed(never, "; ")));
   }
 
   void say_orders() {
@@ -103,7 +104,7 @@ struct Words {
       any_expected = any_expected || expected;
       orders.push_back(fmt::format("{} {:.2f}{}", data.series[series], fit->order, expected ? " (expected " + expected->text() + ")" : ""));
     }
-    if (!orders.empty()) out.push_back(fmt::format("The error falls with the resolution to the power of: {}.", listed(orders, ", ")));
+    if (!orders.empty()) out.push_back(fmt::format("The error falls with the resolution to the power of: {}.", listed(orders, "; ")));
   }
 
   // The coarsest model of a series from which on the median stays within the tolerance.
@@ -135,8 +136,7 @@ struct Words {
   }
 
   void say_prediction() {
-    const std::string predicted = data.metric_of(MetricRole::predicted), inner = data.metric_of(MetricRole::inner);
-    const std::string measured = inner.empty() ? data.metric_of(MetricRole::border) : inner;
+    const std::string predicted = data.metric_of(MetricRole::predicted), measured = compared_metric(data);
     if (predicted.empty() || measured.empty()) return;
     std::vector<double> wrong;
     for (const ReportCell& cell : data.cells) {

@@ -23,6 +23,7 @@ struct BorderTruth {
   /// Share of each pixel that is ink of the rim: hit, and N.V below the threshold.
   Image<float> coverage{};
   /// Closed curves on the surfaces, hidden ones and parts included: contour generators, and level curves N.V = threshold.
+  /// Objects that overlap count as one body.
   int contour_generators = 0, level_curves = 0;
   bool exact = true;                 ///< False where a finest affordable version stands in for the surface itself.
   double bound_px = 0.0;             ///< No point of `curves` lies farther from the true border than this; an estimate where not `exact`.

@@ -17,7 +17,8 @@ namespace {
 constexpr int kTaskLevel = 4;      // subtrees below it are one task each
 constexpr int kRestrictEvery = 2;  // levels between shortenings of the program
 constexpr double kViewMargin = 1e-9;
-constexpr int kNearCells = 2;  // so near a found curve, cells that bounds do not exclude say nothing
+constexpr double kClear = 0.02;  // of N.V
+constexpr int kNearCells = 2;    // so near a found curve, cells that bounds do not exclude say nothing
 
 /// The subtree that one task walks.
 struct Walk {
@@ -108,9 +109,30 @@ std::uint64_t packed(const glm::ivec3& cell) {
   return (part(cell.x) << 20 | part(cell.y)) << 20 | part(cell.z);
 }
 
+/// At a crease bounds hold the hull of both sides, however small the box: there the box's corners say whether N.V is clear of the levels.
+bool clear_at_corners(const CellSearch& search, FieldEvaluator& evaluator, const Box& box, FamilyMask families) {
+  std::array<glm::dvec3, 8> points, gradients;
+  std::array<double, 8> values;
+  for (size_t i = 0; i < 8; ++i)
+    points[i] = {(i & 1 ? box.upper : box.lower).x, (i & 2 ? box.upper : box.lower).y, (i & 4 ? box.upper : box.lower).z};
+  evaluator.gradients(points, values, gradients);
+  for (size_t family = 0; family < kCurveFamilies; ++family) {
+    if (!(families >> family & 1u)) continue;
+    int above = 0, below = 0;
+    for (size_t i = 0; i < 8; ++i) {
+      const double h = facing_of(search.viewer, points[i], gradients[i]) - search.levels[family];
+      above += h > kClear;
+      below += h < -kClear;
+    }
+    if (above < 8 && below < 8) return false;
+  }
+  return true;
+}
+
 bool stays(const CellSearch& search, FieldEvaluator& evaluator, const Box& box, int cuts) {
-  if (surviving(search, evaluator, box, search.families) == 0) return false;
-  if (cuts == 0) return true;
+  const FamilyMask families = surviving(search, evaluator, box, search.families);
+  if (families == 0) return false;
+  if (cuts == 0) return !clear_at_corners(search, evaluator, box, families);
   const glm::dvec3 middle = box.center();
   for (int i = 0; i < 8; ++i) {
     Box child = box;
@@ -164,7 +186,6 @@ CellResult search_cells(const CellSearch& search, const ExecutionSettings& how) 
   result.unsettled = count_unsettled(search, walks);
   for (Walk& walk : walks) {
     result.cells += walk.cells;
-    result.rough += walk.output.rough;
     for (size_t family = 0; family < kCurveFamilies; ++family) {
       CellCurves &from = walk.output.families[family], &to = result.families[family];
       to.crossings.insert(to.crossings.end(), from.crossings.begin(), from.crossings.end());

@@ -18,12 +18,12 @@ struct CellSearch {
 
 struct CellResult {
   std::array<CellCurves, kCurveFamilies> families{};
-  std::int64_t cells = 0, rough = 0;
+  std::int64_t cells = 0;
   std::int64_t unsettled = 0;
 };
 
 /// A finest cell is cut this often again where nothing was found in it or beside it.
-inline constexpr int kSettlingCuts = 4;
+inline constexpr int kSettlingCuts = 3;
 
 /// In an order that does not depend on threads. Throws Cancelled.
 CellResult search_cells(const CellSearch& search, const ExecutionSettings& how);

@@ -110,6 +110,23 @@ double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::
 /// Points between a and b, in order, until the chord's error is well below the tolerance: the thinning has the rest.
 void halve(const Refiner& refiner, FieldEvaluator& evaluator, double c, const CurvePoint& a, const CurvePoint& b, double sagitta_px,
            int depth, Refined& out) {
+  if (a.crease != b.crease && depth > 0) {
+    if (auto sides = close_in(evaluator, refiner.viewer, c, a, b)) {
+      sides->by_first.uphill = a.uphill;
+      sides->by_second.uphill = b.uphill;
+      const auto& [first, second] = *sides;
+      const auto fill = [&](const CurvePoint& from, const CurvePoint& to) {
+        const double apart = glm::distance(image_of(refiner.camera, from.p), image_of(refiner.camera, to.p));
+        if (apart > 0.25 * refiner.tolerance_px) halve(refiner, evaluator, c, from, to, apart, depth - 1, out);
+      };
+      fill(a, first);
+      out.points.push_back(first);
+      fill(first, second);
+      out.points.push_back(second);
+      fill(second, b);
+      return;
+    }
+  }
   std::optional<CurvePoint> middle;
   for (const double share : kShares) {
     middle = point_between(evaluator, refiner.viewer, c, a, b, glm::mix(a.p, b.p, share));
@@ -186,6 +203,7 @@ void drop_backward(FieldCurve& curve) {
 
 void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
   drop_rough(curve);
+  stats.rough += std::count_if(curve.points.begin(), curve.points.end(), [](const CurvePoint& point) { return point.rough; });
   drop_backward(curve);
   const size_t n = curve.points.size();
   const std::vector<double> sagitta = sagittas(curve, refiner.camera);
@@ -233,7 +251,6 @@ FieldCurves trace_field_curves(const Field& field, const Camera& camera, const V
   const CellSearch search{field, camera, viewer, grid, result.level, {0.0, settings.threshold}, settings.threshold > 0.0 ? 3u : 1u};
   CellResult found = search_cells(search, how);
   result.cells = found.cells;
-  result.rough = found.rough;
   result.unsettled = found.unsettled;
   result.unsettled_cuts = 1 << kSettlingCuts;
   const Refiner refiner{field, camera, viewer, settings.tolerance_px, bounds.radius()};

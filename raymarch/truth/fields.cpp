@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "raymarch/truth/field_curves.h"
 #include "raymarch/truth/field_visibility.h"
@@ -12,13 +13,84 @@
 namespace limn {
 namespace {
 
+constexpr double kTouch = 1e-6;  // of the extent: objects that share less depth touch
+
 /// Everything in solver space.
 struct SolvedScene {
   glm::dvec3 origin{0.0};  ///< World.
   Camera camera{};
   double extent = 1.0;
   std::vector<Field> fields{};
+  /// Objects that overlap are one body, whose seams are creases like any other.
+  std::vector<std::vector<size_t>> bodies{};
+  std::vector<Field> body_fields{};
+  std::vector<size_t> body_of{};  ///< Of each object.
 };
+
+/// Some place in the box is inside the field by more than `depth`.
+bool reaches_inside(FieldEvaluator& evaluator, const Box& box, double depth, int cuts) {
+  if (evaluator.bounds(box).lower > -depth) return false;
+  const glm::dvec3 middle = box.center();
+  if (evaluator.value(middle) < -depth) return true;
+  if (cuts == 0) return false;
+  for (int i = 0; i < 8; ++i) {
+    Box child = box;
+    for (int axis = 0; axis < 3; ++axis) ((i >> axis & 1) ? child.lower : child.upper)[axis] = middle[axis];
+    if (reaches_inside(evaluator, child, depth, cuts - 1)) return true;
+  }
+  return false;
+}
+
+/// Two fields share space. What only touches does not, nor what shares less than some hundredth of its size.
+bool overlap(const Field& a, const Field& b, double extent) {
+  const Box common = intersect(a.traits().bounds, b.traits().bounds);
+  if (!a.traits().bounds.finite() || !b.traits().bounds.finite() || common.empty()) return false;
+  FieldEvaluator both(combine(Csg::intersection, a, b));
+  return reaches_inside(both, common, kTouch * extent, 6);
+}
+
+/// Joins objects that overlap. What has no bounds stays alone.
+void find_bodies(SolvedScene& solved) {
+  const size_t count = solved.fields.size();
+  std::vector<size_t> group(count);
+  for (size_t i = 0; i < count; ++i) group[i] = i;
+  const auto meet = [&](size_t i, size_t j) { return overlap(solved.fields[i], solved.fields[j], solved.extent); };
+  for (size_t i = 0; i < count; ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      if (group[i] == group[j] || !meet(i, j)) continue;
+      const size_t from = std::max(group[i], group[j]), to = std::min(group[i], group[j]);
+      std::replace(group.begin(), group.end(), from, to);
+    }
+  }
+  solved.body_of.resize(count);
+  for (size_t i = 0; i < count; ++i) {
+    if (group[i] == i) solved.bodies.emplace_back();
+    solved.body_of[i] = group[i] == i ? solved.bodies.size() - 1 : solved.body_of[group[i]];
+    solved.bodies[solved.body_of[i]].push_back(i);
+  }
+  for (const std::vector<size_t>& body : solved.bodies) {
+    std::vector<Field> parts;
+    for (const size_t i : body) parts.push_back(solved.fields[i]);
+    solved.body_fields.push_back(combine(Csg::union_, parts));
+  }
+}
+
+/// Which object of a body a point lies on: where two of them meet, the one with that normal.
+int object_at(std::vector<FieldEvaluator>& evaluators, const std::vector<size_t>& body, const glm::dvec3& p, const glm::dvec3& normal,
+              double extent) {
+  if (body.size() == 1) return static_cast<int>(body[0] + 1);
+  double least = std::numeric_limits<double>::infinity(), best_match = -2.0;
+  for (const size_t i : body) least = std::min(least, std::fabs(evaluators[i].value(p)));
+  size_t best = body[0];
+  for (const size_t i : body) {
+    const FieldJet jet = evaluators[i].jet(p);
+    const double match = glm::dot(jet.gradient, normal) / std::max(glm::length(jet.gradient), 1e-300);
+    if (std::fabs(jet.value) > least + 1e-9 * extent || match <= best_match) continue;
+    best_match = match;
+    best = i;
+  }
+  return static_cast<int>(best + 1);
+}
 
 SolvedScene to_solver_space(const Scene& scene, const Camera& camera) {
   SolvedScene solved;
@@ -27,6 +99,7 @@ SolvedScene to_solver_space(const Scene& scene, const Camera& camera) {
   solved.camera = moved(camera, solved.origin);
   solved.extent = box.finite() && box.radius() > 0.0 ? box.radius() : std::max(1e-6, glm::length(solved.camera.eye));
   for (const SceneObject& object : scene.objects) solved.fields.push_back(translate(std::get<Field>(object.source), -solved.origin));
+  find_bodies(solved);
   return solved;
 }
 
@@ -68,11 +141,44 @@ CurvePoint curve_point(const TracedPoint& q, const glm::dvec3& uphill) {
   return point;
 }
 
-TracedPoint point_on_step(const std::vector<Field>& fields, const Camera& camera, const Viewer& viewer, double threshold,
-                          const TracedCurve& curve, size_t i, double t) {
+/// A curve of a body, cut where it goes from one object to the next.
+void add_traced(const SolvedScene& solved, const Viewer& viewer, std::vector<FieldEvaluator>& evaluators, const std::vector<size_t>& body,
+                const FieldCurve& curve, std::vector<TracedCurve>& curves) {
+  const CurveKind kind = curve.c == 0.0 ? CurveKind::silhouette : CurveKind::inner;
+  const size_t n = curve.points.size();
+  std::vector<int> objects(n);
+  for (size_t i = 0; i < n; ++i) {
+    const CurvePoint& point = curve.points[i];
+    objects[i] = object_at(evaluators, body, point.p, kind == CurveKind::silhouette ? point.high : point.low, solved.extent);
+  }
+  const auto change = std::adjacent_find(objects.begin(), objects.end(), std::not_equal_to<>());
+  const bool whole = change == objects.end();
+  const size_t start = whole || !curve.closed ? 0 : static_cast<size_t>(change - objects.begin()) + 1;
+  TracedCurve traced{kind, objects[start], whole && curve.closed, {}};
+  for (size_t k = 0; k < n; ++k) {
+    const size_t i = (start + k) % n;
+    traced.points.push_back(traced_point(curve.points[i], kind, solved.camera, viewer));
+    if (objects[i] == traced.object) continue;
+    const TracedPoint joint = traced.points.back();
+    curves.push_back(std::move(traced));
+    traced = {kind, objects[i], false, {joint}};
+  }
+  if (!whole && curve.closed) traced.points.push_back(traced_point(curve.points[start], kind, solved.camera, viewer));
+  if (traced.points.size() > 1) curves.push_back(std::move(traced));
+}
+
+std::string name_of(const Scene& scene, const std::vector<size_t>& body) {
+  std::string name;
+  for (const size_t i : body) {
+    const std::string& own = scene.objects[i].name;
+    name += (name.empty() ? "" : " and ") + (own.empty() ? fmt::format("object {}", i + 1) : own);
+  }
+  return name;
+}
+
+TracedPoint point_on_step(const SolvedScene& solved, const Viewer& viewer, double threshold, const TracedCurve& curve, size_t i, double t) {
   const TracedPoint &a = curve.points[i], &b = curve.points[(i + 1) % curve.points.size()];
-  const Field& field = fields[static_cast<size_t>(curve.object - 1)];
-  FieldEvaluator whole(field);
+  FieldEvaluator whole(solved.body_fields[solved.body_of[static_cast<size_t>(curve.object - 1)]]);
   const Box around = dilate(include(include(Box{}, a.p), b.p), kFanReach * glm::distance(a.p, b.p));
   FieldEvaluator evaluator(whole.restricted(around));
   const double c = curve.kind == CurveKind::silhouette ? 0.0 : threshold;
@@ -81,7 +187,7 @@ TracedPoint point_on_step(const std::vector<Field>& fields, const Camera& camera
   const TracedPoint& nearer = t < 0.5 ? a : b;
   CurvePoint point = found ? *found : curve_point(nearer, {});
   if (!found) point.p = chord_point;
-  TracedPoint q = traced_point(point, curve.kind, camera, viewer);
+  TracedPoint q = traced_point(point, curve.kind, solved.camera, viewer);
   if (curve.kind == CurveKind::inner) q.outward = nearer.outward;
   return q;
 }
@@ -133,24 +239,24 @@ BorderTruth solve_truth_on_fields(const Scene& scene, const Camera& camera, cons
 
   std::vector<TracedCurve> curves;
   double unrefined_px = 0.0;
-  for (size_t i = 0; i < solved.fields.size(); ++i) {
-    const FieldCurves found = trace_field_curves(solved.fields[i], solved.camera, viewer, trace, how);
-    curve_notes(found, scene.objects[i].name.empty() ? fmt::format("object {}", i + 1) : scene.objects[i].name, truth.notes);
+  std::vector<FieldEvaluator> evaluators;
+  for (const Field& field : solved.fields) evaluators.emplace_back(field);
+  for (size_t i = 0; i < solved.bodies.size(); ++i) {
+    const FieldCurves found = trace_field_curves(solved.body_fields[i], solved.camera, viewer, trace, how);
+    curve_notes(found, name_of(scene, solved.bodies[i]), truth.notes);
     unrefined_px = std::max(unrefined_px, found.worst_unrefined_px);
     for (const FieldCurve& curve : found.curves) {
-      TracedCurve traced{curve.c == 0.0 ? CurveKind::silhouette : CurveKind::inner, static_cast<int>(i + 1), curve.closed, {}};
-      for (const CurvePoint& point : curve.points) traced.points.push_back(traced_point(point, traced.kind, solved.camera, viewer));
-      (traced.kind == CurveKind::silhouette ? truth.contour_generators : truth.level_curves) += curve.closed;
-      curves.push_back(std::move(traced));
+      (curve.c == 0.0 ? truth.contour_generators : truth.level_curves) += curve.closed;
+      add_traced(solved, viewer, evaluators, solved.bodies[i], curve, curves);
     }
-    report(how, 0.5 * static_cast<double>(i + 1) / static_cast<double>(solved.fields.size()));
+    report(how, 0.5 * static_cast<double>(i + 1) / static_cast<double>(solved.bodies.size()));
   }
 
   const FieldOccluders occluders(solved.fields, solved.camera, solved.extent);
   CurveScene curve_scene{solved.camera};
   curve_scene.blocked = [&](const TracedPoint& point, int object) { return occluders.blocked(point, object); };
   curve_scene.between = [&](const TracedCurve& curve, size_t i, double t) {
-    return point_on_step(solved.fields, solved.camera, viewer, settings.threshold, curve, i, t);
+    return point_on_step(solved, viewer, settings.threshold, curve, i, t);
   };
   if (solved.fields.size() > 1) {
     curve_scene.others = [&](const glm::dvec3& p, int object) { return occluders.others(p, object); };

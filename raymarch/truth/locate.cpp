@@ -222,4 +222,51 @@ std::optional<CurvePoint> point_between(FieldEvaluator& evaluator, const Viewer&
   return {};
 }
 
+namespace {
+
+/// Across N and the gradient of N.V, or along the edge where two sides meet.
+glm::dvec3 tangent_at(FieldEvaluator& evaluator, const Viewer& viewer, const CurvePoint& point) {
+  if (point.crease) return unit(glm::cross(point.high, point.low));
+  const FieldJet jet = evaluator.jet(point.p);
+  const double length = glm::length(jet.gradient);
+  const glm::dvec3 n = jet.gradient / length, v = viewer.toward_eye(point.p);
+  const double facing = glm::dot(n, v);
+  glm::dvec3 slope = (jet.hessian * v - facing * (jet.hessian * n)) / length;
+  if (viewer.facing.projection == Projection::perspective) slope += (facing * v - n) / glm::length(viewer.facing.eye - point.p);
+  return unit(glm::cross(n, slope));
+}
+
+/// The curve's point beside `guess`, which lies along the tangent from `from`.
+std::optional<CurvePoint> beside(FieldEvaluator& evaluator, const Viewer& viewer, double c, const CurvePoint& from,
+                                 const glm::dvec3& tangent, const glm::dvec3& guess) {
+  const double away = glm::length(guess - from.p);
+  std::optional<CurvePoint> found;
+  if (!from.crease) {
+    found = polish(evaluator, viewer, c, guess, 0.5 * away);
+  } else {
+    const glm::dvec3 way = unit(from.high + from.low);
+    for (const double inward : {1.0, -1.0}) {
+      if (!found) found = search_fan(evaluator, viewer, c, guess, 0.2 * away, inward * way, glm::cross(tangent, way));
+    }
+  }
+  if (!found || found->crease != from.crease || !(glm::length(found->p - guess) < 0.5 * away)) return {};
+  return found;
+}
+
+}  // namespace
+
+std::optional<CornerSides> close_in(FieldEvaluator& evaluator, const Viewer& viewer, double c, const CurvePoint& first,
+                                    const CurvePoint& second) {
+  const glm::dvec3 u = tangent_at(evaluator, viewer, first), v = tangent_at(evaluator, viewer, second), between = second.p - first.p;
+  const double uv = glm::dot(u, v), determinant = 1.0 - uv * uv, length = glm::length(between);
+  if (!(determinant > 1e-6)) return {};
+  const double along_u = (glm::dot(between, u) - uv * glm::dot(between, v)) / determinant;
+  const double along_v = (uv * glm::dot(between, u) - glm::dot(between, v)) / determinant;
+  if (!(std::max(std::fabs(along_u), std::fabs(along_v)) < 3.0 * length)) return {};
+  const auto a = beside(evaluator, viewer, c, first, u, first.p + 0.5 * along_u * u);
+  const auto b = beside(evaluator, viewer, c, second, v, second.p + 0.5 * along_v * v);
+  if (!a || !b || !(glm::length(a->p - b->p) < 0.9 * length)) return {};
+  return CornerSides{*a, *b};
+}
+
 }  // namespace limn

@@ -58,4 +58,12 @@ inline constexpr double kFanReach = 18.0;
 std::optional<CurvePoint> point_between(FieldEvaluator& evaluator, const Viewer& viewer, double c, const CurvePoint& a, const CurvePoint& b,
                                         const glm::dvec3& middle);
 
+/// Where a smooth stretch of the curve that holds one point meets the crease that holds the other, by their tangents, and a point of either
+/// half way to there. Nothing where the tangents miss each other or the points are not found.
+struct CornerSides {
+  CurvePoint by_first{}, by_second{};
+};
+std::optional<CornerSides> close_in(FieldEvaluator& evaluator, const Viewer& viewer, double c, const CurvePoint& first,
+                                    const CurvePoint& second);
+
 }  // namespace limn

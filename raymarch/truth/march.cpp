@@ -85,7 +85,6 @@ class Marcher {
     if (auto polished = polish(evaluator_, viewer_, level_, point.p, side_)) {
       point = *polished;
     } else {
-      ++output_.rough;
       point.rough = true;
       point.high = point.low = glm::normalize(start.gradient + end.gradient);
     }

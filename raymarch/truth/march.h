@@ -36,7 +36,6 @@ using FamilyMask = unsigned;  ///< Bit i: family i.
 
 struct CellOutput {
   std::array<CellCurves, kCurveFamilies> families{};
-  std::int64_t rough = 0;
 };
 
 /// So many cells around the marched one is the field evaluated.

@@ -45,9 +45,10 @@ function pointsOf(cells, metric) {
   });
 }
 
+// The analytic surface is what models stand for, and no choice beside them.
 function paretoFront(points, cost) {
   const front = [];
-  for (const point of [...points].sort((a, b) => a[cost] - b[cost] || a.error - b.error || a.model - b.model)) {
+  for (const point of points.filter(one => !study.models[one.model].analytic).sort((a, b) => a[cost] - b[cost] || a.error - b.error || a.model - b.model)) {
     if (!front.length || point.error < front.at(-1).error) front.push(point);
   }
   return front;
@@ -268,7 +269,7 @@ function orderList(items, theme) {
 }
 
 function say(want, points) {
-  const within = points.filter(point => point.error <= study.tolerance).sort((a, b) => a.ms - b.ms)[0];
+  const within = points.filter(point => point.error <= study.tolerance && !study.models[point.model].analytic).sort((a, b) => a.ms - b.ms)[0];
   const all = new Set(study.cells.filter(cell => cell[1] === want.drawing).map(cell => cell[0])).size;
   let words = `${points.length} of ${all} models.`;
   if (want.metric.unit === "px" && want.metric.name.includes("displacement") && points.length) {

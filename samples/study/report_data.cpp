@@ -39,11 +39,24 @@ std::string spaced(std::string text) {
   return text;
 }
 
-std::string parameters_text(const std::map<std::string, std::string>& parameters) {
-  std::string text;
-  for (const auto& [name, value] : parameters) text += (text.empty() ? "" : ", ") + spaced(name) + " " + value;
-  return text;
-}
+// Those that tell one drawing from another, and the threshold: what is the same everywhere is in the call.
+struct DrawingNames {
+  std::map<std::string, std::map<std::string, std::set<std::string>>> values{};  ///< By method and parameter.
+
+  explicit DrawingNames(const std::vector<const StudyRow*>& rows) {
+    for (const StudyRow* row : rows) {
+      for (const auto& [name, value] : row->method_parameters) values[row->method][name].insert(value);
+    }
+  }
+  std::string parameters(const StudyRow& row) const {
+    std::string text;
+    for (const auto& [name, value] : row.method_parameters) {
+      if (name != "threshold" && values.at(row.method).at(name).size() < 2) continue;
+      text += (text.empty() ? "" : ", ") + spaced(name) + " " + value;
+    }
+    return text;
+  }
+};
 
 bool is_lower_better(const std::string& name) {
   const Metric* best = nullptr;
@@ -68,6 +81,7 @@ bool row_less(const StudyRow& a, const StudyRow& b) {
 
 struct Collector {
   ReportData& data;
+  DrawingNames names;
   std::map<std::tuple<std::string, std::string>, size_t> models{};  ///< By series and resolution.
   std::map<std::string, size_t> series{};
   std::map<std::string, size_t> drawings{};
@@ -105,7 +119,7 @@ struct Collector {
   void add_drawings(const std::vector<const StudyRow*>& rows) {
     std::map<std::string, ReportDrawing> found;
     for (const StudyRow* row : rows) {
-      ReportDrawing drawing{row->method, parameters_text(row->method_parameters)};
+      ReportDrawing drawing{row->method, names.parameters(*row)};
       const auto threshold = row->method_parameters.find("threshold");
       if (threshold != row->method_parameters.end()) drawing.threshold = std::strtod(threshold->second.c_str(), nullptr);
       found.try_emplace(drawing.title(), drawing);
@@ -119,7 +133,7 @@ struct Collector {
   void add_cell_row(const StudyRow& row) {
     const auto [place, is_new] = cells.try_emplace(row.key, data.cells.size());
     if (is_new) {
-      const size_t drawing = drawings.at(ReportDrawing{row.method, parameters_text(row.method_parameters)}.title());
+      const size_t drawing = drawings.at(ReportDrawing{row.method, names.parameters(row)}.title());
       data.cells.push_back(
           {row.key, models.at({series_of(row), resolution_text(row)}), drawing, row.view, row.time_ms(), row.bytes, row.failed});
     }
@@ -217,7 +231,7 @@ ReportData collect_report(const StudyHead& head, const std::vector<StudyRow>& ro
   for (const StudyRow& row : rows) sorted.push_back(&row);
   std::sort(sorted.begin(), sorted.end(), [](const StudyRow* a, const StudyRow* b) { return row_less(*a, *b); });
   ReportData data;
-  Collector collector{data};
+  Collector collector{data, DrawingNames(sorted)};
   collector.add_models(head, sorted);
   collector.add_drawings(sorted);
   for (const StudyRow* row : sorted) collector.add_cell_row(*row);

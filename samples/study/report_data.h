@@ -31,6 +31,7 @@ struct ReportModel {
   double resolution = std::numeric_limits<double>::quiet_NaN();
   std::string surface{};
   std::map<std::string, std::string> parameters{};
+  bool is_analytic() const { return surface == "analytic"; }
 };
 
 /// A method with its parameters.

@@ -52,7 +52,7 @@ Json front_json(const ReportData& data, Cost cost) {
   Json all = Json::array();
   if (data.drawings.empty()) return all;
   const std::vector<ModelPoint> points = points_of(data, data.main_drawing, data.main_metric);
-  for (const size_t i : pareto_front(points, cost)) all.push_back(points[i].model);
+  for (const size_t i : pareto_front(data, points, cost)) all.push_back(points[i].model);
   return all;
 }
 
@@ -81,8 +81,10 @@ std::string study_data_json(const ReportData& data) {
   json["series"] = series_json(data);
   json["models"] = Json::array();
   for (size_t i = 0; i < data.models.size(); ++i)
-    json["models"].push_back(
-        {{"series", data.models[i].series}, {"name", data.title(i)}, {"resolution", short_number(data.models[i].resolution)}});
+    json["models"].push_back({{"series", data.models[i].series},
+                              {"name", data.title(i)},
+                              {"resolution", short_number(data.models[i].resolution)},
+                              {"analytic", data.models[i].is_analytic()}});
   json["drawings"] = Json::array();
   for (const ReportDrawing& drawing : data.drawings)
     json["drawings"].push_back({{"method", drawing.method}, {"parameters", drawing.parameters}});

@@ -90,11 +90,11 @@ std::vector<size_t> pareto_front(std::span<const double> costs, std::span<const 
   return front;
 }
 
-std::vector<size_t> pareto_front(const std::vector<ModelPoint>& points, Cost cost) {
+std::vector<size_t> pareto_front(const ReportData& data, const std::vector<ModelPoint>& points, Cost cost) {
   std::vector<double> costs, errors;
   for (const ModelPoint& point : points) {
     costs.push_back(cost_of(point, cost));
-    errors.push_back(point.median);
+    errors.push_back(data.models[point.model].is_analytic() ? std::numeric_limits<double>::quiet_NaN() : point.median);
   }
   return pareto_front(costs, errors);
 }

@@ -26,7 +26,8 @@ double cost_of(const ModelPoint& point, Cost cost);
 
 /// Indices of those that nothing beats in both, cheapest first; of two that are the same in both, the first.
 std::vector<size_t> pareto_front(std::span<const double> costs, std::span<const double> errors);
-std::vector<size_t> pareto_front(const std::vector<ModelPoint>& points, Cost cost);
+/// The front of models; the analytic surface is drawn, but it is what models stand for, and no choice beside them.
+std::vector<size_t> pareto_front(const ReportData& data, const std::vector<ModelPoint>& points, Cost cost);
 
 /// error = factor * resolution^order, by least squares of the logarithms.
 struct OrderFit {

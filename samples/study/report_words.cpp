@@ -171,7 +171,9 @@ struct Words {
 const ModelPoint* cheapest_within(const std::vector<ModelPoint>& points, double tolerance, Cost cost) {
   const ModelPoint* best = nullptr;
   for (const ModelPoint& point : points) {
-    if (point.median <= tolerance && (best == nullptr || cost_of(point, cost) < cost_of(*best, cost))) best = &point;
+    if (point.median <= tolerance &&
+        (best == nullptr || std::make_pair(cost_of(point, cost), point.time_ms) < std::make_pair(cost_of(*best, cost), best->time_ms)))
+      best = &point;
   }
   return best;
 }
@@ -179,11 +181,15 @@ const ModelPoint* cheapest_within(const std::vector<ModelPoint>& points, double 
 std::vector<std::string> study_sentences(const StudyHead& head, const ReportData& data) {
   if (data.cells.empty()) return {"The study has no cell yet: there is nothing to say."};
   Words words{data, points_of(data, data.main_drawing, data.main_metric)};
+  const size_t all = words.points.size();
+  // What models stand for is no choice beside them.
+  std::erase_if(words.points, [&](const ModelPoint& point) { return data.models[point.model].is_analytic(); });
   words.out.push_back(capital(first_sentence(head, data)));
   const ReportMetric* metric = data.find_metric(data.main_metric);
   const bool in_pixels = metric != nullptr && metric->name.find("displacement") != std::string::npos && metric->unit == "px";
   if (words.points.empty()) {
-    words.out.push_back("No cell has an error to show, so that nothing can be said of accuracy.");
+    words.out.push_back(all > 0 ? "Only the analytic surface itself was measured: there is no model to choose."
+                                : "No cell has an error to show, so that nothing can be said of accuracy.");
   } else {
     if (data.drawings.size() > 1)
       words.out.push_back("What follows is for " + data.drawings[data.main_drawing].title() + "; the page below can show the others.");

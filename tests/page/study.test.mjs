@@ -67,7 +67,7 @@ async function thePageReckonsAsTheProgramDoes({ page }) {
 
 async function aSeriesCanBeTakenAway(opened) {
   const { page } = opened, before = await marksOf(page);
-  const box = page.locator(".filters input").first();
+  const box = page.locator(".filters input").last();
   await box.focus();
   await drawnAnew(opened, () => page.keyboard.press("Space"));
   const without = await marksOf(page);
@@ -118,7 +118,9 @@ async function aPointShowsItsNumbersAndPicture({ page }) {
 
 async function itFitsTheScreen({ page }) {
   const [wide, screen] = await page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.clientWidth]);
-  assert.ok(wide <= screen, `the page is ${wide} px wide on a screen of ${screen} px`);
+  const beyond = await page.$$eval("body *", (all, edge) => all.filter(one => !one.closest(".scroll") && one.getBoundingClientRect().right > edge + 1)
+    .map(one => `${one.tagName}.${one.getAttribute("class")}`).slice(0, 5), screen);
+  assert.ok(wide <= screen, `the page is ${wide} px wide on a screen of ${screen} px: ${beyond.join(" ")}`);
   const cut = await page.$$eval(".plot svg", all => all.filter(svg => svg.getBoundingClientRect().width > svg.parentElement.clientWidth + 1).length);
   assert.equal(cut, 0, "charts wider than their places");
 }

@@ -233,6 +233,30 @@ TEST(StudyReport, CheapestWithinHalfAPixelIsWhatALoopFinds) {
       << all_words(study);
 }
 
+TEST(StudyReport, TheAnalyticSurfaceIsDrawnButNoChoice) {
+  SyntheticStudy study = synthetic_study({.views = 2, .thresholds = {0.4}});
+  StudyRow row = study.rows.front();
+  row.surface = "analytic";
+  row.surface_parameters.clear();
+  row.resolution = NAN;
+  row.key = "analytic";
+  row.metric = "inner_displacement_rms";
+  row.value = 0.0;
+  row.failed.clear();
+  row.build_ms = row.trace_ms = row.border_ms = 0.1;
+  row.bytes = 1;
+  study.rows.push_back(row);
+  const ReportData data = collect_report(study.head, study.rows);
+  const std::vector<ModelPoint> points = points_of(data, data.main_drawing, data.main_metric);
+  EXPECT_EQ(points.size(), 42u);  // 41 models with numbers, and it
+  for (const Cost cost : {Cost::time, Cost::memory}) {
+    const std::vector<size_t> front = pareto_front(data, points, cost);
+    EXPECT_GT(front.size(), 2u);
+    for (const size_t i : front) EXPECT_FALSE(data.models[points[i].model].is_analytic());
+  }
+  EXPECT_EQ(all_words(study).find("is analytic"), std::string::npos);
+}
+
 TEST(StudyReport, WordsNameWhatNeverGetsThereWhatFailedAndWhetherTruthIsExact) {
   SyntheticStudy study = synthetic_study({});
   for (StudyRow& row : study.rows) {

@@ -111,6 +111,20 @@ RC_GTEST_PROP(JumpFlood, NoBlockWithinReachIsLeftOut, ()) {
   RC_CLASSIFY(!all, "some blocks left out");
 }
 
+/// A crossing is kept with one of its two pixels; where they belong to different blocks, both blocks lie beside it.
+TEST(JumpFlood, BothBlocksLieBesideACrossingBetweenThem) {
+  const Silhouette empty{.inside = {200, 40, 0}, .to_right = {200, 40, kNoCrossing}, .downwards = {200, 40, kNoCrossing}, .crossings = 1};
+  Silhouette across = empty, down = empty;
+  across.to_right.at(kBlockWidth_px - 1, 3) = 5;
+  down.downwards.at(3, kBlockHeight_px - 1) = 5;
+  EXPECT_TRUE(blocks_beside_crossings(across).at(0, 0));
+  EXPECT_TRUE(blocks_beside_crossings(across).at(1, 0));
+  EXPECT_TRUE(blocks_beside_crossings(down).at(0, 0));
+  EXPECT_TRUE(blocks_beside_crossings(down).at(0, 1));
+  EXPECT_FALSE(blocks_beside_crossings(across).any(2, 0, 3, 4));
+  EXPECT_FALSE(blocks_beside_crossings(down).any(0, 2, 3, 4));
+}
+
 /// A single crossing is right everywhere in reach, at any distance and in any direction, and nowhere else: no block stops it on its way.
 TEST(JumpFlood, OneCrossingReachesEveryPixelWithinReach) {
   for (const auto& [x, y] : {std::pair{0, 0}, {63, 7}, {64, 8}, {150, 60}, {299, 119}}) {

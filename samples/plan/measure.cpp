@@ -25,8 +25,11 @@ double upper_distance(const BorderCurves& from, const CurveIndex& to, CurveKind 
   return distances[static_cast<size_t>(at)];
 }
 
+/// An inner border that lies where the other side has none but a silhouette bounds a band of ink that narrow: its error is the band's
+/// width. So an inner border's distance is that to any curve; a silhouette's is that to silhouettes.
 double error_px(const BorderCurves& measured, const BorderCurves& truth, CurveKind kind, const Camera& camera) {
-  const CurveIndex to_measured(measured, kind, kContinue_px), to_truth(truth, kind);
+  const std::optional<CurveKind> partners = kind == CurveKind::silhouette ? std::optional(kind) : std::nullopt;
+  const CurveIndex to_measured(measured, partners, kContinue_px), to_truth(truth, partners);
   return std::max(upper_distance(truth, to_measured, kind, camera), upper_distance(measured, to_truth, kind, camera));
 }
 

@@ -119,6 +119,17 @@ bool is_beaten(const Search& search, const PlanTrial& trial) {
   return best && trial.failed.empty() && trial.time_ms() > search.answer.trials[*best].time_ms();
 }
 
+/// Three rungs that fail, and the last no better than the first: finer ones only cost more.
+bool stands_still(const Search& search, size_t index) {
+  constexpr double kProgress = 0.7;
+  std::vector<double> errors;
+  for (const PlanTrial& trial : search.answer.trials) {
+    if (trial.ladder == index && trial.failed.empty() && !meets(trial, search.settings))
+      errors.push_back(trial.measured.of(search.settings.metric));
+  }
+  return errors.size() >= 3 && !(errors.back() < kProgress * errors[errors.size() - 3]);
+}
+
 void climb(Search& search, size_t index) {
   const Ladder ladder = search.answer.ladders[index];
   const int last = static_cast<int>(ladder.rungs.size()) - 1;
@@ -140,6 +151,11 @@ void climb(Search& search, size_t index) {
     }
     bracket.fails = rung;
     correction *= kTrust;
+    if (bracket.meets > last && stands_still(search, index)) {
+      search.answer.notes.push_back(
+          fmt::format("{} was given up at {}: finer ones come no nearer", ladder.title, ladder.words_at(static_cast<size_t>(rung))));
+      return;
+    }
     if (is_beaten(search, trial)) {
       search.answer.notes.push_back(fmt::format("{} was given up at {}: still {:.2f} px off, and slower than what meets the tolerance",
                                                 ladder.title, ladder.words_at(static_cast<size_t>(rung)),

@@ -369,14 +369,5 @@ TEST(StudyReport, ChartsSayWhatTheyShow) {
   }
 }
 
-// What the page is tested with in a browser; made by `--gtest_also_run_disabled_tests` with LIMN_STUDY_FOLDER in the environment.
-TEST(StudyReport, DISABLED_WritesAPageForTheBrowser) {
-  const char* folder = std::getenv("LIMN_STUDY_FOLDER");
-  ASSERT_NE(folder, nullptr);
-  const SyntheticStudy study = synthetic_study({});
-  write_synthetic_thumbnails(study.rows, folder);
-  write_study_report(study.head, study.rows, folder);
-}
-
 }  // namespace
 }  // namespace limn

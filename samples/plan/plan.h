@@ -84,9 +84,10 @@ BorderErrors predict_errors(const Ladder& ladder, size_t rung, const PlanView& v
 BorderErrors measure_errors(const SceneModel& model, const PlanView& view, double threshold, const ExecutionSettings& how,
                             double& trace_ms);
 
+/// `known`: trials of an earlier plan for the same scene, views and threshold (any tolerance), which are not made again.
 /// Throws InputError where no ladder is left.
 PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings, const ExecutionSettings& how,
-                     ProgressBar& bar);
+                     ProgressBar& bar, const std::vector<PlanTrial>& known = {});
 
 /// The answer in sentences with numbers, the choice first.
 std::vector<std::string> plan_sentences(const PlanAnswer& answer, const PlanSettings& settings);

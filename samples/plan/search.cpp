@@ -21,6 +21,7 @@ struct Search {
   const PlanSettings& settings;
   const ExecutionSettings& how;
   ProgressBar& bar;
+  const std::vector<PlanTrial>& known;
   PlanAnswer answer{};
 };
 
@@ -37,6 +38,9 @@ BorderErrors predicted(const Search& search, size_t ladder, size_t rung) {
 
 /// Builds and measures one rung. A rung that cannot be built fails with its reason.
 PlanTrial try_rung(Search& search, size_t ladder, size_t rung) {
+  for (const PlanTrial& trial : search.known) {
+    if (trial.ladder == ladder && trial.rung == rung) return trial;
+  }
   PlanTrial trial;
   trial.ladder = ladder;
   trial.rung = rung;
@@ -220,9 +224,9 @@ void choose(Search& search) {
 }  // namespace
 
 PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings, const ExecutionSettings& how,
-                     ProgressBar& bar) {
+                     ProgressBar& bar, const std::vector<PlanTrial>& known) {
   LIMN_CHECK(!views.empty());
-  Search search{scene, views, settings, how, bar};
+  Search search{scene, views, settings, how, bar, known};
   search.answer.ladders = ladders_of(scene, settings);
   if (search.answer.ladders.empty()) {
     throw InputError({{},

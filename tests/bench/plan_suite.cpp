@@ -61,13 +61,15 @@ struct Case {
   const SceneModel& reference;
   int view_index;
   std::map<std::string, Built>& finest;
+  std::vector<PlanTrial>& known;  ///< Of the other tolerances.
 };
 
 nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
   PlanSettings settings;
   settings.tolerance_px = tolerance_px;
   ProgressBar bar(false);
-  const PlanAnswer answer = make_plan(at.scene, {at.view}, settings, {}, bar);
+  const PlanAnswer answer = make_plan(at.scene, {at.view}, settings, {}, bar, at.known);
+  at.known.insert(at.known.end(), answer.trials.begin(), answer.trials.end());
   nlohmann::json row = {{"suite", "plan"}, {"scene", at.scene.name}, {"view", at.view_index}, {"tolerance_px", tolerance_px}};
   ++sums.plans;
   if (!answer.chosen) {
@@ -124,8 +126,9 @@ Sums run_scene(const SceneDescriptor& descriptor, const PlanBenchSettings& setti
     view.truth = solve_truth(scene, view.camera, {}, {});
     const StandIn reference = make_stand_in(scene, view.camera, std::int64_t{4} << 30, 1.0);
     std::map<std::string, Built> finest;
+    std::vector<PlanTrial> known;
     for (const double tolerance_px : kTolerances_px) {
-      rows.push_back(run_plan({scene, view, reference.model, index, finest}, tolerance_px, sums));
+      rows.push_back(run_plan({scene, view, reference.model, index, finest, known}, tolerance_px, sums));
       fmt::print(stderr, "{}\n", rows.back().dump());
     }
   }

@@ -11,7 +11,7 @@ namespace limn::bench {
 struct PlanBenchSettings {
   std::vector<std::string> scenes{};  ///< Empty: all.
   int views = 4;
-  int width_px = 1280, height_px = 720;
+  int width_px = 640, height_px = 360;
   std::FILE* table = stdout;
 };
 

@@ -22,7 +22,7 @@ inline double depth_of(const Camera& camera, const PointSample& sample) {
 
 /// Of the true border, the share that the model does not put within `tolerance_px`; the larger of silhouette's and inner border's.
 /// `reference` is a model as good as the truth. Places where even the reference shows no border between the two rays (bands narrower than
-/// the tolerance) have no say.
+/// the tolerance) cannot be told apart and count as right.
 inline double share_beyond(const SceneModel& model, const SceneModel& reference, const PlanView& view, double threshold,
                            double tolerance_px, PlanMetric metric) {
   const auto is_ink = [&](const PointSample& s) { return s.status == HitStatus::hit && double{s.n_dot_v} < threshold; };
@@ -39,6 +39,7 @@ inline double share_beyond(const SceneModel& model, const SceneModel& reference,
     double asked = 0.0, wrong = 0.0;
     for (size_t i = 0; i < inside.size(); ++i) {
       bool ok = true;
+      asked += 1.0;
       if (kind == CurveKind::inner) {
         if (!is_ink(true_in[i]) || is_ink(true_out[i])) continue;
         ok = is_ink(model_in[i]) && !is_ink(model_out[i]);
@@ -48,7 +49,6 @@ inline double share_beyond(const SceneModel& model, const SceneModel& reference,
         const auto is_near = [&](const PointSample& s) { return depth_of(view.camera, s) < 0.5 * (in + out); };
         ok = is_near(model_in[i]) && !is_near(model_out[i]);
       }
-      asked += 1.0;
       wrong += ok ? 0.0 : 1.0;
     }
     if (asked > 0.0) worst = std::max(worst, wrong / asked);

@@ -11,26 +11,49 @@ namespace {
 
 constexpr double kSpacing_px = 1.0;
 
-/// The 95th percentile of how far `from` lies from `to`; infinity where more than a twentieth has nothing near, 0 for nothing.
-double upper_distance(const BorderCurves& from, const CurveIndex& to, CurveKind kind, const Camera& camera) {
-  const double reach = search_reach_px(camera);
-  std::vector<double> distances;
-  for (const CurveSample& sample : within_picture(resample(from, kind, kSpacing_px), camera)) {
-    const std::optional<NearestPoint> nearest = to.nearest(sample.px, 0, reach);
-    distances.push_back(nearest ? nearest->distance_px : std::numeric_limits<double>::infinity());
-  }
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The 95th percentile; 0 of nothing.
+double upper_part(std::vector<double>& distances) {
   if (distances.empty()) return 0.0;
   const auto at = static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(distances.size() - 1));
   std::nth_element(distances.begin(), distances.begin() + at, distances.end());
   return distances[static_cast<size_t>(at)];
 }
 
-/// An inner border that lies where the other side has none but a silhouette bounds a band of ink that narrow: its error is the band's
-/// width. So an inner border's distance is that to any curve; a silhouette's is that to silhouettes.
+/// How wide the band of ink is at a point of its inner border. Where the other side has no inner border at all, that is what it is off by.
+double band_px(const CurveSample& sample, const CurveIndex& silhouettes, double reach) {
+  if (sample.kind == CurveKind::silhouette) return kInfinity;
+  const std::optional<NearestPoint> nearest = silhouettes.nearest(sample.px, 0, reach);
+  return nearest ? nearest->distance_px : kInfinity;
+}
+
+/// How far the true border is from the measured one, along its normals; what has no partner in reach counts as infinitely far.
+double missed_px(const BorderCurves& truth, const BorderCurves& measured, CurveKind kind, const Camera& camera) {
+  const CurveIndex partners(measured, kind, kContinue_px), silhouettes(truth, CurveKind::silhouette);
+  const double reach = search_reach_px(camera);
+  std::vector<double> distances;
+  for (const CurveSample& sample : within_picture(resample(truth, kind, kSpacing_px), camera)) {
+    const std::optional<double> moved = displacement_px(sample, partners, reach);
+    distances.push_back(std::min(moved ? std::abs(*moved) : kInfinity, band_px(sample, silhouettes, reach)));
+  }
+  return upper_part(distances);
+}
+
+/// How far the measured border is from the next true one.
+double false_px(const BorderCurves& measured, const BorderCurves& truth, CurveKind kind, const Camera& camera) {
+  const CurveIndex partners(truth, kind), silhouettes(measured, CurveKind::silhouette);
+  const double reach = search_reach_px(camera);
+  std::vector<double> distances;
+  for (const CurveSample& sample : within_picture(resample(measured, kind, kSpacing_px), camera)) {
+    const std::optional<NearestPoint> nearest = partners.nearest(sample.px, 0, reach);
+    distances.push_back(std::min(nearest ? nearest->distance_px : kInfinity, band_px(sample, silhouettes, reach)));
+  }
+  return upper_part(distances);
+}
+
 double error_px(const BorderCurves& measured, const BorderCurves& truth, CurveKind kind, const Camera& camera) {
-  const std::optional<CurveKind> partners = kind == CurveKind::silhouette ? std::optional(kind) : std::nullopt;
-  const CurveIndex to_measured(measured, partners, kContinue_px), to_truth(truth, partners);
-  return std::max(upper_distance(truth, to_measured, kind, camera), upper_distance(measured, to_truth, kind, camera));
+  return std::max(missed_px(truth, measured, kind, camera), false_px(measured, truth, kind, camera));
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ namespace {
 constexpr double kModelMs = 5.0, kFaceMs = 2e-3, kFieldFaceMs = 4e-3, kFieldFaceTermMs = 4e-4, kFaceBytes = 600.0;
 constexpr double kVoxelMs = 2.5e-4, kMeshVoxelMs = 1.2e-3, kVoxelBytes = 12.0, kGridBytes = 2.5e6;
 constexpr double kPictureMs = 3.0, kMeshRayMs = 3e-5, kGridRayMs = 1.6e-4, kFieldRayMs = 2e-4;
+constexpr double kTruthTermMs = 0.2;  // at 640x360
 /// What a further term adds to a field's cost, as a share of the first: most are skipped by bounds.
 constexpr double kTermShare = 0.1;
 /// Expected milliseconds that a kind of work must have done before its own speed counts more than what was thought of it.
@@ -101,6 +102,12 @@ SceneSize size_of(const Scene& scene, const SurfaceSettings& settings) {
   return size;
 }
 
+double truth_terms(const SceneSize& size) {
+  double terms = 0.0;
+  for (const SceneSize::Object& object : size.objects) terms += object.is_field ? object.faces * terms_factor(object) : 0.0;
+  return terms;
+}
+
 double faces_at_level(const SceneSize& size, int level) {
   double faces = 0.0;
   for (const SceneSize::Object& object : size.objects) faces += object.refines ? faces_of(object, level) : 0.0;
@@ -129,7 +136,7 @@ ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& setting
 }
 
 double Study::measure_ms() const { return 10.0 + pixels() * 1.5e-4; }
-double Study::truth_ms() const { return 100.0 + pixels() * 1e-3; }
+double Study::truth_ms() const { return 100.0 + pixels() * 1e-3 + kTruthTermMs * truth_terms * std::sqrt(pixels() / 230'400.0); }
 
 void CostLedger::learn(const std::string& kind, double expected_ms, double took_ms) {
   Entry& entry = entries_[kind];

@@ -25,6 +25,8 @@ struct SceneSize {
 SceneSize size_of(const Scene& scene, const SurfaceSettings& settings);
 
 ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& settings, double pixels);
+/// What truth has to look through: a field's cage, the richer the finer, times its terms.
+double truth_terms(const SceneSize& size);
 /// Faces that the objects which refine have at a level.
 double faces_at_level(const SceneSize& size, int level);
 

@@ -9,7 +9,8 @@
 #include "samples/compare/comparison.h"
 #include "samples/job.h"
 #include "samples/scene_facts.h"
-#include "samples/study/cost.h"
+#include "samples/study/axes.h"
+#include "samples/study/call.h"
 #include "samples/study/key.h"
 #include "sdf/error.h"
 #include "sdf/level_set.h"
@@ -17,67 +18,9 @@
 namespace limn {
 namespace {
 
-constexpr int kDefaultViews = 4, kDefaultLongestSide_px = 640;
-constexpr int kDefaultFinestLevel = 5;
-constexpr double kDefaultFaces = 200'000.0, kDefaultBuild_ms = 4000.0;  ///< No level beyond is a default.
-
-/// What a study varies, resolved.
-struct Axes {
-  std::vector<std::string> surfaces{};
-  std::vector<int> levels{};  ///< Empty where nothing is refined.
-  std::vector<int> voxels{};
-  std::vector<NormalKind> normals{};
-  std::vector<std::string> gradients{};
-  int remeshed_level = 0;  ///< Of mesh_level_set: there the grid is what is studied.
-};
-
-std::vector<std::string> default_surfaces(const Scene& scene) {
-  std::vector<std::string> surfaces;
-  for (const SurfaceDescriptor& kind : surface_kinds()) {
-    const bool field_as_grid = kind.about.name == "mesh_level_set" && all_are<Field>(scene);
-    if (!field_as_grid && why_not(kind, scene).empty()) surfaces.push_back(kind.about.name);
-  }
-  return surfaces;
-}
-
-bool has_limit_normals(const Scene& scene, const SurfaceSettings& settings) {
-  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
-    if (std::holds_alternative<Field>(object.source) || cage_scheme(object, settings)) return true;
-    const auto* mesh = std::get_if<MeshSource>(&object.source);
-    return mesh != nullptr && !mesh->mesh.corner_normals.empty();
-  });
-}
-
-Axes resolve_axes(const Options& options, const Scene& scene, const SurfaceSettings& settings, const SceneSize& size) {
-  Axes axes;
-  axes.surfaces = options.surfaces.empty() ? default_surfaces(scene) : options.surfaces;
-  const bool refines = faces_at_level(size, 0) > 0.0;
-  axes.levels = options.study.levels;
-  if (refines && axes.levels.empty()) {
-    axes.levels.push_back(0);
-    SurfaceSettings mesh = settings;
-    mesh.kind = "mesh";
-    for (mesh.level = 1; mesh.level <= kDefaultFinestLevel && faces_at_level(size, mesh.level) <= kDefaultFaces; ++mesh.level) {
-      if (expected_cost(size, mesh, 0.0).build_ms > kDefaultBuild_ms) break;
-      axes.levels.push_back(mesh.level);
-    }
-  }
-  if (!refines) axes.levels.clear();
-  axes.voxels = options.study.voxels.empty() ? std::vector<int>{16, 32, 64, 128, 256} : options.study.voxels;
-  axes.normals = options.study.normals;
-  if (axes.normals.empty()) {
-    axes.normals = {NormalKind::flat, NormalKind::vertex};
-    if (has_limit_normals(scene, settings)) axes.normals.push_back(NormalKind::limit);
-  }
-  axes.gradients = options.study.gradients;
-  for (const GradientDescriptor& gradient : gradients()) {
-    if (options.study.gradients.empty() && bands_carry(scene, gradient)) axes.gradients.push_back(gradient.about.name);
-  }
-  for (const int level : axes.levels) {
-    if (level == axes.levels.front() || faces_at_level(size, level) <= double{kAffordableFaces}) axes.remeshed_level = level;
-  }
-  return axes;
-}
+constexpr int kDefaultLongestSide_px = 640;
+// What is left to the defaults shall end within two minutes; predictions are right to a factor of two.
+constexpr double kDefaultStudy_ms = 60'000.0;
 
 struct ModelMaker {
   const Axes& axes;
@@ -211,64 +154,6 @@ void plan_reference(const Options& options, const SceneInput& input, SurfaceSett
       fmt::format("the limit surface (the cage refined {} times, its vertices and normals on the limit)", study.reference.level);
 }
 
-std::string list_text(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ",") + word;
-  return text;
-}
-
-// One view is the camera's own and wholly said; several are framed, so that only what was asked for can be said again.
-std::string camera_call(const Options& options, const Study& study) {
-  const Camera& camera = study.cameras.front();
-  if (study.cameras.size() == 1) {
-    const std::string call = resolved_call("study", options, {}, camera, {});
-    return call.substr(0, call.find(" --surface"));
-  }
-  std::string call = fmt::format("limn study {} --size {}x{}", options.input, camera.width_px, camera.height_px);
-  const auto vector = [](const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
-  if (options.target) call += " --target " + vector(*options.target);
-  if (options.up) call += " --up " + vector(*options.up);
-  if (options.fov_deg) call += fmt::format(" --fov {}", *options.fov_deg);
-  if (options.ortho_height) call += fmt::format(" --ortho {}", *options.ortho_height);
-  return call;
-}
-
-// Options that say the same study again, whatever was left to its choice.
-std::string call_text(const Options& options, const Axes& axes, const SurfaceSettings& settings, const Study& study) {
-  const auto numbers = [](const std::vector<int>& values) {
-    std::vector<std::string> words;
-    for (const int value : values) words.push_back(std::to_string(value));
-    return list_text(words);
-  };
-  std::string call = camera_call(options, study);
-  call += fmt::format(" --views {} --surfaces {}", study.cameras.size(), list_text(axes.surfaces));
-  if (!axes.levels.empty()) call += " --levels " + numbers(axes.levels);
-  call += " --voxels " + numbers(axes.voxels);
-  std::vector<std::string> normals;
-  for (const NormalKind kind : axes.normals) normals.emplace_back(name_of(kind));
-  call += " --normals " + list_text(normals) + " --gradients " + list_text(axes.gradients);
-  if (settings.half_width_voxels > 0.0) call += fmt::format(" --half-width {}", settings.half_width_voxels);
-  if (settings.scheme) call += fmt::format(" --scheme {}", name_of(*settings.scheme));
-  if (!options.grid.empty()) call += " --grid " + options.grid;
-  std::vector<std::string> methods;
-  for (const StudyMethod& method : study.methods) {
-    const std::string& name = method.call.method->about.name;
-    if (std::find(methods.begin(), methods.end(), name) == methods.end()) methods.push_back(name);
-  }
-  call += " --methods " + list_text(methods);
-  std::map<std::string, std::vector<std::string>> values;
-  for (const StudyMethod& method : study.methods) {
-    for (const auto& [name, value] : method.parameters) {
-      auto& all = values[name == "threshold" && !options.study.thresholds.empty() ? "--thresholds"
-                                                                                  : "--set " + method.call.method->about.name + "." + name];
-      if (std::find(all.begin(), all.end(), value) == all.end()) all.push_back(value);
-    }
-  }
-  for (const auto& [name, all] : values) call += " " + name + (name == "--thresholds" ? " " : "=") + list_text(all);
-  if (study.flicker) call += " --flicker";
-  return call;
-}
-
 void plan_cells(Study& study) {
   for (size_t model = 0; model < study.models.size(); ++model) {
     for (size_t view = 0; view < study.cameras.size(); ++view) {
@@ -290,28 +175,60 @@ void fill_head(const Options& options, const Axes& axes, const SurfaceSettings& 
   }
 }
 
+/// What the call and the scene say, the same however far the sweep goes.
+struct Given {
+  const Options& options;
+  const SceneInput& input;
+  SurfaceSettings settings{};
+  SceneSize size{};
+  std::string input_hash{};
+};
+
+Study plan_with(const Given& given, const DefaultAxes& defaults) {
+  const Options& options = given.options;
+  Study study;
+  const Box box = bounds(given.input.scene);
+  study.scene = given.input.scene;
+  study.longest_side = box.longest_side();
+  study.input_hash = given.input_hash;
+  study.flicker = options.study.flicker;
+  study.truth_terms = truth_terms(given.size);
+  const CameraSettings camera = study_camera(options, given.input);
+  const int views = options.study.views.value_or(defaults.views);
+  for (int view = 0; view < views; ++view) study.cameras.push_back(camera_of_view(camera, box, view, views));
+  const Axes axes = resolve_axes(options, study.scene, given.settings, given.size, defaults);
+  plan_methods(options, given.input, study);
+  plan_models(axes, given.size, given.settings, study);
+  plan_reference(options, given.input, given.settings, axes, given.size, study);
+  plan_cells(study);
+  fill_head(options, axes, given.settings, given.input, study);
+  return study;
+}
+
 }  // namespace
 
+double expected_ms(const Study& study) {
+  const auto views = static_cast<double>(study.cameras.size());
+  double thresholds = 0.0;
+  for (const StudyMethod& method : study.methods) thresholds += method.truth_threshold ? 1.0 : 0.0;
+  double sum =
+      study.truth_ms() * views * thresholds + study.reference_cost.build_ms + views * study.looks() * study.reference_cost.trace_ms;
+  for (const StudyModel& model : study.models) {
+    if (model.refused.empty()) sum += model.cost.build_ms + views * study.looks() * model.cost.trace_ms;
+  }
+  return sum + study.measure_ms() * static_cast<double>(study.cells.size());
+}
+
 Study plan_study(const Options& options, SceneInput input) {
-  Study study;
-  SurfaceSettings settings = surface_settings(options, input);
-  if (options.study.max_bytes) settings.max_bytes = *options.study.max_bytes;
+  Given given{options, input};
+  given.settings = surface_settings(options, input);
+  if (options.study.max_bytes) given.settings.max_bytes = *options.study.max_bytes;
   for (SceneObject& object : input.scene.objects) object.level.reset();
-  const Box box = bounds(input.scene);
-  study.scene = input.scene;
-  study.longest_side = box.longest_side();
-  study.input_hash = hash_of_input(input);
-  study.flicker = options.study.flicker;
-  const CameraSettings camera = study_camera(options, input);
-  const int views = options.study.views.value_or(kDefaultViews);
-  for (int view = 0; view < views; ++view) study.cameras.push_back(camera_of_view(camera, box, view, views));
-  const SceneSize size = size_of(study.scene, settings);
-  const Axes axes = resolve_axes(options, study.scene, settings, size);
-  plan_methods(options, input, study);
-  plan_models(axes, size, settings, study);
-  plan_reference(options, input, settings, axes, size, study);
-  plan_cells(study);
-  fill_head(options, axes, settings, input, study);
+  given.input_hash = hash_of_input(input);
+  given.size = size_of(input.scene, given.settings);
+  DefaultAxes defaults;
+  Study study = plan_with(given, defaults);
+  while (expected_ms(study) > kDefaultStudy_ms && shrink(options.study, defaults)) study = plan_with(given, defaults);
   name_cells(study);
   return study;
 }

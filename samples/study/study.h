@@ -57,6 +57,7 @@ struct Study {
   bool flicker = false;
   StudyHead head{};
   double longest_side = 0.0;  ///< World, of the scene.
+  double truth_terms = 0.0;   ///< How much there is to trace for truth: grows with what a field's surface has of shape.
 
   double looks() const { return flicker ? 5.0 : 1.0; }  ///< Pictures traced of each model in each view.
   double measure_ms() const;                            ///< Expected for one cell: ink, curves and metrics.
@@ -64,7 +65,11 @@ struct Study {
   double pixels() const { return double(cameras.front().width_px) * cameras.front().height_px; }
 };
 
-/// Throws InputError for a call that makes no study.
+/// Of all cells, on the machine that the constants were measured on.
+double expected_ms(const Study& study);
+
+/// What the call leaves open is chosen so that the study is expected to end within a minute. Throws InputError for a call that makes no
+/// study.
 Study plan_study(const Options& options, SceneInput input);
 
 /// A row of the cell that says who it is and nothing yet of what was measured.

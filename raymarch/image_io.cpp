@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -152,26 +153,42 @@ OIIO::ImageSpec exr_spec(const std::vector<Channel>& channels, const Picture& pi
   return spec;
 }
 
+/// Pixels that are brought into the file's types together: few enough that all their channels stay in the cache.
+constexpr size_t kTogether = 1024;
+
+/// Pixels [first, last) of one channel, each `pixel_size` bytes after the one before it.
+void write_channel(const Channel& channel, size_t first, size_t last, char* to, size_t pixel_size) {
+  // Float to 32-bit unsigned would be scaled to its range by OpenImageIO, so that one is copied here.
+  if (channel.type == OIIO::TypeDesc::UINT32) {
+    for (size_t i = first; i < last; ++i, to += pixel_size) {
+      const auto value = static_cast<std::uint32_t>(channel.values[i]);
+      std::memcpy(to, &value, sizeof value);
+    }
+    return;
+  }
+  if (channel.type == OIIO::TypeDesc::FLOAT) {
+    for (size_t i = first; i < last; ++i, to += pixel_size) std::memcpy(to, &channel.values[i], sizeof(float));
+    return;
+  }
+  LIMN_CHECK(channel.type == OIIO::TypeDesc::HALF);
+  std::uint16_t halves[kTogether];
+  OIIO::convert_pixel_values(OIIO::TypeDesc::FLOAT, &channel.values[first], OIIO::TypeDesc::HALF, halves, static_cast<int>(last - first));
+  for (size_t i = 0; i < last - first; ++i, to += pixel_size) std::memcpy(to, &halves[i], sizeof halves[i]);
+}
+
 /// Pixels in the file's own types, channel after channel within each pixel.
 std::vector<char> native_pixels(const std::vector<Channel>& channels, size_t pixel_count) {
   size_t pixel_size = 0;
   for (const Channel& channel : channels) pixel_size += channel.type.size();
   std::vector<char> bytes(pixel_size * pixel_count);
-  size_t offset = 0;
-  for (const Channel& channel : channels) {
-    // Float to 32-bit unsigned would be scaled to its range by OpenImageIO, so that one is copied here.
-    if (channel.type == OIIO::TypeDesc::UINT32) {
-      for (size_t i = 0; i < pixel_count; ++i) {
-        const auto value = static_cast<std::uint32_t>(channel.values[i]);
-        std::memcpy(&bytes[i * pixel_size + offset], &value, sizeof value);
-      }
-    } else {
-      OIIO::convert_image(1, static_cast<int>(pixel_count), 1, 1, channel.values.data(), OIIO::TypeDesc::FLOAT, sizeof(float),
-                          sizeof(float), OIIO::AutoStride, bytes.data() + offset, channel.type, static_cast<OIIO::stride_t>(pixel_size),
-                          static_cast<OIIO::stride_t>(pixel_size), OIIO::AutoStride);
+  tbb::parallel_for(size_t{0}, (pixel_count + kTogether - 1) / kTogether, [&](size_t part) {
+    const size_t first = part * kTogether, last = std::min(pixel_count, first + kTogether);
+    size_t offset = first * pixel_size;
+    for (const Channel& channel : channels) {
+      write_channel(channel, first, last, &bytes[offset], pixel_size);
+      offset += channel.type.size();
     }
-    offset += channel.type.size();
-  }
+  });
   return bytes;
 }
 

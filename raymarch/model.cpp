@@ -30,13 +30,15 @@ Surface build_surface(const SceneObject& object, const SurfaceSettings& settings
 
 }  // namespace
 
-SceneModel build_model(const Scene& scene, const SurfaceSettings& settings) {
+SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, ObjectMeshCache* cache) {
   SceneModel model;
+  if (cache) cache->kept.resize(scene.objects.size());
   model.bounds = bounds(scene);
   if (!model.bounds.empty()) model.render_origin = model.bounds.center();
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     SurfaceSettings own = settings;
+    if (cache) own.kept_mesh = &cache->kept[i];
     if (settings.progress) {
       own.progress = [&settings, i, count = static_cast<double>(scene.objects.size())](double part) {
         settings.progress((static_cast<double>(i) + part) / count);

@@ -103,6 +103,13 @@ struct Surface {
   CurvatureSource curvature{};
 };
 
+struct KeptMesh;  // raymarch/surface/object_mesh.h
+/// Meshes of a scene's objects, the last one made of each: `mesh` and `mesh_level_set` start from the same. Owned by whoever models one
+/// scene several times; used by one build_model at a time, and for one scene only (levels may differ).
+struct ObjectMeshCache {
+  std::vector<std::shared_ptr<const KeptMesh>> kept{};  ///< One an object; empty at first.
+};
+
 /// How to model, whatever the object. What a representation does not use is ignored by it.
 struct SurfaceSettings {
   std::string kind = "analytic";
@@ -114,8 +121,9 @@ struct SurfaceSettings {
   std::optional<Scheme> scheme{};       ///< Overrides the objects'.
   std::optional<NormalKind> normals{};  ///< Unset: limit where there is a limit surface or a field, else vertex.
   std::int64_t max_bytes = std::int64_t{8} << 30;
-  int max_steps = 10'000;                  ///< Per ray; beyond it the pixel's status is out_of_steps.
-  std::function<void(double)> progress{};  ///< 0..1 while building; may be empty.
+  int max_steps = 10'000;                                ///< Per ray; beyond it the pixel's status is out_of_steps.
+  std::function<void(double)> progress{};                ///< 0..1 while building; may be empty.
+  std::shared_ptr<const KeptMesh>* kept_mesh = nullptr;  ///< Of the object, in a cache: build_model sets it. May be null.
 };
 
 struct SurfaceDescriptor {
@@ -142,7 +150,8 @@ struct SceneModel {
 };
 
 /// Models every object. `settings.kind` empty: each in its natural representation. Throws InputError where one cannot be.
-SceneModel build_model(const Scene& scene, const SurfaceSettings& settings);
+/// `cache` spares meshing what was meshed before (build_ms counts it all the same); may be null.
+SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, ObjectMeshCache* cache = nullptr);
 
 /// Sums of bytes, build times and so on; `kind` is the common one or "mixed".
 SurfaceInfo total(const SceneModel& model);

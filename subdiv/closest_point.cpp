@@ -32,18 +32,23 @@ struct Search {
   double slack = 0.0;
 };
 
+/// Takes the triangle where it is closer; of equally close ones the lowest, so that the answer does not depend on the tree.
+bool take_closer(std::uint32_t triangle, Search& search) {
+  const glm::uvec3 t = search.data->triangles[triangle];
+  const std::vector<glm::dvec3>& p = search.data->positions;
+  const glm::dvec3 q = closest_on_triangle(search.point, p[t.x], p[t.y], p[t.z]);
+  const double squared = glm::dot(q - search.point, q - search.point);
+  if (squared > search.best_squared || (squared == search.best_squared && triangle >= search.triangle)) return false;
+  search.best_squared = squared, search.triangle = triangle, search.closest = q;
+  return true;
+}
+
 float query_radius(double distance, double slack) { return static_cast<float>(distance * (1.0 + 1e-6) + slack); }
 
 bool visit(RTCPointQueryFunctionArguments* arguments) {
   auto& search = *static_cast<Search*>(arguments->userPtr);
-  const glm::uvec3 t = search.data->triangles[arguments->primID];
-  const std::vector<glm::dvec3>& p = search.data->positions;
-  const glm::dvec3 q = closest_on_triangle(search.point, p[t.x], p[t.y], p[t.z]);
-  const double squared = glm::dot(q - search.point, q - search.point);
-  // Of equally close triangles the lowest wins, so that the answer does not depend on the tree.
-  if (squared > search.best_squared || (squared == search.best_squared && arguments->primID >= search.triangle)) return false;
-  search.best_squared = squared, search.triangle = arguments->primID, search.closest = q;
-  const float radius = query_radius(std::sqrt(squared), search.slack);
+  if (!take_closer(arguments->primID, search)) return false;
+  const float radius = query_radius(std::sqrt(search.best_squared), search.slack);
   if (!(radius < arguments->query->radius)) return false;
   arguments->query->radius = radius;
   return true;
@@ -98,20 +103,21 @@ ClosestPointData::~ClosestPointData() {
   if (device != nullptr) rtcReleaseDevice(static_cast<RTCDevice>(device));
 }
 
-std::optional<ClosestPoint> ClosestPointData::within(const glm::dvec3& point, double radius) const {
+std::optional<ClosestPoint> ClosestPointData::within(const glm::dvec3& point, double radius, std::span<const std::uint32_t> likely) const {
   if (triangles.empty()) return std::nullopt;
   Search search;
   search.data = this;
   search.point = point;
   const double finite_radius = std::min(radius, 1e30);
   search.best_squared = finite_radius * finite_radius;
+  for (const std::uint32_t triangle : likely) take_closer(triangle, search);
   // The tree holds the triangles rounded to single precision about the centre, and so is the query.
   search.slack = 4e-7 * (extent + glm::length(point - center));
   const glm::vec3 local(point - center);
   RTCPointQuery query;
   query.x = local.x, query.y = local.y, query.z = local.z;
   query.time = 0.0f;
-  query.radius = query_radius(finite_radius, search.slack);
+  query.radius = query_radius(std::sqrt(search.best_squared), search.slack);
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(static_cast<RTCScene>(scene), &query, &context, nullptr, &search);

@@ -43,13 +43,19 @@ class BlockFiller {
     const double reach = settings_.half_width + settings_.shell;
     for (int node = 0; node < kNodes; ++node) {
       double radius = reach;
+      // What is closest to a neighbour is nearly closest here.
+      std::array<std::uint32_t, 3> likely{};
+      size_t likely_count = 0;
       const glm::ivec3 at = node_at(node);
       for (int axis = 0; axis < 3; ++axis) {
         if (at[axis] == 0) continue;
         const int previous = node - (axis == 0 ? 64 : axis == 1 ? 8 : 1);
-        radius = std::min(radius, distances_[static_cast<size_t>(previous)] + 1.0001 * settings_.voxel_size);
+        const auto neighbour = static_cast<size_t>(previous);
+        radius = std::min(radius, distances_[neighbour] + 1.0001 * settings_.voxel_size);
+        if (std::isfinite(distances_[neighbour])) likely[likely_count++] = closest_[neighbour];
       }
-      const auto closest = distance_.within(world(node), radius);
+      const auto closest = distance_.within(world(node), radius, {likely.data(), likely_count});
+      closest_[static_cast<size_t>(node)] = closest ? closest->triangle : 0;
       distances_[static_cast<size_t>(node)] = closest ? closest->distance : std::numeric_limits<double>::infinity();
     }
   }
@@ -140,6 +146,7 @@ class BlockFiller {
   const BlockSettings& settings_;
   double gradient_bound_ = 0.0;
   std::array<double, kNodes> distances_{};
+  std::array<std::uint32_t, kNodes> closest_{};  ///< Triangles, where the distance is finite.
   std::array<int, kNodes> component_{};
   std::vector<int> members_;
   BlockResult result_;

@@ -2,6 +2,7 @@
 // Triangles arranged for distance, visibility and winding number. Used by the mesh-to-level-set files of this folder.
 
 #include <optional>
+#include <span>
 
 #include "subdiv/mesh_level_set.h"
 
@@ -18,7 +19,8 @@ struct ClosestPointData {
   ClosestPointData& operator=(const ClosestPointData&) = delete;
 
   /// The closest triangle within `radius` (of equally close ones the lowest), or nothing.
-  std::optional<ClosestPoint> within(const glm::dvec3& point, double radius) const;
+  /// `likely`: triangles that may be close, which spare the search what lies beyond them; any, or none, give the same answer.
+  std::optional<ClosestPoint> within(const glm::dvec3& point, double radius, std::span<const std::uint32_t> likely = {}) const;
   /// Distance to the first triangle along a ray in (from, to), and the triangle; in single precision.
   std::optional<std::pair<double, std::uint32_t>> first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double from,
                                                             double to) const;

@@ -207,7 +207,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
       static_cast<const MeshCurvature*>(opaque)->evaluate(points, curvatures);
     };
   }
-  surface.info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  surface.info.build_ms = source.spared_ms + std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   surface.state = std::move(state);
   return surface;
 }

@@ -38,7 +38,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   for (const std::vector<std::string>* warnings : {&source.warnings, &made.warnings}) {
     surface.info.warnings.insert(surface.info.warnings.end(), warnings->begin(), warnings->end());
   }
-  surface.info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  surface.info.build_ms = source.spared_ms + std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return surface;
 }
 

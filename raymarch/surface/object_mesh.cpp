@@ -1,5 +1,7 @@
 #include "raymarch/surface/object_mesh.h"
 
+#include <chrono>
+
 #include "sdf/error.h"
 #include "subdiv/tessellate.h"
 
@@ -103,9 +105,7 @@ MeshSource recentred(const MeshSource& source, const glm::dvec3& center) {
   return moved;
 }
 
-}  // namespace
-
-ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
+ObjectMesh make_object_mesh(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
   if (std::holds_alternative<Field>(object.source)) return from_field(object, settings, render_origin);
   ObjectMesh result;
   Affine render_from_mesh = object.world_from_object;
@@ -125,6 +125,25 @@ ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& setting
     cage->render_from_cage = render_from_mesh;
     cage->mirrored = glm::determinant(render_from_mesh.linear) < 0.0;
   }
+  return result;
+}
+
+}  // namespace
+
+ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
+  std::shared_ptr<const KeptMesh>* const kept = settings.kept_mesh;
+  if (!kept) return make_object_mesh(object, settings, render_origin);
+  const int level = level_of(object, settings);
+  const KeptMesh* const old = kept->get();
+  if (old && old->level == level && old->scheme == settings.scheme && old->normals == settings.normals &&
+      old->render_origin == render_origin)
+    return old->mesh;
+  kept->reset();
+  const auto start = std::chrono::steady_clock::now();
+  KeptMesh made{level, settings.scheme, settings.normals, render_origin, make_object_mesh(object, settings, render_origin)};
+  ObjectMesh result = made.mesh;
+  made.mesh.spared_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  *kept = std::make_shared<const KeptMesh>(std::move(made));
   return result;
 }
 

@@ -26,10 +26,20 @@ struct ObjectMesh {
   NormalKind normals = NormalKind::vertex;  ///< Of the triangles.
   SmoothSource smooth{};
   std::vector<std::string> warnings;
+  double spared_ms = 0.0;  ///< What making it took, where that was done before and kept.
+};
+
+/// A mesh in an ObjectMeshCache, and all that it depends on beside the object.
+struct KeptMesh {
+  int level = 0;
+  std::optional<Scheme> scheme{};
+  std::optional<NormalKind> normals{};
+  glm::dvec3 render_origin{0.0};
+  ObjectMesh mesh{};
 };
 
 /// Refines a cage, tessellates a field, meshes a level set, or takes a mesh as it is. A reflection keeps faces wound outwards.
-/// Throws InputError as those do.
+/// What `settings.kept_mesh` holds is taken where it fits; else it holds the new mesh afterwards. Throws InputError as those do.
 ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin);
 
 /// Empty where the object can be meshed, else why not.

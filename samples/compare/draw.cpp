@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -58,11 +59,22 @@ void add_samples(const SceneModel& model, const GBuffer& gbuffer, size_t row, Co
   }
 }
 
-Drawn draw_model(size_t row, Comparison& comparison, const ExecutionSettings& how, ProgressBar& bar) {
+// Kept beyond the model only where a later one may want it: the reference's mesh is finer than any, and large.
+bool is_mesh_needed_later(const Comparison& comparison, size_t row) {
+  const auto is_meshed = [&](size_t of) { return comparison.models[of].surface.kind.starts_with("mesh"); };
+  if (row == 0) return false;
+  for (size_t later = row + 1; later < comparison.models.size(); ++later) {
+    if (is_meshed(later)) return true;
+  }
+  return false;
+}
+
+Drawn draw_model(size_t row, Comparison& comparison, const ExecutionSettings& how, ObjectMeshCache& meshes, ProgressBar& bar) {
   ComparedModel& modelled = comparison.models[row];
   SurfaceSettings settings = modelled.surface;
   settings.progress = bar.stage("building " + modelled.title);
-  const SceneModel model = build_model(modelled.scene, settings);
+  const SceneModel model = build_model(modelled.scene, settings, row > 0 ? &meshes : nullptr);
+  if (!is_mesh_needed_later(comparison, row)) meshes.kept.clear();
   modelled.info = total(model);
   skip_unsupported(model, modelled.scene, row, comparison);
   ExecutionSettings tracing = how;
@@ -147,13 +159,14 @@ void skip_model(size_t row, const std::string& reason, Comparison& comparison) {
 
 void draw_comparison(Comparison& comparison, const std::filesystem::path& folder, const ExecutionSettings& how, ProgressBar& bar) {
   Picture reference;
+  ObjectMeshCache meshes;
   for (size_t row = 0; row < comparison.models.size(); ++row) {
     if (!comparison.models[row].skipped.empty()) {
       skip_model(row, comparison.models[row].skipped, comparison);
       continue;
     }
     try {
-      Drawn drawn = draw_model(row, comparison, how, bar);
+      Drawn drawn = draw_model(row, comparison, how, meshes, bar);
       write_layers(row, folder, comparison, drawn);
       keep_cells(row, comparison, drawn);
       if (row == 0) {
@@ -173,10 +186,13 @@ void draw_comparison(Comparison& comparison, const std::filesystem::path& folder
 
 Image<glm::vec4> linear_composite(const Cell& cell) {
   Image<glm::vec4> out(cell.composite.width, cell.composite.height);
+  std::array<float, 256> linear_of;
+  for (size_t code = 0; code < linear_of.size(); ++code) linear_of[code] = linear_from_srgb(static_cast<float>(code) / 255.0f);
   for (size_t i = 0; i < out.size(); ++i) {
-    const glm::vec4 color = glm::vec4(cell.composite.pixels[i]) / 255.0f;
-    const glm::vec3 linear(linear_from_srgb(color.r), linear_from_srgb(color.g), linear_from_srgb(color.b));
-    out.pixels[i] = glm::vec4(linear * color.a, color.a);
+    const glm::u8vec4& color = cell.composite.pixels[i];
+    const glm::vec3 linear(linear_of[color.r], linear_of[color.g], linear_of[color.b]);
+    const float alpha = static_cast<float>(color.a) / 255.0f;
+    out.pixels[i] = glm::vec4(linear * alpha, alpha);
   }
   return out;
 }

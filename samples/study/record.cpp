@@ -13,6 +13,9 @@
 namespace limn {
 namespace {
 
+// A truth that may lie farther off than this is exact in method only: what is measured against it is not.
+constexpr double kExactBound_px = 0.1;
+
 namespace fs = std::filesystem;
 
 Json to_json(const TruthRecord& truth) {
@@ -118,7 +121,7 @@ void add_truths(const std::vector<TruthRecord>& truths, StudyRecord& record) {
       failed = truth.failed;
       continue;
     }
-    head.exact = head.exact && truth.exact;
+    head.exact = head.exact && truth.exact && truth.bound_px <= kExactBound_px;
     if (from.empty() || truth.bound_px > bound_px) from = truth.from;
     bound_px = std::max(bound_px, truth.bound_px);
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "raymarch/scene.h"
+#include "sdf/camera.h"
 #include "sdf/descriptor.h"
 
 namespace limn {
@@ -33,6 +34,27 @@ struct HitBatch {
   std::int32_t face[kRayBatchSize];                                                             ///< Polygon of a mesh, -1 elsewhere.
   std::int32_t material[kRayBatchSize];  ///< Added to the object's own; 0 where the surface has none.
   HitStatus status[kRayBatchSize];
+};
+
+/// A tile of a picture whose rays make up one batch, sixteen lanes a block of 4 x 4 pixels: block by block in rows, row by row in a block.
+/// Lanes outside the picture have t_max <= t_min. Tiles are at most 16 x 16, and start anywhere.
+struct PixelTile {
+  int x = 0, y = 0, width = 0, height = 0;  ///< Pixels.
+};
+
+/// The coherent rays of one picture: what a surface may prepare for all of its tiles at once.
+struct ViewRequest {
+  Camera camera{};                ///< Eye in render space.
+  glm::dvec2 sample{0.5, 0.5};    ///< Where in each pixel its ray goes.
+};
+
+/// A surface prepared for one picture (lists of what each tile sees). Immutable; read from many threads at a time.
+struct SurfaceView {
+  std::shared_ptr<const void> state{};
+  /// False where no ray of the tile can meet the surface. May be null: any may.
+  bool (*touches)(const void* state, const PixelTile& tile) = nullptr;
+  /// As Surface::trace, for the rays of one tile. Null: Surface::trace is as good.
+  void (*trace)(const void* state, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) = nullptr;
 };
 
 /// What building it cost and how large it came out.
@@ -96,6 +118,8 @@ struct SurfaceOffset {
 struct Surface {
   std::shared_ptr<const void> state{};
   void (*trace)(const void* state, const RayBatch& rays, HitBatch& hits) = nullptr;
+  /// Prepares for a picture, on the threads of the surrounding arena. Null: nothing to prepare.
+  SurfaceView (*view)(const std::shared_ptr<const void>& state, const ViewRequest& request) = nullptr;
   Box bounds{};  ///< Render space; infinite where the object is.
   SurfaceInfo info{};
   std::shared_ptr<const Polygons> polygons{};  ///< What is traced, where it is made of polygons.

@@ -43,3 +43,4 @@ endif()
 
 find_dependency(embree 3)
 find_dependency(OpenImageIO)
+find_dependency(hwy)

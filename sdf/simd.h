@@ -1,0 +1,10 @@
+#pragma once
+// Internal: which SIMD targets limn is compiled for. Include before <hwy/highway.h> and <hwy/foreach_target.h>, in .cpp files only.
+// Baseline x86-64 (SSE2), AVX2 and AVX-512, or whatever the architecture has (NEON); the widest one that the machine has is chosen when
+// the program runs. No target fuses multiply and add (-ffp-contract=off, hn::Mul and hn::Add): all of them give the same bits.
+
+#if !LIMN_SIMD
+#define HWY_COMPILE_ONLY_EMU128 1  // Plain loops: what the others are checked against.
+#else
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#endif

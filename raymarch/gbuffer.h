@@ -24,6 +24,11 @@ struct GBuffer {
       custom{};  ///< What the scene fills for edge methods (a section map): vertex colours, face groups, world position; or empty.
 };
 
+/// Which layers of a G-buffer are wanted: what nobody reads is neither computed nor stored, its image stays empty.
+struct GBufferLayers {
+  bool depth = true, position = true, normal = true, n_dot_v = true, id = true, material = true, face = true, status = true;
+};
+
 /// What a picture's pixels must not depend on.
 struct ExecutionSettings {
   int threads = 0;                         ///< 0: all.
@@ -38,6 +43,9 @@ struct Cancelled {};
 /// Traces one ray through (x + offset.x, y + offset.y) for each pixel (x, y); the default is the centre. The same bytes for any threads and
 /// tiles.
 GBuffer render_gbuffer(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset = {0.5, 0.5});
+/// The same into `out`, whose memory is used again where its images have the right size.
+void render_gbuffer(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset,
+                    const GBufferLayers& layers, GBuffer& out);
 
 /// Traces single image points: for tests and for metrics at sub-pixel precision. Sizes equal; `n_dot_v` is not saturated; misses are NaN.
 struct PointSample {

@@ -65,6 +65,8 @@ struct SurfaceInfo {
   std::int64_t triangles = 0;
   std::int64_t bytes = 0;
   double build_ms = 0.0;
+  std::int64_t ray_bytes = 0;  ///< Of `bytes`, what rays read (a level set's ray-ready form).
+  double prepare_ms = 0.0;     ///< Of `build_ms`, making that.
   std::vector<std::string> warnings{};
 };
 

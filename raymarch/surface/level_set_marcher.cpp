@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "raymarch/curvature.h"
+#include "raymarch/level_set/trace.h"
 #include "sdf/level_set_data.h"
 
 namespace limn {
@@ -25,6 +26,8 @@ struct State {
   double largest_level = 0.0;
   double grid_from_render_length = 1.0;
   Affine render_from_index{};
+  std::shared_ptr<const RayBricks> bricks{};  ///< Null where rays only walk the grid.
+  BrickGradient brick_gradient = BrickGradient::central;
 
   /// Taking it at the nodes is exact for a constant, and for pixels good to the second order of a voxel seen from the eye.
   void subtract_level(const glm::ivec3& cell, std::array<double, 8>& values) const {
@@ -264,6 +267,35 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   }
 }
 
+/// What a picture's tiles are traced with.
+struct PictureState {
+  std::shared_ptr<const BrickView> view;
+  BrickTrace trace;
+};
+
+bool eye_inside(const State& state, const Camera& camera) {
+  const glm::dvec3 eye = state.index_from_render.point(camera.eye);
+  const CellPoint at = cell_point(eye);
+  const std::array<double, 8> v = cell_values(state.level_set.data().accessor(), at.node);
+  return cubic_along(v, at.local, at.local)[0] < 0.0;
+}
+
+SurfaceView view_picture(const std::shared_ptr<const void>& opaque, const ViewRequest& request) {
+  const auto state = std::static_pointer_cast<const State>(opaque);
+  if (!state->bricks) return {};
+  auto picture = std::make_shared<PictureState>();
+  picture->view = view_bricks(state->bricks, state->index_from_render, eye_inside(*state, request.camera), request);
+  if (!picture->view) return {};
+  picture->trace.view = picture->view.get();
+  picture->trace.gradient = state->brick_gradient;
+  const glm::dmat3 normal_from_index = state->normal_from_grid * glm::transpose(state->level_set.data().index_from_world.linear);
+  for (int k = 0; k < 9; ++k) picture->trace.normal_from_index[k] = static_cast<float>(normal_from_index[k / 3][k % 3]);
+  return {.state = picture,
+          .touches = [](const void* p, const PixelTile& tile) { return touches(*static_cast<const PictureState*>(p)->view, tile); },
+          .trace = [](const void* p, const PixelTile& tile, const RayBatch& rays,
+                      HitBatch& hits) { trace_bricks(static_cast<const PictureState*>(p)->trace, tile, rays, hits); }};
+}
+
 /// From the cubic gradient's Hessian, whatever the gradient of the normals: no other has one worth having.
 void evaluate_curvatures(const void* opaque, std::span<const SurfacePoint> points, std::span<SurfaceCurvature> curvatures) {
   const State& state = *static_cast<const State*>(opaque);
@@ -316,14 +348,24 @@ Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_ob
     state->lower = glm::ivec3(glm::floor(cells.lower));
     state->upper = glm::ivec3(glm::ceil(cells.upper));
   }
+  const bool in_bricks = gradient.about.name == "central" || gradient.about.name == "cell";
+  if (level.width.zero() && in_bricks) state->bricks = make_bricks(level_set);
+  state->brick_gradient = gradient.about.name == "cell" ? BrickGradient::cell : BrickGradient::central;
   Surface surface;
   surface.trace = trace;
+  surface.view = view_picture;
   const Box world = transform(world_from_object, transform(data.info.world_from_index, cells));
   surface.bounds = {world.lower - render_origin, world.upper - render_origin};
   surface.info.voxel_size = data.info.voxel_size * length_scale;
   surface.info.voxels = data.info.active_voxels;
   surface.info.bytes = data.info.bytes;
   surface.info.build_ms = data.info.build_ms;
+  if (state->bricks) {
+    surface.info.ray_bytes = state->bricks->bytes();
+    surface.info.prepare_ms = state->bricks->prepare_ms;
+    surface.info.bytes += surface.info.ray_bytes;
+    surface.info.build_ms += surface.info.prepare_ms;
+  }
   surface.info.warnings = data.info.warnings;
   surface.curvature = curvature_source(state);
   surface.state = std::move(state);

@@ -1,0 +1,358 @@
+#include "raymarch/level_set/bricks.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "sdf/level_set_data.h"
+
+namespace limn {
+namespace {
+
+using Leaf = nanovdb::FloatGrid::TreeType::LeafNodeType;
+using Accessor = nanovdb::FloatGrid::AccessorType;
+
+// Offsets in bytes have to fit in 31 bits.
+constexpr size_t kMostBricks = (size_t{1} << 31) / (kBrickStride * sizeof(std::int16_t)) - 1;
+constexpr float kLargestStep = 32767.0f;
+// A crossed brick whose values span fewer steps than this in its crossed cells would lose digits of its normals.
+constexpr int kFewestSteps = 1000;
+
+using NodeValues = std::array<float, kBrickNodes * kBrickNodes * kBrickNodes>;
+
+size_t at(int x, int y, int z) { return static_cast<size_t>(brick_element(x, y, z)); }
+
+/// The values at the 9^3 nodes of the cells from `origin` on, from up to eight leaves.
+void load_nodes(const Accessor& accessor, const glm::ivec3& origin, NodeValues& values) {
+  for (int corner = 0; corner < 8; ++corner) {
+    const int dx = corner & 1, dy = (corner >> 1) & 1, dz = corner >> 2;
+    const nanovdb::Coord first(origin.x + 8 * dx, origin.y + 8 * dy, origin.z + 8 * dz);
+    const Leaf* leaf = accessor.probeLeaf(first);
+    const float* from = leaf ? leaf->data()->mValues : nullptr;
+    const float tile = leaf ? 0.0f : accessor.getValue(first);
+    for (int x = 0; x < (dx ? 1 : 8); ++x) {
+      for (int y = 0; y < (dy ? 1 : 8); ++y) {
+        float* const to = &values[at(8 * dx + x, 8 * dy + y, 8 * dz)];
+        const int count = dz ? 1 : 8;
+        if (from)
+          std::copy_n(from + x * 64 + y * 8, count, to);
+        else
+          std::fill_n(to, count, tile);
+      }
+    }
+  }
+}
+
+/// Which cells of a brick the surface crosses: bit z of cells[x][y].
+struct CrossedCells {
+  std::uint8_t cells[8][8] = {};
+  bool any = false;
+};
+
+template <class Value>
+CrossedCells crossed_cells(const Value* values) {
+  std::uint32_t negative[9][9];
+  for (int x = 0; x < 9; ++x) {
+    for (int y = 0; y < 9; ++y) {
+      const Value* row = values + at(x, y, 0);
+      std::uint32_t bits = 0;
+      for (int z = 0; z < 9; ++z) bits |= (row[z] < Value{0} ? 1u : 0u) << z;
+      negative[x][y] = bits;
+    }
+  }
+  CrossedCells result;
+  for (int x = 0; x < 8; ++x) {
+    for (int y = 0; y < 8; ++y) {
+      const std::uint32_t some = negative[x][y] | negative[x + 1][y] | negative[x][y + 1] | negative[x + 1][y + 1];
+      const std::uint32_t every = negative[x][y] & negative[x + 1][y] & negative[x][y + 1] & negative[x + 1][y + 1];
+      const auto bits = static_cast<std::uint8_t>((some | some >> 1) & ~(every & every >> 1));
+      result.cells[x][y] = bits;
+      result.any |= bits != 0;
+    }
+  }
+  return result;
+}
+
+/// Bit f is set where a crossed cell lies at face f (see BrickNeighbors): its stencil reaches into the neighbour.
+std::uint8_t touched_faces(const CrossedCells& crossed) {
+  std::uint8_t x0 = 0, x7 = 0, y0 = 0, y7 = 0, all = 0;
+  for (int k = 0; k < 8; ++k) {
+    x0 |= crossed.cells[0][k];
+    x7 |= crossed.cells[7][k];
+    y0 |= crossed.cells[k][0];
+    y7 |= crossed.cells[k][7];
+    for (int y = 0; y < 8; ++y) all |= crossed.cells[k][y];
+  }
+  const bool bits[6] = {x0 != 0, x7 != 0, y0 != 0, y7 != 0, (all & 1) != 0, (all & 128) != 0};
+  std::uint8_t faces = 0;
+  for (int f = 0; f < 6; ++f) faces = static_cast<std::uint8_t>(faces | bits[f] << f);
+  return faces;
+}
+
+/// Calls `visit(x, y, z)` for each crossed cell.
+template <class Visit>
+void for_each_cell(const CrossedCells& crossed, const Visit& visit) {
+  for (int x = 0; x < 8; ++x) {
+    for (int y = 0; y < 8; ++y) {
+      for (std::uint32_t bits = crossed.cells[x][y]; bits != 0; bits &= bits - 1) visit(x, y, std::countr_zero(bits));
+    }
+  }
+}
+
+/// Calls `visit(x, y, z)` for each node of a crossed cell.
+template <class Visit>
+void for_each_node(const CrossedCells& crossed, const Visit& visit) {
+  for (int x = 0; x < 9; ++x) {
+    for (int y = 0; y < 9; ++y) {
+      std::uint32_t cells = 0;
+      for (int dx = x > 0 ? -1 : 0; dx <= (x < 8 ? 0 : -1); ++dx) {
+        for (int dy = y > 0 ? -1 : 0; dy <= (y < 8 ? 0 : -1); ++dy) cells |= crossed.cells[x + dx][y + dy];
+      }
+      for (std::uint32_t bits = cells | cells << 1; bits != 0; bits &= bits - 1) visit(x, y, std::countr_zero(bits));
+    }
+  }
+}
+
+/// A block of cells that may be crossed, and what looking at it told.
+struct Candidate {
+  glm::ivec3 origin{0};
+  std::uint8_t faces = 0;
+  bool crossed = false;
+  float largest = 0.0f;  ///< |value| at the nodes of crossed cells.
+};
+
+/// The leaves, and the blocks before them whose last cells have a node in a leaf of another sign: where a band is broken or thin.
+std::vector<Candidate> find_candidates(const LevelSetData& data) {
+  const auto& tree = data.grid->tree();
+  const std::uint32_t count = tree.nodeCount(0);
+  const Leaf* leaves = tree.getFirstNode<0>();
+  const Accessor accessor = data.accessor();
+  std::vector<Candidate> found;
+  found.reserve(count + count / 8);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const nanovdb::Coord o = leaves[i].origin();
+    found.push_back({.origin = {o[0], o[1], o[2]}});
+    for (int side = 1; side < 8; ++side) {
+      const int dx = side & 1, dy = (side >> 1) & 1, dz = side >> 2;
+      const nanovdb::Coord before = o.offsetBy(-8 * dx, -8 * dy, -8 * dz);
+      if (accessor.probeLeaf(before)) continue;
+      const bool inside = accessor.getValue(before) < 0.0f;
+      bool other = false;
+      for (int x = 0; x < (dx ? 1 : 8) && !other; ++x) {
+        for (int y = 0; y < (dy ? 1 : 8) && !other; ++y) {
+          for (int z = 0; z < (dz ? 1 : 8) && !other; ++z) other = (leaves[i].data()->mValues[x * 64 + y * 8 + z] < 0.0f) != inside;
+        }
+      }
+      if (other) found.push_back({.origin = {before[0], before[1], before[2]}});
+    }
+  }
+  return found;
+}
+
+void inspect(const Accessor& accessor, Candidate& candidate) {
+  NodeValues values;
+  load_nodes(accessor, candidate.origin, values);
+  const CrossedCells crossed = crossed_cells(values.data());
+  candidate.crossed = crossed.any;
+  if (!crossed.any) return;
+  candidate.faces = touched_faces(crossed);
+  for_each_node(crossed, [&](int x, int y, int z) { candidate.largest = std::max(candidate.largest, std::abs(values[at(x, y, z)])); });
+}
+
+/// Orders by x, then y, then z.
+std::uint64_t key_of(const glm::ivec3& origin) {
+  const auto part = [](int v) { return static_cast<std::uint64_t>((v >> 3) + (1 << 20)) & 0x1fffff; };
+  return part(origin.x) << 42 | part(origin.y) << 21 | part(origin.z);
+}
+
+constexpr int kFaceStep[6][3] = {{-8, 0, 0}, {8, 0, 0}, {0, -8, 0}, {0, 8, 0}, {0, 0, -8}, {0, 0, 8}};
+glm::ivec3 beyond(const glm::ivec3& origin, int face) {
+  return origin + glm::ivec3(kFaceStep[face][0], kFaceStep[face][1], kFaceStep[face][2]);
+}
+
+/// Every brick's place: the crossed ones in order, then those that only stencils reach.
+struct Layout {
+  std::vector<Candidate> crossed;
+  std::vector<std::uint64_t> crossed_keys;
+  std::vector<glm::ivec3> reached;
+  std::vector<std::uint64_t> reached_keys;
+
+  size_t size() const { return crossed.size() + reached.size(); }
+  std::int32_t find(std::uint64_t key) const {
+    const auto in = [key](const std::vector<std::uint64_t>& keys) -> std::optional<size_t> {
+      const auto found = std::lower_bound(keys.begin(), keys.end(), key);
+      if (found == keys.end() || *found != key) return std::nullopt;
+      return static_cast<size_t>(found - keys.begin());
+    };
+    if (const auto i = in(crossed_keys)) return static_cast<std::int32_t>(*i);
+    if (const auto i = in(reached_keys)) return static_cast<std::int32_t>(*i + crossed_keys.size());
+    return -1;
+  }
+};
+
+Layout lay_out(std::vector<Candidate> candidates) {
+  Layout layout;
+  layout.crossed = std::move(candidates);
+  std::erase_if(layout.crossed, [](const Candidate& c) { return !c.crossed; });
+  std::sort(layout.crossed.begin(), layout.crossed.end(),
+            [](const Candidate& a, const Candidate& b) { return key_of(a.origin) < key_of(b.origin); });
+  // A block before two leaves is found twice.
+  layout.crossed.erase(std::unique(layout.crossed.begin(), layout.crossed.end(),
+                                   [](const Candidate& a, const Candidate& b) { return a.origin == b.origin; }),
+                       layout.crossed.end());
+  for (const Candidate& candidate : layout.crossed) layout.crossed_keys.push_back(key_of(candidate.origin));
+  std::vector<std::pair<std::uint64_t, glm::ivec3>> reached;
+  for (const Candidate& candidate : layout.crossed) {
+    for (int face = 0; face < 6; ++face) {
+      if (!(candidate.faces >> face & 1)) continue;
+      const glm::ivec3 origin = beyond(candidate.origin, face);
+      if (layout.find(key_of(origin)) < 0) reached.emplace_back(key_of(origin), origin);
+    }
+  }
+  const auto by_key = [](const auto& a, const auto& b) { return a.first < b.first; };
+  std::sort(reached.begin(), reached.end(), by_key);
+  for (const auto& [key, origin] : reached) {
+    if (!layout.reached_keys.empty() && layout.reached_keys.back() == key) continue;
+    layout.reached_keys.push_back(key);
+    layout.reached.push_back(origin);
+  }
+  return layout;
+}
+
+void quantise(const NodeValues& values, float steps_per_unit, std::int16_t* out) {
+  for (size_t i = 0; i < values.size(); ++i) {
+    const float steps = std::clamp(values[i] * steps_per_unit, -kLargestStep, kLargestStep);
+    const auto nearest = static_cast<int>(steps + (steps < 0.0f ? -0.5f : 0.5f));
+    // No node lies on the surface itself: half a step to its side keeps its sign.
+    out[i] = static_cast<std::int16_t>(values[i] < 0.0f ? std::min(nearest, -1) : std::max(nearest, 1));
+  }
+}
+
+/// Hulls of the interpolant's partial derivatives over the crossed cells: along an edge each is constant, within a cell it lies between
+/// those of the four parallel edges.
+struct GradientHull {
+  float lower[3] = {1e30f, 1e30f, 1e30f}, upper[3] = {-1e30f, -1e30f, -1e30f};
+  void add(size_t axis, int difference) {
+    lower[axis] = std::min(lower[axis], static_cast<float>(difference));
+    upper[axis] = std::max(upper[axis], static_cast<float>(difference));
+  }
+};
+
+BrickHeader describe(const glm::ivec3& origin, const std::int16_t* values) {
+  BrickHeader header;
+  for (size_t axis = 0; axis < 3; ++axis) header.origin[axis] = origin[static_cast<int>(axis)];
+  const CrossedCells crossed = crossed_cells(values);
+  int lower[3] = {8, 8, 8}, upper[3] = {0, 0, 0};
+  GradientHull hull;
+  double sum[3] = {0.0, 0.0, 0.0};
+  for_each_cell(crossed, [&](int x, int y, int z) {
+    const int cell[3] = {x, y, z};
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], cell[axis]);
+      upper[axis] = std::max(upper[axis], cell[axis] + 1);
+    }
+    const std::int16_t* base = values + at(x, y, z);
+    constexpr int step[3] = {81, 9, 1};
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const int u = step[(axis + 1) % 3], v = step[(axis + 2) % 3];
+      for (const int edge : {0, u, v, u + v}) {
+        const int difference = base[edge + step[axis]] - base[edge];
+        hull.add(axis, difference);
+        sum[axis] += difference;
+      }
+    }
+  });
+  const double length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+  int cells = 0;
+  for_each_cell(crossed, [&](int, int, int) { ++cells; });
+  for (size_t axis = 0; axis < 3; ++axis) {
+    header.lower[axis] = static_cast<std::uint8_t>(lower[axis]);
+    header.upper[axis] = static_cast<std::uint8_t>(upper[axis]);
+    // Sides that cancel out leave no plane: then the slab is the whole brick.
+    header.normal[axis] = length > 0.0 ? static_cast<float>(sum[axis] / (4.0 * cells)) : 1.0f;
+    header.spread[axis] = std::max(hull.upper[axis] - header.normal[axis], header.normal[axis] - hull.lower[axis]);
+  }
+  double least = 1e30, greatest = -1e30;
+  for_each_node(crossed, [&](int x, int y, int z) {
+    const double plane =
+        static_cast<double>(header.normal[0]) * x + static_cast<double>(header.normal[1]) * y + static_cast<double>(header.normal[2]) * z;
+    const double rest = values[at(x, y, z)] - plane;
+    least = std::min(least, rest);
+    greatest = std::max(greatest, rest);
+  });
+  header.offset = static_cast<float>(-0.5 * (least + greatest));
+  // Rounded outwards: both numbers are stored as float.
+  header.slab = static_cast<float>(0.5 * (greatest - least) * (1.0 + 1e-5) + 1e-5 * std::abs(static_cast<double>(header.offset)) + 1e-3);
+  return header;
+}
+
+/// World units to steps, such that whatever a stencil reads near the surface is held; 0 where no scale serves all bricks.
+float scale_for(const Layout& layout, float background) {
+  float largest = 0.0f, least = 1e30f;
+  for (const Candidate& candidate : layout.crossed) {
+    largest = std::max(largest, candidate.largest);
+    least = std::min(least, candidate.largest);
+  }
+  // Stencils reach two cells beyond a crossed one, so to three cells' worth of change; eight leaves room for one that steepens.
+  const float held = std::min(8.0f * largest, std::max(background, largest));
+  if (!(held > 0.0f) || !std::isfinite(held)) return 0.0f;
+  const float scale = kLargestStep / held;
+  return least * scale >= static_cast<float>(kFewestSteps) ? scale : 0.0f;
+}
+
+void fill(const LevelSetData& data, const Layout& layout, float steps_per_unit, RayBricks& bricks) {
+  const size_t crossed = layout.crossed.size();
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, layout.size(), 64), [&](const tbb::blocked_range<size_t>& range) {
+    const Accessor accessor = data.accessor();
+    NodeValues nodes;
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      std::int16_t* const values = bricks.values.data() + i * kBrickStride;
+      load_nodes(accessor, i < crossed ? layout.crossed[i].origin : layout.reached[i - crossed], nodes);
+      quantise(nodes, steps_per_unit, values);
+      if (i >= crossed) continue;
+      const glm::ivec3& origin = layout.crossed[i].origin;
+      bricks.headers[i] = describe(origin, values);
+      for (int face = 0; face < 6; ++face) bricks.neighbors[i].face[face] = layout.find(key_of(beyond(origin, face)));
+    }
+  });
+}
+
+}  // namespace
+
+std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set) {
+  const auto start = std::chrono::steady_clock::now();
+  const LevelSetData& data = level_set.data();
+  std::vector<Candidate> candidates = find_candidates(data);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, candidates.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
+    const Accessor accessor = data.accessor();
+    for (size_t i = range.begin(); i < range.end(); ++i) inspect(accessor, candidates[i]);
+  });
+  const Layout layout = lay_out(std::move(candidates));
+  if (layout.size() > kMostBricks) return nullptr;
+  auto bricks = std::make_shared<RayBricks>();
+  if (!layout.crossed.empty()) {
+    const float scale = scale_for(layout, std::abs(data.grid->tree().background()));
+    if (scale == 0.0f) return nullptr;
+    bricks->world_per_step = 1.0 / static_cast<double>(scale);
+    bricks->headers.resize(layout.crossed.size());
+    bricks->neighbors.resize(layout.crossed.size());
+    bricks->values.resize(layout.size() * kBrickStride);
+    fill(data, layout, scale, *bricks);
+    bricks->lower = glm::ivec3(std::numeric_limits<int>::max());
+    bricks->upper = glm::ivec3(std::numeric_limits<int>::lowest());
+    for (const BrickHeader& header : bricks->headers) {
+      for (int axis = 0; axis < 3; ++axis) {
+        bricks->lower[axis] = std::min(bricks->lower[axis], header.origin[axis] + header.lower[axis]);
+        bricks->upper[axis] = std::max(bricks->upper[axis], header.origin[axis] + header.upper[axis]);
+      }
+    }
+  }
+  bricks->prepare_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return bricks;
+}
+
+}  // namespace limn

@@ -1,0 +1,61 @@
+#pragma once
+// Internal: the ray-ready form of a level set. Only the blocks of 8^3 cells that the surface crosses are kept, each as 9^3 node values of
+// 16 bits with what bounds the surface in it, and beside them the blocks into which the stencils of their gradients reach.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sdf/geometry.h"
+#include "sdf/level_set.h"
+
+namespace limn {
+
+inline constexpr int kBrickCells = 8;
+inline constexpr int kBrickNodes = 9;
+/// Elements from one brick to the next; the last nodes are padded, so that a pair of values may be read from any of them.
+inline constexpr int kBrickStride = 736;
+/// The element of node (x, y, z) of a brick, each in 0..8.
+inline constexpr int brick_element(int x, int y, int z) { return (x * kBrickNodes + y) * kBrickNodes + z; }
+
+/// What bounds the surface in a brick. Places are index coordinates, local ones from `origin`; values are the brick's 16-bit steps.
+/// Within the cells that the surface crosses the interpolant f satisfies |f(p) - (normal.p - offset)| <= slab at every local p: f and the
+/// plane's function are both trilinear in a cell, so their difference is largest at a node. A ray meets the surface nowhere else than
+/// where |normal.p - offset| <= slab, and that in lower <= p <= upper.
+struct BrickHeader {
+  std::int32_t origin[3] = {};  ///< First cell, multiples of 8.
+  std::uint8_t lower[3] = {};   ///< Around the crossed cells, local: 0..7.
+  std::uint8_t upper[3] = {};   ///< 1..8.
+  std::uint16_t unused = 0;
+  float normal[3] = {};
+  float offset = 0.0f;
+  float slab = 0.0f;
+  /// In the crossed cells each component of the interpolant's gradient lies within `spread` of `normal`'s.
+  float spread[3] = {};
+};
+
+/// A brick's six neighbours, by face: -x, +x, -y, +y, -z, +z. -1 where no stencil of a crossed cell reaches into it.
+struct BrickNeighbors {
+  std::int32_t face[6] = {-1, -1, -1, -1, -1, -1};
+};
+
+struct RayBricks {
+  std::vector<BrickHeader> headers{};       ///< Of the crossed bricks, ordered by x, y, z.
+  std::vector<BrickNeighbors> neighbors{};  ///< As many.
+  std::vector<std::int16_t> values{};       ///< kBrickStride for each brick: the crossed ones first, then those of stencils only.
+  glm::ivec3 lower{0}, upper{0};            ///< Around the crossed cells, index coordinates.
+  double world_per_step = 0.0;              ///< What one step of a value stands for.
+  double prepare_ms = 0.0;
+
+  std::int64_t bytes() const {
+    return static_cast<std::int64_t>(headers.size() * sizeof(BrickHeader) + neighbors.size() * sizeof(BrickNeighbors) +
+                                     values.size() * sizeof(std::int16_t));
+  }
+};
+
+/// Made from the grid in parallel. Null where the form would not do: more bricks than 32-bit offsets reach, or values whose range over the
+/// crossed cells differs so much from place to place that 16 bits would not tell them apart (a grid far from a distance field).
+/// Signs are kept: a node is inside (< 0) in the bricks exactly where it is inside in the grid.
+std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set);
+
+}  // namespace limn

@@ -1,0 +1,119 @@
+#include "raymarch/trace_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+namespace {
+
+void take_hit(int i, int object, const HitBatch& from, RayBatch& rays, SceneHits& found) {
+  found.hits.t[i] = from.t[i];
+  found.hits.normal_x[i] = from.normal_x[i];
+  found.hits.normal_y[i] = from.normal_y[i];
+  found.hits.normal_z[i] = from.normal_z[i];
+  found.hits.face[i] = from.face[i];
+  found.hits.material[i] = from.material[i];
+  found.hits.status[i] = from.status[i];
+  found.object[i] = from.status[i] == HitStatus::hit ? object : -1;
+  rays.t_max[i] = from.t[i];
+}
+
+/// `trace(object, hits)` traces one surface.
+template <class Trace>
+void trace_all(size_t objects, RayBatch& rays, SceneHits& found, const Trace& trace) {
+  std::fill_n(found.hits.status, rays.count, HitStatus::miss);
+  if (objects == 1) {
+    trace(size_t{0}, found.hits);
+    for (int i = 0; i < rays.count; ++i) found.object[i] = found.hits.status[i] == HitStatus::hit ? 0 : -1;
+    return;
+  }
+  std::fill_n(found.object, rays.count, -1);
+  HitBatch own;
+  for (size_t object = 0; object < objects; ++object) {
+    std::fill_n(own.status, rays.count, HitStatus::miss);
+    std::copy_n(rays.t_max, rays.count, own.t);
+    trace(object, own);
+    for (int i = 0; i < rays.count; ++i) {
+      if (own.status[i] != HitStatus::miss && own.t[i] <= rays.t_max[i]) take_hit(i, static_cast<int>(object), own, rays, found);
+    }
+  }
+}
+
+bool overlap(const PixelTile& a, const PixelTile& b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+/// The pixels around the image of `bounds` (render space): all of them where the box reaches behind the eye.
+PixelTile covered_pixels(const Box& bounds, const ViewRequest& request) {
+  const Camera& camera = request.camera;
+  const PixelTile all{0, 0, camera.width_px, camera.height_px};
+  if (bounds.empty()) return {};
+  if (!bounds.finite()) return all;
+  Box image;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p(corner & 1 ? bounds.upper.x : bounds.lower.x, corner & 2 ? bounds.upper.y : bounds.lower.y,
+                       corner & 4 ? bounds.upper.z : bounds.lower.z);
+    const glm::dvec3 at = project(camera, p);
+    // So near that the projection has few digits left counts as behind.
+    if (camera.projection == Projection::perspective && !(at.z > 1e-6 * bounds.radius())) return all;
+    image = include(image, {at.x, at.y, 0.0});
+  }
+  const glm::dvec3 limit(camera.width_px, camera.height_px, 0.0);
+  const glm::ivec3 first(glm::clamp(glm::floor(image.lower - 1.0), glm::dvec3(0.0), limit));
+  const glm::ivec3 end(glm::clamp(glm::ceil(image.upper + 1.0), glm::dvec3(0.0), limit));
+  return {first.x, first.y, end.x - first.x, end.y - first.y};
+}
+
+bool touches(const SurfaceView& view, const PixelTile& covered, const PixelTile& tile) {
+  return overlap(covered, tile) && (!view.touches || view.touches(view.state.get(), tile));
+}
+
+}  // namespace
+
+SceneExtent scene_extent(const SceneModel& model) {
+  SceneExtent extent;
+  for (const Surface& surface : model.surfaces) {
+    if (surface.bounds.empty()) continue;
+    if (!surface.bounds.finite()) {
+      extent.bounded = false;
+      continue;
+    }
+    const glm::dvec3 corner = glm::max(glm::abs(surface.bounds.lower), glm::abs(surface.bounds.upper));
+    extent.radius = std::max(extent.radius, 1.01 * glm::length(corner));
+  }
+  return extent;
+}
+
+ModelView view_model(const SceneModel& model, const ViewRequest& request) {
+  ModelView view;
+  for (const Surface& surface : model.surfaces) {
+    view.surfaces.push_back(surface.view ? surface.view(surface.state, request) : SurfaceView{});
+    view.covered.push_back(covered_pixels(surface.bounds, request));
+  }
+  return view;
+}
+
+bool touches(const ModelView& view, const PixelTile& tile) {
+  for (size_t k = 0; k < view.surfaces.size(); ++k) {
+    if (touches(view.surfaces[k], view.covered[k], tile)) return true;
+  }
+  return false;
+}
+
+void trace_scene(const SceneModel& model, RayBatch& rays, SceneHits& found) {
+  trace_all(model.surfaces.size(), rays, found,
+            [&](size_t k, HitBatch& hits) { model.surfaces[k].trace(model.surfaces[k].state.get(), rays, hits); });
+}
+
+void trace_scene(const SceneModel& model, const ModelView& view, const PixelTile& tile, RayBatch& rays, SceneHits& found) {
+  trace_all(model.surfaces.size(), rays, found, [&](size_t k, HitBatch& hits) {
+    const SurfaceView& surface = view.surfaces[k];
+    if (!touches(surface, view.covered[k], tile)) return;
+    if (surface.trace)
+      surface.trace(surface.state.get(), tile, rays, hits);
+    else
+      model.surfaces[k].trace(model.surfaces[k].state.get(), rays, hits);
+  });
+}
+
+}  // namespace limn

@@ -1,0 +1,37 @@
+#pragma once
+// Internal: a batch of rays against all surfaces of a model.
+
+#include <vector>
+
+#include "raymarch/surface.h"
+#include "sdf/camera.h"
+
+namespace limn {
+
+/// The sphere about the render origin that holds every bounded surface.
+struct SceneExtent {
+  double radius = 0.0;
+  bool bounded = true;  ///< Every surface is.
+};
+SceneExtent scene_extent(const SceneModel& model);
+
+/// The nearest hits over all objects. hits.status is set in every lane, the rest where something was hit or steps ran out.
+struct SceneHits {
+  HitBatch hits;
+  std::int32_t object[kRayBatchSize];  ///< Index from 0; -1: nothing hit.
+};
+
+/// The surfaces, prepared for a picture: one view for each, without a trace of its own where there is nothing to prepare.
+struct ModelView {
+  std::vector<SurfaceView> surfaces{};
+  std::vector<PixelTile> covered{};  ///< The pixels that each surface's bounds cover in the picture.
+};
+ModelView view_model(const SceneModel& model, const ViewRequest& request);
+/// False where no surface can be seen in the tile.
+bool touches(const ModelView& view, const PixelTile& tile);
+
+/// Shortens rays.t_max to the hits. A ray that ran out of steps hides what lies behind that point: nobody knows what is there.
+void trace_scene(const SceneModel& model, RayBatch& rays, SceneHits& found);
+void trace_scene(const SceneModel& model, const ModelView& view, const PixelTile& tile, RayBatch& rays, SceneHits& found);
+
+}  // namespace limn

@@ -13,6 +13,7 @@
 
 #include "sdf/field.h"
 #include "sdf/number.h"
+#include "sdf/number_recorded.h"
 
 namespace limn {
 
@@ -28,6 +29,10 @@ struct ShapeFunctions {
   /// The greatest dot(direction, p) over the points p with f(p) <= level, or more; -infinity where there are none.
   /// `direction` need not be unit.
   double (*support)(const void* shape, const glm::dvec3& direction, double level);
+  /// Evaluates the formula with a number type that writes down its steps (sdf/tape.h). Null where it branches on values.
+  void (*record)(const void* shape, const Vector3<Recorded>& point, Recorded& value);
+  /// Where {f <= 0} is an ellipsoid about the origin: 1 / its half axes. Null elsewhere.
+  glm::dvec3 (*ball_from_object)(const void* shape);
 };
 
 /// f(p) = value_scale * shape(object_from_world p).
@@ -73,6 +78,9 @@ Box sublevel_bounds(const FieldProgram& program, double level);
 /// Wraps a shape: a struct with
 ///   template <class T> T operator()(const Vector3<T>& p) const;          its value in object space
 ///   double support(const glm::dvec3& direction, double level) const;     see ShapeFunctions
+/// and, where they apply,
+///   static constexpr bool kBranches = true;                              the formula compares values, and cannot be recorded
+///   glm::dvec3 ball_from_object() const;                                 see ShapeFunctions
 /// `lipschitz` and `exact` are as in FieldTraits; object_from_world must be rigid.
 template <class Shape>
 Field field_from_shape(Shape shape, double lipschitz, bool exact, const Affine& object_from_world = {});
@@ -94,11 +102,38 @@ void evaluate_shape(const void* shape, const T* x, const T* y, const T* z, T* va
 }
 
 template <class Shape>
+void record_shape(const void* shape, const Vector3<Recorded>& point, Recorded& value) {
+  value = (*static_cast<const Shape*>(shape))(point);
+}
+template <class Shape>
+glm::dvec3 ball_from_object_of(const void* shape) {
+  return static_cast<const Shape*>(shape)->ball_from_object();
+}
+template <class Shape>
+constexpr auto recorder_of() {
+  if constexpr (requires { Shape::kBranches; }) {
+    return nullptr;
+  } else {
+    return record_shape<Shape>;
+  }
+}
+template <class Shape>
+constexpr auto ball_of() {
+  if constexpr (requires(const Shape& s) { s.ball_from_object(); }) {
+    return ball_from_object_of<Shape>;
+  } else {
+    return nullptr;
+  }
+}
+
+template <class Shape>
 Field field_from_shape(Shape shape, double lipschitz, bool exact, const Affine& object_from_world) {
   static constexpr ShapeFunctions functions{
       {evaluate_shape<Shape, float>, evaluate_shape<Shape, double>, evaluate_shape<Shape, Dual>, evaluate_shape<Shape, Jet>,
        evaluate_shape<Shape, Interval>, evaluate_shape<Shape, Slope>},
-      [](const void* s, const glm::dvec3& direction, double level) { return static_cast<const Shape*>(s)->support(direction, level); }};
+      [](const void* s, const glm::dvec3& direction, double level) { return static_cast<const Shape*>(s)->support(direction, level); },
+      recorder_of<Shape>(),
+      ball_of<Shape>()};
   FieldLeaf leaf;
   leaf.shape = std::make_shared<const Shape>(std::move(shape));
   leaf.functions = &functions;

@@ -17,6 +17,7 @@ namespace limn {
 namespace {
 
 struct Cyclide {
+  static constexpr bool kBranches = true;
   double a, b, c, d;
 
   template <class T>

@@ -18,6 +18,7 @@ struct Ellipsoid {
     const T n = norm(p.x * scalar<T>(inverse_radii.x), p.y * scalar<T>(inverse_radii.y), p.z * scalar<T>(inverse_radii.z));
     return (n - scalar<T>(1.0)) * scalar<T>(least);
   }
+  glm::dvec3 ball_from_object() const { return inverse_radii; }
   double support(const glm::dvec3& direction, double level) const { return (1.0 + level / least) * glm::length(radii * direction); }
 };
 

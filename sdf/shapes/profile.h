@@ -21,6 +21,7 @@ struct ProfileSegment {
 };
 
 struct Profile {
+  static constexpr bool kBranches = true;
   std::vector<ProfileSegment> segments;  // those on the axis are left out: they are no surface
 
   template <class T>

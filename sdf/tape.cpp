@@ -1,0 +1,207 @@
+#include "sdf/tape.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sdf/error.h"
+#include "sdf/field_program.h"
+
+namespace limn {
+namespace {
+
+int operands(TapeOperation operation) {
+  switch (operation) {
+    case TapeOperation::coordinates:
+    case TapeOperation::constant:
+      return 0;
+    case TapeOperation::narrow:
+    case TapeOperation::copy:
+    case TapeOperation::negate:
+    case TapeOperation::square:
+    case TapeOperation::absolute:
+    case TapeOperation::sine:
+    case TapeOperation::cosine:
+    case TapeOperation::add_constant:
+    case TapeOperation::multiply_constant:
+      return 1;
+    case TapeOperation::shape:
+    case TapeOperation::norm3:
+    case TapeOperation::corner3:
+      return 3;
+    default:
+      return 2;
+  }
+}
+
+TapeLeaf tape_leaf(const FieldLeaf& leaf) {
+  TapeLeaf result;
+  result.leaf = &leaf;
+  const Affine& map = leaf.object_from_world;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) result.row[row][column] = map.linear[column][row];
+    result.row[row][3] = map.translation[row];
+  }
+  result.translated_only = map.linear == glm::dmat3(1.0);
+  result.lipschitz = leaf.lipschitz;
+  const glm::dvec3 offset = glm::abs(map.translation);
+  result.offset_extent = std::abs(leaf.value_scale) * std::max({offset.x, offset.y, offset.z});
+  if (leaf.functions->ball_from_object) result.ball_from_object = leaf.functions->ball_from_object(leaf.shape.get());
+  return result;
+}
+
+/// Gives the values of one leaf's recording registers from `first` on, as few as linear scanning needs (Poletto & Sarkar 1999).
+class LeafRegisters {
+ public:
+  LeafRegisters(const Recording& recording, std::uint32_t first) : first_(first), last_use_(recording.steps.size() + 3, 0) {
+    for (std::uint32_t i = 0; i < recording.steps.size(); ++i) {
+      const TapeStep& step = recording.steps[i];
+      const std::uint32_t uses[] = {step.a, step.b, step.c};
+      for (int k = 0; k < operands(step.operation); ++k) last_use_[uses[k]] = i;
+    }
+    held_.resize(last_use_.size());
+    for (std::uint32_t i = 0; i < 3; ++i) held_[i] = first + i;
+    end_ = first + 3;
+  }
+  std::uint32_t of(std::uint32_t value) const { return held_[value]; }
+  /// The register for what step `index` makes; its operands' registers may be taken again where this was their last use.
+  std::uint32_t assign(const TapeStep& step, std::uint32_t index) {
+    const std::uint32_t uses[] = {step.a, step.b, step.c};
+    for (int k = 0; k < operands(step.operation); ++k) {
+      const bool again = std::find(uses, uses + k, uses[k]) != uses + k;
+      if (!again && uses[k] >= 3 && last_use_[uses[k]] == index) free_.push_back(held_[uses[k]]);
+    }
+    std::uint32_t target = end_;
+    if (free_.empty()) {
+      ++end_;
+    } else {
+      target = free_.back();
+      free_.pop_back();
+    }
+    held_[step.target] = target;
+    return target;
+  }
+  std::uint32_t end() const { return end_; }
+
+ private:
+  std::uint32_t first_, end_ = 0;
+  std::vector<std::uint32_t> last_use_, held_, free_;
+};
+
+/// Appends a leaf's steps, its value going to `target`; its own registers start at `first`.
+void append_leaf(FieldTape& tape, std::uint32_t index, std::uint32_t target, std::uint32_t first) {
+  const FieldLeaf& leaf = *tape.leaves[index].leaf;
+  tape.steps.push_back({.operation = TapeOperation::coordinates, .target = first, .leaf = index});
+  tape.registers = std::max(tape.registers, first + 3);
+  Recording recording;
+  Recorded result;
+  if (leaf.functions->record) {
+    const Vector3<Recorded> point{{&recording, 0, 0.0}, {&recording, 1, 0.0}, {&recording, 2, 0.0}};
+    leaf.functions->record(leaf.shape.get(), point, result);
+  }
+  if (!result.recording) {
+    tape.steps.push_back({.operation = TapeOperation::shape, .target = target, .a = first, .b = first + 1, .c = first + 2, .leaf = index});
+  } else {
+    LeafRegisters registers(recording, first);
+    for (std::uint32_t i = 0; i < recording.steps.size(); ++i) {
+      TapeStep step = recording.steps[i];
+      const std::uint32_t own = registers.assign(step, i);
+      step.a = registers.of(step.a);
+      step.b = registers.of(step.b);
+      step.c = registers.of(step.c);
+      step.target = i + 1 == recording.steps.size() ? target : own;
+      step.inside_shape = true;
+      tape.steps.push_back(step);
+    }
+    tape.registers = std::max(tape.registers, registers.end());
+  }
+  if (leaf.value_scale != 1.0) {
+    tape.steps.push_back({.operation = TapeOperation::multiply_constant, .target = target, .a = target, .constant = leaf.value_scale});
+  }
+  tape.steps.push_back({.operation = TapeOperation::narrow, .target = target, .a = target, .leaf = index});
+}
+
+TapeOperation tape_operation(FieldOperation operation) {
+  switch (operation) {
+    case FieldOperation::minimum:
+      return TapeOperation::minimum;
+    case FieldOperation::maximum:
+      return TapeOperation::maximum;
+    case FieldOperation::smooth_minimum:
+      return TapeOperation::smooth_minimum;
+    case FieldOperation::smooth_maximum:
+      return TapeOperation::smooth_maximum;
+    case FieldOperation::negate:
+      return TapeOperation::negate;
+    case FieldOperation::add:
+      return TapeOperation::add_constant;
+    case FieldOperation::absolute:
+      return TapeOperation::absolute;
+    case FieldOperation::leaf:
+      break;
+  }
+  return TapeOperation::copy;
+}
+
+}  // namespace
+
+FieldTape::FieldTape(const Field& of) : field(of) {
+  const FieldProgram& program = field.program();
+  registers = program.slots;
+  for (const FieldLeaf& leaf : program.leaves) leaves.push_back(tape_leaf(leaf));
+  for (const FieldInstruction& step : program.instructions) {
+    if (step.operation == FieldOperation::leaf) {
+      append_leaf(*this, step.leaf, step.target, program.slots);
+    } else {
+      steps.push_back(
+          {.operation = tape_operation(step.operation), .target = step.target, .a = step.left, .b = step.right, .constant = step.constant});
+    }
+  }
+}
+
+// Backwards, so that it is known of every step whether anybody reads what it makes. Where one side of a choice has no influence, whatever
+// makes the other side writes where the choice would have: between shapes the program is a tree, so that nobody else reads it and the
+// place is free.
+void prune_tape(std::span<const TapeStep> steps, std::span<const TapeChoice> choices, std::uint16_t lanes, std::uint32_t registers,
+                std::vector<TapeStep>& pruned) {
+  constexpr std::uint32_t kUnread = ~std::uint32_t{0};
+  static thread_local std::vector<std::uint32_t> wanted;  // for each register: where to write it
+  wanted.assign(registers, kUnread);
+  wanted[0] = 0;
+  pruned.clear();
+  for (size_t i = steps.size(); i-- > 0;) {
+    TapeStep step = steps[i];
+    if (step.operation == TapeOperation::coordinates) {
+      bool read = false;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        read = read || wanted[step.target + k] != kUnread;
+        wanted[step.target + k] = kUnread;
+      }
+      if (read) pruned.push_back(step);
+      continue;
+    }
+    const std::uint32_t place = wanted[step.target];
+    if (place == kUnread) continue;
+    wanted[step.target] = kUnread;
+    const bool left = (choices[i].left & lanes) == lanes, right = (choices[i].right & lanes) == lanes;
+    if (left || right) {
+      const std::uint32_t kept = left ? step.a : step.b;
+      wanted[kept] = step.inside_shape ? kept : place;
+      if (step.inside_shape) pruned.push_back({.operation = TapeOperation::copy, .inside_shape = true, .target = place, .a = kept});
+      continue;
+    }
+    // A leaf's value is narrowed where it was made.
+    if (step.operation == TapeOperation::narrow) {
+      step.a = step.target = place;
+      wanted[steps[i].a] = place;
+      pruned.push_back(step);
+      continue;
+    }
+    step.target = place;
+    const std::uint32_t uses[] = {step.a, step.b, step.c};
+    for (int k = 0; k < operands(step.operation); ++k) wanted[uses[k]] = uses[k];
+    pruned.push_back(step);
+  }
+  std::reverse(pruned.begin(), pruned.end());
+}
+
+}  // namespace limn

@@ -1,0 +1,20 @@
+#pragma once
+// Internal: steps of a tape that are evaluated lane by lane, with the number types of sdf/number.h.
+
+#include "sdf/tape_lanes.h"
+
+namespace limn {
+
+/// What a register holds, sixteen doubles a component.
+enum class TapeNumber {
+  value,
+  dual,      ///< Value, derivative along a ray.
+  gradient,  ///< Value, three derivatives.
+  bound,     ///< Value at the middle, lower, upper.
+  slope,     ///< ... and lower and upper of the derivative.
+};
+
+void shape_by_lane(const FieldLeaf& leaf, TapeNumber number, const double* x, const double* y, const double* z, double* target);
+void power_norm_by_lane(TapeNumber number, const double* a, const double* b, double power, double* target);
+
+}  // namespace limn

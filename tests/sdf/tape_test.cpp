@@ -1,0 +1,274 @@
+// Tapes against the fields they were recorded from: values, derivatives, bounds, pruning; on every SIMD target of the machine.
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstring>
+
+#include "sdf/simd.h"
+#include <hwy/highway.h>
+#include "sdf/tape_lanes.h"
+#include "tests/sdf/random_field.h"
+
+namespace limn::test {
+namespace {
+
+LaneRays random_rays(Random& random) {
+  LaneRays rays;
+  for (int i = 0; i < kLanes; ++i) {
+    const glm::dvec3 o = random.point(1.5), d = random.direction() * random.uniform(0.5, 2.0);
+    for (int axis = 0; axis < 3; ++axis) rays.origin[axis][i] = o[axis], rays.direction[axis][i] = d[axis];
+  }
+  return rays;
+}
+
+glm::dvec3 at(const LaneArray* v, int i) { return {v[0][i], v[1][i], v[2][i]}; }
+glm::dvec3 point(const LaneRays& rays, int i, double s) { return at(rays.origin, i) + s * at(rays.direction, i); }
+
+std::int64_t ulps_between(double a, double b) {
+  const auto ordered = [](double x) {
+    const auto bits = std::bit_cast<std::int64_t>(x);
+    return bits < 0 ? std::numeric_limits<std::int64_t>::min() - bits : bits;
+  };
+  return std::abs(ordered(a) - ordered(b));
+}
+
+template <class Check>
+void over_random_fields(int count, const Check& check) {
+  constexpr std::uint64_t seed = 77;
+  Random random(seed);
+  for (int i = 0; i < count; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", field " + std::to_string(i));
+    const Field field = random_field(random, random.index(4));
+    check(random, field, FieldTape(field));
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+TEST(Tape, ValuesSlopesAndGradientsAreTheFields) {
+  TapeScratch scratch;
+  over_random_fields(200, [&](Random& random, const Field& field, const FieldTape& tape) {
+    FieldEvaluator evaluator(field);
+    const LaneRays rays = random_rays(random);
+    LaneArray s, values, with_slope, slopes, with_gradient;
+    std::array<LaneArray, 3> gradients;
+    for (int i = 0; i < kLanes; ++i) s[i] = random.uniform(-1.0, 1.0);
+    tape_values(tape, tape.steps, rays, s, scratch, values);
+    tape_slopes(tape, tape.steps, rays, s, scratch, with_slope, slopes);
+    tape_gradients(tape, tape.steps, rays, s, scratch, with_gradient, gradients);
+    for (int i = 0; i < kLanes; ++i) {
+      const glm::dvec3 p = point(rays, i, s[i]);
+      double value = 0.0;
+      glm::dvec3 gradient;
+      evaluator.gradients(std::span(&p, 1), std::span(&value, 1), std::span(&gradient, 1));
+      // Metaballs sum in another order; all others differ by what a division by a length and a product with its inverse do.
+      EXPECT_NEAR(values[i], value, 1e-13);
+      EXPECT_NEAR(with_slope[i], value, 1e-13);
+      EXPECT_NEAR(with_gradient[i], value, 1e-13);
+      const double scale = 1.0 + glm::length(gradient);
+      EXPECT_NEAR(slopes[i], glm::dot(gradient, at(rays.direction, i)), 1e-9 * scale);
+      for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(gradients[static_cast<size_t>(axis)][i], gradient[axis], 1e-9 * scale);
+    }
+  });
+}
+
+LaneBeams random_beams(Random& random) {
+  LaneBeams beams;
+  beams.rays = random_rays(random);
+  const double width = random.index(2) == 0 ? 0.0 : std::exp2(random.uniform(-9.0, -2.0));
+  for (int k = 0; k < 2; ++k) {
+    beams.origin_spread[k] = width * random.point(0.5);
+    beams.direction_spread[k] = width * random.point(0.5);
+  }
+  for (int i = 0; i < kLanes; ++i) {
+    beams.middle[i] = random.uniform(-0.7, 0.7);
+    beams.half[i] = std::exp2(random.uniform(-12.0, -1.0));
+    const double aside =
+        glm::length(beams.origin_spread[0]) + glm::length(beams.origin_spread[1]) +
+        (std::abs(beams.middle[i]) + beams.half[i]) * (glm::length(beams.direction_spread[0]) + glm::length(beams.direction_spread[1]));
+    beams.radius[i] = aside + beams.half[i] * glm::length(at(beams.rays.direction, i));
+  }
+  return beams;
+}
+
+/// A ray of the beam and a place on it.
+struct Probe {
+  glm::dvec3 origin, direction;
+  double s;
+};
+Probe random_probe(Random& random, const LaneBeams& beams, int i) {
+  // One in four on the rim of each range.
+  const auto coordinate = [&] { return random.index(4) == 0 ? (random.index(2) == 0 ? -1.0 : 1.0) : random.uniform(-1.0, 1.0); };
+  Probe probe{at(beams.rays.origin, i), at(beams.rays.direction, i), beams.middle[i] + coordinate() * beams.half[i]};
+  for (int k = 0; k < 2; ++k) {
+    const double where = coordinate();
+    probe.origin += where * beams.origin_spread[k];
+    probe.direction += where * beams.direction_spread[k];
+  }
+  return probe;
+}
+
+TEST(Tape, BoundsHoldWhateverTheBeamMeets) {
+  TapeScratch scratch;
+  double widest_ratio = 0.0;
+  int decided = 0, monotone = 0, all = 0;
+  over_random_fields(300, [&](Random& random, const Field& field, const FieldTape& tape) {
+    FieldEvaluator evaluator(field);
+    const LaneBeams beams = random_beams(random);
+    LaneBounds plain, sloped;
+    tape_bounds(tape, tape.steps, beams, scratch, plain);
+    tape_slope_bounds(tape, tape.steps, beams, scratch, sloped);
+    for (int i = 0; i < kLanes; ++i) {
+      for (int k = 0; k < 30; ++k) {
+        const Probe probe = random_probe(random, beams, i);
+        const glm::dvec3 p = probe.origin + probe.s * probe.direction;
+        double value = 0.0;
+        glm::dvec3 gradient;
+        evaluator.gradients(std::span(&p, 1), std::span(&value, 1), std::span(&gradient, 1));
+        const double slope = glm::dot(gradient, probe.direction);
+        EXPECT_GE(value, plain.lower[i]);
+        EXPECT_LE(value, plain.upper[i]);
+        EXPECT_GE(value, sloped.lower[i]);
+        EXPECT_LE(value, sloped.upper[i]);
+        EXPECT_GE(slope, sloped.slope_lower[i] - 1e-12);
+        EXPECT_LE(slope, sloped.slope_upper[i] + 1e-12);
+      }
+      ++all;
+      decided += plain.lower[i] > 0.0 || plain.upper[i] < 0.0;
+      monotone += sloped.slope_lower[i] > 0.0 || sloped.slope_upper[i] < 0.0;
+      widest_ratio = std::max(widest_ratio, (plain.upper[i] - plain.lower[i]) / (2.0 * field.traits().lipschitz * beams.radius[i] + 1e-12));
+    }
+  });
+  // Bounds that hold everything would pass as well: they must say something, and never less than the Lipschitz constant does.
+  EXPECT_GT(decided, all / 2);
+  EXPECT_GT(monotone, all / 4);
+  EXPECT_LT(widest_ratio, 1.001);
+}
+
+TEST(Tape, BoundsAreAsTightAsTheFieldsOwn) {
+  TapeScratch scratch;
+  over_random_fields(200, [&](Random& random, const Field& field, const FieldTape& tape) {
+    FieldEvaluator evaluator(field);
+    LaneBeams beams = random_beams(random);
+    for (int k = 0; k < 2; ++k) beams.origin_spread[k] = beams.direction_spread[k] = glm::dvec3(0.0);
+    for (int i = 0; i < kLanes; ++i) beams.radius[i] = beams.half[i] * glm::length(at(beams.rays.direction, i));
+    LaneBounds bounds;
+    tape_slope_bounds(tape, tape.steps, beams, scratch, bounds);
+    for (int i = 0; i < kLanes; ++i) {
+      const RayBounds own = evaluator.bounds_along(at(beams.rays.origin, i), at(beams.rays.direction, i),
+                                                   {beams.middle[i] - beams.half[i], beams.middle[i] + beams.half[i]});
+      EXPECT_NEAR(bounds.lower[i], own.value.lower, 1e-9);
+      EXPECT_NEAR(bounds.upper[i], own.value.upper, 1e-9);
+      EXPECT_NEAR(bounds.slope_lower[i], own.slope.lower, 1e-6);
+      EXPECT_NEAR(bounds.slope_upper[i], own.slope.upper, 1e-6);
+    }
+  });
+}
+
+TEST(Tape, APrunedTapeIsTheSameToTheLastBitWhereItWasPruned) {
+  TapeScratch scratch;
+  size_t before = 0, after = 0;
+  over_random_fields(300, [&](Random& random, const Field&, const FieldTape& tape) {
+    const LaneBeams beams = random_beams(random);
+    LaneBounds bounds;
+    tape_bounds(tape, tape.steps, beams, scratch, bounds);
+    const auto lanes = static_cast<std::uint16_t>(1 + random.index(65535));
+    std::vector<TapeStep> pruned, again;
+    prune_tape(tape.steps, scratch.choices, lanes, tape.registers, pruned);
+    before += tape.steps.size();
+    after += pruned.size();
+    // Pruned a second time, of the pruned tape, for one lane.
+    const int only = std::countr_zero(static_cast<unsigned>(lanes));
+    tape_bounds(tape, pruned, beams, scratch, bounds);
+    prune_tape(pruned, scratch.choices, static_cast<std::uint16_t>(1 << only), tape.registers, again);
+    for (int k = 0; k < 8; ++k) {
+      LaneRays rays;
+      LaneArray s, whole, part, slopes, part_slopes;
+      for (int i = 0; i < kLanes; ++i) {
+        const Probe probe = random_probe(random, beams, i);
+        for (int axis = 0; axis < 3; ++axis) rays.origin[axis][i] = probe.origin[axis], rays.direction[axis][i] = probe.direction[axis];
+        s[i] = probe.s;
+      }
+      tape_slopes(tape, tape.steps, rays, s, scratch, whole, slopes);
+      tape_slopes(tape, pruned, rays, s, scratch, part, part_slopes);
+      for (int i = 0; i < kLanes; ++i) {
+        if (!(lanes >> i & 1)) continue;
+        EXPECT_EQ(whole[i], part[i]);
+        EXPECT_EQ(slopes[i], part_slopes[i]);
+      }
+      tape_values(tape, again, rays, s, scratch, part);
+      EXPECT_EQ(whole[only], part[only]);
+    }
+  });
+  EXPECT_LT(after, before * 9 / 10);
+}
+
+TEST(Tape, SinesAreRightToTwoUnitsInTheLastPlace) {
+  // A gyroid of period 2 pi whose walls are thin: f = |sin x cos y + ...| / sqrt 3 - half the thickness, inside its ball.
+  Random random(5);
+  std::int64_t worst = 0;
+  const Field field = make_shape("gyroid", {{"period", {6.283185307179586}}, {"thickness", {1e-9}}, {"bound", {1e8}}});
+  const FieldTape tape(field);
+  TapeScratch scratch;
+  FieldEvaluator evaluator(field);
+  for (const double size : {1.0, 100.0, 1e5, 3e6}) {
+    for (int k = 0; k < 50; ++k) {
+      LaneRays rays = random_rays(random);
+      LaneArray s, values;
+      for (int i = 0; i < kLanes; ++i) s[i] = random.uniform(-size, size);
+      tape_values(tape, tape.steps, rays, s, scratch, values);
+      for (int i = 0; i < kLanes; ++i) {
+        const double own = evaluator.value(point(rays, i, s[i])) + 1.0, lane = values[i] + 1.0;  // the sum of products may cancel
+        worst = std::max(worst, ulps_between(own, lane));
+      }
+    }
+  }
+  EXPECT_LE(worst, 2);
+}
+
+TEST(Tape, EverySimdTargetGivesTheSameBits) {
+  TapeScratch scratch;
+  const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
+  int targets = 0;
+  over_random_fields(60, [&](Random& random, const Field&, const FieldTape& tape) {
+    const LaneBeams beams = random_beams(random);
+    struct Results {
+      LaneArray values, with_slope, slopes, with_gradient;
+      std::array<LaneArray, 3> gradients;
+      LaneBounds bounds;
+    };
+    std::vector<Results> all;
+    std::vector<std::vector<TapeChoice>> choices;
+    for (std::int64_t left = supported; left != 0; left &= left - 1) {
+      hwy::SetSupportedTargetsForTest(left & -left);
+      hwy::GetChosenTarget().Update(left & -left);
+      Results r{};
+      tape_values(tape, tape.steps, beams.rays, beams.middle, scratch, r.values);
+      tape_slopes(tape, tape.steps, beams.rays, beams.middle, scratch, r.with_slope, r.slopes);
+      tape_gradients(tape, tape.steps, beams.rays, beams.middle, scratch, r.with_gradient, r.gradients);
+      tape_slope_bounds(tape, tape.steps, beams, scratch, r.bounds);
+      all.push_back(r);
+      choices.push_back(scratch.choices);
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    targets = static_cast<int>(all.size());
+    for (size_t k = 1; k < all.size(); ++k) {
+      for (size_t d = 0; d < sizeof(Results) / sizeof(double); ++d) {
+        double a = 0.0, b = 0.0;
+        std::memcpy(&a, reinterpret_cast<const char*>(&all[0]) + d * sizeof(double), sizeof(double));
+        std::memcpy(&b, reinterpret_cast<const char*>(&all[k]) + d * sizeof(double), sizeof(double));
+        EXPECT_EQ(a, b) << "double " << d << ", target " << k;
+      }
+      for (size_t i = 0; i < choices[0].size(); ++i) {
+        EXPECT_EQ(choices[0][i].left, choices[k][i].left);
+        EXPECT_EQ(choices[0][i].right, choices[k][i].right);
+      }
+    }
+  });
+  std::printf("%d targets\n", targets);
+  EXPECT_GE(targets, 1);
+}
+
+}  // namespace
+}  // namespace limn::test

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <array>
@@ -23,8 +22,6 @@ constexpr std::int64_t kBlockBytes = static_cast<std::int64_t>(sizeof(LevelSetBl
 [[noreturn]] void refuse(const std::string& field, const std::string& value, const std::string& problem, const std::string& expected) {
   throw InputError({.file = {}, .field = field, .value = value, .problem = problem, .expected = expected});
 }
-
-using Evaluators = tbb::enumerable_thread_specific<FieldEvaluator>;
 
 /// Progress of parallel work, told by one thread at a time and never backwards.
 class Progress {
@@ -61,12 +58,18 @@ Lattice lattice_for(const Box& bounds, const LevelSetSettings& settings) {
 struct Cube {
   glm::ivec3 origin;
   int size;
+  Field field;  ///< Equals the whole one in reach of the cube's nodes, shorter where some of its parts are of no influence.
 };
+
+Box nodes_of(const Cube& cube, const Lattice& lattice) { return {lattice.node(cube.origin), lattice.node(cube.origin + (cube.size - 1))}; }
+
+/// Where the cube's field may be asked: the band about its nodes, and what the search for thin places looks at beside the surface in it.
+Box reach_of(const Cube& cube, const Lattice& lattice) { return dilate(nodes_of(cube, lattice), lattice.half_width + 4.0 * lattice.h); }
 
 /// False only where no node of the cube lies within the half width of the surface.
 bool may_hold_band(FieldEvaluator& evaluator, const Lattice& lattice, const Cube& cube) {
   const FieldTraits& traits = evaluator.field().traits();
-  const Box nodes{lattice.node(cube.origin), lattice.node(cube.origin + (cube.size - 1))};
+  const Box nodes = nodes_of(cube, lattice);
   const Box reach = dilate(nodes, lattice.half_width);
   if (intersect(reach, traits.bounds).empty()) return false;
   const Interval here = evaluator.bounds(nodes);
@@ -89,25 +92,27 @@ void check_size(size_t cubes, int size, const LevelSetSettings& settings) {
          fmt::format("a voxel size of about {:.2g} or more", settings.voxel_size * factor * 1.05));
 }
 
-std::vector<Cube> split(const std::vector<Cube>& cubes, const Lattice& lattice, Evaluators& evaluators) {
-  std::vector<std::array<bool, 8>> keep(cubes.size());
-  const auto child = [&](size_t i, int octant) {
-    const int half = cubes[i].size / 2;
-    return Cube{cubes[i].origin + half * glm::ivec3(octant & 1, (octant >> 1) & 1, octant >> 2), half};
-  };
+/// The octants that may hold a part of the band. Each passes its shortened field on to its own octants.
+std::vector<Cube> split(const std::vector<Cube>& cubes, const Lattice& lattice) {
+  std::vector<std::vector<Cube>> kept(cubes.size());
   tbb::parallel_for(size_t{0}, cubes.size(), [&](size_t i) {
-    FieldEvaluator& evaluator = evaluators.local();
-    for (int octant = 0; octant < 8; ++octant) keep[i][static_cast<size_t>(octant)] = may_hold_band(evaluator, lattice, child(i, octant));
+    FieldEvaluator evaluator(cubes[i].field);
+    const int half = cubes[i].size / 2;
+    for (int octant = 0; octant < 8; ++octant) {
+      Cube child{cubes[i].origin + half * glm::ivec3(octant & 1, (octant >> 1) & 1, octant >> 2), half, cubes[i].field};
+      if (!may_hold_band(evaluator, lattice, child)) continue;
+      child.field = evaluator.restricted(reach_of(child, lattice));
+      kept[i].push_back(std::move(child));
+    }
   });
   std::vector<Cube> result;
-  for (size_t i = 0; i < cubes.size(); ++i)
-    for (int octant = 0; octant < 8; ++octant)
-      if (keep[i][static_cast<size_t>(octant)]) result.push_back(child(i, octant));
+  for (std::vector<Cube>& children : kept) std::move(children.begin(), children.end(), std::back_inserter(result));
   return result;
 }
 
 /// The blocks that may hold a part of the band, in an order that depends on nothing but the field and the lattice.
-std::vector<Cube> band_blocks(const Box& bounds, const Lattice& lattice, const LevelSetSettings& settings, Evaluators& evaluators) {
+std::vector<Cube> band_blocks(const Field& field, const Lattice& lattice, const LevelSetSettings& settings) {
+  const Box& bounds = field.traits().bounds;
   const Box reach = dilate(bounds, lattice.half_width + lattice.h);
   const glm::dvec3 lower = glm::floor((reach.lower - lattice.origin) / lattice.h / double{kBlock});
   const glm::dvec3 upper = glm::ceil((reach.upper - lattice.origin) / lattice.h / double{kBlock});
@@ -118,15 +123,16 @@ std::vector<Cube> band_blocks(const Box& bounds, const Lattice& lattice, const L
            fmt::format("above {:.2g}", bounds.longest_side() * 1e-8));
   int size = kBlock;
   while (size < longest * kBlock) size *= 2;
-  std::vector<Cube> cubes{{kBlock * glm::ivec3(lower), size}};
+  std::vector<Cube> cubes{{kBlock * glm::ivec3(lower), size, field}};
   while (!cubes.empty() && cubes.front().size > kBlock) {
-    cubes = split(cubes, lattice, evaluators);
+    cubes = split(cubes, lattice);
     check_size(cubes.size(), cubes.empty() ? kBlock : cubes.front().size, settings);
   }
   return cubes;
 }
 
-ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, FieldEvaluator& evaluator) {
+ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice) {
+  FieldEvaluator evaluator(cube.field);
   std::array<glm::dvec3, 512> points;
   std::array<double, 512> distances;
   for (int n = 0; n < 512; ++n) points[static_cast<size_t>(n)] = lattice.node(cube.origin + glm::ivec3(n >> 6, (n >> 3) & 7, n & 7));
@@ -179,14 +185,12 @@ LevelSet level_set_from_field(const Field& field, const LevelSetSettings& settin
   const auto started = std::chrono::steady_clock::now();
   const Box& bounds = field.traits().bounds;
   const Lattice lattice = lattice_for(bounds, settings);
-  Evaluators evaluators([&] { return FieldEvaluator(field); });
-
-  const std::vector<Cube> cubes = band_blocks(bounds, lattice, settings, evaluators);
+  const std::vector<Cube> cubes = band_blocks(field, lattice, settings);
   std::vector<LevelSetBlock> blocks(cubes.size());
   Progress progress(settings.progress, cubes.size());
   std::atomic<std::int64_t> looked_at{0}, walls{0}, gaps{0};
   tbb::parallel_for(size_t{0}, cubes.size(), [&](size_t i) {
-    const ThinPlaces found = fill(blocks[i], cubes[i], lattice, evaluators.local());
+    const ThinPlaces found = fill(blocks[i], cubes[i], lattice);
     looked_at += found.looked_at;
     walls += found.walls;
     gaps += found.gaps;

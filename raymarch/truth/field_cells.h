@@ -1,13 +1,17 @@
 #pragma once
 // Internal: the finest cells that a curve may go through, by interval bounds over an octree, each marched where it is found.
 
+#include <map>
+#include <utility>
+
 #include "raymarch/gbuffer.h"
+#include "raymarch/truth/branches.h"
 #include "raymarch/truth/march.h"
 
 namespace limn {
 
 struct CellSearch {
-  const Field& field;
+  const SharpField& sharp;
   const Camera& camera;  ///< As it is: the hair that a viewer is turned by is covered by a margin.
   const Viewer& viewer;
   CellGrid grid{};  ///< Of the finest level.
@@ -16,8 +20,10 @@ struct CellSearch {
   FamilyMask families = 0;
 };
 
+/// Crossings of curves on branches, and of the seams of two, wherever either may belong to the surface of the whole.
 struct CellResult {
-  std::array<CellCurves, kCurveFamilies> families{};
+  std::map<int, CellOutput> branches{};
+  std::map<std::pair<int, int>, CellCurves> seams{};
   std::int64_t cells = 0;
   std::int64_t unsettled = 0;
 };

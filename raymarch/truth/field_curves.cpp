@@ -8,11 +8,11 @@
 #include <functional>
 
 #include "raymarch/truth/field_cells.h"
+#include "raymarch/truth/strands.h"
 
 namespace limn {
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr int kDeepest = 14;  // halvings of a step between two marched points
 
 /// The domain is wider than the bounds by odd shares on every side: what is symmetric about its own middle then keeps off the cells' faces.
@@ -27,59 +27,6 @@ double largest_scale(const Camera& camera, const Box& bounds) {
   const double z = project(camera, bounds.center()).z;
   return pixels_per_unit_at(camera, std::max(z - bounds.radius(), 0.1 * bounds.radius()));
 }
-
-/// Crossings joined along their links.
-class Assembly {
- public:
-  Assembly(CellCurves cells) : crossings_(std::move(cells.crossings)) {
-    std::stable_sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) { return a.key < b.key; });
-    crossings_.erase(std::unique(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) { return a.key == b.key; }),
-                     crossings_.end());
-    next_.assign(crossings_.size(), {kNone, kNone});
-    for (const Link& link : cells.links) {
-      const std::uint32_t from = find(link.from), to = find(link.to);
-      attach(from, to);
-      attach(to, from);
-    }
-  }
-
-  std::vector<FieldCurve> curves(double c) {
-    std::vector<FieldCurve> result;
-    std::vector<bool> taken(crossings_.size(), false);
-    for (const bool ends_only : {true, false}) {
-      for (std::uint32_t i = 0; i < crossings_.size(); ++i) {
-        if (taken[i] || (ends_only && next_[i][1] != kNone)) continue;
-        FieldCurve curve;
-        curve.c = c;
-        std::uint32_t at = i, before = kNone;
-        while (at != kNone && !taken[at]) {
-          taken[at] = true;
-          curve.points.push_back(crossings_[at].point);
-          const std::uint32_t go = next_[at][0] == before ? next_[at][1] : next_[at][0];
-          before = at;
-          at = go;
-        }
-        curve.closed = !ends_only;
-        if (curve.points.size() > 1) result.push_back(std::move(curve));
-      }
-    }
-    return result;
-  }
-
- private:
-  std::uint32_t find(std::uint64_t key) const {
-    const auto at =
-        std::lower_bound(crossings_.begin(), crossings_.end(), key, [](const Crossing& a, std::uint64_t k) { return a.key < k; });
-    return static_cast<std::uint32_t>(at - crossings_.begin());
-  }
-  void attach(std::uint32_t from, std::uint32_t to) {
-    auto& slots = next_[from];
-    (slots[0] == kNone ? slots[0] : slots[1]) = to;
-  }
-
-  std::vector<Crossing> crossings_;
-  std::vector<std::array<std::uint32_t, 2>> next_;
-};
 
 /// Where along a step a point between is looked for: beside a corner the middle may have none.
 constexpr std::array<double, 7> kShares = {0.5, 0.3, 0.7, 0.12, 0.88, 0.03, 0.97};
@@ -166,6 +113,10 @@ std::vector<double> sagittas(const FieldCurve& curve, const Camera& camera) {
     return turn_at(px, (i + n - 1) % n, i, (i + 1) % n);
   };
   std::vector<double> result(curve.closed ? n : n - 1);
+  if (n < 5) {  // Too few to tell how they turn.
+    for (size_t i = 0; i < result.size(); ++i) result[i] = glm::distance(px[i], px[(i + 1) % n]);
+    return result;
+  }
   for (size_t i = 0; i < result.size(); ++i) {
     const size_t j = (i + 1) % n;
     // An arc that turns by t over a chord of length l bulges l t / 8; the turn at a vertex is that of half of both steps.
@@ -175,7 +126,7 @@ std::vector<double> sagittas(const FieldCurve& curve, const Camera& camera) {
 }
 
 /// Points that are off the curve are left to the refinement, where others remain to start from.
-void drop_rough(FieldCurve& curve) {
+void drop_rough(Strand& curve) {
   const auto rough = [](const CurvePoint& point) { return point.rough; };
   const auto good = std::count_if(curve.points.begin(), curve.points.end(), std::not_fn(rough));
   if (good >= 4) curve.points.erase(std::remove_if(curve.points.begin(), curve.points.end(), rough), curve.points.end());
@@ -183,7 +134,7 @@ void drop_rough(FieldCurve& curve) {
 
 /// Where a sharp edge runs along the faces it crosses, neighbouring crossings may come out in the wrong order: of a sharp turn the point is
 /// dropped. Were it a corner of the curve, the refinement would find it again.
-void drop_backward(FieldCurve& curve) {
+void drop_backward(Strand& curve) {
   for (bool again = true; again && curve.points.size() > 8;) {
     again = false;
     std::vector<CurvePoint> kept = {curve.points[0]};
@@ -201,10 +152,33 @@ void drop_backward(FieldCurve& curve) {
   }
 }
 
+/// What was found on the branches and along their seams, as strands.
+std::vector<Strand> strands_of(CellResult& found, const CellSearch& search, FieldCurves& stats) {
+  std::vector<Strand> strands;
+  for (auto& [branch, families] : found.branches) {
+    for (size_t family = 0; family < kCurveFamilies; ++family) {
+      for (Strand& strand : assemble(std::move(families[family]), branch, -1, search.levels[family])) {
+        drop_rough(strand);
+        stats.rough += std::count_if(strand.points.begin(), strand.points.end(), [](const CurvePoint& point) { return point.rough; });
+        drop_backward(strand);
+        strands.push_back(std::move(strand));
+      }
+    }
+  }
+  for (auto& [seam, curves] : found.seams) {
+    const auto whole = assemble(std::move(curves), seam.first, seam.second, 0.0);
+    for (size_t family = 0; family < kCurveFamilies; ++family) {
+      if (!(search.families >> family & 1u)) continue;
+      for (Strand strand : whole) {
+        strand.c = search.levels[family];
+        strands.push_back(std::move(strand));
+      }
+    }
+  }
+  return strands;
+}
+
 void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
-  drop_rough(curve);
-  stats.rough += std::count_if(curve.points.begin(), curve.points.end(), [](const CurvePoint& point) { return point.rough; });
-  drop_backward(curve);
   const size_t n = curve.points.size();
   const std::vector<double> sagitta = sagittas(curve, refiner.camera);
   std::vector<Refined> between(sagitta.size());
@@ -248,20 +222,32 @@ FieldCurves trace_field_curves(const Field& field, const Camera& camera, const V
   const CellGrid grid = make_grid(bounds, result.level);
   result.cell = grid.side;
   result.cell_px = grid.side * scale;
-  const CellSearch search{field, camera, viewer, grid, result.level, {0.0, settings.threshold}, settings.threshold > 0.0 ? 3u : 1u};
+  const SharpField sharp = split_branches(field, bounds.radius());
+  const CellSearch search{sharp, camera, viewer, grid, result.level, {0.0, settings.threshold}, settings.threshold > 0.0 ? 3u : 1u};
   CellResult found = search_cells(search, how);
   result.cells = found.cells;
   result.unsettled = found.unsettled;
   result.unsettled_cuts = 1 << kSettlingCuts;
-  const Refiner refiner{field, camera, viewer, settings.tolerance_px, bounds.radius()};
-  for (size_t family = 0; family < kCurveFamilies; ++family) {
-    for (FieldCurve& curve : Assembly(std::move(found.families[family])).curves(search.levels[family])) {
-      if (how.cancelled && how.cancelled()) throw Cancelled{};
-      refine(refiner, curve, result);
-      result.open_ends += curve.closed ? 0 : 2;
-      result.curves.push_back(std::move(curve));
-    }
+  const std::vector<Strand> strands = strands_of(found, search, result);
+  const StrandSettings cutting{sharp, camera, viewer, settings.tolerance_px, bounds.radius(), field.traits().lipschitz};
+  std::vector<std::vector<FieldCurve>> cut(strands.size());
+  std::vector<FieldCurves> stats(strands.size());
+  tbb::parallel_for(size_t{0}, strands.size(), [&](size_t i) {
+    if (how.cancelled && how.cancelled()) throw Cancelled{};
+    const Strand& strand = strands[i];
+    cut[i] = cut_to_surface(strand, cutting);
+    if (strand.second >= 0) return;
+    const Refiner refiner{sharp.branches[static_cast<size_t>(strand.first)], camera, viewer, settings.tolerance_px, bounds.radius()};
+    for (FieldCurve& curve : cut[i]) refine(refiner, curve, stats[i]);
+  });
+  std::vector<FieldCurve> pieces;
+  for (size_t i = 0; i < strands.size(); ++i) {
+    result.unrefined += stats[i].unrefined;
+    result.worst_unrefined_px = std::max(result.worst_unrefined_px, stats[i].worst_unrefined_px);
+    for (FieldCurve& curve : cut[i]) pieces.push_back(std::move(curve));
   }
+  result.curves = join_ends(std::move(pieces), camera, result.worst_unrefined_px);
+  for (const FieldCurve& curve : result.curves) result.open_ends += curve.closed ? 0 : 2;
   return result;
 }
 

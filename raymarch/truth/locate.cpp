@@ -114,6 +114,33 @@ std::optional<CurvePoint> polish(FieldEvaluator& evaluator, const Viewer& viewer
   return {};
 }
 
+std::optional<CurvePoint> polish_seam(FieldEvaluator& first, FieldEvaluator& second, const glm::dvec3& start, double reach) {
+  glm::dvec3 p = start;
+  const auto at = [&p](FieldEvaluator& evaluator, double& value) {
+    glm::dvec3 gradient;
+    evaluator.gradients(std::span(&p, 1), std::span(&value, 1), std::span(&gradient, 1));
+    const double length = glm::length(gradient);
+    value /= length;
+    return gradient / length;
+  };
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    double f = 0.0, g = 0.0;
+    const glm::dvec3 n = at(first, f), m = at(second, g);
+    const double nm = glm::dot(n, m), determinant = 1.0 - nm * nm;
+    if (!(determinant > 1e-12) || !std::isfinite(f + g)) return {};
+    const glm::dvec3 move = ((f - nm * g) * n + (g - nm * f) * m) / determinant;
+    p -= move;
+    if (!(glm::length(p - start) <= reach)) return {};
+    if (glm::length(move) < 1e-7 * reach) {
+      CurvePoint point;
+      point.p = p;
+      point.crease = true;
+      return point;
+    }
+  }
+  return {};
+}
+
 std::optional<SurfaceSample> Fan::at(FieldEvaluator& evaluator, const Viewer& viewer, double s) const {
   // A sharp edge may reach through the far side: there the segment is followed beyond it.
   for (const double reach : {1.0, 2.0, 4.0, 8.0}) {

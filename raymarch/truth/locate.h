@@ -41,6 +41,10 @@ glm::dvec3 root_between(FieldEvaluator& evaluator, glm::dvec3 a, glm::dvec3 b, d
 /// Newton's iteration on (f, N.V - c) with the pseudo-inverse, from p; nothing where it does not converge or goes farther than `reach`.
 std::optional<CurvePoint> polish(FieldEvaluator& evaluator, const Viewer& viewer, double c, const glm::dvec3& p, double reach);
 
+/// Where both fields vanish, by Newton's iteration with the pseudo-inverse, from p; nothing where it does not converge, goes farther than
+/// `reach`, or where the two surfaces touch along the way. Only `p` of the point is filled in.
+std::optional<CurvePoint> polish_seam(FieldEvaluator& first, FieldEvaluator& second, const glm::dvec3& p, double reach);
+
 /// A stretch of surface curve, as points over a parameter: bisects for the place where N.V crosses c.
 struct Fan {
   glm::dvec3 apex, middle, side;  ///< Point(s) is the root of f on the segment from apex to middle + s * side,

@@ -10,6 +10,7 @@ constexpr std::array<std::array<int, 4>, 6> kTetrahedra = {
     {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}}};
 // A share of the step across a face: points that Newton moves farther would change places with their neighbours.
 constexpr double kSmoothReach = 0.25;
+constexpr int kSeamSteps = 40;
 
 glm::ivec3 offset_of(int corner) { return {corner & 1, corner >> 1 & 1, corner >> 2 & 1}; }
 
@@ -20,8 +21,9 @@ struct FaceCrossing {
 
 class Marcher {
  public:
-  Marcher(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell, CellOutput& output)
-      : evaluator_(evaluator), viewer_(viewer), cell_(cell), output_(output), side_(grid.side) {
+  /// With `seam`, it is that field's zeros that are looked for instead of N.V's levels.
+  Marcher(FieldEvaluator& evaluator, FieldEvaluator* seam, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell)
+      : evaluator_(evaluator), seam_(seam), viewer_(viewer), cell_(cell), side_(grid.side) {
     for (int i = 0; i < 8; ++i) points_[static_cast<size_t>(i)] = grid.vertex(cell + offset_of(i));
     evaluator.values(points_, values_);
     for (size_t i = 0; i < 8; ++i) inside_[i] = values_[i] < 0.0;
@@ -29,8 +31,8 @@ class Marcher {
 
   bool holds_surface() const { return std::find(inside_.begin(), inside_.end(), !inside_[0]) != inside_.end(); }
 
-  bool march(size_t family, double level) {
-    family_ = family;
+  bool march(double level, CellCurves& output) {
+    output_ = &output;
     level_ = level;
     faces_.clear();
     bool any = false;
@@ -45,10 +47,12 @@ class Marcher {
   const SurfaceSample& edge(int a, int b) {
     const auto low = static_cast<size_t>(std::min(a, b)), high = static_cast<size_t>(std::max(a, b));
     auto& sample = edges_[8 * low + high];
-    if (!sample) {
-      sample = sample_surface(evaluator_, viewer_, root_between(evaluator_, points_[low], points_[high], values_[low], values_[high]));
-    }
+    if (!sample) sample = sample_at(root_between(evaluator_, points_[low], points_[high], values_[low], values_[high]));
     return *sample;
+  }
+  SurfaceSample sample_at(const glm::dvec3& p) {
+    if (seam_ != nullptr) return {p, glm::dvec3(0.0), seam_->value(p)};
+    return sample_surface(evaluator_, viewer_, p);
   }
   bool above(const SurfaceSample& sample) const { return !(sample.facing < level_); }
 
@@ -69,7 +73,7 @@ class Marcher {
     const FaceCrossing result{key_of(a, b, c), true};
     if (std::find(faces_.begin(), faces_.end(), result.key) == faces_.end()) {
       faces_.push_back(result.key);
-      output_.families[family_].crossings.push_back({result.key, locate(lone, first, second, start, end)});
+      output_->crossings.push_back({result.key, locate(lone, first, second, start, end)});
     }
     return result;
   }
@@ -78,6 +82,7 @@ class Marcher {
     const auto at = [&](int corner) { return points_[static_cast<size_t>(corner)]; };
     const Fan fan{at(lone), at(first), at(second) - at(first), values_[static_cast<size_t>(lone)]};
     const double step = glm::length(end.p - start.p);
+    if (seam_ != nullptr) return locate_seam(fan, start, end);
     if (auto point = bisect(evaluator_, viewer_, level_, fan, 0.0, 1.0, start, end, kSmoothReach * step)) return *point;
     const double share = (level_ - start.facing) / (end.facing - start.facing);
     CurvePoint point;
@@ -92,7 +97,28 @@ class Marcher {
     return point;
   }
 
-  void link(const FaceCrossing& a, const FaceCrossing& b) { output_.families[family_].links.push_back({a.key, b.key}); }
+  /// Along the face: Newton first, false position where that leads away.
+  CurvePoint locate_seam(const Fan& fan, const SurfaceSample& start, const SurfaceSample& end) {
+    const double step = glm::length(end.p - start.p);
+    double low = 0.0, high = 1.0, at_low = start.facing, at_high = end.facing;
+    CurvePoint point;
+    point.p = start.p + at_low / (at_low - at_high) * (end.p - start.p);
+    point.crease = true;
+    for (int k = 0; k < kSeamSteps; ++k) {
+      if (auto polished = polish_seam(evaluator_, *seam_, point.p, kSmoothReach * step)) return *polished;
+      const double middle = k % 2 == 0 ? std::clamp(at_low / (at_low - at_high), 0.05, 0.95) : 0.5, s = glm::mix(low, high, middle);
+      const auto sample = fan.at(evaluator_, viewer_, s);
+      if (!sample) break;
+      point.p = sample->p;
+      const double value = seam_->value(point.p);
+      const bool as_low = (value < 0.0) == (at_low < 0.0);
+      (as_low ? low : high) = s;
+      (as_low ? at_low : at_high) = value;
+    }
+    return point;
+  }
+
+  void link(const FaceCrossing& a, const FaceCrossing& b) { output_->links.push_back({a.key, b.key}); }
 
   bool march_tetrahedron(const std::array<int, 4>& v) {
     const std::array<FaceCrossing, 4> faces = {face(v[1], v[2], v[3]), face(v[0], v[2], v[3]), face(v[0], v[1], v[3]),
@@ -119,7 +145,7 @@ class Marcher {
     const double f_ab = evaluator_.value(ab), f_cd = evaluator_.value(cd);
     bool middle_above = true;
     if ((f_ab < 0.0) != (f_cd < 0.0)) {
-      middle_above = above(sample_surface(evaluator_, viewer_, root_between(evaluator_, ab, cd, f_ab, f_cd)));
+      middle_above = above(sample_at(root_between(evaluator_, ab, cd, f_ab, f_cd)));
     }
     // Corner AC of the quad joins faces ABC (opposite D) and ACD (opposite B).
     const bool cut_ac = above(edge(v[0], v[c])) != middle_above;
@@ -128,11 +154,11 @@ class Marcher {
   }
 
   FieldEvaluator& evaluator_;
+  FieldEvaluator* seam_;
   const Viewer& viewer_;
   glm::ivec3 cell_;
-  CellOutput& output_;
+  CellCurves* output_ = nullptr;
   double side_;
-  size_t family_ = 0;
   double level_ = 0.0;
   std::array<glm::dvec3, 8> points_;
   std::array<double, 8> values_;
@@ -145,13 +171,19 @@ class Marcher {
 
 bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
                 const std::array<double, kCurveFamilies>& levels, FamilyMask families, CellOutput& output) {
-  Marcher marcher(evaluator, viewer, grid, cell, output);
+  Marcher marcher(evaluator, nullptr, viewer, grid, cell);
   if (!marcher.holds_surface()) return false;
   bool any = false;
   for (size_t family = 0; family < kCurveFamilies; ++family) {
-    if (families >> family & 1u) any = marcher.march(family, levels[family]) || any;
+    if (families >> family & 1u) any = marcher.march(levels[family], output[family]) || any;
   }
   return any;
+}
+
+bool march_seam(FieldEvaluator& first, FieldEvaluator& second, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
+                CellCurves& output) {
+  Marcher marcher(first, &second, viewer, grid, cell);
+  return marcher.holds_surface() && marcher.march(0.0, output);
 }
 
 }  // namespace limn

@@ -34,9 +34,12 @@ struct CellCurves {
 inline constexpr size_t kCurveFamilies = 2;
 using FamilyMask = unsigned;  ///< Bit i: family i.
 
-struct CellOutput {
-  std::array<CellCurves, kCurveFamilies> families{};
-};
+using CellOutput = std::array<CellCurves, kCurveFamilies>;
+
+/// Where a curve is the seam of two fields instead: the zeros of `second` on the surface of `first`. True where it goes through the cell.
+/// Points have no normals yet.
+bool march_seam(FieldEvaluator& first, FieldEvaluator& second, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
+                CellCurves& output);
 
 /// So many cells around the marched one is the field evaluated.
 inline constexpr double kMarchReach = 7.5;

@@ -260,6 +260,7 @@ TEST(TruthClosedForm, ThinTorusIsWithinAHundredthOfAPixel) { compare(known_torus
 TEST(TruthClosedForm, ThickTorusIsWithinAHundredthOfAPixel) { compare(known_torus("thick torus", 1.0, 0.6)); }
 TEST(TruthClosedForm, CylinderIsWithinAHundredthOfAPixel) { compare(known_cylinder(0.6, 0.8)); }
 TEST(TruthClosedForm, ConeIsWithinAHundredthOfAPixel) { compare(known_cone(25.0 * kPi / 180.0, 1.6)); }
+TEST(TruthClosedForm, KnifeEdgedLensIsWithinAHundredthOfAPixel) { compare(known_lens(0.9, 3.0 * kPi / 180.0)); }
 
 }  // namespace
 }  // namespace limn::test

@@ -113,4 +113,23 @@ inline KnownShape known_cone(double angle, double height) {
   return shape;
 }
 
+/// What two balls share, its edge a knife's of twice `angle`.
+inline KnownShape known_lens(double radius, double angle) {
+  const double ball = radius / std::sin(angle), away = ball * std::cos(angle);
+  const Field sphere = make_shape("sphere", {{"radius", {ball}}});
+  KnownShape shape{"lens", combine(Csg::intersection, translate(sphere, {0.0, -away, 0.0}), translate(sphere, {0.0, away, 0.0})), {}, {}};
+  for (const double up : {1.0, -1.0}) {
+    Sheet sheet;
+    sheet.low = {0.0, -kPi};
+    sheet.high = {angle, kPi};
+    sheet.normal = [=](const glm::dvec2& q) { return around(q.y, std::sin(q.x), up * std::cos(q.x)); };
+    sheet.point = [=](const glm::dvec2& q) { return around(q.y, ball * std::sin(q.x), up * (ball * std::cos(q.x) - away)); };
+    sheet.parameters = [=](const glm::dvec3& p) { return glm::dvec2(std::atan2(std::hypot(p.x, p.z), up * p.y + away), angle_of(p)); };
+    shape.sheets.push_back(sheet);
+  }
+  shape.creases.push_back({radius, 0.0, [=](double a) { return around(a, std::sin(angle), std::cos(angle)); },
+                           [=](double a) { return around(a, std::sin(angle), -std::cos(angle)); }});
+  return shape;
+}
+
 }  // namespace limn::test

@@ -1,0 +1,180 @@
+#include "raymarch/truth/branches.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "sdf/field_program.h"
+
+namespace limn {
+namespace {
+
+constexpr double kHair = 1e-10;
+
+/// The program as a tree: of each instruction, which instructions made what it reads.
+struct Step {
+  const FieldInstruction* instruction = nullptr;
+  int left = -1, right = -1;
+};
+
+bool is_binary(FieldOperation operation) {
+  return operation == FieldOperation::minimum || operation == FieldOperation::maximum || operation == FieldOperation::smooth_minimum ||
+         operation == FieldOperation::smooth_maximum;
+}
+
+std::vector<Step> steps_of(const FieldProgram& program) {
+  std::vector<int> maker(program.slots, -1);
+  std::vector<Step> steps;
+  for (const FieldInstruction& instruction : program.instructions) {
+    Step step{&instruction};
+    if (instruction.operation != FieldOperation::leaf) step.left = maker[instruction.left];
+    if (is_binary(instruction.operation)) step.right = maker[instruction.right];
+    maker[instruction.target] = static_cast<int>(steps.size());
+    steps.push_back(step);
+  }
+  return steps;
+}
+
+class Splitter {
+ public:
+  explicit Splitter(const Field& field) : program_(field.program()), steps_(steps_of(program_)) {}
+
+  SharpField run() {
+    split(static_cast<int>(steps_.size()) - 1, 1.0, 0.0);
+    for (size_t i = 0; i < sharp_.nodes.size(); ++i) {
+      const SharpNode& node = sharp_.nodes[i];
+      if (node.branch >= 0) continue;
+      sharp_.nodes[static_cast<size_t>(node.left)].parent = static_cast<int>(i);
+      sharp_.nodes[static_cast<size_t>(node.right)].parent = static_cast<int>(i);
+    }
+    return std::move(sharp_);
+  }
+
+ private:
+  const Step& step(int i) const { return steps_[static_cast<size_t>(i)]; }
+
+  /// The node for sign * step + added.
+  int split(int at, double sign, double added) {
+    const FieldInstruction& instruction = *step(at).instruction;
+    const int left = step(at).left, right = step(at).right;
+    switch (instruction.operation) {
+      case FieldOperation::minimum:
+      case FieldOperation::maximum: {
+        const bool maximum = (instruction.operation == FieldOperation::maximum) == (sign > 0.0);
+        const int a = split(left, sign, added), b = split(right, sign, added);
+        return add_node({maximum, a, b, -1, -1});
+      }
+      case FieldOperation::absolute: {
+        const int a = split(left, 1.0, added), b = split(left, -1.0, added);
+        return add_node({sign > 0.0, a, b, -1, -1});
+      }
+      case FieldOperation::negate:
+        return split(left, -sign, added);
+      case FieldOperation::add:
+        return split(left, sign, added + sign * instruction.constant);
+      default:
+        return add_branch(at, sign, added);
+    }
+  }
+
+  int add_node(const SharpNode& node) {
+    sharp_.nodes.push_back(node);
+    return static_cast<int>(sharp_.nodes.size()) - 1;
+  }
+
+  int add_branch(int at, double sign, double added) {
+    FieldProgram branch;
+    branch.traits = program_.traits;
+    branch.traits.exact_distance = false;
+    emit(at, 0, branch);
+    if (sign < 0.0) branch.instructions.push_back({FieldOperation::negate, 0, 0, 0, 0, 0.0});
+    if (added != 0.0) branch.instructions.push_back({FieldOperation::add, 0, 0, 0, 0, added});
+    const int number = static_cast<int>(sharp_.branches.size());
+    sharp_.branches.emplace_back(std::make_shared<const FieldProgram>(std::move(branch)));
+    sharp_.node_of.push_back(add_node({false, -1, -1, -1, number}));
+    return sharp_.node_of.back();
+  }
+
+  void emit(int at, std::uint32_t target, FieldProgram& out) const {
+    FieldInstruction instruction = *step(at).instruction;
+    if (step(at).left >= 0) emit(step(at).left, target, out);
+    if (step(at).right >= 0) emit(step(at).right, target + 1, out);
+    if (instruction.operation == FieldOperation::leaf) {
+      out.leaves.push_back(program_.leaves[instruction.leaf]);
+      instruction.leaf = static_cast<std::uint32_t>(out.leaves.size() - 1);
+    }
+    instruction.target = target;
+    instruction.left = target;
+    instruction.right = is_binary(instruction.operation) ? target + 1 : target;
+    out.slots = std::max(out.slots, target + 1);
+    out.instructions.push_back(instruction);
+  }
+
+  const FieldProgram& program_;
+  std::vector<Step> steps_;
+  SharpField sharp_;
+};
+
+/// From a branch's node up to the root.
+std::vector<int> path_of(const SharpField& sharp, int branch) {
+  std::vector<int> path;
+  for (int node = sharp.node_of[static_cast<size_t>(branch)]; node >= 0; node = sharp.nodes[static_cast<size_t>(node)].parent) {
+    path.push_back(node);
+  }
+  return path;
+}
+
+int first_common(const std::vector<int>& path, const std::vector<int>& other) {
+  for (const int node : path) {
+    if (std::find(other.begin(), other.end(), node) != other.end()) return node;
+  }
+  return -1;
+}
+
+}  // namespace
+
+SharpField split_branches(const Field& field, double extent) {
+  SharpField sharp = Splitter(field).run();
+  sharp.hair = kHair * extent;
+  return sharp;
+}
+
+void node_values(const SharpField& sharp, std::span<const double> branch_values, std::vector<double>& values) {
+  values.resize(sharp.nodes.size());
+  for (size_t i = 0; i < sharp.nodes.size(); ++i) {
+    const SharpNode& node = sharp.nodes[i];
+    if (node.branch >= 0) {
+      values[i] = branch_values[static_cast<size_t>(node.branch)] - sharp.hair * node.branch;
+      continue;
+    }
+    const double a = values[static_cast<size_t>(node.left)], b = values[static_cast<size_t>(node.right)];
+    values[i] = node.maximum ? std::max(a, b) : std::min(a, b);
+  }
+}
+
+double surface_margin(const SharpField& sharp, std::span<const double> values, int first, int second) {
+  double margin = std::numeric_limits<double>::infinity();
+  const std::vector<int> path = path_of(sharp, first);
+  const std::vector<int> other = second >= 0 ? path_of(sharp, second) : std::vector<int>{};
+  const int common = first_common(path, other);
+  const auto climb = [&](const std::vector<int>& from, int branch, bool beyond) {
+    const double own = -sharp.hair * branch;
+    for (const int node : from) {
+      if (node == common && !beyond) return;
+      const int parent = sharp.nodes[static_cast<size_t>(node)].parent;
+      if (parent < 0) return;
+      if (parent == common) continue;  // There the two meet.
+      const SharpNode& above = sharp.nodes[static_cast<size_t>(parent)];
+      const double sibling = values[static_cast<size_t>(above.left == node ? above.right : above.left)];
+      margin = std::min(margin, above.maximum ? own - sibling : sibling - own);
+    }
+  };
+  climb(path, first, true);
+  if (second >= 0) climb(other, second, false);
+  return margin;
+}
+
+bool meet_as_intersection(const SharpField& sharp, int first, int second) {
+  return sharp.nodes[static_cast<size_t>(first_common(path_of(sharp, first), path_of(sharp, second)))].maximum;
+}
+
+}  // namespace limn

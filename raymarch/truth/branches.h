@@ -1,0 +1,42 @@
+#pragma once
+// Internal: a field taken apart at its sharp unions and intersections. What is left between them has no seams of CSG, so that a curve is
+// followed on it, and where two of them meet, without ever crossing an edge; which of it is surface the tree says.
+
+#include <span>
+#include <vector>
+
+#include "sdf/field.h"
+
+namespace limn {
+
+/// The minimum or the maximum of two nodes, or a branch.
+struct SharpNode {
+  bool maximum = false;
+  int left = -1, right = -1;  ///< Nodes; -1 in a branch's.
+  int parent = -1;
+  int branch = -1;
+};
+
+/// Branches carry the signs and offsets of what was above them: inside is negative in all of them.
+struct SharpField {
+  std::vector<Field> branches{};
+  std::vector<SharpNode> nodes{};  ///< Children before parents; the last is the root.
+  std::vector<int> node_of{};      ///< Of each branch.
+  /// World units: faces of two branches that coincide count as this far apart, the later one outside, so that one of them is the surface.
+  double hair = 0.0;
+};
+
+/// `extent` is the field's size: a hair is 1e-10 of it.
+SharpField split_branches(const Field& field, double extent);
+
+/// Values of all nodes from those of the branches, by a hair apart.
+void node_values(const SharpField& sharp, std::span<const double> branch_values, std::vector<double>& values);
+
+/// Where branch `first` is 0 (and `second`, unless it is -1, as well): above 0 where that is on the surface of the whole, below where it is
+/// not. As steep as the steepest branch at most. `values` are node_values().
+double surface_margin(const SharpField& sharp, std::span<const double> values, int first, int second = -1);
+
+/// Where two branches meet the body is inside both (their seam is an intersection's) or inside either.
+bool meet_as_intersection(const SharpField& sharp, int first, int second);
+
+}  // namespace limn

@@ -1,0 +1,193 @@
+#include "raymarch/truth/strands.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+namespace {
+
+constexpr double kBracket = 1e-11;        // of the extent, to which ends are bracketed
+constexpr double kFinestStepPx = 0.02;    // unproven steps are cut down to this
+constexpr double kNearLevel = 0.1;        // of N.V: so near the level a side is looked at more often
+constexpr double kNearLevelStepPx = 0.1;  // so often
+constexpr double kThinning = 0.1;         // of the tolerance
+constexpr double kLongestChordPx = 4.0;
+constexpr double kBulge = 1.2;  // a curve's length over its chord's, at most
+
+/// A point of a strand and whether the border goes through it.
+struct Spot {
+  CurvePoint point{};
+  glm::dvec2 px{0.0};
+  double scale = 1.0;   ///< Pixels per world unit.
+  double margin = 0.0;  ///< surface_margin.
+  double clear = 1.0;   ///< The lesser |N.V - c| of a seam's sides.
+  bool on = false;
+};
+
+class Cutter {
+ public:
+  Cutter(const Strand& strand, const StrandSettings& settings) : strand_(strand), settings_(settings) {
+    for (const Field& branch : settings.sharp.branches) evaluators_.emplace_back(branch);
+    values_.resize(evaluators_.size());
+    if (strand.second >= 0) intersection_ = meet_as_intersection(settings.sharp, strand.first, strand.second);
+  }
+
+  std::vector<FieldCurve> run() {
+    const size_t n = strand_.points.size();
+    std::vector<Spot> spots;
+    Spot last = spot(strand_.points[0]);
+    for (size_t i = 0; i < n; ++i) {
+      spots.push_back(last);
+      if (i + 1 == n && !strand_.closed) break;
+      last = i + 1 == n ? spots.front() : spot(strand_.points[i + 1]);
+      scan(spots.back(), last, 0, spots);
+    }
+    return runs_of(spots);
+  }
+
+ private:
+  FieldEvaluator& evaluator(int branch) { return evaluators_[static_cast<size_t>(branch)]; }
+
+  Spot spot(const CurvePoint& point) {
+    Spot result{point};
+    const glm::dvec3 image = project(settings_.camera, point.p);
+    result.px = glm::dvec2(image);
+    result.scale = pixels_per_unit_at(settings_.camera, std::max(image.z, 1e-9 * settings_.extent));
+    for (size_t i = 0; i < evaluators_.size(); ++i) values_[i] = evaluators_[i].value(point.p);
+    node_values(settings_.sharp, values_, nodes_);
+    result.margin = surface_margin(settings_.sharp, nodes_, strand_.first, strand_.second);
+    if (strand_.second >= 0) {
+      result.on = describe_seam(result) && result.margin > 0.0;
+    } else {
+      // Where a crease of a branch lies within another's face there is none of the whole.
+      const double least = point.crease ? settings_.sharp.hair * static_cast<double>(evaluators_.size()) : 0.0;
+      result.on = result.margin > least;
+    }
+    return result;
+  }
+
+  /// Normals of the sides; true where c lies between their N.V.
+  bool describe_seam(Spot& spot) {
+    CurvePoint& point = spot.point;
+    const SurfaceSample a = sample_surface(evaluator(strand_.first), settings_.viewer, point.p),
+                        b = sample_surface(evaluator(strand_.second), settings_.viewer, point.p);
+    const glm::dvec3 n = glm::normalize(a.gradient), m = glm::normalize(b.gradient);
+    // The surface leaves the seam along either side to where the other one is negative, or positive.
+    const double way = intersection_ ? -1.0 : 1.0, nm = glm::dot(n, m);
+    const glm::dvec3 along_a = way * (m - nm * n), along_b = way * (n - nm * m);
+    const bool a_high = a.facing > b.facing;
+    point.crease = true;
+    point.high = a_high ? n : m;
+    point.low = a_high ? m : n;
+    point.uphill = a_high ? along_a - along_b : along_b - along_a;
+    spot.clear = std::min(std::fabs(a.facing - strand_.c), std::fabs(b.facing - strand_.c));
+    return (a.facing < strand_.c) != (b.facing < strand_.c);
+  }
+
+  std::optional<Spot> between(const Spot& a, const Spot& b) {
+    const glm::dvec3 middle = 0.5 * (a.point.p + b.point.p);
+    std::optional<CurvePoint> point;
+    if (strand_.second >= 0) {
+      point = polish_seam(evaluator(strand_.first), evaluator(strand_.second), middle, 0.5 * glm::distance(a.point.p, b.point.p));
+    } else {
+      point = point_between(evaluator(strand_.first), settings_.viewer, strand_.c, a.point, b.point, middle);
+      if (point && glm::dot(point->uphill, a.point.uphill + b.point.uphill) < 0.0) point->uphill = a.point.uphill;
+    }
+    if (!point) return {};
+    return spot(*point);
+  }
+
+  /// Nothing can change between the two: the margin is no steeper than the field.
+  bool settled(const Spot& a, const Spot& b, double length) const {
+    const bool inside = a.margin > 0.0;
+    if (inside != (b.margin > 0.0)) return false;
+    const bool proven = std::fabs(a.margin) + std::fabs(b.margin) > kBulge * settings_.lipschitz * length;
+    if (!proven || !inside || strand_.second < 0) return proven;
+    return std::min(a.clear, b.clear) > kNearLevel || a.scale * length < kNearLevelStepPx;
+  }
+
+  /// The seam's own bend: others are refined when they are cut.
+  bool straight(const Spot& a, const Spot& middle, const Spot& b) const {
+    const glm::dvec2 off = middle.px - 0.5 * (a.px + b.px);
+    return glm::length(off) < 0.25 * settings_.tolerance_px;
+  }
+
+  void scan(const Spot& a, const Spot& b, int depth, std::vector<Spot>& out) {
+    const double length = glm::distance(a.point.p, b.point.p);
+    if (depth > 60 || length < kBracket * settings_.extent) return;
+    const double length_px = a.scale * length;  // On the surface: seen along its length a strand is shorter in the image.
+    const bool same = a.on == b.on, quiet = same && (settled(a, b, length) || length_px < kFinestStepPx);
+    const bool seam = strand_.second >= 0;
+    if (quiet && (!seam || !a.on || length_px < kFinestStepPx)) return;
+    const std::optional<Spot> middle = between(a, b);
+    if (!middle) return;
+    if (quiet && straight(a, *middle, b)) {
+      out.push_back(*middle);
+      return;
+    }
+    scan(a, *middle, depth + 1, out);
+    out.push_back(*middle);
+    scan(*middle, b, depth + 1, out);
+  }
+
+  /// What ends were bracketed with, and steps were proven with, is more than the curve's shape needs: from each point on, as far as a chord
+  /// goes along all between.
+  FieldCurve curve_of(const std::vector<Spot>& stretch, bool closed) const {
+    FieldCurve curve{strand_.c, closed, {}};
+    const size_t n = stretch.size();
+    for (size_t i = 0; i < n;) {
+      curve.points.push_back(stretch[i].point);
+      size_t next = i + 1;
+      while (next + 1 < n && is_chord(stretch, i, next + 1)) ++next;
+      i = next;
+    }
+    return curve;
+  }
+
+  bool is_chord(const std::vector<Spot>& stretch, size_t first, size_t last) const {
+    const glm::dvec2 a = stretch[first].px, d = stretch[last].px - a;
+    const double squared = glm::dot(d, d), most = kThinning * settings_.tolerance_px;
+    if (squared > kLongestChordPx * kLongestChordPx || stretch[first].point.crease != stretch[last].point.crease) return false;
+    for (size_t i = first + 1; i < last; ++i) {
+      const glm::dvec2 q = stretch[i].px - a;
+      const double t = squared > 0.0 ? std::clamp(glm::dot(q, d) / squared, 0.0, 1.0) : 0.0;
+      if (glm::distance(q, t * d) > most || stretch[i].point.crease != stretch[first].point.crease) return false;
+    }
+    return true;
+  }
+
+  std::vector<FieldCurve> runs_of(std::vector<Spot>& spots) const {
+    std::vector<FieldCurve> result;
+    const auto off = std::find_if(spots.begin(), spots.end(), [](const Spot& spot) { return !spot.on; });
+    if (off == spots.end()) {
+      if (spots.size() > 1) result.push_back(curve_of(spots, strand_.closed));
+      return result;
+    }
+    if (strand_.closed) std::rotate(spots.begin(), off, spots.end());
+    std::vector<Spot> stretch;
+    for (size_t i = 0; i <= spots.size(); ++i) {
+      if (i < spots.size() && spots[i].on) {
+        stretch.push_back(spots[i]);
+        continue;
+      }
+      if (stretch.size() > 1) result.push_back(curve_of(stretch, false));
+      stretch.clear();
+    }
+    return result;
+  }
+
+  const Strand& strand_;
+  const StrandSettings& settings_;
+  std::vector<FieldEvaluator> evaluators_;
+  std::vector<double> values_, nodes_;
+  bool intersection_ = true;
+};
+
+}  // namespace
+
+std::vector<FieldCurve> cut_to_surface(const Strand& strand, const StrandSettings& settings) {
+  if (strand.points.size() < 2) return {};
+  return Cutter(strand, settings).run();
+}
+
+}  // namespace limn

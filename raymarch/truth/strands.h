@@ -1,0 +1,39 @@
+#pragma once
+// Internal: curves on single branches and along their seams, cut to what is surface of the whole and joined where one leads into the next.
+
+#include "raymarch/truth/branches.h"
+#include "raymarch/truth/field_curves.h"
+#include "raymarch/truth/march.h"
+
+namespace limn {
+
+/// Followed without regard to what is surface: a curve N.V = c on branch `first`, or the seam of `first` and `second`.
+struct Strand {
+  int first = 0, second = -1;
+  double c = 0.0;
+  bool closed = false;
+  std::vector<CurvePoint> points{};
+};
+
+/// Crossings joined along their links, in an order that hangs on their keys alone.
+std::vector<Strand> assemble(CellCurves cells, int first, int second, double c);
+
+struct StrandSettings {
+  const SharpField& sharp;
+  const Camera& camera;
+  const Viewer& viewer;
+  double tolerance_px = 0.005;
+  double extent = 1.0;
+  double lipschitz = 1.0;  ///< Of the branches.
+};
+
+/// The stretches of a strand that are curves of the whole surface: on it, and along a seam with c between the N.V of the two sides. Changes
+/// are bracketed to rounding; that there is none between two points the field's steepness proves, down to steps of a few hundredths of a
+/// pixel.
+std::vector<FieldCurve> cut_to_surface(const Strand& strand, const StrandSettings& settings);
+
+/// Open curves joined at ends that lie together, nearest first. `worst_gap_px` grows to the widest gap that was closed or
+/// that is left, in the image, between an end that leads nowhere and the next such.
+std::vector<FieldCurve> join_ends(std::vector<FieldCurve> pieces, const Camera& camera, double& worst_gap_px);
+
+}  // namespace limn

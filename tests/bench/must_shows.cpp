@@ -1,0 +1,201 @@
+// The demands on the marchers, each with its bound and the figure of the run.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include "tests/bench/march_suite.h"
+
+namespace limn::bench {
+namespace {
+
+using nlohmann::json;
+
+class Shown {
+ public:
+  explicit Shown(const json& rows) : rows_(rows) {
+    for (const json& row : rows)
+      if (row.value("kind", "") == "march") cases_.emplace(row["object"].get<std::string>(), row["voxels"].get<int>());
+  }
+
+  json take() { return std::move(shown_); }
+
+  void at_least(int number, const std::string& what, double bound, std::optional<double> figure) {
+    if (figure) add(number, what, fmt::format("at least {:g}", bound), *figure, *figure >= bound);
+  }
+  void at_most(int number, const std::string& what, double bound, std::optional<double> figure) {
+    if (figure) add(number, what, fmt::format("at most {:g}", bound), *figure, *figure <= bound);
+  }
+
+  std::optional<double> value(const std::string& contestant, const std::string& object, int voxels, int threads, const char* field) const {
+    for (const json& row : rows_) {
+      if (row.value("kind", "") != "march" || row["contestant"] != contestant || row["object"] != object || row["voxels"] != voxels ||
+          row["threads"] != threads || !row.contains(field) || !row[field].is_number())
+        continue;
+      return row[field].get<double>();
+    }
+    return std::nullopt;
+  }
+  std::optional<double> ms(const std::string& contestant, const std::string& object, int voxels, int threads = 2) const {
+    return value(contestant, object, voxels, threads, "median_ms");
+  }
+  static std::optional<double> ratio(std::optional<double> a, std::optional<double> b) {
+    if (!a || !b || *b == 0.0) return std::nullopt;
+    return *a / *b;
+  }
+
+  void speed();
+  void accuracy();
+  void growth();
+  void grids();
+  void analytic();
+  void threads();
+  void targets();
+  void conversions();
+
+ private:
+  void add(int number, const std::string& what, const std::string& bound, double figure, bool met) {
+    shown_.push_back({{"number", number}, {"what", what}, {"bound", bound}, {"figure", figure}, {"met", met}});
+  }
+
+  const json& rows_;
+  std::set<std::pair<std::string, int>> cases_;
+  json shown_ = json::array();
+};
+
+bool held_to_speed(int voxels) { return voxels == 256 || voxels == 1024; }
+
+void Shown::speed() {
+  struct Peer {
+    const char *key, *name;
+    double bound;
+  };
+  constexpr Peer kPeers[] = {{"openvdb", "OpenVDB", 40.0},
+                             {"nanovdb", "NanoVDB", 20.0},
+                             {"embree.grid", "Embree on the grid's mesh", 5.0},
+                             {"embree.original", "Embree on the original mesh", 3.0}};
+  for (const auto& [object, voxels] : cases_) {
+    if (!held_to_speed(voxels)) continue;
+    for (const Peer& peer : kPeers)
+      at_least(1, fmt::format("{} {}: times faster than {}", object, voxels, peer.name), peer.bound,
+               ratio(ms(peer.key, object, voxels), ms("limn.central", object, voxels)));
+  }
+}
+
+void Shown::accuracy() {
+  for (const auto& [object, voxels] : cases_) {
+    const auto of = [&, &o = object, v = voxels](const char* field) { return value("limn.central", o, v, 2, field); };
+    if (voxels == 256 && (object == "sphere" || object == "torus")) {
+      at_most(2, fmt::format("{} {}: normal p99 of central, degrees", object, voxels), 0.02, of("normal_p99_deg"));
+      at_most(2, fmt::format("{} {}: depth p99, voxels", object, voxels), 0.02, of("depth_p99_voxels"));
+    }
+    if (!held_to_speed(voxels)) continue;
+    at_most(2, fmt::format("{} {}: hits through the surface", object, voxels), 0.0, of("through"));
+    at_most(2, fmt::format("{} {}: farthest wrong hit or miss, px", object, voxels), 0.05, of("farthest_wrong_px"));
+    at_most(2, fmt::format("{} {}: cubic normals over central, time", object, voxels), 1.5,
+            ratio(ms("limn.cubic", object, voxels), ms("limn.central", object, voxels)));
+  }
+}
+
+void Shown::growth() {
+  for (const auto& [object, voxels] : cases_) {
+    if (voxels != 128) continue;
+    at_most(3, fmt::format("{}: time at 1024 voxels over 128", object), 1.4,
+            ratio(ms("limn.central", object, 1024), ms("limn.central", object, 128)));
+  }
+}
+
+void Shown::grids() {
+  for (const json& row : rows_) {
+    if (row.value("kind", "") != "grid" || !held_to_speed(row["voxels"])) continue;
+    const std::string where = fmt::format("{} {}", row["object"].get<std::string>(), row["voxels"].get<int>());
+    at_most(3, where + ": ray-ready memory over OpenVDB's", 0.55,
+            row["ray_ready_bytes"].get<double>() / row["openvdb_bytes"].get<double>());
+    at_most(3, where + ": preparing over NanoVDB's conversion, time", 2.0,
+            row["ray_ready_ms"].get<double>() / row["nanovdb_conversion_ms"].get<double>());
+  }
+}
+
+void Shown::analytic() {
+  for (const auto& [object, voxels] : cases_) {
+    if (object != "sphere") continue;
+    at_most(4, "analytic sphere over the closed-form SIMD sphere, time", 3.0,
+            ratio(ms("limn.analytic", object, voxels), ms("floor.sphere", object, voxels)));
+    break;
+  }
+  const auto field_ms = [&](const std::string& scene) -> std::optional<double> {
+    for (const json& row : rows_)
+      if (row.value("kind", "") == "field" && row["scene"] == scene && row["threads"] == 2) return row["median_ms"].get<double>();
+    return std::nullopt;
+  };
+  at_most(4, "union of 1000 spheres over one of 10, time", 6.0, ratio(field_ms("spheres_1000"), field_ms("spheres_10")));
+  at_most(4, "CSG of 20 primitives over the memory-write floor, time", 12.0, ratio(field_ms("csg_20"), field_ms("floor.write")));
+}
+
+void Shown::threads() {
+  for (const auto& [object, voxels] : cases_) {
+    for (const char* contestant : {"limn.central", "limn.analytic", "limn.mesh"})
+      at_least(5, fmt::format("{} {}: {} on two threads, times faster", object, voxels, contestant), 1.9,
+               ratio(ms(contestant, object, voxels, 1), ms(contestant, object, voxels, 2)));
+  }
+  double different = 0.0;
+  std::set<std::string> sums;
+  for (const json& a : rows_) {
+    if (!a.contains("checksum") || a["threads"] != 1) continue;
+    for (const json& b : rows_)
+      different += b.contains("checksum") && b["threads"] == 2 && a["contestant"] == b["contestant"] && a["object"] == b["object"] &&
+                   a["voxels"] == b["voxels"] && a["checksum"] != b["checksum"];
+  }
+  if (!cases_.empty()) at_most(5, "pictures that differ between one thread and two", 0.0, different);
+}
+
+void Shown::targets() {
+  std::optional<double> worst;
+  for (const json& row : rows_)
+    if (row.value("kind", "") == "simd") worst = std::max(worst.value_or(0.0), row["worst_ulps"].get<double>());
+  at_most(5, "SIMD targets: farthest from the widest one, ulp", 0.0, worst);
+}
+
+void Shown::conversions() {
+  for (const json& row : rows_) {
+    if (row.value("kind", "") != "convert") continue;
+    const std::string where = fmt::format("{} {}", row["object"].get<std::string>(), row["voxels"].get<int>());
+    at_most(6, where + ": mesh to level set over meshToVolume, time", 1.0, row["ours_ms"].get<double>() / row["openvdb_ms"].get<double>());
+    at_most(6, where + ": largest error over meshToVolume's", 1.0,
+            row["ours_error_voxels"].get<double>() / row["openvdb_error_voxels"].get<double>());
+  }
+}
+
+}  // namespace
+
+nlohmann::json must_shows(const nlohmann::json& rows) {
+  Shown shown(rows);
+  shown.speed();
+  shown.accuracy();
+  shown.growth();
+  shown.grids();
+  shown.analytic();
+  shown.threads();
+  shown.targets();
+  shown.conversions();
+  json all = shown.take();
+  std::stable_sort(all.begin(), all.end(), [](const json& a, const json& b) { return a["number"].get<int>() < b["number"].get<int>(); });
+  return all;
+}
+
+void print_must_shows(const nlohmann::json& shown, std::FILE* table) {
+  if (shown.empty()) return;
+  int met = 0;
+  fmt::print(table, "\n{:3} {:72} {:>14} {:>10}\n", "", "what must be shown", "bound", "figure");
+  for (const json& one : shown) {
+    met += one["met"].get<bool>();
+    fmt::print(table, "{:3} {:72} {:>14} {:10.4g}  {}\n", one["number"].get<int>(), one["what"].get<std::string>(),
+               one["bound"].get<std::string>(), one["figure"].get<double>(), one["met"].get<bool>() ? "met" : "MISSED");
+  }
+  fmt::print(table, "{} of {} met\n", met, shown.size());
+}
+
+}  // namespace limn::bench

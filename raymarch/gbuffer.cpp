@@ -47,13 +47,26 @@ struct Shared {
   TileWriter writer;
 };
 
-void render_tile(const Shared& shared, const PixelTile& tile, glm::dvec2 sample) {
-  if (!touches(shared.view, tile)) return write_nothing(shared.writer, tile);
-  RayBatch rays;
-  SceneHits found;
-  fill_rays(shared.rays, tile, sample, rays);
-  trace_scene(shared.model, shared.view, tile, rays, found);
-  write_tile(shared.writer, tile, rays, found);
+// Tiles that lie side by side and show nothing are written together; so many make up a task.
+constexpr int kTilesInARow = 8;
+
+void render_tiles(const Shared& shared, const PixelTile& row, int tile_px, glm::dvec2 sample) {
+  PixelTile nothing{row.x, row.y, 0, row.height};
+  for (int x = row.x; x < row.x + row.width; x += tile_px) {
+    const PixelTile tile{x, row.y, std::min(tile_px, row.x + row.width - x), row.height};
+    if (!touches(shared.view, tile)) {
+      nothing.width += tile.width;
+      continue;
+    }
+    write_nothing(shared.writer, nothing);
+    nothing = {x + tile.width, row.y, 0, row.height};
+    RayBatch rays;
+    SceneHits found;
+    fill_rays(shared.rays, tile, sample, rays);
+    trace_scene(shared.model, shared.view, tile, rays, found);
+    write_tile(shared.writer, tile, rays, found);
+  }
+  write_nothing(shared.writer, nothing);
 }
 
 void check(const ExecutionSettings& how) { LIMN_CHECK(how.tile_px >= 1 && how.tile_px <= 16 && how.threads >= 0); }
@@ -67,20 +80,21 @@ void render_gbuffer(const SceneModel& model, const Camera& camera, const Executi
   out.sample = offset;
   const Camera render_camera = moved(camera, model.render_origin);
   const SceneExtent extent = scene_extent(model);
-  const int columns = (out.width + how.tile_px - 1) / how.tile_px, rows = (out.height + how.tile_px - 1) / how.tile_px;
-  const std::int64_t tiles = std::int64_t{columns} * rows;
+  const int task_px = kTilesInARow * how.tile_px;
+  const int columns = (out.width + task_px - 1) / task_px, rows = (out.height + how.tile_px - 1) / how.tile_px;
+  const std::int64_t tasks = std::int64_t{columns} * rows;
   std::mutex progress_mutex;
   std::int64_t done = 0;
   const auto render = [&] {
     const PictureRays rays = picture_rays(render_camera, extent.radius, extent.bounded);
     const Shared shared{model, view_model(model, {render_camera, offset}), rays, tile_writer(model, rays, out)};
-    tbb::parallel_for(std::int64_t{0}, tiles, [&](std::int64_t k) {
+    tbb::parallel_for(std::int64_t{0}, tasks, [&](std::int64_t k) {
       if (how.cancelled && how.cancelled()) throw Cancelled{};
-      const int x = static_cast<int>(k % columns) * how.tile_px, y = static_cast<int>(k / columns) * how.tile_px;
-      render_tile(shared, {x, y, std::min(how.tile_px, out.width - x), std::min(how.tile_px, out.height - y)}, offset);
+      const int x = static_cast<int>(k % columns) * task_px, y = static_cast<int>(k / columns) * how.tile_px;
+      render_tiles(shared, {x, y, std::min(task_px, out.width - x), std::min(how.tile_px, out.height - y)}, how.tile_px, offset);
       if (!how.progress) return;
       const std::lock_guard lock(progress_mutex);
-      how.progress(static_cast<double>(++done) / static_cast<double>(tiles));
+      how.progress(static_cast<double>(++done) / static_cast<double>(tasks));
     });
   };
   ThreadArena(how.threads).execute(render);

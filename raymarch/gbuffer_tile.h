@@ -20,7 +20,7 @@ inline TileWriter tile_writer(const SceneModel& model, const PictureRays& rays, 
 
 /// Layers without pixels are left alone.
 void write_tile(const TileWriter& writer, const PixelTile& tile, const RayBatch& rays, const SceneHits& found);
-/// A tile in which nothing is seen.
-void write_nothing(const TileWriter& writer, const PixelTile& tile);
+/// Pixels in which nothing is seen: a tile, or several in a row. Large pictures are written past the caches.
+void write_nothing(const TileWriter& writer, const PixelTile& pixels);
 
 }  // namespace limn

@@ -13,10 +13,10 @@ struct BrickTrace {
   float normal_from_index[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< Column by column: gradients by index coordinates to render space.
 };
 
-/// Where the first root of each ray lies, and in which brick: what find_hits leaves for the normals.
+/// Where the first root of each ray lies, and in which cell.
 struct BrickHits {
   alignas(64) float t[kRayBatchSize];
-  alignas(64) std::int32_t brick[kRayBatchSize];  ///< -1: none.
+  alignas(64) std::int32_t cell[kRayBatchSize];  ///< Brick times 512, and the cell's number in it (x 64 + y 8 + z); -1: none.
 };
 
 /// Traces the rays of `tile` (lanes in blocks of 4 x 4 pixels, see PixelTile) and fills `hits`.

@@ -6,9 +6,15 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <new>
 #include <optional>
 
 #include "sdf/level_set_data.h"
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
 
 namespace limn {
 namespace {
@@ -313,6 +319,7 @@ void fill(const LevelSetData& data, const Layout& layout, float steps_per_unit, 
       std::int16_t* const values = bricks.values.data() + i * kBrickStride;
       load_nodes(accessor, i < crossed ? layout.crossed[i].origin : layout.reached[i - crossed], nodes);
       quantise(nodes, steps_per_unit, values);
+      std::fill(values + nodes.size(), values + kBrickStride, std::int16_t{0});
       if (i >= crossed) continue;
       const glm::ivec3& origin = layout.crossed[i].origin;
       bricks.headers[i] = describe(origin, values);
@@ -322,6 +329,20 @@ void fill(const LevelSetData& data, const Layout& layout, float steps_per_unit, 
 }
 
 }  // namespace
+
+void* LargePages::take(size_t bytes) {
+  constexpr size_t kPage = size_t{2} << 20;
+  const size_t page = bytes >= kPage ? kPage : 64, rounded = (bytes + page - 1) / page * page;
+  void* const memory = std::aligned_alloc(page, rounded);
+  if (!memory) throw std::bad_alloc();
+#if defined(__linux__)
+  // A wish, no more: where it is not granted everything works the same.
+  if (page == kPage) static_cast<void>(madvise(memory, rounded, MADV_HUGEPAGE));
+#endif
+  return memory;
+}
+
+void LargePages::give_back(void* memory) { std::free(memory); }
 
 std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set) {
   const auto start = std::chrono::steady_clock::now();

@@ -39,12 +39,32 @@ struct BrickNeighbors {
   std::int32_t face[6] = {-1, -1, -1, -1, -1, -1};
 };
 
+/// Values in few, large pages where the system has them: rays jump from brick to brick, and a page each would be looked up every time.
+struct LargePages {
+  static void* take(size_t bytes);
+  static void give_back(void* memory);
+};
+template <class T>
+struct LargePageAllocator {
+  using value_type = T;
+  LargePageAllocator() = default;
+  template <class U>
+  LargePageAllocator(const LargePageAllocator<U>&) {}
+  T* allocate(size_t count) { return static_cast<T*>(LargePages::take(count * sizeof(T))); }
+  void deallocate(T* memory, size_t) { LargePages::give_back(memory); }
+  /// Elements are left unset: whoever makes bricks writes all of them.
+  template <class U>
+  void construct(U*) {}
+  bool operator==(const LargePageAllocator&) const { return true; }
+};
+
 struct RayBricks {
   std::vector<BrickHeader> headers{};       ///< Of the crossed bricks, ordered by x, y, z.
   std::vector<BrickNeighbors> neighbors{};  ///< As many.
-  std::vector<std::int16_t> values{};       ///< kBrickStride for each brick: the crossed ones first, then those of stencils only.
-  glm::ivec3 lower{0}, upper{0};            ///< Around the crossed cells, index coordinates.
-  double world_per_step = 0.0;              ///< What one step of a value stands for.
+  std::vector<std::int16_t, LargePageAllocator<std::int16_t>>
+      values{};                   ///< kBrickStride for each brick: the crossed ones first, then those of stencils only.
+  glm::ivec3 lower{0}, upper{0};  ///< Around the crossed cells, index coordinates.
+  double world_per_step = 0.0;    ///< What one step of a value stands for.
   double prepare_ms = 0.0;
 
   std::int64_t bytes() const {

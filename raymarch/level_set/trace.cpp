@@ -266,6 +266,12 @@ bool blocks_of(const BrickInTile& entry, int x, int y, const PixelTile& tile, Bl
   return x0 <= x1 && y0 <= y1;
 }
 
+/// Asks for a brick's values before they are needed: most are not in a cache yet.
+void fetch(const RayBricks& bricks, std::uint32_t brick) {
+  const auto* values = reinterpret_cast<const char*>(bricks.values.data() + size_t{brick} * kBrickStride);
+  for (std::int32_t at = 0; at < kBrickBytes; at += 64) __builtin_prefetch(values + at);
+}
+
 void TraceBricks(const BrickTrace& what, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) {
   const F d;
   const BrickView& view = *what.view;
@@ -282,7 +288,10 @@ void TraceBricks(const BrickTrace& what, const PixelTile& tile, const RayBatch& 
   const int across = (tile.width + 3) / 4;
   for (int row = tile.y / kViewTile_px; row <= (tile.y + tile.height - 1) / kViewTile_px; ++row) {
     for (int column = tile.x / kViewTile_px; column <= (tile.x + tile.width - 1) / kViewTile_px; ++column) {
-      for (const BrickInTile& entry : view.tile(column, row)) {
+      const std::span<const BrickInTile> entries = view.tile(column, row);
+      for (size_t k = 0; k < entries.size(); ++k) {
+        if (k + 1 < entries.size()) fetch(bricks, entries[k + 1].brick);
+        const BrickInTile& entry = entries[k];
         BlockRange range;
         if (!blocks_of(entry, column * kViewTile_px, row * kViewTile_px, tile, range)) continue;
         const BrickHeader& header = bricks.headers[entry.brick];

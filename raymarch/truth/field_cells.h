@@ -25,11 +25,8 @@ struct CellResult {
   std::map<int, CellOutput> branches{};
   std::map<std::pair<int, int>, CellCurves> seams{};
   std::int64_t cells = 0;
-  std::int64_t unsettled = 0;
+  std::int64_t unsettled = 0;  ///< Places in which bounds leave a curve that was not found: cell_settling.h.
 };
-
-/// A finest cell is cut this often again where nothing was found in it or beside it.
-inline constexpr int kSettlingCuts = 3;
 
 /// In an order that does not depend on threads. Throws Cancelled.
 CellResult search_cells(const CellSearch& search, const ExecutionSettings& how);

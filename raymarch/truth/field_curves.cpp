@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "raymarch/truth/field_cells.h"
+#include "raymarch/truth/cell_settling.h"
 #include "raymarch/truth/strands.h"
 
 namespace limn {
@@ -227,7 +227,7 @@ FieldCurves trace_field_curves(const Field& field, const Camera& camera, const V
   CellResult found = search_cells(search, how);
   result.cells = found.cells;
   result.unsettled = found.unsettled;
-  result.unsettled_cuts = 1 << kSettlingCuts;
+  result.unproven_px = kUnprovenReach * result.cell_px;
   const std::vector<Strand> strands = strands_of(found, search, result);
   const StrandSettings cutting{sharp, camera, viewer, settings.tolerance_px, bounds.radius(), field.traits().lipschitz};
   std::vector<std::vector<FieldCurve>> cut(strands.size());

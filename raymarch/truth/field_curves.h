@@ -27,11 +27,12 @@ struct FieldCurve {
 struct FieldCurves {
   std::vector<FieldCurve> curves{};
   int level = 0;
-  double cell = 0.0;           ///< Side of the finest cells, world units.
-  double cell_px = 0.0;        ///< The same where it is seen largest.
-  std::int64_t cells = 0;      ///< Finest cells that bounds could not exclude.
-  std::int64_t unsettled = 0;  ///< Of those, apart from every curve found and still not excluded when cut into `unsettled_cuts` a side.
-  int unsettled_cuts = 1;
+  double cell = 0.0;       ///< Side of the finest cells, world units.
+  double cell_px = 0.0;    ///< The same where it is seen largest.
+  std::int64_t cells = 0;  ///< Finest cells that bounds could not exclude.
+  /// Of those, with parts farther than `unproven_px` from every curve found that bounds still do not exclude when they are cut again.
+  std::int64_t unsettled = 0;
+  double unproven_px = 0.0;         ///< Within it of a curve, where it is seen largest, another one would not be told from it.
   std::int64_t rough = 0;           ///< Points that neither Newton nor bisection could place: interpolated in their cell.
   std::int64_t unrefined = 0;       ///< Steps for which no point between could be found.
   double worst_unrefined_px = 0.0;  ///< How far the curve may be from such a step, from how it turns; and gaps between a curve's pieces.

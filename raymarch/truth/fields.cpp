@@ -198,9 +198,12 @@ void curve_notes(const FieldCurves& found, const std::string& name, std::vector<
     note(fmt::format("searched in cells of {:.3g} px (the budget of cells is spent): closed curves within one cell may be missing",
                      found.cell_px));
   }
-  if (found.unsettled > 0) {
-    note(fmt::format("closed curves smaller than {:.2g} px cannot be excluded in {} places", found.cell_px / found.unsettled_cuts,
-                     found.unsettled));
+  if (!found.curves.empty()) {
+    note(
+        fmt::format("bounds (at sharp edges, what N.V is around them) leave no room for a closed curve that was not found, but within "
+                    "{:.2g} px of one that was{}",
+                    found.unproven_px,
+                    found.unsettled > 0 ? fmt::format(", and in {} places of less than {:.2g} px", found.unsettled, found.cell_px) : ""));
   }
   if (found.rough > 0) note(fmt::format("{} points placed to within a cell of {:.2g} px only", found.rough, found.cell_px));
   if (found.open_ends > 0 && !found.domain_cut) note(fmt::format("{} curve ends lead nowhere", found.open_ends));

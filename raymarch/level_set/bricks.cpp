@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <new>
 #include <optional>
+#include <span>
 
 #include "sdf/level_set_data.h"
 
@@ -248,52 +249,99 @@ struct GradientHull {
   }
 };
 
-BrickHeader describe(const glm::ivec3& origin, const std::int16_t* values) {
-  BrickHeader header;
-  for (size_t axis = 0; axis < 3; ++axis) header.origin[axis] = origin[static_cast<int>(axis)];
-  const CrossedCells crossed = crossed_cells(values);
-  int lower[3] = {8, 8, 8}, upper[3] = {0, 0, 0};
+/// A brick of the cube that is described, and where in it.
+struct Part {
+  glm::ivec3 place{0};
+  const std::int16_t* values = nullptr;
+  CrossedCells crossed{};
+};
+
+void bound_gradient(std::span<const Part> parts, SurfaceBound& bound) {
+  int lower[3] = {32, 32, 32}, upper[3] = {0, 0, 0};
   GradientHull hull;
-  double sum[3] = {0.0, 0.0, 0.0};
-  for_each_cell(crossed, [&](int x, int y, int z) {
-    const int cell[3] = {x, y, z};
-    for (int axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], cell[axis]);
-      upper[axis] = std::max(upper[axis], cell[axis] + 1);
-    }
-    const std::int16_t* base = values + at(x, y, z);
-    constexpr int step[3] = {81, 9, 1};
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const int u = step[(axis + 1) % 3], v = step[(axis + 2) % 3];
-      for (const int edge : {0, u, v, u + v}) {
-        const int difference = base[edge + step[axis]] - base[edge];
-        hull.add(axis, difference);
-        sum[axis] += difference;
+  std::int64_t sum[3] = {0, 0, 0}, edges = 0;
+  for (const Part& part : parts) {
+    for_each_cell(part.crossed, [&](int x, int y, int z) {
+      const int cell[3] = {part.place.x + x, part.place.y + y, part.place.z + z};
+      const std::int16_t* base = part.values + at(x, y, z);
+      constexpr int step[3] = {81, 9, 1};
+      for (size_t axis = 0; axis < 3; ++axis) {
+        lower[axis] = std::min(lower[axis], cell[axis]);
+        upper[axis] = std::max(upper[axis], cell[axis] + 1);
+        const int u = step[(axis + 1) % 3], v = step[(axis + 2) % 3];
+        for (const int edge : {0, u, v, u + v}) {
+          const int difference = base[edge + step[axis]] - base[edge];
+          hull.add(axis, difference);
+          sum[axis] += difference;
+        }
       }
+      edges += 4;
+    });
+  }
+  // Sides that cancel out leave no plane: then the slab is the whole cube.
+  const bool cancels = sum[0] == 0 && sum[1] == 0 && sum[2] == 0;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    bound.lower[axis] = static_cast<std::uint8_t>(lower[axis]);
+    bound.upper[axis] = static_cast<std::uint8_t>(upper[axis]);
+    bound.normal[axis] = cancels ? 1.0f : static_cast<float>(static_cast<double>(sum[axis]) / static_cast<double>(edges));
+    bound.spread[axis] = std::max(hull.upper[axis] - bound.normal[axis], bound.normal[axis] - hull.lower[axis]);
+  }
+}
+
+void bound_values(std::span<const Part> parts, SurfaceBound& bound) {
+  const glm::dvec3 normal(bound.normal[0], bound.normal[1], bound.normal[2]);
+  double least = 1e30, greatest = -1e30;
+  for (const Part& part : parts) {
+    for_each_node(part.crossed, [&](int x, int y, int z) {
+      const double rest = part.values[at(x, y, z)] - glm::dot(normal, glm::dvec3(part.place + glm::ivec3(x, y, z)));
+      least = std::min(least, rest);
+      greatest = std::max(greatest, rest);
+    });
+  }
+  bound.offset = static_cast<float>(-0.5 * (least + greatest));
+  // Rounded outwards: both numbers are stored as float.
+  bound.slab = static_cast<float>(0.5 * (greatest - least) * (1.0 + 1e-5) + 1e-5 * std::abs(static_cast<double>(bound.offset)) + 1e-3);
+}
+
+SurfaceBound bound_surface(const glm::ivec3& origin, std::span<Part> parts) {
+  SurfaceBound bound;
+  for (size_t axis = 0; axis < 3; ++axis) bound.origin[axis] = origin[static_cast<int>(axis)];
+  for (Part& part : parts) part.crossed = crossed_cells(part.values);
+  bound_gradient(parts, bound);
+  bound_values(parts, bound);
+  return bound;
+}
+
+/// Groups of 2^shift cells to a side of the crossed bricks.
+BrickGroups group_bricks(const Layout& layout, const RayBricks& bricks, int shift) {
+  const int per_side = 1 << (shift - 3), parts = per_side * per_side * per_side;
+  std::vector<std::pair<std::uint64_t, std::int32_t>> members;
+  for (size_t i = 0; i < layout.crossed.size(); ++i)
+    members.emplace_back(key_of((layout.crossed[i].origin >> shift) << 3), static_cast<std::int32_t>(i));
+  std::sort(members.begin(), members.end());
+  std::vector<size_t> first;
+  for (size_t i = 0; i < members.size(); ++i) {
+    if (i == 0 || members[i].first != members[i - 1].first) first.push_back(i);
+  }
+  BrickGroups groups{.shift = shift, .bounds = std::vector<SurfaceBound>(first.size()), .bricks = {}};
+  groups.bricks.assign(first.size() * static_cast<size_t>(parts), -1);
+  first.push_back(members.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, groups.bounds.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
+    std::vector<Part> inside;
+    for (size_t g = range.begin(); g < range.end(); ++g) {
+      const glm::ivec3 origin = (layout.crossed[static_cast<size_t>(members[first[g]].second)].origin >> shift) << shift;
+      inside.clear();
+      for (size_t k = first[g]; k < first[g + 1]; ++k) {
+        const auto brick = static_cast<size_t>(members[k].second);
+        const glm::ivec3 place = layout.crossed[brick].origin - origin, slot = place >> 3;
+        inside.push_back({place, bricks.values.data() + brick * kBrickStride, {}});
+        groups.bricks[g * static_cast<size_t>(parts) + static_cast<size_t>((slot.x * per_side + slot.y) * per_side + slot.z)] =
+            members[k].second;
+      }
+      groups.bounds[g] = bound_surface(origin, inside);
     }
   });
-  const double length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
-  int cells = 0;
-  for_each_cell(crossed, [&](int, int, int) { ++cells; });
-  for (size_t axis = 0; axis < 3; ++axis) {
-    header.lower[axis] = static_cast<std::uint8_t>(lower[axis]);
-    header.upper[axis] = static_cast<std::uint8_t>(upper[axis]);
-    // Sides that cancel out leave no plane: then the slab is the whole brick.
-    header.normal[axis] = length > 0.0 ? static_cast<float>(sum[axis] / (4.0 * cells)) : 1.0f;
-    header.spread[axis] = std::max(hull.upper[axis] - header.normal[axis], header.normal[axis] - hull.lower[axis]);
-  }
-  double least = 1e30, greatest = -1e30;
-  for_each_node(crossed, [&](int x, int y, int z) {
-    const double plane =
-        static_cast<double>(header.normal[0]) * x + static_cast<double>(header.normal[1]) * y + static_cast<double>(header.normal[2]) * z;
-    const double rest = values[at(x, y, z)] - plane;
-    least = std::min(least, rest);
-    greatest = std::max(greatest, rest);
-  });
-  header.offset = static_cast<float>(-0.5 * (least + greatest));
-  // Rounded outwards: both numbers are stored as float.
-  header.slab = static_cast<float>(0.5 * (greatest - least) * (1.0 + 1e-5) + 1e-5 * std::abs(static_cast<double>(header.offset)) + 1e-3);
-  return header;
+  return groups;
 }
 
 /// World units to steps, such that whatever a stencil reads near the surface is held; 0 where no scale serves all bricks.
@@ -322,7 +370,8 @@ void fill(const LevelSetData& data, const Layout& layout, float steps_per_unit, 
       std::fill(values + nodes.size(), values + kBrickStride, std::int16_t{0});
       if (i >= crossed) continue;
       const glm::ivec3& origin = layout.crossed[i].origin;
-      bricks.headers[i] = describe(origin, values);
+      Part whole{glm::ivec3(0), values, {}};
+      bricks.groups[0].bounds[i] = bound_surface(origin, std::span(&whole, 1));
       for (int face = 0; face < 6; ++face) bricks.neighbors[i].face[face] = layout.find(key_of(beyond(origin, face)));
     }
   });
@@ -344,6 +393,12 @@ void* LargePages::take(size_t bytes) {
 
 void LargePages::give_back(void* memory) { std::free(memory); }
 
+std::int64_t RayBricks::bytes() const {
+  size_t sum = neighbors.size() * sizeof(BrickNeighbors) + values.size() * sizeof(std::int16_t);
+  for (const BrickGroups& of : groups) sum += of.bounds.size() * sizeof(SurfaceBound) + of.bricks.size() * sizeof(std::int32_t);
+  return static_cast<std::int64_t>(sum);
+}
+
 std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set) {
   const auto start = std::chrono::steady_clock::now();
   const LevelSetData& data = level_set.data();
@@ -359,13 +414,14 @@ std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set) {
     const float scale = scale_for(layout, std::abs(data.grid->tree().background()));
     if (scale == 0.0f) return nullptr;
     bricks->world_per_step = 1.0 / static_cast<double>(scale);
-    bricks->headers.resize(layout.crossed.size());
+    bricks->groups.push_back({.shift = 3, .bounds = std::vector<SurfaceBound>(layout.crossed.size()), .bricks = {}});
     bricks->neighbors.resize(layout.crossed.size());
     bricks->values.resize(layout.size() * kBrickStride);
     fill(data, layout, scale, *bricks);
+    for (const int shift : {4, 5}) bricks->groups.push_back(group_bricks(layout, *bricks, shift));
     bricks->lower = glm::ivec3(std::numeric_limits<int>::max());
     bricks->upper = glm::ivec3(std::numeric_limits<int>::lowest());
-    for (const BrickHeader& header : bricks->headers) {
+    for (const SurfaceBound& header : bricks->groups[0].bounds) {
       for (int axis = 0; axis < 3; ++axis) {
         bricks->lower[axis] = std::min(bricks->lower[axis], header.origin[axis] + header.lower[axis]);
         bricks->upper[axis] = std::max(bricks->upper[axis], header.origin[axis] + header.upper[axis]);

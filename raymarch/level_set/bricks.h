@@ -13,25 +13,35 @@ namespace limn {
 
 inline constexpr int kBrickCells = 8;
 inline constexpr int kBrickNodes = 9;
-/// Elements from one brick to the next; the last nodes are padded, so that a pair of values may be read from any of them.
-inline constexpr int kBrickStride = 736;
+/// Elements from one brick to the next: one more than nodes, so that a pair of values may be read from any of them.
+inline constexpr int kBrickStride = 730;
 /// The element of node (x, y, z) of a brick, each in 0..8.
 inline constexpr int brick_element(int x, int y, int z) { return (x * kBrickNodes + y) * kBrickNodes + z; }
 
-/// What bounds the surface in a brick. Places are index coordinates, local ones from `origin`; values are the brick's 16-bit steps.
-/// Within the cells that the surface crosses the interpolant f satisfies |f(p) - (normal.p - offset)| <= slab at every local p: f and the
-/// plane's function are both trilinear in a cell, so their difference is largest at a node. A ray meets the surface nowhere else than
-/// where |normal.p - offset| <= slab, and that in lower <= p <= upper.
-struct BrickHeader {
-  std::int32_t origin[3] = {};  ///< First cell, multiples of 8.
-  std::uint8_t lower[3] = {};   ///< Around the crossed cells, local: 0..7.
-  std::uint8_t upper[3] = {};   ///< 1..8.
+/// What bounds the surface in a cube of cells: a brick, or a group of bricks. Places are index coordinates, local ones from `origin`;
+/// values are the bricks' 16-bit steps. Within the cells that the surface crosses the interpolant f satisfies
+/// |f(p) - (normal.p - offset)| <= slab at every local p: f and the plane's function are both trilinear in a cell, so their difference is
+/// largest at a node. A ray meets the surface nowhere else than where |normal.p - offset| <= slab, and that in lower <= p <= upper.
+struct SurfaceBound {
+  std::int32_t origin[3] = {};  ///< First cell, multiples of the cube's side.
+  std::uint8_t lower[3] = {};   ///< Around the crossed cells, local: 0..31.
+  std::uint8_t upper[3] = {};   ///< 1..32.
   std::uint16_t unused = 0;
   float normal[3] = {};
   float offset = 0.0f;
   float slab = 0.0f;
   /// In the crossed cells each component of the interpolant's gradient lies within `spread` of `normal`'s.
   float spread[3] = {};
+};
+
+/// The crossed bricks, seen from farther away: in cubes of 2^shift cells to a side. A picture takes the cubes that are as large as a packet
+/// of its rays, so that what it costs to find them does not grow with the resolution.
+struct BrickGroups {
+  int shift = 3;
+  std::vector<SurfaceBound> bounds{};
+  /// For each group the bricks in it, in the order of their x, y, z; -1 where the surface does not cross. Empty for shift 3, whose groups
+  /// are the bricks themselves.
+  std::vector<std::int32_t> bricks{};
 };
 
 /// A brick's six neighbours, by face: -x, +x, -y, +y, -z, +z. -1 where no stencil of a crossed cell reaches into it.
@@ -59,7 +69,7 @@ struct LargePageAllocator {
 };
 
 struct RayBricks {
-  std::vector<BrickHeader> headers{};       ///< Of the crossed bricks, ordered by x, y, z.
+  std::vector<BrickGroups> groups{};        ///< Of shift 3, 4 and 5; none where the surface crosses no cell.
   std::vector<BrickNeighbors> neighbors{};  ///< As many.
   std::vector<std::int16_t, LargePageAllocator<std::int16_t>>
       values{};                   ///< kBrickStride for each brick: the crossed ones first, then those of stencils only.
@@ -67,10 +77,7 @@ struct RayBricks {
   double world_per_step = 0.0;    ///< What one step of a value stands for.
   double prepare_ms = 0.0;
 
-  std::int64_t bytes() const {
-    return static_cast<std::int64_t>(headers.size() * sizeof(BrickHeader) + neighbors.size() * sizeof(BrickNeighbors) +
-                                     values.size() * sizeof(std::int16_t));
-  }
+  std::int64_t bytes() const;
 };
 
 /// Made from the grid in parallel. Null where the form would not do: more bricks than 32-bit offsets reach, or values whose range over the

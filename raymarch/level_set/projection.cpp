@@ -10,14 +10,14 @@ constexpr float kSlack_px = 0.02f;
 constexpr float kSlack_voxels = 4e-3f;
 
 /// True where every point of the crossed cells is seen from its back: gradient . (p - eye) > 0 for all gradients and points of the brick.
-bool shows_its_back(const BrickHeader& header, const BrickProjection& projection) {
+bool shows_its_back(const SurfaceBound& bound, const BrickProjection& projection) {
   float sum = 0.0f, gradient2 = 0.0f, half2 = 0.0f;
   for (size_t axis = 0; axis < 3; ++axis) {
-    const float half = 0.5f * static_cast<float>(header.upper[axis] - header.lower[axis]) + kSlack_voxels;
-    const float middle = static_cast<float>(header.origin[axis]) + 0.5f * static_cast<float>(header.upper[axis] + header.lower[axis]);
+    const float half = 0.5f * static_cast<float>(bound.upper[axis] - bound.lower[axis]) + kSlack_voxels;
+    const float middle = static_cast<float>(bound.origin[axis]) + 0.5f * static_cast<float>(bound.upper[axis] + bound.lower[axis]);
     const float away = projection.perspective ? middle - projection.eye[axis] : projection.forward[axis];
-    sum += projection.side * header.normal[axis] * away - header.spread[axis] * std::abs(away);
-    const float largest = std::abs(header.normal[axis]) + header.spread[axis];
+    sum += projection.side * bound.normal[axis] * away - bound.spread[axis] * std::abs(away);
+    const float largest = std::abs(bound.normal[axis]) + bound.spread[axis];
     gradient2 += largest * largest;
     half2 += half * half;
   }
@@ -25,11 +25,11 @@ bool shows_its_back(const BrickHeader& header, const BrickProjection& projection
 }
 
 /// The pixels that the crossed cells' box may cover; false where none.
-bool cover(const BrickHeader& header, const BrickProjection& projection, ProjectedBrick& out) {
+bool cover(const SurfaceBound& bound, const BrickProjection& projection, ProjectedBrick& out) {
   float low[3], high[3];
   for (size_t axis = 0; axis < 3; ++axis) {
-    low[axis] = static_cast<float>(header.origin[axis] + header.lower[axis]) - kSlack_voxels;
-    high[axis] = static_cast<float>(header.origin[axis] + header.upper[axis]) + kSlack_voxels;
+    low[axis] = static_cast<float>(bound.origin[axis] + bound.lower[axis]) - kSlack_voxels;
+    high[axis] = static_cast<float>(bound.origin[axis] + bound.upper[axis]) + kSlack_voxels;
   }
   float x0 = 1e30f, x1 = -1e30f, y0 = 1e30f, y1 = -1e30f, nearest = 1e30f, farthest = -1e30f;
   for (int corner = 0; corner < 8; ++corner) {
@@ -59,11 +59,11 @@ bool cover(const BrickHeader& header, const BrickProjection& projection, Project
 
 }  // namespace
 
-size_t project_bricks(std::span<const BrickHeader> headers, std::uint32_t first, const BrickProjection& projection,
+size_t project_bricks(std::span<const SurfaceBound> bounds, std::uint32_t first, const BrickProjection& projection,
                       std::span<ProjectedBrick> out) {
   size_t count = 0;
-  for (size_t i = 0; i < headers.size(); ++i) {
-    if (shows_its_back(headers[i], projection) || !cover(headers[i], projection, out[count])) continue;
+  for (size_t i = 0; i < bounds.size(); ++i) {
+    if (shows_its_back(bounds[i], projection) || !cover(bounds[i], projection, out[count])) continue;
     out[count++].brick = first + static_cast<std::uint32_t>(i);
   }
   return count;

@@ -25,8 +25,8 @@ struct ProjectedBrick {
   std::int16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-/// Writes those that may be seen to `out` (as many as headers); the number of them.
-size_t project_bricks(std::span<const BrickHeader> headers, std::uint32_t first, const BrickProjection& projection,
+/// Writes those that may be seen to `out` (as many as bounds); the number of them.
+size_t project_bricks(std::span<const SurfaceBound> bounds, std::uint32_t first, const BrickProjection& projection,
                       std::span<ProjectedBrick> out);
 
 }  // namespace limn

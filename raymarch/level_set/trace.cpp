@@ -22,7 +22,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
 namespace {
-void to_index_space(const Affine& index_from_render, const RayBatch& rays, size_t count, IndexRays& out) {
+HWY_NOINLINE void to_index_space(const Affine& index_from_render, const RayBatch& rays, size_t count, IndexRays& out) {
   const F d;
   for (int row = 0; row < 3; ++row) {
     const VF mx = set(static_cast<float>(index_from_render.linear[0][row])), my = set(static_cast<float>(index_from_render.linear[1][row])),
@@ -50,8 +50,8 @@ struct Waiting {
   alignas(64) float cell[3][kCapacity];
   alignas(64) float near[kCapacity], far[kCapacity];
   alignas(64) std::int32_t lane[kCapacity];
-  alignas(64) std::int32_t brick[kCapacity];
-  alignas(64) std::int32_t box[kCapacity];  ///< Lower and upper bounds of the crossed cells, four bits each.
+  alignas(64) std::int32_t group[kCapacity];
+  alignas(64) std::int32_t box[kCapacity];  ///< First and last of the crossed cells along x, y and z, five bits each.
   size_t count = 0;
 };
 
@@ -59,7 +59,7 @@ struct Waiting {
 struct Candidates {
   V3 origin, direction, inverse, cell;
   VF near, far;
-  VI lane, brick, box;
+  VI lane, group, box;
 };
 
 HWY_INLINE void push(const Candidates& c, MF which, Waiting& waiting) {
@@ -80,7 +80,7 @@ HWY_INLINE void push(const Candidates& c, MF which, Waiting& waiting) {
   put(c.near, waiting.near);
   put(c.far, waiting.far);
   puti(c.lane, waiting.lane);
-  puti(c.brick, waiting.brick);
+  puti(c.group, waiting.group);
   puti(c.box, waiting.box);
   waiting.count += hn::CountTrue(d, which);
 }
@@ -102,7 +102,7 @@ HWY_INLINE Candidates pop(Waiting& waiting, MF& active) {
           hn::LoadU(d, waiting.near + at),
           hn::LoadU(d, waiting.far + at),
           hn::LoadU(di, waiting.lane + at),
-          hn::LoadU(di, waiting.brick + at),
+          hn::LoadU(di, waiting.group + at),
           hn::LoadU(di, waiting.box + at)};
 }
 
@@ -124,8 +124,31 @@ HWY_INLINE void note(VF t, VI lane, VI cell, MF found, BrickHits& hits) {
   }
 }
 
+/// A packet's cells: their bricks (-1: the surface crosses none of the brick's cells), numbers as in BrickHits, and where their values lie.
+struct CellsOfBricks {
+  VI brick, number, offset;
+};
+
+HWY_INLINE CellsOfBricks cells_in_bricks(const BrickGroups& groups, const Candidates& c) {
+  const I di;
+  const VI x = hn::ConvertTo(di, c.cell.x), y = hn::ConvertTo(di, c.cell.y), z = hn::ConvertTo(di, c.cell.z), seven = hn::Set(di, 7);
+  CellsOfBricks cells;
+  cells.brick = c.group;
+  if (groups.shift > 3) {
+    const int bits = groups.shift - 3;
+    const auto slot = [&](VI v) { return hn::ShiftRight<3>(v); };
+    const VI part = hn::Or(hn::Or(hn::ShiftLeftSame(slot(x), 2 * bits), hn::ShiftLeftSame(slot(y), bits)), slot(z));
+    cells.brick = hn::GatherIndex(di, groups.bricks.data(), hn::Add(hn::ShiftLeftSame(c.group, 3 * bits), part));
+  }
+  const VI lx = hn::And(x, seven), ly = hn::And(y, seven), lz = hn::And(z, seven);
+  cells.number = hn::Add(hn::ShiftLeft<9>(cells.brick), hn::Or(hn::Or(hn::ShiftLeft<6>(lx), hn::ShiftLeft<3>(ly)), lz));
+  const VI row = hn::Add(hn::Mul(lx, hn::Set(di, 81)), hn::Add(hn::Add(hn::ShiftLeft<3>(ly), ly), lz));
+  cells.offset = hn::Add(hn::Mul(cells.brick, hn::Set(di, kBrickBytes)), hn::Add(row, row));
+  return cells;
+}
+
 /// One cell for each of a packet of waiting rays: hits are noted, the others wait for their next cell where there is one.
-void advance_packet(const RayBricks& bricks, VF side, Waiting& waiting, BrickHits& hits) {
+HWY_NOINLINE void advance_packet(const RayBricks& bricks, const BrickGroups& groups, VF side, Waiting& waiting, BrickHits& hits) {
   const F d;
   const I di;
   const VF zero = hn::Zero(d), one = set(1.0f);
@@ -143,50 +166,46 @@ void advance_packet(const RayBricks& bricks, VF side, Waiting& waiting, BrickHit
   const V3 from{place(c.origin.x, c.direction.x, c.cell.x), place(c.origin.y, c.direction.y, c.cell.y),
                 place(c.origin.z, c.direction.z, c.cell.z)};
   const V3 step{hn::Mul(length, c.direction.x), hn::Mul(length, c.direction.y), hn::Mul(length, c.direction.z)};
-  const VF node = hn::Add(hn::Add(hn::Mul(c.cell.x, set(162.0f)), hn::Mul(c.cell.y, set(18.0f))), hn::Add(c.cell.z, c.cell.z));
-  const VI offset = hn::Add(hn::ConvertTo(di, node), hn::Mul(c.brick, hn::Set(di, kBrickBytes)));
+  const CellsOfBricks at = cells_in_bricks(groups, c);
+  const MF there = hn::And(active, hn::RebindMask(d, hn::Gt(at.brick, hn::Set(di, -1))));
   VF s = zero;
   const MF found =
-      first_root(cubic_along(bricks.values.data(), hn::IfThenElseZero(hn::RebindMask(di, active), offset), from, step, side), active, s);
-  if (!hn::AllFalse(d, found)) {
-    const VF number = hn::Add(hn::Add(hn::Mul(c.cell.x, set(64.0f)), hn::Mul(c.cell.y, set(8.0f))), c.cell.z);
-    const VI cell = hn::Add(hn::ShiftLeft<9>(c.brick), hn::ConvertTo(di, number));
-    note(hn::Add(c.near, hn::Mul(s, length)), c.lane, cell, found, hits);
-  }
+      first_root(cubic_along(bricks.values.data(), hn::IfThenElseZero(hn::RebindMask(di, there), at.offset), from, step, side), there, s);
+  if (!hn::AllFalse(d, found)) note(hn::Add(c.near, hn::Mul(s, length)), c.lane, at.number, found, hits);
   active = hn::And(hn::AndNot(found, active), hn::Lt(end, c.far));
   if (hn::AllFalse(d, active)) return;
   // Through the face that is met first; by whole numbers, so that every step makes headway whatever the rounding.
   const MF by_x = hn::And(hn::Le(tx, ty), hn::Le(tx, tz)), by_y = hn::AndNot(by_x, hn::Le(ty, tz)), by_z = hn::Not(hn::Or(by_x, by_y));
-  const auto next = [&](VF cell, MF by, MF forward, VI lower, VI upper) {
+  const auto next = [&](VF cell, MF by, MF forward, VI first, VI last) {
     const VF moved = hn::Add(cell, hn::IfThenElseZero(by, hn::IfThenElse(forward, one, set(-1.0f))));
-    active = hn::And(active, hn::And(hn::Ge(moved, hn::ConvertTo(d, lower)), hn::Lt(moved, hn::ConvertTo(d, upper))));
+    active = hn::And(active, hn::And(hn::Ge(moved, hn::ConvertTo(d, first)), hn::Le(moved, hn::ConvertTo(d, last))));
     return moved;
   };
-  const VI digit = hn::Set(di, 15);
-  c.cell.x = next(c.cell.x, by_x, right, hn::And(c.box, digit), hn::And(hn::ShiftRight<4>(c.box), digit));
-  c.cell.y = next(c.cell.y, by_y, up, hn::And(hn::ShiftRight<8>(c.box), digit), hn::And(hn::ShiftRight<12>(c.box), digit));
-  c.cell.z = next(c.cell.z, by_z, back, hn::And(hn::ShiftRight<16>(c.box), digit), hn::And(hn::ShiftRight<20>(c.box), digit));
+  const VI digit = hn::Set(di, 31);
+  c.cell.x = next(c.cell.x, by_x, right, hn::And(c.box, digit), hn::And(hn::ShiftRight<5>(c.box), digit));
+  c.cell.y = next(c.cell.y, by_y, up, hn::And(hn::ShiftRight<10>(c.box), digit), hn::And(hn::ShiftRight<15>(c.box), digit));
+  c.cell.z = next(c.cell.z, by_z, back, hn::And(hn::ShiftRight<20>(c.box), digit), hn::And(hn::ShiftRight<25>(c.box), digit));
   if (hn::AllFalse(d, active)) return;
   c.near = end;
   push(c, active, waiting);
 }
 
 /// A packet of a tile's rays against one brick: those that come near the surface in it join the waiting ones.
-HWY_INLINE void enter_packet(const BrickHeader& header, std::int32_t index, const IndexRays& rays, const RayBatch& batch, size_t i,
-                             float slack, const BrickHits& hits, Waiting& waiting) {
+HWY_NOINLINE void enter_packet(const SurfaceBound& bound, std::int32_t index, const IndexRays& rays, const RayBatch& batch, size_t i,
+                               float slack, const BrickHits& hits, Waiting& waiting) {
   const F d;
   const I di;
   const V3 o = load3(rays.origin, i);
   Candidates c;
   c.direction = load3(rays.direction, i);
   c.inverse = load3(rays.inverse, i);
-  c.origin = {hn::Sub(o.x, set(static_cast<float>(header.origin[0]))), hn::Sub(o.y, set(static_cast<float>(header.origin[1]))),
-              hn::Sub(o.z, set(static_cast<float>(header.origin[2])))};
+  c.origin = {hn::Sub(o.x, set(static_cast<float>(bound.origin[0]))), hn::Sub(o.y, set(static_cast<float>(bound.origin[1]))),
+              hn::Sub(o.z, set(static_cast<float>(bound.origin[2])))};
   c.near = hn::Load(d, batch.t_min + i);
   c.far = hn::Load(d, batch.t_max + i);
   const auto clip = [&](size_t axis, VF from, VF inverse) {
-    const VF a = hn::Mul(hn::Sub(set(static_cast<float>(header.lower[axis]) - slack), from), inverse);
-    const VF b = hn::Mul(hn::Sub(set(static_cast<float>(header.upper[axis]) + slack), from), inverse);
+    const VF a = hn::Mul(hn::Sub(set(static_cast<float>(bound.lower[axis]) - slack), from), inverse);
+    const VF b = hn::Mul(hn::Sub(set(static_cast<float>(bound.upper[axis]) + slack), from), inverse);
     c.near = hn::Max(c.near, hn::Min(a, b));
     c.far = hn::Min(c.far, hn::Max(a, b));
   };
@@ -196,11 +215,11 @@ HWY_INLINE void enter_packet(const BrickHeader& header, std::int32_t index, cons
   // Nearer hits only decide what is not looked at any more, never how a root is found: the order of the bricks does not matter.
   const VF before = hn::Load(d, hits.t + i);
   if (hn::AllFalse(d, hn::Le(c.near, hn::Min(c.far, before)))) return;
-  const VF nx = set(header.normal[0]), ny = set(header.normal[1]), nz = set(header.normal[2]);
+  const VF nx = set(bound.normal[0]), ny = set(bound.normal[1]), nz = set(bound.normal[2]);
   const auto dot = [&](const V3& v) { return hn::Add(hn::Add(hn::Mul(nx, v.x), hn::Mul(ny, v.y)), hn::Mul(nz, v.z)); };
-  const VF height = hn::Sub(dot(c.origin), set(header.offset)), slope = dot(c.direction);
-  const float steepest = std::abs(header.normal[0]) + std::abs(header.normal[1]) + std::abs(header.normal[2]);
-  const VF slab = set(header.slab + slack * steepest);
+  const VF height = hn::Sub(dot(c.origin), set(bound.offset)), slope = dot(c.direction);
+  const float steepest = std::abs(bound.normal[0]) + std::abs(bound.normal[1]) + std::abs(bound.normal[2]);
+  const VF slab = set(bound.slab + slack * steepest);
   const VF per = hn::Div(set(1.0f), hn::IfThenElse(hn::Lt(hn::Abs(slope), set(1e-12f)), set(1e-12f), slope));
   const VF a = hn::Mul(hn::Sub(slab, height), per), b = hn::Mul(hn::Sub(hn::Neg(slab), height), per);
   c.near = hn::Max(c.near, hn::Min(a, b));
@@ -209,17 +228,18 @@ HWY_INLINE void enter_packet(const BrickHeader& header, std::int32_t index, cons
   if (hn::AllFalse(d, active)) return;
   const auto first_cell = [&](size_t axis, VF from, VF slope_of) {
     const VF p = hn::Floor(hn::Add(from, hn::Mul(c.near, slope_of)));
-    return hn::Min(hn::Max(p, set(static_cast<float>(header.lower[axis]))), set(static_cast<float>(header.upper[axis] - 1)));
+    return hn::Min(hn::Max(p, set(static_cast<float>(bound.lower[axis]))), set(static_cast<float>(bound.upper[axis] - 1)));
   };
   c.cell = {first_cell(0, c.origin.x, c.direction.x), first_cell(1, c.origin.y, c.direction.y), first_cell(2, c.origin.z, c.direction.z)};
   c.lane = hn::Iota(di, static_cast<std::int32_t>(i));
-  c.brick = hn::Set(di, index);
-  c.box = hn::Set(di, header.lower[0] | header.upper[0] << 4 | header.lower[1] << 8 | header.upper[1] << 12 | header.lower[2] << 16 |
-                          header.upper[2] << 20);
+  c.group = hn::Set(di, index);
+  c.box = hn::Set(di, bound.lower[0] | (bound.upper[0] - 1) << 5 | bound.lower[1] << 10 | (bound.upper[1] - 1) << 15 |
+                          bound.lower[2] << 20 | (bound.upper[2] - 1) << 25);
   push(c, active, waiting);
 }
 
-void write_packet(const BrickTrace& what, const IndexRays& rays, const RayBatch& batch, size_t i, const BrickHits& found, HitBatch& hits) {
+HWY_NOINLINE void write_packet(const BrickTrace& what, const IndexRays& rays, const RayBatch& batch, size_t i, const BrickHits& found,
+                               HitBatch& hits) {
   const F d;
   const I di;
   const VI cell = hn::Load(di, found.cell + i);
@@ -259,23 +279,32 @@ void write_packet(const BrickTrace& what, const IndexRays& rays, const RayBatch&
 struct BlockRange {
   int x0, y0, x1, y1;
 };
-bool blocks_of(const BrickInTile& entry, int x, int y, const PixelTile& tile, BlockRange& out) {
+bool blocks_of(const GroupInTile& entry, int x, int y, const PixelTile& tile, BlockRange& out) {
   const int x0 = std::max(entry.x0 + x - tile.x, 0), x1 = std::min(entry.x1 + x - tile.x, tile.width - 1);
   const int y0 = std::max(entry.y0 + y - tile.y, 0), y1 = std::min(entry.y1 + y - tile.y, tile.height - 1);
   out = {x0 >> 2, y0 >> 2, x1 >> 2, y1 >> 2};
   return x0 <= x1 && y0 <= y1;
 }
 
-/// Asks for a brick's values before they are needed: most are not in a cache yet.
-void fetch(const RayBricks& bricks, std::uint32_t brick) {
-  const auto* values = reinterpret_cast<const char*>(bricks.values.data() + size_t{brick} * kBrickStride);
-  for (std::int32_t at = 0; at < kBrickBytes; at += 64) __builtin_prefetch(values + at);
+/// Asks for a group's values before they are needed: most are not in a cache yet.
+void fetch(const RayBricks& bricks, const BrickGroups& groups, std::uint32_t group) {
+  const auto fetch_brick = [&](size_t brick) {
+    const auto* values = reinterpret_cast<const char*>(bricks.values.data() + brick * kBrickStride);
+    for (std::int32_t at = 0; at < kBrickBytes; at += 64) __builtin_prefetch(values + at, 0, 2);
+  };
+  if (groups.shift == 3) return fetch_brick(group);
+  const size_t parts = size_t{1} << (3 * (groups.shift - 3));
+  for (size_t k = group * parts; k < (group + 1) * parts; ++k) {
+    if (groups.bricks[k] >= 0) fetch_brick(static_cast<size_t>(groups.bricks[k]));
+  }
 }
 
 void TraceBricks(const BrickTrace& what, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) {
   const F d;
   const BrickView& view = *what.view;
+  if (!view.groups) return;
   const RayBricks& bricks = *view.bricks;
+  const BrickGroups& groups = *view.groups;
   const size_t lanes = hn::Lanes(d), count = static_cast<size_t>(rays.count);
   IndexRays index_rays;
   BrickHits found;
@@ -288,27 +317,28 @@ void TraceBricks(const BrickTrace& what, const PixelTile& tile, const RayBatch& 
   const int across = (tile.width + 3) / 4;
   for (int row = tile.y / kViewTile_px; row <= (tile.y + tile.height - 1) / kViewTile_px; ++row) {
     for (int column = tile.x / kViewTile_px; column <= (tile.x + tile.width - 1) / kViewTile_px; ++column) {
-      const std::span<const BrickInTile> entries = view.tile(column, row);
+      const std::span<const GroupInTile> entries = view.tile(column, row);
+      const std::span<const GroupInTile> next = column + 1 < view.columns ? view.tile(column + 1, row) : std::span<const GroupInTile>();
       for (size_t k = 0; k < entries.size(); ++k) {
-        if (k + 1 < entries.size()) fetch(bricks, entries[k + 1].brick);
-        const BrickInTile& entry = entries[k];
+        if (k < next.size()) fetch(bricks, groups, next[k].group);
+        const GroupInTile& entry = entries[k];
         BlockRange range;
         if (!blocks_of(entry, column * kViewTile_px, row * kViewTile_px, tile, range)) continue;
-        const BrickHeader& header = bricks.headers[entry.brick];
-        const auto index = static_cast<std::int32_t>(entry.brick);
+        const SurfaceBound& bound = groups.bounds[entry.group];
+        const auto index = static_cast<std::int32_t>(entry.group);
         for (int y = range.y0; y <= range.y1; ++y) {
           for (int x = range.x0; x <= range.x1; ++x) {
             const size_t first = static_cast<size_t>(y * across + x) * 16;
             for (size_t i = first; i < first + 16; i += lanes) {
-              enter_packet(header, index, index_rays, rays, i, view.slack_voxels, found, waiting);
-              while (waiting.count >= kFull) advance_packet(bricks, side, waiting, found);
+              enter_packet(bound, index, index_rays, rays, i, view.slack_voxels, found, waiting);
+              while (waiting.count >= kFull) advance_packet(bricks, groups, side, waiting, found);
             }
           }
         }
       }
     }
   }
-  while (waiting.count > 0) advance_packet(bricks, side, waiting, found);
+  while (waiting.count > 0) advance_packet(bricks, groups, side, waiting, found);
   for (size_t i = 0; i < count; i += lanes) write_packet(what, index_rays, rays, i, found, hits);
 }
 

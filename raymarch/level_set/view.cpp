@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "raymarch/level_set/projection.h"
 
 namespace limn {
 namespace {
+
+constexpr double kGroup_px = 9.0;
 
 /// A brick that may be seen, with the pixels that it covers: first to last inclusive, within the picture.
 struct SeenBrick {
@@ -65,15 +68,15 @@ void sort_by_depth(std::vector<SeenBrick>& seen) {
   }
 }
 
-std::vector<SeenBrick> see(const RayBricks& bricks, const BrickProjection& projection) {
+std::vector<SeenBrick> see(const BrickGroups& groups, const BrickProjection& projection) {
   constexpr size_t kChunk = 2048;
-  const size_t count = bricks.headers.size(), chunks = (count + kChunk - 1) / kChunk;
+  const size_t count = groups.bounds.size(), chunks = (count + kChunk - 1) / kChunk;
   std::vector<std::vector<ProjectedBrick>> parts(chunks);
   tbb::parallel_for(size_t{0}, chunks, [&](size_t chunk) {
     const size_t first = chunk * kChunk, number = std::min(kChunk, count - first);
     parts[chunk].resize(number);
     parts[chunk].resize(
-        project_bricks(std::span(bricks.headers).subspan(first, number), static_cast<std::uint32_t>(first), projection, parts[chunk]));
+        project_bricks(std::span(groups.bounds).subspan(first, number), static_cast<std::uint32_t>(first), projection, parts[chunk]));
   });
   float nearest = 1e30f, farthest = -1e30f;
   size_t total = 0;
@@ -120,6 +123,18 @@ void fill_tiles(const std::vector<SeenBrick>& seen, BrickView& view) {
   }
 }
 
+/// The smallest groups that are about as large in the picture as a packet of rays.
+const BrickGroups& groups_for(const RayBricks& bricks, const Affine& index_from_render, const Camera& camera) {
+  const Affine render_from_index = inverse(index_from_render);
+  const glm::dvec3 middle = render_from_index.point(0.5 * glm::dvec3(bricks.lower + bricks.upper));
+  const double depth = -glm::dot(middle - camera.eye, camera.world_from_camera[2]);
+  const double voxel = std::cbrt(std::abs(glm::determinant(render_from_index.linear)));
+  const double voxel_px = depth > 0.0 ? voxel * pixels_per_unit_at(camera, depth) : std::numeric_limits<double>::infinity();
+  size_t k = 0;
+  while (k + 1 < bricks.groups.size() && voxel_px * (1 << bricks.groups[k].shift) < kGroup_px) ++k;
+  return bricks.groups[k];
+}
+
 /// True where the plane Z = 0 of a parallel projection leaves all bricks on its far side.
 bool all_before(const RayBricks& bricks, const Affine& index_from_render, const Camera& camera) {
   const Box box = transform(inverse(index_from_render), {glm::dvec3(bricks.lower), glm::dvec3(bricks.upper)});
@@ -146,7 +161,7 @@ bool touches(const BrickView& view, const PixelTile& tile) {
 std::shared_ptr<const BrickView> view_bricks(const std::shared_ptr<const RayBricks>& bricks, const Affine& index_from_render, bool inside,
                                              const ViewRequest& request) {
   const bool parallel = request.camera.projection == Projection::orthographic;
-  if (!bricks->headers.empty() && parallel && !all_before(*bricks, index_from_render, request.camera)) return nullptr;
+  if (!bricks->groups.empty() && parallel && !all_before(*bricks, index_from_render, request.camera)) return nullptr;
   auto view = std::make_shared<BrickView>();
   view->bricks = bricks;
   view->index_from_render = index_from_render;
@@ -157,7 +172,10 @@ std::shared_ptr<const BrickView> view_bricks(const std::shared_ptr<const RayBric
   view->columns = (request.camera.width_px + kViewTile_px - 1) / kViewTile_px;
   view->rows = (request.camera.height_px + kViewTile_px - 1) / kViewTile_px;
   std::vector<SeenBrick> seen;
-  if (!bricks->headers.empty()) seen = see(*bricks, projection_of(*bricks, index_from_render, view->side, request));
+  if (!bricks->groups.empty()) {
+    view->groups = &groups_for(*bricks, index_from_render, request.camera);
+    seen = see(*view->groups, projection_of(*bricks, index_from_render, view->side, request));
+  }
   fill_tiles(seen, *view);
   return view;
 }

@@ -10,23 +10,24 @@ namespace limn {
 
 inline constexpr int kViewTile_px = 16;
 
-/// A brick in a tile: the pixels of the tile whose rays may meet it, first to last inclusive, from the tile's corner.
-struct BrickInTile {
-  std::uint32_t brick = 0;
+/// A group of bricks in a tile: the pixels of the tile whose rays may meet it, first to last inclusive, from the tile's corner.
+struct GroupInTile {
+  std::uint32_t group = 0;
   std::uint8_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
 struct BrickView {
   std::shared_ptr<const RayBricks> bricks{};
+  const BrickGroups* groups = nullptr;  ///< Those that the tiles list; null where there are none.
   Affine index_from_render{};
   /// By how much boxes and slabs are widened, so that no root is lost to the rounding of a ray's places.
   float slack_voxels = 1e-3f;
   float side = 1.0f;  ///< +1 where the rays start outside the surface, -1 inside.
   int columns = 0, rows = 0;
   std::vector<std::uint32_t> first{};  ///< Of each tile in `entries`, and the end; row by row.
-  std::vector<BrickInTile> entries{};
+  std::vector<GroupInTile> entries{};
 
-  std::span<const BrickInTile> tile(int column, int row) const {
+  std::span<const GroupInTile> tile(int column, int row) const {
     const auto i = static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column);
     return std::span(entries).subspan(first[i], first[i + 1] - first[i]);
   }

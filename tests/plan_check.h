@@ -20,38 +20,69 @@ inline double depth_of(const Camera& camera, const PointSample& sample) {
   return sample.status == HitStatus::hit ? project(camera, sample.position).z : 1e9;
 }
 
-/// Of the true border, the share that the model does not put within `tolerance_px`; the larger of silhouette's and inner border's.
-/// `reference` is a model as good as the truth. Places where even the reference shows no border between the two rays (bands narrower than
-/// the tolerance) cannot be told apart and count as right.
-inline double share_beyond(const SceneModel& model, const SceneModel& reference, const PlanView& view, double threshold,
-                           double tolerance_px, PlanMetric metric) {
+/// What was asked along one kind of border.
+struct Asked {
+  int places = 0;  ///< All, a pixel apart.
+  int asked = 0;   ///< Where at least one side could be asked.
+  int wrong = 0;   ///< Where a side that was asked shows something else than the truth.
+  double share() const { return asked > 0 ? static_cast<double>(wrong) / asked : 0.0; }
+  double share_of_all() const { return places > 0 ? static_cast<double>(wrong) / places : 0.0; }
+};
+
+/// One side of a border: rays `offset_px` along its outward normals, a tolerance away. That all of a border lies within the tolerance says
+/// something of a point only where every true border is a tolerance away from it: a second one nearer by may have moved over it and be
+/// right all the same. Elsewhere, and where the reference contradicts the truth, a point is not asked.
+struct Side {
+  std::vector<glm::dvec2> points{};
+  std::vector<bool> counts{};
+  Side(const std::vector<CurveSample>& samples, const BorderCurves& truth, std::optional<CurveKind> kind, double offset_px) {
+    const CurveIndex borders(truth, kind);
+    const double clear_px = 0.99 * std::abs(offset_px);
+    for (const CurveSample& sample : samples) {
+      points.push_back(sample.px + offset_px * sample.outward);
+      counts.push_back(!borders.nearest(points.back(), 0, clear_px));
+    }
+  }
+};
+
+/// `reference` is a model as good as the truth.
+inline Asked ask(const SceneModel& model, const SceneModel& reference, const PlanView& view, CurveKind kind, double threshold,
+                 double tolerance_px) {
+  const bool inner = kind == CurveKind::inner;
+  const std::vector<CurveSample> samples = within_picture(resample(view.truth.curves, kind, 1.0), view.camera, 1.0 + tolerance_px);
+  const std::optional<CurveKind> near_by = inner ? std::nullopt : std::optional(kind);  // inner borders end no sheet
+  const Side inside(samples, view.truth.curves, near_by, -tolerance_px), outside(samples, view.truth.curves, near_by, tolerance_px);
+  const auto true_in = seen_at(reference, view.camera, inside.points), true_out = seen_at(reference, view.camera, outside.points);
+  const auto model_in = seen_at(model, view.camera, inside.points), model_out = seen_at(model, view.camera, outside.points);
   const auto is_ink = [&](const PointSample& s) { return s.status == HitStatus::hit && double{s.n_dot_v} < threshold; };
+  const auto depth = [&](const PointSample& s) { return depth_of(view.camera, s); };
+  Asked found;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    ++found.places;
+    bool in = inside.counts[i], out = outside.counts[i], in_right = true, out_right = true;
+    if (inner) {
+      in = in && is_ink(true_in[i]), out = out && !is_ink(true_out[i]);
+      in_right = is_ink(model_in[i]), out_right = !is_ink(model_out[i]);
+    } else {
+      const double near = depth(true_in[i]), far = depth(true_out[i]), middle = 0.5 * (near + far);
+      in = in && far > near, out = out && far > near;
+      in_right = depth(model_in[i]) < middle, out_right = !(depth(model_out[i]) < middle);
+    }
+    found.asked += in || out;
+    found.wrong += (in && !in_right) || (out && !out_right);
+  }
+  return found;
+}
+
+/// Of the places of the true border that can be asked, the share that the model does not put within `tolerance_px`; the larger of
+/// silhouette's and inner border's. With `of_all` the share of all places, those that cannot be asked counting as right.
+inline double share_beyond(const SceneModel& model, const SceneModel& reference, const PlanView& view, double threshold,
+                           double tolerance_px, PlanMetric metric, bool of_all = false) {
   double worst = 0.0;
   for (const CurveKind kind : {CurveKind::silhouette, CurveKind::inner}) {
     if (kind == CurveKind::inner && metric == PlanMetric::silhouette) continue;
-    std::vector<glm::dvec2> inside, outside;
-    for (const CurveSample& sample : within_picture(resample(view.truth.curves, kind, 1.0), view.camera, 1.0 + tolerance_px)) {
-      inside.push_back(sample.px - tolerance_px * sample.outward);
-      outside.push_back(sample.px + tolerance_px * sample.outward);
-    }
-    const auto true_in = seen_at(reference, view.camera, inside), true_out = seen_at(reference, view.camera, outside);
-    const auto model_in = seen_at(model, view.camera, inside), model_out = seen_at(model, view.camera, outside);
-    double asked = 0.0, wrong = 0.0;
-    for (size_t i = 0; i < inside.size(); ++i) {
-      bool ok = true;
-      asked += 1.0;
-      if (kind == CurveKind::inner) {
-        if (!is_ink(true_in[i]) || is_ink(true_out[i])) continue;
-        ok = is_ink(model_in[i]) && !is_ink(model_out[i]);
-      } else {
-        const double in = depth_of(view.camera, true_in[i]), out = depth_of(view.camera, true_out[i]);
-        if (!(out > in)) continue;
-        const auto is_near = [&](const PointSample& s) { return depth_of(view.camera, s) < 0.5 * (in + out); };
-        ok = is_near(model_in[i]) && !is_near(model_out[i]);
-      }
-      wrong += ok ? 0.0 : 1.0;
-    }
-    if (asked > 0.0) worst = std::max(worst, wrong / asked);
+    const Asked found = ask(model, reference, view, kind, threshold, tolerance_px);
+    worst = std::max(worst, of_all ? found.share_of_all() : found.share());
   }
   return worst;
 }

@@ -34,6 +34,7 @@ struct Ladder {
   int normal_order = 2;          ///< Of the normal's angle, by edge or voxel size.
   double normal_constant = 0.0;  ///< Angle = constant (curvature * size)^order, as far as theory knows.
   double base_size = 1.0;        ///< World size of an edge at level 0, or of a voxel times the number of voxels.
+  double guess_ms = 1.0;         ///< To build the first rung, as an order of magnitude: the order in which ladders are tried.
 
   double size_at(size_t rung) const;  ///< World: of an edge or a voxel.
   SurfaceSettings at(size_t rung) const;

@@ -1,19 +1,18 @@
-// One rung after another until two neighbours stand on either side of the tolerance.
+// All ladders at once, the cheapest next rung first, until two neighbours of one stand on either side of the tolerance and no other can be
+// cheaper.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "samples/plan/plan.h"
+#include "samples/plan/climb.h"
 #include "sdf/error.h"
 
 namespace limn {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// A rung that fails by a hair is no reason to jump: predictions are trusted to a factor of this.
-constexpr double kTrust = 1.3;
 
 struct Search {
   const Scene& scene;
@@ -21,8 +20,8 @@ struct Search {
   const PlanSettings& settings;
   const ExecutionSettings& how;
   ProgressBar& bar;
-  const std::vector<PlanTrial>& known;
   PlanAnswer answer{};
+  std::vector<Climb> climbs{};  ///< Of answer.ladders.
 };
 
 BorderErrors worst(const BorderErrors& a, const BorderErrors& b) {
@@ -38,9 +37,6 @@ BorderErrors predicted(const Search& search, size_t ladder, size_t rung) {
 
 /// Builds and measures one rung. A rung that cannot be built fails with its reason.
 PlanTrial try_rung(Search& search, size_t ladder, size_t rung) {
-  for (const PlanTrial& trial : search.known) {
-    if (trial.ladder == ladder && trial.rung == rung) return trial;
-  }
   PlanTrial trial;
   trial.ladder = ladder;
   trial.rung = rung;
@@ -65,108 +61,9 @@ PlanTrial try_rung(Search& search, size_t ladder, size_t rung) {
   return trial;
 }
 
-/// What stands between a ladder's rungs known to fail and those known to meet the tolerance.
-struct Bracket {
-  int fails = -1;  ///< The finest rung that fails; -1: none known.
-  int meets = 0;   ///< The coarsest rung that meets it, or that is too large to be built; one past the last: none known.
-  bool settled() const { return meets - fails == 1; }
-};
-
-/// The coarsest rung that a prediction, corrected by what was measured, lets pass; kept inside the bracket, and no more than a factor of
-/// four in size beyond what was measured: far extrapolations cost most where they are least sure.
-int aim(const Search& search, size_t index, const Bracket& bracket, double correction) {
-  const Ladder& ladder = search.answer.ladders[index];
-  int farthest = bracket.meets - 1;
-  if (bracket.fails >= 0) {
-    const auto size = [&](int rung) { return ladder.size_at(static_cast<size_t>(rung)); };
-    while (farthest > bracket.fails + 1 && size(farthest) < 0.24 * size(bracket.fails)) --farthest;
-  } else if (bracket.meets == static_cast<int>(ladder.rungs.size())) {
-    farthest = (bracket.meets - 1) / 2;
-  }
-  for (int rung = bracket.fails + 1; rung < farthest; ++rung) {
-    const double error = correction * predicted(search, index, static_cast<size_t>(rung)).of(search.settings.metric);
-    if (error <= search.settings.tolerance_px) return rung;
-  }
-  return farthest;
-}
-
-/// How much larger the error is than theory says; the floor keeps a lucky zero from promising anything.
-double correction_of(const PlanTrial& trial, const PlanSettings& settings) {
-  const double measured = trial.measured.of(settings.metric), theory = trial.predicted.of(settings.metric);
-  if (!std::isfinite(measured) || !(theory > 0.0)) return 1.0;
-  return std::clamp(measured / theory, 1e-3, 1e3);
-}
-
 bool fits_budget(const PlanTrial& trial, const PlanSettings& settings) {
   return (!settings.budget_ms || trial.time_ms() <= *settings.budget_ms) &&
          (!settings.budget_bytes || trial.bytes <= *settings.budget_bytes);
-}
-
-bool meets(const PlanTrial& trial, const PlanSettings& settings) {
-  return trial.failed.empty() && trial.measured.of(settings.metric) <= settings.tolerance_px;
-}
-
-/// The fastest so far that meets everything.
-std::optional<size_t> fastest(const Search& search) {
-  std::optional<size_t> best;
-  for (size_t k = 0; k < search.answer.trials.size(); ++k) {
-    const PlanTrial& trial = search.answer.trials[k];
-    if (!meets(trial, search.settings) || !fits_budget(trial, search.settings)) continue;
-    if (!best || trial.time_ms() < search.answer.trials[*best].time_ms()) best = k;
-  }
-  return best;
-}
-
-/// A rung that fails and already costs more than what is known to meet the tolerance: nothing finer of its ladder can be the cheapest.
-bool is_beaten(const Search& search, const PlanTrial& trial) {
-  const std::optional<size_t> best = fastest(search);
-  return best && trial.failed.empty() && trial.time_ms() > search.answer.trials[*best].time_ms();
-}
-
-/// Three rungs that fail, and the last no better than the first: finer ones only cost more.
-bool stands_still(const Search& search, size_t index) {
-  constexpr double kProgress = 0.7;
-  std::vector<double> errors;
-  for (const PlanTrial& trial : search.answer.trials) {
-    if (trial.ladder == index && trial.failed.empty() && !meets(trial, search.settings))
-      errors.push_back(trial.measured.of(search.settings.metric));
-  }
-  return errors.size() >= 3 && !(errors.back() < kProgress * errors[errors.size() - 3]);
-}
-
-void climb(Search& search, size_t index) {
-  const Ladder ladder = search.answer.ladders[index];
-  const int last = static_cast<int>(ladder.rungs.size()) - 1;
-  Bracket bracket{-1, last + 1};
-  double correction = 1.0;
-  while (!bracket.settled()) {
-    const int rung = aim(search, index, bracket, correction);
-    search.answer.trials.push_back(try_rung(search, index, static_cast<size_t>(rung)));
-    const PlanTrial& trial = search.answer.trials.back();
-    if (!trial.failed.empty()) {
-      search.answer.notes.push_back(fmt::format("{}, {}: {}", ladder.title, ladder.words_at(static_cast<size_t>(rung)), trial.failed));
-      bracket.meets = rung;
-      continue;
-    }
-    correction = correction_of(trial, search.settings);
-    if (meets(trial, search.settings)) {
-      bracket.meets = rung;
-      continue;
-    }
-    bracket.fails = rung;
-    correction *= kTrust;
-    if (bracket.meets > last && stands_still(search, index)) {
-      search.answer.notes.push_back(
-          fmt::format("{} was given up at {}: finer ones come no nearer", ladder.title, ladder.words_at(static_cast<size_t>(rung))));
-      return;
-    }
-    if (is_beaten(search, trial)) {
-      search.answer.notes.push_back(fmt::format("{} was given up at {}: still {:.2f} px off, and slower than what meets the tolerance",
-                                                ladder.title, ladder.words_at(static_cast<size_t>(rung)),
-                                                trial.measured.of(search.settings.metric)));
-      return;
-    }
-  }
 }
 
 std::optional<size_t> trial_at(const PlanAnswer& answer, size_t ladder, size_t rung) {
@@ -174,6 +71,72 @@ std::optional<size_t> trial_at(const PlanAnswer& answer, size_t ladder, size_t r
     if (answer.trials[k].ladder == ladder && answer.trials[k].rung == rung) return k;
   }
   return {};
+}
+
+/// The fastest of the ladders' coarsest rungs that meet everything.
+std::optional<size_t> fastest(const Search& search) {
+  std::optional<size_t> best;
+  for (size_t k = 0; k < search.climbs.size(); ++k) {
+    const ClimbedRung* rung = search.climbs[k].coarsest_meeting(search.settings.tolerance_px);
+    if (rung == nullptr) continue;
+    const size_t at = *trial_at(search.answer, k, static_cast<size_t>(rung->rung));
+    const PlanTrial& trial = search.answer.trials[at];
+    if (!fits_budget(trial, search.settings)) continue;
+    if (!best || trial.time_ms() < search.answer.trials[*best].time_ms()) best = at;
+  }
+  return best;
+}
+
+std::vector<Climb> climbs_of(const Search& search) {
+  std::vector<Climb> climbs;
+  for (size_t k = 0; k < search.answer.ladders.size(); ++k) {
+    Climb climb;
+    climb.ladder = &search.answer.ladders[k];
+    climb.limit = static_cast<int>(climb.ladder->rungs.size());
+    climb.guess_ms = climb.ladder->guess_ms;
+    for (size_t rung = 0; rung < climb.ladder->rungs.size(); ++rung)
+      climb.theory_px.push_back(predicted(search, k, rung).of(search.settings.metric));
+    climbs.push_back(std::move(climb));
+  }
+  return climbs;
+}
+
+void take(Search& search, PlanTrial trial) {
+  Climb& climb = search.climbs[trial.ladder];
+  const int rung = static_cast<int>(trial.rung);
+  if (trial.failed.empty()) {
+    climb.add({rung, trial.measured.of(search.settings.metric), trial.build_ms, trial.trace_ms});
+  } else {
+    search.answer.notes.push_back(fmt::format("{}, {}: {}", climb.ladder->title, climb.ladder->words_at(trial.rung), trial.failed));
+    climb.limit = std::min(climb.limit, rung);
+  }
+  search.answer.trials.push_back(std::move(trial));
+}
+
+/// The ladder whose next rung is expected to cost least; those that can no longer win are closed. Empty: none is left.
+std::optional<size_t> cheapest_next(Search& search) {
+  const double tolerance_px = search.settings.tolerance_px;
+  const std::optional<size_t> best = fastest(search);
+  std::optional<size_t> next;
+  double next_ms = 0.0;
+  for (size_t k = 0; k < search.climbs.size(); ++k) {
+    Climb& climb = search.climbs[k];
+    if (climb.settled(tolerance_px)) continue;
+    const bool leads = best && search.answer.trials[*best].ladder == k;  // its coarser neighbour is still to be seen
+    std::string reason;
+    if (!leads) reason = reason_to_stop(climb, tolerance_px, best ? std::optional(search.answer.trials[*best].time_ms()) : std::nullopt);
+    if (!reason.empty()) {
+      climb.closed = true;
+      search.answer.notes.push_back(climb.climbed.empty()
+                                        ? fmt::format("{} was not tried: {}", climb.ladder->title, reason)
+                                        : fmt::format("{} was given up at {}: {}", climb.ladder->title,
+                                                      climb.ladder->words_at(static_cast<size_t>(climb.climbed.back().rung)), reason));
+      continue;
+    }
+    const double ms = expected_ms(climb, next_rung(climb, tolerance_px));
+    if (!next || ms < next_ms) next = k, next_ms = ms;
+  }
+  return next;
 }
 
 /// The last rung of the chosen ladder. Extrapolated: memory and building grow with the square of the resolution, from the two finest
@@ -226,7 +189,7 @@ void choose(Search& search) {
 PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings, const ExecutionSettings& how,
                      ProgressBar& bar, const std::vector<PlanTrial>& known) {
   LIMN_CHECK(!views.empty());
-  Search search{scene, views, settings, how, bar, known};
+  Search search{scene, views, settings, how, bar};
   search.answer.ladders = ladders_of(scene, settings);
   if (search.answer.ladders.empty()) {
     throw InputError({{},
@@ -235,7 +198,14 @@ PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, con
                       "has no resolution to choose: it is a model already",
                       "a scene of shapes or subdivision cages would be right (--scheme makes a mesh a cage)"});
   }
-  for (size_t ladder = 0; ladder < search.answer.ladders.size(); ++ladder) climb(search, ladder);
+  search.climbs = climbs_of(search);
+  for (const PlanTrial& trial : known) {
+    if (!trial_at(search.answer, trial.ladder, trial.rung)) take(search, trial);
+  }
+  while (const auto ladder = cheapest_next(search)) {
+    const int rung = next_rung(search.climbs[*ladder], settings.tolerance_px);
+    take(search, try_rung(search, *ladder, static_cast<size_t>(rung)));
+  }
   choose(search);
   return std::move(search.answer);
 }

@@ -60,8 +60,8 @@ struct Case {
   const PlanView& view;
   const SceneModel& reference;
   int view_index;
-  std::map<std::string, Built>& finest;
-  std::vector<PlanTrial>& known;  ///< Of the other tolerances.
+  std::map<std::string, Built>& finest;  ///< By ladder: built once a scene, traced in the view that asked first.
+  std::vector<PlanTrial>& known;         ///< Of the other tolerances.
 };
 
 nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
@@ -69,7 +69,7 @@ nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
   settings.tolerance_px = tolerance_px;
   ProgressBar bar(false);
   const PlanAnswer answer = make_plan(at.scene, {at.view}, settings, {}, bar, at.known);
-  at.known.insert(at.known.end(), answer.trials.begin(), answer.trials.end());
+  at.known = answer.trials;
   nlohmann::json row = {{"suite", "plan"}, {"scene", at.scene.name}, {"view", at.view_index}, {"tolerance_px", tolerance_px}};
   ++sums.plans;
   if (!answer.chosen) {
@@ -78,8 +78,9 @@ nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
   }
   const PlanTrial& chosen = answer.trials[*answer.chosen];
   const Ladder& ladder = answer.ladders[chosen.ladder];
-  const auto beyond = [&](size_t rung) {
-    return test::share_beyond(build(at.scene, ladder, rung), at.reference, at.view, settings.threshold, tolerance_px, settings.metric);
+  const auto beyond = [&](size_t rung, bool of_all = false) {
+    return test::share_beyond(build(at.scene, ladder, rung), at.reference, at.view, settings.threshold, tolerance_px, settings.metric,
+                              of_all);
   };
   const auto [finest, added] = at.finest.try_emplace(ladder.title);
   if (added) finest->second = finest_of(at.scene, ladder, at.view);
@@ -98,6 +99,7 @@ nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
   row["measured_px"] = chosen.measured.of(settings.metric);
   row["predicted_px"] = chosen.predicted.of(settings.metric);
   row["share_beyond"] = share;
+  row["share_beyond_of_all"] = beyond(chosen.rung, true);
   row["coarser_share_beyond"] = coarser ? nlohmann::json(*coarser) : nlohmann::json(nullptr);
   row["time_ms"] = chosen.time_ms(), row["bytes"] = chosen.bytes;
   row["finest_time_ms"] = finest->second.time_ms, row["finest_bytes"] = finest->second.bytes;
@@ -120,12 +122,12 @@ Sums run_scene(const SceneDescriptor& descriptor, const PlanBenchSettings& setti
   CameraSettings camera = scene.camera;
   camera.width_px = settings.width_px;
   camera.height_px = settings.height_px;
+  std::map<std::string, Built> finest;
   for (int index = 0; index < settings.views; ++index) {
     PlanView view;
     view.camera = camera_of_view(camera, bounds(scene), index, settings.views);
     view.truth = solve_truth(scene, view.camera, {}, {});
     const StandIn reference = make_stand_in(scene, view.camera, std::int64_t{4} << 30, 1.0);
-    std::map<std::string, Built> finest;
     std::vector<PlanTrial> known;
     for (const double tolerance_px : kTolerances_px) {
       rows.push_back(run_plan({scene, view, reference.model, index, finest, known}, tolerance_px, sums));

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "raymarch/truth/stand_in.h"
 #include "samples/job.h"
 #include "samples/scenes/scenes.h"
@@ -66,6 +68,33 @@ TEST(Plan, TheChoiceKeepsToTheToleranceAndTheNextCoarserModelDoesNot) {
   }
   EXPECT_EQ(plans, 12);
   EXPECT_GE(coarser_fails, 0.8 * with_coarser);
+}
+
+TEST(Plan, RaysATenthBeyondTheMeasuredErrorSeeWhatIsThereAndRaysWithinItDoNot) {
+  struct Case {
+    const char *scene, *kind;
+    int view, resolution;
+  };
+  // Bands of a tenth of a pixel that grow to one; bands beside sharp edges; wedges that run out; a plain torus.
+  const Case cases[] = {{"teacup", "mesh", 3, 1},
+                        {"machined_part", "level_set", 1, 91},
+                        {"machined_part", "level_set", 0, 128},
+                        {"tilted_torus", "level_set", 0, 23}};
+  for (const Case& at : cases) {
+    const Scene scene = scene_named(at.scene);
+    const PlanView view = view_of(scene, at.view, 4);
+    const StandIn reference = make_stand_in(scene, view.camera, std::int64_t{2} << 30, 1.0);
+    PlanSettings settings;
+    settings.kinds = {at.kind};
+    const std::vector<Ladder> ladders = ladders_of(scene, settings);
+    const auto rung = std::find(ladders.front().rungs.begin(), ladders.front().rungs.end(), at.resolution) - ladders.front().rungs.begin();
+    const SceneModel model = build(scene, ladders.front(), static_cast<size_t>(rung));
+    double trace_ms = 0.0;
+    const double measured = measure_errors(model, view, settings.threshold, {}, trace_ms).of(settings.metric);
+    const auto beyond = [&](double px) { return share_beyond(model, reference.model, view, settings.threshold, px, settings.metric); };
+    EXPECT_LE(beyond(1.1 * measured), 0.05) << at.scene << " view " << at.view << ": " << measured;
+    EXPECT_GT(beyond(0.6 * measured), 0.05) << at.scene << " view " << at.view << ": " << measured;
+  }
 }
 
 TEST(Plan, AFinerToleranceNeverGetsACoarserModelOfOneLadder) {

@@ -7,6 +7,7 @@
 #endif
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 HWY_BEFORE_NAMESPACE();
@@ -45,6 +46,12 @@ HWY_INLINE Reals select(LaneMask mask, Reals yes, Reals no) { return {hn::IfThen
 HWY_INLINE LaneMask both(LaneMask a, LaneMask b) { return hn::And(a, b); }
 HWY_INLINE LaneMask either(LaneMask a, LaneMask b) { return hn::Or(a, b); }
 HWY_INLINE LaneMask no(LaneMask a) { return hn::Not(a); }
+
+HWY_INLINE unsigned bits_of(LaneMask mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(RealTag(), mask, bytes);
+  return (bytes[0] | (kWidth > 8 ? static_cast<unsigned>(bytes[1]) << 8 : 0u)) & ((1u << kWidth) - 1u);
+}
 
 HWY_INLINE Reals square(Reals a) { return a * a; }
 HWY_INLINE Reals abs(Reals a) { return {hn::Abs(a.v)}; }
@@ -94,7 +101,7 @@ HWY_INLINE Reals sine_of_quarter_turns(Reals x, double shift) {
   const Reals size = select(odd > reals(0.5), c, s);
   return select(quarter > reals(1.5), -size, size);
 }
-HWY_NOINLINE Reals sine_of_large(Reals x, double shift) {
+static HWY_NOINLINE Reals sine_of_large(Reals x, double shift) {
   HWY_ALIGN double lanes[kWidth];
   store(x, lanes);
   for (double& lane : lanes) lane = shift == 0.0 ? std::sin(lane) : std::cos(lane);

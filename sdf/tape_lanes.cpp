@@ -15,6 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace limn {
 namespace HWY_NAMESPACE {
+namespace {
 
 // Components of a register, sixteen doubles each.
 HWY_INLINE void get(const double* from, Reals& a) { a = load(from); }
@@ -158,12 +159,6 @@ HWY_INLINE void narrow(const Pass& pass, const TapeLeaf& leaf, int at, LaneSlope
   x.value = narrowed(pass, leaf, at, x.middle, x.value);
   const Reals steepest = load(pass.speed.lane + at) * (leaf.lipschitz * (1.0 + 1e-13)), slack = steepest * 1e-13;
   x.slope = tighter({x.slope.lower - slack, x.slope.upper + slack}, {-steepest, steepest});
-}
-
-HWY_INLINE unsigned bits_of(LaneMask mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(RealTag(), mask, bytes);
-  return (bytes[0] | (kWidth > 8 ? static_cast<unsigned>(bytes[1]) << 8 : 0u)) & ((1u << kWidth) - 1u);
 }
 
 template <class T>
@@ -388,6 +383,7 @@ void slope_bounds(const FieldTape& tape, std::span<const TapeStep> steps, const 
   take(result + 4 * kLanes, bounds.slope_upper);
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace limn
 HWY_AFTER_NAMESPACE();

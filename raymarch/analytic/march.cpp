@@ -1,7 +1,8 @@
 #include "raymarch/analytic/march.h"
 
 #include <cmath>
-#include <limits>
+
+#include "raymarch/analytic/block.h"
 
 namespace limn {
 namespace {
@@ -289,38 +290,7 @@ void polish(const MarchTape& march, const MarchLimits& limits, const RayBatch& r
         if (step[i] <= tolerance[i]) going &= ~(1u << i);
       }
     }
-    write_roots(march, rays, packet.rays, packet.t, sign, packet.lane, lanes, scratch, hits);
-  }
-}
-
-void write_roots(const MarchTape& march, const RayBatch& rays, const LaneRays& packet, const LaneArray& t, const LaneArray& sign,
-                 const int* lane, unsigned lanes, TapeScratch& scratch, HitBatch& hits) {
-  LaneArray start, values, slopes, at;
-  for (int i = 0; i < kLanes; ++i) start[i] = static_cast<double>(static_cast<float>(t[i]));
-  tape_slopes(*march.tape, march.steps, packet, start, scratch, values, slopes);
-  for (int i = 0; i < kLanes; ++i) {
-    const double newton = start[i] - values[i] / slopes[i];
-    // Where rays graze, a step from so near may still lead away.
-    const bool near = std::abs(newton - t[i]) <= 2.0 * std::numeric_limits<float>::epsilon() * std::abs(t[i]);
-    at[i] = static_cast<double>(static_cast<float>(near ? newton : t[i]));
-  }
-  std::array<LaneArray, 3> gradients;
-  tape_gradients(*march.tape, march.steps, packet, at, scratch, values, gradients);
-  for (int i = 0; i < kLanes; ++i) {
-    if (!(lanes >> i & 1u)) continue;
-    const int k = lane[i];
-    const float hit = static_cast<float>(at[i]);
-    if (!(hit < rays.t_max[k])) continue;
-    const double x = gradients[0][i], y = gradients[1][i], z = gradients[2][i], length = std::sqrt(x * x + y * y + z * z);
-    // Where the gradient vanishes (an apex, a double root) any side is as good; the ray's own shows the surface face on.
-    const bool defined = length > 0.0 && std::isfinite(length);
-    hits.t[k] = hit;
-    hits.normal_x[k] = static_cast<float>(defined ? x / length : -sign[i] * packet.direction[0][i]);
-    hits.normal_y[k] = static_cast<float>(defined ? y / length : -sign[i] * packet.direction[1][i]);
-    hits.normal_z[k] = static_cast<float>(defined ? z / length : -sign[i] * packet.direction[2][i]);
-    hits.face[k] = -1;
-    hits.material[k] = 0;
-    hits.status[k] = HitStatus::hit;
+    write_roots(march, rays, packet.rays, packet.t, sign, packet.lane, 0, lanes, scratch, hits);
   }
 }
 

@@ -48,11 +48,6 @@ void isolate(const MarchTape& march, const MarchLimits& limits, const RayBatch& 
 /// Polishes isolated roots and writes them.
 void polish(const MarchTape& march, const MarchLimits& limits, const RayBatch& rays, TapeScratch& scratch, StretchList& list,
             HitBatch& hits);
-/// Of sixteen roots, known to a millionth of the extent or better, the ones in `lanes`: a last step from where float puts them, so that
-/// the result does not depend on how they were found, and the normal there. `lane[i]`: the packet's lane i in the batch.
-void write_roots(const MarchTape& march, const RayBatch& rays, const LaneRays& packet, const LaneArray& t, const LaneArray& sign,
-                 const int* lane, unsigned lanes, TapeScratch& scratch, HitBatch& hits);
-
 /// Rays of a batch as a packet; lanes from `count` on repeat the first.
 LaneRays gather_rays(const RayBatch& rays, const int* lane, int count);
 

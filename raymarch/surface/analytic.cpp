@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "raymarch/analytic/march.h"
+#include "raymarch/analytic/view.h"
 #include "raymarch/curvature.h"
 #include "raymarch/surface/offset.h"
 #include "raymarch/surface/registry.h"
@@ -65,6 +65,11 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   polish(march, state.limits, rays, scratch, list, hits);
 }
 
+SurfaceView view(const std::shared_ptr<const void>& opaque, const ViewRequest& request) {
+  const AnalyticState& state = *static_cast<const AnalyticState*>(opaque.get());
+  return view_field(opaque, state.tape, state.limits, {&state, trace}, request);
+}
+
 void evaluate_curvatures(const void* opaque, std::span<const SurfacePoint> points, std::span<SurfaceCurvature> curvatures) {
   FieldEvaluator& evaluator = static_cast<const AnalyticState*>(opaque)->evaluators.local();
   for (size_t i = 0; i < points.size(); ++i) curvatures[i] = facing(curvature_of_jet(evaluator.jet(points[i].position)), points[i].normal);
@@ -81,6 +86,8 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   surface.bounds = state->tape.field.traits().bounds;
   surface.state = state;
   surface.trace = trace;
+  // Without bounds there is no depth to divide.
+  if (state->limits.extent > 0.0) surface.view = view;
   surface.curvature = {state, evaluate_curvatures, "Hessian of the field"};
   surface.offset = field_offset(state->tape.field, settings.max_steps);
   surface.info.kind = "analytic";

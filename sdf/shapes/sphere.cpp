@@ -10,6 +10,7 @@ struct Sphere {
   T operator()(const Vector3<T>& p) const {
     return norm(p) - scalar<T>(radius);
   }
+  glm::dvec3 ball_from_object() const { return glm::dvec3(1.0 / radius); }
   double support(const glm::dvec3& direction, double level) const { return (radius + level) * glm::length(direction); }
 };
 

@@ -1,0 +1,284 @@
+#include "raymarch/analytic/block.h"
+
+#include <limits>
+
+#include "sdf/simd.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raymarch/analytic/block.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "sdf/lane_real-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace limn {
+namespace HWY_NAMESPACE {
+namespace {
+
+using FloatTag = hn::Rebind<float, RealTag>;
+
+HWY_INLINE Reals load_floats(const float* from) { return {hn::PromoteTo(RealTag(), hn::LoadU(FloatTag(), from))}; }
+HWY_INLINE void store_floats(Reals a, float* to) { hn::StoreU(hn::DemoteTo(FloatTag(), a.v), FloatTag(), to); }
+HWY_INLINE Reals as_float(Reals a) { return {hn::PromoteTo(RealTag(), hn::DemoteTo(FloatTag(), a.v))}; }
+HWY_INLINE Reals load(const LaneArray& a, int at) { return HWY_NAMESPACE::load(a.lane + at); }
+HWY_INLINE void store(Reals a, LaneArray& to, int at) { HWY_NAMESPACE::store(a, to.lane + at); }
+HWY_INLINE Reals dot(const LaneArray* a, const glm::dvec3& b, int at) {
+  return load(a[0], at) * b.x + load(a[1], at) * b.y + load(a[2], at) * b.z;
+}
+
+void load_rays(const RayBatch& rays, int first, const glm::dvec3& eye, const glm::dvec3& forward, RayBlock& block) {
+  const float* const origin[3] = {rays.origin_x, rays.origin_y, rays.origin_z};
+  const float* const direction[3] = {rays.direction_x, rays.direction_y, rays.direction_z};
+  const double eye_depth = glm::dot(eye, forward);
+  for (int at = 0; at < kLanes; at += kWidth) {
+    for (int axis = 0; axis < 3; ++axis) {
+      store(load_floats(origin[axis] + first + at), block.rays.origin[axis], at);
+      store(load_floats(direction[axis] + first + at), block.rays.direction[axis], at);
+    }
+    store(load_floats(rays.t_min + first + at), block.t_min, at);
+    store(load_floats(rays.t_max + first + at), block.t_max, at);
+    store(dot(block.rays.origin, forward, at) - eye_depth, block.depth, at);
+    store(dot(block.rays.direction, forward, at), block.depth_per_t, at);
+  }
+}
+
+unsigned between(const RayBlock& block, double z0, double z1, double from, LaneArray& a, LaneArray& b, unsigned& late) {
+  unsigned some = 0;
+  late = 0;
+  for (int at = 0; at < kLanes; at += kWidth) {
+    const Reals per_depth = reals(1.0) / load(block.depth_per_t, at), depth = load(block.depth, at), begin = load(block.t_min, at);
+    const Reals first = maximum((reals(z0) - depth) * per_depth, begin),
+                last = minimum((reals(z1) - depth) * per_depth, load(block.t_max, at));
+    store(first, a, at);
+    store(last, b, at);
+    some |= bits_of(first < last) << at;
+    late |= bits_of(depth + begin * load(block.depth_per_t, at) > reals(from)) << at;
+  }
+  return some;
+}
+
+/// What the Newton iteration knows of its lanes.
+struct NewtonState {
+  LaneArray low, high;  ///< f > 0 at low.
+  LaneArray crossed;    ///< 1: f <= 0 at high.
+  LaneArray t, going;   ///< going: 1 or 0.
+};
+
+/// One step of a vector of lanes. Those that settle or find nothing stay where they are.
+HWY_INLINE void newton_step(Reals f, Reals slope, double tolerance, int at, NewtonState& state, unsigned& settled, unsigned& over) {
+  const Reals here = load(state.t, at), half = reals(0.5);
+  const LaneMask before = f > reals(0.0), going = load(state.going, at) > half;
+  const Reals a = select(before, here, load(state.low, at)), b = select(before, load(state.high, at), here);
+  const Reals crossed = select(before, load(state.crossed, at), reals(1.0));
+  const LaneMask miss = both(before, here >= load(state.high, at));  // positive at the very end
+  const Reals newton = here - f / slope;
+  const LaneMask inside = both(newton > a, newton < b), to_end = both(newton >= b, crossed < half);
+  const LaneMask still = abs(newton - here) <= reals(tolerance);
+  const Reals next = select(either(inside, still), newton, select(to_end, b, (a + b) * 0.5));
+  const LaneMask done = both(going, either(both(abs(next - here) <= reals(tolerance), no(to_end)), miss));
+  store(a, state.low, at);
+  store(b, state.high, at);
+  store(crossed, state.crossed, at);
+  store(select(going, next, here), state.t, at);
+  store(select(done, reals(0.0), load(state.going, at)), state.going, at);
+  const unsigned ended = bits_of(done);
+  over |= ended << at;
+  settled |= (ended & ~bits_of(miss)) << at;
+}
+
+unsigned newton(const MarchTape& march, const LaneRays& rays, const LaneArray& a, const LaneArray& b, double sign, double tolerance,
+                unsigned lanes, TapeScratch& scratch, LaneArray& t, unsigned& undecided) {
+  constexpr int kMaxRounds = 40;
+  NewtonState state{a, b, {}, {}, {}};
+  LaneArray values, slopes;
+  for (int at = 0; at < kLanes; at += kWidth) {
+    store(maximum(load(a, at), minimum(load(t, at), load(b, at))), state.t, at);
+    store(reals(1.0), state.going, at);
+  }
+  unsigned going = lanes, found = 0;
+  for (int round = 0; going != 0 && round < kMaxRounds; ++round) {
+    tape_slopes(*march.tape, march.steps, rays, state.t, scratch, values, slopes);
+    unsigned settled = 0, over = 0;
+    for (int at = 0; at < kLanes; at += kWidth) {
+      newton_step(load(values, at) * sign, load(slopes, at) * sign, tolerance, at, state, settled, over);
+    }
+    found |= settled & lanes;
+    going &= ~over;
+  }
+  t = state.t;
+  undecided = going;
+  return found;
+}
+
+HWY_INLINE Reals mapped(const TapeLeaf& leaf, int row, const LaneArray* p, int at) {
+  const double* const m = leaf.row[row];
+  if (leaf.translated_only) return load(p[row], at);
+  return load(p[0], at) * m[0] + load(p[1], at) * m[1] + load(p[2], at) * m[2];
+}
+
+unsigned balls(const FieldTape& tape, std::span<const std::uint32_t> leaves, const LaneRays& rays, const LaneArray& from,
+               const LaneArray& end, BallHits& hits, unsigned& inside) {
+  unsigned found = 0;
+  inside = 0;
+  for (int at = 0; at < kLanes; at += kWidth) {
+    const Reals begin = load(from, at), zero = reals(0.0);
+    Reals nearest = load(end, at), normal[3] = {zero, zero, zero};
+    unsigned hit = 0, within = 0;
+    for (const std::uint32_t index : leaves) {
+      const TapeLeaf& leaf = tape.leaves[index];
+      Reals o[3], d[3], dd = zero, od = zero;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double k = leaf.ball_from_object[axis];
+        o[axis] = (mapped(leaf, axis, rays.origin, at) + leaf.row[axis][3]) * k;
+        d[axis] = mapped(leaf, axis, rays.direction, at) * k;
+        dd = dd + d[axis] * d[axis];
+        od = od + o[axis] * d[axis];
+      }
+      // From the place nearest to the centre: the discriminant there has no terms that cancel.
+      const Reals per = reals(1.0) / dd, closest = -(od * per);
+      Reals squared = zero;
+      for (int axis = 0; axis < 3; ++axis) squared = squared + square(o[axis] + closest * d[axis]);
+      const LaneMask meets = squared < reals(1.0);
+      if (hn::AllFalse(RealTag(), meets)) continue;
+      const Reals half = square_root(maximum(reals(1.0) - squared, zero) * per);
+      const Reals enter = closest - half, leave = closest + half;
+      within |= bits_of(both(meets, both(enter < begin, leave >= begin)));
+      const LaneMask nearer = both(both(meets, enter >= begin), enter <= nearest);
+      const unsigned bits = bits_of(nearer);
+      if (bits == 0) continue;
+      hit |= bits;
+      nearest = select(nearer, enter, nearest);
+      const Reals place = as_float(enter);
+      Reals n[3];
+      for (int axis = 0; axis < 3; ++axis) n[axis] = (o[axis] + place * d[axis]) * leaf.ball_from_object[axis];
+      for (int axis = 0; axis < 3; ++axis) {
+        const Reals world = leaf.translated_only ? n[axis] : n[0] * leaf.row[0][axis] + n[1] * leaf.row[1][axis] + n[2] * leaf.row[2][axis];
+        normal[axis] = select(nearer, world, normal[axis]);
+      }
+    }
+    const Reals per_length = reals(1.0) / norm(normal[0], normal[1], normal[2]);
+    for (int axis = 0; axis < 3; ++axis) store(normal[axis] * per_length, hits.normal[axis], at);
+    store(nearest, hits.t, at);
+    found |= hit << at;
+    inside |= within << at;
+  }
+  return found;
+}
+
+/// Floats of the lanes in `bits`, to lane[i] or to consecutive places from `first`.
+HWY_INLINE void store_some(Reals a, unsigned bits, const int* lane, int first, float* to) {
+  if (lane == nullptr && bits == (1u << kWidth) - 1u) return store_floats(a, to + first);
+  HWY_ALIGN float values[kWidth];
+  store_floats(a, values);
+  for (int i = 0; i < kWidth; ++i) {
+    if (bits >> i & 1u) to[lane ? lane[i] : first + i] = values[i];
+  }
+}
+
+/// Writes a vector of lanes, from `at` of their packet; `lane` null: the packet is a block that starts at `first`.
+HWY_INLINE void write_vector(Reals t, const Reals* normal, unsigned bits, const int* lane, int first, int at, HitBatch& hits) {
+  if (lane) lane += at;
+  first += at;
+  store_some(t, bits, lane, first, hits.t);
+  store_some(normal[0], bits, lane, first, hits.normal_x);
+  store_some(normal[1], bits, lane, first, hits.normal_y);
+  store_some(normal[2], bits, lane, first, hits.normal_z);
+  for (int i = 0; i < kWidth; ++i) {
+    if (!(bits >> i & 1u)) continue;
+    const int k = lane ? lane[i] : first + i;
+    hits.face[k] = -1;
+    hits.material[k] = 0;
+    hits.status[k] = HitStatus::hit;
+  }
+}
+
+HWY_INLINE unsigned before_ends(Reals t, const RayBatch& rays, const int* lane, int first, int at) {
+  HWY_ALIGN float ends[kWidth];
+  for (int i = 0; i < kWidth; ++i) ends[i] = rays.t_max[lane ? lane[at + i] : first + at + i];
+  return bits_of(t < load_floats(ends));
+}
+
+unsigned write_balls(const RayBatch& rays, int first, const BallHits& found, unsigned lanes, HitBatch& hits) {
+  unsigned written = 0;
+  for (int at = 0; at < kLanes; at += kWidth) {
+    const Reals t = as_float(load(found.t, at));
+    const Reals normal[3] = {load(found.normal[0], at), load(found.normal[1], at), load(found.normal[2], at)};
+    const unsigned bits = lanes >> at & before_ends(t, rays, nullptr, first, at);
+    if (bits != 0) write_vector(t, normal, bits, nullptr, first, at, hits);
+    written |= bits << at;
+  }
+  return written;
+}
+
+unsigned write(const MarchTape& march, const RayBatch& rays, const LaneRays& packet, const LaneArray& t, const LaneArray& sign,
+               const int* lane, int first, unsigned lanes, TapeScratch& scratch, HitBatch& hits) {
+  LaneArray start, values, slopes, place;
+  for (int at = 0; at < kLanes; at += kWidth) store(as_float(load(t, at)), start, at);
+  tape_slopes(*march.tape, march.steps, packet, start, scratch, values, slopes);
+  for (int at = 0; at < kLanes; at += kWidth) {
+    const Reals root = load(t, at), newton = load(start, at) - load(values, at) / load(slopes, at);
+    // Where rays graze, a step from so near may still lead away.
+    const LaneMask near = abs(newton - root) <= abs(root) * (2.0 * std::numeric_limits<float>::epsilon());
+    store(as_float(select(near, newton, root)), place, at);
+  }
+  std::array<LaneArray, 3> gradients;
+  tape_gradients(*march.tape, march.steps, packet, place, scratch, values, gradients);
+  unsigned written = 0;
+  for (int at = 0; at < kLanes; at += kWidth) {
+    const Reals hit = load(place, at);
+    const unsigned bits = lanes >> at & before_ends(hit, rays, lane, first, at);
+    Reals normal[3];
+    for (size_t axis = 0; axis < 3; ++axis) normal[axis] = load(gradients[axis], at);
+    const Reals length = norm(normal[0], normal[1], normal[2]);
+    // Where the gradient vanishes (an apex, a double root) any side is as good; the ray's own shows the surface face on.
+    const LaneMask defined = both(length > reals(0.0), length < reals(std::numeric_limits<double>::infinity()));
+    for (int axis = 0; axis < 3; ++axis) {
+      normal[axis] = select(defined, normal[axis] / length, -(load(sign, at) * load(packet.direction[axis], at)));
+    }
+    if (bits != 0) write_vector(hit, normal, bits, lane, first, at, hits);
+    written |= bits << at;
+  }
+  return written;
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace limn
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace limn {
+namespace {
+HWY_EXPORT(load_rays);
+HWY_EXPORT(between);
+HWY_EXPORT(newton);
+HWY_EXPORT(balls);
+HWY_EXPORT(write_balls);
+HWY_EXPORT(write);
+}  // namespace
+
+void load_block(const RayBatch& rays, int first, const glm::dvec3& eye, const glm::dvec3& forward, RayBlock& block) {
+  HWY_DYNAMIC_DISPATCH(load_rays)(rays, first, eye, forward, block);
+}
+unsigned stretches_between(const RayBlock& block, double z0, double z1, double from, LaneArray& a, LaneArray& b, unsigned& late) {
+  return HWY_DYNAMIC_DISPATCH(between)(block, z0, z1, from, a, b, late);
+}
+unsigned newton_roots(const MarchTape& march, const LaneRays& rays, const LaneArray& a, const LaneArray& b, double sign, double tolerance,
+                      unsigned lanes, TapeScratch& scratch, LaneArray& t, unsigned& undecided) {
+  return HWY_DYNAMIC_DISPATCH(newton)(march, rays, a, b, sign, tolerance, lanes, scratch, t, undecided);
+}
+unsigned ball_roots(const FieldTape& tape, std::span<const std::uint32_t> leaves, const LaneRays& rays, const LaneArray& begin,
+                    const LaneArray& end, BallHits& hits, unsigned& inside) {
+  return HWY_DYNAMIC_DISPATCH(balls)(tape, leaves, rays, begin, end, hits, inside);
+}
+unsigned write_ball_hits(const RayBatch& rays, int first, const BallHits& found, unsigned lanes, HitBatch& hits) {
+  return HWY_DYNAMIC_DISPATCH(write_balls)(rays, first, found, lanes, hits);
+}
+unsigned write_roots(const MarchTape& march, const RayBatch& rays, const LaneRays& packet, const LaneArray& t, const LaneArray& sign,
+                     const int* lane, int first, unsigned lanes, TapeScratch& scratch, HitBatch& hits) {
+  return HWY_DYNAMIC_DISPATCH(write)(march, rays, packet, t, sign, lane, first, lanes, scratch, hits);
+}
+
+}  // namespace limn
+#endif

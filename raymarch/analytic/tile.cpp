@@ -1,0 +1,229 @@
+#include "raymarch/analytic/tile.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "raymarch/analytic/block.h"
+
+namespace limn {
+namespace {
+
+constexpr int kLongestRun = 4;  // Slabs.
+constexpr size_t kFewBalls = 3;
+// Newton's steps end here, as a share of the extent: the next would be the square of it.
+constexpr double kNewtonTolerance = 1e-8;
+
+/// A tile on its way: which of its rays have yet to meet the surface.
+struct TileWork {
+  const FieldView& view;
+  const RayBatch& rays;
+  HitBatch& hits;
+  ViewScratch& scratch;
+  PixelTile tile;
+  int blocks = 0;
+  std::array<RayBlock, kLanes> block;
+  std::array<unsigned, kLanes> active{};
+  StretchList queue{};
+
+  TileWork(const FieldView& v, const RayBatch& r, HitBatch& h, ViewScratch& s, const PixelTile& t)
+      : view(v), rays(r), hits(h), scratch(s), tile(t), blocks(((t.width + 3) >> 2) * ((t.height + 3) >> 2)) {}
+  bool done() const {
+    return std::all_of(active.begin(), active.begin() + blocks, [](unsigned lanes) { return lanes == 0; });
+  }
+};
+
+void enqueue(TileWork& work, int block, unsigned lanes, const LaneArray& a, const LaneArray& b, unsigned unsure, double sign) {
+  for (unsigned left = lanes; left != 0; left &= left - 1) {
+    const int i = std::countr_zero(left);
+    work.queue.add({block * kLanes + i, 0, a[i], b[i], unsure >> i & 1u ? 0.0 : sign});
+  }
+}
+
+/// Isolates the queued stretches ray by ray, sixteen at a time.
+void settle_queue(TileWork& work, std::span<const TapeStep> steps) {
+  if (work.queue.count == 0) return;
+  const MarchTape march{work.view.tape, steps};
+  isolate(march, work.view.limits, work.rays, work.scratch.tape, work.queue, work.hits);
+  for (int k = 0; k < work.queue.count; ++k) {
+    const int lane = work.queue[k].lane;
+    work.active[static_cast<size_t>(lane / kLanes)] &= ~(1u << lane % kLanes);
+  }
+  polish(march, work.view.limits, work.rays, work.scratch.tape, work.queue, work.hits);
+  work.queue.count = 0;
+}
+
+void trace_balls(TileWork& work, const SlabRun& run, std::span<const TapeStep> steps, std::span<const std::uint32_t> balls) {
+  for (int block = 0; block < work.blocks; ++block) {
+    unsigned& active = work.active[static_cast<size_t>(block)];
+    if (active == 0) continue;
+    const RayBlock& rays = work.block[static_cast<size_t>(block)];
+    LaneArray a, b;
+    unsigned late = 0, inside = 0;
+    const unsigned lanes = stretches_between(rays, run.z0, run.z1, run.sign_from, a, b, late) & active;
+    if (lanes == 0) continue;
+    BallHits found;
+    const unsigned hit = ball_roots(*work.view.tape, balls, rays.rays, a, b, found, inside) & lanes;
+    // From within a ball the way out is that of all that it overlaps.
+    enqueue(work, block, lanes & inside, a, b, ~0u, 0.0);
+    const unsigned entered = hit & ~inside;
+    if (entered != 0) write_ball_hits(work.rays, block * kLanes, found, entered, work.hits);
+    active &= ~entered;
+  }
+  settle_queue(work, steps);
+}
+
+/// Depth at which the block's middle ray would meet a plane of the block's middle value and slope; in t of each ray.
+void guess_roots(const RayBlock& block, const LaneBeams& beams, const LaneBounds& bounds, int lane, LaneArray& t) {
+  const double slope = 0.5 * (bounds.slope_lower[lane] + bounds.slope_upper[lane]);
+  const double z = beams.middle[lane] - bounds.middle[lane] / slope;
+  for (int i = 0; i < kLanes; ++i) t[i] = (z - block.depth[i]) / block.depth_per_t[i];
+}
+
+void trace_block(TileWork& work, const SlabRun& run, const MarchTape& march, const LaneBeams& beams, const LaneBounds& bounds, int block) {
+  unsigned& active = work.active[static_cast<size_t>(block)];
+  const RayBlock& rays = work.block[static_cast<size_t>(block)];
+  LaneArray a, b, t, sign;
+  unsigned late = 0, undecided = 0;
+  const unsigned lanes = stretches_between(rays, run.z0, run.z1, run.sign_from, a, b, late) & active;
+  if (lanes == 0) return;
+  const unsigned unsure = run.sign == 0.0 ? lanes : lanes & late;
+  const double steepest = 1e-9 * work.view.limits.lipschitz;
+  const bool falls = run.sign > 0.0 ? bounds.slope_upper[block] < -steepest : bounds.slope_lower[block] > steepest;
+  const bool rises = run.sign > 0.0 ? bounds.slope_lower[block] > steepest : bounds.slope_upper[block] < -steepest;
+  enqueue(work, block, falls || rises ? unsure : lanes, a, b, unsure, run.sign);
+  if (!falls || (lanes & ~unsure) == 0) return;
+  guess_roots(rays, beams, bounds, block, t);
+  const unsigned found = newton_roots(march, rays.rays, a, b, run.sign, kNewtonTolerance * work.view.limits.extent, lanes & ~unsure,
+                                      work.scratch.tape, t, undecided);
+  enqueue(work, block, undecided, a, b, 0u, run.sign);
+  if (found == 0) return;
+  std::fill_n(sign.lane, kLanes, run.sign);
+  write_roots(march, work.rays, rays.rays, t, sign, nullptr, block * kLanes, found, work.scratch.tape, work.hits);
+  active &= ~found;
+}
+
+/// Bounds of f and its slope over each block tell where it falls from one side of the run to the other.
+void trace_run(TileWork& work, const SlabRun& run, std::span<const TapeStep> steps) {
+  LaneBeams beams;
+  LaneBounds bounds;
+  blocks_of(work.view.beams, work.tile, run.z0, run.z1, beams);
+  tape_slope_bounds(*work.view.tape, steps, beams, work.scratch.tape, bounds);
+  unsigned open = 0;
+  for (int block = 0; block < work.blocks; ++block) {
+    const bool clear = bounds.lower[block] > 0.0 || bounds.upper[block] < 0.0;
+    if (!clear && work.active[static_cast<size_t>(block)] != 0) open |= 1u << block;
+  }
+  if (open == 0) return;
+  std::vector<TapeStep>& pruned = work.scratch.block_steps;
+  prune_tape(steps, work.scratch.tape.choices, static_cast<std::uint16_t>(open), work.view.tape->registers, pruned);
+  const MarchTape march{work.view.tape, pruned};
+  for (unsigned left = open; left != 0; left &= left - 1) trace_block(work, run, march, beams, bounds, std::countr_zero(left));
+  settle_queue(work, pruned);
+}
+
+void trace_segment(TileWork& work, const PixelTile& rectangle, const TapeSegment& segment) {
+  if (!segment.balls.empty() && segment.balls.size() <= kFewBalls) {
+    return trace_balls(work, {segment.z0, segment.z1, segment.sign, segment.sign_from, 0}, segment.steps, segment.balls);
+  }
+  SlabRuns runs;
+  find_runs(work.view, rectangle, segment, segment.steps, work.scratch, runs);
+  // Tracing a run overwrites the choices.
+  std::vector<TapeStep>& steps = work.scratch.run_steps;
+  const std::vector<TapeChoice> choices = runs.count > 1 ? work.scratch.tape.choices : std::vector<TapeChoice>{};
+  for (int k = 0; k < runs.count && !work.done(); ++k) {
+    const SlabRun& run = runs.runs[static_cast<size_t>(k)];
+    prune_tape(segment.steps, k > 0 ? choices : work.scratch.tape.choices, run.lanes, work.view.tape->registers, steps);
+    find_balls(*work.view.tape, steps, work.scratch.balls);
+    if (!work.scratch.balls.empty()) {
+      trace_balls(work, run, steps, work.scratch.balls);
+    } else {
+      trace_run(work, run, steps);
+    }
+  }
+}
+
+/// The lanes of a block whose pixels lie in `cell`.
+unsigned lanes_within(const PixelTile& tile, const PixelTile& cell, int block) {
+  const int across = (tile.width + 3) >> 2, x = tile.x + block % across * 4, y = tile.y + block / across * 4;
+  unsigned lanes = 0;
+  for (int i = 0; i < kLanes; ++i) {
+    const int px = x + (i & 3), py = y + (i >> 2);
+    const bool within = px >= cell.x && px < cell.x + cell.width && py >= cell.y && py < cell.y + cell.height;
+    lanes |= within ? 1u << i : 0u;
+  }
+  return lanes;
+}
+
+PixelTile overlap(const PixelTile& a, const PixelTile& b) {
+  const int x = std::max(a.x, b.x), y = std::max(a.y, b.y);
+  return {x, y, std::min(a.x + a.width, b.x + b.width) - x, std::min(a.y + a.height, b.y + b.height) - y};
+}
+
+/// True where float has moved no ray farther from its pixel's beam than the view allows for.
+bool within_slack(const TileWork& work) {
+  double largest = 0.0;
+  for (int block = 0; block < work.blocks; ++block) {
+    for (const LaneArray& origin : work.block[static_cast<size_t>(block)].rays.origin) {
+      for (const double o : origin.lane) largest = std::max(largest, std::abs(o));
+    }
+  }
+  return 1e-6 * (std::sqrt(3.0) * largest + work.view.reach) <= work.view.beams.slack;
+}
+
+}  // namespace
+
+void find_runs(const FieldView& view, const PixelTile& rectangle, const TapeSegment& within, std::span<const TapeStep> steps,
+               ViewScratch& scratch, SlabRuns& runs) {
+  const double length = within.z1 - within.z0, width = width_at(view.beams, rectangle, within.z1);
+  const int slabs = static_cast<int>(std::clamp(std::ceil(length / width), 1.0, static_cast<double>(kLanes)));
+  LaneBeams beams;
+  LaneBounds bounds;
+  slabs_of(view.beams, rectangle, within.z0, within.z1, slabs, beams);
+  tape_bounds(*view.tape, steps, beams, scratch.tape, bounds);
+  double sign = within.sign, sign_from = within.sign_from;
+  SlabRun run;
+  const auto finish = [&] {
+    if (run.lanes != 0) runs.runs[static_cast<size_t>(runs.count++)] = run;
+    run.lanes = 0;
+  };
+  for (int i = 0; i < slabs && !runs.closed; ++i) {
+    const double here = bounds.lower[i] > 0.0 ? 1.0 : bounds.upper[i] < 0.0 ? -1.0 : 0.0;
+    const double z0 = beams.middle[i] - beams.half[i], z1 = beams.middle[i] + beams.half[i];
+    if (here != 0.0) {
+      finish();
+      runs.closed = sign != 0.0 && here != sign;
+      if (sign == 0.0) sign_from = z0;
+      if (sign == 0.0) sign = here;
+      continue;
+    }
+    if (run.lanes == 0) run = {z0, z1, sign, sign_from, 0};
+    run.z1 = z1;
+    run.lanes = static_cast<std::uint16_t>(run.lanes | 1u << i);
+    if (std::popcount(run.lanes) >= kLongestRun) finish();
+  }
+  finish();
+}
+
+void trace_tile(const void* opaque, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) {
+  const FieldView& view = *static_cast<const FieldView*>(opaque);
+  TileWork work(view, rays, hits, view.scratches.local(), tile);
+  for (int block = 0; block < work.blocks; ++block) {
+    load_block(rays, block * kLanes, view.beams.eye, view.beams.forward, work.block[static_cast<size_t>(block)]);
+  }
+  if (!within_slack(work)) return view.tracer.trace(view.tracer.state, rays, hits);
+  for (int row = tile.y / kCell_px; row <= (tile.y + tile.height - 1) / kCell_px; ++row) {
+    for (int column = tile.x / kCell_px; column <= (tile.x + tile.width - 1) / kCell_px; ++column) {
+      const std::vector<TapeSegment>& segments = view.cell(column, row);
+      if (segments.empty()) continue;
+      const PixelTile cell{column * kCell_px, row * kCell_px, kCell_px, kCell_px}, part = overlap(tile, cell);
+      const bool whole = part.width == tile.width && part.height == tile.height;
+      for (int block = 0; block < work.blocks; ++block) {
+        work.active[static_cast<size_t>(block)] = whole ? 0xffffu : lanes_within(tile, cell, block);
+      }
+      for (size_t k = 0; k < segments.size() && !work.done(); ++k) trace_segment(work, part, segments[k]);
+    }
+  }
+}
+
+}  // namespace limn

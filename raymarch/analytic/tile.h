@@ -1,0 +1,52 @@
+#pragma once
+// Internal: what a prepared field and the tracing of its tiles share.
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include "raymarch/analytic/view.h"
+
+namespace limn {
+
+inline constexpr int kCell_px = 64;
+
+struct ViewScratch {
+  TapeScratch tape{};
+  std::vector<TapeStep> run_steps{}, block_steps{};
+  std::vector<std::uint32_t> balls{};
+};
+
+struct FieldView {
+  std::shared_ptr<const void> keep{};
+  const FieldTape* tape = nullptr;
+  MarchLimits limits{};
+  RayTracer tracer{};
+  double reach = 0.0;  ///< Of the bounds from the render origin.
+  ViewBeams beams{};
+  int columns = 0;
+  std::vector<std::vector<TapeSegment>> cells{};
+  mutable tbb::enumerable_thread_specific<ViewScratch> scratches{};
+
+  const std::vector<TapeSegment>& cell(int column, int row) const {
+    return cells[static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column)];
+  }
+};
+
+/// Neighbouring slabs of a beam that bounds do not clear: lanes of the last tape_bounds.
+struct SlabRun {
+  double z0 = 0.0, z1 = 0.0, sign = 0.0, sign_from = 0.0;
+  std::uint16_t lanes = 0;
+};
+struct SlabRuns {
+  std::array<SlabRun, kLanes> runs;
+  int count = 0;
+  bool closed = false;  ///< Behind the last one every ray has met the surface.
+};
+
+/// Bounds f over slabs of the beam of `rectangle` in `within`; leaves the choices of every slab in `scratch`.
+void find_runs(const FieldView& view, const PixelTile& rectangle, const TapeSegment& within, std::span<const TapeStep> steps,
+               ViewScratch& scratch, SlabRuns& runs);
+
+/// SurfaceView::trace of a FieldView.
+void trace_tile(const void* view, const PixelTile& tile, const RayBatch& rays, HitBatch& hits);
+
+}  // namespace limn

@@ -176,11 +176,6 @@ std::uint64_t key_of(const glm::ivec3& origin) {
   return part(origin.x) << 42 | part(origin.y) << 21 | part(origin.z);
 }
 
-constexpr int kFaceStep[6][3] = {{-8, 0, 0}, {8, 0, 0}, {0, -8, 0}, {0, 8, 0}, {0, 0, -8}, {0, 0, 8}};
-glm::ivec3 beyond(const glm::ivec3& origin, int face) {
-  return origin + glm::ivec3(kFaceStep[face][0], kFaceStep[face][1], kFaceStep[face][2]);
-}
-
 /// Every brick's place: the crossed ones in order, then those that only stencils reach.
 struct Layout {
   std::vector<Candidate> crossed;
@@ -201,7 +196,23 @@ struct Layout {
   }
 };
 
-Layout lay_out(std::vector<Candidate> candidates) {
+/// The steps to the bricks into which the stencils of a crossed brick's cells reach: over one face each for differences along the axes,
+/// over edges and corners too for a spline's.
+template <class Visit>
+void for_each_reached(const Candidate& candidate, bool over_corners, const Visit& visit) {
+  const auto touches = [&](int axis, int step) { return step == 0 || (candidate.faces >> (2 * axis + (step > 0)) & 1) != 0; };
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        const int steps = std::abs(x) + std::abs(y) + std::abs(z);
+        if (steps == 0 || (steps > 1 && !over_corners)) continue;
+        if (touches(0, x) && touches(1, y) && touches(2, z)) visit(glm::ivec3(x, y, z));
+      }
+    }
+  }
+}
+
+Layout lay_out(std::vector<Candidate> candidates, bool over_corners) {
   Layout layout;
   layout.crossed = std::move(candidates);
   std::erase_if(layout.crossed, [](const Candidate& c) { return !c.crossed; });
@@ -214,13 +225,12 @@ Layout lay_out(std::vector<Candidate> candidates) {
   for (const Candidate& candidate : layout.crossed) layout.crossed_keys.push_back(key_of(candidate.origin));
   std::vector<std::pair<std::uint64_t, glm::ivec3>> reached;
   for (const Candidate& candidate : layout.crossed) {
-    for (int face = 0; face < 6; ++face) {
-      if (!(candidate.faces >> face & 1)) continue;
-      const glm::ivec3 origin = beyond(candidate.origin, face);
+    for_each_reached(candidate, over_corners, [&](const glm::ivec3& step) {
+      const glm::ivec3 origin = candidate.origin + kBrickCells * step;
       if (layout.find(key_of(origin)) < 0) reached.emplace_back(key_of(origin), origin);
-    }
+    });
   }
-  const auto by_key = [](const auto& a, const auto& b) { return a.first < b.first; };
+  const auto by_key = [](const auto& one, const auto& other) { return one.first < other.first; };
   std::sort(reached.begin(), reached.end(), by_key);
   for (const auto& [key, origin] : reached) {
     if (!layout.reached_keys.empty() && layout.reached_keys.back() == key) continue;
@@ -228,6 +238,23 @@ Layout lay_out(std::vector<Candidate> candidates) {
     layout.reached.push_back(origin);
   }
   return layout;
+}
+
+/// Coefficients of the spline: f less a sixth of its second differences along the axes, as sdf/gradients/cubic.cpp has them.
+void load_coefficients(const Accessor& accessor, const glm::ivec3& origin, const NodeValues& values, NodeValues& out) {
+  const auto value = [&](int x, int y, int z) {
+    const bool here = std::min({x, y, z}) >= 0 && std::max({x, y, z}) < kBrickNodes;
+    return here ? values[at(x, y, z)] : accessor.getValue(nanovdb::Coord(origin.x + x, origin.y + y, origin.z + z));
+  };
+  for (int x = 0; x < kBrickNodes; ++x) {
+    for (int y = 0; y < kBrickNodes; ++y) {
+      for (int z = 0; z < kBrickNodes; ++z) {
+        const float beside =
+            value(x - 1, y, z) + value(x + 1, y, z) + value(x, y - 1, z) + value(x, y + 1, z) + value(x, y, z - 1) + value(x, y, z + 1);
+        out[at(x, y, z)] = 2.0f * values[at(x, y, z)] - beside / 6.0f;
+      }
+    }
+  }
 }
 
 void quantise(const NodeValues& values, float steps_per_unit, std::int16_t* out) {
@@ -362,17 +389,32 @@ void fill(const LevelSetData& data, const Layout& layout, float steps_per_unit, 
   const size_t crossed = layout.crossed.size();
   tbb::parallel_for(tbb::blocked_range<size_t>(0, layout.size(), 64), [&](const tbb::blocked_range<size_t>& range) {
     const Accessor accessor = data.accessor();
-    NodeValues nodes;
+    NodeValues nodes, coefficients;
     for (size_t i = range.begin(); i < range.end(); ++i) {
       std::int16_t* const values = bricks.values.data() + i * kBrickStride;
       load_nodes(accessor, i < crossed ? layout.crossed[i].origin : layout.reached[i - crossed], nodes);
       quantise(nodes, steps_per_unit, values);
       std::fill(values + nodes.size(), values + kBrickStride, std::int16_t{0});
+      if (!bricks.coefficients.empty()) {
+        std::int16_t* const to = bricks.coefficients.data() + i * kBrickStride;
+        load_coefficients(accessor, i < crossed ? layout.crossed[i].origin : layout.reached[i - crossed], nodes, coefficients);
+        // Only their gradient's direction counts, so their steps may be larger: thrice, so that none is cut off (|2 f - sum of six / 6| <=
+        // 3 max |f|).
+        quantise(coefficients, steps_per_unit / 3.0f, to);
+        std::fill(to + nodes.size(), to + kBrickStride, std::int16_t{0});
+      }
       if (i >= crossed) continue;
       const glm::ivec3& origin = layout.crossed[i].origin;
       Part whole{glm::ivec3(0), values, {}};
       bricks.groups[0].bounds[i] = bound_surface(origin, std::span(&whole, 1));
-      for (int face = 0; face < 6; ++face) bricks.neighbors[i].face[face] = layout.find(key_of(beyond(origin, face)));
+      const auto beside = [&](const glm::ivec3& step) { return layout.find(key_of(origin + kBrickCells * step)); };
+      for (int face = 0; face < 6; ++face) {
+        glm::ivec3 step(0);
+        step[face / 2] = face % 2 ? 1 : -1;
+        bricks.neighbors[i].face[face] = beside(step);
+      }
+      if (bricks.around.empty()) continue;
+      for (int k = 0; k < 27; ++k) bricks.around[i].brick[k] = beside({k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1});
     }
   });
 }
@@ -394,12 +436,13 @@ void* LargePages::take(size_t bytes) {
 void LargePages::give_back(void* memory) { std::free(memory); }
 
 std::int64_t RayBricks::bytes() const {
-  size_t sum = neighbors.size() * sizeof(BrickNeighbors) + values.size() * sizeof(std::int16_t);
+  size_t sum = neighbors.size() * sizeof(BrickNeighbors) + around.size() * sizeof(BricksAround) +
+               (values.size() + coefficients.size()) * sizeof(std::int16_t);
   for (const BrickGroups& of : groups) sum += of.bounds.size() * sizeof(SurfaceBound) + of.bricks.size() * sizeof(std::int32_t);
   return static_cast<std::int64_t>(sum);
 }
 
-std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set) {
+std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool with_coefficients) {
   const auto start = std::chrono::steady_clock::now();
   const LevelSetData& data = level_set.data();
   std::vector<Candidate> candidates = find_candidates(data);
@@ -407,7 +450,7 @@ std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set) {
     const Accessor accessor = data.accessor();
     for (size_t i = range.begin(); i < range.end(); ++i) inspect(accessor, candidates[i]);
   });
-  const Layout layout = lay_out(std::move(candidates));
+  const Layout layout = lay_out(std::move(candidates), with_coefficients);
   if (layout.size() > kMostBricks) return nullptr;
   auto bricks = std::make_shared<RayBricks>();
   if (!layout.crossed.empty()) {
@@ -417,6 +460,10 @@ std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set) {
     bricks->groups.push_back({.shift = 3, .bounds = std::vector<SurfaceBound>(layout.crossed.size()), .bricks = {}});
     bricks->neighbors.resize(layout.crossed.size());
     bricks->values.resize(layout.size() * kBrickStride);
+    if (with_coefficients) {
+      bricks->coefficients.resize(layout.size() * kBrickStride);
+      bricks->around.resize(layout.crossed.size());
+    }
     fill(data, layout, scale, *bricks);
     for (const int shift : {4, 5}) bricks->groups.push_back(group_bricks(layout, *bricks, shift));
     bricks->lower = glm::ivec3(std::numeric_limits<int>::max());

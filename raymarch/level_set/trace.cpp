@@ -238,6 +238,11 @@ HWY_NOINLINE void enter_packet(const SurfaceBound& bound, std::int32_t index, co
   push(c, active, waiting);
 }
 
+HWY_INLINE V3 gradient_at(BrickGradient gradient, const RayBricks& bricks, const Cells& cells, VI number) {
+  if (gradient == BrickGradient::cubic) return cubic_gradient(bricks, cells, number);
+  return gradient == BrickGradient::central ? central_gradient(bricks.values.data(), cells) : cell_gradient(bricks.values.data(), cells);
+}
+
 HWY_NOINLINE void write_packet(const BrickTrace& what, const IndexRays& rays, const RayBatch& batch, size_t i, const BrickHits& found,
                                HitBatch& hits) {
   const F d;
@@ -249,8 +254,7 @@ HWY_NOINLINE void write_packet(const BrickTrace& what, const IndexRays& rays, co
   const RayBricks& bricks = *what.view->bricks;
   const Cells cells = cells_of(bricks, rays, i, hn::IfThenElseZero(hn::RebindMask(d, hit), t), hn::Max(cell, hn::Zero(di)),
                                what.gradient == BrickGradient::central);
-  const V3 g =
-      what.gradient == BrickGradient::central ? central_gradient(bricks.values.data(), cells) : cell_gradient(bricks.values.data(), cells);
+  const V3 g = gradient_at(what.gradient, bricks, cells, hn::Max(cell, hn::Zero(di)));
   const float* const m = what.normal_from_index;
   const auto row = [&](int k) {
     return hn::Add(hn::Add(hn::Mul(set(m[k]), g.x), hn::Mul(set(m[k + 3]), g.y)), hn::Mul(set(m[k + 6]), g.z));

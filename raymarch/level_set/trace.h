@@ -5,7 +5,7 @@
 
 namespace limn {
 
-enum class BrickGradient : std::uint8_t { cell, central };
+enum class BrickGradient : std::uint8_t { cell, central, cubic };
 
 struct BrickTrace {
   const BrickView* view = nullptr;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "raymarch/curvature.h"
 #include "raymarch/level_set/trace.h"
@@ -311,6 +312,14 @@ void evaluate_curvatures(const void* opaque, std::span<const SurfacePoint> point
   }
 }
 
+/// Empty for a gradient that only the walk knows: every ray walks then.
+std::optional<BrickGradient> brick_gradient(const GradientDescriptor& gradient) {
+  if (gradient.about.name == "cell") return BrickGradient::cell;
+  if (gradient.about.name == "central") return BrickGradient::central;
+  if (gradient.about.name == "cubic") return BrickGradient::cubic;
+  return std::nullopt;
+}
+
 CurvatureSource curvature_source(const std::shared_ptr<const State>& state) {
   const double needed = find_gradient("cubic").half_width_voxels, there = state->level_set.info().half_width_voxels;
   if (there >= needed - 1e-2) return {state, evaluate_curvatures, "Hessian of the cubic spline through the voxels"};
@@ -348,9 +357,11 @@ Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_ob
     state->lower = glm::ivec3(glm::floor(cells.lower));
     state->upper = glm::ivec3(glm::ceil(cells.upper));
   }
-  const bool in_bricks = gradient.about.name == "central" || gradient.about.name == "cell";
-  if (level.width.zero() && in_bricks) state->bricks = make_bricks(level_set);
-  state->brick_gradient = gradient.about.name == "cell" ? BrickGradient::cell : BrickGradient::central;
+  const std::optional<BrickGradient> packed = brick_gradient(gradient);
+  if (level.width.zero() && packed) {
+    state->brick_gradient = *packed;
+    state->bricks = make_bricks(level_set, *packed == BrickGradient::cubic);
+  }
   Surface surface;
   surface.trace = trace;
   surface.view = view_picture;

@@ -7,6 +7,7 @@
 
 #include "raymarch/threads.h"
 #include "raymarch/truth/parts.h"
+#include "raymarch/truth/stand_in.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -18,10 +19,11 @@ BorderTruth solve_truth(const Scene& scene, const Camera& camera, const TruthSet
   if (!(settings.tolerance_px > 0.0 && std::isfinite(settings.tolerance_px))) {
     throw InputError({{}, "--tolerance", fmt::format("{}", settings.tolerance_px), "not a tolerance", "above 0 px"});
   }
-  const bool all_fields = std::all_of(scene.objects.begin(), scene.objects.end(),
-                                      [](const SceneObject& object) { return std::holds_alternative<Field>(object.source); });
+  const bool traced = std::all_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& object) {
+    return std::holds_alternative<Field>(object.source) || is_cage(object);
+  });
   return ThreadArena(how.threads).execute([&] {
-    return all_fields ? solve_truth_on_fields(scene, camera, settings, how) : solve_truth_stand_in(scene, camera, settings, how);
+    return traced ? solve_truth_traced(scene, camera, settings, how) : solve_truth_stand_in(scene, camera, settings, how);
   });
 }
 

@@ -52,17 +52,16 @@ std::vector<FieldEvaluator>& FieldOccluders::evaluators() const {
   return mine;
 }
 
-bool FieldOccluders::blocked(const TracedPoint& point, int object) const {
+bool FieldOccluders::blocked(const TracedPoint& point, std::optional<size_t> own) const {
   const glm::dvec3 origin = point.p + kLift * extent_ * point.lift;
   const bool perspective = camera_.projection == Projection::perspective;
   const double end = perspective ? glm::distance(camera_.eye, origin) : project(camera_, origin).z;
   const glm::dvec3 direction = perspective ? (camera_.eye - origin) / end : camera_.world_from_camera[2];
   auto& evaluators = this->evaluators();
-  const auto own = static_cast<size_t>(object - 1);
   // The object itself hides most of what is hidden.
-  if (blocks(evaluators[own], occluders_[own], origin, direction, end)) return true;
+  if (own && blocks(evaluators[*own], occluders_[*own], origin, direction, end)) return true;
   for (size_t i = 0; i < occluders_.size(); ++i) {
-    if (i != own && blocks(evaluators[i], occluders_[i], origin, direction, end)) return true;
+    if (own != i && blocks(evaluators[i], occluders_[i], origin, direction, end)) return true;
   }
   return false;
 }
@@ -103,11 +102,11 @@ bool FieldOccluders::blocks(FieldEvaluator& evaluator, const Occluder& occluder,
   return false;
 }
 
-double FieldOccluders::others(const glm::dvec3& p, int object) const {
+double FieldOccluders::others(const glm::dvec3& p, std::optional<size_t> own) const {
   auto& evaluators = this->evaluators();
   double least = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < evaluators.size(); ++i) {
-    if (i + 1 != static_cast<size_t>(object)) least = std::min(least, evaluators[i].value(p));
+    if (own != i) least = std::min(least, evaluators[i].value(p));
   }
   return least;
 }

@@ -1,14 +1,15 @@
-// Truth of scenes made of fields: traced, hidden, thinned and filled.
+// The share of fields: traced on bodies, hidden by bounds along rays.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include "raymarch/truth/field_curves.h"
 #include "raymarch/truth/field_visibility.h"
-#include "raymarch/truth/parts.h"
+#include "raymarch/truth/shares.h"
 
 namespace limn {
 namespace {
@@ -17,9 +18,9 @@ constexpr double kTouch = 1e-6;  // of the extent: objects that share less depth
 
 /// Everything in solver space.
 struct SolvedScene {
-  glm::dvec3 origin{0.0};  ///< World.
   Camera camera{};
   double extent = 1.0;
+  std::vector<size_t> numbers{};  ///< Of each object, in the whole scene.
   std::vector<Field> fields{};
   /// Objects that overlap are one body, whose seams are creases like any other.
   std::vector<std::vector<size_t>> bodies{};
@@ -75,10 +76,10 @@ void find_bodies(SolvedScene& solved) {
   }
 }
 
-/// Which object of a body a point lies on: where two of them meet, the one with that normal.
+/// The place among the fields of which object of a body a point lies on: where two of them meet, of the one with that normal.
 int object_at(std::vector<FieldEvaluator>& evaluators, const std::vector<size_t>& body, const glm::dvec3& p, const glm::dvec3& normal,
               double extent) {
-  if (body.size() == 1) return static_cast<int>(body[0] + 1);
+  if (body.size() == 1) return static_cast<int>(body[0]);
   double least = std::numeric_limits<double>::infinity(), best_match = -2.0;
   for (const size_t i : body) least = std::min(least, std::fabs(evaluators[i].value(p)));
   size_t best = body[0];
@@ -89,18 +90,24 @@ int object_at(std::vector<FieldEvaluator>& evaluators, const std::vector<size_t>
     best_match = match;
     best = i;
   }
-  return static_cast<int>(best + 1);
+  return static_cast<int>(best);
 }
 
-SolvedScene to_solver_space(const Scene& scene, const Camera& camera) {
+SolvedScene to_solver_space(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings) {
   SolvedScene solved;
-  const Box box = bounds(scene);
-  if (box.finite()) solved.origin = box.center();
-  solved.camera = moved(camera, solved.origin);
-  solved.extent = box.finite() && box.radius() > 0.0 ? box.radius() : std::max(1e-6, glm::length(solved.camera.eye));
-  for (const SceneObject& object : scene.objects) solved.fields.push_back(translate(std::get<Field>(object.source), -solved.origin));
+  solved.camera = settings.camera;
+  solved.extent = settings.extent;
+  solved.numbers = objects;
+  for (const size_t i : objects) solved.fields.push_back(translate(std::get<Field>(scene.objects[i].source), -settings.origin));
   find_bodies(solved);
   return solved;
+}
+
+/// The place among the fields of an object's number in the scene.
+std::optional<size_t> place_of(const SolvedScene& solved, int object) {
+  const auto at = std::find(solved.numbers.begin(), solved.numbers.end(), static_cast<size_t>(object - 1));
+  if (at == solved.numbers.end()) return {};
+  return static_cast<size_t>(at - solved.numbers.begin());
 }
 
 TracedPoint traced_point(const CurvePoint& point, CurveKind kind, const Camera& camera, const Viewer& viewer) {
@@ -149,7 +156,8 @@ void add_traced(const SolvedScene& solved, const Viewer& viewer, std::vector<Fie
   std::vector<int> objects(n);
   for (size_t i = 0; i < n; ++i) {
     const CurvePoint& point = curve.points[i];
-    objects[i] = object_at(evaluators, body, point.p, kind == CurveKind::silhouette ? point.high : point.low, solved.extent);
+    const int place = object_at(evaluators, body, point.p, kind == CurveKind::silhouette ? point.high : point.low, solved.extent);
+    objects[i] = static_cast<int>(solved.numbers[static_cast<size_t>(place)] + 1);
   }
   const auto change = std::adjacent_find(objects.begin(), objects.end(), std::not_equal_to<>());
   const bool whole = change == objects.end();
@@ -167,18 +175,18 @@ void add_traced(const SolvedScene& solved, const Viewer& viewer, std::vector<Fie
   if (traced.points.size() > 1) curves.push_back(std::move(traced));
 }
 
-std::string name_of(const Scene& scene, const std::vector<size_t>& body) {
+std::string name_of(const Scene& scene, const std::vector<size_t>& numbers, const std::vector<size_t>& body) {
   std::string name;
   for (const size_t i : body) {
-    const std::string& own = scene.objects[i].name;
-    name += (name.empty() ? "" : " and ") + (own.empty() ? fmt::format("object {}", i + 1) : own);
+    const std::string& own = scene.objects[numbers[i]].name;
+    name += (name.empty() ? "" : " and ") + (own.empty() ? fmt::format("object {}", numbers[i] + 1) : own);
   }
   return name;
 }
 
 TracedPoint point_on_step(const SolvedScene& solved, const Viewer& viewer, double threshold, const TracedCurve& curve, size_t i, double t) {
   const TracedPoint &a = curve.points[i], &b = curve.points[(i + 1) % curve.points.size()];
-  FieldEvaluator whole(solved.body_fields[solved.body_of[static_cast<size_t>(curve.object - 1)]]);
+  FieldEvaluator whole(solved.body_fields[solved.body_of[*place_of(solved, curve.object)]]);
   const Box around = dilate(include(include(Box{}, a.p), b.p), kFanReach * glm::distance(a.p, b.p));
   FieldEvaluator evaluator(whole.restricted(around));
   const double c = curve.kind == CurveKind::silhouette ? 0.0 : threshold;
@@ -210,72 +218,40 @@ void curve_notes(const FieldCurves& found, const std::string& name, std::vector<
   if (found.domain_cut) note("has no end: its curves are followed in the scene's surroundings only, and its horizon is left out");
 }
 
-SeenInk make_seen(const Scene& scene, const Camera& camera, double threshold) {
-  SurfaceSettings settings;
-  settings.kind = "analytic";
-  auto model = std::make_shared<const SceneModel>(build_model(scene, settings));
-  return [model, camera, threshold](std::span<const glm::dvec2> points, std::span<std::uint8_t> ink) {
-    std::vector<PointSample> samples(points.size());
-    sample_points(*model, camera, points, samples);
-    for (size_t i = 0; i < samples.size(); ++i) {
-      ink[i] = samples[i].status == HitStatus::hit && static_cast<double>(samples[i].n_dot_v) < threshold;
-    }
-  };
-}
-
-void report(const ExecutionSettings& how, double share) {
-  if (how.progress) how.progress(share);
-}
-
 }  // namespace
 
-BorderTruth solve_truth_on_fields(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how) {
-  BorderTruth truth;
-  truth.from = scene.objects.size() == 1 ? "the field" : "the fields";
-  const SolvedScene solved = to_solver_space(scene, camera);
-  const Viewer viewer = make_viewer(solved.camera, glm::dvec3(0.0));
+TruthShare trace_fields(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings,
+                        const ExecutionSettings& how) {
+  TruthShare share;
+  share.objects = objects;
+  const auto solved = std::make_shared<const SolvedScene>(to_solver_space(scene, objects, settings));
+  const Viewer viewer = make_viewer(solved->camera, glm::dvec3(0.0));
   FieldCurveSettings trace;
-  trace.threshold = settings.threshold;
-  trace.tolerance_px = settings.tolerance_px;
-  const double reach = 4.0 * (solved.extent + glm::length(solved.camera.eye));
+  trace.threshold = settings.truth.threshold;
+  trace.tolerance_px = settings.truth.tolerance_px;
+  const double reach = 4.0 * (solved->extent + glm::length(solved->camera.eye));
   trace.unbounded_domain = {glm::dvec3(-reach), glm::dvec3(reach)};
-
-  std::vector<TracedCurve> curves;
-  double unrefined_px = 0.0;
   std::vector<FieldEvaluator> evaluators;
-  for (const Field& field : solved.fields) evaluators.emplace_back(field);
-  for (size_t i = 0; i < solved.bodies.size(); ++i) {
-    const FieldCurves found = trace_field_curves(solved.body_fields[i], solved.camera, viewer, trace, how);
-    curve_notes(found, name_of(scene, solved.bodies[i]), truth.notes);
-    unrefined_px = std::max(unrefined_px, found.worst_unrefined_px);
+  for (const Field& field : solved->fields) evaluators.emplace_back(field);
+  for (size_t i = 0; i < solved->bodies.size(); ++i) {
+    const FieldCurves found = trace_field_curves(solved->body_fields[i], solved->camera, viewer, trace, how);
+    curve_notes(found, name_of(scene, objects, solved->bodies[i]), share.notes);
+    share.unrefined_px = std::max(share.unrefined_px, found.worst_unrefined_px);
     for (const FieldCurve& curve : found.curves) {
-      (curve.c == 0.0 ? truth.contour_generators : truth.level_curves) += curve.closed;
-      add_traced(solved, viewer, evaluators, solved.bodies[i], curve, curves);
+      (curve.c == 0.0 ? share.contour_generators : share.level_curves) += curve.closed;
+      add_traced(*solved, viewer, evaluators, solved->bodies[i], curve, share.curves);
     }
-    report(how, 0.5 * static_cast<double>(i + 1) / static_cast<double>(solved.bodies.size()));
+    if (how.progress) how.progress(0.5 * static_cast<double>(i + 1) / static_cast<double>(solved->bodies.size()));
   }
-
-  const FieldOccluders occluders(solved.fields, solved.camera, solved.extent);
-  CurveScene curve_scene{solved.camera};
-  curve_scene.blocked = [&](const TracedPoint& point, int object) { return occluders.blocked(point, object); };
-  curve_scene.between = [&](const TracedCurve& curve, size_t i, double t) {
-    return point_on_step(solved, viewer, settings.threshold, curve, i, t);
+  const auto occluders = std::make_shared<const FieldOccluders>(solved->fields, solved->camera, solved->extent);
+  share.blocked = [solved, occluders](const TracedPoint& point, int object) {
+    return occluders->blocked(point, place_of(*solved, object));
   };
-  if (solved.fields.size() > 1) {
-    curve_scene.others = [&](const glm::dvec3& p, int object) { return occluders.others(p, object); };
-  }
-  const VisibilitySettings visibility;
-  const auto parts = visible_parts(curves, curve_scene, visibility, how);
-  report(how, 0.8);
-  truth.curves = border_of(parts, 0.5 * settings.tolerance_px, solved.origin);
-  const Coverage coverage = coverage_of(truth.curves, camera.width_px, camera.height_px, make_seen(scene, camera, settings.threshold), how);
-  truth.coverage = coverage.share;
-  if (coverage.disputed > 0) {
-    truth.notes.push_back(fmt::format("{} pairs of neighbouring pixels differ in ink where no curve was found", coverage.disputed));
-  }
-  truth.bound_px = settings.tolerance_px + visibility.split_px + unrefined_px;
-  report(how, 1.0);
-  return truth;
+  share.between = [solved, viewer, threshold = settings.truth.threshold](const TracedCurve& curve, size_t i, double t) {
+    return point_on_step(*solved, viewer, threshold, curve, i, t);
+  };
+  share.others = [solved, occluders](const glm::dvec3& p, int object) { return occluders->others(p, place_of(*solved, object)); };
+  return share;
 }
 
 }  // namespace limn

@@ -1,16 +1,14 @@
-// Scenes of subdivision cages: curves traced on the limit surfaces themselves; only whether something stands before them is asked of a
+// The share of subdivision cages: curves traced on the limit surfaces themselves; only whether something stands before them is asked of a
 // refined mesh.
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "raymarch/threads.h"
 #include "raymarch/truth/limit_curves.h"
+#include "raymarch/truth/shares.h"
 #include "raymarch/truth/stand_in.h"
-#include "sdf/error.h"
 
 namespace limn {
 namespace {
@@ -53,7 +51,7 @@ void trace_object(const SceneObject& object, int index, const Camera& camera, co
 }
 
 /// One ray from a lifted point to the eye.
-bool is_blocked(const SceneModel& model, const Camera& camera, const TracedPoint& point) {
+bool is_blocked(const SceneModel& model, const std::vector<size_t>& objects, const Camera& camera, const TracedPoint& point) {
   const double unit_px = pixels_per_unit_at(camera, std::max(point.depth, 1e-9));
   const glm::dvec3 start = point.p + (kLift_px / unit_px) * point.lift, direction = view_vector(camera, start);
   const double reach = camera.projection == Projection::perspective ? glm::distance(start, camera.eye)
@@ -67,7 +65,8 @@ bool is_blocked(const SceneModel& model, const Camera& camera, const TracedPoint
   rays.direction_z[0] = static_cast<float>(direction.z);
   rays.t_min[0] = 0.0f;
   rays.t_max[0] = static_cast<float>(reach);
-  for (const Surface& surface : model.surfaces) {
+  for (const size_t object : objects) {
+    const Surface& surface = model.surfaces[object];
     hits.status[0] = HitStatus::miss;
     hits.t[0] = rays.t_max[0];
     surface.trace(surface.state.get(), rays, hits);
@@ -78,41 +77,29 @@ bool is_blocked(const SceneModel& model, const Camera& camera, const TracedPoint
 
 }  // namespace
 
-BorderTruth solve_truth_on_cages(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how) {
-  if (!(settings.threshold >= 0.0 && settings.threshold < 1.0))
-    throw InputError({{}, "threshold", fmt::format("{}", settings.threshold), "out of range", "a number from 0 to below 1 would be right"});
-  const StandIn stand_in = make_stand_in(scene, camera, settings.max_bytes, 1.5);
-  const SceneModel& model = stand_in.model;
-  CurveScene seen_by;
-  seen_by.camera = moved(camera, model.render_origin);
+TruthShare trace_cages(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings,
+                       std::shared_ptr<const StandIn> stand_in, const ExecutionSettings& how) {
   CageScene traced;
-  ThreadArena arena(how.threads);
-  arena.execute([&] {
-    for (size_t i = 0; i < scene.objects.size(); ++i)
-      trace_object(scene.objects[i], static_cast<int>(i) + 1, seen_by.camera, model.render_origin, settings, traced);
-  });
-  seen_by.blocked = [&](const TracedPoint& point, int) { return is_blocked(model, seen_by.camera, point); };
-  BorderTruth truth;
-  truth.curves = border_of(visible_parts(traced.curves, seen_by, {}, how), 0.5 * settings.tolerance_px, model.render_origin);
-  const SeenInk seen = [&](std::span<const glm::dvec2> points, std::span<std::uint8_t> ink) {
-    std::vector<PointSample> samples(points.size());
-    sample_points(model, camera, points, samples);
-    for (size_t i = 0; i < points.size(); ++i)
-      ink[i] = samples[i].status == HitStatus::hit && static_cast<double>(samples[i].n_dot_v) < settings.threshold;
-  };
-  truth.coverage = coverage_of(truth.curves, camera.width_px, camera.height_px, seen, how).share;
-  truth.contour_generators = traced.silhouettes;
-  truth.level_curves = traced.level_curves;
-  truth.bound_px = settings.tolerance_px;
-  truth.from = "the limit surface";
-  truth.notes.push_back(
+  for (const size_t i : objects) {
+    if (how.cancelled && how.cancelled()) throw Cancelled{};
+    trace_object(scene.objects[i], static_cast<int>(i) + 1, settings.camera, settings.origin, settings.truth, traced);
+  }
+  TruthShare share;
+  share.objects = objects;
+  share.curves = std::move(traced.curves);
+  share.contour_generators = traced.silhouettes;
+  share.level_curves = traced.level_curves;
+  share.notes.push_back(
       fmt::format("closed curves narrower than {:.1f} px are found only where they reach a sample of the surface; what hides what "
                   "was decided on a mesh with edges of {:.1f} px, lifted by {} px; around extraordinary vertices normals are "
                   "right to 0.01 degrees",
-                  traced.cell_px, stand_in.edge_px, kLift_px));
+                  traced.cell_px, stand_in->edge_px, kLift_px));
   if (traced.invalid_patches > 0)
-    truth.notes.push_back(fmt::format("{} faces without a limit surface were left out", traced.invalid_patches));
-  return truth;
+    share.notes.push_back(fmt::format("{} faces without a limit surface were left out", traced.invalid_patches));
+  share.blocked = [stand_in, objects, camera = settings.camera](const TracedPoint& point, int) {
+    return is_blocked(stand_in->model, objects, camera, point);
+  };
+  return share;
 }
 
 }  // namespace limn

@@ -77,8 +77,11 @@ struct Coverage {
 /// each being what the middle of it is: exact for polylines, so the error is that of the curves, about their bound times their length.
 Coverage coverage_of(const BorderCurves& border, int width_px, int height_px, const SeenInk& seen, const ExecutionSettings& how);
 
-/// Truth of scenes whose objects are all fields, and of all others.
-BorderTruth solve_truth_on_fields(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how);
+/// On the chord of a step, with what is known of its nearer end.
+TracedPoint chord_point(const TracedCurve& curve, size_t i, double t, const Camera& camera);
+
+/// Truth of scenes whose objects are fields and cages, and of all others.
+BorderTruth solve_truth_traced(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how);
 BorderTruth solve_truth_stand_in(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how);
 
 }  // namespace limn

@@ -18,6 +18,7 @@ namespace {
 // Above these a refined cage costs seconds.
 constexpr std::int64_t kMostFaces = 800'000;
 constexpr int kFinestLevel = 8;
+constexpr double kFarthestStep_px = 2.0;  // between two levels of one curve
 
 const MeshSource* cage_in(const SceneObject& object) {
   const auto* mesh = std::get_if<MeshSource>(&object.source);
@@ -143,34 +144,80 @@ void describe_points(const SceneModel& model, const Camera& camera, BorderCurves
   }
 }
 
-double nearest_px(const glm::dvec2& p, const BorderCurves& border, CurveKind kind) {
+/// The nearest place of a border's curves of one kind and object, on their steps; infinitely far where there are none.
+glm::dvec2 nearest_on(const BorderCurves& border, CurveKind kind, int object, const glm::dvec2& p) {
   double best = std::numeric_limits<double>::infinity();
+  glm::dvec2 nearest(best);
   for (const BorderCurve& curve : border.curves) {
-    if (curve.kind != kind) continue;
-    for (const BorderPoint& point : curve.points) best = std::min(best, glm::distance(p, point.px));
+    if (curve.kind != kind || curve.object != object) continue;
+    const size_t n = curve.points.size();
+    for (size_t i = 0; i + (curve.closed ? 0 : 1) < n; ++i) {
+      const glm::dvec2 a = curve.points[i].px, d = curve.points[(i + 1) % n].px - a;
+      const glm::dvec2 q = a + std::clamp(glm::dot(p - a, d) / std::max(glm::dot(d, d), 1e-300), 0.0, 1.0) * d;
+      if (const double distance = glm::distance(p, q); distance < best) {
+        best = distance;
+        nearest = q;
+      }
+    }
   }
-  return best;
+  return nearest;
 }
 
-/// How far two readings of one model put the border from each other: the 95th percentile over the first one's points.
-double disagreement_px(const BorderCurves& a, const BorderCurves& b) {
+/// How far two readings of one object put its border from each other: the 95th percentile over the first one's points.
+double disagreement_px(const BorderCurves& a, const BorderCurves& b, int object) {
   std::vector<double> distances;
   for (const BorderCurve& curve : a.curves) {
+    if (curve.object != object) continue;
     // A hundred places of a curve tell as much as all of them.
     const size_t step = std::max<size_t>(1, curve.points.size() / 100);
-    for (size_t i = 0; i < curve.points.size(); i += step) distances.push_back(nearest_px(curve.points[i].px, b, curve.kind));
+    for (size_t i = 0; i < curve.points.size(); i += step)
+      distances.push_back(glm::distance(curve.points[i].px, nearest_on(b, curve.kind, object, curve.points[i].px)));
   }
   if (distances.empty()) return 0.0;
   std::sort(distances.begin(), distances.end());
   return distances[static_cast<size_t>(0.95 * static_cast<double>(distances.size() - 1))];
 }
 
+/// A refined cage's border nears the limit's with the square of the edges' length: of two levels, the finer one is off by a third of what
+/// lies between them (Richardson 1911). Points that the other level has nowhere near stay where they are.
+void extrapolate(BorderCurves& border, const BorderCurves& coarser, int object) {
+  for (BorderCurve& curve : border.curves) {
+    if (curve.object != object) continue;
+    for (BorderPoint& point : curve.points) {
+      const glm::dvec2 step = point.px - nearest_on(coarser, curve.kind, object, point.px);
+      if (glm::length(step) < kFarthestStep_px) point.px += step / 3.0;
+    }
+  }
+}
+
+/// What is known of each object: cages are extrapolated, meshes and volumes that are all there is keep what their other reading says.
+void judge_objects(const Scene& scene, int level, const BorderCurves& second, BorderTruth& truth) {
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    if (std::holds_alternative<Field>(object.source)) continue;
+    const int number = static_cast<int>(i) + 1;
+    const std::string name = object.name.empty() ? fmt::format("object {}", number) : object.name;
+    const double apart_px = disagreement_px(truth.curves, second, number);
+    if (is_cage(object) && level > 0) {
+      extrapolate(truth.curves, second, number);
+      truth.bound_px = std::max(truth.bound_px, apart_px / 3.0);
+      truth.notes.push_back(
+          fmt::format("not exact: {} is extrapolated from its levels {} and {}, order 2: by {:.2g} px or less for 95 % of its "
+                      "border",
+                      name, level - 1, level, apart_px / 3.0));
+      continue;
+    }
+    truth.bound_px = std::max(truth.bound_px, apart_px);
+    truth.notes.push_back(
+        fmt::format("not exact: {} is all there is of it and cannot be refined; read another way ({}), it puts 95 % of its "
+                    "border within {:.2g} px of this one",
+                    name, std::holds_alternative<LevelSetSource>(object.source) ? "a lower gradient" : "facets", apart_px));
+  }
+}
+
 }  // namespace
 
-bool all_cages(const Scene& scene) {
-  return !scene.objects.empty() &&
-         std::all_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& object) { return cage_in(object) != nullptr; });
-}
+bool is_cage(const SceneObject& object) { return cage_in(object) != nullptr; }
 
 StandIn make_stand_in(const Scene& scene, const Camera& camera, std::int64_t max_bytes, double edge_px) {
   StandIn out;
@@ -186,7 +233,6 @@ StandIn make_stand_in(const Scene& scene, const Camera& camera, std::int64_t max
 }
 
 BorderTruth solve_truth_stand_in(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how) {
-  if (all_cages(scene)) return solve_truth_on_cages(scene, camera, settings, how);
   const StandIn finest = make_stand_in(scene, camera, settings.max_bytes, 1.0);
   const SceneModel second = model_of(scene, [&](const SceneObject& object) { return second_settings(object, finest.level); });
   MeasuredBorderSettings measuring;
@@ -197,7 +243,7 @@ BorderTruth solve_truth_stand_in(const Scene& scene, const Camera& camera, const
   BorderTruth truth;
   truth.exact = false;
   truth.curves = border_of_model(finest.model);
-  truth.bound_px = disagreement_px(truth.curves, border_of_model(second));
+  judge_objects(scene, finest.level, border_of_model(second), truth);
   describe_points(finest.model, camera, truth.curves);
   for (const BorderCurve& curve : truth.curves.curves) {
     if (curve.closed) ++(curve.kind == CurveKind::silhouette ? truth.contour_generators : truth.level_curves);
@@ -210,10 +256,6 @@ BorderTruth solve_truth_stand_in(const Scene& scene, const Camera& camera, const
   };
   truth.coverage = coverage_of(truth.curves, camera.width_px, camera.height_px, seen, how).share;
   for (const std::string& word : finest.words) truth.from += (truth.from.empty() ? "" : "; ") + word;
-  truth.notes.push_back(
-      fmt::format("not exact: read another way (facets, a lower gradient), the same model puts 95 % of its border within "
-                  "{:.2g} px of this one",
-                  truth.bound_px));
   return truth;
 }
 

@@ -15,9 +15,7 @@ struct StandIn {
 };
 StandIn make_stand_in(const Scene& scene, const Camera& camera, std::int64_t max_bytes, double edge_px);
 
-/// True where every object is a subdivision cage.
-bool all_cages(const Scene& scene);
-
-BorderTruth solve_truth_on_cages(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how);
+/// A mesh that is to be subdivided.
+bool is_cage(const SceneObject& object);
 
 }  // namespace limn

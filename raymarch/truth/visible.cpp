@@ -32,13 +32,7 @@ struct Hider {
   }
   TracedPoint between(const TracedCurve& curve, size_t i, double t) const {
     if (scene.between) return scene.between(curve, i, t);
-    const TracedPoint &a = curve.points[i], &b = curve.points[(i + 1) % curve.points.size()];
-    TracedPoint q = t < 0.5 ? a : b;
-    q.p = glm::mix(a.p, b.p, t);
-    const glm::dvec3 image = project(scene.camera, q.p);
-    q.px = glm::dvec2(image);
-    q.depth = image.z;
-    return q;
+    return chord_point(curve, i, t, scene.camera);
   }
 };
 
@@ -194,6 +188,16 @@ void cut(const Hider& hider, const TracedCurve& curve, const std::vector<Seen>& 
 }
 
 }  // namespace
+
+TracedPoint chord_point(const TracedCurve& curve, size_t i, double t, const Camera& camera) {
+  const TracedPoint &a = curve.points[i], &b = curve.points[(i + 1) % curve.points.size()];
+  TracedPoint q = t < 0.5 ? a : b;
+  q.p = glm::mix(a.p, b.p, t);
+  const glm::dvec3 image = project(camera, q.p);
+  q.px = glm::dvec2(image);
+  q.depth = image.z;
+  return q;
+}
 
 glm::dvec2 image_direction(const Camera& camera, const glm::dvec3& p, const glm::dvec3& direction) {
   const glm::dvec3 d = direction * camera.world_from_camera;

@@ -6,6 +6,7 @@
 #include "raymarch/truth.h"
 #include "raymarch/truth/branches.h"
 #include "sdf/shape.h"
+#include "tests/raymarch/border_distance.h"
 #include "tests/raymarch/scenes.h"
 
 namespace limn::test {
@@ -83,20 +84,6 @@ TEST(TruthSeams, FacesThatCoincideBelongToOneBranch) {
   EXPECT_LT(surface_margin(sharp, nodes, 0) * surface_margin(sharp, nodes, 1), 0.0);
 }
 
-double distance_to(const BorderCurves& border, CurveKind kind, const glm::dvec2& px) {
-  double best = 1e9;
-  for (const BorderCurve& curve : border.curves) {
-    if (curve.kind != kind) continue;
-    const size_t n = curve.points.size();
-    for (size_t i = 0; i + (curve.closed ? 0 : 1) < n; ++i) {
-      const glm::dvec2 a = curve.points[i].px, d = curve.points[(i + 1) % n].px - a;
-      const double t = std::clamp(glm::dot(px - a, d) / std::max(glm::dot(d, d), 1e-300), 0.0, 1.0);
-      best = std::min(best, glm::distance(px, a + t * d));
-    }
-  }
-  return best;
-}
-
 /// The other way round is not asked: what is narrower than a pixel the measured border cannot know.
 TEST(TruthSeams, AtKnifeEdgesNothingOfTheMeasuredBorderIsMissing) {
   const Scene scene = walls();
@@ -111,19 +98,17 @@ TEST(TruthSeams, AtKnifeEdgesNothingOfTheMeasuredBorderIsMissing) {
     for (const std::string& note : truth.notes) EXPECT_EQ(note.find("lead nowhere"), std::string::npos) << note;
     const BorderCurves measured = measure_border(model, camera, render_gbuffer(model, camera, {}), {}, {});
     size_t far = 0, count = 0;
-    double worst = 0.0;
     for (const BorderCurve& curve : measured.curves) {
       for (const BorderPoint& point : curve.points) {
         const double distance = distance_to(truth.curves, curve.kind, point.px);
         far += distance > 0.02;
         ++count;
-        if (curve.kind == CurveKind::inner) worst = std::max(worst, distance);
       }
     }
-    // A sheet that falls away at once behind an edge is told from the end of a sheet by a threshold of the measurement's own.
-    EXPECT_LT(static_cast<double>(far), 0.005 * static_cast<double>(count)) << "view " << i;
-    EXPECT_LT(worst, 0.2) << "view " << i;
-    fmt::print("walls, view {}: {} of {} points off by more than 0.02 px, inner border by {:.4f} px at most\n", i, far, count, worst);
+    // Of a sliver at an edge the measured border sees single rays, and a sheet that falls away at once behind an edge is told from the end
+    // of a sheet by a threshold of the measurement's own.
+    EXPECT_LT(static_cast<double>(far), 0.003 * static_cast<double>(count)) << "view " << i;
+    fmt::print("walls, view {}: {} of {} points off by more than 0.02 px\n", i, far, count);
   }
 }
 

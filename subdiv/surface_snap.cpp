@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -17,6 +18,12 @@ namespace {
 
 /// Neighbouring normals that differ by more than this (25 degrees) at a hundredth of an edge belong to two sides of a crease.
 const double kCreaseCosine = std::cos(25.0 * std::numbers::pi / 180.0);
+
+/// A side that looks away from a vertex's faces by more (148 degrees) is the other one of a wall.
+constexpr double kWallCosine = -0.85;
+
+/// Sampled off the surface, and therefore stricter (10 degrees).
+const double kPlainlySmoothCosine = std::cos(10.0 * std::numbers::pi / 180.0);
 
 /// On a smooth surface a thousandth of an edge does not turn the normal by 5 degrees.
 const double kSameSideCosine = std::cos(5.0 * std::numbers::pi / 180.0);
@@ -107,14 +114,32 @@ bool sample_sides(FieldEvaluator& evaluator, const glm::dvec3& x, const Surround
     glm::dvec3 p = x + fraction * (middle - x);
     if (!project_to_surface(evaluator, p)) continue;
     const glm::dvec3 normal = unit_gradient(evaluator, p);
-    // The other side of a thin wall is no side of this vertex.
-    if (normal == glm::dvec3(0.0) || glm::dot(normal, around.outward) < -0.5) continue;
+    // The other side of a thin wall is no side of this vertex; that of a knife edge is.
+    if (normal == glm::dvec3(0.0) || glm::dot(normal, around.outward) < kWallCosine) continue;
     points.push_back(p), normals.push_back(normal);
   }
   for (size_t i = 1; i < normals.size(); ++i)
     for (size_t j = 0; j < i; ++j)
       if (glm::dot(normals[i], normals[j]) < kCreaseCosine) return true;
   return false;
+}
+
+/// The gradient half way to the faces' middles turns less than a crease does, without any projection: most vertices are let off with this.
+bool is_plainly_smooth(FieldEvaluator& evaluator, const glm::dvec3& x, const Surroundings& around) {
+  std::array<glm::dvec3, 8> points, gradients;
+  std::array<double, 8> values;
+  const size_t n = around.middles.size();
+  if (n > points.size()) return false;
+  for (size_t i = 0; i < n; ++i) points[i] = 0.5 * (x + around.middles[i]);
+  evaluator.gradients(std::span(points.data(), n), std::span(values.data(), n), std::span(gradients.data(), n));
+  for (size_t i = 0; i < n; ++i) {
+    const double length = glm::length(gradients[i]);
+    if (!(length > 0.0) || !std::isfinite(length)) return false;
+    gradients[i] /= length;
+    for (size_t j = 0; j < i; ++j)
+      if (glm::dot(gradients[i], gradients[j]) < kPlainlySmoothCosine) return false;
+  }
+  return true;
 }
 
 struct Snapped {
@@ -127,6 +152,7 @@ struct Snapped {
 Snapped snap(FieldEvaluator& evaluator, const glm::dvec3& start, const Surroundings& around) {
   glm::dvec3 plain = start;
   const bool reached = project(evaluator, plain, around);
+  if (reached && is_plainly_smooth(evaluator, start, around)) return {plain, false};
   std::vector<glm::dvec3> points, normals;
   glm::dvec3 x = start;
   bool creased = false;
@@ -134,8 +160,9 @@ Snapped snap(FieldEvaluator& evaluator, const glm::dvec3& start, const Surroundi
     creased = sample_sides(evaluator, x, around, fraction, points, normals);
     if (!creased) break;
     const glm::dvec3 next = meet_planes(points, normals, x);
-    // Planes that nearly agree meet far away: that is no crease of this vertex.
-    if (!(glm::distance(next, start) < 0.75 * around.edge_length)) {
+    // Planes that nearly agree meet far away: that is no crease of this vertex. Half way along an edge or a diagonal that was refined, a
+    // crease across it may be as far as its half, which is one and a half of the new edges.
+    if (!(glm::distance(next, start) < 1.5 * around.edge_length)) {
       creased = false;
       break;
     }

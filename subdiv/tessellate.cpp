@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "sdf/error.h"
 #include "subdiv/dual_contour.h"
+#include "subdiv/polygon.h"
 #include "subdiv/surface_snap.h"
 
 namespace limn {
@@ -38,18 +41,60 @@ Cage refined_once(const Field& field, const Mesh& mesh, std::int64_t max_bytes) 
   return finer;
 }
 
-/// Faces that lie the wrong way up, now or after the next refinement: walls thinner than an edge show themselves there.
-size_t count_folded(const Field& field, const Cage& cage) {
-  const size_t now = folded_faces(field, cage.mesh).size();
-  if (now > 0) return now;
-  return folded_faces(field, refined_once(field, cage.mesh, std::int64_t{8} << 30).mesh).size();
+/// Faces whose middle lies off the surface by more than this share of their edges, and vertices by more than a thousandth of the radius:
+/// there the mesh goes across what it should go around.
+constexpr double kFarFace = 0.25, kFarVertex = 1e-3;
+
+double distance_off(FieldEvaluator& evaluator, const glm::dvec3& p) {
+  const FieldJet jet = evaluator.jet(p);
+  return std::abs(jet.value) / std::max(glm::length(jet.gradient), 1e-9);
 }
 
-/// Where walls end in knife edges some faces fold whatever the sampling: one in this many is accepted, since finer samplings only make
-/// the cage larger.
-constexpr size_t kFacesPerFold = 500;
+size_t count_far_vertices(const Field& field, const Mesh& mesh) {
+  FieldEvaluator evaluator(field);
+  const double most = kFarVertex * field.traits().bounds.radius();
+  return static_cast<size_t>(
+      std::count_if(mesh.positions.begin(), mesh.positions.end(), [&](const glm::dvec3& p) { return distance_off(evaluator, p) > most; }));
+}
 
-/// The coarsest sampling whose topology a neighbouring one confirms and whose faces lie the right way up; failing that, the best met.
+size_t count_far_faces(const Field& field, const Mesh& mesh) {
+  FieldEvaluator evaluator(field);
+  size_t far = 0;
+  std::vector<glm::dvec3> corners;
+  const std::vector<std::int32_t> first = first_corners(mesh);
+  for (size_t f = 0; f < mesh.face_count(); ++f) {
+    gather_corners(mesh, face_corners(mesh, first[f], f), corners);
+    const auto n = static_cast<double>(corners.size());
+    glm::dvec3 middle(0.0);
+    double edge = 0.0;
+    for (size_t i = 0; i < corners.size(); ++i) {
+      middle += corners[i] / n;
+      edge += glm::distance(corners[i], corners[(i + 1) % corners.size()]) / n;
+    }
+    far += distance_off(evaluator, middle) > kFarFace * edge;
+  }
+  return far;
+}
+
+/// Where walls end in knife edges some faces are bad whatever the sampling: so many are accepted, since finer samplings only make the cage
+/// larger.
+constexpr double kBadShare = 1.0 / 500.0;
+/// Samplings tried once a topology is confirmed.
+constexpr int kMostTried = 3;
+
+/// The share of faces that lie the wrong way up or off the surface, now or after the next refinement: walls thinner than an edge, and
+/// holes narrower than a face, show themselves there.
+double bad_share(const Field& field, const Cage& cage) {
+  const auto share = [](size_t count, const Mesh& mesh) { return static_cast<double>(count) / static_cast<double>(mesh.face_count()); };
+  const double now = share(folded_faces(field, cage.mesh).size() + count_far_vertices(field, cage.mesh), cage.mesh);
+  // No refinement mends what is this bad.
+  if (now > 2.0 * kBadShare) return now;
+  const Mesh finer = refined_once(field, cage.mesh, std::int64_t{8} << 30).mesh;
+  return std::max(now, share(folded_faces(field, finer).size() + count_far_faces(field, finer), finer));
+}
+
+/// The coarsest sampling whose topology a neighbouring one confirms and whose faces lie on the surface, the right way up; failing that, the
+/// best met.
 Cage find_cage(const Field& field) {
   const Box& box = field.traits().bounds;
   if (box.empty()) throw InputError({"", "shape", "", "the surface is empty: there is nothing to tessellate", "a shape with a surface"});
@@ -58,17 +103,19 @@ Cage find_cage(const Field& field) {
   Mesh previous;
   std::optional<Topology> previous_topology;
   Cage best;
-  size_t best_folded = 0;
+  double best_share = 0.0;
+  int tried = 0;
   for (const int cells : kCells) {
     Mesh mesh = dual_contour(field, cells);
     const std::optional<Topology> topology = topology_of(mesh);
     if (topology && topology == previous_topology) {
       for (const Mesh* candidate : {&previous, &mesh}) {
         Cage cage = snapped_cage(field, *candidate);
-        const size_t folded = count_folded(field, cage);
-        if (best.mesh.face_sizes.empty() || folded < best_folded) best = std::move(cage), best_folded = folded;
-        if (best_folded * kFacesPerFold <= best.mesh.face_count()) return best;
+        const double share = bad_share(field, cage);
+        if (best.mesh.face_sizes.empty() || share < best_share) best = std::move(cage), best_share = share;
+        if (best_share <= kBadShare) return best;
       }
+      if (++tried == kMostTried) return best;
     }
     previous = std::move(mesh);
     previous_topology = topology;

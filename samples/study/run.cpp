@@ -6,13 +6,13 @@
 #include <chrono>
 #include <cmath>
 #include <new>
-#include <set>
 
 #include "raymarch/image_io.h"
 #include "raymarch/measured_border.h"
 #include "raymarch/polygons.h"
 #include "samples/compare/panels.h"
 #include "samples/study/reference.h"
+#include "samples/study/run_batches.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -21,35 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double ms_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
 
-constexpr double kReferenceBytes = 1.5e9;
 constexpr int kThumbnailPx = 320;
-
-/// Cells of one model in one view.
-struct Group {
-  size_t model = 0, view = 0;
-  std::vector<size_t> cells{};
-};
-
-std::vector<Group> groups_of(const StudyWork& work) {
-  std::vector<Group> groups;
-  for (const size_t index : work.cells) {
-    const StudyCell& cell = work.study.cells[index];
-    if (groups.empty() || groups.back().model != cell.model || groups.back().view != cell.view)
-      groups.push_back({cell.model, cell.view, {}});
-    groups.back().cells.push_back(index);
-  }
-  return groups;
-}
-
-// As many views at a time as the references of fit in memory; models are built anew for the next ones.
-std::vector<std::vector<Group>> batches_of(const StudyWork& work) {
-  const auto views = static_cast<size_t>(std::max(1.0, kReferenceBytes / StudyReference::bytes_of_view(work.study)));
-  std::map<size_t, std::vector<Group>> batches;
-  for (Group& group : groups_of(work)) batches[group.view / views].push_back(std::move(group));
-  std::vector<std::vector<Group>> result;
-  for (auto& [index, batch] : batches) result.push_back(std::move(batch));
-  return result;
-}
 
 double mean_edge(const Mesh& mesh) {
   double sum = 0.0;
@@ -123,7 +95,7 @@ struct Runner {
     }
   }
 
-  void run_model(std::vector<Group>::const_iterator first, std::vector<Group>::const_iterator last) {
+  void run_model(std::vector<CellGroup>::const_iterator first, std::vector<CellGroup>::const_iterator last) {
     const StudyModel& planned = work.study.models[first->model];
     const auto refuse = [&](const std::string& reason) {
       ledger.drop("build " + planned.surface, planned.cost.build_ms);
@@ -146,13 +118,13 @@ struct Runner {
     for (auto group = first; group != last; ++group) run_group(*model, *group);
   }
 
-  void drop_group(const Group& group) {
+  void drop_group(const CellGroup& group) {
     const StudyModel& planned = work.study.models[group.model];
     ledger.drop("trace " + planned.surface, work.study.looks() * planned.cost.trace_ms);
     ledger.drop("measure " + planned.surface, work.study.measure_ms() * static_cast<double>(group.cells.size()));
   }
 
-  void run_group(const SceneModel& model, const Group& group) {
+  void run_group(const SceneModel& model, const CellGroup& group) {
     const StudyModel& planned = work.study.models[group.model];
     if (work.how.cancelled && work.how.cancelled()) throw Cancelled{};
     Picture& truth_picture = reference.picture(group.view);
@@ -248,82 +220,13 @@ struct Runner {
 
 }  // namespace
 
-CostLedger plan_costs(const StudyWork& work) {
-  const Study& study = work.study;
-  CostLedger ledger;
-  std::set<size_t> views;
-  std::set<std::pair<size_t, double>> truths;
-  for (const std::vector<Group>& batch : batches_of(work)) {
-    std::set<size_t> models;
-    for (const Group& group : batch) {
-      const StudyModel& model = study.models[group.model];
-      if (models.insert(group.model).second) ledger.plan("build " + model.surface, model.cost.build_ms);
-      if (!model.refused.empty()) continue;
-      views.insert(group.view);
-      ledger.plan("trace " + model.surface, study.looks() * model.cost.trace_ms);
-      ledger.plan("measure " + model.surface, study.measure_ms() * static_cast<double>(group.cells.size()));
-      for (const size_t index : group.cells) {
-        const StudyMethod& method = study.methods[study.cells[index].method];
-        if (method.truth_threshold) truths.insert({group.view, *method.truth_threshold});
-      }
-    }
-  }
-  if (views.empty()) return ledger;
-  ledger.plan("reference build", study.reference_cost.build_ms);
-  ledger.plan("reference trace", study.looks() * study.reference_cost.trace_ms * static_cast<double>(views.size()));
-  ledger.plan("truth", study.truth_ms() * static_cast<double>(truths.size()));
-  return ledger;
-}
-
-void calibrate(const StudyWork& work, CostLedger& ledger) {
-  constexpr int kSmaller = 8;
-  constexpr double kCheap_ms = 100.0;
-  std::map<std::string, const StudyModel*> cheapest;
-  for (const size_t index : work.cells) {
-    const StudyModel& model = work.study.models[work.study.cells[index].model];
-    const StudyModel*& least = cheapest[model.surface];
-    if (model.refused.empty() && (least == nullptr || model.cost.build_ms < least->cost.build_ms)) least = &model;
-  }
-  Camera camera = work.study.cameras.front();
-  camera.width_px = std::max(1, camera.width_px / kSmaller);
-  camera.height_px = std::max(1, camera.height_px / kSmaller);
-  camera.focal_px /= kSmaller;
-  camera.pixels_per_unit /= kSmaller;
-  const double share = static_cast<double>(camera.width_px) * camera.height_px / work.study.pixels();
-  for (const auto& [surface, planned] : cheapest) {
-    if (planned == nullptr || planned->cost.build_ms > kCheap_ms) continue;
-    try {
-      auto start = Clock::now();
-      const SceneModel model = build_model(work.study.scene, planned->settings);
-      ledger.learn("build " + surface, planned->cost.build_ms, ms_since(start));
-      start = Clock::now();
-      render_gbuffer(model, camera, work.how);
-      ledger.learn("trace " + surface, share * planned->cost.trace_ms, ms_since(start));
-    } catch (const InputError&) {
-      // Its cells will say so.
-    }
-  }
-}
-
-std::int64_t expected_bytes(const StudyWork& work) {
-  std::int64_t largest = 0;
-  std::set<size_t> views;
-  for (const size_t index : work.cells) {
-    largest = std::max(largest, work.study.models[work.study.cells[index].model].cost.bytes);
-    views.insert(work.study.cells[index].view);
-  }
-  if (views.empty()) return 0;
-  const double held = std::min(kReferenceBytes, static_cast<double>(views.size() + 1) * StudyReference::bytes_of_view(work.study));
-  return largest + work.study.reference_cost.bytes + static_cast<std::int64_t>(held);
-}
-
 void run_cells(const StudyWork& work, CostLedger& ledger, StudyRecord& record, CellRows& rows, ProgressBar& bar) {
   StudyJournal journal(work.folder);
   StudyReference reference(work.study, work.how, ledger);
   Runner runner{work, ledger, record, rows, bar, journal, reference};
-  for (const std::vector<Group>& batch : batches_of(work)) {
+  for (const std::vector<CellGroup>& batch : batches_of(work)) {
     for (auto first = batch.begin(); first != batch.end();) {
-      const auto last = std::find_if(first, batch.end(), [&](const Group& group) { return group.model != first->model; });
+      const auto last = std::find_if(first, batch.end(), [&](const CellGroup& group) { return group.model != first->model; });
       runner.run_model(first, last);
       first = last;
     }

@@ -1,13 +1,17 @@
 // One block of a mesh's level set. The sign is the generalised winding number above one half, but it is asked for as seldom as possible:
 // a straight step from p to q of length h cannot meet a triangle while d(p) + d(q) > h, so nodes joined by such steps lie on one side, and
-// one of them answers for all. Near the holes of an open mesh the number changes smoothly through one half; there every node is asked, and
-// the surface {w = 1/2}, which closes the hole, counts as surface with its distance to first order, |w - 1/2| / |grad w|.
+// one of them answers for all; small groups close to the surface follow a slanting step. Near the holes of an open mesh the number changes
+// smoothly through one half; there every node is asked, and the surface {w = 1/2}, which closes the hole, counts as surface with its
+// distance to first order, |w - 1/2| / |grad w|.
 #include "subdiv/mesh_block.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -19,110 +23,218 @@ glm::ivec3 node_at(int index) { return {index >> 6, (index >> 3) & 7, index & 7}
 
 class BlockFiller {
  public:
-  BlockFiller(const glm::ivec3& origin, const ClosestPointData& distance, const Winding& winding, const BlockSettings& settings)
-      : origin_(origin), distance_(distance), winding_(winding), settings_(settings) {}
+  BlockFiller(const glm::ivec3& origin, const BlockDistanceArray& distances, const Winding& winding, const BlockSettings& settings)
+      : origin_(origin), winding_(winding), settings_(settings), distances_(distances) {}
 
   BlockResult run(LevelSetBlock& block) {
-    measure();
     if (settings_.shell > 0.0) {
       for (double& d : distances_) d -= settings_.shell;
       return write(block);
     }
-    bound_gradient();
-    component_.fill(-1);
-    for (int node = 0; node < kNodes; ++node)
-      if (component_[static_cast<size_t>(node)] < 0) settle_component(node);
+    find_components();
+    for (Component& component : components_) settle(component);
+    for (const auto& [node, distance] : near_membrane_) distances_[static_cast<size_t>(node)] = distance;
+    for (size_t node = 0; node < kNodes; ++node)
+      if (inside_[node]) distances_[node] = -distances_[node];
     return write(block);
   }
 
  private:
+  /// Nodes that steps join which cannot cross a triangle.
+  struct Component {
+    int first = 0, begin = 0, end = 0;  ///< Its nodes in members_.
+    int speaker = -1;                   ///< The node that answered for all of it; -1: not yet, or not for all.
+    double number = 0.0;                ///< There.
+    int size() const { return end - begin; }
+  };
+
   glm::dvec3 world(int node) const { return settings_.voxel_size * glm::dvec3(origin_ + node_at(node)); }
+  double distance(int node) const { return distances_[static_cast<size_t>(node)]; }
+  std::span<const int> members(const Component& component) const {
+    return std::span(members_).subspan(static_cast<size_t>(component.begin), static_cast<size_t>(component.size()));
+  }
+  /// Whether a straight step of `length` voxels between two nodes stays clear of all triangles.
+  bool clear_step(int from, int to, double length) const {
+    return distance(from) + distance(to) > 1.000001 * length * settings_.voxel_size;
+  }
 
-  /// Neighbouring nodes bound each other's search; nodes out of reach hold infinity.
-  void measure() {
-    const double reach = settings_.half_width + settings_.shell;
-    for (int node = 0; node < kNodes; ++node) {
-      double radius = reach;
-      // What is closest to a neighbour is nearly closest here.
-      std::array<std::uint32_t, 3> likely{};
-      size_t likely_count = 0;
-      const glm::ivec3 at = node_at(node);
-      for (int axis = 0; axis < 3; ++axis) {
-        if (at[axis] == 0) continue;
-        const int previous = node - (axis == 0 ? 64 : axis == 1 ? 8 : 1);
-        const auto neighbour = static_cast<size_t>(previous);
-        radius = std::min(radius, distances_[neighbour] + 1.0001 * settings_.voxel_size);
-        if (std::isfinite(distances_[neighbour])) likely[likely_count++] = closest_[neighbour];
-      }
-      const auto closest = distance_.within(world(node), radius, {likely.data(), likely_count});
-      closest_[static_cast<size_t>(node)] = closest ? closest->triangle : 0;
-      distances_[static_cast<size_t>(node)] = closest ? closest->distance : std::numeric_limits<double>::infinity();
+  template <class Visit>
+  static void for_each_neighbour(int node, const Visit& visit) {
+    const glm::ivec3 at = node_at(node);
+    constexpr int kStrides[3] = {64, 8, 1};
+    for (int axis = 0; axis < 3; ++axis) {
+      if (at[axis] > 0) visit(node - kStrides[axis]);
+      if (at[axis] < 7) visit(node + kStrides[axis]);
     }
   }
 
-  void bound_gradient() {
-    if (winding_.closed()) return;
-    const glm::dvec3 center = settings_.voxel_size * (glm::dvec3(origin_) + 3.5);
-    gradient_bound_ = winding_.gradient_bound(center, 3.5 * std::sqrt(3.0) * settings_.voxel_size + settings_.half_width);
+  void find_components() {
+    component_.fill(-1);
+    members_.reserve(kNodes);
+    for (int node = 0; node < kNodes; ++node)
+      if (component_[static_cast<size_t>(node)] < 0) gather(node);
+    // Large ones first: small ones may learn their side from them.
+    std::stable_sort(components_.begin(), components_.end(), [](const Component& a, const Component& b) { return a.size() > b.size(); });
+    for (size_t i = 0; i < components_.size(); ++i)
+      for (const int node : members(components_[i])) component_[static_cast<size_t>(node)] = static_cast<int>(i);
   }
 
-  /// The nodes that can be reached from `first` without a chance to cross a triangle.
   void gather(int first) {
-    members_.assign(1, first);
+    const int begin = static_cast<int>(members_.size());
+    members_.push_back(first);
     component_[static_cast<size_t>(first)] = first;
-    for (size_t i = 0; i < members_.size(); ++i) {
-      const glm::ivec3 at = node_at(members_[i]);
-      for (int axis = 0; axis < 3; ++axis)
-        for (const int direction : {-1, 1}) {
-          glm::ivec3 next = at;
-          next[axis] += direction;
-          if (next[axis] < 0 || next[axis] > 7) continue;
-          const int node = node_index(next.x, next.y, next.z);
-          if (component_[static_cast<size_t>(node)] >= 0) continue;
-          const double room = distances_[static_cast<size_t>(members_[i])] + distances_[static_cast<size_t>(node)];
-          if (!(room > 1.000001 * settings_.voxel_size)) continue;
-          component_[static_cast<size_t>(node)] = first;
-          members_.push_back(node);
+    for (size_t i = static_cast<size_t>(begin); i < members_.size(); ++i) {
+      const int from = members_[i];
+      for_each_neighbour(from, [&](int node) {
+        if (component_[static_cast<size_t>(node)] >= 0 || !clear_step(from, node, 1.0)) return;
+        component_[static_cast<size_t>(node)] = first;
+        members_.push_back(node);
+      });
+    }
+    components_.push_back({.first = first, .begin = begin, .end = static_cast<int>(members_.size())});
+  }
+
+  /// How far the number may differ between two nodes that only the potential of the border parts, and what the tree is off by.
+  static constexpr double kTreeError = 0.03;
+
+  /// Whether all nodes within `farthest` of one where the winding is `number` are on its side, and the membrane out of their band's reach.
+  /// Within the block, which no border enters, the number is a smooth potential and whole numbers: along a component's ways only the
+  /// potential changes, by no more than its slope times the straight distance.
+  bool decides(double number, double farthest, double slope_bound) const {
+    if (winding_.closed()) return true;
+    return std::abs(number - 0.5) > slope_bound * (farthest + settings_.half_width) + kTreeError;
+  }
+
+  double slope_bound(const glm::dvec3& center, double radius) const {
+    return winding_.closed() ? 0.0 : winding_.gradient_bound(center, radius + settings_.half_width);
+  }
+
+  void settle(Component& component) {
+    constexpr int kSmall = 8;
+    if (component.size() <= kSmall && follow_neighbour(component)) return;
+    settle_part(members(component), glm::ivec3(0), 8, &component);
+  }
+
+  /// A few nodes close to the surface, which slanting steps may join to a component that has its answer.
+  bool follow_neighbour(Component& component) {
+    for (const int from : members(component)) {
+      const glm::ivec3 at = node_at(from);
+      for (int step = 0; step < 27; ++step) {
+        const glm::ivec3 offset(step / 9 - 1, step / 3 % 3 - 1, step % 3 - 1), next = at + offset;
+        const int squared = offset.x * offset.x + offset.y * offset.y + offset.z * offset.z;
+        if (squared < 2 || glm::any(glm::lessThan(next, glm::ivec3(0))) || glm::any(glm::greaterThan(next, glm::ivec3(7)))) continue;
+        const int to = node_index(next.x, next.y, next.z);
+        const Component& other = components_[static_cast<size_t>(component_[static_cast<size_t>(to)])];
+        if (other.speaker < 0 || !clear_step(from, to, std::sqrt(static_cast<double>(squared)))) continue;
+        if (!winding_.closed()) {
+          double farthest = 0.0;
+          for (const int node : members(component)) farthest = std::max(farthest, glm::distance(world(other.speaker), world(node)));
+          if (!decides(other.number, farthest, block_slope_bound())) continue;
         }
+        component.speaker = other.speaker, component.number = other.number;
+        mark(members(component), other.number > 0.5);
+        return true;
+      }
     }
+    return false;
   }
 
-  void settle_component(int first) {
-    gather(first);
+  double block_slope_bound() {
+    if (block_slope_bound_ < 0.0)
+      block_slope_bound_ = slope_bound(world(0) + 3.5 * settings_.voxel_size, 3.5 * std::sqrt(3.0) * settings_.voxel_size);
+    return block_slope_bound_;
+  }
+
+  /// Nodes of one component in the cube of `size` nodes at `corner`. Near a hole one answer does for small cubes only.
+  void settle_part(std::span<const int> nodes, const glm::ivec3& corner, int size, Component* whole) {
     // The farthest from the surface answers: there the number is nearest to a whole one.
-    int speaker = first;
-    for (const int node : members_)
-      if (distances_[static_cast<size_t>(node)] > distances_[static_cast<size_t>(speaker)]) speaker = node;
+    int speaker = nodes.front();
+    for (const int node : nodes)
+      if (distance(node) > distance(speaker)) speaker = node;
     const double number = winding_.number(world(speaker));
-    if (winding_.closed()) {
-      for (const int node : members_) apply_sign(node, number > 0.5);
-      return;
-    }
-    // Within the block, which no border enters, the number is a smooth potential and whole numbers: along the component's ways only the
-    // potential changes, by no more than its slope times the straight distance. The membrane must be out of the band's reach as well.
     double farthest = 0.0;
-    for (const int node : members_) farthest = std::max(farthest, glm::distance(world(speaker), world(node)));
-    const double change = gradient_bound_ * (farthest + settings_.half_width);
-    constexpr double kTreeError = 0.03;
-    if (std::abs(number - 0.5) > change + kTreeError) {
-      for (const int node : members_) apply_sign(node, number > 0.5);
+    if (!winding_.closed())
+      for (const int node : nodes) farthest = std::max(farthest, glm::distance(world(speaker), world(node)));
+    const double radius = 0.5 * (size - 1) * std::sqrt(3.0) * settings_.voxel_size;
+    const double bound =
+        size == 8 ? block_slope_bound() : slope_bound(world(0) + settings_.voxel_size * (glm::dvec3(corner) + 0.5 * (size - 1)), radius);
+    if (decides(number, farthest, bound)) {
+      if (whole) whole->speaker = speaker, whole->number = number;
+      mark(nodes, number > 0.5);
       return;
     }
-    for (const int node : members_) near_hole(node);
+    if (size <= 2) {
+      const glm::dvec3 at = world(speaker);
+      // Close to the border the gradient turns too quickly for one node to tell of another.
+      std::optional<Potential> known;
+      if (std::isfinite(bound)) known = {at, winding_.number(at, kCloseLook), winding_.gradient(at)};
+      for (const int node : nodes) near_hole(node, known);
+      return;
+    }
+    const int half = size / 2;
+    for (int part = 0; part < 8; ++part) {
+      const glm::ivec3 lower = corner + half * glm::ivec3(part >> 2, (part >> 1) & 1, part & 1);
+      std::vector<int> inside;
+      for (const int node : nodes) {
+        const glm::ivec3 at = node_at(node) - lower;
+        if (glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, glm::ivec3(half)))) inside.push_back(node);
+      }
+      settle_joined(inside, lower, half);
+    }
   }
 
-  void apply_sign(int node, bool inside) {
-    if (inside) distances_[static_cast<size_t>(node)] = -distances_[static_cast<size_t>(node)];
+  /// What hangs together in the whole block may do so around a border; in a part of it the sides can be apart.
+  void settle_joined(const std::vector<int>& nodes, const glm::ivec3& corner, int size) {
+    std::array<bool, kNodes> waiting{};
+    for (const int node : nodes) waiting[static_cast<size_t>(node)] = true;
+    for (const int first : nodes) {
+      if (!waiting[static_cast<size_t>(first)]) continue;
+      std::vector<int> joined{first};
+      waiting[static_cast<size_t>(first)] = false;
+      for (size_t i = 0; i < joined.size(); ++i) {
+        for_each_neighbour(joined[i], [&](int node) {
+          if (!waiting[static_cast<size_t>(node)] || !clear_step(joined[i], node, 1.0)) return;
+          waiting[static_cast<size_t>(node)] = false;
+          joined.push_back(node);
+        });
+      }
+      settle_part(joined, corner, size, nullptr);
+    }
   }
 
-  void near_hole(int node) {
-    const glm::dvec3 p = world(node);
-    const double number = winding_.number(p), slope = glm::length(winding_.gradient(p));
-    double& distance = distances_[static_cast<size_t>(node)];
+  void mark(std::span<const int> nodes, bool inside) {
+    for (const int node : nodes) inside_[static_cast<size_t>(node)] = inside;
+  }
+
+  /// Where the number itself shapes the surface the tree is held to a hundredth.
+  static constexpr double kCloseLook = 3.5;
+
+  /// The winding number and its gradient at a node.
+  struct Potential {
+    glm::dvec3 at{0.0};
+    double number = 0.0;
+    glm::dvec3 gradient{0.0};
+  };
+
+  /// The trapezium rule along the step, where the gradient changes so little that it is as good as the tree.
+  double number_near(const Potential& known, const glm::dvec3& p, const glm::dvec3& gradient) const {
+    constexpr double kStraight = 0.01;
+    const glm::dvec3 step = p - known.at;
+    const bool straight = glm::length(gradient - known.gradient) * glm::length(step) < kStraight;
+    return straight ? known.number + 0.5 * glm::dot(gradient + known.gradient, step) : winding_.number(p);
+  }
+
+  /// `known` is that of a node of the same component close by.
+  void near_hole(int node, const std::optional<Potential>& known) {
+    const glm::dvec3 p = world(node), gradient = winding_.gradient(p);
+    const double number = known ? number_near(*known, p, gradient) : winding_.number(p);
+    const double slope = glm::length(gradient);
+    const double to_triangles = distance(node);
     const double to_membrane = slope > 0.0 ? std::abs(number - 0.5) / slope : std::numeric_limits<double>::infinity();
-    if (to_membrane < settings_.half_width && to_membrane < distance) result_.membrane = true;
-    distance = std::min(distance, to_membrane);
-    apply_sign(node, number > 0.5);
+    if (to_membrane < settings_.half_width && to_membrane < to_triangles) result_.membrane = true;
+    // Other components still ask for the distance to the triangles; `near_membrane_` waits until all are settled.
+    near_membrane_.push_back({node, std::min(to_triangles, to_membrane)});
+    inside_[static_cast<size_t>(node)] = number > 0.5;
   }
 
   BlockResult write(LevelSetBlock& block) {
@@ -141,22 +253,46 @@ class BlockFiller {
   }
 
   glm::ivec3 origin_;
-  const ClosestPointData& distance_;
   const Winding& winding_;
   const BlockSettings& settings_;
-  double gradient_bound_ = 0.0;
-  std::array<double, kNodes> distances_{};
-  std::array<std::uint32_t, kNodes> closest_{};  ///< Triangles, where the distance is finite.
+  double block_slope_bound_ = -1.0;  ///< Below 0: not asked for yet.
+  BlockDistanceArray distances_;
+  std::array<bool, kNodes> inside_{};
   std::array<int, kNodes> component_{};
   std::vector<int> members_;
+  std::vector<Component> components_;
+  std::vector<std::pair<int, double>> near_membrane_;  ///< Nodes, and their distances once the continuation over holes counts.
   BlockResult result_;
 };
 
 }  // namespace
 
-BlockResult fill_block(const glm::ivec3& origin, const ClosestPointData& distance, const Winding& winding, const BlockSettings& settings,
+/// Neighbouring nodes bound each other's search; nodes out of reach hold infinity.
+void measure_block(const glm::ivec3& origin, const ClosestPointData& distance, double voxel_size, double reach,
+                   BlockDistanceArray& distances) {
+  std::array<std::uint32_t, kNodes> closest_triangles{};  // where the distance is finite
+  for (int node = 0; node < kNodes; ++node) {
+    double radius = reach;
+    // What is closest to a neighbour is nearly closest here.
+    std::array<std::uint32_t, 3> likely{};
+    size_t likely_count = 0;
+    const glm::ivec3 at = node_at(node);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (at[axis] == 0) continue;
+      const int previous = node - (axis == 0 ? 64 : axis == 1 ? 8 : 1);
+      const auto neighbour = static_cast<size_t>(previous);
+      radius = std::min(radius, distances[neighbour] + 1.0001 * voxel_size);
+      if (std::isfinite(distances[neighbour])) likely[likely_count++] = closest_triangles[neighbour];
+    }
+    const auto closest = distance.within(voxel_size * glm::dvec3(origin + at), radius, {likely.data(), likely_count});
+    closest_triangles[static_cast<size_t>(node)] = closest ? closest->triangle : 0;
+    distances[static_cast<size_t>(node)] = closest ? closest->distance : std::numeric_limits<double>::infinity();
+  }
+}
+
+BlockResult fill_block(const glm::ivec3& origin, const BlockDistanceArray& distances, const Winding& winding, const BlockSettings& settings,
                        LevelSetBlock& block) {
-  return BlockFiller(origin, distance, winding, settings).run(block);
+  return BlockFiller(origin, distances, winding, settings).run(block);
 }
 
 }  // namespace limn

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "sdf/level_set.h"
 #include "subdiv/mesh_distance.h"
 
@@ -15,8 +17,15 @@ struct BlockResult {
   bool membrane = false;  ///< The continuation over a hole runs through it or near by: the neighbours matter too.
 };
 
-/// Distances and signs at the nodes voxel_size * (origin + (i, j, k)) of one block.
-BlockResult fill_block(const glm::ivec3& origin, const ClosestPointData& distance, const Winding& winding, const BlockSettings& settings,
+/// Unsigned distances (world) of a block's 512 nodes; infinite beyond the band.
+using BlockDistanceArray = std::array<double, 512>;
+
+/// Distances by the tree, node by node: for bands so wide that a block is in reach of very many triangles.
+void measure_block(const glm::ivec3& origin, const ClosestPointData& distance, double voxel_size, double reach,
+                   BlockDistanceArray& distances);
+
+/// Signs at the nodes voxel_size * (origin + (i, j, k)) of one block, and what becomes of its distances.
+BlockResult fill_block(const glm::ivec3& origin, const BlockDistanceArray& distances, const Winding& winding, const BlockSettings& settings,
                        LevelSetBlock& block);
 
 }  // namespace limn

@@ -7,27 +7,10 @@
 
 #include "sdf/error.h"
 #include "subdiv/mesh_distance.h"
+#include "subdiv/triangle_box.h"
 
 namespace limn {
 namespace {
-
-/// Separating axes of a box and a triangle (Akenine-Möller 2001); the box is centred at the origin. Touching counts as overlap.
-bool overlaps(const glm::dvec3& half, const std::array<glm::dvec3, 3>& p) {
-  const auto separated = [&](const glm::dvec3& axis) {
-    const double a = glm::dot(axis, p[0]), b = glm::dot(axis, p[1]), c = glm::dot(axis, p[2]);
-    const double reach = glm::dot(glm::abs(axis), half);
-    return std::min({a, b, c}) > reach || std::max({a, b, c}) < -reach;
-  };
-  constexpr glm::dvec3 kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  for (const glm::dvec3& axis : kAxes)
-    if (separated(axis)) return false;
-  const glm::dvec3 edges[3] = {p[1] - p[0], p[2] - p[1], p[0] - p[2]};
-  if (separated(glm::cross(edges[0], edges[1]))) return false;
-  for (const glm::dvec3& edge : edges)
-    for (const glm::dvec3& axis : kAxes)
-      if (separated(glm::cross(edge, axis))) return false;
-  return true;
-}
 
 using Key = std::tuple<int, int, int>;
 
@@ -57,8 +40,7 @@ class BlockFinder {
   /// Halves a range of blocks until it is one block or out of reach, so that a large triangle costs what it touches.
   void split(const glm::ivec3& lower, const glm::ivec3& upper) {
     const glm::dvec3 first = 8.0 * size_ * glm::dvec3(lower), last = size_ * (8.0 * glm::dvec3(upper) + 7.0);
-    const glm::dvec3 center = 0.5 * (first + last);
-    if (!overlaps(0.5 * (last - first) + reach_, {triangle_[0] - center, triangle_[1] - center, triangle_[2] - center})) return;
+    if (!triangle_meets_box(triangle_, first - reach_, last + reach_)) return;
     const glm::ivec3 count = upper - lower;
     if (count == glm::ivec3(0)) {
       keys_.emplace_back(lower.x, lower.y, lower.z);

@@ -39,7 +39,8 @@ class Winding {
  public:
   explicit Winding(const TriangleMesh& mesh);
 
-  double number(const glm::dvec3& point) const;
+  /// Clusters count as dipoles beyond `far` of their radii: 2.5 errs by less than 0.03, twice as far by a fraction of it.
+  double number(const glm::dvec3& point, double far = 2.5) const;
 
   /// A stretch of the surface's border (corners welded by position, opposite uses cancelled), `multiplicity` times over.
   struct BorderEdge {
@@ -60,7 +61,7 @@ class Winding {
     std::uint32_t first = 0, count = 0;  ///< Triangles of a leaf, in order_.
     std::uint32_t left = 0, right = 0;   ///< Both 0 for a leaf.
   };
-  std::uint32_t build(const TriangleMesh& mesh, std::uint32_t first, std::uint32_t count);
+  void build(const TriangleMesh& mesh, std::uint32_t index, std::uint32_t first, std::uint32_t count);
   void find_border(const TriangleMesh& mesh);
 
   std::vector<Node> nodes_;

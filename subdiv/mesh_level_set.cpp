@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "sdf/error.h"
+#include "subdiv/band_distance.h"
 #include "subdiv/mesh_block.h"
 #include "subdiv/mesh_distance.h"
 
@@ -79,6 +80,21 @@ class Progress {
   std::mutex mutex_;
 };
 
+/// Embree's tree over the triangles, made when it is first asked for.
+class LazyTree {
+ public:
+  explicit LazyTree(const TriangleMesh& mesh) : mesh_(mesh) {}
+  const ClosestPointData& get() const {
+    std::call_once(made_, [this] { tree_ = std::make_unique<const ClosestPointData>(mesh_); });
+    return *tree_;
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  mutable std::once_flag made_;
+  mutable std::unique_ptr<const ClosestPointData> tree_;
+};
+
 struct Band {
   std::vector<LevelSetBlock> blocks;
   bool any_inside = false;
@@ -105,11 +121,45 @@ std::vector<glm::ivec3> next_wave(const std::vector<glm::ivec3>& wave, const std
   return next;
 }
 
-Band make_band(const TriangleMesh& mesh, const ClosestPointData& distance, const Winding& winding, const LevelSetSettings& settings,
-               double shell) {
+/// Beyond this a block is in reach of so many triangles that the tree is quicker.
+constexpr double kScatterReach_voxels = 6.0;
+
+/// Where a block's distances come from: the triangles listed for it, or the tree.
+class Distances {
+ public:
+  Distances(const TriangleMesh& mesh, const LazyTree& tree, double voxel_size, double reach, std::int64_t max_blocks)
+      : mesh_(mesh), tree_(tree), voxel_size_(voxel_size), reach_(reach), by_tree_(reach > kScatterReach_voxels * voxel_size) {
+    // Made here, not by the first of many threads: a thread that waits for it takes up other work, which would wait for it too.
+    if (by_tree_) tree_.get();
+    if (by_tree_)
+      lists_.origins = blocks_near_triangles(mesh, voxel_size, reach, max_blocks);
+    else
+      lists_ = triangles_near_blocks(mesh, voxel_size, reach, max_blocks);
+  }
+  const std::vector<glm::ivec3>& near() const { return lists_.origins; }
+
+  void measure(const glm::ivec3& origin, BlockDistanceArray& distances) const {
+    if (by_tree_) return measure_block(origin, tree_.get(), voxel_size_, reach_, distances);
+    const auto found = std::lower_bound(lists_.origins.begin(), lists_.origins.end(), origin, before);
+    // Blocks that are looked at for the sake of a hole may have no triangle near them.
+    const bool listed = found != lists_.origins.end() && *found == origin;
+    const auto triangles = listed ? lists_.of(static_cast<size_t>(found - lists_.origins.begin())) : std::span<const std::uint32_t>{};
+    band_distances(mesh_, triangles, origin, voxel_size_, reach_, distances);
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  const LazyTree& tree_;
+  double voxel_size_, reach_;
+  bool by_tree_;
+  BlockTriangles lists_;
+};
+
+Band make_band(const TriangleMesh& mesh, const LazyTree& tree, const Winding& winding, const LevelSetSettings& settings, double shell) {
   const BlockSettings block_settings{settings.voxel_size, settings.voxel_size * settings.half_width_voxels, shell};
   Band band;
-  std::vector<glm::ivec3> wave = blocks_near_triangles(mesh, settings.voxel_size, block_settings.half_width + shell, max_blocks(settings));
+  const Distances distances(mesh, tree, settings.voxel_size, block_settings.half_width + shell, max_blocks(settings));
+  std::vector<glm::ivec3> wave = distances.near();
   std::vector<glm::ivec3> known = wave;
   Progress progress(settings.progress, wave.size());
   while (!wave.empty()) {
@@ -119,7 +169,9 @@ Band make_band(const TriangleMesh& mesh, const ClosestPointData& distance, const
     std::vector<LevelSetBlock> blocks(wave.size());
     std::vector<char> membrane(wave.size(), 0), active(wave.size(), 0), inside(wave.size(), 0);
     tbb::parallel_for(size_t{0}, wave.size(), [&](size_t i) {
-      const BlockResult result = fill_block(wave[i], distance, winding, block_settings, blocks[i]);
+      BlockDistanceArray unsigned_distances;
+      distances.measure(wave[i], unsigned_distances);
+      const BlockResult result = fill_block(wave[i], unsigned_distances, winding, block_settings, blocks[i]);
       membrane[i] = result.membrane, active[i] = result.any_active, inside[i] = result.any_inside;
       progress.step();
     });
@@ -134,8 +186,8 @@ Band make_band(const TriangleMesh& mesh, const ClosestPointData& distance, const
 }
 
 /// Walls thinner than two voxels and gaps thinner than one, seen from the middles of the triangles along their normals.
-void warn_of_thin_sheets(const TriangleMesh& mesh, const ClosestPointData& distance, double voxel_size,
-                         std::vector<std::string>& warnings) {
+void warn_of_thin_sheets(const TriangleMesh& mesh, const LazyTree& tree, double voxel_size, std::vector<std::string>& warnings) {
+  const ClosestPointData& distance = tree.get();
   std::atomic<std::int64_t> thin{0}, narrow{0};
   const auto normal_of = [&mesh](std::uint32_t index) {
     const glm::uvec3 t = mesh.triangles[index];
@@ -174,17 +226,17 @@ MeshLevelSet level_set_from_mesh(const TriangleMesh& mesh, const LevelSetSetting
     for (glm::uvec3& t : local.triangles) std::swap(t.y, t.z);
     warnings.push_back(fmt::format("the mesh is turned inside out (its volume is {:.4g}): its faces were turned round", volume));
   }
-  const ClosestPointData distance(local);
+  const LazyTree tree(local);
   const Winding winding(local);
   if (!winding.closed())
     warnings.push_back(
         fmt::format("{} open edges: inside is where the winding number is above 1/2, which closes the holes", winding.border().size()));
-  Band band = make_band(local, distance, winding, settings, 0.0);
+  Band band = make_band(local, tree, winding, settings, 0.0);
   if (!band.any_inside) {
     warnings.emplace_back("the mesh has no inside (a sheet, or thinner than a voxel): drawn as a shell, one voxel to each side");
-    band = make_band(local, distance, winding, settings, settings.voxel_size);
+    band = make_band(local, tree, winding, settings, settings.voxel_size);
   }
-  warn_of_thin_sheets(local, distance, settings.voxel_size, warnings);
+  warn_of_thin_sheets(local, tree, settings.voxel_size, warnings);
   return {level_set_from_blocks(band.blocks, settings.voxel_size, settings.half_width_voxels, "mesh", origin), std::move(warnings)};
 }
 

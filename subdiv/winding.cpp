@@ -1,3 +1,6 @@
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,8 +13,6 @@
 namespace limn {
 namespace {
 
-/// Beyond this many radii of a cluster it counts as a dipole; the error then stays below a hundredth, where one half decides.
-constexpr double kFar = 2.5;
 constexpr std::uint32_t kLeafSize = 8;
 
 /// Signed solid angle over 4 pi (van Oosterom & Strackee 1983).
@@ -23,21 +24,27 @@ double triangle_winding(const glm::dvec3& p, const glm::dvec3* corners) {
   return std::atan2(numerator, denominator) / (2.0 * std::numbers::pi);
 }
 
+/// Of a tree over so many triangles: known beforehand, so that its halves can be built at a time.
+std::uint32_t nodes_in(std::uint32_t triangles) {
+  return triangles <= kLeafSize ? 1 : 1 + nodes_in(triangles / 2) + nodes_in(triangles - triangles / 2);
+}
+
 }  // namespace
 
 Winding::Winding(const TriangleMesh& mesh) {
   order_.resize(mesh.triangles.size());
   std::iota(order_.begin(), order_.end(), 0u);
-  if (!order_.empty()) build(mesh, 0, static_cast<std::uint32_t>(order_.size()));
+  if (!order_.empty()) {
+    nodes_.resize(nodes_in(static_cast<std::uint32_t>(order_.size())));
+    build(mesh, 0, 0, static_cast<std::uint32_t>(order_.size()));
+  }
   for (const std::uint32_t t : order_)
     for (int i = 0; i < 3; ++i) corners_.push_back(mesh.positions[mesh.triangles[t][i]]);
   find_border(mesh);
 }
 
-std::uint32_t Winding::build(const TriangleMesh& mesh, std::uint32_t first, std::uint32_t count) {
-  const auto index = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.emplace_back();
-  Node node;
+void Winding::build(const TriangleMesh& mesh, std::uint32_t index, std::uint32_t first, std::uint32_t count) {
+  Node& node = nodes_[index];
   node.first = first, node.count = count;
   const auto corner = [&mesh](std::uint32_t t, int i) { return mesh.positions[mesh.triangles[t][i]]; };
   const auto middle = [&corner](std::uint32_t t) { return (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0; };
@@ -64,14 +71,19 @@ std::uint32_t Winding::build(const TriangleMesh& mesh, std::uint32_t first, std:
                      [&](std::uint32_t a, std::uint32_t b) { return std::pair(middle(a)[axis], a) < std::pair(middle(b)[axis], b); });
     // The order within halves is the library's; sorting makes the sums the same everywhere.
     std::sort(begin, begin + half), std::sort(begin + half, begin + count);
-    node.left = build(mesh, first, half);
-    node.right = build(mesh, first + half, count - half);
+    node.left = index + 1;
+    node.right = index + 1 + nodes_in(half);
+    const auto build_left = [&] { build(mesh, node.left, first, half); };
+    const auto build_right = [&] { build(mesh, node.right, first + half, count - half); };
+    constexpr std::uint32_t kWorthATask = 4096;
+    if (count > kWorthATask)
+      tbb::parallel_invoke(build_left, build_right);
+    else
+      build_left(), build_right();
   }
-  nodes_[index] = node;
-  return index;
 }
 
-double Winding::number(const glm::dvec3& point) const {
+double Winding::number(const glm::dvec3& point, double far) const {
   if (nodes_.empty()) return 0.0;
   double sum = 0.0;
   std::uint32_t stack[128];
@@ -81,7 +93,7 @@ double Winding::number(const glm::dvec3& point) const {
     const Node& node = nodes_[stack[--depth]];
     const glm::dvec3 away = node.center - point;
     const double squared = glm::dot(away, away);
-    if (squared > kFar * kFar * node.radius * node.radius) {
+    if (squared > far * far * node.radius * node.radius) {
       sum += glm::dot(away, node.dipole) / (4.0 * std::numbers::pi * squared * std::sqrt(squared));
     } else if (node.left == 0) {
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) sum += triangle_winding(point, &corners_[3 * i]);
@@ -100,7 +112,7 @@ void Winding::find_border(const TriangleMesh& mesh) {
     const glm::dvec3& p = mesh.positions[v];
     return std::tuple(p.x, p.y, p.z, v);
   };
-  std::sort(by_position.begin(), by_position.end(), [&key](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  tbb::parallel_sort(by_position.begin(), by_position.end(), [&key](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   std::vector<std::uint32_t> welded(mesh.positions.size());
   for (size_t i = 0; i < by_position.size(); ++i) {
     const bool same = i > 0 && mesh.positions[by_position[i]] == mesh.positions[by_position[i - 1]];
@@ -116,7 +128,8 @@ void Winding::find_border(const TriangleMesh& mesh) {
       const std::uint32_t a = welded[t[i]], b = welded[t[(i + 1) % 3]];
       if (a != b) uses.push_back(a < b ? Use{a, b, 1} : Use{b, a, -1});
     }
-  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) { return std::tie(a.low, a.high) < std::tie(b.low, b.high); });
+  tbb::parallel_sort(uses.begin(), uses.end(),
+                     [](const Use& a, const Use& b) { return std::tie(a.low, a.high) < std::tie(b.low, b.high); });
   for (size_t i = 0; i < uses.size();) {
     int net = 0;
     size_t end = i;

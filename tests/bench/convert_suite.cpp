@@ -67,6 +67,9 @@ nlohmann::json convert_row(const BenchObject& object, int voxels, const ConvertB
   const double voxel_size = box.longest_side() / voxels;
   const PeerInput input = peer_input(object.mesh, voxel_size);
   std::optional<LevelSet> ours;
+  const auto warnings = level_set_from_mesh(object.mesh, {.voxel_size = voxel_size, .half_width_voxels = kHalfWidth}).warnings;
+  const bool open =
+      std::any_of(warnings.begin(), warnings.end(), [](const std::string& w) { return w.find("open edges") != std::string::npos; });
   openvdb::FloatGrid::Ptr theirs;
   const std::vector<Times> times = time_interleaved(
       {[&] { ours = level_set_from_mesh(object.mesh, {.voxel_size = voxel_size, .half_width_voxels = kHalfWidth}).level_set; },
@@ -74,15 +77,17 @@ nlohmann::json convert_row(const BenchObject& object, int voxels, const ConvertB
       settings.runs, kThreads);
   const ClosestPointQuery exact(object.mesh);
   const Errors our_errors = errors_of(*openvdb_grid(*ours), exact), their_errors = errors_of(*theirs, exact);
-  fmt::print(settings.table, "{:16} {:6} {:9} {:10.1f} {:10.1f} {:6.2f} {:12.3g} {:12.3g} {:10} {:10}\n", object.name, voxels,
+  fmt::print(settings.table, "{:16} {:6} {:9} {:10.1f} {:10.1f} {:6.2f} {:12.3g} {:12.3g} {:10} {:10}{}\n", object.name, voxels,
              object.mesh.triangles.size(), times[0].median_ms(), times[1].median_ms(), times[0].median_ms() / times[1].median_ms(),
-             our_errors.largest_voxels, their_errors.largest_voxels, our_errors.nodes, their_errors.nodes);
+             our_errors.largest_voxels, their_errors.largest_voxels, our_errors.nodes, their_errors.nodes,
+             open ? "  open: our band goes on over its holes" : "");
   std::fflush(settings.table);
   return {{"kind", "convert"},
           {"object", object.name},
           {"voxels", voxels},
           {"threads", kThreads},
           {"triangles", object.mesh.triangles.size()},
+          {"open", open},
           {"ours_ms", times[0].median_ms()},
           {"openvdb_ms", times[1].median_ms()},
           {"ours_error_voxels", our_errors.largest_voxels},

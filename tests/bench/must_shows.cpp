@@ -164,6 +164,8 @@ void Shown::conversions() {
     if (row.value("kind", "") != "convert") continue;
     const std::string where = fmt::format("{} {}", row["object"].get<std::string>(), row["voxels"].get<int>());
     at_most(6, where + ": mesh to level set over meshToVolume, time", 1.0, row["ours_ms"].get<double>() / row["openvdb_ms"].get<double>());
+    // Where holes are closed the value is no distance to the triangles.
+    if (row.value("open", false)) continue;
     at_most(6, where + ": largest error over meshToVolume's", 1.0,
             row["ours_error_voxels"].get<double>() / row["openvdb_error_voxels"].get<double>());
   }

@@ -58,6 +58,13 @@ int meeting_rung(const Climb& climb, double tolerance_px) {
   return meets == nullptr ? climb.limit : meets->rung;
 }
 
+/// The finest rung of at least a size; the coarsest where none is.
+int rung_of_size(const Climb& climb, double size) {
+  int rung = 0;
+  while (rung + 1 < climb.limit && size_of(climb, rung + 1) >= 0.99 * size) ++rung;
+  return rung;
+}
+
 std::string off_words(const ClimbedRung& rung) {
   return std::isfinite(rung.error_px) ? fmt::format("still {:.2g} px off", rung.error_px) : "still farther off than can be measured";
 }
@@ -130,8 +137,11 @@ int next_rung(const Climb& climb, double tolerance_px) {
 }
 
 std::string reason_to_stop(const Climb& climb, double tolerance_px, std::optional<double> best_ms) {
-  if (climb.climbed.empty())
-    return best_ms && climb.guess_ms > 4.0 * *best_ms ? "even its coarsest is slower than what meets the tolerance" : "";
+  if (climb.climbed.empty()) {
+    // Theory may ask for edges four times too short, and a guess of the time be wrong by as much.
+    const int least = rung_of_size(climb, 4.0 * size_of(climb, next_rung(climb, tolerance_px)));
+    return best_ms && expected_ms(climb, least) > 4.0 * *best_ms ? "what theory asks for is far slower than what meets the tolerance" : "";
+  }
   const ClimbedRung* fails = climb.finest_failing(tolerance_px);
   const std::string off = fails == nullptr ? "" : fmt::format(" ({})", off_words(*fails));
   // Nothing that is left can be cheaper than the next above what fails.

@@ -89,19 +89,32 @@ Ladder mesh_ladder(const Scene& scene) {
   return ladder;
 }
 
-Ladder grid_ladder(const char* kind, const GradientTheory& theory, double longest_side) {
+// The grid shall be what is measured: the mesh that goes into it is finer than any voxel that matters.
+constexpr int kMeshLevel = 5;
+
+/// What comes before the first voxel of a mesh's grid.
+double meshing_ms(const Scene& scene) {
+  double ms = 0.0;
+  for (const SceneObject& object : scene.objects) {
+    if (const auto* mesh = std::get_if<MeshSource>(&object.source))
+      ms += kCageFaceMs * static_cast<double>(mesh->mesh.face_count()) * std::exp2(2 * kMeshLevel);
+  }
+  return ms;
+}
+
+Ladder grid_ladder(const char* kind, const GradientTheory& theory, const Scene& scene, double longest_side) {
   const GradientDescriptor& gradient = find_gradient(theory.name);
   Ladder ladder;
   ladder.title = fmt::format("{}, {} gradient", std::string(kind) == "level_set" ? "level set" : "mesh as level set", theory.name);
   ladder.settings.kind = kind;
   ladder.settings.gradient = theory.name;
-  // The grid shall be what is measured: the mesh that goes into it is finer than any voxel that matters.
-  ladder.settings.level = 5;
+  ladder.settings.level = kMeshLevel;
   ladder.rungs = kVoxelRungs;
   ladder.normal_order = gradient.order;
   ladder.normal_constant = theory.constant;
   ladder.base_size = longest_side;
-  ladder.guess_ms = (ladder.settings.kind == "level_set" ? kGridMs : kMeshGridMs) * std::pow(kVoxelRungs.front(), 2.0);
+  const bool meshed = ladder.settings.kind == "mesh_level_set";
+  ladder.guess_ms = (meshed ? kMeshGridMs : kGridMs) * std::pow(kVoxelRungs.front(), 2.0) + (meshed ? meshing_ms(scene) : 0.0);
   return ladder;
 }
 
@@ -137,7 +150,7 @@ std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings)
     const bool detour = std::string(kind) == "mesh_level_set" && all_support(scene, "level_set");
     if (!wanted(kind, settings) || !all_support(scene, kind) || (detour && settings.kinds.empty())) continue;
     for (const GradientTheory& theory : kGradientTheories) {
-      if (std::string(theory.name) != "cell") ladders.push_back(grid_ladder(kind, theory, longest_side));
+      if (std::string(theory.name) != "cell") ladders.push_back(grid_ladder(kind, theory, scene, longest_side));
     }
   }
   for (Ladder& ladder : ladders) ladder.settings.max_bytes = settings.max_bytes;

@@ -112,6 +112,17 @@ TEST(PlanClimb, WhatIsExpectedToBeSlowerThanWhatMeetsTheToleranceIsNotBuilt) {
   EXPECT_EQ(ladder.rungs[static_cast<size_t>(alone.coarsest_meeting(1.0)->rung)], 512);
 }
 
+TEST(PlanClimb, ALadderThatIsFarSlowerByAnyGuessIsNotTriedAndOneThatMayBeFasterIs) {
+  const Ladder ladder = grids();
+  Law law;
+  law.constant = 0.9 * 64.0 * 64.0;  // theory asks for 64 voxels
+  Climb climb = begin(ladder, law);
+  EXPECT_EQ(next_rung(climb, 1.0), 4);
+  EXPECT_EQ(reason_to_stop(climb, 1.0, {}), "");
+  EXPECT_EQ(reason_to_stop(climb, 1.0, 0.3), "");  // as soon as the guess at 16 voxels is not four times as much
+  EXPECT_NE(reason_to_stop(climb, 1.0, 0.2), "");
+}
+
 TEST(PlanClimb, ExpectedErrorsPassThroughWhatWasMeasured) {
   const Ladder ladder = grids();
   const Law law{.constant = 300.0, .theory_factor = 0.3};

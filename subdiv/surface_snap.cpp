@@ -7,13 +7,20 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "sdf/shape.h"
-#include "subdiv/audit.h"
 #include "subdiv/polygon.h"
 
 namespace limn {
+
+glm::dvec3 unit_gradient(FieldEvaluator& evaluator, const glm::dvec3& p) {
+  glm::dvec3 gradient;
+  double value = 0.0;
+  evaluator.gradients(std::span(&p, 1), std::span(&value, 1), std::span(&gradient, 1));
+  const double length = glm::length(gradient);
+  return length > 0.0 && std::isfinite(length) ? gradient / length : glm::dvec3(0.0);
+}
+
 namespace {
 
 /// Neighbouring normals that differ by more than this (25 degrees) at a hundredth of an edge belong to two sides of a crease.
@@ -28,14 +35,6 @@ const double kPlainlySmoothCosine = std::cos(10.0 * std::numbers::pi / 180.0);
 /// On a smooth surface a thousandth of an edge does not turn the normal by 5 degrees.
 const double kSameSideCosine = std::cos(5.0 * std::numbers::pi / 180.0);
 
-glm::dvec3 unit_gradient(FieldEvaluator& evaluator, const glm::dvec3& p) {
-  glm::dvec3 gradient;
-  double value = 0.0;
-  evaluator.gradients(std::span(&p, 1), std::span(&value, 1), std::span(&gradient, 1));
-  const double length = glm::length(gradient);
-  return length > 0.0 && std::isfinite(length) ? gradient / length : glm::dvec3(0.0);
-}
-
 /// Around a vertex: the middles of its faces, the mean length of its edges, and which way its faces look on the whole (unit, or zero).
 struct Surroundings {
   std::vector<glm::dvec3> middles;
@@ -43,13 +42,16 @@ struct Surroundings {
   glm::dvec3 outward{0.0};
 };
 
-std::vector<Surroundings> surroundings_of(const Mesh& mesh) {
+/// Of all vertices, or of those that `which` names.
+std::vector<Surroundings> surroundings_of(const Mesh& mesh, const std::vector<char>* which) {
   std::vector<Surroundings> around(mesh.vertex_count());
   std::vector<glm::dvec3> points;
   std::int32_t first = 0;
   for (size_t f = 0; f < mesh.face_count(); ++f) {
     const auto corners = face_corners(mesh, first, f);
     first += mesh.face_sizes[f];
+    const auto named = [which](std::int32_t v) { return which == nullptr || (*which)[static_cast<size_t>(v)] != 0; };
+    if (std::none_of(corners.begin(), corners.end(), named)) continue;
     gather_corners(mesh, corners, points);
     glm::dvec3 middle(0.0);
     for (const glm::dvec3& p : points) middle += p;
@@ -172,20 +174,10 @@ Snapped snap(FieldEvaluator& evaluator, const glm::dvec3& start, const Surroundi
   return {reached ? plain : start, false};
 }
 
-/// A quad bent like a bow tie has the right area as a whole and a corner that is turned over; so has one with a reflex corner.
-bool has_reflex_corner(const std::vector<glm::dvec3>& corners, const glm::dvec3& area) {
-  const size_t n = corners.size();
-  for (size_t i = 0; i < n; ++i) {
-    const glm::dvec3 turn = glm::cross(corners[(i + 1) % n] - corners[i], corners[(i + n - 1) % n] - corners[i]);
-    if (glm::dot(turn, area) < -1e-3 * glm::dot(area, area)) return true;
-  }
-  return false;
-}
-
 using Evaluators = tbb::enumerable_thread_specific<FieldEvaluator>;
 
 void snap_some(const Field& field, Mesh& mesh, const std::vector<char>* which, SnapResult& result) {
-  const std::vector<Surroundings> around = surroundings_of(mesh);
+  const std::vector<Surroundings> around = surroundings_of(mesh, which);
   Evaluators evaluators([&field] { return FieldEvaluator(field); });
   std::vector<double> left(mesh.vertex_count(), 0.0);
   tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.vertex_count(), 64), [&](const tbb::blocked_range<size_t>& range) {
@@ -203,20 +195,11 @@ void snap_some(const Field& field, Mesh& mesh, const std::vector<char>* which, S
   for (const double value : left) result.worst_value = std::max(result.worst_value, value);
 }
 
-/// Means of the neighbours along edges.
-std::vector<glm::dvec3> neighbour_means(const Mesh& mesh) {
-  std::vector<glm::dvec3> sum(mesh.vertex_count(), glm::dvec3(0.0));
-  std::vector<int> count(mesh.vertex_count(), 0);
-  for (const Edge& edge : build_edges(mesh)) {
-    const auto a = static_cast<size_t>(edge.vertex_a), b = static_cast<size_t>(edge.vertex_b);
-    sum[a] += mesh.positions[b], sum[b] += mesh.positions[a];
-    ++count[a], ++count[b];
-  }
-  for (size_t v = 0; v < sum.size(); ++v) sum[v] = count[v] > 0 ? sum[v] / static_cast<double>(count[v]) : mesh.positions[v];
-  return sum;
-}
-
 }  // namespace
+
+void snap_vertices(const Field& field, Mesh& mesh, const std::vector<char>& which, SnapResult& snapped) {
+  snap_some(field, mesh, &which, snapped);
+}
 
 SnapResult snap_to_surface(const Field& field, Mesh& mesh) {
   SnapResult result{std::vector<char>(mesh.vertex_count(), 0), 0.0};
@@ -248,93 +231,6 @@ std::vector<glm::vec3> field_normals(const Field& field, const Mesh& mesh, const
     }
   });
   return normals;
-}
-
-namespace {
-
-/// Which of `candidates` lie folded, in their order.
-std::vector<std::int32_t> folded_among(const Field& field, const Mesh& mesh, const std::vector<std::int32_t>& first,
-                                       const std::vector<std::int32_t>& candidates, bool reflex_too) {
-  Evaluators evaluators([&field] { return FieldEvaluator(field); });
-  std::vector<char> bad(candidates.size(), 0);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, candidates.size(), 64), [&](const tbb::blocked_range<size_t>& range) {
-    FieldEvaluator& evaluator = evaluators.local();
-    std::vector<glm::dvec3> corners;
-    for (size_t i = range.begin(); i < range.end(); ++i) {
-      const auto f = static_cast<size_t>(candidates[i]);
-      gather_corners(mesh, face_corners(mesh, first[f], f), corners);
-      glm::dvec3 middle(0.0);
-      for (const glm::dvec3& p : corners) middle += p;
-      middle /= static_cast<double>(corners.size());
-      const glm::dvec3 area = vector_area(corners);
-      project_to_surface(evaluator, middle);
-      bad[i] = glm::dot(area, unit_gradient(evaluator, middle)) < 0.0 || (reflex_too && has_reflex_corner(corners, area));
-    }
-  });
-  std::vector<std::int32_t> folded;
-  for (size_t i = 0; i < bad.size(); ++i)
-    if (bad[i]) folded.push_back(candidates[i]);
-  return folded;
-}
-
-std::vector<std::int32_t> all_faces(const Mesh& mesh) {
-  std::vector<std::int32_t> faces(mesh.face_count());
-  std::iota(faces.begin(), faces.end(), 0);
-  return faces;
-}
-
-/// Faces with a vertex that has moved: only they can have changed.
-std::vector<std::int32_t> faces_touching(const Mesh& mesh, const std::vector<std::int32_t>& first, const std::vector<char>& moved) {
-  std::vector<std::int32_t> faces;
-  for (size_t f = 0; f < mesh.face_count(); ++f) {
-    const auto corners = face_corners(mesh, first[f], f);
-    if (std::any_of(corners.begin(), corners.end(), [&](std::int32_t v) { return moved[static_cast<size_t>(v)] != 0; })) {
-      faces.push_back(static_cast<std::int32_t>(f));
-    }
-  }
-  return faces;
-}
-
-}  // namespace
-
-std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh, bool reflex_too) {
-  return folded_among(field, mesh, first_corners(mesh), all_faces(mesh), reflex_too);
-}
-
-void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds) {
-  const std::vector<std::int32_t> first = first_corners(mesh);
-  std::vector<std::int32_t> candidates = all_faces(mesh);
-  for (int round = 0; round < rounds; ++round) {
-    const std::vector<std::int32_t> folded = folded_among(field, mesh, first, candidates, true);
-    if (folded.empty()) return;
-    std::vector<char> moves(mesh.vertex_count(), 0);
-    for (const std::int32_t f : folded)
-      for (const std::int32_t v : face_corners(mesh, first[static_cast<size_t>(f)], static_cast<size_t>(f)))
-        // After a few rounds creased vertices take part: the surface matters more than the line.
-        if (!snapped.feature[static_cast<size_t>(v)] || round >= rounds / 2) moves[static_cast<size_t>(v)] = 1;
-    const std::vector<glm::dvec3> means = neighbour_means(mesh);
-    for (size_t v = 0; v < moves.size(); ++v)
-      if (moves[v]) mesh.positions[v] = 0.5 * (mesh.positions[v] + means[v]);
-    snap_some(field, mesh, &moves, snapped);
-    // A folded face whose vertices all stayed is folded still.
-    for (const std::int32_t f : folded)
-      for (const std::int32_t v : face_corners(mesh, first[static_cast<size_t>(f)], static_cast<size_t>(f)))
-        moves[static_cast<size_t>(v)] = 1;
-    candidates = faces_touching(mesh, first, moves);
-  }
-}
-
-void relax(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds) {
-  for (int round = 0; round < rounds; ++round) {
-    std::vector<char> moves(mesh.vertex_count(), 0);
-    const std::vector<glm::dvec3> means = neighbour_means(mesh);
-    for (size_t v = 0; v < moves.size(); ++v) {
-      if (snapped.feature[v]) continue;
-      moves[v] = 1;
-      mesh.positions[v] = 0.5 * (mesh.positions[v] + means[v]);
-    }
-    snap_some(field, mesh, &moves, snapped);
-  }
 }
 
 }  // namespace limn

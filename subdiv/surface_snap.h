@@ -15,6 +15,12 @@ struct SnapResult {
 /// sides (least squares as in Ju et al. 2002) where it is creased. Vertices are moved one by one from where they are, in parallel.
 SnapResult snap_to_surface(const Field& field, Mesh& mesh);
 
+/// The same for the vertices that `which` names; `snapped` is brought up to date.
+void snap_vertices(const Field& field, Mesh& mesh, const std::vector<char>& which, SnapResult& snapped);
+
+/// The gradient's direction; zero where it has none.
+glm::dvec3 unit_gradient(FieldEvaluator& evaluator, const glm::dvec3& p);
+
 /// Unit normals at the corners: the gradient at the vertex, at creases that of the corner's own side.
 std::vector<glm::vec3> field_normals(const Field& field, const Mesh& mesh, const std::vector<char>& feature);
 

@@ -3,8 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "raymarch/threads.h"
 #include "sdf/error.h"
@@ -31,6 +33,11 @@ void add_status(const Border& border, Image<std::uint8_t>& status) {
   if (border.status.pixels.empty()) return;
   if (status.pixels.empty()) status = Image<std::uint8_t>(border.status.width, border.status.height, 0);
   for (size_t i = 0; i < status.size(); ++i) status.pixels[i] = std::max(status.pixels[i], border.status.pixels[i]);
+}
+
+GBufferLayers joined(const GBufferLayers& a, const GBufferLayers& b) {
+  return {a.depth || b.depth, a.position || b.position, a.normal || b.normal, a.n_dot_v || b.n_dot_v,
+          a.id || b.id,       a.material || b.material, a.face || b.face,     a.status || b.status};
 }
 
 }  // namespace
@@ -109,18 +116,37 @@ void finish_samples(const PictureSettings& settings, Picture& picture) {
   }
 }
 
+GBufferLayers layers_read(std::span<const MethodCall> methods) {
+  GBufferLayers layers{
+      .depth = false, .position = false, .normal = false, .n_dot_v = true, .id = true, .material = false, .face = false, .status = true};
+  const std::array<std::pair<const char*, bool GBufferLayers::*>, 5> named{{{"Z", &GBufferLayers::depth},
+                                                                            {"P", &GBufferLayers::position},
+                                                                            {"N", &GBufferLayers::normal},
+                                                                            {"material", &GBufferLayers::material},
+                                                                            {"face", &GBufferLayers::face}}};
+  for (const MethodCall& call : methods) {
+    for (const std::string& input : call.method->inputs) {
+      for (const auto& [name, layer] : named) layers.*layer |= input == name;
+    }
+  }
+  return layers;
+}
+
 Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
                      const ExecutionSettings& how) {
   check_methods(scene, model, settings);
   Picture picture;
   ThreadArena arena(how.threads);
+  const GBufferLayers read = layers_read(settings.methods);
+  GBuffer gbuffer;
   for (int sample = 0; sample < settings.samples; ++sample) {
     ExecutionSettings part = how;
     if (how.progress) {
       part.progress = [&how, sample, &settings](double done) { how.progress((sample + done) / settings.samples); };
     }
     const auto start = Clock::now();
-    GBuffer gbuffer = render_gbuffer(model, camera, part, sample_offset(sample));
+    // Only the first sample's G-buffer is handed on.
+    render_gbuffer(model, camera, part, sample_offset(sample), sample == 0 ? joined(settings.layers, read) : read, gbuffer);
     picture.trace_ms += ms_since(start);
     arena.execute([&] { add_sample({gbuffer, camera, model, scene}, settings.methods, picture); });
     if (sample == 0) picture.gbuffer = std::move(gbuffer);

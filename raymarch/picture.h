@@ -23,7 +23,11 @@ struct PictureSettings {
   std::vector<MethodCall> methods{};      ///< Inks in order, the last on top.
   int samples = 1;                        ///< Per pixel, 1..1024: 1 is the centre; more follow the R2 sequence (Roberts 2018).
   std::optional<glm::vec3> background{};  ///< Linear; unset: transparent.
+  GBufferLayers layers{};                 ///< Of Picture::gbuffer. What the methods and the composite read is traced anyway.
 };
+
+/// What a composite with these methods reads: the shading's layers and the methods' inputs.
+GBufferLayers layers_read(std::span<const MethodCall> methods);
 
 /// Throws InputError where a method cannot run on the model.
 Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,

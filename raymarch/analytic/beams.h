@@ -23,7 +23,8 @@ double width_at(const ViewBeams& view, const PixelTile& rectangle, double z);
 /// Lane i: the rectangle's beam between depths z0 and z1, cut into `count` equal slabs; lanes from `count` on repeat the last.
 void slabs_of(const ViewBeams& view, const PixelTile& rectangle, double z0, double z1, int count, LaneBeams& beams);
 
-/// Lane i: the beam of block i of a tile between depths z0 and z1; lanes that are no block repeat the first.
-void blocks_of(const ViewBeams& view, const PixelTile& tile, double z0, double z1, LaneBeams& beams);
+/// Lane i: the beam of block i of a tile from depth z0[i] on, as far as length[i] or to z1; lanes that are no block repeat the first.
+void blocks_of(const ViewBeams& view, const PixelTile& tile, std::span<const double, kLanes> z0, std::span<const double, kLanes> length,
+               double z1, LaneBeams& beams);
 
 }  // namespace limn

@@ -13,6 +13,8 @@ constexpr int kLongestRun = 4;  // Slabs.
 constexpr size_t kFewBalls = 3;
 // Newton's steps end here, as a share of the extent: the next would be the square of it.
 constexpr double kNewtonTolerance = 1e-8;
+// What is left of a stretch that bounds say too little about.
+constexpr double kCut = 0.25;
 
 /// A tile on its way: which of its rays have yet to meet the surface.
 struct TileWork {
@@ -40,15 +42,21 @@ void enqueue(TileWork& work, int block, unsigned lanes, const LaneArray& a, cons
   }
 }
 
-/// Isolates the queued stretches ray by ray, sixteen at a time.
+/// Isolates the queued stretches ray by ray, sixteen at a time. Those that hold no root are active again.
 void settle_queue(TileWork& work, std::span<const TapeStep> steps) {
   if (work.queue.count == 0) return;
   const MarchTape march{work.view.tape, steps};
+  std::array<unsigned, kLanes> waiting{};
+  for (int k = 0; k < work.queue.count; ++k) {
+    const int lane = work.queue[k].lane;
+    waiting[static_cast<size_t>(lane / kLanes)] |= 1u << lane % kLanes;
+  }
   isolate(march, work.view.limits, work.rays, work.scratch.tape, work.queue, work.hits);
   for (int k = 0; k < work.queue.count; ++k) {
     const int lane = work.queue[k].lane;
-    work.active[static_cast<size_t>(lane / kLanes)] &= ~(1u << lane % kLanes);
+    waiting[static_cast<size_t>(lane / kLanes)] &= ~(1u << lane % kLanes);
   }
+  for (size_t block = 0; block < waiting.size(); ++block) work.active[block] |= waiting[block];
   polish(march, work.view.limits, work.rays, work.scratch.tape, work.queue, work.hits);
   work.queue.count = 0;
 }
@@ -66,6 +74,7 @@ void trace_balls(TileWork& work, const SlabRun& run, std::span<const TapeStep> s
     const unsigned hit = ball_roots(*work.view.tape, balls, rays.rays, a, b, found, inside) & lanes;
     // From within a ball the way out is that of all that it overlaps.
     enqueue(work, block, lanes & inside, a, b, ~0u, 0.0);
+    active &= ~(lanes & inside);
     const unsigned entered = hit & ~inside;
     if (entered != 0) write_ball_hits(work.rays, block * kLanes, found, entered, work.hits);
     active &= ~entered;
@@ -80,46 +89,90 @@ void guess_roots(const RayBlock& block, const LaneBeams& beams, const LaneBounds
   for (int i = 0; i < kLanes; ++i) t[i] = (z - block.depth[i]) / block.depth_per_t[i];
 }
 
-void trace_block(TileWork& work, const SlabRun& run, const MarchTape& march, const LaneBeams& beams, const LaneBounds& bounds, int block) {
+/// Where each block of a tile stands in a run: rays of block i that are still active have no root in front of z[i].
+struct BlockFronts {
+  std::array<double, kLanes> z{}, length{};
+};
+
+/// Takes a block's rays from the loop to be isolated one by one in what is left of the run.
+void leave_to_isolation(TileWork& work, const SlabRun& run, double z, int block) {
+  unsigned& active = work.active[static_cast<size_t>(block)];
+  LaneArray a, b;
+  unsigned late = 0;
+  const unsigned lanes = stretches_between(work.block[static_cast<size_t>(block)], z, run.z1, run.sign_from, a, b, late) & active;
+  enqueue(work, block, lanes, a, b, run.sign == 0.0 ? lanes : late, run.sign);
+  active &= ~lanes;
+}
+
+/// The roots of a block's rays between two depths where f falls, or does not for those that start within the field.
+void trace_monotone(TileWork& work, const SlabRun& run, const MarchTape& march, const LaneBeams& beams, const LaneBounds& bounds,
+                    bool falls, int block) {
   unsigned& active = work.active[static_cast<size_t>(block)];
   const RayBlock& rays = work.block[static_cast<size_t>(block)];
+  const double z0 = beams.middle[block] - beams.half[block], z1 = beams.middle[block] + beams.half[block];
   LaneArray a, b, t, sign;
   unsigned late = 0, undecided = 0;
-  const unsigned lanes = stretches_between(rays, run.z0, run.z1, run.sign_from, a, b, late) & active;
-  if (lanes == 0) return;
-  const unsigned unsure = run.sign == 0.0 ? lanes : lanes & late;
-  const double steepest = 1e-9 * work.view.limits.lipschitz;
-  const bool falls = run.sign > 0.0 ? bounds.slope_upper[block] < -steepest : bounds.slope_lower[block] > steepest;
-  const bool rises = run.sign > 0.0 ? bounds.slope_lower[block] > steepest : bounds.slope_upper[block] < -steepest;
-  enqueue(work, block, falls || rises ? unsure : lanes, a, b, unsure, run.sign);
-  if (!falls || (lanes & ~unsure) == 0) return;
+  const unsigned lanes = stretches_between(rays, z0, z1, run.sign_from, a, b, late) & active;
+  if ((lanes & late) != 0) return leave_to_isolation(work, run, z0, block);
+  if (lanes == 0 || !falls) return;
   guess_roots(rays, beams, bounds, block, t);
-  const unsigned found = newton_roots(march, rays.rays, a, b, run.sign, kNewtonTolerance * work.view.limits.extent, lanes & ~unsure,
-                                      work.scratch.tape, t, undecided);
-  enqueue(work, block, undecided, a, b, 0u, run.sign);
+  const unsigned found =
+      newton_roots(march, rays.rays, a, b, run.sign, kNewtonTolerance * work.view.limits.extent, lanes, work.scratch.tape, t, undecided);
+  if (undecided != 0) return leave_to_isolation(work, run, z0, block);
   if (found == 0) return;
   std::fill_n(sign.lane, kLanes, run.sign);
   write_roots(march, work.rays, rays.rays, t, sign, nullptr, block * kLanes, found, work.scratch.tape, work.hits);
   active &= ~found;
 }
 
-/// Bounds of f and its slope over each block tell where it falls from one side of the run to the other.
+/// One stretch of one block, given bounds over it. Returns false where it must be cut.
+bool trace_stretch(TileWork& work, const SlabRun& run, std::span<const TapeStep> steps, std::span<const TapeChoice> choices,
+                   const LaneBeams& beams, const LaneBounds& bounds, int block) {
+  if (bounds.lower[block] > 0.0 || bounds.upper[block] < 0.0) return true;
+  const double steepest = 1e-9 * work.view.limits.lipschitz;
+  const bool down = bounds.slope_upper[block]<-steepest, up = bounds.slope_lower[block]> steepest;
+  if (run.sign == 0.0 || !(down || up)) return false;
+  prune_tape(steps, choices, static_cast<std::uint16_t>(1u << block), work.view.tape->registers, work.scratch.block_steps);
+  trace_monotone(work, run, {work.view.tape, work.scratch.block_steps}, beams, bounds, run.sign > 0.0 ? down : up, block);
+  return true;
+}
+
+/// Cuts the run, block by block and front to back, into stretches where bounds of f and its slope tell that there is nothing, or that f
+/// falls all the way and Newton's iteration may be trusted. Where a stretch no deeper than a block is wide tells neither, there is a
+/// silhouette in it, and rays are isolated one by one.
 void trace_run(TileWork& work, const SlabRun& run, std::span<const TapeStep> steps) {
+  BlockFronts fronts;
+  fronts.z.fill(run.z0);
+  fronts.length.fill(run.z1 - run.z0);
+  const double shortest = width_at(work.view.beams, {0, 0, 4, 4}, run.z0);
   LaneBeams beams;
   LaneBounds bounds;
-  blocks_of(work.view.beams, work.tile, run.z0, run.z1, beams);
-  tape_slope_bounds(*work.view.tape, steps, beams, work.scratch.tape, bounds);
-  unsigned open = 0;
-  for (int block = 0; block < work.blocks; ++block) {
-    const bool clear = bounds.lower[block] > 0.0 || bounds.upper[block] < 0.0;
-    if (!clear && work.active[static_cast<size_t>(block)] != 0) open |= 1u << block;
+  std::vector<TapeChoice>& choices = work.scratch.choices;
+  for (;;) {
+    unsigned going = 0;
+    for (int block = 0; block < work.blocks; ++block) {
+      if (work.active[static_cast<size_t>(block)] != 0 && fronts.z[static_cast<size_t>(block)] < run.z1) going |= 1u << block;
+    }
+    if (going == 0) break;
+    blocks_of(work.view.beams, work.tile, fronts.z, fronts.length, run.z1, beams);
+    tape_slope_bounds(*work.view.tape, steps, beams, work.scratch.tape, bounds);
+    choices.swap(work.scratch.tape.choices);
+    for (unsigned left = going; left != 0; left &= left - 1) {
+      const int block = std::countr_zero(left);
+      double& z = fronts.z[static_cast<size_t>(block)];
+      double& length = fronts.length[static_cast<size_t>(block)];
+      if (trace_stretch(work, run, steps, choices, beams, bounds, block)) {
+        z = std::min(z + length, run.z1);
+        length *= 2.0;
+      } else if (length > shortest && run.sign != 0.0) {
+        length *= kCut;
+      } else {
+        leave_to_isolation(work, run, z, block);
+        z = run.z1;
+      }
+    }
   }
-  if (open == 0) return;
-  std::vector<TapeStep>& pruned = work.scratch.block_steps;
-  prune_tape(steps, work.scratch.tape.choices, static_cast<std::uint16_t>(open), work.view.tape->registers, pruned);
-  const MarchTape march{work.view.tape, pruned};
-  for (unsigned left = open; left != 0; left &= left - 1) trace_block(work, run, march, beams, bounds, std::countr_zero(left));
-  settle_queue(work, pruned);
+  settle_queue(work, steps);
 }
 
 void trace_segment(TileWork& work, const PixelTile& rectangle, const TapeSegment& segment) {

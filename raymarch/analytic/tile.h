@@ -13,6 +13,7 @@ struct ViewScratch {
   TapeScratch tape{};
   std::vector<TapeStep> run_steps{}, block_steps{};
   std::vector<std::uint32_t> balls{};
+  std::vector<TapeChoice> choices{};
 };
 
 struct FieldView {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 
 #include "raymarch/image_io.h"
@@ -173,6 +174,8 @@ int run(const Options& options) {
   if (options.plan.tolerance_px && !choose_model(options, bar, render)) return 1;
   render.surface.progress = bar.stage("building the surface");
   render.picture = picture_settings(options, render.input);
+  const auto has_layers = [](const fs::path& file) { return ending_of(file) == ".exr"; };
+  if (std::none_of(render.outputs.begin(), render.outputs.end(), has_layers)) render.picture.layers = layers_read(render.picture.methods);
   const CameraSettings camera_of = camera_settings(options, render.input);
   const Box scene_bounds = bounds(render.input.scene);
   camera_of_view(camera_of, scene_bounds, 0, 1);  // a camera that is wrong is told before the surface is built

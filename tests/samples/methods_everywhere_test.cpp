@@ -39,7 +39,10 @@ void expect_sound_methods(const Drawn& drawn, const std::string& what) {
     ++drawn_methods;
     const PictureSettings settings{.methods = {{&method, resolve(method.parameters, {})}}};
     const Picture one = draw_picture(drawn.scene, drawn.model, drawn.camera, settings, {.threads = 1, .tile_px = 16});
-    const Picture several = draw_picture(drawn.scene, drawn.model, drawn.camera, settings, {.threads = 3, .tile_px = 7});
+    // A method reads no layer that it does not name.
+    PictureSettings sparing = settings;
+    sparing.layers = layers_read(settings.methods);
+    const Picture several = draw_picture(drawn.scene, drawn.model, drawn.camera, sparing, {.threads = 3, .tile_px = 7});
     double ink = 0.0;
     for (const float coverage : one.border.pixels) {
       ASSERT_TRUE(std::isfinite(coverage) && coverage >= 0.0f && coverage <= 1.0f) << method.about.name << " on " << what;

@@ -149,7 +149,7 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
     render_gbuffer(model, camera, part, sample_offset(sample), sample == 0 ? joined(settings.layers, read) : read, gbuffer);
     picture.trace_ms += ms_since(start);
     arena.execute([&] { add_sample({gbuffer, camera, model, scene}, settings.methods, picture); });
-    if (sample == 0) picture.gbuffer = std::move(gbuffer);
+    if (sample == 0) picture.gbuffer = std::exchange(gbuffer, {});
   }
   finish_samples(settings, picture);
   return picture;

@@ -6,16 +6,10 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <optional>
 #include <span>
 
 #include "sdf/level_set_data.h"
-
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
 
 namespace limn {
 namespace {
@@ -124,6 +118,13 @@ void for_each_node(const CrossedCells& crossed, const Visit& visit) {
   }
 }
 
+/// From a block to its neighbour over a face (see BrickNeighbors).
+glm::ivec3 face_step(int face) {
+  glm::ivec3 step(0);
+  step[face / 2] = face % 2 ? 1 : -1;
+  return step;
+}
+
 /// A block of cells that may be crossed, and what looking at it told.
 struct Candidate {
   glm::ivec3 origin{0};
@@ -196,23 +197,15 @@ struct Layout {
   }
 };
 
-/// The steps to the bricks into which the stencils of a crossed brick's cells reach: over one face each for differences along the axes,
-/// over edges and corners too for a spline's.
+/// Calls `visit(step)` for the bricks into which the stencils of a crossed brick's cells reach: one over a face each.
 template <class Visit>
-void for_each_reached(const Candidate& candidate, bool over_corners, const Visit& visit) {
-  const auto touches = [&](int axis, int step) { return step == 0 || (candidate.faces >> (2 * axis + (step > 0)) & 1) != 0; };
-  for (int x = -1; x <= 1; ++x) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int z = -1; z <= 1; ++z) {
-        const int steps = std::abs(x) + std::abs(y) + std::abs(z);
-        if (steps == 0 || (steps > 1 && !over_corners)) continue;
-        if (touches(0, x) && touches(1, y) && touches(2, z)) visit(glm::ivec3(x, y, z));
-      }
-    }
+void for_each_reached(const Candidate& candidate, const Visit& visit) {
+  for (int face = 0; face < 6; ++face) {
+    if ((candidate.faces >> face & 1) != 0) visit(face_step(face));
   }
 }
 
-Layout lay_out(std::vector<Candidate> candidates, bool over_corners) {
+Layout lay_out(std::vector<Candidate> candidates) {
   Layout layout;
   layout.crossed = std::move(candidates);
   std::erase_if(layout.crossed, [](const Candidate& c) { return !c.crossed; });
@@ -225,7 +218,7 @@ Layout lay_out(std::vector<Candidate> candidates, bool over_corners) {
   for (const Candidate& candidate : layout.crossed) layout.crossed_keys.push_back(key_of(candidate.origin));
   std::vector<std::pair<std::uint64_t, glm::ivec3>> reached;
   for (const Candidate& candidate : layout.crossed) {
-    for_each_reached(candidate, over_corners, [&](const glm::ivec3& step) {
+    for_each_reached(candidate, [&](const glm::ivec3& step) {
       const glm::ivec3 origin = candidate.origin + kBrickCells * step;
       if (layout.find(key_of(origin)) < 0) reached.emplace_back(key_of(origin), origin);
     });
@@ -238,23 +231,6 @@ Layout lay_out(std::vector<Candidate> candidates, bool over_corners) {
     layout.reached.push_back(origin);
   }
   return layout;
-}
-
-/// Coefficients of the spline: f less a sixth of its second differences along the axes, as sdf/gradients/cubic.cpp has them.
-void load_coefficients(const Accessor& accessor, const glm::ivec3& origin, const NodeValues& values, NodeValues& out) {
-  const auto value = [&](int x, int y, int z) {
-    const bool here = std::min({x, y, z}) >= 0 && std::max({x, y, z}) < kBrickNodes;
-    return here ? values[at(x, y, z)] : accessor.getValue(nanovdb::Coord(origin.x + x, origin.y + y, origin.z + z));
-  };
-  for (int x = 0; x < kBrickNodes; ++x) {
-    for (int y = 0; y < kBrickNodes; ++y) {
-      for (int z = 0; z < kBrickNodes; ++z) {
-        const float beside =
-            value(x - 1, y, z) + value(x + 1, y, z) + value(x, y - 1, z) + value(x, y + 1, z) + value(x, y, z - 1) + value(x, y, z + 1);
-        out[at(x, y, z)] = 2.0f * values[at(x, y, z)] - beside / 6.0f;
-      }
-    }
-  }
 }
 
 void quantise(const NodeValues& values, float steps_per_unit, std::int16_t* out) {
@@ -389,60 +365,32 @@ void fill(const LevelSetData& data, const Layout& layout, float steps_per_unit, 
   const size_t crossed = layout.crossed.size();
   tbb::parallel_for(tbb::blocked_range<size_t>(0, layout.size(), 64), [&](const tbb::blocked_range<size_t>& range) {
     const Accessor accessor = data.accessor();
-    NodeValues nodes, coefficients;
+    NodeValues nodes;
     for (size_t i = range.begin(); i < range.end(); ++i) {
       std::int16_t* const values = bricks.values.data() + i * kBrickStride;
       load_nodes(accessor, i < crossed ? layout.crossed[i].origin : layout.reached[i - crossed], nodes);
       quantise(nodes, steps_per_unit, values);
       std::fill(values + nodes.size(), values + kBrickStride, std::int16_t{0});
-      if (!bricks.coefficients.empty()) {
-        std::int16_t* const to = bricks.coefficients.data() + i * kBrickStride;
-        load_coefficients(accessor, i < crossed ? layout.crossed[i].origin : layout.reached[i - crossed], nodes, coefficients);
-        // Only their gradient's direction counts, so their steps may be larger: thrice, so that none is cut off (|2 f - sum of six / 6| <=
-        // 3 max |f|).
-        quantise(coefficients, steps_per_unit / 3.0f, to);
-        std::fill(to + nodes.size(), to + kBrickStride, std::int16_t{0});
-      }
       if (i >= crossed) continue;
       const glm::ivec3& origin = layout.crossed[i].origin;
       Part whole{glm::ivec3(0), values, {}};
       bricks.groups[0].bounds[i] = bound_surface(origin, std::span(&whole, 1));
-      const auto beside = [&](const glm::ivec3& step) { return layout.find(key_of(origin + kBrickCells * step)); };
       for (int face = 0; face < 6; ++face) {
-        glm::ivec3 step(0);
-        step[face / 2] = face % 2 ? 1 : -1;
-        bricks.neighbors[i].face[face] = beside(step);
+        bricks.neighbors[i].face[face] = layout.find(key_of(origin + kBrickCells * face_step(face)));
       }
-      if (bricks.around.empty()) continue;
-      for (int k = 0; k < 27; ++k) bricks.around[i].brick[k] = beside({k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1});
     }
   });
 }
 
 }  // namespace
 
-void* LargePages::take(size_t bytes) {
-  constexpr size_t kPage = size_t{2} << 20;
-  const size_t page = bytes >= kPage ? kPage : 64, rounded = (bytes + page - 1) / page * page;
-  void* const memory = std::aligned_alloc(page, rounded);
-  if (!memory) throw std::bad_alloc();
-#if defined(__linux__)
-  // A wish, no more: where it is not granted everything works the same.
-  if (page == kPage) static_cast<void>(madvise(memory, rounded, MADV_HUGEPAGE));
-#endif
-  return memory;
-}
-
-void LargePages::give_back(void* memory) { std::free(memory); }
-
 std::int64_t RayBricks::bytes() const {
-  size_t sum = neighbors.size() * sizeof(BrickNeighbors) + around.size() * sizeof(BricksAround) +
-               (values.size() + coefficients.size()) * sizeof(std::int16_t);
+  size_t sum = neighbors.size() * sizeof(BrickNeighbors) + values.size() * sizeof(std::int16_t);
   for (const BrickGroups& of : groups) sum += of.bounds.size() * sizeof(SurfaceBound) + of.bricks.size() * sizeof(std::int32_t);
-  return static_cast<std::int64_t>(sum);
+  return static_cast<std::int64_t>(sum) + spline.bytes();
 }
 
-std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool with_coefficients) {
+std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool with_spline) {
   const auto start = std::chrono::steady_clock::now();
   const LevelSetData& data = level_set.data();
   std::vector<Candidate> candidates = find_candidates(data);
@@ -450,8 +398,8 @@ std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool wit
     const Accessor accessor = data.accessor();
     for (size_t i = range.begin(); i < range.end(); ++i) inspect(accessor, candidates[i]);
   });
-  const Layout layout = lay_out(std::move(candidates), with_coefficients);
-  if (layout.size() > kMostBricks) return nullptr;
+  const Layout layout = lay_out(std::move(candidates));
+  if (layout.size() > kMostBricks || (with_spline && layout.crossed.size() > kMostSplineBricks)) return nullptr;
   auto bricks = std::make_shared<RayBricks>();
   if (!layout.crossed.empty()) {
     const float scale = scale_for(layout, std::abs(data.grid->tree().background()));
@@ -460,11 +408,12 @@ std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool wit
     bricks->groups.push_back({.shift = 3, .bounds = std::vector<SurfaceBound>(layout.crossed.size()), .bricks = {}});
     bricks->neighbors.resize(layout.crossed.size());
     bricks->values.resize(layout.size() * kBrickStride);
-    if (with_coefficients) {
-      bricks->coefficients.resize(layout.size() * kBrickStride);
-      bricks->around.resize(layout.crossed.size());
-    }
     fill(data, layout, scale, *bricks);
+    if (with_spline) {
+      std::vector<glm::ivec3> origins;
+      for (const Candidate& candidate : layout.crossed) origins.push_back(candidate.origin);
+      bricks->spline = make_spline_bricks(data, origins);
+    }
     for (const int shift : {4, 5}) bricks->groups.push_back(group_bricks(layout, *bricks, shift));
     bricks->lower = glm::ivec3(std::numeric_limits<int>::max());
     bricks->upper = glm::ivec3(std::numeric_limits<int>::lowest());

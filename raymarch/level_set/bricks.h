@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "raymarch/level_set/large_pages.h"
+#include "raymarch/level_set/spline_bricks.h"
 #include "sdf/geometry.h"
 #include "sdf/level_set.h"
 
@@ -49,39 +51,12 @@ struct BrickNeighbors {
   std::int32_t face[6] = {-1, -1, -1, -1, -1, -1};
 };
 
-/// Values in few, large pages where the system has them: rays jump from brick to brick, and a page each would be looked up every time.
-struct LargePages {
-  static void* take(size_t bytes);
-  static void give_back(void* memory);
-};
-template <class T>
-struct LargePageAllocator {
-  using value_type = T;
-  LargePageAllocator() = default;
-  template <class U>
-  LargePageAllocator(const LargePageAllocator<U>&) {}
-  T* allocate(size_t count) { return static_cast<T*>(LargePages::take(count * sizeof(T))); }
-  void deallocate(T* memory, size_t) { LargePages::give_back(memory); }
-  /// Elements are left unset: whoever makes bricks writes all of them.
-  template <class U>
-  void construct(U*) {}
-  bool operator==(const LargePageAllocator&) const { return true; }
-};
-
-/// All neighbours, itself in the middle: number (x + 1) * 9 + (y + 1) * 3 + z + 1 for the steps x, y and z.
-struct BricksAround {
-  std::int32_t brick[27];
-};
-
 struct RayBricks {
   std::vector<BrickGroups> groups{};        ///< Of shift 3, 4 and 5; none where the surface crosses no cell.
   std::vector<BrickNeighbors> neighbors{};  ///< As many.
   std::vector<std::int16_t, LargePageAllocator<std::int16_t>>
-      values{};  ///< kBrickStride for each brick: the crossed ones first, then those of stencils only.
-  /// Cubic B-spline coefficients at the same nodes, in steps three times as large, and the bricks into which their stencils reach; empty where
-  /// nobody asked for them.
-  std::vector<std::int16_t, LargePageAllocator<std::int16_t>> coefficients{};
-  std::vector<BricksAround> around{};
+      values{};                   ///< kBrickStride for each brick: the crossed ones first, then those of stencils only.
+  SplineBricks spline{};          ///< Of the crossed bricks; empty where nobody asked for it.
   glm::ivec3 lower{0}, upper{0};  ///< Around the crossed cells, index coordinates.
   double world_per_step = 0.0;    ///< What one step of a value stands for.
   double prepare_ms = 0.0;
@@ -92,6 +67,6 @@ struct RayBricks {
 /// Made from the grid in parallel. Null where the form would not do: more bricks than 32-bit offsets reach, or values whose range over the
 /// crossed cells differs so much from place to place that 16 bits would not tell them apart (a grid far from a distance field).
 /// Signs are kept: a node is inside (< 0) in the bricks exactly where it is inside in the grid.
-std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool with_coefficients = false);
+std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool with_spline = false);
 
 }  // namespace limn

@@ -121,63 +121,42 @@ HWY_INLINE SplineWeights spline_weights(VF u) {
            hn::Mul(half, u2)}};
 }
 
-/// The byte offsets by which the bricks of a stencil's parts lie from the cell's own: before, at and behind it along x and y, below and
-/// above along z (a pair of nodes each).
-struct StencilShifts {
-  VI shift[3][3][2];
+/// Four coefficients along z from an element on.
+struct Row {
+  VF at[4];
 };
-HWY_INLINE StencilShifts stencil_shifts(const RayBricks& bricks, VI number) {
+HWY_INLINE Row gather_row(const SplineBricks& bricks, VI element) {
+  const F d;
   const I di;
-  const VI brick = hn::ShiftRight<9>(number), seven = hn::Set(di, 7), one = hn::Set(di, 1), zero = hn::Zero(di);
-  VI before[3], behind[3];
-  auto beyond = hn::Eq(zero, one);
-  for (int axis = 0; axis < 3; ++axis) {
-    const VI node = hn::And(hn::ShiftRightSame(number, 6 - 3 * axis), seven);
-    const auto first = hn::Eq(node, zero), last = hn::Eq(node, seven);
-    beyond = hn::Or(beyond, hn::Or(first, last));
-    before[axis] = hn::IfThenElse(first, hn::Set(di, -1), zero);
-    behind[axis] = hn::IfThenElse(last, one, zero);
-  }
-  StencilShifts result;
-  const bool inside = hn::AllFalse(di, beyond);
-  const auto* table = reinterpret_cast<const std::int32_t*>(bricks.around.data());
-  for (int x = 0; x < 3; ++x) {
-    for (int y = 0; y < 3; ++y) {
-      for (int z = 0; z < 2; ++z) {
-        VI& shift = result.shift[x][y][z];
-        shift = zero;
-        if (inside) continue;
-        const auto step = [&](int part, int axis) { return part == 0 ? before[axis] : part == 1 ? zero : behind[axis]; };
-        const VI sx = step(x, 0), sy = step(y, 1), sz = z == 0 ? before[2] : behind[2];
-        const VI k = hn::Add(hn::Add(hn::Mul(sx, hn::Set(di, 9)), hn::Mul(sy, hn::Set(di, 3))), hn::Add(sz, hn::Set(di, 13)));
-        const VI other = hn::GatherIndex(di, table, hn::Add(hn::Mul(brick, hn::Set(di, 27)), k));
-        // Eight nodes on in the next brick are the first of it.
-        const VI nodes = hn::Add(hn::Add(hn::Mul(sx, hn::Set(di, 81)), hn::Mul(sy, hn::Set(di, 9))), sz);
-        shift = hn::Sub(hn::Mul(hn::Sub(hn::Max(other, zero), brick), hn::Set(di, kBrickBytes)), hn::Mul(nodes, hn::Set(di, 16)));
-      }
-    }
-  }
-  return result;
+  const auto* high = reinterpret_cast<const std::int32_t*>(bricks.high.data());
+  const auto* low = reinterpret_cast<const std::int32_t*>(bricks.low.data());
+  const VI twice = hn::Add(element, element), byte = hn::Set(di, 255), upper = hn::Set(di, ~0xffff >> 8);
+  const VI h0 = hn::GatherOffset(di, high, twice), h1 = hn::GatherOffset(di, high, hn::Add(twice, hn::Set(di, 4)));
+  const VI l = hn::GatherOffset(di, low, element);
+  // The first of a pair is its lower half: moved up to lose the other, and down again with its sign.
+  const auto first = [&](VI pair) { return hn::ShiftRight<8>(hn::ShiftLeft<16>(pair)); };
+  const auto second = [&](VI pair) { return hn::And(hn::ShiftRight<8>(pair), upper); };
+  return {{hn::ConvertTo(d, hn::Or(first(h0), hn::And(l, byte))), hn::ConvertTo(d, hn::Or(second(h0), hn::And(hn::ShiftRight<8>(l), byte))),
+           hn::ConvertTo(d, hn::Or(first(h1), hn::And(hn::ShiftRight<16>(l), byte))),
+           hn::ConvertTo(d, hn::Or(second(h1), hn::And(hn::ShiftRight<24>(l), byte)))}};
 }
 
-/// The gradient of the cubic B-spline.
-HWY_INLINE V3 cubic_gradient(const RayBricks& bricks, const Cells& cells, VI number) {
+/// The gradient of the cubic B-spline, in the brick's own steps.
+HWY_INLINE V3 cubic_gradient(const SplineBricks& bricks, const Cells& cells, VI number) {
   const I di;
   const SplineWeights wx = spline_weights(cells.local.x), wy = spline_weights(cells.local.y), wz = spline_weights(cells.local.z);
-  const StencilShifts shifts = stencil_shifts(bricks, number);
-  const std::int16_t* values = bricks.coefficients.data();
-  constexpr int kPart[4] = {0, 1, 1, 2};
+  const VI seven = hn::Set(di, 7), side = hn::Set(di, kSplineNodes);
+  const VI x0 = hn::And(hn::ShiftRight<6>(number), seven), y0 = hn::And(hn::ShiftRight<3>(number), seven), z0 = hn::And(number, seven);
+  const VI corner = hn::Add(hn::Mul(hn::Add(hn::Mul(x0, side), y0), side), z0);
+  const VI self = hn::Add(hn::Mul(hn::ShiftRight<9>(number), hn::Set(di, kSplineStride)), corner);
   V3 g{set(0.0f), set(0.0f), set(0.0f)};
   for (int x = 0; x < 4; ++x) {
     VF across = set(0.0f), slope_y = set(0.0f), slope_z = set(0.0f);
     for (int y = 0; y < 4; ++y) {
-      const VI row = hn::Add(cells.self, hn::Set(di, 2 * ((x - 1) * 81 + (y - 1) * 9)));
-      const VI* const shift = shifts.shift[kPart[x]][kPart[y]];
-      const Pair below = gather_pair(values, hn::Add(hn::Sub(row, hn::Set(di, 2)), shift[0]));
-      const Pair above = gather_pair(values, hn::Add(hn::Add(row, hn::Set(di, 2)), shift[1]));
+      const Row row = gather_row(bricks, hn::Add(self, hn::Set(di, (x * kSplineNodes + y) * kSplineNodes)));
       const auto weigh = [&](const VF* w) {
-        return hn::Add(hn::Add(hn::Mul(w[0], below.low), hn::Mul(w[1], below.high)),
-                       hn::Add(hn::Mul(w[2], above.low), hn::Mul(w[3], above.high)));
+        return hn::Add(hn::Add(hn::Mul(w[0], row.at[0]), hn::Mul(w[1], row.at[1])),
+                       hn::Add(hn::Mul(w[2], row.at[2]), hn::Mul(w[3], row.at[3])));
       };
       const VF here = weigh(wz.value);
       across = hn::Add(across, hn::Mul(wy.value[y], here));

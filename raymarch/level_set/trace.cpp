@@ -239,7 +239,7 @@ HWY_NOINLINE void enter_packet(const SurfaceBound& bound, std::int32_t index, co
 }
 
 HWY_INLINE V3 gradient_at(BrickGradient gradient, const RayBricks& bricks, const Cells& cells, VI number) {
-  if (gradient == BrickGradient::cubic) return cubic_gradient(bricks, cells, number);
+  if (gradient == BrickGradient::cubic) return cubic_gradient(bricks.spline, cells, number);
   return gradient == BrickGradient::central ? central_gradient(bricks.values.data(), cells) : cell_gradient(bricks.values.data(), cells);
 }
 

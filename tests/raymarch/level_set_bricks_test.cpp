@@ -181,7 +181,7 @@ TEST(LevelSetBricks, TakeTheNormalsOfTheGradientThatWasAskedFor) {
         worst = std::max(worst, glm::length(glm::dvec3(normals[i]) - glm::normalize(gradients[i])));
       }
       EXPECT_GT(points.size(), 500u) << c.name;
-      EXPECT_LT(worst, 2e-3) << c.name << " " << name << " seed " << seed;
+      EXPECT_LT(worst, name == "cubic" ? 3e-4 : 2e-3) << c.name << " " << name << " seed " << seed;
     }
   }
 }

@@ -6,5 +6,6 @@
 #if !LIMN_SIMD
 #define HWY_COMPILE_ONLY_EMU128 1  // Plain loops: what the others are checked against.
 #else
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+// Vectors whose length is known only when the program runs cannot be members of structs: there NEON does it.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #endif

@@ -30,6 +30,8 @@ struct Frame {
   }
   void miss(size_t i) { hit(i, std::numeric_limits<float>::infinity(), glm::vec3(0.0f)); }
 };
+/// FNV-1a over a picture's bytes: whether two runs gave the same.
+std::string checksum(const Frame& frame);
 
 enum class Role { ours, peer, floor };
 /// Which surface a contestant draws: that of the grid (for shapes of closed form: that form), or the mesh that the grid was made from.

@@ -12,6 +12,7 @@
 #include "sdf/version.h"
 #include "tests/bench/against.h"
 #include "tests/bench/convert_suite.h"
+#include "tests/bench/fields_suite.h"
 #include "tests/bench/image_methods.h"
 #include "tests/bench/march_suite.h"
 #include "tests/bench/plan_suite.h"
@@ -22,10 +23,11 @@ namespace {
 constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
 
   --suite march     level sets, closed forms and meshes beside OpenVDB, NanoVDB and Embree
+          fields    analytic fields beside the closed-form sphere and the memory-write floor
           convert   mesh to level set beside OpenVDB's meshToVolume
           images    image methods beside OpenCV
           plan      what a plan saves (minutes)
-          all       the first three (the default)
+          all       the first four (the default)
   --object NAME     sphere, torus, or a built-in scene with a cage; may be repeated
   --mesh FILE       a mesh to march and to convert; may be repeated
   --voxels N        along the longest side; may be repeated
@@ -88,9 +90,9 @@ Settings parse(int argc, char** argv) {
       settings.views = whole(flag, 1);
     } else if (flag == "--suite") {
       settings.suite = value(flag);
-      const std::vector<std::string> known{"march", "convert", "images", "plan", "all"};
+      const std::vector<std::string> known{"march", "fields", "convert", "images", "plan", "all"};
       if (std::find(known.begin(), known.end(), settings.suite) == known.end())
-        refuse(flag, settings.suite, "unknown suite", "march, convert, images, plan or all");
+        refuse(flag, settings.suite, "unknown suite", "march, fields, convert, images, plan or all");
     } else if (flag == "--width") {
       settings.width_px = std::min(whole(flag, 16), 16384);
       settings.height_px = std::max(1, settings.width_px * 9 / 16);
@@ -128,6 +130,10 @@ nlohmann::json rows_of(const Settings& settings) {
   if (settings.runs_suite("march"))
     append(bench_march(
         {settings.objects, settings.meshes, settings.voxels, settings.runs, settings.width_px, settings.height_px, settings.table()}));
+  // Objects that are asked for by name are not fields' scenes.
+  if (settings.suite == "fields" || (settings.suite == "all" && settings.objects.empty() && settings.meshes.empty()))
+    append(
+        bench_fields({.runs = settings.runs, .width_px = settings.width_px, .height_px = settings.height_px, .table = settings.table()}));
   const bool shapes_only = !settings.objects.empty() && cages(settings.objects).empty() && settings.meshes.empty();
   if (settings.suite == "convert" || (settings.suite == "all" && !shapes_only)) {
     // The largest of the marchers' grids would take a minute a run.

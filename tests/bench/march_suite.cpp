@@ -16,21 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-/// FNV-1a over a picture's bytes: whether two runs gave the same.
-std::string checksum(const Frame& frame) {
-  std::uint64_t sum = 14695981039346656037ull;
-  const auto add = [&sum](const float* values, size_t count) {
-    for (size_t i = 0; i < count; ++i) {
-      std::uint32_t bits = 0;
-      std::memcpy(&bits, values + i, sizeof bits);
-      sum = (sum ^ bits) * 1099511628211ull;
-    }
-  };
-  add(frame.distance.get(), frame.pixels());
-  add(frame.normal.get(), 3 * frame.pixels());
-  return fmt::format("{:016x}", sum);
-}
-
 /// In JSON there is no infinity.
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 

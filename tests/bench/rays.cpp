@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstring>
 
 #include "sdf/error.h"
 #include "tests/bench/contestant.h"
@@ -13,6 +16,20 @@ Frame::Frame(int width_px, int height_px)
   if (!distance || !normal) throw MachineError("no memory for a picture");
   std::fill_n(distance.get(), pixels(), 0.0f);
   std::fill_n(normal.get(), 3 * pixels(), 0.0f);
+}
+
+std::string checksum(const Frame& frame) {
+  std::uint64_t sum = 14695981039346656037ull;
+  const auto add = [&sum](const float* values, size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+      std::uint32_t bits = 0;
+      std::memcpy(&bits, values + i, sizeof bits);
+      sum = (sum ^ bits) * 1099511628211ull;
+    }
+  };
+  add(frame.distance.get(), frame.pixels());
+  add(frame.normal.get(), 3 * frame.pixels());
+  return fmt::format("{:016x}", sum);
 }
 
 RayForms<double> ray_forms(const Camera& camera) {

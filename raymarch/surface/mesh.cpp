@@ -6,6 +6,8 @@
 
 #include <chrono>
 
+#include "raymarch/mesh/mesh_hit.h"
+#include "raymarch/mesh/view.h"
 #include "raymarch/polygons.h"
 #include "raymarch/surface/mesh_curvature.h"
 #include "raymarch/surface/object_mesh.h"
@@ -28,6 +30,7 @@ struct MeshState {
   TriangleMesh mesh;  ///< Render space.
   Owned<RTCDevice, EmbreeDevice> device;
   Owned<RTCScene, EmbreeScene> scene;
+  Box bounds;
   std::shared_ptr<const Polygons> polygons;
   std::optional<MeshCurvature> curvature;  ///< Refers to the two above.
 };
@@ -128,31 +131,16 @@ void build_tree(MeshState& state) {
   if (rtcGetDeviceError(state.device.get()) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
 }
 
-glm::vec3 normal_at(const TriangleMesh& mesh, const TriangleHit& hit) {
-  const glm::uvec3& corners = mesh.triangles[hit.triangle];
-  const glm::dvec3 a = mesh.positions[corners.x];
-  const glm::dvec3 facet = glm::cross(mesh.positions[corners.y] - a, mesh.positions[corners.z] - a);
-  glm::dvec3 normal = facet;
-  if (!mesh.corner_normals.empty()) {
-    const glm::vec3* corner = &mesh.corner_normals[size_t{3} * hit.triangle];
-    const double u = std::clamp(hit.u, 0.0, 1.0), v = std::clamp(hit.v, 0.0, 1.0 - u);
-    normal = (1.0 - u - v) * glm::dvec3(corner[0]) + u * glm::dvec3(corner[1]) + v * glm::dvec3(corner[2]);
-    // Opposite corner normals can cancel; the facet's own cannot.
-    if (!(glm::dot(normal, normal) > 1e-12)) normal = facet;
-  }
-  return glm::vec3(glm::normalize(normal));
-}
-
 void write_hit(const MeshState& state, const TriangleHit& hit, int i, HitBatch& hits) {
   const TriangleMesh& mesh = state.mesh;
-  const glm::vec3 normal = normal_at(mesh, hit);
+  const glm::vec3 normal = normal_at(mesh, {hit.triangle, hit.u, hit.v});
   hits.status[i] = HitStatus::hit;
   hits.t[i] = static_cast<float>(hit.t);
   hits.normal_x[i] = normal.x;
   hits.normal_y[i] = normal.y;
   hits.normal_z[i] = normal.z;
-  hits.face[i] = mesh.triangle_faces.empty() ? static_cast<std::int32_t>(hit.triangle) : mesh.triangle_faces[hit.triangle];
-  hits.material[i] = mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[hit.triangle];
+  hits.face[i] = face_of(mesh, hit.triangle);
+  hits.material[i] = material_of(mesh, hit.triangle);
 }
 
 RTCRayHit embree_ray(const RayBatch& rays, int i) {
@@ -191,8 +179,13 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   state->mesh = std::move(source.triangles);
   Surface surface;
   for (const glm::dvec3& position : state->mesh.positions) surface.bounds = include(surface.bounds, position);
+  state->bounds = surface.bounds;
   build_tree(*state);
   surface.trace = trace;
+  surface.view = [](const std::shared_ptr<const void>& kept, const ViewRequest& request) {
+    const MeshState& mesh_state = *static_cast<const MeshState*>(kept.get());
+    return view_mesh(kept, mesh_state.mesh, mesh_state.bounds, request);
+  };
   surface.info.kind = "mesh";
   surface.info.triangles = static_cast<std::int64_t>(state->mesh.triangles.size());
   surface.info.bytes = state->mesh.bytes();

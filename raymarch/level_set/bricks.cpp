@@ -3,12 +3,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <optional>
 #include <span>
 
+#include "raymarch/level_set/crossed_cells.h"
 #include "sdf/level_set_data.h"
 
 namespace limn {
@@ -48,34 +48,9 @@ void load_nodes(const Accessor& accessor, const glm::ivec3& origin, NodeValues& 
   }
 }
 
-/// Which cells of a brick the surface crosses: bit z of cells[x][y].
-struct CrossedCells {
-  std::uint8_t cells[8][8] = {};
-  bool any = false;
-};
-
 template <class Value>
-CrossedCells crossed_cells(const Value* values) {
-  std::uint32_t negative[9][9];
-  for (int x = 0; x < 9; ++x) {
-    for (int y = 0; y < 9; ++y) {
-      const Value* row = values + at(x, y, 0);
-      std::uint32_t bits = 0;
-      for (int z = 0; z < 9; ++z) bits |= (row[z] < Value{0} ? 1u : 0u) << z;
-      negative[x][y] = bits;
-    }
-  }
-  CrossedCells result;
-  for (int x = 0; x < 8; ++x) {
-    for (int y = 0; y < 8; ++y) {
-      const std::uint32_t some = negative[x][y] | negative[x + 1][y] | negative[x][y + 1] | negative[x + 1][y + 1];
-      const std::uint32_t every = negative[x][y] & negative[x + 1][y] & negative[x][y + 1] & negative[x + 1][y + 1];
-      const auto bits = static_cast<std::uint8_t>((some | some >> 1) & ~(every & every >> 1));
-      result.cells[x][y] = bits;
-      result.any |= bits != 0;
-    }
-  }
-  return result;
+CrossedCells crossed_cells_of(const Value* values) {
+  return crossed_cells([values](int x, int y) { return values + at(x, y, 0); });
 }
 
 /// Bit f is set where a crossed cell lies at face f (see BrickNeighbors): its stencil reaches into the neighbour.
@@ -92,30 +67,6 @@ std::uint8_t touched_faces(const CrossedCells& crossed) {
   std::uint8_t faces = 0;
   for (int f = 0; f < 6; ++f) faces = static_cast<std::uint8_t>(faces | bits[f] << f);
   return faces;
-}
-
-/// Calls `visit(x, y, z)` for each crossed cell.
-template <class Visit>
-void for_each_cell(const CrossedCells& crossed, const Visit& visit) {
-  for (int x = 0; x < 8; ++x) {
-    for (int y = 0; y < 8; ++y) {
-      for (std::uint32_t bits = crossed.cells[x][y]; bits != 0; bits &= bits - 1) visit(x, y, std::countr_zero(bits));
-    }
-  }
-}
-
-/// Calls `visit(x, y, z)` for each node of a crossed cell.
-template <class Visit>
-void for_each_node(const CrossedCells& crossed, const Visit& visit) {
-  for (int x = 0; x < 9; ++x) {
-    for (int y = 0; y < 9; ++y) {
-      std::uint32_t cells = 0;
-      for (int dx = x > 0 ? -1 : 0; dx <= (x < 8 ? 0 : -1); ++dx) {
-        for (int dy = y > 0 ? -1 : 0; dy <= (y < 8 ? 0 : -1); ++dy) cells |= crossed.cells[x + dx][y + dy];
-      }
-      for (std::uint32_t bits = cells | cells << 1; bits != 0; bits &= bits - 1) visit(x, y, std::countr_zero(bits));
-    }
-  }
 }
 
 /// From a block to its neighbour over a face (see BrickNeighbors).
@@ -164,7 +115,7 @@ std::vector<Candidate> find_candidates(const LevelSetData& data) {
 void inspect(const Accessor& accessor, Candidate& candidate) {
   NodeValues values;
   load_nodes(accessor, candidate.origin, values);
-  const CrossedCells crossed = crossed_cells(values.data());
+  const CrossedCells crossed = crossed_cells_of(values.data());
   candidate.crossed = crossed.any;
   if (!crossed.any) return;
   candidate.faces = touched_faces(crossed);
@@ -309,7 +260,7 @@ void bound_values(std::span<const Part> parts, SurfaceBound& bound) {
 SurfaceBound bound_surface(const glm::ivec3& origin, std::span<Part> parts) {
   SurfaceBound bound;
   for (size_t axis = 0; axis < 3; ++axis) bound.origin[axis] = origin[static_cast<int>(axis)];
-  for (Part& part : parts) part.crossed = crossed_cells(part.values);
+  for (Part& part : parts) part.crossed = crossed_cells_of(part.values);
   bound_gradient(parts, bound);
   bound_values(parts, bound);
   return bound;

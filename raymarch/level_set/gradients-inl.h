@@ -121,26 +121,6 @@ HWY_INLINE SplineWeights spline_weights(VF u) {
            hn::Mul(half, u2)}};
 }
 
-/// Four coefficients along z from an element on.
-struct Row {
-  VF at[4];
-};
-HWY_INLINE Row gather_row(const SplineBricks& bricks, VI element) {
-  const F d;
-  const I di;
-  const auto* high = reinterpret_cast<const std::int32_t*>(bricks.high.data());
-  const auto* low = reinterpret_cast<const std::int32_t*>(bricks.low.data());
-  const VI twice = hn::Add(element, element), byte = hn::Set(di, 255), upper = hn::Set(di, ~0xffff >> 8);
-  const VI h0 = hn::GatherOffset(di, high, twice), h1 = hn::GatherOffset(di, high, hn::Add(twice, hn::Set(di, 4)));
-  const VI l = hn::GatherOffset(di, low, element);
-  // The first of a pair is its lower half: moved up to lose the other, and down again with its sign.
-  const auto first = [&](VI pair) { return hn::ShiftRight<8>(hn::ShiftLeft<16>(pair)); };
-  const auto second = [&](VI pair) { return hn::And(hn::ShiftRight<8>(pair), upper); };
-  return {{hn::ConvertTo(d, hn::Or(first(h0), hn::And(l, byte))), hn::ConvertTo(d, hn::Or(second(h0), hn::And(hn::ShiftRight<8>(l), byte))),
-           hn::ConvertTo(d, hn::Or(first(h1), hn::And(hn::ShiftRight<16>(l), byte))),
-           hn::ConvertTo(d, hn::Or(second(h1), hn::And(hn::ShiftRight<24>(l), byte)))}};
-}
-
 /// The gradient of the cubic B-spline, in the brick's own steps.
 HWY_INLINE V3 cubic_gradient(const SplineBricks& bricks, const Cells& cells, VI number) {
   const I di;
@@ -148,15 +128,18 @@ HWY_INLINE V3 cubic_gradient(const SplineBricks& bricks, const Cells& cells, VI 
   const VI seven = hn::Set(di, 7), side = hn::Set(di, kSplineNodes);
   const VI x0 = hn::And(hn::ShiftRight<6>(number), seven), y0 = hn::And(hn::ShiftRight<3>(number), seven), z0 = hn::And(number, seven);
   const VI corner = hn::Add(hn::Mul(hn::Add(hn::Mul(x0, side), y0), side), z0);
-  const VI self = hn::Add(hn::Mul(hn::ShiftRight<9>(number), hn::Set(di, kSplineStride)), corner);
-  V3 g{set(0.0f), set(0.0f), set(0.0f)};
+  const VI brick = hn::ShiftRight<9>(number), self = hn::Add(hn::Mul(brick, hn::Set(di, kSplineStride)), corner);
+  const VI twice = hn::Add(self, self), plane = hn::Mul(brick, hn::Set(di, 3));
+  const auto slope = [&](int axis) { return hn::GatherIndex(F(), bricks.planes.data()->slope, hn::Add(plane, hn::Set(di, axis))); };
+  V3 g{slope(0), slope(1), slope(2)};
   for (int x = 0; x < 4; ++x) {
     VF across = set(0.0f), slope_y = set(0.0f), slope_z = set(0.0f);
     for (int y = 0; y < 4; ++y) {
-      const Row row = gather_row(bricks, hn::Add(self, hn::Set(di, (x * kSplineNodes + y) * kSplineNodes)));
+      const VI row = hn::Add(twice, hn::Set(di, 2 * (x * kSplineNodes + y) * kSplineNodes));
+      const Pair below = gather_pair(bricks.rests.data(), row), above = gather_pair(bricks.rests.data(), hn::Add(row, hn::Set(di, 4)));
       const auto weigh = [&](const VF* w) {
-        return hn::Add(hn::Add(hn::Mul(w[0], row.at[0]), hn::Mul(w[1], row.at[1])),
-                       hn::Add(hn::Mul(w[2], row.at[2]), hn::Mul(w[3], row.at[3])));
+        return hn::Add(hn::Add(hn::Mul(w[0], below.low), hn::Mul(w[1], below.high)),
+                       hn::Add(hn::Mul(w[2], above.low), hn::Mul(w[3], above.high)));
       };
       const VF here = weigh(wz.value);
       across = hn::Add(across, hn::Mul(wy.value[y], here));

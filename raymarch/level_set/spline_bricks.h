@@ -11,17 +11,21 @@
 
 namespace limn {
 
-/// Nodes -1..9 along each axis, and one element more from brick to brick, so that four low bytes may be read from any row.
+/// Nodes -1..9 along each axis, and one element more from brick to brick, so that a pair may be read from any of them.
 inline constexpr int kSplineNodes = 11;
 inline constexpr int kSplineStride = kSplineNodes * kSplineNodes * kSplineNodes + 1;
 
-/// Coefficients as whole numbers of 24 bits, 256 * high + low, in steps of each brick's own: the gradient's direction is all that is asked
-/// of them. 16 bits would show in the normals: their error would be 6e-5 rad from about 32 voxels on, above the spline's own.
+/// Coefficients less those of a plane through the brick's part of the surface, in steps of each brick's own: the gradient's direction is
+/// all that is asked of them. What is left shrinks with the cells, and so do its 16-bit steps; without the plane they would show in the
+/// normals, as 6e-5 rad at any resolution.
 struct SplineBricks {
-  std::vector<std::int16_t, LargePageAllocator<std::int16_t>> high{};  ///< kSplineStride for each brick; empty where nobody asked.
-  std::vector<std::uint8_t, LargePageAllocator<std::uint8_t>> low{};   ///< As many, and three more.
+  struct Plane {
+    float slope[3] = {};  ///< Steps per voxel.
+  };
+  std::vector<Plane> planes{};                                          ///< One a brick; empty where nobody asked.
+  std::vector<std::int16_t, LargePageAllocator<std::int16_t>> rests{};  ///< kSplineStride for each brick.
 
-  std::int64_t bytes() const { return static_cast<std::int64_t>(high.size() * sizeof(std::int16_t) + low.size()); }
+  std::int64_t bytes() const { return static_cast<std::int64_t>(planes.size() * sizeof(Plane) + rests.size() * sizeof(std::int16_t)); }
 };
 
 /// Offsets in bytes have to fit in 31 bits.

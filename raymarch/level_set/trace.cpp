@@ -290,11 +290,16 @@ bool blocks_of(const GroupInTile& entry, int x, int y, const PixelTile& tile, Bl
   return x0 <= x1 && y0 <= y1;
 }
 
+void fetch(const std::int16_t* values, size_t count) {
+  constexpr size_t kLine = 64 / sizeof(std::int16_t);
+  for (size_t at = 0; at < count; at += kLine) __builtin_prefetch(values + at, 0, 2);
+}
+
 /// Asks for a group's values before they are needed: most are not in a cache yet.
-void fetch(const RayBricks& bricks, const BrickGroups& groups, std::uint32_t group) {
+void fetch(const RayBricks& bricks, bool spline, const BrickGroups& groups, std::uint32_t group) {
   const auto fetch_brick = [&](size_t brick) {
-    const auto* values = reinterpret_cast<const char*>(bricks.values.data() + brick * kBrickStride);
-    for (std::int32_t at = 0; at < kBrickBytes; at += 64) __builtin_prefetch(values + at, 0, 2);
+    fetch(bricks.values.data() + brick * kBrickStride, kBrickStride);
+    if (spline) fetch(bricks.spline.rests.data() + brick * kSplineStride, kSplineStride);
   };
   if (groups.shift == 3) return fetch_brick(group);
   const size_t parts = size_t{1} << (3 * (groups.shift - 3));
@@ -324,7 +329,7 @@ void TraceBricks(const BrickTrace& what, const PixelTile& tile, const RayBatch& 
       const std::span<const GroupInTile> entries = view.tile(column, row);
       const std::span<const GroupInTile> next = column + 1 < view.columns ? view.tile(column + 1, row) : std::span<const GroupInTile>();
       for (size_t k = 0; k < entries.size(); ++k) {
-        if (k < next.size()) fetch(bricks, groups, next[k].group);
+        if (k < next.size()) fetch(bricks, what.gradient == BrickGradient::cubic, groups, next[k].group);
         const GroupInTile& entry = entries[k];
         BlockRange range;
         if (!blocks_of(entry, column * kViewTile_px, row * kViewTile_px, tile, range)) continue;

@@ -1,9 +1,7 @@
 #include "sdf/shape.h"
 
-#include <cmath>
-#include <limits>
-
 #include "sdf/error.h"
+#include "sdf/project_to_surface.h"
 
 namespace limn {
 
@@ -24,39 +22,10 @@ Field make_shape(const std::string& name, const std::map<std::string, std::vecto
 }
 
 bool project_to_surface(FieldEvaluator& evaluator, glm::dvec3& point, double tolerance) {
-  const Box& bounds = evaluator.field().traits().bounds;
-  const double extent = bounds.finite() ? bounds.radius() : std::max(1.0, glm::length(point));
-  const auto close_enough = [&](double value) {
-    // Below a few units in the last place of the coordinates there is nothing left to improve.
-    const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * (extent + glm::length(point));
-    return std::fabs(value) <= std::max(tolerance * extent, rounding);
+  const auto gradient_at = [&](const glm::dvec3& p, double& value, glm::dvec3& gradient) {
+    evaluator.gradients(std::span(&p, 1), std::span(&value, 1), std::span(&gradient, 1));
   };
-  glm::dvec3 gradient;
-  double value = 0.0;
-  evaluator.gradients(std::span(&point, 1), std::span(&value, 1), std::span(&gradient, 1));
-  for (int step = 0; step < 50; ++step) {
-    if (close_enough(value)) return true;
-    const double squared = glm::dot(gradient, gradient);
-    if (!(squared > 0.0)) return false;
-    // Halved until it brings the surface nearer; a step beyond the whole object is never of use.
-    glm::dvec3 move = (-value / squared) * gradient;
-    const double longest = 2.0 * (extent + glm::length(point));
-    if (glm::length(move) > longest) move *= longest / glm::length(move);
-    bool nearer = false;
-    for (int halving = 0; halving < 30 && !nearer; ++halving, move *= 0.5) {
-      const glm::dvec3 candidate = point + move;
-      double candidate_value = 0.0;
-      glm::dvec3 candidate_gradient;
-      evaluator.gradients(std::span(&candidate, 1), std::span(&candidate_value, 1), std::span(&candidate_gradient, 1));
-      if (!(std::fabs(candidate_value) < std::fabs(value))) continue;
-      nearer = true;
-      point = candidate;
-      value = candidate_value;
-      gradient = candidate_gradient;
-    }
-    if (!nearer) return false;
-  }
-  return close_enough(value);
+  return project_with(gradient_at, evaluator.field().traits().bounds, point, tolerance);
 }
 
 }  // namespace limn

@@ -1,5 +1,7 @@
 #include "subdiv/dual_contour.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,9 +30,20 @@ int edge_between(int a, int b) {
   return -1;
 }
 
+/// Cells to a side of the blocks that share a shortened field.
+constexpr int kBlock = 8;
+
+glm::dvec3 unit_gradient(FieldEvaluator& evaluator, const glm::dvec3& p) {
+  glm::dvec3 gradient;
+  double value = 0.0;
+  evaluator.gradients(std::span(&p, 1), std::span(&value, 1), std::span(&gradient, 1));
+  const double length = glm::length(gradient);
+  return length > 0.0 ? gradient / length : glm::dvec3(0.0);
+}
+
 class DualContour {
  public:
-  DualContour(const Field& field, int cells) : evaluator_(field) {
+  DualContour(const Field& field, int cells) : field_(field) {
     const Box box = field.traits().bounds;
     step_ = box.longest_side() / cells;
     // Nodes half a cell off the middle of the box, so that faces of symmetric shapes do not lie on them.
@@ -63,24 +76,57 @@ class DualContour {
   double value(const glm::ivec3& at) const { return values_[node_index(at)]; }
   bool inside(const glm::ivec3& at) const { return value(at) < 0.0; }
 
+  glm::ivec3 block_count() const { return (count_ + (kBlock - 1)) / kBlock; }
+  FieldEvaluator& evaluator(const glm::ivec3& cell) {
+    const glm::ivec3 at = cell / kBlock, blocks = block_count();
+    return evaluators_[static_cast<size_t>((at.z * blocks.y + at.y) * blocks.x + at.x)];
+  }
+
+  /// The signs at the nodes: those of a block that the surface does not reach are known from bounds, elsewhere a block asks only the parts
+  /// of the field that matter in it.
   void sample() {
     values_.resize(static_cast<size_t>(count_.x) * static_cast<size_t>(count_.y) * static_cast<size_t>(count_.z));
-    std::vector<glm::dvec3> row(static_cast<size_t>(count_.x));
-    for (int z = 0; z < count_.z; ++z)
-      for (int y = 0; y < count_.y; ++y) {
-        for (int x = 0; x < count_.x; ++x) row[static_cast<size_t>(x)] = world({x, y, z});
-        evaluator_.values(row, std::span(values_).subspan(node_index({0, y, z}), row.size()));
-      }
     sheet_.assign(values_.size() * 12, -1);
+    const glm::ivec3 blocks = block_count();
+    const int total = blocks.x * blocks.y * blocks.z;
+    evaluators_.clear();
+    for (int b = 0; b < total; ++b) evaluators_.emplace_back(field_);
+    tbb::parallel_for(0, total, [&](int b) {
+      const glm::ivec3 first = kBlock * glm::ivec3(b % blocks.x, b / blocks.x % blocks.y, b / (blocks.x * blocks.y));
+      const glm::ivec3 end = glm::min(first + kBlock, count_);
+      // A cell has nodes on the far side of its block, too.
+      const Box box = dilate({world(first), world(end)}, 1e-6 * step_);
+      FieldEvaluator whole(field_);
+      const Interval bounds = whole.bounds(box);
+      if (!bounds.contains(0.0)) return fill(first, end, bounds.lower);
+      FieldEvaluator& own = evaluators_[static_cast<size_t>(b)];
+      own = FieldEvaluator(whole.restricted(box));
+      sample(own, first, end);
+    });
+  }
+
+  void fill(const glm::ivec3& first, const glm::ivec3& end, double value) {
+    for (int z = first.z; z < end.z; ++z)
+      for (int y = first.y; y < end.y; ++y)
+        std::fill_n(values_.begin() + static_cast<std::ptrdiff_t>(node_index({first.x, y, z})), end.x - first.x, value);
+  }
+
+  void sample(FieldEvaluator& evaluator, const glm::ivec3& first, const glm::ivec3& end) {
+    std::vector<glm::dvec3> row(static_cast<size_t>(end.x - first.x));
+    for (int z = first.z; z < end.z; ++z)
+      for (int y = first.y; y < end.y; ++y) {
+        for (int x = first.x; x < end.x; ++x) row[static_cast<size_t>(x - first.x)] = world({x, y, z});
+        evaluator.values(row, std::span(values_).subspan(node_index({first.x, y, z}), row.size()));
+      }
   }
 
   /// Where the field changes sign between two nodes (bisection: fields may jump in slope).
-  glm::dvec3 crossing(const glm::ivec3& a, const glm::ivec3& b) {
+  glm::dvec3 crossing(FieldEvaluator& evaluator, const glm::ivec3& a, const glm::ivec3& b) {
     glm::dvec3 in = world(a), out = world(b);
     if (!inside(a)) std::swap(in, out);
     for (int i = 0; i < 24; ++i) {
       const glm::dvec3 middle = 0.5 * (in + out);
-      (evaluator_.value(middle) < 0.0 ? in : out) = middle;
+      (evaluator.value(middle) < 0.0 ? in : out) = middle;
     }
     return 0.5 * (in + out);
   }
@@ -104,7 +150,7 @@ class DualContour {
       // Edge i joins ring corners i and i + 1. The corner that stands alone has the sign that the middle has not.
       const glm::dvec3 middle = 0.25 * (world(corner(cell, face[0])) + world(corner(cell, face[1])) + world(corner(cell, face[2])) +
                                         world(corner(cell, face[3])));
-      const bool middle_inside = evaluator_.value(middle) < 0.0;
+      const bool middle_inside = evaluator(cell).value(middle) < 0.0;
       const size_t alone = inside(corner(cell, face[0])) != middle_inside ? 0 : 1;
       for (const size_t i : {alone, alone + 2}) root[static_cast<size_t>(find(crossed[i % 4]))] = find(crossed[(i + 3) % 4]);
     }
@@ -125,10 +171,8 @@ class DualContour {
         const glm::ivec3 a = corner(at, edge.from), b = corner(at, edge.to);
         if (root[static_cast<size_t>(e)] != sheet || inside(a) == inside(b)) continue;
         sheet_[12 * node_index(at) + static_cast<size_t>(e)] = vertex;
-        points.push_back(crossing(a, b));
-        const glm::dvec3 gradient = evaluator_.jet(points.back()).gradient;
-        const double length = glm::length(gradient);
-        normals.push_back(length > 0.0 ? gradient / length : glm::dvec3(0.0));
+        points.push_back(crossing(evaluator(at), a, b));
+        normals.push_back(unit_gradient(evaluator(at), points.back()));
       }
       if (points.empty()) continue;
       glm::dvec3 mean(0.0);
@@ -160,7 +204,8 @@ class DualContour {
     mesh_.corner_vertices.insert(mesh_.corner_vertices.end(), corners.begin(), corners.end());
   }
 
-  FieldEvaluator evaluator_;
+  Field field_;
+  std::vector<FieldEvaluator> evaluators_;  ///< Of the blocks; where the surface is, of what matters there.
   double step_ = 0.0;
   glm::dvec3 lower_{0.0};
   glm::ivec3 count_{0};

@@ -1,26 +1,15 @@
 #include "subdiv/surface_snap.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
-#include "sdf/shape.h"
+#include "subdiv/local_field.h"
 #include "subdiv/polygon.h"
 
 namespace limn {
-
-glm::dvec3 unit_gradient(FieldEvaluator& evaluator, const glm::dvec3& p) {
-  glm::dvec3 gradient;
-  double value = 0.0;
-  evaluator.gradients(std::span(&p, 1), std::span(&value, 1), std::span(&gradient, 1));
-  const double length = glm::length(gradient);
-  return length > 0.0 && std::isfinite(length) ? gradient / length : glm::dvec3(0.0);
-}
-
 namespace {
 
 /// Neighbouring normals that differ by more than this (25 degrees) at a hundredth of an edge belong to two sides of a crease.
@@ -74,19 +63,19 @@ std::vector<Surroundings> surroundings_of(const Mesh& mesh, const std::vector<ch
 
 /// In a thin wall the nearest sheet may be the wrong one, whose outside is the other way. Along the outward direction the right one is
 /// where the field turns from negative to positive; the crossing nearest to `start` within one edge length is taken.
-bool project_along(FieldEvaluator& evaluator, glm::dvec3& point, const Surroundings& around) {
+bool project_along(LocalField& field, glm::dvec3& point, const Surroundings& around) {
   constexpr int kSteps = 24;
   const double step = around.edge_length / kSteps;
   const auto at = [&](double t) { return point + t * around.outward; };
   double best = 2.0 * around.edge_length;
-  double previous = evaluator.value(at(-around.edge_length));
+  double previous = field.value(at(-around.edge_length));
   for (int i = -kSteps + 1; i <= kSteps; ++i) {
-    const double value = evaluator.value(at(i * step));
+    const double value = field.value(at(i * step));
     if (previous < 0.0 && value >= 0.0) {
       double in = (i - 1) * step, out = i * step;
       for (int k = 0; k < 60; ++k) {
         const double middle = 0.5 * (in + out);
-        (evaluator.value(at(middle)) < 0.0 ? in : out) = middle;
+        (field.value(at(middle)) < 0.0 ? in : out) = middle;
       }
       if (std::abs(out) < std::abs(best)) best = out;
     }
@@ -98,24 +87,24 @@ bool project_along(FieldEvaluator& evaluator, glm::dvec3& point, const Surroundi
 }
 
 /// Onto the sheet of the surface that looks the same way as the faces around the vertex.
-bool project(FieldEvaluator& evaluator, glm::dvec3& point, const Surroundings& around) {
+bool project(LocalField& field, glm::dvec3& point, const Surroundings& around) {
   const glm::dvec3 start = point;
-  const bool reached = project_to_surface(evaluator, point);
-  if (reached && glm::dot(unit_gradient(evaluator, point), around.outward) > -0.1) return true;
+  const bool reached = field.project(point);
+  if (reached && glm::dot(field.unit_gradient(point), around.outward) > -0.1) return true;
   glm::dvec3 along = start;
-  if (!project_along(evaluator, along, around)) return reached;
+  if (!project_along(field, along, around)) return reached;
   point = along;
   return true;
 }
 
 /// Points of the surface a fraction of the way to the faces' middles, with their normals; true where the normals differ as at a crease.
-bool sample_sides(FieldEvaluator& evaluator, const glm::dvec3& x, const Surroundings& around, double fraction,
-                  std::vector<glm::dvec3>& points, std::vector<glm::dvec3>& normals) {
+bool sample_sides(LocalField& field, const glm::dvec3& x, const Surroundings& around, double fraction, std::vector<glm::dvec3>& points,
+                  std::vector<glm::dvec3>& normals) {
   points.clear(), normals.clear();
   for (const glm::dvec3& middle : around.middles) {
     glm::dvec3 p = x + fraction * (middle - x);
-    if (!project_to_surface(evaluator, p)) continue;
-    const glm::dvec3 normal = unit_gradient(evaluator, p);
+    if (!field.project(p)) continue;
+    const glm::dvec3 normal = field.unit_gradient(p);
     // The other side of a thin wall is no side of this vertex; that of a knife edge is.
     if (normal == glm::dvec3(0.0) || glm::dot(normal, around.outward) < kWallCosine) continue;
     points.push_back(p), normals.push_back(normal);
@@ -127,13 +116,13 @@ bool sample_sides(FieldEvaluator& evaluator, const glm::dvec3& x, const Surround
 }
 
 /// The gradient half way to the faces' middles turns less than a crease does, without any projection: most vertices are let off with this.
-bool is_plainly_smooth(FieldEvaluator& evaluator, const glm::dvec3& x, const Surroundings& around) {
+bool is_plainly_smooth(LocalField& field, const glm::dvec3& x, const Surroundings& around) {
   std::array<glm::dvec3, 8> points, gradients;
   std::array<double, 8> values;
   const size_t n = around.middles.size();
   if (n > points.size()) return false;
   for (size_t i = 0; i < n; ++i) points[i] = 0.5 * (x + around.middles[i]);
-  evaluator.gradients(std::span(points.data(), n), std::span(values.data(), n), std::span(gradients.data(), n));
+  field.gradients(std::span(points.data(), n), std::span(values.data(), n), std::span(gradients.data(), n));
   for (size_t i = 0; i < n; ++i) {
     const double length = glm::length(gradients[i]);
     if (!(length > 0.0) || !std::isfinite(length)) return false;
@@ -151,15 +140,15 @@ struct Snapped {
 
 /// From far to near: sides are sampled ever closer to the vertex while it walks onto their meeting line. On a smooth surface the normals
 /// soon agree and the vertex is projected; on a crease they never do.
-Snapped snap(FieldEvaluator& evaluator, const glm::dvec3& start, const Surroundings& around) {
+Snapped snap(LocalField& field, const glm::dvec3& start, const Surroundings& around) {
   glm::dvec3 plain = start;
-  const bool reached = project(evaluator, plain, around);
-  if (reached && is_plainly_smooth(evaluator, start, around)) return {plain, false};
+  const bool reached = project(field, plain, around);
+  if (reached && is_plainly_smooth(field, start, around)) return {plain, false};
   std::vector<glm::dvec3> points, normals;
   glm::dvec3 x = start;
   bool creased = false;
   for (const double fraction : {0.5, 0.2, 0.05, 0.01, 1e-3, 1e-5, 1e-7}) {
-    creased = sample_sides(evaluator, x, around, fraction, points, normals);
+    creased = sample_sides(field, x, around, fraction, points, normals);
     if (!creased) break;
     const glm::dvec3 next = meet_planes(points, normals, x);
     // Planes that nearly agree meet far away: that is no crease of this vertex. Half way along an edge or a diagonal that was refined, a
@@ -174,22 +163,25 @@ Snapped snap(FieldEvaluator& evaluator, const glm::dvec3& start, const Surroundi
   return {reached ? plain : start, false};
 }
 
-using Evaluators = tbb::enumerable_thread_specific<FieldEvaluator>;
+/// How far from a vertex it is looked at the field, in edge lengths.
+constexpr double kReach = 1.6;
 
 void snap_some(const Field& field, Mesh& mesh, const std::vector<char>* which, SnapResult& result) {
   const std::vector<Surroundings> around = surroundings_of(mesh, which);
-  Evaluators evaluators([&field] { return FieldEvaluator(field); });
+  std::vector<std::uint32_t> moving;
+  std::vector<double> reach(mesh.vertex_count());
+  for (size_t v = 0; v < mesh.vertex_count(); ++v) {
+    if (which == nullptr || (*which)[v]) moving.push_back(static_cast<std::uint32_t>(v));
+    reach[v] = kReach * around[v].edge_length;
+  }
+  const std::vector<glm::dvec3> starts = mesh.positions;
   std::vector<double> left(mesh.vertex_count(), 0.0);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.vertex_count(), 64), [&](const tbb::blocked_range<size_t>& range) {
-    FieldEvaluator& evaluator = evaluators.local();
-    for (size_t v = range.begin(); v < range.end(); ++v) {
-      if (which != nullptr && !(*which)[v]) continue;
-      const Snapped snapped = snap(evaluator, mesh.positions[v], around[v]);
+  visit_groups(field, starts, reach, std::move(moving), [&](LocalField& local, std::span<const std::uint32_t> members) {
+    for (const std::uint32_t v : members) {
+      const Snapped snapped = snap(local, starts[v], around[v]);
       mesh.positions[v] = snapped.position;
       result.feature[v] = snapped.feature;
-      const FieldJet jet = evaluator.jet(snapped.position);
-      const double slope = glm::length(jet.gradient);
-      left[v] = slope > 0.0 ? std::abs(jet.value) / slope : std::abs(jet.value);
+      left[v] = local.distance_off(snapped.position);
     }
   });
   for (const double value : left) result.worst_value = std::max(result.worst_value, value);
@@ -210,21 +202,19 @@ SnapResult snap_to_surface(const Field& field, Mesh& mesh) {
 std::vector<glm::vec3> field_normals(const Field& field, const Mesh& mesh, const std::vector<char>& feature) {
   std::vector<glm::vec3> normals = face_normals_at_corners(mesh);
   const std::vector<std::int32_t> first = first_corners(mesh);
-  Evaluators evaluators([&field] { return FieldEvaluator(field); });
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.face_count(), 64), [&](const tbb::blocked_range<size_t>& range) {
-    FieldEvaluator& evaluator = evaluators.local();
-    for (size_t f = range.begin(); f < range.end(); ++f) {
+  const FaceMiddles faces(mesh, first);
+  std::vector<std::uint32_t> all(mesh.face_count());
+  std::iota(all.begin(), all.end(), 0u);
+  visit_groups(field, faces.middles, faces.radii, std::move(all), [&](LocalField& local, std::span<const std::uint32_t> members) {
+    for (const std::uint32_t f : members) {
       const auto corners = face_corners(mesh, first[f], f);
-      glm::dvec3 middle(0.0);
-      for (const std::int32_t v : corners) middle += mesh.positions[static_cast<size_t>(v)];
-      middle /= static_cast<double>(corners.size());
       for (size_t i = 0; i < corners.size(); ++i) {
         const auto v = static_cast<size_t>(corners[i]);
-        glm::dvec3 normal = unit_gradient(evaluator, mesh.positions[v]);
+        glm::dvec3 normal = local.unit_gradient(mesh.positions[v]);
         // A little way into the face, where one side of a crease has the word. Vertices can lie on a crease by chance, too.
-        glm::dvec3 beside = mesh.positions[v] + 1e-3 * (middle - mesh.positions[v]);
-        project_to_surface(evaluator, beside);
-        const glm::dvec3 own_side = unit_gradient(evaluator, beside);
+        glm::dvec3 beside = mesh.positions[v] + 1e-3 * (faces.middles[f] - mesh.positions[v]);
+        local.project(beside);
+        const glm::dvec3 own_side = local.unit_gradient(beside);
         if (feature[v] || glm::dot(normal, own_side) < kSameSideCosine) normal = own_side;
         if (normal != glm::dvec3(0.0)) normals[static_cast<size_t>(first[f]) + i] = glm::vec3(normal);
       }

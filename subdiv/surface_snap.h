@@ -18,8 +18,12 @@ SnapResult snap_to_surface(const Field& field, Mesh& mesh);
 /// The same for the vertices that `which` names; `snapped` is brought up to date.
 void snap_vertices(const Field& field, Mesh& mesh, const std::vector<char>& which, SnapResult& snapped);
 
-/// The gradient's direction; zero where it has none.
-glm::dvec3 unit_gradient(FieldEvaluator& evaluator, const glm::dvec3& p);
+/// The faces' middles, and how far their corners lie from these at most; `first` are their first corners.
+struct FaceMiddles {
+  std::vector<glm::dvec3> middles{};
+  std::vector<double> radii{};
+  FaceMiddles(const Mesh& mesh, const std::vector<std::int32_t>& first);
+};
 
 /// Unit normals at the corners: the gradient at the vertex, at creases that of the corner's own side.
 std::vector<glm::vec3> field_normals(const Field& field, const Mesh& mesh, const std::vector<char>& feature);

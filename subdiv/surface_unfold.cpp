@@ -1,21 +1,16 @@
 // Faces that a snapped mesh folds, and evening out its vertices until they lie flat.
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <numeric>
 #include <optional>
 
-#include "sdf/shape.h"
 #include "subdiv/audit.h"
+#include "subdiv/local_field.h"
 #include "subdiv/polygon.h"
 #include "subdiv/surface_snap.h"
 
 namespace limn {
 namespace {
-
-using Evaluators = tbb::enumerable_thread_specific<FieldEvaluator>;
 
 /// A quad bent like a bow tie has the right area as a whole and a corner that is turned over; so has one with a reflex corner.
 bool has_reflex_corner(const std::vector<glm::dvec3>& corners, const glm::dvec3& area) {
@@ -63,25 +58,22 @@ void move_to_means(Mesh& mesh, const Neighbours& neighbours, const std::vector<c
 /// Which of `candidates` lie folded, in their order.
 std::vector<std::int32_t> folded_among(const Field& field, const Mesh& mesh, const std::vector<std::int32_t>& first,
                                        const std::vector<std::int32_t>& candidates, bool reflex_too) {
-  Evaluators evaluators([&field] { return FieldEvaluator(field); });
-  std::vector<char> bad(candidates.size(), 0);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, candidates.size(), 64), [&](const tbb::blocked_range<size_t>& range) {
-    FieldEvaluator& evaluator = evaluators.local();
+  const FaceMiddles faces(mesh, first);
+  std::vector<char> bad(mesh.face_count(), 0);
+  const std::vector<std::uint32_t> which(candidates.begin(), candidates.end());
+  visit_groups(field, faces.middles, faces.radii, which, [&](LocalField& local, std::span<const std::uint32_t> members) {
     std::vector<glm::dvec3> corners;
-    for (size_t i = range.begin(); i < range.end(); ++i) {
-      const auto f = static_cast<size_t>(candidates[i]);
+    for (const std::uint32_t f : members) {
       gather_corners(mesh, face_corners(mesh, first[f], f), corners);
-      glm::dvec3 middle(0.0);
-      for (const glm::dvec3& p : corners) middle += p;
-      middle /= static_cast<double>(corners.size());
       const glm::dvec3 area = vector_area(corners);
-      project_to_surface(evaluator, middle);
-      bad[i] = glm::dot(area, unit_gradient(evaluator, middle)) < 0.0 || (reflex_too && has_reflex_corner(corners, area));
+      glm::dvec3 middle = faces.middles[f];
+      local.project(middle);
+      bad[f] = glm::dot(area, local.unit_gradient(middle)) < 0.0 || (reflex_too && has_reflex_corner(corners, area));
     }
   });
   std::vector<std::int32_t> folded;
-  for (size_t i = 0; i < bad.size(); ++i)
-    if (bad[i]) folded.push_back(candidates[i]);
+  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(folded),
+               [&](std::int32_t f) { return bad[static_cast<size_t>(f)]; });
   return folded;
 }
 
@@ -104,6 +96,16 @@ std::vector<std::int32_t> faces_touching(const Mesh& mesh, const std::vector<std
 }
 
 }  // namespace
+
+FaceMiddles::FaceMiddles(const Mesh& mesh, const std::vector<std::int32_t>& first)
+    : middles(mesh.face_count(), glm::dvec3(0.0)), radii(mesh.face_count(), 0.0) {
+  for (size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto corners = face_corners(mesh, first[f], f);
+    for (const std::int32_t v : corners) middles[f] += mesh.positions[static_cast<size_t>(v)];
+    middles[f] /= static_cast<double>(corners.size());
+    for (const std::int32_t v : corners) radii[f] = std::max(radii[f], glm::distance(mesh.positions[static_cast<size_t>(v)], middles[f]));
+  }
+}
 
 std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh, bool reflex_too) {
   return folded_among(field, mesh, first_corners(mesh), all_faces(mesh), reflex_too);

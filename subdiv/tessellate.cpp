@@ -8,6 +8,7 @@
 
 #include "sdf/error.h"
 #include "subdiv/dual_contour.h"
+#include "subdiv/local_field.h"
 #include "subdiv/polygon.h"
 #include "subdiv/surface_snap.h"
 
@@ -45,35 +46,35 @@ Cage refined_once(const Field& field, const Mesh& mesh, std::int64_t max_bytes) 
 /// there the mesh goes across what it should go around.
 constexpr double kFarFace = 0.25, kFarVertex = 1e-3;
 
-double distance_off(FieldEvaluator& evaluator, const glm::dvec3& p) {
-  const FieldJet jet = evaluator.jet(p);
-  return std::abs(jet.value) / std::max(glm::length(jet.gradient), 1e-9);
-}
+size_t count_of(const std::vector<char>& marked) { return static_cast<size_t>(std::count(marked.begin(), marked.end(), char{1})); }
 
 size_t count_far_vertices(const Field& field, const Mesh& mesh) {
-  FieldEvaluator evaluator(field);
   const double most = kFarVertex * field.traits().bounds.radius();
-  return static_cast<size_t>(
-      std::count_if(mesh.positions.begin(), mesh.positions.end(), [&](const glm::dvec3& p) { return distance_off(evaluator, p) > most; }));
+  std::vector<char> far(mesh.vertex_count(), 0);
+  visit_groups(field, mesh.positions, most, [&](LocalField& local, std::span<const std::uint32_t> members) {
+    for (const std::uint32_t v : members) far[v] = local.distance_off(mesh.positions[v]) > most;
+  });
+  return count_of(far);
+}
+
+double mean_edge(const std::vector<glm::dvec3>& corners) {
+  double sum = 0.0;
+  for (size_t i = 0; i < corners.size(); ++i) sum += glm::distance(corners[i], corners[(i + 1) % corners.size()]);
+  return sum / static_cast<double>(corners.size());
 }
 
 size_t count_far_faces(const Field& field, const Mesh& mesh) {
-  FieldEvaluator evaluator(field);
-  size_t far = 0;
-  std::vector<glm::dvec3> corners;
   const std::vector<std::int32_t> first = first_corners(mesh);
-  for (size_t f = 0; f < mesh.face_count(); ++f) {
-    gather_corners(mesh, face_corners(mesh, first[f], f), corners);
-    const auto n = static_cast<double>(corners.size());
-    glm::dvec3 middle(0.0);
-    double edge = 0.0;
-    for (size_t i = 0; i < corners.size(); ++i) {
-      middle += corners[i] / n;
-      edge += glm::distance(corners[i], corners[(i + 1) % corners.size()]) / n;
+  const FaceMiddles faces(mesh, first);
+  std::vector<char> far(mesh.face_count(), 0);
+  visit_groups(field, faces.middles, 0.0, [&](LocalField& local, std::span<const std::uint32_t> members) {
+    std::vector<glm::dvec3> corners;
+    for (const std::uint32_t f : members) {
+      gather_corners(mesh, face_corners(mesh, first[f], f), corners);
+      far[f] = local.distance_off(faces.middles[f]) > kFarFace * mean_edge(corners);
     }
-    far += distance_off(evaluator, middle) > kFarFace * edge;
-  }
-  return far;
+  });
+  return count_of(far);
 }
 
 /// Where walls end in knife edges some faces are bad whatever the sampling: so many are accepted, since finer samplings only make the cage

@@ -1,0 +1,45 @@
+#pragma once
+// A field asked at points that lie together: where only some of its parts matter, only these are evaluated.
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "sdf/field.h"
+
+namespace limn {
+
+/// The same numbers as the whole field's, to the last bit, wherever it is asked; quick within its box.
+class LocalField {
+ public:
+  /// `part` equals the field of `whole` in `box` (FieldEvaluator::restricted).
+  LocalField(FieldEvaluator& whole, const Field& part, const Box& box);
+
+  double value(const glm::dvec3& point);
+  void gradients(std::span<const glm::dvec3> points, std::span<double> values, std::span<glm::dvec3> gradients);
+  void gradient(const glm::dvec3& point, double& value, glm::dvec3& gradient);
+  /// The gradient's direction; zero where it has none.
+  glm::dvec3 unit_gradient(const glm::dvec3& point);
+  /// |f| / |grad f|: about the distance from the surface. |f| where the gradient vanishes.
+  double distance_off(const glm::dvec3& point);
+  /// As project_to_surface (sdf/shape.h).
+  bool project(glm::dvec3& point, double tolerance = 1e-12);
+
+ private:
+  bool holds(const glm::dvec3& point) const;
+  FieldEvaluator& whole_;
+  FieldEvaluator part_;
+  Box box_;
+};
+
+/// Calls `visit` for groups of neighbouring points, in parallel, until each point that `which` names by its index was in one. A group's
+/// field is quick up to `reach` (world, one a point) from its points. What is written for a point must not depend on the others of its
+/// group. `points` must not change meanwhile.
+void visit_groups(const Field& field, std::span<const glm::dvec3> points, std::span<const double> reach, std::vector<std::uint32_t> which,
+                  const std::function<void(LocalField&, std::span<const std::uint32_t>)>& visit);
+/// Of all points, within one distance.
+void visit_groups(const Field& field, std::span<const glm::dvec3> points, double reach,
+                  const std::function<void(LocalField&, std::span<const std::uint32_t>)>& visit);
+
+}  // namespace limn

@@ -1,6 +1,4 @@
-// Triangles against the pixels of a tile, in double precision. As in the watertight test of Woop, Benthin and Wald (2013), edge functions
-// are made of the corners' places about the ray, which are the same in all triangles with that corner, and nothing is fused: the sign of
-// each is right or 0, and 0 counts as inside on both sides of an edge, so that no ray slips between two triangles.
+// Triangles against the pixels of a tile, in double precision.
 
 #include "raymarch/mesh/cover.h"
 
@@ -14,58 +12,53 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "raymarch/mesh/edges-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
 namespace {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::CappedTag<double, 8>;
-using V = hn::Vec<D>;
-
 /// Columns and rows of the lanes of a block.
 alignas(64) constexpr double kColumn[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
 alignas(64) constexpr double kRow[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
-
-struct Corner {
-  V x, y;
-};
-HWY_INLINE Corner about(const ScreenVertex& vertex, V x, V y) {
-  const D d;
-  return {hn::Sub(hn::Set(d, vertex.x), x), hn::Sub(hn::Set(d, vertex.y), y)};
-}
-/// Twice the area of the triangle between the ray and two corners; swapped corners give exactly its negative.
-HWY_INLINE V edge(const Corner& from, const Corner& to) { return hn::Sub(hn::Mul(to.x, from.y), hn::Mul(to.y, from.x)); }
 
 struct Triangle {
   const ScreenVertex &a, &b, &c;
   std::uint32_t index;
 };
 
+HWY_INLINE Corner corner_at(const ScreenVertex& vertex, V x, V y) {
+  const D d;
+  return about(hn::Set(d, vertex.x), hn::Set(d, vertex.y), x, y);
+}
+
+/// Of three corners' values; by the weights' sum it is still to be divided.
+HWY_INLINE V mean(const EdgeWeights& at, double of_a, double of_b, double of_c) {
+  const D d;
+  return hn::Add(hn::Add(hn::Mul(at.a, hn::Set(d, of_a)), hn::Mul(at.b, hn::Set(d, of_b))), hn::Mul(at.c, hn::Set(d, of_c)));
+}
+
 /// Lanes from `lane` on, whose first pixel is that of kColumn and kRow about (x, y).
 HWY_INLINE void cover_lanes(const Triangle& triangle, double x, double y, size_t lane, TileCover& cover) {
   const D d;
   const size_t within = lane & 15;
   const V px = hn::Add(hn::Set(d, x), hn::Load(d, kColumn + within)), py = hn::Add(hn::Set(d, y), hn::Load(d, kRow + within));
-  const Corner a = about(triangle.a, px, py), b = about(triangle.b, px, py), c = about(triangle.c, px, py);
-  const V at_a = edge(b, c), at_b = edge(c, a), at_c = edge(a, b), zero = hn::Zero(d);
-  const V sum = hn::Add(hn::Add(at_a, at_b), at_c);
-  const auto inside = hn::Or(hn::Ge(hn::Min(hn::Min(at_a, at_b), at_c), zero), hn::Le(hn::Max(hn::Max(at_a, at_b), at_c), zero));
-  // Seen edge on: its neighbours stop the ray.
-  const auto met = hn::And(inside, hn::Ne(sum, zero));
+  const EdgeWeights at = edge_weights(corner_at(triangle.a, px, py), corner_at(triangle.b, px, py), corner_at(triangle.c, px, py));
+  const V sum = sum_of(at);
+  const M met = meets(at, sum);
   if (hn::AllFalse(d, met)) return;
-  const auto mean = [&](double of_a, double of_b, double of_c) {
-    return hn::Add(hn::Add(hn::Mul(at_a, hn::Set(d, of_a)), hn::Mul(at_b, hn::Set(d, of_b))), hn::Mul(at_c, hn::Set(d, of_c)));
-  };
-  const V nearness = hn::Div(mean(triangle.a.nearness, triangle.b.nearness, triangle.c.nearness), sum);
-  const V best = hn::Load(d, cover.nearness + lane), index = hn::Set(d, static_cast<double>(triangle.index));
-  const auto tied = hn::And(hn::Eq(nearness, best), hn::Lt(index, hn::Load(d, cover.triangle + lane)));
-  const auto nearer = hn::And(met, hn::Or(hn::Gt(nearness, best), tied));
+  const V nearness = hn::Div(mean(at, triangle.a.nearness, triangle.b.nearness, triangle.c.nearness), sum);
+  const V best = hn::Load(d, cover.nearness + lane), holder = hn::Load(d, cover.triangle + lane);
+  const V index = hn::Set(d, static_cast<double>(triangle.index));
+  const M tied = hn::And(hn::Eq(nearness, best), hn::Lt(index, holder));
+  const M nearer = hn::And(met, hn::Or(hn::Gt(nearness, best), tied));
   if (hn::AllFalse(d, nearer)) return;
-  hn::BlendedStore(nearness, nearer, d, cover.nearness + lane);
-  hn::BlendedStore(index, nearer, d, cover.triangle + lane);
-  hn::BlendedStore(hn::Mul(at_b, hn::Set(d, triangle.b.weight)), nearer, d, cover.weight_b + lane);
-  hn::BlendedStore(hn::Mul(at_c, hn::Set(d, triangle.c.weight)), nearer, d, cover.weight_c + lane);
-  hn::BlendedStore(mean(triangle.a.weight, triangle.b.weight, triangle.c.weight), nearer, d, cover.weight_sum + lane);
+  // Whole vectors: what is stored in part is slow to read again, and the next triangle most often lies in the same lanes.
+  const auto take = [&](V value, V before, double* to) { hn::Store(hn::IfThenElse(nearer, value, before), d, to + lane); };
+  take(nearness, best, cover.nearness);
+  take(index, holder, cover.triangle);
+  take(hn::Mul(at.b, hn::Set(d, triangle.b.weight)), hn::Load(d, cover.weight_b + lane), cover.weight_b);
+  take(hn::Mul(at.c, hn::Set(d, triangle.c.weight)), hn::Load(d, cover.weight_c + lane), cover.weight_c);
+  take(mean(at, triangle.a.weight, triangle.b.weight, triangle.c.weight), hn::Load(d, cover.weight_sum + lane), cover.weight_sum);
 }
 
 /// Pixels of the tile, first to last inclusive, from its corner.
@@ -73,7 +66,9 @@ struct Pixels {
   int x0, y0, x1, y1;
 };
 
-HWY_INLINE void cover_triangle(const Triangle& triangle, const Pixels& pixels, const PixelTile& tile, TileCover& cover) {
+/// Calls `visit(x, y, lane)` for the vectors of lanes that the pixels lie in; x and y are those of the block.
+template <class Visit>
+HWY_INLINE void for_each_vector(const Pixels& pixels, const PixelTile& tile, const Visit& visit) {
   const int across = (tile.width + 3) >> 2;
   constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
   constexpr int kRows = std::max(1, kLanes / 4), kSteps = std::max(1, 4 / kLanes);  // rows a vector, vectors a row
@@ -82,8 +77,7 @@ HWY_INLINE void cover_triangle(const Triangle& triangle, const Pixels& pixels, c
     for (int bx = pixels.x0 >> 2; bx <= pixels.x1 >> 2; ++bx) {
       const double x = tile.x + 4 * bx, y = tile.y + 4 * by;
       for (int row = first_row; row <= last_row; row += kRows) {
-        for (int step = 0; step < kSteps; ++step)
-          cover_lanes(triangle, x, y, static_cast<size_t>((by * across + bx) * 16 + row * 4 + step * kLanes), cover);
+        for (int step = 0; step < kSteps; ++step) visit(x, y, static_cast<size_t>((by * across + bx) * 16 + row * 4 + step * kLanes));
       }
     }
   }
@@ -101,21 +95,47 @@ HWY_INLINE void fetch_ahead(const MeshView& view, std::span<const TriangleInTile
   __builtin_prefetch(&view.vertices[corners.z]);
 }
 
+/// The pixels of a list's entry that lie in the tile, the list's tile beginning at (x, y) from the other's corner.
+HWY_INLINE Pixels pixels_of(const TriangleInTile& entry, int x, int y, const PixelTile& tile) {
+  return {std::max(entry.x0 + x, 0), std::max(entry.y0 + y, 0), std::min(entry.x1 + x, tile.width - 1),
+          std::min(entry.y1 + y, tile.height - 1)};
+}
+
+HWY_INLINE Triangle triangle_of(const MeshView& view, std::uint32_t index) {
+  const glm::uvec3& corners = view.mesh->triangles[index];
+  return {view.vertices[corners.x], view.vertices[corners.y], view.vertices[corners.z], index};
+}
+
+/// `hidden`: most triangles are expected to lie behind what was found before.
+template <bool hidden>
+HWY_INLINE void cover_list(const MeshView& view, std::span<const TriangleInTile> entries, int x, int y, const PixelTile& tile,
+                           TileCover& cover) {
+  const D d;
+  for (size_t k = 0; k < entries.size(); ++k) {
+    if (!hidden) fetch_ahead(view, entries, k);
+    const Pixels pixels = pixels_of(entries[k], x, y, tile);
+    if (pixels.x0 > pixels.x1 || pixels.y0 > pixels.y1) continue;
+    for_each_vector(pixels, tile, [&](double block_x, double block_y, size_t lane) {
+      if (hidden && hn::AllFalse(d, hn::Le(hn::Load(d, cover.nearness + lane), hn::Set(d, static_cast<double>(entries[k].nearest)))))
+        return;
+      cover_lanes(triangle_of(view, entries[k].triangle), block_x, block_y, lane, cover);
+    });
+  }
+}
+
 void CoverTile(const MeshView& view, const PixelTile& tile, int lanes, TileCover& cover) {
   std::fill_n(cover.nearness, lanes, -std::numeric_limits<double>::infinity());
   std::fill_n(cover.triangle, lanes, 0.0);
-  for (int row = tile.y / kMeshTile_px; row <= (tile.y + tile.height - 1) / kMeshTile_px; ++row) {
-    for (int column = tile.x / kMeshTile_px; column <= (tile.x + tile.width - 1) / kMeshTile_px; ++column) {
-      const std::span<const TriangleInTile> entries = view.tile(column, row);
-      const int x = column * kMeshTile_px - tile.x, y = row * kMeshTile_px - tile.y;
-      for (size_t k = 0; k < entries.size(); ++k) {
-        fetch_ahead(view, entries, k);
-        const TriangleInTile& entry = entries[k];
-        const Pixels pixels{std::max(entry.x0 + x, 0), std::max(entry.y0 + y, 0), std::min(entry.x1 + x, tile.width - 1),
-                            std::min(entry.y1 + y, tile.height - 1)};
-        if (pixels.x0 > pixels.x1 || pixels.y0 > pixels.y1) continue;
-        const glm::uvec3& corners = view.mesh->triangles[entry.triangle];
-        cover_triangle({view.vertices[corners.x], view.vertices[corners.y], view.vertices[corners.z], entry.triangle}, pixels, tile, cover);
+  for (double* weights : {cover.weight_b, cover.weight_c, cover.weight_sum}) std::fill_n(weights, lanes, 0.0);
+  for (const int away : {0, 1}) {
+    for (int row = tile.y / kMeshTile_px; row <= (tile.y + tile.height - 1) / kMeshTile_px; ++row) {
+      for (int column = tile.x / kMeshTile_px; column <= (tile.x + tile.width - 1) / kMeshTile_px; ++column) {
+        const std::span<const TriangleInTile> entries = view.list(column, row, away);
+        const int x = column * kMeshTile_px - tile.x, y = row * kMeshTile_px - tile.y;
+        if (away)
+          cover_list<true>(view, entries, x, y, tile, cover);
+        else
+          cover_list<false>(view, entries, x, y, tile, cover);
       }
     }
   }

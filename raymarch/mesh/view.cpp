@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace limn {
@@ -13,23 +12,8 @@ namespace {
 
 // Beyond so many triangles for each pixel that the bounds cover, listing them all takes longer than a tree's search for each ray.
 constexpr double kTrianglesPerPixel = 16.0;
-
-/// A triangle whose box holds pixels: first to last inclusive, within the picture.
-struct SeenTriangle {
-  std::uint32_t triangle;
-  std::int16_t x0, y0, x1, y1;
-};
-
-/// Pixels from the first to the last whole number of [low, high], perhaps one more on either side, within 0 .. size - 1.
-struct PixelRun {
-  int first, last;
-};
-PixelRun pixels_between(double low, double high, int size) {
-  // Rounding up is casting what is almost one larger: for whole numbers and a hair beyond nothing is added.
-  constexpr double kAlmostOne = 1.0 - 1e-6;
-  const double first = std::clamp(low, -1.0, static_cast<double>(size)), last = std::clamp(high, -1.0, static_cast<double>(size));
-  return {std::max(0, static_cast<int>(first + kAlmostOne)), std::min(size - 1, static_cast<int>(last + 1.0 + 1e-6) - 1)};
-}
+// Lists longer than this are those of many large triangles behind each other: a tree sees less of them.
+constexpr size_t kMostEntries = size_t{1} << 25;
 
 double covered_pixels(const Box& bounds, const Camera& camera) {
   Box image;
@@ -44,66 +28,48 @@ double covered_pixels(const Box& bounds, const Camera& camera) {
   return seen.empty() ? 0.0 : seen.size().x * seen.size().y;
 }
 
-// Lists longer than this are those of many large triangles behind each other: a tree sees less of them.
-constexpr size_t kMostEntries = size_t{1} << 25;
-
-/// A share of the triangles: those that may cover pixels, and how many of them each tile has.
-struct Part {
-  std::vector<SeenTriangle> seen{};
-  std::vector<std::uint32_t> tiles{};
-  size_t entries = 0;
-};
-
 size_t tiles_of(const SeenTriangle& s) {
   const auto along = [](int first, int last) { return static_cast<size_t>(last / kMeshTile_px - first / kMeshTile_px + 1); };
   return along(s.x0, s.x1) * along(s.y0, s.y1);
 }
 
 template <class Visit>
-void for_each_tile(const SeenTriangle& s, int columns, const Visit& visit) {
+void for_each_list(const SeenTriangle& s, int columns, const Visit& visit) {
   for (int row = s.y0 / kMeshTile_px; row <= s.y1 / kMeshTile_px; ++row) {
     for (int column = s.x0 / kMeshTile_px; column <= s.x1 / kMeshTile_px; ++column)
-      visit(static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column), column * kMeshTile_px,
+      visit(2 * (static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column)) + s.away, column * kMeshTile_px,
             row * kMeshTile_px);
   }
 }
 
-Part see(const MeshView& view, size_t from, size_t to, const Camera& camera) {
-  Part part;
-  part.tiles.assign(static_cast<size_t>(view.columns) * static_cast<size_t>(view.rows), 0);
-  part.seen.reserve((to - from) / 2);
-  for (size_t i = from; i < to; ++i) {
-    const glm::uvec3& corners = view.mesh->triangles[i];
-    const ScreenVertex &a = view.vertices[corners.x], &b = view.vertices[corners.y], &c = view.vertices[corners.z];
-    const PixelRun x = pixels_between(std::min(std::min(a.x, b.x), c.x), std::max(std::max(a.x, b.x), c.x), camera.width_px);
-    const PixelRun y = pixels_between(std::min(std::min(a.y, b.y), c.y), std::max(std::max(a.y, b.y), c.y), camera.height_px);
-    if (x.first > x.last || y.first > y.last) continue;
-    part.seen.push_back({static_cast<std::uint32_t>(i), static_cast<std::int16_t>(x.first), static_cast<std::int16_t>(y.first),
-                         static_cast<std::int16_t>(x.last), static_cast<std::int16_t>(y.last)});
-    part.entries += tiles_of(part.seen.back());
-    if (part.entries > kMostEntries) break;
-    for_each_tile(part.seen.back(), view.columns, [&](size_t tile, int, int) { ++part.tiles[tile]; });
-  }
-  return part;
+void see(const MeshView& view, size_t from, size_t to, const Camera& camera, SeenShare& share) {
+  share.seen.resize(std::max(share.seen.size(), to - from));
+  share.counts.assign(2 * static_cast<size_t>(view.columns) * static_cast<size_t>(view.rows), 0);
+  share.entries = 0;
+  share.found = find_seen(view, from, to, camera.width_px, camera.height_px, share.seen);
+  const std::span<const SeenTriangle> seen = std::span(share.seen).first(share.found);
+  for (const SeenTriangle& s : seen) share.entries += tiles_of(s);
+  if (share.entries > kMostEntries) return;
+  for (const SeenTriangle& s : seen) for_each_list(s, view.columns, [&](size_t list, int, int) { ++share.counts[list]; });
 }
 
-/// Each part's counts become where its entries start in each tile; the tiles' own starts and the end go to `first`.
-void place(std::vector<Part>& parts, std::vector<std::uint32_t>& first) {
-  const size_t tiles = parts[0].tiles.size();
-  first.resize(tiles + 1);
+/// Each share's counts become where its entries start in each list; the lists' own starts and the end go to `first`.
+void place(std::vector<SeenShare>& shares, std::vector<std::uint32_t>& first) {
+  const size_t lists = shares[0].counts.size();
+  first.resize(lists + 1);
   std::uint32_t sum = 0;
-  for (size_t tile = 0; tile < tiles; ++tile) {
-    first[tile] = sum;
-    for (Part& part : parts) sum += std::exchange(part.tiles[tile], sum);
+  for (size_t list = 0; list < lists; ++list) {
+    first[list] = sum;
+    for (SeenShare& share : shares) sum += std::exchange(share.counts[list], sum);
   }
-  first[tiles] = sum;
+  first[lists] = sum;
 }
 
-void fill(Part& part, MeshView& view) {
-  for (const SeenTriangle& s : part.seen) {
-    for_each_tile(s, view.columns, [&](size_t tile, int x, int y) {
+void fill(SeenShare& share, MeshView& view) {
+  for (const SeenTriangle& s : std::span(share.seen).first(share.found)) {
+    for_each_list(s, view.columns, [&](size_t list, int x, int y) {
       const auto within = [](int v) { return static_cast<std::uint8_t>(std::clamp(v, 0, kMeshTile_px - 1)); };
-      view.entries[part.tiles[tile]++] = {s.triangle, within(s.x0 - x), within(s.y0 - y), within(s.x1 - x), within(s.y1 - y)};
+      view.entries[share.counts[list]++] = {s.triangle, within(s.x0 - x), within(s.y0 - y), within(s.x1 - x), within(s.y1 - y), s.nearest};
     });
   }
 }
@@ -112,18 +78,18 @@ void fill(Part& part, MeshView& view) {
 bool list_triangles(const Camera& camera, MeshView& view) {
   view.columns = (camera.width_px + kMeshTile_px - 1) / kMeshTile_px;
   view.rows = (camera.height_px + kMeshTile_px - 1) / kMeshTile_px;
-  constexpr size_t kShare = 8192, kMostShares = 32, kMostCounts = size_t{1} << 21;
+  constexpr size_t kShare = 8192, kMostShares = 8, kMostCounts = size_t{1} << 21;
   const size_t tiles = static_cast<size_t>(view.columns) * static_cast<size_t>(view.rows), triangles = view.mesh->triangles.size();
   const size_t shares = std::clamp<size_t>(std::min(triangles / kShare, kMostCounts / tiles), 1, kMostShares);
-  std::vector<Part> parts(shares);
+  view.shares.resize(shares);
   tbb::parallel_for(size_t{0}, shares,
-                    [&](size_t k) { parts[k] = see(view, triangles * k / shares, triangles * (k + 1) / shares, camera); });
+                    [&](size_t k) { see(view, triangles * k / shares, triangles * (k + 1) / shares, camera, view.shares[k]); });
   size_t entries = 0;
-  for (const Part& part : parts) entries += part.entries;
+  for (const SeenShare& share : view.shares) entries += share.entries;
   if (entries > kMostEntries) return false;
-  place(parts, view.first);
-  view.entries.resize(view.first[tiles]);
-  tbb::parallel_for(size_t{0}, shares, [&](size_t k) { fill(parts[k], view); });
+  place(view.shares, view.first);
+  view.entries.resize(entries);
+  tbb::parallel_for(size_t{0}, shares, [&](size_t k) { fill(view.shares[k], view); });
   return true;
 }
 
@@ -148,7 +114,7 @@ bool touches(const void* opaque, const PixelTile& tile) {
   const MeshView& view = *static_cast<const MeshView*>(opaque);
   for (int row = tile.y / kMeshTile_px; row <= (tile.y + tile.height - 1) / kMeshTile_px; ++row) {
     for (int column = tile.x / kMeshTile_px; column <= (tile.x + tile.width - 1) / kMeshTile_px; ++column) {
-      if (!view.tile(column, row).empty()) return true;
+      if (!view.list(column, row, 0).empty() || !view.list(column, row, 1).empty()) return true;
     }
   }
   return false;
@@ -156,17 +122,29 @@ bool touches(const void* opaque, const PixelTile& tile) {
 
 }  // namespace
 
-SurfaceView view_mesh(std::shared_ptr<const void> keep, const TriangleMesh& mesh, const Box& bounds, const ViewRequest& request) {
-  if (mesh.triangles.empty() || static_cast<double>(mesh.triangles.size()) > kTrianglesPerPixel * covered_pixels(bounds, request.camera))
-    return {};
-  auto view = std::make_shared<MeshView>();
-  view->keep = std::move(keep);
-  view->mesh = &mesh;
-  view->eye = request.camera.eye;
-  view->forward = -request.camera.world_from_camera[2];
-  view->perspective = request.camera.projection == Projection::perspective;
-  if (!project_all(request, bounds, *view) || !list_triangles(request.camera, *view)) return {};
-  return {std::move(view), touches, [](const void* state, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) {
+std::unique_ptr<MeshView> MeshViewMemory::take() {
+  const std::lock_guard lock(mutex_);
+  return spare_ ? std::move(spare_) : std::make_unique<MeshView>();
+}
+
+void MeshViewMemory::give_back(std::unique_ptr<MeshView> view) {
+  const std::lock_guard lock(mutex_);
+  spare_ = std::move(view);
+}
+
+SurfaceView view_mesh(const ViewedMesh& viewed, const ViewRequest& request) {
+  const Camera& camera = request.camera;
+  const size_t triangles = viewed.mesh->triangles.size();
+  if (triangles == 0 || static_cast<double>(triangles) > kTrianglesPerPixel * covered_pixels(viewed.bounds, camera)) return {};
+  const std::shared_ptr<MeshView> view(viewed.memory->take().release(), [keep = viewed.keep, memory = viewed.memory](MeshView* used) {
+    memory->give_back(std::unique_ptr<MeshView>(used));
+  });
+  view->mesh = viewed.mesh;
+  view->eye = camera.eye;
+  view->forward = -camera.world_from_camera[2];
+  view->perspective = camera.projection == Projection::perspective;
+  if (!project_all(request, viewed.bounds, *view) || !list_triangles(camera, *view)) return {};
+  return {view, touches, [](const void* state, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) {
             trace_mesh_tile(*static_cast<const MeshView*>(state), tile, rays, hits);
           }};
 }

@@ -31,6 +31,7 @@ struct MeshState {
   Owned<RTCDevice, EmbreeDevice> device;
   Owned<RTCScene, EmbreeScene> scene;
   Box bounds;
+  mutable MeshViewMemory view_memory;
   std::shared_ptr<const Polygons> polygons;
   std::optional<MeshCurvature> curvature;  ///< Refers to the two above.
 };
@@ -184,7 +185,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   surface.trace = trace;
   surface.view = [](const std::shared_ptr<const void>& kept, const ViewRequest& request) {
     const MeshState& mesh_state = *static_cast<const MeshState*>(kept.get());
-    return view_mesh(kept, mesh_state.mesh, mesh_state.bounds, request);
+    return view_mesh({kept, &mesh_state.mesh, mesh_state.bounds, &mesh_state.view_memory}, request);
   };
   surface.info.kind = "mesh";
   surface.info.triangles = static_cast<std::int64_t>(state->mesh.triangles.size());

@@ -14,6 +14,8 @@ namespace {
 constexpr double kTrust = 1.3;
 // Times of single runs differ by this much from one to the next.
 constexpr double kTimeNoise = 1.25;
+// The part of building that grows with resolution is at least this share of it.
+constexpr double kLeastGrowing = 0.1;
 // Orders outside are those of chance.
 constexpr double kLowestOrder = 0.0, kHighestOrder = 4.0;
 
@@ -116,7 +118,10 @@ double expected_ms(const Climb& climb, int rung) {
   }
   const double from = size_of(climb, nearest == nullptr ? 0 : nearest->rung);
   const double growth = std::pow(from / size_of(climb, rung), 2.0);
-  return nearest == nullptr ? climb.guess_ms * growth : nearest->build_ms * growth + nearest->trace_ms;
+  const double build_ms = nearest == nullptr ? climb.guess_ms : nearest->build_ms;
+  // Times of single runs: what is left of one may be no more than their noise.
+  const double growing_ms = std::max(build_ms - climb.ladder->fixed_ms, kLeastGrowing * build_ms);
+  return build_ms - growing_ms + growing_ms * growth + (nearest == nullptr ? 0.0 : nearest->trace_ms);
 }
 
 int next_rung(const Climb& climb, double tolerance_px) {

@@ -32,7 +32,7 @@ struct Climb {
 /// (one alone: along theory's). Theory's own where nothing was measured.
 double expected_error(const Climb& climb, int rung, double tolerance_px);
 
-/// To build and trace a rung: both sides of a surface halved, four times as much to build.
+/// To build and trace a rung: both sides of a surface halved, four times as much to build but for what is the same at every rung.
 double expected_ms(const Climb& climb, int rung);
 
 /// The rung to try next: the coarsest that is expected to meet the tolerance, between those known to fail and to meet it, and no farther

@@ -35,6 +35,7 @@ struct Ladder {
   double normal_constant = 0.0;  ///< Angle = constant (curvature * size)^order, as far as theory knows.
   double base_size = 1.0;        ///< World size of an edge at level 0, or of a voxel times the number of voxels.
   double guess_ms = 1.0;         ///< To build the first rung, as an order of magnitude: the order in which ladders are tried.
+  double fixed_ms = 0.0;         ///< Of that and of every other rung, what does not grow: finding a shape's cage, as it took just now.
 
   double size_at(size_t rung) const;  ///< World: of an edge or a voxel.
   SurfaceSettings at(size_t rung) const;

@@ -157,7 +157,8 @@ PlanTrial finest_of(const PlanAnswer& answer, const PlanTrial& chosen, bool& was
   const double growth = std::pow(ladder.size_at(from->rung) / ladder.size_at(last), 2.0);
   finest.rung = last;
   finest.bytes = static_cast<std::int64_t>(static_cast<double>(from->bytes) * growth);
-  finest.build_ms = from->build_ms * growth;
+  const double fixed_ms = std::min(ladder.fixed_ms, from->build_ms);
+  finest.build_ms = fixed_ms + (from->build_ms - fixed_ms) * growth;
   finest.measured = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   return finest;
 }

@@ -104,6 +104,7 @@ nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
   row["time_ms"] = chosen.time_ms(), row["bytes"] = chosen.bytes;
   row["finest_time_ms"] = finest->second.time_ms, row["finest_bytes"] = finest->second.bytes;
   row["trials"] = answer.trials.size();
+  row["notes"] = answer.notes;
   return row;
 }
 

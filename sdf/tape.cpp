@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sdf/error.h"
 #include "sdf/field_program.h"
 
 namespace limn {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 int operands(TapeOperation operation) {
   switch (operation) {
@@ -142,6 +145,22 @@ TapeOperation tape_operation(FieldOperation operation) {
   return TapeOperation::copy;
 }
 
+void find_what_signs_decide(FieldTape& tape) {
+  std::vector<bool> by_sign(tape.registers, false);
+  by_sign[0] = true;
+  for (size_t i = tape.steps.size(); i-- > 0;) {
+    TapeStep& step = tape.steps[i];
+    if (step.inside_shape || step.operation == TapeOperation::coordinates) continue;
+    const bool decided = by_sign[step.target];
+    by_sign[step.target] = false;
+    const bool choice = step.operation == TapeOperation::minimum || step.operation == TapeOperation::maximum;
+    step.sign_decides = decided && choice;
+    if (!decided || (!choice && step.operation != TapeOperation::negate)) continue;
+    by_sign[step.a] = true;
+    if (choice) by_sign[step.b] = true;
+  }
+}
+
 }  // namespace
 
 FieldTape::FieldTape(const Field& of) : field(of) {
@@ -156,6 +175,10 @@ FieldTape::FieldTape(const Field& of) : field(of) {
           {.operation = tape_operation(step.operation), .target = step.target, .a = step.left, .b = step.right, .constant = step.constant});
     }
   }
+  // Roots are looked for by values this near, and where they are found float has moved them by less.
+  const FieldTraits& traits = field.traits();
+  margin = traits.bounds.finite() ? 1e-5 * traits.lipschitz * (traits.bounds.radius() + glm::length(traits.bounds.center())) : kInfinity;
+  find_what_signs_decide(*this);
 }
 
 // Backwards, so that it is known of every step whether anybody reads what it makes. Where one side of a choice has no influence, whatever

@@ -44,6 +44,7 @@ enum class TapeOperation : std::uint8_t {
 struct TapeStep {
   TapeOperation operation = TapeOperation::copy;
   bool inside_shape = false;  ///< Others may read its operands too.
+  bool sign_decides = false;  ///< Between its result and the field's there are nothing but minima, maxima and changes of sign.
   std::uint32_t target = 0;
   std::uint32_t a = 0, b = 0, c = 0;
   std::uint32_t leaf = 0;
@@ -67,15 +68,18 @@ struct FieldTape {
   std::vector<TapeLeaf> leaves;
   std::vector<TapeStep> steps;
   std::uint32_t registers = 0;
+  /// Where f is nearer to 0 than this, pruned tapes give it to the last bit; elsewhere its sign, and a value no nearer to 0.
+  double margin = 0.0;
 };
 
-/// What bounds say of a step that chooses between two registers: bit i set where only that side has influence in lane i.
+/// What bounds say of a step that chooses between two registers: bit i set where only that side has influence in lane i, be it on the value
+/// or (TapeStep::sign_decides) on the sign: in a union whatever is positive may go, although it may be the lesser of two positive values.
 struct TapeChoice {
   std::uint16_t left = 0, right = 0;
 };
 
 /// Writes to `pruned` the steps that have influence in the lanes of `lanes`, in order; `choices` has one entry a step. In those lanes the
-/// result is the same to the last bit.
+/// result is as good as the same, see FieldTape::margin.
 void prune_tape(std::span<const TapeStep> steps, std::span<const TapeChoice> choices, std::uint16_t lanes, std::uint32_t registers,
                 std::vector<TapeStep>& pruned);
 

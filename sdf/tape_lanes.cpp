@@ -161,12 +161,19 @@ HWY_INLINE void narrow(const Pass& pass, const TapeLeaf& leaf, int at, LaneSlope
   x.slope = tighter({x.slope.lower - slack, x.slope.upper + slack}, {-steepest, steepest});
 }
 
+/// Lanes in which only a or only b has influence.
+struct Decided {
+  LaneMask left, right;
+};
 template <class T>
-HWY_INLINE void choose(const T& a, const T& b, double gap, bool lesser, int part, TapeChoice& choice) {
-  const unsigned a_below = bits_of(a.value.upper + gap < b.value.lower) << (part * kWidth);
-  const unsigned b_below = bits_of(b.value.upper + gap < a.value.lower) << (part * kWidth);
-  choice.left = static_cast<std::uint16_t>(choice.left | (lesser ? a_below : b_below));
-  choice.right = static_cast<std::uint16_t>(choice.right | (lesser ? b_below : a_below));
+HWY_INLINE Decided decided(const T& a, const T& b, const TapeStep& step, double margin) {
+  const bool lesser = step.operation == TapeOperation::minimum || step.operation == TapeOperation::smooth_minimum;
+  const bool smooth = step.operation == TapeOperation::smooth_minimum || step.operation == TapeOperation::smooth_maximum;
+  const double gap = smooth ? step.constant * (1.0 + 1e-12) : 0.0;
+  const LaneMask a_below = a.value.upper + gap < b.value.lower, b_below = b.value.upper + gap < a.value.lower;
+  if (!step.sign_decides) return lesser ? Decided{a_below, b_below} : Decided{b_below, a_below};
+  if (lesser) return {either(a_below, b.value.lower > reals(margin)), either(b_below, a.value.lower > reals(margin))};
+  return {either(b_below, b.value.upper < reals(-margin)), either(a_below, a.value.upper < reals(-margin))};
 }
 
 template <class T>
@@ -205,19 +212,37 @@ struct Runner {
   break
 
 template <class T>
+HWY_INLINE T chosen(const T& a, const T& b, const TapeStep& step) {
+  switch (step.operation) {
+    case TapeOperation::minimum:
+      return minimum(a, b);
+    case TapeOperation::maximum:
+      return maximum(a, b);
+    case TapeOperation::smooth_minimum:
+      return smooth_minimum(a, b, step.constant);
+    default:
+      return -smooth_minimum(-a, -b, step.constant);
+  }
+}
+
+template <class T>
 void run_choice(const Runner<T>& runner, const TapeStep& step, TapeChoice* choice) {
-  const bool lesser = step.operation == TapeOperation::minimum || step.operation == TapeOperation::smooth_minimum;
-  const bool smooth = step.operation == TapeOperation::smooth_minimum || step.operation == TapeOperation::smooth_maximum;
-  if constexpr (kBounding<T>) *choice = {};
+  unsigned left = 0, right = 0;
   for (int part = 0; part < kParts; ++part) {
     const T a = runner.read(step.a, part), b = runner.read(step.b, part);
-    if constexpr (kBounding<T>) choose(a, b, smooth ? step.constant * (1.0 + 1e-12) : 0.0, lesser, part, *choice);
-    if (!smooth) {
-      runner.write(step.target, part, lesser ? minimum(a, b) : maximum(a, b));
-    } else {
-      runner.write(step.target, part, lesser ? smooth_minimum(a, b, step.constant) : -smooth_minimum(-a, -b, step.constant));
+    T result = chosen(a, b, step);
+    if constexpr (kBounding<T>) {
+      const Decided sides = decided(a, b, step, runner.pass.tape->margin);
+      left |= bits_of(sides.left) << (part * kWidth);
+      right |= bits_of(sides.right) << (part * kWidth);
+      // Slopes are those of what pruning leaves.
+      if constexpr (Kind<T>::kNumber == TapeNumber::slope) {
+        if (step.sign_decides) result.slope = select(sides.left, a.slope, select(sides.right, b.slope, result.slope));
+      }
     }
+    runner.write(step.target, part, result);
   }
+  if constexpr (kBounding<T>) *choice = {static_cast<std::uint16_t>(left), static_cast<std::uint16_t>(right)};
 }
 
 template <class T>

@@ -15,6 +15,7 @@ constexpr size_t kFewBalls = 3;
 constexpr double kNewtonTolerance = 1e-8;
 // What is left of a stretch that bounds say too little about.
 constexpr double kCut = 0.25;
+constexpr double kShortest = 1.0 / 256.0;  // Of a run: so few steps are the most that a block can take.
 
 /// A tile on its way: which of its rays have yet to meet the surface.
 struct TileWork {
@@ -144,7 +145,8 @@ void trace_run(TileWork& work, const SlabRun& run, std::span<const TapeStep> ste
   BlockFronts fronts;
   fronts.z.fill(run.z0);
   fronts.length.fill(run.z1 - run.z0);
-  const double shortest = width_at(work.view.beams, {0, 0, 4, 4}, run.z0);
+  // At the eye beams have no width.
+  const double shortest = std::max(width_at(work.view.beams, {0, 0, 4, 4}, run.z0), kShortest * (run.z1 - run.z0));
   LaneBeams beams;
   LaneBounds bounds;
   std::vector<TapeChoice>& choices = work.scratch.choices;

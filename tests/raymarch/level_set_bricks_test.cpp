@@ -180,8 +180,10 @@ TEST(LevelSetBricks, TakeTheNormalsOfTheGradientThatWasAskedFor) {
         if (on_face || glm::length(gradients[i]) < 0.2) continue;
         worst = std::max(worst, glm::length(glm::dvec3(normals[i]) - glm::normalize(gradients[i])));
       }
-      EXPECT_GT(points.size(), 500u) << c.name;
-      EXPECT_LT(worst, name == "cubic" ? 3e-4 : 2e-3) << c.name << " " << name << " seed " << seed;
+      EXPECT_GT(points.size(), 100u) << c.name;  // a plate may be seen edge on
+      // Beside an edge a gradient turns fast, and the hit's place is rounded.
+      const bool smooth = c.name == "sphere" && name != "cell";
+      EXPECT_LT(worst, smooth ? 2e-4 : 2e-3) << c.name << " " << name << " seed " << seed;
     }
   }
 }

@@ -33,7 +33,7 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
   --voxels N        along the longest side; may be repeated
   --runs N          interleaved runs of which the median counts (7)
   --width PX        of pictures 16:9 (1920)
-  --scene NAME, --views N   of the plan suite
+  --scene NAME, --views N   of the plan suite; --view I: only this one of the views, from 0
   --output FILE     JSON; --json prints it to stdout, tables then go to stderr
   --against BEFORE AFTER    compares JSON files of two revisions; each may be given as FILE,FILE,... (see ./run bench --against REF)
   --limit X         of --against: exit 1 where one of limn's rows takes more than X times as long (1.1)
@@ -46,6 +46,7 @@ struct Settings {
   int width_px = 1920, height_px = 1080;
   std::string suite = "all";
   int views = 4;
+  std::optional<int> only_view{};
   std::string output{};
   bool json = false;
   std::vector<std::string> against{};  ///< Two lists of files.
@@ -88,6 +89,8 @@ Settings parse(int argc, char** argv) {
       settings.scenes.push_back(value(flag));
     } else if (flag == "--views") {
       settings.views = whole(flag, 1);
+    } else if (flag == "--view") {
+      settings.only_view = whole(flag, 0);
     } else if (flag == "--suite") {
       settings.suite = value(flag);
       const std::vector<std::string> known{"march", "fields", "convert", "images", "plan", "all"};
@@ -144,7 +147,8 @@ nlohmann::json rows_of(const Settings& settings) {
   if (settings.runs_suite("images"))
     append(bench_image_methods(
         {.runs = settings.runs, .width_px = settings.width_px, .height_px = settings.height_px, .table = settings.table()}));
-  if (settings.runs_suite("plan")) append(bench_plan({.scenes = settings.scenes, .views = settings.views, .table = settings.table()}));
+  if (settings.runs_suite("plan"))
+    append(bench_plan({.scenes = settings.scenes, .views = settings.views, .only_view = settings.only_view, .table = settings.table()}));
   return rows;
 }
 

@@ -78,15 +78,15 @@ nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
   }
   const PlanTrial& chosen = answer.trials[*answer.chosen];
   const Ladder& ladder = answer.ladders[chosen.ladder];
-  const auto beyond = [&](size_t rung, bool of_all = false) {
-    return test::share_beyond(build(at.scene, ladder, rung), at.reference, at.view, settings.threshold, tolerance_px, settings.metric,
-                              of_all);
+  const auto beyond = [&](const SceneModel& model, bool of_all = false) {
+    return test::share_beyond(model, at.reference, at.view, settings.threshold, tolerance_px, settings.metric, of_all);
   };
   const auto [finest, added] = at.finest.try_emplace(ladder.title);
   if (added) finest->second = finest_of(at.scene, ladder, at.view);
-  const double share = beyond(chosen.rung);
+  const SceneModel model = build(at.scene, ladder, chosen.rung);
+  const double share = beyond(model);
   std::optional<double> coarser;
-  if (chosen.rung > 0) coarser = beyond(chosen.rung - 1);
+  if (chosen.rung > 0) coarser = beyond(build(at.scene, ladder, chosen.rung - 1));
   ++sums.chosen;
   sums.meets += share <= kShare;
   sums.with_coarser += coarser.has_value();
@@ -99,7 +99,7 @@ nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
   row["measured_px"] = chosen.measured.of(settings.metric);
   row["predicted_px"] = chosen.predicted.of(settings.metric);
   row["share_beyond"] = share;
-  row["share_beyond_of_all"] = beyond(chosen.rung, true);
+  row["share_beyond_of_all"] = beyond(model, true);
   row["coarser_share_beyond"] = coarser ? nlohmann::json(*coarser) : nlohmann::json(nullptr);
   row["time_ms"] = chosen.time_ms(), row["bytes"] = chosen.bytes;
   row["finest_time_ms"] = finest->second.time_ms, row["finest_bytes"] = finest->second.bytes;
@@ -125,6 +125,7 @@ Sums run_scene(const SceneDescriptor& descriptor, const PlanBenchSettings& setti
   camera.height_px = settings.height_px;
   std::map<std::string, Built> finest;
   for (int index = 0; index < settings.views; ++index) {
+    if (settings.only_view && index != *settings.only_view) continue;
     PlanView view;
     view.camera = camera_of_view(camera, bounds(scene), index, settings.views);
     view.truth = solve_truth(scene, view.camera, {}, {});

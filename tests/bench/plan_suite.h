@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@ namespace limn::bench {
 struct PlanBenchSettings {
   std::vector<std::string> scenes{};  ///< Empty: all.
   int views = 4;
+  std::optional<int> only_view{};  ///< Of these, from 0.
   int width_px = 640, height_px = 360;
   std::FILE* table = stdout;
 };

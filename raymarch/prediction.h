@@ -8,6 +8,9 @@ namespace limn {
 /// A model's normal error eps (in the plane of N and V, positive: N.V too low) moves the inner border by s c eps / kr, seen in parallel
 /// (c the threshold, s px per world unit, kr the radial curvature): N.V changes by sin (kr + c / d) for each world unit towards the eye
 /// along the surface, d the distance to the eye, because the view turns too; the step's image is taken along the border's normal.
+/// Where normals jump from cell to cell (a level set's `cell` gradient) the border runs along the jumps. With N.V right in the middle of a
+/// cell of width w, and that middle at u <= w/2 from the true border, theory says u and the border goes w/2 - u the same way: over all u
+/// both are spread evenly up to w/2, so the root mean squares agree and the places do not (correlation 1/2).
 /// Lengths are weighted; NaN where nothing could be compared.
 struct DisplacementPrediction {
   int samples = 0;                ///< Each px of the true inner border, both predicted and measured.

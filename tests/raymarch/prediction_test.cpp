@@ -15,9 +15,10 @@ const glm::dvec3 kRadii(1.0, 0.7, 0.5);
 
 Scene ellipsoid_scene() { return scene_of({object_of(make_shape("ellipsoid", {{"radii", {kRadii.x, kRadii.y, kRadii.z}}}))}); }
 
-Camera camera_for(Projection projection) {
+Camera camera_for(Projection projection, int index = 0) {
   CameraSettings settings = view(320, 240, projection);
   settings.direction = glm::dvec3(0.9, 0.7, 1.3);
+  if (index > 0) settings.direction = glm::dvec3(1.3 * std::cos(0.8 * index), 0.3 + 0.2 * index, 1.3 * std::sin(0.8 * index));
   return framing(ellipsoid_scene(), settings);
 }
 
@@ -49,36 +50,54 @@ std::vector<Modelled> models() {
 
 class Prediction : public testing::TestWithParam<Projection> {};
 
-TEST_P(Prediction, OfTheDisplacementIsWithinAQuarterOfWhatIsMeasuredBelowTwoPixels) {
-  const Scene scene = ellipsoid_scene();
-  const Camera camera = camera_for(GetParam());
+/// Of several views: root mean squares over all their borders.
+struct Displacements {
+  double length = 0.0, predicted = 0.0, measured = 0.0;
+  double predicted_rms_px() const { return std::sqrt(predicted / length); }
+  double measured_rms_px() const { return std::sqrt(measured / length); }
+  void add(const DisplacementPrediction& found) {
+    length += found.samples;
+    predicted += found.samples * found.predicted_rms_px * found.predicted_rms_px;
+    measured += found.samples * found.measured_rms_px * found.measured_rms_px;
+  }
+};
+
+DisplacementPrediction predicted_in(const SceneModel& model, const Camera& camera, const std::string& name) {
   TruthSettings settings;
   settings.threshold = kThreshold;
-  const BorderTruth truth = solve_truth(scene, camera, settings, {});
+  const BorderTruth truth = solve_truth(ellipsoid_scene(), camera, settings, {});
+  const BorderCurves curves = measure_border(model, camera, render_gbuffer(model, camera, {}), {kThreshold, 0.002}, {});
+  const DisplacementPrediction found = predict_border(model, camera, truth, curves).displacement;
+  fmt::print(
+      "{:24} eps {:.3f} deg: predicted rms {:.4f} mean {:+.4f}, measured rms {:.4f} mean {:+.4f}, error {:.4f} px, correlation {:.3f}, "
+      "within 25 % {:.3f}, covered {:.3f}\n",
+      name, glm::degrees(found.normal_error_rms), found.predicted_rms_px, found.predicted_mean_px, found.measured_rms_px,
+      found.measured_mean_px, found.error_rms_px, found.correlation, found.within_quarter, found.covered);
+  EXPECT_GT(found.samples, 100) << name;
+  EXPECT_GT(found.covered, 0.95) << name;
+  return found;
+}
+
+TEST_P(Prediction, OfTheDisplacementIsWithinAQuarterOfWhatIsMeasuredBelowTwoPixels) {
   int below = 0;
   for (const Modelled& modelled : models()) {
-    const SceneModel model = build_model(scene, modelled.settings);
-    const BorderCurves curves = measure_border(model, camera, render_gbuffer(model, camera, {}), {kThreshold, 0.002}, {});
-    const DisplacementPrediction found = predict_border(model, camera, truth, curves).displacement;
-    fmt::print(
-        "{:24} eps {:.3f} deg: predicted rms {:.4f} mean {:+.4f}, measured rms {:.4f} mean {:+.4f}, error {:.4f} px, correlation {:.3f}, "
-        "within 25 % {:.3f}, covered {:.3f}\n",
-        modelled.name, glm::degrees(found.normal_error_rms), found.predicted_rms_px, found.predicted_mean_px, found.measured_rms_px,
-        found.measured_mean_px, found.error_rms_px, found.correlation, found.within_quarter, found.covered);
-    EXPECT_GT(found.samples, 100) << modelled.name;
-    EXPECT_GT(found.covered, 0.95) << modelled.name;
-    if (found.measured_rms_px >= 2.0) continue;
-    ++below;
-    // Normals that jump from voxel to voxel are no small smooth error: their root mean square alone is predicted, and at 16 voxels across
-    // (eps of 5 degrees) to 28 % only. Wherever normals are continuous, nearly every place of the border is.
+    const SceneModel model = build_model(ellipsoid_scene(), modelled.settings);
+    // One view meets a few dozen voxels, too few for the root mean square over their jumps (raymarch/prediction.h); several do.
     const bool jumps = modelled.settings.kind == "level_set" && modelled.settings.gradient == "cell";
-    const double share = jumps && modelled.settings.voxels < 32 ? 0.35 : 0.25;
-    EXPECT_NEAR(found.predicted_rms_px, found.measured_rms_px, std::max(share * found.measured_rms_px, 0.01)) << modelled.name;
-    if (!jumps) {
-      EXPECT_GT(found.within_quarter, 0.7) << modelled.name;
+    Displacements all;
+    for (int view = 0; view < (jumps ? 8 : 1); ++view) {
+      const DisplacementPrediction found = predicted_in(model, camera_for(GetParam(), view), modelled.name);
+      all.add(found);
+      EXPECT_GT(found.correlation, jumps ? 0.4 : 0.9) << modelled.name;
+      if (!jumps) {
+        EXPECT_GT(found.within_quarter, 0.7) << modelled.name;
+      }
     }
+    if (all.measured_rms_px() >= 2.0) continue;
+    ++below;
+    EXPECT_NEAR(all.predicted_rms_px(), all.measured_rms_px(), std::max(0.25 * all.measured_rms_px(), 0.01)) << modelled.name;
   }
-  EXPECT_GE(below, 6);
+  EXPECT_EQ(below, 12);
 }
 
 TEST_P(Prediction, OfTheWidthIsThatOfTheOsculatingCircleToFirstOrderInTheThreshold) {

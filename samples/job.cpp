@@ -90,9 +90,10 @@ SurfaceSettings surface_settings(const Options& options, SceneInput& input) {
   settings.scheme = options.scheme ? options.scheme : file.scheme;
   settings.normals = options.normals ? options.normals : file.normals;
   for (SceneObject& object : input.scene.objects) {
-    if (options.level) object.level.reset();
+    if (options.level || options.level_for_view) object.level.reset();
     auto* mesh = std::get_if<MeshSource>(&object.source);
-    if (mesh != nullptr && !mesh->scheme && options.level && *options.level > 0) mesh->scheme = Scheme::catmark;
+    const bool refined = options.level_for_view || options.level.value_or(0) > 0;
+    if (mesh != nullptr && !mesh->scheme && refined) mesh->scheme = Scheme::catmark;
   }
   return settings;
 }
@@ -184,7 +185,7 @@ std::string resolved_call(const std::string& command, const Options& options, co
   if (!surface.kind.empty()) call += " --surface " + surface.kind;
   call += surface.voxel_size > 0.0 ? fmt::format(" --voxel-size {}", surface.voxel_size) : fmt::format(" --voxels {}", surface.voxels);
   if (surface.half_width_voxels > 0.0) call += fmt::format(" --half-width {}", surface.half_width_voxels);
-  call += fmt::format(" --gradient {} --level {}", surface.gradient, surface.level);
+  call += fmt::format(" --gradient {} --level {}", surface.gradient, options.level_for_view ? "auto" : std::to_string(surface.level));
   if (surface.scheme) call += fmt::format(" --scheme {}", name_of(*surface.scheme));
   if (surface.normals) call += fmt::format(" --normals {}", name_of(*surface.normals));
   if (!options.grid.empty()) call += " --grid " + options.grid;

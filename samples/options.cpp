@@ -164,8 +164,15 @@ void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& need
         find_gradient(text, "", "--gradient");
         options.gradient = text;
       });
-  add(app, {"--level", "N", "refinements of a cage or a tessellation, 0..8; default 3", kSurface},
-      [&options](const std::string& text) { options.level = parse_integer("--level", text, 0, 8); });
+  const bool views = needs.views;
+  constexpr const char* kLevels = "refinements of a cage or a tessellation, 0..8; default 3";
+  constexpr const char* kLevelsOrAuto =
+      "refinements of a cage or a tessellation, 0..8; default 3; auto: as many as the picture shows to a tenth of a pixel";
+  add(app, {"--level", views ? "N|auto" : "N", views ? kLevelsOrAuto : kLevels, kSurface}, [&options, views](const std::string& text) {
+    options.level_for_view = views && text == "auto";
+    options.level.reset();
+    if (!options.level_for_view) options.level = parse_integer("--level", text, 0, 8);
+  });
   add(app, {"--normals", "NAME", "flat, vertex or limit; default: limit where there is a limit surface, else vertex", kSurface},
       [&options](const std::string& text) { options.normals = parse_normals(text, "", "--normals"); });
   add_fixed_surface(app, options);

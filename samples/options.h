@@ -63,6 +63,7 @@ struct Options {
   std::optional<double> half_width_voxels;  ///< Of the narrow band.
   std::optional<std::string> gradient;
   std::optional<int> level;
+  bool level_for_view = false;  ///< --level auto; `level` is unset then.
   std::optional<Scheme> scheme;
   std::optional<NormalKind> normals;
   std::string grid;
@@ -80,6 +81,7 @@ struct Options {
 struct SurfaceOptionNeeds {
   bool surface = true;      ///< --surface
   bool repeatable = false;  ///< --surface may be given several times.
+  bool views = false;       ///< --level auto: there are pictures to refine for.
   bool swept = false;       ///< Resolution, normals and gradients are axes (add_study), not settings.
 };
 

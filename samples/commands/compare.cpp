@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "raymarch/image_io.h"
+#include "raymarch/view_level.h"
 #include "samples/commands/command.h"
 #include "samples/compare/comparison.h"
 #include "samples/threads.h"
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_camera(app, options, false);
-  add_surface(app, options, {.surface = true, .repeatable = true});
+  add_surface(app, options, {.surface = true, .repeatable = true, .views = true});
   add_border(app, options, true);
   add_output(app, options, "folder for sheet.png, report.html, rows.json and each picture's EXR; default limn-out/compare/<name>", false);
   add_json(app, options);
@@ -23,6 +24,13 @@ void add_options(CLI::App& app, Options& options) {
 
 Comparison plan(const Options& options, SceneInput& input) {
   SurfaceSettings settings = surface_settings(options, input);
+  const Camera camera = resolve_camera(camera_settings(options, input), bounds(input.scene));
+  if (options.level_for_view) {
+    settings.kind = "mesh";
+    for (const std::string& note : refine_for_views(settings, {&camera, 1}, input.scene)) {
+      if (!options.quiet) print_note(note);
+    }
+  }
   settings.kind.clear();
   const bool gradient_chosen = options.gradient.has_value() || input.surface.gradient.has_value();
   Comparison comparison = plan_comparison(input, settings, options.surfaces, gradient_chosen);
@@ -35,7 +43,7 @@ Comparison plan(const Options& options, SceneInput& input) {
     for (const MethodCall& call : comparison.picture.methods) columns.push_back({call});
   }
   plan_methods(columns, comparison);
-  comparison.camera = resolve_camera(camera_settings(options, input), bounds(input.scene));
+  comparison.camera = camera;
   comparison.call = resolved_call("compare", options, settings, comparison.camera, comparison.picture);
   return comparison;
 }

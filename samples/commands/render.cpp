@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "raymarch/image_io.h"
+#include "raymarch/view_level.h"
 #include "samples/commands/command.h"
 #include "samples/interrupt.h"
 #include "samples/job.h"
@@ -66,7 +67,7 @@ std::string summary(const SurfaceInfo& info, const Camera& camera, const HitCoun
 void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_camera(app, options, true);
-  add_surface(app, options, {.surface = true, .repeatable = false});
+  add_surface(app, options, {.surface = true, .repeatable = false, .views = true});
   add_plan(app, options);
   add_border(app, options);
   add_output(app, options, ".exr (all layers) or .png .tif .jpg (the composite), repeatable; default limn-out/render/<name>.exr and .png",
@@ -178,15 +179,19 @@ int run(const Options& options) {
   if (std::none_of(render.outputs.begin(), render.outputs.end(), has_layers)) render.picture.layers = layers_read(render.picture.methods);
   const CameraSettings camera_of = camera_settings(options, render.input);
   const Box scene_bounds = bounds(render.input.scene);
-  camera_of_view(camera_of, scene_bounds, 0, 1);  // a camera that is wrong is told before the surface is built
+  std::vector<Camera> cameras;  // made first: a camera that is wrong is told before the surface is built
+  for (int view = 0; view < options.views; ++view) cameras.push_back(camera_of_view(camera_of, scene_bounds, view, options.views));
 
   const auto build_start = std::chrono::steady_clock::now();
+  std::vector<std::string> levels;
+  if (options.level_for_view && !options.plan.tolerance_px) levels = refine_for_views(render.surface, cameras, render.input.scene);
   const SceneModel model = build_model(render.input.scene, render.surface);
   render.timings.build_ms = since_ms(build_start);
   const SurfaceInfo info = total(model);
   render.notes = info.warnings;
+  render.notes.insert(render.notes.end(), levels.begin(), levels.end());
   for (int view = 0; view < options.views; ++view) {
-    render.camera = camera_of_view(camera_of, scene_bounds, view, options.views);
+    render.camera = cameras[static_cast<size_t>(view)];
     draw_view(model, view, options, bar, render);
   }
   bar.clear();

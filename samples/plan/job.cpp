@@ -21,7 +21,7 @@ double threshold_of(const Options& options, const SceneInput& input) {
 void check_open(const Options& options) {
   const std::pair<bool, const char*> given[] = {{options.voxels.has_value(), "--voxels"},
                                                 {options.voxel_size.has_value(), "--voxel-size"},
-                                                {options.level.has_value(), "--level"},
+                                                {options.level.has_value() || options.level_for_view, "--level"},
                                                 {options.gradient.has_value(), "--gradient"},
                                                 {options.normals.has_value(), "--normals"}};
   for (const auto& [is_given, name] : given) {

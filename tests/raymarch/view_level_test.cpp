@@ -1,0 +1,139 @@
+// Refinement kept at what the view needs: no more, and enough, against meshes two levels finer.
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "raymarch/surface/object_mesh.h"
+#include "raymarch/view_level.h"
+#include "subdiv/mesh_level_set.h"
+#include "tests/raymarch/scenes.h"
+
+namespace limn::test {
+namespace {
+
+/// A cage with corners of many valences: boxes' corners pushed about.
+Mesh bumpy_cage(std::mt19937_64& random) {
+  Mesh mesh = box_mesh(glm::dvec3(1.0, 0.8, 0.6));
+  for (glm::dvec3& p : mesh.positions) {
+    for (int axis = 0; axis < 3; ++axis) p[axis] += 0.3 * (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5);
+  }
+  return mesh;
+}
+
+Mesh tetrahedron() {
+  Mesh mesh;
+  mesh.positions = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  mesh.corner_vertices = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
+  mesh.face_sizes.assign(4, 3);
+  return mesh;
+}
+
+TriangleMesh triangles_at(const SceneObject& object, int level) {
+  SurfaceSettings settings = surface_kind("mesh");
+  SceneObject fixed = object;
+  fixed.level = level;
+  return object_mesh(fixed, settings, glm::dvec3(0.0)).triangles;
+}
+
+/// How far the vertices of the mesh two levels finer are from the mesh, in pixels of the picture.
+double measured_px(const SceneObject& object, int level, const Camera& camera) {
+  const TriangleMesh coarse = triangles_at(object, level), fine = triangles_at(object, std::min(level + 2, 8));
+  const ClosestPointQuery query(coarse);
+  double largest = 0.0;
+  for (const glm::dvec3& p : fine.positions) {
+    const glm::dvec3 at = project(camera, p);
+    if (camera.projection == Projection::perspective && at.z <= 0.0) continue;
+    if (at.x < 0.0 || at.y < 0.0 || at.x > camera.width_px || at.y > camera.height_px) continue;
+    largest = std::max(largest, query.closest(p).distance * pixels_per_unit_at(camera, at.z));
+  }
+  return largest;
+}
+
+Camera looking(const SceneObject& object, const glm::dvec3& from, double distance, Projection projection) {
+  CameraSettings settings = view(320, 240, projection);
+  settings.eye = distance * glm::normalize(from);
+  settings.target = glm::dvec3(0.0);
+  if (projection == Projection::orthographic) settings.ortho_height = distance;
+  return framing(scene_of({object}), settings);
+}
+
+RC_GTEST_PROP(ViewLevel, TwoLevelsFinerNothingIsFartherThanAskedFor, ()) {
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  const auto uniform = [&](double low, double high) { return low + (high - low) * (static_cast<double>(random() >> 11) * 0x1p-53); };
+  const bool loop = random() % 3 == 0;
+  SceneObject object = loop ? object_of(tetrahedron(), Scheme::loop) : object_of(bumpy_cage(random), Scheme::catmark);
+  object.world_from_object.linear[0][0] = uniform(0.5, 1.5);
+  object.world_from_object.linear[1][0] = uniform(-0.3, 0.3);
+  const Projection projection = random() % 2 ? Projection::perspective : Projection::orthographic;
+  const Camera camera = looking(object, {uniform(-1, 1), uniform(-1, 1), uniform(0.1, 1)}, std::exp(uniform(1.0, 4.0)), projection);
+  const double asked_px = uniform(0.05, 0.5);
+  const ViewLevel chosen = level_for_views(object, surface_kind("mesh"), {&camera, 1}, asked_px);
+  RC_ASSERT(chosen.limit.empty());
+  RC_ASSERT(chosen.deviation_px <= asked_px);
+  RC_ASSERT(measured_px(object, chosen.level, camera) <= asked_px);
+  // No finer than it has to be: two levels coarser would not do.
+  if (chosen.level >= 2) RC_ASSERT(measured_px(object, chosen.level - 2, camera) > asked_px);
+}
+
+TEST(ViewLevel, FallsWithTheDistanceAndCountsTheNearestOfSeveralViews) {
+  std::mt19937_64 random(3);
+  const SceneObject object = object_of(bumpy_cage(random), Scheme::catmark);
+  const SurfaceSettings settings = surface_kind("mesh");
+  std::vector<Camera> cameras;
+  int before = 9, nearest = 0;
+  for (const double distance : {3.0, 12.0, 48.0, 200.0, 20000.0}) {
+    cameras.push_back(looking(object, {1, 2, 3}, distance, Projection::perspective));
+    const int level = level_for_views(object, settings, {&cameras.back(), 1}).level;
+    EXPECT_LE(level, before) << distance;
+    nearest = std::max(nearest, level);
+    before = level;
+  }
+  EXPECT_EQ(before, 0);
+  EXPECT_GE(nearest, 3);
+  EXPECT_EQ(level_for_views(object, settings, cameras).level, nearest);
+}
+
+TEST(ViewLevel, OfAFieldIsWithinThePixelsAskedForByItsClosedForm) {
+  const SceneObject object = object_of(make_shape("sphere", {{"radius", {1.0}}}));
+  int before = 9;
+  for (const double distance : {4.0, 16.0, 64.0}) {
+    const Camera camera = looking(object, {1, 2, 3}, distance, Projection::perspective);
+    const ViewLevel chosen = level_for_views(object, surface_kind("mesh"), {&camera, 1});
+    EXPECT_LE(chosen.deviation_px, kViewDeviation_px);
+    EXPECT_LE(chosen.level, before);
+    before = chosen.level;
+    const TriangleMesh mesh = triangles_at(object, chosen.level);
+    for (const glm::uvec3& t : mesh.triangles) {
+      const glm::dvec3 middle = (mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0;
+      const double off_px = (1.0 - glm::length(middle)) * pixels_per_unit_at(camera, project(camera, middle).z);
+      ASSERT_LT(std::abs(off_px), 1.1 * kViewDeviation_px) << distance;
+    }
+  }
+}
+
+TEST(ViewLevel, KeepsToTheMemoryAndSaysSo) {
+  std::mt19937_64 random(4);
+  const SceneObject object = object_of(bumpy_cage(random), Scheme::catmark);
+  SurfaceSettings settings = surface_kind("mesh");
+  settings.max_bytes = 200'000;
+  const Camera camera = looking(object, {1, 2, 3}, 3.0, Projection::perspective);
+  const ViewLevel chosen = level_for_views(object, settings, {&camera, 1}, 1e-4);
+  EXPECT_FALSE(chosen.limit.empty());
+  EXPECT_GT(chosen.deviation_px, 1e-4);
+  EXPECT_LE(predict_refined_size(std::get<MeshSource>(object.source).mesh, Scheme::catmark, chosen.level).bytes, 200'000);
+  EXPECT_GT(predict_refined_size(std::get<MeshSource>(object.source).mesh, Scheme::catmark, chosen.level + 1).bytes, 200'000);
+}
+
+TEST(ViewLevel, IsSetWhereAMeshIsMadeAndNowhereElse) {
+  std::mt19937_64 random(5);
+  Scene scene = scene_of({object_of(bumpy_cage(random), Scheme::catmark), object_of(bumpy_cage(random)), object_of(make_shape("sphere"))});
+  const Camera camera = framing(scene, view(200, 200));
+  EXPECT_EQ(refine_for_views(surface_kind(""), {&camera, 1}, scene).size(), 1u);
+  EXPECT_TRUE(scene.objects[0].level.has_value());
+  EXPECT_FALSE(scene.objects[1].level || scene.objects[2].level);
+  EXPECT_EQ(refine_for_views(surface_kind("mesh"), {&camera, 1}, scene).size(), 2u);
+  EXPECT_TRUE(scene.objects[2].level.has_value());
+}
+
+}  // namespace
+}  // namespace limn::test

@@ -1,0 +1,160 @@
+#include "raymarch/level_set/brick_layout.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace limn {
+namespace {
+
+using Leaf = nanovdb::FloatGrid::TreeType::LeafNodeType;
+using Accessor = nanovdb::FloatGrid::AccessorType;
+
+size_t at(int x, int y, int z) { return static_cast<size_t>(brick_element(x, y, z)); }
+
+/// Bit f is set where a crossed cell lies at face f (see BrickNeighbors): its stencil reaches into the neighbour.
+std::uint8_t touched_faces(const CrossedCells& crossed) {
+  std::uint8_t x0 = 0, x7 = 0, y0 = 0, y7 = 0, all = 0;
+  for (int k = 0; k < 8; ++k) {
+    x0 |= crossed.cells[0][k];
+    x7 |= crossed.cells[7][k];
+    y0 |= crossed.cells[k][0];
+    y7 |= crossed.cells[k][7];
+    for (int y = 0; y < 8; ++y) all |= crossed.cells[k][y];
+  }
+  const bool bits[6] = {x0 != 0, x7 != 0, y0 != 0, y7 != 0, (all & 1) != 0, (all & 128) != 0};
+  std::uint8_t faces = 0;
+  for (int f = 0; f < 6; ++f) faces = static_cast<std::uint8_t>(faces | bits[f] << f);
+  return faces;
+}
+
+/// The leaves, and the blocks before them whose last cells have a node in a leaf of another sign: where a band is broken or thin.
+std::vector<Candidate> find_candidates(const LevelSetData& data) {
+  const auto& tree = data.grid->tree();
+  const std::uint32_t count = tree.nodeCount(0);
+  const Leaf* leaves = tree.getFirstNode<0>();
+  const Accessor accessor = data.accessor();
+  std::vector<Candidate> found;
+  found.reserve(count + count / 8);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const nanovdb::Coord o = leaves[i].origin();
+    found.push_back({.origin = {o[0], o[1], o[2]}});
+    for (int side = 1; side < 8; ++side) {
+      const int dx = side & 1, dy = (side >> 1) & 1, dz = side >> 2;
+      const nanovdb::Coord before = o.offsetBy(-8 * dx, -8 * dy, -8 * dz);
+      if (accessor.probeLeaf(before)) continue;
+      const bool inside = accessor.getValue(before) < 0.0f;
+      bool other = false;
+      for (int x = 0; x < (dx ? 1 : 8) && !other; ++x) {
+        for (int y = 0; y < (dy ? 1 : 8) && !other; ++y) {
+          for (int z = 0; z < (dz ? 1 : 8) && !other; ++z) other = (leaves[i].data()->mValues[x * 64 + y * 8 + z] < 0.0f) != inside;
+        }
+      }
+      if (other) found.push_back({.origin = {before[0], before[1], before[2]}});
+    }
+  }
+  return found;
+}
+
+void inspect(const Accessor& accessor, Candidate& candidate) {
+  NodeValues values;
+  load_nodes(accessor, candidate.origin, values);
+  const CrossedCells crossed = crossed_cells_of(values.data());
+  candidate.crossed = crossed.any;
+  if (!crossed.any) return;
+  candidate.faces = touched_faces(crossed);
+  for_each_node(crossed, [&](int x, int y, int z) { candidate.largest = std::max(candidate.largest, std::abs(values[at(x, y, z)])); });
+}
+
+/// Calls `visit(step)` for the bricks into which the stencils of a crossed brick's cells reach: one over a face each.
+template <class Visit>
+void for_each_reached(const Candidate& candidate, const Visit& visit) {
+  for (int face = 0; face < 6; ++face) {
+    if ((candidate.faces >> face & 1) != 0) visit(face_step(face));
+  }
+}
+
+BrickLayout lay_out(std::vector<Candidate> candidates) {
+  BrickLayout layout;
+  layout.crossed = std::move(candidates);
+  std::erase_if(layout.crossed, [](const Candidate& c) { return !c.crossed; });
+  std::sort(layout.crossed.begin(), layout.crossed.end(),
+            [](const Candidate& a, const Candidate& b) { return key_of(a.origin) < key_of(b.origin); });
+  // A block before two leaves is found twice.
+  layout.crossed.erase(std::unique(layout.crossed.begin(), layout.crossed.end(),
+                                   [](const Candidate& a, const Candidate& b) { return a.origin == b.origin; }),
+                       layout.crossed.end());
+  for (const Candidate& candidate : layout.crossed) layout.crossed_keys.push_back(key_of(candidate.origin));
+  std::vector<std::pair<std::uint64_t, glm::ivec3>> reached;
+  for (const Candidate& candidate : layout.crossed) {
+    for_each_reached(candidate, [&](const glm::ivec3& step) {
+      const glm::ivec3 origin = candidate.origin + kBrickCells * step;
+      if (layout.find(key_of(origin)) < 0) reached.emplace_back(key_of(origin), origin);
+    });
+  }
+  const auto by_key = [](const auto& one, const auto& other) { return one.first < other.first; };
+  std::sort(reached.begin(), reached.end(), by_key);
+  for (const auto& [key, origin] : reached) {
+    if (!layout.reached_keys.empty() && layout.reached_keys.back() == key) continue;
+    layout.reached_keys.push_back(key);
+    layout.reached.push_back(origin);
+  }
+  return layout;
+}
+
+}  // namespace
+
+void load_nodes(const Accessor& accessor, const glm::ivec3& origin, NodeValues& values) {
+  for (int corner = 0; corner < 8; ++corner) {
+    const int dx = corner & 1, dy = (corner >> 1) & 1, dz = corner >> 2;
+    const nanovdb::Coord first(origin.x + 8 * dx, origin.y + 8 * dy, origin.z + 8 * dz);
+    const Leaf* leaf = accessor.probeLeaf(first);
+    const float* from = leaf ? leaf->data()->mValues : nullptr;
+    const float tile = leaf ? 0.0f : accessor.getValue(first);
+    for (int x = 0; x < (dx ? 1 : 8); ++x) {
+      for (int y = 0; y < (dy ? 1 : 8); ++y) {
+        float* const to = &values[at(8 * dx + x, 8 * dy + y, 8 * dz)];
+        const int count = dz ? 1 : 8;
+        if (from)
+          std::copy_n(from + x * 64 + y * 8, count, to);
+        else
+          std::fill_n(to, count, tile);
+      }
+    }
+  }
+}
+
+glm::ivec3 face_step(int face) {
+  glm::ivec3 step(0);
+  step[face / 2] = face % 2 ? 1 : -1;
+  return step;
+}
+
+std::uint64_t key_of(const glm::ivec3& origin) {
+  const auto part = [](int v) { return static_cast<std::uint64_t>((v >> 3) + (1 << 20)) & 0x1fffff; };
+  return part(origin.x) << 42 | part(origin.y) << 21 | part(origin.z);
+}
+
+std::int32_t BrickLayout::find(std::uint64_t key) const {
+  const auto in = [key](const std::vector<std::uint64_t>& keys) -> std::optional<size_t> {
+    const auto found = std::lower_bound(keys.begin(), keys.end(), key);
+    if (found == keys.end() || *found != key) return std::nullopt;
+    return static_cast<size_t>(found - keys.begin());
+  };
+  if (const auto i = in(crossed_keys)) return static_cast<std::int32_t>(*i);
+  if (const auto i = in(reached_keys)) return static_cast<std::int32_t>(*i + crossed_keys.size());
+  return -1;
+}
+
+BrickLayout lay_out_bricks(const LevelSetData& data) {
+  std::vector<Candidate> candidates = find_candidates(data);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, candidates.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
+    const Accessor accessor = data.accessor();
+    for (size_t i = range.begin(); i < range.end(); ++i) inspect(accessor, candidates[i]);
+  });
+  return lay_out(std::move(candidates));
+}
+
+}  // namespace limn

@@ -1,0 +1,20 @@
+# Every file with SIMD kernels, compiled for ARM: cmake -DCOMPILER=aarch64-linux-gnu-g++-12 -DROOT=... -DGENERATED=... -DARCHITECTURE=x86_64-linux-gnu -P neon_compiles.cmake
+# The libraries' headers are the machine's own: they are asked for nothing that depends on the processor.
+file(GLOB_RECURSE files ${ROOT}/sdf/*.cpp ${ROOT}/subdiv/*.cpp ${ROOT}/raymarch/*.cpp)
+set(kernels 0)
+foreach(file ${files})
+  file(STRINGS ${file} found REGEX "hwy/foreach_target.h|immintrin.h")
+  if(NOT found)
+    continue()
+  endif()
+  math(EXPR kernels "${kernels} + 1")
+  execute_process(COMMAND ${COMPILER} -std=c++20 -fsyntax-only -I${ROOT} -I${GENERATED} -idirafter /usr/include -idirafter /usr/include/${ARCHITECTURE}
+    -DLIMN_SIMD=1 ${file} RESULT_VARIABLE failed ERROR_VARIABLE message)
+  if(failed)
+    message(SEND_ERROR "${file} does not compile for ARM:\n${message}")
+  endif()
+endforeach()
+if(kernels LESS 8)
+  message(SEND_ERROR "only ${kernels} files with kernels found: is the pattern still right?")
+endif()
+message(STATUS "${kernels} files with kernels compile for ARM")

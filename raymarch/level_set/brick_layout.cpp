@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <cstdint>
 
 namespace limn {
 namespace {
@@ -68,11 +68,28 @@ void inspect(const Accessor& accessor, Candidate& candidate) {
   for_each_node(crossed, [&](int x, int y, int z) { candidate.largest = std::max(candidate.largest, std::abs(values[at(x, y, z)])); });
 }
 
-/// Calls `visit(step)` for the bricks into which the stencils of a crossed brick's cells reach: one over a face each.
-template <class Visit>
-void for_each_reached(const Candidate& candidate, const Visit& visit) {
-  for (int face = 0; face < 6; ++face) {
-    if ((candidate.faces >> face & 1) != 0) visit(face_step(face));
+/// From a block to its neighbour over a face (see BrickNeighbors).
+glm::ivec3 face_step(int face) {
+  glm::ivec3 step(0);
+  step[face / 2] = face % 2 ? 1 : -1;
+  return step;
+}
+
+/// Gives each layer its place: as many to a block as its nine nodes along the axis hold.
+void place_layers(BrickLayout& layout) {
+  struct Open {
+    size_t block = 0;
+    int next = kBrickNodes;  ///< Its first free node.
+  };
+  std::array<Open, 3> open;
+  layout.blocks = layout.crossed.size();
+  for (BrickLayer& layer : layout.layers) {
+    const int axis = layer.face / 2, depth = layer_depth(axis);
+    Open& at = open[static_cast<size_t>(axis)];
+    if (at.next + depth > kBrickNodes) at = {layout.blocks++, 0};
+    layer.block = at.block;
+    layer.slot = at.next;
+    at.next += depth;
   }
 }
 
@@ -86,21 +103,18 @@ BrickLayout lay_out(std::vector<Candidate> candidates) {
   layout.crossed.erase(std::unique(layout.crossed.begin(), layout.crossed.end(),
                                    [](const Candidate& a, const Candidate& b) { return a.origin == b.origin; }),
                        layout.crossed.end());
-  for (const Candidate& candidate : layout.crossed) layout.crossed_keys.push_back(key_of(candidate.origin));
-  std::vector<std::pair<std::uint64_t, glm::ivec3>> reached;
-  for (const Candidate& candidate : layout.crossed) {
-    for_each_reached(candidate, [&](const glm::ivec3& step) {
-      const glm::ivec3 origin = candidate.origin + kBrickCells * step;
-      if (layout.find(key_of(origin)) < 0) reached.emplace_back(key_of(origin), origin);
-    });
+  for (const Candidate& candidate : layout.crossed) layout.keys.push_back(key_of(candidate.origin));
+  for (size_t i = 0; i < layout.crossed.size(); ++i) {
+    const Candidate& candidate = layout.crossed[i];
+    layout.first_layer.push_back(static_cast<std::uint32_t>(layout.layers.size()));
+    for (int face = 0; face < 6; ++face) {
+      const bool reached = (candidate.faces >> face & 1) != 0;
+      if (reached && layout.find(key_of(candidate.origin + kBrickCells * face_step(face))) < 0)
+        layout.layers.push_back({.brick = static_cast<std::uint32_t>(i), .face = face});
+    }
   }
-  const auto by_key = [](const auto& one, const auto& other) { return one.first < other.first; };
-  std::sort(reached.begin(), reached.end(), by_key);
-  for (const auto& [key, origin] : reached) {
-    if (!layout.reached_keys.empty() && layout.reached_keys.back() == key) continue;
-    layout.reached_keys.push_back(key);
-    layout.reached.push_back(origin);
-  }
+  layout.first_layer.push_back(static_cast<std::uint32_t>(layout.layers.size()));
+  place_layers(layout);
   return layout;
 }
 
@@ -126,26 +140,36 @@ void load_nodes(const Accessor& accessor, const glm::ivec3& origin, NodeValues& 
   }
 }
 
-glm::ivec3 face_step(int face) {
-  glm::ivec3 step(0);
-  step[face / 2] = face % 2 ? 1 : -1;
-  return step;
-}
-
 std::uint64_t key_of(const glm::ivec3& origin) {
   const auto part = [](int v) { return static_cast<std::uint64_t>((v >> 3) + (1 << 20)) & 0x1fffff; };
   return part(origin.x) << 42 | part(origin.y) << 21 | part(origin.z);
 }
 
 std::int32_t BrickLayout::find(std::uint64_t key) const {
-  const auto in = [key](const std::vector<std::uint64_t>& keys) -> std::optional<size_t> {
-    const auto found = std::lower_bound(keys.begin(), keys.end(), key);
-    if (found == keys.end() || *found != key) return std::nullopt;
-    return static_cast<size_t>(found - keys.begin());
+  const auto found = std::lower_bound(keys.begin(), keys.end(), key);
+  return found == keys.end() || *found != key ? -1 : static_cast<std::int32_t>(found - keys.begin());
+}
+
+BrickNeighbors BrickLayout::neighbors_of(size_t brick) const {
+  constexpr int kStep[3] = {kBrickNodes * kBrickNodes, kBrickNodes, 1};
+  BrickNeighbors neighbors;
+  // From node 0 of a cell at the brick's start, or node 7 of one at its end, to node `to` along the axis in another block.
+  const auto set = [&](int face, size_t block, int to) {
+    const std::int64_t elements = (static_cast<std::int64_t>(block) - static_cast<std::int64_t>(brick)) * kBrickStride +
+                                  (to - (face % 2 == 0 ? 0 : kBrickCells - 1)) * kStep[face / 2];
+    neighbors.face[face] = static_cast<std::int32_t>(elements * static_cast<std::int64_t>(sizeof(std::int16_t)));
   };
-  if (const auto i = in(crossed_keys)) return static_cast<std::int32_t>(*i);
-  if (const auto i = in(reached_keys)) return static_cast<std::int32_t>(*i + crossed_keys.size());
-  return -1;
+  for (int face = 0; face < 6; ++face) {
+    if ((crossed[brick].faces >> face & 1) == 0) continue;
+    const std::int32_t other = find(key_of(crossed[brick].origin + kBrickCells * face_step(face)));
+    // Node -1 is node 7 of the brick before, node 9 is node 1 of the one behind.
+    if (other >= 0) set(face, static_cast<size_t>(other), face % 2 == 0 ? kBrickCells - 1 : 1);
+  }
+  for (size_t k = first_layer[brick]; k < first_layer[brick + 1]; ++k) {
+    const BrickLayer& layer = layers[k];
+    set(layer.face, layer.block, layer.slot + (layer.face == 5 ? 1 : 0));
+  }
+  return neighbors;
 }
 
 BrickLayout lay_out_bricks(const LevelSetData& data) {

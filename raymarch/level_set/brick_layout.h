@@ -21,9 +21,6 @@ CrossedCells crossed_cells_of(const Value* values) {
   return crossed_cells([values](int x, int y) { return values + brick_element(x, y, 0); });
 }
 
-/// From a block to its neighbour over a face (see BrickNeighbors).
-glm::ivec3 face_step(int face);
-
 /// A block of cells that may be crossed, and what looking at it told.
 struct Candidate {
   glm::ivec3 origin{0};
@@ -35,16 +32,31 @@ struct Candidate {
 /// Orders by x, then y, then z.
 std::uint64_t key_of(const glm::ivec3& origin);
 
-/// Every brick's place: the crossed ones in order, then those that only stencils reach.
+/// Nodes beyond a brick's face that stencils of its cells reach, where no brick has them: 9 x 9 of one layer across x or y, of two across
+/// z, whose values are read in pairs. Layers across one axis share a block of the size of a brick, each from its slot on along that axis,
+/// so that the step from node to node is a brick's.
+struct BrickLayer {
+  std::uint32_t brick = 0;
+  int face = 0;      ///< See BrickNeighbors.
+  size_t block = 0;  ///< As bricks are numbered.
+  int slot = 0;
+
+  /// Of the layer's nodes along the face's axis, from the brick's first one.
+  int first_node() const { return face % 2 == 0 ? -1 : face == 5 ? kBrickNodes - 1 : kBrickNodes; }
+};
+inline constexpr int layer_depth(int axis) { return axis == 2 ? 2 : 1; }
+
+/// Every brick's place in order, and what lies beyond them.
 struct BrickLayout {
   std::vector<Candidate> crossed;
-  std::vector<std::uint64_t> crossed_keys;
-  std::vector<glm::ivec3> reached;
-  std::vector<std::uint64_t> reached_keys;
+  std::vector<std::uint64_t> keys;         ///< Of the crossed ones.
+  std::vector<BrickLayer> layers;          ///< By brick, then by face.
+  std::vector<std::uint32_t> first_layer;  ///< Of each brick, and the end.
+  size_t blocks = 0;                       ///< Bricks, and blocks of layers behind them.
 
-  size_t size() const { return crossed.size() + reached.size(); }
   /// A brick's number from its key_of; -1 where there is none.
   std::int32_t find(std::uint64_t key) const;
+  BrickNeighbors neighbors_of(size_t brick) const;
 };
 
 /// Looks at every leaf of the grid, in parallel.

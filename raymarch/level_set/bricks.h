@@ -46,16 +46,17 @@ struct BrickGroups {
   std::vector<std::int32_t> bricks{};
 };
 
-/// A brick's six neighbours, by face: -x, +x, -y, +y, -z, +z. -1 where no stencil of a crossed cell reaches into it.
+/// Where nodes beyond a brick's faces are, by face: -x, +x, -y, +y, -z, +z. Bytes from the first node of a cell at that face to the node
+/// before it, or to the one behind its last. Zero where no stencil of a crossed cell reaches over the face.
 struct BrickNeighbors {
-  std::int32_t face[6] = {-1, -1, -1, -1, -1, -1};
+  std::int32_t face[6] = {};
 };
 
 struct RayBricks {
   std::vector<BrickGroups> groups{};        ///< Of shift 3, 4 and 5; none where the surface crosses no cell.
   std::vector<BrickNeighbors> neighbors{};  ///< As many.
   std::vector<std::int16_t, LargePageAllocator<std::int16_t>>
-      values{};                   ///< kBrickStride for each brick: the crossed ones first, then those of stencils only.
+      values{};                   ///< kBrickStride for each brick, then blocks of layers that only stencils read.
   SplineBricks spline{};          ///< Of the crossed bricks; empty where nobody asked for it.
   glm::ivec3 lower{0}, upper{0};  ///< Around the crossed cells, index coordinates.
   double world_per_step = 0.0;    ///< What one step of a value stands for.

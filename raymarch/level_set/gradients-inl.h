@@ -46,15 +46,14 @@ HWY_INLINE Cells cells_of(const RayBricks& bricks, const IndexRays& rays, size_t
   if (!with_neighbors) return cells;
   for (int axis = 0; axis < 3; ++axis) {
     const auto first = hn::Eq(node[axis], hn::Zero(di)), last = hn::Eq(node[axis], hn::Set(di, 7));
-    cells.minus[axis] = hn::Sub(cells.self, hn::Set(di, kStep[axis]));
-    cells.plus[axis] = hn::Add(cells.self, hn::Set(di, 2 * kStep[axis]));
+    const VI before = hn::Set(di, -kStep[axis]), behind = hn::Set(di, 2 * kStep[axis]);
+    cells.minus[axis] = hn::Add(cells.self, before);
+    cells.plus[axis] = hn::Add(cells.self, behind);
     if (hn::AllFalse(di, hn::Or(first, last))) continue;
     const VI face = hn::Add(hn::Mul(brick, hn::Set(di, kFaces)), hn::IfThenElse(last, hn::Set(di, 2 * axis + 1), hn::Set(di, 2 * axis)));
-    const VI beside = hn::Max(hn::GatherIndex(di, faces, face), hn::Zero(di));
-    const VI shift = hn::Mul(hn::Sub(beside, brick), hn::Set(di, kBrickBytes));
-    // Node -1 is node 7 of the brick before, node 9 is node 1 of the one behind.
-    cells.minus[axis] = hn::Add(cells.minus[axis], hn::IfThenElseZero(first, hn::Add(shift, hn::Set(di, 8 * kStep[axis]))));
-    cells.plus[axis] = hn::Add(cells.plus[axis], hn::IfThenElseZero(last, hn::Sub(shift, hn::Set(di, 8 * kStep[axis]))));
+    const VI beyond = hn::GatherIndex(di, faces, face);
+    cells.minus[axis] = hn::Add(cells.self, hn::IfThenElse(first, beyond, before));
+    cells.plus[axis] = hn::Add(cells.self, hn::IfThenElse(last, beyond, behind));
   }
   return cells;
 }

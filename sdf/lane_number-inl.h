@@ -117,15 +117,18 @@ template <int N>
 HWY_INLINE LaneDual<N> positive_part(const LaneDual<N>& a) {
   return chain(a, maximum(a.value, reals(0.0)), select(a.value > reals(0.0), reals(1.0), reals(0.0)));
 }
+/// Where one part alone is positive it is the length, to the last bit of its derivatives.
+template <int N>
+HWY_INLINE LaneDual<N> cornered(const LaneDual<N>& greatest, const LaneDual<N>& length) {
+  return select(either(greatest.value <= reals(0.0), length.value <= greatest.value), greatest, length);
+}
 template <int N>
 HWY_INLINE LaneDual<N> corner_distance(const LaneDual<N>& a, const LaneDual<N>& b) {
-  const LaneDual<N> inside = maximum(a, b);
-  return select(inside.value <= reals(0.0), inside, norm(positive_part(a), positive_part(b)));
+  return cornered(maximum(a, b), norm(positive_part(a), positive_part(b)));
 }
 template <int N>
 HWY_INLINE LaneDual<N> corner_distance(const LaneDual<N>& a, const LaneDual<N>& b, const LaneDual<N>& c) {
-  const LaneDual<N> inside = maximum(maximum(a, b), c);
-  return select(inside.value <= reals(0.0), inside, norm(positive_part(a), positive_part(b), positive_part(c)));
+  return cornered(maximum(maximum(a, b), c), norm(positive_part(a), positive_part(b), positive_part(c)));
 }
 template <int N>
 HWY_INLINE LaneDual<N> smooth_minimum(const LaneDual<N>& a, const LaneDual<N>& b, double radius) {

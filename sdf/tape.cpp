@@ -6,35 +6,12 @@
 
 #include "sdf/error.h"
 #include "sdf/field_program.h"
+#include "sdf/tape_operands.h"
 
 namespace limn {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-int operands(TapeOperation operation) {
-  switch (operation) {
-    case TapeOperation::coordinates:
-    case TapeOperation::constant:
-      return 0;
-    case TapeOperation::narrow:
-    case TapeOperation::copy:
-    case TapeOperation::negate:
-    case TapeOperation::square:
-    case TapeOperation::absolute:
-    case TapeOperation::sine:
-    case TapeOperation::cosine:
-    case TapeOperation::add_constant:
-    case TapeOperation::multiply_constant:
-      return 1;
-    case TapeOperation::shape:
-    case TapeOperation::norm3:
-    case TapeOperation::corner3:
-      return 3;
-    default:
-      return 2;
-  }
-}
 
 TapeLeaf tape_leaf(const FieldLeaf& leaf) {
   TapeLeaf result;
@@ -179,52 +156,6 @@ FieldTape::FieldTape(const Field& of) : field(of) {
   const FieldTraits& traits = field.traits();
   margin = traits.bounds.finite() ? 1e-5 * traits.lipschitz * (traits.bounds.radius() + glm::length(traits.bounds.center())) : kInfinity;
   find_what_signs_decide(*this);
-}
-
-// Backwards, so that it is known of every step whether anybody reads what it makes. Where one side of a choice has no influence, whatever
-// makes the other side writes where the choice would have: between shapes the program is a tree, so that nobody else reads it and the
-// place is free.
-void prune_tape(std::span<const TapeStep> steps, std::span<const TapeChoice> choices, std::uint16_t lanes, std::uint32_t registers,
-                std::vector<TapeStep>& pruned) {
-  constexpr std::uint32_t kUnread = ~std::uint32_t{0};
-  static thread_local std::vector<std::uint32_t> wanted;  // for each register: where to write it
-  wanted.assign(registers, kUnread);
-  wanted[0] = 0;
-  pruned.clear();
-  for (size_t i = steps.size(); i-- > 0;) {
-    TapeStep step = steps[i];
-    if (step.operation == TapeOperation::coordinates) {
-      bool read = false;
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        read = read || wanted[step.target + k] != kUnread;
-        wanted[step.target + k] = kUnread;
-      }
-      if (read) pruned.push_back(step);
-      continue;
-    }
-    const std::uint32_t place = wanted[step.target];
-    if (place == kUnread) continue;
-    wanted[step.target] = kUnread;
-    const bool left = (choices[i].left & lanes) == lanes, right = (choices[i].right & lanes) == lanes;
-    if (left || right) {
-      const std::uint32_t kept = left ? step.a : step.b;
-      wanted[kept] = step.inside_shape ? kept : place;
-      if (step.inside_shape) pruned.push_back({.operation = TapeOperation::copy, .inside_shape = true, .target = place, .a = kept});
-      continue;
-    }
-    // A leaf's value is narrowed where it was made.
-    if (step.operation == TapeOperation::narrow) {
-      step.a = step.target = place;
-      wanted[steps[i].a] = place;
-      pruned.push_back(step);
-      continue;
-    }
-    step.target = place;
-    const std::uint32_t uses[] = {step.a, step.b, step.c};
-    for (int k = 0; k < operands(step.operation); ++k) wanted[uses[k]] = uses[k];
-    pruned.push_back(step);
-  }
-  std::reverse(pruned.begin(), pruned.end());
 }
 
 }  // namespace limn

@@ -15,7 +15,7 @@ namespace limn {
 struct FieldLeaf;  // sdf/field_program.h
 
 enum class TapeOperation : std::uint8_t {
-  coordinates,  ///< target, target + 1, target + 2 = the point in the object space of `leaf`
+  coordinates,  ///< target, target + 1, target + 2 = the point in the object space of `leaf`; of these only the `axes`.
   shape,        ///< target = the formula of `leaf` at (a, b, c), which takes other ways at other points and so cannot be recorded
   narrow,       ///< Bounds of a, the value of `leaf`, cut to what its Lipschitz constant allows; nothing for other numbers. In place.
   copy,
@@ -45,6 +45,7 @@ struct TapeStep {
   TapeOperation operation = TapeOperation::copy;
   bool inside_shape = false;  ///< Others may read its operands too.
   bool sign_decides = false;  ///< Between its result and the field's there are nothing but minima, maxima and changes of sign.
+  std::uint8_t axes = 7;      ///< Bit i: the i-th coordinate is read.
   std::uint32_t target = 0;
   std::uint32_t a = 0, b = 0, c = 0;
   std::uint32_t leaf = 0;
@@ -72,15 +73,22 @@ struct FieldTape {
   double margin = 0.0;
 };
 
-/// What bounds say of a step that chooses between two registers: bit i set where only that side has influence in lane i, be it on the value
-/// or (TapeStep::sign_decides) on the sign: in a union whatever is positive may go, although it may be the lesser of two positive values.
+/// What bounds say of a step that chooses among its operands: bit i set where operand a, b or c has no influence in lane i, be it on the
+/// value or (TapeStep::sign_decides) on the sign: in a union whatever is positive may go, although it may be the lesser of two positive
+/// values. Of `absolute`: bit i of the first set where its operand is negative there, of the second where it is positive.
 struct TapeChoice {
-  std::uint16_t left = 0, right = 0;
+  std::uint16_t idle[3] = {0, 0, 0};
 };
+
+/// What a pruned tape is for: bounds narrow the leaves' values, nothing else does.
+enum class TapeUse { bounds, points };
 
 /// Writes to `pruned` the steps that have influence in the lanes of `lanes`, in order; `choices` has one entry a step. In those lanes the
 /// result is as good as the same, see FieldTape::margin.
 void prune_tape(std::span<const TapeStep> steps, std::span<const TapeChoice> choices, std::uint16_t lanes, std::uint32_t registers,
-                std::vector<TapeStep>& pruned);
+                TapeUse use, std::vector<TapeStep>& pruned);
+
+/// Registers that steps of a tape of so many may use: pruned ones of few steps take a fresh one for each, so that none has to copy.
+std::uint32_t registers_used(std::uint32_t registers);
 
 }  // namespace limn

@@ -3,177 +3,35 @@
 #include <cmath>
 
 #include "sdf/simd.h"
-#include "sdf/tape_scalar.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sdf/tape_lanes.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "sdf/lane_number-inl.h"
+#include "sdf/tape_pass-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace limn {
 namespace HWY_NAMESPACE {
 namespace {
 
-// Components of a register, sixteen doubles each.
-HWY_INLINE void get(const double* from, Reals& a) { a = load(from); }
-HWY_INLINE void put(const Reals& a, double* to) { store(a, to); }
-template <int N>
-HWY_INLINE void get(const double* from, LaneDual<N>& a) {
-  a.value = load(from);
-  for (int i = 0; i < N; ++i) a.derivative[i] = load(from + (i + 1) * kLanes);
-}
-template <int N>
-HWY_INLINE void put(const LaneDual<N>& a, double* to) {
-  store(a.value, to);
-  for (int i = 0; i < N; ++i) store(a.derivative[i], to + (i + 1) * kLanes);
-}
-HWY_INLINE void get(const double* from, LaneBound& a) { a = {load(from), {load(from + kLanes), load(from + 2 * kLanes)}}; }
-HWY_INLINE void put(const LaneBound& a, double* to) {
-  store(a.middle, to);
-  store(a.value.lower, to + kLanes);
-  store(a.value.upper, to + 2 * kLanes);
-}
-HWY_INLINE void get(const double* from, LaneSlope& a) {
-  a = {load(from), {load(from + kLanes), load(from + 2 * kLanes)}, {load(from + 3 * kLanes), load(from + 4 * kLanes)}};
-}
-HWY_INLINE void put(const LaneSlope& a, double* to) {
-  store(a.middle, to);
-  store(a.value.lower, to + kLanes);
-  store(a.value.upper, to + 2 * kLanes);
-  store(a.slope.lower, to + 3 * kLanes);
-  store(a.slope.upper, to + 4 * kLanes);
-}
-
-template <class T>
-struct Kind {};
-template <>
-struct Kind<Reals> {
-  static constexpr int kComponents = 1;
-  static constexpr TapeNumber kNumber = TapeNumber::value;
-};
-template <>
-struct Kind<LaneDual<1>> {
-  static constexpr int kComponents = 2;
-  static constexpr TapeNumber kNumber = TapeNumber::dual;
-};
-template <>
-struct Kind<LaneDual<3>> {
-  static constexpr int kComponents = 4;
-  static constexpr TapeNumber kNumber = TapeNumber::gradient;
-};
-template <>
-struct Kind<LaneBound> {
-  static constexpr int kComponents = 3;
-  static constexpr TapeNumber kNumber = TapeNumber::bound;
-};
-template <>
-struct Kind<LaneSlope> {
-  static constexpr int kComponents = 5;
-  static constexpr TapeNumber kNumber = TapeNumber::slope;
+/// Lanes in which an operand has no influence.
+struct Idle {
+  LaneMask a, b;
 };
 template <class T>
-constexpr bool kBounding = Kind<T>::kNumber == TapeNumber::bound || Kind<T>::kNumber == TapeNumber::slope;
-
-template <class T>
-HWY_INLINE T constant_of(double x) {
-  const Reals value = reals(x), zero = reals(0.0);
-  if constexpr (Kind<T>::kNumber == TapeNumber::value) {
-    return value;
-  } else if constexpr (Kind<T>::kNumber == TapeNumber::dual) {
-    return {value, {zero}};
-  } else if constexpr (Kind<T>::kNumber == TapeNumber::gradient) {
-    return {value, {zero, zero, zero}};
-  } else if constexpr (Kind<T>::kNumber == TapeNumber::bound) {
-    return {value, {value, value}};
-  } else {
-    return {value, {value, value}, {zero, zero}};
-  }
-}
-
-/// What a pass is about: points, or stretches of beams.
-struct Pass {
-  explicit Pass(const FieldTape& of) : tape(&of) {}
-  const FieldTape* tape;
-  const LaneRays* rays = nullptr;
-  const LaneBeams* beams = nullptr;
-  LaneArray point[3];  ///< o + s d.
-  LaneArray extent;    ///< How large coordinates and their parts are: for rounding.
-  LaneArray speed;     ///< At least |d|.
-  TapeChoice* choices = nullptr;
-};
-
-HWY_INLINE Reals row_of(const double* row, const LaneArray* p, int at) {
-  return load(p[0].lane + at) * row[0] + load(p[1].lane + at) * row[1] + load(p[2].lane + at) * row[2];
-}
-
-HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int at, Reals& x) {
-  const double* row = leaf.row[axis];
-  x = (leaf.translated_only ? load(pass.point[axis].lane + at) : row_of(row, pass.point, at)) + row[3];
-}
-HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int at, LaneDual<1>& x) {
-  coordinate(pass, leaf, axis, at, x.value);
-  x.derivative[0] = leaf.translated_only ? load(pass.rays->direction[axis].lane + at) : row_of(leaf.row[axis], pass.rays->direction, at);
-}
-HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int at, LaneDual<3>& x) {
-  coordinate(pass, leaf, axis, at, x.value);
-  for (int i = 0; i < 3; ++i) x.derivative[i] = reals(leaf.row[axis][i]);
-}
-
-inline double along(const double* row, const glm::dvec3& v) { return std::fabs(row[0] * v.x + row[1] * v.y + row[2] * v.z); }
-
-/// o + s d for all o, d and s of the beam: an interval about the middle, and d for its slope.
-HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int at, LaneSlope& x) {
-  const double* row = leaf.row[axis];
-  const LaneBeams& beams = *pass.beams;
-  const double size = std::sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
-  const double spread_o = along(row, beams.origin_spread[0]) + along(row, beams.origin_spread[1]) + size * beams.origin_slack;
-  const double spread_d = along(row, beams.direction_spread[0]) + along(row, beams.direction_spread[1]) + size * beams.direction_slack;
-  const Reals middle = load(beams.middle.lane + at), half = load(beams.half.lane + at);
-  const Reals d = row_of(row, beams.rays.direction, at);
-  const Reals rounding = load(pass.extent.lane + at) * (1e-15 * size) + reals(1e-15 * std::fabs(row[3]));
-  const Reals reach = abs(d) * half + (abs(middle) + half) * spread_d + reals(spread_o) + rounding;
-  const Reals turn = load(pass.speed.lane + at) * (1e-15 * size) + reals(spread_d);
-  x.middle = row_of(row, pass.point, at) + row[3];
-  x.value = {x.middle - reach, x.middle + reach};
-  x.slope = {d - turn, d + turn};
-}
-HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int at, LaneBound& x) {
-  LaneSlope all;
-  coordinate(pass, leaf, axis, at, all);
-  x = {all.middle, all.value};
-}
-
-/// A leaf's bounds, cut to what the Lipschitz constant allows about the middle, with room for rounding.
-HWY_INLINE LaneInterval narrowed(const Pass& pass, const TapeLeaf& leaf, int at, Reals middle, LaneInterval value) {
-  const Reals reach = load(pass.beams->radius.lane + at) * leaf.lipschitz;
-  const Reals slack = (abs(middle) + reach + load(pass.extent.lane + at) * leaf.lipschitz + leaf.offset_extent) * 1e-14;
-  return tighter({value.lower - slack, value.upper + slack}, {middle - reach - slack, middle + reach + slack});
-}
-HWY_INLINE void narrow(const Pass& pass, const TapeLeaf& leaf, int at, LaneBound& x) {
-  x.value = narrowed(pass, leaf, at, x.middle, x.value);
-}
-HWY_INLINE void narrow(const Pass& pass, const TapeLeaf& leaf, int at, LaneSlope& x) {
-  x.value = narrowed(pass, leaf, at, x.middle, x.value);
-  const Reals steepest = load(pass.speed.lane + at) * (leaf.lipschitz * (1.0 + 1e-13)), slack = steepest * 1e-13;
-  x.slope = tighter({x.slope.lower - slack, x.slope.upper + slack}, {-steepest, steepest});
-}
-
-/// Lanes in which only a or only b has influence.
-struct Decided {
-  LaneMask left, right;
-};
-template <class T>
-HWY_INLINE Decided decided(const T& a, const T& b, const TapeStep& step, double margin) {
+HWY_INLINE Idle idle_of(const T& a, const T& b, const TapeStep& step, double margin) {
   const bool lesser = step.operation == TapeOperation::minimum || step.operation == TapeOperation::smooth_minimum;
   const bool smooth = step.operation == TapeOperation::smooth_minimum || step.operation == TapeOperation::smooth_maximum;
   const double gap = smooth ? step.constant * (1.0 + 1e-12) : 0.0;
   const LaneMask a_below = a.value.upper + gap < b.value.lower, b_below = b.value.upper + gap < a.value.lower;
-  if (!step.sign_decides) return lesser ? Decided{a_below, b_below} : Decided{b_below, a_below};
-  if (lesser) return {either(a_below, b.value.lower > reals(margin)), either(b_below, a.value.lower > reals(margin))};
-  return {either(b_below, b.value.upper < reals(-margin)), either(a_below, a.value.upper < reals(-margin))};
+  if (!step.sign_decides) return lesser ? Idle{b_below, a_below} : Idle{a_below, b_below};
+  if (lesser) return {either(b_below, a.value.lower > reals(margin)), either(a_below, b.value.lower > reals(margin))};
+  return {either(a_below, a.value.upper < reals(-margin)), either(b_below, b.value.upper < reals(-margin))};
+}
+HWY_INLINE void add(LaneMask mask, int part, std::uint16_t& bits) {
+  bits = static_cast<std::uint16_t>(bits | bits_of(mask) << (part * kWidth));
 }
 
 template <class T>
@@ -227,22 +85,51 @@ HWY_INLINE T chosen(const T& a, const T& b, const TapeStep& step) {
 
 template <class T>
 void run_choice(const Runner<T>& runner, const TapeStep& step, TapeChoice* choice) {
-  unsigned left = 0, right = 0;
   for (int part = 0; part < kParts; ++part) {
     const T a = runner.read(step.a, part), b = runner.read(step.b, part);
     T result = chosen(a, b, step);
     if constexpr (kBounding<T>) {
-      const Decided sides = decided(a, b, step, runner.pass.tape->margin);
-      left |= bits_of(sides.left) << (part * kWidth);
-      right |= bits_of(sides.right) << (part * kWidth);
+      const Idle idle = idle_of(a, b, step, runner.pass.tape->margin);
+      add(idle.a, part, choice->idle[0]);
+      add(idle.b, part, choice->idle[1]);
       // Slopes are those of what pruning leaves.
       if constexpr (Kind<T>::kNumber == TapeNumber::slope) {
-        if (step.sign_decides) result.slope = select(sides.left, a.slope, select(sides.right, b.slope, result.slope));
+        if (step.sign_decides) result.slope = select(idle.b, a.slope, select(idle.a, b.slope, result.slope));
       }
     }
     runner.write(step.target, part, result);
   }
-  if constexpr (kBounding<T>) *choice = {static_cast<std::uint16_t>(left), static_cast<std::uint16_t>(right)};
+}
+
+template <class T>
+void run_absolute(const Runner<T>& runner, const TapeStep& step, TapeChoice* choice) {
+  for (int part = 0; part < kParts; ++part) {
+    const T a = runner.read(step.a, part);
+    if constexpr (kBounding<T>) {
+      add(a.value.upper < reals(0.0), part, choice->idle[0]);
+      add(a.value.lower > reals(0.0), part, choice->idle[1]);
+    }
+    runner.write(step.target, part, abs(a));
+  }
+}
+
+/// Of a distance to a corner only the greatest part matters where the others are negative.
+template <class T>
+void run_corner(const Runner<T>& runner, const TapeStep& step, TapeChoice* choice) {
+  const bool three = step.operation == TapeOperation::corner3;
+  for (int part = 0; part < kParts; ++part) {
+    const T a = runner.read(step.a, part), b = runner.read(step.b, part);
+    const T c = three ? runner.read(step.c, part) : a;
+    if constexpr (kBounding<T>) {
+      const Reals zero = reals(0.0);
+      const Reals greatest = maximum(maximum(a.value.lower, b.value.lower), c.value.lower);
+      const auto idle = [&](const T& x) { return both(x.value.upper <= zero, x.value.upper < greatest); };
+      add(idle(a), part, choice->idle[0]);
+      add(idle(b), part, choice->idle[1]);
+      if (three) add(idle(c), part, choice->idle[2]);
+    }
+    runner.write(step.target, part, three ? corner_distance(a, b, c) : corner_distance(a, b));
+  }
 }
 
 template <class T>
@@ -253,6 +140,7 @@ void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* regist
     switch (step.operation) {
       case TapeOperation::coordinates:
         for (int axis = 0; axis < 3; ++axis) {
+          if (!(step.axes >> axis & 1)) continue;
           for (int part = 0; part < kParts; ++part) {
             T x;
             coordinate(pass, pass.tape->leaves[step.leaf], axis, part * kWidth, x);
@@ -283,7 +171,8 @@ void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* regist
       case TapeOperation::square:
         LIMN_STEP(square(a));
       case TapeOperation::absolute:
-        LIMN_STEP(abs(a));
+        run_absolute(runner, step, choice);
+        break;
       case TapeOperation::sine:
         LIMN_STEP(sine(a));
       case TapeOperation::cosine:
@@ -303,9 +192,9 @@ void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* regist
       case TapeOperation::norm3:
         LIMN_STEP3(norm(a, b, c));
       case TapeOperation::corner2:
-        LIMN_STEP2(corner_distance(a, b));
       case TapeOperation::corner3:
-        LIMN_STEP3(corner_distance(a, b, c));
+        run_corner(runner, step, choice);
+        break;
       case TapeOperation::power_norm:
         power_norm_by_lane(Kind<T>::kNumber, runner.at(step.a, 0), runner.at(step.b, 0), step.constant, runner.at(step.target, 0));
         break;
@@ -349,7 +238,7 @@ void set_beams(Pass& pass, const LaneBeams& beams) {
 
 template <class T>
 const double* run_tape(Pass& pass, std::span<const TapeStep> steps, TapeScratch& scratch) {
-  double* const registers = scratch.registers(pass.tape->registers * static_cast<size_t>(Runner<T>::kSize));
+  double* const registers = scratch.registers(registers_used(pass.tape->registers) * static_cast<size_t>(Runner<T>::kSize));
   if constexpr (kBounding<T>) {
     scratch.choices.assign(steps.size(), {});
     pass.choices = scratch.choices.data();

@@ -133,7 +133,7 @@ bool trace_stretch(TileWork& work, const SlabRun& run, std::span<const TapeStep>
   const double steepest = 1e-9 * work.view.limits.lipschitz;
   const bool down = bounds.slope_upper[block]<-steepest, up = bounds.slope_lower[block]> steepest;
   if (run.sign == 0.0 || !(down || up)) return false;
-  prune_tape(steps, choices, static_cast<std::uint16_t>(1u << block), work.view.tape->registers, work.scratch.block_steps);
+  prune_tape(steps, choices, static_cast<std::uint16_t>(1u << block), work.view.tape->registers, TapeUse::points, work.scratch.block_steps);
   trace_monotone(work, run, {work.view.tape, work.scratch.block_steps}, beams, bounds, run.sign > 0.0 ? down : up, block);
   return true;
 }
@@ -188,7 +188,7 @@ void trace_segment(TileWork& work, const PixelTile& rectangle, const TapeSegment
   const std::vector<TapeChoice> choices = runs.count > 1 ? work.scratch.tape.choices : std::vector<TapeChoice>{};
   for (int k = 0; k < runs.count && !work.done(); ++k) {
     const SlabRun& run = runs.runs[static_cast<size_t>(k)];
-    prune_tape(segment.steps, k > 0 ? choices : work.scratch.tape.choices, run.lanes, work.view.tape->registers, steps);
+    prune_tape(segment.steps, k > 0 ? choices : work.scratch.tape.choices, run.lanes, work.view.tape->registers, TapeUse::bounds, steps);
     find_balls(*work.view.tape, steps, work.scratch.balls);
     if (!work.scratch.balls.empty()) {
       trace_balls(work, run, steps, work.scratch.balls);

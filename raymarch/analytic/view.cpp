@@ -23,7 +23,7 @@ void refine(const FieldView& view, const PixelTile& rectangle, const TapeSegment
   for (int k = 0; k < runs.count; ++k) {
     const SlabRun& run = runs.runs[static_cast<size_t>(k)];
     TapeSegment segment{run.z0, run.z1, run.sign, run.sign_from, {}, {}};
-    prune_tape(within.steps, scratch.tape.choices, run.lanes, view.tape->registers, segment.steps);
+    prune_tape(within.steps, scratch.tape.choices, run.lanes, view.tape->registers, TapeUse::bounds, segment.steps);
     find_balls(*view.tape, segment.steps, segment.balls);
     found.push_back(std::move(segment));
   }

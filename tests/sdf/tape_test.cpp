@@ -135,7 +135,7 @@ TEST(Tape, BoundsHoldWhateverTheBeamMeets) {
     const std::vector<TapeChoice> choices = scratch.choices;
     std::vector<TapeStep> pruned;
     for (int i = 0; i < kLanes; ++i) {
-      prune_tape(tape.steps, choices, static_cast<std::uint16_t>(1 << i), tape.registers, pruned);
+      prune_tape(tape.steps, choices, static_cast<std::uint16_t>(1 << i), tape.registers, TapeUse::points, pruned);
       for (int k = 0; k < 30; ++k) {
         const Probe probe = random_probe(random, beams, i);
         const glm::dvec3 p = probe.origin + probe.s * probe.direction;
@@ -211,13 +211,13 @@ TEST(Tape, APrunedTapeIsTheSameNearTheSurfaceAndOnTheSameSideElsewhere) {
     tape_bounds(tape, tape.steps, beams, scratch, bounds);
     const auto lanes = static_cast<std::uint16_t>(1 + random.index(65535));
     std::vector<TapeStep> pruned, again;
-    prune_tape(tape.steps, scratch.choices, lanes, tape.registers, pruned);
+    prune_tape(tape.steps, scratch.choices, lanes, tape.registers, TapeUse::bounds, pruned);
     before += tape.steps.size();
     after += pruned.size();
     // Pruned a second time, of the pruned tape, for one lane.
     const int only = std::countr_zero(static_cast<unsigned>(lanes));
     tape_bounds(tape, pruned, beams, scratch, bounds);
-    prune_tape(pruned, scratch.choices, static_cast<std::uint16_t>(1 << only), tape.registers, again);
+    prune_tape(pruned, scratch.choices, static_cast<std::uint16_t>(1 << only), tape.registers, TapeUse::points, again);
     for (int k = 0; k < 8; ++k) {
       LaneRays rays;
       LaneArray s, whole, part, slopes, part_slopes;
@@ -300,8 +300,7 @@ TEST(Tape, EverySimdTargetGivesTheSameBits) {
         EXPECT_EQ(a, b) << "double " << d << ", target " << k;
       }
       for (size_t i = 0; i < choices[0].size(); ++i) {
-        EXPECT_EQ(choices[0][i].left, choices[k][i].left);
-        EXPECT_EQ(choices[0][i].right, choices[k][i].right);
+        for (int operand = 0; operand < 3; ++operand) EXPECT_EQ(choices[0][i].idle[operand], choices[k][i].idle[operand]);
       }
     }
   });

@@ -12,22 +12,27 @@
 namespace limn::bench {
 namespace {
 
-constexpr double kTorusMajor = 1.0, kTorusMinor = 0.35;
-constexpr int kAround = 1024, kAcross = 512;  // a million triangles
+constexpr double kTorusMajor = 0.7, kTorusMinor = 0.3;
+constexpr unsigned kAround = 1024, kAcross = 512;  // a million triangles
 
-/// A closed regular mesh of points at(u, v), both in [0, 1] and periodic; collapsed triangles at a sphere's poles are left out.
+/// A closed regular mesh of points at(u, v), both in [0, 1] and u periodic. `rows`: how many there are with points of their own; the
+/// vertices of row j are those of row j % rows. Triangles without area, as at a sphere's poles, are left out.
 template <class At>
-TriangleMesh regular_mesh(const At& at) {
+TriangleMesh regular_mesh(unsigned rows, const At& at) {
   TriangleMesh mesh;
-  for (int j = 0; j <= kAcross; ++j)
-    for (int i = 0; i < kAround; ++i) mesh.positions.push_back(at(static_cast<double>(i) / kAround, static_cast<double>(j) / kAcross));
+  for (unsigned j = 0; j < rows; ++j)
+    for (unsigned i = 0; i < kAround; ++i) mesh.positions.push_back(at(static_cast<double>(i) / kAround, static_cast<double>(j) / kAcross));
+  const auto vertex = [&](unsigned i, unsigned j) {
+    const unsigned first = j % rows * kAround, index = first + i % kAround;
+    // All of a pole's are one.
+    return mesh.positions[index] == mesh.positions[first] ? first : index;
+  };
   const auto add = [&mesh](unsigned a, unsigned b, unsigned c) {
-    const glm::dvec3 pa = mesh.positions[a], normal = glm::cross(mesh.positions[b] - pa, mesh.positions[c] - pa);
-    if (glm::length(normal) > 1e-14) mesh.triangles.emplace_back(a, b, c);
+    if (a != b && b != c && c != a) mesh.triangles.emplace_back(a, b, c);
   };
   for (unsigned j = 0; j < kAcross; ++j) {
     for (unsigned i = 0; i < kAround; ++i) {
-      const unsigned a = j * kAround + i, b = j * kAround + (i + 1) % kAround, c = a + kAround, d = b + kAround;
+      const unsigned a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i, j + 1), d = vertex(i + 1, j + 1);
       add(a, b, d);
       add(a, d, c);
     }
@@ -36,14 +41,15 @@ TriangleMesh regular_mesh(const At& at) {
 }
 
 TriangleMesh sphere_mesh() {
-  return regular_mesh([](double u, double v) {
+  return regular_mesh(kAcross + 1, [](double u, double v) {
     const double p = 2.0 * std::numbers::pi * u, t = std::numbers::pi * v;
-    return glm::dvec3(std::sin(t) * std::sin(p), -std::cos(t), std::sin(t) * std::cos(p));
+    const double ring = v < 1.0 ? std::sin(t) : 0.0;
+    return glm::dvec3(ring * std::sin(p), -std::cos(t), ring * std::cos(p));
   });
 }
 
 TriangleMesh torus_mesh() {
-  return regular_mesh([](double u, double v) {
+  return regular_mesh(kAcross, [](double u, double v) {
     const double p = 2.0 * std::numbers::pi * u, t = 2.0 * std::numbers::pi * v;
     const double ring = kTorusMajor + kTorusMinor * std::cos(t);
     return glm::dvec3(ring * std::sin(p), kTorusMinor * std::sin(t), ring * std::cos(p));

@@ -101,7 +101,7 @@ nlohmann::json convert_row(const BenchObject& object, int voxels, const ConvertB
 nlohmann::json bench_convert(const ConvertBenchSettings& settings) {
   std::vector<BenchObject> objects;
   const std::vector<std::string> names =
-      settings.objects.empty() ? std::vector<std::string>{"rook", "teacup", "pipe_junction"} : settings.objects;
+      settings.objects.empty() ? std::vector<std::string>{"sphere", "torus", "rook", "teacup", "pipe_junction"} : settings.objects;
   for (const std::string& name : names) objects.push_back(bench_object(name));
   for (const std::string& file : settings.meshes) objects.push_back(bench_mesh_file(file));
   fmt::print(settings.table,

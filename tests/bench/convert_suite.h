@@ -9,7 +9,7 @@
 namespace limn::bench {
 
 struct ConvertBenchSettings {
-  std::vector<std::string> objects{};  ///< As bench_object; empty: rook, teacup, pipe_junction.
+  std::vector<std::string> objects{};  ///< As bench_object; empty: sphere, torus, rook, teacup, pipe_junction.
   std::vector<std::string> meshes{};   ///< Files, beside those.
   std::vector<int> voxels{};           ///< Along the longest side; empty: 128, 256, 512.
   int runs = 7;

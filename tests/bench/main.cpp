@@ -117,14 +117,6 @@ Settings parse(int argc, char** argv) {
   return settings;
 }
 
-/// Objects that a suite knows: the conversion has none of closed form.
-std::vector<std::string> cages(const std::vector<std::string>& objects) {
-  std::vector<std::string> result;
-  for (const std::string& name : objects)
-    if (name != "sphere" && name != "torus") result.push_back(name);
-  return result;
-}
-
 nlohmann::json rows_of(const Settings& settings) {
   nlohmann::json rows = nlohmann::json::array();
   const auto append = [&rows](nlohmann::json more) {
@@ -137,12 +129,11 @@ nlohmann::json rows_of(const Settings& settings) {
   if (settings.suite == "fields" || (settings.suite == "all" && settings.objects.empty() && settings.meshes.empty()))
     append(
         bench_fields({.runs = settings.runs, .width_px = settings.width_px, .height_px = settings.height_px, .table = settings.table()}));
-  const bool shapes_only = !settings.objects.empty() && cages(settings.objects).empty() && settings.meshes.empty();
-  if (settings.suite == "convert" || (settings.suite == "all" && !shapes_only)) {
+  if (settings.runs_suite("convert")) {
     // The largest of the marchers' grids would take a minute a run.
     std::vector<int> voxels = settings.voxels;
     if (settings.suite == "all") std::erase_if(voxels, [](int n) { return n > 512; });
-    append(bench_convert({cages(settings.objects), settings.meshes, voxels, settings.runs, settings.table()}));
+    append(bench_convert({settings.objects, settings.meshes, voxels, settings.runs, settings.table()}));
   }
   if (settings.runs_suite("images"))
     append(bench_image_methods(

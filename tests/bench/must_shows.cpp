@@ -92,6 +92,8 @@ void Shown::speed() {
     for (const Peer& peer : kPeers)
       at_least(1, fmt::format("{} {}: times faster than {}", object, voxels, peer.name), peer.bound,
                ratio(ms(peer.key, object, voxels), ms("limn.central", object, voxels)));
+    at_most(1, fmt::format("{} {}: mesh over Embree on the same triangles, time", object, voxels), 1.0,
+            ratio(ms("limn.mesh", object, voxels), ms("embree.original", object, voxels)));
   }
 }
 

@@ -15,10 +15,12 @@ namespace limn {
 namespace {
 
 // Milliseconds and bytes of the parts, fitted to the built-in scenes on two cores. Memory is what building takes, not what is left of it.
-constexpr double kModelMs = 5.0, kFaceMs = 2e-3, kFieldFaceMs = 4e-3, kFieldFaceTermMs = 4e-4, kFaceBytes = 600.0;
+constexpr double kModelMs = 5.0, kFaceMs = 2e-3, kFieldFaceMs = 4e-3, kFieldFaceTermMs = 2e-4, kFaceBytes = 600.0;
+constexpr double kCageFaceMs = 0.15;  // of a field's cage, which is looked for in several samplings
 constexpr double kVoxelMs = 2.5e-4, kMeshVoxelMs = 1.2e-3, kVoxelBytes = 12.0, kGridBytes = 2.5e6;
-constexpr double kPictureMs = 3.0, kMeshRayMs = 3e-5, kGridRayMs = 1.6e-4, kFieldRayMs = 2e-4;
-constexpr double kTruthTermMs = 0.2;  // at 640x360
+constexpr double kPictureMs = 1.5, kMeshRayMs = 6e-6, kGridRayMs = 1e-5, kFieldRayMs = 1e-5;
+// At 640x360; a limit surface has as much as a field of many terms.
+constexpr double kTruthTermMs = 0.035, kLimitTerms = 8000.0;
 /// What a further term adds to a field's cost, as a share of the first: most are skipped by bounds.
 constexpr double kTermShare = 0.1;
 /// Expected milliseconds that a kind of work must have done before its own speed counts more than what was thought of it.
@@ -79,6 +81,7 @@ double terms_factor(const SceneSize::Object& object) { return 1.0 + kTermShare *
 
 void add_mesh(const SceneSize::Object& object, const SurfaceSettings& settings, double pixels, bool traced, ExpectedCost& cost) {
   const double faces = faces_of(object, settings.level);
+  if (object.is_field) cost.build_ms += kCageFaceMs * object.faces;
   cost.build_ms += kModelMs + faces * (object.is_field ? kFieldFaceMs + kFieldFaceTermMs * (object.terms - 1.0) : kFaceMs);
   cost.bytes += static_cast<std::int64_t>(faces * kFaceBytes);
   if (traced) cost.trace_ms += pixels * kMeshRayMs * (1.0 + 0.05 * std::log2(1.0 + faces));
@@ -104,8 +107,12 @@ SceneSize size_of(const Scene& scene, const SurfaceSettings& settings) {
 
 double truth_terms(const SceneSize& size) {
   double terms = 0.0;
-  for (const SceneSize::Object& object : size.objects) terms += object.is_field ? object.faces * terms_factor(object) : 0.0;
-  return terms;
+  bool limits = false;
+  for (const SceneSize::Object& object : size.objects) {
+    terms += object.is_field ? object.faces * terms_factor(object) : 0.0;
+    limits = limits || (object.refines && !object.is_field);
+  }
+  return terms + (limits ? kLimitTerms : 0.0);
 }
 
 double faces_at_level(const SceneSize& size, int level) {
@@ -135,8 +142,8 @@ ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& setting
   return cost;
 }
 
-double Study::measure_ms() const { return 10.0 + pixels() * 1.5e-4; }
-double Study::truth_ms() const { return 100.0 + pixels() * 1e-3 + kTruthTermMs * truth_terms * std::sqrt(pixels() / 230'400.0); }
+double Study::measure_ms() const { return 10.0 + pixels() * 3e-4; }
+double Study::truth_ms() const { return 30.0 + pixels() * 2.5e-4 + kTruthTermMs * truth_terms * std::sqrt(pixels() / 230'400.0); }
 
 void CostLedger::learn(const std::string& kind, double expected_ms, double took_ms) {
   Entry& entry = entries_[kind];

@@ -211,19 +211,39 @@ unsigned write_balls(const RayBatch& rays, int first, const BallHits& found, uns
   return written;
 }
 
+/// A step from `place`, where f and its gradient were taken, rounded to float. Where rays graze, a step from so near may still lead away.
+HWY_INLINE Reals stepped(const LaneRays& packet, Reals place, Reals value, const std::array<LaneArray, 3>& gradients, int at) {
+  Reals slope = reals(0.0);
+  for (size_t axis = 0; axis < 3; ++axis) slope = slope + load(gradients[axis], at) * load(packet.direction[axis], at);
+  const Reals newton = as_float(place - value / slope);
+  const LaneMask near = abs(newton - place) <= abs(place) * (2.0 * std::numeric_limits<float>::epsilon());
+  return select(near, newton, place);
+}
+
+/// Moves roots to the floats that are nearest, as f sees it from there, so that how they were found makes no difference; takes gradients.
+void settle_places(const MarchTape& march, const LaneRays& packet, unsigned lanes, TapeScratch& scratch, LaneArray& place,
+                   std::array<LaneArray, 3>& gradients) {
+  constexpr int kMaxMoves = 2;
+  LaneArray values;
+  for (int move = 0;; ++move) {
+    tape_gradients(*march.tape, march.steps, packet, place, scratch, values, gradients);
+    if (move == kMaxMoves) return;
+    unsigned moved = 0;
+    for (int at = 0; at < kLanes; at += kWidth) {
+      const Reals here = load(place, at), there = stepped(packet, here, load(values, at), gradients, at);
+      moved |= bits_of(either(here<there, here> there)) << at;
+      store(there, place, at);
+    }
+    if ((moved & lanes) == 0) return;
+  }
+}
+
 unsigned write(const MarchTape& march, const RayBatch& rays, const LaneRays& packet, const LaneArray& t, const LaneArray& sign,
                const int* lane, int first, unsigned lanes, TapeScratch& scratch, HitBatch& hits) {
-  LaneArray start, values, slopes, place;
-  for (int at = 0; at < kLanes; at += kWidth) store(as_float(load(t, at)), start, at);
-  tape_slopes(*march.tape, march.steps, packet, start, scratch, values, slopes);
-  for (int at = 0; at < kLanes; at += kWidth) {
-    const Reals root = load(t, at), newton = load(start, at) - load(values, at) / load(slopes, at);
-    // Where rays graze, a step from so near may still lead away.
-    const LaneMask near = abs(newton - root) <= abs(root) * (2.0 * std::numeric_limits<float>::epsilon());
-    store(as_float(select(near, newton, root)), place, at);
-  }
+  LaneArray place;
+  for (int at = 0; at < kLanes; at += kWidth) store(as_float(load(t, at)), place, at);
   std::array<LaneArray, 3> gradients;
-  tape_gradients(*march.tape, march.steps, packet, place, scratch, values, gradients);
+  settle_places(march, packet, lanes, scratch, place, gradients);
   unsigned written = 0;
   for (int at = 0; at < kLanes; at += kWidth) {
     const Reals hit = load(place, at);

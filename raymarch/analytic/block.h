@@ -36,8 +36,8 @@ unsigned ball_roots(const FieldTape& tape, std::span<const std::uint32_t> leaves
 /// Writes what `lanes` of a block hit before their ends; returns which did.
 unsigned write_ball_hits(const RayBatch& rays, int first, const BallHits& found, unsigned lanes, HitBatch& hits);
 
-/// Of sixteen roots, known to a millionth of the extent or better, the ones in `lanes`: a last step from where float puts them, so that
-/// the result does not depend on how they were found, and the normal there. Returns those before their ends. The packet's lane i is
+/// Of sixteen roots, known to a millionth of the extent or better, the ones in `lanes`: moved to the nearest float as f there tells it, so
+/// that the result does not depend on how they were found, and the normal there. Returns those before their ends. The packet's lane i is
 /// lane[i] of the batch; `lane` null: first + i.
 unsigned write_roots(const MarchTape& march, const RayBatch& rays, const LaneRays& packet, const LaneArray& t, const LaneArray& sign,
                      const int* lane, int first, unsigned lanes, TapeScratch& scratch, HitBatch& hits);

@@ -12,7 +12,7 @@ namespace {
 constexpr int kLongestRun = 4;  // Slabs.
 constexpr size_t kFewBalls = 3;
 // Newton's steps end here, as a share of the extent: the next would be the square of it.
-constexpr double kNewtonTolerance = 1e-8;
+constexpr double kNewtonTolerance = 1e-6;
 // What is left of a stretch that bounds say too little about.
 constexpr double kCut = 0.25;
 constexpr double kShortest = 1.0 / 256.0;  // Of a run: so few steps are the most that a block can take.

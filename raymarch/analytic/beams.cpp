@@ -75,19 +75,15 @@ void slabs_of(const ViewBeams& view, const PixelTile& rectangle, double z0, doub
   }
 }
 
-void blocks_of(const ViewBeams& view, const PixelTile& tile, std::span<const double, kLanes> z0, std::span<const double, kLanes> length,
-               double z1, LaneBeams& beams) {
-  const int across = (tile.width + 3) >> 2, down = (tile.height + 3) >> 2;
+void stretches_of(const ViewBeams& view, const PixelTile& tile, std::span<const BlockStretch> stretches, double z1, LaneBeams& beams) {
+  const int across = (tile.width + 3) >> 2;
   const double half = 1.5 * view.per_pixel;
   set_spread(view, half, half, beams);
-  for (int i = 0; i < kLanes; ++i) {
-    const int block = i < across * down ? i : 0;
-    const auto k = static_cast<size_t>(block);
-    const Span x = span_of(tile.x + (block % across) * 4, 4, view.center_x, view.per_pixel);
-    const Span y = span_of(tile.y + (block / across) * 4, 4, view.center_y, view.per_pixel);
-    // A front at the end has nothing left: any depths will do.
-    const double from = std::min(z0[k], z1);
-    set_lane(view, x.middle, y.middle, half, half, from, std::min(from + length[k], z1), i, beams);
+  for (size_t i = 0; i < static_cast<size_t>(kLanes); ++i) {
+    const BlockStretch& s = stretches[i < stretches.size() ? i : 0];
+    const Span x = span_of(tile.x + (s.block % across) * 4, 4, view.center_x, view.per_pixel);
+    const Span y = span_of(tile.y + (s.block / across) * 4, 4, view.center_y, view.per_pixel);
+    set_lane(view, x.middle, y.middle, half, half, s.z, std::min(s.z + s.length, z1), static_cast<int>(i), beams);
   }
 }
 

@@ -23,8 +23,12 @@ double width_at(const ViewBeams& view, const PixelTile& rectangle, double z);
 /// Lane i: the rectangle's beam between depths z0 and z1, cut into `count` equal slabs; lanes from `count` on repeat the last.
 void slabs_of(const ViewBeams& view, const PixelTile& rectangle, double z0, double z1, int count, LaneBeams& beams);
 
-/// Lane i: the beam of block i of a tile from depth z0[i] on, as far as length[i] or to z1; lanes that are no block repeat the first.
-void blocks_of(const ViewBeams& view, const PixelTile& tile, std::span<const double, kLanes> z0, std::span<const double, kLanes> length,
-               double z1, LaneBeams& beams);
+/// A stretch of the beam of a block of 4 x 4 pixels of a tile.
+struct BlockStretch {
+  int block = 0;
+  double z = 0.0, length = 0.0;
+};
+/// Lane i: the i-th stretch, cut off at z1; lanes beyond repeat the first.
+void stretches_of(const ViewBeams& view, const PixelTile& tile, std::span<const BlockStretch> stretches, double z1, LaneBeams& beams);
 
 }  // namespace limn

@@ -90,11 +90,6 @@ void guess_roots(const RayBlock& block, const LaneBeams& beams, const LaneBounds
   for (int i = 0; i < kLanes; ++i) t[i] = (z - block.depth[i]) / block.depth_per_t[i];
 }
 
-/// Where each block of a tile stands in a run: rays of block i that are still active have no root in front of z[i].
-struct BlockFronts {
-  std::array<double, kLanes> z{}, length{};
-};
-
 /// Takes a block's rays from the loop to be isolated one by one in what is left of the run.
 void leave_to_isolation(TileWork& work, const SlabRun& run, double z, int block) {
   unsigned& active = work.active[static_cast<size_t>(block)];
@@ -107,16 +102,16 @@ void leave_to_isolation(TileWork& work, const SlabRun& run, double z, int block)
 
 /// The roots of a block's rays between two depths where f falls, or does not for those that start within the field.
 void trace_monotone(TileWork& work, const SlabRun& run, const MarchTape& march, const LaneBeams& beams, const LaneBounds& bounds,
-                    bool falls, int block) {
+                    bool falls, int lane, int block) {
   unsigned& active = work.active[static_cast<size_t>(block)];
   const RayBlock& rays = work.block[static_cast<size_t>(block)];
-  const double z0 = beams.middle[block] - beams.half[block], z1 = beams.middle[block] + beams.half[block];
+  const double z0 = beams.middle[lane] - beams.half[lane], z1 = beams.middle[lane] + beams.half[lane];
   LaneArray a, b, t, sign;
   unsigned late = 0, undecided = 0;
   const unsigned lanes = stretches_between(rays, z0, z1, run.sign_from, a, b, late) & active;
   if ((lanes & late) != 0) return leave_to_isolation(work, run, z0, block);
   if (lanes == 0 || !falls) return;
-  guess_roots(rays, beams, bounds, block, t);
+  guess_roots(rays, beams, bounds, lane, t);
   const unsigned found =
       newton_roots(march, rays.rays, a, b, run.sign, kNewtonTolerance * work.view.limits.extent, lanes, work.scratch.tape, t, undecided);
   if (undecided != 0) return leave_to_isolation(work, run, z0, block);
@@ -126,47 +121,75 @@ void trace_monotone(TileWork& work, const SlabRun& run, const MarchTape& march, 
   active &= ~found;
 }
 
-/// One stretch of one block, given bounds over it. Returns false where it must be cut.
+/// A stretch of a block, given bounds over it in `lane`. Returns false where it must be cut.
 bool trace_stretch(TileWork& work, const SlabRun& run, std::span<const TapeStep> steps, std::span<const TapeChoice> choices,
-                   const LaneBeams& beams, const LaneBounds& bounds, int block) {
-  if (bounds.lower[block] > 0.0 || bounds.upper[block] < 0.0) return true;
+                   const LaneBeams& beams, const LaneBounds& bounds, int lane, int block) {
+  if (bounds.lower[lane] > 0.0 || bounds.upper[lane] < 0.0) return true;
   const double steepest = 1e-9 * work.view.limits.lipschitz;
-  const bool down = bounds.slope_upper[block]<-steepest, up = bounds.slope_lower[block]> steepest;
-  if (run.sign == 0.0 || !(down || up)) return false;
-  prune_tape(steps, choices, static_cast<std::uint16_t>(1u << block), work.view.tape->registers, TapeUse::points, work.scratch.block_steps);
-  trace_monotone(work, run, {work.view.tape, work.scratch.block_steps}, beams, bounds, run.sign > 0.0 ? down : up, block);
+  const bool down = bounds.slope_upper[lane]<-steepest, up = bounds.slope_lower[lane]> steepest;
+  if (run.sign == 0.0 || (!down && !up)) return false;
+  prune_tape(steps, choices, static_cast<std::uint16_t>(1u << lane), work.view.tape->registers, TapeUse::points, work.scratch.block_steps);
+  trace_monotone(work, run, {work.view.tape, work.scratch.block_steps}, beams, bounds, run.sign > 0.0 ? down : up, lane, block);
   return true;
+}
+
+/// Where each block of a tile stands in a run: rays of block i that are still active have no root in front of z[i]; length[i] is what to
+/// try next.
+struct BlockFronts {
+  std::array<double, kLanes> z{}, length{};
+  double shortest = 0.0;
+};
+
+/// The next stretch of each block that has anything left, and where lanes remain also shorter ones, in case it must be cut.
+int next_stretches(const TileWork& work, const SlabRun& run, const BlockFronts& fronts, std::array<BlockStretch, kLanes>& next) {
+  int going = 0, count = 0;
+  std::array<int, kLanes> blocks{};
+  for (int block = 0; block < work.blocks; ++block) {
+    const auto k = static_cast<size_t>(block);
+    if (work.active[k] != 0 && fronts.z[k] < run.z1) blocks[static_cast<size_t>(going++)] = block;
+  }
+  for (int i = 0; i < going; ++i) {
+    const int block = blocks[static_cast<size_t>(i)], tries = kLanes / going;
+    double length = fronts.length[static_cast<size_t>(block)];
+    for (int k = 0; k < tries && (k == 0 || length > kCut * fronts.shortest); ++k) {
+      next[static_cast<size_t>(count++)] = {block, fronts.z[static_cast<size_t>(block)], length};
+      length *= kCut;
+    }
+  }
+  return count;
 }
 
 /// Cuts the run, block by block and front to back, into stretches where bounds of f and its slope tell that there is nothing, or that f
 /// falls all the way and Newton's iteration may be trusted. Where a stretch no deeper than a block is wide tells neither, there is a
-/// silhouette in it, and rays are isolated one by one.
+/// silhouette in it, and rays are isolated one by one. Every round moves a block's front by kCut of `shortest` or more, cuts its stretch
+/// to kCut, or takes the block from the loop.
 void trace_run(TileWork& work, const SlabRun& run, std::span<const TapeStep> steps) {
   BlockFronts fronts;
   fronts.z.fill(run.z0);
   fronts.length.fill(run.z1 - run.z0);
   // At the eye beams have no width.
-  const double shortest = std::max(width_at(work.view.beams, {0, 0, 4, 4}, run.z0), kShortest * (run.z1 - run.z0));
+  fronts.shortest = std::max(width_at(work.view.beams, {0, 0, 4, 4}, run.z0), kShortest * (run.z1 - run.z0));
   LaneBeams beams;
   LaneBounds bounds;
+  std::array<BlockStretch, kLanes> next;
   std::vector<TapeChoice>& choices = work.scratch.choices;
-  for (;;) {
-    unsigned going = 0;
-    for (int block = 0; block < work.blocks; ++block) {
-      if (work.active[static_cast<size_t>(block)] != 0 && fronts.z[static_cast<size_t>(block)] < run.z1) going |= 1u << block;
-    }
-    if (going == 0) break;
-    blocks_of(work.view.beams, work.tile, fronts.z, fronts.length, run.z1, beams);
+  while (const int count = next_stretches(work, run, fronts, next)) {
+    stretches_of(work.view.beams, work.tile, std::span(next).first(static_cast<size_t>(count)), run.z1, beams);
     tape_slope_bounds(*work.view.tape, steps, beams, work.scratch.tape, bounds);
     choices.swap(work.scratch.tape.choices);
-    for (unsigned left = going; left != 0; left &= left - 1) {
-      const int block = std::countr_zero(left);
-      double& z = fronts.z[static_cast<size_t>(block)];
-      double& length = fronts.length[static_cast<size_t>(block)];
-      if (trace_stretch(work, run, steps, choices, beams, bounds, block)) {
+    for (int lane = 0; lane < count;) {
+      const int block = next[static_cast<size_t>(lane)].block;
+      double &z = fronts.z[static_cast<size_t>(block)], &length = fronts.length[static_cast<size_t>(block)];
+      bool done = false;
+      for (; lane < count && next[static_cast<size_t>(lane)].block == block; ++lane) {
+        if (done) continue;
+        length = next[static_cast<size_t>(lane)].length;
+        done = trace_stretch(work, run, steps, choices, beams, bounds, lane, block);
+      }
+      if (done) {
         z = std::min(z + length, run.z1);
         length *= 2.0;
-      } else if (length > shortest && run.sign != 0.0) {
+      } else if (length > fronts.shortest && run.sign != 0.0) {
         length *= kCut;
       } else {
         leave_to_isolation(work, run, z, block);

@@ -126,13 +126,14 @@ void CurveIndex::visit_cell(int column, int row, const Visit& visit) const {
   for (std::uint32_t k = first_[cell]; k < first_[cell + 1]; ++k) visit(segments_[members_[k]]);
 }
 
-std::optional<NearestPoint> CurveIndex::nearest(const glm::dvec2& px, int object, double reach_px) const {
+std::optional<NearestPoint> CurveIndex::nearest(const glm::dvec2& px, int object, double reach_px, std::optional<glm::dvec2> facing) const {
   if (segments_.empty()) return std::nullopt;
   NearestPoint best{reach_px, {}, false};
   bool found = false;
   const auto look = [&](const Segment& segment) {
     if (object != 0 && segment.object != object) return;
     const glm::dvec2 along = segment.b - segment.a;
+    if (facing && !(glm::dot(*facing, glm::dvec2(-along.y, along.x)) > 0.0)) return;
     const double squared = glm::dot(along, along);
     const double s = squared > 0.0 ? std::clamp(glm::dot(px - segment.a, along) / squared, 0.0, 1.0) : 0.0;
     const glm::dvec2 point = segment.a + s * along;
@@ -190,8 +191,18 @@ std::optional<Meeting> CurveIndex::meeting(const glm::dvec2& px, const glm::dvec
   return best;
 }
 
+namespace {
+/// Nearer meetings are not doubted.
+constexpr double kFar_px = 2.0;
+}  // namespace
+
 std::optional<double> displacement_px(const CurveSample& sample, const CurveIndex& index, double reach_px) {
-  if (const std::optional<Meeting> meeting = index.meeting(sample.px, sample.outward, sample.object, reach_px)) return meeting->along_px;
+  if (const std::optional<Meeting> meeting = index.meeting(sample.px, sample.outward, sample.object, reach_px)) {
+    if (std::abs(meeting->along_px) < kFar_px) return meeting->along_px;
+    const std::optional<NearestPoint> beside = index.nearest(sample.px, sample.object, 0.25 * std::abs(meeting->along_px), sample.outward);
+    if (!beside || beside->open_end) return meeting->along_px;
+    return std::copysign(beside->distance_px, glm::dot(beside->px - sample.px, sample.outward));
+  }
   const std::optional<NearestPoint> near = index.nearest(sample.px, sample.object, reach_px);
   if (!near || near->open_end) return std::nullopt;
   const double along = glm::dot(near->px - sample.px, sample.outward);

@@ -45,8 +45,9 @@ class CurveIndex {
 
   bool empty() const { return segments_.empty(); }
 
-  /// The nearest point of curves of `object` (0: any), within `reach_px`.
-  std::optional<NearestPoint> nearest(const glm::dvec2& px, int object, double reach_px) const;
+  /// The nearest point of curves of `object` (0: any), within `reach_px`; with `facing` (unit) only of segments whose own outward normal
+  /// points that way.
+  std::optional<NearestPoint> nearest(const glm::dvec2& px, int object, double reach_px, std::optional<glm::dvec2> facing = {}) const;
 
   /// The nearest meeting within `reach_px` of the line through `px` along `direction` (unit) with curves of `object` (0: any) whose own
   /// outward normal does not point against `direction`.
@@ -73,7 +74,9 @@ class CurveIndex {
 };
 
 /// How far the border of `index` lies from a sample, along the sample's outward normal; positive: grown. Where the normal meets nothing
-/// (beside a corner) the nearest point counts, if it lies within 60 degrees of the normal and is no open end. Empty: no partner in reach.
+/// (beside a corner) the nearest point counts, if it lies within 60 degrees of the normal and is no open end. At the tip of a sharp turn
+/// the normal may leave the border beside it and meet another one far off: a point that faces the same way counts where it is four times as
+/// near. Empty: no partner in reach.
 std::optional<double> displacement_px(const CurveSample& sample, const CurveIndex& index, double reach_px);
 
 /// How far a partner is looked for: 16 px, or 2 % of the picture's diagonal where that is more.

@@ -31,9 +31,12 @@ void load_rays(const RayBatch& rays, int first, const glm::dvec3& eye, const glm
   const float* const origin[3] = {rays.origin_x, rays.origin_y, rays.origin_z};
   const float* const direction[3] = {rays.direction_x, rays.direction_y, rays.direction_z};
   const double eye_depth = glm::dot(eye, forward);
+  Reals reach = reals(0.0);
   for (int at = 0; at < kLanes; at += kWidth) {
     for (int axis = 0; axis < 3; ++axis) {
-      store(load_floats(origin[axis] + first + at), block.rays.origin[axis], at);
+      const Reals o = load_floats(origin[axis] + first + at);
+      reach = maximum(reach, abs(o));
+      store(o, block.rays.origin[axis], at);
       store(load_floats(direction[axis] + first + at), block.rays.direction[axis], at);
     }
     store(load_floats(rays.t_min + first + at), block.t_min, at);
@@ -41,6 +44,7 @@ void load_rays(const RayBatch& rays, int first, const glm::dvec3& eye, const glm
     store(dot(block.rays.origin, forward, at) - eye_depth, block.depth, at);
     store(dot(block.rays.direction, forward, at), block.depth_per_t, at);
   }
+  block.reach = hn::GetLane(hn::MaxOfLanes(RealTag(), reach.v));
 }
 
 unsigned between(const RayBlock& block, double z0, double z1, double from, LaneArray& a, LaneArray& b, unsigned& late) {
@@ -194,8 +198,9 @@ HWY_INLINE void write_vector(Reals t, const Reals* normal, unsigned bits, const 
 }
 
 HWY_INLINE unsigned before_ends(Reals t, const RayBatch& rays, const int* lane, int first, int at) {
+  if (lane == nullptr) return bits_of(t < load_floats(rays.t_max + first + at));
   HWY_ALIGN float ends[kWidth];
-  for (int i = 0; i < kWidth; ++i) ends[i] = rays.t_max[lane ? lane[at + i] : first + at + i];
+  for (int i = 0; i < kWidth; ++i) ends[i] = rays.t_max[lane[at + i]];
   return bits_of(t < load_floats(ends));
 }
 

@@ -10,6 +10,7 @@ struct RayBlock {
   LaneRays rays;
   LaneArray t_min, t_max;
   LaneArray depth, depth_per_t;  ///< Of the point at t along the view axis: depth + t depth_per_t.
+  double reach = 0.0;            ///< Of the origins: their largest coordinate.
 };
 
 /// `forward`: unit; depths are measured from `eye`.

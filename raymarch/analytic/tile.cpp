@@ -24,13 +24,13 @@ struct TileWork {
   HitBatch& hits;
   ViewScratch& scratch;
   PixelTile tile;
+  StretchList& queue;
   int blocks = 0;
   std::array<RayBlock, kLanes> block;
   std::array<unsigned, kLanes> active{};
-  StretchList queue{};
 
   TileWork(const FieldView& v, const RayBatch& r, HitBatch& h, ViewScratch& s, const PixelTile& t)
-      : view(v), rays(r), hits(h), scratch(s), tile(t), blocks(((t.width + 3) >> 2) * ((t.height + 3) >> 2)) {}
+      : view(v), rays(r), hits(h), scratch(s), tile(t), queue(s.queue), blocks(((t.width + 3) >> 2) * ((t.height + 3) >> 2)) {}
   bool done() const {
     return std::all_of(active.begin(), active.begin() + blocks, [](unsigned lanes) { return lanes == 0; });
   }
@@ -121,14 +121,28 @@ void trace_monotone(TileWork& work, const SlabRun& run, const MarchTape& march, 
   active &= ~found;
 }
 
-/// A stretch of a block, given bounds over it in `lane`. Returns false where it must be cut.
+/// True where two lanes leave the same steps out.
+bool decide_alike(std::span<const TapeChoice> choices, int a, int b) {
+  unsigned different = 0;
+  for (const TapeChoice& choice : choices) {
+    for (const unsigned idle : choice.idle) different |= (idle >> a ^ idle >> b) & 1u;
+  }
+  return different == 0;
+}
+
+/// A stretch of a block, given bounds over it in `lane`. Returns false where it must be cut. `pruned`: the lane that the block's steps were
+/// last pruned for; -1: none.
 bool trace_stretch(TileWork& work, const SlabRun& run, std::span<const TapeStep> steps, std::span<const TapeChoice> choices,
-                   const LaneBeams& beams, const LaneBounds& bounds, int lane, int block) {
+                   const LaneBeams& beams, const LaneBounds& bounds, int lane, int block, int& pruned) {
   if (bounds.lower[lane] > 0.0 || bounds.upper[lane] < 0.0) return true;
   const double steepest = 1e-9 * work.view.limits.lipschitz;
   const bool down = bounds.slope_upper[lane]<-steepest, up = bounds.slope_lower[lane]> steepest;
   if (run.sign == 0.0 || (!down && !up)) return false;
-  prune_tape(steps, choices, static_cast<std::uint16_t>(1u << lane), work.view.tape->registers, TapeUse::points, work.scratch.block_steps);
+  if (pruned < 0 || !decide_alike(choices, lane, pruned)) {
+    prune_tape(steps, choices, static_cast<std::uint16_t>(1u << lane), work.view.tape->registers, TapeUse::points,
+               work.scratch.block_steps);
+    pruned = lane;
+  }
   trace_monotone(work, run, {work.view.tape, work.scratch.block_steps}, beams, bounds, run.sign > 0.0 ? down : up, lane, block);
   return true;
 }
@@ -177,6 +191,7 @@ void trace_run(TileWork& work, const SlabRun& run, std::span<const TapeStep> ste
     stretches_of(work.view.beams, work.tile, std::span(next).first(static_cast<size_t>(count)), run.z1, beams);
     tape_slope_bounds(*work.view.tape, steps, beams, work.scratch.tape, bounds);
     choices.swap(work.scratch.tape.choices);
+    int pruned = -1;
     for (int lane = 0; lane < count;) {
       const int block = next[static_cast<size_t>(lane)].block;
       double &z = fronts.z[static_cast<size_t>(block)], &length = fronts.length[static_cast<size_t>(block)];
@@ -184,7 +199,7 @@ void trace_run(TileWork& work, const SlabRun& run, std::span<const TapeStep> ste
       for (; lane < count && next[static_cast<size_t>(lane)].block == block; ++lane) {
         if (done) continue;
         length = next[static_cast<size_t>(lane)].length;
-        done = trace_stretch(work, run, steps, choices, beams, bounds, lane, block);
+        done = trace_stretch(work, run, steps, choices, beams, bounds, lane, block, pruned);
       }
       if (done) {
         z = std::min(z + length, run.z1);
@@ -241,11 +256,7 @@ PixelTile overlap(const PixelTile& a, const PixelTile& b) {
 /// True where float has moved no ray farther from its pixel's beam than the view allows for.
 bool within_slack(const TileWork& work) {
   double largest = 0.0;
-  for (int block = 0; block < work.blocks; ++block) {
-    for (const LaneArray& origin : work.block[static_cast<size_t>(block)].rays.origin) {
-      for (const double o : origin.lane) largest = std::max(largest, std::abs(o));
-    }
-  }
+  for (int block = 0; block < work.blocks; ++block) largest = std::max(largest, work.block[static_cast<size_t>(block)].reach);
   return 1e-6 * (std::sqrt(3.0) * largest + work.view.reach) <= work.view.beams.slack;
 }
 

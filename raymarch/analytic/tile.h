@@ -14,6 +14,7 @@ struct ViewScratch {
   std::vector<TapeStep> run_steps{}, block_steps{};
   std::vector<std::uint32_t> balls{};
   std::vector<TapeChoice> choices{};
+  StretchList queue{};  ///< Empty between tiles.
 };
 
 struct FieldView {

@@ -81,6 +81,7 @@ INSTANTIATE_TEST_SUITE_P(
         Slip{{"render", "ellipsoid", "--size", "100"}, "WxH"}, Slip{{"render", "ellipsoid", "--fov", "0"}, "180"},
         Slip{{"render", "ellipsoid", "--fov", "180"}, "180"}, Slip{{"render", "ellipsoid", "--fov", "30", "--ortho", "2"}, "--ortho"},
         Slip{{"render", "ellipsoid", "--ortho", "0"}, "above 0"}, Slip{{"render", "ellipsoid", "--level", "9"}, "0 to 8"},
+        Slip{{"render", "ellipsoid", "--level", "automatic"}, "0 to 8"}, Slip{{"export", "ellipsoid", "--level", "auto"}, "0 to 8"},
         Slip{{"render", "ellipsoid", "--samples", "0"}, "1 to 1024"}, Slip{{"render", "ellipsoid", "--half-width", "1"}, "1.8"},
         Slip{{"render", "ellipsoid", "--voxel-size", "-1"}, "above 0"}, Slip{{"render", "ellipsoid", "--threads", "few"}, "whole number"},
         Slip{{"render", "ellipsoid", "--grid", "x"}, ".vdb"}, Slip{{"render", "ellipsoid", "--eye", "0,0,5", "--target", "0,0,5"}, "--eye"},
@@ -100,6 +101,20 @@ TEST(Call, NegativeNumbersAreValuesNotOptions) {
   const TemporaryFolder folder;
   const RunResult result = run_limn({"render", "ellipsoid", "--size", "16x12", "--eye", "-3,-2,4", "-o", folder.file("a.png"), "-q"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+TEST(Call, LevelAutoTakesWhatThePictureNeedsAndSaysWhatItTook) {
+  const TemporaryFolder folder;
+  const auto triangles = [&](const std::string& distance) {
+    const RunResult result = run_limn({"render", "pipe_junction", "--level", "auto", "--size", "160x120", "--eye", "0,0," + distance,
+                                       "--target", "0,0,0", "-o", folder.file("a.exr"), "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find("px from its surface"), std::string::npos) << result.out;
+    const std::string field = "\"triangles\": ";
+    return std::stol(result.out.substr(result.out.find(field) + field.size()));
+  };
+  const long near = triangles("8"), far = triangles("80");
+  EXPECT_GT(near, 2 * far);
 }
 
 }  // namespace

@@ -45,8 +45,9 @@ void compare_pixel(FieldEvaluator& field, const Camera& camera, const GBuffer& s
   const double middle = glm::dot(box.center() - ray.origin, ray.direction), reach = 1.01 * box.radius();
   const double scale = glm::length(box.center() - ray.origin) + box.radius();
   ++all.rays;
-  const float depth = seen.depth.at(x, y);
-  const double along = -glm::dot(ray.direction, camera.world_from_camera[2]), t = static_cast<double>(depth) / along;
+  // Not by the depth: towards the edges of a wide view it tells less of the place.
+  const double t = std::isfinite(seen.depth.at(x, y)) ? glm::dot(glm::dvec3(seen.position.at(x, y)) - ray.origin, ray.direction)
+                                                      : std::numeric_limits<double>::infinity();
   const double from = std::max(0.0, middle - reach), to = std::max(from, middle + reach);
   const double truth = walk_field(field, ray.origin, ray.direction, from, to, {.extent = box.radius()});
   const bool outside = field.value(ray.origin + from * ray.direction) > 0.0;
@@ -96,7 +97,7 @@ TEST(AnalyticPictures, AreWhatWalksAlongSingleRaysSeeWhateverTheFieldAndTheCamer
     Differences one;
     compare(field, camera, seen, one);
     EXPECT_LT(one.farthest_wrong, 3e-7);
-    EXPECT_LT(one.worst_off, 3e-7);
+    EXPECT_LT(one.worst_off, 1.5e-7);
     all.rays += one.rays, all.hits += one.hits, all.wrong += one.wrong;
     all.farthest_wrong = std::max(all.farthest_wrong, one.farthest_wrong);
     all.worst_off = std::max(all.worst_off, one.worst_off);
@@ -104,7 +105,7 @@ TEST(AnalyticPictures, AreWhatWalksAlongSingleRaysSeeWhateverTheFieldAndTheCamer
   }
   fmt::print("seed {}: {} rays, {} hits; {} otherwise, at most {:.1e} from the silhouette; hits off the surface by at most {:.1e}\n", seed,
              all.rays, all.hits, all.wrong, all.farthest_wrong, all.worst_off);
-  EXPECT_GT(all.hits, all.rays / 10);
+  EXPECT_GT(all.hits, all.rays / 20);
 }
 
 TEST(AnalyticPictures, AreTheSameOnEverySimdTarget) {

@@ -32,7 +32,7 @@ TapeLeaf tape_leaf(const FieldLeaf& leaf) {
 /// Gives the values of one leaf's recording registers from `first` on, as few as linear scanning needs (Poletto & Sarkar 1999).
 class LeafRegisters {
  public:
-  LeafRegisters(const Recording& recording, std::uint32_t first) : first_(first), last_use_(recording.steps.size() + 3, 0) {
+  LeafRegisters(const Recording& recording, std::uint32_t first) : last_use_(recording.steps.size() + 3, 0) {
     for (std::uint32_t i = 0; i < recording.steps.size(); ++i) {
       const TapeStep& step = recording.steps[i];
       const std::uint32_t uses[] = {step.a, step.b, step.c};
@@ -63,7 +63,7 @@ class LeafRegisters {
   std::uint32_t end() const { return end_; }
 
  private:
-  std::uint32_t first_, end_ = 0;
+  std::uint32_t end_ = 0;
   std::vector<std::uint32_t> last_use_, held_, free_;
 };
 

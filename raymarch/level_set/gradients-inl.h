@@ -63,7 +63,7 @@ HWY_INLINE V3 cell_gradient(const std::int16_t* values, const Cells& cells) {
   const I di;
   const auto row = [&](int element) { return gather_pair(values, hn::Add(cells.self, hn::Set(di, 2 * element))); };
   const Pair p00 = row(0), p01 = row(9), p10 = row(81), p11 = row(90);
-  const auto& [x, y, z] = cells.local;
+  const VF x = cells.local.x, y = cells.local.y, z = cells.local.z;
   const VF z00 = lerp(p00.low, p00.high, z), z01 = lerp(p01.low, p01.high, z), z10 = lerp(p10.low, p10.high, z),
            z11 = lerp(p11.low, p11.high, z);
   const VF dz0 = lerp(hn::Sub(p00.high, p00.low), hn::Sub(p01.high, p01.low), y);
@@ -79,7 +79,7 @@ struct Column {
 /// side at the same place in the cells there.
 HWY_INLINE V3 central_gradient(const std::int16_t* values, const Cells& cells) {
   const I di;
-  const auto& [x, y, z] = cells.local;
+  const VF x = cells.local.x, y = cells.local.y, z = cells.local.z;
   const auto pair = [&](VI offset) { return gather_pair(values, offset); };
   const VI sy = hn::Set(di, 18), sx = hn::Set(di, 162), sz = hn::Set(di, 2);
   const auto value = [&](VI offset) {

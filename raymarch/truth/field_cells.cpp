@@ -13,7 +13,6 @@ namespace {
 
 constexpr int kTaskLevel = 4;      // subtrees below it are one task each
 constexpr int kRestrictEvery = 2;  // levels between shortenings of the program
-constexpr double kClear = 0.02;    // of N.V
 
 /// The subtree that one task walks.
 struct Walk {

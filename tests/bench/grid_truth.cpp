@@ -164,7 +164,8 @@ TrueSurface true_grid_surface(const LevelSet& level_set) {
   reader->voxel_size = level_set.info().voxel_size;
   reader->lower = level_set.info().world_from_index.point(glm::dvec3(0.0));
   const openvdb::CoordBBox box = reader->grid->evalActiveVoxelBoundingBox();
-  for (int axis = 0; axis < 3; ++axis) reader->box_lower[axis] = box.min()[axis] - 1, reader->box_upper[axis] = box.max()[axis] + 1;
+  reader->box_lower = glm::dvec3(box.min().x(), box.min().y(), box.min().z()) - 1.0;
+  reader->box_upper = glm::dvec3(box.max().x(), box.max().y(), box.max().z()) + 1.0;
   return {[reader](const glm::dvec3& o, const glm::dvec3& d) { return first_hit(*reader, o, d); },
           [reader](const glm::dvec3& o, const glm::dvec3& d, double from, double to) { return lowest(*reader, o, d, from, to); }};
 }

@@ -138,10 +138,10 @@ struct EveryCell {
     if (!ray.clip(accessor.root().bbox())) return false;
     const float near = 1.7320508f * peer.voxel_size;
     nanovdb::Coord ijk = nanovdb::RoundDown<nanovdb::Coord>(ray.start());
-    nanovdb::HDDA<IndexRay> walk(ray, accessor.getDim(ijk, ray));
+    nanovdb::HDDA<IndexRay> walk(ray, static_cast<int>(accessor.getDim(ijk, ray)));
     while (walk.step()) {
       ijk = nanovdb::RoundDown<nanovdb::Coord>(ray(walk.time() + 1.0001f));
-      walk.update(ray, accessor.getDim(ijk, ray));
+      walk.update(ray, static_cast<int>(accessor.getDim(ijk, ray)));
       if (walk.dim() > 1 || !accessor.isActive(ijk)) continue;
       do {
         if (accessor.getValue(walk.voxel()) > near) continue;

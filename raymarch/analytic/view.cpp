@@ -13,7 +13,7 @@ namespace limn {
 namespace {
 
 constexpr int kBigCell_px = 256;  // Where the tape is long it is pruned for these first.
-constexpr size_t kLongTape = 24;  // Leaves.
+constexpr size_t kLongTape = 8;   // Leaves.
 
 /// The segments within `within` where the surface may be, for the beam of a smaller rectangle.
 void refine(const FieldView& view, const PixelTile& rectangle, const TapeSegment& within, ViewScratch& scratch,

@@ -1,0 +1,48 @@
+// Groups of points that ask only the parts of a field near them: every point once, and the whole field's numbers to the last bit.
+
+#include "subdiv/local_field.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "sdf/shape.h"
+
+namespace limn {
+namespace {
+
+TEST(LocalField, VisitsEachNamedPointOnceAndAnswersAsTheWholeFieldInsideItsBoxAndOutside) {
+  std::vector<Field> balls;
+  for (int i = 0; i < 12; ++i) balls.push_back(translate(make_shape("sphere", {{"radius", {0.6}}}), {double(i), 0.3 * (i % 3), 0.0}));
+  const Field field = combine(Csg::union_, balls, 0.1);
+  std::mt19937_64 random(20261121);
+  std::uniform_real_distribution<double> in(-1.0, 12.0);
+  std::vector<glm::dvec3> points(500);
+  for (glm::dvec3& p : points) p = {in(random), 0.2 * in(random), 0.1 * in(random)};
+  points[7] = points[8] = points[9];
+  std::vector<std::uint32_t> which;
+  for (std::uint32_t i = 0; i < points.size(); i += 2) which.push_back(i);
+  std::vector<int> visits(points.size(), 0), right(points.size(), 0);
+  visit_groups(field, points, std::vector<double>(points.size(), 0.05), which,
+               [&](LocalField& local, std::span<const std::uint32_t> members) {
+                 FieldEvaluator whole(field);
+                 for (const std::uint32_t i : members) {
+                   ++visits[i];
+                   for (const glm::dvec3& p : {points[i], points[i] + 0.04, points[i] + glm::dvec3(5.0, 0.0, 0.0)}) {
+                     glm::dvec3 here, there, mine = p, its = p;
+                     double value = 0.0, other = 0.0;
+                     local.gradient(p, value, here);
+                     whole.gradients(std::span(&p, 1), std::span(&other, 1), std::span(&there, 1));
+                     right[i] += value == other && here == there && local.value(p) == whole.value(p);
+                     right[i] += local.project(mine) == project_to_surface(whole, its) && mine == its;
+                   }
+                 }
+               });
+  for (size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(visits[i], i % 2 == 0 ? 1 : 0) << i;
+    EXPECT_EQ(right[i], i % 2 == 0 ? 6 : 0) << i;
+  }
+}
+
+}  // namespace
+}  // namespace limn

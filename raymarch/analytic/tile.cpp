@@ -9,7 +9,7 @@
 namespace limn {
 namespace {
 
-constexpr int kLongestRun = 4;  // Slabs.
+constexpr int kLongestRun = 3;  // Slabs.
 constexpr size_t kFewBalls = 3;
 
 void trace_balls(TileWork& work, const SlabRun& run, std::span<const TapeStep> steps, std::span<const std::uint32_t> balls) {

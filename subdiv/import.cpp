@@ -37,9 +37,31 @@ std::string read_text(const std::filesystem::path& file, std::int64_t max_bytes)
   return text;
 }
 
+/// assimp looks for the end of a PLY's header for ever where there is none.
+void check_ply_header(const std::filesystem::path& file) {
+  constexpr std::streamsize kLongestHeader = 1 << 20;
+  std::ifstream stream(file, std::ios::binary);
+  std::string head(kLongestHeader, '\0');
+  stream.read(head.data(), kLongestHeader);
+  head.resize(static_cast<size_t>(stream.gcount()));
+  if (head.find("end_header") == std::string::npos)
+    throw InputError({file.string(), "header", "", "the file breaks off within its header", "a line 'end_header' before the data"});
+}
+
+/// In proportion to the file: what takes longer is no honest mesh of that size. A .gltf's data lie in files beside it.
+GuardLimits limits_for(const std::filesystem::path& file, const GuardLimits& most) {
+  constexpr std::int64_t kBytesPerSecond = 500'000;
+  GuardLimits limits = most;
+  const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(file));
+  if (extension_of(file) != ".gltf")
+    limits.time = std::min<std::chrono::milliseconds>(most.time, std::chrono::seconds(20 + bytes / kBytesPerSecond));
+  return limits;
+}
+
 Mesh read_in_helper(const std::filesystem::path& file, const ImportSettings& settings) {
+  if (extension_of(file) == ".ply") check_ply_header(file);
   const std::string arguments[] = {file.string(), std::to_string(settings.max_elements)};
-  const std::vector<std::byte> answer = run_guarded("limn-read-mesh", arguments, file, settings.limits);
+  const std::vector<std::byte> answer = run_guarded("limn-read-mesh", arguments, file, limits_for(file, settings.limits));
   ByteReader reader(answer, file.string());
   return get_mesh(reader);
 }

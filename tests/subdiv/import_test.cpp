@@ -221,6 +221,17 @@ TEST_F(Import, MutatedFilesAreRefusedOrReadAsValidMeshes) {
   EXPECT_GT(read, 5);
 }
 
+TEST_F(Import, APlyThatBreaksOffWithinItsHeaderIsRefusedAtOnce) {
+  for (const char* text : {"ply\nformat binary_little_endian 1.0\nelement vertex 642\nproper\nouble y\n", "ply\n", "ply"}) {
+    try {
+      load_mesh(write("broken.ply", text));
+      FAIL() << "was read: " << text;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.fault().field, "header");
+    }
+  }
+}
+
 /// Debian's assimp-testmodels.
 fs::path sample(const std::string& name) { return fs::path("/usr/share/assimp/models") / name; }
 

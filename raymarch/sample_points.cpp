@@ -41,14 +41,7 @@ void add_ray(const Setup& setup, double x_px, double y_px, TracedBatch& batch) {
   }
   batch.camera_rays[k] = ray;
   batch.shift[k] = shift;
-  batch.rays.origin_x[i] = static_cast<float>(origin.x);
-  batch.rays.origin_y[i] = static_cast<float>(origin.y);
-  batch.rays.origin_z[i] = static_cast<float>(origin.z);
-  batch.rays.direction_x[i] = static_cast<float>(ray.direction.x);
-  batch.rays.direction_y[i] = static_cast<float>(ray.direction.y);
-  batch.rays.direction_z[i] = static_cast<float>(ray.direction.z);
-  batch.rays.t_min[i] = static_cast<float>(t_min);
-  batch.rays.t_max[i] = static_cast<float>(t_max);
+  batch.rays.set(i, origin, ray.direction, t_min, t_max);
 }
 
 PointSample sample_of(const Setup& setup, const TracedBatch& batch, int i) {

@@ -21,6 +21,12 @@ struct RayBatch {
   alignas(64) float direction_x[kRayBatchSize], direction_y[kRayBatchSize], direction_z[kRayBatchSize];  ///< Unit.
   alignas(64) float t_min[kRayBatchSize];  ///< World units from the origin; a hit lies in [t_min, t_max).
   alignas(64) float t_max[kRayBatchSize];
+  void set(int i, const glm::dvec3& origin, const glm::dvec3& direction, double first, double last) {
+    origin_x[i] = static_cast<float>(origin.x), origin_y[i] = static_cast<float>(origin.y), origin_z[i] = static_cast<float>(origin.z);
+    direction_x[i] = static_cast<float>(direction.x), direction_y[i] = static_cast<float>(direction.y);
+    direction_z[i] = static_cast<float>(direction.z);
+    t_min[i] = static_cast<float>(first), t_max[i] = static_cast<float>(last);
+  }
   glm::vec3 origin(int i) const { return {origin_x[i], origin_y[i], origin_z[i]}; }
   glm::vec3 direction(int i) const { return {direction_x[i], direction_y[i], direction_z[i]}; }
 };
@@ -44,8 +50,8 @@ struct PixelTile {
 
 /// The coherent rays of one picture: what a surface may prepare for all of its tiles at once.
 struct ViewRequest {
-  Camera camera{};                ///< Eye in render space.
-  glm::dvec2 sample{0.5, 0.5};    ///< Where in each pixel its ray goes.
+  Camera camera{};              ///< Eye in render space.
+  glm::dvec2 sample{0.5, 0.5};  ///< Where in each pixel its ray goes.
 };
 
 /// A surface prepared for one picture (lists of what each tile sees). Immutable; read from many threads at a time.

@@ -7,6 +7,15 @@
 namespace limn {
 namespace {
 
+void put_ray(const RayBatch& rays, int lane, int i, LaneRays& packet) {
+  packet.origin[0][i] = rays.origin_x[lane];
+  packet.origin[1][i] = rays.origin_y[lane];
+  packet.origin[2][i] = rays.origin_z[lane];
+  packet.direction[0][i] = rays.direction_x[lane];
+  packet.direction[1][i] = rays.direction_y[lane];
+  packet.direction[2][i] = rays.direction_z[lane];
+}
+
 // Outside this share of the extent a step |f|/L is cheaper than an interval; inside it intervals converge faster.
 constexpr double kIsolationDistance = 0.02;
 constexpr int kMaxSphereSteps = 64;
@@ -51,15 +60,7 @@ void take(const RayBatch& rays, StretchList& list, int first, Packet& packet) {
 
 LaneRays gather_rays(const RayBatch& rays, const int* lane, int count) {
   LaneRays packet;
-  for (int i = 0; i < kLanes; ++i) {
-    const int k = lane[i < count ? i : 0];
-    packet.origin[0][i] = rays.origin_x[k];
-    packet.origin[1][i] = rays.origin_y[k];
-    packet.origin[2][i] = rays.origin_z[k];
-    packet.direction[0][i] = rays.direction_x[k];
-    packet.direction[1][i] = rays.direction_y[k];
-    packet.direction[2][i] = rays.direction_z[k];
-  }
+  for (int i = 0; i < kLanes; ++i) put_ray(rays, lane[i < count ? i : 0], i, packet);
   return packet;
 }
 
@@ -104,15 +105,6 @@ struct IsolationPacket {
   bool fresh[kLanes];
   int steps[kLanes];
 };
-
-void put_ray(const RayBatch& rays, int lane, int i, LaneRays& packet) {
-  packet.origin[0][i] = rays.origin_x[lane];
-  packet.origin[1][i] = rays.origin_y[lane];
-  packet.origin[2][i] = rays.origin_z[lane];
-  packet.direction[0][i] = rays.direction_x[lane];
-  packet.direction[1][i] = rays.direction_y[lane];
-  packet.direction[2][i] = rays.direction_z[lane];
-}
 
 bool refill(const RayBatch& rays, const MarchLimits& limits, StretchList& list, int& next, IsolationPacket& p) {
   bool any = false;

@@ -62,14 +62,7 @@ void set_ray(const Shell& shell, int x, int y, ShellBatch& batch) {
   const glm::dvec3 origin = ray.origin + shift * ray.direction;
   batch.pixel[i] = pixel;
   batch.open[i] = t_max > 0.0;
-  batch.rays.origin_x[i] = static_cast<float>(origin.x);
-  batch.rays.origin_y[i] = static_cast<float>(origin.y);
-  batch.rays.origin_z[i] = static_cast<float>(origin.z);
-  batch.rays.direction_x[i] = static_cast<float>(ray.direction.x);
-  batch.rays.direction_y[i] = static_cast<float>(ray.direction.y);
-  batch.rays.direction_z[i] = static_cast<float>(ray.direction.z);
-  batch.rays.t_min[i] = 0.0f;
-  batch.rays.t_max[i] = static_cast<float>(std::max(t_max, 0.0));
+  batch.rays.set(i, origin, ray.direction, 0.0, std::max(t_max, 0.0));
 }
 
 /// A stencil wants rays that enter the shell; the inverted hull those that leave it again before anything is seen: its back faces.

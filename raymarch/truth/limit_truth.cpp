@@ -59,12 +59,7 @@ bool is_blocked(const SceneModel& model, const std::vector<size_t>& objects, con
   RayBatch rays;
   HitBatch hits;
   rays.count = 1;
-  rays.origin_x[0] = static_cast<float>(start.x), rays.origin_y[0] = static_cast<float>(start.y),
-  rays.origin_z[0] = static_cast<float>(start.z);
-  rays.direction_x[0] = static_cast<float>(direction.x), rays.direction_y[0] = static_cast<float>(direction.y);
-  rays.direction_z[0] = static_cast<float>(direction.z);
-  rays.t_min[0] = 0.0f;
-  rays.t_max[0] = static_cast<float>(reach);
+  rays.set(0, start, direction, 0.0, reach);
   for (const size_t object : objects) {
     const Surface& surface = model.surfaces[object];
     hits.status[0] = HitStatus::miss;

@@ -102,13 +102,10 @@ TrueSurface true_mesh(const TriangleMesh& mesh) {
   TrueSurface surface;
   surface.first_hit = [model](const glm::dvec3& o, const glm::dvec3& d) -> TrueSurface::Hit {
     // One ray a batch, and not as a tile's: the plainest way in.
-    const glm::dvec3 origin = o - model->render_origin;
     RayBatch rays;
     HitBatch hits;
     rays.count = 1;
-    rays.origin_x[0] = float(origin.x), rays.origin_y[0] = float(origin.y), rays.origin_z[0] = float(origin.z);
-    rays.direction_x[0] = float(d.x), rays.direction_y[0] = float(d.y), rays.direction_z[0] = float(d.z);
-    rays.t_min[0] = 0.0f, rays.t_max[0] = std::numeric_limits<float>::max();
+    rays.set(0, o - model->render_origin, d, 0.0, std::numeric_limits<float>::max());
     hits.status[0] = HitStatus::miss;
     const Surface& mesh_surface = model->surfaces[0];
     mesh_surface.trace(mesh_surface.state.get(), rays, hits);

@@ -13,10 +13,7 @@ namespace {
 RayBatch one_ray(const glm::vec3& origin, const glm::vec3& direction, float t_max = 100.0f) {
   RayBatch rays;
   rays.count = 1;
-  rays.origin_x[0] = origin.x, rays.origin_y[0] = origin.y, rays.origin_z[0] = origin.z;
-  rays.direction_x[0] = direction.x, rays.direction_y[0] = direction.y, rays.direction_z[0] = direction.z;
-  rays.t_min[0] = 0.0f;
-  rays.t_max[0] = t_max;
+  rays.set(0, origin, direction, 0.0, t_max);
   return rays;
 }
 
@@ -111,12 +108,7 @@ TEST(Analytic, NoHolesAndNoThroughHitsAgainstAHundredTimesFinerMarch) {
     rays.count = 60;
     for (int i = 0; i < rays.count; ++i) {
       const glm::dvec3 origin = 4.0 * glm::normalize(random_vector(random, 1.0) + glm::dvec3(1e-3));
-      const glm::vec3 direction(glm::normalize(random_vector(random, 0.8) - origin));
-      rays.origin_x[i] = static_cast<float>(origin.x), rays.origin_y[i] = static_cast<float>(origin.y);
-      rays.origin_z[i] = static_cast<float>(origin.z);
-      rays.direction_x[i] = direction.x, rays.direction_y[i] = direction.y, rays.direction_z[i] = direction.z;
-      rays.t_min[i] = 0.0f;
-      rays.t_max[i] = static_cast<float>(reach);
+      rays.set(i, origin, glm::normalize(random_vector(random, 0.8) - origin), 0.0, reach);
     }
     HitBatch batch;
     std::fill_n(batch.status, kRayBatchSize, HitStatus::miss);

@@ -28,9 +28,7 @@ inline std::vector<Hit> trace(const Surface& surface, const std::vector<Ray>& ra
     batch.count = static_cast<int>(std::min<size_t>(kRayBatchSize, rays.size() - first));
     for (int i = 0; i < batch.count; ++i) {
       const Ray& ray = rays[first + static_cast<size_t>(i)];
-      batch.origin_x[i] = ray.origin.x, batch.origin_y[i] = ray.origin.y, batch.origin_z[i] = ray.origin.z;
-      batch.direction_x[i] = ray.direction.x, batch.direction_y[i] = ray.direction.y, batch.direction_z[i] = ray.direction.z;
-      batch.t_min[i] = ray.t_min, batch.t_max[i] = ray.t_max;
+      batch.set(i, ray.origin, ray.direction, ray.t_min, ray.t_max);
       hits.status[i] = HitStatus::miss;
     }
     surface.trace(surface.state.get(), batch, hits);

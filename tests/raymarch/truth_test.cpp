@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "raymarch/truth.h"
+#include "tests/raymarch/border_distance.h"
 #include "tests/raymarch/scenes.h"
 
 namespace limn::test {
@@ -144,27 +145,14 @@ double total_length(const BorderTruth& truth, CurveKind kind) {
   return length;
 }
 
-double distance_to(const BorderTruth& truth, const glm::dvec2& px) {
-  double best = 1e9;
-  for (const BorderCurve& curve : truth.curves.curves) {
-    const size_t n = curve.points.size();
-    for (size_t i = 0; i + (curve.closed ? 0 : 1) < n; ++i) {
-      const glm::dvec2 a = curve.points[i].px, d = curve.points[(i + 1) % n].px - a;
-      const double t = std::clamp(glm::dot(px - a, d) / std::max(glm::dot(d, d), 1e-300), 0.0, 1.0);
-      best = std::min(best, glm::distance(px, a + t * d));
-    }
-  }
-  return best;
-}
-
 /// The farthest that a point of one is from the other.
 double apart(const BorderTruth& a, const BorderTruth& b) {
   double worst = 0.0;
   for (const BorderCurve& curve : a.curves.curves) {
-    for (const BorderPoint& point : curve.points) worst = std::max(worst, distance_to(b, point.px));
+    for (const BorderPoint& point : curve.points) worst = std::max(worst, distance_to(b.curves, {}, point.px));
   }
   for (const BorderCurve& curve : b.curves.curves) {
-    for (const BorderPoint& point : curve.points) worst = std::max(worst, distance_to(a, point.px));
+    for (const BorderPoint& point : curve.points) worst = std::max(worst, distance_to(a.curves, {}, point.px));
   }
   return worst;
 }
@@ -204,7 +192,7 @@ TEST(Truth, WhatIsBehindAnotherObjectIsLeftOutButCounted) {
     EXPECT_EQ(curve.object, 2);
     for (const BorderPoint* end : {&curve.points.front(), &curve.points.back()}) {
       ++ends;
-      EXPECT_LT(distance_to(alone, end->px), half.bound_px);
+      EXPECT_LT(distance_to(alone.curves, {}, end->px), half.bound_px);
     }
   }
   EXPECT_GE(ends, 2);

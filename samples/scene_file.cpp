@@ -80,7 +80,7 @@ std::filesystem::path beside(const TomlReader& reader, const std::string& name) 
   return std::filesystem::path(reader.file()).parent_path() / name;
 }
 
-MeshSource read_mesh(TomlReader& reader, std::optional<int>& level) {
+MeshSource read_mesh(TomlReader& reader, const SceneReaders& readers, std::optional<int>& level) {
   const std::string name = *reader.text("mesh");
   std::optional<Scheme> scheme;
   if (const auto text = reader.text("scheme")) {
@@ -90,19 +90,19 @@ MeshSource read_mesh(TomlReader& reader, std::optional<int>& level) {
   // A level without a scheme still asks for subdivision; Catmull-Clark takes any polygons.
   if (level && *level > 0 && !scheme) scheme = Scheme::catmark;
   const std::filesystem::path path = beside(reader, name);
-  return mesh_source(load_mesh(path), scheme, path.string());
+  return mesh_source(readers.mesh(path), scheme, path.string());
 }
 
-LevelSetSource read_volume(TomlReader& reader) {
+LevelSetSource read_volume(TomlReader& reader, const SceneReaders& readers) {
   const std::string name = *reader.text("vdb");
   const std::string grid = reader.text("grid").value_or("");
   const std::filesystem::path path = beside(reader, name);
-  return {read_level_set(path, grid), path.string()};
+  return {readers.volume(path, grid), path.string()};
 }
 
 using Source = decltype(SceneObject::source);
 
-SceneObject read_object(TomlReader& reader, size_t index) {
+SceneObject read_object(TomlReader& reader, const SceneReaders& readers, size_t index) {
   int kinds = 0;
   for (const char* key : {"shape", "csg", "mesh", "vdb"}) kinds += reader.has(key) ? 1 : 0;
   if (kinds != 1) {
@@ -112,8 +112,8 @@ SceneObject read_object(TomlReader& reader, size_t index) {
   std::optional<int> level;
   Affine world_from_object;
   const auto read_source = [&]() -> Source {
-    if (reader.has("mesh")) return read_mesh(reader, level);
-    if (reader.has("vdb")) return read_volume(reader);
+    if (reader.has("mesh")) return read_mesh(reader, readers, level);
+    if (reader.has("vdb")) return read_volume(reader, readers);
     return read_field(reader);
   };
   // Cheap keys first, so that a slip in them is told before a large file is read.
@@ -153,7 +153,7 @@ MeshSource mesh_source(Mesh mesh, std::optional<Scheme> scheme, const std::strin
   return {std::move(mesh), scheme, file};
 }
 
-SceneInput parse_scene_file(const std::string& text, const std::filesystem::path& file) {
+SceneInput parse_scene_file(const std::string& text, const std::filesystem::path& file, const SceneReaders& readers) {
   const toml::table root = parse_toml(text, file.string());
   SceneInput input;
   input.kind = InputKind::scene_file;
@@ -189,7 +189,7 @@ SceneInput parse_scene_file(const std::string& text, const std::filesystem::path
   }
   for (size_t i = 0; i < objects.size(); ++i) {
     TomlReader table(*objects[i], file.string(), fmt::format("object[{}].", i));
-    input.scene.objects.push_back(read_object(table, i));
+    input.scene.objects.push_back(read_object(table, readers, i));
   }
   return input;
 }

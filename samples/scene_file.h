@@ -2,16 +2,26 @@
 // The scene file (TOML). Every key that nobody reads is an InputError with file:line:column and the nearest known key.
 
 #include <filesystem>
+#include <functional>
 
 #include "samples/input.h"
+#include "subdiv/import.h"
 
 namespace limn {
 
 /// Reads a scene file and the meshes and volumes it names (relative to it). Throws InputError.
 SceneInput load_scene_file(const std::filesystem::path& file);
 
+/// How the files that a scene names are read.
+struct SceneReaders {
+  std::function<Mesh(const std::filesystem::path& file)> mesh = [](const auto& file) { return load_mesh(file); };
+  std::function<LevelSet(const std::filesystem::path& file, const std::string& grid)> volume = [](const auto& file, const auto& grid) {
+    return read_level_set(file, grid);
+  };
+};
+
 /// The same from text; `file` goes into messages and its folder is where relative paths start.
-SceneInput parse_scene_file(const std::string& text, const std::filesystem::path& file);
+SceneInput parse_scene_file(const std::string& text, const std::filesystem::path& file, const SceneReaders& readers = {});
 
 /// An object from a mesh: a cage where `scheme` is set or the mesh has crease or corner tags, else the mesh as it is.
 MeshSource mesh_source(Mesh mesh, std::optional<Scheme> scheme, const std::string& file);

@@ -90,7 +90,10 @@ void check_band(const LevelSetData& data, double needed, const fs::path& file) {
 }  // namespace
 
 std::vector<GridSummary> list_grids(const fs::path& file) {
-  const std::vector<std::byte> bytes = ask(file, {"list"});
+  return grids_from_answer(ask(file, {"list"}), file);
+}
+
+std::vector<GridSummary> grids_from_answer(std::span<const std::byte> bytes, const fs::path& file) {
   ByteReader answer(bytes, file.string());
   std::vector<GridSummary> grids;
   const auto count = answer.get<std::uint64_t>();
@@ -107,7 +110,13 @@ std::vector<GridSummary> list_grids(const fs::path& file) {
 
 LevelSet read_level_set(const fs::path& file, const std::string& grid, double needed_half_width_voxels) {
   const auto started = std::chrono::steady_clock::now();
-  const std::vector<std::byte> bytes = ask(file, {"grid", grid});
+  const auto data = level_set_from_answer(ask(file, {"grid", grid}), file, needed_half_width_voxels);
+  data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
+  return LevelSet(data);
+}
+
+std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> bytes, const fs::path& file,
+                                                    double needed_half_width_voxels) {
   ByteReader answer(bytes, file.string());
   const std::string name = answer.get_text();
   const Affine world_from_index = read_map(answer, file);
@@ -118,10 +127,9 @@ LevelSet read_level_set(const fs::path& file, const std::string& grid, double ne
     refuse(file, "the reader's answer is not in order", "an undamaged file");
   check_blocks(blocks, tiles, file);
 
-  const auto data = rebuild(blocks, tiles, background, world_from_index, name);
+  std::shared_ptr<LevelSetData> data = rebuild(blocks, tiles, background, world_from_index, name);
   check_band(*data, needed_half_width_voxels, file);
-  data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
-  return LevelSet(data);
+  return data;
 }
 
 }  // namespace limn

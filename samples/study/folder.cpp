@@ -32,16 +32,20 @@ void forget(const fs::path& folder) {
 
 }  // namespace
 
-std::optional<StudyFolder> read_folder(const fs::path& folder) {
-  std::optional<StudyRecord> record = read_record(folder);
-  if (!record) return std::nullopt;
-  StudyFolder held{std::move(*record), read_cells(folder)};
+void check_planned(const StudyFolder& held, const fs::path& file) {
   std::set<std::string> planned;
   for (const PlannedCell& cell : held.record.cells) planned.insert(cell.key);
   for (const auto& [key, rows] : held.rows) {
     if (!planned.contains(key))
-      throw InputError({(folder / "rows.jsonl").string(), "key", key, "not a cell of this study", "--fresh to start over would be right"});
+      throw InputError({file.string(), "key", key, "not a cell of this study", "--fresh to start over would be right"});
   }
+}
+
+std::optional<StudyFolder> read_folder(const fs::path& folder) {
+  std::optional<StudyRecord> record = read_record(folder);
+  if (!record) return std::nullopt;
+  StudyFolder held{std::move(*record), read_cells(folder)};
+  check_planned(held, folder / "rows.jsonl");
   return held;
 }
 

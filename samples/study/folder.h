@@ -14,6 +14,9 @@ struct StudyFolder {
   CellRows rows{};  ///< Whole cells, failed ones too.
 };
 
+/// Throws InputError, naming `file`, for rows of cells that the record does not plan.
+void check_planned(const StudyFolder& held, const std::filesystem::path& file);
+
 /// Reads it without changing anything. Empty where the folder holds no study.
 std::optional<StudyFolder> read_folder(const std::filesystem::path& folder);
 
@@ -36,6 +39,9 @@ std::filesystem::path unfinished(const std::filesystem::path& part);
 
 /// The folders of finished parts that `folder` stands for: itself where it holds a study, and those in it. Throws InputError for none.
 std::vector<std::filesystem::path> parts_in(const std::filesystem::path& folder);
+
+/// Takes from a part of the same study what `merged` does not hold, or holds no better; returns the keys of what it took.
+std::vector<std::string> take_part(StudyFolder part, StudyFolder& merged);
 
 /// The rows, truths and thumbnails of parts of one study, in one folder; the order of parts does not matter, nor does a part given twice.
 /// Throws InputError, naming what differs, for parts of different studies.

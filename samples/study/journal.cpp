@@ -44,22 +44,22 @@ int open_end(const fs::path& file) {
 
 bool failed(const std::vector<StudyRow>& cell) { return cell.size() == 1 && !cell.front().failed.empty(); }
 
+Journal parse_journal(std::string_view text, const fs::path& file) {
+  Journal journal;
+  int line_number = 0;
+  for (size_t at = 0, end; (end = text.find('\n', at)) != std::string_view::npos; at = end + 1) {
+    StudyRow row = row_from_json(std::string(text.substr(at, end - at)), file, ++line_number);
+    journal.last_key = row.key;
+    journal.cells[journal.last_key].push_back(std::move(row));
+  }
+  return journal;
+}
+
 CellRows read_cells(const fs::path& folder) {
   std::ifstream stream(journal_file(folder), std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
-  const std::string bytes = text.str();
-  CellRows cells;
-  std::string last;
-  int line_number = 0;
-  for (size_t at = 0; at < bytes.size();) {
-    const size_t end = bytes.find('\n', at);
-    if (end == std::string::npos) break;
-    StudyRow row = row_from_json(bytes.substr(at, end - at), journal_file(folder), ++line_number);
-    last = row.key;
-    cells[last].push_back(std::move(row));
-    at = end + 1;
-  }
+  auto [cells, last] = parse_journal(text.str(), journal_file(folder));
   // A failed cell is one line, and so never torn.
   if (last.empty() || failed(cells[last])) return cells;
   std::error_code ignored;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "samples/study/row.h"
@@ -15,6 +16,14 @@ namespace limn {
 using CellRows = std::map<std::string, std::vector<StudyRow>>;
 
 bool failed(const std::vector<StudyRow>& cell);
+
+/// A journal's text as cells, and the cell of its last line; what follows the last line's end is passed over. `file` goes into messages.
+/// Throws InputError for lines that are no rows.
+struct Journal {
+  CellRows cells{};
+  std::string last_key{};
+};
+Journal parse_journal(std::string_view text, const std::filesystem::path& file);
 
 /// The whole cells of a folder's journal; a last cell that may be torn is left out: one that ended in the middle of a line, or that has not
 /// got its thumbnail, which is written after its rows. Empty where there is no journal. Throws InputError for lines that are no rows.

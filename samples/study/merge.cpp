@@ -83,19 +83,25 @@ void check_parts(const std::vector<fs::path>& parts, const fs::path& folder) {
 
 }  // namespace
 
+std::vector<std::string> take_part(StudyFolder part, StudyFolder& merged) {
+  std::vector<std::string> taken;
+  add_truths(part.record.truths, merged.record);
+  for (auto& [key, rows] : part.rows) {
+    std::vector<StudyRow>& kept = merged.rows[key];
+    if (!kept.empty() && !is_better(rows, kept)) continue;
+    kept = std::move(rows);
+    taken.push_back(key);
+  }
+  return taken;
+}
+
 StudyFolder merge_parts(const std::vector<fs::path>& parts, const fs::path& folder) {
   check_parts(parts, folder);
   std::optional<StudyFolder> merged = read_folder(folder);
   for (const fs::path& part : parts) {
     StudyFolder held = read_folder(part).value();
     if (!merged) merged = StudyFolder{held.record, {}};
-    add_truths(held.record.truths, merged->record);
-    for (auto& [key, rows] : held.rows) {
-      std::vector<StudyRow>& kept = merged->rows[key];
-      if (!kept.empty() && !is_better(rows, kept)) continue;
-      kept = std::move(rows);
-      copy_thumbnail(part, folder, key);
-    }
+    for (const std::string& key : take_part(std::move(held), *merged)) copy_thumbnail(part, folder, key);
   }
   LIMN_CHECK(merged.has_value());
   merged->record.shard = merged->record.shards = 1;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <sstream>
 
@@ -53,6 +54,12 @@ Json to_json(const StudyRecord& record) {
   for (const TruthRecord& truth : record.truths) json["truths"].push_back(to_json(truth));
   for (const PlannedCell& cell : record.cells) json["cells"].push_back({{"key", cell.key}, {"text", cell.text}});
   return json;
+}
+
+// Keys name files (the thumbnails), so whoever hands us a part must not choose where we write.
+bool is_key(const std::string& key) {
+  return !key.empty() && key.size() <= 64 &&
+         std::all_of(key.begin(), key.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
 }
 
 StudyRecord record_from(const Json& json) {
@@ -142,11 +149,20 @@ std::optional<StudyRecord> read_record(const fs::path& folder) {
   std::error_code ignored;
   if (!fs::exists(file, ignored)) return std::nullopt;
   std::ifstream stream(file, std::ios::binary);
-  const Json json = Json::parse(stream, nullptr, false);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return parse_record(text.str(), file);
+}
+
+StudyRecord parse_record(std::string_view text, const fs::path& file) {
+  const Json json = Json::parse(text, nullptr, false);
   const InputError foreign({file.string(), "", "", "not what limn study writes", "another folder, or --fresh, would be right"});
   if (!json.is_object()) throw foreign;
   try {
-    return record_from(json);
+    StudyRecord record = record_from(json);
+    for (const PlannedCell& cell : record.cells)
+      if (!is_key(cell.key)) throw foreign;
+    return record;
   } catch (const Json::exception&) {
     throw foreign;
   }

@@ -2,6 +2,7 @@
 // study.json: what a folder's rows belong to, for whoever goes on with the study, joins its parts or reports on it.
 
 #include <filesystem>
+#include <string_view>
 
 #include "samples/study/study.h"
 
@@ -39,6 +40,8 @@ void add_truths(const std::vector<TruthRecord>& truths, StudyRecord& record);
 
 std::filesystem::path record_file(const std::filesystem::path& folder);
 void write_record(const StudyRecord& record, const std::filesystem::path& folder);
+/// Throws InputError for a text that is none of ours; `file` goes into messages.
+StudyRecord parse_record(std::string_view text, const std::filesystem::path& file);
 /// Empty where the folder holds none. Throws InputError for a file that is none of ours.
 std::optional<StudyRecord> read_record(const std::filesystem::path& folder);
 

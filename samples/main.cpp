@@ -7,9 +7,11 @@
 #include "raymarch/gbuffer.h"
 #include "samples/interrupt.h"
 #include "samples/program.h"
+#include "samples/standard_streams.h"
 #include "sdf/error.h"
 
 int main(int argc, char** argv) {
+  limn::keep_standard_streams();
   limn::install_interrupt_handlers();
   // It would print lines of its own about meshes that the audit and our errors speak of.
   OpenSubdiv::Far::SetWarningCallback([](const char*) {});

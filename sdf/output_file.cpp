@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "sdf/error.h"
+#include "sdf/stale_files.h"
 
 namespace limn {
 namespace {
@@ -33,28 +34,32 @@ constinit std::array<Slot, 16> slots{};
 /// Holds one temporary file: unlinked on destruction unless it was renamed away.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const fs::path& path) : path_(path) {
-    if (path.native().size() >= PATH_MAX) return;
+  TemporaryFile(const fs::path& path, unsigned mode) : path_(path) {
     for (Slot& slot : slots) {
+      if (path.native().size() >= PATH_MAX) break;
       SlotState expected = SlotState::free;
       if (!slot.state.compare_exchange_strong(expected, SlotState::claimed)) continue;
       std::strcpy(slot.path, path.c_str());
       slot.state = SlotState::open;
       slot_ = &slot;
-      return;
+      break;
     }
+    handle_ = make_locked_file(path, mode);
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   ~TemporaryFile() {
-    if (!renamed_) ::unlink(path_.c_str());
+    if (handle_ >= 0 && !renamed_) ::unlink(path_.c_str());
     if (slot_) slot_->state = SlotState::free;
+    if (handle_ >= 0) ::close(handle_);
   }
+  bool made() const { return handle_ >= 0; }
   void renamed() { renamed_ = true; }
 
  private:
   fs::path path_;
   Slot* slot_ = nullptr;
+  int handle_ = -1;  ///< Open, and with it locked, until the file is in its place: sdf/stale_files.h.
   bool renamed_ = false;
 };
 
@@ -82,12 +87,6 @@ fs::path resolved(const fs::path& target) {
   return error ? target : real;
 }
 
-fs::path temporary_beside(const fs::path& target) {
-  static std::atomic<unsigned> counter{0};
-  const std::string name = ".limn-" + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1)) + target.extension().string();
-  return target.parent_path() / name;
-}
-
 }  // namespace
 
 void write_whole(const fs::path& target, const std::function<void(const fs::path&)>& write) {
@@ -101,11 +100,10 @@ void write_whole(const fs::path& target, const std::function<void(const fs::path
   const bool replaces = ::stat(real.c_str(), &old) == 0;
   if (replaces && ::access(real.c_str(), W_OK) != 0) fail(target, "cannot be written", errno);
 
+  remove_stale_files(real.parent_path());
   const fs::path path = temporary_beside(real);
-  TemporaryFile temporary(path);
-  const int handle = ::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, replaces ? (old.st_mode & 0777) : 0666);
-  if (handle < 0) fail(target, "cannot be written", errno);
-  ::close(handle);
+  TemporaryFile temporary(path, replaces ? (old.st_mode & 0777) : 0666);
+  if (!temporary.made()) fail(target, "cannot be written", errno);
 
   write(path);
   if (!fs::is_regular_file(path, error)) throw MachineError(target.string() + ": its temporary file vanished while it was written");

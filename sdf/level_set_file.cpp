@@ -89,9 +89,7 @@ void check_band(const LevelSetData& data, double needed, const fs::path& file) {
 
 }  // namespace
 
-std::vector<GridSummary> list_grids(const fs::path& file) {
-  return grids_from_answer(ask(file, {"list"}), file);
-}
+std::vector<GridSummary> list_grids(const fs::path& file) { return grids_from_answer(ask(file, {"list"}), file); }
 
 std::vector<GridSummary> grids_from_answer(std::span<const std::byte> bytes, const fs::path& file) {
   ByteReader answer(bytes, file.string());

@@ -56,10 +56,16 @@ Json to_json(const StudyRecord& record) {
   return json;
 }
 
-// Keys name files (the thumbnails), so whoever hands us a part must not choose where we write.
+// Keys name files (the thumbnails) and the scene a folder: whoever hands us a part must not choose where we write.
 bool is_key(const std::string& key) {
   return !key.empty() && key.size() <= 64 &&
          std::all_of(key.begin(), key.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
+}
+
+bool stays_in_place(const StudyRecord& record) {
+  const std::string& scene = record.head.scene;
+  return scene != "." && scene != ".." && scene.find('/') == std::string::npos && scene.find('\0') == std::string::npos &&
+         std::all_of(record.cells.begin(), record.cells.end(), [](const PlannedCell& cell) { return is_key(cell.key); });
 }
 
 StudyRecord record_from(const Json& json) {
@@ -160,8 +166,7 @@ StudyRecord parse_record(std::string_view text, const fs::path& file) {
   if (!json.is_object()) throw foreign;
   try {
     StudyRecord record = record_from(json);
-    for (const PlannedCell& cell : record.cells)
-      if (!is_key(cell.key)) throw foreign;
+    if (!stays_in_place(record)) throw foreign;
     return record;
   } catch (const Json::exception&) {
     throw foreign;

@@ -235,6 +235,23 @@ TEST(StudyMerge, FindsFinishedPartsAndLeavesOutTheOthers) {
   EXPECT_EQ(parts_in(part), std::vector<fs::path>{part});
 }
 
+TEST(StudyMerge, APartDoesNotChooseWhereTheWholeIsWritten) {
+  const TemporaryFolder folder;
+  for (const std::string name : {"../cell0", "a/b", "..", "", "a.b"}) {
+    StudyRecord record = some_record(1);
+    record.cells.front().key = name;
+    const fs::path part = folder.path() / "part";
+    make_part(part, record, {});
+    EXPECT_THROW(merge_parts({part}, folder.path() / "whole"), InputError) << "key '" << name << "'";
+  }
+  for (const std::string name : {"../egg", "/tmp/egg", ".."}) {
+    StudyRecord record = some_record(1);
+    record.head.scene = name;
+    EXPECT_THROW(read_record(make_part(folder.path() / "part", record, {})), InputError) << "scene '" << name << "'";
+  }
+  EXPECT_FALSE(fs::exists(folder.path() / "whole"));
+}
+
 TEST(StudyMerge, TruthsOfPartsAreJoinedAndTheWorstIsSaid) {
   StudyRecord record = some_record(1);
   record.pictures = "the analytic surface itself";

@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Runs the tests on a build that counts, and prints how much of limn's own code they reach: lines and branches, in all and by file.
+
+report.py [--no-run] [--files N] [--json FILE]
+
+Ends with 1 below the bounds (90 % of lines, 80 % of branches), or where a test failed. Counted are sdf, subdiv, raymarch and samples, with
+their helper programs, in a build of one SIMD target (plain loops: the kernels' source is the same for all). Not counted as branches: those
+that only an exception takes, which the compiler adds to every call, and those of LIMN_CHECK, which no input may ever take.
+"""
+import argparse
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+BUILD = ROOT / "build" / "coverage"
+LEAST = {"line": 90.0, "branch": 80.0}
+FOLDERS = ("sdf", "subdiv", "raymarch", "samples")
+
+
+def run_tests():
+    """How many ran and failed."""
+    if not (BUILD / "build.ninja").exists():
+        subprocess.run(["cmake", "--preset", "coverage"], cwd=ROOT, check=True, stdout=sys.stderr)
+    subprocess.run(["cmake", "--build", "--preset", "coverage"], cwd=ROOT, check=True, stdout=sys.stderr)
+    # Counts of an earlier run would be added to.
+    for counts in BUILD.rglob("*.gcda"):
+        counts.unlink()
+    done = subprocess.run(["ctest", "--preset", "coverage"], cwd=ROOT, stdout=subprocess.PIPE)
+    text = done.stdout.decode(errors="replace")
+    (BUILD / "ctest.txt").write_text(text)
+    summary = re.search(r"(\d+) tests failed out of (\d+)", text)
+    return (int(summary.group(2)), int(summary.group(1))) if summary else (0, 0)
+
+
+def measure():
+    """gcovr's summary: totals, and a record for each file."""
+    output = BUILD / "coverage.json"
+    filters = [word for folder in FOLDERS for word in ("--filter", f"{folder}/")]
+    subprocess.run(["gcovr", "--root", ".", *filters, "--exclude-throw-branches", "--exclude-unreachable-branches",
+                    "--exclude-branches-by-pattern", r".*LIMN_CHECK\(.*", "--gcov-ignore-parse-errors", "-j", "2",
+                    "--json-summary", str(output), "--json", str(BUILD / "coverage-lines.json"), str(BUILD)],
+                   cwd=ROOT, check=True, stdout=sys.stderr)
+    return json.loads(output.read_text())
+
+
+def table(summary, most):
+    """The files with most left out, for people."""
+    files = [f for f in summary["files"] if f["line_covered"] < f["line_total"] or f["branch_covered"] < f["branch_total"]]
+    files.sort(key=lambda f: (f["line_covered"] - f["line_total"], f["branch_covered"] - f["branch_total"], f["filename"]))
+    lines = [f"{'file':<44} {'lines left':>14} {'branches left':>16}"]
+    for f in files[:most]:
+        left = [f"{f[kind + '_total'] - f[kind + '_covered']} of {f[kind + '_total']}" for kind in ("line", "branch")]
+        lines.append(f"{f['filename']:<44} {left[0]:>14} {left[1]:>16}")
+    if len(files) > most:
+        lines.append(f"and {len(files) - most} files more; {len(summary['files']) - len(files)} have nothing left")
+    return "\n".join(lines)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--no-run", action="store_true", help="report on what the last run counted")
+    parser.add_argument("--files", type=int, default=30, help="rows of the table")
+    parser.add_argument("--json", type=pathlib.Path, help="write the results there")
+    options = parser.parse_args()
+    tests, failed = (None, 0) if options.no_run else run_tests()
+    summary = measure()
+    reached = {kind: 100.0 * summary[f"{kind}_covered"] / max(summary[f"{kind}_total"], 1) for kind in LEAST}
+    good = failed == 0 and tests != 0 and all(reached[kind] >= LEAST[kind] for kind in LEAST)
+    print(table(summary, options.files))
+    for kind, words in (("line", "lines"), ("branch", "branches")):
+        print(f"{words}: {summary[f'{kind}_covered']} of {summary[f'{kind}_total']}, {reached[kind]:.1f} % (at least {LEAST[kind]:.0f} %)")
+    if tests is not None:
+        print(f"tests: {tests}, failed {failed}" + (f": {BUILD / 'ctest.txt'}" if failed else ""))
+    if options.json:
+        figures = {f"{kind}s_percent".replace("branchs", "branches"): round(reached[kind], 2) for kind in LEAST}
+        figures |= {"tests": tests, "tests_failed": failed}
+        options.json.write_text(json.dumps({"outcome": "held" if good else "failed", "figures": figures,
+                                            "files": summary["files"]}, indent=1) + "\n")
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""Builds a preset whose build watches limn (asan, tsan) or leaves something out (scalar), runs its tests and prints JSON.
+
+run.py asan|tsan|scalar [--jobs N] [--json FILE] [--only REGEX]
+
+Ends with 1 where a test failed. Tests that the preset leaves out (CMakePresets.json) are counted, as those are that say they skip.
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+
+
+def count_all(folder):
+    listed = subprocess.run(["ctest", "--test-dir", str(folder), "--show-only=json-v1"], stdout=subprocess.PIPE, check=True)
+    return len(json.loads(listed.stdout)["tests"])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("preset", choices=("asan", "tsan", "scalar"))
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--only", help="tests whose name matches")
+    parser.add_argument("--json", type=pathlib.Path, help="write the results there too")
+    options = parser.parse_args()
+    folder = ROOT / "build" / options.preset
+    if not (folder / "build.ninja").exists():
+        subprocess.run(["cmake", "--preset", options.preset], cwd=ROOT, check=True, stdout=sys.stderr)
+    subprocess.run(["cmake", "--build", "--preset", options.preset], cwd=ROOT, check=True, stdout=sys.stderr)
+    report = folder / "tests.xml"
+    report.unlink(missing_ok=True)
+    started = time.monotonic()
+    only = ["-R", options.only] if options.only else []
+    subprocess.run(["ctest", "--preset", options.preset, "-j", str(options.jobs), "--output-junit", str(report), *only], cwd=ROOT,
+                   stdout=sys.stderr)
+    suite = xml.etree.ElementTree.parse(report).getroot()
+    failed = [case.get("name") for case in suite.iter("testcase") if case.get("status") == "fail"]
+    ran = int(suite.get("tests")) - int(suite.get("skipped")) - int(suite.get("disabled"))
+    good = ran > 0 and not failed
+    text = json.dumps({"outcome": "held" if good else "failed", "preset": options.preset,
+                       "figures": {"tests": ran, "failed": len(failed), "skipped": int(suite.get("skipped")),
+                                   "left_out": count_all(folder) - int(suite.get("tests")), "seconds": round(time.monotonic() - started)},
+                       "failed": failed}, indent=1)
+    if options.json:
+        options.json.write_text(text + "\n")
+    print(text)
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,15 @@
+#pragma once
+// limn info of a picture: its size, layers and types, who made it by which call, and what is wrong with it.
+
+#include "raymarch/picture_file.h"
+#include "samples/output.h"
+
+namespace limn {
+
+Json picture_json(const PictureFile& picture);
+std::string picture_text(const PictureFile& picture, const std::string& name);
+
+/// Reads options.input and prints either. Returns the exit code. Throws InputError.
+int report_picture(const Options& options);
+
+}  // namespace limn

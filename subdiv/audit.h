@@ -1,22 +1,12 @@
 #pragma once
+// What is wrong with a mesh, counted: edges, faces, parts, the digits of its coordinates.
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "subdiv/mesh.h"
 
 namespace limn {
-
-enum class Severity { info, warning, error };
-
-/// One finding of an audit: what was looked for, how much of it there is, and what follows from it, in a sentence.
-struct Finding {
-  std::string check{};
-  Severity severity = Severity::info;
-  double value = 0.0;
-  std::string message{};
-};
 
 /// Edges, built once: every undirected edge with the faces on it.
 struct Edge {
@@ -27,12 +17,43 @@ struct Edge {
 };
 std::vector<Edge> build_edges(const Mesh& mesh);
 
-/// Open and non-manifold edges, duplicate and zero-area faces, inconsistent and inverted orientation (signed volume of closed parts),
-/// extraordinary vertices (by `quads`: valence other than 4, else 6), parts, slivers, unused vertices. One finding a check, always all of
-/// them.
-std::vector<Finding> audit(const Mesh& mesh);
-
 /// Connected parts by shared vertices: a part index for each face, and their count.
 std::int32_t part_of_faces(const Mesh& mesh, std::vector<std::int32_t>& part);
+
+/// Faces with an angle above this are obtuse: the error of a triangle's normal is bounded by its size only while its largest angle stays
+/// away from 180 degrees (Babuska & Aziz 1976). Radians.
+inline constexpr double kObtuseAngle = 150.0 * 3.14159265358979323846 / 180.0;
+
+/// Counts and extremes of one mesh. A clean closed mesh has 0 in every count of faults.
+struct MeshFacts {
+  std::int64_t faces = 0;
+  std::int64_t open_edges = 0;          ///< With a face on one side only.
+  std::int64_t non_manifold_edges = 0;  ///< With more than two faces.
+  std::int64_t inconsistent_edges = 0;  ///< Whose two faces disagree on the outside.
+  std::int64_t duplicate_faces = 0;     ///< With the same vertices as another.
+  std::int64_t zero_area_faces = 0;
+  std::int64_t unused_vertices = 0;
+  std::int64_t extraordinary_vertices = 0;  ///< Valence other than `regular_valence`; half of it and corners on a border are regular.
+  int regular_valence = 6;                  ///< 4 where quads prevail.
+
+  std::int64_t parts = 0, closed_parts = 0;
+  std::int64_t inverted_parts = 0;  ///< Closed, of negative volume, and not within another part.
+  std::int64_t cavities = 0;        ///< Closed, of negative volume, within another part: rightly so.
+  double volume = 0.0;              ///< Signed, of the closed parts; the file's units.
+
+  double smallest_angle = 0.0;  ///< Radians, of the faces with an area.
+  std::int64_t slivers = 0;     ///< Smallest angle below 1 degree.
+  /// Obtuse faces (kObtuseAngle) whose normal is off every neighbour's, as on Schwarz's lantern; slivers in a flat region are not.
+  std::int64_t off_normal_faces = 0;
+  double off_normal_area_share = 0.0;  ///< 0..1.
+  double off_normal_angle = 0.0;       ///< Radians, of the worst: the least angle to a neighbour's normal.
+
+  double median_edge = 0.0;
+  double largest_coordinate = 0.0;  ///< Of any component, absolute.
+  /// What single precision resolves at `largest_coordinate`; 0 where the coordinates have more digits than that, or are so round that they
+  /// lose none by it.
+  double coordinate_step = 0.0;
+};
+MeshFacts mesh_facts(const Mesh& mesh);
 
 }  // namespace limn

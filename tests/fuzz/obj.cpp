@@ -26,7 +26,7 @@ void refine_once(const Mesh& cage) {
 void use(std::string_view text) {
   const Mesh mesh = parse_obj(text, "fuzz.obj", kMostElements);
   validate(mesh, "fuzz.obj");
-  audit(mesh);
+  mesh_facts(mesh);
   triangulate(mesh, NormalKind::vertex, true);
   if (mesh.face_count() <= kMostFacesRefined) refine_once(mesh);
 }

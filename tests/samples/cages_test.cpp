@@ -56,7 +56,6 @@ TEST_P(Cages, AreClosedManifoldsOfTheirGenusWithCreasesAndUnusualVertices) {
   EXPECT_EQ(topology.euler, 2 - 2 * GetParam().genus);
   EXPECT_GT(topology.volume, 0.0) << "inside out";
   EXPECT_FALSE(mesh.creases.empty());
-  for (const Finding& finding : audit(mesh)) EXPECT_NE(finding.severity, Severity::error) << finding.check << ": " << finding.message;
 
   std::map<std::int32_t, int> valence;
   for (const Edge& edge : build_edges(mesh)) {

@@ -20,13 +20,6 @@ double area_of(const TriangleMesh& mesh) {
   return sum;
 }
 
-double value_of(const std::vector<Finding>& findings, const std::string& check) {
-  for (const Finding& finding : findings)
-    if (finding.check == check) return finding.value;
-  ADD_FAILURE() << "no finding " << check;
-  return -1.0;
-}
-
 Mesh polygon(const std::vector<glm::dvec3>& points) {
   Mesh mesh;
   mesh.positions = points;
@@ -177,47 +170,49 @@ TEST(Normals, ConvergeOnASphereByTheFirstPowerOfTheEdge) {
   EXPECT_LT(previous, 0.011);
 }
 
-TEST(Audit, AClosedCubeIsClean) {
-  const std::vector<Finding> findings = audit(test::cube());
-  for (const char* check : {"open edges", "non-manifold edges", "duplicate faces", "zero-area faces", "inconsistent orientation",
-                            "inverted parts", "slivers", "unused vertices"})
-    EXPECT_EQ(value_of(findings, check), 0.0) << check;
-  EXPECT_EQ(value_of(findings, "parts"), 1.0);
-  EXPECT_EQ(value_of(findings, "extraordinary vertices"), 8.0);
-  for (const Finding& finding : findings) {
-    EXPECT_EQ(finding.severity, Severity::info) << finding.check;
-    EXPECT_FALSE(finding.message.empty());
-  }
+TEST(MeshFacts, AClosedCubeIsClean) {
+  const MeshFacts facts = mesh_facts(test::cube());
+  for (const std::int64_t faults :
+       {facts.open_edges, facts.non_manifold_edges, facts.inconsistent_edges, facts.duplicate_faces, facts.zero_area_faces,
+        facts.unused_vertices, facts.inverted_parts, facts.cavities, facts.slivers, facts.off_normal_faces})
+    EXPECT_EQ(faults, 0);
+  EXPECT_EQ(facts.parts, 1);
+  EXPECT_EQ(facts.closed_parts, 1);
+  EXPECT_EQ(facts.extraordinary_vertices, 8);
+  EXPECT_NEAR(facts.volume, 8.0, 1e-12);
+  EXPECT_NEAR(facts.smallest_angle, std::numbers::pi / 2.0, 1e-12);
+  EXPECT_DOUBLE_EQ(facts.median_edge, 2.0);
+  EXPECT_EQ(facts.coordinate_step, 0.0) << "whole numbers lose nothing";
   EXPECT_EQ(build_edges(test::cube()).size(), 12u);
 }
 
-TEST(Audit, EachFaultIsCounted) {
+TEST(MeshFacts, EachFaultIsCounted) {
   Mesh open = test::cube();
   open.face_sizes.pop_back(), open.corner_vertices.resize(20);
-  EXPECT_EQ(value_of(audit(open), "open edges"), 4.0);
+  EXPECT_EQ(mesh_facts(open).open_edges, 4);
 
   Mesh fin = test::cube();
   fin.positions.emplace_back(0.0, 0.0, 5.0);
   test::add_face(fin, {0, 1, 8});
-  EXPECT_EQ(value_of(audit(fin), "non-manifold edges"), 1.0);
-  EXPECT_EQ(value_of(audit(fin), "open edges"), 2.0);
+  EXPECT_EQ(mesh_facts(fin).non_manifold_edges, 1);
+  EXPECT_EQ(mesh_facts(fin).open_edges, 2);
 
   Mesh twice = test::cube();
   test::add_face(twice, {2, 3, 1, 0});
-  EXPECT_EQ(value_of(audit(twice), "duplicate faces"), 1.0);
+  EXPECT_EQ(mesh_facts(twice).duplicate_faces, 1);
 
   Mesh flipped = test::cube();
   std::reverse(flipped.corner_vertices.begin(), flipped.corner_vertices.begin() + 4);
-  EXPECT_EQ(value_of(audit(flipped), "inconsistent orientation"), 4.0);
+  EXPECT_EQ(mesh_facts(flipped).inconsistent_edges, 4);
 
-  EXPECT_EQ(value_of(audit(test::turned_inside_out(test::cube())), "inverted parts"), 1.0);
+  EXPECT_EQ(mesh_facts(test::turned_inside_out(test::cube())).inverted_parts, 1);
 
   Mesh flat = test::cube();
   test::add_face(flat, {0, 1, 0});
-  EXPECT_EQ(value_of(audit(flat), "zero-area faces"), 1.0);
+  EXPECT_EQ(mesh_facts(flat).zero_area_faces, 1);
 
   const Mesh needle = polygon({{0, 0, 0}, {100, 0, 0}, {50, 0.5, 0}});
-  EXPECT_EQ(value_of(audit(needle), "slivers"), 1.0);
+  EXPECT_EQ(mesh_facts(needle).slivers, 1);
 
   Mesh two = test::cube();
   const auto shift = static_cast<std::int32_t>(two.vertex_count());
@@ -225,12 +220,12 @@ TEST(Audit, EachFaultIsCounted) {
   for (const std::int32_t v : test::cube().corner_vertices) two.corner_vertices.push_back(v + shift);
   two.face_sizes.insert(two.face_sizes.end(), 6, 4);
   two.positions.emplace_back(0.0);
-  EXPECT_EQ(value_of(audit(two), "parts"), 2.0);
-  EXPECT_EQ(value_of(audit(two), "unused vertices"), 1.0);
+  EXPECT_EQ(mesh_facts(two).parts, 2);
+  EXPECT_EQ(mesh_facts(two).unused_vertices, 1);
 
-  EXPECT_EQ(value_of(audit(test::torus(8, 6, 2.0, 0.5)), "extraordinary vertices"), 0.0);
-  EXPECT_EQ(value_of(audit(test::grid(4, 3)), "extraordinary vertices"), 0.0);
-  EXPECT_EQ(value_of(audit(test::sphere(2)), "extraordinary vertices"), 6.0);
+  EXPECT_EQ(mesh_facts(test::torus(8, 6, 2.0, 0.5)).extraordinary_vertices, 0);
+  EXPECT_EQ(mesh_facts(test::grid(4, 3)).extraordinary_vertices, 0);
+  EXPECT_EQ(mesh_facts(test::sphere(2)).extraordinary_vertices, 6);
 }
 
 }  // namespace

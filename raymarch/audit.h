@@ -1,0 +1,50 @@
+#pragma once
+// The audit: what in an input makes which representation and which method fail, with a number and the remedy. A check is one file in
+// raymarch/audit/ and one line in its registry.
+
+#include "raymarch/border.h"
+
+namespace limn {
+
+enum class Severity { info, warning, error };
+const char* name_of(Severity severity);
+
+/// One finding: what was looked for, how much of it there is, what follows from it in a sentence, and what helps.
+struct Finding {
+  std::string check{};
+  Severity severity = Severity::info;
+  double value = 0.0;
+  std::string message{};
+  std::string remedy{};                 ///< Empty where nothing is wrong.
+  std::vector<std::string> surfaces{};  ///< Representations it makes fail; empty with a severity above info: all.
+  std::vector<std::string> methods{};   ///< Outline methods it makes fail; empty with a severity above info: all.
+};
+
+/// What is to be done with the input. Checks speak of the resolution and the gradient in `surface`; no gradient: of all of them.
+struct AuditSettings {
+  SurfaceSettings surface{};
+  /// Looks at everything, in up to a second or so; otherwise only at what takes less than about 50 ms.
+  bool thorough = false;
+};
+
+class AuditFacts;  // raymarch/audit/facts.h: what several checks look at, made when first asked for
+
+struct AuditCheck {
+  Description about{};  ///< name: Finding::check.
+  bool quick = false;   ///< Takes less than about 50 ms for what AuditFacts::is_small() says.
+  /// Appends what it finds; nothing where it has nothing to say about that kind of object.
+  void (*look)(AuditFacts& facts, std::vector<Finding>& findings);
+};
+std::span<const AuditCheck> audit_checks();
+
+/// What the checks find in one object, in the registry's order.
+std::vector<Finding> audit(const SceneObject& object, const AuditSettings& settings);
+
+/// True where a finding is a warning or an error for any of the surfaces drawn by any of the methods (names; empty: by none that matters,
+/// so that only what every method suffers from counts).
+bool matters(const Finding& finding, std::span<const std::string> surfaces, std::span<const std::string> methods);
+
+/// Methods that read the layer or need of that name ("NdotV", "mesh"), from their own lists.
+std::vector<std::string> methods_reading(std::span<const std::string> inputs);
+
+}  // namespace limn

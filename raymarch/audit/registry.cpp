@@ -1,0 +1,104 @@
+#include "raymarch/audit/registry.h"
+
+#include <algorithm>
+
+#include "raymarch/audit/facts.h"
+#include "subdiv/refine.h"
+
+namespace limn {
+namespace {
+
+constexpr std::int64_t kSmallFaces = 100'000, kSmallVoxels = 300'000;
+
+bool meet(std::span<const std::string> of, std::span<const std::string> asked) {
+  return of.empty() || std::any_of(asked.begin(), asked.end(),
+                                   [&](const std::string& name) { return std::find(of.begin(), of.end(), name) != of.end(); });
+}
+
+}  // namespace
+
+std::span<const AuditCheck> audit_checks() {
+  static const std::vector<AuditCheck> checks = {
+      field_traits_check(),     slope_check(),  band_check(),          parts_check(),     open_edges_check(), orientation_check(),
+      degenerate_faces_check(), sliver_check(), extraordinary_check(), precision_check(), thin_check(),       flat_check(),
+  };
+  return checks;
+}
+
+const char* name_of(Severity severity) {
+  switch (severity) {
+    case Severity::info:
+      return "info";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      break;
+  }
+  return "error";
+}
+
+std::vector<Finding> audit(const SceneObject& object, const AuditSettings& settings) {
+  AuditFacts facts(object, settings);
+  std::vector<Finding> findings;
+  for (const AuditCheck& check : audit_checks()) {
+    if (settings.thorough || (check.quick && facts.is_small())) check.look(facts, findings);
+  }
+  return findings;
+}
+
+bool matters(const Finding& finding, std::span<const std::string> surfaces, std::span<const std::string> methods) {
+  return finding.severity != Severity::info && meet(finding.surfaces, surfaces) && meet(finding.methods, methods);
+}
+
+std::vector<std::string> methods_reading(std::span<const std::string> inputs) {
+  std::vector<std::string> names;
+  for (const BorderMethod& method : border_methods()) {
+    const auto reads = [&](const std::string& input) {
+      return std::any_of(method.inputs.begin(), method.inputs.end(), [&](const std::string& own) { return own == input; });
+    };
+    if (std::any_of(inputs.begin(), inputs.end(), reads)) names.push_back(method.about.name);
+  }
+  return names;
+}
+
+std::optional<Scheme> AuditFacts::scheme() const {
+  if (mesh() == nullptr) return std::nullopt;
+  return settings.surface.scheme ? settings.surface.scheme : mesh()->scheme;
+}
+
+bool AuditFacts::is_small() const {
+  if (const MeshSource* source = mesh()) return static_cast<std::int64_t>(source->mesh.face_count()) <= kSmallFaces;
+  if (const LevelSetSource* source = level_set()) return source->level_set.info().active_voxels <= kSmallVoxels;
+  return true;
+}
+
+const MeshFacts& AuditFacts::mesh_facts() {
+  if (!mesh_facts_) mesh_facts_ = std::make_unique<MeshFacts>(limn::mesh_facts(mesh()->mesh));
+  return *mesh_facts_;
+}
+
+const SurfaceSamples& AuditFacts::samples() {
+  if (samples_) return *samples_;
+  samples_ = std::make_unique<SurfaceSamples>();
+  if (!bounds(object).finite() || bounds(object).empty()) return *samples_;
+  if (const Field* source = field()) *samples_ = sample_field(*source);
+  if (mesh() != nullptr) *samples_ = sample_mesh(object, settings.surface);
+  if (level_set() != nullptr) *samples_ = sample_level_set(object);
+  return *samples_;
+}
+
+double quantile(std::vector<double> values, double share) {
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<size_t>(at)];
+}
+
+double share_below(std::span<const double> values, double limit) {
+  if (values.empty()) return 0.0;
+  const auto below = std::count_if(values.begin(), values.end(), [&](double value) { return value < limit; });
+  return static_cast<double>(below) / static_cast<double>(values.size());
+}
+
+}  // namespace limn

@@ -1,0 +1,169 @@
+// Points of a mesh as it will be traced, and of the zero surface of a volume.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "raymarch/audit/facts.h"
+#include "raymarch/surface/object_mesh.h"
+#include "subdiv/mesh_distance.h"
+#include "subdiv/refine.h"
+
+namespace limn {
+namespace {
+
+constexpr std::int64_t kMostFaces = 60'000;
+constexpr size_t kMost = 1500;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The refinement that is looked at: the one asked for, as far as it stays cheap.
+int affordable_level(const SceneObject& object, const SurfaceSettings& settings) {
+  const int asked = object.level.value_or(settings.level);
+  const auto& source = std::get<MeshSource>(object.source);
+  const std::optional<Scheme> scheme = settings.scheme ? settings.scheme : source.scheme;
+  int level = asked;
+  while (scheme && level > 0 && predict_refined_size(source.mesh, *scheme, level).faces > kMostFaces) --level;
+  return level;
+}
+
+glm::dvec3 area_normal(const TriangleMesh& mesh, size_t triangle) {
+  const glm::uvec3 t = mesh.triangles[triangle];
+  return 0.5 * glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
+}
+
+/// Triangles at even steps of the area, so that each stands for as much of it.
+std::vector<size_t> by_area(const TriangleMesh& mesh) {
+  std::vector<double> until(mesh.triangles.size());
+  double area = 0.0;
+  for (size_t i = 0; i < until.size(); ++i) until[i] = area += glm::length(area_normal(mesh, i));
+  std::vector<size_t> chosen;
+  for (size_t k = 0; k < kMost; ++k) {
+    const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(kMost) * area;
+    const auto found = std::upper_bound(until.begin(), until.end(), at);
+    if (found != until.end()) chosen.push_back(static_cast<size_t>(found - until.begin()));
+  }
+  return chosen;
+}
+
+/// How fast the normals turn that are traced: 0 where a triangle has one only.
+double bending(const TriangleMesh& mesh, size_t triangle) {
+  if (mesh.corner_normals.empty()) return 0.0;
+  double most = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    const glm::dvec3 a(mesh.corner_normals[3 * triangle + static_cast<size_t>(i)]),
+        b(mesh.corner_normals[3 * triangle + static_cast<size_t>(j)]);
+    const double length = glm::distance(mesh.positions[mesh.triangles[triangle][i]], mesh.positions[mesh.triangles[triangle][j]]);
+    if (length > 0.0) most = std::max(most, glm::distance(a, b) / length);
+  }
+  return most;
+}
+
+}  // namespace
+
+SurfaceSamples sample_mesh(const SceneObject& object, const SurfaceSettings& settings) {
+  SurfaceSamples samples;
+  samples.longest_side = bounds(object).longest_side();
+  SurfaceSettings how = settings;
+  how.level = affordable_level(object, settings);
+  SceneObject own = object;
+  own.level.reset();
+  if (how.level < object.level.value_or(settings.level)) samples.of = fmt::format("the cage refined {} times", how.level);
+  const TriangleMesh mesh = object_mesh(own, how, bounds(object).center()).triangles;
+  if (mesh.triangles.empty() || !(samples.longest_side > 0.0)) return samples;
+  const ClosestPointData tree(mesh);
+  const double start = 1e-6 * samples.longest_side;
+  for (const size_t i : by_area(mesh)) {
+    const glm::dvec3 area = area_normal(mesh, i);
+    const glm::dvec3 normal = glm::normalize(area);
+    const glm::uvec3 t = mesh.triangles[i];
+    const glm::dvec3 middle = (mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0;
+    const auto to_opposite = [&](double side) {
+      const auto hit = tree.first_hit(middle, side * normal, start, samples.longest_side);
+      return hit && glm::dot(area_normal(mesh, hit->second), normal) < 0.0 ? hit->first : kInfinity;
+    };
+    samples.points.push_back(middle + bounds(object).center());
+    samples.normals.push_back(normal);
+    samples.walls.push_back(to_opposite(-1.0));
+    samples.gaps.push_back(to_opposite(1.0));
+    samples.bending.push_back(bending(mesh, i) * samples.longest_side);
+  }
+  return samples;
+}
+
+namespace {
+
+/// Central differences of the interpolant: what every volume has, whatever its band.
+std::vector<glm::dvec3> coarse_gradients(const LevelSet& level_set, const std::vector<glm::dvec3>& points, double step) {
+  std::vector<glm::dvec3> at, gradients(points.size());
+  for (const glm::dvec3& p : points)
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {-1.0, 1.0}) {
+        glm::dvec3 beside = p;
+        beside[axis] += side * step;
+        at.push_back(beside);
+      }
+  std::vector<double> values(at.size());
+  level_set_values(level_set, at, values);
+  for (size_t i = 0; i < points.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      const size_t k = 6 * i + 2 * static_cast<size_t>(axis);
+      gradients[i][axis] = (values[k + 1] - values[k]) / (2.0 * step);
+    }
+  return gradients;
+}
+
+/// Values at the points moved along their normals.
+std::vector<double> values_along(const LevelSet& level_set, const SurfaceSamples& samples, double distance) {
+  std::vector<glm::dvec3> at;
+  for (size_t i = 0; i < samples.points.size(); ++i) at.push_back(samples.points[i] + distance * samples.normals[i]);
+  std::vector<double> values(at.size());
+  level_set_values(level_set, at, values);
+  return values;
+}
+
+std::vector<double> first_return(const LevelSet& level_set, const SurfaceSamples& samples, double voxel, double side) {
+  constexpr int kSteps = 16;  // of a quarter of a voxel
+  std::vector<double> found(samples.points.size(), kInfinity);
+  for (int step = 1; step <= kSteps; ++step) {
+    const double distance = 0.25 * step * voxel;
+    const std::vector<double> values = values_along(level_set, samples, side * distance);
+    for (size_t i = 0; i < found.size(); ++i)
+      if (!std::isfinite(found[i]) && side * values[i] < -1e-3 * voxel) found[i] = distance;
+  }
+  return found;
+}
+
+}  // namespace
+
+SurfaceSamples sample_level_set(const SceneObject& object) {
+  SurfaceSamples samples;
+  const LevelSet& level_set = std::get<LevelSetSource>(object.source).level_set;
+  const double voxel = level_set.info().voxel_size;
+  const PolygonSoup surface = mesh_from_level_set(level_set);
+  const size_t count = std::min(kMost, surface.positions.size());
+  std::vector<glm::dvec3> points;
+  for (size_t k = 0; k < count; ++k) points.push_back(surface.positions[k * surface.positions.size() / count]);
+  const std::vector<glm::dvec3> gradients = coarse_gradients(level_set, points, 0.5 * voxel);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double slope = glm::length(gradients[i]);
+    if (!(slope > 0.0)) continue;
+    samples.points.push_back(points[i]);
+    samples.normals.push_back(gradients[i] / slope);
+  }
+  const std::vector<double> within = values_along(level_set, samples, -voxel), beyond = values_along(level_set, samples, voxel);
+  for (size_t i = 0; i < within.size(); ++i) samples.slopes.push_back((beyond[i] - within[i]) / (2.0 * voxel));
+  const double scale = std::cbrt(std::abs(glm::determinant(object.world_from_object.linear)));
+  for (const double side : {-1.0, 1.0}) {
+    std::vector<double>& widths = side < 0.0 ? samples.walls : samples.gaps;
+    widths = first_return(level_set, samples, voxel, side);
+    for (double& width : widths) width *= scale;
+  }
+  for (glm::dvec3& point : samples.points) point = object.world_from_object.point(point);
+  samples.longest_side = bounds(object).longest_side();
+  return samples;
+}
+
+}  // namespace limn

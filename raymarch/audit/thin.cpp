@@ -1,0 +1,70 @@
+// Walls and gaps against the voxels that are asked for, and how many would be needed.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "raymarch/audit/facts.h"
+#include "raymarch/audit/registry.h"
+
+namespace limn {
+namespace {
+
+constexpr double kWallVoxels = 2.0, kGapVoxels = 1.0;
+/// Knife edges are thin without end; so little of the surface may be.
+constexpr double kMostThin = 0.005;
+
+double voxel_size_of(const AuditFacts& facts, double longest_side) {
+  if (const LevelSetSource* source = facts.level_set())
+    return source->level_set.info().voxel_size * std::cbrt(std::abs(glm::determinant(facts.object.world_from_object.linear)));
+  const SurfaceSettings& settings = facts.settings.surface;
+  return settings.voxel_size > 0.0 ? settings.voxel_size : longest_side / settings.voxels;
+}
+
+struct Thing {
+  const char* check;
+  const char* good;
+  const char* bad;   ///< "... % of the surface lies …"
+  const char* fate;  ///< "…, which may …"
+  double voxels;
+};
+
+void look_at(const Thing& thing, const std::vector<double>& widths, double voxel, AuditFacts& facts, std::vector<Finding>& findings) {
+  const SurfaceSamples& samples = facts.samples();
+  const double share = share_below(widths, thing.voxels * voxel), thinnest = quantile(widths, kMostThin);
+  const std::string where = samples.of.empty() ? "" : " (of " + samples.of + ")";
+  Finding finding{.check = thing.check, .value = share, .message = thing.good};
+  if (std::isfinite(thinnest)) {
+    finding.message +=
+        fmt::format(" at a voxel of {:.3g}: the thinnest is {:.3g}, {:.2f} voxels{}", voxel, thinnest, thinnest / voxel, where);
+  }
+  if (share > kMostThin) {
+    const auto needed = static_cast<std::int64_t>(std::ceil(thing.voxels * samples.longest_side / thinnest));
+    finding.severity = Severity::warning;
+    finding.message = fmt::format("{:.2g} % of the surface{} lies {} ({:.3g}), which may {}; the thinnest is {:.2g}, {:.2f} voxels",
+                                  100.0 * share, where, thing.bad, thing.voxels * voxel, thing.fate, thinnest, thinnest / voxel);
+    finding.remedy = facts.level_set() != nullptr
+                         ? fmt::format("a grid with {} voxels along the longest side would hold all but {:g} %", needed, 100.0 * kMostThin)
+                         : fmt::format("--voxels {} would hold all but {:g} %; --surface {} needs none", needed, 100.0 * kMostThin,
+                                       facts.field() != nullptr ? "analytic" : "mesh");
+    finding.surfaces =
+        facts.mesh() != nullptr ? std::vector<std::string>{"mesh_level_set"} : std::vector<std::string>{"level_set", "mesh_level_set"};
+  }
+  findings.push_back(std::move(finding));
+}
+
+void look(AuditFacts& facts, std::vector<Finding>& findings) {
+  const SurfaceSamples& samples = facts.samples();
+  if (samples.points.empty()) return;
+  const double voxel = voxel_size_of(facts, samples.longest_side);
+  look_at({"thin walls", "no wall is thinner than two voxels", "on walls thinner than two voxels", "break up", kWallVoxels}, samples.walls,
+          voxel, facts, findings);
+  look_at({"narrow gaps", "no gap is narrower than one voxel", "at gaps narrower than one voxel", "close", kGapVoxels}, samples.gaps, voxel,
+          facts, findings);
+}
+
+}  // namespace
+
+AuditCheck thin_check() { return {{"thin", "walls below two voxels, gaps below one", ""}, false, look}; }
+
+}  // namespace limn

@@ -1,0 +1,15 @@
+#pragma once
+// Internal: the counts of MeshFacts, a kind each. Each adds its own fields and leaves the others.
+
+#include "subdiv/audit.h"
+
+namespace limn {
+
+void count_edges(const std::vector<Edge>& edges, MeshFacts& facts);
+void count_vertices(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& facts);
+void count_parts(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& facts);
+void count_duplicates(const Mesh& mesh, MeshFacts& facts);
+void measure_faces(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& facts);
+void measure_coordinates(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& facts);
+
+}  // namespace limn

@@ -2,26 +2,16 @@
 
 #include <CLI/CLI.hpp>
 
+#include "raymarch/audit.h"
 #include "samples/commands/command.h"
-#include "samples/input.h"
+#include "samples/job.h"
 #include "samples/output.h"
+#include "samples/picture_facts.h"
+#include "samples/threads.h"
 #include "sdf/error.h"
-#include "subdiv/audit.h"
 
 namespace limn {
 namespace {
-
-const char* name_of(Severity severity) {
-  switch (severity) {
-    case Severity::info:
-      return "info";
-    case Severity::warning:
-      return "warning";
-    case Severity::error:
-      break;
-  }
-  return "error";
-}
 
 Json vector_json(const glm::dvec3& v) { return {number_or_null(v.x), number_or_null(v.y), number_or_null(v.z)}; }
 Json bounds_json(const Box& box) {
@@ -35,19 +25,6 @@ struct Report {
   Json counts = Json::object();
   std::vector<Finding> audit;
 };
-
-void report_field(const Field& field, Report& report) {
-  const FieldTraits& traits = field.traits();
-  report.kind = "field";
-  report.audit.push_back({"lipschitz constant", Severity::info, traits.lipschitz,
-                          fmt::format("the field grows by at most {:g} per unit of length", traits.lipschitz)});
-  report.audit.push_back(
-      {"exact distance", Severity::info, traits.exact_distance ? 1.0 : 0.0,
-       traits.exact_distance ? "the value is the distance to the surface" : "the value is not everywhere the distance to the surface"});
-  if (traits.bounds.empty()) report.audit.push_back({"empty", Severity::error, 0.0, "the field has no surface at all"});
-  if (!traits.bounds.empty() && !traits.bounds.finite())
-    report.audit.push_back({"unbounded", Severity::warning, 0.0, "the surface has no end: it can be drawn, but not meshed or voxelised"});
-}
 
 void report_mesh(const MeshSource& source, Report& report) {
   const Mesh& mesh = source.mesh;
@@ -67,7 +44,6 @@ void report_mesh(const MeshSource& source, Report& report) {
                    {"materials", mesh.material_names.size()},
                    {"groups", mesh.group_names.size()}};
   if (source.scheme) report.counts["scheme"] = limn::name_of(*source.scheme);
-  report.audit = audit(mesh);
 }
 
 void report_level_set(const LevelSetSource& source, Report& report) {
@@ -77,19 +53,13 @@ void report_level_set(const LevelSetSource& source, Report& report) {
                    {"voxel_size", info.voxel_size},
                    {"half_width_voxels", info.half_width_voxels},
                    {"bytes", info.bytes}};
-  for (const GradientDescriptor& gradient : gradients()) {
-    const bool enough = info.half_width_voxels >= gradient.half_width_voxels;
-    report.audit.push_back({"band for " + gradient.about.name, enough ? Severity::info : Severity::warning, gradient.half_width_voxels,
-                            fmt::format("the gradient {} needs a half width of {:g} voxels: {}", gradient.about.name,
-                                        gradient.half_width_voxels, enough ? "there is enough" : "the band is too thin")});
-  }
 }
 
-Report report_of(const SceneObject& object) {
-  Report report{.name = object.name, .kind = {}, .bounds = bounds(object), .counts = Json::object(), .audit = {}};
-  if (const Field* field = std::get_if<Field>(&object.source)) report_field(*field, report);
+Report report_of(const SceneObject& object, const SurfaceSettings& settings) {
+  Report report{.name = object.name, .kind = "field", .bounds = bounds(object), .counts = Json::object(), .audit = {}};
   if (const auto* mesh = std::get_if<MeshSource>(&object.source)) report_mesh(*mesh, report);
   if (const auto* level_set = std::get_if<LevelSetSource>(&object.source)) report_level_set(*level_set, report);
+  report.audit = audit(object, {.surface = settings, .thorough = true});
   return report;
 }
 
@@ -99,7 +69,10 @@ Json audit_json(const std::vector<Finding>& findings) {
     audit.push_back({{"check", finding.check},
                      {"severity", name_of(finding.severity)},
                      {"value", number_or_null(finding.value)},
-                     {"message", finding.message}});
+                     {"message", finding.message},
+                     {"remedy", finding.remedy},
+                     {"surfaces", finding.surfaces},
+                     {"methods", finding.methods}});
   }
   return audit;
 }
@@ -108,6 +81,24 @@ std::string bounds_text(const Box& box) {
   if (box.empty()) return "nothing";
   return fmt::format("[{:g}, {:g}, {:g}] to [{:g}, {:g}, {:g}]", box.lower.x, box.lower.y, box.lower.z, box.upper.x, box.upper.y,
                      box.upper.z);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+// Below what is wrong: for whom, and what helps.
+std::string finding_text(const Finding& finding) {
+  constexpr const char* kBelow = "                                    ";
+  std::string text = fmt::format("  {:<8} {:<24} {}\n", name_of(finding.severity), finding.check, finding.message);
+  if (finding.severity == Severity::info) return text;
+  std::string whom = joined(finding.surfaces);
+  if (!finding.methods.empty()) whom += (whom.empty() ? "" : "; ") + joined(finding.methods);
+  if (!whom.empty()) text += fmt::format("{}fails: {}\n", kBelow, whom);
+  if (!finding.remedy.empty()) text += fmt::format("{}remedy: {}\n", kBelow, finding.remedy);
+  return text;
 }
 
 std::string report_text(const Report& report) {
@@ -122,8 +113,7 @@ std::string report_text(const Report& report) {
                                          : value.dump());
   }
   if (!counts.empty()) text += counts + "\n";
-  for (const Finding& finding : report.audit)
-    text += fmt::format("  {:<8} {:<24} {}\n", name_of(finding.severity), finding.check, finding.message);
+  for (const Finding& finding : report.audit) text += finding_text(finding);
   return text;
 }
 
@@ -163,7 +153,7 @@ const char* kind_name(InputKind kind) {
 
 // A volume that cannot be drawn as a level set is still worth a look: its grids, and the reason.
 int report_volume_without_level_set(const Options& options, const std::vector<GridSummary>& grids, const InputError& error) {
-  const Finding finding{"level_set", Severity::error, 0.0, error.what()};
+  Finding finding{.check = "level_set", .severity = Severity::error, .message = error.what()};
   if (options.json) {
     print_json({{"kind", "level_set"},
                 {"bounds", nullptr},
@@ -177,9 +167,11 @@ int report_volume_without_level_set(const Options& options, const std::vector<Gr
   return 0;
 }
 
-void print_report(const Options& options, const SceneInput& input, const std::vector<GridSummary>& grids) {
+void print_report(const Options& options, SceneInput input, const std::vector<GridSummary>& grids) {
+  SurfaceSettings settings = surface_settings(options, input);
+  if (!options.gradient && !input.surface.gradient) settings.gradient.clear();
   std::vector<Report> reports;
-  for (const SceneObject& object : input.scene.objects) reports.push_back(report_of(object));
+  for (const SceneObject& object : input.scene.objects) reports.push_back(report_of(object, settings));
   const Box all = bounds(input.scene);
   if (!options.json) {
     std::string text;
@@ -209,11 +201,14 @@ void print_report(const Options& options, const SceneInput& input, const std::ve
 
 void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
-  add_grid(app, options);
+  add_surface(app, options, {.surface = false});
   add_json(app, options);
+  add_execution(app, options);
 }
 
 int run(const Options& options) {
+  const ThreadLimit threads(options.threads);
+  if (is_picture_file(options.input)) return report_picture(options);
   std::vector<GridSummary> grids;
   if (input_kind(options.input) == InputKind::level_set) {
     grids = list_grids(options.input);
@@ -233,8 +228,8 @@ int run(const Options& options) {
 }  // namespace
 
 Command info_command() {
-  return {"info", "says what is in a file, and what is wrong with it", "  limn info bunny.obj\n  limn info smoke.vdb --json", add_options,
-          run};
+  return {"info", "says what is in a file, and what is wrong with it",
+          "  limn info bunny.obj\n  limn info gyroid --voxels 64\n  limn info smoke.vdb --json\n  limn info teacup.exr", add_options, run};
 }
 
 }  // namespace limn

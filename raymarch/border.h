@@ -6,12 +6,19 @@
 
 namespace limn {
 
+/// The frame before, for methods that hold on to what they drew there.
+struct BorderBefore {
+  const Image<float>& coverage;       ///< The same method's.
+  const Image<std::int32_t>& pixels;  ///< pixels_before() (raymarch/frames.h).
+};
+
 /// Everything a method may read. Plain references; a method keeps none of them.
 struct BorderInput {
   const GBuffer& gbuffer;
   const Camera& camera;
   const SceneModel& model;
   const Scene& scene;
+  const BorderBefore* before = nullptr;  ///< Null where there is no frame before.
 };
 
 /// Ink of one method. `coverage` in [0, 1], finite, the G-buffer's size.

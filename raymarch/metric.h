@@ -20,9 +20,12 @@ struct MetricInput {
   const Camera& camera;
   const BorderCurves* curves = nullptr;  ///< The model's border (raymarch/measured_border.h).
   const BorderTruth* truth = nullptr;    ///< Same camera and threshold.
-  /// Ink after sub-pixel moves of the camera, one picture a move; the same moves for both.
+  /// Ink while the camera moves by parts of a pixel, one picture a frame; the same frames for both.
   std::span<const Image<float>> moved{};
   std::span<const Image<float>> reference_moved{};
+  /// pixels_before() of each frame but the first (raymarch/frames.h). Empty: each pixel is what it was.
+  std::span<const Image<std::int32_t>> moved_before{};
+  std::span<const Image<std::int32_t>> reference_moved_before{};
   const SceneModel* model = nullptr;  ///< What `curves` were measured on; `prediction` asks it for its normals.
 };
 

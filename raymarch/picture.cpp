@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "raymarch/frames.h"
 #include "raymarch/threads.h"
 #include "sdf/error.h"
 
@@ -38,6 +39,37 @@ void add_status(const Border& border, Image<std::uint8_t>& status) {
 GBufferLayers joined(const GBufferLayers& a, const GBufferLayers& b) {
   return {a.depth || b.depth, a.position || b.position, a.normal || b.normal, a.n_dot_v || b.n_dot_v,
           a.id || b.id,       a.material || b.material, a.face || b.face,     a.status || b.status};
+}
+
+Border draw_after(const BorderInput& input, const MethodCall& call, const SampleInks* inks, size_t method) {
+  if (inks == nullptr || inks->before.empty()) return call.method->draw(input, call.parameters);
+  const BorderBefore before{inks->before[method], inks->pixels_before};
+  BorderInput after = input;
+  after.before = &before;
+  return call.method->draw(after, call.parameters);
+}
+
+/// Hands a sample's inks of the frame before on, and where they were.
+SampleInks inks_before(FrameHistory& history, size_t sample, const GBuffer& gbuffer, const Camera& camera) {
+  SampleInks inks;
+  if (sample >= history.samples.size()) return inks;
+  FrameHistory::Sample& before = history.samples[sample];
+  inks.pixels_before = pixels_before(gbuffer, camera, before.gbuffer, history.camera);
+  inks.before = std::move(before.inks);
+  return inks;
+}
+
+void keep(FrameHistory& history, size_t sample, const GBuffer& gbuffer, SampleInks& inks) {
+  if (sample >= history.samples.size()) history.samples.resize(sample + 1);
+  GBuffer& kept = history.samples[sample].gbuffer;
+  kept.width = gbuffer.width;
+  kept.height = gbuffer.height;
+  kept.sample = gbuffer.sample;
+  kept.depth = gbuffer.depth;
+  kept.normal = gbuffer.normal;
+  kept.id = gbuffer.id;
+  history.samples[sample].inks = std::move(inks.now);
+  if (sample == 0) history.pixels_before = std::move(inks.pixels_before);
 }
 
 }  // namespace
@@ -81,19 +113,21 @@ glm::dvec2 sample_offset(int sample) {
   return {x - std::floor(x), y - std::floor(y)};
 }
 
-void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture) {
+void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture, SampleInks* inks) {
   const auto start = Clock::now();
   const bool first = picture.border.pixels.empty();
   Image<float> ink(input.gbuffer.width, input.gbuffer.height, 0.0f);
   Image<glm::vec4> composite = shade_headlight(input.gbuffer, input.model);
-  for (const MethodCall& call : methods) {
-    const Border border = call.method->draw(input, call.parameters);
+  for (size_t m = 0; m < methods.size(); ++m) {
+    Border border = draw_after(input, methods[m], inks, m);
     LIMN_CHECK(border.coverage.size() == ink.size());
     lay_ink(composite, border);
     for (size_t i = 0; i < ink.size(); ++i) ink.pixels[i] = 1.0f - (1.0f - ink.pixels[i]) * (1.0f - border.coverage.pixels[i]);
-    if (!first) continue;
-    add_status(border, picture.border_status);
-    picture.notes.insert(picture.notes.end(), border.notes.begin(), border.notes.end());
+    if (first) {
+      add_status(border, picture.border_status);
+      picture.notes.insert(picture.notes.end(), border.notes.begin(), border.notes.end());
+    }
+    if (inks != nullptr) inks->now.push_back(std::move(border.coverage));
   }
   if (first) {
     picture.border = std::move(ink);
@@ -133,11 +167,12 @@ GBufferLayers layers_read(std::span<const MethodCall> methods) {
 }
 
 Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
-                     const ExecutionSettings& how) {
+                     const ExecutionSettings& how, FrameHistory* history) {
   check_methods(scene, model, settings);
   Picture picture;
   ThreadArena arena(how.threads);
-  const GBufferLayers read = layers_read(settings.methods);
+  GBufferLayers read = layers_read(settings.methods);
+  if (history != nullptr) read.depth = read.normal = true;
   GBuffer gbuffer;
   for (int sample = 0; sample < settings.samples; ++sample) {
     ExecutionSettings part = how;
@@ -148,9 +183,16 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
     // Only the first sample's G-buffer is handed on.
     render_gbuffer(model, camera, part, sample_offset(sample), sample == 0 ? joined(settings.layers, read) : read, gbuffer);
     picture.trace_ms += ms_since(start);
-    arena.execute([&] { add_sample({gbuffer, camera, model, scene}, settings.methods, picture); });
+    const auto number = static_cast<size_t>(sample);
+    arena.execute([&] {
+      if (history == nullptr) return add_sample({gbuffer, camera, model, scene}, settings.methods, picture);
+      SampleInks inks = inks_before(*history, number, gbuffer, camera);
+      add_sample({gbuffer, camera, model, scene}, settings.methods, picture, &inks);
+      keep(*history, number, gbuffer, inks);
+    });
     if (sample == 0) picture.gbuffer = std::exchange(gbuffer, {});
   }
+  if (history != nullptr) history->camera = camera;
   finish_samples(settings, picture);
   return picture;
 }

@@ -29,15 +29,33 @@ struct PictureSettings {
 /// What a composite with these methods reads: the shading's layers and the methods' inputs.
 GBufferLayers layers_read(std::span<const MethodCall> methods);
 
+/// What one frame leaves to the next. Empty before the first.
+struct FrameHistory {
+  struct Sample {
+    GBuffer gbuffer{};                 ///< Z, N and id.
+    std::vector<Image<float>> inks{};  ///< Of each method.
+  };
+  Camera camera{};
+  std::vector<Sample> samples{};
+  Image<std::int32_t> pixels_before{};  ///< Of the pixel centres, from the last frame to the one before it; empty after the first.
+};
+
+/// With `history` the picture is the next of a sequence with the same model and settings, and becomes what the history holds.
 /// Throws InputError where a method cannot run on the model.
 Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
-                     const ExecutionSettings& how);
+                     const ExecutionSettings& how, FrameHistory* history = nullptr);
 
 /// For several pictures from rays traced once: where in its pixel the ray of a sample goes, the centre for sample 0.
 glm::dvec2 sample_offset(int sample);
+/// The methods' inks for one sample: of the frame before, and of this one.
+struct SampleInks {
+  std::vector<Image<float>> before{};  ///< Empty: there is none.
+  Image<std::int32_t> pixels_before{};
+  std::vector<Image<float>> now{};
+};
 /// Adds what the methods draw from one sample's G-buffer to the sums in `picture` (its own G-buffer stays as it is).
 /// Throws InputError where a method finds that it cannot run on the model.
-void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture);
+void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture, SampleInks* inks = nullptr);
 /// Sums of `settings.samples` samples into means, over the background.
 void finish_samples(const PictureSettings& settings, Picture& picture);
 

@@ -20,6 +20,7 @@ constexpr const char* kStudy = "Study";
 constexpr const char* kPlan = "Plan";
 constexpr const char* kOutput = "Output";
 constexpr const char* kExecution = "Execution (never changes a pixel)";
+constexpr const char* kLimits = "Limits (estimates are right to a factor of two; beyond a limit the exit code is 2 beforehand, 1 later)";
 
 struct OptionText {
   const char* flags;
@@ -114,6 +115,23 @@ void add_camera(CLI::App& app, Options& options, bool with_views, const std::str
   if (!with_views) return;
   add(app, {"--views", "N", "N pictures from directions spread evenly on the sphere, 1..10000; default 1: the camera's own", kCamera},
       [&options](const std::string& text) { options.views = parse_integer("--views", text, 1, 10'000); });
+}
+
+void add_frames(CLI::App& app, Options& options) {
+  auto* frames = add(
+      app, {"--frames", "N", "N pictures while the camera wanders within a pixel, 1..10000, and how often ink flips meanwhile", kCamera},
+      [&options](const std::string& text) { options.frames.frames = parse_integer("--frames", text, 1, 10'000); });
+  frames->excludes(app.get_option("--views"));
+  add(app, {"--path-step", "PX", "how far the picture moves from frame to frame, pixels, above 0 up to 1; default 0.1", kCamera},
+      [&options](const std::string& text) {
+        const char* const right = "above 0 and up to 1 pixel would be right";
+        options.frames.step_px = parse_number_above("--path-step", text, 0.0, false, right);
+        if (options.frames.step_px > 1.0) throw InputError({"", "--path-step", text, "out of range", right});
+      })
+      ->needs(frames);
+  add(app, {"--seed", "N", "of that wander, 0..2147483647; default 1", kCamera}, [&options](const std::string& text) {
+    options.frames.seed = static_cast<std::uint64_t>(parse_integer("--seed", text, 0, std::numeric_limits<int>::max()));
+  })->needs(frames);
 }
 
 void add_grid(CLI::App& app, Options& options) {
@@ -212,6 +230,21 @@ void add_execution(CLI::App& app, Options& options) {
   add_switch(app, {"--no-progress", "", "no progress bar (there is none unless stderr is a terminal)", kExecution}, options.no_progress);
   add(app, {"--threads", "N", "threads, 0..1024; default 0: all", kExecution},
       [&options](const std::string& text) { options.threads = parse_integer("--threads", text, 0, 1024); });
+  add_limits(app, options);
+}
+
+void add_limits(CLI::App& app, Options& options) {
+  add(app,
+      {"--max-memory", "SIZE",
+       "memory the program may take, such as 500M or 4G, 140M of it for itself: refused where more is "
+       "expected to be needed, stopped where it is reached (study: larger models are left out); default: what the machine has",
+       kLimits},
+      [&options](const std::string& text) { options.max_memory = parse_bytes("--max-memory", text); });
+  add(app,
+      {"--max-time", "TIME",
+       "time the call may take, such as 90s or 10m: refused where twice that is expected, stopped where it is over; default: no limit",
+       kLimits},
+      [&options](const std::string& text) { options.max_time_ms = parse_milliseconds("--max-time", text); });
 }
 
 void add_parts(CLI::App& app, Options& options) {
@@ -250,13 +283,16 @@ void add_study(CLI::App& app, Options& options) {
   add_switch(app,
              {"--flicker", "", "measure flicker too, under four moves of the camera by less than a pixel: five times the tracing", kStudy},
              study.flicker);
-  add(app,
-      {"--max-memory", "SIZE", "leave out models larger than this, such as 500M or 4G; default 8G, at most 3/4 of the machine's", kStudy},
-      [&study](const std::string& text) { study.max_bytes = parse_bytes("--max-memory", text); });
   add(app, {"--shard", "I/N", "do only part I of N, into OUT/part-I-of-N; limn merge joins the parts", kStudy},
       [&study](const std::string& text) { std::tie(study.shard, study.shards) = parse_shard("--shard", text); });
   add_switch(app, {"--fresh", "", "start over: what an earlier study left in the folder goes; default: go on where it stopped", kStudy},
              study.fresh);
+  add_repeatable(app, {"--case", "NAME|FILE", "of `limn study stability`: only this case, or one more from a file; repeatable", kStudy},
+                 [&study](const std::string& text) { study.cases.push_back(text); });
+  add(app, {"--seed", "N", "of `limn study stability`: where its random parameters start; default 1", kStudy},
+      [&study](const std::string& text) { study.seed = static_cast<std::uint64_t>(parse_integer("--seed", text, 0, 2'000'000'000)); });
+  add(app, {"--draws", "N", "of `limn study stability`: draws of each case's random parameters, 1..10000; default: the case's own", kStudy},
+      [&study](const std::string& text) { study.draws = parse_integer("--draws", text, 1, 10'000); });
 }
 
 void add_plan(CLI::App& app, Options& options) {

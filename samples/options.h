@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "raymarch/frames.h"
 #include "samples/parse.h"
 #include "subdiv/refine.h"
 
@@ -25,9 +26,12 @@ struct StudyOptions {
   std::optional<int> views;
   bool flicker = false;
   bool fresh = false;                        ///< What an earlier study left in the folder goes.
-  std::optional<std::int64_t> max_bytes;     ///< Of one model.
+  std::optional<std::int64_t> max_bytes;     ///< Of one model; from --max-memory.
   int shard = 1, shards = 1;                 ///< Part `shard` of `shards`, from 1.
   std::vector<std::filesystem::path> parts;  ///< Folders to merge.
+  std::vector<std::string> cases;            ///< Of `limn study stability`: names or files; empty: all.
+  std::optional<std::uint64_t> seed;         ///< Of its random parameters.
+  std::optional<int> draws;                  ///< Of them, for each case.
 };
 
 /// `limn plan`, and `limn render --tolerance`.
@@ -49,13 +53,16 @@ struct Options {
   bool quiet = false;
   bool verbose = false;
   bool no_progress = false;
-  int threads = 0;  ///< 0: all.
+  int threads = 0;                         ///< 0: all.
+  std::optional<std::int64_t> max_memory;  ///< Bytes, of the whole program.
+  std::optional<double> max_time_ms;       ///< Of the whole call.
 
   std::optional<glm::ivec2> size_px;
   std::optional<glm::dvec3> eye, target, up;  ///< World.
   std::optional<double> fov_deg;              ///< Vertical.
   std::optional<double> ortho_height;         ///< World.
   int views = 1;
+  FramePath frames{.frames = 1};  ///< `limn render` only.
 
   std::vector<std::string> surfaces;
   std::optional<int> voxels;                ///< Along the longest side.
@@ -89,10 +96,15 @@ void add_input(CLI::App& app, Options& options);
 void add_output(CLI::App& app, Options& options, const std::string& what, bool repeatable);
 void add_json(CLI::App& app, Options& options);
 void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size = "1280x720");
+/// --frames, --path-step and --seed; excludes --views.
+void add_frames(CLI::App& app, Options& options);
 void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& needs);
 void add_grid(CLI::App& app, Options& options);
 void add_border(CLI::App& app, Options& options, bool compared = false);
+/// --threads, --quiet and so on, with add_limits.
 void add_execution(CLI::App& app, Options& options);
+/// --max-memory and --max-time.
+void add_limits(CLI::App& app, Options& options);
 /// What `limn study` sweeps, how it is shared out and where it starts again; the folders of `limn merge`.
 void add_study(CLI::App& app, Options& options);
 void add_parts(CLI::App& app, Options& options);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/border/hysteresis.h"
 #include "raymarch/border/registry.h"
 #include "raymarch/border/surface_notes.h"
 
@@ -13,8 +14,8 @@ struct Curve {
   double width, softness, power, strength;
 };
 
-double outline(const Curve& curve, double n_dot_v) {
-  const double f = std::pow(1.0 - n_dot_v, curve.power);
+double outline(const Curve& curve, double n_dot_v, double shift) {
+  const double f = std::pow(1.0 - n_dot_v, curve.power) + shift;
   // The smooth step would fade the outline near f = 0 although everything is meant to be outline.
   const double step = curve.width >= 1.0 ? 1.0 : smoothstep(1.0 - curve.width, 1.0 - curve.width + curve.softness, f);
   return std::clamp(step * curve.strength, 0.0, 1.0);
@@ -23,11 +24,13 @@ double outline(const Curve& curve, double n_dot_v) {
 Border draw(const BorderInput& input, const Parameters& parameters) {
   const GBuffer& seen = input.gbuffer;
   const Curve curve{parameters.number("width"), parameters.number("softness"), parameters.number("power"), parameters.number("strength")};
+  const Hysteresis hysteresis = hysteresis_of(input, parameters);
   Border border;
   border.color = glm::vec3(parameters.vector3("color"));
   border.coverage = {seen.width, seen.height, 0.0f};
   for (size_t i = 0; i < seen.id.size(); ++i) {
-    if (seen.id.pixels[i] != 0) border.coverage.pixels[i] = static_cast<float>(outline(curve, double{seen.n_dot_v.pixels[i]}));
+    if (seen.id.pixels[i] == 0) continue;
+    border.coverage.pixels[i] = static_cast<float>(outline(curve, double{seen.n_dot_v.pixels[i]}, hysteresis.shift(i)));
   }
   border.notes = surface_notes("fresnel", seen, border.coverage);
   return border;
@@ -42,6 +45,14 @@ BorderMethod fresnel_method() {
            {"softness", ParameterKind::number, "", {0.1}, 0.0, 1.0, "over how much of it the outline fades in; 0 is hard", {}},
            {"power", ParameterKind::number, "", {1.0}, 0.01, 64.0, "exponent of 1 - N.V", {}},
            {"strength", ParameterKind::number, "", {1.0}, 0.0, 16.0, "factor of the outline; the ink ends at 1", {}},
+           {"hysteresis",
+            ParameterKind::number,
+            "",
+            {0.0},
+            0.0,
+            1.0,
+            "of (1 - N.V)^power, by which a surface point has to pass the edge before its ink switches from one frame to the next",
+            {}},
            {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}},
           [](const SceneModel&, const Scene&) { return std::string(); },
           draw};

@@ -1,5 +1,6 @@
 // Rim: border where N.V falls below a threshold.
 
+#include "raymarch/border/hysteresis.h"
 #include "raymarch/border/registry.h"
 #include "raymarch/border/surface_notes.h"
 
@@ -9,12 +10,14 @@ namespace {
 Border draw(const BorderInput& input, const Parameters& parameters) {
   const GBuffer& seen = input.gbuffer;
   const double threshold = parameters.number("threshold"), half = 0.5 * parameters.number("softness");
+  const Hysteresis hysteresis = hysteresis_of(input, parameters);
   Border border;
   border.color = glm::vec3(parameters.vector3("color"));
   border.coverage = {seen.width, seen.height, 0.0f};
   for (size_t i = 0; i < seen.id.size(); ++i) {
     if (seen.id.pixels[i] == 0) continue;
-    border.coverage.pixels[i] = static_cast<float>(1.0 - smoothstep(threshold - half, threshold + half, double{seen.n_dot_v.pixels[i]}));
+    const double edge = threshold + hysteresis.shift(i);
+    border.coverage.pixels[i] = static_cast<float>(1.0 - smoothstep(edge - half, edge + half, double{seen.n_dot_v.pixels[i]}));
   }
   border.notes = surface_notes("rim", seen, border.coverage);
   return border;
@@ -28,6 +31,14 @@ BorderMethod rim_method() {
           {"NdotV", "N", "id"},
           {{"threshold", ParameterKind::number, "", {0.4}, 0.0, 1.0, "border where N.V is below this", {}},
            {"softness", ParameterKind::number, "", {0.0}, 0.0, 1.0, "N.V over which the border fades, about the threshold; 0 is hard", {}},
+           {"hysteresis",
+            ParameterKind::number,
+            "",
+            {0.0},
+            0.0,
+            1.0,
+            "N.V by which a surface point has to pass the threshold before its ink switches from one frame to the next",
+            {}},
            {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}},
           [](const SceneModel&, const Scene&) { return std::string(); },
           draw};

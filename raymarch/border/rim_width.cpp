@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "raymarch/border/hysteresis.h"
 #include "raymarch/border/picture_rows.h"
 #include "raymarch/border/radial_curvature.h"
 #include "raymarch/border/registry.h"
@@ -23,11 +24,11 @@ constexpr double kFlatRadius_px = 3e4;
 constexpr double kLargestCorrection = 0.5;
 
 struct Settings {
-  double width_px, softness_px;
+  double width_px, softness_px, hysteresis_px;
   bool from_surfaces;
   /// Pixels between which the curvature's change is measured: a third of the width, so that noise in it is not enlarged by wide borders.
   int step() const { return std::clamp(static_cast<int>(std::lround(width_px / 3.0)), 1, 16); }
-  double reach() const { return width_px + 0.5 * softness_px; }
+  double reach() const { return width_px + 0.5 * softness_px + hysteresis_px; }
 };
 
 /// With kr growing by k' per unit of arc from the contour inwards, N.V = k0 s + k' s^2/2 and the width is T = k0 s^2/2 + k' s^3/6, which
@@ -120,8 +121,10 @@ Image<double> radial_curvature(const BorderInput& input, const Settings& setting
 
 Border draw(const BorderInput& input, const Parameters& parameters) {
   const GBuffer& seen = input.gbuffer;
-  const Settings settings{parameters.number("width"), parameters.number("softness"), parameters.choice("estimator") == "curvature"};
+  const Settings settings{parameters.number("width"), parameters.number("softness"), parameters.number("hysteresis"),
+                          parameters.choice("estimator") == "curvature"};
   const double half = 0.5 * settings.softness_px;
+  const Hysteresis hysteresis = hysteresis_of(input, parameters);
   Border border;
   border.color = glm::vec3(parameters.vector3("color"));
   border.coverage = {seen.width, seen.height, 0.0f};
@@ -135,8 +138,8 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
         if (seen.id.pixels[i] == 0) continue;
         const Pixel pixel = measure(input, curvature, settings, x, y);
         if (border.status.pixels[i] == fine) border.status.pixels[i] = pixel.status;
-        border.coverage.pixels[i] =
-            static_cast<float>(1.0 - smoothstep(settings.width_px - half, settings.width_px + half, pixel.distance_px));
+        const double edge = settings.width_px + hysteresis.shift(i);
+        border.coverage.pixels[i] = static_cast<float>(1.0 - smoothstep(edge - half, edge + half, pixel.distance_px));
       }
     }
   });
@@ -163,6 +166,14 @@ BorderMethod rim_width_method() {
         "radial curvature from the `screen` (differences of N.V), or the surface's own `curvature`",
         {"screen", "curvature"}},
        {"softness", ParameterKind::number, "px", {0.0}, 0.0, 1000.0, "pixels over which the border fades, about its width; 0 is hard", {}},
+       {"hysteresis",
+        ParameterKind::number,
+        "px",
+        {0.0},
+        0.0,
+        1000.0,
+        "by which a surface point has to pass the border's edge before its ink switches from one frame to the next",
+        {}},
        {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}},
       [](const SceneModel&, const Scene&) { return std::string(); },
       draw};

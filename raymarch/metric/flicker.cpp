@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "raymarch/metric/ink_mask.h"
+#include "raymarch/flips.h"
 #include "raymarch/metric/registry.h"
 #include "sdf/error.h"
 
@@ -11,48 +11,37 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-/// Pixels of ink with paper on one of their four sides.
-double border_pixels(const Image<std::uint8_t>& ink) {
-  double count = 0.0;
-  for (int y = 0; y < ink.height; ++y) {
-    for (int x = 0; x < ink.width; ++x) {
-      const auto paper = [&](int u, int v) { return ink.inside(u, v) && !ink.at(u, v); };
-      count += ink.at(x, y) && (paper(x - 1, y) || paper(x + 1, y) || paper(x, y - 1) || paper(x, y + 1));
-    }
-  }
-  return count;
-}
-
 std::vector<MetricValue> measure(const MetricInput& input) {
   LIMN_CHECK(input.moved.size() == input.reference_moved.size());
-  double flips = 0.0, reference_flips = 0.0, beyond = 0.0, pixels = 0.0;
-  Image<std::uint8_t> own, wanted;
+  const Image<std::int32_t> at_rest;
+  const auto before = [&](std::span<const Image<std::int32_t>> all, size_t frame) -> const Image<std::int32_t>& {
+    LIMN_CHECK(all.empty() || all.size() + 1 == input.moved.size());
+    return all.empty() || frame == 0 ? at_rest : all[frame - 1];
+  };
+  FlipHistory history;
+  FrameFlips sum;
   for (size_t k = 0; k < input.moved.size(); ++k) {
-    LIMN_CHECK(input.moved[k].size() == input.reference_moved[k].size());
-    const Image<std::uint8_t> own_before = std::move(own), wanted_before = std::move(wanted);
-    own = ink_mask(input.moved[k]);
-    wanted = ink_mask(input.reference_moved[k]);
-    if (k == 0) continue;
-    pixels += border_pixels(wanted);
-    for (size_t i = 0; i < own.size(); ++i) {
-      const bool flip = own.pixels[i] != own_before.pixels[i], reference = wanted.pixels[i] != wanted_before.pixels[i];
-      flips += flip;
-      reference_flips += reference;
-      beyond += flip && !reference;
-    }
+    const FrameFlips frame = count_flips({input.moved[k], before(input.moved_before, k)},
+                                         {input.reference_moved[k], before(input.reference_moved_before, k)}, history);
+    sum.flips += frame.flips;
+    sum.reference_flips += frame.reference_flips;
+    sum.beyond += frame.beyond;
+    sum.border += frame.border;
   }
-  const bool any = pixels > 0.0;
-  return {{"flicker", any ? beyond / pixels : kNothing, ""},
-          {"flicker_flips", any ? flips / pixels : kNothing, ""},
-          {"flicker_reference_flips", any ? reference_flips / pixels : kNothing, ""}};
+  const auto share = [&](std::int64_t count) {
+    return sum.border > 0 ? static_cast<double>(count) / static_cast<double>(sum.border) : kNothing;
+  };
+  return {{"flicker", share(sum.beyond), ""},
+          {"flicker_flips", share(sum.flips), ""},
+          {"flicker_reference_flips", share(sum.reference_flips), ""}};
 }
 
 }  // namespace
 
 Metric flicker_metric() {
   return {{"flicker",
-           "pixels whose ink crosses one half from one moved picture to the next where the reference's does not, for each pixel of the "
-           "reference's border and move; all of the model's flips; all of the reference's",
+           "flips of ink on surface that stays in sight, from frame to frame of a camera that moves by parts of a pixel, which are not the "
+           "reference's, for each pixel of the reference's border and frame; all of the model's flips; all of the reference's",
            "limn"},
           {"flicker", "flicker_flips", "flicker_reference_flips"},
           true,

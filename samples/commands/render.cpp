@@ -7,11 +7,14 @@
 #include "raymarch/image_io.h"
 #include "raymarch/view_level.h"
 #include "samples/commands/command.h"
+#include "samples/flicker.h"
 #include "samples/interrupt.h"
 #include "samples/job.h"
+#include "samples/limits.h"
 #include "samples/output.h"
 #include "samples/plan/job.h"
 #include "samples/threads.h"
+#include "samples/warnings.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -29,12 +32,15 @@ double since_ms(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-// name.png, or name_v03.png for one of several views.
-fs::path view_file(const fs::path& file, int view, int views) {
-  if (views == 1) return file;
-  const auto digits = std::to_string(views - 1).size();
+int pictures_of(const Options& options) { return std::max(options.views, options.frames.frames); }
+
+// name.png, or name_v03.png for one of several views, name_f03.png for one of several frames.
+fs::path picture_file(const fs::path& file, int index, const Options& options) {
+  if (pictures_of(options) == 1) return file;
+  const auto digits = std::to_string(pictures_of(options) - 1).size();
   fs::path out = file;
-  out.replace_filename(fmt::format("{}_v{:0{}}{}", file.stem().string(), view, digits, file.extension().string()));
+  out.replace_filename(
+      fmt::format("{}_{}{:0{}}{}", file.stem().string(), options.frames.frames > 1 ? 'f' : 'v', index, digits, file.extension().string()));
   return out;
 }
 
@@ -46,7 +52,7 @@ std::vector<fs::path> outputs_of(const Options& options, const SceneInput& input
 
 void check_outputs(const std::vector<fs::path>& outputs, const Options& options) {
   for (const fs::path& file : outputs) {
-    for (int view = 0; view < options.views; ++view) check_output_file(view_file(file, view, options.views), options, kEndings);
+    for (int k = 0; k < pictures_of(options); ++k) check_output_file(picture_file(file, k, options), options, kEndings);
   }
 }
 
@@ -67,6 +73,7 @@ std::string summary(const SurfaceInfo& info, const Camera& camera, const HitCoun
 void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_camera(app, options, true);
+  add_frames(app, options);
   add_surface(app, options, {.surface = true, .repeatable = false, .views = true});
   add_plan(app, options);
   add_border(app, options);
@@ -85,16 +92,17 @@ struct Render {
   Camera camera;  ///< Of the last view.
   Timings timings;
   HitCounts counts;
-  std::vector<std::string> notes;
+  std::vector<std::string> warnings, notes;
   Json files = Json::array();
-  Json plan{};  ///< What --tolerance chose; null without it.
+  Json plan{};                            ///< What --tolerance chose; null without it.
+  std::optional<FlickerWatch> flicker{};  ///< Of several frames.
 };
 
-void write_picture(const Picture& picture, int view, const Options& options, Render& render) {
+void write_picture(const Picture& picture, int index, const Options& options, Render& render) {
   const auto start = std::chrono::steady_clock::now();
   const std::string call = resolved_call("render", options, render.surface, render.camera, render.picture);
   for (const fs::path& name : render.outputs) {
-    const fs::path file = view_file(name, view, options.views);
+    const fs::path file = picture_file(name, index, options);
     if (interrupted()) throw Cancelled{};
     if (ending_of(file) == ".exr")
       write_exr(picture, render.camera, call, file);
@@ -105,10 +113,13 @@ void write_picture(const Picture& picture, int view, const Options& options, Ren
   render.timings.write_ms += since_ms(start);
 }
 
-void draw_view(const SceneModel& model, int view, const Options& options, ProgressBar& bar, Render& render) {
+void draw_one(const SceneModel& model, int index, const Options& options, ProgressBar& bar, FrameHistory& history, Render& render) {
   ExecutionSettings how = execution_settings(options);
-  how.progress = bar.stage(options.views == 1 ? "tracing" : fmt::format("tracing view {} of {}", view + 1, options.views));
-  const Picture picture = draw_picture(render.input.scene, model, render.camera, render.picture, how);
+  const int pictures = pictures_of(options);
+  how.progress = bar.stage(
+      pictures == 1 ? "tracing" : fmt::format("tracing {} {} of {}", options.frames.frames > 1 ? "frame" : "view", index + 1, pictures));
+  const Picture picture = draw_picture(render.input.scene, model, render.camera, render.picture, how, render.flicker ? &history : nullptr);
+  if (render.flicker) watch_frame(picture, history, render.camera, how, *render.flicker);
   const HitCounts seen = count_hits(picture.gbuffer);
   render.timings.trace_ms += picture.trace_ms;
   render.timings.border_ms += picture.border_ms;
@@ -116,7 +127,16 @@ void draw_view(const SceneModel& model, int view, const Options& options, Progre
   render.counts.misses += seen.misses;
   render.counts.out_of_steps += seen.out_of_steps;
   render.notes.insert(render.notes.end(), picture.notes.begin(), picture.notes.end());
-  write_picture(picture, view, options, render);
+  write_picture(picture, index, options, render);
+}
+
+std::vector<Camera> cameras_of(const Options& options, const SceneInput& input) {
+  const CameraSettings settings = camera_settings(options, input);
+  const Box box = bounds(input.scene);
+  if (options.frames.frames > 1) return path_cameras(camera_of_view(settings, box, 0, 1), box, options.frames);
+  std::vector<Camera> cameras;
+  for (int view = 0; view < options.views; ++view) cameras.push_back(camera_of_view(settings, box, view, options.views));
+  return cameras;
 }
 
 void report(const Options& options, const Render& render, const SurfaceInfo& info) {
@@ -137,8 +157,10 @@ void report(const Options& options, const Render& render, const SurfaceInfo& inf
                   {"write", timings.write_ms}}},
                 {"surface", surface_json(info)},
                 {"files", render.files},
+                {"warnings", render.warnings},
                 {"notes", render.notes},
-                {"plan", render.plan}});
+                {"plan", render.plan},
+                {"flicker", render.flicker ? flicker_json(*render.flicker) : Json()}});
   } else if (!options.quiet) {
     std::string text;
     for (const Json& file : render.files) text += file.get<std::string>() + "\n";
@@ -177,10 +199,13 @@ int run(const Options& options) {
   render.picture = picture_settings(options, render.input);
   const auto has_layers = [](const fs::path& file) { return ending_of(file) == ".exr"; };
   if (std::none_of(render.outputs.begin(), render.outputs.end(), has_layers)) render.picture.layers = layers_read(render.picture.methods);
-  const CameraSettings camera_of = camera_settings(options, render.input);
-  const Box scene_bounds = bounds(render.input.scene);
-  std::vector<Camera> cameras;  // made first: a camera that is wrong is told before the surface is built
-  for (int view = 0; view < options.views; ++view) cameras.push_back(camera_of_view(camera_of, scene_bounds, view, options.views));
+  // Made first: a camera that is wrong is told before the surface is built.
+  const std::vector<Camera> cameras = cameras_of(options, render.input);
+
+  check_limits(options, render.input.scene, render.surface,
+               picture_load(cameras.front(), render.picture, pictures_of(options),
+                            std::any_of(render.outputs.begin(), render.outputs.end(), has_layers)));
+  render.warnings = warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods)});
 
   const auto build_start = std::chrono::steady_clock::now();
   std::vector<std::string> levels;
@@ -188,13 +213,17 @@ int run(const Options& options) {
   const SceneModel model = build_model(render.input.scene, render.surface);
   render.timings.build_ms = since_ms(build_start);
   const SurfaceInfo info = total(model);
-  render.notes = info.warnings;
-  render.notes.insert(render.notes.end(), levels.begin(), levels.end());
-  for (int view = 0; view < options.views; ++view) {
-    render.camera = cameras[static_cast<size_t>(view)];
-    draw_view(model, view, options, bar, render);
+  print_warnings(options, info.warnings);
+  render.warnings.insert(render.warnings.end(), info.warnings.begin(), info.warnings.end());
+  render.notes = levels;
+  if (options.frames.frames > 1) render.flicker = watch_flicker(options, render.input, render.surface);
+  FrameHistory history;
+  for (int k = 0; k < pictures_of(options); ++k) {
+    render.camera = cameras[static_cast<size_t>(k)];
+    draw_one(model, k, options, bar, history, render);
   }
   bar.clear();
+  if (render.flicker && !options.quiet) print_note(flicker_sentence(*render.flicker));
   report(options, render, info);
   return 0;
 }
@@ -204,6 +233,7 @@ int run(const Options& options) {
 Command render_command() {
   return {"render", "draws one picture: G-buffer, border and composite",
           "  limn render gyroid --size 800x600 --set threshold=0.3 -o gyroid.png\n"
+          "  limn render gyroid --surface level_set --frames 24 --set hysteresis=0.05 -o gyroid.png --json\n"
           "  limn render bunny.obj --surface mesh_level_set --voxels 400 -o bunny.exr --json",
           add_options, run};
 }

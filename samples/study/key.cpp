@@ -89,6 +89,10 @@ std::string metrics_text() {
   return text;
 }
 
+std::string flicker_text(const Study& study) {
+  return study.flicker ? fmt::format("{} frames {} px apart", kFlickerPath.frames, kFlickerPath.step_px) : "no";
+}
+
 }  // namespace
 
 std::string content_hash(std::string_view bytes) {
@@ -110,7 +114,7 @@ std::string hash_of_input(const SceneInput& input) {
 
 void name_cells(Study& study) {
   const std::string common = fmt::format("limn {} study {}\ninput {}\nreference {}\n{}\nflicker {}\n", kVersion, kStudyFormat,
-                                         study.input_hash, surface_text(study.reference), metrics_text(), study.flicker);
+                                         study.input_hash, surface_text(study.reference), metrics_text(), flicker_text(study));
   std::vector<std::string> cameras, models, methods;
   for (const Camera& camera : study.cameras) cameras.push_back(camera_text(camera));
   for (const StudyModel& model : study.models) models.push_back(surface_text(model.settings));

@@ -12,39 +12,55 @@ double ms_since(Clock::time_point start) { return std::chrono::duration<double, 
 
 constexpr double kGBufferBytes = 64.0;
 
-Border border_of(const Study& study, const SceneModel& model, size_t view, const MethodCall& call, const GBuffer& gbuffer) {
-  return call.method->draw({gbuffer, study.cameras[view], model, study.scene}, call.parameters);
+/// The ink of all frames, the first given.
+std::vector<Image<float>> draw_frames(const Study& study, const SceneModel& model, const MethodCall& call, const Seen& seen, Frames frames,
+                                      const Image<float>& first) {
+  std::vector<Image<float>> inks;
+  if (seen.moved.empty()) return inks;
+  inks.push_back(first);
+  for (size_t k = 0; k < seen.moved.size(); ++k) {
+    const BorderBefore before{inks.back(), seen.before[k]};
+    const BorderInput input{seen.moved[k], seen.cameras[k], model, study.scene, frames == Frames::in_sequence ? &before : nullptr};
+    Image<float> ink = call.method->draw(input, call.parameters).coverage;
+    inks.push_back(std::move(ink));
+  }
+  return inks;
 }
 
 }  // namespace
-
-// The first sample is the pixel's centre, which is the picture itself.
-glm::dvec2 move_offset(int move) { return sample_offset(move + 1); }
 
 std::string reason_of(const InputError& error) {
   const std::string& expected = error.fault().expected;
   return error.fault().problem + (expected.empty() ? "" : "; " + expected);
 }
 
-Seen look(const SceneModel& model, const Camera& camera, bool flicker, const ExecutionSettings& how) {
+Seen look(const SceneModel& model, const Study& study, size_t view, const ExecutionSettings& how) {
   Seen seen;
+  const Camera& camera = study.cameras[view];
   const auto start = Clock::now();
   seen.gbuffer = render_gbuffer(model, camera, how);
   seen.trace_ms = ms_since(start);
-  for (int move = 0; flicker && move < kMoves; ++move) seen.moved.push_back(render_gbuffer(model, camera, how, move_offset(move)));
+  if (!study.flicker) return seen;
+  const std::vector<Camera> path = path_cameras(camera, bounds(study.scene), kFlickerPath);
+  seen.cameras.assign(path.begin() + 1, path.end());
+  for (size_t k = 0; k < seen.cameras.size(); ++k) {
+    seen.moved.push_back(render_gbuffer(model, seen.cameras[k], how));
+    seen.before.push_back(
+        pixels_before(seen.moved[k], seen.cameras[k], k == 0 ? seen.gbuffer : seen.moved[k - 1], k == 0 ? camera : seen.cameras[k - 1]));
+  }
   return seen;
 }
 
-Ink draw(const Study& study, const SceneModel& model, size_t view, size_t method, const Seen& seen) {
+Ink draw(const Study& study, const SceneModel& model, size_t view, size_t method, const Seen& seen, Frames frames) {
   const MethodCall& call = study.methods[method].call;
   Ink ink;
   ink.refused = call.method->unsupported(model, study.scene);
   if (!ink.refused.empty()) return ink;
   try {
     const auto start = Clock::now();
-    ink.ink = border_of(study, model, view, call, seen.gbuffer).coverage;
+    ink.ink = call.method->draw({seen.gbuffer, study.cameras[view], model, study.scene}, call.parameters).coverage;
     ink.border_ms = ms_since(start);
-    for (const GBuffer& moved : seen.moved) ink.moved.push_back(border_of(study, model, view, call, moved).coverage);
+    ink.moved = draw_frames(study, model, call, seen, frames, ink.ink);
   } catch (const InputError& error) {
     ink.refused = reason_of(error);
   }
@@ -52,8 +68,7 @@ Ink draw(const Study& study, const SceneModel& model, size_t view, size_t method
 }
 
 double StudyReference::bytes_of_view(const Study& study) {
-  const double pictures = 1.0 + (study.flicker ? double{kMoves} : 0.0);
-  return study.pixels() * pictures * (kGBufferBytes + 8.0 * static_cast<double>(study.methods.size()));
+  return study.pixels() * study.looks() * (kGBufferBytes + 8.0 * static_cast<double>(study.methods.size()));
 }
 
 StudyReference::View& StudyReference::view(size_t index) {
@@ -66,7 +81,7 @@ StudyReference::View& StudyReference::view(size_t index) {
   }
   const auto start = Clock::now();
   View one;
-  one.seen = look(*model_, study_.cameras[index], study_.flicker, how_);
+  one.seen = look(*model_, study_, index, how_);
   ledger_.done("reference trace", study_.looks() * cost.trace_ms, ms_since(start));
   one.picture.gbuffer = one.seen.gbuffer;
   return views_.emplace(index, std::move(one)).first->second;
@@ -78,7 +93,7 @@ Ink& StudyReference::ink(size_t index, size_t method) {
   View& one = view(index);
   const auto found = one.inks.find(method);
   if (found != one.inks.end()) return found->second;
-  return one.inks.emplace(method, draw(study_, *model_, index, method, one.seen)).first->second;
+  return one.inks.emplace(method, draw(study_, *model_, index, method, one.seen, Frames::each_alone)).first->second;
 }
 
 const TruthOf& StudyReference::truth(size_t index, double threshold) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "raymarch/frames.h"
 #include "raymarch/metric.h"
 #include "samples/study/cost.h"
 #include "samples/study/record.h"
@@ -10,14 +11,10 @@
 
 namespace limn {
 
-/// Sub-pixel moves of the camera for flicker, as offsets of the rays within the pixels.
-inline constexpr int kMoves = 4;
-glm::dvec2 move_offset(int move);
-
 /// One method's ink on one model, seen from one view.
 struct Ink {
   Image<float> ink{};
-  std::vector<Image<float>> moved{};  ///< Where flicker is measured.
+  std::vector<Image<float>> moved{};  ///< Where flicker is measured: frame by frame, the first is `ink` again.
   double border_ms = 0.0;
   std::string refused{};  ///< Why there is none.
 };
@@ -25,11 +22,15 @@ struct Ink {
 /// A model from one view, before any method.
 struct Seen {
   GBuffer gbuffer{};
-  std::vector<GBuffer> moved{};
+  std::vector<GBuffer> moved{};  ///< Frames after the first, which is `gbuffer`.
+  std::vector<Camera> cameras{};
+  std::vector<Image<std::int32_t>> before{};  ///< pixels_before() of them.
   double trace_ms = 0.0;
 };
-Seen look(const SceneModel& model, const Camera& camera, bool flicker, const ExecutionSettings& how);
-Ink draw(const Study& study, const SceneModel& model, size_t view, size_t method, const Seen& seen);
+Seen look(const SceneModel& model, const Study& study, size_t view, const ExecutionSettings& how);
+/// Whether methods know the frame before: the reference must not, its flips are those of the border itself.
+enum class Frames { in_sequence, each_alone };
+Ink draw(const Study& study, const SceneModel& model, size_t view, size_t method, const Seen& seen, Frames frames);
 
 /// "fewer voxels would be right" and what is wrong, for a row.
 std::string reason_of(const InputError& error);
@@ -45,8 +46,8 @@ class StudyReference {
 
   /// Its border is left empty: swap a method's ink in.
   Picture& picture(size_t view);
-  std::vector<Image<float>>& moved(size_t view, size_t method) { return ink(view, method).moved; }
   Ink& ink(size_t view, size_t method);
+  std::span<const Image<std::int32_t>> before(size_t index) { return view(index).seen.before; }
   const TruthOf& truth(size_t view, double threshold);
   /// Forgets the pictures of all views; the model stays.
   void clear() { views_.clear(); }

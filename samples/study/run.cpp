@@ -129,7 +129,7 @@ struct Runner {
     if (work.how.cancelled && work.how.cancelled()) throw Cancelled{};
     Picture& truth_picture = reference.picture(group.view);
     const auto start = Clock::now();
-    Seen seen = look(model, work.study.cameras[group.view], work.study.flicker, work.how);
+    Seen seen = look(model, work.study, group.view, work.how);
     ledger.done("trace " + planned.surface, work.study.looks() * planned.cost.trace_ms, ms_since(start));
     Picture picture;
     picture.gbuffer = seen.gbuffer;
@@ -144,7 +144,7 @@ struct Runner {
     const StudyMethod& method = work.study.methods[cell.method];
     const TruthOf* truth = method.truth_threshold ? &truth_of(cell.view, *method.truth_threshold) : nullptr;
     const auto start = Clock::now();
-    Ink ink = draw(work.study, model, cell.view, cell.method, seen);
+    Ink ink = draw(work.study, model, cell.view, cell.method, seen, Frames::in_sequence);
     if (!ink.refused.empty()) {
       drop_cell(cell);
       return fail({static_cast<size_t>(&cell - work.study.cells.data())}, ink.refused);
@@ -159,7 +159,7 @@ struct Runner {
     Ink& reference_ink = reference.ink(cell.view, cell.method);
     std::swap(picture.border, ink.ink);
     std::swap(truth_picture.border, reference_ink.ink);
-    std::vector<StudyRow> measured = measure(model, row, truth, picture, truth_picture, ink, reference_ink);
+    std::vector<StudyRow> measured = measure(model, row, truth, picture, truth_picture, seen, ink, reference_ink);
     if (measured.empty()) {
       row.failed = "nothing to measure";
       measured.push_back(row);
@@ -183,7 +183,7 @@ struct Runner {
   }
 
   std::vector<StudyRow> measure(const SceneModel& model, const StudyRow& like, const TruthOf* truth, const Picture& picture,
-                                const Picture& truth_picture, const Ink& ink, const Ink& reference_ink) const {
+                                const Picture& truth_picture, const Seen& seen, const Ink& ink, const Ink& reference_ink) const {
     const Camera& camera = work.study.cameras[static_cast<size_t>(like.view)];
     MetricInput input{picture, truth_picture, camera};
     BorderCurves curves;
@@ -197,6 +197,8 @@ struct Runner {
     }
     input.moved = ink.moved;
     input.reference_moved = reference_ink.moved;
+    input.moved_before = seen.before;
+    input.reference_moved_before = reference.before(static_cast<size_t>(like.view));
     std::vector<StudyRow> measured;
     for (const Metric& metric : metrics()) {
       if (!has_subject(metric, input, reference_ink.refused.empty())) continue;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "raymarch/frames.h"
 #include "raymarch/picture.h"
 #include "samples/input.h"
 #include "samples/study/row.h"
@@ -14,6 +15,9 @@ namespace limn {
 
 /// Of the rows and their metrics, and of how a cell is measured: a change of it makes other cells.
 inline constexpr int kStudyFormat = 1;
+
+/// How the camera moves for flicker.
+inline constexpr FramePath kFlickerPath{.frames = 5, .step_px = 0.25};
 
 /// What something is expected to cost, the same on every machine: what the machine makes of it is for CostLedger to find out.
 struct ExpectedCost {
@@ -59,9 +63,9 @@ struct Study {
   double longest_side = 0.0;  ///< World, of the scene.
   double truth_terms = 0.0;   ///< How much there is to trace for truth: grows with what a field's surface has of shape.
 
-  double looks() const { return flicker ? 5.0 : 1.0; }  ///< Pictures traced of each model in each view.
-  double measure_ms() const;                            ///< Expected for one cell: ink, curves and metrics.
-  double truth_ms() const;                              ///< Expected for one view and threshold.
+  double looks() const { return flicker ? double{kFlickerPath.frames} : 1.0; }  ///< Pictures traced of each model in each view.
+  double measure_ms() const;                                                    ///< Expected for one cell: ink, curves and metrics.
+  double truth_ms() const;                                                      ///< Expected for one view and threshold.
   double pixels() const { return double(cameras.front().width_px) * cameras.front().height_px; }
 };
 

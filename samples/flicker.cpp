@@ -1,0 +1,113 @@
+#include "samples/flicker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "samples/compare/comparison.h"
+#include "samples/job.h"
+
+namespace limn {
+namespace {
+
+struct Sum {
+  FrameFlips counts{};
+  size_t worst = 0;
+  double flicker = std::numeric_limits<double>::quiet_NaN();  ///< Flips beyond the reference's for each pixel of its border and frame.
+};
+
+Sum sum_of(const FlickerWatch& watch) {
+  Sum sum;
+  for (size_t k = 0; k < watch.frames.size(); ++k) {
+    const FrameFlips& frame = watch.frames[k].counts;
+    sum.counts.flips += frame.flips;
+    sum.counts.reference_flips += frame.reference_flips;
+    sum.counts.beyond += frame.beyond;
+    sum.counts.border += frame.border;
+    if (frame.beyond > watch.frames[sum.worst].counts.beyond) sum.worst = k;
+  }
+  if (sum.counts.border > 0) sum.flicker = static_cast<double>(sum.counts.beyond) / static_cast<double>(sum.counts.border);
+  return sum;
+}
+
+/// The methods as asked for, none of which holds on to what it drew before.
+std::vector<MethodCall> without_hysteresis(Options options, const SceneInput& input) {
+  for (const MethodCall& call : method_calls(options, input)) {
+    const std::vector<Parameter>& parameters = call.method->parameters;
+    const auto is_hysteresis = [](const Parameter& one) { return one.name == "hysteresis"; };
+    if (std::any_of(parameters.begin(), parameters.end(), is_hysteresis)) {
+      options.sets.push_back({call.method->about.name + ".hysteresis", "0"});
+    }
+  }
+  return method_calls(options, input);
+}
+
+}  // namespace
+
+FlickerWatch watch_flicker(const Options& options, const SceneInput& input, const SurfaceSettings& surface) {
+  Comparison comparison = plan_comparison(input, surface, {"analytic"}, options.gradient.has_value());
+  FlickerWatch watch;
+  watch.path = options.frames;
+  watch.reference_words = comparison.reference_words;
+  watch.scene = comparison.reference().scene;
+  watch.reference = build_model(watch.scene, comparison.reference().surface);
+  watch.picture = picture_settings(options, input);
+  watch.picture.methods = without_hysteresis(options, input);
+  watch.picture.layers = layers_read(watch.picture.methods);
+  return watch;
+}
+
+void watch_frame(const Picture& picture, const FrameHistory& history, const Camera& camera, const ExecutionSettings& how,
+                 FlickerWatch& watch) {
+  const Picture reference = draw_picture(watch.scene, watch.reference, camera, watch.picture, how, &watch.history);
+  const Image<std::uint8_t> before = watch.flips.ink;
+  FlickerWatch::Frame frame;
+  frame.counts = count_flips({picture.border, history.pixels_before}, {reference.border, watch.history.pixels_before}, watch.flips);
+  for (size_t i = 0; i < history.pixels_before.size(); ++i) {
+    const std::int32_t was = history.pixels_before.pixels[i];
+    if (was < 0) {
+      ++frame.unseen;
+    } else if (before.pixels[static_cast<size_t>(was)] != watch.flips.ink.pixels[i]) {
+      const double n_dot_v = double{picture.gbuffer.n_dot_v.pixels[i]};
+      frame.lowest_n_dot_v = std::min(frame.lowest_n_dot_v, n_dot_v);
+      frame.highest_n_dot_v = std::max(frame.highest_n_dot_v, n_dot_v);
+    }
+  }
+  watch.frames.push_back(frame);
+}
+
+Json flicker_json(const FlickerWatch& watch) {
+  const Sum sum = sum_of(watch);
+  Json frames = Json::array();
+  for (size_t k = 0; k < watch.frames.size(); ++k) {
+    const FlickerWatch::Frame& frame = watch.frames[k];
+    const bool any = frame.lowest_n_dot_v <= frame.highest_n_dot_v;
+    frames.push_back({{"frame", k},
+                      {"flips", frame.counts.flips},
+                      {"reference_flips", frame.counts.reference_flips},
+                      {"beyond", frame.counts.beyond},
+                      {"border_pixels", frame.counts.border},
+                      {"unseen_pixels", frame.unseen},
+                      {"n_dot_v", any ? Json{frame.lowest_n_dot_v, frame.highest_n_dot_v} : Json()}});
+  }
+  return {{"frames", watch.frames.size()}, {"step_px", watch.path.step_px},
+          {"seed", watch.path.seed},       {"reference", watch.reference_words},
+          {"flips", sum.counts.flips},     {"reference_flips", sum.counts.reference_flips},
+          {"beyond", sum.counts.beyond},   {"flicker", number_or_null(sum.flicker)},
+          {"worst_frame", sum.worst},      {"per_frame", frames}};
+}
+
+std::string flicker_sentence(const FlickerWatch& watch) {
+  const Sum sum = sum_of(watch);
+  std::string text =
+      fmt::format("flicker: ink flipped {} times over {} frames {:g} px apart, that of {} {} times; {} flips beyond its", sum.counts.flips,
+                  watch.frames.size(), watch.path.step_px, watch.reference_words, sum.counts.reference_flips, sum.counts.beyond);
+  if (sum.counts.beyond > 0) {
+    text += fmt::format(", most in frame {} ({}); {:.3f} for each pixel of its border and frame; --set hysteresis=... holds them back",
+                        sum.worst, watch.frames[sum.worst].counts.beyond, sum.flicker);
+  }
+  return text;
+}
+
+}  // namespace limn

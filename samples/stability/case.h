@@ -1,0 +1,90 @@
+#pragma once
+// A case of the corpus: a scene that breaks methods, what must hold of it, and where a method is known to fail. Cases are TOML files; a
+// scene file's tables ([camera], [surface], [[border]], [[object]]) beside these:
+//
+//   [case]       row, breaks, holds: the catalogue's words; check = NAME; surfaces, methods (or "all"; default: the [[border]]s), views,
+//                sizes = [[w, h], …], draws, bound, outer, says (or a list): what the program must say, in a sentence with a number,
+//                wherever the property held or degraded
+//   [with]       parameters of the check
+//   [set]        name = number; "$name" in the rest of the file stands for it (in quotes, so that the file stays TOML)
+//   [random]     name = [low, high]: the same, drawn from the seed; whole numbers where both are
+//   [[mesh]]     file = "a.obj" and its text, or maker = "schwarz_lantern" with its parameters: what an [[object]] names by mesh = "a.obj"
+//   [volume]     voxels, half_width: fields are sampled first, as if they came from a .vdb
+//   [[reference]] an [[object]] of the true scene, where it is not the one that is drawn
+//   [[variant]]  the scene again, changed: scale, translate, turned, reversed, threads, tile, simd = "least", set = { name = number }
+//   [[expect]]   surfaces, methods (default: all), and bound, outer, or refused = "words", or fails = [low, high] and says = "words":
+//                there the number must lie where the property does not hold and the program must say so
+#include <map>
+#include <optional>
+
+#include "raymarch/surface.h"
+#include "samples/input.h"
+#include "samples/stability/results.h"
+
+namespace limn {
+
+/// The same scene, otherwise.
+struct StabilityVariant {
+  double scale = 1.0;
+  glm::dvec3 translate{0.0};  ///< After the scaling.
+  bool turned = false;        ///< Meshes with their faces turned round.
+  bool reversed = false;      ///< Meshes with their faces in reverse order.
+  int threads = 0, tile_px = 16;
+  bool least_simd = false;  ///< On the narrowest SIMD target.
+  std::map<std::string, double> set{};
+  std::string words{};  ///< For messages.
+};
+
+struct StabilityExpectation {
+  std::vector<std::string> surfaces{}, methods{};  ///< Empty: all. A method stands for all its parameters, or is given with them.
+  std::optional<double> bound{}, outer{};
+  std::optional<std::pair<double, double>> fails{};
+  std::vector<std::string> says{};
+  std::string refused{};
+};
+
+struct StabilityCase {
+  StabilityCaseText text{};
+  std::string source{};  ///< The TOML.
+  std::string file{};    ///< For messages; relative paths start beside it.
+  std::vector<std::string> surfaces{};
+  std::vector<std::string> methods{};  ///< "all" among them: every one. Empty: the scene's [[border]]s.
+  int views = 1;                       ///< 1: the scene's own camera; more: as many directions, turned at random.
+  std::vector<glm::ivec2> sizes_px{};
+  int draws = 1;
+  double bound = 0.0, outer = 0.0;
+  std::vector<std::string> says{};
+  std::map<std::string, ParameterInput> with{};
+  std::map<std::string, double> set{};
+  struct Range {
+    double low = 0.0, high = 0.0;
+    bool whole = false;
+  };
+  std::map<std::string, Range> random{};
+  std::vector<StabilityVariant> variants{};
+  std::vector<StabilityExpectation> expectations{};
+};
+
+/// Throws InputError with file, line and what would be right.
+StabilityCase parse_case(const std::string& text, const std::string& file);
+
+/// What a case comes to with its parameters given values.
+struct StabilityScene {
+  SceneInput input{};
+  Scene reference{};  ///< Empty where the scene itself is the truth.
+};
+StabilityScene scene_of_case(const StabilityCase& one, const std::map<std::string, double>& values);
+
+/// Values of all parameters in draw number `draw` from `seed`; the same on every machine, whatever other cases there are.
+std::map<std::string, double> drawn_parameters(const StabilityCase& one, std::uint64_t seed, int draw);
+/// A stream of numbers in [0, 1) that belongs to a case, a seed and a draw.
+class StabilityRandom {
+ public:
+  StabilityRandom(const std::string& name, std::uint64_t seed, int draw);
+  double next();
+
+ private:
+  std::uint64_t state_;
+};
+
+}  // namespace limn

@@ -1,0 +1,50 @@
+// The model's normals against those of the true surface beside them.
+
+#include <cmath>
+
+#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/worst.h"
+#include "sdf/error.h"
+#include "sdf/shape.h"
+
+namespace limn {
+namespace {
+
+double angle_deg(const glm::dvec3& a, const glm::dvec3& b) {
+  return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
+}
+
+StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters&) {
+  std::vector<Field> fields;
+  for (const SceneObject& object : shop.truth_scene().objects) {
+    const auto* field = std::get_if<Field>(&object.source);
+    if (field == nullptr)
+      throw InputError({shop.which().file, "object", "", "no field to compare with", "shapes, or a [[reference]] of shapes"});
+    fields.push_back(*field);
+  }
+  FieldEvaluator evaluator(combine(Csg::union_, fields));
+  Worst worst;
+  for (const StabilityView& view : shop.views()) {
+    double largest = 0.0;
+    std::string words = "nothing hit";
+    for (size_t i = 0; i < view.seen.id.size(); ++i) {
+      if (view.seen.id.pixels[i] == 0) continue;
+      const glm::dvec3 gradient = evaluator.jet(glm::dvec3(view.seen.position.pixels[i])).gradient, normal(view.seen.normal.pixels[i]);
+      if (!(glm::length(gradient) > 0.0) || angle_deg(gradient, normal) <= largest) continue;
+      largest = angle_deg(gradient, normal);
+      const auto width = static_cast<size_t>(view.seen.width);
+      words = fmt::format("{:.3g} degrees off at ({}, {})", largest, i % width, i / width);
+    }
+    worst.see(largest, words, shop.stage(), view);
+  }
+  return worst.take();
+}
+
+}  // namespace
+
+StabilityCheck normals_within_check() {
+  return {
+      {"normals_within", "the largest angle between what is seen and the true surface's normal beside it", "limn"}, "deg", false, {}, run};
+}
+
+}  // namespace limn

@@ -1,0 +1,27 @@
+#include "samples/stability/checks/registry.h"
+
+#include <array>
+
+#include "sdf/error.h"
+
+namespace limn {
+
+std::span<const StabilityCheck> stability_checks() {
+  static const std::array all = {
+      finite_outputs_check(), finite_field_check(), same_picture_check(),   no_holes_check(),         one_closed_component_check(),
+      faces_whole_check(),    continuous_check(),   border_within_check(),  normals_within_check(),   sign_right_check(),
+      width_within_check(),   even_cusps_check(),   no_false_lines_check(), flicker_confined_check(), unchanged_beyond_check(),
+  };
+  return all;
+}
+
+const StabilityCheck& find_stability_check(const std::string& name, const std::string& file, const std::string& field) {
+  std::vector<std::string> names;
+  for (const StabilityCheck& check : stability_checks()) {
+    if (check.about.name == name) return check;
+    names.push_back(check.about.name);
+  }
+  throw InputError({file, field, name, "unknown check", known_names(name, names)});
+}
+
+}  // namespace limn

@@ -1,0 +1,64 @@
+// A scene and its variants draw the same picture.
+
+#include <cstring>
+
+#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/worst.h"
+
+namespace limn {
+namespace {
+
+template <class T>
+bool same_bits(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+
+struct Drawn {
+  const StabilityView& view;
+  const Border& border;
+};
+
+bool differ(const Drawn& a, const Drawn& b, size_t i, bool exact) {
+  const GBuffer &p = a.view.seen, &q = b.view.seen;
+  if (p.id.pixels[i] != q.id.pixels[i]) return true;
+  if (!exact) return std::abs(a.border.coverage.pixels[i] - b.border.coverage.pixels[i]) > 0.5f;
+  return !same_bits(p.depth.pixels[i], q.depth.pixels[i]) || !same_bits(p.normal.pixels[i], q.normal.pixels[i]) ||
+         !same_bits(p.n_dot_v.pixels[i], q.n_dot_v.pixels[i]) || !same_bits(a.border.coverage.pixels[i], b.border.coverage.pixels[i]);
+}
+
+StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+  const bool exact = with.flag("exact");
+  Worst worst;
+  for (size_t variant = 1; variant <= shop.which().variants.size(); ++variant) {
+    const StabilityStage& changed = shop.stage(variant);
+    worst.said(said_of(changed, method->method->about.name));
+    for (size_t k = 0; k < shop.views().size(); ++k) {
+      const StabilityView &view = shop.views()[k], &other = shop.views(variant)[k];
+      const Border border = draw_border(shop.stage(), view, *method), other_border = draw_border(changed, other, *method);
+      worst.said(other_border.notes);
+      std::int64_t different = 0;
+      std::string first;
+      for (size_t i = 0; i < view.seen.id.size(); ++i) {
+        if (!differ({view, border}, {other, other_border}, i, exact)) continue;
+        const auto width = static_cast<size_t>(view.seen.width);
+        if (different++ == 0) first = fmt::format(", the first at ({}, {})", i % width, i / width);
+      }
+      const std::string words =
+          fmt::format("{} of {} pixels differ with {}{}", different, view.seen.id.size(), changed.variant.words, first);
+      worst.see(static_cast<double>(different), words, changed, other, &other_border);
+    }
+  }
+  return worst.take();
+}
+
+}  // namespace
+
+StabilityCheck same_picture_check() {
+  return {{"same_picture", "pixels that differ between the scene and its variants (other object, or ink across one half)", "limn"},
+          "pixels",
+          true,
+          {{"exact", ParameterKind::flag, "", {0.0}, 0.0, 1.0, "every bit of depth, normal, N.V and ink counts", {}}},
+          run};
+}
+
+}  // namespace limn

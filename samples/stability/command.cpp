@@ -1,0 +1,95 @@
+#include "samples/stability/command.h"
+
+#include <fmt/format.h>
+
+#include "samples/job.h"
+#include "samples/stability/run.h"
+#include "sdf/error.h"
+#include "sdf/output_file.h"
+
+namespace limn {
+namespace {
+
+/// What a case's file says is not for the command line.
+void refuse_others(const Options& options) {
+  const StudyOptions& study = options.study;
+  const std::pair<bool, const char*> given[] = {{!study.levels.empty(), "--levels"},
+                                                {!study.voxels.empty(), "--voxels"},
+                                                {!study.normals.empty(), "--normals"},
+                                                {!study.gradients.empty(), "--gradients"},
+                                                {!study.thresholds.empty(), "--thresholds"},
+                                                {study.views.has_value(), "--views"},
+                                                {study.flicker, "--flicker"},
+                                                {study.shards != 1, "--shard"},
+                                                {!options.sets.empty(), "--set"},
+                                                {!options.compared_methods.empty(), "--methods"},
+                                                {options.size_px.has_value(), "--size"},
+                                                {options.eye || options.target || options.up, "--eye, --target and --up"},
+                                                {options.fov_deg || options.ortho_height, "--fov and --ortho"},
+                                                {options.half_width_voxels.has_value(), "--half-width"},
+                                                {options.scheme.has_value(), "--scheme"},
+                                                {!options.grid.empty(), "--grid"}};
+  for (const auto& [is_given, name] : given) {
+    if (is_given)
+      throw InputError({"", name, "", "the cases of this study say that themselves", "a copy of a case, with --case FILE, would be right"});
+  }
+}
+
+std::vector<StabilityCase> chosen_cases(const Options& options) {
+  std::vector<StabilityCase> cases;
+  for (const std::string& name : options.study.cases) cases.push_back(find_stability_case(name));
+  return cases.empty() ? stability_corpus() : cases;
+}
+
+std::string summary(const StabilityResults& results) {
+  std::string text = fmt::format("{} cells of {} cases:", results.cells.size(), results.cases.size());
+  const char* separator = " ";
+  for (const StabilityOutcome outcome : kStabilityOutcomes) {
+    text += fmt::format("{}{} {}", separator, count(results, outcome), name_of(outcome));
+    separator = ", ";
+  }
+  text += "\n";
+  for (const StabilityCell& cell : results.cells) {
+    if (cell.outcome != StabilityOutcome::wrong) continue;
+    text += fmt::format("wrong: {}, {}{}: {}\n       again: limn study stability --case {} --seed {}\n", cell.case_name, cell.surface,
+                        cell.method.empty() ? "" : ", " + cell.method, cell.message, cell.case_name, cell.seed);
+  }
+  return text;
+}
+
+}  // namespace
+
+int study_stability(const Options& options, ProgressBar& bar) {
+  refuse_others(options);
+  const std::filesystem::path folder = options.outputs.empty() ? default_output("study", kStabilityInput) : options.outputs.back();
+  check_output_folder(folder, options);
+  StabilityRunSettings settings;
+  settings.seed = options.study.seed.value_or(1);
+  settings.draws = options.study.draws;
+  settings.surfaces = options.surfaces;
+  settings.folder = folder;
+  settings.how = execution_settings(options);
+  settings.progress = bar.stage("cases");
+  const StabilityResults results = run_stability(chosen_cases(options), settings);
+  bar.clear();
+  const std::filesystem::path records = folder / "results.json";
+  Json document = stability_json(results);
+  write_whole(records, document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  if (options.json) {
+    document["files"] = {records.string()};
+    print_json(document);
+  } else if (!options.quiet) {
+    print_text(summary(results) + records.string() + "\n");
+  }
+  return count(results, StabilityOutcome::wrong) > 0 ? 1 : 0;
+}
+
+void refuse_stability_options(const Options& options) {
+  const StudyOptions& study = options.study;
+  const char* given = !study.cases.empty() ? "--case" : study.seed ? "--seed" : study.draws ? "--draws" : nullptr;
+  if (given != nullptr)
+    throw InputError(
+        {"", given, "", "belongs to limn study stability", "limn study stability " + std::string(given) + " … would be right"});
+}
+
+}  // namespace limn

@@ -1,0 +1,20 @@
+#pragma once
+// Meshes that break methods, made by name: for cases that are too large to be written down.
+
+#include <span>
+
+#include "sdf/descriptor.h"
+#include "subdiv/mesh.h"
+
+namespace limn {
+
+struct MeshMaker {
+  Description about{};
+  std::vector<Parameter> parameters{};
+  Mesh (*make)(const Parameters& parameters);
+};
+
+std::span<const MeshMaker> mesh_makers();
+const MeshMaker& find_mesh_maker(const std::string& name, const std::string& file = {}, const std::string& field = {});
+
+}  // namespace limn

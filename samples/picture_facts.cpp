@@ -36,7 +36,7 @@ struct PictureFinding {
   std::int64_t value = 0;
 };
 
-/// Depth is infinite where nothing is hit; a NaN is nowhere meant.
+/// Depth and position are infinite where nothing is hit; a NaN is nowhere meant.
 std::vector<PictureFinding> findings_of(const PictureFile& picture) {
   std::vector<PictureFinding> findings;
   for (const PicturePart& part : picture.parts) {
@@ -44,7 +44,7 @@ std::vector<PictureFinding> findings_of(const PictureFile& picture) {
       if (channel.nan > 0)
         findings.push_back(
             {"not a number", "warning", fmt::format("{} values of {} are no numbers", channel.nan, channel.name), channel.nan});
-      if (channel.infinite > 0 && channel.name != "Z")
+      if (channel.infinite > 0 && channel.name != "Z" && layer_name(channel.name) != "P")
         findings.push_back(
             {"infinite", "warning", fmt::format("{} values of {} are infinite", channel.infinite, channel.name), channel.infinite});
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "samples/study/folder.h"
@@ -98,12 +99,15 @@ std::vector<std::string> take_part(StudyFolder part, StudyFolder& merged) {
 StudyFolder merge_parts(const std::vector<fs::path>& parts, const fs::path& folder) {
   check_parts(parts, folder);
   std::optional<StudyFolder> merged = read_folder(folder);
+  std::map<std::string, fs::path> from;
   for (const fs::path& part : parts) {
     StudyFolder held = read_folder(part).value();
     if (!merged) merged = StudyFolder{held.record, {}};
-    for (const std::string& key : take_part(std::move(held), *merged)) copy_thumbnail(part, folder, key);
+    for (const std::string& key : take_part(std::move(held), *merged)) from[key] = part;
   }
   LIMN_CHECK(merged.has_value());
+  // Only now, because a part that cannot be read must not leave half of the others behind.
+  for (const auto& [key, part] : from) copy_thumbnail(part, folder, key);
   merged->record.shard = merged->record.shards = 1;
   return std::move(*merged);
 }

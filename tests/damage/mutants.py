@@ -1,251 +1,187 @@
 #!/usr/bin/env python3
-"""Feeds damaged files to limn: whatever they hold, it ends with 0 or 2 in time and memory, says what is wrong with which file, and leaves nothing.
+"""Feeds damaged files to limn: whatever they hold, it ends with 0 or 2 within time and memory, says what is wrong with which file, and leaves
+no output of a run that failed, nor anything else.
 
-mutants.py LIMN FOLDER [--count N] [--seed S] [--kind NAME] [--keep] [--json FILE]
+mutants.py LIMN FOLDER [--count N] [--seed S] [--kind NAME]... [--corpus-only] [--json FILE]
 
-Originals are made afresh in FOLDER by limn itself and by vdb_tool; the files of the corpus beside this script are added to them: every one
-that once did harm. A mutant is the original after one to three of: bits flipped, cut short, a run doubled, a run taken out, 32 bits set to a
-telling value. The seed is printed, and which mutant failed; --keep leaves the failed ones in FOLDER.
+Originals are made afresh in FOLDER (originals.py); --count mutants of each (mutation.py) go through commands that read and write by turns. Then
+the corpus beside this script: every file that once did harm. What fails is printed with the seed and kept in FOLDER/failed.
 """
 import argparse
+import collections
 import json
 import os
 import pathlib
 import random
-import resource
+import re
 import shutil
-import struct
-import subprocess
 import sys
-import time
+
+import child
+import mutation
+import originals
 
 HERE = pathlib.Path(__file__).resolve().parent
 TIME_LIMIT_S = 60
-MEMORY_LIMIT = 12 << 30  # of the address space, for the program and its readers
-SCENE = """[camera]
-eye = [3.0, 2.0, 4.0]
-fov = 35.0
-[[object]]
-name = "egg"
-shape = "ellipsoid"
-radii = [1.0, 0.7, 0.5]
-translate = [0.0, 0.2, 0.0]
-rotate = [0.0, 1.0, 0.0, 30.0]
-[[object]]
-csg = "difference"
-of = [ { shape = "box", half = [0.4, 0.4, 0.4] }, { shape = "sphere", radius = 0.5 } ]
-[border]
-method = "rim"
-threshold = 0.4
-"""
+MEMORY_LIMIT = 2 << 30  # resident, of the program and of each of its readers
+ADDRESS_SPACE = 12 << 30
+TEXT_KINDS = ("toml", "obj", "obj tags", "ply ascii", "shard")
+# What a guarded reader's end makes the message say.
+GUARD_WORDS = {"crashed": "crash", "took longer": "time", "processor time": "time", "of memory": "memory", "gave up": "gave up"}
+KIND_OF_ENDING = {".toml": "toml", ".vdb": "vdb", ".obj": "obj", ".ply": "ply binary", ".stl": "stl", ".glb": "glb", "": "shard"}
 
 
-def run(command, **options):
-    return subprocess.run([str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
-
-
-def must(command):
-    done = run(command)
-    if done.returncode != 0:
-        sys.exit(f"mutants: {' '.join(map(str, command))} ended with {done.returncode}: {done.stderr.decode(errors='replace')}")
-
-
-def glb(vertices, triangles):
-    """A binary glTF of one mesh."""
-    data = b"".join(struct.pack("<3f", *v) for v in vertices) + b"".join(struct.pack("<3H", *t) for t in triangles)
-    data += b"\0" * (-len(data) % 4)
-    points = 12 * len(vertices)
-    lower, upper = ([f(v[k] for v in vertices) for k in range(3)] for f in (min, max))
-    text = json.dumps({
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": len(vertices), "type": "VEC3", "min": lower, "max": upper},
-                      {"bufferView": 1, "componentType": 5123, "count": 3 * len(triangles), "type": "SCALAR"}],
-        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": points},
-                        {"buffer": 0, "byteOffset": points, "byteLength": 6 * len(triangles)}],
-        "buffers": [{"byteLength": len(data)}]}).encode()
-    text += b" " * (-len(text) % 4)
-    body = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(data), 0x004E4942) + data
-    return struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
-
-
-def stl(vertices, triangles):
-    """A binary STL."""
-    facets = b"".join(struct.pack("<3f", 0, 0, 0) + b"".join(struct.pack("<3f", *vertices[i]) for i in t) + b"\0\0" for t in triangles)
-    return b"made for damage".ljust(80) + struct.pack("<I", len(triangles)) + facets
-
-
-def read_obj(file):
-    vertices, triangles = [], []
-    for line in file.read_text().splitlines():
-        parts = line.split()
-        if parts[:1] == ["v"]:
-            vertices.append([float(x) for x in parts[1:4]])
-        elif parts[:1] == ["f"]:
-            corners = [int(p.split("/")[0]) - 1 for p in parts[1:]]
-            triangles += [(corners[0], corners[k], corners[k + 1]) for k in range(1, len(corners) - 1)]
-    return vertices, triangles
-
-
-CAGE = """v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1
-f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8
-t interpolateboundary 1/0/0 1
-t crease 2/1/0 0 1 2.5
-t crease 2/1/0 1 2 10
-t corner 1/1/0 6 3.0
-"""
-
-
-def originals(limn, folder):
-    """kind -> file."""
-    files = {}
-    scene = folder / "egg.toml"
-    scene.write_text(SCENE)
-    files["toml"] = scene
-    ball = folder / "ball.toml"
-    ball.write_text('[[object]]\nshape = "ellipsoid"\nradii = [1.0, 0.7, 0.5]\n')
-    for ending in ("obj", "ply"):
-        files[ending] = folder / f"ball.{ending}"
-        must([limn, "export", ball, "-o", files[ending], "--level", "1", "--quiet"])
-    cage = folder / "cage.obj"
-    cage.write_text(CAGE)
-    files["obj with tags"] = cage
-    vertices, triangles = read_obj(files["obj"])
-    for ending, data in (("glb", glb(vertices, triangles)), ("stl", stl(vertices, triangles))):
-        files[ending] = folder / f"ball.{ending}"
-        files[ending].write_bytes(data)
-    files["vdb"] = folder / "ball.vdb"
-    must([limn, "export", ball, "-o", files["vdb"], "--surface", "level_set", "--voxels", "24", "--quiet"])
-    if shutil.which("vdb_tool"):
-        for codec in ("none", "zip", "blosc"):
-            files[f"vdb {codec}"] = folder / f"sphere-{codec}.vdb"
-            must(["vdb_tool", "-quiet", "-sphere", "dim=24", "-write", f"codec={codec}", files[f"vdb {codec}"]])
-    picture = folder / "picture"
-    must([limn, "render", ball, "-o", f"{picture}.exr", "--size", "24x16", "--quiet"])
-    must([limn, "render", ball, "-o", f"{picture}.png", "--size", "24x16", "--quiet"])
-    files["exr"], files["png"] = folder / "picture.exr", folder / "picture.png"
-    study = folder / "study"
-    must([limn, "study", ball, "-o", study, "--shard", "1/1", "--levels", "1", "--voxels", "16", "--views", "1", "--size", "32x24", "--quiet"])
-    files["shard"] = study
-    return files
-
-
-TELLING = (0, 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0x00010000, 0x7FC00000, 0x7F800000)
-
-
-def damage(data, random_numbers):
-    data = bytearray(data)
-    for _ in range(random_numbers.choice((1, 1, 1, 2, 3))):
-        if not data:
-            break
-        at = random_numbers.randrange(len(data))
-        length = min(random_numbers.choice((1, 4, 16, 64, 256)), len(data) - at)
-        way = random_numbers.randrange(5)
-        if way == 0:
-            for _ in range(random_numbers.choice((1, 2, 8))):
-                data[random_numbers.randrange(len(data))] ^= 1 << random_numbers.randrange(8)
-        elif way == 1:
-            del data[at:]
-        elif way == 2:
-            data[at:at] = data[at:at + length]
-        elif way == 3:
-            del data[at:at + length]
-        else:
-            data[at:at + 4] = struct.pack(random_numbers.choice(("<I", ">I")), random_numbers.choice(TELLING))
-    return bytes(data)
-
-
-def limits():
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY_LIMIT, MEMORY_LIMIT))
-
-
-def command_for(limn, kind, file, out):
+def commands(limn, kind, file, out):
+    """The calls that mutants of a kind go through by turns, and what each writes."""
     if kind == "shard":
-        return [limn, "merge", file, "-o", out, "--quiet"], out
-    if kind in ("exr", "png"):
-        return [limn, "info", file], None
-    picture = out.with_suffix(".png")
-    return [limn, "render", file, "-o", picture, "--size", "32x24", "--threads", "1", "--quiet"], picture
+        return [([limn, "merge", file, "-o", out / "merged", "--quiet"], out / "merged")]
+    if kind in originals.PICTURES:
+        return [([limn, "info", file], None), ([limn, "info", file, "--json"], None)]
+    picture, mesh, volume = out / "out.png", out / "out.obj", out / "out.vdb"
+    render = ([limn, "render", file, "-o", picture, "--size", "32x24", "--threads", "1", "--quiet"], picture)
+    layers = ([limn, "render", file, "-o", out / "out.exr", "--size", "32x24", "--threads", "1", "--quiet"], out / "out.exr")
+    to_volume = ([limn, "export", file, "-o", volume, "--threads", "1", "--quiet"] + ([] if kind.startswith("vdb") else ["--voxels", "16"]), volume)
+    to_mesh = ([limn, "export", file, "-o", mesh, "--threads", "1", "--quiet"] + (["--voxels", "16"] if kind == "toml" else []), mesh)
+    if kind.startswith("vdb"):
+        to_mesh[0].extend(["--surface", "level_set"])
+    return [render, to_volume, layers, ([limn, "info", file], None)] + ([] if kind == "toml" else [to_mesh])
 
 
-def wrong_with(done, seconds, file, made):
-    """What the program did that it may not; empty where nothing."""
-    said = done.stderr.decode(errors="replace")
-    if done.returncode not in (0, 2):
-        return f"ended with {done.returncode}"
-    if seconds > TIME_LIMIT_S:
-        return f"took {seconds:.0f} s"
-    if done.returncode == 0:
-        return ""
-    if made and made.exists():
-        return "left an output behind"
-    if file.name not in said and file.stem not in said:
+def message_fault(done, kind, file):
+    lines = done.err_lines
+    if not lines:
+        return "says nothing"
+    if any(not line.startswith("limn: ") for line in lines):
+        return "says something that is not limn's"
+    last = lines[-1]
+    if file.name not in last:
         return "does not name the file"
-    if not said.strip() or len(said.strip().splitlines()) > 3:
-        return f"says {len(said.splitlines())} lines"
-    return ""
+    reason = last[last.index(file.name) + len(file.name):]
+    return "" if re.search(r"[a-z]{3}", reason) else "gives no reason"
 
 
-def write_mutant(kind, original, data, folder, number):
+def fault(done, kind, file, output):
+    """What the program did that it may not; empty where nothing."""
+    if done.timed_out or done.seconds > TIME_LIMIT_S:
+        return f"took {done.seconds:.0f} s"
+    if done.code not in ((0, 1, 2) if kind == "shard" else (0, 2)):
+        return f"ended with {done.code}"
+    if done.peak_bytes > MEMORY_LIMIT:
+        return f"took {done.peak_bytes >> 20} MB"
+    if done.code == 0:
+        return "wrote nothing" if output and not output.exists() else ""
+    # A part that lost its last cells is a part of a study that was stopped: the rest is merged, the missing ones are named.
+    if done.code == 1:
+        return "" if output.exists() and "missing" in done.err else "ended with 1"
+    if output and output.exists():
+        return "left an output behind"
+    return message_fault(done, kind, file)
+
+
+def try_one(limn, kind, file, work, turn):
+    """Runs it once. (what ended how, its fault)"""
+    out = work / "out"
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir()
+    calls = commands(limn, kind, file, out)
+    command, output = calls[turn % len(calls)]
+    before = child.contents(work, but=("out",))
+    done = child.run(command, seconds=2 * TIME_LIMIT_S, address_space=ADDRESS_SPACE)
+    found = fault(done, kind, file, output)
+    left = [name for name in child.contents(out) if output is None or not (out / name).is_relative_to(output) or done.code == 2]
+    hidden = [str(p.relative_to(work)) for p in work.rglob(".limn-*")]
+    if not found and (left or hidden):
+        found = f"left {', '.join(left + hidden)}"
+    if not found and child.contents(work, but=("out",)) != before:
+        found = "changed its input"
+    return done, found, command
+
+
+def place_mutant(kind, original, data, work, number):
     """A copy of the original with other bytes: for a shard, of its folder with one file of it changed."""
-    if kind != "shard":
-        file = folder / f"mutant{original.suffix}"
+    if original.is_file():
+        file = work / f"mutant{original.suffix}"
         file.write_bytes(data)
         return file
-    copy = folder / "mutant-study"
+    copy = work / "mutant"
     shutil.rmtree(copy, ignore_errors=True)
     shutil.copytree(original, copy)
-    parts = sorted(p for p in copy.rglob("*") if p.is_file())
+    parts = originals.files_of(copy)
     parts[number % len(parts)].write_bytes(data)
     return copy
 
 
-def source_of(kind, original, number):
-    if kind != "shard":
-        return original.read_bytes()
-    parts = sorted(p for p in original.rglob("*") if p.is_file())
-    return parts[number % len(parts)].read_bytes()
+def keep(file, failed, name):
+    failed.mkdir(exist_ok=True)
+    if file.is_dir():
+        shutil.copytree(file, failed / name, dirs_exist_ok=True)
+    else:
+        shutil.copy(file, failed / (name + file.suffix))
 
 
-def try_one(limn, kind, file, folder):
-    out = folder / "out"
-    shutil.rmtree(out, ignore_errors=True)
-    before = sorted(p.name for p in folder.iterdir())
-    command, made = command_for(limn, kind, file, out)
-    if made and made.exists():
-        made.unlink()
-        before.remove(made.name)
-    start = time.monotonic()
-    try:
-        done = run(command, preexec_fn=limits, timeout=2 * TIME_LIMIT_S)
-    except subprocess.TimeoutExpired:
-        return -1, f"took more than {2 * TIME_LIMIT_S} s", ""
-    wrong = wrong_with(done, time.monotonic() - start, file, made)
-    left = [name for name in sorted(p.name for p in folder.iterdir()) if name not in before and not (made and name == made.name)]
-    if not wrong and left:
-        wrong = f"left {', '.join(left)}"
-    return done.returncode, wrong, done.stderr.decode(errors="replace").strip()
+class Tally:
+    def __init__(self, kind):
+        self.kind, self.tried, self.worst_s, self.peak = kind, 0, 0.0, 0
+        self.ends, self.guarded, self.failures = collections.Counter(), collections.Counter(), []
+
+    def count(self, done, found, name, command):
+        self.tried += 1
+        self.worst_s, self.peak = max(self.worst_s, done.seconds), max(self.peak, done.peak_bytes)
+        self.ends[{0: "read", 1: "incomplete", 2: "refused"}.get(done.code, "other")] += 1
+        for words, cause in GUARD_WORDS.items():
+            if done.code == 2 and words in done.err:
+                self.guarded[cause] += 1
+                break
+        if found:
+            self.failures.append({"mutant": name, "fault": found, "said": done.err.strip()[:400], "command": " ".join(map(str, command))})
+            print(f"{self.kind}, {name}: {found}\n  {' '.join(map(str, command))}\n  {done.err.strip()[:400]}", flush=True)
+
+    def record(self):
+        return {"kind": self.kind, "tried": self.tried, "read": self.ends["read"], "refused": self.ends["refused"],
+                "incomplete": self.ends["incomplete"], "reader_ended_by": dict(self.guarded), "slowest_s": round(self.worst_s, 2),
+                "peak_mb": self.peak >> 20, "failures": self.failures}
+
+    def line(self):
+        r = self.record()
+        guarded = "".join(f", {n} by the reader's {cause}" for cause, n in sorted(self.guarded.items()))
+        lost = f", {r['incomplete']} incomplete" if r["incomplete"] else ""
+        return (f"{self.kind:14} {self.tried:5} mutants: {r['read']:4} read{lost}, {r['refused']:4} refused{guarded}; slowest {r['slowest_s']:.1f} s, "
+                f"most {r['peak_mb']} MB; {len(self.failures)} wrong")
 
 
-def try_kind(limn, kind, original, folder, count, seed, keep):
-    result = {"kind": kind, "mutants": count, "read": 0, "refused": 0, "wrong": 0}
-    code, wrong, said = try_one(limn, kind, write_mutant(kind, original, source_of(kind, original, 0), folder, 0), folder)
-    if kind not in ("exr", "png") and code != 0:
-        sys.exit(f"mutants: the undamaged {kind} is refused, which would prove nothing: {said}")
+def try_kind(limn, kind, original, folder, count, seed):
+    work = folder / "work"
+    tally = Tally(kind)
+    sources = [file.read_bytes() for file in originals.files_of(original)]
+    for turn in range(len(commands(limn, kind, original, work))):
+        done, found, command = try_one(limn, kind, place_mutant(kind, original, sources[0], work, 0), work, turn)
+        if done.code != 0 or found:
+            sys.exit(f"mutants: the undamaged {kind} is refused, which would prove nothing: {found} {done.err}\n  {' '.join(map(str, command))}")
     for number in range(count):
         random_numbers = random.Random(f"{seed} {kind} {number}")
-        data = damage(source_of(kind, original, number), random_numbers)
-        file = write_mutant(kind, original, data, folder, number)
-        code, wrong, said = try_one(limn, kind, file, folder)
-        result["read" if code == 0 else "refused"] += 1
-        if wrong:
-            result["wrong"] += 1
-            print(f"{kind}, seed {seed}, mutant {number}: {wrong}\n  {said[:400]}", flush=True)
-            if keep:
-                kept = folder.parent / "failed" / f"{kind.replace(' ', '-')}-{seed}-{number}{original.suffix}"
-                kept.parent.mkdir(exist_ok=True)
-                shutil.copytree(file, kept, dirs_exist_ok=True) if file.is_dir() else shutil.copy(file, kept)
-    return result
+        data = mutation.damage(sources[number % len(sources)], kind in TEXT_KINDS, random_numbers)
+        file = place_mutant(kind, original, data, work, number)
+        done, found, command = try_one(limn, kind, file, work, number // len(sources))
+        tally.count(done, found, f"seed {seed} number {number}", command)
+        if found:
+            keep(file, folder / "failed", f"{kind.replace(' ', '-')}-{seed}-{number}")
+    return tally
+
+
+def try_corpus(limn, folder):
+    """Every file of it through every command."""
+    tally = Tally("corpus")
+    for kept in sorted((HERE / "corpus").iterdir()):
+        kind = KIND_OF_ENDING.get(kept.suffix, kept.suffix[1:])
+        for turn in range(len(commands(limn, kind, kept, folder))):
+            work = folder / "work"
+            shutil.rmtree(work, ignore_errors=True)
+            work.mkdir()
+            file = work / kept.name
+            shutil.copytree(kept, file) if kept.is_dir() else shutil.copy(kept, file)
+            done, found, command = try_one(limn, kind, file, work, turn)
+            tally.count(done, found, f"corpus/{kept.name}", command)
+    return tally
 
 
 def main():
@@ -255,31 +191,29 @@ def main():
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=None)
     parser.add_argument("--kind", action="append")
-    parser.add_argument("--keep", action="store_true")
+    parser.add_argument("--corpus-only", action="store_true")
     parser.add_argument("--json", type=pathlib.Path)
     options = parser.parse_args()
     seed = options.seed if options.seed is not None else int.from_bytes(os.urandom(4), "little")
     print(f"seed {seed}", flush=True)
-    shutil.rmtree(options.folder / "work", ignore_errors=True)
-    made, work = options.folder / "made", options.folder / "work"
-    for folder in (made, work):
-        folder.mkdir(parents=True, exist_ok=True)
-    limn = options.limn.resolve()
-    results = []
-    for kind, original in originals(limn, made).items():
-        if options.kind and kind not in options.kind:
-            continue
-        results.append(try_kind(limn, kind, original, work, options.count, seed, options.keep))
-        r = results[-1]
-        print(f"{kind:14} {r['mutants']:5} mutants: {r['read']:4} read, {r['refused']:4} refused, {r['wrong']:3} wrong", flush=True)
-    for file in sorted((HERE / "corpus").glob("*")) if (HERE / "corpus").is_dir() else []:
-        code, wrong, said = try_one(limn, "corpus", file, work)
-        results.append({"kind": f"corpus/{file.name}", "mutants": 1, "read": int(code == 0), "refused": int(code != 0), "wrong": int(bool(wrong))})
-        if wrong:
-            print(f"corpus/{file.name}: {wrong}\n  {said[:400]}")
+    limn, folder = options.limn.resolve(), options.folder.resolve()
+    tallies = []
+    if not options.corpus_only:
+        shutil.rmtree(folder / "made", ignore_errors=True)
+        (folder / "made").mkdir(parents=True)
+        for kind, original in originals.make(limn, folder / "made").items():
+            if options.kind and kind not in options.kind:
+                continue
+            shutil.rmtree(folder / "work", ignore_errors=True)
+            (folder / "work").mkdir()
+            tallies.append(try_kind(limn, kind, original, folder, options.count, seed))
+            print(tallies[-1].line(), flush=True)
+    folder.mkdir(parents=True, exist_ok=True)
+    tallies.append(try_corpus(limn, folder))
+    print(tallies[-1].line(), flush=True)
     if options.json:
-        options.json.write_text(json.dumps({"seed": seed, "kinds": results}, indent=1) + "\n")
-    sys.exit(1 if any(r["wrong"] for r in results) else 0)
+        options.json.write_text(json.dumps({"seed": seed, "kinds": [t.record() for t in tallies]}, indent=1) + "\n")
+    sys.exit(1 if any(t.failures for t in tallies) else 0)
 
 
 if __name__ == "__main__":

@@ -224,6 +224,15 @@ TEST(StudyMerge, RefusesPartsOfDifferentStudies) {
   EXPECT_FALSE(fs::exists(folder.path() / "out"));
 }
 
+TEST(StudyMerge, APartThatCannotBeReadLeavesNothingOfTheOthers) {
+  const TemporaryFolder folder;
+  const fs::path good = make_part(folder.path() / "part-1-of-2", some_record(3), {some_cell(1)});
+  const fs::path bad = make_part(folder.path() / "part-2-of-2", some_record(3), {some_cell(2)});
+  std::ofstream(bad / "rows.jsonl", std::ios::app) << "{\"key\"\n";
+  EXPECT_THROW(merge_parts({good, bad}, folder.path() / "out"), InputError);
+  EXPECT_FALSE(fs::exists(folder.path() / "out"));
+}
+
 TEST(StudyMerge, FindsFinishedPartsAndLeavesOutTheOthers) {
   const TemporaryFolder folder;
   EXPECT_THROW(parts_in(folder.path()), InputError);

@@ -10,5 +10,7 @@ namespace limn {
 
 /// The whole page, without requests to anywhere. Pictures are read from `folder` and held in the page.
 std::string stability_page(const StabilityResults& results, const std::filesystem::path& folder);
+/// A Markdown table of outcomes: the catalogue's rows down, how many cells came out how across, the sum below.
+std::string stability_markdown(const StabilityResults& results);
 
 }  // namespace limn

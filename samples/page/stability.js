@@ -46,10 +46,10 @@ function fill(mark) {
     ["surface", cell.surface.replaceAll("_", " ")],
     ["method", cell.method || "none: the surface itself"],
     ["number", cell.number === null ? "" : number(cell.number) + unit],
-    ["bound", cell.number === null ? "" : `${number(cell.bound)}${unit}, at the outmost ${number(cell.outer)}${unit}`],
+    ["bound", cell.number === null ? "" : cell.outer > cell.bound ? `${number(cell.bound)}${unit}; degraded up to ${number(cell.outer)}${unit}` : number(cell.bound) + unit],
     ["must hold", about.holds],
     ["looked at", about.looks],
-    ["drawn", drawn],
+    ["parameters", drawn],
     ["draws", group.cells.length > 1 ? `${group.cells.length}, this is the worst` : ""],
   ]));
   if (cell.said.length) {

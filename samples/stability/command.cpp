@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "samples/job.h"
+#include "samples/stability/page.h"
 #include "samples/stability/run.h"
 #include "sdf/error.h"
 #include "sdf/output_file.h"
@@ -75,11 +76,14 @@ int study_stability(const Options& options, ProgressBar& bar) {
   const std::filesystem::path records = folder / "results.json";
   Json document = stability_json(results);
   write_whole(records, document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  const std::filesystem::path page = folder / "report.html", table = folder / "table.md";
+  write_whole(page, stability_page(results, folder));
+  write_whole(table, stability_markdown(results));
   if (options.json) {
-    document["files"] = {records.string()};
+    document["files"] = {records.string(), page.string(), table.string()};
     print_json(document);
   } else if (!options.quiet) {
-    print_text(summary(results) + records.string() + "\n");
+    print_text(summary(results) + records.string() + "\n" + page.string() + "\n" + table.string() + "\n");
   }
   return count(results, StabilityOutcome::wrong) > 0 ? 1 : 0;
 }

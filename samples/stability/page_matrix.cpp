@@ -59,6 +59,15 @@ std::string mark_html(const StabilityResults& results, const StabilityMark& mark
       quiet || short_number(cell).empty() ? "" : "<small>" + short_number(cell) + "</small>");
 }
 
+std::string breakable(const std::string& text) {
+  std::string html;
+  for (const char letter : escaped(text)) {
+    html += letter;
+    if (letter == '_' || letter == '=') html += "<wbr>";
+  }
+  return html;
+}
+
 /// One method's marks in one case: those with the same parameters stand together under them.
 std::string cell_html(const StabilityResults& results, const std::vector<StabilityMark>& marks, const std::string& case_name,
                       const std::string& column) {
@@ -74,7 +83,7 @@ std::string cell_html(const StabilityResults& results, const std::vector<Stabili
       fmt::format("<td role=\"cell\"{} data-method=\"{}\">", variants.empty() ? " class=\"empty\"" : "", column.empty() ? kAlone : column);
   for (const std::string& variant : variants) {
     html += "<div class=\"marks\">";
-    if (!variant.empty()) html += "<small class=\"variant\">" + escaped(variant) + "</small>";
+    if (!variant.empty()) html += "<small class=\"variant\">" + breakable(variant) + "</small>";
     html += inside[variant] + "</div>";
   }
   return html + "</td>";

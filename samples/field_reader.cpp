@@ -28,8 +28,9 @@ Placement read_transform(TomlReader& reader) {
   if (const auto turn = reader.numbers("rotate", 4, "[axis x, axis y, axis z, degrees] would be right")) {
     placement.axis = {(*turn)[0], (*turn)[1], (*turn)[2]};
     placement.angle = (*turn)[3] * std::numbers::pi / 180.0;
-    if (glm::length(placement.axis) == 0.0) {
-      reader.fail(*reader.take("rotate"), "rotate", "the axis has no length", "an axis such as [0, 1, 0, degrees] would be right");
+    if (!(glm::length(placement.axis) > 0.0) || !std::isfinite(glm::length(placement.axis)) || !std::isfinite(placement.angle)) {
+      reader.fail(*reader.take("rotate"), "rotate", "the axis has no length, or a number is not finite",
+                  "an axis such as [0, 1, 0, degrees] would be right");
     }
   }
   const toml::node* scale = reader.take("scale");
@@ -86,7 +87,9 @@ Field read_csg(TomlReader& reader) {
 
 }  // namespace
 
-Field read_field(TomlReader& reader) {
+namespace {
+
+Field read_parts(TomlReader& reader) {
   if (reader.has("shape") == reader.has("csg")) {
     reader.fail(reader.has("shape") ? "both shape and csg" : "neither shape nor csg", "one of the two would be right");
   }
@@ -96,6 +99,21 @@ Field read_field(TomlReader& reader) {
     field = shell(field, *thickness);
   }
   return place(field, read_transform(reader));
+}
+
+}  // namespace
+
+Field read_field(TomlReader& reader) {
+  try {
+    return read_parts(reader);
+  } catch (const InputError& error) {
+    // What a field refuses of itself says nothing of the file that asked for it.
+    InputFault fault = error.fault();
+    if (!fault.file.empty()) throw;
+    fault.file = reader.file();
+    fault.field = reader.field(fault.field);
+    throw InputError(fault);
+  }
 }
 
 Affine read_placement(TomlReader& reader) {

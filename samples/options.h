@@ -49,6 +49,7 @@ struct Options {
 
   std::vector<std::filesystem::path> outputs;
   bool no_clobber = false;
+  bool no_timings = false;
   bool json = false;
   bool quiet = false;
   bool verbose = false;

@@ -62,6 +62,7 @@ struct Comparison {
   std::vector<ComparedMethod> methods;
   std::vector<ComparedModel> models;  ///< The first is the reference.
   std::vector<Cell> cells;            ///< All methods of the first model, then of the next.
+  bool with_times = true;             ///< Measured times are shown and written; without them equal calls write equal bytes.
   Window seen;                        ///< The part of the pictures where any model hits something, with a margin; panels show that.
 
   const ComparedModel& reference() const { return models.front(); }

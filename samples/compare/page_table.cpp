@@ -44,6 +44,14 @@ void add_metric_columns(const Comparison& comparison, const Cell& cell, std::vec
   }
 }
 
+void add_time_columns(std::vector<Column>& columns) {
+  columns.push_back({"border", "ms", true, "", [](const Comparison&, const Cell& cell) { return cell.border_ms; }, milliseconds});
+  columns.push_back(
+      {"build", "ms", true, "", [](const Comparison& all, const Cell& cell) { return all.model_of(cell).info.build_ms; }, milliseconds});
+  columns.push_back(
+      {"trace", "ms", true, "", [](const Comparison& all, const Cell& cell) { return all.model_of(cell).trace_ms; }, milliseconds});
+}
+
 std::vector<Column> columns_of(const Comparison& comparison) {
   std::vector<Column> columns;
   const auto first =
@@ -51,11 +59,7 @@ std::vector<Column> columns_of(const Comparison& comparison) {
   if (first != comparison.cells.end()) add_metric_columns(comparison, *first, columns);
   columns.push_back({"ink", "px", true, "", [](const Comparison&, const Cell& cell) { return cell.ink_px; },
                      [](double value) { return counted(value); }});
-  columns.push_back({"border", "ms", true, "", [](const Comparison&, const Cell& cell) { return cell.border_ms; }, milliseconds});
-  columns.push_back(
-      {"build", "ms", true, "", [](const Comparison& all, const Cell& cell) { return all.model_of(cell).info.build_ms; }, milliseconds});
-  columns.push_back(
-      {"trace", "ms", true, "", [](const Comparison& all, const Cell& cell) { return all.model_of(cell).trace_ms; }, milliseconds});
+  if (comparison.with_times) add_time_columns(columns);
   columns.push_back({"memory", "MB", true, "",
                      [](const Comparison& all, const Cell& cell) { return static_cast<double>(all.model_of(cell).info.bytes) / 1e6; },
                      [](double value) { return fmt::format("{:.2f}", value); }});

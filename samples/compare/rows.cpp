@@ -40,9 +40,11 @@ Json cell_json(const Comparison& comparison, const Cell& cell) {
   }
   json["hits"] = model.counts.hits;
   json["out_of_steps"] = model.counts.out_of_steps;
-  json["build_ms"] = model.info.build_ms;
-  json["trace_ms"] = model.trace_ms;
-  json["border_ms"] = cell.border_ms;
+  if (comparison.with_times) {
+    json["build_ms"] = model.info.build_ms;
+    json["trace_ms"] = model.trace_ms;
+    json["border_ms"] = cell.border_ms;
+  }
   json["bytes"] = model.info.bytes;
   json["voxels"] = model.info.voxels;
   json["triangles"] = model.info.triangles;
@@ -80,7 +82,7 @@ void add_rows(const Comparison& comparison, const Cell& cell, Json& rows) {
     row["metric"] = value.name;
     row["value"] = number_or_null(value.value);
     row["unit"] = value.unit;
-    row["time_ms"] = time_ms_of(comparison, cell);
+    row["time_ms"] = comparison.with_times ? Json(time_ms_of(comparison, cell)) : Json(nullptr);
     row["bytes"] = model.info.bytes;
     // As time and memory: of the cell, and so on each of its rows, that a row can be judged by itself.
     row["notes"] = notes;

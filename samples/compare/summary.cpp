@@ -33,8 +33,8 @@ std::string cell_sentence(const Comparison& comparison, const Cell& cell) {
   const double mean = value_of(comparison, cell, "normal_error_mean"), worst = value_of(comparison, cell, "normal_error_max");
   if (std::isfinite(mean))
     text += fmt::format("; normals are off by {} degrees on average and {} at worst", short_number(mean), short_number(worst));
-  return text + fmt::format("; built in {}, traced in {}, {} held.", time_text(model.info.build_ms), time_text(model.trace_ms),
-                            bytes_text(static_cast<double>(model.info.bytes)));
+  if (comparison.with_times) text += fmt::format("; built in {}, traced in {}", time_text(model.info.build_ms), time_text(model.trace_ms));
+  return text + fmt::format("{} {} held.", comparison.with_times ? "," : ";", bytes_text(static_cast<double>(model.info.bytes)));
 }
 
 size_t drawn_models(const Comparison& comparison) {

@@ -53,11 +53,12 @@ std::vector<std::string> caption_lines(const Comparison& comparison, const Cell&
   }
   if (comparison.is_matrix()) {
     const double ms = time_ms_of(comparison, cell);
-    lines.push_back(fmt::format("drawn in {}, with its model {}", time_text(cell.border_ms), time_text(ms)));
+    if (comparison.with_times) lines.push_back(fmt::format("drawn in {}, with its model {}", time_text(cell.border_ms), time_text(ms)));
   } else {
     const double mean = value_of(comparison, cell, "normal_error_mean"), worst = value_of(comparison, cell, "normal_error_max");
     if (std::isfinite(mean)) lines.push_back(fmt::format("normals off by {} deg, worst {} deg", short_number(mean), short_number(worst)));
-    lines.push_back(fmt::format("build {}, trace {}", time_text(model.info.build_ms), time_text(model.trace_ms)));
+    if (comparison.with_times)
+      lines.push_back(fmt::format("build {}, trace {}", time_text(model.info.build_ms), time_text(model.trace_ms)));
   }
   if (model.info.bytes > 0) lines.push_back(bytes_text(static_cast<double>(model.info.bytes)) + " held");
   if (model.counts.out_of_steps > 0) lines.push_back(fmt::format("{} rays out of steps", model.counts.out_of_steps));

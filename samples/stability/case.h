@@ -13,7 +13,7 @@
 //   [[reference]] an [[object]] of the true scene, where it is not the one that is drawn
 //   [[variant]]  the scene again, changed: scale, translate, turned, reversed, threads, tile, simd = "least", set = { name = number }
 //   [[expect]]   surfaces, methods (default: all), and bound, outer, or refused = "words", or fails = [low, high] and says = "words":
-//                there the number must lie where the property does not hold and the program must say so
+//                there the number must lie where the property does not hold and the program must say so; says alone: as in [case]
 #include <map>
 #include <optional>
 

@@ -222,7 +222,8 @@ StabilityCase parse_case(const std::string& text, const std::string& file) {
     one.expectations.push_back(read_expectation(expect));
   }
   // Values once, so that a slip in the scene is told before anything runs.
-  const bool refused = std::any_of(one.expectations.begin(), one.expectations.end(), [](const auto& expect) { return !expect.refused.empty(); });
+  const bool refused =
+      std::any_of(one.expectations.begin(), one.expectations.end(), [](const auto& expect) { return !expect.refused.empty(); });
   if (!refused) scene_of_case(one, drawn_parameters(one, 0, 0));
   return one;
 }

@@ -35,9 +35,10 @@ bool says(const std::vector<std::string>& said, const std::string& words) {
   });
 }
 
-std::string unsaid(const std::vector<std::string>& said, const std::vector<std::string>& wanted) {
+/// The first that neither the cell's own sentences nor the audit's says.
+std::string unsaid(const StabilityEvent& event, const std::vector<std::string>& wanted) {
   for (const std::string& words : wanted) {
-    if (!says(said, words)) return words;
+    if (!says(event.finding->said, words) && !says(event.audit, words)) return words;
   }
   return {};
 }
@@ -69,12 +70,14 @@ void judge(const StabilityCase& one, const StabilityEvent& event, StabilityCell&
     cell.message += fmt::format(" (must be refused with '{}')", expect.refused);
   } else if (held || degraded) {
     cell.outcome = held ? StabilityOutcome::held : StabilityOutcome::degraded;
-    if (const std::string words = unsaid(finding.said, one.says); !words.empty()) {
+    std::vector<std::string> wanted = one.says;
+    if (!expect.fails) wanted.insert(wanted.end(), expect.says.begin(), expect.says.end());
+    if (const std::string words = unsaid(event, wanted); !words.empty()) {
       cell.outcome = StabilityOutcome::wrong;
       cell.message += fmt::format(" (nothing says '{}' with a number)", words);
     }
   } else if (expect.fails && expect.fails->first <= finding.number && finding.number <= expect.fails->second) {
-    const std::string words = unsaid(finding.said, expect.says);
+    const std::string words = unsaid(event, expect.says);
     cell.outcome = words.empty() ? StabilityOutcome::fails_as_expected : StabilityOutcome::wrong;
     if (!words.empty()) cell.message += fmt::format(" (fails, and nothing says '{}' with a number)", words);
   } else {

@@ -10,6 +10,7 @@ namespace limn {
 struct StabilityEvent {
   std::optional<StabilityFinding> finding{};
   std::string refused{};
+  std::vector<std::string> audit{};  ///< All that the audit counted, whatever the surface and the method.
 };
 
 /// Fills outcome, number, bound, outer, message and said of a cell whose case, surface and method are set.

@@ -46,11 +46,13 @@ StabilityEvent look(Workshop& shop, const StabilityCheck& check, const MethodCal
   try {
     StabilityEvent event;
     event.finding = check.run(shop, method, with);
-    add_said(said_of(shop.stage(), method == nullptr ? "" : method->method->about.name), event.finding->said);
+    // What is looked at without a method is the rim's surface.
+    add_said(said_of(shop.stage(), method == nullptr ? "rim" : method->method->about.name), event.finding->said);
+    for (const Finding& finding : shop.stage().findings) event.audit.push_back("audit: " + finding.message);
     if (event.finding->said.size() > kMostSaid) event.finding->said.resize(kMostSaid);
     return event;
   } catch (const InputError& error) {
-    return {std::nullopt, error.what()};
+    return {std::nullopt, error.what(), {}};
   }
 }
 

@@ -194,9 +194,7 @@ Image<glm::vec4> picture_of(const StabilityStage& stage, const StabilityView& vi
 
 std::vector<std::string> said_of(const StabilityStage& stage, const std::string& method) {
   std::vector<std::string> said = stage.warnings;
-  const std::vector<std::string> surfaces{stage.settings.kind};
-  std::vector<std::string> methods;
-  if (!method.empty()) methods.push_back(method);
+  const std::vector<std::string> surfaces{stage.settings.kind}, methods{method};
   for (const Finding& finding : stage.findings) {
     if (matters(finding, surfaces, methods)) add_said({"audit: " + finding.message}, said);
   }

@@ -68,7 +68,7 @@ class Workshop {
 Border draw_border(const StabilityStage& stage, const StabilityView& view, const MethodCall& method);
 /// The view shaded, with ink over it.
 Image<glm::vec4> picture_of(const StabilityStage& stage, const StabilityView& view, const Border* border = nullptr);
-/// What model and audit say that bears on the surface and the method (empty: none); each sentence of the audit starts with "audit: ".
+/// What model and audit say that bears on the surface and the method; each sentence of the audit starts with "audit: ".
 std::vector<std::string> said_of(const StabilityStage& stage, const std::string& method);
 /// Adds what is not there yet.
 void add_said(const std::vector<std::string>& more, std::vector<std::string>& said);

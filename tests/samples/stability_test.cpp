@@ -1,0 +1,222 @@
+// The corpus of stability cases, and the engine that runs it: each outcome can come about, and equal seeds give equal records.
+
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <random>
+#include <set>
+
+#include "run_program.h"
+#include "samples/stability/run.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+/// The catalogue's rows; each must have a case.
+const std::vector<std::string>& rows() {
+  static const std::vector<std::string> all{
+      "cube, flat faces",
+      "cylinder seen down its axis",
+      "hard corners, extrusion",
+      "crease",
+      "Schwarz lantern, slivers",
+      "extraordinary vertex",
+      "degenerate parametrisation (poles, collapsed quads), zero-area and duplicate faces",
+      "cusp",
+      "medial axis, centre of a sphere, axis of a torus",
+      "CSG, smooth blends, non-uniform scale",
+      "gradient of a box or a max at an edge",
+      "trilinear field",
+      "grazing ray, chord inside one step or voxel",
+      "narrow band too thin for the gradient stencil",
+      "sheet thinner than two voxels, gap below one",
+      "open, non-manifold, nested, self-intersecting mesh",
+      "inverted orientation",
+      "object at 1e6 from the origin",
+      "everything scaled by 1e-3 and 1e3",
+      "sub-pixel camera motion",
+      "plane at any tilt, depth edges",
+      "camera inside the object, empty model, object behind the camera, field of view 0 or 180, image 1x1, 16384 wide",
+      "threads 1..N, any tile size, SIMD on or off",
+  };
+  return all;
+}
+
+std::string words_of(const StabilityCell& cell) {
+  return fmt::format("{} on {}{}: {}; again: limn study stability --case {} --seed {} --draws {}", cell.case_name, cell.surface,
+                     cell.method.empty() ? "" : " by " + cell.method, cell.message, cell.case_name, cell.seed, cell.draw + 1);
+}
+
+TEST(StabilityCorpus, HasACaseForEveryRowOfTheCatalogue) {
+  std::set<std::string> found, names;
+  for (const StabilityCase& one : stability_corpus()) {
+    found.insert(one.text.row);
+    EXPECT_TRUE(names.insert(one.text.name).second) << one.text.name;
+    EXPECT_TRUE(std::find(rows().begin(), rows().end(), one.text.row) != rows().end()) << one.text.name << ": " << one.text.row;
+  }
+  for (const std::string& row : rows()) EXPECT_TRUE(found.contains(row)) << row;
+}
+
+/// LIMN_ALL=1: everything the corpus holds, several draws; else a few cells drawn at random.
+TEST(StabilityCorpus, NothingIsWrongWhateverTheSeed) {
+  const bool all = std::getenv("LIMN_ALL") != nullptr;
+  const std::vector<StabilityCase> corpus = stability_corpus();
+  std::random_device entropy;
+  std::mt19937 random(entropy());
+  const auto start = static_cast<std::uint64_t>(random() % 1'000'000'000);
+  fmt::print("seeds from {}\n", start);
+  if (all) {
+    StabilityRunSettings settings;
+    settings.seed = start;
+    settings.draws = 4;
+    for (const StabilityCell& cell : run_stability(corpus, settings).cells)
+      EXPECT_NE(cell.outcome, StabilityOutcome::wrong) << words_of(cell);
+    return;
+  }
+  std::vector<size_t> order(corpus.size());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::shuffle(order.begin(), order.end(), random);
+  constexpr size_t kCases = 16;
+  for (size_t i = 0; i < kCases; ++i) {
+    const StabilityCase& one = corpus[order[i]];
+    StabilityRunSettings settings;
+    settings.seed = start + i;
+    settings.draws = 1;
+    settings.surfaces = {one.surfaces[random() % one.surfaces.size()]};
+    for (const StabilityCell& cell : run_stability({one}, settings).cells)
+      EXPECT_NE(cell.outcome, StabilityOutcome::wrong) << words_of(cell);
+  }
+}
+
+TEST(StabilityCorpus, DrawnParametersLieInTheirRangesAndHangOnTheSeedAlone) {
+  const std::vector<StabilityCase> corpus = stability_corpus();
+  EXPECT_TRUE(rc::check([&corpus](std::uint64_t seed) {
+    for (const StabilityCase& one : corpus) {
+      for (const int draw : {0, 3}) {
+        const auto values = drawn_parameters(one, seed, draw);
+        RC_ASSERT(values == drawn_parameters(one, seed, draw));
+        for (const auto& [name, range] : one.random) {
+          RC_ASSERT(values.at(name) >= range.low && values.at(name) <= range.high);
+          RC_ASSERT(!range.whole || values.at(name) == std::floor(values.at(name)));
+        }
+      }
+    }
+  }));
+}
+
+/// A case about a cube seen in parallel, of which `head` and `rest` say the particulars.
+std::string cube_case(const std::string& check, const std::string& head, const std::string& rest = "") {
+  return "[case]\nrow = \"r\"\nbreaks = \"b\"\nholds = \"h\"\ncheck = \"" + check + "\"\nsizes = [[40, 30]]\n" + head + "\n" + rest +
+         "\n[camera]\neye = [3, 2, 4]\northo = 4\n[surface]\nvoxels = 16\nlevel = 1\n[[object]]\nshape = \"box\"\n";
+}
+
+StabilityCell only_cell(const std::string& text) {
+  const StabilityResults results = run_stability({parse_case(text, "test.toml")}, {});
+  if (results.cells.size() != 1) throw std::runtime_error(fmt::format("{} cells", results.cells.size()));
+  return results.cells[0];
+}
+
+const std::string kRim = "surfaces = [\"analytic\"]\nmethods = [\"rim\"]\n";
+
+TEST(StabilityJudge, EveryOutcomeCanComeAbout) {
+  const std::string ink = "no_false_lines";  // A cube in the middle of the picture has some.
+  const auto outcome = [&](const std::string& head, const std::string& rest = "") { return only_cell(cube_case(ink, kRim + head, rest)); };
+  const double pixels = outcome("bound = 1e9").number;
+  ASSERT_GT(pixels, 10.0);
+  EXPECT_EQ(outcome("bound = 1e9").outcome, StabilityOutcome::held);
+  EXPECT_EQ(outcome("bound = 1\nouter = 1e9").outcome, StabilityOutcome::degraded);
+  EXPECT_EQ(outcome("bound = 1\nouter = 2").outcome, StabilityOutcome::wrong);
+  const std::string says = "says = \"undefined (zero curvature)\"";
+  EXPECT_EQ(outcome("", "[[expect]]\nfails = [1, 1e9]\n" + says).outcome, StabilityOutcome::fails_as_expected);
+  EXPECT_EQ(outcome("", "[[expect]]\nfails = [1, 1e9]\nsays = \"nothing of the kind\"").outcome, StabilityOutcome::wrong);
+  EXPECT_EQ(outcome("", "[[expect]]\nfails = [1e8, 1e9]\n" + says).outcome, StabilityOutcome::wrong);
+  EXPECT_EQ(outcome("bound = 1e9", "[[expect]]\nfails = [1, 1e9]\n" + says).outcome, StabilityOutcome::held) << "better than expected";
+  EXPECT_EQ(outcome("bound = 1e9\n" + says).outcome, StabilityOutcome::held);
+  EXPECT_EQ(outcome("bound = 1e9\nsays = \"nothing of the kind\"").outcome, StabilityOutcome::wrong);
+  EXPECT_EQ(outcome("bound = 1e9", "[[expect]]\nrefused = \"cannot\"").outcome, StabilityOutcome::wrong) << "not refused";
+  EXPECT_EQ(outcome("", "[[expect]]\nmethods = [\"sobel\"]\nbound = 1e9").outcome, StabilityOutcome::wrong) << "of another method";
+  EXPECT_EQ(outcome("", "[[expect]]\nmethods = [\"rim\"]\nsurfaces = [\"analytic\"]\nbound = 1e9").outcome, StabilityOutcome::held);
+}
+
+TEST(StabilityJudge, RefusalsHaveToBeExpectedInTheirWords) {
+  const auto refused = [](const std::string& words) {
+    return only_cell(cube_case("finite_field", "surfaces = [\"analytic\"]", words.empty() ? "" : "[[expect]]\nrefused = \"" + words + "\""))
+        .outcome;
+  };
+  EXPECT_EQ(refused(""), StabilityOutcome::wrong);
+  EXPECT_EQ(refused("no points"), StabilityOutcome::held);
+  EXPECT_EQ(refused("no lines"), StabilityOutcome::wrong);
+}
+
+TEST(StabilityJudge, WhatCannotRunIsSkippedWithItsReason) {
+  const StabilityCell cell = only_cell(cube_case("finite_outputs", "surfaces = [\"analytic\"]\nmethods = [\"edge_quads\"]"));
+  EXPECT_EQ(cell.outcome, StabilityOutcome::skipped);
+  EXPECT_FALSE(cell.message.empty());
+}
+
+TEST(StabilityRun, IsTheSameForEqualSeedsAndAnyThreads) {
+  const std::vector<StabilityCase> cases{find_stability_case("cube_faces"), find_stability_case("thin_sheet")};
+  const auto text = [&](std::uint64_t seed, int threads) {
+    StabilityRunSettings settings;
+    settings.seed = seed;
+    settings.how.threads = threads;
+    settings.longest_side_px = 40;
+    return stability_json(run_stability(cases, settings)).dump();
+  };
+  EXPECT_EQ(text(5, 1), text(5, 2));
+  EXPECT_NE(text(5, 1), text(6, 1));
+}
+
+TEST(StabilityCase, FaultsInItsFileAreToldWithTheirPlace) {
+  const auto fault = [](const std::string& text) -> std::string {
+    try {
+      parse_case(text, "test.toml");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_NE(fault(cube_case("finite_output", "")).find("'finite_outputs'"), std::string::npos);
+  EXPECT_NE(fault(cube_case("finite_outputs", "bond = 1")).find("'bound'"), std::string::npos);
+  EXPECT_NE(fault(cube_case("finite_outputs", "methods = [\"rimm\"]")).find("'rim'"), std::string::npos);
+  EXPECT_NE(fault(cube_case("finite_outputs", "", "[[expect]]\nfails = [1, 2]")).find("says"), std::string::npos);
+  EXPECT_NE(fault(cube_case("finite_outputs", "") + "radius = 3\n").find("test.toml:"), std::string::npos) << "a box has none";
+  EXPECT_NE(fault("[[object]]\nshape = \"box\"\n").find("[case]"), std::string::npos);
+}
+
+TEST(StabilityCommand, FailsWhereACellIsWrongAndWritesItsRecords) {
+  const TemporaryFolder folder;
+  const std::string good = folder.write("good.toml", cube_case("no_false_lines", kRim + "bound = 1e9"));
+  const std::string bad = folder.write("bad.toml", cube_case("no_false_lines", kRim + "bound = 1"));
+  const RunResult fine = run_limn({"study", "stability", "--case", good, "-o", folder.file("out"), "--json"});
+  EXPECT_EQ(fine.exit_code, 0) << fine.err;
+  EXPECT_EQ(fine.json().at("counts").at("held"), 1);
+  const RunResult wrong = run_limn({"study", "stability", "--case", good, "--case", bad, "-o", folder.file("out"), "--seed", "7"});
+  EXPECT_EQ(wrong.exit_code, 1) << wrong.err;
+  EXPECT_NE(wrong.out.find("wrong: bad, analytic, rim"), std::string::npos) << wrong.out;
+  EXPECT_NE(wrong.out.find("--seed 7"), std::string::npos) << wrong.out;
+  const auto written = nlohmann::json::parse(read_bytes(folder.path() / "out" / "results.json"));
+  ASSERT_EQ(written.at("cells").size(), 2u);
+  for (const auto& cell : written.at("cells")) {
+    for (const char* key : {"case", "row", "draw", "surface", "method", "outcome", "number", "unit", "bound", "outer", "message", "said",
+                            "picture", "seed", "parameters"})
+      EXPECT_TRUE(cell.contains(key)) << key;
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / std::string(cell.at("picture")))) << cell.at("picture");
+  }
+  EXPECT_EQ(run_limn({"study", "stability", "--case", good, "-o", folder.file("out"), "-q"}).out, "");
+}
+
+TEST(StabilityCommand, RefusesWhatDoesNotBelongToIt) {
+  EXPECT_EQ(run_limn({"study", "stability", "--levels", "2"}).exit_code, 2);
+  EXPECT_EQ(run_limn({"study", "ellipsoid", "--case", "cube_faces"}).exit_code, 2);
+  const RunResult unknown = run_limn({"study", "stability", "--case", "cube_face"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("'cube_faces'"), std::string::npos) << unknown.err;
+}
+
+}  // namespace
+}  // namespace limn

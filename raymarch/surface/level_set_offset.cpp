@@ -35,6 +35,17 @@ double largest_width_voxels(const LevelSetOffsetSource& source, const OffsetWidt
   return largest / (info.voxel_size * scale_of(source.world_from_object));
 }
 
+/// Makers of level sets complain of voxels and bands that nobody asked for here.
+LevelSet widened(const Maker& maker, double half_width_voxels) {
+  try {
+    return maker.source.widen(half_width_voxels);
+  } catch (const InputError& error) {
+    throw InputError({maker.source.file, "width", fmt::format("{:.0f} voxels", half_width_voxels),
+                      "the outline stands farther off than a level set can reach: " + error.fault().problem,
+                      "a narrower outline or larger voxels would be right"});
+  }
+}
+
 LevelSet wide_enough(const Maker& maker, double needed) {
   const std::lock_guard lock(maker.mutex);
   if (maker.reach >= needed) return maker.widest;
@@ -45,7 +56,7 @@ LevelSet wide_enough(const Maker& maker, double needed) {
   }
   // A little more than asked for, so that a camera that moves back slightly finds it still wide enough.
   const double wider = std::ceil(1.1 * needed);
-  maker.widest = maker.source.widen(wider);
+  maker.widest = widened(maker, wider);
   maker.reach = wider;
   return maker.widest;
 }

@@ -26,16 +26,23 @@ void erase_uuid(const std::filesystem::path& path) {
   if (!stream) throw MachineError(path.string() + ": writing failed (is the disk full?)");
 }
 
+/// What openvdb::io::File writes, to a stream of ours: it opens one itself and never looks whether what it wrote arrived.
+struct CheckedArchive : openvdb::io::Archive {
+  using Archive::write;
+};
+
 }  // namespace
 
 void write_level_set(const LevelSet& level_set, const std::filesystem::path& file) {
   const auto grid = thaw(level_set);
   write_whole(file, [&](const std::filesystem::path& path) {
     try {
-      openvdb::io::File target(path.string());
+      std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+      CheckedArchive target;
       target.setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
-      target.write({grid});
-      target.close();
+      target.write(stream, openvdb::GridCPtrVec{grid}, true);
+      stream.close();
+      if (!stream) throw std::runtime_error("is the disk full?");
     } catch (const std::exception& problem) {
       throw MachineError(file.string() + ": writing failed: " + problem.what());
     }

@@ -49,7 +49,8 @@ void change_mesh(const StabilityVariant& variant, Mesh& mesh) {
   for (const std::int32_t size : mesh.face_sizes) {
     const auto begin = mesh.corner_vertices.begin() + first;
     faces.emplace_back(begin, begin + size);
-    if (variant.turned) std::reverse(faces.back().begin(), faces.back().end());
+    // The first corner stays: fans start there.
+    if (variant.turned) std::reverse(faces.back().begin() + 1, faces.back().end());
     first += size;
   }
   if (variant.reversed) {
@@ -161,6 +162,16 @@ const StabilityStage& Workshop::stage(size_t variant) {
 const std::vector<StabilityView>& Workshop::views(size_t variant) {
   if (!views_[variant]) views_[variant] = std::make_unique<std::vector<StabilityView>>(make_views(stage(variant)));
   return *views_[variant];
+}
+
+const Workshop::Swept& Workshop::swept(double value) {
+  const auto found = swept_.find(value);
+  if (found != swept_.end()) return found->second;
+  StabilityVariant variant;
+  variant.set["sweep"] = value;
+  Swept made{make_stage(variant), {}};
+  made.views = make_views(made.stage);
+  return swept_.emplace(value, std::move(made)).first->second;
 }
 
 std::string Workshop::unsupported() const { return why_not(find_surface(surface_), scene_of_case(case_, values_).input.scene); }

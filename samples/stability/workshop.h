@@ -1,7 +1,7 @@
 #pragma once
 // What checks work with: a case's scene, modelled and seen, each model and picture made once however many methods look at it.
 
-#include <deque>
+#include <map>
 #include <memory>
 
 #include "raymarch/audit.h"
@@ -41,9 +41,12 @@ class Workshop {
   /// 0: the scene itself; i: its variant i - 1. Throws InputError.
   const StabilityStage& stage(size_t variant = 0);
   const std::vector<StabilityView>& views(size_t variant = 0);
-  /// With other values, not kept.
-  StabilityStage make_stage(const StabilityVariant& variant) const;
-  std::vector<StabilityView> make_views(const StabilityStage& stage) const;
+  /// The scene with another value for "$sweep", and its views.
+  struct Swept {
+    StabilityStage stage{};
+    std::vector<StabilityView> views{};
+  };
+  const Swept& swept(double value);
   /// What the scene is measured against: the [[reference]], else the scene as it is drawn.
   const Scene& truth_scene();
 
@@ -53,6 +56,8 @@ class Workshop {
   std::vector<MethodCall> methods();
 
  private:
+  StabilityStage make_stage(const StabilityVariant& variant) const;
+  std::vector<StabilityView> make_views(const StabilityStage& stage) const;
   const StabilityCase& case_;
   int draw_;
   std::uint64_t seed_;
@@ -62,6 +67,7 @@ class Workshop {
   glm::dmat3 turn_{1.0};  ///< Of the directions of several views.
   std::vector<std::unique_ptr<StabilityStage>> stages_;
   std::vector<std::unique_ptr<std::vector<StabilityView>>> views_;
+  std::map<double, Swept> swept_;
 };
 
 /// What a method draws of a view.

@@ -8,18 +8,14 @@ namespace {
 
 struct Shot {
   double at = 0.0;
-  StabilityStage stage{};
-  StabilityView view{};
+  const Workshop::Swept* swept = nullptr;
   Border border{};
+  const StabilityView& view() const { return swept->views.front(); }
 };
 
 Shot shoot(Workshop& shop, const MethodCall& method, double at) {
-  StabilityVariant variant;
-  variant.set["sweep"] = at;
-  Shot shot{at, shop.make_stage(variant), {}, {}};
-  shot.view = std::move(shop.make_views(shot.stage).front());
-  shot.border = draw_border(shot.stage, shot.view, method);
-  return shot;
+  const Workshop::Swept& swept = shop.swept(at);
+  return {at, &swept, draw_border(swept.stage, swept.views.front(), method)};
 }
 
 /// Share of the object's pixels whose ink crosses one half.
@@ -27,7 +23,7 @@ double change(const Shot& a, const Shot& b) {
   std::int64_t changed = 0, pixels = 0;
   for (size_t i = 0; i < a.border.coverage.size(); ++i) {
     changed += std::abs(a.border.coverage.pixels[i] - b.border.coverage.pixels[i]) > 0.5f;
-    pixels += a.view.seen.id.pixels[i] != 0;
+    pixels += a.view().seen.id.pixels[i] != 0;
   }
   return static_cast<double>(changed) / static_cast<double>(std::max<std::int64_t>(1, pixels));
 }
@@ -47,8 +43,8 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
   }
   Worst worst;
   const double jump = change(low, high);
-  worst.see(jump, fmt::format("{:.2g} % of the object changes between {:.9g} and {:.9g}", 100.0 * jump, low.at, high.at), high.stage,
-            high.view, &high.border);
+  worst.see(jump, fmt::format("{:.2g} % of the object changes between {:.9g} and {:.9g}", 100.0 * jump, low.at, high.at), high.swept->stage,
+            high.view(), &high.border);
   return worst.take();
 }
 

@@ -27,7 +27,7 @@ std::string fault_of(const Border& border, size_t i) {
   return {};
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&) {
+StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
   Worst worst;
   for (const StabilityView& view : shop.views()) {
     const Border border = draw_border(shop.stage(), view, *method);
@@ -41,6 +41,8 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
       if (bad++ == 0) first = fmt::format(", the first ({}) at ({}, {})", fault, i % width, i / width);
     }
     const HitCounts hits = count_hits(view.seen);
+    const auto least = static_cast<std::int64_t>(with.number("hits") * static_cast<double>(view.seen.id.size()));
+    if (hits.hits < least && bad++ == 0) first = fmt::format(", fewer than {} hit", least);
     worst.see(static_cast<double>(bad), fmt::format("{} bad pixels of {} ({} hit){}", bad, view.seen.id.size(), hits.hits, first),
               shop.stage(), view, &border);
   }

@@ -25,7 +25,7 @@ StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters&) {
   FieldEvaluator evaluator(combine(Csg::union_, fields));
   Worst worst;
   for (const StabilityView& view : shop.views()) {
-    double largest = 0.0;
+    double largest = -1.0;
     std::string words = "nothing hit";
     for (size_t i = 0; i < view.seen.id.size(); ++i) {
       if (view.seen.id.pixels[i] == 0) continue;
@@ -35,7 +35,7 @@ StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters&) {
       const auto width = static_cast<size_t>(view.seen.width);
       words = fmt::format("{:.3g} degrees off at ({}, {})", largest, i % width, i / width);
     }
-    worst.see(largest, words, shop.stage(), view);
+    worst.see(std::max(0.0, largest), words, shop.stage(), view);
   }
   return worst.take();
 }

@@ -55,15 +55,24 @@ FlickerWatch watch_flicker(const Options& options, const SceneInput& input, cons
   watch.picture = picture_settings(options, input);
   watch.picture.methods = without_hysteresis(options, input);
   watch.picture.layers = layers_read(watch.picture.methods);
+  for (const MethodCall& call : watch.picture.methods) {
+    const std::string reason = call.method->unsupported(watch.reference, watch.scene);
+    if (!reason.empty()) watch.no_reference = call.method->about.name + " cannot draw " + watch.reference_words + ": " + reason;
+  }
   return watch;
 }
 
 void watch_frame(const Picture& picture, const FrameHistory& history, const Camera& camera, const ExecutionSettings& how,
                  FlickerWatch& watch) {
-  const Picture reference = draw_picture(watch.scene, watch.reference, camera, watch.picture, how, &watch.history);
   const Image<std::uint8_t> before = watch.flips.ink;
+  const InkFrame own{picture.border, history.pixels_before};
   FlickerWatch::Frame frame;
-  frame.counts = count_flips({picture.border, history.pixels_before}, {reference.border, watch.history.pixels_before}, watch.flips);
+  if (watch.no_reference.empty()) {
+    const Picture reference = draw_picture(watch.scene, watch.reference, camera, watch.picture, how, &watch.history);
+    frame.counts = count_flips(own, {reference.border, watch.history.pixels_before}, watch.flips);
+  } else {
+    frame.counts = count_flips(own, own, watch.flips);
+  }
   for (size_t i = 0; i < history.pixels_before.size(); ++i) {
     const std::int32_t was = history.pixels_before.pixels[i];
     if (was < 0) {
@@ -79,27 +88,38 @@ void watch_frame(const Picture& picture, const FrameHistory& history, const Came
 
 Json flicker_json(const FlickerWatch& watch) {
   const Sum sum = sum_of(watch);
+  const bool is_compared = watch.no_reference.empty();
+  const auto compared = [&](std::int64_t count) { return is_compared ? Json(count) : Json(); };
   Json frames = Json::array();
   for (size_t k = 0; k < watch.frames.size(); ++k) {
     const FlickerWatch::Frame& frame = watch.frames[k];
     const bool any = frame.lowest_n_dot_v <= frame.highest_n_dot_v;
     frames.push_back({{"frame", k},
                       {"flips", frame.counts.flips},
-                      {"reference_flips", frame.counts.reference_flips},
-                      {"beyond", frame.counts.beyond},
+                      {"reference_flips", compared(frame.counts.reference_flips)},
+                      {"beyond", compared(frame.counts.beyond)},
                       {"border_pixels", frame.counts.border},
                       {"unseen_pixels", frame.unseen},
                       {"n_dot_v", any ? Json{frame.lowest_n_dot_v, frame.highest_n_dot_v} : Json()}});
   }
-  return {{"frames", watch.frames.size()}, {"step_px", watch.path.step_px},
-          {"seed", watch.path.seed},       {"reference", watch.reference_words},
-          {"flips", sum.counts.flips},     {"reference_flips", sum.counts.reference_flips},
-          {"beyond", sum.counts.beyond},   {"flicker", number_or_null(sum.flicker)},
-          {"worst_frame", sum.worst},      {"per_frame", frames}};
+  return {{"frames", watch.frames.size()},
+          {"step_px", watch.path.step_px},
+          {"seed", watch.path.seed},
+          {"reference", is_compared ? watch.reference_words : watch.no_reference},
+          {"flips", sum.counts.flips},
+          {"reference_flips", compared(sum.counts.reference_flips)},
+          {"beyond", compared(sum.counts.beyond)},
+          {"flicker", is_compared ? number_or_null(sum.flicker) : Json()},
+          {"worst_frame", sum.worst},
+          {"per_frame", frames}};
 }
 
 std::string flicker_sentence(const FlickerWatch& watch) {
   const Sum sum = sum_of(watch);
+  if (!watch.no_reference.empty()) {
+    return fmt::format("flicker: ink flipped {} times over {} frames {:g} px apart; nothing to hold that against: {}", sum.counts.flips,
+                       watch.frames.size(), watch.path.step_px, watch.no_reference);
+  }
   std::string text =
       fmt::format("flicker: ink flipped {} times over {} frames {:g} px apart, that of {} {} times; {} flips beyond its", sum.counts.flips,
                   watch.frames.size(), watch.path.step_px, watch.reference_words, sum.counts.reference_flips, sum.counts.beyond);

@@ -17,6 +17,7 @@ namespace limn {
 struct FlickerWatch {
   FramePath path{};
   std::string reference_words{};
+  std::string no_reference{};  ///< Why the methods cannot draw it; then only the sequence's own flips are counted.
   Scene scene{};
   SceneModel reference{};
   PictureSettings picture{};

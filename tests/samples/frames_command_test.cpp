@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <sstream>
+
 #include "tests/samples/run_program.h"
 
 namespace limn {
@@ -61,12 +64,25 @@ TEST(RenderFrames, FlipNearTheThresholdOnly) {
 
 TEST(RenderFrames, OfEveryMethodAreCounted) {
   const TemporaryFolder folder;
+  // The reference is a mesh too, so that methods that need one can draw it.
+  const std::string cube = folder.write("cube.obj",
+                                        "v -1 -1 -1\nv 1 -1 -1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\n"
+                                        "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
   for (const char* method :
-       {"fresnel", "rim_width", "extrude", "edge_quads", "normal4", "roberts", "sobel", "blur", "jump_flood", "distance"}) {
-    const nlohmann::json flicker = flicker_of(folder, {"rook", "--surface", "mesh", "--level", "2", "--method", method});
+       {"rim", "fresnel", "rim_width", "extrude", "edge_quads", "normal4", "roberts", "sobel", "blur", "jump_flood", "distance"}) {
+    const nlohmann::json flicker = flicker_of(folder, {cube, "--level", "2", "--method", method});
     EXPECT_TRUE(flicker.at("flicker").is_number()) << method;
-    EXPECT_GE(flicker.at("flips"), 0) << method;
+    EXPECT_GE(flicker.at("flips"), flicker.at("beyond")) << method;
   }
+}
+
+TEST(RenderFrames, AreCountedWithoutATruthWhereTheMethodCannotDrawIt) {
+  const TemporaryFolder folder;
+  const nlohmann::json flicker = flicker_of(folder, {"ellipsoid", "--surface", "mesh", "--level", "2", "--method", "edge_quads"});
+  EXPECT_GE(flicker.at("flips"), 0);
+  EXPECT_TRUE(flicker.at("beyond").is_null());
+  EXPECT_TRUE(flicker.at("reference_flips").is_null());
+  EXPECT_NE(flicker.at("reference").get<std::string>().find("edge_quads cannot draw"), std::string::npos);
 }
 
 TEST(RenderFrames, DependOnTheSeedAndOnNothingElse) {
@@ -77,6 +93,27 @@ TEST(RenderFrames, DependOnTheSeedAndOnNothingElse) {
   EXPECT_EQ(read_bytes(folder.file("film_f5.png")), bytes);
   EXPECT_NE(flicker_of(folder, {"ellipsoid", "--surface", "level_set", "--voxels", "24", "--seed", "2"}).at("per_frame"),
             one.at("per_frame"));
+}
+
+TEST(StudyFlicker, OfEveryModelEndsWithHysteresis) {
+  const auto flicker_in = [](const char* hysteresis) {
+    const TemporaryFolder folder;
+    const RunResult run = run_limn({"study", "ellipsoid", "--flicker", "--size", "160x120", "--views", "1", "--levels", "2", "--voxels",
+                                    "24", "--set", std::string("hysteresis=") + hysteresis, "-q", "-o", folder.file("study")});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    std::istringstream rows(read_bytes(folder.file("study/rows.jsonl")));
+    std::vector<double> values;
+    for (std::string line; std::getline(rows, line);) {
+      const nlohmann::json row = nlohmann::json::parse(line);
+      if (row.at("metric") == "flicker") values.push_back(row.at("value"));
+    }
+    return values;
+  };
+  const std::vector<double> plain = flicker_in("0"), held = flicker_in("0.15");
+  ASSERT_GT(plain.size(), 4u);
+  ASSERT_EQ(plain.size(), held.size());
+  EXPECT_GT(*std::max_element(plain.begin(), plain.end()), 0.005);
+  EXPECT_EQ(*std::max_element(held.begin(), held.end()), 0.0);
 }
 
 TEST(RenderFrames, RefusesWhatMeansNothing) {

@@ -37,7 +37,7 @@ void keep_picture(const StabilityFinding& finding, const std::filesystem::path& 
 
 /// Empty where the method can run on what the surface came to.
 std::string unsupported(Workshop& shop, const MethodCall* method) {
-  if (std::string reason = shop.unsupported(); !reason.empty()) return reason;
+  if (!shop.unsupported().empty()) return shop.unsupported();
   const StabilityStage& stage = shop.stage();
   return method == nullptr ? std::string() : method->method->unsupported(stage.model, stage.scene);
 }

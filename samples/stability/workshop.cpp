@@ -174,7 +174,10 @@ const Workshop::Swept& Workshop::swept(double value) {
   return swept_.emplace(value, std::move(made)).first->second;
 }
 
-std::string Workshop::unsupported() const { return why_not(find_surface(surface_), scene_of_case(case_, values_).input.scene); }
+const std::string& Workshop::unsupported() {
+  if (!unsupported_) unsupported_ = why_not(find_surface(surface_), scene_of_case(case_, values_).input.scene);
+  return *unsupported_;
+}
 
 const Scene& Workshop::truth_scene() {
   const StabilityStage& base = stage();

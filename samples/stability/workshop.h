@@ -51,7 +51,7 @@ class Workshop {
   const Scene& truth_scene();
 
   /// Empty where the surface can model the scene, else why not.
-  std::string unsupported() const;
+  const std::string& unsupported();
   /// The methods that the case is about, resolved.
   std::vector<MethodCall> methods();
 
@@ -68,6 +68,7 @@ class Workshop {
   std::vector<std::unique_ptr<StabilityStage>> stages_;
   std::vector<std::unique_ptr<std::vector<StabilityView>>> views_;
   std::map<double, Swept> swept_;
+  std::optional<std::string> unsupported_;
 };
 
 /// What a method draws of a view.

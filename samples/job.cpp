@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "samples/interrupt.h"
+#include "samples/limits.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -79,6 +80,7 @@ void apply_set(const KeyValue& set, std::vector<PendingMethod>& pending) {
 SurfaceSettings surface_settings(const Options& options, SceneInput& input) {
   const SurfaceDefaults& file = input.surface;
   SurfaceSettings settings;
+  settings.max_bytes = model_bytes_left(options, 0.0);
   settings.kind = file.kind.value_or("");
   if (!options.surfaces.empty()) settings.kind = options.surfaces.back();
   override_with(settings.voxels, file.voxels, options.voxels);

@@ -138,12 +138,16 @@ std::int64_t parse_bytes(const std::string& field, const std::string& text) {
 }
 
 double parse_milliseconds(const std::string& field, const std::string& text) {
-  const std::string expected = "a time such as 200ms or 2s would be right";
-  const bool milli = text.size() > 2 && text.ends_with("ms"), seconds = !milli && text.size() > 1 && text.ends_with("s");
-  const auto value = to_number(std::string_view(text).substr(0, text.size() - (milli ? 2 : seconds ? 1 : 0)));
-  if ((!milli && !seconds) || !value || !std::isfinite(*value)) fail(field, text, "not a time", expected);
-  if (!(*value > 0.0)) fail(field, text, "out of range", expected);
-  return *value * (milli ? 1.0 : 1e3);
+  const std::string expected = "a time such as 200ms, 90s, 10m or 2h would be right";
+  const std::pair<const char*, double> units[] = {{"ms", 1.0}, {"s", 1e3}, {"m", 6e4}, {"h", 3.6e6}};
+  for (const auto& [unit, milliseconds] : units) {
+    if (!text.ends_with(unit)) continue;
+    const auto value = to_number(std::string_view(text).substr(0, text.size() - std::string_view(unit).size()));
+    if (!value || !std::isfinite(*value)) continue;
+    if (!(*value > 0.0) || *value * milliseconds > 1e12) fail(field, text, "out of range", expected);
+    return *value * milliseconds;
+  }
+  fail(field, text, "not a time", expected);
 }
 
 bool parse_plan_metric(const std::string& field, const std::string& text) {

@@ -37,7 +37,7 @@ std::vector<int> parse_integers(const std::string& text, const std::function<int
 std::vector<double> parse_thresholds(const std::string& field, const std::string& text);
 /// "500M", "4G", "1.5T", or bytes: decimal units.
 std::int64_t parse_bytes(const std::string& field, const std::string& text);
-/// "200ms", "2s"; above 0.
+/// "200ms", "90s", "10m", "2h"; above 0.
 double parse_milliseconds(const std::string& field, const std::string& text);
 /// True for "silhouette", false for "border".
 bool parse_plan_metric(const std::string& field, const std::string& text);

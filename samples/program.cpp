@@ -2,10 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "samples/commands/command.h"
+#include "samples/limits.h"
 #include "samples/versions.h"
 #include "sdf/error.h"
 
@@ -18,7 +20,8 @@ constexpr const char* kFooter =
     "Exit codes: 0 done; 1 it ran and the answer is bad; 2 the call or an input file is wrong; 130 interrupted.";
 
 void print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) throw MachineError("cannot write to standard output");
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw MachineError("cannot write to standard output");
 }
 
 std::vector<std::string> option_names(const CLI::App& app) {
@@ -59,6 +62,20 @@ std::vector<std::string> command_names() {
   throw InputError({"", "", "", error.what(), "limn " + command + "--help shows the usage"});
 }
 
+// What is refused deep down, where nobody knows of files, is said of the file that was given.
+int run_on_input(const Command& command, const Options& options) {
+  try {
+    return command.run(options);
+  } catch (const InputError& error) {
+    InputFault fault = error.fault();
+    std::error_code ignored;
+    const bool of_call = !fault.file.empty() || fault.field.starts_with("-");
+    if (of_call || options.input.empty() || !std::filesystem::is_regular_file(options.input, ignored)) throw;
+    fault.file = options.input;
+    throw InputError(fault);
+  }
+}
+
 }  // namespace
 
 int run_program(int argc, const char* const* argv) {
@@ -97,7 +114,8 @@ int run_program(int argc, const char* const* argv) {
   const std::string name = app.get_subcommands().front()->get_name();
   for (const Command& command : commands()) {
     if (command.name != name) continue;
-    const int code = command.run(options);
+    hold_limits(options, command.goes_on_without_memory);
+    const int code = run_on_input(command, options);
     if (std::fflush(stdout) != 0) throw MachineError("cannot write to standard output");
     return code;
   }

@@ -54,7 +54,7 @@ void look_at_slivers(AuditFacts& facts, std::vector<Finding>& findings) {
     const std::vector<std::string> inputs{"N", "NdotV"};
     normals.severity = Severity::warning;
     normals.message = fmt::format(
-        "{} face{} ({:.2g} % of the area) with an angle above 150 degrees {} by up to {:.3g} degrees off every neighbour's normal, as on "
+        "{} face{} ({:.3g} % of the area) with an angle above 150 degrees {} by up to {:.3g} degrees off every neighbour's normal, as on "
         "Schwarz's lantern: finer faces of that kind bring positions nearer, not normals",
         mesh.off_normal_faces, mesh.off_normal_faces == 1 ? "" : "s", 100.0 * mesh.off_normal_area_share,
         mesh.off_normal_faces == 1 ? "lies" : "lie", mesh.off_normal_angle * kDegrees);

@@ -11,6 +11,8 @@ namespace limn {
 namespace {
 
 constexpr int kCells = 32;  // along the longest side
+/// Of the lattice against the bounds: no face of a box lies half way between two sheets of nodes, to be counted twice.
+constexpr double kPhase = 0.63;
 constexpr size_t kMost = 1500;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -105,7 +107,7 @@ SurfaceSamples sample_field(const Field& field) {
   if (!(samples.longest_side > 0.0)) return samples;
   const double cell = samples.longest_side / kCells;
   FieldEvaluator evaluator(field);
-  const std::vector<glm::dvec3> points = thinned(projected(evaluator, nodes_near(evaluator, dilate(bounds, 0.5 * cell), cell), cell));
+  const std::vector<glm::dvec3> points = thinned(projected(evaluator, nodes_near(evaluator, dilate(bounds, kPhase * cell), cell), cell));
   std::vector<FieldJet> jets(points.size());
   evaluator.jets(points, jets);
   for (size_t i = 0; i < points.size(); ++i) {

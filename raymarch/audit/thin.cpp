@@ -13,6 +13,7 @@ namespace {
 constexpr double kWallVoxels = 2.0, kGapVoxels = 1.0;
 /// Knife edges are thin without end; so little of the surface may be.
 constexpr double kMostThin = 0.005;
+constexpr double kRounding = 1e-3;  // of what is found by steps
 
 double voxel_size_of(const AuditFacts& facts, double longest_side) {
   if (const LevelSetSource* source = facts.level_set())
@@ -39,7 +40,7 @@ void look_at(const Thing& thing, const std::vector<double>& widths, double voxel
         fmt::format(" at a voxel of {:.3g}: the thinnest is {:.3g}, {:.2f} voxels{}", voxel, thinnest, thinnest / voxel, where);
   }
   if (share > kMostThin) {
-    const auto needed = static_cast<std::int64_t>(std::ceil(thing.voxels * samples.longest_side / thinnest));
+    const auto needed = static_cast<std::int64_t>(std::ceil((1.0 - kRounding) * thing.voxels * samples.longest_side / thinnest));
     finding.severity = Severity::warning;
     finding.message = fmt::format("{:.2g} % of the surface{} lies {} ({:.3g}), which may {}; the thinnest is {:.2g}, {:.2f} voxels",
                                   100.0 * share, where, thing.bad, thing.voxels * voxel, thing.fate, thinnest, thinnest / voxel);

@@ -14,6 +14,8 @@ struct Command {
   void (*add_options)(CLI::App& app, Options& options);
   /// The exit code: 0 done, 1 it ran and the answer is bad. Throws InputError, MachineError, Cancelled.
   int (*run)(const Options& options);
+  /// It catches std::bad_alloc, records what did not fit, and goes on; otherwise the program ends where memory runs out.
+  bool goes_on_without_memory = false;
 };
 
 std::span<const Command> commands();

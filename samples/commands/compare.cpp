@@ -4,7 +4,9 @@
 #include "raymarch/view_level.h"
 #include "samples/commands/command.h"
 #include "samples/compare/comparison.h"
+#include "samples/limits.h"
 #include "samples/threads.h"
+#include "samples/warnings.h"
 #include "sdf/output_file.h"
 
 namespace limn {
@@ -18,6 +20,8 @@ void add_options(CLI::App& app, Options& options) {
   add_surface(app, options, {.surface = true, .repeatable = true, .views = true});
   add_border(app, options, true);
   add_output(app, options, "folder for sheet.png, report.html, rows.json and each picture's EXR; default limn-out/compare/<name>", false);
+  app.add_flag("--no-timings", options.no_timings, "leave measured times out of sheet and report, so that equal calls write equal bytes")
+      ->group("Output");
   add_json(app, options);
   add_execution(app, options);
 }
@@ -44,6 +48,7 @@ Comparison plan(const Options& options, SceneInput& input) {
   }
   plan_methods(columns, comparison);
   comparison.camera = camera;
+  comparison.with_times = !options.no_timings;
   comparison.call = resolved_call("compare", options, settings, comparison.camera, comparison.picture);
   return comparison;
 }
@@ -59,6 +64,23 @@ void write_all(const Comparison& comparison, const fs::path& folder, const Optio
   for (const char* name : {"sheet.png", "report.html", "rows.json"}) files.push_back(folder / name);
 }
 
+// What is held at a time: the reference's picture, one model's, and every cell's ink.
+std::vector<std::string> check(const Options& options, const Comparison& comparison) {
+  constexpr double kReferenceBytes = 65.0, kCellBytes = 95.0;  // a pixel; measured at 1280 x 720
+  std::vector<std::string> kinds, methods;
+  for (const ComparedModel& model : comparison.models) {
+    if (model.skipped.empty()) kinds.push_back(model.surface.kind);
+  }
+  PictureLoad load = picture_load(comparison.camera, comparison.picture, 1, true);
+  load.bytes_per_pixel += kReferenceBytes + kCellBytes * static_cast<double>(comparison.methods.size());
+  for (const& column : comparison.methods) {
+    for (const std::string& name : names_of(column.calls)) methods.push_back(name);
+  }
+  const ComparedModel& last = comparison.models.back();
+  check_limits(options, last.scene, last.surface, load, kinds);
+  return warn_of_input(options, last.scene, last.surface, {.surfaces = kinds, .methods = methods});
+}
+
 int run(const Options& options) {
   const ThreadLimit threads(options.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
@@ -69,6 +91,7 @@ int run(const Options& options) {
   check_output_folder(folder, options);
 
   Comparison comparison = plan(options, input);
+  const std::vector<std::string> warnings = check(options, comparison);
   draw_comparison(comparison, folder, execution_settings(options), bar);
   bar.clear();
   std::vector<fs::path> files;
@@ -79,7 +102,9 @@ int run(const Options& options) {
 
   if (options.verbose) print_note(comparison.call);
   if (options.json) {
-    print_json(comparison_json(comparison, files));
+    Json document = comparison_json(comparison, files);
+    document["warnings"] = warnings;
+    print_json(document);
   } else if (!options.quiet) {
     std::string text;
     for (const std::string& sentence : summary_sentences(comparison)) text += sentence + "\n";

@@ -4,8 +4,10 @@
 
 #include "samples/commands/command.h"
 #include "samples/job.h"
+#include "samples/limits.h"
 #include "samples/output.h"
 #include "samples/threads.h"
+#include "samples/warnings.h"
 #include "samples/world_model.h"
 #include "sdf/error.h"
 #include "subdiv/import.h"
@@ -56,7 +58,13 @@ int run(const Options& options) {
   check_kind(settings);
   settings.progress = bar.stage("building the surface");
 
-  std::vector<std::string> warnings;
+  // What is written to a .vdb is one level set, whatever it is called.
+  SurfaceSettings expected = settings;
+  if (ending_of(file) == ".vdb" && settings.kind.empty()) expected.kind = "level_set";
+  if (ending_of(file) != ".vdb" && settings.kind.empty()) expected.kind = "mesh";
+  check_limits(options, input.scene, expected, {});
+  std::vector<std::string> warnings = warn_of_input(options, input.scene, expected, {});
+  const size_t of_input = warnings.size();
   Json document;
   std::string text;
   if (ending_of(file) == ".vdb") {
@@ -77,9 +85,7 @@ int run(const Options& options) {
   bar.clear();
   document["files"] = {file.string()};
   document["warnings"] = warnings;
-  if (!options.quiet) {
-    for (const std::string& warning : warnings) print_note(warning);
-  }
+  print_warnings(options, {warnings.begin() + static_cast<std::ptrdiff_t>(of_input), warnings.end()});
   if (options.json)
     print_json(document);
   else if (!options.quiet)

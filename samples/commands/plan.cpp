@@ -1,6 +1,7 @@
 #include "samples/commands/command.h"
 #include "samples/plan/job.h"
 #include "samples/threads.h"
+#include "samples/warnings.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -23,9 +24,16 @@ int run(const Options& options) {
     throw InputError({"", "--tolerance", "", "missing", "a number of pixels, such as --tolerance 0.5, would be right"});
   input_kind(options.input);
   const SceneInput input = load_input(options);
+  WarningNeeds needs{.surfaces = options.surfaces, .methods = {"rim"}};
+  if (needs.surfaces.empty()) {
+    for (const SurfaceDescriptor& kind : surface_kinds()) needs.surfaces.push_back(kind.about.name);
+  }
+  const std::vector<std::string> warnings = warn_of_input(options, input.scene, {}, needs);
   const PlanJob job = plan_for(options, input, bar);
   if (options.json) {
-    print_json(plan_json(job));
+    Json document = plan_json(job);
+    document["warnings"] = warnings;
+    print_json(document);
   } else if (!options.quiet) {
     std::string text;
     for (const std::string& sentence : plan_sentences(job.answer, job.settings)) text += sentence + "\n";

@@ -1,15 +1,17 @@
 #include <fmt/format.h>
 
-#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 #include "samples/commands/command.h"
 #include "samples/job.h"
+#include "samples/limits.h"
+#include "samples/stability/command.h"
 #include "samples/study/folder.h"
 #include "samples/study/run.h"
 #include "samples/study/shard.h"
 #include "samples/study/summary.h"
 #include "samples/threads.h"
+#include "samples/warnings.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -34,10 +36,32 @@ SceneInput load(Options& options) {
   return load_input(options);
 }
 
+/// What the models may take beside pictures and truth.
 void give_memory(Options& options) {
-  if (options.study.max_bytes) return;
-  const auto machine = static_cast<std::int64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::int64_t>(sysconf(_SC_PAGESIZE));
-  options.study.max_bytes = std::min<std::int64_t>(std::int64_t{8'000'000'000}, machine / 4 * 3);
+  constexpr double kBesideBytes = 100e6, kDefault = 8e9;
+  if (options.max_memory)
+    options.study.max_bytes = model_bytes_left(options, std::min(kBesideBytes, 0.3 * static_cast<double>(*options.max_memory)));
+  else
+    options.study.max_bytes = static_cast<std::int64_t>(std::min(kDefault, 0.75 * machine_memory()));
+}
+
+/// Truth is no faster for being expected to be; the calibrated part is.
+void check_time(const Options& options, double expected_ms) {
+  constexpr double kTrust = 2.0;
+  if (!options.max_time_ms || expected_ms <= kTrust * *options.max_time_ms) return;
+  throw InputError(
+      {"", "--max-time", "",
+       fmt::format("the study would take about {}, which allows {}", duration_text(expected_ms), time_text(*options.max_time_ms)),
+       "fewer --views, --voxels or --levels, or a part of it (--shard), would be right"});
+}
+
+std::vector<std::string> warn(const Options& options, const Study& study) {
+  WarningNeeds needs;
+  for (const StudyModel& model : study.models) {
+    if (model.refused.empty()) needs.surfaces.push_back(model.surface);
+  }
+  for (const StudyMethod& method : study.methods) needs.methods.push_back(method.call.method->about.name);
+  return warn_of_input(options, study.scene, study.reference, needs);
 }
 
 /// Where a study is worked on, and where it then stands.
@@ -77,13 +101,14 @@ std::vector<size_t> still_to_do(const std::vector<size_t>& cells, const Study& s
   return left;
 }
 
-void print_result(const Options& options, const Place& place, const StudyFolder& held, size_t cells, const std::vector<fs::path>& files) {
+void print_result(const Options& options, const Place& place, const StudyFolder& held, size_t cells, const std::vector<fs::path>& files,
+                  const std::vector<std::string>& warnings) {
   const std::int64_t failed = failed_cells(held);
   if (options.json) {
     const StudyHead& head = held.record.head;
-    Json document = {{"id", head.id},       {"scene", head.scene},       {"call", head.call},     {"truth", head.truth},
-                     {"exact", head.exact}, {"views", head.views},       {"cells", cells},        {"of", head.cells},
-                     {"failed", failed},    {"surfaces", head.surfaces}, {"files", Json::array()}};
+    Json document = {{"id", head.id},       {"scene", head.scene},       {"call", head.call},    {"truth", head.truth},
+                     {"exact", head.exact}, {"views", head.views},       {"cells", cells},       {"of", head.cells},
+                     {"failed", failed},    {"surfaces", head.surfaces}, {"warnings", warnings}, {"files", Json::array()}};
     for (const fs::path& file : files) document["files"].push_back(file.string());
     print_json(document);
     return;
@@ -125,6 +150,7 @@ StudyFolder do_cells(const Options& options, const Study& study, const Place& pl
   StudyWork work{study, still_to_do(cells, study, held.rows), place.work, execution_settings(options)};
   CostLedger ledger = plan_costs(work);
   calibrate(work, ledger);
+  check_time(options, ledger.remaining_ms());
   if (!options.quiet) announce(study, work, cells.size() - work.cells.size(), ledger);
   run_cells(work, ledger, held.record, held.rows, bar);
   bar.clear();
@@ -136,6 +162,8 @@ int run(const Options& given) {
   Options options = given;
   const ThreadLimit threads(options.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
+  if (options.input == kStabilityInput) return study_stability(options, bar);
+  refuse_stability_options(options);
   input_kind(options.input);
   if (!options.outputs.empty()) check_output_folder(options.outputs.back(), options);
   give_memory(options);
@@ -147,14 +175,15 @@ int run(const Options& given) {
       options.study.shards == 1 ? cells_of_shard(study, 1, 1) : cells_of_shard(study, options.study.shard, options.study.shards);
   if (part_is_there(options, place, record_of(study))) {
     if (!options.quiet) print_note(place.final.string() + " is there already");
-    print_result(options, place, *read_folder(place.final), cells.size(), {});
+    print_result(options, place, *read_folder(place.final), cells.size(), {}, {});
     return 0;
   }
+  const std::vector<std::string> warnings = warn(options, study);
   const FolderLock lock(place.work);
   const StudyFolder held = do_cells(options, study, place, cells, bar);
   const std::vector<fs::path> files = put_in_place(place, finish_folder(place.work, held, !place.is_part));
   if (options.verbose) print_note(study.head.call);
-  print_result(options, place, held, cells.size(), files);
+  print_result(options, place, held, cells.size(), files, warnings);
   return failed_cells(held) == static_cast<std::int64_t>(cells.size()) && !cells.empty() ? 1 : 0;
 }
 
@@ -166,8 +195,11 @@ Command study_command() {
           "study that was stopped goes on where it stopped",
           "  limn study tilted_torus\n"
           "  limn study cow.obj --levels 0..6 --normals vertex,limit --views 12\n"
-          "  limn study teacup --methods rim,sobel --thresholds 0.2,0.4 --shard 2/8 -o teacup-study",
-          add_options, run};
+          "  limn study teacup --methods rim,sobel --thresholds 0.2,0.4 --shard 2/8 -o teacup-study\n"
+          "  limn study stability    (where methods are known to fail: what holds there, as a page; exit code 1 where something is wrong)",
+          add_options,
+          run,
+          true};
 }
 
 }  // namespace limn

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "samples/limits.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -39,6 +40,7 @@ PlanSettings settings_of(const Options& options, const SceneInput& input) {
   settings.budget_ms = options.plan.budget_ms;
   settings.budget_bytes = options.plan.budget_bytes;
   if (settings.budget_bytes) settings.max_bytes = std::min(settings.max_bytes, *settings.budget_bytes);
+  settings.max_bytes = std::min(settings.max_bytes, model_bytes_left(options, 0.0));
   settings.kinds = options.surfaces;
   return settings;
 }

@@ -17,7 +17,10 @@ namespace {
 // Milliseconds and bytes of the parts, fitted to the built-in scenes on two cores. Memory is what building takes, not what is left of it.
 constexpr double kModelMs = 5.0, kFaceMs = 2e-3, kFieldFaceMs = 4e-3, kFieldFaceTermMs = 2e-4, kFaceBytes = 600.0;
 constexpr double kCageFaceMs = 0.15;  // of a field's cage, which is looked for in several samplings
-constexpr double kVoxelMs = 2.5e-4, kMeshVoxelMs = 1.2e-3, kVoxelBytes = 12.0, kGridBytes = 2.5e6;
+constexpr double kVoxelMs = 2.5e-4, kMeshVoxelMs = 1.2e-3, kGridBytes = 2.5e6;
+// Peaks of ellipsoid and gyroid, 256 to 1024 voxels, bands of 2.45 to 8: blocks of 8^3 and their copies go by the surface, the tree that
+// stays by the band.
+constexpr double kVoxelBytes = 14.0, kSurfaceCellBytes = 157.0;
 constexpr double kPictureMs = 1.5, kMeshRayMs = 6e-6, kGridRayMs = 1e-5, kFieldRayMs = 1e-5;
 // At 640x360; a limit surface has as much as a field of many terms.
 constexpr double kTruthTermMs = 0.035, kLimitTerms = 8000.0;
@@ -37,20 +40,51 @@ double area_of(const Mesh& mesh) {
   return area;
 }
 
+/// By Cauchy and Crofton's formula: on average an edge of a lattice is crossed as often as its share of the area, 2/3 of it an axis.
+double area_of(const Field& field) {
+  constexpr int kCells = 32;
+  const Box box = dilate(field.traits().bounds, 1e-3 * field.traits().bounds.longest_side());
+  const double cell = box.longest_side() / kCells;
+  const glm::ivec3 count = glm::ivec3(glm::ceil(box.size() / cell)) + 1;
+  FieldEvaluator evaluator(field);
+  std::vector<glm::dvec3> sheet;
+  std::vector<double> values, before;
+  double crossings = 0.0;
+  for (int x = 0; x < count.x; ++x) {
+    sheet.clear();
+    for (int y = 0; y < count.y; ++y)
+      for (int z = 0; z < count.z; ++z) sheet.push_back(box.lower + cell * glm::dvec3(x, y, z));
+    values.resize(sheet.size());
+    evaluator.values(sheet, values);
+    const auto differ = [&](double a, double b) { return (a < 0.0) != (b < 0.0) ? 1.0 : 0.0; };
+    for (size_t i = 0; i < values.size(); ++i) {
+      if (x > 0) crossings += differ(values[i], before[i]);
+      if ((i + 1) % static_cast<size_t>(count.z) != 0) crossings += differ(values[i], values[i + 1]);
+      if (i + static_cast<size_t>(count.z) < values.size()) crossings += differ(values[i], values[i + static_cast<size_t>(count.z)]);
+    }
+    std::swap(values, before);
+  }
+  return crossings * cell * cell / 1.5;
+}
+
 double terms_of(const Field& field) { return std::max(1.0, 0.5 * static_cast<double>(field.program().instructions.size())); }
 
-SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& settings) {
+SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& settings, bool with_cages) {
   SceneSize::Object size;
   const Box box = bounds(object);
   if (box.finite()) size.longest_side = box.longest_side();
   if (const auto* field = std::get_if<Field>(&object.source)) {
     size.is_field = true;
     size.terms = terms_of(*field);
-    if (!box.finite()) return size;
+    if (!box.finite() || box.empty()) return size;
+    size.refines = true;
+    if (!with_cages) {
+      size.area = area_of(*field);
+      return size;
+    }
     const Mesh cage = cage_of(*field);
     size.faces = static_cast<double>(cage.face_count());
     size.area = area_of(cage);
-    size.refines = true;
   } else if (const auto* source = std::get_if<MeshSource>(&object.source)) {
     const double scale = std::cbrt(std::abs(glm::determinant(object.world_from_object.linear)));
     const std::optional<Scheme> scheme = cage_scheme(object, settings);
@@ -93,15 +127,15 @@ void add_grid(const SceneSize::Object& object, const SurfaceSettings& settings, 
   const bool loaded = object.own_voxels > 0.0;
   const double voxels = loaded ? object.own_voxels : voxels_of(object, settings, half_width);
   if (!loaded) cost.build_ms += kModelMs + voxels * voxel_ms;
-  cost.bytes += static_cast<std::int64_t>(kGridBytes + voxels * kVoxelBytes);
+  cost.bytes += static_cast<std::int64_t>(kGridBytes + voxels * (kVoxelBytes + kSurfaceCellBytes / (2.0 * half_width)));
   cost.trace_ms += pixels * kGridRayMs * (gradient.order >= 3 ? 1.5 : 1.0);
 }
 
 }  // namespace
 
-SceneSize size_of(const Scene& scene, const SurfaceSettings& settings) {
+SceneSize size_of(const Scene& scene, const SurfaceSettings& settings, bool with_cages) {
   SceneSize size;
-  for (const SceneObject& object : scene.objects) size.objects.push_back(size_of(object, settings));
+  for (const SceneObject& object : scene.objects) size.objects.push_back(size_of(object, settings, with_cages));
   return size;
 }
 

@@ -22,7 +22,9 @@ struct SceneSize {
   };
   std::vector<Object> objects{};
 };
-SceneSize size_of(const Scene& scene, const SurfaceSettings& settings);
+/// `with_cages`: fields' tessellations are counted by their cages, which takes as long as making them; otherwise their faces are 0 and
+/// their area is counted on a lattice.
+SceneSize size_of(const Scene& scene, const SurfaceSettings& settings, bool with_cages = true);
 
 ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& settings, double pixels);
 /// What truth has to look through: a field's cage, the richer the finer, times its terms.

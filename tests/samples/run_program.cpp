@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -42,9 +43,11 @@ pid_t start(const std::vector<std::string>& arguments, const fs::path& where, co
 
 RunResult finish(pid_t child, const fs::path& out, const fs::path& err) {
   int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) != child) throw std::runtime_error("cannot run " LIMN_PROGRAM);
+  rusage usage{};
+  if (child < 0 || wait4(child, &status, 0, &usage) != child) throw std::runtime_error("cannot run " LIMN_PROGRAM);
   RunResult result;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  result.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
   result.out = read_bytes(out);
   result.err = read_bytes(err);
   return result;

@@ -11,6 +11,7 @@ namespace limn {
 struct RunResult {
   int exit_code = -1;  ///< 128 + signal where one ended it.
   std::string out, err;
+  double peak_bytes = 0.0;  ///< Of resident memory, its helpers' not counted.
   int err_lines() const;
   nlohmann::json json() const { return nlohmann::json::parse(out); }
 };

@@ -102,7 +102,7 @@ TEST(StudyCommand, SaysBeforehandWhatItWillTake) {
 TEST(StudyCommand, WhatWouldNotFitIsARowWithItsReasonAndNotBuilt) {
   const TemporaryFolder folder;
   const RunResult result = run_limn({"study", "rook", "--size", "64x48", "--surface", "mesh", "--levels", "1,8", "--normals", "flat",
-                                     "--views", "1", "--max-memory", "20M", "-o", folder.file("out"), "--json", "-q"});
+                                     "--views", "1", "--max-memory", "400M", "-o", folder.file("out"), "--json", "-q"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.json().at("failed"), 1);
   int failed = 0;

@@ -1,0 +1,249 @@
+// --max-memory and --max-time: refused beforehand with an estimate, held to while running; what the estimates are worth.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <regex>
+
+#include "run_program.h"
+#include "samples/limits.h"
+#include "sdf/guard_helper.h"
+#include "tests/subdiv/test_meshes.h"
+
+namespace limn {
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+/// "about 430.2 MB" of a message, in bytes; NaN where there is none.
+double bytes_in(const std::string& text, const std::string& before) {
+  std::smatch found;
+  if (!std::regex_search(text, found, std::regex(before + R"(([0-9.]+) (B|kB|MB|GB))"))) return std::nan("");
+  const std::string unit = found[2];
+  return std::stod(found[1]) * (unit == "GB" ? 1e9 : unit == "MB" ? 1e6 : unit == "kB" ? 1e3 : 1.0);
+}
+
+TEST(Limits, MoreMemoryThanAllowedIsRefusedBeforehandWithWhatWouldFit) {
+  const TemporaryFolder folder;
+  const RunResult result = run_limn({"render", "gyroid", "--surface", "level_set", "--voxels", "4096", "--size", "64x64", "--max-memory",
+                                     "1G", "-o", folder.file("x.png")});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.err_lines(), 1) << result.err;
+  EXPECT_GT(bytes_in(result.err, "would take about "), 1e9) << result.err;
+  EXPECT_EQ(bytes_in(result.err, "which allows "), 1e9) << result.err;
+  EXPECT_LT(result.peak_bytes, 300e6) << "nothing was built";
+  EXPECT_TRUE(folder.files().empty());
+
+  // What it proposes is let through, and does.
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(result.err, found, std::regex("--voxels ([0-9]+) would take about"))) << result.err;
+  const RunResult smaller = run_limn({"render", "gyroid", "--surface", "level_set", "--voxels", found[1].str(), "--size", "64x64",
+                                      "--max-memory", "1G", "-q", "-o", folder.file("x.png")});
+  EXPECT_EQ(smaller.exit_code, 0) << smaller.err;
+  EXPECT_LT(smaller.peak_bytes, 1.05e9);
+}
+
+TEST(Limits, EveryCommandThatBuildsRefuses) {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out");
+  const Arguments calls[] = {
+      {"export", "ellipsoid", "--voxels", "4096", "-o", out + ".vdb", "--max-memory", "500M"},
+      {"export", "teacup", "--level", "8", "-o", out + ".obj", "--max-memory", "500M"},
+      {"compare", "ellipsoid", "--size", "8192x8192", "-o", out, "--max-memory", "500M"},
+      {"render", "ellipsoid", "--size", "16384x16384", "-o", out + ".exr", "--max-memory", "4G"},
+      {"render", "ellipsoid", "--voxel-size", "1e-4", "--surface", "level_set", "-o", out + ".png", "--max-memory", "2G"},
+  };
+  for (const Arguments& call : calls) {
+    const RunResult result = run_limn(call);
+    EXPECT_EQ(result.exit_code, 2) << call.front() << ": " << result.err;
+    EXPECT_EQ(result.err_lines(), 1) << result.err;
+    EXPECT_NE(result.err.find("--max-memory: the call would take about "), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("would take about", result.err.find(';')), std::string::npos) << "no smaller call named: " << result.err;
+    EXPECT_TRUE(folder.files().empty()) << call.front();
+  }
+}
+
+TEST(Limits, WithoutOptionsTheMachineIsTheLimit) {
+  if (machine_memory() > 60e9) GTEST_SKIP() << "this machine has room for the picture";
+  const TemporaryFolder folder;
+  const RunResult result = run_limn({"render", "ellipsoid", "--size", "16384x16384", "-o", folder.file("x.exr")});
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_GT(bytes_in(result.err, "would take about "), machine_memory()) << result.err;
+  EXPECT_NE(result.err.find("the machine has"), std::string::npos) << result.err;
+}
+
+TEST(Limits, MemoryForTheProgramItselfMustBeThere) {
+  const RunResult result = run_limn({"render", "ellipsoid", "--max-memory", "5M"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("--max-memory: the program itself takes"), std::string::npos) << result.err;
+}
+
+struct EstimateCase {
+  const char* name;
+  Arguments arguments;
+};
+
+class Estimate : public testing::TestWithParam<EstimateCase> {};
+
+TEST_P(Estimate, IsRightToAFactorOfTwoBeyondTheProgramItself) {
+  if (!kAddressSpaceCanBeLimited) GTEST_SKIP() << "the sanitizers take memory of their own";
+  const TemporaryFolder folder;
+  Arguments arguments = GetParam().arguments;
+  const bool layers = arguments.back() == "exr";
+  if (layers) arguments.pop_back();
+  for (const std::string& more : {std::string("-v"), std::string("-o"), folder.file(layers ? "x.exr" : "x.png")}) arguments.push_back(more);
+  const RunResult result = run_limn(arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const double expected = bytes_in(result.err, "expected to take about ") - kProgramBytes, taken = result.peak_bytes - kProgramBytes;
+  ASSERT_GT(taken, 30e6) << "too small to tell";
+  EXPECT_GT(expected, 0.5 * taken) << expected << " expected, " << taken << " taken";
+  EXPECT_LT(expected, 2.0 * taken) << expected << " expected, " << taken << " taken";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Limits, Estimate,
+    testing::Values(
+        EstimateCase{"level_set_384", {"render", "ellipsoid", "--size", "64x64", "--surface", "level_set", "--voxels", "384"}},
+        EstimateCase{"level_set_512_wide",
+                     {"render", "ellipsoid", "--size", "64x64", "--surface", "level_set", "--voxels", "512", "--half-width", "6"}},
+        EstimateCase{"gyroid_256", {"render", "gyroid", "--size", "64x64", "--surface", "level_set", "--voxels", "256"}},
+        EstimateCase{"mesh_5", {"render", "ellipsoid", "--size", "64x64", "--surface", "mesh", "--level", "5"}},
+        EstimateCase{"cage_4", {"render", "teacup", "--size", "64x64", "--surface", "mesh", "--level", "4"}},
+        EstimateCase{"cage_5", {"render", "teacup", "--size", "64x64", "--surface", "mesh", "--level", "5"}},
+        EstimateCase{"mesh_level_set_384", {"render", "teacup", "--size", "64x64", "--surface", "mesh_level_set", "--voxels", "384"}},
+        EstimateCase{"picture", {"render", "ellipsoid", "--size", "2000x1500"}},
+        EstimateCase{"samples", {"render", "ellipsoid", "--size", "1600x1200", "--samples", "3", "--method", "sobel"}},
+        EstimateCase{"layers", {"render", "ellipsoid", "--size", "1200x900", "exr"}}),
+    [](const testing::TestParamInfo<EstimateCase>& one) { return one.param.name; });
+
+/// A ball of 4^level * 20 triangles as a file.
+std::string write_ball(const TemporaryFolder& folder, int level) {
+  const Mesh mesh = test::sphere(level);
+  std::string text;
+  for (const glm::dvec3& p : mesh.positions)
+    text += "v " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
+  for (size_t i = 0; i < mesh.corner_vertices.size(); i += 3) {
+    text += "f";
+    for (size_t k = 0; k < 3; ++k) text += " " + std::to_string(mesh.corner_vertices[i + k] + 1);
+    text += "\n";
+  }
+  return folder.write("ball.obj", text);
+}
+
+TEST(Limits, MemoryIsHeldToWhereNothingWasExpected) {
+  if (!kAddressSpaceCanBeLimited) GTEST_SKIP() << "the sanitizers take memory of their own";
+  const TemporaryFolder folder;
+  const std::string ball = write_ball(folder, 7);
+  const RunResult all = run_limn({"info", ball});
+  ASSERT_EQ(all.exit_code, 0) << all.err;
+  const double limit = 160e6;
+  ASSERT_GT(all.peak_bytes, 1.3 * limit) << "not large enough to be stopped";
+  const RunResult held = run_limn({"info", ball, "--max-memory", std::to_string(static_cast<std::int64_t>(limit))});
+  EXPECT_NE(held.exit_code, 0);
+  EXPECT_LT(held.exit_code, 128) << "a signal";
+  EXPECT_EQ(held.err_lines(), 1) << held.err;
+  EXPECT_NE(held.err.find("memory"), std::string::npos) << held.err;
+  EXPECT_LT(held.peak_bytes, 1.35 * limit) << "stacks of threads are counted, and not touched";
+}
+
+TEST(Limits, MoreTimeThanAllowedIsRefusedBeforehand) {
+  const TemporaryFolder folder;
+  const RunResult result = run_limn({"render", "gyroid", "--surface", "level_set", "--voxels", "1024", "--size", "64x64", "--max-time",
+                                     "500ms", "-o", folder.file("x.png")});
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_EQ(result.err_lines(), 1) << result.err;
+  EXPECT_TRUE(std::regex_search(result.err, std::regex("--max-time: the call would take about [0-9.]+ m?s, which allows 500 ms; "
+                                                       "--voxels [0-9]+ would take about")))
+      << result.err;
+  const RunResult study = run_limn({"study", "ellipsoid", "--views", "200", "--max-time", "1s", "-o", folder.file("study")});
+  EXPECT_EQ(study.exit_code, 2) << study.err;
+  EXPECT_NE(study.err.find("--max-time: the study would take about"), std::string::npos) << study.err;
+}
+
+TEST(Limits, TimeIsHeldTo) {
+  const TemporaryFolder folder;
+  const RunResult result = run_limn({"plan", "gyroid", "--tolerance", "0.001", "--max-time", "300ms"}, folder.path());
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_EQ(result.err, "limn: --max-time: stopped after 300 ms\n");
+  EXPECT_TRUE(result.out.empty());
+  EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(Limits, SizesAndTimesThatAreNoneAreRefused) {
+  for (const Arguments& call : {Arguments{"--max-memory", "much"}, Arguments{"--max-memory", "0"}, Arguments{"--max-time", "5"},
+                                Arguments{"--max-time", "-1s"}, Arguments{"--max-time", "1d"}}) {
+    const RunResult result = run_limn({"info", "ellipsoid", call[0], call[1]});
+    EXPECT_EQ(result.exit_code, 2) << call[1];
+    EXPECT_NE(result.err.find(call[0]), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(run_limn({"info", "ellipsoid", "--max-memory", "1G", "--max-time", "10m"}).exit_code, 0);
+}
+
+TEST(Limits, TheSmallestAndTheWidestPictureAreDrawnAndTooManyVoxelsAreNot) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(run_limn({"render", "ellipsoid", "--size", "1x1", "-q", "-o", folder.file("one.exr")}).exit_code, 0);
+  EXPECT_EQ(run_limn({"render", "ellipsoid", "--size", "16384x2", "-q", "-o", folder.file("wide.png")}).exit_code, 0);
+  for (const Arguments& wrong : {Arguments{"--voxels", "100000"}, Arguments{"--size", "16385x4"}, Arguments{"--size", "0x4"}}) {
+    const RunResult result = run_limn({"render", "ellipsoid", wrong[0], wrong[1], "-o", folder.file("none.png")});
+    EXPECT_EQ(result.exit_code, 2) << wrong[1];
+    EXPECT_EQ(result.err_lines(), 1) << result.err;
+    EXPECT_NE(result.err.find(wrong[0]), std::string::npos) << result.err;
+  }
+}
+
+TEST(Warnings, OnlyWhatMattersForTheSurfacesAndMethodsAskedForIsSaid) {
+  const TemporaryFolder folder;
+  const std::string sheet = folder.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  const auto render = [&](const Arguments& more) {
+    Arguments call{"render", sheet, "--size", "64x48", "-o", folder.file("x.png")};
+    call.insert(call.end(), more.begin(), more.end());
+    return run_limn(call);
+  };
+  EXPECT_NE(render({}).err.find("limn: warning: sheet: 4 edges with a face on one side only"), std::string::npos) << render({}).err;
+  EXPECT_EQ(render({"--method", "blur"}).err, "") << "it reads no normals";
+  EXPECT_EQ(render({"-q"}).err, "");
+  const RunResult remedy = render({"-v"});
+  EXPECT_NE(remedy.err.find("remedy: close the holes"), std::string::npos) << remedy.err;
+  const RunResult json = render({"--json", "-q"});
+  ASSERT_EQ(json.json().at("warnings").size(), 1u);
+  EXPECT_EQ(json.err, "");
+  const RunResult grid = render({"--surface", "mesh_level_set", "--voxels", "32"});
+  EXPECT_NE(grid.err.find("limn: warning: "), std::string::npos) << "what building it tells goes the same way: " << grid.err;
+  EXPECT_EQ(grid.err.find("on one side only"), std::string::npos) << grid.err;
+}
+
+TEST(Warnings, CleanInputGivesNone) {
+  const TemporaryFolder folder;
+  for (const char* scene : {"ellipsoid", "teacup", "tilted_torus"}) {
+    const RunResult result = run_limn({"render", scene, "--size", "64x48", "--json", "-o", folder.file("x.png")});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(result.json().at("warnings").empty()) << result.out;
+    EXPECT_EQ(result.err.find("warning"), std::string::npos) << result.err;
+  }
+}
+
+TEST(Info, SaysForWhomAFindingIsAFaultAndWhatHelps) {
+  const TemporaryFolder folder;
+  const std::string sheet = folder.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  const RunResult json_result = run_limn({"info", sheet, "--json"});
+  bool found = false;
+  const nlohmann::json document = json_result.json();
+  for (const nlohmann::json& finding : document.at("audit")) {
+    for (const char* key : {"remedy", "surfaces", "methods"}) EXPECT_TRUE(finding.contains(key)) << key;
+    if (finding.at("check") != "open edges") continue;
+    found = true;
+    EXPECT_EQ(finding.at("surfaces"), nlohmann::json({"mesh"}));
+    EXPECT_FALSE(finding.at("methods").empty());
+    EXPECT_FALSE(finding.at("remedy").get<std::string>().empty());
+  }
+  EXPECT_TRUE(found);
+  const RunResult text = run_limn({"info", sheet});
+  EXPECT_NE(text.out.find("fails: mesh; rim"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("remedy: "), std::string::npos) << text.out;
+  // Numbers at the resolution that is asked for.
+  EXPECT_NE(run_limn({"info", "gyroid", "--voxels", "32"}).out.find("walls thinner than two voxels (0.125)"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace limn

@@ -73,7 +73,7 @@ std::vector<std::string> check(const Options& options, const Comparison& compari
   }
   PictureLoad load = picture_load(comparison.camera, comparison.picture, 1, true);
   load.bytes_per_pixel += kReferenceBytes + kCellBytes * static_cast<double>(comparison.methods.size());
-  for (const& column : comparison.methods) {
+  for (const ComparedMethod& column : comparison.methods) {
     for (const std::string& name : names_of(column.calls)) methods.push_back(name);
   }
   const ComparedModel& last = comparison.models.back();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "raymarch/gbuffer_lanes.h"
 #include "raymarch/stream_fill.h"
 
 namespace limn {
@@ -39,6 +40,22 @@ void write_layer(Image<T>& image, const PixelTile& tile, const Value& value) {
   }
 }
 
+/// The same from values at hand, four at a time.
+template <class T>
+void copy_layer(Image<T>& image, const PixelTile& tile, const T* lanes) {
+  if (image.pixels.empty()) return;
+  for (int y = 0; y < tile.height; ++y) {
+    T* const row = &image.pixels[image.index(tile.x, tile.y + y)];
+    for (int x = 0; x < tile.width; x += 4) {
+      const T* const from = lanes + lane_of(tile, x, y);
+      if (tile.width - x >= 4)
+        std::copy_n(from, 4, row + x);
+      else
+        std::copy_n(from, tile.width - x, row + x);
+    }
+  }
+}
+
 }  // namespace
 
 void write_nothing(const TileWriter& writer, const PixelTile& tile) {
@@ -56,23 +73,18 @@ void write_nothing(const TileWriter& writer, const PixelTile& tile) {
 void write_tile(const TileWriter& writer, const PixelTile& tile, const RayBatch& rays, const SceneHits& found) {
   GBuffer& out = *writer.out;
   const HitBatch& hits = found.hits;
-  const glm::vec3 forward = writer.forward;
   const auto seen = [&](int i) { return found.object[i] >= 0; };
-  write_layer(out.depth, tile, [&](int i) {
-    const float along = rays.direction_x[i] * forward.x + rays.direction_y[i] * forward.y + rays.direction_z[i] * forward.z;
-    return seen(i) ? static_cast<float>(writer.shift + static_cast<double>(hits.t[i])) * along : kFar;
-  });
+  LaneLayers lanes;
+  const GBufferLayers wanted{
+      .depth = !out.depth.pixels.empty(), .normal = !out.normal.pixels.empty(), .n_dot_v = !out.n_dot_v.pixels.empty()};
+  lane_layers(rays, found, {writer.forward, writer.shift}, wanted, lanes);
+  copy_layer(out.depth, tile, lanes.depth);
+  copy_layer(out.normal, tile, lanes.normal);
+  copy_layer(out.n_dot_v, tile, lanes.n_dot_v);
   write_layer(out.position, tile, [&](int i) {
     if (!seen(i)) return glm::vec3(kFar);
     const glm::dvec3 p = glm::dvec3(rays.origin(i)) + static_cast<double>(hits.t[i]) * glm::dvec3(rays.direction(i));
     return glm::vec3(p + writer.model->render_origin);
-  });
-  write_layer(out.normal, tile,
-              [&](int i) { return seen(i) ? glm::vec3(hits.normal_x[i], hits.normal_y[i], hits.normal_z[i]) : glm::vec3(0.0f); });
-  write_layer(out.n_dot_v, tile, [&](int i) {
-    const float against =
-        -(hits.normal_x[i] * rays.direction_x[i] + hits.normal_y[i] * rays.direction_y[i] + hits.normal_z[i] * rays.direction_z[i]);
-    return seen(i) ? std::clamp(against, 0.0f, 1.0f) : 0.0f;
   });
   write_layer(out.id, tile, [&](int i) { return found.object[i] + 1; });
   write_layer(out.material, tile,

@@ -47,6 +47,8 @@ struct GradientDescriptor {
   int order;                 ///< Of the normal's angle, by voxel size.
   /// Gradients (world, not normalised) at world points within one voxel of the surface; sizes equal.
   void (*gradients)(const LevelSetData&, std::span<const glm::dvec3> points, std::span<glm::dvec3> gradients);
+  /// The reconstruction's own values at such points: hits go to its root. Null where it is the trilinear interpolant, whose root they are.
+  void (*values)(const LevelSetData&, std::span<const glm::dvec3> points, std::span<double> values);
   /// The Hessian too, or null where the reconstruction has none worth having.
   void (*hessians)(const LevelSetData&, std::span<const glm::dvec3> points, std::span<FieldJet> jets);
 };

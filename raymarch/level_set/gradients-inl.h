@@ -71,39 +71,108 @@ HWY_INLINE V3 cell_gradient(const std::int16_t* values, const Cells& cells) {
   return {hn::Sub(lerp(z10, z11, y), lerp(z00, z01, y)), lerp(hn::Sub(z01, z00), hn::Sub(z11, z10), x), lerp(dz0, dz1, x)};
 }
 
-struct Column {
-  VF here, slope;
+/// The 32 nodes that central differences about a cell read, as pairs along z: two rows beyond each face across x and y, and the cell's own
+/// four columns from -1 to 2.
+struct CentralStencil {
+  Pair before_x[2], after_x[2], before_y[2], after_y[2];
+  Pair below[4], above[4];  ///< Columns x 2 + y: nodes -1 and 0, 1 and 2.
+};
+
+HWY_INLINE CentralStencil gather_central(const std::int16_t* values, const Cells& cells) {
+  const I di;
+  const auto pair = [&](VI offset) { return gather_pair(values, offset); };
+  const VI sx = hn::Set(di, 162), sy = hn::Set(di, 18), sz = hn::Set(di, 2), sxy = hn::Set(di, 180);
+  const VI below = cells.minus[2], above = hn::Sub(cells.plus[2], sz);
+  return {{pair(cells.minus[0]), pair(hn::Add(cells.minus[0], sy))},
+          {pair(cells.plus[0]), pair(hn::Add(cells.plus[0], sy))},
+          {pair(cells.minus[1]), pair(hn::Add(cells.minus[1], sx))},
+          {pair(cells.plus[1]), pair(hn::Add(cells.plus[1], sx))},
+          {pair(below), pair(hn::Add(below, sy)), pair(hn::Add(below, sx)), pair(hn::Add(below, sxy))},
+          {pair(above), pair(hn::Add(above, sy)), pair(hn::Add(above, sx)), pair(hn::Add(above, sxy))}};
+}
+
+/// The interpolant on the line through a place along one axis, where it meets the faces of the cell and of those beside it: at -1, 0, 1, 2.
+struct Section {
+  VF before, near, far, after;
+  /// Its difference over two voxels about the place u.
+  HWY_INLINE VF slope(VF u) const { return hn::Sub(lerp(far, after, u), lerp(before, near, u)); }
+  /// By how much twice a curve through the four stands off twice its chord at u: of the second differences about 0 and 1 the one nearer to
+  /// zero (Harten, Engquist, Osher, Chakravarthy 1987), so that no kink beside the cell is felt in it.
+  HWY_INLINE VF sag(VF u) const {
+    const VF zero = hn::Zero(F()), across = hn::Sub(far, near);
+    const VF at_near = hn::Sub(across, hn::Sub(near, before)), at_far = hn::Sub(hn::Sub(after, far), across);
+    const VF bend = hn::Add(hn::Max(hn::Min(at_near, at_far), zero), hn::Min(hn::Max(at_near, at_far), zero));
+    return hn::Mul(hn::Mul(u, hn::Sub(set(1.0f), u)), bend);
+  }
+};
+struct Sections {
+  Section x, y, z;
+};
+
+HWY_INLINE Sections sections(const CentralStencil& s, const V3& at) {
+  const auto along_z = [&](const Pair& p) { return lerp(p.low, p.high, at.z); };
+  const auto across = [&](VF c00, VF c01, VF c10, VF c11) { return lerp(lerp(c00, c01, at.y), lerp(c10, c11, at.y), at.x); };
+  VF here[4];
+  for (int k = 0; k < 4; ++k) here[k] = lerp(s.below[k].high, s.above[k].low, at.z);
+  return {{lerp(along_z(s.before_x[0]), along_z(s.before_x[1]), at.y), lerp(here[0], here[1], at.y), lerp(here[2], here[3], at.y),
+           lerp(along_z(s.after_x[0]), along_z(s.after_x[1]), at.y)},
+          {lerp(along_z(s.before_y[0]), along_z(s.before_y[1]), at.x), lerp(here[0], here[2], at.x), lerp(here[1], here[3], at.x),
+           lerp(along_z(s.after_y[0]), along_z(s.after_y[1]), at.x)},
+          {across(s.below[0].low, s.below[1].low, s.below[2].low, s.below[3].low),
+           across(s.below[0].high, s.below[1].high, s.below[2].high, s.below[3].high),
+           across(s.above[0].low, s.above[1].low, s.above[2].low, s.above[3].low),
+           across(s.above[0].high, s.above[1].high, s.above[2].high, s.above[3].high)}};
+}
+
+/// How far along the ray (in its t) to go, at most to where it leaves the cell.
+HWY_INLINE VF within_cell(const V3& at, const V3& inverse, VF move) {
+  VF least = set(-1e30f), most = set(1e30f);
+  const auto clip = [&](VF u, VF per) {
+    const VF a = hn::Mul(hn::Neg(u), per), b = hn::Mul(hn::Sub(set(1.0f), u), per);
+    least = hn::Max(least, hn::Min(a, b));
+    most = hn::Min(most, hn::Max(a, b));
+  };
+  clip(at.x, inverse.x);
+  clip(at.y, inverse.y);
+  clip(at.z, inverse.z);
+  return hn::Max(hn::Min(move, most), least);
+}
+
+HWY_INLINE V3 moved(const V3& at, const V3& direction, VF t) {
+  const auto along = [&](VF u, VF v) { return hn::Min(hn::Max(hn::Add(u, hn::Mul(t, v)), hn::Zero(F())), set(1.0f)); };
+  return {along(at.x, direction.x), along(at.y, direction.y), along(at.z, direction.z)};
+}
+
+HWY_INLINE VF dot(const V3& a, const V3& b) { return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z)); }
+
+/// Newton's step along the ray towards the root of what has this value and gradient at a place of the cell, at most to where the ray leaves
+/// it. A ray that grazes is taken to be a sixteenth as steep as it could be: the step's theory is of first order.
+HWY_INLINE VF newton_step(VF value, const V3& gradient, const V3& at, const V3& direction, const V3& inverse) {
+  const V3 product{hn::Mul(gradient.x, direction.x), hn::Mul(gradient.y, direction.y), hn::Mul(gradient.z, direction.z)};
+  const VF slope = hn::Add(hn::Add(product.x, product.y), product.z);
+  const VF steepest = hn::Add(hn::Add(hn::Abs(product.x), hn::Abs(product.y)), hn::Abs(product.z));
+  const MF flat = hn::Eq(steepest, hn::Zero(F()));
+  const VF size = hn::IfThenElse(flat, set(1.0f), hn::Max(hn::Abs(slope), hn::Mul(set(1.0f / 16.0f), steepest)));
+  return within_cell(at, inverse, hn::IfThenElse(flat, hn::Zero(F()), hn::Neg(hn::Div(value, hn::CopySign(size, slope)))));
+}
+
+/// A hit's gradient, and how far along the ray it lies from the trilinear root.
+struct Settled {
+  V3 gradient;
+  VF move;
 };
 
 /// Central differences at the cell's nodes, interpolated: the same as differences of the interpolant itself, taken one voxel to either
-/// side at the same place in the cells there.
-HWY_INLINE V3 central_gradient(const std::int16_t* values, const Cells& cells) {
-  const I di;
-  const VF x = cells.local.x, y = cells.local.y, z = cells.local.z;
-  const auto pair = [&](VI offset) { return gather_pair(values, offset); };
-  const VI sy = hn::Set(di, 18), sx = hn::Set(di, 162), sz = hn::Set(di, 2);
-  const auto value = [&](VI offset) {
-    const Pair p = pair(offset);
-    return lerp(p.low, p.high, z);
-  };
-  const VF ax = lerp(value(cells.minus[0]), value(hn::Add(cells.minus[0], sy)), y);
-  const VF bx = lerp(value(cells.plus[0]), value(hn::Add(cells.plus[0], sy)), y);
-  const VF ay = lerp(value(cells.minus[1]), value(hn::Add(cells.minus[1], sx)), x);
-  const VF by = lerp(value(cells.plus[1]), value(hn::Add(cells.plus[1], sx)), x);
-  // The cell's own four columns along z, from -1 to 2: a pair below, a pair above.
-  const auto column = [&](VI across) {
-    Column c;
-    const Pair below = pair(hn::Add(cells.minus[2], across)), above = pair(hn::Add(hn::Sub(cells.plus[2], sz), across));
-    c.here = lerp(below.high, above.low, z);
-    c.slope = lerp(hn::Sub(above.low, below.low), hn::Sub(above.high, below.high), z);
-    return c;
-  };
-  const auto c00 = column(hn::Zero(di)), c01 = column(sy), c10 = column(sx), c11 = column(hn::Add(sx, sy));
-  const VF x0 = lerp(c00.here, c01.here, y), x1 = lerp(c10.here, c11.here, y);
-  const VF y0 = lerp(c00.here, c10.here, x), y1 = lerp(c01.here, c11.here, x);
-  // (f(p + e) - f(p - e)) with f(p + e) between the cell's far face and the one beyond it.
-  return {hn::Sub(lerp(x1, bx, x), lerp(ax, x0, x)), hn::Sub(lerp(y1, by, y), lerp(ay, y0, y)),
-          lerp(lerp(c00.slope, c01.slope, y), lerp(c10.slope, c11.slope, y), x)};
+/// side at the same place in the cells there. The hit goes to where the interpolant, less its chords' sag, has its root.
+HWY_INLINE Settled central_gradient(const std::int16_t* values, const Cells& cells, const V3& direction, const V3& inverse) {
+  const CentralStencil stencil = gather_central(values, cells);
+  const auto gradient = [](const Sections& s, const V3& at) { return V3{s.x.slope(at.x), s.y.slope(at.y), s.z.slope(at.z)}; };
+  const Sections first = sections(stencil, cells.local);
+  const V3& at = cells.local;
+  const VF sag = hn::Add(hn::Add(first.x.sag(at.x), first.y.sag(at.y)), first.z.sag(at.z));
+  const VF move = newton_step(hn::Neg(sag), gradient(first, at), at, direction, inverse);
+  const V3 there = moved(at, direction, move);
+  return {gradient(sections(stencil, there), there), move};
 }
 
 /// A uniform cubic B-spline's weights at local place u, and their derivatives, for the nodes -1, 0, 1 and 2.
@@ -120,22 +189,46 @@ HWY_INLINE SplineWeights spline_weights(VF u) {
            hn::Mul(half, u2)}};
 }
 
-/// The gradient of the cubic B-spline, in the brick's own steps.
-HWY_INLINE V3 cubic_gradient(const SplineBricks& bricks, const Cells& cells, VI number) {
+/// The 4^3 coefficients that a cell reads, row by row along z, and the plane that they are less.
+struct SplineStencil {
+  Pair below[16], above[16];
+  V3 slope;
+  VF offset;  ///< Of the plane at the cell's first node.
+};
+
+HWY_INLINE SplineStencil gather_spline(const SplineBricks& bricks, VI number) {
   const I di;
-  const SplineWeights wx = spline_weights(cells.local.x), wy = spline_weights(cells.local.y), wz = spline_weights(cells.local.z);
+  const F d;
   const VI seven = hn::Set(di, 7), side = hn::Set(di, kSplineNodes);
   const VI x0 = hn::And(hn::ShiftRight<6>(number), seven), y0 = hn::And(hn::ShiftRight<3>(number), seven), z0 = hn::And(number, seven);
   const VI corner = hn::Add(hn::Mul(hn::Add(hn::Mul(x0, side), y0), side), z0);
   const VI brick = hn::ShiftRight<9>(number), self = hn::Add(hn::Mul(brick, hn::Set(di, kSplineStride)), corner);
-  const VI twice = hn::Add(self, self), plane = hn::Mul(brick, hn::Set(di, 3));
-  const auto slope = [&](int axis) { return hn::GatherIndex(F(), bricks.planes.data()->slope, hn::Add(plane, hn::Set(di, axis))); };
-  V3 g{slope(0), slope(1), slope(2)};
+  const VI twice = hn::Add(self, self), plane = hn::ShiftLeft<2>(brick);
+  SplineStencil stencil;
+  for (int k = 0; k < 16; ++k) {
+    const VI row = hn::Add(twice, hn::Set(di, 2 * (k / 4 * kSplineNodes + k % 4) * kSplineNodes));
+    stencil.below[k] = gather_pair(bricks.rests.data(), row);
+    stencil.above[k] = gather_pair(bricks.rests.data(), hn::Add(row, hn::Set(di, 4)));
+  }
+  const auto of_plane = [&](int element) { return hn::GatherIndex(d, bricks.planes.data()->slope, hn::Add(plane, hn::Set(di, element))); };
+  stencil.slope = {of_plane(0), of_plane(1), of_plane(2)};
+  const V3 node = {hn::ConvertTo(d, x0), hn::ConvertTo(d, y0), hn::ConvertTo(d, z0)};
+  stencil.offset = hn::Add(of_plane(3), dot(stencil.slope, node));
+  return stencil;
+}
+
+struct SplinePoint {
+  V3 gradient;
+  VF value;
+};
+
+HWY_INLINE SplinePoint spline_at(const SplineStencil& stencil, const V3& at) {
+  const SplineWeights wx = spline_weights(at.x), wy = spline_weights(at.y), wz = spline_weights(at.z);
+  SplinePoint p{stencil.slope, hn::Add(stencil.offset, dot(stencil.slope, at))};
   for (int x = 0; x < 4; ++x) {
     VF across = set(0.0f), slope_y = set(0.0f), slope_z = set(0.0f);
     for (int y = 0; y < 4; ++y) {
-      const VI row = hn::Add(twice, hn::Set(di, 2 * (x * kSplineNodes + y) * kSplineNodes));
-      const Pair below = gather_pair(bricks.rests.data(), row), above = gather_pair(bricks.rests.data(), hn::Add(row, hn::Set(di, 4)));
+      const Pair below = stencil.below[4 * x + y], above = stencil.above[4 * x + y];
       const auto weigh = [&](const VF* w) {
         return hn::Add(hn::Add(hn::Mul(w[0], below.low), hn::Mul(w[1], below.high)),
                        hn::Add(hn::Mul(w[2], above.low), hn::Mul(w[3], above.high)));
@@ -145,11 +238,20 @@ HWY_INLINE V3 cubic_gradient(const SplineBricks& bricks, const Cells& cells, VI 
       slope_y = hn::Add(slope_y, hn::Mul(wy.slope[y], here));
       slope_z = hn::Add(slope_z, hn::Mul(wy.value[y], weigh(wz.slope)));
     }
-    g.x = hn::Add(g.x, hn::Mul(wx.slope[x], across));
-    g.y = hn::Add(g.y, hn::Mul(wx.value[x], slope_y));
-    g.z = hn::Add(g.z, hn::Mul(wx.value[x], slope_z));
+    p.value = hn::Add(p.value, hn::Mul(wx.value[x], across));
+    p.gradient.x = hn::Add(p.gradient.x, hn::Mul(wx.slope[x], across));
+    p.gradient.y = hn::Add(p.gradient.y, hn::Mul(wx.value[x], slope_y));
+    p.gradient.z = hn::Add(p.gradient.z, hn::Mul(wx.value[x], slope_z));
   }
-  return g;
+  return p;
+}
+
+/// The gradient of the cubic B-spline, in the brick's own steps, where the spline has its root.
+HWY_INLINE Settled cubic_gradient(const SplineBricks& bricks, const Cells& cells, VI number, const V3& direction, const V3& inverse) {
+  const SplineStencil stencil = gather_spline(bricks, number);
+  const SplinePoint first = spline_at(stencil, cells.local);
+  const VF move = newton_step(first.value, first.gradient, cells.local, direction, inverse);
+  return {spline_at(stencil, moved(cells.local, direction, move)).gradient, move};
 }
 
 }  // namespace

@@ -122,7 +122,8 @@ SplineBricks::Plane make_brick(const Values& values, std::int16_t* to) {
   }
   std::fill(to + c.size(), to + kSplineStride, std::int16_t{0});
   const glm::vec3 steps = slope * steps_per_unit;
-  return {{steps.x, steps.y, steps.z}};
+  // The coefficients begin one node before the brick.
+  return {{steps.x, steps.y, steps.z}, middle * steps_per_unit + steps.x + steps.y + steps.z};
 }
 
 }  // namespace

@@ -15,12 +15,13 @@ namespace limn {
 inline constexpr int kSplineNodes = 11;
 inline constexpr int kSplineStride = kSplineNodes * kSplineNodes * kSplineNodes + 1;
 
-/// Coefficients less those of a plane through the brick's part of the surface, in steps of each brick's own: the gradient's direction is
-/// all that is asked of them. What is left shrinks with the cells, and so do its 16-bit steps; without the plane they would show in the
-/// normals, as 6e-5 rad at any resolution.
+/// Coefficients less those of a plane through the brick's part of the surface, in steps of each brick's own: the gradient's direction and
+/// the root are all that is asked of them. What is left shrinks with the cells, and so do its 16-bit steps; without the plane they would
+/// show in the normals, as 6e-5 rad at any resolution.
 struct SplineBricks {
   struct Plane {
     float slope[3] = {};  ///< Steps per voxel.
+    float offset = 0.0f;  ///< Steps, at the brick's first node.
   };
   std::vector<Plane> planes{};                                          ///< One a brick; empty where nobody asked.
   std::vector<std::int16_t, LargePageAllocator<std::int16_t>> rests{};  ///< kSplineStride for each brick.

@@ -90,9 +90,11 @@ HWY_NOINLINE void enter_packet(const SurfaceBound& bound, std::int32_t index, co
   push(c, active, waiting);
 }
 
-HWY_INLINE V3 gradient_at(BrickGradient gradient, const RayBricks& bricks, const Cells& cells, VI number) {
-  if (gradient == BrickGradient::cubic) return cubic_gradient(bricks.spline, cells, number);
-  return gradient == BrickGradient::central ? central_gradient(bricks.values.data(), cells) : cell_gradient(bricks.values.data(), cells);
+HWY_INLINE Settled settle(BrickGradient gradient, const RayBricks& bricks, const Cells& cells, VI number, const IndexRays& rays, size_t i) {
+  if (gradient == BrickGradient::cell) return {cell_gradient(bricks.values.data(), cells), hn::Zero(F())};
+  const V3 direction = load3(rays.direction, i), inverse = load3(rays.inverse, i);
+  return gradient == BrickGradient::central ? central_gradient(bricks.values.data(), cells, direction, inverse)
+                                            : cubic_gradient(bricks.spline, cells, number, direction, inverse);
 }
 
 HWY_NOINLINE void write_packet(const BrickTrace& what, const IndexRays& rays, const RayBatch& batch, size_t i, const BrickHits& found,
@@ -102,11 +104,15 @@ HWY_NOINLINE void write_packet(const BrickTrace& what, const IndexRays& rays, co
   const VI cell = hn::Load(di, found.cell + i);
   const auto hit = hn::Gt(cell, hn::Set(di, -1));
   if (hn::AllFalse(di, hit)) return;
-  const VF t = hn::Load(d, found.t + i);
+  const VF root = hn::Load(d, found.t + i);
   const RayBricks& bricks = *what.view->bricks;
-  const Cells cells = cells_of(bricks, rays, i, hn::IfThenElseZero(hn::RebindMask(d, hit), t), hn::Max(cell, hn::Zero(di)),
+  const Cells cells = cells_of(bricks, rays, i, hn::IfThenElseZero(hn::RebindMask(d, hit), root), hn::Max(cell, hn::Zero(di)),
                                what.gradient == BrickGradient::central);
-  const V3 g = gradient_at(what.gradient, bricks, cells, hn::Max(cell, hn::Zero(di)));
+  const Settled settled = settle(what.gradient, bricks, cells, hn::Max(cell, hn::Zero(di)), rays, i);
+  const V3& g = settled.gradient;
+  const VF place = hn::Add(root, settled.move);
+  const MF allowed = hn::And(hn::Ge(place, hn::Load(d, batch.t_min + i)), hn::Lt(place, hn::Load(d, batch.t_max + i)));
+  const VF t = hn::IfThenElse(allowed, place, root);
   const float* const m = what.normal_from_index;
   const auto row = [&](int k) {
     return hn::Add(hn::Add(hn::Mul(set(m[k]), g.x), hn::Mul(set(m[k + 3]), g.y)), hn::Mul(set(m[k + 6]), g.z));

@@ -38,12 +38,18 @@ glm::dvec3 unit_normal(const State& state, const glm::dvec3& gradient, const glm
   return length > 0.0 && std::isfinite(length) ? normal / length : -direction;
 }
 
-void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
-  const State& state = *static_cast<const State*>(opaque);
-  const Accessor accessor = state.level_set.data().accessor();
-  std::array<glm::dvec3, kRayBatchSize> points, gradients;
-  std::array<int, kRayBatchSize> lanes;
+/// Roots of the trilinear interpolant along some of a batch's rays.
+struct Roots {
   size_t count = 0;
+  std::array<int, kRayBatchSize> lanes;
+  std::array<double, kRayBatchSize> t;
+  std::array<glm::dvec3, kRayBatchSize> points;  ///< Of the world that the grid was made in.
+
+  std::span<const glm::dvec3> places() const { return std::span(points).first(count); }
+};
+
+Roots find_roots(const State& state, const Accessor& accessor, const RayBatch& rays, HitBatch& hits) {
+  Roots roots;
   for (int i = 0; i < rays.count; ++i) {
     const glm::dvec3 origin(rays.origin(i)), direction(rays.direction(i));
     double t = 0.0;
@@ -52,16 +58,62 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
     if (status == HitStatus::miss) continue;
     hits.status[i] = status;
     if (status != HitStatus::hit) continue;
-    hits.t[i] = static_cast<float>(t);
+    roots.t[roots.count] = t;
+    roots.points[roots.count] = state.grid_world_from_render.point(origin + t * direction);
+    roots.lanes[roots.count++] = i;
+  }
+  return roots;
+}
+
+/// `move` along a ray from a place, cut off where it leaves its cell. Index coordinates.
+double within_cell(const glm::dvec3& place, const glm::dvec3& direction, double move) {
+  const glm::dvec3 local = cell_point(place).local;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (direction[axis] == 0.0) continue;
+    const double a = -local[axis] / direction[axis], b = (1.0 - local[axis]) / direction[axis];
+    move = std::clamp(move, std::min(a, b), std::max(a, b));
+  }
+  return move;
+}
+
+/// One step of Newton's iteration towards the root of the gradient's own reconstruction, within the cell of the trilinear one.
+void settle(const State& state, const Accessor& accessor, const RayBatch& rays, Roots& roots) {
+  if (!state.gradient->values) return;
+  std::array<glm::dvec3, kRayBatchSize> gradients;
+  std::array<double, kRayBatchSize> values;
+  const LevelSetData& data = state.level_set.data();
+  state.gradient->values(data, roots.places(), std::span(values).first(roots.count));
+  state.gradient->gradients(data, roots.places(), std::span(gradients).first(roots.count));
+  for (size_t k = 0; k < roots.count; ++k) {
+    const int i = roots.lanes[k];
+    const glm::dvec3 direction(rays.direction(i)), along = state.grid_world_from_render.vector(direction);
+    const glm::dvec3 place = data.index_from_world.point(roots.points[k]);
+    const glm::dvec3 product = gradients[k] * along;
+    const double rest = values[k] - interpolated(accessor, place), slope = product.x + product.y + product.z;
+    const double steepest = std::abs(product.x) + std::abs(product.y) + std::abs(product.z);
+    if (steepest == 0.0) continue;
+    // A ray that grazes is taken to be a sixteenth as steep as it could be: the step's theory is of first order.
+    const double step = -rest / std::copysign(std::max(std::abs(slope), steepest / 16.0), slope);
+    const double move = within_cell(place, state.walked.index_from_render.vector(direction), step), t = roots.t[k] + move;
+    if (t < static_cast<double>(rays.t_min[i]) || t >= static_cast<double>(rays.t_max[i])) continue;
+    roots.t[k] = t;
+    roots.points[k] += move * along;
+  }
+}
+
+void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
+  const State& state = *static_cast<const State*>(opaque);
+  const Accessor accessor = state.level_set.data().accessor();
+  Roots roots = find_roots(state, accessor, rays, hits);
+  settle(state, accessor, rays, roots);
+  std::array<glm::dvec3, kRayBatchSize> gradients;
+  state.gradient->gradients(state.level_set.data(), roots.places(), std::span(gradients).first(roots.count));
+  for (size_t k = 0; k < roots.count; ++k) {
+    const int i = roots.lanes[k];
+    const glm::vec3 normal(unit_normal(state, gradients[k], roots.points[k], glm::dvec3(rays.direction(i))));
+    hits.t[i] = static_cast<float>(roots.t[k]);
     hits.face[i] = -1;
     hits.material[i] = 0;
-    points[count] = state.grid_world_from_render.point(origin + t * direction);
-    lanes[count++] = i;
-  }
-  state.gradient->gradients(state.level_set.data(), std::span(points).first(count), std::span(gradients).first(count));
-  for (size_t k = 0; k < count; ++k) {
-    const int i = lanes[k];
-    const glm::vec3 normal(unit_normal(state, gradients[k], points[k], glm::dvec3(rays.direction(i))));
     hits.normal_x[i] = normal.x;
     hits.normal_y[i] = normal.y;
     hits.normal_z[i] = normal.z;

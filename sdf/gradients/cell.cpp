@@ -35,6 +35,7 @@ GradientDescriptor cell_gradient() {
           .half_width_voxels = std::sqrt(3.0),
           .order = 1,
           .gradients = gradients_of_cells,
+          .values = nullptr,
           .hessians = nullptr};
 }
 

@@ -78,6 +78,14 @@ void gradients_of_spline(const LevelSetData& data, std::span<const glm::dvec3> p
   }
 }
 
+void values_of_spline(const LevelSetData& data, std::span<const glm::dvec3> points, std::span<double> values) {
+  const auto accessor = data.accessor();
+  for (size_t i = 0; i < points.size(); ++i) {
+    const CellPoint at = cell_point(data.index_from_world.point(points[i]));
+    values[i] = jet_by_index(coefficients(accessor, at.node), at.local, false).value;
+  }
+}
+
 void hessians_of_spline(const LevelSetData& data, std::span<const glm::dvec3> points, std::span<FieldJet> jets) {
   const auto accessor = data.accessor();
   const glm::dmat3& index_from_world = data.index_from_world.linear;
@@ -99,6 +107,7 @@ GradientDescriptor cubic_gradient() {
           .half_width_voxels = std::sqrt(17.0),
           .order = 3,
           .gradients = gradients_of_spline,
+          .values = values_of_spline,
           .hessians = hessians_of_spline};
 }
 

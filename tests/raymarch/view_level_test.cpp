@@ -71,9 +71,9 @@ RC_GTEST_PROP(ViewLevel, TwoLevelsFinerNothingIsFartherThanAskedFor, ()) {
   RC_ASSERT(chosen.limit.empty());
   RC_ASSERT(chosen.deviation_px <= asked_px);
   RC_ASSERT(measured_px(object, chosen.level, camera) <= asked_px);
-  // No finer than it has to be: two levels coarser would not do. A cage's own vertices lie off the limit surface, and the first step says
-  // little of the next: there the cage may be off by no more than half of what was asked for.
-  if (chosen.level >= 2) RC_ASSERT(measured_px(object, chosen.level - 2, camera) > (chosen.level == 2 ? 0.5 : 1.0) * asked_px);
+  // No finer than it has to be: the mesh two levels coarser would be off by about what was asked for or more. By half of it at least: how
+  // much a further step brings is told from the last ones, on the safe side where they shrink slowly about vertices of few or many faces.
+  if (chosen.level >= 2) RC_ASSERT(measured_px(object, chosen.level - 2, camera) > 0.5 * asked_px);
 }
 
 TEST(ViewLevel, FallsWithTheDistanceAndCountsTheNearestOfSeveralViews) {

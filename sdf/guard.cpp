@@ -143,6 +143,14 @@ void limit_from_outside(pid_t child, const GuardLimits& limits) {
   ::prlimit(child, RLIMIT_AS, &memory, nullptr);
 }
 
+/// No helper gets more than what our own process may allocate, which it inherits anyway: so its limit is the one that messages name.
+GuardLimits within_our_own(GuardLimits limits) {
+  rlimit data{};
+  if (::getrlimit(RLIMIT_DATA, &data) == 0 && data.rlim_cur != RLIM_INFINITY)
+    limits.memory_bytes = std::min(limits.memory_bytes, static_cast<std::int64_t>(data.rlim_cur));
+  return limits;
+}
+
 enum class Ending { ended, out_of_time, answer_too_long };
 
 bool has_ended(pid_t child) {
@@ -219,7 +227,8 @@ void judge(Ending ending, int status, std::span<const std::byte> answer, const f
 }  // namespace
 
 std::vector<std::byte> run_guarded(const std::string& name, std::span<const std::string> arguments, const fs::path& file,
-                                   const GuardLimits& limits) {
+                                   const GuardLimits& asked) {
+  const GuardLimits limits = within_our_own(asked);
   Pipe pipe;
   std::vector<std::byte> answer;
   const pid_t child = start(find_helper(name), arguments, limits, pipe);

@@ -4,6 +4,7 @@
 #include "raymarch/frames.h"
 #include "samples/stability/checks/registry.h"
 #include "samples/stability/checks/worst.h"
+#include "sdf/error.h"
 
 namespace limn {
 namespace {
@@ -36,6 +37,9 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
   const Scene& truth_scene = shop.truth_scene();
   // Each object as it is by itself.
   const SceneModel truth = build_model(truth_scene, {});
+  if (const std::string reason = method->method->unsupported(truth, truth_scene); !reason.empty()) {
+    throw InputError({"", "method", method->method->about.name, "cannot draw the truth: " + reason, ""});
+  }
   StabilityRandom random = shop.random();
   Worst worst;
   for (const StabilityView& view : shop.views()) {

@@ -35,8 +35,9 @@ struct Film {
 StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
   const StabilityStage& stage = shop.stage();
   const Scene& truth_scene = shop.truth_scene();
-  // Each object as it is by itself.
-  const SceneModel truth = build_model(truth_scene, {});
+  SurfaceSettings natural;
+  natural.kind.clear();  // each object as it is by itself
+  const SceneModel truth = build_model(truth_scene, natural);
   if (const std::string reason = method->method->unsupported(truth, truth_scene); !reason.empty()) {
     throw InputError({"", "method", method->method->about.name, "cannot draw the truth: " + reason, ""});
   }

@@ -185,6 +185,23 @@ Band make_band(const TriangleMesh& mesh, const LazyTree& tree, const Winding& wi
   return band;
 }
 
+/// Share of an open mesh's area (of some thousand triangles of it) that has inside behind it at this depth. A sheet that is bent a little
+/// has inside in its fold alone, and the surface that bounds that is not the sheet.
+double share_with_inside(const TriangleMesh& mesh, const Winding& winding, double depth) {
+  constexpr size_t kTriangles = 4096;
+  const size_t stride = std::max<size_t>(1, mesh.triangles.size() / kTriangles);
+  double area = 0.0, with_inside = 0.0;
+  for (size_t i = 0; i < mesh.triangles.size(); i += stride) {
+    const glm::uvec3 t = mesh.triangles[i];
+    const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z], normal = glm::cross(b - a, c - a);
+    const double own = glm::length(normal);
+    if (!(own > 0.0)) continue;
+    area += own;
+    if (winding.number((a + b + c) / 3.0 - depth / own * normal) > 0.5) with_inside += own;
+  }
+  return area > 0.0 ? with_inside / area : 0.0;
+}
+
 /// Walls thinner than two voxels and gaps thinner than one, seen from the middles of the triangles along their normals.
 void warn_of_thin_sheets(const TriangleMesh& mesh, const LazyTree& tree, double voxel_size, std::vector<std::string>& warnings) {
   const ClosestPointData& distance = tree.get();
@@ -231,9 +248,14 @@ MeshLevelSet level_set_from_mesh(const TriangleMesh& mesh, const LevelSetSetting
   if (!winding.closed())
     warnings.push_back(
         fmt::format("{} open edges: inside is where the winding number is above 1/2, which closes the holes", winding.border().size()));
-  Band band = make_band(local, tree, winding, settings, 0.0);
+  const double inside = winding.closed() ? 1.0 : share_with_inside(local, winding, 0.5 * settings.voxel_size);
+  Band band;
+  if (inside >= 0.5) band = make_band(local, tree, winding, settings, 0.0);
   if (!band.any_inside) {
-    warnings.emplace_back("the mesh has no inside (a sheet, or thinner than a voxel): drawn as a shell, one voxel to each side");
+    warnings.push_back(
+        fmt::format("the mesh has no inside behind {:.0f} % of its surface (a sheet, or thinner than a voxel): drawn as a shell, "
+                    "one voxel to each side",
+                    band.blocks.empty() ? 100.0 * (1.0 - inside) : 100.0));
     band = make_band(local, tree, winding, settings, settings.voxel_size);
   }
   warn_of_thin_sheets(local, tree, settings.voxel_size, warnings);

@@ -56,7 +56,7 @@ StabilityCheck finite_outputs_check() {
       {"finite_outputs", "pixels with anything that is no number, no unit normal, ink outside [0, 1], or a ray without an answer", "limn"},
       "pixels",
       true,
-      {},
+      {stability_number("hits", 0.0, "", "share of the picture that must be hit at least")},
       run};
 }
 

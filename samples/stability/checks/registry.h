@@ -20,7 +20,6 @@ StabilityCheck even_cusps_check();
 StabilityCheck no_false_lines_check();
 StabilityCheck flicker_confined_check();
 StabilityCheck flips_beyond_check();
-StabilityCheck flicker_index_check();
 StabilityCheck unchanged_beyond_check();
 
 }  // namespace limn

@@ -46,6 +46,9 @@ std::vector<std::uint8_t> srgb_pixels(const Image<glm::vec4>& picture, bool alph
   return bytes;
 }
 
+/// OpenImageIO would write the time of day; equal runs must give equal bytes.
+constexpr const char* kNoTime = "1970:01:01 00:00:00";
+
 OIIO::ImageSpec srgb_spec(const Image<glm::vec4>& picture, bool alpha) {
   OIIO::ImageSpec spec(picture.width, picture.height, alpha ? 4 : 3, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
@@ -146,8 +149,7 @@ OIIO::ImageSpec exr_spec(const std::vector<Channel>& channels, const Picture& pi
   spec.attribute("limn:version", kVersion);
   spec.attribute("limn:call", call);
   spec.attribute("Software", std::string("limn ") + kVersion);
-  // OpenImageIO would write the time of day; equal runs must give equal bytes.
-  spec.attribute("DateTime", "1970:01:01 00:00:00");
+  spec.attribute("DateTime", kNoTime);
   add_matrix(spec, "worldToCamera", camera_from_world_matrix(camera));
   add_matrix(spec, "worldToNDC", ndc_from_world_matrix(camera));
   return spec;
@@ -221,7 +223,9 @@ void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesy
   }
   const bool alpha = has_alpha(extension);
   const std::vector<std::uint8_t> pixels = srgb_pixels(linear_premultiplied, alpha);
-  save(file, srgb_spec(linear_premultiplied, alpha), OIIO::TypeDesc::UINT8, pixels.data());
+  OIIO::ImageSpec spec = srgb_spec(linear_premultiplied, alpha);
+  if (extension == ".tif" || extension == ".tiff") spec.attribute("DateTime", kNoTime);
+  save(file, spec, OIIO::TypeDesc::UINT8, pixels.data());
 }
 
 std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied) {

@@ -21,10 +21,10 @@ HERE = pathlib.Path(__file__).resolve().parent
 DEMO = HERE.parent.parent / "samples" / "demo.sh"
 RUNS = (("one thread", 1), ("two threads", 2), ("two threads again", 2))
 CALLS = (
-    ("render", "machined_part", "-o", "field.exr", "-o", "field.png", "--size", "200x150", "--samples", "4"),
+    ("render", "machined_part", "-o", "field.exr", "-o", "field.png", "-o", "field.jpg", "-o", "field.tif", "--size", "200x150", "--samples", "4"),
     ("render", "teacup", "-o", "mesh.exr", "--surface", "mesh", "--size", "200x150"),
     ("render", "gyroid", "-o", "level_set.exr", "--surface", "level_set", "--voxels", "96", "--gradient", "cubic", "--size", "200x150"),
-    ("render", "rook", "-o", "both.tif", "--surface", "mesh_level_set", "--voxels", "64", "--method", "edge_quads", "--size", "200x150"),
+    ("render", "rook", "-o", "both.tif", "--surface", "mesh_level_set", "--voxels", "64", "--method", "rim_width", "--size", "200x150"),
     ("compare", "ellipsoid", "-o", "compare", "--size", "160x120", "--voxels", "48"),
     ("export", "teacup", "-o", "teacup.obj", "--level", "2"),
     ("export", "rook", "-o", "rook.ply", "--level", "2"),

@@ -139,6 +139,7 @@ Mesh box(const Parameters& p) {
 Mesh torus(const Parameters& p) {
   TessellateSettings settings;
   settings.level = p.integer("level");
+  settings.normals = NormalKind::vertex;
   return tessellate(make_shape("torus", {{"major", {p.number("major")}}, {"minor", {p.number("minor")}}}), settings);
 }
 

@@ -58,6 +58,7 @@ void change_mesh(const StabilityVariant& variant, Mesh& mesh) {
     std::reverse(mesh.face_sizes.begin(), mesh.face_sizes.end());
   }
   mesh.corner_vertices.clear();
+  mesh.corner_normals.clear();  // Of corners in another order.
   for (const auto& face : faces) mesh.corner_vertices.insert(mesh.corner_vertices.end(), face.begin(), face.end());
 }
 

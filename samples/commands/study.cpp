@@ -39,10 +39,17 @@ SceneInput load(Options& options) {
 /// What the models may take beside pictures and truth.
 void give_memory(Options& options) {
   constexpr double kBesideBytes = 100e6, kDefault = 8e9;
-  if (options.max_memory)
-    options.study.max_bytes = model_bytes_left(options, std::min(kBesideBytes, 0.3 * static_cast<double>(*options.max_memory)));
-  else
+  if (!options.max_memory) {
     options.study.max_bytes = static_cast<std::int64_t>(std::min(kDefault, 0.75 * machine_memory()));
+    return;
+  }
+  const double least = kProgramBytes + kBesideBytes;
+  if (static_cast<double>(*options.max_memory) < least) {
+    throw InputError({"", "--max-memory", bytes_text(static_cast<double>(*options.max_memory)),
+                      fmt::format("the pictures and the truth of a study take about {} by themselves", bytes_text(least)),
+                      "as much and something for the models would be right"});
+  }
+  options.study.max_bytes = model_bytes_left(options, kBesideBytes);
 }
 
 /// Truth is no faster for being expected to be; the calibrated part is.
@@ -178,6 +185,8 @@ int run(const Options& given) {
     print_result(options, place, *read_folder(place.final), cells.size(), {}, {});
     return 0;
   }
+  // What an earlier study left in the folder may be most of it: then only what is left counts (do_cells).
+  if (!fs::exists(place.work)) check_time(options, expected_ms(study));
   const std::vector<std::string> warnings = warn(options, study);
   const FolderLock lock(place.work);
   const StudyFolder held = do_cells(options, study, place, cells, bar);

@@ -30,34 +30,6 @@ std::uint8_t touched_faces(const CrossedCells& crossed) {
   return faces;
 }
 
-/// The leaves, and the blocks before them whose last cells have a node in a leaf of another sign: where a band is broken or thin.
-std::vector<Candidate> find_candidates(const LevelSetData& data) {
-  const auto& tree = data.grid->tree();
-  const std::uint32_t count = tree.nodeCount(0);
-  const Leaf* leaves = tree.getFirstNode<0>();
-  const Accessor accessor = data.accessor();
-  std::vector<Candidate> found;
-  found.reserve(count + count / 8);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const nanovdb::Coord o = leaves[i].origin();
-    found.push_back({.origin = {o[0], o[1], o[2]}});
-    for (int side = 1; side < 8; ++side) {
-      const int dx = side & 1, dy = (side >> 1) & 1, dz = side >> 2;
-      const nanovdb::Coord before = o.offsetBy(-8 * dx, -8 * dy, -8 * dz);
-      if (accessor.probeLeaf(before)) continue;
-      const bool inside = accessor.getValue(before) < 0.0f;
-      bool other = false;
-      for (int x = 0; x < (dx ? 1 : 8) && !other; ++x) {
-        for (int y = 0; y < (dy ? 1 : 8) && !other; ++y) {
-          for (int z = 0; z < (dz ? 1 : 8) && !other; ++z) other = (leaves[i].data()->mValues[x * 64 + y * 8 + z] < 0.0f) != inside;
-        }
-      }
-      if (other) found.push_back({.origin = {before[0], before[1], before[2]}});
-    }
-  }
-  return found;
-}
-
 void inspect(const Accessor& accessor, Candidate& candidate) {
   NodeValues values;
   load_nodes(accessor, candidate.origin, values);
@@ -66,6 +38,51 @@ void inspect(const Accessor& accessor, Candidate& candidate) {
   if (!crossed.any) return;
   candidate.faces = touched_faces(crossed);
   for_each_node(crossed, [&](int x, int y, int z) { candidate.largest = std::max(candidate.largest, std::abs(values[at(x, y, z)])); });
+}
+
+/// True where the leaf has a node of the other sign among those that the block `side` steps before it reaches (bits: x, y, z).
+bool changes_sign(const Leaf& leaf, int side, bool inside) {
+  const int dx = side & 1, dy = (side >> 1) & 1, dz = side >> 2;
+  const float* const values = leaf.data()->mValues;
+  for (int x = 0; x < (dx ? 1 : 8); ++x) {
+    for (int y = 0; y < (dy ? 1 : 8); ++y) {
+      for (int z = 0; z < (dz ? 1 : 8); ++z) {
+        if ((values[x * 64 + y * 8 + z] < 0.0f) != inside) return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// A leaf, and the blocks before it whose last cells have a node in a leaf of another sign: where a band is broken or thin.
+void add_candidates(const Accessor& accessor, const Leaf& leaf, std::vector<Candidate>& found) {
+  const nanovdb::Coord o = leaf.origin();
+  found.push_back({.origin = {o[0], o[1], o[2]}});
+  for (int side = 1; side < 8; ++side) {
+    const nanovdb::Coord before = o.offsetBy(-8 * (side & 1), -8 * ((side >> 1) & 1), -8 * (side >> 2));
+    if (accessor.probeLeaf(before) || !changes_sign(leaf, side, accessor.getValue(before) < 0.0f)) continue;
+    found.push_back({.origin = {before[0], before[1], before[2]}});
+  }
+}
+
+/// Inspected, in the order of the leaves whatever the threads.
+std::vector<Candidate> find_candidates(const LevelSetData& data) {
+  constexpr std::uint32_t kChunk = 512;
+  const auto& tree = data.grid->tree();
+  const std::uint32_t count = tree.nodeCount(0), chunks = (count + kChunk - 1) / kChunk;
+  const Leaf* leaves = tree.getFirstNode<0>();
+  std::vector<std::vector<Candidate>> parts(chunks);
+  tbb::parallel_for(std::uint32_t{0}, chunks, [&](std::uint32_t chunk) {
+    const Accessor accessor = data.accessor();
+    const std::uint32_t first = chunk * kChunk, last = std::min(count, first + kChunk);
+    parts[chunk].reserve(kChunk + kChunk / 8);
+    for (std::uint32_t i = first; i < last; ++i) add_candidates(accessor, leaves[i], parts[chunk]);
+    for (Candidate& candidate : parts[chunk]) inspect(accessor, candidate);
+  });
+  std::vector<Candidate> found;
+  found.reserve(count + count / 8);
+  for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
+  return found;
 }
 
 /// From a block to its neighbour over a face (see BrickNeighbors).
@@ -172,13 +189,6 @@ BrickNeighbors BrickLayout::neighbors_of(size_t brick) const {
   return neighbors;
 }
 
-BrickLayout lay_out_bricks(const LevelSetData& data) {
-  std::vector<Candidate> candidates = find_candidates(data);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, candidates.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
-    const Accessor accessor = data.accessor();
-    for (size_t i = range.begin(); i < range.end(); ++i) inspect(accessor, candidates[i]);
-  });
-  return lay_out(std::move(candidates));
-}
+BrickLayout lay_out_bricks(const LevelSetData& data) { return lay_out(find_candidates(data)); }
 
 }  // namespace limn

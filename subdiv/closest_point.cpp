@@ -75,7 +75,7 @@ ClosestPointData::ClosestPointData(const TriangleMesh& mesh) : positions(mesh.po
   center = box.empty() ? glm::dvec3(0.0) : box.center();
   extent = box.radius();
   RTCDevice rtc_device = rtcNewDevice(nullptr);
-  if (rtc_device == nullptr) throw MachineError("Embree could not start");
+  if (rtc_device == nullptr) throw MachineError("Embree could not start: out of memory, most likely");
   RTCScene rtc_scene = rtcNewScene(rtc_device);
   rtcSetSceneFlags(rtc_scene, RTC_SCENE_FLAG_ROBUST);
   RTCGeometry geometry = rtcNewGeometry(rtc_device, RTC_GEOMETRY_TYPE_TRIANGLE);

@@ -124,7 +124,7 @@ void attach_triangles(MeshState& state) {
 
 void build_tree(MeshState& state) {
   state.device.reset(rtcNewDevice(nullptr));
-  if (!state.device) throw MachineError("Embree could not start");
+  if (!state.device) throw MachineError("Embree could not start: out of memory, most likely");
   state.scene.reset(rtcNewScene(state.device.get()));
   rtcSetSceneFlags(state.scene.get(), RTC_SCENE_FLAG_ROBUST);
   attach_triangles(state);

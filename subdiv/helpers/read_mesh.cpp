@@ -1,5 +1,6 @@
 // limn-read-mesh FILE MAX_ELEMENTS: reads a .ply, .stl, .off, .gltf or .glb that nobody vouches for with assimp, and sends it as a flat
 // mesh through the answer pipe (sdf/guard.h).
+#include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
@@ -67,7 +68,7 @@ void keep_readers(Assimp::Importer& importer, const std::string& extension) {
   }
   for (Assimp::BaseImporter* other : others) {
     importer.UnregisterLoader(other);
-    // Unregistered readers are ours to delete; the process ends in a moment, and their type is assimp's own.
+    delete other;  // an unregistered reader belongs to whoever took it out
   }
 }
 

@@ -55,10 +55,16 @@ std::vector<std::string> warnings_of(const SceneObject& object, const std::vecto
 
 using Names = std::vector<std::string>;
 
+/// Through memory: GCC 12 leaves the rounding out where it vectorises conversions there and back.
+double rounded_to_single(double x) {
+  volatile float single = static_cast<float>(x);
+  return static_cast<double>(single);
+}
+
 Mesh moved(Mesh mesh, const glm::dvec3& by, bool to_single) {
   for (glm::dvec3& p : mesh.positions) {
     p += by;
-    if (to_single) p = glm::dvec3(glm::vec3(p));
+    if (to_single) p = {rounded_to_single(p.x), rounded_to_single(p.y), rounded_to_single(p.z)};
   }
   return mesh;
 }

@@ -102,12 +102,21 @@ double step_px(const Mesh& coarse, const Mesh& fine, Scheme scheme, const Pictur
   });
 }
 
+/// What was guessed on the way to a level, on the safe side, is known once it is there: a coarser one stands off by no more than the steps
+/// up to the finer and what is left from there.
+ViewLevel coarsest_within(const std::vector<double>& steps, double rest, double tolerance_px) {
+  size_t level = steps.size();
+  for (; level > 0 && steps[level - 1] + rest <= tolerance_px; --level) rest += steps[level - 1];
+  return {static_cast<int>(level), rest, {}};
+}
+
 /// `source` in the world: subdivision commutes with affine maps.
 ViewLevel level_of_cage(const MeshSource& source, Scheme scheme, const SurfaceSettings& settings, const Pictures& pictures,
                         double tolerance_px) {
   RefineSettings how{.scheme = scheme, .level = 0, .normals = NormalKind::flat, .max_bytes = settings.max_bytes};
   Mesh coarse = refine(source.mesh, how, source.file);
-  double before = 0.0, rest = std::numeric_limits<double>::infinity();
+  std::vector<double> steps;  // from each level to the next
+  double rest = std::numeric_limits<double>::infinity();
   for (how.level = 1; how.level <= kFinest; ++how.level) {
     const RefinedSize size = predict_refined_size(source.mesh, scheme, how.level);
     if (size.bytes > settings.max_bytes) return {how.level - 1, rest, "a finer one would not fit into memory"};
@@ -116,11 +125,10 @@ ViewLevel level_of_cage(const MeshSource& source, Scheme scheme, const SurfaceSe
     Mesh fine = refine(source.mesh, how, source.file);
     const double step = step_px(coarse, fine, scheme, pictures);
     // Fourfold at best; at the first step, when nothing is known, twofold.
-    const double ratio = before > 0.0 ? std::clamp(step / before, 0.25, 0.9) : 0.5;
-    if (how.level == 1 && step / (1.0 - ratio) <= tolerance_px) return {0, step / (1.0 - ratio), {}};
+    const double ratio = !steps.empty() && steps.back() > 0.0 ? std::clamp(step / steps.back(), 0.25, 0.9) : 0.5;
     rest = step * ratio / (1.0 - ratio);
-    if (rest <= tolerance_px) return {how.level, rest, {}};
-    before = step;
+    steps.push_back(step);
+    if (rest <= tolerance_px) return coarsest_within(steps, rest, tolerance_px);
     coarse = std::move(fine);
   }
   return {kFinest, rest, "it is the finest level"};

@@ -21,7 +21,7 @@ struct ViewLevel {
 
 /// The least level of a cage or a tessellated field at which the traced mesh stands off the surface (limit surface or field) by at most
 /// `deviation_px` in each of the cameras' pictures; what lies outside of them or behind the eye does not count. A cage's deviation is that
-/// of the next finer mesh's vertices, all of which lie on the limit surface, from its faces; from one level to the next it falls
+/// of the finer meshes' vertices, all of which lie on the limit surface, from its faces; from the finest that was looked at on it falls
 /// as it fell before, no faster than fourfold. A field's is measured at the middles of faces and edges. No finer than settings.max_bytes
 /// allows, than four triangles for each pixel, and than it helps. Throws InputError as refine() and tessellate() do.
 ViewLevel level_for_views(const SceneObject& object, const SurfaceSettings& settings, std::span<const Camera> cameras,

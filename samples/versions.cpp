@@ -3,6 +3,7 @@
 #include <OpenImageIO/oiioversion.h>
 #include <embree3/rtcore_config.h>
 #include <fmt/format.h>
+#include <hwy/highway.h>
 #include <opensubdiv/version.h>
 #include <openvdb/version.h>
 #include <tbb/version.h>
@@ -16,21 +17,13 @@
 namespace limn {
 namespace {
 
+/// What the kernels run on here: the best of the targets they were compiled for that this machine has.
 std::string simd_target() {
-#if !LIMN_SIMD
-  return "off (scalar build)";
-#elif defined(__AVX512F__)
-  return "AVX-512";
-#elif defined(__AVX2__)
-  return "AVX2";
-#elif defined(__SSE4_2__)
-  return "SSE4.2";
-#elif defined(__SSE2__)
-  return "SSE2";
-#elif defined(__ARM_NEON)
-  return "NEON";
+#if LIMN_SIMD
+  const std::int64_t usable = hwy::SupportedTargets() & HWY_TARGETS;
+  return hwy::TargetName(usable & -usable);  // a better target is a lower bit
 #else
-  return "the compiler's default";
+  return "off (scalar build)";
 #endif
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // Whether a model keeps to a tolerance, asked without measuring any border: rays on both sides of the true one, a tolerance away from it,
-// must see what is there.
+// must see what is there, and what brute force finds of border in its picture must lie near a true one.
 
 #include <cmath>
 
@@ -85,6 +85,82 @@ inline double share_beyond(const SceneModel& model, const SceneModel& reference,
     worst = std::max(worst, of_all ? found.share_of_all() : found.share());
   }
   return worst;
+}
+
+/// A pair of rays between which a picture has a border, as it is closed in.
+struct BorderBetween {
+  glm::dvec2 a_px{0.0}, b_px{0.0};
+  PointSample a{}, b{};
+  double first_step = 0.0;  ///< Of depth between the first two.
+};
+
+/// Whether two rays see two sides of a border: of the object, of the ink or, as long as it does not close, of a step in depth.
+struct BorderSides {
+  const Camera& camera;
+  double threshold;  ///< Of the ink; 0: the silhouette alone.
+
+  int side(const PointSample& sample) const {
+    if (sample.status != HitStatus::hit) return 0;
+    return double{sample.n_dot_v} < threshold ? 1 : 2;
+  }
+  double step(const PointSample& a, const PointSample& b) const { return std::abs(depth_of(camera, a) - depth_of(camera, b)); }
+  bool differ(const PointSample& a, const PointSample& b) const { return side(a) != side(b); }
+};
+
+/// All pairs of neighbours in a grid of rays a pixel apart that may have a border between them.
+inline std::vector<BorderBetween> neighbours_that_differ(const SceneModel& model, const BorderSides& sides) {
+  const int width = sides.camera.width_px, height = sides.camera.height_px;
+  std::vector<glm::dvec2> points;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) points.push_back({x + 0.5, y + 0.5});
+  }
+  const std::vector<PointSample> seen = seen_at(model, sides.camera, points);
+  std::vector<BorderBetween> pairs;
+  const auto look = [&](size_t i, size_t j) {
+    const PointSample &a = seen[i], &b = seen[j];
+    if (sides.side(a) == 0 && sides.side(b) == 0) return;
+    const double step = sides.step(a, b), nearer = std::min(depth_of(sides.camera, a), depth_of(sides.camera, b));
+    if (sides.differ(a, b) || step * pixels_per_unit_at(sides.camera, nearer) > 1.0) pairs.push_back({points[i], points[j], a, b, step});
+  };
+  for (int y = 0; y + 1 < height; ++y) {
+    for (int x = 0; x + 1 < width; ++x) {
+      const auto i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+      look(i, i + 1);
+      look(i, i + static_cast<size_t>(width));
+    }
+  }
+  return pairs;
+}
+
+/// Of the border that brute force finds in a model's picture, with rays a pixel apart and halving between them, the share that lies farther
+/// than `tolerance_px` from every true one.
+inline double share_of_false_border(const SceneModel& model, const PlanView& view, double threshold, double tolerance_px,
+                                    PlanMetric metric) {
+  constexpr int kHalvings = 7;
+  // A slope's step falls to a hundredth, that of a sheet seen edge on to a tenth.
+  constexpr double kStays = 0.25;
+  const BorderSides sides{view.camera, metric == PlanMetric::silhouette ? 0.0 : threshold};
+  std::vector<BorderBetween> pairs = neighbours_that_differ(model, sides);
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    std::vector<glm::dvec2> middles;
+    for (const BorderBetween& pair : pairs) middles.push_back(0.5 * (pair.a_px + pair.b_px));
+    const std::vector<PointSample> seen = seen_at(model, view.camera, middles);
+    for (size_t i = 0; i < pairs.size(); ++i) {
+      BorderBetween& pair = pairs[i];
+      const bool by_side = sides.differ(pair.a, pair.b);
+      const bool left = by_side ? sides.differ(pair.a, seen[i]) : sides.step(pair.a, seen[i]) > sides.step(seen[i], pair.b);
+      (left ? pair.b_px : pair.a_px) = middles[i];
+      (left ? pair.b : pair.a) = seen[i];
+    }
+  }
+  const CurveIndex borders(view.truth.curves, {});
+  int all = 0, wrong = 0;
+  for (const BorderBetween& pair : pairs) {
+    if (!sides.differ(pair.a, pair.b) && sides.step(pair.a, pair.b) < kStays * pair.first_step) continue;
+    ++all;
+    wrong += !borders.nearest(0.5 * (pair.a_px + pair.b_px), 0, tolerance_px + std::exp2(-kHalvings));
+  }
+  return all > 0 ? static_cast<double>(wrong) / all : 0.0;
 }
 
 }  // namespace limn::test

@@ -14,7 +14,10 @@ import re
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "verify"))
+import preset  # noqa: E402
+
+ROOT = preset.ROOT
 BUILD = ROOT / "build" / "coverage"
 LEAST = {"line": 90.0, "branch": 80.0}
 FOLDERS = ("sdf", "subdiv", "raymarch", "samples")
@@ -22,9 +25,7 @@ FOLDERS = ("sdf", "subdiv", "raymarch", "samples")
 
 def run_tests():
     """How many ran and failed."""
-    if not (BUILD / "build.ninja").exists():
-        subprocess.run(["cmake", "--preset", "coverage"], cwd=ROOT, check=True, stdout=sys.stderr)
-    subprocess.run(["cmake", "--build", "--preset", "coverage"], cwd=ROOT, check=True, stdout=sys.stderr)
+    preset.build("coverage")
     # Counts of an earlier run would be added to.
     for counts in BUILD.rglob("*.gcda"):
         counts.unlink()

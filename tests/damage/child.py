@@ -1,5 +1,7 @@
 """Runs the program as a child with limits and measures what it took."""
+import argparse
 import dataclasses
+import json
 import os
 import pathlib
 import resource
@@ -82,3 +84,31 @@ def must(command, **options):
     if done.code != 0:
         raise SystemExit(f"{' '.join(map(str, command))} ended with {done.code}: {done.err}")
     return done
+
+
+def random_trials(usage, count):
+    """The arguments that programs of many random trials share; more can be added to it before trials() reads them."""
+    parser = argparse.ArgumentParser(usage=usage)
+    parser.add_argument("limn", type=pathlib.Path)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--count", type=int, default=count)
+    parser.add_argument("--seed", type=int, default=None)
+    parser.add_argument("--json", type=pathlib.Path)
+    return parser
+
+
+def trials(parser):
+    """What was asked for, with a seed, printed, whatever happens next."""
+    options = parser.parse_args()
+    options.limn, options.folder = options.limn.resolve(), options.folder.resolve()
+    if options.seed is None:
+        options.seed = int.from_bytes(os.urandom(4), "little")
+    print(f"seed {options.seed}", flush=True)
+    return options
+
+
+def report(options, name, tallies):
+    """Writes the JSON where it was asked for; returns the exit code."""
+    if options.json:
+        options.json.write_text(json.dumps({"seed": options.seed, name: [t.record() for t in tallies]}, indent=1) + "\n")
+    return 1 if any(t.failures for t in tallies) else 0

@@ -7,10 +7,7 @@ mutants.py LIMN FOLDER [--count N] [--seed S] [--kind NAME]... [--corpus-only] [
 Originals are made afresh in FOLDER (originals.py); --count mutants of each (mutation.py) go through commands that read and write by turns. Then
 the corpus beside this script: every file that once did harm. What fails is printed with the seed and kept in FOLDER/failed.
 """
-import argparse
 import collections
-import json
-import os
 import pathlib
 import random
 import re
@@ -186,18 +183,11 @@ def try_corpus(limn, folder):
 
 
 def main():
-    parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument("limn", type=pathlib.Path)
-    parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=None)
+    parser = child.random_trials(__doc__, count=200)
     parser.add_argument("--kind", action="append")
     parser.add_argument("--corpus-only", action="store_true")
-    parser.add_argument("--json", type=pathlib.Path)
-    options = parser.parse_args()
-    seed = options.seed if options.seed is not None else int.from_bytes(os.urandom(4), "little")
-    print(f"seed {seed}", flush=True)
-    limn, folder = options.limn.resolve(), options.folder.resolve()
+    options = child.trials(parser)
+    limn, folder = options.limn, options.folder
     tallies = []
     if not options.corpus_only:
         shutil.rmtree(folder / "made", ignore_errors=True)
@@ -207,15 +197,13 @@ def main():
                 continue
             shutil.rmtree(folder / "work", ignore_errors=True)
             (folder / "work").mkdir()
-            tallies.append(try_kind(limn, kind, original, folder, options.count, seed))
+            tallies.append(try_kind(limn, kind, original, folder, options.count, options.seed))
             print(tallies[-1].line(), flush=True)
     folder.mkdir(parents=True, exist_ok=True)
     tallies.append(try_corpus(limn, folder))
     print(tallies[-1].line(), flush=True)
-    if options.json:
-        options.json.write_text(json.dumps({"seed": seed, "kinds": [t.record() for t in tallies]}, indent=1) + "\n")
-    sys.exit(1 if any(t.failures for t in tallies) else 0)
+    return child.report(options, "kinds", tallies)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

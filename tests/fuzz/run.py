@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
 """Runs every fuzzer for a while and prints, as JSON, how much each tried and what it found. Ends with 1 where something crashed.
 
-run.py [--seconds N] [--target NAME ...] [--jobs N] [--build FOLDER] [--json FILE]
+run.py [--seconds N] [--target NAME ...] [--jobs N] [--json FILE]
 
 Builds the fuzzers first (cmake --preset asan). Each starts from its corpus in tests/fuzz/corpus and keeps what it learns in the build folder.
 An input that breaks something is left there too; once it is mended, the input belongs into the corpus, where every ordinary test run replays it.
 """
 import argparse
 import concurrent.futures
-import json
 import os
 import pathlib
 import re
@@ -16,15 +15,10 @@ import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parent.parent
+sys.path.insert(0, str(HERE.parent / "verify"))
+import preset  # noqa: E402
+
 LIMITS = ["-rss_limit_mb=2560", "-malloc_limit_mb=1024", "-timeout=20"]
-
-
-def build(folder):
-    configure = ["cmake", "--preset", "asan"] if folder == ROOT / "build" / "asan" else None
-    if configure and not (folder / "build.ninja").exists():
-        subprocess.run(configure, cwd=ROOT, check=True, stdout=sys.stderr)
-    subprocess.run(["cmake", "--build", str(folder), "--target", "limn-fuzz"], cwd=ROOT, check=True, stdout=sys.stderr)
 
 
 def fuzz(name, folder, seconds):
@@ -38,7 +32,7 @@ def fuzz(name, folder, seconds):
     dictionary = HERE / "dictionaries" / f"{name}.dict"
     if dictionary.exists():
         command.append(f"-dict={dictionary}")
-    environment = dict(os.environ, LSAN_OPTIONS=f"suppressions={ROOT}/tests/sanitizers/leaks.supp:print_suppressions=0",
+    environment = dict(os.environ, LSAN_OPTIONS=f"suppressions={preset.ROOT}/tests/sanitizers/leaks.supp:print_suppressions=0",
                        UBSAN_OPTIONS="print_stacktrace=1")
     # A hard end, should a fuzzer not keep to its time.
     done = subprocess.run([str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment, timeout=2 * seconds + 300)
@@ -58,21 +52,16 @@ def main():
     parser.add_argument("--seconds", type=int, default=60, help="for each fuzzer")
     parser.add_argument("--target", nargs="+", choices=names, default=names)
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="fuzzers at a time")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "asan")
     parser.add_argument("--json", type=pathlib.Path, help="write the results there too")
     options = parser.parse_args()
-    build(options.build)
+    folder = preset.build("asan", "limn-fuzz")
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        results = list(pool.map(lambda name: fuzz(name, options.build, options.seconds), options.target))
+        results = list(pool.map(lambda name: fuzz(name, folder, options.seconds), options.target))
     good = all(r["exit_code"] == 0 and not r["crashes"] and r["executions"] > 0 for r in results)
-    text = json.dumps({"outcome": "held" if good else "failed", "seconds_each": options.seconds,
-                       "figures": {"fuzzers": len(results), "executions": sum(r["executions"] for r in results),
-                                   "crashes": sum(len(r["crashes"]) for r in results)},
-                       "targets": results}, indent=1)
-    if options.json:
-        options.json.write_text(text + "\n")
-    print(text)
-    return 0 if good else 1
+    return preset.publish({"outcome": "held" if good else "failed", "seconds_each": options.seconds,
+                           "figures": {"fuzzers": len(results), "executions": sum(r["executions"] for r in results),
+                                       "crashes": sum(len(r["crashes"]) for r in results)},
+                           "targets": results}, options.json)
 
 
 if __name__ == "__main__":

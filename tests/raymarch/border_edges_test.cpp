@@ -23,7 +23,7 @@ const double kSobelSquared[kSide][kSide] = {{1 + 1, 4 + 16, 1 + 25, 4 + 4},
                                             {16 + 16, 0 + 64, 25 + 1, 81 + 81}};
 
 /// The edge strength at a pixel lies between two thresholds a part in 10^4 apart.
-void expect_custom_strengths(const std::string& method, double scale, const double (&squared)[kSide][kSide]) {
+testing::AssertionResult has_strengths(const std::string& method, double scale, const double (&squared)[kSide][kSide]) {
   const Camera camera = test::straight_camera(kSide, kSide, Projection::orthographic, 10.0);
   GBuffer seen = test::plane_buffer(camera, {0.0, 0.0, 1.0}, 5.0);
   seen.custom = {kSide, kSide, glm::vec3(0.0f)};
@@ -36,17 +36,20 @@ void expect_custom_strengths(const std::string& method, double scale, const doub
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
       const double strength = std::sqrt(squared[y][x]) / scale;
-      if (strength > 0.0) {
-        EXPECT_EQ(inked(strength * 0.9999, x, y), 1.0f) << method << " " << x << "," << y;
-      }
-      EXPECT_EQ(inked(strength * 1.0001, x, y), 0.0f) << method << " " << x << "," << y;
+      const float below = strength > 0.0 ? inked(strength * 0.9999, x, y) : 1.0f, above = inked(strength * 1.0001, x, y);
+      if (below != 1.0f || above != 0.0f)
+        return testing::AssertionFailure() << method << " " << x << "," << y << ": ink " << below << " below the strength " << strength
+                                           << ", should be 1; " << above << " above it, should be 0";
     }
   }
+  return testing::AssertionSuccess();
 }
 
-TEST(BorderEdges, RobertsIsTheCrossOfDifferencesOnAHandMadeBuffer) { expect_custom_strengths("roberts", std::sqrt(2.0), kRobertsSquared); }
+TEST(BorderEdges, RobertsIsTheCrossOfDifferencesOnAHandMadeBuffer) {
+  EXPECT_TRUE(has_strengths("roberts", std::sqrt(2.0), kRobertsSquared));
+}
 
-TEST(BorderEdges, SobelIsTheThreeByThreeGradientOnAHandMadeBuffer) { expect_custom_strengths("sobel", 4.0, kSobelSquared); }
+TEST(BorderEdges, SobelIsTheThreeByThreeGradientOnAHandMadeBuffer) { EXPECT_TRUE(has_strengths("sobel", 4.0, kSobelSquared)); }
 
 TEST(BorderEdges, EverySourceHasItsOwnLineAndWeight) {
   const Camera camera = test::straight_camera(16, 8, Projection::orthographic, 10.0);
@@ -78,13 +81,18 @@ TEST(BorderEdges, EverySourceHasItsOwnLineAndWeight) {
     }
     // Roberts spans the pixels x and x+1; Sobel answers on both sides of the jump.
     const int first = 7, last = method == "roberts" ? 7 : 8;
-    const auto expect_line = [&](const Image<float>& ink, const std::string& name) {
+    const auto is_line = [&](const Image<float>& ink) {
       for (int y = 0; y < 8; ++y) {
-        for (int x = 0; x < 16; ++x) EXPECT_EQ(ink.at(x, y), x >= first && x <= last ? 0.5f : 0.0f) << method << " " << name << " " << x;
+        for (int x = 0; x < 16; ++x) {
+          const float expected = x >= first && x <= last ? 0.5f : 0.0f;
+          if (ink.at(x, y) != expected)
+            return testing::AssertionFailure() << ink.at(x, y) << " at " << x << "," << y << ", not " << expected;
+        }
       }
+      return testing::AssertionSuccess();
     };
     for (const auto& [source, seen] : changed) {
-      expect_line(only(method, source, seen), source);
+      EXPECT_TRUE(is_line(only(method, source, seen))) << method << " " << source;
       for (const auto& [other, unused] : changed) {
         // The shaded colour of another object is another colour too.
         if (other == source || (source == "id" && other == "color")) continue;
@@ -93,7 +101,7 @@ TEST(BorderEdges, EverySourceHasItsOwnLineAndWeight) {
         }
       }
     }
-    expect_line(only(method, "id", material), "material");
+    EXPECT_TRUE(is_line(only(method, "id", material))) << method << " material";
   }
 }
 

@@ -11,6 +11,7 @@
 #include "raymarch/image_io.h"
 #include "sdf/version.h"
 #include "tests/raymarch/scenes.h"
+#include "tests/temporary_folder.h"
 
 namespace limn::test {
 namespace {
@@ -19,13 +20,8 @@ namespace fs = std::filesystem;
 
 class ImageFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("limn-image-" + std::to_string(std::random_device{}()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  fs::path file(const std::string& name) const { return folder_ / name; }
-  fs::path folder_;
+  fs::path file(const std::string& name) const { return folder_.path() / name; }
+  TemporaryFolder folder_;
 };
 
 std::string bytes_of(const fs::path& file) {
@@ -200,7 +196,7 @@ TEST_F(ImageFiles, FaultsSayWhatWouldBeRight) {
   EXPECT_THROW(read_channel(file("text.exr"), "Z"), InputError);
   write_exr(drawn.picture, drawn.camera, "", file("b.exr"));
   EXPECT_THROW(read_channel(file("b.exr"), "Q"), InputError);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 2) << "something was left behind";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()), 2) << "something was left behind";
 }
 
 }  // namespace

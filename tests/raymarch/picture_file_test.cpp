@@ -10,6 +10,7 @@
 #include "sdf/guard.h"
 #include "sdf/version.h"
 #include "tests/raymarch/scenes.h"
+#include "tests/temporary_folder.h"
 
 namespace limn::test {
 namespace {
@@ -19,15 +20,12 @@ namespace fs = std::filesystem;
 class PictureFiles : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("limn-picture-" + std::to_string(std::random_device{}()));
-    fs::create_directories(folder_);
     const Scene scene = scene_of({object_of(make_shape("ellipsoid"))});
     camera_ = framing(scene, view(40, 24));
     picture_ = draw_picture(scene, model_of(scene), camera_, {{call_of("rim")}, 1, {}}, {});
   }
-  void TearDown() override { fs::remove_all(folder_); }
-  fs::path file(const std::string& name) const { return folder_ / name; }
-  fs::path folder_;
+  fs::path file(const std::string& name) const { return folder_.path() / name; }
+  TemporaryFolder folder_;
   Camera camera_;
   Picture picture_;
 };

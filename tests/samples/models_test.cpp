@@ -1,5 +1,6 @@
 // Real files from elsewhere, through the real program: they are hit, and everything written is finite.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,32 +15,38 @@ namespace {
 namespace fs = std::filesystem;
 
 // Renders small, and looks at every layer.
-void expect_sound_picture(const std::string& input, std::vector<std::string> more) {
+testing::AssertionResult draws_soundly(const std::string& input, const std::vector<std::string>& more = {}) {
   const TemporaryFolder folder;
   const std::string exr = folder.file("a.exr");
   std::vector<std::string> arguments = {"render", input, "--size", "96x72", "--json", "-o", exr};
   arguments.insert(arguments.end(), more.begin(), more.end());
   const RunResult result = run_limn(arguments);
-  ASSERT_EQ(result.exit_code, 0) << input << ": " << result.err;
+  const auto failure = [&] { return testing::AssertionFailure() << fmt::format("{} {}: ", input, fmt::join(more, " ")); };
+  if (result.exit_code != 0) return failure() << "exit code " << result.exit_code << ", " << result.err;
   const auto document = result.json();
-  EXPECT_GT(document.at("hits"), 200) << input;
-  EXPECT_GT(document.at("misses"), 50) << input << " should be framed with some room around it";
-  EXPECT_EQ(document.at("out_of_steps"), 0) << input;
+  if (!(document.at("hits") > 200)) return failure() << document.at("hits") << " hits, should be more than 200";
+  if (!(document.at("misses") > 50)) return failure() << document.at("misses") << " misses, should be framed with some room around it";
+  if (document.at("out_of_steps") != 0) return failure() << document.at("out_of_steps") << " rays out of steps";
   const Image<float> id = read_channel(exr, "id.Y"), z = read_channel(exr, "Z"), border = read_channel(exr, "border.Y"),
                      facing = read_channel(exr, "NdotV.Y");
+  const auto share = [](float v) { return v >= 0.0f && v <= 1.0f; };
   std::int64_t hits = 0;
   for (size_t i = 0; i < id.size(); ++i) {
     const bool hit = id.pixels[i] > 0.0f;
     hits += hit;
-    ASSERT_TRUE(hit ? std::isfinite(z.pixels[i]) && z.pixels[i] > 0.0f : std::isinf(z.pixels[i])) << input << " pixel " << i;
-    ASSERT_TRUE(border.pixels[i] >= 0.0f && border.pixels[i] <= 1.0f) << input << " pixel " << i;
-    ASSERT_TRUE(facing.pixels[i] >= 0.0f && facing.pixels[i] <= 1.0f) << input << " pixel " << i;
+    const bool sound = (hit ? std::isfinite(z.pixels[i]) && z.pixels[i] > 0.0f : std::isinf(z.pixels[i])) && share(border.pixels[i]) &&
+                       share(facing.pixels[i]);
+    if (!sound)
+      return failure() << fmt::format("pixel {}: id {}, Z {}, border {}, NdotV {}", i, id.pixels[i], z.pixels[i], border.pixels[i],
+                                      facing.pixels[i]);
   }
-  EXPECT_EQ(hits, document.at("hits"));
+  if (hits != document.at("hits")) return failure() << hits << " pixels hit, " << document.at("hits") << " said to be";
   for (const char* channel : {"R", "G", "B", "A", "N.X", "N.Y", "N.Z"}) {
     const Image<float> layer = read_channel(exr, channel);
-    EXPECT_TRUE(std::all_of(layer.pixels.begin(), layer.pixels.end(), [](float v) { return std::isfinite(v); })) << input << " " << channel;
+    if (!std::all_of(layer.pixels.begin(), layer.pixels.end(), [](float v) { return std::isfinite(v); }))
+      return failure() << channel << " is not finite everywhere";
   }
+  return testing::AssertionSuccess();
 }
 
 class Models : public testing::TestWithParam<const char*> {};
@@ -47,8 +54,8 @@ class Models : public testing::TestWithParam<const char*> {};
 TEST_P(Models, AreDrawnAsMeshAndAsLevelSet) {
   const fs::path file = fs::path(LIMN_MODELS) / GetParam();
   if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
-  expect_sound_picture(file.string(), {});
-  expect_sound_picture(file.string(), {"--surface", "mesh_level_set", "--voxels", "64"});
+  EXPECT_TRUE(draws_soundly(file.string()));
+  EXPECT_TRUE(draws_soundly(file.string(), {"--surface", "mesh_level_set", "--voxels", "64"}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Collection, Models,
@@ -68,7 +75,7 @@ TEST(Formats, GltfStlPlyAndOffOfAnotherCollectionAreDrawn) {
        {"glTF2/BoxTextured-glTF-Binary/BoxTextured.glb", "glTF2/BoxTextured-glTF/BoxTextured.gltf", "STL/Spider_ascii.stl",
         "STL/Spider_binary.stl", "PLY/Wuson.ply", "PLY/cube_binary.ply", "OFF/Wuson.off", "OFF/Cube.off"}) {
     ASSERT_TRUE(fs::exists(models / name)) << name;
-    expect_sound_picture((models / name).string(), {});
+    EXPECT_TRUE(draws_soundly((models / name).string()));
   }
 }
 
@@ -77,7 +84,7 @@ TEST(Formats, AVolumeWrittenByAnotherToolIsDrawn) {
   const std::string volume = folder.file("sphere.vdb");
   if (std::system("command -v vdb_tool > /dev/null 2>&1") != 0) GTEST_SKIP() << "vdb_tool is not installed";
   ASSERT_EQ(std::system(("vdb_tool -quiet -sphere dim=64 radius=1.5 center='(1,2,3)' -write " + volume + " > /dev/null 2>&1").c_str()), 0);
-  expect_sound_picture(volume, {});
+  EXPECT_TRUE(draws_soundly(volume));
   const auto bounds = run_limn({"info", volume, "--json"}).json().at("bounds");
   EXPECT_NEAR(bounds.at("upper").at(0).get<double>(), 2.5, 0.1);
   EXPECT_NEAR(bounds.at("lower").at(2).get<double>(), 1.5, 0.1);
@@ -98,7 +105,7 @@ TEST(Formats, WhatExportWritesIsReadBackAsTheSameSurface) {
         EXPECT_GE(inner, 0.5 * outer) << name << side << axis;
       }
     }
-    expect_sound_picture(folder.file(name), {});
+    EXPECT_TRUE(draws_soundly(folder.file(name)));
   }
 }
 
@@ -110,10 +117,10 @@ TEST(Formats, AnExportedCageIsNoCageAnyMore) {
   EXPECT_EQ(document.at("objects").at(0).at("kind"), "mesh");
 }
 
-TEST(Scenes, TheExampleFileIsDrawn) { expect_sound_picture(LIMN_SOURCE_DIR "/samples/scenes/still_life.toml", {}); }
+TEST(Scenes, TheExampleFileIsDrawn) { EXPECT_TRUE(draws_soundly(LIMN_SOURCE_DIR "/samples/scenes/still_life.toml")); }
 
 TEST(Scenes, EveryBuiltInOneIsDrawn) {
-  for (const auto& scene : run_limn({"list", "scenes", "--json"}).json()) expect_sound_picture(scene.at("name"), {});
+  for (const auto& scene : run_limn({"list", "scenes", "--json"}).json()) EXPECT_TRUE(draws_soundly(scene.at("name")));
 }
 
 }  // namespace

@@ -37,15 +37,6 @@ SceneModel build(const Scene& scene, const Ladder& ladder, size_t rung) {
   return build_model(bare, ladder.at(rung));
 }
 
-/// Border so far from any true one that rays beside the true one cannot see it: a coarse torus whose normals face away in front of its
-/// silhouette. Which ladder is taken depends on what the machine is quick at, and on level sets that is what coarser models fail by.
-bool shows_false_border(const PlanAnswer& answer, size_t ladder, size_t rung, PlanMetric metric) {
-  constexpr double kOutOfReach_px = 4.0;
-  return std::any_of(answer.trials.begin(), answer.trials.end(), [&](const PlanTrial& trial) {
-    return trial.ladder == ladder && trial.rung == rung && trial.measured.of(metric) > kOutOfReach_px;
-  });
-}
-
 TEST(Plan, TheChoiceKeepsToTheToleranceAndTheNextCoarserModelDoesNot) {
   int plans = 0, coarser_fails = 0, with_coarser = 0;
   for (const char* name : {"ellipsoid", "tilted_torus", "teacup"}) {
@@ -63,13 +54,16 @@ TEST(Plan, TheChoiceKeepsToTheToleranceAndTheNextCoarserModelDoesNot) {
         ASSERT_TRUE(answer.chosen) << name << " view " << index << " " << tolerance_px << " px";
         const PlanTrial& chosen = answer.trials[*answer.chosen];
         const Ladder& ladder = answer.ladders[chosen.ladder];
+        // Along the true border, and of the border drawn: a coarse torus's also stands where none is, out of the former's sight.
         const auto beyond = [&](size_t rung) {
-          return share_beyond(build(scene, ladder, rung), reference.model, view, settings.threshold, tolerance_px, settings.metric);
+          const SceneModel model = build(scene, ladder, rung);
+          return std::max(share_beyond(model, reference.model, view, settings.threshold, tolerance_px, settings.metric),
+                          share_of_false_border(model, view, settings.threshold, tolerance_px, settings.metric));
         };
         EXPECT_LE(beyond(chosen.rung), 0.05) << name << " view " << index << " " << tolerance_px << " px, " << ladder.words_at(chosen.rung);
         if (chosen.rung > 0) {
           ++with_coarser;
-          coarser_fails += beyond(chosen.rung - 1) > 0.05 || shows_false_border(answer, chosen.ladder, chosen.rung - 1, settings.metric);
+          coarser_fails += beyond(chosen.rung - 1) > 0.05;
         }
         ++plans;
       }

@@ -1,10 +1,12 @@
 #pragma once
-// The real program as a child process, and a folder that goes away with the test.
+// The real program as a child process.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "tests/temporary_folder.h"
 
 namespace limn {
 
@@ -23,23 +25,6 @@ RunResult interrupt_limn(const std::vector<std::string>& arguments, double secon
 
 /// The same with SIGKILL, which nothing can answer.
 RunResult kill_limn(const std::vector<std::string>& arguments, double seconds, const std::filesystem::path& where = {});
-
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  /// Writes a file and returns its path.
-  std::string write(const std::string& name, const std::string& content) const;
-  /// Names of all files below it, sorted, relative.
-  std::vector<std::string> files() const;
-
- private:
-  std::filesystem::path path_;
-};
 
 std::string read_bytes(const std::filesystem::path& file);
 

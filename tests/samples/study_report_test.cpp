@@ -15,6 +15,7 @@
 #include "samples/study/report_words.h"
 #include "sdf/error.h"
 #include "tests/samples/study_rows.h"
+#include "tests/temporary_folder.h"
 
 namespace limn {
 namespace {
@@ -23,15 +24,6 @@ using test::synthetic_study;
 using test::SyntheticSettings;
 using test::SyntheticStudy;
 using test::write_synthetic_thumbnails;
-
-struct Folder {
-  std::filesystem::path path;
-  explicit Folder(const std::string& name) : path(std::filesystem::temp_directory_path() / ("limn-study-report-" + name)) {
-    std::filesystem::remove_all(path);
-    std::filesystem::create_directories(path);
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-};
 
 std::string content(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -274,12 +266,12 @@ TEST(StudyReport, WordsNameWhatNeverGetsThereWhatFailedAndWhetherTruthIsExact) {
 
 TEST(StudyReport, RowsInAnyOrderGiveTheSameFiles) {
   SyntheticStudy study = synthetic_study({.views = 2, .thresholds = {0.4}});
-  const Folder first("order-a"), second("order-b");
-  write_synthetic_thumbnails(study.rows, first.path);
-  write_synthetic_thumbnails(study.rows, second.path);
-  const auto files = write_study_report(study.head, study.rows, first.path);
+  const TemporaryFolder first, second;
+  write_synthetic_thumbnails(study.rows, first.path());
+  write_synthetic_thumbnails(study.rows, second.path());
+  const auto files = write_study_report(study.head, study.rows, first.path());
   std::shuffle(study.rows.begin(), study.rows.end(), std::mt19937(3));
-  const auto again = write_study_report(study.head, study.rows, second.path);
+  const auto again = write_study_report(study.head, study.rows, second.path());
   ASSERT_EQ(files.size(), 11u);
   ASSERT_EQ(again.size(), files.size());
   for (size_t i = 0; i < files.size(); ++i) {
@@ -291,18 +283,18 @@ TEST(StudyReport, RowsInAnyOrderGiveTheSameFiles) {
 
 TEST(StudyReport, PicturesAreKeptUntilTheyAreTooMany) {
   const SyntheticStudy study = synthetic_study({.views = 3, .thresholds = {0.2, 0.4}});
-  const Folder folder("pictures");
-  write_synthetic_thumbnails(study.rows, folder.path);
+  const TemporaryFolder folder;
+  write_synthetic_thumbnails(study.rows, folder.path());
   const ReportData data = collect_report(study.head, study.rows);
-  const ReportThumbnails all = read_thumbnails(data, folder.path);
+  const ReportThumbnails all = read_thumbnails(data, folder.path());
   EXPECT_EQ(all.pictures.size(), 2u * 41u);  // 42 models, one of which failed
   EXPECT_EQ(all.left_out, 0u);
-  const ReportThumbnails few = read_thumbnails(data, folder.path, 20 * all.pictures.front().png.size());
+  const ReportThumbnails few = read_thumbnails(data, folder.path(), 20 * all.pictures.front().png.size());
   EXPECT_LT(few.pictures.size(), all.pictures.size());
   EXPECT_EQ(few.pictures.size() + few.left_out, all.pictures.size());
   EXPECT_EQ(few.pictures.front().drawing, data.main_drawing);
-  std::ofstream(thumbnail_file(folder.path, points_of(data, data.main_drawing, data.main_metric).front().typical().key)) << "no picture";
-  EXPECT_EQ(read_thumbnails(data, folder.path).pictures.size(), all.pictures.size() - 1);
+  std::ofstream(thumbnail_file(folder.path(), points_of(data, data.main_drawing, data.main_metric).front().typical().key)) << "no picture";
+  EXPECT_EQ(read_thumbnails(data, folder.path()).pictures.size(), all.pictures.size() - 1);
 }
 
 StudyRow lone_row(double value) {
@@ -335,9 +327,9 @@ TEST(StudyReport, LittleAndBrokenRowsStillMakeAReport) {
       {},       {lone_row(0.3)},         {lone_row(0.0)}, {lone_row(NAN)}, {lone_row(HUGE_VAL)}, {lone_row(-2.0)},
       {failed}, {failed, lone_row(1.0)}, {free_model},    {other_method}};
   for (size_t i = 0; i < studies.size(); ++i) {
-    const Folder folder("little");
-    const auto files = write_study_report({}, studies[i], folder.path);
-    const std::string page = content(folder.path / "report.html");
+    const TemporaryFolder folder;
+    const auto files = write_study_report({}, studies[i], folder.path());
+    const std::string page = content(folder.path() / "report.html");
     EXPECT_NE(page.find("</html>"), std::string::npos) << i;
     for (const char* wrong : {"nan px", "inf px", ">nan<", ">inf<", "</script><b>"})
       EXPECT_EQ(page.find(wrong), std::string::npos) << i << wrong;
@@ -357,10 +349,10 @@ TEST(StudyReport, AZeroErrorIsDrawnAtTheFloorAndSaidToBe) {
 
 TEST(StudyReport, ChartsSayWhatTheyShow) {
   const SyntheticStudy study = synthetic_study({.views = 2});
-  const Folder folder("words");
-  write_study_report(study.head, study.rows, folder.path);
+  const TemporaryFolder folder;
+  write_study_report(study.head, study.rows, folder.path());
   for (const char* stem : {"chart_accuracy_time", "chart_accuracy_memory", "chart_order", "chart_views", "chart_normal_border"}) {
-    const std::string svg = content(folder.path / (std::string(stem) + ".svg"));
+    const std::string svg = content(folder.path() / (std::string(stem) + ".svg"));
     EXPECT_NE(svg.find("<title>"), std::string::npos) << stem;
     EXPECT_NE(svg.find("<desc>"), std::string::npos) << stem;
     const size_t words = svg.find("<desc>") + 6, end = svg.find("</desc>");

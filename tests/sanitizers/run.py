@@ -13,7 +13,8 @@ import sys
 import time
 import xml.etree.ElementTree
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "verify"))
+import preset  # noqa: E402
 
 
 def count_all(folder):
@@ -28,28 +29,21 @@ def main():
     parser.add_argument("--only", help="tests whose name matches")
     parser.add_argument("--json", type=pathlib.Path, help="write the results there too")
     options = parser.parse_args()
-    folder = ROOT / "build" / options.preset
-    if not (folder / "build.ninja").exists():
-        subprocess.run(["cmake", "--preset", options.preset], cwd=ROOT, check=True, stdout=sys.stderr)
-    subprocess.run(["cmake", "--build", "--preset", options.preset], cwd=ROOT, check=True, stdout=sys.stderr)
+    folder = preset.build(options.preset)
     report = folder / "tests.xml"
     report.unlink(missing_ok=True)
     started = time.monotonic()
     only = ["-R", options.only] if options.only else []
-    subprocess.run(["ctest", "--preset", options.preset, "-j", str(options.jobs), "--output-junit", str(report), *only], cwd=ROOT,
+    subprocess.run(["ctest", "--preset", options.preset, "-j", str(options.jobs), "--output-junit", str(report), *only], cwd=preset.ROOT,
                    stdout=sys.stderr)
     suite = xml.etree.ElementTree.parse(report).getroot()
     failed = [case.get("name") for case in suite.iter("testcase") if case.get("status") == "fail"]
     ran = int(suite.get("tests")) - int(suite.get("skipped")) - int(suite.get("disabled"))
     good = ran > 0 and not failed
-    text = json.dumps({"outcome": "held" if good else "failed", "preset": options.preset,
-                       "figures": {"tests": ran, "failed": len(failed), "skipped": int(suite.get("skipped")),
-                                   "left_out": count_all(folder) - int(suite.get("tests")), "seconds": round(time.monotonic() - started)},
-                       "failed": failed}, indent=1)
-    if options.json:
-        options.json.write_text(text + "\n")
-    print(text)
-    return 0 if good else 1
+    return preset.publish({"outcome": "held" if good else "failed", "preset": options.preset,
+                           "figures": {"tests": ran, "failed": len(failed), "skipped": int(suite.get("skipped")),
+                                       "left_out": count_all(folder) - int(suite.get("tests")), "seconds": round(time.monotonic() - started)},
+                           "failed": failed}, options.json)
 
 
 if __name__ == "__main__":

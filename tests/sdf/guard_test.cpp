@@ -10,21 +10,12 @@
 
 #include "sdf/error.h"
 #include "sdf/output_file.h"
+#include "tests/temporary_folder.h"
 
 namespace limn {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder of one test, gone after it.
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "limn-test-XXXXXX").string();
-    path = ::mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path); }
-};
 
 void write_text(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
 
@@ -36,12 +27,12 @@ std::string read_text(const fs::path& file) {
 /// Helper programs of the test's own making, found through $LIMN_HELPERS.
 class Guard : public testing::Test {
  protected:
-  void SetUp() override { ::setenv("LIMN_HELPERS", folder_.path.c_str(), 1); }
+  void SetUp() override { ::setenv("LIMN_HELPERS", folder_.path().c_str(), 1); }
   void TearDown() override { ::unsetenv("LIMN_HELPERS"); }
 
   void helper(const std::string& script) {
-    write_text(folder_.path / "helper", "#!/bin/sh\n" + script + "\n");
-    fs::permissions(folder_.path / "helper", fs::perms::owner_all);
+    write_text(folder_.path() / "helper", "#!/bin/sh\n" + script + "\n");
+    fs::permissions(folder_.path() / "helper", fs::perms::owner_all);
   }
   std::string answer(const GuardLimits& limits = {}, const std::vector<std::string>& arguments = {}) {
     const std::vector<std::byte> bytes = run_guarded("helper", arguments, "model.abc", limits);
@@ -58,7 +49,7 @@ class Guard : public testing::Test {
     ADD_FAILURE() << "no refusal";
     return {};
   }
-  Folder folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(Guard, TheAnswerIsWhatTheHelperWroteToItsPipeAndNothingElse) {
@@ -93,9 +84,9 @@ TEST_F(Guard, CrashTimeMemorySizeAndExitCodeAreToldApart) {
 
 TEST_F(Guard, NothingThatTheHelperStartedOutlivesIt) {
   // The helper's own child holds the pipe open and would sleep for long after the helper is gone.
-  helper("sleep 600 & echo $! > '" + (folder_.path / "pid").string() + "'; printf done >&3");
+  helper("sleep 600 & echo $! > '" + (folder_.path() / "pid").string() + "'; printf done >&3");
   EXPECT_EQ(answer(), "done");
-  const int pid = std::stoi(read_text(folder_.path / "pid"));
+  const int pid = std::stoi(read_text(folder_.path() / "pid"));
   for (int i = 0; i < 500 && ::kill(pid, 0) == 0; ++i) {
     // A killed process whose parent is gone stays a zombie until the system's first process reaps it.
     if (read_text("/proc/" + std::to_string(pid) + "/stat").find(") Z ") != std::string::npos) break;
@@ -157,10 +148,10 @@ TEST(GuardBytes, WhatIsWrittenIsReadAndAnAnswerCutAnywhereIsRefused) {
 }
 
 TEST(Readable, MissingFoldersEmptyAndSpecialFilesAreRefusedByName) {
-  const Folder folder;
-  write_text(folder.path / "empty.vdb", "");
-  write_text(folder.path / "good.vdb", "x");
-  EXPECT_NO_THROW(check_readable(folder.path / "good.vdb", "a volume (.vdb)"));
+  const TemporaryFolder folder;
+  write_text(folder.path() / "empty.vdb", "");
+  write_text(folder.path() / "good.vdb", "x");
+  EXPECT_NO_THROW(check_readable(folder.path() / "good.vdb", "a volume (.vdb)"));
   const auto problem = [&](const fs::path& file) -> std::string {
     try {
       check_readable(file, "a volume (.vdb)");
@@ -170,10 +161,10 @@ TEST(Readable, MissingFoldersEmptyAndSpecialFilesAreRefusedByName) {
     }
     return "accepted";
   };
-  EXPECT_EQ(problem(folder.path / "none.vdb"), "no such file");
-  EXPECT_EQ(problem(folder.path / "good.vdb/inner.vdb"), "no such file");
-  EXPECT_EQ(problem(folder.path), "is a directory");
-  EXPECT_EQ(problem(folder.path / "empty.vdb"), "is empty");
+  EXPECT_EQ(problem(folder.path() / "none.vdb"), "no such file");
+  EXPECT_EQ(problem(folder.path() / "good.vdb/inner.vdb"), "no such file");
+  EXPECT_EQ(problem(folder.path()), "is a directory");
+  EXPECT_EQ(problem(folder.path() / "empty.vdb"), "is empty");
   EXPECT_EQ(problem("/dev/null"), "is not a regular file");
 }
 
@@ -182,11 +173,11 @@ size_t files_in(const fs::path& folder) {
 }
 
 TEST(OutputFile, AWriterThatThrowsLeavesTheOldFileAndNothingElse) {
-  const Folder folder;
-  const fs::path target = folder.path / "out.txt";
+  const TemporaryFolder folder;
+  const fs::path target = folder.path() / "out.txt";
   write_whole(target, "old");
   const auto write = [&](const fs::path& path) {
-    EXPECT_EQ(path.parent_path(), folder.path);
+    EXPECT_EQ(path.parent_path(), folder.path());
     EXPECT_EQ(path.extension(), ".txt");
     EXPECT_EQ(path.filename().string().rfind(".limn-", 0), 0u);
     write_text(path, "half of the new");
@@ -195,43 +186,43 @@ TEST(OutputFile, AWriterThatThrowsLeavesTheOldFileAndNothingElse) {
   };
   EXPECT_THROW(write_whole(target, write), std::runtime_error);
   EXPECT_EQ(read_text(target), "old");
-  EXPECT_EQ(files_in(folder.path), 1u);
+  EXPECT_EQ(files_in(folder.path()), 1u);
 }
 
 TEST(OutputFile, ReplacesWholeMakesFoldersAndFollowsLinks) {
-  const Folder folder;
-  const fs::path target = folder.path / "a/b/out.txt";
+  const TemporaryFolder folder;
+  const fs::path target = folder.path() / "a/b/out.txt";
   write_whole(target, "one");
   EXPECT_EQ(read_text(target), "one");
-  fs::create_symlink(target, folder.path / "link.txt");
+  fs::create_symlink(target, folder.path() / "link.txt");
   fs::permissions(target, fs::perms::owner_read | fs::perms::owner_write);
-  write_whole(folder.path / "link.txt", "two");
+  write_whole(folder.path() / "link.txt", "two");
   EXPECT_EQ(read_text(target), "two");
-  EXPECT_TRUE(fs::is_symlink(folder.path / "link.txt"));
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "link.txt"));
   EXPECT_EQ(fs::status(target).permissions(), fs::perms::owner_read | fs::perms::owner_write);
   EXPECT_EQ(files_in(target.parent_path()), 1u);
 }
 
 TEST(OutputFile, TargetsThatCannotBeFilesAreRefused) {
-  const Folder folder;
-  write_text(folder.path / "file", "x");
-  EXPECT_THROW(write_whole(folder.path, "x"), InputError);
-  EXPECT_THROW(write_whole(folder.path / "file/below.txt", "x"), InputError);
+  const TemporaryFolder folder;
+  write_text(folder.path() / "file", "x");
+  EXPECT_THROW(write_whole(folder.path(), "x"), InputError);
+  EXPECT_THROW(write_whole(folder.path() / "file/below.txt", "x"), InputError);
   EXPECT_THROW(write_whole("/dev/null", "x"), InputError);
   EXPECT_THROW(write_whole("", "x"), InputError);
-  EXPECT_EQ(read_text(folder.path / "file"), "x");
+  EXPECT_EQ(read_text(folder.path() / "file"), "x");
 }
 
 TEST(OutputFile, ASignalHandlerRemovesWhatIsOpenAndOnlyThat) {
-  const Folder folder;
-  write_whole(folder.path / "kept.txt", "kept");
+  const TemporaryFolder folder;
+  write_whole(folder.path() / "kept.txt", "kept");
   const pid_t child = ::fork();
   if (child == 0) {
     ::signal(SIGTERM, [](int) {
       remove_temporary_files();
       ::_exit(42);
     });
-    write_whole(folder.path / "new.txt", [](const fs::path& path) {
+    write_whole(folder.path() / "new.txt", [](const fs::path& path) {
       write_text(path, "half");
       ::raise(SIGTERM);
     });
@@ -240,8 +231,8 @@ TEST(OutputFile, ASignalHandlerRemovesWhatIsOpenAndOnlyThat) {
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_EQ(WEXITSTATUS(status), 42);
-  EXPECT_EQ(files_in(folder.path), 1u);
-  EXPECT_EQ(read_text(folder.path / "kept.txt"), "kept");
+  EXPECT_EQ(files_in(folder.path()), 1u);
+  EXPECT_EQ(read_text(folder.path() / "kept.txt"), "kept");
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "sdf/guard_helper.h"
 #include "sdf/level_set_data.h"
 #include "tests/sdf/level_set_maker.h"
+#include "tests/temporary_folder.h"
 
 namespace limn {
 namespace {
@@ -21,18 +22,13 @@ using testing_tools::Ellipsoid;
 /// Files of one test, gone after it.
 class LevelSetFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    openvdb::initialize();
-    std::string name = (fs::temp_directory_path() / "limn-test-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { openvdb::initialize(); }
 
   fs::path write(const openvdb::GridPtrVec& grids, const std::string& name = "volume.vdb") {
-    openvdb::io::File file((folder_ / name).string());
+    openvdb::io::File file((folder_.path() / name).string());
     file.write(grids);
     file.close();
-    return folder_ / name;
+    return folder_.path() / name;
   }
   static std::string refusal(const fs::path& file, const std::string& grid = {}, double width = 0.0) {
     try {
@@ -49,7 +45,7 @@ class LevelSetFiles : public testing::Test {
     grid->setName(name);
     return grid;
   }
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 #define EXPECT_SAYS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
@@ -75,16 +71,16 @@ void expect_equal(const LevelSet& a, const LevelSet& b, double value_tolerance) 
 
 TEST_F(LevelSetFiles, WhatIsSavedIsReadBackAndTwoRunsWriteTheSameBytes) {
   const LevelSet level_set = level_set_from_field(Ellipsoid::jittered(3).field(), {.voxel_size = 0.05, .half_width_voxels = 4.2});
-  write_level_set(level_set, folder_ / "a.vdb");
-  write_level_set(level_set, folder_ / "b.vdb");
-  const LevelSet again = read_level_set(folder_ / "a.vdb", "");
+  write_level_set(level_set, folder_.path() / "a.vdb");
+  write_level_set(level_set, folder_.path() / "b.vdb");
+  const LevelSet again = read_level_set(folder_.path() / "a.vdb", "");
   expect_equal(level_set, again, 0.0);
   const auto bytes = [](const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(stream), {});
   };
-  EXPECT_EQ(bytes(folder_ / "a.vdb"), bytes(folder_ / "b.vdb"));
-  const std::vector<GridSummary> grids = list_grids(folder_ / "a.vdb");
+  EXPECT_EQ(bytes(folder_.path() / "a.vdb"), bytes(folder_.path() / "b.vdb"));
+  const std::vector<GridSummary> grids = list_grids(folder_.path() / "a.vdb");
   ASSERT_EQ(grids.size(), 1u);
   EXPECT_EQ(grids[0].grid_class, "level set");
   EXPECT_EQ(grids[0].value_type, "float");
@@ -131,8 +127,8 @@ TEST_F(LevelSetFiles, TurnedShearedAndMirroredTransformsAreKept) {
   const openvdb::Vec3d truth = grid->transform().indexToWorld(openvdb::Vec3d(3.0, -4.0, 5.0));
   const glm::dvec3 found = level_set.info().world_from_index.point({3.0, -4.0, 5.0});
   EXPECT_LT(glm::distance(found, glm::dvec3(truth.x(), truth.y(), truth.z())), 1e-12);
-  write_level_set(level_set, folder_ / "again.vdb");
-  expect_equal(level_set, read_level_set(folder_ / "again.vdb", ""), 0.0);
+  write_level_set(level_set, folder_.path() / "again.vdb");
+  expect_equal(level_set, read_level_set(folder_.path() / "again.vdb", ""), 0.0);
 }
 
 TEST_F(LevelSetFiles, AGridScaledAfterwardsKeepsTheBandItHas) {
@@ -226,7 +222,7 @@ TEST_F(LevelSetFiles, ABandTooThinIsRefusedWithTheWidthNeeded) {
 
 TEST_F(LevelSetFiles, FilesOfAnotherToolAreRead) {
   if (std::system("command -v vdb_tool > /dev/null 2>&1") != 0) GTEST_SKIP() << "vdb_tool is not installed";
-  const fs::path file = folder_ / "sphere.vdb";
+  const fs::path file = folder_.path() / "sphere.vdb";
   const std::string command = "vdb_tool -sphere voxel=0.05 radius=1.0 width=3 -o '" + file.string() + "' > /dev/null 2>&1";
   ASSERT_EQ(std::system(command.c_str()), 0);
   const LevelSet level_set = read_level_set(file, "", find_gradient("central").half_width_voxels);
@@ -239,16 +235,16 @@ TEST_F(LevelSetFiles, FilesOfAnotherToolAreRead) {
 }
 
 TEST_F(LevelSetFiles, WhatIsNoVolumeIsRefused) {
-  std::ofstream(folder_ / "text.vdb") << "this is a text and no volume at all, whatever its name says";
-  EXPECT_SAYS(refusal(folder_ / "text.vdb"), "cannot be read as a volume");
-  EXPECT_SAYS(refusal(folder_ / "none.vdb"), "no such file");
-  EXPECT_SAYS(refusal(folder_), "is a directory");
-  std::ofstream(folder_ / "empty.vdb");
-  EXPECT_SAYS(refusal(folder_ / "empty.vdb"), "is empty");
+  std::ofstream(folder_.path() / "text.vdb") << "this is a text and no volume at all, whatever its name says";
+  EXPECT_SAYS(refusal(folder_.path() / "text.vdb"), "cannot be read as a volume");
+  EXPECT_SAYS(refusal(folder_.path() / "none.vdb"), "no such file");
+  EXPECT_SAYS(refusal(folder_.path()), "is a directory");
+  std::ofstream(folder_.path() / "empty.vdb");
+  EXPECT_SAYS(refusal(folder_.path() / "empty.vdb"), "is empty");
 }
 
 TEST_F(LevelSetFiles, TheMemoryLimitEndsTheReaderInItsOwnWords) {
-  const fs::path file = folder_ / "fine.vdb";
+  const fs::path file = folder_.path() / "fine.vdb";
   write_level_set(level_set_from_field(make_shape("sphere", {{"radius", {1.0}}}), {.voxel_size = 0.01}), file);
   const std::vector<std::string> arguments{"grid", file.string(), ""};
   EXPECT_NO_THROW(run_guarded("limn-read-vdb", arguments, file));
@@ -262,16 +258,16 @@ TEST_F(LevelSetFiles, TheMemoryLimitEndsTheReaderInItsOwnWords) {
 }
 
 TEST_F(LevelSetFiles, DamagedFilesEndInARefusalOrAValidGrid) {
-  const fs::path zipped = folder_ / "zipped.vdb";
+  const fs::path zipped = folder_.path() / "zipped.vdb";
   write_level_set(level_set_from_field(Ellipsoid::jittered(1).field(), {.voxel_size = 0.06}), zipped);
   const auto blosc = ball();
   const fs::path other = write({blosc}, "blosc.vdb");
   // Without compression nothing notices a changed bit but the checks of what it means.
-  openvdb::io::File plain((folder_ / "plain.vdb").string());
+  openvdb::io::File plain((folder_.path() / "plain.vdb").string());
   plain.setCompression(openvdb::io::COMPRESS_NONE);
   plain.write(openvdb::GridPtrVec{ball()});
   plain.close();
-  const std::array<fs::path, 3> originals{zipped, other, folder_ / "plain.vdb"};
+  const std::array<fs::path, 3> originals{zipped, other, folder_.path() / "plain.vdb"};
   const std::uint64_t seed = std::random_device{}();
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   std::mt19937_64 random(seed);
@@ -288,7 +284,7 @@ TEST_F(LevelSetFiles, DamagedFilesEndInARefusalOrAValidGrid) {
       for (int flips = 0; flips < 8; ++flips)
         bytes[std::uniform_int_distribution<size_t>(0, reach - 1)(random)] ^= static_cast<char>(1 << (random() % 8));
     }
-    const fs::path file = folder_ / "mutant.vdb";
+    const fs::path file = folder_.path() / "mutant.vdb";
     std::ofstream(file, std::ios::binary) << bytes;
     try {
       const LevelSet level_set = read_level_set(file, "");

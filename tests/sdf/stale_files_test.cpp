@@ -13,20 +13,12 @@
 #include <vector>
 
 #include "sdf/output_file.h"
+#include "tests/temporary_folder.h"
 
 namespace limn {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Folder {
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "limn-stale-XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path); }
-  fs::path path;
-};
 
 std::vector<std::string> names_in(const fs::path& folder) {
   std::vector<std::string> names;
@@ -64,23 +56,23 @@ void kill_and_reap(pid_t child) {
 }
 
 TEST(StaleFiles, WhatAKilledProcessLeftGoesAtTheNextWriteIntoTheFolder) {
-  const Folder folder;
-  write_text(folder.path / "out.txt", "old");
-  const pid_t child = process_writing(folder.path / "out.txt");
+  const TemporaryFolder folder;
+  write_text(folder.path() / "out.txt", "old");
+  const pid_t child = process_writing(folder.path() / "out.txt");
   ASSERT_GT(child, 0);
-  EXPECT_EQ(names_in(folder.path).size(), 2u) << "the child has no temporary file, so this proves nothing";
+  EXPECT_EQ(names_in(folder.path()).size(), 2u) << "the child has no temporary file, so this proves nothing";
   kill_and_reap(child);
-  EXPECT_EQ(names_in(folder.path).size(), 2u);
-  write_whole(folder.path / "other.txt", "new");
-  EXPECT_EQ(names_in(folder.path), (std::vector<std::string>{"other.txt", "out.txt"}));
+  EXPECT_EQ(names_in(folder.path()).size(), 2u);
+  write_whole(folder.path() / "other.txt", "new");
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"other.txt", "out.txt"}));
 }
 
 TEST(StaleFiles, WhatALivingProcessWritesStays) {
-  const Folder folder;
-  const pid_t child = process_writing(folder.path / "out.txt");
+  const TemporaryFolder folder;
+  const pid_t child = process_writing(folder.path() / "out.txt");
   ASSERT_GT(child, 0);
-  write_whole(folder.path / "other.txt", "new");
-  const std::vector<std::string> names = names_in(folder.path);
+  write_whole(folder.path() / "other.txt", "new");
+  const std::vector<std::string> names = names_in(folder.path());
   kill_and_reap(child);
   ASSERT_EQ(names.size(), 2u);
   EXPECT_EQ(names.front().rfind(".limn-", 0), 0u) << names.front();
@@ -88,39 +80,39 @@ TEST(StaleFiles, WhatALivingProcessWritesStays) {
 }
 
 TEST(StaleFiles, AnotherHostsFileStaysForADay) {
-  const Folder folder;
-  const fs::path fresh = folder.path / ".limn-nohost-1-0.txt", old = folder.path / ".limn-nohost-2-0.txt";
+  const TemporaryFolder folder;
+  const fs::path fresh = folder.path() / ".limn-nohost-1-0.txt", old = folder.path() / ".limn-nohost-2-0.txt";
   write_text(fresh, "x");
   write_text(old, "x");
   fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(25));
-  remove_stale_files(folder.path);
-  EXPECT_EQ(names_in(folder.path), std::vector<std::string>{fresh.filename().string()});
+  remove_stale_files(folder.path());
+  EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{fresh.filename().string()});
 }
 
 TEST(StaleFiles, OnlyPlainFilesOfThatNameAreTouched) {
-  const Folder folder;
-  const Folder elsewhere;
-  const fs::path kept = elsewhere.path / "kept.txt";
+  const TemporaryFolder folder;
+  const TemporaryFolder elsewhere;
+  const fs::path kept = elsewhere.path() / "kept.txt";
   write_text(kept, "x");
-  const std::string own = temporary_beside(folder.path / "a.txt").filename().string();
-  fs::create_symlink(kept, folder.path / own);
-  fs::create_directory(folder.path / temporary_beside(folder.path / "a.txt").filename());
-  write_text(folder.path / ".limnrc", "x");
-  write_text(folder.path / "a.limn-1-0", "x");
-  const std::vector<std::string> before = names_in(folder.path);
-  remove_stale_files(folder.path);
-  EXPECT_EQ(names_in(folder.path), before);
+  const std::string own = temporary_beside(folder.path() / "a.txt").filename().string();
+  fs::create_symlink(kept, folder.path() / own);
+  fs::create_directory(folder.path() / temporary_beside(folder.path() / "a.txt").filename());
+  write_text(folder.path() / ".limnrc", "x");
+  write_text(folder.path() / "a.limn-1-0", "x");
+  const std::vector<std::string> before = names_in(folder.path());
+  remove_stale_files(folder.path());
+  EXPECT_EQ(names_in(folder.path()), before);
   EXPECT_TRUE(fs::exists(kept));
 }
 
 TEST(StaleFiles, AFileWithoutALockOnItIsTaken) {
-  const Folder folder;
-  const fs::path own = temporary_beside(folder.path / "a.txt");
+  const TemporaryFolder folder;
+  const fs::path own = temporary_beside(folder.path() / "a.txt");
   write_text(own, "x");
-  const int handle = make_locked_file(temporary_beside(folder.path / "b.txt"), 0666);
+  const int handle = make_locked_file(temporary_beside(folder.path() / "b.txt"), 0666);
   ASSERT_GE(handle, 0);
-  remove_stale_files(folder.path);
-  EXPECT_EQ(names_in(folder.path).size(), 1u) << "the locked one stays, the other one goes";
+  remove_stale_files(folder.path());
+  EXPECT_EQ(names_in(folder.path()).size(), 1u) << "the locked one stays, the other one goes";
   EXPECT_FALSE(fs::exists(own));
   ::close(handle);
 }

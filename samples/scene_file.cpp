@@ -126,16 +126,6 @@ SceneObject read_object(TomlReader& reader, const SceneReaders& readers, size_t 
   return {name, std::move(source), world_from_object, color, material, level};
 }
 
-toml::table parse_toml(const std::string& text, const std::string& file) {
-  try {
-    return toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    throw InputError(
-        {fmt::format("{}:{}:{}", file, at.line, at.column), "", "", std::string(error.description()), "valid TOML would be right"});
-  }
-}
-
 std::string read_text(const std::filesystem::path& file) {
   check_readable(file, "a scene file");
   std::ifstream stream(file, std::ios::binary);

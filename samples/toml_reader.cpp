@@ -7,6 +7,17 @@
 #include <sstream>
 
 namespace limn {
+
+toml::table parse_toml(const std::string& text, const std::string& file) {
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    throw InputError(
+        {fmt::format("{}:{}:{}", file, at.line, at.column), "", "", std::string(error.description()), "valid TOML would be right"});
+  }
+}
+
 namespace {
 
 std::optional<double> finite_number(const toml::node& node) {

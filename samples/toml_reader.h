@@ -24,6 +24,9 @@
 
 namespace limn {
 
+/// A whole file's table; `file` names it in messages. Throws InputError with line and column where the text is no TOML.
+toml::table parse_toml(const std::string& text, const std::string& file);
+
 class TomlReader {
  public:
   /// `prefix` names the table in messages: "camera.", "object[1].".

@@ -19,16 +19,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-toml::table parse_toml(const std::string& text, const std::string& file) {
-  try {
-    return toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    throw InputError(
-        {fmt::format("{}:{}:{}", file, at.line, at.column), "", "", std::string(error.description()), "valid TOML would be right"});
-  }
-}
-
 std::vector<std::string> words(TomlReader& reader, const std::string& key) {
   const toml::node* node = reader.take(key);
   if (node == nullptr) return {};

@@ -2,18 +2,11 @@
 // exit code 77 means skipped.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { dirname, join } from "node:path";
-import { fileURLToPath } from "node:url";
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { folder, here, needs, program, skip } from "./start.mjs";
 
-const here = dirname(fileURLToPath(import.meta.url));
-const [program, folder] = process.argv.slice(2);
-
-function skip(reason) {
-  console.log(`skipped: ${reason}`);
-  process.exit(77);
-}
-if (!existsSync(join(here, "node_modules/vega"))) skip("tests/page/node_modules is missing; `npm ci` there makes it");
+needs("vega");
 const { chromiumPath, openPage, startBrowser } = await import("./browser.mjs");
 
 const kCharts = ["chart_accuracy_time", "chart_accuracy_memory", "chart_order", "chart_normal_border", "chart_views"];

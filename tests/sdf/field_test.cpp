@@ -4,18 +4,10 @@
 #include <rapidcheck/gtest.h>
 
 #include "random_field.h"
+#include "sdf/finite.h"
 
 namespace limn {
 namespace {
-
-bool finite(const FieldJet& jet) {
-  bool all = std::isfinite(jet.value);
-  for (int i = 0; i < 3; ++i) {
-    all = all && std::isfinite(jet.gradient[i]);
-    for (int j = 0; j < 3; ++j) all = all && std::isfinite(jet.hessian[i][j]);
-  }
-  return all;
-}
 
 // Central differences with two step sizes: their difference measures their own error, so the tolerance is not a matter of taste.
 // A point is taken only where the two one-sided differences agree: elsewhere a crease lies within the step.
@@ -148,7 +140,7 @@ TEST(Field, DegeneratePointsGiveFiniteJetsAndBounds) {
       FieldEvaluator field(variant);
       for (const glm::dvec3& p : points) {
         const FieldJet jet = field.jet(p);
-        EXPECT_TRUE(finite(jet)) << shape.about.name << " at " << p.x << " " << p.y << " " << p.z;
+        EXPECT_TRUE(is_finite(jet)) << shape.about.name << " at " << p.x << " " << p.y << " " << p.z;
         EXPECT_LE(glm::length(jet.gradient), variant.traits().lipschitz * (1.0 + 1e-9)) << shape.about.name;
         EXPECT_TRUE(field.bounds({p, p}).contains(jet.value)) << shape.about.name;
         const RayBounds along = field.bounds_along(p, {0.0, 1.0, 0.0}, {0.0, 0.0});

@@ -5,18 +5,10 @@
 #include "samples/stability/checks/registry.h"
 #include "samples/stability/checks/worst.h"
 #include "sdf/error.h"
+#include "sdf/finite.h"
 
 namespace limn {
 namespace {
-
-bool finite(const FieldJet& jet) {
-  bool all = std::isfinite(jet.value);
-  for (int i = 0; i < 3; ++i) {
-    all = all && std::isfinite(jet.gradient[i]);
-    for (int j = 0; j < 3; ++j) all = all && std::isfinite(jet.hessian[i][j]);
-  }
-  return all;
-}
 
 double angle_deg(const glm::dvec3& a, const glm::dvec3& b) {
   return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
@@ -51,7 +43,7 @@ StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters& with) 
       const double length = glm::length(jet.gradient);
       const bool steep = length > field->traits().lipschitz * (1.0 + 1e-9);
       // At a centre no direction is right, and 0 says so.
-      const double off = !finite(jet) || steep ? 360.0 : length > 0.0 ? to_a_side(evaluator, p, jet.gradient, beside) : 0.0;
+      const double off = !is_finite(jet) || steep ? 360.0 : length > 0.0 ? to_a_side(evaluator, p, jet.gradient, beside) : 0.0;
       if (off <= finding.number) continue;
       finding.number = off;
       finding.message =

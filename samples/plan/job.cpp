@@ -45,6 +45,21 @@ PlanSettings settings_of(const Options& options, const SceneInput& input) {
   return settings;
 }
 
+/// The least that a plan takes: one coarse model, and in each view the true border and that of a few models.
+void check_least(const Options& options, const Scene& scene, const CameraSettings& camera) {
+  constexpr double kBytes = 70.0, kMs = 1.2e-3;  // a pixel; of an ellipsoid and a rook at 0.06 to 2 million pixels
+  SurfaceSettings coarse;
+  coarse.kind = options.surfaces.empty() ? "" : options.surfaces.front();
+  coarse.voxels = 16;
+  coarse.level = 0;
+  PictureLoad load;
+  load.pixels = static_cast<double>(camera.width_px) * camera.height_px;
+  load.bytes_per_pixel = kBytes;
+  load.pictures = options.views;
+  load.other_ms = load.pixels * options.views * kMs;
+  check_limits(options, scene, coarse, load);
+}
+
 Json parameters_json(const Ladder& ladder, const PlanTrial& trial) {
   Json json = Json::object();
   json[ladder.by_level ? "level" : "voxels"] = ladder.rungs[trial.rung];
@@ -78,6 +93,7 @@ PlanJob plan_for(const Options& options, const SceneInput& input, ProgressBar& b
   job.settings = settings_of(options, input);
   const CameraSettings camera_of = camera_settings(options, input);
   const Box scene_bounds = bounds(input.scene);
+  check_least(options, input.scene, camera_of);
   const ExecutionSettings how = execution_settings(options);
   for (int view = 0; view < options.views; ++view) {
     PlanView one;

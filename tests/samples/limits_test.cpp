@@ -51,6 +51,7 @@ TEST(Limits, EveryCommandThatBuildsRefuses) {
       {"compare", "ellipsoid", "--size", "8192x8192", "-o", out, "--max-memory", "500M"},
       {"render", "ellipsoid", "--size", "16384x16384", "-o", out + ".exr", "--max-memory", "4G"},
       {"render", "ellipsoid", "--voxel-size", "1e-4", "--surface", "level_set", "-o", out + ".png", "--max-memory", "2G"},
+      {"plan", "ellipsoid", "--tolerance", "1", "--size", "8192x8192", "--max-memory", "1G"},
   };
   for (const Arguments& call : calls) {
     const RunResult result = run_limn(call);
@@ -139,12 +140,15 @@ TEST(Limits, MoreTimeThanAllowedIsRefusedBeforehand) {
   const RunResult study = run_limn({"study", "ellipsoid", "--views", "200", "--max-time", "1s", "-o", folder.file("study")});
   EXPECT_EQ(study.exit_code, 2) << study.err;
   EXPECT_NE(study.err.find("--max-time: the study would take about"), std::string::npos) << study.err;
+  const RunResult plan = run_limn({"plan", "ellipsoid", "--tolerance", "1", "--size", "4096x4096", "--max-time", "1s"});
+  EXPECT_EQ(plan.exit_code, 2) << plan.err;
+  EXPECT_NE(plan.err.find("--max-time: the call would take about"), std::string::npos) << plan.err;
   EXPECT_TRUE(folder.files().empty());
 }
 
 TEST(Limits, TimeIsHeldTo) {
   const TemporaryFolder folder;
-  const RunResult result = run_limn({"plan", "gyroid", "--tolerance", "0.001", "--max-time", "300ms"}, folder.path());
+  const RunResult result = run_limn({"plan", "gyroid", "--tolerance", "0.001", "--size", "320x180", "--max-time", "300ms"}, folder.path());
   EXPECT_EQ(result.exit_code, 1) << result.err;
   EXPECT_EQ(result.err, "limn: --max-time: stopped after 300 ms\n");
   EXPECT_TRUE(result.out.empty());

@@ -1,6 +1,5 @@
 #include "raymarch/gbuffer.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include "raymarch/threads.h"
 #include "raymarch/trace_scene.h"
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -88,7 +88,7 @@ void render_gbuffer(const SceneModel& model, const Camera& camera, const Executi
   const auto render = [&] {
     const PictureRays rays = picture_rays(render_camera, extent.radius, extent.bounded);
     const Shared shared{model, view_model(model, {render_camera, offset}), rays, tile_writer(model, rays, out)};
-    tbb::parallel_for(std::int64_t{0}, tasks, [&](std::int64_t k) {
+    parallel_for(std::int64_t{0}, tasks, [&](std::int64_t k) {
       if (how.cancelled && how.cancelled()) throw Cancelled{};
       const int x = static_cast<int>(k % columns) * task_px, y = static_cast<int>(k / columns) * how.tile_px;
       render_tiles(shared, {x, y, std::min(task_px, out.width - x), std::min(how.tile_px, out.height - y)}, how.tile_px, offset);

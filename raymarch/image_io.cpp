@@ -2,7 +2,6 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 
 #include "sdf/error.h"
 #include "sdf/output_file.h"
+#include "sdf/parallel.h"
 #include "sdf/version.h"
 
 namespace limn {
@@ -183,7 +183,7 @@ std::vector<char> native_pixels(const std::vector<Channel>& channels, size_t pix
   size_t pixel_size = 0;
   for (const Channel& channel : channels) pixel_size += channel.type.size();
   std::vector<char> bytes(pixel_size * pixel_count);
-  tbb::parallel_for(size_t{0}, (pixel_count + kTogether - 1) / kTogether, [&](size_t part) {
+  parallel_for(size_t{0}, (pixel_count + kTogether - 1) / kTogether, [&](size_t part) {
     const size_t first = part * kTogether, last = std::min(pixel_count, first + kTogether);
     size_t offset = first * pixel_size;
     for (const Channel& channel : channels) {

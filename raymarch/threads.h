@@ -7,6 +7,8 @@
 
 #include <optional>
 
+#include "sdf/parallel.h"
+
 namespace limn {
 
 /// An arena of `threads` threads, 0 being all cores. More threads than cores are granted too: an arena alone would keep to the cores,
@@ -20,7 +22,12 @@ class ThreadArena {
   }
   template <class Work>
   auto execute(const Work& work) {
-    return arena_.execute(work);
+    const auto inside = [&work] {
+      const parallel_detail::Part part;
+      return work();
+    };
+    const parallel_detail::Loop loop;
+    return arena_.execute(inside);
   }
 
  private:

@@ -1,14 +1,13 @@
 #include "raymarch/view_level.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "sdf/error.h"
 #include "sdf/field.h"
+#include "sdf/parallel.h"
 #include "subdiv/mesh_distance.h"
 #include "subdiv/mesh_level_set.h"
 #include "subdiv/tessellate.h"
@@ -47,9 +46,9 @@ struct Pictures {
 /// than the largest so far need not be known.
 template <class MakeValue>
 double largest_of(size_t count, const MakeValue& make_value) {
-  return tbb::parallel_reduce(
-      tbb::blocked_range<size_t>(0, count, 256), 0.0,
-      [&](const tbb::blocked_range<size_t>& part, double largest) {
+  return parallel_reduce(
+      count, size_t{256}, 0.0,
+      [&](const IndexRange<size_t>& part, double largest) {
         auto value = make_value();
         for (size_t i = part.begin(); i != part.end(); ++i) largest = std::max(largest, value(i, largest));
         return largest;

@@ -1,15 +1,13 @@
 #include "sdf/level_set.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <array>
 #include <limits>
 
 #include "sdf/error.h"
 #include "sdf/level_set_data.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -137,9 +135,9 @@ Survey survey_leaf(const Leaf& leaf, const Accessor& accessor, double background
 Survey survey(const nanovdb::FloatGrid& grid) {
   const auto* leaves = grid.tree().getFirstNode<0>();
   const double background = static_cast<double>(grid.tree().background());
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::uint32_t>(0, grid.tree().nodeCount(0), 64), Survey{},
-      [&](const tbb::blocked_range<std::uint32_t>& range, Survey found) {
+  return parallel_reduce(
+      grid.tree().nodeCount(0), std::uint32_t{64}, Survey{},
+      [&](const IndexRange<std::uint32_t>& range, Survey found) {
         const Accessor accessor = grid.getAccessor();
         for (std::uint32_t i = range.begin(); i < range.end(); ++i) found.join(survey_leaf(leaves[i], accessor, background));
         return found;

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <array>
 #include <atomic>
@@ -11,6 +10,7 @@
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_distance.h"
 #include "sdf/level_set_thin.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -95,7 +95,7 @@ void check_size(size_t cubes, int size, const LevelSetSettings& settings) {
 /// The octants that may hold a part of the band. Each passes its shortened field on to its own octants.
 std::vector<Cube> split(const std::vector<Cube>& cubes, const Lattice& lattice) {
   std::vector<std::vector<Cube>> kept(cubes.size());
-  tbb::parallel_for(size_t{0}, cubes.size(), [&](size_t i) {
+  parallel_for(size_t{0}, cubes.size(), [&](size_t i) {
     FieldEvaluator evaluator(cubes[i].field);
     const int half = cubes[i].size / 2;
     for (int octant = 0; octant < 8; ++octant) {
@@ -189,7 +189,7 @@ LevelSet level_set_from_field(const Field& field, const LevelSetSettings& settin
   std::vector<LevelSetBlock> blocks(cubes.size());
   Progress progress(settings.progress, cubes.size());
   std::atomic<std::int64_t> looked_at{0}, walls{0}, gaps{0};
-  tbb::parallel_for(size_t{0}, cubes.size(), [&](size_t i) {
+  parallel_for(size_t{0}, cubes.size(), [&](size_t i) {
     const ThinPlaces found = fill(blocks[i], cubes[i], lattice);
     looked_at += found.looked_at;
     walls += found.walls;

@@ -1,11 +1,10 @@
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <array>
 #include <cmath>
 
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 #include "subdiv/band_distance.h"
 #include "subdiv/triangle_box.h"
 
@@ -87,7 +86,7 @@ std::vector<Pair> find_pairs(const TriangleMesh& mesh, double voxel_size, double
   constexpr size_t kPiece = 2048;
   const size_t pieces = (mesh.triangles.size() + kPiece - 1) / kPiece;
   std::vector<std::vector<Pair>> found(pieces);
-  tbb::parallel_for(size_t{0}, pieces, [&](size_t piece) {
+  parallel_for(size_t{0}, pieces, [&](size_t piece) {
     PairFinder finder(voxel_size, reach, found[piece]);
     const size_t last = std::min((piece + 1) * kPiece, mesh.triangles.size());
     for (size_t i = piece * kPiece; i < last; ++i) {
@@ -100,7 +99,7 @@ std::vector<Pair> find_pairs(const TriangleMesh& mesh, double voxel_size, double
   std::vector<size_t> first(pieces + 1, 0);
   for (size_t piece = 0; piece < pieces; ++piece) first[piece + 1] = first[piece] + found[piece].size();
   std::vector<Pair> pairs(first.back());
-  tbb::parallel_for(size_t{0}, pieces, [&](size_t piece) {
+  parallel_for(size_t{0}, pieces, [&](size_t piece) {
     std::copy(found[piece].begin(), found[piece].end(), pairs.begin() + static_cast<std::ptrdiff_t>(first[piece]));
   });
   return pairs;
@@ -110,7 +109,7 @@ std::vector<Pair> find_pairs(const TriangleMesh& mesh, double voxel_size, double
 
 BlockTriangles triangles_near_blocks(const TriangleMesh& mesh, double voxel_size, double reach, std::int64_t max_blocks) {
   std::vector<Pair> pairs = find_pairs(mesh, voxel_size, reach, max_blocks);
-  tbb::parallel_sort(pairs.begin(), pairs.end());
+  parallel_sort(pairs.begin(), pairs.end());
   BlockTriangles result;
   result.triangles.reserve(pairs.size());
   for (const Pair& pair : pairs) {

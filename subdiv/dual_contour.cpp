@@ -1,12 +1,11 @@
 #include "subdiv/dual_contour.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 
+#include "sdf/parallel.h"
 #include "subdiv/audit.h"
 #include "subdiv/surface_snap.h"
 
@@ -91,7 +90,7 @@ class DualContour {
     const int total = blocks.x * blocks.y * blocks.z;
     evaluators_.clear();
     for (int b = 0; b < total; ++b) evaluators_.emplace_back(field_);
-    tbb::parallel_for(0, total, [&](int b) {
+    parallel_for(0, total, [&](int b) {
       const glm::ivec3 first = kBlock * glm::ivec3(b % blocks.x, b / blocks.x % blocks.y, b / (blocks.x * blocks.y));
       const glm::ivec3 end = glm::min(first + kBlock, count_);
       // A cell has nodes on the far side of its block, too.

@@ -1,13 +1,13 @@
 #include "subdiv/local_field.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 #include "sdf/project_to_surface.h"
 
 namespace limn {
@@ -88,7 +88,7 @@ void split(const Visit& job, const Field& around, std::span<std::uint32_t> membe
     return;
   }
   const size_t half = halve(job, members);
-  tbb::parallel_invoke([&] { split(job, part, members.first(half)); }, [&] { split(job, part, members.subspan(half)); });
+  parallel_invoke([&] { split(job, part, members.first(half)); }, [&] { split(job, part, members.subspan(half)); });
 }
 
 }  // namespace

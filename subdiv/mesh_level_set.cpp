@@ -1,7 +1,6 @@
 #include "subdiv/mesh_level_set.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -12,6 +11,7 @@
 #include <tuple>
 
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 #include "subdiv/band_distance.h"
 #include "subdiv/mesh_block.h"
 #include "subdiv/mesh_distance.h"
@@ -168,7 +168,7 @@ Band make_band(const TriangleMesh& mesh, const LazyTree& tree, const Winding& wi
                         "closing the mesh's holes takes more memory than allowed", "larger voxels, or a closed mesh"});
     std::vector<LevelSetBlock> blocks(wave.size());
     std::vector<char> membrane(wave.size(), 0), active(wave.size(), 0), inside(wave.size(), 0);
-    tbb::parallel_for(size_t{0}, wave.size(), [&](size_t i) {
+    parallel_for(size_t{0}, wave.size(), [&](size_t i) {
       BlockDistanceArray unsigned_distances;
       distances.measure(wave[i], unsigned_distances);
       const BlockResult result = fill_block(wave[i], unsigned_distances, winding, block_settings, blocks[i]);
@@ -210,7 +210,7 @@ void warn_of_thin_sheets(const TriangleMesh& mesh, const LazyTree& tree, double 
     const glm::uvec3 t = mesh.triangles[index];
     return glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
   };
-  tbb::parallel_for(size_t{0}, mesh.triangles.size(), [&](size_t i) {
+  parallel_for(size_t{0}, mesh.triangles.size(), [&](size_t i) {
     const glm::uvec3 t = mesh.triangles[i];
     const glm::dvec3 area = normal_of(static_cast<std::uint32_t>(i));
     if (!(glm::length(area) > 0.0)) return;

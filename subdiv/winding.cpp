@@ -1,5 +1,3 @@
-#include <tbb/parallel_invoke.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "sdf/parallel.h"
 #include "subdiv/mesh_distance.h"
 
 namespace limn {
@@ -77,7 +76,7 @@ void Winding::build(const TriangleMesh& mesh, std::uint32_t index, std::uint32_t
     const auto build_right = [&] { build(mesh, node.right, first + half, count - half); };
     constexpr std::uint32_t kWorthATask = 4096;
     if (count > kWorthATask)
-      tbb::parallel_invoke(build_left, build_right);
+      parallel_invoke(build_left, build_right);
     else
       build_left(), build_right();
   }
@@ -112,7 +111,7 @@ void Winding::find_border(const TriangleMesh& mesh) {
     const glm::dvec3& p = mesh.positions[v];
     return std::tuple(p.x, p.y, p.z, v);
   };
-  tbb::parallel_sort(by_position.begin(), by_position.end(), [&key](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  parallel_sort(by_position.begin(), by_position.end(), [&key](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   std::vector<std::uint32_t> welded(mesh.positions.size());
   for (size_t i = 0; i < by_position.size(); ++i) {
     const bool same = i > 0 && mesh.positions[by_position[i]] == mesh.positions[by_position[i - 1]];
@@ -128,8 +127,7 @@ void Winding::find_border(const TriangleMesh& mesh) {
       const std::uint32_t a = welded[t[i]], b = welded[t[(i + 1) % 3]];
       if (a != b) uses.push_back(a < b ? Use{a, b, 1} : Use{b, a, -1});
     }
-  tbb::parallel_sort(uses.begin(), uses.end(),
-                     [](const Use& a, const Use& b) { return std::tie(a.low, a.high) < std::tie(b.low, b.high); });
+  parallel_sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) { return std::tie(a.low, a.high) < std::tie(b.low, b.high); });
   for (size_t i = 0; i < uses.size();) {
     int net = 0;
     size_t end = i;

@@ -1,13 +1,13 @@
 #include "raymarch/analytic/view.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "raymarch/analytic/tile.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -119,10 +119,9 @@ SurfaceView view_field(std::shared_ptr<const void> keep, const FieldTape& tape, 
   std::vector<std::vector<TapeSegment>> parents;
   if (tape.leaves.size() >= kLongTape) {
     parents.resize(static_cast<size_t>(big.columns) * static_cast<size_t>(big.rows));
-    tbb::parallel_for(0, big.columns * big.rows,
-                      [&](int k) { parents[static_cast<size_t>(k)] = refine_all(*view, big.cell(k, camera), all); });
+    parallel_for(0, big.columns * big.rows, [&](int k) { parents[static_cast<size_t>(k)] = refine_all(*view, big.cell(k, camera), all); });
   }
-  tbb::parallel_for(0, grid.columns * grid.rows, [&](int k) {
+  parallel_for(0, grid.columns * grid.rows, [&](int k) {
     const PixelTile cell = grid.cell(k, camera);
     const auto parent = static_cast<size_t>(cell.y / kBigCell_px * big.columns + cell.x / kBigCell_px);
     view->cells[static_cast<size_t>(k)] = refine_all(*view, cell, parents.empty() ? all : parents[parent]);

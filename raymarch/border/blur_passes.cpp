@@ -1,13 +1,12 @@
 #include "raymarch/border/blur_passes.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "raymarch/border/picture_rows.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {}  // namespace
@@ -31,7 +30,7 @@ void blur_lines(int width, int height, BlurKernel kernel, int radius_px, const s
   // Twice the radius and more, or the lines that neighbouring bands both filter would be most of the work.
   const int band_rows = std::max(64, 2 * taps);
   const std::vector<float> weights = blur_taps(kernel, radius_px);
-  tbb::parallel_for(0, (height + band_rows - 1) / band_rows, [&](int band) {
+  parallel_for(0, (height + band_rows - 1) / band_rows, [&](int band) {
     const int y0 = band * band_rows, y1 = std::min(height, y0 + band_rows);
     cv::Mat source(y1 - y0 + 2 * radius_px, width, CV_32F), blurred(y1 - y0, width, CV_32F);
     for (int row = 0; row < source.rows; ++row) {

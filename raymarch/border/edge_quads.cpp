@@ -1,15 +1,13 @@
 // Edge quads: every edge of a mesh decides by its two faces whether it is a line of the drawing.
 
 #include <fmt/core.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
 
 #include <numbers>
 
 #include "raymarch/border/edge_visibility.h"
 #include "raymarch/border/line_raster.h"
 #include "raymarch/border/registry.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -109,12 +107,7 @@ void add_object(const EdgeSettings& settings, const Polygons& polygons, std::int
       add_pieces(image, seen, width, of_block[block]);
     }
   };
-  tbb::parallel_for(
-      tbb::blocked_range<size_t>(0, blocks, 1),
-      [&](const tbb::blocked_range<size_t>& range) {
-        for (size_t block = range.begin(); block < range.end(); ++block) work(block);
-      },
-      tbb::simple_partitioner());
+  parallel_each(blocks, work);
   for (const std::vector<LinePiece>& part : of_block) pieces.insert(pieces.end(), part.begin(), part.end());
 }
 

@@ -1,8 +1,6 @@
 #include "raymarch/border/edge_sources.h"
 
 #include <fmt/core.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
 
 #include <array>
 #include <atomic>
@@ -13,6 +11,7 @@
 #include "raymarch/border/edge_lines.h"
 #include "raymarch/border/picture_rows.h"
 #include "raymarch/section_map.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -66,9 +65,9 @@ SectionMap choose_custom(const std::string& name, const BorderInput& input, cons
 
 float nearest_depth(const Image<float>& depth) {
   const auto smaller = [](float a, float b) { return b < a ? b : a; };
-  return tbb::parallel_reduce(
-      tbb::blocked_range<size_t>(0, depth.size(), size_t{1} << 16), std::numeric_limits<float>::infinity(),
-      [&](const tbb::blocked_range<size_t>& range, float nearest) {
+  return parallel_reduce(
+      depth.size(), size_t{1} << 16, std::numeric_limits<float>::infinity(),
+      [&](const IndexRange<size_t>& range, float nearest) {
         for (size_t i = range.begin(); i < range.end(); ++i) nearest = smaller(nearest, depth.pixels[i]);
         return nearest;
       },

@@ -1,14 +1,11 @@
 // The exact Euclidean distance transform of the silhouette's crossings.
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "raymarch/border/picture_rows.h"
 #include "raymarch/border/silhouette.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -122,12 +119,7 @@ void scan_columns(const Image<std::int8_t>& crossings, int x0, int x1, Image<std
 template <class Columns>
 void for_each_columns(int width, int together, const Columns& columns) {
   const int blocks = (width + together - 1) / together;
-  tbb::parallel_for(
-      tbb::blocked_range<int>(0, blocks, 1),
-      [&](const tbb::blocked_range<int>& range) {
-        for (int b = range.begin(); b < range.end(); ++b) columns(b * together, std::min(width, (b + 1) * together));
-      },
-      tbb::simple_partitioner());
+  parallel_each(blocks, [&](int b) { columns(b * together, std::min(width, (b + 1) * together)); });
 }
 
 /// Envelopes down the columns [x0, x1) of `heights`, through a transposed copy.

@@ -1,8 +1,7 @@
 // Where the corners of a mesh go when it is extruded.
 
-#include <tbb/parallel_for.h>
-
 #include "raymarch/border/extrude.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -62,7 +61,7 @@ ExtrudedCorners extrude_corners(const Polygons& polygons, const Affine& render_f
   ExtrudedCorners corners;
   corners.rest.resize(mesh.corner_vertices.size());
   corners.grown.resize(mesh.corner_vertices.size());
-  tbb::parallel_for(size_t{0}, mesh.corner_vertices.size(), [&](size_t i) {
+  parallel_for(size_t{0}, mesh.corner_vertices.size(), [&](size_t i) {
     const glm::dvec3& point = mesh.positions[static_cast<size_t>(mesh.corner_vertices[i])];
     const glm::dvec3 rest = in_camera(point);
     corners.rest[i] = rest;

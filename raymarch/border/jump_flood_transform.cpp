@@ -1,9 +1,6 @@
 // Jump flooding over the silhouette's crossings. A pixel holds the offset from its centre to the nearest crossing known so far. Passes go
 // over blocks of pixels, and only over those that lie within reach and have a neighbour, at the pass's step, that knows a crossing.
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <array>
 #include <cstdlib>
 #include <cstring>
@@ -14,6 +11,7 @@
 #include "raymarch/border/jump_flood_pass.h"
 #include "raymarch/border/picture_rows.h"
 #include "raymarch/border/silhouette.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -127,7 +125,7 @@ struct Block {
 template <class Work>
 void for_each_block(const std::vector<Block>& blocks, const Work& work) {
   constexpr size_t together = 16;
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, blocks.size(), together), [&](const tbb::blocked_range<size_t>& range) {
+  parallel_parts(blocks.size(), together, [&](const IndexRange<size_t>& range) {
     for (size_t i = range.begin(); i < range.end(); ++i) work(blocks[i]);
   });
 }

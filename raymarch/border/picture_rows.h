@@ -1,11 +1,9 @@
 #pragma once
 // Image methods work on lines of the picture, in parallel on the threads of the surrounding task arena.
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
-
 #include <algorithm>
+
+#include "sdf/parallel.h"
 
 namespace limn {
 
@@ -16,12 +14,7 @@ inline constexpr int kBandRows = 32;
 template <class Band>
 void for_each_band(int height, const Band& band) {
   const int bands = (height + kBandRows - 1) / kBandRows;
-  tbb::parallel_for(
-      tbb::blocked_range<int>(0, bands, 1),
-      [&](const tbb::blocked_range<int>& range) {
-        for (int b = range.begin(); b < range.end(); ++b) band(b * kBandRows, std::min(height, (b + 1) * kBandRows));
-      },
-      tbb::simple_partitioner());
+  parallel_each(bands, [&](int b) { band(b * kBandRows, std::min(height, (b + 1) * kBandRows)); });
 }
 
 }  // namespace limn

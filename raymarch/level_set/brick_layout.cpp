@@ -1,10 +1,10 @@
 #include "raymarch/level_set/brick_layout.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -72,7 +72,7 @@ std::vector<Candidate> find_candidates(const LevelSetData& data) {
   const std::uint32_t count = tree.nodeCount(0), chunks = (count + kChunk - 1) / kChunk;
   const Leaf* leaves = tree.getFirstNode<0>();
   std::vector<std::vector<Candidate>> parts(chunks);
-  tbb::parallel_for(std::uint32_t{0}, chunks, [&](std::uint32_t chunk) {
+  parallel_for(std::uint32_t{0}, chunks, [&](std::uint32_t chunk) {
     const Accessor accessor = data.accessor();
     const std::uint32_t first = chunk * kChunk, last = std::min(count, first + kChunk);
     parts[chunk].reserve(kChunk + kChunk / 8);

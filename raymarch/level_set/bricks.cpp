@@ -1,7 +1,5 @@
 #include "raymarch/level_set/bricks.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "raymarch/level_set/brick_layout.h"
 #include "raymarch/level_set/surface_bound.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -42,7 +41,7 @@ BrickGroups group_bricks(const BrickLayout& layout, const std::vector<BrickShape
   BrickGroups groups{.shift = shift, .bounds = std::vector<SurfaceBound>(first.size()), .bricks = {}};
   groups.bricks.assign(first.size() * static_cast<size_t>(parts), -1);
   first.push_back(members.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, groups.bounds.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
+  parallel_parts(groups.bounds.size(), size_t{16}, [&](const IndexRange<size_t>& range) {
     std::vector<BrickInCube> inside;
     for (size_t g = range.begin(); g < range.end(); ++g) {
       const glm::ivec3 origin = (layout.crossed[static_cast<size_t>(members[first[g]].second)].origin >> shift) << shift;
@@ -102,7 +101,7 @@ void fill_layer(const Accessor& accessor, const BrickLayer& layer, const glm::iv
 std::vector<BrickShape> fill(const LevelSetData& data, const BrickLayout& layout, float steps_per_unit, RayBricks& bricks) {
   const size_t crossed = layout.crossed.size();
   std::vector<BrickShape> shapes(crossed);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, crossed, 64), [&](const tbb::blocked_range<size_t>& range) {
+  parallel_parts(crossed, size_t{64}, [&](const IndexRange<size_t>& range) {
     const Accessor accessor = data.accessor();
     for (size_t i = range.begin(); i < range.end(); ++i) {
       std::int16_t* const values = bricks.values.data() + i * kBrickStride;
@@ -114,7 +113,7 @@ std::vector<BrickShape> fill(const LevelSetData& data, const BrickLayout& layout
     }
   });
   std::fill(bricks.values.begin() + static_cast<std::ptrdiff_t>(crossed * kBrickStride), bricks.values.end(), std::int16_t{0});
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, layout.layers.size(), 64), [&](const tbb::blocked_range<size_t>& range) {
+  parallel_parts(layout.layers.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
     const Accessor accessor = data.accessor();
     for (size_t i = range.begin(); i < range.end(); ++i) {
       const BrickLayer& layer = layout.layers[i];

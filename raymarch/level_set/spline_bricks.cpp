@@ -1,12 +1,11 @@
 #include "raymarch/level_set/spline_bricks.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
 
 #include "raymarch/level_set/crossed_cells.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -132,7 +131,7 @@ SplineBricks make_spline_bricks(const LevelSetData& data, std::span<const glm::i
   SplineBricks bricks;
   bricks.planes.resize(origins.size());
   bricks.rests.resize(origins.size() * kSplineStride);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, origins.size(), 64), [&](const tbb::blocked_range<size_t>& range) {
+  parallel_parts(origins.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
     const Accessor accessor = data.accessor();
     Values values;
     for (size_t i = range.begin(); i < range.end(); ++i) {

@@ -1,13 +1,12 @@
 #include "raymarch/level_set/view.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "raymarch/level_set/projection.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -72,7 +71,7 @@ std::vector<SeenBrick> see(const BrickGroups& groups, const BrickProjection& pro
   constexpr size_t kChunk = 2048;
   const size_t count = groups.bounds.size(), chunks = (count + kChunk - 1) / kChunk;
   std::vector<std::vector<ProjectedBrick>> parts(chunks);
-  tbb::parallel_for(size_t{0}, chunks, [&](size_t chunk) {
+  parallel_for(size_t{0}, chunks, [&](size_t chunk) {
     const size_t first = chunk * kChunk, number = std::min(kChunk, count - first);
     parts[chunk].resize(number);
     parts[chunk].resize(

@@ -1,11 +1,11 @@
 #include "raymarch/mesh/view.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <utility>
+
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -82,14 +82,14 @@ bool list_triangles(const Camera& camera, MeshView& view) {
   const size_t tiles = static_cast<size_t>(view.columns) * static_cast<size_t>(view.rows), triangles = view.mesh->triangles.size();
   const size_t shares = std::clamp<size_t>(std::min(triangles / kShare, kMostCounts / tiles), 1, kMostShares);
   view.shares.resize(shares);
-  tbb::parallel_for(size_t{0}, shares,
-                    [&](size_t k) { see(view, triangles * k / shares, triangles * (k + 1) / shares, camera, view.shares[k]); });
+  parallel_for(size_t{0}, shares,
+               [&](size_t k) { see(view, triangles * k / shares, triangles * (k + 1) / shares, camera, view.shares[k]); });
   size_t entries = 0;
   for (const SeenShare& share : view.shares) entries += share.entries;
   if (entries > kMostEntries) return false;
   place(view.shares, view.first);
   view.entries.resize(entries);
-  tbb::parallel_for(size_t{0}, shares, [&](size_t k) { fill(view.shares[k], view); });
+  parallel_for(size_t{0}, shares, [&](size_t k) { fill(view.shares[k], view); });
   return true;
 }
 
@@ -101,7 +101,7 @@ bool project_all(const ViewRequest& request, const Box& bounds, MeshView& view) 
   const double nearest = 1e-6 * bounds.radius();
   constexpr size_t kShare = 16384;
   std::atomic<bool> before{true};
-  tbb::parallel_for(size_t{0}, (positions.size() + kShare - 1) / kShare, [&](size_t k) {
+  parallel_for(size_t{0}, (positions.size() + kShare - 1) / kShare, [&](size_t k) {
     const size_t from = k * kShare, count = std::min(kShare, positions.size() - from);
     const double least =
         project_vertices(projection, std::span(positions).subspan(from, count), std::span(view.vertices).subspan(from, count));

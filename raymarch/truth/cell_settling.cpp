@@ -1,13 +1,11 @@
 #include "raymarch/truth/cell_settling.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "raymarch/truth/cell_scope.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -119,7 +117,7 @@ void settle(const CellSearch& search, const std::vector<glm::ivec3>& cells, Cell
   for (const auto& [seam, curves] : result.seams) tubes.add(search.grid, curves);
   const Settler settler{search, tubes};
   std::vector<std::uint8_t> left(cells.size(), 0);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, cells.size(), 64), [&](const tbb::blocked_range<size_t>& range) {
+  parallel_parts(cells.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     const CellScope whole = whole_scope(search.sharp);
     for (size_t i = range.begin(); i < range.end(); ++i) {

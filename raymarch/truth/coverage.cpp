@@ -1,10 +1,9 @@
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "raymarch/truth/parts.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -182,7 +181,7 @@ void add_faces(std::span<const Piece> pieces, int width, Faces& out) {
 }
 
 void fill_touched(const std::vector<Piece>& pieces, const std::vector<size_t>& groups, const SeenInk& seen, Image<float>& share) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, groups.size() - 1, 64), [&](const tbb::blocked_range<size_t>& range) {
+  parallel_parts(groups.size() - 1, size_t{64}, [&](const IndexRange<size_t>& range) {
     Faces faces;
     for (size_t g = range.begin(); g < range.end(); ++g) {
       add_faces(std::span(pieces).subspan(groups[g], groups[g + 1] - groups[g]), share.width, faces);
@@ -227,7 +226,7 @@ std::vector<std::vector<size_t>> regions_of(std::vector<std::uint8_t> taken, int
 }
 
 void look(const std::vector<size_t>& pixels, const SeenInk& seen, Image<float>& share, const ExecutionSettings& how) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, pixels.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
+  parallel_parts(pixels.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     std::vector<glm::dvec2> centers;
     for (size_t i = range.begin(); i < range.end(); ++i) {

@@ -1,12 +1,10 @@
 #include "raymarch/truth/field_cells.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
 #include "raymarch/truth/cell_scope.h"
 #include "raymarch/truth/cell_settling.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -82,7 +80,7 @@ CellResult search_cells(const CellSearch& search, const ExecutionSettings& how) 
   const int task_level = std::min(kTaskLevel, search.level);
   const std::vector<glm::ivec3> tasks = task_cells(search, task_level);
   std::vector<Walk> walks(tasks.size(), Walk{search});
-  tbb::parallel_for(size_t{0}, tasks.size(), [&](size_t i) {
+  parallel_for(size_t{0}, tasks.size(), [&](size_t i) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     const CellScope whole = whole_scope(search.sharp);
     descend(walks[i], shortened(whole, box_of(search, task_level, tasks[i]), kMarchReach * search.grid.side), task_level, tasks[i]);

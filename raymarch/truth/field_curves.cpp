@@ -1,14 +1,12 @@
 #include "raymarch/truth/field_curves.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "raymarch/truth/cell_settling.h"
 #include "raymarch/truth/strands.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -182,7 +180,7 @@ void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
   const size_t n = curve.points.size();
   const std::vector<double> sagitta = sagittas(curve, refiner.camera);
   std::vector<Refined> between(sagitta.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, sagitta.size(), 64), [&](const tbb::blocked_range<size_t>& range) {
+  parallel_parts(sagitta.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
     FieldEvaluator whole(refiner.field);
     for (size_t i = range.begin(); i < range.end(); ++i) {
       const CurvePoint &a = curve.points[i], &b = curve.points[(i + 1) % n];
@@ -232,7 +230,7 @@ FieldCurves trace_field_curves(const Field& field, const Camera& camera, const V
   const StrandSettings cutting{sharp, camera, viewer, settings.tolerance_px, bounds.radius(), field.traits().lipschitz};
   std::vector<std::vector<FieldCurve>> cut(strands.size());
   std::vector<FieldCurves> stats(strands.size());
-  tbb::parallel_for(size_t{0}, strands.size(), [&](size_t i) {
+  parallel_for(size_t{0}, strands.size(), [&](size_t i) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     const Strand& strand = strands[i];
     cut[i] = cut_to_surface(strand, cutting);

@@ -1,9 +1,9 @@
 #include "raymarch/truth/image_crossings.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -70,7 +70,7 @@ std::vector<std::vector<std::vector<double>>> image_crossings(const std::vector<
   }
   std::stable_sort(silhouettes.begin(), silhouettes.end(), [](const Step& a, const Step& b) { return a.bucket < b.bucket; });
   std::vector<std::vector<std::vector<double>>> result(curves.size());
-  tbb::parallel_for(size_t{0}, curves.size(), [&](size_t c) {
+  parallel_for(size_t{0}, curves.size(), [&](size_t c) {
     const size_t count = steps_of(curves[c]);
     result[c].resize(count);
     for (size_t i = 0; i < count; ++i) {

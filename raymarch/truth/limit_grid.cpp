@@ -1,10 +1,10 @@
 #include "raymarch/truth/limit_grid.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -211,8 +211,8 @@ LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, do
   while (steps > 4 && triangles_of(placed, steps) > max_triangles) steps -= 2;
   used_cell_px = longest / steps;
   std::vector<PatchLattice> lattices(placed.patches.size());
-  tbb::parallel_for(size_t{0}, placed.patches.size(),
-                    [&](size_t k) { lattices[k] = sample_lattice(placed, k, steps_of(placed.patches[k], steps)); });
+  parallel_for(size_t{0}, placed.patches.size(),
+               [&](size_t k) { lattices[k] = sample_lattice(placed, k, steps_of(placed.patches[k], steps)); });
   LimitGrid grid;
   Box extent;
   for (const PatchLattice& lattice : lattices) {

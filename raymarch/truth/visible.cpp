@@ -1,14 +1,12 @@
 // Which parts of the traced curves are seen. Where visibility may change is only a hint of where to test; a change is then bisected by
 // tests alone, so that no accuracy hangs on the hints.
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "raymarch/truth/image_crossings.h"
 #include "raymarch/truth/parts.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -106,7 +104,7 @@ std::vector<size_t> points_to_test(const TracedCurve& curve, const std::vector<b
 
 template <class Work>
 void for_all(size_t count, const ExecutionSettings& how, const Work& work) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 8), [&](const tbb::blocked_range<size_t>& range) {
+  parallel_parts(count, size_t{8}, [&](const IndexRange<size_t>& range) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     for (size_t i = range.begin(); i < range.end(); ++i) work(i);
   });

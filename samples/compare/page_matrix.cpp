@@ -1,11 +1,11 @@
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
 #include "samples/compare/html.h"
 #include "samples/compare/page_parts.h"
 #include "samples/compare/words.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -100,7 +100,7 @@ std::string shown_choice() {
 
 std::string matrix_html(const Comparison& comparison) {
   std::vector<std::string> cards(comparison.cells.size());
-  tbb::parallel_for(size_t{0}, cards.size(), [&](size_t i) {
+  parallel_for(size_t{0}, cards.size(), [&](size_t i) {
     if (has_card(comparison, comparison.cells[i])) cards[i] = card(comparison, comparison.cells[i]);
   });
   std::string html = comparison.is_matrix() ? shown_choice() : "";

@@ -1,10 +1,9 @@
 // Rays against a march in many more steps, in double precision: what that hits must be hit, what it misses missed.
 
-#include <tbb/parallel_for.h>
-
 #include "samples/stability/checks/registry.h"
 #include "samples/stability/checks/worst.h"
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 #include "sdf/shape.h"
 
 namespace limn {
@@ -16,7 +15,7 @@ Image<double> least_along_rays(const StabilityView& view, const Box& box, int st
   Image<double> least(view.camera.width_px, view.camera.height_px, std::numeric_limits<double>::infinity());
   const glm::dvec3 middle = box.center();
   const double radius = 1.001 * box.radius();
-  tbb::parallel_for(0, least.height, [&](int y) {
+  parallel_for(0, least.height, [&](int y) {
     std::vector<glm::dvec3> points(static_cast<size_t>(steps) + 1);
     std::vector<double> found(points.size());
     for (int x = 0; x < least.width; ++x) {

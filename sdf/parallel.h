@@ -1,0 +1,161 @@
+#pragma once
+// Internal: loops over several threads. They are TBB's; Debian's TBB is built without the thread sanitizer, which therefore does not see
+// that what came before a loop has happened for its parts, and its parts for what comes after. It is told here, and watches everything
+// else.
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
+#include <tbb/partitioner.h>
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define LIMN_WATCHES_THREADS 1
+extern "C" {
+void __tsan_acquire(void* address);
+void __tsan_release(void* address);
+}
+#endif
+#endif
+
+namespace limn {
+
+/// A part of a loop: first, ..., last - 1.
+template <class Index>
+struct IndexRange {
+  Index first, last;
+  Index begin() const { return first; }
+  Index end() const { return last; }
+};
+
+namespace parallel_detail {
+
+#if defined(LIMN_WATCHES_THREADS)
+#define LIMN_UNWATCHED __attribute__((no_sanitize("thread")))
+inline char begun = 0, done = 0;  // only their addresses matter
+inline void tell_begun() { __tsan_release(&begun); }
+inline void hear_begun() { __tsan_acquire(&begun); }
+inline void tell_done() { __tsan_release(&done); }
+inline void hear_done() { __tsan_acquire(&done); }
+#else
+#define LIMN_UNWATCHED
+inline void tell_begun() {}
+inline void hear_begun() {}
+inline void tell_done() {}
+inline void hear_done() {}
+#endif
+
+/// Around a loop, and around each of its parts, also where they end by an exception.
+struct Loop {
+  Loop() { tell_begun(); }
+  ~Loop() { hear_done(); }
+};
+struct Part {
+  Part() { hear_begun(); }
+  ~Part() { tell_done(); }
+};
+
+/// What TBB hands from thread to thread: an address and nothing else, so that all that a body refers to stays where the sanitizer sees it.
+template <class Index, class Body>
+struct Parts {
+  const Body* body;
+  LIMN_UNWATCHED void operator()(const tbb::blocked_range<Index>& range) const {
+    const Part part;
+    (*body)(IndexRange<Index>{range.begin(), range.end()});
+  }
+};
+template <class Work>
+struct Once {
+  const Work* work;
+  LIMN_UNWATCHED void operator()() const {
+    const Part part;
+    (*work)();
+  }
+};
+
+/// One value, and what it goes through; where TBB splits it, another begins. A value wanders from part to part.
+template <class Index, class Value, class Body, class Join>
+struct Reduction {
+  const Value* identity;
+  const Body* body;
+  const Join* joined;
+  Value value;
+
+  Reduction(const Value& from, const Body& by, const Join& with) : identity(&from), body(&by), joined(&with), value(from) {}
+  LIMN_UNWATCHED Reduction(Reduction& other, tbb::split)
+      : identity(other.identity), body(other.body), joined(other.joined), value((hear_begun(), *other.identity)) {}
+  LIMN_UNWATCHED void operator()(const tbb::blocked_range<Index>& range) {
+    const Part part;
+    hear_done();
+    value = (*body)(IndexRange<Index>{range.begin(), range.end()}, std::move(value));
+  }
+  LIMN_UNWATCHED void join(Reduction& right) {
+    const Part part;
+    hear_done();
+    value = (*joined)(std::move(value), right.value);
+  }
+};
+
+}  // namespace parallel_detail
+
+/// body(IndexRange) over parts of 0, ..., count - 1, each of at least about half of `grain` and as large as threads that are busy leave
+/// them.
+template <class Index, class Body>
+void parallel_parts(Index count, Index grain, const Body& body) {
+  const parallel_detail::Loop loop;
+  tbb::parallel_for(tbb::blocked_range<Index>(0, count, static_cast<size_t>(grain)), parallel_detail::Parts<Index, Body>{&body});
+}
+
+/// body(i) for each of first, ..., last - 1; neighbours by one thread where all are busy.
+template <class Index, class Body>
+void parallel_for(Index first, Index last, const Body& body) {
+  if (!(first < last)) return;
+  parallel_parts(static_cast<Index>(last - first), Index{1}, [&](const IndexRange<Index>& range) {
+    for (Index i = range.first; i < range.last; ++i) body(static_cast<Index>(first + i));
+  });
+}
+
+/// body(i) for each of 0, ..., count - 1, each handed out on its own: for few of them that differ much, or that are long.
+template <class Index, class Body>
+void parallel_each(Index count, const Body& body) {
+  const auto all = [&](const IndexRange<Index>& range) {
+    for (Index i = range.first; i < range.last; ++i) body(i);
+  };
+  const parallel_detail::Loop loop;
+  tbb::parallel_for(tbb::blocked_range<Index>(0, count, 1), parallel_detail::Parts<Index, decltype(all)>{&all}, tbb::simple_partitioner());
+}
+
+/// body(IndexRange, value so far) over parts as of parallel_parts, joined by join(left, right).
+template <class Index, class Value, class Body, class Join>
+Value parallel_reduce(Index count, Index grain, const Value& identity, const Body& body, const Join& join) {
+  parallel_detail::Reduction<Index, Value, Body, Join> reduction(identity, body, join);
+  {
+    const parallel_detail::Loop loop;
+    tbb::parallel_reduce(tbb::blocked_range<Index>(0, count, static_cast<size_t>(grain)), reduction);
+  }
+  return std::move(reduction.value);
+}
+
+template <class First, class Second>
+void parallel_invoke(const First& first, const Second& second) {
+  const parallel_detail::Loop loop;
+  tbb::parallel_invoke(parallel_detail::Once<First>{&first}, parallel_detail::Once<Second>{&second});
+}
+
+/// As std::sort. TBB's own threads within a sort cannot be told of, so that under the sanitizer there are none.
+template <class Iterator, class Less = std::less<>>
+void parallel_sort(Iterator begin, Iterator end, const Less& less = {}) {
+#if defined(LIMN_WATCHES_THREADS)
+  std::sort(begin, end, less);
+#else
+  tbb::parallel_sort(begin, end, less);
+#endif
+}
+
+}  // namespace limn

@@ -33,8 +33,7 @@ class Archive : public openvdb::io::Archive {
     initialize_openvdb();
     stream_.open(file, std::ios::binary);
     stream_.exceptions(std::ios::failbit | std::ios::badbit);
-    openvdb::io::StreamMetadata::Ptr metadata_of_stream = std::make_shared<openvdb::io::StreamMetadata>();
-    openvdb::io::setStreamMetadataPtr(stream_, metadata_of_stream, false);
+    openvdb::io::setStreamMetadataPtr(stream_, metadata_of_stream_, false);
     readHeader(stream_);
     openvdb::io::setVersion(stream_, libraryVersion(), fileVersion());
     openvdb::io::setDataCompression(stream_, compression());
@@ -80,6 +79,8 @@ class Archive : public openvdb::io::Archive {
     refuse("grid", entry.grid->getName(), "shares the voxels of a grid that is not in the file", "an undamaged file");
   }
 
+  // The stream keeps the address of this pointer, as long as it is read.
+  openvdb::io::StreamMetadata::Ptr metadata_of_stream_ = std::make_shared<openvdb::io::StreamMetadata>();
   std::ifstream stream_;
   std::vector<Entry> entries_;
 };

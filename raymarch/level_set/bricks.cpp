@@ -21,10 +21,9 @@ constexpr float kLargestStep = 32767.0f;
 constexpr int kFewestSteps = 1000;
 
 std::int16_t quantised(float value, float steps_per_unit) {
-  const float steps = std::clamp(value * steps_per_unit, -kLargestStep, kLargestStep);
-  const auto nearest = static_cast<int>(steps + (steps < 0.0f ? -0.5f : 0.5f));
-  // No node lies on the surface itself: half a step to its side keeps its sign.
-  return static_cast<std::int16_t>(value < 0.0f ? std::min(nearest, -1) : std::max(nearest, 1));
+  // No node lies on the surface itself: half a step to its side keeps its sign. In float until the end, so that loops over it become SIMD.
+  const float steps = std::max(std::min(std::abs(value * steps_per_unit), kLargestStep) + 0.5f, 1.0f);
+  return static_cast<std::int16_t>(static_cast<std::int32_t>(value < 0.0f ? -steps : steps));
 }
 
 /// Groups of 2^shift cells to a side of the crossed bricks.

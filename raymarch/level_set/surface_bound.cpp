@@ -74,13 +74,22 @@ void bound_values(std::span<const BrickInCube> parts, SurfaceBound& bound) {
 BrickShape shape_of(const std::int16_t* values) {
   BrickShape shape;
   shape.crossed = crossed_cells([values](int x, int y) { return values + brick_element(x, y, 0); });
-  for_each_cell(shape.crossed, [&](int x, int y, int z) {
-    const int cell[3] = {x, y, z};
-    for (int axis = 0; axis < 3; ++axis) {
-      shape.lower[axis] = std::min(shape.lower[axis], cell[axis]);
-      shape.upper[axis] = std::max(shape.upper[axis], cell[axis] + 1);
+  std::uint32_t of_x = 0, of_y = 0, of_z = 0;  // bits: places that have a crossed cell
+  for (int x = 0; x < kBrickCells; ++x) {
+    for (int y = 0; y < kBrickCells; ++y) {
+      const std::uint32_t cells = shape.crossed.cells[x][y], any = cells != 0 ? 1u : 0u;
+      of_x |= any << x;
+      of_y |= any << y;
+      of_z |= cells;
     }
-  });
+  }
+  if (shape.crossed.any) {
+    const std::uint32_t places[3] = {of_x, of_y, of_z};
+    for (int axis = 0; axis < 3; ++axis) {
+      shape.lower[axis] = std::countr_zero(places[axis]);
+      shape.upper[axis] = std::bit_width(places[axis]);
+    }
+  }
   constexpr int kStep[3] = {kBrickNodes * kBrickNodes, kBrickNodes, 1};
   for (int axis = 0; axis < 3; ++axis) {
     int least = shape.least[axis], greatest = shape.greatest[axis], sum = 0, edges = 0;

@@ -108,11 +108,11 @@ std::vector<size_t> still_to_do(const std::vector<size_t>& cells, const Study& s
   return left;
 }
 
-void print_result(const Options& options, const Place& place, const StudyFolder& held, size_t cells, const std::vector<fs::path>& files,
-                  const std::vector<std::string>& warnings) {
+void print_result(const Options& options, const Place& place, const StudyFolder& held, size_t cells, const std::vector<fs::path>& files) {
   const std::int64_t failed = failed_cells(held);
   if (options.json) {
     const StudyHead& head = held.record.head;
+    const std::vector<std::string>& warnings = head.warnings;
     Json document = {{"id", head.id},       {"scene", head.scene},       {"call", head.call},    {"truth", head.truth},
                      {"exact", head.exact}, {"views", head.views},       {"cells", cells},       {"of", head.cells},
                      {"failed", failed},    {"surfaces", head.surfaces}, {"warnings", warnings}, {"files", Json::array()}};
@@ -177,22 +177,22 @@ int run(const Options& given) {
   SceneInput input = load(options);
   const Place place = place_of(options, input.name);
   check_output_folder(place.work, options);
-  const Study study = plan_study(options, std::move(input));
+  Study study = plan_study(options, std::move(input));
   const std::vector<size_t> cells =
       options.study.shards == 1 ? cells_of_shard(study, 1, 1) : cells_of_shard(study, options.study.shard, options.study.shards);
   if (part_is_there(options, place, record_of(study))) {
     if (!options.quiet) print_note(place.final.string() + " is there already");
-    print_result(options, place, *read_folder(place.final), cells.size(), {}, {});
+    print_result(options, place, *read_folder(place.final), cells.size(), {});
     return 0;
   }
   // What an earlier study left in the folder may be most of it: then only what is left counts (do_cells).
   if (!fs::exists(place.work)) check_time(options, expected_ms(study));
-  const std::vector<std::string> warnings = warn(options, study);
+  study.head.warnings = warn(options, study);
   const FolderLock lock(place.work);
   const StudyFolder held = do_cells(options, study, place, cells, bar);
   const std::vector<fs::path> files = put_in_place(place, finish_folder(place.work, held, !place.is_part));
   if (options.verbose) print_note(study.head.call);
-  print_result(options, place, held, cells.size(), files, warnings);
+  print_result(options, place, held, cells.size(), files);
   return failed_cells(held) == static_cast<std::int64_t>(cells.size()) && !cells.empty() ? 1 : 0;
 }
 

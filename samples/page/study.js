@@ -118,7 +118,7 @@ function orderChart({ points, want, size, theme }) {
     const fit = fitOrder(mine, want.metric.unit === "px" ? study.floor : 0);
     const expected = study.expected[want.metric.name]?.[index][want.drawing] ?? null;
     const theory = expected === null ? "no order is expected" : `expected ${expected}`;
-    items.push([index, fit ? `${series.name}: order ${fit.order.toFixed(2)}, ${theory}` : `${series.name}: too few resolutions for an order, ${theory}`]);
+    items.push([index, fit ? `${series.name}: order ${fit.order.toFixed(2)}${fit.order < study.leastOrder ? ": does not converge" : ""}, ${theory}` : `${series.name}: too few resolutions for an order, ${theory}`]);
     if (!fit) return;
     orders[index] = fit.order;
     for (const resolution of [fit.finest, fit.coarsest]) fits.push({ series: series.name, x: resolution, y: fit.factor * resolution ** fit.order });
@@ -126,7 +126,7 @@ function orderChart({ points, want, size, theme }) {
   });
   const dots = known.map(point => ({ ...point, x: point.resolution, y: y.shown(point.error), tip: tip(point, want.view, want.metric, point.error),
     ...(labels.has(point) ? { label: labels.get(point) } : {}) }));
-  const floor = want.metric.unit === "px" ? `Errors below ${study.floor} px are at the precision of the measurement and left out of the fit. ` : "";
+  const floor = want.metric.unit === "px" ? `Errors below ${Number(study.floor.toPrecision(2))} px are at the precision of measurement and truth, and left out of the fit. ` : "";
   return { spec: orderSpec(dots, fits, x, y, size, theme.series, theme), count: known.length, items, note: floor + clampNote(y), data: { orders },
     caption: "Dashed: the order fitted, a number at its fine end; below, what theory expects." };
 }

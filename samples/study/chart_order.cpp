@@ -14,7 +14,7 @@ std::string order_text(const ReportData& data, const std::vector<ModelPoint>& po
   const std::optional<OrderFit> fit = fit_order(data, points, series, data.main_metric);
   const std::optional<ExpectedOrder> expected = expected_order(data, series, data.main_metric, data.drawings[data.main_drawing].threshold);
   const std::string theory = expected ? fmt::format("expected {}", expected->text()) : "no order expected";
-  return fit ? fmt::format("order {:.2f}, {}", fit->order, theory) : "too few resolutions for an order, " + theory;
+  return fit ? fit->text() + ", " + theory : "too few resolutions for an order, " + theory;
 }
 
 // Those with a resolution; the exact field has none.
@@ -79,7 +79,8 @@ StudyChart order_chart(const ReportData& data) {
         log_axis(errors, quantity, axis_title(data, data.main_metric), quantity == Quantity::pixels ? kLeastShownPx : 0.0)};
     ChartHead head{title, "the median of the views; dashed: the order fitted (" + drawing_words(data) + ")"};
     if (quantity == Quantity::pixels)
-      head.notes.push_back(fmt::format("Errors below {} px are at the precision of the measurement and left out of the fit", kFloorPx));
+      head.notes.push_back(
+          fmt::format("Errors below {:.2g} px are at the precision of measurement and truth, and left out of the fit", data.floor_px));
     if (const std::string note = clamp_note(frame.y, quantity == Quantity::pixels ? "px" : ""); !note.empty()) head.notes.push_back(note);
     draw_frame(canvas, head, frame, data, {});
     canvas.begin_clip(frame.plot);

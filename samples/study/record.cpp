@@ -51,9 +51,16 @@ Json to_json(const StudyRecord& record) {
                {"scene", head.scene},   {"input_hash", record.input_hash}, {"call", head.call},       {"truth", head.truth},
                {"exact", head.exact},   {"pictures", record.pictures},     {"views", head.views},     {"surfaces", head.surfaces},
                {"shard", record.shard}, {"shards", record.shards},         {"truths", Json::array()}, {"cells", Json::array()}};
+  json["warnings"] = head.warnings;
   for (const TruthRecord& truth : record.truths) json["truths"].push_back(to_json(truth));
   for (const PlannedCell& cell : record.cells) json["cells"].push_back({{"key", cell.key}, {"text", cell.text}});
   return json;
+}
+
+double largest_bound_px(const std::vector<TruthRecord>& truths) {
+  double bound_px = 0.0;
+  for (const TruthRecord& truth : truths) bound_px = std::max(bound_px, truth.bound_px);
+  return bound_px;
 }
 
 // Keys name files (the thumbnails) and the scene a folder: whoever hands us a part must not choose where we write.
@@ -85,7 +92,9 @@ StudyRecord record_from(const Json& json) {
   head.surfaces = json.at("surfaces").get<std::vector<std::string>>();
   record.shard = json.at("shard").get<int>();
   record.shards = json.at("shards").get<int>();
+  head.warnings = json.value("warnings", std::vector<std::string>{});
   for (const Json& truth : json.at("truths")) record.truths.push_back(truth_from(truth));
+  if (!head.exact) head.truth_within_px = largest_bound_px(record.truths);
   for (const Json& cell : json.at("cells")) record.cells.push_back({cell.at("key").get<std::string>(), cell.at("text").get<std::string>()});
   head.cells = static_cast<std::int64_t>(record.cells.size());
   return record;
@@ -142,6 +151,7 @@ void add_truths(const std::vector<TruthRecord>& truths, StudyRecord& record) {
   if (!from.empty()) head.truth = fmt::format("{}, within {:.2g} px; {}", from, bound_px, head.truth);
   if (!failed.empty()) head.truth += fmt::format("; no truth for some borders: {}", failed);
   if (from.empty()) head.exact = false;
+  head.truth_within_px = head.exact ? 0.0 : largest_bound_px(record.truths);
 }
 
 fs::path record_file(const fs::path& folder) { return folder / "study.json"; }

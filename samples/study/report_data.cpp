@@ -231,6 +231,7 @@ ReportData collect_report(const StudyHead& head, const std::vector<StudyRow>& ro
   for (const StudyRow& row : rows) sorted.push_back(&row);
   std::sort(sorted.begin(), sorted.end(), [](const StudyRow* a, const StudyRow* b) { return row_less(*a, *b); });
   ReportData data;
+  data.floor_px = std::max(kFloorPx, head.truth_within_px);
   Collector collector{data, DrawingNames(sorted)};
   collector.add_models(head, sorted);
   collector.add_drawings(sorted);

@@ -61,6 +61,7 @@ struct ReportData {
   std::vector<int> views{};
   size_t main_drawing = 0;  ///< What charts show first.
   std::string main_metric{};
+  double floor_px = kFloorPx;  ///< Displacements below say nothing: the measurement's precision, or truth's own where that is worse.
 
   /// "mesh, vertex normals, level 3".
   std::string title(size_t model) const;

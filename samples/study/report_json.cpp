@@ -70,11 +70,8 @@ Json orders_json(const ReportData& data) {
 }  // namespace
 
 std::string study_data_json(const ReportData& data) {
-  Json json = {{"tolerance", kTolerancePx},
-               {"floor", kFloorPx},
-               {"least", kLeastShownPx},
-               {"mainDrawing", data.main_drawing},
-               {"mainMetric", data.main_metric}};
+  Json json = {{"tolerance", kTolerancePx}, {"floor", short_number(data.floor_px)}, {"leastOrder", kLeastOrder},
+               {"least", kLeastShownPx},    {"mainDrawing", data.main_drawing},     {"mainMetric", data.main_metric}};
   json["roles"] = {{"compared", compared_metric(data)},
                    {"predicted", data.metric_of(MetricRole::predicted)},
                    {"normal", data.metric_of(MetricRole::normal)}};

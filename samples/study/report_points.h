@@ -29,15 +29,21 @@ std::vector<size_t> pareto_front(std::span<const double> costs, std::span<const 
 /// The front of models; the analytic surface is drawn, but it is what models stand for, and no choice beside them.
 std::vector<size_t> pareto_front(const ReportData& data, const std::vector<ModelPoint>& points, Cost cost);
 
+/// What falls more slowly is not called converging; the least order that theory has for any model is 1. On Schwarz's lantern normals
+/// stay as wrong, or grow worse, however fine it is.
+inline constexpr double kLeastOrder = 0.5;
+
 /// error = factor * resolution^order, by least squares of the logarithms.
 struct OrderFit {
   double order = 0.0, factor = 0.0;
   size_t points = 0;
   double finest = 0.0, coarsest = 0.0;  ///< Resolutions between which it was fitted.
+  bool converges() const { return order >= kLeastOrder; }
+  std::string text() const;  ///< "order 1.98", "order -0.08: does not converge".
 };
 /// Of the errors above `floor`; nothing where fewer than three are left, or all of one resolution.
 std::optional<OrderFit> fit_order(std::span<const double> resolutions, std::span<const double> errors, double floor);
-/// Of a series' points; the floor is kFloorPx for metrics in pixels, else 0.
+/// Of a series' points; the floor is ReportData::floor_px for metrics in pixels, else 0.
 std::optional<OrderFit> fit_order(const ReportData& data, const std::vector<ModelPoint>& points, size_t series, const std::string& metric);
 
 /// What theory lets one expect: the border converges as the smaller of the normals' order and the positions', which is 2.

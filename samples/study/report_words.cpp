@@ -94,16 +94,17 @@ struct Words {
   }
 
   void say_orders() {
-    std::vector<std::string> orders;
-    bool any_expected = false;
+    std::vector<std::string> orders, stuck;
     for (size_t series = 0; series < data.series.size(); ++series) {
       const std::optional<OrderFit> fit = fit_order(data, points, series, data.main_metric);
       if (!fit) continue;
       const std::optional<ExpectedOrder> expected =
           expected_order(data, series, data.main_metric, data.drawings[data.main_drawing].threshold);
-      any_expected = any_expected || expected;
-      orders.push_back(fmt::format("{} {:.2f}{}", data.series[series], fit->order, expected ? " (expected " + expected->text() + ")" : ""));
+      (fit->converges() ? orders : stuck)
+          .push_back(fmt::format("{} {:.2f}{}", data.series[series], fit->order, expected ? " (expected " + expected->text() + ")" : ""));
     }
+    if (!stuck.empty())
+      out.push_back(fmt::format("The error does not converge to 0; its power of the resolution is: {}.", listed(stuck, "; ")));
     if (!orders.empty()) out.push_back(fmt::format("The error falls with the resolution to the power of: {}.", listed(orders, "; ")));
   }
 
@@ -142,7 +143,7 @@ struct Words {
     for (const ReportCell& cell : data.cells) {
       const auto p = cell.values.find(predicted), m = cell.values.find(measured);
       if (cell.drawing != data.main_drawing || p == cell.values.end() || m == cell.values.end()) continue;
-      if (m->second > kFloorPx && m->second < 2.0 && std::isfinite(p->second)) wrong.push_back(std::abs(p->second / m->second - 1.0));
+      if (m->second > data.floor_px && m->second < 2.0 && std::isfinite(p->second)) wrong.push_back(std::abs(p->second / m->second - 1.0));
     }
     if (wrong.empty()) return;
     std::sort(wrong.begin(), wrong.end());
@@ -193,14 +194,21 @@ std::vector<std::string> study_sentences(const StudyHead& head, const ReportData
   } else {
     if (data.drawings.size() > 1)
       words.out.push_back("What follows is for " + data.drawings[data.main_drawing].title() + "; the page below can show the others.");
-    if (in_pixels) words.say_cheapest();
+    // Half a pixel cannot be told where truth itself is less sure.
+    const bool can_tell = in_pixels && data.floor_px <= kTolerancePx;
+    if (in_pixels && !can_tell)
+      words.out.push_back(
+          fmt::format("No model can be called right to {} px, and none wrong by less than {:.2g} px: truth is not known better.",
+                      kTolerancePx, data.floor_px));
+    if (can_tell) words.say_cheapest();
     if (!in_pixels) words.out.push_back("The border's displacement was not measured; charts show " + metric->label() + ".");
-    if (in_pixels) words.say_never();
+    if (can_tell) words.say_never();
     words.say_orders();
-    words.say_parts();
+    if (can_tell) words.say_parts();
     words.say_prediction();
   }
   words.say_failures();
+  for (const std::string& warning : head.warnings) words.out.push_back("Warning: " + warning + ".");
   return words.out;
 }
 

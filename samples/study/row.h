@@ -53,6 +53,8 @@ struct StudyHead {
   std::string call{};   ///< The resolved call.
   std::string truth{};  ///< "the field itself, within 0.005 px".
   bool exact = true;
+  double truth_within_px = 0.0;         ///< How far off truth itself may be in the worst view; 0 where it is exact.
+  std::vector<std::string> warnings{};  ///< What the audit says of the input.
   int views = 1;
   std::vector<std::string> surfaces{};  ///< Series in order.
   std::int64_t cells = 0;

@@ -37,8 +37,15 @@ struct AuditCheck {
 };
 std::span<const AuditCheck> audit_checks();
 
-/// What the checks find in one object, in the registry's order.
-std::vector<Finding> audit(const SceneObject& object, const AuditSettings& settings);
+/// What a check took. What several look at counts for the first that asks for it.
+struct AuditCost {
+  std::string check{};  ///< AuditCheck::about.name.
+  bool quick = false;
+  double ms = 0.0;
+};
+
+/// What the checks find in one object, in the registry's order. Appends to `costs`, if given, a line for each check that was run.
+std::vector<Finding> audit(const SceneObject& object, const AuditSettings& settings, std::vector<AuditCost>* costs = nullptr);
 
 /// True where a finding is a warning or an error for any of the surfaces drawn by any of the methods (names; empty: by none that matters,
 /// so that only what every method suffers from counts).

@@ -1,6 +1,7 @@
 #include "raymarch/audit/registry.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "raymarch/audit/facts.h"
 #include "subdiv/refine.h"
@@ -8,6 +9,7 @@
 namespace limn {
 namespace {
 
+using Clock = std::chrono::steady_clock;
 constexpr std::int64_t kSmallFaces = 100'000, kSmallVoxels = 300'000;
 
 bool meet(std::span<const std::string> of, std::span<const std::string> asked) {
@@ -37,11 +39,15 @@ const char* name_of(Severity severity) {
   return "error";
 }
 
-std::vector<Finding> audit(const SceneObject& object, const AuditSettings& settings) {
+std::vector<Finding> audit(const SceneObject& object, const AuditSettings& settings, std::vector<AuditCost>* costs) {
   AuditFacts facts(object, settings);
   std::vector<Finding> findings;
   for (const AuditCheck& check : audit_checks()) {
-    if (settings.thorough || (check.quick && facts.is_small())) check.look(facts, findings);
+    if (!settings.thorough && !(check.quick && facts.is_small())) continue;
+    const auto started = Clock::now();
+    check.look(facts, findings);
+    if (costs != nullptr)
+      costs->push_back({check.about.name, check.quick, std::chrono::duration<double, std::milli>(Clock::now() - started).count()});
   }
   return findings;
 }

@@ -24,6 +24,7 @@ struct Report {
   Box bounds;
   Json counts = Json::object();
   std::vector<Finding> audit;
+  std::vector<AuditCost> costs;
 };
 
 void report_mesh(const MeshSource& source, Report& report) {
@@ -56,10 +57,10 @@ void report_level_set(const LevelSetSource& source, Report& report) {
 }
 
 Report report_of(const SceneObject& object, const SurfaceSettings& settings) {
-  Report report{.name = object.name, .kind = "field", .bounds = bounds(object), .counts = Json::object(), .audit = {}};
+  Report report{.name = object.name, .kind = "field", .bounds = bounds(object), .counts = Json::object(), .audit = {}, .costs = {}};
   if (const auto* mesh = std::get_if<MeshSource>(&object.source)) report_mesh(*mesh, report);
   if (const auto* level_set = std::get_if<LevelSetSource>(&object.source)) report_level_set(*level_set, report);
-  report.audit = audit(object, {.surface = settings, .thorough = true});
+  report.audit = audit(object, {.surface = settings, .thorough = true}, &report.costs);
   return report;
 }
 
@@ -114,6 +115,22 @@ std::string report_text(const Report& report) {
   }
   if (!counts.empty()) text += counts + "\n";
   for (const Finding& finding : report.audit) text += finding_text(finding);
+  return text;
+}
+
+/// "bunny: quick checks 31 ms (parts 30 ms, …), the others 240 ms (thin 200 ms, …)".
+std::string costs_text(const Report& report) {
+  std::string text = report.name;
+  for (const bool quick : {true, false}) {
+    double all = 0.0;
+    std::string each;
+    for (const AuditCost& cost : report.costs) {
+      if (cost.quick != quick) continue;
+      all += cost.ms;
+      each += fmt::format("{}{} {}", each.empty() ? "" : ", ", cost.check, time_text(cost.ms));
+    }
+    text += fmt::format("{} {} ({})", quick ? ": quick checks" : ", the others", time_text(all), each);
+  }
   return text;
 }
 
@@ -172,6 +189,9 @@ void print_report(const Options& options, SceneInput input, const std::vector<Gr
   if (!options.gradient && !input.surface.gradient) settings.gradient.clear();
   std::vector<Report> reports;
   for (const SceneObject& object : input.scene.objects) reports.push_back(report_of(object, settings));
+  if (options.verbose) {
+    for (const Report& report : reports) print_note(costs_text(report));
+  }
   const Box all = bounds(input.scene);
   if (!options.json) {
     std::string text;

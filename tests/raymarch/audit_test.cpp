@@ -352,5 +352,20 @@ TEST(Audit, QuickChecksArePartOfTheThoroughOnesAndSayTheSame) {
   }
 }
 
+TEST(Audit, EveryCheckThatRanSaysWhatItTook) {
+  for (const bool all : {false, true}) {
+    std::vector<AuditCost> costs;
+    audit(object_of(lantern(12, 48)), {.thorough = all}, &costs);
+    std::vector<AuditCheck> ran(audit_checks().begin(), audit_checks().end());
+    std::erase_if(ran, [&](const AuditCheck& check) { return !all && !check.quick; });
+    ASSERT_EQ(costs.size(), ran.size());
+    for (size_t i = 0; i < ran.size(); ++i) {
+      EXPECT_EQ(costs[i].check, ran[i].about.name);
+      EXPECT_EQ(costs[i].quick, ran[i].quick);
+      EXPECT_GE(costs[i].ms, 0.0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace limn

@@ -13,22 +13,34 @@ struct EdgeUse {
   bool forward;
 };
 
-std::vector<EdgeUse> sorted_uses(const Mesh& mesh) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(mesh.corner_vertices.size());
+template <class Visit>
+void visit_uses(const Mesh& mesh, Visit visit) {
   std::int32_t first = 0;
   for (size_t f = 0; f < mesh.face_count(); ++f) {
     const std::int32_t size = mesh.face_sizes[f];
     for (std::int32_t i = 0; i < size; ++i) {
       const std::int32_t a = mesh.corner_vertices[static_cast<size_t>(first + i)];
-      const std::int32_t b = mesh.corner_vertices[static_cast<size_t>(first + (i + 1) % size)];
+      const std::int32_t b = mesh.corner_vertices[static_cast<size_t>(i + 1 < size ? first + i + 1 : first)];
       // A corner repeated within a face makes an edge of no length, which is the face's fault and no edge of the mesh.
-      if (a != b) uses.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(f), first + i, a < b});
+      if (a != b) visit(EdgeUse{std::min(a, b), std::max(a, b), static_cast<std::int32_t>(f), first + i, a < b});
     }
     first += size;
   }
-  std::sort(uses.begin(), uses.end(),
-            [](const EdgeUse& x, const EdgeUse& y) { return std::tie(x.low, x.high, x.order) < std::tie(y.low, y.high, y.order); });
+}
+
+/// By their lower vertex, then the higher one, then the order in the mesh. Counted into their places by the lower vertex: few share one.
+std::vector<EdgeUse> sorted_uses(const Mesh& mesh) {
+  std::vector<size_t> ends(mesh.vertex_count() + 1, 0);
+  visit_uses(mesh, [&](const EdgeUse& use) { ++ends[static_cast<size_t>(use.low) + 1]; });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<EdgeUse> uses(ends.back());
+  // Each start moves on to where the next vertex starts.
+  visit_uses(mesh, [&](const EdgeUse& use) { uses[ends[static_cast<size_t>(use.low)]++] = use; });
+  size_t start = 0;
+  for (size_t v = 0; v + 1 < ends.size(); start = ends[v++]) {
+    std::sort(uses.begin() + static_cast<std::ptrdiff_t>(start), uses.begin() + static_cast<std::ptrdiff_t>(ends[v]),
+              [](const EdgeUse& x, const EdgeUse& y) { return std::tie(x.high, x.order) < std::tie(y.high, y.order); });
+  }
   return uses;
 }
 

@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <cstdlib>
+#include <map>
 
 #include "sdf/error.h"
 #include "subdiv/audit.h"
@@ -226,6 +227,33 @@ TEST(MeshFacts, EachFaultIsCounted) {
   EXPECT_EQ(mesh_facts(test::torus(8, 6, 2.0, 0.5)).extraordinary_vertices, 0);
   EXPECT_EQ(mesh_facts(test::grid(4, 3)).extraordinary_vertices, 0);
   EXPECT_EQ(mesh_facts(test::sphere(2)).extraordinary_vertices, 6);
+}
+
+RC_GTEST_PROP(Edges, AreThoseOfAMapFromVerticesToFacesInItsOrder, ()) {
+  Mesh mesh;
+  mesh.positions.resize(static_cast<size_t>(*rc::gen::inRange(1, 9)));
+  const auto vertex = rc::gen::inRange(0, static_cast<int>(mesh.positions.size()));
+  std::map<std::pair<int, int>, std::vector<std::pair<int, bool>>> map;
+  const int faces = *rc::gen::inRange(0, 12);
+  for (int f = 0; f < faces; ++f) {
+    const auto corners = *rc::gen::container<std::vector<int>>(static_cast<size_t>(*rc::gen::inRange(1, 6)), vertex);
+    mesh.face_sizes.push_back(static_cast<std::int32_t>(corners.size()));
+    for (size_t i = 0; i < corners.size(); ++i) {
+      const int a = corners[i], b = corners[(i + 1) % corners.size()];
+      mesh.corner_vertices.push_back(a);
+      if (a != b) map[std::minmax(a, b)].emplace_back(f, a < b);
+    }
+  }
+  const std::vector<Edge> edges = build_edges(mesh);
+  RC_ASSERT(edges.size() == map.size());
+  size_t i = 0;
+  for (const auto& [ends, uses] : map) {
+    const Edge& edge = edges[i++];
+    RC_ASSERT(std::pair(edge.vertex_a, edge.vertex_b) == (uses[0].second ? ends : std::pair(ends.second, ends.first)));
+    RC_ASSERT(edge.face_a == uses[0].first && edge.face_count == static_cast<std::int32_t>(uses.size()));
+    RC_ASSERT(edge.face_b == (uses.size() > 1 ? uses[1].first : -1));
+    RC_ASSERT(edge.consistent == (uses.size() < 2 || uses[0].second != uses[1].second));
+  }
 }
 
 }  // namespace

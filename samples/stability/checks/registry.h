@@ -21,5 +21,6 @@ StabilityCheck no_false_lines_check();
 StabilityCheck flicker_confined_check();
 StabilityCheck flips_beyond_check();
 StabilityCheck unchanged_beyond_check();
+StabilityCheck ink_width_check();
 
 }  // namespace limn

@@ -158,6 +158,18 @@ TEST(StabilityJudge, WhatCannotRunIsSkippedWithItsReason) {
   EXPECT_FALSE(cell.message.empty());
 }
 
+TEST(StabilityChecks, InkWidthIsThatOfARingOfInk) {
+  for (const int asked : {2, 4, 8}) {
+    const StabilityCell cell =
+        only_cell(fmt::format("[case]\nrow = \"r\"\nbreaks = \"b\"\nholds = \"h\"\ncheck = \"ink_width\"\nsurfaces = [\"analytic\"]\nbound "
+                              "= 1e9\n[with]\nwidth = "
+                              "0\n[[border]]\nmethod = \"rim_width\"\nwidth = {}.0\n[[object]]\nshape = \"sphere\"\n",
+                              asked));
+    // A disc among pixels is off by up to one on either side.
+    EXPECT_NEAR(cell.number, asked, 1.5) << cell.message;
+  }
+}
+
 TEST(StabilityRun, IsTheSameForEqualSeedsAndAnyThreads) {
   const std::vector<StabilityCase> cases{find_stability_case("cube_faces"), find_stability_case("nested_and_crossing")};
   const auto text = [&](std::uint64_t seed, int threads) {

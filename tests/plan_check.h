@@ -91,10 +91,10 @@ inline double share_beyond(const SceneModel& model, const SceneModel& reference,
 struct BorderBetween {
   glm::dvec2 a_px{0.0}, b_px{0.0};
   PointSample a{}, b{};
-  double first_step = 0.0;  ///< Of depth between the first two.
 };
 
-/// Whether two rays see two sides of a border: of the object, of the ink or, as long as it does not close, of a step in depth.
+/// Whether two rays see two sides of a border: of the object, of the ink or, as long as it does not close, of a step in depth by more than
+/// a pixel.
 struct BorderSides {
   const Camera& camera;
   double threshold;  ///< Of the ink; 0: the silhouette alone.
@@ -103,8 +103,14 @@ struct BorderSides {
     if (sample.status != HitStatus::hit) return 0;
     return double{sample.n_dot_v} < threshold ? 1 : 2;
   }
-  double step(const PointSample& a, const PointSample& b) const { return std::abs(depth_of(camera, a) - depth_of(camera, b)); }
+  /// How far one hit lies from the other's tangent plane: little on a slope, however steep, and much across the end of a sheet.
+  double step_px(const PointSample& a, const PointSample& b) const {
+    const glm::dvec3 between = b.position - a.position;
+    const double off = std::max(std::abs(glm::dot(glm::dvec3(a.normal), between)), std::abs(glm::dot(glm::dvec3(b.normal), between)));
+    return off * pixels_per_unit_at(camera, std::min(depth_of(camera, a), depth_of(camera, b)));
+  }
   bool differ(const PointSample& a, const PointSample& b) const { return side(a) != side(b); }
+  bool border(const PointSample& a, const PointSample& b) const { return differ(a, b) || (side(a) != 0 && step_px(a, b) > 1.0); }
 };
 
 /// All pairs of neighbours in a grid of rays a pixel apart that may have a border between them.
@@ -117,10 +123,7 @@ inline std::vector<BorderBetween> neighbours_that_differ(const SceneModel& model
   const std::vector<PointSample> seen = seen_at(model, sides.camera, points);
   std::vector<BorderBetween> pairs;
   const auto look = [&](size_t i, size_t j) {
-    const PointSample &a = seen[i], &b = seen[j];
-    if (sides.side(a) == 0 && sides.side(b) == 0) return;
-    const double step = sides.step(a, b), nearer = std::min(depth_of(sides.camera, a), depth_of(sides.camera, b));
-    if (sides.differ(a, b) || step * pixels_per_unit_at(sides.camera, nearer) > 1.0) pairs.push_back({points[i], points[j], a, b, step});
+    if (sides.border(seen[i], seen[j])) pairs.push_back({points[i], points[j], seen[i], seen[j]});
   };
   for (int y = 0; y + 1 < height; ++y) {
     for (int x = 0; x + 1 < width; ++x) {
@@ -137,8 +140,6 @@ inline std::vector<BorderBetween> neighbours_that_differ(const SceneModel& model
 inline double share_of_false_border(const SceneModel& model, const PlanView& view, double threshold, double tolerance_px,
                                     PlanMetric metric) {
   constexpr int kHalvings = 7;
-  // A slope's step falls to a hundredth, that of a sheet seen edge on to a tenth.
-  constexpr double kStays = 0.25;
   const BorderSides sides{view.camera, metric == PlanMetric::silhouette ? 0.0 : threshold};
   std::vector<BorderBetween> pairs = neighbours_that_differ(model, sides);
   for (int halving = 0; halving < kHalvings; ++halving) {
@@ -148,7 +149,7 @@ inline double share_of_false_border(const SceneModel& model, const PlanView& vie
     for (size_t i = 0; i < pairs.size(); ++i) {
       BorderBetween& pair = pairs[i];
       const bool by_side = sides.differ(pair.a, pair.b);
-      const bool left = by_side ? sides.differ(pair.a, seen[i]) : sides.step(pair.a, seen[i]) > sides.step(seen[i], pair.b);
+      const bool left = by_side ? sides.differ(pair.a, seen[i]) : sides.step_px(pair.a, seen[i]) > sides.step_px(seen[i], pair.b);
       (left ? pair.b_px : pair.a_px) = middles[i];
       (left ? pair.b : pair.a) = seen[i];
     }
@@ -156,7 +157,7 @@ inline double share_of_false_border(const SceneModel& model, const PlanView& vie
   const CurveIndex borders(view.truth.curves, {});
   int all = 0, wrong = 0;
   for (const BorderBetween& pair : pairs) {
-    if (!sides.differ(pair.a, pair.b) && sides.step(pair.a, pair.b) < kStays * pair.first_step) continue;
+    if (!sides.border(pair.a, pair.b)) continue;  // a slope, and no step
     ++all;
     wrong += !borders.nearest(0.5 * (pair.a_px + pair.b_px), 0, tolerance_px + std::exp2(-kHalvings));
   }

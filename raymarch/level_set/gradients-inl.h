@@ -124,36 +124,25 @@ HWY_INLINE Sections sections(const CentralStencil& s, const V3& at) {
            across(s.above[0].high, s.above[1].high, s.above[2].high, s.above[3].high)}};
 }
 
-/// How far along the ray (in its t) to go, at most to where it leaves the cell.
-HWY_INLINE VF within_cell(const V3& at, const V3& inverse, VF move) {
-  VF least = set(-1e30f), most = set(1e30f);
-  const auto clip = [&](VF u, VF per) {
-    const VF a = hn::Mul(hn::Neg(u), per), b = hn::Mul(hn::Sub(set(1.0f), u), per);
-    least = hn::Max(least, hn::Min(a, b));
-    most = hn::Min(most, hn::Max(a, b));
-  };
-  clip(at.x, inverse.x);
-  clip(at.y, inverse.y);
-  clip(at.z, inverse.z);
-  return hn::Max(hn::Min(move, most), least);
-}
-
+/// Along the ray. Beyond the cell its polynomials go on: by so little that on smooth surfaces they are still the next cell's.
 HWY_INLINE V3 moved(const V3& at, const V3& direction, VF t) {
-  const auto along = [&](VF u, VF v) { return hn::Min(hn::Max(hn::Add(u, hn::Mul(t, v)), hn::Zero(F())), set(1.0f)); };
-  return {along(at.x, direction.x), along(at.y, direction.y), along(at.z, direction.z)};
+  return {hn::Add(at.x, hn::Mul(t, direction.x)), hn::Add(at.y, hn::Mul(t, direction.y)), hn::Add(at.z, hn::Mul(t, direction.z))};
 }
 
 HWY_INLINE VF dot(const V3& a, const V3& b) { return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z)); }
 
-/// Newton's step along the ray towards the root of what has this value and gradient at a place of the cell, at most to where the ray leaves
-/// it. A ray that grazes is taken to be a sixteenth as steep as it could be: the step's theory is of first order.
-HWY_INLINE VF newton_step(VF value, const V3& gradient, const V3& at, const V3& direction, const V3& inverse) {
+/// Newton's step along the ray towards the root of what has this value and gradient, by a quarter of a voxel at most, so that hits in one
+/// cell and the next go on from each other. A ray that grazes is taken to be a sixteenth as steep as it could be: the step's theory is of
+/// first order.
+HWY_INLINE VF newton_step(VF value, const V3& gradient, const V3& direction) {
   const V3 product{hn::Mul(gradient.x, direction.x), hn::Mul(gradient.y, direction.y), hn::Mul(gradient.z, direction.z)};
   const VF slope = hn::Add(hn::Add(product.x, product.y), product.z);
   const VF steepest = hn::Add(hn::Add(hn::Abs(product.x), hn::Abs(product.y)), hn::Abs(product.z));
   const MF flat = hn::Eq(steepest, hn::Zero(F()));
   const VF size = hn::IfThenElse(flat, set(1.0f), hn::Max(hn::Abs(slope), hn::Mul(set(1.0f / 16.0f), steepest)));
-  return within_cell(at, inverse, hn::IfThenElse(flat, hn::Zero(F()), hn::Neg(hn::Div(value, hn::CopySign(size, slope)))));
+  const VF most = hn::Div(set(0.25f), hn::Max(hn::Abs(direction.x), hn::Max(hn::Abs(direction.y), hn::Abs(direction.z))));
+  const VF step = hn::IfThenElse(flat, hn::Zero(F()), hn::Neg(hn::Div(value, hn::CopySign(size, slope))));
+  return hn::Max(hn::Min(step, most), hn::Neg(most));
 }
 
 /// A hit's gradient, and how far along the ray it lies from the trilinear root.
@@ -164,13 +153,13 @@ struct Settled {
 
 /// Central differences at the cell's nodes, interpolated: the same as differences of the interpolant itself, taken one voxel to either
 /// side at the same place in the cells there. The hit goes to where the interpolant, less its chords' sag, has its root.
-HWY_INLINE Settled central_gradient(const std::int16_t* values, const Cells& cells, const V3& direction, const V3& inverse) {
+HWY_INLINE Settled central_gradient(const std::int16_t* values, const Cells& cells, const V3& direction) {
   const CentralStencil stencil = gather_central(values, cells);
   const auto gradient = [](const Sections& s, const V3& at) { return V3{s.x.slope(at.x), s.y.slope(at.y), s.z.slope(at.z)}; };
   const Sections first = sections(stencil, cells.local);
   const V3& at = cells.local;
   const VF sag = hn::Add(hn::Add(first.x.sag(at.x), first.y.sag(at.y)), first.z.sag(at.z));
-  const VF move = newton_step(hn::Neg(sag), gradient(first, at), at, direction, inverse);
+  const VF move = newton_step(hn::Neg(sag), gradient(first, at), direction);
   const V3 there = moved(at, direction, move);
   return {gradient(sections(stencil, there), there), move};
 }
@@ -247,10 +236,10 @@ HWY_INLINE SplinePoint spline_at(const SplineStencil& stencil, const V3& at) {
 }
 
 /// The gradient of the cubic B-spline, in the brick's own steps, where the spline has its root.
-HWY_INLINE Settled cubic_gradient(const SplineBricks& bricks, const Cells& cells, VI number, const V3& direction, const V3& inverse) {
+HWY_INLINE Settled cubic_gradient(const SplineBricks& bricks, const Cells& cells, VI number, const V3& direction) {
   const SplineStencil stencil = gather_spline(bricks, number);
   const SplinePoint first = spline_at(stencil, cells.local);
-  const VF move = newton_step(first.value, first.gradient, cells.local, direction, inverse);
+  const VF move = newton_step(first.value, first.gradient, direction);
   return {spline_at(stencil, moved(cells.local, direction, move)).gradient, move};
 }
 

@@ -87,7 +87,7 @@ BrickShape shape_of(const std::int16_t* values) {
     const std::uint32_t places[3] = {of_x, of_y, of_z};
     for (int axis = 0; axis < 3; ++axis) {
       shape.lower[axis] = std::countr_zero(places[axis]);
-      shape.upper[axis] = std::bit_width(places[axis]);
+      shape.upper[axis] = static_cast<int>(std::bit_width(places[axis]));
     }
   }
   constexpr int kStep[3] = {kBrickNodes * kBrickNodes, kBrickNodes, 1};

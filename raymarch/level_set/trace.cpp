@@ -92,9 +92,9 @@ HWY_NOINLINE void enter_packet(const SurfaceBound& bound, std::int32_t index, co
 
 HWY_INLINE Settled settle(BrickGradient gradient, const RayBricks& bricks, const Cells& cells, VI number, const IndexRays& rays, size_t i) {
   if (gradient == BrickGradient::cell) return {cell_gradient(bricks.values.data(), cells), hn::Zero(F())};
-  const V3 direction = load3(rays.direction, i), inverse = load3(rays.inverse, i);
-  return gradient == BrickGradient::central ? central_gradient(bricks.values.data(), cells, direction, inverse)
-                                            : cubic_gradient(bricks.spline, cells, number, direction, inverse);
+  const V3 direction = load3(rays.direction, i);
+  return gradient == BrickGradient::central ? central_gradient(bricks.values.data(), cells, direction)
+                                            : cubic_gradient(bricks.spline, cells, number, direction);
 }
 
 HWY_NOINLINE void write_packet(const BrickTrace& what, const IndexRays& rays, const RayBatch& batch, size_t i, const BrickHits& found,

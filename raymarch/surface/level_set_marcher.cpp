@@ -65,18 +65,7 @@ Roots find_roots(const State& state, const Accessor& accessor, const RayBatch& r
   return roots;
 }
 
-/// `move` along a ray from a place, cut off where it leaves its cell. Index coordinates.
-double within_cell(const glm::dvec3& place, const glm::dvec3& direction, double move) {
-  const glm::dvec3 local = cell_point(place).local;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (direction[axis] == 0.0) continue;
-    const double a = -local[axis] / direction[axis], b = (1.0 - local[axis]) / direction[axis];
-    move = std::clamp(move, std::min(a, b), std::max(a, b));
-  }
-  return move;
-}
-
-/// One step of Newton's iteration towards the root of the gradient's own reconstruction, within the cell of the trilinear one.
+/// One step of Newton's iteration towards the root of the gradient's own reconstruction, by a quarter of a voxel at most.
 void settle(const State& state, const Accessor& accessor, const RayBatch& rays, Roots& roots) {
   if (!state.gradient->values) return;
   std::array<glm::dvec3, kRayBatchSize> gradients;
@@ -94,7 +83,9 @@ void settle(const State& state, const Accessor& accessor, const RayBatch& rays, 
     if (steepest == 0.0) continue;
     // A ray that grazes is taken to be a sixteenth as steep as it could be: the step's theory is of first order.
     const double step = -rest / std::copysign(std::max(std::abs(slope), steepest / 16.0), slope);
-    const double move = within_cell(place, state.walked.index_from_render.vector(direction), step), t = roots.t[k] + move;
+    const glm::dvec3 way = state.walked.index_from_render.vector(direction);
+    const double most = 0.25 / std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)});
+    const double move = std::clamp(step, -most, most), t = roots.t[k] + move;
     if (t < static_cast<double>(rays.t_min[i]) || t >= static_cast<double>(rays.t_max[i])) continue;
     roots.t[k] = t;
     roots.points[k] += move * along;

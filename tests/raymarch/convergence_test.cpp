@@ -197,9 +197,9 @@ std::vector<Way> ways() {
   mesh("vertex", NormalKind::vertex, 0.85, 2.15);
   mesh("limit", NormalKind::limit, 1.8, 2.3);
   grid("cell", {20, 40, 80, 160}, 0.85, 1.15, 2.0);
-  grid("central", {20, 40, 80, 160}, 1.8, 2.3, 2.5);
+  grid("central", {20, 40, 80, 160}, 1.8, 2.3, 2.0);
   // Where the band is thinner than the sharpest bend is round: four voxels against a radius of 0.25.
-  grid("cubic", {48, 64, 88, 120}, 2.7, 4.2, 2.5, 2400);
+  grid("cubic", {48, 64, 88, 120}, 2.7, 4.2, 2.0, 2400);
   return out;
 }
 

@@ -3,7 +3,8 @@
 
 report.py [--no-run] [--files N] [--json FILE]
 
-Ends with 1 below the bounds (90 % of lines, 80 % of branches), or where a test failed. Counted are sdf, subdiv, raymarch and samples, with
+What is not reached is listed by reason (reasons.json: patterns of the file and of the source; the first that fits), with the places that have
+none: there a test is missing. Ends with 1 below the bounds (90 % of lines, 80 % of branches), or where a test failed. Counted are sdf, subdiv, raymarch and samples, with
 their helper programs, in a build of one SIMD target (plain loops: the kernels' source is the same for all). Not counted as branches: those
 that only an exception takes, which the compiler adds to every call, and those of LIMN_CHECK, which no input may ever take.
 """
@@ -60,6 +61,35 @@ def table(summary, most):
     return "\n".join(lines)
 
 
+def runs_not_reached(file):
+    """Lines that no test ran, as runs: first, last, their text."""
+    source = (ROOT / file["file"]).read_text().split("\n")
+    missed = [line["line_number"] for line in file["lines"] if line["count"] == 0 and not line.get("gcovr/noncode")]
+    runs = []
+    for line in missed:
+        # A statement goes on over lines that count as none.
+        if runs and line - runs[-1][-1] <= 2:
+            runs[-1].append(line)
+        else:
+            runs.append([line])
+    return [(run[0], run[-1], len(run), " ".join(source[n - 1].strip() for n in range(run[0], min(run[-1], len(source)) + 1))) for run in runs]
+
+
+def reasons():
+    """[(reason, lines)] and the places without one."""
+    known = json.loads((pathlib.Path(__file__).resolve().parent / "reasons.json").read_text())
+    counts, without = {rule["reason"]: 0 for rule in known}, []
+    for file in json.loads((BUILD / "coverage-lines.json").read_text())["files"]:
+        for first, last, count, text in runs_not_reached(file):
+            fits = (rule for rule in known if re.fullmatch(rule.get("file", ".*"), file["file"]) and re.search(rule.get("text", ""), text))
+            rule = next(fits, None)
+            if rule:
+                counts[rule["reason"]] += count
+            else:
+                without.append((count, f"{file['file']}:{first}" + (f"-{last}" if last > first else "")))
+    return list(counts.items()), [f"{place} ({count})" for count, place in sorted(without, key=lambda w: (-w[0], w[1]))]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--no-run", action="store_true", help="report on what the last run counted")
@@ -71,6 +101,12 @@ def main():
     reached = {kind: 100.0 * summary[f"{kind}_covered"] / max(summary[f"{kind}_total"], 1) for kind in LEAST}
     good = failed == 0 and tests != 0 and all(reached[kind] >= LEAST[kind] for kind in LEAST)
     print(table(summary, options.files))
+    by_reason, without = reasons()
+    print("lines not reached, by reason:")
+    for reason, count in by_reason:
+        print(f"{count:6}  {reason}")
+    print(f"{sum(int(place.split('(')[1][:-1]) for place in without):6}  a test is missing: " + ", ".join(without[:options.files]) +
+          (f" and {len(without) - options.files} places more" if len(without) > options.files else ""))
     for kind, words in (("line", "lines"), ("branch", "branches")):
         print(f"{words}: {summary[f'{kind}_covered']} of {summary[f'{kind}_total']}, {reached[kind]:.1f} % (at least {LEAST[kind]:.0f} %)")
     if tests is not None:
@@ -79,7 +115,7 @@ def main():
         figures = {f"{kind}s_percent".replace("branchs", "branches"): round(reached[kind], 2) for kind in LEAST}
         figures |= {"tests": tests, "tests_failed": failed}
         options.json.write_text(json.dumps({"outcome": "held" if good else "failed", "figures": figures,
-                                            "files": summary["files"]}, indent=1) + "\n")
+                                            "not_reached": dict(by_reason), "without_reason": without, "files": summary["files"]}, indent=1) + "\n")
     return 0 if good else 1
 
 

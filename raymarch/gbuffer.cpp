@@ -1,7 +1,5 @@
 #include "raymarch/gbuffer.h"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <mutex>
 

@@ -9,7 +9,6 @@
 #include "sdf/parallel.h"
 
 namespace limn {
-namespace {}  // namespace
 
 std::vector<float> blur_taps(BlurKernel kernel, int radius_px) {
   const double sigma = radius_px / 3.0;

@@ -1,5 +1,5 @@
 // Edge lines against the edges themselves: which are drawn follows from the faces' sides and the kinds asked for, which parts of them are
-// seen from rays cast at polygons one by one.
+// seen from solid_edges.h.
 
 #include <fmt/core.h>
 
@@ -8,57 +8,13 @@
 
 #include "raymarch/border/edge_visibility.h"
 #include "raymarch/border/line_raster.h"
-#include "subdiv/edge_topology.h"
 #include "tests/raymarch/image_buffers.h"
+#include "tests/raymarch/solid_edges.h"
 
 namespace limn::test {
 namespace {
 
 using Given = std::map<std::string, ParameterInput>;
-
-/// Convex flat faces, and their edges found anew from equal positions.
-struct Solid {
-  std::vector<std::vector<glm::dvec3>> faces;
-  std::vector<int> materials;
-};
-struct SolidEdge {
-  glm::dvec3 a, b;
-  std::vector<size_t> faces;
-};
-
-glm::dvec3 normal_of(const std::vector<glm::dvec3>& face) { return glm::normalize(glm::cross(face[1] - face[0], face[2] - face[0])); }
-
-std::vector<SolidEdge> edges_of(const Solid& solid) {
-  std::vector<SolidEdge> edges;
-  for (size_t f = 0; f < solid.faces.size(); ++f) {
-    const auto& face = solid.faces[f];
-    for (size_t i = 0; i < face.size(); ++i) {
-      const glm::dvec3 a = face[i], b = face[(i + 1) % face.size()];
-      const auto known =
-          std::find_if(edges.begin(), edges.end(), [&](const SolidEdge& e) { return (e.a == a && e.b == b) || (e.a == b && e.b == a); });
-      if (known == edges.end()) {
-        edges.push_back({a, b, {f}});
-      } else {
-        known->faces.push_back(f);
-      }
-    }
-  }
-  return edges;
-}
-
-Solid solid_of(const Mesh& mesh, const glm::dvec3& moved = glm::dvec3(0.0)) {
-  Solid solid;
-  size_t first = 0;
-  for (size_t f = 0; f < mesh.face_count(); ++f) {
-    std::vector<glm::dvec3> face;
-    for (std::int32_t k = 0; k < mesh.face_sizes[f]; ++k)
-      face.push_back(mesh.positions[static_cast<size_t>(mesh.corner_vertices[first + static_cast<size_t>(k)])] + moved);
-    first += static_cast<size_t>(mesh.face_sizes[f]);
-    solid.faces.push_back(face);
-    solid.materials.push_back(mesh.face_materials.empty() ? 0 : mesh.face_materials[f]);
-  }
-  return solid;
-}
 
 struct Kinds {
   bool contour = true, boundary = true, crease = true, material = true;
@@ -76,74 +32,6 @@ bool wanted(const Solid& solid, const SolidEdge& edge, const Kinds& kinds, const
   return (kinds.contour && glm::dot(n1, v) * glm::dot(n2, v) < 0.0) ||
          (kinds.crease && std::acos(std::clamp(glm::dot(n1, n2), -1.0, 1.0)) * 180.0 / std::numbers::pi > kinds.crease_deg) ||
          (kinds.material && solid.materials[edge.faces[0]] != solid.materials[edge.faces[1]]);
-}
-
-/// Nothing but the edge's own faces stands between the point and the eye.
-bool seen(const std::vector<Solid>& solids, const Solid* own, const SolidEdge& edge, const glm::dvec3& point, const Camera& camera) {
-  const glm::dvec3 to_eye = view_vector(camera, point);
-  for (const Solid& solid : solids) {
-    for (size_t f = 0; f < solid.faces.size(); ++f) {
-      if (&solid == own && std::find(edge.faces.begin(), edge.faces.end(), f) != edge.faces.end()) continue;
-      const auto& face = solid.faces[f];
-      const glm::dvec3 n = normal_of(face);
-      const double t = glm::dot(n, face[0] - point) / glm::dot(n, to_eye);
-      if (!std::isfinite(t) || t < 1e-9) continue;
-      const glm::dvec3 q = point + t * to_eye;
-      bool inside = true;
-      for (size_t i = 0; i < face.size(); ++i)
-        inside = inside && glm::dot(n, glm::cross(face[(i + 1) % face.size()] - face[i], q - face[i])) > 0.0;
-      if (inside) return false;
-    }
-  }
-  return true;
-}
-
-/// Seen from a place in the image a fiftieth of a pixel away: rounding may take it for either.
-bool seen_nearby(const std::vector<Solid>& solids, const Solid* own, const SolidEdge& edge, const glm::dvec3& point, const Camera& camera) {
-  const double radius = 0.02 / pixels_per_unit_at(camera, project(camera, point).z);
-  for (int i = 0; i < 16; ++i) {
-    const double angle = std::numbers::pi * i / 8.0;
-    const glm::dvec3 shift = camera.world_from_camera * glm::dvec3(std::cos(angle), std::sin(angle), 0.0);
-    if (seen(solids, own, edge, point + radius * shift, camera)) return true;
-  }
-  return false;
-}
-
-/// An edge's image and which points of it are seen, kPointsPerPixel of them a pixel, evenly.
-constexpr double kPointsPerPixel = 32.0;
-struct SampledEdge {
-  glm::dvec3 a, b;  ///< (x px, y px, Z)
-  SolidEdge edge;
-  Projection projection = Projection::perspective;
-  std::vector<char> seen;
-  double place(size_t i) const { return (static_cast<double>(i) + 0.5) / static_cast<double>(seen.size()); }
-  glm::dvec2 image(double s) const { return glm::mix(glm::dvec2(a), glm::dvec2(b), s); }
-  double length_px() const { return glm::length(glm::dvec2(b - a)); }
-  /// Evenly in the image is unevenly along the edge in perspective.
-  glm::dvec3 world(double s) const {
-    if (projection == Projection::orthographic) return glm::mix(edge.a, edge.b, s);
-    const double at_a = (1.0 - s) / a.z, at_b = s / b.z;
-    return (at_a * edge.a + at_b * edge.b) / (at_a + at_b);
-  }
-};
-
-SampledEdge sample_edge(const std::vector<Solid>& solids, const Solid& own, const SolidEdge& edge, const Camera& camera) {
-  SampledEdge sampled{project(camera, edge.a), project(camera, edge.b), edge, camera.projection, {}};
-  sampled.seen.resize(std::max<size_t>(2, static_cast<size_t>(std::ceil(sampled.length_px() * kPointsPerPixel))));
-  for (size_t i = 0; i < sampled.seen.size(); ++i) sampled.seen[i] = seen(solids, &own, edge, sampled.world(sampled.place(i)), camera);
-  return sampled;
-}
-
-/// Runs of points seen, as stretches of the edge.
-std::vector<Stretch> runs(const SampledEdge& edge) {
-  std::vector<Stretch> result;
-  const double half = 0.5 / static_cast<double>(edge.seen.size());
-  for (size_t i = 0; i < edge.seen.size(); ++i) {
-    if (!edge.seen[i]) continue;
-    if (i == 0 || !edge.seen[i - 1]) result.push_back({edge.place(i) - half, 0.0});
-    result.back().to = edge.place(i) + half;
-  }
-  return result;
 }
 
 /// What `visible_stretches` says of the edge.
@@ -475,35 +363,6 @@ TEST(EdgeQuads, AreRefusedWithAReasonWhereThereAreNoPolygons) {
   const Scene scene = scene_of({object_of(make_shape("sphere"))});
   EXPECT_NE(find_border_method("edge_quads").unsupported(model_of(scene, "analytic"), scene).find("polygons"), std::string::npos);
   EXPECT_TRUE(find_border_method("edge_quads").unsupported(model_of(scene, "mesh"), scene).empty());
-}
-
-TEST(EdgeTopology, WeldsByPositionBridgesSliversAndCountsWhatItCannot) {
-  Mesh box = box_mesh({1.0, 1.0, 1.0});
-  EXPECT_EQ(build_edge_topology(box).edges.size(), 12u);
-  Mesh soup;
-  for (size_t c = 0; c < box.corner_vertices.size(); ++c) {
-    soup.positions.push_back(box.positions[static_cast<size_t>(box.corner_vertices[c])]);
-    soup.corner_vertices.push_back(static_cast<std::int32_t>(c));
-  }
-  soup.face_sizes = box.face_sizes;
-  const EdgeTopology welded = build_edge_topology(soup);
-  EXPECT_EQ(welded.edges.size(), 12u);
-  for (const TopologyEdge& edge : welded.edges) EXPECT_GE(edge.face_b, 0);
-
-  // Two triangles that meet in a sliver without area: it takes the normal of the one along its long side.
-  Mesh sliver;
-  sliver.positions = {{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, 1, 1}};
-  sliver.corner_vertices = {0, 3, 1, 0, 1, 2, 0, 2, 4};
-  sliver.face_sizes = {3, 3, 3};
-  const EdgeTopology bridged = build_edge_topology(sliver);
-  EXPECT_EQ(bridged.flat_faces, 0);
-  EXPECT_GT(glm::dot(bridged.face_normals[1], bridged.face_normals[0]), 0.0);
-  // Three sheets on one edge.
-  Mesh book;
-  book.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
-  book.corner_vertices = {0, 1, 2, 0, 1, 3, 0, 1, 4};
-  book.face_sizes = {3, 3, 3};
-  EXPECT_EQ(build_edge_topology(book).non_manifold, 1);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ double winding_of_positive(const Mesh& mesh, const std::vector<std::int32_t>& pa
 }
 
 /// Beyond it a part within the box of another is taken to lie in the other: looking at every triangle for each would take too long.
-constexpr double kMostSolidAngles = 2e6;
+constexpr double kMostSolidAngles = 3e6;
 
 }  // namespace
 

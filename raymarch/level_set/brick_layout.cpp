@@ -150,7 +150,10 @@ void load_nodes(const Accessor& accessor, const glm::ivec3& origin, NodeValues& 
         float* const to = &values[at(8 * dx + x, 8 * dy + y, 8 * dz)];
         const float* const row = from ? from + x * 64 + y * 8 : tiles;
         // Lengths that the compiler knows: a call for each row would take longer than to copy it.
-        dz ? static_cast<void>(*to = *row) : static_cast<void>(std::copy_n(row, 8, to));
+        if (dz)
+          *to = *row;
+        else
+          std::copy_n(row, 8, to);
       }
     }
   }

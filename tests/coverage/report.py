@@ -4,9 +4,11 @@
 report.py [--no-run] [--files N] [--json FILE]
 
 What is not reached is listed by reason (reasons.json: patterns of the file and of the source; the first that fits), with the places that have
-none: there a test is missing. Ends with 1 below the bounds (90 % of lines, 80 % of branches), or where a test failed. Counted are sdf, subdiv, raymarch and samples, with
-their helper programs, in a build of one SIMD target (plain loops: the kernels' source is the same for all). Not counted as branches: those
-that only an exception takes, which the compiler adds to every call, and those of LIMN_CHECK, which no input may ever take.
+none: there a test is missing. Ends with 1 below the bounds (90 % of lines, 80 % of branches), or where a test failed.
+
+Counted are sdf, subdiv, raymarch and samples, with their helper programs, in a build of one SIMD target (plain loops: the kernels' source is the
+same for all). Not counted as branches: those that only an exception takes, which the compiler adds to every call, and those of LIMN_CHECK, which
+no input may ever take.
 """
 import argparse
 import json
@@ -76,7 +78,7 @@ def runs_not_reached(file):
 
 
 def reasons():
-    """[(reason, lines)] and the places without one."""
+    """{reason: lines}, and [(place, lines)] without one, most lines first."""
     known = json.loads((pathlib.Path(__file__).resolve().parent / "reasons.json").read_text())
     counts, without = {rule["reason"]: 0 for rule in known}, []
     for file in json.loads((BUILD / "coverage-lines.json").read_text())["files"]:
@@ -86,8 +88,8 @@ def reasons():
             if rule:
                 counts[rule["reason"]] += count
             else:
-                without.append((count, f"{file['file']}:{first}" + (f"-{last}" if last > first else "")))
-    return list(counts.items()), [f"{place} ({count})" for count, place in sorted(without, key=lambda w: (-w[0], w[1]))]
+                without.append((f"{file['file']}:{first}" + (f"-{last}" if last > first else ""), count))
+    return counts, sorted(without, key=lambda w: (-w[1], w[0]))
 
 
 def main():
@@ -103,10 +105,11 @@ def main():
     print(table(summary, options.files))
     by_reason, without = reasons()
     print("lines not reached, by reason:")
-    for reason, count in by_reason:
+    for reason, count in by_reason.items():
         print(f"{count:6}  {reason}")
-    print(f"{sum(int(place.split('(')[1][:-1]) for place in without):6}  a test is missing: " + ", ".join(without[:options.files]) +
-          (f" and {len(without) - options.files} places more" if len(without) > options.files else ""))
+    places = ", ".join(f"{place} ({count})" for place, count in without[:options.files])
+    more = f" and {len(without) - options.files} places more" if len(without) > options.files else ""
+    print(f"{sum(count for _, count in without):6}  a test is missing: {places}{more}")
     for kind, words in (("line", "lines"), ("branch", "branches")):
         print(f"{words}: {summary[f'{kind}_covered']} of {summary[f'{kind}_total']}, {reached[kind]:.1f} % (at least {LEAST[kind]:.0f} %)")
     if tests is not None:
@@ -115,7 +118,8 @@ def main():
         figures = {f"{kind}s_percent".replace("branchs", "branches"): round(reached[kind], 2) for kind in LEAST}
         figures |= {"tests": tests, "tests_failed": failed}
         options.json.write_text(json.dumps({"outcome": "held" if good else "failed", "figures": figures,
-                                            "not_reached": dict(by_reason), "without_reason": without, "files": summary["files"]}, indent=1) + "\n")
+                                            "not_reached": by_reason, "without_reason": without, "files": summary["files"]},
+                                           indent=1) + "\n")
     return 0 if good else 1
 
 

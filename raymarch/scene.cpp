@@ -1,5 +1,7 @@
 #include "raymarch/scene.h"
 
+#include "subdiv/orientation.h"
+
 namespace limn {
 namespace {
 
@@ -11,6 +13,13 @@ Box bounds_of(const MeshSource& source, const Affine& world_from_object) {
 }
 
 }  // namespace
+
+MeshSource mesh_source(Mesh mesh, std::optional<Scheme> scheme, const std::string& file) {
+  const bool tagged = !mesh.creases.empty() || !mesh.corners.empty();
+  if (tagged && !scheme) scheme = Scheme::catmark;
+  const std::int64_t turned_parts = turn_outwards(mesh);
+  return {std::move(mesh), scheme, file, turned_parts};
+}
 
 Box bounds(const SceneObject& object) {
   if (const Field* field = std::get_if<Field>(&object.source)) return field->traits().bounds;

@@ -1,6 +1,7 @@
 #pragma once
 // What is to be drawn: objects and a camera, before anyone has decided how to model them.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -18,8 +19,13 @@ namespace limn {
 struct MeshSource {
   Mesh mesh{};
   std::optional<Scheme> scheme{};
-  std::string file{};  ///< For messages.
+  std::string file{};             ///< For messages.
+  std::int64_t turned_parts = 0;  ///< Parts that came inside out and were turned round, for the audit to tell.
 };
+
+/// An object from a mesh: a cage where `scheme` is set or the mesh has crease or corner tags, else the mesh as it is; what is inside out is
+/// turned round (subdiv/orientation.h). `file` goes into messages.
+MeshSource mesh_source(Mesh mesh, std::optional<Scheme> scheme, const std::string& file);
 
 struct LevelSetSource {
   LevelSet level_set;

@@ -137,12 +137,6 @@ std::string read_text(const std::filesystem::path& file) {
 
 }  // namespace
 
-MeshSource mesh_source(Mesh mesh, std::optional<Scheme> scheme, const std::string& file) {
-  const bool tagged = !mesh.creases.empty() || !mesh.corners.empty();
-  if (tagged && !scheme) scheme = Scheme::catmark;
-  return {std::move(mesh), scheme, file};
-}
-
 SceneInput parse_scene_file(const std::string& text, const std::filesystem::path& file, const SceneReaders& readers) {
   const toml::table root = parse_toml(text, file.string());
   SceneInput input;

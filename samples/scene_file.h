@@ -23,7 +23,4 @@ struct SceneReaders {
 /// The same from text; `file` goes into messages and its folder is where relative paths start.
 SceneInput parse_scene_file(const std::string& text, const std::filesystem::path& file, const SceneReaders& readers = {});
 
-/// An object from a mesh: a cage where `scheme` is set or the mesh has crease or corner tags, else the mesh as it is.
-MeshSource mesh_source(Mesh mesh, std::optional<Scheme> scheme, const std::string& file);
-
 }  // namespace limn

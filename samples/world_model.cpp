@@ -4,6 +4,7 @@
 
 #include "sdf/error.h"
 #include "subdiv/mesh_level_set.h"
+#include "subdiv/orientation.h"
 #include "subdiv/tessellate.h"
 
 namespace limn {
@@ -31,21 +32,6 @@ Mesh local_mesh(const SceneObject& object, const SurfaceSettings& settings) {
   mesh.face_sizes = std::move(soup.face_sizes);
   mesh.corner_vertices = std::move(soup.corner_vertices);
   return mesh;
-}
-
-// A mirrored object (negative determinant) would come out inside out.
-void turn_faces(Mesh& mesh) {
-  size_t first = 0;
-  for (const std::int32_t size : mesh.face_sizes) {
-    const auto count = static_cast<size_t>(size);
-    std::reverse(mesh.corner_vertices.begin() + static_cast<std::ptrdiff_t>(first),
-                 mesh.corner_vertices.begin() + static_cast<std::ptrdiff_t>(first + count));
-    if (!mesh.corner_normals.empty()) {
-      std::reverse(mesh.corner_normals.begin() + static_cast<std::ptrdiff_t>(first),
-                   mesh.corner_normals.begin() + static_cast<std::ptrdiff_t>(first + count));
-    }
-    first += count;
-  }
 }
 
 // Materials are dropped where any of the parts has none: an array covers all faces or does not exist.
@@ -101,6 +87,7 @@ Mesh world_mesh(const SceneObject& object, const SurfaceSettings& settings) {
     const double length = glm::length(turned);
     normal = length > 0.0 ? glm::vec3(turned / length) : normal;
   }
+  // A mirrored object would come out inside out.
   if (glm::determinant(world_from_object.linear) < 0.0) turn_faces(mesh);
   return mesh;
 }

@@ -6,6 +6,29 @@
 namespace limn {
 namespace {
 
+/// Parts that are inside out now, or were in the file.
+Finding inside_out(const MeshFacts& mesh, std::int64_t turned_parts) {
+  Finding finding{.check = "inverted parts",
+                  .value = static_cast<double>(turned_parts + mesh.inverted_parts),
+                  .message = mesh.cavities > 0 ? fmt::format("no closed part is turned inside out; {} walls of cavities", mesh.cavities)
+                                               : "no closed part is turned inside out"};
+  if (turned_parts == 0 && mesh.inverted_parts == 0) return finding;
+  finding.severity = Severity::warning;
+  finding.surfaces = {"mesh"};
+  if (mesh.inverted_parts > 0) {
+    finding.message =
+        fmt::format("{} of {} parts turned inside out: N.V is negative, so that all of them is border", mesh.inverted_parts, mesh.parts);
+    finding.remedy = "turn their faces round";
+    // As a whole it is turned back; a part that is turned against the rest is a hole in it.
+    if (mesh.volume > 0.0) finding.surfaces.push_back("mesh_level_set");
+    return finding;
+  }
+  finding.message = fmt::format("{} of {} parts came turned inside out: their faces were turned round", turned_parts, mesh.parts);
+  finding.remedy = "nothing for this picture; other programs need the faces turned in the file (limn export does)";
+  finding.surfaces.push_back("mesh_level_set");
+  return finding;
+}
+
 void look(AuditFacts& facts, std::vector<Finding>& findings) {
   if (facts.mesh() == nullptr) return;
   const MeshFacts& mesh = facts.mesh_facts();
@@ -23,20 +46,7 @@ void look(AuditFacts& facts, std::vector<Finding>& findings) {
   }
   findings.push_back(std::move(inconsistent));
 
-  Finding inverted{.check = "inverted parts",
-                   .value = static_cast<double>(mesh.inverted_parts),
-                   .message = mesh.cavities > 0 ? fmt::format("no closed part is turned inside out; {} walls of cavities", mesh.cavities)
-                                                : "no closed part is turned inside out"};
-  if (mesh.inverted_parts > 0) {
-    inverted.severity = Severity::warning;
-    inverted.message = fmt::format("{} of {} closed parts turned inside out: N.V is negative, so that all of them is border",
-                                   mesh.inverted_parts, mesh.closed_parts);
-    inverted.remedy = "turn their faces round";
-    inverted.surfaces = {"mesh"};
-    // As a whole it is turned back; a part that is turned against the rest is a hole in it.
-    if (mesh.volume > 0.0) inverted.surfaces.push_back("mesh_level_set");
-  }
-  findings.push_back(std::move(inverted));
+  findings.push_back(inside_out(mesh, facts.mesh()->turned_parts));
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ struct MeshCurvature::Made {
       size_t corner = 0;
       const auto vertex = static_cast<std::int32_t>(mesh.triangles[place.triangle][i]);
       while (corner + 1 < size && polygons.corner_vertices[first + corner] != vertex) ++corner;
-      uv += place.weights[i] * piece.corners[cage.mirrored ? size - 1 - corner : corner];
+      uv += place.weights[i] * piece.corners[cage.mirrored ? (size - corner) % size : corner];
     }
     LimitPoint at;
     if (!limit->surface.evaluate(piece.face, piece.sub_face, uv.x, uv.y, at)) return no_curvature();

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "sdf/error.h"
+#include "subdiv/orientation.h"
 #include "subdiv/tessellate.h"
 
 namespace limn {
@@ -24,13 +25,7 @@ void move_points(const Affine& render_from_mesh, AnyMesh& mesh) {
 /// A reflection turns the winding so that faces go on showing outwards.
 void move_polygons(const Affine& render_from_mesh, Mesh& mesh) {
   move_points(render_from_mesh, mesh);
-  if (glm::determinant(render_from_mesh.linear) > 0.0) return;
-  std::ptrdiff_t first = 0;
-  for (const std::int32_t size : mesh.face_sizes) {
-    std::reverse(mesh.corner_vertices.begin() + first, mesh.corner_vertices.begin() + first + size);
-    if (!mesh.corner_normals.empty()) std::reverse(mesh.corner_normals.begin() + first, mesh.corner_normals.begin() + first + size);
-    first += size;
-  }
+  if (glm::determinant(render_from_mesh.linear) < 0.0) turn_faces(mesh);
 }
 
 void move_mesh(const Affine& render_from_mesh, TriangleMesh& mesh) {

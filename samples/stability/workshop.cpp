@@ -112,8 +112,10 @@ StabilityStage Workshop::make_stage(const StabilityVariant& variant) const {
   stage.made = scene_of_case(case_, values);
   SceneInput& input = stage.made.input;
   for (SceneObject& object : input.scene.objects) {
-    if (auto* mesh = std::get_if<MeshSource>(&object.source); mesh != nullptr && (variant.turned || variant.reversed))
-      change_mesh(variant, mesh->mesh);
+    auto* source = std::get_if<MeshSource>(&object.source);
+    if (source == nullptr || (!variant.turned && !variant.reversed)) continue;
+    change_mesh(variant, source->mesh);
+    *source = mesh_source(std::move(source->mesh), source->scheme, source->file);
   }
   move_scene(variant, input.scene);
   stage.settings = surface_settings({}, input);

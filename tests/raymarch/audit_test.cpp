@@ -69,13 +69,6 @@ Mesh moved(Mesh mesh, const glm::dvec3& by, bool to_single) {
   return mesh;
 }
 
-void append(Mesh& all, const Mesh& part) {
-  const auto shift = static_cast<std::int32_t>(all.vertex_count());
-  all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
-  all.face_sizes.insert(all.face_sizes.end(), part.face_sizes.begin(), part.face_sizes.end());
-  for (const std::int32_t v : part.corner_vertices) all.corner_vertices.push_back(v + shift);
-}
-
 /// Schwarz's lantern: a cylinder of radius 1 and height 2 in `bands` bands of 2 n triangles, each ring turned by half a facet.
 Mesh lantern(int n, int bands) {
   Mesh mesh;
@@ -100,12 +93,6 @@ Mesh lantern(int n, int bands) {
 double lantern_angle(int n, int bands) {
   const double lean = std::atan2(1.0 - std::cos(std::numbers::pi / n), 2.0 / bands);
   return std::acos(std::cos(lean) * std::cos(lean) * std::cos(std::numbers::pi / n) - std::sin(lean) * std::sin(lean));
-}
-
-Mesh box_mesh_at(const glm::dvec3& half, const glm::dvec3& center) {
-  Mesh mesh = test::cube();
-  for (glm::dvec3& p : mesh.positions) p = p * half + center;
-  return mesh;
 }
 
 Field box(const glm::dvec3& half) { return make_shape("box", {{"half", {half.x, half.y, half.z}}}); }
@@ -169,16 +156,22 @@ TEST(Audit, OrientationCountsInvertedPartsAndNotTheWallsOfCavities) {
   EXPECT_EQ(warnings_of(object_of(inverted), {"mesh"}), Names{"inverted parts"});
   EXPECT_EQ(warnings_of(object_of(inverted), {"mesh_level_set"}), Names{}) << "as a whole it is turned back";
 
+  // As every file comes: turned round, and told.
+  const SceneObject turned{.name = "mesh", .source = mesh_source(inverted, {}, "cube.obj")};
+  EXPECT_EQ(finding_of(turned, "inverted parts").value, 1.0);
+  EXPECT_NE(finding_of(turned, "inverted parts").message.find("turned round"), std::string::npos);
+  EXPECT_EQ(mesh_facts(std::get<MeshSource>(turned.source).mesh).inverted_parts, 0);
+
   Mesh hollow = test::cube();
-  append(hollow, test::turned_inside_out(box_mesh_at(glm::dvec3(0.5), glm::dvec3(0.0))));
+  test::append(hollow, test::turned_inside_out(test::box_at(glm::dvec3(0.5), glm::dvec3(0.0))));
   EXPECT_EQ(finding_of(object_of(hollow), "inverted parts").value, 0.0);
   EXPECT_EQ(mesh_facts(hollow).cavities, 1);
 
   // Within the box of an L, but not within the L.
-  Mesh beside = box_mesh_at({2.0, 0.2, 0.2}, {0.0, -2.0, 0.0});
-  const Mesh leg = box_mesh_at({0.2, 2.0, 0.2}, {-1.8, 0.2, 0.0});
-  append(beside, leg);
-  append(beside, test::turned_inside_out(box_mesh_at(glm::dvec3(0.1), {1.0, 1.0, 0.0})));
+  Mesh beside = test::box_at({2.0, 0.2, 0.2}, {0.0, -2.0, 0.0});
+  const Mesh leg = test::box_at({0.2, 2.0, 0.2}, {-1.8, 0.2, 0.0});
+  test::append(beside, leg);
+  test::append(beside, test::turned_inside_out(test::box_at(glm::dvec3(0.1), {1.0, 1.0, 0.0})));
   EXPECT_EQ(mesh_facts(beside).inverted_parts, 1);
   EXPECT_EQ(mesh_facts(beside).cavities, 0);
 
@@ -236,7 +229,7 @@ TEST(Audit, PrecisionIsMeasuredOnTheFilesOwnDigits) {
 TEST(Audit, ThinWallsSayTheirShareAndHowManyVoxelsWouldHoldThem) {
   const double thickness = 0.02;
   const Field plate = box({1.0, 0.5 * thickness, 1.0});
-  const SceneObject objects[] = {object_of(plate), object_of(box_mesh_at({1.0, 0.5 * thickness, 1.0}, glm::dvec3(0.0)))};
+  const SceneObject objects[] = {object_of(plate), object_of(test::box_at({1.0, 0.5 * thickness, 1.0}, glm::dvec3(0.0)))};
   for (const SceneObject& object : objects) {
     const Finding coarse = finding_of(object, "thin walls", thorough(64));
     EXPECT_EQ(coarse.severity, Severity::warning);

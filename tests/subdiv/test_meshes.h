@@ -143,4 +143,17 @@ inline Mesh turned_inside_out(Mesh mesh) {
   return mesh;
 }
 
+inline void append(Mesh& all, const Mesh& part) {
+  const auto shift = static_cast<std::int32_t>(all.vertex_count());
+  all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
+  all.face_sizes.insert(all.face_sizes.end(), part.face_sizes.begin(), part.face_sizes.end());
+  for (const std::int32_t v : part.corner_vertices) all.corner_vertices.push_back(v + shift);
+}
+
+inline Mesh box_at(const glm::dvec3& half, const glm::dvec3& center) {
+  Mesh mesh = cube();
+  for (glm::dvec3& p : mesh.positions) p = p * half + center;
+  return mesh;
+}
+
 }  // namespace limn::test

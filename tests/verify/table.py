@@ -52,8 +52,8 @@ def rows(records):
 
 
 def markdown(records):
-    lines = ["| what | outcome | figures |", "|---|---|---|"]
-    lines += [f"| {title} | {outcome} | {words or '–'} |" for title, outcome, words, _ in rows(records)]
+    lines = ["| what | outcome | figures | revision |", "|---|---|---|---|"]
+    lines += [f"| {title} | {outcome} | {words or '–'} | {record['commit'] or '–'} |" for title, outcome, words, record in rows(records)]
     return "\n".join(lines) + "\n"
 
 
@@ -85,10 +85,11 @@ def page(records):
     body = ""
     for title, outcome, words, record in rows(records):
         mark = record["outcome"] if record["outcome"] in ("held", "failed") else "none"
-        body += f'<tr><td>{html.escape(title)}</td><td class="{mark}">{html.escape(outcome)}</td><td>{html.escape(words or "–")}</td></tr>'
+        body += f'<tr><td>{html.escape(title)}</td><td class="{mark}">{html.escape(outcome)}</td><td>{html.escape(words or "–")}</td>' \
+                f'<td>{html.escape(record["commit"] or "–")}</td></tr>'
     text = ("<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width,initial-scale=1'>"
             f"<title>limn: what was verified</title><style>{STYLE}</style><h1>What was verified, and what came out</h1>"
-            f"<table class=main><thead><tr><th>what</th><th>outcome</th><th>figures</th></tr></thead><tbody>{body}</tbody></table>")
+            f"<table class=main><thead><tr><th>what</th><th>outcome</th><th>figures</th><th>revision</th></tr></thead><tbody>{body}</tbody></table>")
     for name, make in (("mutants", mutants_html), ("kills", kills_html)):
         if records[name]["figures"]:
             text += f"<h2>{TITLES[name]}</h2>" + make(records[name]["figures"])
@@ -96,5 +97,4 @@ def page(records):
         if record["failures"]:
             items = "".join(f"<li>{html.escape(f)}</li>" for f in record["failures"][:50])
             text += f"<h2>Failed: {html.escape(TITLES[name])}</h2><ul>{items}</ul>"
-    commits = sorted({r["commit"] for r in records.values() if r["commit"]})
-    return text + f"<p>Revision {html.escape(', '.join(commits) or 'unknown')}.</p></html>\n"
+    return text + "</html>\n"

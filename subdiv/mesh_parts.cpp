@@ -26,7 +26,9 @@ void visit_triangles(const Mesh& mesh, Visit visit) {
   }
 }
 
-void measure(const Mesh& mesh, const std::vector<Edge>& edges, MeshParts& found) {
+MeshParts measure(const Mesh& mesh, const std::vector<Edge>& edges) {
+  MeshParts found;
+  found.parts.resize(static_cast<size_t>(part_of_faces(mesh, found.of_face)));
   for (const Edge& edge : edges) {
     MeshPart& part = found.parts[static_cast<size_t>(found.of_face[static_cast<size_t>(edge.face_a)])];
     const bool agree = edge.face_count != 2 || edge.consistent;
@@ -41,10 +43,8 @@ void measure(const Mesh& mesh, const std::vector<Edge>& edges, MeshParts& found)
     part.area += 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]);
     for (const glm::dvec3& p : t) part.box = include(part.box, p);
   });
-  for (MeshPart& part : found.parts) {
-    if (part.closed) part.area = glm::dvec3(0.0);
-    part.volume += glm::dot(part.point - part.box.center(), part.area) / 3.0;
-  }
+  for (MeshPart& part : found.parts) part.volume += glm::dot(part.point - part.box.center(), part.area) / 3.0;
+  return found;
 }
 
 /// Twice the signed area of (a, b, p) in the plane of y and z: the same but for the sign whichever end of the edge comes first, so that the
@@ -107,10 +107,13 @@ bool MeshPart::encloses() const {
   return consistent && glm::dot(half, glm::abs(area)) / 3.0 <= kSureShare * std::abs(volume);
 }
 
+bool may_be_inverted(const Mesh& mesh) {
+  const MeshParts found = measure(mesh, {});
+  return std::any_of(found.parts.begin(), found.parts.end(), [](const MeshPart& part) { return part.volume < 0.0 && part.encloses(); });
+}
+
 MeshParts find_parts(const Mesh& mesh, const std::vector<Edge>& edges) {
-  MeshParts found;
-  found.parts.resize(static_cast<size_t>(part_of_faces(mesh, found.of_face)));
-  measure(mesh, edges, found);
+  MeshParts found = measure(mesh, edges);
   for (MeshPart& part : found.parts) part.inverted = part.volume < 0.0 && part.encloses();
   find_cavities(mesh, found);
   return found;

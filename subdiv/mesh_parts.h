@@ -12,7 +12,7 @@ struct MeshPart {
   bool closed = true;      ///< Every edge has two faces, which agree on the outside.
   bool consistent = true;  ///< No two faces at an edge disagree on it; edges may be open.
   double volume = 0.0;     ///< Signed, about the middle of its box; the file's units.
-  glm::dvec3 area{0.0};    ///< Vector area: zero for a closed part.
+  glm::dvec3 area{0.0};    ///< Vector area: nothing but rounding for a closed part.
   Box box{};
   glm::dvec3 point{0.0};  ///< A vertex of it.
   bool inverted = false;  ///< Encloses a negative volume, and is not the wall of a cavity.
@@ -26,6 +26,9 @@ struct MeshParts {
   std::vector<MeshPart> parts{};
   std::vector<std::int32_t> of_face{};  ///< Index into `parts` for each face.
 };
+
+/// False where no part encloses a negative volume; quicker than to find out more.
+bool may_be_inverted(const Mesh& mesh);
 
 /// `edges` as build_edges gives them.
 MeshParts find_parts(const Mesh& mesh, const std::vector<Edge>& edges);

@@ -13,6 +13,7 @@
 #include "raymarch/surface/object_mesh.h"
 #include "raymarch/surface/registry.h"
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -101,6 +102,7 @@ void test_candidate(const RTCIntersectFunctionNArguments* arguments) {
 }
 
 void bound_triangle(const RTCBoundsFunctionArguments* arguments) {
+  const parallel_detail::Part part;
   const auto& mesh = *static_cast<const TriangleMesh*>(arguments->geometryUserPtr);
   const glm::uvec3& corners = mesh.triangles[arguments->primID];
   Box box;
@@ -128,7 +130,10 @@ void build_tree(MeshState& state) {
   state.scene.reset(rtcNewScene(state.device.get()));
   rtcSetSceneFlags(state.scene.get(), RTC_SCENE_FLAG_ROBUST);
   attach_triangles(state);
-  rtcCommitScene(state.scene.get());
+  {
+    const parallel_detail::Loop loop;  // Embree's own, over bound_triangle
+    rtcCommitScene(state.scene.get());
+  }
   if (rtcGetDeviceError(state.device.get()) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
 }
 

@@ -40,7 +40,9 @@ TEST(Limits, MoreMemoryThanAllowedIsRefusedBeforehandWithWhatWouldFit) {
                                       "--max-memory", "400M", "-q", "-o", folder.file("x.png")});
   EXPECT_EQ(smaller.exit_code, 0) << smaller.err;
   // The sanitizers' own memory says nothing of limn's.
-  if (kAddressSpaceCanBeLimited) EXPECT_LT(smaller.peak_bytes, 4.2e8);
+  if (kAddressSpaceCanBeLimited) {
+    EXPECT_LT(smaller.peak_bytes, 4.2e8);
+  }
 }
 
 TEST(Limits, EveryCommandThatBuildsRefuses) {

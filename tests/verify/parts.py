@@ -8,10 +8,11 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 TESTS = ROOT / "tests"
 NAMES = ("stability", "mutants", "kills", "determinism", "fuzz", "asan", "tsan", "scalar", "coverage")
+SUITES = ("asan", "tsan", "scalar")
 BUILDING = ("fuzz", "asan", "tsan", "scalar", "coverage")
 
 
-def command(name, limn, out, result, quick):
+def command(name, limn, out, result, quick, again):
     python = sys.executable
     if name == "stability":
         return [limn, "study", "stability", "-o", out / "stability", "--quiet"]
@@ -25,7 +26,7 @@ def command(name, limn, out, result, quick):
         return [python, TESTS / "fuzz" / "run.py", "--seconds", "10" if quick else "60", "--json", result]
     if name == "coverage":
         return [python, TESTS / "coverage" / "report.py", "--json", result]
-    return [python, TESTS / "sanitizers" / "run.py", name, "--json", result]
+    return [python, TESTS / "sanitizers" / "run.py", name, "--json", result, *(["--again", again] if again else [])]
 
 
 def facts_of_stability(data):
@@ -81,14 +82,16 @@ def commit():
     return done.stdout.strip()
 
 
-def run(name, limn, out, quick):
-    """Runs a part to its end whatever that is, and writes what came out."""
-    result = out / f"{name}.raw.json"
+def run(name, limn, out, quick, again=False):
+    """Runs a part to its end whatever that is, and writes what came out. `again`: of a suite only the tests that failed the last time."""
+    result, before = out / f"{name}.raw.json", None
+    if again and name in SUITES and result.exists():
+        before = result.rename(out / f"{name}.before.json")
     result.unlink(missing_ok=True)
     started = time.monotonic()
     log = out / f"{name}.log"
     with open(log, "w") as stream:
-        code = subprocess.run([str(c) for c in command(name, limn, out, result, quick)], stdout=stream, stderr=subprocess.STDOUT, cwd=ROOT).returncode
+        code = subprocess.run([str(c) for c in command(name, limn, out, result, quick, before)], stdout=stream, stderr=subprocess.STDOUT, cwd=ROOT).returncode
     if name == "stability":
         result = out / "stability" / "results.json"
     record = {"part": name, "outcome": "held" if code == 0 else "failed", "figures": {}, "failures": [], "commit": commit(),

@@ -41,7 +41,8 @@ def words_of(name, figures):
         return f"{f['fuzzers']} fuzzers, {f['seconds_each']} s each: {f['executions']:,} runs, {f['crashes']} crashes"
     if name == "coverage":
         return f"{f['lines_percent']:.1f} % of lines, {f['branches_percent']:.1f} % of branches"
-    return f"{f['tests']} tests, {f['failed']} failed, {f['skipped']} skipped, {f['left_out']} left out"
+    again = f"; {f['ran_again']} of them ran again after a change" if f.get("ran_again") else ""
+    return f"{f['tests']} tests, {f['failed']} failed, {f['skipped']} skipped, {f['left_out']} left out{again}"
 
 
 def rows(records):

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """One command with the table: everything that shows where limn holds and where it fails, each part a JSON, then one table of them all.
 
-verify.py [--quick] [--only PART]... [--report] [--limn PROGRAM] [--out FOLDER] [--markdown FILE]
+verify.py [--quick] [--again] [--only PART]... [--report] [--limn PROGRAM] [--out FOLDER] [--markdown FILE]
 
 PARTs: stability, mutants, kills, determinism, fuzz, asan, tsan, scalar, coverage. Each writes FOLDER/<part>.json (limn-out/verify/...) with its
 outcome, figures and failures, and its output to FOLDER/<part>.log. --report makes only the table, from what is there; a part that never ran is
-"not run". --quick tries fewer of everything and leaves out the parts that build limn anew. Ends with 1 where a part failed.
+"not run". --again runs, of the suites under asan, tsan and scalar, only the tests that failed the last time. --quick tries fewer of everything
+and leaves out the parts that build limn anew. Ends with 1 where a part failed.
 """
 import argparse
 import pathlib
@@ -20,6 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--again", action="store_true")
     parser.add_argument("--only", action="append", choices=parts.NAMES)
     parser.add_argument("--report", action="store_true")
     parser.add_argument("--limn", type=pathlib.Path, default=ROOT / "build" / "release" / "limn")
@@ -30,7 +32,7 @@ def main():
     chosen = [] if options.report else options.only or [n for n in parts.NAMES if not (options.quick and n in parts.BUILDING)]
     for name in chosen:
         print(f"{name} …", flush=True)
-        record = parts.run(name, options.limn.resolve(), options.out.resolve(), options.quick)
+        record = parts.run(name, options.limn.resolve(), options.out.resolve(), options.quick, options.again)
         print(f"{name}: {record['outcome']}, {record['seconds']:.0f} s" + "".join(f"\n  {f}" for f in record["failures"][:10]), flush=True)
     records = parts.read_all(options.out)
     markdown = table.markdown(records)

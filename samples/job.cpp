@@ -75,6 +75,20 @@ void apply_set(const KeyValue& set, std::vector<PendingMethod>& pending) {
   if (!used) throw InputError({"", "--set " + set.key, "", "no method of this call has that parameter", known_names(set.key, known)});
 }
 
+// A camera that cannot be is told with its file where no option has a part in it.
+void check_camera_of_file(const Options& options, const SceneInput& input, const CameraSettings& camera) {
+  if (input.kind != InputKind::scene_file || options.eye || options.target || options.up || options.fov_deg || options.ortho_height) return;
+  try {
+    resolve_camera(camera, bounds(input.scene));
+  } catch (const InputError& error) {
+    InputFault fault = error.fault();
+    if (fault.field == "--size") throw;
+    fault.file = input.file;
+    fault.field = "camera." + fault.field.substr(2);
+    throw InputError(std::move(fault));
+  }
+}
+
 }  // namespace
 
 SurfaceSettings surface_settings(const Options& options, SceneInput& input) {
@@ -124,6 +138,7 @@ CameraSettings camera_settings(const Options& options, const SceneInput& input) 
     camera.projection = Projection::orthographic;
     camera.ortho_height = options.ortho_height;
   }
+  check_camera_of_file(options, input, camera);
   return camera;
 }
 

@@ -152,7 +152,9 @@ Frame orthographic_frame(const Corners& corners, double aspect, const std::optio
 glm::dvec3 checked_backward(const glm::dvec3& eye, const glm::dvec3& target, const char* field) {
   const glm::dvec3 offset = eye - target;
   const double length = glm::length(offset);
-  if (!(length > 1e-12 * (glm::length(eye) + glm::length(target))) || !std::isfinite(length)) {
+  if (!std::isfinite(length))
+    throw InputError({{}, field, text(eye), "too far from the target to tell a direction", "an eye nearer to the target " + text(target)});
+  if (!(length > 1e-12 * (glm::length(eye) + glm::length(target)))) {
     throw InputError({{}, field, text(eye), "the eye lies on the target", "an eye apart from the target " + text(target)});
   }
   return offset / length;

@@ -18,6 +18,27 @@ double to_path(std::span<const double> path, const glm::dvec3& p) {
   return least;
 }
 
+/// How far from the path what a pixel shows is; of a pixel whose ink also hangs on its neighbours up to `reach_px` away, the nearest of
+/// them whose own picture changed.
+double distance_at(const StabilityView& view, const StabilityView& other, std::span<const double> path, const glm::ivec2& at,
+                   int reach_px) {
+  const auto shown = [&](const StabilityView& by, size_t i) { return to_path(path, glm::dvec3(by.seen.position.pixels[i])); };
+  const int width = view.camera.width_px, height = view.camera.height_px;
+  const auto index = [width](int x, int y) { return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x); };
+  const auto changed = [&](size_t i) {
+    return view.seen.id.pixels[i] != other.seen.id.pixels[i] || view.seen.depth.pixels[i] != other.seen.depth.pixels[i] ||
+           view.seen.normal.pixels[i] != other.seen.normal.pixels[i];
+  };
+  const auto own = [&](size_t i) { return view.seen.id.pixels[i] != 0 ? shown(view, i) : shown(other, i); };
+  double least = own(index(at.x, at.y));
+  for (int y = std::max(0, at.y - reach_px); y <= std::min(height - 1, at.y + reach_px); ++y)
+    for (int x = std::max(0, at.x - reach_px); x <= std::min(width - 1, at.x + reach_px); ++x) {
+      const size_t i = index(x, y);
+      if (changed(i) && (view.seen.id.pixels[i] != 0 || other.seen.id.pixels[i] != 0)) least = std::min(least, own(i));
+    }
+  return least;
+}
+
 StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
   const std::span<const double> path = with.list("path");
   if (path.empty()) throw InputError({shop.which().file, "with.path", "", "no path", "path = [[x, y, z], …]"});
@@ -35,9 +56,9 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
             view.seen.id.pixels[i] == other.seen.id.pixels[i])
           continue;
         ++different;
-        const bool here = view.seen.id.pixels[i] != 0;
-        if (!here && other.seen.id.pixels[i] == 0) continue;
-        farthest = std::max(farthest, to_path(path, glm::dvec3((here ? view : other).seen.position.pixels[i])));
+        if (view.seen.id.pixels[i] == 0 && other.seen.id.pixels[i] == 0) continue;
+        const auto width = static_cast<size_t>(view.camera.width_px);
+        farthest = std::max(farthest, distance_at(view, other, path, {i % width, i / width}, with.integer("reach_px")));
       }
       worst.see(farthest,
                 fmt::format("{} pixels differ with {}, the farthest {:.3g} from the change", different, changed.variant.words, farthest),
@@ -53,7 +74,8 @@ StabilityCheck unchanged_beyond_check() {
   return {{"unchanged_beyond", "how far from a path pixels differ between the scene and its variants", "limn"},
           "world",
           true,
-          {{"path", ParameterKind::list, "world", {}, -1e12, 1e12, "the change", {}, 3}},
+          {{"path", ParameterKind::list, "world", {}, -1e12, 1e12, "the change", {}, 3},
+           stability_whole("reach_px", 0, 0, 16, "how far around a pixel its ink is decided")},
           run};
 }
 

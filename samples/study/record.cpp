@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "samples/study/whole_number.h"
 #include "sdf/error.h"
 #include "sdf/output_file.h"
 #include "sdf/version.h"
@@ -32,9 +33,15 @@ Json to_json(const TruthRecord& truth) {
   return json;
 }
 
+int whole(const Json& json, const char* name) {
+  const Json& value = json.at(name);
+  if (const std::optional<int> number = whole_number<int>(value)) return *number;
+  throw Json::type_error::create(302, fmt::format("{} is not a whole number", name), &value);
+}
+
 TruthRecord truth_from(const Json& json) {
   TruthRecord truth;
-  truth.view = json.at("view").get<int>();
+  truth.view = whole(json, "view");
   truth.threshold = json.at("threshold").get<double>();
   truth.failed = json.value("failed", "");
   if (!truth.failed.empty()) return truth;
@@ -80,7 +87,7 @@ StudyRecord record_from(const Json& json) {
   StudyHead& head = record.head;
   head.id = json.at("id").get<std::string>();
   record.version = json.at("limn").get<std::string>();
-  record.format = json.at("format").get<int>();
+  record.format = whole(json, "format");
   head.input = json.at("input").get<std::string>();
   head.scene = json.at("scene").get<std::string>();
   record.input_hash = json.at("input_hash").get<std::string>();
@@ -88,10 +95,10 @@ StudyRecord record_from(const Json& json) {
   head.truth = json.at("truth").get<std::string>();
   head.exact = json.at("exact").get<bool>();
   record.pictures = json.at("pictures").get<std::string>();
-  head.views = json.at("views").get<int>();
+  head.views = whole(json, "views");
   head.surfaces = json.at("surfaces").get<std::vector<std::string>>();
-  record.shard = json.at("shard").get<int>();
-  record.shards = json.at("shards").get<int>();
+  record.shard = whole(json, "shard");
+  record.shards = whole(json, "shards");
   head.warnings = json.value("warnings", std::vector<std::string>{});
   for (const Json& truth : json.at("truths")) record.truths.push_back(truth_from(truth));
   if (!head.exact) head.truth_within_px = largest_bound_px(record.truths);

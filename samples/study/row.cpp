@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "samples/study/whole_number.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -85,8 +86,9 @@ struct LineReader {
   template <class Integer>
   Integer integer(const char* name) const {
     const Json& value = at(name, "a whole number");
-    if (!value.is_number_integer()) fail(name, "a whole number");
-    return value.get<Integer>();
+    const std::optional<Integer> whole = whole_number<Integer>(value);
+    if (!whole) fail(name, "a whole number");
+    return *whole;
   }
   std::map<std::string, std::string> parameters(const char* name) const {
     std::map<std::string, std::string> all;

@@ -1,6 +1,6 @@
 cmake_minimum_required(VERSION 3.25)
 # `cmake --install` into an empty folder, then another project finds limn there, links it and runs.
-#   cmake -DBUILD=<build folder> -DSOURCE=<consumer project> -P installed_package.cmake
+#   cmake -DBUILD=<build folder> -DSOURCE=<consumer project> -DLINKER_FLAGS=<of the build> -P installed_package.cmake
 set(work ${BUILD}/installed_package)
 file(REMOVE_RECURSE ${work})
 function(step)
@@ -10,6 +10,6 @@ function(step)
   endif()
 endfunction()
 step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${work}/prefix)
-step(${CMAKE_COMMAND} -S ${SOURCE} -B ${work}/build -G Ninja -DCMAKE_PREFIX_PATH=${work}/prefix -DCMAKE_BUILD_TYPE=Release)
+step(${CMAKE_COMMAND} -S ${SOURCE} -B ${work}/build -G Ninja -DCMAKE_PREFIX_PATH=${work}/prefix -DCMAKE_BUILD_TYPE=Release -DCMAKE_EXE_LINKER_FLAGS=${LINKER_FLAGS})
 step(${CMAKE_COMMAND} --build ${work}/build)
 step(${work}/build/consumer)

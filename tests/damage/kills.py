@@ -62,7 +62,7 @@ def jobs(limn, folder):
         "render": lambda out: both(lambda s: [limn, "render", s, "-o", out / "a.exr", "-o", out / "b.png", "--size", "640x480", "--voxels", "128",
                                               "--surface", "level_set", "-q"]),
         "compare": lambda out: both(lambda s: [limn, "compare", s, "-o", out, "--size", "200x150", "--voxels", "48", "--no-timings", "-q"]),
-        "export": lambda out: tuple([limn, "export", old, "-o", out / "a.ply", "--level", level, "-q"] for level in ("5", "7")),
+        "export": lambda out: tuple([limn, "export", old, "-o", out / "a.ply", "--level", level, "-q"] for level in ("4", "6")),
         "study": lambda out: (None, [limn, "study", new, "-o", out, "--levels", "0,1", "--voxels", "8,16", "--views", "2", "--size", "48x36", "-q"]),
         "merge": lambda out: (None, [limn, "merge", parts[new], "-o", out, "-q"]),
     }

@@ -94,9 +94,6 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"two_numbers_for_three", "a.toml", scene("[[object]]\nshape = \"box\"\nhalf = [1, 2]"), "half"},
         BadFile{"zero_scale", "a.toml", scene("[[object]]\nshape = \"box\"\nscale = 0"), "above 0"},
         BadFile{"zero_axis", "a.toml", scene("[[object]]\nshape = \"box\"\nrotate = [0, 0, 0, 10]"), "axis"},
-        BadFile{"eye_on_target", "a.toml", scene("[camera]\neye = [0, 0, 0]\n[[object]]\nshape = \"box\""), "a.toml:camera.eye: "},
-        BadFile{"eye_too_far", "a.toml", scene("[camera]\neye = [1, 0, 0]\ntarget = [1e308, 1e308, 0]\n[[object]]\nshape = \"box\""),
-                "a.toml:camera.eye: "},
         BadFile{"fov_0", "a.toml", scene("[camera]\nfov = 0\n[[object]]\nshape = \"box\""), "180"},
         BadFile{"fov_180", "a.toml", scene("[camera]\nfov = 180\n[[object]]\nshape = \"box\""), "180"},
         BadFile{"size_0", "a.toml", scene("[camera]\nsize = [0, 10]\n[[object]]\nshape = \"box\""), "16384"},
@@ -148,6 +145,19 @@ TEST(BadInput, ABandTooThinForTheGradientNamesTheWidthThatWouldBeRight) {
   ASSERT_EQ(run_limn({"export", "ellipsoid", "--voxels", "24", "--half-width", "2", "-o", volume, "-q"}).exit_code, 0);
   expect_refused(run_limn({"render", volume, "--gradient", "cubic", "-o", folder.file("a.png")}), "voxels");
   EXPECT_EQ(run_limn({"render", volume, "--gradient", "cell", "--size", "16x12", "-o", folder.file("a.png"), "-q"}).exit_code, 0);
+}
+
+TEST(BadInput, ACameraThatCannotBeIsToldWithItsSceneFile) {
+  for (const char* camera : {"eye = [0, 0, 0]", "eye = [1, 0, 0]\ntarget = [1e308, 1e308, 0]", "eye = [0, 0, 5]\nup = [0, 0, 1]"}) {
+    const TemporaryFolder folder;
+    const std::string input = folder.write("a.toml", std::string("[camera]\n") + camera + "\n[[object]]\nshape = \"box\"\n");
+    const auto before = folder.files();
+    for (const char* command : {"render", "compare", "study"})
+      expect_refused(run_limn({command, input, "--size", "32x24"}, folder.path()), "a.toml:camera.");
+    EXPECT_EQ(folder.files(), before);
+    // The option's value is not the file's.
+    expect_refused(run_limn({"render", input, "--size", "32x24", "--eye", "0,0,0", "--target", "0,0,0"}, folder.path()), "limn: --eye: ");
+  }
 }
 
 TEST(BadInput, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {

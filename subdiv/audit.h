@@ -37,7 +37,7 @@ struct MeshFacts {
   int regular_valence = 6;                  ///< 4 where quads prevail.
 
   std::int64_t parts = 0, closed_parts = 0;
-  std::int64_t inverted_parts = 0;  ///< Closed, of negative volume, and not within another part.
+  std::int64_t inverted_parts = 0;  ///< Of negative volume, closed or with holes too small to doubt it, and not within another part.
   std::int64_t cavities = 0;        ///< Closed, of negative volume, within another part: rightly so.
   double volume = 0.0;              ///< Signed, of the closed parts; the file's units.
 

@@ -84,9 +84,10 @@ def commit():
 
 def run(name, limn, out, quick, again=False):
     """Runs a part to its end whatever that is, and writes what came out. `again`: of a suite only the tests that failed the last time."""
-    result, before = out / f"{name}.raw.json", None
+    result, before, revision = out / f"{name}.raw.json", None, commit()
     if again and name in SUITES and result.exists():
         before = result.rename(out / f"{name}.before.json")
+        revision = f"{read_all(out)[name]['commit']}, again {revision}"
     result.unlink(missing_ok=True)
     started = time.monotonic()
     log = out / f"{name}.log"
@@ -94,7 +95,7 @@ def run(name, limn, out, quick, again=False):
         code = subprocess.run([str(c) for c in command(name, limn, out, result, quick, before)], stdout=stream, stderr=subprocess.STDOUT, cwd=ROOT).returncode
     if name == "stability":
         result = out / "stability" / "results.json"
-    record = {"part": name, "outcome": "held" if code == 0 else "failed", "figures": {}, "failures": [], "commit": commit(),
+    record = {"part": name, "outcome": "held" if code == 0 else "failed", "figures": {}, "failures": [], "commit": revision,
               "quick": quick, "seconds": round(time.monotonic() - started, 1)}
     try:
         record["figures"], record["failures"] = FACTS[name](json.loads(result.read_text()))

@@ -172,6 +172,15 @@ TEST(StabilityChecks, InkWidthIsThatOfARingOfInk) {
   }
 }
 
+/// A torus seen nearly from the side: above its near rim a strip of the far one, whose border touches the near one's.
+TEST(StabilityChecks, InkWidthIsOfOneBorderWhereTwoTouch) {
+  const StabilityCell cell = only_cell(
+      "[case]\nrow = \"r\"\nbreaks = \"b\"\nholds = \"h\"\ncheck = \"ink_width\"\nsurfaces = [\"analytic\"]\nsizes = [[160, 120]]\nbound "
+      "= 1e9\n[with]\nwidth = 0\n[[border]]\nmethod = \"rim_width\"\nwidth = 3.0\n[camera]\neye = [0.0, 0.7, 8.0]\ntarget = [0.0, 0.0, "
+      "0.0]\nfov = 25\n[[object]]\nshape = \"torus\"\nmajor = 1.0\nminor = 0.35\n");
+  EXPECT_NEAR(cell.number, 3.0, 0.5) << cell.message;
+}
+
 TEST(StabilityRun, IsTheSameForEqualSeedsAndAnyThreads) {
   const std::vector<StabilityCase> cases{find_stability_case("cube_faces"), find_stability_case("nested_and_crossing")};
   const auto text = [&](std::uint64_t seed, int threads) {

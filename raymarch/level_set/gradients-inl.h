@@ -132,16 +132,18 @@ HWY_INLINE V3 moved(const V3& at, const V3& direction, VF t) {
 HWY_INLINE VF dot(const V3& a, const V3& b) { return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z)); }
 
 /// Newton's step along the ray towards the root of what has this value and gradient, by a quarter of a voxel at most, so that hits in one
-/// cell and the next go on from each other. A ray that grazes is taken to be a sixteenth as steep as it could be: the step's theory is of
-/// first order.
-HWY_INLINE VF newton_step(VF value, const V3& gradient, const V3& direction) {
+/// cell and the next go on from each other. `side`: the sign of the values before the trilinear root, from which the value falls (towards
+/// the other sign). A ray that grazes is taken to fall a sixteenth as steeply as it could: the step's theory is of first order. Where it
+/// rises, which at knife edges it may, it has no root near here to go to: the step fades out, and jumps nowhere between.
+HWY_INLINE VF newton_step(VF value, const V3& gradient, const V3& direction, VF side) {
   const V3 product{hn::Mul(gradient.x, direction.x), hn::Mul(gradient.y, direction.y), hn::Mul(gradient.z, direction.z)};
-  const VF slope = hn::Add(hn::Add(product.x, product.y), product.z);
+  const VF fall = hn::Neg(hn::Mul(side, hn::Add(hn::Add(product.x, product.y), product.z)));
   const VF steepest = hn::Add(hn::Add(hn::Abs(product.x), hn::Abs(product.y)), hn::Abs(product.z));
   const MF flat = hn::Eq(steepest, hn::Zero(F()));
-  const VF size = hn::IfThenElse(flat, set(1.0f), hn::Max(hn::Abs(slope), hn::Mul(set(1.0f / 16.0f), steepest)));
+  const VF most_fall = hn::IfThenElse(flat, set(1.0f), steepest), least_fall = hn::Mul(set(1.0f / 16.0f), most_fall);
+  const VF share = hn::Min(hn::Add(set(1.0f), hn::Div(fall, most_fall)), set(1.0f));
   const VF most = hn::Div(set(0.25f), hn::Max(hn::Abs(direction.x), hn::Max(hn::Abs(direction.y), hn::Abs(direction.z))));
-  const VF step = hn::IfThenElse(flat, hn::Zero(F()), hn::Neg(hn::Div(value, hn::CopySign(size, slope))));
+  const VF step = hn::IfThenElse(flat, hn::Zero(F()), hn::Mul(share, hn::Div(hn::Mul(side, value), hn::Max(fall, least_fall))));
   return hn::Max(hn::Min(step, most), hn::Neg(most));
 }
 
@@ -153,13 +155,13 @@ struct Settled {
 
 /// Central differences at the cell's nodes, interpolated: the same as differences of the interpolant itself, taken one voxel to either
 /// side at the same place in the cells there. The hit goes to where the interpolant, less its chords' sag, has its root.
-HWY_INLINE Settled central_gradient(const std::int16_t* values, const Cells& cells, const V3& direction) {
+HWY_INLINE Settled central_gradient(const std::int16_t* values, const Cells& cells, const V3& direction, VF side) {
   const CentralStencil stencil = gather_central(values, cells);
   const auto gradient = [](const Sections& s, const V3& at) { return V3{s.x.slope(at.x), s.y.slope(at.y), s.z.slope(at.z)}; };
   const Sections first = sections(stencil, cells.local);
   const V3& at = cells.local;
   const VF sag = hn::Add(hn::Add(first.x.sag(at.x), first.y.sag(at.y)), first.z.sag(at.z));
-  const VF move = newton_step(hn::Neg(sag), gradient(first, at), direction);
+  const VF move = newton_step(hn::Neg(sag), gradient(first, at), direction, side);
   const V3 there = moved(at, direction, move);
   return {gradient(sections(stencil, there), there), move};
 }
@@ -236,10 +238,10 @@ HWY_INLINE SplinePoint spline_at(const SplineStencil& stencil, const V3& at) {
 }
 
 /// The gradient of the cubic B-spline, in the brick's own steps, where the spline has its root.
-HWY_INLINE Settled cubic_gradient(const SplineBricks& bricks, const Cells& cells, VI number, const V3& direction) {
+HWY_INLINE Settled cubic_gradient(const SplineBricks& bricks, const Cells& cells, VI number, const V3& direction, VF side) {
   const SplineStencil stencil = gather_spline(bricks, number);
   const SplinePoint first = spline_at(stencil, cells.local);
-  const VF move = newton_step(first.value, first.gradient, direction);
+  const VF move = newton_step(first.value, first.gradient, direction, side);
   return {spline_at(stencil, moved(cells.local, direction, move)).gradient, move};
 }
 

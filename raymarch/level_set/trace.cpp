@@ -90,11 +90,12 @@ HWY_NOINLINE void enter_packet(const SurfaceBound& bound, std::int32_t index, co
   push(c, active, waiting);
 }
 
-HWY_INLINE Settled settle(BrickGradient gradient, const RayBricks& bricks, const Cells& cells, VI number, const IndexRays& rays, size_t i) {
+HWY_INLINE Settled settle(BrickGradient gradient, const RayBricks& bricks, const Cells& cells, VI number, const IndexRays& rays, size_t i,
+                          VF side) {
   if (gradient == BrickGradient::cell) return {cell_gradient(bricks.values.data(), cells), hn::Zero(F())};
   const V3 direction = load3(rays.direction, i);
-  return gradient == BrickGradient::central ? central_gradient(bricks.values.data(), cells, direction)
-                                            : cubic_gradient(bricks.spline, cells, number, direction);
+  return gradient == BrickGradient::central ? central_gradient(bricks.values.data(), cells, direction, side)
+                                            : cubic_gradient(bricks.spline, cells, number, direction, side);
 }
 
 HWY_NOINLINE void write_packet(const BrickTrace& what, const IndexRays& rays, const RayBatch& batch, size_t i, const BrickHits& found,
@@ -108,7 +109,7 @@ HWY_NOINLINE void write_packet(const BrickTrace& what, const IndexRays& rays, co
   const RayBricks& bricks = *what.view->bricks;
   const Cells cells = cells_of(bricks, rays, i, hn::IfThenElseZero(hn::RebindMask(d, hit), root), hn::Max(cell, hn::Zero(di)),
                                what.gradient == BrickGradient::central);
-  const Settled settled = settle(what.gradient, bricks, cells, hn::Max(cell, hn::Zero(di)), rays, i);
+  const Settled settled = settle(what.gradient, bricks, cells, hn::Max(cell, hn::Zero(di)), rays, i, set(what.view->side));
   const V3& g = settled.gradient;
   const VF place = hn::Add(root, settled.move);
   const MF allowed = hn::And(hn::Ge(place, hn::Load(d, batch.t_min + i)), hn::Lt(place, hn::Load(d, batch.t_max + i)));

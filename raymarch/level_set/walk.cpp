@@ -89,7 +89,7 @@ class Walk {
     ray_.inverse = 1.0 / ray_.direction;
   }
 
-  HitStatus run(double& t_hit) {
+  HitStatus run(GridRoot& root) {
     if (!enter()) return HitStatus::miss;
     while (t_ < t_max_) {
       if (++steps_ > grid_.max_steps) return HitStatus::out_of_steps;
@@ -99,7 +99,7 @@ class Walk {
       const int size = leaf ? Leaf::DIM : static_cast<int>(accessor_.getDim(at, 0));
       const Block block{{cell_.x & ~(size - 1), cell_.y & ~(size - 1), cell_.z & ~(size - 1)}, size};
       if (leaf) {
-        const HitStatus status = walk_cells(block, t_hit);
+        const HitStatus status = walk_cells(block, root);
         if (status != HitStatus::miss) return status;
         if (t_ >= t_max_) break;
       } else {
@@ -147,11 +147,11 @@ class Walk {
     return cell_[exit.axis] >= grid_.lower[exit.axis];
   }
 
-  HitStatus walk_cells(const Block& leaf, double& t_hit) {
+  HitStatus walk_cells(const Block& leaf, GridRoot& root) {
     while (true) {
       const Block cell{cell_, 1};
       const Exit exit = exit_of(ray_, cell);
-      if (hit_in_cell(std::max(t_, std::min(exit.t, t_max_)), t_hit)) return t_hit < t_max_ ? HitStatus::hit : HitStatus::miss;
+      if (hit_in_cell(std::max(t_, std::min(exit.t, t_max_)), root)) return root.t < t_max_ ? HitStatus::hit : HitStatus::miss;
       t_ = std::max(t_, exit.t);
       if (t_ >= t_max_) return HitStatus::miss;
       glm::ivec3 next = cell_;
@@ -178,7 +178,7 @@ class Walk {
 
   /// A change of sign in [t_, t1]. The side is carried from cell to cell: were it asked for anew at every face, a root that rounding
   /// puts on neither side of the face would be lost.
-  bool hit_in_cell(double t1, double& t_hit) {
+  bool hit_in_cell(double t1, GridRoot& root) {
     std::array<double, 8> v = cell_values(accessor_, nanovdb::Coord(cell_.x, cell_.y, cell_.z));
     if (!grid_.level.zero()) subtract_level(cell_, v);
     bool any_inside = false, any_outside = false;
@@ -193,7 +193,7 @@ class Walk {
     }
     const double s = first_sign_change(c, inside_);
     if (s < 0.0) return false;
-    t_hit = t_ + s * (t1 - t_);
+    root = {t_ + s * (t1 - t_), inside_};
     return true;
   }
 
@@ -210,8 +210,8 @@ class Walk {
 }  // namespace
 
 HitStatus walk_grid(const WalkedGrid& grid, const Accessor& accessor, const glm::dvec3& origin, const glm::dvec3& direction, double t_min,
-                    double t_max, double& t_hit) {
-  return Walk(grid, accessor, origin, direction, t_min, t_max).run(t_hit);
+                    double t_max, GridRoot& root) {
+  return Walk(grid, accessor, origin, direction, t_min, t_max).run(root);
 }
 
 double interpolated(const Accessor& accessor, const glm::dvec3& place) {

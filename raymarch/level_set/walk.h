@@ -17,9 +17,14 @@ struct WalkedGrid {
   double grid_from_render_length = 1.0;
 };
 
+struct GridRoot {
+  double t = 0.0;
+  bool from_inside = false;  ///< The value is below zero before the root.
+};
+
 /// The first change of sign along origin + t * direction (render space), t_min <= t < t_max.
 HitStatus walk_grid(const WalkedGrid& grid, const nanovdb::FloatGrid::AccessorType& accessor, const glm::dvec3& origin,
-                    const glm::dvec3& direction, double t_min, double t_max, double& t_hit);
+                    const glm::dvec3& direction, double t_min, double t_max, GridRoot& root);
 
 /// The trilinear interpolant at a place, index coordinates.
 double interpolated(const nanovdb::FloatGrid::AccessorType& accessor, const glm::dvec3& place);

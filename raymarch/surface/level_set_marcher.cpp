@@ -43,6 +43,7 @@ struct Roots {
   size_t count = 0;
   std::array<int, kRayBatchSize> lanes;
   std::array<double, kRayBatchSize> t;
+  std::array<bool, kRayBatchSize> from_inside;
   std::array<glm::dvec3, kRayBatchSize> points;  ///< Of the world that the grid was made in.
 
   std::span<const glm::dvec3> places() const { return std::span(points).first(count); }
@@ -52,20 +53,22 @@ Roots find_roots(const State& state, const Accessor& accessor, const RayBatch& r
   Roots roots;
   for (int i = 0; i < rays.count; ++i) {
     const glm::dvec3 origin(rays.origin(i)), direction(rays.direction(i));
-    double t = 0.0;
+    GridRoot root;
     const HitStatus status =
-        walk_grid(state.walked, accessor, origin, direction, static_cast<double>(rays.t_min[i]), static_cast<double>(rays.t_max[i]), t);
+        walk_grid(state.walked, accessor, origin, direction, static_cast<double>(rays.t_min[i]), static_cast<double>(rays.t_max[i]), root);
     if (status == HitStatus::miss) continue;
     hits.status[i] = status;
     if (status != HitStatus::hit) continue;
-    roots.t[roots.count] = t;
-    roots.points[roots.count] = state.grid_world_from_render.point(origin + t * direction);
+    roots.t[roots.count] = root.t;
+    roots.from_inside[roots.count] = root.from_inside;
+    roots.points[roots.count] = state.grid_world_from_render.point(origin + root.t * direction);
     roots.lanes[roots.count++] = i;
   }
   return roots;
 }
 
-/// One step of Newton's iteration towards the root of the gradient's own reconstruction, by a quarter of a voxel at most.
+/// One step of Newton's iteration towards the root of the gradient's own reconstruction, by a quarter of a voxel at most; as packets take
+/// it (newton_step in raymarch/level_set/gradients-inl.h).
 void settle(const State& state, const Accessor& accessor, const RayBatch& rays, Roots& roots) {
   if (!state.gradient->values) return;
   std::array<glm::dvec3, kRayBatchSize> gradients;
@@ -78,11 +81,11 @@ void settle(const State& state, const Accessor& accessor, const RayBatch& rays, 
     const glm::dvec3 direction(rays.direction(i)), along = state.grid_world_from_render.vector(direction);
     const glm::dvec3 place = data.index_from_world.point(roots.points[k]);
     const glm::dvec3 product = gradients[k] * along;
-    const double rest = values[k] - interpolated(accessor, place), slope = product.x + product.y + product.z;
-    const double steepest = std::abs(product.x) + std::abs(product.y) + std::abs(product.z);
-    if (steepest == 0.0) continue;
-    // A ray that grazes is taken to be a sixteenth as steep as it could be: the step's theory is of first order.
-    const double step = -rest / std::copysign(std::max(std::abs(slope), steepest / 16.0), slope);
+    const double side = roots.from_inside[k] ? -1.0 : 1.0, rest = side * (values[k] - interpolated(accessor, place));
+    const double fall = -side * (product.x + product.y + product.z);
+    const double most_fall = std::abs(product.x) + std::abs(product.y) + std::abs(product.z);
+    if (most_fall == 0.0) continue;
+    const double step = rest / std::max(fall, most_fall / 16.0) * std::min(1.0 + fall / most_fall, 1.0);
     const glm::dvec3 way = state.walked.index_from_render.vector(direction);
     const double most = 0.25 / std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)});
     const double move = std::clamp(step, -most, most), t = roots.t[k] + move;

@@ -51,6 +51,28 @@ Mesh pyramid() {
   return mesh;
 }
 
+/// A bowl without a lid, deep enough to show its inside and its outside: half of the torus's rings, and its rim.
+Mesh bowl() {
+  constexpr int kAround = 8, kRings = 4;
+  Mesh mesh;
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int i = 0; i < kAround; ++i) {
+      const double a = 2.0 * std::numbers::pi * i / kAround, r = std::array{0.4, 0.9, 1.1, 1.0}[static_cast<size_t>(ring)];
+      mesh.positions.emplace_back(r * std::cos(a), std::array{-0.6, -0.4, 0.1, 0.6}[static_cast<size_t>(ring)] + 0.05 * std::cos(3.0 * a),
+                                  r * std::sin(a));
+    }
+  }
+  for (int ring = 0; ring + 1 < kRings; ++ring) {
+    for (int i = 0; i < kAround; ++i) {
+      const int next = (i + 1) % kAround;
+      for (const int corner : {ring * kAround + i, (ring + 1) * kAround + i, (ring + 1) * kAround + next, ring * kAround + next})
+        mesh.corner_vertices.push_back(corner);
+      mesh.face_sizes.push_back(4);
+    }
+  }
+  return mesh;
+}
+
 Mesh octahedron() {
   Mesh mesh;
   mesh.positions = {{1.2, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -0.8, 0}, {0, 0, 1}, {0, 0, -1.1}};
@@ -199,7 +221,9 @@ TEST(TruthLimit, TheOutlineOfABilinearBoxIsItsShadowsHexagon) {
 /// The mesh's border is its own; only how far it may lie from the limit's is asked here.
 TEST(TruthLimit, AFineMeshShowsTheSameBorder) {
   std::mt19937 random(kSeed + 2);
-  for (const Cage& cage : cages(random)) {
+  std::vector<Cage> seen = cages(random);
+  seen.push_back({"bowl", bowl(), Scheme::catmark});
+  for (const Cage& cage : seen) {
     const Scene scene = scene_of({object_of(cage.mesh, cage.scheme)});
     const Camera camera = random_camera(scene, random, Projection::perspective);
     TruthSettings settings;

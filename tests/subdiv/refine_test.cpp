@@ -50,6 +50,19 @@ std::map<std::string, Mesh> rich_cages() {
   return cages;
 }
 
+/// Of triangles: darts at regular and extraordinary vertices, one crease through, and a smooth one.
+std::map<std::string, Mesh> loop_cages() {
+  std::map<std::string, Mesh> cages;
+  cages["octahedron"] = test::jittered(test::octahedron(), 0.1, 14);
+  Mesh darts = test::jittered(test::sphere(1), 0.05, 15);
+  darts.creases = {{darts.corner_vertices[0], darts.corner_vertices[1], 10.0f}};
+  cages["dart to dart"] = darts;
+  Mesh end = test::jittered(test::octahedron(), 0.1, 16);
+  end.creases = {{end.corner_vertices[0], end.corner_vertices[1], 10.0f}, {end.corner_vertices[1], end.corner_vertices[2], 10.0f}};
+  cages["crease with two ends"] = end;
+  return cages;
+}
+
 TEST(Refine, SharpCubeStaysTheCubeWithFlatNormals) {
   Mesh cage = cube();
   crease_all_edges(cage, 10.0f);
@@ -205,10 +218,13 @@ TEST(Refine, PredictedSizeIsWhatComesOut) {
 TEST(Refine, TheLimitDoesNotDependOnTheLevelItIsReachedFrom) {
   // Every vertex of level 1 and 2 on the limit is a vertex of level 4 on the limit, with the same normals: masks for smooth vertices,
   // creases and corners, and the way round by the limit surface for semi-sharp ones, checked against each other.
-  for (const auto& [name, cage] : rich_cages()) {
-    const Mesh fine = refined(cage, Scheme::catmark, 4);
+  std::vector<std::tuple<std::string, Mesh, Scheme>> all;
+  for (const auto& [name, cage] : rich_cages()) all.emplace_back(name, cage, Scheme::catmark);
+  for (const auto& [name, cage] : loop_cages()) all.emplace_back("loop " + name, cage, Scheme::loop);
+  for (const auto& [name, cage, scheme] : all) {
+    const Mesh fine = refined(cage, scheme, 4);
     for (const int level : {0, 1, 2}) {
-      const Mesh coarse = refined(cage, Scheme::catmark, level);
+      const Mesh coarse = refined(cage, scheme, level);
       double worst = 0.0, worst_angle = 0.0;
       for (size_t c = 0; c < coarse.corner_vertices.size(); ++c) {
         const glm::dvec3 p = coarse.positions[static_cast<size_t>(coarse.corner_vertices[c])];

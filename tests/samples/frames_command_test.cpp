@@ -116,6 +116,19 @@ TEST(StudyFlicker, OfEveryModelEndsWithHysteresis) {
   EXPECT_EQ(*std::max_element(held.begin(), held.end()), 0.0);
 }
 
+TEST(RenderFrames, AreSummedUpInASentence) {
+  const TemporaryFolder folder;
+  const auto sentence = [&](const char* method) {
+    const RunResult run = run_limn({"render", "ellipsoid", "--surface", "mesh", "--level", "2", "--frames", "3", "--size", "64x48",
+                                    "--method", method, "-o", folder.file("film.png")});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.out + run.err;
+  };
+  EXPECT_NE(sentence("rim").find("that of the analytic surface itself"), std::string::npos) << sentence("rim");
+  EXPECT_NE(sentence("rim").find("over 3 frames"), std::string::npos);
+  EXPECT_NE(sentence("edge_quads").find("flicker: ink flipped"), std::string::npos) << sentence("edge_quads");
+}
+
 TEST(RenderFrames, RefusesWhatMeansNothing) {
   for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--frames", "0"},
                                                 {"--frames", "three"},

@@ -58,8 +58,8 @@ const std::multimap<std::string, Broken>& broken() {
 
 TEST(StabilityChecks, EveryOneFindsWhatIsWrong) {
   for (const auto& [check, one] : broken()) {
-    const auto unless_given = [&](const std::string& table, const std::string& text) {
-      return one.rest.find(table) == std::string::npos ? table + text : "";
+    const auto unless_given = [&rest = one.rest](const std::string& table, const std::string& text) {
+      return rest.find(table) == std::string::npos ? table + text : "";
     };
     const std::string camera = unless_given("[camera]", "\neye = [3, 2, 4]\northo = 4\n"),
                       surface = unless_given("[surface]", "\nvoxels = 16\nlevel = 2\n");

@@ -49,8 +49,8 @@ struct Pixel {
 
 /// False where the pixel just beyond the guessed contour shows the same sheet, turned away a little more. At a crease the normals turn
 /// within a pixel or two, and the circle that they make has a contour that the surface has not. A sheet behind the contour most often faces
-/// the eye more.
-bool ends_there(const BorderInput& input, int x, int y, const ContourGuess& guess) {
+/// the eye more. `held`: in favour of ink (> 0) or of none (< 0), as a share of the width.
+bool ends_there(const BorderInput& input, int x, int y, const ContourGuess& guess, double held) {
   const double beyond = guess.distance_px + 1.5;
   const int nx = static_cast<int>(std::lround(x + beyond * guess.outward.x)),
             ny = static_cast<int>(std::lround(y - beyond * guess.outward.y));
@@ -58,11 +58,12 @@ bool ends_there(const BorderInput& input, int x, int y, const ContourGuess& gues
   if (!id.inside(nx, ny)) return true;
   const size_t here = id.index(x, y), there = id.index(nx, ny);
   if (id.pixels[there] != id.pixels[here]) return true;
-  const float ratio = input.gbuffer.n_dot_v.pixels[there] / input.gbuffer.n_dot_v.pixels[here];
-  return ratio < 0.5f || ratio > 1.1f || !same_sheet(input, here, there, static_cast<int>(std::ceil(beyond)));
+  const double ratio = double{input.gbuffer.n_dot_v.pixels[there]} / double{input.gbuffer.n_dot_v.pixels[here]};
+  const double favour = held < 0.0 ? 1.0 / (1.0 - held) : 1.0 + held;
+  return ratio < 0.5 * favour || ratio > 1.1 / favour || !same_sheet(input, here, there, static_cast<int>(std::ceil(beyond)));
 }
 
-Pixel measure(const BorderInput& input, const Image<double>& curvature, const Settings& settings, int x, int y) {
+Pixel measure(const BorderInput& input, const Image<double>& curvature, const Settings& settings, int x, int y, double held) {
   const SeenPoint seen = seen_at(input, x, y);
   if (seen.n_dot_v < 1e-6) return {0.0, fine};
   const double kr = curvature.at(x, y);
@@ -75,7 +76,8 @@ Pixel measure(const BorderInput& input, const Image<double>& curvature, const Se
   Pixel pixel{guess.distance_px, kr * settings.width_px >= seen.scale ? wider_than_radius : fine};
   if (guess.distance_px > 2.0 * settings.reach()) return pixel;
   if (pixel.status == fine) pixel.distance_px = corrected(input, curvature, settings, x, y, seen, guess);
-  if (pixel.distance_px <= settings.reach() && !ends_there(input, x, y, guess)) pixel.distance_px = std::numeric_limits<double>::infinity();
+  if (pixel.distance_px <= settings.reach() && !ends_there(input, x, y, guess, held))
+    pixel.distance_px = std::numeric_limits<double>::infinity();
   return pixel;
 }
 
@@ -136,9 +138,10 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
       for (int x = 0; x < seen.width; ++x) {
         const size_t i = seen.id.index(x, y);
         if (seen.id.pixels[i] == 0) continue;
-        const Pixel pixel = measure(input, curvature, settings, x, y);
+        const double shift = hysteresis.shift(i);
+        const Pixel pixel = measure(input, curvature, settings, x, y, shift / std::max(settings.width_px, 1.0));
         if (border.status.pixels[i] == fine) border.status.pixels[i] = pixel.status;
-        const double edge = settings.width_px + hysteresis.shift(i);
+        const double edge = settings.width_px + shift;
         border.coverage.pixels[i] = static_cast<float>(1.0 - smoothstep(edge - half, edge + half, pixel.distance_px));
       }
     }

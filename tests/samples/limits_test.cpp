@@ -141,7 +141,7 @@ TEST(Limits, MoreTimeThanAllowedIsRefusedBeforehand) {
   EXPECT_TRUE(std::regex_search(result.err, std::regex("--max-time: the call would take about [0-9.]+ m?s, which allows 500 ms; "
                                                        "--voxels [0-9]+ would take about")))
       << result.err;
-  const RunResult study = run_limn({"study", "ellipsoid", "--views", "200", "--max-time", "1s", "-o", folder.file("study")});
+  const RunResult study = run_limn({"study", "ellipsoid", "--views", "200", "--max-time", "20s", "-o", folder.file("study")});
   EXPECT_EQ(study.exit_code, 2) << study.err;
   EXPECT_NE(study.err.find("--max-time: the study would take about"), std::string::npos) << study.err;
   const RunResult plan = run_limn({"plan", "ellipsoid", "--tolerance", "1", "--size", "4096x4096", "--max-time", "1s"});

@@ -42,11 +42,27 @@ bool flatten(const toml::array& array, std::vector<double>& numbers) {
 
 }  // namespace
 
+// Not by the library's own formatter: it converts negative numbers within lists to unsigned ones.
 std::string value_text(const toml::node& node) {
-  std::ostringstream text;
-  text << toml::node_view<const toml::node>(node);
-  std::string out = text.str();
   constexpr size_t kLongest = 60;
+  std::ostringstream text;
+  size_t count = 0;
+  if (const toml::array* const list = node.as_array()) {
+    for (const toml::node& item : *list) {
+      if (static_cast<size_t>(text.tellp()) > kLongest) break;
+      text << (count++ == 0 ? "[ " : ", ") << value_text(item);
+    }
+    text << (count == 0 ? "[]" : " ]");
+  } else if (const toml::table* const table = node.as_table()) {
+    for (const auto& [key, item] : *table) {
+      if (static_cast<size_t>(text.tellp()) > kLongest) break;
+      text << (count++ == 0 ? "{ " : ", ") << key.str() << " = " << value_text(item);
+    }
+    text << (count == 0 ? "{}" : " }");
+  } else {
+    text << toml::node_view<const toml::node>(node);
+  }
+  std::string out = text.str();
   if (out.size() > kLongest) out = out.substr(0, kLongest) + "...";
   return out;
 }

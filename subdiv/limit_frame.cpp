@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <opensubdiv/far/primvarRefiner.h>
 
 #include <algorithm>
@@ -144,7 +145,22 @@ Fans gather_fans(const std::vector<OneRing>& rings, Scheme scheme) {
   return fans;
 }
 
+/// OpenSubdiv gives its masks room for twice the largest number of edges about a vertex: where faces repeat edges it writes beyond.
+void check_room_for_masks(const Far::TopologyLevel& level) {
+  int most_edges = 0, most = 0;
+  for (int v = 0; v < level.GetNumVertices(); ++v) {
+    most_edges = std::max(most_edges, level.GetVertexEdges(v).size());
+    most = std::max(most, level.GetVertexEdges(v).size() + level.GetVertexFaces(v).size());
+  }
+  // Its buffers of indices and of three masks' weights have at least 33 and 99 places.
+  const int room = 1 + 2 * most_edges, need = 1 + most;
+  if (need <= std::max(room, 33) && 2 * room + need <= std::max(3 * room, 99)) return;
+  throw InputError({"", "mesh", fmt::format("{} edges and faces about a vertex, where {} edges are the most", most, most_edges),
+                    "faces repeat each other's edges, and have no limit surface", "a cage without repeated faces, or --scheme bilinear"});
+}
+
 LimitFrame limit_frame(const Far::TopologyRefiner& refiner, Scheme scheme, const Points& points) {
+  if (scheme != Scheme::bilinear) check_room_for_masks(refiner.GetLevel(refiner.GetMaxLevel()));
   LimitFrame frame{points, points, points, {}};
   Far::PrimvarRefinerReal<double>(refiner).Limit(points, frame.positions, frame.tangent1, frame.tangent2);
   if (scheme == Scheme::bilinear) return frame;

@@ -41,6 +41,18 @@ if(NOT TARGET limn_opencv)
     INTERFACE_INCLUDE_DIRECTORIES ${LIMN_OPENCV_INCLUDE})
 endif()
 
+# OpenImageIO's config file insists on programs that come with another package.
+find_dependency(Imath)
+if(NOT TARGET limn_openimageio)
+  find_path(LIMN_OPENIMAGEIO_INCLUDE OpenImageIO/imageio.h REQUIRED)
+  find_library(LIMN_OPENIMAGEIO_LIBRARY OpenImageIO REQUIRED)
+  find_library(LIMN_OPENIMAGEIO_UTIL_LIBRARY OpenImageIO_Util REQUIRED)
+  mark_as_advanced(LIMN_OPENIMAGEIO_INCLUDE LIMN_OPENIMAGEIO_LIBRARY LIMN_OPENIMAGEIO_UTIL_LIBRARY)
+  add_library(limn_openimageio INTERFACE IMPORTED)
+  set_target_properties(limn_openimageio PROPERTIES
+    INTERFACE_LINK_LIBRARIES "${LIMN_OPENIMAGEIO_LIBRARY};${LIMN_OPENIMAGEIO_UTIL_LIBRARY};Imath::Imath;fmt::fmt"
+    INTERFACE_INCLUDE_DIRECTORIES ${LIMN_OPENIMAGEIO_INCLUDE})
+endif()
+
 find_dependency(embree 3)
-find_dependency(OpenImageIO)
 find_dependency(hwy)

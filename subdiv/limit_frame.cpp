@@ -145,22 +145,24 @@ Fans gather_fans(const std::vector<OneRing>& rings, Scheme scheme) {
   return fans;
 }
 
-/// OpenSubdiv gives its masks room for twice the largest number of edges about a vertex: where faces repeat edges it writes beyond.
-void check_room_for_masks(const Far::TopologyLevel& level) {
-  int most_edges = 0, most = 0;
+/// For tangents on a crease Catmull-Clark's masks take a place for each face about the vertex, where OpenSubdiv 3.5 (far/primvarRefiner.h,
+/// limit) has as many as the largest valence. More faces than that, about an edge with more than two, come to lie in the next mask, which
+/// harms nobody, since the normals there are found otherwise (limit_normals); but beyond the last one they would leave the buffer.
+void check_room_for_masks(const Far::TopologyRefiner& refiner) {
+  const Far::TopologyLevel& level = refiner.GetLevel(refiner.GetMaxLevel());
+  const int valence = refiner.GetMaxValence(), mask = 1 + 2 * valence;
+  const int indices = std::max(mask, 33), weights = std::max(3 * mask, 99);
   for (int v = 0; v < level.GetNumVertices(); ++v) {
-    most_edges = std::max(most_edges, level.GetVertexEdges(v).size());
-    most = std::max(most, level.GetVertexEdges(v).size() + level.GetVertexFaces(v).size());
+    if (level.GetVertexRule(v) != Sdc::Crease::RULE_CREASE) continue;
+    const int edges = level.GetVertexEdges(v).size(), faces = level.GetVertexFaces(v).size();
+    if (edges + faces <= indices && 2 * mask + 1 + valence + faces <= weights) continue;
+    throw InputError({"", "mesh", fmt::format("{} faces about a point of an edge", faces),
+                      "too many faces share an edge for a limit surface", "a cage whose edges have two faces, or --scheme bilinear"});
   }
-  // Its buffers of indices and of three masks' weights have at least 33 and 99 places.
-  const int room = 1 + 2 * most_edges, need = 1 + most;
-  if (need <= std::max(room, 33) && 2 * room + need <= std::max(3 * room, 99)) return;
-  throw InputError({"", "mesh", fmt::format("{} edges and faces about a vertex, where {} edges are the most", most, most_edges),
-                    "faces repeat each other's edges, and have no limit surface", "a cage without repeated faces, or --scheme bilinear"});
 }
 
 LimitFrame limit_frame(const Far::TopologyRefiner& refiner, Scheme scheme, const Points& points) {
-  if (scheme != Scheme::bilinear) check_room_for_masks(refiner.GetLevel(refiner.GetMaxLevel()));
+  if (scheme == Scheme::catmark) check_room_for_masks(refiner);
   LimitFrame frame{points, points, points, {}};
   Far::PrimvarRefinerReal<double>(refiner).Limit(points, frame.positions, frame.tangent1, frame.tangent2);
   if (scheme == Scheme::bilinear) return frame;

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "sdf/error.h"
 #include "subdiv/audit.h"
 #include "subdiv/refine.h"
 #include "test_meshes.h"
@@ -241,6 +242,35 @@ TEST(Refine, TheLimitDoesNotDependOnTheLevelItIsReachedFrom) {
       EXPECT_LT(worst_angle, 0.05) << name << " level " << level;  // float normals: acos near 1 costs 0.03 degrees
     }
   }
+}
+
+/// Pages about one edge: a library's buffers, in which memory is written that the address sanitizer watches.
+TEST(Refine, AnEdgeOfManyFacesIsRefinedOrRefused) {
+  int most_refined = 0;
+  for (int pages = 1; pages <= 60; ++pages) {
+    Mesh book;
+    book.positions = {{0, 0, 0}, {0, 0, 1}};
+    for (int i = 0; i < pages; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / pages;
+      const auto next = static_cast<std::int32_t>(book.vertex_count());
+      book.positions.emplace_back(std::cos(angle), std::sin(angle), 0.0);
+      book.positions.emplace_back(std::cos(angle), std::sin(angle), 1.0);
+      test::add_face(book, {0, next, next + 1, 1});
+    }
+    for (const int level : {0, 1, 3}) {
+      try {
+        const Mesh mesh = refined(book, Scheme::catmark, level);
+        most_refined = std::max(most_refined, pages);
+        for (const glm::dvec3& p : mesh.positions) ASSERT_TRUE(std::isfinite(p.x + p.y + p.z)) << pages;
+        for (const glm::vec3& n : mesh.corner_normals) ASSERT_NEAR(glm::length(n), 1.0f, 1e-5f) << pages;
+      } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("too many faces share an edge"), std::string::npos) << error.what();
+        EXPECT_GT(pages, 10);
+      }
+    }
+    EXPECT_NO_THROW(refined(book, Scheme::bilinear, 2)) << pages;
+  }
+  EXPECT_GE(most_refined, 10);
 }
 
 TEST(Refine, MaterialsGroupsAndColorsAreInherited) {

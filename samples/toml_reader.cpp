@@ -42,7 +42,7 @@ bool flatten(const toml::array& array, std::vector<double>& numbers) {
 
 }  // namespace
 
-// Not by the library's own formatter: it converts negative numbers within lists to unsigned ones.
+// Not by the library's own formatter: it converts negative numbers within lists to unsigned ones, and writes 0.1 with 17 digits.
 std::string value_text(const toml::node& node) {
   constexpr size_t kLongest = 60;
   std::ostringstream text;
@@ -59,6 +59,8 @@ std::string value_text(const toml::node& node) {
       text << (count++ == 0 ? "{ " : ", ") << key.str() << " = " << value_text(item);
     }
     text << (count == 0 ? "{}" : " }");
+  } else if (const toml::value<double>* const number = node.as_floating_point()) {
+    text << fmt::format("{:#}", number->get());
   } else {
     text << toml::node_view<const toml::node>(node);
   }

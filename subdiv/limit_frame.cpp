@@ -156,8 +156,10 @@ void check_room_for_masks(const Far::TopologyRefiner& refiner) {
     if (level.GetVertexRule(v) != Sdc::Crease::RULE_CREASE) continue;
     const int edges = level.GetVertexEdges(v).size(), faces = level.GetVertexFaces(v).size();
     if (edges + faces <= indices && 2 * mask + 1 + valence + faces <= weights) continue;
-    throw InputError({"", "mesh", fmt::format("{} faces about a point of an edge", faces),
-                      "too many faces share an edge for a limit surface", "a cage whose edges have two faces, or --scheme bilinear"});
+    int sharing = 0;
+    for (const int e : level.GetVertexEdges(v)) sharing = std::max(sharing, level.GetEdgeFaces(e).size());
+    throw InputError({"", "mesh", fmt::format("{} faces at one edge", sharing), "too many faces share an edge for a limit surface",
+                      "a cage whose edges have two faces, or --scheme bilinear"});
   }
 }
 

@@ -18,6 +18,15 @@ import table
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
+def report(out):
+    """Writes the table of what is there, as Markdown and as a page; gives the records and the Markdown."""
+    records = parts.read_all(out)
+    markdown = table.markdown(records)
+    (out / "table.md").write_text(markdown)
+    (out / "index.html").write_text(table.page(records))
+    return records, markdown
+
+
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("--quick", action="store_true")
@@ -34,10 +43,8 @@ def main():
         print(f"{name} …", flush=True)
         record = parts.run(name, options.limn.resolve(), options.out.resolve(), options.quick, options.again)
         print(f"{name}: {record['outcome']}, {record['seconds']:.0f} s" + "".join(f"\n  {f}" for f in record["failures"][:10]), flush=True)
-    records = parts.read_all(options.out)
-    markdown = table.markdown(records)
-    (options.out / "table.md").write_text(markdown)
-    (options.out / "index.html").write_text(table.page(records))
+        report(options.out)  # whoever ends this early has the table so far
+    records, markdown = report(options.out)
     if options.markdown:
         options.markdown.write_text(markdown)
     print("\n" + markdown + f"\n{options.out / 'index.html'}")

@@ -119,6 +119,8 @@ void validate(const Mesh& mesh, const std::string& file) {
   check_size(mesh.face_groups.size(), mesh.face_count(), file, "groups", "face");
   check_names(mesh.face_materials, mesh.material_names.size(), file, "materials");
   check_names(mesh.face_groups, mesh.group_names.size(), file, "groups");
+  check_size(mesh.face_smoothing.size(), mesh.face_count(), file, "smoothing groups", "face");
+  for (const std::int32_t hole : mesh.holes) check_index(hole, mesh.face_count(), file, "holes", "face");
 }
 
 }  // namespace limn

@@ -23,6 +23,10 @@ struct CornerTag {
 
 /// What happens to open edges under subdivision: OpenSubdiv's VTX_BOUNDARY_NONE, EDGE_ONLY, EDGE_AND_CORNER.
 enum class BoundaryRule { none, edge_only, edge_and_corner };
+/// How semi-sharp creases lose sharpness from level to level: OpenSubdiv's CREASE_UNIFORM and CREASE_CHAIKIN.
+enum class CreaseMethod { uniform, chaikin };
+/// Weights of triangles under Catmull-Clark: OpenSubdiv's TRI_SUB_CATMARK and TRI_SUB_SMOOTH.
+enum class TriangleRule { catmark, smooth };
 
 /// A polygon mesh. Vertices are welded by index only; nothing is merged by position, so what the file says stays as found.
 struct Mesh {
@@ -38,6 +42,12 @@ struct Mesh {
   std::vector<Crease> creases{};
   std::vector<CornerTag> corners{};
   BoundaryRule boundary = BoundaryRule::edge_and_corner;
+  CreaseMethod crease_method = CreaseMethod::uniform;
+  TriangleRule triangle_rule = TriangleRule::catmark;
+  std::vector<std::int32_t> holes{};           ///< Faces of a cage that are refined and not drawn; rising, unique.
+  std::vector<std::int32_t> face_smoothing{};  ///< Smoothing group of each face, 0: smooth with no other; or empty: the file has none.
+  /// What the reader dropped, repaired or ignored, a sentence each with its count; for people, shown once.
+  std::vector<std::string> warnings{};
 
   size_t face_count() const { return face_sizes.size(); }
   size_t vertex_count() const { return positions.size(); }

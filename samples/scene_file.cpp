@@ -118,10 +118,12 @@ SceneObject read_object(TomlReader& reader, const SceneReaders& readers, size_t 
   };
   // Cheap keys first, so that a slip in them is told before a large file is read.
   const std::string name = reader.text("name").value_or(fmt::format("object {}", index + 1));
-  const glm::vec3 color = reader.color("color").value_or(glm::vec3(0.8f));
+  const std::optional<glm::vec3> own_color = reader.color("color");
+  const glm::vec3 color = own_color.value_or(glm::vec3(0.8f));
   const int material = reader.integer("material", 0, 1'000'000).value_or(0);
   if (reader.has("mesh") || reader.has("vdb")) world_from_object = read_placement(reader);
   Source source = read_source();
+  if (auto* mesh = std::get_if<MeshSource>(&source); mesh != nullptr && own_color) mesh->mesh.draws_colors = false;
   reader.finish();
   return {name, std::move(source), world_from_object, color, material, level};
 }

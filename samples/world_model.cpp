@@ -56,11 +56,17 @@ void append(Mesh& all, const Mesh& part, const std::string& name) {
   join(all.corner_normals, part.corner_normals, normals);
   join(all.vertex_colors, part.vertex_colors, colors);
   if (materials) {
+    if (!all.material_colors.empty() || !part.material_colors.empty()) {
+      all.material_colors.resize(all.material_names.size(), glm::vec3(1.0f));
+      all.material_colors.insert(all.material_colors.end(), part.material_colors.begin(), part.material_colors.end());
+      all.material_colors.resize(all.material_names.size() + part.material_names.size(), glm::vec3(1.0f));
+    }
     for (const std::int32_t material : part.face_materials) all.face_materials.push_back(material_offset + material);
     all.material_names.insert(all.material_names.end(), part.material_names.begin(), part.material_names.end());
   } else {
     all.face_materials.clear();
     all.material_names.clear();
+    all.material_colors.clear();
   }
   for (const Crease& crease : part.creases) {
     all.creases.push_back({vertex_offset + crease.vertex_a, vertex_offset + crease.vertex_b, crease.sharpness});

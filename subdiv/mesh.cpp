@@ -89,6 +89,12 @@ void check_names(const std::vector<std::int32_t>& indices, size_t names, const s
   for (const std::int32_t index : indices) check_index(index, names, file, field, "name");
 }
 
+void check_colors(const std::vector<glm::vec3>& colors, const std::string& file, const char* field) {
+  for (const glm::vec3& color : colors)
+    if (!std::isfinite(color.x + color.y + color.z))
+      refuse(file, field, fmt::format("{}, {}, {}", color.x, color.y, color.z), "a colour is not finite", "numbers from 0 to 1");
+}
+
 }  // namespace
 
 Box bounds(const Mesh& mesh) {
@@ -118,6 +124,9 @@ void validate(const Mesh& mesh, const std::string& file) {
   check_size(mesh.face_materials.size(), mesh.face_count(), file, "materials", "face");
   check_size(mesh.face_groups.size(), mesh.face_count(), file, "groups", "face");
   check_names(mesh.face_materials, mesh.material_names.size(), file, "materials");
+  check_size(mesh.material_colors.size(), mesh.material_names.size(), file, "material colors", "material");
+  check_colors(mesh.material_colors, file, "material colors");
+  check_colors(mesh.vertex_colors, file, "colors");
   check_names(mesh.face_groups, mesh.group_names.size(), file, "groups");
   check_size(mesh.face_smoothing.size(), mesh.face_count(), file, "smoothing groups", "face");
   for (const std::int32_t hole : mesh.holes) check_index(hole, mesh.face_count(), file, "holes", "face");

@@ -38,6 +38,7 @@ struct Mesh {
   std::vector<std::int32_t> face_materials{};   ///< Index into material_names for each face; or empty.
   std::vector<std::int32_t> face_groups{};      ///< Index into group_names for each face; or empty.
   std::vector<std::string> material_names{};
+  std::vector<glm::vec3> material_colors{};  ///< Linear, one for each of material_names; or empty. Vertex colours are multiplied by them.
   std::vector<std::string> group_names{};
   std::vector<Crease> creases{};
   std::vector<CornerTag> corners{};
@@ -46,6 +47,7 @@ struct Mesh {
   TriangleRule triangle_rule = TriangleRule::catmark;
   std::vector<std::int32_t> holes{};           ///< Faces of a cage that are refined and not drawn; rising, unique.
   std::vector<std::int32_t> face_smoothing{};  ///< Smoothing group of each face, 0: smooth with no other; or empty: the file has none.
+  bool draws_colors = true;                    ///< False: the object's own color is drawn, whatever colours the file has.
   /// What the reader dropped, repaired or ignored, a sentence each with its count; for people, shown once.
   std::vector<std::string> warnings{};
 

@@ -34,6 +34,7 @@ void put_mesh(ByteWriter& writer, const Mesh& mesh) {
   put_all(writer, mesh.face_groups);
   put_names(writer, mesh.material_names);
   put_names(writer, mesh.group_names);
+  put_all(writer, mesh.material_colors);
   put_all(writer, mesh.face_smoothing);
   put_names(writer, mesh.warnings);
 }
@@ -49,6 +50,7 @@ Mesh get_mesh(ByteReader& reader) {
   mesh.face_groups = reader.get_vector<std::int32_t>();
   mesh.material_names = get_names(reader);
   mesh.group_names = get_names(reader);
+  mesh.material_colors = reader.get_vector<glm::vec3>();
   mesh.face_smoothing = reader.get_vector<std::int32_t>();
   mesh.warnings = get_names(reader);
   return mesh;

@@ -117,6 +117,8 @@ Mesh as_mesh(const Refined& refined, const Mesh& cage, int level_number) {
   copy_faces(level, ancestor, number, refined.normals, cage, mesh);
   copy_tags(level, number, mesh);
   mesh.material_names = cage.material_names;
+  mesh.material_colors = cage.material_colors;
+  mesh.draws_colors = cage.draws_colors;
   mesh.group_names = cage.group_names;
   mesh.boundary = cage.boundary;
   return mesh;

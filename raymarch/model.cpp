@@ -66,6 +66,7 @@ SurfaceInfo total(const SceneModel& model) {
     sum.bytes += info.bytes;
     sum.build_ms += info.build_ms;
     sum.warnings.insert(sum.warnings.end(), info.warnings.begin(), info.warnings.end());
+    sum.notes.insert(sum.notes.end(), info.notes.begin(), info.notes.end());
   }
   return sum;
 }

@@ -74,6 +74,7 @@ struct SurfaceInfo {
   std::int64_t ray_bytes = 0;  ///< Of `bytes`, what rays read (a level set's ray-ready form).
   double prepare_ms = 0.0;     ///< Of `build_ms`, making that.
   std::vector<std::string> warnings{};
+  std::vector<std::string> notes{};  ///< What is good to know and no reason to worry: how far a resampled volume lies from its file.
 };
 
 class Polygons;  // raymarch/polygons.h
@@ -152,6 +153,7 @@ struct SurfaceSettings {
   int level = 3;                        ///< Subdivision or tessellation level.
   std::optional<Scheme> scheme{};       ///< Overrides the objects'.
   std::optional<NormalKind> normals{};  ///< Unset: limit where there is a limit surface or a field, else vertex.
+  bool resample_volumes = false;        ///< Volumes take `voxels` and `voxel_size` too; else they are modelled as they are.
   std::int64_t max_bytes = std::int64_t{8} << 30;
   int max_steps = 10'000;                                ///< Per ray; beyond it the pixel's status is out_of_steps.
   std::function<void(double)> progress{};                ///< 0..1 while building; may be empty.

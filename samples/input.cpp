@@ -30,7 +30,7 @@ SceneInput from_mesh(const Options& options) {
 }
 
 SceneInput from_volume(const Options& options) {
-  LevelSet level_set = read_level_set(options.input, options.grid);
+  LevelSet level_set = read_level_set(options.input, options.grids.empty() ? "" : options.grids.front());
   const std::string name = level_set.info().name;
   SceneInput input;
   input.scene.objects.push_back({.name = name.empty() ? std::filesystem::path(options.input).stem().string() : name,
@@ -59,8 +59,8 @@ InputKind input_kind(const std::string& input) {
 SceneInput load_input(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   const InputKind kind = input_kind(options.input);
-  if (!options.grid.empty() && kind != InputKind::level_set) {
-    throw InputError({"", "--grid", options.grid, "the input has no grids", "a .vdb would be right"});
+  if (!options.grids.empty() && kind != InputKind::level_set) {
+    throw InputError({"", "--grid", options.grids.front(), "the input has no grids", "a .vdb would be right"});
   }
   SceneInput input;
   switch (kind) {

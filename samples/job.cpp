@@ -205,7 +205,7 @@ std::string resolved_call(const std::string& command, const Options& options, co
   call += fmt::format(" --gradient {} --level {}", surface.gradient, options.level_for_view ? "auto" : std::to_string(surface.level));
   if (surface.scheme) call += fmt::format(" --scheme {}", name_of(*surface.scheme));
   if (surface.normals) call += fmt::format(" --normals {}", name_of(*surface.normals));
-  if (!options.grid.empty()) call += " --grid " + options.grid;
+  for (const std::string& grid : options.grids) call += " --grid " + grid;
   for (const MethodCall& method : picture.methods) {
     call += " --method " + method.method->about.name;
     for (const std::string& pair : words_of(method.parameters.text())) call += " --set " + method.method->about.name + "." + pair;

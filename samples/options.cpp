@@ -136,7 +136,7 @@ void add_frames(CLI::App& app, Options& options) {
 
 void add_grid(CLI::App& app, Options& options) {
   add(app, {"--grid", "NAME", "which grid of a .vdb; default: the only level set in it", kSurface},
-      [&options](const std::string& text) { options.grid = text; });
+      [&options](const std::string& text) { options.grids = {text}; });
 }
 
 namespace {

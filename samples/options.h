@@ -74,7 +74,7 @@ struct Options {
   bool level_for_view = false;  ///< --level auto; `level` is unset then.
   std::optional<Scheme> scheme;
   std::optional<NormalKind> normals;
-  std::string grid;
+  std::vector<std::string> grids;  ///< Of a volume, by name; "all" for all of its level sets.
 
   std::vector<std::string> methods;           ///< Of one picture, in order.
   std::vector<std::string> compared_methods;  ///< `limn compare` only: each makes pictures of its own.

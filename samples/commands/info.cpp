@@ -232,7 +232,7 @@ int run(const Options& options) {
   std::vector<GridSummary> grids;
   if (input_kind(options.input) == InputKind::level_set) {
     grids = list_grids(options.input);
-    if (options.grid.empty()) {
+    if (options.grids.empty()) {
       try {
         print_report(options, load_input(options), grids);
         return 0;

@@ -216,6 +216,7 @@ int run(const Options& options) {
   print_warnings(options, info.warnings);
   render.warnings.insert(render.warnings.end(), info.warnings.begin(), info.warnings.end());
   render.notes = levels;
+  render.notes.insert(render.notes.end(), info.notes.begin(), info.notes.end());
   if (options.frames.frames > 1) render.flicker = watch_flicker(options, render.input, render.surface);
   FrameHistory history;
   for (int k = 0; k < pictures_of(options); ++k) {

@@ -29,7 +29,7 @@ void refuse_others(const Options& options) {
                                                 {options.fov_deg || options.ortho_height, "--fov and --ortho"},
                                                 {options.half_width_voxels.has_value(), "--half-width"},
                                                 {options.scheme.has_value(), "--scheme"},
-                                                {!options.grid.empty(), "--grid"}};
+                                                {!options.grids.empty(), "--grid"}};
   for (const auto& [is_given, name] : given) {
     if (is_given)
       throw InputError({"", name, "", "the cases of this study say that themselves", "a copy of a case, with --case FILE, would be right"});

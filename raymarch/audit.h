@@ -23,17 +23,24 @@ struct Finding {
 /// What is to be done with the input. Checks speak of the resolution and the gradient in `surface`; no gradient: of all of them.
 struct AuditSettings {
   SurfaceSettings surface{};
-  /// Looks at everything, in up to a second or so; otherwise only at what takes less than about 50 ms.
+  /// Looks at everything, in a time that grows with the input; otherwise only at what a bounded sample of it tells, which takes less than
+  /// about 50 ms and one pass over it.
   bool thorough = false;
+  /// What the object is drawn as and by, as in `matters`: checks that can warn of neither are left out. Empty: anything.
+  std::vector<std::string> surfaces{}, methods{};
 };
 
 class AuditFacts;  // raymarch/audit/facts.h: what several checks look at, made when first asked for
 
 struct AuditCheck {
   Description about{};  ///< name: Finding::check.
-  bool quick = false;   ///< Takes less than about 50 ms for what AuditFacts::is_small() says.
+  bool quick = false;   ///< Takes less than about 50 ms, of what is not small from a sample.
   /// Appends what it finds; nothing where it has nothing to say about that kind of object.
   void (*look)(AuditFacts& facts, std::vector<Finding>& findings);
+  /// What its warnings may be for, at most. It is not run where something else is asked for.
+  bool warns = true;                    ///< False: it only tells.
+  std::vector<std::string> surfaces{};  ///< Empty: any.
+  std::vector<std::string> methods{};   ///< Empty: any.
 };
 std::span<const AuditCheck> audit_checks();
 

@@ -1,6 +1,7 @@
 #pragma once
 // What a mesh surface is made of, for methods that need faces and edges rather than rays.
 
+#include <functional>
 #include <mutex>
 #include <span>
 
@@ -15,8 +16,10 @@ class Polygons {
  public:
   /// `traced` says which normals the surface is traced with; `mesh.corner_normals`, where there are any, are those.
   Polygons(Mesh mesh, NormalKind traced) : mesh_(std::move(mesh)), traced_(traced) {}
+  /// `make` is called once, when somebody asks for the mesh: most pictures of a mesh need its triangles only.
+  Polygons(std::function<Mesh()> make, NormalKind traced) : make_(std::move(make)), traced_(traced) {}
 
-  const Mesh& mesh() const { return mesh_; }
+  const Mesh& mesh() const;
   /// Unit, one for each corner: the normals that the surface is traced with.
   std::span<const glm::vec3> corner_normals() const;
   /// Unit, one for each vertex, the same for all vertices at one position (bake_smooth_normals).
@@ -26,9 +29,10 @@ class Polygons {
   std::span<const glm::uvec3> corner_triangles() const;
 
  private:
-  Mesh mesh_;
+  mutable std::function<Mesh()> make_;
+  mutable Mesh mesh_;
   NormalKind traced_;
-  mutable std::once_flag corners_made_, smooth_made_, edges_made_, triangles_made_;
+  mutable std::once_flag mesh_made_, corners_made_, smooth_made_, edges_made_, triangles_made_;
   mutable std::vector<glm::vec3> corner_normals_, smooth_normals_;
   mutable EdgeTopology edges_;
   mutable std::vector<glm::uvec3> corner_triangles_;

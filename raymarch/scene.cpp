@@ -8,7 +8,7 @@ namespace {
 // Of the moved vertices, not of the moved box: a turned mesh would be framed too small.
 Box bounds_of(const MeshSource& source, const Affine& world_from_object) {
   Box box;
-  for (const glm::dvec3& position : source.mesh.positions) box = include(box, world_from_object.point(position));
+  for (const glm::dvec3& position : source.mesh->positions) box = include(box, world_from_object.point(position));
   return box;
 }
 

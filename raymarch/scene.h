@@ -2,8 +2,10 @@
 // What is to be drawn: objects and a camera, before anyone has decided how to model them.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -15,9 +17,23 @@
 
 namespace limn {
 
+/// A mesh that is never changed, so that scenes, models and methods hold one copy between them. It reads as a `const Mesh&`; who wants
+/// another takes a copy, changes that, and assigns it.
+class SharedMesh {
+ public:
+  SharedMesh() : mesh_(std::make_shared<const Mesh>()) {}
+  SharedMesh(Mesh mesh) : mesh_(std::make_shared<const Mesh>(std::move(mesh))) {}  // NOLINT: as a Mesh in braces
+  operator const Mesh&() const { return *mesh_; }                                  // NOLINT: where a Mesh is read
+  const Mesh& operator*() const { return *mesh_; }
+  const Mesh* operator->() const { return mesh_.get(); }
+
+ private:
+  std::shared_ptr<const Mesh> mesh_;
+};
+
 /// A subdivision cage (`scheme` set) or a mesh taken as it is (`scheme` empty: level 0, its own facets).
 struct MeshSource {
-  Mesh mesh{};
+  SharedMesh mesh{};
   std::optional<Scheme> scheme{};
   std::string file{};             ///< For messages.
   std::int64_t turned_parts = 0;  ///< Parts that came inside out and were turned round, for the audit to tell.

@@ -136,7 +136,8 @@ struct Surface {
   CurvatureSource curvature{};
 };
 
-struct KeptMesh;  // raymarch/surface/object_mesh.h
+struct FieldScratch;  // raymarch/analytic/tile.h: memory for threads, the same for all fields of a model
+struct KeptMesh;      // raymarch/surface/object_mesh.h
 /// Meshes of a scene's objects, the last one made of each: `mesh` and `mesh_level_set` start from the same. Owned by whoever models one
 /// scene several times; used by one build_model at a time, and for one scene only (levels may differ).
 struct ObjectMeshCache {
@@ -158,6 +159,7 @@ struct SurfaceSettings {
   int max_steps = 10'000;                                ///< Per ray; beyond it the pixel's status is out_of_steps.
   std::function<void(double)> progress{};                ///< 0..1 while building; may be empty.
   std::shared_ptr<const KeptMesh>* kept_mesh = nullptr;  ///< Of the object, in a cache: build_model sets it. May be null.
+  std::shared_ptr<FieldScratch> field_scratch{};         ///< build_model sets it. Empty: each field has its own.
 };
 
 struct SurfaceDescriptor {

@@ -186,9 +186,9 @@ ViewLevel level_for_views(const SceneObject& object, const SurfaceSettings& sett
   const MeshSource* source = std::get_if<MeshSource>(&object.source);
   const std::optional<Scheme> scheme = !source ? std::nullopt : settings.scheme ? settings.scheme : source->scheme;
   if (!scheme) return {};
-  MeshSource in_world = *source;
-  for (glm::dvec3& position : in_world.mesh.positions) position = object.world_from_object.point(position);
-  return level_of_cage(in_world, *scheme, settings, {cameras}, deviation_px);
+  Mesh in_world = source->mesh;
+  for (glm::dvec3& position : in_world.positions) position = object.world_from_object.point(position);
+  return level_of_cage({std::move(in_world), source->scheme, source->file}, *scheme, settings, {cameras}, deviation_px);
 }
 
 namespace {

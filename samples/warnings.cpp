@@ -19,7 +19,8 @@ std::vector<std::string> warn_of_input(const Options& options, const Scene& scen
   for (const SceneObject& object : scene.objects) {
     std::vector<std::string> surfaces = needs.surfaces;
     if (surfaces.empty()) surfaces = {settings.kind.empty() ? natural_surface(object) : settings.kind};
-    for (const Finding& finding : audit(object, {.surface = settings, .thorough = options.verbose})) {
+    for (const Finding& finding :
+         audit(object, {.surface = settings, .thorough = options.verbose, .surfaces = surfaces, .methods = methods})) {
       if (!matters(finding, surfaces, methods)) continue;
       std::string line = object.name + ": " + finding.message;
       if (options.verbose && !finding.remedy.empty()) line += "; remedy: " + finding.remedy;

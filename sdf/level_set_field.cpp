@@ -170,10 +170,11 @@ void warn_of_thin_places(const ThinPlaces& found, double voxel_size, std::vector
   const auto share = [&](std::int64_t count) {
     return fmt::format("{:.2g} % of the surface", 100.0 * static_cast<double>(count) / static_cast<double>(found.looked_at));
   };
-  if (found.walls > 0)
+  const double most = kThinPlacesShare * static_cast<double>(found.looked_at);
+  if (static_cast<double>(found.walls) > most)
     warnings.push_back(fmt::format("{} lies on walls thinner than two voxels ({:.3g}), which may break up: use smaller voxels",
                                    share(found.walls), 2.0 * voxel_size));
-  if (found.gaps > 0)
+  if (static_cast<double>(found.gaps) > most)
     warnings.push_back(fmt::format("{} lies at gaps narrower than one voxel ({:.3g}), which may close: use smaller voxels",
                                    share(found.gaps), voxel_size));
 }

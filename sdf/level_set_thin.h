@@ -8,6 +8,9 @@
 
 namespace limn {
 
+/// Shares of the surface up to this may be thin without a warning: knife edges are thin without end. As in the audit.
+inline constexpr double kThinPlacesShare = 0.005;
+
 struct ThinPlaces {
   std::int64_t looked_at = 0;
   std::int64_t walls = 0;  ///< Within two voxels the inward normal comes out again.

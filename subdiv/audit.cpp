@@ -44,7 +44,7 @@ void count_vertices(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts&
   }
 }
 
-void measure_coordinates(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& facts) {
+void measure_edges(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& facts) {
   std::vector<double> lengths;
   lengths.reserve(edges.size());
   const auto at = [&](std::int32_t v) { return mesh.positions[static_cast<size_t>(v)]; };
@@ -54,6 +54,9 @@ void measure_coordinates(const Mesh& mesh, const std::vector<Edge>& edges, MeshF
     std::nth_element(lengths.begin(), middle, lengths.end());
     facts.median_edge = *middle;
   }
+}
+
+void measure_coordinates(const Mesh& mesh, MeshFacts& facts) {
   bool single = true;
   for (const glm::dvec3& p : mesh.positions)
     for (int axis = 0; axis < 3; ++axis) {
@@ -70,14 +73,15 @@ void measure_coordinates(const Mesh& mesh, const std::vector<Edge>& edges, MeshF
 
 MeshFacts mesh_facts(const Mesh& mesh) {
   MeshFacts facts;
-  facts.faces = static_cast<std::int64_t>(mesh.face_count());
+  facts.faces = facts.looked_at = static_cast<std::int64_t>(mesh.face_count());
   const std::vector<Edge> edges = build_edges(mesh);
   count_edges(edges, facts);
   count_vertices(mesh, edges, facts);
   count_parts(mesh, edges, facts);
   count_duplicates(mesh, facts);
-  measure_faces(mesh, edges, facts);
-  measure_coordinates(mesh, edges, facts);
+  measure_faces(mesh, edges, mesh.face_count(), facts);
+  measure_edges(mesh, edges, facts);
+  measure_coordinates(mesh, facts);
   return facts;
 }
 

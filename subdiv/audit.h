@@ -27,6 +27,7 @@ inline constexpr double kObtuseAngle = 150.0 * 3.14159265358979323846 / 180.0;
 /// Counts and extremes of one mesh. A clean closed mesh has 0 in every count of faults.
 struct MeshFacts {
   std::int64_t faces = 0;
+  std::int64_t looked_at = 0;           ///< Of these faces; fewer in sampled_mesh_facts.
   std::int64_t open_edges = 0;          ///< With a face on one side only.
   std::int64_t non_manifold_edges = 0;  ///< With more than two faces.
   std::int64_t inconsistent_edges = 0;  ///< Whose two faces disagree on the outside.
@@ -55,5 +56,9 @@ struct MeshFacts {
   double coordinate_step = 0.0;
 };
 MeshFacts mesh_facts(const Mesh& mesh);
+
+/// What `count` faces, spread evenly over the mesh's list of them, and their neighbours tell: counts are of these faces and their edges,
+/// and are not scaled; parts, volume and vertices are not looked at. One pass over the mesh; beyond it the time depends on `count` alone.
+MeshFacts sampled_mesh_facts(const Mesh& mesh, std::size_t count);
 
 }  // namespace limn

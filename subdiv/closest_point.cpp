@@ -125,22 +125,6 @@ std::optional<ClosestPoint> ClosestPointData::within(const glm::dvec3& point, do
   return ClosestPoint{std::sqrt(search.best_squared), search.closest, search.triangle};
 }
 
-std::optional<std::pair<double, std::uint32_t>> ClosestPointData::first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
-                                                                            double from, double to) const {
-  RTCRayHit ray{};
-  const glm::vec3 o(origin - center), d(direction);
-  ray.ray.org_x = o.x, ray.ray.org_y = o.y, ray.ray.org_z = o.z;
-  ray.ray.dir_x = d.x, ray.ray.dir_y = d.y, ray.ray.dir_z = d.z;
-  ray.ray.tnear = static_cast<float>(from), ray.ray.tfar = static_cast<float>(to);
-  ray.ray.mask = 0xffffffffu;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(static_cast<RTCScene>(scene), &context, &ray);
-  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  return std::pair(static_cast<double>(ray.ray.tfar), ray.hit.primID);
-}
-
 ClosestPointQuery::ClosestPointQuery(const TriangleMesh& mesh) : data_(std::make_shared<const ClosestPointData>(mesh)) {}
 
 ClosestPoint ClosestPointQuery::closest(const glm::dvec3& point) const {

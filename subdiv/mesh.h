@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -81,5 +82,7 @@ struct TriangleMesh {
 /// The polygons of `mesh` as triangles: fans for convex faces, ear clipping for the others; zero-area triangles are dropped and counted.
 /// `kind` flat or vertex (limit normals come from subdiv/refine.h, as corner_normals: a mesh's own are used where `use_mesh_normals`).
 TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, bool use_mesh_normals = false);
+/// With these normals, one for each corner, in place of the mesh's own; none: those of `kind`.
+TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, std::span<const glm::vec3> corner_normals);
 
 }  // namespace limn

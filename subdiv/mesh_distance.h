@@ -21,9 +21,6 @@ struct ClosestPointData {
   /// The closest triangle within `radius` (of equally close ones the lowest), or nothing.
   /// `likely`: triangles that may be close, which spare the search what lies beyond them; any, or none, give the same answer.
   std::optional<ClosestPoint> within(const glm::dvec3& point, double radius, std::span<const std::uint32_t> likely = {}) const;
-  /// Distance to the first triangle along a ray in (from, to), and the triangle; in single precision.
-  std::optional<std::pair<double, std::uint32_t>> first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double from,
-                                                            double to) const;
 
   std::vector<glm::dvec3> positions;
   std::vector<glm::uvec3> triangles;

@@ -64,7 +64,7 @@ void count_duplicates(const Mesh& mesh, MeshFacts& facts) {
   }
 }
 
-void measure_faces(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& facts) {
+void measure_faces(const Mesh& mesh, const std::vector<Edge>& edges, size_t counted, MeshFacts& facts) {
   std::vector<glm::dvec3> normals(mesh.face_count(), glm::dvec3(0.0)), corners;
   std::vector<double> areas(mesh.face_count(), 0.0);
   std::vector<char> obtuse(mesh.face_count(), 0);
@@ -75,13 +75,14 @@ void measure_faces(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& 
     gather_corners(mesh, face_corners(mesh, first, f), corners);
     first += mesh.face_sizes[f];
     if (zero_area(corners)) {
-      ++facts.zero_area_faces;
+      facts.zero_area_faces += f < counted;
       continue;
     }
     const glm::dvec3 normal = vector_area(corners);
     areas[f] = glm::length(normal);
-    area += areas[f];
+    if (f < counted) area += areas[f];
     if (areas[f] > 0.0) normals[f] = normal / areas[f];
+    if (f >= counted) continue;
     double smallest = 0.0;
     obtuse[f] = corners.size() == 3 && largest_corner_angle(corners, normal, smallest) > kObtuseAngle;
     if (corners.size() != 3) largest_corner_angle(corners, normal, smallest);

@@ -13,6 +13,7 @@
 #include "sdf/error.h"
 #include "sdf/parallel.h"
 #include "subdiv/band_distance.h"
+#include "subdiv/first_hits.h"
 #include "subdiv/mesh_block.h"
 #include "subdiv/mesh_distance.h"
 
@@ -202,34 +203,22 @@ double share_with_inside(const TriangleMesh& mesh, const Winding& winding, doubl
   return area > 0.0 ? with_inside / area : 0.0;
 }
 
-/// Walls thinner than two voxels and gaps thinner than one, seen from the middles of the triangles along their normals.
-void warn_of_thin_sheets(const TriangleMesh& mesh, const LazyTree& tree, double voxel_size, std::vector<std::string>& warnings) {
-  const ClosestPointData& distance = tree.get();
-  std::atomic<std::int64_t> thin{0}, narrow{0};
-  const auto normal_of = [&mesh](std::uint32_t index) {
-    const glm::uvec3 t = mesh.triangles[index];
-    return glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
+/// Walls thinner than two voxels and gaps thinner than one: shares of the surface, as the audit measures them.
+void warn_of_thin_sheets(const TriangleMesh& mesh, double voxel_size, std::vector<std::string>& warnings) {
+  const ThinSamples samples = thin_samples(mesh, used_bounds(mesh).longest_side(), 2.0 * voxel_size);
+  const auto share_below = [](const std::vector<double>& widths, double limit) {
+    const auto below = std::count_if(widths.begin(), widths.end(), [limit](double width) { return width < limit; });
+    return widths.empty() ? 0.0 : static_cast<double>(below) / static_cast<double>(widths.size());
   };
-  parallel_for(size_t{0}, mesh.triangles.size(), [&](size_t i) {
-    const glm::uvec3 t = mesh.triangles[i];
-    const glm::dvec3 area = normal_of(static_cast<std::uint32_t>(i));
-    if (!(glm::length(area) > 0.0)) return;
-    const glm::dvec3 normal = glm::normalize(area);
-    const glm::dvec3 middle = (mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0;
-    const double start = 1e-5 * voxel_size + 1e-6 * distance.extent;
-    const auto opposite = [&](double sign, double reach) {
-      const auto hit = distance.first_hit(middle, sign * normal, start, reach);
-      return hit && glm::dot(normal_of(hit->second), normal) < 0.0;
-    };
-    if (opposite(-1.0, 2.0 * voxel_size)) ++thin;
-    if (opposite(1.0, voxel_size)) ++narrow;
-  });
-  if (thin > 0)
-    warnings.push_back(fmt::format("{} triangles lie on walls thinner than two voxels ({:.3g}), which may break up: use smaller voxels",
-                                   thin.load(), 2.0 * voxel_size));
-  if (narrow > 0)
-    warnings.push_back(fmt::format("{} triangles lie at gaps narrower than one voxel ({:.3g}), which may close: use smaller voxels",
-                                   narrow.load(), voxel_size));
+  const double thin = share_below(samples.walls, 2.0 * voxel_size), narrow = share_below(samples.gaps, voxel_size);
+  if (thin > kThinShare)
+    warnings.push_back(
+        fmt::format("{:.2g} % of the surface lies on walls thinner than two voxels ({:.3g}), which may break up: use smaller voxels",
+                    100.0 * thin, 2.0 * voxel_size));
+  if (narrow > kThinShare)
+    warnings.push_back(
+        fmt::format("{:.2g} % of the surface lies at gaps narrower than one voxel ({:.3g}), which may close: use smaller voxels",
+                    100.0 * narrow, voxel_size));
 }
 
 }  // namespace
@@ -258,7 +247,7 @@ MeshLevelSet level_set_from_mesh(const TriangleMesh& mesh, const LevelSetSetting
                     band.blocks.empty() ? 100.0 * (1.0 - inside) : 100.0));
     band = make_band(local, tree, winding, settings, settings.voxel_size);
   }
-  warn_of_thin_sheets(local, tree, settings.voxel_size, warnings);
+  warn_of_thin_sheets(local, settings.voxel_size, warnings);
   return {level_set_from_blocks(band.blocks, settings.voxel_size, settings.half_width_voxels, "mesh", origin), std::move(warnings)};
 }
 

@@ -10,16 +10,31 @@ namespace {
 double cross2(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) { return cross2(b - a, c - a); }
 
-std::vector<glm::dvec2> in_best_fit_plane(std::span<const glm::dvec3> corners) {
+/// Corners in two dimensions; those of small polygons, which are most, need no memory of their own.
+class FlatCorners {
+ public:
+  explicit FlatCorners(size_t count) : count_(count) {
+    if (count > kFew) many_.resize(count);
+  }
+  glm::dvec2& operator[](size_t i) { return count_ > kFew ? many_[i] : few_[i]; }
+  operator std::span<const glm::dvec2>() const { return {count_ > kFew ? many_.data() : few_.data(), count_}; }  // NOLINT
+
+ private:
+  static constexpr size_t kFew = 8;
+  size_t count_;
+  std::array<glm::dvec2, kFew> few_;
+  std::vector<glm::dvec2> many_;
+};
+
+FlatCorners in_best_fit_plane(std::span<const glm::dvec3> corners) {
   const glm::dvec3 area = vector_area(corners);
   const double length = glm::length(area);
   const glm::dvec3 n = length > 0.0 ? area / length : glm::dvec3(0.0, 0.0, 1.0);
   const glm::dvec3 away = std::abs(n.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
   const glm::dvec3 u = glm::normalize(glm::cross(away, n));
   const glm::dvec3 v = glm::cross(n, u);
-  std::vector<glm::dvec2> flat;
-  flat.reserve(corners.size());
-  for (const glm::dvec3& p : corners) flat.emplace_back(glm::dot(p - corners[0], u), glm::dot(p - corners[0], v));
+  FlatCorners flat(corners.size());
+  for (size_t i = 0; i < corners.size(); ++i) flat[i] = {glm::dot(corners[i] - corners[0], u), glm::dot(corners[i] - corners[0], v)};
   return flat;
 }
 
@@ -35,7 +50,8 @@ bool strictly_convex(std::span<const glm::dvec2> p, double tolerance) {
   for (size_t i = 0; i < p.size(); ++i) {
     const glm::dvec2 a = p[(i + 1) % p.size()] - p[i], b = p[(i + 2) % p.size()] - p[(i + 1) % p.size()];
     if (cross2(a, b) <= tolerance) return false;
-    total += std::atan2(cross2(a, b), glm::dot(a, b));
+    // Four turns of less than half a circle each make one circle, never two.
+    if (p.size() > 4) total += std::atan2(cross2(a, b), glm::dot(a, b));
   }
   return total < 3.0 * std::numbers::pi;
 }
@@ -147,7 +163,7 @@ void triangulate_polygon(std::span<const glm::dvec3> corners, std::vector<std::a
     triangles.push_back({0, 1, 2});
     return;
   }
-  const std::vector<glm::dvec2> flat = in_best_fit_plane(corners);
+  const FlatCorners flat = in_best_fit_plane(corners);
   const double tolerance = 1e-14 * extent_squared(flat);
   if (strictly_convex(flat, tolerance)) {
     for (std::int32_t i = 2; i < static_cast<std::int32_t>(corners.size()); ++i) triangles.push_back({0, i - 1, i});

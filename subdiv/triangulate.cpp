@@ -1,27 +1,93 @@
+#include <algorithm>
 #include <cmath>
 
+#include "sdf/parallel.h"
 #include "subdiv/polygon.h"
 
 namespace limn {
 namespace {
 
+bool is_direction(const glm::vec3& normal, float& length) {
+  length = glm::length(normal);
+  return length > 1e-20f && std::isfinite(length);
+}
+
 /// A file's normals made unit; where one is missing or not finite, the face's own.
-std::vector<glm::vec3> cleaned_normals(const Mesh& mesh) {
-  std::vector<glm::vec3> normals = face_normals_at_corners(mesh);
-  for (size_t i = 0; i < normals.size(); ++i) {
-    const float length = glm::length(mesh.corner_normals[i]);
-    if (length > 1e-20f && std::isfinite(length)) normals[i] = mesh.corner_normals[i] / length;
-  }
+std::vector<glm::vec3> cleaned_normals(const Mesh& mesh, std::span<const glm::vec3> given) {
+  float length = 0.0f;
+  const bool all_good =
+      std::all_of(given.begin(), given.end(), [&length](const glm::vec3& normal) { return is_direction(normal, length); });
+  std::vector<glm::vec3> normals = all_good ? std::vector<glm::vec3>(given.size()) : face_normals_at_corners(mesh);
+  for (size_t i = 0; i < normals.size(); ++i)
+    if (is_direction(given[i], length)) normals[i] = given[i] / length;
   return normals;
 }
 
-std::vector<glm::vec3> normals_at_corners(const Mesh& mesh, NormalKind kind, bool use_mesh_normals) {
-  if (use_mesh_normals && !mesh.corner_normals.empty()) return cleaned_normals(mesh);
+std::vector<glm::vec3> normals_at_corners(const Mesh& mesh, NormalKind kind, std::span<const glm::vec3> given) {
+  if (!given.empty()) return cleaned_normals(mesh, given);
   if (kind != NormalKind::flat) return angle_weighted_normals(mesh);
   // A polygon is one facet however it is cut; a mesh of triangles needs no list to say so.
   for (const std::int32_t size : mesh.face_sizes)
     if (size > 3) return face_normals_at_corners(mesh);
   return {};
+}
+
+/// A run of faces, and where it starts among the corners and the triangles.
+struct FaceRun {
+  size_t first_face = 0, last_face = 0;
+  size_t first_corner = 0, first_triangle = 0;
+};
+
+/// visit(face, its first corner, its corners' vertices, a triangle as three numbers of them) for each triangle; returns how many have no
+/// area and were left out.
+template <class Visit>
+std::int64_t visit_triangles(const Mesh& mesh, const FaceRun& run, const Visit& visit) {
+  std::vector<glm::dvec3> corners;
+  std::vector<std::array<std::int32_t, 3>> pieces;
+  std::int64_t dropped = 0;
+  size_t first = run.first_corner;
+  for (size_t f = run.first_face; f < run.last_face; ++f) {
+    const std::span<const std::int32_t> vertices = face_corners(mesh, static_cast<std::int32_t>(first), f);
+    gather_corners(mesh, vertices, corners);
+    triangulate_polygon(corners, pieces);
+    for (const auto& piece : pieces) {
+      const auto a = static_cast<size_t>(piece[0]), b = static_cast<size_t>(piece[1]), c = static_cast<size_t>(piece[2]);
+      if (zero_area(corners[a], corners[b], corners[c])) {
+        ++dropped;
+      } else {
+        visit(f, first, vertices, a, b, c);
+      }
+    }
+    first += vertices.size();
+  }
+  return dropped;
+}
+
+/// Runs of a fixed number of faces, so that threads change nothing; their triangles are counted, which also says where each run's go.
+std::vector<FaceRun> runs_of(const Mesh& mesh, size_t& triangles, std::int64_t& dropped) {
+  constexpr size_t kFaces = 8192;
+  std::vector<FaceRun> runs;
+  size_t corner = 0;
+  for (size_t f = 0; f < mesh.face_count(); ++f) {
+    if (f % kFaces == 0) runs.push_back({f, std::min(f + kFaces, mesh.face_count()), corner, 0});
+    corner += static_cast<size_t>(mesh.face_sizes[f]);
+  }
+  std::vector<size_t> counts(runs.size(), 0);
+  std::vector<std::int64_t> without_area(runs.size(), 0);
+  parallel_for(size_t{0}, runs.size(), [&](size_t i) {
+    size_t count = 0;
+    without_area[i] =
+        visit_triangles(mesh, runs[i], [&count](size_t, size_t, std::span<const std::int32_t>, size_t, size_t, size_t) { ++count; });
+    counts[i] = count;
+  });
+  triangles = 0;
+  dropped = 0;
+  for (size_t i = 0; i < runs.size(); ++i) {
+    runs[i].first_triangle = triangles;
+    triangles += counts[i];
+    dropped += without_area[i];
+  }
+  return runs;
 }
 
 }  // namespace
@@ -32,32 +98,35 @@ std::int64_t TriangleMesh::bytes() const {
   return static_cast<std::int64_t>(sum);
 }
 
-TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, bool use_mesh_normals) {
+TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, std::span<const glm::vec3> corner_normals) {
   TriangleMesh result;
+  size_t count = 0;
+  const std::vector<FaceRun> runs = runs_of(mesh, count, result.dropped_triangles);
+  const std::vector<glm::vec3> normals = normals_at_corners(mesh, kind, corner_normals);
   result.positions = mesh.positions;
-  const std::vector<glm::vec3> normals = normals_at_corners(mesh, kind, use_mesh_normals);
-  std::vector<glm::dvec3> corners;
-  std::vector<std::array<std::int32_t, 3>> pieces;
-  std::int32_t first = 0;
-  for (size_t f = 0; f < mesh.face_count(); ++f) {
-    const std::span<const std::int32_t> vertices = face_corners(mesh, first, f);
-    gather_corners(mesh, vertices, corners);
-    triangulate_polygon(corners, pieces);
-    for (const auto& piece : pieces) {
-      const auto a = static_cast<size_t>(piece[0]), b = static_cast<size_t>(piece[1]), c = static_cast<size_t>(piece[2]);
-      if (zero_area(corners[a], corners[b], corners[c])) {
-        ++result.dropped_triangles;
-        continue;
+  result.triangles.resize(count);
+  result.triangle_faces.resize(count);
+  if (!mesh.face_materials.empty()) result.triangle_materials.resize(count);
+  if (!normals.empty()) result.corner_normals.resize(3 * count);
+  parallel_for(size_t{0}, runs.size(), [&](size_t i) {
+    size_t at = runs[i].first_triangle;
+    visit_triangles(mesh, runs[i], [&](size_t f, size_t first, std::span<const std::int32_t> vertices, size_t a, size_t b, size_t c) {
+      result.triangles[at] = glm::uvec3(vertices[a], vertices[b], vertices[c]);
+      result.triangle_faces[at] = static_cast<std::int32_t>(f);
+      if (!mesh.face_materials.empty()) result.triangle_materials[at] = mesh.face_materials[f];
+      if (!normals.empty()) {
+        result.corner_normals[3 * at] = normals[first + a];
+        result.corner_normals[3 * at + 1] = normals[first + b];
+        result.corner_normals[3 * at + 2] = normals[first + c];
       }
-      result.triangles.emplace_back(vertices[a], vertices[b], vertices[c]);
-      result.triangle_faces.push_back(static_cast<std::int32_t>(f));
-      if (!mesh.face_materials.empty()) result.triangle_materials.push_back(mesh.face_materials[f]);
-      if (!normals.empty())
-        for (const size_t i : {a, b, c}) result.corner_normals.push_back(normals[static_cast<size_t>(first) + i]);
-    }
-    first += mesh.face_sizes[f];
-  }
+      ++at;
+    });
+  });
   return result;
+}
+
+TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, bool use_mesh_normals) {
+  return triangulate(mesh, kind, use_mesh_normals ? std::span(mesh.corner_normals) : std::span<const glm::vec3>{});
 }
 
 }  // namespace limn

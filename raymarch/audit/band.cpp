@@ -35,6 +35,8 @@ void look(AuditFacts& facts, std::vector<Finding>& findings) {
 }  // namespace
 
 // Not among the quick ones, which every command runs: where it finds something the volume is refused, in words of its own.
-AuditCheck band_check() { return {{"band", "is the narrow band wide enough for the gradient's stencil?", ""}, false, look}; }
+AuditCheck band_check() {
+  return {{"band", "is the narrow band wide enough for the gradient's stencil?", ""}, false, look, true, {"level_set"}};
+}
 
 }  // namespace limn

@@ -21,7 +21,8 @@ void look_at_degenerate(AuditFacts& facts, std::vector<Finding>& findings) {
   if (mesh.duplicate_faces > 0) {
     twice.severity = Severity::warning;
     twice.message = fmt::format("{} faces have the same vertices as another: their edges have too many faces, their normals count twice",
-                                mesh.duplicate_faces);
+                                mesh.duplicate_faces) +
+                    facts.sample_text();
     twice.remedy = "remove the copies";
     twice.surfaces = {"mesh", "mesh_level_set"};
   }
@@ -54,10 +55,12 @@ void look_at_slivers(AuditFacts& facts, std::vector<Finding>& findings) {
     const std::vector<std::string> inputs{"N", "NdotV"};
     normals.severity = Severity::warning;
     normals.message = fmt::format(
-        "{} face{} ({:.3g} % of the area) with an angle above 150 degrees {} by up to {:.3g} degrees off every neighbour's normal, as on "
-        "Schwarz's lantern: finer faces of that kind bring positions nearer, not normals",
-        mesh.off_normal_faces, mesh.off_normal_faces == 1 ? "" : "s", 100.0 * mesh.off_normal_area_share,
-        mesh.off_normal_faces == 1 ? "lies" : "lie", mesh.off_normal_angle * kDegrees);
+                          "{} face{} ({:.3g} % of the area) with an angle above 150 degrees {} by up to {:.3g} degrees off every "
+                          "neighbour's normal, as on "
+                          "Schwarz's lantern: finer faces of that kind bring positions nearer, not normals",
+                          mesh.off_normal_faces, mesh.off_normal_faces == 1 ? "" : "s", 100.0 * mesh.off_normal_area_share,
+                          mesh.off_normal_faces == 1 ? "lies" : "lie", mesh.off_normal_angle * kDegrees) +
+                      facts.sample_text();
     normals.remedy = "remesh with triangles closer to equilateral; --surface mesh_level_set averages over a voxel";
     normals.surfaces = {"mesh"};
     normals.methods = methods_reading(inputs);
@@ -76,12 +79,19 @@ void look_at_extraordinary(AuditFacts& facts, std::vector<Finding>& findings) {
 
 }  // namespace
 
-AuditCheck degenerate_faces_check() { return {{"degenerate faces", "faces without area or twice there", ""}, true, look_at_degenerate}; }
+AuditCheck degenerate_faces_check() {
+  return {{"degenerate faces", "faces without area or twice there", ""}, true, look_at_degenerate, true, {"mesh", "mesh_level_set"}};
+}
 AuditCheck sliver_check() {
-  return {{"slivers", "thin faces, and whether their normals mean anything", "Babuska & Aziz 1976; Schwarz 1890"}, true, look_at_slivers};
+  return {{"slivers", "thin faces, and whether their normals mean anything", "Babuska & Aziz 1976; Schwarz 1890"},
+          true,
+          look_at_slivers,
+          true,
+          {"mesh"},
+          methods_reading(std::vector<std::string>{"N", "NdotV"})};
 }
 AuditCheck extraordinary_check() {
-  return {{"extraordinary vertices", "where a limit surface's curvature has no bound", ""}, true, look_at_extraordinary};
+  return {{"extraordinary vertices", "where a limit surface's curvature has no bound", ""}, true, look_at_extraordinary, false};
 }
 
 }  // namespace limn

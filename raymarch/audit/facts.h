@@ -33,9 +33,9 @@ class AuditFacts {
   /// The scheme a mesh will be refined by; empty where it is taken as it is.
   std::optional<Scheme> scheme() const;
 
-  /// Small enough for the quick checks: at most 100,000 faces; 300,000 voxels.
-  bool is_small() const;
-  const MeshFacts& mesh_facts();    ///< Of a mesh or cage as loaded.
+  /// Of a mesh or cage as loaded: of all of it where that was asked for or there are at most 100,000 faces, else of 20,000 of them.
+  const MeshFacts& mesh_facts();
+  std::string sample_text();        ///< For messages with a number of mesh_facts(): how much was looked at, where that is not all.
   const SurfaceSamples& samples();  ///< Empty for what has no bounds.
 
  private:
@@ -44,7 +44,7 @@ class AuditFacts {
 };
 
 SurfaceSamples sample_field(const Field& field);
-/// Of the mesh, or of the cage refined as far as 60,000 faces allow.
+/// Of the mesh, or of the cage refined as far as asked, or as a million faces allow.
 SurfaceSamples sample_mesh(const SceneObject& object, const SurfaceSettings& settings);
 SurfaceSamples sample_level_set(const SceneObject& object);
 

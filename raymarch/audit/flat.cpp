@@ -34,6 +34,13 @@ void look(AuditFacts& facts, std::vector<Finding>& findings) {
 
 }  // namespace
 
-AuditCheck flat_check() { return {{"flat", "share of the surface without curvature, where the rim is undefined", ""}, false, look}; }
+AuditCheck flat_check() {
+  return {{"flat", "share of the surface without curvature, where the rim is undefined", ""},
+          false,
+          look,
+          true,
+          {},
+          {"rim", "fresnel", "rim_width"}};
+}
 
 }  // namespace limn

@@ -32,7 +32,8 @@ void look_at_edges(AuditFacts& facts, std::vector<Finding>& findings) {
     open.severity = Severity::warning;
     open.message =
         fmt::format("{} with a face on one side only (a hole or a sheet): what is seen from behind counts as turned away, and so as border",
-                    counted(mesh.open_edges, "edge"));
+                    counted(mesh.open_edges, "edge")) +
+        facts.sample_text();
     open.remedy = "close the holes, or use --surface mesh_level_set, whose sign is the winding number's";
     open.surfaces = {"mesh"};
     open.methods = methods_reading(reading_normals());
@@ -44,9 +45,10 @@ void look_at_edges(AuditFacts& facts, std::vector<Finding>& findings) {
   if (mesh.non_manifold_edges > 0) {
     manifold.severity = Severity::warning;
     manifold.message = fmt::format(
-        "{} with more than two faces: which of them are neighbours is open there, for averaged normals and "
-        "for the lines of edge_quads",
-        counted(mesh.non_manifold_edges, "edge"));
+                           "{} with more than two faces: which of them are neighbours is open there, for averaged normals and "
+                           "for the lines of edge_quads",
+                           counted(mesh.non_manifold_edges, "edge")) +
+                       facts.sample_text();
     manifold.remedy = "split the mesh there into parts that are each a surface, or use --surface mesh_level_set";
     manifold.surfaces = {"mesh"};
   }
@@ -62,9 +64,9 @@ void look_at_edges(AuditFacts& facts, std::vector<Finding>& findings) {
 
 }  // namespace
 
-AuditCheck parts_check() { return {{"parts", "how many pieces, and how many of them closed", ""}, true, look_at_parts}; }
+AuditCheck parts_check() { return {{"parts", "how many pieces, and how many of them closed", ""}, true, look_at_parts, false}; }
 AuditCheck open_edges_check() {
-  return {{"open edges", "edges without two faces, and what tells inside from outside", ""}, true, look_at_edges};
+  return {{"open edges", "edges without two faces, and what tells inside from outside", ""}, true, look_at_edges, true, {"mesh"}};
 }
 
 }  // namespace limn

@@ -38,9 +38,10 @@ void look(AuditFacts& facts, std::vector<Finding>& findings) {
   if (mesh.inconsistent_edges > 0) {
     inconsistent.severity = Severity::warning;
     inconsistent.message = fmt::format(
-        "{} edge{} join faces that disagree on the outside: averaged normals cancel there, and faces the "
-        "wrong way round count as turned away",
-        mesh.inconsistent_edges, mesh.inconsistent_edges == 1 ? "" : "s");
+                               "{} edge{} join faces that disagree on the outside: averaged normals cancel there, and faces the "
+                               "wrong way round count as turned away",
+                               mesh.inconsistent_edges, mesh.inconsistent_edges == 1 ? "" : "s") +
+                           facts.sample_text();
     inconsistent.remedy = "make the faces' winding consistent in the program that wrote the mesh, or use --normals flat";
     inconsistent.surfaces = {"mesh", "mesh_level_set"};
   }
@@ -51,6 +52,8 @@ void look(AuditFacts& facts, std::vector<Finding>& findings) {
 
 }  // namespace
 
-AuditCheck orientation_check() { return {{"orientation", "do faces agree on the outside, and is it the right one?", ""}, true, look}; }
+AuditCheck orientation_check() {
+  return {{"orientation", "do faces agree on the outside, and is it the right one?", ""}, true, look, true, {"mesh", "mesh_level_set"}};
+}
 
 }  // namespace limn

@@ -41,6 +41,13 @@ void look(AuditFacts& facts, std::vector<Finding>& findings) {
 
 }  // namespace
 
-AuditCheck precision_check() { return {{"precision", "coordinates against the digits of single precision", ""}, true, look}; }
+AuditCheck precision_check() {
+  return {{"precision", "coordinates against the digits of single precision", ""},
+          true,
+          look,
+          true,
+          {"mesh", "mesh_level_set"},
+          methods_reading(std::vector<std::string>{"N", "NdotV"})};
+}
 
 }  // namespace limn

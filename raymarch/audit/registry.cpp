@@ -1,5 +1,7 @@
 #include "raymarch/audit/registry.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -10,11 +12,17 @@ namespace limn {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::int64_t kSmallFaces = 100'000, kSmallVoxels = 300'000;
+constexpr size_t kSmallFaces = 100'000, kSampledFaces = 20'000;
 
 bool meet(std::span<const std::string> of, std::span<const std::string> asked) {
   return of.empty() || std::any_of(asked.begin(), asked.end(),
                                    [&](const std::string& name) { return std::find(of.begin(), of.end(), name) != of.end(); });
+}
+
+bool is_concerned(const AuditCheck& check, const AuditSettings& settings) {
+  if (settings.surfaces.empty() && settings.methods.empty()) return true;
+  return check.warns && (settings.surfaces.empty() || meet(check.surfaces, settings.surfaces)) &&
+         (settings.methods.empty() || meet(check.methods, settings.methods));
 }
 
 }  // namespace
@@ -43,7 +51,8 @@ std::vector<Finding> audit(const SceneObject& object, const AuditSettings& setti
   AuditFacts facts(object, settings);
   std::vector<Finding> findings;
   for (const AuditCheck& check : audit_checks()) {
-    if (!settings.thorough && !(check.quick && facts.is_small())) continue;
+    if (!settings.thorough && !check.quick) continue;
+    if (!is_concerned(check, settings)) continue;
     const auto started = Clock::now();
     check.look(facts, findings);
     if (costs != nullptr)
@@ -72,15 +81,19 @@ std::optional<Scheme> AuditFacts::scheme() const {
   return settings.surface.scheme ? settings.surface.scheme : mesh()->scheme;
 }
 
-bool AuditFacts::is_small() const {
-  if (const MeshSource* source = mesh()) return static_cast<std::int64_t>(source->mesh.face_count()) <= kSmallFaces;
-  if (const LevelSetSource* source = level_set()) return source->level_set.info().active_voxels <= kSmallVoxels;
-  return true;
+const MeshFacts& AuditFacts::mesh_facts() {
+  if (mesh_facts_) return *mesh_facts_;
+  const Mesh& of = mesh()->mesh;
+  const bool all = settings.thorough || of.face_count() <= kSmallFaces;
+  mesh_facts_ = std::make_unique<MeshFacts>(all ? limn::mesh_facts(of) : sampled_mesh_facts(of, kSampledFaces));
+  return *mesh_facts_;
 }
 
-const MeshFacts& AuditFacts::mesh_facts() {
-  if (!mesh_facts_) mesh_facts_ = std::make_unique<MeshFacts>(limn::mesh_facts(mesh()->mesh));
-  return *mesh_facts_;
+std::string AuditFacts::sample_text() {
+  const MeshFacts& facts = mesh_facts();
+  return facts.looked_at == facts.faces
+             ? ""
+             : fmt::format(" (counted around {} of its {} faces; limn info looks at all)", facts.looked_at, facts.faces);
 }
 
 const SurfaceSamples& AuditFacts::samples() {

@@ -8,13 +8,14 @@
 
 #include "raymarch/audit/facts.h"
 #include "raymarch/surface/object_mesh.h"
-#include "subdiv/mesh_distance.h"
+#include "subdiv/first_hits.h"
 #include "subdiv/refine.h"
 
 namespace limn {
 namespace {
 
-constexpr std::int64_t kMostFaces = 60'000;
+/// A cage refined so far takes half a second to look at; what is asked for beyond that is looked at coarser, which is said.
+constexpr std::int64_t kMostFaces = 1'000'000;
 constexpr size_t kMost = 1500;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -31,20 +32,6 @@ int affordable_level(const SceneObject& object, const SurfaceSettings& settings)
 glm::dvec3 area_normal(const TriangleMesh& mesh, size_t triangle) {
   const glm::uvec3 t = mesh.triangles[triangle];
   return 0.5 * glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
-}
-
-/// Triangles at even steps of the area, so that each stands for as much of it.
-std::vector<size_t> by_area(const TriangleMesh& mesh) {
-  std::vector<double> until(mesh.triangles.size());
-  double area = 0.0;
-  for (size_t i = 0; i < until.size(); ++i) until[i] = area += glm::length(area_normal(mesh, i));
-  std::vector<size_t> chosen;
-  for (size_t k = 0; k < kMost; ++k) {
-    const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(kMost) * area;
-    const auto found = std::upper_bound(until.begin(), until.end(), at);
-    if (found != until.end()) chosen.push_back(static_cast<size_t>(found - until.begin()));
-  }
-  return chosen;
 }
 
 /// How fast the normals turn that are traced: 0 where a triangle has one only.
@@ -65,31 +52,28 @@ double bending(const TriangleMesh& mesh, size_t triangle) {
 
 SurfaceSamples sample_mesh(const SceneObject& object, const SurfaceSettings& settings) {
   SurfaceSamples samples;
-  samples.longest_side = bounds(object).longest_side();
+  const glm::dvec3 center = bounds(object).center();
   SurfaceSettings how = settings;
   how.level = affordable_level(object, settings);
   SceneObject own = object;
   own.level.reset();
   if (how.level < object.level.value_or(settings.level)) samples.of = fmt::format("the cage refined {} times", how.level);
-  const TriangleMesh mesh = object_mesh(own, how, bounds(object).center()).triangles;
+  const std::shared_ptr<const TriangleMesh> made = object_mesh(own, how, center).triangles;
+  const TriangleMesh& mesh = *made;
+  // As --voxels counts: a cage is larger than what it is refined to.
+  Box box;
+  for (const glm::dvec3& position : mesh.positions) box = include(box, position);
+  samples.longest_side = box.longest_side();
   if (mesh.triangles.empty() || !(samples.longest_side > 0.0)) return samples;
-  const ClosestPointData tree(mesh);
-  const double start = 1e-6 * samples.longest_side;
-  for (const size_t i : by_area(mesh)) {
-    const glm::dvec3 area = area_normal(mesh, i);
-    const glm::dvec3 normal = glm::normalize(area);
+  ThinSamples thin = thin_samples(mesh, samples.longest_side, samples.longest_side);
+  for (const size_t i : thin.triangles) {
     const glm::uvec3 t = mesh.triangles[i];
-    const glm::dvec3 middle = (mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0;
-    const auto to_opposite = [&](double side) {
-      const auto hit = tree.first_hit(middle, side * normal, start, samples.longest_side);
-      return hit && glm::dot(area_normal(mesh, hit->second), normal) < 0.0 ? hit->first : kInfinity;
-    };
-    samples.points.push_back(middle + bounds(object).center());
-    samples.normals.push_back(normal);
-    samples.walls.push_back(to_opposite(-1.0));
-    samples.gaps.push_back(to_opposite(1.0));
+    samples.points.push_back((mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0 + center);
+    samples.normals.push_back(glm::normalize(area_normal(mesh, i)));
     samples.bending.push_back(bending(mesh, i) * samples.longest_side);
   }
+  samples.walls = std::move(thin.walls);
+  samples.gaps = std::move(thin.gaps);
   return samples;
 }
 

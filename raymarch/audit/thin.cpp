@@ -6,13 +6,13 @@
 
 #include "raymarch/audit/facts.h"
 #include "raymarch/audit/registry.h"
+#include "subdiv/first_hits.h"
 
 namespace limn {
 namespace {
 
 constexpr double kWallVoxels = 2.0, kGapVoxels = 1.0;
-/// Knife edges are thin without end; so little of the surface may be.
-constexpr double kMostThin = 0.005;
+constexpr double kMostThin = kThinShare;
 constexpr double kRounding = 1e-3;  // of what is found by steps
 
 double voxel_size_of(const AuditFacts& facts, double longest_side) {
@@ -66,6 +66,8 @@ void look(AuditFacts& facts, std::vector<Finding>& findings) {
 
 }  // namespace
 
-AuditCheck thin_check() { return {{"thin", "walls below two voxels, gaps below one", ""}, false, look}; }
+AuditCheck thin_check() {
+  return {{"thin", "walls below two voxels, gaps below one", ""}, false, look, true, {"level_set", "mesh_level_set"}};
+}
 
 }  // namespace limn

@@ -12,6 +12,9 @@ namespace {
 
 // Beyond so many triangles for each pixel that the bounds cover, listing them all takes longer than a tree's search for each ray.
 constexpr double kTrianglesPerPixel = 16.0;
+// A tree over more triangles than this takes longer to make than lists for dozens of pictures; then this many are listed for each pixel.
+constexpr size_t kManyTriangles = 1'000'000;
+constexpr double kManyTrianglesPerPixel = 512.0;
 // Lists longer than this are those of many large triangles behind each other: a tree sees less of them.
 constexpr size_t kMostEntries = size_t{1} << 25;
 
@@ -43,10 +46,17 @@ void for_each_list(const SeenTriangle& s, int columns, const Visit& visit) {
 }
 
 void see(const MeshView& view, size_t from, size_t to, const Camera& camera, SeenShare& share) {
-  share.seen.resize(std::max(share.seen.size(), to - from));
   share.counts.assign(2 * static_cast<size_t>(view.columns) * static_cast<size_t>(view.rows), 0);
   share.entries = 0;
-  share.found = find_seen(view, from, to, camera.width_px, camera.height_px, share.seen);
+  // Piece by piece: of a fine mesh few triangles cover a pixel, and only for those there shall be room.
+  constexpr size_t kPiece = 4096;
+  share.found = 0;
+  for (size_t first = from; first < to; first += kPiece) {
+    const size_t last = std::min(first + kPiece, to);
+    if (share.seen.size() < share.found + (last - first)) share.seen.resize(share.found + share.found / 2 + (last - first));
+    const std::span<SeenTriangle> room = std::span(share.seen).subspan(share.found, last - first);
+    share.found += find_seen(view, first, last, camera.width_px, camera.height_px, room);
+  }
   const std::span<const SeenTriangle> seen = std::span(share.seen).first(share.found);
   for (const SeenTriangle& s : seen) share.entries += tiles_of(s);
   if (share.entries > kMostEntries) return;
@@ -135,7 +145,8 @@ void MeshViewMemory::give_back(std::unique_ptr<MeshView> view) {
 SurfaceView view_mesh(const ViewedMesh& viewed, const ViewRequest& request) {
   const Camera& camera = request.camera;
   const size_t triangles = viewed.mesh->triangles.size();
-  if (triangles == 0 || static_cast<double>(triangles) > kTrianglesPerPixel * covered_pixels(viewed.bounds, camera)) return {};
+  const double most_per_pixel = triangles > kManyTriangles ? kManyTrianglesPerPixel : kTrianglesPerPixel;
+  if (triangles == 0 || static_cast<double>(triangles) > most_per_pixel * covered_pixels(viewed.bounds, camera)) return {};
   const std::shared_ptr<MeshView> view(viewed.memory->take().release(), [keep = viewed.keep, memory = viewed.memory](MeshView* used) {
     memory->give_back(std::unique_ptr<MeshView>(used));
   });

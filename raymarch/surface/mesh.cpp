@@ -3,8 +3,10 @@
 // mode). One ray at a time, although Embree knows packets: a pixel must not depend on its neighbours.
 
 #include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
 
 #include <chrono>
+#include <mutex>
 
 #include "raymarch/mesh/mesh_hit.h"
 #include "raymarch/mesh/view.h"
@@ -28,13 +30,15 @@ template <class Handle, class Release>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 
 struct MeshState {
-  TriangleMesh mesh;  ///< Render space.
-  Owned<RTCDevice, EmbreeDevice> device;
-  Owned<RTCScene, EmbreeScene> scene;
+  std::shared_ptr<const TriangleMesh> mesh;  ///< Render space.
+  /// Embree's tree, made when the first single ray asks for it: most pictures are drawn from lists of triangles and need none.
+  mutable std::once_flag tree_made;
+  mutable Owned<RTCDevice, EmbreeDevice> device;
+  mutable Owned<RTCScene, EmbreeScene> scene;
   Box bounds;
   mutable MeshViewMemory view_memory;
   std::shared_ptr<const Polygons> polygons;
-  std::optional<MeshCurvature> curvature;  ///< Refers to the two above.
+  std::optional<MeshCurvature> curvature;  ///< Refers to the mesh and the polygons.
 };
 
 /// A ray in the axes of the watertight test (Woop, Benthin, Wald 2013): z along the largest component of its direction, x and y
@@ -113,10 +117,11 @@ void bound_triangle(const RTCBoundsFunctionArguments* arguments) {
   *arguments->bounds_o = {lower.x, lower.y, lower.z, 0.0f, upper.x, upper.y, upper.z, 0.0f};
 }
 
-void attach_triangles(MeshState& state) {
+void attach_triangles(const MeshState& state) {
   const auto geometry = rtcNewGeometry(state.device.get(), RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(state.mesh.triangles.size()));
-  rtcSetGeometryUserData(geometry, &state.mesh);
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(state.mesh->triangles.size()));
+  // Embree takes no const; what it is handed back is read only.
+  rtcSetGeometryUserData(geometry, const_cast<TriangleMesh*>(state.mesh.get()));
   rtcSetGeometryBoundsFunction(geometry, bound_triangle, nullptr);
   rtcSetGeometryIntersectFunction(geometry, test_candidate);
   rtcCommitGeometry(geometry);
@@ -124,7 +129,7 @@ void attach_triangles(MeshState& state) {
   rtcReleaseGeometry(geometry);
 }
 
-void build_tree(MeshState& state) {
+void build_tree(const MeshState& state) {
   state.device.reset(rtcNewDevice(nullptr));
   if (!state.device) throw MachineError("Embree could not start: out of memory, most likely");
   state.scene.reset(rtcNewScene(state.device.get()));
@@ -137,8 +142,16 @@ void build_tree(MeshState& state) {
   if (rtcGetDeviceError(state.device.get()) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
 }
 
+RTCScene tree_of(const MeshState& state) {
+  std::call_once(state.tree_made, [&state] {
+    // Alone: a thread that took up another part of the picture while it waits for Embree would wait here for itself.
+    tbb::this_task_arena::isolate([&state] { build_tree(state); });
+  });
+  return state.scene.get();
+}
+
 void write_hit(const MeshState& state, const TriangleHit& hit, int i, HitBatch& hits) {
-  const TriangleMesh& mesh = state.mesh;
+  const TriangleMesh& mesh = *state.mesh;
   const glm::vec3 normal = normal_at(mesh, {hit.triangle, hit.u, hit.v});
   hits.status[i] = HitStatus::hit;
   hits.t[i] = static_cast<float>(hit.t);
@@ -166,12 +179,13 @@ RTCRayHit embree_ray(const RayBatch& rays, int i) {
 
 void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   const MeshState& state = *static_cast<const MeshState*>(opaque);
+  const RTCScene tree = tree_of(state);
   for (int i = 0; i < rays.count; ++i) {
     if (!(rays.t_min[i] < rays.t_max[i])) continue;
     RTCRayHit ray = embree_ray(rays, i);
     RayContext context{{}, {glm::dvec3(rays.origin(i)), glm::dvec3(rays.direction(i))}, rays.t_min[i], rays.t_max[i], {}};
     rtcInitIntersectContext(&context.context);
-    rtcIntersect1(state.scene.get(), &context.context, &ray);
+    rtcIntersect1(tree, &context.context, &ray);
     const TriangleHit& hit = context.nearest;
     // Rounding to float may reach t_max, which a hit must not.
     if (static_cast<float>(hit.t) < rays.t_max[i]) write_hit(state, hit, i, hits);
@@ -184,21 +198,23 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   ObjectMesh source = object_mesh(object, settings, render_origin);
   state->mesh = std::move(source.triangles);
   Surface surface;
-  for (const glm::dvec3& position : state->mesh.positions) surface.bounds = include(surface.bounds, position);
+  for (const glm::dvec3& position : state->mesh->positions) surface.bounds = include(surface.bounds, position);
   state->bounds = surface.bounds;
-  build_tree(*state);
   surface.trace = trace;
   surface.view = [](const std::shared_ptr<const void>& kept, const ViewRequest& request) {
     const MeshState& mesh_state = *static_cast<const MeshState*>(kept.get());
-    return view_mesh({kept, &mesh_state.mesh, mesh_state.bounds, &mesh_state.view_memory}, request);
+    SurfaceView made = view_mesh({kept, mesh_state.mesh.get(), mesh_state.bounds, &mesh_state.view_memory}, request);
+    // The picture comes from single rays, then: the tree is made by all threads now rather than by one of them later.
+    if (!made.trace) tree_of(mesh_state);
+    return made;
   };
   surface.info.kind = "mesh";
-  surface.info.triangles = static_cast<std::int64_t>(state->mesh.triangles.size());
-  surface.info.bytes = state->mesh.bytes();
+  surface.info.triangles = static_cast<std::int64_t>(state->mesh->triangles.size());
+  surface.info.bytes = state->mesh->bytes();
   surface.info.warnings = std::move(source.warnings);
-  state->polygons = std::make_shared<const Polygons>(std::move(source.polygons), source.normals);
+  state->polygons = std::move(source.polygons);
   surface.polygons = state->polygons;
-  state->curvature.emplace(state->mesh, state->polygons->mesh(), source.normals, std::move(source.smooth));
+  state->curvature.emplace(*state->mesh, *state->polygons, source.normals, std::move(source.smooth));
   surface.curvature.from = state->curvature->from();
   if (state->curvature->available()) {
     surface.curvature.state = {state, &*state->curvature};

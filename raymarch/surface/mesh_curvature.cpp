@@ -141,7 +141,7 @@ struct MeshCurvature::Made {
   }
 };
 
-MeshCurvature::MeshCurvature(const TriangleMesh& triangles, const Mesh& polygons, NormalKind normals, SmoothSource source)
+MeshCurvature::MeshCurvature(const TriangleMesh& triangles, const Polygons& polygons, NormalKind normals, SmoothSource source)
     : triangles_(triangles), polygons_(polygons), normals_(normals), source_(std::move(source)) {}
 MeshCurvature::~MeshCurvature() = default;
 
@@ -162,9 +162,9 @@ void MeshCurvature::evaluate(std::span<const SurfacePoint> points, std::span<Sur
       made->evaluators.emplace(*field);
     } else if (const CageSource* cage = std::get_if<CageSource>(&source_)) {
       made->limit.emplace(*cage);
-      made->first_corner = first_corners(polygons_);
+      made->first_corner = first_corners(polygons_.mesh());
       // Faces that refinement leaves out (collapsed ones, holes) shift the numbers of all others.
-      if (made->limit->first_child.back() != static_cast<std::int64_t>(polygons_.face_count())) made->limit.reset();
+      if (made->limit->first_child.back() != static_cast<std::int64_t>(polygons_.mesh().face_count())) made->limit.reset();
     }
     if (!made->evaluators && !made->limit && !triangles_.corner_normals.empty()) made->tensors = corner_tensors(triangles_);
     made_ = std::move(made);
@@ -181,7 +181,7 @@ void MeshCurvature::evaluate(std::span<const SurfacePoint> points, std::span<Sur
     curvatures[i] = no_curvature();
     if (points[i].face < 0 || !find_place(triangles_, points[i], place)) continue;
     if (made_->limit) {
-      curvatures[i] = made_->on_limit(triangles_, polygons_, *cage, points[i], place);
+      curvatures[i] = made_->on_limit(triangles_, polygons_.mesh(), *cage, points[i], place);
     } else if (!made_->tensors.tensors.empty()) {
       curvatures[i] = made_->discrete(points[i], place);
     }

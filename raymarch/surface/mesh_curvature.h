@@ -14,7 +14,7 @@ namespace limn {
 class MeshCurvature {
  public:
   /// `polygons` are those that `triangles` came from, traced with `normals`.
-  MeshCurvature(const TriangleMesh& triangles, const Mesh& polygons, NormalKind normals, SmoothSource source);
+  MeshCurvature(const TriangleMesh& triangles, const Polygons& polygons, NormalKind normals, SmoothSource source);
   ~MeshCurvature();
 
   /// As CurvatureSource::evaluate.
@@ -26,7 +26,7 @@ class MeshCurvature {
  private:
   struct Made;
   const TriangleMesh& triangles_;
-  const Mesh& polygons_;
+  const Polygons& polygons_;
   NormalKind normals_;
   SmoothSource source_;
   mutable std::once_flag once_;

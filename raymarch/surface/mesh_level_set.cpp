@@ -16,13 +16,14 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   const GradientDescriptor& gradient = find_gradient(settings.gradient, {}, "--gradient");
   ObjectMesh source = object_mesh(object, settings, render_origin);
   Box box;
-  for (const glm::dvec3& position : source.triangles.positions) box = include(box, position);
+  for (const glm::dvec3& position : source.triangles->positions) box = include(box, position);
   LevelSetSettings grid;
   grid.voxel_size = voxel_size_for(settings, box);
   grid.half_width_voxels = half_width_for(settings, gradient);
   grid.max_bytes = settings.max_bytes;
   grid.progress = settings.progress;
-  const auto triangles = std::make_shared<const TriangleMesh>(std::move(source.triangles));
+  const std::shared_ptr<const TriangleMesh> triangles = source.triangles;
+  source.polygons.reset();
   MeshLevelSet made = level_set_from_mesh(*triangles, grid);
   // The grid lies in render space, so that its voxels fall the same way wherever the object is.
   Surface surface = level_set_marcher(made.level_set, Affine{}, gradient, glm::dvec3(0.0), settings.max_steps);

@@ -39,88 +39,134 @@ void move_mesh(const Affine& render_from_mesh, TriangleMesh& mesh) {
 
 int level_of(const SceneObject& object, const SurfaceSettings& settings) { return object.level.value_or(settings.level); }
 
-ObjectMesh triangles_with(Mesh mesh, NormalKind kind) {
+NormalKind traced_kind(NormalKind asked) { return asked == NormalKind::flat ? NormalKind::flat : NormalKind::vertex; }
+
+/// Triangles of `mesh`, which become those of the object where it is placed, as do its polygons.
+ObjectMesh triangles_with(Mesh mesh, NormalKind kind, const Affine& render_from_mesh) {
   ObjectMesh result;
-  result.normals = kind == NormalKind::flat ? NormalKind::flat : NormalKind::vertex;
+  result.normals = traced_kind(kind);
   if (kind != NormalKind::limit) mesh.corner_normals.clear();
-  result.triangles = triangulate(mesh, result.normals, !mesh.corner_normals.empty());
-  result.polygons = std::move(mesh);
+  TriangleMesh triangles = triangulate(mesh, result.normals, !mesh.corner_normals.empty());
+  move_mesh(render_from_mesh, triangles);
+  result.triangles = std::make_shared<const TriangleMesh>(std::move(triangles));
+  move_polygons(render_from_mesh, mesh);
+  result.polygons = std::make_shared<const Polygons>(std::move(mesh), result.normals);
   return result;
 }
 
+/// A field is tessellated in render space: there is nothing to move, to the last bit.
 ObjectMesh from_field(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
   TessellateSettings how;
   how.level = level_of(object, settings);
   how.normals = settings.normals.value_or(NormalKind::limit);
   how.max_bytes = settings.max_bytes;
   const Field field = translate(std::get<Field>(object.source), -render_origin);
-  ObjectMesh result = triangles_with(tessellate(field, how), how.normals);
+  Mesh mesh = tessellate(field, how);
+  ObjectMesh result;
+  result.normals = traced_kind(how.normals);
+  if (how.normals != NormalKind::limit) mesh.corner_normals.clear();
+  result.triangles = std::make_shared<const TriangleMesh>(triangulate(mesh, result.normals, !mesh.corner_normals.empty()));
+  result.polygons = std::make_shared<const Polygons>(std::move(mesh), result.normals);
   result.smooth = field;
   return result;
 }
 
-ObjectMesh from_cage(const SceneObject& object, const MeshSource& source, const SurfaceSettings& settings, Scheme scheme) {
+Mesh recentred(Mesh mesh, const glm::dvec3& center) {
+  for (glm::dvec3& position : mesh.positions) position -= center;
+  return mesh;
+}
+
+/// Where a mesh goes that was moved about its own middle.
+struct MeshPlace {
+  glm::dvec3 center{0.0};
+  Affine render_from_mesh{};
+};
+
+ObjectMesh from_cage(const SceneObject& object, const MeshSource& source, const SurfaceSettings& settings, Scheme scheme,
+                     const MeshPlace& place) {
   RefineSettings how;
   how.scheme = scheme;
   how.level = level_of(object, settings);
   how.normals = settings.normals.value_or(NormalKind::limit);
   how.max_bytes = settings.max_bytes;
-  ObjectMesh result = triangles_with(refine(source.mesh, how, source.file), how.normals);
-  result.smooth = CageSource{source.mesh, scheme, how.level, {}, false, source.file};
+  Mesh cage = recentred(source.mesh, place.center);
+  ObjectMesh result = triangles_with(refine(cage, how, source.file), how.normals, place.render_from_mesh);
+  result.smooth = CageSource{
+      std::move(cage), scheme, how.level, place.render_from_mesh, glm::determinant(place.render_from_mesh.linear) < 0.0, source.file};
   return result;
+}
+
+/// Everything of a mesh but the normals at its corners, which are most of its bytes.
+Mesh without_normals(const Mesh& mesh) {
+  Mesh copy;
+  copy.positions = mesh.positions;
+  copy.face_sizes = mesh.face_sizes;
+  copy.corner_vertices = mesh.corner_vertices;
+  copy.vertex_colors = mesh.vertex_colors;
+  copy.face_materials = mesh.face_materials;
+  copy.face_groups = mesh.face_groups;
+  copy.material_names = mesh.material_names;
+  copy.group_names = mesh.group_names;
+  copy.creases = mesh.creases;
+  copy.corners = mesh.corners;
+  copy.boundary = mesh.boundary;
+  copy.crease_method = mesh.crease_method;
+  copy.triangle_rule = mesh.triangle_rule;
+  copy.holes = mesh.holes;
+  copy.face_smoothing = mesh.face_smoothing;
+  return copy;
 }
 
 /// A mesh as it is: the file's own normals unless others are asked for.
-ObjectMesh from_facets(const SceneObject& object, const MeshSource& source, const SurfaceSettings& settings) {
-  std::vector<std::string> warnings;
-  NormalKind kind = settings.normals.value_or(source.mesh.corner_normals.empty() ? NormalKind::vertex : NormalKind::limit);
-  if (settings.normals == NormalKind::limit && source.mesh.corner_normals.empty()) {
-    warnings.push_back("'" + object.name + "' has no limit surface (no scheme): vertex normals instead of limit normals");
+ObjectMesh from_facets(const SceneObject& object, const MeshSource& source, const SurfaceSettings& settings, const MeshPlace& place) {
+  ObjectMesh result;
+  NormalKind kind = settings.normals.value_or(source.mesh->corner_normals.empty() ? NormalKind::vertex : NormalKind::limit);
+  if (settings.normals == NormalKind::limit && source.mesh->corner_normals.empty()) {
+    result.warnings.push_back("'" + object.name + "' has no limit surface (no scheme): vertex normals instead of limit normals");
     kind = NormalKind::vertex;
   }
-  ObjectMesh result = triangles_with(source.mesh, kind);
-  result.warnings = std::move(warnings);
+  result.normals = traced_kind(kind);
+  const bool own_normals = kind == NormalKind::limit;
+  {
+    const Mesh local = recentred(without_normals(source.mesh), place.center);
+    TriangleMesh triangles =
+        triangulate(local, result.normals, own_normals ? std::span(source.mesh->corner_normals) : std::span<const glm::vec3>{});
+    move_mesh(place.render_from_mesh, triangles);
+    result.triangles = std::make_shared<const TriangleMesh>(std::move(triangles));
+  }
+  const auto make_polygons = [shared = source.mesh, own_normals, place] {
+    Mesh mesh = recentred(own_normals ? Mesh(shared) : without_normals(shared), place.center);
+    move_polygons(place.render_from_mesh, mesh);
+    return mesh;
+  };
+  result.polygons = std::make_shared<const Polygons>(make_polygons, result.normals);
   return result;
 }
 
-ObjectMesh from_level_set(const LevelSetSource& source, const SurfaceSettings& settings) {
+ObjectMesh from_level_set(const LevelSetSource& source, const SurfaceSettings& settings, const Affine& render_from_mesh) {
   PolygonSoup soup = mesh_from_level_set(source.level_set);
   Mesh mesh;
   mesh.positions = std::move(soup.positions);
   mesh.face_sizes = std::move(soup.face_sizes);
   mesh.corner_vertices = std::move(soup.corner_vertices);
   validate(mesh, source.file);
-  return triangles_with(std::move(mesh), settings.normals.value_or(NormalKind::vertex));
-}
-
-/// Refinement and triangulation happen about the mesh's own middle, so that no float in them meets large coordinates.
-MeshSource recentred(const MeshSource& source, const glm::dvec3& center) {
-  MeshSource moved = source;
-  for (glm::dvec3& position : moved.mesh.positions) position -= center;
-  return moved;
+  return triangles_with(std::move(mesh), settings.normals.value_or(NormalKind::vertex), render_from_mesh);
 }
 
 ObjectMesh make_object_mesh(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
   if (std::holds_alternative<Field>(object.source)) return from_field(object, settings, render_origin);
-  ObjectMesh result;
   Affine render_from_mesh = object.world_from_object;
-  if (const MeshSource* source = std::get_if<MeshSource>(&object.source)) {
-    const glm::dvec3 center = bounds(source->mesh).center();
-    const MeshSource local = recentred(*source, center);
-    const std::optional<Scheme> scheme = settings.scheme ? settings.scheme : source->scheme;
-    result = scheme ? from_cage(object, local, settings, *scheme) : from_facets(object, local, settings);
-    render_from_mesh.translation += render_from_mesh.linear * center;
-  } else {
-    result = from_level_set(std::get<LevelSetSource>(object.source), settings);
+  const MeshSource* source = std::get_if<MeshSource>(&object.source);
+  if (source == nullptr) {
+    render_from_mesh.translation -= render_origin;
+    return from_level_set(std::get<LevelSetSource>(object.source), settings, render_from_mesh);
   }
-  render_from_mesh.translation -= render_origin;
-  move_mesh(render_from_mesh, result.triangles);
-  move_polygons(render_from_mesh, result.polygons);
-  if (CageSource* cage = std::get_if<CageSource>(&result.smooth)) {
-    cage->render_from_cage = render_from_mesh;
-    cage->mirrored = glm::determinant(render_from_mesh.linear) < 0.0;
-  }
-  return result;
+  // Refinement and triangulation happen about the mesh's own middle, so that no float in them meets large coordinates.
+  MeshPlace place{bounds(*source->mesh).center(), render_from_mesh};
+  place.render_from_mesh.translation += render_from_mesh.linear * place.center;
+  place.render_from_mesh.translation -= render_origin;
+  const std::optional<Scheme> scheme = settings.scheme ? settings.scheme : source->scheme;
+  return scheme ? from_cage(object, *source, settings, *scheme, place) : from_facets(object, *source, settings, place);
 }
 
 }  // namespace

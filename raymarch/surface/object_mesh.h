@@ -3,6 +3,7 @@
 
 #include <variant>
 
+#include "raymarch/polygons.h"
 #include "raymarch/surface.h"
 #include "subdiv/mesh.h"
 
@@ -21,8 +22,10 @@ struct CageSource {
 using SmoothSource = std::variant<std::monostate, Field, CageSource>;
 
 struct ObjectMesh {
-  TriangleMesh triangles;  ///< Render space: world minus `render_origin`, in double.
-  Mesh polygons{};         ///< What the triangles came from, in render space too; corner normals only where those are traced.
+  std::shared_ptr<const TriangleMesh> triangles;  ///< Render space: world minus `render_origin`, in double.
+  /// What the triangles came from, in render space too; corner normals only where those are traced. Of a mesh as it is a copy, made only
+  /// when somebody asks for it.
+  std::shared_ptr<const Polygons> polygons{};
   NormalKind normals = NormalKind::vertex;  ///< Of the triangles.
   SmoothSource smooth{};
   std::vector<std::string> warnings;

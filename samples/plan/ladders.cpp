@@ -74,7 +74,7 @@ void measure_cages(const Scene& scene, Ladder& ladder) {
       ladder.guess_ms += kFieldFaceMs * static_cast<double>(cage.face_count());
     } else if (const auto* mesh = std::get_if<MeshSource>(&object.source)) {
       ladder.base_size = std::max(ladder.base_size, mean_edge(mesh->mesh, object.world_from_object));
-      ladder.guess_ms += kCageFaceMs * static_cast<double>(mesh->mesh.face_count());
+      ladder.guess_ms += kCageFaceMs * static_cast<double>(mesh->mesh->face_count());
     }
   }
   ladder.fixed_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -101,7 +101,7 @@ double meshing_ms(const Scene& scene) {
   double ms = 0.0;
   for (const SceneObject& object : scene.objects) {
     if (const auto* mesh = std::get_if<MeshSource>(&object.source))
-      ms += kCageFaceMs * static_cast<double>(mesh->mesh.face_count()) * std::exp2(2 * kMeshLevel);
+      ms += kCageFaceMs * static_cast<double>(mesh->mesh->face_count()) * std::exp2(2 * kMeshLevel);
   }
   return ms;
 }

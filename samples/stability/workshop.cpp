@@ -74,7 +74,9 @@ void move_scene(const StabilityVariant& variant, Scene& scene) {
     auto* mesh = std::get_if<MeshSource>(&object.source);
     if (mesh != nullptr && bare) {
       // In the file itself, where it is hardest.
-      for (glm::dvec3& position : mesh->mesh.positions) position = placed.point(position);
+      Mesh moved = mesh->mesh;
+      for (glm::dvec3& position : moved.positions) position = placed.point(position);
+      mesh->mesh = std::move(moved);
     } else {
       object.world_from_object = compose(placed, object.world_from_object);
     }
@@ -114,8 +116,9 @@ StabilityStage Workshop::make_stage(const StabilityVariant& variant) const {
   for (SceneObject& object : input.scene.objects) {
     auto* source = std::get_if<MeshSource>(&object.source);
     if (source == nullptr || (!variant.turned && !variant.reversed)) continue;
-    change_mesh(variant, source->mesh);
-    *source = mesh_source(std::move(source->mesh), source->scheme, source->file);
+    Mesh changed = source->mesh;
+    change_mesh(variant, changed);
+    *source = mesh_source(std::move(changed), source->scheme, source->file);
   }
   move_scene(variant, input.scene);
   stage.settings = surface_settings({}, input);

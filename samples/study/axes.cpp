@@ -24,7 +24,7 @@ bool has_limit_normals(const Scene& scene, const SurfaceSettings& settings) {
   return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
     if (std::holds_alternative<Field>(object.source) || cage_scheme(object, settings)) return true;
     const auto* mesh = std::get_if<MeshSource>(&object.source);
-    return mesh != nullptr && !mesh->mesh.corner_normals.empty();
+    return mesh != nullptr && !mesh->mesh->corner_normals.empty();
   });
 }
 

@@ -90,7 +90,7 @@ SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& sett
     const std::optional<Scheme> scheme = cage_scheme(object, settings);
     size.refines = scheme.has_value();
     size.faces = scheme ? static_cast<double>(predict_refined_size(source->mesh, *scheme, 1).faces) / 4.0
-                        : static_cast<double>(source->mesh.face_count());
+                        : static_cast<double>(source->mesh->face_count());
     size.area = scale * scale * area_of(source->mesh);
   } else {
     const LevelSetInfo& info = std::get<LevelSetSource>(object.source).level_set.info();

@@ -105,12 +105,12 @@ BenchCase bench_case(const BenchObject& object, int voxels, int width_px, int he
   if (object.field) {
     scene.objects.push_back({.name = object.name, .source = *object.field});
   } else {
-    MeshSource source;
-    source.mesh.positions = object.mesh.positions;
-    source.mesh.face_sizes.assign(object.mesh.triangles.size(), 3);
+    Mesh mesh;
+    mesh.positions = object.mesh.positions;
+    mesh.face_sizes.assign(object.mesh.triangles.size(), 3);
     for (const glm::uvec3& t : object.mesh.triangles)
-      for (int k = 0; k < 3; ++k) source.mesh.corner_vertices.push_back(static_cast<std::int32_t>(t[k]));
-    scene.objects.push_back({.name = object.name, .source = std::move(source)});
+      for (int k = 0; k < 3; ++k) mesh.corner_vertices.push_back(static_cast<std::int32_t>(t[k]));
+    scene.objects.push_back({.name = object.name, .source = MeshSource{.mesh = std::move(mesh)}});
   }
   scene.camera.width_px = width_px;
   scene.camera.height_px = height_px;

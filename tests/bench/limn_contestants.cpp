@@ -46,12 +46,12 @@ Scene scene_of(std::variant<Field, MeshSource, LevelSetSource> source) {
 }
 
 MeshSource mesh_source(const TriangleMesh& triangles) {
-  MeshSource source;
-  source.mesh.positions = triangles.positions;
-  source.mesh.face_sizes.assign(triangles.triangles.size(), 3);
+  Mesh mesh;
+  mesh.positions = triangles.positions;
+  mesh.face_sizes.assign(triangles.triangles.size(), 3);
   for (const glm::uvec3& t : triangles.triangles)
-    for (int k = 0; k < 3; ++k) source.mesh.corner_vertices.push_back(static_cast<std::int32_t>(t[k]));
-  return source;
+    for (int k = 0; k < 3; ++k) mesh.corner_vertices.push_back(static_cast<std::int32_t>(t[k]));
+  return {.mesh = std::move(mesh)};
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ Modelled modelled(const Scene& scene, const SurfaceSettings& settings) {
   Modelled result{build_model(scene, settings), 0.0, 0.0};
   result.voxel = total(result.model).voxel_size;
   if (total(result.model).triangles == 0) return result;
-  const TriangleMesh mesh = object_mesh(scene.objects[0], settings, glm::dvec3(0.0)).triangles;
+  const TriangleMesh mesh = *object_mesh(scene.objects[0], settings, glm::dvec3(0.0)).triangles;
   for (const glm::uvec3& triangle : mesh.triangles) {
     for (int i = 0; i < 3; ++i) {
       result.edge = std::max(result.edge, glm::length(mesh.positions[triangle[i]] - mesh.positions[triangle[(i + 1) % 3]]));

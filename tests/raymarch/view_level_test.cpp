@@ -32,7 +32,7 @@ TriangleMesh triangles_at(const SceneObject& object, int level) {
   SurfaceSettings settings = surface_kind("mesh");
   SceneObject fixed = object;
   fixed.level = level;
-  return object_mesh(fixed, settings, glm::dvec3(0.0)).triangles;
+  return *object_mesh(fixed, settings, glm::dvec3(0.0)).triangles;
 }
 
 /// How far the vertices of the mesh two levels finer are from the mesh, in pixels of the picture, those up to `aside_px` beside it counted.

@@ -7,28 +7,30 @@
 namespace limn {
 namespace {
 
-bool is_direction(const glm::vec3& normal, float& length) {
-  length = glm::length(normal);
-  return length > 1e-20f && std::isfinite(length);
-}
+/// The normals that triangles are given, a corner at a time: a file's need no second copy to be made unit.
+struct CornerNormals {
+  std::span<const glm::vec3> given{};  ///< Of the file.
+  std::vector<glm::vec3> own{};        ///< Those of `kind`; of the faces, where some of the given are no directions.
 
-/// A file's normals made unit; where one is missing or not finite, the face's own.
-std::vector<glm::vec3> cleaned_normals(const Mesh& mesh, std::span<const glm::vec3> given) {
-  float length = 0.0f;
-  const bool all_good =
-      std::all_of(given.begin(), given.end(), [&length](const glm::vec3& normal) { return is_direction(normal, length); });
-  std::vector<glm::vec3> normals = all_good ? std::vector<glm::vec3>(given.size()) : face_normals_at_corners(mesh);
-  for (size_t i = 0; i < normals.size(); ++i)
-    if (is_direction(given[i], length)) normals[i] = given[i] / length;
-  return normals;
-}
+  bool empty() const { return given.empty() && own.empty(); }
+  glm::vec3 at(size_t corner) const {
+    if (given.empty()) return own[corner];
+    const float length = glm::length(given[corner]);
+    return is_direction(length) ? given[corner] / length : own[corner];
+  }
+  static bool is_direction(float length) { return length > 1e-20f && std::isfinite(length); }
+};
 
-std::vector<glm::vec3> normals_at_corners(const Mesh& mesh, NormalKind kind, std::span<const glm::vec3> given) {
-  if (!given.empty()) return cleaned_normals(mesh, given);
-  if (kind != NormalKind::flat) return angle_weighted_normals(mesh);
+CornerNormals normals_at_corners(const Mesh& mesh, NormalKind kind, std::span<const glm::vec3> given) {
+  if (!given.empty()) {
+    const bool good =
+        std::all_of(given.begin(), given.end(), [](const glm::vec3& n) { return CornerNormals::is_direction(glm::length(n)); });
+    return {given, good ? std::vector<glm::vec3>{} : face_normals_at_corners(mesh)};
+  }
+  if (kind != NormalKind::flat) return {{}, angle_weighted_normals(mesh)};
   // A polygon is one facet however it is cut; a mesh of triangles needs no list to say so.
   for (const std::int32_t size : mesh.face_sizes)
-    if (size > 3) return face_normals_at_corners(mesh);
+    if (size > 3) return {{}, face_normals_at_corners(mesh)};
   return {};
 }
 
@@ -102,7 +104,7 @@ TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, std::span<const glm:
   TriangleMesh result;
   size_t count = 0;
   const std::vector<FaceRun> runs = runs_of(mesh, count, result.dropped_triangles);
-  const std::vector<glm::vec3> normals = normals_at_corners(mesh, kind, corner_normals);
+  const CornerNormals normals = normals_at_corners(mesh, kind, corner_normals);
   result.positions = mesh.positions;
   result.triangles.resize(count);
   result.triangle_faces.resize(count);
@@ -115,9 +117,9 @@ TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, std::span<const glm:
       result.triangle_faces[at] = static_cast<std::int32_t>(f);
       if (!mesh.face_materials.empty()) result.triangle_materials[at] = mesh.face_materials[f];
       if (!normals.empty()) {
-        result.corner_normals[3 * at] = normals[first + a];
-        result.corner_normals[3 * at + 1] = normals[first + b];
-        result.corner_normals[3 * at + 2] = normals[first + c];
+        result.corner_normals[3 * at] = normals.at(first + a);
+        result.corner_normals[3 * at + 1] = normals.at(first + b);
+        result.corner_normals[3 * at + 2] = normals.at(first + c);
       }
       ++at;
     });

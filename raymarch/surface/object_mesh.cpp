@@ -96,25 +96,10 @@ ObjectMesh from_cage(const SceneObject& object, const MeshSource& source, const 
   return result;
 }
 
-/// Everything of a mesh but the normals at its corners, which are most of its bytes.
-Mesh without_normals(const Mesh& mesh) {
-  Mesh copy;
-  copy.positions = mesh.positions;
-  copy.face_sizes = mesh.face_sizes;
-  copy.corner_vertices = mesh.corner_vertices;
-  copy.vertex_colors = mesh.vertex_colors;
-  copy.face_materials = mesh.face_materials;
-  copy.face_groups = mesh.face_groups;
-  copy.material_names = mesh.material_names;
-  copy.group_names = mesh.group_names;
-  copy.creases = mesh.creases;
-  copy.corners = mesh.corners;
-  copy.boundary = mesh.boundary;
-  copy.crease_method = mesh.crease_method;
-  copy.triangle_rule = mesh.triangle_rule;
-  copy.holes = mesh.holes;
-  copy.face_smoothing = mesh.face_smoothing;
-  return copy;
+/// The normals at corners are most of a mesh's bytes.
+Mesh without_normals(Mesh mesh) {
+  std::vector<glm::vec3>().swap(mesh.corner_normals);
+  return mesh;
 }
 
 /// A mesh as it is: the file's own normals unless others are asked for.
@@ -135,7 +120,7 @@ ObjectMesh from_facets(const SceneObject& object, const MeshSource& source, cons
     result.triangles = std::make_shared<const TriangleMesh>(std::move(triangles));
   }
   const auto make_polygons = [shared = source.mesh, own_normals, place] {
-    Mesh mesh = recentred(own_normals ? Mesh(shared) : without_normals(shared), place.center);
+    Mesh mesh = recentred(own_normals ? *shared : without_normals(shared), place.center);
     move_polygons(place.render_from_mesh, mesh);
     return mesh;
   };

@@ -80,7 +80,7 @@ std::filesystem::path beside(const TomlReader& reader, const std::string& name) 
   return std::filesystem::path(reader.file()).parent_path() / name;
 }
 
-MeshSource read_mesh(TomlReader& reader, const SceneReaders& readers, std::optional<int>& level) {
+MeshSource read_mesh(TomlReader& reader, const SceneReaders& readers, bool own_color, std::optional<int>& level) {
   const std::string name = *reader.text("mesh");
   std::optional<Scheme> scheme;
   if (const auto text = reader.text("scheme")) {
@@ -90,7 +90,9 @@ MeshSource read_mesh(TomlReader& reader, const SceneReaders& readers, std::optio
   // A level without a scheme still asks for subdivision; Catmull-Clark takes any polygons.
   if (level && *level > 0 && !scheme) scheme = Scheme::catmark;
   const std::filesystem::path path = beside(reader, name);
-  return mesh_source(readers.mesh(path), scheme, path.string());
+  Mesh mesh = readers.mesh(path);
+  mesh.draws_colors = !own_color;
+  return mesh_source(std::move(mesh), scheme, path.string());
 }
 
 LevelSetSource read_volume(TomlReader& reader, const SceneReaders& readers) {
@@ -111,8 +113,8 @@ SceneObject read_object(TomlReader& reader, const SceneReaders& readers, size_t 
   }
   std::optional<int> level;
   Affine world_from_object;
-  const auto read_source = [&]() -> Source {
-    if (reader.has("mesh")) return read_mesh(reader, readers, level);
+  const auto read_source = [&](bool own_color) -> Source {
+    if (reader.has("mesh")) return read_mesh(reader, readers, own_color, level);
     if (reader.has("vdb")) return read_volume(reader, readers);
     return read_field(reader);
   };
@@ -122,8 +124,7 @@ SceneObject read_object(TomlReader& reader, const SceneReaders& readers, size_t 
   const glm::vec3 color = own_color.value_or(glm::vec3(0.8f));
   const int material = reader.integer("material", 0, 1'000'000).value_or(0);
   if (reader.has("mesh") || reader.has("vdb")) world_from_object = read_placement(reader);
-  Source source = read_source();
-  if (auto* mesh = std::get_if<MeshSource>(&source); mesh != nullptr && own_color) mesh->mesh.draws_colors = false;
+  Source source = read_source(own_color.has_value());
   reader.finish();
   return {name, std::move(source), world_from_object, color, material, level};
 }

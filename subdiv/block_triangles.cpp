@@ -11,18 +11,27 @@
 namespace limn {
 namespace {
 
-/// A block (in blocks) and a triangle, packed so that two comparisons order them by x, y, z, triangle. Coordinates have 28 bits.
-struct Pair {
-  std::uint64_t xy, z_triangle;
+/// A block (in blocks), packed so that two comparisons order blocks by x, y, z. Coordinates have 28 bits.
+struct BlockKey {
+  std::uint64_t xy = 0;
+  std::uint32_t z = 0;
   static constexpr std::int64_t kOffset = std::int64_t{1} << 27;
-  Pair() = default;
-  Pair(const glm::ivec3& block, std::uint32_t triangle)
-      : xy(static_cast<std::uint64_t>(block.x + kOffset) << 32 | static_cast<std::uint64_t>(block.y + kOffset)),
-        z_triangle(static_cast<std::uint64_t>(block.z + kOffset) << 32 | triangle) {}
   glm::ivec3 block() const {
     const auto part = [](std::uint64_t bits) { return static_cast<int>(static_cast<std::int64_t>(bits & 0xffffffffu) - kOffset); };
-    return {part(xy >> 32), part(xy), part(z_triangle >> 32)};
+    return {part(xy >> 32), part(xy), part(z)};
   }
+  bool operator==(const BlockKey& other) const { return xy == other.xy && z == other.z; }
+  bool operator<(const BlockKey& other) const { return xy != other.xy ? xy < other.xy : z < other.z; }
+};
+
+/// A block and a triangle, ordered by x, y, z, triangle.
+struct Pair {
+  std::uint64_t xy, z_triangle;
+  Pair() = default;
+  Pair(const glm::ivec3& block, std::uint32_t triangle)
+      : xy(static_cast<std::uint64_t>(block.x + BlockKey::kOffset) << 32 | static_cast<std::uint64_t>(block.y + BlockKey::kOffset)),
+        z_triangle(static_cast<std::uint64_t>(block.z + BlockKey::kOffset) << 32 | triangle) {}
+  BlockKey key() const { return {xy, static_cast<std::uint32_t>(z_triangle >> 32)}; }
   std::uint32_t triangle() const { return static_cast<std::uint32_t>(z_triangle); }
   bool operator<(const Pair& other) const { return xy != other.xy ? xy < other.xy : z_triangle < other.z_triangle; }
 };
@@ -81,46 +90,85 @@ class PairFinder {
                     "larger voxels or a narrower band"});
 }
 
-std::vector<Pair> find_pairs(const TriangleMesh& mesh, double voxel_size, double reach, std::int64_t max_blocks) {
-  // Pieces of a fixed size, so that their order is no matter of threads.
+/// Of a run of triangles: the blocks that they come near, in order, and which triangles come near each.
+struct PieceLists {
+  std::vector<BlockKey> blocks{};
+  std::vector<std::uint32_t> first{};      ///< Of each block's stretch of `triangles`; one more than blocks.
+  std::vector<std::uint32_t> triangles{};  ///< Ascending in each stretch.
+};
+
+PieceLists lists_of(std::vector<Pair>& pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  PieceLists lists;
+  lists.triangles.reserve(pairs.size());
+  for (const Pair& pair : pairs) {
+    if (lists.blocks.empty() || !(lists.blocks.back() == pair.key())) {
+      lists.blocks.push_back(pair.key());
+      lists.first.push_back(static_cast<std::uint32_t>(lists.triangles.size()));
+    }
+    lists.triangles.push_back(pair.triangle());
+  }
+  lists.first.push_back(static_cast<std::uint32_t>(lists.triangles.size()));
+  lists.blocks.shrink_to_fit(), lists.first.shrink_to_fit();
+  return lists;
+}
+
+/// In pieces of a fixed size, so that their order is no matter of threads.
+std::vector<PieceLists> find_lists(const TriangleMesh& mesh, double voxel_size, double reach, std::int64_t max_blocks) {
   constexpr size_t kPiece = 2048;
-  const size_t pieces = (mesh.triangles.size() + kPiece - 1) / kPiece;
-  std::vector<std::vector<Pair>> found(pieces);
-  parallel_for(size_t{0}, pieces, [&](size_t piece) {
-    PairFinder finder(voxel_size, reach, found[piece]);
+  std::vector<PieceLists> found((mesh.triangles.size() + kPiece - 1) / kPiece);
+  parallel_for(size_t{0}, found.size(), [&](size_t piece) {
+    std::vector<Pair> pairs;
+    PairFinder finder(voxel_size, reach, pairs);
     const size_t last = std::min((piece + 1) * kPiece, mesh.triangles.size());
     for (size_t i = piece * kPiece; i < last; ++i) {
       const glm::uvec3& t = mesh.triangles[i];
       finder.add({mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]}, static_cast<std::uint32_t>(i));
       // One triangle alone names a block once.
-      if (static_cast<std::int64_t>(found[piece].size()) / static_cast<std::int64_t>(kPiece) > max_blocks) refuse(voxel_size, max_blocks);
+      if (static_cast<std::int64_t>(pairs.size()) / static_cast<std::int64_t>(kPiece) > max_blocks) refuse(voxel_size, max_blocks);
     }
+    found[piece] = lists_of(pairs);
   });
-  std::vector<size_t> first(pieces + 1, 0);
-  for (size_t piece = 0; piece < pieces; ++piece) first[piece + 1] = first[piece] + found[piece].size();
-  std::vector<Pair> pairs(first.back());
-  parallel_for(size_t{0}, pieces, [&](size_t piece) {
-    std::copy(found[piece].begin(), found[piece].end(), pairs.begin() + static_cast<std::ptrdiff_t>(first[piece]));
-  });
-  return pairs;
+  return found;
+}
+
+/// All blocks of all pieces, in order.
+std::vector<BlockKey> all_blocks(const std::vector<PieceLists>& pieces) {
+  std::vector<BlockKey> blocks;
+  for (const PieceLists& piece : pieces) {
+    blocks.insert(blocks.end(), piece.blocks.begin(), piece.blocks.end());
+  }
+  parallel_sort(blocks.begin(), blocks.end());
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  return blocks;
 }
 
 }  // namespace
 
 BlockTriangles triangles_near_blocks(const TriangleMesh& mesh, double voxel_size, double reach, std::int64_t max_blocks) {
-  std::vector<Pair> pairs = find_pairs(mesh, voxel_size, reach, max_blocks);
-  parallel_sort(pairs.begin(), pairs.end());
+  const std::vector<PieceLists> pieces = find_lists(mesh, voxel_size, reach, max_blocks);
+  const std::vector<BlockKey> blocks = all_blocks(pieces);
+  if (static_cast<std::int64_t>(blocks.size()) > max_blocks) refuse(voxel_size, max_blocks);
+  const auto place_of = [&blocks](const BlockKey& key) {
+    return static_cast<size_t>(std::lower_bound(blocks.begin(), blocks.end(), key) - blocks.begin());
+  };
   BlockTriangles result;
-  result.triangles.reserve(pairs.size());
-  for (const Pair& pair : pairs) {
-    if (result.origins.empty() || result.origins.back() != 8 * pair.block()) {
-      result.origins.push_back(8 * pair.block());
-      result.first.push_back(result.triangles.size());
+  for (const BlockKey& key : blocks) result.origins.push_back(8 * key.block());
+  result.first.assign(blocks.size() + 1, 0);
+  for (const PieceLists& piece : pieces)
+    for (size_t k = 0; k < piece.blocks.size(); ++k) result.first[place_of(piece.blocks[k]) + 1] += piece.first[k + 1] - piece.first[k];
+  for (size_t block = 0; block < blocks.size(); ++block) result.first[block + 1] += result.first[block];
+  result.triangles.resize(result.first.back());
+  std::vector<size_t> next(result.first.begin(), result.first.end() - 1);
+  // Piece after piece: triangles ascend in each list.
+  for (const PieceLists& piece : pieces) {
+    for (size_t k = 0; k < piece.blocks.size(); ++k) {
+      const auto from = piece.triangles.begin() + piece.first[k], to = piece.triangles.begin() + piece.first[k + 1];
+      size_t& at = next[place_of(piece.blocks[k])];
+      std::copy(from, to, result.triangles.begin() + static_cast<std::ptrdiff_t>(at));
+      at += static_cast<size_t>(to - from);
     }
-    result.triangles.push_back(pair.triangle());
   }
-  result.first.push_back(result.triangles.size());
-  if (static_cast<std::int64_t>(result.origins.size()) > max_blocks) refuse(voxel_size, max_blocks);
   return result;
 }
 

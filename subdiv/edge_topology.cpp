@@ -1,10 +1,7 @@
 #include "subdiv/edge_topology.h"
 
-#include <algorithm>
-#include <numeric>
-#include <tuple>
-
 #include "subdiv/polygon.h"
+#include "subdiv/weld.h"
 
 namespace limn {
 namespace {
@@ -53,17 +50,8 @@ void bridge_flat_faces(const Mesh& mesh, const std::vector<Edge>& edges, EdgeTop
 }  // namespace
 
 std::vector<std::int32_t> first_vertex_at_position(const Mesh& mesh) {
-  std::vector<std::int32_t> order(mesh.vertex_count()), first(mesh.vertex_count());
-  std::iota(order.begin(), order.end(), 0);
-  const auto at = [&mesh](std::int32_t v) -> const glm::dvec3& { return mesh.positions[static_cast<size_t>(v)]; };
-  std::sort(order.begin(), order.end(), [&at](std::int32_t a, std::int32_t b) {
-    return std::tie(at(a).x, at(a).y, at(a).z, a) < std::tie(at(b).x, at(b).y, at(b).z, b);
-  });
-  for (size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && at(order[i]) == at(order[i - 1]);
-    first[static_cast<size_t>(order[i])] = same ? first[static_cast<size_t>(order[i - 1])] : order[i];
-  }
-  return first;
+  const std::vector<std::uint32_t> first = first_at_position(mesh.positions);
+  return {first.begin(), first.end()};
 }
 
 EdgeTopology build_edge_topology(const Mesh& mesh) {

@@ -34,7 +34,10 @@ struct ClosestPointData {
 /// makes it change away from the triangles.
 class Winding {
  public:
+  /// Refers to the mesh. `first_at`: first_at_position of its positions. `times`: how often each triangle is there, as MergedTriangles has
+  /// it.
   explicit Winding(const TriangleMesh& mesh);
+  Winding(const TriangleMesh& mesh, std::span<const std::uint32_t> first_at, std::vector<std::int32_t> times = {});
 
   /// Clusters count as dipoles beyond `far` of their radii: 2.5 errs by less than 0.03, twice as far by a fraction of it.
   double number(const glm::dvec3& point, double far = 2.5) const;
@@ -58,12 +61,16 @@ class Winding {
     std::uint32_t first = 0, count = 0;  ///< Triangles of a leaf, in order_.
     std::uint32_t left = 0, right = 0;   ///< Both 0 for a leaf.
   };
-  void build(const TriangleMesh& mesh, std::uint32_t index, std::uint32_t first, std::uint32_t count);
-  void find_border(const TriangleMesh& mesh);
+  const glm::dvec3& corner(std::uint32_t triangle, int i) const { return mesh_.positions[mesh_.triangles[triangle][i]]; }
+  void build(std::uint32_t index, std::uint32_t first, std::uint32_t count);
+  Box measure(Node& node) const;
+  void split(std::uint32_t first, std::uint32_t count, std::uint32_t half, int axis, const Interval& range);
+  void find_border(std::span<const std::uint32_t> first_at);
 
+  const TriangleMesh& mesh_;
+  std::vector<std::int32_t> times_;
   std::vector<Node> nodes_;
-  std::vector<glm::dvec3> corners_;  ///< Three a triangle, in the order of the leaves.
-  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> order_;  ///< Triangles, in the order of the leaves.
   std::vector<BorderEdge> border_;
 };
 

@@ -16,25 +16,42 @@
 #include "subdiv/first_hits.h"
 #include "subdiv/mesh_block.h"
 #include "subdiv/mesh_distance.h"
+#include "subdiv/weld.h"
 
 namespace limn {
 namespace {
 
 constexpr std::int64_t kMaxIndex = std::int64_t{1} << 30;
 
-/// The triangles moved so that the middle of their box is the origin: far from it double precision and 32-bit indices would run out.
-TriangleMesh recentred(const TriangleMesh& mesh, const glm::dvec3& origin) {
-  TriangleMesh moved;
-  moved.positions.reserve(mesh.positions.size());
-  for (const glm::dvec3& p : mesh.positions) moved.positions.push_back(p - origin);
-  moved.triangles = mesh.triangles;
-  return moved;
+/// What level sets are made from: triangles about the middle of their box (far from it double precision and 32-bit indices would run out),
+/// those that lie on one place taken together.
+struct LocalMesh {
+  TriangleMesh mesh{};
+  std::vector<std::int32_t> times{};  ///< As MergedTriangles.
+  std::vector<std::uint32_t> first_at{};
+};
+
+LocalMesh local_mesh(const TriangleMesh& mesh, const glm::dvec3& origin) {
+  LocalMesh local;
+  local.mesh.positions.resize(mesh.positions.size());
+  parallel_parts(mesh.positions.size(), size_t{4096}, [&](const IndexRange<size_t>& part) {
+    for (size_t i = part.first; i < part.last; ++i) local.mesh.positions[i] = mesh.positions[i] - origin;
+  });
+  local.first_at = first_at_position(local.mesh.positions);
+  MergedTriangles merged = merge_coincident(mesh, local.first_at);
+  local.mesh.triangles = std::move(merged.triangles);
+  local.times = std::move(merged.times);
+  return local;
 }
 
-double signed_volume(const TriangleMesh& mesh) {
+double signed_volume(const LocalMesh& local) {
+  const TriangleMesh& mesh = local.mesh;
   double volume = 0.0;
-  for (const glm::uvec3& t : mesh.triangles)
-    volume += glm::dot(mesh.positions[t.x], glm::cross(mesh.positions[t.y], mesh.positions[t.z])) / 6.0;
+  for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const glm::uvec3& t = mesh.triangles[i];
+    const double own = glm::dot(mesh.positions[t.x], glm::cross(mesh.positions[t.y], mesh.positions[t.z])) / 6.0;
+    volume += local.times.empty() ? own : static_cast<double>(local.times[i]) * own;
+  }
   return volume;
 }
 
@@ -226,14 +243,15 @@ void warn_of_thin_sheets(const TriangleMesh& mesh, double voxel_size, std::vecto
 MeshLevelSet level_set_from_mesh(const TriangleMesh& mesh, const LevelSetSettings& settings) {
   check(mesh, settings);
   const glm::dvec3 origin = used_bounds(mesh).center();
-  TriangleMesh local = recentred(mesh, origin);
+  LocalMesh made = local_mesh(mesh, origin);
+  TriangleMesh& local = made.mesh;
   std::vector<std::string> warnings;
-  if (const double volume = signed_volume(local); volume < 0.0) {
+  if (const double volume = signed_volume(made); volume < 0.0) {
     for (glm::uvec3& t : local.triangles) std::swap(t.y, t.z);
     warnings.push_back(fmt::format("the mesh is turned inside out (its volume is {:.4g}): its faces were turned round", volume));
   }
   const LazyTree tree(local);
-  const Winding winding(local);
+  const Winding winding(local, made.first_at, std::move(made.times));
   if (!winding.closed())
     warnings.push_back(
         fmt::format("{} open edges: inside is where the winding number is above 1/2, which closes the holes", winding.border().size()));

@@ -3,10 +3,11 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <tuple>
+#include <utility>
 
 #include "sdf/parallel.h"
 #include "subdiv/mesh_distance.h"
+#include "subdiv/weld.h"
 
 namespace limn {
 namespace {
@@ -14,8 +15,8 @@ namespace {
 constexpr std::uint32_t kLeafSize = 8;
 
 /// Signed solid angle over 4 pi (van Oosterom & Strackee 1983).
-double triangle_winding(const glm::dvec3& p, const glm::dvec3* corners) {
-  const glm::dvec3 a = corners[0] - p, b = corners[1] - p, c = corners[2] - p;
+double triangle_winding(const glm::dvec3& p, const glm::dvec3& first, const glm::dvec3& second, const glm::dvec3& third) {
+  const glm::dvec3 a = first - p, b = second - p, c = third - p;
   const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
   const double numerator = glm::dot(a, glm::cross(b, c));
   const double denominator = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
@@ -29,56 +30,100 @@ std::uint32_t nodes_in(std::uint32_t triangles) {
 
 }  // namespace
 
-Winding::Winding(const TriangleMesh& mesh) {
+Winding::Winding(const TriangleMesh& mesh, std::span<const std::uint32_t> first_at, std::vector<std::int32_t> times)
+    : mesh_(mesh), times_(std::move(times)) {
   order_.resize(mesh.triangles.size());
   std::iota(order_.begin(), order_.end(), 0u);
   if (!order_.empty()) {
     nodes_.resize(nodes_in(static_cast<std::uint32_t>(order_.size())));
-    build(mesh, 0, 0, static_cast<std::uint32_t>(order_.size()));
+    build(0, 0, static_cast<std::uint32_t>(order_.size()));
   }
-  for (const std::uint32_t t : order_)
-    for (int i = 0; i < 3; ++i) corners_.push_back(mesh.positions[mesh.triangles[t][i]]);
-  find_border(mesh);
+  find_border(first_at);
 }
 
-void Winding::build(const TriangleMesh& mesh, std::uint32_t index, std::uint32_t first, std::uint32_t count) {
+Winding::Winding(const TriangleMesh& mesh) : Winding(mesh, first_at_position(mesh.positions)) {}
+
+void Winding::build(std::uint32_t index, std::uint32_t first, std::uint32_t count) {
   Node& node = nodes_[index];
   node.first = first, node.count = count;
-  const auto corner = [&mesh](std::uint32_t t, int i) { return mesh.positions[mesh.triangles[t][i]]; };
-  const auto middle = [&corner](std::uint32_t t) { return (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0; };
+  const Box centers = measure(node);
+  if (count <= kLeafSize) return;
+  const glm::dvec3 size = centers.size();
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const std::uint32_t half = count / 2;
+  split(first, count, half, axis, {centers.lower[axis], centers.upper[axis]});
+  node.left = index + 1;
+  node.right = index + 1 + nodes_in(half);
+  const auto build_left = [&] { build(node.left, first, half); };
+  const auto build_right = [&] { build(node.right, first + half, count - half); };
+  constexpr std::uint32_t kWorthATask = 4096;
+  if (count > kWorthATask)
+    parallel_invoke(build_left, build_right);
+  else
+    build_left(), build_right();
+}
+
+/// Returns the bounds of the triangles' middles.
+Box Winding::measure(Node& node) const {
   double area = 0.0;
   glm::dvec3 weighted(0.0);
   Box centers;
-  for (std::uint32_t i = first; i < first + count; ++i) {
+  for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
     const std::uint32_t t = order_[i];
-    const glm::dvec3 vector = 0.5 * glm::cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0));
-    node.dipole += vector;
-    area += glm::length(vector);
-    weighted += glm::length(vector) * middle(t);
-    centers = include(centers, middle(t));
+    const glm::dvec3 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2), middle = (a + b + c) / 3.0;
+    const glm::dvec3 vector = 0.5 * glm::cross(b - a, c - a);
+    const double length = glm::length(vector);
+    node.dipole += times_.empty() ? vector : static_cast<double>(times_[t]) * vector;
+    area += length;
+    weighted += length * middle;
+    centers = include(centers, middle);
   }
   node.center = area > 0.0 ? weighted / area : centers.center();
-  for (std::uint32_t i = first; i < first + count; ++i)
-    for (int k = 0; k < 3; ++k) node.radius = std::max(node.radius, glm::distance(node.center, corner(order_[i], k)));
-  if (count > kLeafSize) {
-    const glm::dvec3 size = centers.size();
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::uint32_t half = count / 2;
-    const auto begin = order_.begin() + first;
-    std::nth_element(begin, begin + half, begin + count,
-                     [&](std::uint32_t a, std::uint32_t b) { return std::pair(middle(a)[axis], a) < std::pair(middle(b)[axis], b); });
-    // The order within halves is the library's; sorting makes the sums the same everywhere.
-    std::sort(begin, begin + half), std::sort(begin + half, begin + count);
-    node.left = index + 1;
-    node.right = index + 1 + nodes_in(half);
-    const auto build_left = [&] { build(mesh, node.left, first, half); };
-    const auto build_right = [&] { build(mesh, node.right, first + half, count - half); };
-    constexpr std::uint32_t kWorthATask = 4096;
-    if (count > kWorthATask)
-      parallel_invoke(build_left, build_right);
-    else
-      build_left(), build_right();
+  double farthest = 0.0;
+  const auto squared = [&node](const glm::dvec3& p) { return glm::dot(p - node.center, p - node.center); };
+  for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+    for (int k = 0; k < 3; ++k) farthest = std::max(farthest, squared(corner(order_[i], k)));
+  node.radius = std::sqrt(farthest);
+  return centers;
+}
+
+/// Brings the `half` triangles of the least middles (of equal ones those of the lowest numbers) to the front; both parts stay in order, so
+/// that sums are the same everywhere. A histogram finds the pair between the two in a few passes.
+void Winding::split(std::uint32_t first, std::uint32_t count, std::uint32_t half, int axis, const Interval& range) {
+  using Key = std::pair<double, std::uint32_t>;
+  const std::span<std::uint32_t> order = std::span(order_).subspan(first, count);
+  std::vector<double> keys(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t t = order[i];
+    keys[i] = (corner(t, 0)[axis] + corner(t, 1)[axis] + corner(t, 2)[axis]) / 3.0;
   }
+  const std::uint32_t bins = std::clamp(count / 8, 1u, 4096u);
+  const double scale = range.width() > 0.0 ? bins / range.width() : 0.0;
+  const auto bin_of = [&](double key) {
+    const double at = (key - range.lower) * scale;
+    return at < bins - 1 ? static_cast<std::uint32_t>(at) : bins - 1;
+  };
+  std::vector<std::uint32_t> counts(bins, 0);
+  for (const double key : keys) ++counts[bin_of(key)];
+  std::uint32_t bin = 0, before = 0;
+  while (before + counts[bin] <= half) before += counts[bin++];
+  std::vector<Key> within;
+  within.reserve(counts[bin]);
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (bin_of(keys[i]) == bin) within.emplace_back(keys[i], order[i]);
+  const auto middle = within.begin() + (half - before);
+  std::nth_element(within.begin(), middle, within.end());
+  const Key pivot = *middle;
+  std::vector<std::uint32_t> back;
+  back.reserve(count - half);
+  std::uint32_t front = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (Key(keys[i], order[i]) < pivot)
+      order[front++] = order[i];
+    else
+      back.push_back(order[i]);
+  }
+  std::copy(back.begin(), back.end(), order.begin() + front);
 }
 
 double Winding::number(const glm::dvec3& point, double far) const {
@@ -94,7 +139,11 @@ double Winding::number(const glm::dvec3& point, double far) const {
     if (squared > far * far * node.radius * node.radius) {
       sum += glm::dot(away, node.dipole) / (4.0 * std::numbers::pi * squared * std::sqrt(squared));
     } else if (node.left == 0) {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) sum += triangle_winding(point, &corners_[3 * i]);
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        const std::uint32_t t = order_[i];
+        const double own = triangle_winding(point, corner(t, 0), corner(t, 1), corner(t, 2));
+        sum += times_.empty() ? own : static_cast<double>(times_[t]) * own;
+      }
     } else {
       stack[depth++] = node.right;
       stack[depth++] = node.left;
@@ -103,36 +152,36 @@ double Winding::number(const glm::dvec3& point, double far) const {
   return sum;
 }
 
-void Winding::find_border(const TriangleMesh& mesh) {
-  std::vector<std::uint32_t> by_position(mesh.positions.size());
-  std::iota(by_position.begin(), by_position.end(), 0u);
-  const auto key = [&mesh](std::uint32_t v) {
-    const glm::dvec3& p = mesh.positions[v];
-    return std::tuple(p.x, p.y, p.z, v);
-  };
-  parallel_sort(by_position.begin(), by_position.end(), [&key](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-  std::vector<std::uint32_t> welded(mesh.positions.size());
-  for (size_t i = 0; i < by_position.size(); ++i) {
-    const bool same = i > 0 && mesh.positions[by_position[i]] == mesh.positions[by_position[i - 1]];
-    welded[by_position[i]] = same ? welded[by_position[i - 1]] : by_position[i];
-  }
+/// Uses of edges, brought to their places by the lower vertex (few share one) and sorted there by the higher.
+void Winding::find_border(std::span<const std::uint32_t> first_at) {
   struct Use {
-    std::uint32_t low, high;
-    int direction;
+    std::uint32_t high;
+    std::int32_t times;  ///< Below 0: from the higher vertex to the lower.
   };
-  std::vector<Use> uses;
-  for (const glm::uvec3& t : mesh.triangles)
-    for (int i = 0; i < 3; ++i) {
-      const std::uint32_t a = welded[t[i]], b = welded[t[(i + 1) % 3]];
-      if (a != b) uses.push_back(a < b ? Use{a, b, 1} : Use{b, a, -1});
+  const auto visit = [&](const auto& take) {
+    for (size_t t = 0; t < mesh_.triangles.size(); ++t)
+      for (int i = 0; i < 3; ++i) {
+        const std::uint32_t a = first_at[mesh_.triangles[t][i]], b = first_at[mesh_.triangles[t][(i + 1) % 3]];
+        const std::int32_t times = times_.empty() ? 1 : times_[t];
+        if (a != b) take(std::min(a, b), Use{std::max(a, b), a < b ? times : -times});
+      }
+  };
+  std::vector<std::uint32_t> ends(mesh_.positions.size() + 1, 0);
+  visit([&](std::uint32_t low, const Use&) { ++ends[low + 1]; });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<Use> uses(ends.back());
+  // Each start moves on to where the next vertex starts.
+  visit([&](std::uint32_t low, const Use& use) { uses[ends[low]++] = use; });
+  for (std::uint32_t low = 0, start = 0; low + 1 < ends.size(); start = ends[low++]) {
+    const std::span<Use> own = std::span(uses).subspan(start, ends[low] - start);
+    std::sort(own.begin(), own.end(), [](const Use& a, const Use& b) { return a.high < b.high; });
+    for (size_t i = 0; i < own.size();) {
+      int net = 0;
+      size_t end = i;
+      for (; end < own.size() && own[end].high == own[i].high; ++end) net += own[end].times;
+      if (net != 0) border_.push_back({mesh_.positions[low], mesh_.positions[own[i].high], net});
+      i = end;
     }
-  parallel_sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) { return std::tie(a.low, a.high) < std::tie(b.low, b.high); });
-  for (size_t i = 0; i < uses.size();) {
-    int net = 0;
-    size_t end = i;
-    for (; end < uses.size() && uses[end].low == uses[i].low && uses[end].high == uses[i].high; ++end) net += uses[end].direction;
-    if (net != 0) border_.push_back({mesh.positions[uses[i].low], mesh.positions[uses[i].high], net});
-    i = end;
   }
 }
 

@@ -13,6 +13,7 @@
 #include "tests/bench/against.h"
 #include "tests/bench/convert_suite.h"
 #include "tests/bench/fields_suite.h"
+#include "tests/bench/growth_suite.h"
 #include "tests/bench/image_methods.h"
 #include "tests/bench/march_suite.h"
 #include "tests/bench/plan_suite.h"
@@ -27,6 +28,7 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
           convert   mesh to level set beside OpenVDB's meshToVolume
           images    image methods beside OpenCV
           plan      what a plan saves (minutes)
+          growth    whole calls of limn on larger and larger files, beside assimp's reading of them (minutes)
           all       the first four (the default)
   --object NAME     sphere, torus, or a built-in scene with a cage; may be repeated
   --mesh FILE       a mesh to march and to convert; may be repeated
@@ -34,13 +36,16 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
   --runs N          interleaved runs of which the median counts (7)
   --width PX        of pictures 16:9 (1920)
   --scene NAME, --views N   of the plan suite; --view I: only this one of the views, from 0
+  --level N         of the growth suite, how often its cage is refined; may be repeated (4 5 6 7)
+  --program FILE    of the growth suite: the program limn (the one beside this)
   --output FILE     JSON; --json prints it to stdout, tables then go to stderr
   --against BEFORE AFTER    compares JSON files of two revisions; each may be given as FILE,FILE,... (see ./run bench --against REF)
   --limit X         of --against: exit 1 where one of limn's rows takes more than X times as long (1.1)
 )";
 
 struct Settings {
-  std::vector<int> voxels{};
+  std::vector<int> voxels{}, levels{};
+  std::string program{};
   std::vector<std::string> objects{}, meshes{}, scenes{};
   int runs = 7;
   int width_px = 1920, height_px = 1080;
@@ -51,7 +56,7 @@ struct Settings {
   bool json = false;
   std::vector<std::string> against{};  ///< Two lists of files.
   double limit = 1.1;
-  bool runs_suite(const std::string& name) const { return suite == name || (suite == "all" && name != "plan"); }
+  bool runs_suite(const std::string& name) const { return suite == name || (suite == "all" && name != "plan" && name != "growth"); }
   /// With --json the document alone goes to stdout.
   std::FILE* table() const { return json ? stderr : stdout; }
 };
@@ -91,11 +96,15 @@ Settings parse(int argc, char** argv) {
       settings.views = whole(flag, 1);
     } else if (flag == "--view") {
       settings.only_view = whole(flag, 0);
+    } else if (flag == "--level") {
+      settings.levels.push_back(whole(flag, 0));
+    } else if (flag == "--program") {
+      settings.program = value(flag);
     } else if (flag == "--suite") {
       settings.suite = value(flag);
-      const std::vector<std::string> known{"march", "fields", "convert", "images", "plan", "all"};
+      const std::vector<std::string> known{"march", "fields", "convert", "images", "plan", "growth", "all"};
       if (std::find(known.begin(), known.end(), settings.suite) == known.end())
-        refuse(flag, settings.suite, "unknown suite", "march, fields, convert, images, plan or all");
+        refuse(flag, settings.suite, "unknown suite", "march, fields, convert, images, plan, growth or all");
     } else if (flag == "--width") {
       settings.width_px = std::min(whole(flag, 16), 16384);
       settings.height_px = std::max(1, settings.width_px * 9 / 16);
@@ -138,6 +147,13 @@ nlohmann::json rows_of(const Settings& settings) {
   if (settings.runs_suite("images"))
     append(bench_image_methods(
         {.runs = settings.runs, .width_px = settings.width_px, .height_px = settings.height_px, .table = settings.table()}));
+  if (settings.runs_suite("growth"))
+    append(bench_growth({.levels = settings.levels,
+                         .voxels = settings.voxels,
+                         .field_voxels = settings.voxels,
+                         .width_px = settings.width_px == 1920 ? 1280 : settings.width_px,
+                         .program = settings.program,
+                         .table = settings.table()}));
   if (settings.runs_suite("plan"))
     append(bench_plan({.scenes = settings.scenes, .views = settings.views, .only_view = settings.only_view, .table = settings.table()}));
   return rows;
@@ -166,6 +182,7 @@ int run(const Settings& settings) {
 
 int main(int argc, char** argv) {
   try {
+    if (limn::bench::run_growth_part(argc, argv)) return 0;
     return limn::bench::run(limn::bench::parse(argc, argv));
   } catch (const std::exception& error) {
     fmt::print(stderr, "limn-bench: {}\n", error.what());

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -60,6 +62,7 @@ class Shown {
   void threads();
   void targets();
   void conversions();
+  void sizes();
 
  private:
   void add(int number, const std::string& what, const std::string& bound, double figure, bool met) {
@@ -187,6 +190,33 @@ void Shown::conversions() {
   }
 }
 
+/// Of what is refined twice more: 16 times is linear.
+void Shown::sizes() {
+  std::map<std::string, std::vector<const json*>> calls;
+  for (const json& row : rows_)
+    if (row.value("kind", "") == "growth") calls[row["input"].get<std::string>() + ": " + row["what"].get<std::string>()].push_back(&row);
+  for (const auto& [call, of] : calls) {
+    // The parts that do not grow weigh where there is little to do.
+    constexpr double kFaces = 2e5;
+    const json *small = nullptr, *large = of.back();
+    for (const json* row : of)
+      if (small == nullptr && (*row)["units"].get<double>() >= kFaces) small = row;
+    if (small == nullptr || small == large || call.starts_with("field") || call.find("assimp") != std::string::npos) continue;
+    const double units = (*large)["units"].get<double>() / (*small)["units"].get<double>();
+    for (const char* field : {"cpu_s", "peak_bytes"})
+      at_most(7, fmt::format("{}, {} times the faces, {}", call, std::round(units), field), 18.0 / 16.0 * units,
+              (*large)[field].get<double>() / (*small)[field].get<double>());
+    if ((*large)["units"].get<double>() < 4e6) continue;
+    if (call == "ply: render, mesh") {
+      at_most(7, call + ", 4.4 M quads, processor seconds", 6.0, (*large)["cpu_s"].get<double>());
+      at_most(7, call + ", 4.4 M quads, GB", 1.5, 1e-9 * (*large)["peak_bytes"].get<double>());
+    }
+    if (call == "ply: render, mesh_level_set, 512 voxels")
+      at_most(7, call + ", 4.4 M quads, processor seconds", 20.0, (*large)["cpu_s"].get<double>());
+    if (call.ends_with(": info")) at_most(7, call + ", 4.4 M quads, processor seconds", 15.0, (*large)["cpu_s"].get<double>());
+  }
+}
+
 }  // namespace
 
 nlohmann::json must_shows(const nlohmann::json& rows) {
@@ -199,6 +229,7 @@ nlohmann::json must_shows(const nlohmann::json& rows) {
   shown.threads();
   shown.targets();
   shown.conversions();
+  shown.sizes();
   json all = shown.take();
   std::stable_sort(all.begin(), all.end(), [](const json& a, const json& b) { return a["number"].get<int>() < b["number"].get<int>(); });
   return all;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "raymarch/audit/facts.h"
 #include "raymarch/surface/object_mesh.h"
@@ -55,10 +56,11 @@ SurfaceSamples sample_mesh(const SceneObject& object, const SurfaceSettings& set
   const glm::dvec3 center = bounds(object).center();
   SurfaceSettings how = settings;
   how.level = affordable_level(object, settings);
-  SceneObject own = object;
-  own.level.reset();
+  // On the heap: GCC 12 takes a copy of the variant on the stack for read before it is written.
+  const auto own = std::make_unique<SceneObject>(object);
+  own->level.reset();
   if (how.level < object.level.value_or(settings.level)) samples.of = fmt::format("the cage refined {} times", how.level);
-  const std::shared_ptr<const TriangleMesh> made = object_mesh(own, how, center).triangles;
+  const std::shared_ptr<const TriangleMesh> made = object_mesh(*own, how, center).triangles;
   const TriangleMesh& mesh = *made;
   // As --voxels counts: a cage is larger than what it is refined to.
   Box box;

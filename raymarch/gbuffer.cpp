@@ -83,9 +83,12 @@ void render_gbuffer(const SceneModel& model, const Camera& camera, const Executi
   const std::int64_t tasks = std::int64_t{columns} * rows;
   std::mutex progress_mutex;
   std::int64_t done = 0;
+  out.turned.clear();
   const auto render = [&] {
     const PictureRays rays = picture_rays(render_camera, extent.radius, extent.bounded);
     const Shared shared{model, view_model(model, {render_camera, offset}), rays, tile_writer(model, rays, out)};
+    for (size_t i = 0; i < shared.view.turned.size(); ++i)
+      if (shared.view.turned[i]) out.turned.push_back(static_cast<std::int32_t>(i) + 1);
     parallel_for(std::int64_t{0}, tasks, [&](std::int64_t k) {
       if (how.cancelled && how.cancelled()) throw Cancelled{};
       const int x = static_cast<int>(k % columns) * task_px, y = static_cast<int>(k / columns) * how.tile_px;

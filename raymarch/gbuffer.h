@@ -22,6 +22,8 @@ struct GBuffer {
   Image<std::uint8_t> status{};  ///< HitStatus.
   Image<glm::vec3>
       custom{};  ///< What the scene fills for edge methods (a section map): vertex colours, face groups, world position; or empty.
+  /// Ids of open meshes that show mostly their back: their normals were turned towards the eye (raymarch/open_sheet.h). Rising.
+  std::vector<std::int32_t> turned{};
 };
 
 /// Which layers of a G-buffer are wanted: what nobody reads is neither computed nor stored, its image stays empty.

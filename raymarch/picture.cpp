@@ -41,6 +41,14 @@ GBufferLayers joined(const GBufferLayers& a, const GBufferLayers& b) {
           a.id || b.id,       a.material || b.material, a.face || b.face,     a.status || b.status};
 }
 
+void add_turned_notes(const BorderInput& input, std::vector<std::string>& notes) {
+  for (const std::int32_t id : input.gbuffer.turned) {
+    const auto index = static_cast<size_t>(id - 1);
+    const std::string name = index < input.scene.objects.size() ? input.scene.objects[index].name : fmt::format("object {}", id);
+    notes.push_back(fmt::format("'{}' is open and shows mostly its back: its normals are turned towards the eye", name));
+  }
+}
+
 Border draw_after(const BorderInput& input, const MethodCall& call, const SampleInks* inks, size_t method) {
   if (inks == nullptr || inks->before.empty()) return call.method->draw(input, call.parameters);
   const BorderBefore before{inks->before[method], inks->pixels_before};
@@ -118,6 +126,7 @@ void add_sample(const BorderInput& input, std::span<const MethodCall> methods, P
   const bool first = picture.border.pixels.empty();
   Image<float> ink(input.gbuffer.width, input.gbuffer.height, 0.0f);
   Image<glm::vec4> composite = shade_headlight(input.gbuffer, input.model);
+  if (first) add_turned_notes(input, picture.notes);
   for (size_t m = 0; m < methods.size(); ++m) {
     Border border = draw_after(input, methods[m], inks, m);
     LIMN_CHECK(border.coverage.size() == ink.size());

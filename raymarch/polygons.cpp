@@ -16,7 +16,7 @@ const Mesh& Polygons::mesh() const {
 std::span<const glm::vec3> Polygons::corner_normals() const {
   std::call_once(corners_made_, [this] {
     const Mesh& mesh = this->mesh();
-    corner_normals_ = traced_ == NormalKind::flat ? face_normals_at_corners(mesh) : angle_weighted_normals(mesh);
+    corner_normals_ = traced_ == NormalKind::flat ? face_normals_at_corners(mesh) : angle_weighted_normals(mesh, smoothing_);
     for (size_t i = 0; i < mesh.corner_normals.size(); ++i) {
       const float length = glm::length(mesh.corner_normals[i]);
       if (length > 1e-20f && std::isfinite(length)) corner_normals_[i] = mesh.corner_normals[i] / length;

@@ -15,9 +15,12 @@ namespace limn {
 class Polygons {
  public:
   /// `traced` says which normals the surface is traced with; `mesh.corner_normals`, where there are any, are those.
-  Polygons(Mesh mesh, NormalKind traced) : mesh_(std::move(mesh)), traced_(traced) {}
+  /// `smoothing`: of vertex normals, where the mesh has none of its own.
+  Polygons(Mesh mesh, NormalKind traced, const Smoothing& smoothing = {})
+      : mesh_(std::move(mesh)), traced_(traced), smoothing_(smoothing) {}
   /// `make` is called once, when somebody asks for the mesh: most pictures of a mesh need its triangles only.
-  Polygons(std::function<Mesh()> make, NormalKind traced) : make_(std::move(make)), traced_(traced) {}
+  Polygons(std::function<Mesh()> make, NormalKind traced, const Smoothing& smoothing = {})
+      : make_(std::move(make)), traced_(traced), smoothing_(smoothing) {}
 
   const Mesh& mesh() const;
   /// Unit, one for each corner: the normals that the surface is traced with.
@@ -32,6 +35,7 @@ class Polygons {
   mutable std::function<Mesh()> make_;
   mutable Mesh mesh_;
   NormalKind traced_;
+  Smoothing smoothing_;
   mutable std::once_flag mesh_made_, corners_made_, smooth_made_, edges_made_, triangles_made_;
   mutable std::vector<glm::vec3> corner_normals_, smooth_normals_;
   mutable EdgeTopology edges_;

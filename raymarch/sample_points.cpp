@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "raymarch/open_sheet.h"
 #include "raymarch/picture_rays.h"
 #include "raymarch/trace_scene.h"
 #include "sdf/error.h"
@@ -14,6 +15,7 @@ struct Setup {
   const SceneModel& model;
   Camera camera;  ///< In render space.
   SceneExtent extent;
+  std::vector<char> turned;  ///< As turned_surfaces.
 };
 
 /// The rays of one batch: in double as the camera gives them, in float from where they enter the scene's sphere, so that float keeps
@@ -65,13 +67,14 @@ PointSample sample_of(const Setup& setup, const TracedBatch& batch, int i) {
 
 void sample_points(const SceneModel& model, const Camera& camera, std::span<const glm::dvec2> points_px, std::span<PointSample> samples) {
   LIMN_CHECK(points_px.size() == samples.size());
-  const Setup setup{model, moved(camera, model.render_origin), scene_extent(model)};
+  const Camera render_camera = moved(camera, model.render_origin);
+  const Setup setup{model, render_camera, scene_extent(model), turned_surfaces(model.surfaces, render_camera)};
   TracedBatch batch;
   for (size_t first = 0; first < points_px.size(); first += kRayBatchSize) {
     const size_t count = std::min<size_t>(kRayBatchSize, points_px.size() - first);
     batch.rays.count = 0;
     for (size_t k = 0; k < count; ++k) add_ray(setup, points_px[first + k].x, points_px[first + k].y, batch);
-    trace_scene(model, batch.rays, batch.found);
+    trace_scene(model, setup.turned, batch.rays, batch.found);
     for (size_t k = 0; k < count; ++k) samples[first + k] = sample_of(setup, batch, static_cast<int>(k));
   }
 }

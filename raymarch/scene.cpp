@@ -7,16 +7,22 @@ namespace {
 
 // Of the moved vertices, not of the moved box: a turned mesh would be framed too small.
 Box bounds_of(const MeshSource& source, const Affine& world_from_object) {
+  const std::vector<char> drawn = drawn_vertices(source.mesh);
   Box box;
-  for (const glm::dvec3& position : source.mesh->positions) box = include(box, world_from_object.point(position));
+  for (size_t v = 0; v < drawn.size(); ++v)
+    if (drawn[v]) box = include(box, world_from_object.point(source.mesh->positions[v]));
   return box;
+}
+
+bool has_subdivision_tags(const Mesh& mesh) {
+  return !mesh.creases.empty() || !mesh.corners.empty() || !mesh.holes.empty() || mesh.boundary != BoundaryRule::edge_and_corner ||
+         mesh.crease_method != CreaseMethod::uniform || mesh.triangle_rule != TriangleRule::catmark;
 }
 
 }  // namespace
 
 MeshSource mesh_source(Mesh mesh, std::optional<Scheme> scheme, const std::string& file) {
-  const bool tagged = !mesh.creases.empty() || !mesh.corners.empty();
-  if (tagged && !scheme) scheme = Scheme::catmark;
+  if (!scheme && has_subdivision_tags(mesh)) scheme = default_scheme(mesh);
   const std::int64_t turned_parts = turn_outwards(mesh);
   return {std::move(mesh), scheme, file, turned_parts};
 }

@@ -37,10 +37,14 @@ struct MeshSource {
   std::optional<Scheme> scheme{};
   std::string file{};             ///< For messages.
   std::int64_t turned_parts = 0;  ///< Parts that came inside out and were turned round, for the audit to tell.
+  /// Without a scheme: vertex normals are averaged across edges up to this angle, whatever the file says. Unset: the file's own normals,
+  /// else its smoothing groups, else kSmoothAngle_deg.
+  std::optional<double> smooth_angle_deg{};
 };
+inline constexpr double kSmoothAngle_deg = 30.0;
 
-/// An object from a mesh: a cage where `scheme` is set or the mesh has crease or corner tags, else the mesh as it is; what is inside out is
-/// turned round (subdiv/orientation.h). `file` goes into messages.
+/// An object from a mesh: a cage where `scheme` is set or the mesh has subdivision tags (by default_scheme), else the mesh as it is; what
+/// is inside out is turned round (subdiv/orientation.h). `file` goes into messages.
 MeshSource mesh_source(Mesh mesh, std::optional<Scheme> scheme, const std::string& file);
 
 struct LevelSetSource {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/open_sheet.h"
+
 namespace limn {
 namespace {
 
@@ -36,6 +38,17 @@ void trace_all(size_t objects, RayBatch& rays, SceneHits& found, const Trace& tr
     for (int i = 0; i < rays.count; ++i) {
       if (own.status[i] != HitStatus::miss && own.t[i] <= rays.t_max[i]) take_hit(i, static_cast<int>(object), own, rays, found);
     }
+  }
+}
+
+void turn_normals(std::span<const char> turned, const RayBatch& rays, SceneHits& found) {
+  if (turned.empty()) return;
+  HitBatch& hits = found.hits;
+  for (int i = 0; i < rays.count; ++i) {
+    if (found.object[i] < 0 || !turned[static_cast<size_t>(found.object[i])]) continue;
+    const glm::vec3 normal(hits.normal_x[i], hits.normal_y[i], hits.normal_z[i]);
+    if (glm::dot(normal, rays.direction(i)) <= 0.0f) continue;
+    hits.normal_x[i] = -normal.x, hits.normal_y[i] = -normal.y, hits.normal_z[i] = -normal.z;
   }
 }
 
@@ -90,6 +103,7 @@ ModelView view_model(const SceneModel& model, const ViewRequest& request) {
     view.surfaces.push_back(surface.view ? surface.view(surface.state, request) : SurfaceView{});
     view.covered.push_back(covered_pixels(surface.bounds, request));
   }
+  view.turned = turned_surfaces(model.surfaces, request.camera);
   return view;
 }
 
@@ -100,9 +114,10 @@ bool touches(const ModelView& view, const PixelTile& tile) {
   return false;
 }
 
-void trace_scene(const SceneModel& model, RayBatch& rays, SceneHits& found) {
+void trace_scene(const SceneModel& model, std::span<const char> turned, RayBatch& rays, SceneHits& found) {
   trace_all(model.surfaces.size(), rays, found,
             [&](size_t k, HitBatch& hits) { model.surfaces[k].trace(model.surfaces[k].state.get(), rays, hits); });
+  turn_normals(turned, rays, found);
 }
 
 void trace_scene(const SceneModel& model, const ModelView& view, const PixelTile& tile, RayBatch& rays, SceneHits& found) {
@@ -114,6 +129,7 @@ void trace_scene(const SceneModel& model, const ModelView& view, const PixelTile
     else
       model.surfaces[k].trace(model.surfaces[k].state.get(), rays, hits);
   });
+  turn_normals(view.turned, rays, found);
 }
 
 }  // namespace limn

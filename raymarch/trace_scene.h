@@ -25,13 +25,15 @@ struct SceneHits {
 struct ModelView {
   std::vector<SurfaceView> surfaces{};
   std::vector<PixelTile> covered{};  ///< The pixels that each surface's bounds cover in the picture.
+  std::vector<char> turned{};        ///< As turned_surfaces.
 };
 ModelView view_model(const SceneModel& model, const ViewRequest& request);
 /// False where no surface can be seen in the tile.
 bool touches(const ModelView& view, const PixelTile& tile);
 
-/// Shortens rays.t_max to the hits. A ray that ran out of steps hides what lies behind that point: nobody knows what is there.
-void trace_scene(const SceneModel& model, RayBatch& rays, SceneHits& found);
+/// Shortens rays.t_max to the hits. A ray that ran out of steps hides what lies behind that point: nobody knows what is there. Normals of
+/// surfaces that are `turned` (empty: none) point towards the ray's origin.
+void trace_scene(const SceneModel& model, std::span<const char> turned, RayBatch& rays, SceneHits& found);
 void trace_scene(const SceneModel& model, const ModelView& view, const PixelTile& tile, RayBatch& rays, SceneHits& found);
 
 }  // namespace limn

@@ -22,10 +22,11 @@ std::string extension_of(const std::filesystem::path& file) {
 
 SceneInput from_mesh(const Options& options) {
   std::optional<Scheme> scheme = options.scheme;
-  if (!scheme && options.level && *options.level > 0) scheme = Scheme::catmark;
+  Mesh mesh = load_mesh(options.input);
+  if (!scheme && options.level && *options.level > 0) scheme = default_scheme(mesh);
   SceneInput input;
-  input.scene.objects.push_back({.name = std::filesystem::path(options.input).stem().string(),
-                                 .source = mesh_source(load_mesh(options.input), scheme, options.input)});
+  input.scene.objects.push_back(
+      {.name = std::filesystem::path(options.input).stem().string(), .source = mesh_source(std::move(mesh), scheme, options.input)});
   return input;
 }
 

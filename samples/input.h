@@ -23,6 +23,7 @@ struct SurfaceDefaults {
   std::optional<int> level;
   std::optional<Scheme> scheme;
   std::optional<NormalKind> normals;
+  std::optional<double> smooth_angle_deg;
 };
 
 /// One [border] of a scene file: a method and the parameters it sets.

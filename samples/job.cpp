@@ -109,7 +109,10 @@ SurfaceSettings surface_settings(const Options& options, SceneInput& input) {
     if (options.level || options.level_for_view) object.level.reset();
     auto* mesh = std::get_if<MeshSource>(&object.source);
     const bool refined = options.level_for_view || options.level.value_or(0) > 0;
-    if (mesh != nullptr && !mesh->scheme && refined) mesh->scheme = Scheme::catmark;
+    if (mesh == nullptr) continue;
+    if (!mesh->scheme && refined) mesh->scheme = default_scheme(mesh->mesh);
+    if (!mesh->smooth_angle_deg) mesh->smooth_angle_deg = file.smooth_angle_deg;
+    if (options.smooth_angle_deg) mesh->smooth_angle_deg = options.smooth_angle_deg;
   }
   return settings;
 }
@@ -205,6 +208,7 @@ std::string resolved_call(const std::string& command, const Options& options, co
   call += fmt::format(" --gradient {} --level {}", surface.gradient, options.level_for_view ? "auto" : std::to_string(surface.level));
   if (surface.scheme) call += fmt::format(" --scheme {}", name_of(*surface.scheme));
   if (surface.normals) call += fmt::format(" --normals {}", name_of(*surface.normals));
+  if (options.smooth_angle_deg) call += fmt::format(" --smooth-angle {}", *options.smooth_angle_deg);
   for (const std::string& grid : options.grids) call += " --grid " + grid;
   for (const MethodCall& method : picture.methods) {
     call += " --method " + method.method->about.name;

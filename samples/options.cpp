@@ -93,6 +93,13 @@ void add_output(CLI::App& app, Options& options, const std::string& what, bool r
   add_switch(app, {"--no-clobber", "", "refuse to replace files that exist", kOutput}, options.no_clobber);
 }
 
+void add_refined(CLI::App& app, Options& options) {
+  add_switch(
+      app,
+      {"--refined", "", "vertices of a cage where --level refinements put them, with its tags, instead of on the limit surface", kSurface},
+      options.refined);
+}
+
 void add_json(CLI::App& app, Options& options) {
   add_switch(app, {"--json", "", "one JSON document on stdout and nothing else there", kOutput}, options.json);
 }
@@ -147,8 +154,19 @@ void add_fixed_surface(CLI::App& app, Options& options) {
       [&options](const std::string& text) {
         options.half_width_voxels = parse_number_above("--half-width", text, 1.8, true, "at least 1.8 voxels would be right");
       });
-  add(app, {"--scheme", "NAME", "catmark, loop or bilinear; default: the scene's, else catmark", kSurface},
+  add(app,
+      {"--scheme", "NAME", "catmark, loop or bilinear; default: the scene's, else loop for triangles, catmark for all others", kSurface},
       [&options](const std::string& text) { options.scheme = parse_scheme(text, "", "--scheme"); });
+  add(app,
+      {"--smooth-angle", "DEG",
+       "meshes drawn as they are: normals are averaged across edges up to this angle, 0..180 (180: across all), in place of the file's own "
+       "and its smoothing groups; default: these, else 30",
+       kSurface},
+      [&options](const std::string& text) {
+        const double angle = parse_number("--smooth-angle", text);
+        if (!(angle >= 0.0 && angle <= 180.0)) throw InputError({"", "--smooth-angle", text, "out of range", "0 to 180 degrees"});
+        options.smooth_angle_deg = angle;
+      });
   add_grid(app, options);
 }
 

@@ -74,7 +74,9 @@ struct Options {
   bool level_for_view = false;  ///< --level auto; `level` is unset then.
   std::optional<Scheme> scheme;
   std::optional<NormalKind> normals;
-  std::vector<std::string> grids;  ///< Of a volume, by name; "all" for all of its level sets.
+  std::optional<double> smooth_angle_deg;  ///< Of meshes drawn as they are.
+  bool refined = false;                    ///< `limn export` only: refined instead of limit positions.
+  std::vector<std::string> grids;          ///< Of a volume, by name; "all" for all of its level sets.
 
   std::vector<std::string> methods;           ///< Of one picture, in order.
   std::vector<std::string> compared_methods;  ///< `limn compare` only: each makes pictures of its own.
@@ -95,6 +97,8 @@ struct SurfaceOptionNeeds {
 
 void add_input(CLI::App& app, Options& options);
 void add_output(CLI::App& app, Options& options, const std::string& what, bool repeatable);
+/// --refined
+void add_refined(CLI::App& app, Options& options);
 void add_json(CLI::App& app, Options& options);
 void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size = "1280x720");
 /// --frames, --path-step and --seed; excludes --views.

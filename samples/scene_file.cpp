@@ -60,6 +60,7 @@ SurfaceDefaults read_surface(TomlReader& reader) {
   surface.level = reader.integer("level", 0, 8);
   if (const auto scheme = reader.text("scheme")) surface.scheme = parse_scheme(*scheme, place("scheme"), "surface.scheme");
   if (const auto normals = reader.text("normals")) surface.normals = parse_normals(*normals, place("normals"), "surface.normals");
+  surface.smooth_angle_deg = reader.number("smooth_angle", 0.0, 180.0, "an angle of 0 to 180 degrees");
   reader.finish();
   return surface;
 }
@@ -87,12 +88,15 @@ MeshSource read_mesh(TomlReader& reader, const SceneReaders& readers, bool own_c
     scheme = parse_scheme(*text, reader.where(*reader.take("scheme")), reader.field("scheme"));
   }
   level = reader.integer("level", 0, 8);
-  // A level without a scheme still asks for subdivision; Catmull-Clark takes any polygons.
-  if (level && *level > 0 && !scheme) scheme = Scheme::catmark;
+  const auto smooth_angle = reader.number("smooth_angle", 0.0, 180.0, "an angle of 0 to 180 degrees");
   const std::filesystem::path path = beside(reader, name);
   Mesh mesh = readers.mesh(path);
   mesh.draws_colors = !own_color;
-  return mesh_source(std::move(mesh), scheme, path.string());
+  // A level without a scheme still asks for subdivision.
+  if (level && *level > 0 && !scheme) scheme = default_scheme(mesh);
+  MeshSource source = mesh_source(std::move(mesh), scheme, path.string());
+  source.smooth_angle_deg = smooth_angle;
+  return source;
 }
 
 LevelSetSource read_volume(TomlReader& reader, const SceneReaders& readers) {

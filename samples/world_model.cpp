@@ -10,7 +10,7 @@
 namespace limn {
 namespace {
 
-Mesh local_mesh(const SceneObject& object, const SurfaceSettings& settings) {
+Mesh local_mesh(const SceneObject& object, const SurfaceSettings& settings, bool refined_positions) {
   const NormalKind normals = settings.normals.value_or(NormalKind::limit);
   const int level = object.level.value_or(settings.level);
   if (const Field* field = std::get_if<Field>(&object.source)) {
@@ -20,10 +20,16 @@ Mesh local_mesh(const SceneObject& object, const SurfaceSettings& settings) {
     if (!source->scheme && !settings.scheme) return source->mesh;
     const Scheme scheme = settings.scheme ? *settings.scheme : *source->scheme;
     Mesh refined =
-        refine(source->mesh, {.scheme = scheme, .level = level, .normals = normals, .max_bytes = settings.max_bytes}, source->file);
+        refine(source->mesh,
+               {.scheme = scheme, .level = level, .to_limit = !refined_positions, .normals = normals, .max_bytes = settings.max_bytes},
+               source->file);
+    if (refined_positions) return refined;
     // Its vertices lie on the limit surface: whoever subdivided it once more by the tags would get another one.
     refined.creases.clear();
     refined.corners.clear();
+    refined.boundary = BoundaryRule::edge_and_corner;
+    refined.crease_method = CreaseMethod::uniform;
+    refined.triangle_rule = TriangleRule::catmark;
     return refined;
   }
   PolygonSoup soup = mesh_from_level_set(std::get<LevelSetSource>(object.source).level_set);
@@ -68,6 +74,11 @@ void append(Mesh& all, const Mesh& part, const std::string& name) {
     all.material_names.clear();
     all.material_colors.clear();
   }
+  if (first) {
+    all.boundary = part.boundary;
+    all.crease_method = part.crease_method;
+    all.triangle_rule = part.triangle_rule;
+  }
   for (const Crease& crease : part.creases) {
     all.creases.push_back({vertex_offset + crease.vertex_a, vertex_offset + crease.vertex_b, crease.sharpness});
   }
@@ -83,8 +94,8 @@ size_t count_of(const Scene& scene) {
 
 }  // namespace
 
-Mesh world_mesh(const SceneObject& object, const SurfaceSettings& settings) {
-  Mesh mesh = local_mesh(object, settings);
+Mesh world_mesh(const SceneObject& object, const SurfaceSettings& settings, bool refined_positions) {
+  Mesh mesh = local_mesh(object, settings, refined_positions);
   if (std::holds_alternative<Field>(object.source)) return mesh;
   const Affine& world_from_object = object.world_from_object;
   for (glm::dvec3& position : mesh.positions) position = world_from_object.point(position);
@@ -98,10 +109,10 @@ Mesh world_mesh(const SceneObject& object, const SurfaceSettings& settings) {
   return mesh;
 }
 
-Mesh world_mesh(const Scene& scene, const SurfaceSettings& settings) {
-  if (scene.objects.size() == 1) return world_mesh(scene.objects.front(), settings);
+Mesh world_mesh(const Scene& scene, const SurfaceSettings& settings, bool refined_positions) {
+  if (scene.objects.size() == 1) return world_mesh(scene.objects.front(), settings, refined_positions);
   Mesh all;
-  for (const SceneObject& object : scene.objects) append(all, world_mesh(object, settings), object.name);
+  for (const SceneObject& object : scene.objects) append(all, world_mesh(object, settings, refined_positions), object.name);
   return all;
 }
 

@@ -6,11 +6,12 @@
 
 namespace limn {
 
-/// Polygons of one object in world space. A cage comes refined, a mesh as it is, a field tessellated, a level set as its zero surface.
-Mesh world_mesh(const SceneObject& object, const SurfaceSettings& settings);
+/// Polygons of one object in world space. A cage comes refined, its vertices on the limit surface, or where refinement puts them and with
+/// its tags (`refined_positions`); a mesh as it is, a field tessellated, a level set as its zero surface.
+Mesh world_mesh(const SceneObject& object, const SurfaceSettings& settings, bool refined_positions = false);
 
 /// All objects as one mesh; each is a group of its own, named after it.
-Mesh world_mesh(const Scene& scene, const SurfaceSettings& settings);
+Mesh world_mesh(const Scene& scene, const SurfaceSettings& settings, bool refined_positions = false);
 
 /// All objects as one level set: the union of fields, or of meshes; a single volume as it is. `warnings` are added to.
 /// Throws InputError for mixtures and for several volumes.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "subdiv/mesh_facts.h"
+#include "subdiv/polygon.h"
 
 namespace limn {
 namespace {
@@ -72,6 +73,7 @@ void measure_coordinates(const Mesh& mesh, MeshFacts& facts) {
 }
 
 MeshFacts mesh_facts(const Mesh& mesh) {
+  if (!mesh.holes.empty()) return mesh_facts(without_holes(mesh));
   MeshFacts facts;
   facts.faces = facts.looked_at = static_cast<std::int64_t>(mesh.face_count());
   const std::vector<Edge> edges = build_edges(mesh);

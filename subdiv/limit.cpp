@@ -19,6 +19,7 @@ struct LimitSurfaceData {
   std::vector<Bfr::Surface<double>> surfaces;
   std::vector<std::vector<double>> patch_points;
   std::vector<int> face_sizes;
+  std::vector<std::int32_t> holes;
   Scheme scheme = Scheme::catmark;
 };
 
@@ -70,6 +71,7 @@ LimitSurface::LimitSurface(const Mesh& cage, Scheme scheme, const std::string& f
   const CleanCage clean = clean_cage(cage, scheme, file);
   auto data = std::make_shared<LimitSurfaceData>();
   data->scheme = scheme;
+  data->holes = cage.holes;
   data->refiner = make_refiner(clean.mesh, scheme, file);
   Bfr::SurfaceFactory::Options options;
   options.SetApproxLevelSmooth(kSmoothLevels).SetApproxLevelSharp(kSharpLevels);
@@ -93,6 +95,11 @@ LimitSurface::LimitSurface(const Mesh& cage, Scheme scheme, const std::string& f
 }
 
 int LimitSurface::face_count() const { return static_cast<int>(data_->surfaces.size()); }
+
+bool LimitSurface::is_hole(int face) const {
+  LIMN_CHECK(face >= 0 && face < face_count());
+  return std::binary_search(data_->holes.begin(), data_->holes.end(), face);
+}
 
 int LimitSurface::face_size(int face) const {
   LIMN_CHECK(face >= 0 && face < face_count());

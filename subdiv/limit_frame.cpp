@@ -30,8 +30,8 @@ Points points_of(const Mesh& mesh) {
 }
 
 /// Each ring after one subdivision: the ring of the same vertex, half as wide, its sharpness worn by one.
-std::vector<OneRing> subdivide(const std::vector<OneRing>& rings, Scheme scheme) {
-  const Fans fans = gather_fans(rings, scheme);
+std::vector<OneRing> subdivide(const std::vector<OneRing>& rings, Scheme scheme, CreaseMethod creases) {
+  const Fans fans = gather_fans(rings, scheme, creases);
   const std::unique_ptr<Far::TopologyRefiner> refiner = make_refiner(fans.mesh, scheme, {});
   Far::TopologyRefiner::UniformOptions options(1);
   options.fullTopologyInLastLevel = true;
@@ -75,9 +75,9 @@ glm::dvec3 ring_area(const OneRing& ring) {
 }
 
 /// Vertices whose features are still wearing off: their rings are subdivided until nothing semi-sharp is left, then the masks hold.
-void settle_semi_sharp(std::vector<OneRing> rings, Scheme scheme, LimitFrame& frame) {
-  while (std::any_of(rings.begin(), rings.end(), semi_sharp)) rings = subdivide(rings, scheme);
-  const Fans fans = gather_fans(rings, scheme);
+void settle_semi_sharp(std::vector<OneRing> rings, Scheme scheme, CreaseMethod creases, LimitFrame& frame) {
+  while (std::any_of(rings.begin(), rings.end(), semi_sharp)) rings = subdivide(rings, scheme, creases);
+  const Fans fans = gather_fans(rings, scheme, creases);
   const std::unique_ptr<Far::TopologyRefiner> refiner = make_refiner(fans.mesh, scheme, {});
   const Points points = points_of(fans.mesh);
   const LimitFrame settled = limit_frame(*refiner, scheme, points);
@@ -118,8 +118,14 @@ OneRing one_ring(const Far::TopologyLevel& level, Scheme scheme, const Points& p
   return ring;
 }
 
-Fans gather_fans(const std::vector<OneRing>& rings, Scheme scheme) {
+CreaseMethod crease_method(const Far::TopologyRefiner& refiner) {
+  const bool chaikin = refiner.GetSchemeOptions().GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN;
+  return chaikin ? CreaseMethod::chaikin : CreaseMethod::uniform;
+}
+
+Fans gather_fans(const std::vector<OneRing>& rings, Scheme scheme, CreaseMethod creases) {
   Fans fans;
+  fans.mesh.crease_method = creases;
   fans.mesh.boundary = BoundaryRule::edge_only;
   for (const OneRing& ring : rings) {
     const auto center = static_cast<std::int32_t>(fans.mesh.vertex_count());
@@ -183,7 +189,7 @@ LimitFrame limit_frame(const Far::TopologyRefiner& refiner, Scheme scheme, const
       frame.positions[i].p = limit.position, frame.tangent1[i].p = limit.tangent1, frame.tangent2[i].p = limit.tangent2;
     }
   }
-  if (!unsettled.empty()) settle_semi_sharp(std::move(unsettled), scheme, frame);
+  if (!unsettled.empty()) settle_semi_sharp(std::move(unsettled), scheme, crease_method(refiner), frame);
   return frame;
 }
 

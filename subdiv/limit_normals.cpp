@@ -154,7 +154,7 @@ class Normals {
     if (borders_.empty()) return;
     std::vector<OneRing> rings;
     for (const Sector& sector : borders_) rings.push_back(ring_of(sector));
-    const Fans fans = gather_fans(rings, scheme_);
+    const Fans fans = gather_fans(rings, scheme_, CreaseMethod::uniform);  // nothing semi-sharp is left
     const std::unique_ptr<Far::TopologyRefiner> refiner = make_refiner(fans.mesh, scheme_, {});
     const Far::PrimvarRefinerReal<double> primvars(*refiner);
     std::vector<WeightedPoint> source(fans.mesh.vertex_count()), position(source), tangent1(source), tangent2(source);

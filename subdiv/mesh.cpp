@@ -97,9 +97,27 @@ void check_colors(const std::vector<glm::vec3>& colors, const std::string& file,
 
 }  // namespace
 
+std::vector<char> drawn_vertices(const Mesh& mesh) {
+  std::vector<char> drawn(mesh.vertex_count(), 0);
+  if (mesh.holes.empty()) {
+    for (const std::int32_t v : mesh.corner_vertices) drawn[static_cast<size_t>(v)] = 1;
+    return drawn;
+  }
+  size_t corner = 0, hole = 0;
+  for (size_t f = 0; f < mesh.face_count(); ++f) {
+    const bool is_hole = hole < mesh.holes.size() && static_cast<size_t>(mesh.holes[hole]) == f;
+    hole += is_hole;
+    for (std::int32_t i = 0; i < mesh.face_sizes[f]; ++i, ++corner)
+      if (!is_hole) drawn[static_cast<size_t>(mesh.corner_vertices[corner])] = 1;
+  }
+  return drawn;
+}
+
 Box bounds(const Mesh& mesh) {
+  const std::vector<char> drawn = drawn_vertices(mesh);
   Box box;
-  for (const glm::dvec3& p : mesh.positions) box = include(box, p);
+  for (size_t v = 0; v < mesh.vertex_count(); ++v)
+    if (drawn[v]) box = include(box, mesh.positions[v]);
   return box;
 }
 
@@ -129,7 +147,14 @@ void validate(const Mesh& mesh, const std::string& file) {
   check_colors(mesh.vertex_colors, file, "colors");
   check_names(mesh.face_groups, mesh.group_names.size(), file, "groups");
   check_size(mesh.face_smoothing.size(), mesh.face_count(), file, "smoothing groups", "face");
-  for (const std::int32_t hole : mesh.holes) check_index(hole, mesh.face_count(), file, "holes", "face");
+  for (size_t i = 0; i < mesh.holes.size(); ++i) {
+    check_index(mesh.holes[i], mesh.face_count(), file, "holes", "face");
+    if (i > 0 && mesh.holes[i] <= mesh.holes[i - 1])
+      refuse(file, "holes", fmt::format("{} after {}", mesh.holes[i], mesh.holes[i - 1]), "the list of holes is not in order",
+             "each face once, rising");
+  }
+  if (mesh.holes.size() == mesh.face_count())
+    refuse(file, "holes", fmt::format("{}", mesh.holes.size()), "every face is a hole", "at least one face that is drawn");
 }
 
 }  // namespace limn

@@ -56,6 +56,9 @@ struct Mesh {
   size_t vertex_count() const { return positions.size(); }
 };
 
+/// For each vertex whether a face that is drawn uses it (what no face uses, or holes alone, does not count).
+std::vector<char> drawn_vertices(const Mesh& mesh);
+/// Of the vertices that are drawn.
 Box bounds(const Mesh& mesh);
 /// Index of each face's first corner, with one past the end at the back: size face_count() + 1.
 std::vector<std::int32_t> first_corners(const Mesh& mesh);
@@ -67,6 +70,13 @@ void validate(const Mesh& mesh, const std::string& file);
 /// How normals are made: `flat` a face's own; `vertex` averaged by corner angle, split at infinitely sharp creases;
 /// `limit` those of the limit surface (subdivision) or of the field (a tessellated shape).
 enum class NormalKind { flat, vertex, limit };
+
+/// Across which edges `vertex` normals are averaged, beside infinitely sharp creases, which always split them. Normals split where two or
+/// more such edges part the faces around a vertex, so that a single sharp edge of a noisy scan changes nothing.
+struct Smoothing {
+  double angle_deg = 180.0;  ///< Edges whose faces' normals differ by more are sharp; 180: none.
+  bool by_groups = false;    ///< Mesh::face_smoothing, where there is any, in place of the angle: smooth within a group above 0.
+};
 
 /// Triangles ready to trace.
 struct TriangleMesh {
@@ -81,8 +91,9 @@ struct TriangleMesh {
 
 /// The polygons of `mesh` as triangles: fans for convex faces, ear clipping for the others; zero-area triangles are dropped and counted.
 /// `kind` flat or vertex (limit normals come from subdiv/refine.h, as corner_normals: a mesh's own are used where `use_mesh_normals`).
-TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, bool use_mesh_normals = false);
+/// Holes are left out.
+TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, bool use_mesh_normals = false, const Smoothing& smoothing = {});
 /// With these normals, one for each corner, in place of the mesh's own; none: those of `kind`.
-TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, std::span<const glm::vec3> corner_normals);
+TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, std::span<const glm::vec3> corner_normals, const Smoothing& smoothing = {});
 
 }  // namespace limn

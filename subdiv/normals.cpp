@@ -1,59 +1,14 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 
+#include "sdf/parallel.h"
 #include "subdiv/polygon.h"
 
 namespace limn {
 namespace {
-
-/// Corners that share a normal, as sets.
-class CornerSets {
- public:
-  explicit CornerSets(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::int32_t find(std::int32_t i) {
-    while (parent_[static_cast<size_t>(i)] != i) {
-      std::int32_t& up = parent_[static_cast<size_t>(i)];
-      up = parent_[static_cast<size_t>(up)];
-      i = up;
-    }
-    return i;
-  }
-  void join(std::int32_t a, std::int32_t b) {
-    a = find(a), b = find(b);
-    // The smaller index wins, so that the sums below run in the order of the corners whatever the order of the edges.
-    if (a < b) parent_[static_cast<size_t>(b)] = a;
-    if (b < a) parent_[static_cast<size_t>(a)] = b;
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
-
-/// A face's run along an undirected edge: the corners at the edge's smaller and larger vertex.
-struct EdgeUse {
-  std::int32_t low, high;
-  std::int32_t corner_low, corner_high;
-};
-
-std::vector<EdgeUse> sorted_edge_uses(const Mesh& mesh) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(mesh.corner_vertices.size());
-  std::int32_t first = 0;
-  for (const std::int32_t size : mesh.face_sizes) {
-    for (std::int32_t i = 0; i < size; ++i) {
-      const std::int32_t ca = first + i, cb = first + (i + 1) % size;
-      const std::int32_t a = mesh.corner_vertices[static_cast<size_t>(ca)], b = mesh.corner_vertices[static_cast<size_t>(cb)];
-      uses.push_back(a < b ? EdgeUse{a, b, ca, cb} : EdgeUse{b, a, cb, ca});
-    }
-    first += size;
-  }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& x, const EdgeUse& y) {
-    return std::tie(x.low, x.high, x.corner_low, x.corner_high) < std::tie(y.low, y.high, y.corner_low, y.corner_high);
-  });
-  return uses;
-}
 
 std::vector<std::pair<std::int32_t, std::int32_t>> infinitely_sharp_edges(const Mesh& mesh) {
   std::vector<std::pair<std::int32_t, std::int32_t>> edges;
@@ -81,19 +36,159 @@ std::vector<glm::dvec3> face_normals(const Mesh& mesh) {
   return normals;
 }
 
-CornerSets smooth_corners(const Mesh& mesh) {
-  CornerSets sets(mesh.corner_vertices.size());
-  const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
-  const auto sharp = infinitely_sharp_edges(mesh);
-  for (size_t i = 1; i < uses.size(); ++i) {
-    const EdgeUse &a = uses[i - 1], &b = uses[i];
-    if (a.low != b.low || a.high != b.high) continue;
-    if (std::binary_search(sharp.begin(), sharp.end(), std::pair(a.low, a.high))) continue;
-    sets.join(a.corner_low, b.corner_low);
-    sets.join(a.corner_high, b.corner_high);
-  }
-  return sets;
+/// Which corners are at each vertex, rising; and of what faces.
+struct VertexCorners {
+  std::vector<std::int32_t> first;    ///< Of each vertex in `corners`, with one past the end.
+  std::vector<std::int32_t> corners;  ///< Numbers of corners.
+  std::vector<std::int32_t> faces;    ///< For each corner of the mesh.
+};
+
+VertexCorners corners_by_vertex(const Mesh& mesh) {
+  VertexCorners result;
+  result.first.assign(mesh.vertex_count() + 1, 0);
+  for (const std::int32_t v : mesh.corner_vertices) ++result.first[static_cast<size_t>(v) + 1];
+  std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
+  result.corners.resize(mesh.corner_vertices.size());
+  std::vector<std::int32_t> next(result.first.begin(), result.first.end() - 1);
+  for (size_t c = 0; c < mesh.corner_vertices.size(); ++c)
+    result.corners[static_cast<size_t>(next[static_cast<size_t>(mesh.corner_vertices[c])]++)] = static_cast<std::int32_t>(c);
+  result.faces.reserve(mesh.corner_vertices.size());
+  for (size_t f = 0; f < mesh.face_count(); ++f)
+    result.faces.insert(result.faces.end(), static_cast<size_t>(mesh.face_sizes[f]), static_cast<std::int32_t>(f));
+  return result;
 }
+
+/// One face's use of an edge that leaves a vertex.
+struct EdgeUse {
+  std::int32_t other;   ///< The vertex at the edge's other end.
+  std::int32_t corner;  ///< Among the vertex's corners.
+};
+
+/// Memory for one vertex: sets of its corners that share a normal.
+struct Scratch {
+  std::vector<size_t> parent;
+  std::vector<EdgeUse> uses, bridges;
+  std::vector<glm::dvec3> polygon, sums;
+
+  size_t find(size_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  }
+  void join(size_t a, size_t b) {
+    a = find(a), b = find(b);
+    parent[std::max(a, b)] = std::min(a, b);
+  }
+};
+
+/// The normals around one vertex after the other.
+class VertexNormals {
+ public:
+  VertexNormals(const Mesh& mesh, const VertexCorners& at, const std::vector<glm::dvec3>& of_face, const std::vector<std::int32_t>& first,
+                const Smoothing& smoothing)
+      : mesh_(mesh), at_(at), of_face_(of_face), first_corners_(first), sharp_edges_(infinitely_sharp_edges(mesh)) {
+    by_groups_ = smoothing.by_groups && !mesh.face_smoothing.empty();
+    everywhere_ = !by_groups_ && smoothing.angle_deg >= 180.0;
+    // A hair more, so that the angle itself, as of a prism of twelve sides, is smooth whatever rounding says.
+    cosine_ = std::cos(smoothing.angle_deg * std::numbers::pi / 180.0) - 1e-9;
+  }
+
+  /// The normals at the corners of one vertex.
+  void write(size_t vertex, Scratch& scratch, std::vector<glm::vec3>& normals) const {
+    const std::span<const std::int32_t> corners = corners_of(vertex);
+    find_sets(static_cast<std::int32_t>(vertex), corners, scratch);
+    scratch.sums.assign(corners.size(), glm::dvec3(0.0));
+    for (size_t i = 0; i < corners.size(); ++i) {
+      const auto face = static_cast<size_t>(face_of(corners[i]));
+      const std::int32_t first = first_corners_[face];
+      gather_corners(mesh_, face_corners(mesh_, first, face), scratch.polygon);
+      const double angle = corner_angle(scratch.polygon, static_cast<size_t>(corners[i] - first), of_face_[face]);
+      scratch.sums[scratch.find(i)] += angle * of_face_[face];
+    }
+    for (size_t i = 0; i < corners.size(); ++i) {
+      const glm::dvec3& sum = scratch.sums[scratch.find(i)];
+      const glm::dvec3 own = unit_or(of_face_[static_cast<size_t>(face_of(corners[i]))], {0.0, 0.0, 1.0});
+      // Opposite faces cancel to rounding noise; then a face's own normal is the honest answer.
+      normals[static_cast<size_t>(corners[i])] = glm::vec3(glm::length(sum) > 1e-9 ? glm::normalize(sum) : own);
+    }
+  }
+
+ private:
+  std::span<const std::int32_t> corners_of(size_t vertex) const {
+    const auto first = static_cast<size_t>(at_.first[vertex]), last = static_cast<size_t>(at_.first[vertex + 1]);
+    return std::span(at_.corners).subspan(first, last - first);
+  }
+  std::int32_t face_of(std::int32_t corner) const { return at_.faces[static_cast<size_t>(corner)]; }
+  bool without_area(std::int32_t face) const { return of_face_[static_cast<size_t>(face)] == glm::dvec3(0.0); }
+
+  bool smooth(std::int32_t face_a, std::int32_t face_b) const {
+    if (everywhere_) return true;
+    const auto a = static_cast<size_t>(face_a), b = static_cast<size_t>(face_b);
+    if (by_groups_) return mesh_.face_smoothing[a] != 0 && mesh_.face_smoothing[a] == mesh_.face_smoothing[b];
+    return glm::dot(of_face_[a], of_face_[b]) >= cosine_;
+  }
+
+  bool infinitely_sharp(std::int32_t a, std::int32_t b) const {
+    return std::binary_search(sharp_edges_.begin(), sharp_edges_.end(), std::pair<std::int32_t, std::int32_t>(std::minmax(a, b)));
+  }
+
+  /// The corners on one edge, two unless the mesh is open or not manifold there.
+  void join_across(std::span<const EdgeUse> uses, std::span<const std::int32_t> corners, Scratch& scratch) const {
+    for (size_t i = 1; i < uses.size(); ++i) {
+      // Each with each, but a fan of thousands on one edge with its neighbours only.
+      for (size_t j = uses.size() <= 16 ? 0 : i - 1; j < i; ++j) {
+        const std::int32_t a = face_of(corners[static_cast<size_t>(uses[i].corner)]),
+                           b = face_of(corners[static_cast<size_t>(uses[j].corner)]);
+        if (!everywhere_ && !by_groups_ && (without_area(a) || without_area(b)))
+          scratch.bridges.push_back(without_area(a) ? EdgeUse{uses[i].corner, uses[j].corner} : EdgeUse{uses[j].corner, uses[i].corner});
+        else if (smooth(a, b))
+          scratch.join(static_cast<size_t>(uses[i].corner), static_cast<size_t>(uses[j].corner));
+      }
+    }
+  }
+
+  /// A face without area has no angle to its neighbours: those on both its sides are compared as if it were not there.
+  void join_over_bridges(std::span<const std::int32_t> corners, Scratch& scratch) const {
+    std::vector<EdgeUse>& bridges = scratch.bridges;
+    std::sort(bridges.begin(), bridges.end(), by_other);
+    for (size_t i = 1; i < bridges.size(); ++i) {
+      if (bridges[i].other != bridges[i - 1].other) continue;
+      const auto a = static_cast<size_t>(bridges[i - 1].corner), b = static_cast<size_t>(bridges[i].corner);
+      const std::int32_t face_a = face_of(corners[a]), face_b = face_of(corners[b]);
+      if (!without_area(face_a) && !without_area(face_b) && smooth(face_a, face_b)) scratch.join(a, b);
+    }
+  }
+
+  void find_sets(std::int32_t vertex, std::span<const std::int32_t> corners, Scratch& scratch) const {
+    scratch.parent.resize(corners.size());
+    std::iota(scratch.parent.begin(), scratch.parent.end(), size_t{0});
+    scratch.uses.clear();
+    scratch.bridges.clear();
+    for (size_t i = 0; i < corners.size(); ++i) {
+      const auto face = static_cast<size_t>(face_of(corners[i]));
+      const std::int32_t first = first_corners_[face], size = mesh_.face_sizes[face], k = corners[i] - first;
+      for (const std::int32_t at : {k == 0 ? size - 1 : k - 1, k == size - 1 ? 0 : k + 1})
+        scratch.uses.push_back({mesh_.corner_vertices[static_cast<size_t>(first + at)], static_cast<std::int32_t>(i)});
+    }
+    std::sort(scratch.uses.begin(), scratch.uses.end(), by_other);
+    for (size_t begin = 0, end = 0; begin < scratch.uses.size(); begin = end) {
+      const std::int32_t other = scratch.uses[begin].other;
+      while (end < scratch.uses.size() && scratch.uses[end].other == other) ++end;
+      if (!sharp_edges_.empty() && infinitely_sharp(vertex, other)) continue;
+      join_across(std::span(scratch.uses).subspan(begin, end - begin), corners, scratch);
+    }
+    if (!scratch.bridges.empty()) join_over_bridges(corners, scratch);
+  }
+
+  static bool by_other(const EdgeUse& a, const EdgeUse& b) { return std::tie(a.other, a.corner) < std::tie(b.other, b.corner); }
+
+  const Mesh& mesh_;
+  const VertexCorners& at_;
+  const std::vector<glm::dvec3>& of_face_;
+  const std::vector<std::int32_t>& first_corners_;
+  std::vector<std::pair<std::int32_t, std::int32_t>> sharp_edges_;
+  bool by_groups_ = false, everywhere_ = true;
+  double cosine_ = -1.0;
+};
 
 }  // namespace
 
@@ -106,29 +201,18 @@ std::vector<glm::vec3> face_normals_at_corners(const Mesh& mesh) {
   return normals;
 }
 
-std::vector<glm::vec3> angle_weighted_normals(const Mesh& mesh) {
+std::vector<glm::vec3> angle_weighted_normals(const Mesh& mesh, const Smoothing& smoothing) {
   const std::vector<glm::dvec3> of_face = face_normals(mesh);
-  CornerSets sets = smooth_corners(mesh);
-  std::vector<glm::dvec3> sums(mesh.corner_vertices.size(), glm::dvec3(0.0)), corners;
-  std::int32_t first = 0;
-  for (size_t f = 0; f < mesh.face_count(); ++f) {
-    gather_corners(mesh, face_corners(mesh, first, f), corners);
-    for (size_t i = 0; i < corners.size(); ++i) {
-      const auto set = static_cast<size_t>(sets.find(first + static_cast<std::int32_t>(i)));
-      sums[set] += corner_angle(corners, i, of_face[f]) * of_face[f];
-    }
-    first += mesh.face_sizes[f];
-  }
+  const std::vector<std::int32_t> first = first_corners(mesh);
+  const VertexCorners at = corners_by_vertex(mesh);
+  const VertexNormals vertices(mesh, at, of_face, first, smoothing);
   std::vector<glm::vec3> normals(mesh.corner_vertices.size());
-  size_t corner = 0;
-  for (size_t f = 0; f < mesh.face_count(); ++f) {
-    const glm::dvec3 own = unit_or(of_face[f], {0.0, 0.0, 1.0});
-    for (std::int32_t i = 0; i < mesh.face_sizes[f]; ++i, ++corner) {
-      const glm::dvec3& sum = sums[static_cast<size_t>(sets.find(static_cast<std::int32_t>(corner)))];
-      // Opposite faces cancel to rounding noise; then a face's own normal is the honest answer.
-      normals[corner] = glm::vec3(glm::length(sum) > 1e-9 ? glm::normalize(sum) : own);
-    }
-  }
+  constexpr size_t kPart = 4096;  // vertices that share their scratch memory
+  parallel_for(size_t{0}, (mesh.vertex_count() + kPart - 1) / kPart, [&](size_t part) {
+    Scratch scratch;
+    const size_t end = std::min(mesh.vertex_count(), (part + 1) * kPart);
+    for (size_t v = part * kPart; v < end; ++v) vertices.write(v, scratch, normals);
+  });
   return normals;
 }
 

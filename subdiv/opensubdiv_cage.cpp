@@ -46,6 +46,14 @@ bool repeats_vertex(std::span<const std::int32_t> corners) {
   return false;
 }
 
+/// A quad of three different corners, one of them twice running: OpenSubdiv refines it as the quad that it is, with an edge of no length.
+bool collapsed_quad(std::span<const std::int32_t> corners) {
+  if (corners.size() != 4) return false;
+  int running = 0;
+  for (size_t i = 0; i < 4; ++i) running += corners[i] == corners[(i + 1) % 4];
+  return running == 1 && corners[0] != corners[2] && corners[1] != corners[3];
+}
+
 /// Faces as loops with the face each came from; the first of several copies stays.
 void distinct_loops(const Mesh& cage, std::vector<Loop>& loops, std::vector<std::int32_t>& face_of) {
   std::int32_t first = 0;
@@ -62,7 +70,7 @@ void distinct_loops(const Mesh& cage, std::vector<Loop>& loops, std::vector<std:
     } else {
       repeats = repeats_vertex(corners);
     }
-    if (!repeats) {
+    if (!repeats || collapsed_quad(corners)) {
       loops.emplace_back(corners.begin(), corners.end());
       face_of.push_back(static_cast<std::int32_t>(f));
       continue;
@@ -126,9 +134,11 @@ void check_triangles(const Mesh& cage, const std::string& file) {
                         "the scheme 'loop' subdivides triangles only", "a mesh of triangles, or the scheme catmark or bilinear"});
 }
 
-Sdc::Options scheme_options(BoundaryRule rule) {
+Sdc::Options scheme_options(const Mesh& mesh) {
   Sdc::Options options;
-  switch (rule) {
+  options.SetCreasingMethod(mesh.crease_method == CreaseMethod::chaikin ? Sdc::Options::CREASE_CHAIKIN : Sdc::Options::CREASE_UNIFORM);
+  options.SetTriangleSubdivision(mesh.triangle_rule == TriangleRule::smooth ? Sdc::Options::TRI_SUB_SMOOTH : Sdc::Options::TRI_SUB_CATMARK);
+  switch (mesh.boundary) {
     case BoundaryRule::none:
       options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_NONE);
       break;
@@ -178,6 +188,11 @@ const char* name_of(Scheme scheme) {
   return "catmark";
 }
 
+Scheme default_scheme(const Mesh& mesh) {
+  const auto is_triangle = [](std::int32_t size) { return size == 3; };
+  return std::all_of(mesh.face_sizes.begin(), mesh.face_sizes.end(), is_triangle) ? Scheme::loop : Scheme::catmark;
+}
+
 CleanCage clean_cage(const Mesh& cage, Scheme scheme, const std::string& file) {
   validate(cage, file);
   if (scheme == Scheme::loop) check_triangles(cage, file);
@@ -187,6 +202,11 @@ CleanCage clean_cage(const Mesh& cage, Scheme scheme, const std::string& file) {
   if (loops.empty()) throw InputError({file, "faces", "", "no face has 3 different corners", "at least one face that is not collapsed"});
   keep_used_vertices(cage, loops, clean.mesh);
   clean.mesh.boundary = cage.boundary;
+  clean.mesh.crease_method = cage.crease_method;
+  clean.mesh.triangle_rule = cage.triangle_rule;
+  for (size_t f = 0; f < clean.face_of.size() && !cage.holes.empty(); ++f)
+    if (std::binary_search(cage.holes.begin(), cage.holes.end(), clean.face_of[f]))
+      clean.mesh.holes.push_back(static_cast<std::int32_t>(f));
   for (const std::int32_t f : clean.face_of) {
     if (!cage.face_materials.empty()) clean.mesh.face_materials.push_back(cage.face_materials[static_cast<size_t>(f)]);
     if (!cage.face_groups.empty()) clean.mesh.face_groups.push_back(cage.face_groups[static_cast<size_t>(f)]);
@@ -221,9 +241,10 @@ std::unique_ptr<Far::TopologyRefiner> make_refiner(const Mesh& clean, Scheme sch
   descriptor.numCorners = static_cast<int>(corner_weights.size());
   descriptor.cornerVertexIndices = corner_vertices.data();
   descriptor.cornerWeights = corner_weights.data();
+  descriptor.numHoles = static_cast<int>(clean.holes.size());
+  descriptor.holeIndices = clean.holes.data();
   using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-  std::unique_ptr<Far::TopologyRefiner> refiner(
-      Factory::Create(descriptor, Factory::Options(scheme_type(scheme), scheme_options(clean.boundary))));
+  std::unique_ptr<Far::TopologyRefiner> refiner(Factory::Create(descriptor, Factory::Options(scheme_type(scheme), scheme_options(clean))));
   if (!refiner)
     throw InputError(
         {file, "", "", "the mesh's topology cannot be subdivided", "faces that meet along edges; 'limn info' lists what is wrong"});

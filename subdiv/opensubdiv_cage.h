@@ -14,8 +14,9 @@ namespace limn {
 
 namespace Far = OpenSubdiv::Far;
 
-/// A cage made fit for subdivision: corners repeated within a face taken out (collapsed quads become triangles), faces left with fewer
-/// than 3 corners and exact copies of faces dropped, unused vertices dropped, tags kept where they name an edge or vertex that is there.
+/// A cage made fit for subdivision: corners repeated within a face taken out (but quads with one corner twice stay quads), faces left with
+/// fewer than 3 corners and exact copies of faces dropped, unused vertices dropped, tags kept where they name an edge or vertex that is
+/// there.
 struct CleanCage {
   Mesh mesh;
   std::vector<std::int32_t> face_of;  ///< For each face of `mesh`: the given cage's.
@@ -76,7 +77,8 @@ struct Fans {
   Mesh mesh;
   std::vector<int> centers;
 };
-Fans gather_fans(const std::vector<OneRing>& rings, Scheme scheme);
+Fans gather_fans(const std::vector<OneRing>& rings, Scheme scheme, CreaseMethod creases);
+CreaseMethod crease_method(const Far::TopologyRefiner& refiner);
 
 /// Limit and tangents at the end of one infinitely sharp crease: invariant subspaces of the ring's subdivision matrix.
 struct VertexLimit {

@@ -135,6 +135,34 @@ void gather_corners(const Mesh& mesh, std::span<const std::int32_t> vertices, st
   for (const std::int32_t v : vertices) out.push_back(mesh.positions[static_cast<size_t>(v)]);
 }
 
+Mesh without_holes(const Mesh& mesh) {
+  Mesh solid = mesh;
+  solid.holes.clear();
+  if (mesh.holes.empty()) return solid;
+  for (auto* array : {&solid.face_sizes, &solid.corner_vertices, &solid.face_materials, &solid.face_groups, &solid.face_smoothing})
+    array->clear();
+  solid.corner_normals.clear();
+  size_t hole = 0;
+  std::int32_t first = 0;
+  for (size_t f = 0; f < mesh.face_count(); first += mesh.face_sizes[f++]) {
+    if (hole < mesh.holes.size() && static_cast<size_t>(mesh.holes[hole]) == f) {
+      ++hole;
+      continue;
+    }
+    const auto from = static_cast<std::ptrdiff_t>(first), to = from + mesh.face_sizes[f];
+    const auto append = [&](auto& target, const auto& source) {
+      if (!source.empty()) target.insert(target.end(), source.begin() + from, source.begin() + to);
+    };
+    append(solid.corner_vertices, mesh.corner_vertices);
+    append(solid.corner_normals, mesh.corner_normals);
+    solid.face_sizes.push_back(mesh.face_sizes[f]);
+    if (!mesh.face_materials.empty()) solid.face_materials.push_back(mesh.face_materials[f]);
+    if (!mesh.face_groups.empty()) solid.face_groups.push_back(mesh.face_groups[f]);
+    if (!mesh.face_smoothing.empty()) solid.face_smoothing.push_back(mesh.face_smoothing[f]);
+  }
+  return solid;
+}
+
 bool zero_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 corners[3] = {a, b, c};
   return zero_area(corners);

@@ -29,8 +29,11 @@ double corner_angle(std::span<const glm::dvec3> corners, std::size_t i, const gl
 void triangulate_polygon(std::span<const glm::dvec3> corners, std::vector<std::array<std::int32_t, 3>>& triangles);
 
 /// Unit normals, one for each corner, averaged over the faces around the vertex with the corner's angle as weight (Thürmer &
-/// Wüthrich 1998), separately on each side of infinitely sharp creases and in each fan of faces that meet in the vertex alone.
-std::vector<glm::vec3> angle_weighted_normals(const Mesh& mesh);
+/// Wüthrich 1998), separately on each side of sharp edges and in each fan of faces that meet in the vertex alone.
+std::vector<glm::vec3> angle_weighted_normals(const Mesh& mesh, const Smoothing& smoothing = {});
+
+/// The mesh without its holes (every array of faces and corners; vertices stay).
+Mesh without_holes(const Mesh& mesh);
 
 /// The faces' own unit normals, one for each corner.
 std::vector<glm::vec3> face_normals_at_corners(const Mesh& mesh);

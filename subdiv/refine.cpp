@@ -121,6 +121,9 @@ Mesh as_mesh(const Refined& refined, const Mesh& cage, int level_number) {
   mesh.draws_colors = cage.draws_colors;
   mesh.group_names = cage.group_names;
   mesh.boundary = cage.boundary;
+  mesh.crease_method = cage.crease_method;
+  // At level 0 triangles are left to subdivide, later there are quads only.
+  if (level_number == 0) mesh.triangle_rule = cage.triangle_rule;
   return mesh;
 }
 

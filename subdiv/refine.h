@@ -12,6 +12,8 @@ namespace limn {
 
 enum class Scheme { catmark, loop, bilinear };
 const char* name_of(Scheme scheme);
+/// What a mesh is subdivided by where nobody says: Loop's where it has triangles only, else Catmull-Clark's.
+Scheme default_scheme(const Mesh& mesh);
 
 struct RefineSettings {
   Scheme scheme = Scheme::catmark;
@@ -53,6 +55,8 @@ class LimitSurface {
  public:
   LimitSurface(const Mesh& cage, Scheme scheme, const std::string& file = {});
   int face_count() const;
+  /// A face that is left out (Mesh::holes).
+  bool is_hole(int face) const;
   /// Corners of the parametric domain: 4 for a quad, 3 for a triangle, n sub-quads otherwise.
   int face_size(int face) const;
   /// True where `evaluate` wants a sub-face: n-gons of a scheme made for quads. False without a limit surface.

@@ -21,13 +21,13 @@ struct CornerNormals {
   static bool is_direction(float length) { return length > 1e-20f && std::isfinite(length); }
 };
 
-CornerNormals normals_at_corners(const Mesh& mesh, NormalKind kind, std::span<const glm::vec3> given) {
+CornerNormals normals_at_corners(const Mesh& mesh, NormalKind kind, std::span<const glm::vec3> given, const Smoothing& smoothing) {
   if (!given.empty()) {
     const bool good =
         std::all_of(given.begin(), given.end(), [](const glm::vec3& n) { return CornerNormals::is_direction(glm::length(n)); });
     return {given, good ? std::vector<glm::vec3>{} : face_normals_at_corners(mesh)};
   }
-  if (kind != NormalKind::flat) return {{}, angle_weighted_normals(mesh)};
+  if (kind != NormalKind::flat) return {{}, angle_weighted_normals(mesh, smoothing)};
   // A polygon is one facet however it is cut; a mesh of triangles needs no list to say so.
   for (const std::int32_t size : mesh.face_sizes)
     if (size > 3) return {{}, face_normals_at_corners(mesh)};
@@ -100,11 +100,34 @@ std::int64_t TriangleMesh::bytes() const {
   return static_cast<std::int64_t>(sum);
 }
 
-TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, std::span<const glm::vec3> corner_normals) {
+namespace {
+
+TriangleMesh triangles_without_holes(const Mesh& mesh, NormalKind kind, bool use_normals, const Smoothing& smoothing) {
+  TriangleMesh result = triangulate(without_holes(mesh), kind, use_normals, smoothing);
+  std::vector<std::int32_t> solid;
+  size_t hole = 0;
+  for (std::int32_t f = 0; f < static_cast<std::int32_t>(mesh.face_count()); ++f) {
+    if (hole < mesh.holes.size() && mesh.holes[hole] == f)
+      ++hole;
+    else
+      solid.push_back(f);
+  }
+  for (std::int32_t& face : result.triangle_faces) face = solid[static_cast<size_t>(face)];
+  return result;
+}
+
+}  // namespace
+
+TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, std::span<const glm::vec3> corner_normals, const Smoothing& smoothing) {
+  if (!mesh.holes.empty()) {
+    Mesh with_normals = mesh;
+    with_normals.corner_normals.assign(corner_normals.begin(), corner_normals.end());
+    return triangles_without_holes(with_normals, kind, !corner_normals.empty(), smoothing);
+  }
   TriangleMesh result;
   size_t count = 0;
   const std::vector<FaceRun> runs = runs_of(mesh, count, result.dropped_triangles);
-  const CornerNormals normals = normals_at_corners(mesh, kind, corner_normals);
+  const CornerNormals normals = normals_at_corners(mesh, kind, corner_normals, smoothing);
   result.positions = mesh.positions;
   result.triangles.resize(count);
   result.triangle_faces.resize(count);
@@ -127,8 +150,8 @@ TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, std::span<const glm:
   return result;
 }
 
-TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, bool use_mesh_normals) {
-  return triangulate(mesh, kind, use_mesh_normals ? std::span(mesh.corner_normals) : std::span<const glm::vec3>{});
+TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, bool use_mesh_normals, const Smoothing& smoothing) {
+  return triangulate(mesh, kind, use_mesh_normals ? std::span(mesh.corner_normals) : std::span<const glm::vec3>{}, smoothing);
 }
 
 }  // namespace limn

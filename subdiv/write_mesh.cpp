@@ -67,6 +67,8 @@ void write_obj(const Mesh& mesh, Sink& out) {
       material = mesh.face_materials[f];
       print(out.text, "usemtl {}\n", mesh.material_names[static_cast<size_t>(material)]);
     }
+    if (!mesh.face_smoothing.empty() && (f == 0 || mesh.face_smoothing[f] != mesh.face_smoothing[f - 1]))
+      print(out.text, "s {}\n", mesh.face_smoothing[f]);
     print(out.text, "f");
     for (std::int32_t i = 0; i < mesh.face_sizes[f]; ++i, ++corner) {
       print(out.text, " {}", mesh.corner_vertices[corner] + 1);
@@ -78,6 +80,9 @@ void write_obj(const Mesh& mesh, Sink& out) {
   for (const CornerTag& c : mesh.corners) print(out.text, "t corner 1/1/0 {} {}\n", c.vertex, c.sharpness), out.spill();
   const int rule = mesh.boundary == BoundaryRule::none ? 0 : mesh.boundary == BoundaryRule::edge_and_corner ? 1 : 2;
   print(out.text, "t interpolateboundary 1/0/0 {}\n", rule);
+  if (mesh.crease_method == CreaseMethod::chaikin) print(out.text, "t creasemethod 0/0/1 chaikin\n");
+  if (mesh.triangle_rule == TriangleRule::smooth) print(out.text, "t smoothtriangles 0/0/1 smooth\n");
+  for (const std::int32_t hole : mesh.holes) print(out.text, "t hole 1/0/0 {}\n", hole), out.spill();
 }
 
 template <class T>

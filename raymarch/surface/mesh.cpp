@@ -10,6 +10,7 @@
 
 #include "raymarch/mesh/mesh_hit.h"
 #include "raymarch/mesh/view.h"
+#include "raymarch/open_sheet.h"
 #include "raymarch/polygons.h"
 #include "raymarch/surface/mesh_curvature.h"
 #include "raymarch/surface/object_mesh.h"
@@ -198,7 +199,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   ObjectMesh source = object_mesh(object, settings, render_origin);
   state->mesh = std::move(source.triangles);
   Surface surface;
-  for (const glm::dvec3& position : state->mesh->positions) surface.bounds = include(surface.bounds, position);
+  surface.bounds = bounds_of_triangles(*state->mesh);
   state->bounds = surface.bounds;
   surface.trace = trace;
   surface.view = [](const std::shared_ptr<const void>& kept, const ViewRequest& request) {
@@ -214,6 +215,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   surface.info.warnings = std::move(source.warnings);
   state->polygons = std::move(source.polygons);
   surface.polygons = state->polygons;
+  surface.open_sheet = std::make_shared<const OpenSheet>();
   state->curvature.emplace(*state->mesh, *state->polygons, source.normals, std::move(source.smooth));
   surface.curvature.from = state->curvature->from();
   if (state->curvature->available()) {

@@ -73,7 +73,12 @@ struct LimitMap {
   explicit LimitMap(const CageSource& source) : surface(source.cage, source.scheme, source.file), cage(source) {
     const std::int64_t later = std::int64_t{1} << (2 * std::max(source.level - 1, 0));
     first_child.push_back(0);
-    for (const std::int32_t size : source.cage.face_sizes) {
+    for (size_t f = 0; f < source.cage.face_count(); ++f) {
+      const std::int32_t size = source.cage.face_sizes[f];
+      if (std::binary_search(source.cage.holes.begin(), source.cage.holes.end(), static_cast<std::int32_t>(f))) {
+        first_child.push_back(first_child.back());
+        continue;
+      }
       const std::int64_t children = source.level == 0 ? 1 : source.scheme == Scheme::loop ? 4 * later : size * later;
       first_child.push_back(first_child.back() + children);
     }

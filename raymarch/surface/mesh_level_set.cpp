@@ -15,8 +15,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   const auto start = std::chrono::steady_clock::now();
   const GradientDescriptor& gradient = find_gradient(settings.gradient, {}, "--gradient");
   ObjectMesh source = object_mesh(object, settings, render_origin);
-  Box box;
-  for (const glm::dvec3& position : source.triangles->positions) box = include(box, position);
+  const Box box = bounds_of_triangles(*source.triangles);
   LevelSetSettings grid;
   grid.voxel_size = voxel_size_for(settings, box);
   grid.half_width_voxels = half_width_for(settings, gradient);

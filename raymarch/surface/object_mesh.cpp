@@ -102,29 +102,37 @@ Mesh without_normals(Mesh mesh) {
   return mesh;
 }
 
+/// Hard edges stay hard: by the angle that is asked for, else the file's smoothing groups, else the usual angle.
+Smoothing smoothing_of(const MeshSource& source) {
+  return {source.smooth_angle_deg.value_or(kSmoothAngle_deg), !source.smooth_angle_deg && !source.mesh->face_smoothing.empty()};
+}
+
 /// A mesh as it is: the file's own normals unless others are asked for.
 ObjectMesh from_facets(const SceneObject& object, const MeshSource& source, const SurfaceSettings& settings, const MeshPlace& place) {
   ObjectMesh result;
-  NormalKind kind = settings.normals.value_or(source.mesh->corner_normals.empty() ? NormalKind::vertex : NormalKind::limit);
-  if (settings.normals == NormalKind::limit && source.mesh->corner_normals.empty()) {
+  const SharedMesh shared = source.mesh->holes.empty() ? source.mesh : SharedMesh(without_holes(source.mesh));
+  const bool has_own = !shared->corner_normals.empty();
+  NormalKind kind = settings.normals.value_or(has_own && !source.smooth_angle_deg ? NormalKind::limit : NormalKind::vertex);
+  if (settings.normals == NormalKind::limit && !has_own) {
     result.warnings.push_back("'" + object.name + "' has no limit surface (no scheme): vertex normals instead of limit normals");
     kind = NormalKind::vertex;
   }
   result.normals = traced_kind(kind);
   const bool own_normals = kind == NormalKind::limit;
+  const Smoothing smoothing = smoothing_of(source);
   {
-    const Mesh local = recentred(without_normals(source.mesh), place.center);
+    const Mesh local = recentred(without_normals(shared), place.center);
     TriangleMesh triangles =
-        triangulate(local, result.normals, own_normals ? std::span(source.mesh->corner_normals) : std::span<const glm::vec3>{});
+        triangulate(local, result.normals, own_normals ? std::span(shared->corner_normals) : std::span<const glm::vec3>{}, smoothing);
     move_mesh(place.render_from_mesh, triangles);
     result.triangles = std::make_shared<const TriangleMesh>(std::move(triangles));
   }
-  const auto make_polygons = [shared = source.mesh, own_normals, place] {
+  const auto make_polygons = [shared, own_normals, place] {
     Mesh mesh = recentred(own_normals ? *shared : without_normals(shared), place.center);
     move_polygons(place.render_from_mesh, mesh);
     return mesh;
   };
-  result.polygons = std::make_shared<const Polygons>(make_polygons, result.normals);
+  result.polygons = std::make_shared<const Polygons>(make_polygons, result.normals, smoothing);
   return result;
 }
 
@@ -171,6 +179,15 @@ ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& setting
   made.mesh.spared_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   *kept = std::make_shared<const KeptMesh>(std::move(made));
   return result;
+}
+
+Box bounds_of_triangles(const TriangleMesh& mesh) {
+  std::vector<char> used(mesh.positions.size(), 0);
+  for (const glm::uvec3& triangle : mesh.triangles) used[triangle.x] = used[triangle.y] = used[triangle.z] = 1;
+  Box box;
+  for (size_t v = 0; v < used.size(); ++v)
+    if (used[v]) box = include(box, mesh.positions[v]);
+  return box;
 }
 
 std::string cannot_mesh(const SceneObject& object) {

@@ -45,6 +45,9 @@ struct KeptMesh {
 /// What `settings.kept_mesh` holds is taken where it fits; else it holds the new mesh afterwards. Throws InputError as those do.
 ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin);
 
+/// Of the vertices that triangles use.
+Box bounds_of_triangles(const TriangleMesh& mesh);
+
 /// Empty where the object can be meshed, else why not.
 std::string cannot_mesh(const SceneObject& object);
 

@@ -161,6 +161,7 @@ void add_lattice(const PlacedLimitSurface& placed, std::uint32_t k, const PatchL
 PlacedLimitSurface place(const LimitSurface& surface, const Affine& world_from_cage) {
   PlacedLimitSurface placed{surface, world_from_cage, {}};
   for (int face = 0; face < surface.face_count(); ++face) {
+    if (surface.is_hole(face)) continue;
     const bool sub_faces = surface.has_sub_faces(face);
     const int size = surface.face_size(face), parts = sub_faces ? size : 1;
     for (int part = 0; part < parts; ++part) placed.patches.push_back({face, part, sub_faces, size == 3 && !sub_faces});

@@ -27,6 +27,7 @@ fs::path output_of(const Options& options, const std::string& name, InputKind ki
 void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_surface(app, options, {.surface = true, .repeatable = false});
+  add_refined(app, options);
   add_output(app, options, ".obj .ply (refined mesh) or .vdb (level set); default limn-out/export/<name>.obj, .vdb for a volume", false);
   add_json(app, options);
   add_execution(app, options);
@@ -40,8 +41,21 @@ void check_kind(const SurfaceSettings& settings) {
   }
 }
 
-Mesh exported_mesh(const Scene& scene, const SurfaceSettings& settings, std::vector<std::string>& warnings) {
-  if (settings.kind != "level_set" && settings.kind != "mesh_level_set") return world_mesh(scene, settings);
+// Refined positions are there where cages are written as meshes.
+void check_refined(const Scene& scene, const SurfaceSettings& settings, const fs::path& file) {
+  const char* const expected = "a subdivision cage (--level N or --scheme NAME), written as .obj or .ply";
+  if (ending_of(file) == ".vdb") throw InputError({"", "--refined", file.string(), "a level set has no refined positions", expected});
+  if (settings.kind == "level_set" || settings.kind == "mesh_level_set")
+    throw InputError({"", "--refined", "--surface " + settings.kind, "a level set has no refined positions", expected});
+  for (const SceneObject& object : scene.objects) {
+    const auto* mesh = std::get_if<MeshSource>(&object.source);
+    if (mesh == nullptr || (!mesh->scheme && !settings.scheme))
+      throw InputError({"", "--refined", object.name, "is no subdivision cage", expected});
+  }
+}
+
+Mesh exported_mesh(const Scene& scene, const SurfaceSettings& settings, bool refined, std::vector<std::string>& warnings) {
+  if (settings.kind != "level_set" && settings.kind != "mesh_level_set") return world_mesh(scene, settings, refined);
   SceneObject remeshed{.name = scene.name, .source = LevelSetSource{world_level_set(scene, settings, warnings), scene.name}};
   return world_mesh(remeshed, settings);
 }
@@ -56,6 +70,7 @@ int run(const Options& options) {
   check_output_file(file, options, kEndings);
   SurfaceSettings settings = surface_settings(options, input);
   check_kind(settings);
+  if (options.refined) check_refined(input.scene, settings, file);
   settings.progress = bar.stage("building the surface");
 
   // What is written to a .vdb is one level set, whatever it is called.
@@ -77,7 +92,7 @@ int run(const Options& options) {
                 {"half_width_voxels", info.half_width_voxels}};
     text = fmt::format("{} voxels of {:g}, half width {:g} voxels", info.active_voxels, info.voxel_size, info.half_width_voxels);
   } else {
-    const Mesh mesh = exported_mesh(input.scene, settings, warnings);
+    const Mesh mesh = exported_mesh(input.scene, settings, options.refined, warnings);
     write_mesh(mesh, file);
     document = {{"kind", "mesh"}, {"vertices", mesh.vertex_count()}, {"faces", mesh.face_count()}};
     text = fmt::format("{} vertices, {} faces", mesh.vertex_count(), mesh.face_count());

@@ -49,6 +49,7 @@ std::string call_text(const Options& options, const Axes& axes, const SurfaceSet
   call += " --normals " + list_text(normals) + " --gradients " + list_text(axes.gradients);
   if (settings.half_width_voxels > 0.0) call += fmt::format(" --half-width {}", settings.half_width_voxels);
   if (settings.scheme) call += fmt::format(" --scheme {}", name_of(*settings.scheme));
+  if (options.smooth_angle_deg) call += fmt::format(" --smooth-angle {}", *options.smooth_angle_deg);
   for (const std::string& grid : options.grids) call += " --grid " + grid;
   std::vector<std::string> methods;
   for (const StudyMethod& method : study.methods) {

@@ -49,6 +49,10 @@ std::string mesh_hash(const Mesh& mesh) {
   append(hash, mesh.corners);
   const auto boundary = static_cast<std::int32_t>(mesh.boundary);
   hash.append(&boundary, sizeof boundary);
+  append(hash, mesh.holes);
+  append(hash, mesh.face_smoothing);
+  const std::int32_t rules[] = {static_cast<std::int32_t>(mesh.crease_method), static_cast<std::int32_t>(mesh.triangle_rule)};
+  hash.append(rules, sizeof rules);
   return digits_of(hash);
 }
 
@@ -105,7 +109,8 @@ std::string hash_of_input(const SceneInput& input) {
   if (input.kind == InputKind::scene_file) text += "scene " + file_hash(input.file);
   for (const SceneObject& object : input.scene.objects) {
     if (const auto* mesh = std::get_if<MeshSource>(&object.source))
-      text += "\nmesh " + mesh_hash(mesh->mesh) + (mesh->scheme ? name_of(*mesh->scheme) : "");
+      text += "\nmesh " + mesh_hash(mesh->mesh) + (mesh->scheme ? name_of(*mesh->scheme) : "") +
+              (mesh->smooth_angle_deg ? fmt::format(" smooth-angle {}", *mesh->smooth_angle_deg) : "");
     if (const auto* volume = std::get_if<LevelSetSource>(&object.source))
       text += "\nvolume " + file_hash(volume->file) + " " + volume->level_set.info().name;
   }

@@ -4,6 +4,7 @@
 
 #include "sdf/error.h"
 #include "subdiv/orientation.h"
+#include "subdiv/polygon.h"
 #include "subdiv/tessellate.h"
 
 namespace limn {

@@ -28,6 +28,9 @@ struct Border {
   Image<glm::vec3> colors{};         ///< Linear ink colour of each pixel, where a method inks in more than one; empty: `color` everywhere.
   Image<std::uint8_t> status{};      ///< Non-zero where the method is undefined and what it drew is clamped; empty where it never is.
   std::vector<std::string> notes{};  ///< What failed here, in words with numbers; empty where nothing did.
+  /// Where the ink's edge runs along an object between the pixels: the index of the pixel whose object fills the share of this one that
+  /// the ink leaves free. -1: what the pixel itself shows does. Empty: everywhere so.
+  Image<std::int32_t> beneath{};
 };
 
 struct BorderMethod {

@@ -67,7 +67,7 @@ void render_tiles(const Shared& shared, const PixelTile& row, int tile_px, glm::
   write_nothing(shared.writer, nothing);
 }
 
-void check(const ExecutionSettings& how) { LIMN_CHECK(how.tile_px >= 1 && how.tile_px <= 16 && how.threads >= 0); }
+void check(const ExecutionSettings& how) { LIMN_CHECK(how.tile_px >= 1 && how.tile_px <= 16 && how.threads >= kSurroundingThreads); }
 
 }  // namespace
 
@@ -98,7 +98,11 @@ void render_gbuffer(const SceneModel& model, const Camera& camera, const Executi
       how.progress(static_cast<double>(++done) / static_cast<double>(tasks));
     });
   };
-  ThreadArena(how.threads).execute(render);
+  if (how.threads == kSurroundingThreads) {
+    render();
+  } else {
+    ThreadArena(how.threads).execute(render);
+  }
 }
 
 GBuffer render_gbuffer(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset) {

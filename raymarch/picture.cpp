@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "raymarch/border/object_groups.h"
 #include "raymarch/frames.h"
 #include "raymarch/threads.h"
 #include "sdf/error.h"
@@ -57,6 +58,19 @@ Border draw_after(const BorderInput& input, const MethodCall& call, const Sample
   return call.method->draw(after, call.parameters);
 }
 
+/// Objects go on beneath the ink along their edges. All is read before anything is written: the pixel beneath may have a neighbour of its
+/// own.
+void lay_beneath(const Border& border, Image<glm::vec4>& picture) {
+  if (border.beneath.pixels.empty()) return;
+  LIMN_CHECK(picture.size() == border.beneath.size());
+  std::vector<std::pair<size_t, glm::vec4>> moved;
+  for (size_t i = 0; i < picture.size(); ++i) {
+    const std::int32_t from = border.beneath.pixels[i];
+    if (from >= 0) moved.emplace_back(i, picture.pixels[static_cast<size_t>(from)]);
+  }
+  for (const auto& [i, color] : moved) picture.pixels[i] = color;
+}
+
 /// Hands a sample's inks of the frame before on, and where they were.
 SampleInks inks_before(FrameHistory& history, size_t sample, const GBuffer& gbuffer, const Camera& camera) {
   SampleInks inks;
@@ -103,6 +117,7 @@ void lay_ink(Image<glm::vec4>& picture, const Image<float>& coverage, const glm:
 }
 
 void lay_ink(Image<glm::vec4>& picture, const Border& border) {
+  lay_beneath(border, picture);
   if (border.colors.pixels.empty()) {
     lay_ink(picture, border.coverage, border.color);
     return;
@@ -114,11 +129,20 @@ void lay_ink(Image<glm::vec4>& picture, const Border& border) {
   }
 }
 
-// The R2 sequence (Roberts 2018), whose generator is the plastic number; starts at the pixel's centre.
-glm::dvec2 sample_offset(int sample) {
+// The R2 sequence (Roberts 2018), whose generator is the plastic number; starts at the pixel's centre. Its first few points lie up to 0.2
+// px to one side in the mean, and so would everything drawn; the points after the first are moved back together.
+glm::dvec2 sample_offset(int sample, int samples) {
+  LIMN_CHECK(sample >= 0 && sample < samples);
   constexpr double plastic = 1.32471795724474602596;
-  const double x = 0.5 + sample / plastic, y = 0.5 + sample / (plastic * plastic);
-  return {x - std::floor(x), y - std::floor(y)};
+  const auto r2 = [](int i) {
+    const double x = 0.5 + i / plastic, y = 0.5 + i / (plastic * plastic);
+    return glm::dvec2(x - std::floor(x), y - std::floor(y));
+  };
+  // Two samples could only both be the centre.
+  if (sample == 0 || samples < 3) return r2(sample);
+  glm::dvec2 sum(0.0);
+  for (int i = 1; i < samples; ++i) sum += r2(i);
+  return r2(sample) + 0.5 - sum / static_cast<double>(samples - 1);
 }
 
 void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture, SampleInks* inks) {
@@ -168,7 +192,9 @@ GBufferLayers layers_read(std::span<const MethodCall> methods) {
                                                                             {"material", &GBufferLayers::material},
                                                                             {"face", &GBufferLayers::face}}};
   for (const MethodCall& call : methods) {
-    for (const std::string& input : call.method->inputs) {
+    std::vector<std::string> inputs = call.method->inputs;
+    for (std::string& more : group_inputs(*call.method, call.parameters)) inputs.push_back(std::move(more));
+    for (const std::string& input : inputs) {
       for (const auto& [name, layer] : named) layers.*layer |= input == name;
     }
   }
@@ -190,7 +216,8 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
     }
     const auto start = Clock::now();
     // Only the first sample's G-buffer is handed on.
-    render_gbuffer(model, camera, part, sample_offset(sample), sample == 0 ? joined(settings.layers, read) : read, gbuffer);
+    render_gbuffer(model, camera, part, sample_offset(sample, settings.samples), sample == 0 ? joined(settings.layers, read) : read,
+                   gbuffer);
     picture.trace_ms += ms_since(start);
     const auto number = static_cast<size_t>(sample);
     arena.execute([&] {

@@ -21,7 +21,7 @@ struct MethodCall {
 
 struct PictureSettings {
   std::vector<MethodCall> methods{};      ///< Inks in order, the last on top.
-  int samples = 1;                        ///< Per pixel, 1..1024: 1 is the centre; more follow the R2 sequence (Roberts 2018).
+  int samples = 1;                        ///< Per pixel, 1..1024: 1 is the centre; more follow the R2 sequence (Roberts 2018), centred.
   std::optional<glm::vec3> background{};  ///< Linear; unset: transparent.
   GBufferLayers layers{};                 ///< Of Picture::gbuffer. What the methods and the composite read is traced anyway.
 };
@@ -45,8 +45,9 @@ struct FrameHistory {
 Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
                      const ExecutionSettings& how, FrameHistory* history = nullptr);
 
-/// For several pictures from rays traced once: where in its pixel the ray of a sample goes, the centre for sample 0.
-glm::dvec2 sample_offset(int sample);
+/// For several pictures from rays traced once: where in its pixel the ray of one of `samples` samples goes, the centre for sample 0. From 3
+/// samples on their mean is the centre, so that nothing moves with their number.
+glm::dvec2 sample_offset(int sample, int samples);
 /// The methods' inks for one sample: of the frame before, and of this one.
 struct SampleInks {
   std::vector<Image<float>> before{};  ///< Empty: there is none.
@@ -63,7 +64,7 @@ void finish_samples(const PictureSettings& settings, Picture& picture);
 Image<glm::vec4> shade_headlight(const GBuffer& gbuffer, const SceneModel& model);
 /// Lays ink over a premultiplied picture: mix(picture, ink, coverage).
 void lay_ink(Image<glm::vec4>& picture, const Image<float>& coverage, const glm::vec3& color);
-/// A method's border: in its colour, or in its colours where it has more than one.
+/// A method's border: in its colour, or in its colours where it has more than one; over what is beneath it.
 void lay_ink(Image<glm::vec4>& picture, const Border& border);
 
 }  // namespace limn

@@ -11,6 +11,9 @@
 
 namespace limn {
 
+/// For ExecutionSettings::threads of work inside a task arena: that one's threads.
+inline constexpr int kSurroundingThreads = -1;
+
 /// An arena of `threads` threads, 0 being all cores. More threads than cores are granted too: an arena alone would keep to the cores,
 /// with a warning on stderr.
 class ThreadArena {

@@ -20,6 +20,15 @@ void take_hit(int i, int object, const HitBatch& from, RayBatch& rays, SceneHits
   rays.t_max[i] = from.t[i];
 }
 
+/// Surfaces that coincide (faces on one plane, objects twice) hit at depths that differ by rounding; which of them is seen must not change
+/// from pixel to pixel: the first in the scene is. Rays are single precision: origin, direction and t are each off by half a unit in the
+/// last place, for either object and times the slope at which the surface is seen.
+bool nearer(int i, const HitBatch& own, const RayBatch& rays, const SceneHits& found) {
+  if (found.hits.status[i] == HitStatus::miss) return own.t[i] <= rays.t_max[i];
+  const float reach = std::max({std::abs(rays.origin_x[i]), std::abs(rays.origin_y[i]), std::abs(rays.origin_z[i])}) + rays.t_max[i];
+  return own.t[i] < rays.t_max[i] - reach * 0x1p-19f;
+}
+
 /// `trace(object, hits)` traces one surface.
 template <class Trace>
 void trace_all(size_t objects, RayBatch& rays, SceneHits& found, const Trace& trace) {
@@ -36,7 +45,7 @@ void trace_all(size_t objects, RayBatch& rays, SceneHits& found, const Trace& tr
     std::copy_n(rays.t_max, rays.count, own.t);
     trace(object, own);
     for (int i = 0; i < rays.count; ++i) {
-      if (own.status[i] != HitStatus::miss && own.t[i] <= rays.t_max[i]) take_hit(i, static_cast<int>(object), own, rays, found);
+      if (own.status[i] != HitStatus::miss && nearer(i, own, rays, found)) take_hit(i, static_cast<int>(object), own, rays, found);
     }
   }
 }
@@ -56,7 +65,12 @@ bool overlap(const PixelTile& a, const PixelTile& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-/// The pixels around the image of `bounds` (render space): all of them where the box reaches behind the eye.
+bool touches(const SurfaceView& view, const PixelTile& covered, const PixelTile& tile) {
+  return overlap(covered, tile) && (!view.touches || view.touches(view.state.get(), tile));
+}
+
+}  // namespace
+
 PixelTile covered_pixels(const Box& bounds, const ViewRequest& request) {
   const Camera& camera = request.camera;
   const PixelTile all{0, 0, camera.width_px, camera.height_px};
@@ -76,12 +90,6 @@ PixelTile covered_pixels(const Box& bounds, const ViewRequest& request) {
   const glm::ivec3 end(glm::clamp(glm::ceil(image.upper + 1.0), glm::dvec3(0.0), limit));
   return {first.x, first.y, end.x - first.x, end.y - first.y};
 }
-
-bool touches(const SurfaceView& view, const PixelTile& covered, const PixelTile& tile) {
-  return overlap(covered, tile) && (!view.touches || view.touches(view.state.get(), tile));
-}
-
-}  // namespace
 
 SceneExtent scene_extent(const SceneModel& model) {
   SceneExtent extent;

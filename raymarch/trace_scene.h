@@ -27,6 +27,8 @@ struct ModelView {
   std::vector<PixelTile> covered{};  ///< The pixels that each surface's bounds cover in the picture.
   std::vector<char> turned{};        ///< As turned_surfaces.
 };
+/// The pixels around the image of `bounds` (render space): all of them where the box reaches behind the eye.
+PixelTile covered_pixels(const Box& bounds, const ViewRequest& request);
 ModelView view_model(const SceneModel& model, const ViewRequest& request);
 /// False where no surface can be seen in the tile.
 bool touches(const ModelView& view, const PixelTile& tile);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <numbers>
@@ -35,14 +36,16 @@ Placement read_transform(TomlReader& reader) {
   }
   const toml::node* scale = reader.take("scale");
   if (scale == nullptr) return placement;
-  const std::string expected = "a number above 0, or [x, y, z], each above 0, would be right";
+  const std::string expected = "a number other than 0, or three of them, [x, y, z]; negative ones mirror";
   if (scale->is_array()) {
     placement.scale = *reader.vector3("scale");
     placement.uniform = placement.scale.x == placement.scale.y && placement.scale.y == placement.scale.z;
   } else {
     placement.scale = glm::dvec3(*reader.number("scale", -kInfinity, kInfinity, expected));
   }
-  if (!glm::all(glm::greaterThan(placement.scale, glm::dvec3(0.0)))) reader.fail(*scale, "scale", "out of range", expected);
+  const glm::dvec3 size = glm::abs(placement.scale);
+  if (!(size.x > 0.0 && size.y > 0.0 && size.z > 0.0) || !std::isfinite(size.x + size.y + size.z))
+    reader.fail(*scale, "scale", "out of range", expected);
   return placement;
 }
 

@@ -37,8 +37,8 @@ Field offset(const Field& field, double distance);  ///< f - distance: grown whe
 Field shell(const Field& field, double thickness);  ///< |f| - thickness/2: a wall of that thickness (world, > 0).
 Field translate(const Field& field, const glm::dvec3& by);
 Field rotate(const Field& field, const glm::dvec3& axis, double angle);  ///< Radians, right-handed; axis need not be unit.
-Field scale(const Field& field, double factor);                          ///< Exact; factor > 0.
-Field scale(const Field& field, const glm::dvec3& factors);  ///< Each > 0; lower bound of the distance, keeps the Lipschitz constant.
+Field scale(const Field& field, double factor);                          ///< Exact; not 0, negative ones mirror.
+Field scale(const Field& field, const glm::dvec3& factors);  ///< None 0; lower bound of the distance, keeps the Lipschitz constant.
 
 /// Brings `point` onto the surface: damped Newton along the gradient in double precision.
 /// Returns false (and the best point) where it does not reach |f| <= tolerance * radius of the bounds (or a few units in the last place of

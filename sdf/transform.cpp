@@ -50,15 +50,15 @@ Field rotate(const Field& field, const glm::dvec3& axis, double angle) {
 
 Field scale(const Field& field, double factor) { return scale(field, glm::dvec3(factor)); }
 
-// f(S^-1 p) may be as much as 1 / min(factors) times as steep as f; times min(factors) it is no steeper, and a lower bound of the distance.
+// f(S^-1 p) may be as much as 1 / min|factors| times as steep as f; times min|factors| it is no steeper, and a lower bound of the distance.
+// Negative factors mirror; what is inside stays inside.
 Field scale(const Field& field, const glm::dvec3& factors) {
-  if (!finite(factors) || !(factors.x > 0.0 && factors.y > 0.0 && factors.z > 0.0)) {
-    fail("scale", factors, "not a scale", "one or three finite factors above 0");
-  }
-  const double least = std::min({factors.x, factors.y, factors.z});
+  const glm::dvec3 size = glm::abs(factors);
+  const double least = std::min({size.x, size.y, size.z});
+  if (!finite(factors) || !(least > 0.0)) fail("scale", factors, "not a scale", "one or three finite factors, none of them 0");
   const glm::dvec3 inverse_factors = 1.0 / factors;
   const glm::dmat3 old_from_new(inverse_factors.x, 0.0, 0.0, 0.0, inverse_factors.y, 0.0, 0.0, 0.0, inverse_factors.z);
-  const bool uniform = factors.x == factors.y && factors.y == factors.z;
+  const bool uniform = size.x == size.y && size.y == size.z;
   return transformed(field, {old_from_new, glm::dvec3(0.0)}, least, uniform);
 }
 

@@ -1,5 +1,6 @@
 // The blurred silhouette, laid around the object.
 
+#include "raymarch/border/blur_groups.h"
 #include "raymarch/border/blur_passes.h"
 #include "raymarch/border/picture_rows.h"
 #include "raymarch/border/registry.h"
@@ -7,19 +8,13 @@
 namespace limn {
 namespace {
 
-struct BlurSettings {
-  BlurKernel kernel;
-  int radius_px, scale;
-  bool hard, over;
-  float level, strength;
-};
-
 BlurSettings read_settings(const Parameters& parameters) {
   return {parameters.choice("kernel") == "box" ? BlurKernel::box : BlurKernel::gaussian,
           parameters.integer("radius"),
           parameters.integer("scale"),
           parameters.choice("edge") == "hard",
           parameters.choice("place") == "over",
+          parameters.choice("colors") == "objects",
           static_cast<float>(parameters.number("level")),
           static_cast<float>(parameters.number("strength"))};
 }
@@ -86,16 +81,27 @@ Image<glm::vec3> object_colors(const BorderInput& input, const BlurSettings& set
   return colors;
 }
 
-Border draw(const BorderInput& input, const Parameters& parameters) {
+void draw_all(const BorderInput& input, const BlurSettings& settings, Border& border) {
   const GBuffer& seen = input.gbuffer;
-  const BlurSettings settings = read_settings(parameters);
-  Border border;
-  border.color = glm::vec3(parameters.vector3("color"));
-  border.coverage = {seen.width, seen.height, 0.0f};
   blur_objects(
       seen, settings, [](std::int32_t id) { return id != 0 ? 1.0f : 0.0f; },
       [&](int y, const float* line) { ink_line(settings, line, &seen.id.at(0, y), seen.width, &border.coverage.at(0, y)); });
-  if (parameters.choice("colors") == "objects") border.colors = object_colors(input, settings);
+  if (settings.object_colors) border.colors = object_colors(input, settings);
+  add_group_note("blur", input, border.notes);
+}
+
+Border draw(const BorderInput& input, const Parameters& parameters) {
+  const BlurSettings settings = read_settings(parameters);
+  const GroupSettings groups = group_settings(parameters);
+  Border border;
+  border.color = glm::vec3(parameters.vector3("color"));
+  border.coverage = {input.gbuffer.width, input.gbuffer.height, 0.0f};
+  if (groups.by == GroupBy::all) {
+    draw_all(input, settings, border);
+  } else {
+    blur_groups(input, settings, groups.by, border);
+  }
+  if (groups.hidden) blur_hidden(input, settings, groups, border);
   return border;
 }
 
@@ -103,18 +109,21 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
 
 BorderMethod blur_method() {
   constexpr auto number = ParameterKind::number, integer = ParameterKind::integer, choice = ParameterKind::choice;
+  std::vector<Parameter> parameters{
+      {"kernel", choice, "", {0.0}, 0.0, 1.0, "kind of blur", {"gaussian", "box"}},
+      {"radius", integer, "px", {8.0}, 1.0, 256.0, "half the kernel's size; a Gaussian's standard deviation is a third of it", {}},
+      {"scale", integer, "", {1.0}, 1.0, 8.0, "blurs a buffer this many times smaller: quicker, coarser", {}},
+      {"edge", choice, "", {0.0}, 0.0, 1.0, "fading out, or cut at the level", {"glow", "hard"}},
+      {"level", number, "", {0.05}, 0.0, 0.5, "hard: ink where the blurred silhouette exceeds this", {}},
+      {"strength", number, "", {1.0}, 0.0, 16.0, "glow: factor of the ink, which ends at 1", {}},
+      {"place", choice, "", {0.0}, 0.0, 1.0, "outside the object only, or on both sides of the silhouette", {"outside", "over"}},
+      {"colors", choice, "", {0.0}, 0.0, 1.0, "one ink, or the objects' own colours", {"one", "objects"}},
+      {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}};
+  for (Parameter& parameter : group_parameters(GroupBy::all)) parameters.push_back(std::move(parameter));
   return {{"blur", "the silhouette blurred in two passes and laid around the object, as a glow or a hard line",
            "separable filters: Szeliski 2010, section 3.2"},
           {"id"},
-          {{"kernel", choice, "", {0.0}, 0.0, 1.0, "kind of blur", {"gaussian", "box"}},
-           {"radius", integer, "px", {8.0}, 1.0, 256.0, "half the kernel's size; a Gaussian's standard deviation is a third of it", {}},
-           {"scale", integer, "", {1.0}, 1.0, 8.0, "blurs a buffer this many times smaller: quicker, coarser", {}},
-           {"edge", choice, "", {0.0}, 0.0, 1.0, "fading out, or cut at the level", {"glow", "hard"}},
-           {"level", number, "", {0.05}, 0.0, 0.5, "hard: ink where the blurred silhouette exceeds this", {}},
-           {"strength", number, "", {1.0}, 0.0, 16.0, "glow: factor of the ink, which ends at 1", {}},
-           {"place", choice, "", {0.0}, 0.0, 1.0, "outside the object only, or on both sides of the silhouette", {"outside", "over"}},
-           {"colors", choice, "", {0.0}, 0.0, 1.0, "one ink, or the objects' own colours", {"one", "objects"}},
-           {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}},
+          parameters,
           [](const SceneModel&, const Scene&) { return std::string(); },
           draw};
 }

@@ -1,20 +1,12 @@
 // Outline of constant width from the exact Euclidean distance to the silhouette.
 
+#include "raymarch/border/outline.h"
 #include "raymarch/border/registry.h"
-#include "raymarch/border/silhouette.h"
 
 namespace limn {
 namespace {
 
-Border draw(const BorderInput& input, const Parameters& parameters) {
-  const OutlineBand band = outline_band(parameters);
-  const Silhouette silhouette = find_silhouette(input.gbuffer, parameters.choice("seeds") == "estimated");
-  Border border;
-  border.color = glm::vec3(parameters.vector3("color"));
-  border.coverage = ink_band(silhouette, exact_squares(silhouette, band.reach_px()), band);
-  add_silhouette_notes("distance", silhouette, border.notes);
-  return border;
-}
+Border draw(const BorderInput& input, const Parameters& parameters) { return draw_outline("distance", input, parameters, exact_squares); }
 
 }  // namespace
 

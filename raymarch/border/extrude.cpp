@@ -22,6 +22,7 @@ ExtrudeSettings read_settings(const Parameters& parameters) {
   settings.mask = parameters.choice("mask") == "back_faces" ? ExtrudeMask::back_faces : ExtrudeMask::stencil;
   settings.width_px = parameters.number("width");
   settings.object_width = parameters.number("object_width");
+  settings.groups = group_settings(parameters);
   return settings;
 }
 
@@ -68,30 +69,46 @@ void add_mitre_note(const BorderInput& input, const ExtrudeSettings& settings, B
                   beyond.beyond_pixels, beyond.ink_pixels, settings.width_px, beyond.farthest_px));
 }
 
+void ink_one(const ObjectInk& of, const EdgeVisibility& view, HullNotes* notes, Image<float>& coverage) {
+  const Surface& surface = of.input.model.surfaces[of.object];
+  if (surface.polygons) {
+    const ExtrudedCorners corners = extrude_corners(*surface.polygons, render_from_object(of.input, of.object), of.settings, view.camera());
+    ink_hull(of.input, of.object, corners, of.settings, view.near(), coverage);
+    if (notes != nullptr) notes->add(of.input, of.object, corners, of.settings);
+  } else if (surface.offset.make) {
+    ink_offset(of.input, of.object, of.settings, coverage);
+  }
+}
+
+void draw_objects(const BorderInput& input, const ExtrudeSettings& settings, HullNotes& notes, Border& border) {
+  const EdgeVisibility view(input);
+  const size_t objects = input.model.surfaces.size();
+  if (objects == 1) return ink_one({input, 0, settings}, view, &notes, border.coverage);
+  const ExtrudeGroups groups(input, settings);
+  for (size_t object = 0; object < objects; ++object) {
+    Image<float> ink(input.gbuffer.width, input.gbuffer.height, 0.0f);
+    ink_one({input, object, settings}, view, &notes, ink);
+    groups.lay(object, ink, border.coverage);
+  }
+  groups.draw_seams(border.coverage);
+  if (settings.groups.by == GroupBy::all) add_group_note("extrude", input, border.notes);
+  if (settings.groups.hidden) groups.draw_hidden(border);
+}
+
 Border draw(const BorderInput& input, const Parameters& parameters) {
   const ExtrudeSettings settings = read_settings(parameters);
   Border border;
   border.color = glm::vec3(parameters.vector3("color"));
   border.coverage = {input.gbuffer.width, input.gbuffer.height, 0.0f};
-  const EdgeVisibility view(input);
   HullNotes notes;
-  size_t without = 0;
-  for (size_t object = 0; object < input.model.surfaces.size(); ++object) {
-    const Surface& surface = input.model.surfaces[object];
-    if (surface.polygons) {
-      const ExtrudedCorners corners = extrude_corners(*surface.polygons, render_from_object(input, object), settings, view.camera());
-      ink_hull(input, object, corners, settings, view.near(), border.coverage);
-      notes.add(input, object, corners, settings);
-    } else if (surface.offset.make) {
-      ink_offset(input, object, settings, border.coverage);
-    } else {
-      ++without;
-    }
-  }
+  draw_objects(input, settings, notes, border);
+  const auto without = std::count_if(input.model.surfaces.begin(), input.model.surfaces.end(),
+                                     [](const Surface& surface) { return !surface.polygons && !surface.offset.make; });
   if (without > 0)
     border.notes.push_back(
         fmt::format("extrude: {} of {} objects have neither polygons nor distances", without, input.model.surfaces.size()));
-  const OutlineGaps gaps = outline_gaps(input.gbuffer, border.coverage);
+  const OutlineGaps gaps = input.model.surfaces.size() > 1 ? outline_gaps(input, settings.groups, border.coverage)
+                                                           : outline_gaps(input.gbuffer, border.coverage);
   if (gaps.gaps > 0) {
     const bool hull = !input.model.surfaces.empty() && input.model.surfaces[0].polygons;
     border.notes.push_back(fmt::format("extrude {}: {} gap{}, longest {} px, {:.1f} % of the outline",
@@ -113,46 +130,51 @@ std::string unsupported(const SceneModel& model, const Scene&) {
 
 }  // namespace
 
+void ink_object(const ObjectInk& of, Image<float>& coverage) { ink_one(of, EdgeVisibility(of.input), nullptr, coverage); }
+
 BorderMethod extrude_method() {
   constexpr auto number = ParameterKind::number, choice = ParameterKind::choice;
+  std::vector<Parameter> parameters{
+      {"width", number, "px", {3.0}, 0.0, 256.0, "in clip space", {}},
+      {"object_width",
+       number,
+       "world",
+       {0.02},
+       0.0,
+       1e9,
+       "in object space, where it grows with the object and shrinks with distance; by position: a share of the distance to the origin",
+       {}},
+      {"space",
+       choice,
+       "",
+       {0.0},
+       0.0,
+       1.0,
+       "clip: as many pixels everywhere; object: as much of the object's own units",
+       {"clip", "object"}},
+      {"direction",
+       choice,
+       "",
+       {3.0},
+       0.0,
+       3.0,
+       "of meshes: away from the origin, along the normals, or along normals baked smooth",
+       {"position", "normalized_position", "vertex_normal", "smooth_normal"}},
+      {"mask",
+       choice,
+       "",
+       {0.0},
+       0.0,
+       1.0,
+       "draw back faces only (inner contours too), or everything beside the object",
+       {"back_faces", "stencil"}},
+      {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}};
+  for (Parameter& parameter : group_parameters(GroupBy::object)) parameters.push_back(std::move(parameter));
   return {
       {"extrude", "the object again, grown and behind itself: an inverted hull of a mesh, the exact offset f = w of a field or level set",
        "Rossignac and van Emmerik 1992; Raskar and Cohen 1999"},
       {"Z", "id", "mesh or distances"},
-      {{"width", number, "px", {3.0}, 0.0, 256.0, "in clip space", {}},
-       {"object_width",
-        number,
-        "world",
-        {0.02},
-        0.0,
-        1e9,
-        "in object space, where it grows with the object and shrinks with distance; by position: a share of the distance to the origin",
-        {}},
-       {"space",
-        choice,
-        "",
-        {0.0},
-        0.0,
-        1.0,
-        "clip: as many pixels everywhere; object: as much of the object's own units",
-        {"clip", "object"}},
-       {"direction",
-        choice,
-        "",
-        {3.0},
-        0.0,
-        3.0,
-        "of meshes: away from the origin, along the normals, or along normals baked smooth",
-        {"position", "normalized_position", "vertex_normal", "smooth_normal"}},
-       {"mask",
-        choice,
-        "",
-        {0.0},
-        0.0,
-        1.0,
-        "draw back faces only (inner contours too), or everything beside the object",
-        {"back_faces", "stencil"}},
-       {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}},
+      parameters,
       unsupported,
       draw};
 }

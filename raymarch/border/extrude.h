@@ -1,7 +1,7 @@
 #pragma once
 // The parts of the method `extrude`.
 
-#include "raymarch/border.h"
+#include "raymarch/border/object_groups.h"
 #include "raymarch/polygons.h"
 
 namespace limn {
@@ -16,7 +16,11 @@ struct ExtrudeSettings {
   ExtrudeMask mask = ExtrudeMask::back_faces;
   double width_px = 3.0, object_width = 0.02;
   std::string direction_name{};
+  GroupSettings groups{};
 };
+
+/// Width of the outline of object `object` (index from 0) at depth `z`.
+double extrude_width_px(const BorderInput& input, size_t object, const ExtrudeSettings& settings, double z);
 
 /// A mesh grown: one point for each corner, in camera axes (x right, y up, z the depth).
 struct ExtrudedCorners {
@@ -35,6 +39,32 @@ struct OutlineGaps {
   std::int64_t gaps = 0, longest_px = 0;
 };
 OutlineGaps outline_gaps(const GBuffer& gbuffer, const Image<float>& coverage);
+/// Of several objects: where a group's outline is due (BorderMethods' parameter `group`), rather than wherever depth changes.
+OutlineGaps outline_gaps(const BorderInput& input, const GroupSettings& settings, const Image<float>& coverage);
+
+/// Ink of one object: its hull or its offset, tested against what is seen. Nothing where it has neither.
+struct ObjectInk {
+  const BorderInput& input;
+  size_t object = 0;
+  const ExtrudeSettings& settings;
+};
+void ink_object(const ObjectInk& of, Image<float>& coverage);
+
+/// Where objects touch, hulls lie in each other's surfaces, and what shows of them is decided by rounding: there the outline is drawn along
+/// the places where the picture goes from one to the other instead, in front of the one that is behind elsewhere.
+class ExtrudeGroups {
+ public:
+  ExtrudeGroups(const BorderInput& input, const ExtrudeSettings& settings);
+  /// Lays what an object's ink shows over `coverage`, as far as it is an outline of its group.
+  void lay(size_t object, const Image<float>& ink, Image<float>& coverage) const;
+  void draw_seams(Image<float>& coverage) const;
+  void draw_hidden(Border& border) const;
+
+ private:
+  const BorderInput& input_;
+  const ExtrudeSettings& settings_;
+  std::optional<PictureGroups> objects_{};  ///< Unset where all objects count as one: nothing is drawn between them.
+};
 
 /// Pixels of ink beside all objects, and those of them that lie farther from the silhouette than `width_px` and a pixel: where f is no
 /// distance (sharp CSG), its offset is mitred instead of round.

@@ -11,23 +11,18 @@
 namespace limn {
 namespace {
 
-/// (u, v) lies outwards of a pixel of object `id` at depth `depth`: it shows nothing, or something else farther back.
-bool outwards(const GBuffer& seen, int u, int v, std::int32_t id, float depth) {
-  return seen.id.inside(u, v) && seen.id.at(u, v) != id && (seen.id.at(u, v) == 0 || seen.depth.at(u, v) > depth);
-}
-
 enum class OutlinePixel : std::uint8_t { none, inked, gap };
 
-OutlinePixel outline_pixel(const GBuffer& seen, const Image<float>& coverage, int x, int y) {
-  const std::int32_t id = seen.id.at(x, y);
-  if (id == 0) return OutlinePixel::none;
-  const float depth = seen.depth.at(x, y);
-  if (!outwards(seen, x - 1, y, id, depth) && !outwards(seen, x + 1, y, id, depth) && !outwards(seen, x, y - 1, id, depth) &&
-      !outwards(seen, x, y + 1, id, depth))
-    return OutlinePixel::none;
+/// `outwards(i, j)`: pixel j lies outwards of pixel i, which shows an object.
+template <class Outwards>
+OutlinePixel outline_pixel(const GBuffer& seen, const Image<float>& coverage, int x, int y, const Outwards& outwards) {
+  const size_t i = seen.id.index(x, y);
+  if (seen.id.pixels[i] == 0) return OutlinePixel::none;
+  const auto out = [&](int u, int v) { return seen.id.inside(u, v) && outwards(i, seen.id.index(u, v)); };
+  if (!out(x - 1, y) && !out(x + 1, y) && !out(x, y - 1) && !out(x, y + 1)) return OutlinePixel::none;
   for (int v = y - 1; v <= y + 1; ++v) {
     for (int u = x - 1; u <= x + 1; ++u) {
-      if (outwards(seen, u, v, id, depth) && coverage.at(u, v) > 0.5f) return OutlinePixel::inked;
+      if (out(u, v) && coverage.at(u, v) > 0.5f) return OutlinePixel::inked;
     }
   }
   return OutlinePixel::gap;
@@ -51,6 +46,27 @@ std::int64_t take_run(Image<OutlinePixel>& kind, int x, int y) {
     }
   }
   return pixels;
+}
+
+template <class Outwards>
+OutlineGaps gaps_where(const GBuffer& gbuffer, const Image<float>& coverage, const Outwards& outwards) {
+  OutlineGaps result;
+  Image<OutlinePixel> kind(gbuffer.width, gbuffer.height, OutlinePixel::none);
+  for (int y = 0; y < gbuffer.height; ++y) {
+    for (int x = 0; x < gbuffer.width; ++x) {
+      kind.at(x, y) = outline_pixel(gbuffer, coverage, x, y, outwards);
+      result.outline_pixels += kind.at(x, y) != OutlinePixel::none;
+      result.gap_pixels += kind.at(x, y) == OutlinePixel::gap;
+    }
+  }
+  for (int y = 0; y < gbuffer.height; ++y) {
+    for (int x = 0; x < gbuffer.width; ++x) {
+      if (kind.at(x, y) != OutlinePixel::gap) continue;
+      ++result.gaps;
+      result.longest_px = std::max(result.longest_px, take_run(kind, x, y));
+    }
+  }
+  return result;
 }
 
 /// Six times the volume of the mesh, about its first corner.
@@ -108,23 +124,16 @@ glm::dvec2 outward_normal(const Polygons& polygons, std::int32_t front, const gl
 }  // namespace
 
 OutlineGaps outline_gaps(const GBuffer& gbuffer, const Image<float>& coverage) {
-  OutlineGaps result;
-  Image<OutlinePixel> kind(gbuffer.width, gbuffer.height, OutlinePixel::none);
-  for (int y = 0; y < gbuffer.height; ++y) {
-    for (int x = 0; x < gbuffer.width; ++x) {
-      kind.at(x, y) = outline_pixel(gbuffer, coverage, x, y);
-      result.outline_pixels += kind.at(x, y) != OutlinePixel::none;
-      result.gap_pixels += kind.at(x, y) == OutlinePixel::gap;
-    }
-  }
-  for (int y = 0; y < gbuffer.height; ++y) {
-    for (int x = 0; x < gbuffer.width; ++x) {
-      if (kind.at(x, y) != OutlinePixel::gap) continue;
-      ++result.gaps;
-      result.longest_px = std::max(result.longest_px, take_run(kind, x, y));
-    }
-  }
-  return result;
+  return gaps_where(gbuffer, coverage, [&](size_t i, size_t j) {
+    return gbuffer.id.pixels[j] != gbuffer.id.pixels[i] && (gbuffer.id.pixels[j] == 0 || gbuffer.depth.pixels[j] > gbuffer.depth.pixels[i]);
+  });
+}
+
+OutlineGaps outline_gaps(const BorderInput& input, const GroupSettings& settings, const Image<float>& coverage) {
+  if (settings.by == GroupBy::all)
+    return gaps_where(input.gbuffer, coverage, [&](size_t, size_t j) { return input.gbuffer.id.pixels[j] == 0; });
+  const PictureGroups groups(input, settings.by);
+  return gaps_where(input.gbuffer, coverage, [&](size_t i, size_t j) { return groups.of(i) != groups.of(j) && groups.in_front(i, j); });
 }
 
 InkBeyond ink_beyond(const GBuffer& gbuffer, const Image<float>& coverage, double width_px) {

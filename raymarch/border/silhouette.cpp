@@ -22,11 +22,8 @@ int crossing_from(const GBuffer& seen, size_t inner, size_t deeper) {
   return static_cast<int>(std::min(1.0f, c1 * c1 / fall) * kSubPixels + 0.5f);
 }
 
-/// The crossing between the pixels i and i + step, of which one is inside. `before` and `after` say whether i - step and i + 2 step exist.
 std::int8_t crossing(const GBuffer& seen, size_t i, size_t step, bool before, bool after, bool estimate) {
-  if (!estimate) return static_cast<std::int8_t>(kSubPixels / 2);
-  if (seen.id.pixels[i] != 0) return static_cast<std::int8_t>(before ? crossing_from(seen, i, i - step) : kSubPixels / 2);
-  return static_cast<std::int8_t>(kSubPixels - (after ? crossing_from(seen, i + step, i + 2 * step) : kSubPixels / 2));
+  return crossing_place(seen, i, step, seen.id.pixels[i] != 0, before, after, estimate);
 }
 
 bool same_eight(const std::uint8_t* a, const std::uint8_t* b) { return std::memcmp(a, b, 8) == 0; }
@@ -63,6 +60,12 @@ LineCounts find_line(const GBuffer& seen, int y, bool estimate, Silhouette& out)
 
 }  // namespace
 
+std::int8_t crossing_place(const GBuffer& gbuffer, size_t i, size_t step, bool first_inside, bool before, bool after, bool estimate) {
+  if (!estimate) return static_cast<std::int8_t>(kSubPixels / 2);
+  if (first_inside) return static_cast<std::int8_t>(before ? crossing_from(gbuffer, i, i - step) : kSubPixels / 2);
+  return static_cast<std::int8_t>(kSubPixels - (after ? crossing_from(gbuffer, i + step, i + 2 * step) : kSubPixels / 2));
+}
+
 Silhouette find_silhouette(const GBuffer& gbuffer, bool estimate) {
   Silhouette out;
   out.inside = {gbuffer.width, gbuffer.height, 0};
@@ -94,26 +97,14 @@ float OutlineBand::ink(float signed_distance_px) const {
   const float low = side == OutlineSide::outside ? 0.0f : side == OutlineSide::inside ? -width : -0.5f * width;
   const float high = low + width;
   if (!(soft > 0.0f)) return signed_distance_px >= low && signed_distance_px <= high ? 1.0f : 0.0f;
+  if (const auto inner = static_cast<float>(softness_at_object_px()); inner < soft) {
+    const auto step = [signed_distance_px](float at, float fade) {
+      return std::clamp((signed_distance_px - at) / fade + 0.5f, 0.0f, 1.0f);
+    };
+    return std::max(0.0f, step(low, inner) - step(high, soft));
+  }
   const float overlap = std::min(signed_distance_px + 0.5f * soft, high) - std::max(signed_distance_px - 0.5f * soft, low);
   return std::min(1.0f, std::max(0.0f, overlap / soft));
-}
-
-std::vector<Parameter> outline_parameters() {
-  constexpr auto number = ParameterKind::number;
-  return {
-      {"width", number, "px", {3.0}, 0.0, 480.0, "width of the outline", {}},
-      {"softness", number, "px", {1.0}, 0.0, 32.0, "width over which its edges fade; 1 is anti-aliased, 0 hard", {}},
-      {"side", ParameterKind::choice, "", {0.0}, 0.0, 2.0, "which side of the silhouette has the ink", {"outside", "inside", "centered"}},
-      {"seeds",
-       ParameterKind::choice,
-       "",
-       {0.0},
-       0.0,
-       1.0,
-       "where the silhouette crosses between two pixels: estimated from N.V on smooth surfaces, or half-way",
-       {"estimated", "half"}},
-      {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}},
-  };
 }
 
 OutlineBand outline_band(const Parameters& parameters) {
@@ -136,11 +127,12 @@ PlainInk plain_ink(const OutlineBand& band, double sign) {
   const double half = 0.5 * band.softness_px;
   const double low = band.side == OutlineSide::outside ? 0.0 : band.side == OutlineSide::inside ? -band.width_px : -0.5 * band.width_px;
   const double high = low + band.width_px;
-  const double nearest = (sign > 0.0 ? low : -high) + half, farthest = (sign > 0.0 ? high : -low) - half;
+  const double at_object = band.side == OutlineSide::outside ? 0.5 * band.softness_at_object_px() : half;
+  const double nearest = sign > 0.0 ? low + at_object : -high + half, farthest = sign > 0.0 ? high - half : -low - at_object;
   const auto squared = [](double distance_px) { return distance_px * distance_px * kSubPixels * kSubPixels; };
   // Farther than rounding to float can move a distance, so that what is passed over would have had no ink.
   constexpr double margin_px = 0.01;
-  const double beyond = squared(std::max(0.0, (sign > 0.0 ? high : -low) + half) + margin_px);
+  const double beyond = squared(std::max(0.0, sign > 0.0 ? high + half : -low + at_object) + margin_px);
   if (farthest < 0.0 || nearest > farthest) return {1.0, 0.0, beyond};
   return {nearest > 0.0 ? squared(nearest) : 0.0, squared(farthest), beyond};
 }

@@ -24,6 +24,10 @@ struct Silhouette {
   std::int64_t thin = 0;  ///< Inside pixels with nothing on both sides: what is thinner falls between the pixels.
 };
 
+/// Where the silhouette passes between the pixels i and i + step, of which the first or the second shows what is inside. `before` and
+/// `after` say whether i - step and i + 2 step exist.
+std::int8_t crossing_place(const GBuffer& gbuffer, size_t i, size_t step, bool first_inside, bool before, bool after, bool estimate);
+
 /// Half-way crossings; with `estimate` where N.V says more. Near the contour of a smooth surface (N.V)^2 falls off linearly to 0 (to first
 /// order 2 kr times the distance in the image), so that the last two pixels inside extrapolate to the crossing; edges where it does not
 /// fall keep the half-way point.
@@ -41,7 +45,7 @@ Image<std::int32_t> jump_flood_squares(const Silhouette& silhouette, int reach_p
 enum class OutlineSide { outside, inside, centered };
 
 /// An outline of `width_px` on one side of the silhouette, or half on each; its edges fade over `softness_px` (a box filter as wide; 0 is
-/// hard).
+/// hard). An outer outline's edge at the object is as sharp as the object's own: it fades over a pixel at most.
 struct OutlineBand {
   double width_px = 3.0, softness_px = 1.0;
   OutlineSide side = OutlineSide::outside;
@@ -49,8 +53,8 @@ struct OutlineBand {
   int reach_px() const;
   /// Ink at the signed distance, positive outside.
   float ink(float signed_distance_px) const;
+  double softness_at_object_px() const { return side == OutlineSide::outside ? std::min(softness_px, 1.0) : softness_px; }
 };
-std::vector<Parameter> outline_parameters();
 OutlineBand outline_band(const Parameters& parameters);
 Image<float> ink_band(const Silhouette& silhouette, const Image<std::int32_t>& squares, const OutlineBand& band);
 /// Sentences that both methods have.

@@ -83,7 +83,7 @@ Drawn draw_model(size_t row, Comparison& comparison, const ExecutionSettings& ho
   drawn.pictures.resize(comparison.methods.size());
   for (int sample = 0; sample < comparison.picture.samples; ++sample) {
     const auto start = std::chrono::steady_clock::now();
-    GBuffer gbuffer = render_gbuffer(model, comparison.camera, tracing, sample_offset(sample));
+    GBuffer gbuffer = render_gbuffer(model, comparison.camera, tracing, sample_offset(sample, comparison.picture.samples));
     modelled.trace_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     add_samples(model, gbuffer, row, comparison, drawn, bar);
     add_sample({gbuffer, comparison.camera, model, modelled.scene}, {}, drawn.seen);

@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"nan_radius", "a.toml", scene("[[object]]\nshape = \"sphere\"\nradius = nan"), "a.toml:3"},
         BadFile{"word_for_number", "a.toml", scene("[[object]]\nshape = \"sphere\"\nradius = \"big\""), "radius"},
         BadFile{"two_numbers_for_three", "a.toml", scene("[[object]]\nshape = \"box\"\nhalf = [1, 2]"), "half"},
-        BadFile{"zero_scale", "a.toml", scene("[[object]]\nshape = \"box\"\nscale = 0"), "above 0"},
+        BadFile{"zero_scale", "a.toml", scene("[[object]]\nshape = \"box\"\nscale = 0"), "other than 0"},
         BadFile{"zero_axis", "a.toml", scene("[[object]]\nshape = \"box\"\nrotate = [0, 0, 0, 10]"), "axis"},
         BadFile{"fov_0", "a.toml", scene("[camera]\nfov = 0\n[[object]]\nshape = \"box\""), "180"},
         BadFile{"fov_180", "a.toml", scene("[camera]\nfov = 180\n[[object]]\nshape = \"box\""), "180"},

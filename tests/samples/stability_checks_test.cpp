@@ -25,10 +25,14 @@ const std::string kChanging = "[[object]]\nshape = \"sphere\"\nradius = \"$r\"\n
                   kChange = "[set]\nr = 1.0\n[[variant]]\nset = { r = 0.8 }\n";
 const std::string kBox = "[[object]]\nshape = \"box\"\n", kCoarse = "[surface]\nvoxels = 6\nlevel = 0\nnormals = \"flat\"\n";
 
+const std::string kTwoBalls = "[[object]]\nshape = \"sphere\"\n[[object]]\nshape = \"sphere\"\ntranslate = [1.0, 0.0, 0.0]\n";
+
 const std::multimap<std::string, Broken>& broken() {
   static const std::multimap<std::string, Broken> all{
       {"border_within", {kAnalytic, "", kSmaller, 3.0}},
       {"border_within", {kAnalytic, "[with]\nkind = \"silhouette\"\nstatistic = \"p95\"\n", kLarger, 2.0}},
+      {"clean_seams", {kAnalytic + "methods = [\"sobel\"]\n", "[with]\nspeck_px = 1000\n"}},
+      {"clean_seams", {kRim, "[with]\nseams = 0\naway_px = 2\n", kTwoBalls}},
       {"continuous",
        {kRim, "[set]\nsweep = 0\n[with]\nfrom = 0\nto = 90\nsteps = 9\n",
         "[[object]]\nshape = \"box\"\nrotate = [0.0, 1.0, 0.0, \"$sweep\"]\n", 0.1}},
@@ -40,8 +44,10 @@ const std::multimap<std::string, Broken>& broken() {
       {"finite_outputs", {kRim, "[with]\nhits = 1\n"}},
       {"flicker_confined", {kAnalytic, "[[border]]\nmethod = \"rim\"\nthreshold = 0.7\n", "[[object]]\nshape = \"sphere\"\n", 0.2}},
       {"flips_beyond", {"surfaces = [\"level_set\"]\nmethods = [\"rim\"]\n", kCoarse, "[[object]]\nshape = \"sphere\"\n", 0.001}},
+      {"frame_free", {kRim, ""}},
       {"ink_width",
        {kAnalytic, "[with]\nwidth = 0\n[[border]]\nmethod = \"rim\"\nthreshold = 0.9\n", "[[object]]\nshape = \"sphere\"\n", 3.0}},
+      {"mirror_picture", {kRim, kChange, kChanging, 10.0}},
       {"no_false_lines", {kRim, "", kBox, 10.0}},
       {"no_holes", {kAnalytic, "", kLarger, 10.0}},
       {"no_holes", {kAnalytic, "", kSmaller, 10.0}},
@@ -49,6 +55,9 @@ const std::multimap<std::string, Broken>& broken() {
       {"one_closed_component", {kRim, "[with]\npieces = 4\n"}},
       {"same_picture", {kRim, kChange, kChanging, 10.0}},
       {"same_picture", {kRim, kChange + "[with]\nexact = true\n", kChanging, 10.0}},
+      {"same_width",
+       {kRim, "[with]\northographic = true\n[camera]\neye = [0, 0, 1.6]\nfov = 100\n", "[[object]]\nshape = \"sphere\"\n", 0.3}},
+      {"samples_agree", {kAnalytic + "methods = [\"blur strength=0.3\"]\n", "[with]\nlook = \"alpha\"\n", kBox, 0.5}},
       {"sign_right", {"surfaces = [\"level_set\"]\n", "", kSmaller, 10.0}},
       {"unchanged_beyond", {kRim, kChange + "[with]\npath = [[5, 5, 5], [5, 5, 6]]\n", kChanging, 3.0}},
       {"width_within", {kAnalytic, "[with]\nwidth = 1\n[[border]]\nmethod = \"rim_width\"\nwidth = 6.0\n"}},

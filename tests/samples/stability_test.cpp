@@ -42,6 +42,16 @@ const std::vector<std::string>& rows() {
       "plane at any tilt, depth edges",
       "camera inside the object, empty model, object behind the camera, field of view 0 or 180, image 1x1, 16384 wide",
       "threads 1..N, any tile size, SIMD on or off",
+      "objects touching, coplanar faces",
+      "objects overlapping, one outline or one each",
+      "object cut by the frame",
+      "orthographic beside perspective",
+      "mirrored transform",
+      "multisampling",
+      "the same picture at other sizes",
+      "concave corners",
+      "grazing curved surfaces",
+      "extrude at boundaries and non-manifold edges",
   };
   return all;
 }

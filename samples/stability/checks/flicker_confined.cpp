@@ -35,7 +35,7 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
     GBuffer before;
     Border ink_before;
     for (int k = 0; k <= moves; ++k) {
-      GBuffer seen = k == 0 ? view.seen : render_gbuffer(stage.model, view.camera, shop.how(), sample_offset(k));
+      GBuffer seen = k == 0 ? view.seen : render_gbuffer(stage.model, view.camera, shop.how(), sample_offset(k, moves + 1));
       Border ink = method->method->draw({seen, view.camera, stage.model, stage.scene}, method->parameters);
       if (k > 0) compare(before, ink_before, seen, ink, with.number("threshold"), flips);
       before = std::move(seen);

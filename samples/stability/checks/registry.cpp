@@ -8,10 +8,11 @@ namespace limn {
 
 std::span<const StabilityCheck> stability_checks() {
   static const std::array all = {
-      finite_outputs_check(), finite_field_check(), same_picture_check(),   no_holes_check(),         one_closed_component_check(),
-      faces_whole_check(),    continuous_check(),   border_within_check(),  normals_within_check(),   sign_right_check(),
-      width_within_check(),   even_cusps_check(),   no_false_lines_check(), flicker_confined_check(), unchanged_beyond_check(),
-      flips_beyond_check(),   ink_width_check(),
+      finite_outputs_check(), finite_field_check(),   same_picture_check(),   no_holes_check(),         one_closed_component_check(),
+      faces_whole_check(),    continuous_check(),     border_within_check(),  normals_within_check(),   sign_right_check(),
+      width_within_check(),   even_cusps_check(),     no_false_lines_check(), flicker_confined_check(), unchanged_beyond_check(),
+      flips_beyond_check(),   ink_width_check(),      clean_seams_check(),    frame_free_check(),       same_width_check(),
+      samples_agree_check(),  mirror_picture_check(),
   };
   return all;
 }

@@ -22,5 +22,10 @@ StabilityCheck flicker_confined_check();
 StabilityCheck flips_beyond_check();
 StabilityCheck unchanged_beyond_check();
 StabilityCheck ink_width_check();
+StabilityCheck clean_seams_check();
+StabilityCheck frame_free_check();
+StabilityCheck same_width_check();
+StabilityCheck samples_agree_check();
+StabilityCheck mirror_picture_check();
 
 }  // namespace limn

@@ -1,0 +1,121 @@
+// Extruded outlines of several objects: which part of each hull is an outline, and lines where objects touch.
+
+#include <cmath>
+
+#include "raymarch/border/extrude.h"
+#include "raymarch/border/group_silhouette.h"
+
+namespace limn {
+namespace {
+
+/// Hulls come out of touching surfaces beyond their own width where corners are mitred.
+int reach_of(double width_px) { return std::min(kLargestReach_px, static_cast<int>(std::ceil(2.0 * width_px)) + 2); }
+
+double widest_px(const BorderInput& input, const ExtrudeSettings& settings) {
+  if (settings.space == ExtrudeSpace::clip) return settings.width_px;
+  const std::vector<float>& depths = input.gbuffer.depth.pixels;
+  const double nearest = *std::min_element(depths.begin(), depths.end());
+  double widest = 0.0;
+  for (size_t k = 0; k < input.model.surfaces.size(); ++k) widest = std::max(widest, extrude_width_px(input, k, settings, nearest));
+  return std::min(widest, 0.5 * kLargestReach_px - 2.0);
+}
+
+}  // namespace
+
+double extrude_width_px(const BorderInput& input, size_t object, const ExtrudeSettings& settings, double z) {
+  if (settings.space == ExtrudeSpace::clip) return settings.width_px;
+  double scale = 1.0;
+  if (object < input.scene.objects.size())
+    scale = std::cbrt(std::abs(glm::determinant(input.scene.objects[object].world_from_object.linear)));
+  return std::isfinite(z) ? settings.object_width * scale * pixels_per_unit_at(input.camera, z) : 0.0;
+}
+
+ExtrudeGroups::ExtrudeGroups(const BorderInput& input, const ExtrudeSettings& settings) : input_(input), settings_(settings) {
+  if (settings.groups.by != GroupBy::all) objects_.emplace(input, GroupBy::object);
+}
+
+void ExtrudeGroups::lay(size_t object, const Image<float>& ink, Image<float>& coverage) const {
+  const GBuffer& seen = input_.gbuffer;
+  const auto id = static_cast<std::int32_t>(object) + 1;
+  const auto of_group = [&](size_t i) {
+    if (settings_.groups.by == GroupBy::all) return true;
+    return settings_.groups.by == GroupBy::material && seen.material.pixels[i] == input_.model.materials[object];
+  };
+  GroupSilhouette touching, in_front;
+  for (std::int32_t group = 1; objects_ && group <= objects_->count(); ++group) {
+    if (objects_->key(group) != id) continue;
+    const int reach = reach_of(widest_px(input_, settings_));
+    const PixelWindow window = grown(objects_->window(group), reach + 1, seen.width, seen.height);
+    const auto inside = [&](size_t i) { return objects_->of(i) == group; };
+    touching = group_silhouette(seen, window, false, inside, [&](size_t a, size_t b) { return objects_->touching(a, b); });
+    if (touching.silhouette.crossings == 0) break;
+    touching.squares = exact_squares(touching.silhouette, reach);
+    in_front = group_silhouette(seen, window, false, inside,
+                                [&](size_t a, size_t b) { return !objects_->touching(a, b) && objects_->in_front(a, b); });
+    in_front.squares = exact_squares(in_front.silhouette, reach);
+  }
+  for (int y = 0; y < ink.height; ++y) {
+    for (int x = 0; x < ink.width; ++x) {
+      const size_t i = ink.index(x, y);
+      if (ink.pixels[i] == 0.0f) continue;
+      if (seen.id.pixels[i] != 0 && seen.id.pixels[i] != id) {
+        if (of_group(i)) continue;
+        const std::int32_t to_seam = touching.square_at(x, y);
+        if (to_seam != kFarSquared && to_seam <= in_front.square_at(x, y)) continue;
+      }
+      coverage.pixels[i] = 1.0f;
+    }
+  }
+}
+
+void ExtrudeGroups::draw_seams(Image<float>& coverage) const {
+  if (settings_.groups.by == GroupBy::all) return;
+  const GBuffer& seen = input_.gbuffer;
+  const PictureGroups groups(input_, settings_.groups.by);
+  const int reach = static_cast<int>(std::ceil(widest_px(input_, settings_))) + 1;
+  for (std::int32_t group = 1; group <= groups.count(); ++group) {
+    GroupSilhouette seam = group_silhouette(
+        seen, grown(groups.window(group), reach + 1, seen.width, seen.height), false, [&](size_t i) { return groups.of(i) == group; },
+        [&](size_t a, size_t b) { return groups.touching(a, b) && groups.in_front(a, b); });
+    if (seam.silhouette.crossings == 0) continue;
+    seam.squares = exact_squares(seam.silhouette, reach);
+    for (int y = 0; y < seam.squares.height; ++y) {
+      for (int x = 0; x < seam.squares.width; ++x) {
+        const size_t at = seam.pixel(x, y);
+        const std::int32_t square = seam.squares.at(x, y);
+        if (square == kFarSquared || groups.of(at) == 0 || groups.of(at) == group) continue;
+        const auto sides = nearest_crossing(seam, x, y);
+        if (!sides) continue;
+        const auto owner = static_cast<size_t>(seen.id.pixels[sides->inner] - 1);
+        const double width = extrude_width_px(input_, owner, settings_, double{seen.depth.pixels[sides->inner]}) * kSubPixels;
+        if (static_cast<double>(square) <= width * width && ink_in_front(groups, group, seam, x, y)) coverage.pixels[at] = 1.0f;
+      }
+    }
+  }
+}
+
+void ExtrudeGroups::draw_hidden(Border& border) const {
+  const GBuffer& seen = input_.gbuffer;
+  Image<float> hidden(seen.width, seen.height, 0.0f);
+  const int reach = reach_of(widest_px(input_, settings_));
+  for (const HiddenGroup& group : hidden_groups(input_, settings_.groups.by)) {
+    const GBuffer alone = render_alone(input_, group);
+    const BorderInput by_itself{alone, input_.camera, input_.model, input_.scene};
+    Image<float> ink(seen.width, seen.height, 0.0f);
+    for (const size_t object : group.objects) ink_object({by_itself, object, settings_}, ink);
+    const GroupSilhouette unseen = hidden_silhouette(seen, alone, group, true, false, reach, exact_squares);
+    const GroupSilhouette visible = hidden_silhouette(seen, alone, group, false, false, reach, exact_squares);
+    for (int y = 0; y < seen.height; ++y) {
+      for (int x = 0; x < seen.width; ++x) {
+        const size_t i = seen.id.index(x, y);
+        if (ink.pixels[i] == 0.0f || !group.hides(seen, i)) continue;
+        const std::int32_t to_hidden = unseen.square_at(x, y);
+        // Within the object its own folds are inked; beside it, its outline.
+        if (alone.id.pixels[i] != 0 || (to_hidden != kFarSquared && to_hidden <= visible.square_at(x, y))) hidden.pixels[i] = 1.0f;
+      }
+    }
+  }
+  lay_hidden_ink(hidden, settings_.groups.hidden_color, border);
+}
+
+}  // namespace limn

@@ -1,0 +1,92 @@
+#pragma once
+// Outlines of several objects: which pixels belong together, which of two groups is in front where they meet in the picture, and what a
+// group shows without the others. Methods with the parameters `group` and `hidden` share all of it.
+
+#include <map>
+
+#include "raymarch/border.h"
+
+namespace limn {
+
+enum class GroupBy { all, object, material };
+
+struct GroupSettings {
+  GroupBy by = GroupBy::all;
+  bool hidden = false;  ///< Draw the outline of what other groups hide (with GroupBy::all: of what other objects hide).
+  glm::vec3 hidden_color{0.0f};
+};
+
+/// `group`, `hidden` and `hidden_color`, for a method's own list.
+std::vector<Parameter> group_parameters(GroupBy by);
+GroupSettings group_settings(const Parameters& parameters);
+/// Layers that a method with these parameters reads besides its own inputs when it is called with `parameters`; none for other methods.
+std::vector<std::string> group_inputs(const BorderMethod& method, const Parameters& parameters);
+
+/// Pixels [x0, x1) x [y0, y1) of a picture.
+struct PixelWindow {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  bool empty() const { return x0 >= x1 || y0 >= y1; }
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+};
+/// Larger by `by` pixels on each side, as far as the picture goes; corners on multiples of `step` where that is possible.
+PixelWindow grown(const PixelWindow& window, int by, int width, int height, int step = 1);
+
+/// What two neighbouring pixels of different groups show of each other: one lies in front, or the surfaces touch there.
+enum class Meeting { first_in_front, second_in_front, touching };
+
+class PictureGroups {
+ public:
+  /// Reads id, Z and N, and material for GroupBy::material. With GroupBy::all every object is a group: who asks has no use for one group.
+  PictureGroups(const BorderInput& input, GroupBy by);
+
+  std::int32_t count() const { return static_cast<std::int32_t>(windows_.size()); }
+  /// Group that pixel i shows, from 1; 0: nothing.
+  std::int32_t of(size_t i) const { return group_.pixels[i]; }
+  const PixelWindow& window(std::int32_t group) const { return windows_[static_cast<size_t>(group - 1)]; }
+  /// The object (from 1) or material that the group is.
+  std::int32_t key(std::int32_t group) const { return keys_[static_cast<size_t>(group - 1)]; }
+  const GBuffer& seen() const { return input_.gbuffer; }
+
+  /// The planes of both surfaces, brought to the image point between the pixels (`at_first`: to that of the first).
+  Meeting meeting(size_t first, size_t second, bool at_first = false) const;
+  /// The outline between the two belongs to the first's group: nothing lies behind it, or the first does not; where they touch, the group
+  /// that is in front of the other where they do not, and if neither is the first in the scene.
+  bool in_front(size_t first, size_t second, bool at_first = false) const;
+  bool touching(size_t first, size_t second) const;
+
+ private:
+  void find_order();
+  const BorderInput& input_;
+  Image<std::int32_t> group_{};
+  std::vector<PixelWindow> windows_{};
+  std::vector<std::int32_t> keys_{};
+  /// Of two groups that meet in the picture.
+  struct Order {
+    std::int64_t places = 0;      ///< Pairs of neighbouring pixels.
+    double lower_in_front = 0.0;  ///< Those where the lower group is clearly in front, less those where the higher is.
+  };
+  std::map<std::pair<std::int32_t, std::int32_t>, Order> order_{};  ///< Lower group first.
+};
+
+/// Pairs of neighbouring pixels that show different objects.
+std::int64_t object_boundaries(const GBuffer& gbuffer);
+/// A note for GroupBy::all: between objects there is no line. Nothing where objects do not meet in the picture.
+void add_group_note(const std::string& method, const BorderInput& input, std::vector<std::string>& notes);
+
+/// Objects (indices from 0) that have an outline of their own where something else hides them.
+struct HiddenGroup {
+  std::vector<size_t> objects{};
+  std::vector<char> member{};  ///< By object.
+  bool shows(const GBuffer& seen, size_t i) const { return seen.id.pixels[i] != 0 && member[static_cast<size_t>(seen.id.pixels[i] - 1)]; }
+  bool hides(const GBuffer& seen, size_t i) const { return seen.id.pixels[i] != 0 && !member[static_cast<size_t>(seen.id.pixels[i] - 1)]; }
+};
+/// Of those whose place in the picture shows others too.
+std::vector<HiddenGroup> hidden_groups(const BorderInput& input, GroupBy by);
+/// The group as if nothing else were there; ids as in the whole picture.
+GBuffer render_alone(const BorderInput& input, const HiddenGroup& group);
+
+/// Lays ink of another colour beneath a border's own.
+void lay_hidden_ink(const Image<float>& hidden, const glm::vec3& color, Border& border);
+
+}  // namespace limn

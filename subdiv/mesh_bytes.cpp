@@ -22,22 +22,41 @@ std::vector<std::string> get_names(ByteReader& reader) {
   return names;
 }
 
+/// What is sent is not needed any more.
+template <class T>
+void put_last(ByteWriter& writer, std::vector<T>& values) {
+  put_all(writer, values);
+  std::vector<T>().swap(values);
+}
+
+template <class T>
+size_t size_of(const std::vector<T>& values) {
+  return sizeof(std::uint64_t) + values.size() * sizeof(T);
+}
+
 }  // namespace
 
-void put_mesh(ByteWriter& writer, const Mesh& mesh) {
-  put_all(writer, mesh.positions);
-  put_all(writer, mesh.face_sizes);
-  put_all(writer, mesh.corner_vertices);
-  put_all(writer, mesh.corner_normals);
-  put_all(writer, mesh.vertex_colors);
-  put_all(writer, mesh.face_materials);
-  put_all(writer, mesh.face_groups);
+void put_mesh(ByteWriter& writer, Mesh&& mesh) {
+  // Reserved at once: growing would hold the answer twice. Memory that is reserved and not written yet costs nothing.
+  constexpr size_t kNames = size_t{1} << 16;
+  writer.bytes.reserve(writer.bytes.size() + kNames + size_of(mesh.positions) + size_of(mesh.face_sizes) + size_of(mesh.corner_vertices) +
+                       size_of(mesh.corner_normals) + size_of(mesh.vertex_colors) + size_of(mesh.face_materials) +
+                       size_of(mesh.face_groups) + size_of(mesh.face_smoothing));
+  put_last(writer, mesh.positions);
+  put_last(writer, mesh.face_sizes);
+  put_last(writer, mesh.corner_vertices);
+  put_last(writer, mesh.corner_normals);
+  put_last(writer, mesh.vertex_colors);
+  put_last(writer, mesh.face_materials);
+  put_last(writer, mesh.face_groups);
   put_names(writer, mesh.material_names);
   put_names(writer, mesh.group_names);
   put_all(writer, mesh.material_colors);
-  put_all(writer, mesh.face_smoothing);
+  put_last(writer, mesh.face_smoothing);
   put_names(writer, mesh.warnings);
 }
+
+void put_mesh(ByteWriter& writer, const Mesh& mesh) { put_mesh(writer, Mesh(mesh)); }
 
 Mesh get_mesh(ByteReader& reader) {
   Mesh mesh;

@@ -19,6 +19,7 @@
 
 #include "sdf/guard_helper.h"
 #include "subdiv/mesh_bytes.h"
+#include "subdiv/read_gltf.h"
 
 namespace {
 
@@ -40,7 +41,8 @@ class OwnFolderOnly : public Assimp::DefaultIOSystem {
   bool allowed(const char* name) const {
     std::error_code error;
     const fs::path relative = fs::weakly_canonical(name, error).lexically_relative(folder_);
-    return !error && !relative.empty() && *relative.begin() != "..";
+    // A pipe would be waited for.
+    return !error && !relative.empty() && *relative.begin() != ".." && fs::is_regular_file(name, error);
   }
   fs::path folder_;
 };
@@ -210,6 +212,14 @@ std::vector<std::byte> read(const std::string& file, std::int64_t max_elements) 
   std::string extension = fs::path(file).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (!extension.empty()) extension.erase(0, 1);
+  limn::ByteWriter writer;
+  if (extension == "gltf" || extension == "glb") {
+    // Of glTF 1.0 nothing comes back; assimp reads that.
+    if (std::optional<Mesh> mesh = limn::read_gltf(file, max_elements)) {
+      limn::put_mesh(writer, std::move(*mesh));
+      return std::move(writer.bytes);
+    }
+  }
   std::string complaint;
   Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
   Assimp::DefaultLogger::get()->attachStream(new Complaints(complaint), Assimp::Logger::Warn | Assimp::Logger::Err);
@@ -222,7 +232,6 @@ std::vector<std::byte> read(const std::string& file, std::int64_t max_elements) 
            " file with all that it refers to beside it");
   if (!complaint.empty()) refuse("a face's index is out of range; indices below the number of vertices");
   if (scene->mRootNode == nullptr) refuse("the mesh has no faces; at least one face with 3 or more corners");
-  limn::ByteWriter writer;
   limn::put_mesh(writer, Gatherer(*scene, extension, max_elements).run());
   return std::move(writer.bytes);
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "raymarch/border/object_groups.h"
+#include "raymarch/file_colors.h"
 #include "raymarch/frames.h"
 #include "raymarch/threads.h"
 #include "sdf/error.h"
@@ -107,6 +108,22 @@ Image<glm::vec4> shade_headlight(const GBuffer& gbuffer, const SceneModel& model
   return picture;
 }
 
+Image<glm::vec4> shade_headlight(const BorderInput& input) {
+  const GBuffer& gbuffer = input.gbuffer;
+  const FileColors found = file_colors(input.model);
+  if (!found.any) return shade_headlight(gbuffer, input.model);
+  Image<glm::vec3> colors(gbuffer.width, gbuffer.height, glm::vec3(0.0f));
+  for (size_t i = 0; i < colors.size(); ++i) {
+    if (const std::int32_t id = gbuffer.id.pixels[i]; id != 0) colors.pixels[i] = input.model.colors[static_cast<size_t>(id - 1)];
+  }
+  find_file_colors(found, gbuffer, input.camera, input.model.render_origin, colors);
+  Image<glm::vec4> picture(gbuffer.width, gbuffer.height, glm::vec4(0.0f));
+  for (size_t i = 0; i < picture.size(); ++i) {
+    if (gbuffer.id.pixels[i] != 0) picture.pixels[i] = glm::vec4(colors.pixels[i] * (0.25f + 0.75f * gbuffer.n_dot_v.pixels[i]), 1.0f);
+  }
+  return picture;
+}
+
 void lay_ink(Image<glm::vec4>& picture, const Image<float>& coverage, const glm::vec3& color) {
   LIMN_CHECK(picture.size() == coverage.size());
   const glm::vec4 ink(color, 1.0f);
@@ -149,7 +166,7 @@ void add_sample(const BorderInput& input, std::span<const MethodCall> methods, P
   const auto start = Clock::now();
   const bool first = picture.border.pixels.empty();
   Image<float> ink(input.gbuffer.width, input.gbuffer.height, 0.0f);
-  Image<glm::vec4> composite = shade_headlight(input.gbuffer, input.model);
+  Image<glm::vec4> composite = shade_headlight(input);
   if (first) add_turned_notes(input, picture.notes);
   for (size_t m = 0; m < methods.size(); ++m) {
     Border border = draw_after(input, methods[m], inks, m);
@@ -208,6 +225,7 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
   ThreadArena arena(how.threads);
   GBufferLayers read = layers_read(settings.methods);
   if (history != nullptr) read.depth = read.normal = true;
+  read = joined(read, layers_read(file_colors(model)));
   GBuffer gbuffer;
   for (int sample = 0; sample < settings.samples; ++sample) {
     ExecutionSettings part = how;

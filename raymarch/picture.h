@@ -62,6 +62,8 @@ void finish_samples(const PictureSettings& settings, Picture& picture);
 
 /// The object's colour under a light at the eye: color * (0.25 + 0.75 N.V), alpha 1 where something is hit.
 Image<glm::vec4> shade_headlight(const GBuffer& gbuffer, const SceneModel& model);
+/// The same with the colours that files give to their meshes.
+Image<glm::vec4> shade_headlight(const BorderInput& input);
 /// Lays ink over a premultiplied picture: mix(picture, ink, coverage).
 void lay_ink(Image<glm::vec4>& picture, const Image<float>& coverage, const glm::vec3& color);
 /// A method's border: in its colour, or in its colours where it has more than one; over what is beneath it.

@@ -4,33 +4,11 @@
 #include <cmath>
 
 #include "raymarch/border/picture_rows.h"
+#include "raymarch/file_colors.h"
 #include "raymarch/polygons.h"
 
 namespace limn {
 namespace {
-
-/// A face's colour at a point of it: mean value coordinates, which are linear along edges and meet the vertices exactly.
-glm::vec3 face_color(const Mesh& mesh, std::int32_t first_corner, std::int32_t corners, const glm::dvec3& point) {
-  const auto vertex = [&](std::int32_t k) { return static_cast<size_t>(mesh.corner_vertices[static_cast<size_t>(first_corner + k)]); };
-  glm::dvec3 sum(0.0);
-  double weights = 0.0;
-  for (std::int32_t k = 0; k < corners; ++k) {
-    const glm::dvec3 to = mesh.positions[vertex(k)] - point;
-    const double distance = glm::length(to);
-    double weight = 0.0;
-    for (const std::int32_t side : {1, corners - 1}) {
-      const glm::dvec3 other = mesh.positions[vertex((k + side) % corners)] - point;
-      const double product = distance * glm::length(other);
-      // tan(angle / 2) = sin / (1 + cos), finite but where the point lies on the edge; there a huge weight is the limit.
-      weight += glm::length(glm::cross(to, other)) / std::max(product + glm::dot(to, other), 1e-12 * product + 1e-300);
-    }
-    weight /= std::max(distance, 1e-300);
-    if (!std::isfinite(weight) || weight > 1e200) return mesh.vertex_colors[vertex(k)];
-    sum += weight * glm::dvec3(mesh.vertex_colors[vertex(k)]);
-    weights += weight;
-  }
-  return weights > 0.0 ? glm::vec3(sum / weights) : mesh.vertex_colors[vertex(0)];
-}
 
 struct ObjectSections {
   const Mesh* mesh = nullptr;  ///< Null where the object has nothing to tell sections by.
@@ -66,8 +44,8 @@ glm::vec3 section_of(const BorderInput& input, const ObjectSections& object, Sec
     return {static_cast<float>(object.mesh->face_groups[static_cast<size_t>(face)] + 1), 0.0f, 0.0f};
   }
   const glm::dvec3 point = glm::dvec3(input.gbuffer.position.pixels[pixel]) - input.model.render_origin;
-  return face_color(*object.mesh, object.first_corner[static_cast<size_t>(face)], object.mesh->face_sizes[static_cast<size_t>(face)],
-                    point);
+  return vertex_color_at(*object.mesh, object.first_corner[static_cast<size_t>(face)], object.mesh->face_sizes[static_cast<size_t>(face)],
+                         point);
 }
 
 }  // namespace

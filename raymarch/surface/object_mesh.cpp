@@ -133,7 +133,7 @@ ObjectMesh from_facets(const SceneObject& object, const MeshSource& source, cons
     move_polygons(place.render_from_mesh, mesh);
     return mesh;
   };
-  result.polygons = std::make_shared<const Polygons>(make_polygons, result.normals, smoothing);
+  result.polygons = std::make_shared<const Polygons>(make_polygons, result.normals, smoothing, has_colors(*source.mesh));
   return result;
 }
 

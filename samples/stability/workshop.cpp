@@ -207,7 +207,7 @@ Border draw_border(const StabilityStage& stage, const StabilityView& view, const
 }
 
 Image<glm::vec4> picture_of(const StabilityStage& stage, const StabilityView& view, const Border* border) {
-  Image<glm::vec4> picture = shade_headlight(view.seen, stage.model);
+  Image<glm::vec4> picture = shade_headlight({view.seen, view.camera, stage.model, stage.scene});
   if (border != nullptr) lay_ink(picture, *border);
   return picture;
 }

@@ -73,7 +73,12 @@ Csg read_operation(TomlReader& reader) {
   throw InputError({reader.where(*reader.take("csg")), reader.field("csg"), name, "unknown operation", known_names(name, known)});
 }
 
-Field read_csg(TomlReader& reader) {
+Field read_vm_file(TomlReader& reader, const VmReader& read_vm) {
+  const std::string name = *reader.text("vm");
+  return read_vm(std::filesystem::path(reader.file()).parent_path() / name);
+}
+
+Field read_csg(TomlReader& reader, const VmReader& read_vm) {
   const Csg operation = read_operation(reader);
   const double smooth =
       reader.number("smooth", 0.0, kInfinity, "the blend's radius, 0 or more in world units, would be right").value_or(0.0);
@@ -82,7 +87,7 @@ Field read_csg(TomlReader& reader) {
   std::vector<Field> fields;
   for (size_t i = 0; i < tables.size(); ++i) {
     TomlReader item(*tables[i], reader.file(), reader.field(fmt::format("of[{}].", i)));
-    fields.push_back(read_field(item));
+    fields.push_back(read_field(item, read_vm));
     item.finish();
   }
   return combine(operation, fields, smooth);
@@ -92,11 +97,10 @@ Field read_csg(TomlReader& reader) {
 
 namespace {
 
-Field read_parts(TomlReader& reader) {
-  if (reader.has("shape") == reader.has("csg")) {
-    reader.fail(reader.has("shape") ? "both shape and csg" : "neither shape nor csg", "one of the two would be right");
-  }
-  Field field = reader.has("shape") ? read_shape(reader) : read_csg(reader);
+Field read_parts(TomlReader& reader, const VmReader& read_vm) {
+  const int kinds = (reader.has("shape") ? 1 : 0) + (reader.has("csg") ? 1 : 0) + (reader.has("vm") ? 1 : 0);
+  if (kinds != 1) reader.fail(kinds > 1 ? "more than one of shape, csg and vm" : "none of shape, csg and vm", "exactly one of them");
+  Field field = reader.has("shape") ? read_shape(reader) : reader.has("vm") ? read_vm_file(reader, read_vm) : read_csg(reader, read_vm);
   if (const auto by = reader.number("grow", -kInfinity, kInfinity, "a length in world units would be right")) field = offset(field, *by);
   if (const auto thickness = reader.number_between("shell", 0.0, kInfinity, "a thickness above 0 in world units would be right")) {
     field = shell(field, *thickness);
@@ -106,9 +110,9 @@ Field read_parts(TomlReader& reader) {
 
 }  // namespace
 
-Field read_field(TomlReader& reader) {
+Field read_field(TomlReader& reader, const VmReader& read_vm) {
   try {
-    return read_parts(reader);
+    return read_parts(reader, read_vm);
   } catch (const InputError& error) {
     // What a field refuses of itself says nothing of the file that asked for it.
     InputFault fault = error.fault();

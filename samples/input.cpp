@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <chrono>
 
-#include "raymarch/scene_extent.h"
 #include "samples/scene_file.h"
 #include "samples/scenes/scenes.h"
 #include "sdf/error.h"
 #include "sdf/guard.h"
+#include "sdf/vm_field.h"
 #include "subdiv/import.h"
 
 namespace limn {
 namespace {
 
-constexpr const char* kExpected = "a scene (.toml), a mesh (.obj .ply .stl .off .gltf .glb) or a volume (.vdb) would be right";
+constexpr const char* kExpected = "a scene (.toml), a mesh (.obj .ply .stl .off .gltf .glb), a volume (.vdb) or a formula (.vm)";
 
 std::string extension_of(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -40,6 +40,17 @@ SceneInput from_volume(const Options& options) {
   return input;
 }
 
+SceneInput from_vm(const Options& options) {
+  VmField vm = load_vm(options.input);
+  if (!vm.unbounded.empty())
+    throw InputError({options.input, "", "", vm.unbounded,
+                      "a bounded surface; a scene file can cut it: [[object]] with csg = \"intersection\" of { vm = \"" +
+                          std::filesystem::path(options.input).filename().string() + "\" } and { shape = \"box\" }"});
+  SceneInput input;
+  input.scene.objects.push_back({.name = std::filesystem::path(options.input).stem().string(), .source = std::move(vm.field)});
+  return input;
+}
+
 }  // namespace
 
 InputKind input_kind(const std::string& input) {
@@ -54,6 +65,7 @@ InputKind input_kind(const std::string& input) {
   }
   if (extension == ".toml") return InputKind::scene_file;
   if (extension == ".vdb") return InputKind::level_set;
+  if (extension == ".vm") return InputKind::field;
   if (is_mesh_file(path)) return InputKind::mesh;
   throw InputError({input, "", extension, exists ? "unknown kind of file" : "no such file", kExpected});
 }
@@ -75,6 +87,9 @@ SceneInput load_input(const Options& options) {
     case InputKind::level_set:
       input = from_volume(options);
       break;
+    case InputKind::field:
+      input = from_vm(options);
+      break;
     case InputKind::built_in:
       input.scene = find_scene(options.input)->make();
       break;
@@ -83,7 +98,6 @@ SceneInput load_input(const Options& options) {
   input.name = kind == InputKind::built_in ? options.input : std::filesystem::path(options.input).stem().string();
   input.file = kind == InputKind::built_in ? "" : options.input;
   input.scene.name = input.name;
-  check_extent(input.scene);
   input.load_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return input;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// INPUT of the command line, whatever it is: a scene file, a mesh, a volume or the name of a built-in scene.
+// INPUT of the command line, whatever it is: a scene file, a mesh, a volume, a formula (.vm) or the name of a built-in scene.
 
 #include <map>
 #include <optional>
@@ -32,7 +32,7 @@ struct BorderDefaults {
   std::map<std::string, ParameterInput> parameters;
 };
 
-enum class InputKind { scene_file, mesh, level_set, built_in };
+enum class InputKind { scene_file, mesh, level_set, field, built_in };
 
 struct SceneInput {
   InputKind kind = InputKind::scene_file;
@@ -41,6 +41,7 @@ struct SceneInput {
   Scene scene;
   SurfaceDefaults surface;
   std::vector<BorderDefaults> borders;
+  std::vector<std::string> formulas;  ///< The .vm files that a scene file names, as found.
   double load_ms = 0.0;
 };
 

@@ -73,9 +73,10 @@ void add_switch(CLI::App& app, const OptionText& text, bool& target) { app.add_f
 }  // namespace
 
 void add_input(CLI::App& app, Options& options) {
-  app.add_option("INPUT", options.input,
-                 "scene file (.toml), mesh (.obj .ply .stl .off .gltf .glb), volume (.vdb) or built-in scene (limn list scenes). "
-                 "A mesh is drawn as it is; --level, --scheme or crease tags in the file make it a subdivision cage")
+  app.add_option(
+         "INPUT", options.input,
+         "scene file (.toml), mesh (.obj .ply .stl .off .gltf .glb), volume (.vdb), formula (.vm) or built-in scene (limn list scenes). "
+         "A mesh is drawn as it is; --level, --scheme or crease tags in the file make it a subdivision cage")
       ->type_name("")
       ->required();
 }

@@ -110,9 +110,9 @@ using Source = decltype(SceneObject::source);
 
 SceneObject read_object(TomlReader& reader, const SceneReaders& readers, size_t index) {
   int kinds = 0;
-  for (const char* key : {"shape", "csg", "mesh", "vdb"}) kinds += reader.has(key) ? 1 : 0;
+  for (const char* key : {"shape", "csg", "vm", "mesh", "vdb"}) kinds += reader.has(key) ? 1 : 0;
   if (kinds != 1) {
-    reader.fail(kinds == 0 ? "no shape, csg, mesh or vdb" : "more than one of shape, csg, mesh and vdb",
+    reader.fail(kinds == 0 ? "no shape, csg, vm, mesh or vdb" : "more than one of shape, csg, vm, mesh and vdb",
                 "exactly one of them says what the object is");
   }
   std::optional<int> level;
@@ -120,7 +120,7 @@ SceneObject read_object(TomlReader& reader, const SceneReaders& readers, size_t 
   const auto read_source = [&](bool own_color) -> Source {
     if (reader.has("mesh")) return read_mesh(reader, readers, own_color, level);
     if (reader.has("vdb")) return read_volume(reader, readers);
-    return read_field(reader);
+    return read_field(reader, readers.vm);
   };
   // Cheap keys first, so that a slip in them is told before a large file is read.
   const std::string name = reader.text("name").value_or(fmt::format("object {}", index + 1));
@@ -178,9 +178,14 @@ SceneInput parse_scene_file(const std::string& text, const std::filesystem::path
     TomlReader table(*borders[i], file.string(), borders.size() == 1 ? "border." : fmt::format("border[{}].", i));
     input.borders.push_back(read_border(table));
   }
+  SceneReaders noting = readers;
+  noting.vm = [&readers, &input](const std::filesystem::path& vm_file) {
+    input.formulas.push_back(vm_file.string());
+    return readers.vm(vm_file);
+  };
   for (size_t i = 0; i < objects.size(); ++i) {
     TomlReader table(*objects[i], file.string(), fmt::format("object[{}].", i));
-    input.scene.objects.push_back(read_object(table, readers, i));
+    input.scene.objects.push_back(read_object(table, noting, i));
   }
   return input;
 }

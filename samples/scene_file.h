@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "samples/input.h"
+#include "sdf/vm_field.h"
 #include "subdiv/import.h"
 
 namespace limn {
@@ -18,6 +19,7 @@ struct SceneReaders {
   std::function<LevelSet(const std::filesystem::path& file, const std::string& grid)> volume = [](const auto& file, const auto& grid) {
     return read_level_set(file, grid);
   };
+  std::function<Field(const std::filesystem::path& file)> vm = [](const auto& file) { return load_vm(file).field; };
 };
 
 /// The same from text; `file` goes into messages and its folder is where relative paths start.

@@ -161,6 +161,8 @@ const char* kind_name(InputKind kind) {
       return "mesh";
     case InputKind::level_set:
       return "level_set";
+    case InputKind::field:
+      return "field";
     case InputKind::scene_file:
     case InputKind::built_in:
       break;

@@ -107,6 +107,8 @@ std::string content_hash(std::string_view bytes) {
 std::string hash_of_input(const SceneInput& input) {
   std::string text = input.kind == InputKind::built_in ? "built-in " + input.name : "";
   if (input.kind == InputKind::scene_file) text += "scene " + file_hash(input.file);
+  for (const std::string& formula : input.formulas) text += "\nformula " + file_hash(formula);
+  if (input.kind == InputKind::field) text += "field " + file_hash(input.file);
   for (const SceneObject& object : input.scene.objects) {
     if (const auto* mesh = std::get_if<MeshSource>(&object.source))
       text += "\nmesh " + mesh_hash(mesh->mesh) + (mesh->scheme ? name_of(*mesh->scheme) : "") +

@@ -19,6 +19,7 @@ SceneReaders no_files() {
   readers.volume = [](const std::filesystem::path& file, const std::string&) -> LevelSet {
     throw InputError({file.string(), "", "", "no such file", "a volume (.vdb)"});
   };
+  readers.vm = [](const std::filesystem::path& file) -> Field { throw InputError({file.string(), "", "", "no such file", "a .vm file"}); };
   return readers;
 }
 

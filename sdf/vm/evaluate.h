@@ -1,0 +1,95 @@
+#pragma once
+// Internal: runs a list of operations for any number type. Include sdf/vm/number.h's includer first: sdf/field_program.h.
+
+#include "sdf/field_program.h"
+#include "sdf/vm/number.h"
+
+namespace limn::vm {
+
+/// A step over registers rather than values.
+struct RegisterStep {
+  Operation operation = Operation::constant;
+  std::uint32_t target = 0, a = 0, b = 0, c = 0;
+  double constant = 0.0;
+};
+struct RegisterProgram {
+  std::vector<RegisterStep> steps{};
+  std::uint32_t registers = 0;
+  std::uint32_t result = 0;
+};
+/// As few registers as a value's first and last use ask for.
+RegisterProgram with_registers(const Program& program);
+
+/// True where every operation can be recorded (sdf/number_recorded.h) and so run in SIMD lanes.
+bool recordable(const Program& program);
+
+template <class T>
+T one_step(const RegisterStep& step, const T& a, const T& b, const T& c) {
+  switch (step.operation) {
+    case Operation::negate:
+      return -a;
+    case Operation::absolute:
+      return abs(a);
+    case Operation::square:
+      return checked(square(a));
+    case Operation::sine:
+      return checked(sine(a));
+    case Operation::cosine:
+      return checked(cosine(a));
+    case Operation::add_constant:
+      return a + scalar<T>(step.constant);
+    case Operation::multiply_constant:
+      return a * scalar<T>(step.constant);
+    case Operation::add:
+      return checked(a + b);
+    case Operation::subtract:
+      return checked(a - b);
+    case Operation::multiply:
+      return multiplied(a, b);
+    case Operation::minimum:
+      return minimum(a, b);
+    case Operation::maximum:
+      return maximum(a, b);
+    case Operation::norm2:
+      return checked(norm(a, b));
+    case Operation::norm3:
+      return checked(norm(a, b, c));
+    default:
+      if constexpr (std::same_as<T, Recorded>) {
+        return a;
+      } else {
+        return unary_of(step.operation, a);
+      }
+  }
+}
+
+/// The list at `count` points, whose values go to `values`. `scratch` grows once.
+template <class T>
+void run(const RegisterProgram& program, const T* x, const T* y, const T* z, T* values, size_t count, std::vector<T>& scratch) {
+  scratch.resize(std::max(scratch.size(), program.registers * count));
+  const auto at = [&](std::uint32_t index) { return scratch.data() + index * count; };
+  for (const RegisterStep& step : program.steps) {
+    T* const target = at(step.target);
+    switch (step.operation) {
+      case Operation::x:
+        std::copy_n(x, count, target);
+        break;
+      case Operation::y:
+        std::copy_n(y, count, target);
+        break;
+      case Operation::z:
+        std::copy_n(z, count, target);
+        break;
+      case Operation::constant:
+        std::fill_n(target, count, constant<T>(step.constant));
+        break;
+      default: {
+        const T *const a = at(step.a), *const b = at(step.b), *const c = at(step.c);
+        for (size_t i = 0; i < count; ++i) target[i] = one_step(step, a[i], b[i], c[i]);
+      }
+    }
+  }
+  std::copy_n(at(program.result), count, values);
+}
+
+}  // namespace limn::vm

@@ -49,7 +49,7 @@ int finest_level(const Scene& scene, const SurfaceSettings& settings) {
 bool bands_carry(const Scene& scene, const GradientDescriptor& gradient) {
   return std::all_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
     const auto* source = std::get_if<LevelSetSource>(&object.source);
-    return source == nullptr || source->level_set.info().half_width_voxels >= gradient.half_width_voxels;
+    return source == nullptr || cells_lacking(source->level_set, gradient) == 0;
   });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Narrow-band level sets: built and edited with OpenVDB, read through NanoVDB. No OpenVDB type leaves this folder's .cpp files.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -17,11 +18,21 @@ namespace limn {
 
 struct LevelSetData;  // sdf/level_set_data.h
 
+/// What the band holds where it matters: at the cells that the surface crosses, whose eight nodes differ in sign.
+struct BandFacts {
+  std::int64_t crossed_cells = 0;
+  /// By gradient, in the order of gradients(): the crossed cells for which it reads a node outside the band, where there is no distance.
+  std::vector<std::int64_t> lacking{};
+  std::int64_t near_nodes = 0;      ///< Nodes of the band that are within half a voxel of the surface by their own value.
+  std::int64_t unsigned_nodes = 0;  ///< Those of them without a neighbour of the other sign: surface that no change of sign shows.
+};
+
 struct LevelSetInfo {
   std::string name{};              ///< The grid's name.
   Affine world_from_index{};       ///< Voxel (i, j, k) has its node at world_from_index.point(i, j, k).
   double voxel_size = 0.0;         ///< World; the smallest of the three where they differ.
-  double half_width_voxels = 0.0;  ///< Of the band that is really there, inside and outside (the smaller).
+  double half_width_voxels = 0.0;  ///< Of the band that is really there, inside and outside (the smaller), over most of the surface.
+  BandFacts band{};
   std::int64_t active_voxels = 0;
   std::int64_t bytes = 0;  ///< Of the NanoVDB grid that is read.
   Box bounds{};            ///< World, around the zero crossings; empty where there are none.
@@ -40,11 +51,15 @@ class LevelSet {
   std::shared_ptr<const LevelSetData> data_{};
 };
 
+/// The nodes that a gradient reads for points of one cell: bit dz + 2 of [dx + 2][dy + 2] for the node (dx, dy, dz) from the cell's first.
+using Stencil = std::array<std::array<std::uint8_t, 6>, 6>;
+
 /// How a gradient is read from a grid: one file in sdf/gradients/ and one line in sdf/gradients/registry.cpp.
 struct GradientDescriptor {
   Description about{};
   double half_width_voxels;  ///< Of the band it needs around a surface point, so that no stencil leaves the band.
-  int order;                 ///< Of the normal's angle, by voxel size.
+  Stencil stencil;
+  int order;  ///< Of the normal's angle, by voxel size.
   /// Gradients (world, not normalised) at world points within one voxel of the surface; sizes equal.
   void (*gradients)(const LevelSetData&, std::span<const glm::dvec3> points, std::span<glm::dvec3> gradients);
   /// The reconstruction's own values at such points: hits go to its root. Null where it is the trilinear interpolant, whose root they are.
@@ -89,15 +104,21 @@ struct GridSummary {
 /// Guarded: the file is read by a child process with limits on memory and time (sdf/guard.h).
 std::vector<GridSummary> list_grids(const std::filesystem::path& file);
 
-/// `grid` empty: the only level set, or InputError with the names. Reads float, double and half; refuses, saying what would be right:
-/// a fog volume, an empty or uninitialised grid, other value types, frustum transforms, a band below `needed_half_width_voxels`.
-LevelSet read_level_set(const std::filesystem::path& file, const std::string& grid, double needed_half_width_voxels = 0.0);
+/// `grid` empty: the only level set, or InputError with the names. Reads float, double and half; refuses, saying what is expected: a fog
+/// volume, an empty or uninitialised grid, other value types, frustum transforms, a grid without a surface. What is wrong with a band that
+/// is drawn all the same is in the info's warnings.
+LevelSet read_level_set(const std::filesystem::path& file, const std::string& grid);
 
 /// Writes one grid, 32-bit, class "level set", zipped with active-mask compression; whole or not at all.
 void write_level_set(const LevelSet& level_set, const std::filesystem::path& file);
 
-/// Throws InputError where the band is too thin for `gradient`, with the width that would be right.
-void check_half_width(const LevelSet& level_set, const GradientDescriptor& gradient, const std::string& file);
+/// Of the crossed cells, those for which `gradient` reads a node outside the band.
+std::int64_t cells_lacking(const LevelSet& level_set, const GradientDescriptor& gradient);
+
+/// The level set with distances at the nodes outside the band that `gradient` reads, filled in from the surface that the grid holds; the
+/// band's own values stay as they are. What was done is the last of its warnings. Where nothing lacks it is the same level set. Cells that
+/// lack distances even so lie where a band breaks off, so that there is a sign and no surface: they are to take the next lower gradient.
+LevelSet complete_band(const LevelSet& level_set, const GradientDescriptor& gradient);
 
 /// Trilinear value at world points (background outside the band).
 void level_set_values(const LevelSet& level_set, std::span<const glm::dvec3> points, std::span<double> values);

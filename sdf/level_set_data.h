@@ -15,7 +15,7 @@ struct LevelSetData {
   const nanovdb::FloatGrid* grid = nullptr;  ///< Into `handle`; its own transform is not used, the two below are.
   LevelSetInfo info;
   Affine index_from_world;
-  std::int64_t holes = 0;  ///< Cells on the surface with a node outside the band.
+  double per_voxel = 0.0;  ///< By how much values change over a voxel across the surface: its size, where they are distances.
 
   nanovdb::FloatGrid::AccessorType accessor() const { return grid->getAccessor(); }
   /// A gradient by index coordinates, as a gradient by world coordinates.

@@ -72,19 +72,9 @@ void check_blocks(std::span<const LevelSetBlock> blocks, std::span<const VdbTile
   if (!good) refuse(file, "its tree of voxels is not in order", "an undamaged file");
 }
 
-void check_band(const LevelSetData& data, double needed, const fs::path& file) {
+void check_surface(const LevelSetData& data, const fs::path& file) {
   if (data.info.bounds.empty())
     refuse(file, "the grid '" + data.info.name + "' has no surface: its values never change sign", "a level set with an inside");
-  const double there = data.info.half_width_voxels;
-  const double least = std::max(1.8, needed);
-  if (data.holes > 0 || there < least - 1e-3)
-    throw InputError({.file = file.string(),
-                      .field = "grid",
-                      .value = fmt::format("{:.2f} voxels", there),
-                      .problem = data.holes > 0 ? fmt::format("the narrow band of '{}' is torn: {} cells on the surface reach beyond it",
-                                                              data.info.name, data.holes)
-                                                : fmt::format("the narrow band of '{}' is too thin", data.info.name),
-                      .expected = fmt::format("a band of at least {:.2f} voxels on each side", least)});
 }
 
 }  // namespace
@@ -106,15 +96,14 @@ std::vector<GridSummary> grids_from_answer(std::span<const std::byte> bytes, con
   return grids;
 }
 
-LevelSet read_level_set(const fs::path& file, const std::string& grid, double needed_half_width_voxels) {
+LevelSet read_level_set(const fs::path& file, const std::string& grid) {
   const auto started = std::chrono::steady_clock::now();
-  const auto data = level_set_from_answer(ask(file, {"grid", grid}), file, needed_half_width_voxels);
+  const auto data = level_set_from_answer(ask(file, {"grid", grid}), file);
   data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
   return LevelSet(data);
 }
 
-std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> bytes, const fs::path& file,
-                                                    double needed_half_width_voxels) {
+std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> bytes, const fs::path& file) {
   ByteReader answer(bytes, file.string());
   const std::string name = answer.get_text();
   const Affine world_from_index = read_map(answer, file);
@@ -126,7 +115,7 @@ std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> b
   check_blocks(blocks, tiles, file);
 
   std::shared_ptr<LevelSetData> data = rebuild(blocks, tiles, background, world_from_index, name);
-  check_band(*data, needed_half_width_voxels, file);
+  check_surface(*data, file);
   return data;
 }
 

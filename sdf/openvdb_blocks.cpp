@@ -37,9 +37,8 @@ std::shared_ptr<LevelSetData> join_blocks(std::span<const LevelSetBlock> blocks,
     throw InputError({.file = {}, .field = name, .value = {}, .problem = "holds no surface", .expected = "a band with active voxels"});
   openvdb::tools::signedFloodFill(grid->tree());
   auto data = freeze(*grid, {glm::dmat3(voxel_size), origin}, name, half_width_voxels);
-  if (data->holes > 0)
-    data->info.warnings.push_back(std::to_string(data->holes) +
-                                  " cells on the surface reach beyond the band; the surface may have gaps there");
+  if (const std::int64_t torn = cells_lacking(LevelSet(data), find_gradient("cell")); torn > 0)
+    data->info.warnings.push_back(std::to_string(torn) + " cells on the surface reach beyond the band; the surface may have gaps there");
   data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
   return data;
 }

@@ -25,14 +25,13 @@ struct VdbTile {
 std::vector<std::byte> vdb_list_answer(const std::filesystem::path& file);
 
 /// Answer: name, linear part of world_from_index by columns and translation (12 doubles), background (float), blocks, tiles.
-/// Throws InputError, without the name of the file, for all that read_level_set refuses but the width of the band.
+/// Throws InputError, without the name of the file, for all that read_level_set refuses but a grid without a surface.
 std::vector<std::byte> vdb_grid_answer(const std::filesystem::path& file, const std::string& grid);
 
 /// Our side of both answers, of which nothing is taken on trust. Throws InputError, naming `file`, for bytes that are no such answer; the
-/// second also where the band is torn or thinner than `needed_half_width_voxels`.
+/// second also where the values never change sign.
 std::vector<GridSummary> grids_from_answer(std::span<const std::byte> bytes, const std::filesystem::path& file);
-std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> bytes, const std::filesystem::path& file,
-                                                    double needed_half_width_voxels);
+std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> bytes, const std::filesystem::path& file);
 
 /// The tree as it was, from checked parts. Throws what OpenVDB throws.
 std::shared_ptr<LevelSetData> rebuild(std::span<const LevelSetBlock> blocks, std::span<const VdbTile> tiles, float background,

@@ -16,16 +16,21 @@ void look(AuditFacts& facts, std::vector<Finding>& findings) {
   const LevelSetInfo& info = source->level_set.info();
   for (const GradientDescriptor& gradient : gradients()) {
     const std::string& name = gradient.about.name;
-    Finding finding{.check = "band for " + name,
-                    .value = gradient.half_width_voxels,
-                    .message = fmt::format("the gradient {} needs a half width of {:g} voxels: there are {:.2f}", name,
-                                           gradient.half_width_voxels, info.half_width_voxels)};
+    const std::int64_t lacking = cells_lacking(source->level_set, gradient);
+    Finding finding{
+        .check = "band for " + name,
+        .value = static_cast<double>(lacking),
+        .message = fmt::format("the gradient {} needs a half width of {:.2f} voxels, the band has {:.2f}; it lacks distances beside "
+                               "{} of the {} cells that the surface crosses",
+                               name, gradient.half_width_voxels, info.half_width_voxels, lacking, info.band.crossed_cells)};
     const std::string& asked = facts.settings.surface.gradient;
-    if (info.half_width_voxels < gradient.half_width_voxels && (asked.empty() || asked == name)) {
-      finding.severity = asked == name ? Severity::error : Severity::warning;
-      finding.message += ", so that its stencil would read the background as distance; it is refused";
-      finding.remedy = fmt::format("another gradient, or a band {:.2g} voxels wide on each side (vdb_tool -expand)",
-                                   std::ceil(gradient.half_width_voxels));
+    if (lacking > 0) {
+      finding.message += ", which are filled in from the surface in the file";
+      finding.remedy = fmt::format(
+          "nothing needs to be done; a band {:g} voxels wide on each side needs no filling in (width={:g} of "
+          "vdb_tool -mesh2ls)",
+          std::ceil(gradient.half_width_voxels), std::ceil(gradient.half_width_voxels));
+      if (asked == name) finding.severity = Severity::warning;
       finding.surfaces = {"level_set"};
     }
     findings.push_back(std::move(finding));
@@ -34,7 +39,7 @@ void look(AuditFacts& facts, std::vector<Finding>& findings) {
 
 }  // namespace
 
-// Not among the quick ones, which every command runs: where it finds something the volume is refused, in words of its own.
+// Not among the quick ones, which every command runs: drawing the volume fills in what lacks, and says so.
 AuditCheck band_check() {
   return {{"band", "is the narrow band wide enough for the gradient's stencil?", ""}, false, look, true, {"level_set"}};
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "raymarch/level_set/bricks.h"
-#include "raymarch/level_set/crossed_cells.h"
+#include "sdf/crossed_cells.h"
 #include "sdf/level_set_data.h"
 
 namespace limn {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "raymarch/level_set/crossed_cells.h"
+#include "sdf/crossed_cells.h"
 #include "sdf/parallel.h"
 
 namespace limn {

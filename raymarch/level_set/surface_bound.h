@@ -4,7 +4,7 @@
 #include <span>
 
 #include "raymarch/level_set/bricks.h"
-#include "raymarch/level_set/crossed_cells.h"
+#include "sdf/crossed_cells.h"
 
 namespace limn {
 

@@ -16,8 +16,8 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   const GradientDescriptor& gradient = find_gradient(settings.gradient, {}, "--gradient");
   Surface surface;
   if (const LevelSetSource* source = std::get_if<LevelSetSource>(&object.source)) {
-    check_half_width(source->level_set, gradient, source->file);
-    surface = level_set_marcher(source->level_set, object.world_from_object, gradient, render_origin, settings.max_steps);
+    surface = level_set_marcher(complete_band(source->level_set, gradient), object.world_from_object, gradient, render_origin,
+                                settings.max_steps);
     surface.offset = level_set_offset({source->level_set, object.world_from_object, render_origin, settings.max_steps, source->file, {}});
   } else if (const Field* field = std::get_if<Field>(&object.source)) {
     const LevelSetSettings grid{.voxel_size = voxel_size_for(settings, field->traits().bounds),

@@ -165,13 +165,15 @@ std::optional<BrickGradient> brick_gradient(const GradientDescriptor& gradient) 
 }
 
 CurvatureSource curvature_source(const std::shared_ptr<const State>& state) {
-  const double needed = find_gradient("cubic").half_width_voxels, there = state->level_set.info().half_width_voxels;
-  if (there >= needed - 1e-2) return {state, evaluate_curvatures, "Hessian of the cubic spline through the voxels"};
+  const GradientDescriptor& cubic = find_gradient("cubic");
+  const double there = state->level_set.info().half_width_voxels;
+  if (there >= cubic.half_width_voxels - 1e-2 || cells_lacking(state->level_set, cubic) == 0)
+    return {state, evaluate_curvatures, "Hessian of the cubic spline through the voxels"};
   return {{},
           nullptr,
           fmt::format("the band's half width of {:.2f} voxels is too thin for the cubic spline's Hessian: {:.2f} are needed "
                       "(--gradient cubic, or --half-width)",
-                      there, needed)};
+                      there, cubic.half_width_voxels)};
 }
 
 }  // namespace

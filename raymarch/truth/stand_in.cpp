@@ -55,8 +55,7 @@ double edge_px_at(const Scene& scene, const Camera& camera, int level) {
 std::string best_gradient(const LevelSetSource& source) {
   const GradientDescriptor* best = nullptr;
   for (const GradientDescriptor& gradient : gradients()) {
-    if (source.level_set.info().half_width_voxels >= gradient.half_width_voxels && (best == nullptr || gradient.order > best->order))
-      best = &gradient;
+    if (cells_lacking(source.level_set, gradient) == 0 && (best == nullptr || gradient.order > best->order)) best = &gradient;
   }
   return best == nullptr ? "cell" : best->about.name;
 }

@@ -33,6 +33,7 @@ GradientDescriptor cell_gradient() {
                     .help = "gradient of the trilinear interpolant; facets show",
                     .source = "trilinear interpolation; Parker, Shirley, Livnat, Hansen, Sloan 1998"},
           .half_width_voxels = std::sqrt(3.0),
+          .stencil = box_stencil(0, 1, false),
           .order = 1,
           .gradients = gradients_of_cells,
           .values = nullptr,

@@ -75,6 +75,7 @@ GradientDescriptor central_gradient() {
                     .help = "central differences at the nodes, interpolated trilinearly; smooth",
                     .source = "Moeller, Machiraju, Mueller, Yagel 1997"},
           .half_width_voxels = std::sqrt(6.0),
+          .stencil = box_stencil(0, 1, true),
           .order = 2,
           .gradients = gradients_at_nodes,
           .values = values_less_sag,

@@ -105,6 +105,7 @@ GradientDescriptor cubic_gradient() {
                     .help = "prefiltered cubic B-spline; smooth to its curvature, needs a wide band",
                     .source = "quasi-interpolation: Condat, Blu, Unser 2005; B-spline: de Boor 1978"},
           .half_width_voxels = std::sqrt(17.0),
+          .stencil = box_stencil(-1, 2, true),
           .order = 3,
           .gradients = gradients_of_spline,
           .values = values_of_spline,

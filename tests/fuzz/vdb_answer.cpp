@@ -9,7 +9,7 @@ namespace limn {
 namespace {
 
 void use_grid(std::span<const std::byte> bytes) {
-  const LevelSet level_set(level_set_from_answer(bytes, "fuzz.vdb", 0.0));
+  const LevelSet level_set(level_set_from_answer(bytes, "fuzz.vdb"));
   fuzz::require(level_set.info().bounds.finite() && level_set.info().active_voxels > 0, "an accepted level set without a surface");
   const glm::dvec3 center = level_set.info().bounds.center();
   double value = 0.0;

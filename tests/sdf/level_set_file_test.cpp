@@ -30,9 +30,9 @@ class LevelSetFiles : public testing::Test {
     file.close();
     return folder_.path() / name;
   }
-  static std::string refusal(const fs::path& file, const std::string& grid = {}, double width = 0.0) {
+  static std::string refusal(const fs::path& file, const std::string& grid = {}) {
     try {
-      read_level_set(file, grid, width);
+      read_level_set(file, grid);
     } catch (const InputError& error) {
       EXPECT_EQ(error.fault().file, file.string());
       return std::string(error.what()).substr(file.string().size());
@@ -135,9 +135,10 @@ TEST_F(LevelSetFiles, AGridScaledAfterwardsKeepsTheBandItHas) {
   for (const double factor : {0.01, 100.0}) {
     const auto grid = ball();
     grid->setTransform(openvdb::math::Transform::createLinearTransform(0.1 * factor));
-    const LevelSet level_set = read_level_set(write({grid}), "", 2.9);
+    const LevelSet level_set = read_level_set(write({grid}), "");
     EXPECT_NEAR(level_set.info().half_width_voxels, 3.0, 0.1);
-    EXPECT_SAYS(refusal(write({grid}), "", 4.12), "too thin");
+    EXPECT_EQ(cells_lacking(level_set, find_gradient("central")), 0);
+    EXPECT_GT(cells_lacking(level_set, find_gradient("cubic")), 0);
   }
 }
 
@@ -202,12 +203,9 @@ TEST_F(LevelSetFiles, EveryKindOfGridThatIsNoNarrowBandIsRefusedWithWhatWouldBeR
   EXPECT_FALSE(refusal(write({solid})).empty());
 }
 
-TEST_F(LevelSetFiles, ABandTooThinIsRefusedWithTheWidthNeeded) {
-  const fs::path file = write({ball("ball", 3.0f)});
-  EXPECT_NO_THROW(read_level_set(file, "", 3.0));
-  const std::string cubic = refusal(file, "", find_gradient("cubic").half_width_voxels);
-  EXPECT_SAYS(cubic, "too thin (got 3.00 voxels)");
-  EXPECT_SAYS(cubic, "at least 4.12 voxels");
+TEST_F(LevelSetFiles, ABandTooThinIsMeasuredAndFilledIn) {
+  const LevelSet whole = read_level_set(write({ball("ball", 3.0f)}), "");
+  EXPECT_EQ(cells_lacking(whole, find_gradient("central")), 0);
   // Cut to 1.2 voxels while the background still says 3: the nodes tell.
   const auto cut = ball();
   for (auto leaf = cut->tree().beginLeaf(); leaf; ++leaf)
@@ -217,7 +215,12 @@ TEST_F(LevelSetFiles, ABandTooThinIsRefusedWithTheWidthNeeded) {
         value.setValue(side);
         value.setValueOff();
       }
-  EXPECT_SAYS(refusal(write({cut})), "at least 1.80 voxels");
+  const LevelSet thin = read_level_set(write({cut}), "");
+  EXPECT_NEAR(thin.info().half_width_voxels, 1.2, 0.35);
+  EXPECT_GT(cells_lacking(thin, find_gradient("cell")), 0);
+  const LevelSet filled = complete_band(thin, find_gradient("central"));
+  EXPECT_EQ(cells_lacking(filled, find_gradient("central")), 0);
+  EXPECT_SAYS(filled.info().warnings.back(), "filled in from the surface in the file");
 }
 
 TEST_F(LevelSetFiles, FilesOfAnotherToolAreRead) {
@@ -225,7 +228,7 @@ TEST_F(LevelSetFiles, FilesOfAnotherToolAreRead) {
   const fs::path file = folder_.path() / "sphere.vdb";
   const std::string command = "vdb_tool -sphere voxel=0.05 radius=1.0 width=3 -o '" + file.string() + "' > /dev/null 2>&1";
   ASSERT_EQ(std::system(command.c_str()), 0);
-  const LevelSet level_set = read_level_set(file, "", find_gradient("central").half_width_voxels);
+  const LevelSet level_set = read_level_set(file, "");
   EXPECT_NEAR(level_set.info().voxel_size, 0.05, 1e-7);
   EXPECT_NEAR(level_set.info().half_width_voxels, 3.0, 1e-3);
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,5 @@
 #pragma once
-// Internal: which of a brick's 8^3 cells the surface crosses.
+// Which cells of a block of 8^3 the surface crosses.
 
 #include <bit>
 #include <cstdint>

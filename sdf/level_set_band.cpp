@@ -1,0 +1,339 @@
+#include "sdf/level_set_band.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "sdf/error.h"
+#include "sdf/parallel.h"
+
+namespace limn {
+namespace {
+
+// The widths of the band are counted in steps of a 256th of the background, up to twice that.
+constexpr size_t kWidthSteps = 512;
+constexpr double kSlopeUnits = 1 << 20;
+constexpr size_t kMostGradients = 8;
+
+/// What one pass over the leaves finds out; whole numbers, minima and maxima, so that the order of the leaves does not matter.
+struct Counts {
+  std::int64_t active = 0;
+  Box crossings{};
+  std::array<std::array<std::uint32_t, kWidthSteps>, 2> widths{};  ///< At the band's edges: outside, inside.
+  double largest = 0.0;
+  /// Slopes per voxel at the surface, in 2^-20 of the background: where all that they are taken from is in the band, and elsewhere.
+  std::array<std::int64_t, 2> slope_sum{}, slope_count{};
+  std::int64_t crossed_cells = 0;
+  std::array<std::int64_t, kMostGradients> lacking{};
+  std::int64_t near_nodes = 0, unsigned_nodes = 0;
+
+  void join(const Counts& other) {
+    active += other.active;
+    crossings = merge(crossings, other.crossings);
+    for (size_t side = 0; side < 2; ++side)
+      for (size_t k = 0; k < kWidthSteps; ++k) widths[side][k] += other.widths[side][k];
+    largest = std::max(largest, other.largest);
+    for (size_t k = 0; k < 2; ++k) {
+      slope_sum[k] += other.slope_sum[k];
+      slope_count[k] += other.slope_count[k];
+    }
+    crossed_cells += other.crossed_cells;
+    for (size_t k = 0; k < kMostGradients; ++k) lacking[k] += other.lacking[k];
+    near_nodes += other.near_nodes;
+    unsigned_nodes += other.unsigned_nodes;
+  }
+};
+
+/// A block as the pass sees it.
+struct Block {
+  NodeWindow nodes;
+  ActiveRows active;
+
+  float value(const glm::ivec3& p) const {
+    return nodes[static_cast<size_t>(p.x + 1)][static_cast<size_t>(p.y + 1)][static_cast<size_t>(p.z + 1)];
+  }
+  bool in_band(const glm::ivec3& p) const {
+    return (active[static_cast<size_t>(p.x + 2)][static_cast<size_t>(p.y + 2)] >> (p.z + 2) & 1u) != 0;
+  }
+};
+
+glm::ivec3 step_along(int axis) {
+  glm::ivec3 step(0);
+  step[axis] = 1;
+  return step;
+}
+
+struct Slope {
+  double value = 0.0;
+  bool in_band = true;
+};
+
+Slope slope_at(const Block& block, const glm::ivec3& here, double background) {
+  double squared = 0.0;
+  Slope slope;
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::ivec3 step = step_along(axis);
+    slope.in_band = slope.in_band && block.in_band(here + step) && block.in_band(here - step);
+    const double difference = 0.5 * (static_cast<double>(block.value(here + step)) - static_cast<double>(block.value(here - step)));
+    squared += difference * difference;
+  }
+  slope.value = kSlopeUnits * std::min(1000.0, std::sqrt(squared) / background);
+  return slope;
+}
+
+void count_crossings(const Block& block, const glm::ivec3& here, const glm::dvec3& node, double background, Counts& found) {
+  const double a = static_cast<double>(block.value(here));
+  for (int axis = 0; axis < 3; ++axis) {
+    const double b = static_cast<double>(block.value(here + step_along(axis)));
+    if ((a < 0.0) == (b < 0.0)) continue;
+    glm::dvec3 crossing = node;
+    crossing[axis] += a / (a - b);
+    found.crossings = include(found.crossings, crossing);
+    const Slope slope = slope_at(block, here, background);
+    const size_t kind = slope.in_band ? 0 : 1;
+    found.slope_sum[kind] += static_cast<std::int64_t>(slope.value);
+    ++found.slope_count[kind];
+  }
+}
+
+/// The distance at a node outside the band next to one in it, carried on from inside: the width that the band really has there.
+double width_beyond(const Block& block, const glm::ivec3& inner, const glm::ivec3& step) {
+  const double value = std::abs(static_cast<double>(block.value(inner)));
+  if (!block.in_band(inner - step)) return value;
+  return std::max(value, 2.0 * value - std::abs(static_cast<double>(block.value(inner - step))));
+}
+
+void count_widths(const Block& block, const glm::ivec3& here, double background, Counts& found) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const glm::ivec3& step : {step_along(axis), -step_along(axis)}) {
+      if (block.in_band(here + step)) continue;
+      const double width = width_beyond(block, here, step) / background;
+      const auto bin = static_cast<size_t>(std::min(width * kWidthSteps / 2, static_cast<double>(kWidthSteps - 1)));
+      ++found.widths[block.value(here) < 0.0f ? 1 : 0][bin];
+    }
+  }
+}
+
+/// Nodes half a voxel and less from the surface have a neighbour beyond it, as its normal has a component of 0.577 at least.
+void count_near(const Block& block, const glm::ivec3& here, Counts& found) {
+  const float value = block.value(here);
+  float largest = 0.0f;
+  bool beyond = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const glm::ivec3& step : {step_along(axis), -step_along(axis)}) {
+      const float other = block.value(here + step);
+      beyond = beyond || (other < 0.0f) != (value < 0.0f);
+      if (block.in_band(here + step)) largest = std::max(largest, std::abs(other - value));
+    }
+  }
+  if (!(std::abs(value) < 0.5f * largest)) return;
+  ++found.near_nodes;
+  found.unsigned_nodes += beyond ? 0 : 1;
+}
+
+/// Bits 2..9 of a row stand for the block's own nodes.
+std::uint32_t at_edge_of_band(const ActiveRows& active, size_t x, size_t y) {
+  const std::uint32_t all =
+      active[x][y] & active[x - 1][y] & active[x + 1][y] & active[x][y - 1] & active[x][y + 1] & active[x][y] << 1 & active[x][y] >> 1;
+  return active[x][y] & ~all;
+}
+
+/// Nodes whose neighbour behind along an axis has the other sign.
+std::uint32_t before_crossing(const NodeWindow& nodes, size_t x, size_t y) {
+  std::uint32_t bits = 0;
+  for (size_t z = 1; z < 9; ++z) {
+    const bool inside = nodes[x][y][z] < 0.0f;
+    const bool changes =
+        (nodes[x + 1][y][z] < 0.0f) != inside || (nodes[x][y + 1][z] < 0.0f) != inside || (nodes[x][y][z + 1] < 0.0f) != inside;
+    bits |= (changes ? 1u : 0u) << (z - 1);
+  }
+  return bits;
+}
+
+void count_nodes(const Block& block, const glm::dvec3& origin, double background, Counts& found) {
+  for (size_t x = 0; x < 8; ++x)
+    for (size_t y = 0; y < 8; ++y) {
+      const std::uint32_t active = block.active[x + 2][y + 2] >> 2 & 0xffu;
+      const std::uint32_t edge = at_edge_of_band(block.active, x + 2, y + 2) >> 2 & 0xffu;
+      const auto place = [&](std::uint32_t bits) { return glm::ivec3(x, y, std::countr_zero(bits)); };
+      for (std::uint32_t bits = before_crossing(block.nodes, x + 1, y + 1); bits != 0; bits &= bits - 1)
+        count_crossings(block, place(bits), origin + glm::dvec3(place(bits)), background, found);
+      for (std::uint32_t bits = edge; bits != 0; bits &= bits - 1) count_widths(block, place(bits), background, found);
+      found.active += std::popcount(active);
+      for (std::uint32_t bits = active; bits != 0; bits &= bits - 1) {
+        const double size = std::abs(static_cast<double>(block.value(place(bits))));
+        found.largest = std::max(found.largest, size);
+        if (size < 0.5 * background) count_near(block, place(bits), found);
+      }
+    }
+}
+
+std::int64_t count_of(const CrossedCells& cells) {
+  std::int64_t count = 0;
+  for (const auto& row : cells.cells)
+    for (const std::uint8_t bits : row) count += std::popcount(bits);
+  return count;
+}
+
+void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, double background, Counts& found) {
+  const LeafWindow window(accessor, origin);
+  Block block;
+  load_nodes(window, block.nodes);
+  block.active = active_rows(window);
+  count_nodes(block, glm::dvec3(origin[0], origin[1], origin[2]), background, found);
+  const CrossedCells crossed = cells_crossed(block.nodes);
+  if (!crossed.any) return;
+  found.crossed_cells += count_of(crossed);
+  size_t k = 0;
+  for (const GradientDescriptor& gradient : gradients())
+    found.lacking[k++] += count_of(cells_outside(crossed, block.active, gradient.stencil));
+}
+
+Counts count_blocks(const nanovdb::FloatGrid& grid) {
+  const std::vector<nanovdb::Coord> blocks = blocks_with_cells(grid);
+  const double background = std::abs(static_cast<double>(grid.tree().background()));
+  return parallel_reduce(
+      blocks.size(), size_t{64}, Counts{},
+      [&](const IndexRange<size_t>& range, Counts found) {
+        const NanoAccessor accessor = grid.getAccessor();
+        for (size_t i = range.begin(); i < range.end(); ++i) count_block(accessor, blocks[i], background, found);
+        return found;
+      },
+      [](Counts a, const Counts& b) {
+        a.join(b);
+        return a;
+      });
+}
+
+/// The width that the band has at half of its edge, in units of the background; infinite where it has no edge on that side. One node at a
+/// medial axis, where the distance turns before it is as large as the width, tells nothing about the others.
+double usual_width(const std::array<std::uint32_t, kWidthSteps>& widths) {
+  std::int64_t all = 0, so_far = 0;
+  for (const std::uint32_t count : widths) all += count;
+  if (all == 0) return std::numeric_limits<double>::infinity();
+  size_t bin = 0;
+  while (so_far + widths[bin] <= all / 2) so_far += widths[bin++];
+  return (static_cast<double>(bin) + 0.5) * 2.0 / kWidthSteps;
+}
+
+/// Grids that were scaled after they were made, or that hold no true distances, are measured by their own slope at the surface; a slope
+/// within a tenth of the voxel size is the voxel size.
+double change_per_voxel(const Counts& found, double background, double voxel_size) {
+  const size_t kind = found.slope_count[0] > 0 ? 0 : 1;
+  const double counted = static_cast<double>(std::max<std::int64_t>(found.slope_count[kind], 1));
+  const double slope = static_cast<double>(found.slope_sum[kind]) / counted / kSlopeUnits * background;
+  return slope > 0.0 && std::abs(slope / voxel_size - 1.0) > 0.1 ? slope : voxel_size;
+}
+
+/// What the grid says of itself (its background) holds unless the values at the band's edge say otherwise by half a voxel.
+double measured_width(const Counts& found, double background, double per_voxel) {
+  const double seen = background * std::min(usual_width(found.widths[0]), usual_width(found.widths[1]));
+  const double measured = (std::isfinite(seen) ? seen : found.largest) / per_voxel;
+  const double said = background / per_voxel;
+  return measured > said - 0.5 ? said : measured;
+}
+
+/// True where the leaf has a node of the other sign among those that the block `side` steps before it reaches (bits: x, y, z).
+bool changes_sign(const NanoLeaf& leaf, int side, bool inside) {
+  const int dx = side & 1, dy = (side >> 1) & 1, dz = side >> 2;
+  const float* const values = leaf.data()->mValues;
+  for (int x = 0; x < (dx ? 1 : 8); ++x)
+    for (int y = 0; y < (dy ? 1 : 8); ++y)
+      for (int z = 0; z < (dz ? 1 : 8); ++z)
+        if ((values[x * 64 + y * 8 + z] < 0.0f) != inside) return true;
+  return false;
+}
+
+}  // namespace
+
+std::vector<nanovdb::Coord> blocks_with_cells(const nanovdb::FloatGrid& grid) {
+  const std::uint32_t count = grid.tree().nodeCount(0);
+  const NanoLeaf* leaves = grid.tree().getFirstNode<0>();
+  const NanoAccessor accessor = grid.getAccessor();
+  std::vector<nanovdb::Coord> blocks, before;
+  blocks.reserve(count + count / 8);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const nanovdb::Coord o = leaves[i].origin();
+    blocks.push_back(o);
+    for (int side = 1; side < 8; ++side) {
+      const nanovdb::Coord at = o.offsetBy(-8 * (side & 1), -8 * ((side >> 1) & 1), -8 * (side >> 2));
+      if (!accessor.probeLeaf(at) && changes_sign(leaves[i], side, accessor.getValue(at) < 0.0f)) before.push_back(at);
+    }
+  }
+  std::sort(before.begin(), before.end());
+  before.erase(std::unique(before.begin(), before.end()), before.end());
+  blocks.insert(blocks.end(), before.begin(), before.end());
+  return blocks;
+}
+
+ActiveRows active_rows(const LeafWindow& window) {
+  ActiveRows rows;
+  for (int x = -2; x <= 10; ++x)
+    for (int y = -2; y <= 10; ++y) rows[static_cast<size_t>(x + 2)][static_cast<size_t>(y + 2)] = window.active_row(x, y);
+  return rows;
+}
+
+void load_nodes(const LeafWindow& window, NodeWindow& nodes) {
+  for (int x = -1; x <= 8; ++x)
+    for (int y = -1; y <= 8; ++y) window.load_row(x, y, nodes[static_cast<size_t>(x + 1)][static_cast<size_t>(y + 1)].data());
+}
+
+CrossedCells cells_crossed(const NodeWindow& nodes) {
+  return crossed_cells([&](int x, int y) { return &nodes[static_cast<size_t>(x + 1)][static_cast<size_t>(y + 1)][1]; });
+}
+
+CrossedCells cells_outside(const CrossedCells& crossed, const ActiveRows& rows, const Stencil& stencil) {
+  // For each kind of row in the stencil: bit z is set where the row of the cell z reads a node outside the band.
+  std::array<std::uint8_t, 36> kinds;
+  std::array<std::array<std::array<std::uint8_t, 13>, 13>, 4> outside;
+  size_t count = 0;
+  std::array<std::array<size_t, 6>, 6> kind_of{};
+  for (size_t dx = 0; dx < 6; ++dx)
+    for (size_t dy = 0; dy < 6; ++dy) {
+      const std::uint8_t mask = stencil[dx][dy];
+      const size_t known =
+          static_cast<size_t>(std::find(kinds.begin(), kinds.begin() + static_cast<std::ptrdiff_t>(count), mask) - kinds.begin());
+      kind_of[dx][dy] = known;
+      if (known < count) continue;
+      LIMN_CHECK(count < outside.size());
+      kinds[count] = mask;
+      for (size_t x = 0; x < 13; ++x)
+        for (size_t y = 0; y < 13; ++y) {
+          const std::uint32_t missing = ~rows[x][y] & 0x1fffu;
+          std::uint32_t bits = 0;
+          for (int dz = 0; dz < 6; ++dz) bits |= (mask >> dz & 1) ? missing >> dz : 0u;
+          outside[count][x][y] = static_cast<std::uint8_t>(bits & 0xffu);
+        }
+      ++count;
+    }
+  CrossedCells result;
+  for (size_t x = 0; x < 8; ++x)
+    for (size_t y = 0; y < 8; ++y) {
+      if (crossed.cells[x][y] == 0) continue;
+      std::uint8_t bits = 0;
+      for (size_t dx = 0; dx < 6; ++dx)
+        for (size_t dy = 0; dy < 6; ++dy) bits = static_cast<std::uint8_t>(bits | outside[kind_of[dx][dy]][x + dx][y + dy]);
+      result.cells[x][y] = static_cast<std::uint8_t>(bits & crossed.cells[x][y]);
+      result.any = result.any || result.cells[x][y] != 0;
+    }
+  return result;
+}
+
+BandSurvey survey_band(const nanovdb::FloatGrid& grid, double voxel_size) {
+  LIMN_CHECK(gradients().size() <= kMostGradients);
+  const Counts found = count_blocks(grid);
+  const double background = std::abs(static_cast<double>(grid.tree().background()));
+  BandSurvey survey;
+  survey.active = found.active;
+  survey.crossings = found.crossings;
+  survey.per_voxel = change_per_voxel(found, background, voxel_size);
+  survey.half_width_voxels = measured_width(found, background, survey.per_voxel);
+  survey.facts.crossed_cells = found.crossed_cells;
+  survey.facts.lacking.assign(found.lacking.begin(), found.lacking.begin() + static_cast<std::ptrdiff_t>(gradients().size()));
+  survey.facts.near_nodes = found.near_nodes;
+  survey.facts.unsigned_nodes = found.unsigned_nodes;
+  return survey;
+}
+
+}  // namespace limn

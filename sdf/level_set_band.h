@@ -1,0 +1,36 @@
+#pragma once
+// Internal: one pass over a level set's leaves that tells where the surface is, how wide the band is and what it lacks.
+
+#include "sdf/crossed_cells.h"
+#include "sdf/leaf_window.h"
+
+namespace limn {
+
+struct BandSurvey {
+  std::int64_t active = 0;
+  Box crossings{};  ///< Index coordinates.
+  double half_width_voxels = 0.0;
+  double per_voxel = 0.0;  ///< By how much the values change over a voxel, straight across the surface.
+  BandFacts facts{};
+};
+
+/// `voxel_size`: by how much a distance's values change over a voxel.
+BandSurvey survey_band(const nanovdb::FloatGrid& grid, double voxel_size);
+
+/// Where cells that the surface crosses may start: the leaves, and the blocks of tiles before them whose last cells have nodes in a leaf of
+/// another sign. In the order of the leaves, each once.
+std::vector<nanovdb::Coord> blocks_with_cells(const nanovdb::FloatGrid& grid);
+
+/// Which nodes about a block are in the band: [x + 2][y + 2], bit z + 2, each from -2 to 10.
+using ActiveRows = std::array<std::array<std::uint32_t, 13>, 13>;
+ActiveRows active_rows(const LeafWindow& window);
+
+/// The values at a block's nodes and one layer about them: [x + 1][y + 1][z + 1].
+using NodeWindow = std::array<std::array<std::array<float, 10>, 10>, 10>;
+void load_nodes(const LeafWindow& window, NodeWindow& nodes);
+
+CrossedCells cells_crossed(const NodeWindow& nodes);
+/// Those of the crossed cells whose stencil reads a node outside the band.
+CrossedCells cells_outside(const CrossedCells& crossed, const ActiveRows& rows, const Stencil& stencil);
+
+}  // namespace limn

@@ -1,0 +1,179 @@
+// Which stencils find distances, and what is filled in where they do not.
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdio>
+#include <set>
+
+#include "sdf/level_set_band.h"
+#include "sdf/level_set_data.h"
+#include "tests/sdf/level_set_maker.h"
+
+namespace limn {
+namespace {
+
+using testing_tools::brute_force_level_set;
+using Distance = std::function<double(const glm::dvec3&)>;
+
+bool reads(const Stencil& stencil, const glm::ivec3& node) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (node[axis] < -2 || node[axis] > 3) return false;
+  return (stencil[static_cast<size_t>(node.x + 2)][static_cast<size_t>(node.y + 2)] >> (node.z + 2) & 1) != 0;
+}
+
+/// True where the gradient or the value that it has in the cell at (0, 0, 0) differs between two level sets.
+bool differs(const GradientDescriptor& gradient, const LevelSet& a, const LevelSet& b) {
+  for (const glm::dvec3 p : {glm::dvec3(0.3, 0.4, 0.6), glm::dvec3(0.9, 0.2, 0.7)}) {
+    std::array<glm::dvec3, 2> slope;
+    std::array<double, 2> value{};
+    for (const size_t k : {size_t{0}, size_t{1}}) {
+      const LevelSetData& data = (k == 0 ? a : b).data();
+      gradient.gradients(data, std::span(&p, 1), std::span(&slope[k], 1));
+      if (gradient.values) gradient.values(data, std::span(&p, 1), std::span(&value[k], 1));
+    }
+    if (slope[0] != slope[1] || value[0] != value[1]) return true;
+  }
+  return false;
+}
+
+TEST(LevelSetBand, StencilsNameTheNodesThatGradientsRead) {
+  const auto made = [](const glm::ivec3& node) {
+    return brute_force_level_set([&](const glm::dvec3& p) { return glm::distance(p, glm::dvec3(node)) < 0.5 ? 2.0 : 0.125; }, {-1, -1, -1},
+                                 {1, 1, 1}, 1.0, 3.0, true);
+  };
+  const LevelSet flat = made(glm::ivec3(100));
+  for (int k = 0; k < 512; ++k) {
+    const glm::ivec3 node(k / 64 - 3, k / 8 % 8 - 3, k % 8 - 3);
+    const LevelSet raised = made(node);
+    for (const GradientDescriptor& gradient : gradients())
+      EXPECT_EQ(reads(gradient.stencil, node), differs(gradient, raised, flat))
+          << gradient.about.name << " " << node.x << " " << node.y << " " << node.z;
+  }
+}
+
+/// Blocks of noise of either sign, nodes in the band by chance.
+LevelSet random_level_set(std::uint64_t seed, double share_active) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<float> value(-1.0f, 1.0f);
+  std::bernoulli_distribution active(share_active);
+  std::vector<LevelSetBlock> blocks;
+  for (int k = 0; k < 27; ++k) {
+    LevelSetBlock& block = blocks.emplace_back();
+    block = {};
+    block.origin = 8 * glm::ivec3(k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1);
+    for (int n = 0; n < 512; ++n) {
+      const glm::ivec3 node = block.origin + glm::ivec3(n >> 6, (n >> 3) & 7, n & 7);
+      const bool hull = std::min({node.x, node.y, node.z}) == -8 || std::max({node.x, node.y, node.z}) == 15;
+      // Positive all round, so that no sign runs out into the tiles.
+      block.values[n] = hull ? 1.0f : value(random) + 0.4f * static_cast<float>((n >> 6) - 3);
+      if (hull || active(random)) block.active[n >> 6] |= std::uint64_t{1} << (n & 63);
+    }
+  }
+  return level_set_from_blocks(blocks, 1.0, 3.0, "noise");
+}
+
+TEST(LevelSetBand, CellsThatLackDistancesAreCountedAsByBruteForce) {
+  const std::uint64_t seed = std::random_device{}();
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  for (std::uint64_t k = 0; k < 6; ++k) {
+    const LevelSet level_set = random_level_set(seed + k, k % 2 == 0 ? 0.5 : 0.995);
+    const auto accessor = level_set.data().accessor();
+    std::int64_t crossed = 0;
+    std::vector<std::int64_t> lacking(gradients().size(), 0);
+    for (int x = -20; x < 20; ++x)
+      for (int y = -20; y < 20; ++y)
+        for (int z = -20; z < 20; ++z) {
+          const nanovdb::Coord cell(x, y, z);
+          const std::array<double, 8> v = cell_values(accessor, cell);
+          const auto negative = std::count_if(v.begin(), v.end(), [](double f) { return f < 0.0; });
+          if (negative == 0 || negative == 8) continue;
+          ++crossed;
+          size_t g = 0;
+          for (const GradientDescriptor& gradient : gradients()) {
+            bool outside = false;
+            for (int dx = -2; dx <= 3; ++dx)
+              for (int dy = -2; dy <= 3; ++dy)
+                for (int dz = -2; dz <= 3; ++dz)
+                  outside = outside || (reads(gradient.stencil, {dx, dy, dz}) && !accessor.isActive(cell.offsetBy(dx, dy, dz)));
+            lacking[g++] += outside ? 1 : 0;
+          }
+        }
+    EXPECT_GT(crossed, 500);
+    EXPECT_EQ(level_set.info().band.crossed_cells, crossed);
+    EXPECT_EQ(level_set.info().band.lacking, lacking);
+  }
+}
+
+struct Shape {
+  const char* name;
+  Distance distance;  ///< Exact.
+  double worst;       ///< What filled-in distances may be off by, voxels, for a band of 2 voxels and more.
+};
+
+// Exact distances, with the places that are hard: strong curvature, edges, a knife edge, a medial axis within the band.
+std::vector<Shape> shapes() {
+  const auto ball = [](const glm::dvec3& p, const glm::dvec3& center, double radius) { return glm::distance(p, center) - radius; };
+  return {
+      {"ball", [=](const glm::dvec3& p) { return ball(p, glm::dvec3(0.3, 0.1, 0.2), 13.0); }, 0.1},
+      {"torus", [](const glm::dvec3& p) { return glm::length(glm::dvec2(glm::length(glm::dvec2(p.x, p.y)) - 9.0, p.z)) - 4.6; }, 0.1},
+      {"box",
+       [](const glm::dvec3& p) {
+         const glm::dvec3 q = glm::abs(p) - glm::dvec3(9.3, 8.7, 7.4);
+         return glm::length(glm::max(q, glm::dvec3(0.0))) + std::min(std::max({q.x, q.y, q.z}), 0.0);
+       },
+       0.25},
+      {"two balls a gap of 4.2 apart",
+       [=](const glm::dvec3& p) { return std::min(ball(p, glm::dvec3(-9.1, 0.0, 0.0), 7.0), ball(p, glm::dvec3(9.1, 0.3, 0.0), 7.0)); },
+       0.12},
+      {"a wall of 4.2", [](const glm::dvec3& p) { return std::max(std::abs(p.x + 0.3 * p.y) / std::hypot(1.0, 0.3) - 2.1, -40.0); }, 0.05}};
+}
+
+LevelSet sampled(const Shape& shape, double half_width) {
+  return brute_force_level_set(shape.distance, {-3, -3, -3}, {3, 3, 3}, 1.0, half_width);
+}
+
+bool well_within(const nanovdb::Coord& at) { return std::max({std::abs(at[0]), std::abs(at[1]), std::abs(at[2])}) < 18; }
+
+TEST(LevelSetFill, FilledInDistancesAreThoseOfTheShapeAndTheBandsOwnStay) {
+  for (const Shape& shape : shapes())
+    for (const double half_width : {2.0, 2.5, 3.0}) {
+      const LevelSet thin = sampled(shape, half_width);
+      const GradientDescriptor& cubic = find_gradient("cubic");
+      ASSERT_GT(cells_lacking(thin, cubic), 0) << shape.name;
+      const LevelSet filled = complete_band(thin, cubic);
+      const auto before = thin.data().accessor(), after = filled.data().accessor();
+      double worst = 0.0, sum = 0.0;
+      std::int64_t count = 0;
+      for (int x = -30; x < 30; ++x)
+        for (int y = -30; y < 30; ++y)
+          for (int z = -30; z < 30; ++z) {
+            const nanovdb::Coord at(x, y, z);
+            ASSERT_EQ(before.getValue(at) < 0.0f, after.getValue(at) < 0.0f) << "no sign changes";
+            if (before.isActive(at)) {
+              ASSERT_TRUE(after.isActive(at));
+              ASSERT_EQ(before.getValue(at), after.getValue(at)) << "the band's own distances stay";
+            } else if (after.isActive(at) && well_within(at)) {
+              const double error = std::abs(static_cast<double>(after.getValue(at)) - shape.distance(glm::dvec3(x, y, z)));
+              worst = std::max(worst, error);
+              sum += error;
+              ++count;
+            }
+          }
+      ASSERT_GT(count, 100) << shape.name;
+      std::printf("%s, half width %.1f: %lld filled in, worst %.4f, mean %.5f voxels\n", shape.name, half_width,
+                  static_cast<long long>(count), worst, sum / static_cast<double>(count));
+      EXPECT_LT(worst, shape.worst) << shape.name << " " << half_width;
+    }
+}
+
+TEST(LevelSetFill, ABandThatIsWideEnoughIsLeftAlone) {
+  const LevelSet wide = sampled(shapes().front(), 4.2);
+  for (const GradientDescriptor& gradient : gradients()) {
+    EXPECT_EQ(cells_lacking(wide, gradient), 0);
+    EXPECT_EQ(&complete_band(wide, gradient).data(), &wide.data());
+  }
+}
+
+}  // namespace
+}  // namespace limn

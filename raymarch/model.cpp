@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "raymarch/scene_extent.h"
 #include "raymarch/surface.h"
 #include "sdf/error.h"
 
@@ -31,6 +32,7 @@ Surface build_surface(const SceneObject& object, const SurfaceSettings& settings
 }  // namespace
 
 SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, ObjectMeshCache* cache) {
+  check_extent(scene);
   SceneModel model;
   if (cache) cache->kept.resize(scene.objects.size());
   model.bounds = bounds(scene);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "raymarch/scene_extent.h"
 #include "samples/scene_file.h"
 #include "samples/scenes/scenes.h"
 #include "sdf/error.h"
@@ -98,6 +99,7 @@ SceneInput load_input(const Options& options) {
   input.name = kind == InputKind::built_in ? options.input : std::filesystem::path(options.input).stem().string();
   input.file = kind == InputKind::built_in ? "" : options.input;
   input.scene.name = input.name;
+  check_extent(input.scene);
   input.load_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return input;
 }

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/open_sheet.h"
 #include "raymarch/truth/limit_curves.h"
 #include "raymarch/truth/shares.h"
 #include "raymarch/truth/stand_in.h"
+#include "subdiv/orientation.h"
 
 namespace limn {
 namespace {
@@ -25,9 +27,27 @@ struct CageScene {
   int silhouettes = 0, level_curves = 0;
 };
 
-/// The cage about its own middle, so that nothing is lost far from the origin.
-void trace_object(const SceneObject& object, int index, const Camera& camera, const glm::dvec3& origin, const TruthSettings& settings,
-                  CageScene& out) {
+/// The curves of one object's cage, placed; `front`: silhouettes too.
+void trace_side(const PlacedLimitSurface& placed, bool front, int index, const Camera& camera, const TruthSettings& settings,
+                CageScene& out) {
+  double cell_px = 0.0;
+  const LimitGrid grid = sample_grid(placed, camera, kCell_px, kMostTriangles, cell_px);
+  out.cell_px = std::max(out.cell_px, cell_px);
+  if (front) out.invalid_patches += grid.invalid_patches;
+  const auto trace = [&](CurveKind kind, double threshold, int& closed) {
+    for (TracedCurve& curve : trace_limit_curves(placed, grid, camera, {kind, threshold, 0.5 * settings.tolerance_px, index})) {
+      closed += curve.closed;
+      out.curves.push_back(std::move(curve));
+    }
+  };
+  if (front) trace(CurveKind::silhouette, 0.0, out.silhouettes);
+  if (settings.threshold > 0.0) trace(CurveKind::inner, settings.threshold, out.level_curves);
+}
+
+/// The cage about its own middle, so that nothing is lost far from the origin. `turned`: an open sheet whose normals are turned towards the
+/// eye (raymarch/open_sheet.h), so that its back has level curves too.
+void trace_object(const SceneObject& object, int index, bool turned, const Camera& camera, const glm::dvec3& origin,
+                  const TruthSettings& settings, CageScene& out) {
   const auto& source = std::get<MeshSource>(object.source);
   Mesh cage = source.mesh;
   const glm::dvec3 center = bounds(cage).center();
@@ -35,19 +55,11 @@ void trace_object(const SceneObject& object, int index, const Camera& camera, co
   Affine solver_from_cage = object.world_from_object;
   solver_from_cage.translation += solver_from_cage.linear * center - origin;
   const LimitSurface surface(cage, *source.scheme, source.file);
-  const PlacedLimitSurface placed = place(surface, solver_from_cage);
-  double cell_px = 0.0;
-  const LimitGrid grid = sample_grid(placed, camera, kCell_px, kMostTriangles, cell_px);
-  out.cell_px = std::max(out.cell_px, cell_px);
-  out.invalid_patches += grid.invalid_patches;
-  const auto trace = [&](CurveKind kind, double threshold, int& closed) {
-    for (TracedCurve& curve : trace_limit_curves(placed, grid, camera, {kind, threshold, 0.5 * settings.tolerance_px, index})) {
-      closed += curve.closed;
-      out.curves.push_back(std::move(curve));
-    }
-  };
-  trace(CurveKind::silhouette, 0.0, out.silhouettes);
-  if (settings.threshold > 0.0) trace(CurveKind::inner, settings.threshold, out.level_curves);
+  trace_side(place(surface, solver_from_cage), true, index, camera, settings, out);
+  if (!turned) return;
+  turn_faces(cage);
+  const LimitSurface back(cage, *source.scheme, source.file);
+  trace_side(place(back, solver_from_cage), false, index, camera, settings, out);
 }
 
 /// One ray from a lifted point to the eye.
@@ -77,7 +89,9 @@ TruthShare trace_cages(const Scene& scene, const std::vector<size_t>& objects, c
   CageScene traced;
   for (const size_t i : objects) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
-    trace_object(scene.objects[i], static_cast<int>(i) + 1, settings.camera, settings.origin, settings.truth, traced);
+    const Surface& shown = stand_in->model.surfaces[i];
+    const bool turned = shown.open_sheet && shown.open_sheet->shows_back(shown, settings.camera);
+    trace_object(scene.objects[i], static_cast<int>(i) + 1, turned, settings.camera, settings.origin, settings.truth, traced);
   }
   TruthShare share;
   share.objects = objects;

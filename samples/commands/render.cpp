@@ -13,6 +13,7 @@
 #include "samples/limits.h"
 #include "samples/output.h"
 #include "samples/plan/job.h"
+#include "samples/scene_facts.h"
 #include "samples/threads.h"
 #include "samples/warnings.h"
 #include "sdf/error.h"
@@ -139,12 +140,27 @@ std::vector<Camera> cameras_of(const Options& options, const SceneInput& input) 
   return cameras;
 }
 
+/// By which rules cages were subdivided: nobody need have said.
+std::vector<std::string> scheme_lines(const Scene& scene, const SurfaceSettings& settings) {
+  std::vector<std::string> lines;
+  for (const SceneObject& object : scene.objects) {
+    const auto scheme = cage_scheme(object, settings);
+    if (scheme)
+      lines.push_back(
+          fmt::format("'{}' is subdivided by {}, level {}", object.name, name_of(*scheme), object.level.value_or(settings.level)));
+  }
+  return lines;
+}
+
 void report(const Options& options, const Render& render, const SurfaceInfo& info) {
   const Timings& timings = render.timings;
   if (!options.quiet) {
     for (const std::string& note : render.notes) print_note(note);
   }
-  if (options.verbose) print_note(resolved_call("render", options, render.surface, render.camera, render.picture));
+  if (options.verbose) {
+    for (const std::string& line : scheme_lines(render.input.scene, render.surface)) print_note(line);
+    print_note(resolved_call("render", options, render.surface, render.camera, render.picture));
+  }
   if (options.json) {
     print_json({{"hits", render.counts.hits},
                 {"misses", render.counts.misses},

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "raymarch/analytic/tile.h"
 #include "raymarch/scene_extent.h"
 #include "raymarch/surface.h"
 #include "sdf/error.h"
@@ -37,9 +38,11 @@ SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, Obje
   if (cache) cache->kept.resize(scene.objects.size());
   model.bounds = bounds(scene);
   if (!model.bounds.empty()) model.render_origin = model.bounds.center();
+  const auto field_scratch = std::make_shared<FieldScratch>();
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     SurfaceSettings own = settings;
+    own.field_scratch = field_scratch;
     if (cache) own.kept_mesh = &cache->kept[i];
     if (settings.progress) {
       own.progress = [&settings, i, count = static_cast<double>(scene.objects.size())](double part) {

@@ -29,9 +29,9 @@ bool nearer(int i, const HitBatch& own, const RayBatch& rays, const SceneHits& f
   return own.t[i] < rays.t_max[i] - reach * 0x1p-19f;
 }
 
-/// `trace(object, hits)` traces one surface.
-template <class Trace>
-void trace_all(size_t objects, RayBatch& rays, SceneHits& found, const Trace& trace) {
+/// `trace(object, hits)` traces one surface. `visit(f)` calls f for each that may be.
+template <class Visit, class Trace>
+void trace_all(size_t objects, RayBatch& rays, SceneHits& found, const Visit& visit, const Trace& trace) {
   std::fill_n(found.hits.status, rays.count, HitStatus::miss);
   if (objects == 1) {
     trace(size_t{0}, found.hits);
@@ -40,14 +40,14 @@ void trace_all(size_t objects, RayBatch& rays, SceneHits& found, const Trace& tr
   }
   std::fill_n(found.object, rays.count, -1);
   HitBatch own;
-  for (size_t object = 0; object < objects; ++object) {
+  visit([&](size_t object) {
     std::fill_n(own.status, rays.count, HitStatus::miss);
     std::copy_n(rays.t_max, rays.count, own.t);
     trace(object, own);
     for (int i = 0; i < rays.count; ++i) {
       if (own.status[i] != HitStatus::miss && nearer(i, own, rays, found)) take_hit(i, static_cast<int>(object), own, rays, found);
     }
-  }
+  });
 }
 
 void turn_normals(std::span<const char> turned, const RayBatch& rays, SceneHits& found) {
@@ -69,8 +69,54 @@ bool touches(const SurfaceView& view, const PixelTile& covered, const PixelTile&
   return overlap(covered, tile) && (!view.touches || view.touches(view.state.get(), tile));
 }
 
+constexpr size_t kManySurfaces = 16;
+constexpr int kListCell_px = 32;
+
+void list_by_cells(const ViewRequest& request, ModelView& view) {
+  view.columns = (request.camera.width_px + kListCell_px - 1) / kListCell_px;
+  const int rows = (request.camera.height_px + kListCell_px - 1) / kListCell_px;
+  view.cells.resize(static_cast<size_t>(view.columns) * static_cast<size_t>(rows));
+  for (size_t k = 0; k < view.covered.size(); ++k) {
+    const PixelTile& covered = view.covered[k];
+    if (covered.width <= 0 || covered.height <= 0) continue;
+    for (int row = covered.y / kListCell_px; row <= (covered.y + covered.height - 1) / kListCell_px; ++row)
+      for (int column = covered.x / kListCell_px; column <= (covered.x + covered.width - 1) / kListCell_px; ++column)
+        view.cells[static_cast<size_t>(row) * static_cast<size_t>(view.columns) + static_cast<size_t>(column)].push_back(
+            static_cast<std::uint32_t>(k));
+  }
+}
+
+/// Calls take(k) for the surfaces that may be seen in the tile, in order, until it returns false.
+template <class Take>
+void visit_surfaces(const ModelView& view, const PixelTile& tile, const Take& take) {
+  const auto is_seen = [&](size_t k) { return touches(view.surfaces[k], view.covered[k], tile); };
+  if (view.cells.empty()) {
+    for (size_t k = 0; k < view.surfaces.size(); ++k)
+      if (is_seen(k) && !take(k)) return;
+    return;
+  }
+  const int first_row = tile.y / kListCell_px, last_row = (tile.y + tile.height - 1) / kListCell_px;
+  const int first_column = tile.x / kListCell_px, last_column = (tile.x + tile.width - 1) / kListCell_px;
+  const auto cell = [&](int row, int column) -> const std::vector<std::uint32_t>& {
+    return view.cells[static_cast<size_t>(row) * static_cast<size_t>(view.columns) + static_cast<size_t>(column)];
+  };
+  std::vector<std::uint32_t> joined;
+  const std::vector<std::uint32_t>* all = &cell(first_row, first_column);
+  if (first_row != last_row || first_column != last_column) {
+    for (int row = first_row; row <= last_row; ++row)
+      for (int column = first_column; column <= last_column; ++column)
+        joined.insert(joined.end(), cell(row, column).begin(), cell(row, column).end());
+    std::sort(joined.begin(), joined.end());
+    joined.erase(std::unique(joined.begin(), joined.end()), joined.end());
+    all = &joined;
+  }
+  for (const std::uint32_t k : *all)
+    if (is_seen(k) && !take(size_t{k})) return;
+}
+
 }  // namespace
 
+/// The pixels around the image of `bounds` (render space): all of them where the box reaches behind the eye.
 PixelTile covered_pixels(const Box& bounds, const ViewRequest& request) {
   const Camera& camera = request.camera;
   const PixelTile all{0, 0, camera.width_px, camera.height_px};
@@ -112,24 +158,36 @@ ModelView view_model(const SceneModel& model, const ViewRequest& request) {
     view.covered.push_back(covered_pixels(surface.bounds, request));
   }
   view.turned = turned_surfaces(model.surfaces, request.camera);
+  if (view.surfaces.size() > kManySurfaces) list_by_cells(request, view);
   return view;
 }
 
 bool touches(const ModelView& view, const PixelTile& tile) {
-  for (size_t k = 0; k < view.surfaces.size(); ++k) {
-    if (touches(view.surfaces[k], view.covered[k], tile)) return true;
-  }
-  return false;
+  bool any = false;
+  visit_surfaces(view, tile, [&any](size_t) {
+    any = true;
+    return false;
+  });
+  return any;
 }
 
 void trace_scene(const SceneModel& model, std::span<const char> turned, RayBatch& rays, SceneHits& found) {
-  trace_all(model.surfaces.size(), rays, found,
+  const auto visit = [&](const auto& take) {
+    for (size_t k = 0; k < model.surfaces.size(); ++k) take(k);
+  };
+  trace_all(model.surfaces.size(), rays, found, visit,
             [&](size_t k, HitBatch& hits) { model.surfaces[k].trace(model.surfaces[k].state.get(), rays, hits); });
   turn_normals(turned, rays, found);
 }
 
 void trace_scene(const SceneModel& model, const ModelView& view, const PixelTile& tile, RayBatch& rays, SceneHits& found) {
-  trace_all(model.surfaces.size(), rays, found, [&](size_t k, HitBatch& hits) {
+  const auto visit = [&](const auto& take) {
+    visit_surfaces(view, tile, [&take](size_t k) {
+      take(k);
+      return true;
+    });
+  };
+  trace_all(model.surfaces.size(), rays, found, visit, [&](size_t k, HitBatch& hits) {
     const SurfaceView& surface = view.surfaces[k];
     if (!touches(surface, view.covered[k], tile)) return;
     if (surface.trace)

@@ -21,14 +21,18 @@ struct SceneHits {
   std::int32_t object[kRayBatchSize];  ///< Index from 0; -1: nothing hit.
 };
 
+/// The pixels around the image of `bounds` (render space): all of them where the box reaches behind the eye.
+PixelTile covered_pixels(const Box& bounds, const ViewRequest& request);
+
 /// The surfaces, prepared for a picture: one view for each, without a trace of its own where there is nothing to prepare.
 struct ModelView {
   std::vector<SurfaceView> surfaces{};
   std::vector<PixelTile> covered{};  ///< The pixels that each surface's bounds cover in the picture.
   std::vector<char> turned{};        ///< As turned_surfaces.
+  /// Of many surfaces, those that reach into each cell of the picture, in order: a tile of thousands shows few. Empty: every tile asks all.
+  int columns = 0;
+  std::vector<std::vector<std::uint32_t>> cells{};
 };
-/// The pixels around the image of `bounds` (render space): all of them where the box reaches behind the eye.
-PixelTile covered_pixels(const Box& bounds, const ViewRequest& request);
 ModelView view_model(const SceneModel& model, const ViewRequest& request);
 /// False where no surface can be seen in the tile.
 bool touches(const ModelView& view, const PixelTile& tile);

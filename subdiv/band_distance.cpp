@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 // clang-format on
 
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -37,8 +38,8 @@ struct PreparedTriangle {
 /// What has been found so far, 64 rows of 8 nodes.
 struct BlockDistances {
   alignas(64) double squared[512];
-  double row_farthest[64];  ///< The largest distance (not squared) in each row.
-  double reach;             ///< What they all began with.
+  alignas(64) float known[512];  ///< Distances, not squared, rounded up: what a triangle must come below.
+  double row_farthest[64];       ///< The largest distance (not squared) in each row.
 };
 
 }  // namespace limn
@@ -78,34 +79,63 @@ HWY_INLINE bool TakeRow(const PreparedTriangle& triangle, double x, double y, do
   return changed;
 }
 
-HWY_INLINE double Farthest(const double* squared) {
+/// Takes note of a row whose squared distances have changed.
+HWY_INLINE void UpdateRow(int row, BlockDistances& block) {
   const Lanes8 d;
-  Vec most = hn::Load(d, squared);
-  for (size_t first = hn::Lanes(d); first < 8; first += hn::Lanes(d)) most = hn::Max(most, hn::Load(d, squared + first));
-  return std::sqrt(hn::GetLane(hn::MaxOfLanes(d, most)));
+  const hn::Rebind<float, Lanes8> f;
+  Vec most = hn::Zero(d);
+  for (size_t first = 0; first < 8; first += hn::Lanes(d)) {
+    const Vec known = hn::Sqrt(hn::Load(d, block.squared + 8 * row + first));
+    most = hn::Max(most, known);
+    hn::Store(hn::DemoteTo(f, hn::Mul(known, hn::Set(d, 1.0 + 1e-6))), f, block.known + 8 * row + first);
+  }
+  block.row_farthest[row] = hn::GetLane(hn::MaxOfLanes(d, most));
+}
+
+/// The rows of which some node may be nearer to the triangle than to what is known, as bits: by a sphere about it, and in single precision,
+/// with room for its rounding.
+HWY_INLINE std::uint64_t RowsInReach(const PreparedTriangle& triangle, const BlockDistances& block) {
+  const hn::CappedTag<float, 16> d;
+  constexpr float kRoom = 1e-4f;
+  alignas(64) float across[64];
+  const glm::vec3 center(triangle.center);
+  const auto z = hn::Iota(d, 0.0f);
+  for (size_t k = 0; k < 64; k += hn::Lanes(d)) {
+    // Lanes of one row, or of whole rows one after the other.
+    const auto at = hn::Add(z, hn::Set(d, static_cast<float>(k)));
+    const auto row = hn::Floor(hn::Mul(at, hn::Set(d, 0.125f)));
+    const auto dy = hn::Sub(row, hn::Set(d, center.y)), dz = hn::Sub(hn::Sub(at, hn::Mul(row, hn::Set(d, 8.0f))), hn::Set(d, center.z));
+    hn::Store(hn::Add(hn::Mul(dy, dy), hn::Mul(dz, dz)), d, across + k);
+  }
+  const auto radius = hn::Set(d, static_cast<float>(triangle.radius) * (1.0f + kRoom) + kRoom);
+  std::uint64_t rows = 0;
+  for (int x = 0; x < 8; ++x) {
+    const float dx = static_cast<float>(x) - center.x;
+    const auto squared_x = hn::Set(d, dx * dx);
+    for (size_t k = 0; k < 64; k += hn::Lanes(d)) {
+      const auto reach = hn::Add(hn::Load(d, block.known + 64 * x + k), radius);
+      const auto near = hn::Le(hn::Add(hn::Load(d, across + k), squared_x), hn::Mul(hn::Mul(reach, reach), hn::Set(d, 1.0f + kRoom)));
+      if (hn::AllFalse(d, near)) continue;
+      std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(d, near, bits);
+      for (size_t first = 0; first < hn::Lanes(d); first += 8)
+        if (bits[first / 8] != 0) rows |= std::uint64_t{1} << (8 * static_cast<size_t>(x) + (k + first) / 8);
+    }
+  }
+  return rows;
 }
 
 void TakeTriangles(const PreparedTriangle* triangles, size_t count, BlockDistances& block) {
   for (size_t i = 0; i < count; ++i) {
     const PreparedTriangle& triangle = triangles[i];
-    const double farthest = block.reach + triangle.radius;
-    const auto first = [&](double center) { return static_cast<int>(std::ceil(std::max(0.0, center - farthest))); };
-    const auto last = [&](double center) { return static_cast<int>(std::floor(std::min(7.0, center + farthest))); };
-    const int last_x = last(triangle.center.x), first_y = first(triangle.center.y), last_y = last(triangle.center.y);
-    const double z = std::min(std::max(triangle.center.z, 0.0), 7.0), dz = z - triangle.center.z;
-    for (int x = first(triangle.center.x); x <= last_x; ++x) {
-      const double dx = x - triangle.center.x, across_y = dx * dx + dz * dz;
-      for (int y = first_y; y <= last_y; ++y) {
-        // Out of the row's reach, by the sphere and by the plane: it cannot come nearer than what is known.
-        const int row = 8 * x + y;
-        const double known = block.row_farthest[row], dy = y - triangle.center.y;
-        const double reach = known + triangle.radius;
-        if (across_y + dy * dy >= reach * reach) continue;
-        const LinearForm& h = triangle.height;
-        const double low = h.constant + h.slope.x * x + h.slope.y * y, high = low + 7.0 * h.slope.z;
-        if (std::min(low, high) >= known || std::max(low, high) <= -known) continue;
-        if (TakeRow(triangle, x, y, block.squared + 8 * row)) block.row_farthest[row] = Farthest(block.squared + 8 * row);
-      }
+    for (std::uint64_t rows = RowsInReach(triangle, block); rows != 0; rows &= rows - 1) {
+      const int row = std::countr_zero(rows), x = row >> 3, y = row & 7;
+      // By the plane: it cannot come nearer than what is known.
+      const double known = block.row_farthest[row];
+      const LinearForm& h = triangle.height;
+      const double low = h.constant + h.slope.x * x + h.slope.y * y, high = low + 7.0 * h.slope.z;
+      if (std::min(low, high) >= known || std::max(low, high) <= -known) continue;
+      if (TakeRow(triangle, x, y, block.squared + 8 * row)) UpdateRow(row, block);
     }
   }
 }
@@ -158,22 +188,32 @@ void take_sliver(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, 
   }
 }
 
+/// Where fine triangles crowd most are far from being any node's nearest: a few of them, spread over the list, come first and tell how near
+/// the surface is. The least of all distances is the same in any order.
+template <class Visit>
+void visit_spread(std::span<const std::uint32_t> triangles, const Visit& visit) {
+  constexpr size_t kStride = 16;
+  for (size_t i = 0; i < triangles.size(); i += kStride) visit(triangles[i]);
+  for (size_t i = 0; i < triangles.size(); ++i)
+    if (i % kStride != 0) visit(triangles[i]);
+}
+
 }  // namespace
 
 void band_distances(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, const glm::ivec3& origin, double voxel_size,
                     double reach, std::array<double, 512>& distances) {
-  const auto take = HWY_DYNAMIC_DISPATCH(TakeTriangles);
   const double reach_voxels = reach / voxel_size;
   BlockDistances block;
   std::fill(std::begin(block.squared), std::end(block.squared), reach_voxels * reach_voxels * (1.0 + 1e-12));
+  std::fill(std::begin(block.known), std::end(block.known), static_cast<float>(reach_voxels * (1.0 + 1e-6)));
   std::fill(std::begin(block.row_farthest), std::end(block.row_farthest), reach_voxels * (1.0 + 1e-12));
-  block.reach = block.row_farthest[0];
   const double beyond = block.squared[0];
+  const auto take = HWY_DYNAMIC_DISPATCH(TakeTriangles);
   const glm::dvec3 first = voxel_size * glm::dvec3(origin);
   constexpr size_t kBatch = 32;
   PreparedTriangle prepared[kBatch];
   size_t count = 0;
-  for (const std::uint32_t index : triangles) {
+  visit_spread(triangles, [&](std::uint32_t index) {
     const glm::uvec3& t = mesh.triangles[index];
     const glm::dvec3 a = (mesh.positions[t.x] - first) / voxel_size, b = (mesh.positions[t.y] - first) / voxel_size,
                      c = (mesh.positions[t.z] - first) / voxel_size;
@@ -182,7 +222,7 @@ void band_distances(const TriangleMesh& mesh, std::span<const std::uint32_t> tri
     else
       take_sliver(a, b, c, block);
     if (count == kBatch) take(prepared, count, block), count = 0;
-  }
+  });
   take(prepared, count, block);
   for (size_t node = 0; node < 512; ++node) {
     const double squared = block.squared[node];

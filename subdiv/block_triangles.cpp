@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "sdf/error.h"
 #include "sdf/parallel.h"
@@ -97,8 +99,35 @@ struct PieceLists {
   std::vector<std::uint32_t> triangles{};  ///< Ascending in each stretch.
 };
 
+/// By block; the triangles of each stay in order, as they came. Neighbours in a list of triangles lie close together, so that a box of few
+/// blocks holds them, and counting brings each to its place.
+void sort_by_block(std::vector<Pair>& pairs) {
+  constexpr std::int64_t kMostCells = 1 << 14;
+  if (pairs.empty()) return;
+  glm::ivec3 lower(std::numeric_limits<int>::max()), upper(std::numeric_limits<int>::min());
+  for (const Pair& pair : pairs) {
+    const glm::ivec3 block = pair.key().block();
+    lower = glm::min(lower, block), upper = glm::max(upper, block);
+  }
+  const glm::i64vec3 size = glm::i64vec3(upper) - glm::i64vec3(lower) + std::int64_t{1};
+  if (std::max({size.x, size.y, size.z}) > kMostCells || size.x * size.y > kMostCells || size.x * size.y * size.z > kMostCells) {
+    std::sort(pairs.begin(), pairs.end());
+    return;
+  }
+  const auto cell_of = [&](const Pair& pair) {
+    const glm::i64vec3 at = glm::i64vec3(pair.key().block()) - glm::i64vec3(lower);
+    return static_cast<size_t>((at.x * size.y + at.y) * size.z + at.z);
+  };
+  std::vector<std::uint32_t> ends(static_cast<size_t>(size.x * size.y * size.z) + 1, 0);
+  for (const Pair& pair : pairs) ++ends[cell_of(pair) + 1];
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<Pair> sorted(pairs.size());
+  for (const Pair& pair : pairs) sorted[ends[cell_of(pair)]++] = pair;
+  pairs.swap(sorted);
+}
+
 PieceLists lists_of(std::vector<Pair>& pairs) {
-  std::sort(pairs.begin(), pairs.end());
+  sort_by_block(pairs);
   PieceLists lists;
   lists.triangles.reserve(pairs.size());
   for (const Pair& pair : pairs) {

@@ -40,33 +40,47 @@ struct FaceRun {
   size_t first_corner = 0, first_triangle = 0;
 };
 
+/// Faces that are fans of triangles with an area each, which need no second look.
+using PlainFaces = std::vector<char>;
+
 /// visit(face, its first corner, its corners' vertices, a triangle as three numbers of them) for each triangle; returns how many have no
 /// area and were left out.
 template <class Visit>
-std::int64_t visit_triangles(const Mesh& mesh, const FaceRun& run, const Visit& visit) {
+std::int64_t visit_triangles(const Mesh& mesh, const FaceRun& run, PlainFaces& plain, bool known, const Visit& visit) {
   std::vector<glm::dvec3> corners;
   std::vector<std::array<std::int32_t, 3>> pieces;
   std::int64_t dropped = 0;
   size_t first = run.first_corner;
   for (size_t f = run.first_face; f < run.last_face; ++f) {
     const std::span<const std::int32_t> vertices = face_corners(mesh, static_cast<std::int32_t>(first), f);
+    if (known && plain[f]) {
+      for (size_t k = 2; k < vertices.size(); ++k) visit(f, first, vertices, size_t{0}, k - 1, k);
+      first += vertices.size();
+      continue;
+    }
     gather_corners(mesh, vertices, corners);
     triangulate_polygon(corners, pieces);
+    bool is_plain = true;
+    std::int32_t third = 1;
     for (const auto& piece : pieces) {
+      is_plain = is_plain && piece[0] == 0 && piece[1] == third && piece[2] == third + 1;
+      ++third;
       const auto a = static_cast<size_t>(piece[0]), b = static_cast<size_t>(piece[1]), c = static_cast<size_t>(piece[2]);
       if (zero_area(corners[a], corners[b], corners[c])) {
         ++dropped;
+        is_plain = false;
       } else {
         visit(f, first, vertices, a, b, c);
       }
     }
+    plain[f] = is_plain;
     first += vertices.size();
   }
   return dropped;
 }
 
 /// Runs of a fixed number of faces, so that threads change nothing; their triangles are counted, which also says where each run's go.
-std::vector<FaceRun> runs_of(const Mesh& mesh, size_t& triangles, std::int64_t& dropped) {
+std::vector<FaceRun> runs_of(const Mesh& mesh, PlainFaces& plain, size_t& triangles, std::int64_t& dropped) {
   constexpr size_t kFaces = 8192;
   std::vector<FaceRun> runs;
   size_t corner = 0;
@@ -78,8 +92,8 @@ std::vector<FaceRun> runs_of(const Mesh& mesh, size_t& triangles, std::int64_t& 
   std::vector<std::int64_t> without_area(runs.size(), 0);
   parallel_for(size_t{0}, runs.size(), [&](size_t i) {
     size_t count = 0;
-    without_area[i] =
-        visit_triangles(mesh, runs[i], [&count](size_t, size_t, std::span<const std::int32_t>, size_t, size_t, size_t) { ++count; });
+    without_area[i] = visit_triangles(mesh, runs[i], plain, false,
+                                      [&count](size_t, size_t, std::span<const std::int32_t>, size_t, size_t, size_t) { ++count; });
     counts[i] = count;
   });
   triangles = 0;
@@ -126,7 +140,8 @@ TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, std::span<const glm:
   }
   TriangleMesh result;
   size_t count = 0;
-  const std::vector<FaceRun> runs = runs_of(mesh, count, result.dropped_triangles);
+  PlainFaces plain(mesh.face_count(), 0);
+  const std::vector<FaceRun> runs = runs_of(mesh, plain, count, result.dropped_triangles);
   const CornerNormals normals = normals_at_corners(mesh, kind, corner_normals, smoothing);
   result.positions = mesh.positions;
   result.triangles.resize(count);
@@ -135,17 +150,18 @@ TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, std::span<const glm:
   if (!normals.empty()) result.corner_normals.resize(3 * count);
   parallel_for(size_t{0}, runs.size(), [&](size_t i) {
     size_t at = runs[i].first_triangle;
-    visit_triangles(mesh, runs[i], [&](size_t f, size_t first, std::span<const std::int32_t> vertices, size_t a, size_t b, size_t c) {
-      result.triangles[at] = glm::uvec3(vertices[a], vertices[b], vertices[c]);
-      result.triangle_faces[at] = static_cast<std::int32_t>(f);
-      if (!mesh.face_materials.empty()) result.triangle_materials[at] = mesh.face_materials[f];
-      if (!normals.empty()) {
-        result.corner_normals[3 * at] = normals.at(first + a);
-        result.corner_normals[3 * at + 1] = normals.at(first + b);
-        result.corner_normals[3 * at + 2] = normals.at(first + c);
-      }
-      ++at;
-    });
+    visit_triangles(mesh, runs[i], plain, true,
+                    [&](size_t f, size_t first, std::span<const std::int32_t> vertices, size_t a, size_t b, size_t c) {
+                      result.triangles[at] = glm::uvec3(vertices[a], vertices[b], vertices[c]);
+                      result.triangle_faces[at] = static_cast<std::int32_t>(f);
+                      if (!mesh.face_materials.empty()) result.triangle_materials[at] = mesh.face_materials[f];
+                      if (!normals.empty()) {
+                        result.corner_normals[3 * at] = normals.at(first + a);
+                        result.corner_normals[3 * at + 1] = normals.at(first + b);
+                        result.corner_normals[3 * at + 2] = normals.at(first + c);
+                      }
+                      ++at;
+                    });
   });
   return result;
 }

@@ -60,8 +60,11 @@ class SeenBits {
 
 /// Triangles that share all corners with another, by corners and then in order; and a few more.
 std::vector<std::uint32_t> candidates(const TriangleMesh& mesh, std::span<const std::uint32_t> first) {
-  // A sum does not depend on the order of the corners.
-  const auto hash = [&](const glm::uvec3& t) { return mixed(first[t.x]) + mixed(first[t.y]) + mixed(first[t.z]); };
+  // Sums and products do not depend on the order of the corners.
+  const auto hash = [&](const glm::uvec3& t) {
+    const std::uint64_t a = first[t.x], b = first[t.y], c = first[t.z];
+    return mixed((a + b + c) * 0x9e3779b97f4a7c15ull + a * b + b * c + c * a);
+  };
   SeenBits seen(mesh.triangles.size());
   std::vector<std::uint64_t> twice;
   for (const glm::uvec3& t : mesh.triangles)

@@ -114,7 +114,7 @@ void find_runs(const FieldView& view, const PixelTile& rectangle, const TapeSegm
 
 void trace_tile(const void* opaque, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) {
   const FieldView& view = *static_cast<const FieldView*>(opaque);
-  TileWork work(view, rays, hits, view.scratches.local(), tile);
+  TileWork work(view, rays, hits, view.scratch->views.local(), tile);
   for (int block = 0; block < work.blocks; ++block) {
     load_block(rays, block * kLanes, view.beams.eye, view.beams.forward, work.block[static_cast<size_t>(block)]);
   }

@@ -17,6 +17,12 @@ struct ViewScratch {
   StretchList queue{};  ///< Empty between tiles.
 };
 
+/// Memory for threads, one piece for each however many fields a model has: of thousands of small objects it would be most of what they
+/// take.
+struct FieldScratch {
+  tbb::enumerable_thread_specific<ViewScratch> views{};
+};
+
 struct FieldView {
   std::shared_ptr<const void> keep{};
   const FieldTape* tape = nullptr;
@@ -24,12 +30,15 @@ struct FieldView {
   RayTracer tracer{};
   double reach = 0.0;  ///< Of the bounds from the render origin.
   ViewBeams beams{};
-  int columns = 0;
+  int first_column = 0, first_row = 0, columns = 0, rows = 0;  ///< The cells that the bounds' image reaches into.
   std::vector<std::vector<TapeSegment>> cells{};
-  mutable tbb::enumerable_thread_specific<ViewScratch> scratches{};
+  std::vector<TapeSegment> nothing{};  ///< Of all other cells.
+  std::shared_ptr<FieldScratch> scratch{};
 
   const std::vector<TapeSegment>& cell(int column, int row) const {
-    return cells[static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column)];
+    const int x = column - first_column, y = row - first_row;
+    if (x < 0 || y < 0 || x >= columns || y >= rows) return nothing;
+    return cells[static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x)];
   }
 };
 

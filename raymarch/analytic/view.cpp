@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "raymarch/analytic/tile.h"
+#include "raymarch/trace_scene.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -32,19 +33,27 @@ void refine(const FieldView& view, const PixelTile& rectangle, const TapeSegment
 
 std::vector<TapeSegment> refine_all(const FieldView& view, const PixelTile& rectangle, std::span<const TapeSegment> within) {
   std::vector<TapeSegment> found;
-  ViewScratch& scratch = view.scratches.local();
+  ViewScratch& scratch = view.scratch->views.local();
   bool closed = false;
   for (size_t k = 0; k < within.size() && !closed; ++k) refine(view, rectangle, within[k], scratch, found, closed);
   return found;
 }
 
+/// The cells of a picture that some of its pixels lie in.
 struct Grid {
-  int side_px = 1, columns = 0, rows = 0;
-  Grid(const Camera& camera, int side)
-      : side_px(side), columns((camera.width_px + side - 1) / side), rows((camera.height_px + side - 1) / side) {}
+  int side_px = 1, first_column = 0, first_row = 0, columns = 0, rows = 0;
+  Grid(const PixelTile& covered, int side) : side_px(side), first_column(covered.x / side), first_row(covered.y / side) {
+    if (covered.width <= 0 || covered.height <= 0) return;
+    columns = (covered.x + covered.width - 1) / side - first_column + 1;
+    rows = (covered.y + covered.height - 1) / side - first_row + 1;
+  }
   PixelTile cell(int k, const Camera& camera) const {
-    const int x = k % columns * side_px, y = k / columns * side_px;
+    const int x = (first_column + k % columns) * side_px, y = (first_row + k / columns) * side_px;
     return {x, y, std::min(side_px, camera.width_px - x), std::min(side_px, camera.height_px - y)};
+  }
+  size_t index_at(int x_px, int y_px) const {
+    return static_cast<size_t>(y_px / side_px - first_row) * static_cast<size_t>(columns) +
+           static_cast<size_t>(x_px / side_px - first_column);
   }
 };
 
@@ -99,7 +108,7 @@ void find_balls(const FieldTape& tape, std::span<const TapeStep> steps, std::vec
 }
 
 SurfaceView view_field(std::shared_ptr<const void> keep, const FieldTape& tape, const MarchLimits& limits, const RayTracer& tracer,
-                       const ViewRequest& request) {
+                       const std::shared_ptr<FieldScratch>& scratch, const ViewRequest& request) {
   const Camera& camera = request.camera;
   const Box& bounds = tape.field.traits().bounds;
   auto view = std::make_shared<FieldView>();
@@ -107,13 +116,16 @@ SurfaceView view_field(std::shared_ptr<const void> keep, const FieldTape& tape, 
   view->tape = &tape;
   view->limits = limits;
   view->tracer = tracer;
+  view->scratch = scratch;
   // Rays are float: half a millionth of where they are; more where a pixel is wider than that anyway.
   view->reach = bounds.empty() ? 0.0 : glm::length(glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper)));
   const double distance = glm::length(camera.eye - bounds.center());
   const double pixel = camera.projection == Projection::perspective ? distance / camera.focal_px : 1.0 / camera.pixels_per_unit;
   view->beams = view_beams(request, std::max(4e-6 * view->reach, 0.25 * std::min(pixel, 0.1 * bounds.radius())));
-  const Grid grid(camera, kCell_px), big(camera, kBigCell_px);
-  view->columns = grid.columns;
+  const PixelTile covered = covered_pixels(bounds, request);
+  const Grid grid(covered, kCell_px), big(covered, kBigCell_px);
+  view->first_column = grid.first_column, view->first_row = grid.first_row;
+  view->columns = grid.columns, view->rows = grid.rows;
   view->cells.resize(static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows));
   const std::vector<TapeSegment> all = bounds.empty() ? std::vector<TapeSegment>{} : whole(*view, bounds);
   std::vector<std::vector<TapeSegment>> parents;
@@ -123,8 +135,7 @@ SurfaceView view_field(std::shared_ptr<const void> keep, const FieldTape& tape, 
   }
   parallel_for(0, grid.columns * grid.rows, [&](int k) {
     const PixelTile cell = grid.cell(k, camera);
-    const auto parent = static_cast<size_t>(cell.y / kBigCell_px * big.columns + cell.x / kBigCell_px);
-    view->cells[static_cast<size_t>(k)] = refine_all(*view, cell, parents.empty() ? all : parents[parent]);
+    view->cells[static_cast<size_t>(k)] = refine_all(*view, cell, parents.empty() ? all : parents[big.index_at(cell.x, cell.y)]);
   });
   return {view, touches, trace_tile};
 }

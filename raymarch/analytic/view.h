@@ -25,9 +25,11 @@ struct RayTracer {
   void (*trace)(const void* state, const RayBatch& rays, HitBatch& hits) = nullptr;
 };
 
+struct FieldScratch;  // raymarch/analytic/tile.h
+
 /// `keep` is held as long as the view; tape, limits and tracer lie in it. The field has finite bounds.
 SurfaceView view_field(std::shared_ptr<const void> keep, const FieldTape& tape, const MarchLimits& limits, const RayTracer& tracer,
-                       const ViewRequest& request);
+                       const std::shared_ptr<FieldScratch>& scratch, const ViewRequest& request);
 
 /// The leaves of steps that are a union of balls and ellipsoids, nothing else; empty where they are something else.
 void find_balls(const FieldTape& tape, std::span<const TapeStep> steps, std::vector<std::uint32_t>& leaves);

@@ -3,8 +3,10 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <chrono>
+#include <memory>
+#include <mutex>
 
-#include "raymarch/analytic/view.h"
+#include "raymarch/analytic/tile.h"
 #include "raymarch/curvature.h"
 #include "raymarch/surface/offset.h"
 #include "raymarch/surface/registry.h"
@@ -17,7 +19,8 @@ namespace {
 constexpr double kDirectionSlack = 1.0 + 1e-6;
 
 struct AnalyticState {
-  AnalyticState(Field render_field, int max_steps) : tape(std::move(render_field)), evaluators(tape.field) {
+  AnalyticState(Field render_field, int max_steps, std::shared_ptr<FieldScratch> memory)
+      : tape(std::move(render_field)), scratch(memory ? std::move(memory) : std::make_shared<FieldScratch>()) {
     const FieldTraits& traits = tape.field.traits();
     if (traits.bounds.empty()) clip = {};
     const bool bounded = traits.bounds.finite();
@@ -32,8 +35,9 @@ struct AnalyticState {
   FieldTape tape;
   MarchLimits limits;
   Box clip{glm::dvec3(-std::numeric_limits<double>::infinity()), glm::dvec3(std::numeric_limits<double>::infinity())};
-  mutable tbb::enumerable_thread_specific<FieldEvaluator> evaluators;
-  mutable tbb::enumerable_thread_specific<TapeScratch> scratches;
+  std::shared_ptr<FieldScratch> scratch;
+  mutable std::once_flag evaluators_made;  ///< For curvatures, which few pictures ask for.
+  mutable std::unique_ptr<tbb::enumerable_thread_specific<FieldEvaluator>> evaluators;
 };
 
 bool clip_ray(const Box& box, const glm::dvec3& origin, const glm::dvec3& direction, double& t0, double& t1) {
@@ -58,7 +62,7 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
     if (t0 < t1 && clip_ray(state.clip, glm::dvec3(rays.origin(i)), glm::dvec3(rays.direction(i)), t0, t1)) list.add({i, 0, t0, t1, 0.0});
   }
   if (list.count == 0) return;
-  TapeScratch& scratch = state.scratches.local();
+  TapeScratch& scratch = state.scratch->views.local().tape;
   const MarchTape march{&state.tape, state.tape.steps};
   sphere_trace(march, state.limits, rays, scratch, list, hits);
   isolate(march, state.limits, rays, scratch, list, hits);
@@ -67,11 +71,14 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
 
 SurfaceView view(const std::shared_ptr<const void>& opaque, const ViewRequest& request) {
   const AnalyticState& state = *static_cast<const AnalyticState*>(opaque.get());
-  return view_field(opaque, state.tape, state.limits, {&state, trace}, request);
+  return view_field(opaque, state.tape, state.limits, {&state, trace}, state.scratch, request);
 }
 
 void evaluate_curvatures(const void* opaque, std::span<const SurfacePoint> points, std::span<SurfaceCurvature> curvatures) {
-  FieldEvaluator& evaluator = static_cast<const AnalyticState*>(opaque)->evaluators.local();
+  const AnalyticState& state = *static_cast<const AnalyticState*>(opaque);
+  std::call_once(state.evaluators_made,
+                 [&state] { state.evaluators = std::make_unique<tbb::enumerable_thread_specific<FieldEvaluator>>(state.tape.field); });
+  FieldEvaluator& evaluator = state.evaluators->local();
   for (size_t i = 0; i < points.size(); ++i) curvatures[i] = facing(curvature_of_jet(evaluator.jet(points[i].position)), points[i].normal);
 }
 
@@ -81,7 +88,8 @@ std::string unsupported(const SceneObject& object) {
 
 Surface build(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
   const auto start = std::chrono::steady_clock::now();
-  auto state = std::make_shared<AnalyticState>(translate(std::get<Field>(object.source), -render_origin), settings.max_steps);
+  auto state = std::make_shared<AnalyticState>(translate(std::get<Field>(object.source), -render_origin), settings.max_steps,
+                                               settings.field_scratch);
   Surface surface;
   surface.bounds = state->tape.field.traits().bounds;
   surface.state = state;

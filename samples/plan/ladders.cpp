@@ -140,7 +140,7 @@ double BorderErrors::of(PlanMetric metric) const {
   return metric == PlanMetric::silhouette ? silhouette_px : std::max(silhouette_px, inner_px);
 }
 
-std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings) {
+std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes) {
   std::vector<Ladder> ladders;
   const bool fixed = std::any_of(scene.objects.begin(), scene.objects.end(), is_fixed);
   const bool volumes = std::any_of(scene.objects.begin(), scene.objects.end(),
@@ -148,7 +148,14 @@ std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings)
   double longest_side = 0.0;
   for (const SceneObject& object : scene.objects) longest_side = std::max(longest_side, bounds(object).longest_side());
   if (scene.objects.empty() || volumes || !std::isfinite(longest_side)) return ladders;
-  if (!fixed && wanted("mesh", settings) && all_support(scene, "mesh")) ladders.push_back(mesh_ladder(scene));
+  if (!fixed && wanted("mesh", settings) && all_support(scene, "mesh")) {
+    try {
+      ladders.push_back(mesh_ladder(scene));
+    } catch (const InputError& error) {
+      // A shape that cannot be tessellated may still be a level set.
+      if (notes) notes->push_back(fmt::format("mesh left out: {}", error.fault().problem));
+    }
+  }
   for (const char* kind : {"level_set", "mesh_level_set"}) {
     // A field goes into a grid as it is; by way of a mesh it would only lose.
     const bool detour = std::string(kind) == "mesh_level_set" && all_support(scene, "level_set");

@@ -76,8 +76,9 @@ struct PlanAnswer {
   std::vector<std::string> notes{};    ///< Ladders that were given up, and why; what else a person should know.
 };
 
-/// The ladders that a scene can climb; empty where nothing of it has a resolution to choose (a volume from a file).
-std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings);
+/// The ladders that a scene can climb; empty where nothing of it has a resolution to choose (a volume from a file). `notes` is told what
+/// was left out, and why; may be null.
+std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes = nullptr);
 
 /// What theory expects of a rung in one view, from curvature, pixel scale and threshold along the true border.
 BorderErrors predict_errors(const Ladder& ladder, size_t rung, const PlanView& view, double threshold);

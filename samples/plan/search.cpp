@@ -191,7 +191,7 @@ PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, con
                      ProgressBar& bar, const std::vector<PlanTrial>& known) {
   LIMN_CHECK(!views.empty());
   Search search{scene, views, settings, how, bar};
-  search.answer.ladders = ladders_of(scene, settings);
+  search.answer.ladders = ladders_of(scene, settings, &search.answer.notes);
   if (search.answer.ladders.empty()) {
     throw InputError({{},
                       "INPUT",

@@ -82,9 +82,15 @@ SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& sett
       size.area = area_of(*field);
       return size;
     }
-    const Mesh cage = cage_of(*field);
-    size.faces = static_cast<double>(cage.face_count());
-    size.area = area_of(cage);
+    try {
+      const Mesh cage = cage_of(*field);
+      size.faces = static_cast<double>(cage.face_count());
+      size.area = area_of(cage);
+    } catch (const InputError& error) {
+      size.refines = false;
+      size.area = area_of(*field);
+      size.cannot_mesh = fmt::format("{} cannot be tessellated: {}", object.name, error.fault().problem);
+    }
   } else if (const auto* source = std::get_if<MeshSource>(&object.source)) {
     const double scale = std::cbrt(std::abs(glm::determinant(object.world_from_object.linear)));
     const std::optional<Scheme> scheme = cage_scheme(object, settings);

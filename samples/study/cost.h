@@ -17,8 +17,9 @@ struct SceneSize {
     double area = 0.0;          ///< World.
     double longest_side = 0.0;  ///< World.
     bool is_field = false;
-    double terms = 1.0;       ///< How much longer than one shape's formula the field takes, roughly.
-    double own_voxels = 0.0;  ///< Of a volume as loaded.
+    double terms = 1.0;         ///< How much longer than one shape's formula the field takes, roughly.
+    double own_voxels = 0.0;    ///< Of a volume as loaded.
+    std::string cannot_mesh{};  ///< Why no mesh of it can be made, where that was tried.
   };
   std::vector<Object> objects{};
 };

@@ -77,7 +77,12 @@ void plan_models(const Axes& axes, const SceneSize& size, SurfaceSettings settin
   settings.voxel_size = 0.0;
   for (const std::string& surface : axes.surfaces) {
     settings.kind = surface;
-    const std::string refused = why_not(find_surface(surface), study.scene);
+    std::string refused = why_not(find_surface(surface), study.scene);
+    if (surface == "mesh" || surface == "mesh_level_set") {
+      // A shape that cannot be tessellated leaves these models out; the others are studied.
+      for (const SceneSize::Object& object : size.objects)
+        if (refused.empty()) refused = object.cannot_mesh;
+    }
     if (surface == "mesh") {
       maker.add_meshes(settings, refused);
     } else if (surface == "level_set" || surface == "mesh_level_set") {

@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <memory>
 #include <system_error>
 
 #include "sdf/error.h"
 #include "subdiv/mesh_bytes.h"
 #include "subdiv/read_obj.h"
+#include "subdiv/read_off.h"
+#include "subdiv/read_ply.h"
+#include "subdiv/read_stl.h"
 
 namespace limn {
 namespace {
@@ -24,28 +28,35 @@ std::string extension_of(const std::filesystem::path& file) {
   return extension;
 }
 
-std::string read_text(const std::filesystem::path& file, std::int64_t max_bytes) {
+/// All of a file, read once into memory that nobody cleared before.
+struct FileBytes {
+  std::unique_ptr<char[]> data{};
+  size_t size = 0;
+  std::string_view view() const { return {data.get(), size}; }
+};
+
+FileBytes read_bytes(const std::filesystem::path& file, std::int64_t max_bytes) {
   std::error_code error;
   const auto size = static_cast<std::int64_t>(std::filesystem::file_size(file, error));
   if (error || size > max_bytes)
     throw InputError({file.string(), "", error ? error.message() : fmt::format("{} bytes", size), "the file cannot be read into memory",
                       fmt::format("at most {} bytes", max_bytes)});
+  FileBytes bytes{std::make_unique_for_overwrite<char[]>(static_cast<size_t>(size)), static_cast<size_t>(size)};
   std::ifstream stream(file, std::ios::binary);
-  std::string text(static_cast<size_t>(size), '\0');
-  stream.read(text.data(), size);
+  stream.read(bytes.data.get(), size);
   if (!stream) throw InputError({file.string(), "", "", "the file cannot be read", kExpected});
-  return text;
+  return bytes;
 }
 
-/// assimp looks for the end of a PLY's header for ever where there is none.
-void check_ply_header(const std::filesystem::path& file) {
-  constexpr std::streamsize kLongestHeader = 1 << 20;
-  std::ifstream stream(file, std::ios::binary);
-  std::string head(kLongestHeader, '\0');
-  stream.read(head.data(), kLongestHeader);
-  head.resize(static_cast<size_t>(stream.gcount()));
-  if (head.find("end_header") == std::string::npos)
-    throw InputError({file.string(), "header", "", "the file breaks off within its header", "a line 'end_header' before the data"});
+using Parser = Mesh (*)(std::string_view bytes, const std::string& file, std::int64_t max_elements);
+
+/// The readers of our own; empty where a helper program reads.
+Parser parser_of(const std::string& extension) {
+  if (extension == ".obj") return parse_obj;
+  if (extension == ".ply") return parse_ply;
+  if (extension == ".stl") return parse_stl;
+  if (extension == ".off") return parse_off;
+  return nullptr;
 }
 
 /// In proportion to the file: what takes longer is no honest mesh of that size. A .gltf's data lie in files beside it.
@@ -59,7 +70,6 @@ GuardLimits limits_for(const std::filesystem::path& file, const GuardLimits& mos
 }
 
 Mesh read_in_helper(const std::filesystem::path& file, const ImportSettings& settings) {
-  if (extension_of(file) == ".ply") check_ply_header(file);
   const std::string arguments[] = {file.string(), std::to_string(settings.max_elements)};
   const std::vector<std::byte> answer = run_guarded("limn-read-mesh", arguments, file, limits_for(file, settings.limits));
   ByteReader reader(answer, file.string());
@@ -76,8 +86,9 @@ Mesh load_mesh(const std::filesystem::path& file, const ImportSettings& settings
   check_readable(file, kExpected);
   if (!is_mesh_file(file))
     throw InputError({file.string(), "", file.extension().string(), "the extension is not that of a mesh", kExpected});
-  Mesh mesh = extension_of(file) == ".obj" ? parse_obj(read_text(file, settings.limits.memory_bytes), file.string(), settings.max_elements)
-                                           : read_in_helper(file, settings);
+  const Parser parse = parser_of(extension_of(file));
+  Mesh mesh = parse ? parse(read_bytes(file, settings.limits.memory_bytes).view(), file.string(), settings.max_elements)
+                    : read_in_helper(file, settings);
   const auto elements = static_cast<std::int64_t>(mesh.vertex_count() + mesh.corner_vertices.size());
   if (elements > settings.max_elements)
     throw InputError({file.string(), "", fmt::format("{}", elements), "more vertices and corners than allowed",

@@ -12,10 +12,10 @@ struct ImportSettings {
   std::int64_t max_elements = 200'000'000;  ///< Vertices plus corners; more is refused.
 };
 
-/// Reads .obj (n-gons, `t crease / corner / interpolateboundary` tags, materials, groups, vertex colours; double precision), and
-/// .ply, .stl, .off, .gltf, .glb through assimp (parts joined with their transforms; STL vertices welded by equal position, since the
-/// format has no indices). assimp reads in a guarded child process, .obj is read by our own reader; the result is validated.
-/// Throws InputError: no such file, a folder, empty, unknown extension, damaged, no faces, non-finite vertices, indices out of range.
+/// Reads .obj, .ply, .stl and .off by our own readers (subdiv/read_obj.h and its neighbours), .gltf and .glb through assimp in a guarded
+/// child process (parts joined with their transforms). Positions keep double precision; what a reader repaired, dropped or ignored is in
+/// Mesh::warnings. The result is validated.
+/// Throws InputError: no such file, a folder, empty, unknown extension, damaged, cut short, no faces, non-finite vertices.
 Mesh load_mesh(const std::filesystem::path& file, const ImportSettings& settings = {});
 
 /// True for the extensions above (case does not matter).

@@ -3,120 +3,167 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <cstring>
 #include <map>
 
+#include "sdf/color.h"
 #include "sdf/error.h"
-#include "subdiv/mesh_bytes.h"
+#include "subdiv/obj_tags.h"
+#include "subdiv/repair_faces.h"
+#include "subdiv/text_cursor.h"
 
 namespace limn {
 namespace {
 
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+/// Index of a corner that has none, or one before the first.
+constexpr std::int32_t kNone = INT32_MIN;
 
-/// One statement, word by word.
-class Words {
+/// Statements of the format that make no surface and say nothing of one.
+constexpr std::string_view kSkipped[] = {
+    "vt",    "vp",         "l",         "p",    "mtllib", "maplib", "usemap", "mg",  "lod",  "bevel", "end",      "deg",   "bmat",
+    "step",  "cstype",     "parm",      "trim", "hole",   "scrv",   "sp",     "con", "call", "csh",   "c_interp", "ctech", "d_interp",
+    "stech", "shadow_obj", "trace_obj", "bzp",  "bsp",    "cdc",    "cdp",    "res", "wn",   "ka",    "kd"};
+
+/// Lines, joined where a backslash at the end says so.
+class Statements {
  public:
-  explicit Words(std::string_view line) : rest_(line) {}
-  bool next(std::string_view& word) {
-    while (!rest_.empty() && is_space(rest_.front())) rest_.remove_prefix(1);
-    size_t length = 0;
-    while (length < rest_.size() && !is_space(rest_[length])) ++length;
-    word = rest_.substr(0, length);
-    rest_.remove_prefix(length);
-    return !word.empty();
+  explicit Statements(std::string_view text) : text_(text) {
+    // Files of old machines end their lines with a carriage return alone.
+    if (text.find('\n') == std::string_view::npos) line_end_ = '\r';
   }
-  /// What is left, without the spaces around it: names may hold spaces.
-  std::string remainder() const {
-    std::string_view text = rest_;
-    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-    return std::string(text);
+  bool next(std::string_view& statement) {
+    if (at_ >= text_.size()) return false;
+    statement = next_line();
+    first_line_ = line_;
+    if (!statement.empty() && statement.back() == '\\') {
+      joined_.clear();
+      while (!statement.empty() && statement.back() == '\\') {
+        joined_.append(statement.substr(0, statement.size() - 1)).push_back(' ');
+        statement = at_ < text_.size() ? next_line() : std::string_view();
+      }
+      statement = joined_.append(statement);
+    }
+    return true;
   }
+  std::int64_t line() const { return first_line_; }
+  /// True where the last statement has no line end: the file may break off within it.
+  bool is_unfinished() const { return at_ > text_.size(); }
 
  private:
-  std::string_view rest_;
+  std::string_view next_line() {
+    const void* found = std::memchr(text_.data() + at_, line_end_, text_.size() - at_);
+    const size_t end = found == nullptr ? text_.size() : static_cast<size_t>(static_cast<const char*>(found) - text_.data());
+    std::string_view line = text_.substr(at_, end - at_);
+    at_ = end + 1;
+    ++line_;
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    return line;
+  }
+  std::string_view text_;
+  std::string joined_{};
+  size_t at_ = 0;
+  std::int64_t line_ = 0, first_line_ = 0;
+  char line_end_ = '\n';
 };
 
-template <class T>
-bool parse(std::string_view word, T& value) {
-  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
-  return result.ec == std::errc() && result.ptr == word.data() + word.size();
-}
+/// A number for each face that changes seldom: kept where it changes.
+struct FaceRuns {
+  std::vector<std::pair<size_t, std::int32_t>> changes{};
+  void set(size_t face, std::int32_t value) { changes.emplace_back(face, value); }
+  std::vector<std::int32_t> of_faces(size_t faces, std::int32_t before) const {
+    std::vector<std::int32_t> values(faces, before);
+    for (size_t i = 0; i < changes.size(); ++i) {
+      const size_t end = i + 1 < changes.size() ? changes[i + 1].first : faces;
+      std::fill(values.begin() + static_cast<std::ptrdiff_t>(changes[i].first), values.begin() + static_cast<std::ptrdiff_t>(end),
+                changes[i].second);
+    }
+    return values;
+  }
+};
+
+/// Names in the order of their first mention, and which face has which.
+struct FaceNames {
+  std::map<std::string, std::int32_t, std::less<>> numbers{};
+  std::vector<std::string> names{};
+  FaceRuns runs{};
+  void set(size_t face, std::string_view name) {
+    auto at = numbers.find(name);
+    if (at == numbers.end()) {
+      at = numbers.emplace(name, static_cast<std::int32_t>(names.size())).first;
+      names.emplace_back(name);
+    }
+    runs.set(face, at->second);
+  }
+  /// Faces before the first name belong to a nameless one.
+  void finish(size_t faces, std::vector<std::string>& all_names, std::vector<std::int32_t>& of_faces) {
+    if (names.empty()) return;
+    if (runs.changes.front().first > 0) names.emplace_back();
+    of_faces = runs.of_faces(faces, static_cast<std::int32_t>(names.size()) - 1);
+    all_names = std::move(names);
+  }
+};
 
 class ObjReader {
  public:
   ObjReader(std::string_view text, const std::string& file, std::int64_t max_elements)
-      : text_(text), file_(file), max_elements_(max_elements) {}
+      : text_(text), file_(file), statements_(text), most_(std::min<std::int64_t>(max_elements, INT32_MAX)) {}
 
   Mesh run() {
     if (text_.find('\0') != std::string_view::npos)
       throw InputError({file_, "", "", "is not a Wavefront OBJ: it holds binary data", "a text file with lines 'v x y z' and 'f a b c'"});
-    std::string joined;
-    for (size_t at = 0; at < text_.size();) {
-      std::string_view line = next_line(at);
-      // A backslash at the end of a line goes on in the next.
-      if (!line.empty() && line.back() == '\\') {
-        joined.clear();
-        while (!line.empty() && line.back() == '\\') {
-          joined.append(line.substr(0, line.size() - 1)).push_back(' ');
-          line = at < text_.size() ? next_line(at) : std::string_view();
-        }
-        joined.append(line);
-        line = joined;
-      }
-      statement(line);
-    }
+    for (std::string_view line; statements_.next(line);) statement(line);
     return finish();
   }
 
  private:
-  std::string_view next_line(size_t& at) {
-    const size_t end = std::min(text_.find('\n', at), text_.size());
-    std::string_view line = text_.substr(at, end - at);
-    at = end + 1;
-    ++line_number_;
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    return line;
-  }
-
+  std::string place() const { return fmt::format("{}:{}", file_, statements_.line()); }
   [[noreturn]] void refuse(std::string_view field, std::string_view value, std::string problem, std::string expected) const {
-    throw InputError({fmt::format("{}:{}", file_, line_number_), std::string(field), std::string(value.substr(0, 80)), std::move(problem),
-                      std::move(expected)});
+    throw InputError({place(), std::string(field), shown_word(value), std::move(problem), std::move(expected)});
   }
 
   void statement(std::string_view line) {
-    Words words(line);
-    std::string_view keyword;
-    if (!words.next(keyword) || keyword.front() == '#') return;
-    if (keyword == "v") return vertex(words);
-    if (keyword == "vn") return normal(words);
-    if (keyword == "f" || keyword == "fo") return face(words);
-    if (keyword == "g" || keyword == "o") current_group_ = named(words.remainder(), group_numbers_, mesh_.group_names);
-    if (keyword == "usemtl") current_material_ = named(words.remainder(), material_numbers_, mesh_.material_names);
-    if (keyword == "t") tag(words);
+    TextCursor cursor(line);
+    const std::string_view keyword = cursor.word();
+    if (keyword.empty()) return;
+    if (keyword == "v") return vertex(cursor);
+    if (keyword == "f" || keyword == "fo") return face(cursor);
+    if (keyword == "vn") return normal(cursor);
+    if (keyword == "vt") {
+      ++texture_coordinates_;
+    } else if (keyword == "g" || keyword == "o") {
+      groups_.set(mesh_.face_count(), cursor.rest_of_line());
+    } else if (keyword == "usemtl") {
+      materials_.set(mesh_.face_count(), cursor.rest_of_line());
+    } else if (keyword == "s") {
+      smoothing(cursor);
+    } else if (keyword == "t") {
+      read_obj_tag(cursor.rest_of_line(), place(), mesh_, tags_);
+    } else if (keyword == "l" || keyword == "p") {
+      ++lines_and_points_;
+    } else if (keyword == "curv" || keyword == "curv2" || keyword == "surf") {
+      ++free_form_;
+    } else if (std::find(std::begin(kSkipped), std::end(kSkipped), keyword) == std::end(kSkipped) && unknown_++ == 0) {
+      first_unknown_ = fmt::format("first: '{}' in line {}", shown_word(keyword), statements_.line());
+    }
   }
 
-  static std::int32_t named(const std::string& name, std::map<std::string, std::int32_t>& numbers, std::vector<std::string>& names) {
-    const auto [at, is_new] = numbers.emplace(name, static_cast<std::int32_t>(names.size()));
-    if (is_new) names.push_back(name);
-    return at->second;
-  }
-
-  double number(std::string_view word, std::string_view field) const {
+  double number(TextCursor& cursor, std::string_view field) const {
     double value = 0.0;
-    if (!parse(word, value)) refuse(field, word, "is not a number", "decimal numbers within the range of double precision");
+    if (!cursor.number(value) && !read_real(cursor, value))
+      refuse(field, cursor.word(), "is not a number", "decimal numbers within the range of double precision");
     return value;
   }
 
-  void vertex(Words& words) {
+  void vertex(TextCursor& cursor) {
     double values[8];
     size_t count = 0;
-    std::string_view word;
-    while (count < 8 && words.next(word)) values[count++] = number(word, "v");
-    if (count < 3) refuse("v", fmt::format("{} numbers", count), "a vertex without three coordinates", "v x y z");
+    while (count < 8 && cursor.skip_in_line()) values[count++] = number(cursor, "v");
+    if (count < 2) refuse("v", fmt::format("{} numbers", count), "a vertex without three coordinates", "v x y z");
+    if (count == 2) {
+      if (flat_vertices_++ == 0) first_flat_line_ = statements_.line();
+      values[2] = 0.0;
+    }
     mesh_.positions.emplace_back(values[0], values[1], values[2]);
     if (!std::isfinite(values[0]) || !std::isfinite(values[1]) || !std::isfinite(values[2]))
       refuse("v", fmt::format("{}, {}, {}", values[0], values[1], values[2]), "the position is not a finite number", "finite coordinates");
@@ -131,154 +178,164 @@ class ObjReader {
 
   void count_elements(std::int64_t more) {
     elements_ += more;
-    if (elements_ > max_elements_)
-      refuse("", fmt::format("{}", elements_), "more vertices and corners than allowed", fmt::format("at most {}", max_elements_));
+    if (elements_ > most_)
+      refuse("", fmt::format("{}", elements_), "more vertices and corners than allowed", fmt::format("at most {}", most_));
   }
 
-  void normal(Words& words) {
+  /// A normal that is no number costs the surface nothing: it is counted, and found again from the faces.
+  void normal(TextCursor& cursor) {
     glm::vec3 n(0.0f);
-    std::string_view word;
-    for (int i = 0; i < 3; ++i) {
-      if (!words.next(word)) refuse("vn", "", "a normal without three components", "vn x y z");
-      n[i] = static_cast<float>(number(word, "vn"));
+    bool good = true;
+    for (int i = 0; i < 3 && good; ++i) {
+      double value = 0.0;
+      good = cursor.skip_in_line() && read_real(cursor, value) && std::isfinite(value);
+      n[i] = static_cast<float>(value);
     }
-    normals_.push_back(n);
+    bad_normals_ += !good;
+    normals_.push_back(good ? n : glm::vec3(0.0f));
   }
 
   /// Numbers count from 1, negative ones back from the last.
-  std::int32_t index(std::string_view word, size_t count, const char* what) const {
+  std::int32_t index(TextCursor& cursor, size_t count, const char* what) {
     std::int64_t value = 0;
-    if (!parse(word, value)) refuse("f", word, fmt::format("is not a {} number", what), "whole numbers counted from 1, or from -1 back");
-    const std::int64_t zero_based = value > 0 ? value - 1 : value < 0 ? static_cast<std::int64_t>(count) + value : -1;
-    if (zero_based < 0 || zero_based >= static_cast<std::int64_t>(count)) late_.push_back({zero_based, value, line_number_, what});
-    return static_cast<std::int32_t>(std::clamp<std::int64_t>(zero_based, 0, INT32_MAX));
+    if (!cursor.number(value, '/'))
+      refuse("f", cursor.word(), fmt::format("is not a {} number", what), "whole numbers counted from 1, or from -1 back");
+    if (value < 0) {
+      counts_back_ = true;
+      const std::int64_t back = static_cast<std::int64_t>(count) + value;
+      return back < 0 ? kNone : static_cast<std::int32_t>(back);
+    }
+    return static_cast<std::int32_t>(std::min<std::int64_t>(value - 1, INT32_MAX));
   }
 
-  void corner(std::string_view word) {
-    const size_t first = word.find('/');
-    mesh_.corner_vertices.push_back(index(word.substr(0, first), mesh_.positions.size(), "vertex"));
-    std::int32_t normal_index = -1;
-    if (first != std::string_view::npos) {
-      const size_t second = word.find('/', first + 1);
-      if (second != std::string_view::npos && second + 1 < word.size())
-        normal_index = index(word.substr(second + 1), normals_.size(), "normal");
+  /// v, v/t, v//n or v/t/n; a slash may have nothing behind it.
+  void corner(TextCursor& cursor) {
+    mesh_.corner_vertices.push_back(index(cursor, mesh_.positions.size(), "vertex"));
+    std::int32_t normal_index = kNone;
+    const auto has_number = [&cursor] { return cursor.left() > 0 && !ends_word(*cursor.at()) && !cursor.is_at('/'); };
+    if (cursor.is_at('/')) {
+      cursor.step();
+      if (has_number()) {
+        index(cursor, static_cast<size_t>(texture_coordinates_), "texture coordinate");
+        ++texture_corners_;
+      }
+      if (cursor.is_at('/')) {
+        cursor.step();
+        if (has_number()) normal_index = index(cursor, normals_.size(), "normal"), ++normal_corners_;
+      }
     }
     corner_normals_.push_back(normal_index);
   }
 
-  void face(Words& words) {
-    std::string_view word;
+  void face(TextCursor& cursor) {
     std::int32_t corners = 0;
-    while (words.next(word)) corner(word), ++corners;
-    if (corners < 3) refuse("f", fmt::format("{} corners", corners), "a face with fewer than 3 corners", "f a b c ...");
+    for (; cursor.skip_in_line(); ++corners) corner(cursor);
+    if (corners < 3 && statements_.is_unfinished())
+      refuse("f", fmt::format("{} corners", corners), "the file breaks off within a face with fewer than 3 corners", "f a b c ...");
     mesh_.face_sizes.push_back(corners);
-    face_materials_.push_back(current_material_);
-    face_groups_.push_back(current_group_);
     count_elements(corners);
   }
 
-  /// `t name integers/reals/strings ...`, indices counted from 0.
-  void tag(Words& words) {
-    std::string_view name, sizes;
-    if (!words.next(name) || !words.next(sizes)) return;
-    int counts[3] = {0, 0, 0};
-    for (int i = 0; i < 3; ++i) {
-      const size_t slash = std::min(sizes.find('/'), sizes.size());
-      if (!parse(sizes.substr(0, slash), counts[i]) || counts[i] < 0 || counts[i] > 100'000'000)
-        refuse("t", sizes, "the counts of a tag cannot be read", "integers/reals/strings, as in 't crease 2/1/0 0 1 2.5'");
-      sizes.remove_prefix(std::min(slash + 1, sizes.size()));
-    }
-    std::vector<std::int32_t> integers;
-    std::vector<float> reals;
-    std::string_view word;
-    for (int i = 0; i < counts[0]; ++i) {
-      std::int32_t value = 0;
-      if (!words.next(word) || !parse(word, value)) refuse("t", word, "a tag with too few or damaged integers", "as many as it announces");
-      integers.push_back(value);
-    }
-    for (int i = 0; i < counts[1]; ++i) {
-      if (!words.next(word)) refuse("t", "", "a tag with too few numbers", "as many as it announces");
-      reals.push_back(static_cast<float>(number(word, "t")));
-    }
-    apply(name, integers, reals);
+  void smoothing(TextCursor& cursor) {
+    const std::string_view word = cursor.word();
+    TextCursor digits(word);
+    std::int64_t group = 0;
+    if (!digits.number(group)) group = same_word(word, "on") ? 1 : 0;
+    smoothing_.set(mesh_.face_count(), static_cast<std::int32_t>(std::clamp<std::int64_t>(group, 0, INT32_MAX)));
   }
 
-  void apply(std::string_view name, const std::vector<std::int32_t>& integers, const std::vector<float>& reals) {
-    // One sharpness for all, or one each.
-    const auto sharpness = [&](size_t i) { return reals[reals.size() == 1 ? 0 : i]; };
-    if (name == "crease") {
-      if (integers.size() < 2 || (reals.size() != 1 && reals.size() != integers.size() - 1))
-        refuse("t crease", fmt::format("{} vertices, {} sharpnesses", integers.size(), reals.size()), "the counts do not fit",
-               "2 or more vertices and one sharpness, or one for each edge");
-      for (size_t i = 0; i + 1 < integers.size(); ++i) mesh_.creases.push_back({integers[i], integers[i + 1], sharpness(i)});
-    } else if (name == "corner") {
-      if (integers.empty() || (reals.size() != 1 && reals.size() != integers.size()))
-        refuse("t corner", fmt::format("{} vertices, {} sharpnesses", integers.size(), reals.size()), "the counts do not fit",
-               "1 or more vertices and one sharpness, or one for each");
-      for (size_t i = 0; i < integers.size(); ++i) mesh_.corners.push_back({integers[i], sharpness(i)});
-    } else if (name == "interpolateboundary") {
-      // RenderMan's numbers: 0 none, 1 edges and corners, 2 edges only.
-      const std::int32_t rule = integers.empty() ? -1 : integers[0];
-      if (rule < 0 || rule > 2)
-        refuse("t interpolateboundary", fmt::format("{}", rule), "unknown rule", "0 none, 1 edges and corners, 2 edges");
-      mesh_.boundary = rule == 0 ? BoundaryRule::none : rule == 1 ? BoundaryRule::edge_and_corner : BoundaryRule::edge_only;
-    }
+  void warn(std::string text) { mesh_.warnings.push_back(std::move(text)); }
+
+  void check_flat() {
+    if (flat_vertices_ == 0 || flat_vertices_ == mesh_.vertex_count()) return;
+    throw InputError({fmt::format("{}:{}", file_, first_flat_line_), "v", "2 numbers", "a vertex without three coordinates", "v x y z"});
   }
 
-  /// A face may name a vertex that comes later in the file; only now is it known what is out of range.
-  void check_late_indices() {
-    for (const Late& late : late_) {
-      const size_t count = std::string_view(late.what) == "normal" ? normals_.size() : mesh_.positions.size();
-      if (late.zero_based >= 0 && late.zero_based < static_cast<std::int64_t>(count)) continue;
-      line_number_ = late.line;
-      refuse("f", fmt::format("{}", late.value), fmt::format("{} index out of range", late.what),
-             count == 0 ? std::string("there are none") : fmt::format("1 to {0}, or -1 to -{0}", count));
+  /// Some programs count from 0. Where 0 occurs and the last vertex is never named, nothing else is possible.
+  void count_from_zero() {
+    const auto [least, most] = std::minmax_element(mesh_.corner_vertices.begin(), mesh_.corner_vertices.end());
+    if (least == mesh_.corner_vertices.end() || *least != -1 || counts_back_) return;
+    if (static_cast<std::int64_t>(*most) + 1 >= static_cast<std::int64_t>(mesh_.vertex_count())) return;
+    for (std::int32_t& v : mesh_.corner_vertices) ++v;
+    for (std::int32_t& n : corner_normals_) n += n != kNone;
+    warn(fmt::format("faces count their {} vertices from 0 instead of 1: read so", mesh_.vertex_count()));
+  }
+
+  void take_normals() {
+    if (texture_corners_ > 0 && texture_coordinates_ == 0 && normal_corners_ > 0 && normals_.empty()) {
+      warn(fmt::format("{} corners name normals and texture coordinates, of which the file has none: ignored", normal_corners_));
+      return;
     }
+    if (texture_corners_ > 0 && texture_coordinates_ == 0)
+      warn(fmt::format("{} corners name texture coordinates, of which the file has none: ignored", texture_corners_));
+    if (normal_corners_ == 0) return;
+    const auto count = static_cast<std::int64_t>(normals_.size());
+    const auto there = std::count_if(corner_normals_.begin(), corner_normals_.end(), [&](std::int32_t n) { return n >= 0 && n < count; });
+    const auto corners = static_cast<std::int64_t>(corner_normals_.size());
+    if (there < corners) {
+      warn(there == 0 ? fmt::format("{} corners name normals that the file does not have: ignored", normal_corners_)
+                      : fmt::format("{} of {} corners have no normal: the others' are ignored", corners - there, corners));
+      return;
+    }
+    if (bad_normals_ > 0) warn(fmt::format("{} of {} normals are not finite numbers: ignored", bad_normals_, count));
+    mesh_.corner_normals.reserve(corner_normals_.size());
+    for (const std::int32_t n : corner_normals_) mesh_.corner_normals.push_back(normals_[static_cast<size_t>(n)]);
+  }
+
+  std::string line_of_face(size_t wanted) const {
+    Statements again(text_);
+    size_t face = 0;
+    for (std::string_view line; again.next(line);) {
+      const std::string_view keyword = TextCursor(line).word();
+      if ((keyword == "f" || keyword == "fo") && face++ == wanted) return fmt::format("line {}", again.line());
+    }
+    return fmt::format("face {}", wanted + 1);
   }
 
   Mesh finish() {
-    if (mesh_.face_sizes.empty()) throw InputError({file_, "", "", "the mesh has no faces", "at least one line 'f a b c'"});
-    check_late_indices();
-    if (mesh_.vertex_colors.size() != mesh_.positions.size()) mesh_.vertex_colors.clear();
-    if (std::find(corner_normals_.begin(), corner_normals_.end(), -1) == corner_normals_.end())
-      for (const std::int32_t n : corner_normals_) mesh_.corner_normals.push_back(normals_[static_cast<size_t>(n)]);
-    assign_names(face_materials_, mesh_.material_names, mesh_.face_materials);
-    assign_names(face_groups_, mesh_.group_names, mesh_.face_groups);
+    check_flat();
+    finish_obj_tags(tags_, file_, mesh_);
+    count_from_zero();
+    take_normals();
+    if (mesh_.vertex_colors.size() != mesh_.positions.size()) {
+      if (!mesh_.vertex_colors.empty())
+        warn(fmt::format("{} of {} vertices have a colour: none is used", mesh_.vertex_colors.size(), mesh_.vertex_count()));
+      mesh_.vertex_colors.clear();
+    }
+    materials_.finish(mesh_.face_count(), mesh_.material_names, mesh_.face_materials);
+    groups_.finish(mesh_.face_count(), mesh_.group_names, mesh_.face_groups);
+    if (!smoothing_.changes.empty()) mesh_.face_smoothing = smoothing_.of_faces(mesh_.face_count(), 0);
+    if (free_form_ > 0) warn(fmt::format("{} free-form curves and surfaces: not read", free_form_));
+    if (unknown_ > 0) warn(fmt::format("{} lines are no statements of an OBJ: ignored ({})", unknown_, first_unknown_));
+    std::string instead;
+    if (free_form_ > 0) instead = fmt::format("{} free-form curves and surfaces", free_form_);
+    if (lines_and_points_ > 0) instead = fmt::format("{} statements of lines and points", lines_and_points_);
+    repair_faces(mesh_, {file_, 1, [this](size_t face) { return line_of_face(face); }, instead});
     return std::move(mesh_);
   }
 
-  /// Faces before the first name belong to a nameless one.
-  static void assign_names(std::vector<std::int32_t>& of_face, std::vector<std::string>& names, std::vector<std::int32_t>& result) {
-    if (names.empty()) return;
-    if (std::find(of_face.begin(), of_face.end(), -1) != of_face.end()) {
-      std::replace(of_face.begin(), of_face.end(), -1, static_cast<std::int32_t>(names.size()));
-      names.emplace_back();
-    }
-    result = std::move(of_face);
-  }
-
-  struct Late {
-    std::int64_t zero_based, value;
-    std::int64_t line;
-    const char* what;
-  };
-
   std::string_view text_;
   const std::string& file_;
-  std::int64_t max_elements_, elements_ = 0;
-  std::int64_t line_number_ = 0;
-  Mesh mesh_;
-  std::vector<glm::vec3> normals_;
-  std::vector<std::int32_t> corner_normals_, face_materials_, face_groups_;
-  std::map<std::string, std::int32_t> material_numbers_, group_numbers_;
-  std::int32_t current_material_ = -1, current_group_ = -1;
-  mutable std::vector<Late> late_;
+  Statements statements_;
+  std::int64_t most_, elements_ = 0;
+  Mesh mesh_{};
+  std::vector<glm::vec3> normals_{};
+  std::vector<std::int32_t> corner_normals_{};
+  FaceNames materials_{}, groups_{};
+  FaceRuns smoothing_{};
+  ObjTags tags_{};
+  size_t flat_vertices_ = 0;
+  std::int64_t first_flat_line_ = 0, texture_coordinates_ = 0, texture_corners_ = 0, normal_corners_ = 0, bad_normals_ = 0;
+  std::int64_t lines_and_points_ = 0, free_form_ = 0, unknown_ = 0;
+  bool counts_back_ = false;
+  std::string first_unknown_{};
 };
 
 }  // namespace
 
-Mesh parse_obj(std::string_view text, const std::string& file, std::int64_t max_elements) {
-  return ObjReader(text, file, max_elements).run();
+Mesh parse_obj(std::string_view bytes, const std::string& file, std::int64_t max_elements) {
+  std::string converted;
+  return ObjReader(plain_text(bytes, converted), file, max_elements).run();
 }
 
 }  // namespace limn

@@ -1,4 +1,4 @@
-// limn-read-mesh FILE MAX_ELEMENTS: reads a .ply, .stl, .off, .gltf or .glb that nobody vouches for with assimp, and sends it as a flat
+// limn-read-mesh FILE MAX_ELEMENTS: reads a .gltf or .glb that nobody vouches for with assimp, and sends it as a flat
 // mesh through the answer pipe (sdf/guard.h).
 #include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
@@ -15,7 +15,6 @@
 #include <map>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 
 #include "sdf/guard_helper.h"
 #include "subdiv/mesh_bytes.h"
@@ -77,8 +76,7 @@ void keep_readers(Assimp::Importer& importer, const std::string& extension) {
 /// Gathers the parts of a scene into one mesh.
 class Gatherer {
  public:
-  Gatherer(const aiScene& scene, std::string extension, std::int64_t max_elements)
-      : scene_(scene), extension_(std::move(extension)), max_elements_(max_elements), gltf_(extension_ == "gltf" || extension_ == "glb") {}
+  Gatherer(const aiScene& scene, std::int64_t max_elements) : scene_(scene), max_elements_(max_elements) {}
 
   Mesh run() {
     for (unsigned i = 0; i < scene_.mNumMaterials; ++i) {
@@ -91,7 +89,6 @@ class Gatherer {
       any_colors_ |= scene_.mMeshes[i]->HasVertexColors(0);
     }
     node(*scene_.mRootNode, aiMatrix4x4(), 0);
-    if (extension_ == "stl") weld();
     if (mesh_.material_names.size() < 2) mesh_.material_names.clear(), mesh_.face_materials.clear();
     if (mesh_.group_names.size() < 2) mesh_.group_names.clear(), mesh_.face_groups.clear();
     if (mesh_.face_sizes.empty()) refuse("the mesh has no faces; at least one face with 3 or more corners");
@@ -124,8 +121,7 @@ class Gatherer {
     mesh_.group_names.push_back(name.empty() ? source.mName.C_Str() : name);
     for (unsigned f = 0; f < source.mNumFaces; ++f) {
       const aiFace& face = source.mFaces[f];
-      if (face.mNumIndices < 3 && gltf_) continue;
-      if (face.mNumIndices < 3) refuse("face " + std::to_string(f + 1) + " has fewer than 3 corners; faces with 3 or more corners");
+      if (face.mNumIndices < 3) continue;
       count(face.mNumIndices);
       mesh_.face_sizes.push_back(static_cast<std::int32_t>(face.mNumIndices));
       mesh_.face_materials.push_back(static_cast<std::int32_t>(source.mMaterialIndex));
@@ -158,11 +154,7 @@ class Gatherer {
       if (!any_colors_) continue;
       glm::vec3 color(1.0f);
       if (source.HasVertexColors(0)) color = {source.mColors[0][v].r, source.mColors[0][v].g, source.mColors[0][v].b};
-      for (int i = 0; i < 3; ++i) {
-        color[i] = std::isfinite(color[i]) ? std::clamp(color[i], 0.0f, 1.0f) : 1.0f;
-        // glTF stores linear light; the older formats what a screen shows.
-        if (!gltf_) color[i] = limn::linear_from_srgb(color[i]);
-      }
+      for (int i = 0; i < 3; ++i) color[i] = std::isfinite(color[i]) ? std::clamp(color[i], 0.0f, 1.0f) : 1.0f;
       mesh_.vertex_colors.push_back(color);
     }
   }
@@ -172,39 +164,9 @@ class Gatherer {
     if (elements_ > max_elements_) refuse("more vertices and corners than allowed; at most " + std::to_string(max_elements_));
   }
 
-  /// STL has no indices: triangles that share a corner repeat its numbers exactly.
-  void weld() {
-    std::vector<std::int32_t> order(mesh_.positions.size());
-    for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::int32_t>(i);
-    const auto at = [this](std::int32_t i) { return mesh_.positions[static_cast<size_t>(i)]; };
-    const auto key = [&at](std::int32_t i) { return std::tuple(at(i).x, at(i).y, at(i).z, i); };
-    for (const glm::dvec3& p : mesh_.positions)
-      if (std::isnan(p.x + p.y + p.z)) return;  // refused by the validation that follows
-    std::sort(order.begin(), order.end(), [&key](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
-    std::vector<std::int32_t> first(order.size());
-    for (size_t i = 0; i < order.size(); ++i)
-      first[static_cast<size_t>(order[i])] =
-          i > 0 && at(order[i]) == at(order[i - 1]) ? first[static_cast<size_t>(order[i - 1])] : order[i];
-    std::vector<std::int32_t> number(order.size());
-    std::vector<glm::dvec3> positions;
-    std::vector<glm::vec3> colors;
-    for (size_t i = 0; i < first.size(); ++i) {
-      if (first[i] != static_cast<std::int32_t>(i)) continue;
-      number[i] = static_cast<std::int32_t>(positions.size());
-      positions.push_back(mesh_.positions[i]);
-      if (!mesh_.vertex_colors.empty()) colors.push_back(mesh_.vertex_colors[i]);
-    }
-    for (std::int32_t& v : mesh_.corner_vertices) v = number[static_cast<size_t>(first[static_cast<size_t>(v)])];
-    mesh_.positions = std::move(positions);
-    mesh_.vertex_colors = std::move(colors);
-    // A facet's normal says nothing that its corners do not.
-    mesh_.corner_normals.clear();
-  }
-
   const aiScene& scene_;
-  std::string extension_;
   std::int64_t max_elements_, elements_ = 0;
-  bool gltf_, any_normals_ = true, any_colors_ = false;
+  bool any_normals_ = true, any_colors_ = false;
   Mesh mesh_;
 };
 
@@ -232,7 +194,7 @@ std::vector<std::byte> read(const std::string& file, std::int64_t max_elements) 
            " file with all that it refers to beside it");
   if (!complaint.empty()) refuse("a face's index is out of range; indices below the number of vertices");
   if (scene->mRootNode == nullptr) refuse("the mesh has no faces; at least one face with 3 or more corners");
-  limn::put_mesh(writer, Gatherer(*scene, extension, max_elements).run());
+  limn::put_mesh(writer, Gatherer(*scene, max_elements).run());
   return std::move(writer.bytes);
 }
 

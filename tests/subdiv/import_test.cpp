@@ -91,9 +91,9 @@ TEST_F(Import, ObjFaultsAreNamedWithTheirLine) {
   const std::string v = kTriangle;
   EXPECT_TRUE(refused(folder_.write("range.obj", v + "f 1 2 4\n"), "range.obj:4"));
   EXPECT_TRUE(refused(folder_.write("back.obj", v + "f -1 -2 -4\n"), "out of range"));
-  EXPECT_TRUE(refused(folder_.write("zero.obj", v + "f 0 1 2\n"), "out of range"));
+  EXPECT_TRUE(refused(folder_.write("zero.obj", v + "f 0 1 3\n"), "out of range"));
   EXPECT_TRUE(refused(folder_.write("huge.obj", v + "f 1 2 99999999999999999999\n"), "is not a vertex number"));
-  EXPECT_TRUE(refused(folder_.write("normal.obj", v + "f 1//1 2//1 3//1\n"), "normal index out of range"));
+  EXPECT_TRUE(refused(folder_.write("normal.obj", v + "f 1//x 2//1 3//1\n"), "is not a normal number"));
   EXPECT_TRUE(refused(folder_.write("two.obj", v + "f 1 2\n"), "fewer than 3 corners"));
   EXPECT_TRUE(refused(folder_.write("word.obj", v + "f 1 2 x\n"), "is not a vertex number"));
   EXPECT_TRUE(refused(folder_.write("nan.obj", "v 0 nan 0\n" + v + "f 1 2 3\n"), "nan.obj:1"));
@@ -240,7 +240,7 @@ TEST_F(Import, FilesOfEveryFormatFromElsewhere) {
   const Case cases[] = {{"PLY/cube.ply", 8, 6, 0},
                         {"PLY/cube_binary.ply", 8, 12, 0},
                         {"OFF/Cube.off", 8, 6, 0},
-                        {"STL/Spider_binary.stl", 722, 1368, -1},
+                        {"STL/Spider_binary.stl", 722, 1312, -1},  // of 1368 facets 56 have two equal corners
                         {"STL/sphereWithHole.stl", 146, 285, 9},
                         {"glTF2/BoxTextured-glTF/BoxTextured.gltf", 24, 12, 24},
                         {"glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf", 24, 12, 24},
@@ -270,7 +270,7 @@ TEST_F(Import, DamagedGltfFromElsewhereIsRefused) {
   EXPECT_TRUE(refused(sample("glTF2/MissingBin/BoxTextured.gltf"), "BoxTextured0.bin"));
   EXPECT_TRUE(refused(sample("glTF2/RecursiveNodes/RecursiveNodes.gltf"), "recursive"));
   EXPECT_TRUE(refused(sample("glTF2/BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb"), "finite"));
-  EXPECT_TRUE(refused(sample("OFF/invalid.off"), "3 corners"));
+  EXPECT_TRUE(refused(sample("OFF/invalid.off"), "breaks off"));
 }
 
 TEST_F(Import, GltfMayNotReachOutOfItsFolder) {

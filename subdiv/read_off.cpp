@@ -1,0 +1,237 @@
+#include "subdiv/read_off.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sdf/color.h"
+#include "sdf/error.h"
+#include "subdiv/repair_faces.h"
+#include "subdiv/text_cursor.h"
+
+namespace limn {
+namespace {
+
+/// What the first word says of each vertex.
+struct Layout {
+  bool texture = false, color = false, normal = false, homogeneous = false, any_dimension = false;
+};
+
+/// [ST][C][N][4][n]OFF, in that order; false for any other word.
+bool read_keyword(std::string_view word, Layout& layout) {
+  const auto take = [&word](std::string_view prefix) {
+    if (!same_word(word.substr(0, prefix.size()), prefix)) return false;
+    word.remove_prefix(prefix.size());
+    return true;
+  };
+  layout.texture = take("ST");
+  layout.color = take("C");
+  // 'N' is for normals, 'n' for the dimension: here the case counts.
+  layout.normal = word.starts_with('N') && (word.remove_prefix(1), true);
+  layout.homogeneous = take("4");
+  layout.any_dimension = word.starts_with('n') && (word.remove_prefix(1), true);
+  return same_word(word, "OFF");
+}
+
+class OffReader {
+ public:
+  OffReader(std::string_view text, const std::string& file, std::int64_t max_elements)
+      : text_(text), file_(file), cursor_(text), most_(std::min<std::int64_t>(max_elements, INT32_MAX)) {}
+
+  Mesh run() {
+    header();
+    vertices();
+    faces();
+    if (cursor_.skip() && edges_ == 0)
+      mesh_.warnings.push_back(fmt::format("line {}: what follows the last of the {} faces that the header announces was ignored",
+                                           line_of(text_, cursor_.at()), face_count_));
+    take_colors();
+    take_normals();
+    repair_faces(mesh_, {.file = file_});
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void refuse(std::string_view value, std::string problem, std::string expected) const {
+    throw InputError({place_in(file_, text_, cursor_.at()), "", shown_word(value), std::move(problem), std::move(expected)});
+  }
+  [[noreturn]] void break_off(const char* what, std::int64_t read, std::int64_t promised) const {
+    throw InputError({file_, what, fmt::format("{}", read), "the file breaks off", fmt::format("{}, as its header says", promised)});
+  }
+
+  void count(std::int64_t more) {
+    elements_ += more;
+    if (elements_ > most_)
+      throw InputError(
+          {file_, "", fmt::format("{}", elements_), "more vertices and corners than allowed", fmt::format("at most {}", most_)});
+  }
+
+  std::int64_t whole(const char* what) {
+    std::int64_t value = 0;
+    if (!cursor_.skip()) throw InputError({file_, "header", "", "the file breaks off within its header", what});
+    if (!cursor_.number(value) || value < 0) {
+      TextCursor ahead = cursor_;
+      refuse(ahead.word(), "is not a count", what);
+    }
+    return value;
+  }
+
+  void header() {
+    TextCursor ahead(text_);
+    const std::string_view word = ahead.word();
+    if (read_keyword(word, layout_)) {
+      cursor_ = ahead;
+      TextCursor next = cursor_;
+      if (same_word(next.word_in_line(), "BINARY"))
+        throw InputError({file_, "", "OFF BINARY", "binary OFF files are not read", "an ASCII OFF file, or a binary PLY"});
+    } else if (word.empty() || word.find_first_not_of("0123456789") != std::string_view::npos) {
+      layout_ = {};
+      throw InputError({place_in(file_, text_, word.empty() ? cursor_.at() : word.data()), "", shown_word(word), "is not an OFF file",
+                        "a first word 'OFF', or one of its kind (COFF, NOFF, STOFF, 4OFF, nOFF)"});
+    } else {
+      layout_ = {};  // Geomview lets the word be absent
+    }
+    if (layout_.any_dimension) dimension_ = whole("the number of dimensions");
+    if (dimension_ < 1 || dimension_ > 3)
+      refuse(fmt::format("{}", dimension_), "vertices with that many coordinates are not read", "1 to 3 dimensions");
+    vertex_count_ = whole("the numbers of vertices, faces and edges");
+    face_count_ = whole("the numbers of vertices, faces and edges");
+    edge_count();
+  }
+
+  /// The number of edges means nothing, and some files leave it out: it is there when it is on the line of the others, or alone on the
+  /// next.
+  void edge_count() {
+    TextCursor ahead = cursor_;
+    const bool same_line = ahead.skip_in_line();
+    if (!ahead.skip()) return;
+    std::int64_t value = 0;
+    if (ahead.number(value) && (same_line || !ahead.skip_in_line())) {
+      cursor_ = ahead;
+      edges_ = value;
+    }
+  }
+
+  void reals(size_t values, std::array<double, 4>& to) {
+    for (size_t i = 0; i < values; ++i) {
+      if (!cursor_.skip()) break_off("vertices", static_cast<std::int64_t>(mesh_.positions.size()), vertex_count_);
+      if (!read_real(cursor_, to[i])) {
+        TextCursor ahead = cursor_;
+        refuse(ahead.word(), "is not a number", "decimal numbers within the range of double precision");
+      }
+    }
+  }
+
+  void vertices() {
+    // A number and a space take two bytes: what announces more than the file can hold is refused before memory is taken.
+    if (vertex_count_ > static_cast<std::int64_t>(text_.size())) break_off("vertices", 0, vertex_count_);
+    count(vertex_count_);
+    mesh_.positions.reserve(static_cast<size_t>(vertex_count_));
+    std::array<double, 4> v{}, extra{};
+    const auto dimension = static_cast<size_t>(dimension_);
+    for (std::int64_t i = 0; i < vertex_count_; ++i) {
+      reals(dimension + (layout_.homogeneous ? 1 : 0), v);
+      const double w = layout_.homogeneous ? v[dimension] : 1.0;
+      mesh_.positions.emplace_back(v[0] / w, dimension > 1 ? v[1] / w : 0.0, dimension > 2 ? v[2] / w : 0.0);
+      if (layout_.normal) {
+        reals(3, extra);
+        normals_.emplace_back(extra[0], extra[1], extra[2]);
+      }
+      if (layout_.color) vertex_color();
+      if (layout_.texture) reals(2, extra);
+    }
+  }
+
+  /// Three or four numbers: how many, the rest of the first vertex's line says.
+  void vertex_color() {
+    if (color_values_ == 0) {
+      TextCursor ahead = cursor_;
+      size_t words = 0;
+      while (!ahead.word_in_line().empty()) ++words;
+      color_values_ = words - std::min<size_t>(words, layout_.texture ? 2 : 0) == 3 ? 3 : 4;
+    }
+    std::array<double, 4> rgba{};
+    reals(color_values_, rgba);
+    for (size_t k = 0; k < 3; ++k) largest_color_ = std::max(largest_color_, rgba[k]);
+    colors_.emplace_back(rgba[0], rgba[1], rgba[2]);
+  }
+
+  void faces() {
+    if (face_count_ > static_cast<std::int64_t>(text_.size())) break_off("faces", 0, face_count_);
+    mesh_.face_sizes.reserve(static_cast<size_t>(face_count_));
+    for (std::int64_t i = 0; i < face_count_; ++i) {
+      const std::int64_t corners = corner_number(i, "is not a number of corners", 0);
+      count(corners);
+      for (std::int64_t k = 0; k < corners; ++k) {
+        const std::int64_t v = corner_number(i, "is not a vertex number", INT64_MIN);
+        mesh_.corner_vertices.push_back(static_cast<std::int32_t>(std::clamp<std::int64_t>(v, -1, INT32_MAX)));
+      }
+      mesh_.face_sizes.push_back(static_cast<std::int32_t>(corners));
+      // The rest of the line is the face's colour.
+      while (cursor_.skip_in_line()) face_color_word();
+    }
+  }
+
+  std::int64_t corner_number(std::int64_t face, const char* problem, std::int64_t least) {
+    std::int64_t value = 0;
+    if (!cursor_.skip()) break_off("faces", face, face_count_);
+    if (!cursor_.number(value) || value < least) {
+      TextCursor ahead = cursor_;
+      refuse(ahead.word(), problem, "whole numbers: a face's number of corners, and its vertices counted from 0");
+    }
+    return value;
+  }
+
+  void face_color_word() {
+    double ignored = 0.0;
+    TextCursor ahead = cursor_;
+    if (!read_real(cursor_, ignored)) refuse(ahead.word(), "is not part of a colour", "numbers, or the end of the line");
+  }
+
+  /// Whole numbers up to 255, or real ones up to 1; both as a screen shows them.
+  void take_colors() {
+    const double largest = largest_color_ > 1.0 ? 255.0 : 1.0;
+    for (const glm::dvec3& color : colors_) {
+      glm::vec3 linear;
+      for (int k = 0; k < 3; ++k) {
+        const double shown = color[k] / largest;
+        linear[k] = linear_from_srgb(static_cast<float>(std::isfinite(shown) ? std::clamp(shown, 0.0, 1.0) : 1.0));
+      }
+      mesh_.vertex_colors.push_back(linear);
+    }
+  }
+
+  void take_normals() {
+    if (normals_.empty()) return;
+    mesh_.corner_normals.reserve(mesh_.corner_vertices.size());
+    for (const std::int32_t v : mesh_.corner_vertices) {
+      const bool there = v >= 0 && static_cast<size_t>(v) < normals_.size();
+      const glm::vec3 n = there ? normals_[static_cast<size_t>(v)] : glm::vec3(0.0f);
+      const float length = glm::length(n);
+      mesh_.corner_normals.push_back(length > 0.0f && std::isfinite(length) ? n / length : glm::vec3(0.0f));
+    }
+  }
+
+  std::string_view text_;
+  const std::string& file_;
+  TextCursor cursor_;
+  std::int64_t most_, elements_ = 0;
+  Layout layout_{};
+  std::int64_t dimension_ = 3, vertex_count_ = 0, face_count_ = 0, edges_ = 0;
+  size_t color_values_ = 0;
+  double largest_color_ = 0.0;
+  std::vector<glm::dvec3> colors_{};
+  std::vector<glm::vec3> normals_{};
+  Mesh mesh_{};
+};
+
+}  // namespace
+
+Mesh parse_off(std::string_view bytes, const std::string& file, std::int64_t max_elements) {
+  std::string converted;
+  return OffReader(plain_text(bytes, converted), file, max_elements).run();
+}
+
+}  // namespace limn

@@ -29,8 +29,9 @@ bool is_concerned(const AuditCheck& check, const AuditSettings& settings) {
 
 std::span<const AuditCheck> audit_checks() {
   static const std::vector<AuditCheck> checks = {
-      field_traits_check(),     slope_check(),  band_check(),          parts_check(),     open_edges_check(), orientation_check(),
-      degenerate_faces_check(), sliver_check(), extraordinary_check(), precision_check(), thin_check(),       flat_check(),
+      file_check(),        field_traits_check(),     slope_check(),  band_check(),          parts_check(),     open_edges_check(),
+      orientation_check(), degenerate_faces_check(), sliver_check(), extraordinary_check(), precision_check(), thin_check(),
+      flat_check(),
   };
   return checks;
 }

@@ -4,6 +4,7 @@
 
 namespace limn {
 
+AuditCheck file_check();
 AuditCheck field_traits_check();
 AuditCheck slope_check();
 AuditCheck band_check();

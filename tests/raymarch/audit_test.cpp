@@ -112,6 +112,18 @@ TEST(Audit, ChecksHaveNamesAndHelpAndCleanInputGivesNoWarning) {
   EXPECT_EQ(warnings_of(object_of(make_shape("ellipsoid", {})), surfaces), Names{});
 }
 
+TEST(Audit, WhatAReaderRepairedIsSaidForEverySurfaceAndMethod) {
+  Mesh mesh = test::cube();
+  mesh.warnings = {"2 faces name a vertex that is not there: dropped", "7 normals: ignored"};
+  std::vector<Finding> found = audit(object_of(mesh), {});
+  std::erase_if(found, [](const Finding& finding) { return finding.check != "file"; });
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[1].message, mesh.warnings[1]);
+  EXPECT_FALSE(found[0].remedy.empty());
+  const Names grid{"mesh_level_set"}, blur{"blur"};
+  EXPECT_TRUE(matters(found[0], grid, blur));
+}
+
 TEST(Audit, WhatIsWrongIsSaidWithAMessageAndARemedyAndForWhom) {
   Mesh open = test::cube();
   open.face_sizes.pop_back(), open.corner_vertices.resize(20);

@@ -207,7 +207,7 @@ std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
 void write_exr(const Picture& picture, const Camera& camera, const std::string& call, const std::filesystem::path& file,
                std::span<const NamedLayer> layers) {
   if (extension_of(file) != ".exr") {
-    throw InputError({file.string(), {}, extension_of(file), "unknown extension for all layers", "known: .exr"});
+    throw InputError({file.string(), {}, extension_of(file), "unknown extension for all layers", ".exr"});
   }
   std::vector<Channel> channels = channels_of(picture);
   for (const NamedLayer& layer : layers) add_layer(channels, layer);

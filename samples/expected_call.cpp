@@ -98,9 +98,9 @@ std::string what_would_do(const Scene& scene, const SurfaceSettings& settings, c
   const bool model = time ? cost.time_ms > 2.0 * load.other_ms : cost.model_bytes > cost.picture_bytes;
   while (shrink(scene, model, kinds, smaller)) {
     cost = largest(scene, smaller.settings, smaller.load, kinds);
-    if (limit.holds(cost)) return fmt::format("{} would take about {}", smaller.words, cost_text(cost, time));
+    if (limit.holds(cost)) return fmt::format("; {} needs about {}", smaller.words, cost_text(cost, time));
   }
-  return time ? "more time would be right" : "more memory would be right";
+  return "";
 }
 
 }  // namespace
@@ -141,14 +141,16 @@ void check_limits(const Options& options, const Scene& scene, const SurfaceSetti
                     options.max_time_ms.value_or(std::numeric_limits<double>::infinity())};
   if (limit.holds(cost)) return;
   if (cost.bytes() > limit.bytes) {
-    const std::string who = options.max_memory ? "which allows " : "the machine has ";
-    throw InputError({"", options.max_memory ? "--max-memory" : "", "",
-                      fmt::format("the call would take about {}, {}{}", bytes_text(cost.bytes()), who, bytes_text(limit.bytes)),
-                      what_would_do(scene, settings, load, kinds, limit, false)});
+    const std::string who = options.max_memory ? "--max-memory allows" : "the machine has";
+    throw InputError({"", "", "",
+                      fmt::format("the call needs about {}; {} {}{}", bytes_text(cost.bytes()), who, bytes_text(limit.bytes),
+                                  what_would_do(scene, settings, load, kinds, limit, false)),
+                      ""});
   }
-  throw InputError({"", "--max-time", "",
-                    fmt::format("the call would take about {}, which allows {}", time_text(cost.time_ms), time_text(limit.time_ms)),
-                    what_would_do(scene, settings, load, kinds, limit, true)});
+  throw InputError({"", "", "",
+                    fmt::format("the call needs about {}; --max-time allows {}{}", time_text(cost.time_ms), time_text(limit.time_ms),
+                                what_would_do(scene, settings, load, kinds, limit, true)),
+                    ""});
 }
 
 }  // namespace limn

@@ -26,12 +26,12 @@ struct Placement {
 Placement read_transform(TomlReader& reader) {
   Placement placement;
   if (const auto by = reader.vector3("translate")) placement.translation = *by;
-  if (const auto turn = reader.numbers("rotate", 4, "[axis x, axis y, axis z, degrees] would be right")) {
+  if (const auto turn = reader.numbers("rotate", 4, "[axis x, axis y, axis z, degrees]")) {
     placement.axis = {(*turn)[0], (*turn)[1], (*turn)[2]};
     placement.angle = (*turn)[3] * std::numbers::pi / 180.0;
     if (!(glm::length(placement.axis) > 0.0) || !std::isfinite(glm::length(placement.axis)) || !std::isfinite(placement.angle)) {
       reader.fail(*reader.take("rotate"), "rotate", "the axis has no length, or a number is not finite",
-                  "an axis such as [0, 1, 0, degrees] would be right");
+                  "an axis such as [0, 1, 0, degrees]");
     }
   }
   const toml::node* scale = reader.take("scale");
@@ -80,10 +80,9 @@ Field read_vm_file(TomlReader& reader, const VmReader& read_vm) {
 
 Field read_csg(TomlReader& reader, const VmReader& read_vm) {
   const Csg operation = read_operation(reader);
-  const double smooth =
-      reader.number("smooth", 0.0, kInfinity, "the blend's radius, 0 or more in world units, would be right").value_or(0.0);
+  const double smooth = reader.number("smooth", 0.0, kInfinity, "the blend's radius, 0 or more in world units").value_or(0.0);
   const auto tables = reader.tables("of");
-  if (tables.empty()) reader.fail("csg without of", "of = [ { shape = … }, … ] would be right");
+  if (tables.empty()) reader.fail("csg without of", "of = [ { shape = … }, … ]");
   std::vector<Field> fields;
   for (size_t i = 0; i < tables.size(); ++i) {
     TomlReader item(*tables[i], reader.file(), reader.field(fmt::format("of[{}].", i)));
@@ -101,8 +100,8 @@ Field read_parts(TomlReader& reader, const VmReader& read_vm) {
   const int kinds = (reader.has("shape") ? 1 : 0) + (reader.has("csg") ? 1 : 0) + (reader.has("vm") ? 1 : 0);
   if (kinds != 1) reader.fail(kinds > 1 ? "more than one of shape, csg and vm" : "none of shape, csg and vm", "exactly one of them");
   Field field = reader.has("shape") ? read_shape(reader) : reader.has("vm") ? read_vm_file(reader, read_vm) : read_csg(reader, read_vm);
-  if (const auto by = reader.number("grow", -kInfinity, kInfinity, "a length in world units would be right")) field = offset(field, *by);
-  if (const auto thickness = reader.number_between("shell", 0.0, kInfinity, "a thickness above 0 in world units would be right")) {
+  if (const auto by = reader.number("grow", -kInfinity, kInfinity, "a length in world units")) field = offset(field, *by);
+  if (const auto thickness = reader.number_between("shell", 0.0, kInfinity, "a thickness above 0 in world units")) {
     field = shell(field, *thickness);
   }
   return place(field, read_transform(reader));

@@ -14,7 +14,7 @@
 namespace limn {
 namespace {
 
-constexpr const char* kExpected = "a scene (.toml), a mesh (.obj .ply .stl .off .gltf .glb), a volume (.vdb) or a formula (.vm)";
+constexpr const char* kExpected = "a scene .toml, a mesh .obj .ply .stl .off .gltf .glb, a volume .vdb or a formula .vm";
 
 std::string extension_of(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -75,7 +75,7 @@ SceneInput load_input(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   const InputKind kind = input_kind(options.input);
   if (!options.grids.empty() && kind != InputKind::level_set) {
-    throw InputError({"", "--grid", options.grids.front(), "the input has no grids", "a .vdb would be right"});
+    throw InputError({"", "--grid", options.grids.front(), "the input has no grids", "a volume .vdb as INPUT"});
   }
   SceneInput input;
   switch (kind) {

@@ -56,8 +56,8 @@ void limit_memory(const Options& options) {
   const double wanted = static_cast<double>(*options.max_memory);
   const double resident = 1024.0 * number_in("/proc/self/status", "VmRSS:"), data = 1024.0 * number_in("/proc/self/status", "VmData:");
   if (wanted < resident + kLeastBytes) {
-    throw InputError({"", "--max-memory", bytes_text(wanted), fmt::format("the program itself takes {}", bytes_text(resident)),
-                      fmt::format("{} and more would be right", bytes_text(std::ceil((resident + kLeastBytes) / 1e7) * 1e7))});
+    throw InputError({"", "--max-memory", bytes_text(wanted), fmt::format("too little; the program itself takes {}", bytes_text(resident)),
+                      fmt::format("at least {}", bytes_text(std::ceil((resident + kLeastBytes) / 1e7) * 1e7))});
   }
   if (!kAddressSpaceCanBeLimited || !std::isfinite(data)) return;
   const double stacks = 2.0 * kStackBytes * std::max(1u, std::thread::hardware_concurrency());
@@ -83,12 +83,12 @@ std::int64_t model_bytes_left(const Options& options, double picture_bytes) {
 
 void hold_limits(const Options& options, bool goes_on) {
   if (options.max_time_ms) stop_after(*options.max_time_ms, fmt::format("--max-time: stopped after {}", time_text(*options.max_time_ms)));
-  const std::string less = "fewer voxels, a lower level or a smaller picture take less";
+  const std::string less = "use fewer voxels, a lower level or a smaller picture";
   if (options.max_memory) limit_memory(options);
   if (goes_on) return;
-  end_when_out_of_memory(options.max_memory
-                             ? fmt::format("--max-memory: {} were reached; {}", bytes_text(static_cast<double>(*options.max_memory)), less)
-                             : "out of memory; " + less);
+  end_when_out_of_memory(options.max_memory ? fmt::format("--max-memory: the limit of {} was reached; {}",
+                                                          bytes_text(static_cast<double>(*options.max_memory)), less)
+                                            : "out of memory; " + less);
 }
 
 }  // namespace limn

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "limn: %s\n", error.what());
     return 2;
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "limn: out of memory; fewer voxels or levels need less\n");
+    std::fprintf(stderr, "limn: out of memory; use fewer voxels or a lower level\n");
   } catch (const std::exception& error) {
     if (limn::interrupted()) return limn::interrupt_exit_code();
     std::fprintf(stderr, "limn: %s\n", error.what());

@@ -20,7 +20,7 @@ constexpr const char* kStudy = "Study";
 constexpr const char* kPlan = "Plan";
 constexpr const char* kOutput = "Output";
 constexpr const char* kExecution = "Execution (never changes a pixel)";
-constexpr const char* kLimits = "Limits (estimates are right to a factor of two; beyond a limit the exit code is 2 beforehand, 1 later)";
+constexpr const char* kLimits = "Limits (estimates are within a factor of two; predicted overruns exit with 2, actual ones with 1)";
 
 struct OptionText {
   const char* flags;
@@ -29,7 +29,7 @@ struct OptionText {
   const char* group;
 };
 
-// One argument, handed to `read` as text, so that every complaint is ours: one line that says what would be right.
+// One argument, handed to `read` as text, so that every complaint is ours: one line that says what is expected.
 CLI::Option* add(CLI::App& app, const OptionText& text, std::function<void(const std::string&)> read) {
   CLI::Option* option = app.add_option_function<std::string>(text.flags, std::move(read), text.help);
   option->type_name(text.value)->group(text.group)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
@@ -84,7 +84,7 @@ void add_input(CLI::App& app, Options& options) {
 void add_output(CLI::App& app, Options& options, const std::string& what, bool repeatable) {
   const OptionText text{"-o,--output", "OUT", what.c_str(), kOutput};
   const auto read = [&options](const std::string& value) {
-    if (value.empty()) throw InputError({"", "--output", "nothing", "no file name", "a path would be right"});
+    if (value.empty()) throw InputError({"", "--output", "nothing", "no file name", "a path"});
     options.outputs.emplace_back(value);
   };
   if (repeatable)
@@ -132,12 +132,12 @@ void add_frames(CLI::App& app, Options& options) {
   frames->excludes(app.get_option("--views"));
   add(app, {"--path-step", "PX", "how far the picture moves from frame to frame, pixels, above 0 up to 1; default 0.1", kCamera},
       [&options](const std::string& text) {
-        const char* const right = "above 0 and up to 1 pixel would be right";
+        const char* const right = "above 0 and up to 1 pixel";
         options.frames.step_px = parse_number_above("--path-step", text, 0.0, false, right);
         if (options.frames.step_px > 1.0) throw InputError({"", "--path-step", text, "out of range", right});
       })
       ->needs(frames);
-  add(app, {"--seed", "N", "of that wander, 0..2147483647; default 1", kCamera}, [&options](const std::string& text) {
+  add(app, {"--seed", "N", "random seed of the camera path, 0..2147483647; default 1", kCamera}, [&options](const std::string& text) {
     options.frames.seed = static_cast<std::uint64_t>(parse_integer("--seed", text, 0, std::numeric_limits<int>::max()));
   })->needs(frames);
 }
@@ -153,7 +153,7 @@ namespace {
 void add_fixed_surface(CLI::App& app, Options& options) {
   add(app, {"--half-width", "VOXELS", "half width of the narrow band, voxels, at least 1.8; default: what the gradient needs", kSurface},
       [&options](const std::string& text) {
-        options.half_width_voxels = parse_number_above("--half-width", text, 1.8, true, "at least 1.8 voxels would be right");
+        options.half_width_voxels = parse_number_above("--half-width", text, 1.8, true, "at least 1.8 voxels");
       });
   add(app,
       {"--scheme", "NAME", "catmark, loop or bilinear; default: the scene's, else loop for triangles, catmark for all others", kSurface},
@@ -193,7 +193,7 @@ void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& need
                      [&options](const std::string& text) { options.voxels = parse_integer("--voxels", text, 4, 8192); });
   auto* voxel_size =
       add(app, {"--voxel-size", "H", "side of a voxel, world units; instead of --voxels", kSurface}, [&options](const std::string& text) {
-        options.voxel_size = parse_number_above("--voxel-size", text, 0.0, false, "a length above 0 in world units would be right");
+        options.voxel_size = parse_number_above("--voxel-size", text, 0.0, false, "a length above 0 in world units");
       });
   voxels->excludes(voxel_size);
   add(app, {"--gradient", "NAME", "how normals are read from a level set (limn list gradients); default central", kSurface},
@@ -238,7 +238,7 @@ void add_border(CLI::App& app, Options& options, bool compared) {
       [&options](const std::string& text) {
         const glm::dvec3 color = parse_vector3("--background", text);
         if (glm::any(glm::lessThan(color, glm::dvec3(0.0))))
-          throw InputError({"", "--background", text, "out of range", "three numbers from 0 up would be right"});
+          throw InputError({"", "--background", text, "out of range", "three numbers from 0 up"});
         options.background = color;
       });
 }
@@ -320,7 +320,7 @@ void add_plan(CLI::App& app, Options& options) {
       {"--tolerance", "PX",
        "how far the border may lie from the true one, pixels, above 0: 95 % of it lies within; picks the cheapest model", kPlan},
       [&plan](const std::string& text) {
-        plan.tolerance_px = parse_number_above("--tolerance", text, 0.0, false, "a number of pixels above 0 would be right");
+        plan.tolerance_px = parse_number_above("--tolerance", text, 0.0, false, "a number of pixels above 0");
       });
   add(app, {"--metric", "NAME", "what has to be right: border (the rim's ink, inside and outside) or silhouette; default border", kPlan},
       [&plan](const std::string& text) { plan.silhouette = parse_plan_metric("--metric", text); });

@@ -26,11 +26,10 @@ void check_place(const fs::path& file) {
   std::error_code ignored;
   while (!fs::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();
   if (!fs::is_directory(folder, ignored)) {
-    throw InputError({file.string(), "--output", "", folder.string() + " is not a folder", "a path below a folder would be right"});
+    throw InputError({file.string(), "--output", "", folder.string() + " is not a folder", "a path below a folder"});
   }
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw InputError(
-        {file.string(), "--output", "", folder.string() + " cannot be written to", "a folder that you may write to would be right"});
+    throw InputError({file.string(), "--output", "", folder.string() + " cannot be written to", "a folder that you may write to"});
   }
 }
 
@@ -47,14 +46,14 @@ std::string ending_of(const fs::path& file) {
 void check_output_file(const fs::path& file, const Options& options, const std::vector<std::string>& endings) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) {
-    throw InputError({file.string(), "--output", "", "is a folder", "a file ending in one of " + joined(endings) + " would be right"});
+    throw InputError({file.string(), "--output", "", "is a folder", "a file ending in one of " + joined(endings)});
   }
   if (std::find(endings.begin(), endings.end(), ending_of(file)) == endings.end()) {
     throw InputError({file.string(), "--output", file.extension().string().empty() ? "no ending" : file.extension().string(),
-                      "unknown kind of file", "one of " + joined(endings) + " would be right"});
+                      "unknown kind of file", "one of " + joined(endings)});
   }
   if (options.no_clobber && fs::exists(file, ignored)) {
-    throw InputError({file.string(), "--no-clobber", "", "exists already", "another name, or no --no-clobber, would be right"});
+    throw InputError({file.string(), "--no-clobber", "", "exists already; choose another name, or leave out --no-clobber", ""});
   }
   check_place(file);
 }
@@ -62,11 +61,11 @@ void check_output_file(const fs::path& file, const Options& options, const std::
 void check_output_folder(const fs::path& folder, const Options& options) {
   std::error_code ignored;
   if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored)) {
-    throw InputError({folder.string(), "--output", "", "is a file", "a folder would be right"});
+    throw InputError({folder.string(), "--output", "", "is a file", "a folder"});
   }
   if (options.no_clobber && fs::exists(folder, ignored) && !fs::is_empty(folder, ignored)) {
     throw InputError(
-        {folder.string(), "--no-clobber", "", "exists already and is not empty", "another name, or no --no-clobber, would be right"});
+        {folder.string(), "--no-clobber", "", "exists already and is not empty; choose another name, or leave out --no-clobber", ""});
   }
   check_place(folder / "file");
 }
@@ -79,7 +78,9 @@ void print_json(const Json& document) { print_text(document.dump(2, ' ', false, 
 
 void print_note(const std::string& text) {
   std::string line = text;
-  std::replace(line.begin(), line.end(), '\n', ' ');
+  // Names of objects and files may hold anything, a terminal's commands too.
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) < ' ' && c != '\t') || c == '\x7f'; }, ' ');
   std::fprintf(stderr, "limn: %s\n", line.c_str());
 }
 

@@ -39,8 +39,8 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 
 double parse_number(const std::string& field, std::string_view text) {
   const auto value = to_number(text);
-  if (!value) fail(field, text, "not a number", "a number such as 0.5 would be right");
-  if (!std::isfinite(*value)) fail(field, text, "not finite", "a finite number would be right");
+  if (!value) fail(field, text, "not a number", "a number such as 0.5");
+  if (!std::isfinite(*value)) fail(field, text, "not finite", "a finite number");
   return *value;
 }
 
@@ -51,7 +51,7 @@ double parse_number_above(const std::string& field, std::string_view text, doubl
 }
 
 int parse_integer(const std::string& field, std::string_view text, int min, int max) {
-  const std::string expected = fmt::format("a whole number from {} to {} would be right", min, max);
+  const std::string expected = fmt::format("a whole number from {} to {}", min, max);
   const auto value = to_number(text);
   if (!value || !std::isfinite(*value) || *value != std::floor(*value)) fail(field, text, "not a whole number", expected);
   if (*value < min || *value > max) fail(field, text, "out of range", expected);
@@ -60,19 +60,19 @@ int parse_integer(const std::string& field, std::string_view text, int min, int 
 
 glm::dvec3 parse_vector3(const std::string& field, std::string_view text) {
   const auto parts = split(text, ',');
-  if (parts.size() != 3) fail(field, text, "not a vector", "three numbers such as 1,0.5,-2 would be right");
+  if (parts.size() != 3) fail(field, text, "not a vector", "three numbers such as 1,0.5,-2");
   return {parse_number(field, parts[0]), parse_number(field, parts[1]), parse_number(field, parts[2])};
 }
 
 glm::ivec2 parse_size(const std::string& field, std::string_view text) {
   const auto parts = split(text, 'x');
-  if (parts.size() != 2) fail(field, text, "not a size", "WxH in pixels such as 1280x720 would be right");
+  if (parts.size() != 2) fail(field, text, "not a size", "WxH in pixels such as 1280x720");
   return {parse_integer(field, parts[0], 1, 16384), parse_integer(field, parts[1], 1, 16384)};
 }
 
 KeyValue parse_key_value(const std::string& field, std::string_view text) {
   const size_t at = text.find('=');
-  if (at == std::string_view::npos || at == 0) fail(field, text, "not a pair", "key=value such as threshold=0.4 would be right");
+  if (at == std::string_view::npos || at == 0) fail(field, text, "not a pair", "key=value such as threshold=0.4");
   return {std::string(text.substr(0, at)), std::string(text.substr(at + 1))};
 }
 
@@ -119,26 +119,26 @@ std::vector<double> parse_thresholds(const std::string& field, const std::string
   std::set<double> all;
   for (const std::string& part : parse_names(text)) {
     const double value = parse_number(field, part);
-    if (value < 0.0 || value >= 1.0) fail(field, part, "out of range", "numbers from 0 up and below 1, such as 0.2,0.4, would be right");
+    if (value < 0.0 || value >= 1.0) fail(field, part, "out of range", "numbers from 0 up and below 1, such as 0.2,0.4");
     all.insert(value);
   }
   return {all.begin(), all.end()};
 }
 
 std::int64_t parse_bytes(const std::string& field, const std::string& text) {
-  const std::string expected = "a size such as 500M, 4G or 2000000 would be right";
+  const std::string expected = "a size such as 500M, 4G or 2000000";
   const std::string_view units = "kMGT";
   const size_t unit = text.empty() ? std::string_view::npos : units.find(text.back());
   const bool has_unit = unit != std::string_view::npos;
   const auto value = to_number(has_unit ? std::string_view(text).substr(0, text.size() - 1) : std::string_view(text));
   if (!value || !std::isfinite(*value)) fail(field, text, "not a size in bytes", expected);
   const double bytes = *value * (has_unit ? std::pow(1000.0, static_cast<double>(unit) + 1.0) : 1.0);
-  if (bytes < 1e6 || bytes > 1e18) fail(field, text, "out of range", "1M and more would be right");
+  if (bytes < 1e6 || bytes > 1e18) fail(field, text, "out of range", "at least 1M");
   return static_cast<std::int64_t>(bytes);
 }
 
 double parse_milliseconds(const std::string& field, const std::string& text) {
-  const std::string expected = "a time such as 200ms, 90s, 10m or 2h would be right";
+  const std::string expected = "a time such as 200ms, 90s, 10m or 2h";
   const std::pair<const char*, double> units[] = {{"ms", 1.0}, {"s", 1e3}, {"m", 6e4}, {"h", 3.6e6}};
   for (const auto& [unit, milliseconds] : units) {
     if (!text.ends_with(unit)) continue;
@@ -157,7 +157,7 @@ bool parse_plan_metric(const std::string& field, const std::string& text) {
 
 std::pair<int, int> parse_shard(const std::string& field, const std::string& text) {
   const auto parts = split(text, '/');
-  if (parts.size() != 2) fail(field, text, "not a part", "I/N such as 2/8, the second part of eight, would be right");
+  if (parts.size() != 2) fail(field, text, "not a part", "I/N such as 2/8, the second part of eight");
   const int count = parse_integer(field, parts[1], 1, 10'000);
   return {parse_integer(field, parts[0], 1, count), count};
 }

@@ -47,19 +47,23 @@ std::vector<std::string> command_names() {
     const std::vector<std::string> known = option_names(chosen.empty() ? app : *chosen.front());
     const std::string near = nearest_name(name, known);
     const std::string command = chosen.empty() ? std::string() : chosen.front()->get_name() + " ";
-    throw InputError({"", name, "", "unknown option",
-                      (near.empty() ? "" : "did you mean '" + near + "'? ") + "limn " + command + "--help names them all"});
+    throw InputError({"", name, "",
+                      "unknown option" + (near.empty() ? "" : "; did you mean '" + near + "'?") + " (limn " + command + "--help lists all)",
+                      ""});
   }
   if (chosen.empty()) throw InputError({"", extra, "", "unknown command", known_names(extra, command_names())});
+  const CLI::App& command = *chosen.front();
+  const auto positional = command.get_options([](const CLI::Option* option) { return option->get_positional(); });
+  LIMN_CHECK(!positional.empty());
   throw InputError(
-      {"", extra, "", "one argument too many", "one call takes one; limn " + chosen.front()->get_name() + " --help says which"});
+      {"", extra, "", "unexpected argument; limn " + command.get_name() + " takes one " + positional.front()->get_single_name(), ""});
 }
 
 // CLI11's own complaints that are left: missing values, missing arguments, options that exclude each other.
 [[noreturn]] void refuse(const CLI::App& app, const CLI::ParseError& error) {
   const auto chosen = app.get_subcommands();
   const std::string command = chosen.empty() ? std::string() : chosen.front()->get_name() + " ";
-  throw InputError({"", "", "", error.what(), "limn " + command + "--help shows the usage"});
+  throw InputError({"", "", "", std::string(error.what()) + " (limn " + command + "--help shows the usage)", ""});
 }
 
 // What is refused deep down, where nobody knows of files, is said of the file that was given.

@@ -25,15 +25,15 @@ CameraSettings read_camera(TomlReader& reader) {
   camera.eye = reader.vector3("eye");
   camera.target = reader.vector3("target");
   if (const auto up = reader.vector3("up")) camera.up = *up;
-  if (const auto fov = reader.number_between("fov", 0.0, 180.0, "degrees above 0 and below 180 would be right")) {
+  if (const auto fov = reader.number_between("fov", 0.0, 180.0, "degrees above 0 and below 180")) {
     camera.vertical_fov = *fov * std::numbers::pi / 180.0;
   }
-  if (const auto height = reader.number_between("ortho", 0.0, kInfinity, "the picture's height, above 0 in world units, would be right")) {
-    if (reader.has("fov")) reader.fail("both fov and ortho", "one of the two would be right");
+  if (const auto height = reader.number_between("ortho", 0.0, kInfinity, "the picture's height, above 0 in world units")) {
+    if (reader.has("fov")) reader.fail("both fov and ortho", "one of the two");
     camera.projection = Projection::orthographic;
     camera.ortho_height = *height;
   }
-  const std::string size_expected = "[width, height] in whole pixels, 1 to 16384 each, would be right";
+  const std::string size_expected = "[width, height] in whole pixels, 1 to 16384 each";
   if (const auto size = reader.numbers("size", 2, size_expected)) {
     for (const double side : *size) {
       if (side < 1.0 || side > 16384.0 || side != std::floor(side))
@@ -52,9 +52,9 @@ SurfaceDefaults read_surface(TomlReader& reader) {
   surface.kind = reader.text("kind");
   if (surface.kind) find_surface(*surface.kind, place("kind"), "surface.kind");
   surface.voxels = reader.integer("voxels", 4, 8192);
-  surface.voxel_size = reader.number_between("voxel_size", 0.0, kInfinity, "a length above 0 in world units would be right");
-  if (surface.voxels && surface.voxel_size) reader.fail("both voxels and voxel_size", "one of the two would be right");
-  surface.half_width_voxels = reader.number("half_width", 1.8, kInfinity, "at least 1.8 voxels would be right");
+  surface.voxel_size = reader.number_between("voxel_size", 0.0, kInfinity, "a length above 0 in world units");
+  if (surface.voxels && surface.voxel_size) reader.fail("both voxels and voxel_size", "one of the two");
+  surface.half_width_voxels = reader.number("half_width", 1.8, kInfinity, "at least 1.8 voxels");
   surface.gradient = reader.text("gradient");
   if (surface.gradient) find_gradient(*surface.gradient, place("gradient"), "surface.gradient");
   surface.level = reader.integer("level", 0, 8);
@@ -113,7 +113,7 @@ SceneObject read_object(TomlReader& reader, const SceneReaders& readers, size_t 
   for (const char* key : {"shape", "csg", "vm", "mesh", "vdb"}) kinds += reader.has(key) ? 1 : 0;
   if (kinds != 1) {
     reader.fail(kinds == 0 ? "no shape, csg, vm, mesh or vdb" : "more than one of shape, csg, vm, mesh and vdb",
-                "exactly one of them says what the object is");
+                "exactly one of them");
   }
   std::optional<int> level;
   Affine world_from_object;
@@ -138,7 +138,7 @@ std::string read_text(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
-  if (!stream) throw InputError({file.string(), "", "", "cannot be read", "a readable scene file would be right"});
+  if (!stream) throw InputError({file.string(), "", "", "cannot be read", "a readable scene file"});
   return text.str();
 }
 
@@ -156,7 +156,7 @@ SceneInput parse_scene_file(const std::string& text, const std::filesystem::path
   const auto single = [&reader](const std::string& key) -> const toml::table* {
     const toml::node* node = reader.take(key);
     if (node == nullptr) return nullptr;
-    if (!node->is_table()) reader.fail(*node, key, "not a table", "[" + key + "] would be right");
+    if (!node->is_table()) reader.fail(*node, key, "not a table", "[" + key + "]");
     return node->as_table();
   };
   const toml::table* camera = single("camera");
@@ -164,7 +164,7 @@ SceneInput parse_scene_file(const std::string& text, const std::filesystem::path
   const auto borders = reader.tables("border");
   const auto objects = reader.tables("object");
   reader.finish();
-  if (objects.empty()) throw InputError({file.string(), "object", "", "no objects", "at least one [[object]] would be right"});
+  if (objects.empty()) throw InputError({file.string(), "object", "", "no objects", "at least one [[object]]"});
 
   if (camera != nullptr) {
     TomlReader table(*camera, file.string(), "camera.");

@@ -13,8 +13,7 @@ toml::table parse_toml(const std::string& text, const std::string& file) {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
-    throw InputError(
-        {fmt::format("{}:{}:{}", file, at.line, at.column), "", "", std::string(error.description()), "valid TOML would be right"});
+    throw InputError({fmt::format("{}:{}:{}", file, at.line, at.column), "", "", std::string(error.description()), "valid TOML"});
   }
 }
 
@@ -95,7 +94,7 @@ std::optional<std::string> TomlReader::text(const std::string& key) {
   const toml::node* node = take(key);
   if (node == nullptr) return std::nullopt;
   const auto* value = node->as_string();
-  if (value == nullptr) fail(*node, key, "not text", "a word in quotes would be right");
+  if (value == nullptr) fail(*node, key, "not text", "a word in quotes");
   return value->get();
 }
 
@@ -117,7 +116,7 @@ std::optional<double> TomlReader::number_between(const std::string& key, double 
 std::optional<int> TomlReader::integer(const std::string& key, int min, int max) {
   const toml::node* node = take(key);
   if (node == nullptr) return std::nullopt;
-  const std::string expected = fmt::format("a whole number from {} to {} would be right", min, max);
+  const std::string expected = fmt::format("a whole number from {} to {}", min, max);
   const auto value = finite_number(*node);
   if (!value || *value != std::floor(*value)) fail(*node, key, "not a whole number", expected);
   if (*value < min || *value > max) fail(*node, key, "out of range", expected);
@@ -136,13 +135,13 @@ std::optional<std::vector<double>> TomlReader::numbers(const std::string& key, s
 }
 
 std::optional<glm::dvec3> TomlReader::vector3(const std::string& key) {
-  const auto values = numbers(key, 3, "[x, y, z] would be right");
+  const auto values = numbers(key, 3, "[x, y, z]");
   if (!values) return std::nullopt;
   return glm::dvec3((*values)[0], (*values)[1], (*values)[2]);
 }
 
 std::optional<glm::vec3> TomlReader::color(const std::string& key) {
-  const std::string expected = "[r, g, b], linear, each from 0 up, would be right";
+  const std::string expected = "[r, g, b], linear, each from 0 up";
   const auto values = numbers(key, 3, expected);
   if (!values) return std::nullopt;
   if (std::any_of(values->begin(), values->end(), [](double c) { return c < 0.0 || c > 1e6; })) {
@@ -159,11 +158,11 @@ std::vector<const toml::table*> TomlReader::tables(const std::string& key) {
   const toml::array* array = node->as_array();
   if (array != nullptr) {
     for (const toml::node& item : *array) {
-      if (!item.is_table()) fail(item, key, "not a table", "{ key = value, … } would be right");
+      if (!item.is_table()) fail(item, key, "not a table", "{ key = value, … }");
       found.push_back(item.as_table());
     }
   }
-  if (found.empty()) fail(*node, key, "not a table or an array of tables", "[" + key + "] or [[" + key + "]] would be right");
+  if (found.empty()) fail(*node, key, "not a table or an array of tables", "[" + key + "] or [[" + key + "]]");
   return found;
 }
 
@@ -175,10 +174,10 @@ ParameterInput parameter_input(const TomlReader& reader, const std::string& key,
   } else if (const auto* flag = node.as_boolean()) {
     input.numbers = {flag->get() ? 1.0 : 0.0};
   } else if (const toml::array* array = node.as_array()) {
-    if (!flatten(*array, input.numbers)) reader.fail(node, key, "not finite numbers", "an array of finite numbers would be right");
+    if (!flatten(*array, input.numbers)) reader.fail(node, key, "not finite numbers", "an array of finite numbers");
   } else {
     const auto value = finite_number(node);
-    if (!value) reader.fail(node, key, "not a finite number", "a finite number, an array of them or a word in quotes would be right");
+    if (!value) reader.fail(node, key, "not a finite number", "a finite number, an array of them or a word in quotes");
     input.numbers = {*value};
   }
   return input;

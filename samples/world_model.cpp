@@ -136,8 +136,7 @@ LevelSet world_level_set(const Scene& scene, const SurfaceSettings& settings, st
     const Affine& placed = object.world_from_object;
     if (scene.objects.size() > 1 || placed.linear != glm::dmat3(1.0) || placed.translation != glm::dvec3(0.0)) {
       throw InputError({scene.name, "object", "",
-                        "a volume that is moved or stands beside other objects cannot be written as one level set",
-                        "an .obj or .ply would be right"});
+                        "a volume that is moved or stands beside other objects cannot be written as one level set", "an .obj or .ply"});
     }
     return std::get<LevelSetSource>(object.source).level_set;
   }

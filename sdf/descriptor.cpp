@@ -49,7 +49,7 @@ std::string range_text(const Parameter& parameter) {
   return parameter.unit.empty() ? "" : " in " + parameter.unit;
 }
 
-/// What would be right, in words: the `expected` of a fault.
+/// The `expected` of a fault.
 std::string expected_text(const Parameter& parameter) {
   const std::string range = range_text(parameter);
   switch (parameter.kind) {

@@ -13,8 +13,9 @@ std::string one_line(const InputFault& fault) {
   if (!fault.field.empty()) text += (text.empty() ? "" : ":") + fault.field;
   if (!text.empty()) text += ": ";
   text += fault.problem;
-  if (!fault.value.empty()) text += " (got " + fault.value + ")";
-  if (!fault.expected.empty()) text += "; " + fault.expected;
+  std::string details = fault.value.empty() ? "" : "got " + fault.value;
+  if (!fault.expected.empty()) details += (details.empty() ? "expected " : ", expected ") + fault.expected;
+  if (!details.empty()) text += " (" + details + ")";
   // The promise is one line, whatever a file name or a library's message holds.
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
@@ -54,10 +55,10 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 }
 
 std::string known_names(std::string_view name, const std::vector<std::string>& candidates) {
-  std::string text;
-  if (const std::string near = nearest_name(name, candidates); !near.empty()) text = "did you mean '" + near + "'? ";
-  text += "known:";
+  if (candidates.size() == 1) return "'" + candidates.front() + "'";
+  std::string text = "one of";
   for (const std::string& candidate : candidates) text += (&candidate == &candidates.front() ? " " : ", ") + candidate;
+  if (const std::string near = nearest_name(name, candidates); !near.empty()) text += "; did you mean '" + near + "'?";
   return text;
 }
 

@@ -42,7 +42,7 @@ LevelSet widened(const Maker& maker, double half_width_voxels) {
   } catch (const InputError& error) {
     throw InputError({maker.source.file, "width", fmt::format("{:.0f} voxels", half_width_voxels),
                       "the outline stands farther off than a level set can reach: " + error.fault().problem,
-                      "a narrower outline or larger voxels would be right"});
+                      "a narrower outline or larger voxels"});
   }
 }
 

@@ -36,8 +36,7 @@ void add_options(CLI::App& app, Options& options) {
 // --surface says by which way: mesh or level_set straight, mesh_level_set through both.
 void check_kind(const SurfaceSettings& settings) {
   if (settings.kind == "analytic") {
-    throw InputError(
-        {"", "--surface", settings.kind, "a formula cannot be written to a file", "mesh, level_set or mesh_level_set would be right"});
+    throw InputError({"", "--surface", settings.kind, "a formula cannot be written to a file", "mesh, level_set or mesh_level_set"});
   }
 }
 

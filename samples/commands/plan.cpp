@@ -20,8 +20,7 @@ void add_options(CLI::App& app, Options& options) {
 int run(const Options& options) {
   const ThreadLimit threads(options.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
-  if (!options.plan.tolerance_px)
-    throw InputError({"", "--tolerance", "", "missing", "a number of pixels, such as --tolerance 0.5, would be right"});
+  if (!options.plan.tolerance_px) throw InputError({"", "--tolerance", "", "missing", "a number of pixels, such as --tolerance 0.5"});
   input_kind(options.input);
   const SceneInput input = load_input(options);
   WarningNeeds needs{.surfaces = options.surfaces, .methods = {"rim"}};

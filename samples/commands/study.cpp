@@ -45,9 +45,8 @@ void give_memory(Options& options) {
   }
   const double least = kProgramBytes + kBesideBytes;
   if (static_cast<double>(*options.max_memory) < least) {
-    throw InputError({"", "--max-memory", bytes_text(static_cast<double>(*options.max_memory)),
-                      fmt::format("the pictures and the truth of a study take about {} by themselves", bytes_text(least)),
-                      "as much and something for the models would be right"});
+    throw InputError({"", "--max-memory", bytes_text(static_cast<double>(*options.max_memory)), "too little for a study",
+                      fmt::format("more than {}, which its pictures and its true border take", bytes_text(least))});
   }
   options.study.max_bytes = model_bytes_left(options, kBesideBytes);
 }
@@ -56,10 +55,11 @@ void give_memory(Options& options) {
 void check_time(const Options& options, double expected_ms) {
   constexpr double kTrust = 2.0;
   if (!options.max_time_ms || expected_ms <= kTrust * *options.max_time_ms) return;
-  throw InputError(
-      {"", "--max-time", "",
-       fmt::format("the study would take about {}, which allows {}", duration_text(expected_ms), time_text(*options.max_time_ms)),
-       "fewer --views, --voxels or --levels, or a part of it (--shard), would be right"});
+  throw InputError({"", "", "",
+                    fmt::format("the study needs about {}; --max-time allows {}; lower --views, --voxels or --levels, or do a part of it "
+                                "with --shard",
+                                duration_text(expected_ms), time_text(*options.max_time_ms)),
+                    ""});
 }
 
 std::vector<std::string> warn(const Options& options, const Study& study) {
@@ -135,8 +135,8 @@ bool part_is_there(const Options& options, const Place& place, const StudyRecord
   if (!there) return false;
   const std::string what = difference(*there, record);
   if (what.empty()) return true;
-  throw InputError({place.final.string(), "--output", "", "holds a part of another study: " + what,
-                    "another folder, or --fresh to start over, would be right"});
+  throw InputError({place.final.string(), "--output", "",
+                    "holds a part of another study: " + what + "; choose another folder, or start over with --fresh", ""});
 }
 
 std::vector<fs::path> put_in_place(const Place& place, std::vector<fs::path> files) {

@@ -14,7 +14,7 @@ namespace {
 
 std::string reason_of(const InputError& error) {
   const std::string& expected = error.fault().expected;
-  return error.fault().problem + (expected.empty() ? "" : "; " + expected);
+  return error.fault().problem + (expected.empty() ? "" : " (expected " + expected + ")");
 }
 
 // A gigabyte of float pictures becomes a quarter of it; the page and the sheet show eight bits anyway.

@@ -26,7 +26,7 @@ void check_open(const Options& options) {
                                                 {options.gradient.has_value(), "--gradient"},
                                                 {options.normals.has_value(), "--normals"}};
   for (const auto& [is_given, name] : given) {
-    if (is_given) throw InputError({"", name, "", "is what --tolerance chooses", "one of the two would be right"});
+    if (is_given) throw InputError({"", name, "", std::string("has no effect: --tolerance chooses it; leave out ") + name, ""});
   }
 }
 

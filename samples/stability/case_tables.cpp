@@ -25,10 +25,10 @@ std::vector<std::string> words(TomlReader& reader, const std::string& key) {
   if (const auto* word = node->as_string()) return {word->get()};
   std::vector<std::string> found;
   const toml::array* array = node->as_array();
-  if (array == nullptr) reader.fail(*node, key, "neither text nor a list of texts", "\"…\" or [\"…\", …] would be right");
+  if (array == nullptr) reader.fail(*node, key, "neither text nor a list of texts", "\"…\" or [\"…\", …]");
   for (const toml::node& item : *array) {
     const auto* word = item.as_string();
-    if (word == nullptr) reader.fail(item, key, "not text", "words in quotes would be right");
+    if (word == nullptr) reader.fail(item, key, "not text", "words in quotes");
     found.push_back(word->get());
   }
   return found;
@@ -36,7 +36,7 @@ std::vector<std::string> words(TomlReader& reader, const std::string& key) {
 
 std::string required(TomlReader& reader, const std::string& key) {
   const auto text = reader.text(key);
-  if (!text) reader.fail("no " + key, key + " = \"…\" would be right");
+  if (!text) reader.fail("no " + key, key + " = \"…\"");
   return *text;
 }
 
@@ -44,7 +44,7 @@ std::optional<bool> flag(TomlReader& reader, const std::string& key) {
   const toml::node* node = reader.take(key);
   if (node == nullptr) return std::nullopt;
   const auto* value = node->as_boolean();
-  if (value == nullptr) reader.fail(*node, key, "not a truth value", "true or false would be right");
+  if (value == nullptr) reader.fail(*node, key, "not a truth value", "true or false");
   return value->get();
 }
 
@@ -65,7 +65,7 @@ std::map<std::string, double> numbers(const toml::table& table, const TomlReader
   std::map<std::string, double> values;
   for (const auto& [key, node] : table) {
     const ParameterInput value = parameter_input(reader, std::string(key.str()), node);
-    if (value.numbers.size() != 1) reader.fail(node, std::string(key.str()), "not a number", "a finite number would be right");
+    if (value.numbers.size() != 1) reader.fail(node, std::string(key.str()), "not a number", "a finite number");
     values[std::string(key.str())] = value.numbers[0];
   }
   return values;
@@ -74,7 +74,7 @@ std::map<std::string, double> numbers(const toml::table& table, const TomlReader
 std::vector<glm::ivec2> sizes(TomlReader& reader) {
   const toml::node* node = reader.take("sizes");
   if (node == nullptr) return {{160, 120}};
-  const std::string expected = "[[width, height], …] in whole pixels, 1 to 16384 each, would be right";
+  const std::string expected = "[[width, height], …] in whole pixels, 1 to 16384 each";
   const ParameterInput sides = parameter_input(reader, "sizes", *node);
   if (sides.numbers.empty() || sides.numbers.size() % 2 != 0) reader.fail(*node, "sizes", "no pairs", expected);
   std::vector<glm::ivec2> found;
@@ -103,22 +103,22 @@ void read_case_table(TomlReader& reader, StabilityCase& one) {
   one.views = reader.integer("views", 1, 100).value_or(1);
   one.sizes_px = sizes(reader);
   one.draws = reader.integer("draws", 1, 1000).value_or(1);
-  one.bound = reader.number("bound", -kInfinity, kInfinity, "a number would be right").value_or(0.0);
-  one.outer = reader.number("outer", one.bound, kInfinity, "a number not below the bound would be right").value_or(one.bound);
+  one.bound = reader.number("bound", -kInfinity, kInfinity, "a number").value_or(0.0);
+  one.outer = reader.number("outer", one.bound, kInfinity, "a number not below the bound").value_or(one.bound);
   one.says = words(reader, "says");
   reader.finish();
 }
 
 StabilityVariant read_variant(TomlReader& reader, const toml::table& table) {
   StabilityVariant variant;
-  variant.scale = reader.number_between("scale", 0.0, kInfinity, "a number above 0 would be right").value_or(1.0);
+  variant.scale = reader.number_between("scale", 0.0, kInfinity, "a number above 0").value_or(1.0);
   variant.translate = reader.vector3("translate").value_or(glm::dvec3(0.0));
   variant.turned = flag(reader, "turned").value_or(false);
   variant.reversed = flag(reader, "reversed").value_or(false);
   variant.threads = reader.integer("threads", 0, 64).value_or(0);
   variant.tile_px = reader.integer("tile", 1, 16).value_or(16);
   if (const auto simd = reader.text("simd")) {
-    if (*simd != "least") reader.fail("no such simd", "simd = \"least\" would be right");
+    if (*simd != "least") reader.fail("no such simd", "simd = \"least\"");
     variant.least_simd = true;
   }
   if (const toml::node* node = reader.take("set"); node != nullptr && node->is_table()) variant.set = numbers(*node->as_table(), reader);
@@ -134,13 +134,13 @@ StabilityExpectation read_expectation(TomlReader& reader) {
   expect.surfaces = surfaces(reader);
   expect.methods = words(reader, "methods");
   check_methods(reader, expect.methods);
-  expect.bound = reader.number("bound", -kInfinity, kInfinity, "a number would be right");
-  expect.outer = reader.number("outer", -kInfinity, kInfinity, "a number would be right");
-  if (const auto range = reader.numbers("fails", 2, "[lowest, highest] would be right")) expect.fails.emplace((*range)[0], (*range)[1]);
+  expect.bound = reader.number("bound", -kInfinity, kInfinity, "a number");
+  expect.outer = reader.number("outer", -kInfinity, kInfinity, "a number");
+  if (const auto range = reader.numbers("fails", 2, "[lowest, highest]")) expect.fails.emplace((*range)[0], (*range)[1]);
   expect.says = words(reader, "says");
   expect.refused = reader.text("refused").value_or("");
   reader.finish();
-  if (expect.fails && expect.says.empty()) reader.fail("fails without says", "what the program says of it would be right");
+  if (expect.fails && expect.says.empty()) reader.fail("fails without says", "what the program says of it");
   return expect;
 }
 
@@ -171,7 +171,7 @@ CaseSources read_sources(const std::string& text, const std::string& file) {
     TomlReader own(*table, file, "volume.");
     sources.volume.emplace();
     sources.volume->voxels = own.integer("voxels", 4, 512).value_or(48);
-    sources.volume->half_width_voxels = own.number("half_width", 1.8, 100.0, "1.8 to 100 voxels would be right").value_or(3.0);
+    sources.volume->half_width_voxels = own.number("half_width", 1.8, 100.0, "1.8 to 100 voxels").value_or(3.0);
     own.finish();
   }
   return sources;
@@ -185,7 +185,7 @@ StabilityCase parse_case(const std::string& text, const std::string& file) {
   one.source = text;
   one.file = file;
   const auto own = reader.tables("case");
-  if (own.size() != 1) throw InputError({file, "case", "", "no case", "one [case] table would be right"});
+  if (own.size() != 1) throw InputError({file, "case", "", "no case", "one [case] table"});
   TomlReader head(*own[0], file, "case.");
   read_case_table(head, one);
   for (const toml::table* table : reader.tables("with")) {
@@ -198,7 +198,7 @@ StabilityCase parse_case(const std::string& text, const std::string& file) {
     TomlReader random(*table, file, "random.");
     for (const auto& [key, node] : *table) {
       const std::string name(key.str());
-      const auto range = random.numbers(name, 2, "[low, high] would be right");
+      const auto range = random.numbers(name, 2, "[low, high]");
       const toml::array& ends = *node.as_array();
       one.random[name] = {(*range)[0], (*range)[1], ends[0].is_integer() && ends[1].is_integer()};
     }

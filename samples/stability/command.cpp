@@ -32,7 +32,7 @@ void refuse_others(const Options& options) {
                                                 {!options.grids.empty(), "--grid"}};
   for (const auto& [is_given, name] : given) {
     if (is_given)
-      throw InputError({"", name, "", "the cases of this study say that themselves", "a copy of a case, with --case FILE, would be right"});
+      throw InputError({"", name, "", "the cases of this study set it themselves; copy a case, change it and give it as --case FILE", ""});
   }
 }
 
@@ -92,8 +92,7 @@ void refuse_stability_options(const Options& options) {
   const StudyOptions& study = options.study;
   const char* given = !study.cases.empty() ? "--case" : study.seed ? "--seed" : study.draws ? "--draws" : nullptr;
   if (given != nullptr)
-    throw InputError(
-        {"", given, "", "belongs to limn study stability", "limn study stability " + std::string(given) + " … would be right"});
+    throw InputError({"", given, "", "only limn study stability takes it: limn study stability " + std::string(given) + " …", ""});
 }
 
 }  // namespace limn

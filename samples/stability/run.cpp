@@ -138,7 +138,7 @@ StabilityCase find_stability_case(const std::string& name_or_file) {
   std::ifstream stream(name_or_file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
-  if (!stream) throw InputError({name_or_file, "", "", "cannot be read", "a readable case (.toml) would be right"});
+  if (!stream) throw InputError({name_or_file, "", "", "cannot be read", "a readable case (.toml)"});
   return parse_case(text.str(), name_or_file);
 }
 

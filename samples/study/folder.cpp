@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 void refuse_other(const fs::path& folder, const std::string& what) {
   if (what.empty()) return;
   throw InputError(
-      {folder.string(), "--output", "", "holds another study: " + what, "another folder, or --fresh to start over, would be right"});
+      {folder.string(), "--output", "", "holds another study: " + what + "; choose another folder, or start over with --fresh", ""});
 }
 
 bool is_there(const fs::path& path) {
@@ -36,8 +36,7 @@ void check_planned(const StudyFolder& held, const fs::path& file) {
   std::set<std::string> planned;
   for (const PlannedCell& cell : held.record.cells) planned.insert(cell.key);
   for (const auto& [key, rows] : held.rows) {
-    if (!planned.contains(key))
-      throw InputError({file.string(), "key", key, "not a cell of this study", "--fresh to start over would be right"});
+    if (!planned.contains(key)) throw InputError({file.string(), "key", key, "unknown cell", "a cell of this study; --fresh starts over"});
   }
 }
 

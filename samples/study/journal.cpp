@@ -89,8 +89,7 @@ FolderLock::FolderLock(const fs::path& folder) {
   // Some network filesystems have no locks; there nothing is kept out.
   if (handle_ >= 0 && ::flock(handle_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     ::close(handle_);
-    throw InputError(
-        {folder.string(), "--output", "", "another limn is at work in it", "another folder, or waiting for it, would be right"});
+    throw InputError({folder.string(), "--output", "", "locked by another limn process; wait for it, or choose another folder", ""});
   }
 }
 

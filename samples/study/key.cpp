@@ -26,7 +26,7 @@ std::string file_hash(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream bytes;
   bytes << stream.rdbuf();
-  if (!stream) throw InputError({file, "", "", "cannot be read", "a file that you may read would be right"});
+  if (!stream) throw InputError({file, "", "", "cannot be read", "a file that you may read"});
   return content_hash(bytes.str());
 }
 

@@ -49,14 +49,13 @@ void copy_thumbnail(const fs::path& from, const fs::path& to, const std::string&
 std::vector<fs::path> parts_in(const fs::path& folder) {
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored))
-    throw InputError({folder.string(), "", "", "no such folder", "a folder that limn study --shard wrote would be right"});
+    throw InputError({folder.string(), "", "", "no such folder", "a folder that limn study --shard wrote"});
   std::vector<fs::path> parts;
   if (fs::exists(record_file(folder), ignored)) parts.push_back(folder);
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (is_part(entry.path().filename().string()) && fs::exists(record_file(entry.path()), ignored)) parts.push_back(entry.path());
   }
-  if (parts.empty())
-    throw InputError({folder.string(), "", "", "holds no part of a study", "a folder that limn study --shard wrote would be right"});
+  if (parts.empty()) throw InputError({folder.string(), "", "", "holds no part of a study", "a folder that limn study --shard wrote"});
   std::sort(parts.begin(), parts.end());
   return parts;
 }
@@ -69,15 +68,14 @@ void check_parts(const std::vector<fs::path>& parts, const fs::path& folder) {
   fs::path first = folder;
   for (const fs::path& part : parts) {
     const std::optional<StudyRecord> record = read_record(part);
-    if (!record)
-      throw InputError({part.string(), "", "", "holds no part of a study", "a folder that limn study --shard wrote would be right"});
+    if (!record) throw InputError({part.string(), "", "", "holds no part of a study", "a folder that limn study --shard wrote"});
     if (!common) {
       common = record;
       first = part;
     }
     if (const std::string what = difference(*common, *record); !what.empty()) {
-      throw InputError({part.string(), "", "", "is of another study than " + first.string() + ": " + what,
-                        "parts of one study, made by the same call, would be right"});
+      throw InputError(
+          {part.string(), "", "", "is of another study than " + first.string() + ": " + what, "parts of one study, made by the same call"});
     }
   }
 }

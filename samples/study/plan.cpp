@@ -128,7 +128,8 @@ void plan_methods(const Options& options, const SceneInput& input, Study& study)
     }
     for (const MethodCall& call : method_calls(one, input)) add_method(call, study);
   }
-  if (!used) throw InputError({"", "--thresholds", "", "no method of this study has a threshold", "--methods rim would be right"});
+  if (!used)
+    throw InputError({"", "--thresholds", "", "no method of this study has a threshold", "a method that has one, such as --methods rim"});
 }
 
 CameraSettings study_camera(const Options& options, const SceneInput& input) {

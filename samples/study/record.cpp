@@ -179,7 +179,7 @@ std::optional<StudyRecord> read_record(const fs::path& folder) {
 
 StudyRecord parse_record(std::string_view text, const fs::path& file) {
   const Json json = Json::parse(text, nullptr, false);
-  const InputError foreign({file.string(), "", "", "not what limn study writes", "another folder, or --fresh, would be right"});
+  const InputError foreign({file.string(), "", "", "not written by limn study; choose another folder, or start over with --fresh", ""});
   if (!json.is_object()) throw foreign;
   try {
     StudyRecord record = record_from(json);

@@ -31,7 +31,7 @@ std::vector<Image<float>> draw_frames(const Study& study, const SceneModel& mode
 
 std::string reason_of(const InputError& error) {
   const std::string& expected = error.fault().expected;
-  return error.fault().problem + (expected.empty() ? "" : "; " + expected);
+  return error.fault().problem + (expected.empty() ? "" : " (expected " + expected + ")");
 }
 
 Seen look(const SceneModel& model, const Study& study, size_t view, const ExecutionSettings& how) {

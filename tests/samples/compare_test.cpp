@@ -208,7 +208,7 @@ TEST(CompareMatrix, WrongNamesAndValuesAreAnsweredWithTheNearestRightOnes) {
   };
   const Slip slips[] = {
       {{"--methods", "rim,sobell"}, "'sobel'"},
-      {{"--methods", "rim,"}, "known"},
+      {{"--methods", "rim,"}, "one of"},
       {{"--surfaces", "mesh,levelset"}, "'level_set'"},
       {{"--methods", "rim,sobel", "--set", "treshold=0.4"}, "'threshold'"},
       {{"--methods", "rim,blur", "--set", "blur.radius=1000"}, "256"},

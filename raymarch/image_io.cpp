@@ -1,4 +1,4 @@
-#include "raymarch/image_io.h"
+#include "raymarch/image_output.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -64,13 +64,12 @@ void finish_image(OIIO::ImageOutput& output, OIIO::TypeDesc type, const void* pi
   if (!output.write_image(type, pixels) || !output.close()) throw MachineError("cannot write " + what + ": " + output.geterror());
 }
 
-void save(const fs::path& file, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
-  write_whole(file, [&](const fs::path& temporary) {
-    const auto output = OIIO::ImageOutput::create(temporary.string());
-    if (!output) throw MachineError("cannot write " + file.string() + ": " + OIIO::geterror());
-    if (!output->open(temporary.string(), spec)) throw MachineError("cannot write " + file.string() + ": " + output->geterror());
-    finish_image(*output, type, pixels, file.string());
-  });
+/// To `temporary`, which will be `file`.
+void save(const fs::path& temporary, const fs::path& file, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
+  const auto output = OIIO::ImageOutput::create(temporary.string());
+  if (!output) throw MachineError("cannot write " + file.string() + ": " + OIIO::geterror());
+  if (!output->open(temporary.string(), spec)) throw MachineError("cannot write " + file.string() + ": " + output->geterror());
+  finish_image(*output, type, pixels, file.string());
 }
 
 /// One channel of the EXR on its way: its name, its type in the file and its values.
@@ -204,28 +203,43 @@ std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
 
 }  // namespace
 
-void write_exr(const Picture& picture, const Camera& camera, const std::string& call, const std::filesystem::path& file,
-               std::span<const NamedLayer> layers) {
+OutputFile exr_output(const Picture& picture, const Camera& camera, const std::string& call, const std::filesystem::path& file,
+                      std::span<const NamedLayer> layers) {
   if (extension_of(file) != ".exr") {
     throw InputError({file.string(), {}, extension_of(file), "unknown extension for all layers", ".exr"});
   }
-  std::vector<Channel> channels = channels_of(picture);
-  for (const NamedLayer& layer : layers) add_layer(channels, layer);
-  const std::vector<char> pixels = native_pixels(channels, picture.gbuffer.id.size());
-  save(file, exr_spec(channels, picture, camera, call), OIIO::TypeDesc::UNKNOWN, pixels.data());
+  return {file, [&picture, &camera, &call, file, layers](const fs::path& temporary) {
+            std::vector<Channel> channels = channels_of(picture);
+            for (const NamedLayer& layer : layers) add_layer(channels, layer);
+            const std::vector<char> pixels = native_pixels(channels, picture.gbuffer.id.size());
+            save(temporary, file, exr_spec(channels, picture, camera, call), OIIO::TypeDesc::UNKNOWN, pixels.data());
+          }};
 }
 
-void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesystem::path& file) {
+OutputFile image_output(const Image<glm::vec4>& linear_premultiplied, const std::filesystem::path& file) {
   const std::string extension = extension_of(file);
   const std::vector<std::string> known = {".png", ".tif", ".tiff", ".jpg", ".jpeg"};
   if (std::find(known.begin(), known.end(), extension) == known.end()) {
     throw InputError({file.string(), {}, extension, "unknown extension for a picture", known_names(extension, known)});
   }
-  const bool alpha = has_alpha(extension);
-  const std::vector<std::uint8_t> pixels = srgb_pixels(linear_premultiplied, alpha);
-  OIIO::ImageSpec spec = srgb_spec(linear_premultiplied, alpha);
-  if (extension == ".tif" || extension == ".tiff") spec.attribute("DateTime", kNoTime);
-  save(file, spec, OIIO::TypeDesc::UINT8, pixels.data());
+  return {file, [&linear_premultiplied, file, extension](const fs::path& temporary) {
+            const bool alpha = has_alpha(extension);
+            const std::vector<std::uint8_t> pixels = srgb_pixels(linear_premultiplied, alpha);
+            OIIO::ImageSpec spec = srgb_spec(linear_premultiplied, alpha);
+            if (extension == ".tif" || extension == ".tiff") spec.attribute("DateTime", kNoTime);
+            save(temporary, file, spec, OIIO::TypeDesc::UINT8, pixels.data());
+          }};
+}
+
+void write_exr(const Picture& picture, const Camera& camera, const std::string& call, const std::filesystem::path& file,
+               std::span<const NamedLayer> layers) {
+  const OutputFile output = exr_output(picture, camera, call, file, layers);
+  write_together({&output, 1});
+}
+
+void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesystem::path& file) {
+  const OutputFile output = image_output(linear_premultiplied, file);
+  write_together({&output, 1});
 }
 
 std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "samples/named_file.h"
 #include "sdf/shape.h"
 
 namespace limn {
@@ -75,7 +76,8 @@ Csg read_operation(TomlReader& reader) {
 
 Field read_vm_file(TomlReader& reader, const VmReader& read_vm) {
   const std::string name = *reader.text("vm");
-  return read_vm(std::filesystem::path(reader.file()).parent_path() / name);
+  const std::filesystem::path path = std::filesystem::path(reader.file()).parent_path() / name;
+  return read_named(reader, "vm", path, [&] { return read_vm(path); });
 }
 
 Field read_csg(TomlReader& reader, const VmReader& read_vm) {
@@ -116,7 +118,9 @@ Field read_field(TomlReader& reader, const VmReader& read_vm) {
     // What a field refuses of itself says nothing of the file that asked for it.
     InputFault fault = error.fault();
     if (!fault.file.empty()) throw;
-    fault.file = reader.file();
+    // The line that says what it is, where there is one.
+    const toml::node* const kind = reader.take(reader.has("csg") ? "csg" : reader.has("vm") ? "vm" : "shape");
+    fault.file = kind != nullptr ? reader.where(*kind) : reader.file();
     fault.field = reader.field(fault.field);
     throw InputError(fault);
   }

@@ -6,6 +6,7 @@
 #include "raymarch/scene_extent.h"
 #include "samples/scene_file.h"
 #include "samples/scenes/scenes.h"
+#include "samples/utf8.h"
 #include "sdf/error.h"
 #include "sdf/guard.h"
 #include "sdf/vm_field.h"
@@ -98,7 +99,8 @@ SceneInput load_input(const Options& options) {
   input.kind = kind;
   input.name = kind == InputKind::built_in ? options.input : std::filesystem::path(options.input).stem().string();
   input.file = kind == InputKind::built_in ? "" : options.input;
-  input.scene.name = input.name;
+  input.scene.name = valid_utf8(input.name);
+  for (SceneObject& object : input.scene.objects) object.name = valid_utf8(object.name);
   check_extent(input.scene);
   input.load_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return input;

@@ -11,6 +11,7 @@
 #include <new>
 
 #include "sdf/output_file.h"
+#include "sdf/output_together.h"
 
 namespace limn {
 namespace {
@@ -37,6 +38,11 @@ void say_once(const char* line, std::atomic<bool>& said) {
 int exit_code_of(int signal_number) { return signal_number == SIGALRM ? 1 : 128 + signal_number; }
 
 void stop_now() {
+  // Half of the files would be old ones.
+  if (outputs_are_being_replaced()) {
+    alarm(kPatienceSeconds);
+    return;
+  }
   remove_temporary_files();
   if (caught_signal.load() == SIGALRM) say_once(time_line, time_line_said);
   _exit(exit_code_of(caught_signal.load()));

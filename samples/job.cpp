@@ -9,6 +9,8 @@
 
 #include "samples/interrupt.h"
 #include "samples/limits.h"
+#include "samples/parse_color.h"
+#include "samples/utf8.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -215,8 +217,8 @@ std::string resolved_call(const std::string& command, const Options& options, co
     for (const std::string& pair : words_of(method.parameters.text())) call += " --set " + method.method->about.name + "." + pair;
   }
   call += fmt::format(" --samples {}", picture.samples);
-  if (picture.background) call += " --background " + vector_text(*picture.background);
-  return call;
+  if (picture.background) call += " --background " + color_text(*picture.background);
+  return valid_utf8(call);
 }
 
 }  // namespace limn

@@ -7,6 +7,8 @@
 
 #include "raymarch/border.h"
 #include "raymarch/surface.h"
+#include "samples/options_parts.h"
+#include "samples/parse_color.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -215,7 +217,7 @@ void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& need
   add_fixed_surface(app, options);
 }
 
-void add_border(CLI::App& app, Options& options, bool compared) {
+void add_methods(CLI::App& app, Options& options, bool compared) {
   auto* method =
       add_repeatable(app, {"--method", "NAME", "outline method (limn list methods), repeatable, the last on top; default rim", kBorder},
                      [&options](const std::string& text) {
@@ -232,15 +234,18 @@ void add_border(CLI::App& app, Options& options, bool compared) {
       app,
       {"--set", "KEY=VALUE", "a parameter of the methods, such as threshold=0.4; METHOD.KEY=VALUE for one of several; repeatable", kBorder},
       [&options](const std::string& text) { options.sets.push_back(parse_key_value("--set", text)); });
+}
+
+void add_border(CLI::App& app, Options& options, bool compared) {
+  add_methods(app, options, compared);
   add(app, {"--samples", "N", "rays a pixel, 1..1024; default 1", kBorder},
       [&options](const std::string& text) { options.samples = parse_integer("--samples", text, 1, 1024); });
-  add(app, {"--background", "R,G,B", "linear colour behind everything; default: transparent (compare: white)", kBorder},
-      [&options](const std::string& text) {
-        const glm::dvec3 color = parse_vector3("--background", text);
-        if (glm::any(glm::lessThan(color, glm::dvec3(0.0))))
-          throw InputError({"", "--background", text, "out of range", "three numbers from 0 up"});
-        options.background = color;
-      });
+  add(app,
+      {"--background", "COLOR",
+       "colour behind everything: '#rrggbb', '#rgb' (quoted for the shell), a name such as white, R,G,B in linear light from 0 to 1, or "
+       "linear:R,G,B; default: transparent (compare: white)",
+       kBorder},
+      [&options](const std::string& text) { options.background = parse_color("--background", text); });
 }
 
 void add_execution(CLI::App& app, Options& options) {
@@ -316,14 +321,16 @@ void add_study(CLI::App& app, Options& options) {
 
 void add_plan(CLI::App& app, Options& options) {
   PlanOptions& plan = options.plan;
-  add(app,
-      {"--tolerance", "PX",
-       "how far the border may lie from the true one, pixels, above 0: 95 % of it lies within; picks the cheapest model", kPlan},
-      [&plan](const std::string& text) {
-        plan.tolerance_px = parse_number_above("--tolerance", text, 0.0, false, "a number of pixels above 0");
-      });
+  auto* tolerance =
+      add(app,
+          {"--tolerance", "PX",
+           "how far the border may lie from the true one, pixels, above 0: 95 % of it lies within; picks the cheapest model", kPlan},
+          [&plan](const std::string& text) {
+            plan.tolerance_px = parse_number_above("--tolerance", text, 0.0, false, "a number of pixels above 0");
+          });
   add(app, {"--metric", "NAME", "what has to be right: border (the rim's ink, inside and outside) or silhouette; default border", kPlan},
-      [&plan](const std::string& text) { plan.silhouette = parse_plan_metric("--metric", text); });
+      [&plan](const std::string& text) { plan.silhouette = parse_plan_metric("--metric", text); })
+      ->needs(tolerance);
   add_repeatable(
       app, {"--budget", "SIZE|TIME", "what the model may take: memory such as 64M, or time to build and trace such as 200ms or 2s", kPlan},
       [&plan](const std::string& text) {
@@ -331,7 +338,8 @@ void add_plan(CLI::App& app, Options& options) {
           plan.budget_bytes = parse_bytes("--budget", text);
         else
           plan.budget_ms = parse_milliseconds("--budget", text);
-      });
+      })
+      ->needs(tolerance);
 }
 
 }  // namespace limn

@@ -8,8 +8,9 @@
 
 #include "samples/commands/command.h"
 #include "samples/limits.h"
+#include "samples/output.h"
 #include "samples/versions.h"
-#include "sdf/error.h"
+#include "sdf/size_error.h"
 
 namespace limn {
 namespace {
@@ -72,8 +73,12 @@ int run_on_input(const Command& command, const Options& options) {
     return command.run(options);
   } catch (const InputError& error) {
     InputFault fault = error.fault();
+    // Whose limit it is nobody below knows.
+    const bool too_large = options.max_memory && dynamic_cast<const SizeError*>(&error) != nullptr;
+    if (too_large) fault.problem += "; --max-memory allows " + bytes_text(static_cast<double>(*options.max_memory)) + " in all";
     std::error_code ignored;
     const bool of_call = !fault.file.empty() || fault.field.starts_with("-");
+    if (too_large && of_call) throw InputError(fault);
     if (of_call || options.input.empty() || !std::filesystem::is_regular_file(options.input, ignored)) throw;
     fault.file = options.input;
     throw InputError(fault);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 
 namespace limn {
 
@@ -35,6 +37,11 @@ void ProgressBar::clear() {
   drawn_ = false;
 }
 
-bool wants_progress(bool quiet, bool no_progress) { return !quiet && !no_progress && isatty(STDERR_FILENO) != 0; }
+bool wants_progress(bool quiet, bool no_progress) {
+  if (quiet || no_progress || isatty(STDERR_FILENO) == 0) return false;
+  // A terminal that calls itself dumb, or nothing, knows no code that clears a line.
+  const char* const terminal = std::getenv("TERM");
+  return terminal != nullptr && *terminal != '\0' && std::string_view(terminal) != "dumb";
+}
 
 }  // namespace limn

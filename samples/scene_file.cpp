@@ -11,6 +11,7 @@
 #include "raymarch/border.h"
 #include "raymarch/surface.h"
 #include "samples/field_reader.h"
+#include "samples/named_file.h"
 #include "samples/toml_reader.h"
 #include "sdf/guard.h"
 #include "subdiv/import.h"
@@ -90,7 +91,7 @@ MeshSource read_mesh(TomlReader& reader, const SceneReaders& readers, bool own_c
   level = reader.integer("level", 0, 8);
   const auto smooth_angle = reader.number("smooth_angle", 0.0, 180.0, "an angle of 0 to 180 degrees");
   const std::filesystem::path path = beside(reader, name);
-  Mesh mesh = readers.mesh(path);
+  Mesh mesh = read_named(reader, "mesh", path, [&] { return readers.mesh(path); });
   mesh.draws_colors = !own_color;
   // A level without a scheme still asks for subdivision.
   if (level && *level > 0 && !scheme) scheme = default_scheme(mesh);
@@ -103,7 +104,7 @@ LevelSetSource read_volume(TomlReader& reader, const SceneReaders& readers) {
   const std::string name = *reader.text("vdb");
   const std::string grid = reader.text("grid").value_or("");
   const std::filesystem::path path = beside(reader, name);
-  return {readers.volume(path, grid), path.string()};
+  return {read_named(reader, "vdb", path, [&] { return readers.volume(path, grid); }), path.string()};
 }
 
 using Source = decltype(SceneObject::source);
@@ -112,8 +113,7 @@ SceneObject read_object(TomlReader& reader, const SceneReaders& readers, size_t 
   int kinds = 0;
   for (const char* key : {"shape", "csg", "vm", "mesh", "vdb"}) kinds += reader.has(key) ? 1 : 0;
   if (kinds != 1) {
-    reader.fail(kinds == 0 ? "no shape, csg, vm, mesh or vdb" : "more than one of shape, csg, vm, mesh and vdb",
-                "exactly one of them");
+    reader.fail(kinds == 0 ? "no shape, csg, vm, mesh or vdb" : "more than one of shape, csg, vm, mesh and vdb", "exactly one of them");
   }
   std::optional<int> level;
   Affine world_from_object;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "sdf/color_text.h"
+
 namespace limn {
 
 toml::table parse_toml(const std::string& text, const std::string& file) {
@@ -141,7 +143,12 @@ std::optional<glm::dvec3> TomlReader::vector3(const std::string& key) {
 }
 
 std::optional<glm::vec3> TomlReader::color(const std::string& key) {
-  const std::string expected = "[r, g, b], linear, each from 0 up";
+  const std::string expected = fmt::format("[r, g, b], linear, each from 0 up, or \"{}\"", kColorTexts);
+  if (const toml::node* node = take(key); node != nullptr && node->is_string()) {
+    const auto named = color_from_text(node->as_string()->get());
+    if (!named) fail(*node, key, "not a color", expected);
+    return glm::vec3(*named);
+  }
   const auto values = numbers(key, 3, expected);
   if (!values) return std::nullopt;
   if (std::any_of(values->begin(), values->end(), [](double c) { return c < 0.0 || c > 1e6; })) {

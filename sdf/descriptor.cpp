@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "sdf/color_text.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -62,7 +63,7 @@ std::string expected_text(const Parameter& parameter) {
     case ParameterKind::choice:
       return fmt::format("one of {}", fmt::join(parameter.choices, ", "));
     case ParameterKind::color:
-      return "three finite numbers (red, green, blue)" + range;
+      return fmt::format("three finite numbers (red, green, blue){} in linear light, {}", range, kColorTexts);
     case ParameterKind::vector:
       return fmt::format("{} finite numbers{}", parameter.default_value.size(), range);
     case ParameterKind::list:
@@ -82,8 +83,10 @@ class Reader {
     if (parameter_.kind == ParameterKind::flag) return {flag()};
     std::vector<double> numbers = input_.numbers;
     if (!input_.word.empty()) {
+      const bool is_color = parameter_.kind == ParameterKind::color;
+      if (const auto color = is_color ? color_from_text(input_.word) : std::nullopt) return {color->r, color->g, color->b};
       const auto parsed = numbers_of(input_.word);
-      if (!parsed) fail("not a number");
+      if (!parsed) fail(is_color ? "not a color" : "not a number");
       numbers = *parsed;
     }
     check_count(numbers);

@@ -14,8 +14,8 @@
 #include <system_error>
 #include <thread>
 
-#include "sdf/error.h"
 #include "sdf/guard_helper.h"
+#include "sdf/size_error.h"
 
 extern char** environ;
 
@@ -204,7 +204,8 @@ std::string one_line_of(std::span<const std::byte> answer) {
   return text.empty() ? "cannot be read" : text;
 }
 
-void judge(Ending ending, int status, std::span<const std::byte> answer, const fs::path& file, const GuardLimits& limits) {
+void judge(Ending ending, int status, std::span<const std::byte> answer, const fs::path& file, const GuardLimits& limits,
+           std::int64_t allowed_bytes) {
   if (ending == Ending::out_of_time)
     refuse(file, "reading it took longer than " + std::to_string(limits.time.count() / 1000) + " s; it is damaged or far too large",
            "an undamaged file");
@@ -218,9 +219,11 @@ void judge(Ending ending, int status, std::span<const std::byte> answer, const f
   if (code == kExitAnswer) return;
   if (code == kExitRefusal)
     throw InputError({.file = file.string(), .field = {}, .value = {}, .problem = one_line_of(answer), .expected = {}});
-  if (code == kExitMemory)
-    refuse(file, "reading it needs more than " + megabytes(limits.memory_bytes) + " of memory; it is damaged or far too large",
-           "a smaller or an undamaged file");
+  const std::string needs = "reading it needs more than " + megabytes(limits.memory_bytes) + " of memory";
+  // Less than a damaged file is allowed: the limit is to blame as much as the file.
+  if (code == kExitMemory && limits.memory_bytes < allowed_bytes)
+    throw SizeError({.file = file.string(), .field = {}, .value = {}, .problem = needs, .expected = {}});
+  if (code == kExitMemory) refuse(file, needs + "; it is damaged or far too large", "a smaller or an undamaged file");
   refuse(file, "the reader gave up on it (exit code " + std::to_string(code) + "); it is damaged", "an undamaged file");
 }
 
@@ -240,7 +243,7 @@ std::vector<std::byte> run_guarded(const std::string& name, std::span<const std:
     reap(child);
     throw;
   }
-  judge(ending, reap(child), answer, file, limits);
+  judge(ending, reap(child), answer, file, limits, asked.memory_bytes);
   return answer;
 }
 

@@ -6,11 +6,11 @@
 #include <cstring>
 #include <mutex>
 
-#include "sdf/error.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_distance.h"
 #include "sdf/level_set_thin.h"
 #include "sdf/parallel.h"
+#include "sdf/size_error.h"
 
 namespace limn {
 namespace {
@@ -86,10 +86,12 @@ void check_size(size_t cubes, int size, const LevelSetSettings& settings) {
   const double blocks = static_cast<double>(cubes) * std::pow(static_cast<double>(size / kBlock), 2.0);
   const double bytes = blocks * static_cast<double>(kBlockBytes);
   const double factor = std::sqrt(bytes / static_cast<double>(settings.max_bytes));
-  refuse("voxel size", fmt::format("{:.4g}", settings.voxel_size),
-         fmt::format("building the level set would take about {} of memory, the limit is {}", gigabytes(bytes),
-                     gigabytes(static_cast<double>(settings.max_bytes))),
-         fmt::format("a voxel size of about {:.2g} or more", settings.voxel_size * factor * 1.05));
+  throw SizeError({{},
+                   "voxel size",
+                   fmt::format("{:.4g}", settings.voxel_size),
+                   fmt::format("building the level set needs about {} of memory, the limit is {}", gigabytes(bytes),
+                               gigabytes(static_cast<double>(settings.max_bytes))),
+                   fmt::format("a voxel size of about {:.2g} or more", settings.voxel_size * factor * 1.05)});
 }
 
 /// The octants that may hold a part of the band. Each passes its shortened field on to its own octants.

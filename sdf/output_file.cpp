@@ -10,10 +10,13 @@
 #include <climits>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "sdf/error.h"
+#include "sdf/output_together.h"
 #include "sdf/stale_files.h"
 
 namespace limn {
@@ -30,6 +33,7 @@ struct Slot {
 };
 static_assert(std::atomic<SlotState>::is_always_lock_free);
 constinit std::array<Slot, 16> slots{};
+constinit std::atomic<int> replacing{0};
 
 /// Holds one temporary file: unlinked on destruction unless it was renamed away.
 class TemporaryFile {
@@ -87,29 +91,100 @@ fs::path resolved(const fs::path& target) {
   return error ? target : real;
 }
 
-}  // namespace
+/// An output whose content is complete, in a temporary file beside its place.
+struct Staged {
+  fs::path target{};  ///< As it was given.
+  fs::path real{};    ///< What is replaced.
+  fs::path path{};    ///< The temporary file.
+  std::unique_ptr<TemporaryFile> temporary{};
+};
 
-void write_whole(const fs::path& target, const std::function<void(const fs::path&)>& write) {
-  const fs::path real = resolved(target);
+Staged stage(const OutputFile& output) {
+  Staged staged{output.target, resolved(output.target), {}, {}};
+  const fs::path& real = staged.real;
   std::error_code error;
   if (real.has_parent_path()) fs::create_directories(real.parent_path(), error);
-  if (error) fail(target, "cannot make its folder", error.value());
+  if (error) fail(output.target, "cannot make its folder", error.value());
 
   // Asked for before anything is written, because a rename would replace a file that may not be written to.
   struct stat old {};
   const bool replaces = ::stat(real.c_str(), &old) == 0;
-  if (replaces && ::access(real.c_str(), W_OK) != 0) fail(target, "cannot be written", errno);
+  if (replaces && ::access(real.c_str(), W_OK) != 0) fail(output.target, "cannot be written", errno);
 
   remove_stale_files(real.parent_path());
-  const fs::path path = temporary_beside(real);
-  TemporaryFile temporary(path, replaces ? (old.st_mode & 0777) : 0666);
-  if (!temporary.made()) fail(target, "cannot be written", errno);
+  staged.path = temporary_beside(real);
+  staged.temporary = std::make_unique<TemporaryFile>(staged.path, replaces ? (old.st_mode & 0777) : 0666);
+  if (!staged.temporary->made()) fail(output.target, "cannot be written", errno);
 
-  write(path);
-  if (!fs::is_regular_file(path, error)) throw MachineError(target.string() + ": its temporary file vanished while it was written");
-  if (replaces) ::chmod(path.c_str(), old.st_mode & 0777);
-  if (::rename(path.c_str(), real.c_str()) != 0) fail(target, "cannot be replaced", errno);
-  temporary.renamed();
+  output.write(staged.path);
+  if (!fs::is_regular_file(staged.path, error))
+    throw MachineError(output.target.string() + ": its temporary file vanished while it was written");
+  if (replaces) ::chmod(staged.path.c_str(), old.st_mode & 0777);
+  return staged;
+}
+
+/// Puts complete files in their places, all or none.
+class Replacement {
+ public:
+  explicit Replacement(std::vector<Staged>& staged) : staged_(staged), old_(staged.size()) { ++replacing; }
+  Replacement(const Replacement&) = delete;
+  Replacement& operator=(const Replacement&) = delete;
+  ~Replacement() {
+    for (const fs::path& old : old_) {
+      if (!old.empty()) ::unlink(old.c_str());
+    }
+    --replacing;
+  }
+
+  void run() {
+    // The old files of all but the first leave before any new one comes; the first is kept by a second name, so that its place is never
+    // empty.
+    for (size_t i = 1; i < staged_.size(); ++i) set_aside(i, ::rename);
+    if (staged_.size() > 1) set_aside(0, ::link);
+    for (; done_ < staged_.size(); ++done_) {
+      const Staged& one = staged_[done_];
+      if (::rename(one.path.c_str(), one.real.c_str()) != 0) undo(one.target, errno);
+      one.temporary->renamed();
+    }
+  }
+
+ private:
+  void set_aside(size_t i, int (*move)(const char*, const char*)) {
+    fs::path old = temporary_beside(staged_[i].real);
+    if (move(staged_[i].real.c_str(), old.c_str()) == 0)
+      old_[i] = std::move(old);
+    else if (errno != ENOENT && move == ::rename)
+      undo(staged_[i].target, errno);
+  }
+  [[noreturn]] void undo(const fs::path& target, int error) {
+    for (size_t i = 0; i < staged_.size(); ++i) {
+      if (!old_[i].empty())
+        ::rename(old_[i].c_str(), staged_[i].real.c_str());
+      else if (i < done_)
+        ::unlink(staged_[i].real.c_str());
+      old_[i].clear();
+    }
+    fail(target, "cannot be replaced", error);
+  }
+
+  std::vector<Staged>& staged_;
+  std::vector<fs::path> old_;  ///< Where the old files wait; empty where there is none.
+  size_t done_ = 0;
+};
+
+}  // namespace
+
+void write_together(std::span<const OutputFile> files) {
+  std::vector<Staged> staged;
+  staged.reserve(files.size());
+  for (const OutputFile& file : files) staged.push_back(stage(file));
+  Replacement replacement(staged);
+  replacement.run();
+}
+
+void write_whole(const fs::path& target, const std::function<void(const fs::path&)>& write) {
+  const OutputFile file{target, write};
+  write_together({&file, 1});
 }
 
 void write_whole(const fs::path& target, std::string_view content) {
@@ -120,6 +195,8 @@ void write_whole(const fs::path& target, std::string_view content) {
     if (!stream) throw MachineError(target.string() + ": writing failed (is the disk full?)");
   });
 }
+
+bool outputs_are_being_replaced() noexcept { return replacing > 0; }
 
 void remove_temporary_files() noexcept {
   for (Slot& slot : slots)

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "sdf/error.h"
 #include "sdf/parallel.h"
+#include "sdf/size_error.h"
 #include "subdiv/band_distance.h"
 #include "subdiv/triangle_box.h"
 
@@ -87,9 +87,9 @@ class PairFinder {
 };
 
 [[noreturn]] void refuse(double voxel_size, std::int64_t max_blocks) {
-  throw InputError({"", "--voxel-size", fmt::format("{}", voxel_size),
-                    fmt::format("the level set would take more than {} blocks of 8 x 8 x 8 voxels", max_blocks),
-                    "larger voxels or a narrower band"});
+  throw SizeError({"", "--voxel-size", fmt::format("{}", voxel_size),
+                   fmt::format("the level set needs more than {} blocks of 8 x 8 x 8 voxels", max_blocks),
+                   "larger voxels or a narrower band"});
 }
 
 /// Of a run of triangles: the blocks that they come near, in order, and which triangles come near each.

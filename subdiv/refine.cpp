@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "sdf/error.h"
+#include "sdf/size_error.h"
 #include "subdiv/opensubdiv_cage.h"
 
 namespace limn {
@@ -19,10 +19,10 @@ void check_size(const RefinedSize& size, const RefineSettings& settings, const s
   // Corner indices are 32-bit; four corners a face.
   const bool countable = size.faces <= std::numeric_limits<std::int32_t>::max() / 4;
   if (size.bytes <= settings.max_bytes && countable) return;
-  throw InputError({file, "--level", fmt::format("{}", settings.level),
-                    fmt::format("the refined mesh would have {} vertices and {} faces and take {:.1f} GB", size.vertices, size.faces,
-                                static_cast<double>(size.bytes) * 1e-9),
-                    fmt::format("a lower level (at most {:.1f} GB)", static_cast<double>(settings.max_bytes) * 1e-9)});
+  throw SizeError({file, "--level", fmt::format("{}", settings.level),
+                   fmt::format("the refined mesh has {} vertices and {} faces and needs {:.1f} GB", size.vertices, size.faces,
+                               static_cast<double>(size.bytes) * 1e-9),
+                   fmt::format("a lower level (at most {:.1f} GB)", static_cast<double>(settings.max_bytes) * 1e-9)});
 }
 
 /// The points of the last level, from those of the cage.

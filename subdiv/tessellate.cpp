@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "sdf/error.h"
+#include "sdf/size_error.h"
 #include "subdiv/dual_contour.h"
 #include "subdiv/local_field.h"
 #include "subdiv/polygon.h"
@@ -138,9 +138,9 @@ Mesh tessellate(const Field& field, const TessellateSettings& settings) {
   Cage cage = find_cage(field);
   const RefinedSize size = predict_refined_size(cage.mesh, Scheme::bilinear, settings.level);
   if (size.bytes > settings.max_bytes)
-    throw InputError({"", "--level", fmt::format("{}", settings.level),
-                      fmt::format("the mesh would have {} faces and take {:.1f} GB", size.faces, static_cast<double>(size.bytes) * 1e-9),
-                      fmt::format("a lower level (at most {:.1f} GB)", static_cast<double>(settings.max_bytes) * 1e-9)});
+    throw SizeError({"", "--level", fmt::format("{}", settings.level),
+                     fmt::format("the mesh has {} faces and needs {:.1f} GB", size.faces, static_cast<double>(size.bytes) * 1e-9),
+                     fmt::format("a lower level (at most {:.1f} GB)", static_cast<double>(settings.max_bytes) * 1e-9)});
   for (int level = 0; level < settings.level; ++level) cage = refined_once(field, cage.mesh, settings.max_bytes);
   if (settings.normals == NormalKind::limit) cage.mesh.corner_normals = field_normals(field, cage.mesh, cage.snapped.feature);
   return std::move(cage.mesh);

@@ -4,7 +4,11 @@
 #include "raymarch/view_level.h"
 #include "samples/commands/command.h"
 #include "samples/compare/comparison.h"
+#include "samples/compare/staging.h"
+#include "samples/empty_picture.h"
+#include "samples/input_files.h"
 #include "samples/limits.h"
+#include "samples/no_effect.h"
 #include "samples/threads.h"
 #include "samples/warnings.h"
 #include "sdf/output_file.h"
@@ -54,14 +58,13 @@ Comparison plan(const Options& options, SceneInput& input) {
 }
 
 // Without a font the sheet has no words; the page has them all.
-void write_all(const Comparison& comparison, const fs::path& folder, const Options& options, std::vector<fs::path>& files) {
+void write_all(const Comparison& comparison, const fs::path& folder, const Options& options) {
   const Sheet sheet = contact_sheet(comparison);
   if (!sheet.has_labels && !options.quiet)
     print_note("no font found, so sheet.png has no labels; the package fonts-dejavu-core brings one");
   write_image(sheet.picture, folder / "sheet.png");
-  write_whole(folder / "rows.json", rows_json(comparison).dump(1) + "\n");
+  write_whole(folder / "rows.json", rows_json(comparison).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   write_whole(folder / "report.html", report_page(comparison));
-  for (const char* name : {"sheet.png", "report.html", "rows.json"}) files.push_back(folder / name);
 }
 
 // What is held at a time: the reference's picture, one model's, and every cell's ink.
@@ -81,6 +84,38 @@ std::vector<std::string> check(const Options& options, const Comparison& compari
   return warn_of_input(options, last.scene, last.surface, {.surfaces = kinds, .methods = methods});
 }
 
+// What will be there: known before anything is drawn, as long as no model turns out to be impossible.
+std::vector<fs::path> file_names(const Comparison& comparison) {
+  std::vector<fs::path> names;
+  for (const ComparedModel& model : comparison.models) {
+    if (model.skipped.empty()) names.emplace_back(model.name + ".exr");
+  }
+  for (const char* name : {"sheet.png", "rows.json", "report.html"}) names.emplace_back(name);
+  return names;
+}
+
+void refuse_unread(const Options& options, const SceneInput& input, const Comparison& comparison) {
+  OptionUse use;
+  for (const ComparedModel& model : comparison.models) {
+    if (model.skipped.empty()) use.kinds.push_back(model.surface.kind);
+  }
+  refuse_without_effect(options, input, use);
+}
+
+// Where the reference shows nothing the others cannot be blamed for the same.
+void add_empty(const Options& options, const Comparison& comparison, std::vector<std::string>& warnings) {
+  const bool all = comparison.reference().counts.hits == 0;
+  std::vector<std::string> found;
+  for (const ComparedModel& model : comparison.models) {
+    if (all && &model != &comparison.reference()) break;
+    for (const std::string& warning : model.info.warnings) {
+      if (says_empty(warning)) found.push_back(all ? warning : model.title + ": " + warning);
+    }
+  }
+  print_warnings(options, found);
+  warnings.insert(warnings.end(), found.begin(), found.end());
+}
+
 int run(const Options& options) {
   const ThreadLimit threads(options.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
@@ -91,14 +126,19 @@ int run(const Options& options) {
   check_output_folder(folder, options);
 
   Comparison comparison = plan(options, input);
-  const std::vector<std::string> warnings = check(options, comparison);
-  draw_comparison(comparison, folder, execution_settings(options), bar);
+  refuse_unread(options, input, comparison);
+  const std::vector<fs::path> names = file_names(comparison);
+  for (const fs::path& name : names) check_not_input(folder / name, files_of(input));
+  std::vector<std::string> warnings = check(options, comparison);
+  const StagedFolder staged(folder);
+  draw_comparison(comparison, staged.work(), execution_settings(options), bar);
   bar.clear();
-  std::vector<fs::path> files;
-  for (const ComparedModel& model : comparison.models) {
-    if (model.skipped.empty()) files.push_back(model.exr);
+  add_empty(options, comparison, warnings);
+  write_all(comparison, staged.work(), options);
+  const std::vector<fs::path> files = staged.publish(file_names(comparison));
+  for (ComparedModel& model : comparison.models) {
+    if (model.skipped.empty()) model.exr = folder / model.exr.filename();
   }
-  write_all(comparison, folder, options, files);
 
   if (options.verbose) print_note(comparison.call);
   if (options.json) {

@@ -3,8 +3,10 @@
 #include <CLI/CLI.hpp>
 
 #include "samples/commands/command.h"
+#include "samples/input_files.h"
 #include "samples/job.h"
 #include "samples/limits.h"
+#include "samples/no_effect.h"
 #include "samples/output.h"
 #include "samples/threads.h"
 #include "samples/warnings.h"
@@ -40,6 +42,15 @@ void check_kind(const SurfaceSettings& settings) {
   }
 }
 
+// The way to the file: through a mesh, a level set, or both.
+OptionUse use_of(const Scene& scene, const SurfaceSettings& settings, bool to_level_set) {
+  OptionUse use{.kinds = {settings.kind}, .level_set_file = to_level_set, .mesh_file = !to_level_set};
+  const bool any_mesh = std::any_of(scene.objects.begin(), scene.objects.end(),
+                                    [](const SceneObject& object) { return std::holds_alternative<MeshSource>(object.source); });
+  if (to_level_set && any_mesh) use.kinds = {"mesh_level_set"};
+  return use;
+}
+
 // Refined positions are there where cages are written as meshes.
 void check_refined(const Scene& scene, const SurfaceSettings& settings, const fs::path& file) {
   const char* const expected = "a subdivision cage (--level N or --scheme NAME), written as .obj or .ply";
@@ -63,10 +74,14 @@ int run(const Options& options) {
   const ThreadLimit threads(options.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
   input_kind(options.input);
-  if (!options.outputs.empty()) check_output_file(options.outputs.back(), options, kEndings);
+  if (!options.outputs.empty()) {
+    check_output_file(options.outputs.back(), options, kEndings);
+    check_not_input(options.outputs.back(), {options.input});
+  }
   SceneInput input = load_input(options);
   const fs::path file = output_of(options, input.name, input.kind);
   check_output_file(file, options, kEndings);
+  check_not_input(file, files_of(input));
   SurfaceSettings settings = surface_settings(options, input);
   check_kind(settings);
   if (options.refined) check_refined(input.scene, settings, file);
@@ -76,6 +91,7 @@ int run(const Options& options) {
   SurfaceSettings expected = settings;
   if (ending_of(file) == ".vdb" && settings.kind.empty()) expected.kind = "level_set";
   if (ending_of(file) != ".vdb" && settings.kind.empty()) expected.kind = "mesh";
+  refuse_without_effect(options, input, use_of(input.scene, expected, ending_of(file) == ".vdb"));
   check_limits(options, input.scene, expected, {});
   std::vector<std::string> warnings = warn_of_input(options, input.scene, expected, {});
   const size_t of_input = warnings.size();

@@ -5,6 +5,7 @@
 #include "raymarch/audit.h"
 #include "samples/commands/command.h"
 #include "samples/job.h"
+#include "samples/no_effect.h"
 #include "samples/output.h"
 #include "samples/picture_facts.h"
 #include "samples/threads.h"
@@ -188,6 +189,7 @@ int report_volume_without_level_set(const Options& options, const std::vector<Gr
 
 void print_report(const Options& options, SceneInput input, const std::vector<GridSummary>& grids) {
   SurfaceSettings settings = surface_settings(options, input);
+  refuse_unchecked(options, input);
   if (!options.gradient && !input.surface.gradient) settings.gradient.clear();
   std::vector<Report> reports;
   for (const SceneObject& object : input.scene.objects) reports.push_back(report_of(object, settings));
@@ -230,7 +232,10 @@ void add_options(CLI::App& app, Options& options) {
 
 int run(const Options& options) {
   const ThreadLimit threads(options.threads);
-  if (is_picture_file(options.input)) return report_picture(options);
+  if (is_picture_file(options.input)) {
+    refuse_surface_options(options, "a picture");
+    return report_picture(options);
+  }
   std::vector<GridSummary> grids;
   if (input_kind(options.input) == InputKind::level_set) {
     grids = list_grids(options.input);
@@ -239,6 +244,8 @@ int run(const Options& options) {
         print_report(options, load_input(options), grids);
         return 0;
       } catch (const InputError& error) {
+        // Of the call, and not of what is in the file.
+        if (error.fault().field.starts_with("--")) throw;
         return report_volume_without_level_set(options, grids, error);
       }
     }

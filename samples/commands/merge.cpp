@@ -36,6 +36,14 @@ std::string missing_text(const std::vector<PlannedCell>& missing, std::int64_t c
   return missing.size() > kMost ? text + fmt::format("; and {} more", missing.size() - kMost) : text;
 }
 
+// Its rows would become those of the whole study, and the part be gone.
+void check_not_part(const fs::path& folder) {
+  const std::optional<StudyRecord> there = read_record(folder);
+  if (there && there->shards > 1)
+    throw InputError({folder.string(), "--output", "",
+                      fmt::format("is part {} of {} of a study itself; choose another folder", there->shard, there->shards), ""});
+}
+
 int run(const Options& options) {
   const std::vector<fs::path> parts = all_parts(options);
   fs::path folder;
@@ -45,6 +53,8 @@ int run(const Options& options) {
     folder = options.outputs.back();
   }
   check_output_folder(folder, options);
+  check_not_part(folder);
+  const FolderLock lock(folder);
   StudyFolder merged = merge_parts(parts, folder);
   const std::vector<fs::path> files = finish_folder(folder, merged, true);
   const std::vector<PlannedCell> missing = missing_cells(merged);

@@ -1,4 +1,6 @@
 #include "samples/commands/command.h"
+#include "samples/no_effect.h"
+#include "samples/options_parts.h"
 #include "samples/plan/job.h"
 #include "samples/threads.h"
 #include "samples/warnings.h"
@@ -12,9 +14,32 @@ void add_options(CLI::App& app, Options& options) {
   add_plan(app, options);
   add_camera(app, options, true);
   add_surface(app, options, {.surface = true, .repeatable = true, .swept = true});
-  add_border(app, options);
+  add_methods(app, options);
   add_json(app, options);
   add_execution(app, options);
+}
+
+[[noreturn]] void refuse(const std::string& option, const std::string& why) {
+  throw InputError({"", option, "", "has no effect: " + why, ""});
+}
+
+// A plan measures silhouettes and the level curves of N.V that `rim` inks; it reads that method's threshold and draws nothing.
+void refuse_unread(const Options& options, const SceneInput& input) {
+  for (const std::string& method : options.methods) {
+    if (method != "rim") refuse("--method " + method, "a plan measures the border of rim; leave it out");
+  }
+  for (const KeyValue& set : options.sets) {
+    if (set.key != "threshold" && set.key != "rim.threshold")
+      refuse("--set " + set.key, "a plan reads no parameter but rim's threshold; leave it out");
+    if (options.plan.silhouette) refuse("--set " + set.key, "a silhouette has no threshold; leave it out, or --metric silhouette");
+  }
+  if (options.half_width_voxels) refuse("--half-width", "each model of a plan has the band that its gradient needs; leave it out");
+  refuse_eye_of_views(options, options.views);
+  std::vector<std::string> kinds = options.surfaces;
+  if (kinds.empty()) {
+    for (const SurfaceDescriptor& kind : surface_kinds()) kinds.push_back(kind.about.name);
+  }
+  refuse_without_effect(options, input, {.kinds = kinds});
 }
 
 int run(const Options& options) {
@@ -23,6 +48,7 @@ int run(const Options& options) {
   if (!options.plan.tolerance_px) throw InputError({"", "--tolerance", "", "missing", "a number of pixels, such as --tolerance 0.5"});
   input_kind(options.input);
   const SceneInput input = load_input(options);
+  refuse_unread(options, input);
   WarningNeeds needs{.surfaces = options.surfaces, .methods = {"rim"}};
   if (needs.surfaces.empty()) {
     for (const SurfaceDescriptor& kind : surface_kinds()) needs.surfaces.push_back(kind.about.name);

@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <chrono>
 
-#include "raymarch/image_io.h"
+#include "raymarch/image_output.h"
 #include "raymarch/view_level.h"
 #include "samples/commands/command.h"
+#include "samples/empty_picture.h"
 #include "samples/flicker.h"
+#include "samples/input_files.h"
 #include "samples/interrupt.h"
 #include "samples/job.h"
 #include "samples/limits.h"
+#include "samples/no_effect.h"
 #include "samples/output.h"
 #include "samples/plan/job.h"
 #include "samples/scene_facts.h"
@@ -51,9 +54,12 @@ std::vector<fs::path> outputs_of(const Options& options, const SceneInput& input
   return {name + ".exr", name + ".png"};
 }
 
-void check_outputs(const std::vector<fs::path>& outputs, const Options& options) {
+void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::path>& inputs, const Options& options) {
   for (const fs::path& file : outputs) {
-    for (int k = 0; k < pictures_of(options); ++k) check_output_file(picture_file(file, k, options), options, kEndings);
+    for (int k = 0; k < pictures_of(options); ++k) {
+      check_output_file(picture_file(file, k, options), options, kEndings);
+      check_not_input(picture_file(file, k, options), inputs);
+    }
   }
 }
 
@@ -94,6 +100,7 @@ struct Render {
   Timings timings;
   HitCounts counts;
   std::vector<std::string> warnings, notes;
+  int empty_pictures = 0;
   Json files = Json::array();
   Json plan{};                            ///< What --tolerance chose; null without it.
   std::optional<FlickerWatch> flicker{};  ///< Of several frames.
@@ -102,16 +109,33 @@ struct Render {
 void write_picture(const Picture& picture, int index, const Options& options, Render& render) {
   const auto start = std::chrono::steady_clock::now();
   const std::string call = resolved_call("render", options, render.surface, render.camera, render.picture);
+  std::vector<OutputFile> files;
   for (const fs::path& name : render.outputs) {
     const fs::path file = picture_file(name, index, options);
-    if (interrupted()) throw Cancelled{};
-    if (ending_of(file) == ".exr")
-      write_exr(picture, render.camera, call, file);
-    else
-      write_image(picture.composite, file);
+    OutputFile output = ending_of(file) == ".exr" ? exr_output(picture, render.camera, call, file) : image_output(picture.composite, file);
+    files.push_back({file, [write = std::move(output.write)](const fs::path& temporary) {
+                       if (interrupted()) throw Cancelled{};
+                       write(temporary);
+                     }});
     render.files.push_back(file.string());
   }
+  // A layer file and the picture beside it show the same, or are both those of an earlier call.
+  write_together(files);
   render.timings.write_ms += since_ms(start);
+}
+
+// Of many pictures the first few stand for the rest.
+void warn_of_empty(const std::vector<std::string>& reasons, int index, const Options& options, Render& render) {
+  constexpr int kMost = 5;
+  if (reasons.empty() || ++render.empty_pictures > kMost) return;
+  std::vector<std::string> warnings;
+  for (const std::string& reason : reasons) {
+    warnings.push_back(pictures_of(options) == 1 ? reason
+                                                 : fmt::format("{} {}: {}", options.frames.frames > 1 ? "frame" : "view", index, reason));
+  }
+  if (render.empty_pictures == kMost) warnings.push_back("further pictures that show nothing are not told one by one");
+  print_warnings(options, warnings);
+  render.warnings.insert(render.warnings.end(), warnings.begin(), warnings.end());
 }
 
 void draw_one(const SceneModel& model, int index, const Options& options, ProgressBar& bar, FrameHistory& history, Render& render) {
@@ -128,6 +152,7 @@ void draw_one(const SceneModel& model, int index, const Options& options, Progre
   render.counts.misses += seen.misses;
   render.counts.out_of_steps += seen.out_of_steps;
   render.notes.insert(render.notes.end(), picture.notes.begin(), picture.notes.end());
+  warn_of_empty(why_empty(render.input.scene, model, render.camera, seen), index, options, render);
   write_picture(picture, index, options, render);
 }
 
@@ -202,14 +227,19 @@ int run(const Options& options) {
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
   input_kind(options.input);
   // A wrong output name must not cost the wait for a large model.
-  if (!options.outputs.empty()) check_outputs(options.outputs, options);
+  if (!options.outputs.empty()) check_outputs(options.outputs, {options.input}, options);
 
   Render render;
   render.input = load_input(options);
   render.outputs = outputs_of(options, render.input);
-  check_outputs(render.outputs, options);
+  check_outputs(render.outputs, files_of(render.input), options);
   render.timings.load_ms = render.input.load_ms;
   render.surface = surface_settings(options, render.input);
+  refuse_eye_of_views(options, options.views);
+  if (!options.plan.tolerance_px)
+    refuse_without_effect(options, render.input, {.kinds = {render.surface.kind}});
+  else if (options.half_width_voxels)
+    throw InputError({"", "--half-width", "", "has no effect with --tolerance, which chooses the model; leave it out", ""});
   if (options.plan.tolerance_px && !choose_model(options, bar, render)) return 1;
   render.surface.progress = bar.stage("building the surface");
   render.picture = picture_settings(options, render.input);

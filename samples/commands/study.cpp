@@ -3,12 +3,14 @@
 #include <CLI/CLI.hpp>
 
 #include "samples/commands/command.h"
+#include "samples/input_files.h"
 #include "samples/job.h"
 #include "samples/limits.h"
 #include "samples/stability/command.h"
 #include "samples/study/folder.h"
 #include "samples/study/run.h"
 #include "samples/study/shard.h"
+#include "samples/study/study_files.h"
 #include "samples/study/summary.h"
 #include "samples/threads.h"
 #include "samples/warnings.h"
@@ -159,8 +161,11 @@ StudyFolder do_cells(const Options& options, const Study& study, const Place& pl
   calibrate(work, ledger);
   check_time(options, ledger.remaining_ms());
   if (!options.quiet) announce(study, work, cells.size() - work.cells.size(), ledger);
+  const size_t known = held.record.head.warnings.size();
   run_cells(work, ledger, held.record, held.rows, bar);
   bar.clear();
+  const std::vector<std::string>& warnings = held.record.head.warnings;
+  print_warnings(options, {warnings.begin() + static_cast<std::ptrdiff_t>(known), warnings.end()});
   if (options.verbose) print_note(ledger.text());
   return held;
 }
@@ -177,6 +182,10 @@ int run(const Options& given) {
   SceneInput input = load(options);
   const Place place = place_of(options, input.name);
   check_output_folder(place.work, options);
+  const std::vector<fs::path> inputs = files_of(input);
+  for (const char* name : kStudyFiles) check_not_input(place.work / name, inputs);
+  if (options.study.fresh) check_not_holding_input(place.work / "cells", inputs, "--fresh");
+  if (place.is_part) check_not_holding_input(place.final, inputs, "a finished part");
   Study study = plan_study(options, std::move(input));
   const std::vector<size_t> cells =
       options.study.shards == 1 ? cells_of_shard(study, 1, 1) : cells_of_shard(study, options.study.shard, options.study.shards);

@@ -6,6 +6,7 @@
 
 #include "raymarch/image_io.h"
 #include "samples/compare/comparison.h"
+#include "samples/empty_picture.h"
 #include "sdf/color.h"
 #include "sdf/error.h"
 
@@ -93,6 +94,8 @@ Drawn draw_model(size_t row, Comparison& comparison, const ExecutionSettings& ho
   finish_samples(comparison.picture, drawn.seen);
   for (Picture& picture : drawn.pictures) finish_samples(comparison.picture, picture);
   modelled.counts = count_hits(drawn.seen.gbuffer);
+  for (std::string& reason : why_empty(modelled.scene, model, comparison.camera, modelled.counts))
+    modelled.info.warnings.push_back(std::move(reason));
   return drawn;
 }
 

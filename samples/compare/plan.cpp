@@ -6,6 +6,7 @@
 
 #include "samples/compare/comparison.h"
 #include "samples/scene_facts.h"
+#include "samples/utf8.h"
 
 namespace limn {
 namespace {
@@ -97,7 +98,7 @@ void add_reference(const SceneInput& input, SurfaceSettings settings, bool gradi
 Comparison plan_comparison(const SceneInput& input, const SurfaceSettings& settings, const std::vector<std::string>& only,
                            bool gradient_chosen) {
   Comparison comparison;
-  comparison.input_name = input.name;
+  comparison.input_name = valid_utf8(input.name);
   add_reference(input, settings, gradient_chosen, comparison);
   const std::string own = comparison.reference().surface.kind;
   const bool cages = any_cage(input.scene, settings);

@@ -65,7 +65,7 @@ struct StabilityCase {
   std::vector<StabilityExpectation> expectations{};
 };
 
-/// Throws InputError with file, line and what is expected.
+/// Throws InputError with file, line and what would be right.
 StabilityCase parse_case(const std::string& text, const std::string& file);
 
 /// What a case comes to with its parameters given values.

@@ -6,6 +6,7 @@
 
 #include "samples/job.h"
 #include "samples/study/call.h"
+#include "samples/utf8.h"
 
 namespace limn {
 namespace {
@@ -67,7 +68,7 @@ std::string call_text(const Options& options, const Axes& axes, const SurfaceSet
   }
   for (const auto& [name, all] : values) call += " " + name + (name == "--thresholds" ? " " : "=") + list_text(all);
   if (study.flicker) call += " --flicker";
-  return call;
+  return valid_utf8(call);
 }
 
 }  // namespace limn

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "samples/study/study_files.h"
 #include "samples/study/summary.h"
 #include "sdf/error.h"
 
@@ -27,7 +28,8 @@ bool is_there(const fs::path& path) {
 void forget(const fs::path& folder) {
   std::error_code ignored;
   // Rows first: thumbnails vouch for them.
-  for (const char* name : {"rows.jsonl", "rows.csv", "study.json", "report.html", "cells"}) fs::remove_all(folder / name, ignored);
+  for (const char* name : kStudyFiles) fs::remove(folder / name, ignored);
+  fs::remove_all(folder / "cells", ignored);
 }
 
 }  // namespace
@@ -37,6 +39,13 @@ void check_planned(const StudyFolder& held, const fs::path& file) {
   for (const PlannedCell& cell : held.record.cells) planned.insert(cell.key);
   for (const auto& [key, rows] : held.rows) {
     if (!planned.contains(key)) throw InputError({file.string(), "key", key, "unknown cell", "a cell of this study; --fresh starts over"});
+  }
+}
+
+void add_warnings(const std::vector<std::string>& warnings, StudyRecord& record) {
+  std::vector<std::string>& known = record.head.warnings;
+  for (const std::string& warning : warnings) {
+    if (std::find(known.begin(), known.end(), warning) == known.end()) known.push_back(warning);
   }
 }
 
@@ -55,6 +64,7 @@ StudyFolder open_folder(const fs::path& folder, const StudyRecord& record, bool 
     refuse_other(folder, difference(*there, record));
     held.rows = read_folder(folder)->rows;
     add_truths(there->truths, held.record);
+    add_warnings(there->head.warnings, held.record);
   } else if (is_there(folder / "rows.jsonl")) {
     refuse_other(folder, "rows of nobody knows what");
   }

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "samples/study/folder.h"
+#include "samples/study/study_files.h"
 #include "sdf/error.h"
 #include "sdf/output_file.h"
 
@@ -85,6 +86,7 @@ void check_parts(const std::vector<fs::path>& parts, const fs::path& folder) {
 std::vector<std::string> take_part(StudyFolder part, StudyFolder& merged) {
   std::vector<std::string> taken;
   add_truths(part.record.truths, merged.record);
+  add_warnings(part.record.head.warnings, merged.record);
   for (auto& [key, rows] : part.rows) {
     std::vector<StudyRow>& kept = merged.rows[key];
     if (!kept.empty() && !is_better(rows, kept)) continue;

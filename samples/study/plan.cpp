@@ -8,10 +8,12 @@
 
 #include "samples/compare/comparison.h"
 #include "samples/job.h"
+#include "samples/no_effect.h"
 #include "samples/scene_facts.h"
 #include "samples/study/axes.h"
 #include "samples/study/call.h"
 #include "samples/study/key.h"
+#include "samples/utf8.h"
 #include "sdf/error.h"
 #include "sdf/level_set.h"
 
@@ -27,6 +29,7 @@ struct ModelMaker {
   const SceneSize& size;
   double pixels;
   std::int64_t max_bytes;
+  bool asked;  ///< By --max-memory.
   std::vector<StudyModel>& models;
 
   void add(const SurfaceSettings& settings, std::map<std::string, std::string> parameters, const std::string& refused) const {
@@ -34,8 +37,8 @@ struct ModelMaker {
     if (model.settings.half_width_voxels > 0.0 && model.parameters.contains("gradient"))
       model.parameters["half_width"] = fmt::format("{}", model.settings.half_width_voxels);
     if (model.refused.empty() && model.cost.bytes > 4 * max_bytes) {
-      model.refused = fmt::format("it would take about {}, which is more than --max-memory {}", bytes_text(double(model.cost.bytes)),
-                                  bytes_text(double(max_bytes)));
+      model.refused = fmt::format("it needs about {}; {} leaves {} for a model", bytes_text(double(model.cost.bytes)),
+                                  asked ? "--max-memory" : "the default limit", bytes_text(double(max_bytes)));
     }
     if (!model.refused.empty()) model.cost = {};
     models.push_back(std::move(model));
@@ -72,8 +75,8 @@ struct ModelMaker {
   }
 };
 
-void plan_models(const Axes& axes, const SceneSize& size, SurfaceSettings settings, Study& study) {
-  const ModelMaker maker{axes, size, study.pixels(), settings.max_bytes, study.models};
+void plan_models(const Axes& axes, const SceneSize& size, SurfaceSettings settings, bool memory_asked, Study& study) {
+  const ModelMaker maker{axes, size, study.pixels(), settings.max_bytes, memory_asked, study.models};
   settings.voxel_size = 0.0;
   for (const std::string& surface : axes.surfaces) {
     settings.kind = surface;
@@ -170,8 +173,9 @@ void plan_cells(Study& study) {
 
 void fill_head(const Options& options, const Axes& axes, const SurfaceSettings& settings, const SceneInput& input, Study& study) {
   StudyHead& head = study.head;
-  head.input = options.input;
-  head.scene = input.name;
+  // What is written is read again and compared with these.
+  head.input = valid_utf8(options.input);
+  head.scene = valid_utf8(input.name);
   head.call = call_text(options, axes, settings, study);
   head.views = static_cast<int>(study.cameras.size());
   head.cells = static_cast<std::int64_t>(study.cells.size());
@@ -201,10 +205,12 @@ Study plan_with(const Given& given, const DefaultAxes& defaults) {
   study.truth_terms = truth_terms(given.size);
   const CameraSettings camera = study_camera(options, given.input);
   const int views = options.study.views.value_or(defaults.views);
+  refuse_eye_of_views(options, views);
   for (int view = 0; view < views; ++view) study.cameras.push_back(camera_of_view(camera, box, view, views));
   const Axes axes = resolve_axes(options, study.scene, given.settings, given.size, defaults);
+  refuse_sweep_without_effect(options, given.input, axes.surfaces);
   plan_methods(options, given.input, study);
-  plan_models(axes, given.size, given.settings, study);
+  plan_models(axes, given.size, given.settings, options.max_memory.has_value(), study);
   plan_reference(options, given.input, given.settings, axes, given.size, study);
   plan_cells(study);
   fill_head(options, axes, given.settings, given.input, study);

@@ -11,8 +11,10 @@
 #include "raymarch/measured_border.h"
 #include "raymarch/polygons.h"
 #include "samples/compare/panels.h"
+#include "samples/empty_picture.h"
 #include "samples/study/reference.h"
 #include "samples/study/run_batches.h"
+#include "samples/study/study_files.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -131,12 +133,28 @@ struct Runner {
     const auto start = Clock::now();
     Seen seen = look(model, work.study, group.view, work.how);
     ledger.done("trace " + planned.surface, work.study.looks() * planned.cost.trace_ms, ms_since(start));
+    warn_of_empty(model, group, seen.gbuffer, truth_picture.gbuffer);
     Picture picture;
     picture.gbuffer = seen.gbuffer;
     for (const size_t index : group.cells) {
       if (work.how.cancelled && work.how.cancelled()) throw Cancelled{};
       show_progress();
       run_cell(model, work.study.cells[index], seen, picture, truth_picture);
+    }
+  }
+
+  // Where the reference shows nothing either it is the view's doing: said once for all models.
+  void warn_of_empty(const SceneModel& model, const CellGroup& group, const GBuffer& seen, const GBuffer& reference_seen) {
+    const StudyModel& planned = work.study.models[group.model];
+    const bool of_view = count_hits(reference_seen).hits == 0;
+    for (const std::string& reason : why_empty(work.study.scene, model, work.study.cameras[group.view], count_hits(seen))) {
+      std::string text = fmt::format("view {}", group.view);
+      if (!of_view) {
+        text += ", " + planned.surface;
+        for (const auto& [name, value] : planned.parameters) text += fmt::format(" {}={}", name, value);
+      }
+      text += ": ";
+      add_warnings({text + reason}, record);
     }
   }
 

@@ -5,8 +5,8 @@ a closed or full standard output.
 kills.py LIMN FOLDER [--count N] [--seed S] [--only PART]... [--brief] [--json FILE]
 
 PARTs: the commands that are killed (render, compare, study, export, merge; --count times each, the signal and the moment chosen by --seed), and
-disk_full, read_only, folder_gone, streams (--brief: on fewer calls). After each kill every output is the old file or the new one, byte for byte; after the next start
-nothing temporary is left and the result is that of a run nobody disturbed.
+disk_full, read_only, folder_gone, streams (--brief: on fewer calls). After each kill every output is the old file or the new one, byte for byte, and no old one
+stands unmarked beside a new one; after the next start nothing temporary is left and the result is that of a run nobody disturbed.
 """
 import collections
 import json
@@ -24,6 +24,7 @@ import machine
 SCENE = "[[object]]\nshape = \"ellipsoid\"\nradii = [1.0, 0.7, 0.5]\n[border]\nthreshold = {}\n"
 SIGNALS = {"SIGINT": signal.SIGINT, "SIGTERM": signal.SIGTERM, "SIGKILL": signal.SIGKILL}
 PATIENCE_S = 60
+UNFINISHED = "compare.unfinished"
 
 
 class Tally:
@@ -90,11 +91,15 @@ def check_files(name, out, old, new, tally, what):
     """Each file is the old one or the new one. Journals of a study grow; the next start judges them."""
     if name in ("study", "merge"):
         return
-    for file, data in child.contents(out).items():
-        if pathlib.Path(file).name.startswith(".limn-") or data is None:
-            continue
+    there = {file: data for file, data in child.contents(out, but=(UNFINISHED,)).items()
+             if data is not None and not pathlib.Path(file).name.startswith(".limn-")}
+    for file, data in there.items():
         if data not in (old.get(file), new.get(file)):
             tally.fail(f"{what}: {file} is neither the old file nor the new one")
+    # What belongs together is of one call, or it shows: a file is missing, or the folder says that it is unfinished.
+    are_new = {data == new[file] for file, data in there.items() if file in old and old[file] != new.get(file)}
+    if len(are_new) > 1 and not (out / UNFINISHED).exists():
+        tally.fail(f"{what}: old files stand beside new ones and nothing says so")
 
 
 def kill_once(name, calls, out, old, new, moment, random_numbers, tally):

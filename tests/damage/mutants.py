@@ -39,7 +39,7 @@ def commands(limn, kind, file, out):
     render = ([limn, "render", file, "-o", picture, "--size", "32x24", "--threads", "1", "--quiet"], picture)
     layers = ([limn, "render", file, "-o", out / "out.exr", "--size", "32x24", "--threads", "1", "--quiet"], out / "out.exr")
     to_volume = ([limn, "export", file, "-o", volume, "--threads", "1", "--quiet"] + ([] if kind.startswith("vdb") else ["--voxels", "16"]), volume)
-    to_mesh = ([limn, "export", file, "-o", mesh, "--threads", "1", "--quiet"] + (["--voxels", "16"] if kind == "toml" else []), mesh)
+    to_mesh = ([limn, "export", file, "-o", mesh, "--threads", "1", "--quiet"] + (["--level", "1"] if kind == "toml" else []), mesh)
     if kind.startswith("vdb"):
         to_mesh[0].extend(["--surface", "level_set"])
     return [render, to_volume, layers, ([limn, "info", file], None)] + ([] if kind == "toml" else [to_mesh])

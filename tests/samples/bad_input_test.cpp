@@ -119,7 +119,9 @@ TEST(BadInput, TruncatedFilesAreRefused) {
   const TemporaryFolder folder;
   for (const std::string ending : {".ply", ".vdb"}) {
     const std::string whole = folder.file("whole" + ending);
-    ASSERT_EQ(run_limn({"export", "ellipsoid", "--voxels", "24", "--level", "1", "-o", whole, "-q"}).exit_code, 0);
+    ASSERT_EQ(run_limn({"export", "ellipsoid", ending == ".vdb" ? "--voxels" : "--level", ending == ".vdb" ? "24" : "1", "-o", whole, "-q"})
+                  .exit_code,
+              0);
     const std::string bytes = read_bytes(whole);
     for (const double share : {0.1, 0.5, 0.9}) {
       const std::string part =

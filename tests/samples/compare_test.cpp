@@ -13,9 +13,10 @@ namespace {
 
 using nlohmann::json;
 
-json compare(const TemporaryFolder& folder, const std::string& input, std::vector<std::string> more = {}) {
-  std::vector<std::string> arguments = {"compare", input, "--size", "160x120",          "--voxels", "40",
-                                        "--level", "2",   "-o",     folder.file("out"), "--json"};
+json compare(const TemporaryFolder& folder, const std::string& input, const std::vector<std::string>& more = {},
+             const std::vector<std::string>& resolution = {"--voxels", "40", "--level", "2"}) {
+  std::vector<std::string> arguments = {"compare", input, "--size", "160x120", "-o", folder.file("out"), "--json"};
+  arguments.insert(arguments.end(), resolution.begin(), resolution.end());
   arguments.insert(arguments.end(), more.begin(), more.end());
   const RunResult result = run_limn(arguments);
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -68,7 +69,7 @@ TEST(Compare, ACageIsHeldAgainstItsLimitSurfaceAndSkipsSayWhy) {
 TEST(Compare, AVolumeIsHeldAgainstItselfAcrossGradients) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_limn({"export", "ellipsoid", "--voxels", "40", "--half-width", "5", "-o", folder.file("egg.vdb"), "-q"}).exit_code, 0);
-  const json document = compare(folder, folder.file("egg.vdb"));
+  const json document = compare(folder, folder.file("egg.vdb"), {}, {});
   EXPECT_EQ(document.at("reference").at("surface"), "level_set");
   EXPECT_EQ(document.at("reference").at("parameters").at("gradient"), "cubic");
   EXPECT_LT(cell(document, "level_set_central").at("metrics").at("normal_error_mean"),
@@ -77,7 +78,7 @@ TEST(Compare, AVolumeIsHeldAgainstItselfAcrossGradients) {
 
 TEST(Compare, OnlyTheRepresentationsAskedForAreDrawn) {
   const TemporaryFolder folder;
-  const json document = compare(folder, "ellipsoid", {"--surface", "mesh"});
+  const json document = compare(folder, "ellipsoid", {"--surface", "mesh"}, {"--level", "2"});
   EXPECT_EQ(document.at("cells").size(), 1u);
 }
 
@@ -165,7 +166,7 @@ TEST(CompareMatrix, EveryMethodMeetsEveryModelAndASkipSaysWhy) {
 
 TEST(CompareMatrix, WhatFailedIsSaidInTheMethodsOwnNumbers) {
   const TemporaryFolder folder;
-  const json document = compare(folder, "machined_part", {"--methods", "rim,jump_flood", "--surfaces", "mesh"});
+  const json document = compare(folder, "machined_part", {"--methods", "rim,jump_flood", "--surfaces", "mesh"}, {"--level", "2"});
   ASSERT_EQ(document.at("cells").size(), 2u);
   const std::string page = read_bytes(folder.path() / "out/report.html");
   for (const json& note : cell(document, "mesh-rim").at("notes")) EXPECT_NE(page.find(note.get<std::string>()), std::string::npos) << note;

@@ -1,0 +1,167 @@
+#include "samples/no_effect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "samples/scene_facts.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+/// A setting as SurfaceDescriptor::settings names it, and the option that gives it.
+struct GivenSetting {
+  std::string option, setting;
+};
+
+std::vector<GivenSetting> given_settings(const Options& options) {
+  std::vector<GivenSetting> given;
+  const auto add = [&](bool is_given, const char* setting) {
+    if (is_given) given.push_back({std::string("--") + setting, setting});
+  };
+  add(options.voxels.has_value(), "voxels");
+  add(options.voxel_size.has_value(), "voxel-size");
+  add(options.half_width_voxels.has_value(), "half-width");
+  add(options.gradient.has_value(), "gradient");
+  // Level 0 asks for what is there anyway: a mesh as it is.
+  add(options.level.value_or(0) > 0 || options.level_for_view, "level");
+  add(options.scheme.has_value(), "scheme");
+  add(options.normals.has_value(), "normals");
+  add(options.smooth_angle_deg.has_value(), "smooth-angle");
+  return given;
+}
+
+std::vector<GivenSetting> swept_settings(const Options& options) {
+  const StudyOptions& study = options.study;
+  std::vector<GivenSetting> given;
+  const auto add = [&](bool is_given, const char* option, const char* setting) {
+    if (is_given) given.push_back({option, setting});
+  };
+  add(!study.voxels.empty(), "--voxels", "voxels");
+  add(!study.levels.empty() && study.levels.back() > 0, "--levels", "level");
+  add(!study.normals.empty(), "--normals", "normals");
+  add(!study.gradients.empty(), "--gradients", "gradient");
+  add(options.half_width_voxels.has_value(), "--half-width", "half-width");
+  add(options.scheme.has_value(), "--scheme", "scheme");
+  add(options.smooth_angle_deg.has_value(), "--smooth-angle", "smooth-angle");
+  return given;
+}
+
+/// What the input holds can be refined: a field is tessellated, a cage has limit surfaces.
+bool is_refined(const SceneObject& object, const SurfaceSettings& settings) {
+  return std::holds_alternative<Field>(object.source) || cage_scheme(object, settings).has_value();
+}
+
+bool reads(const SceneObject& object, const SurfaceSettings& settings, const std::string& kind, const std::string& setting) {
+  const SurfaceDescriptor& surface = find_surface(kind.empty() ? natural_surface(object) : kind);
+  // A property of the object and no setting of a representation: of meshes that are drawn as they are.
+  if (setting == "smooth-angle") {
+    const bool as_it_is = std::holds_alternative<MeshSource>(object.source) && !cage_scheme(object, settings);
+    return surface.about.name == "mesh" && as_it_is;
+  }
+  const auto& all = surface.settings;
+  if (!surface.unsupported(object).empty() || std::find(all.begin(), all.end(), setting) == all.end()) return false;
+  // Of what a representation reads, an object may have only a part.
+  if (setting == "level") return is_refined(object, settings);
+  if (setting == "scheme") return std::holds_alternative<MeshSource>(object.source);
+  return true;
+}
+
+bool any_reads(const Scene& scene, const SurfaceSettings& settings, const std::string& kind, const std::string& setting) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [&](const SceneObject& object) { return reads(object, settings, kind, setting); });
+}
+
+std::string listed(const std::vector<std::string>& words, const char* last) {
+  std::string text;
+  for (size_t i = 0; i < words.size(); ++i) text += (i == 0 ? "" : i + 1 == words.size() ? last : ", ") + words[i];
+  return text;
+}
+
+/// "a mesh drawn as mesh".
+std::string drawn_text(const Scene& scene, std::span<const std::string> kinds) {
+  const char* const what = scene.objects.size() != 1    ? "a scene"
+                           : all_are<Field>(scene)      ? "a formula"
+                           : all_are<MeshSource>(scene) ? "a mesh"
+                                                        : "a volume";
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const std::string& kind : kinds) {
+    if (!kind.empty()) add(kind);
+    for (const SceneObject& object : scene.objects) {
+      if (kind.empty()) add(natural_surface(object));
+    }
+  }
+  return fmt::format("{} drawn as {}", what, listed(names, " and "));
+}
+
+void refuse_unread(const std::vector<GivenSetting>& given, const Scene& scene, const SurfaceSettings& settings,
+                   std::span<const std::string> kinds) {
+  for (const auto& [option, setting] : given) {
+    const std::string& name = setting;
+    if (std::any_of(kinds.begin(), kinds.end(), [&](const std::string& kind) { return any_reads(scene, settings, kind, name); })) continue;
+    std::vector<std::string> readers;
+    for (const SurfaceDescriptor& surface : surface_kinds()) {
+      if (why_not(surface, scene).empty() && any_reads(scene, settings, surface.about.name, name)) readers.push_back(surface.about.name);
+    }
+    throw InputError({"", option, "",
+                      fmt::format("has no effect on {}; {}", drawn_text(scene, kinds),
+                                  readers.empty() ? "leave it out" : "add --surface " + listed(readers, " or ")),
+                      ""});
+  }
+}
+
+/// What settings the command line makes, as far as it says what is a cage.
+SurfaceSettings settings_of(const Options& options, const SceneInput& input) {
+  SurfaceSettings settings;
+  settings.scheme = options.scheme ? options.scheme : input.surface.scheme;
+  return settings;
+}
+
+}  // namespace
+
+void refuse_without_effect(const Options& options, const SceneInput& input, const OptionUse& use) {
+  std::vector<GivenSetting> given = given_settings(options);
+  for (const auto& [option, setting] : given) {
+    const bool unwritten = (use.level_set_file && setting == "normals") || (use.mesh_file && setting == "gradient");
+    if (unwritten)
+      throw InputError({"", option, "", fmt::format("has no effect on a {} file; leave it out", use.mesh_file ? "mesh" : "level set"), ""});
+  }
+  refuse_unread(given, input.scene, settings_of(options, input), use.kinds);
+}
+
+void refuse_unchecked(const Options& options, const SceneInput& input) {
+  const SurfaceSettings settings = settings_of(options, input);
+  for (const auto& [option, setting] : given_settings(options)) {
+    const std::string& name = setting;
+    const bool checked = std::any_of(input.scene.objects.begin(), input.scene.objects.end(), [&](const SceneObject& object) {
+      if (name == "voxels" || name == "voxel-size") return true;
+      if (name == "gradient") return std::holds_alternative<LevelSetSource>(object.source);
+      if (name == "level") return cage_scheme(object, settings).has_value();
+      return name == "scheme" && std::holds_alternative<MeshSource>(object.source);
+    });
+    if (!checked) throw InputError({"", option, "", "has no effect on what is looked at here; leave it out", ""});
+  }
+}
+
+void refuse_surface_options(const Options& options, const std::string& what) {
+  std::vector<GivenSetting> given = given_settings(options);
+  if (!options.grids.empty()) given.push_back({"--grid", "grid"});
+  if (!given.empty()) throw InputError({"", given.front().option, "", "has no effect on " + what + "; leave it out", ""});
+}
+
+void refuse_sweep_without_effect(const Options& options, const SceneInput& input, std::span<const std::string> kinds) {
+  refuse_unread(swept_settings(options), input.scene, settings_of(options, input), kinds);
+}
+
+void refuse_eye_of_views(const Options& options, int views) {
+  if (views <= 1 || !options.eye) return;
+  throw InputError(
+      {"", "--eye", "",
+       fmt::format("has no effect on {} views, whose directions are spread over the sphere; leave it out, or add --views 1", views), ""});
+}
+
+}  // namespace limn

@@ -111,7 +111,32 @@ void add_object(const EdgeSettings& settings, const Polygons& polygons, std::int
   for (const std::vector<LinePiece>& part : of_block) pieces.insert(pieces.end(), part.begin(), part.end());
 }
 
-void add_notes(const BorderInput& input, std::vector<std::string>& notes) {
+/// Pairs of neighbouring pixels that show different objects and have no line near them.
+std::int64_t bare_boundaries(const GBuffer& seen, const Image<float>& ink) {
+  std::int64_t count = 0;
+  for (int y = 0; y + 1 < seen.height; ++y) {
+    for (int x = 0; x + 1 < seen.width; ++x) {
+      const std::int32_t id = seen.id.at(x, y), right = seen.id.at(x + 1, y), below = seen.id.at(x, y + 1);
+      const bool meets = id != 0 && ((right != 0 && right != id) || (below != 0 && below != id));
+      if (!meets) continue;
+      bool inked = false;
+      for (int v = std::max(0, y - 1); v <= std::min(seen.height - 1, y + 2); ++v) {
+        for (int u = std::max(0, x - 1); u <= std::min(seen.width - 1, x + 2); ++u) inked = inked || ink.at(u, v) > 0.0f;
+      }
+      count += !inked;
+    }
+  }
+  return count;
+}
+
+void add_notes(const BorderInput& input, const Image<float>& ink, std::vector<std::string>& notes) {
+  if (input.model.surfaces.size() > 1) {
+    if (const std::int64_t bare = bare_boundaries(input.gbuffer, ink); bare > 0)
+      notes.push_back(
+          fmt::format("edge_quads: no line at {} places where one object's pixels meet another's: meshes that pass through each "
+                      "other have no edge there",
+                      bare));
+  }
   std::int64_t non_manifold = 0, flat = 0, without = 0;
   for (const Surface& surface : input.model.surfaces) {
     without += surface.polygons == nullptr;
@@ -142,7 +167,7 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
       add_object(settings, *polygons, static_cast<std::int32_t>(i), view, width, pieces);
   }
   draw_lines(pieces, border.coverage);
-  add_notes(input, border.notes);
+  add_notes(input, border.coverage, border.notes);
   return border;
 }
 

@@ -33,7 +33,7 @@ ExtrudedCorners extrude_corners(const Polygons& polygons, const Affine& render_f
 /// Ink of the offset surface of object `object` (index from 0), laid over `coverage`. Throws InputError where it does not reach that far.
 void ink_offset(const BorderInput& input, size_t object, const ExtrudeSettings& settings, Image<float>& coverage);
 
-/// Pixels of objects beside what lies farther back, and runs (8-connected) of those without ink (> 1/2) on any such neighbour.
+/// Pixels of objects beside what lies farther back, and runs (8-connected) of those without ink (1/2 or more) on any such neighbour.
 struct OutlineGaps {
   std::int64_t outline_pixels = 0, gap_pixels = 0;
   std::int64_t gaps = 0, longest_px = 0;

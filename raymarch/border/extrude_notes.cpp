@@ -22,7 +22,7 @@ OutlinePixel outline_pixel(const GBuffer& seen, const Image<float>& coverage, in
   if (!out(x - 1, y) && !out(x + 1, y) && !out(x, y - 1) && !out(x, y + 1)) return OutlinePixel::none;
   for (int v = y - 1; v <= y + 1; ++v) {
     for (int u = x - 1; u <= x + 1; ++u) {
-      if (out(u, v) && coverage.at(u, v) > 0.5f) return OutlinePixel::inked;
+      if (out(u, v) && coverage.at(u, v) >= 0.5f) return OutlinePixel::inked;
     }
   }
   return OutlinePixel::gap;

@@ -31,7 +31,6 @@ const std::multimap<std::string, Broken>& broken() {
   static const std::multimap<std::string, Broken> all{
       {"border_within", {kAnalytic, "", kSmaller, 3.0}},
       {"border_within", {kAnalytic, "[with]\nkind = \"silhouette\"\nstatistic = \"p95\"\n", kLarger, 2.0}},
-      {"clean_seams", {kAnalytic + "methods = [\"sobel\"]\n", "[with]\nspeck_px = 1000\n"}},
       {"clean_seams", {kRim, "[with]\nseams = 0\naway_px = 2\n", kTwoBalls}},
       {"continuous",
        {kRim, "[set]\nsweep = 0\n[with]\nfrom = 0\nto = 90\nsteps = 9\n",

@@ -8,10 +8,10 @@ namespace {
 
 enum SeamPixel : std::uint8_t { none = 0, bare = 1, inked = 2 };
 
-/// Sizes of the 8-connected regions of pixels for which `among(value)` holds.
+/// The 8-connected regions of pixels for which `among(value)` holds.
 template <class T, class Among>
-std::vector<std::int64_t> regions(const Image<T>& image, const Among& among) {
-  std::vector<std::int64_t> sizes;
+std::vector<std::vector<glm::ivec2>> regions(const Image<T>& image, const Among& among) {
+  std::vector<std::vector<glm::ivec2>> found;
   Image<std::uint8_t> taken(image.width, image.height, 0);
   std::vector<glm::ivec2> stack;
   for (int y = 0; y < image.height; ++y) {
@@ -19,11 +19,11 @@ std::vector<std::int64_t> regions(const Image<T>& image, const Among& among) {
       if (taken.at(x, y) != 0 || !among(image.at(x, y))) continue;
       taken.at(x, y) = 1;
       stack = {{x, y}};
-      std::int64_t size = 0;
+      found.emplace_back();
       while (!stack.empty()) {
         const glm::ivec2 p = stack.back();
         stack.pop_back();
-        ++size;
+        found.back().push_back(p);
         for (int v = p.y - 1; v <= p.y + 1; ++v) {
           for (int u = p.x - 1; u <= p.x + 1; ++u) {
             if (!image.inside(u, v) || taken.at(u, v) != 0 || !among(image.at(u, v))) continue;
@@ -32,10 +32,9 @@ std::vector<std::int64_t> regions(const Image<T>& image, const Among& among) {
           }
         }
       }
-      sizes.push_back(size);
     }
   }
-  return sizes;
+  return found;
 }
 
 template <class Among>
@@ -71,8 +70,15 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
     const auto count = [&](auto among) { return static_cast<std::int64_t>(regions(seam, among).size()); };
     const std::int64_t seams = count([](std::uint8_t p) { return p != none; });
     const std::int64_t changes = count([](std::uint8_t p) { return p == bare; }) + count([](std::uint8_t p) { return p == inked; }) - seams;
-    const std::vector<std::int64_t> pieces = regions(border.coverage, [](float ink) { return ink > 0.5f; });
-    const auto specks = std::count_if(pieces.begin(), pieces.end(), [&](std::int64_t size) { return size < with.integer("speck_px"); });
+    // Along the outline of all objects other things break lines.
+    const auto at_outline = [&](const glm::ivec2& p) {
+      return any_near(view.seen, p.x, p.y, 3, [&](int u, int v) { return view.seen.id.at(u, v) == 0; });
+    };
+    std::int64_t specks = 0;
+    for (const std::vector<glm::ivec2>& piece : regions(border.coverage, [](float ink) { return ink > 0.5f; })) {
+      const bool small = static_cast<int>(piece.size()) < with.integer("speck_px");
+      specks += small && std::none_of(piece.begin(), piece.end(), at_outline);
+    }
     const std::int64_t splinters = std::max<std::int64_t>(0, seams - with.integer("seams"));
     worst.see(static_cast<double>(changes + splinters + specks),
               fmt::format("{} seams in the picture, {} changes between ink and none along them, {} specks of ink", seams, changes, specks),

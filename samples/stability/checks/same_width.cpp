@@ -14,12 +14,17 @@ struct Width {
   double size = 0.0;  ///< Of the picture, in pixels.
 };
 
-/// Ink over the length of the silhouette, of which grid lines cross 4/pi a pixel in the mean over all directions (Cauchy and Crofton).
+/// Width of the ink beside and on the object. Of a convex silhouette of length L, a line of width w has the area w L + pi w^2 outside and
+/// w L - pi w^2 inside (Steiner); grid lines cross L 4/pi times, in the mean over all directions (Cauchy and Crofton).
 Width width_of(const StabilityView& view, const Border& border) {
-  double area = 0.0;
-  for (const float ink : border.coverage.pixels) area += double{ink};
-  const double length = static_cast<double>(find_silhouette(view.seen, false).crossings) * 0.25 * std::numbers::pi;
-  return {length > 0.0 ? area / length : 0.0, static_cast<double>(view.camera.height_px)};
+  double outside = 0.0, inside = 0.0;
+  for (size_t i = 0; i < border.coverage.size(); ++i) (view.seen.id.pixels[i] == 0 ? outside : inside) += double{border.coverage.pixels[i]};
+  constexpr double pi = std::numbers::pi;
+  const double length = static_cast<double>(find_silhouette(view.seen, false).crossings) * 0.25 * pi;
+  const auto width = [&](double area, double sign) {
+    return sign * (std::sqrt(std::max(0.0, length * length + sign * 4.0 * pi * area)) - length) / (2.0 * pi);
+  };
+  return {width(outside, 1.0) + width(inside, -1.0), static_cast<double>(view.camera.height_px)};
 }
 
 /// Parallel projection that is as large at the depth of the scene's middle, from as far away.

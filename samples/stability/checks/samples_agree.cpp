@@ -11,21 +11,29 @@ namespace {
 
 constexpr std::array kSamples = {1, 4, 16};
 
-struct Place {
-  glm::dvec2 centre{0.0};
-  double area = 0.0;
-};
+/// So many that a picture's own sampling no longer counts.
+constexpr int kReference = 36;
 
-Place place_of(const Image<float>& ink) {
-  Place place;
-  for (int y = 0; y < ink.height; ++y) {
-    for (int x = 0; x < ink.width; ++x) {
-      place.area += double{ink.at(x, y)};
-      place.centre += double{ink.at(x, y)} * glm::dvec2(x, y);
+/// The translation of `reference` that `ink` is most like, by least squares (Lucas and Kanade 1981).
+glm::dvec2 moved(const Image<float>& ink, const Image<float>& reference) {
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  glm::dvec2 b(0.0);
+  for (int y = 1; y + 1 < ink.height; ++y) {
+    for (int x = 1; x + 1 < ink.width; ++x) {
+      const double dx = 0.5 * double{reference.at(x + 1, y) - reference.at(x - 1, y)},
+                   dy = 0.5 * double{reference.at(x, y + 1) - reference.at(x, y - 1)}, more = double{ink.at(x, y) - reference.at(x, y)};
+      xx += dx * dx, xy += dx * dy, yy += dy * dy;
+      b -= more * glm::dvec2(dx, dy);
     }
   }
-  if (place.area > 0.0) place.centre /= place.area;
-  return place;
+  const double determinant = xx * yy - xy * xy;
+  return determinant > 0.0 ? glm::dvec2(yy * b.x - xy * b.y, xx * b.y - xy * b.x) / determinant : glm::dvec2(1e3);
+}
+
+double area_of(const Image<float>& ink) {
+  double area = 0.0;
+  for (const float share : ink.pixels) area += double{share};
+  return area;
 }
 
 Picture draw(const StabilityStage& stage, const StabilityView& view, std::span<const MethodCall> methods, int samples,
@@ -56,25 +64,26 @@ double open_share(const Picture& picture, const Picture& object) {
 StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
   Worst worst;
   const StabilityStage& stage = shop.stage();
+  const bool alpha = with.choice("look") == "alpha";
   for (const StabilityView& view : shop.views()) {
     const double length = static_cast<double>(find_silhouette(view.seen, false).crossings) * 0.25 * std::numbers::pi;
     const Border border = draw_border(stage, view, *method);
-    Place first;
+    const Image<float> reference = alpha ? Image<float>() : draw(stage, view, {method, 1}, kReference, shop.how()).border;
     for (const int samples : kSamples) {
       const Picture picture = draw(stage, view, {method, 1}, samples, shop.how());
-      if (with.choice("look") == "alpha") {
+      if (alpha) {
         const double open = open_share(picture, draw(stage, view, {}, samples, shop.how()));
         worst.see(open,
                   fmt::format("{} samples: the background shows in {:.2g} % of the pixels between ink and object", samples, 100.0 * open),
                   stage, view, &border);
         continue;
       }
-      const Place place = place_of(picture.border);
-      if (samples == 1) first = place;
-      const double moved = glm::length(place.centre - first.centre), wider = std::abs(place.area - first.area) / std::max(1.0, length);
-      worst.see(first.area > 0.0 ? std::max(moved, wider) : 1e3,
-                fmt::format("{} samples: the ink's middle moves by {:.3f} px, its width by {:.3f} px", samples, moved, wider), stage, view,
-                &border);
+      const double apart = glm::length(moved(picture.border, reference));
+      const double wider = std::abs(area_of(picture.border) - area_of(reference)) / std::max(1.0, length);
+      worst.see(std::max(apart, wider),
+                fmt::format("{} samples: the ink lies {:.3f} px off, and is {:.3f} px wider or narrower, than with {}", samples, apart,
+                            wider, kReference),
+                stage, view, &border);
     }
   }
   return worst.take();

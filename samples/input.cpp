@@ -7,15 +7,17 @@
 #include "samples/scene_file.h"
 #include "samples/scenes/scenes.h"
 #include "samples/utf8.h"
+#include "samples/warnings.h"
 #include "sdf/error.h"
 #include "sdf/guard.h"
+#include "sdf/level_set_grids.h"
 #include "sdf/vm_field.h"
 #include "subdiv/import.h"
 
 namespace limn {
 namespace {
 
-constexpr const char* kExpected = "a scene .toml, a mesh .obj .ply .stl .off .gltf .glb, a volume .vdb or a formula .vm";
+constexpr const char* kExpected = "a scene .toml, a mesh .obj .ply .stl .off .gltf .glb, a volume .vdb .nvdb or a formula .vm";
 
 std::string extension_of(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -33,12 +35,15 @@ SceneInput from_mesh(const Options& options) {
   return input;
 }
 
+/// Every grid an object of its own.
 SceneInput from_volume(const Options& options) {
-  LevelSet level_set = read_level_set(options.input, options.grids.empty() ? "" : options.grids.front());
-  const std::string name = level_set.info().name;
+  const std::string stem = std::filesystem::path(options.input).stem().string();
   SceneInput input;
-  input.scene.objects.push_back({.name = name.empty() ? std::filesystem::path(options.input).stem().string() : name,
-                                 .source = LevelSetSource{std::move(level_set), options.input}});
+  ReadLevelSets read = read_level_sets(options.input, options.grids);
+  for (NamedLevelSet& grid : read.grids)
+    input.scene.objects.push_back({.name = grid.level_set.info().name.empty() ? stem : grid.name,
+                                   .source = LevelSetSource{std::move(grid.level_set), options.input}});
+  input.left_out = std::move(read.left_out);
   return input;
 }
 
@@ -66,7 +71,7 @@ InputKind input_kind(const std::string& input) {
     throw InputError({input, "", "", "no such file and no built-in scene of that name", known_names(input, scene_names())});
   }
   if (extension == ".toml") return InputKind::scene_file;
-  if (extension == ".vdb") return InputKind::level_set;
+  if (extension == ".vdb" || extension == ".nvdb") return InputKind::level_set;
   if (extension == ".vm") return InputKind::field;
   if (is_mesh_file(path)) return InputKind::mesh;
   throw InputError({input, "", extension, exists ? "unknown kind of file" : "no such file", kExpected});
@@ -76,7 +81,7 @@ SceneInput load_input(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   const InputKind kind = input_kind(options.input);
   if (!options.grids.empty() && kind != InputKind::level_set) {
-    throw InputError({"", "--grid", options.grids.front(), "the input has no grids", "a volume .vdb as INPUT"});
+    throw InputError({"", "--grid", options.grids.front(), "the input has no grids", "a volume .vdb or .nvdb as INPUT"});
   }
   SceneInput input;
   switch (kind) {
@@ -102,6 +107,7 @@ SceneInput load_input(const Options& options) {
   input.scene.name = valid_utf8(input.name);
   for (SceneObject& object : input.scene.objects) object.name = valid_utf8(object.name);
   check_extent(input.scene);
+  print_warnings(options, input.left_out);
   input.load_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return input;
 }

@@ -43,6 +43,7 @@ struct SceneInput {
   std::vector<BorderDefaults> borders;
   std::vector<std::string> formulas;  ///< The .vm files that a scene file names, as found.
   double load_ms = 0.0;
+  std::vector<std::string> left_out{};  ///< Grids of a volume that were not asked for by name and cannot be drawn, with the reasons.
 };
 
 /// What an INPUT is, before anything of it is read. Throws InputError: nothing of that name, a folder, an unknown extension.

@@ -75,10 +75,10 @@ void add_switch(CLI::App& app, const OptionText& text, bool& target) { app.add_f
 }  // namespace
 
 void add_input(CLI::App& app, Options& options) {
-  app.add_option(
-         "INPUT", options.input,
-         "scene file (.toml), mesh (.obj .ply .stl .off .gltf .glb), volume (.vdb), formula (.vm) or built-in scene (limn list scenes). "
-         "A mesh is drawn as it is; --level, --scheme or crease tags in the file make it a subdivision cage")
+  app.add_option("INPUT", options.input,
+                 "scene file (.toml), mesh (.obj .ply .stl .off .gltf .glb), volume (.vdb .nvdb), formula (.vm) or built-in scene (limn "
+                 "list scenes). "
+                 "A mesh is drawn as it is; --level, --scheme or crease tags in the file make it a subdivision cage")
       ->type_name("")
       ->required();
 }
@@ -145,8 +145,10 @@ void add_frames(CLI::App& app, Options& options) {
 }
 
 void add_grid(CLI::App& app, Options& options) {
-  add(app, {"--grid", "NAME", "which grid of a .vdb; default: the only level set in it", kSurface},
-      [&options](const std::string& text) { options.grids = {text}; });
+  add_repeatable(app,
+                 {"--grid", "NAME",
+                  "a grid of a .vdb or .nvdb as limn info names it (ball, ball[1]), repeatable, or all; default: all level sets", kSurface},
+                 [&options](const std::string& text) { add_unless_there(text, options.grids); });
 }
 
 namespace {

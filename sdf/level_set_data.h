@@ -7,6 +7,7 @@
 #include <array>
 
 #include "sdf/level_set.h"
+#include "sdf/level_set_metadata.h"
 
 namespace limn {
 
@@ -16,6 +17,7 @@ struct LevelSetData {
   LevelSetInfo info;
   Affine index_from_world;
   double per_voxel = 0.0;  ///< By how much values change over a voxel across the surface: its size, where they are distances.
+  GridFile file{};         ///< What its file says beside; as good as nothing where it comes from none.
 
   nanovdb::FloatGrid::AccessorType accessor() const { return grid->getAccessor(); }
   /// A gradient by index coordinates, as a gradient by world coordinates.

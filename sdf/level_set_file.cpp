@@ -29,7 +29,7 @@ GuardLimits limits_for(const fs::path& file) {
 }
 
 std::vector<std::byte> ask(const fs::path& file, std::vector<std::string> arguments) {
-  check_readable(file, "a volume (.vdb)");
+  check_readable(file, "a volume (.vdb .nvdb)");
   // An absolute path is never taken for anything else by whoever reads it.
   arguments.insert(arguments.begin() + 1, fs::absolute(file).string());
   return run_guarded("limn-read-vdb", arguments, file, limits_for(file));
@@ -72,6 +72,20 @@ void check_blocks(std::span<const LevelSetBlock> blocks, std::span<const VdbTile
   if (!good) refuse(file, "its tree of voxels is not in order", "an undamaged file");
 }
 
+GridFile read_beside(ByteReader& answer) {
+  GridFile beside;
+  beside.value_type = answer.get_text();
+  const auto count = answer.get<std::uint64_t>();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    GridMetadata& entry = beside.metadata.emplace_back();
+    entry.name = answer.get_text();
+    entry.type = answer.get_text();
+    entry.bytes = answer.get_text();
+  }
+  beside.doubles = answer.get_vector<DoubleBlock>();
+  return beside;
+}
+
 void check_surface(const LevelSetData& data, const fs::path& file) {
   if (data.info.bounds.empty())
     refuse(file, "the grid '" + data.info.name + "' has no surface: its values never change sign", "a level set with an inside");
@@ -110,12 +124,14 @@ std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> b
   const auto background = answer.get<float>();
   const auto blocks = answer.get_vector<LevelSetBlock>();
   const auto tiles = answer.get_vector<VdbTile>();
+  GridFile beside = read_beside(answer);
   if (!answer.done() || !std::isfinite(background) || !(background > 0.0f) || blocks.empty())
     refuse(file, "the reader's answer is not in order", "an undamaged file");
   check_blocks(blocks, tiles, file);
 
   std::shared_ptr<LevelSetData> data = rebuild(blocks, tiles, background, world_from_index, name);
   check_surface(*data, file);
+  data->file = std::move(beside);
   return data;
 }
 

@@ -3,7 +3,9 @@
 #include <fstream>
 
 #include "sdf/error.h"
+#include "sdf/level_set_grids.h"
 #include "sdf/openvdb_grid.h"
+#include "sdf/openvdb_metadata.h"
 #include "sdf/output_file.h"
 #include "sdf/read_vdb.h"
 
@@ -31,16 +33,46 @@ struct CheckedArchive : openvdb::io::Archive {
   using Archive::write;
 };
 
+/// The file's own doubles where there are any; nodes that it did not have keep what single precision made of them.
+openvdb::DoubleGrid::Ptr with_doubles(const openvdb::FloatGrid& grid, const std::vector<DoubleBlock>& blocks) {
+  const auto doubles = std::make_shared<openvdb::DoubleGrid>(grid);
+  for (const DoubleBlock& block : blocks) {
+    auto* leaf = doubles->tree().probeLeaf(openvdb::Coord(block.origin.x, block.origin.y, block.origin.z));
+    if (leaf == nullptr) continue;
+    for (auto node = leaf->beginValueOn(); node; ++node) {
+      const double exact = block.values[node.pos()];
+      if (static_cast<float>(exact) == static_cast<float>(*node)) node.setValue(exact);
+    }
+  }
+  return doubles;
+}
+
+/// A grid as it is filed: of its value type and with its metadata.
+openvdb::GridBase::Ptr filed(const LevelSet& level_set) {
+  const GridFile& file = level_set.data().file;
+  const openvdb::FloatGrid::Ptr grid = thaw(level_set);
+  const openvdb::GridBase::Ptr result =
+      file.value_type == "double" ? openvdb::GridBase::Ptr(with_doubles(*grid, file.doubles)) : openvdb::GridBase::Ptr(grid);
+  add_metadata(file.metadata, *result);
+  result->setName(level_set.info().name);
+  result->setGridClass(openvdb::GRID_LEVEL_SET);
+  result->setSaveFloatAsHalf(file.value_type == "half");
+  return result;
+}
+
 }  // namespace
 
-void write_level_set(const LevelSet& level_set, const std::filesystem::path& file) {
-  const auto grid = thaw(level_set);
+void write_level_set(const LevelSet& level_set, const std::filesystem::path& file) { write_level_sets(std::span(&level_set, 1), file); }
+
+void write_level_sets(std::span<const LevelSet> level_sets, const std::filesystem::path& file) {
+  openvdb::GridCPtrVec grids;
+  for (const LevelSet& level_set : level_sets) grids.push_back(filed(level_set));
   write_whole(file, [&](const std::filesystem::path& path) {
     try {
       std::ofstream stream(path, std::ios::binary | std::ios::trunc);
       CheckedArchive target;
       target.setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
-      target.write(stream, openvdb::GridCPtrVec{grid}, true);
+      target.write(stream, grids, true);
       stream.close();
       if (!stream) throw std::runtime_error("is the disk full?");
     } catch (const std::exception& problem) {

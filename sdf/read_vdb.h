@@ -21,11 +21,14 @@ struct VdbTile {
   std::int32_t level;  ///< 1: 8 nodes to a side, 2: 128, 3: 4096.
 };
 
-/// Answer: count, then name, value type, class, active voxels (int64), voxel size (double) of each grid. Throws InputError.
+/// Answer: count, then name (with its index where several have it), value type, class, active voxels (int64), voxel size (double) of each
+/// grid. Throws InputError.
 std::vector<std::byte> vdb_list_answer(const std::filesystem::path& file);
 
-/// Answer: name, linear part of world_from_index by columns and translation (12 doubles), background (float), blocks, tiles.
+/// Answer: name, linear part of world_from_index by columns and translation (12 doubles), background (float), blocks, tiles,
+/// and what the file says beside (GridFile: value type, count and name, type and bytes of each piece of metadata, blocks of doubles).
 /// Throws InputError, without the name of the file, for all that read_level_set refuses but a grid without a surface.
+/// Both read .vdb and .nvdb, and tell which by a file's first bytes.
 std::vector<std::byte> vdb_grid_answer(const std::filesystem::path& file, const std::string& grid);
 
 /// Our side of both answers, of which nothing is taken on trust. Throws InputError, naming `file`, for bytes that are no such answer; the

@@ -102,6 +102,7 @@ SurfaceSettings surface_settings(const Options& options, SceneInput& input) {
   override_with(settings.voxels, file.voxels, options.voxels);
   override_with(settings.voxel_size, file.voxel_size, options.voxel_size);
   if (options.voxels) settings.voxel_size = 0.0;
+  settings.resample_volumes = file.voxels || file.voxel_size || options.voxels || options.voxel_size;
   override_with(settings.half_width_voxels, file.half_width_voxels, options.half_width_voxels);
   override_with(settings.gradient, file.gradient, options.gradient);
   override_with(settings.level, file.level, options.level);

@@ -1,5 +1,6 @@
 #include "raymarch/surface/offset.h"
 #include "raymarch/surface/registry.h"
+#include "raymarch/surface/resampled_volume.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -15,7 +16,10 @@ std::string unsupported(const SceneObject& object) {
 Surface build(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
   const GradientDescriptor& gradient = find_gradient(settings.gradient, {}, "--gradient");
   Surface surface;
-  if (const LevelSetSource* source = std::get_if<LevelSetSource>(&object.source)) {
+  const LevelSetSource* source = std::get_if<LevelSetSource>(&object.source);
+  if (source && settings.resample_volumes) {
+    surface = resampled_volume(object, *source, settings, gradient, render_origin);
+  } else if (source) {
     surface = level_set_marcher(complete_band(source->level_set, gradient), object.world_from_object, gradient, render_origin,
                                 settings.max_steps);
     surface.offset = level_set_offset({source->level_set, object.world_from_object, render_origin, settings.max_steps, source->file, {}});

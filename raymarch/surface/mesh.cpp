@@ -213,6 +213,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   surface.info.triangles = static_cast<std::int64_t>(state->mesh->triangles.size());
   surface.info.bytes = state->mesh->bytes();
   surface.info.warnings = std::move(source.warnings);
+  surface.info.notes = std::move(source.notes);
   state->polygons = std::move(source.polygons);
   surface.polygons = state->polygons;
   surface.open_sheet = std::make_shared<const OpenSheet>();

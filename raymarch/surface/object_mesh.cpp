@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "raymarch/surface/resampled_volume.h"
 #include "sdf/error.h"
 #include "subdiv/orientation.h"
 #include "subdiv/polygon.h"
@@ -37,6 +38,9 @@ void move_mesh(const Affine& render_from_mesh, TriangleMesh& mesh) {
     if (!mesh.corner_normals.empty()) std::swap(mesh.corner_normals[3 * i + 1], mesh.corner_normals[3 * i + 2]);
   }
 }
+
+/// A mesh of a volume has the voxels asked for; a level set made of that mesh has them itself.
+bool is_resampled(const SurfaceSettings& settings) { return settings.resample_volumes && settings.kind == "mesh"; }
 
 int level_of(const SceneObject& object, const SurfaceSettings& settings) { return object.level.value_or(settings.level); }
 
@@ -137,8 +141,9 @@ ObjectMesh from_facets(const SceneObject& object, const MeshSource& source, cons
   return result;
 }
 
-ObjectMesh from_level_set(const LevelSetSource& source, const SurfaceSettings& settings, const Affine& render_from_mesh) {
-  PolygonSoup soup = mesh_from_level_set(source.level_set);
+ObjectMesh from_level_set(const LevelSet& level_set, const LevelSetSource& source, const SurfaceSettings& settings,
+                          const Affine& render_from_mesh) {
+  PolygonSoup soup = mesh_from_level_set(level_set);
   Mesh mesh;
   mesh.positions = std::move(soup.positions);
   mesh.face_sizes = std::move(soup.face_sizes);
@@ -147,13 +152,23 @@ ObjectMesh from_level_set(const LevelSetSource& source, const SurfaceSettings& s
   return triangles_with(std::move(mesh), settings.normals.value_or(NormalKind::vertex), render_from_mesh);
 }
 
+/// Of the file's voxels, or of others.
+ObjectMesh from_volume(const SceneObject& object, const SurfaceSettings& settings, const Affine& render_from_mesh) {
+  const auto& source = std::get<LevelSetSource>(object.source);
+  if (!is_resampled(settings)) return from_level_set(source.level_set, source, settings, render_from_mesh);
+  const ResampledLevelSet made = resample_volume(object, source, settings, render_from_mesh);
+  ObjectMesh result = from_level_set(made.level_set, source, settings, {});
+  result.notes.push_back(object.name + ": " + resampling_words(made));
+  return result;
+}
+
 ObjectMesh make_object_mesh(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
   if (std::holds_alternative<Field>(object.source)) return from_field(object, settings, render_origin);
   Affine render_from_mesh = object.world_from_object;
   const MeshSource* source = std::get_if<MeshSource>(&object.source);
   if (source == nullptr) {
     render_from_mesh.translation -= render_origin;
-    return from_level_set(std::get<LevelSetSource>(object.source), settings, render_from_mesh);
+    return from_volume(object, settings, render_from_mesh);
   }
   // Refinement and triangulation happen about the mesh's own middle, so that no float in them meets large coordinates.
   MeshPlace place{bounds(*source->mesh).center(), render_from_mesh};
@@ -167,7 +182,9 @@ ObjectMesh make_object_mesh(const SceneObject& object, const SurfaceSettings& se
 
 ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
   std::shared_ptr<const KeptMesh>* const kept = settings.kept_mesh;
-  if (!kept) return make_object_mesh(object, settings, render_origin);
+  // A volume with other voxels is not what the cache knows objects by.
+  const bool resampled = std::holds_alternative<LevelSetSource>(object.source) && is_resampled(settings);
+  if (!kept || resampled) return make_object_mesh(object, settings, render_origin);
   const int level = level_of(object, settings);
   const KeptMesh* const old = kept->get();
   if (old && old->level == level && old->scheme == settings.scheme && old->normals == settings.normals &&

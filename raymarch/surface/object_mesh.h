@@ -29,6 +29,7 @@ struct ObjectMesh {
   NormalKind normals = NormalKind::vertex;  ///< Of the triangles.
   SmoothSource smooth{};
   std::vector<std::string> warnings;
+  std::vector<std::string> notes{};
   double spared_ms = 0.0;  ///< What making it took, where that was done before and kept.
 };
 

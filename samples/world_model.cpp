@@ -1,14 +1,26 @@
 #include "samples/world_model.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "raymarch/surface/resampled_volume.h"
 #include "sdf/error.h"
+#include "sdf/level_set_grids.h"
 #include "subdiv/mesh_level_set.h"
 #include "subdiv/orientation.h"
 #include "subdiv/tessellate.h"
 
 namespace limn {
 namespace {
+
+Mesh polygons_of(const LevelSet& level_set) {
+  PolygonSoup soup = mesh_from_level_set(level_set);
+  Mesh mesh;
+  mesh.positions = std::move(soup.positions);
+  mesh.face_sizes = std::move(soup.face_sizes);
+  mesh.corner_vertices = std::move(soup.corner_vertices);
+  return mesh;
+}
 
 Mesh local_mesh(const SceneObject& object, const SurfaceSettings& settings, bool refined_positions) {
   const NormalKind normals = settings.normals.value_or(NormalKind::limit);
@@ -32,12 +44,7 @@ Mesh local_mesh(const SceneObject& object, const SurfaceSettings& settings, bool
     refined.triangle_rule = TriangleRule::catmark;
     return refined;
   }
-  PolygonSoup soup = mesh_from_level_set(std::get<LevelSetSource>(object.source).level_set);
-  Mesh mesh;
-  mesh.positions = std::move(soup.positions);
-  mesh.face_sizes = std::move(soup.face_sizes);
-  mesh.corner_vertices = std::move(soup.corner_vertices);
-  return mesh;
+  return polygons_of(std::get<LevelSetSource>(object.source).level_set);
 }
 
 // Materials are dropped where any of the parts has none: an array covers all faces or does not exist.
@@ -92,9 +99,48 @@ size_t count_of(const Scene& scene) {
   return count;
 }
 
+/// A level set made of a volume's mesh has the voxels asked for itself.
+bool takes_other_voxels(const SurfaceSettings& settings) { return settings.resample_volumes && settings.kind != "mesh_level_set"; }
+
+/// Distances stay true where a transform keeps angles.
+bool keeps_angles(const glm::dmat3& linear) {
+  const glm::dmat3 product = glm::transpose(linear) * linear;
+  const double scale = (product[0][0] + product[1][1] + product[2][2]) / 3.0;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(product[i][k] - (i == k ? scale : 0.0)) > 1e-9 * scale) return false;
+  return true;
+}
+
+double own_voxel_in_world(const LevelSet& level_set, const Affine& placed) {
+  const glm::dmat3 axes = placed.linear * level_set.info().world_from_index.linear;
+  return std::min({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
+}
+
+/// One volume where it stands: as it is, moved, or with other voxels.
+LevelSet world_volume(const SceneObject& object, const SurfaceSettings& settings, std::vector<std::string>& notes) {
+  const auto& source = std::get<LevelSetSource>(object.source);
+  const Affine& placed = object.world_from_object;
+  if (!settings.resample_volumes && placed.linear == glm::dmat3(1.0) && placed.translation == glm::dvec3(0.0)) return source.level_set;
+  if (!settings.resample_volumes && keeps_angles(placed.linear)) return moved(source.level_set, placed);
+  SurfaceSettings own = settings;
+  if (!settings.resample_volumes) {
+    own.voxel_size = own_voxel_in_world(source.level_set, placed);
+    own.half_width_voxels = std::max(source.level_set.info().half_width_voxels, find_gradient(own.gradient).half_width_voxels);
+  } else if (own.half_width_voxels == 0.0) {
+    own.half_width_voxels = std::max(3.0, find_gradient(own.gradient).half_width_voxels);
+  }
+  const ResampledLevelSet made = resample_volume(object, source, own, placed);
+  notes.push_back(object.name + ": " + resampling_words(made));
+  return made.level_set;
+}
+
 }  // namespace
 
 Mesh world_mesh(const SceneObject& object, const SurfaceSettings& settings, bool refined_positions) {
+  const auto* volume = std::get_if<LevelSetSource>(&object.source);
+  if (volume != nullptr && takes_other_voxels(settings))
+    return polygons_of(resample_volume(object, *volume, settings, object.world_from_object).level_set);
   Mesh mesh = local_mesh(object, settings, refined_positions);
   if (std::holds_alternative<Field>(object.source)) return mesh;
   const Affine& world_from_object = object.world_from_object;
@@ -128,17 +174,15 @@ LevelSetSettings level_set_settings(const SurfaceSettings& settings, const Box& 
 }
 
 LevelSet world_level_set(const Scene& scene, const SurfaceSettings& settings, std::vector<std::string>& warnings) {
-  const size_t volumes = count_of<LevelSetSource>(scene);
   const size_t fields = count_of<Field>(scene);
   const Box scene_bounds = bounds(scene);
-  if (volumes > 0) {
-    const SceneObject& object = scene.objects.front();
-    const Affine& placed = object.world_from_object;
-    if (scene.objects.size() > 1 || placed.linear != glm::dmat3(1.0) || placed.translation != glm::dvec3(0.0)) {
-      throw InputError({scene.name, "object", "",
-                        "a volume that is moved or stands beside other objects cannot be written as one level set", "an .obj or .ply"});
+  if (count_of<LevelSetSource>(scene) > 0 && settings.kind != "mesh_level_set") {
+    if (scene.objects.size() == 1) {
+      std::vector<std::string> notes;
+      return world_volume(scene.objects.front(), settings, notes);
     }
-    return std::get<LevelSetSource>(object.source).level_set;
+    throw InputError({scene.name, "object", "", "volumes beside other objects cannot be written as one level set",
+                      "an .obj or .ply, or --surface mesh_level_set, which joins them"});
   }
   if (fields == scene.objects.size() && settings.kind != "mesh_level_set") {
     std::vector<Field> all;
@@ -149,6 +193,14 @@ LevelSet world_level_set(const Scene& scene, const SurfaceSettings& settings, st
   MeshLevelSet made = level_set_from_mesh(triangles, level_set_settings(settings, scene_bounds));
   warnings.insert(warnings.end(), made.warnings.begin(), made.warnings.end());
   return made.level_set;
+}
+
+std::vector<LevelSet> world_level_sets(const Scene& scene, const SurfaceSettings& settings, WorldNotes& said) {
+  const bool volumes = count_of<LevelSetSource>(scene) == scene.objects.size() && settings.kind != "mesh_level_set";
+  if (!volumes) return {world_level_set(scene, settings, said.warnings)};
+  std::vector<LevelSet> level_sets;
+  for (const SceneObject& object : scene.objects) level_sets.push_back(world_volume(object, settings, said.notes));
+  return level_sets;
 }
 
 }  // namespace limn

@@ -13,9 +13,16 @@ Mesh world_mesh(const SceneObject& object, const SurfaceSettings& settings, bool
 /// All objects as one mesh; each is a group of its own, named after it.
 Mesh world_mesh(const Scene& scene, const SurfaceSettings& settings, bool refined_positions = false);
 
-/// All objects as one level set: the union of fields, or of meshes; a single volume as it is. `warnings` are added to.
-/// Throws InputError for mixtures and for several volumes.
+/// All objects as one level set: the union of fields, or of meshes; a single volume. `warnings` are added to. Throws InputError for volumes
+/// beside other objects.
 LevelSet world_level_set(const Scene& scene, const SurfaceSettings& settings, std::vector<std::string>& warnings);
+
+struct WorldNotes {
+  std::vector<std::string> warnings{}, notes{};
+};
+
+/// The same; where all objects are volumes, a level set each: as it is in its file, moved to where it stands, or with the voxels asked for.
+std::vector<LevelSet> world_level_sets(const Scene& scene, const SurfaceSettings& settings, WorldNotes& said);
 
 /// The level set settings that `settings` come to for something of the given bounds.
 LevelSetSettings level_set_settings(const SurfaceSettings& settings, const Box& bounds);

@@ -8,10 +8,12 @@
 #include "samples/limits.h"
 #include "samples/no_effect.h"
 #include "samples/output.h"
+#include "samples/scene_facts.h"
 #include "samples/threads.h"
 #include "samples/warnings.h"
 #include "samples/world_model.h"
 #include "sdf/error.h"
+#include "sdf/level_set_grids.h"
 #include "subdiv/import.h"
 
 namespace limn {
@@ -64,10 +66,47 @@ void check_refined(const Scene& scene, const SurfaceSettings& settings, const fs
   }
 }
 
-Mesh exported_mesh(const Scene& scene, const SurfaceSettings& settings, bool refined, std::vector<std::string>& warnings) {
-  if (settings.kind != "level_set" && settings.kind != "mesh_level_set") return world_mesh(scene, settings, refined);
-  SceneObject remeshed{.name = scene.name, .source = LevelSetSource{world_level_set(scene, settings, warnings), scene.name}};
-  return world_mesh(remeshed, settings);
+Mesh exported_mesh(const Scene& scene, const SurfaceSettings& settings, bool refined, WorldNotes& said) {
+  const bool resampled = settings.kind.empty() && settings.resample_volumes && all_are<LevelSetSource>(scene);
+  if (settings.kind != "level_set" && settings.kind != "mesh_level_set" && !resampled) return world_mesh(scene, settings, refined);
+  const std::vector<LevelSet> level_sets = world_level_sets(scene, settings, said);
+  SurfaceSettings as_made = settings;
+  as_made.resample_volumes = false;
+  Scene remeshed{.name = scene.name};
+  for (size_t i = 0; i < level_sets.size(); ++i)
+    remeshed.objects.push_back({.name = level_sets.size() == scene.objects.size() ? scene.objects[i].name : scene.name,
+                                .source = LevelSetSource{level_sets[i], scene.name}});
+  return world_mesh(remeshed, as_made);
+}
+
+/// Of all grids that go into a file together.
+Json level_sets_json(const std::vector<LevelSet>& level_sets) {
+  std::int64_t voxels = 0;
+  Json grids = Json::array();
+  for (const LevelSet& level_set : level_sets) {
+    const LevelSetInfo& info = level_set.info();
+    voxels += info.active_voxels;
+    grids.push_back({{"name", info.name},
+                     {"voxels", info.active_voxels},
+                     {"voxel_size", info.voxel_size},
+                     {"half_width_voxels", info.half_width_voxels}});
+  }
+  const LevelSetInfo& first = level_sets.front().info();
+  return {{"kind", "level_set"},
+          {"voxels", voxels},
+          {"voxel_size", first.voxel_size},
+          {"half_width_voxels", first.half_width_voxels},
+          {"grids", grids}};
+}
+
+std::string level_sets_text(const std::vector<LevelSet>& level_sets) {
+  std::string text;
+  for (const LevelSet& level_set : level_sets) {
+    const LevelSetInfo& info = level_set.info();
+    text += fmt::format("{}{}{} voxels of {:g}, half width {:g} voxels", text.empty() ? "" : "\n",
+                        level_sets.size() > 1 ? info.name + ": " : "", info.active_voxels, info.voxel_size, info.half_width_voxels);
+  }
+  return text;
 }
 
 int run(const Options& options) {
@@ -94,28 +133,29 @@ int run(const Options& options) {
   refuse_without_effect(options, input, use_of(input.scene, expected, ending_of(file) == ".vdb"));
   check_limits(options, input.scene, expected, {});
   std::vector<std::string> warnings = warn_of_input(options, input.scene, expected, {});
-  const size_t of_input = warnings.size();
+  WorldNotes said;
   Json document;
   std::string text;
   if (ending_of(file) == ".vdb") {
-    const LevelSet level_set = world_level_set(input.scene, settings, warnings);
-    const LevelSetInfo& info = level_set.info();
-    write_level_set(level_set, file);
-    document = {{"kind", "level_set"},
-                {"voxels", info.active_voxels},
-                {"voxel_size", info.voxel_size},
-                {"half_width_voxels", info.half_width_voxels}};
-    text = fmt::format("{} voxels of {:g}, half width {:g} voxels", info.active_voxels, info.voxel_size, info.half_width_voxels);
+    const std::vector<LevelSet> level_sets = world_level_sets(input.scene, settings, said);
+    write_level_sets(level_sets, file);
+    document = level_sets_json(level_sets);
+    text = level_sets_text(level_sets);
   } else {
-    const Mesh mesh = exported_mesh(input.scene, settings, options.refined, warnings);
+    const Mesh mesh = exported_mesh(input.scene, settings, options.refined, said);
     write_mesh(mesh, file);
     document = {{"kind", "mesh"}, {"vertices", mesh.vertex_count()}, {"faces", mesh.face_count()}};
     text = fmt::format("{} vertices, {} faces", mesh.vertex_count(), mesh.face_count());
   }
   bar.clear();
   document["files"] = {file.string()};
+  warnings.insert(warnings.end(), said.warnings.begin(), said.warnings.end());
   document["warnings"] = warnings;
-  print_warnings(options, {warnings.begin() + static_cast<std::ptrdiff_t>(of_input), warnings.end()});
+  document["notes"] = said.notes;
+  print_warnings(options, said.warnings);
+  if (!options.quiet) {
+    for (const std::string& note : said.notes) print_note(note);
+  }
   if (options.json)
     print_json(document);
   else if (!options.quiet)

@@ -54,7 +54,8 @@ struct Smaller {
   std::string words{};
 };
 
-bool is_gridded(const std::string& kind, const Scene& scene) {
+bool is_gridded(const std::string& kind, const Scene& scene, bool resampled) {
+  if (resampled) return true;
   if (kind.empty()) return false;
   return kind == "level_set" || kind == "mesh_level_set"
              ? std::none_of(
@@ -65,8 +66,9 @@ bool is_gridded(const std::string& kind, const Scene& scene) {
 
 bool shrink(const Scene& scene, bool model, const std::vector<std::string>& kinds, Smaller& smaller) {
   SurfaceSettings& settings = smaller.settings;
-  const bool gridded = is_gridded(settings.kind, scene) ||
-                       std::any_of(kinds.begin(), kinds.end(), [&](const std::string& kind) { return is_gridded(kind, scene); });
+  const bool gridded =
+      is_gridded(settings.kind, scene, settings.resample_volumes) ||
+      std::any_of(kinds.begin(), kinds.end(), [&](const std::string& kind) { return is_gridded(kind, scene, settings.resample_volumes); });
   if (model && gridded && (settings.voxel_size > 0.0 || settings.voxels > 8)) {
     if (settings.voxel_size > 0.0) {
       settings.voxel_size *= 2.0;

@@ -29,8 +29,9 @@ std::string details_of(const SceneInput& input, const SurfaceSettings& settings)
                             : refined ? fmt::format("level {}", used_level(input.scene, settings))
                                       : "as loaded";
   if (settings.kind == "analytic") return "";
-  if (settings.kind == "level_set") return volumes ? gradient : grid_text(settings) + ", " + gradient;
-  if (settings.kind == "mesh") return level;
+  const bool own_voxels = volumes && !settings.resample_volumes;
+  if (settings.kind == "level_set") return own_voxels ? gradient : grid_text(settings) + ", " + gradient;
+  if (settings.kind == "mesh") return volumes && !own_voxels ? grid_text(settings) + ", " + level : level;
   if (settings.kind == "mesh_level_set") return level + ", " + grid_text(settings) + ", " + gradient;
   return settings.kind.empty() ? "each object in its own representation" : "";
 }
@@ -49,13 +50,22 @@ bool wanted(const std::string& kind, const std::vector<std::string>& only) {
   return only.empty() || std::find(only.begin(), only.end(), kind) != only.end();
 }
 
-// A volume's only choice is how its normals are read: one model a gradient.
+// As the file has it, a volume's only choice is how its normals are read: one model a gradient. With voxels asked for, one with those.
 void add_gradients(const SceneInput& input, const SurfaceSettings& settings, Comparison& comparison) {
+  if (settings.resample_volumes) {
+    SurfaceSettings own = settings;
+    own.kind = "level_set";
+    ComparedModel model = make_model(input, own);
+    model.name += "_resampled";
+    model.title += ", resampled";
+    comparison.models.push_back(std::move(model));
+  }
   for (const GradientDescriptor& gradient : gradients()) {
     if (gradient.about.name == comparison.reference().surface.gradient) continue;
     SurfaceSettings own = settings;
     own.kind = "level_set";
     own.gradient = gradient.about.name;
+    own.resample_volumes = false;
     ComparedModel model = make_model(input, own);
     model.name += "_" + gradient.about.name;
     comparison.models.push_back(std::move(model));
@@ -63,6 +73,7 @@ void add_gradients(const SceneInput& input, const SurfaceSettings& settings, Com
 }
 
 void add_reference(const SceneInput& input, SurfaceSettings settings, bool gradient_chosen, Comparison& comparison) {
+  settings.resample_volumes = false;
   settings.kind = input.scene.objects.empty() ? "" : natural_surface(input.scene.objects.front());
   for (const SceneObject& object : input.scene.objects) {
     if (natural_surface(object) != settings.kind) settings.kind = "";

@@ -122,6 +122,39 @@ Ladder grid_ladder(const char* kind, const GradientTheory& theory, const Scene& 
   return ladder;
 }
 
+/// Along the longest side of the object that has most.
+int own_voxels(const Scene& scene) {
+  double most = 0.0;
+  for (const SceneObject& object : scene.objects) {
+    const Affine& map = std::get<LevelSetSource>(object.source).level_set.info().world_from_index;
+    const glm::dmat3 axes = object.world_from_object.linear * map.linear;
+    const double voxel = std::min({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
+    most = std::max(most, bounds(object).longest_side() / voxel);
+  }
+  return static_cast<int>(std::lround(most));
+}
+
+/// How coarse may this grid be? The file is the finest; with any gradient, since resampling makes the band as wide as that needs.
+std::vector<Ladder> volume_ladders(const Scene& scene, const PlanSettings& settings, double longest_side) {
+  std::vector<Ladder> ladders;
+  const bool only_volumes = std::all_of(scene.objects.begin(), scene.objects.end(),
+                                        [](const SceneObject& object) { return std::holds_alternative<LevelSetSource>(object.source); });
+  if (!only_volumes || !wanted("level_set", settings)) return ladders;
+  const int own = own_voxels(scene);
+  for (const GradientTheory& theory : kGradientTheories) {
+    if (std::string(theory.name) == "cell") continue;
+    Ladder ladder = grid_ladder("level_set", theory, scene, longest_side);
+    ladder.of_file = true;
+    std::erase_if(ladder.rungs, [&](int voxels) { return 1.2 * voxels > own; });
+    ladder.rungs.push_back(own);
+    ladder.own_band_carries = std::all_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
+      return std::get<LevelSetSource>(object.source).level_set.info().half_width_voxels >= find_gradient(theory.name).half_width_voxels;
+    });
+    ladders.push_back(std::move(ladder));
+  }
+  return ladders;
+}
+
 }  // namespace
 
 double Ladder::size_at(size_t rung) const { return by_level ? base_size / std::exp2(rungs[rung]) : base_size / rungs[rung]; }
@@ -129,10 +162,14 @@ double Ladder::size_at(size_t rung) const { return by_level ? base_size / std::e
 SurfaceSettings Ladder::at(size_t rung) const {
   SurfaceSettings own = settings;
   (by_level ? own.level : own.voxels) = rungs[rung];
+  // Where the file's band is too thin for the gradient, its last rung is the same voxels with a wider band.
+  own.resample_volumes = of_file && (rung + 1 < rungs.size() || !own_band_carries);
   return own;
 }
 
 std::string Ladder::words_at(size_t rung) const {
+  if (of_file && rung + 1 == rungs.size())
+    return fmt::format("the file's own {} voxels{}", rungs[rung], own_band_carries ? "" : ", their band widened");
   return by_level ? fmt::format("level {}", rungs[rung]) : fmt::format("{} voxels", rungs[rung]);
 }
 
@@ -147,7 +184,12 @@ std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings,
                                    [](const SceneObject& object) { return std::holds_alternative<LevelSetSource>(object.source); });
   double longest_side = 0.0;
   for (const SceneObject& object : scene.objects) longest_side = std::max(longest_side, bounds(object).longest_side());
-  if (scene.objects.empty() || volumes || !std::isfinite(longest_side)) return ladders;
+  if (scene.objects.empty() || !std::isfinite(longest_side)) return ladders;
+  if (volumes) {
+    ladders = volume_ladders(scene, settings, longest_side);
+    for (Ladder& ladder : ladders) ladder.settings.max_bytes = settings.max_bytes;
+    return ladders;
+  }
   if (!fixed && wanted("mesh", settings) && all_support(scene, "mesh")) {
     try {
       ladders.push_back(mesh_ladder(scene));

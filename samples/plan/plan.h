@@ -27,9 +27,11 @@ struct PlanSettings {
 
 /// A representation whose resolution is open, with its resolutions from coarse to fine.
 struct Ladder {
-  std::string title{};         ///< "level set, cubic gradient".
-  SurfaceSettings settings{};  ///< All but the resolution.
-  bool by_level = false;       ///< Rungs are subdivision levels; else voxels along the longest side.
+  std::string title{};           ///< "level set, cubic gradient".
+  SurfaceSettings settings{};    ///< All but the resolution.
+  bool by_level = false;         ///< Rungs are subdivision levels; else voxels along the longest side.
+  bool of_file = false;          ///< Rungs are a file's volumes with other voxels; the last is the file as it is.
+  bool own_band_carries = true;  ///< Of such: the file's band is wide enough for the gradient.
   std::vector<int> rungs{};
   int normal_order = 2;          ///< Of the normal's angle, by edge or voxel size.
   double normal_constant = 0.0;  ///< Angle = constant (curvature * size)^order, as far as theory knows.
@@ -76,7 +78,7 @@ struct PlanAnswer {
   std::vector<std::string> notes{};    ///< Ladders that were given up, and why; what else a person should know.
 };
 
-/// The ladders that a scene can climb; empty where nothing of it has a resolution to choose (a volume from a file). `notes` is told what
+/// The ladders that a scene can climb; empty where nothing of it has a resolution to choose (a mesh that is no cage). `notes` is told what
 /// was left out, and why; may be null.
 std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes = nullptr);
 

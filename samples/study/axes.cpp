@@ -62,6 +62,7 @@ Axes resolve_axes(const Options& options, const Scene& scene, const SurfaceSetti
   }
   if (!refines) axes.levels.clear();
   axes.voxels = options.study.voxels;
+  axes.resampled = !options.study.voxels.empty();
   for (int voxels = 16; options.study.voxels.empty() && voxels <= defaults.finest_voxels; voxels *= 2) axes.voxels.push_back(voxels);
   axes.normals = options.study.normals;
   if (axes.normals.empty()) {

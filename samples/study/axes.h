@@ -21,6 +21,7 @@ struct Axes {
   std::vector<std::string> surfaces{};
   std::vector<int> levels{};  ///< Empty where nothing is refined.
   std::vector<int> voxels{};
+  bool resampled = false;  ///< Voxels were asked for: volumes are looked at with these too, and not only as they are.
   std::vector<NormalKind> normals{};
   std::vector<std::string> gradients{};
   int remeshed_level = 0;  ///< Of mesh_level_set: there the grid is what is studied.

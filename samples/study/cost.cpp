@@ -17,6 +17,7 @@ namespace {
 // Milliseconds and bytes of the parts, fitted to the built-in scenes on two cores. Memory is what building takes, not what is left of it.
 constexpr double kModelMs = 5.0, kFaceMs = 2e-3, kFieldFaceMs = 4e-3, kFieldFaceTermMs = 2e-4, kFaceBytes = 600.0;
 constexpr double kCageFaceMs = 0.15;  // of a field's cage, which is looked for in several samplings
+constexpr double kResampleMs = 1e-3;  // a voxel of either grid
 constexpr double kVoxelMs = 2.5e-4, kMeshVoxelMs = 1.2e-3, kGridBytes = 2.5e6;
 // Peaks of ellipsoid and gyroid, 256 to 1024 voxels, bands of 2.45 to 8: blocks of 8^3 and their copies go by the surface, the tree that
 // stays by the band.
@@ -130,9 +131,10 @@ void add_mesh(const SceneSize::Object& object, const SurfaceSettings& settings, 
 void add_grid(const SceneSize::Object& object, const SurfaceSettings& settings, double pixels, double voxel_ms, ExpectedCost& cost) {
   const GradientDescriptor& gradient = find_gradient(settings.gradient);
   const double half_width = std::max(settings.half_width_voxels, std::max(gradient.half_width_voxels, 1.8));
-  const bool loaded = object.own_voxels > 0.0;
+  const bool loaded = object.own_voxels > 0.0 && !settings.resample_volumes;
   const double voxels = loaded ? object.own_voxels : voxels_of(object, settings, half_width);
   if (!loaded) cost.build_ms += kModelMs + voxels * voxel_ms;
+  if (!loaded && object.own_voxels > 0.0) cost.build_ms += kResampleMs * (voxels + object.own_voxels);
   cost.bytes += static_cast<std::int64_t>(kGridBytes + voxels * (kVoxelBytes + kSurfaceCellBytes / (2.0 * half_width)));
   cost.trace_ms += pixels * kGridRayMs * (gradient.order >= 3 ? 1.5 : 1.0);
 }

@@ -79,7 +79,7 @@ std::string surface_text(const SurfaceSettings& settings) {
     if (name == "level") text += std::to_string(settings.level);
     if (name == "scheme") text += settings.scheme ? name_of(*settings.scheme) : "own";
     if (name == "normals") text += settings.normals ? name_of(*settings.normals) : "own";
-    if (name == "voxels") text += std::to_string(settings.voxels);
+    if (name == "voxels") text += std::to_string(settings.voxels) + (settings.resample_volumes ? " resampled" : "");
     if (name == "voxel-size") text += fmt::format("{}", settings.voxel_size);
     if (name == "half-width") text += fmt::format("{}", settings.half_width_voxels);
     if (name == "gradient") text += settings.gradient;

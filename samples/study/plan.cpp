@@ -65,9 +65,11 @@ struct ModelMaker {
         settings.level = axes.remeshed_level;
         parameters["level"] = std::to_string(settings.level);
       }
+      settings.resample_volumes = false;
       if (as_loaded) add(settings, parameters, refused);
-      for (const int voxels : as_loaded ? std::vector<int>{} : axes.voxels) {
+      for (const int voxels : as_loaded && !axes.resampled ? std::vector<int>{} : axes.voxels) {
         settings.voxels = voxels;
+        settings.resample_volumes = as_loaded;
         parameters["voxels"] = std::to_string(voxels);
         add(settings, parameters, refused);
       }
@@ -78,6 +80,7 @@ struct ModelMaker {
 void plan_models(const Axes& axes, const SceneSize& size, SurfaceSettings settings, bool memory_asked, Study& study) {
   const ModelMaker maker{axes, size, study.pixels(), settings.max_bytes, memory_asked, study.models};
   settings.voxel_size = 0.0;
+  settings.resample_volumes = false;
   for (const std::string& surface : axes.surfaces) {
     settings.kind = surface;
     std::string refused = why_not(find_surface(surface), study.scene);
@@ -148,6 +151,7 @@ CameraSettings study_camera(const Options& options, const SceneInput& input) {
 void plan_reference(const Options& options, const SceneInput& input, SurfaceSettings settings, const Axes& axes, const SceneSize& size,
                     Study& study) {
   settings.kind.clear();
+  settings.resample_volumes = false;
   if (!axes.levels.empty()) settings.level = axes.levels.back();
   const Comparison comparison = plan_comparison(input, settings, {natural_surface(input.scene.objects.front())},
                                                 !options.study.gradients.empty() && options.study.gradients.size() == 1);

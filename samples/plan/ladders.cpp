@@ -134,7 +134,7 @@ int own_voxels(const Scene& scene) {
   return static_cast<int>(std::lround(most));
 }
 
-/// How coarse may this grid be? The file is the finest; with any gradient, since resampling makes the band as wide as that needs.
+/// How coarse may this grid be? The file is the finest; with any gradient, since bands are made as wide as that needs.
 std::vector<Ladder> volume_ladders(const Scene& scene, const PlanSettings& settings, double longest_side) {
   std::vector<Ladder> ladders;
   const bool only_volumes = std::all_of(scene.objects.begin(), scene.objects.end(),
@@ -147,9 +147,6 @@ std::vector<Ladder> volume_ladders(const Scene& scene, const PlanSettings& setti
     ladder.of_file = true;
     std::erase_if(ladder.rungs, [&](int voxels) { return 1.2 * voxels > own; });
     ladder.rungs.push_back(own);
-    ladder.own_band_carries = std::all_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
-      return std::get<LevelSetSource>(object.source).level_set.info().half_width_voxels >= find_gradient(theory.name).half_width_voxels;
-    });
     ladders.push_back(std::move(ladder));
   }
   return ladders;
@@ -162,14 +159,12 @@ double Ladder::size_at(size_t rung) const { return by_level ? base_size / std::e
 SurfaceSettings Ladder::at(size_t rung) const {
   SurfaceSettings own = settings;
   (by_level ? own.level : own.voxels) = rungs[rung];
-  // Where the file's band is too thin for the gradient, its last rung is the same voxels with a wider band.
-  own.resample_volumes = of_file && (rung + 1 < rungs.size() || !own_band_carries);
+  own.resample_volumes = of_file && rung + 1 < rungs.size();
   return own;
 }
 
 std::string Ladder::words_at(size_t rung) const {
-  if (of_file && rung + 1 == rungs.size())
-    return fmt::format("the file's own {} voxels{}", rungs[rung], own_band_carries ? "" : ", their band widened");
+  if (of_file && rung + 1 == rungs.size()) return fmt::format("the file's own {} voxels", rungs[rung]);
   return by_level ? fmt::format("level {}", rungs[rung]) : fmt::format("{} voxels", rungs[rung]);
 }
 

@@ -27,11 +27,10 @@ struct PlanSettings {
 
 /// A representation whose resolution is open, with its resolutions from coarse to fine.
 struct Ladder {
-  std::string title{};           ///< "level set, cubic gradient".
-  SurfaceSettings settings{};    ///< All but the resolution.
-  bool by_level = false;         ///< Rungs are subdivision levels; else voxels along the longest side.
-  bool of_file = false;          ///< Rungs are a file's volumes with other voxels; the last is the file as it is.
-  bool own_band_carries = true;  ///< Of such: the file's band is wide enough for the gradient.
+  std::string title{};         ///< "level set, cubic gradient".
+  SurfaceSettings settings{};  ///< All but the resolution.
+  bool by_level = false;       ///< Rungs are subdivision levels; else voxels along the longest side.
+  bool of_file = false;        ///< Rungs are a file's volumes with other voxels; the last is the file as it is.
   std::vector<int> rungs{};
   int normal_order = 2;          ///< Of the normal's angle, by edge or voxel size.
   double normal_constant = 0.0;  ///< Angle = constant (curvature * size)^order, as far as theory knows.

@@ -63,6 +63,7 @@ class ExtrudeGroups {
  private:
   const BorderInput& input_;
   const ExtrudeSettings& settings_;
+  double widest_px_;                        ///< Of all objects' outlines.
   std::optional<PictureGroups> objects_{};  ///< Unset where all objects count as one: nothing is drawn between them.
 };
 

@@ -30,7 +30,8 @@ double extrude_width_px(const BorderInput& input, size_t object, const ExtrudeSe
   return std::isfinite(z) ? settings.object_width * scale * pixels_per_unit_at(input.camera, z) : 0.0;
 }
 
-ExtrudeGroups::ExtrudeGroups(const BorderInput& input, const ExtrudeSettings& settings) : input_(input), settings_(settings) {
+ExtrudeGroups::ExtrudeGroups(const BorderInput& input, const ExtrudeSettings& settings)
+    : input_(input), settings_(settings), widest_px_(widest_px(input, settings)) {
   if (settings.groups.by != GroupBy::all) objects_.emplace(input, GroupBy::object);
 }
 
@@ -42,17 +43,17 @@ void ExtrudeGroups::lay(size_t object, const Image<float>& ink, Image<float>& co
     return settings_.groups.by == GroupBy::material && seen.material.pixels[i] == input_.model.materials[object];
   };
   GroupSilhouette touching, in_front;
-  for (std::int32_t group = 1; objects_ && group <= objects_->count(); ++group) {
-    if (objects_->key(group) != id) continue;
-    const int reach = reach_of(widest_px(input_, settings_));
+  if (const std::int32_t group = objects_ ? objects_->group_of_key(id) : 0; group != 0) {
+    const int reach = reach_of(widest_px_);
     const PixelWindow window = grown(objects_->window(group), reach + 1, seen.width, seen.height);
     const auto inside = [&](size_t i) { return objects_->of(i) == group; };
     touching = group_silhouette(seen, window, false, inside, [&](size_t a, size_t b) { return objects_->touching(a, b); });
-    if (touching.silhouette.crossings == 0) break;
     touching.squares = exact_squares(touching.silhouette, reach);
-    in_front = group_silhouette(seen, window, false, inside,
-                                [&](size_t a, size_t b) { return !objects_->touching(a, b) && objects_->in_front(a, b); });
-    in_front.squares = exact_squares(in_front.silhouette, reach);
+    if (touching.silhouette.crossings > 0) {
+      in_front = group_silhouette(seen, window, false, inside,
+                                  [&](size_t a, size_t b) { return !objects_->touching(a, b) && objects_->in_front(a, b); });
+      in_front.squares = exact_squares(in_front.silhouette, reach);
+    }
   }
   for (int y = 0; y < ink.height; ++y) {
     for (int x = 0; x < ink.width; ++x) {
@@ -72,7 +73,7 @@ void ExtrudeGroups::draw_seams(Image<float>& coverage) const {
   if (settings_.groups.by == GroupBy::all) return;
   const GBuffer& seen = input_.gbuffer;
   const PictureGroups groups(input_, settings_.groups.by);
-  const int reach = static_cast<int>(std::ceil(widest_px(input_, settings_))) + 1;
+  const int reach = static_cast<int>(std::ceil(widest_px_)) + 1;
   for (std::int32_t group = 1; group <= groups.count(); ++group) {
     GroupSilhouette seam = group_silhouette(
         seen, grown(groups.window(group), reach + 1, seen.width, seen.height), false, [&](size_t i) { return groups.of(i) == group; },
@@ -97,7 +98,7 @@ void ExtrudeGroups::draw_seams(Image<float>& coverage) const {
 void ExtrudeGroups::draw_hidden(Border& border) const {
   const GBuffer& seen = input_.gbuffer;
   Image<float> hidden(seen.width, seen.height, 0.0f);
-  const int reach = reach_of(widest_px(input_, settings_));
+  const int reach = reach_of(widest_px_);
   for (const HiddenGroup& group : hidden_groups(input_, settings_.groups.by)) {
     const GBuffer alone = render_alone(input_, group);
     const BorderInput by_itself{alone, input_.camera, input_.model, input_.scene};

@@ -196,9 +196,8 @@ std::vector<HiddenGroup> hidden_groups(const BorderInput& input, GroupBy by) {
   for (size_t k = 0; k < objects; ++k) {
     size_t group = all.size();
     if (by == GroupBy::material) group = of_material.emplace(input.model.materials[k], group).first->second;
-    if (group == all.size()) all.push_back({{}, std::vector<char>(objects, 0)});
+    if (group == all.size()) all.emplace_back();
     all[group].objects.push_back(k);
-    all[group].member[k] = 1;
   }
   const GBuffer& seen = input.gbuffer;
   const ViewRequest request{moved(input.camera, input.model.render_origin), seen.sample};
@@ -217,10 +216,9 @@ std::vector<HiddenGroup> hidden_groups(const BorderInput& input, GroupBy by) {
 }
 
 GBuffer render_alone(const BorderInput& input, const HiddenGroup& group) {
-  SceneModel model = input.model;
-  model.surfaces.clear();
-  model.colors.clear();
-  model.materials.clear();
+  SceneModel model;
+  model.render_origin = input.model.render_origin;
+  model.bounds = input.model.bounds;
   for (const size_t k : group.objects) {
     model.surfaces.push_back(input.model.surfaces[k]);
     model.colors.push_back(input.model.colors[k]);

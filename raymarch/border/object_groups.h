@@ -2,6 +2,7 @@
 // Outlines of several objects: which pixels belong together, which of two groups is in front where they meet in the picture, and what a
 // group shows without the others. Methods with the parameters `group` and `hidden` share all of it.
 
+#include <algorithm>
 #include <map>
 
 #include "raymarch/border.h"
@@ -46,6 +47,11 @@ class PictureGroups {
   const PixelWindow& window(std::int32_t group) const { return windows_[static_cast<size_t>(group - 1)]; }
   /// The object (from 1) or material that the group is.
   std::int32_t key(std::int32_t group) const { return keys_[static_cast<size_t>(group - 1)]; }
+  /// 0 where nothing of it is seen.
+  std::int32_t group_of_key(std::int32_t key) const {
+    const auto found = std::lower_bound(keys_.begin(), keys_.end(), key);
+    return found != keys_.end() && *found == key ? static_cast<std::int32_t>(found - keys_.begin()) + 1 : 0;
+  }
   const GBuffer& seen() const { return input_.gbuffer; }
 
   /// The planes of both surfaces, brought to the image point between the pixels (`at_first`: to that of the first).
@@ -76,10 +82,10 @@ void add_group_note(const std::string& method, const BorderInput& input, std::ve
 
 /// Objects (indices from 0) that have an outline of their own where something else hides them.
 struct HiddenGroup {
-  std::vector<size_t> objects{};
-  std::vector<char> member{};  ///< By object.
-  bool shows(const GBuffer& seen, size_t i) const { return seen.id.pixels[i] != 0 && member[static_cast<size_t>(seen.id.pixels[i] - 1)]; }
-  bool hides(const GBuffer& seen, size_t i) const { return seen.id.pixels[i] != 0 && !member[static_cast<size_t>(seen.id.pixels[i] - 1)]; }
+  std::vector<size_t> objects{};  ///< In order.
+  /// Pixel i shows another object.
+  bool hides(const GBuffer& seen, size_t i) const { return seen.id.pixels[i] != 0 && !member(static_cast<size_t>(seen.id.pixels[i] - 1)); }
+  bool member(size_t object) const { return std::binary_search(objects.begin(), objects.end(), object); }
 };
 /// Of those whose place in the picture shows others too.
 std::vector<HiddenGroup> hidden_groups(const BorderInput& input, GroupBy by);

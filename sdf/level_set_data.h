@@ -18,6 +18,7 @@ struct LevelSetData {
   Affine index_from_world;
   double per_voxel = 0.0;  ///< By how much values change over a voxel across the surface: its size, where they are distances.
   GridFile file{};         ///< What its file says beside; as good as nothing where it comes from none.
+  bool completed = false;  ///< By complete_band: what its stencils miss even so is nowhere in the file.
 
   nanovdb::FloatGrid::AccessorType accessor() const { return grid->getAccessor(); }
   /// A gradient by index coordinates, as a gradient by world coordinates.

@@ -7,6 +7,7 @@
 #include "sdf/error.h"
 #include "sdf/guard.h"
 #include "sdf/level_set_data.h"
+#include "sdf/level_set_leaks.h"
 #include "sdf/read_vdb.h"
 
 namespace limn {
@@ -86,9 +87,10 @@ GridFile read_beside(ByteReader& answer) {
   return beside;
 }
 
-void check_surface(const LevelSetData& data, const fs::path& file) {
+void check_surface(LevelSetData& data, const fs::path& file) {
   if (data.info.bounds.empty())
-    refuse(file, "the grid '" + data.info.name + "' has no surface: its values never change sign", "a level set with an inside");
+    refuse(file, no_surface_problem(data.info.name, data.info.band), "a level set with an inside (" + with_inside_remedy() + ")");
+  if (std::string warning = unsigned_surface_warning(data.info.band); !warning.empty()) data.info.warnings.push_back(std::move(warning));
 }
 
 }  // namespace

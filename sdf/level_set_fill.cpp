@@ -17,7 +17,7 @@ namespace {
 constexpr int kReach = 6;
 // Of the block and what is about it: nodes -8..15.
 constexpr int kSide = 24;
-constexpr double kFarthest = 5.5;
+constexpr double kFarthest = 5.5;  // of the longest side of a voxel
 
 // ---- which nodes are missing
 
@@ -156,6 +156,7 @@ bool sample(const Surroundings& nodes, const glm::dvec3& place, Sample& out) {
 struct Metric {
   glm::dmat3 length_from_index{1.0}, index_from_length{1.0};
   double per_voxel = 1.0;  ///< What values change by over one.
+  double farthest = kFarthest;
 
   double between(const glm::dvec3& a, const glm::dvec3& b) const { return glm::length(length_from_index * (a - b)); }
 };
@@ -192,7 +193,7 @@ struct NodeValue {
 NodeValue distance_at(const Surroundings& nodes, const std::vector<glm::dvec3>& crossings, const Metric& metric, const glm::ivec3& node) {
   const glm::dvec3 p(node);
   NodeValue result;
-  double nearest = kFarthest;
+  double nearest = metric.farthest;
   glm::dvec3 foot(0.0);
   for (const glm::dvec3& crossing : crossings) {
     const double length = metric.between(crossing, p);
@@ -302,6 +303,8 @@ std::vector<FilledBlock> fill_nodes(const LevelSetData& data, const std::vector<
   metric.length_from_index = data.info.world_from_index.linear / data.info.voxel_size;
   metric.index_from_length = glm::inverse(metric.length_from_index);
   metric.per_voxel = data.per_voxel;
+  const glm::dmat3& axes = metric.length_from_index;
+  metric.farthest = kFarthest * std::max({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
   std::vector<FilledBlock> filled(missing.size());
   parallel_parts(missing.size(), size_t{16}, [&](const IndexRange<size_t>& range) {
     const NanoAccessor accessor = data.accessor();
@@ -319,6 +322,7 @@ LevelSet complete_band(const LevelSet& level_set, const GradientDescriptor& grad
   const std::shared_ptr<LevelSetData> data = with_filled_nodes(level_set, filled);
   const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
   data->info.build_ms += ms;
+  data->completed = true;
   const LevelSet completed(data);
   const std::int64_t left = cells_lacking(completed, gradient), nodes = node_count(filled);
   const std::int64_t crossed = level_set.info().band.crossed_cells;

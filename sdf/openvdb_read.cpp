@@ -5,6 +5,7 @@
 #include "sdf/guard.h"
 #include "sdf/openvdb_grid.h"
 #include "sdf/openvdb_metadata.h"
+#include "sdf/openvdb_settle.h"
 #include "sdf/openvdb_stored.h"
 #include "sdf/read_vdb.h"
 
@@ -93,11 +94,19 @@ LevelSetBlock block_of(const openvdb::FloatTree::LeafNodeType& leaf, float backg
   return block;
 }
 
+/// Where a band was cut, leaves without a distance may still have an inside and an outside.
+bool has_both_signs(const openvdb::FloatTree::LeafNodeType& leaf) {
+  const bool inside = leaf.getFirstValue() < 0.0f;
+  for (openvdb::Index n = 1; n < 512; ++n)
+    if ((leaf.getValue(n) < 0.0f) != inside) return true;
+  return false;
+}
+
 std::vector<LevelSetBlock> blocks_of(const openvdb::FloatGrid& grid, const std::string& name) {
   std::vector<LevelSetBlock> blocks;
   blocks.reserve(grid.tree().leafCount());
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
-    if (!leaf->isEmpty()) blocks.push_back(block_of(*leaf, grid.background(), name));
+    if (!leaf->isEmpty() || has_both_signs(*leaf)) blocks.push_back(block_of(*leaf, grid.background(), name));
   return blocks;
 }
 
@@ -110,7 +119,8 @@ std::vector<VdbTile> inner_tiles_of(const openvdb::FloatGrid& grid) {
       tiles.push_back({{tile.getCoord().x(), tile.getCoord().y(), tile.getCoord().z()}, static_cast<std::int32_t>(tile.getLevel())});
   // A leaf without an active voxel is not sent; inside, it becomes a tile.
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
-    if (leaf->isEmpty() && leaf->getFirstValue() < 0.0f) tiles.push_back({{leaf->origin().x(), leaf->origin().y(), leaf->origin().z()}, 1});
+    if (leaf->isEmpty() && !has_both_signs(*leaf) && leaf->getFirstValue() < 0.0f)
+      tiles.push_back({{leaf->origin().x(), leaf->origin().y(), leaf->origin().z()}, 1});
   return tiles;
 }
 
@@ -189,6 +199,7 @@ std::vector<std::byte> vdb_grid_answer(const fs::path& file, const std::string& 
     check_kind(stored);
     const openvdb::GridBase::Ptr filed = grids.read(chosen);
     const openvdb::FloatGrid::Ptr grid = as_float(filed);
+    settle_band(*grid);
     check_voxels(*grid, stored.shown);
 
     ByteWriter answer;

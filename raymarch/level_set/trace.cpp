@@ -98,6 +98,28 @@ HWY_INLINE Settled settle(BrickGradient gradient, const RayBricks& bricks, const
                                             : cubic_gradient(bricks.spline, cells, number, direction, side);
 }
 
+/// Where the band breaks off beside a hit's cell, the gradient that the cell takes instead.
+HWY_NOINLINE void settle_lowered(const BrickTrace& what, const IndexRays& rays, size_t i, VF root, VI number, Settled& settled) {
+  const F d;
+  const I di;
+  alignas(64) std::int32_t cells[hn::MaxLanes(di)], kinds[hn::MaxLanes(di)];
+  hn::Store(number, di, cells);
+  for (size_t k = 0; k < hn::Lanes(di); ++k) kinds[k] = what.lowered[cells[k]];
+  const VI kind = hn::Load(di, kinds);
+  const RayBricks& bricks = *what.view->bricks;
+  for (const BrickGradient gradient : {BrickGradient::cell, BrickGradient::central}) {
+    const auto taken = hn::Eq(kind, hn::Set(di, 1 + static_cast<std::int32_t>(gradient)));
+    if (hn::AllFalse(di, taken)) continue;
+    const Cells at = cells_of(bricks, rays, i, root, number, gradient == BrickGradient::central);
+    const Settled other = settle(gradient, bricks, at, number, rays, i, set(what.view->side));
+    const MF mask = hn::RebindMask(d, taken);
+    settled.gradient = {hn::IfThenElse(mask, other.gradient.x, settled.gradient.x),
+                        hn::IfThenElse(mask, other.gradient.y, settled.gradient.y),
+                        hn::IfThenElse(mask, other.gradient.z, settled.gradient.z)};
+    settled.move = hn::IfThenElse(mask, other.move, settled.move);
+  }
+}
+
 HWY_NOINLINE void write_packet(const BrickTrace& what, const IndexRays& rays, const RayBatch& batch, size_t i, const BrickHits& found,
                                HitBatch& hits) {
   const F d;
@@ -109,7 +131,9 @@ HWY_NOINLINE void write_packet(const BrickTrace& what, const IndexRays& rays, co
   const RayBricks& bricks = *what.view->bricks;
   const Cells cells = cells_of(bricks, rays, i, hn::IfThenElseZero(hn::RebindMask(d, hit), root), hn::Max(cell, hn::Zero(di)),
                                what.gradient == BrickGradient::central);
-  const Settled settled = settle(what.gradient, bricks, cells, hn::Max(cell, hn::Zero(di)), rays, i, set(what.view->side));
+  Settled settled = settle(what.gradient, bricks, cells, hn::Max(cell, hn::Zero(di)), rays, i, set(what.view->side));
+  if (what.lowered != nullptr)
+    settle_lowered(what, rays, i, hn::IfThenElseZero(hn::RebindMask(d, hit), root), hn::Max(cell, hn::Zero(di)), settled);
   const V3& g = settled.gradient;
   const VF place = hn::Add(root, settled.move);
   const MF allowed = hn::And(hn::Ge(place, hn::Load(d, batch.t_min + i)), hn::Lt(place, hn::Load(d, batch.t_max + i)));

@@ -10,6 +10,7 @@ enum class BrickGradient : std::uint8_t { cell, central, cubic };
 struct BrickTrace {
   const BrickView* view = nullptr;
   BrickGradient gradient = BrickGradient::central;
+  const std::uint8_t* lowered = nullptr;  ///< By BrickHits::cell: 0, or 1 + the gradient that the cell takes instead. Null: none does.
   float normal_from_index[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< Column by column: gradients by index coordinates to render space.
 };
 

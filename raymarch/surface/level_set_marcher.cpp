@@ -9,6 +9,7 @@
 #include "raymarch/level_set/trace.h"
 #include "raymarch/level_set/walk.h"
 #include "sdf/level_set_data.h"
+#include "sdf/level_set_lower.h"
 
 namespace limn {
 namespace {
@@ -23,6 +24,8 @@ struct State {
   glm::dmat3 normal_from_grid;                ///< Grid's world gradients to render-space normals.
   std::shared_ptr<const RayBricks> bricks{};  ///< Null where rays only walk the grid.
   BrickGradient brick_gradient = BrickGradient::central;
+  std::vector<LoweredBlock> lowered{};            ///< Cells that take a lower gradient; none in a band that is whole.
+  std::vector<std::uint8_t> lowered_in_bricks{};  ///< The same as BrickTrace has it.
 };
 
 /// A unit vector whatever the gradient is: a hit on a kink that cancels out falls back on the cell's own gradient, then on the ray.
@@ -67,16 +70,28 @@ Roots find_roots(const State& state, const Accessor& accessor, const RayBatch& r
   return roots;
 }
 
+/// Calls `visit(gradient, first, count)` for runs of roots that take the same gradient: all of them at once in a band that is whole.
+template <class Visit>
+void by_gradient(const State& state, const Roots& roots, const Visit& visit) {
+  if (state.lowered.empty()) return visit(*state.gradient, size_t{0}, roots.count);
+  for (size_t k = 0; k < roots.count; ++k) {
+    const nanovdb::Coord node = cell_point(state.level_set.data().index_from_world.point(roots.points[k])).node;
+    visit(gradient_in_cell(state.lowered, {node[0], node[1], node[2]}, *state.gradient), k, size_t{1});
+  }
+}
+
 /// One step of Newton's iteration towards the root of the gradient's own reconstruction, by a quarter of a voxel at most; as packets take
 /// it (newton_step in raymarch/level_set/gradients-inl.h).
-void settle(const State& state, const Accessor& accessor, const RayBatch& rays, Roots& roots) {
-  if (!state.gradient->values) return;
+void settle(const State& state, const GradientDescriptor& gradient, const Accessor& accessor, const RayBatch& rays, size_t first,
+            size_t count, Roots& roots) {
+  if (!gradient.values) return;
   std::array<glm::dvec3, kRayBatchSize> gradients;
   std::array<double, kRayBatchSize> values;
   const LevelSetData& data = state.level_set.data();
-  state.gradient->values(data, roots.places(), std::span(values).first(roots.count));
-  state.gradient->gradients(data, roots.places(), std::span(gradients).first(roots.count));
-  for (size_t k = 0; k < roots.count; ++k) {
+  const auto places = roots.places().subspan(first, count);
+  gradient.values(data, places, std::span(values).subspan(first, count));
+  gradient.gradients(data, places, std::span(gradients).subspan(first, count));
+  for (size_t k = first; k < first + count; ++k) {
     const int i = roots.lanes[k];
     const glm::dvec3 direction(rays.direction(i)), along = state.grid_world_from_render.vector(direction);
     const glm::dvec3 place = data.index_from_world.point(roots.points[k]);
@@ -99,9 +114,13 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   const State& state = *static_cast<const State*>(opaque);
   const Accessor accessor = state.level_set.data().accessor();
   Roots roots = find_roots(state, accessor, rays, hits);
-  settle(state, accessor, rays, roots);
+  by_gradient(state, roots, [&](const GradientDescriptor& gradient, size_t first, size_t count) {
+    settle(state, gradient, accessor, rays, first, count, roots);
+  });
   std::array<glm::dvec3, kRayBatchSize> gradients;
-  state.gradient->gradients(state.level_set.data(), roots.places(), std::span(gradients).first(roots.count));
+  by_gradient(state, roots, [&](const GradientDescriptor& gradient, size_t first, size_t count) {
+    gradient.gradients(state.level_set.data(), roots.places().subspan(first, count), std::span(gradients).subspan(first, count));
+  });
   for (size_t k = 0; k < roots.count; ++k) {
     const int i = roots.lanes[k];
     const glm::vec3 normal(unit_normal(state, gradients[k], roots.points[k], glm::dvec3(rays.direction(i))));
@@ -133,6 +152,7 @@ SurfaceView view_picture(const std::shared_ptr<const void>& opaque, const ViewRe
   if (!picture->view) return {};
   picture->trace.view = picture->view.get();
   picture->trace.gradient = state->brick_gradient;
+  if (!state->lowered_in_bricks.empty()) picture->trace.lowered = state->lowered_in_bricks.data();
   const glm::dmat3 normal_from_index = state->normal_from_grid * glm::transpose(state->level_set.data().index_from_world.linear);
   for (int k = 0; k < 9; ++k) picture->trace.normal_from_index[k] = static_cast<float>(normal_from_index[k / 3][k % 3]);
   return {.state = picture,
@@ -162,6 +182,24 @@ std::optional<BrickGradient> brick_gradient(const GradientDescriptor& gradient) 
   if (gradient.about.name == "central") return BrickGradient::central;
   if (gradient.about.name == "cubic") return BrickGradient::cubic;
   return std::nullopt;
+}
+
+/// 512 cells a brick, each 0 or 1 + the BrickGradient that it takes instead.
+std::vector<std::uint8_t> lowered_in(const RayBricks& bricks, const std::vector<LoweredBlock>& lowered, const GradientDescriptor& asked) {
+  std::vector<std::uint8_t> cells;
+  if (lowered.empty() || bricks.groups.empty()) return cells;
+  const std::vector<SurfaceBound>& bounds = bricks.groups.front().bounds;
+  cells.assign(bounds.size() * 512, 0);
+  for (size_t brick = 0; brick < bounds.size(); ++brick) {
+    const glm::ivec3 origin(bounds[brick].origin[0], bounds[brick].origin[1], bounds[brick].origin[2]);
+    for (int k = 0; k < 512; ++k) {
+      const GradientDescriptor& taken = gradient_in_cell(lowered, origin + glm::ivec3(k >> 6, k >> 3 & 7, k & 7), asked);
+      const std::optional<BrickGradient> packed = brick_gradient(taken);
+      if (&taken != &asked && packed)
+        cells[brick * 512 + static_cast<size_t>(k)] = static_cast<std::uint8_t>(1 + static_cast<int>(*packed));
+    }
+  }
+  return cells;
 }
 
 CurvatureSource curvature_source(const std::shared_ptr<const State>& state) {
@@ -203,10 +241,12 @@ Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_ob
                                              .walked = walked,
                                              .grid_world_from_render = object_from_render,
                                              .normal_from_grid = glm::transpose(object_from_world.linear)});
+  if (level.width.zero()) state->lowered = lowered_cells(level_set, gradient);
   const std::optional<BrickGradient> packed = brick_gradient(gradient);
   if (level.width.zero() && packed) {
     state->brick_gradient = *packed;
     state->bricks = make_bricks(level_set, *packed == BrickGradient::cubic);
+    if (state->bricks) state->lowered_in_bricks = lowered_in(*state->bricks, state->lowered, gradient);
   }
   Surface surface;
   surface.trace = trace;

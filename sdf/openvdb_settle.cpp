@@ -1,0 +1,110 @@
+#include "sdf/openvdb_settle.h"
+
+#include <openvdb/tools/SignedFloodFill.h>
+
+#include <cmath>
+#include <set>
+#include <vector>
+
+namespace limn {
+namespace {
+
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+// Values this near to the background, and beyond it, are no distances.
+constexpr float kWithin = 0.999f;
+// Of constant regions in the band as leaves: more would be no band.
+constexpr openvdb::Index64 kMostTileVoxels = openvdb::Index64{1} << 27;
+// Constants that tools leave outside the band are few; distances there are many.
+constexpr size_t kManyValues = 64;
+
+void settle_tiles(openvdb::FloatGrid& grid) {
+  if (grid.tree().activeTileCount() == 0) return;
+  struct Tile {
+    openvdb::Coord origin;
+    openvdb::Index level;
+    float value;
+  };
+  const float background = grid.background();
+  std::vector<Tile> far_tiles;
+  openvdb::Index64 near_voxels = 0;
+  auto tile = grid.tree().cbeginValueOn();
+  tile.setMaxDepth(openvdb::FloatTree::ValueOnCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) {
+    if (std::abs(*tile) >= kWithin * background)
+      far_tiles.push_back({tile.getCoord(), tile.getLevel(), std::copysign(background, *tile)});
+    else
+      near_voxels += tile.getVoxelCount();
+  }
+  for (const Tile& each : far_tiles) grid.tree().addTile(each.level, each.origin, each.value, false);
+  if (near_voxels > 0 && near_voxels <= kMostTileVoxels) grid.tree().voxelizeActiveTiles();
+}
+
+bool is_distance(float value, float background) { return std::abs(value) > 0.0f && std::abs(value) < kWithin * background; }
+
+bool holds_distances_outside(const openvdb::FloatGrid& grid) {
+  std::set<float> seen;
+  for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
+    if (leaf->isDense()) continue;
+    for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+      if (leaf->isValueOn(n) || !is_distance(leaf->getValue(n), grid.background())) continue;
+      seen.insert(std::abs(leaf->getValue(n)));
+      if (seen.size() >= kManyValues) return true;
+    }
+  }
+  return false;
+}
+
+int blocks_to_a_side(const VdbTile& tile) { return tile.level == 1 ? 1 : tile.level == 2 ? 16 : 512; }
+
+/// Whether the block of a tile touches a tile outside the surface.
+bool touches_outside(const openvdb::FloatGrid::ConstAccessor& accessor, const openvdb::Coord& block) {
+  for (int k = 0; k < 27; ++k) {
+    const openvdb::Coord other = block.offsetBy(8 * (k / 9 - 1), 8 * (k / 3 % 3 - 1), 8 * (k % 3 - 1));
+    if (k != 13 && !accessor.probeConstLeaf(other) && accessor.getValue(other) >= 0.0f) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void settle_band(openvdb::FloatGrid& grid) {
+  if (!(grid.background() > 0.0f) || !std::isfinite(grid.background())) return;
+  settle_tiles(grid);
+  if (!holds_distances_outside(grid)) return;
+  for (auto leaf = grid.tree().beginLeaf(); leaf; ++leaf)
+    for (openvdb::Index n = 0; n < Leaf::SIZE; ++n)
+      if (is_distance(leaf->getValue(n), grid.background())) leaf->setValueOn(n);
+}
+
+void seal_tiles(openvdb::FloatGrid& grid, std::span<const VdbTile> inside) {
+  std::vector<openvdb::Coord> found;
+  // Far from every leaf no band was cut: what tiles do there is no surface.
+  openvdb::CoordBBox leaves;
+  if (!grid.tree().evalLeafBoundingBox(leaves)) return;
+  leaves.expand(8);
+  const openvdb::FloatGrid::ConstAccessor accessor = grid.getConstAccessor();
+  for (const VdbTile& tile : inside) {
+    const int last = blocks_to_a_side(tile) - 1;
+    if (!leaves.hasOverlap(openvdb::CoordBBox::createCube(openvdb::Coord(tile.origin.x, tile.origin.y, tile.origin.z), 8 * (last + 1))))
+      continue;
+    for (int x = 0; x <= last; ++x)
+      for (int y = 0; y <= last; ++y) {
+        const bool side = x == 0 || y == 0 || x == last || y == last;
+        for (int z = 0; z <= last; z += side || last == 0 ? 1 : last) {
+          const openvdb::Coord block(tile.origin.x + 8 * x, tile.origin.y + 8 * y, tile.origin.z + 8 * z);
+          if (leaves.isInside(block) && touches_outside(accessor, block)) found.push_back(block);
+        }
+      }
+  }
+  for (const openvdb::Coord& block : found)
+    if (grid.tree().probeLeaf(block) == nullptr) grid.tree().touchLeaf(block);
+}
+
+openvdb::FloatGrid::Ptr flood_filled(const openvdb::FloatGrid& grid) {
+  openvdb::FloatGrid::Ptr copy = grid.deepCopy();
+  openvdb::tools::signedFloodFill(copy->tree());
+  return copy;
+}
+
+}  // namespace limn

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
@@ -53,7 +54,7 @@ class HeaderReader {
       }
     }
     if (!has_format) refuse("", "the header has no format", "a line 'format ascii 1.0', binary_little_endian or binary_big_endian");
-    header_.data = at_;
+    header_.data = std::min(at_, bytes_.size());
     return std::move(header_);
   }
 

@@ -50,7 +50,7 @@ class BinaryValues {
     if (swapped_ || is_real(type) || bytes_of(type) != 4 || count > left() / 4) return false;
     const size_t old = list.size();
     list.resize(old + count);
-    std::memcpy(list.data() + old, at_, 4 * count);
+    if (count > 0) std::memcpy(list.data() + old, at_, 4 * count);
     at_ += 4 * count;
     return true;
   }
@@ -340,7 +340,7 @@ Mesh parse_ply(std::string_view bytes, const std::string& file, std::int64_t max
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
   const PlyHeader header = read_ply_header(bytes, file);
   if (header.encoding == PlyEncoding::ascii) return PlyBody(header, TextValues(bytes, file, header.data), file, max_elements).run();
-  const BinaryValues values(bytes.substr(std::min(header.data, bytes.size())), header.encoding == PlyEncoding::big_endian);
+  const BinaryValues values(bytes.substr(header.data), header.encoding == PlyEncoding::big_endian);
   return PlyBody(header, values, file, max_elements).run();
 }
 

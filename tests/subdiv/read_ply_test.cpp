@@ -159,6 +159,11 @@ TEST(Ply, FaultsAreNamed) {
   EXPECT_TRUE(has(refusal(parse_ply, "ply\nformat utf8 1.0\n"), "file:2"));
   EXPECT_TRUE(has(refusal(parse_ply, "ply\nelement vertex 3\n"), "header"));
   EXPECT_TRUE(has(refusal(parse_ply, "polygon\n"), "not a PLY"));
+  // The last line of the header is the file's last, and has no end.
+  for (const char* format : {"ascii", "binary_little_endian"}) {
+    const std::string bare = header("element vertex 0\nproperty float x\nproperty float y\n", format);
+    EXPECT_TRUE(has(refusal(parse_ply, bare.substr(0, bare.size() - 1)), "no faces")) << format;
+  }
   // What no file can hold takes no memory and no time.
   for (const char* format : {"ascii", "binary_little_endian"}) {
     const std::string many = "element vertex 9000000000000000000\nproperty float x\nproperty float y\n";

@@ -12,7 +12,7 @@ struct ImportSettings {
   std::int64_t max_elements = 200'000'000;  ///< Vertices plus corners; more is refused.
 };
 
-/// Reads .obj, .ply, .stl and .off by our own readers (subdiv/read_obj.h and its neighbours), .gltf and .glb through assimp in a guarded
+/// Reads .obj, .ply, .stl and .off in this process (subdiv/read_obj.h and its neighbours), .gltf and .glb in a guarded
 /// child process (parts joined with their transforms). Positions keep double precision; what a reader repaired, dropped or ignored is in
 /// Mesh::warnings. The result is validated.
 /// Throws InputError: no such file, a folder, empty, unknown extension, damaged, cut short, no faces, non-finite vertices.

@@ -127,7 +127,7 @@ void finish_obj_tags(const ObjTags& tags, const std::string& file, Mesh& mesh) {
   for (const std::int32_t hole : mesh.holes)
     if (hole < 0 || static_cast<size_t>(hole) >= mesh.face_count())
       throw InputError({file, "t hole", fmt::format("{}", hole), "face index out of range",
-                        mesh.face_count() == 0 ? "there are none" : fmt::format("0 to {}", mesh.face_count() - 1)});
+                        mesh.face_count() == 0 ? "a mesh with faces" : fmt::format("0 to {}", mesh.face_count() - 1)});
 }
 
 }  // namespace limn

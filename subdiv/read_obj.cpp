@@ -224,6 +224,9 @@ class ObjReader {
         if (has_number()) normal_index = index(cursor, normals_.size(), "normal"), ++normal_corners_;
       }
     }
+    // Nothing is kept of meshes without normals.
+    if (normal_index == kNone && corner_normals_.empty()) return;
+    if (corner_normals_.empty()) corner_normals_.assign(mesh_.corner_vertices.size() - 1, kNone);
     corner_normals_.push_back(normal_index);
   }
 

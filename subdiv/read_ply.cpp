@@ -155,7 +155,7 @@ class PlyBody {
 
  private:
   [[noreturn]] void break_off(const PlyElement& element, std::int64_t read) const {
-    const std::string got = read < 0 ? "fewer" : fmt::format("{}", read);
+    const std::string got = read < 0 ? fmt::format("room for {}", values_.room_for(element)) : fmt::format("{}", read);
     throw InputError({file_, "element " + element.name, got, "the file breaks off", fmt::format("{}, as its header says", element.count)});
   }
   [[noreturn]] void refuse(const PlyElement& element, std::int64_t index, double value, std::string problem, std::string expected) const {

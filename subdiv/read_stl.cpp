@@ -135,7 +135,7 @@ class AsciiReader {
       if (same_word(word, "solid")) {
         solid();
       } else {
-        refuse(word, "is not expected here", "'solid NAME' or the end of the file");
+        refuse(word, "unexpected word", "'solid NAME' or the end of the file");
       }
     }
     return stl_.finish();
@@ -150,7 +150,7 @@ class AsciiReader {
 
   void expect(const char* keyword) {
     const std::string_view word = cursor_.word();
-    if (!same_word(word, keyword)) refuse(word, "is not expected here", fmt::format("'{}'", keyword));
+    if (!same_word(word, keyword)) refuse(word, "unexpected word", fmt::format("'{}'", keyword));
   }
 
   void solid() {
@@ -168,7 +168,7 @@ class AsciiReader {
         cursor_.rest_of_line();
         break;
       } else {
-        refuse(word, "is not expected here", "'facet' or 'endsolid'");
+        refuse(word, "unexpected word", "'facet' or 'endsolid'");
       }
     }
     // A solid without facets is no group.
@@ -179,7 +179,7 @@ class AsciiReader {
   void facet() {
     std::string_view word = cursor_.word();
     while (!word.empty() && !same_word(word, "outer") && !same_word(word, "outerloop")) {
-      if (same_word(word, "vertex") || same_word(word, "endfacet")) refuse(word, "is not expected here", "'outer loop'");
+      if (same_word(word, "vertex") || same_word(word, "endfacet")) refuse(word, "unexpected word", "'outer loop'");
       word = cursor_.word();
     }
     if (!same_word(word, "outerloop")) expect("loop");
@@ -190,7 +190,7 @@ class AsciiReader {
         if (!read_real(cursor_, p[i])) refuse(cursor_.word(), "is not a number", "vertex x y z");
       stl_.add_corner(p);
     }
-    if (!same_word(word, "endloop")) refuse(word, "is not expected here", "'vertex x y z' or 'endloop'");
+    if (!same_word(word, "endloop")) refuse(word, "unexpected word", "'vertex x y z' or 'endloop'");
     expect("endfacet");
     stl_.mesh.face_sizes.push_back(corners);
     stl_.count_facets(1);
@@ -205,7 +205,7 @@ class AsciiReader {
 /// Binary headers may begin with "solid" too; text holds no zero bytes, and a facet soon or none at all.
 bool is_text(std::string_view text) {
   TextCursor cursor(text);
-  if (has_exact_size(text) || !same_word(cursor.word(), "solid")) return false;
+  if (!same_word(cursor.word(), "solid")) return false;
   return text.substr(0, 4096).find('\0') == std::string_view::npos;
 }
 
@@ -214,7 +214,7 @@ bool is_text(std::string_view text) {
 Mesh parse_stl(std::string_view bytes, const std::string& file, std::int64_t max_elements) {
   std::string converted;
   const std::string_view text = plain_text(bytes, converted);
-  if (is_text(text)) return AsciiReader(text, file, max_elements).run();
+  if (!has_exact_size(bytes) && is_text(text)) return AsciiReader(text, file, max_elements).run();
   return parse_binary(bytes, file, max_elements);
 }
 

@@ -140,7 +140,7 @@ class Repair {
     const std::string file = words_.place ? words_.file + ":" + where.substr(where.find_last_of(' ') + 1) : words_.file;
     const std::string field = words_.place ? "f" : where;
     if (faults_[0] == Fault::out_of_range) {
-      const std::string range = mesh_.vertex_count() == 0 ? std::string("there are none")
+      const std::string range = mesh_.vertex_count() == 0 ? std::string("a file with vertices")
                                                           : fmt::format("{} to {}", words_.first_index,
                                                                         mesh_.vertex_count() - 1 + static_cast<size_t>(words_.first_index));
       throw InputError({file, field, vertex_name(missing_vertex(0)), "vertex index out of range, and no other face can be drawn", range});

@@ -38,7 +38,7 @@ class HeaderReader {
       if (at_ >= bytes_.size())
         throw InputError({file_, "header", "", "the file breaks off within its header", "a line 'end_header' before the data"});
       const std::string_view line = next_line();
-      TextCursor words(line);
+      TextCursor words(line, kNoComments);
       const std::string_view keyword = words.word();
       if (keyword == "end_header") break;
       if (keyword == "format") {

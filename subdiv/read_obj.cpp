@@ -212,7 +212,7 @@ class ObjReader {
   void corner(TextCursor& cursor) {
     mesh_.corner_vertices.push_back(index(cursor, mesh_.positions.size(), "vertex"));
     std::int32_t normal_index = kNone;
-    const auto has_number = [&cursor] { return cursor.left() > 0 && !ends_word(*cursor.at()) && !cursor.is_at('/'); };
+    const auto has_number = [&cursor] { return cursor.left() > 0 && !cursor.ends_word(*cursor.at()) && !cursor.is_at('/'); };
     if (cursor.is_at('/')) {
       cursor.step();
       if (has_number()) {

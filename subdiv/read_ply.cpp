@@ -84,7 +84,8 @@ class BinaryValues {
 /// Values of an ASCII file: words, an element a line.
 class TextValues {
  public:
-  TextValues(std::string_view text, const std::string& file, size_t data) : text_(text), file_(file), cursor_(text.substr(data)) {}
+  TextValues(std::string_view text, const std::string& file, size_t data)
+      : text_(text), file_(file), cursor_(text.substr(data), kNoComments) {}
 
   bool next(PlyType, double& value) {
     if (!cursor_.skip()) return false;

@@ -14,12 +14,12 @@ inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c ==
 inline bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 inline bool is_space(char c) { return is_blank(c) || is_line_end(c); }
 
-/// A comment may begin right behind a word.
-inline bool ends_word(char c) { return is_space(c) || c == '#'; }
+/// For formats without comments: a line's end is no word anyway.
+inline constexpr char kNoComments = '\n';
 
 class TextCursor {
  public:
-  explicit TextCursor(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}
+  explicit TextCursor(std::string_view text, char comment = '#') : at_(text.data()), end_(text.data() + text.size()), comment_(comment) {}
 
   const char* at() const { return at_; }
   size_t left() const { return static_cast<size_t>(end_ - at_); }
@@ -35,7 +35,7 @@ class TextCursor {
   /// Over white space and a comment to the next word of this line; false at its end.
   bool skip_in_line() {
     while (at_ != end_ && is_blank(*at_)) ++at_;
-    if (at_ != end_ && *at_ == '#')
+    if (at_ != end_ && *at_ == comment_)
       while (at_ != end_ && !is_line_end(*at_)) ++at_;
     return at_ != end_ && !is_line_end(*at_);
   }
@@ -56,6 +56,8 @@ class TextCursor {
   }
   /// Moves past one character.
   void step() { ++at_; }
+  /// A comment may begin right behind a word.
+  bool ends_word(char c) const { return is_space(c) || c == comment_; }
   bool is_at(char c) const { return at_ != end_ && *at_ == c; }
 
  private:
@@ -66,6 +68,7 @@ class TextCursor {
   }
   const char* at_;
   const char* end_;
+  char comment_;
 };
 
 /// The next word as a real number: beyond from_chars it takes what is too small for double precision as 0.

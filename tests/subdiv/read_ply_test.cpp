@@ -147,6 +147,7 @@ TEST(Ply, FaultsAreNamed) {
   EXPECT_TRUE(has(refusal(parse_ply, good + "4 0 1 2\n"), "breaks off"));
   EXPECT_TRUE(has(refusal(parse_ply, good + "4 0 1 2 x\n"), "file:14"));
   EXPECT_TRUE(has(refusal(parse_ply, good + "4 0 1 2 2.5\n"), "not a vertex number"));
+  EXPECT_TRUE(has(refusal(parse_ply, header(kVertices + kFaces) + "1.#QNAN 0 0\n" + kSquare), "file:10")) << "PLY has no comments";
   EXPECT_TRUE(has(refusal(parse_ply, good + "-4 0 1 2 3\n"), "not the length of a list"));
   EXPECT_TRUE(has(refusal(parse_ply, good + "4 0 1 2 3 255 0 0\n"), "goes on"));
   EXPECT_TRUE(has(refusal(parse_ply, good + "3 0 1 9\n"), "out of range"));

@@ -60,11 +60,17 @@ bool reads(const SceneObject& object, const SurfaceSettings& settings, const std
     const bool as_it_is = std::holds_alternative<MeshSource>(object.source) && !cage_scheme(object, settings);
     return surface.about.name == "mesh" && as_it_is;
   }
+  // A volume's mesh is that of its voxels, the file's or those asked for.
+  const bool voxels = setting == "voxels" || setting == "voxel-size";
+  if (voxels && surface.about.name == "mesh" && std::holds_alternative<LevelSetSource>(object.source)) return true;
   const auto& all = surface.settings;
   if (!surface.unsupported(object).empty() || std::find(all.begin(), all.end(), setting) == all.end()) return false;
   // Of what a representation reads, an object may have only a part.
   if (setting == "level") return is_refined(object, settings);
   if (setting == "scheme") return std::holds_alternative<MeshSource>(object.source);
+  // A volume's band is that of its file, unless its voxels are others.
+  if (setting == "half-width" && surface.about.name == "level_set")
+    return settings.resample_volumes || !std::holds_alternative<LevelSetSource>(object.source);
   return true;
 }
 
@@ -118,6 +124,8 @@ void refuse_unread(const std::vector<GivenSetting>& given, const Scene& scene, c
 SurfaceSettings settings_of(const Options& options, const SceneInput& input) {
   SurfaceSettings settings;
   settings.scheme = options.scheme ? options.scheme : input.surface.scheme;
+  settings.resample_volumes =
+      options.voxels || options.voxel_size || input.surface.voxels || input.surface.voxel_size || !options.study.voxels.empty();
   return settings;
 }
 

@@ -6,45 +6,43 @@
 #include <limits>
 
 #include "sdf/error.h"
+#include "sdf/level_set_band.h"
 #include "sdf/level_set_data.h"
 #include "sdf/parallel.h"
 
 namespace limn {
 namespace {
 
-using Leaf = nanovdb::FloatGrid::TreeType::LeafNodeType;
-using Accessor = nanovdb::FloatGrid::AccessorType;
-
-/// The mean of where the surface meets the cell's edges, index coordinates; false where it does not.
-bool crossing(const Accessor& accessor, const nanovdb::Coord& node, glm::dvec3& place) {
-  const std::array<double, 8> v = cell_values(accessor, node);
+/// The mean of where the surface meets the edges of the cell at (x, y, z) of a block, from that node.
+glm::dvec3 crossing(const NodeWindow& nodes, int x, int y, int z) {
+  const auto value = [&](int corner) {
+    const auto at = [](int i, int bit) { return static_cast<size_t>(i + bit + 1); };
+    return static_cast<double>(nodes[at(x, corner & 1)][at(y, corner >> 1 & 1)][at(z, corner >> 2)]);
+  };
   glm::dvec3 sum(0.0);
   int count = 0;
   for (int corner = 0; corner < 8; ++corner)
     for (int axis = 0; axis < 3; ++axis) {
       if (corner >> axis & 1) continue;
-      const double a = v[static_cast<size_t>(corner)], b = v[static_cast<size_t>(corner | 1 << axis)];
+      const double a = value(corner), b = value(corner | 1 << axis);
       if ((a < 0.0) == (b < 0.0)) continue;
       glm::dvec3 at(corner & 1, corner >> 1 & 1, corner >> 2);
       at[axis] += a / (a - b);
       sum += at;
       ++count;
     }
-  if (count == 0) return false;
-  place = glm::dvec3(node[0], node[1], node[2]) + sum / static_cast<double>(count);
-  return true;
+  return sum / static_cast<double>(std::max(count, 1));
 }
 
-std::vector<glm::dvec3> crossings(const LevelSetData& data, const Leaf& leaf) {
-  const Accessor accessor = data.accessor();
-  const nanovdb::Coord origin = leaf.origin();
+/// Where the surface crosses the cells of a block, index coordinates.
+std::vector<glm::dvec3> crossings(const LevelSetData& data, const nanovdb::Coord& origin) {
+  const LeafWindow window(data.accessor(), origin);
+  NodeWindow nodes;
+  load_nodes(window, nodes);
   std::vector<glm::dvec3> places;
-  for (int x = 0; x < 8; ++x)
-    for (int y = 0; y < 8; ++y)
-      for (int z = 0; z < 8; ++z) {
-        glm::dvec3 place;
-        if (crossing(accessor, origin.offsetBy(x, y, z), place)) places.push_back(place);
-      }
+  for_each_cell(cells_crossed(nodes), [&](int x, int y, int z) {
+    places.push_back(glm::dvec3(origin[0] + x, origin[1] + y, origin[2] + z) + crossing(nodes, x, y, z));
+  });
   return places;
 }
 
@@ -159,8 +157,7 @@ const GradientDescriptor& best_gradient_of(const LevelSet& level_set) {
 
 SurfacePatches surface_patches(const LevelSet& level_set, const GradientDescriptor& gradient, const Affine& target_from_world) {
   const LevelSetData& data = level_set.data();
-  const auto* leaves = data.grid->tree().getFirstNode<0>();
-  const std::uint32_t leaf_count = data.grid->tree().nodeCount(0);
+  const std::vector<nanovdb::Coord> blocks = blocks_with_cells(*data.grid);
   const glm::dmat3 target_from_index = target_from_world.linear * level_set.info().world_from_index.linear;
   SurfacePatches result;
   for (int corner = 0; corner < 4; ++corner) {
@@ -168,9 +165,9 @@ SurfacePatches surface_patches(const LevelSet& level_set, const GradientDescript
     result.reach = std::max(result.reach, 0.5 * glm::length(target_from_index * diagonal));
   }
   const glm::dmat3 world_from_target = glm::inverse(target_from_world.linear);
-  std::vector<std::vector<SurfacePatch>> parts(leaf_count);
-  parallel_for(std::uint32_t{0}, leaf_count, [&](std::uint32_t i) {
-    std::vector<glm::dvec3> points = crossings(data, leaves[i]);
+  std::vector<std::vector<SurfacePatch>> parts(blocks.size());
+  parallel_for(size_t{0}, blocks.size(), [&](size_t i) {
+    std::vector<glm::dvec3> points = crossings(data, blocks[i]);
     if (points.empty()) return;
     for (glm::dvec3& point : points) point = level_set.info().world_from_index.point(point);
     settle(level_set, gradient, points);

@@ -234,6 +234,7 @@ struct GapSums {
 
 GapSums gap_of(const std::vector<glm::dvec3>& points, const Source& to, double first_reach) {
   GapSums sums;
+  if (to.surface.patches.empty()) return sums;
   std::vector<glm::dvec3> left = points;
   std::vector<std::uint32_t> near;
   for (double reach = first_reach; !left.empty(); reach *= 2.0) {

@@ -112,8 +112,22 @@ SceneModel model_of(const Scene& scene, const Settings& settings_of) {
   return model;
 }
 
+/// Where curvatures come from. A volume whose band has no room for second derivatives is read once more, its band completed for them.
+std::vector<CurvatureSource> curvature_sources(const Scene& scene, const SceneModel& model) {
+  std::vector<CurvatureSource> sources;
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    sources.push_back(model.surfaces[i].curvature);
+    if (sources.back().evaluate != nullptr || !std::holds_alternative<LevelSetSource>(scene.objects[i].source)) continue;
+    SurfaceSettings settings;
+    settings.kind = "level_set";
+    settings.gradient = "cubic";
+    sources.back() = find_surface(settings.kind).build(scene.objects[i], settings, model.render_origin).curvature;
+  }
+  return sources;
+}
+
 /// Normals, depths and curvatures of a measured border: for a silhouette those of the sheet a little inside it.
-void describe_points(const SceneModel& model, const Camera& camera, BorderCurves& border) {
+void describe_points(const SceneModel& model, std::span<const CurvatureSource> curvatures, const Camera& camera, BorderCurves& border) {
   constexpr double kInside_px = 0.25;
   for (BorderCurve& curve : border.curves) {
     const size_t n = curve.points.size();
@@ -132,7 +146,7 @@ void describe_points(const SceneModel& model, const Camera& camera, BorderCurves
       BorderPoint& point = curve.points[i];
       point.position = s.position;
       point.normal = glm::dvec3(s.normal);
-      const CurvatureSource& source = model.surfaces[static_cast<size_t>(s.id - 1)].curvature;
+      const CurvatureSource& source = curvatures[static_cast<size_t>(s.id - 1)];
       if (source.evaluate == nullptr) continue;
       const SurfacePoint at{s.position - model.render_origin, point.normal, -1};
       SurfaceCurvature bend;
@@ -243,7 +257,7 @@ BorderTruth solve_truth_stand_in(const Scene& scene, const Camera& camera, const
   truth.exact = false;
   truth.curves = border_of_model(finest.model);
   judge_objects(scene, finest.level, border_of_model(second), truth);
-  describe_points(finest.model, camera, truth.curves);
+  describe_points(finest.model, curvature_sources(scene, finest.model), camera, truth.curves);
   for (const BorderCurve& curve : truth.curves.curves) {
     if (curve.closed) ++(curve.kind == CurveKind::silhouette ? truth.contour_generators : truth.level_curves);
   }

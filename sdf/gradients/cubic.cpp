@@ -80,9 +80,16 @@ void gradients_of_spline(const LevelSetData& data, std::span<const glm::dvec3> p
 
 void values_of_spline(const LevelSetData& data, std::span<const glm::dvec3> points, std::span<double> values) {
   const auto accessor = data.accessor();
+  // Points come cell by cell where a grid is resampled.
+  nanovdb::Coord cell;
+  std::array<double, 64> c;
   for (size_t i = 0; i < points.size(); ++i) {
     const CellPoint at = cell_point(data.index_from_world.point(points[i]));
-    values[i] = jet_by_index(coefficients(accessor, at.node), at.local, false).value;
+    if (i == 0 || at.node != cell) {
+      c = coefficients(accessor, at.node);
+      cell = at.node;
+    }
+    values[i] = jet_by_index(c, at.local, false).value;
   }
 }
 

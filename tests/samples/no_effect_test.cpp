@@ -81,6 +81,7 @@ TEST_F(NoEffect, OfARender) {
   refused({"render", "ellipsoid", "--surface", "mesh", "--scheme", "loop"}, "leave it out");
   refused({"render", "VOLUME", "--level", "2"}, "leave it out");
   refused({"render", "VOLUME", "--scheme", "loop"}, "leave it out");
+  refused({"render", "VOLUME", "--half-width", "4"}, "half-width");
   refused({"render", "VOLUME", "--normals", "flat"}, "--surface mesh");
   refused({"render", "ellipsoid", "--views", "2", "--eye", "0,0,5"}, "--views 1");
   refused({"render", "ellipsoid", "--tolerance", "2", "--half-width", "4"}, "--half-width");
@@ -96,6 +97,8 @@ TEST_F(NoEffect, WhatARenderReadsIsTaken) {
   taken({"render", "ellipsoid", "--surface", "level_set", "--voxel-size", "0.2", "--gradient", "cubic"});
   taken({"render", "VOLUME", "--gradient", "cell"});
   taken({"render", "VOLUME", "--voxels", "12"});
+  taken({"render", "VOLUME", "--voxels", "12", "--half-width", "4"});
+  taken({"render", "VOLUME", "--surface", "mesh", "--voxels", "12"});
   taken({"render", "SCENE"});
   taken({"render", "ellipsoid", "--views", "2", "--target", "0,0,0", "--up", "0,0,1"});
 }

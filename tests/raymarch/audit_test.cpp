@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -14,6 +15,7 @@
 #include "raymarch/audit/facts.h"
 #include "scenes.h"
 #include "sdf/shape.h"
+#include "subdiv/import.h"
 #include "tests/sdf/level_set_maker.h"
 #include "tests/subdiv/test_meshes.h"
 
@@ -371,6 +373,111 @@ TEST(Audit, EveryCheckThatRanSaysWhatItTook) {
       EXPECT_GE(costs[i].ms, 0.0);
     }
   }
+}
+
+TEST(Audit, AChecksThatNothingAskedForIsConcernedByIsNotRun) {
+  const SceneObject object = object_of(lantern(12, 48));
+  const auto ran = [&](AuditSettings settings) {
+    std::vector<AuditCost> costs;
+    audit(object, settings, &costs);
+    std::set<std::string> names;
+    for (const AuditCost& cost : costs) names.insert(cost.check);
+    return names;
+  };
+  EXPECT_TRUE(ran({.thorough = true}).contains("parts"));
+  const std::set<std::string> drawn = ran({.surfaces = {"mesh"}, .methods = {"rim"}});
+  EXPECT_FALSE(drawn.contains("parts")) << "it never warns";
+  EXPECT_TRUE(drawn.contains("slivers"));
+  EXPECT_FALSE(ran({.surfaces = {"mesh"}, .methods = {"jump_flood"}}).contains("slivers")) << "it reads no normals";
+  EXPECT_FALSE(ran({.surfaces = {"analytic"}, .methods = {"rim"}}).contains("open edges"));
+  EXPECT_FALSE(ran({.thorough = true, .surfaces = {"mesh"}, .methods = {"rim"}}).contains("thin"));
+  EXPECT_TRUE(ran({.thorough = true, .surfaces = {"mesh_level_set"}, .methods = {"rim"}}).contains("thin"));
+  // What is left out would not have mattered.
+  for (const char* surface : {"mesh", "mesh_level_set"}) {
+    const AuditSettings asked{.surfaces = {surface}, .methods = {"rim"}};
+    std::vector<std::string> all, some;
+    for (const Finding& finding : audit(object, {}))
+      if (matters(finding, asked.surfaces, asked.methods)) all.push_back(finding.message);
+    for (const Finding& finding : audit(object, asked))
+      if (matters(finding, asked.surfaces, asked.methods)) some.push_back(finding.message);
+    EXPECT_EQ(all, some) << surface;
+  }
+}
+
+/// A sheet of triangles with every tenth one missing, so that open edges are everywhere.
+Mesh holed_sheet(int side) {
+  Mesh mesh;
+  for (int y = 0; y <= side; ++y)
+    for (int x = 0; x <= side; ++x) mesh.positions.emplace_back(x, y, 0.1 * std::sin(0.3 * x) * std::cos(0.2 * y));
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      const int a = y * (side + 1) + x, b = a + 1, c = a + side + 1, d = c + 1;
+      if ((7 * x + 3 * y) % 10 != 0) test::add_face(mesh, {a, b, d});
+      test::add_face(mesh, {a, d, c});
+    }
+  return mesh;
+}
+
+TEST(Audit, OfALargeMeshASampleTellsWhatAllOfItDoes) {
+  const Mesh mesh = holed_sheet(280);
+  ASSERT_GT(mesh.face_count(), 100'000u);
+  const MeshFacts all = mesh_facts(mesh), some = sampled_mesh_facts(mesh, 20'000);
+  EXPECT_EQ(some.faces, all.faces);
+  EXPECT_EQ(some.looked_at, 20'000);
+  EXPECT_EQ(all.looked_at, all.faces);
+  // Of edges as many are open as among all; edges of sampled faces are looked at once each.
+  EXPECT_NEAR(static_cast<double>(some.open_edges) / 20'000.0, static_cast<double>(all.open_edges) / static_cast<double>(all.faces), 0.03);
+  EXPECT_EQ(some.non_manifold_edges, 0);
+  EXPECT_EQ(some.inconsistent_edges, 0);
+  EXPECT_NEAR(some.median_edge, all.median_edge, 0.05 * all.median_edge);
+  EXPECT_EQ(some.largest_coordinate, all.largest_coordinate);
+  // Sampling all of it is looking at all.
+  const MeshFacts every = sampled_mesh_facts(mesh, mesh.face_count());
+  EXPECT_EQ(every.open_edges, all.open_edges);
+  EXPECT_EQ(every.slivers, all.slivers);
+  EXPECT_EQ(every.zero_area_faces, all.zero_area_faces);
+  EXPECT_EQ(every.smallest_angle, all.smallest_angle);
+  EXPECT_EQ(every.off_normal_faces, all.off_normal_faces);
+  EXPECT_EQ(every.median_edge, all.median_edge);
+
+  const auto open = [&](const AuditSettings& settings) { return finding_of(object_of(mesh), "open edges", settings); };
+  const AuditSettings quick{.surfaces = {"mesh"}, .methods = {"rim"}};
+  EXPECT_EQ(open(quick).severity, Severity::warning);
+  EXPECT_NE(open(quick).message.find("20000 of its " + std::to_string(all.faces) + " faces"), std::string::npos) << open(quick).message;
+  EXPECT_EQ(open(thorough()).value, static_cast<double>(all.open_edges));
+}
+
+/// "thin walls" of the audit, and whether the level set that is drawn warns of them.
+void expect_one_verdict(const SceneObject& object, int voxels) {
+  AuditSettings settings = thorough(voxels);
+  settings.surface.level = 2;
+  const Finding walls = finding_of(object, "thin walls", settings), gaps = finding_of(object, "narrow gaps", settings);
+  SurfaceSettings drawn = settings.surface;
+  drawn.kind = "mesh_level_set";
+  drawn.gradient = "central";
+  std::string warnings;
+  const SceneModel model = build_model(test::scene_of({object}), drawn);
+  for (const std::string& warning : model.surfaces[0].info.warnings) warnings += warning + "\n";
+  const bool thin = warnings.find("walls thinner than two voxels") != std::string::npos;
+  const bool narrow = warnings.find("gaps narrower than one voxel") != std::string::npos;
+  EXPECT_EQ(thin, walls.severity == Severity::warning) << object.name << " " << voxels << ": " << walls.message << "\n" << warnings;
+  EXPECT_EQ(narrow, gaps.severity == Severity::warning) << object.name << " " << voxels << ": " << gaps.message << "\n" << warnings;
+  if (thin) {
+    const std::string share = walls.message.substr(0, walls.message.find(" %"));
+    EXPECT_NE(warnings.find(share + " % of the surface lies on walls"), std::string::npos) << share << "\n" << warnings;
+  }
+}
+
+TEST(Audit, InfoAndAPictureSayTheSameOfThinWallsAndGaps) {
+  std::vector<SceneObject> objects{object_of(test::box_at({1.0, 0.04, 1.0}, glm::dvec3(0.0))), object_of(test::torus(24, 12, 2.0, 0.3)),
+                                   object_of(lantern(6, 24)), object_of(test::cube(), Scheme::catmark)};
+  for (const char* name : {"spot_control_mesh", "suzanne", "cow", "fandisk"}) {
+    const std::filesystem::path file = std::filesystem::path(LIMN_MODELS) / (std::string(name) + ".obj");
+    if (std::filesystem::exists(file)) objects.push_back(object_of(load_mesh(file)));
+    objects.back().name = name;
+  }
+  for (const SceneObject& object : objects)
+    for (const int voxels : {24, 60}) expect_one_verdict(object, voxels);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "run_program.h"
@@ -105,6 +106,31 @@ TEST(StudyPlan, WhatCannotBeModelledOrWouldNotFitIsARefusedModelWithItsReason) {
   const StudyModel model = study_of(options).models.front();
   EXPECT_NE(model.refused.find("--max-memory 10.0 MB"), std::string::npos) << model.refused;
   EXPECT_EQ(model.cost.build_ms, 0.0);
+}
+
+// A wall so thin that no sampling of a tessellation finds it closed.
+TEST(StudyPlan, AShapeThatCannotBeTessellatedLeavesItsMeshesOutWithTheReason) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "limn-thin-shell.toml";
+  std::ofstream(file) << "[[object]]\nname = \"skin\"\ncsg = \"difference\"\nshell = 0.002\n"
+                         "of = [ { shape = \"box\", half = [1, 1, 1] }, { shape = \"sphere\", radius = 1.2 } ]\n";
+  Options options;
+  options.input = file.string();
+  options.size_px = glm::ivec2(64, 48);
+  options.study.views = 1;
+  options.study.voxels = {32};
+  options.study.gradients = {"central"};
+  options.study.levels = {1};
+  options.study.normals = {NormalKind::vertex};
+  options.surfaces = {"analytic", "level_set", "mesh", "mesh_level_set"};
+  const Study study = study_of(options);
+  ASSERT_EQ(study.models.size(), 4u);
+  for (const StudyModel& model : study.models) {
+    if (model.surface.starts_with("mesh"))
+      EXPECT_NE(model.refused.find("skin cannot be tessellated: "), std::string::npos) << model.surface << ": " << model.refused;
+    else
+      EXPECT_EQ(model.refused, "") << model.surface;
+  }
+  std::filesystem::remove(file);
 }
 
 TEST(StudyPlan, AThresholdThatNoMethodHasIsRefused) {

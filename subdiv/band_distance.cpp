@@ -31,8 +31,12 @@ struct PreparedTriangle {
   LinearForm height;
   LinearForm across[3], along[3];  ///< Of each edge; `across` is positive outside.
   double length[3];
-  glm::dvec3 center;  ///< Of a sphere that holds it.
-  double radius;
+  std::uint64_t rows;  ///< Those of which some node may be nearer to it than to what is known.
+};
+
+/// A sphere that holds a triangle.
+struct TriangleSphere {
+  float x, y, z, radius;
 };
 
 /// What has been found so far, 64 rows of 8 nodes.
@@ -92,25 +96,24 @@ HWY_INLINE void UpdateRow(int row, BlockDistances& block) {
   block.row_farthest[row] = hn::GetLane(hn::MaxOfLanes(d, most));
 }
 
-/// The rows of which some node may be nearer to the triangle than to what is known, as bits: by a sphere about it, and in single precision,
-/// with room for its rounding.
-HWY_INLINE std::uint64_t RowsInReach(const PreparedTriangle& triangle, const BlockDistances& block) {
+/// The rows of which some node may be nearer to a triangle in the sphere than to what is known, as bits: in single precision, with room for
+/// its rounding.
+HWY_INLINE std::uint64_t RowsInReach(const TriangleSphere& sphere, const BlockDistances& block) {
   const hn::CappedTag<float, 16> d;
   constexpr float kRoom = 1e-4f;
   alignas(64) float across[64];
-  const glm::vec3 center(triangle.center);
   const auto z = hn::Iota(d, 0.0f);
   for (size_t k = 0; k < 64; k += hn::Lanes(d)) {
     // Lanes of one row, or of whole rows one after the other.
     const auto at = hn::Add(z, hn::Set(d, static_cast<float>(k)));
     const auto row = hn::Floor(hn::Mul(at, hn::Set(d, 0.125f)));
-    const auto dy = hn::Sub(row, hn::Set(d, center.y)), dz = hn::Sub(hn::Sub(at, hn::Mul(row, hn::Set(d, 8.0f))), hn::Set(d, center.z));
+    const auto dy = hn::Sub(row, hn::Set(d, sphere.y)), dz = hn::Sub(hn::Sub(at, hn::Mul(row, hn::Set(d, 8.0f))), hn::Set(d, sphere.z));
     hn::Store(hn::Add(hn::Mul(dy, dy), hn::Mul(dz, dz)), d, across + k);
   }
-  const auto radius = hn::Set(d, static_cast<float>(triangle.radius) * (1.0f + kRoom) + kRoom);
+  const auto radius = hn::Set(d, sphere.radius * (1.0f + kRoom) + kRoom);
   std::uint64_t rows = 0;
   for (int x = 0; x < 8; ++x) {
-    const float dx = static_cast<float>(x) - center.x;
+    const float dx = static_cast<float>(x) - sphere.x;
     const auto squared_x = hn::Set(d, dx * dx);
     for (size_t k = 0; k < 64; k += hn::Lanes(d)) {
       const auto reach = hn::Add(hn::Load(d, block.known + 64 * x + k), radius);
@@ -125,10 +128,14 @@ HWY_INLINE std::uint64_t RowsInReach(const PreparedTriangle& triangle, const Blo
   return rows;
 }
 
+void FindRows(const TriangleSphere* spheres, size_t count, const BlockDistances& block, std::uint64_t* rows) {
+  for (size_t i = 0; i < count; ++i) rows[i] = RowsInReach(spheres[i], block);
+}
+
 void TakeTriangles(const PreparedTriangle* triangles, size_t count, BlockDistances& block) {
   for (size_t i = 0; i < count; ++i) {
     const PreparedTriangle& triangle = triangles[i];
-    for (std::uint64_t rows = RowsInReach(triangle, block); rows != 0; rows &= rows - 1) {
+    for (std::uint64_t rows = triangle.rows; rows != 0; rows &= rows - 1) {
       const int row = std::countr_zero(rows), x = row >> 3, y = row & 7;
       // By the plane: it cannot come nearer than what is known.
       const double known = block.row_farthest[row];
@@ -147,6 +154,7 @@ HWY_AFTER_NAMESPACE();
 namespace limn {
 namespace {
 
+HWY_EXPORT(FindRows);
 HWY_EXPORT(TakeTriangles);
 
 LinearForm form(const glm::dvec3& slope, const glm::dvec3& zero) { return {slope, -glm::dot(slope, zero)}; }
@@ -169,8 +177,6 @@ bool prepare(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, Prep
     out.along[k] = form(direction, corners[k]);
     out.across[k] = form(glm::cross(direction, normal), corners[k]);
   }
-  out.center = 0.5 * (glm::min(glm::min(a, b), c) + glm::max(glm::max(a, b), c));
-  out.radius = std::max({glm::distance(out.center, a), glm::distance(out.center, b), glm::distance(out.center, c)}) * (1.0 + 1e-12);
   return true;
 }
 
@@ -187,6 +193,56 @@ void take_sliver(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, 
     }
   }
 }
+
+/// The triangles of a block, a batch at a time: first which rows each may concern, by little arithmetic, then those exactly that concern
+/// any.
+class BlockMeasure {
+ public:
+  BlockMeasure(const TriangleMesh& mesh, const glm::ivec3& origin, double voxel_size, BlockDistances& block)
+      : mesh_(mesh), first_(voxel_size * glm::dvec3(origin)), voxel_size_(voxel_size), per_unit_(1.0 / voxel_size), block_(block) {}
+
+  void add(std::uint32_t index) {
+    const glm::uvec3& t = mesh_.triangles[index];
+    const glm::dvec3 a = (mesh_.positions[t.x] - first_) * per_unit_, b = (mesh_.positions[t.y] - first_) * per_unit_,
+                     c = (mesh_.positions[t.z] - first_) * per_unit_;
+    const glm::dvec3 center = 0.5 * (glm::min(glm::min(a, b), c) + glm::max(glm::max(a, b), c));
+    const auto squared = [&center](const glm::dvec3& p) { return glm::dot(p - center, p - center); };
+    const double radius = std::sqrt(std::max({squared(a), squared(b), squared(c)}));
+    triangles_[count_] = index;
+    spheres_[count_] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z),
+                        static_cast<float>(radius)};
+    if (++count_ == kBatch) flush();
+  }
+
+  void flush() {
+    std::uint64_t rows[kBatch];
+    HWY_DYNAMIC_DISPATCH(FindRows)(spheres_, count_, block_, rows);
+    size_t prepared = 0;
+    for (size_t i = 0; i < count_; ++i) {
+      if (rows[i] == 0) continue;
+      const glm::uvec3& t = mesh_.triangles[triangles_[i]];
+      const glm::dvec3 a = (mesh_.positions[t.x] - first_) / voxel_size_, b = (mesh_.positions[t.y] - first_) / voxel_size_,
+                       c = (mesh_.positions[t.z] - first_) / voxel_size_;
+      if (prepare(a, b, c, prepared_[prepared]))
+        prepared_[prepared++].rows = rows[i];
+      else
+        take_sliver(a, b, c, block_);
+    }
+    HWY_DYNAMIC_DISPATCH(TakeTriangles)(prepared_, prepared, block_);
+    count_ = 0;
+  }
+
+ private:
+  static constexpr size_t kBatch = 32;
+  const TriangleMesh& mesh_;
+  glm::dvec3 first_;
+  double voxel_size_, per_unit_;
+  BlockDistances& block_;
+  std::uint32_t triangles_[kBatch];
+  TriangleSphere spheres_[kBatch];
+  PreparedTriangle prepared_[kBatch];
+  size_t count_ = 0;
+};
 
 /// Where fine triangles crowd most are far from being any node's nearest: a few of them, spread over the list, come first and tell how near
 /// the surface is. The least of all distances is the same in any order.
@@ -208,22 +264,9 @@ void band_distances(const TriangleMesh& mesh, std::span<const std::uint32_t> tri
   std::fill(std::begin(block.known), std::end(block.known), static_cast<float>(reach_voxels * (1.0 + 1e-6)));
   std::fill(std::begin(block.row_farthest), std::end(block.row_farthest), reach_voxels * (1.0 + 1e-12));
   const double beyond = block.squared[0];
-  const auto take = HWY_DYNAMIC_DISPATCH(TakeTriangles);
-  const glm::dvec3 first = voxel_size * glm::dvec3(origin);
-  constexpr size_t kBatch = 32;
-  PreparedTriangle prepared[kBatch];
-  size_t count = 0;
-  visit_spread(triangles, [&](std::uint32_t index) {
-    const glm::uvec3& t = mesh.triangles[index];
-    const glm::dvec3 a = (mesh.positions[t.x] - first) / voxel_size, b = (mesh.positions[t.y] - first) / voxel_size,
-                     c = (mesh.positions[t.z] - first) / voxel_size;
-    if (prepare(a, b, c, prepared[count]))
-      ++count;
-    else
-      take_sliver(a, b, c, block);
-    if (count == kBatch) take(prepared, count, block), count = 0;
-  });
-  take(prepared, count, block);
+  BlockMeasure measure(mesh, origin, voxel_size, block);
+  visit_spread(triangles, [&measure](std::uint32_t index) { measure.add(index); });
+  measure.flush();
   for (size_t node = 0; node < 512; ++node) {
     const double squared = block.squared[node];
     distances[node] = squared < beyond ? voxel_size * std::sqrt(squared) : std::numeric_limits<double>::infinity();

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -36,14 +37,15 @@ Winding::Winding(const TriangleMesh& mesh, std::span<const std::uint32_t> first_
   std::iota(order_.begin(), order_.end(), 0u);
   if (!order_.empty()) {
     nodes_.resize(nodes_in(static_cast<std::uint32_t>(order_.size())));
-    build(0, 0, static_cast<std::uint32_t>(order_.size()));
+    Scratch scratch{std::vector<double>(order_.size()), std::vector<std::uint32_t>(order_.size())};
+    build(0, 0, static_cast<std::uint32_t>(order_.size()), scratch);
   }
   find_border(first_at);
 }
 
 Winding::Winding(const TriangleMesh& mesh) : Winding(mesh, first_at_position(mesh.positions)) {}
 
-void Winding::build(std::uint32_t index, std::uint32_t first, std::uint32_t count) {
+void Winding::build(std::uint32_t index, std::uint32_t first, std::uint32_t count, Scratch& scratch) {
   Node& node = nodes_[index];
   node.first = first, node.count = count;
   const Box centers = measure(node);
@@ -51,11 +53,11 @@ void Winding::build(std::uint32_t index, std::uint32_t first, std::uint32_t coun
   const glm::dvec3 size = centers.size();
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const std::uint32_t half = count / 2;
-  split(first, count, half, axis, {centers.lower[axis], centers.upper[axis]});
+  split(first, count, half, axis, {centers.lower[axis], centers.upper[axis]}, scratch);
   node.left = index + 1;
   node.right = index + 1 + nodes_in(half);
-  const auto build_left = [&] { build(node.left, first, half); };
-  const auto build_right = [&] { build(node.right, first + half, count - half); };
+  const auto build_left = [&] { build(node.left, first, half, scratch); };
+  const auto build_right = [&] { build(node.right, first + half, count - half, scratch); };
   constexpr std::uint32_t kWorthATask = 4096;
   if (count > kWorthATask)
     parallel_invoke(build_left, build_right);
@@ -89,21 +91,23 @@ Box Winding::measure(Node& node) const {
 
 /// Brings the `half` triangles of the least middles (of equal ones those of the lowest numbers) to the front; both parts stay in order, so
 /// that sums are the same everywhere. A histogram finds the pair between the two in a few passes.
-void Winding::split(std::uint32_t first, std::uint32_t count, std::uint32_t half, int axis, const Interval& range) {
+void Winding::split(std::uint32_t first, std::uint32_t count, std::uint32_t half, int axis, const Interval& range, Scratch& scratch) {
   using Key = std::pair<double, std::uint32_t>;
   const std::span<std::uint32_t> order = std::span(order_).subspan(first, count);
-  std::vector<double> keys(count);
+  const std::span<double> keys = std::span(scratch.keys).subspan(first, count);
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t t = order[i];
     keys[i] = (corner(t, 0)[axis] + corner(t, 1)[axis] + corner(t, 2)[axis]) / 3.0;
   }
-  const std::uint32_t bins = std::clamp(count / 8, 1u, 4096u);
+  constexpr std::uint32_t kMostBins = 4096;
+  const std::uint32_t bins = std::clamp(count / 8, 1u, kMostBins);
   const double scale = range.width() > 0.0 ? bins / range.width() : 0.0;
   const auto bin_of = [&](double key) {
     const double at = (key - range.lower) * scale;
     return at < bins - 1 ? static_cast<std::uint32_t>(at) : bins - 1;
   };
-  std::vector<std::uint32_t> counts(bins, 0);
+  std::array<std::uint32_t, kMostBins> counts;
+  std::fill_n(counts.begin(), bins, 0u);
   for (const double key : keys) ++counts[bin_of(key)];
   std::uint32_t bin = 0, before = 0;
   while (before + counts[bin] <= half) before += counts[bin++];
@@ -114,16 +118,15 @@ void Winding::split(std::uint32_t first, std::uint32_t count, std::uint32_t half
   const auto middle = within.begin() + (half - before);
   std::nth_element(within.begin(), middle, within.end());
   const Key pivot = *middle;
-  std::vector<std::uint32_t> back;
-  back.reserve(count - half);
-  std::uint32_t front = 0;
+  const std::span<std::uint32_t> back = std::span(scratch.back).subspan(first, count);
+  std::uint32_t front = 0, behind = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (Key(keys[i], order[i]) < pivot)
       order[front++] = order[i];
     else
-      back.push_back(order[i]);
+      back[behind++] = order[i];
   }
-  std::copy(back.begin(), back.end(), order.begin() + front);
+  std::copy_n(back.begin(), behind, order.begin() + front);
 }
 
 double Winding::number(const glm::dvec3& point, double far) const {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "samples/commands/command.h"
+#include "samples/held_folder.h"
 #include "samples/output.h"
 #include "samples/study/folder.h"
 #include "samples/study/summary.h"
@@ -54,7 +55,7 @@ int run(const Options& options) {
   }
   check_output_folder(folder, options);
   check_not_part(folder);
-  const FolderLock lock(folder);
+  const HeldFolder held(folder);
   StudyFolder merged = merge_parts(parts, folder);
   const std::vector<fs::path> files = finish_folder(folder, merged, true);
   const std::vector<PlannedCell> missing = missing_cells(merged);

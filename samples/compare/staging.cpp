@@ -26,12 +26,18 @@ void remove_own(const fs::path& work) {
   ::rmdir(work.c_str());
 }
 
+void check_replaceable(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return;
+  if (fs::is_directory(file, ignored)) throw InputError({file.string(), "--output", "", "is a folder", "the place of a file"});
+  if (::access(file.c_str(), W_OK) != 0)
+    throw InputError({file.string(), "--output", "", "cannot be written", "a file that may be replaced"});
+}
+
 /// What stands in the place may be a link to elsewhere, which is kept; a rename would replace it.
 void put(const fs::path& from, const fs::path& to) {
   std::error_code error;
   if (!fs::is_symlink(to, error)) {
-    if (fs::exists(to, error) && ::access(to.c_str(), W_OK) != 0)
-      throw InputError({to.string(), "--output", "", "cannot be written", "a file that may be replaced"});
     fs::rename(from, to, error);
     if (!error) return;
   }
@@ -44,8 +50,7 @@ void put(const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
-StagedFolder::StagedFolder(const fs::path& folder)
-    : folder_(folder), work_(folder / "compare.unfinished"), made_(!fs::exists(folder)), lock_(folder) {
+StagedFolder::StagedFolder(const fs::path& folder) : folder_(folder), work_(folder / "compare.unfinished") {
   remove_own(work_);
   std::error_code error;
   fs::create_directory(work_, error);
@@ -53,17 +58,15 @@ StagedFolder::StagedFolder(const fs::path& folder)
     throw InputError({folder.string(), "--output", "", "cannot be written to: " + error.message(), "a folder that may be written to"});
 }
 
-StagedFolder::~StagedFolder() {
-  remove_own(work_);
-  // While the lock is held, so that nobody has begun to work in it; a folder with anything in it stays.
-  if (made_) ::rmdir(folder_.c_str());
-}
+StagedFolder::~StagedFolder() { remove_own(work_); }
 
 std::vector<fs::path> StagedFolder::publish(const std::vector<fs::path>& names) const {
   std::vector<fs::path> files;
+  // All of them before the first is replaced.
+  for (const fs::path& name : names) check_replaceable(folder_.path() / name);
   for (const fs::path& name : names) {
-    put(work_ / name, folder_ / name);
-    files.push_back(folder_ / name);
+    put(work_ / name, folder_.path() / name);
+    files.push_back(folder_.path() / name);
   }
   return files;
 }

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "samples/study/journal.h"
+#include "samples/held_folder.h"
 
 namespace limn {
 
@@ -22,9 +22,8 @@ class StagedFolder {
   std::vector<std::filesystem::path> publish(const std::vector<std::filesystem::path>& names) const;
 
  private:
-  std::filesystem::path folder_, work_;
-  bool made_ = false;  ///< The folder was not there: it goes again where nothing comes into it.
-  FolderLock lock_;
+  HeldFolder folder_;
+  std::filesystem::path work_;
 };
 
 }  // namespace limn

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "samples/held_folder.h"
 #include "samples/job.h"
 #include "samples/stability/page.h"
 #include "samples/stability/run.h"
-#include "samples/study/journal.h"
 #include "sdf/error.h"
 #include "sdf/output_file.h"
 
@@ -65,7 +65,7 @@ int study_stability(const Options& options, ProgressBar& bar) {
   refuse_others(options);
   const std::filesystem::path folder = options.outputs.empty() ? default_output("study", kStabilityInput) : options.outputs.back();
   check_output_folder(folder, options);
-  const FolderLock lock(folder);
+  const HeldFolder held(folder);
   StabilityRunSettings settings;
   settings.seed = options.study.seed.value_or(1);
   settings.draws = options.study.draws;

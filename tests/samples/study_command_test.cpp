@@ -220,6 +220,7 @@ TEST(StudyCommand, ShardsMergedInAnyOrderGiveTheRowsOfOneProcess) {
   EXPECT_EQ(mixed.exit_code, 2);
   EXPECT_EQ(mixed.err_lines(), 1) << mixed.err;
   EXPECT_NE(mixed.err.find("threshold"), std::string::npos) << mixed.err;
+  EXPECT_FALSE(fs::exists(folder.path() / "mixed")) << "an empty folder";
 }
 
 }  // namespace

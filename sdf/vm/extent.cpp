@@ -8,7 +8,7 @@ namespace {
 
 // Boxes looked at for each of six directions, twice: in all of space and then within what was found. Fewer for long programs.
 int most_boxes(const RegisterProgram& program) {
-  return static_cast<int>(std::clamp<size_t>(2'000'000 / program.steps.size(), 1000, 20'000));
+  return static_cast<int>(std::clamp<size_t>(1'500'000 / program.steps.size(), 300, 20'000));
 }
 
 /// Evaluates over boxes and at points, keeping its memory.
@@ -46,6 +46,7 @@ class Evaluator {
 struct Candidate {
   Box box;
   double reach = 0.0;  ///< How far it lies in the direction looked at.
+  double deficit = 0.0;
   bool operator<(const Candidate& other) const { return reach < other.reach; }
 };
 
@@ -66,35 +67,61 @@ struct Search {
   int most_boxes;
 
   double reach(const Box& box) const { return upwards ? box.upper[axis] : -box.lower[axis]; }
-  bool may_hold(const Box& box) const { return !(evaluator.over(box).lower > level); }
 
-  int longest(const Box& box) const {
-    int best = axis;
+  double longest_side(const Box& box) const {
+    double side = 0.0;
     for (int i = 0; i < 3; ++i) {
-      if (reads_axis[i] && box.upper[i] - box.lower[i] > box.upper[best] - box.lower[best]) best = i;
+      if (reads_axis[i]) side = std::max(side, box.upper[i] - box.lower[i]);
     }
-    return best;
+    return side;
+  }
+  /// How far the bounds over a box lie below the level; 0: it holds nothing.
+  double deficit(const Box& box) const { return std::min(std::max(level - evaluator.over(box).lower, 0.0), 1e200); }
+
+  /// A box in two, with the deficits of both.
+  struct Halves {
+    Box box[2]{};
+    double deficit[2] = {kInfinity, kInfinity};
+    double sum() const { return deficit[0] + deficit[1]; }
+  };
+  Halves halves_along(const Box& box, int cut_axis) const {
+    Halves halves{{box, box}};
+    const double cut = cut_of(box.lower[cut_axis], box.upper[cut_axis]);
+    halves.box[0].upper[cut_axis] = halves.box[1].lower[cut_axis] = cut;
+    for (int k = 0; k < 2; ++k) halves.deficit[k] = deficit(halves.box[k]);
+    return halves;
+  }
+  /// Cut where it tells something: a long side counts for nothing where the value hardly depends on it. Where nothing tells, the longest.
+  Halves best_halves(const Candidate& candidate) const {
+    constexpr double kTelling = 0.75;
+    Halves best, longest;
+    double side = -1.0;
+    for (int i = 0; i < 3; ++i) {
+      if (!reads_axis[i]) continue;
+      const Halves halves = halves_along(candidate.box, i);
+      if (halves.sum() < best.sum()) best = halves;
+      const double length = candidate.box.upper[i] - candidate.box.lower[i];
+      if (length > side) longest = halves, side = length;
+    }
+    return best.sum() <= kTelling * 2.0 * candidate.deficit ? best : longest;
   }
 
   /// How far anything reaches at most; -infinity where there is nothing. `outside`: a point was found close to the region's end.
   double run(const Box& region, double tolerance, bool& outside) const {
     std::priority_queue<Candidate> queue;
-    if (may_hold(region)) queue.push({region, reach(region)});
+    if (const double first = deficit(region); first > 0.0) queue.push({region, reach(region), first});
     for (int looked = 0; !queue.empty(); ++looked) {
       const Candidate farthest = queue.top();
-      const int cut_axis = longest(farthest.box);
-      const double length = farthest.box.upper[cut_axis] - farthest.box.lower[cut_axis];
       if (farthest.reach >= kFarthest) {
         const glm::dvec3 p = farthest.box.center();
-        outside = outside || ((upwards ? p[axis] : -p[axis]) > 0.25 * farthest.reach && evaluator.at(p) <= level);
+        outside = outside || ((upwards ? p[axis] : -p[axis]) > 0.25 * farthest.reach && evaluator.at(p) < level);
       }
+      const double length = longest_side(farthest.box);
       if (outside || length <= tolerance * std::max(1e-3, std::fabs(farthest.reach)) || looked >= most_boxes) return farthest.reach;
       queue.pop();
-      const double cut = cut_of(farthest.box.lower[cut_axis], farthest.box.upper[cut_axis]);
-      for (const bool high : {false, true}) {
-        Box half = farthest.box;
-        (high ? half.lower : half.upper)[cut_axis] = cut;
-        if (may_hold(half)) queue.push({half, reach(half)});
+      const Halves halves = best_halves(farthest);
+      for (int k = 0; k < 2; ++k) {
+        if (halves.deficit[k] > 0.0) queue.push({halves.box[k], reach(halves.box[k]), halves.deficit[k]});
       }
     }
     return -kInfinity;
@@ -105,6 +132,10 @@ struct Search {
 
 Extent find_extent(const RegisterProgram& program, const bool reads_axis[3], double level) {
   Evaluator evaluator(program);
+  // What is thinner than rounding has no inside: sheets where two planes face each other at no distance.
+  double largest = 1.0;
+  for (const RegisterStep& step : program.steps) largest = std::max(largest, std::fabs(step.constant));
+  const double below = level - 1e-13 * std::min(largest, 1e6);
   const Box everything{glm::dvec3(-kFarthest), glm::dvec3(kFarthest)};
   Extent extent;
   Box found = everything;
@@ -114,7 +145,7 @@ Extent find_extent(const RegisterProgram& program, const bool reads_axis[3], dou
       for (const bool upwards : {false, true}) {
         bool& proven = extent.proven[axis][upwards ? 1 : 0];
         if (proven) continue;
-        const Search search{evaluator, reads_axis, level, axis, upwards, most_boxes(program)};
+        const Search search{evaluator, reads_axis, below, axis, upwards, most_boxes(program)};
         bool outside = false;
         const double reach = search.run(found, tolerance, outside);
         if (reach == -kInfinity) return {};
@@ -123,7 +154,12 @@ Extent find_extent(const RegisterProgram& program, const bool reads_axis[3], dou
       }
     }
   }
-  extent.box = found;
+  // A surface at the very end lies within, whatever rounding does to it.
+  double side = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    if (reads_axis[i] && found.upper[i] - found.lower[i] < kFarthest) side = std::max(side, found.upper[i] - found.lower[i]);
+  }
+  extent.box = {found.lower - 1e-6 * side, found.upper + 1e-6 * side};
   for (int axis = 0; axis < 3; ++axis) {
     if (!reads_axis[axis] || found.lower[axis] <= -kFarthest) extent.box.lower[axis] = -kInfinity;
     if (!reads_axis[axis] || found.upper[axis] >= kFarthest) extent.box.upper[axis] = kInfinity;

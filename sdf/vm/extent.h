@@ -10,8 +10,10 @@ namespace limn::vm {
 inline constexpr double kFarthest = 1048576.0;
 
 struct Extent {
-  Box box{};               ///< Holds {f <= level} within kFarthest; infinite along axes where it reaches that far. Empty: there is nothing.
-  bool proven[3][2] = {};  ///< Along each axis, downwards and upwards: a point at or below the level was found that far out.
+  /// Holds {f < level} within kFarthest, sheets thinner than rounding left out; infinite along axes where it reaches that far. Empty: there
+  /// is nothing.
+  Box box{};
+  bool proven[3][2] = {};  ///< Along each axis, downwards and upwards: a point below the level was found that far out.
 };
 
 /// By branch and bound: the part of the box that reaches farthest is halved until it is small or holds nothing.

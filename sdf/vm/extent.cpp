@@ -50,9 +50,9 @@ struct Candidate {
   bool operator<(const Candidate& other) const { return reach < other.reach; }
 };
 
-/// Where a long stretch is cut: at 0, and then towards it, since what there is may be of any size.
+/// Where a long stretch is cut: towards 0, since what there is may be of any size, with the far part by itself, which most often is empty.
 double cut_of(double lower, double upper) {
-  if (lower < 0.0 && upper > 0.0) return upper > -4.0 * lower ? upper / 8.0 : lower < -4.0 * upper ? lower / 8.0 : 0.0;
+  if (lower < 0.0 && upper > 0.0) return upper > -lower ? upper / 8.0 : lower / 8.0;
   const double low = std::min(std::fabs(lower), std::fabs(upper)), high = std::max(std::fabs(lower), std::fabs(upper));
   const double size = low > 0.0 && high > 4.0 * low ? std::sqrt(low * high) : low > 0.0 ? 0.5 * (low + high) : high / 8.0;
   return upper > 0.0 ? size : -size;
@@ -91,7 +91,8 @@ struct Search {
     for (int k = 0; k < 2; ++k) halves.deficit[k] = deficit(halves.box[k]);
     return halves;
   }
-  /// Cut where it tells something: a long side counts for nothing where the value hardly depends on it. Where nothing tells, the longest.
+  /// Along the longest side if that tells something; else where it tells most: a long side counts for nothing where the value hardly
+  /// depends on it.
   Halves best_halves(const Candidate& candidate) const {
     constexpr double kTelling = 0.75;
     Halves best, longest;
@@ -103,7 +104,8 @@ struct Search {
       const double length = candidate.box.upper[i] - candidate.box.lower[i];
       if (length > side) longest = halves, side = length;
     }
-    return best.sum() <= kTelling * 2.0 * candidate.deficit ? best : longest;
+    const double enough = kTelling * 2.0 * candidate.deficit;
+    return longest.sum() <= enough || best.sum() > enough ? longest : best;
   }
 
   /// How far anything reaches at most; -infinity where there is nothing. `outside`: a point was found close to the region's end.

@@ -10,6 +10,7 @@
 namespace limn {
 
 struct VmField {
+  /// Parts without thickness (two planes that face each other at no distance) are left out.
   Field field;  ///< No steeper than 1 anywhere: near the surface `scale` times what the file computes, the same sign everywhere.
   double scale = 1.0;
   std::string unbounded{};  ///< Empty where interval arithmetic bounds the surface, else along which axes it does not, in words.

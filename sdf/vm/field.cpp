@@ -18,6 +18,7 @@ using namespace vm;
 
 constexpr double kFarAway = 1e9;    // no length of limn's is larger
 constexpr double kCutAt = 1e4;      // where a surface without end is cut, if its slope has no bound
+constexpr double kSheet = 1e-10;    // added to fields with parts without thickness, so that rounding makes no specks of them
 constexpr double kStillEven = 8.0;  // a slope that grows by no more than this to the end of space is bounded well enough there
 
 /// What all parts of a field share: where it is at or below a level.
@@ -29,6 +30,7 @@ struct Reach {
   bool clamped = false;  ///< Outside `region` the field is that of the nearest point in it, plus `growth` times the distance.
   Box region{};
   double growth = 0.0;
+  bool sheets = false;  ///< Somewhere a part and its opposite touch: what lies between them has no thickness.
   mutable std::mutex mutex{};
   mutable std::map<double, Box> known{};
 
@@ -174,6 +176,21 @@ Program clamped_part(const Program& part, const Box& region, const bool reads[3]
   return out;
 }
 
+/// Whether two parts are each other's opposite, to rounding.
+bool has_sheets(const SplitProgram& split) {
+  std::map<std::uint32_t, std::vector<Part>> by_step;
+  for (const Part& part : split.parts) by_step[part.step].push_back(part);
+  for (const auto& [step, parts] : by_step) {
+    for (size_t i = 0; i < parts.size(); ++i) {
+      for (size_t k = 0; k < i; ++k) {
+        const bool opposite = std::fabs(parts[i].scale + parts[k].scale) <= 1e-12 * std::fabs(parts[i].scale);
+        if (opposite && std::fabs(parts[i].added + parts[k].added) <= 1e-12 * (std::fabs(parts[i].added) + 1e-3)) return true;
+      }
+    }
+  }
+  return false;
+}
+
 /// How steep the parts are, each and all.
 struct Steepness {
   std::vector<double> each{};
@@ -240,6 +257,7 @@ Field assemble(const SplitProgram& split, const std::vector<Program>& parts, con
   for (size_t i = 0; i < parts.size(); ++i) {
     Program part = reach->clamped ? clamped_part(parts[i], reach->region, reach->reads, reach->growth) : parts[i];
     part.push_back({Operation::multiply_constant, static_cast<std::uint32_t>(part.size() - 1), 0, 0, reach->scale, 0});
+    if (reach->sheets) part.push_back({Operation::add_constant, static_cast<std::uint32_t>(part.size() - 1), 0, 0, kSheet, 0});
     part = simplified(part);
     FieldLeaf leaf;
     leaf.shape = std::make_shared<const VmShape>(VmShape{with_registers(part), reach});
@@ -268,6 +286,7 @@ VmField vm_field(std::string_view text, const std::string& file) {
   reach->region = around(extent.box);
 
   const SplitProgram pieces = split(program);
+  reach->sheets = has_sheets(pieces);
   std::vector<Program> parts;
   for (const Part& part : pieces.parts) parts.push_back(part_of(program, part));
   Steepness steep = steepness(parts, reach->region);

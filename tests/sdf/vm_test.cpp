@@ -143,7 +143,7 @@ TEST(Vm, RandomFormulasAgreeWithTheTextEvaluatedLineByLine) {
     FieldEvaluator evaluator(vm->field);
     for (const glm::dvec3& p : points_in(box, random, 200)) {
       const double expected = static_cast<double>(read_and_evaluate(text, p));
-      EXPECT_NEAR(evaluator.value(p) / vm->scale, expected, 1e-9 * (1.0 + std::fabs(expected)) + 1e-12 / vm->scale);
+      EXPECT_NEAR(evaluator.value(p) / vm->scale, expected, 1e-9 * (1.0 + std::fabs(expected)) + 2e-10 / vm->scale);
     }
     // Outside the bounds nothing is inside, near and far.
     for (const double far : {2.0, 50.0}) {
@@ -258,6 +258,19 @@ TEST(Vm, MinimaAndMaximaBecomeUnionsAndIntersectionsOfTheField) {
   const Box& box = field.traits().bounds;
   EXPECT_GE(box.upper.x, 1.0);
   EXPECT_LT(box.upper.x, 1.02);
+}
+
+TEST(Vm, WhatHasNoThicknessIsNeitherDrawnNorBounded) {
+  // A ball, and a sheet in the plane x = 0.9 that goes on for ever: |10 x - 9| as the greater of 10 x - 9 and 9 - 10 x.
+  const std::string text =
+      std::string(kAxes) + ball("b", 0.5) + "ten const 10\nnine const 9\na mul x ten\nl sub a nine\nr sub nine a\ns max l r\nout min b s\n";
+  const VmField vm = vm_field(text, "sheet.vm");
+  EXPECT_EQ(vm.unbounded, "");
+  EXPECT_LT(vm.field.traits().bounds.upper.x, 0.51);
+  FieldEvaluator evaluator(vm.field);
+  std::mt19937 random(2);
+  for (const glm::dvec3& p : points_in({glm::dvec3(-2.0), glm::dvec3(2.0)}, random, 1000)) EXPECT_GT(evaluator.value({0.9, p.y, p.z}), 0.0);
+  EXPECT_NEAR(evaluator.value({0.1, 0.2, 0.3}) / vm.scale, std::sqrt(0.14) - 0.5, 1e-8);
 }
 
 TEST(Vm, TapesGiveTheSameValues) {

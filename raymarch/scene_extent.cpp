@@ -31,10 +31,11 @@ void check(const SceneObject& object) {
   if (mesh && !std::isfinite(side))
     throw InputError({file_of(object), field, "", "its coordinates are too large to be placed", "coordinates below 1e12"});
   // A single point has no size; what that means is told where nothing is drawn.
-  if (!box.finite() || side == 0.0) return;
+  if (!box.finite() || (side == 0.0 && largest <= kMostSide)) return;
   const std::string expected = fmt::format("{:g} to {:g} along the longest side; scale the coordinates", kLeastSide, kMostSide);
   if (side > kMostSide) throw InputError({file_of(object), field, fmt::format("{:.3g}", side), "too large to be drawn", expected});
-  if (side < kLeastSide) throw InputError({file_of(object), field, fmt::format("{:.3g}", side), "too small to be drawn", expected});
+  if (side > 0.0 && side < kLeastSide)
+    throw InputError({file_of(object), field, fmt::format("{:.3g}", side), "too small to be drawn", expected});
   const double step = std::nextafter(largest, std::numeric_limits<double>::infinity()) - largest;
   if (side < kLeastSteps * step)
     throw InputError({file_of(object), field, fmt::format("{:.3g} wide at {:.3g}", side, largest),

@@ -167,8 +167,9 @@ TEST(Audit, SchwarzsLanternIsToldFromSliversThatDoNoHarm) {
 TEST(Audit, OrientationCountsInvertedPartsAndNotTheWallsOfCavities) {
   const Mesh inverted = test::turned_inside_out(test::cube());
   EXPECT_EQ(finding_of(object_of(inverted), "inverted parts").value, 1.0);
-  EXPECT_EQ(warnings_of(object_of(inverted), {"mesh"}), Names{"inverted parts"});
-  EXPECT_EQ(warnings_of(object_of(inverted), {"mesh_level_set"}), Names{}) << "as a whole it is turned back";
+  // A cube without normals is drawn with its facets, on which N.V hardly changes.
+  EXPECT_EQ(warnings_of(object_of(inverted), {"mesh"}), (Names{"inverted parts", "flat regions"}));
+  EXPECT_EQ(warnings_of(object_of(inverted), {"mesh_level_set"}), Names{"flat regions"}) << "as a whole it is turned back";
 
   // As every file comes: turned round, and told.
   const SceneObject turned{.name = "mesh", .source = mesh_source(inverted, {}, "cube.obj")};

@@ -30,11 +30,17 @@ glm::vec3 color_of(const Mesh& mesh, const std::vector<std::int32_t>& first_corn
 
 glm::vec3 vertex_color_at(const Mesh& mesh, std::int32_t first_corner, std::int32_t corners, const glm::dvec3& point) {
   const auto vertex = [&](std::int32_t k) { return static_cast<size_t>(mesh.corner_vertices[static_cast<size_t>(first_corner + k)]); };
+  const auto color = [&](std::int32_t k) { return mesh.vertex_colors[vertex(k)]; };
   glm::dvec3 sum(0.0);
   double weights = 0.0;
   for (std::int32_t k = 0; k < corners; ++k) {
-    const glm::dvec3 to = mesh.positions[vertex(k)] - point;
-    const double distance = glm::length(to);
+    const glm::dvec3 to = mesh.positions[vertex(k)] - point, to_next = mesh.positions[vertex((k + 1) % corners)] - point;
+    const double distance = glm::length(to), next_distance = glm::length(to_next);
+    // On an edge only its ends count; the weights below would be infinite there.
+    if (distance * next_distance + glm::dot(to, to_next) <= 1e-9 * distance * next_distance) {
+      const double whole = distance + next_distance;
+      return whole > 0.0 ? glm::mix(color(k), color((k + 1) % corners), static_cast<float>(distance / whole)) : color(k);
+    }
     double weight = 0.0;
     for (const std::int32_t side : {1, corners - 1}) {
       const glm::dvec3 other = mesh.positions[vertex((k + side) % corners)] - point;
@@ -43,11 +49,11 @@ glm::vec3 vertex_color_at(const Mesh& mesh, std::int32_t first_corner, std::int3
       weight += glm::length(glm::cross(to, other)) / std::max(product + glm::dot(to, other), 1e-12 * product + 1e-300);
     }
     weight /= std::max(distance, 1e-300);
-    if (!std::isfinite(weight) || weight > 1e200) return mesh.vertex_colors[vertex(k)];
-    sum += weight * glm::dvec3(mesh.vertex_colors[vertex(k)]);
+    if (!std::isfinite(weight) || weight > 1e200) return color(k);
+    sum += weight * glm::dvec3(color(k));
     weights += weight;
   }
-  return weights > 0.0 ? glm::vec3(sum / weights) : mesh.vertex_colors[vertex(0)];
+  return weights > 0.0 ? glm::vec3(sum / weights) : color(0);
 }
 
 FileColors file_colors(const SceneModel& model) {

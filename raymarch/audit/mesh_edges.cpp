@@ -31,8 +31,10 @@ void look_at_edges(AuditFacts& facts, std::vector<Finding>& findings) {
   if (mesh.open_edges > 0) {
     open.severity = Severity::warning;
     open.message =
-        fmt::format("{} with a face on one side only (a hole or a sheet): what is seen from behind counts as turned away, and so as border",
-                    counted(mesh.open_edges, "edge")) +
+        fmt::format(
+            "{} with a face on one side only (a hole or a sheet): what is seen from behind counts as turned away, and so as border, "
+            "unless a picture shows mostly the back",
+            counted(mesh.open_edges, "edge")) +
         facts.sample_text();
     open.remedy = "close the holes, or use --surface mesh_level_set, whose sign is the winding number's";
     open.surfaces = {"mesh"};

@@ -61,8 +61,9 @@ void ExtrudeGroups::lay(size_t object, const Image<float>& ink, Image<float>& co
       if (ink.pixels[i] == 0.0f) continue;
       if (seen.id.pixels[i] != 0 && seen.id.pixels[i] != id) {
         if (of_group(i)) continue;
-        const std::int32_t to_seam = touching.square_at(x, y);
-        if (to_seam != kFarSquared && to_seam <= in_front.square_at(x, y)) continue;
+        // Hulls of what touches others also come out of surfaces on one plane, where nothing of the object is seen.
+        const std::int32_t to_front = in_front.square_at(x, y);
+        if (touching.silhouette.crossings > 0 && (to_front == kFarSquared || touching.square_at(x, y) <= to_front)) continue;
       }
       coverage.pixels[i] = 1.0f;
     }

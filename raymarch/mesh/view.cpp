@@ -12,8 +12,7 @@ namespace {
 
 // Beyond so many triangles for each pixel that the bounds cover, listing them all takes longer than a tree's search for each ray.
 constexpr double kTrianglesPerPixel = 16.0;
-// A tree over more triangles than this takes longer to make than lists for dozens of pictures; then this many are listed for each pixel.
-constexpr size_t kManyTriangles = 1'000'000;
+// Of many triangles so many are listed for each pixel.
 constexpr double kManyTrianglesPerPixel = 512.0;
 // Lists longer than this are those of many large triangles behind each other: a tree sees less of them.
 constexpr size_t kMostEntries = size_t{1} << 25;

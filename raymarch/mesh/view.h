@@ -14,6 +14,8 @@
 namespace limn {
 
 inline constexpr int kMeshTile_px = 16;
+/// A tree over more triangles than this takes longer to make than lists for dozens of pictures, or than looking at each for a few rays.
+inline constexpr size_t kManyTriangles = 1'000'000;
 
 /// A triangle in a tile: the pixels of the tile that its box may cover, first to last inclusive, from the tile's corner.
 struct TriangleInTile {

@@ -5,7 +5,9 @@
 #include <embree3/rtcore.h>
 #include <tbb/task_arena.h>
 
+#include <atomic>
 #include <chrono>
+#include <cmath>
 #include <mutex>
 
 #include "raymarch/mesh/mesh_hit.h"
@@ -17,6 +19,7 @@
 #include "raymarch/surface/registry.h"
 #include "sdf/error.h"
 #include "sdf/parallel.h"
+#include "subdiv/first_hits.h"
 
 namespace limn {
 namespace {
@@ -36,6 +39,8 @@ struct MeshState {
   mutable std::once_flag tree_made;
   mutable Owned<RTCDevice, EmbreeDevice> device;
   mutable Owned<RTCScene, EmbreeScene> scene;
+  mutable std::atomic<bool> has_tree{false};
+  mutable std::atomic<int> few_batches{0};  ///< Traced without it.
   Box bounds;
   mutable MeshViewMemory view_memory;
   std::shared_ptr<const Polygons> polygons;
@@ -147,6 +152,7 @@ RTCScene tree_of(const MeshState& state) {
   std::call_once(state.tree_made, [&state] {
     // Alone: a thread that took up another part of the picture while it waits for Embree would wait here for itself.
     tbb::this_task_arena::isolate([&state] { build_tree(state); });
+    state.has_tree = true;
   });
   return state.scene.get();
 }
@@ -178,8 +184,36 @@ RTCRayHit embree_ray(const RayBatch& rays, int i) {
   return ray;
 }
 
+/// A few batches of rays are all that some pictures of a large mesh ask for: one pass over its triangles each is quicker than a tree.
+bool takes_no_tree(const MeshState& state) {
+  constexpr int kFewBatches = 3;
+  return state.mesh->triangles.size() > kManyTriangles && !state.has_tree && state.few_batches.fetch_add(1) < kFewBatches;
+}
+
+/// The same hits, to the last bit: the triangles that the tree would have found as candidates are tested the same way.
+void trace_few(const MeshState& state, const RayBatch& rays, HitBatch& hits) {
+  std::vector<SegmentRay> segments;
+  std::vector<int> lanes;
+  for (int i = 0; i < rays.count; ++i) {
+    if (!(rays.t_min[i] < rays.t_max[i])) continue;
+    lanes.push_back(i);
+    const double from = std::nextafter(static_cast<double>(rays.t_min[i]), -std::numeric_limits<double>::infinity());
+    segments.push_back({glm::dvec3(rays.origin(i)), glm::dvec3(rays.direction(i)), from, rays.t_max[i]});
+  }
+  const std::vector<SegmentHit> found = first_hits(*state.mesh, segments);
+  for (size_t k = 0; k < lanes.size(); ++k) {
+    const int i = lanes[k];
+    if (!found[k].found()) continue;
+    const RayContext context{{}, {segments[k].origin, segments[k].direction}, rays.t_min[i], rays.t_max[i], {}};
+    TriangleHit hit;
+    if (intersect(*state.mesh, found[k].triangle, context, hit) && static_cast<float>(hit.t) < rays.t_max[i])
+      write_hit(state, hit, i, hits);
+  }
+}
+
 void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   const MeshState& state = *static_cast<const MeshState*>(opaque);
+  if (takes_no_tree(state)) return trace_few(state, rays, hits);
   const RTCScene tree = tree_of(state);
   for (int i = 0; i < rays.count; ++i) {
     if (!(rays.t_min[i] < rays.t_max[i])) continue;

@@ -11,9 +11,9 @@
 namespace limn::bench {
 
 struct GrowthBenchSettings {
-  std::string scene = "teacup";     ///< A built-in scene with a cage.
+  std::string scene = "rook";       ///< A built-in scene with a cage.
   std::string field = "ellipsoid";  ///< A built-in scene with a field.
-  std::vector<int> levels{};        ///< Empty: 4 to 7, which makes 70 thousand to 4.4 million quads of the teacup.
+  std::vector<int> levels{};        ///< Empty: 4 to 7, which makes 70 thousand to 4.4 million quads of the rook.
   std::vector<int> voxels{};        ///< Of meshes made level sets; empty: 256, 512.
   std::vector<int> field_voxels{};  ///< Empty: 256, 512, 1024, 2048.
   int width_px = 1280;

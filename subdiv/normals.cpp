@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -9,6 +10,13 @@
 
 namespace limn {
 namespace {
+
+/// work(begin, end) for parts of 0..count that share their scratch memory.
+template <class Work>
+void for_parts(size_t count, const Work& work) {
+  constexpr size_t kPart = 4096;
+  parallel_for(size_t{0}, (count + kPart - 1) / kPart, [&](size_t part) { work(part * kPart, std::min(count, (part + 1) * kPart)); });
+}
 
 std::vector<std::pair<std::int32_t, std::int32_t>> infinitely_sharp_edges(const Mesh& mesh) {
   std::vector<std::pair<std::int32_t, std::int32_t>> edges;
@@ -23,16 +31,16 @@ glm::dvec3 unit_or(const glm::dvec3& v, const glm::dvec3& fallback) {
   return length > 0.0 && std::isfinite(length) ? v / length : fallback;
 }
 
-std::vector<glm::dvec3> face_normals(const Mesh& mesh) {
-  std::vector<glm::dvec3> normals, corners;
-  normals.reserve(mesh.face_count());
-  std::int32_t first = 0;
-  for (size_t f = 0; f < mesh.face_count(); ++f) {
-    gather_corners(mesh, face_corners(mesh, first, f), corners);
-    // A face without area has no normal and must not bend its neighbours'.
-    normals.push_back(zero_area(corners) ? glm::dvec3(0.0) : unit_or(vector_area(corners), glm::dvec3(0.0)));
-    first += mesh.face_sizes[f];
-  }
+std::vector<glm::dvec3> face_normals(const Mesh& mesh, const std::vector<std::int32_t>& first) {
+  std::vector<glm::dvec3> normals(mesh.face_count());
+  for_parts(mesh.face_count(), [&](size_t begin, size_t end) {
+    std::vector<glm::dvec3> corners;
+    for (size_t f = begin; f < end; ++f) {
+      gather_corners(mesh, face_corners(mesh, first[f], f), corners);
+      // A face without area has no normal and must not bend its neighbours'.
+      normals[f] = zero_area(corners) ? glm::dvec3(0.0) : unit_or(vector_area(corners), glm::dvec3(0.0));
+    }
+  });
   return normals;
 }
 
@@ -68,7 +76,7 @@ struct EdgeUse {
 struct Scratch {
   std::vector<size_t> parent;
   std::vector<EdgeUse> uses, bridges;
-  std::vector<glm::dvec3> polygon, sums;
+  std::vector<glm::dvec3> sums;
 
   size_t find(size_t i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -99,10 +107,8 @@ class VertexNormals {
     scratch.sums.assign(corners.size(), glm::dvec3(0.0));
     for (size_t i = 0; i < corners.size(); ++i) {
       const auto face = static_cast<size_t>(face_of(corners[i]));
-      const std::int32_t first = first_corners_[face];
-      gather_corners(mesh_, face_corners(mesh_, first, face), scratch.polygon);
-      const double angle = corner_angle(scratch.polygon, static_cast<size_t>(corners[i] - first), of_face_[face]);
-      scratch.sums[scratch.find(i)] += angle * of_face_[face];
+      const std::array<glm::dvec3, 3> around = {position(previous(corners[i])), mesh_.positions[vertex], position(next(corners[i]))};
+      scratch.sums[scratch.find(i)] += corner_angle(around, 1, of_face_[face]) * of_face_[face];
     }
     for (size_t i = 0; i < corners.size(); ++i) {
       const glm::dvec3& sum = scratch.sums[scratch.find(i)];
@@ -118,6 +124,16 @@ class VertexNormals {
     return std::span(at_.corners).subspan(first, last - first);
   }
   std::int32_t face_of(std::int32_t corner) const { return at_.faces[static_cast<size_t>(corner)]; }
+  std::int32_t previous(std::int32_t corner) const {
+    const auto face = static_cast<size_t>(face_of(corner));
+    return corner == first_corners_[face] ? first_corners_[face + 1] - 1 : corner - 1;
+  }
+  std::int32_t next(std::int32_t corner) const {
+    const auto face = static_cast<size_t>(face_of(corner));
+    return corner + 1 == first_corners_[face + 1] ? first_corners_[face] : corner + 1;
+  }
+  std::int32_t vertex_of(std::int32_t corner) const { return mesh_.corner_vertices[static_cast<size_t>(corner)]; }
+  const glm::dvec3& position(std::int32_t corner) const { return mesh_.positions[static_cast<size_t>(vertex_of(corner))]; }
   bool without_area(std::int32_t face) const { return of_face_[static_cast<size_t>(face)] == glm::dvec3(0.0); }
 
   bool smooth(std::int32_t face_a, std::int32_t face_b) const {
@@ -164,10 +180,8 @@ class VertexNormals {
     scratch.uses.clear();
     scratch.bridges.clear();
     for (size_t i = 0; i < corners.size(); ++i) {
-      const auto face = static_cast<size_t>(face_of(corners[i]));
-      const std::int32_t first = first_corners_[face], size = mesh_.face_sizes[face], k = corners[i] - first;
-      for (const std::int32_t at : {k == 0 ? size - 1 : k - 1, k == size - 1 ? 0 : k + 1})
-        scratch.uses.push_back({mesh_.corner_vertices[static_cast<size_t>(first + at)], static_cast<std::int32_t>(i)});
+      scratch.uses.push_back({vertex_of(previous(corners[i])), static_cast<std::int32_t>(i)});
+      scratch.uses.push_back({vertex_of(next(corners[i])), static_cast<std::int32_t>(i)});
     }
     std::sort(scratch.uses.begin(), scratch.uses.end(), by_other);
     for (size_t begin = 0, end = 0; begin < scratch.uses.size(); begin = end) {
@@ -193,7 +207,7 @@ class VertexNormals {
 }  // namespace
 
 std::vector<glm::vec3> face_normals_at_corners(const Mesh& mesh) {
-  const std::vector<glm::dvec3> of_face = face_normals(mesh);
+  const std::vector<glm::dvec3> of_face = face_normals(mesh, first_corners(mesh));
   std::vector<glm::vec3> normals;
   normals.reserve(mesh.corner_vertices.size());
   for (size_t f = 0; f < mesh.face_count(); ++f)
@@ -202,16 +216,14 @@ std::vector<glm::vec3> face_normals_at_corners(const Mesh& mesh) {
 }
 
 std::vector<glm::vec3> angle_weighted_normals(const Mesh& mesh, const Smoothing& smoothing) {
-  const std::vector<glm::dvec3> of_face = face_normals(mesh);
   const std::vector<std::int32_t> first = first_corners(mesh);
+  const std::vector<glm::dvec3> of_face = face_normals(mesh, first);
   const VertexCorners at = corners_by_vertex(mesh);
   const VertexNormals vertices(mesh, at, of_face, first, smoothing);
   std::vector<glm::vec3> normals(mesh.corner_vertices.size());
-  constexpr size_t kPart = 4096;  // vertices that share their scratch memory
-  parallel_for(size_t{0}, (mesh.vertex_count() + kPart - 1) / kPart, [&](size_t part) {
+  for_parts(mesh.vertex_count(), [&](size_t begin, size_t end) {
     Scratch scratch;
-    const size_t end = std::min(mesh.vertex_count(), (part + 1) * kPart);
-    for (size_t v = part * kPart; v < end; ++v) vertices.write(v, scratch, normals);
+    for (size_t v = begin; v < end; ++v) vertices.write(v, scratch, normals);
   });
   return normals;
 }

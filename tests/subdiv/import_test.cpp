@@ -32,7 +32,7 @@ class Import : public ::testing::Test {
       if (holds("\n")) return testing::AssertionFailure() << "more than one line: " << message;
       if (!holds(file.filename().string())) return lacks(file.filename().string());
       if (!holds(part)) return lacks("'" + part + "'");
-      if (error.fault().expected.empty() && !holds(";")) return lacks("word of what was expected");
+      if (error.fault().expected.empty() && !holds("expected")) return lacks("word of what was expected");
       return testing::AssertionSuccess();
     }
   }

@@ -150,6 +150,9 @@ class Replacement {
 
  private:
   void set_aside(size_t i, int (*move)(const char*, const char*)) {
+    // A folder that has come there meanwhile would move like a file.
+    struct stat there {};
+    if (::lstat(staged_[i].real.c_str(), &there) == 0 && S_ISDIR(there.st_mode)) undo(staged_[i].target, EISDIR);
     fs::path old = temporary_beside(staged_[i].real);
     if (move(staged_[i].real.c_str(), old.c_str()) == 0)
       old_[i] = std::move(old);

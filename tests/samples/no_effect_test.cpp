@@ -71,7 +71,6 @@ TEST_F(NoEffect, OfARender) {
   refused({"render", "MESH", "--voxel-size", "0.1"}, "mesh_level_set");
   refused({"render", "MESH", "--gradient", "cubic"}, "mesh_level_set");
   refused({"render", "MESH", "--half-width", "4"}, "mesh_level_set");
-  refused({"render", "MESH", "--level", "1", "--surface", "mesh_level_set", "--normals", "flat"}, "--normals");
   refused({"render", "ellipsoid", "--level", "2"},
           "--level: has no effect on a formula drawn as analytic; add --surface mesh or mesh_level_set");
   refused({"render", "ellipsoid", "--level", "auto"}, "--surface mesh");

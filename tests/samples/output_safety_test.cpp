@@ -60,7 +60,7 @@ TEST(OutputSafety, NorByTheFilesOfAFolder) {
   fs::create_directory(folder.path() / "out");
   fs::create_symlink("../mesh.obj", folder.path() / "out/rows.json");
   fs::create_symlink("../mesh.obj", folder.path() / "out/rows.csv");
-  fs::create_symlink("../mesh.obj", folder.path() / "picture.png");
+  fs::create_symlink("mesh.obj", folder.path() / "picture.png");
   expect_input_kept({"compare", "mesh.obj", "--size", "16x12", "-o", "out"}, folder, "mesh.obj");
   expect_input_kept({"study", "mesh.obj", "--size", "16x12", "-o", "out"}, folder, "mesh.obj");
   expect_input_kept({"render", "mesh.obj", "--size", "16x12", "-o", "picture.png"}, folder, "mesh.obj");

@@ -1,0 +1,110 @@
+// Every file of files.tsv is drawn as another reader sees it, or refused for a reason that holds.
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "cover.h"
+#include "listed_files.h"
+#include "raymarch/gbuffer.h"
+#include "samples/input.h"
+#include "sdf/error.h"
+#include "subdiv/import.h"
+
+namespace limn::foreign {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kList = LIMN_SOURCE_DIR "/tests/foreign/files.tsv";
+
+/// The files of one group and ending, so that a failure names its kind and kinds run side by side.
+std::vector<ListedFile> files_of(const std::string& group, const std::vector<std::string>& endings) {
+  std::vector<ListedFile> chosen;
+  for (const ListedFile& file : listed_files(kList))
+    for (const std::string& ending : endings)
+      if (file.group == group && fs::path(file.path).extension() == ending) chosen.push_back(file);
+  return chosen;
+}
+
+void expect_the_same(const Mesh& mesh, const SecondReading& other) {
+  ASSERT_EQ(other.refusal, "") << "limn reads it, " << other.reader << " does not";
+  const Measures ours = measure(soup_of(mesh)), theirs = measure(other.soup);
+  EXPECT_EQ(ours.faces, theirs.faces);
+  EXPECT_EQ(ours.used_vertices, theirs.used_vertices);
+  EXPECT_NEAR(ours.area, theirs.area, 1e-5 * theirs.area);
+  const double size = glm::length(theirs.box.upper - theirs.box.lower);
+  EXPECT_LE(glm::distance(ours.box.lower, theirs.box.lower), 1e-6 * size);
+  EXPECT_LE(glm::distance(ours.box.upper, theirs.box.upper), 1e-6 * size);
+}
+
+/// Drawn from where limn looks at it by itself: what polygons cover is hit, nothing else is.
+void expect_drawn(const fs::path& file, const SecondReading& other, bool compared) {
+  Options options;
+  options.input = file.string();
+  const SceneInput input = load_input(options);
+  CameraSettings settings;
+  settings.width_px = 160, settings.height_px = 120;
+  const Camera camera = resolve_camera(settings, bounds(input.scene));
+  const SceneModel model = build_model(input.scene, {.kind = ""});
+  const GBuffer seen = render_gbuffer(model, camera, {});
+  const HitCounts counts = count_hits(seen);
+  EXPECT_GT(counts.hits, 0) << "an empty picture";
+  EXPECT_EQ(counts.out_of_steps, 0);
+  if (!compared) return;
+  EXPECT_LE(pixels_apart(covered_pixels(other.soup, camera), seen), counts.hits / 1000) << "of " << counts.hits << " hits";
+}
+
+void check(const ListedFile& listed, const fs::path& file) {
+  SCOPED_TRACE(listed.group + " " + listed.path);
+  ASSERT_TRUE(fs::exists(file)) << "the list names a file that its package does not have";
+  const SecondReading other = read_by_other(file);
+  try {
+    const Mesh mesh = load_mesh(file);
+    ASSERT_TRUE(listed.drawn) << "read, and listed as refused: " << listed.reason;
+    if (listed.compared) expect_the_same(mesh, other);
+    expect_drawn(file, other, listed.compared);
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    ASSERT_FALSE(listed.drawn) << "refused: " << message;
+    const size_t bar = listed.reason.find(" | ");
+    EXPECT_NE(message.find(listed.reason.substr(0, bar)), std::string::npos) << message;
+    if (bar == std::string::npos) {
+      const bool nothing_there = other.soup.faces.empty();
+      EXPECT_TRUE(!other.refusal.empty() || nothing_there) << other.reader << " reads it, and the list does not say why limn does not: " << message;
+    }
+  }
+}
+
+void check_all(const std::string& group, const std::vector<std::string>& endings) {
+  const fs::path folder = folder_of(group);
+  if (folder.empty()) GTEST_SKIP() << "the files of '" << group << "' are not installed";
+  const std::vector<ListedFile> files = files_of(group, endings);
+  ASSERT_FALSE(files.empty());
+  for (const ListedFile& listed : files) check(listed, folder / listed.path);
+}
+
+TEST(ForeignFiles, CgalOff) { check_all("cgal", {".off"}); }
+TEST(ForeignFiles, CgalPlyAndStl) { check_all("cgal", {".ply", ".stl"}); }
+TEST(ForeignFiles, AssimpObj) { check_all("assimp", {".obj"}); }
+TEST(ForeignFiles, AssimpOffPlyAndStl) { check_all("assimp", {".off", ".ply", ".stl"}); }
+TEST(ForeignFiles, AssimpGltf) { check_all("assimp", {".gltf", ".glb"}); }
+TEST(ForeignFiles, ModelsObj) { check_all("models", {".obj"}); }
+
+/// A file that a package gains or loses is seen here, not skipped over.
+TEST(ForeignFiles, TheListHoldsEveryMeshOfItsPackages) {
+  std::map<std::string, int> listed;
+  for (const ListedFile& file : listed_files(kList)) ++listed[file.group + " " + file.path];
+  for (const auto& [name, count] : listed) EXPECT_EQ(count, 1) << name;
+  for (const std::string group : {"assimp", "cgal", "models"}) {
+    const fs::path folder = folder_of(group);
+    if (folder.empty()) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+      if (entry.is_regular_file() && is_mesh_file(entry.path())) {
+        EXPECT_EQ(listed.count(group + " " + fs::relative(entry.path(), folder).string()), 1u) << group << " " << entry.path();
+      }
+  }
+}
+
+}  // namespace
+}  // namespace limn::foreign

@@ -44,19 +44,20 @@ Image<std::uint8_t> covered_pixels(const Soup& soup, const Camera& camera) {
   return covered;
 }
 
-std::int64_t pixels_apart(const Image<std::uint8_t>& covered, const GBuffer& gbuffer) {
+std::int64_t pixels_apart(const Image<std::uint8_t>& covered, const GBuffer& gbuffer, int reach_px) {
+  const auto same_around = [&](int x, int y) {
+    for (int dy = -reach_px; dy <= reach_px; ++dy)
+      for (int dx = -reach_px; dx <= reach_px; ++dx) {
+        const int nx = std::clamp(x + dx, 0, covered.width - 1), ny = std::clamp(y + dy, 0, covered.height - 1);
+        if (covered.at(nx, ny) != covered.at(x, y)) return false;
+      }
+    return true;
+  };
   std::int64_t apart = 0;
   for (int y = 0; y < covered.height; ++y)
     for (int x = 0; x < covered.width; ++x) {
       const bool hit = gbuffer.status.at(x, y) == static_cast<std::uint8_t>(HitStatus::hit);
-      if (hit == (covered.at(x, y) != 0)) continue;
-      bool same_around = true;
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) {
-          const int nx = std::clamp(x + dx, 0, covered.width - 1), ny = std::clamp(y + dy, 0, covered.height - 1);
-          same_around = same_around && covered.at(nx, ny) == covered.at(x, y);
-        }
-      apart += same_around ? 1 : 0;
+      if (hit != (covered.at(x, y) != 0) && same_around(x, y)) ++apart;
     }
   return apart;
 }

@@ -10,8 +10,8 @@ namespace limn::foreign {
 /// camera are left out.
 Image<std::uint8_t> covered_pixels(const Soup& soup, const Camera& camera);
 
-/// Pixels where exactly one of the two says that something is there, no neighbour of which (3 x 3) is differently judged by `covered`:
-/// differences along an outline are rounding.
-std::int64_t pixels_apart(const Image<std::uint8_t>& covered, const GBuffer& gbuffer);
+/// Pixels where exactly one of the two says that something is there, and `covered` says the same of every pixel no farther than `reach_px`
+/// in x and y: along an outline differences are rounding, or the error of a model that coarse.
+std::int64_t pixels_apart(const Image<std::uint8_t>& covered, const GBuffer& gbuffer, int reach_px = 1);
 
 }  // namespace limn::foreign

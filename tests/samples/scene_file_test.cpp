@@ -99,7 +99,7 @@ color = [0.1, 0.2, 0.3]
   EXPECT_LT(value_at(input.scene.objects[1], {-0.9, 1.8, -0.9}), 0.0);
   EXPECT_GT(value_at(input.scene.objects[1], {0.5, 0.0, 0.0}), 0.0);
   const auto& mesh = std::get<MeshSource>(input.scene.objects[2].source);
-  EXPECT_EQ(mesh.mesh.face_count(), 6u);
+  EXPECT_EQ(mesh.mesh->face_count(), 6u);
   EXPECT_EQ(mesh.scheme, Scheme::loop);
   EXPECT_EQ(input.scene.objects[2].level, 0);
   EXPECT_EQ(input.scene.objects[3].world_from_object.linear[0][0], 0.5);

@@ -120,7 +120,7 @@ TEST(OutputSafety, AComparisonThatIsKilledLeavesTheOldOneWholeAndIsMarked) {
   ASSERT_EQ(run_limn(compare_into(out)).exit_code, 0);
   std::map<std::string, std::string> old;
   for (const std::string& name : folder.files()) old[name] = read_bytes(folder.path() / name);
-  ASSERT_EQ(old.size(), 6u) << "three or more models, a sheet, rows and a page";
+  ASSERT_EQ(old.size(), 7u) << "four models, a sheet, rows and a page";
   bool marked = false;
   for (double seconds = 0.05; seconds < 3.0 && !marked; seconds *= 1.4) {
     kill_limn({"compare", "ellipsoid", "--size", "320x240", "--voxels", "200", "--methods", "all", "-q", "-o", out}, seconds);

@@ -71,12 +71,12 @@ TEST(Outlines, NothingShowsBetweenInkAndObject) {
     const Camera camera = framing(scene, settings);
     const SceneModel model = model_of(scene);
     for (const std::string method : {"distance", "jump_flood"}) {
-      for (const double width : {2.0, 3.0, 9.0}) {
+      for (const double width : {2.0, 9.0}) {
         for (const double softness : {0.0, 1.0, 3.0}) {
           if (softness > width) continue;
           for (const std::string group : {"all", "object"}) {
             const MethodCall call = call_of(method, {{"width", value(width)}, {"softness", value(softness)}, {"group", word(group)}});
-            for (const int samples : {1, 2, 4, 8}) {
+            for (const int samples : {1, 4}) {
               const Picture picture = draw_picture(scene, model, camera, {{call}, samples, {}}, {});
               const Picture object = draw_picture(scene, model, camera, {{}, samples, {}}, {});
               int both = 0;
@@ -125,7 +125,11 @@ TEST(Outlines, OfOneObjectAreTheSameForEveryGroup) {
       Given grouped = given;
       grouped["group"] = word(group);
       grouped["hidden"] = word("drawn");
-      EXPECT_EQ(draw(scene, camera, method, grouped).border.coverage.pixels, one.coverage.pixels) << method << " " << group;
+      const Image<float> ink = draw(scene, camera, method, grouped).border.coverage;
+      float largest = 0.0f;
+      for (size_t i = 0; i < ink.size(); ++i) largest = std::max(largest, std::abs(ink.pixels[i] - one.coverage.pixels[i]));
+      // A filter over a part of the picture adds up in another order.
+      EXPECT_LE(largest, method == "blur" ? 1e-5f : 0.0f) << method << " " << group;
     }
   }
 }

@@ -57,7 +57,7 @@ openvdb::GridBase::Ptr filed(const LevelSet& level_set) {
   add_metadata(file.metadata, *result);
   result->setName(level_set.info().name);
   result->setGridClass(openvdb::GRID_LEVEL_SET);
-  result->setSaveFloatAsHalf(file.value_type == "half");
+  if (file.value_type == "half") result->setSaveFloatAsHalf(true);
   return result;
 }
 

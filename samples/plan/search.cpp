@@ -183,6 +183,10 @@ void choose(Search& search) {
     return;
   }
   const PlanTrial chosen = answer.trials[*answer.chosen];
+  // A file is there, and costs no more than looking at it.
+  const Ladder& climbed = answer.ladders[chosen.ladder];
+  const size_t last = climbed.rungs.size() - 1;
+  if (climbed.of_file && !trial_at(answer, chosen.ladder, last)) answer.trials.push_back(try_rung(search, chosen.ladder, last));
   if (chosen.rung > 0) answer.coarser = trial_at(answer, chosen.ladder, chosen.rung - 1);
   answer.finest = finest_of(answer, chosen, answer.finest_was_built);
   for (size_t k = 0; k < answer.trials.size(); ++k) {

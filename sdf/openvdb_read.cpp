@@ -61,8 +61,7 @@ size_t choose(const std::vector<StoredGrid>& grids, const std::string& name) {
   std::vector<std::string> names;
   for (const StoredGrid& grid : grids) names.push_back(grid.shown);
   const std::string near = nearest_name(name, names);
-  refuse("grid", name, "no such grid",
-         (near.empty() ? "" : "did you mean '" + near + "'? ") + std::string("grids in the file: ") + all_described(grids));
+  refuse("grid", name, "no such grid", "one of " + all_described(grids) + (near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
 
 openvdb::FloatGrid::Ptr as_float(const openvdb::GridBase::Ptr& grid) {
@@ -134,7 +133,7 @@ std::vector<std::byte> reading(Read&& read) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::ios::failure&) {
-    refuse("", "", "breaks off before its end", "an undamaged .vdb");
+    refuse("", "", "breaks off before its end", "an undamaged file");
   } catch (const std::exception& problem) {
     refuse("", "", std::string("cannot be read as a volume: ") + problem.what(), "an undamaged .vdb");
   }

@@ -151,7 +151,7 @@ TEST_F(LevelSetFiles, GridsAreChosenByNameAndWrongNamesAnsweredWithWhatIsThere) 
   const fs::path one = write({fog, ball("ls_ball")}, "one.vdb");
   EXPECT_EQ(read_level_set(one, "").info().name, "ls_ball");
   const std::string wrong = refusal(one, "ls_bal");
-  EXPECT_SAYS(wrong, "no such grid (got ls_bal)");
+  EXPECT_SAYS(wrong, "no such grid (got ls_bal, expected one of ");
   EXPECT_SAYS(wrong, "did you mean 'ls_ball'?");
   EXPECT_SAYS(wrong, "'density' (fog volume, float)");
   EXPECT_SAYS(refusal(one, "density"), "fog volume");

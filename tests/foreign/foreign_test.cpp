@@ -30,12 +30,15 @@ std::vector<ListedFile> files_of(const std::string& group, const std::vector<std
 void expect_the_same(const Mesh& mesh, const SecondReading& other) {
   ASSERT_EQ(other.refusal, "") << "limn reads it, " << other.reader << " does not";
   const Measures ours = measure(soup_of(mesh)), theirs = measure(other.soup);
+  // assimp moves the parts of a scene in single precision, where places fall together that are apart.
+  const bool single_precision = other.reader == "assimp";
+  const double lost = single_precision ? 1e-3 * static_cast<double>(theirs.used_vertices) : 0.0;
   EXPECT_EQ(ours.faces, theirs.faces);
-  EXPECT_EQ(ours.used_vertices, theirs.used_vertices);
+  EXPECT_NEAR(static_cast<double>(ours.used_vertices), static_cast<double>(theirs.used_vertices), lost);
   EXPECT_NEAR(ours.area, theirs.area, 1e-5 * theirs.area);
-  const double size = glm::length(theirs.box.upper - theirs.box.lower);
-  EXPECT_LE(glm::distance(ours.box.lower, theirs.box.lower), 1e-6 * size);
-  EXPECT_LE(glm::distance(ours.box.upper, theirs.box.upper), 1e-6 * size);
+  const double tolerance = (single_precision ? 1e-5 : 1e-6) * glm::length(theirs.box.upper - theirs.box.lower);
+  EXPECT_LE(glm::distance(ours.box.lower, theirs.box.lower), tolerance);
+  EXPECT_LE(glm::distance(ours.box.upper, theirs.box.upper), tolerance);
 }
 
 /// Drawn from where limn looks at it by itself: what polygons cover is hit, nothing else is.

@@ -28,7 +28,9 @@ struct Way {
 
   std::vector<std::string> options() const {
     std::vector<std::string> words{"--surface", surface};
-    if (is_grid()) words.insert(words.end(), {"--voxels", std::to_string(voxels), "--gradient", gradient});
+    if (is_grid()) words.insert(words.end(), {"--voxels", std::to_string(voxels)});
+    // Polygons have no gradient.
+    if (is_grid() && format == ".vdb") words.insert(words.end(), {"--gradient", gradient});
     if (surface != "level_set" && refines) words.insert(words.end(), {"--level", std::to_string(level)});
     return words;
   }
@@ -43,9 +45,10 @@ SceneModel model_of(const Way& way, SceneInput& input) {
   options.input = way.input;
   options.surfaces = {way.surface};
   options.gradient = way.gradient;
-  if (way.is_grid()) options.voxels = way.voxels;
   if (way.refines && way.surface != "level_set") options.level = way.level;
   input = load_input(options);
+  // A file holds all objects in one grid, and counts its voxels along all of them.
+  if (way.is_grid()) options.voxel_size = bounds(input.scene).longest_side() / way.voxels;
   return build_model(input.scene, surface_settings(options, input));
 }
 

@@ -1,9 +1,10 @@
 #pragma once
 // Internal: bands as other tools leave them, made into what the rest reads: leaves with distances, signs everywhere else.
 
+#include <openvdb/openvdb.h>
+
 #include <span>
 
-#include "sdf/openvdb_grid.h"
 #include "sdf/read_vdb.h"
 
 namespace limn {

@@ -112,6 +112,21 @@ SceneModel model_of(const Scene& scene, const Settings& settings_of) {
   return model;
 }
 
+/// A mesh without normals of its own, of which hard edges are kept.
+bool has_hard_edges(const SceneObject& object) {
+  const auto* source = std::get_if<MeshSource>(&object.source);
+  return source != nullptr && cage_in(object) == nullptr && source->mesh->corner_normals.empty();
+}
+
+/// Whether an edge is hard is a guess from its angle: the scene with none hard, or nothing where nothing would change.
+std::optional<Scene> without_hard_edges(const Scene& scene) {
+  if (std::none_of(scene.objects.begin(), scene.objects.end(), has_hard_edges)) return std::nullopt;
+  Scene smooth = scene;
+  for (SceneObject& object : smooth.objects)
+    if (has_hard_edges(object)) std::get<MeshSource>(object.source).smooth_angle_deg = 180.0;
+  return smooth;
+}
+
 /// Where curvatures come from. A volume whose band has no room for second derivatives is read once more, its band completed for them.
 std::vector<CurvatureSource> curvature_sources(const Scene& scene, const SceneModel& model) {
   std::vector<CurvatureSource> sources;
@@ -204,13 +219,16 @@ void extrapolate(BorderCurves& border, const BorderCurves& coarser, int object) 
 }
 
 /// What is known of each object: cages are extrapolated, meshes and volumes that are all there is keep what their other reading says.
-void judge_objects(const Scene& scene, int level, const BorderCurves& second, BorderTruth& truth) {
+/// `smooth`: of the meshes with none of their edges hard, if any.
+void judge_objects(const Scene& scene, int level, const BorderCurves& second, const std::optional<BorderCurves>& smooth,
+                   BorderTruth& truth) {
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     if (std::holds_alternative<Field>(object.source)) continue;
     const int number = static_cast<int>(i) + 1;
     const std::string name = object.name.empty() ? fmt::format("object {}", number) : object.name;
-    const double apart_px = disagreement_px(truth.curves, second, number);
+    double apart_px = disagreement_px(truth.curves, second, number);
+    if (smooth && has_hard_edges(object)) apart_px = std::max(apart_px, disagreement_px(truth.curves, *smooth, number));
     if (is_cage(object) && level > 0) {
       extrapolate(truth.curves, second, number);
       truth.bound_px = std::max(truth.bound_px, apart_px / 3.0);
@@ -224,7 +242,11 @@ void judge_objects(const Scene& scene, int level, const BorderCurves& second, Bo
     truth.notes.push_back(
         fmt::format("not exact: {} is all there is of it and cannot be refined; read another way ({}), it puts 95 % of its "
                     "border within {:.2g} px of this one",
-                    name, std::holds_alternative<LevelSetSource>(object.source) ? "a lower gradient" : "facets", apart_px));
+                    name,
+                    std::holds_alternative<LevelSetSource>(object.source) ? "a lower gradient"
+                    : has_hard_edges(object)                              ? "facets, or no edge hard"
+                                                                          : "facets",
+                    apart_px));
   }
 }
 
@@ -256,7 +278,10 @@ BorderTruth solve_truth_stand_in(const Scene& scene, const Camera& camera, const
   BorderTruth truth;
   truth.exact = false;
   truth.curves = border_of_model(finest.model);
-  judge_objects(scene, finest.level, border_of_model(second), truth);
+  std::optional<BorderCurves> smooth;
+  if (const auto soft = without_hard_edges(scene))
+    smooth = border_of_model(model_of(*soft, [](const SceneObject& object) { return SurfaceSettings{.kind = natural_surface(object)}; }));
+  judge_objects(scene, finest.level, border_of_model(second), smooth, truth);
   describe_points(finest.model, curvature_sources(scene, finest.model), camera, truth.curves);
   for (const BorderCurve& curve : truth.curves.curves) {
     if (curve.closed) ++(curve.kind == CurveKind::silhouette ? truth.contour_generators : truth.level_curves);

@@ -186,7 +186,9 @@ int run(const Options& given) {
   for (const char* name : kStudyFiles) check_not_input(place.work / name, inputs);
   if (options.study.fresh) check_not_holding_input(place.work / "cells", inputs, "--fresh");
   if (place.is_part) check_not_holding_input(place.final, inputs, "a finished part");
+  const SceneInput given = input;
   Study study = plan_study(options, std::move(input));
+  refuse_sweep_without_effect(options, given, swept_surfaces(study));
   const std::vector<size_t> cells =
       options.study.shards == 1 ? cells_of_shard(study, 1, 1) : cells_of_shard(study, options.study.shard, options.study.shards);
   if (part_is_there(options, place, record_of(study))) {

@@ -8,7 +8,6 @@
 
 #include "samples/compare/comparison.h"
 #include "samples/job.h"
-#include "samples/no_effect.h"
 #include "samples/scene_facts.h"
 #include "samples/study/axes.h"
 #include "samples/study/call.h"
@@ -212,7 +211,6 @@ Study plan_with(const Given& given, const DefaultAxes& defaults) {
   refuse_eye_of_views(options, views);
   for (int view = 0; view < views; ++view) study.cameras.push_back(camera_of_view(camera, box, view, views));
   const Axes axes = resolve_axes(options, study.scene, given.settings, given.size, defaults);
-  refuse_sweep_without_effect(options, given.input, axes.surfaces);
   plan_methods(options, given.input, study);
   plan_models(axes, given.size, given.settings, options.max_memory.has_value(), study);
   plan_reference(options, given.input, given.settings, axes, given.size, study);

@@ -37,7 +37,8 @@ Image<std::uint8_t> covered_pixels(const Soup& soup, const Camera& camera) {
     polygon.clear();
     for (const size_t vertex : face) {
       const glm::dvec3 p = project(camera, soup.positions[vertex]);
-      if (p.z > 0.0 && std::isfinite(p.x) && std::isfinite(p.y)) polygon.emplace_back(std::clamp(p.x, -1e6, 1e6), std::clamp(p.y, -1e6, 1e6));
+      if (p.z > 0.0 && std::isfinite(p.x) && std::isfinite(p.y))
+        polygon.emplace_back(std::clamp(p.x, -1e6, 1e6), std::clamp(p.y, -1e6, 1e6));
     }
     if (polygon.size() == face.size() && polygon.size() >= 3) fill(polygon, covered);
   }

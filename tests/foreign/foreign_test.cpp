@@ -74,7 +74,8 @@ void check(const ListedFile& listed, const fs::path& file) {
     EXPECT_NE(message.find(listed.reason.substr(0, bar)), std::string::npos) << message;
     if (bar == std::string::npos) {
       const bool nothing_there = other.soup.faces.empty();
-      EXPECT_TRUE(!other.refusal.empty() || nothing_there) << other.reader << " reads it, and the list does not say why limn does not: " << message;
+      EXPECT_TRUE(!other.refusal.empty() || nothing_there)
+          << other.reader << " reads it, and the list does not say why limn does not: " << message;
     }
   }
 }

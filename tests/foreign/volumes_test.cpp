@@ -84,7 +84,8 @@ void expect_like_the_mesh(const fs::path& vdb, const Soup& soup, const Variant& 
   try {
     const SceneInput input = load_input(options);
     const GBuffer seen = render_gbuffer(build_model(input.scene, {.kind = ""}), camera, {});
-    const double voxel_px = of_mesh.box.longest_side() / variant.voxels * pixels_per_unit_at(camera, project(camera, of_mesh.box.center()).z);
+    const double voxel_px =
+        of_mesh.box.longest_side() / variant.voxels * pixels_per_unit_at(camera, project(camera, of_mesh.box.center()).z);
     const std::int64_t apart = pixels_apart(covered, seen, 1 + static_cast<int>(std::ceil(voxel_px)));
     if (apart <= pixels / 200) return;
     EXPECT_FALSE(said_of(input).empty()) << apart << " of " << pixels << " pixels differ from the mesh, and limn says nothing";

@@ -56,7 +56,7 @@ const std::multimap<std::string, Broken>& broken() {
       {"same_picture", {kRim, kChange + "[with]\nexact = true\n", kChanging, 10.0}},
       {"same_width",
        {kRim, "[with]\northographic = true\n[camera]\neye = [0, 0, 1.6]\nfov = 100\n", "[[object]]\nshape = \"sphere\"\n", 0.3}},
-      {"samples_agree", {kAnalytic + "methods = [\"blur strength=0.3\"]\n", "[with]\nlook = \"alpha\"\n", kBox, 0.5}},
+      {"samples_agree", {kAnalytic, "[with]\nlook = \"alpha\"\n[[border]]\nmethod = \"blur\"\nstrength = 0.3\n", kBox, 0.5}},
       {"sign_right", {"surfaces = [\"level_set\"]\n", "", kSmaller, 10.0}},
       {"unchanged_beyond", {kRim, kChange + "[with]\npath = [[5, 5, 5], [5, 5, 6]]\n", kChanging, 3.0}},
       {"width_within", {kAnalytic, "[with]\nwidth = 1\n[[border]]\nmethod = \"rim_width\"\nwidth = 6.0\n"}},

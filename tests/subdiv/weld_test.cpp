@@ -86,7 +86,8 @@ TriangleMesh stack(int copies) {
   TriangleMesh mesh;
   for (int k = 0; k < copies; ++k) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (const glm::dvec3& corner : {glm::dvec3(0.0), glm::dvec3(1.0, 0.1, 0.0), glm::dvec3(0.2, 0.9, 0.3)}) mesh.positions.push_back(corner);
+    for (const glm::dvec3& corner : {glm::dvec3(0.0), glm::dvec3(1.0, 0.1, 0.0), glm::dvec3(0.2, 0.9, 0.3)})
+      mesh.positions.push_back(corner);
     mesh.triangles.emplace_back(first, first + 1, first + 2);
   }
   return mesh;

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "samples/commands/command.h"
 #include "samples/input_files.h"
 #include "samples/job.h"
 #include "samples/limits.h"
+#include "samples/no_effect.h"
 #include "samples/stability/command.h"
 #include "samples/study/folder.h"
 #include "samples/study/run.h"
@@ -170,6 +172,13 @@ StudyFolder do_cells(const Options& options, const Study& study, const Place& pl
   return held;
 }
 
+std::vector<std::string> swept_surfaces(const Study& study) {
+  std::vector<std::string> names;
+  for (const StudyModel& model : study.models)
+    if (std::find(names.begin(), names.end(), model.surface) == names.end()) names.push_back(model.surface);
+  return names;
+}
+
 int run(const Options& given) {
   Options options = given;
   const ThreadLimit threads(options.threads);
@@ -186,9 +195,9 @@ int run(const Options& given) {
   for (const char* name : kStudyFiles) check_not_input(place.work / name, inputs);
   if (options.study.fresh) check_not_holding_input(place.work / "cells", inputs, "--fresh");
   if (place.is_part) check_not_holding_input(place.final, inputs, "a finished part");
-  const SceneInput given = input;
+  const SceneInput looked_at = input;
   Study study = plan_study(options, std::move(input));
-  refuse_sweep_without_effect(options, given, swept_surfaces(study));
+  refuse_sweep_without_effect(options, looked_at, swept_surfaces(study));
   const std::vector<size_t> cells =
       options.study.shards == 1 ? cells_of_shard(study, 1, 1) : cells_of_shard(study, options.study.shard, options.study.shards);
   if (part_is_there(options, place, record_of(study))) {

@@ -8,6 +8,7 @@
 
 #include "samples/compare/comparison.h"
 #include "samples/job.h"
+#include "samples/no_effect.h"
 #include "samples/scene_facts.h"
 #include "samples/study/axes.h"
 #include "samples/study/call.h"

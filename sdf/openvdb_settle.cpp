@@ -16,7 +16,7 @@ constexpr float kWithin = 0.999f;
 // Of constant regions in the band as leaves: more would be no band.
 constexpr openvdb::Index64 kMostTileVoxels = openvdb::Index64{1} << 27;
 // Constants that tools leave outside the band are few; distances there are many.
-constexpr size_t kManyValues = 64;
+constexpr size_t kManyValues = 16;
 
 void settle_tiles(openvdb::FloatGrid& grid) {
   if (grid.tree().activeTileCount() == 0) return;

@@ -110,7 +110,7 @@ MergedTriangles merge_coincident(const TriangleMesh& mesh, std::span<const std::
       count += same_way(mesh.triangles[found[k]], mesh.triangles[found[end]], first) ? 1 : -1;
       dropped.push_back(found[end]);
     }
-    if (end > k + 1) times.emplace_back(found[k], count);
+    if (end > k + 1) times.emplace_back(found[k], count > 0 ? 1 : count < 0 ? -1 : 0);
     k = end;
   }
   MergedTriangles merged;

@@ -16,7 +16,8 @@ std::vector<std::uint32_t> first_at_position(std::span<const glm::dvec3> positio
 /// each of them everywhere.
 struct MergedTriangles {
   std::vector<glm::uvec3> triangles{};  ///< The first of each place, in order.
-  /// How often each is there: those that face as it does less those that face the other way. Empty: once, all of them.
+  /// Which way the triangles of each place face together: 1 as this one, -1 the other way, 0 both. A stack counts once: with the winding
+  /// number of thousands an open one would be inside far around. Empty: 1, all of them.
   std::vector<std::int32_t> times{};
 };
 /// `first` as first_at_position gives it for the mesh's positions.

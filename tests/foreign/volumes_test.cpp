@@ -59,11 +59,11 @@ bool make_level_set(const fs::path& obj, const Variant& variant, const fs::path&
   return std::system(call.c_str()) == 0 && fs::exists(vdb);
 }
 
-/// Everything that limn says of the volume.
+/// Everything that `limn info` says of the volume.
 std::vector<std::string> said_of(const SceneInput& input) {
   const SceneObject& object = input.scene.objects.front();
   std::vector<std::string> said = std::get<LevelSetSource>(object.source).level_set.info().warnings;
-  for (const Finding& finding : audit(object, {.surface = {.kind = "level_set"}, .thorough = false}))
+  for (const Finding& finding : audit(object, {.surface = {.kind = "level_set"}, .thorough = true}))
     if (finding.severity != Severity::info) said.push_back(finding.message);
   return said;
 }

@@ -170,7 +170,7 @@ TEST_F(LevelSetFiles, EveryKindOfGridThatIsNoNarrowBandIsRefusedWithWhatWouldBeR
 
   const auto unknown = ball();
   unknown->setGridClass(openvdb::GRID_UNKNOWN);
-  EXPECT_SAYS(refusal(write({unknown}), "ball"), "not marked as a level set (got unknown)");
+  EXPECT_SAYS(refusal(write({unknown}), "ball"), "not marked as a level set (got unknown");
 
   const auto empty = openvdb::FloatGrid::create(0.3f);
   empty->setName("empty");

@@ -472,8 +472,7 @@ TEST(Audit, InfoAndAPictureSayTheSameOfThinWallsAndGaps) {
     if (std::filesystem::exists(file)) objects.push_back(object_of(load_mesh(file)));
     objects.back().name = name;
   }
-  for (const SceneObject& object : objects)
-    expect_one_verdict(object, 40);
+  for (const SceneObject& object : objects) expect_one_verdict(object, 40);
 }
 
 }  // namespace

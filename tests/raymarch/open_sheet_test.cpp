@@ -122,7 +122,8 @@ TEST(OpenSheet, ThreadsTilesSamplesAndSizesChangeNothing) {
   const GBuffer a = render_gbuffer(model, camera, {}), b = render_gbuffer(model, camera, one), c = render_gbuffer(model, camera, small);
   EXPECT_EQ(a.n_dot_v.pixels, b.n_dot_v.pixels);
   EXPECT_EQ(a.n_dot_v.pixels, c.n_dot_v.pixels);
-  for (int sample = 1; sample < 8; ++sample) EXPECT_EQ(render_gbuffer(model, camera, {}, sample_offset(sample, 8)).turned, a.turned) << sample;
+  for (int sample = 1; sample < 8; ++sample)
+    EXPECT_EQ(render_gbuffer(model, camera, {}, sample_offset(sample, 8)).turned, a.turned) << sample;
   for (const int scale : {2, 3}) {
     const Camera larger = looking_from(scene, {0.2, -1.0, 0.1}, 160 * scale, 120 * scale);
     EXPECT_EQ(render_gbuffer(model, larger, {}).turned, a.turned);

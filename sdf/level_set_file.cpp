@@ -73,16 +73,24 @@ void check_blocks(std::span<const LevelSetBlock> blocks, std::span<const VdbTile
   if (!good) refuse(file, "its tree of voxels is not in order", "an undamaged file");
 }
 
-GridFile read_beside(ByteReader& answer) {
-  GridFile beside;
-  beside.value_type = answer.get_text();
+std::vector<GridMetadata> read_metadata(ByteReader& answer) {
+  std::vector<GridMetadata> entries;
   const auto count = answer.get<std::uint64_t>();
   for (std::uint64_t i = 0; i < count; ++i) {
-    GridMetadata& entry = beside.metadata.emplace_back();
+    GridMetadata& entry = entries.emplace_back();
     entry.name = answer.get_text();
     entry.type = answer.get_text();
     entry.bytes = answer.get_text();
   }
+  return entries;
+}
+
+GridFile read_beside(ByteReader& answer) {
+  GridFile beside;
+  beside.value_type = answer.get_text();
+  beside.grid_class = answer.get_text();
+  beside.metadata = read_metadata(answer);
+  beside.of_file = read_metadata(answer);
   beside.doubles = answer.get_vector<DoubleBlock>();
   return beside;
 }
@@ -133,6 +141,8 @@ std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> b
 
   std::shared_ptr<LevelSetData> data = rebuild(blocks, tiles, background, world_from_index, name);
   check_surface(*data, file);
+  if (beside.grid_class != "level set")
+    data->info.warnings.push_back("the grid '" + name + "' has no class; it is read as a level set, since its values change sign");
   data->file = std::move(beside);
   return data;
 }

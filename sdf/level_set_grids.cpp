@@ -8,16 +8,23 @@
 namespace limn {
 namespace {
 
-bool is_level_set(const GridSummary& grid) {
+/// Of a file that no grid is named for: its level sets, or where it has none the grids without a class that may be some.
+std::vector<GridSummary> level_sets_among(const std::vector<GridSummary>& grids) {
   constexpr const char* kReadable[] = {"float", "double", "half", "Fp4", "Fp8", "Fp16", "FpN"};
-  return grid.grid_class == "level set" && std::find(std::begin(kReadable), std::end(kReadable), grid.value_type) != std::end(kReadable);
+  std::vector<GridSummary> found;
+  for (const char* grid_class : {"level set", "unknown"}) {
+    for (const GridSummary& grid : grids)
+      if (grid.grid_class == grid_class && std::find(std::begin(kReadable), std::end(kReadable), grid.value_type) != std::end(kReadable) &&
+          (found.empty() || found.front().grid_class == grid_class) && (grid.grid_class == "level set" || grid.active_voxels > 0))
+        found.push_back(grid);
+  }
+  return found;
 }
 
 ReadLevelSets read_all(const std::filesystem::path& file, const std::vector<GridSummary>& grids) {
   ReadLevelSets result;
   std::optional<InputError> first;
   for (const GridSummary& grid : grids) {
-    if (!is_level_set(grid)) continue;
     try {
       result.grids.push_back({grid.name, read_level_set(file, grid.name)});
     } catch (const InputError& error) {
@@ -32,17 +39,16 @@ ReadLevelSets read_all(const std::filesystem::path& file, const std::vector<Grid
 }  // namespace
 
 ReadLevelSets read_level_sets(const std::filesystem::path& file, std::span<const std::string> names) {
-  const std::vector<GridSummary> grids = list_grids(file);
+  const std::vector<GridSummary> grids = list_grids(file), level_sets = level_sets_among(grids);
   const auto there = [&](const std::string& name) {
     return std::any_of(grids.begin(), grids.end(), [&](const GridSummary& grid) { return grid.name == name; });
   };
   const bool all = names.empty() || (names.size() == 1 && names.front() == "all" && !there("all"));
-  if (all && std::count_if(grids.begin(), grids.end(), is_level_set) > 1) return read_all(file, grids);
+  if (all && level_sets.size() > 1) return read_all(file, level_sets);
   ReadLevelSets result;
   if (all) {
     LevelSet only = read_level_set(file, "");
-    const auto found = std::find_if(grids.begin(), grids.end(), is_level_set);
-    result.grids.push_back({found == grids.end() ? only.info().name : found->name, std::move(only)});
+    result.grids.push_back({level_sets.empty() ? only.info().name : level_sets.front().name, std::move(only)});
   }
   for (const std::string& name : names)
     if (!all) result.grids.push_back({name, read_level_set(file, name)});

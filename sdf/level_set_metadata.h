@@ -21,7 +21,9 @@ struct DoubleBlock {
 
 struct GridFile {
   std::string value_type = "float";  ///< As it is filed: float, double or half.
+  std::string grid_class = "level set";
   std::vector<GridMetadata> metadata{};
+  std::vector<GridMetadata> of_file{};  ///< The file's own, shared by all its grids.
   std::vector<DoubleBlock> doubles{};  ///< Of a grid of doubles that is as its file has it.
 };
 

@@ -15,6 +15,7 @@
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_patches.h"
 #include "sdf/parallel.h"
+#include "sdf/size_error.h"
 
 namespace limn {
 namespace {
@@ -199,10 +200,12 @@ void check_size(const Source& source, const LevelSetSettings& settings, double l
   const double bytes = blocks * kBlockBytes;
   if (bytes <= static_cast<double>(settings.max_bytes)) return;
   const double factor = std::sqrt(bytes / static_cast<double>(settings.max_bytes));
-  refuse(fmt::format("{:.4g}", h),
-         fmt::format("resampling would take about {:.2f} GB of memory, the limit is {:.2f} GB", bytes / 1e9,
-                     static_cast<double>(settings.max_bytes) / 1e9),
-         fmt::format("a voxel size of about {:.2g} or more", 1.05 * factor * h));
+  throw SizeError({{},
+                   "voxel size",
+                   fmt::format("{:.4g}", h),
+                   fmt::format("resampling would take about {:.2f} GB of memory, the limit is {:.2f} GB", bytes / 1e9,
+                               static_cast<double>(settings.max_bytes) / 1e9),
+                   fmt::format("a voxel size of about {:.2g} or more", 1.05 * factor * h)});
 }
 
 std::vector<LevelSetBlock> band(const Source& source, const Lattice& lattice, const LevelSetSettings& settings) {
@@ -324,6 +327,7 @@ ResampledLevelSet resampled(const LevelSet& source, const LevelSetSettings& sett
   if (data->info.bounds.empty()) too_thin();
   data->file.value_type = source.data().file.value_type;
   data->file.metadata = source.data().file.metadata;
+  data->file.of_file = source.data().file.of_file;
   ResampledLevelSet made{LevelSet(data)};
   made.own_voxel = from.voxel;
   made.build_ms = since_ms(started);

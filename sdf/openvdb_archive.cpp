@@ -9,6 +9,7 @@
 
 #include "sdf/error.h"
 #include "sdf/openvdb_grid.h"
+#include "sdf/openvdb_metadata.h"
 #include "sdf/openvdb_stored.h"
 
 namespace limn {
@@ -35,13 +36,13 @@ class Archive : public openvdb::io::Archive {
     readHeader(stream_);
     openvdb::io::setVersion(stream_, libraryVersion(), fileVersion());
     openvdb::io::setDataCompression(stream_, compression());
-    openvdb::MetaMap metadata;
-    metadata.readMeta(stream_);
+    metadata_.readMeta(stream_);
     const std::int32_t count = readGridCount(stream_);
     for (std::int32_t i = 0; i < count; ++i) read_entry();
   }
 
   const std::vector<Entry>& entries() const { return entries_; }
+  const openvdb::MetaMap& metadata() const { return metadata_; }
   bool has_voxels() const { return !inputHasGridOffsets(); }
 
   openvdb::GridBase::Ptr read_voxels(const Entry& entry) {
@@ -91,6 +92,7 @@ class Archive : public openvdb::io::Archive {
   openvdb::io::StreamMetadata::Ptr metadata_of_stream_ = std::make_shared<openvdb::io::StreamMetadata>();
   std::ifstream stream_;
   std::int64_t size_ = 0;
+  openvdb::MetaMap metadata_;
   std::vector<Entry> entries_;
 };
 
@@ -129,6 +131,7 @@ StoredGrid stored(const Archive& archive, const Archive::Entry& entry) {
 StoredGrids stored_in_vdb(const fs::path& file) {
   const auto archive = std::make_shared<Archive>(file);
   StoredGrids grids;
+  grids.metadata = plain_metadata(archive->metadata());
   for (const Archive::Entry& entry : archive->entries()) grids.list.push_back(stored(*archive, entry));
   grids.read = [archive](size_t i) { return archive->read_voxels(archive->entries()[i]); };
   return grids;

@@ -68,12 +68,14 @@ void write_level_set(const LevelSet& level_set, const std::filesystem::path& fil
 void write_level_sets(std::span<const LevelSet> level_sets, const std::filesystem::path& file) {
   openvdb::GridCPtrVec grids;
   for (const LevelSet& level_set : level_sets) grids.push_back(filed(level_set));
+  openvdb::MetaMap of_file;
+  for (const LevelSet& level_set : level_sets) add_metadata(level_set.data().file.of_file, of_file);
   write_whole(file, [&](const std::filesystem::path& path) {
     try {
       std::ofstream stream(path, std::ios::binary | std::ios::trunc);
       CheckedArchive target;
       target.setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
-      target.write(stream, grids, true);
+      target.write(stream, grids, true, of_file);
       stream.close();
       if (!stream) throw std::runtime_error("is the disk full?");
     } catch (const std::exception& problem) {

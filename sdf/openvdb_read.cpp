@@ -32,8 +32,8 @@ void check_kind(const StoredGrid& grid) {
   if (grid.grid_class == "fog volume")
     refuse("grid", "fog volume", what + " is a fog volume: densities, without a surface of their own",
            "a grid of class 'level set' (extract the surface of the fog first)");
-  if (grid.grid_class != "level set")
-    refuse("grid", grid.grid_class, what + " is not marked as a level set", "a grid of class 'level set'");
+  if (grid.grid_class != "level set" && grid.grid_class != "unknown")
+    refuse("grid", grid.grid_class, what + " is not a level set by its class", "a grid of class 'level set'");
   if (!grid.warped.empty())
     refuse("grid", grid.warped, what + " has a frustum transform, in which no distance is true",
            "a linear transform (resample it onto a uniform grid)");
@@ -46,6 +46,8 @@ std::vector<size_t> meant_by(const std::string& name, const std::vector<StoredGr
     if (!name.empty() && grids[i].shown == name) return {i};
     if (name.empty() ? grids[i].is_level_set() : grids[i].name == name) found.push_back(i);
   }
+  for (size_t i = 0; i < grids.size() && name.empty() && found.empty(); ++i)
+    if (grids[i].may_be_level_set()) found.push_back(i);
   return found;
 }
 
@@ -78,6 +80,16 @@ void check_voxels(const openvdb::FloatGrid& grid, const std::string& name) {
            "the band's half width, above 0");
   if (grid.tree().activeTileCount() > 0)
     refuse("grid", name, what + " has constant regions that are active: no band of distances", "active voxels in a narrow band only");
+}
+
+/// A grid without a class is a level set where it has distances of both signs.
+void check_signs(const openvdb::FloatGrid& grid, const StoredGrid& stored) {
+  if (stored.is_level_set()) return;
+  bool inside = false, outside = false;
+  for (auto value = grid.cbeginValueOn(); value && !(inside && outside); ++value) (*value < 0.0f ? inside : outside) = true;
+  if (!inside || !outside)
+    refuse("grid", stored.grid_class, "the grid '" + stored.shown + "' has no class, and its values do not change sign",
+           "a grid of class 'level set', or distances that are negative inside");
 }
 
 LevelSetBlock block_of(const openvdb::FloatTree::LeafNodeType& leaf, float background, const std::string& name) {
@@ -160,15 +172,20 @@ std::string filed_type(const StoredGrid& grid) {
   return grid.value_type == "double" || grid.value_type == "half" ? grid.value_type : "float";
 }
 
-void put_file(const StoredGrid& stored, const openvdb::GridBase::Ptr& grid, ByteWriter& answer) {
-  answer.put_text(filed_type(stored));
-  const std::vector<GridMetadata> metadata = plain_metadata(*grid);
+void put_metadata(const std::vector<GridMetadata>& metadata, ByteWriter& answer) {
   answer.put(static_cast<std::uint64_t>(metadata.size()));
   for (const GridMetadata& entry : metadata) {
     answer.put_text(entry.name);
     answer.put_text(entry.type);
     answer.put_text(entry.bytes);
   }
+}
+
+void put_file(const StoredGrid& stored, const openvdb::GridBase::Ptr& grid, const std::vector<GridMetadata>& of_file, ByteWriter& answer) {
+  answer.put_text(filed_type(stored));
+  answer.put_text(stored.grid_class);
+  put_metadata(plain_metadata(*grid), answer);
+  put_metadata(of_file, answer);
   answer.put_span(std::span<const DoubleBlock>(filed_type(stored) == "double" ? doubles_of(grid) : std::vector<DoubleBlock>{}));
 }
 
@@ -200,6 +217,7 @@ std::vector<std::byte> vdb_grid_answer(const fs::path& file, const std::string& 
     const openvdb::FloatGrid::Ptr grid = as_float(filed);
     settle_band(*grid);
     check_voxels(*grid, stored.shown);
+    check_signs(*grid, stored);
 
     ByteWriter answer;
     answer.put_text(stored.name);
@@ -209,7 +227,7 @@ std::vector<std::byte> vdb_grid_answer(const fs::path& file, const std::string& 
     answer.put(grid->background());
     answer.put_span(std::span<const LevelSetBlock>(blocks_of(*grid, stored.shown)));
     answer.put_span(std::span<const VdbTile>(inner_tiles_of(*grid)));
-    put_file(stored, filed, answer);
+    put_file(stored, filed, grids.metadata, answer);
     return answer.bytes;
   });
 }

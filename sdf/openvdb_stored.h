@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "sdf/level_set_metadata.h"
+
 namespace limn {
 
 /// What a file says of one of its grids.
@@ -22,10 +24,13 @@ struct StoredGrid {
   bool is_distance = false;  ///< Of a value type that distances can be read from.
 
   bool is_level_set() const { return grid_class == "level set" && is_distance; }
+  /// Grids made by scripts often have no class; their values tell.
+  bool may_be_level_set() const { return grid_class == "unknown" && is_distance && voxels > 0; }
 };
 
 struct StoredGrids {
   std::vector<StoredGrid> list{};
+  std::vector<GridMetadata> metadata{};  ///< Of the file itself.
   /// Reads the voxels of one: a grid of float or double with its name, class, transform and metadata.
   std::function<openvdb::GridBase::Ptr(size_t)> read{};
 };

@@ -175,6 +175,13 @@ class Replacement {
   size_t done_ = 0;
 };
 
+void write_bytes(const fs::path& path, const fs::path& target, std::string_view content) {
+  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+  stream.close();
+  if (!stream) throw MachineError(target.string() + ": writing failed (is the disk full?)");
+}
+
 }  // namespace
 
 void write_together(std::span<const OutputFile> files) {
@@ -191,12 +198,11 @@ void write_whole(const fs::path& target, const std::function<void(const fs::path
 }
 
 void write_whole(const fs::path& target, std::string_view content) {
-  write_whole(target, [&](const fs::path& path) {
-    std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-    stream.close();
-    if (!stream) throw MachineError(target.string() + ": writing failed (is the disk full?)");
-  });
+  write_whole(target, [&](const fs::path& path) { write_bytes(path, target, content); });
+}
+
+OutputFile bytes_output(fs::path target, std::string bytes) {
+  return {target, [target, bytes = std::move(bytes)](const fs::path& path) { write_bytes(path, target, bytes); }};
 }
 
 bool outputs_are_being_replaced() noexcept { return replacing > 0; }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <string>
 
 namespace limn {
 
@@ -11,6 +12,9 @@ struct OutputFile {
   std::filesystem::path target{};
   std::function<void(const std::filesystem::path&)> write{};
 };
+
+/// Text or bytes at hand.
+OutputFile bytes_output(std::filesystem::path target, std::string bytes);
 
 /// Files that belong together, each as by write_whole (sdf/output_file.h): all are written to temporary files before the first takes its
 /// place. Where one cannot be written or put in place, all old ones stay. A process that is killed while they take their places

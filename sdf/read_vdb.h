@@ -26,7 +26,7 @@ struct VdbTile {
 std::vector<std::byte> vdb_list_answer(const std::filesystem::path& file);
 
 /// Answer: name, linear part of world_from_index by columns and translation (12 doubles), background (float), blocks, tiles,
-/// and what the file says beside (GridFile: value type, count and name, type and bytes of each piece of metadata, blocks of doubles).
+/// and what the file says beside (GridFile: value type, class, metadata of the grid and of the file, each as count and name, type and bytes; blocks of doubles).
 /// Throws InputError, without the name of the file, for all that read_level_set refuses but a grid without a surface.
 /// Both read .vdb and .nvdb, and tell which by a file's first bytes.
 std::vector<std::byte> vdb_grid_answer(const std::filesystem::path& file, const std::string& grid);

@@ -62,14 +62,7 @@ class Winding {
     std::uint32_t left = 0, right = 0;   ///< Both 0 for a leaf.
   };
   const glm::dvec3& corner(std::uint32_t triangle, int i) const { return mesh_.positions[mesh_.triangles[triangle][i]]; }
-  /// Memory of the splits, a place for each triangle: fresh pages for each of them took longer than the splits themselves.
-  struct Scratch {
-    std::vector<double> keys;
-    std::vector<std::uint32_t> back;
-  };
-  void build(std::uint32_t index, std::uint32_t first, std::uint32_t count, Scratch& scratch);
-  Box measure(Node& node) const;
-  void split(std::uint32_t first, std::uint32_t count, std::uint32_t half, int axis, const Interval& range, Scratch& scratch);
+  struct Builder;
   void find_border(std::span<const std::uint32_t> first_at);
 
   const TriangleMesh& mesh_;

@@ -4,36 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include "sdf/color.h"
 #include "sdf/error.h"
-#include "subdiv/repair_faces.h"
+#include "subdiv/off_contents.h"
 #include "subdiv/text_cursor.h"
 
 namespace limn {
 namespace {
-
-/// What the first word says of each vertex.
-struct Layout {
-  bool texture = false, color = false, normal = false, homogeneous = false, any_dimension = false;
-};
-
-/// [ST][C][N][4][n]OFF, in that order; false for any other word.
-bool read_keyword(std::string_view word, Layout& layout) {
-  const auto take = [&word](std::string_view prefix) {
-    if (!same_word(word.substr(0, prefix.size()), prefix)) return false;
-    word.remove_prefix(prefix.size());
-    return true;
-  };
-  layout.texture = take("ST");
-  layout.color = take("C");
-  // 'N' is for normals, 'n' for the dimension: here the case counts.
-  layout.normal = word.starts_with('N') && (word.remove_prefix(1), true);
-  layout.homogeneous = take("4");
-  layout.any_dimension = word.starts_with('n') && (word.remove_prefix(1), true);
-  return same_word(word, "OFF");
-}
 
 class OffReader {
  public:
@@ -47,10 +24,7 @@ class OffReader {
     if (cursor_.skip() && edges_ == 0)
       mesh_.warnings.push_back(fmt::format("line {}: what follows the last of the {} faces that the header announces was ignored",
                                            line_of(text_, cursor_.at()), face_count_));
-    take_colors();
-    take_normals();
-    repair_faces(mesh_, {.file = file_});
-    return std::move(mesh_);
+    return finished(std::move(contents_), file_);
   }
 
  private:
@@ -81,11 +55,8 @@ class OffReader {
   void header() {
     TextCursor ahead(text_);
     const std::string_view word = ahead.word();
-    if (read_keyword(word, layout_)) {
+    if (read_off_word(word, layout_)) {
       cursor_ = ahead;
-      TextCursor next = cursor_;
-      if (same_word(next.word_in_line(), "BINARY"))
-        throw InputError({file_, "", "OFF BINARY", "binary OFF files are not read", "an ASCII OFF file, or a binary PLY"});
     } else if (word.empty() || word.find_first_not_of("0123456789") != std::string_view::npos) {
       layout_ = {};
       throw InputError({place_in(file_, text_, word.empty() ? cursor_.at() : word.data()), "", shown_word(word), "is not an OFF file",
@@ -137,7 +108,7 @@ class OffReader {
       mesh_.positions.emplace_back(v[0] / w, dimension > 1 ? v[1] / w : 0.0, dimension > 2 ? v[2] / w : 0.0);
       if (layout_.normal) {
         reals(3, extra);
-        normals_.emplace_back(extra[0], extra[1], extra[2]);
+        contents_.normals.emplace_back(extra[0], extra[1], extra[2]);
       }
       if (layout_.color) vertex_color();
       if (layout_.texture) reals(2, extra);
@@ -154,8 +125,7 @@ class OffReader {
     }
     std::array<double, 4> rgba{};
     reals(color_values_, rgba);
-    for (size_t k = 0; k < 3; ++k) largest_color_ = std::max(largest_color_, rgba[k]);
-    colors_.emplace_back(rgba[0], rgba[1], rgba[2]);
+    contents_.colors.emplace_back(rgba[0], rgba[1], rgba[2]);
   }
 
   void faces() {
@@ -190,46 +160,21 @@ class OffReader {
     if (!read_real(cursor_, ignored)) refuse(ahead.word(), "is not part of a colour", "numbers, or the end of the line");
   }
 
-  /// Whole numbers up to 255, or real ones up to 1; both as a screen shows them.
-  void take_colors() {
-    const double largest = largest_color_ > 1.0 ? 255.0 : 1.0;
-    for (const glm::dvec3& color : colors_) {
-      glm::vec3 linear;
-      for (int k = 0; k < 3; ++k) {
-        const double shown = color[k] / largest;
-        linear[k] = linear_from_srgb(static_cast<float>(std::isfinite(shown) ? std::clamp(shown, 0.0, 1.0) : 1.0));
-      }
-      mesh_.vertex_colors.push_back(linear);
-    }
-  }
-
-  void take_normals() {
-    if (normals_.empty()) return;
-    mesh_.corner_normals.reserve(mesh_.corner_vertices.size());
-    for (const std::int32_t v : mesh_.corner_vertices) {
-      const bool there = v >= 0 && static_cast<size_t>(v) < normals_.size();
-      const glm::vec3 n = there ? normals_[static_cast<size_t>(v)] : glm::vec3(0.0f);
-      const float length = glm::length(n);
-      mesh_.corner_normals.push_back(length > 0.0f && std::isfinite(length) ? n / length : glm::vec3(0.0f));
-    }
-  }
-
   std::string_view text_;
   const std::string& file_;
   TextCursor cursor_;
   std::int64_t most_, elements_ = 0;
-  Layout layout_{};
+  OffLayout layout_{};
   std::int64_t dimension_ = 3, vertex_count_ = 0, face_count_ = 0, edges_ = 0;
   size_t color_values_ = 0;
-  double largest_color_ = 0.0;
-  std::vector<glm::dvec3> colors_{};
-  std::vector<glm::vec3> normals_{};
-  Mesh mesh_{};
+  OffContents contents_{};
+  Mesh& mesh_ = contents_.mesh;
 };
 
 }  // namespace
 
 Mesh parse_off(std::string_view bytes, const std::string& file, std::int64_t max_elements) {
+  if (const std::optional<OffBinary> binary = find_off_binary(bytes)) return parse_off_binary(*binary, file, max_elements);
   std::string converted;
   return OffReader(plain_text(bytes, converted), file, max_elements).run();
 }

@@ -23,7 +23,8 @@ Finding inside_out(const MeshFacts& mesh, std::int64_t turned_parts) {
     if (mesh.volume > 0.0) finding.surfaces.push_back("mesh_level_set");
     return finding;
   }
-  finding.message = fmt::format("{} of {} parts came turned inside out: their faces were turned round", turned_parts, mesh.parts);
+  finding.message = fmt::format("{} part{} turned inside out in the file: {} faces were turned round", turned_parts,
+                                turned_parts == 1 ? " was" : "s were", turned_parts == 1 ? "its" : "their");
   finding.remedy = "nothing for this picture; other programs need the faces turned in the file (limn export does)";
   finding.surfaces.push_back("mesh_level_set");
   return finding;

@@ -14,6 +14,8 @@ namespace {
 constexpr double kWallVoxels = 2.0, kGapVoxels = 1.0;
 constexpr double kMostThin = kThinShare;
 constexpr double kRounding = 1e-3;  // of what is found by steps
+// A grid of more voxels along a side is advice for nobody: its surface alone has over 16 million of them, tens of gigabytes.
+constexpr std::int64_t kMostVoxels = 4096;
 
 double voxel_size_of(const AuditFacts& facts, double longest_side) {
   if (const LevelSetSource* source = facts.level_set())
@@ -30,6 +32,15 @@ struct Thing {
   double voxels;
 };
 
+std::string remedy_of(std::int64_t voxels, const AuditFacts& facts) {
+  const char* const exact = facts.field() != nullptr ? "analytic" : "mesh";
+  if (facts.level_set() != nullptr)
+    return voxels > kMostVoxels ? "none by voxels of one size"
+                                : fmt::format("a grid with {} voxels along the longest side would hold all but {:g} %", voxels, 100.0 * kMostThin);
+  if (voxels > kMostVoxels) return fmt::format("--surface {}: no grid that fits into memory holds them", exact);
+  return fmt::format("--voxels {} would hold all but {:g} %; --surface {} needs none", voxels, 100.0 * kMostThin, exact);
+}
+
 void look_at(const Thing& thing, const std::vector<double>& widths, double voxel, AuditFacts& facts, std::vector<Finding>& findings) {
   const SurfaceSamples& samples = facts.samples();
   const double share = share_below(widths, thing.voxels * voxel), thinnest = quantile(widths, kMostThin);
@@ -40,14 +51,11 @@ void look_at(const Thing& thing, const std::vector<double>& widths, double voxel
         fmt::format(" at a voxel of {:.3g}: the thinnest is {:.3g}, {:.2f} voxels{}", voxel, thinnest, thinnest / voxel, where);
   }
   if (share > kMostThin) {
-    const auto needed = static_cast<std::int64_t>(std::ceil((1.0 - kRounding) * thing.voxels * samples.longest_side / thinnest));
+    const auto needed = static_cast<std::int64_t>(std::ceil(std::min(1e15, (1.0 - kRounding) * thing.voxels * samples.longest_side / thinnest)));
     finding.severity = Severity::warning;
     finding.message = fmt::format("{:.2g} % of the surface{} lies {} ({:.3g}), which may {}; the thinnest is {:.2g}, {:.2f} voxels",
                                   100.0 * share, where, thing.bad, thing.voxels * voxel, thing.fate, thinnest, thinnest / voxel);
-    finding.remedy = facts.level_set() != nullptr
-                         ? fmt::format("a grid with {} voxels along the longest side would hold all but {:g} %", needed, 100.0 * kMostThin)
-                         : fmt::format("--voxels {} would hold all but {:g} %; --surface {} needs none", needed, 100.0 * kMostThin,
-                                       facts.field() != nullptr ? "analytic" : "mesh");
+    finding.remedy = remedy_of(needed, facts);
     finding.surfaces =
         facts.mesh() != nullptr ? std::vector<std::string>{"mesh_level_set"} : std::vector<std::string>{"level_set", "mesh_level_set"};
   }

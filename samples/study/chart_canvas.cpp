@@ -13,7 +13,7 @@
 
 #include "samples/compare/html.h"
 #include "sdf/error.h"
-#include "sdf/output_file.h"
+#include "sdf/output_together.h"
 
 namespace limn {
 namespace {
@@ -222,8 +222,8 @@ void ChartCanvas::end_clip() { cairo_restore(context_); }
 std::vector<std::filesystem::path> write_chart(const std::filesystem::path& stem, double width, double height, const std::string& title,
                                                const std::string& words, const std::function<void(ChartCanvas&)>& draw) {
   const std::filesystem::path svg = stem.string() + ".svg", png = stem.string() + ".png";
-  write_whole(svg, svg_of(width, height, title, words, draw));
-  write_whole(png, png_of(width, height, draw));
+  // Both are drawn before either is written, and take their places together.
+  write_together(std::array{bytes_output(svg, svg_of(width, height, title, words, draw)), bytes_output(png, png_of(width, height, draw))});
   return {svg, png};
 }
 

@@ -38,7 +38,7 @@ struct ModelMaker {
       model.parameters["half_width"] = fmt::format("{}", model.settings.half_width_voxels);
     if (model.refused.empty() && model.cost.bytes > 4 * max_bytes) {
       model.refused = fmt::format("it needs about {}; {} leaves {} for a model", bytes_text(double(model.cost.bytes)),
-                                  asked ? "--max-memory" : "the default limit", bytes_text(double(max_bytes)));
+                                  asked ? "--max-memory" : "the default of --max-memory", bytes_text(double(max_bytes)));
     }
     if (!model.refused.empty()) model.cost = {};
     models.push_back(std::move(model));

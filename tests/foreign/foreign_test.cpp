@@ -10,6 +10,7 @@
 #include "samples/input.h"
 #include "sdf/error.h"
 #include "subdiv/import.h"
+#include "tests/temporary_folder.h"
 
 namespace limn::foreign {
 namespace {
@@ -94,6 +95,26 @@ TEST(ForeignFiles, AssimpObj) { check_all("assimp", {".obj"}); }
 TEST(ForeignFiles, AssimpOffPlyAndStl) { check_all("assimp", {".off", ".ply", ".stl"}); }
 TEST(ForeignFiles, AssimpGltf) { check_all("assimp", {".gltf", ".glb"}); }
 TEST(ForeignFiles, ModelsObj) { check_all("models", {".obj"}); }
+
+TEST(ForeignFiles, BinaryOffThatCgalWrites) {
+  const TemporaryFolder folder;
+  int written = 0;
+  for (const std::string group : {"cgal", "models"})
+    for (const ListedFile& listed : files_of(group, {".off", ".obj"})) {
+      if (folder_of(group).empty() || !listed.drawn || !listed.compared) continue;
+      SCOPED_TRACE(listed.path);
+      const Soup soup = soup_of(load_mesh(folder_of(group) / listed.path));
+      const fs::path file = folder.path() / "binary.off";
+      write_binary_off(soup, file);
+      const Mesh mesh = load_mesh(file);
+      ASSERT_EQ(mesh.face_sizes.size(), soup.faces.size());
+      const Measures ours = measure(soup_of(mesh)), theirs = measure(soup);
+      EXPECT_NEAR(ours.area, theirs.area, 1e-4 * theirs.area);
+      ++written;
+    }
+  if (written == 0) GTEST_SKIP() << "no files are installed";
+  EXPECT_GT(written, 20);
+}
 
 /// A file that a package gains or loses is seen here, not skipped over.
 TEST(ForeignFiles, TheListHoldsEveryMeshOfItsPackages) {

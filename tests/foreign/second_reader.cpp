@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <set>
 
 namespace limn::foreign {
@@ -69,6 +70,14 @@ glm::dvec3 vector_area(const Soup& soup, const std::vector<size_t>& face) {
 }
 
 }  // namespace
+
+void write_binary_off(const Soup& soup, const std::filesystem::path& file) {
+  std::vector<Point> points;
+  for (const glm::dvec3& p : soup.positions) points.emplace_back(p.x, p.y, p.z);
+  std::ofstream stream(file, std::ios::binary);
+  CGAL::IO::set_binary_mode(stream);
+  CGAL::IO::write_OFF(stream, points, soup.faces);
+}
 
 SecondReading read_by_other(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();

@@ -25,6 +25,9 @@ SecondReading read_by_other(const std::filesystem::path& file);
 
 Soup soup_of(const Mesh& mesh);
 
+/// As OFF BINARY, by CGAL.
+void write_binary_off(const Soup& soup, const std::filesystem::path& file);
+
 /// What two readers of one file must agree on.
 struct Measures {
   size_t used_vertices = 0;  ///< Different positions that faces stand on.

@@ -103,7 +103,7 @@ TEST(StudyPlan, WhatCannotBeModelledOrWouldNotFitIsARefusedModelWithItsReason) {
   options = one_cell("ellipsoid");
   options.study.levels = {8};
   options.study.max_bytes = 10'000'000;
-  EXPECT_NE(study_of(options).models.front().refused.find("the default limit leaves 10.0 MB"), std::string::npos);
+  EXPECT_NE(study_of(options).models.front().refused.find("the default of --max-memory leaves 10.0 MB"), std::string::npos);
   options.max_memory = 10'000'000;
   const StudyModel model = study_of(options).models.front();
   EXPECT_NE(model.refused.find("--max-memory leaves 10.0 MB"), std::string::npos) << model.refused;

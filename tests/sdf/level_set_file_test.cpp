@@ -168,9 +168,9 @@ TEST_F(LevelSetFiles, EveryKindOfGridThatIsNoNarrowBandIsRefusedWithWhatWouldBeR
   vectors->tree().setValue(openvdb::Coord(0, 0, 0), openvdb::Vec3s(1.0f));
   EXPECT_SAYS(refusal(write({vectors}), "velocity"), "a level set of float, double or half");
 
-  const auto unknown = ball();
-  unknown->setGridClass(openvdb::GRID_UNKNOWN);
-  EXPECT_SAYS(refusal(write({unknown}), "ball"), "not marked as a level set (got unknown");
+  const auto staggered = ball();
+  staggered->setGridClass(openvdb::GRID_STAGGERED);
+  EXPECT_SAYS(refusal(write({staggered}), "ball"), "not a level set by its class (got staggered");
 
   const auto empty = openvdb::FloatGrid::create(0.3f);
   empty->setName("empty");

@@ -176,6 +176,38 @@ TEST_F(VolumeFiles, WritingKeepsMetadataNamesAndValueTypes) {
   for (auto value = halves_before->cbeginValueOn(); value; ++value) ASSERT_EQ(halves->tree().getValue(value.getCoord()), *value);
 }
 
+TEST_F(VolumeFiles, WritingKeepsTheMetadataOfTheFile) {
+  openvdb::MetaMap of_file;
+  of_file.insertMeta("scene", openvdb::StringMetadata("shot 12"));
+  of_file.insertMeta("frame", openvdb::Int32Metadata(7));
+  const fs::path file = path("with.vdb"), again = path("again.vdb");
+  openvdb::io::File(file.string()).write({ball("a"), ball("b")}, of_file);
+  const std::vector<LevelSet> both{read_level_set(file, "a"), read_level_set(file, "b")};
+  write_level_sets(both, again);
+  openvdb::io::File written(again.string());
+  written.open();
+  const openvdb::MetaMap::Ptr kept = written.getMetadata();
+  EXPECT_EQ(kept->metaValue<std::string>("scene"), "shot 12");
+  EXPECT_EQ(kept->metaValue<std::int32_t>("frame"), 7);
+  EXPECT_EQ(kept->metaCount(), 2u);
+}
+
+TEST_F(VolumeFiles, AGridWithoutAClassIsALevelSetWhereItsValuesChangeSign) {
+  const auto ball_without = ball("ball"), outside = ball("outside");
+  for (const auto& grid : {ball_without, outside}) grid->setGridClass(openvdb::GRID_UNKNOWN);
+  for (auto value = outside->beginValueOn(); value; ++value) value.setValue(std::abs(*value));
+  const LevelSet drawn = read_level_set(write({ball_without}), "");
+  EXPECT_EQ(drawn.info().active_voxels, static_cast<std::int64_t>(ball_without->activeVoxelCount()));
+  EXPECT_SAYS(drawn.info().warnings.back(), "'ball' has no class");
+  EXPECT_SAYS(refusal([&] { read_level_set(write({outside}), ""); }), "has no class, and its values do not change sign");
+  // A level set goes before them, and all of them are taken where there is none.
+  EXPECT_EQ(read_level_set(write({ball_without, ball("marked")}), "").info().name, "marked");
+  EXPECT_EQ(read_level_sets(write({ball_without, ball("marked")}), {}).grids.size(), 1u);
+  const ReadLevelSets both = read_level_sets(write({ball_without, outside}), {});
+  EXPECT_EQ(both.grids.size(), 1u);
+  EXPECT_EQ(both.left_out.size(), 1u);
+}
+
 TEST_F(VolumeFiles, AMovedGridHoldsTheDistancesOfItsNewPlace) {
   const fs::path file = write({ball("ball")});
   Affine placed;

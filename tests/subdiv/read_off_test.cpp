@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+
 #include "mesh_encodings.h"
 #include "sdf/color.h"
 
@@ -79,6 +81,58 @@ TEST(Off, VerticesMayHaveNormalsColoursTextureAndOtherDimensions) {
   check("4nOFF 2\n3 1 0\n0 0 5\n1 0 1\n2 2 2\n");
 }
 
+/// Numbers of 32 bits, the highest byte first.
+struct Binary {
+  std::string bytes;
+  Binary& whole(std::initializer_list<std::int32_t> values) {
+    for (const std::int32_t value : values)
+      for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(static_cast<std::uint32_t>(value) >> shift & 255u);
+    return *this;
+  }
+  Binary& real(std::initializer_list<float> values) {
+    for (const float value : values) whole({std::bit_cast<std::int32_t>(value)});
+    return *this;
+  }
+};
+
+TEST(Off, BinaryHoldsTheSameAsText) {
+  const Mesh plain = read(Binary{"OFF BINARY\n"}
+                              .whole({4, 2, 5})
+                              .real({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})
+                              .whole({3, 0, 1, 2, 0, 3, 0, 2, 3, 4})
+                              .real({1, 0, 0, 1})
+                              .bytes);
+  EXPECT_EQ(plain.positions, kCorners);
+  EXPECT_EQ(plain.corner_vertices, (std::vector<std::int32_t>{0, 1, 2, 0, 2, 3}));
+  EXPECT_TRUE(plain.warnings.empty());
+  // Every kind of vertex at once, behind a line that ends as Windows ends it.
+  const Mesh all = read(Binary{"STCN4nOFF BINARY\r\n"}
+                            .whole({2, 3, 1, 0})
+                            .real({0, 0, 1, 0, 0, 2, 1, 0, 0.5f, 1, 7, 8})
+                            .real({2, 0, 2, 0, 0, 1, 0, 0, 0, 1, 7, 8})
+                            .real({0.5f, 0.5f, 0.5f, 3, 0, 4, 0, 0, 0, 1, 7, 8})
+                            .whole({3, 0, 1, 2, 0})
+                            .bytes);
+  EXPECT_EQ(all.positions, (std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}));
+  EXPECT_EQ(all.corner_normals.at(2), glm::vec3(0.6f, 0.0f, 0.8f));
+  EXPECT_EQ(all.vertex_colors.at(0), glm::vec3(1.0f, 0.0f, linear_from_srgb(0.5f)));
+}
+
+TEST(Off, BinaryCutAnywhereIsAnError) {
+  const std::string whole =
+      Binary{"COFF BINARY\n"}
+          .whole({3, 2, 0})
+          .real({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1, 0, 1, 1, 1, 0, 0, 0, 1, 1})
+          .whole({3, 0, 1, 2, 1, 7, 3, 2, 1, 0, 0})
+          .bytes;
+  EXPECT_EQ(read(whole).face_sizes.size(), 2u);
+  for (size_t length = 0; length < whole.size(); ++length) EXPECT_FALSE(refusal(parse_off, whole.substr(0, length)).empty()) << length;
+  EXPECT_TRUE(warns(read(whole + "more"), {"4 bytes", "2 faces"}));
+  EXPECT_TRUE(has(refusal(parse_off, Binary{"OFF BINARY\n"}.whole({-1, 2, 0}).bytes), "no counts"));
+  EXPECT_TRUE(has(refusal(parse_off, Binary{"OFF BINARY\n"}.whole({INT32_MAX, 2, 0}).bytes), "2147483647, as its header says"));
+  EXPECT_TRUE(has(refusal(parse_off, Binary{"OFF BINARY\n"}.whole({1, 1, 0}).real({0, 0, 0}).whole({-3}).bytes), "not a number of corners"));
+}
+
 TEST(Off, FaultsAreNamed) {
   EXPECT_TRUE(has(refusal(parse_off, "OFF\n4 2 0\n" + kSquare + "4 0 1 2 3\n"), "2, as its header says"));
   EXPECT_TRUE(has(refusal(parse_off, "OFF\n5 1 0\n" + kSquare), "got 4"));
@@ -90,7 +144,7 @@ TEST(Off, FaultsAreNamed) {
   EXPECT_TRUE(has(refusal(parse_off, "OFF\n3 353535235358 0\n0 0 0\n1 0 0\n0 1 0\n"), "353535235358"));
   EXPECT_TRUE(has(refusal(parse_off, "OFF\n-1 6 0\n"), "not a count"));
   EXPECT_TRUE(has(refusal(parse_off, "OFF\n"), "header"));
-  EXPECT_TRUE(has(refusal(parse_off, "OFF BINARY\n\1\2\3"), "binary OFF"));
+  EXPECT_TRUE(has(refusal(parse_off, "OFF BINARY\n\1\2\3"), "header"));
   EXPECT_TRUE(has(refusal(parse_off, "nOFF 7\n"), "1 to 3 dimensions"));
   EXPECT_TRUE(has(refusal(parse_off, "ply\nformat ascii 1.0\n"), "not an OFF"));
   EXPECT_TRUE(has(refusal(parse_off, "4OFF\n3 1 0\n1 1 1 0\n1 0 0 1\n0 1 0 1\n3 0 1 2\n"), "not a finite number"));

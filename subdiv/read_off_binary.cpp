@@ -48,7 +48,8 @@ class OffBinaryReader {
   double real() { return static_cast<double>(std::bit_cast<float>(bits())); }
 
   void header() {
-    if (!has(layout_.any_dimension ? 4 : 3)) throw InputError({file_, "header", "", "the file breaks off within its header", "three counts"});
+    if (!has(layout_.any_dimension ? 4 : 3))
+      throw InputError({file_, "header", "", "the file breaks off within its header", "three counts"});
     if (layout_.any_dimension) dimension_ = whole();
     if (dimension_ < 1 || dimension_ > 3)
       throw InputError({file_, "header", fmt::format("{}", dimension_), "vertices with that many coordinates are not read", "1 to 3"});
@@ -62,8 +63,8 @@ class OffBinaryReader {
 
   void vertices() {
     const auto dimension = static_cast<size_t>(dimension_);
-    const size_t numbers = dimension + (layout_.homogeneous ? 1 : 0) + (layout_.normal ? 3 : 0) + (layout_.color ? 4 : 0) +
-                           (layout_.texture ? 2 : 0);
+    const size_t numbers =
+        dimension + (layout_.homogeneous ? 1 : 0) + (layout_.normal ? 3 : 0) + (layout_.color ? 4 : 0) + (layout_.texture ? 2 : 0);
     const auto there = static_cast<std::int64_t>((data_.size() - at_) / 4 / numbers);
     if (vertex_count_ > there) break_off("vertices", there, vertex_count_);
     count(vertex_count_);

@@ -40,7 +40,8 @@ size_t split(std::span<const Place> range) {
   const std::uint64_t differ = range.front().along ^ range.back().along;
   if (differ == 0) return range.size() / 2;
   const std::uint64_t highest = std::bit_floor(differ);
-  const auto found = std::partition_point(range.begin(), range.end(), [highest](const Place& place) { return (place.along & highest) == 0; });
+  const auto found =
+      std::partition_point(range.begin(), range.end(), [highest](const Place& place) { return (place.along & highest) == 0; });
   return static_cast<size_t>(found - range.begin());
 }
 

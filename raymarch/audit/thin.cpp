@@ -35,8 +35,9 @@ struct Thing {
 std::string remedy_of(std::int64_t voxels, const AuditFacts& facts) {
   const char* const exact = facts.field() != nullptr ? "analytic" : "mesh";
   if (facts.level_set() != nullptr)
-    return voxels > kMostVoxels ? "none by voxels of one size"
-                                : fmt::format("a grid with {} voxels along the longest side would hold all but {:g} %", voxels, 100.0 * kMostThin);
+    return voxels > kMostVoxels
+               ? "none by voxels of one size"
+               : fmt::format("a grid with {} voxels along the longest side would hold all but {:g} %", voxels, 100.0 * kMostThin);
   if (voxels > kMostVoxels) return fmt::format("--surface {}: no grid that fits into memory holds them", exact);
   return fmt::format("--voxels {} would hold all but {:g} %; --surface {} needs none", voxels, 100.0 * kMostThin, exact);
 }
@@ -51,7 +52,8 @@ void look_at(const Thing& thing, const std::vector<double>& widths, double voxel
         fmt::format(" at a voxel of {:.3g}: the thinnest is {:.3g}, {:.2f} voxels{}", voxel, thinnest, thinnest / voxel, where);
   }
   if (share > kMostThin) {
-    const auto needed = static_cast<std::int64_t>(std::ceil(std::min(1e15, (1.0 - kRounding) * thing.voxels * samples.longest_side / thinnest)));
+    const auto needed =
+        static_cast<std::int64_t>(std::ceil(std::min(1e15, (1.0 - kRounding) * thing.voxels * samples.longest_side / thinnest)));
     finding.severity = Severity::warning;
     finding.message = fmt::format("{:.2g} % of the surface{} lies {} ({:.3g}), which may {}; the thinnest is {:.2g}, {:.2f} voxels",
                                   100.0 * share, where, thing.bad, thing.voxels * voxel, thing.fate, thinnest, thinnest / voxel);

@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 // clang-format on
 
+#include "tests/random_seed.h"
 #include "tests/raymarch/field_walk.h"
 #include "tests/raymarch/scenes.h"
 #include "tests/sdf/random_field.h"
@@ -81,7 +82,7 @@ bool same(const GBuffer& a, const GBuffer& b) {
 }
 
 TEST(AnalyticPictures, AreWhatWalksAlongSingleRaysSeeWhateverTheFieldAndTheCamera) {
-  const std::uint64_t seed = std::random_device{}();
+  const std::uint64_t seed = random_seed();
   Random random(seed);
   Differences all;
   for (int k = 0; k < 150; ++k) {
@@ -109,7 +110,7 @@ TEST(AnalyticPictures, AreWhatWalksAlongSingleRaysSeeWhateverTheFieldAndTheCamer
 }
 
 TEST(AnalyticPictures, AreTheSameOnEverySimdTarget) {
-  const std::uint64_t seed = std::random_device{}();
+  const std::uint64_t seed = random_seed();
   SCOPED_TRACE(fmt::format("seed {}", seed));
   Random random(seed);
   const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "raymarch/border/contour_distance.h"
+#include "tests/random_seed.h"
 #include "tests/raymarch/scenes.h"
 
 namespace limn::test {
@@ -144,7 +145,7 @@ Camera camera_towards(const glm::dvec3& direction, const glm::dvec3& target, dou
 class OnTheEllipsoid : public testing::TestWithParam<Projection> {};
 
 TEST_P(OnTheEllipsoid, ThreePixelsAreThreePixelsAllAround) {
-  const unsigned seed = std::random_device{}();
+  const unsigned seed = random_seed();
   fmt::print("seed {}\n", seed);
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;

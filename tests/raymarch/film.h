@@ -3,6 +3,7 @@
 
 #include "raymarch/flips.h"
 #include "raymarch/frames.h"
+#include "tests/random_seed.h"
 #include "tests/raymarch/image_buffers.h"
 
 namespace limn::test {
@@ -21,7 +22,7 @@ inline std::vector<Smooth> smooth_shapes() {
           {"torus", make_shape("torus", {{"major", {1.0}}, {"minor", {0.35}}}), 1.0 / 0.35}};
 }
 
-inline std::uint64_t fresh_seed() { return std::random_device{}(); }
+inline std::uint64_t fresh_seed() { return random_seed(); }
 
 /// A path with any step up to a quarter of a pixel, and any view.
 struct Shot {

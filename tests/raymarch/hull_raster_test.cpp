@@ -7,13 +7,14 @@
 #include <random>
 
 #include "subdiv/edge_topology.h"
+#include "tests/random_seed.h"
 #include "tests/raymarch/image_buffers.h"
 
 namespace limn::test {
 namespace {
 
 TEST(HullRaster, TrianglesThatShareAnEdgeShareNoPixelAndLeaveNone) {
-  const std::uint32_t seed = std::random_device{}();
+  const std::uint32_t seed = random_seed();
   fmt::print("seed {}\n", seed);
   std::mt19937 random(seed);
   Camera camera = straight_camera(40, 30, Projection::orthographic, 1.0);

@@ -10,8 +10,9 @@ namespace {
 using namespace testing_tools;
 
 struct PictureErrors {
-  int missed = 0, spurious = 0, hits = 0, at_silhouette = 0;
+  int missed = 0, spurious = 0, hits = 0, at_silhouette = 0, steep = 0;
   double depth_p99 = 0.0, depth_worst = 0.0, depth_mean = 0.0;  ///< Voxels, along the ray.
+  double depth_steep = 0.0;                                     ///< The mean where rays meet the surface at more than a tenth of a radian.
   double normal_worst = 0.0, normal_rms = 0.0;                  ///< Radians, against the normal of the closest surface point.
 };
 
@@ -54,6 +55,10 @@ PictureErrors compare(const Ellipsoid& shape, const Camera& camera, const std::s
       depths.push_back(std::abs(hits[i].t - truth) / voxel_size);
       const glm::dvec3 p = glm::dvec3(rays[i].origin) + hits[i].t * glm::dvec3(rays[i].direction);
       const glm::dvec3 n = centred.normal(p);
+      if (-glm::dot(n, glm::dvec3(rays[i].direction)) > 0.1) {
+        errors.depth_steep += depths.back();
+        ++errors.steep;
+      }
       const double angle = std::atan2(glm::length(glm::cross(n, hits[i].normal)), glm::dot(n, hits[i].normal));
       errors.normal_worst = std::max(errors.normal_worst, angle);
       errors.normal_rms += angle * angle;
@@ -62,6 +67,7 @@ PictureErrors compare(const Ellipsoid& shape, const Camera& camera, const std::s
   errors.depth_p99 = depths[depths.size() * 99 / 100];
   errors.depth_worst = depths.back();
   errors.depth_mean = std::accumulate(depths.begin(), depths.end(), 0.0) / static_cast<double>(depths.size());
+  errors.depth_steep /= errors.steep;
   errors.normal_rms = std::sqrt(errors.normal_rms / errors.hits);
   return errors;
 }
@@ -105,7 +111,8 @@ TEST_P(LevelSetPictures, DepthIsWithinAFiftiethOfAVoxelForNinetyNineOfAHundredPi
 }
 
 // A reconstruction that is smoother than the trilinear one has its root nearer to the surface: the trilinear one's depth is off by a share
-// of a voxel that halves with the voxel, theirs by less than a fifth of it at fifty voxels and the less the more there are.
+// of a voxel that halves with the voxel, theirs by less than a twelfth of it at fifty voxels and a twenty-fifth at a hundred and more, but
+// where rays graze.
 TEST_P(LevelSetPictures, DepthOfSmoothReconstructionsIsFarCloserThanTheTrilinearOnes) {
   const std::uint64_t seed = fresh_seed();
   const Ellipsoid shape = Ellipsoid::jittered(seed);
@@ -114,7 +121,9 @@ TEST_P(LevelSetPictures, DepthOfSmoothReconstructionsIsFarCloserThanTheTrilinear
     const PictureErrors trilinear = compare(shape, camera, "cell", h);
     for (const char* gradient : {"central", "cubic"}) {
       const PictureErrors e = compare(shape, camera, gradient, h);
-      EXPECT_LT(e.depth_mean, (h > 0.03 ? 0.2 : 0.1) * trilinear.depth_mean) << gradient << " h " << h << " seed " << seed;
+      EXPECT_LT(e.depth_steep, (h > 0.03 ? 0.08 : 0.04) * trilinear.depth_steep) << gradient << " h " << h << " seed " << seed;
+      // A few rays that only graze the silhouette make up most of this.
+      EXPECT_LT(e.depth_mean, 0.2 * trilinear.depth_mean) << gradient << " h " << h << " seed " << seed;
       EXPECT_LT(e.depth_p99, 0.25 * trilinear.depth_p99) << gradient << " h " << h << " seed " << seed;
       // On the silhouette itself a ray only grazes, and a step of first order goes too far; never out of its cell.
       EXPECT_LT(e.depth_worst, trilinear.depth_worst + 0.5) << gradient << " h " << h << " seed " << seed;

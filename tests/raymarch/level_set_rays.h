@@ -6,6 +6,7 @@
 
 #include "raymarch/surface/level_set_marcher.h"
 #include "raymarch/surface/registry.h"
+#include "tests/random_seed.h"
 #include "tests/sdf/level_set_maker.h"
 
 namespace limn::testing_tools {
@@ -53,10 +54,6 @@ inline Surface build(const Field& field, const SurfaceSettings& settings, const 
   return level_set_surface().build(object, settings, render_origin);
 }
 
-inline std::uint64_t fresh_seed() {
-  const std::uint64_t seed = std::random_device{}();
-  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
-  return seed;
-}
+inline std::uint64_t fresh_seed() { return random_seed(); }
 
 }  // namespace limn::testing_tools

@@ -11,6 +11,7 @@
 #include "raymarch/picture.h"
 #include "run_program.h"
 #include "samples/empty_picture.h"
+#include "tests/random_seed.h"
 
 namespace limn {
 namespace {
@@ -137,7 +138,7 @@ TEST(EmptyPicture, AFewHitsOfWhatTheBoundsPromise) {
 }
 
 TEST(EmptyPicture, RandomCamerasAlwaysHaveAReasonThatHolds) {
-  const unsigned seed = std::random_device{}();
+  const unsigned seed = random_seed();
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> place(-6.0, 6.0);
   const Scene scene = ball();

@@ -11,6 +11,7 @@
 #include "sdf/guard.h"
 #include "sdf/guard_helper.h"
 #include "sdf/level_set_data.h"
+#include "tests/random_seed.h"
 #include "tests/sdf/level_set_maker.h"
 #include "tests/temporary_folder.h"
 
@@ -371,8 +372,7 @@ TEST_F(LevelSetFiles, DamagedFilesEndInARefusalOrAValidGrid) {
   plain.write(openvdb::GridPtrVec{ball()});
   plain.close();
   const std::array<fs::path, 3> originals{zipped, other, folder_.path() / "plain.vdb"};
-  const std::uint64_t seed = std::random_device{}();
-  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  const std::uint64_t seed = random_seed();
   std::mt19937_64 random(seed);
   int refused = 0, accepted = 0;
   for (int mutant = 0; mutant < 40; ++mutant) {

@@ -8,6 +8,7 @@
 
 #include "sdf/level_set_band.h"
 #include "sdf/level_set_data.h"
+#include "tests/random_seed.h"
 #include "tests/sdf/level_set_maker.h"
 
 namespace limn {
@@ -74,8 +75,7 @@ LevelSet random_level_set(std::uint64_t seed, double share_active) {
 }
 
 TEST(LevelSetBand, CellsThatLackDistancesAreCountedAsByBruteForce) {
-  const std::uint64_t seed = std::random_device{}();
-  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  const std::uint64_t seed = random_seed();
   for (std::uint64_t k = 0; k < 6; ++k) {
     const LevelSet level_set = random_level_set(seed + k, k % 2 == 0 ? 0.5 : 0.995);
     const auto accessor = level_set.data().accessor();

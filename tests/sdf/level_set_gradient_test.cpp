@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "sdf/error.h"
+#include "tests/random_seed.h"
 #include "tests/sdf/level_set_maker.h"
 
 namespace limn {
@@ -163,7 +164,7 @@ testing::AssertionResult has_its_order(const GradientDescriptor& gradient, bool 
 }
 
 std::uint64_t recorded_seed() {
-  const std::uint64_t seed = std::random_device{}();
+  const std::uint64_t seed = random_seed();
   testing::Test::RecordProperty("seed", std::to_string(seed));
   return seed;
 }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "sdf/level_set_band.h"
 #include "sdf/parallel.h"
@@ -157,13 +158,17 @@ struct Metric {
   glm::dmat3 length_from_index{1.0}, index_from_length{1.0};
   double per_voxel = 1.0;  ///< What values change by over one.
   double farthest = kFarthest;
-
-  double between(const glm::dvec3& a, const glm::dvec3& b) const { return glm::length(length_from_index * (a - b)); }
 };
 
-/// Where the grid's edges cross the surface between two nodes of the band: places that the file is sure of.
-void find_crossings(const Surroundings& nodes, std::vector<glm::dvec3>& crossings) {
-  crossings.clear();
+/// Where the grid's edges cross the surface between two nodes of the band: places that the file is sure of. In voxels, by axis, for
+/// loops that become SIMD.
+struct Crossings {
+  std::array<std::vector<float>, 3> at{};
+  size_t count() const { return at[0].size(); }
+};
+
+void find_crossings(const Surroundings& nodes, const Metric& metric, Crossings& crossings) {
+  for (std::vector<float>& axis : crossings.at) axis.clear();
   for (int x = -kReach; x < 8 + kReach; ++x)
     for (int y = -kReach; y < 8 + kReach; ++y)
       for (int z = -kReach; z < 8 + kReach; ++z) {
@@ -177,9 +182,30 @@ void find_crossings(const Surroundings& nodes, std::vector<glm::dvec3>& crossing
           if ((a < 0.0) == (b < 0.0) || !nodes.in_band(next)) continue;
           glm::dvec3 crossing(here);
           crossing[axis] += a / (a - b);
-          crossings.push_back(crossing);
+          const glm::dvec3 place = metric.length_from_index * crossing;
+          for (int k = 0; k < 3; ++k) crossings.at[static_cast<size_t>(k)].push_back(static_cast<float>(place[k]));
         }
       }
+}
+
+/// The crossing nearest to a place; none where there is none.
+std::optional<glm::dvec3> nearest_crossing(const Crossings& crossings, const glm::dvec3& place) {
+  const float px = static_cast<float>(place.x), py = static_cast<float>(place.y), pz = static_cast<float>(place.z);
+  const float *const x = crossings.at[0].data(), *const y = crossings.at[1].data(), *const z = crossings.at[2].data();
+  const auto squared = [&](size_t k) {
+    const float dx = x[k] - px, dy = y[k] - py, dz = z[k] - pz;
+    return dx * dx + dy * dy + dz * dz;
+  };
+  // Four least ones side by side: the compiler makes no SIMD of a single running minimum.
+  std::array<float, 4> least{1e30f, 1e30f, 1e30f, 1e30f};
+  const size_t count = crossings.count(), whole = count & ~size_t{3};
+  for (size_t k = 0; k < whole; k += 4)
+    for (size_t lane = 0; lane < 4; ++lane) least[lane] = std::min(least[lane], squared(k + lane));
+  for (size_t k = whole; k < count; ++k) least[0] = std::min(least[0], squared(k));
+  const float best = *std::min_element(least.begin(), least.end());
+  for (size_t k = 0; k < count; ++k)
+    if (squared(k) == best) return glm::dvec3(x[k], y[k], z[k]);
+  return std::nullopt;
 }
 
 struct NodeValue {
@@ -190,23 +216,17 @@ struct NodeValue {
 
 /// The distance at a node: by the triangle inequality no more than the distance at a place in the band and the way there, and as much where
 /// that place lies on the way to the nearest point of the surface. Its direction comes from the nearest crossing, then from the gradient.
-NodeValue distance_at(const Surroundings& nodes, const std::vector<glm::dvec3>& crossings, const Metric& metric, const glm::ivec3& node) {
-  const glm::dvec3 p(node);
+NodeValue distance_at(const Surroundings& nodes, const Crossings& crossings, const Metric& metric, const glm::ivec3& node) {
+  const glm::dvec3 p(node), place = metric.length_from_index * p;
   NodeValue result;
-  double nearest = metric.farthest;
-  glm::dvec3 foot(0.0);
-  for (const glm::dvec3& crossing : crossings) {
-    const double length = metric.between(crossing, p);
-    if (length < nearest) {
-      nearest = length;
-      foot = crossing;
-      result.told = true;
-    }
-  }
-  if (!result.told) return result;
+  const std::optional<glm::dvec3> foot = nearest_crossing(crossings, place);
+  if (!foot) return result;
+  const double nearest = glm::distance(*foot, place);
+  if (nearest > metric.farthest) return result;
+  result.told = true;
   const double side = nodes.value(node) < 0.0 ? -1.0 : 1.0;
   double best = nearest * metric.per_voxel;
-  glm::dvec3 way = nearest > 0.0 ? (foot - p) / nearest : glm::dvec3(0.0);
+  glm::dvec3 way = nearest > 0.0 ? metric.index_from_length * (*foot - place) / nearest : glm::dvec3(0.0);
   // As near to the node as the band is: there the error of the direction counts least.
   for (double step = 1.0; step < nearest; step += 0.25) {
     Sample at;
@@ -244,10 +264,10 @@ bool jumps(const Surroundings& nodes, const Metric& metric, const glm::ivec3& no
 }
 
 void fill_block(const LevelSetData& data, const Metric& metric, const NanoAccessor& accessor, const MissingBlock& missing,
-                std::vector<glm::dvec3>& crossings, FilledBlock& block) {
+                Crossings& crossings, FilledBlock& block) {
   const Surroundings nodes(accessor, missing.origin);
   const double background = std::abs(static_cast<double>(data.grid->tree().background()));
-  find_crossings(nodes, crossings);
+  find_crossings(nodes, metric, crossings);
   block.origin = missing.origin;
   for (size_t word = 0; word < 8; ++word)
     for (std::uint64_t bits = missing.nodes[word]; bits != 0; bits &= bits - 1) {
@@ -308,7 +328,7 @@ std::vector<FilledBlock> fill_nodes(const LevelSetData& data, const std::vector<
   std::vector<FilledBlock> filled(missing.size());
   parallel_parts(missing.size(), size_t{16}, [&](const IndexRange<size_t>& range) {
     const NanoAccessor accessor = data.accessor();
-    std::vector<glm::dvec3> crossings;
+    Crossings crossings;
     for (size_t i = range.begin(); i < range.end(); ++i) fill_block(data, metric, accessor, missing[i], crossings, filled[i]);
   });
   return filled;

@@ -95,13 +95,15 @@ std::shared_ptr<LevelSetData> rebuild(std::span<const LevelSetBlock> blocks, std
         grid->tree().addTile(static_cast<openvdb::Index>(level), openvdb::Coord(tile.origin.x, tile.origin.y, tile.origin.z), -background,
                              false);
   for (const LevelSetBlock& block : blocks) add_leaf(grid->tree(), block);
-  seal_tiles(*grid, tiles);
   std::shared_ptr<LevelSetData> data = freeze(*grid, world_from_index, name, 0.0);
   const std::int64_t torn = cells_lacking(LevelSet(data), find_gradient("cell"));
   if (torn == 0) return data;
   // Signs that no flood fill made jump at the edges of a band that is whole; at those of a torn one they jump after it, too.
   const std::shared_ptr<LevelSetData> filled = freeze(*flood_filled(*grid), world_from_index, name, 0.0);
-  if (10 * cells_lacking(LevelSet(filled), find_gradient("cell")) > torn || filled->info.bounds.empty()) return data;
+  if (10 * cells_lacking(LevelSet(filled), find_gradient("cell")) > torn || filled->info.bounds.empty()) {
+    seal_tiles(*grid, tiles);
+    return freeze(*grid, world_from_index, name, 0.0);
+  }
   filled->info.warnings.push_back("the signs outside the narrow band contradicted its edges at " + std::to_string(torn) +
                                   " cells (the file was not flood-filled); they are carried on from the band");
   return filled;

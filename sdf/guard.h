@@ -67,6 +67,14 @@ class ByteReader {
     const std::vector<char> text = get_vector<char>();
     return std::string(text.begin(), text.end());
   }
+  /// A part that was put as a span of bytes, where it lies.
+  std::span<const std::byte> get_bytes() {
+    const auto count = get<std::uint64_t>();
+    if (count > bytes_.size()) damaged();
+    const std::span<const std::byte> part = bytes_.first(static_cast<size_t>(count));
+    bytes_ = bytes_.subspan(part.size());
+    return part;
+  }
   bool done() const { return bytes_.empty(); }
 
  private:

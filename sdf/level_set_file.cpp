@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <set>
+#include <optional>
 
 #include "sdf/error.h"
 #include "sdf/guard.h"
@@ -146,5 +146,32 @@ std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> b
   data->file = std::move(beside);
   return data;
 }
+
+ReadLevelSets level_sets_from_answer(std::span<const std::byte> bytes, const fs::path& file) {
+  ByteReader answer(bytes, file.string());
+  ReadLevelSets result;
+  std::optional<InputError> first;
+  const auto leave_out = [&](const std::string& name, const InputError& error) {
+    if (!first) first = error;
+    result.left_out.push_back("'" + name + "' is left out: " + error.fault().problem);
+  };
+  while (!answer.done()) {
+    const std::string name = answer.get_text();
+    if (answer.get<std::uint8_t>() == 0) {
+      leave_out(name, InputError({file.string(), "grid", name, answer.get_text(), ""}));
+      continue;
+    }
+    const std::span<const std::byte> own = answer.get_bytes();
+    try {
+      result.grids.push_back({name, LevelSet(level_set_from_answer(own, file))});
+    } catch (const InputError& error) {
+      leave_out(name, error);
+    }
+  }
+  if (result.grids.empty() && first) throw *first;
+  return result;
+}
+
+ReadLevelSets read_all_level_sets(const fs::path& file) { return level_sets_from_answer(ask(file, {"all"}), file); }
 
 }  // namespace limn

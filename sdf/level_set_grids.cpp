@@ -1,9 +1,8 @@
 #include "sdf/level_set_grids.h"
 
 #include <algorithm>
-#include <optional>
 
-#include "sdf/error.h"
+#include "sdf/read_vdb.h"
 
 namespace limn {
 namespace {
@@ -21,21 +20,6 @@ std::vector<GridSummary> level_sets_among(const std::vector<GridSummary>& grids)
   return found;
 }
 
-ReadLevelSets read_all(const std::filesystem::path& file, const std::vector<GridSummary>& grids) {
-  ReadLevelSets result;
-  std::optional<InputError> first;
-  for (const GridSummary& grid : grids) {
-    try {
-      result.grids.push_back({grid.name, read_level_set(file, grid.name)});
-    } catch (const InputError& error) {
-      if (!first) first = error;
-      result.left_out.push_back("'" + grid.name + "' is left out: " + error.fault().problem);
-    }
-  }
-  if (result.grids.empty() && first) throw *first;
-  return result;
-}
-
 }  // namespace
 
 ReadLevelSets read_level_sets(const std::filesystem::path& file, std::span<const std::string> names) {
@@ -44,7 +28,7 @@ ReadLevelSets read_level_sets(const std::filesystem::path& file, std::span<const
     return std::any_of(grids.begin(), grids.end(), [&](const GridSummary& grid) { return grid.name == name; });
   };
   const bool all = names.empty() || (names.size() == 1 && names.front() == "all" && !there("all"));
-  if (all && level_sets.size() > 1) return read_all(file, level_sets);
+  if (all && level_sets.size() > 1) return read_all_level_sets(file);
   ReadLevelSets result;
   if (all) {
     LevelSet only = read_level_set(file, "");

@@ -24,7 +24,7 @@ struct GridFile {
   std::string grid_class = "level set";
   std::vector<GridMetadata> metadata{};
   std::vector<GridMetadata> of_file{};  ///< The file's own, shared by all its grids.
-  std::vector<DoubleBlock> doubles{};  ///< Of a grid of doubles that is as its file has it.
+  std::vector<DoubleBlock> doubles{};   ///< Of a grid of doubles that is as its file has it.
 };
 
 }  // namespace limn

@@ -46,7 +46,8 @@ std::vector<size_t> meant_by(const std::string& name, const std::vector<StoredGr
     if (!name.empty() && grids[i].shown == name) return {i};
     if (name.empty() ? grids[i].is_level_set() : grids[i].name == name) found.push_back(i);
   }
-  for (size_t i = 0; i < grids.size() && name.empty() && found.empty(); ++i)
+  if (!name.empty() || !found.empty()) return found;
+  for (size_t i = 0; i < grids.size(); ++i)
     if (grids[i].may_be_level_set()) found.push_back(i);
   return found;
 }
@@ -189,6 +190,27 @@ void put_file(const StoredGrid& stored, const openvdb::GridBase::Ptr& grid, cons
   answer.put_span(std::span<const DoubleBlock>(filed_type(stored) == "double" ? doubles_of(grid) : std::vector<DoubleBlock>{}));
 }
 
+std::vector<std::byte> answer_of(const StoredGrids& grids, size_t chosen) {
+  const StoredGrid& stored = grids.list[chosen];
+  check_kind(stored);
+  const openvdb::GridBase::Ptr filed = grids.read(chosen);
+  const openvdb::FloatGrid::Ptr grid = as_float(filed);
+  settle_band(*grid);
+  check_voxels(*grid, stored.shown);
+  check_signs(*grid, stored);
+
+  ByteWriter answer;
+  answer.put_text(stored.name);
+  const openvdb::math::Mat4d matrix = filed->transform().baseMap()->getAffineMap()->getMat4();
+  for (int row = 0; row < 4; ++row)
+    for (int k = 0; k < 3; ++k) answer.put(matrix(row, k));
+  answer.put(grid->background());
+  answer.put_span(std::span<const LevelSetBlock>(blocks_of(*grid, stored.shown)));
+  answer.put_span(std::span<const VdbTile>(inner_tiles_of(*grid)));
+  put_file(stored, filed, grids.metadata, answer);
+  return answer.bytes;
+}
+
 }  // namespace
 
 std::vector<std::byte> vdb_list_answer(const fs::path& file) {
@@ -210,24 +232,25 @@ std::vector<std::byte> vdb_list_answer(const fs::path& file) {
 std::vector<std::byte> vdb_grid_answer(const fs::path& file, const std::string& name) {
   return reading([&] {
     const StoredGrids grids = stored_in(file);
-    const size_t chosen = choose(grids.list, name);
-    const StoredGrid& stored = grids.list[chosen];
-    check_kind(stored);
-    const openvdb::GridBase::Ptr filed = grids.read(chosen);
-    const openvdb::FloatGrid::Ptr grid = as_float(filed);
-    settle_band(*grid);
-    check_voxels(*grid, stored.shown);
-    check_signs(*grid, stored);
+    return answer_of(grids, choose(grids.list, name));
+  });
+}
 
+std::vector<std::byte> vdb_all_answer(const fs::path& file) {
+  return reading([&] {
+    const StoredGrids grids = stored_in(file);
     ByteWriter answer;
-    answer.put_text(stored.name);
-    const openvdb::math::Mat4d matrix = filed->transform().baseMap()->getAffineMap()->getMat4();
-    for (int row = 0; row < 4; ++row)
-      for (int k = 0; k < 3; ++k) answer.put(matrix(row, k));
-    answer.put(grid->background());
-    answer.put_span(std::span<const LevelSetBlock>(blocks_of(*grid, stored.shown)));
-    answer.put_span(std::span<const VdbTile>(inner_tiles_of(*grid)));
-    put_file(stored, filed, grids.metadata, answer);
+    for (const size_t i : meant_by("", grids.list)) {
+      answer.put_text(grids.list[i].shown);
+      try {
+        const std::vector<std::byte> own = reading([&] { return answer_of(grids, i); });
+        answer.put(std::uint8_t{1});
+        answer.put_span(std::span<const std::byte>(own));
+      } catch (const InputError& error) {
+        answer.put(std::uint8_t{0});
+        answer.put_text(error.fault().problem);
+      }
+    }
     return answer.bytes;
   });
 }

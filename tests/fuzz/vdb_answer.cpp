@@ -1,4 +1,4 @@
-// What limn-read-vdb sends, had a file taken that helper over: the list of grids, and a grid.
+// What limn-read-vdb sends, had a file taken that helper over: the list of grids, a grid, all of them.
 #include <cmath>
 
 #include "sdf/level_set_data.h"
@@ -22,10 +22,12 @@ void use_grid(std::span<const std::byte> bytes) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  // The first byte says which of the two was asked for.
+  // The first byte says which of the three was asked for.
   const std::span bytes(reinterpret_cast<const std::byte*>(data) + 1, size - 1);
   limn::fuzz::only_refused([&] {
-    if (data[0] % 2 == 0) {
+    if (data[0] % 4 == 2) {
+      limn::level_sets_from_answer(bytes, "fuzz.vdb");
+    } else if (data[0] % 4 == 0) {
       limn::grids_from_answer(bytes, "fuzz.vdb");
     } else {
       limn::use_grid(bytes);

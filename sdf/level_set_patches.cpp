@@ -146,6 +146,14 @@ PatchFoot foot_on(const SurfacePatch& patch, double reach, const glm::dvec3& poi
   return result;
 }
 
+/// std::max(0, x), which the compiler would make a branch of, and no SIMD.
+float positive_part(float x) { return 0.5f * (x + std::abs(x)); }
+
+template <class Patches>
+auto arrays_of(Patches& near) {
+  return std::array{&near.x, &near.y, &near.z, &near.normal_x, &near.normal_y, &near.normal_z};
+}
+
 }  // namespace
 
 const GradientDescriptor& best_gradient_of(const LevelSet& level_set) {
@@ -241,30 +249,69 @@ void PatchBins::gather(const Box& box, std::vector<std::uint32_t>& found) const 
     }
 }
 
-double disk_distance(const SurfacePatch& patch, double reach, const glm::dvec3& point) {
-  const glm::dvec3 d = point - patch.position;
-  const double height = glm::dot(d, glm::dvec3(patch.normal));
-  const double aside = std::sqrt(std::max(0.0, glm::dot(d, d) - height * height)) - reach;
-  return aside > 0.0 ? std::sqrt(height * height + aside * aside) : std::abs(height);
+void load_patches(const SurfacePatches& surface, std::span<const std::uint32_t> indices, const glm::dvec3& origin, NearPatches& near) {
+  near.origin = origin;
+  near.index.assign(indices.begin(), indices.end());
+  for (std::vector<float>* array : arrays_of(near)) array->resize(indices.size());
+  for (size_t i = 0; i < indices.size(); ++i) {
+    const SurfacePatch& patch = surface.patches[indices[i]];
+    const glm::vec3 at(patch.position - origin);
+    near.x[i] = at.x, near.y[i] = at.y, near.z[i] = at.z;
+    near.normal_x[i] = patch.normal.x, near.normal_y[i] = patch.normal.y, near.normal_z[i] = patch.normal.z;
+  }
 }
 
-PatchFoot nearest_foot(const SurfacePatches& surface, std::span<const std::uint32_t> among, const glm::dvec3& point) {
-  LIMN_CHECK(!among.empty());
+void disk_distances(const NearPatches& near, double reach, const glm::dvec3& point, float tilt, std::vector<float>& distances) {
+  const size_t count = near.count();
+  distances.resize(count);
+  const glm::vec3 p(point - near.origin);
+  const float radius = static_cast<float>(reach);
+  const float *const x = near.x.data(), *const y = near.y.data(), *const z = near.z.data();
+  const float *const nx = near.normal_x.data(), *const ny = near.normal_y.data(), *const nz = near.normal_z.data();
+  float* const to = distances.data();
+  for (size_t i = 0; i < count; ++i) {
+    const float dx = p.x - x[i], dy = p.y - y[i], dz = p.z - z[i];
+    const float height = dx * nx[i] + dy * ny[i] + dz * nz[i], squared = dx * dx + dy * dy + dz * dz;
+    const float aside = positive_part(std::sqrt(positive_part(squared - height * height)) - radius);
+    to[i] = std::sqrt(height * height + aside * aside) + tilt * std::sqrt(squared);
+  }
+}
+
+void keep_within(const NearPatches& all, std::span<const float> bounds, float most, NearPatches& kept) {
+  kept.origin = all.origin;
+  kept.index.resize(all.count());
+  size_t count = 0;
+  // Numbers first, without a branch that would be guessed wrong.
+  for (size_t i = 0; i < bounds.size(); ++i) {
+    kept.index[count] = static_cast<std::uint32_t>(i);
+    count += bounds[i] <= most ? 1 : 0;
+  }
+  kept.index.resize(count);
+  const auto from = arrays_of(all);
+  const auto to = arrays_of(kept);
+  for (size_t array = 0; array < from.size(); ++array) {
+    to[array]->resize(count);
+    for (size_t i = 0; i < count; ++i) (*to[array])[i] = (*from[array])[kept.index[i]];
+  }
+  for (std::uint32_t& index : kept.index) index = all.index[index];
+}
+
+PatchFoot nearest_foot(const SurfacePatches& surface, const NearPatches& near, const glm::dvec3& point, std::vector<float>& scratch) {
+  LIMN_CHECK(near.count() > 0);
+  // Of two disks that hold the point above them, the nearer one's middle tells which is meant.
+  disk_distances(near, surface.reach, point, 1e-3f, scratch);
   constexpr size_t kTried = 4;
-  std::array<std::pair<double, std::uint32_t>, kTried> near;
-  near.fill({std::numeric_limits<double>::infinity(), among.front()});
-  for (const std::uint32_t i : among) {
-    // Of two disks that hold the point above them, the nearer one's middle tells which is meant.
-    const SurfacePatch& patch = surface.patches[i];
-    const double distance = disk_distance(patch, surface.reach, point) + 1e-3 * glm::distance(point, patch.position);
-    if (distance >= near.back().first) continue;
+  std::array<std::pair<float, std::uint32_t>, kTried> nearest;
+  nearest.fill({std::numeric_limits<float>::infinity(), near.index.front()});
+  for (size_t i = 0; i < scratch.size(); ++i) {
+    if (scratch[i] >= nearest.back().first) continue;
     size_t at = kTried - 1;
-    for (; at > 0 && near[at - 1].first > distance; --at) near[at] = near[at - 1];
-    near[at] = {distance, i};
+    for (; at > 0 && nearest[at - 1].first > scratch[i]; --at) nearest[at] = nearest[at - 1];
+    nearest[at] = {scratch[i], near.index[i]};
   }
   PatchFoot best;
   best.distance = std::numeric_limits<double>::infinity();
-  for (const auto& [bound, i] : near) {
+  for (const auto& [bound, i] : nearest) {
     if (!std::isfinite(bound)) break;
     PatchFoot foot = foot_on(surface.patches[i], surface.reach, point);
     foot.patch = i;

@@ -59,8 +59,21 @@ struct PatchFoot {
   bool within = false;  ///< False where the foot would lie beyond the patch: the side is not to be trusted.
 };
 
-/// A lower bound of the distance to a patch, but for its bend: to a disk of its reach.
-double disk_distance(const SurfacePatch& patch, double reach, const glm::dvec3& point);
-PatchFoot nearest_foot(const SurfacePatches& surface, std::span<const std::uint32_t> among, const glm::dvec3& point);
+/// Of some patches what a search reads, relative to a place near them: an array a component, so that loops over them become SIMD.
+struct NearPatches {
+  glm::dvec3 origin{0.0};
+  std::vector<float> x{}, y{}, z{}, normal_x{}, normal_y{}, normal_z{};
+  std::vector<std::uint32_t> index{};
+  size_t count() const { return index.size(); }
+};
+void load_patches(const SurfacePatches& surface, std::span<const std::uint32_t> indices, const glm::dvec3& origin, NearPatches& near);
+
+/// Lower bounds of the distances to patches, but for their bend: to disks of their reach. `tilt`: how much of the distance to their middles
+/// is added.
+void disk_distances(const NearPatches& near, double reach, const glm::dvec3& point, float tilt, std::vector<float>& distances);
+/// Keeps those of `all` whose bound is at most this.
+void keep_within(const NearPatches& all, std::span<const float> bounds, float most, NearPatches& kept);
+/// `near` holds at least one; `scratch` is memory of the search.
+PatchFoot nearest_foot(const SurfacePatches& surface, const NearPatches& near, const glm::dvec3& point, std::vector<float>& scratch);
 
 }  // namespace limn

@@ -85,8 +85,10 @@ class BlockSearch {
 
   bool near(const glm::ivec3& origin) {
     const Box nodes{lattice_.node(origin), lattice_.node(origin + (kBlock - 1))};
-    source_.bins.gather(dilate(nodes, lattice_.half_width + source_.surface.reach), scratch_[0]);
-    return !scratch_[0].empty() && narrow(origin, kBlock, scratch_[0], scratch_[1]);
+    source_.bins.gather(dilate(nodes, lattice_.half_width + source_.surface.reach), gathered_);
+    if (gathered_.empty()) return false;
+    load_patches(source_.surface, gathered_, nodes.center(), patches_[0]);
+    return narrow(origin, kBlock, patches_[0], patches_[1]);
   }
   void search(const glm::ivec3& origin) {
     indices.clear();
@@ -99,40 +101,39 @@ class BlockSearch {
 
  private:
   /// Keeps those that may be nearest; false where none is in reach of the cube.
-  bool narrow(const glm::ivec3& origin, int size, const std::vector<std::uint32_t>& all, std::vector<std::uint32_t>& kept) {
+  bool narrow(const glm::ivec3& origin, int size, const NearPatches& all, NearPatches& kept) {
     const double half = 0.5 * lattice_.h * (size - 1);
-    const glm::dvec3 middle = lattice_.node(origin) + glm::dvec3(half);
     const double radius = half * std::sqrt(3.0), slack = 0.5 * source_.surface.reach;
-    bounds_.resize(all.size());
-    double least = std::numeric_limits<double>::infinity();
-    for (size_t i = 0; i < all.size(); ++i) {
-      bounds_[i] = disk_distance(source_.surface.patches[all[i]], source_.surface.reach, middle);
-      least = std::min(least, bounds_[i]);
-    }
-    kept.clear();
+    disk_distances(all, source_.surface.reach, lattice_.node(origin) + glm::dvec3(half), 0.0f, bounds_);
+    const double least = static_cast<double>(*std::min_element(bounds_.begin(), bounds_.end()));
     if (least > lattice_.half_width + radius + slack) return false;
-    for (size_t i = 0; i < all.size(); ++i)
-      if (bounds_[i] <= least + 2.0 * radius + slack) kept.push_back(all[i]);
+    keep_within(all, bounds_, static_cast<float>(least + 2.0 * radius + slack), kept);
     return true;
   }
 
   void halve(const glm::ivec3& block, const glm::ivec3& local, int size, size_t depth) {
-    if (size == 1) {
-      indices.push_back(local.x << 6 | local.y << 3 | local.z);
-      feet.push_back(nearest_foot(source_.surface, scratch_[depth], lattice_.node(block + local)));
-      return;
-    }
     const int half = size / 2;
     for (int octant = 0; octant < 8; ++octant) {
       const glm::ivec3 child = local + half * glm::ivec3(octant & 1, octant >> 1 & 1, octant >> 2);
-      if (narrow(block + child, half, scratch_[depth], scratch_[depth + 1])) halve(block, child, half, depth + 1);
+      if (half == 1)
+        take(block, child, patches_[depth]);
+      else if (narrow(block + child, half, patches_[depth], patches_[depth + 1]))
+        halve(block, child, half, depth + 1);
     }
+  }
+
+  void take(const glm::ivec3& block, const glm::ivec3& local, const NearPatches& near) {
+    const PatchFoot foot = nearest_foot(source_.surface, near, lattice_.node(block + local), bounds_);
+    if (std::abs(foot.distance) > lattice_.half_width + source_.surface.reach) return;
+    indices.push_back(local.x << 6 | local.y << 3 | local.z);
+    feet.push_back(foot);
   }
 
   const Source& source_;
   const Lattice& lattice_;
-  std::array<std::vector<std::uint32_t>, 6> scratch_{};
-  std::vector<double> bounds_{};
+  std::vector<std::uint32_t> gathered_{};
+  std::array<NearPatches, 4> patches_{};
+  std::vector<float> bounds_{};
 };
 
 /// Near the surface the patch tells the side, beyond it the source's own nodes do: across an edge or a thin wall the nearest patch may be
@@ -240,17 +241,20 @@ GapSums gap_of(const std::vector<glm::dvec3>& points, const Source& to, double f
   if (to.surface.patches.empty()) return sums;
   std::vector<glm::dvec3> left = points;
   std::vector<std::uint32_t> near;
+  NearPatches patches;
+  std::vector<float> scratch;
   for (double reach = first_reach; !left.empty(); reach *= 2.0) {
     Box box;
     for (const glm::dvec3& point : left) box = include(box, point);
     to.bins.gather(dilate(box, reach + to.surface.reach), near);
+    load_patches(to.surface, near, box.center(), patches);
     const bool all = near.size() == to.surface.patches.size();
     std::vector<glm::dvec3> farther;
     std::vector<PatchFoot> feet;
     for (const glm::dvec3& point : left) {
       PatchFoot foot;
       foot.distance = std::numeric_limits<double>::infinity();
-      if (!near.empty()) foot = nearest_foot(to.surface, near, point);
+      if (!near.empty()) foot = nearest_foot(to.surface, patches, point, scratch);
       if (!all && std::abs(foot.distance) > reach)
         farther.push_back(point);
       else

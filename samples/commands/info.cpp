@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <mutex>
 
 #include "raymarch/audit.h"
 #include "samples/commands/command.h"
@@ -8,8 +9,10 @@
 #include "samples/no_effect.h"
 #include "samples/output.h"
 #include "samples/picture_facts.h"
+#include "samples/progress.h"
 #include "samples/threads.h"
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -65,6 +68,20 @@ Report report_of(const SceneObject& object, const SurfaceSettings& settings) {
   return report;
 }
 
+std::vector<Report> reports_of(const Scene& scene, const SurfaceSettings& settings, const Options& options) {
+  std::vector<Report> reports(scene.objects.size());
+  ProgressBar bar(wants_progress(options.quiet, options.no_progress));
+  const std::function<void(double)> show = bar.stage("checking objects");
+  std::mutex mutex;
+  size_t done = 0;
+  parallel_for(size_t{0}, reports.size(), [&](size_t i) {
+    reports[i] = report_of(scene.objects[i], settings);
+    const std::lock_guard lock(mutex);
+    if (show && reports.size() > 1) show(static_cast<double>(++done) / static_cast<double>(reports.size()));
+  });
+  return reports;
+}
+
 Json audit_json(const std::vector<Finding>& findings) {
   Json audit = Json::array();
   for (const Finding& finding : findings) {
@@ -116,6 +133,27 @@ std::string report_text(const Report& report) {
   }
   if (!counts.empty()) text += counts + "\n";
   for (const Finding& finding : report.audit) text += finding_text(finding);
+  return text;
+}
+
+bool is_sound(const Report& report) {
+  return std::all_of(report.audit.begin(), report.audit.end(), [](const Finding& finding) { return finding.severity == Severity::info; });
+}
+
+/// Of many objects those that something is wrong with, and how many the rest are; --json has them all.
+std::string reports_text(const std::vector<Report>& reports) {
+  constexpr size_t kMostInFull = 100, kMostListed = 50;
+  std::string text;
+  const bool in_full = reports.size() <= kMostInFull;
+  size_t sound = 0, listed = 0;
+  for (const Report& report : reports) {
+    if (!in_full && is_sound(report))
+      ++sound;
+    else if (in_full || listed++ < kMostListed)
+      text += report_text(report);
+  }
+  if (listed > kMostListed) text += fmt::format("{} more objects with warnings (--json lists them)\n", listed - kMostListed);
+  if (sound > 0) text += fmt::format("{} objects without a warning (--json lists them)\n", sound);
   return text;
 }
 
@@ -191,8 +229,7 @@ void print_report(const Options& options, SceneInput input, const std::vector<Gr
   SurfaceSettings settings = surface_settings(options, input);
   refuse_unchecked(options, input);
   if (!options.gradient && !input.surface.gradient) settings.gradient.clear();
-  std::vector<Report> reports;
-  for (const SceneObject& object : input.scene.objects) reports.push_back(report_of(object, settings));
+  const std::vector<Report> reports = reports_of(input.scene, settings, options);
   if (options.verbose) {
     for (const Report& report : reports) print_note(costs_text(report));
   }
@@ -201,8 +238,7 @@ void print_report(const Options& options, SceneInput input, const std::vector<Gr
     std::string text;
     if (reports.size() > 1)
       text = fmt::format("{}: {}, {} objects, {}\n", options.input, kind_name(input.kind), reports.size(), bounds_text(all));
-    for (const Report& report : reports) text += report_text(report);
-    print_text(text + grids_text(grids));
+    print_text(text + reports_text(reports) + grids_text(grids));
     return;
   }
   Json document = {

@@ -162,6 +162,16 @@ std::string without_surface(const SceneObject& object, const Surface& surface) {
   return "";
 }
 
+/// What a grid's own nodes tell of a surface that is not there.
+std::string of_grid(const SceneObject& object) {
+  const auto* volume = std::get_if<LevelSetSource>(&object.source);
+  const BandFacts band = volume != nullptr ? volume->level_set.info().band : BandFacts{};
+  constexpr double kLeastShare = 0.03;
+  const double share = band.near_nodes > 0 ? static_cast<double>(band.unsigned_nodes) / static_cast<double>(band.near_nodes) : 0.0;
+  if (share < kLeastShare) return "; the signs of its grid may have leaked, or its band may be broken";
+  return fmt::format("; {:.0f} % of the surface in its grid has no inside: it leaked out", 100.0 * share);
+}
+
 std::string reason_of(const SceneObject& object, const Surface& surface, const Box& box, const Camera& camera) {
   if (const std::string none = without_surface(object, surface); !none.empty()) return none;
   if (box.empty()) return "has no surface";
@@ -180,7 +190,7 @@ std::string reason_of(const SceneObject& object, const Surface& surface, const B
                          : fmt::format("is seen edge-on: {:.0f} px long and {:.2g} px wide", longest, narrowest);
   }
   std::string text = fmt::format("has bounds that cover {:.0f} px of the frame, and no surface there", outline.framed_px);
-  if (surface.info.kind.ends_with("level_set")) text += "; the signs of its grid may have leaked, or its band may be broken";
+  if (surface.info.kind.ends_with("level_set")) text += of_grid(object);
   return text;
 }
 
@@ -211,9 +221,11 @@ std::vector<std::string> why_empty(const Scene& scene, const SceneModel& model, 
     const double promised = promised_px(model, camera);
     if (promised < kTooFewToJudge_px || static_cast<double>(counts.hits) >= kFewOfPromised * promised) return {};
     std::string text = fmt::format("next to nothing is hit: {} of the {:.0f} px that the bounds cover", counts.hits, promised);
-    const bool gridded = std::any_of(model.surfaces.begin(), model.surfaces.end(),
-                                     [](const Surface& surface) { return surface.info.kind.ends_with("level_set"); });
-    if (gridded) text += "; the signs of a grid may have leaked, or its band may be broken";
+    for (size_t i = 0; i < std::min(scene.objects.size(), model.surfaces.size()); ++i) {
+      if (!model.surfaces[i].info.kind.ends_with("level_set")) continue;
+      text += of_grid(scene.objects[i]);
+      break;
+    }
     reasons.push_back(std::move(text));
     return reasons;
   }

@@ -1,24 +1,8 @@
-// PLY as it comes from a file: read, checked, audited, triangulated.
-#include "subdiv/audit.h"
+// PLY as it comes from a file.
 #include "subdiv/read_ply.h"
-#include "tests/fuzz/fuzz_target.h"
-
-namespace limn {
-namespace {
-
-constexpr std::int64_t kMostElements = 100'000;
-
-void use(std::string_view bytes) {
-  const Mesh mesh = parse_ply(bytes, "fuzz.ply", kMostElements);
-  validate(mesh, "fuzz.ply");
-  mesh_facts(mesh);
-  triangulate(mesh, NormalKind::vertex, true);
-}
-
-}  // namespace
-}  // namespace limn
+#include "tests/fuzz/mesh_target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  limn::fuzz::only_refused([&] { limn::use(limn::fuzz::text_of(data, size)); });
+  limn::fuzz::only_refused([&] { limn::fuzz::use_mesh(limn::parse_ply, data, size); });
   return 0;
 }

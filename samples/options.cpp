@@ -19,6 +19,8 @@ constexpr const char* kSurface = "Surface";
 constexpr const char* kBorder = "Border";
 constexpr const char* kSweep = "Sweep (a list: 2,4,6; a range: 2..6)";
 constexpr const char* kStudy = "Study";
+constexpr const char* kStability = "Cases";
+constexpr const char* kHidden = "";  ///< In no help.
 constexpr const char* kPlan = "Plan";
 constexpr const char* kOutput = "Output";
 constexpr const char* kExecution = "Execution (never changes a pixel)";
@@ -68,6 +70,16 @@ void read_compared_surfaces(const std::string& text, Options& options) {
     find_surface(name, "", "--surfaces");
     add_unless_there(name, options.surfaces);
   }
+}
+
+void add_compared_surfaces(CLI::App& app, Options& options) {
+  const auto surface = [&options](const std::string& text) {
+    find_surface(text, "", "--surface");
+    options.surfaces.push_back(text);
+  };
+  add_repeatable(app, {"--surface", "NAME", "only this representation (limn list surfaces), repeatable; default: all", kSurface}, surface);
+  add_repeatable(app, {"--surfaces", "A,B,...", "the same for several", kSurface},
+                 [&options](const std::string& text) { read_compared_surfaces(text, options); });
 }
 
 void add_switch(CLI::App& app, const OptionText& text, bool& target) { app.add_flag(text.flags, target, text.help)->group(text.group); }
@@ -178,17 +190,15 @@ void add_fixed_surface(CLI::App& app, Options& options) {
 }  // namespace
 
 void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& needs) {
-  const auto surface = [&options](const std::string& text) {
-    find_surface(text, "", "--surface");
-    options.surfaces.push_back(text);
-  };
   if (needs.surface && needs.repeatable) {
-    add_repeatable(app, {"--surface", "NAME", "only this representation (limn list surfaces), repeatable; default: all", kSurface},
-                   surface);
-    add_repeatable(app, {"--surfaces", "A,B,...", "the same for several", kSurface},
-                   [&options](const std::string& text) { read_compared_surfaces(text, options); });
-  } else if (needs.surface)
-    add(app, {"--surface", "NAME", "representation (limn list surfaces); default: what the input is by itself", kSurface}, surface);
+    add_compared_surfaces(app, options);
+  } else if (needs.surface) {
+    add(app, {"--surface", "NAME", "representation (limn list surfaces); default: what the input is by itself", kSurface},
+        [&options](const std::string& text) {
+          find_surface(text, "", "--surface");
+          options.surfaces.push_back(text);
+        });
+  }
   if (needs.swept) {
     add_fixed_surface(app, options);
     return;
@@ -313,12 +323,22 @@ void add_study(CLI::App& app, Options& options) {
       [&study](const std::string& text) { std::tie(study.shard, study.shards) = parse_shard("--shard", text); });
   add_switch(app, {"--fresh", "", "start over: what an earlier study left in the folder goes; default: go on where it stopped", kStudy},
              study.fresh);
-  add_repeatable(app, {"--case", "NAME|FILE", "of `limn study stability`: only this case, or one more from a file; repeatable", kStudy},
+  add_cases(app, options, kHidden);
+}
+
+void add_cases(CLI::App& app, Options& options, const char* group) {
+  StudyOptions& study = options.study;
+  add_repeatable(app, {"--case", "NAME|FILE", "only this case, or one more from a file (.toml); repeatable", group},
                  [&study](const std::string& text) { study.cases.push_back(text); });
-  add(app, {"--seed", "N", "of `limn study stability`: where its random parameters start; default 1", kStudy},
+  add(app, {"--seed", "N", "where the cases' random parameters start; default 1", group},
       [&study](const std::string& text) { study.seed = static_cast<std::uint64_t>(parse_integer("--seed", text, 0, 2'000'000'000)); });
-  add(app, {"--draws", "N", "of `limn study stability`: draws of each case's random parameters, 1..10000; default: the case's own", kStudy},
+  add(app, {"--draws", "N", "draws of each case's random parameters, 1..10000; default: the case's own", group},
       [&study](const std::string& text) { study.draws = parse_integer("--draws", text, 1, 10'000); });
+}
+
+void add_stability(CLI::App& app, Options& options) {
+  add_cases(app, options, kStability);
+  add_compared_surfaces(app, options);
 }
 
 void add_plan(CLI::App& app, Options& options) {

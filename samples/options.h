@@ -29,7 +29,7 @@ struct StudyOptions {
   std::optional<std::int64_t> max_bytes;     ///< Of one model; from --max-memory.
   int shard = 1, shards = 1;                 ///< Part `shard` of `shards`, from 1.
   std::vector<std::filesystem::path> parts;  ///< Folders to merge.
-  std::vector<std::string> cases;            ///< Of `limn study stability`: names or files; empty: all.
+  std::vector<std::string> cases;            ///< Of `limn stability`: names or files; empty: all.
   std::optional<std::uint64_t> seed;         ///< Of its random parameters.
   std::optional<int> draws;                  ///< Of them, for each case.
 };
@@ -113,6 +113,8 @@ void add_limits(CLI::App& app, Options& options);
 /// What `limn study` sweeps, how it is shared out and where it starts again; the folders of `limn merge`.
 void add_study(CLI::App& app, Options& options);
 void add_parts(CLI::App& app, Options& options);
+/// Which cases `limn stability` runs, with what random parameters, on which surfaces.
+void add_stability(CLI::App& app, Options& options);
 /// --tolerance, --metric and --budget.
 void add_plan(CLI::App& app, Options& options);
 

@@ -183,7 +183,10 @@ int run(const Options& given) {
   Options options = given;
   const ThreadLimit threads(options.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
-  if (options.input == kStabilityInput) return study_stability(options, bar);
+  if (options.input == kStabilityInput) {
+    if (!options.quiet) print_note("limn study stability is now limn stability; the next version no longer takes it so");
+    return study_stability(options, bar);
+  }
   refuse_stability_options(options);
   input_kind(options.input);
   if (!options.outputs.empty()) check_output_folder(options.outputs.back(), options);
@@ -224,8 +227,7 @@ Command study_command() {
           "study that was stopped goes on where it stopped",
           "  limn study tilted_torus\n"
           "  limn study cow.obj --levels 0..6 --normals vertex,limit --views 12\n"
-          "  limn study teacup --methods rim,sobel --thresholds 0.2,0.4 --shard 2/8 -o teacup-study\n"
-          "  limn study stability    (where methods are known to fail: what holds there, as a page; exit code 1 where something is wrong)",
+          "  limn study teacup --methods rim,sobel --thresholds 0.2,0.4 --shard 2/8 -o teacup-study",
           add_options,
           run,
           true};

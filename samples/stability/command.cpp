@@ -32,8 +32,7 @@ void refuse_others(const Options& options) {
                                                 {options.scheme.has_value(), "--scheme"},
                                                 {!options.grids.empty(), "--grid"}};
   for (const auto& [is_given, name] : given) {
-    if (is_given)
-      throw InputError({"", name, "", "the cases of this study set it themselves; copy a case, change it and give it as --case FILE", ""});
+    if (is_given) throw InputError({"", name, "", "the cases set it themselves; copy a case, change it and give it as --case FILE", ""});
   }
 }
 
@@ -53,7 +52,7 @@ std::string summary(const StabilityResults& results) {
   text += "\n";
   for (const StabilityCell& cell : results.cells) {
     if (cell.outcome != StabilityOutcome::wrong) continue;
-    text += fmt::format("wrong: {}, {}{}: {}\n       again: limn study stability --case {} --seed {}\n", cell.case_name, cell.surface,
+    text += fmt::format("wrong: {}, {}{}: {}\n       again: limn stability --case {} --seed {}\n", cell.case_name, cell.surface,
                         cell.method.empty() ? "" : ", " + cell.method, cell.message, cell.case_name, cell.seed);
   }
   return text;
@@ -93,8 +92,7 @@ int study_stability(const Options& options, ProgressBar& bar) {
 void refuse_stability_options(const Options& options) {
   const StudyOptions& study = options.study;
   const char* given = !study.cases.empty() ? "--case" : study.seed ? "--seed" : study.draws ? "--draws" : nullptr;
-  if (given != nullptr)
-    throw InputError({"", given, "", "only limn study stability takes it: limn study stability " + std::string(given) + " …", ""});
+  if (given != nullptr) throw InputError({"", given, "", "only limn stability takes it: limn stability " + std::string(given) + " …", ""});
 }
 
 }  // namespace limn

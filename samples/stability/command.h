@@ -1,5 +1,5 @@
 #pragma once
-// `limn study stability`.
+// `limn stability`.
 
 #include "samples/options.h"
 #include "samples/progress.h"

@@ -1,4 +1,4 @@
-// report.html of `limn study stability`: one file with everything in it, that asks for nothing and no one.
+// report.html of `limn stability`: one file with everything in it, that asks for nothing and no one.
 
 #include "samples/stability/page.h"
 
@@ -103,7 +103,7 @@ std::string stability_page(const StabilityResults& results, const std::filesyste
   html += "<h2 id=\"matrix-title\">Cases and methods</h2>\n" + stability_matrix_html(results, marks);
   html += "<h2>What did not hold</h2>\n" + stability_list_html(results, marks);
   html += fmt::format(
-      "<details><summary>How this was made</summary><p><code>limn study stability --seed {}</code>, limn {}. Random parameters are drawn "
+      "<details><summary>How this was made</summary><p><code>limn stability --seed {}</code>, limn {}. Random parameters are drawn "
       "from the seed; each case's own stands with its marks.</p></details>\n</main>\n",
       results.seed, stability_json(results)["version"].get<std::string>());
   html += kPanel;

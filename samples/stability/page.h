@@ -1,5 +1,5 @@
 #pragma once
-// The page that shows what `limn study stability` found: methods across, cases down, with the pictures.
+// The page that shows what `limn stability` found: methods across, cases down, with the pictures.
 
 #include <filesystem>
 #include <string>

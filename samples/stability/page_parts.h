@@ -1,5 +1,5 @@
 #pragma once
-// Internal: what the page of `limn study stability` is made of.
+// Internal: what the page of `limn stability` is made of.
 
 #include <map>
 #include <string>

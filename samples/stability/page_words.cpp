@@ -55,7 +55,7 @@ std::string number_text(const StabilityCell& cell) {
 std::string short_number(const StabilityCell& cell) { return std::isfinite(cell.number) ? fmt::format("{:.2g}", cell.number) : ""; }
 
 std::string command_of(const StabilityCell& cell) {
-  return fmt::format("limn study stability --case {} --seed {} --draws {}", cell.case_name, cell.seed, cell.draw + 1);
+  return fmt::format("limn stability --case {} --seed {} --draws {}", cell.case_name, cell.seed, cell.draw + 1);
 }
 
 std::vector<StabilityMark> stability_marks(const StabilityResults& results) {

@@ -1,5 +1,5 @@
 #pragma once
-// What `limn study stability` found out: one cell for each case, surface and method. results.json is this and nothing else.
+// What `limn stability` found out: one cell for each case, surface and method. results.json is this and nothing else.
 
 #include <array>
 #include <cstdint>
@@ -44,7 +44,7 @@ struct StabilityCell {
   std::string message{};                                     ///< What was found where, or the reason.
   std::vector<std::string> said{};                           ///< Notes, warnings and audit: what the program said of it itself.
   std::string picture{};                                     ///< Of the worst view, relative to results.json; empty: there is none.
-  std::uint64_t seed = 0;                                    ///< `limn study stability --case NAME --seed SEED` runs the cell again.
+  std::uint64_t seed = 0;                                    ///< `limn stability --case NAME --seed SEED` runs the cell again.
   std::vector<std::pair<std::string, double>> parameters{};  ///< As drawn.
 };
 

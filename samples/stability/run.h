@@ -1,5 +1,5 @@
 #pragma once
-// `limn study stability`: all cells of a corpus.
+// `limn stability`: all cells of a corpus.
 
 #include <filesystem>
 

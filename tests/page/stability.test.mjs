@@ -106,7 +106,7 @@ async function aMarkOpensWithEverythingAboutIt({ page }, results) {
     for (const part of [cell.outcome, cell.message, cell.method, ...cell.said, cell.command]) {
       assert.ok(text.replace(/\s+/g, " ").includes(part.replace(/\s+/g, " ").trim()), `"${part}" is not told`);
     }
-    assert.match(cell.command, new RegExp(`^limn study stability --case ${cell.case} --seed ${cell.seed}\\b`));
+    assert.match(cell.command, new RegExp(`^limn stability --case ${cell.case} --seed ${cell.seed}\\b`));
     if (cell.number !== null) assert.match(text, /bound/);
     for (const image of await page.$$("#panel img")) {
       await image.evaluate(one => one.decode());

@@ -11,13 +11,13 @@ TEST(Call, AloneItPrintsUsageAndSucceeds) {
   const RunResult result = run_limn({});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_TRUE(result.err.empty()) << result.err;
-  for (const char* command : {"render", "compare", "study", "plan", "export", "info", "merge", "list"})
+  for (const char* command : {"render", "compare", "study", "plan", "stability", "export", "info", "merge", "list"})
     EXPECT_NE(result.out.find(command), std::string::npos) << command;
   EXPECT_EQ(run_limn({"--help"}).out, result.out);
 }
 
 TEST(Call, HelpOfEveryCommandHasGroupsDefaultsAndAnExample) {
-  for (const std::string command : {"render", "compare", "study", "plan", "export", "info", "merge", "list"}) {
+  for (const std::string command : {"render", "compare", "study", "plan", "stability", "export", "info", "merge", "list"}) {
     const RunResult result = run_limn({command, "--help"});
     EXPECT_EQ(result.exit_code, 0) << command;
     EXPECT_TRUE(result.err.empty()) << result.err;

@@ -58,7 +58,7 @@ const std::vector<std::string>& rows() {
 }
 
 std::string words_of(const StabilityCell& cell) {
-  return fmt::format("{} on {}{}: {}; again: limn study stability --case {} --seed {} --draws {}", cell.case_name, cell.surface,
+  return fmt::format("{} on {}{}: {}; again: limn stability --case {} --seed {} --draws {}", cell.case_name, cell.surface,
                      cell.method.empty() ? "" : " by " + cell.method, cell.message, cell.case_name, cell.seed, cell.draw + 1);
 }
 
@@ -225,10 +225,10 @@ TEST(StabilityCommand, FailsWhereACellIsWrongAndWritesItsRecords) {
   const TemporaryFolder folder;
   const std::string good = folder.write("good.toml", cube_case("no_false_lines", kRim + "bound = 1e9"));
   const std::string bad = folder.write("bad.toml", cube_case("no_false_lines", kRim + "bound = 1"));
-  const RunResult fine = run_limn({"study", "stability", "--case", good, "-o", folder.file("out"), "--json"});
+  const RunResult fine = run_limn({"stability", "--case", good, "-o", folder.file("out"), "--json"});
   EXPECT_EQ(fine.exit_code, 0) << fine.err;
   EXPECT_EQ(fine.json().at("counts").at("held"), 1);
-  const RunResult wrong = run_limn({"study", "stability", "--case", good, "--case", bad, "-o", folder.file("out"), "--seed", "7"});
+  const RunResult wrong = run_limn({"stability", "--case", good, "--case", bad, "-o", folder.file("out"), "--seed", "7"});
   EXPECT_EQ(wrong.exit_code, 1) << wrong.err;
   EXPECT_NE(wrong.out.find("wrong: bad, analytic, rim"), std::string::npos) << wrong.out;
   EXPECT_NE(wrong.out.find("--seed 7"), std::string::npos) << wrong.out;
@@ -240,13 +240,22 @@ TEST(StabilityCommand, FailsWhereACellIsWrongAndWritesItsRecords) {
       EXPECT_TRUE(cell.contains(key)) << key;
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / std::string(cell.at("picture")))) << cell.at("picture");
   }
-  EXPECT_EQ(run_limn({"study", "stability", "--case", good, "-o", folder.file("out"), "-q"}).out, "");
+  EXPECT_EQ(run_limn({"stability", "--case", good, "-o", folder.file("out"), "-q"}).out, "");
+}
+
+TEST(StabilityCommand, IsStillTakenAsAStudyWithAHint) {
+  const TemporaryFolder folder;
+  const std::string good = folder.write("good.toml", cube_case("no_false_lines", kRim + "bound = 1e9"));
+  const RunResult old = run_limn({"study", "stability", "--case", good, "-o", folder.file("out")});
+  EXPECT_EQ(old.exit_code, 0) << old.err;
+  EXPECT_NE(old.err.find("is now limn stability"), std::string::npos) << old.err;
 }
 
 TEST(StabilityCommand, RefusesWhatDoesNotBelongToIt) {
+  EXPECT_EQ(run_limn({"stability", "--levels", "2"}).exit_code, 2);
   EXPECT_EQ(run_limn({"study", "stability", "--levels", "2"}).exit_code, 2);
   EXPECT_EQ(run_limn({"study", "ellipsoid", "--case", "cube_faces"}).exit_code, 2);
-  const RunResult unknown = run_limn({"study", "stability", "--case", "cube_face"});
+  const RunResult unknown = run_limn({"stability", "--case", "cube_face"});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_NE(unknown.err.find("'cube_faces'"), std::string::npos) << unknown.err;
 }

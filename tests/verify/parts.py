@@ -15,7 +15,7 @@ BUILDING = ("fuzz", "asan", "tsan", "scalar", "coverage")
 def command(name, limn, out, result, quick, again):
     python = sys.executable
     if name == "stability":
-        return [limn, "study", "stability", "-o", out / "stability", "--quiet"]
+        return [limn, "stability", "-o", out / "stability", "--quiet"]
     if name == "mutants":
         return [python, TESTS / "damage" / "mutants.py", limn, out / "mutants", "--count", "20" if quick else "200", "--json", result]
     if name == "kills":

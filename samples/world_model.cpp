@@ -31,10 +31,14 @@ Mesh local_mesh(const SceneObject& object, const SurfaceSettings& settings, bool
   if (const auto* source = std::get_if<MeshSource>(&object.source)) {
     if (!source->scheme && !settings.scheme) return source->mesh;
     const Scheme scheme = settings.scheme ? *settings.scheme : *source->scheme;
-    Mesh refined =
-        refine(source->mesh,
-               {.scheme = scheme, .level = level, .to_limit = !refined_positions, .normals = normals, .max_bytes = settings.max_bytes},
-               source->file);
+    Mesh refined = refine(source->mesh,
+                          {.scheme = scheme,
+                           .level = level,
+                           .to_limit = !refined_positions,
+                           .normals = normals,
+                           .max_bytes = settings.max_bytes,
+                           .keep_holes = refined_positions},
+                          source->file);
     if (refined_positions) return refined;
     // Its vertices lie on the limit surface: whoever subdivided it once more by the tags would get another one.
     refined.creases.clear();
@@ -55,6 +59,7 @@ void append(Mesh& all, const Mesh& part, const std::string& name) {
   const bool colors = (first || !all.vertex_colors.empty()) && !part.vertex_colors.empty();
   const bool materials = (first || !all.face_materials.empty()) && !part.face_materials.empty();
   const auto material_offset = static_cast<std::int32_t>(all.material_names.size());
+  for (const std::int32_t hole : part.holes) all.holes.push_back(static_cast<std::int32_t>(all.face_sizes.size()) + hole);
   all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
   all.face_sizes.insert(all.face_sizes.end(), part.face_sizes.begin(), part.face_sizes.end());
   for (const std::int32_t vertex : part.corner_vertices) all.corner_vertices.push_back(vertex_offset + vertex);

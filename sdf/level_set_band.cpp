@@ -69,20 +69,26 @@ struct Slope {
   bool in_band = true;
 };
 
-Slope slope_at(const Block& block, const glm::ivec3& here, double background) {
-  double squared = 0.0;
+/// What turns differences of values into slopes. `per_side`: of a gradient by index coordinates its change over the smallest side of a
+/// voxel, in whatever direction it points.
+struct Scale {
+  double background = 0.0;
+  glm::dmat3 per_side{1.0};
+};
+
+Slope slope_at(const Block& block, const glm::ivec3& here, const Scale& scale) {
+  glm::dvec3 gradient(0.0);
   Slope slope;
   for (int axis = 0; axis < 3; ++axis) {
     const glm::ivec3 step = step_along(axis);
     slope.in_band = slope.in_band && block.in_band(here + step) && block.in_band(here - step);
-    const double difference = 0.5 * (static_cast<double>(block.value(here + step)) - static_cast<double>(block.value(here - step)));
-    squared += difference * difference;
+    gradient[axis] = 0.5 * (static_cast<double>(block.value(here + step)) - static_cast<double>(block.value(here - step)));
   }
-  slope.value = kSlopeUnits * std::min(1000.0, std::sqrt(squared) / background);
+  slope.value = kSlopeUnits * std::min(1000.0, glm::length(scale.per_side * gradient) / scale.background);
   return slope;
 }
 
-void count_crossings(const Block& block, const glm::ivec3& here, const glm::dvec3& node, double background, Counts& found) {
+void count_crossings(const Block& block, const glm::ivec3& here, const glm::dvec3& node, const Scale& scale, Counts& found) {
   const double a = static_cast<double>(block.value(here));
   for (int axis = 0; axis < 3; ++axis) {
     const double b = static_cast<double>(block.value(here + step_along(axis)));
@@ -90,7 +96,7 @@ void count_crossings(const Block& block, const glm::ivec3& here, const glm::dvec
     glm::dvec3 crossing = node;
     crossing[axis] += a / (a - b);
     found.crossings = include(found.crossings, crossing);
-    const Slope slope = slope_at(block, here, background);
+    const Slope slope = slope_at(block, here, scale);
     const size_t kind = slope.in_band ? 0 : 1;
     found.slope_sum[kind] += static_cast<std::int64_t>(slope.value);
     ++found.slope_count[kind];
@@ -151,20 +157,20 @@ std::uint32_t before_crossing(const NodeWindow& nodes, size_t x, size_t y) {
   return bits;
 }
 
-void count_nodes(const Block& block, const glm::dvec3& origin, double background, Counts& found) {
+void count_nodes(const Block& block, const glm::dvec3& origin, const Scale& scale, Counts& found) {
   for (size_t x = 0; x < 8; ++x)
     for (size_t y = 0; y < 8; ++y) {
       const std::uint32_t active = block.active[x + 2][y + 2] >> 2 & 0xffu;
       const std::uint32_t edge = at_edge_of_band(block.active, x + 2, y + 2) >> 2 & 0xffu;
       const auto place = [&](std::uint32_t bits) { return glm::ivec3(x, y, std::countr_zero(bits)); };
       for (std::uint32_t bits = before_crossing(block.nodes, x + 1, y + 1); bits != 0; bits &= bits - 1)
-        count_crossings(block, place(bits), origin + glm::dvec3(place(bits)), background, found);
-      for (std::uint32_t bits = edge; bits != 0; bits &= bits - 1) count_widths(block, place(bits), background, found);
+        count_crossings(block, place(bits), origin + glm::dvec3(place(bits)), scale, found);
+      for (std::uint32_t bits = edge; bits != 0; bits &= bits - 1) count_widths(block, place(bits), scale.background, found);
       found.active += std::popcount(active);
       for (std::uint32_t bits = active; bits != 0; bits &= bits - 1) {
         const double size = std::abs(static_cast<double>(block.value(place(bits))));
         found.largest = std::max(found.largest, size);
-        if (size < 0.5 * background) count_near(block, place(bits), found);
+        if (size < 0.5 * scale.background) count_near(block, place(bits), found);
       }
     }
 }
@@ -176,12 +182,12 @@ std::int64_t count_of(const CrossedCells& cells) {
   return count;
 }
 
-void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, double background, Counts& found) {
+void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, const Scale& scale, Counts& found) {
   const LeafWindow window(accessor, origin);
   Block block;
   load_nodes(window, block.nodes);
   block.active = active_rows(window);
-  count_nodes(block, glm::dvec3(origin[0], origin[1], origin[2]), background, found);
+  count_nodes(block, glm::dvec3(origin[0], origin[1], origin[2]), scale, found);
   const CrossedCells crossed = cells_crossed(block.nodes);
   if (!crossed.any) return;
   found.crossed_cells += count_of(crossed);
@@ -190,14 +196,14 @@ void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, dou
     found.lacking[k++] += count_of(cells_outside(crossed, block.active, gradient.stencil));
 }
 
-Counts count_blocks(const nanovdb::FloatGrid& grid) {
+Counts count_blocks(const nanovdb::FloatGrid& grid, const glm::dmat3& per_side) {
   const std::vector<nanovdb::Coord> blocks = blocks_with_cells(grid);
-  const double background = std::abs(static_cast<double>(grid.tree().background()));
+  const Scale scale{std::abs(static_cast<double>(grid.tree().background())), per_side};
   return parallel_reduce(
       blocks.size(), size_t{64}, Counts{},
       [&](const IndexRange<size_t>& range, Counts found) {
         const NanoAccessor accessor = grid.getAccessor();
-        for (size_t i = range.begin(); i < range.end(); ++i) count_block(accessor, blocks[i], background, found);
+        for (size_t i = range.begin(); i < range.end(); ++i) count_block(accessor, blocks[i], scale, found);
         return found;
       },
       [](Counts a, const Counts& b) {
@@ -320,9 +326,9 @@ CrossedCells cells_outside(const CrossedCells& crossed, const ActiveRows& rows, 
   return result;
 }
 
-BandSurvey survey_band(const nanovdb::FloatGrid& grid, double voxel_size) {
+BandSurvey survey_band(const nanovdb::FloatGrid& grid, const glm::dmat3& world_from_index, double voxel_size) {
   LIMN_CHECK(gradients().size() <= kMostGradients);
-  const Counts found = count_blocks(grid);
+  const Counts found = count_blocks(grid, voxel_size * glm::transpose(glm::inverse(world_from_index)));
   const double background = std::abs(static_cast<double>(grid.tree().background()));
   BandSurvey survey;
   survey.active = found.active;

@@ -15,7 +15,7 @@ struct BandSurvey {
 };
 
 /// `voxel_size`: by how much a distance's values change over a voxel.
-BandSurvey survey_band(const nanovdb::FloatGrid& grid, double voxel_size);
+BandSurvey survey_band(const nanovdb::FloatGrid& grid, const glm::dmat3& world_from_index, double voxel_size);
 
 /// Where cells that the surface crosses may start: the leaves, and the blocks of tiles before them whose last cells have nodes in a leaf of
 /// another sign. In the order of the leaves, each once.

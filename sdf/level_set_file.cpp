@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 GuardLimits limits_for(const fs::path& file) {
   const auto bytes = static_cast<std::int64_t>(fs::file_size(file));
   GuardLimits limits;
-  limits.memory_bytes = std::clamp<std::int64_t>((std::int64_t{1} << 30) + 32 * bytes, 0, std::int64_t{64} << 30);
+  limits.memory_bytes = std::clamp<std::int64_t>((std::int64_t{2} << 30) + 64 * bytes, 0, std::int64_t{64} << 30);
   limits.answer_bytes = limits.memory_bytes / 2;
   limits.time = std::chrono::seconds(20 + bytes / 4'000'000);
   return limits;

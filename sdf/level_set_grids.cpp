@@ -14,7 +14,7 @@ std::vector<GridSummary> level_sets_among(const std::vector<GridSummary>& grids)
   for (const char* grid_class : {"level set", "unknown"}) {
     for (const GridSummary& grid : grids)
       if (grid.grid_class == grid_class && std::find(std::begin(kReadable), std::end(kReadable), grid.value_type) != std::end(kReadable) &&
-          (found.empty() || found.front().grid_class == grid_class) && (grid.grid_class == "level set" || grid.active_voxels > 0))
+          (found.empty() || found.front().grid_class == grid_class) && (grid.grid_class == "level set" || grid.active_voxels != 0))
         found.push_back(grid);
   }
   return found;

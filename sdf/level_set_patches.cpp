@@ -183,8 +183,11 @@ SurfacePatches surface_patches(const LevelSet& level_set, const GradientDescript
     std::vector<glm::dmat3> hessians(points.size());
     gradient.gradients(data, points, slopes);
     bends_at(level_set, gradient, points, hessians);
-    for (size_t k = 0; k < points.size(); ++k)
-      parts[i].push_back(patch_of(points[k], slopes[k], hessians[k], target_from_world, world_from_target, result.reach));
+    for (size_t k = 0; k < points.size(); ++k) {
+      const SurfacePatch patch = patch_of(points[k], slopes[k], hessians[k], target_from_world, world_from_target, result.reach);
+      // Where surfaces touch, slopes cancel: without a normal there is no patch, and its neighbours stand for it.
+      if (patch.normal != glm::vec3(0.0f)) parts[i].push_back(patch);
+    }
   });
   for (const std::vector<SurfacePatch>& part : parts) result.patches.insert(result.patches.end(), part.begin(), part.end());
   return result;

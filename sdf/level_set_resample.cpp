@@ -332,6 +332,8 @@ ResampledLevelSet resampled(const LevelSet& source, const LevelSetSettings& sett
   data->file.value_type = source.data().file.value_type;
   data->file.metadata = source.data().file.metadata;
   data->file.of_file = source.data().file.of_file;
+  // What is wrong with the file is wrong with what is made of it.
+  data->info.warnings.insert(data->info.warnings.begin(), source.info().warnings.begin(), source.info().warnings.end());
   ResampledLevelSet made{LevelSet(data)};
   made.own_voxel = from.voxel;
   made.build_ms = since_ms(started);

@@ -46,12 +46,19 @@ class Archive : public openvdb::io::Archive {
   bool has_voxels() const { return !inputHasGridOffsets(); }
 
   openvdb::GridBase::Ptr read_voxels(const Entry& entry) {
-    if (has_voxels()) return entry.grid;
+    if (has_voxels() && !entry.descriptor.isInstance()) return entry.grid;
     const Entry& source = entry.descriptor.isInstance() ? parent_of(entry) : entry;
-    const openvdb::GridBase::Ptr voxels = source.grid->copyGridWithNewTree();
-    voxels->clearMetadata();
-    source.descriptor.seekToGrid(stream_);
-    readGrid(voxels, source.descriptor, stream_);
+    openvdb::GridBase::Ptr voxels;
+    if (has_voxels()) {
+      voxels = source.grid->deepCopyGrid();
+    } else {
+      // A grid before this one may have been broken.
+      stream_.clear();
+      voxels = source.grid->copyGridWithNewTree();
+      voxels->clearMetadata();
+      source.descriptor.seekToGrid(stream_);
+      readGrid(voxels, source.descriptor, stream_);
+    }
     voxels->clearMetadata();
     for (auto meta = entry.grid->beginMeta(); meta != entry.grid->endMeta(); ++meta)
       if (meta->second) voxels->insertMeta(meta->first, *meta->second);
@@ -107,10 +114,10 @@ std::string class_name(const openvdb::GridBase& grid) {
 }
 
 std::int64_t voxel_count(const Archive& archive, const Archive::Entry& entry) {
-  if (archive.has_voxels()) return static_cast<std::int64_t>(entry.grid->activeVoxelCount());
   const Archive::Entry& filed = entry.descriptor.isInstance() ? archive.parent_of(entry) : entry;
+  if (archive.has_voxels()) return static_cast<std::int64_t>(filed.grid->activeVoxelCount());
   const auto stored = filed.grid->getMetadata<openvdb::Int64Metadata>(openvdb::GridBase::META_FILE_VOXEL_COUNT);
-  return stored ? stored->value() : 0;
+  return stored ? stored->value() : -1;
 }
 
 StoredGrid stored(const Archive& archive, const Archive::Entry& entry) {

@@ -23,14 +23,6 @@ openvdb::FloatGrid::Ptr thaw(const LevelSet& level_set) {
   initialize_openvdb();
   // The typed overload: the one on handles would instantiate every grid type there is.
   openvdb::FloatGrid::Ptr grid = nanovdb::nanoToOpenVDB(*level_set.data().handle.grid<float>(), 0);
-  const Affine& map = level_set.info().world_from_index;
-  openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
-  // OpenVDB multiplies row vectors from the left: its rows are our columns.
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int k = 0; k < 3; ++k) matrix(axis, k) = map.linear[axis][k];
-    matrix(3, axis) = map.translation[axis];
-  }
-  grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   grid->setName(level_set.info().name);
   return grid;

@@ -1,5 +1,7 @@
+#include <fmt/format.h>
 #include <openvdb/io/File.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "sdf/error.h"
@@ -48,6 +50,30 @@ openvdb::DoubleGrid::Ptr with_doubles(const openvdb::FloatGrid& grid, const std:
   return doubles;
 }
 
+/// Voxels of our own may be smaller than OpenVDB's transforms can be.
+openvdb::math::Transform::Ptr transform_of(const LevelSetInfo& info) {
+  const Affine& map = info.world_from_index;
+  constexpr double kLeastDeterminant = 1e-14;
+  if (!(std::abs(glm::determinant(map.linear)) > kLeastDeterminant))
+    throw InputError({{},
+                      "voxel size",
+                      fmt::format("{:.3g}", info.voxel_size),
+                      "a .vdb file cannot hold voxels as small as this",
+                      "voxels of 3e-5 or more: scale the scene up"});
+  openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
+  // OpenVDB multiplies row vectors from the left: its rows are our columns.
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int k = 0; k < 3; ++k) matrix(axis, k) = map.linear[axis][k];
+    matrix(3, axis) = map.translation[axis];
+  }
+  return openvdb::math::Transform::createLinearTransform(matrix);
+}
+
+/// Half precision ends at 65504, and near 0 it is coarser than a thousandth of such a voxel.
+bool fits_half(const openvdb::FloatGrid& grid, double voxel_size) {
+  return std::abs(static_cast<double>(grid.background())) < 65504.0 && voxel_size > 1e-4;
+}
+
 /// A grid as it is filed: of its value type and with its metadata.
 openvdb::GridBase::Ptr filed(const LevelSet& level_set) {
   const GridFile& file = level_set.data().file;
@@ -56,8 +82,9 @@ openvdb::GridBase::Ptr filed(const LevelSet& level_set) {
       file.value_type == "double" ? openvdb::GridBase::Ptr(with_doubles(*grid, file.doubles)) : openvdb::GridBase::Ptr(grid);
   add_metadata(file.metadata, *result);
   result->setName(level_set.info().name);
+  result->setTransform(transform_of(level_set.info()));
   result->setGridClass(openvdb::GRID_LEVEL_SET);
-  if (file.value_type == "half") result->setSaveFloatAsHalf(true);
+  if (file.value_type == "half" && fits_half(*grid, level_set.info().voxel_size)) result->setSaveFloatAsHalf(true);
   return result;
 }
 

@@ -101,7 +101,16 @@ openvdb::GridBase::Ptr converted(const Handle& handle) {
   if (grid == nullptr) refuse("", "", "cannot be read as a volume: its table and its grid differ in type", "an undamaged .nvdb");
   const std::string fault = nanovdb::GridValidator<Value>::check(*grid, true);
   if (!fault.empty()) refuse("", "", "cannot be read as a volume: " + fault, "an undamaged .nvdb");
-  return nanovdb::NanoToOpenVDB<Value>{}(*grid);
+  const auto result = nanovdb::NanoToOpenVDB<Value>{}(*grid);
+  // NanoVDB's converter takes the map's matrix transposed, which turns a rotated grid the other way round.
+  const nanovdb::Map& map = reinterpret_cast<const nanovdb::GridData*>(grid)->mMap;
+  openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
+  // OpenVDB multiplies row vectors from the left: its rows are NanoVDB's columns.
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) matrix(column, row) = map.mMatD[3 * row + column];
+  matrix.setTranslation(openvdb::Vec3d(map.mVecD));
+  result->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+  return result;
 }
 
 openvdb::GridBase::Ptr read_one(std::istream& stream, const Place& place) {

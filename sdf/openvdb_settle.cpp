@@ -14,7 +14,7 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 // Values this near to the background, and beyond it, are no distances.
 constexpr float kWithin = 0.999f;
 // Of constant regions in the band as leaves: more would be no band.
-constexpr openvdb::Index64 kMostTileVoxels = openvdb::Index64{1} << 27;
+constexpr openvdb::Index64 kMostTileVoxels = openvdb::Index64{1} << 25;
 // Constants that tools leave outside the band are few; distances there are many.
 constexpr size_t kManyValues = 16;
 constexpr openvdb::Index64 kLookedAt = 4096;
@@ -88,16 +88,24 @@ void seal_tiles(openvdb::FloatGrid& grid, std::span<const VdbTile> inside) {
   if (!grid.tree().evalLeafBoundingBox(leaves)) return;
   leaves.expand(8);
   const openvdb::FloatGrid::ConstAccessor accessor = grid.getConstAccessor();
+  // A torn band is sealed by about as many leaves as it has: what would take many more is no band, and nothing is worth its time.
+  const size_t most = 4 * static_cast<size_t>(grid.tree().leafCount()) + 4096;
+  size_t looked_at = 0;
   for (const VdbTile& tile : inside) {
     const int last = blocks_to_a_side(tile) - 1;
-    if (!leaves.hasOverlap(openvdb::CoordBBox::createCube(openvdb::Coord(tile.origin.x, tile.origin.y, tile.origin.z), 8 * (last + 1))))
-      continue;
-    for (int x = 0; x <= last; ++x)
-      for (int y = 0; y <= last; ++y) {
+    const openvdb::Coord origin(tile.origin.x, tile.origin.y, tile.origin.z);
+    openvdb::CoordBBox within = openvdb::CoordBBox::createCube(origin, 8 * (last + 1));
+    within.intersect(leaves);
+    if (within.empty()) continue;
+    const openvdb::Coord from = (within.min() - origin) >> 3, to = (within.max() - origin) >> 3;
+    for (int x = from.x(); x <= to.x(); ++x)
+      for (int y = from.y(); y <= to.y(); ++y) {
         const bool side = x == 0 || y == 0 || x == last || y == last;
-        for (int z = 0; z <= last; z += side || last == 0 ? 1 : last) {
-          const openvdb::Coord block(tile.origin.x + 8 * x, tile.origin.y + 8 * y, tile.origin.z + 8 * z);
-          if (leaves.isInside(block) && touches_outside(accessor, block)) found.push_back(block);
+        for (int z = from.z(); z <= to.z(); ++z) {
+          if (!side && z != 0 && z != last) continue;
+          const openvdb::Coord block = origin.offsetBy(8 * x, 8 * y, 8 * z);
+          if (++looked_at > 64 * most || found.size() > most) return;
+          if (touches_outside(accessor, block)) found.push_back(block);
         }
       }
   }

@@ -19,13 +19,13 @@ struct StoredGrid {
   std::string value_type{};
   std::string grid_class{};  ///< In OpenVDB's words: "level set".
   std::string warped{};      ///< The kind of its transform where that is not linear.
-  std::int64_t voxels = 0;   ///< Active ones.
+  std::int64_t voxels = 0;   ///< Active ones; -1 where the file does not say.
   double voxel_size = 0.0;   ///< The smallest of the three.
   bool is_distance = false;  ///< Of a value type that distances can be read from.
 
   bool is_level_set() const { return grid_class == "level set" && is_distance; }
   /// Grids made by scripts often have no class; their values tell.
-  bool may_be_level_set() const { return grid_class == "unknown" && is_distance && voxels > 0; }
+  bool may_be_level_set() const { return grid_class == "unknown" && is_distance && voxels != 0; }
 };
 
 struct StoredGrids {

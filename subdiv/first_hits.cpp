@@ -159,9 +159,10 @@ std::vector<SegmentHit> first_hits(const TriangleMesh& mesh, std::span<const Seg
   std::vector<SegmentHit> nearest(rays.size());
   if (rays.empty()) return nearest;
   const Box within = parallel_reduce(
-      mesh.positions.size(), size_t{4096}, Box{},
+      mesh.triangles.size(), size_t{4096}, Box{},
       [&](const IndexRange<size_t>& part, Box box) {
-        for (size_t i = part.first; i < part.last; ++i) box = include(box, mesh.positions[i]);
+        for (size_t i = part.first; i < part.last; ++i)
+          for (int k = 0; k < 3; ++k) box = include(box, mesh.positions[mesh.triangles[i][k]]);
         return box;
       },
       [](const Box& a, const Box& b) { return merge(a, b); });

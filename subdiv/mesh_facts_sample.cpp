@@ -83,6 +83,7 @@ Mesh mesh_of_faces(const Mesh& mesh, const std::vector<std::int32_t>& first, con
 }  // namespace
 
 MeshFacts sampled_mesh_facts(const Mesh& mesh, size_t count) {
+  if (!mesh.holes.empty()) return sampled_mesh_facts(without_holes(mesh), count);
   count = std::min(count, mesh.face_count());
   const std::vector<std::int32_t> first = first_corners(mesh);
   std::vector<std::int32_t> faces;

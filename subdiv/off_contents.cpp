@@ -10,11 +10,18 @@
 namespace limn {
 namespace {
 
+/// Real colours may be brighter than white, if not by as much.
+constexpr double kMostReal = 16.0;
+
 /// Whole numbers up to 255, or real ones up to 1; both as a screen shows them.
 void take_colors(OffContents& contents) {
   double largest = 0.0;
-  for (const glm::dvec3& color : contents.colors) largest = std::max({largest, color.x, color.y, color.z});
-  const double white = largest > 1.0 ? 255.0 : 1.0;
+  bool whole = true;
+  for (const glm::dvec3& color : contents.colors) {
+    largest = std::max({largest, color.x, color.y, color.z});
+    whole = whole && color == glm::floor(color);
+  }
+  const double white = largest > kMostReal || (whole && largest > 1.0) ? 255.0 : 1.0;
   for (const glm::dvec3& color : contents.colors) {
     glm::vec3 linear;
     for (int k = 0; k < 3; ++k) {

@@ -30,7 +30,7 @@ std::unique_ptr<Far::TopologyRefiner> make_refiner(const Mesh& clean, Scheme sch
 RefinedSize predict_from_base(const Far::TopologyRefiner& base, Scheme scheme, int level, bool has_colors);
 
 /// Vertices that are corners of faces with a surface (BoundaryRule::none leaves faces at open edges out).
-std::vector<char> used_vertices(const Far::TopologyLevel& level);
+std::vector<char> used_vertices(const Far::TopologyLevel& level, bool holes_too = false);
 
 /// Three numbers that OpenSubdiv's refiner can weigh and add.
 struct WeightedPoint {

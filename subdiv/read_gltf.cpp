@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "subdiv/gltf/primitives.h"
+#include "subdiv/repair_faces.h"
 
 namespace limn {
 namespace {
@@ -25,7 +26,10 @@ void tell_what_is_missing(const Gathered& all, Mesh& mesh) {
        "lists of normals or colours do not fit their vertices and were ignored", mesh);
   if (all.missing_material) mesh.warnings.push_back("some parts name a material that does not exist");
   if (all.textures) mesh.warnings.push_back("textures are not drawn; base colours are");
-  if (all.skins) mesh.warnings.push_back("skins are not applied: the mesh is drawn in its bind pose");
+  if (all.skins)
+    mesh.warnings.push_back(
+        "skins are not applied: their meshes stand where their nodes put them, in the pose of their vertices, which may be another place "
+        "and size");
   if (all.morphs) mesh.warnings.push_back("morph targets are drawn with the file's own weights, animations are not played");
 }
 
@@ -74,6 +78,7 @@ std::optional<Mesh> parse_gltf(std::span<const std::byte> bytes, const std::file
   if (all.mesh.face_sizes.empty()) refuse("", nothing_drawn(all), "a scene with at least one triangle");
   all.mesh.warnings = std::move(document.warnings);
   tell_what_is_missing(all, all.mesh);
+  repair_faces(all.mesh, {});
   keep_what_differs(all);
   return std::move(all.mesh);
 }

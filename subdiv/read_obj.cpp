@@ -36,7 +36,7 @@ class Statements {
     if (at_ >= text_.size()) return false;
     statement = next_line();
     first_line_ = line_;
-    if (!statement.empty() && statement.back() == '\\') {
+    if (!statement.empty() && statement.back() == '\\' && !is_comment(statement)) {
       joined_.clear();
       while (!statement.empty() && statement.back() == '\\') {
         joined_.append(statement.substr(0, statement.size() - 1)).push_back(' ');
@@ -51,6 +51,11 @@ class Statements {
   bool is_unfinished() const { return at_ > text_.size(); }
 
  private:
+  static bool is_comment(std::string_view line) {
+    const size_t first = line.find_first_not_of(" \t");
+    return first != std::string_view::npos && line[first] == '#';
+  }
+  /// Ends at a line feed, a carriage return or both: files that several programs wrote to have all of them.
   std::string_view next_line() {
     const void* found = std::memchr(text_.data() + at_, line_end_, text_.size() - at_);
     const size_t end = found == nullptr ? text_.size() : static_cast<size_t>(static_cast<const char*>(found) - text_.data());
@@ -58,6 +63,11 @@ class Statements {
     at_ = end + 1;
     ++line_;
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    const void* inner = line.empty() ? nullptr : std::memchr(line.data(), '\r', line.size());
+    if (inner != nullptr) {
+      line = line.substr(0, static_cast<size_t>(static_cast<const char*>(inner) - line.data()));
+      at_ = static_cast<size_t>(line.data() - text_.data()) + line.size() + 1;
+    }
     return line;
   }
   std::string_view text_;
@@ -167,14 +177,19 @@ class ObjReader {
     mesh_.positions.emplace_back(values[0], values[1], values[2]);
     if (!std::isfinite(values[0]) || !std::isfinite(values[1]) || !std::isfinite(values[2]))
       refuse("v", fmt::format("{}, {}, {}", values[0], values[1], values[2]), "the position is not a finite number", "finite coordinates");
-    if (count == 6 || count == 7) {
-      const double* rgb = values + count - 3;
-      mesh_.vertex_colors.emplace_back(linear(rgb[0]), linear(rgb[1]), linear(rgb[2]));
-    }
+    // A seventh number is alpha.
+    if (count >= 6) mesh_.vertex_colors.emplace_back(values[3], values[4], values[5]);
     count_elements(1);
   }
 
-  static float linear(double value) { return linear_from_srgb(static_cast<float>(std::clamp(value, 0.0, 1.0))); }
+  /// Up to 1 (brighter than white up to 16), or up to 255; both as a screen shows them.
+  void take_colors() {
+    float largest = 0.0f;
+    for (const glm::vec3& color : mesh_.vertex_colors) largest = std::max({largest, color.r, color.g, color.b});
+    const float white = largest > 16.0f ? 255.0f : 1.0f;
+    for (glm::vec3& color : mesh_.vertex_colors)
+      for (int k = 0; k < 3; ++k) color[k] = linear_from_srgb(std::clamp(color[k] / white, 0.0f, 1.0f));
+  }
 
   void count_elements(std::int64_t more) {
     elements_ += more;
@@ -305,6 +320,7 @@ class ObjReader {
         warn(fmt::format("{} of {} vertices have a colour: none is used", mesh_.vertex_colors.size(), mesh_.vertex_count()));
       mesh_.vertex_colors.clear();
     }
+    take_colors();
     materials_.finish(mesh_.face_count(), mesh_.material_names, mesh_.face_materials);
     groups_.finish(mesh_.face_count(), mesh_.group_names, mesh_.face_groups);
     if (!smoothing_.changes.empty()) mesh_.face_smoothing = smoothing_.of_faces(mesh_.face_count(), 0);

@@ -21,7 +21,7 @@ class OffReader {
     header();
     vertices();
     faces();
-    if (cursor_.skip() && edges_ == 0)
+    if (cursor_.skip() && lines_left() != edges_)
       mesh_.warnings.push_back(fmt::format("line {}: what follows the last of the {} faces that the header announces was ignored",
                                            line_of(text_, cursor_.at()), face_count_));
     return finished(std::move(contents_), file_);
@@ -72,6 +72,14 @@ class OffReader {
     edge_count();
   }
 
+  /// Geomview lets edges follow, a line each.
+  std::int64_t lines_left() const {
+    std::int64_t lines = 0;
+    for (TextCursor ahead = cursor_; ahead.skip(); ++lines)
+      while (!ahead.word_in_line().empty()) continue;
+    return lines;
+  }
+
   /// The number of edges means nothing, and some files leave it out: it is there when it is on the line of the others, or alone on the
   /// next.
   void edge_count() {
@@ -99,6 +107,7 @@ class OffReader {
     // A number and a space take two bytes: what announces more than the file can hold is refused before memory is taken.
     if (vertex_count_ > static_cast<std::int64_t>(text_.size())) break_off("vertices", 0, vertex_count_);
     count(vertex_count_);
+    find_unnamed_colors();
     mesh_.positions.reserve(static_cast<size_t>(vertex_count_));
     std::array<double, 4> v{}, extra{};
     const auto dimension = static_cast<size_t>(dimension_);
@@ -113,6 +122,24 @@ class OffReader {
       if (layout_.color) vertex_color();
       if (layout_.texture) reals(2, extra);
     }
+  }
+
+  /// Some programs write colours under a plain OFF: so it is where every vertex has a line with three or four numbers more.
+  void find_unnamed_colors() {
+    if (layout_.color || layout_.normal || layout_.texture || vertex_count_ == 0) return;
+    const auto own = static_cast<size_t>(dimension_) + (layout_.homogeneous ? 1 : 0);
+    TextCursor ahead = cursor_;
+    size_t first = 0;
+    for (std::int64_t i = 0; i < vertex_count_; ++i) {
+      size_t words = 0;
+      if (!ahead.skip()) return;
+      while (!ahead.word_in_line().empty()) ++words;
+      if (i == 0) first = words;
+      if (words != first || (words != own + 3 && words != own + 4)) return;
+    }
+    layout_.color = true;
+    color_values_ = first - own;
+    mesh_.warnings.push_back(fmt::format("vertices have {} numbers more than 'OFF' announces: read as colours (COFF)", color_values_));
   }
 
   /// Three or four numbers: how many, the rest of the first vertex's line says.

@@ -232,8 +232,9 @@ class PlyBody {
       finish_element(element, i);
       mesh_.positions.emplace_back(v[0], v[1], v[2]);
       if (normals) normals_.push_back(unit(glm::vec3(v[kNormal], v[kNormal + 1], v[kNormal + 2])));
-      if (colors) add_color(v.data() + kColor, scale.data() + kColor);
+      if (colors) add_color(v.data() + kColor);
     }
+    if (colors) take_colors(scale[kColor], mesh_.vertex_colors.size() - static_cast<size_t>(element.count));
   }
 
   static glm::vec3 unit(const glm::vec3& n) {
@@ -241,13 +242,22 @@ class PlyBody {
     return length > 0.0f && std::isfinite(length) ? n / length : glm::vec3(0.0f);
   }
 
-  void add_color(const double* value, const double* largest) {
-    glm::vec3 color;
-    for (int i = 0; i < 3; ++i) {
-      const float shown = static_cast<float>(value[i]) / static_cast<float>(largest[i]);
-      color[i] = linear_from_srgb(std::isfinite(shown) ? std::clamp(shown, 0.0f, 1.0f) : 1.0f);
-    }
-    mesh_.vertex_colors.push_back(color);
+  void add_color(const double* value) { mesh_.vertex_colors.emplace_back(value[0], value[1], value[2]); }
+
+  /// As a screen shows them, up to the largest number of their type; reals beyond 16, and whole numbers of 32 bits, up to 255 where none is
+  /// larger.
+  void take_colors(double largest_of_type, size_t first) {
+    float largest = 0.0f;
+    for (size_t i = first; i < mesh_.vertex_colors.size(); ++i)
+      for (int k = 0; k < 3; ++k) largest = std::max(largest, mesh_.vertex_colors[i][k]);
+    const bool real = largest_of_type == 1.0, wide = largest_of_type > 65535.0;
+    const bool bytes = (real && largest > 16.0f) || (wide && largest <= 255.0f);
+    const float white = bytes ? 255.0f : static_cast<float>(largest_of_type);
+    for (size_t i = first; i < mesh_.vertex_colors.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        const float shown = mesh_.vertex_colors[i][k] / white;
+        mesh_.vertex_colors[i][k] = linear_from_srgb(std::isfinite(shown) ? std::clamp(shown, 0.0f, 1.0f) : 1.0f);
+      }
   }
 
   /// The list of a face's vertices: by its usual names, else the only list of whole numbers that there is.
@@ -295,7 +305,8 @@ class PlyBody {
       if (!values_.next(property.type, value)) break_off(element, index);
       if (value != std::floor(value)) refuse(element, index, value, "is not a vertex number", "whole numbers, counted from 0");
       // Beyond 32 bits no vertex can be: such numbers are out of range whatever they are.
-      to.push_back(static_cast<std::int32_t>(std::clamp(value, -1.0, static_cast<double>(INT32_MAX))));
+      // The largest of unsigned 32 bits is -1 to most: it begins a new strip.
+      to.push_back(value == 4294967295.0 ? -1 : static_cast<std::int32_t>(std::clamp(value, -1.0, static_cast<double>(INT32_MAX))));
     }
     return length;
   }

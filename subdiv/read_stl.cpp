@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "sdf/error.h"
@@ -67,7 +68,13 @@ class StlMesh {
       throw InputError(
           {file_, "", fmt::format("{}", elements_), "more vertices and corners than allowed", fmt::format("at most {}", most_)});
   }
-  void add_corner(const glm::dvec3& p) { mesh.corner_vertices.push_back(welder.vertex(p)); }
+  /// What is no number equals nothing, not even itself: it would never be welded, and be compared with all that came before it.
+  void add_corner(const glm::dvec3& p) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      throw InputError({file_, fmt::format("facet {}", mesh.corner_vertices.size() / 3 + 1), fmt::format("{}, {}, {}", p.x, p.y, p.z),
+                        "the position is not a finite number", "finite coordinates"});
+    mesh.corner_vertices.push_back(welder.vertex(p));
+  }
   Mesh finish() {
     if (mesh.group_names.size() < 2) mesh.group_names.clear(), mesh.face_groups.clear();
     repair_faces(mesh, {.file = file_});

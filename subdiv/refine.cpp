@@ -78,13 +78,16 @@ void copy_tags(const Far::TopologyLevel& level, const std::vector<std::int32_t>&
 }
 
 void copy_faces(const Far::TopologyLevel& level, const std::vector<std::int32_t>& ancestor, const std::vector<std::int32_t>& number,
-                const std::vector<glm::vec3>& normals, const Mesh& cage, Mesh& mesh) {
+                const std::vector<glm::vec3>& normals, const Mesh& cage, bool keep_holes, Mesh& mesh) {
   size_t corner = 0;
   for (int f = 0; f < level.GetNumFaces(); ++f) {
     const Far::ConstIndexArray vertices = level.GetFaceVertices(f);
     const size_t first = corner;
     corner += static_cast<size_t>(vertices.size());
-    if (level.IsFaceHole(f)) continue;
+    if (level.IsFaceHole(f)) {
+      if (!keep_holes) continue;
+      mesh.holes.push_back(static_cast<std::int32_t>(mesh.face_sizes.size()));
+    }
     mesh.face_sizes.push_back(vertices.size());
     for (const int v : vertices) mesh.corner_vertices.push_back(number[static_cast<size_t>(v)]);
     if (!normals.empty())
@@ -95,11 +98,11 @@ void copy_faces(const Far::TopologyLevel& level, const std::vector<std::int32_t>
   }
 }
 
-Mesh as_mesh(const Refined& refined, const Mesh& cage, int level_number) {
+Mesh as_mesh(const Refined& refined, const Mesh& cage, int level_number, bool keep_holes) {
   const Far::TopologyLevel& level = refined.refiner.GetLevel(level_number);
   Mesh mesh;
   std::vector<std::int32_t> number(static_cast<size_t>(level.GetNumVertices()), -1);
-  const std::vector<char> used = used_vertices(level);
+  const std::vector<char> used = used_vertices(level, keep_holes);
   std::int32_t count = 0;
   for (size_t v = 0; v < number.size(); ++v) {
     if (!used[v]) continue;
@@ -114,7 +117,7 @@ Mesh as_mesh(const Refined& refined, const Mesh& cage, int level_number) {
   } else {
     ancestor = ancestors(refined.refiner);
   }
-  copy_faces(level, ancestor, number, refined.normals, cage, mesh);
+  copy_faces(level, ancestor, number, refined.normals, cage, keep_holes, mesh);
   copy_tags(level, number, mesh);
   mesh.material_names = cage.material_names;
   mesh.material_colors = cage.material_colors;
@@ -197,7 +200,7 @@ Mesh refine(const Mesh& cage, const RefineSettings& settings, const std::string&
     pull_back_to_cage(refined);
     if (!settings.to_limit) refined.positions = cage_points(clean.mesh);
   }
-  return as_mesh(refined, clean.mesh, settings.level);
+  return as_mesh(refined, clean.mesh, settings.level, settings.keep_holes);
 }
 
 }  // namespace limn

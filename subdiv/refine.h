@@ -21,6 +21,7 @@ struct RefineSettings {
   bool to_limit = true;  ///< Vertices moved onto the limit surface (what the renderer wants); false keeps the refined cage.
   NormalKind normals = NormalKind::limit;
   std::int64_t max_bytes = std::int64_t{8} << 30;
+  bool keep_holes = false;  ///< Faces with a hole tag stay, tagged: for who subdivides the result further. Else they are left out.
 };
 
 /// What a refinement would hold, known before memory is taken.

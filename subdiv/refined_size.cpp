@@ -62,10 +62,10 @@ RefinedSize predict_refined_size(const Mesh& cage, Scheme scheme, int level) {
   return predict_from_base(*make_refiner(clean.mesh, scheme, {}), scheme, level, !cage.vertex_colors.empty());
 }
 
-std::vector<char> used_vertices(const Far::TopologyLevel& level) {
+std::vector<char> used_vertices(const Far::TopologyLevel& level, bool holes_too) {
   std::vector<char> used(static_cast<size_t>(level.GetNumVertices()), 0);
   for (int f = 0; f < level.GetNumFaces(); ++f) {
-    if (level.IsFaceHole(f)) continue;
+    if (!holes_too && level.IsFaceHole(f)) continue;
     for (const int v : level.GetFaceVertices(f)) used[static_cast<size_t>(v)] = 1;
   }
   return used;

@@ -9,6 +9,7 @@
 #include "sdf/output_file.h"
 #include "subdiv/import.h"
 #include "subdiv/mesh_bytes.h"
+#include "subdiv/polygon.h"
 
 namespace limn {
 namespace {
@@ -43,6 +44,14 @@ void print(Text& text, fmt::format_string<Arguments...> format, Arguments&&... a
 
 float shown(float linear) { return srgb_from_linear(std::clamp(linear, 0.0f, 1.0f)); }
 
+/// A name as the rest of a line: line ends would begin statements, a backslash at the end would join the next line.
+std::string in_line(std::string name) {
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) < ' ') c = '_';
+  if (name.ends_with('\\')) name.back() = '_';
+  return name;
+}
+
 /// The shortest decimals that read back as the same number.
 void write_obj(const Mesh& mesh, Sink& out) {
   print(out.text, "# written by limn: {} vertices, {} faces\n", mesh.vertex_count(), mesh.face_count());
@@ -61,11 +70,11 @@ void write_obj(const Mesh& mesh, Sink& out) {
   for (size_t f = 0; f < mesh.face_count(); ++f, out.spill()) {
     if (!mesh.face_groups.empty() && mesh.face_groups[f] != group) {
       group = mesh.face_groups[f];
-      print(out.text, "g {}\n", mesh.group_names[static_cast<size_t>(group)]);
+      print(out.text, "g {}\n", in_line(mesh.group_names[static_cast<size_t>(group)]));
     }
     if (!mesh.face_materials.empty() && mesh.face_materials[f] != material) {
       material = mesh.face_materials[f];
-      print(out.text, "usemtl {}\n", mesh.material_names[static_cast<size_t>(material)]);
+      print(out.text, "usemtl {}\n", in_line(mesh.material_names[static_cast<size_t>(material)]));
     }
     if (!mesh.face_smoothing.empty() && (f == 0 || mesh.face_smoothing[f] != mesh.face_smoothing[f - 1]))
       print(out.text, "s {}\n", mesh.face_smoothing[f]);
@@ -139,7 +148,7 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& file) {
     if (obj) {
       write_obj(mesh, sink);
     } else {
-      write_ply(mesh, sink);
+      write_ply(mesh.holes.empty() ? mesh : without_holes(mesh), sink);
     }
     sink.close();
   });

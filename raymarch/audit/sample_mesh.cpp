@@ -64,7 +64,8 @@ SurfaceSamples sample_mesh(const SceneObject& object, const SurfaceSettings& set
   const TriangleMesh& mesh = *made;
   // As --voxels counts: a cage is larger than what it is refined to.
   Box box;
-  for (const glm::dvec3& position : mesh.positions) box = include(box, position);
+  for (const glm::uvec3& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) box = include(box, mesh.positions[t[k]]);
   samples.longest_side = box.longest_side();
   if (mesh.triangles.empty() || !(samples.longest_side > 0.0)) return samples;
   ThinSamples thin = thin_samples(mesh, samples.longest_side, samples.longest_side);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "samples/commands/command.h"
 #include "samples/input_files.h"
@@ -109,6 +110,16 @@ std::string level_sets_text(const std::vector<LevelSet>& level_sets) {
   return text;
 }
 
+/// What is wrong with the volumes that were read; a file made of them has it too.
+void add_warnings_of_volumes(const Scene& scene, std::vector<std::string>& warnings) {
+  for (const SceneObject& object : scene.objects) {
+    const auto* volume = std::get_if<LevelSetSource>(&object.source);
+    if (volume == nullptr) continue;
+    for (const std::string& warning : volume->level_set.info().warnings)
+      if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(warning);
+  }
+}
+
 int run(const Options& options) {
   const ThreadLimit threads(options.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
@@ -148,6 +159,7 @@ int run(const Options& options) {
     text = fmt::format("{} vertices, {} faces", mesh.vertex_count(), mesh.face_count());
   }
   bar.clear();
+  add_warnings_of_volumes(input.scene, said.warnings);
   document["files"] = {file.string()};
   warnings.insert(warnings.end(), said.warnings.begin(), said.warnings.end());
   document["warnings"] = warnings;

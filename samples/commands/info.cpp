@@ -179,7 +179,7 @@ Json grids_json(const std::vector<GridSummary>& grids) {
     list.push_back({{"name", grid.name},
                     {"type", grid.value_type},
                     {"class", grid.grid_class},
-                    {"active_voxels", grid.active_voxels},
+                    {"active_voxels", grid.active_voxels < 0 ? Json() : Json(grid.active_voxels)},
                     {"voxel_size", grid.voxel_size}});
   }
   return list;
@@ -188,8 +188,10 @@ Json grids_json(const std::vector<GridSummary>& grids) {
 std::string grids_text(const std::vector<GridSummary>& grids) {
   std::string text;
   for (const GridSummary& grid : grids) {
-    text += fmt::format("  grid     {:<24} {} {}, {} active voxels of {:g}\n", grid.name.empty() ? "(no name)" : grid.name, grid.grid_class,
-                        grid.value_type, grid.active_voxels, grid.voxel_size);
+    const std::string voxels =
+        grid.active_voxels < 0 ? "voxels (the file does not count them)" : fmt::format("{} active voxels", grid.active_voxels);
+    text += fmt::format("  grid     {:<24} {} {}, {} of {:g}\n", grid.name.empty() ? "(no name)" : grid.name, grid.grid_class,
+                        grid.value_type, voxels, grid.voxel_size);
   }
   return text;
 }

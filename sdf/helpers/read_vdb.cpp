@@ -1,4 +1,5 @@
-// limn-read-vdb list FILE | grid FILE NAME | all FILE: reads a .vdb that nobody vouches for and sends it through the answer pipe (sdf/guard.h).
+// limn-read-vdb list FILE | grid FILE NAME | all FILE: reads a .vdb that nobody vouches for and sends it through the answer pipe
+// (sdf/guard.h).
 #include "sdf/read_vdb.h"
 
 #include <cstdio>

@@ -99,6 +99,8 @@ Json parse_json(std::span<const std::byte> json) {
     const auto line = std::count(first, first + byte, '\n') + 1;
     refuse(fmt::format("{}", line), fmt::format("damaged or no glTF file: its JSON breaks off or is wrong at byte {}", error.byte),
            "a .gltf or .glb file");
+  } catch (const Json::exception&) {
+    refuse("", "damaged or no glTF file: its JSON holds a number out of range", "a .gltf or .glb file");
   }
 }
 

@@ -14,6 +14,8 @@ namespace {
 constexpr size_t kShown = 60;
 
 std::string shown(const Json& value) {
+  // What is nested deep would take as deep a stack.
+  if (value.is_structured()) return value.is_array() ? "a list" : "an object";
   std::string all = value.dump(-1, ' ', true, Json::error_handler_t::replace);
   if (all.size() > kShown) all = all.substr(0, kShown) + "...";
   return all;

@@ -93,6 +93,16 @@ Elements instance_part(Document& document, const Json& attributes, const char* n
   return part;
 }
 
+size_t instance_count(const Document& document, const Json& attributes, const std::string& where) {
+  std::uint64_t count = 0;
+  for (const auto& [name, accessor] : attributes.items())
+    if (const auto index = whole_number(attributes, name.c_str(), where)) count = std::max(count, count_of(document, *index));
+  if (count > static_cast<std::uint64_t>(document.max_elements))
+    refuse(where + ".extensions", "more instances than allowed", fmt::format("at most {}", document.max_elements),
+           fmt::format("{}", count));
+  return static_cast<size_t>(count);
+}
+
 /// EXT_mesh_gpu_instancing: a list of places instead of the node's one.
 std::vector<glm::dmat4> instances(Document& document, const Json& node, const std::string& where) {
   const Json* extensions = find_object(node, "extensions");
@@ -102,7 +112,9 @@ std::vector<glm::dmat4> instances(Document& document, const Json& node, const st
   const Elements t = instance_part(document, *attributes, "TRANSLATION", 3, where),
                  r = instance_part(document, *attributes, "ROTATION", 4, where),
                  s = instance_part(document, *attributes, "SCALE", 3, where);
-  const size_t count = std::max({t.count, r.count, s.count});
+  size_t count = std::max({t.count, r.count, s.count});
+  // Attributes of somebody's own place nothing, and still say how many there are.
+  if (count == 0 && !attributes->empty()) count = instance_count(document, *attributes, where);
   for (const Elements* part : {&t, &r, &s}) {
     if (part->count != 0 && part->count != count) refuse(where + ".extensions", "lists of instances of different lengths", "one length");
   }

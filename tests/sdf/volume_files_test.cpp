@@ -9,6 +9,7 @@
 #endif
 #include <nanovdb/util/IO.h>
 #include <nanovdb/util/OpenToNanoVDB.h>
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
@@ -206,6 +207,89 @@ TEST_F(VolumeFiles, AGridWithoutAClassIsALevelSetWhereItsValuesChangeSign) {
   const ReadLevelSets both = read_level_sets(write({ball_without, outside}), {});
   EXPECT_EQ(both.grids.size(), 1u);
   EXPECT_EQ(both.left_out.size(), 1u);
+}
+
+TEST_F(VolumeFiles, ARotatedGridStandsWhereItStandsInEitherFormat) {
+  const auto grid = ball("ball");
+  openvdb::math::Transform::Ptr placed = openvdb::math::Transform::createLinearTransform(0.1);
+  placed->postRotate(0.4, openvdb::math::X_AXIS);
+  placed->postRotate(0.7, openvdb::math::Z_AXIS);
+  placed->postTranslate(openvdb::Vec3d(1.0, 2.0, 3.0));
+  grid->setTransform(placed);
+  const fs::path file = path("rotated.nvdb");
+  nanovdb::io::writeGrid(file.string(), nano<float>(*grid));
+  const LevelSet nano = read_level_set(file, ""), vdb = read_level_set(write({grid}), "");
+  for (const glm::dvec3& index : {glm::dvec3(0.0), glm::dvec3(10.0, 0.0, 0.0), glm::dvec3(0.0, 10.0, 0.0), glm::dvec3(3.0, -4.0, 5.0)}) {
+    const openvdb::Vec3d truth = grid->indexToWorld(openvdb::Vec3d(index.x, index.y, index.z));
+    for (const LevelSet* level_set : {&nano, &vdb})
+      EXPECT_LT(glm::distance(level_set->info().world_from_index.point(index), glm::dvec3(truth.x(), truth.y(), truth.z())), 1e-6);
+  }
+}
+
+TEST_F(VolumeFiles, AGridThatCannotBeReadTakesNoOtherAlong) {
+  const auto broken = ball("a");
+  // Nothing says how many voxels it has, and what it holds is no distance.
+  for (auto value = broken->beginValueOn(); value; ++value) value.setValue(std::numeric_limits<float>::quiet_NaN());
+  const ReadLevelSets read = read_level_sets(write({broken, ball("b"), ball("c")}), {});
+  EXPECT_EQ(read.grids.size(), 2u);
+  ASSERT_EQ(read.left_out.size(), 1u);
+  EXPECT_SAYS(read.left_out[0], "'a' is left out");
+}
+
+TEST_F(VolumeFiles, GridsNeedNoStatistics) {
+  const auto grid = ball("ball");
+  grid->setGridClass(openvdb::GRID_UNKNOWN);
+  const fs::path file = path("plain.vdb");
+  openvdb::io::File target(file.string());
+  target.setGridStatsMetadataEnabled(false);
+  target.write({grid});
+  target.close();
+  EXPECT_EQ(list_grids(file).at(0).active_voxels, -1);
+  EXPECT_EQ(read_level_set(file, "").info().active_voxels, static_cast<std::int64_t>(grid->activeVoxelCount()));
+  EXPECT_EQ(read_level_sets(file, {}).grids.size(), 1u);
+}
+
+TEST_F(VolumeFiles, InstancesInStreamsShareTheirVoxels) {
+  const auto first = ball("first");
+  const auto second = std::make_shared<openvdb::FloatGrid>(*first, openvdb::ShallowCopy{});
+  second->setName("second");
+  second->setTransform(openvdb::math::Transform::createLinearTransform(0.2));
+  const fs::path file = path("stream.vdb");
+  {
+    std::ofstream stream(file, std::ios::binary);
+    openvdb::io::Stream(stream).write(openvdb::GridCPtrVec{first, second});
+  }
+  for (const std::string name : {"first", "second"})
+    EXPECT_EQ(read_level_set(file, name).info().active_voxels, static_cast<std::int64_t>(first->activeVoxelCount())) << name;
+  EXPECT_NEAR(read_level_set(file, "second").info().voxel_size, 0.2, 1e-12);
+}
+
+TEST_F(VolumeFiles, DistancesInVoxelsOfUnequalSidesAreTakenForDistances) {
+  const auto grid = openvdb::FloatGrid::create(3.0f);
+  grid->setName("long");
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
+  matrix(2, 2) = 2.0;
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+  for (int x = -16; x <= 16; ++x)
+    for (int y = -16; y <= 16; ++y)
+      for (int z = -8; z <= 8; ++z) {
+        const double distance = glm::length(glm::dvec3(x, y, 2.0 * z)) - 12.0;
+        const openvdb::Coord at(x, y, z);
+        if (std::abs(distance) < 3.0)
+          grid->tree().setValue(at, static_cast<float>(distance));
+        else if (distance < 0.0)
+          grid->tree().setValueOff(at, -3.0f);
+      }
+  const LevelSet level_set = read_level_set(write({grid}), "");
+  EXPECT_DOUBLE_EQ(level_set.data().per_voxel, 1.0);
+  EXPECT_GT(level_set.info().half_width_voxels, 2.4);
+}
+
+TEST_F(VolumeFiles, VoxelsThatNoFileHoldsAreRefusedInWords) {
+  const LevelSet small = moved(read_level_set(write({ball("ball")}), ""), {glm::dmat3(1e-5), glm::dvec3(0.0)});
+  EXPECT_SAYS(refusal([&] { write_level_set(small, path("small.vdb")); }), "voxels as small as this");
+  EXPECT_FALSE(fs::exists(path("small.vdb")));
 }
 
 TEST_F(VolumeFiles, AMovedGridHoldsTheDistancesOfItsNewPlace) {

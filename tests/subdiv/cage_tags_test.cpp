@@ -239,6 +239,33 @@ TEST(CageTags, HolesAreRefinedAndNotDrawn) {
   }
 }
 
+TEST(CageTags, HolesOfARefinedCageAreRefinedFurtherAsThoseOfTheFirst) {
+  Mesh cage = test::cube();
+  cage.holes = {2};
+  const Mesh direct = refine(cage, {Scheme::catmark, 3, true});
+  const Mesh once =
+      refine(cage, {.scheme = Scheme::catmark, .level = 1, .to_limit = false, .normals = NormalKind::flat, .keep_holes = true});
+  EXPECT_EQ(once.face_count(), 24u);
+  EXPECT_EQ(once.holes.size(), 4u);
+  const Mesh later = refine(once, {Scheme::catmark, 2, true});
+  ASSERT_EQ(later.vertex_count(), direct.vertex_count());
+  ASSERT_EQ(later.face_count(), direct.face_count());
+  // Vertices are numbered otherwise.
+  double worst = 0.0;
+  for (const glm::dvec3& p : later.positions) {
+    double nearest = 1e9;
+    for (const glm::dvec3& q : direct.positions) nearest = std::min(nearest, glm::distance(p, q));
+    worst = std::max(worst, nearest);
+  }
+  EXPECT_LT(worst, 1e-14);
+}
+
+TEST(CageTags, SampledFactsLeaveHolesOut) {
+  Mesh cage = refine(test::cube(), {Scheme::catmark, 4, true});
+  for (std::int32_t face = 0; face < static_cast<std::int32_t>(cage.face_count()); face += 7) cage.holes.push_back(face);
+  EXPECT_GT(sampled_mesh_facts(cage, cage.face_count() / 2).open_edges, 100);
+}
+
 TEST(CageTags, TheLimitSurfaceTakesTheTags) {
   // Bfr's patches at their corners.
   for (unsigned seed = 1; seed <= 12; ++seed) {

@@ -227,6 +227,32 @@ TEST_F(Gltf, SparseAccessorsAndInstances) {
   EXPECT_TRUE(refused(maker, "beyond the end"));
 }
 
+TEST_F(Gltf, InstancesWithAttributesOfTheirOwnAloneAreDrawn) {
+  Maker maker;
+  const int points = maker.points(kTriangle), ids = maker.points({0, 0, 0, 1, 1, 1});
+  maker.draw({{{"attributes", {{"POSITION", points}}}}}, {{"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"_ID", ids}}}}}}}});
+  EXPECT_EQ(read(maker).face_count(), 2u);
+}
+
+TEST_F(Gltf, FacesThatAreNoneAreDroppedAndSaid) {
+  Maker maker;
+  const int points = maker.points(kTriangle);
+  const int view = maker.view(bytes_of(std::vector<std::uint16_t>{0, 1, 2, 0, 0, 1, 0, 1, 2}));
+  maker.root["accessors"].push_back({{"bufferView", view}, {"componentType", 5123}, {"count", 9}, {"type", "SCALAR"}});
+  const int indices = static_cast<int>(maker.root["accessors"].size()) - 1;
+  maker.draw({{{"attributes", {{"POSITION", points}}}, {"indices", indices}}});
+  const Mesh mesh = read(maker);
+  EXPECT_EQ(mesh.face_count(), 1u);
+  EXPECT_TRUE(warned(mesh, "fewer than 3 corners"));
+  EXPECT_TRUE(warned(mesh, "the same vertices in the same order"));
+}
+
+TEST_F(Gltf, NumbersOutOfRangeAreRefusedInWords) {
+  std::string text = triangle().text();
+  text.insert(text.size() - 1, ", \"extras\": 1e999");
+  EXPECT_TRUE(refused(text, "a number out of range"));
+}
+
 TEST_F(Gltf, ColoursOfMaterialsAndVerticesAreLinear) {
   Maker maker;
   const int points = maker.points(kTriangle);

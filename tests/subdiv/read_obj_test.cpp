@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "mesh_encodings.h"
+#include "sdf/color.h"
+#include "subdiv/import.h"
+#include "tests/temporary_folder.h"
 
 namespace limn {
 namespace {
@@ -39,6 +42,38 @@ TEST(Obj, TextComesInManyEncodings) {
   std::string named = utf16(kSquare + "o ", false);
   named += std::string("\xE4\x00\x3D\xD8\x00\xDE\n\0f\0 \0\x31\0 \0\x32\0 \0\x33\0", 22);
   EXPECT_EQ(read(named).group_names.at(0), "\xC3\xA4\xF0\x9F\x98\x80");
+}
+
+TEST(Obj, ABackslashAtTheEndOfACommentJoinsNothing) {
+  const Mesh mesh = read("# exported to C:\\out\\\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 \\\n3 4\n");
+  EXPECT_EQ(mesh.positions, kCorners);
+  EXPECT_EQ(mesh.face_sizes, (std::vector<std::int32_t>{4}));
+}
+
+TEST(Obj, LinesEndInEveryWayWithinOneFile) {
+  const Mesh mesh = read("# by two programs\nv 0 0 0\rv 1 0 0\r\nv 1 1 0\rv 0 1 0\nf 1 2 3\rf 1 3 4\r\n");
+  EXPECT_EQ(mesh.positions, kCorners);
+  EXPECT_EQ(mesh.face_sizes, (std::vector<std::int32_t>{3, 3}));
+}
+
+TEST(Obj, ColoursFollowThePositionUpTo1OrTo255) {
+  for (const char* colors : {"1 0 0.5", "255 0 127.5", "1 0 0.5 1"}) {
+    const Mesh mesh = read(std::string("v 0 0 0 ") + colors + "\nv 1 0 0 0 0 0\nv 1 1 0 0 0 0\nf 1 2 3\n");
+    EXPECT_EQ(mesh.vertex_colors.at(0), glm::vec3(1.0f, 0.0f, linear_from_srgb(0.5f))) << colors;
+  }
+}
+
+TEST(Obj, NamesThatAreWrittenCannotBecomeStatements) {
+  Mesh mesh = test::cube();
+  mesh.group_names = {"C:\\parts\\", "a\nv 0 0 0"};
+  mesh.face_groups.assign(mesh.face_count(), 0);
+  mesh.face_groups.back() = 1;
+  const TemporaryFolder folder;
+  write_mesh(mesh, folder.path() / "named.obj");
+  const Mesh again = load_mesh(folder.path() / "named.obj");
+  EXPECT_EQ(again.positions, mesh.positions);
+  EXPECT_EQ(again.face_sizes, mesh.face_sizes);
+  EXPECT_EQ(again.group_names, (std::vector<std::string>{"C:\\parts_", "a_v 0 0 0"}));
 }
 
 TEST(Obj, CommentsMayFollowAnyStatement) {

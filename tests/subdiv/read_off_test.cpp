@@ -119,18 +119,36 @@ TEST(Off, BinaryHoldsTheSameAsText) {
 }
 
 TEST(Off, BinaryCutAnywhereIsAnError) {
-  const std::string whole =
-      Binary{"COFF BINARY\n"}
-          .whole({3, 2, 0})
-          .real({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1, 0, 1, 1, 1, 0, 0, 0, 1, 1})
-          .whole({3, 0, 1, 2, 1, 7, 3, 2, 1, 0, 0})
-          .bytes;
+  const std::string whole = Binary{"COFF BINARY\n"}
+                                .whole({3, 2, 0})
+                                .real({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1, 0, 1, 1, 1, 0, 0, 0, 1, 1})
+                                .whole({3, 0, 1, 2, 1, 7, 3, 2, 1, 0, 0})
+                                .bytes;
   EXPECT_EQ(read(whole).face_sizes.size(), 2u);
   for (size_t length = 0; length < whole.size(); ++length) EXPECT_FALSE(refusal(parse_off, whole.substr(0, length)).empty()) << length;
   EXPECT_TRUE(warns(read(whole + "more"), {"4 bytes", "2 faces"}));
   EXPECT_TRUE(has(refusal(parse_off, Binary{"OFF BINARY\n"}.whole({-1, 2, 0}).bytes), "no counts"));
   EXPECT_TRUE(has(refusal(parse_off, Binary{"OFF BINARY\n"}.whole({INT32_MAX, 2, 0}).bytes), "2147483647, as its header says"));
-  EXPECT_TRUE(has(refusal(parse_off, Binary{"OFF BINARY\n"}.whole({1, 1, 0}).real({0, 0, 0}).whole({-3}).bytes), "not a number of corners"));
+  EXPECT_TRUE(
+      has(refusal(parse_off, Binary{"OFF BINARY\n"}.whole({1, 1, 0}).real({0, 0, 0}).whole({-3}).bytes), "not a number of corners"));
+}
+
+TEST(Off, LinesAfterTheFacesAreEdgesOrAreSaid) {
+  const std::string faces = "OFF\n4 1 5\n" + kSquare + "3 0 1 2\n";
+  EXPECT_TRUE(warns(read(faces + "3 0 2 3\n"), {"the last of the 1 faces"}));
+  EXPECT_TRUE(read(faces + "0 1\n1 2\n2 0\n2 3\n3 0\n").warnings.empty());
+}
+
+TEST(Off, ColoursUnderAPlainWordAreColours) {
+  const Mesh mesh = read("OFF\n3 1 0\n0 0 0 255 0 128\n1 0 0 0 0 0\n1 1 0 0 0 0\n3 0 1 2\n");
+  EXPECT_EQ(mesh.positions, (std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}));
+  EXPECT_EQ(mesh.vertex_colors.at(0), glm::vec3(1.0f, 0.0f, linear_from_srgb(128.0f / 255.0f)));
+  EXPECT_TRUE(warns(mesh, {"3 numbers more than 'OFF' announces"}));
+  // Two vertices on a line are no colours.
+  EXPECT_EQ(read("OFF\n4 1 0\n0 0 0 1 0 0\n1 1 0 0 1 0\n4 0 1 2 3\n").positions, kCorners);
+  // A little too bright is still real.
+  EXPECT_EQ(read("COFF\n3 1 0\n0 0 0 1.001 0 0.5 1\n1 0 0 0 0 0 1\n1 1 0 0 0 0 1\n3 0 1 2\n").vertex_colors.at(0),
+            glm::vec3(1.0f, 0.0f, linear_from_srgb(0.5f)));
 }
 
 TEST(Off, FaultsAreNamed) {

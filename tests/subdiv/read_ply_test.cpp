@@ -120,6 +120,10 @@ TEST(Ply, StripsBecomeTrianglesThatFaceOneWay) {
     EXPECT_TRUE(mesh.warnings.empty()) << list;
   }
   EXPECT_TRUE(warns(read(header(points + strips) + six + "4 0 1 2 9\n"), {"1 face", "vertex 9 of 6"}));
+  const std::string unsigned_strips = "element tristrips 1\nproperty list int uint vertex_indices\n";
+  const Mesh restarted = read(header(points + unsigned_strips) + six + "9 0 1 2 3 4294967295 2 3 4 5\n");
+  EXPECT_EQ(restarted.face_count(), 4u);
+  EXPECT_TRUE(all_up(restarted) && restarted.warnings.empty());
 }
 
 TEST(Ply, ColoursAndNormalsAreRead) {
@@ -139,6 +143,12 @@ TEST(Ply, ColoursAndNormalsAreRead) {
            "0 0 0 1 0 0.5\n1 0 0 2 0 -1\n1 1 0 0 0 0\n0 1 0 0 0 0\n4 0 1 2 3\n");
   EXPECT_EQ(real.vertex_colors.at(0), glm::vec3(1.0f, 0.0f, linear_from_srgb(0.5f)));
   EXPECT_EQ(real.vertex_colors.at(1), glm::vec3(1.0f, 0.0f, 0.0f));
+  for (const char* type : {"float", "double", "int", "uint"}) {
+    const std::string colors = fmt::format("property {0} red\nproperty {0} green\nproperty {0} blue\n", type);
+    const Mesh bytes = read(header("element vertex 4\nproperty float x\nproperty float y\nproperty float z\n" + colors + kFaces) +
+                            "0 0 0 255 0 128\n1 0 0 2 0 1\n1 1 0 0 0 0\n0 1 0 0 0 0\n4 0 1 2 3\n");
+    EXPECT_EQ(bytes.vertex_colors.at(0), glm::vec3(1.0f, 0.0f, linear_from_srgb(128.0f / 255.0f))) << type;
+  }
 }
 
 TEST(Ply, FaultsAreNamed) {

@@ -93,6 +93,7 @@ TEST(Stl, FaultsAreNamed) {
   const float nan = std::nanf("");
   std::memcpy(broken.data() + 84 + 12, &nan, sizeof nan);
   EXPECT_TRUE(has(refusal(parse_stl, broken), "not a finite number"));
+  EXPECT_TRUE(has(refusal(parse_stl, broken), "facet 1"));
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ std::optional<Mesh> parse_gltf(std::span<const std::byte> bytes, const std::file
   if (all.mesh.face_sizes.empty()) refuse("", nothing_drawn(all), "a scene with at least one triangle");
   all.mesh.warnings = std::move(document.warnings);
   tell_what_is_missing(all, all.mesh);
-  repair_faces(all.mesh, {});
+  repair_faces(all.mesh, {.keep_equal = true});
   keep_what_differs(all);
   return std::move(all.mesh);
 }

@@ -54,7 +54,7 @@ class Repair {
   void run() {
     if (mesh_.face_sizes.empty()) refuse_without_faces();
     find_impossible();
-    find_repeated();
+    if (!words_.keep_equal) find_repeated();
     const auto dropped = mesh_.face_count() - static_cast<size_t>(std::count(faults_.begin(), faults_.end(), Fault::none));
     if (dropped == 0) return;
     if (dropped == mesh_.face_count()) refuse();

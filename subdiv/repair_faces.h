@@ -14,7 +14,8 @@ struct RepairWords {
   int first_index = 0;  ///< The number of the first vertex in this format.
   /// Where a face is in the file ("line 12"); none: "face 12".
   std::function<std::string(size_t face)> place{};
-  std::string instead{};  ///< What a file without faces holds ("6 lines").
+  std::string instead{};    ///< What a file without faces holds ("6 lines").
+  bool keep_equal = false;  ///< Faces with equal corners stay: of parts with materials of their own both may be meant.
 };
 
 /// Drops faces that name vertices which are not there (corners may hold any number), faces with fewer than three different corners, and

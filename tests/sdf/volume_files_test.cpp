@@ -217,7 +217,7 @@ TEST_F(VolumeFiles, ARotatedGridStandsWhereItStandsInEitherFormat) {
   placed->postTranslate(openvdb::Vec3d(1.0, 2.0, 3.0));
   grid->setTransform(placed);
   const fs::path file = path("rotated.nvdb");
-  nanovdb::io::writeGrid(file.string(), nano<float>(*grid));
+  nanovdb::io::writeGrid(file.string(), nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree>(*grid));
   const LevelSet nano = read_level_set(file, ""), vdb = read_level_set(write({grid}), "");
   for (const glm::dvec3& index : {glm::dvec3(0.0), glm::dvec3(10.0, 0.0, 0.0), glm::dvec3(0.0, 10.0, 0.0), glm::dvec3(3.0, -4.0, 5.0)}) {
     const openvdb::Vec3d truth = grid->indexToWorld(openvdb::Vec3d(index.x, index.y, index.z));

@@ -9,6 +9,7 @@ namespace fs = std::filesystem;
 std::vector<std::filesystem::path> files_of(const SceneInput& input) {
   std::vector<std::filesystem::path> files;
   if (!input.file.empty()) files.emplace_back(input.file);
+  for (const std::string& formula : input.formulas) files.emplace_back(formula);
   for (const SceneObject& object : input.scene.objects) {
     if (const auto* mesh = std::get_if<MeshSource>(&object.source); mesh != nullptr && !mesh->file.empty()) files.emplace_back(mesh->file);
     if (const auto* volume = std::get_if<LevelSetSource>(&object.source); volume != nullptr && !volume->file.empty())

@@ -1,5 +1,7 @@
 #include "samples/job.h"
 
+#include "samples/no_effect.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -195,8 +197,10 @@ std::string methods_text(const std::vector<MethodCall>& methods) {
   return text;
 }
 
-std::string resolved_call(const std::string& command, const Options& options, const SurfaceSettings& surface, const Camera& camera,
+std::string resolved_call(const std::string& command, const Options& options, const ResolvedModel& model, const Camera& camera,
                           const PictureSettings& picture) {
+  const SurfaceSettings& surface = model.surface;
+  const auto counts = [&](const char* setting) { return has_effect(model.scene, surface, model.kinds, setting); };
   std::string call =
       fmt::format("limn {} {} --size {}x{} --eye {} --target {} --up {}", command, options.input, camera.width_px, camera.height_px,
                   vector_text(camera.eye), vector_text(camera.eye - camera.world_from_camera[2]), vector_text(camera.world_from_camera[1]));
@@ -206,11 +210,13 @@ std::string resolved_call(const std::string& command, const Options& options, co
     call += fmt::format(" --ortho {}", camera.height_px / camera.pixels_per_unit);
   }
   if (!surface.kind.empty()) call += " --surface " + surface.kind;
-  call += surface.voxel_size > 0.0 ? fmt::format(" --voxel-size {}", surface.voxel_size) : fmt::format(" --voxels {}", surface.voxels);
-  if (surface.half_width_voxels > 0.0) call += fmt::format(" --half-width {}", surface.half_width_voxels);
-  call += fmt::format(" --gradient {} --level {}", surface.gradient, options.level_for_view ? "auto" : std::to_string(surface.level));
-  if (surface.scheme) call += fmt::format(" --scheme {}", name_of(*surface.scheme));
-  if (surface.normals) call += fmt::format(" --normals {}", name_of(*surface.normals));
+  if (counts("voxels"))
+    call += surface.voxel_size > 0.0 ? fmt::format(" --voxel-size {}", surface.voxel_size) : fmt::format(" --voxels {}", surface.voxels);
+  if (surface.half_width_voxels > 0.0 && counts("half-width")) call += fmt::format(" --half-width {}", surface.half_width_voxels);
+  if (counts("gradient")) call += " --gradient " + surface.gradient;
+  if (counts("level")) call += " --level " + (options.level_for_view ? "auto" : std::to_string(surface.level));
+  if (surface.scheme && counts("scheme")) call += fmt::format(" --scheme {}", name_of(*surface.scheme));
+  if (surface.normals && counts("normals")) call += fmt::format(" --normals {}", name_of(*surface.normals));
   if (options.smooth_angle_deg) call += fmt::format(" --smooth-angle {}", *options.smooth_angle_deg);
   for (const std::string& grid : options.grids) call += " --grid " + grid;
   for (const MethodCall& method : picture.methods) {

@@ -23,7 +23,13 @@ PictureSettings picture_settings(const Options& options, const SceneInput& input
 ExecutionSettings execution_settings(const Options& options);
 
 /// The whole call with nothing left open, for file headers; the same for any number of threads.
-std::string resolved_call(const std::string& command, const Options& options, const SurfaceSettings& surface, const Camera& camera,
+/// Settings are in it as far as they have an effect on what is built of the scene: `kinds` as OptionUse has them.
+struct ResolvedModel {
+  const Scene& scene;
+  const SurfaceSettings& surface;
+  std::vector<std::string> kinds{};
+};
+std::string resolved_call(const std::string& command, const Options& options, const ResolvedModel& model, const Camera& camera,
                           const PictureSettings& picture);
 /// "rim threshold=0.4" for captions.
 std::string methods_text(const std::vector<MethodCall>& methods);

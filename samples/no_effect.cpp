@@ -131,6 +131,17 @@ SurfaceSettings settings_of(const Options& options, const SceneInput& input) {
 
 }  // namespace
 
+bool has_effect(const Scene& scene, const SurfaceSettings& settings, std::span<const std::string> kinds, const std::string& setting) {
+  const bool voxels = setting == "voxels" || setting == "voxel-size";
+  for (const std::string& kind : kinds)
+    for (const SceneObject& object : scene.objects) {
+      // A volume has voxels of its own, which asking for as many would resample.
+      if (voxels && std::holds_alternative<LevelSetSource>(object.source) && !settings.resample_volumes) continue;
+      if (reads(object, settings, kind, setting)) return true;
+    }
+  return false;
+}
+
 void refuse_without_effect(const Options& options, const SceneInput& input, const OptionUse& use) {
   std::vector<GivenSetting> given = given_settings(options);
   for (const auto& [option, setting] : given) {

@@ -15,6 +15,9 @@ struct OptionUse {
   bool mesh_file = false;            ///< `limn export` to a mesh: gradients are not read.
 };
 
+/// Whether something that is built reads a setting by this name ("voxels"), so that a call which gives it is not refused.
+bool has_effect(const Scene& scene, const SurfaceSettings& settings, std::span<const std::string> kinds, const std::string& setting);
+
 /// Throws InputError for --voxels, --voxel-size, --half-width, --gradient, --level, --scheme or --normals where nothing that is built reads
 /// it, naming the representations that do. Defaults of a scene file ([surface]) are never refused.
 void refuse_without_effect(const Options& options, const SceneInput& input, const OptionUse& use);

@@ -27,7 +27,7 @@ ReadLevelSets read_level_sets(const std::filesystem::path& file, std::span<const
   const auto there = [&](const std::string& name) {
     return std::any_of(grids.begin(), grids.end(), [&](const GridSummary& grid) { return grid.name == name; });
   };
-  const bool all = names.empty() || (names.size() == 1 && names.front() == "all" && !there("all"));
+  const bool all = names.empty() || (std::find(names.begin(), names.end(), "all") != names.end() && !there("all"));
   if (all && level_sets.size() > 1) return read_all_level_sets(file);
   ReadLevelSets result;
   if (all) {

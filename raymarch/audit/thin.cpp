@@ -55,7 +55,7 @@ void look_at(const Thing& thing, const std::vector<double>& widths, double voxel
     const auto needed =
         static_cast<std::int64_t>(std::ceil(std::min(1e15, (1.0 - kRounding) * thing.voxels * samples.longest_side / thinnest)));
     finding.severity = Severity::warning;
-    finding.message = fmt::format("{:.2g} % of the surface{} lies {} ({:.3g}), which may {}; the thinnest is {:.2g}, {:.2f} voxels",
+    finding.message = fmt::format("{:.3g} % of the surface{} lies {} ({:.3g}), which may {}; the thinnest is {:.2g}, {:.2f} voxels",
                                   100.0 * share, where, thing.bad, thing.voxels * voxel, thing.fate, thinnest, thinnest / voxel);
     finding.remedy = remedy_of(needed, facts);
     finding.surfaces =

@@ -53,7 +53,10 @@ Comparison plan(const Options& options, SceneInput& input) {
   plan_methods(columns, comparison);
   comparison.camera = camera;
   comparison.with_times = !options.no_timings;
-  comparison.call = resolved_call("compare", options, settings, comparison.camera, comparison.picture);
+  std::vector<std::string> kinds;
+  for (const ComparedModel& model : comparison.models)
+    if (model.skipped.empty()) kinds.push_back(model.surface.kind);
+  comparison.call = resolved_call("compare", options, {input.scene, settings, kinds}, comparison.camera, comparison.picture);
   return comparison;
 }
 

@@ -106,9 +106,11 @@ struct Render {
   std::optional<FlickerWatch> flicker{};  ///< Of several frames.
 };
 
+ResolvedModel resolved_model(const Render& render) { return {render.input.scene, render.surface, {render.surface.kind}}; }
+
 void write_picture(const Picture& picture, int index, const Options& options, Render& render) {
   const auto start = std::chrono::steady_clock::now();
-  const std::string call = resolved_call("render", options, render.surface, render.camera, render.picture);
+  const std::string call = resolved_call("render", options, resolved_model(render), render.camera, render.picture);
   std::vector<OutputFile> files;
   for (const fs::path& name : render.outputs) {
     const fs::path file = picture_file(name, index, options);
@@ -184,7 +186,7 @@ void report(const Options& options, const Render& render, const SurfaceInfo& inf
   }
   if (options.verbose) {
     for (const std::string& line : scheme_lines(render.input.scene, render.surface)) print_note(line);
-    print_note(resolved_call("render", options, render.surface, render.camera, render.picture));
+    print_note(resolved_call("render", options, resolved_model(render), render.camera, render.picture));
   }
   if (options.json) {
     print_json({{"hits", render.counts.hits},

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "samples/job.h"
+#include "samples/no_effect.h"
 #include "samples/study/call.h"
 #include "samples/utf8.h"
 
@@ -21,7 +22,7 @@ std::string list_text(const std::vector<std::string>& words) {
 std::string camera_call(const Options& options, const Study& study) {
   const Camera& camera = study.cameras.front();
   if (study.cameras.size() == 1) {
-    const std::string call = resolved_call("study", options, {}, camera, {});
+    const std::string call = resolved_call("study", options, {Scene{}, SurfaceSettings{}}, camera, {});
     return call.substr(0, call.find(" --surface"));
   }
   std::string call = fmt::format("limn study {} --size {}x{}", options.input, camera.width_px, camera.height_px);
@@ -43,11 +44,13 @@ std::string call_text(const Options& options, const Axes& axes, const SurfaceSet
   };
   std::string call = camera_call(options, study);
   call += fmt::format(" --views {} --surfaces {}", study.cameras.size(), list_text(axes.surfaces));
-  if (!axes.levels.empty()) call += " --levels " + numbers(axes.levels);
-  call += " --voxels " + numbers(axes.voxels);
+  const auto counts = [&](const char* setting) { return has_effect(study.scene, settings, axes.surfaces, setting); };
+  if (!axes.levels.empty() && counts("level")) call += " --levels " + numbers(axes.levels);
+  if (counts("voxels")) call += " --voxels " + numbers(axes.voxels);
   std::vector<std::string> normals;
   for (const NormalKind kind : axes.normals) normals.emplace_back(name_of(kind));
-  call += " --normals " + list_text(normals) + " --gradients " + list_text(axes.gradients);
+  if (counts("normals")) call += " --normals " + list_text(normals);
+  if (counts("gradient")) call += " --gradients " + list_text(axes.gradients);
   if (settings.half_width_voxels > 0.0) call += fmt::format(" --half-width {}", settings.half_width_voxels);
   if (settings.scheme) call += fmt::format(" --scheme {}", name_of(*settings.scheme));
   if (options.smooth_angle_deg) call += fmt::format(" --smooth-angle {}", *options.smooth_angle_deg);

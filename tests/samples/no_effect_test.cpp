@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
+#include <sstream>
+
 #include "run_program.h"
 
 namespace limn {
@@ -150,6 +153,38 @@ TEST_F(NoEffect, OfExportAndInfo) {
   taken({"info", "ellipsoid", "--voxels", "12"});
   taken({"info", "VOLUME", "--gradient", "cell"});
   taken({"info", "MESH", "--level", "1"});
+}
+
+/// The call with nothing left open, as --verbose prints it.
+std::string resolved_in(const RunResult& result, const std::string& command) {
+  std::istringstream lines(result.err);
+  for (std::string line; std::getline(lines, line);) {
+    const size_t at = line.find("limn " + command + " ");
+    if (at != std::string::npos) return line.substr(at + 5);
+  }
+  return {};
+}
+
+TEST_F(NoEffect, TheResolvedCallIsTakenAndDrawsTheSame) {
+  for (const std::string input : {"ellipsoid", "MESH", "CAGE", "VOLUME"}) {
+    for (const std::string surface : {"", "mesh", "mesh_level_set"}) {
+      Words call{"render", input};
+      if (!surface.empty()) call.insert(call.end(), {"--surface", surface});
+      Words first = call;
+      const TemporaryFolder out;
+      const std::string picture = out.file("first.png"), again = out.file("again.png");
+      first.insert(first.end(), {"-o", picture, "-v"});
+      const RunResult drawn = run(first);
+      if (drawn.exit_code == 2) continue;  // a volume is no mesh to make a level set of
+      std::istringstream words(resolved_in(drawn, "render"));
+      Words resolved((std::istream_iterator<std::string>(words)), std::istream_iterator<std::string>());
+      ASSERT_GT(resolved.size(), 5u) << drawn.err;
+      resolved.insert(resolved.end(), {"-o", again});
+      const RunResult second = run_limn(resolved);
+      EXPECT_EQ(second.exit_code, 0) << input << " " << surface << ": " << second.err;
+      EXPECT_EQ(read_bytes(picture), read_bytes(again)) << input << " " << surface;
+    }
+  }
 }
 
 }  // namespace

@@ -135,9 +135,16 @@ void attach_triangles(const MeshState& state) {
   rtcReleaseGeometry(geometry);
 }
 
+/// One device serves all meshes, as long as the process lives: each takes a key of thread storage, of which a process has 1024.
+RTCDevice shared_device() {
+  static const RTCDevice device = rtcNewDevice(nullptr);
+  if (device == nullptr) throw MachineError("Embree could not start: out of memory, most likely");
+  rtcRetainDevice(device);
+  return device;
+}
+
 void build_tree(const MeshState& state) {
-  state.device.reset(rtcNewDevice(nullptr));
-  if (!state.device) throw MachineError("Embree could not start: out of memory, most likely");
+  state.device.reset(shared_device());
   state.scene.reset(rtcNewScene(state.device.get()));
   rtcSetSceneFlags(state.scene.get(), RTC_SCENE_FLAG_ROBUST);
   attach_triangles(state);

@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "raymarch/gbuffer_tile.h"
+#include "raymarch/gbuffer_window.h"
 #include "raymarch/picture_rays.h"
 #include "raymarch/threads.h"
 #include "raymarch/trace_scene.h"
@@ -71,15 +72,16 @@ void check(const ExecutionSettings& how) { LIMN_CHECK(how.tile_px >= 1 && how.ti
 
 }  // namespace
 
-void render_gbuffer(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset,
-                    const GBufferLayers& layers, GBuffer& out) {
+void render_window(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset, const PixelTile& window,
+                   GBuffer& out) {
   check(how);
-  size_layers(layers, camera, out);
+  LIMN_CHECK(out.width == camera.width_px && out.height == camera.height_px);
+  LIMN_CHECK(window.x >= 0 && window.y >= 0 && window.x + window.width <= out.width && window.y + window.height <= out.height);
   out.sample = offset;
   const Camera render_camera = moved(camera, model.render_origin);
   const SceneExtent extent = scene_extent(model);
   const int task_px = kTilesInARow * how.tile_px;
-  const int columns = (out.width + task_px - 1) / task_px, rows = (out.height + how.tile_px - 1) / how.tile_px;
+  const int columns = (window.width + task_px - 1) / task_px, rows = (window.height + how.tile_px - 1) / how.tile_px;
   const std::int64_t tasks = std::int64_t{columns} * rows;
   std::mutex progress_mutex;
   std::int64_t done = 0;
@@ -92,7 +94,8 @@ void render_gbuffer(const SceneModel& model, const Camera& camera, const Executi
     parallel_for(std::int64_t{0}, tasks, [&](std::int64_t k) {
       if (how.cancelled && how.cancelled()) throw Cancelled{};
       const int x = static_cast<int>(k % columns) * task_px, y = static_cast<int>(k / columns) * how.tile_px;
-      render_tiles(shared, {x, y, std::min(task_px, out.width - x), std::min(how.tile_px, out.height - y)}, how.tile_px, offset);
+      const PixelTile row{window.x + x, window.y + y, std::min(task_px, window.width - x), std::min(how.tile_px, window.height - y)};
+      render_tiles(shared, row, how.tile_px, offset);
       if (!how.progress) return;
       const std::lock_guard lock(progress_mutex);
       how.progress(static_cast<double>(++done) / static_cast<double>(tasks));
@@ -103,6 +106,12 @@ void render_gbuffer(const SceneModel& model, const Camera& camera, const Executi
   } else {
     ThreadArena(how.threads).execute(render);
   }
+}
+
+void render_gbuffer(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset,
+                    const GBufferLayers& layers, GBuffer& out) {
+  size_layers(layers, camera, out);
+  render_window(model, camera, how, offset, {0, 0, out.width, out.height}, out);
 }
 
 GBuffer render_gbuffer(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset) {

@@ -7,7 +7,7 @@
 
 #include "raymarch/threads.h"
 #include "raymarch/truth/parts.h"
-#include "raymarch/truth/stand_in.h"
+#include "raymarch/truth/proxy.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -23,7 +23,7 @@ BorderTruth solve_truth(const Scene& scene, const Camera& camera, const TruthSet
     return std::holds_alternative<Field>(object.source) || is_cage(object);
   });
   return ThreadArena(how.threads).execute([&] {
-    return traced ? solve_truth_traced(scene, camera, settings, how) : solve_truth_stand_in(scene, camera, settings, how);
+    return traced ? solve_truth_traced(scene, camera, settings, how) : solve_truth_by_proxy(scene, camera, settings, how);
   });
 }
 

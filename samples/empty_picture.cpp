@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sdf/level_set_leaks.h"
+
 namespace limn {
 namespace {
 
@@ -165,10 +167,8 @@ std::string without_surface(const SceneObject& object, const Surface& surface) {
 /// What a grid's own nodes tell of a surface that is not there.
 std::string of_grid(const SceneObject& object) {
   const auto* volume = std::get_if<LevelSetSource>(&object.source);
-  const BandFacts band = volume != nullptr ? volume->level_set.info().band : BandFacts{};
-  constexpr double kLeastShare = 0.03;
-  const double share = band.near_nodes > 0 ? static_cast<double>(band.unsigned_nodes) / static_cast<double>(band.near_nodes) : 0.0;
-  if (share < kLeastShare) return "; the signs of its grid may have leaked, or its band may be broken";
+  const double share = volume != nullptr ? leaked_share(volume->level_set.info().band) : 0.0;
+  if (share == 0.0) return "; the signs of its grid may have leaked, or its band may be broken";
   return fmt::format("; {:.0f} % of the surface in its grid has no inside: it leaked out", 100.0 * share);
 }
 

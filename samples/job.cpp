@@ -217,7 +217,7 @@ std::string resolved_call(const std::string& command, const Options& options, co
   if (counts("level")) call += " --level " + (options.level_for_view ? "auto" : std::to_string(surface.level));
   if (surface.scheme && counts("scheme")) call += fmt::format(" --scheme {}", name_of(*surface.scheme));
   if (surface.normals && counts("normals")) call += fmt::format(" --normals {}", name_of(*surface.normals));
-  if (options.smooth_angle_deg) call += fmt::format(" --smooth-angle {}", *options.smooth_angle_deg);
+  if (options.smooth_angle_deg && counts("smooth-angle")) call += fmt::format(" --smooth-angle {}", *options.smooth_angle_deg);
   for (const std::string& grid : options.grids) call += " --grid " + grid;
   for (const MethodCall& method : picture.methods) {
     call += " --method " + method.method->about.name;

@@ -104,8 +104,15 @@ std::string drawn_text(const Scene& scene, std::span<const std::string> kinds) {
   return fmt::format("{} drawn as {}", what, listed(names, " and "));
 }
 
+/// None of these representations can be made of the scene: what is wrong is the representation, which whoever makes it says.
+bool none_possible(const Scene& scene, std::span<const std::string> kinds) {
+  return std::all_of(kinds.begin(), kinds.end(),
+                     [&](const std::string& kind) { return !kind.empty() && !why_not(find_surface(kind), scene).empty(); });
+}
+
 void refuse_unread(const std::vector<GivenSetting>& given, const Scene& scene, const SurfaceSettings& settings,
                    std::span<const std::string> kinds) {
+  if (none_possible(scene, kinds)) return;
   for (const auto& [option, setting] : given) {
     const std::string& name = setting;
     if (std::any_of(kinds.begin(), kinds.end(), [&](const std::string& kind) { return any_reads(scene, settings, kind, name); })) continue;
@@ -118,6 +125,25 @@ void refuse_unread(const std::vector<GivenSetting>& given, const Scene& scene, c
                                   readers.empty() ? "leave it out" : "add --surface " + listed(readers, " or ")),
                       ""});
   }
+}
+
+/// Whether a file holds what comes of a setting that its representation reads.
+bool is_written(const Scene& scene, const SurfaceSettings& settings, const OptionUse& use, const std::string& setting) {
+  const auto any = [&](auto&& among) { return std::any_of(scene.objects.begin(), scene.objects.end(), among); };
+  const auto has_kind = [&](const char* kind) { return std::find(use.kinds.begin(), use.kinds.end(), kind) != use.kinds.end(); };
+  // Normals of a mesh that is written are those of its file.
+  if (setting == "smooth-angle") return false;
+  if (use.mesh_file) {
+    // What a level set is meshed into has no normals.
+    if (setting == "normals") return has_kind("mesh") && any([&](const SceneObject& object) { return is_refined(object, settings); });
+    return setting != "gradient";
+  }
+  if (setting == "normals") return false;
+  // Bands are made as wide as a gradient needs, except those of volumes that stay as they are.
+  if (setting == "gradient")
+    return settings.resample_volumes || has_kind("mesh_level_set") ||
+           any([](const SceneObject& object) { return !std::holds_alternative<LevelSetSource>(object.source); });
+  return true;
 }
 
 /// What settings the command line makes, as far as it says what is a cage.
@@ -144,12 +170,13 @@ bool has_effect(const Scene& scene, const SurfaceSettings& settings, std::span<c
 
 void refuse_without_effect(const Options& options, const SceneInput& input, const OptionUse& use) {
   std::vector<GivenSetting> given = given_settings(options);
+  const SurfaceSettings settings = settings_of(options, input);
   for (const auto& [option, setting] : given) {
-    const bool unwritten = (use.level_set_file && setting == "normals") || (use.mesh_file && setting == "gradient");
-    if (unwritten)
-      throw InputError({"", option, "", fmt::format("has no effect on a {} file; leave it out", use.mesh_file ? "mesh" : "level set"), ""});
+    if ((!use.mesh_file && !use.level_set_file) || is_written(input.scene, settings, use, setting)) continue;
+    throw InputError(
+        {"", option, "", fmt::format("has no effect on this {} file; leave it out", use.mesh_file ? "mesh" : "level set"), ""});
   }
-  refuse_unread(given, input.scene, settings_of(options, input), use.kinds);
+  refuse_unread(given, input.scene, settings, use.kinds);
 }
 
 void refuse_unchecked(const Options& options, const SceneInput& input) {
@@ -157,7 +184,7 @@ void refuse_unchecked(const Options& options, const SceneInput& input) {
   for (const auto& [option, setting] : given_settings(options)) {
     const std::string& name = setting;
     const bool checked = std::any_of(input.scene.objects.begin(), input.scene.objects.end(), [&](const SceneObject& object) {
-      if (name == "voxels" || name == "voxel-size") return true;
+      if (name == "voxels" || name == "voxel-size") return !std::holds_alternative<LevelSetSource>(object.source);
       if (name == "gradient") return std::holds_alternative<LevelSetSource>(object.source);
       if (name == "level") return cage_scheme(object, settings).has_value();
       return name == "scheme" && std::holds_alternative<MeshSource>(object.source);

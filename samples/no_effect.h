@@ -11,8 +11,8 @@ namespace limn {
 /// What is to be done with a scene, as far as options have an effect on it.
 struct OptionUse {
   std::vector<std::string> kinds{};  ///< Representations that are built; empty ones: each object in its natural representation.
-  bool level_set_file = false;       ///< `limn export` to a .vdb: normals are not written.
-  bool mesh_file = false;            ///< `limn export` to a mesh: gradients are not read.
+  bool level_set_file = false;       ///< `limn export` to a .vdb, which holds no normals.
+  bool mesh_file = false;            ///< `limn export` to a mesh, for which no gradient is taken.
 };
 
 /// Whether something that is built reads a setting by this name ("voxels"), so that a call which gives it is not refused.

@@ -17,10 +17,15 @@ std::string with_inside_remedy() {
          "number";
 }
 
-std::string unsigned_surface_warning(const BandFacts& band) {
-  if (band.near_nodes == 0 || band.unsigned_nodes < kLeastNodes) return {};
+double leaked_share(const BandFacts& band) {
+  if (band.near_nodes == 0 || band.unsigned_nodes < kLeastNodes) return 0.0;
   const double share = static_cast<double>(band.unsigned_nodes) / static_cast<double>(band.near_nodes);
-  if (share < kLeastShare) return {};
+  return share < kLeastShare ? 0.0 : share;
+}
+
+std::string unsigned_surface_warning(const BandFacts& band) {
+  const double share = leaked_share(band);
+  if (share == 0.0) return {};
   const std::string counts =
       fmt::format("{} of the {} nodes within half a voxel of it have no neighbour of the other sign", band.unsigned_nodes, band.near_nodes);
   if (share >= kMostlyShare)

@@ -1,11 +1,14 @@
 #pragma once
-// Internal: level sets whose inside leaked out, or that never had one.
+// Level sets whose inside leaked out, or that never had one.
 
 #include <string>
 
 #include "sdf/level_set.h"
 
 namespace limn {
+
+/// Share of the surface that changes no sign; 0 where so little of it does not that edges and tips explain it.
+double leaked_share(const BandFacts& band);
 
 /// Empty, or how much of the surface changes no sign, why that may be, and what helps.
 std::string unsigned_surface_warning(const BandFacts& band);

@@ -1,9 +1,12 @@
 #include "subdiv/off_contents.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "sdf/color.h"
+#include "sdf/error.h"
 #include "subdiv/repair_faces.h"
 #include "subdiv/text_cursor.h"
 
@@ -60,6 +63,16 @@ bool read_off_word(std::string_view word, OffLayout& layout) {
   layout.homogeneous = take("4");
   layout.any_dimension = word.starts_with('n') && (word.remove_prefix(1), true);
   return same_word(word, "OFF");
+}
+
+void OffLimits::count(std::int64_t more) {
+  elements += more;
+  if (elements > most)
+    throw InputError({file, "", fmt::format("{}", elements), "more vertices and corners than allowed", fmt::format("at most {}", most)});
+}
+
+void OffLimits::break_off(const char* what, std::int64_t read, std::int64_t promised) const {
+  throw InputError({file, what, fmt::format("{}", read), "the file breaks off", fmt::format("{}, as its header says", promised)});
 }
 
 Mesh finished(OffContents contents, const std::string& file) {

@@ -1,6 +1,8 @@
 #pragma once
 // Internal: what ASCII and binary OFF files have in common.
 
+#include <algorithm>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
@@ -24,6 +26,17 @@ struct OffContents {
   Mesh mesh{};
   std::vector<glm::dvec3> colors{};
   std::vector<glm::vec3> normals{};
+};
+
+/// What a file may hold, and what it does hold of what its header promises. Both throw InputError.
+struct OffLimits {
+  const std::string& file;
+  std::int64_t most = 0;  ///< Vertices and corners, together.
+  std::int64_t elements = 0;
+
+  OffLimits(const std::string& of, std::int64_t max_elements) : file(of), most(std::min<std::int64_t>(max_elements, INT32_MAX)) {}
+  void count(std::int64_t more);
+  [[noreturn]] void break_off(const char* what, std::int64_t read, std::int64_t promised) const;
 };
 
 /// Colours as light, normals by corner, faces repaired (subdiv/repair_faces.h).

@@ -15,7 +15,7 @@ namespace {
 class OffReader {
  public:
   OffReader(std::string_view text, const std::string& file, std::int64_t max_elements)
-      : text_(text), file_(file), cursor_(text), most_(std::min<std::int64_t>(max_elements, INT32_MAX)) {}
+      : text_(text), file_(file), cursor_(text), limits_(file, max_elements) {}
 
   Mesh run() {
     header();
@@ -31,17 +31,6 @@ class OffReader {
   [[noreturn]] void refuse(std::string_view value, std::string problem, std::string expected) const {
     throw InputError({place_in(file_, text_, cursor_.at()), "", shown_word(value), std::move(problem), std::move(expected)});
   }
-  [[noreturn]] void break_off(const char* what, std::int64_t read, std::int64_t promised) const {
-    throw InputError({file_, what, fmt::format("{}", read), "the file breaks off", fmt::format("{}, as its header says", promised)});
-  }
-
-  void count(std::int64_t more) {
-    elements_ += more;
-    if (elements_ > most_)
-      throw InputError(
-          {file_, "", fmt::format("{}", elements_), "more vertices and corners than allowed", fmt::format("at most {}", most_)});
-  }
-
   std::int64_t whole(const char* what) {
     std::int64_t value = 0;
     if (!cursor_.skip()) throw InputError({file_, "header", "", "the file breaks off within its header", what});
@@ -95,7 +84,7 @@ class OffReader {
 
   void reals(size_t values, std::array<double, 4>& to) {
     for (size_t i = 0; i < values; ++i) {
-      if (!cursor_.skip()) break_off("vertices", static_cast<std::int64_t>(mesh_.positions.size()), vertex_count_);
+      if (!cursor_.skip()) limits_.break_off("vertices", static_cast<std::int64_t>(mesh_.positions.size()), vertex_count_);
       if (!read_real(cursor_, to[i])) {
         TextCursor ahead = cursor_;
         refuse(ahead.word(), "is not a number", "decimal numbers within the range of double precision");
@@ -105,8 +94,8 @@ class OffReader {
 
   void vertices() {
     // A number and a space take two bytes: what announces more than the file can hold is refused before memory is taken.
-    if (vertex_count_ > static_cast<std::int64_t>(text_.size())) break_off("vertices", 0, vertex_count_);
-    count(vertex_count_);
+    if (vertex_count_ > static_cast<std::int64_t>(text_.size())) limits_.break_off("vertices", 0, vertex_count_);
+    limits_.count(vertex_count_);
     find_unnamed_colors();
     mesh_.positions.reserve(static_cast<size_t>(vertex_count_));
     std::array<double, 4> v{}, extra{};
@@ -156,11 +145,11 @@ class OffReader {
   }
 
   void faces() {
-    if (face_count_ > static_cast<std::int64_t>(text_.size())) break_off("faces", 0, face_count_);
+    if (face_count_ > static_cast<std::int64_t>(text_.size())) limits_.break_off("faces", 0, face_count_);
     mesh_.face_sizes.reserve(static_cast<size_t>(face_count_));
     for (std::int64_t i = 0; i < face_count_; ++i) {
       const std::int64_t corners = corner_number(i, "is not a number of corners", 0);
-      count(corners);
+      limits_.count(corners);
       for (std::int64_t k = 0; k < corners; ++k) {
         const std::int64_t v = corner_number(i, "is not a vertex number", INT64_MIN);
         mesh_.corner_vertices.push_back(static_cast<std::int32_t>(std::clamp<std::int64_t>(v, -1, INT32_MAX)));
@@ -173,7 +162,7 @@ class OffReader {
 
   std::int64_t corner_number(std::int64_t face, const char* problem, std::int64_t least) {
     std::int64_t value = 0;
-    if (!cursor_.skip()) break_off("faces", face, face_count_);
+    if (!cursor_.skip()) limits_.break_off("faces", face, face_count_);
     if (!cursor_.number(value) || value < least) {
       TextCursor ahead = cursor_;
       refuse(ahead.word(), problem, "whole numbers: a face's number of corners, and its vertices counted from 0");
@@ -190,7 +179,7 @@ class OffReader {
   std::string_view text_;
   const std::string& file_;
   TextCursor cursor_;
-  std::int64_t most_, elements_ = 0;
+  OffLimits limits_;
   OffLayout layout_{};
   std::int64_t dimension_ = 3, vertex_count_ = 0, face_count_ = 0, edges_ = 0;
   size_t color_values_ = 0;

@@ -16,7 +16,7 @@ namespace {
 class OffBinaryReader {
  public:
   OffBinaryReader(const OffBinary& binary, const std::string& file, std::int64_t max_elements)
-      : layout_(binary.layout), data_(binary.data), file_(file), most_(std::min<std::int64_t>(max_elements, INT32_MAX)) {}
+      : layout_(binary.layout), data_(binary.data), file_(file), limits_(file, max_elements) {}
 
   Mesh run() {
     header();
@@ -29,15 +29,6 @@ class OffBinaryReader {
   }
 
  private:
-  [[noreturn]] void break_off(const char* what, std::int64_t read, std::int64_t promised) const {
-    throw InputError({file_, what, fmt::format("{}", read), "the file breaks off", fmt::format("{}, as its header says", promised)});
-  }
-  void count(std::int64_t more) {
-    elements_ += more;
-    if (elements_ > most_)
-      throw InputError(
-          {file_, "", fmt::format("{}", elements_), "more vertices and corners than allowed", fmt::format("at most {}", most_)});
-  }
   bool has(size_t numbers) const { return (data_.size() - at_) / 4 >= numbers; }
   std::uint32_t bits() {
     std::uint32_t value = 0;
@@ -66,8 +57,8 @@ class OffBinaryReader {
     const size_t numbers =
         dimension + (layout_.homogeneous ? 1 : 0) + (layout_.normal ? 3 : 0) + (layout_.color ? 4 : 0) + (layout_.texture ? 2 : 0);
     const auto there = static_cast<std::int64_t>((data_.size() - at_) / 4 / numbers);
-    if (vertex_count_ > there) break_off("vertices", there, vertex_count_);
-    count(vertex_count_);
+    if (vertex_count_ > there) limits_.break_off("vertices", there, vertex_count_);
+    limits_.count(vertex_count_);
     contents_.mesh.positions.reserve(static_cast<size_t>(vertex_count_));
     for (std::int64_t i = 0; i < vertex_count_; ++i) {
       glm::dvec3 position(0.0);
@@ -86,12 +77,12 @@ class OffBinaryReader {
   void faces() {
     Mesh& mesh = contents_.mesh;
     for (std::int64_t i = 0; i < face_count_; ++i) {
-      if (!has(1)) break_off("faces", i, face_count_);
+      if (!has(1)) limits_.break_off("faces", i, face_count_);
       const std::int32_t corners = length(i, "is not a number of corners");
-      count(corners);
+      limits_.count(corners);
       for (std::int32_t k = 0; k < corners; ++k) mesh.corner_vertices.push_back(std::max(whole(), -1));
       mesh.face_sizes.push_back(corners);
-      if (!has(1)) break_off("faces", i, face_count_);
+      if (!has(1)) limits_.break_off("faces", i, face_count_);
       at_ += 4 * static_cast<size_t>(length(i, "is not a number of colour components"));
     }
   }
@@ -99,14 +90,14 @@ class OffBinaryReader {
   std::int32_t length(std::int64_t face, const char* problem) {
     const std::int32_t numbers = whole();
     if (numbers < 0) throw InputError({file_, fmt::format("face {}", face), fmt::format("{}", numbers), problem, "0 or more"});
-    if (!has(static_cast<size_t>(numbers))) break_off("faces", face, face_count_);
+    if (!has(static_cast<size_t>(numbers))) limits_.break_off("faces", face, face_count_);
     return numbers;
   }
 
   OffLayout layout_;
   std::string_view data_;
   const std::string& file_;
-  std::int64_t most_, elements_ = 0;
+  OffLimits limits_;
   size_t at_ = 0;
   std::int64_t dimension_ = 3, vertex_count_ = 0, face_count_ = 0;
   OffContents contents_{};

@@ -84,20 +84,21 @@ void blur_hidden(const BorderInput& input, const BlurSettings& settings, const G
   const GBuffer& seen = input.gbuffer;
   const int reach = std::min(kLargestReach_px, 2 * settings.radius_px);
   Image<float> ink(seen.width, seen.height, 0.0f);
+  GroupAlone alone;
   for (const HiddenGroup& group : hidden_groups(input, groups.by)) {
-    const GBuffer alone = render_alone(input, group);
+    render_alone(input, group, alone);
     const GroupSilhouette hidden = hidden_silhouette(seen, alone, group, true, false, reach, exact_squares);
     const GroupSilhouette visible = hidden_silhouette(seen, alone, group, false, false, reach, exact_squares);
-    const PixelWindow all{0, 0, seen.width, seen.height};
+    const PixelWindow window = blur_window(alone.window, settings, seen);
     const Image<float> plane =
-        blurred(plane_of(all, seen.width, [&](size_t i) { return alone.id.pixels[i] != 0 ? 1.0f : 0.0f; }), settings);
-    for (int y = 0; y < seen.height; ++y) {
-      for (int x = 0; x < seen.width; ++x) {
+        blurred(plane_of(window, seen.width, [&](size_t i) { return alone.seen.id.pixels[i] != 0 ? 1.0f : 0.0f; }), settings);
+    for (int y = window.y0; y < window.y1; ++y) {
+      for (int x = window.x0; x < window.x1; ++x) {
         const size_t at = seen.id.index(x, y);
-        if (!group.hides(seen, at) || (alone.id.pixels[at] != 0 && !settings.over)) continue;
+        if (!group.hides(seen, at) || (alone.seen.id.pixels[at] != 0 && !settings.over)) continue;
         const std::int32_t to_hidden = hidden.square_at(x, y);
         if (to_hidden == kFarSquared || to_hidden > visible.square_at(x, y)) continue;
-        ink.pixels[at] = std::max(ink.pixels[at], blur_ink(settings, plane.at(x, y)));
+        ink.pixels[at] = std::max(ink.pixels[at], blur_ink(settings, plane.at(x - window.x0, y - window.y0)));
       }
     }
   }

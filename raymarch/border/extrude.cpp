@@ -38,8 +38,8 @@ Affine render_from_object(const BorderInput& input, size_t object) {
   return result;
 }
 
-void ink_hull(const BorderInput& input, size_t object, const ExtrudedCorners& corners, const ExtrudeSettings& settings, double near,
-              Image<float>& coverage) {
+WindowImage<float> ink_hull(const BorderInput& input, size_t object, const ExtrudedCorners& corners, const ExtrudeSettings& settings,
+                            double near) {
   const GBuffer& seen = input.gbuffer;
   const bool back = settings.mask == ExtrudeMask::back_faces;
   std::vector<HullTriangle> triangles;
@@ -49,12 +49,16 @@ void ink_hull(const BorderInput& input, size_t object, const ExtrudedCorners& co
   Camera camera = input.camera;
   camera.width_px = seen.width;
   camera.height_px = seen.height;
-  const Image<double> depth = rasterize_hull(triangles, back ? HullFaces::back : HullFaces::all, camera, near, seen.sample);
+  const WindowImage<double> depth = rasterize_hull(triangles, back ? HullFaces::back : HullFaces::all, camera, near, seen.sample);
   const auto id = static_cast<std::int32_t>(object) + 1;
-  for (size_t i = 0; i < depth.size(); ++i) {
-    if (!std::isfinite(depth.pixels[i]) || (!back && seen.id.pixels[i] == id)) continue;
-    if (static_cast<float>(depth.pixels[i]) <= seen.depth.pixels[i]) coverage.pixels[i] = 1.0f;
+  WindowImage<float> ink = window_image(depth.window, 0.0f);
+  for (int y = depth.window.y0; y < depth.window.y1; ++y) {
+    for (int x = depth.window.x0; x < depth.window.x1; ++x) {
+      if (!std::isfinite(depth.at(x, y)) || (!back && seen.id.at(x, y) == id)) continue;
+      if (static_cast<float>(depth.at(x, y)) <= seen.depth.at(x, y)) ink.at(x, y) = 1.0f;
+    }
   }
+  return ink;
 }
 
 void add_mitre_note(const BorderInput& input, const ExtrudeSettings& settings, Border& border) {
@@ -69,27 +73,29 @@ void add_mitre_note(const BorderInput& input, const ExtrudeSettings& settings, B
                   beyond.beyond_pixels, beyond.ink_pixels, settings.width_px, beyond.farthest_px));
 }
 
-void ink_one(const ObjectInk& of, const EdgeVisibility& view, HullNotes* notes, Image<float>& coverage) {
-  const Surface& surface = of.input.model.surfaces[of.object];
+WindowImage<float> ink_one(const BorderInput& input, size_t object, const ExtrudeSettings& settings, const EdgeVisibility& view,
+                           HullNotes* notes) {
+  const Surface& surface = input.model.surfaces[object];
   if (surface.polygons) {
-    const ExtrudedCorners corners = extrude_corners(*surface.polygons, render_from_object(of.input, of.object), of.settings, view.camera());
-    ink_hull(of.input, of.object, corners, of.settings, view.near(), coverage);
-    if (notes != nullptr) notes->add(of.input, of.object, corners, of.settings);
-  } else if (surface.offset.make) {
-    ink_offset(of.input, of.object, of.settings, coverage);
+    const ExtrudedCorners corners = extrude_corners(*surface.polygons, render_from_object(input, object), settings, view.camera());
+    if (notes != nullptr) notes->add(input, object, corners, settings);
+    return ink_hull(input, object, corners, settings, view.near());
+  }
+  return surface.offset.make ? ink_offset(input, object, settings) : WindowImage<float>{};
+}
+
+void lay_ink(const WindowImage<float>& ink, Image<float>& coverage) {
+  for (int y = ink.window.y0; y < ink.window.y1; ++y) {
+    for (int x = ink.window.x0; x < ink.window.x1; ++x) coverage.at(x, y) = std::max(coverage.at(x, y), ink.at(x, y));
   }
 }
 
 void draw_objects(const BorderInput& input, const ExtrudeSettings& settings, HullNotes& notes, Border& border) {
   const EdgeVisibility view(input);
   const size_t objects = input.model.surfaces.size();
-  if (objects == 1) return ink_one({input, 0, settings}, view, &notes, border.coverage);
+  if (objects == 1) return lay_ink(ink_one(input, 0, settings, view, &notes), border.coverage);
   const ExtrudeGroups groups(input, settings);
-  for (size_t object = 0; object < objects; ++object) {
-    Image<float> ink(input.gbuffer.width, input.gbuffer.height, 0.0f);
-    ink_one({input, object, settings}, view, &notes, ink);
-    groups.lay(object, ink, border.coverage);
-  }
+  for (size_t object = 0; object < objects; ++object) groups.lay(object, ink_one(input, object, settings, view, &notes), border.coverage);
   groups.draw_seams(border.coverage);
   if (settings.groups.by == GroupBy::all) add_group_note("extrude", input, border.notes);
   if (settings.groups.hidden) groups.draw_hidden(border);
@@ -130,7 +136,9 @@ std::string unsupported(const SceneModel& model, const Scene&) {
 
 }  // namespace
 
-void ink_object(const ObjectInk& of, Image<float>& coverage) { ink_one(of, EdgeVisibility(of.input), nullptr, coverage); }
+WindowImage<float> ink_object(const BorderInput& input, size_t object, const ExtrudeSettings& settings) {
+  return ink_one(input, object, settings, EdgeVisibility(input), nullptr);
+}
 
 BorderMethod extrude_method() {
   constexpr auto number = ParameterKind::number, choice = ParameterKind::choice;

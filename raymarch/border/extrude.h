@@ -30,8 +30,8 @@ struct ExtrudedCorners {
 ExtrudedCorners extrude_corners(const Polygons& polygons, const Affine& render_from_object, const ExtrudeSettings& settings,
                                 const Camera& camera);
 
-/// Ink of the offset surface of object `object` (index from 0), laid over `coverage`. Throws InputError where it does not reach that far.
-void ink_offset(const BorderInput& input, size_t object, const ExtrudeSettings& settings, Image<float>& coverage);
+/// Ink of the offset surface of object `object` (index from 0), where it can come to. Throws InputError where it does not reach that far.
+WindowImage<float> ink_offset(const BorderInput& input, size_t object, const ExtrudeSettings& settings);
 
 /// Pixels of objects beside what lies farther back, and runs (8-connected) of those without ink (1/2 or more) on any such neighbour.
 struct OutlineGaps {
@@ -42,13 +42,8 @@ OutlineGaps outline_gaps(const GBuffer& gbuffer, const Image<float>& coverage);
 /// Of several objects: where a group's outline is due (BorderMethods' parameter `group`), rather than wherever depth changes.
 OutlineGaps outline_gaps(const BorderInput& input, const GroupSettings& settings, const Image<float>& coverage);
 
-/// Ink of one object: its hull or its offset, tested against what is seen. Nothing where it has neither.
-struct ObjectInk {
-  const BorderInput& input;
-  size_t object = 0;
-  const ExtrudeSettings& settings;
-};
-void ink_object(const ObjectInk& of, Image<float>& coverage);
+/// Ink of one object, where it can come to: its hull or its offset, tested against what is seen. Nothing where it has neither.
+WindowImage<float> ink_object(const BorderInput& input, size_t object, const ExtrudeSettings& settings);
 
 /// Where objects touch, hulls lie in each other's surfaces, and what shows of them is decided by rounding: there the outline is drawn along
 /// the places where the picture goes from one to the other instead, in front of the one that is behind elsewhere.
@@ -56,7 +51,7 @@ class ExtrudeGroups {
  public:
   ExtrudeGroups(const BorderInput& input, const ExtrudeSettings& settings);
   /// Lays what an object's ink shows over `coverage`, as far as it is an outline of its group.
-  void lay(size_t object, const Image<float>& ink, Image<float>& coverage) const;
+  void lay(size_t object, const WindowImage<float>& ink, Image<float>& coverage) const;
   void draw_seams(Image<float>& coverage) const;
   void draw_hidden(Border& border) const;
 

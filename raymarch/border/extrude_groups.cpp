@@ -35,7 +35,7 @@ ExtrudeGroups::ExtrudeGroups(const BorderInput& input, const ExtrudeSettings& se
   if (settings.groups.by != GroupBy::all) objects_.emplace(input, GroupBy::object);
 }
 
-void ExtrudeGroups::lay(size_t object, const Image<float>& ink, Image<float>& coverage) const {
+void ExtrudeGroups::lay(size_t object, const WindowImage<float>& ink, Image<float>& coverage) const {
   const GBuffer& seen = input_.gbuffer;
   const auto id = static_cast<std::int32_t>(object) + 1;
   const auto of_group = [&](size_t i) {
@@ -55,10 +55,10 @@ void ExtrudeGroups::lay(size_t object, const Image<float>& ink, Image<float>& co
       in_front.squares = exact_squares(in_front.silhouette, reach);
     }
   }
-  for (int y = 0; y < ink.height; ++y) {
-    for (int x = 0; x < ink.width; ++x) {
-      const size_t i = ink.index(x, y);
-      if (ink.pixels[i] == 0.0f) continue;
+  for (int y = ink.window.y0; y < ink.window.y1; ++y) {
+    for (int x = ink.window.x0; x < ink.window.x1; ++x) {
+      const size_t i = coverage.index(x, y);
+      if (ink.at(x, y) == 0.0f) continue;
       if (seen.id.pixels[i] != 0 && seen.id.pixels[i] != id) {
         if (of_group(i)) continue;
         // Hulls of what touches others also come out of surfaces on one plane, where nothing of the object is seen.
@@ -100,20 +100,22 @@ void ExtrudeGroups::draw_hidden(Border& border) const {
   const GBuffer& seen = input_.gbuffer;
   Image<float> hidden(seen.width, seen.height, 0.0f);
   const int reach = reach_of(widest_px_);
+  GroupAlone alone;
   for (const HiddenGroup& group : hidden_groups(input_, settings_.groups.by)) {
-    const GBuffer alone = render_alone(input_, group);
-    const BorderInput by_itself{alone, input_.camera, input_.model, input_.scene};
-    Image<float> ink(seen.width, seen.height, 0.0f);
-    for (const size_t object : group.objects) ink_object({by_itself, object, settings_}, ink);
+    render_alone(input_, group, alone);
+    const BorderInput by_itself{alone.seen, input_.camera, input_.model, input_.scene};
     const GroupSilhouette unseen = hidden_silhouette(seen, alone, group, true, false, reach, exact_squares);
     const GroupSilhouette visible = hidden_silhouette(seen, alone, group, false, false, reach, exact_squares);
-    for (int y = 0; y < seen.height; ++y) {
-      for (int x = 0; x < seen.width; ++x) {
-        const size_t i = seen.id.index(x, y);
-        if (ink.pixels[i] == 0.0f || !group.hides(seen, i)) continue;
-        const std::int32_t to_hidden = unseen.square_at(x, y);
-        // Within the object its own folds are inked; beside it, its outline.
-        if (alone.id.pixels[i] != 0 || (to_hidden != kFarSquared && to_hidden <= visible.square_at(x, y))) hidden.pixels[i] = 1.0f;
+    for (const size_t object : group.objects) {
+      const WindowImage<float> ink = ink_object(by_itself, object, settings_);
+      for (int y = ink.window.y0; y < ink.window.y1; ++y) {
+        for (int x = ink.window.x0; x < ink.window.x1; ++x) {
+          const size_t i = seen.id.index(x, y);
+          if (ink.at(x, y) == 0.0f || !group.hides(seen, i)) continue;
+          const std::int32_t to_hidden = unseen.square_at(x, y);
+          // Within the object its own folds are inked; beside it, its outline.
+          if (alone.seen.id.pixels[i] != 0 || (to_hidden != kFarSquared && to_hidden <= visible.square_at(x, y))) hidden.pixels[i] = 1.0f;
+        }
       }
     }
   }

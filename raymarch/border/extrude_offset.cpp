@@ -4,6 +4,7 @@
 
 #include "raymarch/border/extrude.h"
 #include "raymarch/border/picture_rows.h"
+#include "raymarch/trace_scene.h"
 
 namespace limn {
 namespace {
@@ -41,12 +42,12 @@ struct Shell {
 struct ShellBatch {
   RayBatch rays;
   HitBatch hits;
-  size_t pixel[kRayBatchSize];
-  bool open[kRayBatchSize];  ///< Still followed.
+  size_t pixel[kRayBatchSize];  ///< Of the window.
+  bool open[kRayBatchSize];     ///< Still followed.
 };
 
-/// From where the ray enters the sphere to what is seen; an empty range where neither meets.
-void set_ray(const Shell& shell, int x, int y, ShellBatch& batch) {
+/// From where the ray through pixel (x, y) of the picture enters the sphere to what is seen; an empty range where neither meets.
+void set_ray(const Shell& shell, int x, int y, size_t window_pixel, ShellBatch& batch) {
   const GBuffer& seen = shell.input.gbuffer;
   const int i = batch.rays.count++;
   const size_t pixel = seen.id.index(x, y);
@@ -60,13 +61,13 @@ void set_ray(const Shell& shell, int x, int y, ShellBatch& batch) {
   if (bounded && glm::length(ray.origin + nearest * ray.direction) > shell.radius) t_max = 0.0;
   if (shell.mask == ExtrudeMask::stencil && seen.id.pixels[pixel] == shell.id) t_max = 0.0;
   const glm::dvec3 origin = ray.origin + shift * ray.direction;
-  batch.pixel[i] = pixel;
+  batch.pixel[i] = window_pixel;
   batch.open[i] = t_max > 0.0;
   batch.rays.set(i, origin, ray.direction, 0.0, std::max(t_max, 0.0));
 }
 
 /// A stencil wants rays that enter the shell; the inverted hull those that leave it again before anything is seen: its back faces.
-void follow(const Shell& shell, ShellBatch& batch, Image<float>& coverage) {
+void follow(const Shell& shell, ShellBatch& batch, WindowImage<float>& ink) {
   for (int passage = 0; passage < kMostPassages; ++passage) {
     std::fill_n(batch.hits.status, batch.rays.count, HitStatus::miss);
     std::copy_n(batch.rays.t_max, batch.rays.count, batch.hits.t);
@@ -76,7 +77,7 @@ void follow(const Shell& shell, ShellBatch& batch, Image<float>& coverage) {
       const bool hit = batch.open[i] && batch.hits.status[i] == HitStatus::hit && batch.hits.t[i] < batch.rays.t_max[i];
       const glm::vec3 normal(batch.hits.normal_x[i], batch.hits.normal_y[i], batch.hits.normal_z[i]);
       if (hit && (shell.mask == ExtrudeMask::stencil || glm::dot(normal, batch.rays.direction(i)) >= 0.0f)) {
-        coverage.pixels[batch.pixel[i]] = 1.0f;
+        ink.values.pixels[batch.pixel[i]] = 1.0f;
       } else if (hit) {
         // Beyond the place of entry by so little that a chord of less is no outline anybody sees.
         const glm::dvec3 at = glm::dvec3(batch.rays.origin(i)) + double{batch.hits.t[i]} * glm::dvec3(batch.rays.direction(i));
@@ -94,28 +95,32 @@ void follow(const Shell& shell, ShellBatch& batch, Image<float>& coverage) {
 
 }  // namespace
 
-void ink_offset(const BorderInput& input, size_t object, const ExtrudeSettings& settings, Image<float>& coverage) {
-  const Camera camera = moved(input.camera, input.model.render_origin);
+WindowImage<float> ink_offset(const BorderInput& input, size_t object, const ExtrudeSettings& settings) {
+  Camera camera = moved(input.camera, input.model.render_origin);
+  camera.width_px = input.gbuffer.width;
+  camera.height_px = input.gbuffer.height;
   const OffsetWidth width = offset_width(input, object, settings, camera);
-  if (width.zero()) return;
+  if (width.zero()) return {};
   const SurfaceOffset& offset = input.model.surfaces[object].offset;
   const Surface surface = offset.make(offset.state.get(), width);
-  if (surface.bounds.empty()) return;
+  const PixelTile covered = covered_pixels(surface.bounds, {camera, input.gbuffer.sample});
+  WindowImage<float> ink = window_image({covered.x, covered.y, covered.x + covered.width, covered.y + covered.height}, 0.0f);
   double radius = std::numeric_limits<double>::infinity();
   if (surface.bounds.finite()) radius = 1.01 * glm::length(glm::max(glm::abs(surface.bounds.lower), glm::abs(surface.bounds.upper)));
   const Shell shell{input, surface, width, camera, radius, static_cast<std::int32_t>(object) + 1, settings.mask};
-  for_each_band(coverage.height, [&](int y0, int y1) {
+  for_each_band(ink.window.height(), [&](int y0, int y1) {
     ShellBatch batch;
     batch.rays.count = 0;
     for (int y = y0; y < y1; ++y) {
-      for (int x = 0; x < coverage.width; ++x) {
-        set_ray(shell, x, y, batch);
-        if (batch.rays.count < kRayBatchSize && !(y + 1 == y1 && x + 1 == coverage.width)) continue;
-        follow(shell, batch, coverage);
+      for (int x = 0; x < ink.window.width(); ++x) {
+        set_ray(shell, ink.window.x0 + x, ink.window.y0 + y, ink.values.index(x, y), batch);
+        if (batch.rays.count < kRayBatchSize && !(y + 1 == y1 && x + 1 == ink.window.width())) continue;
+        follow(shell, batch, ink);
         batch.rays.count = 0;
       }
     }
   });
+  return ink;
 }
 
 }  // namespace limn

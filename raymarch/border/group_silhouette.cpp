@@ -55,19 +55,11 @@ GroupSilhouette front_silhouette(const PictureGroups& groups, std::int32_t group
   return outline;
 }
 
-GroupSilhouette hidden_silhouette(const GBuffer& seen, const GBuffer& alone, const HiddenGroup& group, bool hidden, bool estimate,
+GroupSilhouette hidden_silhouette(const GBuffer& seen, const GroupAlone& alone, const HiddenGroup& group, bool hidden, bool estimate,
                                   int reach_px, const SilhouetteSquares& squares) {
-  PixelWindow window{seen.width, seen.height, 0, 0};
-  for (int y = 0; y < seen.height; ++y) {
-    for (int x = 0; x < seen.width; ++x) {
-      if (alone.id.at(x, y) == 0) continue;
-      window = {std::min(window.x0, x), std::min(window.y0, y), std::max(window.x1, x + 1), std::max(window.y1, y + 1)};
-    }
-  }
-  if (window.empty()) window = {};
   GroupSilhouette outline = group_silhouette(
-      alone, grown(window, reach_px + 1, seen.width, seen.height), estimate, [&](size_t i) { return alone.id.pixels[i] != 0; },
-      [&](size_t inner, size_t) { return group.hides(seen, inner) == hidden; });
+      alone.seen, grown(alone.window, reach_px + 1, seen.width, seen.height), estimate,
+      [&](size_t i) { return alone.seen.id.pixels[i] != 0; }, [&](size_t inner, size_t) { return group.hides(seen, inner) == hidden; });
   outline.squares = squares(outline.silhouette, reach_px);
   return outline;
 }

@@ -30,7 +30,7 @@ GroupSilhouette group_silhouette(const GBuffer& gbuffer, const PixelWindow& wind
 GroupSilhouette front_silhouette(const PictureGroups& groups, std::int32_t group, bool estimate, int reach_px,
                                  const SilhouetteSquares& squares);
 /// Of the outline of a group seen alone the part where the picture shows others, or (`hidden` false) the rest.
-GroupSilhouette hidden_silhouette(const GBuffer& seen, const GBuffer& alone, const HiddenGroup& group, bool hidden, bool estimate,
+GroupSilhouette hidden_silhouette(const GBuffer& seen, const GroupAlone& alone, const HiddenGroup& group, bool hidden, bool estimate,
                                   int reach_px, const SilhouetteSquares& squares);
 
 /// The pixels on both sides of the crossing that (x, y) of the window is nearest to.

@@ -17,7 +17,7 @@ struct FlatTriangle {
   std::array<glm::i64vec2, 3> p;  ///< Turned so that the interior is on the left with y up: area > 0.
   std::array<double, 3> q;
   std::int64_t area = 0;
-  int top = 0, bottom = 0;  ///< Lines of pixels.
+  int top = 0, bottom = 0, left = 0, right = 0;  ///< Pixels, the last ones included.
 };
 
 struct Frame {
@@ -81,23 +81,27 @@ void add_flat(const Frame& frame, std::array<glm::dvec3, 3> corners, std::vector
     flat.area = -flat.area;
   }
   const auto [low, high] = std::minmax({flat.p[0].y, flat.p[1].y, flat.p[2].y});
-  const double rows = frame.camera.height_px;
-  flat.top = static_cast<int>(std::clamp(std::ceil(-static_cast<double>(high) / kSubPixels), 0.0, rows));
-  flat.bottom = static_cast<int>(std::clamp(std::floor(-static_cast<double>(low) / kSubPixels), -1.0, rows - 1.0));
-  if (flat.top <= flat.bottom) out.push_back(flat);
+  const auto [left, right] = std::minmax({flat.p[0].x, flat.p[1].x, flat.p[2].x});
+  const auto first = [](std::int64_t at, int count) {
+    return static_cast<int>(std::clamp(std::ceil(static_cast<double>(at) / kSubPixels), 0.0, static_cast<double>(count)));
+  };
+  const auto last = [](std::int64_t at, int count) {
+    return static_cast<int>(std::clamp(std::floor(static_cast<double>(at) / kSubPixels), -1.0, count - 1.0));
+  };
+  flat.top = first(-high, frame.camera.height_px);
+  flat.bottom = last(-low, frame.camera.height_px);
+  flat.left = first(left, frame.camera.width_px);
+  flat.right = last(right, frame.camera.width_px);
+  if (flat.top <= flat.bottom && flat.left <= flat.right) out.push_back(flat);
 }
 
 /// Of two triangles that share the edge from a to b exactly one owns the points on it.
 bool owns_border(const glm::i64vec2& a, const glm::i64vec2& b) { return b.y < a.y || (b.y == a.y && b.x < a.x); }
 
-void fill_row(const FlatTriangle& flat, int y, bool perspective, Image<double>& depth) {
+void fill_row(const FlatTriangle& flat, int y, bool perspective, WindowImage<double>& depth) {
   const std::int64_t step = static_cast<std::int64_t>(kSubPixels);
-  const auto [left, right] = std::minmax({flat.p[0].x, flat.p[1].x, flat.p[2].x});
-  const double columns = depth.width;
-  const int x0 = static_cast<int>(std::clamp(std::ceil(static_cast<double>(left) / kSubPixels), 0.0, columns));
-  const int x1 = static_cast<int>(std::clamp(std::floor(static_cast<double>(right) / kSubPixels), -1.0, columns - 1.0));
   std::array<std::int64_t, 3> edge{}, slope{};
-  const glm::i64vec2 start(x0 * step, -y * step);
+  const glm::i64vec2 start(flat.left * step, -y * step);
   for (size_t i = 0; i < 3; ++i) {
     const glm::i64vec2 &a = flat.p[(i + 1) % 3], &b = flat.p[(i + 2) % 3];
     // Points on an edge that the triangle does not own are put outside by one.
@@ -105,7 +109,7 @@ void fill_row(const FlatTriangle& flat, int y, bool perspective, Image<double>& 
     slope[i] = -(b.y - a.y) * step;
   }
   const double inverse = 1.0 / static_cast<double>(flat.area);
-  for (int x = x0; x <= x1; ++x) {
+  for (int x = flat.left; x <= flat.right; ++x) {
     if ((edge[0] | edge[1] | edge[2]) >= 0) {
       const double u = static_cast<double>(edge[1]) * inverse, v = static_cast<double>(edge[2]) * inverse;
       const double q = flat.q[0] + u * (flat.q[1] - flat.q[0]) + v * (flat.q[2] - flat.q[0]);
@@ -118,10 +122,9 @@ void fill_row(const FlatTriangle& flat, int y, bool perspective, Image<double>& 
 
 }  // namespace
 
-Image<double> rasterize_hull(std::span<const HullTriangle> triangles, HullFaces faces, const Camera& camera, double near,
-                             const glm::dvec2& sample) {
+WindowImage<double> rasterize_hull(std::span<const HullTriangle> triangles, HullFaces faces, const Camera& camera, double near,
+                                   const glm::dvec2& sample) {
   const Frame frame{camera, sample, faces, near};
-  Image<double> depth(camera.width_px, camera.height_px, std::numeric_limits<double>::infinity());
   std::vector<FlatTriangle> flat;
   flat.reserve(triangles.size());
   Polygon polygon, scratch;
@@ -130,15 +133,21 @@ Image<double> rasterize_hull(std::span<const HullTriangle> triangles, HullFaces 
     clip_to_view(frame, polygon, scratch);
     for (size_t i = 2; i < polygon.size(); ++i) add_flat(frame, {polygon[0], polygon[i - 1], polygon[i]}, flat);
   }
-  const size_t bands = static_cast<size_t>((camera.height_px + kBandRows - 1) / kBandRows);
-  std::vector<std::vector<std::uint32_t>> of_band(bands);
+  PixelWindow window{camera.width_px, camera.height_px, 0, 0};
+  for (const FlatTriangle& t : flat)
+    window = {std::min(window.x0, t.left), std::min(window.y0, t.top), std::max(window.x1, t.right + 1), std::max(window.y1, t.bottom + 1)};
+  if (window.empty()) return {};
+  WindowImage<double> depth = window_image(window, std::numeric_limits<double>::infinity());
+  const auto band_of = [&](int y) { return static_cast<size_t>((y - window.y0) / kBandRows); };
+  std::vector<std::vector<std::uint32_t>> of_band(band_of(window.y1 - 1) + 1);
   for (size_t i = 0; i < flat.size(); ++i) {
-    for (int band = flat[i].top / kBandRows; band <= flat[i].bottom / kBandRows; ++band)
-      of_band[static_cast<size_t>(band)].push_back(static_cast<std::uint32_t>(i));
+    for (size_t band = band_of(flat[i].top); band <= band_of(flat[i].bottom); ++band)
+      of_band[band].push_back(static_cast<std::uint32_t>(i));
   }
-  for_each_band(camera.height_px, [&](int y0, int y1) {
+  for_each_band(window.height(), [&](int y0, int y1) {
     for (const std::uint32_t i : of_band[static_cast<size_t>(y0 / kBandRows)]) {
-      for (int y = std::max(flat[i].top, y0); y <= std::min(flat[i].bottom, y1 - 1); ++y) fill_row(flat[i], y, frame.perspective(), depth);
+      const int first = std::max(flat[i].top, window.y0 + y0), end = std::min(flat[i].bottom + 1, window.y0 + y1);
+      for (int y = first; y < end; ++y) fill_row(flat[i], y, frame.perspective(), depth);
     }
   });
   return depth;

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "raymarch/border/pixel_window.h"
 #include "sdf/camera.h"
-#include "sdf/image.h"
 
 namespace limn {
 
@@ -17,11 +17,11 @@ struct HullTriangle {
 
 enum class HullFaces { all, back };
 
-/// Depth Z of the nearest triangle at the point `sample` of each pixel; infinite where there is none. Image points are rounded to
-/// 1/1024 px and edges are then decided in whole numbers by the top-left rule, so that triangles with a common edge leave no pixel between
-/// them and share none. Clipped at depth `near` in perspective and at 0 in parallel projection. Front faces are those whose corners run
-/// counter-clockwise. The same bytes for any number of threads.
-Image<double> rasterize_hull(std::span<const HullTriangle> triangles, HullFaces faces, const Camera& camera, double near,
-                             const glm::dvec2& sample);
+/// Depth Z of the nearest triangle at the point `sample` of each pixel that triangles come to; infinite where there is none. Image points
+/// are rounded to 1/1024 px and edges are then decided in whole numbers by the top-left rule, so that triangles with a common edge leave no
+/// pixel between them and share none. Clipped at depth `near` in perspective and at 0 in parallel projection. Front faces are those whose
+/// corners run counter-clockwise. The same bytes for any number of threads.
+WindowImage<double> rasterize_hull(std::span<const HullTriangle> triangles, HullFaces faces, const Camera& camera, double near,
+                                   const glm::dvec2& sample);
 
 }  // namespace limn

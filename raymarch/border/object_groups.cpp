@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/gbuffer_window.h"
 #include "raymarch/threads.h"
 #include "raymarch/trace_scene.h"
 
@@ -215,7 +216,33 @@ std::vector<HiddenGroup> hidden_groups(const BorderInput& input, GroupBy by) {
   return all;
 }
 
-GBuffer render_alone(const BorderInput& input, const HiddenGroup& group) {
+namespace {
+
+PixelWindow window_of(const PixelTile& tile) { return {tile.x, tile.y, tile.x + tile.width, tile.y + tile.height}; }
+
+PixelWindow united(const PixelWindow& a, const PixelWindow& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
+
+/// Gives ids the numbers they have in the whole scene, and finds the pixels that have one.
+PixelWindow rename_and_find(const HiddenGroup& group, const PixelWindow& drawn, GBuffer& seen) {
+  PixelWindow found{seen.width, seen.height, 0, 0};
+  for (int y = drawn.y0; y < drawn.y1; ++y) {
+    for (int x = drawn.x0; x < drawn.x1; ++x) {
+      std::int32_t& id = seen.id.at(x, y);
+      if (id == 0) continue;
+      id = static_cast<std::int32_t>(group.objects[static_cast<size_t>(id - 1)]) + 1;
+      found = {std::min(found.x0, x), std::min(found.y0, y), std::max(found.x1, x + 1), std::max(found.y1, y + 1)};
+    }
+  }
+  return found.empty() ? PixelWindow{} : found;
+}
+
+}  // namespace
+
+void render_alone(const BorderInput& input, const HiddenGroup& group, GroupAlone& alone) {
   SceneModel model;
   model.render_origin = input.model.render_origin;
   model.bounds = input.model.bounds;
@@ -224,15 +251,20 @@ GBuffer render_alone(const BorderInput& input, const HiddenGroup& group) {
     model.colors.push_back(input.model.colors[k]);
     model.materials.push_back(input.model.materials[k]);
   }
-  GBuffer seen;
   Camera camera = input.camera;
   camera.width_px = input.gbuffer.width;
   camera.height_px = input.gbuffer.height;
-  render_gbuffer(model, camera, {.threads = kSurroundingThreads}, input.gbuffer.sample, {}, seen);
-  for (std::int32_t& id : seen.id.pixels) {
-    if (id != 0) id = static_cast<std::int32_t>(group.objects[static_cast<size_t>(id - 1)]) + 1;
+  const ViewRequest request{moved(camera, model.render_origin), input.gbuffer.sample};
+  PixelWindow covered;
+  for (const Surface& surface : model.surfaces) covered = united(covered, window_of(covered_pixels(surface.bounds, request)));
+  const ExecutionSettings how{.threads = kSurroundingThreads};
+  if (alone.seen.id.pixels.empty()) {
+    render_gbuffer(model, camera, how, request.sample, {}, alone.seen);
+  } else {
+    const PixelWindow drawn = united(covered, alone.window);
+    render_window(model, camera, how, request.sample, {drawn.x0, drawn.y0, drawn.width(), drawn.height()}, alone.seen);
   }
-  return seen;
+  alone.window = rename_and_find(group, covered, alone.seen);
 }
 
 void lay_hidden_ink(const Image<float>& hidden, const glm::vec3& color, Border& border) {

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "raymarch/border.h"
+#include "raymarch/border/pixel_window.h"
 
 namespace limn {
 
@@ -22,16 +23,6 @@ std::vector<Parameter> group_parameters(GroupBy by);
 GroupSettings group_settings(const Parameters& parameters);
 /// Layers that a method with these parameters reads besides its own inputs when it is called with `parameters`; none for other methods.
 std::vector<std::string> group_inputs(const BorderMethod& method, const Parameters& parameters);
-
-/// Pixels [x0, x1) x [y0, y1) of a picture.
-struct PixelWindow {
-  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  bool empty() const { return x0 >= x1 || y0 >= y1; }
-  int width() const { return x1 - x0; }
-  int height() const { return y1 - y0; }
-};
-/// Larger by `by` pixels on each side, as far as the picture goes; corners on multiples of `step` where that is possible.
-PixelWindow grown(const PixelWindow& window, int by, int width, int height, int step = 1);
 
 /// What two neighbouring pixels of different groups show of each other: one lies in front, or the surfaces touch there.
 enum class Meeting { first_in_front, second_in_front, touching };
@@ -89,8 +80,13 @@ struct HiddenGroup {
 };
 /// Of those whose place in the picture shows others too.
 std::vector<HiddenGroup> hidden_groups(const BorderInput& input, GroupBy by);
-/// The group as if nothing else were there; ids as in the whole picture.
-GBuffer render_alone(const BorderInput& input, const HiddenGroup& group);
+/// A group as if nothing else were there.
+struct GroupAlone {
+  GBuffer seen{};        ///< Of the whole picture; ids as there.
+  PixelWindow window{};  ///< Holds all pixels that show the group.
+};
+/// Draws into `alone`, which is empty or shows another group of the same picture: the cost is that of the pixels that either can cover.
+void render_alone(const BorderInput& input, const HiddenGroup& group, GroupAlone& alone);
 
 /// Lays ink of another colour beneath a border's own.
 void lay_hidden_ink(const Image<float>& hidden, const glm::vec3& color, Border& border);

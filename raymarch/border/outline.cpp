@@ -45,8 +45,9 @@ void draw_group(const PictureGroups& groups, std::int32_t group, const GroupSilh
 void draw_hidden(const BorderInput& input, const GroupSettings& settings, const OutlineBand& band, bool estimate,
                  const SilhouetteSquares& squares, Border& border) {
   Image<float> hidden(border.coverage.width, border.coverage.height, 0.0f);
+  GroupAlone alone;
   for (const HiddenGroup& group : hidden_groups(input, settings.by)) {
-    const GBuffer alone = render_alone(input, group);
+    render_alone(input, group, alone);
     const GroupSilhouette outline = hidden_silhouette(input.gbuffer, alone, group, true, estimate, band.reach_px(), squares);
     const Image<float> ink = ink_band(outline.silhouette, outline.squares, band);
     for (int y = 0; y < ink.height; ++y) {

@@ -49,7 +49,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
 SurfaceDescriptor mesh_level_set_surface() {
   return {{"mesh_level_set", "the mesh as a narrow band of voxels: exact distances, sign by winding number",
            "Jacobson et al. 2013 (winding number); Museth 2013 (OpenVDB)"},
-          {"level", "scheme", "normals", "voxels", "voxel-size", "half-width", "gradient"},
+          {"level", "scheme", "voxels", "voxel-size", "half-width", "gradient"},
           cannot_mesh,
           build};
 }

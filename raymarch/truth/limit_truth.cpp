@@ -8,8 +8,8 @@
 
 #include "raymarch/open_sheet.h"
 #include "raymarch/truth/limit_curves.h"
+#include "raymarch/truth/proxy.h"
 #include "raymarch/truth/shares.h"
-#include "raymarch/truth/stand_in.h"
 #include "subdiv/orientation.h"
 
 namespace limn {
@@ -85,11 +85,11 @@ bool is_blocked(const SceneModel& model, const std::vector<size_t>& objects, con
 }  // namespace
 
 TruthShare trace_cages(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings,
-                       std::shared_ptr<const StandIn> stand_in, const ExecutionSettings& how) {
+                       std::shared_ptr<const TruthProxy> proxy, const ExecutionSettings& how) {
   CageScene traced;
   for (const size_t i : objects) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
-    const Surface& shown = stand_in->model.surfaces[i];
+    const Surface& shown = proxy->model.surfaces[i];
     const bool turned = shown.open_sheet && shown.open_sheet->shows_back(shown, settings.camera);
     trace_object(scene.objects[i], static_cast<int>(i) + 1, turned, settings.camera, settings.origin, settings.truth, traced);
   }
@@ -102,11 +102,11 @@ TruthShare trace_cages(const Scene& scene, const std::vector<size_t>& objects, c
       fmt::format("closed curves narrower than {:.1f} px are found only where they reach a sample of the surface; what hides what "
                   "was decided on a mesh with edges of {:.1f} px, lifted by {} px; around extraordinary vertices normals are "
                   "right to 0.01 degrees",
-                  traced.cell_px, stand_in->edge_px, kLift_px));
+                  traced.cell_px, proxy->edge_px, kLift_px));
   if (traced.invalid_patches > 0)
     share.notes.push_back(fmt::format("{} faces without a limit surface were left out", traced.invalid_patches));
-  share.blocked = [stand_in, objects, camera = settings.camera](const TracedPoint& point, int) {
-    return is_blocked(stand_in->model, objects, camera, point);
+  share.blocked = [proxy, objects, camera = settings.camera](const TracedPoint& point, int) {
+    return is_blocked(proxy->model, objects, camera, point);
   };
   return share;
 }

@@ -82,6 +82,6 @@ TracedPoint chord_point(const TracedCurve& curve, size_t i, double t, const Came
 
 /// Truth of scenes whose objects are fields and cages, and of all others.
 BorderTruth solve_truth_traced(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how);
-BorderTruth solve_truth_stand_in(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how);
+BorderTruth solve_truth_by_proxy(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how);
 
 }  // namespace limn

@@ -31,9 +31,9 @@ struct ShareSettings {
 /// `scene` may hold other kinds too: `objects` says which are meant.
 TruthShare trace_fields(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings,
                         const ExecutionSettings& how);
-/// `model` is the scene's (stand_in.h), about the solver's origin: rays ask it what hides what.
-struct StandIn;
+/// `model` is the scene's (proxy.h), about the solver's origin: rays ask it what hides what.
+struct TruthProxy;
 TruthShare trace_cages(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings,
-                       std::shared_ptr<const StandIn> stand_in, const ExecutionSettings& how);
+                       std::shared_ptr<const TruthProxy> proxy, const ExecutionSettings& how);
 
 }  // namespace limn

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/truth/proxy.h"
 #include "raymarch/truth/shares.h"
-#include "raymarch/truth/stand_in.h"
 
 namespace limn {
 namespace {
@@ -51,10 +51,10 @@ CurveScene joined(const std::vector<TruthShare>& shares, const Camera& camera, s
   return scene;
 }
 
-SeenInk make_seen(std::shared_ptr<const StandIn> stand_in, const Camera& camera, double threshold) {
-  return [stand_in, camera, threshold](std::span<const glm::dvec2> points, std::span<std::uint8_t> ink) {
+SeenInk make_seen(std::shared_ptr<const TruthProxy> proxy, const Camera& camera, double threshold) {
+  return [proxy, camera, threshold](std::span<const glm::dvec2> points, std::span<std::uint8_t> ink) {
     std::vector<PointSample> samples(points.size());
-    sample_points(stand_in->model, camera, points, samples);
+    sample_points(proxy->model, camera, points, samples);
     for (size_t i = 0; i < samples.size(); ++i) {
       ink[i] = samples[i].status == HitStatus::hit && static_cast<double>(samples[i].n_dot_v) < threshold;
     }
@@ -91,11 +91,11 @@ BorderTruth solve_truth_traced(const Scene& scene, const Camera& camera, const T
   std::vector<size_t> fields, cages;
   for (size_t i = 0; i < scene.objects.size(); ++i) (std::holds_alternative<Field>(scene.objects[i].source) ? fields : cages).push_back(i);
   const ShareSettings sharing = solver_space(scene, camera, settings);
-  const auto stand_in = std::make_shared<const StandIn>(make_stand_in(scene, camera, settings.max_bytes, 1.5));
+  const auto proxy = std::make_shared<const TruthProxy>(make_proxy(scene, camera, settings.max_bytes, 1.5));
   std::vector<TruthShare> shares;
   if (!fields.empty()) shares.push_back(trace_fields(scene, fields, sharing, how));
-  if (!cages.empty()) shares.push_back(trace_cages(scene, cages, sharing, stand_in, how));
-  if (shares.size() > 1 && interpenetrate(shares, sharing.extent)) return solve_truth_stand_in(scene, camera, settings, how);
+  if (!cages.empty()) shares.push_back(trace_cages(scene, cages, sharing, proxy, how));
+  if (shares.size() > 1 && interpenetrate(shares, sharing.extent)) return solve_truth_by_proxy(scene, camera, settings, how);
 
   BorderTruth truth;
   truth.from = words_of(fields, cages);
@@ -113,8 +113,7 @@ BorderTruth solve_truth_traced(const Scene& scene, const Camera& camera, const T
   const auto parts = visible_parts(curves, joined(shares, sharing.camera, scene.objects.size()), visibility, how);
   if (how.progress) how.progress(0.8);
   truth.curves = border_of(parts, 0.5 * settings.tolerance_px, sharing.origin);
-  const Coverage coverage =
-      coverage_of(truth.curves, camera.width_px, camera.height_px, make_seen(stand_in, camera, settings.threshold), how);
+  const Coverage coverage = coverage_of(truth.curves, camera.width_px, camera.height_px, make_seen(proxy, camera, settings.threshold), how);
   truth.coverage = coverage.share;
   // A mesh that stands in for a limit surface differs from it by parts of a pixel, which says nothing of the curves.
   if (coverage.disputed > 0 && cages.empty()) {

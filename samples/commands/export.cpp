@@ -39,10 +39,11 @@ void add_options(CLI::App& app, Options& options) {
 }
 
 // --surface says by which way: mesh or level_set straight, mesh_level_set through both.
-void check_kind(const SurfaceSettings& settings) {
-  if (settings.kind == "analytic") {
+void check_kind(const SurfaceSettings& settings, const fs::path& file) {
+  if (settings.kind == "analytic")
     throw InputError({"", "--surface", settings.kind, "a formula cannot be written to a file", "mesh, level_set or mesh_level_set"});
-  }
+  if (settings.kind == "mesh" && ending_of(file) == ".vdb")
+    throw InputError({"", "--surface", settings.kind, "a mesh cannot be written to a .vdb", "level_set or mesh_level_set, or -o FILE.obj"});
 }
 
 // The way to the file: through a mesh, a level set, or both.
@@ -133,7 +134,7 @@ int run(const Options& options) {
   check_output_file(file, options, kEndings);
   check_not_input(file, files_of(input));
   SurfaceSettings settings = surface_settings(options, input);
-  check_kind(settings);
+  check_kind(settings, file);
   if (options.refined) check_refined(input.scene, settings, file);
   settings.progress = bar.stage("building the surface");
 

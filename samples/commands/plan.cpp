@@ -33,13 +33,8 @@ void refuse_unread(const Options& options, const SceneInput& input) {
       refuse("--set " + set.key, "a plan reads no parameter but rim's threshold; leave it out");
     if (options.plan.silhouette) refuse("--set " + set.key, "a silhouette has no threshold; leave it out, or --metric silhouette");
   }
-  if (options.half_width_voxels) refuse("--half-width", "each model of a plan has the band that its gradient needs; leave it out");
   refuse_eye_of_views(options, options.views);
-  std::vector<std::string> kinds = options.surfaces;
-  if (kinds.empty()) {
-    for (const SurfaceDescriptor& kind : surface_kinds()) kinds.push_back(kind.about.name);
-  }
-  refuse_without_effect(options, input, {.kinds = kinds});
+  refuse_unplanned(options, input);
 }
 
 int run(const Options& options) {

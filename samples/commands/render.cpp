@@ -238,11 +238,11 @@ int run(const Options& options) {
   render.timings.load_ms = render.input.load_ms;
   render.surface = surface_settings(options, render.input);
   refuse_eye_of_views(options, options.views);
-  if (!options.plan.tolerance_px)
-    refuse_without_effect(options, render.input, {.kinds = {render.surface.kind}});
-  else if (options.half_width_voxels)
-    throw InputError({"", "--half-width", "", "has no effect with --tolerance, which chooses the model; leave it out", ""});
-  if (options.plan.tolerance_px && !choose_model(options, bar, render)) return 1;
+  if (!options.plan.tolerance_px) refuse_without_effect(options, render.input, {.kinds = {render.surface.kind}});
+  if (options.plan.tolerance_px && !choose_model(options, bar, render)) {
+    if (options.json) print_json({{"files", Json::array()}, {"warnings", render.warnings}, {"plan", render.plan}});
+    return 1;
+  }
   render.surface.progress = bar.stage("building the surface");
   render.picture = picture_settings(options, render.input);
   const auto has_layers = [](const fs::path& file) { return ending_of(file) == ".exr"; };

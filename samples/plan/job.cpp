@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "samples/limits.h"
+#include "samples/no_effect.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -32,7 +33,6 @@ void check_open(const Options& options) {
 
 PlanSettings settings_of(const Options& options, const SceneInput& input) {
   LIMN_CHECK(options.plan.tolerance_px.has_value());
-  check_open(options);
   PlanSettings settings;
   settings.tolerance_px = *options.plan.tolerance_px;
   settings.metric = options.plan.silhouette ? PlanMetric::silhouette : PlanMetric::border;
@@ -88,8 +88,21 @@ Json trial_json(const PlanAnswer& answer, const PlanTrial& trial, PlanMetric met
 
 }  // namespace
 
+void refuse_unplanned(const Options& options, const SceneInput& input) {
+  check_open(options);
+  if (options.half_width_voxels)
+    throw InputError(
+        {"", "--half-width", "", "has no effect: each model of a plan has the band that its gradient needs; leave it out", ""});
+  std::vector<std::string> kinds = options.surfaces;
+  if (kinds.empty()) {
+    for (const SurfaceDescriptor& kind : surface_kinds()) kinds.push_back(kind.about.name);
+  }
+  refuse_without_effect(options, input, {.kinds = kinds});
+}
+
 PlanJob plan_for(const Options& options, const SceneInput& input, ProgressBar& bar) {
   PlanJob job;
+  refuse_unplanned(options, input);
   job.settings = settings_of(options, input);
   const CameraSettings camera_of = camera_settings(options, input);
   const Box scene_bounds = bounds(input.scene);

@@ -13,6 +13,9 @@ struct PlanJob {
   PlanAnswer answer{};
 };
 
+/// Throws InputError for options that no model of a plan reads: what the plan chooses, and what has no effect on this scene.
+void refuse_unplanned(const Options& options, const SceneInput& input);
+
 /// `--tolerance` must be set. Throws InputError.
 PlanJob plan_for(const Options& options, const SceneInput& input, ProgressBar& bar);
 

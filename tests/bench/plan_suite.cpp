@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "raymarch/truth/stand_in.h"
+#include "raymarch/truth/proxy.h"
 #include "samples/job.h"
 #include "samples/output.h"
 #include "samples/scenes/scenes.h"
@@ -129,7 +129,7 @@ Sums run_scene(const SceneDescriptor& descriptor, const PlanBenchSettings& setti
     PlanView view;
     view.camera = camera_of_view(camera, bounds(scene), index, settings.views);
     view.truth = solve_truth(scene, view.camera, {}, {});
-    const StandIn reference = make_stand_in(scene, view.camera, std::int64_t{4} << 30, 1.0);
+    const TruthProxy reference = make_proxy(scene, view.camera, std::int64_t{4} << 30, 1.0);
     std::vector<PlanTrial> known;
     for (const double tolerance_px : kTolerances_px) {
       rows.push_back(run_plan({scene, view, reference.model, index, finest, known}, tolerance_px, sums));

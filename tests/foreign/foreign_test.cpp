@@ -81,22 +81,35 @@ void check(const ListedFile& listed, const fs::path& file) {
   }
 }
 
-void check_all(const std::string& group, const std::vector<std::string>& endings) {
-  const fs::path folder = folder_of(group);
-  if (folder.empty()) GTEST_SKIP() << "the files of '" << group << "' are not installed";
-  const std::vector<ListedFile> files = files_of(group, endings);
-  ASSERT_FALSE(files.empty());
-  for (const ListedFile& listed : files) check(listed, folder / listed.path);
+struct Kind {
+  const char* name;
+  const char* group;
+  std::vector<std::string> endings;
+  int files;  ///< In the list.
+};
+
+class ForeignFiles : public testing::TestWithParam<Kind> {};
+
+TEST_P(ForeignFiles, AreDrawnOrRefusedAsListed) {
+  const Kind& kind = GetParam();
+  const fs::path folder = folder_of(kind.group);
+  if (folder.empty()) GTEST_SKIP() << "the files of '" << kind.group << "' are not installed";
+  int checked = 0;
+  for (const ListedFile& listed : files_of(kind.group, kind.endings)) {
+    check(listed, folder / listed.path);
+    ++checked;
+  }
+  EXPECT_EQ(checked, kind.files);
 }
 
-TEST(ForeignFiles, CgalOff) { check_all("cgal", {".off"}); }
-TEST(ForeignFiles, CgalPlyAndStl) { check_all("cgal", {".ply", ".stl"}); }
-TEST(ForeignFiles, AssimpObj) { check_all("assimp", {".obj"}); }
-TEST(ForeignFiles, AssimpOffPlyAndStl) { check_all("assimp", {".off", ".ply", ".stl"}); }
-TEST(ForeignFiles, AssimpGltf) { check_all("assimp", {".gltf", ".glb"}); }
-TEST(ForeignFiles, ModelsObj) { check_all("models", {".obj"}); }
+INSTANTIATE_TEST_SUITE_P(Kinds, ForeignFiles,
+                         testing::Values(Kind{"CgalOff", "cgal", {".off"}, 139}, Kind{"CgalPlyAndStl", "cgal", {".ply", ".stl"}, 15},
+                                         Kind{"AssimpObj", "assimp", {".obj"}, 25},
+                                         Kind{"AssimpOffPlyAndStl", "assimp", {".off", ".ply", ".stl", ".STL"}, 22},
+                                         Kind{"AssimpGltf", "assimp", {".gltf", ".glb"}, 53}, Kind{"ModelsObj", "models", {".obj"}, 13}),
+                         [](const auto& instance) { return std::string(instance.param.name); });
 
-TEST(ForeignFiles, BinaryOffThatCgalWrites) {
+TEST(ForeignFormats, BinaryOffThatCgalWrites) {
   const TemporaryFolder folder;
   int written = 0;
   for (const std::string group : {"cgal", "models"})
@@ -117,7 +130,7 @@ TEST(ForeignFiles, BinaryOffThatCgalWrites) {
 }
 
 /// A file that a package gains or loses is seen here, not skipped over.
-TEST(ForeignFiles, TheListHoldsEveryMeshOfItsPackages) {
+TEST(ForeignList, TheListHoldsEveryMeshOfItsPackages) {
   std::map<std::string, int> listed;
   for (const ListedFile& file : listed_files(kList)) ++listed[file.group + " " + file.path];
   for (const auto& [name, count] : listed) EXPECT_EQ(count, 1) << name;

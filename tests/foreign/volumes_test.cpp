@@ -94,16 +94,25 @@ void expect_like_the_mesh(const fs::path& vdb, const Soup& soup, const Variant& 
   }
 }
 
-/// A mesh of each kind, as the list has them: every one of them, or one of so many.
-void check_volumes(const std::string& group, size_t step) {
+/// Meshes of one group of the list, of which every `step`th takes its turn.
+struct Kind {
+  const char* name;
+  const char* group;
+  size_t step;
+};
+
+class ForeignVolumes : public testing::TestWithParam<Kind> {};
+
+TEST_P(ForeignVolumes, AreLikeTheirMeshesOrSayWhy) {
   if (std::system("vdb_tool -version >/dev/null 2>&1") != 0) GTEST_SKIP() << "vdb_tool is not installed";
-  const fs::path folder = folder_of(group);
-  if (folder.empty()) GTEST_SKIP() << "the files of '" << group << "' are not installed";
+  const Kind& kind = GetParam();
+  const fs::path folder = folder_of(kind.group);
+  if (folder.empty()) GTEST_SKIP() << "the files of '" << kind.group << "' are not installed";
   const TemporaryFolder work;
   size_t turn = 0, made = 0;
   for (const ListedFile& listed : listed_files(LIMN_SOURCE_DIR "/tests/foreign/files.tsv")) {
-    if (listed.group != group || !listed.drawn || !listed.compared) continue;
-    if (++turn % (everything() ? 1 : step) != 0) continue;
+    if (listed.group != kind.group || !listed.drawn || !listed.compared) continue;
+    if (++turn % (everything() ? 1 : kind.step) != 0) continue;
     const SecondReading mesh = read_by_other(folder / listed.path);
     write_obj(mesh.soup, work.path() / "mesh.obj");
     for (const Variant& variant : variants(turn)) {
@@ -118,9 +127,10 @@ void check_volumes(const std::string& group, size_t step) {
   EXPECT_GT(made, 10u);
 }
 
-TEST(ForeignVolumes, OfCgalsMeshes) { check_volumes("cgal", 9); }
-TEST(ForeignVolumes, OfAssimpsMeshes) { check_volumes("assimp", 7); }
-TEST(ForeignVolumes, OfTheModels) { check_volumes("models", 1); }
+INSTANTIATE_TEST_SUITE_P(Kinds, ForeignVolumes,
+                         testing::Values(Kind{"OfCgalsMeshes", "cgal", 9}, Kind{"OfAssimpsMeshes", "assimp", 7},
+                                         Kind{"OfTheModels", "models", 1}),
+                         [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace
 }  // namespace limn::foreign

@@ -29,12 +29,17 @@ TEST(HullRaster, TrianglesThatShareAnEdgeShareNoPixelAndLeaveNone) {
       const HullTriangle triangle{p, q, r};
       return rasterize_hull({&triangle, 1}, HullFaces::all, camera, 0.0, {0.5, 0.5});
     };
-    const Image<double> whole = covered(a, b, c), first = covered(a, b, inside), second = covered(b, c, inside),
-                        third = covered(c, a, inside);
-    for (size_t i = 0; i < whole.size(); ++i) {
-      const int count = std::isfinite(first.pixels[i]) + std::isfinite(second.pixels[i]) + std::isfinite(third.pixels[i]);
-      // `inside` is rounded to 1/1024 px, which the whole triangle's edges do not see.
-      ASSERT_EQ(count, std::isfinite(whole.pixels[i]) ? 1 : 0) << "round " << round << ", pixel " << i;
+    const WindowImage<double> whole = covered(a, b, c), first = covered(a, b, inside), second = covered(b, c, inside),
+                              third = covered(c, a, inside);
+    const auto is_covered = [](const WindowImage<double>& depth, int x, int y) {
+      return depth.inside(x, y) && std::isfinite(depth.at(x, y));
+    };
+    for (int y = 0; y < camera.height_px; ++y) {
+      for (int x = 0; x < camera.width_px; ++x) {
+        const int count = is_covered(first, x, y) + is_covered(second, x, y) + is_covered(third, x, y);
+        // `inside` is rounded to 1/1024 px, which the whole triangle's edges do not see.
+        ASSERT_EQ(count, is_covered(whole, x, y) ? 1 : 0) << "round " << round << ", pixel " << x << ' ' << y;
+      }
     }
   }
 }
@@ -43,10 +48,10 @@ TEST(HullRaster, DepthIsThatOfThePlaneAndTheNearPlaneCuts) {
   const Camera camera = straight_camera(64, 48, Projection::perspective, 60.0);
   // The plane Z = 2 + x / 2, from before the eye to far behind it.
   const HullTriangle triangle{{-8.0, -6.0, -2.0}, {10.0, -6.0, 7.0}, {1.0, 12.0, 2.5}};
-  const Image<double> depth = rasterize_hull({&triangle, 1}, HullFaces::all, camera, 0.5, {0.5, 0.5});
+  const WindowImage<double> depth = rasterize_hull({&triangle, 1}, HullFaces::all, camera, 0.5, {0.5, 0.5});
   int filled = 0;
-  for (int y = 0; y < depth.height; ++y) {
-    for (int x = 0; x < depth.width; ++x) {
+  for (int y = depth.window.y0; y < depth.window.y1; ++y) {
+    for (int x = depth.window.x0; x < depth.window.x1; ++x) {
       if (!std::isfinite(depth.at(x, y))) continue;
       ++filled;
       const double slope = (x + 0.5 - 32.0) / 60.0, expected = 2.0 / (1.0 - 0.5 * slope);

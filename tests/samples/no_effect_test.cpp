@@ -87,6 +87,9 @@ TEST_F(NoEffect, OfARender) {
   refused({"render", "VOLUME", "--normals", "flat"}, "--surface mesh");
   refused({"render", "ellipsoid", "--views", "2", "--eye", "0,0,5"}, "--views 1");
   refused({"render", "ellipsoid", "--tolerance", "2", "--half-width", "4"}, "--half-width");
+  refused({"render", "ellipsoid", "--tolerance", "2", "--scheme", "loop"}, "--scheme");
+  refused({"render", "ellipsoid", "--tolerance", "2", "--smooth-angle", "10"}, "--smooth-angle");
+  refused({"render", "ellipsoid", "--surface", "mesh_level_set", "--voxels", "12", "--normals", "flat"}, "--surface mesh");
 }
 
 TEST_F(NoEffect, WhatARenderReadsIsTaken) {
@@ -145,6 +148,13 @@ TEST_F(NoEffect, OfExportAndInfo) {
   taken({"export", "ellipsoid", "--voxels", "12", "--half-width", "4", "-o", "a.vdb"});
   taken({"export", "ellipsoid", "--surface", "mesh_level_set", "--voxels", "12", "--level", "1", "-o", "a.vdb"});
   taken({"export", "MESH", "--voxels", "12", "-o", "a.vdb"});
+  refused({"export", "MESH", "--smooth-angle", "10", "-o", "a.obj"}, "--smooth-angle");
+  refused({"export", "MESH", "--normals", "flat", "-o", "a.obj"}, "--normals");
+  refused({"export", "ellipsoid", "--surface", "level_set", "--voxels", "12", "--normals", "flat", "-o", "a.obj"}, "--normals");
+  refused({"export", "VOLUME", "--gradient", "cubic", "-o", "a.vdb"}, "--gradient");
+  taken({"export", "VOLUME", "--voxels", "12", "--gradient", "cubic", "-o", "a.vdb"});
+  taken({"export", "CAGE", "--level", "1", "--normals", "flat", "-o", "a.obj"});
+  refused({"info", "VOLUME", "--voxels", "12"}, "--voxels");
   refused({"info", "ellipsoid", "--half-width", "4"}, "--half-width");
   refused({"info", "ellipsoid", "--normals", "flat"}, "--normals");
   refused({"info", "ellipsoid", "--gradient", "cell"}, "--gradient");
@@ -153,6 +163,23 @@ TEST_F(NoEffect, OfExportAndInfo) {
   taken({"info", "ellipsoid", "--voxels", "12"});
   taken({"info", "VOLUME", "--gradient", "cell"});
   taken({"info", "MESH", "--level", "1"});
+}
+
+TEST_F(NoEffect, ARepresentationThatCannotBeMadeIsWhatIsNamed) {
+  for (const Words& call :
+       {Words{"render", "VOLUME", "--surface", "analytic", "--voxels", "12"},
+        Words{"render", "MESH", "--surface", "analytic", "--level", "1"}, Words{"export", "MESH", "--surface", "mesh", "-o", "a.vdb"}}) {
+    const RunResult result = run(call);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_NE(result.err.find(call[3]), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find("no effect"), std::string::npos) << result.err;
+  }
+}
+
+TEST_F(NoEffect, ARenderWithoutAPlanSaysSoInJson) {
+  const RunResult result = run({"render", "gyroid", "--tolerance", "0.0001", "--budget", "1M", "--json"});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_TRUE(result.json()["plan"]["chosen"].is_null()) << result.out;
 }
 
 /// The call with nothing left open, as --verbose prints it.

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "raymarch/truth/stand_in.h"
+#include "raymarch/truth/proxy.h"
 #include "samples/job.h"
 #include "samples/scenes/scenes.h"
 #include "tests/plan_check.h"
@@ -43,7 +43,7 @@ TEST(Plan, TheChoiceKeepsToTheToleranceAndTheNextCoarserModelDoesNot) {
     const Scene scene = scene_named(name);
     for (int index = 0; index < 2; ++index) {
       const PlanView view = view_of(scene, index, 2);
-      const StandIn reference = make_stand_in(scene, view.camera, std::int64_t{2} << 30, 1.0);
+      const TruthProxy reference = make_proxy(scene, view.camera, std::int64_t{2} << 30, 1.0);
       std::vector<PlanTrial> known;
       for (const double tolerance_px : {1.0, 0.25}) {
         PlanSettings settings;
@@ -86,7 +86,7 @@ TEST(Plan, RaysATenthBeyondTheMeasuredErrorSeeWhatIsThereAndRaysWithinItDoNot) {
   for (const Case& at : cases) {
     const Scene scene = scene_named(at.scene);
     const PlanView view = view_of(scene, at.view, 4);
-    const StandIn reference = make_stand_in(scene, view.camera, std::int64_t{2} << 30, 1.0);
+    const TruthProxy reference = make_proxy(scene, view.camera, std::int64_t{2} << 30, 1.0);
     PlanSettings settings;
     settings.kinds = {at.kind};
     const std::vector<Ladder> ladders = ladders_of(scene, settings);

@@ -80,7 +80,8 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
       specks += small && std::none_of(piece.begin(), piece.end(), at_outline);
     }
     const std::int64_t splinters = std::max<std::int64_t>(0, seams - with.integer("seams"));
-    worst.see(static_cast<double>(changes + splinters + specks),
+    // Without a seam nothing was measured.
+    worst.see(seams == 0 ? kNothingSeen : static_cast<double>(changes + splinters + specks),
               fmt::format("{} seams in the picture, {} changes between ink and none along them, {} specks of ink", seams, changes, specks),
               shop.stage(), view, &border);
   }

@@ -39,7 +39,7 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
         inked += ink.at(x, y) > 0.5f && !ink_near(whole.coverage, x + margin, y + margin);
       }
     }
-    worst.see(cut == 0 ? 1e6 : static_cast<double>(inked),
+    worst.see(cut == 0 ? kNothingSeen : static_cast<double>(inked),
               fmt::format("{} of {} pixels along the frame inked that a larger picture leaves bare", inked, cut), stage, view, &border);
   }
   return worst.take();

@@ -48,7 +48,7 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
       const Shot a{view.seen, border.coverage}, b{other.seen, other_border.coverage};
       const std::int64_t different = without_counterpart(a, b, reach) + without_counterpart(b, a, reach);
       const bool empty = count_hits(view.seen).hits == 0;
-      worst.see(empty ? 1e6 : static_cast<double>(different),
+      worst.see(empty ? kNothingSeen : static_cast<double>(different),
                 empty ? "nothing is seen"
                       : fmt::format("{} pixels have no counterpart in the mirrored picture with {}", different, changed.variant.words),
                 changed, other, &other_border);

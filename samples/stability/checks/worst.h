@@ -7,6 +7,9 @@
 
 namespace limn {
 
+/// What a check finds where the picture holds nothing that it measures: beyond every bound.
+constexpr double kNothingSeen = 1e6;
+
 class Worst {
  public:
   /// A number that was found in a view; the first and the largest stay, with their words and picture.

@@ -7,13 +7,13 @@ namespace limn {
 
 /// Objects as fields where they are fields, cages refined until their edges are about `edge_px` long or `max_faces` are reached, other
 /// meshes and volumes as they are, with their best normals.
-struct StandIn {
+struct TruthProxy {
   SceneModel model{};
   int level = 0;                     ///< Of the refined cages.
   double edge_px = 0.0;              ///< Mean edge of the cages, where they are seen.
   std::vector<std::string> words{};  ///< What each kind of object became: "a mesh of level 6".
 };
-StandIn make_stand_in(const Scene& scene, const Camera& camera, std::int64_t max_bytes, double edge_px);
+TruthProxy make_proxy(const Scene& scene, const Camera& camera, std::int64_t max_bytes, double edge_px);
 
 /// A mesh that is to be subdivided.
 bool is_cage(const SceneObject& object);

@@ -1,7 +1,7 @@
 // Scenes with meshes or volumes that are what they are: the border of their finest model, and how far another way of reading the same
 // model puts it.
 
-#include "raymarch/truth/stand_in.h"
+#include "raymarch/truth/proxy.h"
 
 #include <fmt/format.h>
 
@@ -60,11 +60,11 @@ std::string best_gradient(const LevelSetSource& source) {
   return best == nullptr ? "cell" : best->about.name;
 }
 
-void add_word(const std::string& word, StandIn& out) {
+void add_word(const std::string& word, TruthProxy& out) {
   if (std::find(out.words.begin(), out.words.end(), word) == out.words.end()) out.words.push_back(word);
 }
 
-SurfaceSettings finest_settings(const SceneObject& object, int level, StandIn& out) {
+SurfaceSettings finest_settings(const SceneObject& object, int level, TruthProxy& out) {
   SurfaceSettings settings;
   settings.kind = natural_surface(object);
   settings.level = level;
@@ -254,8 +254,8 @@ void judge_objects(const Scene& scene, int level, const BorderCurves& second, co
 
 bool is_cage(const SceneObject& object) { return cage_in(object) != nullptr; }
 
-StandIn make_stand_in(const Scene& scene, const Camera& camera, std::int64_t max_bytes, double edge_px) {
-  StandIn out;
+TruthProxy make_proxy(const Scene& scene, const Camera& camera, std::int64_t max_bytes, double edge_px) {
+  TruthProxy out;
   while (out.level < kFinestLevel && edge_px_at(scene, camera, out.level) > edge_px && faces_at(scene, out.level + 1) <= kMostFaces)
     ++out.level;
   out.edge_px = edge_px_at(scene, camera, out.level);
@@ -267,8 +267,8 @@ StandIn make_stand_in(const Scene& scene, const Camera& camera, std::int64_t max
   return out;
 }
 
-BorderTruth solve_truth_stand_in(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how) {
-  const StandIn finest = make_stand_in(scene, camera, settings.max_bytes, 1.0);
+BorderTruth solve_truth_by_proxy(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how) {
+  const TruthProxy finest = make_proxy(scene, camera, settings.max_bytes, 1.0);
   const SceneModel second = model_of(scene, [&](const SceneObject& object) { return second_settings(object, finest.level); });
   MeasuredBorderSettings measuring;
   measuring.threshold = settings.threshold;

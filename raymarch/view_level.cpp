@@ -208,8 +208,11 @@ std::vector<std::string> refine_for_views(const SurfaceSettings& settings, std::
     if (!has_levels(object, settings)) continue;
     const ViewLevel chosen = level_for_views(object, settings, cameras);
     object.level = chosen.level;
-    notes.push_back(fmt::format("level {} for '{}': {:.2g} px from its surface{}{}", chosen.level, object.name, chosen.deviation_px,
-                                chosen.limit.empty() ? "" : "; ", chosen.limit));
+    // At level 0 nothing was compared.
+    const std::string deviation = std::isfinite(chosen.deviation_px) ? fmt::format("{:.2g} px from its surface", chosen.deviation_px)
+                                                                     : "at an unknown distance from its surface";
+    notes.push_back(
+        fmt::format("level {} for '{}': {}{}{}", chosen.level, object.name, deviation, chosen.limit.empty() ? "" : "; ", chosen.limit));
   }
   return notes;
 }

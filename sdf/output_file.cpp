@@ -161,10 +161,12 @@ class Replacement {
   }
   [[noreturn]] void undo(const fs::path& target, int error) {
     for (size_t i = 0; i < staged_.size(); ++i) {
-      if (!old_[i].empty())
+      if (!old_[i].empty()) {
         ::rename(old_[i].c_str(), staged_[i].real.c_str());
-      else if (i < done_)
+        ::unlink(old_[i].c_str());  // of two names of one file a rename removes none
+      } else if (i < done_) {
         ::unlink(staged_[i].real.c_str());
+      }
       old_[i].clear();
     }
     fail(target, "cannot be replaced", error);

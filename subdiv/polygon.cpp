@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace limn {
 namespace {
@@ -56,12 +57,54 @@ bool strictly_convex(std::span<const glm::dvec2> p, double tolerance) {
   return total < 3.0 * std::numbers::pi;
 }
 
+/// Points by square cells, about one in each, so that those near a triangle are found without a look at all.
+class PointGrid {
+ public:
+  explicit PointGrid(std::span<const glm::dvec2> points) : lower_(points[0]) {
+    glm::dvec2 upper = points[0];
+    for (const glm::dvec2& p : points) lower_ = glm::min(lower_, p), upper = glm::max(upper, p);
+    side_ = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(points.size()))));
+    const glm::dvec2 size = upper - lower_;
+    cells_per_unit_ = {size.x > 0.0 ? side_ / size.x : 0.0, size.y > 0.0 ? side_ / size.y : 0.0};
+    start_.assign(static_cast<size_t>(side_) * static_cast<size_t>(side_) + 1, 0);
+    for (const glm::dvec2& p : points) ++start_[index(cell(p)) + 1];
+    for (size_t k = 1; k < start_.size(); ++k) start_[k] += start_[k - 1];
+    std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+    points_.resize(points.size());
+    for (size_t i = 0; i < points.size(); ++i) points_[next[index(cell(points[i]))]++] = static_cast<std::uint32_t>(i);
+  }
+
+  /// Whether `test(i)` holds for any point in the cells that the box touches.
+  template <class Test>
+  bool any(const glm::dvec2& lower, const glm::dvec2& upper, const Test& test) const {
+    const glm::ivec2 first = cell(lower), last = cell(upper);
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x)
+        for (std::uint32_t k = start_[index({x, y})]; k < start_[index({x, y}) + 1]; ++k)
+          if (test(size_t{points_[k]})) return true;
+    return false;
+  }
+
+ private:
+  glm::ivec2 cell(const glm::dvec2& p) const {
+    const glm::dvec2 at = (p - lower_) * cells_per_unit_;
+    return {std::clamp(static_cast<int>(at.x), 0, side_ - 1), std::clamp(static_cast<int>(at.y), 0, side_ - 1)};
+  }
+  size_t index(const glm::ivec2& c) const { return static_cast<size_t>(c.y) * static_cast<size_t>(side_) + static_cast<size_t>(c.x); }
+
+  glm::dvec2 lower_, cells_per_unit_{0.0};
+  int side_ = 1;
+  std::vector<std::uint32_t> start_, points_;
+};
+
 /// A ring of corners that shrinks as ears are clipped.
 class EarClipper {
  public:
   EarClipper(std::span<const glm::dvec2> points, double tolerance) : points_(points), tolerance_(tolerance) {
     const size_t n = points.size();
     next_.resize(n), previous_.resize(n), is_ear_.resize(n);
+    constexpr size_t kMany = 64;
+    if (n > kMany) grid_.emplace(points);
     for (size_t i = 0; i < n; ++i) next_[i] = (i + 1) % n, previous_[i] = (i + n - 1) % n;
   }
 
@@ -80,9 +123,10 @@ class EarClipper {
       next_[previous_[ear]] = next_[ear];
       previous_[next_[ear]] = previous_[ear];
       at = next_[ear];
+      next_[ear] = kNone;
       --left;
       is_ear_[previous_[ear]] = ear_at(previous_[ear]);
-      is_ear_[next_[ear]] = ear_at(next_[ear]);
+      is_ear_[at] = ear_at(at);
     }
     emit(at, triangles);
   }
@@ -104,18 +148,22 @@ class EarClipper {
   bool ear_at(size_t i) const {
     const glm::dvec2 &a = points_[previous_[i]], &b = points_[i], &c = points_[next_[i]];
     if (turn(a, b, c) <= tolerance_) return false;
-    for (size_t k = next_[next_[i]]; k != previous_[i]; k = next_[k]) {
+    const auto within = [&](size_t k) {
       const glm::dvec2& p = points_[k];
-      if (p == a || p == b || p == c) continue;
-      if (turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0) return false;
-    }
+      if (next_[k] == kNone || p == a || p == b || p == c) return false;
+      return turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
+    };
+    if (grid_) return !grid_->any(glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c)), within);
+    for (size_t k = next_[next_[i]]; k != previous_[i]; k = next_[k])
+      if (within(k)) return false;
     return true;
   }
 
   std::span<const glm::dvec2> points_;
   double tolerance_;
-  std::vector<size_t> next_, previous_;
+  std::vector<size_t> next_, previous_;  ///< kNone after a corner that was clipped.
   std::vector<char> is_ear_;
+  std::optional<PointGrid> grid_{};  ///< Of many corners.
 };
 
 }  // namespace

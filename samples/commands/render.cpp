@@ -55,6 +55,11 @@ std::vector<fs::path> outputs_of(const Options& options, const SceneInput& input
 }
 
 void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::path>& inputs, const Options& options) {
+  for (size_t i = 0; i < outputs.size(); ++i) {
+    const auto same = [&](const fs::path& other) { return fs::weakly_canonical(other) == fs::weakly_canonical(outputs[i]); };
+    if (std::any_of(outputs.begin(), outputs.begin() + static_cast<std::ptrdiff_t>(i), same))
+      throw InputError({outputs[i].string(), "--output", "", "is given twice", "a file of its own for each --output"});
+  }
   for (const fs::path& file : outputs) {
     for (int k = 0; k < pictures_of(options); ++k) {
       check_output_file(picture_file(file, k, options), options, kEndings);

@@ -1,5 +1,6 @@
 // Whatever is wrong with an input: exit code 2, one line that says what would be right, no output file, existing ones untouched.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -185,6 +186,28 @@ TEST(BadInput, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
   expect_refused(run_limn({"compare", "ellipsoid", "-o", folder.file("file")}), "folder");
   expect_refused(run_limn({"study", "ellipsoid", "-o", folder.file("file")}), "folder");
   EXPECT_EQ(folder.files(), std::vector<std::string>{"file"});
+}
+
+TEST(BadInput, OneFileCannotTakeTwoPictures) {
+  const TemporaryFolder folder;
+  const std::string same = (folder.path() / "." / "a.png").string();
+  expect_refused(run_limn({"render", "ellipsoid", "-o", folder.file("a.png"), "-o", same}), "twice");
+  EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(Warnings, OfManyObjectsAlikeIsOneLine) {
+  const TemporaryFolder folder;
+  folder.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  std::string scene;
+  for (int i = 0; i < 40; ++i)
+    scene += fmt::format("[[object]]\nname = \"sheet {}\"\nmesh = \"sheet.obj\"\ntranslate = [{}, 0, 0]\n", i, 2 * i);
+  const RunResult result =
+      run_limn({"render", folder.write("many.toml", scene), "--size", "16x12", "-o", folder.file("a.png"), "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json warnings = result.json()["warnings"];
+  ASSERT_GE(warnings.size(), 1u);
+  EXPECT_LE(warnings.size(), 3u) << warnings.dump();
+  EXPECT_NE(warnings[0].get<std::string>().find("sheet 0, sheet 1, sheet 2 and 37 more: "), std::string::npos) << warnings.dump();
 }
 
 TEST(BadInput, NoClobberKeepsWhatIsThere) {

@@ -118,6 +118,10 @@ PlanJob plan_for(const Options& options, const SceneInput& input, ProgressBar& b
     one.truth = solve_truth(input.scene, one.camera, truth, solving);
     job.views.push_back(std::move(one));
   }
+  // Any model at all would be right.
+  if (std::all_of(job.views.begin(), job.views.end(), [](const PlanView& view) { return view.truth.curves.curves.empty(); }))
+    throw InputError({options.input, "camera", "", "sees no border: there is nothing to plan for",
+                      "one that sees the surface (limn render shows what it sees)"});
   job.answer = make_plan(input.scene, job.views, job.settings, how, bar);
   bar.clear();
   return job;

@@ -142,6 +142,17 @@ TEST(PlanCommand, SaysSoWhereNothingMeetsTheToleranceOrTheBudget) {
   EXPECT_NE(result.out.find("Nothing puts 95 %"), std::string::npos) << result.out;
 }
 
+TEST(PlanCommand, WhereNoBorderIsSeenNoModelIsRight) {
+  for (const char* command : {"plan", "render"}) {
+    const TemporaryFolder folder;
+    const RunResult result =
+        run_limn({command, "ellipsoid", "--tolerance", "0.5", "--eye", "0,0,9", "--target", "0,0,20", "--size", "64x48"}, folder.path());
+    EXPECT_EQ(result.exit_code, 2) << result.out << result.err;
+    EXPECT_NE(result.err.find("sees no border"), std::string::npos) << result.err;
+    EXPECT_TRUE(folder.files().empty());
+  }
+}
+
 TEST(PlanCommand, RenderWithAToleranceDrawsWhatThePlanChose) {
   const TemporaryFolder folder;
   const RunResult result =

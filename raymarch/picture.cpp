@@ -23,12 +23,12 @@ double ms_since(Clock::time_point start) { return std::chrono::duration<double, 
 
 void check_methods(const Scene& scene, const SceneModel& model, const PictureSettings& settings) {
   if (settings.samples < 1 || settings.samples > 1024) {
-    throw InputError({{}, "--samples", std::to_string(settings.samples), "out of range", "1 to 1024"});
+    throw InputError({{}, "samples", std::to_string(settings.samples), "out of range", "1 to 1024"});
   }
   for (const MethodCall& call : settings.methods) {
     LIMN_CHECK(call.method != nullptr);
     const std::string reason = call.method->unsupported(model, scene);
-    if (!reason.empty()) throw InputError({{}, "--method", call.method->about.name, "cannot run here: " + reason, {}});
+    if (!reason.empty()) throw InputError({{}, "method", call.method->about.name, "cannot run here: " + reason, {}});
   }
 }
 

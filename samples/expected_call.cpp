@@ -72,15 +72,15 @@ bool shrink(const Scene& scene, bool model, const std::vector<std::string>& kind
   if (model && gridded && (settings.voxel_size > 0.0 || settings.voxels > 8)) {
     if (settings.voxel_size > 0.0) {
       settings.voxel_size *= 2.0;
-      smaller.words = fmt::format("--voxel-size {:g}", settings.voxel_size);
+      smaller.words = fmt::format("voxel_size = {:g}", settings.voxel_size);
     } else {
       settings.voxels /= 2;
-      smaller.words = fmt::format("--voxels {}", settings.voxels);
+      smaller.words = fmt::format("voxels = {}", settings.voxels);
     }
     return true;
   }
   if (model && settings.level > 0) {
-    smaller.words = fmt::format("--level {}", --settings.level);
+    smaller.words = fmt::format("level = {}", --settings.level);
     return true;
   }
   if (smaller.size_share < 0.02) return false;
@@ -133,24 +133,23 @@ CallCost expected_call(const Scene& scene, const SurfaceSettings& settings, cons
   return cost;
 }
 
-void check_limits(const Options& options, const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load,
-                  const std::vector<std::string>& kinds) {
-  const bool asked = options.max_memory || options.max_time_ms;
-  if (!asked && !options.verbose && is_small(settings, load)) return;
+std::optional<CallCost> check_limits(const LimitSpec& limits, const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load,
+                                     const std::vector<std::string>& kinds, bool always) {
+  const bool asked = limits.max_memory || limits.max_time_ms;
+  if (!asked && !always && is_small(settings, load)) return std::nullopt;
   const CallCost cost = largest(scene, settings, load, kinds);
-  if (options.verbose) print_note(fmt::format("expected to take about {} and {}", bytes_text(cost.bytes()), time_text(cost.time_ms)));
-  const Limit limit{options.max_memory ? static_cast<double>(*options.max_memory) : machine_memory(),
-                    options.max_time_ms.value_or(std::numeric_limits<double>::infinity())};
-  if (limit.holds(cost)) return;
+  const Limit limit{limits.max_memory ? static_cast<double>(*limits.max_memory) : machine_memory(),
+                    limits.max_time_ms.value_or(std::numeric_limits<double>::infinity())};
+  if (limit.holds(cost)) return cost;
   if (cost.bytes() > limit.bytes) {
-    const std::string who = options.max_memory ? "--max-memory allows" : "the machine has";
+    const std::string who = limits.max_memory ? "max_memory allows" : "the machine has";
     throw InputError({"", "", "",
                       fmt::format("the call needs about {}; {} {}{}", bytes_text(cost.bytes()), who, bytes_text(limit.bytes),
                                   what_would_do(scene, settings, load, kinds, limit, false)),
                       ""});
   }
   throw InputError({"", "", "",
-                    fmt::format("the call needs about {}; --max-time allows {}{}", time_text(cost.time_ms), time_text(limit.time_ms),
+                    fmt::format("the call needs about {}; max_time allows {}{}", time_text(cost.time_ms), time_text(limit.time_ms),
                                 what_would_do(scene, settings, load, kinds, limit, true)),
                     ""});
 }

@@ -32,28 +32,28 @@ Sum sum_of(const FlickerWatch& watch) {
 }
 
 /// The methods as asked for, none of which holds on to what it drew before.
-std::vector<MethodCall> without_hysteresis(Options options, const SceneInput& input) {
-  for (const MethodCall& call : method_calls(options, input)) {
+std::vector<MethodCall> without_hysteresis(BorderSpec spec, const SceneInput& input) {
+  for (const MethodCall& call : method_calls(spec, input)) {
     const std::vector<Parameter>& parameters = call.method->parameters;
     const auto is_hysteresis = [](const Parameter& one) { return one.name == "hysteresis"; };
     if (std::any_of(parameters.begin(), parameters.end(), is_hysteresis)) {
-      options.sets.push_back({call.method->about.name + ".hysteresis", "0"});
+      spec.parameters.push_back({call.method->about.name + ".hysteresis", "0"});
     }
   }
-  return method_calls(options, input);
+  return method_calls(spec, input);
 }
 
 }  // namespace
 
-FlickerWatch watch_flicker(const Options& options, const SceneInput& input, const SurfaceSettings& surface) {
-  Comparison comparison = plan_comparison(input, surface, {"analytic"}, options.gradient.has_value());
+FlickerWatch watch_flicker(const ExperimentSpec& spec, const FramePath& path, const SceneInput& input, const SurfaceSettings& surface) {
+  Comparison comparison = plan_comparison(input, surface, {"analytic"}, spec.surface.gradient.has_value());
   FlickerWatch watch;
-  watch.path = options.frames;
+  watch.path = path;
   watch.reference_words = comparison.reference_words;
   watch.scene = comparison.reference().scene;
   watch.reference = build_model(watch.scene, comparison.reference().surface);
-  watch.picture = picture_settings(options, input);
-  watch.picture.methods = without_hysteresis(options, input);
+  watch.picture = picture_settings(spec.border, input);
+  watch.picture.methods = without_hysteresis(spec.border, input);
   watch.picture.layers = layers_read(watch.picture.methods);
   for (const MethodCall& call : watch.picture.methods) {
     const std::string reason = call.method->unsupported(watch.reference, watch.scene);
@@ -124,8 +124,9 @@ std::string flicker_sentence(const FlickerWatch& watch) {
       fmt::format("flicker: ink flipped {} times over {} frames {:g} px apart, that of {} {} times; {} flips beyond its", sum.counts.flips,
                   watch.frames.size(), watch.path.step_px, watch.reference_words, sum.counts.reference_flips, sum.counts.beyond);
   if (sum.counts.beyond > 0) {
-    text += fmt::format(", most in frame {} ({}); {:.3f} for each pixel of its border and frame; --set hysteresis=... holds them back",
-                        sum.worst, watch.frames[sum.worst].counts.beyond, sum.flicker);
+    text += fmt::format(
+        ", most in frame {} ({}); {:.3f} for each pixel of its border and frame; a parameter hysteresis above 0 holds them back", sum.worst,
+        watch.frames[sum.worst].counts.beyond, sum.flicker);
   }
   return text;
 }

@@ -32,7 +32,7 @@ struct FlickerWatch {
 };
 
 /// Builds the reference: what `limn compare` measures against.
-FlickerWatch watch_flicker(const Options& options, const SceneInput& input, const SurfaceSettings& surface);
+FlickerWatch watch_flicker(const ExperimentSpec& spec, const FramePath& path, const SceneInput& input, const SurfaceSettings& surface);
 /// Counts the next frame, drawn with `history`.
 void watch_frame(const Picture& picture, const FrameHistory& history, const Camera& camera, const ExecutionSettings& how,
                  FlickerWatch& watch);

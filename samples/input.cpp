@@ -7,7 +7,6 @@
 #include "samples/scene_file.h"
 #include "samples/scenes/scenes.h"
 #include "samples/utf8.h"
-#include "samples/warnings.h"
 #include "sdf/error.h"
 #include "sdf/guard.h"
 #include "sdf/level_set_grids.h"
@@ -25,36 +24,36 @@ std::string extension_of(const std::filesystem::path& file) {
   return extension;
 }
 
-SceneInput from_mesh(const Options& options) {
-  std::optional<Scheme> scheme = options.scheme;
-  Mesh mesh = load_mesh(options.input);
-  if (!scheme && options.level && *options.level > 0) scheme = default_scheme(mesh);
+SceneInput from_mesh(const ExperimentSpec& spec) {
+  std::optional<Scheme> scheme = spec.surface.scheme;
+  Mesh mesh = load_mesh(spec.input);
+  if (!scheme && spec.surface.level && *spec.surface.level > 0) scheme = default_scheme(mesh);
   SceneInput input;
   input.scene.objects.push_back(
-      {.name = std::filesystem::path(options.input).stem().string(), .source = mesh_source(std::move(mesh), scheme, options.input)});
+      {.name = std::filesystem::path(spec.input).stem().string(), .source = mesh_source(std::move(mesh), scheme, spec.input)});
   return input;
 }
 
 /// Every grid an object of its own.
-SceneInput from_volume(const Options& options) {
-  const std::string stem = std::filesystem::path(options.input).stem().string();
+SceneInput from_volume(const ExperimentSpec& spec) {
+  const std::string stem = std::filesystem::path(spec.input).stem().string();
   SceneInput input;
-  ReadLevelSets read = read_level_sets(options.input, options.grids);
+  ReadLevelSets read = read_level_sets(spec.input, spec.grids);
   for (NamedLevelSet& grid : read.grids)
-    input.scene.objects.push_back({.name = grid.level_set.info().name.empty() ? stem : grid.name,
-                                   .source = LevelSetSource{std::move(grid.level_set), options.input}});
+    input.scene.objects.push_back(
+        {.name = grid.level_set.info().name.empty() ? stem : grid.name, .source = LevelSetSource{std::move(grid.level_set), spec.input}});
   input.left_out = std::move(read.left_out);
   return input;
 }
 
-SceneInput from_vm(const Options& options) {
-  VmField vm = load_vm(options.input);
+SceneInput from_vm(const ExperimentSpec& spec) {
+  VmField vm = load_vm(spec.input);
   if (!vm.unbounded.empty())
-    throw InputError({options.input, "", "", vm.unbounded,
+    throw InputError({spec.input, "", "", vm.unbounded,
                       "a bounded surface; a scene file can cut it: [[object]] with csg = \"intersection\" of { vm = \"" +
-                          std::filesystem::path(options.input).filename().string() + "\" } and { shape = \"box\" }"});
+                          std::filesystem::path(spec.input).filename().string() + "\" } and { shape = \"box\" }"});
   SceneInput input;
-  input.scene.objects.push_back({.name = std::filesystem::path(options.input).stem().string(), .source = std::move(vm.field)});
+  input.scene.objects.push_back({.name = std::filesystem::path(spec.input).stem().string(), .source = std::move(vm.field)});
   return input;
 }
 
@@ -77,37 +76,36 @@ InputKind input_kind(const std::string& input) {
   throw InputError({input, "", extension, exists ? "unknown kind of file" : "no such file", kExpected});
 }
 
-SceneInput load_input(const Options& options) {
+SceneInput load_input(const ExperimentSpec& spec) {
   const auto start = std::chrono::steady_clock::now();
-  const InputKind kind = input_kind(options.input);
-  if (!options.grids.empty() && kind != InputKind::level_set) {
-    throw InputError({"", "--grid", options.grids.front(), "the input has no grids", "a volume .vdb or .nvdb as INPUT"});
+  const InputKind kind = input_kind(spec.input);
+  if (!spec.grids.empty() && kind != InputKind::level_set) {
+    throw InputError({"", "grids", spec.grids.front(), "the input has no grids", "a volume .vdb or .nvdb as INPUT"});
   }
   SceneInput input;
   switch (kind) {
     case InputKind::scene_file:
-      input = load_scene_file(options.input);
+      input = load_scene_file(spec.input);
       break;
     case InputKind::mesh:
-      input = from_mesh(options);
+      input = from_mesh(spec);
       break;
     case InputKind::level_set:
-      input = from_volume(options);
+      input = from_volume(spec);
       break;
     case InputKind::field:
-      input = from_vm(options);
+      input = from_vm(spec);
       break;
     case InputKind::built_in:
-      input.scene = find_scene(options.input)->make();
+      input.scene = find_scene(spec.input)->make();
       break;
   }
   input.kind = kind;
-  input.name = kind == InputKind::built_in ? options.input : std::filesystem::path(options.input).stem().string();
-  input.file = kind == InputKind::built_in ? "" : options.input;
+  input.name = kind == InputKind::built_in ? spec.input : std::filesystem::path(spec.input).stem().string();
+  input.file = kind == InputKind::built_in ? "" : spec.input;
   input.scene.name = valid_utf8(input.name);
   for (SceneObject& object : input.scene.objects) object.name = valid_utf8(object.name);
   check_extent(input.scene);
-  print_warnings(options, input.left_out);
   input.load_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return input;
 }

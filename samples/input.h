@@ -1,5 +1,5 @@
 #pragma once
-// INPUT of the command line, whatever it is: a scene file, a mesh, a volume, a formula (.vm) or the name of a built-in scene.
+// What an experiment is made on, whatever it is: a scene file, a mesh, a volume, a formula (.vm) or the name of a built-in scene.
 
 #include <map>
 #include <optional>
@@ -7,24 +7,11 @@
 #include <vector>
 
 #include "raymarch/scene.h"
-#include "samples/options.h"
+#include "samples/experiment/spec.h"
 #include "sdf/descriptor.h"
 #include "subdiv/refine.h"
 
 namespace limn {
-
-/// [surface] of a scene file: what it says and nothing else.
-struct SurfaceDefaults {
-  std::optional<std::string> kind;
-  std::optional<int> voxels;
-  std::optional<double> voxel_size;
-  std::optional<double> half_width_voxels;
-  std::optional<std::string> gradient;
-  std::optional<int> level;
-  std::optional<Scheme> scheme;
-  std::optional<NormalKind> normals;
-  std::optional<double> smooth_angle_deg;
-};
 
 /// One [border] of a scene file: a method and the parameters it sets.
 struct BorderDefaults {
@@ -39,7 +26,7 @@ struct SceneInput {
   std::string name;  ///< Of the built-in scene, or the file's without folder and extension: names the default outputs.
   std::string file;  ///< As given; empty for a built-in scene.
   Scene scene;
-  SurfaceDefaults surface;
+  SurfaceSpec surface;  ///< [surface] of a scene file: what it says and nothing else.
   std::vector<BorderDefaults> borders;
   std::vector<std::string> formulas;  ///< The .vm files that a scene file names, as found.
   double load_ms = 0.0;
@@ -49,8 +36,8 @@ struct SceneInput {
 /// What an INPUT is, before anything of it is read. Throws InputError: nothing of that name, a folder, an unknown extension.
 InputKind input_kind(const std::string& input);
 
-/// Reads it. The command line's `grid`, `scheme` and `level` go into what they mean for a file of that kind:
+/// Reads `spec.input`. Its grids, and its surface's scheme and level, go into what they mean for a file of that kind:
 /// a mesh is drawn as it is unless one of the latter two, or crease and corner tags in the file, make it a subdivision cage.
-SceneInput load_input(const Options& options);
+SceneInput load_input(const ExperimentSpec& spec);
 
 }  // namespace limn

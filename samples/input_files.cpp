@@ -23,7 +23,7 @@ void check_not_input(const fs::path& file, const std::vector<fs::path>& inputs) 
     std::error_code ignored;
     if (!fs::equivalent(file, input, ignored)) continue;
     const std::string what = file == input ? "is the input itself" : "is the input " + input.string();
-    throw InputError({file.string(), "--output", "", what + "; choose another name", ""});
+    throw InputError({file.string(), "output", "", what + "; choose another name", ""});
   }
 }
 
@@ -34,7 +34,7 @@ void check_not_holding_input(const fs::path& folder, const std::vector<fs::path>
     const fs::path real = fs::canonical(input, ignored);
     for (fs::path above = real.parent_path(); above.has_relative_path(); above = above.parent_path()) {
       if (!fs::equivalent(above, folder, ignored)) continue;
-      throw InputError({folder.string(), "--output", "",
+      throw InputError({folder.string(), "output", "",
                         "holds the input " + input.string() + " and is emptied by " + who + "; choose another folder", ""});
     }
   }

@@ -1,4 +1,5 @@
 #include "samples/job.h"
+#include "samples/parse.h"
 
 #include "samples/no_effect.h"
 
@@ -43,15 +44,15 @@ struct PendingMethod {
   std::map<std::string, ParameterInput> parameters;
 };
 
-std::vector<PendingMethod> chosen_methods(const Options& options, const SceneInput& input) {
+std::vector<PendingMethod> chosen_methods(const BorderSpec& spec, const SceneInput& input) {
   std::vector<PendingMethod> pending;
-  const bool compared = !options.compared_methods.empty();
-  if (options.methods.empty() && !compared) {
+  const bool compared = !spec.columns.empty();
+  if (spec.methods.empty() && !compared) {
     for (const BorderDefaults& border : input.borders) pending.push_back({&find_border_method(border.method), border.parameters});
     if (pending.empty()) pending.push_back({&find_border_method("rim"), {}});
     return pending;
   }
-  for (const std::string& name : compared ? options.compared_methods : options.methods) {
+  for (const std::string& name : compared ? spec.columns : spec.methods) {
     PendingMethod one{&find_border_method(name), {}};
     for (const BorderDefaults& border : input.borders) {
       if (border.method == name) one.parameters = border.parameters;
@@ -62,7 +63,7 @@ std::vector<PendingMethod> chosen_methods(const Options& options, const SceneInp
 }
 
 // `key` or `method.key`; a key that none of the chosen methods has is an error that names those that they have.
-void apply_set(const KeyValue& set, std::vector<PendingMethod>& pending) {
+void apply_set(const ParameterText& set, std::vector<PendingMethod>& pending) {
   const size_t dot = set.key.find('.');
   const std::string method = dot == std::string::npos ? "" : set.key.substr(0, dot);
   const std::string key = dot == std::string::npos ? set.key : set.key.substr(dot + 1);
@@ -76,57 +77,58 @@ void apply_set(const KeyValue& set, std::vector<PendingMethod>& pending) {
     one.parameters[key] = parse_parameter(set.value);
     used = true;
   }
-  if (!used) throw InputError({"", "--set " + set.key, "", "no method of this call has that parameter", known_names(set.key, known)});
+  if (!used) throw InputError({"", "parameters." + set.key, "", "no method of this call has that parameter", known_names(set.key, known)});
 }
 
 // A camera that cannot be is told with its file where no option has a part in it.
-void check_camera_of_file(const Options& options, const SceneInput& input, const CameraSettings& camera) {
-  if (input.kind != InputKind::scene_file || options.eye || options.target || options.up || options.fov_deg || options.ortho_height) return;
+void check_camera_of_file(const CameraSpec& spec, const SceneInput& input, const CameraSettings& camera) {
+  if (input.kind != InputKind::scene_file || spec.is_set()) return;
   try {
     resolve_camera(camera, bounds(input.scene));
   } catch (const InputError& error) {
     InputFault fault = error.fault();
-    if (fault.field == "--size") throw;
+    if (fault.field == "size") throw;
     fault.file = input.file;
-    fault.field = "camera." + fault.field.substr(2);
+    fault.field = "camera." + fault.field;
     throw InputError(std::move(fault));
   }
 }
 
 }  // namespace
 
-SurfaceSettings surface_settings(const Options& options, SceneInput& input) {
-  const SurfaceDefaults& file = input.surface;
+SurfaceSettings surface_settings(const ExperimentSpec& spec, SceneInput& input) {
+  const SurfaceSpec& file = input.surface;
+  const SurfaceSpec& own = spec.surface;
   SurfaceSettings settings;
-  settings.max_bytes = model_bytes_left(options, 0.0);
+  settings.max_bytes = model_bytes_left(spec.limits, 0.0);
   settings.kind = file.kind.value_or("");
-  if (!options.surfaces.empty()) settings.kind = options.surfaces.back();
-  override_with(settings.voxels, file.voxels, options.voxels);
-  override_with(settings.voxel_size, file.voxel_size, options.voxel_size);
-  if (options.voxels) settings.voxel_size = 0.0;
-  settings.resample_volumes = file.voxels || file.voxel_size || options.voxels || options.voxel_size;
-  override_with(settings.half_width_voxels, file.half_width_voxels, options.half_width_voxels);
-  override_with(settings.gradient, file.gradient, options.gradient);
-  override_with(settings.level, file.level, options.level);
-  settings.scheme = options.scheme ? options.scheme : file.scheme;
-  settings.normals = options.normals ? options.normals : file.normals;
+  if (!spec.surfaces.empty()) settings.kind = spec.surfaces.back();
+  override_with(settings.voxels, file.voxels, own.voxels);
+  override_with(settings.voxel_size, file.voxel_size, own.voxel_size);
+  if (own.voxels) settings.voxel_size = 0.0;
+  settings.resample_volumes = file.voxels || file.voxel_size || own.voxels || own.voxel_size;
+  override_with(settings.half_width_voxels, file.half_width_voxels, own.half_width_voxels);
+  override_with(settings.gradient, file.gradient, own.gradient);
+  override_with(settings.level, file.level, own.level);
+  settings.scheme = own.scheme ? own.scheme : file.scheme;
+  settings.normals = own.normals ? own.normals : file.normals;
   for (SceneObject& object : input.scene.objects) {
-    if (options.level || options.level_for_view) object.level.reset();
+    if (own.level || own.level_for_view) object.level.reset();
     auto* mesh = std::get_if<MeshSource>(&object.source);
-    const bool refined = options.level_for_view || options.level.value_or(0) > 0;
+    const bool refined = own.level_for_view || own.level.value_or(0) > 0;
     if (mesh == nullptr) continue;
     if (!mesh->scheme && refined) mesh->scheme = default_scheme(mesh->mesh);
     if (!mesh->smooth_angle_deg) mesh->smooth_angle_deg = file.smooth_angle_deg;
-    if (options.smooth_angle_deg) mesh->smooth_angle_deg = options.smooth_angle_deg;
+    if (own.smooth_angle_deg) mesh->smooth_angle_deg = own.smooth_angle_deg;
   }
   return settings;
 }
 
-CameraSettings camera_settings(const Options& options, const SceneInput& input) {
+CameraSettings camera_settings(const CameraSpec& spec, const SceneInput& input) {
   CameraSettings camera = input.scene.camera;
-  if (options.size_px) {
-    camera.width_px = options.size_px->x;
-    camera.height_px = options.size_px->y;
+  if (spec.size_px) {
+    camera.width_px = spec.size_px->x;
+    camera.height_px = spec.size_px->y;
   }
   // A built-in scene's own camera is made for wide pictures.
   const bool narrow = 3 * camera.width_px < 4 * camera.height_px;
@@ -135,18 +137,18 @@ CameraSettings camera_settings(const Options& options, const SceneInput& input) 
     camera.eye.reset();
     camera.target.reset();
   }
-  if (options.eye) camera.eye = options.eye;
-  if (options.target) camera.target = options.target;
-  if (options.up) camera.up = *options.up;
-  if (options.fov_deg) {
+  if (spec.eye) camera.eye = spec.eye;
+  if (spec.target) camera.target = spec.target;
+  if (spec.up) camera.up = *spec.up;
+  if (spec.fov_deg) {
     camera.projection = Projection::perspective;
-    camera.vertical_fov = *options.fov_deg * std::numbers::pi / 180.0;
+    camera.vertical_fov = *spec.fov_deg * std::numbers::pi / 180.0;
   }
-  if (options.ortho_height) {
+  if (spec.ortho_height) {
     camera.projection = Projection::orthographic;
-    camera.ortho_height = options.ortho_height;
+    camera.ortho_height = spec.ortho_height;
   }
-  check_camera_of_file(options, input, camera);
+  check_camera_of_file(spec, input, camera);
   return camera;
 }
 
@@ -158,27 +160,27 @@ Camera camera_of_view(const CameraSettings& settings, const Box& bounds, int ind
   return resolve_camera(view, bounds);
 }
 
-std::vector<MethodCall> method_calls(const Options& options, const SceneInput& input) {
-  std::vector<PendingMethod> pending = chosen_methods(options, input);
-  for (const KeyValue& set : options.sets) apply_set(set, pending);
+std::vector<MethodCall> method_calls(const BorderSpec& spec, const SceneInput& input) {
+  std::vector<PendingMethod> pending = chosen_methods(spec, input);
+  for (const ParameterText& set : spec.parameters) apply_set(set, pending);
   std::vector<MethodCall> calls;
   for (const PendingMethod& one : pending) {
-    calls.push_back({one.method, resolve(one.method->parameters, one.parameters, "", "--set " + one.method->about.name + ".")});
+    calls.push_back({one.method, resolve(one.method->parameters, one.parameters, "", "parameters." + one.method->about.name + ".")});
   }
   return calls;
 }
 
-PictureSettings picture_settings(const Options& options, const SceneInput& input) {
+PictureSettings picture_settings(const BorderSpec& spec, const SceneInput& input) {
   PictureSettings settings;
-  settings.methods = method_calls(options, input);
-  settings.samples = options.samples;
-  if (options.background) settings.background = glm::vec3(*options.background);
+  settings.methods = method_calls(spec, input);
+  settings.samples = spec.samples;
+  if (spec.background) settings.background = glm::vec3(*spec.background);
   return settings;
 }
 
-ExecutionSettings execution_settings(const Options& options) {
+ExecutionSettings execution_settings(int threads) {
   ExecutionSettings how;
-  how.threads = options.threads;
+  how.threads = threads;
   how.cancelled = interrupted;
   return how;
 }
@@ -197,35 +199,45 @@ std::string methods_text(const std::vector<MethodCall>& methods) {
   return text;
 }
 
-std::string resolved_call(const std::string& command, const Options& options, const ResolvedModel& model, const Camera& camera,
+void add_camera(const Camera& camera, CallText& call) {
+  call.add("size", fmt::format("{}x{}", camera.width_px, camera.height_px));
+  call.add("eye", vector_text(camera.eye));
+  call.add("target", vector_text(camera.eye - camera.world_from_camera[2]));
+  call.add("up", vector_text(camera.world_from_camera[1]));
+  if (camera.projection == Projection::perspective)
+    call.add("fov", fmt::format("{}", 2.0 * std::atan(0.5 * camera.height_px / camera.focal_px) * 180.0 / std::numbers::pi));
+  else
+    call.add("ortho", fmt::format("{}", camera.height_px / camera.pixels_per_unit));
+}
+
+std::string resolved_call(const std::string& command, const ExperimentSpec& spec, const ResolvedModel& model, const Camera& camera,
                           const PictureSettings& picture) {
   const SurfaceSettings& surface = model.surface;
   const auto counts = [&](const char* setting) { return has_effect(model.scene, surface, model.kinds, setting); };
-  std::string call =
-      fmt::format("limn {} {} --size {}x{} --eye {} --target {} --up {}", command, options.input, camera.width_px, camera.height_px,
-                  vector_text(camera.eye), vector_text(camera.eye - camera.world_from_camera[2]), vector_text(camera.world_from_camera[1]));
-  if (camera.projection == Projection::perspective) {
-    call += fmt::format(" --fov {}", 2.0 * std::atan(0.5 * camera.height_px / camera.focal_px) * 180.0 / std::numbers::pi);
-  } else {
-    call += fmt::format(" --ortho {}", camera.height_px / camera.pixels_per_unit);
-  }
-  if (!surface.kind.empty()) call += " --surface " + surface.kind;
-  if (counts("voxels"))
-    call += surface.voxel_size > 0.0 ? fmt::format(" --voxel-size {}", surface.voxel_size) : fmt::format(" --voxels {}", surface.voxels);
-  if (surface.half_width_voxels > 0.0 && counts("half-width")) call += fmt::format(" --half-width {}", surface.half_width_voxels);
-  if (counts("gradient")) call += " --gradient " + surface.gradient;
-  if (counts("level")) call += " --level " + (options.level_for_view ? "auto" : std::to_string(surface.level));
-  if (surface.scheme && counts("scheme")) call += fmt::format(" --scheme {}", name_of(*surface.scheme));
-  if (surface.normals && counts("normals")) call += fmt::format(" --normals {}", name_of(*surface.normals));
-  if (options.smooth_angle_deg && counts("smooth-angle")) call += fmt::format(" --smooth-angle {}", *options.smooth_angle_deg);
-  for (const std::string& grid : options.grids) call += " --grid " + grid;
+  CallText call(command, spec.input);
+  add_camera(camera, call);
+  if (!surface.kind.empty()) call.add("surface", surface.kind);
+  if (counts("voxels") && surface.voxel_size > 0.0)
+    call.add("voxel_size", fmt::format("{}", surface.voxel_size));
+  else if (counts("voxels"))
+    call.add("voxels", fmt::format("{}", surface.voxels));
+  if (surface.half_width_voxels > 0.0 && counts("half_width")) call.add("half_width", fmt::format("{}", surface.half_width_voxels));
+  if (counts("gradient")) call.add("gradient", surface.gradient);
+  if (counts("level")) call.add("level", spec.surface.level_for_view ? "auto" : std::to_string(surface.level));
+  if (surface.scheme && counts("scheme")) call.add("scheme", name_of(*surface.scheme));
+  if (surface.normals && counts("normals")) call.add("normals", name_of(*surface.normals));
+  const auto& angle = spec.surface.smooth_angle_deg;
+  if (angle && counts("smooth_angle")) call.add("smooth_angle", fmt::format("{}", *angle));
+  for (const std::string& grid : spec.grids) call.add("grids", grid);
   for (const MethodCall& method : picture.methods) {
-    call += " --method " + method.method->about.name;
-    for (const std::string& pair : words_of(method.parameters.text())) call += " --set " + method.method->about.name + "." + pair;
+    const std::string& name = method.method->about.name;
+    call.add("method", name);
+    for (const std::string& pair : words_of(method.parameters.text()))
+      call.add("parameters." + name + "." + pair.substr(0, pair.find('=')), pair.substr(pair.find('=') + 1));
   }
-  call += fmt::format(" --samples {}", picture.samples);
-  if (picture.background) call += " --background " + color_text(*picture.background);
-  return valid_utf8(call);
+  call.add("samples", std::to_string(picture.samples));
+  if (picture.background) call.add("background", color_text(*picture.background));
+  return valid_utf8(call.text());
 }
 
 }  // namespace limn

@@ -52,11 +52,11 @@ double control_group_memory() {
   return least;
 }
 
-void limit_memory(const Options& options) {
-  const double wanted = static_cast<double>(*options.max_memory);
+void limit_memory(const LimitSpec& limits) {
+  const double wanted = static_cast<double>(*limits.max_memory);
   const double resident = 1024.0 * number_in("/proc/self/status", "VmRSS:"), data = 1024.0 * number_in("/proc/self/status", "VmData:");
   if (wanted < resident + kLeastBytes) {
-    throw InputError({"", "--max-memory", bytes_text(wanted), fmt::format("too little; the program itself takes {}", bytes_text(resident)),
+    throw InputError({"", "max_memory", bytes_text(wanted), fmt::format("too little; the program itself takes {}", bytes_text(resident)),
                       fmt::format("at least {}", bytes_text(std::ceil((resident + kLeastBytes) / 1e7) * 1e7))});
   }
   if (!kAddressSpaceCanBeLimited || !std::isfinite(data)) return;
@@ -75,20 +75,20 @@ double machine_memory() {
   return std::min(physical, control_group_memory());
 }
 
-std::int64_t model_bytes_left(const Options& options, double picture_bytes) {
+std::int64_t model_bytes_left(const LimitSpec& limits, double picture_bytes) {
   constexpr double kDefault = 8.0 * 1024 * 1024 * 1024;
-  const double allowed = options.max_memory ? static_cast<double>(*options.max_memory) : std::min(kDefault, machine_memory());
+  const double allowed = limits.max_memory ? static_cast<double>(*limits.max_memory) : std::min(kDefault, machine_memory());
   return static_cast<std::int64_t>(std::max(1e6, allowed - kProgramBytes - picture_bytes));
 }
 
-void hold_limits(const Options& options, bool goes_on) {
-  if (options.max_time_ms) stop_after(*options.max_time_ms, fmt::format("--max-time: stopped after {}", time_text(*options.max_time_ms)));
+void hold_limits(const LimitSpec& limits, bool goes_on) {
+  if (limits.max_time_ms) stop_after(*limits.max_time_ms, fmt::format("max_time: stopped after {}", time_text(*limits.max_time_ms)));
   const std::string less = "use fewer voxels, a lower level or a smaller picture";
-  if (options.max_memory) limit_memory(options);
+  if (limits.max_memory) limit_memory(limits);
   if (goes_on) return;
-  end_when_out_of_memory(options.max_memory ? fmt::format("--max-memory: the limit of {} was reached; {}",
-                                                          bytes_text(static_cast<double>(*options.max_memory)), less)
-                                            : "out of memory; " + less);
+  end_when_out_of_memory(limits.max_memory ? fmt::format("max_memory: the limit of {} was reached; {}",
+                                                         bytes_text(static_cast<double>(*limits.max_memory)), less)
+                                           : "out of memory; " + less);
 }
 
 }  // namespace limn

@@ -1,11 +1,11 @@
 #pragma once
-// --max-memory and --max-time: what a call is expected to take, refused before it starts where that is too much, and held to while it runs.
+// Limits of memory and time: what a call is expected to take, refused before it starts where that is too much, and held to while it runs.
 
 #include <string>
 #include <vector>
 
 #include "raymarch/picture.h"
-#include "samples/options.h"
+#include "samples/experiment/spec.h"
 
 namespace limn {
 
@@ -34,16 +34,16 @@ struct CallCost {
 CallCost expected_call(const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load, bool with_cages = true);
 
 /// Largest model that may be built beside the pictures, bytes; SurfaceSettings::max_bytes.
-std::int64_t model_bytes_left(const Options& options, double picture_bytes);
+std::int64_t model_bytes_left(const LimitSpec& limits, double picture_bytes);
 
-/// Throws InputError where the call is expected to take more than --max-memory, the machine's memory or twice --max-time, with what
-/// would take less. `kinds`: representations that are modelled one after the other; empty: settings.kind. With --verbose it says what is
-/// expected.
-void check_limits(const Options& options, const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load,
-                  const std::vector<std::string>& kinds = {});
+/// Throws InputError where the call is expected to take more than its limits or the machine's memory allow (twice the time), with what
+/// would take less. `kinds`: representations that are modelled one after the other; empty: settings.kind. Returns what is expected; nothing
+/// where that is little and there is no limit, unless `always`.
+std::optional<CallCost> check_limits(const LimitSpec& limits, const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load,
+                                     const std::vector<std::string>& kinds = {}, bool always = false);
 
-/// Holds the process to --max-memory and --max-time from here on. Memory: what it may allocate is limited, and where that runs out it ends
+/// Holds the process to its limits from here on. Memory: what it may allocate is limited, and where that runs out it ends
 /// with one line and exit code 1 (`goes_on`: std::bad_alloc is thrown instead). Throws InputError for less memory than it has already.
-void hold_limits(const Options& options, bool goes_on);
+void hold_limits(const LimitSpec& limits, bool goes_on);
 
 }  // namespace limn

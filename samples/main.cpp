@@ -5,8 +5,9 @@
 #include <new>
 
 #include "raymarch/gbuffer.h"
+#include "samples/commands/program.h"
+#include "samples/experiment/flags.h"
 #include "samples/interrupt.h"
-#include "samples/program.h"
 #include "samples/standard_streams.h"
 #include "sdf/error.h"
 
@@ -22,7 +23,7 @@ int main(int argc, char** argv) {
   } catch (const limn::InputError& error) {
     // Whatever failed after the interrupt failed because of it: a child process ended, a file was not written.
     if (limn::interrupted()) return limn::interrupt_exit_code();
-    std::fprintf(stderr, "limn: %s\n", error.what());
+    std::fprintf(stderr, "limn: %s\n", limn::InputError(limn::in_flags(error.fault())).what());
     return 2;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "limn: out of memory; use fewer voxels or a lower level\n");

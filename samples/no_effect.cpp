@@ -10,41 +10,42 @@
 namespace limn {
 namespace {
 
-/// A setting as SurfaceDescriptor::settings names it, and the option that gives it.
+/// A setting as SurfaceDescriptor::settings names it, and the field of the specification that gives it.
 struct GivenSetting {
-  std::string option, setting;
+  std::string field, setting;
 };
 
-std::vector<GivenSetting> given_settings(const Options& options) {
+std::vector<GivenSetting> given_settings(const SurfaceSpec& spec) {
   std::vector<GivenSetting> given;
   const auto add = [&](bool is_given, const char* setting) {
-    if (is_given) given.push_back({std::string("--") + setting, setting});
+    if (is_given) given.push_back({setting, setting});
   };
-  add(options.voxels.has_value(), "voxels");
-  add(options.voxel_size.has_value(), "voxel-size");
-  add(options.half_width_voxels.has_value(), "half-width");
-  add(options.gradient.has_value(), "gradient");
+  add(spec.voxels.has_value(), "voxels");
+  add(spec.voxel_size.has_value(), "voxel_size");
+  add(spec.half_width_voxels.has_value(), "half_width");
+  add(spec.gradient.has_value(), "gradient");
   // Level 0 asks for what is there anyway: a mesh as it is.
-  add(options.level.value_or(0) > 0 || options.level_for_view, "level");
-  add(options.scheme.has_value(), "scheme");
-  add(options.normals.has_value(), "normals");
-  add(options.smooth_angle_deg.has_value(), "smooth-angle");
+  add(spec.level.value_or(0) > 0 || spec.level_for_view, "level");
+  add(spec.scheme.has_value(), "scheme");
+  add(spec.normals.has_value(), "normals");
+  add(spec.smooth_angle_deg.has_value(), "smooth_angle");
   return given;
 }
 
-std::vector<GivenSetting> swept_settings(const Options& options) {
-  const StudyOptions& study = options.study;
+std::vector<GivenSetting> swept_settings(const StudySpec& spec) {
+  const SweepSpec& sweep = spec.sweep;
+  const SurfaceSpec& surface = spec.experiment.surface;
   std::vector<GivenSetting> given;
-  const auto add = [&](bool is_given, const char* option, const char* setting) {
-    if (is_given) given.push_back({option, setting});
+  const auto add = [&](bool is_given, const char* field, const char* setting) {
+    if (is_given) given.push_back({field, setting});
   };
-  add(!study.voxels.empty(), "--voxels", "voxels");
-  add(!study.levels.empty() && study.levels.back() > 0, "--levels", "level");
-  add(!study.normals.empty(), "--normals", "normals");
-  add(!study.gradients.empty(), "--gradients", "gradient");
-  add(options.half_width_voxels.has_value(), "--half-width", "half-width");
-  add(options.scheme.has_value(), "--scheme", "scheme");
-  add(options.smooth_angle_deg.has_value(), "--smooth-angle", "smooth-angle");
+  add(!sweep.voxels.empty(), "voxels", "voxels");
+  add(!sweep.levels.empty() && sweep.levels.back() > 0, "levels", "level");
+  add(!sweep.normals.empty(), "normals", "normals");
+  add(!sweep.gradients.empty(), "gradients", "gradient");
+  add(surface.half_width_voxels.has_value(), "half_width", "half_width");
+  add(surface.scheme.has_value(), "scheme", "scheme");
+  add(surface.smooth_angle_deg.has_value(), "smooth_angle", "smooth_angle");
   return given;
 }
 
@@ -56,12 +57,12 @@ bool is_refined(const SceneObject& object, const SurfaceSettings& settings) {
 bool reads(const SceneObject& object, const SurfaceSettings& settings, const std::string& kind, const std::string& setting) {
   const SurfaceDescriptor& surface = find_surface(kind.empty() ? natural_surface(object) : kind);
   // A property of the object and no setting of a representation: of meshes that are drawn as they are.
-  if (setting == "smooth-angle") {
+  if (setting == "smooth_angle") {
     const bool as_it_is = std::holds_alternative<MeshSource>(object.source) && !cage_scheme(object, settings);
     return surface.about.name == "mesh" && as_it_is;
   }
   // A volume's mesh is that of its voxels, the file's or those asked for.
-  const bool voxels = setting == "voxels" || setting == "voxel-size";
+  const bool voxels = setting == "voxels" || setting == "voxel_size";
   if (voxels && surface.about.name == "mesh" && std::holds_alternative<LevelSetSource>(object.source)) return true;
   const auto& all = surface.settings;
   if (!surface.unsupported(object).empty() || std::find(all.begin(), all.end(), setting) == all.end()) return false;
@@ -69,7 +70,7 @@ bool reads(const SceneObject& object, const SurfaceSettings& settings, const std
   if (setting == "level") return is_refined(object, settings);
   if (setting == "scheme") return std::holds_alternative<MeshSource>(object.source);
   // A volume's band is that of its file, unless its voxels are others.
-  if (setting == "half-width" && surface.about.name == "level_set")
+  if (setting == "half_width" && surface.about.name == "level_set")
     return settings.resample_volumes || !std::holds_alternative<LevelSetSource>(object.source);
   return true;
 }
@@ -113,26 +114,26 @@ bool none_possible(const Scene& scene, std::span<const std::string> kinds) {
 void refuse_unread(const std::vector<GivenSetting>& given, const Scene& scene, const SurfaceSettings& settings,
                    std::span<const std::string> kinds) {
   if (none_possible(scene, kinds)) return;
-  for (const auto& [option, setting] : given) {
+  for (const auto& [field, setting] : given) {
     const std::string& name = setting;
     if (std::any_of(kinds.begin(), kinds.end(), [&](const std::string& kind) { return any_reads(scene, settings, kind, name); })) continue;
     std::vector<std::string> readers;
     for (const SurfaceDescriptor& surface : surface_kinds()) {
       if (why_not(surface, scene).empty() && any_reads(scene, settings, surface.about.name, name)) readers.push_back(surface.about.name);
     }
-    throw InputError({"", option, "",
+    throw InputError({"", field, "",
                       fmt::format("has no effect on {}; {}", drawn_text(scene, kinds),
-                                  readers.empty() ? "leave it out" : "add --surface " + listed(readers, " or ")),
+                                  readers.empty() ? "leave it out" : "add surface = " + listed(readers, " or ")),
                       ""});
   }
 }
 
 /// Whether a file holds what comes of a setting that its representation reads.
-bool is_written(const Scene& scene, const SurfaceSettings& settings, const OptionUse& use, const std::string& setting) {
+bool is_written(const Scene& scene, const SurfaceSettings& settings, const SettingUse& use, const std::string& setting) {
   const auto any = [&](auto&& among) { return std::any_of(scene.objects.begin(), scene.objects.end(), among); };
   const auto has_kind = [&](const char* kind) { return std::find(use.kinds.begin(), use.kinds.end(), kind) != use.kinds.end(); };
   // Normals of a mesh that is written are those of its file.
-  if (setting == "smooth-angle") return false;
+  if (setting == "smooth_angle") return false;
   if (use.mesh_file) {
     // What a level set is meshed into has no normals.
     if (setting == "normals") return has_kind("mesh") && any([&](const SceneObject& object) { return is_refined(object, settings); });
@@ -146,19 +147,18 @@ bool is_written(const Scene& scene, const SurfaceSettings& settings, const Optio
   return true;
 }
 
-/// What settings the command line makes, as far as it says what is a cage.
-SurfaceSettings settings_of(const Options& options, const SceneInput& input) {
+/// What settings the specification makes, as far as it says what is a cage.
+SurfaceSettings settings_of(const SurfaceSpec& spec, const SceneInput& input, bool sweeps_voxels = false) {
   SurfaceSettings settings;
-  settings.scheme = options.scheme ? options.scheme : input.surface.scheme;
-  settings.resample_volumes =
-      options.voxels || options.voxel_size || input.surface.voxels || input.surface.voxel_size || !options.study.voxels.empty();
+  settings.scheme = spec.scheme ? spec.scheme : input.surface.scheme;
+  settings.resample_volumes = spec.voxels || spec.voxel_size || input.surface.voxels || input.surface.voxel_size || sweeps_voxels;
   return settings;
 }
 
 }  // namespace
 
 bool has_effect(const Scene& scene, const SurfaceSettings& settings, std::span<const std::string> kinds, const std::string& setting) {
-  const bool voxels = setting == "voxels" || setting == "voxel-size";
+  const bool voxels = setting == "voxels" || setting == "voxel_size";
   for (const std::string& kind : kinds)
     for (const SceneObject& object : scene.objects) {
       // A volume has voxels of its own, which asking for as many would resample.
@@ -168,46 +168,45 @@ bool has_effect(const Scene& scene, const SurfaceSettings& settings, std::span<c
   return false;
 }
 
-void refuse_without_effect(const Options& options, const SceneInput& input, const OptionUse& use) {
-  std::vector<GivenSetting> given = given_settings(options);
-  const SurfaceSettings settings = settings_of(options, input);
-  for (const auto& [option, setting] : given) {
+void refuse_without_effect(const SurfaceSpec& spec, const SceneInput& input, const SettingUse& use) {
+  std::vector<GivenSetting> given = given_settings(spec);
+  const SurfaceSettings settings = settings_of(spec, input);
+  for (const auto& [field, setting] : given) {
     if ((!use.mesh_file && !use.level_set_file) || is_written(input.scene, settings, use, setting)) continue;
-    throw InputError(
-        {"", option, "", fmt::format("has no effect on this {} file; leave it out", use.mesh_file ? "mesh" : "level set"), ""});
+    throw InputError({"", field, "", fmt::format("has no effect on this {} file; leave it out", use.mesh_file ? "mesh" : "level set"), ""});
   }
   refuse_unread(given, input.scene, settings, use.kinds);
 }
 
-void refuse_unchecked(const Options& options, const SceneInput& input) {
-  const SurfaceSettings settings = settings_of(options, input);
-  for (const auto& [option, setting] : given_settings(options)) {
+void refuse_unchecked(const SurfaceSpec& spec, const SceneInput& input) {
+  const SurfaceSettings settings = settings_of(spec, input);
+  for (const auto& [field, setting] : given_settings(spec)) {
     const std::string& name = setting;
     const bool checked = std::any_of(input.scene.objects.begin(), input.scene.objects.end(), [&](const SceneObject& object) {
-      if (name == "voxels" || name == "voxel-size") return !std::holds_alternative<LevelSetSource>(object.source);
+      if (name == "voxels" || name == "voxel_size") return !std::holds_alternative<LevelSetSource>(object.source);
       if (name == "gradient") return std::holds_alternative<LevelSetSource>(object.source);
       if (name == "level") return cage_scheme(object, settings).has_value();
       return name == "scheme" && std::holds_alternative<MeshSource>(object.source);
     });
-    if (!checked) throw InputError({"", option, "", "has no effect on what is looked at here; leave it out", ""});
+    if (!checked) throw InputError({"", field, "", "has no effect on what is looked at here; leave it out", ""});
   }
 }
 
-void refuse_surface_options(const Options& options, const std::string& what) {
-  std::vector<GivenSetting> given = given_settings(options);
-  if (!options.grids.empty()) given.push_back({"--grid", "grid"});
-  if (!given.empty()) throw InputError({"", given.front().option, "", "has no effect on " + what + "; leave it out", ""});
+void refuse_surface_settings(const ExperimentSpec& spec, const std::string& what) {
+  std::vector<GivenSetting> given = given_settings(spec.surface);
+  if (!spec.grids.empty()) given.push_back({"grids", "grids"});
+  if (!given.empty()) throw InputError({"", given.front().field, "", "has no effect on " + what + "; leave it out", ""});
 }
 
-void refuse_sweep_without_effect(const Options& options, const SceneInput& input, std::span<const std::string> kinds) {
-  refuse_unread(swept_settings(options), input.scene, settings_of(options, input), kinds);
+void refuse_sweep_without_effect(const StudySpec& spec, const SceneInput& input, std::span<const std::string> kinds) {
+  refuse_unread(swept_settings(spec), input.scene, settings_of(spec.experiment.surface, input, !spec.sweep.voxels.empty()), kinds);
 }
 
-void refuse_eye_of_views(const Options& options, int views) {
-  if (views <= 1 || !options.eye) return;
+void refuse_eye_of_views(const CameraSpec& spec, int views) {
+  if (views <= 1 || !spec.eye) return;
   throw InputError(
-      {"", "--eye", "",
-       fmt::format("has no effect on {} views, whose directions are spread over the sphere; leave it out, or add --views 1", views), ""});
+      {"", "eye", "",
+       fmt::format("has no effect on {} views, whose directions are spread over the sphere; leave it out, or add views = 1", views), ""});
 }
 
 }  // namespace limn

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "samples/experiment/flags.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -26,10 +27,10 @@ void check_place(const fs::path& file) {
   std::error_code ignored;
   while (!fs::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();
   if (!fs::is_directory(folder, ignored)) {
-    throw InputError({file.string(), "--output", "", folder.string() + " is not a folder", "a path below a folder"});
+    throw InputError({file.string(), "output", "", folder.string() + " is not a folder", "a path below a folder"});
   }
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw InputError({file.string(), "--output", "", folder.string() + " cannot be written to", "a folder that you may write to"});
+    throw InputError({file.string(), "output", "", folder.string() + " cannot be written to", "a folder that you may write to"});
   }
 }
 
@@ -43,41 +44,57 @@ std::string ending_of(const fs::path& file) {
   return ending;
 }
 
-void check_output_file(const fs::path& file, const Options& options, const std::vector<std::string>& endings) {
+void check_output_file(const fs::path& file, bool no_clobber, const std::vector<std::string>& endings) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) {
-    throw InputError({file.string(), "--output", "", "is a folder", "a file ending in one of " + joined(endings)});
+    throw InputError({file.string(), "output", "", "is a folder", "a file ending in one of " + joined(endings)});
   }
   if (std::find(endings.begin(), endings.end(), ending_of(file)) == endings.end()) {
-    throw InputError({file.string(), "--output", file.extension().string().empty() ? "no ending" : file.extension().string(),
+    throw InputError({file.string(), "output", file.extension().string().empty() ? "no ending" : file.extension().string(),
                       "unknown kind of file", "one of " + joined(endings)});
   }
-  if (options.no_clobber && fs::exists(file, ignored)) {
-    throw InputError({file.string(), "--no-clobber", "", "exists already; choose another name, or leave out --no-clobber", ""});
+  if (no_clobber && fs::exists(file, ignored)) {
+    throw InputError({file.string(), "no_clobber", "", "exists already; choose another name, or leave out no_clobber = true", ""});
   }
   check_place(file);
 }
 
-void check_output_folder(const fs::path& folder, const Options& options) {
+void check_output_folder(const fs::path& folder, bool no_clobber) {
   std::error_code ignored;
   if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored)) {
-    throw InputError({folder.string(), "--output", "", "is a file", "a folder"});
+    throw InputError({folder.string(), "output", "", "is a file", "a folder"});
   }
-  if (options.no_clobber && fs::exists(folder, ignored) && !fs::is_empty(folder, ignored)) {
+  if (no_clobber && fs::exists(folder, ignored) && !fs::is_empty(folder, ignored)) {
     throw InputError(
-        {folder.string(), "--no-clobber", "", "exists already and is not empty; choose another name, or leave out --no-clobber", ""});
+        {folder.string(), "no_clobber", "", "exists already and is not empty; choose another name, or leave out no_clobber = true", ""});
   }
   check_place(folder / "file");
 }
 
-void print_text(const std::string& text) {
+namespace {
+
+/// What a document says in sentences, as somebody at a command line needs it.
+void put_flags_into(Json& value) {
+  if (value.is_string()) value = in_flags(value.get<std::string>());
+  if (value.is_structured())
+    for (Json& one : value) put_flags_into(one);
+}
+
+void write_to_stdout(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) throw MachineError("cannot write to standard output");
 }
 
-void print_json(const Json& document) { print_text(document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"); }
+}  // namespace
+
+void print_text(const std::string& text) { write_to_stdout(in_flags(text)); }
+
+void print_json(Json document) {
+  put_flags_into(document);
+  write_to_stdout(document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
 
 void print_note(const std::string& text) {
-  std::string line = text;
+  std::string line = in_flags(text);
   // Names of objects and files may hold anything, a terminal's commands too.
   std::replace_if(
       line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) < ' ' && c != '\t') || c == '\x7f'; }, ' ');

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "samples/options.h"
-
 namespace limn {
 
 using Json = nlohmann::ordered_json;
@@ -18,14 +16,14 @@ std::filesystem::path default_output(const std::string& command, const std::stri
 /// Lower-case, with the dot.
 std::string ending_of(const std::filesystem::path& file);
 
-/// Throws InputError unless `file` can be written: a known ending, not a folder, a place where files can be made, and, with --no-clobber,
+/// Throws InputError unless `file` can be written: a known ending, not a folder, a place where files can be made, and, with `no_clobber`,
 /// not there yet.
-void check_output_file(const std::filesystem::path& file, const Options& options, const std::vector<std::string>& endings);
+void check_output_file(const std::filesystem::path& file, bool no_clobber, const std::vector<std::string>& endings);
 /// The same for a folder that will hold several files.
-void check_output_folder(const std::filesystem::path& folder, const Options& options);
+void check_output_folder(const std::filesystem::path& folder, bool no_clobber);
 
-/// One JSON document on stdout.
-void print_json(const Json& document);
+/// One JSON document on stdout. Here and below sentences name settings as options of the command line do (in_flags).
+void print_json(Json document);
 void print_text(const std::string& text);
 /// A line on stderr, kept to one line.
 void print_note(const std::string& text);

@@ -1,5 +1,5 @@
 #pragma once
-// Text of the command line into values. Every function throws InputError naming `field` ("--voxels").
+// Text of the command line into values. Every function throws InputError naming `field` ("voxels").
 
 #include <cstdint>
 #include <functional>
@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "samples/experiment/spec.h"
 #include "sdf/descriptor.h"
 #include "subdiv/refine.h"
 
@@ -22,10 +23,7 @@ glm::dvec3 parse_vector3(const std::string& field, std::string_view text);
 /// "1280x720".
 glm::ivec2 parse_size(const std::string& field, std::string_view text);
 /// `key=value`, where a value is a number, numbers with commas between them, true, false or a word.
-struct KeyValue {
-  std::string key, value;
-};
-KeyValue parse_key_value(const std::string& field, std::string_view text);
+ParameterText parse_key_value(const std::string& field, std::string_view text);
 ParameterInput parse_parameter(std::string_view text);
 
 /// "a,b,c"; empty names are kept, so that they are complained about.

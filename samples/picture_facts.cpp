@@ -154,14 +154,4 @@ std::string picture_text(const PictureFile& picture, const std::string& name) {
   return text;
 }
 
-int report_picture(const Options& options) {
-  const PictureFile picture = read_picture_file(options.input);
-  if (options.json) {
-    print_json(picture_json(picture));
-  } else {
-    print_text(picture_text(picture, options.input));
-  }
-  return 0;
-}
-
 }  // namespace limn

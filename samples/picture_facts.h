@@ -9,7 +9,4 @@ namespace limn {
 Json picture_json(const PictureFile& picture);
 std::string picture_text(const PictureFile& picture, const std::string& name);
 
-/// Reads options.input and prints either. Returns the exit code. Throws InputError.
-int report_picture(const Options& options);
-
 }  // namespace limn

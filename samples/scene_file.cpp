@@ -1,4 +1,5 @@
 #include "samples/scene_file.h"
+#include "samples/parse.h"
 
 #include <fmt/format.h>
 
@@ -47,8 +48,8 @@ CameraSettings read_camera(TomlReader& reader) {
   return camera;
 }
 
-SurfaceDefaults read_surface(TomlReader& reader) {
-  SurfaceDefaults surface;
+SurfaceSpec read_surface(TomlReader& reader) {
+  SurfaceSpec surface;
   const auto place = [&reader](const std::string& key) { return reader.where(*reader.take(key)); };
   surface.kind = reader.text("kind");
   if (surface.kind) find_surface(*surface.kind, place("kind"), "surface.kind");

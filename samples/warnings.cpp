@@ -26,13 +26,7 @@ std::string names_text(const std::vector<std::string>& names) {
 
 }  // namespace
 
-void print_warnings(const Options& options, const std::vector<std::string>& warnings) {
-  if (options.quiet) return;
-  for (const std::string& warning : warnings) print_note("warning: " + warning);
-}
-
-std::vector<std::string> warn_of_input(const Options& options, const Scene& scene, const SurfaceSettings& settings,
-                                       const WarningNeeds& needs) {
+std::vector<std::string> warnings_of(const Scene& scene, const SurfaceSettings& settings, const WarningNeeds& needs) {
   std::vector<std::string> methods = needs.methods;
   if (methods.empty()) {
     for (const BorderMethod& method : border_methods()) methods.push_back(method.about.name);
@@ -43,10 +37,10 @@ std::vector<std::string> warn_of_input(const Options& options, const Scene& scen
     std::vector<std::string> surfaces = needs.surfaces;
     if (surfaces.empty()) surfaces = {settings.kind.empty() ? natural_surface(object) : settings.kind};
     for (const Finding& finding :
-         audit(object, {.surface = settings, .thorough = options.verbose, .surfaces = surfaces, .methods = methods})) {
+         audit(object, {.surface = settings, .thorough = needs.thorough, .surfaces = surfaces, .methods = methods})) {
       if (!matters(finding, surfaces, methods)) continue;
       std::string message = finding.message;
-      if (options.verbose && !finding.remedy.empty()) message += "; remedy: " + finding.remedy;
+      if (needs.thorough && !finding.remedy.empty()) message += "; remedy: " + finding.remedy;
       const auto [at, is_new] = place.emplace(message, found.size());
       if (is_new) found.push_back({message, {}});
       found[at->second].objects.push_back(object.name);
@@ -54,7 +48,6 @@ std::vector<std::string> warn_of_input(const Options& options, const Scene& scen
   }
   std::vector<std::string> warnings;
   for (const SharedWarning& warning : found) warnings.push_back(names_text(warning.objects) + ": " + warning.message);
-  print_warnings(options, warnings);
   return warnings;
 }
 

@@ -187,7 +187,7 @@ LevelSet world_level_set(const Scene& scene, const SurfaceSettings& settings, st
       return world_volume(scene.objects.front(), settings, notes);
     }
     throw InputError({scene.name, "object", "", "volumes beside other objects cannot be written as one level set",
-                      "an .obj or .ply, or --surface mesh_level_set, which joins them"});
+                      "an .obj or .ply, or surface = mesh_level_set, which joins them"});
   }
   if (fields == scene.objects.size() && settings.kind != "mesh_level_set") {
     std::vector<Field> all;

@@ -28,28 +28,28 @@ void check_point(const std::optional<glm::dvec3>& point, const char* field) {
 void check(const CameraSettings& s) {
   if (s.width_px < 1 || s.height_px < 1 || s.width_px > largest_side_px || s.height_px > largest_side_px) {
     throw InputError({{},
-                      "--size",
+                      "size",
                       fmt::format("{}x{}", s.width_px, s.height_px),
                       "not a picture size",
                       fmt::format("width and height from 1 to {} pixels", largest_side_px)});
   }
   if (s.projection == Projection::perspective && !(s.vertical_fov > 0.0 && s.vertical_fov < std::numbers::pi)) {
     throw InputError({{},
-                      "--fov",
+                      "fov",
                       fmt::format("{:.6g}", s.vertical_fov * 180.0 / std::numbers::pi),
                       "not a field of view",
                       "above 0 and below 180 degrees"});
   }
   if (s.ortho_height && !(*s.ortho_height > 0.0 && std::isfinite(*s.ortho_height))) {
-    throw InputError({{}, "--ortho", fmt::format("{}", *s.ortho_height), "not a picture height", "a finite height above 0, world units"});
+    throw InputError({{}, "ortho", fmt::format("{}", *s.ortho_height), "not a picture height", "a finite height above 0, world units"});
   }
-  check_point(s.eye, "--eye");
-  check_point(s.target, "--target");
+  check_point(s.eye, "eye");
+  check_point(s.target, "target");
   if (s.direction && !(finite(*s.direction) && glm::length(*s.direction) > 0.0)) {
-    throw InputError({{}, "--eye", text(*s.direction), "not a view direction", "three finite numbers, not all 0"});
+    throw InputError({{}, "eye", text(*s.direction), "not a view direction", "three finite numbers, not all 0"});
   }
   if (!finite(s.up) || !(glm::length(s.up) > 0.0) || !std::isfinite(glm::length(s.up))) {
-    throw InputError({{}, "--up", text(s.up), "not a direction", "three finite numbers, not all 0"});
+    throw InputError({{}, "up", text(s.up), "not a direction", "three finite numbers, not all 0"});
   }
 }
 
@@ -70,7 +70,7 @@ glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& from, const glm::dvec3&
 glm::dmat3 orientation(const glm::dvec3& backward, const glm::dvec3& up_given, bool chosen_by_user) {
   glm::dvec3 up = glm::normalize(up_given);
   if (glm::length(glm::cross(up, backward)) < 1e-6) {
-    if (chosen_by_user) throw InputError({{}, "--up", text(up_given), "along the line of sight", "a direction across the view"});
+    if (chosen_by_user) throw InputError({{}, "up", text(up_given), "along the line of sight", "a direction across the view"});
     up = std::abs(backward.z) < 0.9 ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0);
   }
   const glm::dvec3 right = glm::normalize(glm::cross(up, backward));
@@ -170,7 +170,7 @@ Camera resolve_camera(const CameraSettings& settings, const Box& bounds) {
 
   glm::dvec3 backward;
   if (settings.eye) {
-    backward = checked_backward(*settings.eye, settings.target.value_or(box.center()), "--eye");
+    backward = checked_backward(*settings.eye, settings.target.value_or(box.center()), "eye");
   } else if (settings.direction) {
     backward = glm::normalize(*settings.direction);
   } else {

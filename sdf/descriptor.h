@@ -65,7 +65,7 @@ class Parameters {
   std::vector<Value> values_{};
 };
 
-/// Defaults overridden by `given`, checked. `file` and `field_prefix` ("object[0].", "--set ") go into the message.
+/// Defaults overridden by `given`, checked. `file` and `field_prefix` ("object[0].", "parameters.rim.") go into the message.
 /// Throws InputError for an unknown name (with the nearest known one), a wrong count or kind, a value out of range or not finite.
 Parameters resolve(std::span<const Parameter> parameters, const std::map<std::string, ParameterInput>& given, const std::string& file = {},
                    const std::string& field_prefix = {});

@@ -10,8 +10,8 @@ namespace limn {
 
 /// What is wrong with something a user gave us, in the words of the one line that the command line prints.
 struct InputFault {
-  std::string file{};      ///< Path as the user gave it, with line and column where known; empty for a command-line option.
-  std::string field{};     ///< Option, key or part of the file ("--fov", "object[1].radius", "grid"); may be empty.
+  std::string file{};      ///< Path as the user gave it, with line and column where known; empty for a setting of a call.
+  std::string field{};     ///< Setting, key or part of the file ("fov", "object[1].radius", "grid"); may be empty.
   std::string value{};     ///< The offending value as text; may be empty.
   std::string problem{};   ///< What is wrong: "not a number", "no such file".
   std::string expected{};  ///< What would be right: "above 0 and below 180 degrees".

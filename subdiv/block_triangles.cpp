@@ -87,7 +87,7 @@ class PairFinder {
 };
 
 [[noreturn]] void refuse(double voxel_size, std::int64_t max_blocks) {
-  throw SizeError({"", "--voxel-size", fmt::format("{}", voxel_size),
+  throw SizeError({"", "voxel_size", fmt::format("{}", voxel_size),
                    fmt::format("the level set needs more than {} blocks of 8 x 8 x 8 voxels", max_blocks),
                    "larger voxels or a narrower band"});
 }

@@ -165,7 +165,7 @@ void check_room_for_masks(const Far::TopologyRefiner& refiner) {
     int sharing = 0;
     for (const int e : level.GetVertexEdges(v)) sharing = std::max(sharing, level.GetEdgeFaces(e).size());
     throw InputError({"", "mesh", fmt::format("{} faces at one edge", sharing), "too many faces share an edge for a limit surface",
-                      "a cage whose edges have two faces, or --scheme bilinear"});
+                      "a cage whose edges have two faces, or scheme = bilinear"});
   }
 }
 

@@ -59,7 +59,7 @@ class BlockFinder {
     std::sort(keys_.begin(), keys_.end());
     keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
     if (static_cast<std::int64_t>(keys_.size()) > max_blocks_)
-      throw SizeError({"", "--voxel-size", fmt::format("{}", size_),
+      throw SizeError({"", "voxel_size", fmt::format("{}", size_),
                        fmt::format("the level set needs more than {:.1f} GB",
                                    static_cast<double>(max_blocks_) * 1e-9 * static_cast<double>(sizeof(LevelSetBlock))),
                        "larger voxels or a narrower band"});

@@ -70,14 +70,14 @@ void check(const TriangleMesh& mesh, const LevelSetSettings& settings) {
   if (mesh.triangles.empty()) throw InputError({"", "", "", "the mesh has no triangle with an area", "at least one"});
   if (!(settings.voxel_size > 0.0) || !std::isfinite(settings.voxel_size))
     throw InputError(
-        {"", "--voxel-size", fmt::format("{}", settings.voxel_size), "the voxel size is out of range", "above 0, in world units"});
+        {"", "voxel_size", fmt::format("{}", settings.voxel_size), "the voxel size is out of range", "above 0, in world units"});
   if (!(settings.half_width_voxels >= 1.8) || settings.half_width_voxels > 1000.0)
     throw InputError(
-        {"", "--half-width", fmt::format("{}", settings.half_width_voxels), "the half-width is out of range", "1.8 to 1000 voxels"});
+        {"", "half_width", fmt::format("{}", settings.half_width_voxels), "the half-width is out of range", "1.8 to 1000 voxels"});
   const double side = used_bounds(mesh).longest_side() / settings.voxel_size;
   if (side > static_cast<double>(kMaxIndex))
     throw InputError(
-        {"", "--voxel-size", fmt::format("{}", settings.voxel_size), fmt::format("the mesh is {:.3g} voxels long", side), "larger voxels"});
+        {"", "voxel_size", fmt::format("{}", settings.voxel_size), fmt::format("the mesh is {:.3g} voxels long", side), "larger voxels"});
 }
 
 /// Progress from many threads, handed on by one at a time.
@@ -182,7 +182,7 @@ Band make_band(const TriangleMesh& mesh, const LazyTree& tree, const Winding& wi
   Progress progress(settings.progress, wave.size());
   while (!wave.empty()) {
     if (static_cast<std::int64_t>(known.size()) > max_blocks(settings))
-      throw SizeError({"", "--voxel-size", fmt::format("{}", settings.voxel_size),
+      throw SizeError({"", "voxel_size", fmt::format("{}", settings.voxel_size),
                        "closing the mesh's holes takes more memory than allowed", "larger voxels, or a closed mesh"});
     std::vector<LevelSetBlock> blocks(wave.size());
     std::vector<char> membrane(wave.size(), 0), active(wave.size(), 0), inside(wave.size(), 0);

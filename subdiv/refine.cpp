@@ -19,7 +19,7 @@ void check_size(const RefinedSize& size, const RefineSettings& settings, const s
   // Corner indices are 32-bit; four corners a face.
   const bool countable = size.faces <= std::numeric_limits<std::int32_t>::max() / 4;
   if (size.bytes <= settings.max_bytes && countable) return;
-  throw SizeError({file, "--level", fmt::format("{}", settings.level),
+  throw SizeError({file, "level", fmt::format("{}", settings.level),
                    fmt::format("the refined mesh has {} vertices and {} faces and needs {:.1f} GB", size.vertices, size.faces,
                                static_cast<double>(size.bytes) * 1e-9),
                    fmt::format("a lower level (at most {:.1f} GB)", static_cast<double>(settings.max_bytes) * 1e-9)});
@@ -172,7 +172,7 @@ void to_limit(const RefineSettings& settings, Refined& refined) {
 
 Mesh refine(const Mesh& cage, const RefineSettings& settings, const std::string& file) {
   if (settings.level < 0 || settings.level > 8)
-    throw InputError({file, "--level", fmt::format("{}", settings.level), "the subdivision level is out of range", "0 to 8"});
+    throw InputError({file, "level", fmt::format("{}", settings.level), "the subdivision level is out of range", "0 to 8"});
   const CleanCage clean = clean_cage(cage, settings.scheme, file);
   const std::unique_ptr<Far::TopologyRefiner> refiner = make_refiner(clean.mesh, settings.scheme, file);
   const bool limit = settings.to_limit || settings.normals == NormalKind::limit;

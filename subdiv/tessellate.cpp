@@ -134,11 +134,11 @@ Mesh cage_of(const Field& field) { return find_cage(field).mesh; }
 
 Mesh tessellate(const Field& field, const TessellateSettings& settings) {
   if (settings.level < 0 || settings.level > 8)
-    throw InputError({"", "--level", fmt::format("{}", settings.level), "the subdivision level is out of range", "0 to 8"});
+    throw InputError({"", "level", fmt::format("{}", settings.level), "the subdivision level is out of range", "0 to 8"});
   Cage cage = find_cage(field);
   const RefinedSize size = predict_refined_size(cage.mesh, Scheme::bilinear, settings.level);
   if (size.bytes > settings.max_bytes)
-    throw SizeError({"", "--level", fmt::format("{}", settings.level),
+    throw SizeError({"", "level", fmt::format("{}", settings.level),
                      fmt::format("the mesh has {} faces and needs {:.1f} GB", size.faces, static_cast<double>(size.bytes) * 1e-9),
                      fmt::format("a lower level (at most {:.1f} GB)", static_cast<double>(settings.max_bytes) * 1e-9)});
   for (int level = 0; level < settings.level; ++level) cage = refined_once(field, cage.mesh, settings.max_bytes);

@@ -61,7 +61,7 @@ void look_at_slivers(AuditFacts& facts, std::vector<Finding>& findings) {
                           mesh.off_normal_faces, mesh.off_normal_faces == 1 ? "" : "s", 100.0 * mesh.off_normal_area_share,
                           mesh.off_normal_faces == 1 ? "lies" : "lie", mesh.off_normal_angle * kDegrees) +
                       facts.sample_text();
-    normals.remedy = "remesh with triangles closer to equilateral; --surface mesh_level_set averages over a voxel";
+    normals.remedy = "remesh with triangles closer to equilateral; surface = mesh_level_set averages over a voxel";
     normals.surfaces = {"mesh"};
     normals.methods = methods_reading(inputs);
   }

@@ -36,7 +36,7 @@ void look_at_edges(AuditFacts& facts, std::vector<Finding>& findings) {
             "unless a picture shows mostly the back",
             counted(mesh.open_edges, "edge")) +
         facts.sample_text();
-    open.remedy = "close the holes, or use --surface mesh_level_set, whose sign is the winding number's";
+    open.remedy = "close the holes, or use surface = mesh_level_set, whose sign is the winding number's";
     open.surfaces = {"mesh"};
     open.methods = methods_reading(reading_normals());
   }
@@ -51,7 +51,7 @@ void look_at_edges(AuditFacts& facts, std::vector<Finding>& findings) {
                            "for the lines of edge_quads",
                            counted(mesh.non_manifold_edges, "edge")) +
                        facts.sample_text();
-    manifold.remedy = "split the mesh there into parts that are each a surface, or use --surface mesh_level_set";
+    manifold.remedy = "split the mesh there into parts that are each a surface, or use surface = mesh_level_set";
     manifold.surfaces = {"mesh"};
   }
   findings.push_back(std::move(manifold));

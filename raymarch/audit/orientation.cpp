@@ -43,7 +43,7 @@ void look(AuditFacts& facts, std::vector<Finding>& findings) {
                                "wrong way round count as turned away",
                                mesh.inconsistent_edges, mesh.inconsistent_edges == 1 ? "" : "s") +
                            facts.sample_text();
-    inconsistent.remedy = "make the faces' winding consistent in the program that wrote the mesh, or use --normals flat";
+    inconsistent.remedy = "make the faces' winding consistent in the program that wrote the mesh, or use normals = flat";
     inconsistent.surfaces = {"mesh", "mesh_level_set"};
   }
   findings.push_back(std::move(inconsistent));

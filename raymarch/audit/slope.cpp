@@ -51,7 +51,7 @@ void look_at_volume(const Slopes& slope, std::vector<Finding>& findings) {
         "|grad f| across the surface is {:.3g} to {:.3g}, median {:.3g} (5 % to 95 %) instead of 1: the volume is no distance field. Rays "
         "and normals do not mind; an outline of constant width on the object comes out {:.2g} times as wide",
         slope.low, slope.high, slope.median, 1.0 / slope.median);
-    finding.remedy = "make true distances of it (vdb_tool -iso2ls iso=0, or openvdb::tools::levelSetRebuild), or use --surface mesh";
+    finding.remedy = "make true distances of it (vdb_tool -iso2ls iso=0, or openvdb::tools::levelSetRebuild), or use surface = mesh";
     finding.methods = methods_reading(inputs);
     finding.surfaces = {"level_set"};
   }

@@ -38,8 +38,8 @@ std::string remedy_of(std::int64_t voxels, const AuditFacts& facts) {
     return voxels > kMostVoxels
                ? "none by voxels of one size"
                : fmt::format("a grid with {} voxels along the longest side would hold all but {:g} %", voxels, 100.0 * kMostThin);
-  if (voxels > kMostVoxels) return fmt::format("--surface {}: no grid that fits into memory holds them", exact);
-  return fmt::format("--voxels {} would hold all but {:g} %; --surface {} needs none", voxels, 100.0 * kMostThin, exact);
+  if (voxels > kMostVoxels) return fmt::format("surface = {}: no grid that fits into memory holds them", exact);
+  return fmt::format("voxels = {} would hold all but {:g} %; surface = {} needs none", voxels, 100.0 * kMostThin, exact);
 }
 
 void look_at(const Thing& thing, const std::vector<double>& widths, double voxel, AuditFacts& facts, std::vector<Finding>& findings) {

@@ -175,7 +175,7 @@ std::string unsupported(const SceneModel& model, const Scene&) {
   for (const Surface& surface : model.surfaces) {
     if (surface.polygons) return {};
   }
-  return "it draws the edges of polygons, and no object is modelled by any; --surface mesh makes them";
+  return "it draws the edges of polygons, and no object is modelled by any; surface = mesh makes them";
 }
 
 }  // namespace

@@ -97,6 +97,7 @@ void draw_objects(const BorderInput& input, const ExtrudeSettings& settings, Hul
   const ExtrudeGroups groups(input, settings);
   for (size_t object = 0; object < objects; ++object) groups.lay(object, ink_one(input, object, settings, view, &notes), border.coverage);
   groups.draw_seams(border.coverage);
+  groups.drop_specks(border.coverage);
   if (settings.groups.by == GroupBy::all) add_group_note("extrude", input, border.notes);
   if (settings.groups.hidden) groups.draw_hidden(border);
 }

@@ -53,6 +53,8 @@ class ExtrudeGroups {
   /// Lays what an object's ink shows over `coverage`, as far as it is an outline of its group.
   void lay(size_t object, const WindowImage<float>& ink, Image<float>& coverage) const;
   void draw_seams(Image<float>& coverage) const;
+  /// Takes away pieces of ink on objects that are smaller than any outline: where objects touch, rounding leaves some beside the line.
+  void drop_specks(Image<float>& coverage) const;
   void draw_hidden(Border& border) const;
 
  private:

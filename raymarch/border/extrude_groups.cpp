@@ -96,6 +96,34 @@ void ExtrudeGroups::draw_seams(Image<float>& coverage) const {
   }
 }
 
+void ExtrudeGroups::drop_specks(Image<float>& coverage) const {
+  constexpr size_t kSpeck_px = 5;
+  // Of thinner lines such pieces are all that pixels show.
+  if (!objects_ || widest_px_ < 2.0) return;
+  const GBuffer& seen = input_.gbuffer;
+  std::vector<glm::ivec2> piece;
+  const auto is_new = [&](const glm::ivec2& p) { return std::find(piece.begin(), piece.end(), p) == piece.end(); };
+  // The piece from (x, y) on, as far as it is none too many: a larger one is left half way.
+  const auto gather = [&](int x, int y) {
+    piece.assign(1, {x, y});
+    for (size_t k = 0; k < piece.size() && piece.size() <= kSpeck_px; ++k) {
+      for (int v = piece[k].y - 1; v <= piece[k].y + 1; ++v) {
+        for (int u = piece[k].x - 1; u <= piece[k].x + 1; ++u) {
+          if (coverage.inside(u, v) && coverage.at(u, v) > 0.0f && is_new({u, v})) piece.emplace_back(u, v);
+        }
+      }
+    }
+    const auto on_object = [&](const glm::ivec2& p) { return seen.id.at(p.x, p.y) != 0; };
+    return piece.size() <= kSpeck_px && std::all_of(piece.begin(), piece.end(), on_object);
+  };
+  for (int y = 0; y < coverage.height; ++y) {
+    for (int x = 0; x < coverage.width; ++x) {
+      if (coverage.at(x, y) == 0.0f || !gather(x, y)) continue;
+      for (const glm::ivec2& p : piece) coverage.at(p.x, p.y) = 0.0f;
+    }
+  }
+}
+
 void ExtrudeGroups::draw_hidden(Border& border) const {
   const GBuffer& seen = input_.gbuffer;
   Image<float> hidden(seen.width, seen.height, 0.0f);

@@ -6,6 +6,9 @@
 namespace limn {
 namespace {
 
+/// Sine of the angle to the eye up to which a corner that faces it grows by less than the width: 17 degrees.
+constexpr double kFacing = 0.3;
+
 glm::dvec3 unit_or_zero(const glm::dvec3& v) {
   const double length = glm::length(v);
   return length > 0.0 && std::isfinite(length) ? v / length : glm::dvec3(0.0);
@@ -69,10 +72,14 @@ ExtrudedCorners extrude_corners(const Polygons& polygons, const Affine& render_f
       corners.grown[i] = in_camera(point + settings.object_width * frame.in_object(i, point));
       return;
     }
-    const glm::dvec2 across = glm::dvec2(camera_from_render * unit_or_zero(frame.in_render(i, point)));
+    const glm::dvec3 towards = camera_from_render * unit_or_zero(frame.in_render(i, point));
+    const glm::dvec2 across(towards);
     const double length = glm::length(across);
     // A normal that points straight at the eye has no direction in the image; below this it is rounding (normals are single precision).
-    const glm::dvec2 direction = length > 1e-6 ? across / length : glm::dvec2(0.0);
+    glm::dvec2 direction = length > 1e-6 ? across / length : glm::dvec2(0.0);
+    // Around the place that faces the eye directions run apart in all ways, and triangles as small as the width would fold over: backs in
+    // the middle of the surface. No contour is near.
+    if (!frame.by_position() && towards.z > 0.0) direction *= std::min(1.0, length / kFacing);
     const double pixel = camera.projection == Projection::perspective ? rest.z / camera.focal_px : 1.0 / camera.pixels_per_unit;
     corners.grown[i] = rest + glm::dvec3(settings.width_px * pixel * direction, 0.0);
   });

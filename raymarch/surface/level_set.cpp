@@ -14,7 +14,7 @@ std::string unsupported(const SceneObject& object) {
 }
 
 Surface build(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
-  const GradientDescriptor& gradient = find_gradient(settings.gradient, {}, "--gradient");
+  const GradientDescriptor& gradient = find_gradient(settings.gradient, {}, "gradient");
   Surface surface;
   const LevelSetSource* source = std::get_if<LevelSetSource>(&object.source);
   if (source && settings.resample_volumes) {
@@ -52,7 +52,7 @@ SurfaceDescriptor level_set_surface() {
   return {.about = {.name = "level_set",
                     .help = "the field, or the file, as a narrow band of voxels; exact first root of the trilinear interpolant",
                     .source = "OpenVDB: Museth 2013; cell roots: Parker et al. 1998"},
-          .settings = {"voxels", "voxel-size", "half-width", "gradient"},
+          .settings = {"voxels", "voxel_size", "half_width", "gradient"},
           .unsupported = unsupported,
           .build = build};
 }

@@ -210,7 +210,7 @@ CurvatureSource curvature_source(const std::shared_ptr<const State>& state) {
   return {{},
           nullptr,
           fmt::format("the band's half width of {:.2f} voxels is too thin for the cubic spline's Hessian: {:.2f} are needed "
-                      "(--gradient cubic, or --half-width)",
+                      "(gradient = cubic, or a wider band)",
                       there, cubic.half_width_voxels)};
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 Surface build(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
   const auto start = std::chrono::steady_clock::now();
-  const GradientDescriptor& gradient = find_gradient(settings.gradient, {}, "--gradient");
+  const GradientDescriptor& gradient = find_gradient(settings.gradient, {}, "gradient");
   ObjectMesh source = object_mesh(object, settings, render_origin);
   const Box box = bounds_of_triangles(*source.triangles);
   LevelSetSettings grid;
@@ -49,7 +49,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
 SurfaceDescriptor mesh_level_set_surface() {
   return {{"mesh_level_set", "the mesh as a narrow band of voxels: exact distances, sign by winding number",
            "Jacobson et al. 2013 (winding number); Museth 2013 (OpenVDB)"},
-          {"level", "scheme", "voxels", "voxel-size", "half-width", "gradient"},
+          {"level", "scheme", "voxels", "voxel_size", "half_width", "gradient"},
           cannot_mesh,
           build};
 }

@@ -17,7 +17,7 @@ LevelSetSettings grid_settings(const SceneObject& object, const SurfaceSettings&
 
 ResampledLevelSet resample_volume(const SceneObject& object, const LevelSetSource& source, const SurfaceSettings& settings,
                                   const Affine& target_from_grid) {
-  const GradientDescriptor& gradient = find_gradient(settings.gradient, {}, "--gradient");
+  const GradientDescriptor& gradient = find_gradient(settings.gradient, {}, "gradient");
   return resampled(source.level_set, grid_settings(object, settings, gradient), gradient, target_from_grid);
 }
 

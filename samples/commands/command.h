@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "samples/options.h"
+#include "samples/commands/options.h"
 
 namespace limn {
 

@@ -3,14 +3,13 @@
 #include "raymarch/image_io.h"
 #include "raymarch/view_level.h"
 #include "samples/commands/command.h"
+#include "samples/commands/common.h"
 #include "samples/compare/comparison.h"
 #include "samples/compare/staging.h"
 #include "samples/empty_picture.h"
 #include "samples/input_files.h"
-#include "samples/limits.h"
 #include "samples/no_effect.h"
 #include "samples/threads.h"
-#include "samples/warnings.h"
 #include "sdf/output_file.h"
 
 namespace limn {
@@ -31,21 +30,21 @@ void add_options(CLI::App& app, Options& options) {
 }
 
 Comparison plan(const Options& options, SceneInput& input) {
-  SurfaceSettings settings = surface_settings(options, input);
-  const Camera camera = resolve_camera(camera_settings(options, input), bounds(input.scene));
-  if (options.level_for_view) {
+  SurfaceSettings settings = surface_settings(options.spec, input);
+  const Camera camera = resolve_camera(camera_settings(options.spec.camera, input), bounds(input.scene));
+  if (options.spec.surface.level_for_view) {
     settings.kind = "mesh";
     for (const std::string& note : refine_for_views(settings, {&camera, 1}, input.scene)) {
       if (!options.quiet) print_note(note);
     }
   }
   settings.kind.clear();
-  const bool gradient_chosen = options.gradient.has_value() || input.surface.gradient.has_value();
-  Comparison comparison = plan_comparison(input, settings, options.surfaces, gradient_chosen);
-  comparison.picture = picture_settings(options, input);
+  const bool gradient_chosen = options.spec.surface.gradient.has_value() || input.surface.gradient.has_value();
+  Comparison comparison = plan_comparison(input, settings, options.spec.surfaces, gradient_chosen);
+  comparison.picture = picture_settings(options.spec.border, input);
   if (!comparison.picture.background) comparison.picture.background = glm::vec3(1.0f);
   std::vector<std::vector<MethodCall>> columns;
-  if (options.compared_methods.empty()) {
+  if (options.spec.border.columns.empty()) {
     columns.push_back(comparison.picture.methods);
   } else {
     for (const MethodCall& call : comparison.picture.methods) columns.push_back({call});
@@ -56,7 +55,7 @@ Comparison plan(const Options& options, SceneInput& input) {
   std::vector<std::string> kinds;
   for (const ComparedModel& model : comparison.models)
     if (model.skipped.empty()) kinds.push_back(model.surface.kind);
-  comparison.call = resolved_call("compare", options, {input.scene, settings, kinds}, comparison.camera, comparison.picture);
+  comparison.call = resolved_call("compare", options.spec, {input.scene, settings, kinds}, comparison.camera, comparison.picture);
   return comparison;
 }
 
@@ -83,7 +82,7 @@ std::vector<std::string> check(const Options& options, const Comparison& compari
     for (const std::string& name : names_of(column.calls)) methods.push_back(name);
   }
   const ComparedModel& last = comparison.models.back();
-  check_limits(options, last.scene, last.surface, load, kinds);
+  check_cost(options, last.scene, last.surface, load, kinds);
   return warn_of_input(options, last.scene, last.surface, {.surfaces = kinds, .methods = methods});
 }
 
@@ -98,11 +97,11 @@ std::vector<fs::path> file_names(const Comparison& comparison) {
 }
 
 void refuse_unread(const Options& options, const SceneInput& input, const Comparison& comparison) {
-  OptionUse use;
+  SettingUse use;
   for (const ComparedModel& model : comparison.models) {
     if (model.skipped.empty()) use.kinds.push_back(model.surface.kind);
   }
-  refuse_without_effect(options, input, use);
+  refuse_without_effect(options.spec.surface, input, use);
 }
 
 // Where the reference shows nothing the others cannot be blamed for the same.
@@ -120,13 +119,13 @@ void add_empty(const Options& options, const Comparison& comparison, std::vector
 }
 
 int run(const Options& options) {
-  const ThreadLimit threads(options.threads);
+  const ThreadLimit threads(options.spec.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
-  input_kind(options.input);
-  if (!options.outputs.empty()) check_output_folder(options.outputs.back(), options);
-  SceneInput input = load_input(options);
+  input_kind(options.spec.input);
+  if (!options.outputs.empty()) check_output_folder(options.outputs.back(), options.no_clobber);
+  SceneInput input = load(options);
   const fs::path folder = options.outputs.empty() ? default_output("compare", input.name) : options.outputs.back();
-  check_output_folder(folder, options);
+  check_output_folder(folder, options.no_clobber);
 
   Comparison comparison = plan(options, input);
   refuse_unread(options, input, comparison);
@@ -134,7 +133,7 @@ int run(const Options& options) {
   for (const fs::path& name : names) check_not_input(folder / name, files_of(input));
   std::vector<std::string> warnings = check(options, comparison);
   const StagedFolder staged(folder);
-  draw_comparison(comparison, staged.work(), execution_settings(options), bar);
+  draw_comparison(comparison, staged.work(), execution_settings(options.spec.threads), bar);
   bar.clear();
   add_empty(options, comparison, warnings);
   write_all(comparison, staged.work(), options);

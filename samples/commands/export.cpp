@@ -4,14 +4,12 @@
 #include <algorithm>
 
 #include "samples/commands/command.h"
+#include "samples/commands/common.h"
 #include "samples/input_files.h"
-#include "samples/job.h"
-#include "samples/limits.h"
 #include "samples/no_effect.h"
 #include "samples/output.h"
 #include "samples/scene_facts.h"
 #include "samples/threads.h"
-#include "samples/warnings.h"
 #include "samples/world_model.h"
 #include "sdf/error.h"
 #include "sdf/level_set_grids.h"
@@ -47,8 +45,8 @@ void check_kind(const SurfaceSettings& settings, const fs::path& file) {
 }
 
 // The way to the file: through a mesh, a level set, or both.
-OptionUse use_of(const Scene& scene, const SurfaceSettings& settings, bool to_level_set) {
-  OptionUse use{.kinds = {settings.kind}, .level_set_file = to_level_set, .mesh_file = !to_level_set};
+SettingUse use_of(const Scene& scene, const SurfaceSettings& settings, bool to_level_set) {
+  SettingUse use{.kinds = {settings.kind}, .level_set_file = to_level_set, .mesh_file = !to_level_set};
   const bool any_mesh = std::any_of(scene.objects.begin(), scene.objects.end(),
                                     [](const SceneObject& object) { return std::holds_alternative<MeshSource>(object.source); });
   if (to_level_set && any_mesh) use.kinds = {"mesh_level_set"};
@@ -122,18 +120,18 @@ void add_warnings_of_volumes(const Scene& scene, std::vector<std::string>& warni
 }
 
 int run(const Options& options) {
-  const ThreadLimit threads(options.threads);
+  const ThreadLimit threads(options.spec.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
-  input_kind(options.input);
+  input_kind(options.spec.input);
   if (!options.outputs.empty()) {
-    check_output_file(options.outputs.back(), options, kEndings);
-    check_not_input(options.outputs.back(), {options.input});
+    check_output_file(options.outputs.back(), options.no_clobber, kEndings);
+    check_not_input(options.outputs.back(), {options.spec.input});
   }
-  SceneInput input = load_input(options);
+  SceneInput input = load(options);
   const fs::path file = output_of(options, input.name, input.kind);
-  check_output_file(file, options, kEndings);
+  check_output_file(file, options.no_clobber, kEndings);
   check_not_input(file, files_of(input));
-  SurfaceSettings settings = surface_settings(options, input);
+  SurfaceSettings settings = surface_settings(options.spec, input);
   check_kind(settings, file);
   if (options.refined) check_refined(input.scene, settings, file);
   settings.progress = bar.stage("building the surface");
@@ -142,8 +140,8 @@ int run(const Options& options) {
   SurfaceSettings expected = settings;
   if (ending_of(file) == ".vdb" && settings.kind.empty()) expected.kind = "level_set";
   if (ending_of(file) != ".vdb" && settings.kind.empty()) expected.kind = "mesh";
-  refuse_without_effect(options, input, use_of(input.scene, expected, ending_of(file) == ".vdb"));
-  check_limits(options, input.scene, expected, {});
+  refuse_without_effect(options.spec.surface, input, use_of(input.scene, expected, ending_of(file) == ".vdb"));
+  check_cost(options, input.scene, expected, {});
   std::vector<std::string> warnings = warn_of_input(options, input.scene, expected, {});
   WorldNotes said;
   Json document;

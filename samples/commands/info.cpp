@@ -5,7 +5,7 @@
 
 #include "raymarch/audit.h"
 #include "samples/commands/command.h"
-#include "samples/job.h"
+#include "samples/commands/common.h"
 #include "samples/no_effect.h"
 #include "samples/output.h"
 #include "samples/picture_facts.h"
@@ -221,16 +221,16 @@ int report_volume_without_level_set(const Options& options, const std::vector<Gr
                 {"audit", audit_json({finding})},
                 {"grids", grids_json(grids)}});
   } else {
-    print_text(fmt::format("{}: {} grids\n{}  {:<8} {:<24} {}\n", options.input, grids.size(), grids_text(grids), "error", finding.check,
-                           finding.message));
+    print_text(fmt::format("{}: {} grids\n{}  {:<8} {:<24} {}\n", options.spec.input, grids.size(), grids_text(grids), "error",
+                           finding.check, finding.message));
   }
   return 0;
 }
 
 void print_report(const Options& options, SceneInput input, const std::vector<GridSummary>& grids) {
-  SurfaceSettings settings = surface_settings(options, input);
-  refuse_unchecked(options, input);
-  if (!options.gradient && !input.surface.gradient) settings.gradient.clear();
+  SurfaceSettings settings = surface_settings(options.spec, input);
+  refuse_unchecked(options.spec.surface, input);
+  if (!options.spec.surface.gradient && !input.surface.gradient) settings.gradient.clear();
   const std::vector<Report> reports = reports_of(input.scene, settings, options);
   if (options.verbose) {
     for (const Report& report : reports) print_note(costs_text(report));
@@ -239,7 +239,7 @@ void print_report(const Options& options, SceneInput input, const std::vector<Gr
   if (!options.json) {
     std::string text;
     if (reports.size() > 1)
-      text = fmt::format("{}: {}, {} objects, {}\n", options.input, kind_name(input.kind), reports.size(), bounds_text(all));
+      text = fmt::format("{}: {}, {} objects, {}\n", options.spec.input, kind_name(input.kind), reports.size(), bounds_text(all));
     print_text(text + reports_text(reports) + grids_text(grids));
     return;
   }
@@ -261,6 +261,15 @@ void print_report(const Options& options, SceneInput input, const std::vector<Gr
   print_json(document);
 }
 
+int report_picture(const Options& options) {
+  const PictureFile picture = read_picture_file(options.spec.input);
+  if (options.json)
+    print_json(picture_json(picture));
+  else
+    print_text(picture_text(picture, options.spec.input));
+  return 0;
+}
+
 void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_surface(app, options, {.surface = false});
@@ -269,26 +278,26 @@ void add_options(CLI::App& app, Options& options) {
 }
 
 int run(const Options& options) {
-  const ThreadLimit threads(options.threads);
-  if (is_picture_file(options.input)) {
-    refuse_surface_options(options, "a picture");
+  const ThreadLimit threads(options.spec.threads);
+  if (is_picture_file(options.spec.input)) {
+    refuse_surface_settings(options.spec, "a picture");
     return report_picture(options);
   }
   std::vector<GridSummary> grids;
-  if (input_kind(options.input) == InputKind::level_set) {
-    grids = list_grids(options.input);
-    if (options.grids.empty()) {
+  if (input_kind(options.spec.input) == InputKind::level_set) {
+    grids = list_grids(options.spec.input);
+    if (options.spec.grids.empty()) {
       try {
-        print_report(options, load_input(options), grids);
+        print_report(options, load(options), grids);
         return 0;
       } catch (const InputError& error) {
         // Of the call, and not of what is in the file.
-        if (error.fault().field.starts_with("--")) throw;
+        if (is_of_specification(error.fault())) throw;
         return report_volume_without_level_set(options, grids, error);
       }
     }
   }
-  print_report(options, load_input(options), grids);
+  print_report(options, load(options), grids);
   return 0;
 }
 

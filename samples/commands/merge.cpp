@@ -53,7 +53,7 @@ int run(const Options& options) {
   } else {
     folder = options.outputs.back();
   }
-  check_output_folder(folder, options);
+  check_output_folder(folder, options.no_clobber);
   check_not_part(folder);
   const HeldFolder held(folder);
   StudyFolder merged = merge_parts(parts, folder);

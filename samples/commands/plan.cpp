@@ -1,9 +1,9 @@
 #include "samples/commands/command.h"
+#include "samples/commands/common.h"
+#include "samples/commands/options_parts.h"
 #include "samples/no_effect.h"
-#include "samples/options_parts.h"
 #include "samples/plan/job.h"
 #include "samples/threads.h"
-#include "samples/warnings.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -25,31 +25,31 @@ void add_options(CLI::App& app, Options& options) {
 
 // A plan measures silhouettes and the level curves of N.V that `rim` inks; it reads that method's threshold and draws nothing.
 void refuse_unread(const Options& options, const SceneInput& input) {
-  for (const std::string& method : options.methods) {
+  for (const std::string& method : options.spec.border.methods) {
     if (method != "rim") refuse("--method " + method, "a plan measures the border of rim; leave it out");
   }
-  for (const KeyValue& set : options.sets) {
+  for (const ParameterText& set : options.spec.border.parameters) {
     if (set.key != "threshold" && set.key != "rim.threshold")
       refuse("--set " + set.key, "a plan reads no parameter but rim's threshold; leave it out");
     if (options.plan.silhouette) refuse("--set " + set.key, "a silhouette has no threshold; leave it out, or --metric silhouette");
   }
-  refuse_eye_of_views(options, options.views);
-  refuse_unplanned(options, input);
+  refuse_eye_of_views(options.spec.camera, options.spec.views);
+  refuse_unplanned(options.spec, input);
 }
 
 int run(const Options& options) {
-  const ThreadLimit threads(options.threads);
+  const ThreadLimit threads(options.spec.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
   if (!options.plan.tolerance_px) throw InputError({"", "--tolerance", "", "missing", "a number of pixels, such as --tolerance 0.5"});
-  input_kind(options.input);
-  const SceneInput input = load_input(options);
+  input_kind(options.spec.input);
+  const SceneInput input = load(options);
   refuse_unread(options, input);
-  WarningNeeds needs{.surfaces = options.surfaces, .methods = {"rim"}};
+  WarningNeeds needs{.surfaces = options.spec.surfaces, .methods = {"rim"}};
   if (needs.surfaces.empty()) {
     for (const SurfaceDescriptor& kind : surface_kinds()) needs.surfaces.push_back(kind.about.name);
   }
   const std::vector<std::string> warnings = warn_of_input(options, input.scene, {}, needs);
-  const PlanJob job = plan_for(options, input, bar);
+  const PlanJob job = plan_for(options.spec, options.plan, input, bar);
   if (options.json) {
     Json document = plan_json(job);
     document["warnings"] = warnings;

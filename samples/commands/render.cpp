@@ -7,18 +7,16 @@
 #include "raymarch/image_output.h"
 #include "raymarch/view_level.h"
 #include "samples/commands/command.h"
+#include "samples/commands/common.h"
 #include "samples/empty_picture.h"
 #include "samples/flicker.h"
 #include "samples/input_files.h"
 #include "samples/interrupt.h"
-#include "samples/job.h"
-#include "samples/limits.h"
 #include "samples/no_effect.h"
 #include "samples/output.h"
 #include "samples/plan/job.h"
 #include "samples/scene_facts.h"
 #include "samples/threads.h"
-#include "samples/warnings.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -36,7 +34,7 @@ double since_ms(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-int pictures_of(const Options& options) { return std::max(options.views, options.frames.frames); }
+int pictures_of(const Options& options) { return std::max(options.spec.views, options.frames.frames); }
 
 // name.png, or name_v03.png for one of several views, name_f03.png for one of several frames.
 fs::path picture_file(const fs::path& file, int index, const Options& options) {
@@ -62,7 +60,7 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::p
   }
   for (const fs::path& file : outputs) {
     for (int k = 0; k < pictures_of(options); ++k) {
-      check_output_file(picture_file(file, k, options), options, kEndings);
+      check_output_file(picture_file(file, k, options), options.no_clobber, kEndings);
       check_not_input(picture_file(file, k, options), inputs);
     }
   }
@@ -115,7 +113,7 @@ ResolvedModel resolved_model(const Render& render) { return {render.input.scene,
 
 void write_picture(const Picture& picture, int index, const Options& options, Render& render) {
   const auto start = std::chrono::steady_clock::now();
-  const std::string call = resolved_call("render", options, resolved_model(render), render.camera, render.picture);
+  const std::string call = resolved_call("render", options.spec, resolved_model(render), render.camera, render.picture);
   std::vector<OutputFile> files;
   for (const fs::path& name : render.outputs) {
     const fs::path file = picture_file(name, index, options);
@@ -146,7 +144,7 @@ void warn_of_empty(const std::vector<std::string>& reasons, int index, const Opt
 }
 
 void draw_one(const SceneModel& model, int index, const Options& options, ProgressBar& bar, FrameHistory& history, Render& render) {
-  ExecutionSettings how = execution_settings(options);
+  ExecutionSettings how = execution_settings(options.spec.threads);
   const int pictures = pictures_of(options);
   how.progress = bar.stage(
       pictures == 1 ? "tracing" : fmt::format("tracing {} {} of {}", options.frames.frames > 1 ? "frame" : "view", index + 1, pictures));
@@ -164,11 +162,11 @@ void draw_one(const SceneModel& model, int index, const Options& options, Progre
 }
 
 std::vector<Camera> cameras_of(const Options& options, const SceneInput& input) {
-  const CameraSettings settings = camera_settings(options, input);
+  const CameraSettings settings = camera_settings(options.spec.camera, input);
   const Box box = bounds(input.scene);
   if (options.frames.frames > 1) return path_cameras(camera_of_view(settings, box, 0, 1), box, options.frames);
   std::vector<Camera> cameras;
-  for (int view = 0; view < options.views; ++view) cameras.push_back(camera_of_view(settings, box, view, options.views));
+  for (int view = 0; view < options.spec.views; ++view) cameras.push_back(camera_of_view(settings, box, view, options.spec.views));
   return cameras;
 }
 
@@ -191,7 +189,7 @@ void report(const Options& options, const Render& render, const SurfaceInfo& inf
   }
   if (options.verbose) {
     for (const std::string& line : scheme_lines(render.input.scene, render.surface)) print_note(line);
-    print_note(resolved_call("render", options, resolved_model(render), render.camera, render.picture));
+    print_note(resolved_call("render", options.spec, resolved_model(render), render.camera, render.picture));
   }
   if (options.json) {
     print_json({{"hits", render.counts.hits},
@@ -218,7 +216,7 @@ void report(const Options& options, const Render& render, const SurfaceInfo& inf
 
 // With --tolerance the plan says how to model; nothing is drawn where nothing meets it.
 bool choose_model(const Options& options, ProgressBar& bar, Render& render) {
-  const PlanJob job = plan_for(options, render.input, bar);
+  const PlanJob job = plan_for(options.spec, options.plan, render.input, bar);
   const std::vector<std::string> sentences = plan_sentences(job.answer, job.settings);
   render.plan = plan_json(job);
   if (!options.quiet) print_note(sentences.front());
@@ -230,39 +228,40 @@ bool choose_model(const Options& options, ProgressBar& bar, Render& render) {
 }
 
 int run(const Options& options) {
-  const ThreadLimit threads(options.threads);
+  const ThreadLimit threads(options.spec.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
-  input_kind(options.input);
+  input_kind(options.spec.input);
   // A wrong output name must not cost the wait for a large model.
-  if (!options.outputs.empty()) check_outputs(options.outputs, {options.input}, options);
+  if (!options.outputs.empty()) check_outputs(options.outputs, {options.spec.input}, options);
 
   Render render;
-  render.input = load_input(options);
+  render.input = load(options);
   render.outputs = outputs_of(options, render.input);
   check_outputs(render.outputs, files_of(render.input), options);
   render.timings.load_ms = render.input.load_ms;
-  render.surface = surface_settings(options, render.input);
-  refuse_eye_of_views(options, options.views);
-  if (!options.plan.tolerance_px) refuse_without_effect(options, render.input, {.kinds = {render.surface.kind}});
+  render.surface = surface_settings(options.spec, render.input);
+  refuse_eye_of_views(options.spec.camera, options.spec.views);
+  if (!options.plan.tolerance_px) refuse_without_effect(options.spec.surface, render.input, {.kinds = {render.surface.kind}});
   if (options.plan.tolerance_px && !choose_model(options, bar, render)) {
     if (options.json) print_json({{"files", Json::array()}, {"warnings", render.warnings}, {"plan", render.plan}});
     return 1;
   }
   render.surface.progress = bar.stage("building the surface");
-  render.picture = picture_settings(options, render.input);
+  render.picture = picture_settings(options.spec.border, render.input);
   const auto has_layers = [](const fs::path& file) { return ending_of(file) == ".exr"; };
   if (std::none_of(render.outputs.begin(), render.outputs.end(), has_layers)) render.picture.layers = layers_read(render.picture.methods);
   // Made first: a camera that is wrong is told before the surface is built.
   const std::vector<Camera> cameras = cameras_of(options, render.input);
 
-  check_limits(options, render.input.scene, render.surface,
-               picture_load(cameras.front(), render.picture, pictures_of(options),
-                            std::any_of(render.outputs.begin(), render.outputs.end(), has_layers)));
+  check_cost(options, render.input.scene, render.surface,
+             picture_load(cameras.front(), render.picture, pictures_of(options),
+                          std::any_of(render.outputs.begin(), render.outputs.end(), has_layers)));
   render.warnings = warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods)});
 
   const auto build_start = std::chrono::steady_clock::now();
   std::vector<std::string> levels;
-  if (options.level_for_view && !options.plan.tolerance_px) levels = refine_for_views(render.surface, cameras, render.input.scene);
+  if (options.spec.surface.level_for_view && !options.plan.tolerance_px)
+    levels = refine_for_views(render.surface, cameras, render.input.scene);
   const SceneModel model = build_model(render.input.scene, render.surface);
   render.timings.build_ms = since_ms(build_start);
   const SurfaceInfo info = total(model);
@@ -270,7 +269,7 @@ int run(const Options& options) {
   render.warnings.insert(render.warnings.end(), info.warnings.begin(), info.warnings.end());
   render.notes = levels;
   render.notes.insert(render.notes.end(), info.notes.begin(), info.notes.end());
-  if (options.frames.frames > 1) render.flicker = watch_flicker(options, render.input, render.surface);
+  if (options.frames.frames > 1) render.flicker = watch_flicker(options.spec, options.frames, render.input, render.surface);
   FrameHistory history;
   for (int k = 0; k < pictures_of(options); ++k) {
     render.camera = cameras[static_cast<size_t>(k)];

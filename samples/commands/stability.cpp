@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "samples/commands/command.h"
-#include "samples/stability/command.h"
+#include "samples/commands/stability_run.h"
 #include "samples/threads.h"
 
 namespace limn {
@@ -15,7 +15,7 @@ void add_options(CLI::App& app, Options& options) {
 }
 
 int run(const Options& options) {
-  const ThreadLimit threads(options.threads);
+  const ThreadLimit threads(options.spec.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
   return study_stability(options, bar);
 }

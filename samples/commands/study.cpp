@@ -4,18 +4,16 @@
 #include <algorithm>
 
 #include "samples/commands/command.h"
+#include "samples/commands/common.h"
+#include "samples/commands/stability_run.h"
 #include "samples/input_files.h"
-#include "samples/job.h"
-#include "samples/limits.h"
 #include "samples/no_effect.h"
-#include "samples/stability/command.h"
 #include "samples/study/folder.h"
 #include "samples/study/run.h"
 #include "samples/study/shard.h"
 #include "samples/study/study_files.h"
 #include "samples/study/summary.h"
 #include "samples/threads.h"
-#include "samples/warnings.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -35,34 +33,34 @@ void add_options(CLI::App& app, Options& options) {
 }
 
 // Levels on the command line make a mesh a cage, as --level does elsewhere.
-SceneInput load(Options& options) {
-  if (!options.study.levels.empty()) options.level = options.study.levels.back();
-  return load_input(options);
+SceneInput load_swept(Options& options) {
+  if (!options.sweep.levels.empty()) options.spec.surface.level = options.sweep.levels.back();
+  return load(options);
 }
 
 /// What the models may take beside pictures and truth.
 void give_memory(Options& options) {
   constexpr double kBesideBytes = 100e6, kDefault = 8e9;
-  if (!options.max_memory) {
-    options.study.max_bytes = static_cast<std::int64_t>(std::min(kDefault, 0.75 * machine_memory()));
+  if (!options.spec.limits.max_memory) {
+    options.sweep.max_model_bytes = static_cast<std::int64_t>(std::min(kDefault, 0.75 * machine_memory()));
     return;
   }
   const double least = kProgramBytes + kBesideBytes;
-  if (static_cast<double>(*options.max_memory) < least) {
-    throw InputError({"", "--max-memory", bytes_text(static_cast<double>(*options.max_memory)), "too little for a study",
+  if (static_cast<double>(*options.spec.limits.max_memory) < least) {
+    throw InputError({"", "--max-memory", bytes_text(static_cast<double>(*options.spec.limits.max_memory)), "too little for a study",
                       fmt::format("more than {}, which its pictures and its true border take", bytes_text(least))});
   }
-  options.study.max_bytes = model_bytes_left(options, kBesideBytes);
+  options.sweep.max_model_bytes = model_bytes_left(options.spec.limits, kBesideBytes);
 }
 
 /// Truth is no faster for being expected to be; the calibrated part is.
 void check_time(const Options& options, double expected_ms) {
   constexpr double kTrust = 2.0;
-  if (!options.max_time_ms || expected_ms <= kTrust * *options.max_time_ms) return;
+  if (!options.spec.limits.max_time_ms || expected_ms <= kTrust * *options.spec.limits.max_time_ms) return;
   throw InputError({"", "", "",
                     fmt::format("the study needs about {}; --max-time allows {}; lower --views, --voxels or --levels, or do a part of it "
                                 "with --shard",
-                                duration_text(expected_ms), time_text(*options.max_time_ms)),
+                                duration_text(expected_ms), time_text(*options.spec.limits.max_time_ms)),
                     ""});
 }
 
@@ -158,7 +156,7 @@ StudyFolder do_cells(const Options& options, const Study& study, const Place& pl
   record.shard = options.study.shard;
   record.shards = options.study.shards;
   StudyFolder held = open_folder(place.work, record, options.study.fresh);
-  StudyWork work{study, still_to_do(cells, study, held.rows), place.work, execution_settings(options)};
+  StudyWork work{study, still_to_do(cells, study, held.rows), place.work, execution_settings(options.spec.threads)};
   CostLedger ledger = plan_costs(work);
   calibrate(work, ledger);
   check_time(options, ledger.remaining_ms());
@@ -181,26 +179,26 @@ std::vector<std::string> swept_surfaces(const Study& study) {
 
 int run(const Options& given) {
   Options options = given;
-  const ThreadLimit threads(options.threads);
+  const ThreadLimit threads(options.spec.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
-  if (options.input == kStabilityInput) {
+  if (options.spec.input == kStabilityInput) {
     if (!options.quiet) print_note("limn study stability is now limn stability; the next version no longer takes it so");
     return study_stability(options, bar);
   }
   refuse_stability_options(options);
-  input_kind(options.input);
-  if (!options.outputs.empty()) check_output_folder(options.outputs.back(), options);
+  input_kind(options.spec.input);
+  if (!options.outputs.empty()) check_output_folder(options.outputs.back(), options.no_clobber);
   give_memory(options);
-  SceneInput input = load(options);
+  SceneInput input = load_swept(options);
   const Place place = place_of(options, input.name);
-  check_output_folder(place.work, options);
+  check_output_folder(place.work, options.no_clobber);
   const std::vector<fs::path> inputs = files_of(input);
   for (const char* name : kStudyFiles) check_not_input(place.work / name, inputs);
   if (options.study.fresh) check_not_holding_input(place.work / "cells", inputs, "--fresh");
   if (place.is_part) check_not_holding_input(place.final, inputs, "a finished part");
   const SceneInput looked_at = input;
-  Study study = plan_study(options, std::move(input));
-  refuse_sweep_without_effect(options, looked_at, swept_surfaces(study));
+  Study study = plan_study({options.spec, options.sweep}, std::move(input));
+  refuse_sweep_without_effect({options.spec, options.sweep}, looked_at, swept_surfaces(study));
   const std::vector<size_t> cells =
       options.study.shards == 1 ? cells_of_shard(study, 1, 1) : cells_of_shard(study, options.study.shard, options.study.shards);
   if (part_is_there(options, place, record_of(study))) {

@@ -1,4 +1,5 @@
 #include "samples/compare/comparison.h"
+#include "samples/parse.h"
 
 namespace limn {
 namespace {
@@ -9,8 +10,7 @@ Json parameters_json(const ComparedModel& model) {
     if (kind.about.name != model.surface.kind) continue;
     for (const std::string& name : kind.settings) {
       if (name == "voxels" && model.surface.voxel_size <= 0.0) parameters["voxels"] = model.surface.voxels;
-      if ((name == "voxel_size" || name == "voxel-size") && model.surface.voxel_size > 0.0)
-        parameters["voxel_size"] = model.surface.voxel_size;
+      if (name == "voxel_size" && model.surface.voxel_size > 0.0) parameters["voxel_size"] = model.surface.voxel_size;
       if (name == "gradient") parameters["gradient"] = model.surface.gradient;
       if (name == "level") parameters["level"] = model.surface.level;
       if (name == "scheme" && model.surface.scheme) parameters["scheme"] = name_of(*model.surface.scheme);

@@ -29,9 +29,9 @@ void remove_own(const fs::path& work) {
 void check_replaceable(const fs::path& file) {
   std::error_code ignored;
   if (!fs::exists(file, ignored)) return;
-  if (fs::is_directory(file, ignored)) throw InputError({file.string(), "--output", "", "is a folder", "the place of a file"});
+  if (fs::is_directory(file, ignored)) throw InputError({file.string(), "output", "", "is a folder", "the place of a file"});
   if (::access(file.c_str(), W_OK) != 0)
-    throw InputError({file.string(), "--output", "", "cannot be written", "a file that may be replaced"});
+    throw InputError({file.string(), "output", "", "cannot be written", "a file that may be replaced"});
 }
 
 /// What stands in the place may be a link to elsewhere, which is kept; a rename would replace it.
@@ -55,7 +55,7 @@ StagedFolder::StagedFolder(const fs::path& folder) : folder_(folder), work_(fold
   std::error_code error;
   fs::create_directory(work_, error);
   if (error)
-    throw InputError({folder.string(), "--output", "", "cannot be written to: " + error.message(), "a folder that may be written to"});
+    throw InputError({folder.string(), "output", "", "cannot be written to: " + error.message(), "a folder that may be written to"});
 }
 
 StagedFolder::~StagedFolder() { remove_own(work_); }

@@ -1,4 +1,5 @@
 #include "samples/plan/job.h"
+#include "samples/parse.h"
 
 #include <fmt/format.h>
 
@@ -12,52 +13,52 @@ namespace limn {
 namespace {
 
 /// The rim's, whatever else the call draws.
-double threshold_of(const Options& options, const SceneInput& input) {
-  for (const MethodCall& call : method_calls(options, input)) {
+double threshold_of(const BorderSpec& spec, const SceneInput& input) {
+  for (const MethodCall& call : method_calls(spec, input)) {
     if (call.method->about.name == "rim") return call.parameters.number("threshold");
   }
   return find_border_method("rim").parameters.front().default_value.front();
 }
 
 /// What a plan chooses cannot be given.
-void check_open(const Options& options) {
-  const std::pair<bool, const char*> given[] = {{options.voxels.has_value(), "--voxels"},
-                                                {options.voxel_size.has_value(), "--voxel-size"},
-                                                {options.level.has_value() || options.level_for_view, "--level"},
-                                                {options.gradient.has_value(), "--gradient"},
-                                                {options.normals.has_value(), "--normals"}};
-  for (const auto& [is_given, name] : given) {
-    if (is_given) throw InputError({"", name, "", std::string("has no effect: --tolerance chooses it; leave out ") + name, ""});
+void check_open(const SurfaceSpec& spec) {
+  const std::pair<bool, const char*> given[] = {{spec.voxels.has_value(), "voxels"},
+                                                {spec.voxel_size.has_value(), "voxel_size"},
+                                                {spec.level.has_value() || spec.level_for_view, "level"},
+                                                {spec.gradient.has_value(), "gradient"},
+                                                {spec.normals.has_value(), "normals"}};
+  for (const auto& [is_given, field] : given) {
+    if (is_given) throw InputError({"", field, "", "has no effect: a plan chooses it; leave it out", ""});
   }
 }
 
-PlanSettings settings_of(const Options& options, const SceneInput& input) {
-  LIMN_CHECK(options.plan.tolerance_px.has_value());
+PlanSettings settings_of(const ExperimentSpec& spec, const PlanSpec& plan, const SceneInput& input) {
+  LIMN_CHECK(plan.tolerance_px.has_value());
   PlanSettings settings;
-  settings.tolerance_px = *options.plan.tolerance_px;
-  settings.metric = options.plan.silhouette ? PlanMetric::silhouette : PlanMetric::border;
-  settings.threshold = threshold_of(options, input);
-  settings.budget_ms = options.plan.budget_ms;
-  settings.budget_bytes = options.plan.budget_bytes;
+  settings.tolerance_px = *plan.tolerance_px;
+  settings.metric = plan.silhouette ? PlanMetric::silhouette : PlanMetric::border;
+  settings.threshold = threshold_of(spec.border, input);
+  settings.budget_ms = plan.budget_ms;
+  settings.budget_bytes = plan.budget_bytes;
   if (settings.budget_bytes) settings.max_bytes = std::min(settings.max_bytes, *settings.budget_bytes);
-  settings.max_bytes = std::min(settings.max_bytes, model_bytes_left(options, 0.0));
-  settings.kinds = options.surfaces;
+  settings.max_bytes = std::min(settings.max_bytes, model_bytes_left(spec.limits, 0.0));
+  settings.kinds = spec.surfaces;
   return settings;
 }
 
 /// The least that a plan takes: one coarse model, and in each view the true border and that of a few models.
-void check_least(const Options& options, const Scene& scene, const CameraSettings& camera) {
+void check_least(const ExperimentSpec& spec, const Scene& scene, const CameraSettings& camera) {
   constexpr double kBytes = 70.0, kMs = 1.2e-3;  // a pixel; of an ellipsoid and a rook at 0.06 to 2 million pixels
   SurfaceSettings coarse;
-  coarse.kind = options.surfaces.empty() ? "" : options.surfaces.front();
+  coarse.kind = spec.surfaces.empty() ? "" : spec.surfaces.front();
   coarse.voxels = 16;
   coarse.level = 0;
   PictureLoad load;
   load.pixels = static_cast<double>(camera.width_px) * camera.height_px;
   load.bytes_per_pixel = kBytes;
-  load.pictures = options.views;
-  load.other_ms = load.pixels * options.views * kMs;
-  check_limits(options, scene, coarse, load);
+  load.pictures = spec.views;
+  load.other_ms = load.pixels * spec.views * kMs;
+  check_limits(spec.limits, scene, coarse, load);
 }
 
 Json parameters_json(const Ladder& ladder, const PlanTrial& trial) {
@@ -88,31 +89,30 @@ Json trial_json(const PlanAnswer& answer, const PlanTrial& trial, PlanMetric met
 
 }  // namespace
 
-void refuse_unplanned(const Options& options, const SceneInput& input) {
-  check_open(options);
-  if (options.half_width_voxels)
-    throw InputError(
-        {"", "--half-width", "", "has no effect: each model of a plan has the band that its gradient needs; leave it out", ""});
-  std::vector<std::string> kinds = options.surfaces;
+void refuse_unplanned(const ExperimentSpec& spec, const SceneInput& input) {
+  check_open(spec.surface);
+  if (spec.surface.half_width_voxels)
+    throw InputError({"", "half_width", "", "has no effect: each model of a plan has the band that its gradient needs; leave it out", ""});
+  std::vector<std::string> kinds = spec.surfaces;
   if (kinds.empty()) {
     for (const SurfaceDescriptor& kind : surface_kinds()) kinds.push_back(kind.about.name);
   }
-  refuse_without_effect(options, input, {.kinds = kinds});
+  refuse_without_effect(spec.surface, input, {.kinds = kinds});
 }
 
-PlanJob plan_for(const Options& options, const SceneInput& input, ProgressBar& bar) {
+PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneInput& input, ProgressBar& bar) {
   PlanJob job;
-  refuse_unplanned(options, input);
-  job.settings = settings_of(options, input);
-  const CameraSettings camera_of = camera_settings(options, input);
+  refuse_unplanned(spec, input);
+  job.settings = settings_of(spec, plan, input);
+  const CameraSettings camera_of = camera_settings(spec.camera, input);
   const Box scene_bounds = bounds(input.scene);
-  check_least(options, input.scene, camera_of);
-  const ExecutionSettings how = execution_settings(options);
-  for (int view = 0; view < options.views; ++view) {
+  check_least(spec, input.scene, camera_of);
+  const ExecutionSettings how = execution_settings(spec.threads);
+  for (int view = 0; view < spec.views; ++view) {
     PlanView one;
-    one.camera = camera_of_view(camera_of, scene_bounds, view, options.views);
+    one.camera = camera_of_view(camera_of, scene_bounds, view, spec.views);
     ExecutionSettings solving = how;
-    solving.progress = bar.stage(fmt::format("solving the true border, view {} of {}", view + 1, options.views));
+    solving.progress = bar.stage(fmt::format("solving the true border, view {} of {}", view + 1, spec.views));
     TruthSettings truth;
     truth.threshold = job.settings.threshold;
     one.truth = solve_truth(input.scene, one.camera, truth, solving);
@@ -120,7 +120,7 @@ PlanJob plan_for(const Options& options, const SceneInput& input, ProgressBar& b
   }
   // Any model at all would be right.
   if (std::all_of(job.views.begin(), job.views.end(), [](const PlanView& view) { return view.truth.curves.curves.empty(); }))
-    throw InputError({options.input, "camera", "", "sees no border: there is nothing to plan for",
+    throw InputError({spec.input, "camera", "", "sees no border: there is nothing to plan for",
                       "one that sees the surface (limn render shows what it sees)"});
   job.answer = make_plan(input.scene, job.views, job.settings, how, bar);
   bar.clear();

@@ -14,12 +14,12 @@ struct PlanJob {
 };
 
 /// Throws InputError for options that no model of a plan reads: what the plan chooses, and what has no effect on this scene.
-void refuse_unplanned(const Options& options, const SceneInput& input);
+void refuse_unplanned(const ExperimentSpec& spec, const SceneInput& input);
 
-/// `--tolerance` must be set. Throws InputError.
-PlanJob plan_for(const Options& options, const SceneInput& input, ProgressBar& bar);
+/// `plan.tolerance_px` must be set. Throws InputError.
+PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneInput& input, ProgressBar& bar);
 
-/// As --json shows it.
+/// As a document.
 Json plan_json(const PlanJob& job);
 
 }  // namespace limn

@@ -209,7 +209,7 @@ PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, con
                       "INPUT",
                       scene.name,
                       "has no resolution to choose: it is a model already",
-                      "a scene of shapes or subdivision cages (--scheme makes a mesh a cage)"});
+                      "a scene of shapes or subdivision cages (scheme = catmark makes a mesh a cage)"});
   }
   search.climbs = climbs_of(search);
   for (const PlanTrial& trial : known) {

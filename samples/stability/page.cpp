@@ -10,6 +10,7 @@
 
 #include "samples/compare/html.h"
 #include "samples/compare/page_assets.h"
+#include "samples/experiment/flags.h"
 #include "samples/stability/page_parts.h"
 
 namespace limn {
@@ -102,10 +103,12 @@ std::string stability_page(const StabilityResults& results, const std::filesyste
       "below.</p></noscript>\n";
   html += "<h2 id=\"matrix-title\">Cases and methods</h2>\n" + stability_matrix_html(results, marks);
   html += "<h2>What did not hold</h2>\n" + stability_list_html(results, marks);
+  CallText call("stability", "");
+  call.add("seed", std::to_string(results.seed));
   html += fmt::format(
-      "<details><summary>How this was made</summary><p><code>limn stability --seed {}</code>, limn {}. Random parameters are drawn "
+      "<details><summary>How this was made</summary><p><code>{}</code>, limn {}. Random parameters are drawn "
       "from the seed; each case's own stands with its marks.</p></details>\n</main>\n",
-      results.seed, stability_json(results)["version"].get<std::string>());
+      call.text(), stability_json(results)["version"].get<std::string>());
   html += kPanel;
   html += "<script type=\"application/json\" id=\"stability\">" + data_json(results, marks, folder) + "</script>\n<script>\n";
   html.append(kStabilityScript).append("</script>\n</body>\n</html>\n");

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "samples/experiment/flags.h"
 #include "samples/stability/page.h"
 #include "samples/stability/page_parts.h"
 
@@ -55,7 +56,11 @@ std::string number_text(const StabilityCell& cell) {
 std::string short_number(const StabilityCell& cell) { return std::isfinite(cell.number) ? fmt::format("{:.2g}", cell.number) : ""; }
 
 std::string command_of(const StabilityCell& cell) {
-  return fmt::format("limn stability --case {} --seed {} --draws {}", cell.case_name, cell.seed, cell.draw + 1);
+  CallText call("stability", "");
+  call.add("case", cell.case_name);
+  call.add("seed", std::to_string(cell.seed));
+  call.add("draws", std::to_string(cell.draw + 1));
+  return call.text();
 }
 
 std::vector<StabilityMark> stability_marks(const StabilityResults& results) {

@@ -133,7 +133,7 @@ StabilityCase find_stability_case(const std::string& name_or_file) {
     if (name == name_or_file) return parse_case(std::string(file.text), std::string(file.name));
     names.push_back(name);
   }
-  if (!name_or_file.ends_with(".toml")) throw InputError({"", "--case", name_or_file, "unknown case", known_names(name_or_file, names)});
+  if (!name_or_file.ends_with(".toml")) throw InputError({"", "case", name_or_file, "unknown case", known_names(name_or_file, names)});
   check_readable(name_or_file, "a case (.toml)");
   std::ifstream stream(name_or_file, std::ios::binary);
   std::ostringstream text;

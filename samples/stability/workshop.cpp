@@ -191,14 +191,14 @@ const Scene& Workshop::truth_scene() {
 }
 
 std::vector<MethodCall> Workshop::methods() {
-  Options options;
+  BorderSpec spec;
   for (const std::string& name : case_.methods) {
-    if (name != "all") options.methods.push_back(name);
+    if (name != "all") spec.methods.push_back(name);
     if (name != "all") continue;
-    for (const BorderMethod& method : border_methods()) options.methods.push_back(method.about.name);
+    for (const BorderMethod& method : border_methods()) spec.methods.push_back(method.about.name);
   }
   // A scene that is refused whole may still name what it is about.
-  return method_calls(options, case_.methods.empty() ? scene_of_case(case_, values_).input : SceneInput{});
+  return method_calls(spec, case_.methods.empty() ? scene_of_case(case_, values_).input : SceneInput{});
 }
 
 Border draw_border(const StabilityStage& stage, const StabilityView& view, const MethodCall& method) {

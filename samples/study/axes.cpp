@@ -30,14 +30,14 @@ bool has_limit_normals(const Scene& scene, const SurfaceSettings& settings) {
 
 }  // namespace
 
-bool shrink(const StudyOptions& options, DefaultAxes& defaults) {
-  if (!options.views && defaults.views > 2) {
+bool shrink(const SweepSpec& sweep, DefaultAxes& defaults) {
+  if (!sweep.views && defaults.views > 2) {
     --defaults.views;
-  } else if (options.levels.empty() && defaults.finest_level > 3) {
+  } else if (sweep.levels.empty() && defaults.finest_level > 3) {
     --defaults.finest_level;
-  } else if (options.voxels.empty() && defaults.finest_voxels > 64) {
+  } else if (sweep.voxels.empty() && defaults.finest_voxels > 64) {
     defaults.finest_voxels /= 2;
-  } else if (!options.views && defaults.views > 1) {
+  } else if (!sweep.views && defaults.views > 1) {
     --defaults.views;
   } else {
     return false;
@@ -45,12 +45,12 @@ bool shrink(const StudyOptions& options, DefaultAxes& defaults) {
   return true;
 }
 
-Axes resolve_axes(const Options& options, const Scene& scene, const SurfaceSettings& settings, const SceneSize& size,
+Axes resolve_axes(const StudySpec& spec, const Scene& scene, const SurfaceSettings& settings, const SceneSize& size,
                   const DefaultAxes& defaults) {
   Axes axes;
-  axes.surfaces = options.surfaces.empty() ? default_surfaces(scene) : options.surfaces;
+  axes.surfaces = spec.experiment.surfaces.empty() ? default_surfaces(scene) : spec.experiment.surfaces;
   const bool refines = faces_at_level(size, 0) > 0.0;
-  axes.levels = options.study.levels;
+  axes.levels = spec.sweep.levels;
   if (refines && axes.levels.empty()) {
     axes.levels.push_back(0);
     SurfaceSettings mesh = settings;
@@ -61,17 +61,17 @@ Axes resolve_axes(const Options& options, const Scene& scene, const SurfaceSetti
     }
   }
   if (!refines) axes.levels.clear();
-  axes.voxels = options.study.voxels;
-  axes.resampled = !options.study.voxels.empty();
-  for (int voxels = 16; options.study.voxels.empty() && voxels <= defaults.finest_voxels; voxels *= 2) axes.voxels.push_back(voxels);
-  axes.normals = options.study.normals;
+  axes.voxels = spec.sweep.voxels;
+  axes.resampled = !spec.sweep.voxels.empty();
+  for (int voxels = 16; spec.sweep.voxels.empty() && voxels <= defaults.finest_voxels; voxels *= 2) axes.voxels.push_back(voxels);
+  axes.normals = spec.sweep.normals;
   if (axes.normals.empty()) {
     axes.normals = {NormalKind::flat, NormalKind::vertex};
     if (has_limit_normals(scene, settings)) axes.normals.push_back(NormalKind::limit);
   }
-  axes.gradients = options.study.gradients;
+  axes.gradients = spec.sweep.gradients;
   for (const GradientDescriptor& gradient : gradients()) {
-    if (options.study.gradients.empty() && bands_carry(scene, gradient)) axes.gradients.push_back(gradient.about.name);
+    if (spec.sweep.gradients.empty() && bands_carry(scene, gradient)) axes.gradients.push_back(gradient.about.name);
   }
   for (const int level : axes.levels) {
     if (level == axes.levels.front() || faces_at_level(size, level) <= double{kAffordableFaces}) axes.remeshed_level = level;

@@ -1,7 +1,7 @@
 #pragma once
 // What a study varies.
 
-#include "samples/options.h"
+#include "samples/experiment/spec.h"
 #include "samples/study/cost.h"
 
 namespace limn {
@@ -14,7 +14,7 @@ struct DefaultAxes {
 };
 
 /// The next smaller ones, by what the call leaves open; false where nothing is left to take away.
-bool shrink(const StudyOptions& options, DefaultAxes& defaults);
+bool shrink(const SweepSpec& sweep, DefaultAxes& defaults);
 
 /// Resolved.
 struct Axes {
@@ -27,7 +27,7 @@ struct Axes {
   int remeshed_level = 0;  ///< Of mesh_level_set: there the grid is what is studied.
 };
 
-Axes resolve_axes(const Options& options, const Scene& scene, const SurfaceSettings& settings, const SceneSize& size,
+Axes resolve_axes(const StudySpec& spec, const Scene& scene, const SurfaceSettings& settings, const SceneSize& size,
                   const DefaultAxes& defaults);
 
 }  // namespace limn

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 void refuse_other(const fs::path& folder, const std::string& what) {
   if (what.empty()) return;
   throw InputError(
-      {folder.string(), "--output", "", "holds another study: " + what + "; choose another folder, or start over with --fresh", ""});
+      {folder.string(), "output", "", "holds another study: " + what + "; choose another folder, or start over (fresh = true)", ""});
 }
 
 bool is_there(const fs::path& path) {
@@ -38,7 +38,8 @@ void check_planned(const StudyFolder& held, const fs::path& file) {
   std::set<std::string> planned;
   for (const PlannedCell& cell : held.record.cells) planned.insert(cell.key);
   for (const auto& [key, rows] : held.rows) {
-    if (!planned.contains(key)) throw InputError({file.string(), "key", key, "unknown cell", "a cell of this study; --fresh starts over"});
+    if (!planned.contains(key))
+      throw InputError({file.string(), "key", key, "unknown cell", "a cell of this study; fresh = true starts over"});
   }
 }
 

@@ -84,12 +84,12 @@ void write_cells(const CellRows& cells, const std::vector<std::string>& keys, co
 FolderLock::FolderLock(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw InputError({folder.string(), "--output", "", "cannot be made: " + error.message(), "a place where folders can be made"});
+  if (error) throw InputError({folder.string(), "output", "", "cannot be made: " + error.message(), "a place where folders can be made"});
   handle_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   // Some network filesystems have no locks; there nothing is kept out.
   if (handle_ >= 0 && ::flock(handle_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     ::close(handle_);
-    throw InputError({folder.string(), "--output", "", "locked by another limn process; wait for it, or choose another folder", ""});
+    throw InputError({folder.string(), "output", "", "locked by another limn process; wait for it, or choose another folder", ""});
   }
 }
 

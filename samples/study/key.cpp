@@ -1,4 +1,5 @@
 #include "samples/study/key.h"
+#include "samples/parse.h"
 
 #include <OpenImageIO/hash.h>
 #include <fmt/format.h>
@@ -69,7 +70,7 @@ std::string camera_text(const Camera& camera) {
 std::string surface_text(const SurfaceSettings& settings) {
   std::vector<std::string> reads;
   if (settings.kind.empty()) {
-    reads = {"level", "scheme", "normals", "voxels", "voxel-size", "half-width", "gradient"};
+    reads = {"level", "scheme", "normals", "voxels", "voxel_size", "half_width", "gradient"};
   } else {
     reads = find_surface(settings.kind).settings;
   }
@@ -80,8 +81,8 @@ std::string surface_text(const SurfaceSettings& settings) {
     if (name == "scheme") text += settings.scheme ? name_of(*settings.scheme) : "own";
     if (name == "normals") text += settings.normals ? name_of(*settings.normals) : "own";
     if (name == "voxels") text += std::to_string(settings.voxels) + (settings.resample_volumes ? " resampled" : "");
-    if (name == "voxel-size") text += fmt::format("{}", settings.voxel_size);
-    if (name == "half-width") text += fmt::format("{}", settings.half_width_voxels);
+    if (name == "voxel_size") text += fmt::format("{}", settings.voxel_size);
+    if (name == "half_width") text += fmt::format("{}", settings.half_width_voxels);
     if (name == "gradient") text += settings.gradient;
   }
   return text;

@@ -50,13 +50,14 @@ void copy_thumbnail(const fs::path& from, const fs::path& to, const std::string&
 std::vector<fs::path> parts_in(const fs::path& folder) {
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored))
-    throw InputError({folder.string(), "", "", "no such folder", "a folder that limn study --shard wrote"});
+    throw InputError({folder.string(), "", "", "no such folder", "a folder that a part of a study was written to"});
   std::vector<fs::path> parts;
   if (fs::exists(record_file(folder), ignored)) parts.push_back(folder);
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (is_part(entry.path().filename().string()) && fs::exists(record_file(entry.path()), ignored)) parts.push_back(entry.path());
   }
-  if (parts.empty()) throw InputError({folder.string(), "", "", "holds no part of a study", "a folder that limn study --shard wrote"});
+  if (parts.empty())
+    throw InputError({folder.string(), "", "", "holds no part of a study", "a folder that a part of a study was written to"});
   std::sort(parts.begin(), parts.end());
   return parts;
 }
@@ -69,7 +70,7 @@ void check_parts(const std::vector<fs::path>& parts, const fs::path& folder) {
   fs::path first = folder;
   for (const fs::path& part : parts) {
     const std::optional<StudyRecord> record = read_record(part);
-    if (!record) throw InputError({part.string(), "", "", "holds no part of a study", "a folder that limn study --shard wrote"});
+    if (!record) throw InputError({part.string(), "", "", "holds no part of a study", "a folder that a part of a study was written to"});
     if (!common) {
       common = record;
       first = part;

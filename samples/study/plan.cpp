@@ -9,6 +9,7 @@
 #include "samples/compare/comparison.h"
 #include "samples/job.h"
 #include "samples/no_effect.h"
+#include "samples/parse.h"
 #include "samples/scene_facts.h"
 #include "samples/study/axes.h"
 #include "samples/study/call.h"
@@ -29,7 +30,7 @@ struct ModelMaker {
   const SceneSize& size;
   double pixels;
   std::int64_t max_bytes;
-  bool asked;  ///< By --max-memory.
+  bool asked;  ///< By the limits.
   std::vector<StudyModel>& models;
 
   void add(const SurfaceSettings& settings, std::map<std::string, std::string> parameters, const std::string& refused) const {
@@ -38,7 +39,7 @@ struct ModelMaker {
       model.parameters["half_width"] = fmt::format("{}", model.settings.half_width_voxels);
     if (model.refused.empty() && model.cost.bytes > 4 * max_bytes) {
       model.refused = fmt::format("it needs about {}; {} leaves {} for a model", bytes_text(double(model.cost.bytes)),
-                                  asked ? "--max-memory" : "the default of --max-memory", bytes_text(double(max_bytes)));
+                                  asked ? "max_memory" : "the default of max_memory", bytes_text(double(max_bytes)));
     }
     if (!model.refused.empty()) model.cost = {};
     models.push_back(std::move(model));
@@ -119,28 +120,29 @@ bool has_threshold(const BorderMethod& method) {
   return std::any_of(method.parameters.begin(), method.parameters.end(), [](const Parameter& one) { return one.name == "threshold"; });
 }
 
-void plan_methods(const Options& options, const SceneInput& input, Study& study) {
-  if (options.study.thresholds.empty()) {
-    for (const MethodCall& call : method_calls(options, input)) add_method(call, study);
+void plan_methods(const StudySpec& spec, const SceneInput& input, Study& study) {
+  const BorderSpec& border = spec.experiment.border;
+  if (spec.sweep.thresholds.empty()) {
+    for (const MethodCall& call : method_calls(border, input)) add_method(call, study);
     return;
   }
   bool used = false;
-  for (const double threshold : options.study.thresholds) {
-    Options one = options;
-    for (const MethodCall& call : method_calls(options, input)) {
+  for (const double threshold : spec.sweep.thresholds) {
+    BorderSpec one = border;
+    for (const MethodCall& call : method_calls(border, input)) {
       if (!has_threshold(*call.method)) continue;
-      one.sets.push_back({call.method->about.name + ".threshold", fmt::format("{}", threshold)});
+      one.parameters.push_back({call.method->about.name + ".threshold", fmt::format("{}", threshold)});
       used = true;
     }
     for (const MethodCall& call : method_calls(one, input)) add_method(call, study);
   }
   if (!used)
-    throw InputError({"", "--thresholds", "", "no method of this study has a threshold", "a method that has one, such as --methods rim"});
+    throw InputError({"", "thresholds", "", "no method of this study has a threshold", "a method that has one, such as methods = rim"});
 }
 
-CameraSettings study_camera(const Options& options, const SceneInput& input) {
-  CameraSettings camera = camera_settings(options, input);
-  if (options.size_px) return camera;
+CameraSettings study_camera(const CameraSpec& spec, const SceneInput& input) {
+  CameraSettings camera = camera_settings(spec, input);
+  if (spec.size_px) return camera;
   const int longest = std::max(camera.width_px, camera.height_px);
   camera.width_px = std::max(1, camera.width_px * kDefaultLongestSide_px / longest);
   camera.height_px = std::max(1, camera.height_px * kDefaultLongestSide_px / longest);
@@ -148,13 +150,13 @@ CameraSettings study_camera(const Options& options, const SceneInput& input) {
 }
 
 // The comparison's reference, and where a level of the sweep is as fine, one level more if memory allows.
-void plan_reference(const Options& options, const SceneInput& input, SurfaceSettings settings, const Axes& axes, const SceneSize& size,
+void plan_reference(const SweepSpec& sweep, const SceneInput& input, SurfaceSettings settings, const Axes& axes, const SceneSize& size,
                     Study& study) {
   settings.kind.clear();
   settings.resample_volumes = false;
   if (!axes.levels.empty()) settings.level = axes.levels.back();
   const Comparison comparison = plan_comparison(input, settings, {natural_surface(input.scene.objects.front())},
-                                                !options.study.gradients.empty() && options.study.gradients.size() == 1);
+                                                !sweep.gradients.empty() && sweep.gradients.size() == 1);
   study.reference = comparison.reference().surface;
   study.reference_words = comparison.reference_words;
   const bool as_fine = any_cage(study.scene, settings) && !axes.levels.empty() && study.reference.level <= axes.levels.back();
@@ -175,12 +177,12 @@ void plan_cells(Study& study) {
   }
 }
 
-void fill_head(const Options& options, const Axes& axes, const SurfaceSettings& settings, const SceneInput& input, Study& study) {
+void fill_head(const StudySpec& spec, const Axes& axes, const SurfaceSettings& settings, const SceneInput& input, Study& study) {
   StudyHead& head = study.head;
   // What is written is read again and compared with these.
-  head.input = valid_utf8(options.input);
+  head.input = valid_utf8(spec.experiment.input);
   head.scene = valid_utf8(input.name);
-  head.call = call_text(options, axes, settings, study);
+  head.call = call_text(spec, axes, settings, study);
   head.views = static_cast<int>(study.cameras.size());
   head.cells = static_cast<std::int64_t>(study.cells.size());
   for (const StudyCell& cell : study.cells) {
@@ -191,7 +193,7 @@ void fill_head(const Options& options, const Axes& axes, const SurfaceSettings& 
 
 /// What the call and the scene say, the same however far the sweep goes.
 struct Given {
-  const Options& options;
+  const StudySpec& spec;
   const SceneInput& input;
   SurfaceSettings settings{};
   SceneSize size{};
@@ -199,24 +201,24 @@ struct Given {
 };
 
 Study plan_with(const Given& given, const DefaultAxes& defaults) {
-  const Options& options = given.options;
+  const StudySpec& spec = given.spec;
   Study study;
   const Box box = bounds(given.input.scene);
   study.scene = given.input.scene;
   study.longest_side = box.longest_side();
   study.input_hash = given.input_hash;
-  study.flicker = options.study.flicker;
+  study.flicker = spec.sweep.flicker;
   study.truth_terms = truth_terms(given.size);
-  const CameraSettings camera = study_camera(options, given.input);
-  const int views = options.study.views.value_or(defaults.views);
-  refuse_eye_of_views(options, views);
+  const CameraSettings camera = study_camera(spec.experiment.camera, given.input);
+  const int views = spec.sweep.views.value_or(defaults.views);
+  refuse_eye_of_views(spec.experiment.camera, views);
   for (int view = 0; view < views; ++view) study.cameras.push_back(camera_of_view(camera, box, view, views));
-  const Axes axes = resolve_axes(options, study.scene, given.settings, given.size, defaults);
-  plan_methods(options, given.input, study);
-  plan_models(axes, given.size, given.settings, options.max_memory.has_value(), study);
-  plan_reference(options, given.input, given.settings, axes, given.size, study);
+  const Axes axes = resolve_axes(spec, study.scene, given.settings, given.size, defaults);
+  plan_methods(spec, given.input, study);
+  plan_models(axes, given.size, given.settings, spec.experiment.limits.max_memory.has_value(), study);
+  plan_reference(spec.sweep, given.input, given.settings, axes, given.size, study);
   plan_cells(study);
-  fill_head(options, axes, given.settings, given.input, study);
+  fill_head(spec, axes, given.settings, given.input, study);
   return study;
 }
 
@@ -234,16 +236,16 @@ double expected_ms(const Study& study) {
   return sum + study.measure_ms() * static_cast<double>(study.cells.size());
 }
 
-Study plan_study(const Options& options, SceneInput input) {
-  Given given{options, input};
-  given.settings = surface_settings(options, input);
-  if (options.study.max_bytes) given.settings.max_bytes = *options.study.max_bytes;
+Study plan_study(const StudySpec& spec, SceneInput input) {
+  Given given{spec, input};
+  given.settings = surface_settings(spec.experiment, input);
+  if (spec.sweep.max_model_bytes) given.settings.max_bytes = *spec.sweep.max_model_bytes;
   for (SceneObject& object : input.scene.objects) object.level.reset();
   given.input_hash = hash_of_input(input);
   given.size = size_of(input.scene, given.settings);
   DefaultAxes defaults;
   Study study = plan_with(given, defaults);
-  while (expected_ms(study) > kDefaultStudy_ms && shrink(options.study, defaults)) study = plan_with(given, defaults);
+  while (expected_ms(study) > kDefaultStudy_ms && shrink(spec.sweep, defaults)) study = plan_with(given, defaults);
   name_cells(study);
   return study;
 }

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "samples/experiment/flags.h"
 #include "samples/study/whole_number.h"
 #include "sdf/error.h"
 #include "sdf/output_file.h"
@@ -107,19 +108,6 @@ StudyRecord record_from(const Json& json) {
   return record;
 }
 
-// "--levels 0,1,2" by option; the same --set with several keys stays apart.
-std::map<std::string, std::string> options_of(const std::string& call) {
-  std::map<std::string, std::string> options;
-  for (size_t at = call.find(" --"); at != std::string::npos;) {
-    const size_t next = call.find(" --", at + 1);
-    const std::string one = call.substr(at + 1, next == std::string::npos ? next : next - at - 1);
-    const size_t split = one.starts_with("--set ") ? one.find('=') : one.find(' ');
-    options[one.substr(0, split)] = split == std::string::npos ? "given" : one.substr(split + 1);
-    at = next;
-  }
-  return options;
-}
-
 }  // namespace
 
 StudyRecord record_of(const Study& study) {
@@ -179,7 +167,7 @@ std::optional<StudyRecord> read_record(const fs::path& folder) {
 
 StudyRecord parse_record(std::string_view text, const fs::path& file) {
   const Json json = Json::parse(text, nullptr, false);
-  const InputError foreign({file.string(), "", "", "not written by limn study; choose another folder, or start over with --fresh", ""});
+  const InputError foreign({file.string(), "", "", "not written by limn study; choose another folder, or start over (fresh = true)", ""});
   if (!json.is_object()) throw foreign;
   try {
     StudyRecord record = record_from(json);
@@ -197,14 +185,14 @@ std::string difference(const StudyRecord& there, const StudyRecord& here) {
                        here.format);
   if (there.head.scene != here.head.scene) return fmt::format("the scene is {} there, {} here", there.head.scene, here.head.scene);
   if (there.input_hash != here.input_hash) return "the input's content is another";
-  const auto old_options = options_of(there.head.call), new_options = options_of(here.head.call);
-  for (const auto& [name, value] : new_options) {
-    const auto found = old_options.find(name);
-    if (found == old_options.end()) return fmt::format("no {} there, {} here", name, value);
+  const auto old_settings = settings_of_call(there.head.call), new_settings = settings_of_call(here.head.call);
+  for (const auto& [name, value] : new_settings) {
+    const auto found = old_settings.find(name);
+    if (found == old_settings.end()) return fmt::format("no {} there, {} here", name, value);
     if (found->second != value) return fmt::format("{} {} there, {} here", name, found->second, value);
   }
-  for (const auto& [name, value] : old_options) {
-    if (!new_options.contains(name)) return fmt::format("{} {} there, none here", name, value);
+  for (const auto& [name, value] : old_settings) {
+    if (!new_settings.contains(name)) return fmt::format("{} {} there, none here", name, value);
   }
   return "what pictures are held against: " + there.pictures + " there, " + here.pictures + " here";
 }

@@ -45,7 +45,7 @@ StudyRecord parse_record(std::string_view text, const std::filesystem::path& fil
 /// Empty where the folder holds none. Throws InputError for a file that is none of ours.
 std::optional<StudyRecord> read_record(const std::filesystem::path& folder);
 
-/// Empty for two records of the same study, else what differs, in words: "--levels 0,1,2 there, 0,1,2,3 here".
+/// Empty for two records of the same study, else what differs, in words: the levels there and here.
 std::string difference(const StudyRecord& there, const StudyRecord& here);
 
 }  // namespace limn

@@ -72,9 +72,9 @@ struct Study {
 /// Of all cells, on the machine that the constants were measured on.
 double expected_ms(const Study& study);
 
-/// What the call leaves open is chosen so that the study is expected to end within a minute. Throws InputError for a call that makes no
-/// study.
-Study plan_study(const Options& options, SceneInput input);
+/// What the specification leaves open is chosen so that the study is expected to end within a minute. Throws InputError for a call that
+/// makes no study.
+Study plan_study(const StudySpec& spec, SceneInput input);
 
 /// A row of the cell that says who it is and nothing yet of what was measured.
 StudyRow row_of(const Study& study, const StudyCell& cell);

@@ -44,9 +44,9 @@ void expect_the_same(const Mesh& mesh, const SecondReading& other) {
 
 /// Drawn from where limn looks at it by itself: what polygons cover is hit, nothing else is.
 void expect_drawn(const fs::path& file, const SecondReading& other, bool compared) {
-  Options options;
-  options.input = file.string();
-  const SceneInput input = load_input(options);
+  ExperimentSpec spec;
+  spec.input = file.string();
+  const SceneInput input = load_input(spec);
   CameraSettings settings;
   settings.width_px = 160, settings.height_px = 120;
   const Camera camera = resolve_camera(settings, bounds(input.scene));

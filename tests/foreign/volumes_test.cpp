@@ -79,10 +79,10 @@ void expect_like_the_mesh(const fs::path& vdb, const Soup& soup, const Variant& 
   const Camera camera = camera_of(of_mesh.box);
   const Image<std::uint8_t> covered = covered_pixels(soup, camera);
   const auto pixels = std::count(covered.pixels.begin(), covered.pixels.end(), std::uint8_t{1});
-  Options options;
-  options.input = vdb.string();
+  ExperimentSpec spec;
+  spec.input = vdb.string();
   try {
-    const SceneInput input = load_input(options);
+    const SceneInput input = load_input(spec);
     const GBuffer seen = render_gbuffer(build_model(input.scene, {.kind = ""}), camera, {});
     const double voxel_px =
         of_mesh.box.longest_side() / variant.voxels * pixels_per_unit_at(camera, project(camera, of_mesh.box.center()).z);

@@ -170,11 +170,11 @@ TEST(LevelSetSurface, SettingsThatDoNotFitAreRefusedWithTheOption) {
     }
     return {.file = {}, .field = "accepted", .value = {}, .problem = {}, .expected = {}};
   };
-  EXPECT_EQ(fault({.half_width_voxels = 3.0, .gradient = "cubic"}).field, "--half-width");
+  EXPECT_EQ(fault({.half_width_voxels = 3.0, .gradient = "cubic"}).field, "half_width");
   EXPECT_NE(fault({.half_width_voxels = 3.0, .gradient = "cubic"}).expected.find("4.12"), std::string::npos);
-  EXPECT_EQ(fault({.voxels = 1}).field, "--voxels");
-  EXPECT_EQ(fault({.voxel_size = -1.0}).field, "--voxel-size");
-  EXPECT_EQ(fault({.gradient = "cubik"}).field, "--gradient");
+  EXPECT_EQ(fault({.voxels = 1}).field, "voxels");
+  EXPECT_EQ(fault({.voxel_size = -1.0}).field, "voxel_size");
+  EXPECT_EQ(fault({.gradient = "cubik"}).field, "gradient");
   EXPECT_EQ(fault({.voxels = 32, .half_width_voxels = 4.12, .gradient = "cubic"}).field, "accepted");
 }
 

@@ -41,23 +41,23 @@ struct Way {
 
 /// The same call as a program makes it, up to the model.
 SceneModel model_of(const Way& way, SceneInput& input) {
-  Options options;
-  options.input = way.input;
-  options.surfaces = {way.surface};
-  options.gradient = way.gradient;
-  if (way.refines && way.surface != "level_set") options.level = way.level;
-  input = load_input(options);
+  ExperimentSpec spec;
+  spec.input = way.input;
+  spec.surfaces = {way.surface};
+  spec.surface.gradient = way.gradient;
+  if (way.refines && way.surface != "level_set") spec.surface.level = way.level;
+  input = load_input(spec);
   // A file holds all objects in one grid, and counts its voxels along all of them.
-  if (way.is_grid()) options.voxel_size = bounds(input.scene).longest_side() / way.voxels;
-  return build_model(input.scene, surface_settings(options, input));
+  if (way.is_grid()) spec.surface.voxel_size = bounds(input.scene).longest_side() / way.voxels;
+  return build_model(input.scene, surface_settings(spec, input));
 }
 
 SceneModel model_of_file(const std::string& file, const Way& way) {
-  Options options;
-  options.input = file;
-  if (way.format == ".vdb") options.gradient = way.gradient;
-  SceneInput input = load_input(options);
-  return build_model(input.scene, surface_settings(options, input));
+  ExperimentSpec spec;
+  spec.input = file;
+  if (way.format == ".vdb") spec.surface.gradient = way.gradient;
+  SceneInput input = load_input(spec);
+  return build_model(input.scene, surface_settings(spec, input));
 }
 
 struct Outcome {
@@ -144,9 +144,9 @@ const T& one_of(const std::vector<T>& all, std::mt19937_64& random) {
 Way draw(const Inputs& inputs, std::mt19937_64& random) {
   Way way;
   way.input = one_of(inputs.names, random);
-  Options options;
-  options.input = way.input;
-  const SceneInput input = load_input(options);
+  ExperimentSpec spec;
+  spec.input = way.input;
+  const SceneInput input = load_input(spec);
   std::vector<std::string> surfaces;
   for (const SurfaceDescriptor& kind : surface_kinds())
     if (kind.about.name != "analytic" && kind.unsupported(input.scene.objects.front()).empty()) surfaces.push_back(kind.about.name);

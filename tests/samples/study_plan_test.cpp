@@ -17,31 +17,31 @@
 namespace limn {
 namespace {
 
-using Change = std::function<void(Options&)>;
+using Change = std::function<void(StudySpec&)>;
 
 /// One cell, so that its key can be watched.
-Options one_cell(const std::string& input) {
-  Options options;
-  options.input = input;
-  options.size_px = glm::ivec2(64, 48);
-  options.surfaces = {"mesh"};
-  options.study.levels = {1};
-  options.study.normals = {NormalKind::vertex};
-  options.study.views = 1;
-  options.compared_methods = {"rim"};
-  return options;
+StudySpec one_cell(const std::string& input) {
+  StudySpec spec;
+  spec.experiment.input = input;
+  spec.experiment.camera.size_px = glm::ivec2(64, 48);
+  spec.experiment.surfaces = {"mesh"};
+  spec.sweep.levels = {1};
+  spec.sweep.normals = {NormalKind::vertex};
+  spec.sweep.views = 1;
+  spec.experiment.border.columns = {"rim"};
+  return spec;
 }
 
-Study study_of(const Options& options) {
-  Options own = options;
-  if (!own.study.levels.empty()) own.level = own.study.levels.back();
-  return plan_study(own, load_input(own));
+Study study_of(const StudySpec& spec) {
+  StudySpec own = spec;
+  if (!own.sweep.levels.empty()) own.experiment.surface.level = own.sweep.levels.back();
+  return plan_study(own, load_input(own.experiment));
 }
 
-std::string key_of(const Options& base, const Change& change = {}) {
-  Options options = base;
-  if (change) change(options);
-  const Study study = study_of(options);
+std::string key_of(const StudySpec& base, const Change& change = {}) {
+  StudySpec spec = base;
+  if (change) change(spec);
+  const Study study = study_of(spec);
   EXPECT_EQ(study.cells.size(), 1u);
   return study.cells.front().key;
 }
@@ -53,16 +53,16 @@ std::set<std::string> keys_of(const Study& study) {
 }
 
 TEST(StudyPlan, CellsAreTheProductOfTheAxes) {
-  Options options;
-  options.input = "ellipsoid";
-  options.study.levels = {0, 2, 3};
-  options.study.voxels = {16, 32};
-  options.study.normals = {NormalKind::flat, NormalKind::limit};
-  options.study.gradients = {"cell", "cubic"};
-  options.study.thresholds = {0.2, 0.4};
-  options.study.views = 5;
-  options.compared_methods = {"rim", "sobel"};
-  const Study study = study_of(options);
+  StudySpec spec;
+  spec.experiment.input = "ellipsoid";
+  spec.sweep.levels = {0, 2, 3};
+  spec.sweep.voxels = {16, 32};
+  spec.sweep.normals = {NormalKind::flat, NormalKind::limit};
+  spec.sweep.gradients = {"cell", "cubic"};
+  spec.sweep.thresholds = {0.2, 0.4};
+  spec.sweep.views = 5;
+  spec.experiment.border.columns = {"rim", "sobel"};
+  const Study study = study_of(spec);
   EXPECT_EQ(study.models.size(), 1u + 3u * 2u + 2u * 2u) << "the field, meshes, level sets";
   EXPECT_EQ(study.methods.size(), 3u) << "sobel has no threshold of N.V and is drawn once";
   EXPECT_EQ(study.cells.size(), 11u * 5u * 3u);
@@ -72,9 +72,9 @@ TEST(StudyPlan, CellsAreTheProductOfTheAxes) {
 
 TEST(StudyPlan, EachRepresentationVariesWhatItReadsAndNothingElse) {
   for (const char* input : {"ellipsoid", "rook"}) {
-    Options options;
-    options.input = input;
-    const Study study = study_of(options);
+    StudySpec spec;
+    spec.experiment.input = input;
+    const Study study = study_of(spec);
     for (const StudyModel& model : study.models) {
       std::set<std::string> names;
       for (const auto& [name, value] : model.parameters) names.insert(name);
@@ -89,23 +89,23 @@ TEST(StudyPlan, EachRepresentationVariesWhatItReadsAndNothingElse) {
 }
 
 TEST(StudyPlan, AReferenceIsFinerThanAnyLevelOfTheSweep) {
-  Options options = one_cell("rook");
+  StudySpec spec = one_cell("rook");
   for (const int level : {1, 4, 5}) {
-    options.study.levels = {level};
-    EXPECT_GT(study_of(options).reference.level, level);
+    spec.sweep.levels = {level};
+    EXPECT_GT(study_of(spec).reference.level, level);
   }
 }
 
 TEST(StudyPlan, WhatCannotBeModelledOrWouldNotFitIsARefusedModelWithItsReason) {
-  Options options = one_cell("rook");
-  options.surfaces = {"analytic"};
-  EXPECT_FALSE(study_of(options).models.front().refused.empty());
-  options = one_cell("ellipsoid");
-  options.study.levels = {8};
-  options.study.max_bytes = 10'000'000;
-  EXPECT_NE(study_of(options).models.front().refused.find("the default of --max-memory leaves 10.0 MB"), std::string::npos);
-  options.max_memory = 10'000'000;
-  const StudyModel model = study_of(options).models.front();
+  StudySpec spec = one_cell("rook");
+  spec.experiment.surfaces = {"analytic"};
+  EXPECT_FALSE(study_of(spec).models.front().refused.empty());
+  spec = one_cell("ellipsoid");
+  spec.sweep.levels = {8};
+  spec.sweep.max_model_bytes = 10'000'000;
+  EXPECT_NE(study_of(spec).models.front().refused.find("the default of --max-memory leaves 10.0 MB"), std::string::npos);
+  spec.experiment.limits.max_memory = 10'000'000;
+  const StudyModel model = study_of(spec).models.front();
   EXPECT_NE(model.refused.find("--max-memory leaves 10.0 MB"), std::string::npos) << model.refused;
   EXPECT_EQ(model.cost.build_ms, 0.0);
 }
@@ -115,16 +115,16 @@ TEST(StudyPlan, AShapeThatCannotBeTessellatedLeavesItsMeshesOutWithTheReason) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "limn-thin-shell.toml";
   std::ofstream(file) << "[[object]]\nname = \"skin\"\ncsg = \"difference\"\nshell = 0.002\n"
                          "of = [ { shape = \"box\", half = [1, 1, 1] }, { shape = \"sphere\", radius = 1.2 } ]\n";
-  Options options;
-  options.input = file.string();
-  options.size_px = glm::ivec2(64, 48);
-  options.study.views = 1;
-  options.study.voxels = {32};
-  options.study.gradients = {"central"};
-  options.study.levels = {1};
-  options.study.normals = {NormalKind::vertex};
-  options.surfaces = {"analytic", "level_set", "mesh", "mesh_level_set"};
-  const Study study = study_of(options);
+  StudySpec spec;
+  spec.experiment.input = file.string();
+  spec.experiment.camera.size_px = glm::ivec2(64, 48);
+  spec.sweep.views = 1;
+  spec.sweep.voxels = {32};
+  spec.sweep.gradients = {"central"};
+  spec.sweep.levels = {1};
+  spec.sweep.normals = {NormalKind::vertex};
+  spec.experiment.surfaces = {"analytic", "level_set", "mesh", "mesh_level_set"};
+  const Study study = study_of(spec);
   ASSERT_EQ(study.models.size(), 4u);
   for (const StudyModel& model : study.models) {
     if (model.surface.starts_with("mesh"))
@@ -136,44 +136,44 @@ TEST(StudyPlan, AShapeThatCannotBeTessellatedLeavesItsMeshesOutWithTheReason) {
 }
 
 TEST(StudyPlan, AThresholdThatNoMethodHasIsRefused) {
-  Options options = one_cell("ellipsoid");
-  options.compared_methods = {"sobel"};
-  options.study.thresholds = {0.2};
-  EXPECT_THROW(study_of(options), InputError);
+  StudySpec spec = one_cell("ellipsoid");
+  spec.experiment.border.columns = {"sobel"};
+  spec.sweep.thresholds = {0.2};
+  EXPECT_THROW(study_of(spec), InputError);
 }
 
 TEST(StudyKey, ChangesWithEverythingThatTheCellDependsOn) {
-  const Options base = one_cell("ellipsoid");
+  const StudySpec base = one_cell("ellipsoid");
   const std::map<std::string, Change> changes = {
-      {"none", [](Options&) {}},
-      {"scene", [](Options& o) { o.input = "superellipsoid"; }},
-      {"size", [](Options& o) { o.size_px = glm::ivec2(64, 49); }},
-      {"eye", [](Options& o) { o.eye = glm::dvec3(3, 2, 4); }},
-      {"eye by 1e-12", [](Options& o) { o.eye = glm::dvec3(3, 2, 4 + 1e-12); }},
-      {"fov", [](Options& o) { o.fov_deg = 36; }},
-      {"projection", [](Options& o) { o.ortho_height = 3; }},
-      {"level", [](Options& o) { o.study.levels = {2}; }},
-      {"normals", [](Options& o) { o.study.normals = {NormalKind::flat}; }},
-      {"threshold", [](Options& o) { o.study.thresholds = {0.41}; }},
+      {"none", [](StudySpec&) {}},
+      {"scene", [](StudySpec& o) { o.experiment.input = "superellipsoid"; }},
+      {"size", [](StudySpec& o) { o.experiment.camera.size_px = glm::ivec2(64, 49); }},
+      {"eye", [](StudySpec& o) { o.experiment.camera.eye = glm::dvec3(3, 2, 4); }},
+      {"eye by 1e-12", [](StudySpec& o) { o.experiment.camera.eye = glm::dvec3(3, 2, 4 + 1e-12); }},
+      {"fov", [](StudySpec& o) { o.experiment.camera.fov_deg = 36; }},
+      {"projection", [](StudySpec& o) { o.experiment.camera.ortho_height = 3; }},
+      {"level", [](StudySpec& o) { o.sweep.levels = {2}; }},
+      {"normals", [](StudySpec& o) { o.sweep.normals = {NormalKind::flat}; }},
+      {"threshold", [](StudySpec& o) { o.sweep.thresholds = {0.41}; }},
       {"softness",
-       [](Options& o) {
-         o.sets = {{"softness", "0.01"}};
+       [](StudySpec& o) {
+         o.experiment.border.parameters = {{"softness", "0.01"}};
        }},
-      {"method", [](Options& o) { o.compared_methods = {"sobel"}; }},
-      {"flicker", [](Options& o) { o.study.flicker = true; }},
-      {"level set", [](Options& o) { o.surfaces = {"level_set"}, o.study.voxels = {16}, o.study.gradients = {"cell"}; }},
-      {"voxels", [](Options& o) { o.surfaces = {"level_set"}, o.study.voxels = {17}, o.study.gradients = {"cell"}; }},
-      {"gradient", [](Options& o) { o.surfaces = {"level_set"}, o.study.voxels = {16}, o.study.gradients = {"cubic"}; }},
+      {"method", [](StudySpec& o) { o.experiment.border.columns = {"sobel"}; }},
+      {"flicker", [](StudySpec& o) { o.sweep.flicker = true; }},
+      {"level set", [](StudySpec& o) { o.experiment.surfaces = {"level_set"}, o.sweep.voxels = {16}, o.sweep.gradients = {"cell"}; }},
+      {"voxels", [](StudySpec& o) { o.experiment.surfaces = {"level_set"}, o.sweep.voxels = {17}, o.sweep.gradients = {"cell"}; }},
+      {"gradient", [](StudySpec& o) { o.experiment.surfaces = {"level_set"}, o.sweep.voxels = {16}, o.sweep.gradients = {"cubic"}; }},
       {"half width",
-       [](Options& o) { o.surfaces = {"level_set"}, o.study.voxels = {16}, o.study.gradients = {"cell"}, o.half_width_voxels = 4; }},
+       [](StudySpec& o) { o.experiment.surfaces = {"level_set"}, o.sweep.voxels = {16}, o.sweep.gradients = {"cell"}, o.experiment.surface.half_width_voxels = 4; }},
   };
   std::map<std::string, std::string> seen;
   for (const auto& [name, change] : changes) {
     const std::string key = key_of(base, change);
     EXPECT_TRUE(seen.emplace(key, name).second) << name << " has the key of " << seen[key];
   }
-  Options cage = one_cell("rook");
-  EXPECT_NE(key_of(cage), key_of(cage, [](Options& o) { o.scheme = Scheme::bilinear; }));
+  StudySpec cage = one_cell("rook");
+  EXPECT_NE(key_of(cage), key_of(cage, [](StudySpec& o) { o.experiment.surface.scheme = Scheme::bilinear; }));
 }
 
 TEST(StudyKey, ChangesWithTheInputsContentAndNotWithItsName) {
@@ -193,38 +193,36 @@ TEST(StudyKey, ChangesWithTheInputsContentAndNotWithItsName) {
 }
 
 TEST(StudyKey, DoesNotDependOnHowTheStudyIsRunNorOnItsOtherCells) {
-  const Options base = one_cell("ellipsoid");
+  const StudySpec base = one_cell("ellipsoid");
   const std::string key = key_of(base);
-  EXPECT_EQ(key, key_of(base, [](Options& o) { o.threads = 1; }));
-  EXPECT_EQ(key, key_of(base, [](Options& o) { o.study.shard = 2, o.study.shards = 5; }));
-  EXPECT_EQ(key, key_of(base, [](Options& o) { o.outputs = {"elsewhere"}, o.quiet = true, o.study.fresh = true; }));
-  EXPECT_EQ(key, key_of(base, [](Options& o) { o.study.max_bytes = 500'000'000; }));
-  EXPECT_EQ(key, key_of(base, [](Options& o) { o.study.voxels = {99}, o.study.gradients = {"cubic"}; })) << "a mesh reads neither";
-  Options wide = base;
-  wide.study.levels = {0, 1, 2};
-  wide.study.normals = {NormalKind::flat, NormalKind::vertex};
-  wide.study.thresholds = {0.2, 0.4};
-  wide.compared_methods = {"sobel", "rim"};
+  EXPECT_EQ(key, key_of(base, [](StudySpec& o) { o.experiment.threads = 1; }));
+  EXPECT_EQ(key, key_of(base, [](StudySpec& o) { o.sweep.max_model_bytes = 500'000'000; }));
+  EXPECT_EQ(key, key_of(base, [](StudySpec& o) { o.sweep.voxels = {99}, o.sweep.gradients = {"cubic"}; })) << "a mesh reads neither";
+  StudySpec wide = base;
+  wide.sweep.levels = {0, 1, 2};
+  wide.sweep.normals = {NormalKind::flat, NormalKind::vertex};
+  wide.sweep.thresholds = {0.2, 0.4};
+  wide.experiment.border.columns = {"sobel", "rim"};
   EXPECT_TRUE(keys_of(study_of(wide)).contains(key));
   EXPECT_NE(study_of(wide).head.id, study_of(base).head.id);
 }
 
 TEST(StudyCost, GrowsAsFacesVoxelsAndPixelsDo) {
-  Options options = one_cell("ellipsoid");
+  StudySpec spec = one_cell("ellipsoid");
   const auto cost = [&](const Change& change) {
-    Options own = options;
+    StudySpec own = spec;
     change(own);
     return study_of(own).models.front().cost;
   };
   // Differences: what a model or a picture takes at any size falls out.
   const auto growth = [](double a, double b, double c) { return (c - b) / (b - a); };
-  const auto mesh = [&](int level) { return cost([level](Options& o) { o.study.levels = {level}; }); };
+  const auto mesh = [&](int level) { return cost([level](StudySpec& o) { o.sweep.levels = {level}; }); };
   EXPECT_NEAR(double(mesh(5).bytes) / double(mesh(3).bytes), 16.0, 0.1);
   EXPECT_NEAR(growth(mesh(3).build_ms, mesh(4).build_ms, mesh(5).build_ms), 4.0, 1e-6);
-  options.surfaces = {"level_set"};
-  options.study.gradients = {"central"};
+  spec.experiment.surfaces = {"level_set"};
+  spec.sweep.gradients = {"central"};
   const auto grid = [&](int voxels, int width_px = 64) {
-    return cost([=](Options& o) { o.study.voxels = {voxels}, o.size_px = glm::ivec2(width_px, width_px * 3 / 4); });
+    return cost([=](StudySpec& o) { o.sweep.voxels = {voxels}, o.experiment.camera.size_px = glm::ivec2(width_px, width_px * 3 / 4); });
   };
   EXPECT_NEAR(growth(grid(64).build_ms, grid(128).build_ms, grid(256).build_ms), 4.0, 1e-6);
   EXPECT_NEAR(growth(grid(64, 64).trace_ms, grid(64, 128).trace_ms, grid(64, 256).trace_ms), 4.0, 1e-6);
@@ -249,14 +247,14 @@ TEST(StudyCost, TheLedgerLearnsHowFastTheMachineIs) {
   EXPECT_LT(other.remaining_ms(), 1.6e6) << "a moment's work says little";
 }
 
-Options some_study() {
-  Options options;
-  options.input = *rc::gen::element<std::string>("ellipsoid", "rook", "teacup");
-  options.study.views = *rc::gen::inRange(1, 9);
-  options.study.levels = {0, 1, *rc::gen::inRange(2, 6)};
-  options.study.voxels = {16, *rc::gen::inRange(17, 300)};
-  if (*rc::gen::arbitrary<bool>()) options.compared_methods = {"rim", "sobel"};
-  return options;
+StudySpec some_study() {
+  StudySpec spec;
+  spec.experiment.input = *rc::gen::element<std::string>("ellipsoid", "rook", "teacup");
+  spec.sweep.views = *rc::gen::inRange(1, 9);
+  spec.sweep.levels = {0, 1, *rc::gen::inRange(2, 6)};
+  spec.sweep.voxels = {16, *rc::gen::inRange(17, 300)};
+  if (*rc::gen::arbitrary<bool>()) spec.experiment.border.columns = {"rim", "sobel"};
+  return spec;
 }
 
 RC_GTEST_PROP(StudyShards, PartitionTheCells, ()) {

@@ -170,7 +170,7 @@ TEST(Camera, AViewAlongUpIsAnErrorOnlyWhereItWasAskedFor) {
   EXPECT_NEAR(camera.world_from_camera[2].y, 1.0, 1e-15);
   CameraSettings chosen;
   chosen.eye = glm::dvec3(0, 3, 0);
-  EXPECT_EQ(fault_of(chosen).field, "--up");
+  EXPECT_EQ(fault_of(chosen).field, "up");
 }
 
 TEST(Camera, BoundsWithoutASizeStillMakeACamera) {
@@ -230,21 +230,21 @@ TEST(Camera, WhatMakesNoCameraIsRefusedByField) {
     return fault_of(settings).field;
   };
   for (const int bad : {0, -1, 16385}) {
-    EXPECT_EQ(with([&](CameraSettings& s) { s.width_px = bad; }), "--size");
-    EXPECT_EQ(with([&](CameraSettings& s) { s.height_px = bad; }), "--size");
+    EXPECT_EQ(with([&](CameraSettings& s) { s.width_px = bad; }), "size");
+    EXPECT_EQ(with([&](CameraSettings& s) { s.height_px = bad; }), "size");
   }
-  for (const double bad : {0.0, pi, -1.0, 4.0, nan, infinity}) EXPECT_EQ(with([&](CameraSettings& s) { s.vertical_fov = bad; }), "--fov");
-  for (const double bad : {0.0, -1.0, nan, infinity}) EXPECT_EQ(with([&](CameraSettings& s) { s.ortho_height = bad; }), "--ortho");
-  EXPECT_EQ(with([&](CameraSettings& s) { s.eye = glm::dvec3(nan, 0, 0); }), "--eye");
-  EXPECT_EQ(with([&](CameraSettings& s) { s.target = glm::dvec3(infinity, 0, 0); }), "--target");
-  EXPECT_EQ(with([&](CameraSettings& s) { s.eye = s.target = glm::dvec3(1, 2, 3); }), "--eye");
-  EXPECT_EQ(with([&](CameraSettings& s) { s.up = glm::dvec3(0.0); }), "--up");
-  EXPECT_EQ(with([&](CameraSettings& s) { s.up = glm::dvec3(0, nan, 0); }), "--up");
+  for (const double bad : {0.0, pi, -1.0, 4.0, nan, infinity}) EXPECT_EQ(with([&](CameraSettings& s) { s.vertical_fov = bad; }), "fov");
+  for (const double bad : {0.0, -1.0, nan, infinity}) EXPECT_EQ(with([&](CameraSettings& s) { s.ortho_height = bad; }), "ortho");
+  EXPECT_EQ(with([&](CameraSettings& s) { s.eye = glm::dvec3(nan, 0, 0); }), "eye");
+  EXPECT_EQ(with([&](CameraSettings& s) { s.target = glm::dvec3(infinity, 0, 0); }), "target");
+  EXPECT_EQ(with([&](CameraSettings& s) { s.eye = s.target = glm::dvec3(1, 2, 3); }), "eye");
+  EXPECT_EQ(with([&](CameraSettings& s) { s.up = glm::dvec3(0.0); }), "up");
+  EXPECT_EQ(with([&](CameraSettings& s) { s.up = glm::dvec3(0, nan, 0); }), "up");
   EXPECT_EQ(with([&](CameraSettings& s) {
               s.eye = glm::dvec3(0, 5, 0);
               s.target = glm::dvec3(0, -5, 0);
             }),
-            "--up");
+            "up");
   CameraSettings wide;
   wide.vertical_fov = pi;
   EXPECT_EQ(fault_of(wide).value, "180");

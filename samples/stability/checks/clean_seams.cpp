@@ -64,6 +64,7 @@ Image<std::uint8_t> seam_pixels(const GBuffer& seen, const Image<float>& ink, in
 
 StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
   Worst worst;
+  std::int64_t seen_in_any = 0;
   for (const StabilityView& view : shop.views()) {
     const Border border = draw_border(shop.stage(), view, *method);
     const Image<std::uint8_t> seam = seam_pixels(view.seen, border.coverage, with.integer("reach_px"), with.integer("away_px"));
@@ -80,10 +81,14 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
       specks += small && std::none_of(piece.begin(), piece.end(), at_outline);
     }
     const std::int64_t splinters = std::max<std::int64_t>(0, seams - with.integer("seams"));
-    // Without a seam nothing was measured.
-    worst.see(seams == 0 ? kNothingSeen : static_cast<double>(changes + splinters + specks),
+    seen_in_any += seams;
+    worst.see(static_cast<double>(changes + splinters + specks),
               fmt::format("{} seams in the picture, {} changes between ink and none along them, {} specks of ink", seams, changes, specks),
               shop.stage(), view, &border);
+  }
+  if (seen_in_any == 0) {
+    const StabilityView& view = shop.views().front();
+    worst.see(kNothingSeen, "no seam in any picture", shop.stage(), view, nullptr);
   }
   return worst.take();
 }

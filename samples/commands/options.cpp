@@ -1,4 +1,4 @@
-#include "samples/options.h"
+#include "samples/commands/options.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -7,7 +7,8 @@
 
 #include "raymarch/border.h"
 #include "raymarch/surface.h"
-#include "samples/options_parts.h"
+#include "samples/commands/options_parts.h"
+#include "samples/parse.h"
 #include "samples/parse_color.h"
 #include "sdf/error.h"
 
@@ -56,26 +57,26 @@ void add_unless_there(const T& one, std::vector<T>& all) {
 
 void read_compared_methods(const std::string& text, Options& options) {
   if (text == "all") {
-    for (const BorderMethod& method : border_methods()) add_unless_there(method.about.name, options.compared_methods);
+    for (const BorderMethod& method : border_methods()) add_unless_there(method.about.name, options.spec.border.columns);
     return;
   }
   for (const std::string& name : parse_names(text)) {
     find_border_method(name, "", "--methods");
-    add_unless_there(name, options.compared_methods);
+    add_unless_there(name, options.spec.border.columns);
   }
 }
 
 void read_compared_surfaces(const std::string& text, Options& options) {
   for (const std::string& name : parse_names(text)) {
     find_surface(name, "", "--surfaces");
-    add_unless_there(name, options.surfaces);
+    add_unless_there(name, options.spec.surfaces);
   }
 }
 
 void add_compared_surfaces(CLI::App& app, Options& options) {
   const auto surface = [&options](const std::string& text) {
     find_surface(text, "", "--surface");
-    options.surfaces.push_back(text);
+    options.spec.surfaces.push_back(text);
   };
   add_repeatable(app, {"--surface", "NAME", "only this representation (limn list surfaces), repeatable; default: all", kSurface}, surface);
   add_repeatable(app, {"--surfaces", "A,B,...", "the same for several", kSurface},
@@ -87,7 +88,7 @@ void add_switch(CLI::App& app, const OptionText& text, bool& target) { app.add_f
 }  // namespace
 
 void add_input(CLI::App& app, Options& options) {
-  app.add_option("INPUT", options.input,
+  app.add_option("INPUT", options.spec.input,
                  "scene file (.toml), mesh (.obj .ply .stl .off .gltf .glb), volume (.vdb .nvdb), formula (.vm) or built-in scene (limn "
                  "list scenes). "
                  "A mesh is drawn as it is; --level, --scheme or crease tags in the file make it a subdivision cage")
@@ -122,21 +123,21 @@ void add_json(CLI::App& app, Options& options) {
 void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size) {
   const std::string size_help = "picture in pixels, 1..16384 each; default " + default_size;
   add(app, {"--size", "WxH", size_help.c_str(), kCamera},
-      [&options](const std::string& text) { options.size_px = parse_size("--size", text); });
+      [&options](const std::string& text) { options.spec.camera.size_px = parse_size("--size", text); });
   add(app, {"--eye", "X,Y,Z", "where the camera stands, world units; default: framed", kCamera},
-      [&options](const std::string& text) { options.eye = parse_vector3("--eye", text); });
+      [&options](const std::string& text) { options.spec.camera.eye = parse_vector3("--eye", text); });
   add(app, {"--target", "X,Y,Z", "what it looks at, world units; default: the middle of what is drawn", kCamera},
-      [&options](const std::string& text) { options.target = parse_vector3("--target", text); });
+      [&options](const std::string& text) { options.spec.camera.target = parse_vector3("--target", text); });
   add(app, {"--up", "X,Y,Z", "what is up in the picture; default 0,1,0", kCamera},
-      [&options](const std::string& text) { options.up = parse_vector3("--up", text); });
+      [&options](const std::string& text) { options.spec.camera.up = parse_vector3("--up", text); });
   auto* fov = add(app, {"--fov", "DEG", "vertical field of view, degrees, above 0 and below 180; default 35", kCamera},
-                  [&options](const std::string& text) { options.fov_deg = parse_number("--fov", text); });
+                  [&options](const std::string& text) { options.spec.camera.fov_deg = parse_number("--fov", text); });
   auto* ortho = add(app, {"--ortho", "HEIGHT", "orthographic, the picture's height in world units; default: perspective", kCamera},
-                    [&options](const std::string& text) { options.ortho_height = parse_number("--ortho", text); });
+                    [&options](const std::string& text) { options.spec.camera.ortho_height = parse_number("--ortho", text); });
   fov->excludes(ortho);
   if (!with_views) return;
   add(app, {"--views", "N", "N pictures from directions spread evenly on the sphere, 1..10000; default 1: the camera's own", kCamera},
-      [&options](const std::string& text) { options.views = parse_integer("--views", text, 1, 10'000); });
+      [&options](const std::string& text) { options.spec.views = parse_integer("--views", text, 1, 10'000); });
 }
 
 void add_frames(CLI::App& app, Options& options) {
@@ -160,7 +161,7 @@ void add_grid(CLI::App& app, Options& options) {
   add_repeatable(app,
                  {"--grid", "NAME",
                   "a grid of a .vdb or .nvdb as limn info names it (ball, ball[1]), repeatable, or all; default: all level sets", kSurface},
-                 [&options](const std::string& text) { add_unless_there(text, options.grids); });
+                 [&options](const std::string& text) { add_unless_there(text, options.spec.grids); });
 }
 
 namespace {
@@ -169,11 +170,11 @@ namespace {
 void add_fixed_surface(CLI::App& app, Options& options) {
   add(app, {"--half-width", "VOXELS", "half width of the narrow band, voxels, at least 1.8; default: what the gradient needs", kSurface},
       [&options](const std::string& text) {
-        options.half_width_voxels = parse_number_above("--half-width", text, 1.8, true, "at least 1.8 voxels");
+        options.spec.surface.half_width_voxels = parse_number_above("--half-width", text, 1.8, true, "at least 1.8 voxels");
       });
   add(app,
       {"--scheme", "NAME", "catmark, loop or bilinear; default: the scene's, else loop for triangles, catmark for all others", kSurface},
-      [&options](const std::string& text) { options.scheme = parse_scheme(text, "", "--scheme"); });
+      [&options](const std::string& text) { options.spec.surface.scheme = parse_scheme(text, "", "--scheme"); });
   add(app,
       {"--smooth-angle", "DEG",
        "meshes drawn as they are: normals are averaged across edges up to this angle, 0..180 (180: across all), in place of the file's own "
@@ -182,7 +183,7 @@ void add_fixed_surface(CLI::App& app, Options& options) {
       [&options](const std::string& text) {
         const double angle = parse_number("--smooth-angle", text);
         if (!(angle >= 0.0 && angle <= 180.0)) throw InputError({"", "--smooth-angle", text, "out of range", "0 to 180 degrees"});
-        options.smooth_angle_deg = angle;
+        options.spec.surface.smooth_angle_deg = angle;
       });
   add_grid(app, options);
 }
@@ -196,7 +197,7 @@ void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& need
     add(app, {"--surface", "NAME", "representation (limn list surfaces); default: what the input is by itself", kSurface},
         [&options](const std::string& text) {
           find_surface(text, "", "--surface");
-          options.surfaces.push_back(text);
+          options.spec.surfaces.push_back(text);
         });
   }
   if (needs.swept) {
@@ -204,28 +205,28 @@ void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& need
     return;
   }
   auto* voxels = add(app, {"--voxels", "N", "voxels along the longest side, 4..8192; default 256", kSurface},
-                     [&options](const std::string& text) { options.voxels = parse_integer("--voxels", text, 4, 8192); });
+                     [&options](const std::string& text) { options.spec.surface.voxels = parse_integer("--voxels", text, 4, 8192); });
   auto* voxel_size =
       add(app, {"--voxel-size", "H", "side of a voxel, world units; instead of --voxels", kSurface}, [&options](const std::string& text) {
-        options.voxel_size = parse_number_above("--voxel-size", text, 0.0, false, "a length above 0 in world units");
+        options.spec.surface.voxel_size = parse_number_above("--voxel-size", text, 0.0, false, "a length above 0 in world units");
       });
   voxels->excludes(voxel_size);
   add(app, {"--gradient", "NAME", "how normals are read from a level set (limn list gradients); default central", kSurface},
       [&options](const std::string& text) {
         find_gradient(text, "", "--gradient");
-        options.gradient = text;
+        options.spec.surface.gradient = text;
       });
   const bool views = needs.views;
   constexpr const char* kLevels = "refinements of a cage or a tessellation, 0..8; default 3";
   constexpr const char* kLevelsOrAuto =
       "refinements of a cage or a tessellation, 0..8; default 3; auto: as many as the picture shows to a tenth of a pixel";
   add(app, {"--level", views ? "N|auto" : "N", views ? kLevelsOrAuto : kLevels, kSurface}, [&options, views](const std::string& text) {
-    options.level_for_view = views && text == "auto";
-    options.level.reset();
-    if (!options.level_for_view) options.level = parse_integer("--level", text, 0, 8);
+    options.spec.surface.level_for_view = views && text == "auto";
+    options.spec.surface.level.reset();
+    if (!options.spec.surface.level_for_view) options.spec.surface.level = parse_integer("--level", text, 0, 8);
   });
   add(app, {"--normals", "NAME", "flat, vertex or limit; default: limit where there is a limit surface, else vertex", kSurface},
-      [&options](const std::string& text) { options.normals = parse_normals(text, "", "--normals"); });
+      [&options](const std::string& text) { options.spec.surface.normals = parse_normals(text, "", "--normals"); });
   add_fixed_surface(app, options);
 }
 
@@ -234,7 +235,7 @@ void add_methods(CLI::App& app, Options& options, bool compared) {
       add_repeatable(app, {"--method", "NAME", "outline method (limn list methods), repeatable, the last on top; default rim", kBorder},
                      [&options](const std::string& text) {
                        find_border_method(text, "", "--method");
-                       options.methods.push_back(text);
+                       options.spec.border.methods.push_back(text);
                      });
   if (compared) {
     add_repeatable(
@@ -245,19 +246,19 @@ void add_methods(CLI::App& app, Options& options, bool compared) {
   add_repeatable(
       app,
       {"--set", "KEY=VALUE", "a parameter of the methods, such as threshold=0.4; METHOD.KEY=VALUE for one of several; repeatable", kBorder},
-      [&options](const std::string& text) { options.sets.push_back(parse_key_value("--set", text)); });
+      [&options](const std::string& text) { options.spec.border.parameters.push_back(parse_key_value("--set", text)); });
 }
 
 void add_border(CLI::App& app, Options& options, bool compared) {
   add_methods(app, options, compared);
   add(app, {"--samples", "N", "rays a pixel, 1..1024; default 1", kBorder},
-      [&options](const std::string& text) { options.samples = parse_integer("--samples", text, 1, 1024); });
+      [&options](const std::string& text) { options.spec.border.samples = parse_integer("--samples", text, 1, 1024); });
   add(app,
       {"--background", "COLOR",
        "colour behind everything: '#rrggbb', '#rgb' (quoted for the shell), a name such as white, R,G,B in linear light from 0 to 1, or "
        "linear:R,G,B; default: transparent (compare: white)",
        kBorder},
-      [&options](const std::string& text) { options.background = parse_color("--background", text); });
+      [&options](const std::string& text) { options.spec.border.background = parse_color("--background", text); });
 }
 
 void add_execution(CLI::App& app, Options& options) {
@@ -265,7 +266,7 @@ void add_execution(CLI::App& app, Options& options) {
   add_switch(app, {"-v,--verbose", "", "timings and sizes on stderr", kExecution}, options.verbose);
   add_switch(app, {"--no-progress", "", "no progress bar (there is none unless stderr is a terminal)", kExecution}, options.no_progress);
   add(app, {"--threads", "N", "threads, 0..1024; default 0: all", kExecution},
-      [&options](const std::string& text) { options.threads = parse_integer("--threads", text, 0, 1024); });
+      [&options](const std::string& text) { options.spec.threads = parse_integer("--threads", text, 0, 1024); });
   add_limits(app, options);
 }
 
@@ -275,12 +276,12 @@ void add_limits(CLI::App& app, Options& options) {
        "memory the program may take, such as 500M or 4G, 140M of it for itself: refused where more is "
        "expected to be needed, stopped where it is reached (study: larger models are left out); default: what the machine has",
        kLimits},
-      [&options](const std::string& text) { options.max_memory = parse_bytes("--max-memory", text); });
+      [&options](const std::string& text) { options.spec.limits.max_memory = parse_bytes("--max-memory", text); });
   add(app,
       {"--max-time", "TIME",
        "time the call may take, such as 90s or 10m: refused where twice that is expected, stopped where it is over; default: no limit",
        kLimits},
-      [&options](const std::string& text) { options.max_time_ms = parse_milliseconds("--max-time", text); });
+      [&options](const std::string& text) { options.spec.limits.max_time_ms = parse_milliseconds("--max-time", text); });
 }
 
 void add_parts(CLI::App& app, Options& options) {
@@ -290,50 +291,52 @@ void add_parts(CLI::App& app, Options& options) {
 }
 
 void add_study(CLI::App& app, Options& options) {
-  StudyOptions& study = options.study;
+  SweepSpec& sweep = options.sweep;
+  StudyRunOptions& run = options.study;
   const auto level = [](const std::string& text) { return parse_integer("--levels", text, 0, 8); };
   add(app, {"--levels", "LIST", "refinements of a cage or a tessellation, 0..8; default 0..5, fewer where they would be large", kSweep},
-      [&study, level](const std::string& text) { study.levels = parse_integers(text, level, [](int value) { return value + 1; }); });
+      [&sweep, level](const std::string& text) { sweep.levels = parse_integers(text, level, [](int value) { return value + 1; }); });
   const auto voxels = [](const std::string& text) { return parse_integer("--voxels", text, 4, 8192); };
   add(app, {"--voxels", "LIST", "voxels along the longest side, 4..8192; a range doubles; default 16..256", kSweep},
-      [&study, voxels](const std::string& text) { study.voxels = parse_integers(text, voxels, [](int value) { return 2 * value; }); });
+      [&sweep, voxels](const std::string& text) { sweep.voxels = parse_integers(text, voxels, [](int value) { return 2 * value; }); });
   add(app, {"--normals", "LIST", "normals of meshes (limn list normals); default flat,vertex,limit, as far as there are any", kSweep},
-      [&study](const std::string& text) {
-        for (const std::string& name : parse_names(text)) add_unless_there(parse_normals(name, "", "--normals"), study.normals);
+      [&sweep](const std::string& text) {
+        for (const std::string& name : parse_names(text)) add_unless_there(parse_normals(name, "", "--normals"), sweep.normals);
       });
   add(app, {"--gradients", "LIST", "gradients of level sets (limn list gradients); default all that the band is wide enough for", kSweep},
-      [&study](const std::string& text) {
+      [&sweep](const std::string& text) {
         for (const std::string& name : parse_names(text)) {
           find_gradient(name, "", "--gradients");
-          add_unless_there(name, study.gradients);
+          add_unless_there(name, sweep.gradients);
         }
       });
   add(app, {"--methods", "A,B,...|all", "outline methods (limn list methods); default rim", kSweep},
       [&options](const std::string& text) { read_compared_methods(text, options); });
   add(app, {"--thresholds", "LIST", "of the rim, and of every other method that has a threshold; default the method's own", kSweep},
-      [&study](const std::string& text) { study.thresholds = parse_thresholds("--thresholds", text); });
+      [&sweep](const std::string& text) { sweep.thresholds = parse_thresholds("--thresholds", text); });
   add(app, {"--views", "N", "directions spread evenly on the sphere, 1..10000; 1: the camera's own; default 4", kSweep},
-      [&study](const std::string& text) { study.views = parse_integer("--views", text, 1, 10'000); });
+      [&sweep](const std::string& text) { sweep.views = parse_integer("--views", text, 1, 10'000); });
   add_repeatable(app, {"--set", "KEY=VALUE", "a parameter of the methods; METHOD.KEY=VALUE for one of several; repeatable", kSweep},
-                 [&options](const std::string& text) { options.sets.push_back(parse_key_value("--set", text)); });
+                 [&options](const std::string& text) { options.spec.border.parameters.push_back(parse_key_value("--set", text)); });
   add_switch(app,
              {"--flicker", "", "measure flicker too, under four moves of the camera by less than a pixel: five times the tracing", kStudy},
-             study.flicker);
+             sweep.flicker);
   add(app, {"--shard", "I/N", "do only part I of N, into OUT/part-I-of-N; limn merge joins the parts", kStudy},
-      [&study](const std::string& text) { std::tie(study.shard, study.shards) = parse_shard("--shard", text); });
+      [&run](const std::string& text) { std::tie(run.shard, run.shards) = parse_shard("--shard", text); });
   add_switch(app, {"--fresh", "", "start over: what an earlier study left in the folder goes; default: go on where it stopped", kStudy},
-             study.fresh);
+             run.fresh);
   add_cases(app, options, kHidden);
 }
 
 void add_cases(CLI::App& app, Options& options, const char* group) {
-  StudyOptions& study = options.study;
+  StabilityOptions& stability = options.stability;
   add_repeatable(app, {"--case", "NAME|FILE", "only this case, or one more from a file (.toml); repeatable", group},
-                 [&study](const std::string& text) { study.cases.push_back(text); });
-  add(app, {"--seed", "N", "where the cases' random parameters start; default 1", group},
-      [&study](const std::string& text) { study.seed = static_cast<std::uint64_t>(parse_integer("--seed", text, 0, 2'000'000'000)); });
+                 [&stability](const std::string& text) { stability.cases.push_back(text); });
+  add(app, {"--seed", "N", "where the cases' random parameters start; default 1", group}, [&stability](const std::string& text) {
+    stability.seed = static_cast<std::uint64_t>(parse_integer("--seed", text, 0, 2'000'000'000));
+  });
   add(app, {"--draws", "N", "draws of each case's random parameters, 1..10000; default: the case's own", group},
-      [&study](const std::string& text) { study.draws = parse_integer("--draws", text, 1, 10'000); });
+      [&stability](const std::string& text) { stability.draws = parse_integer("--draws", text, 1, 10'000); });
 }
 
 void add_stability(CLI::App& app, Options& options) {
@@ -342,7 +345,7 @@ void add_stability(CLI::App& app, Options& options) {
 }
 
 void add_plan(CLI::App& app, Options& options) {
-  PlanOptions& plan = options.plan;
+  PlanSpec& plan = options.plan;
   auto* tolerance =
       add(app,
           {"--tolerance", "PX",

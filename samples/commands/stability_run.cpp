@@ -1,9 +1,9 @@
-#include "samples/stability/command.h"
+#include "samples/commands/stability_run.h"
 
 #include <fmt/format.h>
 
+#include "samples/commands/common.h"
 #include "samples/held_folder.h"
-#include "samples/job.h"
 #include "samples/stability/page.h"
 #include "samples/stability/run.h"
 #include "sdf/error.h"
@@ -14,23 +14,24 @@ namespace {
 
 /// What a case's file says is not for the command line.
 void refuse_others(const Options& options) {
-  const StudyOptions& study = options.study;
-  const std::pair<bool, const char*> given[] = {{!study.levels.empty(), "--levels"},
-                                                {!study.voxels.empty(), "--voxels"},
-                                                {!study.normals.empty(), "--normals"},
-                                                {!study.gradients.empty(), "--gradients"},
-                                                {!study.thresholds.empty(), "--thresholds"},
-                                                {study.views.has_value(), "--views"},
-                                                {study.flicker, "--flicker"},
-                                                {study.shards != 1, "--shard"},
-                                                {!options.sets.empty(), "--set"},
-                                                {!options.compared_methods.empty(), "--methods"},
-                                                {options.size_px.has_value(), "--size"},
-                                                {options.eye || options.target || options.up, "--eye, --target and --up"},
-                                                {options.fov_deg || options.ortho_height, "--fov and --ortho"},
-                                                {options.half_width_voxels.has_value(), "--half-width"},
-                                                {options.scheme.has_value(), "--scheme"},
-                                                {!options.grids.empty(), "--grid"}};
+  const SweepSpec& sweep = options.sweep;
+  const std::pair<bool, const char*> given[] = {
+      {!sweep.levels.empty(), "--levels"},
+      {!sweep.voxels.empty(), "--voxels"},
+      {!sweep.normals.empty(), "--normals"},
+      {!sweep.gradients.empty(), "--gradients"},
+      {!sweep.thresholds.empty(), "--thresholds"},
+      {sweep.views.has_value(), "--views"},
+      {sweep.flicker, "--flicker"},
+      {options.study.shards != 1, "--shard"},
+      {!options.spec.border.parameters.empty(), "--set"},
+      {!options.spec.border.columns.empty(), "--methods"},
+      {options.spec.camera.size_px.has_value(), "--size"},
+      {options.spec.camera.eye || options.spec.camera.target || options.spec.camera.up, "--eye, --target and --up"},
+      {options.spec.camera.fov_deg || options.spec.camera.ortho_height, "--fov and --ortho"},
+      {options.spec.surface.half_width_voxels.has_value(), "--half-width"},
+      {options.spec.surface.scheme.has_value(), "--scheme"},
+      {!options.spec.grids.empty(), "--grid"}};
   for (const auto& [is_given, name] : given) {
     if (is_given) throw InputError({"", name, "", "the cases set it themselves; copy a case, change it and give it as --case FILE", ""});
   }
@@ -38,7 +39,7 @@ void refuse_others(const Options& options) {
 
 std::vector<StabilityCase> chosen_cases(const Options& options) {
   std::vector<StabilityCase> cases;
-  for (const std::string& name : options.study.cases) cases.push_back(find_stability_case(name));
+  for (const std::string& name : options.stability.cases) cases.push_back(find_stability_case(name));
   return cases.empty() ? stability_corpus() : cases;
 }
 
@@ -63,14 +64,14 @@ std::string summary(const StabilityResults& results) {
 int study_stability(const Options& options, ProgressBar& bar) {
   refuse_others(options);
   const std::filesystem::path folder = options.outputs.empty() ? default_output("study", kStabilityInput) : options.outputs.back();
-  check_output_folder(folder, options);
+  check_output_folder(folder, options.no_clobber);
   const HeldFolder held(folder);
   StabilityRunSettings settings;
-  settings.seed = options.study.seed.value_or(1);
-  settings.draws = options.study.draws;
-  settings.surfaces = options.surfaces;
+  settings.seed = options.stability.seed.value_or(1);
+  settings.draws = options.stability.draws;
+  settings.surfaces = options.spec.surfaces;
   settings.folder = folder;
-  settings.how = execution_settings(options);
+  settings.how = execution_settings(options.spec.threads);
   settings.progress = bar.stage("cases");
   const StabilityResults results = run_stability(chosen_cases(options), settings);
   bar.clear();
@@ -90,8 +91,8 @@ int study_stability(const Options& options, ProgressBar& bar) {
 }
 
 void refuse_stability_options(const Options& options) {
-  const StudyOptions& study = options.study;
-  const char* given = !study.cases.empty() ? "--case" : study.seed ? "--seed" : study.draws ? "--draws" : nullptr;
+  const StabilityOptions& given_options = options.stability;
+  const char* given = !given_options.cases.empty() ? "--case" : given_options.seed ? "--seed" : given_options.draws ? "--draws" : nullptr;
   if (given != nullptr) throw InputError({"", given, "", "only limn stability takes it: limn stability " + std::string(given) + " …", ""});
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "samples/options.h"
+#include "samples/commands/options.h"
 
 namespace limn {
 

@@ -1,7 +1,7 @@
 #pragma once
 // `limn stability`.
 
-#include "samples/options.h"
+#include "samples/commands/options.h"
 #include "samples/progress.h"
 
 namespace limn {

@@ -1,4 +1,4 @@
-#include "samples/program.h"
+#include "samples/commands/program.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "samples/commands/command.h"
+#include "samples/experiment/flags.h"
 #include "samples/limits.h"
 #include "samples/output.h"
-#include "samples/versions.h"
+#include "samples/commands/versions.h"
 #include "sdf/size_error.h"
 
 namespace limn {
@@ -74,13 +75,13 @@ int run_on_input(const Command& command, const Options& options) {
   } catch (const InputError& error) {
     InputFault fault = error.fault();
     // Whose limit it is nobody below knows.
-    const bool too_large = options.max_memory && dynamic_cast<const SizeError*>(&error) != nullptr;
-    if (too_large) fault.problem += "; --max-memory allows " + bytes_text(static_cast<double>(*options.max_memory)) + " in all";
+    const bool too_large = options.spec.limits.max_memory && dynamic_cast<const SizeError*>(&error) != nullptr;
+    if (too_large) fault.problem += "; max_memory allows " + bytes_text(static_cast<double>(*options.spec.limits.max_memory)) + " in all";
     std::error_code ignored;
-    const bool of_call = !fault.file.empty() || fault.field.starts_with("-");
+    const bool of_call = !fault.file.empty() || is_of_specification(fault);
     if (too_large && of_call) throw InputError(fault);
-    if (of_call || options.input.empty() || !std::filesystem::is_regular_file(options.input, ignored)) throw;
-    fault.file = options.input;
+    if (of_call || options.spec.input.empty() || !std::filesystem::is_regular_file(options.spec.input, ignored)) throw;
+    fault.file = options.spec.input;
     throw InputError(fault);
   }
 }
@@ -123,7 +124,7 @@ int run_program(int argc, const char* const* argv) {
   const std::string name = app.get_subcommands().front()->get_name();
   for (const Command& command : commands()) {
     if (command.name != name) continue;
-    hold_limits(options, command.goes_on_without_memory);
+    hold_limits(options.spec.limits, command.goes_on_without_memory);
     const int code = run_on_input(command, options);
     if (std::fflush(stdout) != 0) throw MachineError("cannot write to standard output");
     return code;

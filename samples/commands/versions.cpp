@@ -1,4 +1,4 @@
-#include "samples/versions.h"
+#include "samples/commands/versions.h"
 
 #include <OpenImageIO/oiioversion.h>
 #include <embree3/rtcore_config.h>

@@ -1,0 +1,82 @@
+#pragma once
+// The options that commands have in common. Each command adds the groups that mean something to it and no others.
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "raymarch/frames.h"
+#include "samples/experiment/spec.h"
+
+namespace CLI {
+class App;
+}
+
+namespace limn {
+
+/// How `limn study` shares out its cells and starts, and what `limn merge` joins.
+struct StudyRunOptions {
+  bool fresh = false;                          ///< What an earlier study left in the folder goes.
+  int shard = 1, shards = 1;                   ///< Part `shard` of `shards`, from 1.
+  std::vector<std::filesystem::path> parts{};  ///< Folders to merge.
+};
+
+struct StabilityOptions {
+  std::vector<std::string> cases{};     ///< Names or files; empty: all.
+  std::optional<std::uint64_t> seed{};  ///< Of random parameters.
+  std::optional<int> draws{};           ///< Of them, for each case.
+};
+
+/// The command line as given: what it asks of the experiment, and where the answer goes.
+struct Options {
+  ExperimentSpec spec{};
+  SweepSpec sweep{};
+  PlanSpec plan{};
+  StabilityOptions stability{};
+  StudyRunOptions study{};
+  FramePath frames{.frames = 1};  ///< `limn render` only.
+  bool refined = false;           ///< `limn export` only: refined instead of limit positions.
+  std::string kind{};             ///< `limn list` only.
+
+  std::vector<std::filesystem::path> outputs{};
+  bool no_clobber = false;
+  bool no_timings = false;
+  bool json = false;
+  bool quiet = false;
+  bool verbose = false;
+  bool no_progress = false;
+};
+
+struct SurfaceOptionNeeds {
+  bool surface = true;      ///< --surface
+  bool repeatable = false;  ///< --surface may be given several times.
+  bool views = false;       ///< --level auto: there are pictures to refine for.
+  bool swept = false;       ///< Resolution, normals and gradients are axes (add_study), not settings.
+};
+
+void add_input(CLI::App& app, Options& options);
+void add_output(CLI::App& app, Options& options, const std::string& what, bool repeatable);
+/// --refined
+void add_refined(CLI::App& app, Options& options);
+void add_json(CLI::App& app, Options& options);
+void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size = "1280x720");
+/// --frames, --path-step and --seed; excludes --views.
+void add_frames(CLI::App& app, Options& options);
+void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& needs);
+void add_grid(CLI::App& app, Options& options);
+void add_border(CLI::App& app, Options& options, bool compared = false);
+/// --threads, --quiet and so on, with add_limits.
+void add_execution(CLI::App& app, Options& options);
+/// --max-memory and --max-time.
+void add_limits(CLI::App& app, Options& options);
+/// What `limn study` sweeps, how it is shared out and where it starts again; the folders of `limn merge`.
+void add_study(CLI::App& app, Options& options);
+void add_parts(CLI::App& app, Options& options);
+/// Which cases `limn stability` runs, with what random parameters, on which surfaces.
+void add_stability(CLI::App& app, Options& options);
+/// --tolerance, --metric and --budget.
+void add_plan(CLI::App& app, Options& options);
+
+}  // namespace limn

@@ -1,0 +1,97 @@
+#pragma once
+// What an experiment is asked to do, without a command line: models x views x methods of one input. What is unset is the scene file's or
+// the library's to choose.
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "subdiv/refine.h"
+
+namespace limn {
+
+/// How an object is modelled.
+struct SurfaceSpec {
+  std::optional<std::string> kind{};          ///< Representation (limn list surfaces).
+  std::optional<int> voxels{};                ///< Along the longest side.
+  std::optional<double> voxel_size{};         ///< World; instead of `voxels`.
+  std::optional<double> half_width_voxels{};  ///< Of the narrow band.
+  std::optional<std::string> gradient{};
+  std::optional<int> level{};
+  bool level_for_view = false;  ///< As fine as the picture shows; `level` is unset then.
+  std::optional<Scheme> scheme{};
+  std::optional<NormalKind> normals{};
+  std::optional<double> smooth_angle_deg{};  ///< Of meshes drawn as they are.
+};
+
+/// The camera, where it is not the scene's own.
+struct CameraSpec {
+  std::optional<glm::ivec2> size_px{};
+  std::optional<glm::dvec3> eye{}, target{}, up{};  ///< World.
+  std::optional<double> fov_deg{};                  ///< Vertical; makes the camera a pinhole.
+  std::optional<double> ortho_height{};             ///< World; makes it orthographic.
+
+  bool is_set() const { return eye || target || up || fov_deg || ortho_height; }
+};
+
+/// A parameter of methods as text: "threshold" for every method that has it, or "rim.threshold".
+struct ParameterText {
+  std::string key, value;
+};
+
+/// Outline methods and their parameters.
+struct BorderSpec {
+  std::vector<std::string> methods{};  ///< Of one picture, in order.
+  std::vector<std::string> columns{};  ///< Each makes pictures of its own; instead of `methods`.
+  std::vector<ParameterText> parameters{};
+  int samples = 1;                         ///< Rays a pixel.
+  std::optional<glm::dvec3> background{};  ///< Linear.
+};
+
+/// What a call may take.
+struct LimitSpec {
+  std::optional<std::int64_t> max_memory{};  ///< Bytes, of the whole program.
+  std::optional<double> max_time_ms{};       ///< Of the whole call.
+};
+
+/// One input, the models and methods to draw it by, from where, and within which limits.
+struct ExperimentSpec {
+  std::string input{};                  ///< A file or the name of a built-in scene.
+  std::vector<std::string> grids{};     ///< Of a volume, by name; "all" for all of its level sets.
+  std::vector<std::string> surfaces{};  ///< Representations; empty: the experiment's own choice.
+  SurfaceSpec surface{};
+  CameraSpec camera{};
+  int views = 1;  ///< Directions spread over the sphere; 1: the camera's own.
+  BorderSpec border{};
+  LimitSpec limits{};
+  int threads = 0;  ///< 0: all.
+};
+
+/// The axes of a study. Empty: the study's own choice.
+struct SweepSpec {
+  std::vector<int> levels{}, voxels{};  ///< Rising.
+  std::vector<NormalKind> normals{};
+  std::vector<std::string> gradients{};
+  std::vector<double> thresholds{};  ///< Of every method that has one; rising.
+  std::optional<int> views{};
+  bool flicker = false;
+  std::optional<std::int64_t> max_model_bytes{};  ///< Larger models are left out.
+};
+
+struct StudySpec {
+  ExperimentSpec experiment{};
+  SweepSpec sweep{};
+};
+
+/// A search for the cheapest model that is right to a tolerance.
+struct PlanSpec {
+  std::optional<double> tolerance_px{};
+  bool silhouette = false;  ///< Only it has to be right.
+  std::optional<double> budget_ms{};
+  std::optional<std::int64_t> budget_bytes{};
+};
+
+}  // namespace limn

@@ -3,6 +3,7 @@
 // raymarch/audit/ and one line in its registry.
 
 #include "raymarch/border.h"
+#include "sdf/registry.h"
 
 namespace limn {
 
@@ -42,7 +43,7 @@ struct AuditCheck {
   std::vector<std::string> surfaces{};  ///< Empty: any.
   std::vector<std::string> methods{};   ///< Empty: any.
 };
-std::span<const AuditCheck> audit_checks();
+const Registry<AuditCheck>& audit_checks();
 
 /// What a check took. What several look at counts for the first that asks for it.
 struct AuditCost {

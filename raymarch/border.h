@@ -2,7 +2,7 @@
 // The outline seam: a method is a pure function of what is seen. One file in raymarch/border/ and one line in its registry.
 
 #include "raymarch/gbuffer.h"
-#include "sdf/descriptor.h"
+#include "sdf/registry.h"
 
 namespace limn {
 
@@ -42,7 +42,9 @@ struct BorderMethod {
   Border (*draw)(const BorderInput& input, const Parameters& parameters);
 };
 
-std::span<const BorderMethod> border_methods();
-const BorderMethod& find_border_method(const std::string& name, const std::string& file = {}, const std::string& field = {});
+const Registry<BorderMethod>& border_methods();
+inline const BorderMethod& find_border_method(const std::string& name, const std::string& file = {}, const std::string& field = {}) {
+  return border_methods().find(name, file, field);
+}
 
 }  // namespace limn

@@ -3,6 +3,7 @@
 
 #include "raymarch/picture.h"
 #include "raymarch/truth.h"
+#include "sdf/registry.h"
 
 namespace limn {
 
@@ -43,8 +44,10 @@ struct Metric {
   MetricSubject subject = MetricSubject::gbuffer;
 };
 
-std::span<const Metric> metrics();
-const Metric& find_metric(const std::string& name, const std::string& file = {}, const std::string& field = {});
+const Registry<Metric>& metrics();
+inline const Metric& find_metric(const std::string& name, const std::string& file = {}, const std::string& field = {}) {
+  return metrics().find(name, file, field);
+}
 
 /// Where two borders differ: missing in blue, false in red, common in grey, on white; linear RGBA.
 Image<glm::vec4> difference_picture(const Image<float>& border, const Image<float>& reference);

@@ -9,7 +9,7 @@
 
 #include "raymarch/scene.h"
 #include "sdf/camera.h"
-#include "sdf/descriptor.h"
+#include "sdf/registry.h"
 
 namespace limn {
 
@@ -174,8 +174,10 @@ struct SurfaceDescriptor {
   Surface (*build)(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin);
 };
 
-std::span<const SurfaceDescriptor> surface_kinds();
-const SurfaceDescriptor& find_surface(const std::string& name, const std::string& file = {}, const std::string& field = {});
+const Registry<SurfaceDescriptor>& surface_kinds();
+inline const SurfaceDescriptor& find_surface(const std::string& name, const std::string& file = {}, const std::string& field = {}) {
+  return surface_kinds().find(name, file, field);
+}
 /// The representation a source is closest to: analytic, mesh or level_set.
 std::string natural_surface(const SceneObject& object);
 

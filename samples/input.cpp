@@ -67,7 +67,7 @@ InputKind input_kind(const std::string& input) {
   const std::string extension = extension_of(path);
   const bool exists = std::filesystem::exists(path, ignored);
   if (!exists && extension.empty()) {
-    throw InputError({input, "", "", "no such file and no built-in scene of that name", known_names(input, scene_names())});
+    throw InputError({input, "", "", "no such file and no built-in scene of that name", known_names(input, scenes().names())});
   }
   if (extension == ".toml") return InputKind::scene_file;
   if (extension == ".vdb" || extension == ".nvdb") return InputKind::level_set;

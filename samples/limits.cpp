@@ -10,6 +10,7 @@
 #include <sstream>
 #include <thread>
 
+#include "samples/experiment/flags.h"
 #include "samples/interrupt.h"
 #include "samples/output.h"
 #include "sdf/error.h"
@@ -82,13 +83,14 @@ std::int64_t model_bytes_left(const LimitSpec& limits, double picture_bytes) {
 }
 
 void hold_limits(const LimitSpec& limits, bool goes_on) {
-  if (limits.max_time_ms) stop_after(*limits.max_time_ms, fmt::format("max_time: stopped after {}", time_text(*limits.max_time_ms)));
+  if (limits.max_time_ms)
+    stop_after(*limits.max_time_ms, in_flags(fmt::format("max_time: stopped after {}", time_text(*limits.max_time_ms))));
   const std::string less = "use fewer voxels, a lower level or a smaller picture";
   if (limits.max_memory) limit_memory(limits);
   if (goes_on) return;
-  end_when_out_of_memory(limits.max_memory ? fmt::format("max_memory: the limit of {} was reached; {}",
-                                                         bytes_text(static_cast<double>(*limits.max_memory)), less)
-                                           : "out of memory; " + less);
+  end_when_out_of_memory(in_flags(limits.max_memory ? fmt::format("max_memory: the limit of {} was reached; {}",
+                                                                  bytes_text(static_cast<double>(*limits.max_memory)), less)
+                                                    : "out of memory; " + less));
 }
 
 }  // namespace limn

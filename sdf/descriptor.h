@@ -33,6 +33,68 @@ struct Parameter {
   int group = 1;                       ///< For `list`: numbers an item takes (2 for [r, y]).
 };
 
+/// Says a parameter by name: a_number("threshold", 0.4).in(0, 1).unit("px").help("…").
+class ParameterMaker {
+ public:
+  ParameterMaker(std::string name, ParameterKind kind, std::vector<double> value) {
+    parameter_.name = std::move(name);
+    parameter_.kind = kind;
+    parameter_.default_value = std::move(value);
+  }
+  /// Inclusive, for each component.
+  ParameterMaker& in(double min, double max) {
+    parameter_.min = min;
+    parameter_.max = max;
+    return *this;
+  }
+  ParameterMaker& unit(std::string text) {
+    parameter_.unit = std::move(text);
+    return *this;
+  }
+  ParameterMaker& help(std::string text) {
+    parameter_.help = std::move(text);
+    return *this;
+  }
+  /// Of a choice, the index of its default; the first unless said.
+  ParameterMaker& chosen(double index) {
+    parameter_.default_value = {index};
+    return *this;
+  }
+  ParameterMaker& choices(std::vector<std::string> names) {
+    parameter_.choices = std::move(names);
+    return *this;
+  }
+  /// Of a list, the numbers that an item takes.
+  ParameterMaker& group(int numbers) {
+    parameter_.group = numbers;
+    return *this;
+  }
+  operator Parameter() const { return parameter_; }  // NOLINT(google-explicit-constructor): a parameter is what it makes
+
+ private:
+  Parameter parameter_{};
+};
+
+inline ParameterMaker a_number(std::string name, double value) { return {std::move(name), ParameterKind::number, {value}}; }
+inline ParameterMaker an_integer(std::string name, double value) { return {std::move(name), ParameterKind::integer, {value}}; }
+inline ParameterMaker a_flag(std::string name, bool value) {
+  return ParameterMaker(std::move(name), ParameterKind::flag, {value ? 1.0 : 0.0}).in(0.0, 1.0);
+}
+inline ParameterMaker a_choice(std::string name, std::vector<std::string> names) {
+  const double last = static_cast<double>(names.size()) - 1.0;
+  return ParameterMaker(std::move(name), ParameterKind::choice, {0.0}).in(0.0, last).choices(std::move(names));
+}
+/// Linear RGB, each from 0 to 1.
+inline ParameterMaker a_color(std::string name, std::vector<double> rgb) {
+  return ParameterMaker(std::move(name), ParameterKind::color, std::move(rgb)).in(0.0, 1.0);
+}
+inline ParameterMaker a_vector(std::string name, std::vector<double> value) {
+  return {std::move(name), ParameterKind::vector, std::move(value)};
+}
+inline ParameterMaker a_list(std::string name, std::vector<double> values, int group) {
+  return ParameterMaker(std::move(name), ParameterKind::list, std::move(values)).group(group);
+}
+
 /// The value of a parameter as a file or a command line gave it: numbers, or a word (choice, or text still to be parsed).
 struct ParameterInput {
   std::vector<double> numbers{};

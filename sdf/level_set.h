@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "sdf/descriptor.h"
 #include "sdf/field.h"
 #include "sdf/geometry.h"
+#include "sdf/registry.h"
 
 namespace limn {
 
@@ -54,7 +54,7 @@ class LevelSet {
 /// The nodes that a gradient reads for points of one cell: bit dz + 2 of [dx + 2][dy + 2] for the node (dx, dy, dz) from the cell's first.
 using Stencil = std::array<std::array<std::uint8_t, 6>, 6>;
 
-/// How a gradient is read from a grid: one file in sdf/gradients/ and one line in sdf/gradients/registry.cpp.
+/// How a gradient is read from a grid: one file in sdf/gradients/ and one line in sdf/gradients/all_gradients.cpp.
 struct GradientDescriptor {
   Description about{};
   double half_width_voxels;  ///< Of the band it needs around a surface point, so that no stencil leaves the band.
@@ -68,8 +68,10 @@ struct GradientDescriptor {
   void (*hessians)(const LevelSetData&, std::span<const glm::dvec3> points, std::span<FieldJet> jets);
 };
 
-std::span<const GradientDescriptor> gradients();
-const GradientDescriptor& find_gradient(const std::string& name, const std::string& file = {}, const std::string& field = {});
+const Registry<GradientDescriptor>& gradients();
+inline const GradientDescriptor& find_gradient(const std::string& name, const std::string& file = {}, const std::string& field = {}) {
+  return gradients().find(name, file, field);
+}
 
 struct LevelSetSettings {
   double voxel_size = 0.0;                         ///< World, > 0.

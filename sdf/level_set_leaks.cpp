@@ -13,7 +13,7 @@ constexpr std::int64_t kLeastNodes = 20;
 }  // namespace
 
 std::string with_inside_remedy() {
-  return "limn export MESH surface = mesh_level_set output = FILE.vdb makes a level set with an inside of any mesh: it closes holes by winding "
+  return "limn export with surface = mesh_level_set makes a level set with an inside of any mesh: it closes holes by winding "
          "number";
 }
 

@@ -5,15 +5,6 @@
 
 namespace limn {
 
-const ShapeDescriptor& find_shape(const std::string& name, const std::string& file, const std::string& field) {
-  std::vector<std::string> names;
-  for (const ShapeDescriptor& shape : shapes()) {
-    if (shape.about.name == name) return shape;
-    names.push_back(shape.about.name);
-  }
-  throw InputError({file, field, "'" + name + "'", "unknown shape", known_names(name, names)});
-}
-
 Field make_shape(const std::string& name, const std::map<std::string, std::vector<double>>& values) {
   const ShapeDescriptor& shape = find_shape(name);
   std::map<std::string, ParameterInput> given;

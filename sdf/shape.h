@@ -3,21 +3,23 @@
 
 #include <span>
 
-#include "sdf/descriptor.h"
 #include "sdf/field.h"
+#include "sdf/registry.h"
 
 namespace limn {
 
-/// A registry entry: one file in sdf/shapes/ and one line in sdf/shapes/registry.cpp.
+/// A registry entry: one file in sdf/shapes/ and one line in sdf/shapes/all_shapes.cpp.
 struct ShapeDescriptor {
   Description about{};
   std::vector<Parameter> parameters{};
   Field (*make)(const Parameters&);  ///< Throws InputError for combinations that no single range can exclude.
 };
 
-std::span<const ShapeDescriptor> shapes();
+const Registry<ShapeDescriptor>& shapes();
 /// Throws InputError naming the nearest known shape. `file` and `field` go into the message.
-const ShapeDescriptor& find_shape(const std::string& name, const std::string& file = {}, const std::string& field = {});
+inline const ShapeDescriptor& find_shape(const std::string& name, const std::string& file = {}, const std::string& field = {}) {
+  return shapes().find(name, file, field);
+}
 
 /// Shape with defaults overridden by name, for code: make_shape("torus", {{"major", {1.0}}, {"minor", {0.3}}}).
 Field make_shape(const std::string& name, const std::map<std::string, std::vector<double>>& values = {});

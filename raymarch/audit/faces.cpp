@@ -4,8 +4,8 @@
 
 #include <numbers>
 
+#include "raymarch/audit.h"
 #include "raymarch/audit/facts.h"
-#include "raymarch/audit/registry.h"
 
 namespace limn {
 namespace {

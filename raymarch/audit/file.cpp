@@ -1,7 +1,7 @@
 // What the reader of a file dropped, repaired or ignored: people learn of it here, once.
 
+#include "raymarch/audit.h"
 #include "raymarch/audit/facts.h"
-#include "raymarch/audit/registry.h"
 
 namespace limn {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "raymarch/audit.h"
 #include "raymarch/audit/facts.h"
-#include "raymarch/audit/registry.h"
 
 namespace limn {
 namespace {

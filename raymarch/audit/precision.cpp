@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "raymarch/audit.h"
 #include "raymarch/audit/facts.h"
-#include "raymarch/audit/registry.h"
 
 namespace limn {
 namespace {

@@ -1,9 +1,9 @@
 // The blurred silhouette, laid around the object.
 
+#include "raymarch/border.h"
 #include "raymarch/border/blur_groups.h"
 #include "raymarch/border/blur_passes.h"
 #include "raymarch/border/picture_rows.h"
-#include "raymarch/border/registry.h"
 
 namespace limn {
 namespace {
@@ -108,17 +108,16 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
 }  // namespace
 
 BorderMethod blur_method() {
-  constexpr auto number = ParameterKind::number, integer = ParameterKind::integer, choice = ParameterKind::choice;
   std::vector<Parameter> parameters{
-      {"kernel", choice, "", {0.0}, 0.0, 1.0, "kind of blur", {"gaussian", "box"}},
-      {"radius", integer, "px", {8.0}, 1.0, 256.0, "half the kernel's size; a Gaussian's standard deviation is a third of it", {}},
-      {"scale", integer, "", {1.0}, 1.0, 8.0, "blurs a buffer this many times smaller: quicker, coarser", {}},
-      {"edge", choice, "", {0.0}, 0.0, 1.0, "fading out, or cut at the level", {"glow", "hard"}},
-      {"level", number, "", {0.05}, 0.0, 0.5, "hard: ink where the blurred silhouette exceeds this", {}},
-      {"strength", number, "", {1.0}, 0.0, 16.0, "glow: factor of the ink, which ends at 1", {}},
-      {"place", choice, "", {0.0}, 0.0, 1.0, "outside the object only, or on both sides of the silhouette", {"outside", "over"}},
-      {"colors", choice, "", {0.0}, 0.0, 1.0, "one ink, or the objects' own colours", {"one", "objects"}},
-      {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}};
+      a_choice("kernel", {"gaussian", "box"}).help("kind of blur"),
+      an_integer("radius", 8.0).in(1.0, 256.0).unit("px").help("half the kernel's size; a Gaussian's standard deviation is a third of it"),
+      an_integer("scale", 1.0).in(1.0, 8.0).help("blurs a buffer this many times smaller: quicker, coarser"),
+      a_choice("edge", {"glow", "hard"}).help("fading out, or cut at the level"),
+      a_number("level", 0.05).in(0.0, 0.5).help("hard: ink where the blurred silhouette exceeds this"),
+      a_number("strength", 1.0).in(0.0, 16.0).help("glow: factor of the ink, which ends at 1"),
+      a_choice("place", {"outside", "over"}).help("outside the object only, or on both sides of the silhouette"),
+      a_choice("colors", {"one", "objects"}).help("one ink, or the objects' own colours"),
+      a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")};
   for (Parameter& parameter : group_parameters(GroupBy::all)) parameters.push_back(std::move(parameter));
   return {{"blur", "the silhouette blurred in two passes and laid around the object, as a glow or a hard line",
            "separable filters: Szeliski 2010, section 3.2"},

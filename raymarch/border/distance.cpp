@@ -1,7 +1,7 @@
 // Outline of constant width from the exact Euclidean distance to the silhouette.
 
+#include "raymarch/border.h"
 #include "raymarch/border/outline.h"
-#include "raymarch/border/registry.h"
 
 namespace limn {
 namespace {

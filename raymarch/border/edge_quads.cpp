@@ -4,9 +4,9 @@
 
 #include <numbers>
 
+#include "raymarch/border.h"
 #include "raymarch/border/edge_visibility.h"
 #include "raymarch/border/line_raster.h"
-#include "raymarch/border/registry.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -181,21 +181,20 @@ std::string unsupported(const SceneModel& model, const Scene&) {
 }  // namespace
 
 BorderMethod edge_quads_method() {
-  constexpr auto number = ParameterKind::number, flag = ParameterKind::flag;
-  return {{"edge_quads", "edges of the mesh: contour, boundary, crease and material edges as lines, hidden ones removed",
-           "Card and Mitchell 2002; McGuire and Hughes 2004"},
-          {"Z", "id", "face", "mesh"},
-          {{"width", number, "px", {2.0}, 0.0, 64.0, "of the lines; with taper: at the scene's nearest depth", {}},
-           {"taper", flag, "", {0.0}, 0.0, 1.0, "near lines thick, far lines thin", {}},
-           {"far_width", number, "px", {0.5}, 0.0, 64.0, "with taper: at the scene's farthest depth", {}},
-           {"contour", flag, "", {1.0}, 0.0, 1.0, "edges between a face seen from the front and one seen from behind", {}},
-           {"boundary", flag, "", {1.0}, 0.0, 1.0, "edges with one face only", {}},
-           {"crease", flag, "", {1.0}, 0.0, 1.0, "edges whose faces turn by more than the crease angle", {}},
-           {"crease_angle", number, "deg", {40.0}, 0.0, 180.0, "between the normals of the two faces", {}},
-           {"material", flag, "", {1.0}, 0.0, 1.0, "edges whose faces differ in material", {}},
-           {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}},
-          unsupported,
-          draw};
+  return {
+      {"edge_quads", "edges of the mesh: contour, boundary, crease and material edges as lines, hidden ones removed",
+       "Card and Mitchell 2002; McGuire and Hughes 2004"},
+      {"Z", "id", "face", "mesh"},
+      {a_number("width", 2.0).in(0.0, 64.0).unit("px").help("of the lines; with taper: at the scene's nearest depth"),
+       a_flag("taper", false).help("near lines thick, far lines thin"),
+       a_number("far_width", 0.5).in(0.0, 64.0).unit("px").help("with taper: at the scene's farthest depth"),
+       a_flag("contour", true).help("edges between a face seen from the front and one seen from behind"),
+       a_flag("boundary", true).help("edges with one face only"),
+       a_flag("crease", true).help("edges whose faces turn by more than the crease angle"),
+       a_number("crease_angle", 40.0).in(0.0, 180.0).unit("deg").help("between the normals of the two faces"),
+       a_flag("material", true).help("edges whose faces differ in material"), a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")},
+      unsupported,
+      draw};
 }
 
 }  // namespace limn

@@ -4,9 +4,9 @@
 
 #include <fmt/core.h>
 
+#include "raymarch/border.h"
 #include "raymarch/border/edge_visibility.h"
 #include "raymarch/border/hull_raster.h"
-#include "raymarch/border/registry.h"
 
 namespace limn {
 namespace {
@@ -142,42 +142,19 @@ WindowImage<float> ink_object(const BorderInput& input, size_t object, const Ext
 }
 
 BorderMethod extrude_method() {
-  constexpr auto number = ParameterKind::number, choice = ParameterKind::choice;
   std::vector<Parameter> parameters{
-      {"width", number, "px", {3.0}, 0.0, 256.0, "in clip space", {}},
-      {"object_width",
-       number,
-       "world",
-       {0.02},
-       0.0,
-       1e9,
-       "in object space, where it grows with the object and shrinks with distance; by position: a share of the distance to the origin",
-       {}},
-      {"space",
-       choice,
-       "",
-       {0.0},
-       0.0,
-       1.0,
-       "clip: as many pixels everywhere; object: as much of the object's own units",
-       {"clip", "object"}},
-      {"direction",
-       choice,
-       "",
-       {3.0},
-       0.0,
-       3.0,
-       "of meshes: away from the origin, along the normals, or along normals baked smooth",
-       {"position", "normalized_position", "vertex_normal", "smooth_normal"}},
-      {"mask",
-       choice,
-       "",
-       {0.0},
-       0.0,
-       1.0,
-       "draw back faces only (inner contours too), or everything beside the object",
-       {"back_faces", "stencil"}},
-      {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}};
+      a_number("width", 3.0).in(0.0, 256.0).unit("px").help("in clip space"),
+      a_number("object_width", 0.02)
+          .in(0.0, 1e9)
+          .unit("world")
+          .help("in object space, where it grows with the object and shrinks with distance; by position: a share of the distance to the "
+                "origin"),
+      a_choice("space", {"clip", "object"}).help("clip: as many pixels everywhere; object: as much of the object's own units"),
+      a_choice("direction", {"position", "normalized_position", "vertex_normal", "smooth_normal"})
+          .chosen(3.0)
+          .help("of meshes: away from the origin, along the normals, or along normals baked smooth"),
+      a_choice("mask", {"back_faces", "stencil"}).help("draw back faces only (inner contours too), or everything beside the object"),
+      a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")};
   for (Parameter& parameter : group_parameters(GroupBy::object)) parameters.push_back(std::move(parameter));
   return {
       {"extrude", "the object again, grown and behind itself: an inverted hull of a mesh, the exact offset f = w of a field or level set",

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/border.h"
 #include "raymarch/border/hysteresis.h"
-#include "raymarch/border/registry.h"
 #include "raymarch/border/surface_notes.h"
 
 namespace limn {
@@ -39,23 +39,19 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
 }  // namespace
 
 BorderMethod fresnel_method() {
-  return {{"fresnel", "border where (1 - N.V)^power is high, with a soft edge", "Schlick 1994 (the power); limn (the step)"},
-          {"NdotV", "N", "id"},
-          {{"width", ParameterKind::number, "", {0.4}, 0.0, 1.0, "outline where (1 - N.V)^power exceeds 1 - width; 1 is everything", {}},
-           {"softness", ParameterKind::number, "", {0.1}, 0.0, 1.0, "over how much of it the outline fades in; 0 is hard", {}},
-           {"power", ParameterKind::number, "", {1.0}, 0.01, 64.0, "exponent of 1 - N.V", {}},
-           {"strength", ParameterKind::number, "", {1.0}, 0.0, 16.0, "factor of the outline; the ink ends at 1", {}},
-           {"hysteresis",
-            ParameterKind::number,
-            "",
-            {0.0},
-            0.0,
-            1.0,
-            "of (1 - N.V)^power, by which a surface point has to pass the edge before its ink switches from one frame to the next",
-            {}},
-           {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}},
-          [](const SceneModel&, const Scene&) { return std::string(); },
-          draw};
+  return {
+      {"fresnel", "border where (1 - N.V)^power is high, with a soft edge", "Schlick 1994 (the power); limn (the step)"},
+      {"NdotV", "N", "id"},
+      {a_number("width", 0.4).in(0.0, 1.0).help("outline where (1 - N.V)^power exceeds 1 - width; 1 is everything"),
+       a_number("softness", 0.1).in(0.0, 1.0).help("over how much of it the outline fades in; 0 is hard"),
+       a_number("power", 1.0).in(0.01, 64.0).help("exponent of 1 - N.V"),
+       a_number("strength", 1.0).in(0.0, 16.0).help("factor of the outline; the ink ends at 1"),
+       a_number("hysteresis", 0.0)
+           .in(0.0, 1.0)
+           .help("of (1 - N.V)^power, by which a surface point has to pass the edge before its ink switches from one frame to the next"),
+       a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")},
+      [](const SceneModel&, const Scene&) { return std::string(); },
+      draw};
 }
 
 }  // namespace limn

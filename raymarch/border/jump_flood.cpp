@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "raymarch/border.h"
 #include "raymarch/border/outline.h"
 #include "raymarch/border/picture_rows.h"
-#include "raymarch/border/registry.h"
 
 namespace limn {
 namespace {
@@ -58,9 +58,8 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
 
 BorderMethod jump_flood_method() {
   std::vector<Parameter> parameters = outline_parameters();
-  parameters.push_back(
-      {"extra_passes", ParameterKind::integer, "", {2.0}, 0.0, 2.0, "passes of step 2 and 1 after the last; fewer wrong pixels", {}});
-  parameters.push_back({"check", ParameterKind::flag, "", {1.0}, 0.0, 1.0, "count the pixels that differ from the exact transform", {}});
+  parameters.push_back(an_integer("extra_passes", 2.0).in(0.0, 2.0).help("passes of step 2 and 1 after the last; fewer wrong pixels"));
+  parameters.push_back(a_flag("check", true).help("count the pixels that differ from the exact transform"));
   return {{"jump_flood", "outline of constant width around the silhouette, by jump flooding: a fixed number of passes, not exact",
            "Rong and Tan 2006"},
           {"id", "NdotV"},

@@ -4,8 +4,8 @@
 
 #include <atomic>
 
+#include "raymarch/border.h"
 #include "raymarch/border/picture_rows.h"
-#include "raymarch/border/registry.h"
 
 namespace limn {
 namespace {
@@ -117,9 +117,9 @@ BorderMethod normal4_method() {
   return {
       {"normal4", "border where the normals of the four neighbours differ from the pixel's own", "Saito and Takahashi 1990; Decaudin 1996"},
       {"N", "id"},
-      {{"ink", ParameterKind::choice, "", {0.0}, 0.0, 1.0, "hard at the threshold, or the sum itself", {"threshold", "raw"}},
-       {"threshold", ParameterKind::number, "", {0.4}, 1e-3, 1.0, "ink where the sum of 1 - n.n_i over the neighbours reaches this", {}},
-       {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}},
+      {a_choice("ink", {"threshold", "raw"}).help("hard at the threshold, or the sum itself"),
+       a_number("threshold", 0.4).in(1e-3, 1.0).help("ink where the sum of 1 - n.n_i over the neighbours reaches this"),
+       a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")},
       [](const SceneModel&, const Scene&) { return std::string(); },
       draw};
 }

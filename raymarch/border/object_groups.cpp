@@ -45,24 +45,13 @@ double plane_depth(const Camera& camera, const GBuffer& seen, size_t i, const gl
 }  // namespace
 
 std::vector<Parameter> group_parameters(GroupBy by) {
-  return {{"group",
-           ParameterKind::choice,
-           "",
-           {static_cast<double>(by)},
-           0.0,
-           2.0,
-           "what an outline goes around: all objects together, each object, or what has the same material; between two the one in front is "
-           "outlined",
-           {"all", "object", "material"}},
-          {"hidden",
-           ParameterKind::choice,
-           "",
-           {0.0},
-           0.0,
-           1.0,
-           "drawn: also the outline of what other objects hide, seen through them",
-           {"none", "drawn"}},
-          {"hidden_color", ParameterKind::color, "", {0.6, 0.6, 0.6}, 0.0, 1.0, "ink of hidden outlines, linear RGB", {}}};
+  return {a_choice("group", {"all", "object", "material"})
+              .chosen(static_cast<double>(by))
+              .help("what an outline goes around: all objects together, each object, or what has the same material; between two the one in "
+                    "front is "
+                    "outlined"),
+          a_choice("hidden", {"none", "drawn"}).help("drawn: also the outline of what other objects hide, seen through them"),
+          a_color("hidden_color", {0.6, 0.6, 0.6}).help("ink of hidden outlines, linear RGB")};
 }
 
 GroupSettings group_settings(const Parameters& parameters) {

@@ -63,20 +63,13 @@ void draw_hidden(const BorderInput& input, const GroupSettings& settings, const 
 }  // namespace
 
 std::vector<Parameter> outline_parameters() {
-  constexpr auto number = ParameterKind::number;
   std::vector<Parameter> parameters = {
-      {"width", number, "px", {3.0}, 0.0, 480.0, "width of the outline", {}},
-      {"softness", number, "px", {1.0}, 0.0, 32.0, "width over which its edges fade; 1 is anti-aliased, 0 hard", {}},
-      {"side", ParameterKind::choice, "", {0.0}, 0.0, 2.0, "which side of the silhouette has the ink", {"outside", "inside", "centered"}},
-      {"seeds",
-       ParameterKind::choice,
-       "",
-       {0.0},
-       0.0,
-       1.0,
-       "where the silhouette crosses between two pixels: estimated from N.V on smooth surfaces, or half-way",
-       {"estimated", "half"}},
-      {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}},
+      a_number("width", 3.0).in(0.0, 480.0).unit("px").help("width of the outline"),
+      a_number("softness", 1.0).in(0.0, 32.0).unit("px").help("width over which its edges fade; 1 is anti-aliased, 0 hard"),
+      a_choice("side", {"outside", "inside", "centered"}).help("which side of the silhouette has the ink"),
+      a_choice("seeds", {"estimated", "half"})
+          .help("where the silhouette crosses between two pixels: estimated from N.V on smooth surfaces, or half-way"),
+      a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB"),
   };
   for (Parameter& parameter : group_parameters(GroupBy::all)) parameters.push_back(std::move(parameter));
   return parameters;

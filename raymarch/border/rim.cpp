@@ -1,7 +1,7 @@
 // Rim: border where N.V falls below a threshold.
 
+#include "raymarch/border.h"
 #include "raymarch/border/hysteresis.h"
-#include "raymarch/border/registry.h"
 #include "raymarch/border/surface_notes.h"
 
 namespace limn {
@@ -29,17 +29,12 @@ BorderMethod rim_method() {
   return {{"rim", "border where the surface turns away from the eye: N.V below a threshold; its width follows the curvature",
            "Gooch et al. 1999; width: Kindlmann et al. 2003"},
           {"NdotV", "N", "id"},
-          {{"threshold", ParameterKind::number, "", {0.4}, 0.0, 1.0, "border where N.V is below this", {}},
-           {"softness", ParameterKind::number, "", {0.0}, 0.0, 1.0, "N.V over which the border fades, about the threshold; 0 is hard", {}},
-           {"hysteresis",
-            ParameterKind::number,
-            "",
-            {0.0},
-            0.0,
-            1.0,
-            "N.V by which a surface point has to pass the threshold before its ink switches from one frame to the next",
-            {}},
-           {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}},
+          {a_number("threshold", 0.4).in(0.0, 1.0).help("border where N.V is below this"),
+           a_number("softness", 0.0).in(0.0, 1.0).help("N.V over which the border fades, about the threshold; 0 is hard"),
+           a_number("hysteresis", 0.0)
+               .in(0.0, 1.0)
+               .help("N.V by which a surface point has to pass the threshold before its ink switches from one frame to the next"),
+           a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")},
           [](const SceneModel&, const Scene&) { return std::string(); },
           draw};
 }

@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 
+#include "raymarch/border.h"
 #include "raymarch/border/hysteresis.h"
 #include "raymarch/border/picture_rows.h"
 #include "raymarch/border/radial_curvature.h"
-#include "raymarch/border/registry.h"
 #include "raymarch/border/surface_notes.h"
 
 namespace limn {
@@ -155,31 +155,20 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
 }  // namespace
 
 BorderMethod rim_width_method() {
-  return {
-      {"rim_width", "rim whose threshold follows the radial curvature, so that the border is `width` pixels everywhere",
-       "Kindlmann et al. 2003; perspective, both estimators and their second order: limn"},
-      {"NdotV", "N", "Z", "id", "face"},
-      {{"width", ParameterKind::number, "px", {3.0}, 0.0, 1000.0, "width of the border", {}},
-       {"estimator",
-        ParameterKind::choice,
-        "",
-        {0},
-        0,
-        1,
-        "radial curvature from the `screen` (differences of N.V), or the surface's own `curvature`",
-        {"screen", "curvature"}},
-       {"softness", ParameterKind::number, "px", {0.0}, 0.0, 1000.0, "pixels over which the border fades, about its width; 0 is hard", {}},
-       {"hysteresis",
-        ParameterKind::number,
-        "px",
-        {0.0},
-        0.0,
-        1000.0,
-        "by which a surface point has to pass the border's edge before its ink switches from one frame to the next",
-        {}},
-       {"color", ParameterKind::color, "", {0.0, 0.0, 0.0}, 0.0, 1.0, "ink, linear RGB", {}}},
-      [](const SceneModel&, const Scene&) { return std::string(); },
-      draw};
+  return {{"rim_width", "rim whose threshold follows the radial curvature, so that the border is `width` pixels everywhere",
+           "Kindlmann et al. 2003; perspective, both estimators and their second order: limn"},
+          {"NdotV", "N", "Z", "id", "face"},
+          {a_number("width", 3.0).in(0.0, 1000.0).unit("px").help("width of the border"),
+           a_choice("estimator", {"screen", "curvature"})
+               .help("radial curvature from the `screen` (differences of N.V), or the surface's own `curvature`"),
+           a_number("softness", 0.0).in(0.0, 1000.0).unit("px").help("pixels over which the border fades, about its width; 0 is hard"),
+           a_number("hysteresis", 0.0)
+               .in(0.0, 1000.0)
+               .unit("px")
+               .help("by which a surface point has to pass the border's edge before its ink switches from one frame to the next"),
+           a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")},
+          [](const SceneModel&, const Scene&) { return std::string(); },
+          draw};
 }
 
 }  // namespace limn

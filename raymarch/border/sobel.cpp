@@ -1,7 +1,7 @@
 // Sobel: edges of the G-buffer's layers; the core is edge_sources.h.
 
+#include "raymarch/border.h"
 #include "raymarch/border/edge_sources.h"
-#include "raymarch/border/registry.h"
 
 namespace limn {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/metric.h"
 #include "raymarch/metric/ink_mask.h"
-#include "raymarch/metric/registry.h"
 #include "sdf/error.h"
 
 namespace limn {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "raymarch/curve_geometry.h"
-#include "raymarch/metric/registry.h"
+#include "raymarch/metric.h"
 
 namespace limn {
 namespace {

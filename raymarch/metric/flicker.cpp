@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "raymarch/flips.h"
-#include "raymarch/metric/registry.h"
+#include "raymarch/metric.h"
 #include "sdf/error.h"
 
 namespace limn {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "raymarch/metric.h"
 #include "raymarch/metric/error_summary.h"
-#include "raymarch/metric/registry.h"
 
 namespace limn {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "raymarch/metric/registry.h"
+#include "raymarch/metric.h"
 #include "sdf/error.h"
 
 namespace limn {

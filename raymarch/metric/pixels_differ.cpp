@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raymarch/metric/registry.h"
+#include "raymarch/metric.h"
 #include "sdf/error.h"
 
 namespace limn {

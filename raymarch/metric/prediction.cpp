@@ -2,7 +2,7 @@
 
 #include "raymarch/prediction.h"
 
-#include "raymarch/metric/registry.h"
+#include "raymarch/metric.h"
 
 namespace limn {
 namespace {

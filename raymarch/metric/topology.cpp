@@ -2,8 +2,8 @@
 
 #include <numeric>
 
+#include "raymarch/metric.h"
 #include "raymarch/metric/ink_mask.h"
-#include "raymarch/metric/registry.h"
 #include "sdf/error.h"
 
 namespace limn {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "raymarch/border_width.h"
-#include "raymarch/metric/registry.h"
+#include "raymarch/metric.h"
 
 namespace limn {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "raymarch/analytic/tile.h"
 #include "raymarch/curvature.h"
+#include "raymarch/surface.h"
 #include "raymarch/surface/offset.h"
-#include "raymarch/surface/registry.h"
 #include "sdf/error.h"
 
 namespace limn {

@@ -1,5 +1,5 @@
+#include "raymarch/surface.h"
 #include "raymarch/surface/offset.h"
-#include "raymarch/surface/registry.h"
 #include "raymarch/surface/resampled_volume.h"
 #include "sdf/error.h"
 

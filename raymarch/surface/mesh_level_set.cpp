@@ -4,9 +4,9 @@
 
 #include <chrono>
 
+#include "raymarch/surface.h"
 #include "raymarch/surface/object_mesh.h"
 #include "raymarch/surface/offset.h"
-#include "raymarch/surface/registry.h"
 
 namespace limn {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-// A subcommand is one file here and one line in commands/registry.cpp.
+// A subcommand is one file here and one line in commands/all_commands.cpp.
 
 #include <span>
 

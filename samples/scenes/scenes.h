@@ -1,10 +1,10 @@
 #pragma once
-// Built-in scenes: one file a scene and one line in scenes/registry.cpp.
+// Built-in scenes: one file a scene and one line in scenes/all_scenes.cpp.
 
 #include <span>
 
 #include "raymarch/scene.h"
-#include "sdf/descriptor.h"
+#include "sdf/registry.h"
 
 namespace limn {
 
@@ -17,9 +17,8 @@ struct SceneDescriptor {
 /// least 4:3 wide.
 CameraSettings look_at(const glm::dvec3& target, const glm::dvec3& direction, double distance);
 
-std::span<const SceneDescriptor> scenes();
-std::vector<std::string> scene_names();
+const Registry<SceneDescriptor>& scenes();
 /// Null where no scene has that name.
-const SceneDescriptor* find_scene(const std::string& name);
+inline const SceneDescriptor* find_scene(const std::string& name) { return scenes().look_up(name); }
 
 }  // namespace limn

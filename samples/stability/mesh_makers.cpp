@@ -18,10 +18,10 @@ void add_face(Mesh& mesh, std::initializer_list<std::int32_t> corners) {
 }
 
 Parameter whole(const std::string& name, double value, double least, const std::string& help) {
-  return {name, ParameterKind::integer, "", {value}, least, 4096.0, help, {}};
+  return an_integer(name, value).in(least, 4096.0).help(help);
 }
 Parameter length(const std::string& name, double value, const std::string& help) {
-  return {name, ParameterKind::number, "world", {value}, 1e-9, 1e9, help, {}};
+  return a_number(name, value).in(1e-9, 1e9).unit("world").help(help);
 }
 
 /// Rings of a cylinder about y, each turned by half a step against the last; caps as fans.
@@ -145,40 +145,32 @@ Mesh torus(const Parameters& p) {
 
 }  // namespace
 
-std::span<const MeshMaker> mesh_makers() {
-  static const std::array all = {
-      MeshMaker{{"schwarz_lantern", "a cylinder of triangles whose normals do not follow its own", "Schwarz 1880"},
-                {length("radius", 1.0, "of the cylinder"), length("half_height", 1.0, "of the cylinder"),
-                 whole("around", 16.0, 3.0, "vertices of a ring"), whole("along", 64.0, 1.0, "rings")},
-                lantern},
-      MeshMaker{{"globe", "a ball by longitude and latitude, quads collapsed at the poles", "limn"},
-                {length("radius", 1.0, "of the ball"), whole("around", 12.0, 3.0, "quads of a ring"), whole("along", 8.0, 2.0, "rings")},
-                globe},
-      MeshMaker{{"spindle", "two vertices joined by quads, as many as wanted", "limn"},
-                {length("radius", 1.0, "of its waist"), length("half_height", 1.0, "of each vertex"),
-                 whole("valence", 7.0, 3.0, "edges at each of the two")},
-                spindle},
-      MeshMaker{{"box", "a cube of squares", "limn"},
-                {length("half", 1.0, "of its side"),
-                 whole("divisions", 4.0, 1.0, "squares along a side"),
-                 {"crease", ParameterKind::number, "", {0.0}, 0.0, 10.0, "sharpness of the four upper edges", {}},
-                 {"edges", ParameterKind::number, "", {0.0}, 0.0, 10.0, "sharpness of all twelve edges", {}}},
-                box},
-      MeshMaker{{"torus", "a torus of triangles and quads, about y", "limn"},
-                {length("major", 1.0, "radius of its centre"), length("minor", 0.4, "radius of its tube"),
-                 whole("level", 2.0, 0.0, "refinements")},
-                torus},
-  };
+const Registry<MeshMaker>& mesh_makers() {
+  static const Registry<MeshMaker> all(
+      "maker", {
+                   MeshMaker{{"schwarz_lantern", "a cylinder of triangles whose normals do not follow its own", "Schwarz 1880"},
+                             {length("radius", 1.0, "of the cylinder"), length("half_height", 1.0, "of the cylinder"),
+                              whole("around", 16.0, 3.0, "vertices of a ring"), whole("along", 64.0, 1.0, "rings")},
+                             lantern},
+                   MeshMaker{{"globe", "a ball by longitude and latitude, quads collapsed at the poles", "limn"},
+                             {length("radius", 1.0, "of the ball"), whole("around", 12.0, 3.0, "quads of a ring"),
+                              whole("along", 8.0, 2.0, "rings")},
+                             globe},
+                   MeshMaker{{"spindle", "two vertices joined by quads, as many as wanted", "limn"},
+                             {length("radius", 1.0, "of its waist"), length("half_height", 1.0, "of each vertex"),
+                              whole("valence", 7.0, 3.0, "edges at each of the two")},
+                             spindle},
+                   MeshMaker{{"box", "a cube of squares", "limn"},
+                             {length("half", 1.0, "of its side"), whole("divisions", 4.0, 1.0, "squares along a side"),
+                              a_number("crease", 0.0).in(0.0, 10.0).help("sharpness of the four upper edges"),
+                              a_number("edges", 0.0).in(0.0, 10.0).help("sharpness of all twelve edges")},
+                             box},
+                   MeshMaker{{"torus", "a torus of triangles and quads, about y", "limn"},
+                             {length("major", 1.0, "radius of its centre"), length("minor", 0.4, "radius of its tube"),
+                              whole("level", 2.0, 0.0, "refinements")},
+                             torus},
+               });
   return all;
-}
-
-const MeshMaker& find_mesh_maker(const std::string& name, const std::string& file, const std::string& field) {
-  std::vector<std::string> names;
-  for (const MeshMaker& maker : mesh_makers()) {
-    if (maker.about.name == name) return maker;
-    names.push_back(maker.about.name);
-  }
-  throw InputError({file, field, name, "unknown maker", known_names(name, names)});
 }
 
 }  // namespace limn

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "sdf/descriptor.h"
+#include "sdf/registry.h"
 #include "subdiv/mesh.h"
 
 namespace limn {
@@ -14,7 +14,9 @@ struct MeshMaker {
   Mesh (*make)(const Parameters& parameters);
 };
 
-std::span<const MeshMaker> mesh_makers();
-const MeshMaker& find_mesh_maker(const std::string& name, const std::string& file = {}, const std::string& field = {});
+const Registry<MeshMaker>& mesh_makers();
+inline const MeshMaker& find_mesh_maker(const std::string& name, const std::string& file = {}, const std::string& field = {}) {
+  return mesh_makers().find(name, file, field);
+}
 
 }  // namespace limn

@@ -1,5 +1,5 @@
 #pragma once
-// The entries of the gradient registry, one a file; and the gathering that they share.
+// What the gradients, one a file, share.
 
 #include <cmath>
 #include <numbers>
@@ -27,9 +27,5 @@ constexpr Stencil box_stencil(int lower, int upper, bool beyond) {
       }
   return stencil;
 }
-
-GradientDescriptor cell_gradient();
-GradientDescriptor central_gradient();
-GradientDescriptor cubic_gradient();
 
 }  // namespace limn

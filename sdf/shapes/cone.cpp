@@ -17,7 +17,7 @@ Field make(const Parameters& p) {
 }  // namespace
 
 ShapeDescriptor describe_cone() {
-  const Parameter angle{"angle_deg", ParameterKind::number, "deg", {25.0}, 0.1, 89.0, "between the axis (y) and the side", {}, 1};
+  const Parameter angle = a_number("angle_deg", 25.0).in(0.1, 89.0).unit("deg").help("between the axis (y) and the side");
   return {{"cone", "a capped cone, apex up, half its height above the origin", "closed form"},
           {angle, length_parameter("height", 1.6, "from the base to the apex")},
           make};

@@ -18,18 +18,18 @@ constexpr double greatest_length = 1e9;
 
 /// A length above 0.
 inline Parameter length_parameter(std::string name, double value, std::string help) {
-  return {std::move(name), ParameterKind::number, "world", {value}, least_length, greatest_length, std::move(help), {}, 1};
+  return a_number(std::move(name), value).in(least_length, greatest_length).unit("world").help(std::move(help));
 }
 /// Three lengths above 0.
 inline Parameter lengths_parameter(std::string name, std::vector<double> values, std::string help) {
-  return {std::move(name), ParameterKind::vector, "world", std::move(values), least_length, greatest_length, std::move(help), {}, 1};
+  return a_vector(std::move(name), std::move(values)).in(least_length, greatest_length).unit("world").help(std::move(help));
 }
 inline Parameter point_parameter(std::string name, std::vector<double> value, std::string help) {
-  return {std::move(name), ParameterKind::vector, "world", std::move(value), -greatest_length, greatest_length, std::move(help), {}, 1};
+  return a_vector(std::move(name), std::move(value)).in(-greatest_length, greatest_length).unit("world").help(std::move(help));
 }
 /// Any count of groups of reals from `min` up.
 inline Parameter list_parameter(std::string name, std::vector<double> values, double min, int group, std::string help) {
-  return {std::move(name), ParameterKind::list, "world", std::move(values), min, greatest_length, std::move(help), {}, group};
+  return a_list(std::move(name), std::move(values), group).in(min, greatest_length).unit("world").help(std::move(help));
 }
 
 /// A value that is in its own range but does not go with the others.

@@ -57,15 +57,8 @@ Field make(const Parameters& p) {
 }  // namespace
 
 ShapeDescriptor describe_superellipsoid() {
-  const Parameter exponents{"exponents",
-                            ParameterKind::vector,
-                            "",
-                            {0.5, 0.5},
-                            0.1,
-                            2.0,
-                            "north-south and east-west: 0.1 nearly a box, 1 an ellipsoid, 2 an octahedron",
-                            {},
-                            1};
+  const Parameter exponents =
+      a_vector("exponents", {0.5, 0.5}).in(0.1, 2.0).help("north-south and east-west: 0.1 nearly a box, 1 an ellipsoid, 2 an octahedron");
   return {{"superellipsoid", "between box, ellipsoid and octahedron", "Barr 1981"},
           {lengths_parameter("radii", {0.9, 0.7, 0.6}, "half axes along x, y (the axis of the east-west sections), z"), exponents},
           make};

@@ -250,7 +250,7 @@ TEST(Audit, ThinWallsSayTheirShareAndHowManyVoxelsWouldHoldThem) {
     const Finding coarse = finding_of(object, "thin walls", thorough(64));
     EXPECT_EQ(coarse.severity, Severity::warning);
     EXPECT_GT(coarse.value, 0.9);
-    EXPECT_NE(coarse.remedy.find("--voxels 200 "), std::string::npos) << coarse.remedy;
+    EXPECT_NE(coarse.remedy.find("voxels = 200 "), std::string::npos) << coarse.remedy;
     EXPECT_NE(coarse.message.find("0.02, 0.64 voxels"), std::string::npos) << coarse.message;
     EXPECT_EQ(finding_of(object, "thin walls", thorough(256)).severity, Severity::info);
     EXPECT_EQ(finding_of(object, "narrow gaps", thorough(64)).value, 0.0);

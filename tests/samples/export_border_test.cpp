@@ -126,7 +126,7 @@ std::string fault(const Way& way, const Outcome& outcome) {
 
 /// The built-in scenes, a mesh and a volume.
 struct Inputs {
-  std::vector<std::string> names = scene_names();
+  std::vector<std::string> names = scenes().names();
   explicit Inputs(const TemporaryFolder& folder) {
     names.push_back(folder.file("egg.obj"));
     names.push_back(folder.file("cup.vdb"));

@@ -72,7 +72,7 @@ TEST_P(MethodsOnScenes, InkIsSoundAndTheSameForAnyThreads) {
   EXPECT_TRUE(draws_soundly(model_in(scene->make(), "", 2), GetParam() + ", natural"));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, MethodsOnScenes, testing::ValuesIn(scene_names()), [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(All, MethodsOnScenes, testing::ValuesIn(scenes().names()), [](const auto& test) { return test.param; });
 
 class MethodsOnModels : public testing::TestWithParam<std::string> {};
 

@@ -256,7 +256,7 @@ TEST_F(LevelSetFiles, AnInsideThatLeakedOutOfAnOpenMeshIsSaidAndNoneOfClosedOnes
       said = error.what();
       EXPECT_SAYS(said, "never change sign");
     }
-    EXPECT_SAYS(said, "limn export MESH --surface mesh_level_set -o FILE.vdb");
+    EXPECT_SAYS(said, "limn export with surface = mesh_level_set");
   }
 }
 

@@ -6,7 +6,7 @@
 #include "raymarch/measured_border.h"
 #include "raymarch/metric.h"
 #include "raymarch/truth.h"
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {
@@ -79,21 +79,14 @@ StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters& with) 
 }  // namespace
 
 StabilityCheck border_within_check() {
-  return {{"border_within", "how far the model's border lies from the true one, solved apart from any picture", "limn"},
-          "px",
-          false,
-          {{"kind",
-            ParameterKind::choice,
-            "",
-            {0},
-            0,
-            3,
-            "which border, or how far the silhouette draws back in kr h^2/8",
-            {"both", "silhouette", "inner", "retreat"}},
-           {"statistic", ParameterKind::choice, "", {0}, 0, 1, "of its length", {"max", "p95"}},
-           stability_number("missing", 0.02, "", "share that may be missing, or false"),
-           stability_number("threshold", 0.4, "", "of the rim")},
-          run};
+  return {
+      {"border_within", "how far the model's border lies from the true one, solved apart from any picture", "limn"},
+      "px",
+      false,
+      {a_choice("kind", {"both", "silhouette", "inner", "retreat"}).help("which border, or how far the silhouette draws back in kr h^2/8"),
+       a_choice("statistic", {"max", "p95"}).help("of its length"),
+       stability_number("missing", 0.02, "", "share that may be missing, or false"), stability_number("threshold", 0.4, "", "of the rim")},
+      run};
 }
 
 }  // namespace limn

@@ -6,6 +6,7 @@
 
 #include "raymarch/picture.h"
 #include "samples/stability/workshop.h"
+#include "sdf/registry.h"
 
 namespace limn {
 
@@ -26,7 +27,9 @@ struct StabilityCheck {
   StabilityFinding (*run)(Workshop& shop, const MethodCall* method, const Parameters& with);
 };
 
-std::span<const StabilityCheck> stability_checks();
-const StabilityCheck& find_stability_check(const std::string& name, const std::string& file = {}, const std::string& field = {});
+const Registry<StabilityCheck>& stability_checks();
+inline const StabilityCheck& find_stability_check(const std::string& name, const std::string& file = {}, const std::string& field = {}) {
+  return stability_checks().find(name, file, field);
+}
 
 }  // namespace limn

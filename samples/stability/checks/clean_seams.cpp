@@ -1,6 +1,6 @@
 // Where two objects meet in the picture there is one line or none, and nothing small beside it.
 
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {

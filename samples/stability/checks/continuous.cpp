@@ -1,6 +1,6 @@
 // The picture changes little when a parameter does: the largest change is looked for, and its place cut smaller and smaller.
 
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {

@@ -1,7 +1,7 @@
 // A flat face is border or it is not.
 
 #include "raymarch/border/surface_notes.h"
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {

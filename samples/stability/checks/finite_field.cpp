@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 #include "sdf/error.h"
 #include "sdf/finite.h"
@@ -63,7 +63,7 @@ StabilityCheck finite_field_check() {
            "limn"},
           "deg",
           false,
-          {{"points", ParameterKind::list, "world", {}, -1e12, 1e12, "where it is asked for", {}, 3},
+          {a_list("points", {}, 3).in(-1e12, 1e12).unit("world").help("where it is asked for"),
            stability_number("beside", 1e-6, "", "how far beside, in radii of the object")},
           run};
 }

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {

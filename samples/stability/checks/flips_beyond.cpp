@@ -2,7 +2,7 @@
 
 #include "raymarch/flips.h"
 #include "raymarch/frames.h"
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 #include "sdf/error.h"
 

@@ -1,6 +1,6 @@
 // The frame is no border: what is cut by it has no line along it.
 
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "raymarch/border/radial_curvature.h"
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {

@@ -1,6 +1,6 @@
 // A scene and its mirror image draw mirror images.
 
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {

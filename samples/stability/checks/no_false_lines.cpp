@@ -1,6 +1,6 @@
 // Nothing is drawn where there is no edge.
 
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {

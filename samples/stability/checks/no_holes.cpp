@@ -1,6 +1,6 @@
 // Rays against a march in many more steps, in double precision: what that hits must be hit, what it misses missed.
 
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 #include "sdf/error.h"
 #include "sdf/parallel.h"

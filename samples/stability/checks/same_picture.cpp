@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {
@@ -57,7 +57,7 @@ StabilityCheck same_picture_check() {
   return {{"same_picture", "pixels that differ between the scene and its variants (other object, or ink across one half)", "limn"},
           "pixels",
           true,
-          {{"exact", ParameterKind::flag, "", {0.0}, 0.0, 1.0, "every bit of depth, normal, N.V and ink counts", {}}},
+          {a_flag("exact", false).help("every bit of depth, normal, N.V and ink counts")},
           run};
 }
 

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "raymarch/border/silhouette.h"
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {
@@ -69,8 +69,8 @@ StabilityCheck same_width_check() {
            "limn"},
           "px",
           true,
-          {{"grows", ParameterKind::flag, "", {0.0}, 0.0, 1.0, "with the picture: the width is part of the scene, not of the page", {}},
-           {"orthographic", ParameterKind::flag, "", {0.0}, 0.0, 1.0, "the same views in parallel projection too", {}}},
+          {a_flag("grows", false).help("with the picture: the width is part of the scene, not of the page"),
+           a_flag("orthographic", false).help("the same views in parallel projection too")},
           run};
 }
 

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "raymarch/border/silhouette.h"
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {
@@ -96,14 +96,7 @@ StabilityCheck samples_agree_check() {
            "limn"},
           "px",
           true,
-          {{"look",
-            ParameterKind::choice,
-            "",
-            {0.0},
-            0.0,
-            1.0,
-            "place: of the ink, px; alpha: share of pixels that are not filled",
-            {"place", "alpha"}}},
+          {a_choice("look", {"place", "alpha"}).help("place: of the ink, px; alpha: share of pixels that are not filled")},
           run};
 }
 

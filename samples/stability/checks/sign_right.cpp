@@ -1,6 +1,6 @@
 // Inside is inside: the sign of a level set well away from the surface.
 
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 #include "samples/world_model.h"
 #include "sdf/error.h"

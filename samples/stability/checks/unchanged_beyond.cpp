@@ -1,6 +1,6 @@
 // A local change of the scene changes the picture near it only.
 
-#include "samples/stability/checks/registry.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 #include "sdf/error.h"
 
@@ -74,7 +74,7 @@ StabilityCheck unchanged_beyond_check() {
   return {{"unchanged_beyond", "how far from a path pixels differ between the scene and its variants", "limn"},
           "world",
           true,
-          {{"path", ParameterKind::list, "world", {}, -1e12, 1e12, "the change", {}, 3},
+          {a_list("path", {}, 3).in(-1e12, 1e12).unit("world").help("the change"),
            stability_whole("reach_px", 0, 0, 16, "how far around a pixel its ink is decided")},
           run};
 }

@@ -2,8 +2,8 @@
 
 #include "raymarch/curve_geometry.h"
 #include "raymarch/measured_border.h"
+#include "samples/stability/checks/check.h"
 #include "samples/stability/checks/contours.h"
-#include "samples/stability/checks/registry.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {

@@ -31,10 +31,10 @@ class Worst {
 };
 
 inline Parameter stability_number(const std::string& name, double value, const std::string& unit, const std::string& help) {
-  return {name, ParameterKind::number, unit, {value}, -1e12, 1e12, help, {}};
+  return a_number(name, value).in(-1e12, 1e12).unit(unit).help(help);
 }
 inline Parameter stability_whole(const std::string& name, double value, double least, double most, const std::string& help) {
-  return {name, ParameterKind::integer, "", {value}, least, most, help, {}};
+  return an_integer(name, value).in(least, most).help(help);
 }
 
 }  // namespace limn

@@ -1,4 +1,4 @@
-// The shapes by name. A new one is a file of this folder that defines describe_<name>(), and one line here.
+// The shapes by name. A new one is a file of this folder that defines describe_NAME(), and one line here.
 
 #include "sdf/shape.h"
 
@@ -24,9 +24,9 @@ namespace limn {
 LIMN_SHAPES(LIMN_DECLARE)
 #undef LIMN_DECLARE
 
-std::span<const ShapeDescriptor> shapes() {
+const Registry<ShapeDescriptor>& shapes() {
 #define LIMN_ENTRY(name) describe_##name(),
-  static const std::vector<ShapeDescriptor> all = {LIMN_SHAPES(LIMN_ENTRY)};
+  static const Registry<ShapeDescriptor> all("shape", {LIMN_SHAPES(LIMN_ENTRY)});
 #undef LIMN_ENTRY
   return all;
 }

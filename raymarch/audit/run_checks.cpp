@@ -1,5 +1,3 @@
-#include "raymarch/audit/registry.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,15 +24,6 @@ bool is_concerned(const AuditCheck& check, const AuditSettings& settings) {
 }
 
 }  // namespace
-
-std::span<const AuditCheck> audit_checks() {
-  static const std::vector<AuditCheck> checks = {
-      file_check(),        field_traits_check(),     slope_check(),  band_check(),          parts_check(),     open_edges_check(),
-      orientation_check(), degenerate_faces_check(), sliver_check(), extraordinary_check(), precision_check(), thin_check(),
-      flat_check(),
-  };
-  return checks;
-}
 
 const char* name_of(Severity severity) {
   switch (severity) {

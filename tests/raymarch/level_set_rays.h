@@ -51,7 +51,7 @@ inline Surface marcher(const LevelSet& level_set, const std::string& gradient = 
 
 inline Surface build(const Field& field, const SurfaceSettings& settings, const glm::dvec3& render_origin = glm::dvec3(0.0)) {
   SceneObject object{.name = "object", .source = field};
-  return level_set_surface().build(object, settings, render_origin);
+  return find_surface("level_set").build(object, settings, render_origin);
 }
 
 inline std::uint64_t fresh_seed() { return random_seed(); }

@@ -123,7 +123,7 @@ TEST(LevelSetMarcher, AGridPlacedByAnAffineMapIsTracedInTheWorld) {
   world_from_object.translation = truth.center;
   SceneObject object{.name = "egg", .source = LevelSetSource{level_set, "egg.vdb"}, .world_from_object = world_from_object};
   const glm::dvec3 render_origin(0.25, 0.5, -0.125);
-  const Surface surface = level_set_surface().build(object, {.gradient = "cubic"}, render_origin);
+  const Surface surface = find_surface("level_set").build(object, {.gradient = "cubic"}, render_origin);
   std::mt19937_64 random(6);
   int count = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -196,9 +196,9 @@ TEST(LevelSetSurface, TheBandIsWhatTheGradientNeedsAndTheInfoSaysSo) {
 
 TEST(LevelSetSurface, AMeshIsSentToTheSurfaceThatIsMadeForIt) {
   const SceneObject object{.name = "mesh", .source = MeshSource{}};
-  EXPECT_NE(level_set_surface().unsupported(object).find("mesh_level_set"), std::string::npos);
+  EXPECT_NE(find_surface("level_set").unsupported(object).find("mesh_level_set"), std::string::npos);
   const SceneObject plane{.name = "plane", .source = make_shape("plane")};
-  EXPECT_NE(level_set_surface().unsupported(plane).find("no bounds"), std::string::npos);
+  EXPECT_NE(find_surface("level_set").unsupported(plane).find("no bounds"), std::string::npos);
 }
 
 }  // namespace

@@ -103,10 +103,10 @@ TEST(StudyPlan, WhatCannotBeModelledOrWouldNotFitIsARefusedModelWithItsReason) {
   spec = one_cell("ellipsoid");
   spec.sweep.levels = {8};
   spec.sweep.max_model_bytes = 10'000'000;
-  EXPECT_NE(study_of(spec).models.front().refused.find("the default of --max-memory leaves 10.0 MB"), std::string::npos);
+  EXPECT_NE(study_of(spec).models.front().refused.find("the default of max_memory leaves 10.0 MB"), std::string::npos);
   spec.experiment.limits.max_memory = 10'000'000;
   const StudyModel model = study_of(spec).models.front();
-  EXPECT_NE(model.refused.find("--max-memory leaves 10.0 MB"), std::string::npos) << model.refused;
+  EXPECT_NE(model.refused.find("max_memory leaves 10.0 MB"), std::string::npos) << model.refused;
   EXPECT_EQ(model.cost.build_ms, 0.0);
 }
 

@@ -70,7 +70,7 @@ TEST(OneLine, AMethodIsListedDrawnComparedAndSwept) {
   const std::string scene = folder.write("ball.toml", "[[border]]\nmethod = \"trial\"\nbelow = 0.2\n[[object]]\nshape = \"sphere\"\n");
   done({"render", scene, "--size", "32x24"}, folder);
   done({"compare", "ellipsoid", "--methods", "all", "--surface", "mesh", "--level", "1", "--size", "48x36", "-o", "compared"}, folder);
-  EXPECT_NE(read_bytes(folder.path() / "compared" / "rows.json").find("\"trial\""), std::string::npos);
+  EXPECT_NE(read_bytes(folder.path() / "compared" / "rows.json").find("\"trial below=0.3\""), std::string::npos);
   done(
       {"study", "ellipsoid", "--surfaces", "mesh", "--levels", "1", "--methods", "trial", "--views", "1", "--size", "48x36", "-o", "study"},
       folder);
@@ -83,7 +83,7 @@ TEST(OneLine, AMetricIsListedAndInRows) {
   expect_listed("metrics", "trial", {}, folder);
   done({"compare", "ellipsoid", "--surface", "mesh", "--level", "1", "--size", "48x36", "-o", "compared"}, folder);
   EXPECT_NE(read_bytes(folder.path() / "compared" / "rows.json").find("trial_ink"), std::string::npos);
-  EXPECT_NE(read_bytes(folder.path() / "compared" / "report.html").find("trial_ink"), std::string::npos);
+  EXPECT_NE(read_bytes(folder.path() / "compared" / "report.html").find("trial ink"), std::string::npos);
   done({"study", "ellipsoid", "--surfaces", "mesh", "--levels", "1", "--views", "1", "--size", "48x36", "-o", "study"}, folder);
   EXPECT_NE(read_bytes(folder.path() / "study" / "rows.csv").find("trial_ink"), std::string::npos);
 }

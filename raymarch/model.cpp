@@ -22,8 +22,7 @@ Surface build_surface(const SceneObject& object, const SurfaceSettings& settings
   const std::string kind = settings.kind.empty() ? natural_surface(object) : settings.kind;
   const SurfaceDescriptor& descriptor = find_surface(kind, {}, "surface");
   if (const std::string reason = descriptor.unsupported(object); !reason.empty()) {
-    throw InputError(
-        {{}, "surface", kind, fmt::format("cannot model '{}': {}", object.name, reason), "can be: " + kinds_that_can(object)});
+    throw InputError({{}, "surface", kind, fmt::format("cannot model '{}': {}", object.name, reason), "can be: " + kinds_that_can(object)});
   }
   Surface surface = descriptor.build(object, settings, render_origin);
   surface.info.kind = kind;

@@ -182,8 +182,8 @@ Band make_band(const TriangleMesh& mesh, const LazyTree& tree, const Winding& wi
   Progress progress(settings.progress, wave.size());
   while (!wave.empty()) {
     if (static_cast<std::int64_t>(known.size()) > max_blocks(settings))
-      throw SizeError({"", "voxel_size", fmt::format("{}", settings.voxel_size),
-                       "closing the mesh's holes takes more memory than allowed", "larger voxels, or a closed mesh"});
+      throw SizeError({"", "voxel_size", fmt::format("{}", settings.voxel_size), "closing the mesh's holes takes more memory than allowed",
+                       "larger voxels, or a closed mesh"});
     std::vector<LevelSetBlock> blocks(wave.size());
     std::vector<char> membrane(wave.size(), 0), active(wave.size(), 0), inside(wave.size(), 0);
     parallel_for(size_t{0}, wave.size(), [&](size_t i) {

@@ -56,8 +56,7 @@ RefinedSize predict_from_base(const Far::TopologyRefiner& base, Scheme scheme, i
 }
 
 RefinedSize predict_refined_size(const Mesh& cage, Scheme scheme, int level) {
-  if (level < 0 || level > 8)
-    throw InputError({"", "level", fmt::format("{}", level), "the subdivision level is out of range", "0 to 8"});
+  if (level < 0 || level > 8) throw InputError({"", "level", fmt::format("{}", level), "the subdivision level is out of range", "0 to 8"});
   const CleanCage clean = clean_cage(cage, scheme, {});
   return predict_from_base(*make_refiner(clean.mesh, scheme, {}), scheme, level, !cage.vertex_colors.empty());
 }

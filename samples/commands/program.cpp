@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "samples/commands/command.h"
+#include "samples/commands/versions.h"
 #include "samples/experiment/flags.h"
 #include "samples/limits.h"
 #include "samples/output.h"
-#include "samples/commands/versions.h"
 #include "sdf/size_error.h"
 
 namespace limn {

@@ -165,7 +165,10 @@ TEST(StudyKey, ChangesWithEverythingThatTheCellDependsOn) {
       {"voxels", [](StudySpec& o) { o.experiment.surfaces = {"level_set"}, o.sweep.voxels = {17}, o.sweep.gradients = {"cell"}; }},
       {"gradient", [](StudySpec& o) { o.experiment.surfaces = {"level_set"}, o.sweep.voxels = {16}, o.sweep.gradients = {"cubic"}; }},
       {"half width",
-       [](StudySpec& o) { o.experiment.surfaces = {"level_set"}, o.sweep.voxels = {16}, o.sweep.gradients = {"cell"}, o.experiment.surface.half_width_voxels = 4; }},
+       [](StudySpec& o) {
+         o.experiment.surfaces = {"level_set"}, o.sweep.voxels = {16}, o.sweep.gradients = {"cell"},
+         o.experiment.surface.half_width_voxels = 4;
+       }},
   };
   std::map<std::string, std::string> seen;
   for (const auto& [name, change] : changes) {

@@ -1,5 +1,7 @@
 #include "samples/world_model.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -56,6 +58,7 @@ void append(Mesh& all, const Mesh& part, const std::string& name) {
   const bool first = all.positions.empty();
   const auto vertex_offset = static_cast<std::int32_t>(all.positions.size());
   const bool normals = (first || !all.corner_normals.empty()) && !part.corner_normals.empty();
+  const bool smoothing = (first || !all.face_smoothing.empty()) && !part.face_smoothing.empty();
   const bool colors = (first || !all.vertex_colors.empty()) && !part.vertex_colors.empty();
   const bool materials = (first || !all.face_materials.empty()) && !part.face_materials.empty();
   const auto material_offset = static_cast<std::int32_t>(all.material_names.size());
@@ -73,6 +76,8 @@ void append(Mesh& all, const Mesh& part, const std::string& name) {
   };
   join(all.corner_normals, part.corner_normals, normals);
   join(all.vertex_colors, part.vertex_colors, colors);
+  // Objects share no vertices, so that groups of one number stay apart.
+  join(all.face_smoothing, part.face_smoothing, smoothing);
   if (materials) {
     if (!all.material_colors.empty() || !part.material_colors.empty()) {
       all.material_colors.resize(all.material_names.size(), glm::vec3(1.0f));
@@ -160,10 +165,26 @@ Mesh world_mesh(const SceneObject& object, const SurfaceSettings& settings, bool
   return mesh;
 }
 
-Mesh world_mesh(const Scene& scene, const SurfaceSettings& settings, bool refined_positions) {
+Mesh world_mesh(const Scene& scene, const SurfaceSettings& settings, bool refined_positions, std::vector<std::string>* lost) {
   if (scene.objects.size() == 1) return world_mesh(scene.objects.front(), settings, refined_positions);
   Mesh all;
-  for (const SceneObject& object : scene.objects) append(all, world_mesh(object, settings, refined_positions), object.name);
+  size_t normals = 0, smoothing = 0, colors = 0, materials = 0;
+  for (const SceneObject& object : scene.objects) {
+    const Mesh part = world_mesh(object, settings, refined_positions);
+    normals += part.corner_normals.empty() ? 0 : 1;
+    smoothing += part.face_smoothing.empty() ? 0 : 1;
+    colors += part.vertex_colors.empty() ? 0 : 1;
+    materials += part.face_materials.empty() ? 0 : 1;
+    append(all, part, object.name);
+  }
+  const size_t objects = scene.objects.size();
+  const std::pair<const char*, size_t> had[] = {
+      {"normals", normals}, {"smoothing groups", smoothing}, {"vertex colours", colors}, {"materials", materials}};
+  for (const auto& [what, count] : had) {
+    if (lost == nullptr || count == 0 || count == objects) continue;
+    lost->push_back(fmt::format("{} are not written: {} of {} objects have none, and one mesh has them everywhere or nowhere", what,
+                                objects - count, objects));
+  }
   return all;
 }
 

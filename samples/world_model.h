@@ -10,8 +10,10 @@ namespace limn {
 /// its tags (`refined_positions`); a mesh as it is, a field tessellated, a level set as its zero surface.
 Mesh world_mesh(const SceneObject& object, const SurfaceSettings& settings, bool refined_positions = false);
 
-/// All objects as one mesh; each is a group of its own, named after it.
-Mesh world_mesh(const Scene& scene, const SurfaceSettings& settings, bool refined_positions = false);
+/// All objects as one mesh; each is a group of its own, named after it. What only some objects have (normals, smoothing groups, colours,
+/// materials) is not in it; `lost`, if given, is told so.
+Mesh world_mesh(const Scene& scene, const SurfaceSettings& settings, bool refined_positions = false,
+                std::vector<std::string>* lost = nullptr);
 
 /// All objects as one level set: the union of fields, or of meshes; a single volume. `warnings` are added to. Throws InputError for volumes
 /// beside other objects.

@@ -68,7 +68,8 @@ void check_refined(const Scene& scene, const SurfaceSettings& settings, const fs
 
 Mesh exported_mesh(const Scene& scene, const SurfaceSettings& settings, bool refined, WorldNotes& said) {
   const bool resampled = settings.kind.empty() && settings.resample_volumes && all_are<LevelSetSource>(scene);
-  if (settings.kind != "level_set" && settings.kind != "mesh_level_set" && !resampled) return world_mesh(scene, settings, refined);
+  if (settings.kind != "level_set" && settings.kind != "mesh_level_set" && !resampled)
+    return world_mesh(scene, settings, refined, &said.warnings);
   const std::vector<LevelSet> level_sets = world_level_sets(scene, settings, said);
   SurfaceSettings as_made = settings;
   as_made.resample_volumes = false;

@@ -72,6 +72,24 @@ TEST(Shading, SmoothingGroupsOfAFileAreKeptAndWrittenAgain) {
     EXPECT_NE(text.find(line), std::string::npos) << line;
 }
 
+TEST(Shading, SmoothingGroupsOfAllObjectsAreWrittenAndLossesAreSaid) {
+  const TemporaryFolder folder;
+  const std::string quads = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\n";
+  folder.write("smooth.obj", quads + "s 3\nf 1 2 3 4\nf 1 2 6 5\n");
+  folder.write("plain.obj", quads + "f 1 2 3 4\nf 1 2 6 5\n");
+  const auto scene = [&](const std::string& second) {
+    return folder.write(second + ".toml",
+                        "[[object]]\nmesh = \"smooth.obj\"\n[[object]]\nmesh = \"" + second + "\"\ntranslate = [2, 0, 0]\n");
+  };
+  const RunResult both = run_limn({"export", scene("smooth.obj"), "-o", folder.file("both.obj")});
+  EXPECT_EQ(both.exit_code, 0) << both.err;
+  EXPECT_EQ(both.err.find("not written"), std::string::npos) << both.err;
+  EXPECT_NE(read_bytes(folder.path() / "both.obj").find("s 3"), std::string::npos);
+  const RunResult one = run_limn({"export", scene("plain.obj"), "-o", folder.file("one.obj")});
+  EXPECT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_NE(one.err.find("smoothing groups are not written: 1 of 2 objects have none"), std::string::npos) << one.err;
+}
+
 TEST(Shading, TrianglesTakeLoopAndAllOthersCatmullClark) {
   const TemporaryFolder folder;
   const std::string cube = write(folder, "cube.obj", std::string(kCorners) + kQuads);

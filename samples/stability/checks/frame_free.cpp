@@ -15,9 +15,9 @@ StabilityView wider(const StabilityStage& stage, const StabilityView& view, int 
   return out;
 }
 
-bool ink_near(const Image<float>& ink, int x, int y, int near) {
-  for (int v = y - near; v <= y + near; ++v) {
-    for (int u = x - near; u <= x + near; ++u) {
+bool ink_near(const Image<float>& ink, int x, int y) {
+  for (int v = y - 2; v <= y + 2; ++v) {
+    for (int u = x - 2; u <= x + 2; ++u) {
       if (ink.inside(u, v) && ink.at(u, v) > 0.5f) return true;
     }
   }
@@ -25,7 +25,7 @@ bool ink_near(const Image<float>& ink, int x, int y, int near) {
 }
 
 StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
-  const int margin = with.integer("margin_px"), edge = with.integer("edge_px"), near = with.integer("near_px");
+  const int margin = with.integer("margin_px"), edge = with.integer("edge_px");
   Worst worst;
   for (const StabilityView& view : shop.views()) {
     const StabilityStage& stage = shop.stage();
@@ -36,7 +36,7 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
       for (int x = 0; x < ink.width; ++x) {
         if (x >= edge && y >= edge && x + edge < ink.width && y + edge < ink.height) continue;
         cut += view.seen.id.at(x, y) != 0;
-        inked += ink.at(x, y) > 0.5f && !ink_near(whole.coverage, x + margin, y + margin, near);
+        inked += ink.at(x, y) > 0.5f && !ink_near(whole.coverage, x + margin, y + margin);
       }
     }
     worst.see(cut == 0 ? kNothingSeen : static_cast<double>(inked),
@@ -52,8 +52,7 @@ StabilityCheck frame_free_check() {
           "pixels",
           true,
           {stability_whole("margin_px", 24, 1, 1000, "that the larger picture has more on each side"),
-           stability_whole("edge_px", 3, 1, 64, "from the frame that are looked at"),
-           stability_whole("near_px", 2, 0, 64, "from ink of the larger picture, within which ink is the same line")},
+           stability_whole("edge_px", 3, 1, 64, "from the frame that are looked at")},
           run};
 }
 

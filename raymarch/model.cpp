@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "raymarch/analytic/tile.h"
+#include "raymarch/model_parts.h"
 #include "raymarch/scene_extent.h"
 #include "raymarch/surface.h"
 #include "sdf/error.h"
@@ -48,14 +49,17 @@ SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, Obje
         settings.progress((static_cast<double>(i) + part) / count);
       };
     }
-    model.surfaces.push_back(build_surface(object, own, model.render_origin));
-    model.colors.push_back(object.color);
-    model.materials.push_back(object.material);
-    // A model may reach a little beyond what it stands for (a dual-contoured mesh, a grid's cells).
-    const Box& reach = model.surfaces.back().bounds;
-    if (reach.finite()) model.bounds = merge(model.bounds, {reach.lower + model.render_origin, reach.upper + model.render_origin});
+    append_surface(object, build_surface(object, own, model.render_origin), model);
   }
   return model;
+}
+
+void append_surface(const SceneObject& object, Surface surface, SceneModel& model) {
+  const Box reach = surface.bounds;
+  model.surfaces.push_back(std::move(surface));
+  model.colors.push_back(object.color);
+  model.materials.push_back(object.material);
+  if (reach.finite()) model.bounds = merge(model.bounds, {reach.lower + model.render_origin, reach.upper + model.render_origin});
 }
 
 SurfaceInfo total(const SceneModel& model) {

@@ -28,7 +28,7 @@ void refuse_unchecked(const SurfaceSpec& spec, const SceneInput& input);
 void refuse_sweep_without_effect(const StudySpec& spec, const SceneInput& input, std::span<const std::string> kinds);
 /// All of them and grids, where `what` (a picture file) has nothing that they speak of.
 void refuse_surface_settings(const ExperimentSpec& spec, const std::string& what);
-/// An eye, where `views` cameras stand in directions spread over the sphere.
+/// An eye, where there are several `views`: their directions are spread over the sphere.
 void refuse_eye_of_views(const CameraSpec& spec, int views);
 
 }  // namespace limn

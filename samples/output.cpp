@@ -73,11 +73,20 @@ void check_output_folder(const fs::path& folder, bool no_clobber) {
 
 namespace {
 
+/// Keys whose values are sentences; all other text is names, paths and calls, which stay as they are.
+bool holds_sentences(const std::string& key) {
+  for (const char* const name : {"warnings", "notes", "message", "remedy", "failed", "summary", "skipped"})
+    if (key == name) return true;
+  return false;
+}
+
 /// What a document says in sentences, as somebody at a command line needs it.
-void put_flags_into(Json& value) {
-  if (value.is_string()) value = in_flags(value.get<std::string>());
-  if (value.is_structured())
-    for (Json& one : value) put_flags_into(one);
+void put_flags_into(Json& value, bool sentences) {
+  if (value.is_string() && sentences) value = in_flags(value.get<std::string>());
+  if (value.is_array())
+    for (Json& one : value) put_flags_into(one, sentences);
+  if (value.is_object())
+    for (auto& [key, one] : value.items()) put_flags_into(one, holds_sentences(key));
 }
 
 void write_to_stdout(const std::string& text) {
@@ -86,10 +95,10 @@ void write_to_stdout(const std::string& text) {
 
 }  // namespace
 
-void print_text(const std::string& text) { write_to_stdout(in_flags(text)); }
+void print_text(const std::string& text) { write_to_stdout(text); }
 
 void print_json(Json document) {
-  put_flags_into(document);
+  put_flags_into(document, false);
   write_to_stdout(document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

@@ -22,10 +22,10 @@ void check_output_file(const std::filesystem::path& file, bool no_clobber, const
 /// The same for a folder that will hold several files.
 void check_output_folder(const std::filesystem::path& folder, bool no_clobber);
 
-/// One JSON document on stdout. Here and below sentences name settings as options of the command line do (in_flags).
+/// One JSON document on stdout. Its sentences (warnings, notes, remedies) name settings as options of the command line do (in_flags).
 void print_json(Json document);
 void print_text(const std::string& text);
-/// A line on stderr, kept to one line.
+/// A sentence on stderr, kept to one line, with settings as options.
 void print_note(const std::string& text);
 
 /// A finite number, or null: JSON has no NaN.

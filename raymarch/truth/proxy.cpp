@@ -2,6 +2,7 @@
 // model puts it.
 
 #include "raymarch/truth/proxy.h"
+#include "raymarch/model_parts.h"
 
 #include <fmt/format.h>
 
@@ -103,11 +104,7 @@ SceneModel model_of(const Scene& scene, const Settings& settings_of) {
     SceneObject object = scene.objects[i];
     object.level.reset();
     const SurfaceSettings settings = settings_of(object);
-    model.surfaces.push_back(find_surface(settings.kind).build(object, settings, model.render_origin));
-    model.colors.push_back(object.color);
-    model.materials.push_back(object.material);
-    const Box& reach = model.surfaces.back().bounds;
-    if (reach.finite()) model.bounds = merge(model.bounds, {reach.lower + model.render_origin, reach.upper + model.render_origin});
+    append_surface(object, find_surface(settings.kind).build(object, settings, model.render_origin), model);
   }
   return model;
 }

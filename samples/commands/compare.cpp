@@ -7,6 +7,7 @@
 #include "samples/compare/comparison.h"
 #include "samples/compare/staging.h"
 #include "samples/empty_picture.h"
+#include "samples/experiment/flags.h"
 #include "samples/input_files.h"
 #include "samples/no_effect.h"
 #include "samples/threads.h"
@@ -150,7 +151,7 @@ int run(const Options& options) {
   } else if (!options.quiet) {
     std::string text;
     for (const std::string& sentence : summary_sentences(comparison)) text += sentence + "\n";
-    for (const std::string& line : skipped_sentences(comparison)) text += "not compared: " + line + "\n";
+    for (const std::string& line : skipped_sentences(comparison)) text += "not compared: " + in_flags(line) + "\n";
     print_text(text + (folder / "report.html").string() + "\n" + (folder / "sheet.png").string() + "\n");
   }
   return 0;

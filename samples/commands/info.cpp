@@ -111,12 +111,12 @@ std::string joined(const std::vector<std::string>& words) {
 // Below what is wrong: for whom, and what helps.
 std::string finding_text(const Finding& finding) {
   constexpr const char* kBelow = "                                    ";
-  std::string text = fmt::format("  {:<8} {:<24} {}\n", name_of(finding.severity), finding.check, finding.message);
+  std::string text = fmt::format("  {:<8} {:<24} {}\n", name_of(finding.severity), finding.check, in_flags(finding.message));
   if (finding.severity == Severity::info) return text;
   std::string whom = joined(finding.surfaces);
   if (!finding.methods.empty()) whom += (whom.empty() ? "" : "; ") + joined(finding.methods);
   if (!whom.empty()) text += fmt::format("{}fails: {}\n", kBelow, whom);
-  if (!finding.remedy.empty()) text += fmt::format("{}remedy: {}\n", kBelow, finding.remedy);
+  if (!finding.remedy.empty()) text += fmt::format("{}remedy: {}\n", kBelow, in_flags(finding.remedy));
   return text;
 }
 
@@ -222,7 +222,7 @@ int report_volume_without_level_set(const Options& options, const std::vector<Gr
                 {"grids", grids_json(grids)}});
   } else {
     print_text(fmt::format("{}: {} grids\n{}  {:<8} {:<24} {}\n", options.spec.input, grids.size(), grids_text(grids), "error",
-                           finding.check, finding.message));
+                           finding.check, in_flags(finding.message)));
   }
   return 0;
 }

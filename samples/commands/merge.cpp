@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "samples/commands/command.h"
+#include "samples/experiment/flags.h"
 #include "samples/held_folder.h"
 #include "samples/output.h"
 #include "samples/study/folder.h"
@@ -67,7 +68,7 @@ int run(const Options& options) {
     for (const fs::path& file : files) document["files"].push_back(file.string());
     print_json(document);
   } else if (!options.quiet) {
-    print_text(summary_text(merged) + (folder / "report.html").string() + "\n" + (folder / "rows.csv").string() + "\n");
+    print_text(in_flags(summary_text(merged)) + (folder / "report.html").string() + "\n" + (folder / "rows.csv").string() + "\n");
   }
   return missing.empty() ? 0 : 1;
 }

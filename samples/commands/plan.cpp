@@ -1,6 +1,7 @@
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
 #include "samples/commands/options_parts.h"
+#include "samples/experiment/flags.h"
 #include "samples/no_effect.h"
 #include "samples/plan/job.h"
 #include "samples/threads.h"
@@ -56,7 +57,7 @@ int run(const Options& options) {
     print_json(document);
   } else if (!options.quiet) {
     std::string text;
-    for (const std::string& sentence : plan_sentences(job.answer, job.settings)) text += sentence + "\n";
+    for (const std::string& sentence : plan_sentences(job.answer, job.settings)) text += in_flags(sentence) + "\n";
     print_text(text);
   }
   return job.answer.chosen ? 0 : 1;

@@ -1,4 +1,5 @@
 #include "samples/commands/stability_run.h"
+#include "samples/experiment/flags.h"
 
 #include <fmt/format.h>
 
@@ -85,7 +86,7 @@ int study_stability(const Options& options, ProgressBar& bar) {
     document["files"] = {records.string(), page.string(), table.string()};
     print_json(document);
   } else if (!options.quiet) {
-    print_text(summary(results) + records.string() + "\n" + page.string() + "\n" + table.string() + "\n");
+    print_text(in_flags(summary(results)) + records.string() + "\n" + page.string() + "\n" + table.string() + "\n");
   }
   return count(results, StabilityOutcome::wrong) > 0 ? 1 : 0;
 }

@@ -6,6 +6,7 @@
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
 #include "samples/commands/stability_run.h"
+#include "samples/experiment/flags.h"
 #include "samples/input_files.h"
 #include "samples/no_effect.h"
 #include "samples/study/folder.h"
@@ -123,8 +124,8 @@ void print_result(const Options& options, const Place& place, const StudyFolder&
     return;
   }
   if (options.quiet) return;
-  std::string text =
-      place.is_part ? fmt::format("{} cells{}\n", cells, failed > 0 ? fmt::format(", {} failed", failed) : "") : summary_text(held);
+  std::string text = place.is_part ? fmt::format("{} cells{}\n", cells, failed > 0 ? fmt::format(", {} failed", failed) : "")
+                                   : in_flags(summary_text(held));
   text += place.is_part ? place.final.string() + "\n"
                         : (place.final / "report.html").string() + "\n" + (place.final / "rows.csv").string() + "\n";
   print_text(text);

@@ -118,7 +118,7 @@ PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneIn
     one.truth = solve_truth(input.scene, one.camera, truth, solving);
     job.views.push_back(std::move(one));
   }
-  // Any model at all would be right.
+  // Every model would be right.
   if (std::all_of(job.views.begin(), job.views.end(), [](const PlanView& view) { return view.truth.curves.curves.empty(); }))
     throw InputError({spec.input, "camera", "", "sees no border: there is nothing to plan for",
                       "one that sees the surface (limn render shows what it sees)"});

@@ -36,19 +36,19 @@ void keep_picture(const StabilityFinding& finding, const std::filesystem::path& 
 }
 
 /// Empty where the method can run on what the surface came to.
-std::string unsupported(Workshop& shop, const MethodCall* method) {
-  if (!shop.unsupported().empty()) return shop.unsupported();
-  const StabilityStage& stage = shop.stage();
+std::string unsupported(CaseContext& context, const MethodCall* method) {
+  if (!context.unsupported().empty()) return context.unsupported();
+  const StabilityStage& stage = context.stage();
   return method == nullptr ? std::string() : method->method->unsupported(stage.model, stage.scene);
 }
 
-StabilityEvent look(Workshop& shop, const StabilityCheck& check, const MethodCall* method, const Parameters& with) {
+StabilityEvent look(CaseContext& context, const StabilityCheck& check, const MethodCall* method, const Parameters& with) {
   try {
     StabilityEvent event;
-    event.finding = check.run(shop, method, with);
+    event.finding = check.run(context, method, with);
     // What is looked at without a method is the rim's surface.
-    add_said(said_of(shop.stage(), method == nullptr ? "rim" : method->method->about.name), event.finding->said);
-    for (const Finding& finding : shop.stage().findings) event.audit.push_back("audit: " + finding.message);
+    add_said(said_of(context.stage(), method == nullptr ? "rim" : method->method->about.name), event.finding->said);
+    for (const Finding& finding : context.stage().findings) event.audit.push_back("audit: " + finding.message);
     if (event.finding->said.size() > kMostSaid) event.finding->said.resize(kMostSaid);
     return event;
   } catch (const InputError& error) {
@@ -75,23 +75,23 @@ struct CaseRun {
   const StabilityRunSettings& settings;
 };
 
-StabilityCell run_cell(const CaseRun& run, Workshop& shop, int draw, const MethodCall* method) {
+StabilityCell run_cell(const CaseRun& run, CaseContext& context, int draw, const MethodCall* method) {
   StabilityCell cell;
   cell.case_name = run.which.text.name;
   cell.draw = draw;
-  cell.surface = shop.surface();
+  cell.surface = context.surface();
   if (method != nullptr) cell.method = methods_text({*method});
   cell.unit = run.check.unit;
   cell.seed = run.settings.seed;
-  cell.parameters.assign(shop.values().begin(), shop.values().end());
+  cell.parameters.assign(context.values().begin(), context.values().end());
   StabilityEvent event;
   try {
-    if (const std::string reason = unsupported(shop, method); !reason.empty()) {
+    if (const std::string reason = unsupported(context, method); !reason.empty()) {
       cell.outcome = StabilityOutcome::skipped;
       cell.message = reason;
       return cell;
     }
-    event = look(shop, run.check, method, run.with);
+    event = look(context, run.check, method, run.with);
   } catch (const InputError& error) {
     event.refused = error.what();
   }
@@ -105,14 +105,14 @@ void run_case(const CaseRun& run, StabilityResults& results) {
     for (const std::string& surface : run.which.surfaces) {
       const auto& wanted = run.settings.surfaces;
       if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), surface) == wanted.end()) continue;
-      Workshop shop(run.which, draw, run.settings.seed, surface, run.settings.how);
+      CaseContext context(run.which, draw, run.settings.seed, surface, run.settings.how);
       if (!run.check.of_methods) {
-        results.cells.push_back(run_cell(run, shop, draw, nullptr));
+        results.cells.push_back(run_cell(run, context, draw, nullptr));
         continue;
       }
-      for (const MethodCall& method : shop.methods()) {
+      for (const MethodCall& method : context.methods()) {
         if (run.settings.how.cancelled && run.settings.how.cancelled()) throw Cancelled{};
-        results.cells.push_back(run_cell(run, shop, draw, &method));
+        results.cells.push_back(run_cell(run, context, draw, &method));
       }
     }
   }

@@ -49,20 +49,21 @@ class NoEffect : public testing::Test {
     return result;
   }
 
-  static void refused(const Words& call, const std::string& hint) {
-    const RunResult result = run(call);
+  static std::string text_of(const Words& call, const RunResult& result) {
     std::string all;
     for (const std::string& word : call) all += word + " ";
-    EXPECT_EQ(result.exit_code, 2) << all << ": " << result.err;
-    EXPECT_EQ(result.err_lines(), 1) << result.err;
-    EXPECT_NE(result.err.find("no effect"), std::string::npos) << all << ": " << result.err;
-    EXPECT_NE(result.err.find(hint), std::string::npos) << "wanted '" << hint << "' in: " << result.err;
+    return all + "ended with " + std::to_string(result.exit_code) + ": " + result.err;
   }
-  static void taken(const Words& call) {
+  static testing::AssertionResult is_refused(const Words& call, const std::string& hint) {
     const RunResult result = run(call);
-    std::string all;
-    for (const std::string& word : call) all += word + " ";
-    EXPECT_EQ(result.exit_code, 0) << all << ": " << result.err;
+    const bool says = result.err.find("no effect") != std::string::npos && result.err.find(hint) != std::string::npos;
+    if (result.exit_code == 2 && result.err_lines() == 1 && says) return testing::AssertionSuccess();
+    return testing::AssertionFailure() << "wanted '" << hint << "': " << text_of(call, result);
+  }
+  static testing::AssertionResult is_taken(const Words& call) {
+    const RunResult result = run(call);
+    if (result.exit_code == 0) return testing::AssertionSuccess();
+    return testing::AssertionFailure() << text_of(call, result);
   }
 
   static TemporaryFolder* folder_;
@@ -70,62 +71,65 @@ class NoEffect : public testing::Test {
 TemporaryFolder* NoEffect::folder_ = nullptr;
 
 TEST_F(NoEffect, OfARender) {
-  refused({"render", "MESH", "--voxels", "32"}, "--voxels: has no effect on a mesh drawn as mesh; add --surface mesh_level_set");
-  refused({"render", "MESH", "--voxel-size", "0.1"}, "mesh_level_set");
-  refused({"render", "MESH", "--gradient", "cubic"}, "mesh_level_set");
-  refused({"render", "MESH", "--half-width", "4"}, "mesh_level_set");
-  refused({"render", "ellipsoid", "--level", "2"},
-          "--level: has no effect on a formula drawn as analytic; add --surface mesh or mesh_level_set");
-  refused({"render", "ellipsoid", "--level", "auto"}, "--surface mesh");
-  refused({"render", "ellipsoid", "--voxels", "32"}, "--surface level_set or mesh_level_set");
-  refused({"render", "ellipsoid", "--normals", "flat"}, "--surface mesh");
-  refused({"render", "ellipsoid", "--scheme", "loop"}, "leave it out");
-  refused({"render", "ellipsoid", "--surface", "mesh", "--scheme", "loop"}, "leave it out");
-  refused({"render", "VOLUME", "--level", "2"}, "leave it out");
-  refused({"render", "VOLUME", "--scheme", "loop"}, "leave it out");
-  refused({"render", "VOLUME", "--half-width", "4"}, "half-width");
-  refused({"render", "VOLUME", "--normals", "flat"}, "--surface mesh");
-  refused({"render", "ellipsoid", "--views", "2", "--eye", "0,0,5"}, "--views 1");
-  refused({"render", "ellipsoid", "--tolerance", "2", "--half-width", "4"}, "--half-width");
-  refused({"render", "ellipsoid", "--tolerance", "2", "--scheme", "loop"}, "--scheme");
-  refused({"render", "ellipsoid", "--tolerance", "2", "--smooth-angle", "10"}, "--smooth-angle");
-  refused({"render", "ellipsoid", "--surface", "mesh_level_set", "--voxels", "12", "--normals", "flat"}, "--surface mesh");
+  EXPECT_TRUE(is_refused(Words{"render", "MESH", "--voxels", "32"},
+                         "--voxels: has no effect on a mesh drawn as mesh; add --surface mesh_level_set"));
+  EXPECT_TRUE(is_refused(Words{"render", "MESH", "--voxel-size", "0.1"}, "mesh_level_set"));
+  EXPECT_TRUE(is_refused(Words{"render", "MESH", "--gradient", "cubic"}, "mesh_level_set"));
+  EXPECT_TRUE(is_refused(Words{"render", "MESH", "--half-width", "4"}, "mesh_level_set"));
+  EXPECT_TRUE(is_refused(Words{"render", "ellipsoid", "--level", "2"},
+                         "--level: has no effect on a formula drawn as analytic; add --surface mesh or mesh_level_set"));
+  EXPECT_TRUE(is_refused({"render", "ellipsoid", "--level", "auto"}, "--surface mesh"));
+  EXPECT_TRUE(is_refused(Words{"render", "ellipsoid", "--voxels", "32"}, "--surface level_set or mesh_level_set"));
+  EXPECT_TRUE(is_refused(Words{"render", "ellipsoid", "--normals", "flat"}, "--surface mesh"));
+  EXPECT_TRUE(is_refused(Words{"render", "ellipsoid", "--scheme", "loop"}, "leave it out"));
+  EXPECT_TRUE(is_refused(Words{"render", "ellipsoid", "--surface", "mesh", "--scheme", "loop"}, "leave it out"));
+  EXPECT_TRUE(is_refused(Words{"render", "VOLUME", "--level", "2"}, "leave it out"));
+  EXPECT_TRUE(is_refused(Words{"render", "VOLUME", "--scheme", "loop"}, "leave it out"));
+  EXPECT_TRUE(is_refused(Words{"render", "VOLUME", "--half-width", "4"}, "half-width"));
+  EXPECT_TRUE(is_refused(Words{"render", "VOLUME", "--normals", "flat"}, "--surface mesh"));
+  EXPECT_TRUE(is_refused(Words{"render", "ellipsoid", "--views", "2", "--eye", "0,0,5"}, "--views 1"));
+  EXPECT_TRUE(is_refused(Words{"render", "ellipsoid", "--tolerance", "2", "--half-width", "4"}, "--half-width"));
+  EXPECT_TRUE(is_refused(Words{"render", "ellipsoid", "--tolerance", "2", "--scheme", "loop"}, "--scheme"));
+  EXPECT_TRUE(is_refused(Words{"render", "ellipsoid", "--tolerance", "2", "--smooth-angle", "10"}, "--smooth-angle"));
+  EXPECT_TRUE(
+      is_refused(Words{"render", "ellipsoid", "--surface", "mesh_level_set", "--voxels", "12", "--normals", "flat"}, "--surface mesh"));
 }
 
 TEST_F(NoEffect, WhatARenderReadsIsTaken) {
-  taken({"render", "MESH", "--level", "0"});
-  taken({"render", "MESH", "--level", "1"});
-  taken({"render", "MESH", "--scheme", "loop"});
-  taken({"render", "MESH", "--normals", "flat"});
-  taken({"render", "CAGE", "--level", "auto"});
-  taken({"render", "MESH", "--surface", "mesh_level_set", "--voxels", "12", "--half-width", "4", "--gradient", "cell"});
-  taken({"render", "ellipsoid", "--surface", "level_set", "--voxel-size", "0.2", "--gradient", "cubic"});
-  taken({"render", "VOLUME", "--gradient", "cell"});
-  taken({"render", "VOLUME", "--voxels", "12"});
-  taken({"render", "VOLUME", "--voxels", "12", "--half-width", "4"});
-  taken({"render", "VOLUME", "--surface", "mesh", "--voxels", "12"});
-  taken({"render", "SCENE"});
-  taken({"render", "ellipsoid", "--views", "2", "--target", "0,0,0", "--up", "0,0,1"});
+  EXPECT_TRUE(is_taken(Words{"render", "MESH", "--level", "0"}));
+  EXPECT_TRUE(is_taken(Words{"render", "MESH", "--level", "1"}));
+  EXPECT_TRUE(is_taken(Words{"render", "MESH", "--scheme", "loop"}));
+  EXPECT_TRUE(is_taken(Words{"render", "MESH", "--normals", "flat"}));
+  EXPECT_TRUE(is_taken(Words{"render", "CAGE", "--level", "auto"}));
+  EXPECT_TRUE(
+      is_taken(Words{"render", "MESH", "--surface", "mesh_level_set", "--voxels", "12", "--half-width", "4", "--gradient", "cell"}));
+  EXPECT_TRUE(is_taken(Words{"render", "ellipsoid", "--surface", "level_set", "--voxel-size", "0.2", "--gradient", "cubic"}));
+  EXPECT_TRUE(is_taken(Words{"render", "VOLUME", "--gradient", "cell"}));
+  EXPECT_TRUE(is_taken(Words{"render", "VOLUME", "--voxels", "12"}));
+  EXPECT_TRUE(is_taken(Words{"render", "VOLUME", "--voxels", "12", "--half-width", "4"}));
+  EXPECT_TRUE(is_taken(Words{"render", "VOLUME", "--surface", "mesh", "--voxels", "12"}));
+  EXPECT_TRUE(is_taken(Words{"render", "SCENE"}));
+  EXPECT_TRUE(is_taken(Words{"render", "ellipsoid", "--views", "2", "--target", "0,0,0", "--up", "0,0,1"}));
 }
 
 TEST_F(NoEffect, OfACompareAndAStudy) {
-  refused({"compare", "MESH", "--surface", "mesh", "--voxels", "12"}, "mesh_level_set");
-  refused({"compare", "ellipsoid", "--surface", "level_set", "--level", "1"}, "--surface mesh");
-  refused({"compare", "VOLUME", "--scheme", "loop"}, "leave it out");
-  taken({"compare", "MESH", "--voxels", "12", "--gradient", "cell", "--surface", "mesh_level_set"});
-  refused({"study", "MESH", "--surfaces", "mesh", "--voxels", "8", "--views", "1"}, "mesh_level_set");
-  refused({"study", "ellipsoid", "--surfaces", "level_set", "--levels", "1", "--views", "1"}, "--surface mesh");
-  refused({"study", "ellipsoid", "--surfaces", "level_set", "--normals", "flat", "--views", "1"}, "--normals");
-  refused({"study", "MESH", "--surfaces", "mesh", "--gradients", "cell", "--views", "1"}, "--gradients");
-  refused({"study", "ellipsoid", "--eye", "0,0,5", "--views", "2"}, "--views 1");
+  EXPECT_TRUE(is_refused(Words{"compare", "MESH", "--surface", "mesh", "--voxels", "12"}, "mesh_level_set"));
+  EXPECT_TRUE(is_refused(Words{"compare", "ellipsoid", "--surface", "level_set", "--level", "1"}, "--surface mesh"));
+  EXPECT_TRUE(is_refused(Words{"compare", "VOLUME", "--scheme", "loop"}, "leave it out"));
+  EXPECT_TRUE(is_taken(Words{"compare", "MESH", "--voxels", "12", "--gradient", "cell", "--surface", "mesh_level_set"}));
+  EXPECT_TRUE(is_refused(Words{"study", "MESH", "--surfaces", "mesh", "--voxels", "8", "--views", "1"}, "mesh_level_set"));
+  EXPECT_TRUE(is_refused(Words{"study", "ellipsoid", "--surfaces", "level_set", "--levels", "1", "--views", "1"}, "--surface mesh"));
+  EXPECT_TRUE(is_refused(Words{"study", "ellipsoid", "--surfaces", "level_set", "--normals", "flat", "--views", "1"}, "--normals"));
+  EXPECT_TRUE(is_refused(Words{"study", "MESH", "--surfaces", "mesh", "--gradients", "cell", "--views", "1"}, "--gradients"));
+  EXPECT_TRUE(is_refused(Words{"study", "ellipsoid", "--eye", "0,0,5", "--views", "2"}, "--views 1"));
 }
 
 TEST_F(NoEffect, OfAPlan) {
-  refused({"plan", "ellipsoid", "--tolerance", "2", "--method", "sobel"}, "--method sobel");
-  refused({"plan", "ellipsoid", "--tolerance", "2", "--set", "color=1,0,0"}, "--set color");
-  refused({"plan", "ellipsoid", "--tolerance", "2", "--metric", "silhouette", "--set", "threshold=0.2"}, "silhouette");
-  refused({"plan", "ellipsoid", "--tolerance", "2", "--half-width", "4"}, "--half-width");
-  refused({"plan", "ellipsoid", "--tolerance", "2", "--scheme", "loop"}, "--scheme");
+  EXPECT_TRUE(is_refused(Words{"plan", "ellipsoid", "--tolerance", "2", "--method", "sobel"}, "--method sobel"));
+  EXPECT_TRUE(is_refused(Words{"plan", "ellipsoid", "--tolerance", "2", "--set", "color=1,0,0"}, "--set color"));
+  EXPECT_TRUE(is_refused(Words{"plan", "ellipsoid", "--tolerance", "2", "--metric", "silhouette", "--set", "threshold=0.2"}, "silhouette"));
+  EXPECT_TRUE(is_refused(Words{"plan", "ellipsoid", "--tolerance", "2", "--half-width", "4"}, "--half-width"));
+  EXPECT_TRUE(is_refused(Words{"plan", "ellipsoid", "--tolerance", "2", "--scheme", "loop"}, "--scheme"));
   for (const char* option : {"--samples", "--background"}) {
     const RunResult result = run({"plan", "ellipsoid", "--tolerance", "2", option, "1"});
     EXPECT_EQ(result.exit_code, 2);
@@ -136,33 +140,34 @@ TEST_F(NoEffect, OfAPlan) {
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_NE(result.err.find("--tolerance"), std::string::npos) << result.err;
   }
-  taken({"plan", "ellipsoid", "--tolerance", "4", "--method", "rim", "--set", "threshold=0.2"});
+  EXPECT_TRUE(is_taken(Words{"plan", "ellipsoid", "--tolerance", "4", "--method", "rim", "--set", "threshold=0.2"}));
 }
 
 TEST_F(NoEffect, OfExportAndInfo) {
-  refused({"export", "ellipsoid", "--voxels", "12", "-o", "a.obj"}, "--voxels");
-  refused({"export", "ellipsoid", "--level", "1", "-o", "a.vdb"}, "--level");
-  refused({"export", "ellipsoid", "--normals", "flat", "-o", "a.vdb"}, "--normals");
-  refused({"export", "ellipsoid", "--gradient", "cell", "-o", "a.ply"}, "--gradient");
-  taken({"export", "ellipsoid", "--level", "1", "--normals", "flat", "-o", "a.ply"});
-  taken({"export", "ellipsoid", "--voxels", "12", "--half-width", "4", "-o", "a.vdb"});
-  taken({"export", "ellipsoid", "--surface", "mesh_level_set", "--voxels", "12", "--level", "1", "-o", "a.vdb"});
-  taken({"export", "MESH", "--voxels", "12", "-o", "a.vdb"});
-  refused({"export", "MESH", "--smooth-angle", "10", "-o", "a.obj"}, "--smooth-angle");
-  refused({"export", "MESH", "--normals", "flat", "-o", "a.obj"}, "--normals");
-  refused({"export", "ellipsoid", "--surface", "level_set", "--voxels", "12", "--normals", "flat", "-o", "a.obj"}, "--normals");
-  refused({"export", "VOLUME", "--gradient", "cubic", "-o", "a.vdb"}, "--gradient");
-  taken({"export", "VOLUME", "--voxels", "12", "--gradient", "cubic", "-o", "a.vdb"});
-  taken({"export", "CAGE", "--level", "1", "--normals", "flat", "-o", "a.obj"});
-  refused({"info", "VOLUME", "--voxels", "12"}, "--voxels");
-  refused({"info", "ellipsoid", "--half-width", "4"}, "--half-width");
-  refused({"info", "ellipsoid", "--normals", "flat"}, "--normals");
-  refused({"info", "ellipsoid", "--gradient", "cell"}, "--gradient");
-  refused({"info", "VOLUME", "--level", "1"}, "--level");
-  refused({"info", "PICTURE", "--voxels", "12"}, "picture");
-  taken({"info", "ellipsoid", "--voxels", "12"});
-  taken({"info", "VOLUME", "--gradient", "cell"});
-  taken({"info", "MESH", "--level", "1"});
+  EXPECT_TRUE(is_refused(Words{"export", "ellipsoid", "--voxels", "12", "-o", "a.obj"}, "--voxels"));
+  EXPECT_TRUE(is_refused(Words{"export", "ellipsoid", "--level", "1", "-o", "a.vdb"}, "--level"));
+  EXPECT_TRUE(is_refused(Words{"export", "ellipsoid", "--normals", "flat", "-o", "a.vdb"}, "--normals"));
+  EXPECT_TRUE(is_refused(Words{"export", "ellipsoid", "--gradient", "cell", "-o", "a.ply"}, "--gradient"));
+  EXPECT_TRUE(is_taken(Words{"export", "ellipsoid", "--level", "1", "--normals", "flat", "-o", "a.ply"}));
+  EXPECT_TRUE(is_taken(Words{"export", "ellipsoid", "--voxels", "12", "--half-width", "4", "-o", "a.vdb"}));
+  EXPECT_TRUE(is_taken(Words{"export", "ellipsoid", "--surface", "mesh_level_set", "--voxels", "12", "--level", "1", "-o", "a.vdb"}));
+  EXPECT_TRUE(is_taken(Words{"export", "MESH", "--voxels", "12", "-o", "a.vdb"}));
+  EXPECT_TRUE(is_refused(Words{"export", "MESH", "--smooth-angle", "10", "-o", "a.obj"}, "--smooth-angle"));
+  EXPECT_TRUE(is_refused(Words{"export", "MESH", "--normals", "flat", "-o", "a.obj"}, "--normals"));
+  EXPECT_TRUE(is_refused(Words{"export", "ellipsoid", "--surface", "level_set", "--voxels", "12", "--normals", "flat", "-o", "a.obj"},
+                         "--normals"));
+  EXPECT_TRUE(is_refused(Words{"export", "VOLUME", "--gradient", "cubic", "-o", "a.vdb"}, "--gradient"));
+  EXPECT_TRUE(is_taken(Words{"export", "VOLUME", "--voxels", "12", "--gradient", "cubic", "-o", "a.vdb"}));
+  EXPECT_TRUE(is_taken(Words{"export", "CAGE", "--level", "1", "--normals", "flat", "-o", "a.obj"}));
+  EXPECT_TRUE(is_refused(Words{"info", "VOLUME", "--voxels", "12"}, "--voxels"));
+  EXPECT_TRUE(is_refused(Words{"info", "ellipsoid", "--half-width", "4"}, "--half-width"));
+  EXPECT_TRUE(is_refused(Words{"info", "ellipsoid", "--normals", "flat"}, "--normals"));
+  EXPECT_TRUE(is_refused(Words{"info", "ellipsoid", "--gradient", "cell"}, "--gradient"));
+  EXPECT_TRUE(is_refused(Words{"info", "VOLUME", "--level", "1"}, "--level"));
+  EXPECT_TRUE(is_refused(Words{"info", "PICTURE", "--voxels", "12"}, "picture"));
+  EXPECT_TRUE(is_taken(Words{"info", "ellipsoid", "--voxels", "12"}));
+  EXPECT_TRUE(is_taken(Words{"info", "VOLUME", "--gradient", "cell"}));
+  EXPECT_TRUE(is_taken(Words{"info", "MESH", "--level", "1"}));
 }
 
 TEST_F(NoEffect, ARepresentationThatCannotBeMadeIsWhatIsNamed) {
@@ -174,6 +179,15 @@ TEST_F(NoEffect, ARepresentationThatCannotBeMadeIsWhatIsNamed) {
     EXPECT_NE(result.err.find(call[3]), std::string::npos) << result.err;
     EXPECT_EQ(result.err.find("no effect"), std::string::npos) << result.err;
   }
+}
+
+TEST_F(NoEffect, PathsThatLookLikeSettingsStayAsTheyAre) {
+  const TemporaryFolder out;
+  const std::string picture = out.file("level = 3.png");
+  const RunResult json = run_limn({"render", "ellipsoid", "--size", "16x12", "-o", picture, "--json"});
+  ASSERT_EQ(json.exit_code, 0) << json.err;
+  EXPECT_EQ(json.json()["files"][0], picture);
+  EXPECT_NE(run_limn({"render", "ellipsoid", "--size", "16x12", "-o", picture}).out.find(picture), std::string::npos);
 }
 
 TEST_F(NoEffect, ARenderWithoutAPlanSaysSoInJson) {

@@ -8,12 +8,12 @@
 namespace limn {
 namespace {
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   Worst worst;
-  for (const StabilityView& view : shop.views()) {
-    const Border border = draw_border(shop.stage(), view, *method);
+  for (const StabilityView& view : context.views()) {
+    const Border border = draw_border(context.stage(), view, *method);
     const double ink = std::accumulate(border.coverage.pixels.begin(), border.coverage.pixels.end(), 0.0);
-    worst.see(std::max(0.0, ink - with.number("most")), fmt::format("{} pixels of ink", ink), shop.stage(), view, &border);
+    worst.see(std::max(0.0, ink - with.number("most")), fmt::format("{} pixels of ink", ink), context.stage(), view, &border);
   }
   return worst.take();
 }

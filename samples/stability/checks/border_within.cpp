@@ -54,14 +54,14 @@ double retreat(const Measured& measured, const StabilityView& view, double voxel
   return largest;
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall*, const Parameters& with) {
   Worst worst;
   const double threshold = with.number("threshold");
   const std::string kind = with.choice("kind"), statistic = with.choice("statistic");
-  for (const StabilityView& view : shop.views()) {
-    const StabilityStage& stage = shop.stage();
-    Measured measured{solve_truth(shop.truth_scene(), view.camera, {.threshold = threshold}, shop.how()),
-                      measure_border(stage.model, view.camera, view.seen, {.threshold = threshold}, shop.how())};
+  for (const StabilityView& view : context.views()) {
+    const StabilityStage& stage = context.stage();
+    Measured measured{solve_truth(context.truth_scene(), view.camera, {.threshold = threshold}, context.how()),
+                      measure_border(stage.model, view.camera, view.seen, {.threshold = threshold}, context.how())};
     std::string words;
     double number = 0.0;
     if (kind == "retreat") {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "raymarch/picture.h"
-#include "samples/stability/workshop.h"
+#include "samples/stability/case_context.h"
 #include "sdf/registry.h"
 
 namespace limn {
@@ -24,7 +24,7 @@ struct StabilityCheck {
   bool of_methods = false;  ///< True: looked at for each method; false: once for a surface.
   std::vector<Parameter> parameters{};
   /// `method` is null where not of_methods. Throws InputError where the program refuses the scene.
-  StabilityFinding (*run)(Workshop& shop, const MethodCall* method, const Parameters& with);
+  StabilityFinding (*run)(CaseContext& context, const MethodCall* method, const Parameters& with);
 };
 
 const Registry<StabilityCheck>& stability_checks();

@@ -62,11 +62,11 @@ Image<std::uint8_t> seam_pixels(const GBuffer& seen, const Image<float>& ink, in
   return seam;
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   Worst worst;
   std::int64_t seen_in_any = 0;
-  for (const StabilityView& view : shop.views()) {
-    const Border border = draw_border(shop.stage(), view, *method);
+  for (const StabilityView& view : context.views()) {
+    const Border border = draw_border(context.stage(), view, *method);
     const Image<std::uint8_t> seam = seam_pixels(view.seen, border.coverage, with.integer("reach_px"), with.integer("away_px"));
     const auto count = [&](auto among) { return static_cast<std::int64_t>(regions(seam, among).size()); };
     const std::int64_t seams = count([](std::uint8_t p) { return p != none; });
@@ -84,11 +84,11 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
     seen_in_any += seams;
     worst.see(static_cast<double>(changes + splinters + specks),
               fmt::format("{} seams in the picture, {} changes between ink and none along them, {} specks of ink", seams, changes, specks),
-              shop.stage(), view, &border);
+              context.stage(), view, &border);
   }
   if (seen_in_any == 0) {
-    const StabilityView& view = shop.views().front();
-    worst.see(kNothingSeen, "no seam in any picture", shop.stage(), view, nullptr);
+    const StabilityView& view = context.views().front();
+    worst.see(kNothingSeen, "no seam in any picture", context.stage(), view, nullptr);
   }
   return worst.take();
 }

@@ -8,13 +8,13 @@ namespace {
 
 struct Shot {
   double at = 0.0;
-  const Workshop::Swept* swept = nullptr;
+  const CaseContext::Swept* swept = nullptr;
   Border border{};
   const StabilityView& view() const { return swept->views.front(); }
 };
 
-Shot shoot(Workshop& shop, const MethodCall& method, double at) {
-  const Workshop::Swept& swept = shop.swept(at);
+Shot shoot(CaseContext& context, const MethodCall& method, double at) {
+  const CaseContext::Swept& swept = context.swept(at);
   return {at, &swept, draw_border(swept.stage, swept.views.front(), method)};
 }
 
@@ -28,17 +28,17 @@ double change(const Shot& a, const Shot& b) {
   return static_cast<double>(changed) / static_cast<double>(std::max<std::int64_t>(1, pixels));
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   const double from = with.number("from"), to = with.number("to");
   const int steps = with.integer("steps");
   std::vector<Shot> shots;
-  for (int i = 0; i <= steps; ++i) shots.push_back(shoot(shop, *method, from + (to - from) * i / steps));
+  for (int i = 0; i <= steps; ++i) shots.push_back(shoot(context, *method, from + (to - from) * i / steps));
   size_t largest = 1;
   for (size_t i = 2; i < shots.size(); ++i)
     largest = change(shots[i - 1], shots[i]) > change(shots[largest - 1], shots[largest]) ? i : largest;
   Shot low = std::move(shots[largest - 1]), high = std::move(shots[largest]);
   for (int i = 0; i < with.integer("halvings"); ++i) {
-    Shot middle = shoot(shop, *method, 0.5 * (low.at + high.at));
+    Shot middle = shoot(context, *method, 0.5 * (low.at + high.at));
     (change(low, middle) > change(middle, high) ? high : low) = std::move(middle);
   }
   Worst worst;

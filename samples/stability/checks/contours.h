@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "samples/stability/workshop.h"
+#include "samples/stability/case_context.h"
 
 namespace limn {
 

@@ -26,11 +26,11 @@ Cusps count_cusps(const WholeContour& contour) {
   return cusps;
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters&) {
+StabilityFinding run(CaseContext& context, const MethodCall*, const Parameters&) {
   Worst worst;
-  for (const StabilityView& view : shop.views()) {
+  for (const StabilityView& view : context.views()) {
     int wrong = 0, closed = 0, cusps = 0, open = 0;
-    for (const WholeContour& contour : whole_contours(shop.truth_scene(), view.camera, shop.how())) {
+    for (const WholeContour& contour : whole_contours(context.truth_scene(), view.camera, context.how())) {
       open += !contour.closed;
       if (!contour.closed) continue;
       const Cusps found = count_cusps(contour);
@@ -42,7 +42,7 @@ StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters&) {
         wrong + open + (closed == 0),
         fmt::format("{} closed contours with {} cusps, {} of them with a count that is odd or not that of the curvature's zeros; {} open",
                     closed, cusps, wrong, open),
-        shop.stage(), view);
+        context.stage(), view);
   }
   return worst.take();
 }

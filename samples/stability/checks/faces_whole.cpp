@@ -7,10 +7,10 @@
 namespace limn {
 namespace {
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters&) {
   Worst worst;
-  for (const StabilityView& view : shop.views()) {
-    const Border border = draw_border(shop.stage(), view, *method);
+  for (const StabilityView& view : context.views()) {
+    const Border border = draw_border(context.stage(), view, *method);
     std::int64_t pixels = 0, odd = 0, inked = 0;
     const std::vector<FlatFace> faces = flat_faces(view.seen, border.coverage);
     for (const FlatFace& face : faces) {
@@ -22,7 +22,7 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
     worst.see(share,
               fmt::format("{} flat faces, {} of them border; {} of {} pixels differ from the rest of their face", faces.size(), inked, odd,
                           pixels),
-              shop.stage(), view, &border);
+              context.stage(), view, &border);
   }
   return worst.take();
 }

@@ -25,16 +25,16 @@ double to_a_side(FieldEvaluator& evaluator, const glm::dvec3& p, const glm::dvec
   return least;
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters& with) {
-  const StabilityStage& stage = shop.stage();
+StabilityFinding run(CaseContext& context, const MethodCall*, const Parameters& with) {
+  const StabilityStage& stage = context.stage();
   StabilityFinding finding;
   const std::span<const double> list = with.list("points");
-  if (list.empty()) throw InputError({shop.which().file, "with.points", "", "no points", "points = [[x, y, z], …]"});
+  if (list.empty()) throw InputError({context.which().file, "with.points", "", "no points", "points = [[x, y, z], …]"});
   finding.number = 0.0;
   finding.message = fmt::format("{} points, all gradients finite and of one side", list.size() / 3);
   for (const SceneObject& object : stage.scene.objects) {
     const auto* field = std::get_if<Field>(&object.source);
-    if (field == nullptr) throw InputError({shop.which().file, "object", "", "no field", "shapes"});
+    if (field == nullptr) throw InputError({context.which().file, "object", "", "no field", "shapes"});
     FieldEvaluator evaluator(*field);
     const double beside = with.number("beside") * field->traits().bounds.radius();
     for (size_t i = 0; i + 2 < list.size(); i += 3) {
@@ -51,7 +51,7 @@ StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters& with) 
                       p.z, jet.gradient.x, jet.gradient.y, jet.gradient.z, off);
     }
   }
-  finding.picture = picture_of(stage, shop.views().front());
+  finding.picture = picture_of(stage, context.views().front());
   return finding;
 }
 

@@ -27,10 +27,10 @@ std::string fault_of(const Border& border, size_t i) {
   return {};
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   Worst worst;
-  for (const StabilityView& view : shop.views()) {
-    const Border border = draw_border(shop.stage(), view, *method);
+  for (const StabilityView& view : context.views()) {
+    const Border border = draw_border(context.stage(), view, *method);
     std::int64_t bad = 0;
     std::string first;
     for (size_t i = 0; i < view.seen.id.size(); ++i) {
@@ -44,7 +44,7 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
     const auto least = static_cast<std::int64_t>(with.number("hits") * static_cast<double>(view.seen.id.size()));
     if (hits.hits < least && bad++ == 0) first = fmt::format(", fewer than {} hit", least);
     worst.see(static_cast<double>(bad), fmt::format("{} bad pixels of {} ({} hit){}", bad, view.seen.id.size(), hits.hits, first),
-              shop.stage(), view, &border);
+              context.stage(), view, &border);
   }
   return worst.take();
 }

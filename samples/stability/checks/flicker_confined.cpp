@@ -29,16 +29,16 @@ void compare(const GBuffer& a, const Border& ink_a, const GBuffer& b, const Bord
 /// The moves are the first points of a sequence this long, whatever part of it a case asks for.
 constexpr int kMoves = 1024;
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   Worst worst;
-  const StabilityStage& stage = shop.stage();
+  const StabilityStage& stage = context.stage();
   const int moves = with.integer("moves");
-  for (const StabilityView& view : shop.views()) {
+  for (const StabilityView& view : context.views()) {
     Flips flips;
     GBuffer before;
     Border ink_before;
     for (int k = 0; k <= moves; ++k) {
-      GBuffer seen = k == 0 ? view.seen : render_gbuffer(stage.model, view.camera, shop.how(), sample_offset(k, kMoves));
+      GBuffer seen = k == 0 ? view.seen : render_gbuffer(stage.model, view.camera, context.how(), sample_offset(k, kMoves));
       Border ink = method->method->draw({seen, view.camera, stage.model, stage.scene}, method->parameters);
       if (k > 0) compare(before, ink_before, seen, ink, with.number("threshold"), flips);
       before = std::move(seen);

@@ -32,18 +32,18 @@ struct Film {
   }
 };
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
-  const StabilityStage& stage = shop.stage();
-  const Scene& truth_scene = shop.truth_scene();
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
+  const StabilityStage& stage = context.stage();
+  const Scene& truth_scene = context.truth_scene();
   SurfaceSettings natural;
   natural.kind.clear();  // each object as it is by itself
   const SceneModel truth = build_model(truth_scene, natural);
   if (const std::string reason = method->method->unsupported(truth, truth_scene); !reason.empty()) {
     throw InputError({"", "method", method->method->about.name, "cannot draw the truth: " + reason, ""});
   }
-  StabilityRandom random = shop.random();
+  StabilityRandom random = context.random();
   Worst worst;
-  for (const StabilityView& view : shop.views()) {
+  for (const StabilityView& view : context.views()) {
     const FramePath path{
         .frames = with.integer("frames"), .step_px = with.number("step"), .seed = static_cast<std::uint64_t>(random.next() * 0x1p53)};
     Film own{stage.model, stage.scene, *method, true}, reference{truth, truth_scene, *method, false};
@@ -53,8 +53,8 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
     std::int64_t most = 0;
     int frame = 0;
     for (const Camera& camera : path_cameras(view.camera, bounds(truth_scene), path)) {
-      own.next(camera, shop.how());
-      reference.next(camera, shop.how());
+      own.next(camera, context.how());
+      reference.next(camera, context.how());
       const FrameFlips flips = count_flips({own.border.coverage, own.before}, {reference.border.coverage, reference.before}, history);
       sum.flips += flips.flips;
       sum.reference_flips += flips.reference_flips;

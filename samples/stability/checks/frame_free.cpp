@@ -24,12 +24,12 @@ bool ink_near(const Image<float>& ink, int x, int y) {
   return false;
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   const int margin = with.integer("margin_px"), edge = with.integer("edge_px");
   Worst worst;
-  for (const StabilityView& view : shop.views()) {
-    const StabilityStage& stage = shop.stage();
-    const Border border = draw_border(stage, view, *method), whole = draw_border(stage, wider(stage, view, margin, shop.how()), *method);
+  for (const StabilityView& view : context.views()) {
+    const StabilityStage& stage = context.stage();
+    const Border border = draw_border(stage, view, *method), whole = draw_border(stage, wider(stage, view, margin, context.how()), *method);
     const Image<float>& ink = border.coverage;
     std::int64_t cut = 0, inked = 0;
     for (int y = 0; y < ink.height; ++y) {

@@ -71,11 +71,11 @@ class Spread {
   std::vector<std::uint8_t> come_;
 };
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   Worst worst;
-  for (const StabilityView& view : shop.views()) {
-    const Border border = draw_border(shop.stage(), view, *method);
-    const BorderInput input{view.seen, view.camera, shop.stage().model, shop.stage().scene};
+  for (const StabilityView& view : context.views()) {
+    const Border border = draw_border(context.stage(), view, *method);
+    const BorderInput input{view.seen, view.camera, context.stage().model, context.stage().scene};
     Spread spread(input, border.coverage);
     double widest = 0.0;
     glm::ivec2 at(0);
@@ -88,7 +88,7 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
     }
     worst.see(widest == 0.0 ? 1e3 : widest - with.number("width"),
               widest == 0.0 ? "no ink at all" : fmt::format("{:.1f} px wide where it is widest, at ({}, {})", widest, at.x, at.y),
-              shop.stage(), view, &border);
+              context.stage(), view, &border);
   }
   return worst.take();
 }

@@ -37,14 +37,14 @@ std::int64_t without_counterpart(const Shot& a, const Shot& b, int reach) {
   return count;
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   const int reach = with.integer("reach_px");
   Worst worst;
-  for (size_t variant = 1; variant <= shop.which().variants.size(); ++variant) {
-    const StabilityStage& changed = shop.stage(variant);
-    for (size_t k = 0; k < shop.views().size(); ++k) {
-      const StabilityView &view = shop.views()[k], &other = shop.views(variant)[k];
-      const Border border = draw_border(shop.stage(), view, *method), other_border = draw_border(changed, other, *method);
+  for (size_t variant = 1; variant <= context.which().variants.size(); ++variant) {
+    const StabilityStage& changed = context.stage(variant);
+    for (size_t k = 0; k < context.views().size(); ++k) {
+      const StabilityView &view = context.views()[k], &other = context.views(variant)[k];
+      const Border border = draw_border(context.stage(), view, *method), other_border = draw_border(changed, other, *method);
       const Shot a{view.seen, border.coverage}, b{other.seen, other_border.coverage};
       const std::int64_t different = without_counterpart(a, b, reach) + without_counterpart(b, a, reach);
       const bool empty = count_hits(view.seen).hits == 0;

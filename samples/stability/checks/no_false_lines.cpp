@@ -6,10 +6,10 @@
 namespace limn {
 namespace {
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters&) {
   Worst worst;
-  for (const StabilityView& view : shop.views()) {
-    const Border border = draw_border(shop.stage(), view, *method);
+  for (const StabilityView& view : context.views()) {
+    const Border border = draw_border(context.stage(), view, *method);
     std::int64_t inked = 0;
     float steepest = 1.0f;
     for (size_t i = 0; i < border.coverage.size(); ++i) {
@@ -17,7 +17,7 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
       if (view.seen.id.pixels[i] != 0) steepest = std::min(steepest, view.seen.n_dot_v.pixels[i]);
     }
     worst.see(static_cast<double>(inked), fmt::format("{} of {} pixels inked, N.V from {:.3g}", inked, border.coverage.size(), steepest),
-              shop.stage(), view, &border);
+              context.stage(), view, &border);
   }
   return worst.take();
 }

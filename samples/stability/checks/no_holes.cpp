@@ -56,16 +56,16 @@ Image<double> least_values(const Scene& scene, const StabilityView& view, int st
   });
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters& with) {
-  const Scene& scene = shop.truth_scene();
+StabilityFinding run(CaseContext& context, const MethodCall*, const Parameters& with) {
+  const Scene& scene = context.truth_scene();
   const Box box = bounds(scene);
-  const double voxel = total(shop.stage().model).voxel_size;
+  const double voxel = total(context.stage().model).voxel_size;
   const double slack = with.number("slack") * box.radius() + with.number("slack_voxels") * voxel;
   const int steps = with.integer("steps");
   // Between two steps the value may fall by half of what a step can change it by.
   const double between = 2.002 * box.radius() / steps;
   Worst worst;
-  for (const StabilityView& view : shop.views()) {
+  for (const StabilityView& view : context.views()) {
     const Image<double> least = least_values(scene, view, steps);
     std::int64_t holes = 0, false_hits = 0;
     std::string first;
@@ -83,7 +83,7 @@ StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters& with) 
     worst.see(
         static_cast<double>(holes + false_hits + hits.out_of_steps),
         fmt::format("{} holes and {} false hits beside {} hits, against {} steps a ray{}", holes, false_hits, hits.hits, steps, first),
-        shop.stage(), view);
+        context.stage(), view);
   }
   return worst.take();
 }

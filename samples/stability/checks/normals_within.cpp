@@ -14,17 +14,17 @@ double angle_deg(const glm::dvec3& a, const glm::dvec3& b) {
   return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters&) {
+StabilityFinding run(CaseContext& context, const MethodCall*, const Parameters&) {
   std::vector<Field> fields;
-  for (const SceneObject& object : shop.truth_scene().objects) {
+  for (const SceneObject& object : context.truth_scene().objects) {
     const auto* field = std::get_if<Field>(&object.source);
     if (field == nullptr)
-      throw InputError({shop.which().file, "object", "", "no field to compare with", "shapes, or a [[reference]] of shapes"});
+      throw InputError({context.which().file, "object", "", "no field to compare with", "shapes, or a [[reference]] of shapes"});
     fields.push_back(*field);
   }
   FieldEvaluator evaluator(combine(Csg::union_, fields));
   Worst worst;
-  for (const StabilityView& view : shop.views()) {
+  for (const StabilityView& view : context.views()) {
     double largest = -1.0;
     std::string words = "nothing hit";
     for (size_t i = 0; i < view.seen.id.size(); ++i) {
@@ -35,7 +35,7 @@ StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters&) {
       const auto width = static_cast<size_t>(view.seen.width);
       words = fmt::format("{:.3g} degrees off at ({}, {})", largest, i % width, i / width);
     }
-    worst.see(std::max(0.0, largest), words, shop.stage(), view);
+    worst.see(std::max(0.0, largest), words, context.stage(), view);
   }
   return worst.take();
 }

@@ -17,16 +17,16 @@ int pieces_of(const Image<float>& ink, const Camera& camera) {
   return 0;
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   Worst worst;
-  for (const StabilityView& view : shop.views()) {
-    const Border border = draw_border(shop.stage(), view, *method);
+  for (const StabilityView& view : context.views()) {
+    const Border border = draw_border(context.stage(), view, *method);
     const OutlineGaps gaps = outline_gaps(view.seen, border.coverage);
     const int pieces = pieces_of(border.coverage, view.camera);
     const auto excess = std::abs(pieces - with.integer("pieces"));
     worst.see(static_cast<double>(gaps.gaps) + excess,
               fmt::format("{} gaps (longest {} px), {} piece{} of ink", gaps.gaps, gaps.longest_px, pieces, pieces == 1 ? "" : "s"),
-              shop.stage(), view, &border);
+              context.stage(), view, &border);
   }
   return worst.take();
 }

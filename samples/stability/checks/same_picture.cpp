@@ -26,15 +26,15 @@ bool differ(const Drawn& a, const Drawn& b, size_t i, bool exact) {
          !same_bits(p.n_dot_v.pixels[i], q.n_dot_v.pixels[i]) || !same_bits(a.border.coverage.pixels[i], b.border.coverage.pixels[i]);
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   const bool exact = with.flag("exact");
   Worst worst;
-  for (size_t variant = 1; variant <= shop.which().variants.size(); ++variant) {
-    const StabilityStage& changed = shop.stage(variant);
+  for (size_t variant = 1; variant <= context.which().variants.size(); ++variant) {
+    const StabilityStage& changed = context.stage(variant);
     worst.said(said_of(changed, method->method->about.name));
-    for (size_t k = 0; k < shop.views().size(); ++k) {
-      const StabilityView &view = shop.views()[k], &other = shop.views(variant)[k];
-      const Border border = draw_border(shop.stage(), view, *method), other_border = draw_border(changed, other, *method);
+    for (size_t k = 0; k < context.views().size(); ++k) {
+      const StabilityView &view = context.views()[k], &other = context.views(variant)[k];
+      const Border border = draw_border(context.stage(), view, *method), other_border = draw_border(changed, other, *method);
       worst.said(other_border.notes);
       std::int64_t different = 0;
       std::string first;

@@ -38,12 +38,12 @@ StabilityView orthographic(const StabilityStage& stage, const StabilityView& vie
   return out;
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
-  const StabilityStage& stage = shop.stage();
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
+  const StabilityStage& stage = context.stage();
   const bool grows = with.flag("grows");
-  std::vector<StabilityView> views = shop.views();
+  std::vector<StabilityView> views = context.views();
   if (with.flag("orthographic")) {
-    for (const StabilityView& view : shop.views()) views.push_back(orthographic(stage, view, shop.how()));
+    for (const StabilityView& view : context.views()) views.push_back(orthographic(stage, view, context.how()));
   }
   std::vector<Border> borders;
   std::vector<Width> widths;

@@ -61,18 +61,18 @@ double open_share(const Picture& picture, const Picture& object) {
   return both > 0 ? static_cast<double>(open) / static_cast<double>(both) : 0.0;
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   Worst worst;
-  const StabilityStage& stage = shop.stage();
+  const StabilityStage& stage = context.stage();
   const bool alpha = with.choice("look") == "alpha";
-  for (const StabilityView& view : shop.views()) {
+  for (const StabilityView& view : context.views()) {
     const double length = static_cast<double>(find_silhouette(view.seen, false).crossings) * 0.25 * std::numbers::pi;
     const Border border = draw_border(stage, view, *method);
-    const Image<float> reference = alpha ? Image<float>() : draw(stage, view, {method, 1}, kReference, shop.how()).border;
+    const Image<float> reference = alpha ? Image<float>() : draw(stage, view, {method, 1}, kReference, context.how()).border;
     for (const int samples : kSamples) {
-      const Picture picture = draw(stage, view, {method, 1}, samples, shop.how());
+      const Picture picture = draw(stage, view, {method, 1}, samples, context.how());
       if (alpha) {
-        const double open = open_share(picture, draw(stage, view, {}, samples, shop.how()));
+        const double open = open_share(picture, draw(stage, view, {}, samples, context.how()));
         worst.see(open,
                   fmt::format("{} samples: the background shows in {:.2g} % of the pixels between ink and object", samples, 100.0 * open),
                   stage, view, &border);

@@ -18,25 +18,25 @@ LevelSet level_set_of(const StabilityStage& stage, std::vector<std::string>& sai
   return made;
 }
 
-Field truth_of(Workshop& shop) {
+Field truth_of(CaseContext& context) {
   std::vector<Field> fields;
-  for (const SceneObject& object : shop.truth_scene().objects) {
+  for (const SceneObject& object : context.truth_scene().objects) {
     const auto* field = std::get_if<Field>(&object.source);
     if (field == nullptr)
-      throw InputError({shop.which().file, "object", "", "no field to compare with", "shapes, or a [[reference]] of shapes"});
+      throw InputError({context.which().file, "object", "", "no field to compare with", "shapes, or a [[reference]] of shapes"});
     fields.push_back(*field);
   }
   return combine(Csg::union_, fields);
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall*, const Parameters& with) {
   StabilityFinding finding;
-  const LevelSet grid = level_set_of(shop.stage(), finding.said);
-  const Field truth = truth_of(shop);
+  const LevelSet grid = level_set_of(context.stage(), finding.said);
+  const Field truth = truth_of(context);
   const Box box = dilate(truth.traits().bounds, 4.0 * grid.info().voxel_size);
   const double clear = with.number("clear_voxels") * grid.info().voxel_size;
   std::vector<glm::dvec3> points(static_cast<size_t>(with.integer("points")));
-  StabilityRandom random = shop.random();
+  StabilityRandom random = context.random();
   for (glm::dvec3& point : points) {
     for (int axis = 0; axis < 3; ++axis) point[axis] = box.lower[axis] + random.next() * box.size()[axis];
   }
@@ -55,7 +55,7 @@ StabilityFinding run(Workshop& shop, const MethodCall*, const Parameters& with) 
   }
   finding.number = static_cast<double>(wrong);
   finding.message = fmt::format("{} of {} points have the wrong sign{}", wrong, looked, first);
-  finding.picture = picture_of(shop.stage(), shop.views().front());
+  finding.picture = picture_of(context.stage(), context.views().front());
   return finding;
 }
 

@@ -39,16 +39,16 @@ double distance_at(const StabilityView& view, const StabilityView& other, std::s
   return least;
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   const std::span<const double> path = with.list("path");
-  if (path.empty()) throw InputError({shop.which().file, "with.path", "", "no path", "path = [[x, y, z], …]"});
+  if (path.empty()) throw InputError({context.which().file, "with.path", "", "no path", "path = [[x, y, z], …]"});
   Worst worst;
-  for (size_t variant = 1; variant <= shop.which().variants.size(); ++variant) {
-    const StabilityStage& changed = shop.stage(variant);
+  for (size_t variant = 1; variant <= context.which().variants.size(); ++variant) {
+    const StabilityStage& changed = context.stage(variant);
     worst.said(said_of(changed, method->method->about.name));
-    for (size_t k = 0; k < shop.views().size(); ++k) {
-      const StabilityView &view = shop.views()[k], &other = shop.views(variant)[k];
-      const Border border = draw_border(shop.stage(), view, *method), other_border = draw_border(changed, other, *method);
+    for (size_t k = 0; k < context.views().size(); ++k) {
+      const StabilityView &view = context.views()[k], &other = context.views(variant)[k];
+      const Border border = draw_border(context.stage(), view, *method), other_border = draw_border(changed, other, *method);
       std::int64_t different = 0;
       double farthest = 0.0;
       for (size_t i = 0; i < view.seen.id.size(); ++i) {

@@ -12,12 +12,12 @@ namespace {
 constexpr double kReach_px = 100.0;
 
 /// The true contours where the scene is made of fields, hidden ones too: ink may show beside them. Else what the model shows.
-BorderCurves contours_of(Workshop& shop, const StabilityView& view) {
-  const Scene& scene = shop.truth_scene();
+BorderCurves contours_of(CaseContext& context, const StabilityView& view) {
+  const Scene& scene = context.truth_scene();
   if (!std::holds_alternative<Field>(scene.objects.front().source))
-    return measure_border(shop.stage().model, view.camera, view.seen, {.threshold = 0.0}, shop.how());
+    return measure_border(context.stage().model, view.camera, view.seen, {.threshold = 0.0}, context.how());
   BorderCurves curves;
-  for (const WholeContour& contour : whole_contours(scene, view.camera, shop.how())) {
+  for (const WholeContour& contour : whole_contours(scene, view.camera, context.how())) {
     BorderCurve curve{CurveKind::silhouette, 1, contour.closed, {}};
     for (const WholeContour::Point& point : contour.points) {
       curve.points.emplace_back();
@@ -28,11 +28,11 @@ BorderCurves contours_of(Workshop& shop, const StabilityView& view) {
   return curves;
 }
 
-StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters& with) {
+StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   Worst worst;
-  for (const StabilityView& view : shop.views()) {
-    const Border border = draw_border(shop.stage(), view, *method);
-    const BorderCurves curves = contours_of(shop, view);
+  for (const StabilityView& view : context.views()) {
+    const Border border = draw_border(context.stage(), view, *method);
+    const BorderCurves curves = contours_of(context, view);
     const CurveIndex index(curves, CurveKind::silhouette);
     double widest = 0.0;
     glm::ivec2 at(0);
@@ -50,7 +50,7 @@ StabilityFinding run(Workshop& shop, const MethodCall* method, const Parameters&
     worst.see(none ? kReach_px : widest - with.number("width"),
               none ? "no ink at all"
                    : fmt::format("{} pixels of ink, the farthest {:.2f} px from the contour at ({}, {})", inked, widest, at.x, at.y),
-              shop.stage(), view, &border);
+              context.stage(), view, &border);
   }
   return worst.take();
 }

@@ -28,9 +28,9 @@ struct StabilityView {
   std::string words{};  ///< "view 2 of 5, 160x120".
 };
 
-class Workshop {
+class CaseContext {
  public:
-  Workshop(const StabilityCase& one, int draw, std::uint64_t seed, std::string surface, const ExecutionSettings& how);
+  CaseContext(const StabilityCase& one, int draw, std::uint64_t seed, std::string surface, const ExecutionSettings& how);
 
   const StabilityCase& which() const { return case_; }
   const std::string& surface() const { return surface_; }

@@ -1,4 +1,4 @@
-#include "samples/stability/workshop.h"
+#include "samples/stability/case_context.h"
 
 #include <fmt/format.h>
 #include <hwy/targets.h>
@@ -95,7 +95,7 @@ ExecutionSettings how_of(const StabilityVariant& variant, ExecutionSettings how)
 
 }  // namespace
 
-Workshop::Workshop(const StabilityCase& one, int draw, std::uint64_t seed, std::string surface, const ExecutionSettings& how)
+CaseContext::CaseContext(const StabilityCase& one, int draw, std::uint64_t seed, std::string surface, const ExecutionSettings& how)
     : case_(one), draw_(draw), seed_(seed), surface_(std::move(surface)), how_(how), values_(drawn_parameters(one, seed, draw)) {
   // Uniform over all rotations (Shoemake 1992).
   StabilityRandom turn(one.text.name + " views", seed, draw);
@@ -106,7 +106,7 @@ Workshop::Workshop(const StabilityCase& one, int draw, std::uint64_t seed, std::
   views_.resize(one.variants.size() + 1);
 }
 
-StabilityStage Workshop::make_stage(const StabilityVariant& variant) const {
+StabilityStage CaseContext::make_stage(const StabilityVariant& variant) const {
   std::map<std::string, double> values = values_;
   for (const auto& [name, value] : variant.set) values[name] = value;
   StabilityStage stage;
@@ -137,7 +137,7 @@ StabilityStage Workshop::make_stage(const StabilityVariant& variant) const {
   return stage;
 }
 
-std::vector<StabilityView> Workshop::make_views(const StabilityStage& stage) const {
+std::vector<StabilityView> CaseContext::make_views(const StabilityStage& stage) const {
   const SimdChoice simd(stage.variant.least_simd);
   std::vector<StabilityView> views;
   for (const glm::ivec2 size : case_.sizes_px) {
@@ -159,18 +159,18 @@ std::vector<StabilityView> Workshop::make_views(const StabilityStage& stage) con
   return views;
 }
 
-const StabilityStage& Workshop::stage(size_t variant) {
+const StabilityStage& CaseContext::stage(size_t variant) {
   if (!stages_[variant])
     stages_[variant] = std::make_unique<StabilityStage>(make_stage(variant == 0 ? StabilityVariant{} : case_.variants[variant - 1]));
   return *stages_[variant];
 }
 
-const std::vector<StabilityView>& Workshop::views(size_t variant) {
+const std::vector<StabilityView>& CaseContext::views(size_t variant) {
   if (!views_[variant]) views_[variant] = std::make_unique<std::vector<StabilityView>>(make_views(stage(variant)));
   return *views_[variant];
 }
 
-const Workshop::Swept& Workshop::swept(double value) {
+const CaseContext::Swept& CaseContext::swept(double value) {
   const auto found = swept_.find(value);
   if (found != swept_.end()) return found->second;
   StabilityVariant variant;
@@ -180,17 +180,17 @@ const Workshop::Swept& Workshop::swept(double value) {
   return swept_.emplace(value, std::move(made)).first->second;
 }
 
-const std::string& Workshop::unsupported() {
+const std::string& CaseContext::unsupported() {
   if (!unsupported_) unsupported_ = why_not(find_surface(surface_), scene_of_case(case_, values_).input.scene);
   return *unsupported_;
 }
 
-const Scene& Workshop::truth_scene() {
+const Scene& CaseContext::truth_scene() {
   const StabilityStage& base = stage();
   return base.made.reference.objects.empty() ? base.scene : base.made.reference;
 }
 
-std::vector<MethodCall> Workshop::methods() {
+std::vector<MethodCall> CaseContext::methods() {
   BorderSpec spec;
   for (const std::string& name : case_.methods) {
     if (name != "all") spec.methods.push_back(name);

@@ -1,0 +1,12 @@
+#pragma once
+// Internal: a scene's model, object by object.
+
+#include "raymarch/surface.h"
+
+namespace limn {
+
+/// Appends an object's surface with its colour and material. The model's bounds grow by what reaches beyond the object: a dual-contoured
+/// mesh, a grid's cells.
+void append_surface(const SceneObject& object, Surface surface, SceneModel& model);
+
+}  // namespace limn

@@ -6,14 +6,11 @@
 #include <numbers>
 #include <numeric>
 
-#include "subdiv/local_field.h"
 #include "subdiv/polygon.h"
+#include "subdiv/snap_vertex.h"
 
 namespace limn {
 namespace {
-
-/// Neighbouring normals that differ by more than this (25 degrees) at a hundredth of an edge belong to two sides of a crease.
-const double kCreaseCosine = std::cos(25.0 * std::numbers::pi / 180.0);
 
 /// A side that looks away from a vertex's faces by more (148 degrees) is the other one of a wall.
 constexpr double kWallCosine = -0.85;
@@ -24,29 +21,38 @@ const double kPlainlySmoothCosine = std::cos(10.0 * std::numbers::pi / 180.0);
 /// On a smooth surface a thousandth of an edge does not turn the normal by 5 degrees.
 const double kSameSideCosine = std::cos(5.0 * std::numbers::pi / 180.0);
 
-/// Around a vertex: the middles of its faces, the mean length of its edges, and which way its faces look on the whole (unit, or zero).
-struct Surroundings {
-  std::vector<glm::dvec3> middles;
-  double edge_length = 0.0;
-  glm::dvec3 outward{0.0};
+/// Which vertices are brought onto the surface: their numbers, and for each vertex its place among them, -1 for the others.
+struct Moving {
+  std::vector<std::uint32_t> vertices;
+  std::vector<std::int32_t> place;
 };
 
-/// Of all vertices, or of those that `which` names.
-std::vector<Surroundings> surroundings_of(const Mesh& mesh, const std::vector<char>* which) {
-  std::vector<Surroundings> around(mesh.vertex_count());
+Moving moving_vertices(const Mesh& mesh, const std::vector<char>* which) {
+  Moving moving{{}, std::vector<std::int32_t>(mesh.vertex_count(), -1)};
+  for (size_t v = 0; v < mesh.vertex_count(); ++v) {
+    if (which != nullptr && !(*which)[v]) continue;
+    moving.place[v] = static_cast<std::int32_t>(moving.vertices.size());
+    moving.vertices.push_back(static_cast<std::uint32_t>(v));
+  }
+  return moving;
+}
+
+std::vector<Surroundings> surroundings_of(const Mesh& mesh, const Moving& moving) {
+  std::vector<Surroundings> around(moving.vertices.size());
   std::vector<glm::dvec3> points;
   std::int32_t first = 0;
   for (size_t f = 0; f < mesh.face_count(); ++f) {
     const auto corners = face_corners(mesh, first, f);
     first += mesh.face_sizes[f];
-    const auto named = [which](std::int32_t v) { return which == nullptr || (*which)[static_cast<size_t>(v)] != 0; };
-    if (std::none_of(corners.begin(), corners.end(), named)) continue;
+    const auto place = [&moving](std::int32_t v) { return moving.place[static_cast<size_t>(v)]; };
+    if (std::none_of(corners.begin(), corners.end(), [&](std::int32_t v) { return place(v) >= 0; })) continue;
     gather_corners(mesh, corners, points);
     glm::dvec3 middle(0.0);
     for (const glm::dvec3& p : points) middle += p;
     middle /= static_cast<double>(points.size());
     for (size_t i = 0; i < points.size(); ++i) {
-      Surroundings& at = around[static_cast<size_t>(corners[i])];
+      if (place(corners[i]) < 0) continue;
+      Surroundings& at = around[static_cast<size_t>(place(corners[i]))];
       at.middles.push_back(middle);
       at.edge_length += glm::distance(points[i], points[(i + 1) % points.size()]);
       at.outward += vector_area(points);
@@ -133,13 +139,8 @@ bool is_plainly_smooth(LocalField& field, const glm::dvec3& x, const Surrounding
   return true;
 }
 
-struct Snapped {
-  glm::dvec3 position{0.0};
-  bool feature = false;
-};
+}  // namespace
 
-/// From far to near: sides are sampled ever closer to the vertex while it walks onto their meeting line. On a smooth surface the normals
-/// soon agree and the vertex is projected; on a crease they never do.
 Snapped snap(LocalField& field, const glm::dvec3& start, const Surroundings& around) {
   glm::dvec3 plain = start;
   const bool reached = project(field, plain, around);
@@ -163,25 +164,22 @@ Snapped snap(LocalField& field, const glm::dvec3& start, const Surroundings& aro
   return {reached ? plain : start, false};
 }
 
-/// How far from a vertex it is looked at the field, in edge lengths.
-constexpr double kReach = 1.6;
+namespace {
 
 void snap_some(const Field& field, Mesh& mesh, const std::vector<char>* which, SnapResult& result) {
-  const std::vector<Surroundings> around = surroundings_of(mesh, which);
-  std::vector<std::uint32_t> moving;
-  std::vector<double> reach(mesh.vertex_count());
-  for (size_t v = 0; v < mesh.vertex_count(); ++v) {
-    if (which == nullptr || (*which)[v]) moving.push_back(static_cast<std::uint32_t>(v));
-    reach[v] = kReach * around[v].edge_length;
-  }
+  const Moving moving = moving_vertices(mesh, which);
+  if (moving.vertices.empty()) return;
+  const std::vector<Surroundings> around = surroundings_of(mesh, moving);
+  std::vector<double> reach(mesh.vertex_count(), 0.0), left(around.size(), 0.0);
+  for (size_t k = 0; k < around.size(); ++k) reach[moving.vertices[k]] = kSnapReach * around[k].edge_length;
   const std::vector<glm::dvec3> starts = mesh.positions;
-  std::vector<double> left(mesh.vertex_count(), 0.0);
-  visit_groups(field, starts, reach, std::move(moving), [&](LocalField& local, std::span<const std::uint32_t> members) {
+  visit_groups(field, starts, reach, moving.vertices, [&](LocalField& local, std::span<const std::uint32_t> members) {
     for (const std::uint32_t v : members) {
-      const Snapped snapped = snap(local, starts[v], around[v]);
+      const auto k = static_cast<size_t>(moving.place[v]);
+      const Snapped snapped = snap(local, starts[v], around[k]);
       mesh.positions[v] = snapped.position;
       result.feature[v] = snapped.feature;
-      left[v] = local.distance_off(snapped.position);
+      left[k] = local.distance_off(snapped.position);
     }
   });
   for (const double value : left) result.worst_value = std::max(result.worst_value, value);

@@ -18,6 +18,13 @@ SnapResult snap_to_surface(const Field& field, Mesh& mesh);
 /// The same for the vertices that `which` names; `snapped` is brought up to date.
 void snap_vertices(const Field& field, Mesh& mesh, const std::vector<char>& which, SnapResult& snapped);
 
+/// Moves vertices onto creases and corners that the faces beside feature vertices cut off: the nearer end of an edge that goes from one
+/// side of a crease to the other, and a vertex of a quad that lies across a corner.
+void follow_creases(const Field& field, Mesh& mesh, SnapResult& snapped);
+
+/// Quads beside a crease are given the first corner whose diagonal lies nearer to the surface: the other one would cut the crease off.
+void turn_quads_along_creases(const Field& field, Mesh& mesh, const std::vector<char>& feature);
+
 /// The faces' middles, and how far their corners lie from these at most; `first` are their first corners.
 struct FaceMiddles {
   std::vector<glm::dvec3> middles{};
@@ -32,8 +39,9 @@ std::vector<glm::vec3> field_normals(const Field& field, const Mesh& mesh, const
 /// that is turned over or reflex.
 std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh, bool reflex_too = false);
 
-/// Vertices of folded faces moved to the middle of their neighbours (creased ones stay), then snapped again; at most `rounds` times.
-void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds);
+/// Vertices of folded faces moved to the middle of their neighbours (creased ones stay), then snapped again; at most `rounds` times. Of all
+/// faces, or of those at the vertices that `moved` marks.
+void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds, const std::vector<char>* moved = nullptr);
 
 /// All smooth vertices moved half way to the middle of their neighbours and snapped again: evens out a cage.
 void relax(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds);

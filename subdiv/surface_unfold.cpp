@@ -111,9 +111,9 @@ std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh, boo
   return folded_among(field, mesh, first_corners(mesh), all_faces(mesh), reflex_too);
 }
 
-void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds) {
+void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds, const std::vector<char>* moved) {
   const std::vector<std::int32_t> first = first_corners(mesh);
-  std::vector<std::int32_t> candidates = all_faces(mesh);
+  std::vector<std::int32_t> candidates = moved != nullptr ? faces_touching(mesh, first, *moved) : all_faces(mesh);
   std::optional<Neighbours> neighbours;
   for (int round = 0; round < rounds; ++round) {
     const std::vector<std::int32_t> folded = folded_among(field, mesh, first, candidates, true);

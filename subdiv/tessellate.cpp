@@ -142,6 +142,8 @@ Mesh tessellate(const Field& field, const TessellateSettings& settings) {
                      fmt::format("the mesh has {} faces and needs {:.1f} GB", size.faces, static_cast<double>(size.bytes) * 1e-9),
                      fmt::format("a lower level (at most {:.1f} GB)", static_cast<double>(settings.max_bytes) * 1e-9)});
   for (int level = 0; level < settings.level; ++level) cage = refined_once(field, cage.mesh, settings.max_bytes);
+  follow_creases(field, cage.mesh, cage.snapped);
+  turn_quads_along_creases(field, cage.mesh, cage.snapped.feature);
   if (settings.normals == NormalKind::limit) cage.mesh.corner_normals = field_normals(field, cage.mesh, cage.snapped.feature);
   return std::move(cage.mesh);
 }

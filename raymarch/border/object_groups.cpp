@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "raymarch/gbuffer_window.h"
 #include "raymarch/threads.h"
-#include "raymarch/trace_scene.h"
 
 namespace limn {
 namespace {
@@ -19,6 +18,8 @@ constexpr double kSteepest = 8.0;
 constexpr double kNear = 1.0, kNearPerPixel = 0.5;
 // A group is in front of another on the whole where it is at this share of the places where they meet: what a few places say is chance.
 constexpr double kInFrontShare = 0.1;
+// Longer side of the picture of the whole scene in which that is looked for.
+constexpr double kOrderSide_px = 384.0;
 
 /// Depth of the plane through what pixel i shows, `offset_px` away in the image (y down).
 double plane_depth(const Camera& camera, const GBuffer& seen, size_t i, const glm::dvec2& offset_px) {
@@ -40,6 +41,64 @@ double plane_depth(const Camera& camera, const GBuffer& seen, size_t i, const gl
     if (here * there <= 0.0) change = most;
   }
   return z + (std::isfinite(change) ? std::clamp(change, -most, most) : most);
+}
+
+Meeting meeting_of(const Camera& camera, const GBuffer& seen, size_t first, size_t second, bool at_first) {
+  const auto width = static_cast<size_t>(seen.width);
+  const auto place = [width](size_t i) { return glm::dvec2(static_cast<double>(i % width), static_cast<double>(i / width)); };
+  const glm::dvec2 between = place(second) - place(first);
+  const double share = at_first ? 0.0 : 0.5, away = glm::length(between);
+  const double a = plane_depth(camera, seen, first, share * between);
+  const double b = plane_depth(camera, seen, second, (share - 1.0) * between);
+  const double pixel = 1.0 / pixels_per_unit_at(camera, std::min(a, b));
+  const auto slope = [&](size_t i, double moved, double by) {
+    return by > 0.0 ? std::abs(moved - double{seen.depth.pixels[i]}) / (by * pixel) : 0.0;
+  };
+  const double steeper = std::max(slope(first, a, share * away), slope(second, b, (1.0 - share) * away));
+  const double near = (kNear + kNearPerPixel * away) * (1.0 + steeper) * pixel;
+  if (std::abs(a - b) <= near) return Meeting::touching;
+  return a < b ? Meeting::first_in_front : Meeting::second_in_front;
+}
+
+/// Calls f(i, j) for neighbouring pixels of two groups.
+template <class Visit>
+void visit_meetings(const Image<std::int32_t>& group, const Visit& visit) {
+  const auto look = [&](size_t i, size_t j) {
+    const std::int32_t a = group.pixels[i], b = group.pixels[j];
+    if (a != b && a != 0 && b != 0) visit(i, j);
+  };
+  for (int y = 0; y < group.height; ++y) {
+    for (int x = 0; x < group.width; ++x) {
+      const size_t i = group.index(x, y);
+      if (x + 1 < group.width) look(i, i + 1);
+      if (y + 1 < group.height) look(i, i + static_cast<size_t>(group.width));
+    }
+  }
+}
+
+/// The same eye with all of the scene in the frame, about the same axis; nothing where parts of it lie beside or behind the eye.
+std::optional<Camera> camera_of_everything(const Camera& camera, const SceneModel& model) {
+  const Camera from_here = moved(camera, model.render_origin);
+  const glm::dvec2 centre(0.5 * camera.width_px, 0.5 * camera.height_px);
+  glm::dvec2 half(0.0);
+  for (const Surface& surface : model.surfaces) {
+    if (surface.bounds.empty()) continue;
+    if (!surface.bounds.finite()) return std::nullopt;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Box& box = surface.bounds;
+      const glm::dvec3 at = project(from_here, {corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
+                                                corner & 4 ? box.upper.z : box.lower.z});
+      if (camera.projection == Projection::perspective && !(at.z > 1e-3 * box.radius())) return std::nullopt;
+      half = glm::max(half, glm::abs(glm::dvec2(at) - centre));
+    }
+  }
+  const double scale = 0.5 * kOrderSide_px / std::max(half.x, half.y);
+  if (!(scale > 0.0) || !std::isfinite(scale)) return std::nullopt;
+  Camera out = camera;
+  out.focal_px *= scale, out.pixels_per_unit *= scale;
+  out.width_px = std::max(1, static_cast<int>(std::ceil(2.0 * scale * half.x)));
+  out.height_px = std::max(1, static_cast<int>(std::ceil(2.0 * scale * half.y)));
+  return out;
 }
 
 }  // namespace
@@ -76,70 +135,71 @@ PixelWindow grown(const PixelWindow& window, int by, int width, int height, int 
   return {x0 - x0 % step, y0 - y0 % step, std::min(width, window.x1 + by), std::min(height, window.y1 + by)};
 }
 
-PictureGroups::PictureGroups(const BorderInput& input, GroupBy by) : input_(input) {
+PictureGroups::PictureGroups(const BorderInput& input, GroupBy by) : input_(input), by_(by) {
   const GBuffer& seen = input.gbuffer;
-  group_ = {seen.width, seen.height, 0};
-  std::map<std::int32_t, std::int32_t> of_key;
-  for (size_t i = 0; i < group_.size(); ++i) {
+  for (size_t i = 0; i < seen.id.size(); ++i) {
     if (seen.id.pixels[i] == 0) continue;
     const std::int32_t key = by == GroupBy::material ? seen.material.pixels[i] : seen.id.pixels[i];
-    of_key.emplace(key, 0);
-    group_.pixels[i] = key;
+    if (keys_.empty() || keys_.back() != key) keys_.push_back(key);
   }
-  std::int32_t next = 0;
-  for (auto& [key, group] : of_key) {
-    group = ++next;
-    keys_.push_back(key);
-  }
-  windows_.assign(of_key.size(), {seen.width, seen.height, 0, 0});
-  std::int32_t last_key = 0, last_group = 0;
+  std::sort(keys_.begin(), keys_.end());
+  keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+  group_ = groups_in(seen);
+  windows_.assign(keys_.size(), {seen.width, seen.height, 0, 0});
   for (int y = 0; y < seen.height; ++y) {
     for (int x = 0; x < seen.width; ++x) {
-      const size_t i = group_.index(x, y);
-      if (seen.id.pixels[i] == 0) continue;
-      if (last_group == 0 || group_.pixels[i] != last_key) last_key = group_.pixels[i], last_group = of_key.at(last_key);
-      group_.pixels[i] = last_group;
-      PixelWindow& window = windows_[static_cast<size_t>(last_group - 1)];
+      const std::int32_t group = group_.at(x, y);
+      if (group == 0) continue;
+      PixelWindow& window = windows_[static_cast<size_t>(group - 1)];
       window = {std::min(window.x0, x), std::min(window.y0, y), std::max(window.x1, x + 1), std::max(window.y1, y + 1)};
     }
   }
-  find_order();
+  if (any_touching()) find_order();
 }
 
 void PictureGroups::find_order() {
-  const auto compare = [this](size_t i, size_t j) {
-    const std::int32_t a = group_.pixels[i], b = group_.pixels[j];
-    if (a == b || a == 0 || b == 0) return;
+  const std::optional<Camera> everything = camera_of_everything(input_.camera, input_.model);
+  if (!everything) {
+    count_order(input_.camera, input_.gbuffer, group_);
+    return;
+  }
+  GBuffer whole;
+  GBufferLayers layers;
+  layers.position = layers.n_dot_v = layers.face = layers.status = false;
+  render_gbuffer(input_.model, *everything, {.threads = kSurroundingThreads}, {0.5, 0.5}, layers, whole);
+  count_order(*everything, whole, groups_in(whole));
+}
+
+Image<std::int32_t> PictureGroups::groups_in(const GBuffer& seen) const {
+  Image<std::int32_t> group(seen.width, seen.height, 0);
+  std::int32_t last_key = 0, last_group = 0;
+  for (size_t i = 0; i < group.size(); ++i) {
+    if (seen.id.pixels[i] == 0) continue;
+    const std::int32_t key = by_ == GroupBy::material ? seen.material.pixels[i] : seen.id.pixels[i];
+    if (last_group == 0 || key != last_key) last_key = key, last_group = group_of_key(key);
+    group.pixels[i] = last_group;
+  }
+  return group;
+}
+
+bool PictureGroups::any_touching() const {
+  bool any = false;
+  visit_meetings(group_, [&](size_t i, size_t j) { any = any || meeting(i, j) == Meeting::touching; });
+  return any;
+}
+
+void PictureGroups::count_order(const Camera& camera, const GBuffer& seen, const Image<std::int32_t>& group) {
+  visit_meetings(group, [&](size_t i, size_t j) {
+    const std::int32_t a = group.pixels[i], b = group.pixels[j];
     Order& order = order_[{std::min(a, b), std::max(a, b)}];
     ++order.places;
-    const Meeting found = meeting(i, j);
+    const Meeting found = meeting_of(camera, seen, i, j, false);
     if (found != Meeting::touching) order.lower_in_front += (found == Meeting::first_in_front) == (a < b) ? 1.0 : -1.0;
-  };
-  for (int y = 0; y < group_.height; ++y) {
-    for (int x = 0; x < group_.width; ++x) {
-      const size_t i = group_.index(x, y);
-      if (x + 1 < group_.width) compare(i, i + 1);
-      if (y + 1 < group_.height) compare(i, i + static_cast<size_t>(group_.width));
-    }
-  }
+  });
 }
 
 Meeting PictureGroups::meeting(size_t first, size_t second, bool at_first) const {
-  const GBuffer& seen = input_.gbuffer;
-  const auto width = static_cast<size_t>(seen.width);
-  const auto place = [width](size_t i) { return glm::dvec2(static_cast<double>(i % width), static_cast<double>(i / width)); };
-  const glm::dvec2 between = place(second) - place(first);
-  const double share = at_first ? 0.0 : 0.5, away = glm::length(between);
-  const double a = plane_depth(input_.camera, seen, first, share * between);
-  const double b = plane_depth(input_.camera, seen, second, (share - 1.0) * between);
-  const double pixel = 1.0 / pixels_per_unit_at(input_.camera, std::min(a, b));
-  const auto slope = [&](size_t i, double moved, double by) {
-    return by > 0.0 ? std::abs(moved - double{seen.depth.pixels[i]}) / (by * pixel) : 0.0;
-  };
-  const double steeper = std::max(slope(first, a, share * away), slope(second, b, (1.0 - share) * away));
-  const double near = (kNear + kNearPerPixel * away) * (1.0 + steeper) * pixel;
-  if (std::abs(a - b) <= near) return Meeting::touching;
-  return a < b ? Meeting::first_in_front : Meeting::second_in_front;
+  return meeting_of(input_.camera, input_.gbuffer, first, second, at_first);
 }
 
 bool PictureGroups::in_front(size_t first, size_t second, bool at_first) const {
@@ -177,93 +237,6 @@ void add_group_note(const std::string& method, const BorderInput& input, std::ve
   if (pairs == 0) return;
   notes.push_back(fmt::format(
       "{}: no line between objects that meet in the picture ({} pairs of neighbouring pixels); group = object draws one", method, pairs));
-}
-
-std::vector<HiddenGroup> hidden_groups(const BorderInput& input, GroupBy by) {
-  const size_t objects = input.model.surfaces.size();
-  std::vector<HiddenGroup> all;
-  std::map<int, size_t> of_material;
-  for (size_t k = 0; k < objects; ++k) {
-    size_t group = all.size();
-    if (by == GroupBy::material) group = of_material.emplace(input.model.materials[k], group).first->second;
-    if (group == all.size()) all.emplace_back();
-    all[group].objects.push_back(k);
-  }
-  const GBuffer& seen = input.gbuffer;
-  const ViewRequest request{moved(input.camera, input.model.render_origin), seen.sample};
-  std::erase_if(all, [&](const HiddenGroup& group) {
-    for (const size_t k : group.objects) {
-      const PixelTile covered = covered_pixels(input.model.surfaces[k].bounds, request);
-      for (int y = covered.y; y < covered.y + covered.height; ++y) {
-        for (int x = covered.x; x < covered.x + covered.width; ++x) {
-          if (group.hides(seen, seen.id.index(x, y))) return false;
-        }
-      }
-    }
-    return true;
-  });
-  return all;
-}
-
-namespace {
-
-PixelWindow window_of(const PixelTile& tile) { return {tile.x, tile.y, tile.x + tile.width, tile.y + tile.height}; }
-
-PixelWindow united(const PixelWindow& a, const PixelWindow& b) {
-  if (a.empty()) return b;
-  if (b.empty()) return a;
-  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
-}
-
-/// Gives ids the numbers they have in the whole scene, and finds the pixels that have one.
-PixelWindow rename_and_find(const HiddenGroup& group, const PixelWindow& drawn, GBuffer& seen) {
-  PixelWindow found{seen.width, seen.height, 0, 0};
-  for (int y = drawn.y0; y < drawn.y1; ++y) {
-    for (int x = drawn.x0; x < drawn.x1; ++x) {
-      std::int32_t& id = seen.id.at(x, y);
-      if (id == 0) continue;
-      id = static_cast<std::int32_t>(group.objects[static_cast<size_t>(id - 1)]) + 1;
-      found = {std::min(found.x0, x), std::min(found.y0, y), std::max(found.x1, x + 1), std::max(found.y1, y + 1)};
-    }
-  }
-  return found.empty() ? PixelWindow{} : found;
-}
-
-}  // namespace
-
-void render_alone(const BorderInput& input, const HiddenGroup& group, GroupAlone& alone) {
-  SceneModel model;
-  model.render_origin = input.model.render_origin;
-  model.bounds = input.model.bounds;
-  for (const size_t k : group.objects) {
-    model.surfaces.push_back(input.model.surfaces[k]);
-    model.colors.push_back(input.model.colors[k]);
-    model.materials.push_back(input.model.materials[k]);
-  }
-  Camera camera = input.camera;
-  camera.width_px = input.gbuffer.width;
-  camera.height_px = input.gbuffer.height;
-  const ViewRequest request{moved(camera, model.render_origin), input.gbuffer.sample};
-  PixelWindow covered;
-  for (const Surface& surface : model.surfaces) covered = united(covered, window_of(covered_pixels(surface.bounds, request)));
-  const ExecutionSettings how{.threads = kSurroundingThreads};
-  if (alone.seen.id.pixels.empty()) {
-    render_gbuffer(model, camera, how, request.sample, {}, alone.seen);
-  } else {
-    const PixelWindow drawn = united(covered, alone.window);
-    render_window(model, camera, how, request.sample, {drawn.x0, drawn.y0, drawn.width(), drawn.height()}, alone.seen);
-  }
-  alone.window = rename_and_find(group, covered, alone.seen);
-}
-
-void lay_hidden_ink(const Image<float>& hidden, const glm::vec3& color, Border& border) {
-  if (border.colors.pixels.empty()) border.colors = {border.coverage.width, border.coverage.height, border.color};
-  for (size_t i = 0; i < hidden.size(); ++i) {
-    const float own = border.coverage.pixels[i], more = (1.0f - own) * hidden.pixels[i];
-    if (!(more > 0.0f)) continue;
-    border.colors.pixels[i] = (own * border.colors.pixels[i] + more * color) / (own + more);
-    border.coverage.pixels[i] = own + more;
-  }
 }
 
 }  // namespace limn

@@ -48,13 +48,19 @@ class PictureGroups {
   /// The planes of both surfaces, brought to the image point between the pixels (`at_first`: to that of the first).
   Meeting meeting(size_t first, size_t second, bool at_first = false) const;
   /// The outline between the two belongs to the first's group: nothing lies behind it, or the first does not; where they touch, the group
-  /// that is in front of the other where they do not, and if neither is the first in the scene.
+  /// that is in front of the other where they do not, and if neither is the first in the scene. Which one that is hangs on the eye and the
+  /// scene alone: a line must not change sides with the frame that cuts it or the picture's size.
   bool in_front(size_t first, size_t second, bool at_first = false) const;
   bool touching(size_t first, size_t second) const;
 
  private:
   void find_order();
+  void count_order(const Camera& camera, const GBuffer& seen, const Image<std::int32_t>& group);
+  bool any_touching() const;
+  /// The groups that the pixels of another picture of the same scene show.
+  Image<std::int32_t> groups_in(const GBuffer& seen) const;
   const BorderInput& input_;
+  GroupBy by_;
   Image<std::int32_t> group_{};
   std::vector<PixelWindow> windows_{};
   std::vector<std::int32_t> keys_{};

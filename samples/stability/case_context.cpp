@@ -180,6 +180,25 @@ const CaseContext::Swept& CaseContext::swept(double value) {
   return swept_.emplace(value, std::move(made)).first->second;
 }
 
+const std::vector<StabilityView>& CaseContext::fine_views(int times) {
+  const auto found = fine_views_.find(times);
+  if (found != fine_views_.end()) return found->second;
+  const StabilityStage& drawn = stage();
+  const bool formulas = why_not(find_surface("analytic"), drawn.scene).empty();
+  SurfaceSettings settings = drawn.settings;
+  settings.kind = "analytic";
+  const SceneModel exact = formulas ? build_model(drawn.scene, settings) : SceneModel{};
+  std::vector<StabilityView> fine;
+  for (const StabilityView& view : views()) {
+    fine.push_back({view.camera, {}, view.words});
+    Camera& camera = fine.back().camera;
+    camera.width_px *= times, camera.height_px *= times;
+    camera.focal_px *= times, camera.pixels_per_unit *= times;
+    fine.back().seen = render_gbuffer(formulas ? exact : drawn.model, camera, how_);
+  }
+  return fine_views_.emplace(times, std::move(fine)).first->second;
+}
+
 const std::string& CaseContext::unsupported() {
   if (!unsupported_) unsupported_ = why_not(find_surface(surface_), scene_of_case(case_, values_).input.scene);
   return *unsupported_;

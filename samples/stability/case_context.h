@@ -47,6 +47,8 @@ class CaseContext {
     std::vector<StabilityView> views{};
   };
   const Swept& swept(double value);
+  /// The views of the scene itself, each at `times` its size, drawn from formulas where they exist: what a coarse model cannot show.
+  const std::vector<StabilityView>& fine_views(int times);
   /// What the scene is measured against: the [[reference]], else the scene as it is drawn.
   const Scene& truth_scene();
 
@@ -68,6 +70,7 @@ class CaseContext {
   std::vector<std::unique_ptr<StabilityStage>> stages_;
   std::vector<std::unique_ptr<std::vector<StabilityView>>> views_;
   std::map<double, Swept> swept_;
+  std::map<int, std::vector<StabilityView>> fine_views_;
   std::optional<std::string> unsupported_;
 };
 

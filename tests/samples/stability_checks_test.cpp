@@ -25,13 +25,14 @@ const std::string kChanging = "[[object]]\nshape = \"sphere\"\nradius = \"$r\"\n
                   kChange = "[set]\nr = 1.0\n[[variant]]\nset = { r = 0.8 }\n";
 const std::string kBox = "[[object]]\nshape = \"box\"\n", kCoarse = "[surface]\nvoxels = 6\nlevel = 0\nnormals = \"flat\"\n";
 
-const std::string kTwoBalls = "[[object]]\nshape = \"sphere\"\n[[object]]\nshape = \"sphere\"\ntranslate = [1.0, 0.0, 0.0]\n";
+/// A ball twice, whose facets, as coarse as they are, cut through each other in many places.
+const std::string kAlmostOne = "[[object]]\nshape = \"sphere\"\n[[object]]\nshape = \"sphere\"\nrotate = [1.0, 2.0, 3.0, 40.0]\n";
 
 const std::multimap<std::string, Broken>& broken() {
   static const std::multimap<std::string, Broken> all{
       {"border_within", {kAnalytic, "", kSmaller, 3.0}},
       {"border_within", {kAnalytic, "[with]\nkind = \"silhouette\"\nstatistic = \"p95\"\n", kLarger, 2.0}},
-      {"clean_seams", {kRim, "[with]\nseams = 0\naway_px = 2\n", kTwoBalls}},
+      {"clean_seams", {"surfaces = [\"mesh\"]\nmethods = [\"distance\"]\n", "[with]\naway_px = 1\n" + kCoarse, kAlmostOne, 2.0}},
       {"continuous",
        {kRim, "[set]\nsweep = 0\n[with]\nfrom = 0\nto = 90\nsteps = 9\n",
         "[[object]]\nshape = \"box\"\nrotate = [0.0, 1.0, 0.0, \"$sweep\"]\n", 0.1}},

@@ -6,6 +6,9 @@
 namespace limn {
 namespace {
 
+/// The seams that there are, are counted in a picture so many times as large.
+constexpr int kFiner = 3;
+
 enum SeamPixel : std::uint8_t { none = 0, bare = 1, inked = 2 };
 
 /// The 8-connected regions of pixels for which `among(value)` holds.
@@ -47,30 +50,57 @@ bool any_near(const GBuffer& seen, int x, int y, int reach, const Among& among) 
   return false;
 }
 
-/// Pixels beside another object, away from the background and the frame, where other outlines run: with or without ink near them.
+bool is_seam(const GBuffer& seen, int x, int y) {
+  const std::int32_t id = seen.id.at(x, y);
+  const auto other = [&](int u, int v) { return seen.id.inside(u, v) && seen.id.at(u, v) != 0 && seen.id.at(u, v) != id; };
+  return id != 0 && (other(x + 1, y) || other(x, y + 1));
+}
+
+bool near_background(const GBuffer& seen, int x, int y, int reach) {
+  return any_near(seen, x, y, reach, [&](int u, int v) { return seen.id.at(u, v) == 0; });
+}
+
+/// Pixels beside another object, with or without ink near them; `away` from the background and the frame, since other outlines run there.
 Image<std::uint8_t> seam_pixels(const GBuffer& seen, const Image<float>& ink, int reach, int away) {
   Image<std::uint8_t> seam(seen.width, seen.height, none);
   for (int y = away; y + away < seen.height; ++y) {
     for (int x = away; x + away < seen.width; ++x) {
-      const std::int32_t id = seen.id.at(x, y);
-      const bool meets =
-          (seen.id.at(x + 1, y) != id && seen.id.at(x + 1, y) != 0) || (seen.id.at(x, y + 1) != id && seen.id.at(x, y + 1) != 0);
-      if (id == 0 || !meets || any_near(seen, x, y, away, [&](int u, int v) { return seen.id.at(u, v) == 0; })) continue;
+      if (!is_seam(seen, x, y) || near_background(seen, x, y, away)) continue;
       seam.at(x, y) = any_near(seen, x, y, reach, [&](int u, int v) { return ink.at(u, v) > 0.5f; }) ? inked : bare;
     }
   }
   return seam;
 }
 
+/// Seams of which a part lies `away` from the background and the frame. What comes near them half way is one seam all the same.
+std::int64_t count_seams(const GBuffer& seen, int away) {
+  Image<std::uint8_t> all(seen.width, seen.height, 0);
+  for (int y = 0; y < seen.height; ++y) {
+    for (int x = 0; x < seen.width; ++x) all.at(x, y) = is_seam(seen, x, y);
+  }
+  const auto is_looked_at = [&](const glm::ivec2& p) {
+    const bool within = p.x >= away && p.y >= away && p.x + away < seen.width && p.y + away < seen.height;
+    return within && !near_background(seen, p.x, p.y, away);
+  };
+  const auto pieces = regions(all, [](std::uint8_t p) { return p != 0; });
+  return std::count_if(pieces.begin(), pieces.end(),
+                       [&](const auto& piece) { return std::any_of(piece.begin(), piece.end(), is_looked_at); });
+}
+
 StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   Worst worst;
   std::int64_t seen_in_any = 0;
-  for (const StabilityView& view : context.views()) {
+  const int away = with.integer("away_px");
+  for (size_t k = 0; k < context.views().size(); ++k) {
+    const StabilityView& view = context.views()[k];
     const Border border = draw_border(context.stage(), view, *method);
-    const Image<std::uint8_t> seam = seam_pixels(view.seen, border.coverage, with.integer("reach_px"), with.integer("away_px"));
+    const Image<std::uint8_t> seam = seam_pixels(view.seen, border.coverage, with.integer("reach_px"), away);
     const auto count = [&](auto among) { return static_cast<std::int64_t>(regions(seam, among).size()); };
-    const std::int64_t seams = count([](std::uint8_t p) { return p != none; });
-    const std::int64_t changes = count([](std::uint8_t p) { return p == bare; }) + count([](std::uint8_t p) { return p == inked; }) - seams;
+    // Half as far from the background, so that what lies there half way is among them.
+    const std::int64_t seams = count_seams(view.seen, away), there = count_seams(context.fine_views(kFiner)[k].seen, kFiner * away / 2);
+    const std::int64_t stretches = count([](std::uint8_t p) { return p != none; });
+    const std::int64_t changes =
+        count([](std::uint8_t p) { return p == bare; }) + count([](std::uint8_t p) { return p == inked; }) - stretches;
     // Along the outline of all objects other things break lines.
     const auto at_outline = [&](const glm::ivec2& p) {
       return any_near(view.seen, p.x, p.y, 3, [&](int u, int v) { return view.seen.id.at(u, v) == 0; });
@@ -80,10 +110,11 @@ StabilityFinding run(CaseContext& context, const MethodCall* method, const Param
       const bool small = static_cast<int>(piece.size()) < with.integer("speck_px");
       specks += small && std::none_of(piece.begin(), piece.end(), at_outline);
     }
-    const std::int64_t splinters = std::max<std::int64_t>(0, seams - with.integer("seams"));
+    const std::int64_t splinters = std::max<std::int64_t>(0, seams - there);
     seen_in_any += seams;
     worst.see(static_cast<double>(changes + splinters + specks),
-              fmt::format("{} seams in the picture, {} changes between ink and none along them, {} specks of ink", seams, changes, specks),
+              fmt::format("{} seams in the picture of {}, {} changes between ink and none along them, {} specks of ink", seams, there,
+                          changes, specks),
               context.stage(), view, &border);
   }
   if (seen_in_any == 0) {
@@ -102,8 +133,7 @@ StabilityCheck clean_seams_check() {
       true,
       {stability_whole("reach_px", 4, 0, 64, "how far from the seam its line may run"),
        stability_whole("away_px", 8, 1, 64, "from the background, where other outlines run"),
-       stability_whole("speck_px", 6, 0, 1000, "pixels that a piece of ink has at least"),
-       stability_whole("seams", 1, 0, 1000, "places where objects meet")},
+       stability_whole("speck_px", 6, 0, 1000, "pixels that a piece of ink has at least")},
       run};
 }
 

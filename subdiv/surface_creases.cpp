@@ -1,0 +1,228 @@
+// Edges and quads that would cut creases and corners off: dual contouring puts one vertex into each cell that the surface crosses, and a
+// crease that crosses only the corner of a cell is not noticed there.
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <optional>
+
+#include "subdiv/polygon.h"
+#include "subdiv/snap_vertex.h"
+#include "subdiv/surface_snap.h"
+
+namespace limn {
+namespace {
+
+/// Quads that have a feature among their vertices or beside them: a crease that is missed for a face or two goes on there.
+std::vector<size_t> quads_along_creases(const Mesh& mesh, const std::vector<std::int32_t>& first, const std::vector<char>& feature) {
+  std::vector<char> near = feature;
+  std::vector<size_t> quads;
+  for (const int round : {0, 1}) {
+    const std::vector<char> marked = near;
+    for (size_t f = 0; f < mesh.face_count(); ++f) {
+      const auto corners = face_corners(mesh, first[f], f);
+      if (std::none_of(corners.begin(), corners.end(), [&](std::int32_t v) { return marked[static_cast<size_t>(v)] != 0; })) continue;
+      for (const std::int32_t v : corners) near[static_cast<size_t>(v)] = 1;
+      if (round == 1 && corners.size() == 4) quads.push_back(f);
+    }
+  }
+  return quads;
+}
+
+struct EdgeAcross {
+  size_t a, b;
+};
+
+/// Edges of these quads between vertices on two sides of a crease, each once.
+std::vector<EdgeAcross> edges_across(const Field& field, const Mesh& mesh, const std::vector<std::int32_t>& first,
+                                     const std::vector<size_t>& quads, const std::vector<char>& feature, std::vector<glm::dvec3>& normals) {
+  std::vector<char> asked(mesh.vertex_count(), 0);
+  for (const size_t f : quads)
+    for (const std::int32_t v : face_corners(mesh, first[f], f)) asked[static_cast<size_t>(v)] = !feature[static_cast<size_t>(v)];
+  std::vector<std::uint32_t> which;
+  for (size_t v = 0; v < asked.size(); ++v)
+    if (asked[v]) which.push_back(static_cast<std::uint32_t>(v));
+  normals.assign(mesh.vertex_count(), glm::dvec3(0.0));
+  const std::vector<double> reach(mesh.vertex_count(), 0.0);
+  visit_groups(field, mesh.positions, reach, std::move(which), [&](LocalField& local, std::span<const std::uint32_t> members) {
+    for (const std::uint32_t v : members) normals[v] = local.unit_gradient(mesh.positions[v]);
+  });
+  std::vector<EdgeAcross> across;
+  for (const size_t f : quads) {
+    const auto corners = face_corners(mesh, first[f], f);
+    for (size_t i = 0; i < 4; ++i) {
+      const auto a = static_cast<size_t>(corners[i]), b = static_cast<size_t>(corners[(i + 1) % 4]);
+      // The face on the other side has the edge the other way round.
+      if (a < b && asked[a] && asked[b] && glm::dot(normals[a], normals[b]) <= kCreaseCosine) across.push_back({a, b});
+    }
+  }
+  return across;
+}
+
+struct Move {
+  size_t vertex = 0;
+  glm::dvec3 to{0.0};
+};
+
+void pull_onto_creases(const Field& field, Mesh& mesh, const std::vector<std::int32_t>& first, SnapResult& snapped) {
+  std::vector<glm::dvec3> normals;
+  const std::vector<EdgeAcross> across =
+      edges_across(field, mesh, first, quads_along_creases(mesh, first, snapped.feature), snapped.feature, normals);
+  std::vector<glm::dvec3> middles;
+  std::vector<double> reach;
+  for (const auto& [a, b] : across) {
+    middles.push_back(0.5 * (mesh.positions[a] + mesh.positions[b]));
+    reach.push_back(kSnapReach * glm::distance(mesh.positions[a], mesh.positions[b]));
+  }
+  std::vector<std::optional<Move>> moves(across.size());
+  std::vector<std::uint32_t> all(across.size());
+  std::iota(all.begin(), all.end(), 0u);
+  visit_groups(field, middles, reach, std::move(all), [&](LocalField& local, std::span<const std::uint32_t> members) {
+    for (const std::uint32_t e : members) {
+      const auto [a, b] = across[e];
+      const glm::dvec3 ends[] = {mesh.positions[a], mesh.positions[b]};
+      const double length = glm::distance(ends[0], ends[1]);
+      const glm::dvec3 outward = normals[a] + normals[b];
+      const Surroundings around{{ends[0], ends[1]}, length, glm::length(outward) > 0.0 ? glm::normalize(outward) : outward};
+      const Snapped crossing = snap(local, middles[e], around);
+      if (!crossing.feature) continue;
+      // The end must not slide along the crease, which would fold its faces: straight to the line where the two sides meet.
+      const size_t nearer = glm::distance(ends[0], crossing.position) <= glm::distance(ends[1], crossing.position) ? 0 : 1;
+      const Snapped to = snap(local, meet_planes({ends[0], ends[1]}, {normals[a], normals[b]}, ends[nearer]), around);
+      if (to.feature && glm::distance(to.position, ends[nearer]) < 0.75 * length) moves[e] = {nearer == 0 ? a : b, to.position};
+    }
+  });
+  // One after another: a vertex that was moved is the crease's for its other edges, too.
+  for (size_t e = 0; e < across.size(); ++e) {
+    const auto [a, b] = across[e];
+    if (!moves[e] || snapped.feature[a] || snapped.feature[b]) continue;
+    mesh.positions[moves[e]->vertex] = moves[e]->to;
+    snapped.feature[moves[e]->vertex] = 1;
+  }
+}
+
+/// A quad that lies across a corner of three faces, and which of its vertices belongs there.
+struct CutCorner {
+  int moved = -1;
+  glm::dvec3 to{0.0};
+};
+
+using Quad = std::array<glm::dvec3, 4>;
+
+/// How far the triangles of a quad lie off the surface, by the better of its diagonals.
+double off_surface(LocalField& local, const Quad& q) {
+  const auto off = [&](size_t a, size_t b, size_t c) { return local.distance_off((q[a] + q[b] + q[c]) / 3.0); };
+  return std::min(off(0, 1, 2) + off(0, 2, 3), off(1, 2, 3) + off(1, 3, 0));
+}
+
+constexpr double kOff = 1e-3;  // Of an edge.
+
+CutCorner cut_corner(LocalField& local, const Quad& quad) {
+  CutCorner cut;
+  double length = 0.0;
+  for (size_t i = 0; i < 4; ++i) length += 0.25 * glm::distance(quad[i], quad[(i + 1) % 4]);
+  // Where the quad is flat and lies on the surface, one look is enough.
+  const glm::dvec3 n0 = glm::cross(quad[1] - quad[0], quad[2] - quad[0]), n1 = glm::cross(quad[2] - quad[0], quad[3] - quad[0]);
+  const glm::dvec3 middle = 0.25 * (quad[0] + quad[1] + quad[2] + quad[3]);
+  const bool flat = glm::dot(n0, n1) > 0.99 * glm::length(n0) * glm::length(n1);
+  if (flat && local.distance_off(middle) <= 0.25 * kOff * length) return cut;
+  const double before = off_surface(local, quad);
+  if (!(before > kOff * length)) return cut;
+  const glm::dvec3 outward = glm::cross(quad[2] - quad[0], quad[3] - quad[1]);
+  const double size = glm::length(outward);
+  // All sides that the quad's corners lie on: a little way from each of them towards the others.
+  Surroundings around{{}, length, size > 0.0 ? outward / size : glm::dvec3(0.0)};
+  std::vector<glm::dvec3> normals;
+  for (size_t i = 0; i < 4; ++i) {
+    for (size_t j = 0; j < 4; ++j) {
+      glm::dvec3 p = quad[i] + 0.05 * (quad[j] - quad[i]);
+      if (i == j || !local.project(p)) continue;
+      around.middles.push_back(p);
+      normals.push_back(local.unit_gradient(p));
+    }
+  }
+  if (around.middles.empty()) return cut;
+  const Snapped found = snap(local, meet_planes(around.middles, normals, middle), around);
+  if (!found.feature) return cut;
+  double best = 0.1 * before;
+  for (int i = 0; i < 4; ++i) {
+    Quad moved = quad;
+    moved[static_cast<size_t>(i)] = found.position;
+    const double off = off_surface(local, moved);
+    if (off < best && glm::distance(quad[static_cast<size_t>(i)], found.position) < length) best = off, cut = {i, found.position};
+  }
+  return cut;
+}
+
+/// Whether one was moved: its neighbours may now lie across the corner.
+bool pull_onto_corners(const Field& field, Mesh& mesh, const std::vector<std::int32_t>& first, SnapResult& snapped) {
+  std::vector<Quad> quads;
+  std::vector<size_t> faces;
+  std::vector<glm::dvec3> middles;
+  std::vector<double> reach;
+  for (size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto corners = face_corners(mesh, first[f], f);
+    const auto is_feature = [&](std::int32_t v) { return snapped.feature[static_cast<size_t>(v)] != 0; };
+    if (corners.size() != 4 || std::none_of(corners.begin(), corners.end(), is_feature)) continue;
+    Quad quad;
+    for (size_t i = 0; i < 4; ++i) quad[i] = mesh.positions[static_cast<size_t>(corners[i])];
+    quads.push_back(quad), faces.push_back(f);
+    middles.push_back(0.25 * (quad[0] + quad[1] + quad[2] + quad[3]));
+    reach.push_back(kSnapReach * std::max(glm::distance(quad[0], quad[2]), glm::distance(quad[1], quad[3])));
+  }
+  std::vector<CutCorner> cut(quads.size());
+  std::vector<std::uint32_t> all(quads.size());
+  std::iota(all.begin(), all.end(), 0u);
+  visit_groups(field, middles, reach, std::move(all), [&](LocalField& local, std::span<const std::uint32_t> members) {
+    for (const std::uint32_t k : members) cut[k] = cut_corner(local, quads[k]);
+  });
+  std::vector<char> moved(mesh.vertex_count(), 0);
+  for (size_t k = 0; k < cut.size(); ++k) {
+    if (cut[k].moved < 0) continue;
+    const auto corners = face_corners(mesh, first[faces[k]], faces[k]);
+    if (std::any_of(corners.begin(), corners.end(), [&](std::int32_t v) { return moved[static_cast<size_t>(v)] != 0; })) continue;
+    const auto v = static_cast<size_t>(corners[static_cast<size_t>(cut[k].moved)]);
+    mesh.positions[v] = cut[k].to;
+    snapped.feature[v] = moved[v] = 1;
+  }
+  return std::find(moved.begin(), moved.end(), char{1}) != moved.end();
+}
+
+}  // namespace
+
+void follow_creases(const Field& field, Mesh& mesh, SnapResult& snapped) {
+  const std::vector<std::int32_t> first = first_corners(mesh);
+  const std::vector<glm::dvec3> before = mesh.positions;
+  pull_onto_creases(field, mesh, first, snapped);
+  for (int round = 0; round < 3 && pull_onto_corners(field, mesh, first, snapped); ++round) {
+  }
+  std::vector<char> moved(mesh.vertex_count(), 0);
+  for (size_t v = 0; v < moved.size(); ++v) moved[v] = mesh.positions[v] != before[v];
+  unfold(field, mesh, snapped, 4, &moved);
+}
+
+void turn_quads_along_creases(const Field& field, Mesh& mesh, const std::vector<char>& feature) {
+  const std::vector<std::int32_t> first = first_corners(mesh);
+  std::vector<size_t> faces;
+  std::vector<glm::dvec3> middles;
+  for (size_t f = 0; f < mesh.face_count(); ++f) {
+    if (mesh.face_sizes[f] != 4) continue;
+    const auto corners = face_corners(mesh, first[f], f);
+    if (std::none_of(corners.begin(), corners.end(), [&](std::int32_t v) { return feature[static_cast<size_t>(v)] != 0; })) continue;
+    faces.push_back(f);
+    for (const size_t i : {size_t{0}, size_t{1}})
+      middles.push_back(0.5 * (mesh.positions[static_cast<size_t>(corners[i])] + mesh.positions[static_cast<size_t>(corners[i + 2])]));
+  }
+  std::vector<double> off(middles.size());
+  visit_groups(field, middles, 0.0, [&](LocalField& local, std::span<const std::uint32_t> members) {
+    for (const std::uint32_t m : members) off[m] = local.distance_off(middles[m]);
+  });
+  for (size_t k = 0; k < faces.size(); ++k) {
+    // Quads are cut from their first corner to their third.
+    if (!(off[2 * k + 1] < 0.5 * off[2 * k])) continue;
+    const auto begin = mesh.corner_vertices.begin() + first[faces[k]];
+    std::rotate(begin, begin + 1, begin + 4);
+  }
+}
+
+}  // namespace limn

@@ -8,6 +8,7 @@
 #include "sdf/error.h"
 #include "sdf/guard.h"
 #include "sdf/vm/extent.h"
+#include "sdf/vm/field.h"
 #include "sdf/vm/split.h"
 #include "sdf/vm_field.h"
 
@@ -273,8 +274,10 @@ Field assemble(const SplitProgram& split, const std::vector<Program>& parts, con
 
 }  // namespace
 
-VmField vm_field(std::string_view text, const std::string& file) {
-  const Program program = simplified(parse(text, file));
+VmField vm_field(std::string_view text, const std::string& file) { return vm::field_of(parse(text, file), file); }
+
+VmField vm::field_of(const Program& read, const std::string& file) {
+  const Program program = simplified(read);
   auto reach = std::make_shared<Reach>();
   reach->whole = with_registers(program);
   find_axes(program, reach->reads);

@@ -106,13 +106,14 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ForeignFiles,
                          testing::Values(Kind{"CgalOff", "cgal", {".off"}, 139}, Kind{"CgalPlyAndStl", "cgal", {".ply", ".stl"}, 15},
                                          Kind{"AssimpObj", "assimp", {".obj"}, 25},
                                          Kind{"AssimpOffPlyAndStl", "assimp", {".off", ".ply", ".stl", ".STL"}, 22},
-                                         Kind{"AssimpGltf", "assimp", {".gltf", ".glb"}, 53}, Kind{"ModelsObj", "models", {".obj"}, 13}),
+                                         Kind{"AssimpGltf", "assimp", {".gltf", ".glb"}, 53}, Kind{"DataObj", "data", {".obj"}, 4},
+                                         Kind{"ModelsObj", "models", {".obj"}, 10}),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(ForeignFormats, BinaryOffThatCgalWrites) {
   const TemporaryFolder folder;
   int written = 0;
-  for (const std::string group : {"cgal", "models"})
+  for (const std::string group : {"cgal", "data", "models"})
     for (const ListedFile& listed : files_of(group, {".off", ".obj"})) {
       if (folder_of(group).empty() || !listed.drawn || !listed.compared) continue;
       SCOPED_TRACE(listed.path);
@@ -134,7 +135,7 @@ TEST(ForeignList, TheListHoldsEveryMeshOfItsPackages) {
   std::map<std::string, int> listed;
   for (const ListedFile& file : listed_files(kList)) ++listed[file.group + " " + file.path];
   for (const auto& [name, count] : listed) EXPECT_EQ(count, 1) << name;
-  for (const std::string group : {"assimp", "cgal", "models"}) {
+  for (const std::string group : {"assimp", "cgal", "data", "models"}) {
     const fs::path folder = folder_of(group);
     if (folder.empty()) continue;
     for (const auto& entry : fs::recursive_directory_iterator(folder))

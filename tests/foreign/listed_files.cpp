@@ -1,6 +1,7 @@
 #include "listed_files.h"
 
 #include <array>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -27,7 +28,12 @@ std::vector<ListedFile> listed_files(const std::filesystem::path& list) {
 }
 
 std::filesystem::path folder_of(const std::string& group) {
-  const std::filesystem::path folder = group == "assimp" ? "/usr/share/assimp/models" : group == "cgal" ? LIMN_CGAL_DATA : LIMN_MODELS;
+  const char* const models = std::getenv("LIMN_MODELS");
+  const std::filesystem::path folder = group == "assimp"   ? "/usr/share/assimp/models"
+                                       : group == "cgal"   ? LIMN_CGAL_DATA
+                                       : group == "data"   ? LIMN_TEST_DATA
+                                       : models != nullptr ? models
+                                                           : "";
   std::error_code ignored;
   return std::filesystem::is_directory(folder, ignored) ? folder : std::filesystem::path{};
 }

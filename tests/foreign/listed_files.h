@@ -19,7 +19,8 @@ struct ListedFile {
 /// Throws std::runtime_error naming the line where the list cannot be read.
 std::vector<ListedFile> listed_files(const std::filesystem::path& list);
 
-/// Where a group's files lie; empty where that package is not installed.
+/// Where a group's files lie: `assimp` and `cgal` in their packages, `data` in tests/data, `models` in the folder that the environment's
+/// LIMN_MODELS names. Empty where there is none.
 std::filesystem::path folder_of(const std::string& group);
 
 }  // namespace limn::foreign

@@ -14,3 +14,4 @@ step(${CMAKE_COMMAND} -S ${SOURCE} -B ${work}/build -G Ninja -DCMAKE_PREFIX_PATH
 step(${CMAKE_COMMAND} --build ${work}/build)
 step(${work}/build/consumer)
 step(${work}/build/experiment)
+step(${work}/build/border)

@@ -468,10 +468,8 @@ testing::AssertionResult agree_on(const SceneObject& object, int voxels) {
 TEST(Audit, InfoAndAPictureSayTheSameOfThinWallsAndGaps) {
   std::vector<SceneObject> objects{object_of(test::box_at({1.0, 0.04, 1.0}, glm::dvec3(0.0))), object_of(test::torus(24, 12, 2.0, 0.3)),
                                    object_of(lantern(6, 24)), object_of(test::cube(), Scheme::catmark)};
-  for (const char* name : {"spot_control_mesh", "suzanne"}) {
-    const std::filesystem::path file = std::filesystem::path(LIMN_MODELS) / (std::string(name) + ".obj");
-    if (!std::filesystem::exists(file)) continue;
-    objects.push_back(object_of(load_mesh(file)));
+  for (const std::string name : {"spot_control_mesh", "pig_quad_controlmesh"}) {
+    objects.push_back(object_of(load_mesh(std::filesystem::path(LIMN_TEST_DATA) / (name + ".obj"))));
     objects.back().name = name;
   }
   for (const SceneObject& object : objects) EXPECT_TRUE(agree_on(object, 40));

@@ -1,0 +1,25 @@
+#pragma once
+// All of limn::experiment that is installed: specifications, inputs and scene files, comparisons, studies, plans, stability. The build
+// installs the headers that are named here.
+
+#include "raymarch/raymarch.h"
+#include "samples/compare/comparison.h"
+#include "samples/compare/panels.h"
+#include "samples/experiment/flags.h"
+#include "samples/experiment/spec.h"
+#include "samples/input.h"
+#include "samples/job.h"
+#include "samples/output.h"
+#include "samples/plan/job.h"
+#include "samples/plan/plan.h"
+#include "samples/progress.h"
+#include "samples/scene_file.h"
+#include "samples/stability/case.h"
+#include "samples/stability/results.h"
+#include "samples/stability/run.h"
+#include "samples/study/cost.h"
+#include "samples/study/journal.h"
+#include "samples/study/record.h"
+#include "samples/study/row.h"
+#include "samples/study/run.h"
+#include "samples/study/study.h"

@@ -1,0 +1,18 @@
+#pragma once
+// All of limn::sdf that is installed: fields, level sets, cameras, images, errors. The build installs the headers that are named here.
+
+#include "sdf/camera.h"
+#include "sdf/color.h"
+#include "sdf/descriptor.h"
+#include "sdf/error.h"
+#include "sdf/field.h"
+#include "sdf/field_from_formula.h"
+#include "sdf/field_from_functions.h"
+#include "sdf/geometry.h"
+#include "sdf/guard.h"
+#include "sdf/image.h"
+#include "sdf/level_set.h"
+#include "sdf/output_together.h"
+#include "sdf/registry.h"
+#include "sdf/shape.h"
+#include "sdf/vm_field.h"

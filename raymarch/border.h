@@ -40,7 +40,13 @@ struct BorderMethod {
   /// Empty where it can run on the model, else the reason why not.
   std::string (*unsupported)(const SceneModel& model, const Scene& scene);
   Border (*draw)(const BorderInput& input, const Parameters& parameters);
+  /// The number whose level curve N.V = number ends the ink, so that the ink's place can be measured against the truth. Null where the ink
+  /// ends elsewhere: of what such a method draws only the model's silhouette has a truth.
+  double (*truth_threshold)(const Parameters& parameters) = nullptr;
 };
+
+/// The method that draws where nobody names one.
+inline constexpr const char* kDefaultMethod = "rim";
 
 const Registry<BorderMethod>& border_methods();
 inline const BorderMethod& find_border_method(const std::string& name, const std::string& file = {}, const std::string& field = {}) {

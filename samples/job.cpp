@@ -49,7 +49,7 @@ std::vector<PendingMethod> chosen_methods(const BorderSpec& spec, const SceneInp
   const bool compared = !spec.columns.empty();
   if (spec.methods.empty() && !compared) {
     for (const BorderDefaults& border : input.borders) pending.push_back({&find_border_method(border.method), border.parameters});
-    if (pending.empty()) pending.push_back({&find_border_method("rim"), {}});
+    if (pending.empty()) pending.push_back({&find_border_method(kDefaultMethod), {}});
     return pending;
   }
   for (const std::string& name : compared ? spec.columns : spec.methods) {

@@ -69,7 +69,7 @@ SurfaceSpec read_surface(TomlReader& reader) {
 
 BorderDefaults read_border(TomlReader& reader) {
   BorderDefaults border;
-  border.method = reader.text("method").value_or("rim");
+  border.method = reader.text("method").value_or(kDefaultMethod);
   const toml::node* method_node = reader.take("method");
   const BorderMethod& method =
       find_border_method(border.method, method_node ? reader.where(*method_node) : reader.file(), reader.field("method"));

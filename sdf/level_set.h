@@ -60,6 +60,8 @@ struct GradientDescriptor {
   double half_width_voxels;  ///< Of the band it needs around a surface point, so that no stencil leaves the band.
   Stencil stencil;
   int order;  ///< Of the normal's angle, by voxel size.
+  /// That angle, radians, is about normal_constant * (curvature * voxel)^order: measured on the unit sphere at a tenth.
+  double normal_constant = 0.0;
   /// Gradients (world, not normalised) at world points within one voxel of the surface; sizes equal.
   void (*gradients)(const LevelSetData&, std::span<const glm::dvec3> points, std::span<glm::dvec3> gradients);
   /// The reconstruction's own values at such points: hits go to its root. Null where it is the trilinear interpolant, whose root they are.

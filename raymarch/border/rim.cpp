@@ -36,7 +36,8 @@ BorderMethod rim_method() {
                .help("N.V by which a surface point has to pass the threshold before its ink switches from one frame to the next"),
            a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")},
           [](const SceneModel&, const Scene&) { return std::string(); },
-          draw};
+          draw,
+          [](const Parameters& parameters) { return parameters.number("threshold"); }};
 }
 
 }  // namespace limn

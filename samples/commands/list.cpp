@@ -8,6 +8,7 @@
 #include "raymarch/surface.h"
 #include "samples/commands/command.h"
 #include "samples/output.h"
+#include "samples/reference/reference.h"
 #include "samples/scenes/scenes.h"
 #include "sdf/error.h"
 #include "sdf/level_set.h"
@@ -164,11 +165,19 @@ std::string to_text(const std::vector<Entry>& entries) {
 }
 
 void add_options(CLI::App& app, Options& options) {
-  app.add_option("KIND", options.kind, "shapes, surfaces, gradients, normals, methods, metrics or scenes")->type_name("")->required();
+  app.add_option(
+         "KIND", options.kind,
+         "shapes, surfaces, gradients, normals, methods, metrics or scenes; reference: all of it, and every key of files, as Markdown")
+      ->type_name("")
+      ->required();
   add_json(app, options);
 }
 
 int run(const Options& options) {
+  if (options.kind == "reference" && !options.json) {
+    print_text(reference_page());
+    return 0;
+  }
   std::vector<std::string> known;
   for (const Kind& kind : kKinds) {
     known.emplace_back(kind.name);

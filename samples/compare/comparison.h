@@ -3,6 +3,8 @@
 // measured against the same method on the reference. Cells become rows of numbers, a sheet and a page.
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +39,14 @@ struct ComparedMethod {
   std::string words;  ///< "rim threshold=0.4".
   std::string help;   ///< What it does, in a line.
   std::vector<MethodCall> calls;
+  std::optional<double> truth_threshold;  ///< Where its ink ends (BorderMethod::truth_threshold); unset: only the silhouette has a truth.
+};
+
+/// The border as it is, seen by the comparison's camera.
+struct ComparedTruth {
+  double threshold = 0.0;
+  std::optional<BorderTruth> truth;
+  std::string failed;  ///< Why there is none.
 };
 
 /// One method on one model.
@@ -48,9 +58,10 @@ struct Cell {
   double border_ms = 0.0;
   double ink_px = 0.0;  ///< Area of ink.
   Image<float> border;
-  Image<glm::u8vec4> composite;     ///< sRGB, opaque or not: as it goes into a PNG.
-  std::vector<MetricValue> values;  ///< Of the border, in the registry's order; empty where there is no reference.
-  std::vector<std::string> notes;   ///< What failed, as the method measured it.
+  Image<glm::u8vec4> composite;           ///< sRGB, opaque or not: as it goes into a PNG.
+  std::vector<MetricValue> values;        ///< Of the border, in the registry's order; empty where there is no reference.
+  std::vector<MetricValue> truth_values;  ///< Displacements from the truth, of the reference too; empty where there is none.
+  std::vector<std::string> notes;         ///< What failed, as the method measured it.
 };
 
 struct Comparison {
@@ -62,6 +73,7 @@ struct Comparison {
   std::vector<ComparedMethod> methods;
   std::vector<ComparedModel> models;  ///< The first is the reference.
   std::vector<Cell> cells;            ///< All methods of the first model, then of the next.
+  std::vector<ComparedTruth> truths;  ///< One a threshold; the first serves methods without one.
   bool with_times = true;             ///< Measured times are shown and written; without them equal calls write equal bytes.
   Window seen;                        ///< The part of the pictures where any model hits something, with a margin; panels show that.
 
@@ -87,6 +99,15 @@ void plan_methods(const std::vector<std::vector<MethodCall>>& columns, Compariso
 /// Draws every cell, writes each model's EXR into `folder`, measures. Each model is built and traced once. A cell that cannot be drawn
 /// keeps its reason.
 void draw_comparison(Comparison& comparison, const std::filesystem::path& folder, const ExecutionSettings& how, ProgressBar& bar);
+
+/// Of the methods of one picture: the first that has one.
+std::optional<double> truth_threshold(const std::vector<MethodCall>& calls);
+/// Fills truth_values of a model's cells; solves truths that are not there yet. `seen` holds the G-buffer of the pixel centres.
+void measure_against_truth(size_t row, const SceneModel& model, const Picture& seen, Comparison& comparison, const ExecutionSettings& how);
+/// What displacements are measured from, in a sentence.
+std::string truth_text(const ComparedTruth& truth);
+/// "inner border 0.013 px off the truth (root mean square; 95 % within 0.02), silhouette 0.004 px"; empty where nothing was measured.
+std::string displacement_text(const Comparison& comparison, const Cell& cell);
 
 /// The composite as it was drawn, linear.
 Image<glm::vec4> linear_composite(const Cell& cell);

@@ -91,6 +91,8 @@ Drawn draw_model(size_t row, Comparison& comparison, const ExecutionSettings& ho
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     if (sample == 0) drawn.seen.gbuffer = std::move(gbuffer);
   }
+  if (const auto progress = bar.stage("measuring " + modelled.title)) progress(0.0);
+  measure_against_truth(row, model, drawn.seen, comparison, how);
   finish_samples(comparison.picture, drawn.seen);
   for (Picture& picture : drawn.pictures) finish_samples(comparison.picture, picture);
   modelled.counts = count_hits(drawn.seen.gbuffer);
@@ -201,7 +203,7 @@ Image<glm::vec4> linear_composite(const Cell& cell) {
 }
 
 double value_of(const Comparison& comparison, const Cell& cell, const std::string& name) {
-  for (const std::vector<MetricValue>* values : {&cell.values, &comparison.model_of(cell).values}) {
+  for (const std::vector<MetricValue>* values : {&cell.values, &comparison.model_of(cell).values, &cell.truth_values}) {
     for (const MetricValue& value : *values) {
       if (value.name == name) return value.value;
     }

@@ -28,11 +28,13 @@ std::string milliseconds(double value) { return fmt::format("{:.0f}", value); }
 
 // Pixel positions of the worst place are for rows.json; the cards show the place.
 bool is_position(const std::string& name) { return name.ends_with("_x") || name.ends_with("_y"); }
+// A mean that is signed says less than the root mean square beside it, and is in rows.json.
+bool is_signed_mean(const std::string& name) { return name.ends_with("displacement_mean"); }
 
 void add_metric_columns(const Comparison& comparison, const Cell& cell, std::vector<Column>& columns) {
-  for (const auto* values : {&cell.values, &comparison.model_of(cell).values}) {
+  for (const auto* values : {&cell.values, &cell.truth_values, &comparison.model_of(cell).values}) {
     for (const MetricValue& value : *values) {
-      if (is_position(value.name)) continue;
+      if (is_position(value.name) || is_signed_mean(value.name)) continue;
       std::string label = value.name;
       std::replace(label.begin(), label.end(), '_', ' ');
       bool lower_is_better = true;

@@ -136,6 +136,7 @@ void plan_methods(const std::vector<std::vector<MethodCall>>& columns, Compariso
     method.words = methods_text(calls);
     if (calls.size() == 1) method.help = calls.front().method->about.help;
     method.calls = calls;
+    method.truth_threshold = truth_threshold(calls);
     comparison.methods.push_back(std::move(method));
   }
   for (size_t model = 0; model < comparison.models.size(); ++model) {

@@ -50,11 +50,24 @@ Json cell_json(const Comparison& comparison, const Cell& cell) {
   json["triangles"] = model.info.triangles;
   json["border_px"] = cell.ink_px;
   json["metrics"] = Json::object();
-  for (const auto* values : {&cell.values, &model.values}) {
+  for (const auto* values : {&cell.values, &model.values, &cell.truth_values}) {
     for (const MetricValue& value : *values) json["metrics"][value.name] = number_or_null(value.value);
   }
   json["notes"] = notes_of(comparison, cell);
   json["exr"] = model.exr.string();
+  return json;
+}
+
+Json truth_json(const ComparedTruth& truth) {
+  Json json = {{"threshold", truth.threshold}};
+  if (!truth.truth) {
+    json["failed"] = truth.failed;
+    return json;
+  }
+  json["from"] = truth.truth->from;
+  json["exact"] = truth.truth->exact;
+  json["bound_px"] = number_or_null(truth.truth->bound_px);
+  json["notes"] = truth.truth->notes;
   return json;
 }
 
@@ -75,6 +88,7 @@ void add_rows(const Comparison& comparison, const Cell& cell, Json& rows) {
   std::vector<MetricValue> values = {{"border_px", cell.ink_px, "px"}};
   values.insert(values.end(), cell.values.begin(), cell.values.end());
   values.insert(values.end(), model.values.begin(), model.values.end());
+  values.insert(values.end(), cell.truth_values.begin(), cell.truth_values.end());
   const std::vector<std::string> notes = notes_of(comparison, cell);
   for (const MetricValue& value : values) {
     Json row = head;
@@ -104,10 +118,13 @@ Json comparison_json(const Comparison& comparison, const std::vector<std::filesy
   for (const std::filesystem::path& file : files) names.push_back(file.string());
   Json methods = Json::array();
   for (const ComparedMethod& method : comparison.methods) methods.push_back(method.words);
+  Json truths = Json::array();
+  for (const ComparedTruth& truth : comparison.truths) truths.push_back(truth_json(truth));
   return {{"input", comparison.input_name},
           {"reference", reference_cells.front()},
           {"reference_words", comparison.reference_words},
           {"methods", methods},
+          {"truth", truths},
           {"summary", summary_sentences(comparison)},
           {"reference_cells", reference_cells},
           {"cells", cells},

@@ -30,6 +30,7 @@ std::string cell_sentence(const Comparison& comparison, const Cell& cell) {
   std::string text = fmt::format("{}: {} border pixels differ{}", heading(full_title(model)), counted(differ), differ > 0.0 ? share : "");
   if (const double overlap = value_of(comparison, cell, "overlap"); std::isfinite(overlap))
     text += fmt::format(", overlap {:.4f}", overlap);
+  if (const std::string displaced = displacement_text(comparison, cell); !displaced.empty()) text += "; " + displaced;
   const double mean = value_of(comparison, cell, "normal_error_mean"), worst = value_of(comparison, cell, "normal_error_max");
   if (std::isfinite(mean))
     text += fmt::format("; normals are off by {} degrees on average and {} at worst", short_number(mean), short_number(worst));
@@ -97,7 +98,9 @@ std::vector<std::string> many_methods(const Comparison& comparison) {
 }  // namespace
 
 std::vector<std::string> summary_sentences(const Comparison& comparison) {
-  return comparison.is_matrix() ? many_methods(comparison) : one_method(comparison);
+  std::vector<std::string> sentences = comparison.is_matrix() ? many_methods(comparison) : one_method(comparison);
+  for (const ComparedTruth& truth : comparison.truths) sentences.push_back(truth_text(truth));
+  return sentences;
 }
 
 std::vector<std::string> skipped_sentences(const Comparison& comparison) {

@@ -12,12 +12,13 @@
 namespace limn {
 namespace {
 
-/// The rim's, whatever else the call draws.
+/// Of the first method that has one, whatever else the call draws.
 double threshold_of(const BorderSpec& spec, const SceneInput& input) {
   for (const MethodCall& call : method_calls(spec, input)) {
-    if (call.method->about.name == "rim") return call.parameters.number("threshold");
+    if (call.method->truth_threshold != nullptr) return call.method->truth_threshold(call.parameters);
   }
-  return find_border_method("rim").parameters.front().default_value.front();
+  const BorderMethod& usual = find_border_method(kDefaultMethod);
+  return usual.truth_threshold(resolve(usual.parameters, {}));
 }
 
 /// What a plan chooses cannot be given.

@@ -17,14 +17,12 @@ namespace {
 const std::vector<int> kVoxelRungs = {16, 23, 32, 45, 64, 91, 128, 181, 256, 362, 512, 724, 1024};
 const std::vector<int> kLevelRungs = {0, 1, 2, 3, 4, 5, 6};
 
-// Angle = constant (curvature size)^order. Gradients: measured on the unit sphere at a tenth (0.07, 2.3e-3, 3e-5). Meshes with limit
-// normals: the interpolated normal leaves the true one by the change of curvature within a face.
+// Angle = constant (curvature size)^order. Meshes with limit normals: the interpolated normal leaves the true one by the change of
+// curvature within a face.
 constexpr double kMeshConstant = 0.08;
-struct GradientTheory {
-  const char* name;
-  double constant;
-};
-constexpr GradientTheory kGradientTheories[] = {{"cell", 0.7}, {"central", 0.23}, {"cubic", 0.03}};
+
+/// A gradient of first order never makes up for its voxels.
+bool is_tried(const GradientDescriptor& gradient) { return gradient.order > 1 && gradient.normal_constant > 0.0; }
 
 bool wanted(const std::string& kind, const PlanSettings& settings) {
   return settings.kinds.empty() || std::find(settings.kinds.begin(), settings.kinds.end(), kind) != settings.kinds.end();
@@ -106,16 +104,15 @@ double meshing_ms(const Scene& scene) {
   return ms;
 }
 
-Ladder grid_ladder(const char* kind, const GradientTheory& theory, const Scene& scene, double longest_side) {
-  const GradientDescriptor& gradient = find_gradient(theory.name);
+Ladder grid_ladder(const char* kind, const GradientDescriptor& gradient, const Scene& scene, double longest_side) {
   Ladder ladder;
-  ladder.title = fmt::format("{}, {} gradient", std::string(kind) == "level_set" ? "level set" : "mesh as level set", theory.name);
+  ladder.title = fmt::format("{}, {} gradient", std::string(kind) == "level_set" ? "level set" : "mesh as level set", gradient.about.name);
   ladder.settings.kind = kind;
-  ladder.settings.gradient = theory.name;
+  ladder.settings.gradient = gradient.about.name;
   ladder.settings.level = kMeshLevel;
   ladder.rungs = kVoxelRungs;
   ladder.normal_order = gradient.order;
-  ladder.normal_constant = theory.constant;
+  ladder.normal_constant = gradient.normal_constant;
   ladder.base_size = longest_side;
   const bool meshed = ladder.settings.kind == "mesh_level_set";
   ladder.guess_ms = (meshed ? kMeshGridMs : kGridMs) * std::pow(kVoxelRungs.front(), 2.0) + (meshed ? meshing_ms(scene) : 0.0);
@@ -141,9 +138,9 @@ std::vector<Ladder> volume_ladders(const Scene& scene, const PlanSettings& setti
                                         [](const SceneObject& object) { return std::holds_alternative<LevelSetSource>(object.source); });
   if (!only_volumes || !wanted("level_set", settings)) return ladders;
   const int own = own_voxels(scene);
-  for (const GradientTheory& theory : kGradientTheories) {
-    if (std::string(theory.name) == "cell") continue;
-    Ladder ladder = grid_ladder("level_set", theory, scene, longest_side);
+  for (const GradientDescriptor& gradient : gradients()) {
+    if (!is_tried(gradient)) continue;
+    Ladder ladder = grid_ladder("level_set", gradient, scene, longest_side);
     ladder.of_file = true;
     std::erase_if(ladder.rungs, [&](int voxels) { return 1.2 * voxels > own; });
     ladder.rungs.push_back(own);
@@ -197,8 +194,8 @@ std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings,
     // A field goes into a grid as it is; by way of a mesh it would only lose.
     const bool detour = std::string(kind) == "mesh_level_set" && all_support(scene, "level_set");
     if (!wanted(kind, settings) || !all_support(scene, kind) || (detour && settings.kinds.empty())) continue;
-    for (const GradientTheory& theory : kGradientTheories) {
-      if (std::string(theory.name) != "cell") ladders.push_back(grid_ladder(kind, theory, scene, longest_side));
+    for (const GradientDescriptor& gradient : gradients()) {
+      if (is_tried(gradient)) ladders.push_back(grid_ladder(kind, gradient, scene, longest_side));
     }
   }
   for (Ladder& ladder : ladders) ladder.settings.max_bytes = settings.max_bytes;

@@ -109,7 +109,7 @@ std::map<std::string, std::string> pairs_of(const Parameters& parameters) {
 
 void add_method(const MethodCall& call, Study& study) {
   StudyMethod method{call, pairs_of(call.parameters), {}};
-  if (call.method->about.name == "rim") method.truth_threshold = call.parameters.number("threshold");
+  if (call.method->truth_threshold != nullptr) method.truth_threshold = call.method->truth_threshold(call.parameters);
   for (const StudyMethod& other : study.methods) {
     if (other.call.method == call.method && other.parameters == method.parameters) return;
   }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "sdf/level_set.h"
+
 namespace limn {
 namespace {
 
@@ -51,9 +53,8 @@ std::optional<ExpectedOrder> normal_order(const ReportModel& model) {
   }
   // A grid made from a mesh that stays as it is converges to that mesh, which is no smooth surface.
   if (model.surface == "level_set") {
-    if (value("gradient") == "cell") return ExpectedOrder{1.0, 1.0};
-    if (value("gradient") == "central") return ExpectedOrder{2.0, 2.0};
-    if (value("gradient") == "cubic") return ExpectedOrder{3.0, 3.0};
+    const GradientDescriptor* const gradient = gradients().look_up(value("gradient"));
+    if (gradient != nullptr) return ExpectedOrder{static_cast<double>(gradient->order), static_cast<double>(gradient->order)};
   }
   return std::nullopt;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "samples/reference/reference.h"
 #include "samples/study/whole_number.h"
 #include "sdf/error.h"
 
@@ -124,8 +125,9 @@ std::string resolution_text(const StudyRow& row) {
 }
 
 std::string csv_header() {
-  return "key,scene,view,surface,surface_parameters,method,method_parameters,metric,value,unit,resolution,time_ms,build_ms,trace_ms,border_"
-         "ms,bytes,failed";
+  std::string text;
+  for (const DocumentedKey& column : row_columns()) text.append(text.empty() ? "" : ",").append(column.key);
+  return text;
 }
 
 std::string csv_line(const StudyRow& row) {

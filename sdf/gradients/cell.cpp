@@ -35,6 +35,7 @@ GradientDescriptor cell_gradient() {
           .half_width_voxels = std::sqrt(3.0),
           .stencil = box_stencil(0, 1, false),
           .order = 1,
+          .normal_constant = 0.7,
           .gradients = gradients_of_cells,
           .values = nullptr,
           .hessians = nullptr};

@@ -77,6 +77,7 @@ GradientDescriptor central_gradient() {
           .half_width_voxels = std::sqrt(6.0),
           .stencil = box_stencil(0, 1, true),
           .order = 2,
+          .normal_constant = 0.23,
           .gradients = gradients_at_nodes,
           .values = values_less_sag,
           .hessians = nullptr};

@@ -114,6 +114,7 @@ GradientDescriptor cubic_gradient() {
           .half_width_voxels = std::sqrt(17.0),
           .stencil = box_stencil(-1, 2, true),
           .order = 3,
+          .normal_constant = 0.03,
           .gradients = gradients_of_spline,
           .values = values_of_spline,
           .hessians = hessians_of_spline};

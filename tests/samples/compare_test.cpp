@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "raymarch/image_io.h"
 #include "raymarch/metric.h"
@@ -54,6 +55,48 @@ TEST(Compare, AFieldIsHeldAgainstItsFormulaInEveryOtherRepresentation) {
   EXPECT_EQ(folder.files(), (std::vector<std::string>{"out/level_set.exr", "out/mesh.exr", "out/mesh_level_set.exr",
                                                       "out/reference_analytic.exr", "out/report.html", "out/rows.json", "out/sheet.png"}));
   EXPECT_EQ(document.at("files").size(), 7u);
+}
+
+TEST(Compare, DisplacementsFromTheTruthAreThoseOfAStudy) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> view = {"--eye", "2,1,4", "--target", "0,0,0"};
+  const json document = compare(folder, "ellipsoid", view, {"--voxels", "24", "--level", "1"});
+  const json& truth = document.at("truth").at(0);
+  EXPECT_EQ(document.at("truth").size(), 1u);
+  EXPECT_TRUE(truth.at("exact"));
+  EXPECT_LT(truth.at("bound_px"), 0.01);
+  // The formula itself is right to what the truth is known to.
+  EXPECT_LT(document.at("reference").at("metrics").at("silhouette_displacement_max"), 0.02);
+  EXPECT_LT(document.at("reference").at("metrics").at("inner_displacement_max"), 0.05);
+  EXPECT_NE(document.at("summary").dump().find("px off the truth"), std::string::npos);
+  std::vector<std::string> call = {"study",   "ellipsoid",          "--views", "1",         "--size",
+                                   "160x120", "--voxels",           "24",      "--surface", "level_set",
+                                   "-o",      folder.file("study"), "-q"};
+  call.insert(call.end(), view.begin(), view.end());
+  const RunResult study = run_limn(call);
+  ASSERT_EQ(study.exit_code, 0) << study.err;
+  std::ifstream rows(folder.file("study/rows.jsonl"));
+  int compared = 0;
+  for (std::string line; std::getline(rows, line);) {
+    const json row = json::parse(line);
+    const std::string metric = row.at("metric");
+    if (row.at("surface") != "level_set" || row.at("surface_parameters").at("gradient") != "central" ||
+        (!metric.starts_with("silhouette_displacement") && !metric.starts_with("inner_displacement")))
+      continue;
+    EXPECT_EQ(row.at("value"), cell(document, "level_set").at("metrics").at(metric)) << metric;
+    ++compared;
+  }
+  EXPECT_GE(compared, 10);
+}
+
+TEST(Compare, MethodsWithoutAThresholdAreMeasuredByTheSilhouetteAlone) {
+  const TemporaryFolder folder;
+  const json document = compare(folder, "ellipsoid", {"--methods", "rim,distance"});
+  EXPECT_EQ(document.at("truth").size(), 1u);  // one serves both
+  EXPECT_TRUE(cell(document, "mesh-rim").at("metrics").contains("inner_displacement_rms"));
+  const json& distance = cell(document, "mesh-distance").at("metrics");
+  EXPECT_FALSE(distance.contains("inner_displacement_rms"));
+  EXPECT_EQ(distance.at("silhouette_displacement_rms"), cell(document, "mesh-rim").at("metrics").at("silhouette_displacement_rms"));
 }
 
 TEST(Compare, ACageIsHeldAgainstItsLimitSurfaceAndSkipsSayWhy) {
@@ -117,7 +160,7 @@ TEST(Compare, RowsAreOnePerCellAndMeasurement) {
   const TemporaryFolder folder;
   const json document = compare(folder, "ellipsoid");
   const json rows = json::parse(read_bytes(folder.path() / "out/rows.json"));
-  size_t expected = 1;  // the reference's ink
+  size_t expected = 1 + document.at("reference").at("metrics").size();  // the reference's ink and displacements
   for (const json& one : document.at("cells")) expected += one.contains("skipped") ? 1 : 1 + one.at("metrics").size();
   EXPECT_EQ(rows.size(), expected);
   for (const json& row : rows) {

@@ -10,9 +10,7 @@ int main() {
                                           })});
   const limn::SceneModel model = limn::build_model(scene, {.kind = "level_set", .voxels = 128});
   const limn::Camera camera = limn::resolve_camera({.width_px = 320, .height_px = 240}, limn::bounds(scene));
-  const limn::PictureSettings settings{
-      .methods = {{&limn::find_border_method("rim"), limn::resolve(limn::find_border_method("rim").parameters, {})}}};
-  const limn::Picture picture = limn::draw_picture(scene, model, camera, settings, {});
+  const limn::Picture picture = limn::draw_picture(scene, model, camera, {}, {});
   const limn::BorderTruth truth = limn::solve_truth(scene, camera, {}, {});
   const limn::BorderCurves curves = limn::measure_border(model, camera, picture.gbuffer, {}, {});
   double rms_px = 1e9;

@@ -1,0 +1,71 @@
+// What scene files and the rows of studies hold.
+
+#include "samples/reference/reference.h"
+
+namespace limn {
+namespace {
+
+constexpr DocumentedKey kSceneKeys[] = {
+    {"camera", "eye", "world", "where the camera stands, [x, y, z]; missing: framed"},
+    {"camera", "target", "world", "what it looks at; missing: the middle of the scene"},
+    {"camera", "up", "world", "which way is up in the picture; default [0, 1, 0]"},
+    {"camera", "fov", "degrees", "vertical field of view, above 0 and below 180; default 35"},
+    {"camera", "ortho", "world", "height of the picture of a parallel projection; instead of fov"},
+    {"camera", "size", "px", "[width, height], 1 to 16384; default [1280, 720]"},
+    {"surface", "kind", "", "representation: a name of `limn list surfaces`; missing: each object's own"},
+    {"surface", "voxels", "", "along the longest side of an object, 4 to 8192; default 256"},
+    {"surface", "voxel_size", "world", "instead of voxels"},
+    {"surface", "half_width", "voxels", "of the narrow band, at least 1.8; missing: what the gradient needs"},
+    {"surface", "gradient", "", "a name of `limn list gradients`; default central"},
+    {"surface", "level", "", "refinements of cages and of tessellated fields, 0 to 8; default 3"},
+    {"surface", "scheme", "", "subdivision of cages: catmark, loop or bilinear"},
+    {"surface", "normals", "", "of meshes: flat, vertex or limit"},
+    {"surface", "smooth_angle", "degrees", "edges that are sharper stay hard in vertex normals, 0 to 180; default 30"},
+    {"border", "method", "", "a name of `limn list methods`; its parameters stand beside it; [[border]] for several; default rim"},
+    {"object", "name", "", "for messages, layers and exports"},
+    {"object", "color", "", "linear RGB, 0 to 1; default [0.8, 0.8, 0.8]"},
+    {"object", "material", "", "an id, for the layer `material` and for group = material; default 0"},
+    {"object", "shape", "", "a name of `limn list shapes`; its parameters stand beside it"},
+    {"object", "csg", "", "union, intersection or difference of the fields in `of`"},
+    {"object", "of", "", "the fields of csg: tables with shape, csg or vm"},
+    {"object", "smooth", "world", "radius of the blend of csg; default 0, sharp"},
+    {"object", "vm", "", "a .vm file beside the scene file"},
+    {"object", "grow", "world", "moves the surface of a field outwards"},
+    {"object", "shell", "world", "makes a field a shell of this thickness"},
+    {"object", "mesh", "", "a mesh file beside the scene file"},
+    {"object", "scheme", "", "makes the mesh a cage: catmark, loop or bilinear"},
+    {"object", "level", "", "of the mesh as a cage, 0 to 8"},
+    {"object", "smooth_angle", "degrees", "as in [surface], for this mesh"},
+    {"object", "vdb", "", "a volume beside the scene file"},
+    {"object", "grid", "", "of the volume; missing: the only one"},
+    {"object", "scale", "", "a number, or [x, y, z]; negative ones mirror"},
+    {"object", "rotate", "degrees", "[axis x, axis y, axis z, angle], after scale"},
+    {"object", "translate", "world", "[x, y, z], after rotate"},
+};
+
+constexpr DocumentedKey kRowColumns[] = {
+    {"", "key", "", "of the cell (one model, view and method): a hash of all that determines it, the program's version included"},
+    {"", "scene", "", "name of the input"},
+    {"", "view", "", "number of the view, from 0"},
+    {"", "surface", "", "representation"},
+    {"", "surface_parameters", "", "what it was made with: voxels, gradient, level, normals, scheme"},
+    {"", "method", "", "outline method"},
+    {"", "method_parameters", "", "all its parameters"},
+    {"", "metric", "", "name of the value; the metrics above say what each is"},
+    {"", "value", "unit", "the measurement; empty where the cell failed"},
+    {"", "unit", "", "of the value: px, deg, or empty for a share, a ratio or a count"},
+    {"", "resolution", "", "mean edge or voxel of the model, as a share of the scene's longest side"},
+    {"", "time_ms", "ms", "build_ms + trace_ms + border_ms"},
+    {"", "build_ms", "ms", "making the model"},
+    {"", "trace_ms", "ms", "tracing its picture, a ray a pixel"},
+    {"", "border_ms", "ms", "drawing the border"},
+    {"", "bytes", "bytes", "memory that the model holds"},
+    {"", "failed", "", "why there is no value; empty where there is one"},
+};
+
+}  // namespace
+
+std::span<const DocumentedKey> scene_keys() { return kSceneKeys; }
+std::span<const DocumentedKey> row_columns() { return kRowColumns; }
+
+}  // namespace limn

@@ -1,6 +1,6 @@
 #include "raymarch/scene.h"
 
-#include "subdiv/orientation.h"
+#include "subdiv/face_orientation.h"
 
 namespace limn {
 namespace {

@@ -44,7 +44,7 @@ struct MeshSource {
 inline constexpr double kSmoothAngle_deg = 30.0;
 
 /// An object from a mesh: a cage where `scheme` is set or the mesh has subdivision tags (by default_scheme), else the mesh as it is; what
-/// is inside out is turned round (subdiv/orientation.h). `file` goes into messages.
+/// is inside out is turned round (subdiv/face_orientation.h). `file` goes into messages.
 MeshSource mesh_source(Mesh mesh, std::optional<Scheme> scheme, const std::string& file);
 
 struct LevelSetSource {

@@ -8,8 +8,8 @@
 #include "raymarch/surface/resampled_volume.h"
 #include "sdf/error.h"
 #include "sdf/level_set_grids.h"
+#include "subdiv/face_orientation.h"
 #include "subdiv/mesh_level_set.h"
-#include "subdiv/orientation.h"
 #include "subdiv/tessellate.h"
 
 namespace limn {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sdf/error.h"
-#include "sdf/vm/field.h"
+#include "sdf/vm/program_field.h"
 
 namespace limn {
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "sdf/parallel.h"
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 #include "subdiv/surface_snap.h"
 
 namespace limn {

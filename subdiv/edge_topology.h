@@ -1,7 +1,7 @@
 #pragma once
 // Every edge of a mesh with its two faces: the degenerate quads of edge drawing, built once and asked for each view.
 
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 
 namespace limn {
 

@@ -2,7 +2,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 #include "subdiv/polygon.h"
 
 namespace limn {

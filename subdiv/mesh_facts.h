@@ -1,7 +1,7 @@
 #pragma once
 // Internal: the counts of MeshFacts, a kind each. Each adds its own fields and leaves the others.
 
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 
 namespace limn {
 

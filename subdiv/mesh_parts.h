@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 
 namespace limn {
 

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "sdf/error.h"
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 
 namespace limn {
 namespace {

@@ -3,9 +3,9 @@
 // installs the headers that are named here.
 
 #include "sdf/sdf.h"
-#include "subdiv/audit.h"
 #include "subdiv/import.h"
 #include "subdiv/mesh.h"
+#include "subdiv/mesh_audit.h"
 #include "subdiv/mesh_level_set.h"
 #include "subdiv/refine.h"
 #include "subdiv/tessellate.h"

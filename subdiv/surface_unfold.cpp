@@ -4,8 +4,8 @@
 #include <numeric>
 #include <optional>
 
-#include "subdiv/audit.h"
 #include "subdiv/local_field.h"
+#include "subdiv/mesh_audit.h"
 #include "subdiv/polygon.h"
 #include "subdiv/surface_snap.h"
 

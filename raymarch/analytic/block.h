@@ -1,7 +1,7 @@
 #pragma once
 // Internal: sixteen consecutive rays of a batch, a block of 4 x 4 pixels, by SIMD.
 
-#include "raymarch/analytic/march.h"
+#include "raymarch/analytic/march_field.h"
 
 namespace limn {
 

@@ -3,7 +3,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "raymarch/analytic/view.h"
+#include "raymarch/analytic/analytic_view.h"
 
 namespace limn {
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "raymarch/audit.h"
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 
 namespace limn {
 

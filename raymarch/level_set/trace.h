@@ -1,7 +1,7 @@
 #pragma once
 // Internal: the rays of one tile against its bricks, in packets of the machine's widest SIMD.
 
-#include "raymarch/level_set/view.h"
+#include "raymarch/level_set/level_set_view.h"
 
 namespace limn {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Internal: which triangle each ray of a tile meets first.
 
-#include "raymarch/mesh/view.h"
+#include "raymarch/mesh/mesh_view.h"
 
 namespace limn {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "raymarch/mesh/view.h"
+#include "raymarch/mesh/mesh_view.h"
 #include "sdf/error.h"
 #include "sdf/simd.h"
 

@@ -4,7 +4,7 @@
 
 #include "raymarch/surface/resampled_volume.h"
 #include "sdf/error.h"
-#include "subdiv/orientation.h"
+#include "subdiv/face_orientation.h"
 #include "subdiv/polygon.h"
 #include "subdiv/tessellate.h"
 

@@ -6,7 +6,7 @@
 
 #include "raymarch/gbuffer.h"
 #include "raymarch/truth/branches.h"
-#include "raymarch/truth/march.h"
+#include "raymarch/truth/marching_tetrahedra.h"
 
 namespace limn {
 

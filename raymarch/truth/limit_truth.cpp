@@ -10,7 +10,7 @@
 #include "raymarch/truth/limit_curves.h"
 #include "raymarch/truth/proxy.h"
 #include "raymarch/truth/shares.h"
-#include "subdiv/orientation.h"
+#include "subdiv/face_orientation.h"
 
 namespace limn {
 namespace {

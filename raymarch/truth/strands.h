@@ -3,7 +3,7 @@
 
 #include "raymarch/truth/branches.h"
 #include "raymarch/truth/field_curves.h"
-#include "raymarch/truth/march.h"
+#include "raymarch/truth/marching_tetrahedra.h"
 
 namespace limn {
 

@@ -5,8 +5,8 @@
 
 #include "samples/commands/common.h"
 #include "samples/held_folder.h"
-#include "samples/stability/page.h"
-#include "samples/stability/run.h"
+#include "samples/stability/run_stability.h"
+#include "samples/stability/stability_page.h"
 #include "sdf/error.h"
 #include "sdf/output_file.h"
 

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
+#include "samples/compare/compare_words.h"
 #include "samples/compare/comparison.h"
 #include "samples/compare/panels.h"
 #include "samples/compare/sheet_canvas.h"
-#include "samples/compare/words.h"
 
 namespace limn {
 namespace {

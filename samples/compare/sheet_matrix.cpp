@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "samples/compare/compare_words.h"
 #include "samples/compare/sheet_canvas.h"
-#include "samples/compare/words.h"
 
 namespace limn {
 namespace {

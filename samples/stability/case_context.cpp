@@ -10,7 +10,7 @@
 #include "raymarch/audit.h"
 #include "samples/job.h"
 #include "samples/scene_facts.h"
-#include "samples/threads.h"
+#include "samples/thread_settings.h"
 
 namespace limn {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "samples/study/study_files.h"
-#include "samples/study/summary.h"
+#include "samples/study/study_summary.h"
 #include "sdf/error.h"
 
 namespace limn {

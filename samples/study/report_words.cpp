@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "samples/compare/words.h"
+#include "samples/compare/compare_words.h"
 #include "samples/output.h"
 
 namespace limn {

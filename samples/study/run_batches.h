@@ -1,7 +1,7 @@
 #pragma once
 // Internal: in what order the cells of a study are done.
 
-#include "samples/study/run.h"
+#include "samples/study/run_cells.h"
 
 namespace limn {
 

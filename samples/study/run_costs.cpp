@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
-#include "samples/study/reference.h"
 #include "samples/study/run_batches.h"
+#include "samples/study/study_reference.h"
 #include "sdf/error.h"
 
 namespace limn {

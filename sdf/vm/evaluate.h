@@ -1,8 +1,8 @@
 #pragma once
-// Internal: runs a list of operations for any number type. Include sdf/vm/number.h's includer first: sdf/field_program.h.
+// Internal: runs a list of operations for any number type. Include sdf/vm/vm_number.h's includer first: sdf/field_program.h.
 
 #include "sdf/field_program.h"
-#include "sdf/vm/number.h"
+#include "sdf/vm/vm_number.h"
 
 namespace limn::vm {
 

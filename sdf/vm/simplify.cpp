@@ -2,8 +2,8 @@
 #include <map>
 #include <tuple>
 
-#include "sdf/vm/number.h"
-#include "sdf/vm/program.h"
+#include "sdf/vm/vm_number.h"
+#include "sdf/vm/vm_program.h"
 
 namespace limn::vm {
 namespace {

@@ -2,7 +2,7 @@
 // Internal: a program taken apart at the minima and maxima that it ends in, so that what is left between them is smooth: the unions and
 // intersections of a field (sdf/field_program.h).
 
-#include "sdf/vm/program.h"
+#include "sdf/vm/vm_program.h"
 
 namespace limn::vm {
 

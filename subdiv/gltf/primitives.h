@@ -1,8 +1,8 @@
 #pragma once
 // Internal: the triangles of placed meshes, gathered into one mesh.
 
+#include "subdiv/gltf/gltf_scene.h"
 #include "subdiv/gltf/materials.h"
-#include "subdiv/gltf/scene.h"
 #include "subdiv/mesh.h"
 
 namespace limn::gltf {

@@ -1,7 +1,7 @@
 #pragma once
 // Mesh files as they come, as far as a render takes them before they meet a surface: read, checked, audited, triangulated.
 
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace limn::fuzz {

@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "samples/study/folder.h"
-#include "samples/study/summary.h"
+#include "samples/study/study_summary.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace limn {

@@ -6,7 +6,7 @@
 
 #include <cstring>
 
-#include "raymarch/mesh/view.h"
+#include "raymarch/mesh/mesh_view.h"
 #include "sdf/simd.h"
 #include "tests/raymarch/scenes.h"
 // clang-format off

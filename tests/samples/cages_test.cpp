@@ -5,7 +5,7 @@
 #include <map>
 
 #include "samples/scenes/scenes.h"
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 
 namespace limn {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "samples/stability/checks/check.h"
-#include "samples/stability/run.h"
+#include "samples/stability/run_stability.h"
 
 namespace limn {
 namespace {

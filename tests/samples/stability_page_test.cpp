@@ -6,7 +6,7 @@
 #include <fstream>
 #include <regex>
 
-#include "samples/stability/page.h"
+#include "samples/stability/stability_page.h"
 #include "tests/samples/run_program.h"
 
 namespace limn {

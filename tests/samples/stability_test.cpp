@@ -10,7 +10,7 @@
 #include <set>
 
 #include "run_program.h"
-#include "samples/stability/run.h"
+#include "samples/stability/run_stability.h"
 #include "sdf/error.h"
 #include "tests/random_seed.h"
 

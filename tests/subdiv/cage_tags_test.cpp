@@ -11,7 +11,7 @@
 #include <random>
 #include <span>
 
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 #include "subdiv/refine.h"
 #include "test_meshes.h"
 

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "sdf/error.h"
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 #include "subdiv/refine.h"
 #include "test_meshes.h"
 #include "tests/temporary_folder.h"

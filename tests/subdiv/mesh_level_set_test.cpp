@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "sdf/error.h"
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 #include "subdiv/mesh_distance.h"
 #include "test_meshes.h"
 

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "sdf/error.h"
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 #include "subdiv/polygon.h"
 #include "test_meshes.h"
 

@@ -1,11 +1,11 @@
-#include "subdiv/orientation.h"
+#include "subdiv/face_orientation.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <numbers>
 
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 #include "subdiv/polygon.h"
 #include "test_meshes.h"
 

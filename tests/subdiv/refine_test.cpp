@@ -5,7 +5,7 @@
 #include <set>
 
 #include "sdf/error.h"
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 #include "subdiv/refine.h"
 #include "test_meshes.h"
 

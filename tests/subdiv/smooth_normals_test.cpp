@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "subdiv/audit.h"
+#include "subdiv/mesh_audit.h"
 #include "subdiv/polygon.h"
 #include "test_meshes.h"
 

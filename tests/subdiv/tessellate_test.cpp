@@ -11,8 +11,8 @@
 
 #include "sdf/error.h"
 #include "sdf/shape.h"
-#include "subdiv/audit.h"
 #include "subdiv/dual_contour.h"
+#include "subdiv/mesh_audit.h"
 #include "subdiv/surface_snap.h"
 #include "tests/random_seed.h"
 

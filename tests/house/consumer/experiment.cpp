@@ -1,5 +1,5 @@
 // Another project's experiment, without a command line: the cheapest level set of an ellipsoid whose border is right to a pixel.
-#include <samples/plan/job.h>
+#include <samples/plan/plan_job.h>
 
 #include <cstdio>
 

@@ -1,0 +1,189 @@
+#include "raymarch/truth/marching_tetrahedra.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace limn {
+namespace {
+
+constexpr std::array<std::array<int, 4>, 6> kTetrahedra = {
+    {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}}};
+// A share of the step across a face: points that Newton moves farther would change places with their neighbours.
+constexpr double kSmoothReach = 0.25;
+constexpr int kSeamSteps = 40;
+
+glm::ivec3 offset_of(int corner) { return {corner & 1, corner >> 1 & 1, corner >> 2 & 1}; }
+
+struct FaceCrossing {
+  std::uint64_t key = 0;
+  bool crossed = false;
+};
+
+class Marcher {
+ public:
+  /// With `seam`, it is that field's zeros that are looked for instead of N.V's levels.
+  Marcher(FieldEvaluator& evaluator, FieldEvaluator* seam, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell)
+      : evaluator_(evaluator), seam_(seam), viewer_(viewer), cell_(cell), side_(grid.side) {
+    for (int i = 0; i < 8; ++i) points_[static_cast<size_t>(i)] = grid.vertex(cell + offset_of(i));
+    evaluator.values(points_, values_);
+    for (size_t i = 0; i < 8; ++i) inside_[i] = values_[i] < 0.0;
+  }
+
+  bool holds_surface() const { return std::find(inside_.begin(), inside_.end(), !inside_[0]) != inside_.end(); }
+
+  bool march(double level, CellCurves& output) {
+    output_ = &output;
+    level_ = level;
+    faces_.clear();
+    bool any = false;
+    for (const auto& corners : kTetrahedra) any = march_tetrahedron(corners) || any;
+    return any;
+  }
+
+ private:
+  bool in(int corner) const { return inside_[static_cast<size_t>(corner)]; }
+
+  /// The surface on the edge between two corners on different sides, always found from the lower corner.
+  const SurfaceSample& edge(int a, int b) {
+    const auto low = static_cast<size_t>(std::min(a, b)), high = static_cast<size_t>(std::max(a, b));
+    auto& sample = edges_[8 * low + high];
+    if (!sample) sample = sample_at(root_between(evaluator_, points_[low], points_[high], values_[low], values_[high]));
+    return *sample;
+  }
+  SurfaceSample sample_at(const glm::dvec3& p) {
+    if (seam_ != nullptr) return {p, glm::dvec3(0.0), seam_->value(p)};
+    return sample_surface(evaluator_, viewer_, p);
+  }
+  bool above(const SurfaceSample& sample) const { return !(sample.facing < level_); }
+
+  std::uint64_t key_of(int a, int b, int c) const {
+    const glm::ivec3 base = cell_ + offset_of(a);
+    const auto part = [](int v) { return static_cast<std::uint64_t>(v); };
+    return ((part(base.x) << 19 | part(base.y)) << 19 | part(base.z)) << 6 | part(b ^ a) << 3 | part(c ^ a);
+  }
+
+  /// Of a face with its corners in order along the diagonal.
+  FaceCrossing face(int a, int b, int c) {
+    const bool ia = in(a), ib = in(b), ic = in(c);
+    if (ia == ib && ib == ic) return {};
+    const int lone = ib == ic ? a : ia == ic ? b : c;
+    const int first = lone == a ? b : a, second = lone == c ? b : c;
+    const SurfaceSample &start = edge(lone, first), &end = edge(lone, second);
+    if (above(start) == above(end)) return {};
+    const FaceCrossing result{key_of(a, b, c), true};
+    if (std::find(faces_.begin(), faces_.end(), result.key) == faces_.end()) {
+      faces_.push_back(result.key);
+      output_->crossings.push_back({result.key, locate(lone, first, second, start, end)});
+    }
+    return result;
+  }
+
+  CurvePoint locate(int lone, int first, int second, const SurfaceSample& start, const SurfaceSample& end) {
+    const auto at = [&](int corner) { return points_[static_cast<size_t>(corner)]; };
+    const Fan fan{at(lone), at(first), at(second) - at(first), values_[static_cast<size_t>(lone)]};
+    const double step = glm::length(end.p - start.p);
+    if (seam_ != nullptr) return locate_seam(fan, start, end);
+    if (auto point = bisect(evaluator_, viewer_, level_, fan, 0.0, 1.0, start, end, kSmoothReach * step)) return *point;
+    const double share = (level_ - start.facing) / (end.facing - start.facing);
+    CurvePoint point;
+    point.p = start.p + share * (end.p - start.p);
+    if (auto polished = polish(evaluator_, viewer_, level_, point.p, side_)) {
+      point = *polished;
+    } else {
+      point.rough = true;
+      point.high = point.low = glm::normalize(start.gradient + end.gradient);
+    }
+    point.uphill = start.facing > end.facing ? start.p - end.p : end.p - start.p;
+    return point;
+  }
+
+  /// Along the face: Newton first, false position where that leads away.
+  CurvePoint locate_seam(const Fan& fan, const SurfaceSample& start, const SurfaceSample& end) {
+    const double step = glm::length(end.p - start.p);
+    double low = 0.0, high = 1.0, at_low = start.facing, at_high = end.facing;
+    CurvePoint point;
+    point.p = start.p + at_low / (at_low - at_high) * (end.p - start.p);
+    point.crease = true;
+    for (int k = 0; k < kSeamSteps; ++k) {
+      if (auto polished = polish_seam(evaluator_, *seam_, point.p, kSmoothReach * step)) return *polished;
+      const double middle = k % 2 == 0 ? std::clamp(at_low / (at_low - at_high), 0.05, 0.95) : 0.5, s = glm::mix(low, high, middle);
+      const auto sample = fan.at(evaluator_, viewer_, s);
+      if (!sample) break;
+      point.p = sample->p;
+      const double value = seam_->value(point.p);
+      const bool as_low = (value < 0.0) == (at_low < 0.0);
+      (as_low ? low : high) = s;
+      (as_low ? at_low : at_high) = value;
+    }
+    return point;
+  }
+
+  void link(const FaceCrossing& a, const FaceCrossing& b) { output_->links.push_back({a.key, b.key}); }
+
+  bool march_tetrahedron(const std::array<int, 4>& v) {
+    const std::array<FaceCrossing, 4> faces = {face(v[1], v[2], v[3]), face(v[0], v[2], v[3]), face(v[0], v[1], v[3]),
+                                               face(v[0], v[1], v[2])};  // face i lies opposite corner i
+    std::array<size_t, 4> crossed{};
+    size_t count = 0;
+    for (size_t i = 0; i < 4; ++i) {
+      if (faces[i].crossed) crossed[count++] = i;
+    }
+    if (count == 2) link(faces[crossed[0]], faces[crossed[1]]);
+    if (count == 4) link_quad(v, faces);
+    return count > 0;
+  }
+
+  /// N.V - c changes sign along all four sides of the surface's quad: which two of its corners are cut off, its middle decides.
+  void link_quad(const std::array<int, 4>& v, const std::array<FaceCrossing, 4>& faces) {
+    size_t b = 1;
+    while (in(v[b]) != in(v[0])) ++b;
+    const size_t c = b == 1 ? 2 : 1, d = 6 - b - c;
+    const auto middle_of = [&](size_t i, size_t j) {
+      return 0.5 * (points_[static_cast<size_t>(v[i])] + points_[static_cast<size_t>(v[j])]);
+    };
+    const glm::dvec3 ab = middle_of(0, b), cd = middle_of(c, d);
+    const double f_ab = evaluator_.value(ab), f_cd = evaluator_.value(cd);
+    bool middle_above = true;
+    if ((f_ab < 0.0) != (f_cd < 0.0)) {
+      middle_above = above(sample_at(root_between(evaluator_, ab, cd, f_ab, f_cd)));
+    }
+    // Corner AC of the quad joins faces ABC (opposite D) and ACD (opposite B).
+    const bool cut_ac = above(edge(v[0], v[c])) != middle_above;
+    link(faces[d], faces[cut_ac ? b : 0]);
+    link(faces[c], faces[cut_ac ? 0 : b]);
+  }
+
+  FieldEvaluator& evaluator_;
+  FieldEvaluator* seam_;
+  const Viewer& viewer_;
+  glm::ivec3 cell_;
+  CellCurves* output_ = nullptr;
+  double side_;
+  double level_ = 0.0;
+  std::array<glm::dvec3, 8> points_;
+  std::array<double, 8> values_;
+  std::array<bool, 8> inside_;
+  std::array<std::optional<SurfaceSample>, 64> edges_;
+  std::vector<std::uint64_t> faces_;
+};
+
+}  // namespace
+
+bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
+                const std::array<double, kCurveFamilies>& levels, FamilyMask families, CellOutput& output) {
+  Marcher marcher(evaluator, nullptr, viewer, grid, cell);
+  if (!marcher.holds_surface()) return false;
+  bool any = false;
+  for (size_t family = 0; family < kCurveFamilies; ++family) {
+    if (families >> family & 1u) any = marcher.march(levels[family], output[family]) || any;
+  }
+  return any;
+}
+
+bool march_seam(FieldEvaluator& first, FieldEvaluator& second, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
+                CellCurves& output) {
+  Marcher marcher(first, &second, viewer, grid, cell);
+  return marcher.holds_surface() && marcher.march(0.0, output);
+}
+
+}  // namespace limn

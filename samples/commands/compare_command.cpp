@@ -1,0 +1,172 @@
+#include <CLI/CLI.hpp>
+
+#include "raymarch/image_io.h"
+#include "raymarch/view_level.h"
+#include "samples/commands/command.h"
+#include "samples/commands/common.h"
+#include "samples/compare/comparison.h"
+#include "samples/compare/staging.h"
+#include "samples/empty_picture.h"
+#include "samples/experiment/flags.h"
+#include "samples/input_files.h"
+#include "samples/no_effect.h"
+#include "samples/thread_settings.h"
+#include "sdf/output_file.h"
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+
+void add_options(CLI::App& app, Options& options) {
+  add_input(app, options);
+  add_camera(app, options, false);
+  add_surface(app, options, {.surface = true, .repeatable = true, .views = true});
+  add_border(app, options, true);
+  add_output(app, options, "folder for sheet.png, report.html, rows.json and each picture's EXR; default limn-out/compare/<name>", false);
+  app.add_flag("--no-timings", options.no_timings, "leave measured times out of sheet and report, so that equal calls write equal bytes")
+      ->group("Output");
+  add_json(app, options);
+  add_execution(app, options);
+}
+
+Comparison plan(const Options& options, SceneInput& input) {
+  SurfaceSettings settings = surface_settings(options.spec, input);
+  const Camera camera = resolve_camera(camera_settings(options.spec.camera, input), bounds(input.scene));
+  if (options.spec.surface.level_for_view) {
+    settings.kind = "mesh";
+    for (const std::string& note : refine_for_views(settings, {&camera, 1}, input.scene)) {
+      if (!options.quiet) print_note(note);
+    }
+  }
+  settings.kind.clear();
+  const bool gradient_chosen = options.spec.surface.gradient.has_value() || input.surface.gradient.has_value();
+  Comparison comparison = plan_comparison(input, settings, options.spec.surfaces, gradient_chosen);
+  comparison.picture = picture_settings(options.spec.border, input);
+  if (!comparison.picture.background) comparison.picture.background = glm::vec3(1.0f);
+  std::vector<std::vector<MethodCall>> columns;
+  if (options.spec.border.columns.empty()) {
+    columns.push_back(comparison.picture.methods);
+  } else {
+    for (const MethodCall& call : comparison.picture.methods) columns.push_back({call});
+  }
+  plan_methods(columns, comparison);
+  comparison.camera = camera;
+  comparison.with_times = !options.no_timings;
+  std::vector<std::string> kinds;
+  for (const ComparedModel& model : comparison.models)
+    if (model.skipped.empty()) kinds.push_back(model.surface.kind);
+  comparison.call = resolved_call("compare", options.spec, {input.scene, settings, kinds}, comparison.camera, comparison.picture);
+  return comparison;
+}
+
+// Without a font the sheet has no words; the page has them all.
+void write_all(const Comparison& comparison, const fs::path& folder, const Options& options) {
+  const Sheet sheet = contact_sheet(comparison);
+  if (!sheet.has_labels && !options.quiet)
+    print_note("no font found, so sheet.png has no labels; the package fonts-dejavu-core brings one");
+  write_image(sheet.picture, folder / "sheet.png");
+  write_whole(folder / "rows.json", rows_json(comparison).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_whole(folder / "report.html", report_page(comparison));
+}
+
+// What is held at a time: the reference's picture, one model's, and every cell's ink.
+std::vector<std::string> check(const Options& options, const Comparison& comparison) {
+  constexpr double kReferenceBytes = 65.0, kCellBytes = 95.0;  // a pixel; measured at 1280 x 720
+  std::vector<std::string> kinds, methods;
+  for (const ComparedModel& model : comparison.models) {
+    if (model.skipped.empty()) kinds.push_back(model.surface.kind);
+  }
+  PictureLoad load = picture_load(comparison.camera, comparison.picture, 1, true);
+  load.bytes_per_pixel += kReferenceBytes + kCellBytes * static_cast<double>(comparison.methods.size());
+  for (const ComparedMethod& column : comparison.methods) {
+    for (const std::string& name : names_of(column.calls)) methods.push_back(name);
+  }
+  const ComparedModel& last = comparison.models.back();
+  check_cost(options, last.scene, last.surface, load, kinds);
+  return warn_of_input(options, last.scene, last.surface, {.surfaces = kinds, .methods = methods});
+}
+
+// What will be there: known before anything is drawn, as long as no model turns out to be impossible.
+std::vector<fs::path> file_names(const Comparison& comparison) {
+  std::vector<fs::path> names;
+  for (const ComparedModel& model : comparison.models) {
+    if (model.skipped.empty()) names.emplace_back(model.name + ".exr");
+  }
+  for (const char* name : {"sheet.png", "rows.json", "report.html"}) names.emplace_back(name);
+  return names;
+}
+
+void refuse_unread(const Options& options, const SceneInput& input, const Comparison& comparison) {
+  SettingUse use;
+  for (const ComparedModel& model : comparison.models) {
+    if (model.skipped.empty()) use.kinds.push_back(model.surface.kind);
+  }
+  refuse_without_effect(options.spec.surface, input, use);
+}
+
+// Where the reference shows nothing the others cannot be blamed for the same.
+void add_empty(const Options& options, const Comparison& comparison, std::vector<std::string>& warnings) {
+  const bool all = comparison.reference().counts.hits == 0;
+  std::vector<std::string> found;
+  for (const ComparedModel& model : comparison.models) {
+    if (all && &model != &comparison.reference()) break;
+    for (const std::string& warning : model.info.warnings) {
+      if (says_empty(warning)) found.push_back(all ? warning : model.title + ": " + warning);
+    }
+  }
+  print_warnings(options, found);
+  warnings.insert(warnings.end(), found.begin(), found.end());
+}
+
+int run(const Options& options) {
+  const ThreadLimit threads(options.spec.threads);
+  ProgressBar bar(wants_progress(options.quiet, options.no_progress));
+  input_kind(options.spec.input);
+  if (!options.outputs.empty()) check_output_folder(options.outputs.back(), options.no_clobber);
+  SceneInput input = load(options);
+  const fs::path folder = options.outputs.empty() ? default_output("compare", input.name) : options.outputs.back();
+  check_output_folder(folder, options.no_clobber);
+
+  Comparison comparison = plan(options, input);
+  refuse_unread(options, input, comparison);
+  const std::vector<fs::path> names = file_names(comparison);
+  for (const fs::path& name : names) check_not_input(folder / name, files_of(input));
+  std::vector<std::string> warnings = check(options, comparison);
+  const StagedFolder staged(folder);
+  draw_comparison(comparison, staged.work(), execution_settings(options.spec.threads), bar);
+  bar.clear();
+  add_empty(options, comparison, warnings);
+  write_all(comparison, staged.work(), options);
+  const std::vector<fs::path> files = staged.publish(file_names(comparison));
+  for (ComparedModel& model : comparison.models) {
+    if (model.skipped.empty()) model.exr = folder / model.exr.filename();
+  }
+
+  if (options.verbose) print_note(comparison.call);
+  if (options.json) {
+    Json document = comparison_json(comparison, files);
+    document["warnings"] = warnings;
+    print_json(document);
+  } else if (!options.quiet) {
+    std::string text;
+    for (const std::string& sentence : summary_sentences(comparison)) text += sentence + "\n";
+    for (const std::string& line : skipped_sentences(comparison)) text += "not compared: " + in_flags(line) + "\n";
+    print_text(text + (folder / "report.html").string() + "\n" + (folder / "sheet.png").string() + "\n");
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command compare_command() {
+  return {"compare",
+          "draws the border from every representation of the surface, by one method or by many, side by side, with differences and a "
+          "report page",
+          "  limn compare machined_part\n"
+          "  limn compare rook --methods rim,rim_width,edge_quads\n"
+          "  limn compare cow.obj --voxels 128 --size 960x540 -o cow-compared",
+          add_options, run};
+}
+
+}  // namespace limn

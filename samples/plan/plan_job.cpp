@@ -119,7 +119,7 @@ PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneIn
     one.truth = solve_truth(input.scene, one.camera, truth, solving);
     job.views.push_back(std::move(one));
   }
-  // Every model would be right.
+  // Where there is no border every model is right.
   if (std::all_of(job.views.begin(), job.views.end(), [](const PlanView& view) { return view.truth.curves.curves.empty(); }))
     throw InputError({spec.input, "camera", "", "sees no border: there is nothing to plan for",
                       "one that sees the surface (limn render shows what it sees)"});

@@ -32,7 +32,7 @@ Seen look(const SceneModel& model, const Study& study, size_t view, const Execut
 enum class Frames { in_sequence, each_alone };
 Ink draw(const Study& study, const SceneModel& model, size_t view, size_t method, const Seen& seen, Frames frames);
 
-/// "fewer voxels would be right" and what is wrong, for a row.
+/// What is wrong and what was expected, for a row.
 std::string reason_of(const InputError& error);
 
 struct TruthOf {

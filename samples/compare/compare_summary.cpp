@@ -83,6 +83,16 @@ std::string method_sentence(const Comparison& comparison, size_t method) {
   return text + ".";
 }
 
+/// Of the method whose ink has a truth, if there is one; else the silhouette's, which is the same for all methods.
+std::string model_displacement(const Comparison& comparison, size_t model) {
+  std::string longest;
+  for (size_t method = 0; method < comparison.methods.size(); ++method) {
+    const std::string text = displacement_text(comparison, comparison.at(model, method));
+    if (text.size() > longest.size()) longest = text;
+  }
+  return longest;
+}
+
 std::vector<std::string> many_methods(const Comparison& comparison) {
   std::vector<std::string> sentences;
   const size_t models = drawn_models(comparison);
@@ -92,6 +102,10 @@ std::vector<std::string> many_methods(const Comparison& comparison) {
       comparison.input_name, comparison.methods.size(), models, models == 1 ? "model" : "models", comparison.camera.width_px,
       comparison.camera.height_px, comparison.reference_words));
   for (size_t method = 0; method < comparison.methods.size(); ++method) sentences.push_back(method_sentence(comparison, method));
+  for (size_t model = 1; model < comparison.models.size(); ++model) {
+    const std::string displaced = model_displacement(comparison, model);
+    if (!displaced.empty()) sentences.push_back(heading(full_title(comparison.models[model])) + ": " + displaced + ".");
+  }
   return sentences;
 }
 

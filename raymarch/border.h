@@ -1,6 +1,10 @@
 #pragma once
 // The outline seam: a method is a pure function of what is seen. One file in raymarch/border/ and one line in its registry.
 
+#include <map>
+#include <memory>
+#include <utility>
+
 #include "raymarch/gbuffer.h"
 #include "sdf/registry.h"
 
@@ -13,12 +17,24 @@ struct BorderBefore {
 };
 
 /// Everything a method may read. Plain references; a method keeps none of them.
+/// Of two groups of objects that meet in the picture.
+struct GroupOrder {
+  std::int64_t places = 0;      ///< Pairs of neighbouring pixels.
+  double lower_in_front = 0.0;  ///< Those where the group with the lower key is clearly in front, less those where the other is.
+};
+using GroupOrders = std::map<std::pair<std::int32_t, std::int32_t>, GroupOrder>;  ///< By their keys (ids or materials), lower first.
+/// What all samples and methods that see one model from one eye share; who needs it first fills it in.
+struct SharedOrders {
+  std::shared_ptr<const GroupOrders> of_objects{}, of_materials{};
+};
+
 struct BorderInput {
   const GBuffer& gbuffer;
   const Camera& camera;
   const SceneModel& model;
   const Scene& scene;
   const BorderBefore* before = nullptr;  ///< Null where there is no frame before.
+  SharedOrders* orders = nullptr;        ///< Null: found anew for each call.
 };
 
 /// Ink of one method. `coverage` in [0, 1], finite, the G-buffer's size.

@@ -188,6 +188,39 @@ bool pull_onto_corners(const Field& field, Mesh& mesh, const std::vector<std::in
   return std::find(moved.begin(), moved.end(), char{1}) != moved.end();
 }
 
+/// Whether a quad's two triangles meet in a crease: they turn there, and each lies on its own side of the surface.
+bool creases_along_diagonal(LocalField& local, const Quad& q) {
+  const glm::dvec3 n0 = glm::cross(q[1] - q[0], q[2] - q[0]), n1 = glm::cross(q[2] - q[0], q[3] - q[0]);
+  const double size0 = glm::length(n0), size1 = glm::length(n1);
+  // The normal of a sliver is rounding.
+  if (std::min(size0, size1) <= 1e-3 * std::max(size0, size1) || glm::dot(n0, n1) > kCreaseCosine * size0 * size1) return false;
+  const auto lies_on_side = [&](const glm::dvec3& middle, const glm::dvec3& normal, double size) {
+    return glm::dot(local.unit_gradient(middle), normal) > kCreaseCosine * size;
+  };
+  return lies_on_side((q[0] + q[1] + q[2]) / 3.0, n0, size0) && lies_on_side((q[0] + q[2] + q[3]) / 3.0, n1, size1);
+}
+
+/// The marked quads as two triangles each, from their first corner to their third.
+void split(Mesh& mesh, const std::vector<char>& which) {
+  std::vector<std::int32_t> sizes, corners;
+  sizes.reserve(mesh.face_count());
+  corners.reserve(mesh.corner_vertices.size());
+  auto next = mesh.corner_vertices.begin();
+  for (size_t f = 0; f < which.size(); ++f) {
+    const std::int32_t size = mesh.face_sizes[f];
+    if (which[f]) {
+      sizes.insert(sizes.end(), {3, 3});
+      corners.insert(corners.end(), {next[0], next[1], next[2], next[0], next[2], next[3]});
+    } else {
+      sizes.push_back(size);
+      corners.insert(corners.end(), next, next + size);
+    }
+    next += size;
+  }
+  mesh.face_sizes = std::move(sizes);
+  mesh.corner_vertices = std::move(corners);
+}
+
 }  // namespace
 
 void follow_creases(const Field& field, Mesh& mesh, SnapResult& snapped) {
@@ -219,10 +252,33 @@ void turn_quads_along_creases(const Field& field, Mesh& mesh, const std::vector<
   });
   for (size_t k = 0; k < faces.size(); ++k) {
     // Quads are cut from their first corner to their third.
-    if (!(off[2 * k + 1] < 0.5 * off[2 * k])) continue;
     const auto begin = mesh.corner_vertices.begin() + first[faces[k]];
-    std::rotate(begin, begin + 1, begin + 4);
+    if (off[2 * k + 1] < 0.5 * off[2 * k]) std::rotate(begin, begin + 1, begin + 4);
   }
+}
+
+void split_quads_along_creases(const Field& field, Mesh& mesh, const std::vector<char>& feature) {
+  const std::vector<std::int32_t> first = first_corners(mesh);
+  std::vector<size_t> faces;
+  std::vector<Quad> quads;
+  std::vector<glm::dvec3> middles;
+  std::vector<double> reach;
+  for (size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto corners = face_corners(mesh, first[f], f);
+    if (corners.size() != 4 || feature[static_cast<size_t>(corners[0])] == 0 || feature[static_cast<size_t>(corners[2])] == 0) continue;
+    faces.push_back(f);
+    Quad& quad = quads.emplace_back();
+    for (size_t i = 0; i < 4; ++i) quad[i] = mesh.positions[static_cast<size_t>(corners[i])];
+    middles.push_back(0.25 * (quad[0] + quad[1] + quad[2] + quad[3]));
+    reach.push_back(kSnapReach * std::max(glm::distance(quad[0], quad[2]), glm::distance(quad[1], quad[3])));
+  }
+  std::vector<char> creased(mesh.face_count(), 0);
+  std::vector<std::uint32_t> all(quads.size());
+  std::iota(all.begin(), all.end(), 0u);
+  visit_groups(field, middles, reach, std::move(all), [&](LocalField& local, std::span<const std::uint32_t> members) {
+    for (const std::uint32_t k : members) creased[faces[k]] = creases_along_diagonal(local, quads[k]);
+  });
+  split(mesh, creased);
 }
 
 }  // namespace limn

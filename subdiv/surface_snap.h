@@ -25,6 +25,9 @@ void follow_creases(const Field& field, Mesh& mesh, SnapResult& snapped);
 /// Quads beside a crease are given the first corner whose diagonal lies nearer to the surface: the other one would cut the crease off.
 void turn_quads_along_creases(const Field& field, Mesh& mesh, const std::vector<char>& feature);
 
+/// A quad that turns along a diagonal on a crease becomes two triangles: methods that draw edges find no other place for that crease.
+void split_quads_along_creases(const Field& field, Mesh& mesh, const std::vector<char>& feature);
+
 /// The faces' middles, and how far their corners lie from these at most; `first` are their first corners.
 struct FaceMiddles {
   std::vector<glm::dvec3> middles{};

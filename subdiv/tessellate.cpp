@@ -144,6 +144,7 @@ Mesh tessellate(const Field& field, const TessellateSettings& settings) {
   for (int level = 0; level < settings.level; ++level) cage = refined_once(field, cage.mesh, settings.max_bytes);
   follow_creases(field, cage.mesh, cage.snapped);
   turn_quads_along_creases(field, cage.mesh, cage.snapped.feature);
+  split_quads_along_creases(field, cage.mesh, cage.snapped.feature);
   if (settings.normals == NormalKind::limit) cage.mesh.corner_normals = field_normals(field, cage.mesh, cage.snapped.feature);
   return std::move(cage.mesh);
 }

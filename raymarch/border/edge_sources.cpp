@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "raymarch/border/broken_lines.h"
 #include "raymarch/border/edge_lines.h"
 #include "raymarch/border/picture_rows.h"
 #include "raymarch/section_map.h"
@@ -199,6 +200,7 @@ Border draw_edges(EdgeOperator edge_operator, const std::string& name, const Bor
     });
   }
   add_notes(name, depth_lines, border);
+  if (std::string note = broken_lines_note(name, input, border.coverage); !note.empty()) border.notes.push_back(std::move(note));
   return border;
 }
 

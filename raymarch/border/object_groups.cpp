@@ -60,18 +60,17 @@ Meeting meeting_of(const Camera& camera, const GBuffer& seen, size_t first, size
   return a < b ? Meeting::first_in_front : Meeting::second_in_front;
 }
 
-/// Calls f(i, j) for neighbouring pixels of two groups.
+/// Calls visit(i, j) for neighbouring pixels that show different objects.
 template <class Visit>
-void visit_meetings(const Image<std::int32_t>& group, const Visit& visit) {
+void visit_meetings(const Image<std::int32_t>& id, const Visit& visit) {
   const auto look = [&](size_t i, size_t j) {
-    const std::int32_t a = group.pixels[i], b = group.pixels[j];
-    if (a != b && a != 0 && b != 0) visit(i, j);
+    if (id.pixels[i] != id.pixels[j] && id.pixels[i] != 0 && id.pixels[j] != 0) visit(i, j);
   };
-  for (int y = 0; y < group.height; ++y) {
-    for (int x = 0; x < group.width; ++x) {
-      const size_t i = group.index(x, y);
-      if (x + 1 < group.width) look(i, i + 1);
-      if (y + 1 < group.height) look(i, i + static_cast<size_t>(group.width));
+  for (int y = 0; y < id.height; ++y) {
+    for (int x = 0; x < id.width; ++x) {
+      const size_t i = id.index(x, y);
+      if (x + 1 < id.width) look(i, i + 1);
+      if (y + 1 < id.height) look(i, i + static_cast<size_t>(id.width));
     }
   }
 }
@@ -137,65 +136,66 @@ PixelWindow grown(const PixelWindow& window, int by, int width, int height, int 
 
 PictureGroups::PictureGroups(const BorderInput& input, GroupBy by) : input_(input), by_(by) {
   const GBuffer& seen = input.gbuffer;
+  group_ = {seen.width, seen.height, 0};
   for (size_t i = 0; i < seen.id.size(); ++i) {
-    if (seen.id.pixels[i] == 0) continue;
-    const std::int32_t key = by == GroupBy::material ? seen.material.pixels[i] : seen.id.pixels[i];
-    if (keys_.empty() || keys_.back() != key) keys_.push_back(key);
+    if (seen.id.pixels[i] != 0 && (keys_.empty() || keys_.back() != key_of(seen, i))) keys_.push_back(key_of(seen, i));
   }
   std::sort(keys_.begin(), keys_.end());
   keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
-  group_ = groups_in(seen);
   windows_.assign(keys_.size(), {seen.width, seen.height, 0, 0});
+  std::int32_t last_key = 0, last_group = 0;
   for (int y = 0; y < seen.height; ++y) {
     for (int x = 0; x < seen.width; ++x) {
-      const std::int32_t group = group_.at(x, y);
-      if (group == 0) continue;
-      PixelWindow& window = windows_[static_cast<size_t>(group - 1)];
+      const size_t i = group_.index(x, y);
+      if (seen.id.pixels[i] == 0) continue;
+      const std::int32_t key = key_of(seen, i);
+      if (last_group == 0 || key != last_key) last_key = key, last_group = group_of_key(key);
+      group_.pixels[i] = last_group;
+      PixelWindow& window = windows_[static_cast<size_t>(last_group - 1)];
       window = {std::min(window.x0, x), std::min(window.y0, y), std::max(window.x1, x + 1), std::max(window.y1, y + 1)};
     }
   }
-  if (any_touching()) find_order();
+  if (!any_touching()) return;
+  SharedOrders none;
+  SharedOrders& shared = input.orders != nullptr ? *input.orders : none;
+  std::shared_ptr<const GroupOrders>& orders = by == GroupBy::material ? shared.of_materials : shared.of_objects;
+  if (orders == nullptr) orders = find_orders();
+  orders_ = orders;
 }
 
-void PictureGroups::find_order() {
+std::int32_t PictureGroups::key_of(const GBuffer& seen, size_t i) const {
+  return by_ == GroupBy::material ? seen.material.pixels[i] : seen.id.pixels[i];
+}
+
+std::shared_ptr<const GroupOrders> PictureGroups::find_orders() const {
+  auto orders = std::make_shared<GroupOrders>();
+  const auto count = [&](const Camera& camera, const GBuffer& seen) {
+    visit_meetings(seen.id, [&](size_t i, size_t j) {
+      const std::int32_t a = key_of(seen, i), b = key_of(seen, j);
+      if (a == b) return;
+      GroupOrder& order = (*orders)[{std::min(a, b), std::max(a, b)}];
+      ++order.places;
+      const Meeting found = meeting_of(camera, seen, i, j, false);
+      if (found != Meeting::touching) order.lower_in_front += (found == Meeting::first_in_front) == (a < b) ? 1.0 : -1.0;
+    });
+  };
   const std::optional<Camera> everything = camera_of_everything(input_.camera, input_.model);
   if (!everything) {
-    count_order(input_.camera, input_.gbuffer, group_);
-    return;
+    count(input_.camera, input_.gbuffer);
+    return orders;
   }
   GBuffer whole;
   GBufferLayers layers;
   layers.position = layers.n_dot_v = layers.face = layers.status = false;
   render_gbuffer(input_.model, *everything, {.threads = kSurroundingThreads}, {0.5, 0.5}, layers, whole);
-  count_order(*everything, whole, groups_in(whole));
-}
-
-Image<std::int32_t> PictureGroups::groups_in(const GBuffer& seen) const {
-  Image<std::int32_t> group(seen.width, seen.height, 0);
-  std::int32_t last_key = 0, last_group = 0;
-  for (size_t i = 0; i < group.size(); ++i) {
-    if (seen.id.pixels[i] == 0) continue;
-    const std::int32_t key = by_ == GroupBy::material ? seen.material.pixels[i] : seen.id.pixels[i];
-    if (last_group == 0 || key != last_key) last_key = key, last_group = group_of_key(key);
-    group.pixels[i] = last_group;
-  }
-  return group;
+  count(*everything, whole);
+  return orders;
 }
 
 bool PictureGroups::any_touching() const {
   bool any = false;
-  visit_meetings(group_, [&](size_t i, size_t j) { any = any || meeting(i, j) == Meeting::touching; });
+  visit_meetings(input_.gbuffer.id, [&](size_t i, size_t j) { any = any || touching(i, j); });
   return any;
-}
-
-void PictureGroups::count_order(const Camera& camera, const GBuffer& seen, const Image<std::int32_t>& group) {
-  visit_meetings(group, [&](size_t i, size_t j) {
-    const std::int32_t a = group.pixels[i], b = group.pixels[j];
-    Order& order = order_[{std::min(a, b), std::max(a, b)}];
-    ++order.places;
-    const Meeting found = meeting_of(camera, seen, i, j, false);
-    if (found != Meeting::touching) order.lower_in_front += (found == Meeting::first_in_front) == (a < b) ? 1.0 : -1.0;
-  });
 }
 
 Meeting PictureGroups::meeting(size_t first, size_t second, bool at_first) const {
@@ -207,8 +207,10 @@ bool PictureGroups::in_front(size_t first, size_t second, bool at_first) const {
   if (b == 0) return true;
   const Meeting found = meeting(first, second, at_first);
   if (found != Meeting::touching) return found == Meeting::first_in_front;
-  const auto order = order_.find({std::min(a, b), std::max(a, b)});
-  const bool lower = order == order_.end() || order->second.lower_in_front >= -kInFrontShare * static_cast<double>(order->second.places);
+  // Groups are numbered in the order of their keys. Without orders no neighbouring pixels touch.
+  if (orders_ == nullptr) return a < b;
+  const auto order = orders_->find({key(std::min(a, b)), key(std::max(a, b))});
+  const bool lower = order == orders_->end() || order->second.lower_in_front >= -kInFrontShare * static_cast<double>(order->second.places);
   return (a < b) == lower;
 }
 
@@ -219,15 +221,7 @@ bool PictureGroups::touching(size_t first, size_t second) const {
 
 std::int64_t object_boundaries(const GBuffer& gbuffer) {
   std::int64_t count = 0;
-  const Image<std::int32_t>& id = gbuffer.id;
-  const auto differ = [&id](size_t i, size_t j) { return id.pixels[i] != id.pixels[j] && id.pixels[i] != 0 && id.pixels[j] != 0; };
-  for (int y = 0; y < id.height; ++y) {
-    for (int x = 0; x < id.width; ++x) {
-      const size_t i = id.index(x, y);
-      count += x + 1 < id.width && differ(i, i + 1);
-      count += y + 1 < id.height && differ(i, i + static_cast<size_t>(id.width));
-    }
-  }
+  visit_meetings(gbuffer.id, [&count](size_t, size_t) { ++count; });
   return count;
 }
 

@@ -3,7 +3,6 @@
 // group shows without the others. Methods with the parameters `group` and `hidden` share all of it.
 
 #include <algorithm>
-#include <map>
 
 #include "raymarch/border.h"
 #include "raymarch/border/pixel_window.h"
@@ -54,22 +53,15 @@ class PictureGroups {
   bool touching(size_t first, size_t second) const;
 
  private:
-  void find_order();
-  void count_order(const Camera& camera, const GBuffer& seen, const Image<std::int32_t>& group);
+  std::shared_ptr<const GroupOrders> find_orders() const;
   bool any_touching() const;
-  /// The groups that the pixels of another picture of the same scene show.
-  Image<std::int32_t> groups_in(const GBuffer& seen) const;
+  std::int32_t key_of(const GBuffer& seen, size_t i) const;
   const BorderInput& input_;
   GroupBy by_;
   Image<std::int32_t> group_{};
   std::vector<PixelWindow> windows_{};
   std::vector<std::int32_t> keys_{};
-  /// Of two groups that meet in the picture.
-  struct Order {
-    std::int64_t places = 0;      ///< Pairs of neighbouring pixels.
-    double lower_in_front = 0.0;  ///< Those where the lower group is clearly in front, less those where the higher is.
-  };
-  std::map<std::pair<std::int32_t, std::int32_t>, Order> order_{};  ///< Lower group first.
+  std::shared_ptr<const GroupOrders> orders_{};
 };
 
 /// Pairs of neighbouring pixels that show different objects.

@@ -8,6 +8,7 @@
 #include "raymarch/surface.h"
 #include "samples/commands/command.h"
 #include "samples/output.h"
+#include "samples/reference/parameter_text.h"
 #include "samples/reference/reference.h"
 #include "samples/scenes/scenes.h"
 #include "sdf/error.h"
@@ -46,11 +47,9 @@ std::vector<Entry> list_gradients() {
 }
 
 std::vector<Entry> list_normals() {
-  return {
-      {{"flat", "a face's own normal", "limn"}, {"mesh"}, {}},
-      {{"vertex", "averaged at vertices by corner angle, split at infinitely sharp creases", "Thuermer and Wuethrich 1998"}, {"mesh"}, {}},
-      {{"limit", "those of the limit surface (cages) or of the field (tessellated shapes)", "Stam 1998; OpenSubdiv"}, {"mesh"}, {}},
-  };
+  std::vector<Entry> entries;
+  for (const Description& one : normal_kinds()) entries.push_back({one, {"mesh"}, {}});
+  return entries;
 }
 
 std::vector<Entry> list_methods() {
@@ -86,12 +85,6 @@ constexpr Kind kKinds[] = {
     {"methods", list_methods}, {"metrics", list_metrics},   {"scenes", list_scenes},
 };
 
-std::string value_text(const Parameter& parameter, double value) {
-  if (parameter.kind == ParameterKind::flag) return value != 0.0 ? "true" : "false";
-  if (parameter.kind == ParameterKind::choice) return parameter.choices.at(static_cast<size_t>(value));
-  return fmt::format("{}", value);
-}
-
 Json default_json(const Parameter& parameter) {
   const std::vector<double>& values = parameter.default_value;
   if (parameter.kind == ParameterKind::flag) return !values.empty() && values[0] != 0.0;
@@ -123,29 +116,6 @@ Json to_json(const Entry& entry) {
           {"source", entry.about.source},
           {"inputs", entry.inputs},
           {"parameters", parameters}};
-}
-
-std::string range_text(const Parameter& parameter) {
-  if (!parameter.choices.empty()) {
-    std::string text;
-    for (const std::string& choice : parameter.choices) text += (text.empty() ? "" : " | ") + choice;
-    return text;
-  }
-  if (parameter.kind == ParameterKind::flag) return "true | false";
-  const bool below = std::isfinite(parameter.min), above = std::isfinite(parameter.max);
-  if (below && above) return fmt::format("{:g} .. {:g}", parameter.min, parameter.max);
-  if (below) return fmt::format("from {:g}", parameter.min);
-  if (above) return fmt::format("up to {:g}", parameter.max);
-  return "any";
-}
-
-std::string default_text(const Parameter& parameter) {
-  constexpr size_t kMost = 4;
-  std::string text;
-  for (size_t i = 0; i < std::min(kMost, parameter.default_value.size()); ++i) {
-    text += (i == 0 ? "" : ", ") + value_text(parameter, parameter.default_value[i]);
-  }
-  return parameter.default_value.size() > kMost ? text + ", ..." : text;
 }
 
 std::string to_text(const std::vector<Entry>& entries) {

@@ -45,7 +45,8 @@ void skip_unsupported(const SceneModel& model, const Scene& scene, size_t row, C
   }
 }
 
-void add_samples(const SceneModel& model, const GBuffer& gbuffer, size_t row, Comparison& comparison, Drawn& drawn, ProgressBar& bar) {
+void add_samples(const SceneModel& model, const GBuffer& gbuffer, size_t row, SharedOrders& orders, Comparison& comparison, Drawn& drawn,
+                 ProgressBar& bar) {
   const ComparedModel& modelled = comparison.models[row];
   for (size_t column = 0; column < comparison.methods.size(); ++column) {
     Cell& cell = comparison.at(row, column);
@@ -53,7 +54,8 @@ void add_samples(const SceneModel& model, const GBuffer& gbuffer, size_t row, Co
     if (const auto progress = bar.stage("drawing " + comparison.methods[column].name + ", " + modelled.title))
       progress(static_cast<double>(column) / static_cast<double>(comparison.methods.size()));
     try {
-      add_sample({gbuffer, comparison.camera, model, modelled.scene}, comparison.methods[column].calls, drawn.pictures[column]);
+      add_sample({gbuffer, comparison.camera, model, modelled.scene, nullptr, &orders}, comparison.methods[column].calls,
+                 drawn.pictures[column]);
     } catch (const InputError& error) {
       cell.skipped = reason_of(error);
     }
@@ -82,11 +84,12 @@ Drawn draw_model(size_t row, Comparison& comparison, const ExecutionSettings& ho
   tracing.progress = bar.stage("tracing " + modelled.title);
   Drawn drawn;
   drawn.pictures.resize(comparison.methods.size());
+  SharedOrders orders;
   for (int sample = 0; sample < comparison.picture.samples; ++sample) {
     const auto start = std::chrono::steady_clock::now();
     GBuffer gbuffer = render_gbuffer(model, comparison.camera, tracing, sample_offset(sample, comparison.picture.samples));
     modelled.trace_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    add_samples(model, gbuffer, row, comparison, drawn, bar);
+    add_samples(model, gbuffer, row, orders, comparison, drawn, bar);
     add_sample({gbuffer, comparison.camera, model, modelled.scene}, {}, drawn.seen);
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     if (sample == 0) drawn.seen.gbuffer = std::move(gbuffer);

@@ -5,6 +5,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "sdf/descriptor.h"
 
 namespace limn {
 
@@ -21,6 +24,9 @@ std::span<const DocumentedKey> scene_keys();
 std::span<const DocumentedKey> row_columns();
 /// Of --json, and of rows.json that `compare` writes.
 std::span<const DocumentedKey> json_keys();
+
+/// Of `normals`, as parse_normals reads them.
+std::vector<Description> normal_kinds();
 
 /// docs/reference.md.
 std::string reference_page();

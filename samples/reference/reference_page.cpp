@@ -1,11 +1,9 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "raymarch/audit.h"
 #include "raymarch/metric.h"
 #include "raymarch/surface.h"
+#include "samples/reference/parameter_text.h"
 #include "samples/reference/reference.h"
 #include "samples/scenes/scenes.h"
 #include "samples/stability/checks/check.h"
@@ -38,37 +36,13 @@ std::string head(const std::vector<std::string>& names) {
 
 std::string code(std::string_view text) { return text.empty() ? "" : fmt::format("`{}`", text); }
 
-std::string default_of(const Parameter& parameter) {
-  std::string text;
-  for (const double value : parameter.default_value) {
-    if (!text.empty()) text += ", ";
-    if (text.size() > 40) return text + "…";
-    text += parameter.kind == ParameterKind::flag     ? (value != 0.0 ? "true" : "false")
-            : parameter.kind == ParameterKind::choice ? parameter.choices.at(static_cast<size_t>(value))
-                                                      : fmt::format("{}", value);
-  }
-  return text;
-}
-
-std::string range_of(const Parameter& parameter) {
-  if (!parameter.choices.empty()) {
-    std::string text = parameter.choices.front();
-    for (size_t i = 1; i < parameter.choices.size(); ++i) text.append(", ").append(parameter.choices[i]);
-    return text;
-  }
-  if (parameter.kind == ParameterKind::flag) return "true, false";
-  const bool below = std::isfinite(parameter.min), above = std::isfinite(parameter.max);
-  if (below && above) return fmt::format("{:g} to {:g}", parameter.min, parameter.max);
-  return below ? fmt::format("from {:g}", parameter.min) : above ? fmt::format("up to {:g}", parameter.max) : "any";
-}
-
 std::string entry(const Description& about, const std::string& more, std::span<const Parameter> parameters) {
   const std::string source = about.source.empty() || about.source == "limn" ? std::string() : fmt::format(" ({})", about.source);
   std::string text =
       fmt::format("\n**`{}`**: {}{}.{}\n", about.name, about.help, source, more.empty() ? std::string() : fmt::format(" {}", more));
   if (parameters.empty()) return text;
   text.append("\n").append(head({"parameter", "unit", "default", "values", ""}));
-  for (const Parameter& one : parameters) text += row({code(one.name), one.unit, default_of(one), range_of(one), one.help});
+  for (const Parameter& one : parameters) text += row({code(one.name), one.unit, default_text(one), range_text(one), one.help});
   return text;
 }
 
@@ -87,6 +61,8 @@ std::string variants() {
   text += "\n## Gradients\n";
   for (const GradientDescriptor& one : gradients())
     text += entry(one.about, fmt::format("Half width {:.3g} voxels, order {}.", one.half_width_voxels, one.order), {});
+  text += "\n## Normals of meshes\n";
+  for (const Description& one : normal_kinds()) text += entry(one, "", {});
   text += "\n## Outline methods\n";
   for (const BorderMethod& one : border_methods()) text += entry(one.about, "Reads " + list_of(one.inputs) + ".", one.parameters);
   text += "\n## Metrics\n";
@@ -112,6 +88,12 @@ std::string keys(std::span<const DocumentedKey> all, const char* place) {
 }
 
 }  // namespace
+
+std::vector<Description> normal_kinds() {
+  return {{"flat", "a face's own normal", "limn"},
+          {"vertex", "averaged at vertices by corner angle, split at infinitely sharp creases", "Thuermer and Wuethrich 1998"},
+          {"limit", "those of the limit surface (cages) or of the field (tessellated shapes)", "Stam 1998; OpenSubdiv"}};
+}
 
 std::string reference_page() {
   std::string text = "# Reference\n\n`limn list reference` prints this page from what the program has; a test compares the two.\n";

@@ -115,11 +115,13 @@ TEST(Flicker, OfTheRimIsConfinedToTheThresholdByTheStep) {
   EXPECT_GT(flips, 500);
 }
 
+// Hysteresis flips no pixel oftener than the bare threshold does: between two of its flips N.V crosses c - h and c + h, and so c. How much
+// less often depends on the model: one that is right to 0.0002 has next to nothing to hold, and a sphere under parallel rays may not flip.
 TEST(Flicker, OfLevelSetsEndsWithHysteresisAndWithoutItThereIsSome) {
   const std::uint64_t seed = fresh_seed();
   SCOPED_TRACE(fmt::format("seed {}", seed));
   std::mt19937_64 random(seed);
-  std::int64_t beyond_without = 0;
+  std::int64_t flips_without = 0, beyond_without = 0, fewer = 0;
   for (const Smooth& shape : smooth_shapes()) {
     for (const int voxels : {16, 40, 100}) {
       for (const char* gradient : {"cell", "central"}) {
@@ -138,14 +140,20 @@ TEST(Flicker, OfLevelSetsEndsWithHysteresisAndWithoutItThereIsSome) {
             "with: {} flips, {} beyond, worst frame {}",
             shape.name, voxels, gradient, shot.path.step_px, needed, without.flips, without.reference_flips, without.beyond,
             without.worst_frame, with.flips, with.beyond, with.worst_frame);
-        EXPECT_GT(without.flips, 0) << where;
-        EXPECT_LT(with.flips, without.flips) << where;
+        EXPECT_LE(with.flips, without.flips) << where;
+        if (without.beyond >= 10) {
+          EXPECT_LT(with.flips, without.flips) << where;
+        }
         EXPECT_EQ(with.beyond, 0) << where;
+        flips_without += without.flips;
         beyond_without += without.beyond;
+        fewer += without.flips - with.flips;
       }
     }
   }
+  EXPECT_GT(flips_without, 500);
   EXPECT_GT(beyond_without, 100);
+  EXPECT_GT(fewer, 100);
 }
 
 TEST(Flicker, IsNoneAtAllWithHysteresisOfWhatThePathMakesOfNdotV) {

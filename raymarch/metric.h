@@ -42,6 +42,7 @@ struct Metric {
   bool lower_is_better = true;
   std::vector<MetricValue> (*measure)(const MetricInput& input);
   MetricSubject subject = MetricSubject::gbuffer;
+  bool any_threshold = false;  ///< Of curves: the same whatever N.V the truth's inner border lies at.
 };
 
 const Registry<Metric>& metrics();

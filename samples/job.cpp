@@ -1,4 +1,5 @@
 #include "samples/job.h"
+#include "samples/experiment/surface_setting.h"
 #include "samples/parse.h"
 
 #include "samples/no_effect.h"
@@ -103,15 +104,9 @@ SurfaceSettings surface_settings(const ExperimentSpec& spec, SceneInput& input) 
   settings.max_bytes = model_bytes_left(spec.limits, 0.0);
   settings.kind = file.kind.value_or("");
   if (!spec.surfaces.empty()) settings.kind = spec.surfaces.back();
-  override_with(settings.voxels, file.voxels, own.voxels);
-  override_with(settings.voxel_size, file.voxel_size, own.voxel_size);
-  if (own.voxels) settings.voxel_size = 0.0;
-  settings.resample_volumes = file.voxels || file.voxel_size || own.voxels || own.voxel_size;
-  override_with(settings.half_width_voxels, file.half_width_voxels, own.half_width_voxels);
-  override_with(settings.gradient, file.gradient, own.gradient);
-  override_with(settings.level, file.level, own.level);
-  settings.scheme = own.scheme ? own.scheme : file.scheme;
-  settings.normals = own.normals ? own.normals : file.normals;
+  for (const SurfaceSpec* spec_of : {&file, &own})
+    for (const SurfaceSetting& setting : surface_setting_list())
+      if (setting.use != nullptr) setting.use(*spec_of, settings);
   for (SceneObject& object : input.scene.objects) {
     if (own.level || own.level_for_view) object.level.reset();
     auto* mesh = std::get_if<MeshSource>(&object.source);
@@ -217,17 +212,13 @@ std::string resolved_call(const std::string& command, const ExperimentSpec& spec
   CallText call(command, spec.input);
   add_camera(camera, call);
   if (!surface.kind.empty()) call.add("surface", surface.kind);
-  if (counts("voxels") && surface.voxel_size > 0.0)
-    call.add("voxel_size", fmt::format("{}", surface.voxel_size));
-  else if (counts("voxels"))
-    call.add("voxels", fmt::format("{}", surface.voxels));
-  if (surface.half_width_voxels > 0.0 && counts("half_width")) call.add("half_width", fmt::format("{}", surface.half_width_voxels));
-  if (counts("gradient")) call.add("gradient", surface.gradient);
-  if (counts("level")) call.add("level", spec.surface.level_for_view ? "auto" : std::to_string(surface.level));
-  if (surface.scheme && counts("scheme")) call.add("scheme", name_of(*surface.scheme));
-  if (surface.normals && counts("normals")) call.add("normals", name_of(*surface.normals));
-  const auto& angle = spec.surface.smooth_angle_deg;
-  if (angle && counts("smooth_angle")) call.add("smooth_angle", fmt::format("{}", *angle));
+  for (const SurfaceSetting& setting : surface_setting_list()) {
+    // What the call itself decides, such as a level for the view, and what is no setting of models, is as it was asked for.
+    const std::string used = setting.use == nullptr || (spec.surface.level_for_view && std::string_view(setting.name) == "level")
+                                 ? setting.asked(spec.surface).value_or("")
+                                 : setting.used(surface);
+    if (!used.empty() && counts(setting.name)) call.add(setting.name, used);
+  }
   for (const std::string& grid : spec.grids) call.add("grids", grid);
   for (const MethodCall& method : picture.methods) {
     const std::string& name = method.method->about.name;

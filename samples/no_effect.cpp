@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "samples/experiment/surface_setting.h"
 #include "samples/scene_facts.h"
 #include "sdf/error.h"
 
@@ -17,18 +18,12 @@ struct GivenSetting {
 
 std::vector<GivenSetting> given_settings(const SurfaceSpec& spec) {
   std::vector<GivenSetting> given;
-  const auto add = [&](bool is_given, const char* setting) {
-    if (is_given) given.push_back({setting, setting});
-  };
-  add(spec.voxels.has_value(), "voxels");
-  add(spec.voxel_size.has_value(), "voxel_size");
-  add(spec.half_width_voxels.has_value(), "half_width");
-  add(spec.gradient.has_value(), "gradient");
-  // Level 0 asks for what is there anyway: a mesh as it is.
-  add(spec.level.value_or(0) > 0 || spec.level_for_view, "level");
-  add(spec.scheme.has_value(), "scheme");
-  add(spec.normals.has_value(), "normals");
-  add(spec.smooth_angle_deg.has_value(), "smooth_angle");
+  for (const SurfaceSetting& setting : surface_setting_list()) {
+    // Level 0 asks for what is there anyway: a mesh as it is.
+    const std::optional<std::string> asked = setting.asked(spec);
+    const bool as_it_is = std::string_view(setting.name) == "level" && asked == "0";
+    if (asked && !as_it_is) given.push_back({setting.name, setting.name});
+  }
   return given;
 }
 
@@ -43,9 +38,7 @@ std::vector<GivenSetting> swept_settings(const StudySpec& spec) {
   add(!sweep.levels.empty() && sweep.levels.back() > 0, "levels", "level");
   add(!sweep.normals.empty(), "normals", "normals");
   add(!sweep.gradients.empty(), "gradients", "gradient");
-  add(surface.half_width_voxels.has_value(), "half_width", "half_width");
-  add(surface.scheme.has_value(), "scheme", "scheme");
-  add(surface.smooth_angle_deg.has_value(), "smooth_angle", "smooth_angle");
+  for (const char* fixed : kFixedSettings) add(surface_setting(fixed).asked(surface).has_value(), fixed, fixed);
   return given;
 }
 

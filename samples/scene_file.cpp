@@ -1,4 +1,5 @@
 #include "samples/scene_file.h"
+#include "samples/experiment/surface_setting.h"
 #include "samples/parse.h"
 
 #include <fmt/format.h>
@@ -48,21 +49,29 @@ CameraSettings read_camera(TomlReader& reader) {
   return camera;
 }
 
+void read_setting(const SurfaceSetting& setting, TomlReader& reader, SurfaceSpec& surface) {
+  const std::string key = setting.name;
+  const auto place = [&] { return reader.where(*reader.take(key)); };
+  if (setting.type == SettingType::name) {
+    if (const auto word = reader.text(key)) setting.ask(surface, 0.0, *word, place(), reader.field(key));
+    return;
+  }
+  std::optional<double> number;
+  if (setting.type == SettingType::whole_number)
+    number = reader.integer(key, static_cast<int>(setting.low), static_cast<int>(setting.high));
+  else if (setting.includes_low)
+    number = reader.number(key, setting.low, setting.high, setting.expected);
+  else
+    number = reader.number_between(key, setting.low, setting.high, setting.expected);
+  if (number) setting.ask(surface, *number, "", place(), reader.field(key));
+}
+
 SurfaceSpec read_surface(TomlReader& reader) {
   SurfaceSpec surface;
-  const auto place = [&reader](const std::string& key) { return reader.where(*reader.take(key)); };
   surface.kind = reader.text("kind");
-  if (surface.kind) find_surface(*surface.kind, place("kind"), "surface.kind");
-  surface.voxels = reader.integer("voxels", 4, 8192);
-  surface.voxel_size = reader.number_between("voxel_size", 0.0, kInfinity, "a length above 0 in world units");
+  if (surface.kind) find_surface(*surface.kind, reader.where(*reader.take("kind")), reader.field("kind"));
+  for (const SurfaceSetting& setting : surface_setting_list()) read_setting(setting, reader, surface);
   if (surface.voxels && surface.voxel_size) reader.fail("both voxels and voxel_size", "one of the two");
-  surface.half_width_voxels = reader.number("half_width", 1.8, kInfinity, "at least 1.8 voxels");
-  surface.gradient = reader.text("gradient");
-  if (surface.gradient) find_gradient(*surface.gradient, place("gradient"), "surface.gradient");
-  surface.level = reader.integer("level", 0, 8);
-  if (const auto scheme = reader.text("scheme")) surface.scheme = parse_scheme(*scheme, place("scheme"), "surface.scheme");
-  if (const auto normals = reader.text("normals")) surface.normals = parse_normals(*normals, place("normals"), "surface.normals");
-  surface.smooth_angle_deg = reader.number("smooth_angle", 0.0, 180.0, "an angle of 0 to 180 degrees");
   reader.finish();
   return surface;
 }

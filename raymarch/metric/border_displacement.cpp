@@ -90,7 +90,8 @@ std::vector<MetricValue> measure_silhouette(const MetricInput& input) {
 }
 std::vector<MetricValue> measure_inner(const MetricInput& input) { return measure(input, CurveKind::inner, "inner_displacement"); }
 
-Metric metric_of(const std::string& kind, const std::string& positive, std::vector<MetricValue> (*measured)(const MetricInput&)) {
+Metric metric_of(const std::string& kind, const std::string& positive, bool any_threshold,
+                 std::vector<MetricValue> (*measured)(const MetricInput&)) {
   const std::string name = kind + "_displacement";
   return {
       {name,
@@ -103,12 +104,13 @@ Metric metric_of(const std::string& kind, const std::string& positive, std::vect
        name + "_missing", name + "_false"},
       true,
       measured,
-      MetricSubject::curves};
+      MetricSubject::curves,
+      any_threshold};
 }
 
 }  // namespace
 
-Metric silhouette_displacement_metric() { return metric_of("silhouette", "the object grown", measure_silhouette); }
-Metric inner_displacement_metric() { return metric_of("inner", "the ink wider", measure_inner); }
+Metric silhouette_displacement_metric() { return metric_of("silhouette", "the object grown", true, measure_silhouette); }
+Metric inner_displacement_metric() { return metric_of("inner", "the ink wider", false, measure_inner); }
 
 }  // namespace limn

@@ -8,6 +8,8 @@
 #include "raymarch/border.h"
 #include "raymarch/surface.h"
 #include "samples/commands/options_parts.h"
+#include "samples/experiment/flags.h"
+#include "samples/experiment/surface_setting.h"
 #include "samples/parse.h"
 #include "samples/parse_color.h"
 #include "sdf/error.h"
@@ -166,25 +168,16 @@ void add_grid(CLI::App& app, Options& options) {
 
 namespace {
 
+CLI::Option* add_setting(CLI::App& app, Options& options, const char* name) {
+  const SurfaceSetting& setting = surface_setting(name);
+  const std::string flag = flag_of(name);
+  return add(app, {flag.c_str(), setting.placeholder, setting.option_help, kSurface},
+             [&options, &setting, flag](const std::string& text) { ask(setting, text, flag, options.spec.surface); });
+}
+
 // What no study sweeps.
 void add_fixed_surface(CLI::App& app, Options& options) {
-  add(app, {"--half-width", "VOXELS", "half width of the narrow band, voxels, at least 1.8; default: what the gradient needs", kSurface},
-      [&options](const std::string& text) {
-        options.spec.surface.half_width_voxels = parse_number_above("--half-width", text, 1.8, true, "at least 1.8 voxels");
-      });
-  add(app,
-      {"--scheme", "NAME", "catmark, loop or bilinear; default: the scene's, else loop for triangles, catmark for all others", kSurface},
-      [&options](const std::string& text) { options.spec.surface.scheme = parse_scheme(text, "", "--scheme"); });
-  add(app,
-      {"--smooth-angle", "DEG",
-       "meshes drawn as they are: normals are averaged across edges up to this angle, 0..180 (180: across all), in place of the file's own "
-       "and its smoothing groups; default: these, else 30",
-       kSurface},
-      [&options](const std::string& text) {
-        const double angle = parse_number("--smooth-angle", text);
-        if (!(angle >= 0.0 && angle <= 180.0)) throw InputError({"", "--smooth-angle", text, "out of range", "0 to 180 degrees"});
-        options.spec.surface.smooth_angle_deg = angle;
-      });
+  for (const char* const name : kFixedSettings) add_setting(app, options, name);
   add_grid(app, options);
 }
 
@@ -204,29 +197,21 @@ void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& need
     add_fixed_surface(app, options);
     return;
   }
-  auto* voxels = add(app, {"--voxels", "N", "voxels along the longest side, 4..8192; default 256", kSurface},
-                     [&options](const std::string& text) { options.spec.surface.voxels = parse_integer("--voxels", text, 4, 8192); });
-  auto* voxel_size =
-      add(app, {"--voxel-size", "H", "side of a voxel, world units; instead of --voxels", kSurface}, [&options](const std::string& text) {
-        options.spec.surface.voxel_size = parse_number_above("--voxel-size", text, 0.0, false, "a length above 0 in world units");
-      });
-  voxels->excludes(voxel_size);
-  add(app, {"--gradient", "NAME", "how normals are read from a level set (limn list gradients); default central", kSurface},
-      [&options](const std::string& text) {
-        find_gradient(text, "", "--gradient");
-        options.spec.surface.gradient = text;
-      });
-  const bool views = needs.views;
-  constexpr const char* kLevels = "refinements of a cage or a tessellation, 0..8; default 3";
-  constexpr const char* kLevelsOrAuto =
-      "refinements of a cage or a tessellation, 0..8; default 3; auto: as many as the picture shows to a tenth of a pixel";
-  add(app, {"--level", views ? "N|auto" : "N", views ? kLevelsOrAuto : kLevels, kSurface}, [&options, views](const std::string& text) {
-    options.spec.surface.level_for_view = views && text == "auto";
-    options.spec.surface.level.reset();
-    if (!options.spec.surface.level_for_view) options.spec.surface.level = parse_integer("--level", text, 0, 8);
-  });
-  add(app, {"--normals", "NAME", "flat, vertex or limit; default: limit where there is a limit surface, else vertex", kSurface},
-      [&options](const std::string& text) { options.spec.surface.normals = parse_normals(text, "", "--normals"); });
+  add_setting(app, options, "voxels")->excludes(add_setting(app, options, "voxel_size"));
+  add_setting(app, options, "gradient");
+  if (needs.views) {
+    const std::string help =
+        std::string(surface_setting("level").option_help) + "; auto: as many as the picture shows to a tenth of a pixel";
+    add(app, {"--level", "N|auto", help.c_str(), kSurface}, [&options](const std::string& text) {
+      SurfaceSpec& surface = options.spec.surface;
+      surface.level_for_view = text == "auto";
+      surface.level.reset();
+      if (!surface.level_for_view) ask(surface_setting("level"), text, "--level", surface);
+    });
+  } else {
+    add_setting(app, options, "level");
+  }
+  add_setting(app, options, "normals");
   add_fixed_surface(app, options);
 }
 

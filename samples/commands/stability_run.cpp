@@ -1,5 +1,6 @@
 #include "samples/commands/stability_run.h"
 #include "samples/experiment/flags.h"
+#include "samples/experiment/surface_setting.h"
 
 #include <fmt/format.h>
 
@@ -30,11 +31,13 @@ void refuse_others(const Options& options) {
       {options.spec.camera.size_px.has_value(), "--size"},
       {options.spec.camera.eye || options.spec.camera.target || options.spec.camera.up, "--eye, --target and --up"},
       {options.spec.camera.fov_deg || options.spec.camera.ortho_height, "--fov and --ortho"},
-      {options.spec.surface.half_width_voxels.has_value(), "--half-width"},
-      {options.spec.surface.scheme.has_value(), "--scheme"},
       {!options.spec.grids.empty(), "--grid"}};
+  const char* const kRemedy = "the cases set it themselves; copy a case, change it and give it as --case FILE";
   for (const auto& [is_given, name] : given) {
-    if (is_given) throw InputError({"", name, "", "the cases set it themselves; copy a case, change it and give it as --case FILE", ""});
+    if (is_given) throw InputError({"", name, "", kRemedy, ""});
+  }
+  for (const SurfaceSetting& setting : surface_setting_list()) {
+    if (setting.asked(options.spec.surface)) throw InputError({"", setting.name, "", kRemedy, ""});
   }
 }
 

@@ -113,7 +113,7 @@ std::vector<std::string> many_methods(const Comparison& comparison) {
 
 std::vector<std::string> summary_sentences(const Comparison& comparison) {
   std::vector<std::string> sentences = comparison.is_matrix() ? many_methods(comparison) : one_method(comparison);
-  for (const ComparedTruth& truth : comparison.truths) sentences.push_back(truth_text(truth));
+  for (const ExperimentTruth& truth : comparison.truths) sentences.push_back(truth_text(truth));
   return sentences;
 }
 

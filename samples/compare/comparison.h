@@ -11,6 +11,7 @@
 #include "raymarch/metric.h"
 #include "raymarch/picture.h"
 #include "samples/compare/panels.h"
+#include "samples/experiment/engine.h"
 #include "samples/input.h"
 #include "samples/job.h"
 #include "samples/output.h"
@@ -42,13 +43,6 @@ struct ComparedMethod {
   std::optional<double> truth_threshold;  ///< Where its ink ends (BorderMethod::truth_threshold); unset: only the silhouette has a truth.
 };
 
-/// The border as it is, seen by the comparison's camera.
-struct ComparedTruth {
-  double threshold = 0.0;
-  std::optional<BorderTruth> truth;
-  std::string failed;  ///< Why there is none.
-};
-
 /// One method on one model.
 struct Cell {
   std::string name;  ///< "level_set", or "level_set-rim" where there are several methods.
@@ -71,11 +65,11 @@ struct Comparison {
   Camera camera;
   PictureSettings picture;  ///< Samples and background; the methods are those below.
   std::vector<ComparedMethod> methods;
-  std::vector<ComparedModel> models;  ///< The first is the reference.
-  std::vector<Cell> cells;            ///< All methods of the first model, then of the next.
-  std::vector<ComparedTruth> truths;  ///< One a threshold; the first serves methods without one.
-  bool with_times = true;             ///< Measured times are shown and written; without them equal calls write equal bytes.
-  Window seen;                        ///< The part of the pictures where any model hits something, with a margin; panels show that.
+  std::vector<ComparedModel> models;    ///< The first is the reference.
+  std::vector<Cell> cells;              ///< All methods of the first model, then of the next.
+  std::vector<ExperimentTruth> truths;  ///< One a threshold; the first serves methods without one.
+  bool with_times = true;               ///< Measured times are shown and written; without them equal calls write equal bytes.
+  Window seen;                          ///< The part of the pictures where any model hits something, with a margin; panels show that.
 
   const ComparedModel& reference() const { return models.front(); }
   bool is_matrix() const { return methods.size() > 1; }
@@ -102,10 +96,8 @@ void draw_comparison(Comparison& comparison, const std::filesystem::path& folder
 
 /// Of the methods of one picture: the first that has one.
 std::optional<double> truth_threshold(const std::vector<MethodCall>& calls);
-/// Fills truth_values of a model's cells; solves truths that are not there yet. `seen` holds the G-buffer of the pixel centres.
-void measure_against_truth(size_t row, const SceneModel& model, const Picture& seen, Comparison& comparison, const ExecutionSettings& how);
 /// What displacements are measured from, in a sentence.
-std::string truth_text(const ComparedTruth& truth);
+std::string truth_text(const ExperimentTruth& truth);
 /// "inner border 0.013 px off the truth (root mean square; 95 % within 0.02), silhouette 0.004 px"; empty where nothing was measured.
 std::string displacement_text(const Comparison& comparison, const Cell& cell);
 

@@ -1,5 +1,6 @@
-#include <fmt/format.h>
+// A comparison as an experiment: one view, every method on every model, finished pictures, and what is kept of them.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -13,11 +14,6 @@
 namespace limn {
 namespace {
 
-std::string reason_of(const InputError& error) {
-  const std::string& expected = error.fault().expected;
-  return error.fault().problem + (expected.empty() ? "" : " (expected " + expected + ")");
-}
-
 // A gigabyte of float pictures becomes a quarter of it; the page and the sheet show eight bits anyway.
 Image<glm::u8vec4> packed(const Image<glm::vec4>& picture) {
   Image<glm::u8vec4> out(picture.width, picture.height);
@@ -30,132 +26,37 @@ Image<glm::u8vec4> packed(const Image<glm::vec4>& picture) {
   return out;
 }
 
-// Everything of one model that is held while its cells are drawn.
-struct Drawn {
-  Picture seen;                   ///< G-buffer, and the shading without ink.
-  std::vector<Picture> pictures;  ///< One a method, without G-buffers; empty where the cell is skipped.
-};
-
-void skip_unsupported(const SceneModel& model, const Scene& scene, size_t row, Comparison& comparison) {
-  for (size_t column = 0; column < comparison.methods.size(); ++column) {
-    for (const MethodCall& call : comparison.methods[column].calls) {
-      Cell& cell = comparison.at(row, column);
-      if (cell.skipped.empty()) cell.skipped = call.method->unsupported(model, scene);
-    }
+Experiment experiment_of(const Comparison& comparison) {
+  Experiment experiment;
+  experiment.scene = comparison.reference().scene;
+  experiment.cameras = {comparison.camera};
+  for (const ComparedModel& model : comparison.models)
+    experiment.models.push_back({model.title, model.scene, model.surface, model.skipped});
+  for (const ComparedMethod& method : comparison.methods) experiment.methods.push_back({method.name, method.calls, method.truth_threshold});
+  for (const Metric& metric : metrics()) {
+    const bool of_pictures = metric.subject == MetricSubject::gbuffer || metric.subject == MetricSubject::ink;
+    if (of_pictures || metric.about.name.ends_with("_displacement")) experiment.metrics.push_back(&metric);
   }
-}
-
-void add_samples(const SceneModel& model, const GBuffer& gbuffer, size_t row, SharedOrders& orders, Comparison& comparison, Drawn& drawn,
-                 ProgressBar& bar) {
-  const ComparedModel& modelled = comparison.models[row];
-  for (size_t column = 0; column < comparison.methods.size(); ++column) {
-    Cell& cell = comparison.at(row, column);
-    if (!cell.skipped.empty()) continue;
-    if (const auto progress = bar.stage("drawing " + comparison.methods[column].name + ", " + modelled.title))
-      progress(static_cast<double>(column) / static_cast<double>(comparison.methods.size()));
-    try {
-      add_sample({gbuffer, comparison.camera, model, modelled.scene, nullptr, &orders}, comparison.methods[column].calls,
-                 drawn.pictures[column]);
-    } catch (const InputError& error) {
-      cell.skipped = reason_of(error);
-    }
-  }
-}
-
-// Kept beyond the model only where a later one may want it: the reference's mesh is finer than any, and large.
-bool is_mesh_needed_later(const Comparison& comparison, size_t row) {
-  const auto is_meshed = [&](size_t of) { return comparison.models[of].surface.kind.starts_with("mesh"); };
-  if (row == 0) return false;
-  for (size_t later = row + 1; later < comparison.models.size(); ++later) {
-    if (is_meshed(later)) return true;
-  }
-  return false;
-}
-
-Drawn draw_model(size_t row, Comparison& comparison, const ExecutionSettings& how, ObjectMeshCache& meshes, ProgressBar& bar) {
-  ComparedModel& modelled = comparison.models[row];
-  SurfaceSettings settings = modelled.surface;
-  settings.progress = bar.stage("building " + modelled.title);
-  const SceneModel model = build_model(modelled.scene, settings, row > 0 ? &meshes : nullptr);
-  if (!is_mesh_needed_later(comparison, row)) meshes.kept.clear();
-  modelled.info = total(model);
-  skip_unsupported(model, modelled.scene, row, comparison);
-  ExecutionSettings tracing = how;
-  tracing.progress = bar.stage("tracing " + modelled.title);
-  Drawn drawn;
-  drawn.pictures.resize(comparison.methods.size());
-  SharedOrders orders;
-  for (int sample = 0; sample < comparison.picture.samples; ++sample) {
-    const auto start = std::chrono::steady_clock::now();
-    GBuffer gbuffer = render_gbuffer(model, comparison.camera, tracing, sample_offset(sample, comparison.picture.samples));
-    modelled.trace_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    add_samples(model, gbuffer, row, orders, comparison, drawn, bar);
-    add_sample({gbuffer, comparison.camera, model, modelled.scene}, {}, drawn.seen);
-    if (how.cancelled && how.cancelled()) throw Cancelled{};
-    if (sample == 0) drawn.seen.gbuffer = std::move(gbuffer);
-  }
-  if (const auto progress = bar.stage("measuring " + modelled.title)) progress(0.0);
-  measure_against_truth(row, model, drawn.seen, comparison, how);
-  finish_samples(comparison.picture, drawn.seen);
-  for (Picture& picture : drawn.pictures) finish_samples(comparison.picture, picture);
-  modelled.counts = count_hits(drawn.seen.gbuffer);
-  for (std::string& reason : why_empty(modelled.scene, model, comparison.camera, modelled.counts))
-    modelled.info.warnings.push_back(std::move(reason));
-  return drawn;
+  experiment.picture = comparison.picture;
+  experiment.silhouette_of_all = true;
+  experiment.share_meshes = true;
+  return experiment;
 }
 
 // One picture is a file as `limn render` writes it; several are layers of one file, over the shading without ink.
-void write_layers(size_t row, const std::filesystem::path& folder, Comparison& comparison, Drawn& drawn) {
-  ComparedModel& modelled = comparison.models[row];
-  modelled.exr = folder / (modelled.name + ".exr");
-  const std::string call = comparison.call + " [" + modelled.name + "]";
-  if (!comparison.is_matrix() && comparison.at(row, 0).skipped.empty()) {
-    std::swap(drawn.pictures[0].gbuffer, drawn.seen.gbuffer);
-    write_exr(drawn.pictures[0], comparison.camera, call, modelled.exr);
-    std::swap(drawn.pictures[0].gbuffer, drawn.seen.gbuffer);
+void write_layers(const ComparedModel& model, const Comparison& comparison, Picture& seen, std::span<Drawing> drawings) {
+  const std::string call = comparison.call + " [" + model.name + "]";
+  if (!comparison.is_matrix() && drawings[0].refused.empty()) {
+    std::swap(drawings[0].picture.gbuffer, seen.gbuffer);
+    write_exr(drawings[0].picture, comparison.camera, call, model.exr);
+    std::swap(drawings[0].picture.gbuffer, seen.gbuffer);
     return;
   }
   std::vector<NamedLayer> layers;
-  for (size_t column = 0; column < drawn.pictures.size(); ++column) {
-    if (comparison.at(row, column).skipped.empty()) layers.push_back({comparison.methods[column].name, &drawn.pictures[column]});
+  for (size_t column = 0; column < drawings.size(); ++column) {
+    if (drawings[column].refused.empty()) layers.push_back({comparison.methods[column].name, &drawings[column].picture});
   }
-  write_exr(drawn.seen, comparison.camera, call, modelled.exr, layers);
-}
-
-void keep_cells(size_t row, Comparison& comparison, Drawn& drawn) {
-  for (size_t column = 0; column < drawn.pictures.size(); ++column) {
-    Cell& cell = comparison.at(row, column);
-    if (!cell.skipped.empty()) continue;
-    Picture& picture = drawn.pictures[column];
-    cell.border_ms = picture.border_ms;
-    cell.notes = std::move(picture.notes);
-    cell.composite = packed(picture.composite);
-    cell.border = std::move(picture.border);
-    for (const float coverage : cell.border.pixels) cell.ink_px += double{coverage};
-  }
-}
-
-std::vector<MetricValue> measured(const Picture& picture, const Picture& reference, const Camera& camera, MetricSubject subject) {
-  std::vector<MetricValue> all;
-  for (const Metric& metric : metrics()) {
-    if (metric.subject != subject) continue;
-    const std::vector<MetricValue> values = metric.measure({picture, reference, camera});
-    all.insert(all.end(), values.begin(), values.end());
-  }
-  return all;
-}
-
-void measure_cells(size_t row, Picture& picture, Picture& reference, Comparison& comparison) {
-  comparison.models[row].values = measured(picture, reference, comparison.camera, MetricSubject::gbuffer);
-  for (size_t column = 0; column < comparison.methods.size(); ++column) {
-    Cell &cell = comparison.at(row, column), &truth = comparison.at(0, column);
-    if (!comparison.is_measured(cell)) continue;
-    std::swap(picture.border, cell.border);
-    std::swap(reference.border, truth.border);
-    cell.values = measured(picture, reference, comparison.camera, MetricSubject::ink);
-    std::swap(picture.border, cell.border);
-    std::swap(reference.border, truth.border);
-  }
+  write_exr(seen, comparison.camera, call, model.exr, layers);
 }
 
 void skip_model(size_t row, const std::string& reason, Comparison& comparison) {
@@ -163,27 +64,71 @@ void skip_model(size_t row, const std::string& reason, Comparison& comparison) {
   for (size_t column = 0; column < comparison.methods.size(); ++column) comparison.at(row, column).skipped = reason;
 }
 
+// What the engine is told to do with what it made.
+struct Keeper {
+  Comparison& comparison;
+  const std::filesystem::path& folder;
+  ProgressBar& bar;
+
+  ExperimentObserver observer() {
+    return {
+        .stage = [this](const std::string& what) { return bar.stage(what); },
+        .built = [this](size_t row, const SceneModel& model, double) { comparison.models[row].info = total(model); },
+        .refused = [this](auto cells, const std::string& reason) { skip_model(cells.front().model, reason, comparison); },
+        .seen = [this](size_t row, size_t, const SceneModel& model, Seen& seen, auto drawings) { keep_seen(row, model, seen, drawings); },
+        .solved = [this](size_t, const ExperimentTruth& truth, double) { comparison.truths.push_back(truth); },
+        .measured = [this](MeasuredCell& cell) { keep_cell(cell); }};
+  }
+
+  void keep_seen(size_t row, const SceneModel& model, Seen& seen, std::span<Drawing> drawings) {
+    ComparedModel& modelled = comparison.models[row];
+    modelled.trace_ms = seen.trace_ms;
+    modelled.counts = count_hits(seen.picture.gbuffer);
+    for (std::string& reason : why_empty(modelled.scene, model, comparison.camera, modelled.counts))
+      modelled.info.warnings.push_back(std::move(reason));
+    modelled.exr = folder / (modelled.name + ".exr");
+    write_layers(modelled, comparison, seen.picture, drawings);
+    const Window window = hit_window(seen.picture.gbuffer);
+    if (row == 0)
+      comparison.seen = window;
+    else if (modelled.counts.hits > 0)
+      comparison.seen = merge(comparison.seen, window);
+    if (const auto progress = bar.stage("measuring " + modelled.title)) progress(0.0);
+  }
+
+  void keep_cell(MeasuredCell& done) {
+    Cell& cell = comparison.at(done.cell.model, done.cell.method);
+    cell.skipped = done.drawing.refused;
+    if (!cell.skipped.empty()) return;
+    Picture& picture = done.drawing.picture;
+    cell.border_ms = picture.border_ms;
+    cell.notes = std::move(picture.notes);
+    cell.composite = packed(picture.composite);
+    picture.composite = {};
+    // The other models' ink is measured against the reference's.
+    cell.border = done.cell.model == 0 ? picture.border : std::move(picture.border);
+    for (const float coverage : cell.border.pixels) cell.ink_px += double{coverage};
+    std::vector<MetricValue>& of_model = comparison.models[done.cell.model].values;
+    const bool first = of_model.empty();
+    for (Measurement& one : done.measurements) {
+      const MetricSubject subject = one.metric->subject;
+      if (subject == MetricSubject::gbuffer && !first) continue;
+      auto& values = subject == MetricSubject::gbuffer ? of_model : subject == MetricSubject::ink ? cell.values : cell.truth_values;
+      values.push_back(std::move(one.value));
+    }
+  }
+};
+
 }  // namespace
 
 void draw_comparison(Comparison& comparison, const std::filesystem::path& folder, const ExecutionSettings& how, ProgressBar& bar) {
-  Picture reference;
-  ObjectMeshCache meshes;
+  Keeper keeper{comparison, folder, bar};
+  ExperimentRun run(experiment_of(comparison), how, keeper.observer());
   for (size_t row = 0; row < comparison.models.size(); ++row) {
-    if (!comparison.models[row].skipped.empty()) {
-      skip_model(row, comparison.models[row].skipped, comparison);
-      continue;
-    }
+    std::vector<ExperimentCell> cells;
+    for (size_t column = 0; column < comparison.methods.size(); ++column) cells.push_back({row, 0, column});
     try {
-      Drawn drawn = draw_model(row, comparison, how, meshes, bar);
-      write_layers(row, folder, comparison, drawn);
-      keep_cells(row, comparison, drawn);
-      if (row == 0) {
-        comparison.seen = hit_window(drawn.seen.gbuffer);
-        reference = std::move(drawn.seen);
-        continue;
-      }
-      if (comparison.models[row].counts.hits > 0) comparison.seen = merge(comparison.seen, hit_window(drawn.seen.gbuffer));
-      measure_cells(row, drawn.seen, reference, comparison);
+      run.run(cells);
     } catch (const InputError& error) {
       // What one representation cannot do is part of the answer, not the end of the comparison; without a reference there is none.
       if (row == 0) throw;

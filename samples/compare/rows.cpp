@@ -58,7 +58,7 @@ Json cell_json(const Comparison& comparison, const Cell& cell) {
   return json;
 }
 
-Json truth_json(const ComparedTruth& truth) {
+Json truth_json(const ExperimentTruth& truth) {
   Json json = {{"threshold", truth.threshold}};
   if (!truth.truth) {
     json["failed"] = truth.failed;
@@ -119,7 +119,7 @@ Json comparison_json(const Comparison& comparison, const std::vector<std::filesy
   Json methods = Json::array();
   for (const ComparedMethod& method : comparison.methods) methods.push_back(method.words);
   Json truths = Json::array();
-  for (const ComparedTruth& truth : comparison.truths) truths.push_back(truth_json(truth));
+  for (const ExperimentTruth& truth : comparison.truths) truths.push_back(truth_json(truth));
   return {{"input", comparison.input_name},
           {"reference", reference_cells.front()},
           {"reference_words", comparison.reference_words},

@@ -4,25 +4,27 @@
 #include <array>
 #include <string_view>
 
+#include "samples/experiment/surface_setting.h"
+
 namespace limn {
 namespace {
 
 constexpr std::string_view kParameters = "parameters.";
 
-/// Fields that are options of the same name; the underscore is a dash there.
-constexpr std::array<std::string_view, 42> kFields = {
-    "background", "budget",     "draws",        "eye",     "flicker",    "fov",      "frames",  "fresh",      "gradient",
-    "gradients",  "half_width", "level",        "levels",  "max_memory", "max_time", "method",  "methods",    "metric",
-    "no_clobber", "normals",    "ortho",        "output",  "path_step",  "refined",  "samples", "scheme",     "seed",
-    "shard",      "size",       "smooth_angle", "surface", "surfaces",   "target",   "threads", "thresholds", "tolerance",
-    "up",         "views",      "voxel_size",   "voxels",  "case",       "json"};
+/// Fields that are options of the same name, beside the settings of surfaces; the underscore is a dash there.
+constexpr std::array<std::string_view, 34> kFields = {"background", "budget",     "draws",  "eye",        "flicker",   "fov",     "frames",
+                                                      "fresh",      "gradients",  "levels", "max_memory", "max_time",  "method",  "methods",
+                                                      "metric",     "no_clobber", "ortho",  "output",     "path_step", "refined", "samples",
+                                                      "seed",       "shard",      "size",   "surface",    "surfaces",  "target",  "threads",
+                                                      "thresholds", "tolerance",  "up",     "views",      "case",      "json"};
 
 /// Whose name is another one.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kOthers = {{{"grids", "grid"}, {"cases", "case"}}};
 
 bool is_field(std::string_view name) {
   const auto other = [&](const auto& pair) { return pair.first == name; };
-  return std::find(kFields.begin(), kFields.end(), name) != kFields.end() || std::any_of(kOthers.begin(), kOthers.end(), other);
+  return std::find(kFields.begin(), kFields.end(), name) != kFields.end() || look_up_surface_setting(name) != nullptr ||
+         std::any_of(kOthers.begin(), kOthers.end(), other);
 }
 
 bool is_name_character(char c) {

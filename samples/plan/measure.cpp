@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "raymarch/curve_geometry.h"
@@ -83,18 +82,43 @@ double error_px(const BorderCurves& measured, const BorderCurves& truth, CurveKi
   return std::max(missed_px(truth, measured, kind, camera), false_px(measured, truth, kind, camera));
 }
 
+std::vector<MetricValue> measure(const MetricInput& input) {
+  const BorderCurves& truth = input.truth->curves;
+  return {{"silhouette_error", error_px(*input.curves, truth, CurveKind::silhouette, input.camera), "px"},
+          {"inner_error", error_px(*input.curves, truth, CurveKind::inner, input.camera), "px"}};
+}
+
 }  // namespace
+
+const Metric& plan_metric() {
+  static const Metric metric{
+      {"border_error",
+       "how far silhouette and inner border lie from the true ones: the 95th percentile of the distances both ways, what is missing or "
+       "false counting as infinitely far",
+       "limn"},
+      {"silhouette_error [px]", "inner_error [px]"},
+      true,
+      measure,
+      MetricSubject::curves};
+  return metric;
+}
+
+BorderErrors errors_of(std::span<const Measurement> measured) {
+  BorderErrors errors;
+  for (const Measurement& one : measured) (one.value.name == "inner_error" ? errors.inner_px : errors.silhouette_px) = one.value.value;
+  return errors;
+}
 
 BorderErrors measure_errors(const SceneModel& model, const PlanView& view, double threshold, const ExecutionSettings& how,
                             double& trace_ms) {
-  const auto start = std::chrono::steady_clock::now();
-  const GBuffer gbuffer = render_gbuffer(model, view.camera, how);
-  trace_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  MeasuredBorderSettings settings;
-  settings.threshold = threshold;
-  const BorderCurves measured = measure_border(model, view.camera, gbuffer, settings, how);
-  return {error_px(measured, view.truth.curves, CurveKind::silhouette, view.camera),
-          error_px(measured, view.truth.curves, CurveKind::inner, view.camera)};
+  Seen seen = look(model, {}, view.camera, {}, how);
+  trace_ms += seen.trace_ms;
+  const BorderCurves curves = measure_border(model, view.camera, seen.picture.gbuffer, {.threshold = threshold}, how);
+  std::vector<Measurement> measured;
+  for (MetricValue& value :
+       measure({.picture = seen.picture, .reference = seen.picture, .camera = view.camera, .curves = &curves, .truth = &view.truth}))
+    measured.push_back({&plan_metric(), std::move(value)});
+  return errors_of(measured);
 }
 
 }  // namespace limn

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "raymarch/truth.h"
+#include "samples/experiment/engine.h"
 #include "samples/progress.h"
 
 namespace limn {
@@ -84,7 +85,10 @@ std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings,
 /// What theory expects of a rung in one view, from curvature, pixel scale and threshold along the true border.
 BorderErrors predict_errors(const Ladder& ladder, size_t rung, const PlanView& view, double threshold);
 
-/// What a model shows, against truth; `trace_ms` of one picture is added to the trial's.
+/// What the engine measures for a plan: BorderErrors, as a metric that no study lists.
+const Metric& plan_metric();
+BorderErrors errors_of(std::span<const Measurement> measured);
+/// The same for a model that is there, without an experiment; `trace_ms` of one picture is added.
 BorderErrors measure_errors(const SceneModel& model, const PlanView& view, double threshold, const ExecutionSettings& how,
                             double& trace_ms);
 

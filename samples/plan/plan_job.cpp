@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "samples/experiment/surface_setting.h"
 #include "samples/limits.h"
 #include "samples/no_effect.h"
 #include "sdf/error.h"
@@ -23,13 +24,9 @@ double threshold_of(const BorderSpec& spec, const SceneInput& input) {
 
 /// What a plan chooses cannot be given.
 void check_open(const SurfaceSpec& spec) {
-  const std::pair<bool, const char*> given[] = {{spec.voxels.has_value(), "voxels"},
-                                                {spec.voxel_size.has_value(), "voxel_size"},
-                                                {spec.level.has_value() || spec.level_for_view, "level"},
-                                                {spec.gradient.has_value(), "gradient"},
-                                                {spec.normals.has_value(), "normals"}};
-  for (const auto& [is_given, field] : given) {
-    if (is_given) throw InputError({"", field, "", "has no effect: a plan chooses it; leave it out", ""});
+  for (const SurfaceSetting& setting : surface_setting_list()) {
+    if (!is_fixed(setting) && setting.asked(spec))
+      throw InputError({"", setting.name, "", "has no effect: a plan chooses it; leave it out", ""});
   }
 }
 

@@ -15,11 +15,11 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Search {
-  const Scene& scene;
   const std::vector<PlanView>& views;
   const PlanSettings& settings;
-  const ExecutionSettings& how;
   ProgressBar& bar;
+  ExperimentRun run;
+  PlanTrial* under_way = nullptr;  ///< What the engine measures goes there.
   PlanAnswer answer{};
   std::vector<Climb> climbs{};  ///< Of answer.ladders.
 };
@@ -42,6 +42,33 @@ double ready_ms(const SceneModel& model) {
   return ms;
 }
 
+/// A plan as an experiment: the views, their truths, and no model yet but the scene itself, which nothing is drawn of.
+Experiment experiment_of(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings) {
+  Experiment experiment;
+  experiment.scene = scene;
+  for (SceneObject& object : experiment.scene.objects) object.level.reset();
+  for (const PlanView& view : views) experiment.cameras.push_back(view.camera);
+  experiment.methods.push_back({.truth_threshold = settings.threshold});
+  experiment.models.push_back({.scene = experiment.scene});
+  experiment.metrics = {&plan_metric()};
+  return experiment;
+}
+
+ExperimentObserver observer_of(Search& search) {
+  return {.built =
+              [&](size_t, const SceneModel& model, double) {
+                PlanTrial& trial = *search.under_way;
+                const SurfaceInfo info = total(model);
+                trial.bytes = info.bytes;
+                // Volumes are resampled once and written (limn export); what a coarser grid saves is what it takes from then on.
+                trial.build_ms = search.answer.ladders[trial.ladder].of_file ? ready_ms(model) : info.build_ms;
+              },
+          .refused = [&](auto, const std::string& reason) { search.under_way->failed = reason; },
+          .seen = [&](size_t, size_t, const SceneModel&, Seen& seen, auto) { search.under_way->trace_ms += seen.trace_ms; },
+          .measured =
+              [&](MeasuredCell& cell) { search.under_way->measured = worst(search.under_way->measured, errors_of(cell.measurements)); }};
+}
+
 /// Builds and measures one rung. A rung that cannot be built fails with its reason.
 PlanTrial try_rung(Search& search, size_t ladder, size_t rung) {
   PlanTrial trial;
@@ -51,21 +78,17 @@ PlanTrial try_rung(Search& search, size_t ladder, size_t rung) {
   const Ladder& of = search.answer.ladders[ladder];
   const auto progress = search.bar.stage(fmt::format("{}, {}", of.title, of.words_at(rung)));
   if (progress) progress(0.0);
+  search.under_way = &trial;
+  const size_t model = search.run.add_model({of.title, search.run.experiment().scene, of.at(rung), {}});
+  std::vector<ExperimentCell> cells;
+  for (size_t view = 0; view < search.views.size(); ++view) cells.push_back({model, view, 0});
   try {
-    Scene scene = search.scene;
-    for (SceneObject& object : scene.objects) object.level.reset();
-    const SceneModel model = build_model(scene, of.at(rung));
-    const SurfaceInfo info = total(model);
-    trial.bytes = info.bytes;
-    // Volumes are resampled once and written (limn export); what a coarser grid saves is what it takes from then on.
-    trial.build_ms = of.of_file ? ready_ms(model) : info.build_ms;
-    for (const PlanView& view : search.views)
-      trial.measured = worst(trial.measured, measure_errors(model, view, search.settings.threshold, search.how, trial.trace_ms));
-    trial.trace_ms /= static_cast<double>(search.views.size());
+    search.run.run(cells);
   } catch (const InputError& error) {
     trial.failed = error.fault().problem;
-    trial.measured = {kInfinity, kInfinity};
   }
+  if (!trial.failed.empty()) trial.measured = {kInfinity, kInfinity};
+  trial.trace_ms /= static_cast<double>(search.views.size());
   return trial;
 }
 
@@ -202,7 +225,8 @@ void choose(Search& search) {
 PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings, const ExecutionSettings& how,
                      ProgressBar& bar, const std::vector<PlanTrial>& known) {
   LIMN_CHECK(!views.empty());
-  Search search{scene, views, settings, how, bar};
+  Search search{views, settings, bar, ExperimentRun(experiment_of(scene, views, settings), how, observer_of(search))};
+  for (size_t k = 0; k < views.size(); ++k) search.run.give_truth(k, {settings.threshold, views[k].truth, {}});
   search.answer.ladders = ladders_of(scene, settings, &search.answer.notes);
   if (search.answer.ladders.empty()) {
     throw InputError({{},

@@ -1,10 +1,12 @@
 // What scene files and the rows of studies hold.
 
+#include "samples/experiment/surface_setting.h"
 #include "samples/reference/reference.h"
 
 namespace limn {
 namespace {
 
+/// Without the settings of [surface], which follow its kind.
 constexpr DocumentedKey kSceneKeys[] = {
     {"camera", "eye", "world", "where the camera stands, [x, y, z]; missing: framed"},
     {"camera", "target", "world", "what it looks at; missing: the middle of the scene"},
@@ -13,14 +15,6 @@ constexpr DocumentedKey kSceneKeys[] = {
     {"camera", "ortho", "world", "height of the picture of a parallel projection; instead of fov"},
     {"camera", "size", "px", "[width, height], 1 to 16384; default [1280, 720]"},
     {"surface", "kind", "", "representation: a name of `limn list surfaces`; missing: each object's own"},
-    {"surface", "voxels", "", "along the longest side of an object, 4 to 8192; default 256"},
-    {"surface", "voxel_size", "world", "instead of voxels"},
-    {"surface", "half_width", "voxels", "of the narrow band, at least 1.8; missing: what the gradient needs"},
-    {"surface", "gradient", "", "a name of `limn list gradients`; default central"},
-    {"surface", "level", "", "refinements of cages and of tessellated fields, 0 to 8; default 3"},
-    {"surface", "scheme", "", "subdivision of cages: catmark, loop or bilinear"},
-    {"surface", "normals", "", "of meshes: flat, vertex or limit"},
-    {"surface", "smooth_angle", "degrees", "edges that are sharper stay hard in vertex normals, 0 to 180; default 30"},
     {"border", "method", "", "a name of `limn list methods`; its parameters stand beside it; [[border]] for several; default rim"},
     {"object", "name", "", "for messages, layers and exports"},
     {"object", "color", "", "linear RGB, 0 to 1; default [0.8, 0.8, 0.8]"},
@@ -65,7 +59,18 @@ constexpr DocumentedKey kRowColumns[] = {
 
 }  // namespace
 
-std::span<const DocumentedKey> scene_keys() { return kSceneKeys; }
+std::span<const DocumentedKey> scene_keys() {
+  static const std::vector<DocumentedKey> all = [] {
+    std::vector<DocumentedKey> keys;
+    for (const DocumentedKey& key : kSceneKeys) {
+      keys.push_back(key);
+      if (key.where != "surface") continue;
+      for (const SurfaceSetting& setting : surface_setting_list()) keys.push_back({"surface", setting.name, setting.unit, setting.help});
+    }
+    return keys;
+  }();
+  return all;
+}
 std::span<const DocumentedKey> row_columns() { return kRowColumns; }
 
 }  // namespace limn

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "samples/experiment/surface_setting.h"
 #include "samples/job.h"
 #include "samples/no_effect.h"
 #include "samples/parse.h"
@@ -50,9 +51,11 @@ std::string call_text(const StudySpec& spec, const Axes& axes, const SurfaceSett
   for (const NormalKind kind : axes.normals) normals.emplace_back(name_of(kind));
   if (counts("normals")) call.add("normals", list_text(normals));
   if (counts("gradient")) call.add("gradients", list_text(axes.gradients));
-  if (settings.half_width_voxels > 0.0) call.add("half_width", fmt::format("{}", settings.half_width_voxels));
-  if (settings.scheme) call.add("scheme", name_of(*settings.scheme));
-  if (const auto& angle = spec.experiment.surface.smooth_angle_deg; angle) call.add("smooth_angle", fmt::format("{}", *angle));
+  for (const char* fixed : kFixedSettings) {
+    const SurfaceSetting& setting = surface_setting(fixed);
+    const std::string used = setting.use == nullptr ? setting.asked(spec.experiment.surface).value_or("") : setting.used(settings);
+    if (!used.empty()) call.add(fixed, used);
+  }
   for (const std::string& grid : spec.experiment.grids) call.add("grids", grid);
   std::vector<std::string> methods;
   for (const StudyMethod& method : study.methods) {

@@ -1,4 +1,5 @@
 #include "samples/study/key.h"
+#include "samples/experiment/surface_setting.h"
 #include "samples/parse.h"
 
 #include <OpenImageIO/hash.h>
@@ -68,23 +69,14 @@ std::string camera_text(const Camera& camera) {
 
 // What the representation reads, whether or not the study varies it.
 std::string surface_text(const SurfaceSettings& settings) {
-  std::vector<std::string> reads;
-  if (settings.kind.empty()) {
-    reads = {"level", "scheme", "normals", "voxels", "voxel_size", "half_width", "gradient"};
-  } else {
-    reads = find_surface(settings.kind).settings;
-  }
+  const std::vector<std::string>* reads = settings.kind.empty() ? nullptr : &find_surface(settings.kind).settings;
   std::string text = "surface " + settings.kind + fmt::format(" max-steps {}", settings.max_steps);
-  for (const std::string& name : reads) {
-    text += " " + name + " ";
-    if (name == "level") text += std::to_string(settings.level);
-    if (name == "scheme") text += settings.scheme ? name_of(*settings.scheme) : "own";
-    if (name == "normals") text += settings.normals ? name_of(*settings.normals) : "own";
-    if (name == "voxels") text += std::to_string(settings.voxels) + (settings.resample_volumes ? " resampled" : "");
-    if (name == "voxel_size") text += fmt::format("{}", settings.voxel_size);
-    if (name == "half_width") text += fmt::format("{}", settings.half_width_voxels);
-    if (name == "gradient") text += settings.gradient;
+  for (const SurfaceSetting& setting : surface_setting_list()) {
+    if (reads != nullptr && std::find(reads->begin(), reads->end(), setting.name) == reads->end()) continue;
+    const std::string used = setting.used(settings);
+    text.append(" ").append(setting.name).append(" ").append(used.empty() ? "own" : used);
   }
+  if (settings.resample_volumes) text += " resampled";
   return text;
 }
 

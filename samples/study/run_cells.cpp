@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <new>
 
 #include "raymarch/image_io.h"
-#include "raymarch/measured_border.h"
 #include "raymarch/polygons.h"
 #include "samples/compare/panels.h"
 #include "samples/empty_picture.h"
+#include "samples/experiment/engine.h"
 #include "samples/study/run_batches.h"
 #include "samples/study/study_files.h"
-#include "samples/study/study_reference.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -51,21 +49,33 @@ double resolution_of(const SceneModel& model, double longest_side) {
   return coarsest > 0.0 && longest_side > 0.0 ? coarsest / longest_side : std::numeric_limits<double>::quiet_NaN();
 }
 
-bool has_subject(const Metric& metric, const MetricInput& input, bool inked) {
-  switch (metric.subject) {
-    case MetricSubject::gbuffer:
-      return true;
-    case MetricSubject::ink:
-      return inked;
-    case MetricSubject::curves:
-      return input.curves != nullptr && input.truth != nullptr;
-    case MetricSubject::motion:
-      return inked && !input.moved.empty() && !input.reference_moved.empty();
-  }
-  return false;
+Experiment experiment_of(const Study& study) {
+  Experiment experiment;
+  experiment.scene = study.scene;
+  experiment.cameras = study.cameras;
+  experiment.models.push_back({"reference", study.scene, study.reference, {}});
+  for (const StudyModel& model : study.models) experiment.models.push_back({model.surface, study.scene, model.settings, model.refused});
+  for (const StudyMethod& method : study.methods)
+    experiment.methods.push_back({method.call.method->about.name, {method.call}, method.truth_threshold});
+  for (const Metric& metric : metrics()) experiment.metrics.push_back(&metric);
+  if (study.flicker) experiment.path = kFlickerPath;
+  return experiment;
 }
 
-// The run of one batch of views.
+TruthRecord record_of(size_t view, const ExperimentTruth& solved) {
+  TruthRecord record;
+  record.view = static_cast<int>(view);
+  record.threshold = solved.threshold;
+  record.failed = solved.failed;
+  if (!solved.truth) return record;
+  record.from = solved.truth->from;
+  record.exact = solved.truth->exact;
+  record.bound_px = solved.truth->bound_px;
+  record.notes = solved.truth->notes;
+  return record;
+}
+
+// Keeps what the engine measures: rows, journal, thumbnails, and what is left to do.
 struct Runner {
   const StudyWork& work;
   CostLedger& ledger;
@@ -73,8 +83,21 @@ struct Runner {
   CellRows& rows;
   ProgressBar& bar;
   StudyJournal& journal;
-  StudyReference& reference;
+  ExperimentRun* run = nullptr;
+  double build_ms = 0.0;
+  std::int64_t bytes = 0;
   size_t done = 0;
+
+  ExperimentObserver observer() {
+    return {.cell_begins = [this] { show_progress(); },
+            .built = [this](size_t model, const SceneModel& built, double ms) { has_built(model, built, ms); },
+            .refused = [this](auto cells, const std::string& reason) { refuse(cells, reason); },
+            .seen = [this](size_t model, size_t view, const SceneModel& built, Seen& seen, auto) { has_seen(model, view, built, seen); },
+            .solved = [this](size_t view, const ExperimentTruth& truth, double ms) { has_solved(view, truth, ms); },
+            .measured = [this](MeasuredCell& cell) { has_measured(cell); }};
+  }
+
+  const StudyModel& planned(size_t model) const { return work.study.models[model - 1]; }  // the engine's first is the reference
 
   void show_progress() const {
     const double remaining = ledger.remaining_ms(), spent = ledger.spent_ms();
@@ -89,147 +112,88 @@ struct Runner {
     show_progress();
   }
 
-  void fail(const std::vector<size_t>& cells, const std::string& reason) {
-    for (const size_t index : cells) {
-      StudyRow row = row_of(work.study, work.study.cells[index]);
-      row.failed = reason;
-      keep({row});
-    }
+  void fail(size_t cell, const std::string& reason) {
+    StudyRow row = row_of(work.study, work.study.cells[cell]);
+    row.failed = reason;
+    keep({row});
   }
 
-  void run_model(std::vector<CellGroup>::const_iterator first, std::vector<CellGroup>::const_iterator last) {
-    const StudyModel& planned = work.study.models[first->model];
-    const auto refuse = [&](const std::string& reason) {
-      ledger.drop("build " + planned.surface, planned.cost.build_ms);
-      for (auto group = first; group != last; ++group) {
-        drop_group(*group);
-        fail(group->cells, reason);
-      }
-    };
-    if (!planned.refused.empty()) return refuse(planned.refused);
-    std::optional<SceneModel> model;
-    const auto start = Clock::now();
-    try {
-      model = build_model(work.study.scene, planned.settings);
-    } catch (const InputError& error) {
-      return refuse(reason_of(error));
-    } catch (const std::bad_alloc&) {
-      return refuse("out of memory");
-    }
-    ledger.done("build " + planned.surface, planned.cost.build_ms, ms_since(start));
-    for (auto group = first; group != last; ++group) run_group(*model, *group);
+  void has_built(size_t model, const SceneModel& built, double ms) {
+    const SurfaceInfo info = total(built);
+    if (model > 0) build_ms = info.build_ms, bytes = info.bytes;
+    if (model == 0)
+      ledger.done("reference build", work.study.reference_cost.build_ms, ms);
+    else
+      ledger.done("build " + planned(model).surface, planned(model).cost.build_ms, ms);
   }
 
-  void drop_group(const CellGroup& group) {
-    const StudyModel& planned = work.study.models[group.model];
-    ledger.drop("trace " + planned.surface, work.study.looks() * planned.cost.trace_ms);
-    ledger.drop("measure " + planned.surface, work.study.measure_ms() * static_cast<double>(group.cells.size()));
+  void refuse(std::span<const ExperimentCell> cells, const std::string& reason) {
+    const StudyModel& model = planned(cells.front().model);
+    ledger.drop("build " + model.surface, model.cost.build_ms);
+    for (size_t i = 0; i < cells.size(); ++i) {
+      if (i == 0 || cells[i].view != cells[i - 1].view) ledger.drop("trace " + model.surface, work.study.looks() * model.cost.trace_ms);
+      ledger.drop("measure " + model.surface, work.study.measure_ms());
+    }
+    for (const ExperimentCell& cell : cells) fail(cell.id, reason);
   }
 
-  void run_group(const SceneModel& model, const CellGroup& group) {
-    const StudyModel& planned = work.study.models[group.model];
-    if (work.how.cancelled && work.how.cancelled()) throw Cancelled{};
-    Picture& truth_picture = reference.picture(group.view);
-    const auto start = Clock::now();
-    Seen seen = look(model, work.study, group.view, work.how);
-    ledger.done("trace " + planned.surface, work.study.looks() * planned.cost.trace_ms, ms_since(start));
-    warn_of_empty(model, group, seen.gbuffer, truth_picture.gbuffer);
-    Picture picture;
-    picture.gbuffer = seen.gbuffer;
-    for (const size_t index : group.cells) {
-      if (work.how.cancelled && work.how.cancelled()) throw Cancelled{};
-      show_progress();
-      run_cell(model, work.study.cells[index], seen, picture, truth_picture);
-    }
+  void has_seen(size_t model, size_t view, const SceneModel& built, const Seen& seen) {
+    if (model == 0) return ledger.done("reference trace", work.study.looks() * work.study.reference_cost.trace_ms, seen.all_ms);
+    ledger.done("trace " + planned(model).surface, work.study.looks() * planned(model).cost.trace_ms, seen.all_ms);
+    warn_of_empty(model, view, built, seen.picture.gbuffer);
   }
 
   // Where the reference shows nothing either it is the view's doing: said once for all models.
-  void warn_of_empty(const SceneModel& model, const CellGroup& group, const GBuffer& seen, const GBuffer& reference_seen) {
-    const StudyModel& planned = work.study.models[group.model];
-    const bool of_view = count_hits(reference_seen).hits == 0;
-    for (const std::string& reason : why_empty(work.study.scene, model, work.study.cameras[group.view], count_hits(seen))) {
-      std::string text = fmt::format("view {}", group.view);
+  void warn_of_empty(size_t model, size_t view, const SceneModel& built, const GBuffer& seen) {
+    const bool of_view = count_hits(run->reference(view).picture.gbuffer).hits == 0;
+    for (const std::string& reason : why_empty(work.study.scene, built, work.study.cameras[view], count_hits(seen))) {
+      std::string text = fmt::format("view {}", view);
       if (!of_view) {
-        text += ", " + planned.surface;
-        for (const auto& [name, value] : planned.parameters) text += fmt::format(" {}={}", name, value);
+        text += ", " + planned(model).surface;
+        for (const auto& [name, value] : planned(model).parameters) text += fmt::format(" {}={}", name, value);
       }
       text += ": ";
       add_warnings({text + reason}, record);
     }
   }
 
-  void run_cell(const SceneModel& model, const StudyCell& cell, const Seen& seen, Picture& picture, Picture& truth_picture) {
-    const StudyMethod& method = work.study.methods[cell.method];
-    const TruthOf* truth = method.truth_threshold ? &truth_of(cell.view, *method.truth_threshold) : nullptr;
-    const auto start = Clock::now();
-    Ink ink = draw(work.study, model, cell.view, cell.method, seen, Frames::in_sequence);
-    if (!ink.refused.empty()) {
-      drop_cell(cell);
-      return fail({static_cast<size_t>(&cell - work.study.cells.data())}, ink.refused);
-    }
-    const SurfaceInfo info = total(model);
-    StudyRow row = row_of(work.study, cell);
-    row.resolution = resolution_of(model, work.study.longest_side);
-    row.build_ms = info.build_ms;
-    row.trace_ms = seen.trace_ms;
-    row.border_ms = ink.border_ms;
-    row.bytes = info.bytes;
-    Ink& reference_ink = reference.ink(cell.view, cell.method);
-    std::swap(picture.border, ink.ink);
-    std::swap(truth_picture.border, reference_ink.ink);
-    std::vector<StudyRow> measured = measure(model, row, truth, picture, truth_picture, seen, ink, reference_ink);
-    if (measured.empty()) {
-      row.failed = "nothing to measure";
-      measured.push_back(row);
-    }
-    const std::string key = row.key;
-    keep(std::move(measured));
-    write_thumbnail(key, picture.border, reference_ink.refused.empty() ? truth_picture.border : picture.border);
-    std::swap(truth_picture.border, reference_ink.ink);
-    ledger.done("measure " + row.surface, work.study.measure_ms(), ms_since(start));
-  }
-
-  void drop_cell(const StudyCell& cell) { ledger.drop("measure " + work.study.models[cell.model].surface, work.study.measure_ms()); }
-
-  const TruthOf& truth_of(size_t view, double threshold) {
-    const TruthOf& truth = reference.truth(view, threshold);
+  void has_solved(size_t view, const ExperimentTruth& truth, double ms) {
+    ledger.done("truth", work.study.truth_ms(), ms);
     const size_t known = record.truths.size();
-    add_truths({truth.record}, record);
+    add_truths({record_of(view, truth)}, record);
     // On the disk before the rows that it stands behind.
     if (record.truths.size() > known) write_record(record, work.folder);
-    return truth;
   }
 
-  std::vector<StudyRow> measure(const SceneModel& model, const StudyRow& like, const TruthOf* truth, const Picture& picture,
-                                const Picture& truth_picture, const Seen& seen, const Ink& ink, const Ink& reference_ink) const {
-    const Camera& camera = work.study.cameras[static_cast<size_t>(like.view)];
-    MetricInput input{picture, truth_picture, camera};
-    BorderCurves curves;
-    if (truth != nullptr && truth->truth) {
-      MeasuredBorderSettings settings;
-      settings.threshold = truth->record.threshold;
-      curves = measure_border(model, camera, picture.gbuffer, settings, work.how);
-      input.curves = &curves;
-      input.truth = &*truth->truth;
-      input.model = &model;
+  void has_measured(const MeasuredCell& cell) {
+    const StudyModel& model = planned(cell.cell.model);
+    if (!cell.drawing.refused.empty()) {
+      ledger.drop("measure " + model.surface, work.study.measure_ms());
+      return fail(cell.cell.id, cell.drawing.refused);
     }
-    input.moved = ink.moved;
-    input.reference_moved = reference_ink.moved;
-    input.moved_before = seen.before;
-    input.reference_moved_before = reference.before(static_cast<size_t>(like.view));
+    const auto start = Clock::now();
+    StudyRow row = row_of(work.study, work.study.cells[cell.cell.id]);
+    row.resolution = resolution_of(cell.model, work.study.longest_side);
+    row.build_ms = build_ms;
+    row.trace_ms = cell.seen.trace_ms;
+    row.border_ms = cell.drawing.picture.border_ms;
+    row.bytes = bytes;
     std::vector<StudyRow> measured;
-    for (const Metric& metric : metrics()) {
-      if (!has_subject(metric, input, reference_ink.refused.empty())) continue;
-      for (const MetricValue& value : metric.measure(input)) {
-        if (std::isnan(value.value)) continue;
-        StudyRow row = like;
-        row.metric = value.name;
-        row.value = value.value;
-        row.unit = value.unit;
-        measured.push_back(std::move(row));
-      }
+    for (const Measurement& one : cell.measurements) {
+      if (std::isnan(one.value.value)) continue;
+      measured.push_back(row);
+      measured.back().metric = one.value.name;
+      measured.back().value = one.value.value;
+      measured.back().unit = one.value.unit;
     }
-    return measured;
+    if (measured.empty()) {
+      measured.push_back(row);
+      measured.back().failed = "nothing to measure";
+    }
+    keep(std::move(measured));
+    const Image<float>& ink = cell.drawing.picture.border;
+    write_thumbnail(row.key, ink, cell.reference.refused.empty() ? cell.reference.picture.border : ink);
+    ledger.done("measure " + model.surface, work.study.measure_ms(), cell.measure_ms + ms_since(start));
   }
 
   void write_thumbnail(const std::string& key, const Image<float>& ink, const Image<float>& truth) const {
@@ -242,15 +206,15 @@ struct Runner {
 
 void run_cells(const StudyWork& work, CostLedger& ledger, StudyRecord& record, CellRows& rows, ProgressBar& bar) {
   StudyJournal journal(work.folder);
-  StudyReference reference(work.study, work.how, ledger);
-  Runner runner{work, ledger, record, rows, bar, journal, reference};
+  Runner runner{work, ledger, record, rows, bar, journal};
+  ExperimentRun run(experiment_of(work.study), work.how, runner.observer());
+  runner.run = &run;
   for (const std::vector<CellGroup>& batch : batches_of(work)) {
-    for (auto first = batch.begin(); first != batch.end();) {
-      const auto last = std::find_if(first, batch.end(), [&](const CellGroup& group) { return group.model != first->model; });
-      runner.run_model(first, last);
-      first = last;
-    }
-    reference.clear();
+    std::vector<ExperimentCell> cells;
+    for (const CellGroup& group : batch)
+      for (const size_t index : group.cells) cells.push_back({group.model + 1, group.view, work.study.cells[index].method, index});
+    run.run(cells);
+    run.forget_views();
   }
 }
 

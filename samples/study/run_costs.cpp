@@ -6,7 +6,6 @@
 #include <set>
 
 #include "samples/study/run_batches.h"
-#include "samples/study/study_reference.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -14,6 +13,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 double ms_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+
+constexpr double kGBufferBytes = 64.0;
+
+/// What holding the reference in one view takes.
+double bytes_of_view(const Study& study) {
+  return study.pixels() * study.looks() * (kGBufferBytes + 8.0 * static_cast<double>(study.methods.size()));
+}
 
 std::vector<CellGroup> groups_of(const StudyWork& work) {
   std::vector<CellGroup> groups;
@@ -29,7 +35,7 @@ std::vector<CellGroup> groups_of(const StudyWork& work) {
 }  // namespace
 
 std::vector<std::vector<CellGroup>> batches_of(const StudyWork& work) {
-  const auto views = static_cast<size_t>(std::max(1.0, kReferenceBytes / StudyReference::bytes_of_view(work.study)));
+  const auto views = static_cast<size_t>(std::max(1.0, kReferenceBytes / bytes_of_view(work.study)));
   std::map<size_t, std::vector<CellGroup>> batches;
   for (CellGroup& group : groups_of(work)) batches[group.view / views].push_back(std::move(group));
   std::vector<std::vector<CellGroup>> result;
@@ -102,7 +108,7 @@ std::int64_t expected_bytes(const StudyWork& work) {
     views.insert(work.study.cells[index].view);
   }
   if (views.empty()) return 0;
-  const double held = std::min(kReferenceBytes, static_cast<double>(views.size() + 1) * StudyReference::bytes_of_view(work.study));
+  const double held = std::min(kReferenceBytes, static_cast<double>(views.size() + 1) * bytes_of_view(work.study));
   return largest + work.study.reference_cost.bytes + static_cast<std::int64_t>(held);
 }
 

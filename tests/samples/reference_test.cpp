@@ -2,6 +2,7 @@
 
 #include "samples/reference/reference.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -10,6 +11,7 @@
 #include <sstream>
 
 #include "run_program.h"
+#include "samples/experiment/surface_setting.h"
 
 namespace limn {
 namespace {
@@ -48,6 +50,15 @@ TEST(Reference, EveryKeyThatSceneFilesAreReadForHasALine) {
     }
   }
   EXPECT_GT(found, 30);
+  // The settings of [surface] are read by their list: each is known, and complained about by its name.
+  const TemporaryFolder folder;
+  for (const SurfaceSetting& setting : surface_setting_list()) {
+    folder.write("scene.toml", fmt::format("[surface]\n{} = [[\"no value\"]]\n[[object]]\nshape = \"sphere\"\n", setting.name));
+    const RunResult run = run_limn({"info", folder.file("scene.toml")});
+    EXPECT_EQ(run.exit_code, 2) << setting.name;
+    EXPECT_NE(run.err.find(fmt::format("surface.{}", setting.name)), std::string::npos) << run.err;
+    read.insert(setting.name);
+  }
   for (const DocumentedKey& key : scene_keys()) EXPECT_TRUE(read.contains(std::string(key.key))) << key.key << " is read nowhere";
 }
 

@@ -1,0 +1,139 @@
+#pragma once
+// The engine that comparisons, studies and plans run on: models x views x methods x metrics against a reference, giving measurements and
+// pictures. It knows nothing of command lines, files or pages: who runs it says what is to be measured and is told of each step.
+
+#include <map>
+#include <memory>
+
+#include "raymarch/metric.h"
+#include "samples/experiment/observe.h"
+
+namespace limn {
+
+/// One way to model a scene.
+struct ExperimentModel {
+  std::string title{};  ///< For progress: "level set".
+  Scene scene{};
+  SurfaceSettings settings{};
+  std::string refused{};  ///< Why it cannot be built, where that is known beforehand.
+};
+
+/// One way to draw it: a method, or several whose ink makes one picture.
+struct ExperimentMethod {
+  std::string title{};
+  std::vector<MethodCall> calls{};
+  std::optional<double> truth_threshold{};  ///< Where its ink ends (BorderMethod::truth_threshold); unset: only the silhouette has a truth.
+};
+
+struct Experiment {
+  Scene scene{};  ///< What the true border is solved on.
+  std::vector<Camera> cameras{};
+  std::vector<ExperimentMethod> methods{};
+  std::vector<ExperimentModel> models{};  ///< The first is the reference that pictures are held against.
+  std::vector<const Metric*> metrics{};
+  std::optional<FramePath> path{};           ///< How the camera moves for metrics of motion.
+  std::optional<PictureSettings> picture{};  ///< Samples and background of finished pictures; unset: ink at the pixel centres alone.
+  /// Methods without a threshold are measured, too, by the metrics that need none.
+  bool silhouette_of_all = false;
+  /// One model's mesh is the next one's start; times to build are then not each model's own.
+  bool share_meshes = false;
+};
+
+/// One model in one view by one method.
+struct ExperimentCell {
+  size_t model = 0, view = 0, method = 0;
+  size_t id = 0;  ///< The caller's own number for it.
+};
+
+/// The true border of one view.
+struct ExperimentTruth {
+  double threshold = 0.0;
+  std::optional<BorderTruth> truth{};
+  std::string failed{};  ///< Why there is none.
+};
+
+struct Measurement {
+  const Metric* metric = nullptr;
+  MetricValue value{};
+};
+
+/// A cell when it is done. References are good during the call; `drawing` may be taken.
+struct MeasuredCell {
+  ExperimentCell cell{};
+  const SceneModel& model;
+  const Seen& seen;
+  Drawing& drawing;              ///< Refused: nothing was measured.
+  const Drawing& reference;      ///< The same method on the reference; may be refused.
+  const ExperimentTruth* truth;  ///< Null: the method has none.
+  std::vector<Measurement> measurements{};
+  double measure_ms = 0.0;  ///< To draw and to measure, without solving the truth.
+};
+
+/// Who is told. Empty functions are not called.
+struct ExperimentObserver {
+  /// Progress of one step, from 0 to 1: "building level set".
+  std::function<std::function<void(double)>(const std::string& what)> stage{};
+  /// Before each cell: may throw Cancelled.
+  std::function<void()> cell_begins{};
+  std::function<void(size_t model, const SceneModel& built, double ms)> built{};
+  /// Nothing of these cells will come.
+  std::function<void(std::span<const ExperimentCell> cells, const std::string& reason)> refused{};
+  /// Traced; where finished pictures were asked for all methods have drawn.
+  std::function<void(size_t model, size_t view, const SceneModel& built, Seen& seen, std::span<Drawing> drawings)> seen{};
+  std::function<void(size_t view, const ExperimentTruth& truth, double ms)> solved{};
+  std::function<void(MeasuredCell& cell)> measured{};
+};
+
+class ExperimentRun {
+ public:
+  ExperimentRun(Experiment experiment, const ExecutionSettings& how, ExperimentObserver observer);
+  ~ExperimentRun();
+
+  /// Does the cells: those of one model one after the other are built once, those of one view of it traced once. Throws InputError where
+  /// the reference cannot be built, and Cancelled.
+  void run(std::span<const ExperimentCell> cells);
+
+  /// Another way to model the scene; returns its index.
+  size_t add_model(ExperimentModel model);
+  /// Solved when first asked for. Where it cannot be solved it says why.
+  const ExperimentTruth& truth(size_t view, double threshold);
+  void give_truth(size_t view, ExperimentTruth truth);
+  /// The reference in a view, built and traced when first asked for.
+  Seen& reference(size_t view);
+  /// Forgets what was seen of the reference and its truths; the model stays.
+  void forget_views() { views_.clear(); }
+  const Experiment& experiment() const { return experiment_; }
+
+ private:
+  struct ReferenceView {
+    std::optional<Seen> seen{};
+    std::map<size_t, Drawing> drawings{};
+    std::map<double, ExperimentTruth> truths{};
+  };
+  struct Built;  ///< A model while its cells are done.
+  using Cells = std::span<const ExperimentCell>;
+
+  SceneModel build(size_t model);
+  void run_model(Cells cells);
+  void run_view(Built& built, Cells cells);
+  void run_reference(Cells cells);
+  void finish(Built& built, size_t view, Seen& seen, Cells cells, const std::function<Drawing&(size_t)>& take);
+  std::vector<Measurement> measure(Built& built, const ExperimentCell& cell, Seen& seen, Drawing& drawing, const Drawing& reference,
+                                   const ExperimentTruth* truth);
+  DrawnView draw_view(size_t model, const SceneModel& built, const Camera& camera);
+  const Drawing& reference_drawing(size_t view, size_t method);
+  const ExperimentTruth* truth_for(size_t view, size_t method);
+  std::function<void(double)> stage(const std::string& what) const;
+  ExecutionSettings with_progress(const std::string& what) const;
+  bool needs_reference() const;
+  bool needs_ink() const;
+
+  Experiment experiment_;
+  ExecutionSettings how_;
+  ExperimentObserver observer_;
+  std::optional<SceneModel> reference_{};
+  std::map<size_t, ReferenceView> views_{};
+  ObjectMeshCache meshes_{};
+};
+
+}  // namespace limn

@@ -1,0 +1,52 @@
+#pragma once
+// One model in one view: its G-buffers, and what outline methods draw from them.
+
+#include <functional>
+
+#include "raymarch/frames.h"
+#include "raymarch/picture.h"
+#include "sdf/error.h"
+
+namespace limn {
+
+/// A model from one camera, before any method.
+struct Seen {
+  Picture picture{};                          ///< G-buffer; its border is left empty, its composite is the shading where one was asked for.
+  std::vector<GBuffer> moved{};               ///< Frames after the first, which is `picture`.
+  std::vector<Camera> cameras{};              ///< Of them.
+  std::vector<Image<std::int32_t>> before{};  ///< pixels_before() of them.
+  double trace_ms = 0.0;                      ///< Of the first.
+  double all_ms = 0.0;                        ///< Of all frames.
+};
+
+/// Traces the pixel centres; with `path` every frame of it, the first from the camera itself. Throws Cancelled.
+Seen look(const SceneModel& model, const Scene& scene, const Camera& camera, const std::optional<FramePath>& path,
+          const ExecutionSettings& how);
+
+/// What a method draws on one model in one view.
+struct Drawing {
+  Picture picture{};                  ///< Without a G-buffer: border, its time and notes; composite where one was asked for.
+  std::vector<Image<float>> moved{};  ///< Ink frame by frame, the first is the picture's again; empty without a path.
+  std::string refused{};              ///< Why there is none.
+};
+
+/// Whether methods know the frame before: a reference must not, its flips are those of the border itself.
+enum class Frames { in_sequence, each_alone };
+
+/// One method's ink at the pixel centres, and of every frame that was seen.
+Drawing draw(const MethodCall& call, const SceneModel& model, const Scene& scene, const Camera& camera, const Seen& seen, Frames frames);
+
+/// Several methods from rays that are traced once: means over the settings' samples, over the shaded model.
+struct DrawnView {
+  Seen seen{};
+  std::vector<Drawing> drawings{};  ///< One a method.
+};
+/// Called before each method of each sample with its index.
+using BeforeMethod = std::function<void(size_t method)>;
+DrawnView draw_all(std::span<const std::vector<MethodCall>> methods, const SceneModel& model, const Scene& scene, const Camera& camera,
+                   const PictureSettings& settings, const ExecutionSettings& how, const BeforeMethod& before_method = {});
+
+/// What is wrong and what was expected, for a page or a row.
+std::string reason_of(const InputError& error);
+
+}  // namespace limn

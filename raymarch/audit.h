@@ -7,15 +7,17 @@
 
 namespace limn {
 
+/// How bad a finding is, from good to know upwards.
 enum class Severity { info, warning, error };
+/// "info", "warning", "error".
 const char* name_of(Severity severity);
 
 /// One finding: what was looked for, how much of it there is, what follows from it in a sentence, and what helps.
 struct Finding {
-  std::string check{};
-  Severity severity = Severity::info;
-  double value = 0.0;
-  std::string message{};
+  std::string check{};                  ///< AuditCheck::about.name.
+  Severity severity = Severity::info;   ///< The worst that follows.
+  double value = 0.0;                   ///< The number that `message` names.
+  std::string message{};                ///< One sentence.
   std::string remedy{};                 ///< Empty where nothing is wrong.
   std::vector<std::string> surfaces{};  ///< Representations it makes fail; empty with a severity above info: all.
   std::vector<std::string> methods{};   ///< Outline methods it makes fail; empty with a severity above info: all.
@@ -23,16 +25,18 @@ struct Finding {
 
 /// What is to be done with the input. Checks speak of the resolution and the gradient in `surface`; no gradient: of all of them.
 struct AuditSettings {
-  SurfaceSettings surface{};
+  SurfaceSettings surface{};  ///< Resolution, gradient and level that the object is modelled with.
   /// Looks at everything, in a time that grows with the input; otherwise only at what a bounded sample of it tells, which takes less than
   /// about 50 ms and one pass over it.
   bool thorough = false;
   /// What the object is drawn as and by, as in `matters`: checks that can warn of neither are left out. Empty: anything.
-  std::vector<std::string> surfaces{}, methods{};
+  std::vector<std::string> surfaces{},  ///< Representations.
+      methods{};                        ///< Outline methods.
 };
 
 class AuditFacts;  // raymarch/audit/facts.h: what several checks look at, made when first asked for
 
+/// One check: a file in raymarch/audit/ and a line in its registry.
 struct AuditCheck {
   Description about{};  ///< name: Finding::check.
   bool quick = false;   ///< Takes less than about 50 ms, of what is not small from a sample.
@@ -43,13 +47,14 @@ struct AuditCheck {
   std::vector<std::string> surfaces{};  ///< Empty: any.
   std::vector<std::string> methods{};   ///< Empty: any.
 };
+/// All checks, in the order of raymarch/audit/all_audit_checks.cpp.
 const Registry<AuditCheck>& audit_checks();
 
 /// What a check took. What several look at counts for the first that asks for it.
 struct AuditCost {
   std::string check{};  ///< AuditCheck::about.name.
-  bool quick = false;
-  double ms = 0.0;
+  bool quick = false;   ///< AuditCheck::quick.
+  double ms = 0.0;      ///< Wall clock.
 };
 
 /// What the checks find in one object, in the registry's order. Appends to `costs`, if given, a line for each check that was run.

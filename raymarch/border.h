@@ -16,8 +16,7 @@ struct BorderBefore {
   const Image<std::int32_t>& pixels;  ///< pixels_before() (raymarch/frames.h).
 };
 
-/// Everything a method may read. Plain references; a method keeps none of them.
-/// Of two groups of objects that meet in the picture.
+/// Which of two groups of objects that meet in the picture is in front.
 struct GroupOrder {
   std::int64_t places = 0;      ///< Pairs of neighbouring pixels.
   double lower_in_front = 0.0;  ///< Those where the group with the lower key is clearly in front, less those where the other is.
@@ -25,21 +24,23 @@ struct GroupOrder {
 using GroupOrders = std::map<std::pair<std::int32_t, std::int32_t>, GroupOrder>;  ///< By their keys (ids or materials), lower first.
 /// What all samples and methods that see one model from one eye share; who needs it first fills it in.
 struct SharedOrders {
-  std::shared_ptr<const GroupOrders> of_objects{}, of_materials{};
+  std::shared_ptr<const GroupOrders> of_objects{},  ///< Keys are ids; null until somebody needs them.
+      of_materials{};                               ///< Keys are materials; null until somebody needs them.
 };
 
+/// Everything a method may read. Plain references; a method keeps none of them.
 struct BorderInput {
-  const GBuffer& gbuffer;
-  const Camera& camera;
-  const SceneModel& model;
-  const Scene& scene;
+  const GBuffer& gbuffer;                ///< With the layers that BorderMethod::inputs names.
+  const Camera& camera;                  ///< That the G-buffer was seen by.
+  const SceneModel& model;               ///< What the G-buffer shows.
+  const Scene& scene;                    ///< What the model was made from.
   const BorderBefore* before = nullptr;  ///< Null where there is no frame before.
   SharedOrders* orders = nullptr;        ///< Null: found anew for each call.
 };
 
 /// Ink of one method. `coverage` in [0, 1], finite, the G-buffer's size.
 struct Border {
-  Image<float> coverage{};
+  Image<float> coverage{};           ///< 0 no ink, 1 all ink.
   glm::vec3 color{0.0f};             ///< Linear.
   Image<glm::vec3> colors{};         ///< Linear ink colour of each pixel, where a method inks in more than one; empty: `color` everywhere.
   Image<std::uint8_t> status{};      ///< Non-zero where the method is undefined and what it drew is clamped; empty where it never is.
@@ -49,12 +50,14 @@ struct Border {
   Image<std::int32_t> beneath{};
 };
 
+/// An outline method: a file in raymarch/border/ and a line in its registry.
 struct BorderMethod {
-  Description about{};
-  std::vector<std::string> inputs{};  ///< Layers it reads ("NdotV", "Z", …) and "mesh" where it needs one.
-  std::vector<Parameter> parameters{};
+  Description about{};                  ///< Name, help and source.
+  std::vector<std::string> inputs{};    ///< Layers it reads ("NdotV", "Z", …) and "mesh" where it needs one.
+  std::vector<Parameter> parameters{};  ///< What `draw` reads, in the order of help.
   /// Empty where it can run on the model, else the reason why not.
   std::string (*unsupported)(const SceneModel& model, const Scene& scene);
+  /// Draws. Called once for each picture or sample; throws InputError where the model turns out not to be drawable.
   Border (*draw)(const BorderInput& input, const Parameters& parameters);
   /// The number whose level curve N.V = number ends the ink, so that the ink's place can be measured against the truth. Null where the ink
   /// ends elsewhere: of what such a method draws only the model's silhouette has a truth.
@@ -64,7 +67,9 @@ struct BorderMethod {
 /// The method that draws where nobody names one.
 inline constexpr const char* kDefaultMethod = "rim";
 
+/// All outline methods, in the order of raymarch/border/all_methods.cpp.
 const Registry<BorderMethod>& border_methods();
+/// Throws InputError naming the nearest known method. `file` and `field` go into the message.
 inline const BorderMethod& find_border_method(const std::string& name, const std::string& file = {}, const std::string& field = {}) {
   return border_methods().find(name, file, field);
 }

@@ -24,15 +24,15 @@ struct BorderPoint {
 /// A polyline. Walking along it, what it bounds lies to the left as seen on the screen: the object's nearer sheet for a silhouette, the ink
 /// (N.V below the threshold) for an inner border. So the outward normal of a step (dx, dy), y down, is (-dy, dx).
 struct BorderCurve {
-  CurveKind kind = CurveKind::silhouette;
-  int object = 0;       ///< Index from 1, of the nearer sheet.
-  bool closed = false;  ///< The last point joins the first, which is not repeated.
-  std::vector<BorderPoint> points{};
+  CurveKind kind = CurveKind::silhouette;  ///< See CurveKind.
+  int object = 0;                          ///< Index from 1, of the nearer sheet.
+  bool closed = false;                     ///< The last point joins the first, which is not repeated.
+  std::vector<BorderPoint> points{};       ///< At least two, in order along the curve.
 };
 
 /// All visible parts of a border.
 struct BorderCurves {
-  std::vector<BorderCurve> curves{};
+  std::vector<BorderCurve> curves{};  ///< In the same order for equal calls.
 };
 
 /// Image length, px.

@@ -11,9 +11,9 @@ namespace limn {
 
 /// A wander by parts of a pixel about where a camera stands, the same for the same seed.
 struct FramePath {
-  int frames = 16;       ///< Pictures, the first from where the camera stands; >= 1.
-  double step_px = 0.1;  ///< What is nearest moves by this from frame to frame, in (0, 1]; nothing moves farther.
-  std::uint64_t seed = 1;
+  int frames = 16;         ///< Pictures, the first from where the camera stands; >= 1.
+  double step_px = 0.1;    ///< What is nearest moves by this from frame to frame, in (0, 1]; nothing moves farther.
+  std::uint64_t seed = 1;  ///< Of the directions.
   /// Farthest from the first frame, px: half a pixel where the step allows.
   double reach_px() const { return step_px < 0.5 ? 0.5 : step_px; }
 };

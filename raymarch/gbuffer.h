@@ -1,4 +1,5 @@
 #pragma once
+// What a picture shows before any outline is drawn, layer by layer, and single rays for what lies between the pixels.
 
 #include <cstdint>
 
@@ -10,25 +11,33 @@ namespace limn {
 
 /// What is seen at each pixel, as plain buffers. Nothing hit: Z and position infinite, normal 0, NdotV 0, id 0.
 struct GBuffer {
-  int width = 0, height = 0;
-  glm::dvec2 sample{0.5, 0.5};  ///< Where in each pixel its ray went.
-  Image<float> depth{};         ///< Z along the view axis, world units, > 0 in front of a pinhole.
-  Image<glm::vec3> position{};  ///< World.
-  Image<glm::vec3> normal{};    ///< World, unit.
-  Image<float> n_dot_v{};       ///< saturate(N.V), V the unit vector to the eye.
-  Image<std::int32_t> id{};     ///< Object index from 1.
-  Image<std::int32_t> material{};
-  Image<std::int32_t> face{};    ///< Polygon of a mesh, -1 elsewhere.
-  Image<std::uint8_t> status{};  ///< HitStatus.
-  Image<glm::vec3>
-      custom{};  ///< What the scene fills for edge methods (a section map): vertex colours, face groups, world position; or empty.
+  int width = 0,                   ///< Pixels.
+      height = 0;                  ///< Pixels; every layer that is not empty has this size.
+  glm::dvec2 sample{0.5, 0.5};     ///< Where in each pixel its ray went.
+  Image<float> depth{};            ///< Z along the view axis, world units, > 0 in front of a pinhole.
+  Image<glm::vec3> position{};     ///< World.
+  Image<glm::vec3> normal{};       ///< World, unit.
+  Image<float> n_dot_v{};          ///< saturate(N.V), V the unit vector to the eye.
+  Image<std::int32_t> id{};        ///< Object index from 1.
+  Image<std::int32_t> material{};  ///< Of the object, plus the surface's own; 0 where nothing is hit.
+  Image<std::int32_t> face{};      ///< Polygon of a mesh, -1 elsewhere.
+  Image<std::uint8_t> status{};    ///< HitStatus.
+  /// What the scene fills for edge methods (a section map): vertex colours, face groups, world position; or empty.
+  Image<glm::vec3> custom{};
   /// Ids of open meshes that show mostly their back: their normals were turned towards the eye (raymarch/open_sheet.h). Rising.
   std::vector<std::int32_t> turned{};
 };
 
 /// Which layers of a G-buffer are wanted: what nobody reads is neither computed nor stored, its image stays empty.
 struct GBufferLayers {
-  bool depth = true, position = true, normal = true, n_dot_v = true, id = true, material = true, face = true, status = true;
+  bool depth = true,    ///< GBuffer::depth.
+      position = true,  ///< GBuffer::position.
+      normal = true,    ///< GBuffer::normal.
+      n_dot_v = true,   ///< GBuffer::n_dot_v.
+      id = true,        ///< GBuffer::id.
+      material = true,  ///< GBuffer::material.
+      face = true,      ///< GBuffer::face.
+      status = true;    ///< GBuffer::status.
 };
 
 /// What a picture's pixels must not depend on.
@@ -49,20 +58,25 @@ GBuffer render_gbuffer(const SceneModel& model, const Camera& camera, const Exec
 void render_gbuffer(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset,
                     const GBufferLayers& layers, GBuffer& out);
 
-/// Traces single image points: for tests and for metrics at sub-pixel precision. Sizes equal; `n_dot_v` is not saturated; misses are NaN.
+/// What a ray through one image point hits. Without a hit, `position` and `n_dot_v` are NaN and the rest is as it is here.
 struct PointSample {
-  HitStatus status = HitStatus::miss;
-  std::int32_t id = 0;
-  std::int32_t face = -1;    ///< Polygon of a mesh, -1 elsewhere.
-  glm::dvec3 position{0.0};  ///< World.
-  glm::vec3 normal{0.0f};
-  float n_dot_v = 0.0f;
+  HitStatus status = HitStatus::miss;  ///< Only a hit has a point.
+  std::int32_t id = 0;                 ///< Object index from 1.
+  std::int32_t face = -1;              ///< Polygon of a mesh, -1 elsewhere.
+  glm::dvec3 position{0.0};            ///< World.
+  glm::vec3 normal{0.0f};              ///< World, unit.
+  float n_dot_v = 0.0f;                ///< N.V, negative where the surface shows its back.
 };
+/// Traces single image points: for tests and for metrics at sub-pixel precision. Sizes equal.
 void sample_points(const SceneModel& model, const Camera& camera, std::span<const glm::dvec2> points_px, std::span<PointSample> samples);
 
+/// Pixels by what became of their ray.
 struct HitCounts {
-  std::int64_t hits = 0, misses = 0, out_of_steps = 0;
+  std::int64_t hits = 0,  ///< HitStatus::hit.
+      misses = 0,         ///< HitStatus::miss.
+      out_of_steps = 0;   ///< HitStatus::out_of_steps.
 };
+/// Reads the layer `status`.
 HitCounts count_hits(const GBuffer& gbuffer);
 
 }  // namespace limn

@@ -9,10 +9,10 @@
 
 namespace limn {
 
-/// A picture that shares another one's G-buffer, as a layer of that one's file: <name>.R .G .B .A and <name>.Y, its ink.
+/// A picture that shares another one's G-buffer, as a layer of that one's file: NAME.R, .G, .B, .A and NAME.Y, its ink.
 struct NamedLayer {
-  std::string name{};
-  const Picture* picture = nullptr;
+  std::string name{};                ///< NAME of the channels.
+  const Picture* picture = nullptr;  ///< Not null; must outlive the call that writes it.
 };
 
 /// Every layer of a picture as one EXR: R G B A, Z, P, N, NdotV, border, id, material, status (float32 for Z, P, N, NdotV; half elsewhere,
@@ -28,6 +28,7 @@ std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied);
 
 /// One named channel of an image file, top row first. Throws InputError.
 Image<float> read_channel(const std::filesystem::path& file, const std::string& channel);
+/// Channels of an image file, in the file's order. Throws InputError where it cannot be read.
 std::vector<std::string> channel_names(const std::filesystem::path& file);
 
 }  // namespace limn

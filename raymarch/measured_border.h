@@ -7,6 +7,7 @@
 
 namespace limn {
 
+/// Which border is measured, and how precisely.
 struct MeasuredBorderSettings {
   double threshold = 0.4;       ///< Of the rim; 0: the silhouette alone. In [0, 1).
   double precision_px = 0.002;  ///< Crossings are bracketed to this.

@@ -15,37 +15,43 @@ enum class MetricSubject {
   motion,   ///< `moved` and `reference_moved`.
 };
 
+/// Everything a metric may read. Plain references and pointers; what its subject does not need may be empty or null.
 struct MetricInput {
-  const Picture& picture;
-  const Picture& reference;  ///< Same camera and size.
-  const Camera& camera;
+  const Picture& picture;                ///< What is judged.
+  const Picture& reference;              ///< Same camera and size.
+  const Camera& camera;                  ///< Of both pictures.
   const BorderCurves* curves = nullptr;  ///< The model's border (raymarch/measured_border.h).
   const BorderTruth* truth = nullptr;    ///< Same camera and threshold.
-  /// Ink while the camera moves by parts of a pixel, one picture a frame; the same frames for both.
+  /// Ink of `picture` while the camera moves by parts of a pixel, one image a frame.
   std::span<const Image<float>> moved{};
-  std::span<const Image<float>> reference_moved{};
-  /// pixels_before() of each frame but the first (raymarch/frames.h). Empty: each pixel is what it was.
+  std::span<const Image<float>> reference_moved{};  ///< The same frames of `reference`.
+  /// pixels_before() of each frame of `moved` but the first (raymarch/frames.h). Empty: each pixel is what it was.
   std::span<const Image<std::int32_t>> moved_before{};
-  std::span<const Image<std::int32_t>> reference_moved_before{};
-  const SceneModel* model = nullptr;  ///< What `curves` were measured on; `prediction` asks it for its normals.
+  std::span<const Image<std::int32_t>> reference_moved_before{};  ///< The same of `reference_moved`.
+  const SceneModel* model = nullptr;                              ///< What `curves` were measured on; `prediction` asks it for its normals.
 };
 
+/// One number of a metric.
 struct MetricValue {
   std::string name{};  ///< "normal_error_mean"
   double value = 0.0;  ///< NaN where there is nothing to measure.
   std::string unit{};  ///< "px", "deg", "" for a share, a ratio or a count
 };
 
+/// A metric: a file in raymarch/metric/ and a line in its registry.
 struct Metric {
-  Description about{};
+  Description about{};                ///< Name, help and source.
   std::vector<std::string> values{};  ///< Names of the values it yields, with units: "normal_error_mean [deg]".
-  bool lower_is_better = true;
+  bool lower_is_better = true;        ///< Of all its values; where false, higher is better.
+  /// The numbers, each with its unit; NaN where the subject is missing.
   std::vector<MetricValue> (*measure)(const MetricInput& input);
-  MetricSubject subject = MetricSubject::gbuffer;
-  bool any_threshold = false;  ///< Of curves: the same whatever N.V the truth's inner border lies at.
+  MetricSubject subject = MetricSubject::gbuffer;  ///< What `measure` looks at.
+  bool any_threshold = false;                      ///< Of curves: the same whatever N.V the truth's inner border lies at.
 };
 
+/// All metrics, in the order of raymarch/metric/all_metrics.cpp.
 const Registry<Metric>& metrics();
+/// Throws InputError naming the nearest known metric. `file` and `field` go into the message.
 inline const Metric& find_metric(const std::string& name, const std::string& file = {}, const std::string& field = {}) {
   return metrics().find(name, file, field);
 }

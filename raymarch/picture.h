@@ -5,20 +5,24 @@
 
 namespace limn {
 
+/// A finished picture and what it was made from.
 struct Picture {
   GBuffer gbuffer{};                    ///< Of the pixel centres.
   Image<float> border{};                ///< Ink coverage in [0, 1]: mean over the samples; all methods together.
   Image<std::uint8_t> border_status{};  ///< Border::status of the methods at the pixel centres, the largest; empty where none has one.
   Image<glm::vec4> composite{};         ///< Linear, premultiplied RGBA.
   std::vector<std::string> notes{};     ///< Of the methods.
-  double trace_ms = 0.0, border_ms = 0.0;
+  double trace_ms = 0.0,                ///< For all samples.
+      border_ms = 0.0;                  ///< For all methods and samples.
 };
 
+/// An outline method with its parameters.
 struct MethodCall {
-  const BorderMethod* method = nullptr;
-  Parameters parameters{};
+  const BorderMethod* method = nullptr;  ///< From border_methods(); not null when drawn.
+  Parameters parameters{};               ///< From resolve(), for the method's own list.
 };
 
+/// What a picture shows beside the scene: ink, background, layers.
 struct PictureSettings {
   std::vector<MethodCall> methods{};      ///< Inks in order, the last on top.
   int samples = 1;                        ///< Per pixel, 1..1024: 1 is the centre; more follow the R2 sequence (Roberts 2018), centred.
@@ -31,12 +35,13 @@ GBufferLayers layers_read(std::span<const MethodCall> methods);
 
 /// What one frame leaves to the next. Empty before the first.
 struct FrameHistory {
+  /// One sample of the last frame.
   struct Sample {
     GBuffer gbuffer{};                 ///< Z, N and id.
     std::vector<Image<float>> inks{};  ///< Of each method.
   };
-  Camera camera{};
-  std::vector<Sample> samples{};
+  Camera camera{};                      ///< Of the last frame.
+  std::vector<Sample> samples{};        ///< As many as PictureSettings::samples.
   Image<std::int32_t> pixels_before{};  ///< Of the pixel centres, from the last frame to the one before it; empty after the first.
 };
 
@@ -50,9 +55,9 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
 glm::dvec2 sample_offset(int sample, int samples);
 /// The methods' inks for one sample: of the frame before, and of this one.
 struct SampleInks {
-  std::vector<Image<float>> before{};  ///< Empty: there is none.
-  Image<std::int32_t> pixels_before{};
-  std::vector<Image<float>> now{};
+  std::vector<Image<float>> before{};   ///< Empty: there is none.
+  Image<std::int32_t> pixels_before{};  ///< From this frame to the one before, as pixels_before() finds it; empty where there is none.
+  std::vector<Image<float>> now{};      ///< One image for each method, in order.
 };
 /// Adds what the methods draw from one sample's G-buffer to the sums in `picture` (its own G-buffer stays as it is).
 /// Throws InputError where a method finds that it cannot run on the model.

@@ -11,6 +11,7 @@
 
 namespace limn {
 
+/// Which border is solved, and how precisely.
 struct TruthSettings {
   double threshold = 0.4;       ///< Of the rim: its level curve is N.V = threshold; 0 leaves the silhouette alone. In [0, 1).
   double tolerance_px = 0.005;  ///< How far the polylines may lie from the curves.
@@ -22,9 +23,9 @@ struct BorderTruth {
   BorderCurves curves{};  ///< Visible parts only.
   /// Share of each pixel that is ink of the rim: hit, and N.V below the threshold.
   Image<float> coverage{};
-  /// Closed curves on the surfaces, hidden ones and parts included: contour generators, and level curves N.V = threshold.
-  /// Objects that overlap count as one body.
-  int contour_generators = 0, level_curves = 0;
+  /// Contour generators: closed curves on the surfaces, hidden ones and parts included. Objects that overlap count as one body.
+  int contour_generators = 0,
+      level_curves = 0;              ///< The same of level curves N.V = threshold.
   bool exact = true;                 ///< False where a finest affordable version stands in for the surface itself.
   double bound_px = 0.0;             ///< No point of `curves` lies farther from the true border than this; an estimate where not `exact`.
   std::string from{};                ///< What it was solved on, in words: "the field", "the limit surface", "a mesh of level 6".

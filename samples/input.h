@@ -15,21 +15,23 @@ namespace limn {
 
 /// One [border] of a scene file: a method and the parameters it sets.
 struct BorderDefaults {
-  std::string method;
-  std::map<std::string, ParameterInput> parameters;
+  std::string method;                                ///< A name in border_methods().
+  std::map<std::string, ParameterInput> parameters;  ///< By name, as the file has them.
 };
 
+/// What an INPUT is: by its extension, or a name that is no file.
 enum class InputKind { scene_file, mesh, level_set, field, built_in };
 
+/// An input, read: its scene and what its file says of how to draw it.
 struct SceneInput {
-  InputKind kind = InputKind::scene_file;
-  std::string name;  ///< Of the built-in scene, or the file's without folder and extension: names the default outputs.
-  std::string file;  ///< As given; empty for a built-in scene.
-  Scene scene;
-  SurfaceSpec surface;  ///< [surface] of a scene file: what it says and nothing else.
-  std::vector<BorderDefaults> borders;
-  std::vector<std::string> formulas;  ///< The .vm files that a scene file names, as found.
-  double load_ms = 0.0;
+  InputKind kind = InputKind::scene_file;  ///< See InputKind.
+  std::string name;                     ///< Of the built-in scene, or the file's without folder and extension: names the default outputs.
+  std::string file;                     ///< As given; empty for a built-in scene.
+  Scene scene;                          ///< With all meshes and volumes loaded.
+  SurfaceSpec surface;                  ///< [surface] of a scene file: what it says and nothing else.
+  std::vector<BorderDefaults> borders;  ///< The [[border]] tables of a scene file, in order.
+  std::vector<std::string> formulas;    ///< The .vm files that a scene file names, as found.
+  double load_ms = 0.0;                 ///< Time of reading it.
   std::vector<std::string> left_out{};  ///< Grids of a volume that were not asked for by name and cannot be drawn, with the reasons.
 };
 

@@ -20,16 +20,21 @@ Camera camera_of_view(const CameraSettings& settings, const Box& bounds, int ind
 /// The methods with their parameters. A parameter `key` goes to every method that has it, `method.key` to that one.
 std::vector<MethodCall> method_calls(const BorderSpec& spec, const SceneInput& input);
 
+/// Methods, samples and background of a picture. Throws InputError as method_calls does.
 PictureSettings picture_settings(const BorderSpec& spec, const SceneInput& input);
+/// For so many threads (0: all); cancelled where the program is interrupted.
 ExecutionSettings execution_settings(int threads);
 
-/// The whole call with nothing left open, for file headers; the same for any number of threads.
-/// Settings are in it as far as they have an effect on what is built of the scene: `kinds` as SettingUse has them.
+/// What a call is resolved for.
 struct ResolvedModel {
+  /// Must outlive this.
   const Scene& scene;
+  /// Must outlive this.
   const SurfaceSettings& surface;
-  std::vector<std::string> kinds{};
+  std::vector<std::string> kinds{};  ///< Representations that are built; an empty name: each object's natural one.
 };
+/// The whole call with nothing left open, for file headers; the same for any number of threads. Settings are in it as far as they have an
+/// effect on what is built of the scene.
 std::string resolved_call(const std::string& command, const ExperimentSpec& spec, const ResolvedModel& model, const Camera& camera,
                           const PictureSettings& picture);
 /// The camera, wholly said.

@@ -8,9 +8,10 @@
 
 namespace limn {
 
+/// JSON that keeps the order in which keys were added.
 using Json = nlohmann::ordered_json;
 
-/// limn-out/<command>/<name>.
+/// limn-out/COMMAND/NAME.
 std::filesystem::path default_output(const std::string& command, const std::string& name);
 
 /// Lower-case, with the dot.
@@ -24,7 +25,7 @@ void check_output_folder(const std::filesystem::path& folder, bool no_clobber);
 
 /// One JSON document on stdout. Its sentences (warnings, notes, remedies) name settings as options of the command line do (in_flags).
 void print_json(Json document);
-void print_text(const std::string& text);
+void print_text(const std::string& text);  ///< Text on stdout. Throws MachineError where it cannot be written.
 /// A sentence on stderr, kept to one line, with settings as options.
 void print_note(const std::string& text);
 

@@ -1,4 +1,5 @@
 #pragma once
+// Progress on stderr.
 
 #include <chrono>
 #include <functional>
@@ -9,7 +10,9 @@ namespace limn {
 /// One line on stderr that fills up, for a person at a terminal; says nothing where `shown` is false.
 class ProgressBar {
  public:
+  /// See wants_progress().
   explicit ProgressBar(bool shown) : shown_(shown) {}
+  /// Takes the line away.
   ~ProgressBar() { clear(); }
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;

@@ -15,10 +15,13 @@ SceneInput load_scene_file(const std::filesystem::path& file);
 
 /// How the files that a scene names are read.
 struct SceneReaders {
+  /// For mesh = "FILE".
   std::function<Mesh(const std::filesystem::path& file)> mesh = [](const auto& file) { return load_mesh(file); };
+  /// For volume files; `grid` as for read_level_set().
   std::function<LevelSet(const std::filesystem::path& file, const std::string& grid)> volume = [](const auto& file, const auto& grid) {
     return read_level_set(file, grid);
   };
+  /// For vm = "FILE".
   std::function<Field(const std::filesystem::path& file)> vm = [](const auto& file) { return load_vm(file).field; };
 };
 

@@ -8,6 +8,7 @@
 
 namespace limn {
 
+/// How rays leave the camera: from one point (a pinhole), or parallel to each other.
 enum class Projection { perspective, orthographic };
 
 /// What a user says of a camera. Missing eye, target or height are framed from the scene's bounds.
@@ -16,25 +17,26 @@ struct CameraSettings {
   std::optional<glm::dvec3> target{};  ///< World.
   /// World, from the target towards the eye, any length: where to look from when `eye` is missing (view_direction gives a set of them).
   std::optional<glm::dvec3> direction{};
-  glm::dvec3 up{0.0, 1.0, 0.0};
-  Projection projection = Projection::perspective;
-  double vertical_fov = 0.6108652381980153;  ///< Radians, in (0, pi); perspective only. Default 35 degrees.
-  std::optional<double> ortho_height{};      ///< World units from the bottom to the top of the picture; orthographic only.
-  int width_px = 1280;
-  int height_px = 720;
+  glm::dvec3 up{0.0, 1.0, 0.0};                     ///< World, any length; not along the view.
+  Projection projection = Projection::perspective;  ///< Says which of `vertical_fov` and `ortho_height` is read.
+  double vertical_fov = 0.6108652381980153;         ///< Radians, in (0, pi); perspective only. Default 35 degrees.
+  std::optional<double> ortho_height{};             ///< World units from the bottom to the top of the picture; orthographic only.
+  int width_px = 1280;                              ///< 1..16384.
+  int height_px = 720;                              ///< 1..16384.
 };
 
 /// A camera with nothing left open. Pixel coordinates: origin top left, centres at +0.5 (sdf/image.h).
 struct Camera {
-  Projection projection = Projection::perspective;
-  glm::dvec3 eye{0.0, 0.0, 1.0};      ///< World. Orthographic: a point of the plane Z = 0.
-  glm::dmat3 world_from_camera{1.0};  ///< Columns: right, up, backward; orthonormal.
-  double focal_px = 1000.0;           ///< Perspective: distance of the image plane, in pixels (square pixels).
-  double pixels_per_unit = 100.0;     ///< Orthographic: the scale.
-  int width_px = 1280;
-  int height_px = 720;
+  Projection projection = Projection::perspective;  ///< Says which of `focal_px` and `pixels_per_unit` is read.
+  glm::dvec3 eye{0.0, 0.0, 1.0};                    ///< World. Orthographic: a point of the plane Z = 0.
+  glm::dmat3 world_from_camera{1.0};                ///< Columns: right, up, backward; orthonormal.
+  double focal_px = 1000.0;                         ///< Perspective: distance of the image plane, in pixels (square pixels).
+  double pixels_per_unit = 100.0;                   ///< Orthographic: the scale.
+  int width_px = 1280;                              ///< Picture size.
+  int height_px = 720;                              ///< Picture size.
 };
 
+/// The ray of one image point.
 struct CameraRay {
   glm::dvec3 origin;     ///< World.
   glm::dvec3 direction;  ///< World, unit.
@@ -63,11 +65,11 @@ double pixels_per_unit_at(const Camera& camera, double z);
 /// The same camera seen from an origin moved to `origin` (world): used to recentre before going to float.
 Camera moved(const Camera& camera, const glm::dvec3& origin);
 
-/// `count` unit directions spread evenly on the sphere (Fibonacci lattice; first one towards the default view).
+/// Unit direction `index` (from 0) of `count` that are spread evenly over the sphere (Fibonacci lattice). The first is the default view's.
 glm::dvec3 view_direction(int index, int count);
 
-/// 4x4 matrices for file headers, column-major: camera from world, and normalised device coordinates from world.
+/// For file headers, column-major: from world to camera coordinates.
 glm::dmat4 camera_from_world_matrix(const Camera& camera);
-glm::dmat4 ndc_from_world_matrix(const Camera& camera);
+glm::dmat4 ndc_from_world_matrix(const Camera& camera);  ///< For file headers, column-major: from world to normalised device coordinates.
 
 }  // namespace limn

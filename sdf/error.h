@@ -21,8 +21,8 @@ struct InputFault {
 /// what() is one line: `file:field: problem (got value); expected`.
 class InputError : public std::runtime_error {
  public:
-  explicit InputError(InputFault fault);
-  const InputFault& fault() const { return fault_; }
+  explicit InputError(InputFault fault);              ///< what() is made from the fault.
+  const InputFault& fault() const { return fault_; }  ///< The parts that what() is made from.
 
  private:
   InputFault fault_;
@@ -40,6 +40,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 /// "; did you mean 'sphere'? known: box, sphere" for a fault's `expected`.
 std::string known_names(std::string_view name, const std::vector<std::string>& candidates);
 
+/// What LIMN_CHECK calls: prints the condition and its place on stderr, and aborts.
 [[noreturn]] void check_failed(const char* condition, const char* file, int line);
 
 }  // namespace limn

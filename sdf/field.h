@@ -21,11 +21,14 @@ struct FieldTraits {
   Box bounds{};                 ///< Holds the surface; infinite for planes and unbounded lattices; empty for an empty surface.
 };
 
+/// An immutable implicit surface. Copies share one program; any number of threads may read it. Made by sdf/shape.h, field_from_formula(),
+/// field_from_functions() and vm_field().
 class Field {
  public:
+  /// For makers of programs in limn itself; `program` is not null.
   explicit Field(std::shared_ptr<const FieldProgram> program) : program_(std::move(program)) {}
-  const FieldProgram& program() const { return *program_; }
-  const FieldTraits& traits() const;
+  const FieldProgram& program() const { return *program_; }  ///< Valid as long as a copy of the field is.
+  const FieldTraits& traits() const;                         ///< Valid as long as a copy of the field is.
 
  private:
   std::shared_ptr<const FieldProgram> program_;
@@ -45,30 +48,38 @@ struct GradientBounds {
 
 /// Value, gradient and Hessian at a point.
 struct FieldJet {
-  double value = 0.0;
-  glm::dvec3 gradient{0.0};
-  glm::dmat3 hessian{0.0};  ///< Symmetric. At a crease or a CSG seam: that of one of the two sides.
+  double value = 0.0;        ///< f
+  glm::dvec3 gradient{0.0};  ///< grad f, world.
+  glm::dmat3 hessian{0.0};   ///< Symmetric. At a crease or a CSG seam: that of one of the two sides.
 };
 
 /// Evaluates one field; owns its scratch memory, so keep one for each thread. All points are world points.
 /// At a crease the gradient is that of one of the two sides; where it is undefined (centre of a sphere) it is finite.
 class FieldEvaluator {
  public:
+  /// Keeps a copy of the field.
   explicit FieldEvaluator(const Field& field);
+  /// Frees the scratch memory.
   ~FieldEvaluator();
+  /// Takes the other's scratch memory; the other can only be assigned to or destroyed.
   FieldEvaluator(FieldEvaluator&&) noexcept;
+  /// Takes the other's scratch memory; the other can only be assigned to or destroyed.
   FieldEvaluator& operator=(FieldEvaluator&&) noexcept;
 
-  const Field& field() const { return field_; }
+  const Field& field() const { return field_; }  ///< Valid as long as the evaluator is.
 
-  /// f at each point; sizes equal. Double, and float for marching (relative error about 1e-6 of the field's extent).
+  /// f at each point; sizes equal.
   void values(std::span<const glm::dvec3> points, std::span<double> values);
+  /// The same in single precision, for marching: relative error about 1e-6 of the field's extent.
   void values(std::span<const glm::vec3> points, std::span<float> values);
-  /// f and grad f at each point.
+  /// f and grad f at each point; sizes equal.
   void gradients(std::span<const glm::dvec3> points, std::span<double> values, std::span<glm::dvec3> gradients);
+  /// f, grad f and the Hessian at each point; sizes equal.
   void jets(std::span<const glm::dvec3> points, std::span<FieldJet> jets);
 
+  /// f at one point. Many points at once (values()) take less time each.
   double value(const glm::dvec3& point);
+  /// f, grad f and the Hessian at one point.
   FieldJet jet(const glm::dvec3& point);
 
   /// Bounds of f over a box: never too narrow; the tighter of interval arithmetic and the Lipschitz bound about the centre.

@@ -10,10 +10,11 @@
 
 namespace limn {
 
+/// What a helper program may take.
 struct GuardLimits {
   std::int64_t memory_bytes = std::int64_t{6} << 30;  ///< Address space of the helper, beyond what it starts with.
-  std::int64_t answer_bytes = std::int64_t{4} << 30;
-  std::chrono::milliseconds time{120'000};
+  std::int64_t answer_bytes = std::int64_t{4} << 30;  ///< Size of its answer.
+  std::chrono::milliseconds time{120'000};            ///< Wall clock.
 };
 
 /// Runs the helper program `name` (found in $LIMN_HELPERS, beside the running program, in the installed libexec folder or in the build
@@ -27,17 +28,19 @@ std::vector<std::byte> run_guarded(const std::string& name, std::span<const std:
 /// Bytes in and out of the pipe, little-endian, with bounds checked on reading (InputError naming `file`).
 class ByteWriter {
  public:
+  /// The bytes of a trivially copyable value.
   template <class T>
   void put(const T& value) {
     append(&value, sizeof value);
   }
+  /// The count as 64 bits, then the elements.
   template <class T>
   void put_span(std::span<const T> values) {
     put(static_cast<std::uint64_t>(values.size()));
     append(values.data(), values.size_bytes());
   }
-  void put_text(const std::string& text) { put_span(std::span<const char>(text)); }
-  std::vector<std::byte> bytes{};
+  void put_text(const std::string& text) { put_span(std::span<const char>(text)); }  ///< As put_span.
+  std::vector<std::byte> bytes{};                                                    ///< What was put so far.
 
  private:
   void append(const void* data, size_t size) {
@@ -46,15 +49,19 @@ class ByteWriter {
   }
 };
 
+/// Takes apart what a ByteWriter put together, in the same order.
 class ByteReader {
  public:
+  /// `bytes` must outlive the reader; `file` goes into messages.
   ByteReader(std::span<const std::byte> bytes, std::string file) : bytes_(bytes), file_(std::move(file)) {}
+  /// What ByteWriter::put put. Throws InputError at the end of the bytes.
   template <class T>
   T get() {
     T value;
     take(&value, sizeof value);
     return value;
   }
+  /// What ByteWriter::put_span put. Throws InputError where the count is larger than what is left.
   template <class T>
   std::vector<T> get_vector() {
     const auto count = get<std::uint64_t>();
@@ -63,6 +70,7 @@ class ByteReader {
     take(values.data(), values.size() * sizeof(T));
     return values;
   }
+  /// What ByteWriter::put_text put. Throws InputError where the count is larger than what is left.
   std::string get_text() {
     const std::vector<char> text = get_vector<char>();
     return std::string(text.begin(), text.end());
@@ -75,7 +83,7 @@ class ByteReader {
     bytes_ = bytes_.subspan(part.size());
     return part;
   }
-  bool done() const { return bytes_.empty(); }
+  bool done() const { return bytes_.empty(); }  ///< True where nothing is left.
 
  private:
   void take(void* target, size_t size);
@@ -84,8 +92,10 @@ class ByteReader {
   std::string file_{};
 };
 
-/// For the helper programs: sends the answer and returns the exit code; `reason` must be one line.
+/// For the helper programs: sends the answer and returns the program's exit code.
 int send_answer(std::span<const std::byte> answer);
+/// For the helper programs: sends why the file is at fault (one line; control characters become spaces) and returns the program's exit
+/// code.
 int send_refusal(const std::string& reason);
 
 /// Plain checks every reader makes first: exists, is a regular file, is not empty, is readable. Throws InputError.

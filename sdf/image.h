@@ -1,4 +1,5 @@
 #pragma once
+// Pictures in memory.
 
 #include <cstddef>
 #include <vector>
@@ -16,19 +17,22 @@ namespace limn {
 ///       y, height
 template <class T>
 struct Image {
-  int width = 0;
-  int height = 0;
-  std::vector<T> pixels{};
+  int width = 0;            ///< Pixels.
+  int height = 0;           ///< Pixels.
+  std::vector<T> pixels{};  ///< width * height of them, row by row.
 
+  /// No pixels.
   Image() = default;
+  /// All pixels the same.
   Image(int width_px, int height_px, const T& fill = T{})
       : width(width_px), height(height_px), pixels(static_cast<size_t>(width_px) * static_cast<size_t>(height_px), fill) {}
 
+  /// Place of pixel (x, y) in `pixels`; not checked.
   size_t index(int x, int y) const { return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x); }
-  T& at(int x, int y) { return pixels[index(x, y)]; }
-  const T& at(int x, int y) const { return pixels[index(x, y)]; }
-  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
-  size_t size() const { return pixels.size(); }
+  T& at(int x, int y) { return pixels[index(x, y)]; }                                      ///< Pixel (x, y); not checked.
+  const T& at(int x, int y) const { return pixels[index(x, y)]; }                          ///< Pixel (x, y); not checked.
+  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }  ///< True where there is a pixel (x, y).
+  size_t size() const { return pixels.size(); }                                            ///< Number of pixels.
 };
 
 }  // namespace limn

@@ -20,32 +20,34 @@ struct LevelSetData;  // sdf/level_set_data.h
 
 /// What the band holds where it matters: at the cells that the surface crosses, whose eight nodes differ in sign.
 struct BandFacts {
-  std::int64_t crossed_cells = 0;
+  std::int64_t crossed_cells = 0;  ///< Cells whose eight nodes differ in sign.
   /// By gradient, in the order of gradients(): the crossed cells for which it reads a node outside the band, where there is no distance.
   std::vector<std::int64_t> lacking{};
   std::int64_t near_nodes = 0;      ///< Nodes of the band that are within half a voxel of the surface by their own value.
   std::int64_t unsigned_nodes = 0;  ///< Those of them without a neighbour of the other sign: surface that no change of sign shows.
 };
 
+/// What a level set is, and what was found of it when it was made.
 struct LevelSetInfo {
-  std::string name{};              ///< The grid's name.
-  Affine world_from_index{};       ///< Voxel (i, j, k) has its node at world_from_index.point(i, j, k).
-  double voxel_size = 0.0;         ///< World; the smallest of the three where they differ.
-  double half_width_voxels = 0.0;  ///< Of the band that is really there, inside and outside (the smaller), over most of the surface.
-  BandFacts band{};
-  std::int64_t active_voxels = 0;
-  std::int64_t bytes = 0;  ///< Of the NanoVDB grid that is read.
-  Box bounds{};            ///< World, around the zero crossings; empty where there are none.
-  double build_ms = 0.0;
+  std::string name{};                 ///< The grid's name.
+  Affine world_from_index{};          ///< Voxel (i, j, k) has its node at world_from_index.point(i, j, k).
+  double voxel_size = 0.0;            ///< World; the smallest of the three where they differ.
+  double half_width_voxels = 0.0;     ///< Of the band that is really there, inside and outside (the smaller), over most of the surface.
+  BandFacts band{};                   ///< See BandFacts.
+  std::int64_t active_voxels = 0;     ///< Nodes of the band.
+  std::int64_t bytes = 0;             ///< Of the NanoVDB grid that is read.
+  Box bounds{};                       ///< World, around the zero crossings; empty where there are none.
+  double build_ms = 0.0;              ///< Time of building or reading it.
   std::vector<std::string> warnings;  ///< What a person should know before trusting it, each with its number.
 };
 
 /// An immutable grid; copying copies a pointer.
 class LevelSet {
  public:
+  /// For makers of level sets in limn itself; `data` is not null.
   explicit LevelSet(std::shared_ptr<const LevelSetData> data) : data_(std::move(data)) {}
-  const LevelSetData& data() const { return *data_; }
-  const LevelSetInfo& info() const;
+  const LevelSetData& data() const { return *data_; }  ///< Valid as long as a copy of the level set is.
+  const LevelSetInfo& info() const;                    ///< Valid as long as a copy of the level set is.
 
  private:
   std::shared_ptr<const LevelSetData> data_{};
@@ -56,10 +58,10 @@ using Stencil = std::array<std::array<std::uint8_t, 6>, 6>;
 
 /// How a gradient is read from a grid: one file in sdf/gradients/ and one line in sdf/gradients/all_gradients.cpp.
 struct GradientDescriptor {
-  Description about{};
+  Description about{};       ///< Name, help and source.
   double half_width_voxels;  ///< Of the band it needs around a surface point, so that no stencil leaves the band.
-  Stencil stencil;
-  int order;  ///< Of the normal's angle, by voxel size.
+  Stencil stencil;           ///< The nodes it reads.
+  int order;                 ///< Of the normal's angle, by voxel size.
   /// That angle, radians, is about normal_constant * (curvature * voxel)^order: measured on the unit sphere at a tenth.
   double normal_constant = 0.0;
   /// Gradients (world, not normalised) at world points within one voxel of the surface; sizes equal.
@@ -70,11 +72,14 @@ struct GradientDescriptor {
   void (*hessians)(const LevelSetData&, std::span<const glm::dvec3> points, std::span<FieldJet> jets);
 };
 
+/// All gradients, in the order of sdf/gradients/all_gradients.cpp.
 const Registry<GradientDescriptor>& gradients();
+/// Throws InputError naming the nearest known gradient. `file` and `field` go into the message.
 inline const GradientDescriptor& find_gradient(const std::string& name, const std::string& file = {}, const std::string& field = {}) {
   return gradients().find(name, file, field);
 }
 
+/// How a level set is built.
 struct LevelSetSettings {
   double voxel_size = 0.0;                         ///< World, > 0.
   double half_width_voxels = 3.0;                  ///< At least 1.8 (so that every cell on the surface lies in the band).
@@ -100,9 +105,11 @@ LevelSet level_set_from_blocks(std::span<const LevelSetBlock> blocks, double vox
 
 /// One grid of a .vdb file, as `limn info` and error messages list them.
 struct GridSummary {
-  std::string name, value_type, grid_class;
-  std::int64_t active_voxels = 0;
-  double voxel_size = 0.0;
+  std::string name,                ///< As in the file; may be empty.
+      value_type,                  ///< OpenVDB's or NanoVDB's name: "float", "half", "Fp8".
+      grid_class;                  ///< "level set", "fog volume", "unknown".
+  std::int64_t active_voxels = 0;  ///< -1 where the file does not say.
+  double voxel_size = 0.0;         ///< World.
 };
 
 /// Guarded: the file is read by a child process with limits on memory and time (sdf/guard.h).
@@ -129,10 +136,11 @@ void level_set_values(const LevelSet& level_set, std::span<const glm::dvec3> poi
 
 /// The zero surface as polygons, by dual contouring on the grid (OpenVDB volumeToMesh): positions in world, faces wound outwards.
 struct PolygonSoup {
-  std::vector<glm::dvec3> positions{};
-  std::vector<std::int32_t> face_sizes{};
-  std::vector<std::int32_t> corner_vertices{};
+  std::vector<glm::dvec3> positions{};          ///< World.
+  std::vector<std::int32_t> face_sizes{};       ///< Corners of each face, 3 or 4.
+  std::vector<std::int32_t> corner_vertices{};  ///< All faces' corners one after the other, as indices into `positions`.
 };
+/// The zero surface of a level set. See PolygonSoup.
 PolygonSoup mesh_from_level_set(const LevelSet& level_set);
 
 }  // namespace limn

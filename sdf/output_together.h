@@ -1,4 +1,5 @@
 #pragma once
+// Files that belong together, written whole or not at all.
 
 #include <filesystem>
 #include <functional>
@@ -9,8 +10,8 @@ namespace limn {
 
 /// A file to be written: `write` is called with the path of a temporary file.
 struct OutputFile {
-  std::filesystem::path target{};
-  std::function<void(const std::filesystem::path&)> write{};
+  std::filesystem::path target{};                             ///< Where it is to be.
+  std::function<void(const std::filesystem::path&)> write{};  ///< Throws where writing fails.
 };
 
 /// Text or bytes at hand.

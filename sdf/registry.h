@@ -18,11 +18,12 @@ class Registry {
   /// `what` names the kind in messages: "method".
   Registry(std::string what, std::vector<T> all) : what_(std::move(what)), all_(std::move(all)) {}
 
-  auto begin() const { return all_.begin(); }
-  auto end() const { return all_.end(); }
-  std::size_t size() const { return all_.size(); }
-  const T& operator[](std::size_t i) const { return all_[i]; }
+  auto begin() const { return all_.begin(); }                   ///< For range-based loops.
+  auto end() const { return all_.end(); }                       ///< For range-based loops.
+  std::size_t size() const { return all_.size(); }              ///< Number of entries.
+  const T& operator[](std::size_t i) const { return all_[i]; }  ///< Entry `i` in the list's order; not checked.
 
+  /// Of all entries, in order.
   std::vector<std::string> names() const {
     std::vector<std::string> names;
     for (const T& one : all_) names.push_back(one.about.name);

@@ -1,6 +1,11 @@
 #pragma once
 // All of limn::sdf that is installed: fields, level sets, cameras, images, errors. The build installs the headers that are named here.
 
+/// \namespace limn
+/// All that limn declares. Lengths are in world units unless a name ends in `_px` or `_voxels`; angles are radians unless it ends in
+/// `_deg`; transforms are named target_from_source; fields and level sets are negative inside. Functions throw InputError for what a caller
+/// can cause and MachineError where the machine fails.
+
 #include "sdf/camera.h"
 #include "sdf/color.h"
 #include "sdf/descriptor.h"

@@ -10,11 +10,12 @@ namespace limn {
 
 /// A registry entry: one file in sdf/shapes/ and one line in sdf/shapes/all_shapes.cpp.
 struct ShapeDescriptor {
-  Description about{};
-  std::vector<Parameter> parameters{};
-  Field (*make)(const Parameters&);  ///< Throws InputError for combinations that no single range can exclude.
+  Description about{};                  ///< Name, help and source.
+  std::vector<Parameter> parameters{};  ///< What `make` reads, in the order of help.
+  Field (*make)(const Parameters&);     ///< Throws InputError for combinations that no single range can exclude.
 };
 
+/// All shapes, in the order of sdf/shapes/all_shapes.cpp.
 const Registry<ShapeDescriptor>& shapes();
 /// Throws InputError naming the nearest known shape. `file` and `field` go into the message.
 inline const ShapeDescriptor& find_shape(const std::string& name, const std::string& file = {}, const std::string& field = {}) {
@@ -27,6 +28,7 @@ Field make_shape(const std::string& name, const std::map<std::string, std::vecto
 // The operations throw InputError for numbers that are not finite or out of the ranges given (fields "smooth", "shell", "offset",
 // "translate", "rotate", "scale").
 
+/// How two fields become one; `difference`: the first without the second.
 enum class Csg { union_, intersection, difference };
 
 /// `smooth_radius` (world, >= 0): 0 is sharp (min, max); above it a polynomial blend of second-order contact (C2), whose zones
@@ -37,6 +39,7 @@ Field combine(Csg operation, std::span<const Field> fields, double smooth_radius
 
 Field offset(const Field& field, double distance);  ///< f - distance: grown where distance > 0 (world).
 Field shell(const Field& field, double thickness);  ///< |f| - thickness/2: a wall of that thickness (world, > 0).
+/// The surface moved by `by` (world).
 Field translate(const Field& field, const glm::dvec3& by);
 Field rotate(const Field& field, const glm::dvec3& axis, double angle);  ///< Radians, right-handed; axis need not be unit.
 Field scale(const Field& field, double factor);                          ///< Exact; not 0, negative ones mirror.

@@ -9,10 +9,11 @@
 
 namespace limn {
 
+/// What a .vm file holds.
 struct VmField {
   /// Parts without thickness (two planes that face each other at no distance) are left out.
-  Field field;  ///< No steeper than 1 anywhere: near the surface `scale` times what the file computes, the same sign everywhere.
-  double scale = 1.0;
+  Field field;         ///< No steeper than 1 anywhere: near the surface `scale` times what the file computes, the same sign everywhere.
+  double scale = 1.0;  ///< See `field`; above 0.
   std::string unbounded{};  ///< Empty where interval arithmetic bounds the surface, else along which axes it does not, in words.
 };
 
@@ -20,6 +21,7 @@ struct VmField {
 /// Throws InputError with file and line: not the format, more than 10,000 operations, an operation with jumps; nothing inside; a slope
 /// without bound where the surface is (a division by 0, a square root of 0).
 VmField vm_field(std::string_view text, const std::string& file);
+/// The same of a file. Throws InputError where it cannot be read, too.
 VmField load_vm(const std::filesystem::path& file);
 
 }  // namespace limn

@@ -1,4 +1,5 @@
 #pragma once
+// Mesh files in and out.
 
 #include <filesystem>
 
@@ -7,8 +8,9 @@
 
 namespace limn {
 
+/// What reading a mesh may take.
 struct ImportSettings {
-  GuardLimits limits;
+  GuardLimits limits;                       ///< Of the child process that reads .gltf and .glb.
   std::int64_t max_elements = 200'000'000;  ///< Vertices plus corners; more is refused.
 };
 

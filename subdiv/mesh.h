@@ -11,15 +11,16 @@
 
 namespace limn {
 
-/// Semi-sharp edge or vertex of a subdivision cage; sharpness 0 is smooth, 10 and above is infinitely sharp (OpenSubdiv).
+/// Semi-sharp edge of a subdivision cage; sharpness 0 is smooth, 10 and above is infinitely sharp (OpenSubdiv).
 struct Crease {
-  std::int32_t vertex_a = 0;
-  std::int32_t vertex_b = 0;
-  float sharpness = 0.0f;
+  std::int32_t vertex_a = 0;  ///< Index into Mesh::positions.
+  std::int32_t vertex_b = 0;  ///< Index into Mesh::positions.
+  float sharpness = 0.0f;     ///< >= 0.
 };
+/// Semi-sharp vertex of a subdivision cage; sharpness as for a Crease.
 struct CornerTag {
-  std::int32_t vertex = 0;
-  float sharpness = 0.0f;
+  std::int32_t vertex = 0;  ///< Index into Mesh::positions.
+  float sharpness = 0.0f;   ///< >= 0.
 };
 
 /// What happens to open edges under subdivision: OpenSubdiv's VTX_BOUNDARY_NONE, EDGE_ONLY, EDGE_AND_CORNER.
@@ -38,27 +39,27 @@ struct Mesh {
   std::vector<glm::vec3> vertex_colors{};       ///< Linear, one for each vertex; or empty.
   std::vector<std::int32_t> face_materials{};   ///< Index into material_names for each face; or empty.
   std::vector<std::int32_t> face_groups{};      ///< Index into group_names for each face; or empty.
-  std::vector<std::string> material_names{};
+  std::vector<std::string> material_names{};    ///< As in the file; the same name may occur twice.
   std::vector<glm::vec3> material_colors{};  ///< Linear, one for each of material_names; or empty. Vertex colours are multiplied by them.
-  std::vector<std::string> group_names{};
-  std::vector<Crease> creases{};
-  std::vector<CornerTag> corners{};
-  BoundaryRule boundary = BoundaryRule::edge_and_corner;
-  CreaseMethod crease_method = CreaseMethod::uniform;
-  TriangleRule triangle_rule = TriangleRule::catmark;
-  std::vector<std::int32_t> holes{};           ///< Faces of a cage that are refined and not drawn; rising, unique.
+  std::vector<std::string> group_names{};    ///< As in the file.
+  std::vector<Crease> creases{};             ///< Of a cage; empty where the file has none.
+  std::vector<CornerTag> corners{};          ///< Of a cage; empty where the file has none.
+  BoundaryRule boundary = BoundaryRule::edge_and_corner;  ///< Of a cage.
+  CreaseMethod crease_method = CreaseMethod::uniform;     ///< Of a cage.
+  TriangleRule triangle_rule = TriangleRule::catmark;     ///< Of a cage.
+  std::vector<std::int32_t> holes{};                      ///< Faces of a cage that are refined and not drawn; rising, unique.
   std::vector<std::int32_t> face_smoothing{};  ///< Smoothing group of each face, 0: smooth with no other; or empty: the file has none.
   bool draws_colors = true;                    ///< False: the object's own color is drawn, whatever colours the file has.
   /// What the reader dropped, repaired or ignored, a sentence each with its count; for people, shown once.
   std::vector<std::string> warnings{};
 
-  size_t face_count() const { return face_sizes.size(); }
-  size_t vertex_count() const { return positions.size(); }
+  size_t face_count() const { return face_sizes.size(); }   ///< Holes included.
+  size_t vertex_count() const { return positions.size(); }  ///< Unused ones included.
 };
 
 /// For each vertex whether a face that is drawn uses it (what no face uses, or holes alone, does not count).
 std::vector<char> drawn_vertices(const Mesh& mesh);
-/// Of the vertices that are drawn.
+/// The box around the vertices that are drawn, in the file's units; empty where there are none.
 Box bounds(const Mesh& mesh);
 /// Index of each face's first corner, with one past the end at the back: size face_count() + 1.
 std::vector<std::int32_t> first_corners(const Mesh& mesh);
@@ -80,13 +81,13 @@ struct Smoothing {
 
 /// Triangles ready to trace.
 struct TriangleMesh {
-  std::vector<glm::dvec3> positions{};
+  std::vector<glm::dvec3> positions{};             ///< In the mesh's units and axes.
   std::vector<glm::uvec3> triangles{};             ///< Counter-clockwise seen from outside.
   std::vector<glm::vec3> corner_normals{};         ///< Unit; three for each triangle, or empty: the facets' own.
   std::vector<std::int32_t> triangle_faces{};      ///< The polygon each came from.
   std::vector<std::int32_t> triangle_materials{};  ///< Or empty.
   std::int64_t dropped_triangles = 0;              ///< Without area; they are in none of the arrays above.
-  std::int64_t bytes() const;
+  std::int64_t bytes() const;                      ///< Memory that the arrays hold.
 };
 
 /// The polygons of `mesh` as triangles: fans for convex faces, ear clipping for the others; zero-area triangles are dropped and counted.

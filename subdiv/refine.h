@@ -10,23 +10,27 @@
 
 namespace limn {
 
+/// How a cage is subdivided: Catmull and Clark 1978, Loop 1987, or by bilinear interpolation. In the terms of OpenSubdiv.
 enum class Scheme { catmark, loop, bilinear };
-const char* name_of(Scheme scheme);
+const char* name_of(Scheme scheme);  ///< "catmark", "loop", "bilinear".
 /// What a mesh is subdivided by where nobody says: Loop's where it has triangles only, else Catmull-Clark's.
 Scheme default_scheme(const Mesh& mesh);
 
+/// How a cage is refined.
 struct RefineSettings {
-  Scheme scheme = Scheme::catmark;
-  int level = 2;         ///< 0..8; 0 leaves the cage's faces as they are.
-  bool to_limit = true;  ///< Vertices moved onto the limit surface (what the renderer wants); false keeps the refined cage.
-  NormalKind normals = NormalKind::limit;
-  std::int64_t max_bytes = std::int64_t{8} << 30;
+  Scheme scheme = Scheme::catmark;  ///< `loop` wants triangles.
+  int level = 2;                    ///< 0..8; 0 leaves the cage's faces as they are.
+  bool to_limit = true;             ///< Vertices moved onto the limit surface (what the renderer wants); false keeps the refined cage.
+  NormalKind normals = NormalKind::limit;          ///< Which corner normals the result has; only `limit` fills them.
+  std::int64_t max_bytes = std::int64_t{8} << 30;  ///< Refuses (InputError, with the prediction) what would be larger.
   bool keep_holes = false;  ///< Faces with a hole tag stay, tagged: for who subdivides the result further. Else they are left out.
 };
 
 /// What a refinement would hold, known before memory is taken.
 struct RefinedSize {
-  std::int64_t vertices = 0, faces = 0, bytes = 0;
+  std::int64_t vertices = 0,  ///< Of the refined mesh.
+      faces = 0,              ///< Of the refined mesh.
+      bytes = 0;              ///< Of the mesh and of what refining it takes.
 };
 /// Exact for Catmull-Clark, Loop and bilinear: counted from vertices, edges and corners. Level outside 0..8 is an InputError.
 RefinedSize predict_refined_size(const Mesh& cage, Scheme scheme, int level);
@@ -38,14 +42,21 @@ Mesh refine(const Mesh& cage, const RefineSettings& settings, const std::string&
 
 /// A point of the limit surface with its derivatives by the face's own (u, v); Bfr parametrises n-gons as sub-quads.
 struct LimitPoint {
-  glm::dvec3 position{0.0}, du{0.0}, dv{0.0}, duu{0.0}, duv{0.0}, dvv{0.0};
+  glm::dvec3 position{0.0},  ///< In the cage's units.
+      du{0.0},               ///< First derivative by u.
+      dv{0.0},               ///< First derivative by v.
+      duu{0.0},              ///< Second derivative by u.
+      duv{0.0},              ///< Mixed second derivative.
+      dvv{0.0};              ///< Second derivative by v.
 };
 /// Curvatures from the first and second fundamental forms; positive where the surface bends away from its outward normal (sphere: 1/R).
 struct SurfaceCurvature {
   glm::dvec3 normal{0.0};      ///< Unit.
-  double k1 = 0.0, k2 = 0.0;   ///< Principal, k1 >= k2.
+  double k1 = 0.0,             ///< Principal, 1 / unit of length; k1 >= k2.
+      k2 = 0.0;                ///< Principal.
   glm::dvec3 direction1{0.0};  ///< Unit, of k1.
 };
+/// Of the surface at a point of it; the normal and all else 0 where du and dv are parallel.
 SurfaceCurvature curvature(const LimitPoint& point);
 /// Normal curvature along a tangent direction (need not be unit): Euler's formula.
 double curvature_along(const SurfaceCurvature& surface, const glm::dvec3& direction);
@@ -54,8 +65,9 @@ struct LimitSurfaceData;
 /// The limit surface of a cage, evaluated face by face (Bfr). Immutable; evaluation is thread-safe.
 class LimitSurface {
  public:
+  /// Throws InputError for a cage that the scheme cannot subdivide; `file` goes into the message. The cage is needed no longer afterwards.
   LimitSurface(const Mesh& cage, Scheme scheme, const std::string& file = {});
-  int face_count() const;
+  int face_count() const;  ///< Of the cage, holes included.
   /// A face that is left out (Mesh::holes).
   bool is_hole(int face) const;
   /// Corners of the parametric domain: 4 for a quad, 3 for a triangle, n sub-quads otherwise.

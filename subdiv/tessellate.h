@@ -6,10 +6,11 @@
 
 namespace limn {
 
+/// How a field is meshed.
 struct TessellateSettings {
   int level = 3;                           ///< 0..8 refinements of the cage.
   NormalKind normals = NormalKind::limit;  ///< limit: the field's gradient at each corner, taken from that corner's side of a crease.
-  std::int64_t max_bytes = std::int64_t{8} << 30;
+  std::int64_t max_bytes = std::int64_t{8} << 30;  ///< Refuses (InputError, with the prediction) what would be larger.
 };
 
 /// A cage of the surface's topology, about 100 faces and more where the shape is rich: dual contouring of a coarse sampling, which is

@@ -12,11 +12,15 @@ Image<glm::vec4> fitted(const Image<glm::vec4>& picture, int width, int height);
 Image<glm::vec4> fitted_difference(const Image<glm::vec4>& difference, const Image<float>& border, const Image<float>& reference, int width,
                                    int height);
 
-/// The part of a picture where the borders differ most.
+/// A rectangle of a picture.
 struct Window {
-  int x = 0, y = 0, width = 0, height = 0;
+  int x = 0,              ///< Of the left pixel.
+      y = 0,              ///< Of the top pixel.
+      width = 0,          ///< Pixels.
+      height = 0;         ///< Pixels.
   double wrong_px = 0.0;  ///< Ink that differs in it.
 };
+/// The window of that size (cut to the picture's) with the most ink that differs; in the middle where nothing differs.
 Window worst_window(const Image<float>& border, const Image<float>& reference, int width, int height);
 
 /// The pixels of a picture inside a window.

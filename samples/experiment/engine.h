@@ -12,61 +12,63 @@ namespace limn {
 
 /// One way to model a scene.
 struct ExperimentModel {
-  std::string title{};  ///< For progress: "level set".
-  Scene scene{};
-  SurfaceSettings settings{};
-  std::string refused{};  ///< Why it cannot be built, where that is known beforehand.
+  std::string title{};         ///< For progress: "level set".
+  Scene scene{};               ///< What is modelled: the experiment's, with levels as this model needs them.
+  SurfaceSettings settings{};  ///< How.
+  std::string refused{};       ///< Why it cannot be built, where that is known beforehand.
 };
 
 /// One way to draw it: a method, or several whose ink makes one picture.
 struct ExperimentMethod {
-  std::string title{};
-  std::vector<MethodCall> calls{};
+  std::string title{};                      ///< For progress: "rim".
+  std::vector<MethodCall> calls{};          ///< One; with finished pictures any number, the last on top.
   std::optional<double> truth_threshold{};  ///< Where its ink ends (BorderMethod::truth_threshold); unset: only the silhouette has a truth.
 };
 
+/// What is to be done: models x views x methods x metrics.
 struct Experiment {
-  Scene scene{};  ///< What the true border is solved on.
-  std::vector<Camera> cameras{};
-  std::vector<ExperimentMethod> methods{};
-  std::vector<ExperimentModel> models{};  ///< The first is the reference that pictures are held against.
-  std::vector<const Metric*> metrics{};
+  Scene scene{};                             ///< What the true border is solved on.
+  std::vector<Camera> cameras{};             ///< The views.
+  std::vector<ExperimentMethod> methods{};   ///< What draws.
+  std::vector<ExperimentModel> models{};     ///< The first is the reference that pictures are held against.
+  std::vector<const Metric*> metrics{};      ///< Measured in this order. Not owned: of the registry, or static.
   std::optional<FramePath> path{};           ///< How the camera moves for metrics of motion.
   std::optional<PictureSettings> picture{};  ///< Samples and background of finished pictures; unset: ink at the pixel centres alone.
-  /// Methods without a threshold are measured, too, by the metrics that need none.
-  bool silhouette_of_all = false;
-  /// One model's mesh is the next one's start; times to build are then not each model's own.
-  bool share_meshes = false;
+  bool silhouette_of_all = false;            ///< Methods without a threshold are measured, too, by the metrics that need none.
+  bool share_meshes = false;                 ///< One model's mesh is the next one's start; times to build are then not each model's own.
 };
 
 /// One model in one view by one method.
 struct ExperimentCell {
-  size_t model = 0, view = 0, method = 0;
-  size_t id = 0;  ///< The caller's own number for it.
+  size_t model = 0;   ///< Index into Experiment::models.
+  size_t view = 0;    ///< Index into Experiment::cameras.
+  size_t method = 0;  ///< Index into Experiment::methods.
+  size_t id = 0;      ///< The caller's own number for it.
 };
 
 /// The true border of one view.
 struct ExperimentTruth {
-  double threshold = 0.0;
-  std::optional<BorderTruth> truth{};
-  std::string failed{};  ///< Why there is none.
+  double threshold = 0.0;              ///< N.V where the ink ends.
+  std::optional<BorderTruth> truth{};  ///< Unset where it could not be solved.
+  std::string failed{};                ///< Why there is none.
 };
 
+/// One number.
 struct Measurement {
-  const Metric* metric = nullptr;
-  MetricValue value{};
+  const Metric* metric = nullptr;  ///< Whose it is.
+  MetricValue value{};             ///< Name, value and unit; NaN where there was nothing to measure.
 };
 
-/// A cell when it is done. References are good during the call; `drawing` may be taken.
+/// A cell when it is done. References are good during the call.
 struct MeasuredCell {
-  ExperimentCell cell{};
-  const SceneModel& model;
-  const Seen& seen;
-  Drawing& drawing;              ///< Refused: nothing was measured.
-  const Drawing& reference;      ///< The same method on the reference; may be refused.
-  const ExperimentTruth* truth;  ///< Null: the method has none.
-  std::vector<Measurement> measurements{};
-  double measure_ms = 0.0;  ///< To draw and to measure, without solving the truth.
+  ExperimentCell cell{};                    ///< Which.
+  const SceneModel& model;                  ///< As it was built.
+  const Seen& seen;                         ///< What methods drew from.
+  Drawing& drawing;                         ///< May be taken, but not the reference's own. Refused: nothing was measured.
+  const Drawing& reference;                 ///< The same method on the reference; may be refused, empty where no metric needs it.
+  const ExperimentTruth* truth;             ///< Null: the method has none.
+  std::vector<Measurement> measurements{};  ///< In the order of Experiment::metrics. Of the reference: of its curves alone.
+  double measure_ms = 0.0;                  ///< To draw and to measure, without solving the truth.
 };
 
 /// Who is told. Empty functions are not called.
@@ -75,17 +77,23 @@ struct ExperimentObserver {
   std::function<std::function<void(double)>(const std::string& what)> stage{};
   /// Before each cell: may throw Cancelled.
   std::function<void()> cell_begins{};
+  /// A model is there, after `ms`.
   std::function<void(size_t model, const SceneModel& built, double ms)> built{};
   /// Nothing of these cells will come.
   std::function<void(std::span<const ExperimentCell> cells, const std::string& reason)> refused{};
   /// Traced; where finished pictures were asked for all methods have drawn.
   std::function<void(size_t model, size_t view, const SceneModel& built, Seen& seen, std::span<Drawing> drawings)> seen{};
+  /// A truth is there, or why there is none.
   std::function<void(size_t view, const ExperimentTruth& truth, double ms)> solved{};
+  /// A cell is done.
   std::function<void(MeasuredCell& cell)> measured{};
 };
 
+/// An experiment under way: what several cells share (the reference, its pictures, truths) is made once and kept. Used from one thread, all
+/// of whose work runs on the threads of the surrounding task arena.
 class ExperimentRun {
  public:
+  /// `how` is for every picture; what `observer` holds must live as long as the run.
   ExperimentRun(Experiment experiment, const ExecutionSettings& how, ExperimentObserver observer);
   ~ExperimentRun();
 
@@ -97,11 +105,13 @@ class ExperimentRun {
   size_t add_model(ExperimentModel model);
   /// Solved when first asked for. Where it cannot be solved it says why.
   const ExperimentTruth& truth(size_t view, double threshold);
+  /// A truth that is known already.
   void give_truth(size_t view, ExperimentTruth truth);
   /// The reference in a view, built and traced when first asked for.
   Seen& reference(size_t view);
   /// Forgets what was seen of the reference and its truths; the model stays.
   void forget_views() { views_.clear(); }
+  /// With the models that were added.
   const Experiment& experiment() const { return experiment_; }
 
  private:

@@ -24,11 +24,13 @@ bool is_of_specification(const InputFault& fault);
 /// A whole call, as it can be pasted.
 class CallText {
  public:
+  /// Begins with "limn", the command and, unless empty, the input.
   CallText(const std::string& command, const std::string& input) : text_("limn " + command + (input.empty() ? "" : " " + input)) {}
+  /// An option with its value, as flag_of() writes the field.
   void add(const std::string& field, const std::string& value);
   /// An option without a value.
   void add(const std::string& field);
-  const std::string& text() const { return text_; }
+  const std::string& text() const { return text_; }  ///< What was added so far.
 
  private:
   std::string text_;

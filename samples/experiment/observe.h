@@ -36,13 +36,15 @@ enum class Frames { in_sequence, each_alone };
 /// One method's ink at the pixel centres, and of every frame that was seen.
 Drawing draw(const MethodCall& call, const SceneModel& model, const Scene& scene, const Camera& camera, const Seen& seen, Frames frames);
 
-/// Several methods from rays that are traced once: means over the settings' samples, over the shaded model.
+/// A model in one view, and all methods' pictures of it.
 struct DrawnView {
-  Seen seen{};
+  Seen seen{};                      ///< Its picture's composite is the shading without ink.
   std::vector<Drawing> drawings{};  ///< One a method.
 };
-/// Called before each method of each sample with its index.
+/// Called with a method's index before it draws a sample.
 using BeforeMethod = std::function<void(size_t method)>;
+/// Several methods from rays that are traced once: means over the settings' samples, over the shaded model. A method that cannot draw says
+/// why in its drawing. Throws Cancelled.
 DrawnView draw_all(std::span<const std::vector<MethodCall>> methods, const SceneModel& model, const Scene& scene, const Camera& camera,
                    const PictureSettings& settings, const ExecutionSettings& how, const BeforeMethod& before_method = {});
 

@@ -19,36 +19,39 @@ struct SurfaceSpec {
   std::optional<int> voxels{};                ///< Along the longest side.
   std::optional<double> voxel_size{};         ///< World; instead of `voxels`.
   std::optional<double> half_width_voxels{};  ///< Of the narrow band.
-  std::optional<std::string> gradient{};
-  std::optional<int> level{};
-  bool level_for_view = false;  ///< As fine as the picture shows; `level` is unset then.
-  std::optional<Scheme> scheme{};
-  std::optional<NormalKind> normals{};
-  std::optional<double> smooth_angle_deg{};  ///< Of meshes drawn as they are.
+  std::optional<std::string> gradient{};      ///< How normals of level sets are computed (limn list gradients).
+  std::optional<int> level{};                 ///< Subdivision or tessellation level, 0..8.
+  bool level_for_view = false;                ///< As fine as the picture shows; `level` is unset then.
+  std::optional<Scheme> scheme{};             ///< Makes a cage of a mesh.
+  std::optional<NormalKind> normals{};        ///< Of meshes.
+  std::optional<double> smooth_angle_deg{};   ///< Of meshes drawn as they are.
 };
 
 /// The camera, where it is not the scene's own.
 struct CameraSpec {
-  std::optional<glm::ivec2> size_px{};
-  std::optional<glm::dvec3> eye{}, target{}, up{};  ///< World.
-  std::optional<double> fov_deg{};                  ///< Vertical; makes the camera a pinhole.
-  std::optional<double> ortho_height{};             ///< World; makes it orthographic.
+  std::optional<glm::ivec2> size_px{};   ///< Width and height of the picture.
+  std::optional<glm::dvec3> eye{},       ///< World.
+      target{},                          ///< World: what the camera looks at.
+      up{};                              ///< World: what is up in the picture.
+  std::optional<double> fov_deg{};       ///< Vertical; makes the camera a pinhole.
+  std::optional<double> ortho_height{};  ///< World; makes it orthographic.
 
-  bool is_set() const { return eye || target || up || fov_deg || ortho_height; }
+  bool is_set() const { return eye || target || up || fov_deg || ortho_height; }  ///< True where anything but the size is set.
 };
 
 /// A parameter of methods as text: "threshold" for every method that has it, or "rim.threshold".
 struct ParameterText {
-  std::string key, value;
+  std::string key,  ///< "threshold" or "rim.threshold".
+      value;        ///< As it is written on the command line.
 };
 
 /// Outline methods and their parameters.
 struct BorderSpec {
-  std::vector<std::string> methods{};  ///< Of one picture, in order.
-  std::vector<std::string> columns{};  ///< Each makes pictures of its own; instead of `methods`.
-  std::vector<ParameterText> parameters{};
-  int samples = 1;                         ///< Rays a pixel.
-  std::optional<glm::dvec3> background{};  ///< Linear.
+  std::vector<std::string> methods{};       ///< Of one picture, in order.
+  std::vector<std::string> columns{};       ///< Each makes pictures of its own; instead of `methods`.
+  std::vector<ParameterText> parameters{};  ///< Over the scene file's, in order.
+  int samples = 1;                          ///< Rays a pixel.
+  std::optional<glm::dvec3> background{};   ///< Linear.
 };
 
 /// What a call may take.
@@ -62,36 +65,38 @@ struct ExperimentSpec {
   std::string input{};                  ///< A file or the name of a built-in scene.
   std::vector<std::string> grids{};     ///< Of a volume, by name; "all" for all of its level sets.
   std::vector<std::string> surfaces{};  ///< Representations; empty: the experiment's own choice.
-  SurfaceSpec surface{};
-  CameraSpec camera{};
-  int views = 1;  ///< Directions spread over the sphere; 1: the camera's own.
-  BorderSpec border{};
-  LimitSpec limits{};
-  int threads = 0;  ///< 0: all.
+  SurfaceSpec surface{};                ///< How the models are built.
+  CameraSpec camera{};                  ///< Over the scene's.
+  int views = 1;                        ///< Directions spread over the sphere; 1: the camera's own.
+  BorderSpec border{};                  ///< What is drawn.
+  LimitSpec limits{};                   ///< Beyond them the call fails.
+  int threads = 0;                      ///< 0: all.
 };
 
 /// The axes of a study. Empty: the study's own choice.
 struct SweepSpec {
-  std::vector<int> levels{}, voxels{};  ///< Rising.
-  std::vector<NormalKind> normals{};
-  std::vector<std::string> gradients{};
-  std::vector<double> thresholds{};  ///< Of every method that has one; rising.
-  std::optional<int> views{};
-  bool flicker = false;
+  std::vector<int> levels{},                      ///< Of meshes; rising.
+      voxels{};                                   ///< Along the longest side of level sets; rising.
+  std::vector<NormalKind> normals{};              ///< Of meshes.
+  std::vector<std::string> gradients{};           ///< Of level sets.
+  std::vector<double> thresholds{};               ///< Of every method that has one; rising.
+  std::optional<int> views{};                     ///< Directions spread over the sphere; ExperimentSpec::views is not read.
+  bool flicker = false;                           ///< Measures flicker, too: a moving camera (kFlickerPath).
   std::optional<std::int64_t> max_model_bytes{};  ///< Larger models are left out.
 };
 
+/// A study: an experiment over several resolutions.
 struct StudySpec {
-  ExperimentSpec experiment{};
-  SweepSpec sweep{};
+  ExperimentSpec experiment{};  ///< What is studied.
+  SweepSpec sweep{};            ///< Which models of it.
 };
 
 /// A search for the cheapest model that is right to a tolerance.
 struct PlanSpec {
-  std::optional<double> tolerance_px{};
-  bool silhouette = false;  ///< Only it has to be right.
-  std::optional<double> budget_ms{};
-  std::optional<std::int64_t> budget_bytes{};
+  std::optional<double> tolerance_px{};        ///< Above 0.
+  bool silhouette = false;                     ///< Only it has to be right.
+  std::optional<double> budget_ms{};           ///< Of building and tracing one picture.
+  std::optional<std::int64_t> budget_bytes{};  ///< Of the model.
 };
 
 }  // namespace limn

@@ -16,23 +16,24 @@ namespace limn {
 /// What has to be right.
 enum class PlanMetric { border, silhouette };
 
+/// What is asked of a plan.
 struct PlanSettings {
-  double tolerance_px = 0.5;
-  PlanMetric metric = PlanMetric::border;
-  double threshold = 0.4;             ///< Of the rim.
-  std::optional<double> budget_ms{};  ///< Of building and tracing one picture.
-  std::optional<std::int64_t> budget_bytes{};
+  double tolerance_px = 0.5;                       ///< Above 0.
+  PlanMetric metric = PlanMetric::border;          ///< What has to be within the tolerance.
+  double threshold = 0.4;                          ///< Of the rim.
+  std::optional<double> budget_ms{};               ///< Of building and tracing one picture.
+  std::optional<std::int64_t> budget_bytes{};      ///< Of the model.
   std::int64_t max_bytes = std::int64_t{4} << 30;  ///< Nothing larger is built.
   std::vector<std::string> kinds{};                ///< Only these representations; empty: all that have a resolution.
 };
 
 /// A representation whose resolution is open, with its resolutions from coarse to fine.
 struct Ladder {
-  std::string title{};         ///< "level set, cubic gradient".
-  SurfaceSettings settings{};  ///< All but the resolution.
-  bool by_level = false;       ///< Rungs are subdivision levels; else voxels along the longest side.
-  bool of_file = false;        ///< Rungs are a file's volumes with other voxels; the last is the file as it is.
-  std::vector<int> rungs{};
+  std::string title{};           ///< "level set, cubic gradient".
+  SurfaceSettings settings{};    ///< All but the resolution.
+  bool by_level = false;         ///< Rungs are subdivision levels; else voxels along the longest side.
+  bool of_file = false;          ///< Rungs are a file's volumes with other voxels; the last is the file as it is.
+  std::vector<int> rungs{};      ///< Rising: levels, or voxels along the longest side.
   int normal_order = 2;          ///< Of the normal's angle, by edge or voxel size.
   double normal_constant = 0.0;  ///< Angle = constant (curvature * size)^order, as far as theory knows.
   double base_size = 1.0;        ///< World size of an edge at level 0, or of a voxel times the number of voxels.
@@ -40,6 +41,7 @@ struct Ladder {
   double fixed_ms = 0.0;         ///< Of that and of every other rung, what does not grow: finding a shape's cage, as it took just now.
 
   double size_at(size_t rung) const;  ///< World: of an edge or a voxel.
+  /// The settings with the rung's resolution.
   SurfaceSettings at(size_t rung) const;
   std::string words_at(size_t rung) const;  ///< "level 3", "128 voxels".
 };
@@ -47,33 +49,39 @@ struct Ladder {
 /// How far a border lies from truth: the largest distance but for the worst twentieth of what was looked at (the 95th percentile), what is
 /// missing or false counting as infinitely far. The worst over all views.
 struct BorderErrors {
-  double silhouette_px = 0.0, inner_px = 0.0;
-  double of(PlanMetric metric) const;
+  double silhouette_px = 0.0,          ///< Of the silhouette.
+      inner_px = 0.0;                  ///< Of the inner border.
+  double of(PlanMetric metric) const;  ///< `border`: the larger of the two; `silhouette`: that one.
 };
 
 /// One rung, built and measured.
 struct PlanTrial {
-  size_t ladder = 0, rung = 0;
-  BorderErrors predicted{}, measured{};
-  std::int64_t bytes = 0;
-  double build_ms = 0.0, trace_ms = 0.0;  ///< trace_ms: mean over the views.
-  std::string failed{};                   ///< Why there are no figures; empty where there are.
-  double time_ms() const { return build_ms + trace_ms; }
+  size_t ladder = 0,                                      ///< Index into PlanAnswer::ladders.
+      rung = 0;                                           ///< Index into Ladder::rungs.
+  BorderErrors predicted{},                               ///< By predict_errors(), the worst view's.
+      measured{};                                         ///< By measure_errors().
+  std::int64_t bytes = 0;                                 ///< Of the model.
+  double build_ms = 0.0,                                  ///< Wall clock.
+      trace_ms = 0.0;                                     ///< Mean over the views.
+  std::string failed{};                                   ///< Why there are no figures; empty where there are.
+  double time_ms() const { return build_ms + trace_ms; }  ///< What the budget is compared with.
 };
 
+/// One view of a plan, with the border that models are measured against.
 struct PlanView {
-  Camera camera{};
-  BorderTruth truth{};
+  Camera camera{};      ///< Of the picture.
+  BorderTruth truth{};  ///< Seen by it.
 };
 
+/// What a plan came to.
 struct PlanAnswer {
-  std::vector<Ladder> ladders{};
-  std::vector<PlanTrial> trials{};  ///< In the order in which they were made.
-  std::optional<size_t> chosen{};   ///< Index into trials: the fastest that meets tolerance and budget.
-  std::optional<size_t> coarser{};  ///< The next coarser one of its ladder, where there is one.
-  std::optional<size_t> best{};     ///< Where nothing was chosen: the nearest to the tolerance.
-  PlanTrial finest{};               ///< Of the chosen ladder: its last rung; extrapolated from the trials unless it was one.
-  bool finest_was_built = false;
+  std::vector<Ladder> ladders{};       ///< What trials refer to.
+  std::vector<PlanTrial> trials{};     ///< In the order in which they were made.
+  std::optional<size_t> chosen{};      ///< Index into trials: the fastest that meets tolerance and budget.
+  std::optional<size_t> coarser{};     ///< The next coarser one of its ladder, where there is one.
+  std::optional<size_t> best{};        ///< Where nothing was chosen: the nearest to the tolerance.
+  PlanTrial finest{};                  ///< Of the chosen ladder: its last rung; extrapolated from the trials unless it was one.
+  bool finest_was_built = false;       ///< False where `finest` is extrapolated.
   std::optional<size_t> silhouette{};  ///< Trial of the chosen ladder that is enough for the silhouette alone, where that is a coarser one.
   std::vector<std::string> notes{};    ///< Ladders that were given up, and why; what else a person should know.
 };
@@ -87,6 +95,7 @@ BorderErrors predict_errors(const Ladder& ladder, size_t rung, const PlanView& v
 
 /// What the engine measures for a plan: BorderErrors, as a metric that no study lists.
 const Metric& plan_metric();
+/// Its values as BorderErrors.
 BorderErrors errors_of(std::span<const Measurement> measured);
 /// The same for a model that is there, without an experiment; `trace_ms` of one picture is added.
 BorderErrors measure_errors(const SceneModel& model, const PlanView& view, double threshold, const ExecutionSettings& how,

@@ -7,10 +7,11 @@
 
 namespace limn {
 
+/// A plan with what it was asked.
 struct PlanJob {
-  PlanSettings settings{};
+  PlanSettings settings{};        ///< As resolved from the call.
   std::vector<PlanView> views{};  ///< With truth solved.
-  PlanAnswer answer{};
+  PlanAnswer answer{};            ///< What make_plan() gave.
 };
 
 /// Throws InputError for options that no model of a plan reads: what the plan chooses, and what has no effect on this scene.

@@ -16,6 +16,7 @@ namespace limn {
 /// it must fail here, it does, and the program says so itself. wrong: anything else, and an expected failure that the program keeps quiet
 /// about. skipped: the method cannot run on this surface; `message` says why.
 enum class StabilityOutcome { held, degraded, fails_as_expected, wrong, skipped };
+/// All outcomes, in the order of reports.
 inline constexpr std::array kStabilityOutcomes = {StabilityOutcome::held, StabilityOutcome::degraded, StabilityOutcome::fails_as_expected,
                                                   StabilityOutcome::wrong, StabilityOutcome::skipped};
 /// "held", "degraded", "fails as expected", "wrong", "skipped".
@@ -31,12 +32,13 @@ struct StabilityCaseText {
   std::string looks{};   ///< The check in one line.
 };
 
+/// What was found out of one case, surface and method.
 struct StabilityCell {
-  std::string case_name{};
-  int draw = 0;           ///< From 0: which draw of the case's random parameters.
-  std::string surface{};  ///< Representation.
-  std::string method{};   ///< With the parameters that differ from their defaults; empty: the surface alone was looked at.
-  StabilityOutcome outcome = StabilityOutcome::held;
+  std::string case_name{};  ///< StabilityCaseText::name.
+  int draw = 0;             ///< From 0: which draw of the case's random parameters.
+  std::string surface{};    ///< Representation.
+  std::string method{};     ///< With the parameters that differ from their defaults; empty: the surface alone was looked at.
+  StabilityOutcome outcome = StabilityOutcome::held;         ///< See StabilityOutcome.
   double number = std::numeric_limits<double>::quiet_NaN();  ///< The worst place of all views; NaN where none was measured.
   std::string unit{};                                        ///< "px", "pixels", "deg", "gaps".
   double bound = 0.0;                                        ///< Held up to here.
@@ -50,11 +52,12 @@ struct StabilityCell {
 
 /// Everything, in the order of the corpus.
 struct StabilityResults {
-  std::uint64_t seed = 0;
-  std::vector<StabilityCaseText> cases{};
-  std::vector<StabilityCell> cells{};
+  std::uint64_t seed = 0;                  ///< That random parameters were drawn from.
+  std::vector<StabilityCaseText> cases{};  ///< In the order of the corpus.
+  std::vector<StabilityCell> cells{};      ///< By case, then draw, surface and method.
 };
 
+/// Cells with that outcome.
 std::int64_t count(const StabilityResults& results, StabilityOutcome outcome);
 
 /// {version, seed, counts: {held, …}, cases: [{name, row, breaks, holds, check, looks}], cells: [{case, row, draw, surface, method,

@@ -15,14 +15,16 @@ namespace limn {
 /// Rows of cells by key.
 using CellRows = std::map<std::string, std::vector<StudyRow>>;
 
+/// True where a cell has nothing but a reason.
 bool failed(const std::vector<StudyRow>& cell);
 
-/// A journal's text as cells, and the cell of its last line; what follows the last line's end is passed over. `file` goes into messages.
-/// Throws InputError for lines that are no rows.
+/// What a journal holds.
 struct Journal {
-  CellRows cells{};
-  std::string last_key{};
+  CellRows cells{};        ///< By key.
+  std::string last_key{};  ///< Of the last whole line; empty where there is none.
 };
+/// A journal's text as cells; what follows the end of the last line is passed over. `file` goes into messages. Throws InputError for lines
+/// that are no rows.
 Journal parse_journal(std::string_view text, const std::filesystem::path& file);
 
 /// The whole cells of a folder's journal; a last cell that may be torn is left out: one that ended in the middle of a line, or that has not
@@ -35,7 +37,9 @@ void write_cells(const CellRows& cells, const std::vector<std::string>& keys, co
 /// Makes a folder and keeps other processes out of it as long as it lives. Throws InputError where one is in it.
 class FolderLock {
  public:
+  /// Throws InputError where another process holds the folder, or where it cannot be made.
   explicit FolderLock(const std::filesystem::path& folder);
+  /// Lets others in.
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
@@ -47,10 +51,13 @@ class FolderLock {
 /// Appends cells, each in one write that is on the disk when the call returns. Throws MachineError where the disk fails.
 class StudyJournal {
  public:
+  /// Opens both files of the folder at their ends.
   explicit StudyJournal(const std::filesystem::path& folder);
+  /// Closes both files.
   ~StudyJournal();
   StudyJournal(const StudyJournal&) = delete;
   StudyJournal& operator=(const StudyJournal&) = delete;
+  /// All rows of one cell.
   void append(const std::vector<StudyRow>& cell);
 
  private:

@@ -10,11 +10,12 @@
 
 namespace limn {
 
+/// The part of a study that one process does.
 struct StudyWork {
-  const Study& study;
-  std::vector<size_t> cells{};  ///< Indices of those to do, rising.
-  std::filesystem::path folder{};
-  ExecutionSettings how{};
+  const Study& study;              ///< Must outlive this.
+  std::vector<size_t> cells{};     ///< Indices of those to do, rising.
+  std::filesystem::path folder{};  ///< Of the journal and the thumbnails.
+  ExecutionSettings how{};         ///< Threads, tiles and cancelling.
 };
 
 /// What the work is expected to take, by kind.

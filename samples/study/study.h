@@ -21,51 +21,56 @@ inline constexpr FramePath kFlickerPath{.frames = 5, .step_px = 0.25};
 
 /// What something is expected to cost, the same on every machine: what the machine makes of it is for CostLedger to find out.
 struct ExpectedCost {
-  double build_ms = 0.0;
-  double trace_ms = 0.0;  ///< A picture.
-  std::int64_t bytes = 0;
+  double build_ms = 0.0;   ///< Of the model.
+  double trace_ms = 0.0;   ///< A picture.
+  std::int64_t bytes = 0;  ///< Of the model.
 };
 
 /// One way to model the scene.
 struct StudyModel {
-  std::string surface{};
+  std::string surface{};                            ///< A name in surface_kinds().
   std::map<std::string, std::string> parameters{};  ///< As in the rows: what the representation reads and the study varies.
-  SurfaceSettings settings{};
-  std::string refused{};  ///< Why it cannot be built, where that is known beforehand.
-  ExpectedCost cost{};
+  SurfaceSettings settings{};                       ///< As it is built.
+  std::string refused{};                            ///< Why it cannot be built, where that is known beforehand.
+  ExpectedCost cost{};                              ///< See ExpectedCost.
 };
 
+/// One way to draw it.
 struct StudyMethod {
-  MethodCall call{};
-  std::map<std::string, std::string> parameters{};
+  MethodCall call{};                                ///< The method with all parameters.
+  std::map<std::string, std::string> parameters{};  ///< As in the rows: all of them, by name.
   /// The rim's, whose border truth knows; empty for other methods.
   std::optional<double> truth_threshold{};
 };
 
 /// One model, one view, one method, as indices.
 struct StudyCell {
-  std::string key{};
-  size_t model = 0, view = 0, method = 0;
+  std::string key{};  ///< StudyRow::key.
+  size_t model = 0,   ///< Index into Study::models.
+      view = 0,       ///< Index into Study::cameras.
+      method = 0;     ///< Index into Study::methods.
 };
 
+/// A study, planned.
 struct Study {
-  Scene scene{};                ///< Objects' own levels taken away: the models say them.
-  SurfaceSettings reference{};  ///< The model that pictures are held against.
-  std::string reference_words{};
-  ExpectedCost reference_cost{};
-  std::string input_hash{};
-  std::vector<Camera> cameras{};
-  std::vector<StudyMethod> methods{};
-  std::vector<StudyModel> models{};
-  std::vector<StudyCell> cells{};  ///< In the order of work: models, their views, methods.
-  bool flicker = false;
-  StudyHead head{};
-  double longest_side = 0.0;  ///< World, of the scene.
-  double truth_terms = 0.0;   ///< How much there is to trace for truth: grows with what a field's surface has of shape.
+  Scene scene{};                       ///< Objects' own levels taken away: the models say them.
+  SurfaceSettings reference{};         ///< The model that pictures are held against.
+  std::string reference_words{};       ///< `reference` in words: "the analytic surface itself".
+  ExpectedCost reference_cost{};       ///< See ExpectedCost.
+  std::string input_hash{};            ///< Of the scene's objects and of all files that they came from.
+  std::vector<Camera> cameras{};       ///< One a view.
+  std::vector<StudyMethod> methods{};  ///< In the order of the call.
+  std::vector<StudyModel> models{};    ///< In the order in which they are built.
+  std::vector<StudyCell> cells{};      ///< In the order of work: models, their views, methods.
+  bool flicker = false;                ///< Flicker is measured, too.
+  StudyHead head{};                    ///< What the folder says of it.
+  double longest_side = 0.0;           ///< World, of the scene.
+  double truth_terms = 0.0;            ///< How much there is to trace for truth: grows with what a field's surface has of shape.
 
   double looks() const { return flicker ? double{kFlickerPath.frames} : 1.0; }  ///< Pictures traced of each model in each view.
   double measure_ms() const;                                                    ///< Expected for one cell: ink, curves and metrics.
   double truth_ms() const;                                                      ///< Expected for one view and threshold.
+  /// Of one picture.
   double pixels() const { return double(cameras.front().width_px) * cameras.front().height_px; }
 };
 

@@ -24,7 +24,7 @@ struct GBuffer {
   Image<std::uint8_t> status{};    ///< HitStatus.
   /// What the scene fills for edge methods (a section map): vertex colours, face groups, world position; or empty.
   Image<glm::vec3> custom{};
-  /// Ids of open meshes that show mostly their back: their normals were turned towards the eye (raymarch/open_sheet.h). Rising.
+  /// Ids of open meshes that show mostly their back: their normals were turned towards the eye (raymarch/mesh/open_sheet.h). Rising.
   std::vector<std::int32_t> turned{};
 };
 

@@ -89,8 +89,8 @@ struct SurfaceInfo {
   std::vector<std::string> notes{};     ///< What is good to know and no reason to worry: how far a resampled volume lies from its file.
 };
 
-class Polygons;   // raymarch/polygons.h
-class OpenSheet;  // raymarch/open_sheet.h
+class Polygons;   // raymarch/mesh/polygons.h
+class OpenSheet;  // raymarch/mesh/open_sheet.h
 
 /// A point of a surface whose curvature is asked for.
 struct SurfacePoint {

@@ -6,9 +6,9 @@
 
 #include "raymarch/gbuffer.h"
 #include "samples/commands/program.h"
-#include "samples/experiment/flags.h"
-#include "samples/interrupt.h"
-#include "samples/standard_streams.h"
+#include "samples/output/interrupt.h"
+#include "samples/output/standard_streams.h"
+#include "samples/spec/flags.h"
 #include "sdf/error.h"
 
 int main(int argc, char** argv) {

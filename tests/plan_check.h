@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "raymarch/curve_geometry.h"
+#include "raymarch/curves/curve_geometry.h"
 #include "raymarch/gbuffer.h"
 #include "samples/plan/plan.h"
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "raymarch/analytic/tile.h"
-#include "raymarch/trace_scene.h"
+#include "raymarch/scene/covered_pixels.h"
 #include "sdf/parallel.h"
 
 namespace limn {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "raymarch/audit/facts.h"
-#include "raymarch/curvature.h"
+#include "raymarch/scene/curvature.h"
 
 namespace limn {
 namespace {

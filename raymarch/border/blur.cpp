@@ -3,7 +3,7 @@
 #include "raymarch/border.h"
 #include "raymarch/border/blur_groups.h"
 #include "raymarch/border/blur_passes.h"
-#include "raymarch/border/picture_rows.h"
+#include "raymarch/gbuffer/picture_rows.h"
 
 namespace limn {
 namespace {

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "raymarch/border/picture_rows.h"
+#include "raymarch/gbuffer/picture_rows.h"
 #include "sdf/parallel.h"
 
 namespace limn {

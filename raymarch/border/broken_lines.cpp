@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "raymarch/border/picture_rows.h"
+#include "raymarch/gbuffer/picture_rows.h"
 
 namespace limn {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "raymarch/border/broken_lines.h"
 #include "raymarch/border/edge_lines.h"
-#include "raymarch/border/picture_rows.h"
-#include "raymarch/section_map.h"
+#include "raymarch/border/section_map.h"
+#include "raymarch/gbuffer/picture_rows.h"
 #include "sdf/parallel.h"
 
 namespace limn {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "raymarch/border.h"
-#include "raymarch/polygons.h"
+#include "raymarch/mesh/polygons.h"
 
 namespace limn {
 

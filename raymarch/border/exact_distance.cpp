@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raymarch/border/picture_rows.h"
 #include "raymarch/border/silhouette.h"
+#include "raymarch/gbuffer/picture_rows.h"
 #include "sdf/parallel.h"
 
 namespace limn {

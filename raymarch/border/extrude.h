@@ -2,7 +2,7 @@
 // The parts of the method `extrude`.
 
 #include "raymarch/border/object_groups.h"
-#include "raymarch/polygons.h"
+#include "raymarch/mesh/polygons.h"
 
 namespace limn {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "raymarch/border/extrude.h"
-#include "raymarch/border/picture_rows.h"
-#include "raymarch/trace_scene.h"
+#include "raymarch/gbuffer/picture_rows.h"
+#include "raymarch/scene/covered_pixels.h"
 
 namespace limn {
 namespace {

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "raymarch/border/object_groups.h"
-#include "raymarch/gbuffer_window.h"
-#include "raymarch/threads.h"
-#include "raymarch/trace_scene.h"
+#include "raymarch/gbuffer/gbuffer_window.h"
+#include "raymarch/scene/covered_pixels.h"
+#include "raymarch/scene/threads.h"
 
 namespace limn {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "raymarch/border/picture_rows.h"
+#include "raymarch/gbuffer/picture_rows.h"
 
 namespace limn {
 namespace {

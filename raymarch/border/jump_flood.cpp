@@ -6,7 +6,7 @@
 
 #include "raymarch/border.h"
 #include "raymarch/border/outline.h"
-#include "raymarch/border/picture_rows.h"
+#include "raymarch/gbuffer/picture_rows.h"
 
 namespace limn {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "raymarch/border/picture_rows.h"
+#include "raymarch/gbuffer/picture_rows.h"
 
 namespace limn {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "raymarch/border/jump_flood_blocks.h"
 #include "raymarch/border/jump_flood_pass.h"
-#include "raymarch/border/picture_rows.h"
 #include "raymarch/border/silhouette.h"
+#include "raymarch/gbuffer/picture_rows.h"
 #include "sdf/parallel.h"
 
 namespace limn {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "raymarch/threads.h"
+#include "raymarch/scene/threads.h"
 
 namespace limn {
 namespace {

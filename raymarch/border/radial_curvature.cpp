@@ -4,7 +4,7 @@
 #include <cmath>
 #include <mutex>
 
-#include "raymarch/border/picture_rows.h"
+#include "raymarch/gbuffer/picture_rows.h"
 
 namespace limn {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "raymarch/border.h"
 #include "raymarch/border/hysteresis.h"
-#include "raymarch/border/picture_rows.h"
 #include "raymarch/border/radial_curvature.h"
 #include "raymarch/border/surface_notes.h"
+#include "raymarch/gbuffer/picture_rows.h"
 
 namespace limn {
 namespace {

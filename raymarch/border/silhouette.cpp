@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "raymarch/border/picture_rows.h"
+#include "raymarch/gbuffer/picture_rows.h"
 
 namespace limn {
 namespace {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "raymarch/picture_file.h"
+#include "raymarch/files/picture_file.h"
 #include "sdf/guard.h"
 #include "sdf/guard_helper.h"
 

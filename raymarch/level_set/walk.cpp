@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "raymarch/surface/level_set_marcher.h"
+#include "raymarch/level_set/level_set_marcher.h"
 
 namespace limn {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <optional>
 
-#include "raymarch/border/picture_rows.h"
+#include "raymarch/gbuffer/picture_rows.h"
 #include "raymarch/measured_border/edge_node.h"
-#include "raymarch/threads.h"
+#include "raymarch/scene/threads.h"
 #include "sdf/error.h"
 
 namespace limn {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raymarch/curve_geometry.h"
+#include "raymarch/curves/curve_geometry.h"
 #include "raymarch/metric.h"
 #include "sdf/error.h"
 

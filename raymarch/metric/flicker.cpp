@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "raymarch/flips.h"
 #include "raymarch/metric.h"
+#include "raymarch/metric/flips.h"
 #include "sdf/error.h"
 
 namespace limn {

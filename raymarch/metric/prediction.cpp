@@ -1,6 +1,6 @@
 // What theory predicts from the model's normals and the true curvature, beside what was measured.
 
-#include "raymarch/border_prediction.h"
+#include "raymarch/metric/border_prediction.h"
 
 #include "raymarch/metric.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raymarch/border_width.h"
+#include "raymarch/curves/border_width.h"
 #include "raymarch/metric.h"
 
 namespace limn {

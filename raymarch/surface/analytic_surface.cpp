@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "raymarch/analytic/tile.h"
-#include "raymarch/curvature.h"
+#include "raymarch/scene/curvature.h"
 #include "raymarch/surface.h"
 #include "raymarch/surface/offset.h"
 #include "sdf/error.h"

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "raymarch/surface/level_set_marcher.h"
+#include "raymarch/level_set/level_set_marcher.h"
 
 namespace limn {
 namespace {

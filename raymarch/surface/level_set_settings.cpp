@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raymarch/surface/level_set_marcher.h"
+#include "raymarch/level_set/level_set_marcher.h"
 #include "sdf/error.h"
 
 namespace limn {

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <variant>
 
-#include "raymarch/curvature.h"
+#include "raymarch/scene/curvature.h"
 #include "raymarch/surface/object_mesh.h"
 #include "sdf/field.h"
 

@@ -12,8 +12,8 @@
 
 #include "raymarch/mesh/mesh_hit.h"
 #include "raymarch/mesh/mesh_view.h"
-#include "raymarch/open_sheet.h"
-#include "raymarch/polygons.h"
+#include "raymarch/mesh/open_sheet.h"
+#include "raymarch/mesh/polygons.h"
 #include "raymarch/surface.h"
 #include "raymarch/surface/mesh_curvature.h"
 #include "raymarch/surface/object_mesh.h"

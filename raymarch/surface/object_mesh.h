@@ -3,7 +3,7 @@
 
 #include <variant>
 
-#include "raymarch/polygons.h"
+#include "raymarch/mesh/polygons.h"
 #include "raymarch/surface.h"
 #include "subdiv/mesh.h"
 

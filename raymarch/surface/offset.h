@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "raymarch/surface/level_set_marcher.h"
+#include "raymarch/level_set/level_set_marcher.h"
 
 namespace limn {
 

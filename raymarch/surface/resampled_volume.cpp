@@ -1,6 +1,6 @@
 #include "raymarch/surface/resampled_volume.h"
 
-#include "raymarch/surface/level_set_marcher.h"
+#include "raymarch/level_set/level_set_marcher.h"
 #include "raymarch/surface/offset.h"
 
 namespace limn {

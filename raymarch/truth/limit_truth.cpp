@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raymarch/open_sheet.h"
+#include "raymarch/mesh/open_sheet.h"
 #include "raymarch/truth/limit_curves.h"
 #include "raymarch/truth/proxy.h"
 #include "raymarch/truth/shares.h"
@@ -45,7 +45,7 @@ void trace_side(const PlacedLimitSurface& placed, bool front, int index, const C
 }
 
 /// The cage about its own middle, so that nothing is lost far from the origin. `turned`: an open sheet whose normals are turned towards the
-/// eye (raymarch/open_sheet.h), so that its back has level curves too.
+/// eye (raymarch/mesh/open_sheet.h), so that its back has level curves too.
 void trace_object(const SceneObject& object, int index, bool turned, const Camera& camera, const glm::dvec3& origin,
                   const TruthSettings& settings, CageScene& out) {
   const auto& source = std::get<MeshSource>(object.source);

@@ -2,7 +2,7 @@
 // model puts it.
 
 #include "raymarch/truth/proxy.h"
-#include "raymarch/model_parts.h"
+#include "raymarch/surface/model_parts.h"
 
 #include <fmt/format.h>
 

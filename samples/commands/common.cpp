@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "samples/output.h"
+#include "samples/output/output.h"
 
 namespace limn {
 

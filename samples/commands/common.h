@@ -2,9 +2,9 @@
 // What subcommands do alike: read the input, say what is wrong with it, and hold to the limits.
 
 #include "samples/commands/options.h"
-#include "samples/job.h"
-#include "samples/limits.h"
-#include "samples/warnings.h"
+#include "samples/experiment/job.h"
+#include "samples/experiment/limits.h"
+#include "samples/experiment/warnings.h"
 
 namespace limn {
 

@@ -1,16 +1,16 @@
 #include <CLI/CLI.hpp>
 
 #include "raymarch/image_io.h"
-#include "raymarch/view_level.h"
+#include "raymarch/surface/view_level.h"
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
 #include "samples/compare/comparison.h"
 #include "samples/compare/staging.h"
-#include "samples/empty_picture.h"
-#include "samples/experiment/flags.h"
-#include "samples/input_files.h"
-#include "samples/no_effect.h"
-#include "samples/thread_settings.h"
+#include "samples/experiment/empty_picture.h"
+#include "samples/experiment/no_effect.h"
+#include "samples/experiment/thread_settings.h"
+#include "samples/input/input_files.h"
+#include "samples/spec/flags.h"
 #include "sdf/output_file.h"
 
 namespace limn {

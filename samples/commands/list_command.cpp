@@ -7,7 +7,7 @@
 #include "raymarch/metric.h"
 #include "raymarch/surface.h"
 #include "samples/commands/command.h"
-#include "samples/output.h"
+#include "samples/output/output.h"
 #include "samples/reference/parameter_text.h"
 #include "samples/reference/reference.h"
 #include "samples/scenes/scenes.h"

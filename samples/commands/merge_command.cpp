@@ -3,9 +3,9 @@
 #include <CLI/CLI.hpp>
 
 #include "samples/commands/command.h"
-#include "samples/experiment/flags.h"
-#include "samples/held_folder.h"
-#include "samples/output.h"
+#include "samples/output/held_folder.h"
+#include "samples/output/output.h"
+#include "samples/spec/flags.h"
 #include "samples/study/folder.h"
 #include "samples/study/study_summary.h"
 #include "sdf/error.h"

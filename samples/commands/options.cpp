@@ -8,10 +8,10 @@
 #include "raymarch/border.h"
 #include "raymarch/surface.h"
 #include "samples/commands/options_parts.h"
-#include "samples/experiment/flags.h"
-#include "samples/experiment/surface_setting.h"
-#include "samples/parse.h"
-#include "samples/parse_color.h"
+#include "samples/spec/flags.h"
+#include "samples/spec/parse.h"
+#include "samples/spec/parse_color.h"
+#include "samples/spec/surface_setting.h"
 #include "sdf/error.h"
 
 namespace limn {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "raymarch/frames.h"
-#include "samples/experiment/spec.h"
+#include "samples/spec/spec.h"
 
 namespace CLI {
 class App;

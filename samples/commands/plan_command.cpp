@@ -1,10 +1,10 @@
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
 #include "samples/commands/options_parts.h"
-#include "samples/experiment/flags.h"
-#include "samples/no_effect.h"
+#include "samples/experiment/no_effect.h"
+#include "samples/experiment/thread_settings.h"
 #include "samples/plan/plan_job.h"
-#include "samples/thread_settings.h"
+#include "samples/spec/flags.h"
 #include "sdf/error.h"
 
 namespace limn {

@@ -8,9 +8,9 @@
 
 #include "samples/commands/command.h"
 #include "samples/commands/versions.h"
-#include "samples/experiment/flags.h"
-#include "samples/limits.h"
-#include "samples/output.h"
+#include "samples/experiment/limits.h"
+#include "samples/output/output.h"
+#include "samples/spec/flags.h"
 #include "sdf/size_error.h"
 
 namespace limn {

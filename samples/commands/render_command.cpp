@@ -5,18 +5,18 @@
 #include <chrono>
 
 #include "raymarch/image_output.h"
-#include "raymarch/view_level.h"
+#include "raymarch/surface/view_level.h"
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
-#include "samples/empty_picture.h"
-#include "samples/flicker_watch.h"
-#include "samples/input_files.h"
-#include "samples/interrupt.h"
-#include "samples/no_effect.h"
-#include "samples/output.h"
+#include "samples/compare/flicker_watch.h"
+#include "samples/experiment/empty_picture.h"
+#include "samples/experiment/no_effect.h"
+#include "samples/experiment/thread_settings.h"
+#include "samples/input/input_files.h"
+#include "samples/input/scene_facts.h"
+#include "samples/output/interrupt.h"
+#include "samples/output/output.h"
 #include "samples/plan/plan_job.h"
-#include "samples/scene_facts.h"
-#include "samples/thread_settings.h"
 #include "sdf/error.h"
 
 namespace limn {

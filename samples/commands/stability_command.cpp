@@ -2,7 +2,7 @@
 
 #include "samples/commands/command.h"
 #include "samples/commands/stability_run.h"
-#include "samples/thread_settings.h"
+#include "samples/experiment/thread_settings.h"
 
 namespace limn {
 namespace {

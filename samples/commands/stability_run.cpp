@@ -1,11 +1,11 @@
 #include "samples/commands/stability_run.h"
-#include "samples/experiment/flags.h"
-#include "samples/experiment/surface_setting.h"
+#include "samples/spec/flags.h"
+#include "samples/spec/surface_setting.h"
 
 #include <fmt/format.h>
 
 #include "samples/commands/common.h"
-#include "samples/held_folder.h"
+#include "samples/output/held_folder.h"
 #include "samples/stability/run_stability.h"
 #include "samples/stability/stability_page.h"
 #include "sdf/error.h"

@@ -2,7 +2,7 @@
 // `limn stability`.
 
 #include "samples/commands/options.h"
-#include "samples/progress.h"
+#include "samples/output/progress.h"
 
 namespace limn {
 

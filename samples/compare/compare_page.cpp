@@ -5,8 +5,8 @@
 #include "samples/compare/compare_page_parts.h"
 #include "samples/compare/compare_words.h"
 #include "samples/compare/comparison.h"
-#include "samples/compare/html.h"
-#include "samples/compare/page_assets.h"
+#include "samples/page/html.h"
+#include "samples/page/page_assets.h"
 
 namespace limn {
 namespace {

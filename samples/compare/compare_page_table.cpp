@@ -5,7 +5,7 @@
 
 #include "samples/compare/compare_page_parts.h"
 #include "samples/compare/compare_words.h"
-#include "samples/compare/html.h"
+#include "samples/page/html.h"
 
 namespace limn {
 namespace {

@@ -10,11 +10,11 @@
 
 #include "raymarch/metric.h"
 #include "raymarch/picture.h"
-#include "samples/compare/panels.h"
 #include "samples/experiment/engine.h"
-#include "samples/input.h"
-#include "samples/job.h"
-#include "samples/output.h"
+#include "samples/experiment/job.h"
+#include "samples/input/input.h"
+#include "samples/output/output.h"
+#include "samples/page/panels.h"
 
 namespace limn {
 

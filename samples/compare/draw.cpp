@@ -7,7 +7,7 @@
 
 #include "raymarch/image_io.h"
 #include "samples/compare/comparison.h"
-#include "samples/empty_picture.h"
+#include "samples/experiment/empty_picture.h"
 #include "sdf/color.h"
 #include "sdf/error.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "samples/compare/comparison.h"
-#include "samples/scene_facts.h"
-#include "samples/utf8.h"
+#include "samples/input/scene_facts.h"
+#include "samples/spec/utf8.h"
 
 namespace limn {
 namespace {

@@ -1,5 +1,5 @@
 #include "samples/compare/comparison.h"
-#include "samples/parse.h"
+#include "samples/spec/parse.h"
 
 namespace limn {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "samples/compare/compare_words.h"
 #include "samples/compare/comparison.h"
-#include "samples/compare/panels.h"
 #include "samples/compare/sheet_canvas.h"
+#include "samples/page/panels.h"
 
 namespace limn {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "samples/compare/comparison.h"
-#include "samples/compare/text.h"
+#include "samples/page/text.h"
 
 namespace limn {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "samples/held_folder.h"
+#include "samples/output/held_folder.h"
 
 namespace limn {
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "samples/experiment/cost.h"
 #include "samples/plan/plan.h"
 #include "sdf/error.h"
 #include "subdiv/tessellate.h"
@@ -57,29 +58,29 @@ double mean_edge(const Mesh& mesh, const Affine& world_from_mesh) {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-// What a face of a shape's cage and of a cage as given take to place, and a grid's voxels across its longest side, squared: on two cores
-// of 2023, to a factor of three.
-constexpr double kFieldFaceMs = 0.005, kCageFaceMs = 0.002, kGridMs = 0.003, kMeshGridMs = 0.02;
+/// What the first rung is expected to take to build.
+double first_ms(const Ladder& ladder, const SceneSize& size) { return expected_cost(size, ladder.at(0), 0.0).build_ms; }
 
-/// The longest of the objects' mean edges at level 0, since that one shows first, and what the cages take.
-void measure_cages(const Scene& scene, Ladder& ladder) {
-  ladder.base_size = ladder.guess_ms = 0.0;
+/// The longest of the objects' mean edges at level 0, since that one shows first, and what finding the cages took.
+void measure_cages(const Scene& scene, SceneSize& size, Ladder& ladder) {
+  ladder.base_size = 0.0;
   const auto start = std::chrono::steady_clock::now();
-  for (const SceneObject& object : scene.objects) {
+  for (size_t k = 0; k < scene.objects.size(); ++k) {
+    const SceneObject& object = scene.objects[k];
     if (const auto* field = std::get_if<Field>(&object.source)) {
       const Mesh cage = cage_of(*field);
       ladder.base_size = std::max(ladder.base_size, mean_edge(cage, {}));
-      ladder.guess_ms += kFieldFaceMs * static_cast<double>(cage.face_count());
+      size.objects[k].faces = static_cast<double>(cage.face_count());
+      size.objects[k].refines = true;
     } else if (const auto* mesh = std::get_if<MeshSource>(&object.source)) {
       ladder.base_size = std::max(ladder.base_size, mean_edge(mesh->mesh, object.world_from_object));
-      ladder.guess_ms += kCageFaceMs * static_cast<double>(mesh->mesh->face_count());
     }
   }
   ladder.fixed_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  ladder.guess_ms += ladder.fixed_ms;
+  ladder.guess_ms = std::max(ladder.fixed_ms, first_ms(ladder, size));
 }
 
-Ladder mesh_ladder(const Scene& scene) {
+Ladder mesh_ladder(const Scene& scene, SceneSize size) {
   Ladder ladder;
   ladder.title = "mesh, limit normals";
   ladder.settings.kind = "mesh";
@@ -87,24 +88,14 @@ Ladder mesh_ladder(const Scene& scene) {
   ladder.by_level = true;
   ladder.rungs = kLevelRungs;
   ladder.normal_constant = kMeshConstant;
-  measure_cages(scene, ladder);
+  measure_cages(scene, size, ladder);
   return ladder;
 }
 
 // The grid shall be what is measured: the mesh that goes into it is finer than any voxel that matters.
 constexpr int kMeshLevel = 5;
 
-/// What comes before the first voxel of a mesh's grid.
-double meshing_ms(const Scene& scene) {
-  double ms = 0.0;
-  for (const SceneObject& object : scene.objects) {
-    if (const auto* mesh = std::get_if<MeshSource>(&object.source))
-      ms += kCageFaceMs * static_cast<double>(mesh->mesh->face_count()) * std::exp2(2 * kMeshLevel);
-  }
-  return ms;
-}
-
-Ladder grid_ladder(const char* kind, const GradientDescriptor& gradient, const Scene& scene, double longest_side) {
+Ladder grid_ladder(const char* kind, const GradientDescriptor& gradient, const SceneSize& size, double longest_side) {
   Ladder ladder;
   ladder.title = fmt::format("{}, {} gradient", std::string(kind) == "level_set" ? "level set" : "mesh as level set", gradient.about.name);
   ladder.settings.kind = kind;
@@ -114,8 +105,7 @@ Ladder grid_ladder(const char* kind, const GradientDescriptor& gradient, const S
   ladder.normal_order = gradient.order;
   ladder.normal_constant = gradient.normal_constant;
   ladder.base_size = longest_side;
-  const bool meshed = ladder.settings.kind == "mesh_level_set";
-  ladder.guess_ms = (meshed ? kMeshGridMs : kGridMs) * std::pow(kVoxelRungs.front(), 2.0) + (meshed ? meshing_ms(scene) : 0.0);
+  ladder.guess_ms = first_ms(ladder, size);
   return ladder;
 }
 
@@ -132,7 +122,7 @@ int own_voxels(const Scene& scene) {
 }
 
 /// How coarse may this grid be? The file is the finest; with any gradient, since bands are made as wide as that needs.
-std::vector<Ladder> volume_ladders(const Scene& scene, const PlanSettings& settings, double longest_side) {
+std::vector<Ladder> volume_ladders(const Scene& scene, const SceneSize& size, const PlanSettings& settings, double longest_side) {
   std::vector<Ladder> ladders;
   const bool only_volumes = std::all_of(scene.objects.begin(), scene.objects.end(),
                                         [](const SceneObject& object) { return std::holds_alternative<LevelSetSource>(object.source); });
@@ -140,7 +130,7 @@ std::vector<Ladder> volume_ladders(const Scene& scene, const PlanSettings& setti
   const int own = own_voxels(scene);
   for (const GradientDescriptor& gradient : gradients()) {
     if (!is_tried(gradient)) continue;
-    Ladder ladder = grid_ladder("level_set", gradient, scene, longest_side);
+    Ladder ladder = grid_ladder("level_set", gradient, size, longest_side);
     ladder.of_file = true;
     std::erase_if(ladder.rungs, [&](int voxels) { return 1.2 * voxels > own; });
     ladder.rungs.push_back(own);
@@ -177,14 +167,16 @@ std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings,
   double longest_side = 0.0;
   for (const SceneObject& object : scene.objects) longest_side = std::max(longest_side, bounds(object).longest_side());
   if (scene.objects.empty() || !std::isfinite(longest_side)) return ladders;
+  // Without the cages of fields, which only the mesh's ladder needs, and takes the time to find.
+  const SceneSize size = size_of(scene, {}, false);
   if (volumes) {
-    ladders = volume_ladders(scene, settings, longest_side);
+    ladders = volume_ladders(scene, size, settings, longest_side);
     for (Ladder& ladder : ladders) ladder.settings.max_bytes = settings.max_bytes;
     return ladders;
   }
   if (!fixed && wanted("mesh", settings) && all_support(scene, "mesh")) {
     try {
-      ladders.push_back(mesh_ladder(scene));
+      ladders.push_back(mesh_ladder(scene, size));
     } catch (const InputError& error) {
       // A shape that cannot be tessellated may still be a level set.
       if (notes) notes->push_back(fmt::format("mesh left out: {}", error.fault().problem));
@@ -195,7 +187,7 @@ std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings,
     const bool detour = std::string(kind) == "mesh_level_set" && all_support(scene, "level_set");
     if (!wanted(kind, settings) || !all_support(scene, kind) || (detour && settings.kinds.empty())) continue;
     for (const GradientDescriptor& gradient : gradients()) {
-      if (is_tried(gradient)) ladders.push_back(grid_ladder(kind, gradient, scene, longest_side));
+      if (is_tried(gradient)) ladders.push_back(grid_ladder(kind, gradient, size, longest_side));
     }
   }
   for (Ladder& ladder : ladders) ladder.settings.max_bytes = settings.max_bytes;

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raymarch/curve_geometry.h"
+#include "raymarch/curves/curve_geometry.h"
 #include "raymarch/measured_border.h"
 #include "samples/plan/plan.h"
 

@@ -1,13 +1,13 @@
 #include "samples/plan/plan_job.h"
-#include "samples/parse.h"
+#include "samples/spec/parse.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "samples/experiment/surface_setting.h"
-#include "samples/limits.h"
-#include "samples/no_effect.h"
+#include "samples/experiment/limits.h"
+#include "samples/experiment/no_effect.h"
+#include "samples/spec/surface_setting.h"
 #include "sdf/error.h"
 
 namespace limn {

@@ -1,8 +1,8 @@
 #pragma once
 // From a call to a plan: what `limn plan` and `limn render --tolerance` have in common.
 
-#include "samples/job.h"
-#include "samples/output.h"
+#include "samples/experiment/job.h"
+#include "samples/output/output.h"
 #include "samples/plan/plan.h"
 
 namespace limn {

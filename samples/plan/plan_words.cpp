@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "samples/output.h"
+#include "samples/output/output.h"
 #include "samples/plan/plan.h"
 
 namespace limn {

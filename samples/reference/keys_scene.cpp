@@ -1,7 +1,7 @@
 // What scene files and the rows of studies hold.
 
-#include "samples/experiment/surface_setting.h"
 #include "samples/reference/reference.h"
+#include "samples/spec/surface_setting.h"
 
 namespace limn {
 namespace {

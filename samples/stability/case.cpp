@@ -9,7 +9,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "samples/scene_file.h"
+#include "samples/input/scene_file.h"
 #include "samples/stability/case_tables.h"
 #include "sdf/error.h"
 

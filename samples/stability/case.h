@@ -19,7 +19,7 @@
 #include <optional>
 
 #include "raymarch/surface.h"
-#include "samples/input.h"
+#include "samples/input/input.h"
 #include "samples/stability/results.h"
 
 namespace limn {

@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "raymarch/audit.h"
-#include "samples/job.h"
-#include "samples/scene_facts.h"
-#include "samples/thread_settings.h"
+#include "samples/experiment/job.h"
+#include "samples/experiment/thread_settings.h"
+#include "samples/input/scene_facts.h"
 
 namespace limn {
 namespace {

@@ -8,10 +8,10 @@
 #include <limits>
 
 #include "raymarch/border.h"
+#include "samples/input/toml_reader.h"
 #include "samples/stability/case.h"
 #include "samples/stability/checks/check.h"
 #include "samples/stability/mesh_makers.h"
-#include "samples/toml_reader.h"
 #include "subdiv/read_obj.h"
 
 namespace limn {

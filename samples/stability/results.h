@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "samples/output.h"
+#include "samples/output/output.h"
 
 namespace limn {
 

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "raymarch/image_io.h"
-#include "samples/job.h"
+#include "samples/experiment/job.h"
 #include "samples/stability/corpus.h"
 #include "samples/stability/judge.h"
 #include "sdf/error.h"

@@ -8,9 +8,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "samples/compare/html.h"
-#include "samples/compare/page_assets.h"
-#include "samples/experiment/flags.h"
+#include "samples/page/html.h"
+#include "samples/page/page_assets.h"
+#include "samples/spec/flags.h"
 #include "samples/stability/stability_page_parts.h"
 
 namespace limn {

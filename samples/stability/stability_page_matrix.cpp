@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "raymarch/border.h"
-#include "samples/compare/html.h"
+#include "samples/page/html.h"
 #include "samples/stability/stability_page_parts.h"
 
 namespace limn {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "samples/experiment/flags.h"
+#include "samples/spec/flags.h"
 #include "samples/stability/stability_page.h"
 #include "samples/stability/stability_page_parts.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "samples/scene_facts.h"
+#include "samples/input/scene_facts.h"
 #include "sdf/level_set.h"
 
 namespace limn {

@@ -1,8 +1,8 @@
 #pragma once
 // What a study varies.
 
-#include "samples/experiment/spec.h"
-#include "samples/study/cost.h"
+#include "samples/experiment/cost.h"
+#include "samples/spec/spec.h"
 
 namespace limn {
 

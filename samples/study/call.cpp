@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "samples/experiment/surface_setting.h"
-#include "samples/job.h"
-#include "samples/no_effect.h"
-#include "samples/parse.h"
+#include "samples/experiment/job.h"
+#include "samples/experiment/no_effect.h"
+#include "samples/spec/parse.h"
+#include "samples/spec/surface_setting.h"
+#include "samples/spec/utf8.h"
 #include "samples/study/call.h"
-#include "samples/utf8.h"
 
 namespace limn {
 namespace {

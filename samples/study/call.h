@@ -1,6 +1,7 @@
 #pragma once
 
 #include "samples/study/axes.h"
+#include "samples/study/study.h"
 
 namespace limn {
 

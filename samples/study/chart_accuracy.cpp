@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "samples/output.h"
+#include "samples/output/output.h"
 #include "samples/study/charts.h"
 
 namespace limn {

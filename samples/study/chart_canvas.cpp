@@ -11,7 +11,7 @@
 #include <regex>
 #include <sstream>
 
-#include "samples/compare/html.h"
+#include "samples/page/html.h"
 #include "sdf/error.h"
 #include "sdf/output_together.h"
 

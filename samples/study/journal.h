@@ -34,20 +34,6 @@ CellRows read_cells(const std::filesystem::path& folder);
 /// Both files anew, whole, in the order of `keys`; cells that are not in `cells` are passed over.
 void write_cells(const CellRows& cells, const std::vector<std::string>& keys, const std::filesystem::path& folder);
 
-/// Makes a folder and keeps other processes out of it as long as it lives. Throws InputError where one is in it.
-class FolderLock {
- public:
-  /// Throws InputError where another process holds the folder, or where it cannot be made.
-  explicit FolderLock(const std::filesystem::path& folder);
-  /// Lets others in.
-  ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int handle_ = -1;
-};
-
 /// Appends cells, each in one write that is on the disk when the call returns. Throws MachineError where the disk fails.
 class StudyJournal {
  public:

@@ -1,6 +1,6 @@
 #include "samples/study/key.h"
-#include "samples/experiment/surface_setting.h"
-#include "samples/parse.h"
+#include "samples/spec/parse.h"
+#include "samples/spec/surface_setting.h"
 
 #include <OpenImageIO/hash.h>
 #include <fmt/format.h>

@@ -7,14 +7,14 @@
 #include <sstream>
 
 #include "samples/compare/comparison.h"
-#include "samples/job.h"
-#include "samples/no_effect.h"
-#include "samples/parse.h"
-#include "samples/scene_facts.h"
+#include "samples/experiment/job.h"
+#include "samples/experiment/no_effect.h"
+#include "samples/input/scene_facts.h"
+#include "samples/spec/parse.h"
+#include "samples/spec/utf8.h"
 #include "samples/study/axes.h"
 #include "samples/study/call.h"
 #include "samples/study/key.h"
-#include "samples/utf8.h"
 #include "sdf/error.h"
 #include "sdf/level_set.h"
 

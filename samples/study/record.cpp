@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "samples/experiment/flags.h"
+#include "samples/spec/flags.h"
 #include "samples/study/whole_number.h"
 #include "sdf/error.h"
 #include "sdf/output_file.h"

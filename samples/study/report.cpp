@@ -5,8 +5,8 @@
 #include <map>
 
 #include "samples/compare/compare_words.h"
-#include "samples/compare/html.h"
-#include "samples/compare/page_assets.h"
+#include "samples/page/html.h"
+#include "samples/page/page_assets.h"
 #include "samples/study/report_page.h"
 #include "samples/study/report_words.h"
 #include "sdf/output_file.h"

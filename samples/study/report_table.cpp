@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "samples/compare/html.h"
+#include "samples/page/html.h"
 #include "samples/study/report_page.h"
 
 namespace limn {

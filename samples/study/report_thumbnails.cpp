@@ -3,7 +3,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "samples/compare/html.h"
+#include "samples/page/html.h"
 #include "samples/study/report_page.h"
 
 namespace limn {

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "samples/compare/compare_words.h"
-#include "samples/output.h"
+#include "samples/output/output.h"
 
 namespace limn {
 namespace {

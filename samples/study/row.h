@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "samples/output.h"
+#include "samples/output/output.h"
 
 namespace limn {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "raymarch/image_io.h"
-#include "raymarch/polygons.h"
-#include "samples/compare/panels.h"
-#include "samples/empty_picture.h"
+#include "raymarch/mesh/polygons.h"
+#include "samples/experiment/empty_picture.h"
 #include "samples/experiment/engine.h"
+#include "samples/page/panels.h"
 #include "samples/study/run_batches.h"
 #include "samples/study/study_files.h"
 #include "sdf/error.h"

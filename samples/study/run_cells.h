@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "samples/progress.h"
-#include "samples/study/cost.h"
+#include "samples/experiment/cost.h"
+#include "samples/output/progress.h"
 #include "samples/study/journal.h"
 #include "samples/study/record.h"
 

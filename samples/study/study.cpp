@@ -4,9 +4,12 @@
 
 #include <cmath>
 
-#include "samples/job.h"
+#include "samples/experiment/job.h"
 
 namespace limn {
+
+double Study::measure_ms() const { return cell_ms(pixels()); }
+double Study::truth_ms() const { return limn::truth_ms(pixels(), truth_terms); }
 
 StudyRow row_of(const Study& study, const StudyCell& cell) {
   const StudyModel& model = study.models[cell.model];

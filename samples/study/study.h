@@ -8,7 +8,8 @@
 
 #include "raymarch/frames.h"
 #include "raymarch/picture.h"
-#include "samples/input.h"
+#include "samples/experiment/cost.h"
+#include "samples/input/input.h"
 #include "samples/study/row.h"
 
 namespace limn {
@@ -18,13 +19,6 @@ inline constexpr int kStudyFormat = 1;
 
 /// How the camera moves for flicker.
 inline constexpr FramePath kFlickerPath{.frames = 5, .step_px = 0.25};
-
-/// What something is expected to cost, the same on every machine: what the machine makes of it is for CostLedger to find out.
-struct ExpectedCost {
-  double build_ms = 0.0;   ///< Of the model.
-  double trace_ms = 0.0;   ///< A picture.
-  std::int64_t bytes = 0;  ///< Of the model.
-};
 
 /// One way to model the scene.
 struct StudyModel {

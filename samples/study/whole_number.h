@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "samples/output.h"
+#include "samples/output/output.h"
 
 namespace limn {
 

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "samples/input/world_model.h"
 #include "samples/scenes/scenes.h"
-#include "samples/world_model.h"
 #include "sdf/error.h"
 #include "subdiv/import.h"
 #include "tests/bench/growth_suite.h"

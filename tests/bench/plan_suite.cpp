@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "raymarch/truth/proxy.h"
-#include "samples/job.h"
-#include "samples/output.h"
+#include "samples/experiment/job.h"
+#include "samples/output/output.h"
 #include "samples/scenes/scenes.h"
 #include "tests/plan_check.h"
 

@@ -7,7 +7,7 @@
 #include "cover.h"
 #include "listed_files.h"
 #include "raymarch/gbuffer.h"
-#include "samples/input.h"
+#include "samples/input/input.h"
 #include "sdf/error.h"
 #include "subdiv/import.h"
 #include "tests/temporary_folder.h"

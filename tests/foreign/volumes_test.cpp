@@ -11,7 +11,7 @@
 #include "listed_files.h"
 #include "raymarch/audit.h"
 #include "raymarch/gbuffer.h"
-#include "samples/input.h"
+#include "samples/input/input.h"
 #include "sdf/error.h"
 #include "tests/temporary_folder.h"
 

@@ -1,7 +1,7 @@
 // Scene files. The files that they name are not opened: every mesh is a tetrahedron, and there are no volumes.
 #include <cmath>
 
-#include "samples/scene_file.h"
+#include "samples/input/scene_file.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace limn {

@@ -4,7 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "raymarch/border/blur_passes.h"
-#include "raymarch/threads.h"
+#include "raymarch/scene/threads.h"
 #include "tests/raymarch/image_buffers.h"
 
 namespace limn {

@@ -1,6 +1,6 @@
 // Curvature of every surface against closed forms, and how fast it comes near them.
 
-#include "raymarch/curvature.h"
+#include "raymarch/scene/curvature.h"
 
 #include <fmt/core.h>
 

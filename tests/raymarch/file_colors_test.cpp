@@ -1,6 +1,6 @@
 // Colours that a file gives to its mesh, in the composite: plates whose colour at each pixel is known.
 
-#include "raymarch/file_colors.h"
+#include "raymarch/gbuffer/file_colors.h"
 
 #include "tests/raymarch/scenes.h"
 

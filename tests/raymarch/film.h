@@ -1,8 +1,8 @@
 #pragma once
 // Sequences of pictures from a camera that trembles: random shots of closed forms, and how often their ink flips.
 
-#include "raymarch/flips.h"
 #include "raymarch/frames.h"
+#include "raymarch/metric/flips.h"
 #include "tests/random_seed.h"
 #include "tests/raymarch/image_buffers.h"
 

@@ -5,9 +5,9 @@
 
 #include <cstring>
 
+#include "raymarch/gbuffer/picture_rays.h"
+#include "raymarch/gbuffer/trace_scene.h"
 #include "raymarch/level_set/bricks.h"
-#include "raymarch/picture_rays.h"
-#include "raymarch/trace_scene.h"
 #include "sdf/level_set_data.h"
 #include "tests/raymarch/level_set_rays.h"
 #include "tests/raymarch/scenes.h"

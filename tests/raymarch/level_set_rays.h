@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <random>
 
+#include "raymarch/level_set/level_set_marcher.h"
 #include "raymarch/surface.h"
-#include "raymarch/surface/level_set_marcher.h"
 #include "tests/random_seed.h"
 #include "tests/sdf/level_set_maker.h"
 

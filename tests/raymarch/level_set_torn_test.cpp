@@ -1,6 +1,6 @@
 // A band that breaks off: cells beside the break take the next lower gradient, by packets as by single rays.
 
-#include "raymarch/trace_scene.h"
+#include "raymarch/gbuffer/trace_scene.h"
 #include "sdf/level_set_fill.h"
 #include "sdf/level_set_lower.h"
 #include "tests/raymarch/level_set_rays.h"

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <random>
 
-#include "raymarch/trace_scene.h"
+#include "raymarch/gbuffer/trace_scene.h"
 #include "scenes.h"
 
 namespace limn::test {

@@ -7,7 +7,7 @@
 #include <map>
 #include <numbers>
 
-#include "raymarch/curve_geometry.h"
+#include "raymarch/curves/curve_geometry.h"
 #include "raymarch/measured_border/crossings.h"
 #include "tests/raymarch/scenes.h"
 

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <random>
 
-#include "raymarch/curve_geometry.h"
+#include "raymarch/curves/curve_geometry.h"
 
 namespace limn::test {
 namespace {

@@ -1,5 +1,5 @@
 // Pictures that nobody vouches for: what the reader says of limn's own is what was drawn; what is damaged is refused; no answer is trusted.
-#include "raymarch/picture_file.h"
+#include "raymarch/files/picture_file.h"
 
 #include <filesystem>
 #include <fstream>

@@ -1,6 +1,6 @@
 // What theory says of the border's displacement and width against what is measured, on models of an ellipsoid.
 
-#include "raymarch/border_prediction.h"
+#include "raymarch/metric/border_prediction.h"
 
 #include <fmt/core.h>
 
@@ -82,7 +82,8 @@ TEST_P(Prediction, OfTheDisplacementIsWithinAQuarterOfWhatIsMeasuredBelowTwoPixe
   int below = 0;
   for (const Modelled& modelled : models()) {
     const SceneModel model = build_model(ellipsoid_scene(), modelled.settings);
-    // One view meets a few dozen voxels, too few for the root mean square over their jumps (raymarch/border_prediction.h); several do.
+    // One view meets a few dozen voxels, too few for the root mean square over their jumps (raymarch/metric/border_prediction.h); several
+    // do.
     const bool jumps = modelled.settings.kind == "level_set" && modelled.settings.gradient == "cell";
     Displacements all;
     for (int view = 0; view < (jumps ? 8 : 1); ++view) {

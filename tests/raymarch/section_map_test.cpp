@@ -1,6 +1,6 @@
 // Section maps: what vertex colours, face groups and world cells give at each pixel, on a plate whose answer is known.
 
-#include "raymarch/section_map.h"
+#include "raymarch/border/section_map.h"
 
 #include "tests/raymarch/image_buffers.h"
 

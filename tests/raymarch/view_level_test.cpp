@@ -4,7 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "raymarch/surface/object_mesh.h"
-#include "raymarch/view_level.h"
+#include "raymarch/surface/view_level.h"
 #include "subdiv/mesh_level_set.h"
 #include "tests/raymarch/scenes.h"
 

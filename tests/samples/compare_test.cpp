@@ -7,7 +7,7 @@
 #include "raymarch/image_io.h"
 #include "raymarch/metric.h"
 #include "run_program.h"
-#include "samples/compare/panels.h"
+#include "samples/page/panels.h"
 
 namespace limn {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "raymarch/picture.h"
 #include "run_program.h"
-#include "samples/empty_picture.h"
+#include "samples/experiment/empty_picture.h"
 #include "tests/random_seed.h"
 
 namespace limn {

@@ -7,8 +7,8 @@
 #include <random>
 
 #include "raymarch/measured_border.h"
-#include "samples/input.h"
-#include "samples/job.h"
+#include "samples/experiment/job.h"
+#include "samples/input/input.h"
 #include "samples/plan/plan.h"
 #include "samples/scenes/scenes.h"
 #include "sdf/error.h"

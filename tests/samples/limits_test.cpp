@@ -6,7 +6,7 @@
 #include <regex>
 
 #include "run_program.h"
-#include "samples/limits.h"
+#include "samples/experiment/limits.h"
 #include "sdf/guard_helper.h"
 
 namespace limn {

@@ -11,8 +11,9 @@
 #include <chrono>
 
 #include "run_program.h"
-#include "samples/output.h"
-#include "samples/progress.h"
+#include "samples/output/folder_lock.h"
+#include "samples/output/output.h"
+#include "samples/output/progress.h"
 #include "samples/study/journal.h"
 #include "sdf/error.h"
 

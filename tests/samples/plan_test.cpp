@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "raymarch/truth/proxy.h"
-#include "samples/job.h"
+#include "samples/experiment/job.h"
 #include "samples/scenes/scenes.h"
 #include "tests/plan_check.h"
 #include "tests/samples/run_program.h"

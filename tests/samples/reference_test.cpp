@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "run_program.h"
-#include "samples/experiment/surface_setting.h"
+#include "samples/spec/surface_setting.h"
 
 namespace limn {
 namespace {

@@ -1,4 +1,4 @@
-#include "samples/scene_file.h"
+#include "samples/input/scene_file.h"
 
 #include <gtest/gtest.h>
 

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "run_program.h"
+#include "samples/output/folder_lock.h"
 #include "samples/study/folder.h"
 #include "sdf/error.h"
 

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "run_program.h"
-#include "samples/study/cost.h"
+#include "samples/experiment/cost.h"
 #include "samples/study/key.h"
 #include "samples/study/shard.h"
 #include "sdf/error.h"

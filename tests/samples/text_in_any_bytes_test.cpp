@@ -5,8 +5,8 @@
 #include <random>
 
 #include "run_program.h"
-#include "samples/compare/html.h"
-#include "samples/utf8.h"
+#include "samples/page/html.h"
+#include "samples/spec/utf8.h"
 #include "tests/random_seed.h"
 
 namespace limn {

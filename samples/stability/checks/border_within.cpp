@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "raymarch/curve_geometry.h"
+#include "raymarch/curves/curve_geometry.h"
 #include "raymarch/measured_border.h"
 #include "raymarch/metric.h"
 #include "raymarch/truth.h"

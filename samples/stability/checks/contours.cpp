@@ -1,6 +1,6 @@
 #include "samples/stability/checks/contours.h"
 
-#include "raymarch/curvature.h"
+#include "raymarch/scene/curvature.h"
 #include "raymarch/truth/field_curves.h"
 #include "sdf/error.h"
 #include "sdf/shape.h"

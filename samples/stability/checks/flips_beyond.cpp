@@ -1,7 +1,7 @@
 // While the camera trembles by parts of a pixel, ink flips no more than the truth's does.
 
-#include "raymarch/flips.h"
 #include "raymarch/frames.h"
+#include "raymarch/metric/flips.h"
 #include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 #include "sdf/error.h"

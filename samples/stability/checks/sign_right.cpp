@@ -1,8 +1,8 @@
 // Inside is inside: the sign of a level set well away from the surface.
 
+#include "samples/input/world_model.h"
 #include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
-#include "samples/world_model.h"
 #include "sdf/error.h"
 #include "sdf/shape.h"
 

@@ -1,6 +1,6 @@
 // Ink along the contour is no wider than was asked for, wherever the curvature goes.
 
-#include "raymarch/curve_geometry.h"
+#include "raymarch/curves/curve_geometry.h"
 #include "raymarch/measured_border.h"
 #include "samples/stability/checks/check.h"
 #include "samples/stability/checks/contours.h"

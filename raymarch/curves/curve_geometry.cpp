@@ -1,0 +1,215 @@
+#include "raymarch/curves/curve_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+namespace {
+
+constexpr double kMostCells = 4e6;
+
+glm::dvec2 point_at(const BorderCurve& curve, size_t i) { return curve.points[i % curve.points.size()].px; }
+
+size_t segment_count(const BorderCurve& curve) {
+  if (curve.points.size() < 2) return 0;
+  return curve.closed ? curve.points.size() : curve.points.size() - 1;
+}
+
+/// Unit, from about a pixel before the end towards it: the last segment alone may be too short to have a direction.
+glm::dvec2 end_direction(const BorderCurve& curve, bool last) {
+  const size_t count = curve.points.size();
+  const glm::dvec2 end = curve.points[last ? count - 1 : 0].px;
+  for (size_t k = 1; k < count; ++k) {
+    const glm::dvec2 to_end = end - curve.points[last ? count - 1 - k : k].px;
+    const double length = glm::length(to_end);
+    if (length >= 1.0 || (k + 1 == count && length > 0.0)) return to_end / length;
+  }
+  return glm::dvec2(0.0);
+}
+
+}  // namespace
+
+std::vector<CurveSample> resample(const BorderCurves& curves, std::optional<CurveKind> kind, double step_px) {
+  std::vector<CurveSample> samples;
+  for (size_t c = 0; c < curves.curves.size(); ++c) {
+    const BorderCurve& curve = curves.curves[c];
+    const double length = length_px(curve);
+    if ((kind && curve.kind != *kind) || !(length > 0.0)) continue;
+    const auto count = static_cast<size_t>(std::max(1.0, std::round(length / step_px)));
+    const double piece = length / static_cast<double>(count);
+    double before = 0.0;
+    size_t k = 0;
+    for (size_t i = 0; i < segment_count(curve) && k < count; ++i) {
+      const glm::dvec2 a = point_at(curve, i), along = point_at(curve, i + 1) - a;
+      const double own = glm::length(along);
+      const bool final = i + 1 == segment_count(curve);
+      for (; k < count && own > 0.0; ++k) {
+        const double at = (static_cast<double>(k) + 0.5) * piece - before;
+        if (at >= own && !final) break;
+        const double fraction = std::clamp(at / own, 0.0, 1.0);
+        samples.push_back({a + fraction * along, glm::dvec2(-along.y, along.x) / own, piece, curve.kind, curve.object, c, i, fraction});
+      }
+      before += own;
+    }
+  }
+  return samples;
+}
+
+std::vector<CurveSample> within_picture(std::vector<CurveSample> samples, const Camera& camera, double margin_px) {
+  std::erase_if(samples, [&](const CurveSample& sample) {
+    return !(sample.px.x >= margin_px && sample.px.y >= margin_px && sample.px.x <= camera.width_px - margin_px &&
+             sample.px.y <= camera.height_px - margin_px);
+  });
+  return samples;
+}
+
+CurveIndex::CurveIndex(const BorderCurves& curves, std::optional<CurveKind> kind, double continue_px) {
+  for (const BorderCurve& curve : curves.curves) {
+    if (kind && curve.kind != *kind) continue;
+    const size_t count = segment_count(curve);
+    const bool open = !curve.closed, continued = open && continue_px > 0.0;
+    for (size_t i = 0; i < count; ++i) {
+      add(point_at(curve, i), point_at(curve, i + 1), curve.object, open && !continued && i == 0, open && !continued && i + 1 == count);
+    }
+    if (!continued || count == 0) continue;
+    const glm::dvec2 front = curve.points.front().px, back = curve.points.back().px;
+    add(front + continue_px * end_direction(curve, false), front, curve.object, true, false);
+    add(back, back + continue_px * end_direction(curve, true), curve.object, false, true);
+  }
+  build_grid();
+}
+
+void CurveIndex::add(const glm::dvec2& a, const glm::dvec2& b, int object, bool starts, bool ends) {
+  segments_.push_back({a, b, object, starts, ends});
+}
+
+int CurveIndex::column_of(double x) const {
+  return static_cast<int>(std::clamp(std::floor((x - origin_.x) / cell_px_), 0.0, static_cast<double>(columns_ - 1)));
+}
+int CurveIndex::row_of(double y) const {
+  return static_cast<int>(std::clamp(std::floor((y - origin_.y) / cell_px_), 0.0, static_cast<double>(rows_ - 1)));
+}
+
+void CurveIndex::build_grid() {
+  if (segments_.empty()) return;
+  glm::dvec2 low = segments_.front().a, high = low;
+  for (const Segment& segment : segments_) {
+    low = glm::min(low, glm::min(segment.a, segment.b));
+    high = glm::max(high, glm::max(segment.a, segment.b));
+  }
+  origin_ = low;
+  const glm::dvec2 size = high - low;
+  while ((size.x / cell_px_ + 1.0) * (size.y / cell_px_ + 1.0) > kMostCells) cell_px_ *= 2.0;
+  columns_ = static_cast<int>(size.x / cell_px_) + 1;
+  rows_ = static_cast<int>(size.y / cell_px_) + 1;
+  first_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_) + 1, 0);
+  const auto for_cells = [&](const Segment& s, const auto& visit) {
+    for (int row = row_of(std::min(s.a.y, s.b.y)); row <= row_of(std::max(s.a.y, s.b.y)); ++row) {
+      for (int column = column_of(std::min(s.a.x, s.b.x)); column <= column_of(std::max(s.a.x, s.b.x)); ++column) {
+        visit(static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column));
+      }
+    }
+  };
+  for (const Segment& segment : segments_) for_cells(segment, [&](size_t cell) { ++first_[cell + 1]; });
+  for (size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  members_.resize(first_.back());
+  std::vector<std::uint32_t> fill(first_.begin(), first_.end() - 1);
+  for (size_t i = 0; i < segments_.size(); ++i) {
+    for_cells(segments_[i], [&](size_t cell) { members_[fill[cell]++] = static_cast<std::uint32_t>(i); });
+  }
+}
+
+template <class Visit>
+void CurveIndex::visit_cell(int column, int row, const Visit& visit) const {
+  if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return;
+  const size_t cell = static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column);
+  for (std::uint32_t k = first_[cell]; k < first_[cell + 1]; ++k) visit(segments_[members_[k]]);
+}
+
+std::optional<NearestPoint> CurveIndex::nearest(const glm::dvec2& px, int object, double reach_px, std::optional<glm::dvec2> facing) const {
+  if (segments_.empty()) return std::nullopt;
+  NearestPoint best{reach_px, {}, false};
+  bool found = false;
+  const auto look = [&](const Segment& segment) {
+    if (object != 0 && segment.object != object) return;
+    const glm::dvec2 along = segment.b - segment.a;
+    if (facing && !(glm::dot(*facing, glm::dvec2(-along.y, along.x)) > 0.0)) return;
+    const double squared = glm::dot(along, along);
+    const double s = squared > 0.0 ? std::clamp(glm::dot(px - segment.a, along) / squared, 0.0, 1.0) : 0.0;
+    const glm::dvec2 point = segment.a + s * along;
+    const double distance = glm::length(px - point);
+    if (!(distance <= best.distance_px) || (found && distance == best.distance_px)) return;
+    found = true;
+    best = {distance, point, (segment.starts && s == 0.0) || (segment.ends && s == 1.0)};
+  };
+  const double x = std::floor((px.x - origin_.x) / cell_px_), y = std::floor((px.y - origin_.y) / cell_px_);
+  // Rings of cells about the point; whatever lies in ring k is at least (k - 1) cells away. From far outside, start where the grid does.
+  const double outside = std::max({0.0, -x, -y, x - (columns_ - 1), y - (rows_ - 1)});
+  const double furthest = std::max({std::abs(x), std::abs(y), std::abs(x - columns_), std::abs(y - rows_)}) + 1.0;
+  for (double ring = outside; ring <= furthest && (ring - 1.0) * cell_px_ <= best.distance_px; ring += 1.0) {
+    const double x0 = x - ring, x1 = x + ring, y0 = y - ring, y1 = y + ring;
+    for (double row = std::max(y0, 0.0); row <= std::min(y1, rows_ - 1.0); row += 1.0) {
+      if (row == y0 || row == y1) {
+        for (double column = std::max(x0, 0.0); column <= std::min(x1, columns_ - 1.0); column += 1.0)
+          visit_cell(static_cast<int>(column), static_cast<int>(row), look);
+        continue;
+      }
+      if (x0 >= 0.0) visit_cell(static_cast<int>(x0), static_cast<int>(row), look);
+      if (x1 < columns_) visit_cell(static_cast<int>(x1), static_cast<int>(row), look);
+    }
+  }
+  if (!found) return std::nullopt;
+  return best;
+}
+
+std::optional<Meeting> CurveIndex::meeting(const glm::dvec2& px, const glm::dvec2& direction, int object, double reach_px) const {
+  if (segments_.empty()) return std::nullopt;
+  std::optional<Meeting> best;
+  const auto look = [&](const Segment& segment) {
+    if (object != 0 && segment.object != object) return;
+    const glm::dvec2 along = segment.b - segment.a;
+    const double facing = glm::dot(direction, glm::dvec2(-along.y, along.x));
+    if (!(facing > 0.0)) return;
+    const double t = glm::dot(segment.a - px, glm::dvec2(-along.y, along.x)) / facing;
+    // A hair beyond both ends, so that no line slips through between two segments.
+    const double squared = glm::dot(along, along), s = glm::dot(px + t * direction - segment.a, along) / squared;
+    if (!(s >= -1e-9 && s <= 1.0 + 1e-9) || std::abs(t) > reach_px) return;
+    if (!best || std::abs(t) < std::abs(best->along_px)) best = Meeting{t};
+  };
+  const glm::dvec2 a = px - reach_px * direction, b = px + reach_px * direction;
+  if (std::max(a.y, b.y) < origin_.y || std::min(a.y, b.y) > origin_.y + rows_ * cell_px_) return best;
+  for (int row = row_of(std::min(a.y, b.y)); row <= row_of(std::max(a.y, b.y)); ++row) {
+    double s0 = 0.0, s1 = 1.0;
+    if (a.y != b.y) {
+      const double u = (origin_.y + row * cell_px_ - a.y) / (b.y - a.y), v = (origin_.y + (row + 1) * cell_px_ - a.y) / (b.y - a.y);
+      s0 = std::clamp(std::min(u, v) - 1e-9, 0.0, 1.0);
+      s1 = std::clamp(std::max(u, v) + 1e-9, 0.0, 1.0);
+    }
+    const double xa = a.x + s0 * (b.x - a.x), xb = a.x + s1 * (b.x - a.x);
+    for (int column = column_of(std::min(xa, xb)); column <= column_of(std::max(xa, xb)); ++column) visit_cell(column, row, look);
+  }
+  return best;
+}
+
+namespace {
+/// Nearer meetings are not doubted.
+constexpr double kFar_px = 2.0;
+}  // namespace
+
+std::optional<double> displacement_px(const CurveSample& sample, const CurveIndex& index, double reach_px) {
+  if (const std::optional<Meeting> meeting = index.meeting(sample.px, sample.outward, sample.object, reach_px)) {
+    if (std::abs(meeting->along_px) < kFar_px) return meeting->along_px;
+    const std::optional<NearestPoint> beside = index.nearest(sample.px, sample.object, 0.25 * std::abs(meeting->along_px), sample.outward);
+    if (!beside || beside->open_end) return meeting->along_px;
+    return std::copysign(beside->distance_px, glm::dot(beside->px - sample.px, sample.outward));
+  }
+  const std::optional<NearestPoint> near = index.nearest(sample.px, sample.object, reach_px);
+  if (!near || near->open_end) return std::nullopt;
+  const double along = glm::dot(near->px - sample.px, sample.outward);
+  if (std::abs(along) < 0.5 * near->distance_px) return std::nullopt;
+  return along;
+}
+
+double search_reach_px(const Camera& camera) { return std::max(16.0, 0.02 * std::hypot(camera.width_px, camera.height_px)); }
+
+}  // namespace limn

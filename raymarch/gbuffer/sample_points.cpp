@@ -1,0 +1,82 @@
+#include "raymarch/gbuffer.h"
+
+#include <algorithm>
+#include <array>
+
+#include "raymarch/gbuffer/picture_rays.h"
+#include "raymarch/gbuffer/trace_scene.h"
+#include "raymarch/mesh/open_sheet.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+struct Setup {
+  const SceneModel& model;
+  Camera camera;  ///< In render space.
+  SceneExtent extent;
+  std::vector<char> turned;  ///< As turned_surfaces.
+};
+
+/// The rays of one batch: in double as the camera gives them, in float from where they enter the scene's sphere, so that float keeps
+/// its digits at any distance of the eye.
+struct TracedBatch {
+  RayBatch rays;
+  SceneHits found;
+  std::array<CameraRay, kRayBatchSize> camera_rays;  ///< Render space.
+  std::array<double, kRayBatchSize> shift;           ///< From the camera ray's origin to the float ray's.
+};
+
+void add_ray(const Setup& setup, double x_px, double y_px, TracedBatch& batch) {
+  const int i = batch.rays.count++;
+  const auto k = static_cast<size_t>(i);
+  const CameraRay ray = camera_ray(setup.camera, x_px, y_px);
+  const double nearest = -glm::dot(ray.origin, ray.direction);
+  const double shift = setup.extent.radius > 0.0 ? std::max(0.0, nearest - setup.extent.radius) : 0.0;
+  const glm::dvec3 origin = ray.origin + shift * ray.direction;
+  double t_min = 0.0, t_max = std::max(0.0, nearest + setup.extent.radius - shift);
+  if (!setup.extent.bounded) {
+    t_min = -shift;
+    t_max = kHorizonRadii * std::max(setup.extent.radius, glm::length(ray.origin));
+  } else if (glm::length(ray.origin + nearest * ray.direction) > setup.extent.radius) {
+    t_max = 0.0;
+  }
+  batch.camera_rays[k] = ray;
+  batch.shift[k] = shift;
+  batch.rays.set(i, origin, ray.direction, t_min, t_max);
+}
+
+PointSample sample_of(const Setup& setup, const TracedBatch& batch, int i) {
+  const auto k = static_cast<size_t>(i);
+  PointSample sample;
+  sample.status = batch.found.hits.status[i];
+  sample.n_dot_v = std::numeric_limits<float>::quiet_NaN();
+  sample.position = glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+  if (sample.status != HitStatus::hit) return sample;
+  const CameraRay& ray = batch.camera_rays[k];
+  const glm::dvec3 position = ray.origin + (batch.shift[k] + static_cast<double>(batch.found.hits.t[i])) * ray.direction;
+  sample.id = batch.found.object[i] + 1;
+  sample.face = batch.found.hits.face[i];
+  sample.position = position + setup.model.render_origin;
+  sample.normal = {batch.found.hits.normal_x[i], batch.found.hits.normal_y[i], batch.found.hits.normal_z[i]};
+  sample.n_dot_v = static_cast<float>(glm::dot(glm::dvec3(sample.normal), view_vector(setup.camera, position)));
+  return sample;
+}
+
+}  // namespace
+
+void sample_points(const SceneModel& model, const Camera& camera, std::span<const glm::dvec2> points_px, std::span<PointSample> samples) {
+  LIMN_CHECK(points_px.size() == samples.size());
+  const Camera render_camera = moved(camera, model.render_origin);
+  const Setup setup{model, render_camera, scene_extent(model), turned_surfaces(model.surfaces, render_camera)};
+  TracedBatch batch;
+  for (size_t first = 0; first < points_px.size(); first += kRayBatchSize) {
+    const size_t count = std::min<size_t>(kRayBatchSize, points_px.size() - first);
+    batch.rays.count = 0;
+    for (size_t k = 0; k < count; ++k) add_ray(setup, points_px[first + k].x, points_px[first + k].y, batch);
+    trace_scene(model, setup.turned, batch.rays, batch.found);
+    for (size_t k = 0; k < count; ++k) samples[first + k] = sample_of(setup, batch, static_cast<int>(k));
+  }
+}
+
+}  // namespace limn

@@ -1,0 +1,199 @@
+#include "raymarch/metric/border_prediction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "raymarch/border/contour_distance.h"
+#include "raymarch/curves/border_width.h"
+
+namespace limn {
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+/// The theory is of first order: larger displacements are not held against it.
+constexpr double kSmall_px = 2.0;
+constexpr double kFloor_px = 0.01;
+
+/// A truth curve at one of its samples.
+struct TruthPoint {
+  glm::dvec3 position{0.0}, normal{0.0};
+  double n_dot_v = 0.0;  ///< Of the curve's own points, not of the chord between.
+  double radial_curvature = 0.0;
+};
+
+TruthPoint truth_at(const BorderCurves& curves, const CurveSample& sample, const Camera& camera) {
+  const BorderCurve& curve = curves.curves[sample.curve];
+  const BorderPoint &a = curve.points[sample.segment], &b = curve.points[(sample.segment + 1) % curve.points.size()];
+  const double s = sample.fraction;
+  const auto cosine = [&](const BorderPoint& point) { return glm::dot(point.normal, view_vector(camera, point.position)); };
+  return {a.position + s * (b.position - a.position), glm::normalize(a.normal + s * (b.normal - a.normal)),
+          cosine(a) + s * (cosine(b) - cosine(a)), a.radial_curvature + s * (b.radial_curvature - a.radial_curvature)};
+}
+
+struct Pair {
+  double weight = 0.0, predicted = 0.0, measured = 0.0;
+};
+
+struct Moments {
+  double length = 0.0, predicted_mean = 0.0, measured_mean = 0.0, predicted_rms = 0.0, measured_rms = 0.0, error_rms = 0.0;
+  double correlation = kNothing;
+};
+
+Moments moments(const std::vector<Pair>& pairs) {
+  Moments sum;
+  double product = 0.0;
+  for (const Pair& pair : pairs) {
+    const double error = pair.predicted - pair.measured;
+    sum.length += pair.weight;
+    sum.predicted_mean += pair.weight * pair.predicted;
+    sum.measured_mean += pair.weight * pair.measured;
+    sum.predicted_rms += pair.weight * pair.predicted * pair.predicted;
+    sum.measured_rms += pair.weight * pair.measured * pair.measured;
+    sum.error_rms += pair.weight * error * error;
+    product += pair.weight * pair.predicted * pair.measured;
+  }
+  const double length = sum.length;
+  if (!(length > 0.0)) return {0.0, kNothing, kNothing, kNothing, kNothing, kNothing, kNothing};
+  Moments result{length,
+                 sum.predicted_mean / length,
+                 sum.measured_mean / length,
+                 std::sqrt(sum.predicted_rms / length),
+                 std::sqrt(sum.measured_rms / length),
+                 std::sqrt(sum.error_rms / length),
+                 kNothing};
+  const double p = sum.predicted_rms / length - result.predicted_mean * result.predicted_mean;
+  const double m = sum.measured_rms / length - result.measured_mean * result.measured_mean;
+  if (p > 0.0 && m > 0.0) result.correlation = (product / length - result.predicted_mean * result.measured_mean) / std::sqrt(p * m);
+  return result;
+}
+
+double length_of(const std::vector<CurveSample>& samples) {
+  double length = 0.0;
+  for (const CurveSample& sample : samples) length += sample.weight_px;
+  return length;
+}
+
+double share_within_quarter(const std::vector<Pair>& pairs) {
+  double small = 0.0, good = 0.0;
+  for (const Pair& pair : pairs) {
+    if (std::abs(pair.measured) >= kSmall_px) continue;
+    small += pair.weight;
+    if (std::abs(pair.predicted - pair.measured) <= std::max(0.25 * std::abs(pair.measured), kFloor_px)) good += pair.weight;
+  }
+  return small > 0.0 ? good / small : kNothing;
+}
+
+/// How far, along the border's normal, the border moves for each radian of normal error, px.
+double displacement_per_radian(const Camera& camera, const CurveSample& sample, const TruthPoint& point) {
+  const double z = -glm::dot(point.position - camera.eye, camera.world_from_camera[2]);
+  const SeenPoint seen = seen_point(camera, sample.px.x, sample.px.y, z, point.normal);
+  const glm::dvec2 motion = image_motion(camera, seen);
+  const double turn = point.radial_curvature + point.n_dot_v / seen.distance;
+  return glm::dot(glm::dvec2(motion.x, -motion.y), sample.outward) / turn;
+}
+
+DisplacementPrediction predict_displacement(const SceneModel& model, const Camera& camera, const BorderTruth& truth,
+                                            const BorderCurves& curves) {
+  const std::vector<CurveSample> samples = within_picture(resample(truth.curves, CurveKind::inner, 1.0), camera);
+  const CurveIndex measured(curves, CurveKind::inner, kContinue_px);
+  const double reach = search_reach_px(camera);
+  std::vector<glm::dvec2> points;
+  for (const CurveSample& sample : samples) points.push_back(sample.px);
+  std::vector<PointSample> seen(points.size());
+  sample_points(model, camera, points, seen);
+  std::vector<Pair> pairs;
+  double squares = 0.0;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (seen[i].status != HitStatus::hit || seen[i].id != samples[i].object) continue;
+    const TruthPoint point = truth_at(truth.curves, samples[i], camera);
+    const double eps = std::acos(std::clamp(double{seen[i].n_dot_v}, -1.0, 1.0)) - std::acos(std::clamp(point.n_dot_v, -1.0, 1.0));
+    const double predicted = eps * displacement_per_radian(camera, samples[i], point);
+    const std::optional<double> found = displacement_px(samples[i], measured, reach);
+    if (!found || !std::isfinite(predicted)) continue;
+    pairs.push_back({samples[i].weight_px, predicted, *found});
+    squares += samples[i].weight_px * eps * eps;
+  }
+  const Moments all = moments(pairs);
+  return {static_cast<int>(pairs.size()),
+          samples.empty() ? kNothing : all.length / length_of(samples),
+          all.length > 0.0 ? std::sqrt(squares / all.length) : kNothing,
+          all.predicted_mean,
+          all.measured_mean,
+          all.predicted_rms,
+          all.measured_rms,
+          all.error_rms,
+          all.correlation,
+          share_within_quarter(pairs)};
+}
+
+/// Pixels for each radian about the eye, at an image point and in a direction of the image.
+double pixels_per_radian(const Camera& camera, const glm::dvec2& px, const glm::dvec2& direction) {
+  const glm::dvec2 offset = px - 0.5 * glm::dvec2(camera.width_px, camera.height_px);
+  const double cosine = camera.focal_px / std::hypot(camera.focal_px, glm::length(offset));
+  const double off = glm::length(offset), radial = off > 0.0 ? glm::dot(direction, offset) / off : 0.0;
+  return camera.focal_px / (cosine * std::sqrt(std::max(0.0, 1.0 - radial * radial) + radial * radial * cosine * cosine));
+}
+
+struct Width {
+  double plain_px = kNothing, exact_px = kNothing;
+};
+
+Width predicted_width(const Camera& camera, const CurveSample& sample, const TruthPoint& point, double threshold) {
+  const double k = point.radial_curvature, sine = std::sqrt(1.0 - threshold * threshold);
+  if (!(k > 0.0)) return {};
+  const double plain = 0.5 * threshold * threshold / k;
+  if (camera.projection == Projection::orthographic) {
+    return {camera.pixels_per_unit * plain, camera.pixels_per_unit * threshold * threshold / (1.0 + sine) / k};
+  }
+  const double distance = glm::length(point.position - camera.eye), scale = pixels_per_radian(camera, sample.px, sample.outward);
+  const double slope = k * distance;
+  const double angle = std::acos(std::min(1.0, sine / std::hypot(1.0, slope))) - std::atan(slope);
+  return {scale * plain / distance, scale * angle};
+}
+
+/// Of the level curves: what they were solved for.
+double threshold_of(const BorderTruth& truth, const Camera& camera) {
+  for (const BorderCurve& curve : truth.curves.curves) {
+    if (curve.kind != CurveKind::inner) continue;
+    for (const BorderPoint& point : curve.points) {
+      if (std::isfinite(point.radial_curvature)) return glm::dot(point.normal, view_vector(camera, point.position));
+    }
+  }
+  return kNothing;
+}
+
+WidthPrediction predict_width(const Camera& camera, const BorderTruth& truth, const BorderCurves& curves) {
+  const std::vector<CurveSample> samples = within_picture(resample(truth.curves, CurveKind::silhouette, 1.0), camera);
+  const CurveIndex inner(curves, CurveKind::inner, kContinue_px), silhouettes(curves, CurveKind::silhouette),
+      continued(curves, CurveKind::silhouette, kContinue_px);
+  const double threshold = threshold_of(truth, camera), reach = search_reach_px(camera);
+  std::vector<Pair> pairs;
+  double plain = 0.0;
+  for (const CurveSample& sample : samples) {
+    const Width predicted = predicted_width(camera, sample, truth_at(truth.curves, sample, camera), threshold);
+    const std::optional<double> shift = displacement_px(sample, continued, reach);
+    if (!std::isfinite(predicted.exact_px) || !shift) continue;
+    CurveSample own = sample;
+    own.px += *shift * sample.outward;
+    const std::optional<double> width = border_width_px(own, inner, silhouettes, width_reach_px(camera));
+    if (!width) continue;
+    pairs.push_back({sample.weight_px, predicted.exact_px, *width});
+    plain += sample.weight_px * predicted.plain_px;
+  }
+  const Moments all = moments(pairs);
+  return {static_cast<int>(pairs.size()),
+          samples.empty() ? kNothing : all.length / length_of(samples),
+          all.length > 0.0 ? plain / all.length : kNothing,
+          all.predicted_mean,
+          all.measured_mean,
+          all.error_rms,
+          all.correlation};
+}
+
+}  // namespace
+
+BorderPrediction predict_border(const SceneModel& model, const Camera& camera, const BorderTruth& truth, const BorderCurves& curves) {
+  return {predict_displacement(model, camera, truth, curves), predict_width(camera, truth, curves)};
+}
+
+}  // namespace limn

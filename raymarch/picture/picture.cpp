@@ -1,0 +1,255 @@
+#include "raymarch/picture.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "raymarch/border/object_groups.h"
+#include "raymarch/frames.h"
+#include "raymarch/gbuffer/file_colors.h"
+#include "raymarch/scene/threads.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+
+void check_methods(const Scene& scene, const SceneModel& model, const PictureSettings& settings) {
+  if (settings.samples < 1 || settings.samples > 1024) {
+    throw InputError({{}, "samples", std::to_string(settings.samples), "out of range", "1 to 1024"});
+  }
+  for (const MethodCall& call : settings.methods) {
+    LIMN_CHECK(call.method != nullptr);
+    const std::string reason = call.method->unsupported(model, scene);
+    if (!reason.empty()) throw InputError({{}, "method", call.method->about.name, "cannot run here: " + reason, {}});
+  }
+}
+
+void add_status(const Border& border, Image<std::uint8_t>& status) {
+  if (border.status.pixels.empty()) return;
+  if (status.pixels.empty()) status = Image<std::uint8_t>(border.status.width, border.status.height, 0);
+  for (size_t i = 0; i < status.size(); ++i) status.pixels[i] = std::max(status.pixels[i], border.status.pixels[i]);
+}
+
+GBufferLayers joined(const GBufferLayers& a, const GBufferLayers& b) {
+  return {a.depth || b.depth, a.position || b.position, a.normal || b.normal, a.n_dot_v || b.n_dot_v,
+          a.id || b.id,       a.material || b.material, a.face || b.face,     a.status || b.status};
+}
+
+void add_turned_notes(const BorderInput& input, std::vector<std::string>& notes) {
+  for (const std::int32_t id : input.gbuffer.turned) {
+    const auto index = static_cast<size_t>(id - 1);
+    const std::string name = index < input.scene.objects.size() ? input.scene.objects[index].name : fmt::format("object {}", id);
+    notes.push_back(fmt::format("'{}' is open and shows mostly its back: its normals are turned towards the eye", name));
+  }
+}
+
+Border draw_after(const BorderInput& input, const MethodCall& call, const SampleInks* inks, size_t method) {
+  if (inks == nullptr || inks->before.empty()) return call.method->draw(input, call.parameters);
+  const BorderBefore before{inks->before[method], inks->pixels_before};
+  BorderInput after = input;
+  after.before = &before;
+  return call.method->draw(after, call.parameters);
+}
+
+/// Objects go on beneath the ink along their edges. All is read before anything is written: the pixel beneath may have a neighbour of its
+/// own.
+void lay_beneath(const Border& border, Image<glm::vec4>& picture) {
+  if (border.beneath.pixels.empty()) return;
+  LIMN_CHECK(picture.size() == border.beneath.size());
+  std::vector<std::pair<size_t, glm::vec4>> moved;
+  for (size_t i = 0; i < picture.size(); ++i) {
+    const std::int32_t from = border.beneath.pixels[i];
+    if (from >= 0) moved.emplace_back(i, picture.pixels[static_cast<size_t>(from)]);
+  }
+  for (const auto& [i, color] : moved) picture.pixels[i] = color;
+}
+
+/// Hands a sample's inks of the frame before on, and where they were.
+SampleInks inks_before(FrameHistory& history, size_t sample, const GBuffer& gbuffer, const Camera& camera) {
+  SampleInks inks;
+  if (sample >= history.samples.size()) return inks;
+  FrameHistory::Sample& before = history.samples[sample];
+  inks.pixels_before = pixels_before(gbuffer, camera, before.gbuffer, history.camera);
+  inks.before = std::move(before.inks);
+  return inks;
+}
+
+void keep(FrameHistory& history, size_t sample, const GBuffer& gbuffer, SampleInks& inks) {
+  if (sample >= history.samples.size()) history.samples.resize(sample + 1);
+  GBuffer& kept = history.samples[sample].gbuffer;
+  kept.width = gbuffer.width;
+  kept.height = gbuffer.height;
+  kept.sample = gbuffer.sample;
+  kept.depth = gbuffer.depth;
+  kept.normal = gbuffer.normal;
+  kept.id = gbuffer.id;
+  history.samples[sample].inks = std::move(inks.now);
+  if (sample == 0) history.pixels_before = std::move(inks.pixels_before);
+}
+
+}  // namespace
+
+Image<glm::vec4> shade_headlight(const GBuffer& gbuffer, const SceneModel& model) {
+  Image<glm::vec4> picture(gbuffer.width, gbuffer.height, glm::vec4(0.0f));
+  for (size_t i = 0; i < picture.size(); ++i) {
+    const std::int32_t id = gbuffer.id.pixels[i];
+    if (id == 0) continue;
+    const glm::vec3 color = model.colors[static_cast<size_t>(id - 1)];
+    picture.pixels[i] = glm::vec4(color * (0.25f + 0.75f * gbuffer.n_dot_v.pixels[i]), 1.0f);
+  }
+  return picture;
+}
+
+Image<glm::vec4> shade_headlight(const BorderInput& input) {
+  const GBuffer& gbuffer = input.gbuffer;
+  const FileColors found = file_colors(input.model);
+  if (!found.any) return shade_headlight(gbuffer, input.model);
+  Image<glm::vec3> colors(gbuffer.width, gbuffer.height, glm::vec3(0.0f));
+  for (size_t i = 0; i < colors.size(); ++i) {
+    if (const std::int32_t id = gbuffer.id.pixels[i]; id != 0) colors.pixels[i] = input.model.colors[static_cast<size_t>(id - 1)];
+  }
+  find_file_colors(found, gbuffer, input.camera, input.model.render_origin, colors);
+  Image<glm::vec4> picture(gbuffer.width, gbuffer.height, glm::vec4(0.0f));
+  for (size_t i = 0; i < picture.size(); ++i) {
+    if (gbuffer.id.pixels[i] != 0) picture.pixels[i] = glm::vec4(colors.pixels[i] * (0.25f + 0.75f * gbuffer.n_dot_v.pixels[i]), 1.0f);
+  }
+  return picture;
+}
+
+void lay_ink(Image<glm::vec4>& picture, const Image<float>& coverage, const glm::vec3& color) {
+  LIMN_CHECK(picture.size() == coverage.size());
+  const glm::vec4 ink(color, 1.0f);
+  for (size_t i = 0; i < picture.size(); ++i) {
+    const float share = coverage.pixels[i];
+    picture.pixels[i] = (1.0f - share) * picture.pixels[i] + share * ink;
+  }
+}
+
+void lay_ink(Image<glm::vec4>& picture, const Border& border) {
+  lay_beneath(border, picture);
+  if (border.colors.pixels.empty()) {
+    lay_ink(picture, border.coverage, border.color);
+    return;
+  }
+  LIMN_CHECK(picture.size() == border.coverage.size() && picture.size() == border.colors.size());
+  for (size_t i = 0; i < picture.size(); ++i) {
+    const float share = border.coverage.pixels[i];
+    picture.pixels[i] = (1.0f - share) * picture.pixels[i] + share * glm::vec4(border.colors.pixels[i], 1.0f);
+  }
+}
+
+// The R2 sequence (Roberts 2018), whose generator is the plastic number; starts at the pixel's centre. Its first few points lie up to 0.2
+// px to one side in the mean, and so would everything drawn; the points after the first are moved back together.
+glm::dvec2 sample_offset(int sample, int samples) {
+  LIMN_CHECK(sample >= 0 && sample < samples);
+  constexpr double plastic = 1.32471795724474602596;
+  const auto r2 = [](int i) {
+    const double x = 0.5 + i / plastic, y = 0.5 + i / (plastic * plastic);
+    return glm::dvec2(x - std::floor(x), y - std::floor(y));
+  };
+  // Two samples could only both be the centre.
+  if (sample == 0 || samples < 3) return r2(sample);
+  glm::dvec2 sum(0.0);
+  for (int i = 1; i < samples; ++i) sum += r2(i);
+  return r2(sample) + 0.5 - sum / static_cast<double>(samples - 1);
+}
+
+void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture, SampleInks* inks) {
+  const auto start = Clock::now();
+  const bool first = picture.border.pixels.empty();
+  Image<float> ink(input.gbuffer.width, input.gbuffer.height, 0.0f);
+  Image<glm::vec4> composite = shade_headlight(input);
+  if (first) add_turned_notes(input, picture.notes);
+  for (size_t m = 0; m < methods.size(); ++m) {
+    Border border = draw_after(input, methods[m], inks, m);
+    LIMN_CHECK(border.coverage.size() == ink.size());
+    lay_ink(composite, border);
+    for (size_t i = 0; i < ink.size(); ++i) ink.pixels[i] = 1.0f - (1.0f - ink.pixels[i]) * (1.0f - border.coverage.pixels[i]);
+    if (first) {
+      add_status(border, picture.border_status);
+      picture.notes.insert(picture.notes.end(), border.notes.begin(), border.notes.end());
+    }
+    if (inks != nullptr) inks->now.push_back(std::move(border.coverage));
+  }
+  if (first) {
+    picture.border = std::move(ink);
+    picture.composite = std::move(composite);
+  } else {
+    for (size_t i = 0; i < ink.size(); ++i) {
+      picture.border.pixels[i] += ink.pixels[i];
+      picture.composite.pixels[i] += composite.pixels[i];
+    }
+  }
+  picture.border_ms += ms_since(start);
+}
+
+void finish_samples(const PictureSettings& settings, Picture& picture) {
+  const float share = 1.0f / static_cast<float>(settings.samples);
+  for (float& ink : picture.border.pixels) ink *= share;
+  for (glm::vec4& color : picture.composite.pixels) {
+    color *= share;
+    if (settings.background) color += (1.0f - color.a) * glm::vec4(*settings.background, 1.0f);
+  }
+}
+
+GBufferLayers layers_read(std::span<const MethodCall> methods) {
+  GBufferLayers layers{
+      .depth = false, .position = false, .normal = false, .n_dot_v = true, .id = true, .material = false, .face = false, .status = true};
+  const std::array<std::pair<const char*, bool GBufferLayers::*>, 5> named{{{"Z", &GBufferLayers::depth},
+                                                                            {"P", &GBufferLayers::position},
+                                                                            {"N", &GBufferLayers::normal},
+                                                                            {"material", &GBufferLayers::material},
+                                                                            {"face", &GBufferLayers::face}}};
+  for (const MethodCall& call : methods) {
+    std::vector<std::string> inputs = call.method->inputs;
+    for (std::string& more : group_inputs(*call.method, call.parameters)) inputs.push_back(std::move(more));
+    for (const std::string& input : inputs) {
+      for (const auto& [name, layer] : named) layers.*layer |= input == name;
+    }
+  }
+  return layers;
+}
+
+Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
+                     const ExecutionSettings& how, FrameHistory* history) {
+  check_methods(scene, model, settings);
+  Picture picture;
+  ThreadArena arena(how.threads);
+  GBufferLayers read = layers_read(settings.methods);
+  if (history != nullptr) read.depth = read.normal = true;
+  read = joined(read, layers_read(file_colors(model)));
+  GBuffer gbuffer;
+  SharedOrders orders;
+  for (int sample = 0; sample < settings.samples; ++sample) {
+    ExecutionSettings part = how;
+    if (how.progress) {
+      part.progress = [&how, sample, &settings](double done) { how.progress((sample + done) / settings.samples); };
+    }
+    const auto start = Clock::now();
+    // Only the first sample's G-buffer is handed on.
+    render_gbuffer(model, camera, part, sample_offset(sample, settings.samples), sample == 0 ? joined(settings.layers, read) : read,
+                   gbuffer);
+    picture.trace_ms += ms_since(start);
+    const auto number = static_cast<size_t>(sample);
+    arena.execute([&] {
+      if (history == nullptr) return add_sample({gbuffer, camera, model, scene, nullptr, &orders}, settings.methods, picture);
+      SampleInks inks = inks_before(*history, number, gbuffer, camera);
+      add_sample({gbuffer, camera, model, scene, nullptr, &orders}, settings.methods, picture, &inks);
+      keep(*history, number, gbuffer, inks);
+    });
+    if (sample == 0) picture.gbuffer = std::exchange(gbuffer, {});
+  }
+  if (history != nullptr) history->camera = camera;
+  finish_samples(settings, picture);
+  return picture;
+}
+
+}  // namespace limn

@@ -1,0 +1,82 @@
+// Every object of a scene, modelled in one representation or each in its own.
+
+#include <fmt/core.h>
+
+#include "raymarch/analytic/tile.h"
+#include "raymarch/scene/scene_extent.h"
+#include "raymarch/surface.h"
+#include "raymarch/surface/model_parts.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+std::string kinds_that_can(const SceneObject& object) {
+  std::string names;
+  for (const SurfaceDescriptor& kind : surface_kinds()) {
+    if (kind.unsupported(object).empty()) names += (names.empty() ? "" : ", ") + kind.about.name;
+  }
+  return names;
+}
+
+Surface build_surface(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
+  const std::string kind = settings.kind.empty() ? natural_surface(object) : settings.kind;
+  const SurfaceDescriptor& descriptor = find_surface(kind, {}, "surface");
+  if (const std::string reason = descriptor.unsupported(object); !reason.empty()) {
+    throw InputError({{}, "surface", kind, fmt::format("cannot model '{}': {}", object.name, reason), "can be: " + kinds_that_can(object)});
+  }
+  Surface surface = descriptor.build(object, settings, render_origin);
+  surface.info.kind = kind;
+  return surface;
+}
+
+}  // namespace
+
+SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, ObjectMeshCache* cache) {
+  check_extent(scene);
+  SceneModel model;
+  if (cache) cache->kept.resize(scene.objects.size());
+  model.bounds = bounds(scene);
+  if (!model.bounds.empty()) model.render_origin = model.bounds.center();
+  const auto field_scratch = std::make_shared<FieldScratch>();
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    SurfaceSettings own = settings;
+    own.field_scratch = field_scratch;
+    if (cache) own.kept_mesh = &cache->kept[i];
+    if (settings.progress) {
+      own.progress = [&settings, i, count = static_cast<double>(scene.objects.size())](double part) {
+        settings.progress((static_cast<double>(i) + part) / count);
+      };
+    }
+    append_surface(object, build_surface(object, own, model.render_origin), model);
+  }
+  return model;
+}
+
+void append_surface(const SceneObject& object, Surface surface, SceneModel& model) {
+  const Box reach = surface.bounds;
+  model.surfaces.push_back(std::move(surface));
+  model.colors.push_back(object.color);
+  model.materials.push_back(object.material);
+  if (reach.finite()) model.bounds = merge(model.bounds, {reach.lower + model.render_origin, reach.upper + model.render_origin});
+}
+
+SurfaceInfo total(const SceneModel& model) {
+  SurfaceInfo sum;
+  for (const Surface& surface : model.surfaces) {
+    const SurfaceInfo& info = surface.info;
+    if (sum.kind.empty()) sum.kind = info.kind;
+    if (sum.kind != info.kind) sum.kind = "mixed";
+    if (info.voxel_size > 0.0) sum.voxel_size = sum.voxel_size > 0.0 ? std::min(sum.voxel_size, info.voxel_size) : info.voxel_size;
+    sum.voxels += info.voxels;
+    sum.triangles += info.triangles;
+    sum.bytes += info.bytes;
+    sum.build_ms += info.build_ms;
+    sum.warnings.insert(sum.warnings.end(), info.warnings.begin(), info.warnings.end());
+    sum.notes.insert(sum.notes.end(), info.notes.begin(), info.notes.end());
+  }
+  return sum;
+}
+
+}  // namespace limn

@@ -1,0 +1,236 @@
+#include "samples/experiment/cost.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "raymarch/level_set/level_set_marcher.h"
+#include "samples/input/scene_facts.h"
+#include "samples/output/output.h"
+#include "sdf/error.h"
+#include "sdf/field_program.h"
+#include "sdf/level_set.h"
+#include "subdiv/tessellate.h"
+
+namespace limn {
+namespace {
+
+// Milliseconds and bytes of the parts, fitted to the built-in scenes on two cores. Memory is what building takes, not what is left of it.
+constexpr double kModelMs = 5.0, kFaceMs = 2e-3, kFieldFaceMs = 4e-3, kFieldFaceTermMs = 2e-4, kFaceBytes = 600.0;
+constexpr double kCageFaceMs = 0.15;  // of a field's cage, which is looked for in several samplings
+constexpr double kResampleMs = 1e-3;  // a voxel of either grid
+constexpr double kVoxelMs = 2.5e-4, kMeshVoxelMs = 1.2e-3, kGridBytes = 2.5e6;
+// Peaks of ellipsoid and gyroid, 256 to 1024 voxels, bands of 2.45 to 8: blocks of 8^3 and their copies go by the surface, the tree that
+// stays by the band.
+constexpr double kVoxelBytes = 14.0, kSurfaceCellBytes = 157.0;
+constexpr double kPictureMs = 1.5, kMeshRayMs = 6e-6, kGridRayMs = 1e-5, kFieldRayMs = 1e-5;
+// At 640x360; a limit surface has as much as a field of many terms.
+constexpr double kTruthTermMs = 0.035, kLimitTerms = 8000.0;
+/// What a further term adds to a field's cost, as a share of the first: most are skipped by bounds.
+constexpr double kTermShare = 0.1;
+/// Expected milliseconds that a kind of work must have done before its own speed counts more than what was thought of it.
+constexpr double kTrustMs = 200.0;
+
+double area_of(const Mesh& mesh) {
+  double area = 0.0;
+  size_t first = 0;
+  for (const std::int32_t size : mesh.face_sizes) {
+    const auto at = [&](size_t corner) { return mesh.positions[static_cast<size_t>(mesh.corner_vertices[first + corner])]; };
+    for (size_t i = 2; i < static_cast<size_t>(size); ++i) area += 0.5 * glm::length(glm::cross(at(i - 1) - at(0), at(i) - at(0)));
+    first += static_cast<size_t>(size);
+  }
+  return area;
+}
+
+/// By Cauchy and Crofton's formula: on average an edge of a lattice is crossed as often as its share of the area, 2/3 of it an axis.
+double area_of(const Field& field) {
+  constexpr int kCells = 32;
+  const Box box = dilate(field.traits().bounds, 1e-3 * field.traits().bounds.longest_side());
+  const double cell = box.longest_side() / kCells;
+  const glm::ivec3 count = glm::ivec3(glm::ceil(box.size() / cell)) + 1;
+  FieldEvaluator evaluator(field);
+  std::vector<glm::dvec3> sheet;
+  std::vector<double> values, before;
+  double crossings = 0.0;
+  for (int x = 0; x < count.x; ++x) {
+    sheet.clear();
+    for (int y = 0; y < count.y; ++y)
+      for (int z = 0; z < count.z; ++z) sheet.push_back(box.lower + cell * glm::dvec3(x, y, z));
+    values.resize(sheet.size());
+    evaluator.values(sheet, values);
+    const auto differ = [&](double a, double b) { return (a < 0.0) != (b < 0.0) ? 1.0 : 0.0; };
+    for (size_t i = 0; i < values.size(); ++i) {
+      if (x > 0) crossings += differ(values[i], before[i]);
+      if ((i + 1) % static_cast<size_t>(count.z) != 0) crossings += differ(values[i], values[i + 1]);
+      if (i + static_cast<size_t>(count.z) < values.size()) crossings += differ(values[i], values[i + static_cast<size_t>(count.z)]);
+    }
+    std::swap(values, before);
+  }
+  return crossings * cell * cell / 1.5;
+}
+
+double terms_of(const Field& field) { return std::max(1.0, 0.5 * static_cast<double>(field.program().instructions.size())); }
+
+SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& settings, bool with_cages) {
+  SceneSize::Object size;
+  const Box box = bounds(object);
+  if (box.finite()) size.longest_side = box.longest_side();
+  if (const auto* field = std::get_if<Field>(&object.source)) {
+    size.is_field = true;
+    size.terms = terms_of(*field);
+    if (!box.finite() || box.empty()) return size;
+    size.refines = true;
+    if (!with_cages) {
+      size.area = area_of(*field);
+      return size;
+    }
+    try {
+      const Mesh cage = cage_of(*field);
+      size.faces = static_cast<double>(cage.face_count());
+      size.area = area_of(cage);
+    } catch (const InputError& error) {
+      size.refines = false;
+      size.area = area_of(*field);
+      size.cannot_mesh = fmt::format("{} cannot be tessellated: {}", object.name, error.fault().problem);
+    }
+  } else if (const auto* source = std::get_if<MeshSource>(&object.source)) {
+    const double scale = std::cbrt(std::abs(glm::determinant(object.world_from_object.linear)));
+    const std::optional<Scheme> scheme = cage_scheme(object, settings);
+    size.refines = scheme.has_value();
+    size.faces = scheme ? static_cast<double>(predict_refined_size(source->mesh, *scheme, 1).faces) / 4.0
+                        : static_cast<double>(source->mesh->face_count());
+    size.area = scale * scale * area_of(source->mesh);
+  } else {
+    const LevelSetInfo& info = std::get<LevelSetSource>(object.source).level_set.info();
+    size.own_voxels = static_cast<double>(info.active_voxels);
+    size.area = size.own_voxels * info.voxel_size * info.voxel_size / (2.0 * std::max(info.half_width_voxels, 1.0));
+    size.faces = 2.0 * size.own_voxels / (2.0 * std::max(info.half_width_voxels, 1.0));
+  }
+  return size;
+}
+
+double faces_of(const SceneSize::Object& object, int level) { return object.refines ? object.faces * std::pow(4.0, level) : object.faces; }
+
+double voxels_of(const SceneSize::Object& object, const SurfaceSettings& settings, double half_width) {
+  if (object.longest_side <= 0.0) return 0.0;
+  const double voxel = settings.voxel_size > 0.0 ? settings.voxel_size : object.longest_side / settings.voxels;
+  // Of a grid this coarse most of the box is band.
+  const double side = object.longest_side / voxel + 2.0 * half_width;
+  return std::min(2.0 * half_width * object.area / (voxel * voxel), side * side * side);
+}
+
+double terms_factor(const SceneSize::Object& object) { return 1.0 + kTermShare * (object.terms - 1.0); }
+
+void add_mesh(const SceneSize::Object& object, const SurfaceSettings& settings, double pixels, bool traced, ExpectedCost& cost) {
+  const double faces = faces_of(object, settings.level);
+  if (object.is_field) cost.build_ms += kCageFaceMs * object.faces;
+  cost.build_ms += kModelMs + faces * (object.is_field ? kFieldFaceMs + kFieldFaceTermMs * (object.terms - 1.0) : kFaceMs);
+  cost.bytes += static_cast<std::int64_t>(faces * kFaceBytes);
+  if (traced) cost.trace_ms += pixels * kMeshRayMs * (1.0 + 0.05 * std::log2(1.0 + faces));
+}
+
+void add_grid(const SceneSize::Object& object, const SurfaceSettings& settings, double pixels, double voxel_ms, ExpectedCost& cost) {
+  const GradientDescriptor& gradient = find_gradient(settings.gradient);
+  const double half_width = std::max(settings.half_width_voxels, std::max(gradient.half_width_voxels, 1.8));
+  const bool loaded = object.own_voxels > 0.0 && !settings.resample_volumes;
+  const double voxels = loaded ? object.own_voxels : voxels_of(object, settings, half_width);
+  if (!loaded) cost.build_ms += kModelMs + voxels * voxel_ms;
+  if (!loaded && object.own_voxels > 0.0) cost.build_ms += kResampleMs * (voxels + object.own_voxels);
+  cost.bytes += static_cast<std::int64_t>(kGridBytes + voxels * (kVoxelBytes + kSurfaceCellBytes / (2.0 * half_width)));
+  cost.trace_ms += pixels * kGridRayMs * (gradient.order >= 3 ? 1.5 : 1.0);
+}
+
+}  // namespace
+
+SceneSize size_of(const Scene& scene, const SurfaceSettings& settings, bool with_cages) {
+  SceneSize size;
+  for (const SceneObject& object : scene.objects) size.objects.push_back(size_of(object, settings, with_cages));
+  return size;
+}
+
+double truth_terms(const SceneSize& size) {
+  double terms = 0.0;
+  bool limits = false;
+  for (const SceneSize::Object& object : size.objects) {
+    terms += object.is_field ? object.faces * terms_factor(object) : 0.0;
+    limits = limits || (object.refines && !object.is_field);
+  }
+  return terms + (limits ? kLimitTerms : 0.0);
+}
+
+double faces_at_level(const SceneSize& size, int level) {
+  double faces = 0.0;
+  for (const SceneSize::Object& object : size.objects) faces += object.refines ? faces_of(object, level) : 0.0;
+  return faces;
+}
+
+ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& settings, double pixels) {
+  ExpectedCost cost;
+  cost.trace_ms = kPictureMs;
+  // Rays that pass an object by cost little: the picture is shared by the objects.
+  const double share = pixels / std::max<double>(1.0, std::sqrt(static_cast<double>(size.objects.size())));
+  for (const SceneSize::Object& object : size.objects) {
+    std::string kind = settings.kind;
+    if (kind.empty()) kind = object.own_voxels > 0.0 ? "level_set" : object.faces > 0.0 ? "mesh" : "analytic";
+    if (kind == "analytic") cost.trace_ms += share * kFieldRayMs * terms_factor(object);
+    if (kind == "mesh") add_mesh(object, settings, share, true, cost);
+    if (kind == "level_set") add_grid(object, settings, share, kVoxelMs * terms_factor(object), cost);
+    if (kind == "mesh_level_set") {
+      SceneSize::Object remeshed = object;
+      remeshed.own_voxels = 0.0;
+      add_mesh(object, settings, share, false, cost);
+      add_grid(remeshed, settings, share, kMeshVoxelMs, cost);
+    }
+  }
+  return cost;
+}
+
+double cell_ms(double pixels) { return 10.0 + pixels * 3e-4; }
+double truth_ms(double pixels, double terms) { return 30.0 + pixels * 2.5e-4 + kTruthTermMs * terms * std::sqrt(pixels / 230'400.0); }
+
+void CostLedger::learn(const std::string& kind, double expected_ms, double took_ms) {
+  Entry& entry = entries_[kind];
+  entry.expected_ms += expected_ms;
+  entry.took_ms += took_ms;
+}
+
+void CostLedger::done(const std::string& kind, double expected_ms, double took_ms) {
+  learn(kind, expected_ms, took_ms);
+  drop(kind, expected_ms);
+  entries_[kind].spent_ms += took_ms;
+}
+
+void CostLedger::drop(const std::string& kind, double expected_ms) {
+  Entry& entry = entries_[kind];
+  entry.left_ms = std::max(0.0, entry.left_ms - expected_ms);
+}
+
+double CostLedger::remaining_ms() const {
+  double expected = kTrustMs, took = kTrustMs;
+  for (const auto& [kind, entry] : entries_) {
+    expected += entry.expected_ms;
+    took += entry.took_ms;
+  }
+  const double overall = took / expected;
+  double remaining = 0.0;
+  for (const auto& [kind, entry] : entries_)
+    remaining += entry.left_ms * (entry.took_ms + overall * kTrustMs) / (entry.expected_ms + kTrustMs);
+  return remaining;
+}
+
+double CostLedger::spent_ms() const {
+  double spent = 0.0;
+  for (const auto& [kind, entry] : entries_) spent += entry.spent_ms;
+  return spent;
+}
+
+std::string CostLedger::text() const {
+  std::string text;
+  for (const auto& [kind, entry] : entries_) {
+    if (entry.spent_ms == 0.0) continue;
+    text += fmt::format("{}{} {} (expected {})", text.empty() ? "" : "; ", kind, time_text(entry.took_ms), time_text(entry.expected_ms));
+  }
+  return text;
+}
+
+}  // namespace limn

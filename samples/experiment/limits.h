@@ -1,0 +1,49 @@
+#pragma once
+// Limits of memory and time: what a call is expected to take, refused before it starts where that is too much, and held to while it runs.
+
+#include <string>
+#include <vector>
+
+#include "raymarch/picture.h"
+#include "samples/spec/spec.h"
+
+namespace limn {
+
+/// What the program takes before it does anything: its libraries.
+inline constexpr double kProgramBytes = 140e6;
+
+/// What the machine lets a program have: its memory, or less where a control group says so. Bytes.
+double machine_memory();
+
+/// What a call draws, beside the surfaces.
+struct PictureLoad {
+  double pixels = 0.0;           ///< Of one picture.
+  double bytes_per_pixel = 0.0;  ///< Held at a time.
+  double pictures = 0.0;         ///< Traced: views times samples.
+  double other_ms = 0.0;         ///< Methods, writing.
+};
+/// Of `views` pictures drawn one after the other; `writes_layers`: as .exr files.
+PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, int views, bool writes_layers);
+
+/// What a call is expected to take: right to a factor of two for memory, for time on a machine like that of the constants.
+struct CallCost {
+  double model_bytes = 0.0, picture_bytes = 0.0, time_ms = 0.0;
+  double bytes() const { return kProgramBytes + model_bytes + picture_bytes; }
+};
+/// `with_cages` as in size_of (samples/experiment/cost.h).
+CallCost expected_call(const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load, bool with_cages = true);
+
+/// Largest model that may be built beside the pictures, bytes; SurfaceSettings::max_bytes.
+std::int64_t model_bytes_left(const LimitSpec& limits, double picture_bytes);
+
+/// Throws InputError where the call is expected to take more than its limits or the machine's memory allow (twice the time), with what
+/// would take less. `kinds`: representations that are modelled one after the other; empty: settings.kind. Returns what is expected; nothing
+/// where that is little and there is no limit, unless `always`.
+std::optional<CallCost> check_limits(const LimitSpec& limits, const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load,
+                                     const std::vector<std::string>& kinds = {}, bool always = false);
+
+/// Holds the process to its limits from here on. Memory: what it may allocate is limited, and where that runs out it ends
+/// with one line and exit code 1 (`goes_on`: std::bad_alloc is thrown instead). Throws InputError for less memory than it has already.
+void hold_limits(const LimitSpec& limits, bool goes_on);
+
+}  // namespace limn

@@ -42,7 +42,7 @@ TEST(Reference, EveryKeyThatSceneFilesAreReadForHasALine) {
   }
   int found = 0;
   std::set<std::string> read;
-  for (const char* file : {"/samples/scene_file.cpp", "/samples/field_reader.cpp"}) {
+  for (const char* file : {"/samples/input/scene_file.cpp", "/samples/input/field_reader.cpp"}) {
     const std::string source = text_of(std::string(LIMN_SOURCE_DIR) + file);
     for (std::sregex_iterator at(source.begin(), source.end(), asked), end; at != end; ++at, ++found) {
       EXPECT_TRUE(known.contains((*at)[1])) << file << ": " << (*at)[1];

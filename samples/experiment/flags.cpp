@@ -10,12 +10,12 @@ namespace {
 constexpr std::string_view kParameters = "parameters.";
 
 /// Fields that are options of the same name; the underscore is a dash there.
-constexpr std::array<std::string_view, 42> kFields = {
+constexpr std::array<std::string_view, 44> kFields = {
     "background", "budget",     "draws",        "eye",     "flicker",    "fov",      "frames",  "fresh",      "gradient",
     "gradients",  "half_width", "level",        "levels",  "max_memory", "max_time", "method",  "methods",    "metric",
     "no_clobber", "normals",    "ortho",        "output",  "path_step",  "refined",  "samples", "scheme",     "seed",
     "shard",      "size",       "smooth_angle", "surface", "surfaces",   "target",   "threads", "thresholds", "tolerance",
-    "up",         "views",      "voxel_size",   "voxels",  "case",       "json"};
+    "up",         "views",      "voxel_size",   "voxels",  "case",       "json",     "brick",   "dump"};
 
 /// Whose name is another one.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kOthers = {{{"grids", "grid"}, {"cases", "case"}}};

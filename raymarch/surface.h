@@ -89,8 +89,9 @@ struct SurfaceInfo {
   std::vector<std::string> notes{};     ///< What is good to know and no reason to worry: how far a resampled volume lies from its file.
 };
 
-class Polygons;   // raymarch/mesh/polygons.h
-class OpenSheet;  // raymarch/mesh/open_sheet.h
+class Polygons;    // raymarch/mesh/polygons.h
+class OpenSheet;   // raymarch/mesh/open_sheet.h
+struct RayBricks;  // raymarch/level_set/bricks.h
 
 /// A point of a surface whose curvature is asked for.
 struct SurfacePoint {
@@ -149,6 +150,7 @@ struct Surface {
   Box bounds{};                                ///< Render space; infinite where the object is.
   SurfaceInfo info{};                          ///< See SurfaceInfo.
   std::shared_ptr<const Polygons> polygons{};  ///< What is traced, where it is made of polygons.
+  std::shared_ptr<const RayBricks> bricks{};   ///< What is traced, where it is made of bricks.
   /// What may have open edges, and in a picture that shows mostly its back has its normals turned towards the eye. Null: never.
   std::shared_ptr<const OpenSheet> open_sheet{};
   SurfaceOffset offset{};       ///< Null `make` where the representation knows no distances.

@@ -4,17 +4,11 @@
 #include <limits>
 
 #include "sdf/error.h"
+#include "sdf/segment.h"
 #include "subdiv/mesh_distance.h"
 
 namespace limn {
 namespace {
-
-glm::dvec3 closest_on_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec3 ab = b - a;
-  const double squared = glm::dot(ab, ab);
-  const double t = squared > 0.0 ? std::clamp(glm::dot(p - a, ab) / squared, 0.0, 1.0) : 0.0;
-  return a + t * ab;
-}
 
 glm::dvec3 closest_on_edges(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   glm::dvec3 best = closest_on_segment(p, a, b);

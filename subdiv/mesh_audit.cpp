@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sdf/quantile.h"
 #include "subdiv/mesh_facts.h"
 #include "subdiv/polygon.h"
 
@@ -50,11 +51,7 @@ void measure_edges(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& 
   lengths.reserve(edges.size());
   const auto at = [&](std::int32_t v) { return mesh.positions[static_cast<size_t>(v)]; };
   for (const Edge& edge : edges) lengths.push_back(glm::distance(at(edge.vertex_a), at(edge.vertex_b)));
-  if (!lengths.empty()) {
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::nth_element(lengths.begin(), middle, lengths.end());
-    facts.median_edge = *middle;
-  }
+  if (!lengths.empty()) facts.median_edge = upper_median(std::move(lengths));
 }
 
 void measure_coordinates(const Mesh& mesh, MeshFacts& facts) {

@@ -48,8 +48,8 @@ SurfaceSamples sample_field(const Field& field);
 SurfaceSamples sample_mesh(const SceneObject& object, const SurfaceSettings& settings);
 SurfaceSamples sample_level_set(const SceneObject& object);
 
-/// The value below which `share` (0..1) of them lie; infinite ones count, NaN do not. NaN for none.
-double quantile(std::vector<double> values, double share);
+/// `lower_quantile` of those that are not NaN; infinite ones count.
+double known_quantile(std::vector<double> values, double share);
 /// Share of the values that are below `limit`.
 double share_below(std::span<const double> values, double limit);
 

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "raymarch/audit/facts.h"
+#include "sdf/quantile.h"
 #include "subdiv/refine.h"
 
 namespace limn {
@@ -96,12 +97,9 @@ const SurfaceSamples& AuditFacts::samples() {
   return *samples_;
 }
 
-double quantile(std::vector<double> values, double share) {
+double known_quantile(std::vector<double> values, double share) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<size_t>(at)];
+  return lower_quantile(std::move(values), share);
 }
 
 double share_below(std::span<const double> values, double limit) {

@@ -63,9 +63,9 @@ void look(AuditFacts& facts, std::vector<Finding>& findings) {
   const std::vector<double>& slopes = facts.samples().slopes;
   if (slopes.empty()) return;
   if (facts.field() != nullptr)
-    look_at_field({quantile(slopes, 0.0), quantile(slopes, 0.5), quantile(slopes, 1.0)}, findings);
+    look_at_field({known_quantile(slopes, 0.0), known_quantile(slopes, 0.5), known_quantile(slopes, 1.0)}, findings);
   else
-    look_at_volume({quantile(slopes, 0.05), quantile(slopes, 0.5), quantile(slopes, 0.95)}, findings);
+    look_at_volume({known_quantile(slopes, 0.05), known_quantile(slopes, 0.5), known_quantile(slopes, 0.95)}, findings);
 }
 
 }  // namespace

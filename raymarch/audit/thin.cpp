@@ -44,7 +44,7 @@ std::string remedy_of(std::int64_t voxels, const AuditFacts& facts) {
 
 void look_at(const Thing& thing, const std::vector<double>& widths, double voxel, AuditFacts& facts, std::vector<Finding>& findings) {
   const SurfaceSamples& samples = facts.samples();
-  const double share = share_below(widths, thing.voxels * voxel), thinnest = quantile(widths, kMostThin);
+  const double share = share_below(widths, thing.voxels * voxel), thinnest = known_quantile(widths, kMostThin);
   const std::string where = samples.of.empty() ? "" : " (of " + samples.of + ")";
   Finding finding{.check = thing.check, .value = share, .message = thing.good};
   if (std::isfinite(thinnest)) {

@@ -3,6 +3,7 @@
 
 #include "raymarch/border/object_groups.h"
 #include "raymarch/mesh/polygons.h"
+#include "sdf/quantile.h"
 
 namespace limn {
 
@@ -86,10 +87,7 @@ class HullNotes {
   void write(const ExtrudeSettings& settings, std::vector<std::string>& notes) const;
 
  private:
-  struct Sample {
-    double width_px, length_px;
-  };
-  std::vector<Sample> samples_{};
+  std::vector<WeightedValue> samples_{};  ///< Widths in pixels, by the lengths of what has them.
   std::int64_t corners_ = 0, wrong_corners_ = 0, inverted_objects_ = 0;
 };
 

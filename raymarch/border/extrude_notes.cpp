@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <numeric>
+#include <algorithm>
 
 #include "raymarch/border/edge_visibility.h"
 #include "raymarch/border/extrude.h"
@@ -194,20 +194,15 @@ void HullNotes::add(const BorderInput& input, size_t object, const ExtrudedCorne
 }
 
 DrawnWidths HullNotes::widths() const {
-  std::vector<Sample> sorted = samples_;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Sample& a, const Sample& b) { return a.width_px < b.width_px; });
-  const double total = std::accumulate(sorted.begin(), sorted.end(), 0.0, [](double sum, const Sample& s) { return sum + s.length_px; });
-  DrawnWidths result;
-  double below = 0.0;
-  for (const Sample& sample : sorted) {
-    const double before = below / total;
-    below += sample.length_px;
-    if (before <= 0.05) result.low = sample.width_px;
-    if (before <= 0.5) result.median = sample.width_px;
-    if (before <= 0.95) result.high = sample.width_px;
-    if (sample.width_px < 0.0) result.inward_share = below / total;
+  std::vector<WeightedValue> sorted = samples_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const WeightedValue& a, const WeightedValue& b) { return a.value < b.value; });
+  double total = 0.0, inward = 0.0;
+  for (const WeightedValue& width : sorted) {
+    total += width.weight;
+    if (width.value < 0.0) inward = total;
   }
-  return result;
+  if (!(total > 0.0)) return {};
+  return {upper_quantile(sorted, 0.05), upper_quantile(sorted, 0.5), upper_quantile(sorted, 0.95), inward / total};
 }
 
 void HullNotes::write(const ExtrudeSettings& settings, std::vector<std::string>& notes) const {

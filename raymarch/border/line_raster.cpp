@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "raymarch/gbuffer/picture_rows.h"
+#include "sdf/segment.h"
 
 namespace limn {
 namespace {
@@ -36,11 +37,10 @@ std::pair<int, int> columns_of(const LinePiece& piece, int y, int width) {
 
 void draw_row(const LinePiece& piece, int y, Image<float>& coverage) {
   const glm::dvec2 along = piece.b - piece.a;
-  const double squared = glm::dot(along, along);
   const auto [first, last] = columns_of(piece, y, coverage.width);
   for (int x = first; x <= last; ++x) {
     const glm::dvec2 from_a = glm::dvec2(x + 0.5, y + 0.5) - piece.a;
-    const double s = squared > 0.0 ? std::clamp(glm::dot(from_a, along) / squared, 0.0, 1.0) : 0.0;
+    const double s = closest_share(from_a, along);
     const double ink = line_coverage(glm::length(from_a - s * along), piece.width_a + s * (piece.width_b - piece.width_a));
     float& pixel = coverage.at(x, y);
     pixel = std::max(pixel, static_cast<float>(ink));

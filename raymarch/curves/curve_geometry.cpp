@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sdf/segment.h"
+
 namespace limn {
 namespace {
 
@@ -134,8 +136,7 @@ std::optional<NearestPoint> CurveIndex::nearest(const glm::dvec2& px, int object
     if (object != 0 && segment.object != object) return;
     const glm::dvec2 along = segment.b - segment.a;
     if (facing && !(glm::dot(*facing, glm::dvec2(-along.y, along.x)) > 0.0)) return;
-    const double squared = glm::dot(along, along);
-    const double s = squared > 0.0 ? std::clamp(glm::dot(px - segment.a, along) / squared, 0.0, 1.0) : 0.0;
+    const double s = closest_share(px - segment.a, along);
     const glm::dvec2 point = segment.a + s * along;
     const double distance = glm::length(px - point);
     if (!(distance <= best.distance_px) || (found && distance == best.distance_px)) return;

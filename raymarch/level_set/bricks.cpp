@@ -136,6 +136,9 @@ std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool wit
   const BrickLayout layout = lay_out_bricks(data);
   if (layout.blocks > kMostBricks || (with_spline && layout.crossed.size() > kMostSplineBricks)) return nullptr;
   auto bricks = std::make_shared<RayBricks>();
+  bricks->world_from_index = level_set.info().world_from_index;
+  bricks->voxel_size = level_set.info().voxel_size;
+  bricks->half_width_voxels = level_set.info().half_width_voxels;
   if (!layout.crossed.empty()) {
     const float scale = scale_for(layout, std::abs(data.grid->tree().background()));
     if (scale == 0.0f) return nullptr;

@@ -60,6 +60,9 @@ struct RayBricks {
   SplineBricks spline{};          ///< Of the crossed bricks; empty where nobody asked for it.
   glm::ivec3 lower{0}, upper{0};  ///< Around the crossed cells, index coordinates.
   double world_per_step = 0.0;    ///< What one step of a value stands for.
+  // What the bricks were made of, for their dump (brick_text.h): rays do not read it.
+  Affine world_from_index{};  ///< The level set's.
+  double voxel_size = 0.0, half_width_voxels = 0.0;
   double prepare_ms = 0.0;
 
   std::int64_t bytes() const;

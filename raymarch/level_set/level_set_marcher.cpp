@@ -257,6 +257,7 @@ Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_ob
   surface.info.voxels = data.info.active_voxels;
   surface.info.bytes = data.info.bytes;
   surface.info.build_ms = data.info.build_ms;
+  surface.bricks = state->bricks;
   if (state->bricks) {
     surface.info.ray_bytes = state->bricks->bytes();
     surface.info.prepare_ms = state->bricks->prepare_ms;

@@ -6,6 +6,7 @@
 #include "raymarch/curves/curve_geometry.h"
 #include "raymarch/metric.h"
 #include "sdf/error.h"
+#include "sdf/quantile.h"
 
 namespace limn {
 namespace {
@@ -22,16 +23,11 @@ struct Shares {
 };
 
 /// Smallest |displacement| that 95 % of the matched length does not exceed.
-double p95(std::vector<Displacement> matched) {
-  std::sort(matched.begin(), matched.end(),
-            [](const Displacement& a, const Displacement& b) { return std::abs(a.value) < std::abs(b.value); });
-  double length = 0.0, below = 0.0;
-  for (const Displacement& one : matched) length += one.at->weight_px;
-  for (const Displacement& one : matched) {
-    below += one.at->weight_px;
-    if (below >= 0.95 * length) return std::abs(one.value);
-  }
-  return kNothing;
+double p95(const std::vector<Displacement>& matched) {
+  std::vector<WeightedValue> sorted;
+  for (const Displacement& one : matched) sorted.push_back({std::abs(one.value), one.at->weight_px});
+  std::sort(sorted.begin(), sorted.end(), [](const WeightedValue& a, const WeightedValue& b) { return a.value < b.value; });
+  return nearest_rank_quantile(sorted, 0.95);
 }
 
 std::vector<MetricValue> summarise(const std::vector<Displacement>& matched, const Shares& shares, const std::string& name) {

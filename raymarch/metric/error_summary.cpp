@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sdf/quantile.h"
+
 namespace limn {
 
 std::vector<MetricValue> summarise_errors(std::vector<PixelError> errors, const std::string& name, const std::string& unit) {
@@ -21,10 +23,10 @@ std::vector<MetricValue> summarise_errors(std::vector<PixelError> errors, const 
     worst = *std::max_element(errors.begin(), errors.end(), [](const PixelError& a, const PixelError& b) { return a.value < b.value; });
     worst_x = worst.x;
     worst_y = worst.y;
-    const auto rank = static_cast<size_t>(std::ceil(0.99 * static_cast<double>(errors.size()))) - 1;
-    const auto at_rank = errors.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(errors.begin(), at_rank, errors.end(), [](const PixelError& a, const PixelError& b) { return a.value < b.value; });
-    p99 = at_rank->value;
+    std::vector<double> values;
+    values.reserve(errors.size());
+    for (const PixelError& error : errors) values.push_back(error.value);
+    p99 = nearest_rank_quantile(std::move(values), 0.99);
   }
   return {{name + "_mean", mean, unit},       {name + "_rms", rms, unit},       {name + "_p99", p99, unit},
           {name + "_max", worst.value, unit}, {name + "_max_x", worst_x, "px"}, {name + "_max_y", worst_y, "px"}};

@@ -1,10 +1,10 @@
 // How wide the ink is along the contour, and how evenly, for the model and for the truth.
 
-#include <algorithm>
 #include <cmath>
 
 #include "raymarch/curves/border_width.h"
 #include "raymarch/metric.h"
+#include "sdf/quantile.h"
 
 namespace limn {
 namespace {
@@ -15,18 +15,15 @@ struct Summary {
   double mean = kNothing, deviation = kNothing, ratio = kNothing, missing = kNothing;
 };
 
-double percentile(const std::vector<WidthSample>& sorted, double share) {
-  const auto rank = static_cast<size_t>(std::max(1.0, std::ceil(share * static_cast<double>(sorted.size()))));
-  return sorted[std::min(rank, sorted.size()) - 1].width_px;
-}
-
 Summary summarise(const BorderCurves& curves, const Camera& camera) {
-  BorderWidths widths = border_widths(curves, camera);
+  const BorderWidths widths = border_widths(curves, camera);
   Summary summary;
   summary.missing = widths.missing;
   if (widths.samples.empty()) return summary;
   double length = 0.0, sum = 0.0, squares = 0.0;
+  std::vector<double> widths_px;
   for (const WidthSample& sample : widths.samples) {
+    widths_px.push_back(sample.width_px);
     length += sample.at.weight_px;
     sum += sample.at.weight_px * sample.width_px;
   }
@@ -36,10 +33,8 @@ Summary summarise(const BorderCurves& curves, const Camera& camera) {
     squares += sample.at.weight_px * off * off;
   }
   summary.deviation = std::sqrt(squares / length);
-  std::sort(widths.samples.begin(), widths.samples.end(),
-            [](const WidthSample& a, const WidthSample& b) { return a.width_px < b.width_px; });
-  const double low = percentile(widths.samples, 0.01);
-  summary.ratio = low > 0.0 ? percentile(widths.samples, 0.99) / low : kNothing;
+  const double low = nearest_rank_quantile(widths_px, 0.01);
+  summary.ratio = low > 0.0 ? nearest_rank_quantile(widths_px, 0.99) / low : kNothing;
   return summary;
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "raymarch/analytic/clip_ray.h"
 #include "raymarch/surface/offset.h"
 #include "sdf/level_set_distance.h"
 
@@ -31,20 +32,6 @@ struct Lane {
   double t = 0.0, t_end = 0.0;
   double side = 0.0;  ///< 1 where the ray started beyond the offset surface, -1 within; 0 unknown.
 };
-
-bool clip_ray(const Box& box, Lane& lane) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (lane.direction[axis] == 0.0) {
-      if (lane.origin[axis] < box.lower[axis] || lane.origin[axis] > box.upper[axis]) return false;
-      continue;
-    }
-    const double u = (box.lower[axis] - lane.origin[axis]) / lane.direction[axis],
-                 v = (box.upper[axis] - lane.origin[axis]) / lane.direction[axis];
-    lane.t = std::max(lane.t, std::min(u, v));
-    lane.t_end = std::min(lane.t_end, std::max(u, v));
-  }
-  return lane.t < lane.t_end;
-}
 
 enum class Fate { going, missed, hit };
 
@@ -89,7 +76,7 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   size_t active = 0, found_count = 0;
   for (int i = 0; i < rays.count; ++i) {
     Lane lane{i, 0, glm::dvec3(rays.origin(i)), glm::dvec3(rays.direction(i)), rays.t_min[i], rays.t_max[i], 0.0};
-    if (lane.t < lane.t_end && clip_ray(state.clip, lane)) lanes[active++] = lane;
+    if (lane.t < lane.t_end && clip_ray(state.clip, lane.origin, lane.direction, lane.t, lane.t_end)) lanes[active++] = lane;
   }
   FieldEvaluator& evaluator = state.evaluators.local();
   while (active > 0) {

@@ -4,18 +4,12 @@
 #include <cmath>
 
 #include "raymarch/truth/parts.h"
+#include "sdf/segment.h"
 
 namespace limn {
 namespace {
 
 constexpr double kLongestStepPx = 8.0;
-
-double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
-  const glm::dvec2 d = b - a;
-  const double squared = glm::dot(d, d);
-  const double t = squared > 0.0 ? std::clamp(glm::dot(p - a, d) / squared, 0.0, 1.0) : 0.0;
-  return glm::distance(p, a + t * d);
-}
 
 /// Marks what is kept between points[first] and points[last] (indices go round): Douglas & Peucker 1973.
 void keep_between(const std::vector<TracedPoint>& points, size_t first, size_t last, double tolerance_px, std::vector<bool>& keep) {

@@ -7,6 +7,7 @@
 #include "raymarch/truth/cell_settling.h"
 #include "raymarch/truth/strands.h"
 #include "sdf/parallel.h"
+#include "sdf/segment.h"
 
 namespace limn {
 namespace {
@@ -44,13 +45,6 @@ struct Refined {
 };
 
 glm::dvec2 image_of(const Camera& camera, const glm::dvec3& p) { return glm::dvec2(project(camera, p)); }
-
-double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
-  const glm::dvec2 d = b - a;
-  const double squared = glm::dot(d, d);
-  const double t = squared > 0.0 ? std::clamp(glm::dot(p - a, d) / squared, 0.0, 1.0) : 0.0;
-  return glm::distance(p, a + t * d);
-}
 
 /// Points between a and b, in order, until the chord's error is well below the tolerance: the thinning has the rest.
 void halve(const Refiner& refiner, FieldEvaluator& evaluator, double c, const CurvePoint& a, const CurvePoint& b, double sagitta_px,

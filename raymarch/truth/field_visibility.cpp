@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/analytic/clip_ray.h"
+
 namespace limn {
 namespace {
 
@@ -11,19 +13,6 @@ constexpr double kLift = 1e-8;
 constexpr double kResolution = 1e-10;
 constexpr double kSphereStep = 0.02;  // of the extent: farther out a step |f| / L is cheaper than bounds
 constexpr int kMostSteps = 100'000;
-
-bool clip_ray(const Box& box, const glm::dvec3& origin, const glm::dvec3& direction, double& t0, double& t1) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (direction[axis] == 0.0) {
-      if (origin[axis] < box.lower[axis] || origin[axis] > box.upper[axis]) return false;
-      continue;
-    }
-    const double u = (box.lower[axis] - origin[axis]) / direction[axis], v = (box.upper[axis] - origin[axis]) / direction[axis];
-    t0 = std::max(t0, std::min(u, v));
-    t1 = std::min(t1, std::max(u, v));
-  }
-  return t0 < t1;
-}
 
 /// f > 0 between two places where it is fa and fb, as its slope has bounds (Piyavskii 1972).
 bool positive_between(double fa, double fb, double length, const Interval& slope) {

@@ -12,6 +12,8 @@
 #include "raymarch/measured_border.h"
 #include "raymarch/truth/parts.h"
 #include "sdf/error.h"
+#include "sdf/quantile.h"
+#include "sdf/segment.h"
 
 namespace limn {
 namespace {
@@ -177,8 +179,7 @@ glm::dvec2 nearest_on(const BorderCurves& border, CurveKind kind, int object, co
     if (curve.kind != kind || curve.object != object) continue;
     const size_t n = curve.points.size();
     for (size_t i = 0; i + (curve.closed ? 0 : 1) < n; ++i) {
-      const glm::dvec2 a = curve.points[i].px, d = curve.points[(i + 1) % n].px - a;
-      const glm::dvec2 q = a + std::clamp(glm::dot(p - a, d) / std::max(glm::dot(d, d), 1e-300), 0.0, 1.0) * d;
+      const glm::dvec2 q = closest_on_segment(p, curve.points[i].px, curve.points[(i + 1) % n].px);
       if (const double distance = glm::distance(p, q); distance < best) {
         best = distance;
         nearest = q;
@@ -198,9 +199,7 @@ double disagreement_px(const BorderCurves& a, const BorderCurves& b, int object)
     for (size_t i = 0; i < curve.points.size(); i += step)
       distances.push_back(glm::distance(curve.points[i].px, nearest_on(b, curve.kind, object, curve.points[i].px)));
   }
-  if (distances.empty()) return 0.0;
-  std::sort(distances.begin(), distances.end());
-  return distances[static_cast<size_t>(0.95 * static_cast<double>(distances.size() - 1))];
+  return distances.empty() ? 0.0 : lower_quantile(std::move(distances), 0.95);
 }
 
 /// A refined cage's border nears the limit's with the square of the edges' length: of two levels, the finer one is off by a third of what

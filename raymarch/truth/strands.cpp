@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sdf/segment.h"
+
 namespace limn {
 namespace {
 
@@ -150,8 +152,7 @@ class Cutter {
     if (squared > kLongestChordPx * kLongestChordPx || stretch[first].point.crease != stretch[last].point.crease) return false;
     for (size_t i = first + 1; i < last; ++i) {
       const glm::dvec2 q = stretch[i].px - a;
-      const double t = squared > 0.0 ? std::clamp(glm::dot(q, d) / squared, 0.0, 1.0) : 0.0;
-      if (glm::distance(q, t * d) > most || stretch[i].point.crease != stretch[first].point.crease) return false;
+      if (glm::distance(q, closest_share(q, d) * d) > most || stretch[i].point.crease != stretch[first].point.crease) return false;
     }
     return true;
   }

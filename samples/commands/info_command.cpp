@@ -6,6 +6,7 @@
 #include "raymarch/audit.h"
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
+#include "samples/commands/info_dump.h"
 #include "samples/experiment/no_effect.h"
 #include "samples/experiment/thread_settings.h"
 #include "samples/output/output.h"
@@ -274,6 +275,7 @@ void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_surface(app, options, {.surface = false});
   add_json(app, options);
+  add_dump(app, options);
   add_execution(app, options);
 }
 
@@ -281,7 +283,12 @@ int run(const Options& options) {
   const ThreadLimit threads(options.spec.threads);
   if (is_picture_file(options.spec.input)) {
     refuse_surface_settings(options.spec, "a picture");
+    if (!options.dump.what.empty()) throw InputError({"", "dump", options.dump.what, "a picture holds no formula and no level set", ""});
     return report_picture(options);
+  }
+  if (!options.dump.what.empty()) {
+    print_text(dump_text(options, load(options)));
+    return 0;
   }
   std::vector<GridSummary> grids;
   if (input_kind(options.spec.input) == InputKind::level_set) {
@@ -305,7 +312,9 @@ int run(const Options& options) {
 
 Command info_command() {
   return {"info", "says what is in a file, and what is wrong with it",
-          "  limn info bunny.obj\n  limn info gyroid --voxels 64\n  limn info smoke.vdb --json\n  limn info teacup.exr", add_options, run};
+          "  limn info bunny.obj\n  limn info gyroid --voxels 64\n  limn info smoke.vdb --json\n  limn info teacup.exr\n"
+          "  limn info gyroid --dump tape\n  limn info gyroid --voxels 64 --dump bricks --brick 3",
+          add_options, run};
 }
 
 }  // namespace limn

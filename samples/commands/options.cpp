@@ -122,6 +122,25 @@ void add_json(CLI::App& app, Options& options) {
   add_switch(app, {"--json", "", "one JSON document on stdout and nothing else there", kOutput}, options.json);
 }
 
+void add_dump(CLI::App& app, Options& options) {
+  DumpOptions& dump = options.dump;
+  auto* what = add(app,
+                   {"--dump", "program|tape|bricks",
+                    "in place of the report what limn computes with, for debugging: the instructions of formulas (program), the same "
+                    "recorded for SIMD (tape), or the bricks of level sets",
+                    kOutput},
+                   [&dump](const std::string& text) {
+                     const std::vector<std::string> known = {"program", "tape", "bricks"};
+                     if (std::find(known.begin(), known.end(), text) == known.end())
+                       throw InputError({"", "--dump", text, "there is no such dump", known_names(text, known)});
+                     dump.what = text;
+                   });
+  what->excludes(app.get_option("--json"));
+  add(app, {"--brick", "N", "with --dump bricks: the values of brick N in place of the list, as it numbers them", kOutput},
+      [&dump](const std::string& text) { dump.brick = parse_integer("--brick", text, 0, std::numeric_limits<int>::max()); })
+      ->needs(what);
+}
+
 void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size) {
   const std::string size_help = "picture in pixels, 1..16384 each; default " + default_size;
   add(app, {"--size", "WxH", size_help.c_str(), kCamera},

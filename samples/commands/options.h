@@ -29,6 +29,12 @@ struct StabilityOptions {
   std::optional<int> draws{};           ///< Of them, for each case.
 };
 
+/// What `limn info` prints of what limn computes with, in place of its report.
+struct DumpOptions {
+  std::string what{};          ///< program, tape or bricks; empty: the report.
+  std::optional<int> brick{};  ///< The values of this one in place of the list.
+};
+
 /// The command line as given: what it asks of the experiment, and where the answer goes.
 struct Options {
   ExperimentSpec spec{};
@@ -39,6 +45,7 @@ struct Options {
   FramePath frames{.frames = 1};  ///< `limn render` only.
   bool refined = false;           ///< `limn export` only: refined instead of limit positions.
   std::string kind{};             ///< `limn list` only.
+  DumpOptions dump{};             ///< `limn info` only.
 
   std::vector<std::filesystem::path> outputs{};
   bool no_clobber = false;
@@ -61,6 +68,8 @@ void add_output(CLI::App& app, Options& options, const std::string& what, bool r
 /// --refined
 void add_refined(CLI::App& app, Options& options);
 void add_json(CLI::App& app, Options& options);
+/// --dump and --brick; excludes --json, which is added before.
+void add_dump(CLI::App& app, Options& options);
 void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size = "1280x720");
 /// --frames, --path-step and --seed; excludes --views.
 void add_frames(CLI::App& app, Options& options);

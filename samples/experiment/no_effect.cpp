@@ -185,6 +185,15 @@ void refuse_unchecked(const SurfaceSpec& spec, const SceneInput& input) {
   }
 }
 
+void refuse_undumped(const SurfaceSpec& spec, const SceneInput& input, std::span<const std::string> kinds) {
+  const SurfaceSettings settings = settings_of(spec, input);
+  for (const auto& [field, setting] : given_settings(spec)) {
+    bool read = false;
+    for (size_t i = 0; i < kinds.size(); ++i) read = read || reads(input.scene.objects[i], settings, kinds[i], setting);
+    if (!read) throw InputError({"", field, "", "has no effect on what is dumped; leave it out", ""});
+  }
+}
+
 void refuse_surface_settings(const ExperimentSpec& spec, const std::string& what) {
   std::vector<GivenSetting> given = given_settings(spec.surface);
   if (!spec.grids.empty()) given.push_back({"grids", "grids"});

@@ -9,6 +9,7 @@ extern const std::string_view kPageStyle;
 extern const std::string_view kPageScript;
 extern const std::string_view kSliderScript;    ///< img-comparison-slider, with its licence.
 extern const std::string_view kStudyStyle;      ///< After kPageStyle.
+extern const std::string_view kStudyNumbers;    ///< What a study's page reckons itself.
 extern const std::string_view kStudyCharts;     ///< What the charts of a study look like.
 extern const std::string_view kStudyScript;     ///< What moves them.
 extern const std::string_view kStabilityStyle;  ///< After kPageStyle.

@@ -6,12 +6,6 @@ const chosen = name => document.querySelector(`.filters select[name=${name}]`);
 const metricOf = name => study.metrics.findIndex(metric => metric.name === name);
 const unitText = (value, unit) => `${value === null ? "–" : +value.toPrecision(3)}${unit ? " " + unit : ""}`;
 
-function quantile(sorted, part) {
-  const at = part * (sorted.length - 1), below = Math.floor(at), above = Math.min(below + 1, sorted.length - 1);
-  return sorted[below] + (at - below) * (sorted[above] - sorted[below]);
-}
-const numbersUp = (a, b) => a - b;
-
 function filters() {
   const views = chosen("view").value;
   return {
@@ -22,50 +16,7 @@ function filters() {
   };
 }
 
-const cellsOf = want => study.cells.filter(([model, drawing, view]) => drawing === want.drawing && (want.view === null || view === want.view) &&
-  want.series.has(study.models[model].series));
-
-// A model over its views.
-function pointsOf(cells, metric) {
-  const index = metricOf(metric.name), groups = new Map();
-  for (const cell of cells) {
-    if (cell[5][index] === null) continue;
-    if (!groups.has(cell[0])) groups.set(cell[0], []);
-    groups.get(cell[0]).push({ view: cell[2], error: Math.abs(cell[5][index]), ms: cell[3], bytes: cell[4], drawing: cell[1] });
-  }
-  return [...groups].map(([model, views]) => {
-    views.sort((a, b) => a.error - b.error || a.view - b.view);
-    const errors = views.map(one => one.error);
-    return {
-      model, views, drawing: views[0].drawing, name: study.models[model].name, series: study.series[study.models[model].series].name,
-      resolution: study.models[model].resolution, error: quantile(errors, 0.5), low: errors[0], high: errors.at(-1),
-      lowQuartile: quantile(errors, 0.25), highQuartile: quantile(errors, 0.75),
-      ms: quantile(views.map(one => one.ms).sort(numbersUp), 0.5), bytes: Math.max(...views.map(one => one.bytes)),
-    };
-  });
-}
-
-// The analytic surface is what models stand for, and no choice beside them.
-function paretoFront(points, cost) {
-  const front = [];
-  for (const point of points.filter(one => !study.models[one.model].analytic).sort((a, b) => a[cost] - b[cost] || a.error - b.error || a.model - b.model)) {
-    if (!front.length || point.error < front.at(-1).error) front.push(point);
-  }
-  return front;
-}
-
-// error = factor * resolution^order.
-function fitOrder(points, floor) {
-  const used = points.filter(point => point.resolution > 0 && point.error > floor);
-  if (used.length < 3) return null;
-  const x = used.map(point => Math.log(point.resolution)), y = used.map(point => Math.log(point.error));
-  const mean = all => all.reduce((a, b) => a + b, 0) / all.length, middle = [mean(x), mean(y)];
-  const xx = x.reduce((sum, one) => sum + (one - middle[0]) ** 2, 0);
-  if (xx < 1e-6) return null;
-  const order = x.reduce((sum, one, i) => sum + (one - middle[0]) * (y[i] - middle[1]), 0) / xx;
-  return { order, factor: Math.exp(middle[1] - order * middle[0]), finest: Math.exp(Math.min(...x)), coarsest: Math.exp(Math.max(...x)) };
-}
-
+const shownFront = (points, want, cost) => frontOf(points, cost, study.beating, want.series);
 const errorAxis = (values, metric, length) => logAxis(values, `${metric.label}${metric.unit ? ` [${metric.unit}]` : ""}`, metric.unit,
   metric.unit === "px" ? study.least : 0, length);
 function clampNote(axis) {
@@ -95,7 +46,7 @@ const kCharts = {
 function accuracyChart({ points, want, size, theme }, cost, title) {
   const x = logAxis(points.map(point => point[cost]), title, cost, 0, size.width);
   const y = errorAxis(points.map(point => point.error), want.metric, size.height);
-  const front = paretoFront(points, cost);
+  const front = shownFront(points, want, cost);
   const dots = points.map(point => ({ ...point, x: x.shown(point[cost]), y: y.shown(point.error), tip: tip(point, want.view, want.metric, point.error),
     ...(front.includes(point) ? { label: point.name } : {}) }));
   const line = front.map(point => ({ x: x.shown(point[cost]), y: y.shown(point.error) }));
@@ -110,30 +61,32 @@ function orderChart({ points, want, size, theme }) {
   const known = points.filter(point => point.resolution > 0);
   const x = logAxis(known.map(point => point.resolution), "edge or voxel, share of the longest side (finer to the left)", "", 0, size.width);
   const y = errorAxis(known.map(point => point.error), want.metric, size.height);
-  const fits = [], items = [], orders = [], labels = new Map();
+  const fits = lookOf(study, want)?.fits ?? [], lines = [], items = [], orders = [], labels = new Map();
   study.series.forEach((series, index) => {
     const mine = known.filter(point => point.series === series.name);
     orders.push(null);
     if (!mine.length) return;
-    const fit = fitOrder(mine, want.metric.unit === "px" ? study.floor : 0);
+    const fit = fits[index];
     const expected = study.expected[want.metric.name]?.[index][want.drawing] ?? null;
     const theory = expected === null ? "no order is expected" : `expected ${expected}`;
-    items.push([index, fit ? `${series.name}: order ${fit.order.toFixed(2)}${fit.order < study.leastOrder ? ": does not converge" : ""}, ${theory}` : `${series.name}: too few resolutions for an order, ${theory}`]);
+    items.push([index, fit ? `${series.name}: order ${fit[0].toFixed(2)}${fit[0] < study.leastOrder ? ": does not converge" : ""}, ${theory}` : `${series.name}: too few resolutions for an order, ${theory}`]);
     if (!fit) return;
-    orders[index] = fit.order;
-    for (const resolution of [fit.finest, fit.coarsest]) fits.push({ series: series.name, x: resolution, y: fit.factor * resolution ** fit.order });
-    labels.set(mine.reduce((a, b) => b.resolution < a.resolution ? b : a), fit.order.toFixed(2));
+    // error = factor * resolution^order.
+    const [order, factor, ...ends] = fit;
+    orders[index] = order;
+    for (const resolution of ends) lines.push({ series: series.name, x: resolution, y: factor * resolution ** order });
+    labels.set(mine.reduce((a, b) => b.resolution < a.resolution ? b : a), order.toFixed(2));
   });
   const dots = known.map(point => ({ ...point, x: point.resolution, y: y.shown(point.error), tip: tip(point, want.view, want.metric, point.error),
     ...(labels.has(point) ? { label: labels.get(point) } : {}) }));
   const floor = want.metric.unit === "px" ? `Errors below ${Number(study.floor.toPrecision(2))} px are at the precision of measurement and truth, and left out of the fit. ` : "";
-  return { spec: orderSpec(dots, fits, x, y, size, theme.series, theme), count: known.length, items, note: floor + clampNote(y), data: { orders },
+  return { spec: orderSpec(dots, lines, x, y, size, theme.series, theme), count: known.length, items, note: floor + clampNote(y), data: { orders },
     caption: "Dashed: the order fitted, a number at its fine end; below, what theory expects." };
 }
 
 function viewsChart({ points, want, size, theme, narrow }) {
   const finest = points.filter((point, i) => points[i + 1]?.series !== point.series);
-  const rows = [...new Set([...paretoFront(points, "ms"), ...finest, ...paretoFront(points, "bytes")])].slice(0, 16).sort((a, b) => a.error - b.error);
+  const rows = [...new Set([...shownFront(points, want, "ms"), ...finest, ...shownFront(points, want, "bytes")])].slice(0, 16).sort((a, b) => a.error - b.error);
   const x = errorAxis(rows.flatMap(row => row.views.map(view => view.error)), want.metric, size.width);
   const marks = rows.flatMap(row => row.views.map(view => ({ name: row.name, series: row.series, x: x.shown(view.error),
     tip: tip({ ...row, ms: view.ms, bytes: view.bytes }, view.view, want.metric, view.error) })));
@@ -150,8 +103,7 @@ function normalChart({ cells, want, size, theme }) {
   const values = usable.map(cell => [Math.abs(cell[5][normal]), Math.abs(cell[5][border])]);
   const metric = border < 0 ? { label: "displacement", unit: "px" } : study.metrics[border];
   const x = logAxis(values.map(one => one[0]), `${normal < 0 ? "normal error" : study.metrics[normal].label} [deg]`, "deg", 0, size.width), y = errorAxis(values.map(one => one[1]), metric, size.height);
-  const slopes = predicted < 0 ? [] : usable.map(cell => Math.abs(cell[5][predicted]) / Math.abs(cell[5][normal])).filter(one => one > 0 && Number.isFinite(one)).sort(numbersUp);
-  const slope = slopes.length ? { low: slopes[0], median: slopes[Math.floor(slopes.length / 2)], high: slopes.at(-1) } : null;
+  const slope = predicted < 0 ? null : predictedSlope(usable.map(cell => [cell[5][predicted], cell[5][normal]]));
   const points = usable.map((cell, i) => {
     const model = study.models[cell[0]], row = { model: cell[0], drawing: cell[1], views: [{ view: cell[2] }], ms: cell[3], bytes: cell[4] };
     const about = tip(row, cell[2], metric, values[i][1]);
@@ -219,7 +171,7 @@ const drawn = new Map();
 let turn = 0;
 async function draw() {
   const mine = ++turn, want = filters(), theme = themeNow();
-  const cells = cellsOf(want), points = pointsOf(cells, want.metric);
+  const cells = cellsOf(study, want), points = pointsOf(study, cells, want);
   for (const [id, make] of Object.entries(kCharts)) {
     const figure = document.getElementById(id), plot = figure.querySelector(".plot");
     const narrow = plot.clientWidth < 560, size = { width: Math.max(200, plot.clientWidth - 78), height: narrow ? 300 : 400 };
@@ -269,7 +221,7 @@ function orderList(items, theme) {
 }
 
 function say(want, points) {
-  const within = points.filter(point => point.error <= study.tolerance && !study.models[point.model].analytic).sort((a, b) => a.ms - b.ms)[0];
+  const within = quickestWithin(points, study.tolerance);
   const all = new Set(study.cells.filter(cell => cell[1] === want.drawing).map(cell => cell[0])).size;
   let words = `${points.length} of ${all} models.`;
   if (want.metric.unit === "px" && want.metric.name.includes("displacement") && points.length) {

@@ -16,25 +16,10 @@ const kAxisLabels = {
     "datum.value >= 1e3 ? format(datum.value / 1e3, '~r') + ' kB' : format(datum.value, '~r') + ' B'",
 };
 
-// An axis around `values`: zeros, and what is below `least`, are shown at its floor.
-function logAxis(values, title, unit, least, width) {
-  const above = values.filter(value => Number.isFinite(value) && value > least);
-  const floor = least > 0 ? least : above.length ? 0.5 * Math.min(...above) : 1;
-  const clamped = values.filter(value => Number.isFinite(value) && !(value > floor)).length;
-  const low = clamped || !above.length ? floor : Math.min(...above), high = Math.max(low, ...above);
-  const room = Math.max(0.07 * Math.log(high / low), 0.5 * (Math.log(3) - Math.log(high / low)), 0.05);
-  const domain = [low * Math.exp(-room), high * Math.exp(room)];
-  const decades = Math.log10(domain[1] / domain[0]);
-  const marks = decades < 0.8 ? [1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9] : decades < width / 200 ? [1, 2, 5] : [1];
-  const step = Math.max(1, Math.ceil(decades * 46 / width)), ticks = [];
-  for (let power = Math.floor(Math.log10(domain[0])); power <= Math.log10(domain[1]); ++power) {
-    if (power % step) continue;
-    for (const mark of marks) {
-      const value = Number(`${mark}e${power}`);
-      if (value >= domain[0] && value <= domain[1]) ticks.push(value);
-    }
-  }
-  return { domain, floor, clamped, title, unit, ticks, shown: value => Math.max(value, floor) };
+// An axis around `values`, `length` px long.
+function logAxis(values, title, unit, least, length) {
+  const { low, high, floor, clamped } = logRange(values, least, 0.07);
+  return { domain: [low, high], floor, clamped, title, unit, ticks: logTicks(low, high, length), shown: value => Math.max(value, floor) };
 }
 
 const share = (axis, value) => Math.log(axis.shown(value) / axis.domain[0]) / Math.log(axis.domain[1] / axis.domain[0]);

@@ -4,6 +4,7 @@
 #include "raymarch/curves/curve_geometry.h"
 #include "raymarch/measured_border.h"
 #include "samples/plan/plan.h"
+#include "sdf/quantile.h"
 
 namespace limn {
 namespace {
@@ -13,12 +14,7 @@ constexpr double kSpacing_px = 1.0;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The 95th percentile; 0 of nothing.
-double upper_part(std::vector<double>& distances) {
-  if (distances.empty()) return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(distances.size() - 1));
-  std::nth_element(distances.begin(), distances.begin() + at, distances.end());
-  return distances[static_cast<size_t>(at)];
-}
+double upper_part(std::vector<double> distances) { return distances.empty() ? 0.0 : lower_quantile(std::move(distances), 0.95); }
 
 /// The borders of one picture, as what lies beside each other there.
 struct Neighbours {
@@ -61,7 +57,7 @@ double missed_px(const BorderCurves& truth, const BorderCurves& measured, CurveK
   std::vector<double> distances;
   for (const CurveSample& sample : within_picture(resample(truth, kind, kSpacing_px), camera))
     distances.push_back(missed_px(sample, displacement_px(sample, partners, reach), beside, reach));
-  return upper_part(distances);
+  return upper_part(std::move(distances));
 }
 
 /// How far the measured border is from the next true one; a band that is none is off by its width.
@@ -75,7 +71,7 @@ double false_px(const BorderCurves& measured, const BorderCurves& truth, CurveKi
     const double width = std::min(beside.ink_px(sample, reach), beside.clear_px(sample, reach));
     distances.push_back(std::min(nearest ? nearest->distance_px : kInfinity, width));
   }
-  return upper_part(distances);
+  return upper_part(std::move(distances));
 }
 
 double error_px(const BorderCurves& measured, const BorderCurves& truth, CurveKind kind, const Camera& camera) {

@@ -4,17 +4,13 @@
 #include <cmath>
 
 #include "samples/plan/plan.h"
+#include "sdf/quantile.h"
 
 namespace limn {
 namespace {
 
 /// The 95th percentile; 0 of nothing.
-double upper_part(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<size_t>(at)];
-}
+double upper_part(std::vector<double> values) { return values.empty() ? 0.0 : lower_quantile(std::move(values), 0.95); }
 
 // Where the surface has a crease its place is right to a part of an edge or voxel: the corner is cut.
 constexpr double kCreaseShare = 0.25;
@@ -46,7 +42,7 @@ BorderErrors predict_errors(const Ladder& ladder, size_t rung, const PlanView& v
       inner.push_back(position * std::sqrt(std::max(0.0, 1.0 - threshold * threshold)) + shift);
     }
   }
-  return {upper_part(silhouette), upper_part(inner)};
+  return {upper_part(std::move(silhouette)), upper_part(std::move(inner))};
 }
 
 }  // namespace limn

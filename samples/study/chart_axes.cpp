@@ -11,6 +11,9 @@ namespace {
 const ChartText kTitleText{19.0, true}, kDetailsText{13.0, false, kChartSoft}, kAxisText{13.5, false}, kTickText{12.0, false, kChartSoft},
     kNoteText{11.5, false, kChartSoft};
 
+// The charts' own axes are 460 to 710 px long, and all ticked alike.
+constexpr double kTickedLengthPx = 640.0;
+
 // 2.00 as "2", 0.5 as "0.5".
 std::string plain(double value) { return fmt::format("{:.6g}", value); }
 
@@ -32,18 +35,20 @@ std::string tick_text(double value, Quantity quantity) {
 
 double LogAxis::place(double value) const { return (std::log(value) - std::log(low)) / (std::log(high) - std::log(low)); }
 
-std::vector<double> LogAxis::ticks() const {
+std::vector<double> LogAxis::ticks() const { return log_ticks(low, high, kTickedLengthPx); }
+
+std::vector<double> log_ticks(double low, double high, double length_px) {
   const double decades = std::log10(high / low);
   std::vector<double> marks = {1.0};
-  if (decades < 3.2) marks = {1.0, 2.0, 5.0};
+  if (decades < length_px / 200.0) marks = {1.0, 2.0, 5.0};
   if (decades < 0.8) marks = {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0};
-  const int step = std::max(1, static_cast<int>(decades / 8.0));
+  const int step = std::max(1, static_cast<int>(std::ceil(decades * 46.0 / length_px)));
   std::vector<double> out;
   for (int power = static_cast<int>(std::floor(std::log10(low))); power <= static_cast<int>(std::ceil(std::log10(high))); ++power) {
     if (power % step != 0) continue;
     for (const double mark : marks) {
       const double value = mark * std::pow(10.0, power);
-      if (value >= low * 0.999 && value <= high * 1.001) out.push_back(value);
+      if (value >= low && value <= high) out.push_back(value);
     }
   }
   return out;

@@ -27,6 +27,9 @@ struct LogAxis {
   double place(double value) const;
   std::vector<double> ticks() const;
 };
+/// Ticks between `low` and `high`, for an axis of that length: 1, 2 and 5 of each decade where they have room, more where the axis is
+/// shorter than a decade. The page's charts are as wide as its window; its script follows the same rule (samples/page/study_numbers.js).
+std::vector<double> log_ticks(double low, double high, double length_px);
 /// An axis around `values`, with some room. `least` is the floor where there is a natural one; 0: half the smallest positive value.
 LogAxis log_axis(std::span<const double> values, Quantity quantity, const std::string& title, double least = 0.0);
 /// The smallest displacement worth showing, px.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "samples/study/charts.h"
+#include "sdf/quantile.h"
 
 namespace limn {
 namespace {
@@ -68,8 +69,8 @@ std::optional<PredictedSlope> predicted_slope(const ReportData& data, size_t dra
     if (cell.drawing == drawing && std::isfinite(slope) && slope > 0.0) slopes.push_back(slope);
   }
   if (slopes.empty()) return std::nullopt;
-  std::sort(slopes.begin(), slopes.end());
-  return PredictedSlope{slopes.front(), slopes[slopes.size() / 2], slopes.back()};
+  const auto [low, high] = std::minmax_element(slopes.begin(), slopes.end());
+  return PredictedSlope{*low, upper_median(slopes), *high};
 }
 
 StudyChart normal_border_chart(const ReportData& data) {

@@ -67,7 +67,8 @@ std::string charts_html(const std::vector<StudyChart>& charts) {
 
 std::string scripts_html(const ReportData& data) {
   std::string html = "<script type=\"application/json\" id=\"study\">" + study_data_json(data) + "</script>\n";
-  for (const std::string_view script : {kVegaScript, kVegaLiteScript, kVegaEmbedScript, kPageScript, kStudyCharts, kStudyScript})
+  for (const std::string_view script :
+       {kVegaScript, kVegaLiteScript, kVegaEmbedScript, kPageScript, kStudyNumbers, kStudyCharts, kStudyScript})
     html.append("<script>\n").append(script).append("</script>\n");
   return html;
 }

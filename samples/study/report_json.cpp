@@ -1,18 +1,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 
+#include "samples/study/report_looks.h"
 #include "samples/study/report_page.h"
 
 namespace limn {
 namespace {
-
-// Six digits are more than a chart shows, and half the page.
-Json short_number(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
-}
 
 std::string hex(const ChartColor& color) {
   const auto part = [](double value) { return static_cast<int>(std::lround(255.0 * value)); };
@@ -48,30 +42,11 @@ Json expectations_json(const ReportData& data) {
   return by_metric;
 }
 
-Json front_json(const ReportData& data, Cost cost) {
-  Json all = Json::array();
-  if (data.drawings.empty()) return all;
-  const std::vector<ModelPoint> points = points_of(data, data.main_drawing, data.main_metric);
-  for (const size_t i : pareto_front(data, points, cost)) all.push_back(points[i].model);
-  return all;
-}
-
-Json orders_json(const ReportData& data) {
-  Json all = Json::array();
-  if (data.drawings.empty()) return all;
-  const std::vector<ModelPoint> points = points_of(data, data.main_drawing, data.main_metric);
-  for (size_t series = 0; series < data.series.size(); ++series) {
-    const std::optional<OrderFit> fit = fit_order(data, points, series, data.main_metric);
-    all.push_back(fit ? short_number(fit->order) : Json(nullptr));
-  }
-  return all;
-}
-
 }  // namespace
 
 std::string study_data_json(const ReportData& data) {
-  Json json = {{"tolerance", kTolerancePx}, {"floor", short_number(data.floor_px)}, {"leastOrder", kLeastOrder},
-               {"least", kLeastShownPx},    {"mainDrawing", data.main_drawing},     {"mainMetric", data.main_metric}};
+  Json json = {{"tolerance", kTolerancePx}, {"floor", six_digits(data.floor_px)}, {"leastOrder", kLeastOrder},
+               {"least", kLeastShownPx},    {"mainDrawing", data.main_drawing},   {"mainMetric", data.main_metric}};
   json["roles"] = {{"compared", compared_metric(data)},
                    {"predicted", data.metric_of(MetricRole::predicted)},
                    {"normal", data.metric_of(MetricRole::normal)}};
@@ -80,7 +55,7 @@ std::string study_data_json(const ReportData& data) {
   for (size_t i = 0; i < data.models.size(); ++i)
     json["models"].push_back({{"series", data.models[i].series},
                               {"name", data.title(i)},
-                              {"resolution", short_number(data.models[i].resolution)},
+                              {"resolution", six_digits(data.models[i].resolution)},
                               {"analytic", data.models[i].is_analytic()}});
   json["drawings"] = Json::array();
   for (const ReportDrawing& drawing : data.drawings)
@@ -90,18 +65,16 @@ std::string study_data_json(const ReportData& data) {
     json["metrics"].push_back({{"name", metric.name}, {"label", metric.label()}, {"unit", metric.unit}, {"lower", metric.lower_is_better}});
   json["expected"] = expectations_json(data);
   json["views"] = data.views;
-  // What the page works out itself for its first look; its test holds the two against each other.
-  json["fronts"] = {{"time", front_json(data, Cost::time)}, {"memory", front_json(data, Cost::memory)}};
-  json["orders"] = orders_json(data);
+  add_looks(json, data);
   json["cells"] = Json::array();
   for (const ReportCell& cell : data.cells) {
     if (!cell.failed.empty()) continue;
     Json values = Json::array();
     for (const ReportMetric& metric : data.metrics) {
       const auto found = cell.values.find(metric.name);
-      values.push_back(found == cell.values.end() ? Json(nullptr) : short_number(found->second));
+      values.push_back(found == cell.values.end() ? Json(nullptr) : six_digits(found->second));
     }
-    json["cells"].push_back({cell.model, cell.drawing, cell.view, short_number(cell.time_ms), cell.bytes, values});
+    json["cells"].push_back({cell.model, cell.drawing, cell.view, six_digits(cell.time_ms), cell.bytes, values});
   }
   // A name may hold "</script>".
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace), safe;

@@ -7,15 +7,10 @@
 #include <numeric>
 
 #include "sdf/level_set.h"
+#include "sdf/quantile.h"
 
 namespace limn {
 namespace {
-
-double quantile(const std::vector<double>& sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const size_t below = static_cast<size_t>(at), above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
 
 ModelPoint point_of(size_t model, std::vector<std::pair<double, const ReportCell*>> values) {
   std::sort(values.begin(), values.end(),
@@ -31,11 +26,11 @@ ModelPoint point_of(size_t model, std::vector<std::pair<double, const ReportCell
   }
   std::sort(times.begin(), times.end());
   point.low = errors.front();
-  point.low_quartile = quantile(errors, 0.25);
-  point.median = quantile(errors, 0.5);
-  point.high_quartile = quantile(errors, 0.75);
+  point.low_quartile = interpolated_quantile(errors, 0.25);
+  point.median = interpolated_quantile(errors, 0.5);
+  point.high_quartile = interpolated_quantile(errors, 0.75);
   point.high = errors.back();
-  point.time_ms = quantile(times, 0.5);
+  point.time_ms = interpolated_quantile(times, 0.5);
   return point;
 }
 
@@ -59,12 +54,23 @@ std::optional<ExpectedOrder> normal_order(const ReportModel& model) {
   return std::nullopt;
 }
 
+// What fronts are made of; the analytic surface is no choice, and beats nothing.
+struct Choices {
+  std::vector<double> costs{}, errors{};
+  Choices(const ReportData& data, const std::vector<ModelPoint>& points, Cost cost) {
+    for (const ModelPoint& point : points) {
+      costs.push_back(cost_of(point, cost));
+      errors.push_back(data.models[point.model].is_analytic() ? std::numeric_limits<double>::quiet_NaN() : point.median);
+    }
+  }
+};
+
 }  // namespace
 
-std::vector<ModelPoint> points_of(const ReportData& data, size_t drawing, const std::string& metric) {
+std::vector<ModelPoint> points_of(const ReportData& data, size_t drawing, const std::string& metric, std::optional<int> view) {
   std::vector<std::vector<std::pair<double, const ReportCell*>>> values(data.models.size());
   for (const ReportCell& cell : data.cells) {
-    if (cell.drawing != drawing) continue;
+    if (cell.drawing != drawing || (view && cell.view != *view)) continue;
     const auto found = cell.values.find(metric);
     if (found != cell.values.end() && std::isfinite(found->second)) values[cell.model].emplace_back(std::abs(found->second), &cell);
   }
@@ -92,12 +98,32 @@ std::vector<size_t> pareto_front(std::span<const double> costs, std::span<const 
 }
 
 std::vector<size_t> pareto_front(const ReportData& data, const std::vector<ModelPoint>& points, Cost cost) {
-  std::vector<double> costs, errors;
-  for (const ModelPoint& point : points) {
-    costs.push_back(cost_of(point, cost));
-    errors.push_back(data.models[point.model].is_analytic() ? std::numeric_limits<double>::quiet_NaN() : point.median);
+  const Choices choices(data, points, cost);
+  return pareto_front(choices.costs, choices.errors);
+}
+
+std::vector<std::vector<size_t>> beating_groups(std::span<const double> costs, std::span<const double> errors,
+                                                std::span<const size_t> groups) {
+  const auto beats = [&](size_t a, size_t b) {
+    if (costs[a] == costs[b] && errors[a] == errors[b]) return a < b;
+    return costs[a] <= costs[b] && errors[a] <= errors[b];
+  };
+  std::vector<std::vector<size_t>> beating(costs.size());
+  for (size_t i = 0; i < costs.size(); ++i) {
+    for (size_t other = 0; other < costs.size(); ++other) {
+      if (other != i && beats(other, i)) beating[i].push_back(groups[other]);
+    }
+    std::sort(beating[i].begin(), beating[i].end());
+    beating[i].erase(std::unique(beating[i].begin(), beating[i].end()), beating[i].end());
   }
-  return pareto_front(costs, errors);
+  return beating;
+}
+
+std::vector<std::vector<size_t>> beating_series(const ReportData& data, const std::vector<ModelPoint>& points, Cost cost) {
+  const Choices choices(data, points, cost);
+  std::vector<size_t> series;
+  for (const ModelPoint& point : points) series.push_back(data.models[point.model].series);
+  return beating_groups(choices.costs, choices.errors, series);
 }
 
 std::optional<OrderFit> fit_order(std::span<const double> resolutions, std::span<const double> errors, double floor) {

@@ -18,8 +18,8 @@ struct ModelPoint {
   const ReportCell& typical() const { return *cells[(cells.size() - 1) / 2]; }
 };
 
-/// Models with at least one finite value, in the order of the models.
-std::vector<ModelPoint> points_of(const ReportData& data, size_t drawing, const std::string& metric);
+/// Models with at least one finite value, in the order of the models; of all views or of one.
+std::vector<ModelPoint> points_of(const ReportData& data, size_t drawing, const std::string& metric, std::optional<int> view = {});
 
 enum class Cost { time, memory };
 double cost_of(const ModelPoint& point, Cost cost);
@@ -28,6 +28,13 @@ double cost_of(const ModelPoint& point, Cost cost);
 std::vector<size_t> pareto_front(std::span<const double> costs, std::span<const double> errors);
 /// The front of models; the analytic surface is drawn, but it is what models stand for, and no choice beside them.
 std::vector<size_t> pareto_front(const ReportData& data, const std::vector<ModelPoint>& points, Cost cost);
+
+/// For each the groups that have one that beats it, in order: the front of some groups alone holds those of them that none of these groups
+/// beats. So a page in which groups are chosen needs no front worked out for each choice.
+std::vector<std::vector<size_t>> beating_groups(std::span<const double> costs, std::span<const double> errors,
+                                                std::span<const size_t> groups);
+/// ... of models, the groups being their series. The analytic surface is beaten by none, and is on no front.
+std::vector<std::vector<size_t>> beating_series(const ReportData& data, const std::vector<ModelPoint>& points, Cost cost);
 
 /// What falls more slowly is not called converging; the least order that theory has for any model is 1. On Schwarz's lantern normals
 /// stay as wrong, or grow worse, however fine it is.

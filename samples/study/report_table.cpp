@@ -5,6 +5,7 @@
 
 #include "samples/page/html.h"
 #include "samples/study/report_page.h"
+#include "sdf/quantile.h"
 
 namespace limn {
 namespace {
@@ -28,9 +29,8 @@ struct TableRow {
 };
 
 double median(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::sort(values.begin(), values.end());
-  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+  return interpolated_quantile(values, 0.5);
 }
 
 std::vector<TableRow> table_rows(const ReportData& data) {

@@ -8,6 +8,7 @@
 
 #include "samples/compare/compare_words.h"
 #include "samples/output/output.h"
+#include "sdf/quantile.h"
 
 namespace limn {
 namespace {
@@ -146,10 +147,10 @@ struct Words {
       if (m->second > data.floor_px && m->second < 2.0 && std::isfinite(p->second)) wrong.push_back(std::abs(p->second / m->second - 1.0));
     }
     if (wrong.empty()) return;
-    std::sort(wrong.begin(), wrong.end());
+    const size_t count = wrong.size();
     out.push_back(fmt::format(
         "What theory predicts from the normals' error, s c eps / kr, is off by {:.0f} % in the median over {} of less than 2 px.",
-        100.0 * wrong[wrong.size() / 2], count_of(wrong.size(), "displacement", "displacements")));
+        100.0 * upper_median(std::move(wrong)), count_of(count, "displacement", "displacements")));
   }
 
   void say_failures() {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "sdf/error.h"
+#include "sdf/quantile.h"
 
 namespace limn::bench {
 namespace {
@@ -76,15 +77,10 @@ void take_document(const json& document, std::vector<double> Timed::*times, size
   }
 }
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
 double ratio_of(const Timed& timed) {
   std::vector<double> ratios;
   for (size_t i = 0; i < timed.before_ms.size(); ++i) ratios.push_back(timed.after_ms[i] / timed.before_ms[i]);
-  return median(ratios);
+  return upper_median(ratios);
 }
 
 }  // namespace
@@ -110,12 +106,12 @@ nlohmann::json compare_revisions(const std::string& before, const std::string& a
     const double ratio = ratio_of(timed);
     const bool slower = timed.ours && ratio > limit;
     compared += timed.ours;
-    fmt::print(table, "{:72} {:11.2f} {:11.2f} {:7.3f}{}\n", label, median(timed.before_ms), median(timed.after_ms), ratio,
+    fmt::print(table, "{:72} {:11.2f} {:11.2f} {:7.3f}{}\n", label, upper_median(timed.before_ms), upper_median(timed.after_ms), ratio,
                slower ? "  SLOWER" : "");
     document["rows"].push_back({{"contestant", label},
                                 {"ours", timed.ours},
-                                {"before_ms", median(timed.before_ms)},
-                                {"after_ms", median(timed.after_ms)},
+                                {"before_ms", upper_median(timed.before_ms)},
+                                {"after_ms", upper_median(timed.after_ms)},
                                 {"ratio", ratio}});
     if (slower) document["slower"].push_back(label);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "raymarch/surface.h"
+#include "sdf/quantile.h"
 #include "subdiv/mesh_level_set.h"
 
 namespace limn::bench {
@@ -29,12 +30,7 @@ Lowest search_lowest(const Distance& distance, double from, double to, double fi
 
 constexpr double kFarAway = 1e3;  // beyond what any of the objects spans
 
-double percentile(std::vector<double>& values, double fraction) {
-  if (values.empty()) return 0.0;
-  auto at = values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
+double percentile(const std::vector<double>& values, double fraction) { return values.empty() ? 0.0 : lower_quantile(values, fraction); }
 
 double angle_deg(const glm::dvec3& a, const glm::dvec3& b) {
   return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));

@@ -9,6 +9,7 @@
 #include "raymarch/border/edge_visibility.h"
 #include "raymarch/border/line_raster.h"
 #include "tests/random_seed.h"
+#include "tests/raymarch/border_distance.h"
 #include "tests/raymarch/image_buffers.h"
 #include "tests/raymarch/solid_edges.h"
 
@@ -57,11 +58,6 @@ double outside(const std::vector<Stretch>& stretches, double s) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Stretch& stretch : stretches) nearest = std::min(nearest, std::max({0.0, stretch.from - s, s - stretch.to}));
   return nearest;
-}
-
-double distance_to(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
-  const double squared = glm::dot(b - a, b - a), s = squared > 0.0 ? std::clamp(glm::dot(p - a, b - a) / squared, 0.0, 1.0) : 0.0;
-  return glm::distance(p, a + s * (b - a));
 }
 
 struct Comparison {
@@ -128,7 +124,7 @@ Comparison compare(const std::vector<Solid>& solids, const Kinds& kinds, const B
     for (int x = 0; x < ink.width; ++x) {
       if (ink.at(x, y) <= 0.0f) continue;
       double nearest = 1e30;
-      for (const auto& [a, b] : allowed) nearest = std::min(nearest, distance_to({x + 0.5, y + 0.5}, a, b));
+      for (const auto& [a, b] : allowed) nearest = std::min(nearest, test::segment_distance({x + 0.5, y + 0.5}, a, b));
       result.farthest_px = std::max(result.farthest_px, nearest);
       // Half the width and half a pixel of fading.
       result.ink_far_from_edges += nearest > 0.5 * width_px + 0.5 + kLeak_px;

@@ -8,6 +8,7 @@
 
 #include "raymarch/mesh/mesh_view.h"
 #include "sdf/simd.h"
+#include "tests/raymarch/border_distance.h"
 #include "tests/raymarch/scenes.h"
 // clang-format off
 #include <hwy/highway.h>
@@ -44,10 +45,7 @@ double nearest_edge_px(const Mesh& mesh, const Camera& camera, const glm::dvec2&
       const auto image = [&](size_t corner) {
         return glm::dvec2(project(camera, mesh.positions[static_cast<size_t>(mesh.corner_vertices[first + corner % 3])]));
       };
-      const glm::dvec2 a = image(k), b = image(k + 1), along = b - a;
-      const double length2 = glm::dot(along, along);
-      const double s = length2 > 0.0 ? std::clamp(glm::dot(at - a, along) / length2, 0.0, 1.0) : 0.0;
-      nearest = std::min(nearest, glm::length(a + s * along - at));
+      nearest = std::min(nearest, test::segment_distance(at, image(k), image(k + 1)));
     }
   }
   return nearest;

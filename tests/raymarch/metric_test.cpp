@@ -12,6 +12,7 @@
 #include <random>
 
 #include "raymarch/curves/curve_geometry.h"
+#include "tests/raymarch/border_distance.h"
 
 namespace limn::test {
 namespace {
@@ -221,11 +222,8 @@ TEST(CurveMetrics, FindTheNearestPointThatASearchOfAllSegmentsFinds) {
     const glm::dvec2 px(place(random), place(random));
     double best = 1e300;
     for (const BorderCurve& curve : curves.curves) {
-      for (size_t k = 0; k < curve.points.size(); ++k) {
-        const glm::dvec2 a = curve.points[k].px, along = curve.points[(k + 1) % curve.points.size()].px - a;
-        const double s = std::clamp(glm::dot(px - a, along) / glm::dot(along, along), 0.0, 1.0);
-        best = std::min(best, glm::length(a + s * along - px));
-      }
+      for (size_t k = 0; k < curve.points.size(); ++k)
+        best = std::min(best, test::segment_distance(px, curve.points[k].px, curve.points[(k + 1) % curve.points.size()].px));
     }
     const auto nearest = index.nearest(px, 0, 1e9);
     ASSERT_TRUE(nearest);

@@ -40,12 +40,6 @@ std::optional<glm::dvec2> beside(const Camera& camera, const Sheet& sheet, doubl
   return {};
 }
 
-double to_segment(const glm::dvec2& px, const glm::dvec2& a, const glm::dvec2& b) {
-  const glm::dvec2 d = b - a;
-  const double t = std::clamp(glm::dot(px - a, d) / std::max(glm::dot(d, d), 1e-300), 0.0, 1.0);
-  return glm::distance(px, a + t * d);
-}
-
 /// How far (px) `px` is from the closed form's curve between the points a and b (on or near it; both may be the same): from a polyline of
 /// 13 points of the curve, found along whichever parameter is nearer.
 double distance_on_sheet(const Camera& camera, const Sheet& sheet, double c, const glm::dvec3& a, const glm::dvec3& b,
@@ -64,7 +58,7 @@ double distance_on_sheet(const Camera& camera, const Sheet& sheet, double c, con
     if (!first && !second) continue;
     const bool use_first = first && (!second || glm::distance(*first, q) < glm::distance(*second, q));
     const glm::dvec2 here = image(camera, sheet.point(use_first ? *first : *second));
-    best = std::min(best, to_segment(px, last ? *last : here, here));
+    best = std::min(best, test::segment_distance(px, last ? *last : here, here));
     last = here;
   }
   return best;

@@ -2,6 +2,7 @@
 
 #include "raymarch/measured_border.h"
 #include "raymarch/truth/limit_curves.h"
+#include "tests/raymarch/border_distance.h"
 #include "tests/raymarch/scenes.h"
 
 namespace limn {
@@ -109,11 +110,7 @@ std::vector<Line> lines_of(const std::vector<TracedCurve>& curves) {
   return lines;
 }
 
-double distance_px(const glm::dvec2& p, const Line& line) {
-  const glm::dvec2 d = line.b - line.a;
-  const double squared = glm::dot(d, d), t = squared > 0.0 ? std::clamp(glm::dot(p - line.a, d) / squared, 0.0, 1.0) : 0.0;
-  return glm::distance(p, line.a + t * d);
-}
+double distance_px(const glm::dvec2& p, const Line& line) { return test::segment_distance(p, line.a, line.b); }
 double distance_px(const glm::dvec2& p, const std::vector<Line>& lines) {
   double best = std::numeric_limits<double>::infinity();
   for (const Line& line : lines) best = std::min(best, distance_px(p, line));

@@ -3,6 +3,7 @@
 #include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
 #include "sdf/error.h"
+#include "sdf/segment.h"
 
 namespace limn {
 namespace {
@@ -11,9 +12,8 @@ double to_path(std::span<const double> path, const glm::dvec3& p) {
   const auto at = [&](size_t i) { return glm::dvec3(path[3 * i], path[3 * i + 1], path[3 * i + 2]); };
   double least = glm::length(p - at(0));
   for (size_t i = 0; i + 1 < path.size() / 3; ++i) {
-    const glm::dvec3 a = at(i), d = at(i + 1) - a;
-    const double t = std::clamp(glm::dot(p - a, d) / std::max(1e-300, glm::dot(d, d)), 0.0, 1.0);
-    least = std::min(least, glm::length(p - a - t * d));
+    const glm::dvec3 from_start = p - at(i), along = at(i + 1) - at(i);
+    least = std::min(least, glm::length(from_start - closest_share(from_start, along) * along));
   }
   return least;
 }

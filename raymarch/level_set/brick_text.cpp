@@ -1,0 +1,86 @@
+#include "raymarch/level_set/brick_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <span>
+
+#include "raymarch/level_set/brick_layout.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+size_t count_of(const RayBricks& bricks) { return bricks.neighbors.size(); }
+
+std::span<const std::int16_t> nodes_of(const RayBricks& bricks, size_t brick) {
+  // The element behind the last node pads pairs; it is no value.
+  return std::span(bricks.values).subspan(brick * kBrickStride, kBrickStride - 1);
+}
+
+template <class Three>
+std::string vector_text(const Three& v) {
+  return fmt::format("[{} {} {}]", v[0], v[1], v[2]);
+}
+
+std::string line_of(const RayBricks& bricks, size_t brick) {
+  const SurfaceBound& bound = bricks.groups.front().bounds[brick];
+  const auto [least, largest] = std::ranges::minmax(nodes_of(bricks, brick));
+  return fmt::format("brick {}: origin {}, values {} to {}, crossed {}, cells {} to {}, slab {}\n", brick, vector_text(bound.origin), least,
+                     largest, crossed_cells_in(bricks, brick), vector_text(bound.lower), vector_text(bound.upper), bound.slab);
+}
+
+std::string header_of(const RayBricks& bricks) {
+  size_t crossed = 0;
+  for (size_t brick = 0; brick < count_of(bricks); ++brick) crossed += static_cast<size_t>(crossed_cells_in(bricks, brick));
+  std::string text =
+      fmt::format("bricks: {}, crossed cells {} from {} to {}, layer blocks {}\n", count_of(bricks), crossed, vector_text(bricks.lower),
+                  vector_text(bricks.upper), bricks.values.size() / kBrickStride - count_of(bricks));
+  text += fmt::format("grid: voxel_size {}, origin {}, half_width_voxels {}, world_per_step {}\n", bricks.voxel_size,
+                      vector_text(bricks.world_from_index.translation), bricks.half_width_voxels, bricks.world_per_step);
+  text += fmt::format("bytes: {}, of these spline {}\n", bricks.bytes(), bricks.spline.bytes());
+  // The first groups are the bricks themselves.
+  for (size_t i = 1; i < bricks.groups.size(); ++i)
+    text += fmt::format("groups of {} cells to a side: {}\n", 1 << bricks.groups[i].shift, bricks.groups[i].bounds.size());
+  return text;
+}
+
+}  // namespace
+
+int crossed_cells_in(const RayBricks& bricks, size_t brick) {
+  const CrossedCells crossed = crossed_cells_of(nodes_of(bricks, brick).data());
+  int count = 0;
+  for (const auto& column : crossed.cells)
+    for (const std::uint8_t bits : column) count += std::popcount(bits);
+  return count;
+}
+
+std::string text_of(const RayBricks& bricks) {
+  std::string text = header_of(bricks);
+  for (size_t brick = 0; brick < count_of(bricks); ++brick) text += line_of(bricks, brick);
+  return text;
+}
+
+std::string text_of_brick(const RayBricks& bricks, size_t brick) {
+  const size_t count = count_of(bricks);
+  if (brick >= count) {
+    throw InputError({.file = {},
+                      .field = "brick",
+                      .value = std::to_string(brick),
+                      .problem = "no such brick",
+                      .expected = count == 0 ? "nothing: the surface crosses no cell" : fmt::format("0 to {}", count - 1)});
+  }
+  const std::span<const std::int16_t> nodes = nodes_of(bricks, brick);
+  std::string text = line_of(bricks, brick);
+  for (int z = 0; z < kBrickNodes; ++z) {
+    text += fmt::format("slice z {}\n", z);
+    for (int y = 0; y < kBrickNodes; ++y) {
+      for (int x = 0; x < kBrickNodes; ++x) text += fmt::format("{:>7}", nodes[static_cast<size_t>(brick_element(x, y, z))]);
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace limn

@@ -142,7 +142,7 @@ std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> b
   std::shared_ptr<LevelSetData> data = rebuild(blocks, tiles, background, world_from_index, name);
   check_surface(*data, file);
   if (beside.grid_class != "level set")
-    data->info.warnings.push_back("the grid '" + name + "' has no class; it is read as a level set, since its values change sign");
+    data->info.warnings.emplace_back("the grid '" + name + "' has no class; it is read as a level set, since its values change sign");
   data->file = std::move(beside);
   return data;
 }
@@ -153,7 +153,7 @@ ReadLevelSets level_sets_from_answer(std::span<const std::byte> bytes, const fs:
   std::optional<InputError> first;
   const auto leave_out = [&](const std::string& name, const InputError& error) {
     if (!first) first = error;
-    result.left_out.push_back("'" + name + "' is left out: " + error.fault().problem);
+    result.left_out.emplace_back("'" + name + "' is left out: " + error.fault().problem);
   };
   while (!answer.done()) {
     const std::string name = answer.get_text();

@@ -131,8 +131,8 @@ std::shared_ptr<LevelSetData> rebuild(std::span<const LevelSetBlock> blocks, std
     seal_tiles(*grid, tiles);
     return freeze(*grid, world_from_index, name, 0.0);
   }
-  filled->info.warnings.push_back("the signs outside the narrow band contradicted its edges at " + std::to_string(torn) +
-                                  " cells (the file was not flood-filled); they are carried on from the band");
+  filled->info.warnings.emplace_back("the signs outside the narrow band contradicted its edges at " + std::to_string(torn) +
+                                     " cells (the file was not flood-filled); they are carried on from the band");
   return filled;
 }
 

@@ -24,13 +24,13 @@ void tell_what_is_missing(const Gathered& all, Mesh& mesh) {
   tell(all.without_positions, "part without positions is not drawn", "parts without positions are not drawn", mesh);
   tell(all.unused_attributes, "list of normals or colours does not fit its vertices and was ignored",
        "lists of normals or colours do not fit their vertices and were ignored", mesh);
-  if (all.missing_material) mesh.warnings.push_back("some parts name a material that does not exist");
-  if (all.textures) mesh.warnings.push_back("textures are not drawn; base colours are");
+  if (all.missing_material) mesh.warnings.emplace_back("some parts name a material that does not exist");
+  if (all.textures) mesh.warnings.emplace_back("textures are not drawn; base colours are");
   if (all.skins)
-    mesh.warnings.push_back(
+    mesh.warnings.emplace_back(
         "skins are not applied: their meshes stand where their nodes put them, in the pose of their vertices, which may be another place "
         "and size");
-  if (all.morphs) mesh.warnings.push_back("morph targets are drawn with the file's own weights, animations are not played");
+  if (all.morphs) mesh.warnings.emplace_back("morph targets are drawn with the file's own weights, animations are not played");
 }
 
 /// What is the same all over says nothing.

@@ -20,13 +20,13 @@ Finding inside_out(const MeshFacts& mesh, std::int64_t turned_parts) {
         fmt::format("{} of {} parts turned inside out: N.V is negative, so that all of them is border", mesh.inverted_parts, mesh.parts);
     finding.remedy = "turn their faces round";
     // As a whole it is turned back; a part that is turned against the rest is a hole in it.
-    if (mesh.volume > 0.0) finding.surfaces.push_back("mesh_level_set");
+    if (mesh.volume > 0.0) finding.surfaces.emplace_back("mesh_level_set");
     return finding;
   }
   finding.message = fmt::format("{} part{} turned inside out in the file: {} faces were turned round", turned_parts,
                                 turned_parts == 1 ? " was" : "s were", turned_parts == 1 ? "its" : "their");
   finding.remedy = "nothing for this picture; other programs need the faces turned in the file (limn export does)";
-  finding.surfaces.push_back("mesh_level_set");
+  finding.surfaces.emplace_back("mesh_level_set");
   return finding;
 }
 

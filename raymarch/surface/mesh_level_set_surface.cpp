@@ -23,7 +23,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   grid.progress = settings.progress;
   const std::shared_ptr<const TriangleMesh> triangles = source.triangles;
   if (source.polygons->has_colors())
-    source.warnings.push_back("'" + object.name + "' is drawn in the object's own color: a level set holds no colours");
+    source.warnings.emplace_back("'" + object.name + "' is drawn in the object's own color: a level set holds no colours");
   source.polygons.reset();
   MeshLevelSet made = level_set_from_mesh(*triangles, grid);
   // The grid lies in render space, so that its voxels fall the same way wherever the object is.

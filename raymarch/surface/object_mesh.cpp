@@ -119,7 +119,7 @@ ObjectMesh from_facets(const SceneObject& object, const MeshSource& source, cons
   const bool has_own = !shared->corner_normals.empty();
   NormalKind kind = settings.normals.value_or(has_own && !source.smooth_angle_deg ? NormalKind::limit : NormalKind::vertex);
   if (settings.normals == NormalKind::limit && !has_own) {
-    result.warnings.push_back("'" + object.name + "' has no limit surface (no scheme): vertex normals instead of limit normals");
+    result.warnings.emplace_back("'" + object.name + "' has no limit surface (no scheme): vertex normals instead of limit normals");
     kind = NormalKind::vertex;
   }
   result.normals = traced_kind(kind);

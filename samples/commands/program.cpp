@@ -29,8 +29,8 @@ void print(const std::string& text) {
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+    for (const std::string& name : option->get_lnames()) names.emplace_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.emplace_back("-" + name);
   }
   return names;
 }

@@ -138,7 +138,7 @@ void warn_of_empty(const std::vector<std::string>& reasons, int index, const Opt
     warnings.push_back(pictures_of(options) == 1 ? reason
                                                  : fmt::format("{} {}: {}", options.frames.frames > 1 ? "frame" : "view", index, reason));
   }
-  if (render.empty_pictures == kMost) warnings.push_back("further pictures that show nothing are not told one by one");
+  if (render.empty_pictures == kMost) warnings.emplace_back("further pictures that show nothing are not told one by one");
   print_warnings(options, warnings);
   render.warnings.insert(render.warnings.end(), warnings.begin(), warnings.end());
 }

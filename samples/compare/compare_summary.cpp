@@ -52,7 +52,7 @@ std::vector<std::string> one_method(const Comparison& comparison) {
       comparison.methods.front().words, counted(comparison.cells.front().ink_px)));
   const Cells drawn = ranking(comparison, 0);
   if (drawn.empty()) {
-    sentences.push_back("No other representation can model this input, so there is nothing to compare.");
+    sentences.emplace_back("No other representation can model this input, so there is nothing to compare.");
     return sentences;
   }
   if (drawn.size() > 1) {

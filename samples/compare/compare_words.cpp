@@ -53,7 +53,7 @@ std::vector<std::string> caption_lines(const Comparison& comparison, const Cell&
         (std::isfinite(off) ? fmt::format(", {} {} px off", std::isfinite(inner) ? "border" : "silhouette", short_number(off)) : ""));
   } else {
     lines.push_back(fmt::format("border: {} px", counted(cell.ink_px)));
-    if (cell.model > 0) lines.push_back("no reference: the method cannot run there");
+    if (cell.model > 0) lines.emplace_back("no reference: the method cannot run there");
   }
   if (comparison.is_matrix()) {
     const double ms = time_ms_of(comparison, cell);

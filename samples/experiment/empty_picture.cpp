@@ -237,7 +237,7 @@ std::vector<std::string> why_empty(const Scene& scene, const SceneModel& model, 
   }
   if (scene.objects.size() > kMostObjects)
     reasons.push_back(fmt::format("nothing is hit: the same holds, or alike, of {} more objects", scene.objects.size() - kMostObjects));
-  if (scene.objects.empty()) reasons.push_back("nothing is hit: there are no objects");
+  if (scene.objects.empty()) reasons.emplace_back("nothing is hit: there are no objects");
   return reasons;
 }
 

@@ -70,7 +70,7 @@ std::vector<std::string> plan_sentences(const PlanAnswer& answer, const PlanSett
     }
     out.push_back(sentence + ".");
   }
-  for (const std::string& note : answer.notes) out.push_back("note: " + note);
+  for (const std::string& note : answer.notes) out.emplace_back("note: " + note);
   return out;
 }
 

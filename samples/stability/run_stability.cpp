@@ -48,7 +48,7 @@ StabilityEvent look(CaseContext& context, const StabilityCheck& check, const Met
     event.finding = check.run(context, method, with);
     // What is looked at without a method is the rim's surface.
     add_said(said_of(context.stage(), method == nullptr ? "rim" : method->method->about.name), event.finding->said);
-    for (const Finding& finding : context.stage().findings) event.audit.push_back("audit: " + finding.message);
+    for (const Finding& finding : context.stage().findings) event.audit.emplace_back("audit: " + finding.message);
     if (event.finding->said.size() > kMostSaid) event.finding->said.resize(kMostSaid);
     return event;
   } catch (const InputError& error) {

@@ -78,7 +78,7 @@ StudyChart accuracy_chart(const ReportData& data, Cost cost) {
                               time ? "time to build, trace and ink" : "memory that the model holds"),
                      log_axis(errors, quantity, axis_title(data, data.main_metric), quantity == Quantity::pixels ? kLeastShownPx : 0.0)};
     ChartHead head{title, "each point a model, the median of its views; the line joins what nothing beats (" + drawing_words(data) + ")"};
-    if (points.empty()) head.notes.push_back("No cell has a value to show");
+    if (points.empty()) head.notes.emplace_back("No cell has a value to show");
     for (const std::string& note : {clamp_note(frame.x, ""), clamp_note(frame.y, quantity == Quantity::pixels ? "px" : "")}) {
       if (!note.empty()) head.notes.push_back(note);
     }

@@ -95,8 +95,8 @@ StudyChart normal_border_chart(const ReportData& data) {
         plot_box(), log_axis(degrees, Quantity::degrees, normal.empty() ? "normal error [deg]" : axis_title(data, normal)),
         log_axis(displacements, Quantity::pixels, border.empty() ? "displacement [px]" : axis_title(data, border), kLeastShownPx)};
     ChartHead head{title, "each point a model in a view (" + drawing_words(data) + ")"};
-    if (points.empty()) head.notes.push_back("No cell has both a normal error and a displacement of the border");
-    if (!slope && !points.empty()) head.notes.push_back("No cell has a predicted displacement: there is no line to draw");
+    if (points.empty()) head.notes.emplace_back("No cell has both a normal error and a displacement of the border");
+    if (!slope && !points.empty()) head.notes.emplace_back("No cell has a predicted displacement: there is no line to draw");
     for (const std::string& note : {clamp_note(frame.x, "deg"), clamp_note(frame.y, "px")}) {
       if (!note.empty()) head.notes.push_back(note);
     }

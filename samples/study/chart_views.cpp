@@ -69,7 +69,7 @@ StudyChart views_chart(const ReportData& data) {
     const LogAxis axis = log_axis(errors, quantity, axis_title(data, data.main_metric), quantity == Quantity::pixels ? kLeastShownPx : 0.0);
     const ChartFrame frame{plot, axis, {}};
     ChartHead head{title, "each mark a view, the bar the median, the box the middle half (" + drawing_words(data) + ")"};
-    head.notes.push_back("Shown are the models that nothing beats, and the finest of each kind");
+    head.notes.emplace_back("Shown are the models that nothing beats, and the finest of each kind");
     if (const std::string note = clamp_note(axis, quantity == Quantity::pixels ? "px" : ""); !note.empty()) head.notes.push_back(note);
     draw_head(canvas, head);
     draw_x_axis(canvas, frame);

@@ -34,7 +34,9 @@ void add_pictures(const ReportData& data, size_t drawing, const std::filesystem:
       continue;
     }
     room -= bytes.size();
-    out.pictures.push_back({point.model, drawing, cell.view, std::abs(cell.values.at(data.main_metric)), width, height, std::move(bytes)});
+    ReportThumbnail& picture = out.pictures.emplace_back();
+    picture = {point.model, drawing, cell.view, std::abs(cell.values.at(data.main_metric)), width, height, {}};
+    picture.png = std::move(bytes);
   }
 }
 

@@ -190,11 +190,11 @@ std::vector<std::string> study_sentences(const StudyHead& head, const ReportData
   const ReportMetric* metric = data.find_metric(data.main_metric);
   const bool in_pixels = metric != nullptr && metric->name.find("displacement") != std::string::npos && metric->unit == "px";
   if (words.points.empty()) {
-    words.out.push_back(all > 0 ? "Only the analytic surface itself was measured: there is no model to choose."
-                                : "No cell has an error to show, so that nothing can be said of accuracy.");
+    words.out.emplace_back(all > 0 ? "Only the analytic surface itself was measured: there is no model to choose."
+                                   : "No cell has an error to show, so that nothing can be said of accuracy.");
   } else {
     if (data.drawings.size() > 1)
-      words.out.push_back("What follows is for " + data.drawings[data.main_drawing].title() + "; the page below can show the others.");
+      words.out.emplace_back("What follows is for " + data.drawings[data.main_drawing].title() + "; the page below can show the others.");
     // Half a pixel cannot be told where truth itself is less sure.
     const bool can_tell = in_pixels && data.floor_px <= kTolerancePx;
     if (in_pixels && !can_tell)
@@ -202,14 +202,14 @@ std::vector<std::string> study_sentences(const StudyHead& head, const ReportData
           fmt::format("No model can be called right to {} px, and none wrong by less than {:.2g} px: truth is not known better.",
                       kTolerancePx, data.floor_px));
     if (can_tell) words.say_cheapest();
-    if (!in_pixels) words.out.push_back("The border's displacement was not measured; charts show " + metric->label() + ".");
+    if (!in_pixels) words.out.emplace_back("The border's displacement was not measured; charts show " + metric->label() + ".");
     if (can_tell) words.say_never();
     words.say_orders();
     if (can_tell) words.say_parts();
     words.say_prediction();
   }
   words.say_failures();
-  for (const std::string& warning : head.warnings) words.out.push_back("Warning: " + warning + ".");
+  for (const std::string& warning : head.warnings) words.out.emplace_back("Warning: " + warning + ".");
   return words.out;
 }
 

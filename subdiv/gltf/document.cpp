@@ -49,7 +49,10 @@ std::string problem(const std::string& extension) {
 void check_required(const Json& root, std::vector<std::string>& warnings) {
   const Json* required = find(root, "extensionsRequired");
   if (!required) return;
-  if (!required->is_array()) return warnings.push_back("extensionsRequired is no list and was ignored");
+  if (!required->is_array()) {
+    warnings.emplace_back("extensionsRequired is no list and was ignored");
+    return;
+  }
   for (const Json& item : *required) {
     if (!item.is_string()) continue;
     const std::string name = item.get<std::string>();
@@ -116,7 +119,7 @@ bool is_version_1(const Container& container, const Json& root) {
 void check_version_and_extensions(const Json& root, std::vector<std::string>& warnings) {
   const Json* asset = find_object(root, "asset");
   const std::string version = asset ? text(*asset, "version") : std::string(), least = asset ? text(*asset, "minVersion") : std::string();
-  if (version.empty()) warnings.push_back("the file does not say its version (asset.version): read as glTF 2.0");
+  if (version.empty()) warnings.emplace_back("the file does not say its version (asset.version): read as glTF 2.0");
   if (!version.empty() && !version.starts_with("2")) refuse("asset.version", "an unknown version of glTF", "2.0 or 1.0", version);
   if (!least.empty() && least != "2.0") refuse("asset.minVersion", "an unknown version of glTF", "2.0", least);
   check_required(root, warnings);

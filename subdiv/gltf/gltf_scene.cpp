@@ -66,10 +66,10 @@ std::vector<std::uint64_t> root_nodes(Document& document) {
   bool wrong = false;
   const auto chosen = lenient_number(root, "scene", wrong);
   if (scenes == 0) {
-    if (chosen || wrong) document.warnings.push_back("the file has no scenes: all of its nodes are drawn");
+    if (chosen || wrong) document.warnings.emplace_back("the file has no scenes: all of its nodes are drawn");
     return nodes_without_parent(root);
   }
-  if (wrong) document.warnings.push_back("the entry 'scene' is no number: the first scene is drawn");
+  if (wrong) document.warnings.emplace_back("the entry 'scene' is no number: the first scene is drawn");
   if (chosen && *chosen >= scenes)
     document.warnings.push_back(fmt::format("scene {} does not exist: the first of {} is drawn", *chosen, scenes));
   const std::uint64_t scene = chosen && *chosen < scenes ? *chosen : 0;
@@ -178,7 +178,7 @@ std::vector<PlacedMesh> placed_meshes(Document& document) {
   if (nodes == 0) {
     const size_t meshes = length(document.root, "meshes");
     for (size_t i = 0; i < meshes; ++i) walk.placed.push_back({std::nullopt, i, glm::dmat4(1.0)});
-    if (meshes > 0) document.warnings.push_back("the file has no nodes: its meshes are drawn as they are");
+    if (meshes > 0) document.warnings.emplace_back("the file has no nodes: its meshes are drawn as they are");
     return walk.placed;
   }
   walk.states.assign(nodes, Walk::fresh);

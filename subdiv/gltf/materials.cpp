@@ -37,7 +37,7 @@ Materials read_materials(const Json& root) {
     all.colors.push_back(base_color(material));
     all.textured.push_back(has_texture(material));
   }
-  all.names.push_back("no material");
+  all.names.emplace_back("no material");
   all.colors.emplace_back(1.0f);
   all.textured.push_back(0);
   return all;

@@ -73,7 +73,7 @@ struct Keeper {
   ExperimentObserver observer() {
     return {
         .stage = [this](const std::string& what) { return bar.stage(what); },
-        .built = [this](size_t row, const SceneModel& model, double) { comparison.models[row].info = total(model); },
+        .built = [this](size_t row, const SceneModel& model, double, const Timing&) { comparison.models[row].info = total(model); },
         .refused = [this](auto cells, const std::string& reason) { skip_model(cells.front().model, reason, comparison); },
         .seen = [this](size_t row, size_t, const SceneModel& model, Seen& seen, auto drawings) { keep_seen(row, model, seen, drawings); },
         .solved = [this](size_t, const ExperimentTruth& truth, double) { comparison.truths.push_back(truth); },
@@ -82,7 +82,7 @@ struct Keeper {
 
   void keep_seen(size_t row, const SceneModel& model, Seen& seen, std::span<Drawing> drawings) {
     ComparedModel& modelled = comparison.models[row];
-    modelled.trace_ms = seen.trace_ms;
+    modelled.trace_ms = seen.trace.median_ms;
     modelled.counts = count_hits(seen.picture.gbuffer);
     for (std::string& reason : why_empty(modelled.scene, model, comparison.camera, modelled.counts))
       modelled.info.warnings.push_back(std::move(reason));

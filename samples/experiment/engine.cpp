@@ -90,11 +90,17 @@ SceneModel ExperimentRun::build(size_t index) {
   const auto start = Clock::now();
   // The reference's mesh is finer than any other: no start for them.
   SceneModel model = build_model(planned.scene, settings, experiment_.share_meshes && index > 0 ? &meshes_ : nullptr);
+  const double first_ms = ms_since(start);
+  std::vector<double> times = {total(model).build_ms};
+  const bool repeats = index > 0 && !experiment_.share_meshes;
+  while (repeats && static_cast<int>(times.size()) < experiment_.repeats && ms_since(start) < kMostRepeat_ms) {
+    times.push_back(total(build_model(planned.scene, settings, nullptr)).build_ms);
+  }
   // Kept beyond the model only where a later one may want it.
   const auto is_meshed = [](const ExperimentModel& one) { return one.settings.kind.starts_with("mesh"); };
   const auto later = experiment_.models.begin() + static_cast<std::ptrdiff_t>(index) + 1;
   if (index == 0 || std::none_of(later, experiment_.models.end(), is_meshed)) meshes_.kept.clear();
-  if (observer_.built) observer_.built(index, model, ms_since(start));
+  if (observer_.built) observer_.built(index, model, first_ms, timing_of(std::move(times)));
   return model;
 }
 
@@ -165,18 +171,42 @@ DrawnView ExperimentRun::draw_view(size_t model, const SceneModel& built, const 
   return draw_all(methods, built, planned.scene, camera, *experiment_.picture, with_progress("tracing " + planned.title), before_method);
 }
 
+void ExperimentRun::add_curve_metrics(const MetricInput& input, size_t method, std::vector<Measurement>& to) const {
+  const bool has_threshold = experiment_.methods[method].truth_threshold.has_value();
+  for (const Metric* metric : experiment_.metrics) {
+    if (metric->subject != MetricSubject::curves || (!has_threshold && !metric->any_threshold)) continue;
+    for (MetricValue& value : metric->measure(input)) to.push_back({metric, std::move(value)});
+  }
+}
+
+const std::vector<Measurement>& ExperimentRun::floor_of(size_t index, size_t method, const ExperimentTruth* truth) {
+  ReferenceView& view = views_[index];
+  if (const auto found = view.floors.find(method); found != view.floors.end()) return found->second;
+  std::vector<Measurement>& floor = view.floors[method];
+  if (truth == nullptr || !truth->truth) return floor;
+  const Picture& picture = reference(index).picture;
+  const Camera& camera = experiment_.cameras[index];
+  BorderCurves& curves = view.curves.try_emplace(truth->threshold).first->second;
+  if (curves.curves.empty()) curves = measure_border(*reference_, camera, picture.gbuffer, {.threshold = truth->threshold}, how_);
+  MetricInput input{picture, picture, camera};
+  input.curves = &curves;
+  input.truth = &*truth->truth;
+  input.model = &*reference_;
+  add_curve_metrics(input, method, floor);
+  return floor;
+}
+
 std::vector<Measurement> ExperimentRun::measure(Built& built, const ExperimentCell& cell, Seen& seen, Drawing& drawing,
                                                 const Drawing& against, const ExperimentTruth* truth) {
-  const bool is_reference = cell.model == 0;
+  if (cell.model == 0) return floor_of(cell.view, cell.method, truth);
   ReferenceView& view = views_[cell.view];
   Drawing none;
   Drawing& reference_ink = needs_reference() ? view.drawings[cell.method] : none;
   Picture& reference_seen = needs_reference() ? view.seen->picture : seen.picture;
   // The reference's own picture holds its own ink.
   const InkIn own(seen.picture, drawing.picture.border);
-  const std::optional<InkIn> other = is_reference || !needs_reference()
-                                         ? std::optional<InkIn>{}
-                                         : std::optional<InkIn>(std::in_place, reference_seen, reference_ink.picture.border);
+  const std::optional<InkIn> other =
+      needs_reference() ? std::optional<InkIn>(std::in_place, reference_seen, reference_ink.picture.border) : std::optional<InkIn>{};
   MetricInput input{seen.picture, reference_seen, experiment_.cameras[cell.view]};
   if (truth != nullptr && truth->truth) {
     if (!built.curves.contains(truth->threshold)) {
@@ -198,7 +228,7 @@ std::vector<Measurement> ExperimentRun::measure(Built& built, const ExperimentCe
   };
   for (const Metric* metric : experiment_.metrics) {
     const bool of_curves = metric->subject == MetricSubject::curves;
-    if ((is_reference && !of_curves) || !has_subject(*metric, input, against.refused.empty())) continue;
+    if (!has_subject(*metric, input, against.refused.empty())) continue;
     if (of_curves && !has_threshold && !metric->any_threshold) continue;
     if (metric->subject != MetricSubject::gbuffer) {
       add(*metric, measured);
@@ -227,6 +257,9 @@ void ExperimentRun::finish(Built& built, size_t view, Seen& seen, Cells cells, c
     const Drawing& against = draws && drawing.refused.empty() && needs_reference() ? reference_drawing(view, cell.method) : none;
     MeasuredCell done{cell, built.model, seen, drawing, against, truth};
     if (drawing.refused.empty()) done.measurements = measure(built, cell, seen, drawing, against, truth);
+    // Where the reference was let go, its own cells came before and left their floor.
+    if (experiment_.measures_floor && (reference_ || !experiment_.picture || views_[view].floors.contains(cell.method)))
+      done.floor = floor_of(view, cell.method, truth);
     done.measure_ms = ms_since(start);
     if (observer_.measured) observer_.measured(done);
   }
@@ -243,6 +276,7 @@ void ExperimentRun::run_view(Built& built, Cells cells) {
     drawn = draw_view(built.index, built.model, camera);
   else
     drawn.seen = look(built.model, planned.scene, camera, experiment_.path, how_);
+  if (experiment_.repeats > 1) time_again(built.model, camera, experiment_.repeats, kMostRepeat_ms, how_, drawn.seen);
   if (observer_.seen) observer_.seen(built.index, view, built.model, drawn.seen, drawn.drawings);
   Drawing one;
   finish(built, view, drawn.seen, cells, [&](size_t method) -> Drawing& {

@@ -36,7 +36,12 @@ struct Experiment {
   std::optional<PictureSettings> picture{};  ///< Samples and background of finished pictures; unset: ink at the pixel centres alone.
   bool silhouette_of_all = false;            ///< Methods without a threshold are measured, too, by the metrics that need none.
   bool share_meshes = false;                 ///< One model's mesh is the next one's start; times to build are then not each model's own.
+  bool measures_floor = true;                ///< What the reference scores is measured, too (MeasuredCell::floor).
+  int repeats = 1;  ///< Builds and pictures for the time of one, if all but the first take less than kMostRepeat_ms.
 };
+
+/// What repeated builds of one model, and pictures of it in one view, may take beside the first.
+inline constexpr double kMostRepeat_ms = 500.0;
 
 /// One model in one view by one method.
 struct ExperimentCell {
@@ -68,7 +73,9 @@ struct MeasuredCell {
   const Drawing& reference;                 ///< The same method on the reference; may be refused, empty where no metric needs it.
   const ExperimentTruth* truth;             ///< Null: the method has none.
   std::vector<Measurement> measurements{};  ///< In the order of Experiment::metrics. Of the reference: of its curves alone.
-  double measure_ms = 0.0;                  ///< To draw and to measure, without solving the truth.
+  /// What the reference scores against the truth by the metrics of curves: less than this cannot be told of any model. Empty without truth.
+  std::span<const Measurement> floor{};
+  double measure_ms = 0.0;  ///< To draw and to measure, without solving the truth.
 };
 
 /// Who is told. Empty functions are not called.
@@ -77,8 +84,8 @@ struct ExperimentObserver {
   std::function<std::function<void(double)>(const std::string& what)> stage{};
   /// Before each cell: may throw Cancelled.
   std::function<void()> cell_begins{};
-  /// A model is there, after `ms`.
-  std::function<void(size_t model, const SceneModel& built, double ms)> built{};
+  /// A model is there, after `ms`; `build` is its surfaces' own time, of several builds where these are quick.
+  std::function<void(size_t model, const SceneModel& built, double ms, const Timing& build)> built{};
   /// Nothing of these cells will come.
   std::function<void(std::span<const ExperimentCell> cells, const std::string& reason)> refused{};
   /// Traced; where finished pictures were asked for all methods have drawn.
@@ -119,6 +126,8 @@ class ExperimentRun {
     std::optional<Seen> seen{};
     std::map<size_t, Drawing> drawings{};
     std::map<double, ExperimentTruth> truths{};
+    std::map<double, BorderCurves> curves{};              ///< The reference's, by threshold.
+    std::map<size_t, std::vector<Measurement>> floors{};  ///< By method.
   };
   struct Built;  ///< A model while its cells are done.
   using Cells = std::span<const ExperimentCell>;
@@ -128,6 +137,8 @@ class ExperimentRun {
   void run_view(Built& built, Cells cells);
   void run_reference(Cells cells);
   void finish(Built& built, size_t view, Seen& seen, Cells cells, const std::function<Drawing&(size_t)>& take);
+  const std::vector<Measurement>& floor_of(size_t view, size_t method, const ExperimentTruth* truth);
+  void add_curve_metrics(const MetricInput& input, size_t method, std::vector<Measurement>& to) const;
   std::vector<Measurement> measure(Built& built, const ExperimentCell& cell, Seen& seen, Drawing& drawing, const Drawing& reference,
                                    const ExperimentTruth* truth);
   DrawnView draw_view(size_t model, const SceneModel& built, const Camera& camera);

@@ -1,6 +1,9 @@
 #include "samples/experiment/observe.h"
 
+#include <algorithm>
 #include <chrono>
+
+#include "sdf/quantile.h"
 
 namespace limn {
 namespace {
@@ -33,6 +36,11 @@ std::string why_unsupported(std::span<const MethodCall> calls, const SceneModel&
 
 }  // namespace
 
+Timing timing_of(std::vector<double> times_ms) {
+  std::sort(times_ms.begin(), times_ms.end());
+  return {interpolated_quantile(times_ms, 0.5), times_ms.front(), times_ms.back()};
+}
+
 std::string reason_of(const InputError& error) {
   const std::string& expected = error.fault().expected;
   return error.fault().problem + (expected.empty() ? "" : " (expected " + expected + ")");
@@ -43,7 +51,8 @@ Seen look(const SceneModel& model, const Scene& scene, const Camera& camera, con
   Seen seen;
   const auto start = Clock::now();
   seen.picture.gbuffer = render_gbuffer(model, camera, how);
-  seen.trace_ms = seen.all_ms = ms_since(start);
+  seen.trace = timing_of({ms_since(start)});
+  seen.all_ms = seen.trace.median_ms;
   if (!path) return seen;
   const std::vector<Camera> cameras = path_cameras(camera, bounds(scene), *path);
   seen.cameras.assign(cameras.begin() + 1, cameras.end());
@@ -54,6 +63,17 @@ Seen look(const SceneModel& model, const Scene& scene, const Camera& camera, con
   }
   seen.all_ms = ms_since(start);
   return seen;
+}
+
+void time_again(const SceneModel& model, const Camera& camera, int repeats, double most_ms, const ExecutionSettings& how, Seen& seen) {
+  std::vector<double> times = {seen.trace.median_ms};
+  const auto start = Clock::now();
+  while (static_cast<int>(times.size()) < repeats && ms_since(start) + times.front() < most_ms) {
+    const auto again = Clock::now();
+    render_gbuffer(model, camera, how);
+    times.push_back(ms_since(again));
+  }
+  seen.trace = timing_of(std::move(times));
 }
 
 Drawing draw(const MethodCall& call, const SceneModel& model, const Scene& scene, const Camera& camera, const Seen& seen, Frames frames) {
@@ -82,8 +102,8 @@ DrawnView draw_all(std::span<const std::vector<MethodCall>> methods, const Scene
   for (int sample = 0; sample < settings.samples; ++sample) {
     const auto start = Clock::now();
     GBuffer gbuffer = render_gbuffer(model, camera, how, sample_offset(sample, settings.samples));
-    view.seen.trace_ms += ms_since(start);
-    view.seen.all_ms = view.seen.trace_ms;
+    view.seen.all_ms += ms_since(start);
+    view.seen.trace = timing_of({view.seen.all_ms});
     for (size_t method = 0; method < methods.size(); ++method) {
       Drawing& drawing = view.drawings[method];
       if (!drawing.refused.empty()) continue;

@@ -9,19 +9,29 @@
 
 namespace limn {
 
+/// Times of the same work, done several times; all the same where it was done once. ms, wall clock.
+struct Timing {
+  double median_ms = 0.0, low_ms = 0.0, high_ms = 0.0;
+};
+/// Of at least one time.
+Timing timing_of(std::vector<double> times_ms);
+
 /// A model from one camera, before any method.
 struct Seen {
   Picture picture{};                          ///< G-buffer; its border is left empty, its composite is the shading where one was asked for.
   std::vector<GBuffer> moved{};               ///< Frames after the first, which is `picture`.
   std::vector<Camera> cameras{};              ///< Of them.
   std::vector<Image<std::int32_t>> before{};  ///< pixels_before() of them.
-  double trace_ms = 0.0;                      ///< Of the first.
+  Timing trace{};                             ///< Of the first.
   double all_ms = 0.0;                        ///< Of all frames.
 };
 
 /// Traces the pixel centres; with `path` every frame of it, the first from the camera itself. Throws Cancelled.
 Seen look(const SceneModel& model, const Scene& scene, const Camera& camera, const std::optional<FramePath>& path,
           const ExecutionSettings& how);
+
+/// Traces the first picture of what was seen again, for its time alone: until there are `repeats` times, or the new ones took `most_ms`.
+void time_again(const SceneModel& model, const Camera& camera, int repeats, double most_ms, const ExecutionSettings& how, Seen& seen);
 
 /// What a method draws on one model in one view.
 struct Drawing {

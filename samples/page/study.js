@@ -25,11 +25,16 @@ function clampNote(axis) {
   return `${axis.clamped} ${axis.clamped === 1 ? "value" : "values"} at or below ${words} ${axis.clamped === 1 ? "is" : "are"} drawn there. `;
 }
 
+// What cannot be told from no error is not quoted.
+const errorText = (value, metric) => {
+  const floor = study.floors[metric.name];
+  return floor && floor.px !== null && value !== null && Math.abs(value) < floor.px ? floor.words : unitText(value, metric.unit);
+};
 const tip = (point, view, metric, error) => ({
   model: point.model, drawing: point.drawing, lines: [
-    [metric.label, unitText(error, metric.unit)],
+    [metric.label, errorText(error, metric)],
     ...(view === null && point.views.length > 1
-      ? [["views", `${point.views.length}, from ${unitText(point.low, metric.unit)} to ${unitText(point.high, metric.unit)}`]] : [["view", `${view ?? point.views[0].view}`]]),
+      ? [["views", `${point.views.length}, from ${errorText(point.low, metric)} to ${errorText(point.high, metric)}`]] : [["view", `${view ?? point.views[0].view}`]]),
     ["time", kUnits.ms(point.ms)], ["memory", kUnits.bytes(point.bytes)],
   ],
 });
@@ -51,7 +56,7 @@ function accuracyChart({ points, want, size, theme }, cost, title) {
     ...(front.includes(point) ? { label: point.name } : {}) }));
   const line = front.map(point => ({ x: x.shown(point[cost]), y: y.shown(point.error) }));
   return {
-    spec: accuracySpec(dots, line, x, y, size, theme.series, theme), count: points.length,
+    spec: accuracySpec(dots, line, x, y, size, theme.series, theme, study.floors[want.metric.name]), count: points.length,
     caption: "Each point a model; the line joins those that nothing beats, with their names.",
     note: clampNote(x) + clampNote(y), items: [], data: { front: front.map(point => point.model) },
   };
@@ -79,8 +84,8 @@ function orderChart({ points, want, size, theme }) {
   });
   const dots = known.map(point => ({ ...point, x: point.resolution, y: y.shown(point.error), tip: tip(point, want.view, want.metric, point.error),
     ...(labels.has(point) ? { label: labels.get(point) } : {}) }));
-  const floor = want.metric.unit === "px" ? `Errors below ${Number(study.floor.toPrecision(2))} px are at the precision of measurement and truth, and left out of the fit. ` : "";
-  return { spec: orderSpec(dots, lines, x, y, size, theme.series, theme), count: known.length, items, note: floor + clampNote(y), data: { orders },
+  const floor = want.metric.unit === "px" ? `Errors below ${Number((study.floors[want.metric.name].px ?? Infinity).toPrecision(2))} px are at the precision of measurement and truth, and left out of the fit. ` : "";
+  return { spec: orderSpec(dots, lines, x, y, size, theme.series, theme, study.floors[want.metric.name]), count: known.length, items, note: floor + clampNote(y), data: { orders },
     caption: "Dashed: the order fitted, a number at its fine end; below, what theory expects." };
 }
 
@@ -93,7 +98,7 @@ function viewsChart({ points, want, size, theme, narrow }) {
   const shown = rows.map(row => ({ name: row.name, series: row.series, low: x.shown(row.low), lowQuartile: x.shown(row.lowQuartile),
     median: x.shown(row.error), highQuartile: x.shown(row.highQuartile), high: x.shown(row.high), tip: tip(row, want.view, want.metric, row.error) }));
   const wide = narrow ? size.width : Math.max(160, size.width - Math.max(0, ...rows.map(row => theme.measure(row.name))) + 40);
-  return { spec: viewsSpec(shown, marks, x, { width: wide }, theme.series, theme, narrow), count: marks.length, items: [], note: clampNote(x),
+  return { spec: viewsSpec(shown, marks, x, { width: wide }, theme.series, theme, narrow, study.floors[want.metric.name]), count: marks.length, items: [], note: clampNote(x),
     caption: "Each mark a view, the bar the median, the box the middle half: the models that nothing beats, and the finest of each kind." };
 }
 
@@ -112,7 +117,7 @@ function normalChart({ cells, want, size, theme }) {
   });
   const line = slope ? `Dashed: predicted, s c ε / kr, ${unitText(slope.median, "px")} for a degree in the median; the band holds all cells.`
     : "No cell has a predicted displacement, so there is no line.";
-  return { spec: normalSpec(points, slope, x, y, size, theme.series, theme), count: points.length, items: [], note: clampNote(x) + clampNote(y),
+  return { spec: normalSpec(points, slope, x, y, size, theme.series, theme, study.floors[metric.name]), count: points.length, items: [], note: clampNote(x) + clampNote(y),
     caption: `Each point a model in a view. ${line}` };
 }
 
@@ -221,11 +226,11 @@ function orderList(items, theme) {
 }
 
 function say(want, points) {
-  const within = quickestWithin(points, study.tolerance);
+  const within = quickestWithin(points, study.floors[want.metric.name]?.right ?? null);
   const all = new Set(study.cells.filter(cell => cell[1] === want.drawing).map(cell => cell[0])).size;
   let words = `${points.length} of ${all} models.`;
   if (want.metric.unit === "px" && want.metric.name.includes("displacement") && points.length) {
-    words += within ? ` Quickest within ${study.tolerance} px: ${within.name}, ${unitText(within.error, "px")} in ${kUnits.ms(within.ms)}.`
+    words += within ? ` Quickest within ${study.tolerance} px: ${within.name}, ${errorText(within.error, want.metric)} in ${kUnits.ms(within.ms)}.`
       : ` None within ${study.tolerance} px.`;
   }
   document.querySelector(".filters .status").textContent = words;

@@ -79,12 +79,26 @@ function labelLayers(points, x, y, size, theme) {
   ];
 }
 
+// Grey where errors cannot be told from none; `channel` is the error's axis.
+function floorLayers(floor, axis, channel, theme) {
+  const px = floor?.px ?? null;
+  if (px === null || px <= axis.domain[0]) return [];
+  const at = field => ({ field, type: "quantitative", scale: { type: "log", domain: axis.domain, nice: false, clamp: true } });
+  const values = [{ low: axis.domain[0], px: Math.min(px, axis.domain[1]), words: `${floor.words}: not to be told from no error` }];
+  return [
+    { data: { values }, mark: { type: "rect", color: theme.soft, opacity: 0.14, name: "floor" }, encoding: { [channel]: at("low"), [`${channel}2`]: { field: "px" } } },
+    { data: { values }, mark: { type: "text", align: "left", baseline: "top", fontSize: 11, color: theme.soft, dx: 5, dy: 4, x: 0, y: 0, ...(channel === "y" ? { y: undefined } : {}) },
+      encoding: { ...(channel === "y" ? { y: at("px") } : {}), text: { field: "words" } } },
+  ];
+}
+
 const kPointer = { tooltip: { expr: "datum" } };
 
 // points: {x, y, series, name, label}, those of the front with a label, in order.
-function accuracySpec(points, front, x, y, size, series, theme) {
+function accuracySpec(points, front, x, y, size, series, theme, floor) {
   return {
     ...size, layer: [
+      ...floorLayers(floor, y, "y", theme),
       { data: { values: front.length ? [...front, { x: x.domain[1], y: front.at(-1).y }] : [] },
         mark: { type: "line", interpolate: "step-after", color: theme.ink, strokeWidth: 1.6, name: "front" }, encoding: { x: scaled("x", x), y: scaled("y", y) } },
       { data: { values: points }, mark: { type: "point", filled: true, opacity: 1, stroke: theme.card, strokeWidth: 1, ...kPointer },
@@ -96,10 +110,11 @@ function accuracySpec(points, front, x, y, size, series, theme) {
 }
 
 // fits: two points a series, both ends of the fitted line.
-function orderSpec(points, fits, x, y, size, series, theme) {
+function orderSpec(points, fits, x, y, size, series, theme, floor) {
   const position = { x: scaled("x", x), y: scaled("y", y) };
   return {
     ...size, layer: [
+      ...floorLayers(floor, y, "y", theme),
       { data: { values: points }, mark: { type: "line", strokeWidth: 1.2, opacity: 0.4 }, encoding: { ...position, ...colorOnly(series) } },
       { data: { values: fits }, mark: { type: "line", strokeWidth: 2, strokeDash: [6, 4], clip: true }, encoding: { ...position, ...colorOnly(series) } },
       { data: { values: points }, mark: { type: "point", filled: true, opacity: 1, size: 80, stroke: theme.card, strokeWidth: 1, ...kPointer },
@@ -110,12 +125,13 @@ function orderSpec(points, fits, x, y, size, series, theme) {
 }
 
 // rows: {name, series, low, lowQuartile, median, highQuartile, high}; marks: {name, series, x}.
-function viewsSpec(rows, marks, x, size, series, theme, narrow) {
+function viewsSpec(rows, marks, x, size, series, theme, narrow, floor) {
   const names = rows.map(row => row.name);
   const y = { field: "name", type: "nominal", sort: names, scale: { domain: names },
     axis: narrow ? null : { title: null, labelLimit: 320, ticks: false, grid: false, domain: false } };
   const at = field => scaled(field, x);
   const layer = [
+    ...floorLayers(floor, x, "x", theme),
     { data: { values: rows }, mark: { type: "rule", strokeWidth: 1 }, encoding: { y, x: at("low"), x2: { field: "high" }, ...colorOnly(series) } },
     { data: { values: rows }, mark: { type: "bar", opacity: 0.25, height: 15 },
       encoding: { y, x: at("lowQuartile"), x2: { field: "highQuartile" }, ...colorOnly(series) } },
@@ -132,8 +148,8 @@ function viewsSpec(rows, marks, x, size, series, theme, narrow) {
 }
 
 // slope: px for a degree, {low, median, high}, or null.
-function normalSpec(points, slope, x, y, size, series, theme) {
-  const layer = [], position = { x: scaled("x", x), y: scaled("y", y) };
+function normalSpec(points, slope, x, y, size, series, theme, floor) {
+  const layer = floorLayers(floor, y, "y", theme), position = { x: scaled("x", x), y: scaled("y", y) };
   if (slope) {
     // What leaves the chart is bent to its edge: the line has many points, and those outside are not among them.
     const ends = Array.from({ length: 121 }, (_, i) => valueAt(x, i / 120))

@@ -10,35 +10,39 @@ const cellsOf = (study, want) => study.cells.filter(([model, drawing, view]) => 
 const lookOf = (study, want) => study.looks[want.drawing]?.[study.metrics.indexOf(want.metric)]?.[want.view === null ? 0 : 1 + study.views.indexOf(want.view)];
 
 // A model over its views. The program gives [model, beaten in time, beaten in memory] and, of several cells, low, low quartile, median, high
-// quartile, high, ms, bytes; what one cell says stands in the cell.
+// quartile, high, ms, least ms, largest ms, bytes; what one cell says stands in the cell.
 function pointsOf(study, cells, want) {
   const index = study.metrics.indexOf(want.metric), groups = new Map();
   for (const cell of cells) {
     if (cell[5][index] === null) continue;
     if (!groups.has(cell[0])) groups.set(cell[0], []);
-    groups.get(cell[0]).push({ view: cell[2], error: Math.abs(cell[5][index]), ms: cell[3], bytes: cell[4] });
+    groups.get(cell[0]).push({ view: cell[2], error: Math.abs(cell[5][index]), ms: cell[3], bytes: cell[4], lowMs: cell[6], highMs: cell[7] });
   }
   return (lookOf(study, want)?.points ?? []).filter(([model]) => groups.has(model)).map(([model, inTime, inMemory, ...numbers]) => {
-    const views = groups.get(model), [{ error, ms, bytes }] = views, about = study.models[model];
-    const [low, lowQuartile, median, highQuartile, high, middleMs, mostBytes] = numbers.length ? numbers : [error, error, error, error, error, ms, bytes];
+    const views = groups.get(model), [{ error, ms, bytes, lowMs, highMs }] = views, about = study.models[model];
+    const [low, lowQuartile, median, highQuartile, high, middleMs, leastMs, largestMs, mostBytes] =
+      numbers.length ? numbers : [error, error, error, error, error, ms, lowMs, highMs, bytes];
     return {
       model, views, drawing: want.drawing, name: about.name, series: study.series[about.series].name, resolution: about.resolution,
-      analytic: about.analytic, error: median, low, high, lowQuartile, highQuartile, ms: middleMs, bytes: mostBytes,
+      analytic: about.analytic, error: median, low, high, lowQuartile, highQuartile, ms: middleMs, lowMs: leastMs, highMs: largestMs, bytes: mostBytes,
       beaten: { ms: inTime, bytes: inMemory },
     };
   });
 }
 
 // Those of `points` that nothing shown beats, cheapest first; `cost` is "ms" or "bytes". The program says which series have a model that
-// beats a point, null for what is no choice. On a front the error falls as the cost rises.
+// beats a point. On a front the error falls as the cost rises.
 function frontOf(points, cost, beating, shown) {
-  return points.filter(point => point.beaten[cost] !== null && !beating[point.beaten[cost]].some(series => shown.has(series)))
+  return points.filter(point => !beating[point.beaten[cost]].some(series => shown.has(series)))
     .sort((a, b) => a[cost] - b[cost] || b.error - a.error);
 }
 
-// The quickest of `points` that is right to the tolerance; the analytic surface is no choice.
-function quickestWithin(points, tolerance) {
-  return points.filter(point => point.error <= tolerance && !point.analytic).sort((a, b) => a.ms - b.ms)[0];
+// The quickest of `points` that is right, and of those that may be as quick by the spread of their times the smallest; the analytic surface is
+// no model. `right`: the largest error that is right to the tolerance, null where none can be called so.
+function quickestWithin(points, right) {
+  const able = points.filter(point => right !== null && point.error <= right && !point.analytic);
+  const quickest = [...able].sort((a, b) => a.ms - b.ms || a.bytes - b.bytes)[0];
+  return able.filter(point => point === quickest || point.lowMs <= quickest.highMs).sort((a, b) => a.bytes - b.bytes || a.ms - b.ms)[0];
 }
 
 // Displacement for a degree over the cells shown, [predicted displacement, normal error] each; of an even number the median is the upper one.

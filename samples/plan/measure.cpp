@@ -108,7 +108,7 @@ BorderErrors errors_of(std::span<const Measurement> measured) {
 BorderErrors measure_errors(const SceneModel& model, const PlanView& view, double threshold, const ExecutionSettings& how,
                             double& trace_ms) {
   Seen seen = look(model, {}, view.camera, {}, how);
-  trace_ms += seen.trace_ms;
+  trace_ms += seen.trace.median_ms;
   const BorderCurves curves = measure_border(model, view.camera, seen.picture.gbuffer, {.threshold = threshold}, how);
   std::vector<Measurement> measured;
   for (MetricValue& value :

@@ -51,12 +51,13 @@ Experiment experiment_of(const Scene& scene, const std::vector<PlanView>& views,
   experiment.methods.push_back({.truth_threshold = settings.threshold});
   experiment.models.push_back({.scene = experiment.scene});
   experiment.metrics = {&plan_metric()};
+  experiment.measures_floor = false;
   return experiment;
 }
 
 ExperimentObserver observer_of(Search& search) {
   return {.built =
-              [&](size_t, const SceneModel& model, double) {
+              [&](size_t, const SceneModel& model, double, const Timing&) {
                 PlanTrial& trial = *search.under_way;
                 const SurfaceInfo info = total(model);
                 trial.bytes = info.bytes;
@@ -64,7 +65,7 @@ ExperimentObserver observer_of(Search& search) {
                 trial.build_ms = search.answer.ladders[trial.ladder].of_file ? ready_ms(model) : info.build_ms;
               },
           .refused = [&](auto, const std::string& reason) { search.under_way->failed = reason; },
-          .seen = [&](size_t, size_t, const SceneModel&, Seen& seen, auto) { search.under_way->trace_ms += seen.trace_ms; },
+          .seen = [&](size_t, size_t, const SceneModel&, Seen& seen, auto) { search.under_way->trace_ms += seen.trace.median_ms; },
           .measured =
               [&](MeasuredCell& cell) { search.under_way->measured = worst(search.under_way->measured, errors_of(cell.measurements)); }};
 }

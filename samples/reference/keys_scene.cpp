@@ -37,22 +37,36 @@ constexpr DocumentedKey kSceneKeys[] = {
     {"object", "translate", "world", "[x, y, z], after rotate"},
 };
 
+/// Without the settings of surfaces, which follow `surface`.
 constexpr DocumentedKey kRowColumns[] = {
     {"", "key", "", "of the cell (one model, view and method): a hash of all that determines it, the program's version included"},
     {"", "scene", "", "name of the input"},
     {"", "view", "", "number of the view, from 0"},
-    {"", "surface", "", "representation"},
-    {"", "surface_parameters", "", "what it was made with: voxels, gradient, level, normals, scheme"},
-    {"", "method", "", "outline method"},
-    {"", "method_parameters", "", "all its parameters"},
+    {"", "width_px", "px", "width of the picture"},
+    {"", "height_px", "px", "height of the picture"},
+    {"", "surface", "", "representation; what it was made with follows, empty where the study does not vary it"},
+    {"", "method", "", "outline method; its parameters are the last columns, `METHOD.PARAMETER`, empty in rows of other methods"},
+    {"", "threshold", "", "N.V where its ink ends, and truth's with it; empty where its ink has no border that truth knows"},
     {"", "metric", "", "name of the value; the metrics above say what each is"},
     {"", "value", "unit", "the measurement; empty where the cell failed"},
     {"", "unit", "", "of the value: px, deg, or empty for a share, a ratio or a count"},
+    {"", "floor", "unit",
+     "the same measurement of the reference itself: a smaller value cannot be told from it; empty where the metric compares with the "
+     "reference's picture"},
+    {"", "truth", "", "what the true border was solved on; empty where there is none"},
+    {"", "truth_exact", "", "true, or false where a proxy stands in for the surface that was meant"},
+    {"", "truth_bound_px", "px", "how far off the true border itself may be; inf where that is not known"},
     {"", "resolution", "", "mean edge or voxel of the model, as a share of the scene's longest side"},
     {"", "time_ms", "ms", "build_ms + trace_ms + border_ms"},
-    {"", "build_ms", "ms", "making the model"},
-    {"", "trace_ms", "ms", "tracing its picture, a ray a pixel"},
-    {"", "border_ms", "ms", "drawing the border"},
+    {"", "time_low_ms", "ms", "the same of the least times"},
+    {"", "time_high_ms", "ms", "the same of the largest times"},
+    {"", "build_ms", "ms", "making the model: the median of up to 3 times, as long as these take half a second"},
+    {"", "build_low_ms", "ms", "the least of these times"},
+    {"", "build_high_ms", "ms", "the largest of these times"},
+    {"", "trace_ms", "ms", "tracing its picture, a ray a pixel: the median of up to 3 times"},
+    {"", "trace_low_ms", "ms", "the least of these times"},
+    {"", "trace_high_ms", "ms", "the largest of these times"},
+    {"", "border_ms", "ms", "drawing the border, once"},
     {"", "bytes", "bytes", "memory that the model holds"},
     {"", "failed", "", "why there is no value; empty where there is one"},
 };
@@ -71,6 +85,17 @@ std::span<const DocumentedKey> scene_keys() {
   }();
   return all;
 }
-std::span<const DocumentedKey> row_columns() { return kRowColumns; }
+std::span<const DocumentedKey> row_columns() {
+  static const std::vector<DocumentedKey> all = [] {
+    std::vector<DocumentedKey> columns;
+    for (const DocumentedKey& column : kRowColumns) {
+      columns.push_back(column);
+      if (column.key != "surface") continue;
+      for (const SurfaceSetting& setting : surface_setting_list()) columns.push_back({"", setting.name, setting.unit, setting.help});
+    }
+    return columns;
+  }();
+  return all;
+}
 
 }  // namespace limn

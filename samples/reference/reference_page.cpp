@@ -100,7 +100,9 @@ std::string reference_page() {
   text += variants();
   text += "\n## Scene files\n\nTOML; [commands.md](commands.md#scene-files) has an example. `world` is the scene's unit of length.\n\n";
   text += keys(scene_keys(), "table");
-  text += "\n## Rows of a study\n\n`rows.csv` and `rows.jsonl`: a row for each metric of each cell.\n\n";
+  text +=
+      "\n## Rows of a study\n\n`rows.csv` and `rows.jsonl`: a row for each metric of each cell. The lines of "
+      "rows.jsonl keep what the surface and the method were made with as texts in `surface_parameters` and `method_parameters`.\n\n";
   text += keys(row_columns(), nullptr);
   text +=
       "\n## JSON\n\nWhat the commands print as JSON, and the rows of `compare`. `[]`: of each element; `.*`: names that the text before "

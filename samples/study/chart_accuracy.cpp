@@ -21,7 +21,7 @@ std::string words_of(const ReportData& data, const std::vector<ModelPoint>& poin
       fmt::format("{} models. Nothing is at once cheaper in {} and better than: ", points.size(), cost == Cost::time ? "time" : "memory");
   const std::string unit = data.find_metric(data.main_metric)->unit;
   bool first = true;
-  for (const size_t i : pareto_front(data, points, cost)) {
+  for (const size_t i : pareto_front(points, cost)) {
     words += fmt::format("{}{} ({:.3g}{} in {})", first ? "" : "; ", data.title(points[i].model), points[i].median,
                          unit.empty() ? "" : " " + unit, cost_text(points[i], cost));
     first = false;
@@ -43,7 +43,7 @@ std::vector<ChartPoint> staircase(const ChartFrame& frame, const std::vector<Mod
 }
 
 void draw_points(ChartCanvas& canvas, const ReportData& data, const ChartFrame& frame, const std::vector<ModelPoint>& points, Cost cost) {
-  const std::vector<size_t> front = pareto_front(data, points, cost);
+  const std::vector<size_t> front = pareto_front(points, cost);
   LabelPlacer labels({frame.plot.x + 2.0, frame.plot.y + 2.0, frame.plot.width - 4.0, frame.plot.height - 4.0});
   canvas.line(staircase(frame, points, front, cost), {0.25, 0.25, 0.25}, 1.6);
   for (const ModelPoint& point : points) {
@@ -83,6 +83,7 @@ StudyChart accuracy_chart(const ReportData& data, Cost cost) {
       if (!note.empty()) head.notes.push_back(note);
     }
     draw_frame(canvas, head, frame, data, series_in(data, points));
+    if (quantity == Quantity::pixels) draw_floor(canvas, frame, data.floor_of(data.main_metric));
     draw_points(canvas, data, frame, points, cost);
   };
   return chart;

@@ -17,6 +17,13 @@ constexpr double kTickedLengthPx = 640.0;
 // 2.00 as "2", 0.5 as "0.5".
 std::string plain(double value) { return fmt::format("{:.6g}", value); }
 
+constexpr ChartColor kFloorShade{0.5, 0.5, 0.5, 0.12};
+constexpr ChartText kFloorText{11.0, false, kChartSoft};
+std::string floor_words(double px) {
+  return std::isfinite(px) ? fmt::format("below {:.2g} px: not to be told from no error", px)
+                           : "nothing can be told: the true border is not known";
+}
+
 }  // namespace
 
 std::string tick_text(double value, Quantity quantity) {
@@ -80,6 +87,22 @@ LogAxis log_axis(std::span<const double> values, Quantity quantity, const std::s
 
 ChartPoint ChartFrame::at(double value_x, double value_y) const {
   return {plot.x + plot.width * x.share(value_x), plot.y + plot.height * (1.0 - y.share(value_y))};
+}
+
+void draw_floor(ChartCanvas& canvas, const ChartFrame& frame, const ErrorFloor& floor) {
+  const double px = floor.px();
+  if (!(px > frame.y.low)) return;
+  const double share = std::min(1.0, frame.y.place(px)), height = share * frame.plot.height;
+  canvas.box({frame.plot.x, frame.plot.y + frame.plot.height - height, frame.plot.width, height}, kFloorShade);
+  if (height > 16.0) canvas.text({frame.plot.x + 6.0, frame.plot.y + frame.plot.height - height + 13.0}, floor_words(px), kFloorText);
+}
+
+void draw_floor_across(ChartCanvas& canvas, const ChartFrame& frame, const ErrorFloor& floor) {
+  const double px = floor.px();
+  if (!(px > frame.x.low)) return;
+  const double width = std::min(1.0, frame.x.place(px)) * frame.plot.width;
+  canvas.box({frame.plot.x, frame.plot.y, width, frame.plot.height}, kFloorShade);
+  canvas.text({frame.plot.x + 6.0, frame.plot.y + 13.0}, floor_words(px), kFloorText);
 }
 
 ChartBox plot_box(double left) { return {left, 78.0, kChartWidth - left - 250.0, kChartHeight - 78.0 - 96.0}; }

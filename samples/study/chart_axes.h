@@ -54,6 +54,10 @@ void draw_frame(ChartCanvas& canvas, const ChartHead& head, const ChartFrame& fr
 void draw_head(ChartCanvas& canvas, const ChartHead& head);
 /// Vertical grid lines and ticks of x, and its title.
 void draw_x_axis(ChartCanvas& canvas, const ChartFrame& frame);
+/// Grey below the floor of errors on y, with its words: what lies there cannot be told from no error.
+void draw_floor(ChartCanvas& canvas, const ChartFrame& frame, const ErrorFloor& floor);
+/// The same of errors on x.
+void draw_floor_across(ChartCanvas& canvas, const ChartFrame& frame, const ErrorFloor& floor);
 /// Where the plot lies in a chart with a legend.
 ChartBox plot_box(double left = 84.0);
 /// Names of series beside their markers, from the top right corner of the plot down.

@@ -101,6 +101,7 @@ StudyChart normal_border_chart(const ReportData& data) {
       if (!note.empty()) head.notes.push_back(note);
     }
     draw_frame(canvas, head, frame, data, legend);
+    draw_floor(canvas, frame, data.floor_of(border));
     if (slope) draw_prediction(canvas, frame, *slope);
     canvas.begin_clip(frame.plot);
     for (const NormalPoint& point : points) canvas.marker(frame.at(point.normal_deg, point.border_px), point.series, 4.5);

@@ -29,8 +29,8 @@ void draw_row(ChartCanvas& canvas, const ReportData& data, const ChartFrame& fra
 
 std::vector<ModelPoint> models_of_views(const ReportData& data, size_t drawing, const std::string& metric, size_t most) {
   const std::vector<ModelPoint> points = points_of(data, drawing, metric);
-  std::vector<size_t> order = pareto_front(data, points, Cost::time);
-  const std::vector<size_t> memory = pareto_front(data, points, Cost::memory);
+  std::vector<size_t> order = pareto_front(points, Cost::time);
+  const std::vector<size_t> memory = pareto_front(points, Cost::memory);
   // The models are coarse first: the last of a series is its finest.
   for (size_t i = 0; i < points.size(); ++i) {
     if (i + 1 == points.size() || data.models[points[i + 1].model].series != data.models[points[i].model].series) order.push_back(i);
@@ -74,6 +74,7 @@ StudyChart views_chart(const ReportData& data) {
     draw_head(canvas, head);
     draw_x_axis(canvas, frame);
     canvas.frame(plot, kChartAxis);
+    if (quantity == Quantity::pixels) draw_floor_across(canvas, frame, data.floor_of(data.main_metric));
     for (size_t i = 0; i < points.size(); ++i) draw_row(canvas, data, frame, points[i], kTop + kRow * (static_cast<double>(i) + 0.5));
   };
   return chart;

@@ -77,14 +77,14 @@ StudyFolder open_folder(const fs::path& folder, const StudyRecord& record, bool 
     if (!held.rows.contains(cell.key)) fs::remove(thumbnail_file(folder, cell.key), ignored);
   }
   write_record(held.record, folder);
-  write_cells(held.rows, keys, folder);
+  write_cells(held.rows, keys, record.head.parameters, folder);
   return held;
 }
 
 std::vector<fs::path> finish_folder(const fs::path& folder, const StudyFolder& done, bool with_report) {
   std::vector<std::string> keys;
   for (const PlannedCell& cell : done.record.cells) keys.push_back(cell.key);
-  write_cells(done.rows, keys, folder);
+  write_cells(done.rows, keys, done.record.head.parameters, folder);
   write_record(done.record, folder);
   std::vector<fs::path> files = {folder / "rows.csv", folder / "rows.jsonl", record_file(folder)};
   if (!with_report) return files;

@@ -66,22 +66,23 @@ CellRows read_cells(const fs::path& folder) {
   return cells;
 }
 
-void write_cells(const CellRows& cells, const std::vector<std::string>& keys, const fs::path& folder) {
-  std::string json, csv = csv_header() + "\n";
+void write_cells(const CellRows& cells, const std::vector<std::string>& keys, const std::vector<std::string>& parameters,
+                 const fs::path& folder) {
+  std::string json, csv = csv_header(parameters) + "\n";
   for (const std::string& key : keys) {
     const auto found = cells.find(key);
     if (found == cells.end()) continue;
     for (const StudyRow& row : found->second) {
       json += json_line(row) + "\n";
-      csv += csv_line(row) + "\n";
+      csv += csv_line(row, parameters) + "\n";
     }
   }
   write_whole(journal_file(folder), json);
   write_whole(table_file(folder), csv);
 }
 
-StudyJournal::StudyJournal(const fs::path& folder)
-    : folder_(folder), jsonl_(open_end(journal_file(folder))), csv_(open_end(table_file(folder))) {}
+StudyJournal::StudyJournal(const fs::path& folder, std::vector<std::string> parameters)
+    : folder_(folder), parameters_(std::move(parameters)), jsonl_(open_end(journal_file(folder))), csv_(open_end(table_file(folder))) {}
 
 StudyJournal::~StudyJournal() {
   if (jsonl_ >= 0) ::close(jsonl_);
@@ -92,7 +93,7 @@ void StudyJournal::append(const std::vector<StudyRow>& cell) {
   std::string json, csv;
   for (const StudyRow& row : cell) {
     json += json_line(row) + "\n";
-    csv += csv_line(row) + "\n";
+    csv += csv_line(row, parameters_) + "\n";
   }
   write_all(jsonl_, json, journal_file(folder_));
   if (::fdatasync(jsonl_) != 0 && errno != EINVAL) fail(journal_file(folder_));

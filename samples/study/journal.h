@@ -31,14 +31,15 @@ Journal parse_journal(std::string_view text, const std::filesystem::path& file);
 /// got its thumbnail, which is written after its rows. Empty where there is no journal. Throws InputError for lines that are no rows.
 CellRows read_cells(const std::filesystem::path& folder);
 
-/// Both files anew, whole, in the order of `keys`; cells that are not in `cells` are passed over.
-void write_cells(const CellRows& cells, const std::vector<std::string>& keys, const std::filesystem::path& folder);
+/// Both files anew, whole, in the order of `keys`; cells that are not in `cells` are passed over. `parameters`: StudyHead::parameters.
+void write_cells(const CellRows& cells, const std::vector<std::string>& keys, const std::vector<std::string>& parameters,
+                 const std::filesystem::path& folder);
 
 /// Appends cells, each in one write that is on the disk when the call returns. Throws MachineError where the disk fails.
 class StudyJournal {
  public:
-  /// Opens both files of the folder at their ends.
-  explicit StudyJournal(const std::filesystem::path& folder);
+  /// Opens both files of the folder at their ends. `parameters`: StudyHead::parameters.
+  StudyJournal(const std::filesystem::path& folder, std::vector<std::string> parameters);
   /// Closes both files.
   ~StudyJournal();
   StudyJournal(const StudyJournal&) = delete;
@@ -48,6 +49,7 @@ class StudyJournal {
 
  private:
   std::filesystem::path folder_;
+  std::vector<std::string> parameters_;
   int jsonl_ = -1, csv_ = -1;
 };
 

@@ -185,6 +185,12 @@ void fill_head(const StudySpec& spec, const Axes& axes, const SurfaceSettings& s
   head.call = call_text(spec, axes, settings, study);
   head.views = static_cast<int>(study.cameras.size());
   head.cells = static_cast<std::int64_t>(study.cells.size());
+  for (const StudyMethod& method : study.methods) {
+    for (const auto& [name, value] : method.parameters) {
+      const std::string column = method.call.method->about.name + "." + name;
+      if (std::find(head.parameters.begin(), head.parameters.end(), column) == head.parameters.end()) head.parameters.push_back(column);
+    }
+  }
   for (const StudyCell& cell : study.cells) {
     const std::string series = series_of(row_of(study, cell));
     if (std::find(head.surfaces.begin(), head.surfaces.end(), series) == head.surfaces.end()) head.surfaces.push_back(series);

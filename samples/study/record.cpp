@@ -1,13 +1,16 @@
 #include "samples/study/record.h"
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
 #include "samples/spec/flags.h"
+#include "samples/spec/utf8.h"
 #include "samples/study/whole_number.h"
 #include "sdf/error.h"
 #include "sdf/output_file.h"
@@ -60,6 +63,8 @@ Json to_json(const StudyRecord& record) {
                {"exact", head.exact},   {"pictures", record.pictures},     {"views", head.views},     {"surfaces", head.surfaces},
                {"shard", record.shard}, {"shards", record.shards},         {"truths", Json::array()}, {"cells", Json::array()}};
   json["warnings"] = head.warnings;
+  json["parameters"] = head.parameters;
+  json["machine"] = head.machine;
   for (const TruthRecord& truth : record.truths) json["truths"].push_back(to_json(truth));
   for (const PlannedCell& cell : record.cells) json["cells"].push_back({{"key", cell.key}, {"text", cell.text}});
   return json;
@@ -101,6 +106,8 @@ StudyRecord record_from(const Json& json) {
   record.shard = whole(json, "shard");
   record.shards = whole(json, "shards");
   head.warnings = json.value("warnings", std::vector<std::string>{});
+  head.parameters = json.value("parameters", std::vector<std::string>{});
+  head.machine = json.value("machine", std::string{});
   for (const Json& truth : json.at("truths")) record.truths.push_back(truth_from(truth));
   if (!head.exact) head.truth_within_px = largest_bound_px(record.truths);
   for (const Json& cell : json.at("cells")) record.cells.push_back({cell.at("key").get<std::string>(), cell.at("text").get<std::string>()});
@@ -110,9 +117,25 @@ StudyRecord record_from(const Json& json) {
 
 }  // namespace
 
+std::string machine_text() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string name = "an unknown processor";
+  for (std::string line; std::getline(file, line);) {
+    const size_t colon = line.find(':');
+    if (!line.starts_with("model name") || colon == std::string::npos) continue;
+    name = valid_utf8(line.substr(std::min(colon + 2, line.size())));
+    break;
+  }
+  double load = 0.0;
+  const bool known = getloadavg(&load, 1) == 1;
+  return fmt::format("{}, {} threads{}", name, tbb::this_task_arena::max_concurrency(),
+                     known ? fmt::format(", load {:.1f} when it began", load) : "");
+}
+
 StudyRecord record_of(const Study& study) {
   StudyRecord record;
   record.head = study.head;
+  record.head.machine = machine_text();
   record.version = kVersion;
   record.input_hash = study.input_hash;
   record.pictures = study.reference_words;

@@ -38,6 +38,9 @@ struct StudyRecord {
       shards = 1;                     ///< Of how many.
 };
 
+/// What this machine measures times on, and how busy it is: "AMD EPYC 7B13, 2 threads, load 0.4 when it began".
+std::string machine_text();
+
 /// The record of a study of which nothing is measured yet.
 StudyRecord record_of(const Study& study);
 /// Adds what is not there yet, keeps views and thresholds in order, and says it all in `head.truth` and `head.exact`.

@@ -134,13 +134,15 @@ struct Collector {
     const auto [place, is_new] = cells.try_emplace(row.key, data.cells.size());
     if (is_new) {
       const size_t drawing = drawings.at(ReportDrawing{row.method, names.parameters(row)}.title());
-      data.cells.push_back(
-          {row.key, models.at({series_of(row), resolution_text(row)}), drawing, row.view, row.time_ms(), row.bytes, row.failed});
+      data.cells.push_back({row.key, models.at({series_of(row), resolution_text(row)}), drawing, row.view, row.time_ms(), row.time_low_ms(),
+                            row.time_high_ms(), row.bytes, row.failed});
     }
     ReportCell& cell = data.cells[place->second];
     if (!row.failed.empty()) cell.failed = row.failed;
     if (row.metric.empty() || is_position(row.metric)) return;
     if (cell.values.try_emplace(row.metric, row.value).second) units.try_emplace(row.metric, row.unit);
+    if (!std::isnan(row.floor)) cell.floors.try_emplace(row.metric, row.floor);
+    if (!row.truth.from.empty()) data.truth_bound_px = std::max(data.truth_bound_px, row.truth.bound_px);
   }
 
   void finish() {
@@ -221,6 +223,15 @@ const ReportMetric* ReportData::find_metric(const std::string& name) const {
   return found == metrics.end() ? nullptr : &*found;
 }
 
+ErrorFloor ReportData::floor_of(const std::string& metric) const {
+  ErrorFloor floor{0.0, truth_bound_px, exact};
+  for (const ReportCell& cell : cells) {
+    const auto found = cell.floors.find(metric);
+    if (found != cell.floors.end()) floor.reference_px = std::max(floor.reference_px, std::abs(found->second));
+  }
+  return floor;
+}
+
 std::string compared_metric(const ReportData& data) {
   const std::string measured = data.metric_of(MetricRole::measured);
   return measured.empty() ? data.metric_of(MetricRole::inner) : measured;
@@ -231,7 +242,8 @@ ReportData collect_report(const StudyHead& head, const std::vector<StudyRow>& ro
   for (const StudyRow& row : rows) sorted.push_back(&row);
   std::sort(sorted.begin(), sorted.end(), [](const StudyRow* a, const StudyRow* b) { return row_less(*a, *b); });
   ReportData data;
-  data.floor_px = std::max(kFloorPx, head.truth_within_px);
+  data.truth_bound_px = head.truth_within_px;
+  data.exact = head.exact;
   Collector collector{data, DrawingNames(sorted)};
   collector.add_models(head, sorted);
   collector.add_drawings(sorted);

@@ -6,14 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "samples/experiment/judge.h"
 #include "samples/study/row.h"
 
 namespace limn {
 
 /// A model whose border is this near to truth is called right.
 inline constexpr double kTolerancePx = 0.5;
-/// Displacements below are at the precision with which borders are found; orders are fitted without them.
-inline constexpr double kFloorPx = 0.005;
 
 /// What a metric says, where the report has something of its own to say about it.
 enum class MetricRole { inner, silhouette, predicted, measured, normal };
@@ -45,10 +44,11 @@ struct ReportCell {
   std::string key{};
   size_t model = 0, drawing = 0;
   int view = 0;
-  double time_ms = 0.0;
+  double time_ms = 0.0, time_low_ms = 0.0, time_high_ms = 0.0;
   std::int64_t bytes = 0;
   std::string failed{};
   std::map<std::string, double> values{};  ///< By metric.
+  std::map<std::string, double> floors{};  ///< What the reference scores in the same view, where it can be measured by that metric.
 };
 
 /// Everything in an order that does not depend on the order of the rows.
@@ -61,7 +61,11 @@ struct ReportData {
   std::vector<int> views{};
   size_t main_drawing = 0;  ///< What charts show first.
   std::string main_metric{};
-  double floor_px = kFloorPx;  ///< Displacements below say nothing: the measurement's precision, or truth's own where that is worse.
+  double truth_bound_px = 0.0;  ///< How far off the true border may be, the worst of all views.
+  bool exact = true;            ///< Whether it is that of the surface that was meant.
+
+  /// What errors of a metric in px can be told from: the reference's worst score, truth's bound, the precision of measurement.
+  ErrorFloor floor_of(const std::string& metric) const;
 
   /// "mesh, vertex normals, level 3".
   std::string title(size_t model) const;

@@ -42,11 +42,28 @@ Json expectations_json(const ReportData& data) {
   return by_metric;
 }
 
+// "floors": for metrics in px {"px": null where it is not known, "words": "less than 0.006 px", "right": the largest error that is right to
+// the tolerance, null where none can be called so}.
+void add_floors(Json& json, const ReportData& data) {
+  json["floors"] = Json::object();
+  for (const ReportMetric& metric : data.metrics) {
+    if (metric.unit != "px") continue;
+    const ErrorFloor floor = data.floor_of(metric.name);
+    const double right = largest_right_px(kTolerancePx, floor);
+    json["floors"][metric.name] = {
+        {"px", six_digits(floor.px())}, {"words", error_text(0.0, floor)}, {"right", right >= 0.0 ? six_digits(right) : Json(nullptr)}};
+  }
+}
+
 }  // namespace
 
 std::string study_data_json(const ReportData& data) {
-  Json json = {{"tolerance", kTolerancePx}, {"floor", six_digits(data.floor_px)}, {"leastOrder", kLeastOrder},
-               {"least", kLeastShownPx},    {"mainDrawing", data.main_drawing},   {"mainMetric", data.main_metric}};
+  Json json = {{"tolerance", kTolerancePx},
+               {"leastOrder", kLeastOrder},
+               {"least", kLeastShownPx},
+               {"mainDrawing", data.main_drawing},
+               {"mainMetric", data.main_metric}};
+  add_floors(json, data);
   json["roles"] = {{"compared", compared_metric(data)},
                    {"predicted", data.metric_of(MetricRole::predicted)},
                    {"normal", data.metric_of(MetricRole::normal)}};
@@ -74,7 +91,8 @@ std::string study_data_json(const ReportData& data) {
       const auto found = cell.values.find(metric.name);
       values.push_back(found == cell.values.end() ? Json(nullptr) : six_digits(found->second));
     }
-    json["cells"].push_back({cell.model, cell.drawing, cell.view, six_digits(cell.time_ms), cell.bytes, values});
+    json["cells"].push_back({cell.model, cell.drawing, cell.view, six_digits(cell.time_ms), cell.bytes, values,
+                             six_digits(cell.time_low_ms), six_digits(cell.time_high_ms)});
   }
   // A name may hold "</script>".
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace), safe;

@@ -34,17 +34,15 @@ Json point_json(const ModelPoint& point, Json beating_in_time, Json beating_in_m
   const auto drawn = [](double value) { return rounded(value, kDrawnDigits); };
   for (Json number : {drawn(point.low), drawn(point.low_quartile), six_digits(point.median), drawn(point.high_quartile), drawn(point.high)})
     json.push_back(std::move(number));
-  json.push_back(six_digits(point.time_ms));
+  for (const double time : {point.time_ms, point.time_low_ms, point.time_high_ms}) json.push_back(six_digits(time));
   json.push_back(point.bytes);
   return json;
 }
 
-Json look_json(const ReportData& data, const ReportLook& look, SeriesLists& lists) {
+Json look_json(const ReportLook& look, SeriesLists& lists) {
   Json points = Json::array(), fits = Json::array();
   for (size_t i = 0; i < look.points.size(); ++i) {
-    const bool is_choice = !data.models[look.points[i].model].is_analytic();
-    points.push_back(point_json(look.points[i], is_choice ? Json(lists.of(look.beating_in_time[i])) : Json(nullptr),
-                                is_choice ? Json(lists.of(look.beating_in_memory[i])) : Json(nullptr)));
+    points.push_back(point_json(look.points[i], lists.of(look.beating_in_time[i]), lists.of(look.beating_in_memory[i])));
   }
   for (const std::optional<OrderFit>& fit : look.fits) {
     fits.push_back(nullptr);
@@ -59,8 +57,8 @@ Json looks_of(const ReportData& data, size_t drawing, const ReportMetric& metric
   if (!metric.lower_is_better) return nullptr;
   const ReportLook all = look_at(data, drawing, metric.name);
   if (all.points.empty()) return nullptr;
-  Json looks = Json::array({look_json(data, all, lists)});
-  for (const int view : data.views) looks.push_back(look_json(data, look_at(data, drawing, metric.name, view), lists));
+  Json looks = Json::array({look_json(all, lists)});
+  for (const int view : data.views) looks.push_back(look_json(look_at(data, drawing, metric.name, view), lists));
   return looks;
 }
 

@@ -16,8 +16,8 @@ struct ReportLook {
 ReportLook look_at(const ReportData& data, size_t drawing, const std::string& metric, std::optional<int> view = {});
 
 /// "looks": [drawing][metric] null or [0: all views, 1 + i: the i-th view] {"points", "fits"}, where
-/// a point is [model, time, memory] and, of several cells, [..., low, low quartile, median, high quartile, high, ms, bytes]: what one cell
-/// says stands in "cells". `time` and `memory` index "beating", lists of series, and are null for what is on no front;
+/// a point is [model, time, memory] and, of several cells, [..., low, low quartile, median, high quartile, high, ms, least ms, largest ms,
+/// bytes]: what one cell says stands in "cells". `time` and `memory` index "beating", lists of series;
 /// a fit is null or [order, factor, finest, coarsest], one for each series.
 /// Metrics that the page does not offer have none.
 void add_looks(Json& json, const ReportData& data);

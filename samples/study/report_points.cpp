@@ -17,20 +17,24 @@ ModelPoint point_of(size_t model, std::vector<std::pair<double, const ReportCell
             [](const auto& a, const auto& b) { return std::make_pair(a.first, a.second->view) < std::make_pair(b.first, b.second->view); });
   ModelPoint point;
   point.model = model;
-  std::vector<double> errors, times;
+  std::vector<double> errors, times, least, largest;
   for (const auto& [value, cell] : values) {
     errors.push_back(value);
     times.push_back(cell->time_ms);
+    least.push_back(cell->time_low_ms);
+    largest.push_back(cell->time_high_ms);
     point.bytes = std::max(point.bytes, cell->bytes);
     point.cells.push_back(cell);
   }
-  std::sort(times.begin(), times.end());
+  for (std::vector<double>* of : {&times, &least, &largest}) std::sort(of->begin(), of->end());
   point.low = errors.front();
   point.low_quartile = interpolated_quantile(errors, 0.25);
   point.median = interpolated_quantile(errors, 0.5);
   point.high_quartile = interpolated_quantile(errors, 0.75);
   point.high = errors.back();
   point.time_ms = interpolated_quantile(times, 0.5);
+  point.time_low_ms = interpolated_quantile(least, 0.5);
+  point.time_high_ms = interpolated_quantile(largest, 0.5);
   return point;
 }
 
@@ -54,13 +58,13 @@ std::optional<ExpectedOrder> normal_order(const ReportModel& model) {
   return std::nullopt;
 }
 
-// What fronts are made of; the analytic surface is no choice, and beats nothing.
+// What fronts are made of.
 struct Choices {
   std::vector<double> costs{}, errors{};
-  Choices(const ReportData& data, const std::vector<ModelPoint>& points, Cost cost) {
+  Choices(const std::vector<ModelPoint>& points, Cost cost) {
     for (const ModelPoint& point : points) {
       costs.push_back(cost_of(point, cost));
-      errors.push_back(data.models[point.model].is_analytic() ? std::numeric_limits<double>::quiet_NaN() : point.median);
+      errors.push_back(point.median);
     }
   }
 };
@@ -97,8 +101,8 @@ std::vector<size_t> pareto_front(std::span<const double> costs, std::span<const 
   return front;
 }
 
-std::vector<size_t> pareto_front(const ReportData& data, const std::vector<ModelPoint>& points, Cost cost) {
-  const Choices choices(data, points, cost);
+std::vector<size_t> pareto_front(const std::vector<ModelPoint>& points, Cost cost) {
+  const Choices choices(points, cost);
   return pareto_front(choices.costs, choices.errors);
 }
 
@@ -120,7 +124,7 @@ std::vector<std::vector<size_t>> beating_groups(std::span<const double> costs, s
 }
 
 std::vector<std::vector<size_t>> beating_series(const ReportData& data, const std::vector<ModelPoint>& points, Cost cost) {
-  const Choices choices(data, points, cost);
+  const Choices choices(points, cost);
   std::vector<size_t> series;
   for (const ModelPoint& point : points) series.push_back(data.models[point.model].series);
   return beating_groups(choices.costs, choices.errors, series);
@@ -154,7 +158,7 @@ std::optional<OrderFit> fit_order(const ReportData& data, const std::vector<Mode
     errors.push_back(point.median);
   }
   const ReportMetric* about = data.find_metric(metric);
-  return fit_order(resolutions, errors, about != nullptr && about->unit == "px" ? data.floor_px : 0.0);
+  return fit_order(resolutions, errors, about != nullptr && about->unit == "px" ? data.floor_of(metric).px() : 0.0);
 }
 
 std::string OrderFit::text() const { return fmt::format("order {:.2f}{}", order, converges() ? "" : ": does not converge"); }

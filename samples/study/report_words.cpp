@@ -44,7 +44,14 @@ std::string first_sentence(const StudyHead& head, const ReportData& data) {
 struct Words {
   const ReportData& data;
   std::vector<ModelPoint> points;
+  ErrorFloor floor{};  ///< Of the main metric.
   std::vector<std::string> out{};
+
+  std::string px(double value) const { return error_text(value, floor); }
+  std::string criterion() const {
+    const std::string& name = data.main_metric;
+    return name.ends_with("_p95") ? "95 % of it" : name.ends_with("_rms") ? "RMS" : data.find_metric(name)->label();
+  }
 
   std::string cost(const ModelPoint& point) const {
     return time_text(point.time_ms) + " and " + bytes_text(static_cast<double>(point.bytes));
@@ -54,22 +61,27 @@ struct Words {
   void say_cheapest() {
     const auto better = [](const ModelPoint& a, const ModelPoint& b) { return a.median < b.median; };
     const ModelPoint& best = *std::min_element(points.begin(), points.end(), better);
-    const ModelPoint* cheapest = cheapest_within(points, kTolerancePx, Cost::time);
+    const ModelPoint* cheapest = cheapest_within(points, kTolerancePx, floor, Cost::time);
     if (cheapest == nullptr) {
-      out.push_back(fmt::format("No model comes within {} px of truth in its median view: the nearest, {}, is {} px off, for {}.",
-                                kTolerancePx, data.title(best.model), number(best.median), cost(best)));
+      out.push_back(fmt::format("No model comes within {} px of truth in its median view: the nearest, {}, is {} off, for {}.",
+                                kTolerancePx, data.title(best.model), px(best.median), cost(best)));
       return;
     }
-    std::string text = fmt::format("The quickest model whose border is right to {} px (RMS, median of the views) is {}: {} px off",
-                                   kTolerancePx, data.title(cheapest->model), number(cheapest->median));
-    if (cheapest->cells.size() > 1) text += fmt::format(", {} in the worst view", number(cheapest->high));
+    std::string text = fmt::format("The quickest model whose border is right to {} px ({}, median of the views) is {}: {} off",
+                                   kTolerancePx, criterion(), data.title(cheapest->model), px(cheapest->median));
+    if (cheapest->cells.size() > 1) text += fmt::format(", {} in the worst view", px(cheapest->high));
     text += ", for " + cost(*cheapest) + ".";
-    const ModelPoint* smallest = cheapest_within(points, kTolerancePx, Cost::memory);
-    if (smallest != cheapest)
-      text += fmt::format(" The smallest is {}: {} px, for {}.", data.title(smallest->model), number(smallest->median), cost(*smallest));
-    if (&best != cheapest && best.time_ms > 0.0 && cheapest->time_ms > 0.0) {
+    const std::vector<const ModelPoint*> equals = as_quick_as(points, *cheapest, kTolerancePx, floor);
+    if (!equals.empty())
       text +=
-          fmt::format(" The best of all, {}, is {} px off and takes {}", data.title(best.model), number(best.median),
+          fmt::format(" {} as quick within the spread of the timings, and larger.",
+                      equals.size() == 1 ? data.title(equals.front()->model) + " is" : count_of(equals.size(), "other", "others") + " are");
+    const ModelPoint* smallest = cheapest_within(points, kTolerancePx, floor, Cost::memory);
+    if (smallest != cheapest)
+      text += fmt::format(" The smallest is {}: {}, for {}.", data.title(smallest->model), px(smallest->median), cost(*smallest));
+    if (&best != cheapest && best.time_ms > 0.0 && cheapest->time_ms > 0.0 && best.median >= floor.px()) {
+      text +=
+          fmt::format(" The best of all, {}, is {} off and takes {}", data.title(best.model), px(best.median),
                       best.time_ms > 1.05 * cheapest->time_ms ? number(best.time_ms / cheapest->time_ms) + " times the time of the quickest"
                                                               : time_text(best.time_ms));
       if (cheapest->bytes > 0 && best.bytes > cheapest->bytes)
@@ -86,12 +98,20 @@ struct Words {
       for (const ModelPoint& point : points) {
         if (data.models[point.model].series == series && (best == nullptr || point.median < best->median)) best = &point;
       }
-      if (best == nullptr || best->median <= kTolerancePx) continue;
+      if (best == nullptr || judge(best->median, kTolerancePx, floor) != Verdict::wrong) continue;
       const std::string& resolution = data.models[best->model].resolution_text;
       never.push_back(
-          fmt::format("{} (at best {} px{})", data.series[series], number(best->median), resolution.empty() ? "" : ", at " + resolution));
+          fmt::format("{} (at best {}{})", data.series[series], px(best->median), resolution.empty() ? "" : ", at " + resolution));
     }
     if (!never.empty()) out.push_back(fmt::format("Never within {} px: {}.", kTolerancePx, listed(never, "; ")));
+  }
+
+  // What models stand for can be drawn as it is, where it is a formula.
+  void say_analytic(const std::vector<ModelPoint>& all) {
+    for (const ModelPoint& point : all) {
+      if (data.models[point.model].is_analytic())
+        out.push_back(fmt::format("The analytic surface, drawn without a model, is {} off and takes {}.", px(point.median), cost(point)));
+    }
   }
 
   void say_orders() {
@@ -114,8 +134,9 @@ struct Words {
     std::string resolution;
     for (const ModelPoint& point : of) {
       if (data.models[point.model].series != series) continue;
-      if (point.median > kTolerancePx) resolution.clear();
-      if (point.median <= kTolerancePx && resolution.empty()) resolution = data.models[point.model].resolution_text;
+      const bool right = judge(point.median, kTolerancePx, floor) == Verdict::right;
+      if (!right) resolution.clear();
+      if (right && resolution.empty()) resolution = data.models[point.model].resolution_text;
     }
     return resolution;
   }
@@ -140,11 +161,12 @@ struct Words {
   void say_prediction() {
     const std::string predicted = data.metric_of(MetricRole::predicted), measured = compared_metric(data);
     if (predicted.empty() || measured.empty()) return;
+    const double least = data.floor_of(measured).px();
     std::vector<double> wrong;
     for (const ReportCell& cell : data.cells) {
       const auto p = cell.values.find(predicted), m = cell.values.find(measured);
       if (cell.drawing != data.main_drawing || p == cell.values.end() || m == cell.values.end()) continue;
-      if (m->second > data.floor_px && m->second < 2.0 && std::isfinite(p->second)) wrong.push_back(std::abs(p->second / m->second - 1.0));
+      if (m->second > least && m->second < 2.0 && std::isfinite(p->second)) wrong.push_back(std::abs(p->second / m->second - 1.0));
     }
     if (wrong.empty()) return;
     const size_t count = wrong.size();
@@ -170,38 +192,59 @@ struct Words {
 
 }  // namespace
 
-const ModelPoint* cheapest_within(const std::vector<ModelPoint>& points, double tolerance, Cost cost) {
+const ModelPoint* cheapest_within(const std::vector<ModelPoint>& points, double tolerance, const ErrorFloor& floor, Cost cost) {
   const ModelPoint* best = nullptr;
   for (const ModelPoint& point : points) {
-    if (point.median <= tolerance &&
+    if (judge(point.median, tolerance, floor) == Verdict::right &&
         (best == nullptr || std::make_pair(cost_of(point, cost), point.time_ms) < std::make_pair(cost_of(*best, cost), best->time_ms)))
+      best = &point;
+  }
+  if (best == nullptr || cost == Cost::memory) return best;
+  // Of those that may be as quick, the smallest.
+  const ModelPoint& quickest = *best;
+  for (const ModelPoint& point : points) {
+    if (judge(point.median, tolerance, floor) == Verdict::right && point.time_low_ms <= quickest.time_high_ms &&
+        std::make_pair(point.bytes, point.time_ms) < std::make_pair(best->bytes, best->time_ms))
       best = &point;
   }
   return best;
 }
 
+std::vector<const ModelPoint*> as_quick_as(const std::vector<ModelPoint>& points, const ModelPoint& chosen, double tolerance,
+                                           const ErrorFloor& floor) {
+  std::vector<const ModelPoint*> equals;
+  for (const ModelPoint& point : points) {
+    const bool overlap = point.time_low_ms <= chosen.time_high_ms && chosen.time_low_ms <= point.time_high_ms;
+    if (&point != &chosen && overlap && judge(point.median, tolerance, floor) == Verdict::right) equals.push_back(&point);
+  }
+  return equals;
+}
+
 std::vector<std::string> study_sentences(const StudyHead& head, const ReportData& data) {
   if (data.cells.empty()) return {"The study has no cell yet: there is nothing to say."};
-  Words words{data, points_of(data, data.main_drawing, data.main_metric)};
-  const size_t all = words.points.size();
+  Words words{data, points_of(data, data.main_drawing, data.main_metric), data.floor_of(data.main_metric)};
+  const std::vector<ModelPoint> all = words.points;
   // What models stand for is no choice beside them.
   std::erase_if(words.points, [&](const ModelPoint& point) { return data.models[point.model].is_analytic(); });
   words.out.push_back(capital(first_sentence(head, data)));
   const ReportMetric* metric = data.find_metric(data.main_metric);
   const bool in_pixels = metric != nullptr && metric->name.find("displacement") != std::string::npos && metric->unit == "px";
   if (words.points.empty()) {
-    words.out.emplace_back(all > 0 ? "Only the analytic surface itself was measured: there is no model to choose."
-                                   : "No cell has an error to show, so that nothing can be said of accuracy.");
+    words.out.emplace_back(!all.empty() ? "Only the analytic surface itself was measured: there is no model to choose."
+                                        : "No cell has an error to show, so that nothing can be said of accuracy.");
   } else {
     if (data.drawings.size() > 1)
       words.out.emplace_back("What follows is for " + data.drawings[data.main_drawing].title() + "; the page below can show the others.");
     // Half a pixel cannot be told where truth itself is less sure.
-    const bool can_tell = in_pixels && data.floor_px <= kTolerancePx;
-    if (in_pixels && !can_tell)
-      words.out.push_back(
-          fmt::format("No model can be called right to {} px, and none wrong by less than {:.2g} px: truth is not known better.",
-                      kTolerancePx, data.floor_px));
+    const std::string doubt = why_not_to_be_told(kTolerancePx, words.floor);
+    const bool can_tell = in_pixels && doubt.empty();
+    if (in_pixels && !can_tell) {
+      const std::string least =
+          std::isfinite(words.floor.px()) ? fmt::format(", and none wrong by less than {:.2g} px", words.floor.px()) : ", nor wrong";
+      words.out.push_back(fmt::format("No model can be called right to {} px{}: {}.", kTolerancePx, least, doubt));
+    }
     if (can_tell) words.say_cheapest();
+    if (can_tell) words.say_analytic(all);
     if (!in_pixels) words.out.emplace_back("The border's displacement was not measured; charts show " + metric->label() + ".");
     if (can_tell) words.say_never();
     words.say_orders();

@@ -8,7 +8,12 @@ namespace limn {
 /// The first few say what was done and which model to take; the others go into details. At least one.
 std::vector<std::string> study_sentences(const StudyHead& head, const ReportData& data);
 
-/// The cheapest model in time whose median error is within `tolerance`; nothing where none is.
-const ModelPoint* cheapest_within(const std::vector<ModelPoint>& points, double tolerance, Cost cost);
+/// The cheapest model whose median error is right to `tolerance`; nothing where none is. Of those that may be as quick as the quickest, by
+/// the spread of their times, the one that needs least memory.
+const ModelPoint* cheapest_within(const std::vector<ModelPoint>& points, double tolerance, const ErrorFloor& floor, Cost cost);
+
+/// Others that are right and, by the spread of their times, may be as quick as `chosen`.
+std::vector<const ModelPoint*> as_quick_as(const std::vector<ModelPoint>& points, const ModelPoint& chosen, double tolerance,
+                                           const ErrorFloor& floor);
 
 }  // namespace limn

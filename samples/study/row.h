@@ -8,32 +8,48 @@
 #include <string>
 #include <vector>
 
+#include "samples/experiment/observe.h"
 #include "samples/output/output.h"
 
 namespace limn {
 
+/// What displacements in a row were measured against.
+struct RowTruth {
+  double threshold = std::numeric_limits<double>::quiet_NaN();  ///< N.V where the ink ends; NaN: the method has no border that truth knows.
+  std::string from{};                                           ///< BorderTruth::from; empty where there is no truth.
+  bool exact = false;                                           ///< BorderTruth::exact.
+  double bound_px = std::numeric_limits<double>::quiet_NaN();   ///< BorderTruth::bound_px.
+};
+
 /// One metric of one cell. A cell is one model, seen from one view, drawn by one method. A cell that failed is one row without a metric,
 /// its reason in `failed`.
 struct StudyRow {
-  std::string key{};      ///< Of the cell: a hash of all that determines it, the program's version included. Rows of one cell share it.
-  std::string scene{};    ///< SceneInput::name.
-  int view = 0;           ///< From 0.
+  std::string key{};    ///< Of the cell: a hash of all that determines it, the program's version included. Rows of one cell share it.
+  std::string scene{};  ///< SceneInput::name.
+  int view = 0;         ///< From 0.
+  int width_px = 0,     ///< Of the picture.
+      height_px = 0;
   std::string surface{};  ///< "mesh", "level_set", …
   std::map<std::string, std::string>
       surface_parameters{};  ///< {"level", "3"}, {"normals", "vertex"}; {"voxels", "128"}, {"gradient", "cubic"}.
   std::string method{};      ///< A name in border_methods().
-  std::map<std::string, std::string> method_parameters{};        ///< {"threshold", "0.4"}.
-  std::string metric{};                                          ///< MetricValue::name; empty in a cell that failed.
-  double value = std::numeric_limits<double>::quiet_NaN();       ///< MetricValue::value.
-  std::string unit{};                                            ///< MetricValue::unit.
+  std::map<std::string, std::string> method_parameters{};   ///< {"threshold", "0.4"}.
+  std::string metric{};                                     ///< MetricValue::name; empty in a cell that failed.
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< MetricValue::value.
+  std::string unit{};                                       ///< MetricValue::unit.
+  double floor = std::numeric_limits<double>::quiet_NaN();  ///< What the reference itself scores; NaN: the metric compares with it.
+  RowTruth truth{};
   double resolution = std::numeric_limits<double>::quiet_NaN();  ///< Mean edge or voxel, as a share of the scene's longest side.
-  double build_ms = 0.0,                                         ///< Of the model.
-      trace_ms = 0.0,                                            ///< Of one picture.
-      border_ms = 0.0;                                           ///< Of the method.
+  Timing build{},                                                ///< Of the model.
+      trace{};                                                   ///< Of one picture.
+  double border_ms = 0.0;                                        ///< Of the method.
   std::int64_t bytes = 0;                                        ///< Of the model.
   std::string failed{};                                          ///< Why there is no value; empty where there is one.
   /// What charts show as the time of a cell.
-  double time_ms() const { return build_ms + trace_ms + border_ms; }
+  double time_ms() const { return build.median_ms + trace.median_ms + border_ms; }
+  /// The least and the largest that it took.
+  double time_low_ms() const { return build.low_ms + trace.low_ms + border_ms; }
+  double time_high_ms() const { return build.high_ms + trace.high_ms + border_ms; }
 };
 
 /// "mesh, vertex normals": the model without its resolution, the same for all rows of one line in a chart.
@@ -41,10 +57,10 @@ std::string series_of(const StudyRow& row);
 /// "level 3", "128 voxels".
 std::string resolution_text(const StudyRow& row);
 
-/// The header of rows.csv, without the line's end.
-std::string csv_header();
+/// The header of rows.csv, without the line's end: the columns of all studies, then `parameters` (StudyHead::parameters).
+std::string csv_header(const std::vector<std::string>& parameters);
 /// A row as a line of rows.csv, without the line's end. Numbers are written so that they read back the same.
-std::string csv_line(const StudyRow& row);
+std::string csv_line(const StudyRow& row, const std::vector<std::string>& parameters);
 /// A row as a line of rows.jsonl, without the line's end. Numbers are written so that they read back the same.
 std::string json_line(const StudyRow& row);
 /// Throws InputError with file and line.
@@ -63,6 +79,9 @@ struct StudyHead {
   int views = 1;                        ///< Of each model.
   std::vector<std::string> surfaces{};  ///< Series in order.
   std::int64_t cells = 0;               ///< Of the whole study.
+  /// Columns of rows.csv for what the methods take: "rim.threshold", a method's parameters together.
+  std::vector<std::string> parameters{};
+  std::string machine{};  ///< What times were measured on: "AMD EPYC 7B13, 2 threads, load 0.4 when it began".
 };
 
 /// A small picture of one cell: the border on white, wrong ink red, missing ink blue. PNG bytes, at most 320 px wide.

@@ -59,6 +59,7 @@ Experiment experiment_of(const Study& study) {
     experiment.methods.push_back({method.call.method->about.name, {method.call}, method.truth_threshold});
   for (const Metric& metric : metrics()) experiment.metrics.push_back(&metric);
   if (study.flicker) experiment.path = kFlickerPath;
+  experiment.repeats = kStudyRepeats;
   return experiment;
 }
 
@@ -75,6 +76,23 @@ TruthRecord record_of(size_t view, const ExperimentTruth& solved) {
   return record;
 }
 
+RowTruth row_truth_of(const MeasuredCell& cell) {
+  RowTruth row;
+  if (cell.truth == nullptr) return row;
+  row.threshold = cell.truth->threshold;
+  if (!cell.truth->truth) return row;
+  row.from = cell.truth->truth->from;
+  row.exact = cell.truth->truth->exact;
+  row.bound_px = cell.truth->truth->bound_px;
+  return row;
+}
+
+double floor_of(const MeasuredCell& cell, const std::string& value) {
+  for (const Measurement& one : cell.floor)
+    if (one.value.name == value) return one.value.value;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 // Keeps what the engine measures: rows, journal, thumbnails, and what is left to do.
 struct Runner {
   const StudyWork& work;
@@ -84,13 +102,13 @@ struct Runner {
   ProgressBar& bar;
   StudyJournal& journal;
   ExperimentRun* run = nullptr;
-  double build_ms = 0.0;
+  Timing build{};
   std::int64_t bytes = 0;
   size_t done = 0;
 
   ExperimentObserver observer() {
     return {.cell_begins = [this] { show_progress(); },
-            .built = [this](size_t model, const SceneModel& built, double ms) { has_built(model, built, ms); },
+            .built = [this](size_t model, const SceneModel& built, double ms, const Timing& times) { has_built(model, built, ms, times); },
             .refused = [this](auto cells, const std::string& reason) { refuse(cells, reason); },
             .seen = [this](size_t model, size_t view, const SceneModel& built, Seen& seen, auto) { has_seen(model, view, built, seen); },
             .solved = [this](size_t view, const ExperimentTruth& truth, double ms) { has_solved(view, truth, ms); },
@@ -118,9 +136,8 @@ struct Runner {
     keep({row});
   }
 
-  void has_built(size_t model, const SceneModel& built, double ms) {
-    const SurfaceInfo info = total(built);
-    if (model > 0) build_ms = info.build_ms, bytes = info.bytes;
+  void has_built(size_t model, const SceneModel& built, double ms, const Timing& times) {
+    if (model > 0) build = times, bytes = total(built).bytes;
     if (model == 0)
       ledger.done("reference build", work.study.reference_cost.build_ms, ms);
     else
@@ -174,8 +191,9 @@ struct Runner {
     const auto start = Clock::now();
     StudyRow row = row_of(work.study, work.study.cells[cell.cell.id]);
     row.resolution = resolution_of(cell.model, work.study.longest_side);
-    row.build_ms = build_ms;
-    row.trace_ms = cell.seen.trace_ms;
+    row.build = build;
+    row.trace = cell.seen.trace;
+    row.truth = row_truth_of(cell);
     row.border_ms = cell.drawing.picture.border_ms;
     row.bytes = bytes;
     std::vector<StudyRow> measured;
@@ -185,6 +203,7 @@ struct Runner {
       measured.back().metric = one.value.name;
       measured.back().value = one.value.value;
       measured.back().unit = one.value.unit;
+      measured.back().floor = floor_of(cell, one.value.name);
     }
     if (measured.empty()) {
       measured.push_back(row);
@@ -205,7 +224,7 @@ struct Runner {
 }  // namespace
 
 void run_cells(const StudyWork& work, CostLedger& ledger, StudyRecord& record, CellRows& rows, ProgressBar& bar) {
-  StudyJournal journal(work.folder);
+  StudyJournal journal(work.folder, work.study.head.parameters);
   Runner runner{work, ledger, record, rows, bar, journal};
   ExperimentRun run(experiment_of(work.study), work.how, runner.observer());
   runner.run = &run;

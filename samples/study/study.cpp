@@ -18,6 +18,8 @@ StudyRow row_of(const Study& study, const StudyCell& cell) {
   row.key = cell.key;
   row.scene = study.scene.name;
   row.view = static_cast<int>(cell.view);
+  row.width_px = study.cameras[cell.view].width_px;
+  row.height_px = study.cameras[cell.view].height_px;
   row.surface = model.surface;
   row.surface_parameters = model.parameters;
   row.method = method.call.method->about.name;

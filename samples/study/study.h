@@ -15,7 +15,10 @@
 namespace limn {
 
 /// Of the rows and their metrics, and of how a cell is measured: a change of it makes other cells.
-inline constexpr int kStudyFormat = 1;
+inline constexpr int kStudyFormat = 2;
+
+/// Pictures traced for the time of one.
+inline constexpr int kStudyRepeats = 3;
 
 /// How the camera moves for flicker.
 inline constexpr FramePath kFlickerPath{.frames = 5, .step_px = 0.25};

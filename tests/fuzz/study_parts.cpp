@@ -29,7 +29,7 @@ StudyFolder read_part(std::string_view& rest) {
 void check_rows(const StudyFolder& merged) {
   int line = 0;
   for (const StudyRow& row : rows_in_order(merged)) {
-    fuzz::require(csv_line(row).find('\n') == std::string::npos, "a row of more than one line");
+    fuzz::require(csv_line(row, merged.record.head.parameters).find('\n') == std::string::npos, "a row of more than one line");
     fuzz::require(row_from_json(json_line(row), "again.jsonl", ++line).key == row.key, "a row that does not read back");
   }
 }

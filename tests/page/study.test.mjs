@@ -52,7 +52,7 @@ function frontByTrying(study, cost, shown) {
     groups.set(cell[0], [...groups.get(cell[0]) ?? [], cell]);
   }
   const median = values => { const up = values.sort((a, b) => a - b), half = (up.length - 1) / 2; return 0.5 * (up[Math.floor(half)] + up[Math.ceil(half)]); };
-  const models = [...groups].filter(([model]) => !study.models[model].analytic).map(([model, cells]) => ({
+  const models = [...groups].map(([model, cells]) => ({
     model, error: median(cells.map(cell => Math.abs(cell[5][metric]))),
     cost: cost === "time" ? median(cells.map(cell => cell[3])) : Math.max(...cells.map(cell => cell[4])) }));
   return models.filter(one => !models.some(other => other.cost <= one.cost && other.error <= one.error &&

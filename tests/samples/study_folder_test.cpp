@@ -43,7 +43,7 @@ std::vector<StudyRow> some_cell(int index, double build_ms = 1.0) {
     row.metric = metric;
     row.value = 1.0 / (index + 3.0);
     row.unit = "px";
-    row.build_ms = build_ms;
+    row.build = timing_of({build_ms});
     rows.push_back(row);
   }
   return rows;
@@ -63,7 +63,7 @@ void write_thumbnail(const fs::path& folder, const std::string& key) {
 }
 
 void add_cell(const fs::path& folder, const std::vector<StudyRow>& rows) {
-  StudyJournal(folder).append(rows);
+  StudyJournal(folder, {}).append(rows);
   if (!failed(rows)) write_thumbnail(folder, rows.front().key);
 }
 
@@ -135,7 +135,7 @@ TEST(StudyFolder, IsReopenedWithWholeCellsAndFailedOnesAreToBeTriedAgain) {
   const TemporaryFolder folder;
   const StudyRecord record = some_record(4);
   make_part(folder.path(), record, {some_cell(0), failed_cell(1)});
-  StudyJournal(folder.path()).append(some_cell(2));
+  StudyJournal(folder.path(), {}).append(some_cell(2));
   std::ofstream(folder.path() / "rows.jsonl", std::ios::app) << "{\"key\": \"cell3\", ";
   const StudyFolder held = open_folder(folder.path(), record, false);
   EXPECT_EQ(held.rows.size(), 1u);

@@ -68,14 +68,15 @@ Json choice_json(const ReportData& data, size_t drawing, size_t metric, std::opt
   const ReportData part = shown_part(data, series, view);
   std::vector<ModelPoint> points = points_of(part, drawing, data.metrics[metric].name);
   Json json = {{"drawing", drawing}, {"metric", metric}, {"view", view ? Json(*view) : Json(nullptr)}, {"series", series}};
-  json["fronts"] = {{"ms", models_of(points, pareto_front(part, points, Cost::time))},
-                    {"bytes", models_of(points, pareto_front(part, points, Cost::memory))}};
+  json["fronts"] = {{"ms", models_of(points, pareto_front(points, Cost::time))},
+                    {"bytes", models_of(points, pareto_front(points, Cost::memory))}};
   json["medians"] = Json::array();
   for (const ModelPoint& point : points) json["medians"].push_back({point.model, point.low_quartile, point.median, point.time_ms});
   const std::optional<PredictedSlope> slope = predicted_slope(part, drawing);
   json["slope"] = slope ? Json({{"low", slope->low}, {"median", slope->median}, {"high", slope->high}}) : Json(nullptr);
   std::erase_if(points, [&](const ModelPoint& point) { return data.models[point.model].is_analytic(); });
-  const ModelPoint* within = cheapest_within(points, kTolerancePx, Cost::time);
+  const ReportMetric& about = data.metrics[metric];
+  const ModelPoint* within = about.unit == "px" ? cheapest_within(points, kTolerancePx, data.floor_of(about.name), Cost::time) : nullptr;
   json["within"] = within == nullptr ? Json(nullptr) : Json(within->model);
   return json;
 }

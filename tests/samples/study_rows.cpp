@@ -77,21 +77,22 @@ SyntheticStudy synthetic_study(const SyntheticSettings& settings) {
       row.resolution = mesh ? 0.3 * std::pow(0.5, step) : 1.0 / voxels;
       row.bytes =
           mesh ? static_cast<std::int64_t>(2000.0 * std::pow(4.0, step)) : static_cast<std::int64_t>(600.0 * voxels * voxels / 16.0);
-      row.build_ms = mesh ? 0.4 * std::pow(3.6, step) : 0.02 * std::pow(voxels, 1.5);
+      row.build = timing_of({mesh ? 0.4 * std::pow(3.6, step) : 0.02 * std::pow(voxels, 1.5)});
       row.method = "rim";
       for (const double threshold : settings.thresholds) {
         row.method_parameters = {{"threshold", fmt::format("{}", threshold)}};
         for (int view = 0; view < settings.views; ++view) {
           row.view = view;
           row.key = fmt::format("{}-{}-{}-{}-{}", law.surface, law.value, step, threshold, view);
-          row.trace_ms = 30.0 + 2.0 * step + 0.5 * view;
+          row.trace = timing_of({30.0 + 2.0 * step + 0.5 * view});
           row.border_ms = 4.0;
           ++study.head.cells;
           if (settings.with_failures && std::string(law.value) == "cubic" && step == 6) {
             StudyRow failed = row;
             failed.failed = "it would take about 6.2 GB, which is more than --max-memory 4.0 GB";
             failed.bytes = 0;
-            failed.build_ms = failed.trace_ms = failed.border_ms = 0.0;
+            failed.build = failed.trace = {};
+            failed.border_ms = 0.0;
             study.rows.push_back(failed);
             continue;
           }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "raymarch/curves/curve_geometry.h"
 #include "raymarch/measured_border/edge_node.h"
 #include "raymarch/scene/threads.h"
 
@@ -20,8 +21,14 @@ constexpr double kGrowth = 2.5;
 constexpr double kLongestStep_px = 0.5;
 /// Tips of wedges are followed outwards so far at a time.
 constexpr double kTip_px = 8.0;
+/// Beyond a thin neck lies what another curve bounds: a tip that comes this near to a curve of the grid's own crossings is none.
+constexpr double kNeck_px = 0.25;
 /// A sheet's end is one from this step of depth on, px at the nearer sheet.
 constexpr double kLeastJump_px = 0.3;
+/// Along a curve depth changes by no more than this and so much for each px; where rays between find no smaller steps, two sheets' curves
+/// were joined where they cross in the image.
+constexpr double kLeastTear_px = 1.0;
+constexpr double kSteepest = 10.0;
 /// Curves are followed no farther beyond their last crossings, and not in smaller steps.
 constexpr double kFarthest_px = 1.5;
 constexpr double kFirstEndStep_px = 0.25;
@@ -85,13 +92,18 @@ class Refiner {
  public:
   Refiner(const SceneModel& model, const Camera& camera, const MeasuredBorderSettings& settings, const ExecutionSettings& how,
           const ChainedCurves& chains)
-      : model_(model), camera_(camera), settings_(settings), how_(how) {
+      : model_(model),
+        camera_(camera),
+        settings_(settings),
+        how_(how),
+        known_{CurveIndex(chains.border, CurveKind::silhouette), CurveIndex(chains.border, CurveKind::inner)} {
     for (size_t c = 0; c < chains.border.curves.size(); ++c) chains_.push_back(chain_of(chains.border.curves[c], chains.other_depths[c]));
   }
 
   void refine() {
     for (size_t c = 0; c < chains_.size(); ++c) look_at_bends(c);
     run();
+    for (size_t c = 0, count = chains_.size(); c < count; ++c) cut_tears(c);
     for (size_t c = 0; c < chains_.size(); ++c) {
       if (chains_[c].closed) continue;
       for (const bool at_last : {false, true}) look_beyond(c, at_last, kFirstEndStep_px, 0.0);
@@ -101,7 +113,10 @@ class Refiner {
 
   BorderCurves curves() const {
     BorderCurves result;
-    for (const Chain& chain : chains_) result.curves.push_back(curve_of(chain));
+    for (const Chain& chain : chains_) {
+      BorderCurve curve = curve_of(chain);
+      if (curve.points.size() > 1) result.curves.push_back(std::move(curve));
+    }
     return result;
   }
 
@@ -110,6 +125,46 @@ class Refiner {
  private:
   Node& node(size_t curve, size_t i) { return chains_[curve].nodes[i]; }
   glm::dvec2 px(size_t curve, size_t i) { return node(curve, i).point.px; }
+
+  bool is_torn(const Node& a, const Node& b) const {
+    const double nearer = std::min(a.point.depth, b.point.depth), step = std::abs(a.point.depth - b.point.depth);
+    return step * pixels_per_unit_at(camera_, nearer) > kLeastTear_px + kSteepest * glm::distance(a.point.px, b.point.px);
+  }
+
+  /// Makes several chains of one that joins different sheets; the first of them stays in its place.
+  void cut_tears(size_t c) {
+    std::vector<std::vector<Node>> pieces(1);
+    const Chain chain = chains_[c];
+    bool closing_torn = true;
+    size_t i = chain.first;
+    do {
+      const Node& node = chain.nodes[i];
+      pieces.back().push_back(node);
+      i = node.next;
+      if (i == kNone) break;
+      const bool torn = is_torn(node, chain.nodes[i]);
+      if (i == chain.first) {
+        closing_torn = torn;
+      } else if (torn) {
+        pieces.emplace_back();
+      }
+    } while (i != chain.first);
+    if (pieces.size() == 1 && (!chain.closed || !closing_torn)) return;
+    if (chain.closed && !closing_torn) {
+      pieces.back().insert(pieces.back().end(), pieces.front().begin(), pieces.front().end());
+      pieces.erase(pieces.begin());
+    }
+    for (size_t p = 0; p < pieces.size(); ++p) {
+      Chain piece{chain.kind, chain.object, false, std::move(pieces[p]), 0, 0};
+      piece.last = piece.nodes.size() - 1;
+      for (size_t k = 0; k < piece.nodes.size(); ++k) piece.nodes[k].next = k < piece.last ? k + 1 : kNone;
+      if (p == 0) {
+        chains_[c] = std::move(piece);
+      } else {
+        chains_.push_back(std::move(piece));
+      }
+    }
+  }
 
   /// A bend of `turn` over a chord bulges by an eighth of their product, as on a circle.
   void look_at_bends(size_t c) {
@@ -120,7 +175,8 @@ class Refiner {
       double turn = 0.0;
       if (i > 0 || chain.closed) turn = turn_between(step(i + n - 1), step(i));
       if (i + 1 < chords || chain.closed) turn = std::max(turn, turn_between(step(i), step(i + 1)));
-      if (0.125 * turn * glm::length(step(i)) > kChordTolerance_px) look_beside(c, i, (i + 1) % n, 0);
+      const bool bulges = 0.125 * turn * glm::length(step(i)) > kChordTolerance_px;
+      if (bulges || is_torn(chain.nodes[i], chain.nodes[(i + 1) % n])) look_beside(c, i, (i + 1) % n, 0);
     }
   }
 
@@ -259,7 +315,9 @@ class Refiner {
   }
 
   void put_between(const Search& search, Node found, double off) {
-    if (std::abs(off) <= kChordTolerance_px) return;
+    const Chain& chain = chains_[search.curve];
+    if (std::abs(off) <= kChordTolerance_px && !is_torn(chain.nodes[search.from], chain.nodes[search.to])) return;
+    if (off > 1.2 * kNeck_px && known_[chain.kind == CurveKind::inner].nearest(found.point.px, chain.object, kNeck_px)) return;
     std::vector<Node>& nodes = chains_[search.curve].nodes;
     found.next = search.to;
     nodes.push_back(found);
@@ -271,6 +329,8 @@ class Refiner {
 
   void put_beyond(const Search& search, Node found) {
     Chain& chain = chains_[search.curve];
+    // What goes on there is another curve already.
+    if (known_[chain.kind == CurveKind::inner].nearest(found.point.px, chain.object, std::min(0.05, 0.4 * search.step))) return;
     const double went = glm::distance(found.point.px, chain.nodes[search.from].point.px);
     found.next = search.at_last ? kNone : chain.first;
     chain.nodes.push_back(found);
@@ -292,6 +352,7 @@ class Refiner {
   const Camera& camera_;
   const MeasuredBorderSettings& settings_;
   const ExecutionSettings& how_;
+  CurveIndex known_[2];  ///< Silhouettes, inner borders: what the crossings were joined to.
   std::vector<Chain> chains_{};
   std::vector<Search> active_{};
 };

@@ -42,7 +42,7 @@ struct MetricValue {
 struct Metric {
   Description about{};                ///< Name, help and source.
   std::vector<std::string> values{};  ///< Names of the values it yields, with units: "normal_error_mean [deg]".
-  bool lower_is_better = true;        ///< Where false, higher is better. is_lower_better() says it of single values.
+  bool lower_is_better = true;        ///< Of all its values; where false, higher is better.
   /// The numbers, each with its unit; NaN where the subject is missing.
   std::vector<MetricValue> (*measure)(const MetricInput& input);
   MetricSubject subject = MetricSubject::gbuffer;  ///< What `measure` looks at.
@@ -54,11 +54,6 @@ const Registry<Metric>& metrics();
 /// Throws InputError naming the nearest known metric. `file` and `field` go into the message.
 inline const Metric& find_metric(const std::string& name, const std::string& file = {}, const std::string& field = {}) {
   return metrics().find(name, file, field);
-}
-
-/// Of one of its values: shares of what is right ("border_error_within_1") are better when higher, whatever the metric's others are.
-inline bool is_lower_better(const Metric& metric, const std::string& value) {
-  return metric.lower_is_better && value.find("_within_") == std::string::npos;
 }
 
 /// Where two borders differ: missing in blue, false in red, common in grey, on white; linear RGBA.

@@ -13,7 +13,8 @@ constexpr double kSpacing_px = 1.0;
 
 // Costs, in units of what a partner infinitely far off costs twice over.
 constexpr double kMissing = 2.5;     ///< Of a sample without a partner.
-constexpr double kStep = 1.0;        ///< To begin or to end a stretch with partners, at the ends of a curve too.
+constexpr double kEnter = 0.5;       ///< To begin or to end a stretch with partners, at the ends of a curve too,
+constexpr double kEnterFar = 0.75;   ///< and so much for each px that they lie off: only what is long has a far partner.
 constexpr double kJump = 8.0;        ///< To go to a curve that does not continue this one, or back along it.
 constexpr double kSkipped = 0.5;     ///< Of each px of the measured curve that is left out, up to kJump.
 constexpr double kBack_px = 0.3;     ///< Going back so far costs nothing: normals of a rough curve cross.
@@ -27,6 +28,7 @@ constexpr double kOnePlace_px = 0.5;
 /// An end this near to another curve's beginning leads into it.
 constexpr double kJoin_px = 1.0;
 
+double enter_cost(double distance_px) { return kEnter + kEnterFar * distance_px; }
 double far_cost(double distance_px) { return 2.0 * distance_px / (distance_px + kFarHalf_px); }
 
 /// Samples first .. last - 1 of one true curve.
@@ -144,7 +146,7 @@ class Matcher {
         const bool missing = s == near_[own].size();
         State& state = states[k][s];
         if (k > 0) state = cheapest(states[k - 1], sample(k - 1), own, s);
-        if (!run.closed && !missing) state.cost += (k == 0 ? kStep : 0.0) + (k + 1 == count ? kStep : 0.0);
+        if (!run.closed && !missing) state.cost += ((k == 0) + (k + 1 == count)) * enter_cost(near_[own][s].distance_px);
         state.cost += missing ? kMissing : far_cost(near_[own][s].distance_px);
       }
     }
@@ -163,7 +165,7 @@ class Matcher {
     for (size_t p = 0; p < before.size(); ++p) {
       const bool was_missing = p == near_[from].size();
       double cost = before[p].cost;
-      if (missing != was_missing) cost += kStep;
+      if (missing != was_missing) cost += enter_cost((missing ? near_[from][p] : near_[to][s]).distance_px);
       if (!missing && !was_missing) cost += move_cost(near_[from][p], near_[to][s], samples_[to].weight_px);
       if (cost < best.cost) best = {cost, p};
     }

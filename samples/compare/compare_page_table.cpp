@@ -5,6 +5,7 @@
 
 #include "samples/compare/compare_page_parts.h"
 #include "samples/compare/compare_words.h"
+#include "samples/experiment/better.h"
 #include "samples/page/html.h"
 
 namespace limn {

@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-#include "raymarch/metric.h"
+#include "samples/experiment/better.h"
 
 namespace limn {
 namespace {

@@ -120,18 +120,19 @@ class Matcher {
   }
 
   double move_cost(const MatchCandidate& a, const MatchCandidate& b, double spacing) const {
+    const double jump = kJump + kEnterFar * (a.distance_px + b.distance_px);
     double between = 0.0;
     if (a.curve == b.curve) {
       between = advance(a, b);
     } else {
       const std::optional<double> across = across_ends(a, b);
-      if (!across) return kJump;
+      if (!across) return jump;
       between = *across;
     }
-    if (between < -kBack_px) return std::min(kJump, 2.0 - between);
+    if (between < -kBack_px) return std::min(jump, 2.0 - between);
     // Round a corner that has grown there is more of the curve.
     const double most = 2.0 * spacing + 1.5 * (a.distance_px + b.distance_px);
-    return std::min(kJump, kSkipped * std::max(0.0, between - most));
+    return std::min(jump, kSkipped * std::max(0.0, between - most));
   }
 
   /// The cheapest sequence of partners along a true curve. States: its candidates, and missing.

@@ -29,6 +29,13 @@ class Neighbours {
   double clear_px(const CurveSample& sample, double reach) const {
     return sample.kind == CurveKind::silhouette ? kInfinity : across(sample, reach, -1.0);
   }
+  /// How wide the strip of sheet is between a silhouette of the other picture and one here that faces the same way: a fold that only one of
+  /// them shows is wrong on that strip alone.
+  double fold_px(const CurveSample& sample, double reach) const {
+    if (sample.kind != CurveKind::silhouette) return kInfinity;
+    const std::optional<NearestPoint> nearest = silhouettes_.nearest(sample.px, sample.object, reach, sample.outward);
+    return nearest ? nearest->distance_px : kInfinity;
+  }
 
  private:
   /// To the next border that faces the other way, if that lies on the `inward` (1) or outward (-1) side.
@@ -41,15 +48,15 @@ class Neighbours {
 };
 
 /// A border that moved inwards may have lost its band, one that moved outwards may have closed a gap; what has no partner, either.
-double error_px(const MatchedSample& sample, const Neighbours& beside, double reach) {
+double error_px(const MatchedSample& sample, const Neighbours& beside, const Neighbours& in_model, double reach) {
   const std::optional<double> moved = sample.displacement_px;
-  double error = moved ? std::abs(*moved) : kInfinity;
+  double error = moved ? std::abs(*moved) : in_model.fold_px(sample.at, reach);
   if (!moved || *moved < 0.0) error = std::min(error, beside.ink_px(sample.at, reach));
   if (!moved || *moved > 0.0) error = std::min(error, beside.clear_px(sample.at, reach));
   return error;
 }
 
-/// One length of border and how far it is off; infinitely where it is missing or false and no band's width says less.
+/// One length of border and how far it is off; infinitely where it is missing or false and no width of a band or strip says less.
 struct Piece {
   double error_px = 0.0, length_px = 0.0;
   CurveKind kind = CurveKind::silhouette;
@@ -81,11 +88,12 @@ Errors errors_of(const BorderCurves& truth, const BorderCurves& measured, const 
   const Neighbours in_truth(truth), in_model(measured);
   Errors errors;
   for (const MatchedSample& sample : match.truth) {
-    if (sample.inside) add_true(sample, error_px(sample, in_truth, reach), errors);
+    if (sample.inside) add_true(sample, error_px(sample, in_truth, in_model, reach), errors);
   }
   for (const MeasuredSample& sample : match.measured) {
     if (!sample.inside || sample.matched) continue;
-    const double width = std::min(in_model.ink_px(sample.at, reach), in_model.clear_px(sample.at, reach));
+    const double band = std::min(in_model.ink_px(sample.at, reach), in_model.clear_px(sample.at, reach));
+    const double width = std::min(band, in_truth.fold_px(sample.at, reach));
     errors.pieces.push_back({width, sample.at.weight_px, sample.at.kind});
     errors.false_px += sample.at.weight_px;
   }
@@ -139,8 +147,9 @@ Metric border_error_metric() {
   Metric metric{{"border_error",
                  "how much of the whole border, silhouette and inner border together, lies right: the share within 0.25, 0.5 and 1 px of "
                  "the true one, and the distance that 95 % keep to, also of either kind alone. The share is of the true border's length "
-                 "and the false border's; what is missing or false counts as off by the width of its band of ink or gap, else as "
-                 "infinitely far. Root mean square and largest (and where) of what has a partner; missing and false length over the true "
+                 "and the false border's; what is missing or false counts as off by the width of its band of ink, gap or strip "
+                 "of sheet, else as infinitely far. Root mean square and largest (and where) of what has a partner; missing and false "
+                 "length over the true "
                  "border's; share at ill-conditioned places, which those two leave out",
                  "limn"},
                 {},

@@ -6,12 +6,13 @@
 
 #include "raymarch/curves/curve_geometry.h"
 #include "raymarch/measured_border/edge_node.h"
+#include "raymarch/measured_border/growing_chain.h"
 #include "raymarch/scene/threads.h"
 
 namespace limn {
 namespace {
 
-constexpr size_t kNone = static_cast<size_t>(-1);
+constexpr size_t kNone = ChainNode::kNone;
 /// Chords shorter than this are not halved.
 constexpr double kShortest_px = 0.03;
 constexpr int kMostHalvings = 10;
@@ -25,21 +26,10 @@ constexpr double kTip_px = 8.0;
 constexpr double kNeck_px = 0.25;
 /// A sheet's end is one from this step of depth on, px at the nearer sheet.
 constexpr double kLeastJump_px = 0.3;
-/// Along a curve depth changes by no more than this and so much for each px; where rays between find no smaller steps, two sheets' curves
-/// were joined where they cross in the image.
-constexpr double kLeastTear_px = 1.0;
-constexpr double kSteepest = 10.0;
 /// Curves are followed no farther beyond their last crossings, and not in smaller steps.
 constexpr double kFarthest_px = 1.5;
 constexpr double kFirstEndStep_px = 0.25;
 constexpr double kLastEndStep_px = 0.02;
-
-/// A point of a chain that grows: neighbours by index, so that points can be put between them.
-struct Node {
-  BorderPoint point{};
-  double other_depth = 0.0;
-  size_t next = kNone;
-};
 
 /// A line across a chord, or across a curve's continuation, on which the border is looked for.
 struct Search {
@@ -57,32 +47,6 @@ struct Search {
   double beyond_px = 0.0;  ///< Followed so far.
 };
 
-/// One curve as a list of nodes.
-struct Chain {
-  CurveKind kind = CurveKind::silhouette;
-  int object = 0;
-  bool closed = false;
-  std::vector<Node> nodes{};
-  size_t first = 0, last = 0;
-};
-
-Chain chain_of(const BorderCurve& curve, const std::vector<double>& other_depths) {
-  Chain chain{curve.kind, curve.object, curve.closed, {}, 0, curve.points.size() - 1};
-  for (size_t i = 0; i < curve.points.size(); ++i) chain.nodes.push_back({curve.points[i], other_depths[i], i + 1});
-  chain.nodes.back().next = curve.closed ? 0 : kNone;
-  return chain;
-}
-
-BorderCurve curve_of(const Chain& chain) {
-  BorderCurve curve{chain.kind, chain.object, chain.closed, {}};
-  size_t i = chain.first;
-  do {
-    curve.points.push_back(chain.nodes[i].point);
-    i = chain.nodes[i].next;
-  } while (i != kNone && i != chain.first);
-  return curve;
-}
-
 glm::dvec2 outward_of(const glm::dvec2& along) { return glm::dvec2(-along.y, along.x) / glm::length(along); }
 
 /// Between two steps, radians, 0..pi.
@@ -97,13 +61,14 @@ class Refiner {
         settings_(settings),
         how_(how),
         known_{CurveIndex(chains.border, CurveKind::silhouette), CurveIndex(chains.border, CurveKind::inner)} {
-    for (size_t c = 0; c < chains.border.curves.size(); ++c) chains_.push_back(chain_of(chains.border.curves[c], chains.other_depths[c]));
+    for (size_t c = 0; c < chains.border.curves.size(); ++c)
+      chains_.push_back(growing_chain(chains.border.curves[c], chains.other_depths[c]));
   }
 
   void refine() {
     for (size_t c = 0; c < chains_.size(); ++c) look_at_bends(c);
     run();
-    for (size_t c = 0, count = chains_.size(); c < count; ++c) cut_tears(c);
+    cut_all_tears();
     for (size_t c = 0; c < chains_.size(); ++c) {
       if (chains_[c].closed) continue;
       for (const bool at_last : {false, true}) look_beyond(c, at_last, kFirstEndStep_px, 0.0);
@@ -113,7 +78,7 @@ class Refiner {
 
   BorderCurves curves() const {
     BorderCurves result;
-    for (const Chain& chain : chains_) {
+    for (const GrowingChain& chain : chains_) {
       BorderCurve curve = curve_of(chain);
       if (curve.points.size() > 1) result.curves.push_back(std::move(curve));
     }
@@ -123,52 +88,23 @@ class Refiner {
   std::int64_t rays = 0;
 
  private:
-  Node& node(size_t curve, size_t i) { return chains_[curve].nodes[i]; }
+  ChainNode& node(size_t curve, size_t i) { return chains_[curve].nodes[i]; }
   glm::dvec2 px(size_t curve, size_t i) { return node(curve, i).point.px; }
 
-  bool is_torn(const Node& a, const Node& b) const {
-    const double nearer = std::min(a.point.depth, b.point.depth), step = std::abs(a.point.depth - b.point.depth);
-    return step * pixels_per_unit_at(camera_, nearer) > kLeastTear_px + kSteepest * glm::distance(a.point.px, b.point.px);
-  }
+  bool is_torn(const ChainNode& a, const ChainNode& b) const { return limn::is_torn(camera_, a, b); }
 
-  /// Makes several chains of one that joins different sheets; the first of them stays in its place.
-  void cut_tears(size_t c) {
-    std::vector<std::vector<Node>> pieces(1);
-    const Chain chain = chains_[c];
-    bool closing_torn = true;
-    size_t i = chain.first;
-    do {
-      const Node& node = chain.nodes[i];
-      pieces.back().push_back(node);
-      i = node.next;
-      if (i == kNone) break;
-      const bool torn = is_torn(node, chain.nodes[i]);
-      if (i == chain.first) {
-        closing_torn = torn;
-      } else if (torn) {
-        pieces.emplace_back();
-      }
-    } while (i != chain.first);
-    if (pieces.size() == 1 && (!chain.closed || !closing_torn)) return;
-    if (chain.closed && !closing_torn) {
-      pieces.back().insert(pieces.back().end(), pieces.front().begin(), pieces.front().end());
-      pieces.erase(pieces.begin());
-    }
-    for (size_t p = 0; p < pieces.size(); ++p) {
-      Chain piece{chain.kind, chain.object, false, std::move(pieces[p]), 0, 0};
-      piece.last = piece.nodes.size() - 1;
-      for (size_t k = 0; k < piece.nodes.size(); ++k) piece.nodes[k].next = k < piece.last ? k + 1 : kNone;
-      if (p == 0) {
-        chains_[c] = std::move(piece);
-      } else {
-        chains_.push_back(std::move(piece));
-      }
+  /// The first piece of each chain stays in its place.
+  void cut_all_tears() {
+    for (size_t c = 0, count = chains_.size(); c < count; ++c) {
+      std::vector<GrowingChain> pieces = cut_tears(camera_, chains_[c]);
+      chains_[c] = std::move(pieces.front());
+      for (size_t p = 1; p < pieces.size(); ++p) chains_.push_back(std::move(pieces[p]));
     }
   }
 
   /// A bend of `turn` over a chord bulges by an eighth of their product, as on a circle.
   void look_at_bends(size_t c) {
-    const Chain& chain = chains_[c];
+    const GrowingChain& chain = chains_[c];
     const size_t n = chain.nodes.size(), chords = chain.closed ? n : n - 1;
     const auto step = [&](size_t i) { return chain.nodes[(i + 1) % n].point.px - chain.nodes[i % n].point.px; };
     for (size_t i = 0; i < chords; ++i) {
@@ -181,7 +117,7 @@ class Refiner {
   }
 
   void look_beside(size_t c, size_t from, size_t to, int halvings) {
-    const Node &a = node(c, from), &b = node(c, to);
+    const ChainNode &a = node(c, from), &b = node(c, to);
     const double length = glm::distance(a.point.px, b.point.px);
     if (length < kShortest_px || halvings > kMostHalvings) return;
     Search search;
@@ -197,26 +133,8 @@ class Refiner {
     active_.push_back(search);
   }
 
-  /// From about a third of a pixel before the end towards it: the last chord alone may be too short to have a direction.
-  std::optional<glm::dvec2> end_direction(size_t c, bool at_last) {
-    const Chain& chain = chains_[c];
-    const glm::dvec2 end = px(c, at_last ? chain.last : chain.first);
-    std::optional<glm::dvec2> best;
-    for (size_t i = chain.first; i != kNone; i = chain.nodes[i].next) {
-      const glm::dvec2 from = chain.nodes[i].point.px;
-      if (!(glm::distance(from, end) > 0.0)) continue;
-      if (at_last && (!best || glm::distance(from, end) >= 0.3)) best = from;
-      if (!at_last) {
-        best = from;
-        if (glm::distance(from, end) >= 0.3) break;
-      }
-    }
-    if (!best) return std::nullopt;
-    return (end - *best) / glm::distance(end, *best);
-  }
-
   void look_beyond(size_t c, bool at_last, double step, double beyond) {
-    const auto direction = end_direction(c, at_last);
+    const auto direction = end_direction(chains_[c], at_last);
     if (!direction || step < kLastEndStep_px || beyond + step > kFarthest_px) return;
     const size_t end = at_last ? chains_[c].last : chains_[c].first;
     Search search;
@@ -287,7 +205,7 @@ class Refiner {
   /// That the two rays see the two sides of this curve, and not an end of another sheet that crosses it.
   bool proven(const Search& search) const {
     const EdgeNode &in = *search.inside, &out = *search.outside;
-    const Chain& chain = chains_[search.curve];
+    const GrowingChain& chain = chains_[search.curve];
     if (in.id != chain.object) return false;
     const double step = out.hit() ? depth_step_px(camera_, in, out) : std::numeric_limits<double>::infinity();
     if (chain.kind == CurveKind::silhouette) return step > kLeastJump_px;
@@ -303,7 +221,7 @@ class Refiner {
       const double low = settings_.threshold - double{in.n_dot_v}, high = double{out.n_dot_v} - settings_.threshold;
       if (low + high > 0.0) t = in.t + (out.t - in.t) * low / (low + high);
     }
-    Node found;
+    ChainNode found;
     found.point.px = search.middle + t * search.outward;
     found.point.depth = in.depth;
     found.other_depth = out.depth;
@@ -314,33 +232,21 @@ class Refiner {
     }
   }
 
-  void put_between(const Search& search, Node found, double off) {
-    const Chain& chain = chains_[search.curve];
+  void put_between(const Search& search, ChainNode found, double off) {
+    const GrowingChain& chain = chains_[search.curve];
     if (std::abs(off) <= kChordTolerance_px && !is_torn(chain.nodes[search.from], chain.nodes[search.to])) return;
     if (off > 1.2 * kNeck_px && known_[chain.kind == CurveKind::inner].nearest(found.point.px, chain.object, kNeck_px)) return;
-    std::vector<Node>& nodes = chains_[search.curve].nodes;
-    found.next = search.to;
-    nodes.push_back(found);
-    const size_t middle = nodes.size() - 1;
-    nodes[search.from].next = middle;
+    const size_t middle = limn::put_between(chains_[search.curve], search.from, search.to, found);
     look_beside(search.curve, search.from, middle, search.halvings + 1);
     look_beside(search.curve, middle, search.to, search.halvings + 1);
   }
 
-  void put_beyond(const Search& search, Node found) {
-    Chain& chain = chains_[search.curve];
+  void put_beyond(const Search& search, ChainNode found) {
+    GrowingChain& chain = chains_[search.curve];
     // What goes on there is another curve already.
     if (known_[chain.kind == CurveKind::inner].nearest(found.point.px, chain.object, std::min(0.05, 0.4 * search.step))) return;
     const double went = glm::distance(found.point.px, chain.nodes[search.from].point.px);
-    found.next = search.at_last ? kNone : chain.first;
-    chain.nodes.push_back(found);
-    const size_t end = chain.nodes.size() - 1;
-    if (search.at_last) {
-      chain.nodes[chain.last].next = end;
-      chain.last = end;
-    } else {
-      chain.first = end;
-    }
+    limn::put_beyond(chain, search.at_last, found);
     look_beyond(search.curve, search.at_last, search.step, search.beyond_px + went);
   }
 
@@ -353,7 +259,7 @@ class Refiner {
   const MeasuredBorderSettings& settings_;
   const ExecutionSettings& how_;
   CurveIndex known_[2];  ///< Silhouettes, inner borders: what the crossings were joined to.
-  std::vector<Chain> chains_{};
+  std::vector<GrowingChain> chains_{};
   std::vector<Search> active_{};
 };
 

@@ -192,25 +192,6 @@ std::optional<Meeting> CurveIndex::meeting(const glm::dvec2& px, const glm::dvec
   return best;
 }
 
-namespace {
-/// Nearer meetings are not doubted.
-constexpr double kFar_px = 2.0;
-}  // namespace
-
-std::optional<double> displacement_px(const CurveSample& sample, const CurveIndex& index, double reach_px) {
-  if (const std::optional<Meeting> meeting = index.meeting(sample.px, sample.outward, sample.object, reach_px)) {
-    if (std::abs(meeting->along_px) < kFar_px) return meeting->along_px;
-    const std::optional<NearestPoint> beside = index.nearest(sample.px, sample.object, 0.25 * std::abs(meeting->along_px), sample.outward);
-    if (!beside || beside->open_end) return meeting->along_px;
-    return std::copysign(beside->distance_px, glm::dot(beside->px - sample.px, sample.outward));
-  }
-  const std::optional<NearestPoint> near = index.nearest(sample.px, sample.object, reach_px);
-  if (!near || near->open_end) return std::nullopt;
-  const double along = glm::dot(near->px - sample.px, sample.outward);
-  if (std::abs(along) < 0.5 * near->distance_px) return std::nullopt;
-  return along;
-}
-
 double search_reach_px(const Camera& camera) { return std::max(16.0, 0.02 * std::hypot(camera.width_px, camera.height_px)); }
 
 }  // namespace limn

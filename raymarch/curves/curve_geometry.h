@@ -73,16 +73,10 @@ class CurveIndex {
   std::vector<std::uint32_t> first_{}, members_{};
 };
 
-/// How far the border of `index` lies from a sample, along the sample's outward normal; positive: grown. Where the normal meets nothing
-/// (beside a corner) the nearest point counts, if it lies within 60 degrees of the normal and is no open end. At the tip of a sharp turn
-/// the normal may leave the border beside it and meet another one far off: a point that faces the same way counts where it is four times as
-/// near. Empty: no partner in reach.
-std::optional<double> displacement_px(const CurveSample& sample, const CurveIndex& index, double reach_px);
-
 /// How far a partner is looked for: 16 px, or 2 % of the picture's diagonal where that is more.
 double search_reach_px(const Camera& camera);
 
-/// By how much measured curves are continued for displacement_px.
+/// By how much the inner border is continued where widths are measured.
 inline constexpr double kContinue_px = 1.5;
 
 }  // namespace limn

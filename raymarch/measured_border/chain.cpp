@@ -37,19 +37,23 @@ class Chainer {
     return decide_open_cells();
   }
 
-  BorderCurves curves() const {
-    BorderCurves result;
+  ChainedCurves curves() const {
+    ChainedCurves result;
     std::vector<bool> used(crossings_.size(), false);
     // Open ones from their beginnings; what is left runs in circles.
     for (const bool open : {true, false}) {
       for (size_t start = 0; start < crossings_.size(); ++start) {
         if (used[start] || (open && previous_[start] != kNone)) continue;
         BorderCurve curve{crossings_[start].kind, crossings_[start].object, !open, {}};
+        std::vector<double> other_depths;
         for (size_t i = start; i != kNone && !used[i]; i = next_[i]) {
           used[i] = true;
           curve.points.push_back(point_of(crossings_[i]));
+          other_depths.push_back(crossings_[i].other_depth);
         }
-        if (curve.points.size() >= (curve.closed ? 3u : 2u)) result.curves.push_back(std::move(curve));
+        if (curve.points.size() < (curve.closed ? 3u : 2u)) continue;
+        result.border.curves.push_back(std::move(curve));
+        result.other_depths.push_back(std::move(other_depths));
       }
     }
     return result;
@@ -171,8 +175,8 @@ class Chainer {
 
 }  // namespace
 
-BorderCurves chain_crossings(const SceneModel& model, const Camera& camera, const GBuffer& gbuffer, double threshold,
-                             const std::vector<BorderCrossing>& crossings, std::int64_t& rays) {
+ChainedCurves chain_crossings(const SceneModel& model, const Camera& camera, const GBuffer& gbuffer, double threshold,
+                              const std::vector<BorderCrossing>& crossings, std::int64_t& rays) {
   Chainer chainer(model, camera, gbuffer, threshold, crossings);
   rays += chainer.join();
   return chainer.curves();

@@ -9,6 +9,7 @@
   X(topology)                \
   X(normal_error)            \
   X(depth_error)             \
+  X(border_error)            \
   X(silhouette_displacement) \
   X(inner_displacement)      \
   X(hausdorff)               \

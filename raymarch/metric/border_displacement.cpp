@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raymarch/curves/curve_geometry.h"
+#include "raymarch/curves/border_match.h"
 #include "raymarch/metric.h"
-#include "sdf/error.h"
 #include "sdf/quantile.h"
 
 namespace limn {
@@ -19,7 +18,7 @@ struct Displacement {
 };
 
 struct Shares {
-  double missing = kNothing, false_border = kNothing;
+  double missing = kNothing, false_border = kNothing, ill = kNothing;
 };
 
 /// Smallest |displacement| that 95 % of the matched length does not exceed.
@@ -47,38 +46,37 @@ std::vector<MetricValue> summarise(const std::vector<Displacement>& matched, con
           {name + "_max_x", any ? worst.at->px.x : kNothing, "px"},
           {name + "_max_y", any ? worst.at->px.y : kNothing, "px"},
           {name + "_missing", shares.missing, ""},
-          {name + "_false", shares.false_border, ""}};
+          {name + "_false", shares.false_border, ""},
+          {name + "_ill", shares.ill, ""}};
 }
 
-double length_of(const std::vector<CurveSample>& samples) {
-  double length = 0.0;
-  for (const CurveSample& sample : samples) length += sample.weight_px;
-  return length;
-}
-
-double unmatched_share(const std::vector<CurveSample>& samples, const CurveIndex& index, double reach) {
-  double unmatched = 0.0;
-  for (const CurveSample& sample : samples) unmatched += displacement_px(sample, index, reach) ? 0.0 : sample.weight_px;
-  const double length = length_of(samples);
-  return length > 0.0 ? unmatched / length : kNothing;
+Shares shares_of(const BorderMatch& match) {
+  double length = 0.0, missing = 0.0, ill = 0.0, measured = 0.0, unmatched = 0.0;
+  for (const MatchedSample& sample : match.truth) {
+    if (!sample.inside) continue;
+    length += sample.at.weight_px;
+    if (!sample.displacement_px) missing += sample.at.weight_px;
+    if (sample.ill != IllReason::none) ill += sample.at.weight_px;
+  }
+  for (const MeasuredSample& sample : match.measured) {
+    if (!sample.inside) continue;
+    measured += sample.at.weight_px;
+    if (!sample.matched) unmatched += sample.at.weight_px;
+  }
+  Shares shares;
+  if (length > 0.0) shares.missing = missing / length, shares.ill = ill / length;
+  if (measured > 0.0) shares.false_border = unmatched / measured;
+  return shares;
 }
 
 std::vector<MetricValue> measure(const MetricInput& input, CurveKind kind, const std::string& name) {
   if (input.curves == nullptr || input.truth == nullptr) return summarise({}, {}, name);
-  const double reach = search_reach_px(input.camera);
-  const CurveIndex measured(*input.curves, kind, kContinue_px), truth(input.truth->curves, kind, kContinue_px);
-  const std::vector<CurveSample> samples = within_picture(resample(input.truth->curves, kind, 1.0), input.camera);
+  const BorderMatch match = match_borders(input.truth->curves, *input.curves, kind, input.camera);
   std::vector<Displacement> matched;
-  for (const CurveSample& sample : samples) {
-    if (const std::optional<double> value = displacement_px(sample, measured, reach)) matched.push_back({*value, &sample});
+  for (const MatchedSample& sample : match.truth) {
+    if (sample.inside && sample.displacement_px && sample.ill == IllReason::none) matched.push_back({*sample.displacement_px, &sample.at});
   }
-  double matched_length = 0.0;
-  for (const Displacement& one : matched) matched_length += one.at->weight_px;
-  const double length = length_of(samples);
-  Shares shares;
-  shares.missing = length > 0.0 ? std::max(0.0, 1.0 - matched_length / length) : kNothing;
-  shares.false_border = unmatched_share(within_picture(resample(*input.curves, kind, 1.0), input.camera), truth, reach);
-  return summarise(matched, shares, name);
+  return summarise(matched, shares_of(match), name);
 }
 
 std::vector<MetricValue> measure_silhouette(const MetricInput& input) {
@@ -93,11 +91,12 @@ Metric metric_of(const std::string& kind, const std::string& positive, bool any_
       {name,
        "how far the model's " + kind + " border lies from the true one along its outward normal, a sample each px of the true border: " +
            "mean (positive: " + positive + "), root mean square, 95th percentile and largest of the absolute value, and where; of the " +
-           "samples with a partner within 16 px or 2 % of the diagonal. The share of the true border without one is missing, of the " +
-           "model's false",
+           "samples with a partner, one to one along both borders, within 16 px or 2 % of the diagonal. The share of the true border " +
+           "without one is missing, of the model's false; ill is the share where the truth decides no more than noise or the grid of " +
+           "rays does (an inner border on which N.V hardly changes, a band thinner than 0.3 px), left out of the others",
        "limn"},
       {name + "_mean [px]", name + "_rms [px]", name + "_p95 [px]", name + "_max [px]", name + "_max_x [px]", name + "_max_y [px]",
-       name + "_missing", name + "_false"},
+       name + "_missing", name + "_false", name + "_ill"},
       true,
       measured,
       MetricSubject::curves,

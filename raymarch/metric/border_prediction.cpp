@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "raymarch/border/contour_distance.h"
+#include "raymarch/curves/border_match.h"
 #include "raymarch/curves/border_width.h"
 
 namespace limn {
@@ -67,9 +68,16 @@ Moments moments(const std::vector<Pair>& pairs) {
   return result;
 }
 
-double length_of(const std::vector<CurveSample>& samples) {
+/// Of one kind of true border, within the picture.
+std::vector<MatchedSample> matched_samples(const BorderTruth& truth, const BorderCurves& curves, CurveKind kind, const Camera& camera) {
+  std::vector<MatchedSample> samples = match_borders(truth.curves, curves, kind, camera).truth;
+  std::erase_if(samples, [](const MatchedSample& sample) { return !sample.inside; });
+  return samples;
+}
+
+double length_of(const std::vector<MatchedSample>& samples) {
   double length = 0.0;
-  for (const CurveSample& sample : samples) length += sample.weight_px;
+  for (const MatchedSample& sample : samples) length += sample.at.weight_px;
   return length;
 }
 
@@ -94,24 +102,22 @@ double displacement_per_radian(const Camera& camera, const CurveSample& sample, 
 
 DisplacementPrediction predict_displacement(const SceneModel& model, const Camera& camera, const BorderTruth& truth,
                                             const BorderCurves& curves) {
-  const std::vector<CurveSample> samples = within_picture(resample(truth.curves, CurveKind::inner, 1.0), camera);
-  const CurveIndex measured(curves, CurveKind::inner, kContinue_px);
-  const double reach = search_reach_px(camera);
+  const std::vector<MatchedSample> samples = matched_samples(truth, curves, CurveKind::inner, camera);
   std::vector<glm::dvec2> points;
-  for (const CurveSample& sample : samples) points.push_back(sample.px);
+  for (const MatchedSample& sample : samples) points.push_back(sample.at.px);
   std::vector<PointSample> seen(points.size());
   sample_points(model, camera, points, seen);
   std::vector<Pair> pairs;
   double squares = 0.0;
   for (size_t i = 0; i < samples.size(); ++i) {
-    if (seen[i].status != HitStatus::hit || seen[i].id != samples[i].object) continue;
-    const TruthPoint point = truth_at(truth.curves, samples[i], camera);
+    const CurveSample& sample = samples[i].at;
+    if (seen[i].status != HitStatus::hit || seen[i].id != sample.object) continue;
+    const TruthPoint point = truth_at(truth.curves, sample, camera);
     const double eps = std::acos(std::clamp(double{seen[i].n_dot_v}, -1.0, 1.0)) - std::acos(std::clamp(point.n_dot_v, -1.0, 1.0));
-    const double predicted = eps * displacement_per_radian(camera, samples[i], point);
-    const std::optional<double> found = displacement_px(samples[i], measured, reach);
-    if (!found || !std::isfinite(predicted)) continue;
-    pairs.push_back({samples[i].weight_px, predicted, *found});
-    squares += samples[i].weight_px * eps * eps;
+    const double predicted = eps * displacement_per_radian(camera, sample, point);
+    if (!samples[i].displacement_px || !std::isfinite(predicted)) continue;
+    pairs.push_back({sample.weight_px, predicted, *samples[i].displacement_px});
+    squares += sample.weight_px * eps * eps;
   }
   const Moments all = moments(pairs);
   return {static_cast<int>(pairs.size()),
@@ -163,22 +169,20 @@ double threshold_of(const BorderTruth& truth, const Camera& camera) {
 }
 
 WidthPrediction predict_width(const Camera& camera, const BorderTruth& truth, const BorderCurves& curves) {
-  const std::vector<CurveSample> samples = within_picture(resample(truth.curves, CurveKind::silhouette, 1.0), camera);
-  const CurveIndex inner(curves, CurveKind::inner, kContinue_px), silhouettes(curves, CurveKind::silhouette),
-      continued(curves, CurveKind::silhouette, kContinue_px);
-  const double threshold = threshold_of(truth, camera), reach = search_reach_px(camera);
+  const std::vector<MatchedSample> samples = matched_samples(truth, curves, CurveKind::silhouette, camera);
+  const CurveIndex inner(curves, CurveKind::inner, kContinue_px), silhouettes(curves, CurveKind::silhouette);
+  const double threshold = threshold_of(truth, camera);
   std::vector<Pair> pairs;
   double plain = 0.0;
-  for (const CurveSample& sample : samples) {
-    const Width predicted = predicted_width(camera, sample, truth_at(truth.curves, sample, camera), threshold);
-    const std::optional<double> shift = displacement_px(sample, continued, reach);
-    if (!std::isfinite(predicted.exact_px) || !shift) continue;
-    CurveSample own = sample;
-    own.px += *shift * sample.outward;
+  for (const MatchedSample& sample : samples) {
+    const Width predicted = predicted_width(camera, sample.at, truth_at(truth.curves, sample.at, camera), threshold);
+    if (!std::isfinite(predicted.exact_px) || !sample.displacement_px) continue;
+    CurveSample own = sample.at;
+    own.px += *sample.displacement_px * own.outward;
     const std::optional<double> width = border_width_px(own, inner, silhouettes, width_reach_px(camera));
     if (!width) continue;
-    pairs.push_back({sample.weight_px, predicted.exact_px, *width});
-    plain += sample.weight_px * predicted.plain_px;
+    pairs.push_back({own.weight_px, predicted.exact_px, *width});
+    plain += own.weight_px * predicted.plain_px;
   }
   const Moments all = moments(pairs);
   return {static_cast<int>(pairs.size()),

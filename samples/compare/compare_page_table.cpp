@@ -5,6 +5,7 @@
 
 #include "samples/compare/compare_page_parts.h"
 #include "samples/compare/compare_words.h"
+#include "samples/experiment/better.h"
 #include "samples/page/html.h"
 
 namespace limn {
@@ -39,7 +40,7 @@ void add_metric_columns(const Comparison& comparison, const Cell& cell, std::vec
       std::replace(label.begin(), label.end(), '_', ' ');
       bool lower_is_better = true;
       for (const Metric& metric : metrics()) {
-        if (value.name.starts_with(metric.about.name)) lower_is_better = metric.lower_is_better;
+        if (value.name.starts_with(metric.about.name)) lower_is_better = is_lower_better(metric, value.name);
       }
       columns.push_back({label, value.unit, lower_is_better, value.name, nullptr, plain_number});
     }

@@ -46,12 +46,12 @@ struct Ladder {
   std::string words_at(size_t rung) const;  ///< "level 3", "128 voxels".
 };
 
-/// How far a border lies from truth: the largest distance but for the worst twentieth of what was looked at (the 95th percentile), what is
-/// missing or false counting as infinitely far. The worst over all views.
+/// How far a border lies from truth: the distance that 95 % of it keep to (the metric border_error). The worst over all views.
 struct BorderErrors {
   double silhouette_px = 0.0,          ///< Of the silhouette.
-      inner_px = 0.0;                  ///< Of the inner border.
-  double of(PlanMetric metric) const;  ///< `border`: the larger of the two; `silhouette`: that one.
+      inner_px = 0.0,                  ///< Of the inner border.
+      border_px = 0.0;                 ///< Of both together.
+  double of(PlanMetric metric) const;  ///< `border`: of both together; `silhouette`: that one.
 };
 
 /// One rung, built and measured.
@@ -93,7 +93,7 @@ std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings,
 /// What theory expects of a rung in one view, from curvature, pixel scale and threshold along the true border.
 BorderErrors predict_errors(const Ladder& ladder, size_t rung, const PlanView& view, double threshold);
 
-/// What the engine measures for a plan: BorderErrors, as a metric that no study lists.
+/// What the engine measures for a plan: border_error.
 const Metric& plan_metric();
 /// Its values as BorderErrors.
 BorderErrors errors_of(std::span<const Measurement> measured);

@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-#include "raymarch/metric.h"
+#include "samples/experiment/better.h"
 
 namespace limn {
 namespace {
@@ -64,7 +64,7 @@ bool is_lower_better(const std::string& name) {
     if (!name.starts_with(metric.about.name)) continue;
     if (best == nullptr || metric.about.name.size() > best->about.name.size()) best = &metric;
   }
-  return best == nullptr || best->lower_is_better;
+  return best == nullptr || is_lower_better(*best, name);
 }
 
 // Places in the picture are neither errors nor sizes.

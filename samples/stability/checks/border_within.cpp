@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "raymarch/curves/curve_geometry.h"
+#include "raymarch/curves/border_match.h"
 #include "raymarch/measured_border.h"
 #include "raymarch/metric.h"
 #include "raymarch/truth.h"
@@ -41,12 +41,11 @@ double displacement(const Measured& measured, const StabilityView& view, const s
 
 /// How far the silhouette draws back, in kr h^2 / 8: what a chord within one voxel of side h can miss.
 double retreat(const Measured& measured, const StabilityView& view, double voxel, std::string& words) {
-  const CurveIndex index(measured.curves, CurveKind::silhouette, kContinue_px);
   double largest = -1e30, at_px = 0.0;
-  for (const CurveSample& sample : within_picture(resample(measured.truth.curves, CurveKind::silhouette, 1.0), view.camera)) {
-    const BorderPoint& point = measured.truth.curves.curves[sample.curve].points[sample.segment];
-    const auto moved = displacement_px(sample, index, search_reach_px(view.camera));
-    if (!moved || !(point.radial_curvature > 0.0)) continue;
+  for (const MatchedSample& sample : match_borders(measured.truth.curves, measured.curves, CurveKind::silhouette, view.camera).truth) {
+    const BorderPoint& point = measured.truth.curves.curves[sample.at.curve].points[sample.at.segment];
+    const std::optional<double> moved = sample.displacement_px;
+    if (!sample.inside || !moved || !(point.radial_curvature > 0.0)) continue;
     const double unit = point.radial_curvature * voxel * voxel / 8.0 * pixels_per_unit_at(view.camera, point.depth);
     if (-*moved / unit > largest) largest = -*moved / unit, at_px = -*moved;
   }

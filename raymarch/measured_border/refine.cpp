@@ -1,0 +1,277 @@
+#include "raymarch/measured_border/refine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "raymarch/curves/curve_geometry.h"
+#include "raymarch/measured_border/edge_node.h"
+#include "raymarch/measured_border/growing_chain.h"
+#include "raymarch/scene/threads.h"
+
+namespace limn {
+namespace {
+
+constexpr size_t kNone = ChainNode::kNone;
+/// Chords shorter than this are not halved.
+constexpr double kShortest_px = 0.03;
+constexpr int kMostHalvings = 10;
+/// The first ray beside a chord, and by how much each further one goes beyond the one before.
+constexpr double kFirstStep_px = 0.02;
+constexpr double kGrowth = 2.5;
+constexpr double kLongestStep_px = 0.5;
+/// Tips of wedges are followed outwards so far at a time.
+constexpr double kTip_px = 8.0;
+/// Beyond a thin neck lies what another curve bounds: a tip that comes this near to a curve of the grid's own crossings is none.
+constexpr double kNeck_px = 0.25;
+/// A sheet's end is one from this step of depth on, px at the nearer sheet.
+constexpr double kLeastJump_px = 0.3;
+/// Curves are followed no farther beyond their last crossings, and not in smaller steps.
+constexpr double kFarthest_px = 1.5;
+constexpr double kFirstEndStep_px = 0.25;
+constexpr double kLastEndStep_px = 0.02;
+
+/// A line across a chord, or across a curve's continuation, on which the border is looked for.
+struct Search {
+  size_t curve = 0;
+  size_t from = 0, to = kNone;      ///< Nodes of the chord; `to` is kNone beyond an end.
+  glm::dvec2 middle{0.0};           ///< Where the line starts.
+  glm::dvec2 outward{0.0};          ///< Its direction, unit: away from what the curve bounds.
+  double depth = 0.0, other = 0.0;  ///< Expected of what is bounded, and of the other side.
+  double limit = 0.0;               ///< How far to look.
+  int halvings = 0;
+  std::optional<EdgeNode> inside{}, outside{};  ///< The nearest known of either side.
+  // Beyond an end:
+  bool at_last = false;    ///< Which end.
+  double step = 0.0;       ///< From the end.
+  double beyond_px = 0.0;  ///< Followed so far.
+};
+
+glm::dvec2 outward_of(const glm::dvec2& along) { return glm::dvec2(-along.y, along.x) / glm::length(along); }
+
+/// Between two steps, radians, 0..pi.
+double turn_between(const glm::dvec2& a, const glm::dvec2& b) { return std::abs(std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b))); }
+
+class Refiner {
+ public:
+  Refiner(const SceneModel& model, const Camera& camera, const MeasuredBorderSettings& settings, const ExecutionSettings& how,
+          const ChainedCurves& chains)
+      : model_(model),
+        camera_(camera),
+        settings_(settings),
+        how_(how),
+        known_{CurveIndex(chains.border, CurveKind::silhouette), CurveIndex(chains.border, CurveKind::inner)} {
+    for (size_t c = 0; c < chains.border.curves.size(); ++c)
+      chains_.push_back(growing_chain(chains.border.curves[c], chains.other_depths[c]));
+  }
+
+  void refine() {
+    for (size_t c = 0; c < chains_.size(); ++c) look_at_bends(c);
+    run();
+    cut_all_tears();
+    for (size_t c = 0; c < chains_.size(); ++c) {
+      if (chains_[c].closed) continue;
+      for (const bool at_last : {false, true}) look_beyond(c, at_last, kFirstEndStep_px, 0.0);
+    }
+    run();
+  }
+
+  BorderCurves curves() const {
+    BorderCurves result;
+    for (const GrowingChain& chain : chains_) {
+      BorderCurve curve = curve_of(chain);
+      if (curve.points.size() > 1) result.curves.push_back(std::move(curve));
+    }
+    return result;
+  }
+
+  std::int64_t rays = 0;
+
+ private:
+  ChainNode& node(size_t curve, size_t i) { return chains_[curve].nodes[i]; }
+  glm::dvec2 px(size_t curve, size_t i) { return node(curve, i).point.px; }
+
+  bool is_torn(const ChainNode& a, const ChainNode& b) const { return limn::is_torn(camera_, a, b); }
+
+  /// The first piece of each chain stays in its place.
+  void cut_all_tears() {
+    for (size_t c = 0, count = chains_.size(); c < count; ++c) {
+      std::vector<GrowingChain> pieces = cut_tears(camera_, chains_[c]);
+      chains_[c] = std::move(pieces.front());
+      for (size_t p = 1; p < pieces.size(); ++p) chains_.push_back(std::move(pieces[p]));
+    }
+  }
+
+  /// A bend of `turn` over a chord bulges by an eighth of their product, as on a circle.
+  void look_at_bends(size_t c) {
+    const GrowingChain& chain = chains_[c];
+    const size_t n = chain.nodes.size(), chords = chain.closed ? n : n - 1;
+    const auto step = [&](size_t i) { return chain.nodes[(i + 1) % n].point.px - chain.nodes[i % n].point.px; };
+    for (size_t i = 0; i < chords; ++i) {
+      double turn = 0.0;
+      if (i > 0 || chain.closed) turn = turn_between(step(i + n - 1), step(i));
+      if (i + 1 < chords || chain.closed) turn = std::max(turn, turn_between(step(i), step(i + 1)));
+      const bool bulges = 0.125 * turn * glm::length(step(i)) > kChordTolerance_px;
+      if (bulges || is_torn(chain.nodes[i], chain.nodes[(i + 1) % n])) look_beside(c, i, (i + 1) % n, 0);
+    }
+  }
+
+  void look_beside(size_t c, size_t from, size_t to, int halvings) {
+    const ChainNode &a = node(c, from), &b = node(c, to);
+    const double length = glm::distance(a.point.px, b.point.px);
+    if (length < kShortest_px || halvings > kMostHalvings) return;
+    Search search;
+    search.curve = c;
+    search.from = from;
+    search.to = to;
+    search.middle = 0.5 * (a.point.px + b.point.px);
+    search.outward = outward_of(b.point.px - a.point.px);
+    search.depth = 0.5 * (a.point.depth + b.point.depth);
+    search.other = 0.5 * (a.other_depth + b.other_depth);
+    search.limit = std::max(2.0 * length, kTip_px);
+    search.halvings = halvings;
+    active_.push_back(search);
+  }
+
+  void look_beyond(size_t c, bool at_last, double step, double beyond) {
+    const auto direction = end_direction(chains_[c], at_last);
+    if (!direction || step < kLastEndStep_px || beyond + step > kFarthest_px) return;
+    const size_t end = at_last ? chains_[c].last : chains_[c].first;
+    Search search;
+    search.curve = c;
+    search.from = end;
+    search.middle = px(c, end) + step * *direction;
+    search.outward = outward_of(at_last ? *direction : -*direction);
+    search.depth = node(c, end).point.depth;
+    search.other = node(c, end).other_depth;
+    search.limit = 0.6 * step;
+    search.at_last = at_last;
+    search.step = step;
+    search.beyond_px = beyond;
+    active_.push_back(search);
+  }
+
+  double next_point(const Search& search) const {
+    if (search.inside && search.outside) return 0.5 * (search.inside->t + search.outside->t);
+    if (!search.inside && !search.outside) return 0.0;
+    const double sign = search.inside ? 1.0 : -1.0, reached = std::abs((search.inside ? search.inside : search.outside)->t);
+    const double further = reached == 0.0 ? kFirstStep_px : std::min(kGrowth * reached, reached + kLongestStep_px);
+    return sign * std::min(further, search.limit);
+  }
+
+  void run() {
+    std::vector<glm::dvec2> points;
+    std::vector<PointSample> samples;
+    while (!active_.empty()) {
+      points.clear();
+      for (const Search& search : active_) points.push_back(search.middle + next_point(search) * search.outward);
+      samples.resize(points.size());
+      trace(points, samples);
+      std::vector<Search> searches;
+      searches.swap(active_);
+      for (size_t i = 0; i < searches.size(); ++i) {
+        const double t = next_point(searches[i]);
+        const EdgeLine line{searches[i].middle, searches[i].outward};
+        advance(searches[i], node_of_sample(camera_, samples[i], line, t));
+      }
+    }
+  }
+
+  void trace(const std::vector<glm::dvec2>& points, std::vector<PointSample>& samples) {
+    if (how_.cancelled && how_.cancelled()) throw Cancelled{};
+    rays += static_cast<std::int64_t>(points.size());
+    parallel_parts(points.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
+      const size_t count = range.end() - range.begin();
+      sample_points(model_, camera_, std::span(points).subspan(range.begin(), count), std::span(samples).subspan(range.begin(), count));
+    });
+  }
+
+  bool bounded(const Search& search, const EdgeNode& at) const {
+    if (!at.hit()) return false;
+    if (chains_[search.curve].kind == CurveKind::inner) return double{at.n_dot_v} < settings_.threshold;
+    return std::abs(at.depth - search.depth) < std::abs(at.depth - search.other);
+  }
+
+  void advance(Search& search, const EdgeNode& at) {
+    (bounded(search, at) ? search.inside : search.outside) = at;
+    if (search.inside && search.outside) {
+      if (std::abs(search.inside->t - search.outside->t) <= settings_.precision_px) return take(search);
+    } else if (std::abs(at.t) >= search.limit) {
+      return give_up(search);
+    }
+    active_.push_back(search);
+  }
+
+  /// That the two rays see the two sides of this curve, and not an end of another sheet that crosses it.
+  bool proven(const Search& search) const {
+    const EdgeNode &in = *search.inside, &out = *search.outside;
+    const GrowingChain& chain = chains_[search.curve];
+    if (in.id != chain.object) return false;
+    const double step = out.hit() ? depth_step_px(camera_, in, out) : std::numeric_limits<double>::infinity();
+    if (chain.kind == CurveKind::silhouette) return step > kLeastJump_px;
+    const double length = std::abs(in.t - out.t), slope = std::min(std::abs(in.slope), std::abs(out.slope));
+    return out.hit() && std::abs(step) <= 0.05 + 20.0 * length * (1.0 + slope);
+  }
+
+  void take(const Search& search) {
+    if (!proven(search)) return give_up(search);
+    const EdgeNode &in = *search.inside, &out = *search.outside;
+    double t = 0.5 * (in.t + out.t);
+    if (chains_[search.curve].kind == CurveKind::inner) {
+      const double low = settings_.threshold - double{in.n_dot_v}, high = double{out.n_dot_v} - settings_.threshold;
+      if (low + high > 0.0) t = in.t + (out.t - in.t) * low / (low + high);
+    }
+    ChainNode found;
+    found.point.px = search.middle + t * search.outward;
+    found.point.depth = in.depth;
+    found.other_depth = out.depth;
+    if (search.to != kNone) {
+      put_between(search, found, t);
+    } else {
+      put_beyond(search, found);
+    }
+  }
+
+  void put_between(const Search& search, ChainNode found, double off) {
+    const GrowingChain& chain = chains_[search.curve];
+    if (std::abs(off) <= kChordTolerance_px && !is_torn(chain.nodes[search.from], chain.nodes[search.to])) return;
+    if (off > 1.2 * kNeck_px && known_[chain.kind == CurveKind::inner].nearest(found.point.px, chain.object, kNeck_px)) return;
+    const size_t middle = limn::put_between(chains_[search.curve], search.from, search.to, found);
+    look_beside(search.curve, search.from, middle, search.halvings + 1);
+    look_beside(search.curve, middle, search.to, search.halvings + 1);
+  }
+
+  void put_beyond(const Search& search, ChainNode found) {
+    GrowingChain& chain = chains_[search.curve];
+    // What goes on there is another curve already.
+    if (known_[chain.kind == CurveKind::inner].nearest(found.point.px, chain.object, std::min(0.05, 0.4 * search.step))) return;
+    const double went = glm::distance(found.point.px, chain.nodes[search.from].point.px);
+    limn::put_beyond(chain, search.at_last, found);
+    look_beyond(search.curve, search.at_last, search.step, search.beyond_px + went);
+  }
+
+  void give_up(const Search& search) {
+    if (search.to == kNone) look_beyond(search.curve, search.at_last, 0.5 * search.step, search.beyond_px);
+  }
+
+  const SceneModel& model_;
+  const Camera& camera_;
+  const MeasuredBorderSettings& settings_;
+  const ExecutionSettings& how_;
+  CurveIndex known_[2];  ///< Silhouettes, inner borders: what the crossings were joined to.
+  std::vector<GrowingChain> chains_{};
+  std::vector<Search> active_{};
+};
+
+}  // namespace
+
+BorderCurves refine_chains(const SceneModel& model, const Camera& camera, const MeasuredBorderSettings& settings, ChainedCurves chains,
+                           const ExecutionSettings& how, std::int64_t& rays) {
+  Refiner refiner(model, camera, settings, how, chains);
+  ThreadArena arena(how.threads);
+  arena.execute([&] { refiner.refine(); });
+  rays += refiner.rays;
+  return refiner.curves();
+}
+
+}  // namespace limn

@@ -1,0 +1,163 @@
+// One criterion for the whole border, silhouette and inner border together: which share of it lies within so many pixels of the truth.
+
+#include <algorithm>
+#include <cmath>
+
+#include "raymarch/curves/border_match.h"
+#include "raymarch/metric.h"
+#include "sdf/quantile.h"
+
+namespace limn {
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The borders of one picture, as what lies beside each other there.
+class Neighbours {
+ public:
+  explicit Neighbours(const BorderCurves& curves) : silhouettes_(curves, CurveKind::silhouette), all_(curves, {}) {}
+
+  /// How wide the band of ink is that an inner border bounds at a sample: where the other side has none, its borders are off by that much.
+  /// At the tips of wedges it goes to nothing.
+  double ink_px(const CurveSample& sample, double reach) const {
+    if (sample.kind == CurveKind::silhouette) return kInfinity;
+    const std::optional<NearestPoint> nearest = silhouettes_.nearest(sample.px, 0, reach);
+    return std::min(nearest ? nearest->distance_px : kInfinity, across(sample, reach, 1.0));
+  }
+  /// ... and how wide what is clear beside it, up to the next band.
+  double clear_px(const CurveSample& sample, double reach) const {
+    return sample.kind == CurveKind::silhouette ? kInfinity : across(sample, reach, -1.0);
+  }
+  /// How wide the strip of sheet is between a silhouette of the other picture and one here that faces the same way: a fold that only one of
+  /// them shows is wrong on that strip alone.
+  double fold_px(const CurveSample& sample, double reach) const {
+    if (sample.kind != CurveKind::silhouette) return kInfinity;
+    const std::optional<NearestPoint> nearest = silhouettes_.nearest(sample.px, sample.object, reach, sample.outward);
+    return nearest ? nearest->distance_px : kInfinity;
+  }
+
+ private:
+  /// To the next border that faces the other way, if that lies on the `inward` (1) or outward (-1) side.
+  double across(const CurveSample& sample, double reach, double inward) const {
+    const std::optional<Meeting> opposite = all_.meeting(sample.px, -sample.outward, 0, reach);
+    return opposite && inward * opposite->along_px >= 0.0 ? std::abs(opposite->along_px) : kInfinity;
+  }
+
+  CurveIndex silhouettes_, all_;
+};
+
+/// A border that moved inwards may have lost its band, one that moved outwards may have closed a gap; what has no partner, either.
+double error_px(const MatchedSample& sample, const Neighbours& beside, const Neighbours& in_model, double reach) {
+  const std::optional<double> moved = sample.displacement_px;
+  double error = moved ? std::abs(*moved) : in_model.fold_px(sample.at, reach);
+  if (!moved || *moved < 0.0) error = std::min(error, beside.ink_px(sample.at, reach));
+  if (!moved || *moved > 0.0) error = std::min(error, beside.clear_px(sample.at, reach));
+  return error;
+}
+
+/// One length of border and how far it is off; infinitely where it is missing or false and no width of a band or strip says less.
+struct Piece {
+  double error_px = 0.0, length_px = 0.0;
+  CurveKind kind = CurveKind::silhouette;
+};
+
+struct Errors {
+  std::vector<Piece> pieces{};
+  double missing_px = 0.0, false_px = 0.0, true_px = 0.0, ill_px = 0.0, matched_px = 0.0, squares = 0.0;
+  double largest = kNothing;
+  glm::dvec2 largest_at{kNothing};
+};
+
+void add_true(const MatchedSample& sample, double error, Errors& errors) {
+  const double length = sample.at.weight_px;
+  errors.pieces.push_back({error, length, sample.at.kind});
+  errors.true_px += length;
+  if (!sample.displacement_px) errors.missing_px += length;
+  if (sample.ill != IllReason::none) errors.ill_px += length;
+  if (!sample.displacement_px || sample.ill != IllReason::none) return;
+  const double moved = std::abs(*sample.displacement_px);
+  errors.matched_px += length;
+  errors.squares += length * moved * moved;
+  if (!(moved <= errors.largest)) errors.largest = moved, errors.largest_at = sample.at.px;
+}
+
+Errors errors_of(const BorderCurves& truth, const BorderCurves& measured, const Camera& camera) {
+  const double reach = search_reach_px(camera);
+  const BorderMatch match = match_borders(truth, measured, {}, camera);
+  const Neighbours in_truth(truth), in_model(measured);
+  Errors errors;
+  for (const MatchedSample& sample : match.truth) {
+    if (sample.inside) add_true(sample, error_px(sample, in_truth, in_model, reach), errors);
+  }
+  for (const MeasuredSample& sample : match.measured) {
+    if (!sample.inside || sample.matched) continue;
+    const double band = std::min(in_model.ink_px(sample.at, reach), in_model.clear_px(sample.at, reach));
+    const double width = std::min(band, in_truth.fold_px(sample.at, reach));
+    errors.pieces.push_back({width, sample.at.weight_px, sample.at.kind});
+    errors.false_px += sample.at.weight_px;
+  }
+  return errors;
+}
+
+double share_within(const Errors& errors, double most_px) {
+  double length = 0.0, within = 0.0;
+  for (const Piece& piece : errors.pieces) {
+    length += piece.length_px;
+    if (piece.error_px <= most_px) within += piece.length_px;
+  }
+  return length > 0.0 ? within / length : kNothing;
+}
+
+/// The least x that has 95 % of the pieces within it.
+double p95(const Errors& errors, std::optional<CurveKind> kind) {
+  std::vector<WeightedValue> sorted;
+  for (const Piece& piece : errors.pieces) {
+    if (!kind || piece.kind == *kind) sorted.push_back({piece.error_px, piece.length_px});
+  }
+  std::sort(sorted.begin(), sorted.end(), [](const WeightedValue& a, const WeightedValue& b) { return a.value < b.value; });
+  return nearest_rank_quantile(sorted, 0.95);
+}
+
+std::vector<MetricValue> values_of(const Errors& errors) {
+  const auto of_truth = [&](double length) { return errors.true_px > 0.0 ? length / errors.true_px : kNothing; };
+  return {{"border_error_within_025", share_within(errors, 0.25), ""},
+          {"border_error_within_05", share_within(errors, 0.5), ""},
+          {"border_error_within_1", share_within(errors, 1.0), ""},
+          {"border_error_p95", p95(errors, {}), "px"},
+          {"border_error_silhouette_p95", p95(errors, CurveKind::silhouette), "px"},
+          {"border_error_inner_p95", p95(errors, CurveKind::inner), "px"},
+          {"border_error_rms", errors.matched_px > 0.0 ? std::sqrt(errors.squares / errors.matched_px) : kNothing, "px"},
+          {"border_error_max", errors.largest, "px"},
+          {"border_error_max_x", errors.largest_at.x, "px"},
+          {"border_error_max_y", errors.largest_at.y, "px"},
+          {"border_error_missing", of_truth(errors.missing_px), ""},
+          {"border_error_false", of_truth(errors.false_px), ""},
+          {"border_error_ill", of_truth(errors.ill_px), ""}};
+}
+
+std::vector<MetricValue> measure(const MetricInput& input) {
+  if (input.curves == nullptr || input.truth == nullptr) return values_of({});
+  return values_of(errors_of(input.truth->curves, *input.curves, input.camera));
+}
+
+}  // namespace
+
+Metric border_error_metric() {
+  Metric metric{{"border_error",
+                 "how much of the whole border, silhouette and inner border together, lies right: the share within 0.25, 0.5 and 1 px of "
+                 "the true one, and the distance that 95 % keep to, also of either kind alone. The share is of the true border's length "
+                 "and the false border's; what is missing or false counts as off by the width of its band of ink, gap or strip "
+                 "of sheet, else as infinitely far. Root mean square and largest (and where) of what has a partner; missing and false "
+                 "length over the true "
+                 "border's; share at ill-conditioned places, which those two leave out",
+                 "limn"},
+                {},
+                true,
+                measure};
+  for (const MetricValue& value : values_of({})) metric.values.push_back(value.name + (value.unit.empty() ? "" : " [" + value.unit + "]"));
+  metric.subject = MetricSubject::curves;
+  return metric;
+}
+
+}  // namespace limn

@@ -229,7 +229,7 @@ function say(want, points) {
   const within = quickestWithin(points, study.floors[want.metric.name]?.right ?? null);
   const all = new Set(study.cells.filter(cell => cell[1] === want.drawing).map(cell => cell[0])).size;
   let words = `${points.length} of ${all} models.`;
-  if (want.metric.unit === "px" && want.metric.name.includes("displacement") && points.length) {
+  if (want.metric.distance && points.length) {
     words += within ? ` Quickest within ${study.tolerance} px: ${within.name}, ${errorText(within.error, want.metric)} in ${kUnits.ms(within.ms)}.`
       : ` None within ${study.tolerance} px.`;
   }

@@ -18,7 +18,8 @@ struct RoleNames {
   const char* label;
 };
 // The metrics that the report knows by name, the ones to show first first; all others it shows under the names they have.
-constexpr std::array<RoleNames, 5> kRoles = {{
+constexpr std::array<RoleNames, 6> kRoles = {{
+    {MetricRole::border, "border_error_p95", "border error, 95 % within"},
     {MetricRole::inner, "inner_displacement_rms", "inner border displacement, RMS"},
     {MetricRole::silhouette, "silhouette_displacement_rms", "silhouette displacement, RMS"},
     {MetricRole::predicted, "prediction_displacement_rms", "predicted displacement, RMS"},
@@ -157,10 +158,11 @@ struct Collector {
                      [](const ReportMetric& a, const ReportMetric& b) { return rank_of(a.name) < rank_of(b.name); });
   }
 
-  // The displacement of the border, or of the silhouette where there is no more of it, else the first error there is; drawn by what
+  // The error of the whole border; in rows without it the displacement of the inner border, or of the silhouette where there is no more, else the first error there is; drawn by what
   // measured it most often, and among equals by what is nearest to the threshold that limn draws with when nobody says otherwise.
   void choose_main() {
-    data.main_metric = data.metric_of(MetricRole::inner);
+    data.main_metric = data.metric_of(MetricRole::border);
+    if (data.main_metric.empty()) data.main_metric = data.metric_of(MetricRole::inner);
     if (data.main_metric.empty()) data.main_metric = data.metric_of(MetricRole::silhouette);
     for (const ReportMetric& metric : data.metrics) {
       if (data.main_metric.empty() && metric.lower_is_better) data.main_metric = metric.name;
@@ -230,6 +232,10 @@ ErrorFloor ReportData::floor_of(const std::string& metric) const {
     if (found != cell.floors.end()) floor.reference_px = std::max(floor.reference_px, std::abs(found->second));
   }
   return floor;
+}
+
+bool is_border_distance(const ReportMetric& metric) {
+  return metric.unit == "px" && (metric.name.find("displacement") != std::string::npos || metric.name.starts_with("border_error"));
 }
 
 std::string compared_metric(const ReportData& data) {

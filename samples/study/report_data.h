@@ -15,7 +15,7 @@ namespace limn {
 inline constexpr double kTolerancePx = 0.5;
 
 /// What a metric says, where the report has something of its own to say about it.
-enum class MetricRole { inner, silhouette, predicted, measured, normal };
+enum class MetricRole { border, inner, silhouette, predicted, measured, normal };
 
 struct ReportMetric {
   std::string name{}, unit{};
@@ -79,6 +79,9 @@ struct ReportData {
 std::string compared_metric(const ReportData& data);
 
 ReportData collect_report(const StudyHead& head, const std::vector<StudyRow>& rows);
+
+/// A metric that says how far the border is from the true one, in px: what can be held against a tolerance.
+bool is_border_distance(const ReportMetric& metric);
 
 /// "level 9" before "level 10".
 bool natural_less(const std::string& a, const std::string& b);

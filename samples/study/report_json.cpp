@@ -79,7 +79,11 @@ std::string study_data_json(const ReportData& data) {
     json["drawings"].push_back({{"method", drawing.method}, {"parameters", drawing.parameters}});
   json["metrics"] = Json::array();
   for (const ReportMetric& metric : data.metrics)
-    json["metrics"].push_back({{"name", metric.name}, {"label", metric.label()}, {"unit", metric.unit}, {"lower", metric.lower_is_better}});
+    json["metrics"].push_back({{"name", metric.name},
+                               {"label", metric.label()},
+                               {"unit", metric.unit},
+                               {"lower", metric.lower_is_better},
+                               {"distance", is_border_distance(metric)}});
   json["expected"] = expectations_json(data);
   json["views"] = data.views;
   add_looks(json, data);

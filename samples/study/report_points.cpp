@@ -170,9 +170,11 @@ std::optional<ExpectedOrder> expected_order(const ReportData& data, size_t serie
   if (model == data.models.end()) return std::nullopt;
   const std::optional<ExpectedOrder> normal = normal_order(*model);
   if (!normal || metric.find("normal_error") != std::string::npos) return normal;
-  if (metric.find("displacement") == std::string::npos || metric.ends_with("_mean")) return std::nullopt;
+  const ReportMetric* about = data.find_metric(metric);
+  const bool is_distance = about != nullptr ? is_border_distance(*about) : metric.find("displacement") != std::string::npos;
+  if (!is_distance || metric.ends_with("_mean")) return std::nullopt;
   // The silhouette knows positions alone: of order 2 even for flat facets.
-  if (metric.starts_with("silhouette") || threshold == 0.0) return ExpectedOrder{2.0, 2.0};
+  if (metric.find("silhouette") != std::string::npos || threshold == 0.0) return ExpectedOrder{2.0, 2.0};
   return ExpectedOrder{std::min(normal->low, 2.0), std::min(normal->high, 2.0)};
 }
 

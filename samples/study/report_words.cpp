@@ -228,7 +228,7 @@ std::vector<std::string> study_sentences(const StudyHead& head, const ReportData
   std::erase_if(words.points, [&](const ModelPoint& point) { return data.models[point.model].is_analytic(); });
   words.out.push_back(capital(first_sentence(head, data)));
   const ReportMetric* metric = data.find_metric(data.main_metric);
-  const bool in_pixels = metric != nullptr && metric->name.find("displacement") != std::string::npos && metric->unit == "px";
+  const bool in_pixels = metric != nullptr && is_border_distance(*metric);
   if (words.points.empty()) {
     words.out.emplace_back(!all.empty() ? "Only the analytic surface itself was measured: there is no model to choose."
                                         : "No cell has an error to show, so that nothing can be said of accuracy.");

@@ -24,8 +24,10 @@ constexpr double kLongestStep_px = 0.5;
 constexpr double kTip_px = 8.0;
 /// Beyond a thin neck lies what another curve bounds: a tip that comes this near to a curve of the grid's own crossings is none.
 constexpr double kNeck_px = 0.25;
-/// A sheet's end is one from this step of depth on, px at the nearer sheet.
+/// A sheet's end is one from this step of depth on, px at the nearer sheet; and where the step stays while its bracket shrinks by as much
+/// more as find_crossings() asks: a sheet that goes on would close it.
 constexpr double kLeastJump_px = 0.3;
+constexpr double kProof = 16.0;
 /// Curves are followed no farther beyond their last crossings, and not in smaller steps.
 constexpr double kFarthest_px = 1.5;
 constexpr double kFirstEndStep_px = 0.25;
@@ -41,6 +43,7 @@ struct Search {
   double limit = 0.0;               ///< How far to look.
   int halvings = 0;
   std::optional<EdgeNode> inside{}, outside{};  ///< The nearest known of either side.
+  std::optional<double> step_before{};          ///< Of a silhouette: the step of depth when its proof began, px.
   // Beyond an end:
   bool at_last = false;    ///< Which end.
   double step = 0.0;       ///< From the end.
@@ -195,7 +198,13 @@ class Refiner {
   void advance(Search& search, const EdgeNode& at) {
     (bounded(search, at) ? search.inside : search.outside) = at;
     if (search.inside && search.outside) {
-      if (std::abs(search.inside->t - search.outside->t) <= settings_.precision_px) return take(search);
+      const double length = std::abs(search.inside->t - search.outside->t);
+      const bool jump = chains_[search.curve].kind == CurveKind::silhouette && search.outside->hit();
+      if (length <= settings_.precision_px && jump && !search.step_before) {
+        search.step_before = depth_step_px(camera_, *search.inside, *search.outside);
+      } else if (length <= settings_.precision_px / (jump ? kProof : 1.0)) {
+        return take(search);
+      }
     } else if (std::abs(at.t) >= search.limit) {
       return give_up(search);
     }
@@ -208,7 +217,7 @@ class Refiner {
     const GrowingChain& chain = chains_[search.curve];
     if (in.id != chain.object) return false;
     const double step = out.hit() ? depth_step_px(camera_, in, out) : std::numeric_limits<double>::infinity();
-    if (chain.kind == CurveKind::silhouette) return step > kLeastJump_px;
+    if (chain.kind == CurveKind::silhouette) return step > kLeastJump_px && step > 2.0 * search.step_before.value_or(0.0) / kProof;
     const double length = std::abs(in.t - out.t), slope = std::min(std::abs(in.slope), std::abs(out.slope));
     return out.hit() && std::abs(step) <= 0.05 + 20.0 * length * (1.0 + slope);
   }

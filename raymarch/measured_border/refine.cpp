@@ -8,6 +8,7 @@
 #include "raymarch/measured_border/edge_node.h"
 #include "raymarch/measured_border/growing_chain.h"
 #include "raymarch/scene/threads.h"
+#include "sdf/segment.h"
 
 namespace limn {
 namespace {
@@ -42,6 +43,7 @@ struct Search {
   double depth = 0.0, other = 0.0;  ///< Expected of what is bounded, and of the other side.
   double limit = 0.0;               ///< How far to look.
   int halvings = 0;
+  glm::dvec2 chord[2]{};                        ///< Ends of the chord between two crossings that it came from by halving.
   std::optional<EdgeNode> inside{}, outside{};  ///< The nearest known of either side.
   std::optional<double> step_before{};          ///< Of a silhouette: the step of depth when its proof began, px.
   // Beyond an end:
@@ -115,13 +117,14 @@ class Refiner {
       if (i > 0 || chain.closed) turn = turn_between(step(i + n - 1), step(i));
       if (i + 1 < chords || chain.closed) turn = std::max(turn, turn_between(step(i), step(i + 1)));
       const bool bulges = 0.125 * turn * glm::length(step(i)) > kChordTolerance_px;
-      if (bulges || is_torn(chain.nodes[i], chain.nodes[(i + 1) % n])) look_beside(c, i, (i + 1) % n, 0);
+      if (bulges || is_torn(chain.nodes[i], chain.nodes[(i + 1) % n])) look_beside(c, i, (i + 1) % n);
     }
   }
 
-  void look_beside(size_t c, size_t from, size_t to, int halvings) {
+  void look_beside(size_t c, size_t from, size_t to, const Search* halved = nullptr) {
     const ChainNode &a = node(c, from), &b = node(c, to);
     const double length = glm::distance(a.point.px, b.point.px);
+    const int halvings = halved != nullptr ? halved->halvings + 1 : 0;
     if (length < kShortest_px || halvings > kMostHalvings) return;
     Search search;
     search.curve = c;
@@ -133,6 +136,8 @@ class Refiner {
     search.other = 0.5 * (a.other_depth + b.other_depth);
     search.limit = std::max(2.0 * length, kTip_px);
     search.halvings = halvings;
+    search.chord[0] = halved != nullptr ? halved->chord[0] : a.point.px;
+    search.chord[1] = halved != nullptr ? halved->chord[1] : b.point.px;
     active_.push_back(search);
   }
 
@@ -244,10 +249,11 @@ class Refiner {
   void put_between(const Search& search, ChainNode found, double off) {
     const GrowingChain& chain = chains_[search.curve];
     if (std::abs(off) <= kChordTolerance_px && !is_torn(chain.nodes[search.from], chain.nodes[search.to])) return;
-    if (off > 1.2 * kNeck_px && known_[chain.kind == CurveKind::inner].nearest(found.point.px, chain.object, kNeck_px)) return;
+    const bool at_known = known_[chain.kind == CurveKind::inner].nearest(found.point.px, chain.object, kNeck_px).has_value();
+    if (at_known && distance_to_segment(found.point.px, search.chord[0], search.chord[1]) > 1.2 * kNeck_px) return;
     const size_t middle = limn::put_between(chains_[search.curve], search.from, search.to, found);
-    look_beside(search.curve, search.from, middle, search.halvings + 1);
-    look_beside(search.curve, middle, search.to, search.halvings + 1);
+    look_beside(search.curve, search.from, middle, &search);
+    look_beside(search.curve, middle, search.to, &search);
   }
 
   void put_beyond(const Search& search, ChainNode found) {

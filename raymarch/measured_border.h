@@ -13,8 +13,8 @@ struct MeasuredBorderSettings {
   double precision_px = 0.002;  ///< Crossings are bracketed to this.
 };
 
-/// The border of `model`. `gbuffer` is its picture of the pixel centres, seen by `camera`: what shows at no pixel centre nor changes between two is not
-/// found. What is found is followed round corners and into tips, to 0.01 px, and to its ends.
+/// The border of `model`. `gbuffer` is its picture of the pixel centres, seen by `camera`: what shows at no pixel centre nor changes
+/// between two is not found. What is found is followed round corners and into tips, to 0.01 px, and to its ends.
 BorderCurves measure_border(const SceneModel& model, const Camera& camera, const GBuffer& gbuffer, const MeasuredBorderSettings& settings,
                             const ExecutionSettings& how);
 

@@ -8,6 +8,7 @@
 #include "raymarch/measured_border/edge_node.h"
 #include "raymarch/measured_border/growing_chain.h"
 #include "raymarch/scene/threads.h"
+#include "sdf/segment.h"
 
 namespace limn {
 namespace {
@@ -24,8 +25,10 @@ constexpr double kLongestStep_px = 0.5;
 constexpr double kTip_px = 8.0;
 /// Beyond a thin neck lies what another curve bounds: a tip that comes this near to a curve of the grid's own crossings is none.
 constexpr double kNeck_px = 0.25;
-/// A sheet's end is one from this step of depth on, px at the nearer sheet.
+/// A sheet's end is one from this step of depth on, px at the nearer sheet; and where the step stays while its bracket shrinks by as much
+/// more as find_crossings() asks: a sheet that goes on would close it.
 constexpr double kLeastJump_px = 0.3;
+constexpr double kProof = 16.0;
 /// Curves are followed no farther beyond their last crossings, and not in smaller steps.
 constexpr double kFarthest_px = 1.5;
 constexpr double kFirstEndStep_px = 0.25;
@@ -40,7 +43,9 @@ struct Search {
   double depth = 0.0, other = 0.0;  ///< Expected of what is bounded, and of the other side.
   double limit = 0.0;               ///< How far to look.
   int halvings = 0;
+  glm::dvec2 chord[2]{};                        ///< Ends of the chord between two crossings that it came from by halving.
   std::optional<EdgeNode> inside{}, outside{};  ///< The nearest known of either side.
+  std::optional<double> step_before{};          ///< Of a silhouette: the step of depth when its proof began, px.
   // Beyond an end:
   bool at_last = false;    ///< Which end.
   double step = 0.0;       ///< From the end.
@@ -112,13 +117,14 @@ class Refiner {
       if (i > 0 || chain.closed) turn = turn_between(step(i + n - 1), step(i));
       if (i + 1 < chords || chain.closed) turn = std::max(turn, turn_between(step(i), step(i + 1)));
       const bool bulges = 0.125 * turn * glm::length(step(i)) > kChordTolerance_px;
-      if (bulges || is_torn(chain.nodes[i], chain.nodes[(i + 1) % n])) look_beside(c, i, (i + 1) % n, 0);
+      if (bulges || is_torn(chain.nodes[i], chain.nodes[(i + 1) % n])) look_beside(c, i, (i + 1) % n);
     }
   }
 
-  void look_beside(size_t c, size_t from, size_t to, int halvings) {
+  void look_beside(size_t c, size_t from, size_t to, const Search* halved = nullptr) {
     const ChainNode &a = node(c, from), &b = node(c, to);
     const double length = glm::distance(a.point.px, b.point.px);
+    const int halvings = halved != nullptr ? halved->halvings + 1 : 0;
     if (length < kShortest_px || halvings > kMostHalvings) return;
     Search search;
     search.curve = c;
@@ -130,6 +136,8 @@ class Refiner {
     search.other = 0.5 * (a.other_depth + b.other_depth);
     search.limit = std::max(2.0 * length, kTip_px);
     search.halvings = halvings;
+    search.chord[0] = halved != nullptr ? halved->chord[0] : a.point.px;
+    search.chord[1] = halved != nullptr ? halved->chord[1] : b.point.px;
     active_.push_back(search);
   }
 
@@ -195,7 +203,13 @@ class Refiner {
   void advance(Search& search, const EdgeNode& at) {
     (bounded(search, at) ? search.inside : search.outside) = at;
     if (search.inside && search.outside) {
-      if (std::abs(search.inside->t - search.outside->t) <= settings_.precision_px) return take(search);
+      const double length = std::abs(search.inside->t - search.outside->t);
+      const bool jump = chains_[search.curve].kind == CurveKind::silhouette && search.outside->hit();
+      if (length <= settings_.precision_px && jump && !search.step_before) {
+        search.step_before = depth_step_px(camera_, *search.inside, *search.outside);
+      } else if (length <= settings_.precision_px / (jump ? kProof : 1.0)) {
+        return take(search);
+      }
     } else if (std::abs(at.t) >= search.limit) {
       return give_up(search);
     }
@@ -208,7 +222,7 @@ class Refiner {
     const GrowingChain& chain = chains_[search.curve];
     if (in.id != chain.object) return false;
     const double step = out.hit() ? depth_step_px(camera_, in, out) : std::numeric_limits<double>::infinity();
-    if (chain.kind == CurveKind::silhouette) return step > kLeastJump_px;
+    if (chain.kind == CurveKind::silhouette) return step > kLeastJump_px && step > 2.0 * search.step_before.value_or(0.0) / kProof;
     const double length = std::abs(in.t - out.t), slope = std::min(std::abs(in.slope), std::abs(out.slope));
     return out.hit() && std::abs(step) <= 0.05 + 20.0 * length * (1.0 + slope);
   }
@@ -235,10 +249,11 @@ class Refiner {
   void put_between(const Search& search, ChainNode found, double off) {
     const GrowingChain& chain = chains_[search.curve];
     if (std::abs(off) <= kChordTolerance_px && !is_torn(chain.nodes[search.from], chain.nodes[search.to])) return;
-    if (off > 1.2 * kNeck_px && known_[chain.kind == CurveKind::inner].nearest(found.point.px, chain.object, kNeck_px)) return;
+    const bool at_known = known_[chain.kind == CurveKind::inner].nearest(found.point.px, chain.object, kNeck_px).has_value();
+    if (at_known && distance_to_segment(found.point.px, search.chord[0], search.chord[1]) > 1.2 * kNeck_px) return;
     const size_t middle = limn::put_between(chains_[search.curve], search.from, search.to, found);
-    look_beside(search.curve, search.from, middle, search.halvings + 1);
-    look_beside(search.curve, middle, search.to, search.halvings + 1);
+    look_beside(search.curve, search.from, middle, &search);
+    look_beside(search.curve, middle, search.to, &search);
   }
 
   void put_beyond(const Search& search, ChainNode found) {

@@ -46,12 +46,11 @@ struct Ladder {
   std::string words_at(size_t rung) const;  ///< "level 3", "128 voxels".
 };
 
-/// How far a border lies from truth: the distance that 95 % of it keep to (the metric border_error). The worst over all views.
+/// How far a border lies from truth: the distance that 95 % of it keep to, by the metric border_error. The worst over all views.
 struct BorderErrors {
   double silhouette_px = 0.0,          ///< Of the silhouette.
-      inner_px = 0.0,                  ///< Of the inner border.
-      border_px = 0.0;                 ///< Of both together.
-  double of(PlanMetric metric) const;  ///< `border`: of both together; `silhouette`: that one.
+      inner_px = 0.0;                  ///< Of the inner border.
+  double of(PlanMetric metric) const;  ///< `border`: the larger of the two, so that either keeps to it; `silhouette`: that one.
 };
 
 /// One rung, built and measured.

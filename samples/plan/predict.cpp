@@ -42,9 +42,7 @@ BorderErrors predict_errors(const Ladder& ladder, size_t rung, const PlanView& v
       inner.push_back(position * std::sqrt(std::max(0.0, 1.0 - threshold * threshold)) + shift);
     }
   }
-  std::vector<double> both = silhouette;
-  both.insert(both.end(), inner.begin(), inner.end());
-  return {upper_part(std::move(silhouette)), upper_part(std::move(inner)), upper_part(std::move(both))};
+  return {upper_part(std::move(silhouette)), upper_part(std::move(inner))};
 }
 
 }  // namespace limn

@@ -25,7 +25,7 @@ struct Search {
 };
 
 BorderErrors worst(const BorderErrors& a, const BorderErrors& b) {
-  return {std::max(a.silhouette_px, b.silhouette_px), std::max(a.inner_px, b.inner_px), std::max(a.border_px, b.border_px)};
+  return {std::max(a.silhouette_px, b.silhouette_px), std::max(a.inner_px, b.inner_px)};
 }
 
 BorderErrors predicted(const Search& search, size_t ladder, size_t rung) {
@@ -88,7 +88,7 @@ PlanTrial try_rung(Search& search, size_t ladder, size_t rung) {
   } catch (const InputError& error) {
     trial.failed = error.fault().problem;
   }
-  if (!trial.failed.empty()) trial.measured = {kInfinity, kInfinity, kInfinity};
+  if (!trial.failed.empty()) trial.measured = {kInfinity, kInfinity};
   trial.trace_ms /= static_cast<double>(search.views.size());
   return trial;
 }
@@ -191,8 +191,7 @@ PlanTrial finest_of(const PlanAnswer& answer, const PlanTrial& chosen, bool& was
   finest.bytes = static_cast<std::int64_t>(static_cast<double>(from->bytes) * growth);
   const double fixed_ms = std::min(ladder.fixed_ms, from->build_ms);
   finest.build_ms = fixed_ms + (from->build_ms - fixed_ms) * growth;
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  finest.measured = {unknown, unknown, unknown};
+  finest.measured = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   return finest;
 }
 

@@ -180,6 +180,13 @@ TEST(MeasuredBorder, OfASphereBeforeAnotherEndsWhereItIsHidden) {
   EXPECT_EQ(counts(curves),
             (std::map<std::pair<int, CurveKind>, int>{
                 {{1, CurveKind::silhouette}, 1}, {{1, CurveKind::inner}, 1}, {{2, CurveKind::silhouette}, 1}, {{2, CurveKind::inner}, 1}}));
+  // It ends on the nearer circle, not at the last line of the grid before it.
+  const glm::dvec2 middle(project(camera, {0.0, 0.0, 1.5}));
+  for (const BorderCurve& curve : curves.curves) {
+    if (curve.closed) continue;
+    for (const BorderPoint& end : {curve.points.front(), curve.points.back()})
+      EXPECT_NEAR(glm::distance(end.px, middle), 0.6 * camera.pixels_per_unit, 0.06);
+  }
   // What is left of the farther circles outside the nearer one's, by counting.
   const double scale = camera.pixels_per_unit;
   for (const CurveKind kind : {CurveKind::silhouette, CurveKind::inner}) {
@@ -225,8 +232,9 @@ TEST(MeasuredBorder, OfACubeIsItsOutlineOnceThoughNothingIsInked) {
     const double worst = worst_distance(curves, CurveKind::silhouette, {{hexagon}});
     fmt::print("cube, {}: worst {:.5f} px\n", kind, worst);
     EXPECT_LT(worst, 0.005) << kind;
-    // Corners are cut by less than a pixel each.
+    // Corners are cut by less than a pixel each, and by rays between the pixels' to next to nothing.
     EXPECT_NEAR(length_px(outline), length_px(hexagon), 4.0) << kind;
+    EXPECT_LT(worst_distance({{hexagon}}, CurveKind::silhouette, curves), 0.03) << kind;
     EXPECT_EQ(measured(model, camera, 0.0).curves.size(), 1u) << kind;
   }
 }
@@ -241,6 +249,25 @@ TEST(MeasuredBorder, OfThinInkIsFoundBetweenPixelCentres) {
     const double circumference = 2.0 * std::numbers::pi * camera.pixels_per_unit * std::sqrt(1.0 - c * c);
     EXPECT_NEAR(total_length(curves, CurveKind::inner), circumference, 0.1) << c;
   }
+}
+
+TEST(MeasuredBorder, FollowsThinWedgesBetweenThePixelsToTheirTips) {
+  // A wedge of ten degrees, seen flat: its last 5.7 px are thinner than a pixel. It is followed to where it is 0.07 px thin.
+  const double half = glm::radians(5.0);
+  const glm::dvec3 up(std::sin(half), 0.0, std::cos(half)), down(std::sin(half), 0.0, -std::cos(half));
+  const Field cut = combine(Csg::intersection, make_shape("plane", {{"normal", {up.x, up.y, up.z}}, {"offset", {0.0}}}),
+                            make_shape("plane", {{"normal", {down.x, down.y, down.z}}, {"offset", {0.0}}}));
+  const Field wedge = combine(Csg::intersection, make_shape("box", {{"half", {1.0, 0.3, 1.0}}}), cut);
+  const SceneModel model = model_of(scene_of({object_of(wedge)}));
+  CameraSettings settings = view(200, 160, Projection::orthographic);
+  settings.eye = glm::dvec3(-0.513, 5.0, 0.017);
+  settings.target = glm::dvec3(-0.513, 0.0, 0.017);
+  settings.up = glm::dvec3(0.31, 0.0, 1.0);
+  settings.ortho_height = 1.6;
+  const Camera camera = resolve_camera(settings, {});
+  BorderCurve tip{CurveKind::silhouette, 1, false, std::vector<BorderPoint>(2)};
+  tip.points[0].px = tip.points[1].px = glm::dvec2(project(camera, {0.0, 0.3, 0.0}));
+  EXPECT_LT(worst_distance({{tip}}, CurveKind::silhouette, measured(model, camera)), 0.4);
 }
 
 TEST(MeasuredBorder, WithoutAThresholdIsTheSilhouetteAlone) {

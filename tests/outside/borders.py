@@ -61,7 +61,7 @@ def ask(*command):
 def study(limn, scene, sweep, out):
     size = "x".join(map(str, SIZE))
     ask(limn, "study", scene, *sweep, "--views", "1", "--set", f"threshold={THRESHOLD}", "--size", size, "-o", out, "-q")
-    return rows.read_models(out / "rows.csv")
+    return rows.read_cells(out / "rows.csv")
 
 
 def render(limn, scene, settings, path):

@@ -11,6 +11,7 @@ namespace {
 
 // Two evaluations of one place differ by rounding, and around extraordinary vertices by what patches approximate.
 constexpr double kSamePlace = 1e-6;   // of the extent
+constexpr double kRounding = 1e-12;   // of the largest coordinate: no two evaluations agree better
 constexpr double kSameNormal = 2e-3;  // radians; a crease is sharper, a patch's error is not
 constexpr int kFinestSteps = 256;     // along a patch's side
 
@@ -104,6 +105,19 @@ PatchLattice sample_lattice(const PlacedLimitSurface& placed, size_t k, int step
     }
   }
   return lattice;
+}
+
+/// Samples nearer to each other than this are one node. Never so little beside the coordinates that cells of that size cannot be counted.
+double same_place(const std::vector<PatchLattice>& lattices) {
+  Box extent;
+  for (const PatchLattice& lattice : lattices) {
+    if (!lattice.valid) continue;
+    for (const LimitSample& s : lattice.samples) extent = include(extent, s.position);
+  }
+  if (extent.empty()) return 1.0;
+  const glm::dvec3 farthest = glm::max(glm::abs(extent.lower), glm::abs(extent.upper));
+  const double largest = std::max({farthest.x, farthest.y, farthest.z});
+  return std::max({kSamePlace * extent.radius(), kRounding * largest, 1e-300});
 }
 
 using SidesOfNodes = std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>;
@@ -215,11 +229,7 @@ LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, do
   parallel_for(size_t{0}, placed.patches.size(),
                [&](size_t k) { lattices[k] = sample_lattice(placed, k, steps_of(placed.patches[k], steps)); });
   LimitGrid grid;
-  Box extent;
-  for (const PatchLattice& lattice : lattices) {
-    if (lattice.valid) extent = include(extent, lattice.samples.front().position);
-  }
-  Places places(std::max(kSamePlace * extent.radius(), 1e-300));
+  Places places(same_place(lattices));
   SidesOfNodes sides;
   for (size_t k = 0; k < lattices.size(); ++k) {
     if (lattices[k].valid)

@@ -170,6 +170,27 @@ void add_lattice(const PlacedLimitSurface& placed, std::uint32_t k, const PatchL
   }
 }
 
+void find_seams(const PlacedLimitSurface& placed, LimitGrid& grid) {
+  const auto on_side = [](const LimitPatch& patch, const glm::dvec2& a, const glm::dvec2& b) {
+    const auto both = [&](auto&& test) { return test(a) && test(b); };
+    if (both([](const glm::dvec2& p) { return p.x == 0.0; }) || both([](const glm::dvec2& p) { return p.y == 0.0; })) return true;
+    if (patch.triangle) return both([](const glm::dvec2& p) { return p.x + p.y > 1.0 - 1e-9; });
+    return both([](const glm::dvec2& p) { return p.x == 1.0; }) || both([](const glm::dvec2& p) { return p.y == 1.0; });
+  };
+  for (std::uint32_t t = 0; t < grid.triangles.size(); ++t) {
+    const LimitTriangle& triangle = grid.triangles[t];
+    for (int from = 0; from < 3; ++from) {
+      const LimitCorner &a = triangle.corners[static_cast<size_t>(from)], &b = triangle.corners[static_cast<size_t>((from + 1) % 3)];
+      if (a.node == b.node || !on_side(placed.patches[triangle.patch], a.uv, b.uv)) continue;
+      grid.seams[std::minmax(a.node, b.node)].push_back({t, from});
+    }
+  }
+  const auto starts_at = [&](const SeamUse& use) { return grid.triangles[use.triangle].corners[static_cast<size_t>(use.from)].node; };
+  grid.sheet = std::any_of(grid.seams.begin(), grid.seams.end(), [&](const auto& seam) {
+    return seam.second.size() != 2 || starts_at(seam.second[0]) == starts_at(seam.second[1]);
+  });
+}
+
 }  // namespace
 
 PlacedLimitSurface place(const LimitSurface& surface, const Affine& world_from_cage) {
@@ -235,8 +256,9 @@ LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, do
     if (lattices[k].valid)
       add_lattice(placed, static_cast<std::uint32_t>(k), lattices[k], places, sides, grid);
     else
-      ++grid.invalid_patches;
+      grid.invalid_patches.push_back(k);
   }
+  find_seams(placed, grid);
   return grid;
 }
 

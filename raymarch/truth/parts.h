@@ -31,6 +31,9 @@ struct TracedCurve {
   int object = 1;  ///< From 1.
   bool closed = false;
   std::vector<TracedPoint> points{};
+  /// On a surface that has an end or no outside: its back may be seen, so that a contour that bends towards the eye need not be hidden. The
+  /// points run with what the curve bounds on its left.
+  bool sheet = false;
 };
 
 /// Image direction of a step along `direction` from `p`; not unit.

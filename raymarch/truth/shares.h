@@ -11,6 +11,7 @@ struct TruthShare {
   std::vector<size_t> objects{};      ///< Indices in the scene.
   std::vector<TracedCurve> curves{};  ///< Solver space; numbers of objects are the scene's.
   int contour_generators = 0, level_curves = 0;
+  bool exact = true;                 ///< False where a part of the objects is left out.
   double unrefined_px = 0.0;         ///< What the bound has to grow by.
   std::vector<std::string> notes{};  ///< What the bound does not cover.
   /// Something of this share is between the point, which lies on the scene's object number `object` (of this share or not), and the eye.

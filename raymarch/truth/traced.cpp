@@ -106,6 +106,7 @@ BorderTruth solve_truth_traced(const Scene& scene, const Camera& camera, const T
     truth.contour_generators += share.contour_generators;
     truth.level_curves += share.level_curves;
     truth.notes.insert(truth.notes.end(), share.notes.begin(), share.notes.end());
+    truth.exact = truth.exact && share.exact;
     unrefined_px = std::max(unrefined_px, share.unrefined_px);
   }
   VisibilitySettings visibility;

@@ -20,9 +20,9 @@ struct Hider {
   bool in_frame(const TracedPoint& q) const {
     return q.depth > 0.0 && q.px.x >= 0.0 && q.px.y >= 0.0 && q.px.x <= scene.camera.width_px && q.px.y <= scene.camera.height_px;
   }
-  /// A smooth contour that bends towards the eye lies behind its own surface (Koenderink 1984).
+  /// A smooth contour that bends towards the eye lies behind its own surface (Koenderink 1984), unless that has no inside.
   bool hides_itself(const TracedCurve& curve, const TracedPoint& q) const {
-    return curve.kind == CurveKind::silhouette && q.radial_curvature < 0.0;
+    return curve.kind == CurveKind::silhouette && !curve.sheet && q.radial_curvature < 0.0;
   }
   Seen see(const TracedCurve& curve, const TracedPoint& q) const {
     if (!in_frame(q) || !q.shown || hides_itself(curve, q)) return Seen::hidden;
@@ -165,7 +165,7 @@ void cut(const Hider& hider, const TracedCurve& curve, const std::vector<Seen>& 
   }
   // A closed curve is walked from a hidden point, so that no visible stretch is cut by where its list begins.
   const size_t start = curve.closed ? static_cast<size_t>(hidden - seen.begin()) : 0;
-  TracedCurve part{curve.kind, curve.object, false, {}};
+  TracedCurve part{curve.kind, curve.object, false, {}, curve.sheet};
   const auto finish = [&] {
     if (part.points.size() > 1 && length_of(part) >= hider.settings.shortest_px) parts.push_back(part);
     part.points.clear();

@@ -1,0 +1,226 @@
+#pragma once
+// The silhouette of a fine mesh by brute force: what every face and every edge of it says, and rays against all of it. Nothing here knows
+// of patches, curves or chains.
+
+#include "raymarch/gbuffer.h"
+#include "tests/raymarch/border_distance.h"
+#include "tests/raymarch/scenes.h"
+
+namespace limn::test {
+
+struct BruteSegment {
+  enum class Seen { hidden, visible, unclear };
+  glm::dvec2 a{0.0}, b{0.0};
+  double depth = 0.0;
+  glm::dvec2 outward{0.0};  ///< Unit, away from what it bounds; 0 where that is not clear.
+  Seen seen = Seen::unclear;
+  glm::dvec2 middle() const { return 0.5 * (a + b); }
+  double length() const { return glm::distance(a, b); }
+};
+
+/// `fine` has limit normals at its corners, and stands in the world.
+class BruteSilhouette {
+ public:
+  explicit BruteSilhouette(const Mesh& fine)
+      : mesh_(fine), first_(first_corners(fine)), model_(model_of(scene_of({object_of(fine)}), "mesh")) {
+    gather_edges();
+  }
+
+  /// In the picture; whether something hides them is asked a little outside of them, and is unclear where nearby places differ.
+  std::vector<BruteSegment> segments(const Camera& camera) const {
+    const View view = look(camera);
+    std::vector<BruteSegment> found;
+    for (size_t f = 0; f < mesh_.face_count(); ++f) cross_face(view, f, found);
+    for (size_t e = 0, end = 0; e < edges_.size(); e = end) {
+      while (end < edges_.size() && edges_[end].ends == edges_[e].ends) ++end;
+      if (!smooth(e, end)) cross_edge(view, e, end, found);
+    }
+    std::erase_if(found, [&](const BruteSegment& s) {
+      const glm::dvec2 m = s.middle();
+      return !(m.x > 0.0 && m.y > 0.0 && m.x < camera.width_px && m.y < camera.height_px);
+    });
+    hide(camera, found);
+    return found;
+  }
+
+ private:
+  struct EdgeUse {
+    std::pair<std::int32_t, std::int32_t> ends;
+    std::int32_t face = 0, corner = 0;
+  };
+  struct View {
+    const Camera& camera;
+    std::vector<glm::dvec3> image;  ///< Of vertices: px, depth.
+  };
+
+  std::int32_t vertex(size_t face, size_t corner) const {
+    const auto n = static_cast<size_t>(mesh_.face_sizes[face]);
+    return mesh_.corner_vertices[static_cast<size_t>(first_[face]) + corner % n];
+  }
+  glm::dvec3 normal(size_t face, size_t corner) const {
+    const auto n = static_cast<size_t>(mesh_.face_sizes[face]);
+    return mesh_.corner_normals[static_cast<size_t>(first_[face]) + corner % n];
+  }
+  const glm::dvec3& position(std::int32_t v) const { return mesh_.positions[static_cast<size_t>(v)]; }
+
+  void gather_edges() {
+    for (size_t f = 0; f < mesh_.face_count(); ++f)
+      for (size_t i = 0; i < static_cast<size_t>(mesh_.face_sizes[f]); ++i)
+        if (vertex(f, i) != vertex(f, i + 1))
+          edges_.push_back({std::minmax(vertex(f, i), vertex(f, i + 1)), static_cast<std::int32_t>(f), static_cast<std::int32_t>(i)});
+    std::stable_sort(edges_.begin(), edges_.end(), [](const EdgeUse& a, const EdgeUse& b) { return a.ends < b.ends; });
+  }
+
+  /// Two faces that run along it opposite ways and have the same normals there.
+  bool smooth(size_t begin, size_t end) const {
+    if (end - begin != 2) return false;
+    const auto face = [&](size_t e) { return static_cast<size_t>(edges_[e].face); };
+    const auto corner = [&](size_t e) { return static_cast<size_t>(edges_[e].corner); };
+    const size_t a = begin, b = begin + 1;
+    if (vertex(face(a), corner(a)) == vertex(face(b), corner(b))) return false;
+    return glm::distance(normal(face(a), corner(a)), normal(face(b), corner(b) + 1)) < 1e-3 &&
+           glm::distance(normal(face(a), corner(a) + 1), normal(face(b), corner(b))) < 1e-3;
+  }
+
+  View look(const Camera& camera) const {
+    View view{camera, {}};
+    for (const glm::dvec3& p : mesh_.positions) view.image.push_back(project(camera, p));
+    return view;
+  }
+
+  /// The contour between the places on the face's edges where N.V changes its sign.
+  void cross_face(const View& view, size_t f, std::vector<BruteSegment>& found) const {
+    const auto n = static_cast<size_t>(mesh_.face_sizes[f]);
+    std::vector<double> facing;
+    for (size_t i = 0; i < n; ++i) facing.push_back(glm::dot(normal(f, i), view_vector(view.camera, position(vertex(f, i)))));
+    std::vector<glm::dvec3> places, normals;
+    for (size_t i = 0; i < n; ++i) {
+      const double f0 = facing[i], f1 = facing[(i + 1) % n];
+      if ((f0 < 0.0) == (f1 < 0.0)) continue;
+      const double t = f0 / (f0 - f1);
+      places.push_back(glm::mix(position(vertex(f, i)), position(vertex(f, i + 1)), t));
+      normals.push_back(glm::mix(normal(f, i), normal(f, i + 1), t));
+    }
+    for (size_t k = 0; k + 1 < places.size(); k += 2) {
+      BruteSegment segment = segment_of(view, places[k], places[k + 1]);
+      if (places.size() == 2) segment.outward = fold_outward(view, f, facing, 0.5 * (places[0] + places[1]), normals[0] + normals[1]);
+      found.push_back(segment);
+    }
+  }
+
+  static BruteSegment segment_of(const View& view, const glm::dvec3& a, const glm::dvec3& b) {
+    const glm::dvec3 p = project(view.camera, a), q = project(view.camera, b);
+    BruteSegment segment;
+    segment.a = glm::dvec2(p), segment.b = glm::dvec2(q), segment.depth = 0.5 * (p.z + q.z);
+    return segment;
+  }
+
+  /// Along the normal where the nearer part shows its front, else against it; unclear where depth and N.V hang together little (cusps).
+  glm::dvec2 fold_outward(const View& view, size_t f, const std::vector<double>& facing, const glm::dvec3& p, const glm::dvec3& n) const {
+    double mean_f = 0.0, mean_z = 0.0, together = 0.0, of_f = 0.0, of_z = 0.0;
+    const size_t count = facing.size();
+    const auto depth = [&](size_t i) { return view.image[static_cast<size_t>(vertex(f, i))].z; };
+    for (size_t i = 0; i < count; ++i) mean_f += facing[i] / double(count), mean_z += depth(i) / double(count);
+    for (size_t i = 0; i < count; ++i) {
+      const double df = facing[i] - mean_f, dz = depth(i) - mean_z;
+      together += df * dz, of_f += df * df, of_z += dz * dz;
+    }
+    if (together * together < 0.1 * of_f * of_z) return glm::dvec2(0.0);
+    const double step = 1e-3 / pixels_per_unit_at(view.camera, project(view.camera, p).z);
+    const glm::dvec2 along = glm::dvec2(project(view.camera, p + step * glm::normalize(n))) - glm::dvec2(project(view.camera, p));
+    return glm::normalize(along) * (together < 0.0 ? 1.0 : -1.0);
+  }
+
+  /// An edge where faces end or meet sharply: all of them on one side of it in the picture.
+  void cross_edge(const View& view, size_t begin, size_t end, std::vector<BruteSegment>& found) const {
+    BruteSegment segment = segment_of(view, position(edges_[begin].ends.first), position(edges_[begin].ends.second));
+    const glm::dvec2 along = segment.b - segment.a, left(-along.y, along.x);
+    int lefts = 0, rights = 0;
+    for (size_t e = begin; e < end; ++e) {
+      const auto f = static_cast<size_t>(edges_[e].face), n = static_cast<size_t>(mesh_.face_sizes[f]);
+      glm::dvec2 center(0.0);
+      for (size_t i = 0; i < n; ++i) center += glm::dvec2(view.image[static_cast<size_t>(vertex(f, i))]) / double(n);
+      const double side = glm::dot(center - segment.middle(), left) / std::max(glm::dot(along, along), 1e-12);
+      lefts += side > 0.01;
+      rights += side < -0.01;
+    }
+    if (lefts > 0 && rights > 0) return;
+    const auto count = static_cast<int>(end - begin);
+    if (lefts == count || rights == count) segment.outward = glm::normalize(lefts > 0 ? -left : left);
+    found.push_back(segment);
+  }
+
+  void hide(const Camera& camera, std::vector<BruteSegment>& found) const {
+    constexpr std::array kBeyond_px{0.05, 0.15, 0.4};
+    std::vector<glm::dvec2> places;
+    for (const BruteSegment& segment : found)
+      for (const double beyond : kBeyond_px) places.push_back(segment.middle() + beyond * segment.outward);
+    std::vector<PointSample> samples(places.size());
+    sample_points(model_, camera, places, samples);
+    for (size_t k = 0; k < found.size(); ++k) {
+      BruteSegment& segment = found[k];
+      if (segment.outward == glm::dvec2(0.0)) continue;
+      const double nearer = segment.depth - 0.02 / pixels_per_unit_at(camera, segment.depth);
+      size_t blocked = 0;
+      for (size_t i = 0; i < kBeyond_px.size(); ++i) {
+        const PointSample& s = samples[k * kBeyond_px.size() + i];
+        blocked += s.status == HitStatus::hit && project(camera, s.position).z < nearer;
+      }
+      if (blocked == 0) segment.seen = BruteSegment::Seen::visible;
+      if (blocked == kBeyond_px.size()) segment.seen = BruteSegment::Seen::hidden;
+    }
+  }
+
+  const Mesh& mesh_;
+  std::vector<std::int32_t> first_;
+  SceneModel model_;
+  std::vector<EdgeUse> edges_;
+};
+
+/// How far curves and segments are from each other, over lengths in the picture.
+struct Agreement {
+  double length_px = 0.0;   ///< Of the segments that are seen.
+  double missing_px = 0.0;  ///< Of these, farther from all curves than the tolerance.
+  double extra_px = 0.0;    ///< Of curves, farther from all segments that may be seen.
+  double wrong_px = 0.0;    ///< Of curves that bound the wrong side.
+  double worst_px = 0.0;    ///< The greatest of all these distances.
+};
+
+inline Agreement agreement_of(const BorderCurves& curves, const std::vector<BruteSegment>& segments, double tolerance_px) {
+  constexpr double kSpacing_px = 0.5;
+  Agreement out;
+  for (const BruteSegment& segment : segments) {
+    if (segment.seen != BruteSegment::Seen::visible) continue;
+    const double away = distance_to(curves, CurveKind::silhouette, segment.middle());
+    out.length_px += segment.length();
+    out.worst_px = std::max(out.worst_px, away);
+    if (away > tolerance_px) out.missing_px += segment.length();
+  }
+  const auto check = [&](const glm::dvec2& p, const glm::dvec2& outward, double weight_px) {
+    double nearest = 1e9;
+    bool right = false, wrong = false;
+    for (const BruteSegment& segment : segments) {
+      if (segment.seen == BruteSegment::Seen::hidden) continue;
+      const double away = segment_distance(p, segment.a, segment.b);
+      nearest = std::min(nearest, away);
+      if (away > 2.0 * tolerance_px) continue;
+      const bool clear = segment.outward != glm::dvec2(0.0);
+      (clear && glm::dot(segment.outward, outward) < 0.0 ? wrong : right) = true;
+    }
+    out.worst_px = std::max(out.worst_px, nearest);
+    if (nearest > tolerance_px) out.extra_px += weight_px;
+    if (wrong && !right) out.wrong_px += weight_px;
+  };
+  for (const BorderCurve& curve : curves.curves) {
+    if (curve.kind != CurveKind::silhouette) continue;
+    const size_t n = curve.points.size();
+    for (size_t i = 0; i + (curve.closed ? 0 : 1) < n; ++i) {
+      const glm::dvec2 a = curve.points[i].px, b = curve.points[(i + 1) % n].px;
+      const int steps = std::max(1, static_cast<int>(std::ceil(glm::distance(a, b) / kSpacing_px)));
+      for (int k = 0; k < steps; ++k) check(glm::mix(a, b, (k + 0.5) / steps), {-(b.y - a.y), b.x - a.x}, glm::distance(a, b) / steps);
+    }
+  }
+  return out;
+}
+
+}  // namespace limn::test

@@ -29,9 +29,10 @@ std::vector<size_t> places_of(const CleanCage& clean, size_t faces) {
   return places;
 }
 
-bool touches_non_manifold(const Far::TopologyLevel& level, int face) {
-  const Far::ConstIndexArray corners = level.GetFaceVertices(face);
-  return std::any_of(corners.begin(), corners.end(), [&](int v) { return level.IsVertexNonManifold(v); });
+bool touches_other_sheets(const Far::TopologyLevel& level, int face) {
+  const Far::ConstIndexArray corners = level.GetFaceVertices(face), edges = level.GetFaceEdges(face);
+  return std::any_of(corners.begin(), corners.end(), [&](int v) { return level.IsVertexNonManifold(v); }) ||
+         std::any_of(edges.begin(), edges.end(), [&](int e) { return level.IsEdgeInfSharp(e) && !level.IsEdgeBoundary(e); });
 }
 
 /// What Bfr can gather as it is, all else in parts; sheets that hang together by more than an edge with two faces are parted first.
@@ -44,10 +45,10 @@ LimitCell cell_of(const LimitSurfaceData& data, const Mesh& clean, int face, std
     return cell;
   }
   // Bilinear faces depend on their own corners alone.
-  if (data.scheme == Scheme::bilinear || !touches_non_manifold(level, face)) return make_cell(*data.refiner, clean, data.scheme, face);
+  if (data.scheme == Scheme::bilinear || !touches_other_sheets(level, face)) return make_cell(*data.refiner, clean, data.scheme, face);
   if (!separated) separated = separate_sheets(level, clean, data.scheme);
-  if (!separated->same_limit[static_cast<size_t>(face)]) return cell;
-  return make_cell(*separated->refiner, separated->mesh, data.scheme, face);
+  const bool same = separated->same_limit[static_cast<size_t>(face)] != 0;
+  return make_cell(same ? *separated->refiner : *data.refiner, same ? separated->mesh : clean, data.scheme, face);
 }
 
 }  // namespace
@@ -91,6 +92,12 @@ bool LimitSurface::has_sub_faces(int face) const {
   LIMN_CHECK(face >= 0 && face < face_count());
   const LimitCell& cell = data_->cells[static_cast<size_t>(face)];
   return data_->scheme != Scheme::loop && cell.corners != 4 && cell.valid();
+}
+
+bool LimitSurface::is_tip(int face, int sub_face, int corner) const {
+  LIMN_CHECK(face >= 0 && face < face_count());
+  const LimitCell& cell = data_->cells[static_cast<size_t>(face)];
+  return data_->scheme == Scheme::catmark && cell.valid() && has_tip(cell, sub_face, corner);
 }
 
 bool LimitSurface::evaluate(int face, int sub_face, double u, double v, LimitPoint& out) const {

@@ -113,24 +113,36 @@ std::vector<glm::dvec3> subdivided(const Far::TopologyRefiner& refiner, const st
   return result;
 }
 
-/// Of face 0, a quad, at its corner of valence 2; none where it has no such corner. The subdivision of that vertex's ring has the
-/// eigenvalue 1/4 for what its two edges and its two faces differ by: these span the tangent plane.
-std::unique_ptr<LimitTip> tip_of(const Far::TopologyLevel& level, const Mesh& mesh) {
+/// Of face 0, a quad, at its corner of valence 2; none where it has no such corner.
+std::unique_ptr<LimitTip> tip_of(const Far::TopologyLevel& level, const Mesh& mesh, Scheme scheme) {
   const Far::ConstIndexArray corners = level.GetFaceVertices(0);
   if (corners.size() != 4) return nullptr;
+  std::vector<WeightedPoint> points(mesh.vertex_count());
+  for (size_t v = 0; v < points.size(); ++v) points[v].p = mesh.positions[v];
   for (int i = 0; i < 4; ++i) {
-    const Far::ConstIndexArray faces = level.GetVertexFaces(corners[i]);
-    if (faces.size() != 2 || level.IsVertexBoundary(corners[i])) continue;
-    const Far::ConstLocalIndexArray locals = level.GetVertexFaceLocalIndices(corners[i]);
-    const int other = faces[0] == 0 ? 1 : 0;
-    const auto at = [&](int v) { return mesh.positions[static_cast<size_t>(v)]; };
+    if (level.GetVertexFaces(corners[i]).size() != 2 || level.IsVertexBoundary(corners[i])) continue;
     auto tip = std::make_unique<LimitTip>();
-    for (int k = 0; k < 4; ++k) tip->corners[static_cast<size_t>(k)] = at(corners[k]);
-    tip->tangent1 = at(corners[(i + 1) % 4]) - at(corners[(i + 3) % 4]);
-    tip->tangent2 = at(corners[(i + 2) % 4]) - at(level.GetFaceVertices(faces[other])[(locals[other] + 2) % 4]);
+    for (int k = 0; k < 4; ++k) tip->corners[static_cast<size_t>(k)] = mesh.positions[static_cast<size_t>(corners[k])];
+    const OneRing ring = one_ring(level, scheme, points, corners[i]);
+    // The subdivision of the ring has the eigenvalue 1/4 for what the two edges and the two faces differ by, unless one is sharp.
+    if (ring.sharpness[0] == 0.0f && ring.sharpness[1] == 0.0f)
+      tip->tangent1 = ring.edges[0] - ring.edges[1], tip->tangent2 = ring.diagonals[0] - ring.diagonals[1];
     return tip;
   }
   return nullptr;
+}
+
+constexpr std::array<glm::dvec2, 4> kCorners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+
+/// A tip at a crease has the tangents of the place where the child across from it begins.
+void fill_tangents(LimitCell& cell, Scheme scheme) {
+  for (size_t i = 0; i < cell.children.size() && cell.corners == 4 && scheme != Scheme::loop; ++i) {
+    LimitTip* tip = cell.children[i].tip.get();
+    LimitPoint point;
+    if (tip == nullptr || tip->tangent1 != glm::dvec3(0.0)) continue;
+    if (!evaluate_cell(cell.children[(i + 2) % 4], scheme, 0, kCorners[i].x, kCorners[i].y, point)) continue;
+    tip->tangent1 = point.du, tip->tangent2 = point.dv;
+  }
 }
 
 LimitCell cell_of(const Level& level, const Child& at, int depth) {
@@ -144,7 +156,7 @@ LimitCell cell_of(const Level& level, const Child& at, int depth) {
   if (simple_neighbourhood(base, 0)) {
     cell.patch = make_patch(Bfr::RefinerSurfaceFactory<>(*refiner, patch_options()), 0, part.positions);
   } else if (depth == kDeepest) {
-    cell.tip = tip_of(base, part);
+    cell.tip = tip_of(base, part, level.scheme);
   } else {
     Far::TopologyRefiner::UniformOptions options(1);
     options.fullTopologyInLastLevel = true;
@@ -153,6 +165,7 @@ LimitCell cell_of(const Level& level, const Child& at, int depth) {
     const Level finer{refiner->GetLevel(1), positions, level.scheme, level.crease_method};
     for (const Child& child : children_of(refiner->GetLevel(0), finer.topology, level.scheme == Scheme::loop))
       cell.children.push_back(cell_of(finer, child, depth + 1));
+    fill_tangents(cell, level.scheme);
   }
   return cell;
 }
@@ -235,6 +248,12 @@ bool simple_neighbourhood(const Far::TopologyLevel& level, int face) {
 
 LimitCell make_cell(const Far::TopologyRefiner& refiner, const Mesh& mesh, Scheme scheme, int face) {
   return cell_of({refiner.GetLevel(0), mesh.positions, scheme, mesh.crease_method, mesh.triangle_rule}, {face, 0}, 0);
+}
+
+bool has_tip(const LimitCell& cell, int sub_face, int corner) {
+  if (cell.children.empty()) return cell.tip != nullptr;
+  if (cell.corners != 4) return has_tip(cell.children[static_cast<size_t>(sub_face)], 0, corner);
+  return has_tip(cell.children[static_cast<size_t>(corner)], 0, corner);
 }
 
 bool evaluate_cell(const LimitCell& cell, Scheme scheme, int sub_face, double u, double v, LimitPoint& out) {

@@ -53,8 +53,12 @@ LimitCell make_cell(const Far::TopologyRefiner& refiner, const Mesh& mesh, Schem
 /// False where the cell has no surface there. Coordinates and derivatives as LimitSurface::evaluate.
 bool evaluate_cell(const LimitCell& cell, Scheme scheme, int sub_face, double u, double v, LimitPoint& out);
 
-/// A cage cut along its edges with more than two faces (or two that disagree on the outside), and apart at vertices where sheets merely
-/// touch, so that each sheet is a surface with an open edge. OpenSubdiv makes such edges infinitely sharp: the sheets' limits are the same.
+/// Whether a face's corner (of a sub-face where it has any) is a tip.
+bool has_tip(const LimitCell& cell, int sub_face, int corner);
+
+/// A cage cut along its edges with more than two faces (or two that disagree on the outside) and along infinitely sharp ones, and apart at
+/// vertices where sheets merely touch, so that each sheet is a surface with an open edge. OpenSubdiv makes the former infinitely sharp too:
+/// the sheets' limits are the same.
 struct SeparatedCage {
   Mesh mesh{};  ///< Faces as in the given one.
   std::unique_ptr<Far::TopologyRefiner> refiner{};

@@ -75,6 +75,9 @@ class LimitSurface {
   int face_size(int face) const;
   /// True where `evaluate` wants a sub-face: n-gons of a scheme made for quads. False without a limit surface.
   bool has_sub_faces(int face) const;
+  /// Whether the corner (of the sub-face) of a face is an interior vertex of valence 2. The limit has no tangent plane there: the nearer to
+  /// the vertex, the more often its normal swings to and fro.
+  bool is_tip(int face, int sub_face, int corner) const;
   /// False where the face has no limit surface: a hole, or a corner where sheets touch whose rules OpenSubdiv mixes. Around extraordinary
   /// vertices the patches approximate the limit (normals within 0.01 degrees where measured), and at the ends of creases (darts) no better
   /// than OpenSubdiv's masks; refine() is exact at its vertices. (u, v) in [0,1]^2 for quads; n-gons: sub-face by corner.

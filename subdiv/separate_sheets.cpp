@@ -1,4 +1,5 @@
-// Cages whose sheets hang together in edges with more than two faces, or in single vertices, taken apart into sheets with open edges.
+// Cages whose sheets hang together in edges with more than two faces, in infinitely sharp ones or in single vertices, taken apart into
+// sheets with open edges.
 
 #include <algorithm>
 #include <numeric>
@@ -13,14 +14,16 @@ struct Item {
   int face = 0, corner = 0;
 };
 
-/// The corners at one vertex, in groups that hang together by edges with two faces.
+/// The corners at one vertex, in groups that hang together by edges with two faces that are not infinitely sharp.
 struct Groups {
   std::vector<Item> items;
   std::vector<int> group;  ///< Of each item.
   int count = 0;
 };
 
-bool joins(const Far::TopologyLevel& level, int edge) { return !level.IsEdgeNonManifold(edge) && level.GetEdgeFaces(edge).size() == 2; }
+bool joins(const Far::TopologyLevel& level, int edge) {
+  return !level.IsEdgeNonManifold(edge) && !level.IsEdgeInfSharp(edge) && level.GetEdgeFaces(edge).size() == 2;
+}
 
 std::array<int, 2> edges_at(const Far::TopologyLevel& level, const Item& item) {
   const Far::ConstIndexArray edges = level.GetFaceEdges(item.face);
@@ -69,6 +72,12 @@ Kept rule_kept(const Far::TopologyLevel& level, int vertex, const Groups& groups
   return std::all_of(sharp_in.begin(), sharp_in.end(), [](int n) { return n == 2; }) ? Kept::crease : Kept::not_kept;
 }
 
+bool ends_crease(const Far::TopologyLevel& level, int vertex) {
+  const Far::ConstIndexArray edges = level.GetVertexEdges(vertex);
+  return !level.IsVertexInfSharp(vertex) &&
+         std::any_of(edges.begin(), edges.end(), [&](int e) { return level.IsEdgeInfSharp(e) && !level.IsEdgeBoundary(e); });
+}
+
 void copy_creases(const Far::TopologyLevel& level, const Mesh& clean, const std::vector<std::int32_t>& first, Mesh& mesh) {
   for (int f = 0; f < level.GetNumFaces(); ++f) {
     const Far::ConstIndexArray edges = level.GetFaceEdges(f);
@@ -101,11 +110,14 @@ SeparatedCage separate_sheets(const Far::TopologyLevel& level, const Mesh& clean
     const auto tag = [&](std::int32_t vertex, float sharpness) {
       if (sharpness > 0.0f) mesh.corners.push_back({vertex, sharpness});
     };
-    if (!level.IsVertexNonManifold(v)) {
+    const Groups groups = groups_at(level, v);
+    if (groups.count == 1) {
       tag(v, level.GetVertexSharpness(v));
+      // A crease that ends here may be cut along at its other end; this end's rule is then another.
+      if (ends_crease(level, v))
+        for (const Item& item : groups.items) out.same_limit[static_cast<size_t>(item.face)] = 0;
       continue;
     }
-    const Groups groups = groups_at(level, v);
     const Kept kept = rule_kept(level, v, groups);
     const auto added = static_cast<std::int32_t>(mesh.vertex_count());
     for (size_t i = 0; i < groups.items.size(); ++i) {

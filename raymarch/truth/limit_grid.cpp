@@ -14,6 +14,7 @@ constexpr double kSamePlace = 1e-6;   // of the extent
 constexpr double kRounding = 1e-12;   // of the largest coordinate: no two evaluations agree better
 constexpr double kSameNormal = 2e-3;  // radians; a crease is sharper, a patch's error is not
 constexpr int kFinestSteps = 256;     // along a patch's side
+constexpr double kTip_px = 0.005;     // the patches' side is so far from its ends after one step, where it shrinks as the step's square
 
 bool has_normal(const glm::dvec3& n) { return std::isfinite(n.x) && glm::dot(n, n) > 0.5; }
 
@@ -82,6 +83,22 @@ double longest_side_px(const PlacedLimitSurface& placed, const Camera& camera) {
   return longest;
 }
 
+constexpr std::array<std::array<int, 2>, 4> kCornerPlaces{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+
+bool is_tip(const PlacedLimitSurface& placed, const LimitPatch& patch, size_t corner) {
+  return !patch.triangle && placed.surface.is_tip(patch.face, patch.sub_face, static_cast<int>(corner));
+}
+
+/// Finer where a face has an interior vertex of valence 2.
+int steps_for(const PlacedLimitSurface& placed, double longest_px, double cell_px) {
+  const int steps = std::clamp(2 * static_cast<int>(std::ceil(0.5 * longest_px / cell_px)), 4, kFinestSteps);
+  const bool any = std::any_of(placed.patches.begin(), placed.patches.end(), [&](const LimitPatch& patch) {
+    return is_tip(placed, patch, 0) || is_tip(placed, patch, 1) || is_tip(placed, patch, 2) || is_tip(placed, patch, 3);
+  });
+  if (!any) return steps;
+  return std::clamp(2 * static_cast<int>(std::ceil(0.5 * std::sqrt(longest_px / kTip_px))), steps, kFinestSteps);
+}
+
 struct PatchLattice {
   int steps = 1;
   std::vector<LimitSample> samples;  ///< Rows of v, each of u from 0; a triangle's rows grow shorter.
@@ -118,6 +135,22 @@ double same_place(const std::vector<PatchLattice>& lattices) {
   const glm::dvec3 farthest = glm::max(glm::abs(extent.lower), glm::abs(extent.upper));
   const double largest = std::max({farthest.x, farthest.y, farthest.z});
   return std::max({kSamePlace * extent.radius(), kRounding * largest, 1e-300});
+}
+
+/// From the tips of a patch to the samples around them.
+double tip_px(const PlacedLimitSurface& placed, size_t k, const PatchLattice& lattice, const Camera& camera) {
+  const LimitPatch& patch = placed.patches[k];
+  double widest = 0.0;
+  for (size_t corner = 0; corner < 4; ++corner) {
+    if (!is_tip(placed, patch, corner)) continue;
+    const auto px = [&](int i, int j) {
+      const std::array<int, 2> at = kCornerPlaces[corner];
+      const int u = at[0] ? lattice.steps - i : i, v = at[1] ? lattice.steps - j : j;
+      return glm::dvec2(project(camera, lattice.samples[lattice_index(patch, lattice.steps, u, v)].position));
+    };
+    widest = std::max({widest, glm::distance(px(0, 0), px(1, 0)), glm::distance(px(0, 0), px(0, 1)), glm::distance(px(0, 0), px(1, 1))});
+  }
+  return widest;
 }
 
 using SidesOfNodes = std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>;
@@ -243,7 +276,7 @@ SurfaceCurvature curvature_at(const PlacedLimitSurface& placed, size_t k, const 
 LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, double cell_px, std::int64_t max_triangles,
                       double& used_cell_px) {
   const double longest = longest_side_px(placed, camera);
-  int steps = std::clamp(2 * static_cast<int>(std::ceil(0.5 * longest / cell_px)), 4, kFinestSteps);
+  int steps = steps_for(placed, longest, cell_px);
   while (steps > 4 && triangles_of(placed, steps) > max_triangles) steps -= 2;
   used_cell_px = longest / steps;
   std::vector<PatchLattice> lattices(placed.patches.size());
@@ -253,10 +286,12 @@ LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, do
   Places places(same_place(lattices));
   SidesOfNodes sides;
   for (size_t k = 0; k < lattices.size(); ++k) {
-    if (lattices[k].valid)
-      add_lattice(placed, static_cast<std::uint32_t>(k), lattices[k], places, sides, grid);
-    else
+    if (!lattices[k].valid) {
       grid.invalid_patches.push_back(k);
+      continue;
+    }
+    add_lattice(placed, static_cast<std::uint32_t>(k), lattices[k], places, sides, grid);
+    grid.tip_px = std::max(grid.tip_px, tip_px(placed, k, lattices[k], camera));
   }
   find_seams(placed, grid);
   return grid;

@@ -69,6 +69,8 @@ struct LimitGrid {
   LimitSeams seams{};
   /// Some seam has not two triangles that run along it opposite ways: the surface has an end, or no outside, and its back may be seen.
   bool sheet = false;
+  /// How far from interior vertices of valence 2 the nearest samples are at most, px: so near to them the surface is not resolved.
+  double tip_px = 0.0;
   std::vector<size_t> invalid_patches{};  ///< Without a limit surface; they are left out.
 };
 

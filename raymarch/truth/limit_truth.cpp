@@ -19,12 +19,14 @@ constexpr double kCell_px = 4.0;
 constexpr std::int64_t kMostTriangles = 3'000'000;
 // A point is lifted off the mesh that stands in for the surface, by more than the two lie apart.
 constexpr double kLift_px = 0.1;
+constexpr double kTip_px = 0.01;  // what is not resolved around vertices of valence 2 counts from here
 
 struct CageScene {
   std::vector<TracedCurve> curves{};
   double cell_px = 0.0;       ///< The widest lattice's.
   std::int64_t left_out = 0;  ///< Faces without a limit surface.
   double left_out_px = 0.0;   ///< The widest of them.
+  double tip_px = 0.0;        ///< LimitGrid::tip_px
   int silhouettes = 0, level_curves = 0;
 };
 
@@ -58,6 +60,7 @@ void trace_side(const Mesh& cage, const PlacedLimitSurface& placed, LimitTurn tu
   const LimitGrid grid = sample_grid(placed, camera, kCell_px, kMostTriangles, cell_px);
   out.cell_px = std::max(out.cell_px, cell_px);
   const bool front = turn != LimitTurn::back;
+  out.tip_px = std::max(out.tip_px, grid.tip_px);
   if (front) count_left_out(cage, placed, grid, camera, out);
   const auto trace = [&](CurveKind kind, double threshold, int& closed) {
     for (TracedCurve& curve : trace_limit_curves(placed, grid, camera, {kind, threshold, 0.5 * settings.tolerance_px, index, turn})) {
@@ -136,6 +139,16 @@ TruthShare trace_cages(const Scene& scene, const std::vector<size_t>& objects, c
                                    "cannot be evaluated (several sheets touch there); their border is missing",
                                    traced.left_out, traced.left_out == 1 ? "is" : "are", traced.left_out_px));
   }
+  if (traced.tip_px > kTip_px) {
+    share.exact = false;
+    share.unrefined_px = std::max(share.unrefined_px, traced.tip_px);
+    share.notes.insert(
+        share.notes.begin(),
+        fmt::format("not exact: around interior vertices of valence 2, where the limit surface has no tangent plane, the border "
+                    "is not resolved within {:.2g} px",
+                    traced.tip_px));
+  }
+  share.lift_px = kLift_px;
   share.blocked = [proxy, objects, camera = settings.camera](const TracedPoint& point, int) {
     return is_blocked(proxy->model, objects, camera, point);
   };

@@ -16,6 +16,7 @@ struct TruthShare {
   std::vector<std::string> notes{};  ///< What the bound does not cover.
   /// Something of this share is between the point, which lies on the scene's object number `object` (of this share or not), and the eye.
   std::function<bool(const TracedPoint& point, int object)> blocked{};
+  double lift_px = 0.0;  ///< As in CurveScene.
   /// As in CurveScene, for this share's curves; may be empty.
   std::function<TracedPoint(const TracedCurve& curve, size_t i, double t)> between{};
   std::function<double(const glm::dvec3& p, int object)> others{};

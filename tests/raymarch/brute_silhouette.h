@@ -12,11 +12,15 @@ struct BruteSegment {
   enum class Seen { hidden, visible, unclear };
   glm::dvec2 a{0.0}, b{0.0};
   double depth = 0.0;
+  double floor_px = 0.0;    ///< How far the contour may be from this chord.
   glm::dvec2 outward{0.0};  ///< Unit, away from what it bounds; 0 where that is not clear.
   Seen seen = Seen::unclear;
   glm::dvec2 middle() const { return 0.5 * (a + b); }
   double length() const { return glm::distance(a, b); }
 };
+
+/// Coarser chords than this are not made up for.
+inline constexpr double kMostFloor_px = 0.1;
 
 /// `fine` has limit normals at its corners, and stands in the world.
 class BruteSilhouette {
@@ -24,6 +28,7 @@ class BruteSilhouette {
   explicit BruteSilhouette(const Mesh& fine)
       : mesh_(fine), first_(first_corners(fine)), model_(model_of(scene_of({object_of(fine)}), "mesh")) {
     gather_edges();
+    find_singular();
   }
 
   /// In the picture; whether something hides them is asked a little outside of them, and is unclear where nearby places differ.
@@ -71,6 +76,29 @@ class BruteSilhouette {
     std::stable_sort(edges_.begin(), edges_.end(), [](const EdgeUse& a, const EdgeUse& b) { return a.ends < b.ends; });
   }
 
+  /// Where sheets touch, and where a sharp corner or a spike has a normal for each of its faces, the mesh's normals are not the limit's.
+  void find_singular() {
+    singular_.assign(mesh_.vertex_count(), 0);
+    std::vector<glm::dvec3> normal_at(mesh_.vertex_count());
+    std::vector<char> differ(mesh_.vertex_count(), 0), creased(mesh_.vertex_count(), 0);
+    for (size_t f = 0; f < mesh_.face_count(); ++f) {
+      for (size_t i = 0; i < static_cast<size_t>(mesh_.face_sizes[f]); ++i) {
+        const auto v = static_cast<size_t>(vertex(f, i));
+        if (normal_at[v] == glm::dvec3(0.0)) normal_at[v] = normal(f, i);
+        differ[v] |= glm::distance(normal_at[v], normal(f, i)) > 1e-3;
+      }
+    }
+    for (size_t e = 0, end = 0; e < edges_.size(); e = end) {
+      while (end < edges_.size() && edges_[end].ends == edges_[e].ends) ++end;
+      const auto a = static_cast<size_t>(edges_[e].ends.first), b = static_cast<size_t>(edges_[e].ends.second);
+      const bool manifold = end - e == 1 || (end - e == 2 && vertex(size_t(edges_[e].face), size_t(edges_[e].corner)) !=
+                                                                 vertex(size_t(edges_[e + 1].face), size_t(edges_[e + 1].corner)));
+      if (!manifold) singular_[a] = singular_[b] = 1;
+      if (!smooth(e, end) && differ[a] && differ[b]) creased[a] = creased[b] = 1;
+    }
+    for (size_t v = 0; v < singular_.size(); ++v) singular_[v] |= differ[v] && !creased[v];
+  }
+
   /// Two faces that run along it opposite ways and have the same normals there.
   bool smooth(size_t begin, size_t end) const {
     if (end - begin != 2) return false;
@@ -103,9 +131,26 @@ class BruteSilhouette {
     }
     for (size_t k = 0; k + 1 < places.size(); k += 2) {
       BruteSegment segment = segment_of(view, places[k], places[k + 1]);
+      segment.floor_px = floor_of(view, f);
       if (places.size() == 2) segment.outward = fold_outward(view, f, facing, 0.5 * (places[0] + places[1]), normals[0] + normals[1]);
       found.push_back(segment);
     }
+  }
+
+  /// Between two corners whose normals differ by an angle the surface rises by an eighth of it over the chord.
+  double floor_of(const View& view, size_t f) const {
+    const auto n = static_cast<size_t>(mesh_.face_sizes[f]);
+    const auto px = [&](size_t i) { return glm::dvec2(view.image[static_cast<size_t>(vertex(f, i))]); };
+    double longest = 0.0, turn = 0.0;
+    for (size_t i = 0; i < n; ++i) {
+      for (size_t j = 0; j < i; ++j) {
+        longest = std::max(longest, glm::distance(px(i), px(j)));
+        turn = std::max(turn, glm::distance(normal(f, i), normal(f, j)));
+      }
+    }
+    for (size_t i = 0; i < n; ++i)
+      if (singular_[static_cast<size_t>(vertex(f, i))]) return kMostFloor_px;
+    return std::min(kMostFloor_px, 0.125 * turn * longest);
   }
 
   static BruteSegment segment_of(const View& view, const glm::dvec3& a, const glm::dvec3& b) {
@@ -151,7 +196,7 @@ class BruteSilhouette {
   }
 
   void hide(const Camera& camera, std::vector<BruteSegment>& found) const {
-    constexpr std::array kBeyond_px{0.05, 0.15, 0.4};
+    constexpr std::array kBeyond_px{0.01, 0.05, 0.15, 0.4};
     std::vector<glm::dvec2> places;
     for (const BruteSegment& segment : found)
       for (const double beyond : kBeyond_px) places.push_back(segment.middle() + beyond * segment.outward);
@@ -175,6 +220,7 @@ class BruteSilhouette {
   std::vector<std::int32_t> first_;
   SceneModel model_;
   std::vector<EdgeUse> edges_;
+  std::vector<char> singular_;  ///< Of vertices.
 };
 
 /// How far curves and segments are from each other, over lengths in the picture.
@@ -191,9 +237,12 @@ inline Agreement agreement_of(const BorderCurves& curves, const std::vector<Brut
   Agreement out;
   for (const BruteSegment& segment : segments) {
     if (segment.seen != BruteSegment::Seen::visible) continue;
-    const double away = distance_to(curves, CurveKind::silhouette, segment.middle());
+    const double away = distance_to(curves, CurveKind::silhouette, segment.middle()) - segment.floor_px;
     out.length_px += segment.length();
     out.worst_px = std::max(out.worst_px, away);
+    if (away > tolerance_px && std::getenv("DBGX"))
+      std::printf("missing at %.3f %.3f by %.4f depth %.4f outward %.2f %.2f\n", segment.middle().x, segment.middle().y, away,
+                  segment.depth, segment.outward.x, segment.outward.y);
     if (away > tolerance_px) out.missing_px += segment.length();
   }
   const auto check = [&](const glm::dvec2& p, const glm::dvec2& outward, double weight_px) {
@@ -201,13 +250,15 @@ inline Agreement agreement_of(const BorderCurves& curves, const std::vector<Brut
     bool right = false, wrong = false;
     for (const BruteSegment& segment : segments) {
       if (segment.seen == BruteSegment::Seen::hidden) continue;
-      const double away = segment_distance(p, segment.a, segment.b);
+      const double away = segment_distance(p, segment.a, segment.b) - segment.floor_px;
       nearest = std::min(nearest, away);
       if (away > 2.0 * tolerance_px) continue;
       const bool clear = segment.outward != glm::dvec2(0.0);
       (clear && glm::dot(segment.outward, outward) < 0.0 ? wrong : right) = true;
     }
     out.worst_px = std::max(out.worst_px, nearest);
+    if (nearest > tolerance_px && std::getenv("DBGX"))
+      std::printf("extra at %.3f %.3f by %.4f outward %.3f %.3f\n", p.x, p.y, nearest, outward.x, outward.y);
     if (nearest > tolerance_px) out.extra_px += weight_px;
     if (wrong && !right) out.wrong_px += weight_px;
   };

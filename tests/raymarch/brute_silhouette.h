@@ -2,6 +2,8 @@
 // The silhouette of a fine mesh by brute force: what every face and every edge of it says, and rays against all of it. Nothing here knows
 // of patches, curves or chains.
 
+#include <map>
+
 #include "raymarch/gbuffer.h"
 #include "tests/raymarch/border_distance.h"
 #include "tests/raymarch/scenes.h"
@@ -21,6 +23,7 @@ struct BruteSegment {
 
 /// Coarser chords than this are not made up for.
 inline constexpr double kMostFloor_px = 0.1;
+inline constexpr double kSameNormal = 1e-3;
 
 /// `fine` has limit normals at its corners, and stands in the world.
 class BruteSilhouette {
@@ -31,15 +34,36 @@ class BruteSilhouette {
     find_singular();
   }
 
+  /// A tip in the picture, with all faces that touch it.
+  struct Tip {
+    glm::dvec2 px{0.0};
+    double radius_px = 0.0;
+  };
+  std::vector<Tip> tips(const Camera& camera) const {
+    const View view = look(camera);
+    std::map<std::int32_t, double> radius;
+    for (size_t f = 0; f < mesh_.face_count(); ++f) {
+      const auto n = static_cast<size_t>(mesh_.face_sizes[f]);
+      const auto px = [&](size_t i) { return glm::dvec2(view.image[static_cast<size_t>(vertex(f, i))]); };
+      for (size_t i = 0; i < n; ++i) {
+        if (!tip_[static_cast<size_t>(vertex(f, i))]) continue;
+        double& farthest = radius[vertex(f, i)];
+        for (size_t j = 0; j < n; ++j) farthest = std::max(farthest, glm::distance(px(i), px(j)));
+      }
+    }
+    std::vector<Tip> found;
+    for (const auto& [v, r] : radius) found.push_back({glm::dvec2(view.image[static_cast<size_t>(v)]), r});
+    return found;
+  }
+
   /// In the picture; whether something hides them is asked a little outside of them, and is unclear where nearby places differ.
   std::vector<BruteSegment> segments(const Camera& camera) const {
     const View view = look(camera);
     std::vector<BruteSegment> found;
     for (size_t f = 0; f < mesh_.face_count(); ++f) cross_face(view, f, found);
-    for (size_t e = 0, end = 0; e < edges_.size(); e = end) {
-      while (end < edges_.size() && edges_[end].ends == edges_[e].ends) ++end;
-      if (!smooth(e, end)) cross_edge(view, e, end, found);
-    }
+    for_each_edge([&](size_t begin, size_t end) {
+      if (!smooth(begin, end)) cross_edge(view, begin, end, found);
+    });
     std::erase_if(found, [&](const BruteSegment& s) {
       const glm::dvec2 m = s.middle();
       return !(m.x > 0.0 && m.y > 0.0 && m.x < camera.width_px && m.y < camera.height_px);
@@ -76,27 +100,41 @@ class BruteSilhouette {
     std::stable_sort(edges_.begin(), edges_.end(), [](const EdgeUse& a, const EdgeUse& b) { return a.ends < b.ends; });
   }
 
-  /// Where sheets touch, and where a sharp corner or a spike has a normal for each of its faces, the mesh's normals are not the limit's.
+  /// Where sheets touch the mesh's normals are not the limit's; around tips (sharp corners, ends of creases, ends of seams between sheets)
+  /// its faces stay large on every level, and say little of the contours that run into them.
   void find_singular() {
-    singular_.assign(mesh_.vertex_count(), 0);
-    std::vector<glm::dvec3> normal_at(mesh_.vertex_count());
-    std::vector<char> differ(mesh_.vertex_count(), 0), creased(mesh_.vertex_count(), 0);
+    const size_t count = mesh_.vertex_count();
+    singular_.assign(count, 0), tip_.assign(count, 0);
+    std::vector<glm::dvec3> normal_at(count);
+    std::vector<char> split(count, 0);
+    std::vector<int> sharp(count, 0);
     for (size_t f = 0; f < mesh_.face_count(); ++f) {
       for (size_t i = 0; i < static_cast<size_t>(mesh_.face_sizes[f]); ++i) {
         const auto v = static_cast<size_t>(vertex(f, i));
         if (normal_at[v] == glm::dvec3(0.0)) normal_at[v] = normal(f, i);
-        differ[v] |= glm::distance(normal_at[v], normal(f, i)) > 1e-3;
+        if (glm::distance(normal_at[v], normal(f, i)) > kSameNormal) split[v] = 1;
       }
     }
+    for_each_edge([&](size_t begin, size_t end) {
+      const auto a = static_cast<size_t>(edges_[begin].ends.first), b = static_cast<size_t>(edges_[begin].ends.second);
+      const bool open = end - begin == 1, joined = end - begin == 2 && !agree(begin);
+      if (!open && !joined) singular_[a] = singular_[b] = 1;
+      if (!joined || (!smooth(begin, end) && split[a] && split[b])) ++sharp[a], ++sharp[b];
+    });
+    for (size_t v = 0; v < count; ++v) tip_[v] = split[v] && sharp[v] != 2;
+  }
+
+  template <class Visit>
+  void for_each_edge(const Visit& visit) const {
     for (size_t e = 0, end = 0; e < edges_.size(); e = end) {
       while (end < edges_.size() && edges_[end].ends == edges_[e].ends) ++end;
-      const auto a = static_cast<size_t>(edges_[e].ends.first), b = static_cast<size_t>(edges_[e].ends.second);
-      const bool manifold = end - e == 1 || (end - e == 2 && vertex(size_t(edges_[e].face), size_t(edges_[e].corner)) !=
-                                                                 vertex(size_t(edges_[e + 1].face), size_t(edges_[e + 1].corner)));
-      if (!manifold) singular_[a] = singular_[b] = 1;
-      if (!smooth(e, end) && differ[a] && differ[b]) creased[a] = creased[b] = 1;
+      visit(e, end);
     }
-    for (size_t v = 0; v < singular_.size(); ++v) singular_[v] |= differ[v] && !creased[v];
+  }
+  /// The edge's first two faces run along it the same way.
+  bool agree(size_t e) const {
+    const auto from = [&](size_t k) { return vertex(static_cast<size_t>(edges_[k].face), static_cast<size_t>(edges_[k].corner)); };
+    return from(e) == from(e + 1);
   }
 
   /// Two faces that run along it opposite ways and have the same normals there.
@@ -105,9 +143,9 @@ class BruteSilhouette {
     const auto face = [&](size_t e) { return static_cast<size_t>(edges_[e].face); };
     const auto corner = [&](size_t e) { return static_cast<size_t>(edges_[e].corner); };
     const size_t a = begin, b = begin + 1;
-    if (vertex(face(a), corner(a)) == vertex(face(b), corner(b))) return false;
-    return glm::distance(normal(face(a), corner(a)), normal(face(b), corner(b) + 1)) < 1e-3 &&
-           glm::distance(normal(face(a), corner(a) + 1), normal(face(b), corner(b))) < 1e-3;
+    if (agree(begin)) return false;
+    return glm::distance(normal(face(a), corner(a)), normal(face(b), corner(b) + 1)) < kSameNormal &&
+           glm::distance(normal(face(a), corner(a) + 1), normal(face(b), corner(b))) < kSameNormal;
   }
 
   View look(const Camera& camera) const {
@@ -160,20 +198,25 @@ class BruteSilhouette {
     return segment;
   }
 
-  /// Along the normal where the nearer part shows its front, else against it; unclear where depth and N.V hang together little (cusps).
+  /// Along the normal where N.V rises towards the eye, else against it; unclear where it hardly does either (cusps). Its gradient in the
+  /// face is that of the plane through the corners' values, by least squares.
   glm::dvec2 fold_outward(const View& view, size_t f, const std::vector<double>& facing, const glm::dvec3& p, const glm::dvec3& n) const {
-    double mean_f = 0.0, mean_z = 0.0, together = 0.0, of_f = 0.0, of_z = 0.0;
+    const glm::dvec3 v = view_vector(view.camera, p), across = glm::cross(glm::normalize(n), v);
     const size_t count = facing.size();
-    const auto depth = [&](size_t i) { return view.image[static_cast<size_t>(vertex(f, i))].z; };
-    for (size_t i = 0; i < count; ++i) mean_f += facing[i] / double(count), mean_z += depth(i) / double(count);
+    glm::dvec3 mean(0.0);
+    double mean_f = 0.0;
+    for (size_t i = 0; i < count; ++i) mean += position(vertex(f, i)) / double(count), mean_f += facing[i] / double(count);
+    double xx = 0.0, xy = 0.0, yy = 0.0, xf = 0.0, yf = 0.0;
     for (size_t i = 0; i < count; ++i) {
-      const double df = facing[i] - mean_f, dz = depth(i) - mean_z;
-      together += df * dz, of_f += df * df, of_z += dz * dz;
+      const glm::dvec3 d = position(vertex(f, i)) - mean;
+      const double x = glm::dot(d, v), y = glm::dot(d, across), df = facing[i] - mean_f;
+      xx += x * x, xy += x * y, yy += y * y, xf += x * df, yf += y * df;
     }
-    if (together * together < 0.1 * of_f * of_z) return glm::dvec2(0.0);
+    const double determinant = xx * yy - xy * xy, towards_eye = yy * xf - xy * yf, sideways = xx * yf - xy * xf;
+    if (!(determinant > 1e-6 * xx * yy) || std::abs(towards_eye) < 0.05 * std::abs(sideways)) return glm::dvec2(0.0);
     const double step = 1e-3 / pixels_per_unit_at(view.camera, project(view.camera, p).z);
     const glm::dvec2 along = glm::dvec2(project(view.camera, p + step * glm::normalize(n))) - glm::dvec2(project(view.camera, p));
-    return glm::normalize(along) * (together < 0.0 ? 1.0 : -1.0);
+    return glm::normalize(along) * (towards_eye > 0.0 ? 1.0 : -1.0);
   }
 
   /// An edge where faces end or meet sharply: all of them on one side of it in the picture.
@@ -220,7 +263,7 @@ class BruteSilhouette {
   std::vector<std::int32_t> first_;
   SceneModel model_;
   std::vector<EdgeUse> edges_;
-  std::vector<char> singular_;  ///< Of vertices.
+  std::vector<char> singular_, tip_;  ///< Of vertices.
 };
 
 /// How far curves and segments are from each other, over lengths in the picture.
@@ -232,20 +275,23 @@ struct Agreement {
   double worst_px = 0.0;    ///< The greatest of all these distances.
 };
 
-inline Agreement agreement_of(const BorderCurves& curves, const std::vector<BruteSegment>& segments, double tolerance_px) {
+/// Places at `tips` are left out.
+inline Agreement agreement_of(const BorderCurves& curves, const std::vector<BruteSegment>& segments,
+                              const std::vector<BruteSilhouette::Tip>& tips, double tolerance_px) {
   constexpr double kSpacing_px = 0.5;
   Agreement out;
+  const auto at_tip = [&](const glm::dvec2& p) {
+    return std::any_of(tips.begin(), tips.end(), [&](const auto& tip) { return glm::distance(tip.px, p) < tip.radius_px; });
+  };
   for (const BruteSegment& segment : segments) {
-    if (segment.seen != BruteSegment::Seen::visible) continue;
+    if (segment.seen != BruteSegment::Seen::visible || at_tip(segment.middle())) continue;
     const double away = distance_to(curves, CurveKind::silhouette, segment.middle()) - segment.floor_px;
     out.length_px += segment.length();
     out.worst_px = std::max(out.worst_px, away);
-    if (away > tolerance_px && std::getenv("DBGX"))
-      std::printf("missing at %.3f %.3f by %.4f depth %.4f outward %.2f %.2f\n", segment.middle().x, segment.middle().y, away,
-                  segment.depth, segment.outward.x, segment.outward.y);
     if (away > tolerance_px) out.missing_px += segment.length();
   }
   const auto check = [&](const glm::dvec2& p, const glm::dvec2& outward, double weight_px) {
+    if (at_tip(p)) return;
     double nearest = 1e9;
     bool right = false, wrong = false;
     for (const BruteSegment& segment : segments) {
@@ -257,8 +303,6 @@ inline Agreement agreement_of(const BorderCurves& curves, const std::vector<Brut
       (clear && glm::dot(segment.outward, outward) < 0.0 ? wrong : right) = true;
     }
     out.worst_px = std::max(out.worst_px, nearest);
-    if (nearest > tolerance_px && std::getenv("DBGX"))
-      std::printf("extra at %.3f %.3f by %.4f outward %.3f %.3f\n", p.x, p.y, nearest, outward.x, outward.y);
     if (nearest > tolerance_px) out.extra_px += weight_px;
     if (wrong && !right) out.wrong_px += weight_px;
   };

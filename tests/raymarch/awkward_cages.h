@@ -1,6 +1,7 @@
 #pragma once
 // Subdivision cages of every awkward kind, in the style of OpenSubdiv's regression shapes: few faces, nothing symmetric.
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>

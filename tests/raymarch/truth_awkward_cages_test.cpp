@@ -6,7 +6,7 @@
 
 #include "raymarch/truth.h"
 #include "tests/raymarch/awkward_cages.h"
-#include "tests/raymarch/brute_silhouette.h"
+#include "tests/raymarch/silhouette_agreement.h"
 
 namespace limn::test {
 namespace {

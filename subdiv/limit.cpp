@@ -1,7 +1,8 @@
 #include <algorithm>
 
 #include "sdf/error.h"
-#include "subdiv/limit_cells.h"
+#include "subdiv/opensubdiv_cage.h"
+#include "subdiv/opensubdiv_cells.h"
 
 namespace limn {
 

@@ -1,10 +1,12 @@
-#include "subdiv/limit_cells.h"
+#include "subdiv/opensubdiv_cells.h"
 
 #include <opensubdiv/far/primvarRefiner.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+
+#include "subdiv/opensubdiv_cage.h"
 
 namespace limn {
 namespace {

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "subdiv/limit_cells.h"
+#include "subdiv/opensubdiv_cage.h"
+#include "subdiv/opensubdiv_cells.h"
 
 namespace limn {
 namespace {

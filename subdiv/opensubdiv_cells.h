@@ -1,19 +1,21 @@
 #pragma once
-// Faces whose neighbours OpenSubdiv's Bfr cannot gather, cut into the faces that subdivision makes of them until it can.
+// Faces whose neighbours OpenSubdiv's Bfr cannot gather, cut into the faces that subdivision makes of them until it can. Included by this
+// folder's .cpp files only.
 
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 #include <opensubdiv/bfr/surface.h>
-#include <opensubdiv/far/topologyLevel.h>
+#include <opensubdiv/far/topologyRefiner.h>
 
 #include <array>
 #include <memory>
 #include <vector>
 
-#include "subdiv/opensubdiv_cage.h"
+#include "subdiv/refine.h"
 
 namespace limn {
 
 namespace Bfr = OpenSubdiv::Bfr;
+namespace Far = OpenSubdiv::Far;
 
 /// A surface of Bfr with its points. Its factory and refiner are needed no longer.
 struct BfrPatch {

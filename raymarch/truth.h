@@ -26,7 +26,7 @@ struct BorderTruth {
   /// Contour generators: closed curves on the surfaces, hidden ones and parts included. Objects that overlap count as one body.
   int contour_generators = 0,
       level_curves = 0;              ///< The same of level curves N.V = threshold.
-  bool exact = true;                 ///< False where a finest affordable version stands in for the surface itself.
+  bool exact = true;                 ///< False where a finest affordable version stands in for the surface itself, or a part is left out.
   double bound_px = 0.0;             ///< No point of `curves` lies farther from the true border than this; an estimate where not `exact`.
   std::string from{};                ///< What it was solved on, in words: "the field", "the limit surface", "a mesh of level 6".
   std::vector<std::string> notes{};  ///< What the bound does not cover, with numbers.

@@ -1,68 +1,55 @@
-#include <opensubdiv/bfr/refinerSurfaceFactory.h>
-#include <opensubdiv/bfr/surface.h>
-#include <opensubdiv/far/topologyLevel.h>
-
 #include <algorithm>
-#include <cmath>
 
 #include "sdf/error.h"
 #include "subdiv/opensubdiv_cage.h"
+#include "subdiv/opensubdiv_cells.h"
 
 namespace limn {
 
-namespace Bfr = OpenSubdiv::Bfr;
-
-/// Surfaces and their patch points, face by face, in the given cage's numbering.
+/// Faces in the given cage's numbering; after them the second and further pieces of faces that pass a vertex twice.
 struct LimitSurfaceData {
   std::unique_ptr<Far::TopologyRefiner> refiner;
   std::unique_ptr<Bfr::RefinerSurfaceFactory<>> factory;
-  std::vector<Bfr::Surface<double>> surfaces;
-  std::vector<std::vector<double>> patch_points;
+  std::vector<LimitCell> cells;
   std::vector<int> face_sizes;
-  std::vector<std::int32_t> holes;
+  std::vector<char> holes;
   Scheme scheme = Scheme::catmark;
 };
 
 namespace {
 
-/// Around extraordinary vertices and semi-sharp features the patches approximate the limit; each level of isolation brings them nearer,
-/// and sharpness wears off by 1 a level, so that 10 levels hold every semi-sharp crease.
-constexpr int kSmoothLevels = 8, kSharpLevels = 10;
-
-/// Bfr gathers a face's neighbours corner by corner, and overruns its buffers where one neighbour is met again at a corner that is not
-/// the next (two faces that share two edges, tubes of fewer than three faces) or where an edge has more than two faces.
-bool simple_neighbourhood(const Far::TopologyLevel& level, int face) {
-  const Far::ConstIndexArray corners = level.GetFaceVertices(face);
-  std::vector<std::pair<int, int>> met;
-  for (int i = 0; i < corners.size(); ++i) {
-    if (level.IsVertexNonManifold(corners[i])) return false;
-    for (const int neighbour : level.GetVertexFaces(corners[i]))
-      if (neighbour != face) met.emplace_back(neighbour, i);
+/// Where each face of a clean cage goes: the first piece of a face stands for it, others follow after all faces.
+std::vector<size_t> places_of(const CleanCage& clean, size_t faces) {
+  std::vector<char> taken(faces, 0);
+  std::vector<size_t> places;
+  for (const std::int32_t face : clean.face_of) {
+    char& here = taken[static_cast<size_t>(face)];
+    places.push_back(here ? faces++ : static_cast<size_t>(face));
+    here = 1;
   }
-  std::sort(met.begin(), met.end());
-  const int n = corners.size();
-  for (size_t first = 0, end = 0; first < met.size(); first = end) {
-    while (end < met.size() && met[end].first == met[first].first) ++end;
-    if (end - first == 1) continue;
-    const int gap = met[first + 1].second - met[first].second;
-    if (end - first > 2 || (gap != 1 && gap != n - 1)) return false;
-  }
-  return true;
+  return places;
 }
 
-/// OpenSubdiv 3.5 gives second derivatives of the wrong sign in the triangular patches that lie upside down in their face (it scales them
-/// by the cube of what it scales first derivatives by, which is negative there). The change of the first derivatives tells.
-void mend_sign(const Bfr::Surface<double>& surface, const double* patch_points, double u, double v, LimitPoint& point) {
-  constexpr double kStep = 1e-3;
-  double step_u = kStep * (1.0 / 3.0 - u), step_v = kStep * (1.0 / 3.0 - v);
-  if (std::abs(step_u) + std::abs(step_v) < 0.01 * kStep) step_u = 0.1 * kStep;
-  const double uv[2] = {u + step_u, v + step_v};
-  LimitPoint near;
-  surface.Evaluate(uv, patch_points, 3, &near.position.x, &near.du.x, &near.dv.x);
-  const double agreement = glm::dot(near.du - point.du, step_u * point.duu + step_v * point.duv) +
-                           glm::dot(near.dv - point.dv, step_u * point.duv + step_v * point.dvv);
-  if (agreement >= 0.0) return;
-  point.duu = -point.duu, point.duv = -point.duv, point.dvv = -point.dvv;
+bool touches_other_sheets(const Far::TopologyLevel& level, int face) {
+  const Far::ConstIndexArray corners = level.GetFaceVertices(face), edges = level.GetFaceEdges(face);
+  return std::any_of(corners.begin(), corners.end(), [&](int v) { return level.IsVertexNonManifold(v); }) ||
+         std::any_of(edges.begin(), edges.end(), [&](int e) { return level.IsEdgeInfSharp(e) && !level.IsEdgeBoundary(e); });
+}
+
+/// What Bfr can gather as it is, all else in parts; sheets that hang together by more than an edge with two faces are parted first.
+LimitCell cell_of(const LimitSurfaceData& data, const Mesh& clean, int face, std::optional<SeparatedCage>& separated) {
+  const Far::TopologyLevel& level = data.refiner->GetLevel(0);
+  LimitCell cell;
+  cell.corners = clean.face_sizes[static_cast<size_t>(face)];
+  if (simple_neighbourhood(level, face)) {
+    cell.patch = make_patch(*data.factory, face, clean.positions);
+    return cell;
+  }
+  // Bilinear faces depend on their own corners alone.
+  if (data.scheme == Scheme::bilinear || !touches_other_sheets(level, face)) return make_cell(*data.refiner, clean, data.scheme, face);
+  if (!separated) separated = separate_sheets(level, clean, data.scheme);
+  const bool same = separated->same_limit[static_cast<size_t>(face)] != 0;
+  return make_cell(same ? *separated->refiner : *data.refiner, same ? separated->mesh : clean, data.scheme, face);
 }
 
 }  // namespace
@@ -71,34 +58,30 @@ LimitSurface::LimitSurface(const Mesh& cage, Scheme scheme, const std::string& f
   const CleanCage clean = clean_cage(cage, scheme, file);
   auto data = std::make_shared<LimitSurfaceData>();
   data->scheme = scheme;
-  data->holes = cage.holes;
   data->refiner = make_refiner(clean.mesh, scheme, file);
-  Bfr::SurfaceFactory::Options options;
-  options.SetApproxLevelSmooth(kSmoothLevels).SetApproxLevelSharp(kSharpLevels);
-  data->factory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*data->refiner, options);
-  data->surfaces.resize(cage.face_count());
-  data->patch_points.resize(cage.face_count());
+  data->factory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*data->refiner, patch_options());
+  const std::vector<size_t> places = places_of(clean, cage.face_count());
+  const size_t count = std::max(cage.face_count(), places.empty() ? 0 : *std::max_element(places.begin(), places.end()) + 1);
+  data->cells.resize(count);
   data->face_sizes.assign(cage.face_sizes.begin(), cage.face_sizes.end());
-  static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
-  const double* mesh_points = &clean.mesh.positions[0].x;
-  for (size_t f = 0; f < clean.face_of.size(); ++f) {
-    const auto face = static_cast<size_t>(clean.face_of[f]);
-    // Of a face that was cut in two the first piece stands for it.
-    if (data->surfaces[face].IsValid() || !simple_neighbourhood(data->refiner->GetLevel(0), static_cast<int>(f))) continue;
-    Bfr::Surface<double>& surface = data->surfaces[face];
-    if (!data->factory->InitVertexSurface(static_cast<int>(f), &surface)) continue;
-    data->face_sizes[face] = surface.GetFaceSize();
-    data->patch_points[face].resize(3 * static_cast<size_t>(surface.GetNumPatchPoints()));
-    surface.PreparePatchPoints(mesh_points, 3, data->patch_points[face].data(), 3);
+  data->face_sizes.resize(count, 0);
+  // What a clean cage has not (collapsed faces, copies) is no part of the surface.
+  data->holes.assign(count, 1);
+  std::optional<SeparatedCage> separated;
+  for (size_t f = 0; f < places.size(); ++f) {
+    const size_t at = places[f];
+    data->face_sizes[at] = clean.mesh.face_sizes[f];
+    data->holes[at] = data->refiner->GetLevel(0).IsFaceHole(static_cast<int>(f));
+    if (!data->holes[at]) data->cells[at] = cell_of(*data, clean.mesh, static_cast<int>(f), separated);
   }
   data_ = std::move(data);
 }
 
-int LimitSurface::face_count() const { return static_cast<int>(data_->surfaces.size()); }
+int LimitSurface::face_count() const { return static_cast<int>(data_->cells.size()); }
 
 bool LimitSurface::is_hole(int face) const {
   LIMN_CHECK(face >= 0 && face < face_count());
-  return std::binary_search(data_->holes.begin(), data_->holes.end(), face);
+  return data_->holes[static_cast<size_t>(face)] != 0;
 }
 
 int LimitSurface::face_size(int face) const {
@@ -108,29 +91,19 @@ int LimitSurface::face_size(int face) const {
 
 bool LimitSurface::has_sub_faces(int face) const {
   LIMN_CHECK(face >= 0 && face < face_count());
-  const Bfr::Surface<double>& surface = data_->surfaces[static_cast<size_t>(face)];
-  return surface.IsValid() && surface.GetParameterization().HasSubFaces();
+  const LimitCell& cell = data_->cells[static_cast<size_t>(face)];
+  return data_->scheme != Scheme::loop && cell.corners != 4 && cell.valid();
+}
+
+bool LimitSurface::is_tip(int face, int sub_face, int corner) const {
+  LIMN_CHECK(face >= 0 && face < face_count());
+  const LimitCell& cell = data_->cells[static_cast<size_t>(face)];
+  return data_->scheme == Scheme::catmark && cell.valid() && has_tip(cell, sub_face, corner);
 }
 
 bool LimitSurface::evaluate(int face, int sub_face, double u, double v, LimitPoint& out) const {
   LIMN_CHECK(face >= 0 && face < face_count());
-  const Bfr::Surface<double>& surface = data_->surfaces[static_cast<size_t>(face)];
-  if (!surface.IsValid()) return false;
-  const Bfr::Parameterization parameters = surface.GetParameterization();
-  double uv[2] = {u, v};
-  double scale = 1.0;
-  if (parameters.HasSubFaces()) {
-    if (sub_face < 0 || sub_face >= parameters.GetFaceSize()) return false;
-    const double normalized[2] = {u, v};
-    parameters.ConvertNormalizedSubFaceToCoord(sub_face, normalized, uv);
-    scale = 0.5;  // A sub-quad is half a unit wide in its face's coordinates.
-  }
-  surface.Evaluate(uv, data_->patch_points[static_cast<size_t>(face)].data(), 3, &out.position.x, &out.du.x, &out.dv.x, &out.duu.x,
-                   &out.duv.x, &out.dvv.x);
-  if (data_->scheme == Scheme::loop) mend_sign(surface, data_->patch_points[static_cast<size_t>(face)].data(), uv[0], uv[1], out);
-  out.du *= scale, out.dv *= scale;
-  out.duu *= scale * scale, out.duv *= scale * scale, out.dvv *= scale * scale;
-  return true;
+  return evaluate_cell(data_->cells[static_cast<size_t>(face)], data_->scheme, sub_face, u, v, out);
 }
 
 }  // namespace limn

@@ -92,6 +92,18 @@ void settle_semi_sharp(std::vector<OneRing> rings, Scheme scheme, CreaseMethod c
   }
 }
 
+/// OpenSubdiv 3.5 takes smooth vertices of valence 2 for corners. Their position by the mask for all valences; the eigenvalue next to 1 is
+/// 1/4, for what the two edges and the two faces differ by, which are the tangents (where Loop's scheme has none, the facets decide).
+void settle_valence_two(const OneRing& ring, size_t v, LimitFrame& frame) {
+  frame.tangent1[v].p = ring.edges[0] - ring.edges[1];
+  if (ring.diagonals.empty()) {
+    frame.tangent2[v].p = glm::dvec3(0.0);
+    return;
+  }
+  frame.positions[v].p = (4.0 * ring.center + 4.0 * (ring.edges[0] + ring.edges[1]) + ring.diagonals[0] + ring.diagonals[1]) / 14.0;
+  frame.tangent2[v].p = ring.diagonals[0] - ring.diagonals[1];
+}
+
 }  // namespace
 
 bool still_semi_sharp(const Far::TopologyLevel& level, int vertex) {
@@ -181,6 +193,8 @@ LimitFrame limit_frame(const Far::TopologyRefiner& refiner, Scheme scheme, const
     if (still_semi_sharp(level, v)) {
       unsettled.push_back(one_ring(level, scheme, points, v));
       frame.semi_sharp.push_back({v, {}});
+    } else if (level.GetVertexRule(v) == Sdc::Crease::RULE_SMOOTH && level.GetVertexFaces(v).size() == 2 && !level.IsVertexBoundary(v)) {
+      settle_valence_two(one_ring(level, scheme, points, v), static_cast<size_t>(v), frame);
     } else if (level.GetVertexRule(v) == Sdc::Crease::RULE_DART) {
       const OneRing ring = one_ring(level, scheme, points, v);
       VertexLimit limit = dart_limit(ring, scheme);

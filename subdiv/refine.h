@@ -67,17 +67,20 @@ class LimitSurface {
  public:
   /// Throws InputError for a cage that the scheme cannot subdivide; `file` goes into the message. The cage is needed no longer afterwards.
   LimitSurface(const Mesh& cage, Scheme scheme, const std::string& file = {});
-  int face_count() const;  ///< Of the cage, holes included.
-  /// A face that is left out (Mesh::holes).
+  /// Of the cage, holes included. After them come the further pieces of faces that pass one of their vertices twice.
+  int face_count() const;
+  /// A face that is no part of the surface: one of Mesh::holes, one at an open edge under BoundaryRule::none, a collapsed one, a copy.
   bool is_hole(int face) const;
   /// Corners of the parametric domain: 4 for a quad, 3 for a triangle, n sub-quads otherwise.
   int face_size(int face) const;
   /// True where `evaluate` wants a sub-face: n-gons of a scheme made for quads. False without a limit surface.
   bool has_sub_faces(int face) const;
-  /// False where the face has no limit surface: a hole, a collapsed face, a non-manifold corner, or a neighbour that meets the face in two
-  /// places. Around extraordinary vertices the patches approximate the limit (normals within 0.01 degrees where measured), and at the
-  /// ends of creases (darts) no better than OpenSubdiv's masks; refine() is exact at its vertices. (u, v) in [0,1]^2 for quads; n-gons:
-  /// sub-face by corner.
+  /// Whether the corner (of the sub-face) of a face is an interior vertex of valence 2. The limit has no tangent plane there: the nearer to
+  /// the vertex, the more often its normal swings to and fro.
+  bool is_tip(int face, int sub_face, int corner) const;
+  /// False where the face has no limit surface: a hole, or a corner where sheets touch whose rules OpenSubdiv mixes. Around extraordinary
+  /// vertices the patches approximate the limit (normals within 0.01 degrees where measured), and at the ends of creases (darts) no better
+  /// than OpenSubdiv's masks; refine() is exact at its vertices. (u, v) in [0,1]^2 for quads; n-gons: sub-face by corner.
   bool evaluate(int face, int sub_face, double u, double v, LimitPoint& out) const;
 
  private:

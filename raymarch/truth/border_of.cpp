@@ -99,7 +99,7 @@ BorderCurves border_of(const std::vector<TracedCurve>& parts, double tolerance_p
     for (size_t i = 0; i < keep.size(); ++i) {
       if (keep[i]) curve.points.push_back(border_point(part, part.points[i], origin));
     }
-    if (leftness(part) < 0.0) std::reverse(curve.points.begin(), curve.points.end());
+    if (!part.sheet && leftness(part) < 0.0) std::reverse(curve.points.begin(), curve.points.end());
     border.curves.push_back(std::move(curve));
   }
   return border;

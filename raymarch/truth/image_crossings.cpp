@@ -58,7 +58,7 @@ bool neighbours(size_t i, size_t j, size_t count) {
 
 }  // namespace
 
-std::vector<std::vector<std::vector<double>>> image_crossings(const std::vector<TracedCurve>& curves, const Camera& camera) {
+std::vector<CurveCrossings> image_crossings(const std::vector<TracedCurve>& curves, const Camera& camera) {
   std::vector<Step> silhouettes;
   for (size_t c = 0; c < curves.size(); ++c) {
     if (curves[c].kind != CurveKind::silhouette) continue;
@@ -69,7 +69,7 @@ std::vector<std::vector<std::vector<double>>> image_crossings(const std::vector<
     }
   }
   std::stable_sort(silhouettes.begin(), silhouettes.end(), [](const Step& a, const Step& b) { return a.bucket < b.bucket; });
-  std::vector<std::vector<std::vector<double>>> result(curves.size());
+  std::vector<CurveCrossings> result(curves.size());
   parallel_for(size_t{0}, curves.size(), [&](size_t c) {
     const size_t count = steps_of(curves[c]);
     result[c].resize(count);
@@ -81,7 +81,7 @@ std::vector<std::vector<std::vector<double>>> image_crossings(const std::vector<
         for (; other != silhouettes.end() && other->bucket == bucket; ++other) {
           if (other->curve == c && neighbours(other->index, i, count)) continue;
           const double t = crossing(step, ends_of(curves[other->curve], other->index), camera);
-          if (t >= 0.0) result[c][i].push_back(t);
+          if (t >= 0.0) result[c][i].push_back({t, other->curve});
         }
       });
     }

@@ -19,6 +19,7 @@ struct Shape {
   const PlacedLimitSurface& placed;
   const Camera& camera;
   const LimitCurveSettings& settings;
+  bool sheet = false;
   std::vector<LimitSegment> segments;
 };
 
@@ -45,6 +46,9 @@ TracedPoint point_at(const Shape& shape, const LimitSegment& segment, std::uint3
     point.radial_curvature = curvature_along(curvature_at(shape.placed, patch, uv), v - glm::dot(v, s.normal) * s.normal);
   // A fold that bends towards its normal is seen, if at all, from the surface's other side.
   point.lift = shape.settings.kind == CurveKind::inner ? v : point.radial_curvature < 0.0 ? -point.high : point.high;
+  // Where the back of a sheet is nearer than its front, neither of its normals leads away from it.
+  if (shape.sheet && segment.crease && shape.settings.kind == CurveKind::silhouette)
+    point.lift = glm::normalize(glm::cross(v, segment.left ? -segment.along : segment.along));
   point.outward = outward_at(shape, segment, point);
   return point;
 }
@@ -101,8 +105,21 @@ struct Graph {
   std::vector<char> used;
 };
 
-std::uint32_t next_segment(const Graph& graph, const LimitEndKey& key) {
-  for (const std::uint32_t s : graph.at_end.at(key)) {
+bool starts_at(const LimitSegment& segment, const LimitEndKey& key) { return segment.ends[0].key == key; }
+
+/// A sheet's curves end where three and more meet, and where what one bounds changes sides, as an open edge does where front becomes back:
+/// past such places a chain has what it bounds on the one side here and on the other there.
+bool ends_chain(const Shape& shape, const std::vector<std::uint32_t>& here, const LimitEndKey& key) {
+  if (!shape.sheet) return here.size() % 2 != 0;
+  if (here.size() != 2) return true;
+  const LimitSegment &a = shape.segments[here[0]], &b = shape.segments[here[1]];
+  return (starts_at(a, key) == a.left) == (starts_at(b, key) == b.left);
+}
+
+std::uint32_t next_segment(const Shape& shape, const Graph& graph, const LimitEndKey& key) {
+  const std::vector<std::uint32_t>& here = graph.at_end.at(key);
+  if (shape.sheet && ends_chain(shape, here, key)) return kNone;
+  for (const std::uint32_t s : here) {
     if (!graph.used[s]) return s;
   }
   return kNone;
@@ -112,17 +129,20 @@ TracedCurve walk(const Shape& shape, Graph& graph, std::uint32_t start, const Li
   TracedCurve out;
   out.kind = shape.settings.kind;
   out.object = shape.settings.object;
+  out.sheet = shape.sheet;
+  const bool left = starts_at(shape.segments[start], from) == shape.segments[start].left;
   LimitEndKey key = from;
   for (std::uint32_t s = start; s != kNone;) {
     graph.used[s] = 1;
     const LimitSegment& segment = shape.segments[s];
-    const bool turned = !(segment.ends[0].key == key);
+    const bool turned = !starts_at(segment, key);
     key = segment.ends[turned ? 0 : 1].key;
-    const std::uint32_t next = key == from ? kNone : next_segment(graph, key);
+    const std::uint32_t next = key == from ? kNone : next_segment(shape, graph, key);
     out.closed = key == from;
     append(shape, segment, turned, next == kNone && !out.closed, out);
     s = next;
   }
+  if (shape.sheet && !left) std::reverse(out.points.begin(), out.points.end());
   return out;
 }
 
@@ -134,8 +154,12 @@ std::vector<TracedCurve> chained(const Shape& shape) {
   }
   std::vector<TracedCurve> curves;
   for (const auto& [key, here] : graph.at_end) {
-    if (here.size() % 2 == 0) continue;
-    if (const std::uint32_t s = next_segment(graph, key); s != kNone) curves.push_back(walk(shape, graph, s, key));
+    if (!ends_chain(shape, here, key)) continue;
+    for (const std::uint32_t s : here) {
+      if (graph.used[s]) continue;
+      curves.push_back(walk(shape, graph, s, key));
+      if (!shape.sheet) break;
+    }
   }
   for (std::uint32_t s = 0; s < shape.segments.size(); ++s) {
     if (!graph.used[s]) curves.push_back(walk(shape, graph, s, shape.segments[s].ends[0].key));
@@ -147,7 +171,8 @@ std::vector<TracedCurve> chained(const Shape& shape) {
 
 std::vector<TracedCurve> trace_limit_curves(const PlacedLimitSurface& placed, const LimitGrid& grid, const Camera& camera,
                                             const LimitCurveSettings& settings) {
-  const Shape shape{placed, camera, settings, limit_segments(placed, grid, camera, settings.kind, settings.threshold)};
+  const LimitLevel level{settings.kind, settings.threshold, settings.turn};
+  const Shape shape{placed, camera, settings, grid.sheet, limit_segments(placed, grid, camera, level)};
   return chained(shape);
 }
 

@@ -11,9 +11,11 @@ struct LimitCurveSettings {
   double threshold = 0.0;  ///< 0 for silhouettes.
   double tolerance_px = 0.005;
   int object = 1;
+  LimitTurn turn = LimitTurn::none;
 };
 
-/// In the placed surface's space. Silhouettes hold the surface's open edges too: it ends there.
+/// In the placed surface's space. Silhouettes hold the surface's open edges too: it ends there. Curves of a
+/// sheet (LimitGrid::sheet) are open or closed chains, each of which has what it bounds on its left all along.
 std::vector<TracedCurve> trace_limit_curves(const PlacedLimitSurface& placed, const LimitGrid& grid, const Camera& camera,
                                             const LimitCurveSettings& settings);
 

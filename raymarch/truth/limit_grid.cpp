@@ -11,8 +11,10 @@ namespace {
 
 // Two evaluations of one place differ by rounding, and around extraordinary vertices by what patches approximate.
 constexpr double kSamePlace = 1e-6;   // of the extent
+constexpr double kRounding = 1e-12;   // of the largest coordinate: no two evaluations agree better
 constexpr double kSameNormal = 2e-3;  // radians; a crease is sharper, a patch's error is not
 constexpr int kFinestSteps = 256;     // along a patch's side
+constexpr double kTip_px = 0.005;     // the patches' side is so far from its ends after one step, where it shrinks as the step's square
 
 bool has_normal(const glm::dvec3& n) { return std::isfinite(n.x) && glm::dot(n, n) > 0.5; }
 
@@ -81,6 +83,22 @@ double longest_side_px(const PlacedLimitSurface& placed, const Camera& camera) {
   return longest;
 }
 
+constexpr std::array<std::array<int, 2>, 4> kCornerPlaces{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+
+bool is_tip(const PlacedLimitSurface& placed, const LimitPatch& patch, size_t corner) {
+  return !patch.triangle && placed.surface.is_tip(patch.face, patch.sub_face, static_cast<int>(corner));
+}
+
+/// Finer where a face has an interior vertex of valence 2.
+int steps_for(const PlacedLimitSurface& placed, double longest_px, double cell_px) {
+  const int steps = std::clamp(2 * static_cast<int>(std::ceil(0.5 * longest_px / cell_px)), 4, kFinestSteps);
+  const bool any = std::any_of(placed.patches.begin(), placed.patches.end(), [&](const LimitPatch& patch) {
+    return is_tip(placed, patch, 0) || is_tip(placed, patch, 1) || is_tip(placed, patch, 2) || is_tip(placed, patch, 3);
+  });
+  if (!any) return steps;
+  return std::clamp(2 * static_cast<int>(std::ceil(0.5 * std::sqrt(longest_px / kTip_px))), steps, kFinestSteps);
+}
+
 struct PatchLattice {
   int steps = 1;
   std::vector<LimitSample> samples;  ///< Rows of v, each of u from 0; a triangle's rows grow shorter.
@@ -104,6 +122,35 @@ PatchLattice sample_lattice(const PlacedLimitSurface& placed, size_t k, int step
     }
   }
   return lattice;
+}
+
+/// Samples nearer to each other than this are one node. Never so little beside the coordinates that cells of that size cannot be counted.
+double same_place(const std::vector<PatchLattice>& lattices) {
+  Box extent;
+  for (const PatchLattice& lattice : lattices) {
+    if (!lattice.valid) continue;
+    for (const LimitSample& s : lattice.samples) extent = include(extent, s.position);
+  }
+  if (extent.empty()) return 1.0;
+  const glm::dvec3 farthest = glm::max(glm::abs(extent.lower), glm::abs(extent.upper));
+  const double largest = std::max({farthest.x, farthest.y, farthest.z});
+  return std::max({kSamePlace * extent.radius(), kRounding * largest, 1e-300});
+}
+
+/// From the tips of a patch to the samples around them.
+double tip_px(const PlacedLimitSurface& placed, size_t k, const PatchLattice& lattice, const Camera& camera) {
+  const LimitPatch& patch = placed.patches[k];
+  double widest = 0.0;
+  for (size_t corner = 0; corner < 4; ++corner) {
+    if (!is_tip(placed, patch, corner)) continue;
+    const auto px = [&](int i, int j) {
+      const std::array<int, 2> at = kCornerPlaces[corner];
+      const int u = at[0] ? lattice.steps - i : i, v = at[1] ? lattice.steps - j : j;
+      return glm::dvec2(project(camera, lattice.samples[lattice_index(patch, lattice.steps, u, v)].position));
+    };
+    widest = std::max({widest, glm::distance(px(0, 0), px(1, 0)), glm::distance(px(0, 0), px(0, 1)), glm::distance(px(0, 0), px(1, 1))});
+  }
+  return widest;
 }
 
 using SidesOfNodes = std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>;
@@ -154,6 +201,27 @@ void add_lattice(const PlacedLimitSurface& placed, std::uint32_t k, const PatchL
       if (!patch.triangle || i + j + 1 < n) add({i + 1, j}, {i + 1, j + 1}, {i, j + 1});
     }
   }
+}
+
+void find_seams(const PlacedLimitSurface& placed, LimitGrid& grid) {
+  const auto on_side = [](const LimitPatch& patch, const glm::dvec2& a, const glm::dvec2& b) {
+    const auto both = [&](auto&& test) { return test(a) && test(b); };
+    if (both([](const glm::dvec2& p) { return p.x == 0.0; }) || both([](const glm::dvec2& p) { return p.y == 0.0; })) return true;
+    if (patch.triangle) return both([](const glm::dvec2& p) { return p.x + p.y > 1.0 - 1e-9; });
+    return both([](const glm::dvec2& p) { return p.x == 1.0; }) || both([](const glm::dvec2& p) { return p.y == 1.0; });
+  };
+  for (std::uint32_t t = 0; t < grid.triangles.size(); ++t) {
+    const LimitTriangle& triangle = grid.triangles[t];
+    for (int from = 0; from < 3; ++from) {
+      const LimitCorner &a = triangle.corners[static_cast<size_t>(from)], &b = triangle.corners[static_cast<size_t>((from + 1) % 3)];
+      if (a.node == b.node || !on_side(placed.patches[triangle.patch], a.uv, b.uv)) continue;
+      grid.seams[std::minmax(a.node, b.node)].push_back({t, from});
+    }
+  }
+  const auto starts_at = [&](const SeamUse& use) { return grid.triangles[use.triangle].corners[static_cast<size_t>(use.from)].node; };
+  grid.sheet = std::any_of(grid.seams.begin(), grid.seams.end(), [&](const auto& seam) {
+    return seam.second.size() != 2 || starts_at(seam.second[0]) == starts_at(seam.second[1]);
+  });
 }
 
 }  // namespace
@@ -208,25 +276,24 @@ SurfaceCurvature curvature_at(const PlacedLimitSurface& placed, size_t k, const 
 LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, double cell_px, std::int64_t max_triangles,
                       double& used_cell_px) {
   const double longest = longest_side_px(placed, camera);
-  int steps = std::clamp(2 * static_cast<int>(std::ceil(0.5 * longest / cell_px)), 4, kFinestSteps);
+  int steps = steps_for(placed, longest, cell_px);
   while (steps > 4 && triangles_of(placed, steps) > max_triangles) steps -= 2;
   used_cell_px = longest / steps;
   std::vector<PatchLattice> lattices(placed.patches.size());
   parallel_for(size_t{0}, placed.patches.size(),
                [&](size_t k) { lattices[k] = sample_lattice(placed, k, steps_of(placed.patches[k], steps)); });
   LimitGrid grid;
-  Box extent;
-  for (const PatchLattice& lattice : lattices) {
-    if (lattice.valid) extent = include(extent, lattice.samples.front().position);
-  }
-  Places places(std::max(kSamePlace * extent.radius(), 1e-300));
+  Places places(same_place(lattices));
   SidesOfNodes sides;
   for (size_t k = 0; k < lattices.size(); ++k) {
-    if (lattices[k].valid)
-      add_lattice(placed, static_cast<std::uint32_t>(k), lattices[k], places, sides, grid);
-    else
-      ++grid.invalid_patches;
+    if (!lattices[k].valid) {
+      grid.invalid_patches.push_back(k);
+      continue;
+    }
+    add_lattice(placed, static_cast<std::uint32_t>(k), lattices[k], places, sides, grid);
+    grid.tip_px = std::max(grid.tip_px, tip_px(placed, k, lattices[k], camera));
   }
+  find_seams(placed, grid);
   return grid;
 }
 

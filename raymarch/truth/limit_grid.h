@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "sdf/camera.h"
@@ -37,6 +39,10 @@ LimitSample sample(const PlacedLimitSurface& placed, size_t patch, const glm::dv
 /// With its curvature, world units.
 SurfaceCurvature curvature_at(const PlacedLimitSurface& placed, size_t patch, const glm::dvec2& uv);
 
+/// A picture that shows mostly a sheet's back turns its normals towards the eye (raymarch/mesh/open_sheet.h): then level curves are traced
+/// on the surface and on the same turned round, and what lies between two sheets is left to the former.
+enum class LimitTurn { none, front, back };
+
 struct LimitCorner {
   std::uint32_t node = 0;  ///< The same for all corners at one place.
   std::uint32_t side = 0;  ///< The same for all corners of one place that share a normal; index into LimitGrid::normals.
@@ -47,12 +53,25 @@ struct LimitTriangle {
   std::array<LimitCorner, 3> corners{};
 };
 
+/// A triangle's edge on a side of its patch.
+struct SeamUse {
+  std::uint32_t triangle = 0;
+  int from = 0;  ///< The edge runs from this corner to the next.
+};
+/// By the edge's nodes, the smaller first. Inside a patch no two triangles can disagree.
+using LimitSeams = std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<SeamUse>>;
+
 struct LimitGrid {
   std::vector<glm::dvec3> positions{};  ///< Of nodes, world.
   std::vector<glm::dvec3> normals{};    ///< Of sides, world, unit.
   std::vector<std::uint32_t> node_of_side{};
   std::vector<LimitTriangle> triangles{};
-  std::int64_t invalid_patches = 0;  ///< Without a limit surface; they are left out.
+  LimitSeams seams{};
+  /// Some seam has not two triangles that run along it opposite ways: the surface has an end, or no outside, and its back may be seen.
+  bool sheet = false;
+  /// How far from interior vertices of valence 2 the nearest samples are at most, px: so near to them the surface is not resolved.
+  double tip_px = 0.0;
+  std::vector<size_t> invalid_patches{};  ///< Without a limit surface; they are left out.
 };
 
 /// The lattice's cells are about `cell_px` wide where the patch is largest in the image, and at most `max_triangles` triangles in all.

@@ -30,6 +30,15 @@ struct LimitSegment {
   bool beside_is_bounded = false;
   bool crease = false;
   glm::dvec3 high_normal{0.0}, low_normal{0.0};  ///< Of a crease's sides of higher and lower N.V.
+  glm::dvec3 along{0.0};                         ///< World: from the one end of a crease or open edge to the other.
+  bool left = true;                              ///< What it bounds lies to the left of the way from the first end to the second, as seen.
+};
+
+/// Which curve is traced.
+struct LimitLevel {
+  CurveKind kind = CurveKind::silhouette;
+  double threshold = 0.0;
+  LimitTurn turn = LimitTurn::none;
 };
 
 /// N.V at a place of a patch.
@@ -38,7 +47,7 @@ double facing_at(const PlacedLimitSurface& placed, const Camera& camera, std::ui
 double root_between(const PlacedLimitSurface& placed, const Camera& camera, std::uint32_t patch, const glm::dvec2& uv0,
                     const glm::dvec2& uv1, double h0, double h1, double level);
 
-std::vector<LimitSegment> limit_segments(const PlacedLimitSurface& placed, const LimitGrid& grid, const Camera& camera, CurveKind kind,
-                                         double threshold);
+std::vector<LimitSegment> limit_segments(const PlacedLimitSurface& placed, const LimitGrid& grid, const Camera& camera,
+                                         const LimitLevel& level);
 
 }  // namespace limn

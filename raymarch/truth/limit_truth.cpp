@@ -19,23 +19,51 @@ constexpr double kCell_px = 4.0;
 constexpr std::int64_t kMostTriangles = 3'000'000;
 // A point is lifted off the mesh that stands in for the surface, by more than the two lie apart.
 constexpr double kLift_px = 0.1;
+constexpr double kTip_px = 0.01;  // what is not resolved around vertices of valence 2 counts from here
 
 struct CageScene {
   std::vector<TracedCurve> curves{};
-  double cell_px = 0.0;  ///< The widest lattice's.
-  std::int64_t invalid_patches = 0;
+  double cell_px = 0.0;       ///< The widest lattice's.
+  std::int64_t left_out = 0;  ///< Faces without a limit surface.
+  double left_out_px = 0.0;   ///< The widest of them.
+  double tip_px = 0.0;        ///< LimitGrid::tip_px
   int silhouettes = 0, level_curves = 0;
 };
 
-/// The curves of one object's cage, placed; `front`: silhouettes too.
-void trace_side(const PlacedLimitSurface& placed, bool front, int index, const Camera& camera, const TruthSettings& settings,
-                CageScene& out) {
+/// How wide a face is in the picture, as far as its corners tell; a piece of a face counts as all of the cage.
+double width_px(const Mesh& cage, const std::vector<std::int32_t>& first, int face, const Affine& solver_from_cage, const Camera& camera) {
+  const bool piece = static_cast<size_t>(face) >= cage.face_count();
+  const auto begin = piece ? 0 : static_cast<size_t>(first[static_cast<size_t>(face)]);
+  const auto end = piece ? cage.corner_vertices.size() : static_cast<size_t>(first[static_cast<size_t>(face) + 1]);
+  Box box;
+  for (size_t i = begin; i < end; ++i) {
+    const glm::dvec3 at = solver_from_cage.point(cage.positions[static_cast<size_t>(cage.corner_vertices[i])]);
+    box = include(box, glm::dvec3(glm::dvec2(project(camera, at)), 0.0));
+  }
+  return box.finite() ? glm::length(box.size()) : std::hypot(camera.width_px, camera.height_px);
+}
+
+void count_left_out(const Mesh& cage, const PlacedLimitSurface& placed, const LimitGrid& grid, const Camera& camera, CageScene& out) {
+  if (grid.invalid_patches.empty()) return;
+  const std::vector<std::int32_t> first = first_corners(cage);
+  std::vector<int> faces;
+  for (const size_t k : grid.invalid_patches) faces.push_back(placed.patches[k].face);
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  out.left_out += static_cast<std::int64_t>(faces.size());
+  for (const int face : faces) out.left_out_px = std::max(out.left_out_px, width_px(cage, first, face, placed.world_from_cage, camera));
+}
+
+/// The curves of one object's cage; silhouettes but for the surface turned round.
+void trace_side(const Mesh& cage, const PlacedLimitSurface& placed, LimitTurn turn, int index, const Camera& camera,
+                const TruthSettings& settings, CageScene& out) {
   double cell_px = 0.0;
   const LimitGrid grid = sample_grid(placed, camera, kCell_px, kMostTriangles, cell_px);
   out.cell_px = std::max(out.cell_px, cell_px);
-  if (front) out.invalid_patches += grid.invalid_patches;
+  const bool front = turn != LimitTurn::back;
+  out.tip_px = std::max(out.tip_px, grid.tip_px);
+  if (front) count_left_out(cage, placed, grid, camera, out);
   const auto trace = [&](CurveKind kind, double threshold, int& closed) {
-    for (TracedCurve& curve : trace_limit_curves(placed, grid, camera, {kind, threshold, 0.5 * settings.tolerance_px, index})) {
+    for (TracedCurve& curve : trace_limit_curves(placed, grid, camera, {kind, threshold, 0.5 * settings.tolerance_px, index, turn})) {
       closed += curve.closed;
       out.curves.push_back(std::move(curve));
     }
@@ -55,11 +83,11 @@ void trace_object(const SceneObject& object, int index, bool turned, const Camer
   Affine solver_from_cage = object.world_from_object;
   solver_from_cage.translation += solver_from_cage.linear * center - origin;
   const LimitSurface surface(cage, *source.scheme, source.file);
-  trace_side(place(surface, solver_from_cage), true, index, camera, settings, out);
+  trace_side(cage, place(surface, solver_from_cage), turned ? LimitTurn::front : LimitTurn::none, index, camera, settings, out);
   if (!turned) return;
   turn_faces(cage);
   const LimitSurface back(cage, *source.scheme, source.file);
-  trace_side(place(back, solver_from_cage), false, index, camera, settings, out);
+  trace_side(cage, place(back, solver_from_cage), LimitTurn::back, index, camera, settings, out);
 }
 
 /// One ray from a lifted point to the eye.
@@ -103,8 +131,24 @@ TruthShare trace_cages(const Scene& scene, const std::vector<size_t>& objects, c
                   "was decided on a mesh with edges of {:.1f} px, lifted by {} px; around extraordinary vertices normals are "
                   "right to 0.01 degrees",
                   traced.cell_px, proxy->edge_px, kLift_px));
-  if (traced.invalid_patches > 0)
-    share.notes.push_back(fmt::format("{} faces without a limit surface were left out", traced.invalid_patches));
+  if (traced.left_out > 0) {
+    share.exact = false;
+    share.unrefined_px = traced.left_out_px;
+    share.notes.insert(share.notes.begin(),
+                       fmt::format("not exact: {} of the cage's faces {} left out, the widest {:.0f} px wide, since their limit surface "
+                                   "cannot be evaluated (several sheets touch there); their border is missing",
+                                   traced.left_out, traced.left_out == 1 ? "is" : "are", traced.left_out_px));
+  }
+  if (traced.tip_px > kTip_px) {
+    share.exact = false;
+    share.unrefined_px = std::max(share.unrefined_px, traced.tip_px);
+    share.notes.insert(
+        share.notes.begin(),
+        fmt::format("not exact: around interior vertices of valence 2, where the limit surface has no tangent plane, the border "
+                    "is not resolved within {:.2g} px",
+                    traced.tip_px));
+  }
+  share.lift_px = kLift_px;
   share.blocked = [proxy, objects, camera = settings.camera](const TracedPoint& point, int) {
     return is_blocked(proxy->model, objects, camera, point);
   };

@@ -31,6 +31,9 @@ struct TracedCurve {
   int object = 1;  ///< From 1.
   bool closed = false;
   std::vector<TracedPoint> points{};
+  /// On a surface that has an end or no outside: its back may be seen, so that a contour that bends towards the eye need not be hidden. The
+  /// points run with what the curve bounds on its left.
+  bool sheet = false;
 };
 
 /// Image direction of a step along `direction` from `p`; not unit.
@@ -41,6 +44,7 @@ struct CurveScene {
   Camera camera{};  ///< Solver space.
   /// Something is between the point, lifted off, and the eye.
   std::function<bool(const TracedPoint& point, int object)> blocked{};
+  double lift_px = 0.0;  ///< How far beside a curve `blocked` looks; 0: on it.
   /// The curve's point at the share `t` of the way from points[i] to its successor; empty: on the chord.
   std::function<TracedPoint(const TracedCurve& curve, size_t i, double t)> between{};
   /// The lesser of the other objects' signed distances (or any function of their signs); empty where objects cannot overlap.

@@ -11,10 +11,12 @@ struct TruthShare {
   std::vector<size_t> objects{};      ///< Indices in the scene.
   std::vector<TracedCurve> curves{};  ///< Solver space; numbers of objects are the scene's.
   int contour_generators = 0, level_curves = 0;
+  bool exact = true;                 ///< False where a part of the objects is left out.
   double unrefined_px = 0.0;         ///< What the bound has to grow by.
   std::vector<std::string> notes{};  ///< What the bound does not cover.
   /// Something of this share is between the point, which lies on the scene's object number `object` (of this share or not), and the eye.
   std::function<bool(const TracedPoint& point, int object)> blocked{};
+  double lift_px = 0.0;  ///< As in CurveScene.
   /// As in CurveScene, for this share's curves; may be empty.
   std::function<TracedPoint(const TracedCurve& curve, size_t i, double t)> between{};
   std::function<double(const glm::dvec3& p, int object)> others{};

@@ -31,6 +31,7 @@ CurveScene joined(const std::vector<TruthShare>& shares, const Camera& camera, s
     for (const size_t i : share.objects) share_of[i] = &share;
   }
   CurveScene scene{camera};
+  for (const TruthShare& share : shares) scene.lift_px = std::max(scene.lift_px, share.lift_px);
   scene.blocked = [&shares](const TracedPoint& point, int object) {
     return std::any_of(shares.begin(), shares.end(), [&](const TruthShare& share) { return share.blocked(point, object); });
   };
@@ -106,6 +107,7 @@ BorderTruth solve_truth_traced(const Scene& scene, const Camera& camera, const T
     truth.contour_generators += share.contour_generators;
     truth.level_curves += share.level_curves;
     truth.notes.insert(truth.notes.end(), share.notes.begin(), share.notes.end());
+    truth.exact = truth.exact && share.exact;
     unrefined_px = std::max(unrefined_px, share.unrefined_px);
   }
   VisibilitySettings visibility;

@@ -1,17 +1,15 @@
 // Which parts of the traced curves are seen. Where visibility may change is only a hint of where to test; a change is then bisected by
-// tests alone, so that no accuracy hangs on the hints.
+// tests alone, so that no accuracy hangs on the hints. But where tests are made beside the curve (CurveScene::lift_px) a change belongs to
+// the crossing that they see from there.
 
 #include <algorithm>
 #include <cmath>
 
-#include "raymarch/truth/image_crossings.h"
-#include "raymarch/truth/parts.h"
+#include "raymarch/truth/visible_ends.h"
 #include "sdf/parallel.h"
 
 namespace limn {
 namespace {
-
-enum class Seen : std::uint8_t { unknown, hidden, visible };
 
 struct Hider {
   const CurveScene& scene;
@@ -20,9 +18,9 @@ struct Hider {
   bool in_frame(const TracedPoint& q) const {
     return q.depth > 0.0 && q.px.x >= 0.0 && q.px.y >= 0.0 && q.px.x <= scene.camera.width_px && q.px.y <= scene.camera.height_px;
   }
-  /// A smooth contour that bends towards the eye lies behind its own surface (Koenderink 1984).
+  /// A smooth contour that bends towards the eye lies behind its own surface (Koenderink 1984), unless that has no inside.
   bool hides_itself(const TracedCurve& curve, const TracedPoint& q) const {
-    return curve.kind == CurveKind::silhouette && q.radial_curvature < 0.0;
+    return curve.kind == CurveKind::silhouette && !curve.sheet && q.radial_curvature < 0.0;
   }
   Seen see(const TracedCurve& curve, const TracedPoint& q) const {
     if (!in_frame(q) || !q.shown || hides_itself(curve, q)) return Seen::hidden;
@@ -37,9 +35,9 @@ struct Hider {
 size_t step_count(const TracedCurve& curve) { return curve.closed ? curve.points.size() : curve.points.size() - 1; }
 
 /// Steps that are crossed more than once get points between the crossings, so that each stretch between crossings has a point to test.
-void insert_between_crossings(const Hider& hider, TracedCurve& curve, std::vector<std::vector<double>>& crossings) {
+void insert_between_crossings(const Hider& hider, TracedCurve& curve, CurveCrossings& crossings) {
   std::vector<TracedPoint> points;
-  std::vector<std::vector<double>> kept;
+  CurveCrossings kept;
   for (size_t i = 0; i < curve.points.size(); ++i) {
     points.push_back(curve.points[i]);
     if (i >= step_count(curve)) break;
@@ -48,20 +46,23 @@ void insert_between_crossings(const Hider& hider, TracedCurve& curve, std::vecto
       kept.push_back(at);
       continue;
     }
-    std::sort(at.begin(), at.end());
-    for (size_t k = 0; k + 1 < at.size(); ++k) {
-      kept.push_back({at[k]});
-      if (at[k + 1] - at[k] > 1e-6) points.push_back(hider.between(curve, i, 0.5 * (at[k] + at[k + 1])));
-      if (points.size() < kept.size() + 1) kept.pop_back();
+    std::sort(at.begin(), at.end(), [](const ImageCrossing& a, const ImageCrossing& b) { return a.t < b.t; });
+    double low = 0.0;
+    for (size_t k = 0; k < at.size(); ++k) {
+      const bool last = k + 1 == at.size();
+      if (!last && !(at[k + 1].t - at[k].t > 1e-6)) continue;
+      const double high = last ? 1.0 : 0.5 * (at[k].t + at[k + 1].t);
+      kept.push_back({{(at[k].t - low) / (high - low), at[k].curve}});
+      if (!last) points.push_back(hider.between(curve, i, high));
+      low = high;
     }
-    kept.push_back({at.back()});
   }
   curve.points = std::move(points);
   crossings = std::move(kept);
 }
 
 /// True for each step along which visibility may change.
-std::vector<bool> find_breaks(const Hider& hider, const TracedCurve& curve, const std::vector<std::vector<double>>& crossings) {
+std::vector<bool> find_breaks(const Hider& hider, const TracedCurve& curve, const CurveCrossings& crossings) {
   const size_t n = curve.points.size();
   std::vector<double> others(n, 1.0);
   if (hider.scene.others) {
@@ -129,7 +130,8 @@ void fill_between(const Hider& hider, const TracedCurve& curve, std::vector<Seen
 }
 
 /// The last visible point between points[i] and its successor, one of which is visible and the other not.
-TracedPoint visible_end(const Hider& hider, const TracedCurve& curve, size_t i, bool start_visible) {
+TracedPoint visible_end(const Hider& hider, const TracedCurve& curve, const CurveCrossings& crossings, size_t i, bool start_visible) {
+  if (hider.scene.lift_px > 0.0 && crossings[i].size() == 1) return hider.between(curve, i, crossings[i].front().t);
   const TracedPoint &a = curve.points[i], &b = curve.points[(i + 1) % curve.points.size()];
   TracedPoint best = start_visible ? a : b;
   const double length = glm::distance(a.px, b.px);
@@ -156,7 +158,8 @@ double length_of(const TracedCurve& curve) {
 }
 
 /// The stretches of visible points, with their ends bisected.
-void cut(const Hider& hider, const TracedCurve& curve, const std::vector<Seen>& seen, std::vector<TracedCurve>& parts) {
+void cut(const Hider& hider, const TracedCurve& curve, const CurveCrossings& crossings, const std::vector<Seen>& seen,
+         std::vector<TracedCurve>& parts) {
   const size_t n = curve.points.size();
   const auto hidden = std::find(seen.begin(), seen.end(), Seen::hidden);
   if (hidden == seen.end()) {
@@ -165,7 +168,7 @@ void cut(const Hider& hider, const TracedCurve& curve, const std::vector<Seen>& 
   }
   // A closed curve is walked from a hidden point, so that no visible stretch is cut by where its list begins.
   const size_t start = curve.closed ? static_cast<size_t>(hidden - seen.begin()) : 0;
-  TracedCurve part{curve.kind, curve.object, false, {}};
+  TracedCurve part{curve.kind, curve.object, false, {}, curve.sheet};
   const auto finish = [&] {
     if (part.points.size() > 1 && length_of(part) >= hider.settings.shortest_px) parts.push_back(part);
     part.points.clear();
@@ -177,7 +180,7 @@ void cut(const Hider& hider, const TracedCurve& curve, const std::vector<Seen>& 
     if (k > 0) {
       const size_t before = (i + n - 1) % n;
       const bool was = seen[before] == Seen::visible;
-      if (was != visible) part.points.push_back(visible_end(hider, curve, before, was));
+      if (was != visible) part.points.push_back(visible_end(hider, curve, crossings, before, was));
       if (was && !visible) finish();
     }
     if (visible) part.points.push_back(curve.points[i]);
@@ -233,8 +236,10 @@ std::vector<TracedCurve> visible_parts(const std::vector<TracedCurve>& given, co
     const std::vector<size_t>& tested = tests[c];
     if (i + 1 < tested.size()) fill_between(hider, curves[c], seen[c], tested[i], tested[i + 1]);
   });
+  if (scene.lift_px > 0.0)
+    for_all(curves.size(), how, [&](size_t c) { move_ends_to_crossings(curves, c, crossings[c], 2.0 * scene.lift_px, seen[c]); });
   std::vector<std::vector<TracedCurve>> parts(curves.size());
-  for_all(curves.size(), how, [&](size_t c) { cut(hider, curves[c], seen[c], parts[c]); });
+  for_all(curves.size(), how, [&](size_t c) { cut(hider, curves[c], crossings[c], seen[c], parts[c]); });
   std::vector<TracedCurve> result;
   for (auto& of_curve : parts) {
     for (TracedCurve& part : of_curve) result.push_back(std::move(part));

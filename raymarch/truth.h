@@ -11,11 +11,18 @@
 
 namespace limn {
 
+/// What the border of a mesh that is no cage, and of a volume, is asked of.
+enum class TruthReference {
+  given,   ///< The file as it is: its facets, its interpolated normals, its samples. What does a coarser model of it lose?
+  smooth,  ///< The surface that was meant, of which the file is all there is: known no better than two ways to read it agree.
+};
+
 /// Which border is solved, and how precisely.
 struct TruthSettings {
   double threshold = 0.4;       ///< Of the rim: its level curve is N.V = threshold; 0 leaves the silhouette alone. In [0, 1).
   double tolerance_px = 0.005;  ///< How far the polylines may lie from the curves.
-  std::int64_t max_bytes = std::int64_t{4} << 30;  ///< For stand-ins of what has no closed description.
+  std::int64_t max_bytes = std::int64_t{4} << 30;     ///< For stand-ins of what has no closed description.
+  TruthReference reference = TruthReference::smooth;  ///< Of meshes and volumes; fields and cages say which surface they mean.
 };
 
 /// The visible border of a scene.
@@ -34,5 +41,8 @@ struct BorderTruth {
 
 /// Throws InputError for a threshold outside [0, 1) and for a scene that nothing affordable can stand in for.
 BorderTruth solve_truth(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how);
+
+/// Whether TruthSettings::reference makes a difference: the scene has a mesh that is no cage, or a volume.
+bool has_given_surface(const Scene& scene);
 
 }  // namespace limn

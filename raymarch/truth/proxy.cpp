@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "raymarch/measured_border.h"
 #include "raymarch/truth/parts.h"
@@ -189,6 +190,13 @@ glm::dvec2 nearest_on(const BorderCurves& border, CurveKind kind, int object, co
   return nearest;
 }
 
+using BorderOfModel = std::function<BorderCurves(const Camera& camera)>;
+
+/// Crossings are found to 0.002 px, and steps between them keep to the curve within 0.01 px (measured_border.h).
+constexpr double kGivenBound_px = 0.012;
+/// Pictures with a longer side are not doubled.
+constexpr int kMostDoubled_px = 8192;
+
 /// How far two readings of one object put its border from each other: the 95th percentile over the first one's points.
 double disagreement_px(const BorderCurves& a, const BorderCurves& b, int object) {
   std::vector<double> distances;
@@ -216,11 +224,11 @@ void extrapolate(BorderCurves& border, const BorderCurves& coarser, int object) 
 
 /// What is known of each object: cages are extrapolated, meshes and volumes that are all there is keep what their other reading says.
 /// `smooth`: of the meshes with none of their edges hard, if any.
-void judge_objects(const Scene& scene, int level, const BorderCurves& second, const std::optional<BorderCurves>& smooth,
-                   BorderTruth& truth) {
+void judge_objects(const Scene& scene, int level, TruthReference reference, const BorderCurves& second,
+                   const std::optional<BorderCurves>& smooth, BorderTruth& truth) {
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    if (std::holds_alternative<Field>(object.source)) continue;
+    if (std::holds_alternative<Field>(object.source) || (reference == TruthReference::given && !is_cage(object))) continue;
     const int number = static_cast<int>(i) + 1;
     const std::string name = object.name.empty() ? fmt::format("object {}", number) : object.name;
     double apart_px = disagreement_px(truth.curves, second, number);
@@ -263,21 +271,53 @@ TruthProxy make_proxy(const Scene& scene, const Camera& camera, std::int64_t max
   return out;
 }
 
+namespace {
+
+// Twice as many pixels each way.
+Camera doubled(Camera camera) {
+  camera.width_px *= 2;
+  camera.height_px *= 2;
+  camera.focal_px *= 2.0;
+  camera.pixels_per_unit *= 2.0;
+  return camera;
+}
+
+/// The border of files as they are, from rays half a pixel apart; it is known as well as rays a pixel apart agree with it.
+void find_given_border(const Scene& scene, const Camera& camera, const BorderOfModel& border_of, BorderTruth& truth) {
+  truth.bound_px = kGivenBound_px;
+  if (std::max(camera.width_px, camera.height_px) > kMostDoubled_px) return;
+  const BorderCurves coarse = std::move(truth.curves);
+  truth.curves = border_of(doubled(camera));
+  for (BorderCurve& curve : truth.curves.curves)
+    for (BorderPoint& point : curve.points) point.px *= 0.5;
+  for (size_t i = 0; i < scene.objects.size(); ++i)
+    truth.bound_px = std::max(truth.bound_px, disagreement_px(coarse, truth.curves, static_cast<int>(i) + 1));
+}
+
+}  // namespace
+
 BorderTruth solve_truth_by_proxy(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how) {
   const TruthProxy finest = make_proxy(scene, camera, settings.max_bytes, 1.0);
-  const SceneModel second = model_of(scene, [&](const SceneObject& object) { return second_settings(object, finest.level); });
   MeasuredBorderSettings measuring;
   measuring.threshold = settings.threshold;
-  const auto border_of_model = [&](const SceneModel& model) {
-    return measure_border(model, camera, render_gbuffer(model, camera, how), measuring, how);
+  const auto border_of = [&](const SceneModel& model, const Camera& eye) {
+    return measure_border(model, eye, render_gbuffer(model, eye, how), measuring, how);
   };
   BorderTruth truth;
-  truth.exact = false;
-  truth.curves = border_of_model(finest.model);
-  std::optional<BorderCurves> smooth;
-  if (const auto soft = without_hard_edges(scene))
-    smooth = border_of_model(model_of(*soft, [](const SceneObject& object) { return SurfaceSettings{.kind = natural_surface(object)}; }));
-  judge_objects(scene, finest.level, border_of_model(second), smooth, truth);
+  truth.curves = border_of(finest.model, camera);
+  const bool as_given = settings.reference == TruthReference::given;
+  if (as_given && std::none_of(scene.objects.begin(), scene.objects.end(), is_cage)) {
+    find_given_border(
+        scene, camera, [&](const Camera& eye) { return border_of(finest.model, eye); }, truth);
+  } else {
+    truth.exact = false;
+    std::optional<BorderCurves> smooth;
+    if (const auto soft = as_given ? std::nullopt : without_hard_edges(scene))
+      smooth =
+          border_of(model_of(*soft, [](const SceneObject& object) { return SurfaceSettings{.kind = natural_surface(object)}; }), camera);
+    const SceneModel second = model_of(scene, [&](const SceneObject& object) { return second_settings(object, finest.level); });
+    judge_objects(scene, finest.level, settings.reference, border_of(second, camera), smooth, truth);
+  }
   describe_points(finest.model, curvature_sources(scene, finest.model), camera, truth.curves);
   for (const BorderCurve& curve : truth.curves.curves) {
     if (curve.closed) ++(curve.kind == CurveKind::silhouette ? truth.contour_generators : truth.level_curves);

@@ -27,6 +27,7 @@ void add_options(CLI::App& app, Options& options) {
   app.add_flag("--no-timings", options.no_timings, "leave measured times out of sheet and report, so that equal calls write equal bytes")
       ->group("Output");
   add_json(app, options);
+  add_reference(app, options);
   add_execution(app, options);
 }
 
@@ -56,6 +57,7 @@ Comparison plan(const Options& options, SceneInput& input) {
   std::vector<std::string> kinds;
   for (const ComparedModel& model : comparison.models)
     if (model.skipped.empty()) kinds.push_back(model.surface.kind);
+  comparison.truth_reference = options.spec.reference.value_or(TruthReference::given);
   comparison.call = resolved_call("compare", options.spec, {input.scene, settings, kinds}, comparison.camera, comparison.picture);
   return comparison;
 }
@@ -103,6 +105,7 @@ void refuse_unread(const Options& options, const SceneInput& input, const Compar
     if (model.skipped.empty()) use.kinds.push_back(model.surface.kind);
   }
   refuse_without_effect(options.spec.surface, input, use);
+  refuse_reference_without_effect(options.spec, input);
 }
 
 // Where the reference shows nothing the others cannot be blamed for the same.

@@ -118,6 +118,20 @@ void add_refined(CLI::App& app, Options& options) {
       options.refined);
 }
 
+void add_reference(CLI::App& app, Options& options) {
+  add(app,
+      {"--reference", "given|smooth",
+       "true border of meshes that are no cages, and of volumes: that of the file as it is (given, the default: what does a coarser model "
+       "of it lose?), or of the smooth surface that was meant, known no better than two ways to read the file agree",
+       kSurface},
+      [&options](const std::string& text) {
+        const std::vector<std::string> known = {"given", "smooth"};
+        if (std::find(known.begin(), known.end(), text) == known.end())
+          throw InputError({"", "--reference", text, "there is no such reference", known_names(text, known)});
+        options.spec.reference = text == "given" ? TruthReference::given : TruthReference::smooth;
+      });
+}
+
 void add_json(CLI::App& app, Options& options) {
   add_switch(app, {"--json", "", "one JSON document on stdout and nothing else there", kOutput}, options.json);
 }

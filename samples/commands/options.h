@@ -67,6 +67,8 @@ void add_input(CLI::App& app, Options& options);
 void add_output(CLI::App& app, Options& options, const std::string& what, bool repeatable);
 /// --refined
 void add_refined(CLI::App& app, Options& options);
+/// --reference
+void add_reference(CLI::App& app, Options& options);
 void add_json(CLI::App& app, Options& options);
 /// --dump and --brick; excludes --json, which is added before.
 void add_dump(CLI::App& app, Options& options);

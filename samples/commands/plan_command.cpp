@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
 #include "samples/commands/options_parts.h"
@@ -17,6 +19,7 @@ void add_options(CLI::App& app, Options& options) {
   add_surface(app, options, {.surface = true, .repeatable = true, .swept = true});
   add_methods(app, options);
   add_json(app, options);
+  add_reference(app, options);
   add_execution(app, options);
 }
 
@@ -60,7 +63,9 @@ int run(const Options& options) {
     for (const std::string& sentence : plan_sentences(job.answer, job.settings)) text += in_flags(sentence) + "\n";
     print_text(text);
   }
-  return job.answer.chosen ? 0 : 1;
+  if (!job.answer.doubt.empty())
+    print_warnings(options, {fmt::format("no model can be called right to {} px: {}", job.settings.tolerance_px, job.answer.doubt)});
+  return job.answer.chosen && job.answer.doubt.empty() ? 0 : 1;
 }
 
 }  // namespace

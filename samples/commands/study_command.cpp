@@ -31,6 +31,7 @@ void add_options(CLI::App& app, Options& options) {
   add_output(app, options, "folder for rows.csv, rows.jsonl, study.json, report.html, charts and thumbnails; default limn-out/study/<name>",
              false);
   add_json(app, options);
+  add_reference(app, options);
   add_execution(app, options);
 }
 

@@ -61,9 +61,10 @@ struct Cell {
 
 /// A comparison, planned or drawn: plan_comparison(), plan_methods() and draw_comparison() fill it in this order.
 struct Comparison {
-  std::string input_name;               ///< SceneInput::name.
-  std::string reference_words;          ///< "the analytic surface itself".
-  std::string call;                     ///< The resolved call.
+  std::string input_name;       ///< SceneInput::name.
+  std::string reference_words;  ///< "the analytic surface itself".
+  std::string call;             ///< The resolved call.
+  TruthReference truth_reference = TruthReference::given;
   Camera camera;                        ///< Of all pictures.
   PictureSettings picture;              ///< Samples and background; the methods are those below.
   std::vector<ComparedMethod> methods;  ///< One a column.

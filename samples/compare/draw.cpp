@@ -39,6 +39,7 @@ Experiment experiment_of(const Comparison& comparison) {
   }
   experiment.picture = comparison.picture;
   experiment.silhouette_of_all = true;
+  experiment.reference = comparison.truth_reference;
   experiment.share_meshes = true;
   return experiment;
 }

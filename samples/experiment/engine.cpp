@@ -123,6 +123,7 @@ const ExperimentTruth& ExperimentRun::truth(size_t view, double threshold) {
   try {
     TruthSettings settings;
     settings.threshold = threshold;
+    settings.reference = experiment_.reference;
     settings.max_bytes = std::min(settings.max_bytes, experiment_.models.front().settings.max_bytes);
     of.truth = solve_truth(experiment_.scene, experiment_.cameras[view], settings, how_);
   } catch (const InputError& error) {

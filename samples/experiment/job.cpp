@@ -220,6 +220,7 @@ std::string resolved_call(const std::string& command, const ExperimentSpec& spec
     if (!used.empty() && counts(setting.name)) call.add(setting.name, used);
   }
   for (const std::string& grid : spec.grids) call.add("grids", grid);
+  if (spec.reference == TruthReference::smooth) call.add("reference", "smooth");
   for (const MethodCall& method : picture.methods) {
     const std::string& name = method.method->about.name;
     call.add("method", name);

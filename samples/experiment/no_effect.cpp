@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "raymarch/truth.h"
+
 #include "samples/input/scene_facts.h"
 #include "samples/spec/surface_setting.h"
 #include "sdf/error.h"
@@ -183,6 +185,11 @@ void refuse_unchecked(const SurfaceSpec& spec, const SceneInput& input) {
     });
     if (!checked) throw InputError({"", field, "", "has no effect on what is looked at here; leave it out", ""});
   }
+}
+
+void refuse_reference_without_effect(const ExperimentSpec& spec, const SceneInput& input) {
+  if (!spec.reference || has_given_surface(input.scene)) return;
+  throw InputError({"", "reference", "", "has no effect: the scene's fields and cages say which surface they mean; leave it out", ""});
 }
 
 void refuse_undumped(const SurfaceSpec& spec, const SceneInput& input, std::span<const std::string> kinds) {

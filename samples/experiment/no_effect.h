@@ -24,6 +24,8 @@ bool has_effect(const Scene& scene, const SurfaceSettings& settings, std::span<c
 void refuse_without_effect(const SurfaceSpec& spec, const SceneInput& input, const SettingUse& use);
 /// The same for `limn info`, whose checks read some settings of some inputs.
 void refuse_unchecked(const SurfaceSpec& spec, const SceneInput& input);
+/// The same for `reference`: fields and cages say which surface they mean.
+void refuse_reference_without_effect(const ExperimentSpec& spec, const SceneInput& input);
 /// The same for a dump of what `kinds` compute with, one representation for each object.
 void refuse_undumped(const SurfaceSpec& spec, const SceneInput& input, std::span<const std::string> kinds);
 /// The same for the axes of a study.

@@ -9,6 +9,7 @@
 
 #include "raymarch/truth.h"
 #include "samples/experiment/engine.h"
+#include "samples/experiment/judge.h"
 #include "samples/output/progress.h"
 
 namespace limn {
@@ -82,6 +83,8 @@ struct PlanAnswer {
   PlanTrial finest{};                  ///< Of the chosen ladder: its last rung; extrapolated from the trials unless it was one.
   bool finest_was_built = false;       ///< False where `finest` is extrapolated.
   std::optional<size_t> silhouette{};  ///< Trial of the chosen ladder that is enough for the silhouette alone, where that is a coarser one.
+  ErrorFloor floor{};                  ///< What an error can be told from: truth in all views, and what a field itself scores.
+  std::string doubt{};                 ///< Why nothing can be called right to the tolerance; empty where it can.
   std::vector<std::string> notes{};    ///< Ladders that were given up, and why; what else a person should know.
 };
 

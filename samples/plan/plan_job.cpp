@@ -7,6 +7,7 @@
 
 #include "samples/experiment/limits.h"
 #include "samples/experiment/no_effect.h"
+#include "samples/input/scene_facts.h"
 #include "samples/spec/surface_setting.h"
 #include "sdf/error.h"
 
@@ -59,6 +60,22 @@ void check_least(const ExperimentSpec& spec, const Scene& scene, const CameraSet
   check_limits(spec.limits, scene, coarse, load);
 }
 
+/// A field is measured as the models are. A cage has nothing between it and its models.
+ErrorFloor floor_of(const Scene& scene, const PlanJob& job, const ExecutionSettings& how) {
+  ErrorFloor floor;
+  std::optional<SceneModel> surface;
+  if (all_are<Field>(scene)) surface = build_model(scene, {.kind = "analytic"});
+  for (const PlanView& view : job.views) {
+    floor.truth_bound_px = std::max(floor.truth_bound_px, view.truth.bound_px);
+    floor.exact = floor.exact && view.truth.exact;
+    double trace_ms = 0.0;
+    if (!surface) continue;
+    const BorderErrors errors = measure_errors(*surface, view, job.settings.threshold, how, trace_ms);
+    floor.reference_px = std::max(floor.reference_px, errors.of(job.settings.metric));
+  }
+  return floor;
+}
+
 Json parameters_json(const Ladder& ladder, const PlanTrial& trial) {
   Json json = Json::object();
   json[ladder.by_level ? "level" : "voxels"] = ladder.rungs[trial.rung];
@@ -101,6 +118,7 @@ void refuse_unplanned(const ExperimentSpec& spec, const SceneInput& input) {
 PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneInput& input, ProgressBar& bar) {
   PlanJob job;
   refuse_unplanned(spec, input);
+  refuse_reference_without_effect(spec, input);
   job.settings = settings_of(spec, plan, input);
   const CameraSettings camera_of = camera_settings(spec.camera, input);
   const Box scene_bounds = bounds(input.scene);
@@ -113,6 +131,7 @@ PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneIn
     solving.progress = bar.stage(fmt::format("solving the true border, view {} of {}", view + 1, spec.views));
     TruthSettings truth;
     truth.threshold = job.settings.threshold;
+    truth.reference = spec.reference.value_or(TruthReference::given);
     one.truth = solve_truth(input.scene, one.camera, truth, solving);
     job.views.push_back(std::move(one));
   }
@@ -121,6 +140,8 @@ PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneIn
     throw InputError({spec.input, "camera", "", "sees no border: there is nothing to plan for",
                       "one that sees the surface (limn render shows what it sees)"});
   job.answer = make_plan(input.scene, job.views, job.settings, how, bar);
+  job.answer.floor = floor_of(input.scene, job, how);
+  job.answer.doubt = why_not_to_be_told(job.settings.tolerance_px, job.answer.floor);
   bar.clear();
   return job;
 }
@@ -151,6 +172,8 @@ Json plan_json(const PlanJob& job) {
   for (size_t k = 0; k < answer.trials.size(); ++k) {
     if (!answer.chosen || k != *answer.chosen) json["rejected"].push_back(trial_json(answer, answer.trials[k], metric));
   }
+  json["floor_px"] = number_or_null(answer.floor.px());
+  json["doubt"] = answer.doubt;
   json["summary"] = plan_sentences(answer, job.settings);
   return json;
 }

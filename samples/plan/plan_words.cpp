@@ -57,6 +57,8 @@ void add_choice(const PlanAnswer& answer, const PlanSettings& settings, std::vec
 
 std::vector<std::string> plan_sentences(const PlanAnswer& answer, const PlanSettings& settings) {
   std::vector<std::string> out;
+  if (!answer.doubt.empty())
+    out.push_back(fmt::format("No model can be called right to {}: {}. By measurement alone:", px(settings.tolerance_px), answer.doubt));
   if (answer.chosen) {
     add_choice(answer, settings, out);
   } else {

@@ -123,6 +123,8 @@ constexpr DocumentedKey kJsonKeys[] = {
     {"plan", "time_ms", "ms", "of the chosen model"},
     {"plan", "finest", "", "the finest model of the same kind, with the keys of `chosen`"},
     {"plan", "finest.built", "", "whether it was built, or its cost was predicted"},
+    {"plan", "floor_px", "px", "a smaller error cannot be told from none: the true border's own bound, and what a field itself scores"},
+    {"plan", "doubt", "", "why no model can be called right to the tolerance; empty where one can"},
     {"plan", "rejected", "", "the other models that were tried, with the keys of `chosen`"},
     {"plan", "summary", "", "the answer in sentences"},
     {"info", "kind", "", "field, mesh, level set, scene, picture"},

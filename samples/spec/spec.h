@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "raymarch/truth.h"
 #include "subdiv/refine.h"
 
 namespace limn {
@@ -69,8 +70,10 @@ struct ExperimentSpec {
   CameraSpec camera{};                  ///< Over the scene's.
   int views = 1;                        ///< Directions spread over the sphere; 1: the camera's own.
   BorderSpec border{};                  ///< What is drawn.
-  LimitSpec limits{};                   ///< Beyond them the call fails.
-  int threads = 0;                      ///< 0: all.
+  /// What the true border of meshes and volumes is asked of; unset: given.
+  std::optional<TruthReference> reference{};
+  LimitSpec limits{};  ///< Beyond them the call fails.
+  int threads = 0;     ///< 0: all.
 };
 
 /// The axes of a study. Empty: the study's own choice.

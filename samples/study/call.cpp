@@ -57,6 +57,7 @@ std::string call_text(const StudySpec& spec, const Axes& axes, const SurfaceSett
     if (!used.empty()) call.add(fixed, used);
   }
   for (const std::string& grid : spec.experiment.grids) call.add("grids", grid);
+  if (study.truth_reference == TruthReference::smooth) call.add("reference", "smooth");
   std::vector<std::string> methods;
   for (const StudyMethod& method : study.methods) {
     const std::string& name = method.call.method->about.name;

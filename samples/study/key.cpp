@@ -113,8 +113,9 @@ std::string hash_of_input(const SceneInput& input) {
 }
 
 void name_cells(Study& study) {
-  const std::string common = fmt::format("limn {} study {}\ninput {}\nreference {}\n{}\nflicker {}\n", kVersion, kStudyFormat,
-                                         study.input_hash, surface_text(study.reference), metrics_text(), flicker_text(study));
+  const std::string common = fmt::format("limn {} study {}\ninput {}\nreference {}\n{}\nflicker {}\ntruth of {}\n", kVersion, kStudyFormat,
+                                         study.input_hash, surface_text(study.reference), metrics_text(), flicker_text(study),
+                                         study.truth_reference == TruthReference::given ? "files as they are" : "the surface meant");
   std::vector<std::string> cameras, models, methods;
   for (const Camera& camera : study.cameras) cameras.push_back(camera_text(camera));
   for (const StudyModel& model : study.models) models.push_back(surface_text(model.settings));

@@ -214,6 +214,7 @@ Study plan_with(const Given& given, const DefaultAxes& defaults) {
   study.longest_side = box.longest_side();
   study.input_hash = given.input_hash;
   study.flicker = spec.sweep.flicker;
+  study.truth_reference = spec.experiment.reference.value_or(TruthReference::given);
   study.truth_terms = truth_terms(given.size);
   const CameraSettings camera = study_camera(spec.experiment.camera, given.input);
   const int views = spec.sweep.views.value_or(defaults.views);
@@ -248,6 +249,7 @@ Study plan_study(const StudySpec& spec, SceneInput input) {
   if (spec.sweep.max_model_bytes) given.settings.max_bytes = *spec.sweep.max_model_bytes;
   for (SceneObject& object : input.scene.objects) object.level.reset();
   given.input_hash = hash_of_input(input);
+  refuse_reference_without_effect(spec.experiment, input);
   given.size = size_of(input.scene, given.settings);
   DefaultAxes defaults;
   Study study = plan_with(given, defaults);

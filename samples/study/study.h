@@ -50,19 +50,20 @@ struct StudyCell {
 
 /// A study, planned.
 struct Study {
-  Scene scene{};                       ///< Objects' own levels taken away: the models say them.
-  SurfaceSettings reference{};         ///< The model that pictures are held against.
-  std::string reference_words{};       ///< `reference` in words: "the analytic surface itself".
-  ExpectedCost reference_cost{};       ///< See ExpectedCost.
-  std::string input_hash{};            ///< Of the scene's objects and of all files that they came from.
-  std::vector<Camera> cameras{};       ///< One a view.
-  std::vector<StudyMethod> methods{};  ///< In the order of the call.
-  std::vector<StudyModel> models{};    ///< In the order in which they are built.
-  std::vector<StudyCell> cells{};      ///< In the order of work: models, their views, methods.
-  bool flicker = false;                ///< Flicker is measured, too.
-  StudyHead head{};                    ///< What the folder says of it.
-  double longest_side = 0.0;           ///< World, of the scene.
-  double truth_terms = 0.0;            ///< How much there is to trace for truth: grows with what a field's surface has of shape.
+  Scene scene{};                                           ///< Objects' own levels taken away: the models say them.
+  SurfaceSettings reference{};                             ///< The model that pictures are held against.
+  std::string reference_words{};                           ///< `reference` in words: "the analytic surface itself".
+  TruthReference truth_reference = TruthReference::given;  ///< What the true border of meshes and volumes is asked of.
+  ExpectedCost reference_cost{};                           ///< See ExpectedCost.
+  std::string input_hash{};                                ///< Of the scene's objects and of all files that they came from.
+  std::vector<Camera> cameras{};                           ///< One a view.
+  std::vector<StudyMethod> methods{};                      ///< In the order of the call.
+  std::vector<StudyModel> models{};                        ///< In the order in which they are built.
+  std::vector<StudyCell> cells{};                          ///< In the order of work: models, their views, methods.
+  bool flicker = false;                                    ///< Flicker is measured, too.
+  StudyHead head{};                                        ///< What the folder says of it.
+  double longest_side = 0.0;                               ///< World, of the scene.
+  double truth_terms = 0.0;  ///< How much there is to trace for truth: grows with what a field's surface has of shape.
 
   double looks() const { return flicker ? double{kFlickerPath.frames} : 1.0; }  ///< Pictures traced of each model in each view.
   double measure_ms() const;                                                    ///< Expected for one cell: ink, curves and metrics.

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """clang-tidy over limn's own sources, each content once.
 
-All of them take 40 minutes of one core, most of it in the headers of others. So tests/house/tidy.txt lists the contents (SHA-256) that
-clang-tidy found nothing in, and what it lists is not looked at again. The test looks at the rest, and fails on what clang-tidy finds;
-`./run tidy` does the same and then adds what is clean to the list. What a file includes does not count as its content: a header is looked
-at through a source that includes it.
+All of them take 40 minutes of one core, most of it in the headers of others. So tests/house/tidy.txt lists contents (SHA-256) that need not be
+looked at: `clean`, clang-tidy found nothing in them, or `old`, they were there before the check. The test looks at the rest, and fails on
+what clang-tidy finds; `./run tidy` does the same and then adds what is clean to the list. What a file includes does not count as its content:
+a header is looked at through a source that includes it.
 
   tidy.py --build build/release            # looks at what is not in the list; 1 where something is found, 77 without clang-tidy
   tidy.py --build build/release --write    # ... and adds what is clean
+  tidy.py --build build/release --old      # looks at the old contents, too
 """
 
 import argparse
@@ -35,22 +36,24 @@ def own_files(suffix):
     return sorted(path for folder in FOLDERS for path in (ROOT / folder).rglob("*" + suffix))
 
 
-def read_list():
-    """Hashes found clean by these settings; none where .clang-tidy is not what it was."""
-    if not LIST.exists():
-        return set()
-    lines = LIST.read_text().split("\n")
-    return set(word.split()[0] for word in lines[1:] if word) if lines[0] == settings_line() else set()
-
-
 def settings_line():
     return "settings " + content_hash(ROOT / ".clang-tidy")
 
 
-def write_list(clean):
+def read_list():
+    """Word by hash, by these settings; what was clean by others counts as old."""
+    if not LIST.exists():
+        return {}
+    first, *lines = LIST.read_text().split("\n")
+    same = first == settings_line()
+    return {line.split()[1]: line.split()[0] if same else "old" for line in lines if line}
+
+
+def write_list(words):
     """Of the files as they are; what is gone goes from the list, too."""
-    lines = [f"{content_hash(path)} {path.relative_to(ROOT)}" for path in own_files(".h") + own_files(".cpp")]
-    LIST.write_text("\n".join([settings_line()] + [line for line in lines if line.split()[0] in clean]) + "\n")
+    lines = [f"{words[content_hash(path)]} {content_hash(path)} {path.relative_to(ROOT)}"
+             for path in own_files(".h") + own_files(".cpp") if content_hash(path) in words]
+    LIST.write_text("\n".join([settings_line()] + lines) + "\n")
 
 
 def included_by(headers, sources):
@@ -98,6 +101,7 @@ def main():
     parser.add_argument("--build", type=pathlib.Path, required=True, help="a configured build folder")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many at a time")
     parser.add_argument("--write", action="store_true", help="add what is clean to tests/house/tidy.txt")
+    parser.add_argument("--old", action="store_true", help="look at contents that were there before the check, too")
     options = parser.parse_args()
     if not shutil.which("clang-tidy"):
         print("skipped: no clang-tidy; the package clang-tidy brings it")
@@ -108,9 +112,10 @@ def main():
     folder.mkdir(exist_ok=True)
     (folder / "compile_commands.json").write_text(json.dumps(list(known.values())))
 
-    clean = read_list()
+    words = read_list()
+    passed = {content for content, word in words.items() if word == "clean" or not options.old}
     sources = [path for path in own_files(".cpp") if path in known]
-    changed = {path for path in sources + own_files(".h") if content_hash(path) not in clean}
+    changed = {path for path in sources + own_files(".h") if content_hash(path) not in passed}
     through = included_by([path for path in changed if path.suffix == ".h"], sources)
     work = sorted({path for path in changed if path.suffix == ".cpp"} | set(through.values()))
     of_source = {source: [source] + [header for header, by in through.items() if by == source] for source in work}
@@ -125,11 +130,11 @@ def main():
                 found += 1
                 print(text, flush=True)
                 continue
-            clean.update(content_hash(path) for path in of_source[source])
+            words.update({content_hash(path): "clean" for path in of_source[source]})
             if options.write and (number % 20 == 0 or number == len(work)):
-                write_list(clean)
+                write_list(words)
     if options.write:
-        write_list(clean)
+        write_list(words)
     print(f"{len(work)} sources looked at, something found in {found}")
     return 1 if found else 0
 

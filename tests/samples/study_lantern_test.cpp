@@ -110,8 +110,8 @@ void expect_warned(const RunResult& result, const std::filesystem::path& folder)
 TEST(StudyLantern, AsItIsNothingIsCalledRightOrConverging) {
   const TemporaryFolder folder;
   const std::string lantern = folder.write("lantern.obj", lantern_obj(8, 64));
-  const RunResult result = run_limn(
-      {"study", lantern, "--size", "80x60", "--views", "1", "--voxels", "8,16,32", "--gradients", "central", "-o", folder.file("out")});
+  const RunResult result = run_limn({"study", lantern, "--reference", "smooth", "--size", "80x60", "--views", "1", "--voxels", "8,16,32",
+                                     "--gradients", "central", "-o", folder.file("out")});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   expect_warned(result, folder.path() / "out");
   const std::string page = read_bytes(folder.path() / "out/report.html");

@@ -43,9 +43,18 @@ std::vector<ChartPoint> staircase(const ChartFrame& frame, const std::vector<Mod
 }
 
 void draw_points(ChartCanvas& canvas, const ReportData& data, const ChartFrame& frame, const std::vector<ModelPoint>& points, Cost cost) {
-  const std::vector<size_t> front = pareto_front(points, cost);
+  std::vector<size_t> front = pareto_front(points, cost);
   LabelPlacer labels({frame.plot.x + 2.0, frame.plot.y + 2.0, frame.plot.width - 4.0, frame.plot.height - 4.0});
   canvas.line(staircase(frame, points, front, cost), {0.25, 0.25, 0.25}, 1.6);
+  // Where the surface itself can be drawn it may beat every model: a second line is among these alone.
+  std::vector<ModelPoint> models = points;
+  for (ModelPoint& point : models)
+    if (data.models[point.model].is_analytic()) point.median = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<size_t> of_models = pareto_front(models, cost);
+  canvas.line(staircase(frame, points, of_models, cost), {0.45, 0.45, 0.45}, 1.2, true);
+  front.insert(front.end(), of_models.begin(), of_models.end());
+  std::sort(front.begin(), front.end());
+  front.erase(std::unique(front.begin(), front.end()), front.end());
   for (const ModelPoint& point : points) {
     const ChartPoint at = frame.at(cost_of(point, cost), point.median);
     labels.occupy({at.x - 6.0, at.y - 6.0, 12.0, 12.0});
@@ -77,7 +86,8 @@ StudyChart accuracy_chart(const ReportData& data, Cost cost) {
                      log_axis(costs, time ? Quantity::milliseconds : Quantity::bytes,
                               time ? "time to build, trace and ink" : "memory that the model holds"),
                      log_axis(errors, quantity, axis_title(data, data.main_metric), quantity == Quantity::pixels ? kLeastShownPx : 0.0)};
-    ChartHead head{title, "each point a model, the median of its views; the line joins what nothing beats (" + drawing_words(data) + ")"};
+    ChartHead head{title, "each point a model, the median of its views; the line joins what nothing beats, the dashed one among models (" +
+                              drawing_words(data) + ")"};
     if (points.empty()) head.notes.emplace_back("No cell has a value to show");
     for (const std::string& note : {clamp_note(frame.x, ""), clamp_note(frame.y, quantity == Quantity::pixels ? "px" : "")}) {
       if (!note.empty()) head.notes.push_back(note);

@@ -102,7 +102,7 @@ void draw_floor_across(ChartCanvas& canvas, const ChartFrame& frame, const Error
   if (!(px > frame.x.low)) return;
   const double width = std::min(1.0, frame.x.place(px)) * frame.plot.width;
   canvas.box({frame.plot.x, frame.plot.y, width, frame.plot.height}, kFloorShade);
-  canvas.text({frame.plot.x + 6.0, frame.plot.y + 13.0}, floor_words(px), kFloorText);
+  canvas.text({frame.plot.x + 6.0, frame.plot.y + frame.plot.height - 6.0}, floor_words(px), kFloorText);
 }
 
 ChartBox plot_box(double left) { return {left, 78.0, kChartWidth - left - 250.0, kChartHeight - 78.0 - 96.0}; }

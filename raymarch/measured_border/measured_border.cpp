@@ -1,6 +1,6 @@
 #include "raymarch/measured_border.h"
 
-#include "raymarch/measured_border/refine.h"
+#include "raymarch/measured_border/between_crossings.h"
 #include "sdf/error.h"
 
 namespace limn {

@@ -61,18 +61,18 @@ struct Cell {
 
 /// A comparison, planned or drawn: plan_comparison(), plan_methods() and draw_comparison() fill it in this order.
 struct Comparison {
-  std::string input_name;       ///< SceneInput::name.
-  std::string reference_words;  ///< "the analytic surface itself".
-  std::string call;             ///< The resolved call.
-  TruthReference truth_reference = TruthReference::given;
-  Camera camera;                        ///< Of all pictures.
-  PictureSettings picture;              ///< Samples and background; the methods are those below.
-  std::vector<ComparedMethod> methods;  ///< One a column.
-  std::vector<ComparedModel> models;    ///< The first is the reference.
-  std::vector<Cell> cells;              ///< All methods of the first model, then of the next.
-  std::vector<ExperimentTruth> truths;  ///< One a threshold; the first serves methods without one.
-  bool with_times = true;               ///< Measured times are shown and written; without them equal calls write equal bytes.
-  Window seen;                          ///< The part of the pictures where any model hits something, with a margin; panels show that.
+  std::string input_name;                                  ///< SceneInput::name.
+  std::string reference_words;                             ///< "the analytic surface itself".
+  std::string call;                                        ///< The resolved call.
+  TruthReference truth_reference = TruthReference::given;  ///< What the true border of meshes and volumes is asked of.
+  Camera camera;                                           ///< Of all pictures.
+  PictureSettings picture;                                 ///< Samples and background; the methods are those below.
+  std::vector<ComparedMethod> methods;                     ///< One a column.
+  std::vector<ComparedModel> models;                       ///< The first is the reference.
+  std::vector<Cell> cells;                                 ///< All methods of the first model, then of the next.
+  std::vector<ExperimentTruth> truths;                     ///< One a threshold; the first serves methods without one.
+  bool with_times = true;  ///< Measured times are shown and written; without them equal calls write equal bytes.
+  Window seen;             ///< The part of the pictures where any model hits something, with a margin; panels show that.
 
   const ComparedModel& reference() const { return models.front(); }  ///< The first model; there must be one.
   bool is_matrix() const { return methods.size() > 1; }              ///< True where there are several methods.

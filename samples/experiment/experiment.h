@@ -6,6 +6,7 @@
 #include "samples/compare/comparison.h"
 #include "samples/experiment/cost.h"
 #include "samples/experiment/engine.h"
+#include "samples/experiment/error_floor.h"
 #include "samples/experiment/job.h"
 #include "samples/experiment/observe.h"
 #include "samples/input/input.h"

@@ -11,7 +11,9 @@ namespace limn {
 
 /// Times of the same work, done several times; all the same where it was done once. ms, wall clock.
 struct Timing {
-  double median_ms = 0.0, low_ms = 0.0, high_ms = 0.0;
+  double median_ms = 0.0,  ///< Of an even number the mean of the two in the middle.
+      low_ms = 0.0,        ///< The least.
+      high_ms = 0.0;       ///< The largest.
 };
 /// Of at least one time.
 Timing timing_of(std::vector<double> times_ms);

@@ -84,7 +84,7 @@ function orderChart({ points, want, size, theme }) {
   });
   const dots = known.map(point => ({ ...point, x: point.resolution, y: y.shown(point.error), tip: tip(point, want.view, want.metric, point.error),
     ...(labels.has(point) ? { label: labels.get(point) } : {}) }));
-  const floor = want.metric.unit === "px" ? `Errors below ${Number((study.floors[want.metric.name].px ?? Infinity).toPrecision(2))} px are at the precision of measurement and truth, and left out of the fit. ` : "";
+  const floor = want.metric.unit === "px" ? `Errors below ${Number((study.fitFloor ?? Infinity).toPrecision(2))} px are at the precision of measurement and truth, and left out of the fit. ` : "";
   return { spec: orderSpec(dots, lines, x, y, size, theme.series, theme, study.floors[want.metric.name]), count: known.length, items, note: floor + clampNote(y), data: { orders },
     caption: "Dashed: the order fitted, a number at its fine end; below, what theory expects." };
 }

@@ -9,7 +9,7 @@
 
 #include "raymarch/truth.h"
 #include "samples/experiment/engine.h"
-#include "samples/experiment/judge.h"
+#include "samples/experiment/error_floor.h"
 #include "samples/output/progress.h"
 
 namespace limn {

@@ -158,8 +158,9 @@ struct Collector {
                      [](const ReportMetric& a, const ReportMetric& b) { return rank_of(a.name) < rank_of(b.name); });
   }
 
-  // The error of the whole border; in rows without it the displacement of the inner border, or of the silhouette where there is no more, else the first error there is; drawn by what
-  // measured it most often, and among equals by what is nearest to the threshold that limn draws with when nobody says otherwise.
+  // The error of the whole border; in rows without it the displacement of the inner border, or of the silhouette where there is no more,
+  // else the first error there is; drawn by what measured it most often, and among equals by what is nearest to the threshold that limn
+  // draws with when nobody says otherwise.
   void choose_main() {
     data.main_metric = data.metric_of(MetricRole::border);
     if (data.main_metric.empty()) data.main_metric = data.metric_of(MetricRole::inner);
@@ -233,6 +234,8 @@ ErrorFloor ReportData::floor_of(const std::string& metric) const {
   }
   return floor;
 }
+
+double ReportData::fit_floor_px() const { return ErrorFloor{0.0, truth_bound_px, exact}.px(); }
 
 bool is_border_distance(const ReportMetric& metric) {
   return metric.unit == "px" && (metric.name.find("displacement") != std::string::npos || metric.name.starts_with("border_error"));

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "samples/experiment/judge.h"
+#include "samples/experiment/error_floor.h"
 #include "samples/study/row.h"
 
 namespace limn {
@@ -66,6 +66,9 @@ struct ReportData {
 
   /// What errors of a metric in px can be told from: the reference's worst score, truth's bound, the precision of measurement.
   ErrorFloor floor_of(const std::string& metric) const;
+  /// Orders are fitted to errors in px above this: truth's bound and the precision of measurement. What the reference scores is not in it,
+  /// since a cage's is the error of one more model.
+  double fit_floor_px() const;
 
   /// "mesh, vertex normals, level 3".
   std::string title(size_t model) const;

@@ -58,11 +58,9 @@ void add_floors(Json& json, const ReportData& data) {
 }  // namespace
 
 std::string study_data_json(const ReportData& data) {
-  Json json = {{"tolerance", kTolerancePx},
-               {"leastOrder", kLeastOrder},
-               {"least", kLeastShownPx},
-               {"mainDrawing", data.main_drawing},
-               {"mainMetric", data.main_metric}};
+  Json json = {{"tolerance", kTolerancePx},        {"fitFloor", six_digits(data.fit_floor_px())},
+               {"leastOrder", kLeastOrder},        {"least", kLeastShownPx},
+               {"mainDrawing", data.main_drawing}, {"mainMetric", data.main_metric}};
   add_floors(json, data);
   json["roles"] = {{"compared", compared_metric(data)},
                    {"predicted", data.metric_of(MetricRole::predicted)},

@@ -158,7 +158,7 @@ std::optional<OrderFit> fit_order(const ReportData& data, const std::vector<Mode
     errors.push_back(point.median);
   }
   const ReportMetric* about = data.find_metric(metric);
-  return fit_order(resolutions, errors, about != nullptr && about->unit == "px" ? data.floor_of(metric).px() : 0.0);
+  return fit_order(resolutions, errors, about != nullptr && about->unit == "px" ? data.fit_floor_px() : 0.0);
 }
 
 std::string OrderFit::text() const { return fmt::format("order {:.2f}{}", order, converges() ? "" : ": does not converge"); }

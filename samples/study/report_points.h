@@ -51,7 +51,7 @@ struct OrderFit {
 };
 /// Of the errors above `floor`; nothing where fewer than three are left, or all of one resolution.
 std::optional<OrderFit> fit_order(std::span<const double> resolutions, std::span<const double> errors, double floor);
-/// Of a series' points; the floor is ReportData::floor_of() for metrics in pixels, else 0.
+/// Of a series' points; the floor is ReportData::fit_floor_px() for metrics in pixels, else 0.
 std::optional<OrderFit> fit_order(const ReportData& data, const std::vector<ModelPoint>& points, size_t series, const std::string& metric);
 
 /// What theory lets one expect: the border converges as the smaller of the normals' order and the positions', which is 2.

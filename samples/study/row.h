@@ -24,21 +24,21 @@ struct RowTruth {
 /// One metric of one cell. A cell is one model, seen from one view, drawn by one method. A cell that failed is one row without a metric,
 /// its reason in `failed`.
 struct StudyRow {
-  std::string key{};    ///< Of the cell: a hash of all that determines it, the program's version included. Rows of one cell share it.
-  std::string scene{};  ///< SceneInput::name.
-  int view = 0;         ///< From 0.
-  int width_px = 0,     ///< Of the picture.
-      height_px = 0;
+  std::string key{};      ///< Of the cell: a hash of all that determines it, the program's version included. Rows of one cell share it.
+  std::string scene{};    ///< SceneInput::name.
+  int view = 0;           ///< From 0.
+  int width_px = 0,       ///< Of the picture.
+      height_px = 0;      ///< Of the picture.
   std::string surface{};  ///< "mesh", "level_set", …
   std::map<std::string, std::string>
       surface_parameters{};  ///< {"level", "3"}, {"normals", "vertex"}; {"voxels", "128"}, {"gradient", "cubic"}.
   std::string method{};      ///< A name in border_methods().
-  std::map<std::string, std::string> method_parameters{};   ///< {"threshold", "0.4"}.
-  std::string metric{};                                     ///< MetricValue::name; empty in a cell that failed.
-  double value = std::numeric_limits<double>::quiet_NaN();  ///< MetricValue::value.
-  std::string unit{};                                       ///< MetricValue::unit.
-  double floor = std::numeric_limits<double>::quiet_NaN();  ///< What the reference itself scores; NaN: the metric compares with it.
-  RowTruth truth{};
+  std::map<std::string, std::string> method_parameters{};        ///< {"threshold", "0.4"}.
+  std::string metric{};                                          ///< MetricValue::name; empty in a cell that failed.
+  double value = std::numeric_limits<double>::quiet_NaN();       ///< MetricValue::value.
+  std::string unit{};                                            ///< MetricValue::unit.
+  double floor = std::numeric_limits<double>::quiet_NaN();       ///< What the reference itself scores; NaN: the metric compares with it.
+  RowTruth truth{};                                              ///< What it was measured against.
   double resolution = std::numeric_limits<double>::quiet_NaN();  ///< Mean edge or voxel, as a share of the scene's longest side.
   Timing build{},                                                ///< Of the model.
       trace{};                                                   ///< Of one picture.
@@ -47,8 +47,9 @@ struct StudyRow {
   std::string failed{};                                          ///< Why there is no value; empty where there is one.
   /// What charts show as the time of a cell.
   double time_ms() const { return build.median_ms + trace.median_ms + border_ms; }
-  /// The least and the largest that it took.
+  /// The least that it took.
   double time_low_ms() const { return build.low_ms + trace.low_ms + border_ms; }
+  /// The largest.
   double time_high_ms() const { return build.high_ms + trace.high_ms + border_ms; }
 };
 

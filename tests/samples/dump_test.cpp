@@ -80,7 +80,7 @@ TEST(Dump, OfALevelSetIsItsBricksAndOneOfThemItsValues) {
     EXPECT_EQ(values[0], lines[6]);
     EXPECT_EQ(values[1], "slice z 0");
     call.back() = "100000";
-    expect_refused(call, "--brick: no such brick (got '100000'");
+    expect_refused(call, "--brick: no such brick (got 100000, expected 0 to ");
   }
 }
 

@@ -22,7 +22,7 @@ TEST(VolumeInput, StandsInForItsTruthWithTheBestGradientOfItsBand) {
   for (const auto& [half_width, gradient] : {std::pair("2", "cell"), {"3", "central"}, {"5", "cubic"}}) {
     const TemporaryFolder folder;
     const RunResult run = run_limn({"study", volume(folder, half_width), "--size", "96x72", "--views", "1", "--surfaces", "level_set", "-q",
-                                    "--json", "-o", folder.file("study")});
+                                    "--reference", "smooth", "--json", "-o", folder.file("study")});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const json document = run.json();
     EXPECT_FALSE(document.at("exact").get<bool>());

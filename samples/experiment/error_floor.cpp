@@ -1,4 +1,4 @@
-#include "samples/experiment/judge.h"
+#include "samples/experiment/error_floor.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "raymarch/measured_border/refine.h"
+#include "raymarch/measured_border/between_crossings.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // One rule says what is right, wrong, or not to be told; rows carry the floor that it needs, and two questions are asked of files.
 
-#include "samples/experiment/judge.h"
+#include "samples/experiment/error_floor.h"
 
 #include <gtest/gtest.h>
 

@@ -2,12 +2,8 @@
 import csv
 import dataclasses
 
-# Columns of a model's settings; older files have all of them as one text, "level=2;normals=limit".
-SETTINGS = ("voxels", "voxel_size", "half_width", "gradient", "level", "normals", "scheme")
-SETTINGS_TEXT, METHOD_TEXT = "surface_parameters", "method_parameters"
-# What every file has; other columns are parameters of methods.
-CELL_COLUMNS = ("key", "scene", "view", "surface", SETTINGS_TEXT, "method", METHOD_TEXT, "metric", "value", "unit", "resolution", "time_ms",
-                "build_ms", "trace_ms", "border_ms", "bytes", "failed")
+# Columns of a model's settings. A method's parameters have a column each, METHOD.PARAMETER.
+SETTINGS = ("voxels", "voxel_size", "half_width", "gradient", "level", "scheme", "normals", "smooth_angle")
 # What this folder calls a value -> the names it has had in rows.
 METRICS = {f"{kind}_{what}": (f"{kind}_displacement_{what}",) for kind in ("silhouette", "inner") for what in ("mean", "rms", "p95")}
 
@@ -22,9 +18,17 @@ class Cell:
     parameters: dict  # of the method, as texts
     resolution: float
     time_ms: float
+    time_low_ms: float
+    time_high_ms: float
+    parts_ms: tuple  # building, tracing and the border together: the median, the least, the largest
     bytes: int
     failed: str
+    truth: str  # where the true border is from; empty where there is none
+    truth_exact: bool
+    truth_bound_px: float
+    threshold: float  # of the true border
     values: dict = dataclasses.field(default_factory=dict)  # name in rows.csv -> number
+    floors: dict = dataclasses.field(default_factory=dict)  # what the reference itself scores, where that is known
     units: dict = dataclasses.field(default_factory=dict)
 
     def value(self, name):
@@ -39,19 +43,18 @@ def name_in(names, name):
     raise KeyError(f"rows.csv has no value {' or '.join(METRICS[name])}")
 
 
-def parts_of(text):
-    return dict(part.split("=", 1) for part in (text or "").split(";") if part)
-
-
 def number(text):
     return float(text) if text else float("nan")
 
 
 def cell_of(row):
-    settings = {"surface": row["surface"], **parts_of(row.get(SETTINGS_TEXT)), **{name: row[name] for name in SETTINGS if row.get(name)}}
-    others = {name: text for name, text in row.items() if text and name not in CELL_COLUMNS and name not in SETTINGS}
-    return Cell(row["key"], int(row["view"]), settings, row["method"], {**parts_of(row.get(METHOD_TEXT)), **others}, number(row["resolution"]),
-                number(row["time_ms"]), int(row["bytes"] or 0), row.get("failed") or "")
+    settings = {"surface": row["surface"], **{name: row[name] for name in SETTINGS if row[name]}}
+    prefix = row["method"] + "."
+    parameters = {name[len(prefix):]: text for name, text in row.items() if text and name.startswith(prefix)}
+    parts = tuple(number(row[f"build{kind}_ms"]) + number(row[f"trace{kind}_ms"]) + number(row["border_ms"]) for kind in ("", "_low", "_high"))
+    return Cell(row["key"], int(row["view"]), settings, row["method"], parameters, number(row["resolution"]), number(row["time_ms"]),
+                number(row["time_low_ms"]), number(row["time_high_ms"]), parts, int(row["bytes"] or 0), row["failed"], row["truth"],
+                row["truth_exact"] == "true", number(row["truth_bound_px"]), number(row["threshold"]))
 
 
 def read_cells(path):
@@ -64,4 +67,6 @@ def read_cells(path):
             if row["metric"]:
                 cells[row["key"]].values[row["metric"]] = number(row["value"])
                 cells[row["key"]].units[row["metric"]] = row["unit"]
+                if row["floor"]:
+                    cells[row["key"]].floors[row["metric"]] = number(row["floor"])
     return list(cells.values())

@@ -42,13 +42,23 @@ def drawings_of(cells):
                                                  if name == "threshold" or len(seen[cell.method, name]) > 1]) for cell in cells}
 
 
-def expected_orders(settings, metric, threshold):
+def is_position(metric):
+    """A place in the picture, which the page leaves out."""
+    return metric.endswith(("_x", "_y"))
+
+
+def is_distance(metric, unit):
+    """Whether the metric says how far the border is from the true one."""
+    return unit == "px" and ("displacement" in metric or metric.startswith("border_error"))
+
+
+def expected_orders(settings, metric, unit, threshold):
     """The least and the greatest order that theory expects of a model's error, or None."""
     orders = NORMAL_ORDERS.get((settings["surface"], settings.get("normals") or settings.get("gradient")))
     if orders is None or "normal_error" in metric:
         return orders
-    if "displacement" not in metric or metric.endswith("_mean"):
+    if not is_distance(metric, unit) or metric.endswith("_mean"):
         return None
-    if metric.startswith("silhouette") or threshold == 0.0:
+    if "silhouette" in metric or threshold == 0.0:
         return (2, 2)
     return tuple(min(order, 2) for order in orders)

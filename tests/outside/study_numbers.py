@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 
+import rows
+import study_floor
 import study_names
 
 
@@ -27,11 +29,13 @@ class Point:
     errors: list  # ascending
     views: list  # in the order of the errors
     time_ms: float
+    low_ms: float
+    high_ms: float
     bytes: int
 
     def __post_init__(self):
         self.series = study_names.series_of(self.settings)
-        self.is_choice = self.settings["surface"] != "analytic"
+        self.is_analytic = self.settings["surface"] == "analytic"
         self.quantiles = [quantile(self.errors, share) for share in SHARES]
         self.median = self.quantiles[2]
 
@@ -40,9 +44,9 @@ class Point:
 
 
 class Study:
-    def __init__(self, cells, titles):
-        """`titles`: the models, in the page's order."""
-        self.all_cells, self.titles = cells, titles
+    def __init__(self, cells, titles, record):
+        """`titles`: the models, in the page's order; `record`: study.json."""
+        self.all_cells, self.titles, self.record = cells, titles, record
         self.drawings = study_names.drawings_of(cells)
         self.title = {cell.key: study_names.title_of(cell.settings) for cell in cells}
         self.cells = [cell for cell in cells if not cell.failed]
@@ -53,8 +57,21 @@ class Study:
             if not math.isfinite(self.resolutions.get(title, np.nan)):
                 self.resolutions[title] = cell.resolution
 
+        self.units = {name: unit for cell in cells for name, unit in cell.units.items() if not study_names.is_position(name)}
+
     def unit(self, metric):
-        return next((cell.units[metric] for cell in self.cells if metric in cell.units), "")
+        return self.units.get(metric, "")
+
+    def named(self, name):
+        """What the rows call a value that is known as `name` (rows.METRICS), or None."""
+        return next((known for known in rows.METRICS[name] if known in self.units), None)
+
+    def floor(self, metric):
+        return study_floor.floor_of(self.all_cells, self.record, metric)
+
+    def fit_floor(self, metric):
+        """What is not above it is left out of fits."""
+        return self.floor(metric).px if self.unit(metric) == "px" else 0.0
 
     def cells_of(self, drawing, view=None):
         return [cell for cell in self.cells if self.drawings[cell.key] == drawing and view in (None, cell.view)]
@@ -70,29 +87,38 @@ class Study:
 
     def point(self, title, group):
         cells = [cell for _, _, cell in group]
+        times = (quantile(sorted(getattr(cell, name) for cell in cells), 0.5) for name in ("time_ms", "time_low_ms", "time_high_ms"))
         return Point(title, self.settings[title], self.resolutions[title], [error for error, _, _ in group],
-                     [view for _, view, _ in group], quantile(sorted(cell.time_ms for cell in cells), 0.5), max(cell.bytes for cell in cells))
+                     [view for _, view, _ in group], *times, max(cell.bytes for cell in cells))
 
 
 def beaten_by(points, kind):
-    """For each point those that beat it: no dearer and no worse, and of two equal ones the first. The analytic surface is no choice."""
+    """For each point those that beat it: no dearer and no worse, and of two equal ones the first."""
     costs, errors = np.array([(point.cost(kind), point.median) for point in points]).reshape(-1, 2).T
-    choice, place = np.array([point.is_choice for point in points], bool), np.arange(len(points))
+    place = np.arange(len(points))
     no_dearer, no_worse = costs[None] <= costs[:, None], errors[None] <= errors[:, None]
     equal = (costs[None] == costs[:, None]) & (errors[None] == errors[:, None])
-    beats = no_dearer & no_worse & (~equal | (place[None] < place[:, None])) & choice[None] & choice[:, None]
+    beats = no_dearer & no_worse & (~equal | (place[None] < place[:, None]))
     return [[points[k] for k in np.flatnonzero(row)] for row in beats]
 
 
 def front(points, kind):
     """What nothing beats, cheapest first."""
-    return sorted((point for point, better in zip(points, beaten_by(points, kind)) if point.is_choice and not better),
-                  key=lambda point: point.cost(kind))
+    return sorted((point for point, better in zip(points, beaten_by(points, kind)) if not better), key=lambda point: point.cost(kind))
 
 
-def cheapest_within(points, tolerance, kind):
-    good = [point for point in points if point.is_choice and point.median <= tolerance]
-    return min(good, key=lambda point: (point.cost(kind), point.time_ms), default=None)
+def smallest_of(points):
+    return min(points, key=lambda point: (point.bytes, point.time_ms), default=None)
+
+
+def quickest_of(points):
+    """Of those that may be as quick as the quickest, by the spread of their times, the smallest."""
+    quickest = min(points, key=lambda point: point.time_ms, default=None)
+    return smallest_of([point for point in points if point is quickest or point.low_ms <= quickest.high_ms])
+
+
+def as_quick_as(points, chosen):
+    return [point for point in points if point is not chosen and point.low_ms <= chosen.high_ms and chosen.low_ms <= point.high_ms]
 
 
 def order_fit(points, floor):

@@ -26,9 +26,11 @@ class Page:
                          re.findall(r'<figure class="cell"[^>]* data-model="(\d+)" data-drawing="(\d+)">.*?<figcaption>(.*?)</figcaption>',
                                     body, re.S)]
 
-    @staticmethod
-    def sentences_of(body):
+    def sentences_of(self, body):
         lead = plain(re.search(r'<p class="lead">(.*?)</p>', body, re.S)[1])
         results = re.search(r'<ul class="results">(.*?)</ul>', body, re.S)
-        # A sentence ends where a capital follows: numbers and names of models have points, too.
-        return re.split(r"(?<=\.) (?=[A-Z])", lead) + [plain(item) for item in re.findall(r"<li>(.*?)</li>", results[1] if results else "", re.S)]
+        # A sentence ends where a capital follows, or a model or how many: numbers and names of models have points, too.
+        names = "|".join(re.escape(title) for title in sorted(self.titles, key=len, reverse=True))
+        end = re.compile(rf"(?<=\.) (?=[A-Z]|(?i:{names}) is as|\d+ others? (?:is|are) as)")
+        items = [plain(item) for item in re.findall(r"<li>(.*?)</li>", results[1] if results else "", re.S)]
+        return [sentence for text in (lead, *items) for sentence in (end.split(text) if not text.startswith("Warning:") else [text])]

@@ -1,14 +1,16 @@
 """The numbers and names in a study page's sentences. A sentence is known by a few of its words; what is compared is the order of its numbers,
-with their units, and of the models it names. So wording may change, and nothing with a number in it goes unchecked."""
+with their units, and of the models it names. So wording may change, and nothing with a number in it goes unchecked. A rule without numbers
+and names says that its sentence must not be there."""
+import math
 import re
 
 import numpy as np
 
-import rows
 import study_names
-from study_numbers import cheapest_within, front, order_fit, views_shown
+from study_floor import two_digits_up
+from study_numbers import as_quick_as, front, order_fit, quickest_of, smallest_of, views_shown
 
-NUMBER = r"\d+(?:,\d{3})+(?! ?voxels)|\d+(?:\.\d+)?(?:e[-+]?\d+)?(?: (?:px|ms|s|kB|MB|GB|B|%)(?!\w))?"
+NUMBER = r"(?:less than )?(?:\d+(?:,\d{3})+(?! ?voxels)|\d+(?:\.\d+)?(?:e[-+]?\d+)?(?: (?:px|ms|s|kB|MB|GB|B|%)(?!\w))?)"
 
 
 def short(value):
@@ -30,10 +32,17 @@ class Sentences:
     def __init__(self, study, page, record):
         """`record`: study.json."""
         self.study, self.page, self.record = study, page, record
-        self.tolerance, self.floor = page.data["tolerance"], page.data["floor"]
+        self.tolerance = page.data["tolerance"]
         self.main, self.drawing = page.data["mainMetric"], page.drawings[page.data["mainDrawing"]]
         self.points = study.points(self.drawing, self.main)
-        self.choices = [point for point in self.points if point.is_choice]
+        self.choices = [point for point in self.points if not point.is_analytic]
+        self.floor = study.floor(self.main)
+        # Only distances of the border can be held against the tolerance, and only where truth is surer than it.
+        self.in_pixels = bool(self.choices) and study_names.is_distance(self.main, study.unit(self.main))
+        self.can_tell = self.in_pixels and self.floor.px <= self.tolerance
+        self.right = [point for point in self.choices if self.can_tell and self.floor.is_right(point.median, self.tolerance)]
+        self.nearest = min(self.choices, key=lambda point: point.median, default=None)
+        self.best_known = quickest_of(self.right)
         self.failed = [cell.failed for cell in study.all_cells if cell.failed]
         names = set(page.titles) | set(page.series) | set(page.drawings) | {study_names.resolution_text(s) for s in study.settings.values()}
         quoted = {record["truth"], *self.failed, *record.get("warnings", [])}
@@ -44,11 +53,8 @@ class Sentences:
         """Names of models and drawings, quotations of study.json, and numbers, in order."""
         return self.token.findall(sentence)
 
-    def px(self, value):
-        return f"{short(value)} px"
-
     def about(self, point):
-        return [point.title, self.px(point.median)]
+        return [point.title, self.floor.words(point.median)]
 
     def costs(self, point):
         return [time_text(point.time_ms), bytes_text(point.bytes)]
@@ -59,32 +65,59 @@ class Sentences:
         return [str(count) for count in counts + ([len(self.failed)] if 0 < len(self.failed) < len(study.all_cells) else [])]
 
     def incomplete(self):
-        return [str(len(self.study.all_cells)), str(len(self.record["cells"]))]
+        here, all_cells = len(self.study.all_cells), len(self.record["cells"])
+        return [str(here), str(all_cells)] if here < all_cells else []
 
     def truth(self):
-        return [self.record["truth"]]
+        return [self.record["truth"]] if self.record["truth"] else []
+
+    def what_follows(self):
+        return [self.drawing] if self.choices and len(self.page.drawings) > 1 else []
+
+    def criterion(self):
+        """"95 % of it" has a number."""
+        return ["95 %"] if self.main.endswith("_p95") else []
 
     def quickest(self):
-        best = cheapest_within(self.choices, self.tolerance, "time")
-        worst = [short(best.errors[-1])] if len(best.errors) > 1 else []
-        return [f"{self.tolerance:g} px", *self.about(best), *worst, *self.costs(best)]
+        best = self.best_known
+        if best is None:
+            return []
+        worst = [self.floor.words(best.errors[-1])] if len(best.errors) > 1 else []
+        return [f"{self.tolerance:g} px", *self.criterion(), *self.about(best), *worst, *self.costs(best)]
+
+    def as_quick(self):
+        others = as_quick_as(self.right, self.best_known)
+        return [] if not others else [others[0].title] if len(others) == 1 else [str(len(others))]
 
     def smallest(self):
-        best = cheapest_within(self.choices, self.tolerance, "memory")
-        return [*self.about(best), *self.costs(best)]
+        smallest = smallest_of(self.right)
+        return [] if smallest is self.best_known else [*self.about(smallest), *self.costs(smallest)]
 
     def best(self):
-        best, quickest = min(self.choices, key=lambda point: point.median), cheapest_within(self.choices, self.tolerance, "time")
+        best, quickest = self.nearest, self.best_known
+        if quickest is None or best is quickest or best.median < self.floor.px or not (best.time_ms > 0.0 and quickest.time_ms > 0.0):
+            return []
         slower = best.time_ms > 1.05 * quickest.time_ms
         memory = [short(best.bytes / quickest.bytes)] if quickest.bytes and best.bytes > quickest.bytes else []
         return [*self.about(best), short(best.time_ms / quickest.time_ms) if slower else time_text(best.time_ms), *memory]
 
     def none_within(self):
-        best = min(self.choices, key=lambda point: point.median)
-        return [f"{self.tolerance:g} px", *self.about(best), *self.costs(best)]
+        if not self.can_tell or self.right:
+            return []
+        return [f"{self.tolerance:g} px", *self.about(self.nearest), *self.costs(self.nearest)]
+
+    def analytic(self):
+        others = [point for point in self.points if self.can_tell and point.is_analytic]
+        return [token for point in others for token in self.about(point) + self.costs(point)]
 
     def cannot_tell(self):
-        return [f"{self.tolerance:g} px", f"{self.floor:.2g} px"]
+        if not self.in_pixels or self.can_tell:
+            return []
+        floor, bound = self.floor.px, self.floor.bound_px
+        if not math.isfinite(floor):
+            return [f"{self.tolerance:g} px"]
+        reason = bound if bound > self.tolerance else floor
+        return [f"{self.tolerance:g} px", f"less than {floor:.2g} px", f"{two_digits_up(reason):.2g} px"]
 
     def of_series(self, points):
         """Series in the page's order, each with its points."""
@@ -92,21 +125,21 @@ class Sentences:
         return [(series, group) for series, group in groups if group]
 
     def never(self):
-        tokens = [f"{self.tolerance:g} px"]
-        for series, group in self.of_series(self.choices):
+        tokens = []
+        for series, group in self.of_series(self.choices if self.can_tell else []):
             best = min(group, key=lambda point: point.median)
-            if best.median > self.tolerance:
-                tokens += [series, self.px(best.median), study_names.resolution_text(best.settings)]
-        return [token for token in tokens if token]
+            if self.floor.is_wrong(best.median, self.tolerance):
+                tokens += [series, self.floor.words(best.median), study_names.resolution_text(best.settings)]
+        return [f"{self.tolerance:g} px", *filter(None, tokens)] if tokens else []
 
     def expected(self, group):
         threshold = self.page.data["drawings"][self.page.data["mainDrawing"]]["parameters"]
         found = re.search(r"threshold ([\d.e+-]+)", threshold)
-        orders = study_names.expected_orders(group[0].settings, self.main, float(found[1]) if found else np.nan)
+        orders = study_names.expected_orders(group[0].settings, self.main, self.study.unit(self.main), float(found[1]) if found else np.nan)
         return [] if orders is None else [f"{order:g}" for order in dict.fromkeys(orders)]
 
     def fits(self, points):
-        floor = self.floor if self.study.unit(self.main) == "px" else 0.0
+        floor = self.study.fit_floor(self.main)
         return [(series, order_fit(group, floor), self.expected(group)) for series, group in self.of_series(points)]
 
     def orders(self, converging):
@@ -116,22 +149,27 @@ class Sentences:
                 tokens += [series, f"{fit[0]:.2f}", *expected]
         return tokens
 
+    def not_converging(self):
+        orders = self.orders(False)
+        return ["0", *orders] if orders else []
+
     def needed(self, metric, series):
-        """The coarsest resolution from which on the medians stay within the tolerance."""
+        """The coarsest resolution from which on the medians are right to the tolerance, by what can be told of the main error."""
         resolution = ""
         for point in self.study.points(self.drawing, metric):
             if point.series == series:
-                good = point.median <= self.tolerance
+                good = self.floor.is_right(point.median, self.tolerance)
                 resolution = (resolution or study_names.resolution_text(point.settings)) if good else ""
         return resolution
 
     def parts(self):
-        tokens = [f"{self.tolerance:g} px"]
-        for series in self.page.series:
-            outer, inner = (self.needed(rows.name_in(self.page.metrics, f"{kind}_rms"), series) for kind in ("silhouette", "inner"))
+        kinds = [self.study.named(f"{kind}_rms") for kind in ("silhouette", "inner")]
+        tokens = []
+        for series in self.page.series if self.can_tell and all(kinds) else []:
+            outer, inner = (self.needed(metric, series) for metric in kinds)
             if outer != inner:
                 tokens += [series, outer, inner]
-        return [token for token in tokens if token]
+        return [f"{self.tolerance:g} px", *filter(None, tokens)] if tokens else []
 
     def pairs(self, first, second):
         """Absolute values of two metrics in the cells of the main drawing that have both."""
@@ -140,12 +178,17 @@ class Sentences:
         return pairs[np.isfinite(pairs).all(axis=1)]
 
     def prediction(self):
-        pairs = self.pairs(self.page.data["roles"]["predicted"], self.page.data["roles"]["compared"])
-        pairs = pairs[(pairs[:, 1] > self.floor) & (pairs[:, 1] < 2.0)]
+        predicted, compared = (self.page.data["roles"][role] for role in ("predicted", "compared"))
+        if not (self.choices and predicted and compared):
+            return []
+        pairs = self.pairs(predicted, compared)
+        pairs = pairs[(pairs[:, 1] > self.study.floor(compared).px) & (pairs[:, 1] < 2.0)]
         wrong = np.sort(np.abs(pairs[:, 0] / pairs[:, 1] - 1.0))
-        return [f"{100.0 * wrong[len(wrong) // 2]:.0f} %", str(len(wrong)), "2 px"]
+        return [f"{100.0 * wrong[len(wrong) // 2]:.0f} %", str(len(wrong)), "less than 2 px"] if len(wrong) else []
 
     def failures(self):
+        if not self.failed:
+            return []
         common = max(sorted(set(self.failed)), key=self.failed.count)
         count = self.failed.count(common)
         return [str(len(self.failed)), *([] if count == len(self.failed) else [str(count)]), common]
@@ -167,8 +210,9 @@ class Sentences:
         roles = self.page.data["roles"]
         count = len(self.pairs(roles["compared"], roles["normal"]))
         slopes = self.pairs(roles["predicted"], roles["normal"])
+        slopes = slopes[(slopes > 0.0).all(axis=1)]
         slopes = np.sort(slopes[:, 0] / slopes[:, 1])
-        return [str(count), f"{slopes[len(slopes) // 2]:.2g} px"] if count else []
+        return [str(count), *([f"{slopes[len(slopes) // 2]:.2g} px"] if len(slopes) else [])] if count else []
 
     def view_words(self):
         unit, tokens = self.study.unit(self.main), []
@@ -182,14 +226,16 @@ RULES = (
     (r"models? seen from", Sentences.cells),
     (r"study is not complete", Sentences.incomplete),
     (r"^Truth (is|itself)", Sentences.truth),
-    (r"^What follows is for", lambda s: [s.drawing]),
+    (r"^What follows is for", Sentences.what_follows),
     (r"quickest model whose border is right", Sentences.quickest),
+    (r"as quick within the spread", Sentences.as_quick),
     (r"^The smallest is", Sentences.smallest),
     (r"^The best of all", Sentences.best),
+    (r"^The analytic surface, drawn without", Sentences.analytic),
     (r"^No model comes within", Sentences.none_within),
     (r"^No model can be called right", Sentences.cannot_tell),
     (r"^Never within", Sentences.never),
-    (r"does not converge to 0", lambda s: ["0", *s.orders(False)]),
+    (r"does not converge to 0", Sentences.not_converging),
     (r"error falls with the resolution", lambda s: s.orders(True)),
     (r"ask for different resolutions", Sentences.parts),
     (r"^What theory predicts", Sentences.prediction),

@@ -91,6 +91,7 @@ class Check:
         tolerance = self.page.data["tolerance"]
         in_px = {metric: self.study.floor(metric) for metric, unit in self.study.units.items() if unit == "px"}
         self.same("metrics with floors", sorted(self.page.data["floors"]), sorted(in_px))
+        self.equal("floor of fits", self.page.data["fitFloor"], max((self.study.fit_floor(metric) for metric in in_px), default=None), 6)
         for metric, floor in in_px.items():
             shown = self.page.data["floors"].get(metric, {"px": None, "words": "", "right": None})
             self.equal(f"floor of {metric}", shown["px"], floor.px, 6)

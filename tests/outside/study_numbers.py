@@ -70,8 +70,8 @@ class Study:
         return study_floor.floor_of(self.all_cells, self.record, metric)
 
     def fit_floor(self, metric):
-        """What is not above it is left out of fits: truth's bound and the precision of measurement, without the reference's own score."""
-        return max(study_floor.PRECISION_PX, self.floor(metric).bound_px) if self.unit(metric) == "px" else 0.0
+        """What is not above it is left out of fits; what the reference scores is no part of it."""
+        return dataclasses.replace(self.floor(metric), reference_px=0.0).px if self.unit(metric) == "px" else 0.0
 
     def cells_of(self, drawing, view=None):
         return [cell for cell in self.cells if self.drawings[cell.key] == drawing and view in (None, cell.view)]

@@ -10,7 +10,7 @@ namespace limn {
 namespace {
 
 /// Two digits; a floor is rounded up, so that nothing below it is quoted.
-std::string px_text(double px) { return fmt::format("{:.2g} px", px); }
+std::string px_text(double px) { return px >= 99.5 ? fmt::format("{:.0f} px", px) : fmt::format("{:.2g} px", px); }
 double rounded_up(double px) {
   if (!(px > 0.0) || !std::isfinite(px)) return px;
   const double unit = std::pow(10.0, std::floor(std::log10(px)) - 1.0);
@@ -39,9 +39,11 @@ std::string error_text(double error_px, const ErrorFloor& floor) {
   return error_px < least ? "less than " + px_text(rounded_up(least)) : px_text(error_px);
 }
 
+std::string bound_text(const ErrorFloor& floor) { return px_text(rounded_up(floor.truth_bound_px)); }
+
 std::string why_not_to_be_told(double tolerance_px, const ErrorFloor& floor) {
   if (floor.truth_bound_px > tolerance_px) {
-    return std::isfinite(floor.truth_bound_px) ? "the true border itself may be " + px_text(rounded_up(floor.truth_bound_px)) + " off"
+    return std::isfinite(floor.truth_bound_px) ? "the true border itself may be " + bound_text(floor) + " off"
                                                : "nobody knows how far the true border itself is off";
   }
   if (floor.px() > tolerance_px) return "the reference itself scores " + px_text(rounded_up(floor.px()));

@@ -30,6 +30,9 @@ double largest_right_px(double tolerance_px, const ErrorFloor& floor);
 /// "0.13 px"; "less than 0.006 px" for what lies below the floor.
 std::string error_text(double error_px, const ErrorFloor& floor);
 
+/// How far off the true border may be: "0.13 px", rounded up.
+std::string bound_text(const ErrorFloor& floor);
+
 /// Why nothing can be called right to a tolerance; empty where it can.
 std::string why_not_to_be_told(double tolerance_px, const ErrorFloor& floor);
 

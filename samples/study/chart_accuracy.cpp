@@ -19,11 +19,11 @@ std::string words_of(const ReportData& data, const std::vector<ModelPoint>& poin
   if (points.empty()) return "No cell has a value to show.";
   std::string words =
       fmt::format("{} models. Nothing is at once cheaper in {} and better than: ", points.size(), cost == Cost::time ? "time" : "memory");
-  const std::string unit = data.find_metric(data.main_metric)->unit;
+  const ErrorWords error = error_words(data, data.main_metric);
   bool first = true;
   for (const size_t i : pareto_front(points, cost)) {
-    words += fmt::format("{}{} ({:.3g}{} in {})", first ? "" : "; ", data.title(points[i].model), points[i].median,
-                         unit.empty() ? "" : " " + unit, cost_text(points[i], cost));
+    words +=
+        fmt::format("{}{} ({} in {})", first ? "" : "; ", data.title(points[i].model), error(points[i].median), cost_text(points[i], cost));
     first = false;
   }
   return words + ".";

@@ -19,9 +19,9 @@ std::string plain(double value) { return fmt::format("{:.6g}", value); }
 
 constexpr ChartColor kFloorShade{0.5, 0.5, 0.5, 0.12};
 constexpr ChartText kFloorText{11.0, false, kChartSoft};
-std::string floor_words(double px) {
-  return std::isfinite(px) ? fmt::format("below {:.2g} px: not to be told from no error", px)
-                           : "nothing can be told: the true border is not known";
+std::string floor_words(const ErrorFloor& floor) {
+  return std::isfinite(floor.px()) ? error_text(0.0, floor) + ": not to be told from no error"
+                                   : "nothing can be told: the true border is not known";
 }
 
 }  // namespace
@@ -94,7 +94,7 @@ void draw_floor(ChartCanvas& canvas, const ChartFrame& frame, const ErrorFloor& 
   if (!(px > frame.y.low)) return;
   const double share = std::min(1.0, frame.y.place(px)), height = share * frame.plot.height;
   canvas.box({frame.plot.x, frame.plot.y + frame.plot.height - height, frame.plot.width, height}, kFloorShade);
-  if (height > 16.0) canvas.text({frame.plot.x + 6.0, frame.plot.y + frame.plot.height - height + 13.0}, floor_words(px), kFloorText);
+  if (height > 16.0) canvas.text({frame.plot.x + 6.0, frame.plot.y + frame.plot.height - height + 13.0}, floor_words(floor), kFloorText);
 }
 
 void draw_floor_across(ChartCanvas& canvas, const ChartFrame& frame, const ErrorFloor& floor) {
@@ -102,7 +102,7 @@ void draw_floor_across(ChartCanvas& canvas, const ChartFrame& frame, const Error
   if (!(px > frame.x.low)) return;
   const double width = std::min(1.0, frame.x.place(px)) * frame.plot.width;
   canvas.box({frame.plot.x, frame.plot.y, width, frame.plot.height}, kFloorShade);
-  canvas.text({frame.plot.x + 6.0, frame.plot.y + frame.plot.height - 6.0}, floor_words(px), kFloorText);
+  canvas.text({frame.plot.x + 6.0, frame.plot.y + frame.plot.height - 6.0}, floor_words(floor), kFloorText);
 }
 
 ChartBox plot_box(double left) { return {left, 78.0, kChartWidth - left - 250.0, kChartHeight - 78.0 - 96.0}; }

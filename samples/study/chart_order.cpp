@@ -79,8 +79,8 @@ StudyChart order_chart(const ReportData& data) {
         log_axis(errors, quantity, axis_title(data, data.main_metric), quantity == Quantity::pixels ? kLeastShownPx : 0.0)};
     ChartHead head{title, "the median of the views; dashed: the order fitted (" + drawing_words(data) + ")"};
     if (quantity == Quantity::pixels)
-      head.notes.push_back(fmt::format("Errors below {:.2g} px are at the precision of measurement and truth, and left out of the fit",
-                                       data.fit_floor_px()));
+      head.notes.push_back(fmt::format("Errors of {} are at the precision of measurement and truth, and left out of the fit",
+                                       error_text(0.0, {0.0, data.truth_bound_px, data.exact})));
     if (const std::string note = clamp_note(frame.y, quantity == Quantity::pixels ? "px" : ""); !note.empty()) head.notes.push_back(note);
     draw_frame(canvas, head, frame, data, {});
     if (quantity == Quantity::pixels) draw_floor(canvas, frame, data.floor_of(data.main_metric));

@@ -52,12 +52,11 @@ StudyChart views_chart(const ReportData& data) {
   chart.title = "Error over the views";
   const std::vector<ModelPoint> points = models_of_views(data, data.main_drawing, data.main_metric);
   chart.height = kTop + kRow * static_cast<double>(std::max<size_t>(points.size(), 3)) + kBelow;
-  const ReportMetric* metric = data.find_metric(data.main_metric);
-  const std::string unit = metric == nullptr || metric->unit.empty() ? "" : " " + metric->unit;
+  const ErrorWords error = error_words(data, data.main_metric);
   chart.words = points.empty() ? "No cell has a value to show." : "From the best view to the worst, ";
   for (const ModelPoint& point : points) {
     chart.words +=
-        fmt::format("{}: {:.3g} to {:.3g}{}, median {:.3g}. ", data.title(point.model), point.low, point.high, unit, point.median);
+        fmt::format("{}: {} to {}, median {}. ", data.title(point.model), error(point.low), error(point.high), error(point.median));
   }
   chart.draw = [&data, points, height = chart.height, title = chart.title](ChartCanvas& canvas) {
     std::vector<double> errors;

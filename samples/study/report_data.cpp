@@ -235,6 +235,16 @@ ErrorFloor ReportData::floor_of(const std::string& metric) const {
   return floor;
 }
 
+std::string ErrorWords::operator()(double error) const {
+  if (unit == "px") return error_text(error, floor);
+  return fmt::format("{:.3g}{}{}", error, unit.empty() ? "" : " ", unit);
+}
+
+ErrorWords error_words(const ReportData& data, const std::string& metric) {
+  const ReportMetric* found = data.find_metric(metric);
+  return {found == nullptr ? "" : found->unit, data.floor_of(metric)};
+}
+
 double ReportData::fit_floor_px() const { return ErrorFloor{0.0, truth_bound_px, exact}.px(); }
 
 bool is_border_distance(const ReportMetric& metric) {

@@ -83,6 +83,15 @@ std::string compared_metric(const ReportData& data);
 
 ReportData collect_report(const StudyHead& head, const std::vector<StudyRow>& rows);
 
+/// An error with its unit, "less than 0.006 px" below the metric's floor.
+struct ErrorWords {
+  std::string unit{};
+  ErrorFloor floor{};
+
+  std::string operator()(double error) const;
+};
+ErrorWords error_words(const ReportData& data, const std::string& metric);
+
 /// A metric that says how far the border is from the true one, in px: what can be held against a tolerance.
 bool is_border_distance(const ReportMetric& metric);
 

@@ -55,15 +55,14 @@ ReportThumbnails read_thumbnails(const ReportData& data, const std::filesystem::
 
 std::string thumbnails_html(const ReportData& data, const ReportThumbnails& thumbnails) {
   if (thumbnails.pictures.empty()) return "<p class=\"details\">No pictures of cells were kept.</p>\n";
-  const ReportMetric* metric = data.find_metric(data.main_metric);
-  const std::string unit = metric->unit.empty() ? "" : " " + metric->unit;
+  const ErrorWords error = error_words(data, data.main_metric);
   std::string html = "<p class=\"details\">Of each model the view whose error is the median of its views.";
   if (thumbnails.left_out > 0)
     html += fmt::format(" {} pictures are left out to keep the page small; they are in the folder cells.", thumbnails.left_out);
   html += "</p>\n<div class=\"cells\">\n";
   for (const ReportThumbnail& one : thumbnails.pictures) {
     const std::string title = data.title(one.model), drawn = data.drawings[one.drawing].title();
-    const std::string numbers = fmt::format("{:.3g}{} off, view {}", one.error, unit, one.view);
+    const std::string numbers = fmt::format("{} off, view {}", error(one.error), one.view);
     html += fmt::format("<figure class=\"cell\" id=\"cell-{}-{}\" data-model=\"{}\" data-drawing=\"{}\">", one.model, one.drawing,
                         one.model, one.drawing);
     html += fmt::format("<img width=\"{}\" height=\"{}\" loading=\"lazy\" alt=\"{}\" src=\"data:image/png;base64,{}\">", one.width,

@@ -57,25 +57,38 @@ struct Words {
     return time_text(point.time_ms) + " and " + bytes_text(static_cast<double>(point.bytes));
   }
 
+  void say_none_within(const ModelPoint& best) {
+    if (judge(best.median, kTolerancePx, floor) == Verdict::wrong) {
+      out.push_back(fmt::format("No model comes within {} px of truth in its median view: the nearest, {}, is {} off, for {}.",
+                                kTolerancePx, data.title(best.model), px(best.median), cost(best)));
+    } else {
+      out.push_back(
+          fmt::format("Whether a model comes within {} px of truth in its median view is not to be told: the nearest, {}, is {} off, for "
+                      "{}, and the true border itself may be {} off.",
+                      kTolerancePx, data.title(best.model), px(best.median), cost(best), bound_text(floor)));
+    }
+  }
+
   // Only displacements in px can be held against half a pixel.
   void say_cheapest() {
     const auto better = [](const ModelPoint& a, const ModelPoint& b) { return a.median < b.median; };
     const ModelPoint& best = *std::min_element(points.begin(), points.end(), better);
     const ModelPoint* cheapest = cheapest_within(points, kTolerancePx, floor, Cost::time);
     if (cheapest == nullptr) {
-      out.push_back(fmt::format("No model comes within {} px of truth in its median view: the nearest, {}, is {} off, for {}.",
-                                kTolerancePx, data.title(best.model), px(best.median), cost(best)));
+      say_none_within(best);
       return;
     }
     std::string text = fmt::format("The quickest model whose border is right to {} px ({}, median of the views) is {}: {} off",
                                    kTolerancePx, criterion(), data.title(cheapest->model), px(cheapest->median));
     if (cheapest->cells.size() > 1) text += fmt::format(", {} in the worst view", px(cheapest->high));
     text += ", for " + cost(*cheapest) + ".";
-    const std::vector<const ModelPoint*> equals = as_quick_as(points, *cheapest, kTolerancePx, floor);
-    if (!equals.empty())
-      text +=
-          fmt::format(" {} as quick within the spread of the timings, and larger.",
-                      equals.size() == 1 ? data.title(equals.front()->model) + " is" : count_of(equals.size(), "other", "others") + " are");
+    std::vector<const ModelPoint*> equals = may_be_quickest(points, kTolerancePx, floor);
+    std::erase(equals, cheapest);
+    if (!equals.empty()) {
+      const std::string who =
+          equals.size() == 1 ? capital(data.title(equals.front()->model)) + " is" : fmt::format("{} others are", equals.size());
+      text += fmt::format(" {} as quick within the spread of the timings, and no smaller.", who);
+    }
     const ModelPoint* smallest = cheapest_within(points, kTolerancePx, floor, Cost::memory);
     if (smallest != cheapest)
       text += fmt::format(" The smallest is {}: {}, for {}.", data.title(smallest->model), px(smallest->median), cost(*smallest));
@@ -130,11 +143,11 @@ struct Words {
   }
 
   // The coarsest model of a series from which on the median stays within the tolerance.
-  std::string needed(const std::vector<ModelPoint>& of, size_t series) const {
+  std::string needed(const std::vector<ModelPoint>& of, const ErrorFloor& floor_of_part, size_t series) const {
     std::string resolution;
     for (const ModelPoint& point : of) {
       if (data.models[point.model].series != series) continue;
-      const bool right = judge(point.median, kTolerancePx, floor) == Verdict::right;
+      const bool right = judge(point.median, kTolerancePx, floor_of_part) == Verdict::right;
       if (!right) resolution.clear();
       if (right && resolution.empty()) resolution = data.models[point.model].resolution_text;
     }
@@ -144,10 +157,12 @@ struct Words {
   void say_parts() {
     const std::string inner = data.metric_of(MetricRole::inner), outer = data.metric_of(MetricRole::silhouette);
     if (inner.empty() || outer.empty()) return;
+    const ErrorFloor of_inner = data.floor_of(inner), of_outer = data.floor_of(outer);
+    if (!why_not_to_be_told(kTolerancePx, of_inner).empty() || !why_not_to_be_told(kTolerancePx, of_outer).empty()) return;
     const std::vector<ModelPoint> inside = points_of(data, data.main_drawing, inner), outside = points_of(data, data.main_drawing, outer);
     std::vector<std::string> differ;
     for (size_t series = 0; series < data.series.size(); ++series) {
-      const std::string for_inner = needed(inside, series), for_outer = needed(outside, series);
+      const std::string for_inner = needed(inside, of_inner, series), for_outer = needed(outside, of_outer, series);
       if (for_inner == for_outer) continue;
       differ.push_back(fmt::format("{} needs {} for the silhouette and {} for the inner border", data.series[series],
                                    for_outer.empty() ? "more than was tried" : for_outer,
@@ -192,32 +207,33 @@ struct Words {
 
 }  // namespace
 
-const ModelPoint* cheapest_within(const std::vector<ModelPoint>& points, double tolerance, const ErrorFloor& floor, Cost cost) {
-  const ModelPoint* best = nullptr;
+std::vector<const ModelPoint*> may_be_quickest(const std::vector<ModelPoint>& points, double tolerance, const ErrorFloor& floor) {
+  std::vector<const ModelPoint*> right;
   for (const ModelPoint& point : points) {
-    if (judge(point.median, tolerance, floor) == Verdict::right &&
-        (best == nullptr || std::make_pair(cost_of(point, cost), point.time_ms) < std::make_pair(cost_of(*best, cost), best->time_ms)))
-      best = &point;
+    if (judge(point.median, tolerance, floor) == Verdict::right) right.push_back(&point);
   }
-  if (best == nullptr || cost == Cost::memory) return best;
-  // Of those that may be as quick, the smallest.
-  const ModelPoint& quickest = *best;
-  for (const ModelPoint& point : points) {
-    if (judge(point.median, tolerance, floor) == Verdict::right && point.time_low_ms <= quickest.time_high_ms &&
-        std::make_pair(point.bytes, point.time_ms) < std::make_pair(best->bytes, best->time_ms))
-      best = &point;
-  }
-  return best;
+  const auto quickest =
+      std::min_element(right.begin(), right.end(), [](const ModelPoint* a, const ModelPoint* b) { return a->time_ms < b->time_ms; });
+  if (quickest == right.end()) return right;
+  const double latest_ms = (*quickest)->time_high_ms;
+  std::erase_if(right, [&, chosen = *quickest](const ModelPoint* point) { return point != chosen && point->time_low_ms > latest_ms; });
+  return right;
 }
 
-std::vector<const ModelPoint*> as_quick_as(const std::vector<ModelPoint>& points, const ModelPoint& chosen, double tolerance,
-                                           const ErrorFloor& floor) {
-  std::vector<const ModelPoint*> equals;
-  for (const ModelPoint& point : points) {
-    const bool overlap = point.time_low_ms <= chosen.time_high_ms && chosen.time_low_ms <= point.time_high_ms;
-    if (&point != &chosen && overlap && judge(point.median, tolerance, floor) == Verdict::right) equals.push_back(&point);
+const ModelPoint* cheapest_within(const std::vector<ModelPoint>& points, double tolerance, const ErrorFloor& floor, Cost cost) {
+  std::vector<const ModelPoint*> among;
+  if (cost == Cost::time) {
+    among = may_be_quickest(points, tolerance, floor);
+  } else {
+    for (const ModelPoint& point : points) {
+      if (judge(point.median, tolerance, floor) == Verdict::right) among.push_back(&point);
+    }
   }
-  return equals;
+  const auto smaller = [](const ModelPoint* a, const ModelPoint* b) {
+    return std::make_pair(a->bytes, a->time_ms) < std::make_pair(b->bytes, b->time_ms);
+  };
+  const auto smallest = std::min_element(among.begin(), among.end(), smaller);
+  return smallest == among.end() ? nullptr : *smallest;
 }
 
 std::vector<std::string> study_sentences(const StudyHead& head, const ReportData& data) {
@@ -239,8 +255,7 @@ std::vector<std::string> study_sentences(const StudyHead& head, const ReportData
     const std::string doubt = why_not_to_be_told(kTolerancePx, words.floor);
     const bool can_tell = in_pixels && doubt.empty();
     if (in_pixels && !can_tell) {
-      const std::string least =
-          std::isfinite(words.floor.px()) ? fmt::format(", and none wrong by less than {:.2g} px", words.floor.px()) : ", nor wrong";
+      const std::string least = std::isfinite(words.floor.px()) ? ", and none wrong by " + error_text(0.0, words.floor) : ", nor wrong";
       words.out.push_back(fmt::format("No model can be called right to {} px{}: {}.", kTolerancePx, least, doubt));
     }
     if (can_tell) words.say_cheapest();

@@ -12,8 +12,7 @@ std::vector<std::string> study_sentences(const StudyHead& head, const ReportData
 /// the spread of their times, the one that needs least memory.
 const ModelPoint* cheapest_within(const std::vector<ModelPoint>& points, double tolerance, const ErrorFloor& floor, Cost cost);
 
-/// Others that are right and, by the spread of their times, may be as quick as `chosen`.
-std::vector<const ModelPoint*> as_quick_as(const std::vector<ModelPoint>& points, const ModelPoint& chosen, double tolerance,
-                                           const ErrorFloor& floor);
+/// Of the right ones those that may be the quickest, by the spread of their times, in the order of `points`.
+std::vector<const ModelPoint*> may_be_quickest(const std::vector<ModelPoint>& points, double tolerance, const ErrorFloor& floor);
 
 }  // namespace limn

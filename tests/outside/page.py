@@ -179,12 +179,13 @@ class Check:
                 self.equal(f"table {title}, {drawn}: {name}", text, number, 6)
 
     def captions(self):
+        words = Sentences(self.study, self.page, self.record)
         for model, drawing, caption in self.page.captions:
             points = self.study.points(self.page.drawings[drawing], self.page.data["mainMetric"])
             point = next(one for one in points if one.title == self.page.titles[model])
             middle = (len(point.errors) - 1) // 2
-            shown = re.search(r"(\S+)(?: \w+)? off, view (\d+)", caption)
-            self.equal(f"caption of {point.title}", shown[1], point.errors[middle], 3)
+            shown = re.search(r"((?:less than )?[\d.e+-]+(?: [\w%]+)?) off, view (\d+)", caption)
+            self.same(f"caption of {point.title}", shown[1], words.error(point.errors[middle]))
             self.same(f"caption of {point.title}, view", int(shown[2]), point.views[middle])
 
     def sentences(self):

@@ -12,6 +12,10 @@ def two_digits_up(value):
     return math.ceil(value / unit - 1e-9) * unit
 
 
+def px_text(px):
+    return f"{px:.0f} px" if px >= 99.5 else f"{px:.2g} px"
+
+
 def bound_of(truth):
     """Of an entry of study.json's truths; infinite where nobody knows it."""
     return math.inf if truth["bound_px"] is None else float(truth["bound_px"])
@@ -49,8 +53,8 @@ class Floor:
 
     def words(self, error):
         if error >= self.px or not math.isfinite(self.px):
-            return f"{error:.2g} px"
-        return f"less than {two_digits_up(self.px):.2g} px"
+            return px_text(error)
+        return f"less than {px_text(two_digits_up(self.px))}"
 
 
 def floor_of(cells, record, metric):

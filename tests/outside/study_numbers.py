@@ -111,14 +111,10 @@ def smallest_of(points):
     return min(points, key=lambda point: (point.bytes, point.time_ms), default=None)
 
 
-def quickest_of(points):
-    """Of those that may be as quick as the quickest, by the spread of their times, the smallest."""
+def may_be_quickest(points):
+    """Those that may be as quick as the quickest, by the spread of their times."""
     quickest = min(points, key=lambda point: point.time_ms, default=None)
-    return smallest_of([point for point in points if point is quickest or point.low_ms <= quickest.high_ms])
-
-
-def as_quick_as(points, chosen):
-    return [point for point in points if point is not chosen and point.low_ms <= chosen.high_ms and chosen.low_ms <= point.high_ms]
+    return [point for point in points if point is quickest or point.low_ms <= quickest.high_ms]
 
 
 def order_fit(points, floor):

@@ -7,8 +7,8 @@ import re
 import numpy as np
 
 import study_names
-from study_floor import two_digits_up
-from study_numbers import as_quick_as, front, order_fit, quickest_of, smallest_of, views_shown
+from study_floor import px_text, two_digits_up
+from study_numbers import front, may_be_quickest, order_fit, smallest_of, views_shown
 
 NUMBER = r"(?:less than )?(?:\d+(?:,\d{3})+(?! ?voxels)|\d+(?:\.\d+)?(?:e[-+]?\d+)?(?: (?:px|ms|s|kB|MB|GB|B|%)(?!\w))?)"
 
@@ -42,7 +42,7 @@ class Sentences:
         self.can_tell = self.in_pixels and self.floor.px <= self.tolerance
         self.right = [point for point in self.choices if self.can_tell and self.floor.is_right(point.median, self.tolerance)]
         self.nearest = min(self.choices, key=lambda point: point.median, default=None)
-        self.best_known = quickest_of(self.right)
+        self.best_known = smallest_of(may_be_quickest(self.right))
         self.failed = [cell.failed for cell in study.all_cells if cell.failed]
         names = set(page.titles) | set(page.series) | set(page.drawings) | {study_names.resolution_text(s) for s in study.settings.values()}
         quoted = {record["truth"], *self.failed, *record.get("warnings", [])}
@@ -55,6 +55,11 @@ class Sentences:
 
     def about(self, point):
         return [point.title, self.floor.words(point.median)]
+
+    def error(self, value):
+        """Of the main metric."""
+        unit = self.study.unit(self.main)
+        return self.floor.words(value) if unit == "px" else f"{value:.3g} {unit}".strip()
 
     def costs(self, point):
         return [time_text(point.time_ms), bytes_text(point.bytes)]
@@ -86,7 +91,7 @@ class Sentences:
         return [f"{self.tolerance:g} px", *self.criterion(), *self.about(best), *worst, *self.costs(best)]
 
     def as_quick(self):
-        others = as_quick_as(self.right, self.best_known)
+        others = [point for point in may_be_quickest(self.right) if point is not self.best_known]
         return [] if not others else [others[0].title] if len(others) == 1 else [str(len(others))]
 
     def smallest(self):
@@ -102,9 +107,15 @@ class Sentences:
         return [*self.about(best), short(best.time_ms / quickest.time_ms) if slower else time_text(best.time_ms), *memory]
 
     def none_within(self):
-        if not self.can_tell or self.right:
+        if not self.can_tell or self.right or not self.floor.is_wrong(self.nearest.median, self.tolerance):
             return []
         return [f"{self.tolerance:g} px", *self.about(self.nearest), *self.costs(self.nearest)]
+
+    def perhaps_none_within(self):
+        if not self.can_tell or self.right or self.floor.is_wrong(self.nearest.median, self.tolerance):
+            return []
+        bound = px_text(two_digits_up(self.floor.bound_px))
+        return [f"{self.tolerance:g} px", *self.about(self.nearest), *self.costs(self.nearest), bound]
 
     def analytic(self):
         others = [point for point in self.points if self.can_tell and point.is_analytic]
@@ -117,7 +128,7 @@ class Sentences:
         if not math.isfinite(floor):
             return [f"{self.tolerance:g} px"]
         reason = bound if bound > self.tolerance else floor
-        return [f"{self.tolerance:g} px", f"less than {floor:.2g} px", f"{two_digits_up(reason):.2g} px"]
+        return [f"{self.tolerance:g} px", self.floor.words(0.0), px_text(two_digits_up(reason))]
 
     def of_series(self, points):
         """Series in the page's order, each with its points."""
@@ -154,18 +165,19 @@ class Sentences:
         return ["0", *orders] if orders else []
 
     def needed(self, metric, series):
-        """The coarsest resolution from which on the medians are right to the tolerance, by what can be told of the main error."""
-        resolution = ""
+        """The coarsest resolution from which on the medians are right to the tolerance."""
+        floor, resolution = self.study.floor(metric), ""
         for point in self.study.points(self.drawing, metric):
             if point.series == series:
-                good = self.floor.is_right(point.median, self.tolerance)
+                good = floor.is_right(point.median, self.tolerance)
                 resolution = (resolution or study_names.resolution_text(point.settings)) if good else ""
         return resolution
 
     def parts(self):
         kinds = [self.study.named(f"{kind}_rms") for kind in ("silhouette", "inner")]
+        can_tell = self.can_tell and all(kinds) and all(self.study.floor(kind).px <= self.tolerance for kind in kinds)
         tokens = []
-        for series in self.page.series if self.can_tell and all(kinds) else []:
+        for series in self.page.series if can_tell else []:
             outer, inner = (self.needed(metric, series) for metric in kinds)
             if outer != inner:
                 tokens += [series, outer, inner]
@@ -194,10 +206,9 @@ class Sentences:
         return [str(len(self.failed)), *([] if count == len(self.failed) else [str(count)]), common]
 
     def front_words(self, kind):
-        unit = self.study.unit(self.main)
         tokens = [str(len(self.points))]
         for point in front(self.points, kind):
-            tokens += [point.title, f"{point.median:.3g} {unit}".strip(), self.costs(point)[kind == "memory"]]
+            tokens += [point.title, self.error(point.median), self.costs(point)[kind == "memory"]]
         return tokens
 
     def order_words(self):
@@ -215,9 +226,9 @@ class Sentences:
         return [str(count), *([f"{slopes[len(slopes) // 2]:.2g} px"] if len(slopes) else [])] if count else []
 
     def view_words(self):
-        unit, tokens = self.study.unit(self.main), []
+        tokens = []
         for point in views_shown(self.points):
-            tokens += [point.title, f"{point.errors[0]:.3g}", f"{point.errors[-1]:.3g} {unit}".strip(), f"{point.median:.3g}"]
+            tokens += [point.title, *map(self.error, (point.errors[0], point.errors[-1], point.median))]
         return tokens
 
 
@@ -233,6 +244,7 @@ RULES = (
     (r"^The best of all", Sentences.best),
     (r"^The analytic surface, drawn without", Sentences.analytic),
     (r"^No model comes within", Sentences.none_within),
+    (r"^Whether a model comes within", Sentences.perhaps_none_within),
     (r"^No model can be called right", Sentences.cannot_tell),
     (r"^Never within", Sentences.never),
     (r"does not converge to 0", Sentences.not_converging),

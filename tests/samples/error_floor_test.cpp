@@ -47,6 +47,8 @@ TEST(Judge, NothingBelowTheFloorIsQuoted) {
   EXPECT_EQ(error_text(3.8e-15, {}), "less than 0.005 px");
   // Two digits, rounded up: what is said is never less than the floor.
   EXPECT_EQ(error_text(0.0, {0.01234, 0.0, true}), "less than 0.013 px");
+  EXPECT_EQ(error_text(123.4, {}), "123 px");
+  EXPECT_EQ(error_text(99.7, {}), "100 px");
 }
 
 std::vector<json> rows_of(const std::filesystem::path& folder) {

@@ -280,8 +280,8 @@ class Refiner {
 
 }  // namespace
 
-BorderCurves refine_chains(const SceneModel& model, const Camera& camera, const MeasuredBorderSettings& settings, ChainedCurves chains,
-                           const ExecutionSettings& how, std::int64_t& rays) {
+BorderCurves refine_chains(const SceneModel& model, const Camera& camera, const MeasuredBorderSettings& settings,
+                           const ChainedCurves& chains, const ExecutionSettings& how, std::int64_t& rays) {
   Refiner refiner(model, camera, settings, how, chains);
   ThreadArena arena(how.threads);
   arena.execute([&] { refiner.refine(); });

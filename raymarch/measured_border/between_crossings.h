@@ -12,7 +12,7 @@ namespace limn {
 inline constexpr double kChordTolerance_px = 0.01;
 
 /// The curves with as many points as their bends need. `rays` grows by those that it took.
-BorderCurves refine_chains(const SceneModel& model, const Camera& camera, const MeasuredBorderSettings& settings, ChainedCurves chains,
-                           const ExecutionSettings& how, std::int64_t& rays);
+BorderCurves refine_chains(const SceneModel& model, const Camera& camera, const MeasuredBorderSettings& settings,
+                           const ChainedCurves& chains, const ExecutionSettings& how, std::int64_t& rays);
 
 }  // namespace limn

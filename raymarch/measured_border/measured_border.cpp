@@ -10,8 +10,8 @@ BorderCurves measure_border(const SceneModel& model, const Camera& camera, const
   LIMN_CHECK(settings.threshold >= 0.0 && settings.threshold < 1.0 && settings.precision_px > 0.0);
   LIMN_CHECK(gbuffer.width == camera.width_px && gbuffer.height == camera.height_px);
   BorderCrossings found = find_crossings(model, camera, gbuffer, settings, how);
-  ChainedCurves chains = chain_crossings(model, camera, gbuffer, settings.threshold, found.crossings, found.rays);
-  return refine_chains(model, camera, settings, std::move(chains), how, found.rays);
+  const ChainedCurves chains = chain_crossings(model, camera, gbuffer, settings.threshold, found.crossings, found.rays);
+  return refine_chains(model, camera, settings, chains, how, found.rays);
 }
 
 }  // namespace limn

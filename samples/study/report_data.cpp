@@ -258,6 +258,7 @@ std::string compared_metric(const ReportData& data) {
 
 ReportData collect_report(const StudyHead& head, const std::vector<StudyRow>& rows) {
   std::vector<const StudyRow*> sorted;
+  sorted.reserve(rows.size());
   for (const StudyRow& row : rows) sorted.push_back(&row);
   std::sort(sorted.begin(), sorted.end(), [](const StudyRow* a, const StudyRow* b) { return row_less(*a, *b); });
   ReportData data;

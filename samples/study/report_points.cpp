@@ -126,6 +126,7 @@ std::vector<std::vector<size_t>> beating_groups(std::span<const double> costs, s
 std::vector<std::vector<size_t>> beating_series(const ReportData& data, const std::vector<ModelPoint>& points, Cost cost) {
   const Choices choices(points, cost);
   std::vector<size_t> series;
+  series.reserve(points.size());
   for (const ModelPoint& point : points) series.push_back(data.models[point.model].series);
   return beating_groups(choices.costs, choices.errors, series);
 }

@@ -36,27 +36,6 @@ std::string megabytes(std::int64_t bytes) { return std::to_string(std::max<std::
   throw InputError({.file = file.string(), .field = {}, .value = {}, .problem = problem, .expected = expected});
 }
 
-fs::path find_helper(const std::string& name) {
-  std::vector<fs::path> folders;
-  if (const char* given = std::getenv("LIMN_HELPERS"); given && *given) folders.emplace_back(given);
-  std::error_code error;
-  const fs::path self = fs::read_symlink("/proc/self/exe", error);
-  if (!error) folders.push_back(self.parent_path());
-#ifdef LIMN_HELPERS_INSTALLED
-  folders.emplace_back(LIMN_HELPERS_INSTALLED);
-#endif
-#ifdef LIMN_HELPERS_BUILD
-  folders.emplace_back(LIMN_HELPERS_BUILD);
-#endif
-  std::string looked_in;
-  for (const fs::path& folder : folders) {
-    const fs::path candidate = folder / name;
-    if (::access(candidate.c_str(), X_OK) == 0) return candidate;
-    looked_in += (looked_in.empty() ? "" : ", ") + folder.string();
-  }
-  throw MachineError("the helper program " + name + " is not installed (looked in " + looked_in + "); set LIMN_HELPERS to its folder");
-}
-
 struct Pipe {
   int read_end = -1;
   int write_end = -1;
@@ -228,6 +207,28 @@ void judge(Ending ending, int status, std::span<const std::byte> answer, const f
 }
 
 }  // namespace
+
+fs::path find_helper(const std::string& name) {
+  const bool is_module = name.ends_with(".so");
+  std::vector<fs::path> folders;
+  if (const char* given = std::getenv("LIMN_HELPERS"); given && *given) folders.emplace_back(given);
+  std::error_code error;
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  if (!error) folders.push_back(self.parent_path());
+#ifdef LIMN_HELPERS_INSTALLED
+  folders.emplace_back(LIMN_HELPERS_INSTALLED);
+#endif
+#ifdef LIMN_HELPERS_BUILD
+  folders.emplace_back(LIMN_HELPERS_BUILD);
+#endif
+  std::string looked_in;
+  for (const fs::path& folder : folders) {
+    const fs::path candidate = folder / name;
+    if (::access(candidate.c_str(), is_module ? R_OK : X_OK) == 0) return candidate;
+    looked_in += (looked_in.empty() ? "" : ", ") + folder.string();
+  }
+  throw MachineError(name + " is not installed (looked in " + looked_in + "); set LIMN_HELPERS to its folder");
+}
 
 std::vector<std::byte> run_guarded(const std::string& name, std::span<const std::string> arguments, const fs::path& file,
                                    const GuardLimits& asked) {

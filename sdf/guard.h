@@ -17,8 +17,11 @@ struct GuardLimits {
   std::chrono::milliseconds time{120'000};            ///< Wall clock.
 };
 
-/// Runs the helper program `name` (found in $LIMN_HELPERS, beside the running program, in the installed libexec folder or in the build
-/// tree) with `arguments`, and returns all that it wrote to its answer pipe.
+/// Where a helper program or module is: in $LIMN_HELPERS, beside the running program, in the installed libexec folder or in the build tree.
+/// Throws MachineError that says where it was looked for.
+std::filesystem::path find_helper(const std::string& name);
+
+/// Runs the helper program `name` with `arguments`, and returns all that it wrote to its answer pipe.
 /// The helper's exit codes: 0 answer complete; 2 the file is at fault, its one-line reason being the answer.
 /// Throws InputError (file = `file`) for exit 2, a crash, a timeout or exhausted limits, each in its own words; MachineError where the
 /// helper cannot be started.

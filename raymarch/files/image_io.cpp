@@ -1,12 +1,10 @@
 #include "raymarch/image_output.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
+#include "raymarch/files/picture_module.h"
 #include "sdf/error.h"
 #include "sdf/output_file.h"
 #include "sdf/parallel.h"
@@ -49,38 +47,31 @@ std::vector<std::uint8_t> srgb_pixels(const Image<glm::vec4>& picture, bool alph
 /// OpenImageIO would write the time of day; equal runs must give equal bytes.
 constexpr const char* kNoTime = "1970:01:01 00:00:00";
 
-OIIO::ImageSpec srgb_spec(const Image<glm::vec4>& picture, bool alpha) {
-  OIIO::ImageSpec spec(picture.width, picture.height, alpha ? 4 : 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  spec.attribute("Compression", alpha ? "zip" : "jpeg:95");
-  spec.attribute("jpeg:subsampling", "4:4:4");
-  spec.attribute("Software", std::string("limn ") + kVersion);
-  return spec;
-}
-
-/// Writes through an output that is open; the messages are OpenImageIO's.
-void finish_image(OIIO::ImageOutput& output, OIIO::TypeDesc type, const void* pixels, const std::string& what) {
-  if (!output.write_image(type, pixels) || !output.close()) throw MachineError("cannot write " + what + ": " + output.geterror());
+PictureHeader srgb_header(const Image<glm::vec4>& picture, bool alpha) {
+  PictureHeader header{.width = picture.width, .height = picture.height, .types = std::vector(alpha ? 4 : 3, PixelType::byte)};
+  header.attributes = {{"oiio:ColorSpace", "sRGB"},
+                       {"oiio:UnassociatedAlpha", 1},
+                       {"Compression", alpha ? "zip" : "jpeg:95"},
+                       {"jpeg:subsampling", "4:4:4"},
+                       {"Software", std::string("limn ") + kVersion}};
+  return header;
 }
 
 /// To `temporary`, which will be `file`.
-void save(const fs::path& temporary, const fs::path& file, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
-  const auto output = OIIO::ImageOutput::create(temporary.string());
-  if (!output) throw MachineError("cannot write " + file.string() + ": " + OIIO::geterror());
-  if (!output->open(temporary.string(), spec)) throw MachineError("cannot write " + file.string() + ": " + output->geterror());
-  finish_image(*output, type, pixels, file.string());
+void save(const fs::path& temporary, const fs::path& file, const PictureHeader& header, const void* pixels) {
+  const std::string problem = picture_module().write(temporary, header, pixels);
+  if (!problem.empty()) throw MachineError("cannot write " + file.string() + ": " + problem);
 }
 
 /// One channel of the EXR on its way: its name, its type in the file and its values.
 struct Channel {
   std::string name;
-  OIIO::TypeDesc type;
+  PixelType type;
   std::vector<float> values;
 };
 
 template <class T, class Get>
-void add_channel(std::vector<Channel>& channels, const std::string& name, OIIO::TypeDesc type, const Image<T>& image, Get get) {
+void add_channel(std::vector<Channel>& channels, const std::string& name, PixelType type, const Image<T>& image, Get get) {
   Channel channel{name, type, {}};
   channel.values.reserve(image.size());
   for (const T& pixel : image.pixels) channel.values.push_back(static_cast<float>(get(pixel)));
@@ -88,10 +79,10 @@ void add_channel(std::vector<Channel>& channels, const std::string& name, OIIO::
 }
 
 /// Half holds whole numbers to 2048; beyond it ids are 32-bit.
-OIIO::TypeDesc type_of_ids(const Image<std::int32_t>& ids) {
+PixelType type_of_ids(const Image<std::int32_t>& ids) {
   const auto [least, most] = std::minmax_element(ids.pixels.begin(), ids.pixels.end());
-  if (ids.pixels.empty() || (*least >= -2048 && *most <= 2048)) return OIIO::TypeDesc::HALF;
-  return *least >= 0 ? OIIO::TypeDesc::UINT32 : OIIO::TypeDesc::FLOAT;
+  if (ids.pixels.empty() || (*least >= -2048 && *most <= 2048)) return PixelType::half;
+  return *least >= 0 ? PixelType::whole : PixelType::full;
 }
 
 const auto kItself = [](auto value) { return value; };
@@ -100,7 +91,7 @@ auto component(int axis) {
 }
 
 void add_layer(std::vector<Channel>& channels, const NamedLayer& layer) {
-  const auto half = OIIO::TypeDesc::HALF;
+  const auto half = PixelType::half;
   const char* const rgba[] = {".R", ".G", ".B", ".A"};
   for (int i = 0; i < 4; ++i) add_channel(channels, layer.name + rgba[i], half, layer.picture->composite, component(i));
   add_channel(channels, layer.name + ".Y", half, layer.picture->border, kItself);
@@ -109,7 +100,7 @@ void add_layer(std::vector<Channel>& channels, const NamedLayer& layer) {
 }
 
 std::vector<Channel> channels_of(const Picture& picture) {
-  const auto half = OIIO::TypeDesc::HALF, full = OIIO::TypeDesc::FLOAT;
+  const auto half = PixelType::half, full = PixelType::full;
   const GBuffer& seen = picture.gbuffer;
   std::vector<Channel> channels;
   const char* const rgba[] = {"R", "G", "B", "A"};
@@ -128,31 +119,30 @@ std::vector<Channel> channels_of(const Picture& picture) {
 }
 
 /// EXR matrices multiply row vectors from the right: row after row, they hold what ours hold column after column.
-void add_matrix(OIIO::ImageSpec& spec, const char* name, const glm::dmat4& matrix) {
-  float values[16];
-  for (int i = 0; i < 16; ++i) values[i] = static_cast<float>(matrix[i / 4][i % 4]);
-  spec.attribute(name, OIIO::TypeMatrix, values);
+std::array<float, 16> row_after_row(const glm::dmat4& matrix) {
+  std::array<float, 16> values;
+  for (int i = 0; i < 16; ++i) values[static_cast<size_t>(i)] = static_cast<float>(matrix[i / 4][i % 4]);
+  return values;
 }
 
-OIIO::ImageSpec exr_spec(const std::vector<Channel>& channels, const Picture& picture, const Camera& camera, const std::string& call) {
-  OIIO::ImageSpec spec(picture.gbuffer.width, picture.gbuffer.height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
-  spec.channelnames.clear();
+PictureHeader exr_header(const std::vector<Channel>& channels, const Picture& picture, const Camera& camera, const std::string& call) {
+  PictureHeader header{.width = picture.gbuffer.width, .height = picture.gbuffer.height, .alpha_channel = 3, .z_channel = 4};
   for (const Channel& channel : channels) {
-    spec.channelnames.push_back(channel.name);
-    spec.channelformats.push_back(channel.type);
+    header.channels.push_back(channel.name);
+    header.types.push_back(channel.type);
   }
-  spec.alpha_channel = 3;
-  spec.z_channel = 4;
-  spec.attribute("compression", "zip");
-  spec.attribute("oiio:ColorSpace", "linear");
-  spec.attribute("limn:version", kVersion);
-  spec.attribute("limn:call", call);
-  spec.attribute("Software", std::string("limn ") + kVersion);
-  spec.attribute("DateTime", kNoTime);
-  add_matrix(spec, "worldToCamera", camera_from_world_matrix(camera));
-  add_matrix(spec, "worldToNDC", ndc_from_world_matrix(camera));
-  return spec;
+  header.attributes = {{"compression", "zip"},
+                       {"oiio:ColorSpace", "linear"},
+                       {"limn:version", kVersion},
+                       {"limn:call", call},
+                       {"Software", std::string("limn ") + kVersion},
+                       {"DateTime", kNoTime},
+                       {"worldToCamera", row_after_row(camera_from_world_matrix(camera))},
+                       {"worldToNDC", row_after_row(ndc_from_world_matrix(camera))}};
+  return header;
 }
+
+size_t bytes_of(PixelType type) { return type == PixelType::byte ? 1 : type == PixelType::half ? 2 : 4; }
 
 /// Pixels that are brought into the file's types together: few enough that all their channels stay in the cache.
 constexpr size_t kTogether = 1024;
@@ -160,45 +150,46 @@ constexpr size_t kTogether = 1024;
 /// Pixels [first, last) of one channel, each `pixel_size` bytes after the one before it.
 void write_channel(const Channel& channel, size_t first, size_t last, char* to, size_t pixel_size) {
   // Float to 32-bit unsigned would be scaled to its range by OpenImageIO, so that one is copied here.
-  if (channel.type == OIIO::TypeDesc::UINT32) {
+  if (channel.type == PixelType::whole) {
     for (size_t i = first; i < last; ++i, to += pixel_size) {
       const auto value = static_cast<std::uint32_t>(channel.values[i]);
       std::memcpy(to, &value, sizeof value);
     }
     return;
   }
-  if (channel.type == OIIO::TypeDesc::FLOAT) {
+  if (channel.type == PixelType::full) {
     for (size_t i = first; i < last; ++i, to += pixel_size) std::memcpy(to, &channel.values[i], sizeof(float));
     return;
   }
-  LIMN_CHECK(channel.type == OIIO::TypeDesc::HALF);
+  LIMN_CHECK(channel.type == PixelType::half);
   std::uint16_t halves[kTogether];
-  OIIO::convert_pixel_values(OIIO::TypeDesc::FLOAT, &channel.values[first], OIIO::TypeDesc::HALF, halves, static_cast<int>(last - first));
+  picture_module().to_half(&channel.values[first], halves, static_cast<int>(last - first));
   for (size_t i = 0; i < last - first; ++i, to += pixel_size) std::memcpy(to, &halves[i], sizeof halves[i]);
 }
 
 /// Pixels in the file's own types, channel after channel within each pixel.
 std::vector<char> native_pixels(const std::vector<Channel>& channels, size_t pixel_count) {
   size_t pixel_size = 0;
-  for (const Channel& channel : channels) pixel_size += channel.type.size();
+  for (const Channel& channel : channels) pixel_size += bytes_of(channel.type);
   std::vector<char> bytes(pixel_size * pixel_count);
   parallel_for(size_t{0}, (pixel_count + kTogether - 1) / kTogether, [&](size_t part) {
     const size_t first = part * kTogether, last = std::min(pixel_count, first + kTogether);
     size_t offset = first * pixel_size;
     for (const Channel& channel : channels) {
       write_channel(channel, first, last, &bytes[offset], pixel_size);
-      offset += channel.type.size();
+      offset += bytes_of(channel.type);
     }
   });
   return bytes;
 }
 
-std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
+PictureHeader header_of(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) throw InputError({file.string(), {}, {}, "no such file", "an image"});
-  auto input = OIIO::ImageInput::open(file.string());
-  if (!input) throw InputError({file.string(), {}, {}, "not a readable image: " + OIIO::geterror(), "an .exr, .png, .tif or .jpg"});
-  return input;
+  PictureHeader header;
+  const std::string problem = picture_module().read_header(file, header);
+  if (!problem.empty()) throw InputError({file.string(), {}, {}, "not a readable image: " + problem, "an .exr, .png, .tif or .jpg"});
+  return header;
 }
 
 }  // namespace
@@ -212,7 +203,7 @@ OutputFile exr_output(const Picture& picture, const Camera& camera, const std::s
             std::vector<Channel> channels = channels_of(picture);
             for (const NamedLayer& layer : layers) add_layer(channels, layer);
             const std::vector<char> pixels = native_pixels(channels, picture.gbuffer.id.size());
-            save(temporary, file, exr_spec(channels, picture, camera, call), OIIO::TypeDesc::UNKNOWN, pixels.data());
+            save(temporary, file, exr_header(channels, picture, camera, call), pixels.data());
           }};
 }
 
@@ -225,9 +216,9 @@ OutputFile image_output(const Image<glm::vec4>& linear_premultiplied, const std:
   return {file, [&linear_premultiplied, file, extension](const fs::path& temporary) {
             const bool alpha = has_alpha(extension);
             const std::vector<std::uint8_t> pixels = srgb_pixels(linear_premultiplied, alpha);
-            OIIO::ImageSpec spec = srgb_spec(linear_premultiplied, alpha);
-            if (extension == ".tif" || extension == ".tiff") spec.attribute("DateTime", kNoTime);
-            save(temporary, file, spec, OIIO::TypeDesc::UINT8, pixels.data());
+            PictureHeader header = srgb_header(linear_premultiplied, alpha);
+            if (extension == ".tif" || extension == ".tiff") header.attributes.push_back({"DateTime", kNoTime});
+            save(temporary, file, header, pixels.data());
           }};
 }
 
@@ -244,37 +235,23 @@ void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesy
 
 std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied) {
   const std::vector<std::uint8_t> pixels = srgb_pixels(linear_premultiplied, true);
-  std::vector<unsigned char> encoded;
-  OIIO::Filesystem::IOVecOutput memory(encoded);
-  const auto output = OIIO::ImageOutput::create("png");
-  if (!output || !output->set_ioproxy(&memory) || !output->open("memory.png", srgb_spec(linear_premultiplied, true))) {
-    throw MachineError("cannot encode a PNG: " + (output ? output->geterror() : OIIO::geterror()));
-  }
-  finish_image(*output, OIIO::TypeDesc::UINT8, pixels.data(), "a PNG in memory");
-  const auto* first = reinterpret_cast<const std::byte*>(encoded.data());
-  return {first, first + encoded.size()};
+  std::vector<std::byte> encoded;
+  const std::string problem = picture_module().encode_png(srgb_header(linear_premultiplied, true), pixels.data(), encoded);
+  if (!problem.empty()) throw MachineError("cannot encode a PNG: " + problem);
+  return encoded;
 }
 
 Image<float> read_channel(const std::filesystem::path& file, const std::string& channel) {
-  const auto input = open_image(file);
-  const OIIO::ImageSpec& spec = input->spec();
-  const auto found = std::find(spec.channelnames.begin(), spec.channelnames.end(), channel);
-  if (found == spec.channelnames.end()) {
-    throw InputError({file.string(), "channel", channel, "no such channel", known_names(channel, spec.channelnames)});
-  }
-  const auto index = static_cast<int>(found - spec.channelnames.begin());
-  // Whole numbers of 32 bits would come scaled to [0, 1] as floats.
-  const bool whole = spec.channelformat(index) == OIIO::TypeDesc::UINT32;
-  Image<float> image(spec.width, spec.height);
-  std::vector<std::uint32_t> numbers(whole ? image.size() : 0);
-  void* target = whole ? static_cast<void*>(numbers.data()) : static_cast<void*>(image.pixels.data());
-  if (!input->read_image(0, 0, index, index + 1, whole ? OIIO::TypeDesc::UINT32 : OIIO::TypeDesc::FLOAT, target)) {
-    throw InputError({file.string(), "channel", channel, "damaged: " + input->geterror(), "a complete image"});
-  }
-  std::transform(numbers.begin(), numbers.end(), image.pixels.begin(), [](std::uint32_t value) { return static_cast<float>(value); });
+  const PictureHeader header = header_of(file);
+  const auto found = std::find(header.channels.begin(), header.channels.end(), channel);
+  if (found == header.channels.end())
+    throw InputError({file.string(), "channel", channel, "no such channel", known_names(channel, header.channels)});
+  Image<float> image(header.width, header.height);
+  const std::string problem = picture_module().read_channel(file, static_cast<int>(found - header.channels.begin()), image.pixels);
+  if (!problem.empty()) throw InputError({file.string(), "channel", channel, problem, "a complete image"});
   return image;
 }
 
-std::vector<std::string> channel_names(const std::filesystem::path& file) { return open_image(file)->spec().channelnames; }
+std::vector<std::string> channel_names(const std::filesystem::path& file) { return header_of(file).channels; }
 
 }  // namespace limn

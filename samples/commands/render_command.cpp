@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "raymarch/files/picture_module.h"
 #include "raymarch/image_output.h"
 #include "raymarch/surface/view_level.h"
 #include "samples/commands/command.h"
@@ -258,6 +259,8 @@ int run(const Options& options) {
                           std::any_of(render.outputs.begin(), render.outputs.end(), has_layers)));
   render.warnings = warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods)});
 
+  // While the surface is built.
+  const std::future<void> pictures = load_picture_module_early();
   const auto build_start = std::chrono::steady_clock::now();
   std::vector<std::string> levels;
   if (options.spec.surface.level_for_view && !options.plan.tolerance_px)

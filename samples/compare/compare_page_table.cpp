@@ -5,7 +5,7 @@
 
 #include "samples/compare/compare_page_parts.h"
 #include "samples/compare/compare_words.h"
-#include "samples/experiment/better.h"
+#include "samples/experiment/metric_values.h"
 #include "samples/page/html.h"
 
 namespace limn {
@@ -17,6 +17,7 @@ struct Column {
   std::string metric;  ///< Empty: one of ours.
   double (*own)(const Comparison&, const Cell&) = nullptr;
   std::string (*text)(double) = nullptr;
+  std::string definition{};  ///< Of ours.
 };
 
 std::string plain_number(double value) {
@@ -38,21 +39,18 @@ void add_metric_columns(const Comparison& comparison, const Cell& cell, std::vec
       if (is_position(value.name) || is_signed_mean(value.name)) continue;
       std::string label = value.name;
       std::replace(label.begin(), label.end(), '_', ' ');
-      bool lower_is_better = true;
-      for (const Metric& metric : metrics()) {
-        if (value.name.starts_with(metric.about.name)) lower_is_better = is_lower_better(metric, value.name);
-      }
-      columns.push_back({label, value.unit, lower_is_better, value.name, nullptr, plain_number});
+      columns.push_back({label, value.unit, is_lower_better(value.name), value.name, nullptr, plain_number});
     }
   }
 }
 
 void add_time_columns(std::vector<Column>& columns) {
-  columns.push_back({"border", "ms", true, "", [](const Comparison&, const Cell& cell) { return cell.border_ms; }, milliseconds});
-  columns.push_back(
-      {"build", "ms", true, "", [](const Comparison& all, const Cell& cell) { return all.model_of(cell).info.build_ms; }, milliseconds});
-  columns.push_back(
-      {"trace", "ms", true, "", [](const Comparison& all, const Cell& cell) { return all.model_of(cell).trace_ms; }, milliseconds});
+  columns.push_back({"border", "ms", true, "", [](const Comparison&, const Cell& cell) { return cell.border_ms; }, milliseconds,
+                     "drawing the border, all samples"});
+  columns.push_back({"build", "ms", true, "", [](const Comparison& all, const Cell& cell) { return all.model_of(cell).info.build_ms; },
+                     milliseconds, "building the model"});
+  columns.push_back({"trace", "ms", true, "", [](const Comparison& all, const Cell& cell) { return all.model_of(cell).trace_ms; },
+                     milliseconds, "tracing the rays of one picture, all samples"});
 }
 
 std::vector<Column> columns_of(const Comparison& comparison) {
@@ -61,11 +59,11 @@ std::vector<Column> columns_of(const Comparison& comparison) {
       std::find_if(comparison.cells.begin(), comparison.cells.end(), [&](const Cell& cell) { return comparison.is_measured(cell); });
   if (first != comparison.cells.end()) add_metric_columns(comparison, *first, columns);
   columns.push_back({"ink", "px", true, "", [](const Comparison&, const Cell& cell) { return cell.ink_px; },
-                     [](double value) { return counted(value); }});
+                     [](double value) { return counted(value); }, "area of the drawn border"});
   if (comparison.with_times) add_time_columns(columns);
   columns.push_back({"memory", "MB", true, "",
                      [](const Comparison& all, const Cell& cell) { return static_cast<double>(all.model_of(cell).info.bytes) / 1e6; },
-                     [](double value) { return fmt::format("{:.2f}", value); }});
+                     [](double value) { return fmt::format("{:.2f}", value); }, "what the model holds while it is drawn"});
   return columns;
 }
 
@@ -110,7 +108,8 @@ std::string table_html(const Comparison& comparison) {
   if (comparison.is_matrix()) html += "<th scope=\"col\" class=\"text\"><button type=\"button\">method</button><small></small></th>";
   html += "<th scope=\"col\" class=\"text\"><button type=\"button\">surface</button><small></small></th>";
   for (const Column& column : columns) {
-    html += fmt::format("<th scope=\"col\"><button type=\"button\">{}</button><small>{}</small></th>", escaped(column.label),
+    html += fmt::format("<th scope=\"col\" title=\"{}\"><button type=\"button\">{}</button><small>{}</small></th>",
+                        escaped(column.metric.empty() ? column.definition : definition_of(column.metric)), escaped(column.label),
                         escaped(column.unit));
   }
   html += "</tr></thead><tbody>\n";

@@ -30,7 +30,7 @@ std::string cell_sentence(const Comparison& comparison, const Cell& cell) {
   std::string text = fmt::format("{}: {} border pixels differ{}", heading(full_title(model)), counted(differ), differ > 0.0 ? share : "");
   if (const double overlap = value_of(comparison, cell, "overlap"); std::isfinite(overlap))
     text += fmt::format(", overlap {:.4f}", overlap);
-  if (const std::string displaced = displacement_text(comparison, cell); !displaced.empty()) text += "; " + displaced;
+  if (const std::string border_error = border_error_text(comparison, cell); !border_error.empty()) text += "; " + border_error;
   const double mean = value_of(comparison, cell, "normal_error_mean"), worst = value_of(comparison, cell, "normal_error_max");
   if (std::isfinite(mean))
     text += fmt::format("; normals are off by {} degrees on average and {} at worst", short_number(mean), short_number(worst));
@@ -84,10 +84,10 @@ std::string method_sentence(const Comparison& comparison, size_t method) {
 }
 
 /// Of the method whose ink has a truth, if there is one; else the silhouette's, which is the same for all methods.
-std::string model_displacement(const Comparison& comparison, size_t model) {
+std::string model_border_error(const Comparison& comparison, size_t model) {
   std::string longest;
   for (size_t method = 0; method < comparison.methods.size(); ++method) {
-    const std::string text = displacement_text(comparison, comparison.at(model, method));
+    const std::string text = border_error_text(comparison, comparison.at(model, method));
     if (text.size() > longest.size()) longest = text;
   }
   return longest;
@@ -103,8 +103,8 @@ std::vector<std::string> many_methods(const Comparison& comparison) {
       comparison.camera.height_px, comparison.reference_words));
   for (size_t method = 0; method < comparison.methods.size(); ++method) sentences.push_back(method_sentence(comparison, method));
   for (size_t model = 1; model < comparison.models.size(); ++model) {
-    const std::string displaced = model_displacement(comparison, model);
-    if (!displaced.empty()) sentences.push_back(heading(full_title(comparison.models[model])) + ": " + displaced + ".");
+    const std::string border_error = model_border_error(comparison, model);
+    if (!border_error.empty()) sentences.push_back(heading(full_title(comparison.models[model])) + ": " + border_error + ".");
   }
   return sentences;
 }

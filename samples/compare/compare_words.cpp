@@ -46,11 +46,8 @@ std::vector<std::string> caption_lines(const Comparison& comparison, const Cell&
     const double differ = value_of(comparison, cell, "pixels_differ");
     const double area = comparison.reference_of(cell).ink_px;
     lines.push_back(fmt::format("{} border px differ ({})", counted(differ), share_text(differ / std::max(1.0, area))));
-    const double inner = value_of(comparison, cell, "inner_displacement_rms");
-    const double off = std::isfinite(inner) ? inner : value_of(comparison, cell, "silhouette_displacement_rms");
-    lines.push_back(
-        fmt::format("overlap (IoU) {:.4f}", value_of(comparison, cell, "overlap")) +
-        (std::isfinite(off) ? fmt::format(", {} {} px off", std::isfinite(inner) ? "border" : "silhouette", short_number(off)) : ""));
+    const std::string off = short_border_error(comparison, cell);
+    lines.push_back(fmt::format("overlap (IoU) {:.4f}{}{}", value_of(comparison, cell, "overlap"), off.empty() ? "" : ", ", off));
   } else {
     lines.push_back(fmt::format("border: {} px", counted(cell.ink_px)));
     if (cell.model > 0) lines.emplace_back("no reference: the method cannot run there");

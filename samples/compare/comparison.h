@@ -56,6 +56,7 @@ struct Cell {
   Image<glm::u8vec4> composite;           ///< sRGB, opaque or not: as it goes into a PNG.
   std::vector<MetricValue> values;        ///< Of the border, in the registry's order; empty where there is no reference.
   std::vector<MetricValue> truth_values;  ///< Displacements from the truth, of the reference too; empty where there is none.
+  std::vector<MetricValue> floors;        ///< What the reference scores by the same measurement.
   std::vector<std::string> notes;         ///< What failed, as the method measured it.
 };
 
@@ -103,8 +104,11 @@ void draw_comparison(Comparison& comparison, const std::filesystem::path& folder
 std::optional<double> truth_threshold(const std::vector<MethodCall>& calls);
 /// What displacements are measured from, in a sentence.
 std::string truth_text(const ExperimentTruth& truth);
-/// "inner border 0.013 px off the truth (root mean square; 95 % within 0.02), silhouette 0.004 px"; empty where nothing was measured.
-std::string displacement_text(const Comparison& comparison, const Cell& cell);
+/// "95 % of its border within 0.13 px of the truth (silhouette 0.02 px, inner border 0.15 px), right to 0.5 px"; of methods that have no
+/// threshold the silhouette alone; empty where nothing was measured.
+std::string border_error_text(const Comparison& comparison, const Cell& cell);
+/// The same number for captions: "border within 0.13 px".
+std::string short_border_error(const Comparison& comparison, const Cell& cell);
 
 /// The composite as it was drawn, linear.
 Image<glm::vec4> linear_composite(const Cell& cell);

@@ -35,7 +35,8 @@ Experiment experiment_of(const Comparison& comparison) {
   for (const ComparedMethod& method : comparison.methods) experiment.methods.push_back({method.name, method.calls, method.truth_threshold});
   for (const Metric& metric : metrics()) {
     const bool of_pictures = metric.subject == MetricSubject::gbuffer || metric.subject == MetricSubject::ink;
-    if (of_pictures || metric.about.name.ends_with("_displacement")) experiment.metrics.push_back(&metric);
+    if (of_pictures || metric.about.name.ends_with("_displacement") || metric.about.name == "border_error")
+      experiment.metrics.push_back(&metric);
   }
   experiment.picture = comparison.picture;
   experiment.silhouette_of_all = true;
@@ -109,6 +110,7 @@ struct Keeper {
     // The other models' ink is measured against the reference's.
     cell.border = done.cell.model == 0 ? picture.border : std::move(picture.border);
     for (const float coverage : cell.border.pixels) cell.ink_px += double{coverage};
+    for (const Measurement& one : done.floor) cell.floors.push_back(one.value);
     std::vector<MetricValue>& of_model = comparison.models[done.cell.model].values;
     const bool first = of_model.empty();
     for (Measurement& one : done.measurements) {

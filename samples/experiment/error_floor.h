@@ -8,6 +8,9 @@ namespace limn {
 /// Crossings are bracketed to less than this (MeasuredBorderSettings::precision_px on both sides).
 inline constexpr double kPrecision_px = 0.005;
 
+/// Reports call a model right whose border is this near to truth.
+inline constexpr double kTolerancePx = 0.5;
+
 /// How small an error can be told from none.
 struct ErrorFloor {
   double reference_px = 0.0;    ///< What the reference scores through the same measurement.

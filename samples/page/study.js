@@ -234,6 +234,7 @@ function say(want, points) {
       : ` None within ${study.tolerance} px.`;
   }
   document.querySelector(".filters .status").textContent = words;
+  chosen("metric").title = want.metric.definition;
   for (const cell of document.querySelectorAll("figure.cell")) {
     cell.hidden = Number(cell.dataset.drawing) !== want.drawing || !want.series.has(study.models[cell.dataset.model].series);
   }

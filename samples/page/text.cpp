@@ -1,12 +1,12 @@
 #include "samples/page/text.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
+
+#include "raymarch/files/picture_module.h"
 
 namespace limn {
 namespace {
@@ -35,8 +35,7 @@ bool has_font() { return !font_file(false).empty(); }
 int text_width_px(const std::string& text, const TextStyle& style) {
   const std::string font = font_file(style.bold);
   if (font.empty() || text.empty()) return 0;
-  const OIIO::ROI roi = OIIO::ImageBufAlgo::text_size(text, style.size_px, font);
-  return roi.defined() ? roi.width() : 0;
+  return std::max(picture_module().text_width_px(text, style.size_px, font), 0);
 }
 
 void draw_text(Image<glm::vec4>& picture, int x, int y, const std::string& text, const TextStyle& style) {
@@ -46,15 +45,12 @@ void draw_text(Image<glm::vec4>& picture, int x, int y, const std::string& text,
   if (style.align == TextAlign::center) x -= width / 2;
   if (style.align == TextAlign::right) x -= width;
   const int margin = style.size_px;
-  OIIO::ImageBuf mask(OIIO::ImageSpec(width + 2 * margin, 3 * style.size_px, 1, OIIO::TypeDesc::FLOAT));
-  OIIO::ImageBufAlgo::zero(mask);
-  const float white = 1.0f;
-  if (!OIIO::ImageBufAlgo::render_text(mask, margin, 2 * style.size_px, text, style.size_px, font, OIIO::cspan<float>(&white, 1))) return;
-  const OIIO::ImageSpec& spec = mask.spec();
-  for (int j = 0; j < spec.height; ++j) {
-    for (int i = 0; i < spec.width; ++i) {
+  TextMask mask{width + 2 * margin, 3 * style.size_px, {}};
+  if (!picture_module().draw_text(text, margin, 2 * style.size_px, style.size_px, font, mask)) return;
+  for (int j = 0; j < mask.height; ++j) {
+    for (int i = 0; i < mask.width; ++i) {
       const int px = x - margin + i, py = y - 2 * style.size_px + j;
-      const float covered = mask.getchannel(i, j, 0, 0);
+      const float covered = mask.coverage[static_cast<size_t>(j) * static_cast<size_t>(mask.width) + static_cast<size_t>(i)];
       if (covered <= 0.0f || !picture.inside(px, py)) continue;
       // Fonts are hinted for blending in display values; in linear light dark letters would come out thin.
       const float share = 1.0f - std::pow(1.0f - std::min(covered, 1.0f), 2.2f);

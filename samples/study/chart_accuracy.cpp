@@ -59,7 +59,7 @@ void draw_points(ChartCanvas& canvas, const ReportData& data, const ChartFrame& 
     const ChartPoint at = frame.at(cost_of(point, cost), point.median);
     labels.occupy({at.x - 6.0, at.y - 6.0, 12.0, 12.0});
     const bool best = std::any_of(front.begin(), front.end(), [&](size_t i) { return &points[i] == &point; });
-    canvas.marker(at, data.models[point.model].series, best ? 7.0 : 4.5);
+    canvas.marker(at, data.styles[data.models[point.model].series], best ? 7.0 : 4.5);
   }
   for (const size_t i : front) {
     labels.place(canvas, frame.at(cost_of(points[i], cost), points[i].median), data.title(points[i].model), {11.5, false, kChartInk});

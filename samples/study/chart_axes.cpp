@@ -139,7 +139,7 @@ void draw_legend(ChartCanvas& canvas, const ChartFrame& frame, const ReportData&
   const double left = frame.plot.x + frame.plot.width + 22.0;
   double y = frame.plot.y + 10.0;
   for (const size_t series : legend) {
-    canvas.marker({left + 6.0, y - 4.0}, series, 5.5);
+    canvas.marker({left + 6.0, y - 4.0}, data.styles[series], 5.5);
     for (const std::string& line : canvas.lines(data.series[series], canvas.width() - left - 34.0)) {
       canvas.text({left + 20.0, y}, line);
       y += 17.0;

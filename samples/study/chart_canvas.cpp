@@ -18,13 +18,13 @@
 namespace limn {
 namespace {
 
-constexpr std::array<ChartColor, 7> kSeriesColors = {{{0.000, 0.447, 0.698},
-                                                      {0.835, 0.369, 0.000},
-                                                      {0.000, 0.620, 0.451},
-                                                      {0.800, 0.475, 0.655},
-                                                      {0.902, 0.624, 0.000},
-                                                      {0.337, 0.706, 0.914},
-                                                      {0.0, 0.0, 0.0}}};
+constexpr std::array<ChartColor, 7> kStyleColors = {{{0.000, 0.447, 0.698},
+                                                     {0.835, 0.369, 0.000},
+                                                     {0.000, 0.620, 0.451},
+                                                     {0.800, 0.475, 0.655},
+                                                     {0.902, 0.624, 0.000},
+                                                     {0.337, 0.706, 0.914},
+                                                     {0.0, 0.0, 0.0}}};
 
 struct Surface {
   cairo_surface_t* surface;
@@ -115,7 +115,7 @@ std::vector<ChartPoint> corners(const ChartPoint& at, size_t shape, double r) {
 
 }  // namespace
 
-ChartColor series_color(size_t series) { return kSeriesColors[series % kSeriesColors.size()]; }
+ChartColor style_color(size_t style) { return kStyleColors[style % kStyleColors.size()]; }
 
 void ChartCanvas::set(const ChartColor& color) { cairo_set_source_rgba(context_, color.red, color.green, color.blue, color.alpha); }
 
@@ -159,8 +159,8 @@ void ChartCanvas::frame(const ChartBox& place, const ChartColor& color) {
        color, 1.0);
 }
 
-void ChartCanvas::marker(const ChartPoint& at, size_t series, double radius, bool filled) {
-  const size_t shape = series % kMarkers;
+void ChartCanvas::marker(const ChartPoint& at, size_t style, double radius, bool filled) {
+  const size_t shape = style % kMarkers;
   if (shape == 0) {
     cairo_new_path(context_);
     cairo_arc(context_, at.x, at.y, radius, 0.0, 2.0 * std::numbers::pi);
@@ -171,11 +171,11 @@ void ChartCanvas::marker(const ChartPoint& at, size_t series, double radius, boo
   cairo_set_dash(context_, nullptr, 0, 0.0);
   cairo_set_line_width(context_, filled ? 1.0 : 1.6);
   if (filled) {
-    set(series_color(series));
+    set(style_color(style));
     cairo_fill_preserve(context_);
     cairo_set_source_rgb(context_, 1.0, 1.0, 1.0);
   } else {
-    set(series_color(series));
+    set(style_color(style));
   }
   cairo_stroke(context_);
 }

@@ -16,9 +16,9 @@ struct ChartColor {
 inline constexpr ChartColor kChartInk{0.10, 0.10, 0.10}, kChartSoft{0.38, 0.38, 0.38}, kChartGrid{0.88, 0.88, 0.87},
     kChartAxis{0.55, 0.55, 0.55};
 
-/// Okabe and Ito's colours that show on white, told apart by the colour-blind too (Color Universal Design, 2008); series by series, and
+/// Okabe and Ito's colours that show on white, told apart by the colour-blind too (Color Universal Design, 2008); style by style, and
 /// another marker for each, so that nothing hangs on colour alone.
-ChartColor series_color(size_t series);
+ChartColor style_color(size_t style);
 inline constexpr int kMarkers = 6;
 
 struct ChartPoint {
@@ -51,7 +51,7 @@ class ChartCanvas {
   void box(const ChartBox& place, const ChartColor& color);
   void frame(const ChartBox& place, const ChartColor& color);
   /// Filled, with a white rim that keeps neighbours apart; hollow where `filled` is false.
-  void marker(const ChartPoint& at, size_t series, double radius, bool filled = true);
+  void marker(const ChartPoint& at, size_t style, double radius, bool filled = true);
   /// Its baseline at `at`.
   void text(const ChartPoint& at, const std::string& words, const ChartText& style = {});
   double text_width(const std::string& words, const ChartText& style = {}) const;

@@ -104,7 +104,7 @@ StudyChart normal_border_chart(const ReportData& data) {
     draw_floor(canvas, frame, data.floor_of(border));
     if (slope) draw_prediction(canvas, frame, *slope);
     canvas.begin_clip(frame.plot);
-    for (const NormalPoint& point : points) canvas.marker(frame.at(point.normal_deg, point.border_px), point.series, 4.5);
+    for (const NormalPoint& point : points) canvas.marker(frame.at(point.normal_deg, point.border_px), data.styles[point.series], 4.5);
     canvas.end_clip();
     if (slope) draw_prediction_legend(canvas, frame, *slope);
   };

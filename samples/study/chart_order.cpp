@@ -30,21 +30,21 @@ void draw_series(ChartCanvas& canvas, const ReportData& data, const ChartFrame& 
   for (const ModelPoint& point : points) {
     if (data.models[point.model].series == series) line.push_back(frame.at(data.models[point.model].resolution, point.median));
   }
-  ChartColor pale = series_color(series);
+  ChartColor pale = style_color(data.styles[series]);
   pale.alpha = 0.35;
   canvas.line(line, pale, 1.2);
   if (const std::optional<OrderFit> fit = fit_order(data, points, series, data.main_metric)) {
     const auto at = [&](double resolution) { return frame.at(resolution, fit->factor * std::pow(resolution, fit->order)); };
-    canvas.line({at(fit->finest), at(fit->coarsest)}, series_color(series), 1.8, true);
+    canvas.line({at(fit->finest), at(fit->coarsest)}, style_color(data.styles[series]), 1.8, true);
   }
-  for (const ChartPoint& at : line) canvas.marker(at, series, 5.5);
+  for (const ChartPoint& at : line) canvas.marker(at, data.styles[series], 5.5);
 }
 
 void draw_orders(ChartCanvas& canvas, const ReportData& data, const ChartFrame& frame, const std::vector<ModelPoint>& points) {
   const double left = frame.plot.x + frame.plot.width + 22.0;
   double y = frame.plot.y + 10.0;
   for (const size_t series : series_in(data, points)) {
-    canvas.marker({left + 6.0, y - 4.0}, series, 5.5);
+    canvas.marker({left + 6.0, y - 4.0}, data.styles[series], 5.5);
     for (const std::string& line : canvas.lines(data.series[series], canvas.width() - left - 34.0)) {
       canvas.text({left + 20.0, y}, line);
       y += 16.0;

@@ -16,11 +16,11 @@ constexpr double kRow = 30.0, kTop = 78.0, kNames = 330.0, kBelow = 96.0;
 void draw_row(ChartCanvas& canvas, const ReportData& data, const ChartFrame& frame, const ModelPoint& point, double y) {
   const size_t series = data.models[point.model].series;
   const auto x = [&](double value) { return frame.plot.x + frame.plot.width * frame.x.share(value); };
-  ChartColor pale = series_color(series);
+  ChartColor pale = style_color(data.styles[series]);
   pale.alpha = 0.25;
   canvas.box({x(point.low_quartile), y - 8.0, std::max(1.0, x(point.high_quartile) - x(point.low_quartile)), 16.0}, pale);
-  canvas.line({{x(point.low), y}, {x(point.high), y}}, series_color(series), 1.0);
-  for (const ReportCell* cell : point.cells) canvas.marker({x(std::abs(cell->values.at(data.main_metric))), y}, series, 4.0);
+  canvas.line({{x(point.low), y}, {x(point.high), y}}, style_color(data.styles[series]), 1.0);
+  for (const ReportCell* cell : point.cells) canvas.marker({x(std::abs(cell->values.at(data.main_metric))), y}, data.styles[series], 4.0);
   canvas.line({{x(point.median), y - 10.0}, {x(point.median), y + 10.0}}, kChartInk, 2.0);
   canvas.text({frame.plot.x - 10.0, y + 4.0}, data.title(point.model), {12.0, false, kChartInk, ChartAlign::right});
 }

@@ -7,7 +7,8 @@
 #include <set>
 #include <tuple>
 
-#include "samples/experiment/better.h"
+#include "samples/experiment/metric_values.h"
+#include "samples/study/series_styles.h"
 
 namespace limn {
 namespace {
@@ -59,13 +60,7 @@ struct DrawingNames {
   }
 };
 
-bool is_lower_better(const std::string& name) {
-  const Metric* best = nullptr;
-  for (const Metric& metric : metrics()) {
-    if (!name.starts_with(metric.about.name)) continue;
-    if (best == nullptr || metric.about.name.size() > best->about.name.size()) best = &metric;
-  }
-  return best == nullptr || is_lower_better(*best, name);
+return best == nullptr || is_lower_better(*best, name);
 }
 
 // Places in the picture are neither errors nor sizes.
@@ -99,6 +94,7 @@ struct Collector {
     std::stable_sort(rest.begin(), rest.end(), natural_less);
     data.series.insert(data.series.end(), rest.begin(), rest.end());
     for (size_t i = 0; i < data.series.size(); ++i) series[data.series[i]] = i;
+    data.styles = styles_of(data.series);
 
     for (const StudyRow* row : rows) {
       const auto [place, is_new] = models.try_emplace({series_of(*row), resolution_text(*row)}, data.models.size());

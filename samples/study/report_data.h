@@ -11,9 +11,6 @@
 
 namespace limn {
 
-/// A model whose border is this near to truth is called right.
-inline constexpr double kTolerancePx = 0.5;
-
 /// What a metric says, where the report has something of its own to say about it.
 enum class MetricRole { border, inner, silhouette, predicted, measured, normal };
 
@@ -54,6 +51,7 @@ struct ReportCell {
 /// Everything in an order that does not depend on the order of the rows.
 struct ReportData {
   std::vector<std::string> series{};
+  std::vector<size_t> styles{};       ///< Of each series: its colour and marker (chart_canvas.h), the same in every study.
   std::vector<ReportModel> models{};  ///< By series, coarse first.
   std::vector<ReportDrawing> drawings{};
   std::vector<ReportMetric> metrics{};  ///< Those with a role first.

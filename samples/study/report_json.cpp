@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "samples/experiment/metric_values.h"
 #include "samples/study/report_looks.h"
 #include "samples/study/report_page.h"
 
@@ -22,7 +23,7 @@ Json expected_json(const ReportData& data, size_t series, const ReportMetric& me
 Json series_json(const ReportData& data) {
   Json all = Json::array();
   for (size_t i = 0; i < data.series.size(); ++i)
-    all.push_back({{"name", data.series[i]}, {"color", hex(series_color(i))}, {"marker", i % kMarkers}});
+    all.push_back({{"name", data.series[i]}, {"color", hex(style_color(data.styles[i]))}, {"marker", data.styles[i] % kMarkers}});
   return all;
 }
 
@@ -79,6 +80,7 @@ std::string study_data_json(const ReportData& data) {
   for (const ReportMetric& metric : data.metrics)
     json["metrics"].push_back({{"name", metric.name},
                                {"label", metric.label()},
+                               {"definition", definition_of(metric.name)},
                                {"unit", metric.unit},
                                {"lower", metric.lower_is_better},
                                {"distance", is_border_distance(metric)}});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "samples/experiment/metric_values.h"
 #include "samples/page/html.h"
 #include "samples/study/report_page.h"
 #include "sdf/quantile.h"
@@ -10,8 +11,12 @@
 namespace limn {
 namespace {
 
-std::string head_cell(const std::string& label, const std::string& unit, bool text = false) {
-  return fmt::format("<th scope=\"col\"{}><button type=\"button\">{}</button><small>{}</small></th>", text ? " class=\"text\"" : "",
+std::string text_head(const std::string& label) {
+  return fmt::format("<th scope=\"col\" class=\"text\"><button type=\"button\">{}</button><small></small></th>", label);
+}
+/// The definition is shown on hover.
+std::string head_cell(const std::string& label, const std::string& unit, const std::string& definition) {
+  return fmt::format("<th scope=\"col\" title=\"{}\"><button type=\"button\">{}</button><small>{}</small></th>", escaped(definition),
                      escaped(label), escaped(unit));
 }
 std::string number_cell(double value, const std::string& text) {
@@ -77,10 +82,12 @@ std::string study_table_html(const ReportData& data) {
   std::string html =
       "<p class=\"details\">Medians of the views. A heading sorts.</p>\n"
       "<div class=\"scroll tall\" tabindex=\"0\" role=\"region\" aria-label=\"All models\"><table class=\"models\"><thead><tr>";
-  html += head_cell("model", "", true);
-  if (data.drawings.size() > 1) html += head_cell("drawn by", "", true);
-  html += head_cell("time", "ms") + head_cell("memory", "MB") + head_cell("resolution", "share of the side");
-  for (const ReportMetric& metric : data.metrics) html += head_cell(metric.label(), metric.unit);
+  html += text_head("model");
+  if (data.drawings.size() > 1) html += text_head("drawn by");
+  html += head_cell("time", "ms", "building the model, tracing and drawing one picture, each the median of its repeats") +
+          head_cell("memory", "MB", "what the model holds while it is drawn") +
+          head_cell("resolution", "share of the side", "a voxel or the mean edge of the mesh, as a share of the longest side of the scene");
+  for (const ReportMetric& metric : data.metrics) html += head_cell(metric.label(), metric.unit, definition_of(metric.name));
   html += "</tr></thead><tbody>\n";
   for (const TableRow& row : rows) html += row_html(data, row);
   return html + "</tbody></table></div>\n";

@@ -48,10 +48,13 @@ if(NOT TARGET limn_openimageio)
   find_library(LIMN_OPENIMAGEIO_LIBRARY OpenImageIO REQUIRED)
   find_library(LIMN_OPENIMAGEIO_UTIL_LIBRARY OpenImageIO_Util REQUIRED)
   mark_as_advanced(LIMN_OPENIMAGEIO_INCLUDE LIMN_OPENIMAGEIO_LIBRARY LIMN_OPENIMAGEIO_UTIL_LIBRARY)
-  add_library(limn_openimageio INTERFACE IMPORTED)
-  set_target_properties(limn_openimageio PROPERTIES
-    INTERFACE_LINK_LIBRARIES "${LIMN_OPENIMAGEIO_LIBRARY};${LIMN_OPENIMAGEIO_UTIL_LIBRARY};Imath::Imath;fmt::fmt"
+  # Its library of helpers alone needs no other libraries.
+  add_library(limn_openimageio_util INTERFACE IMPORTED)
+  set_target_properties(limn_openimageio_util PROPERTIES
+    INTERFACE_LINK_LIBRARIES "${LIMN_OPENIMAGEIO_UTIL_LIBRARY};Imath::Imath;fmt::fmt"
     INTERFACE_INCLUDE_DIRECTORIES ${LIMN_OPENIMAGEIO_INCLUDE})
+  add_library(limn_openimageio INTERFACE IMPORTED)
+  set_target_properties(limn_openimageio PROPERTIES INTERFACE_LINK_LIBRARIES "${LIMN_OPENIMAGEIO_LIBRARY};limn_openimageio_util")
 endif()
 
 find_dependency(embree 3)

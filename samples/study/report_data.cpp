@@ -60,9 +60,6 @@ struct DrawingNames {
   }
 };
 
-return best == nullptr || is_lower_better(*best, name);
-}
-
 // Places in the picture are neither errors nor sizes.
 bool is_position(const std::string& name) { return name.ends_with("_x") || name.ends_with("_y"); }
 

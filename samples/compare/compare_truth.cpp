@@ -73,7 +73,7 @@ std::string border_error_text(const Comparison& comparison, const Cell& cell) {
   const std::string metric = main_error(comparison, cell);
   const std::string error = error_of(comparison, cell, metric);
   if (error.empty()) return "";
-  std::string text = fmt::format("95 % of its {} within {} of the truth", metric == "border_error_p95" ? "border" : "silhouette", error);
+  std::string text = fmt::format("95 % of its {} is within {} of the truth", metric == "border_error_p95" ? "border" : "silhouette", error);
   const std::string silhouette = error_of(comparison, cell, "border_error_silhouette_p95"),
                     inner = error_of(comparison, cell, "border_error_inner_p95");
   if (!silhouette.empty() && !inner.empty()) text += fmt::format(" (silhouette {}, inner border {})", silhouette, inner);

@@ -104,7 +104,7 @@ void draw_comparison(Comparison& comparison, const std::filesystem::path& folder
 std::optional<double> truth_threshold(const std::vector<MethodCall>& calls);
 /// What displacements are measured from, in a sentence.
 std::string truth_text(const ExperimentTruth& truth);
-/// "95 % of its border within 0.13 px of the truth (silhouette 0.02 px, inner border 0.15 px), right to 0.5 px"; of methods that have no
+/// "95 % of its border is within 0.13 px of the truth (silhouette 0.02 px, inner border 0.15 px), right to 0.5 px"; of methods that have no
 /// threshold the silhouette alone; empty where nothing was measured.
 std::string border_error_text(const Comparison& comparison, const Cell& cell);
 /// The same number for captions: "border within 0.13 px".

@@ -77,7 +77,9 @@ std::string report_page(const Comparison& comparison) {
   std::string html = head_html(comparison);
   html += comparison.is_matrix() ? "<body class=\"several\">\n<main>\n" : "<body>\n<main>\n";
   html += "<h1>" + escaped(title_of(comparison)) + "</h1>\n" + results_html(comparison) + kViewer;
-  html += std::string("<h2>Pictures</h2>\n") + kLegend + matrix_html(comparison);
+  html += "<h2>Pictures</h2>\n";
+  html += kLegend;
+  html += matrix_html(comparison);
   html += "<h2>Numbers</h2>\n" + table_html(comparison);
   html += list_section("Not compared", skipped_sentences(comparison));
   html += "<details><summary>How this was made</summary>\n<p><code>" + escaped(comparison.call) + "</code></p>\n</details>\n</main>\n";

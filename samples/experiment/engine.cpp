@@ -15,14 +15,18 @@ double ms_since(Clock::time_point start) { return std::chrono::duration<double, 
 /// Puts a drawing's ink into what was seen, for metrics that look at both, and takes it out again.
 class InkIn {
  public:
-  InkIn(Picture& seen, Image<float>& ink) : seen_(seen), ink_(ink) { std::swap(seen_.border, ink_); }
-  ~InkIn() { std::swap(seen_.border, ink_); }
+  /// Null: there is nothing to put.
+  InkIn(Picture* seen, Image<float>* ink) : seen_(seen), ink_(ink) { swap(); }
+  ~InkIn() { swap(); }
   InkIn(const InkIn&) = delete;
   InkIn& operator=(const InkIn&) = delete;
 
  private:
-  Picture& seen_;
-  Image<float>& ink_;
+  void swap() {
+    if (seen_ != nullptr) std::swap(seen_->border, *ink_);
+  }
+  Picture* seen_;
+  Image<float>* ink_;
 };
 
 bool has_subject(const Metric& metric, const MetricInput& input, bool inked) {
@@ -205,9 +209,8 @@ std::vector<Measurement> ExperimentRun::measure(Built& built, const ExperimentCe
   Drawing& reference_ink = needs_reference() ? view.drawings[cell.method] : none;
   Picture& reference_seen = needs_reference() ? view.seen->picture : seen.picture;
   // The reference's own picture holds its own ink.
-  const InkIn own(seen.picture, drawing.picture.border);
-  const std::optional<InkIn> other =
-      needs_reference() ? std::optional<InkIn>(std::in_place, reference_seen, reference_ink.picture.border) : std::optional<InkIn>{};
+  const InkIn own(&seen.picture, &drawing.picture.border);
+  const InkIn other(needs_reference() ? &reference_seen : nullptr, &reference_ink.picture.border);
   MetricInput input{seen.picture, reference_seen, experiment_.cameras[cell.view]};
   if (truth != nullptr && truth->truth) {
     if (!built.curves.contains(truth->threshold)) {

@@ -53,7 +53,7 @@ struct Border {
 /// An outline method: a file in raymarch/border/ and a line in its registry.
 struct BorderMethod {
   Description about{};                  ///< Name, help and source.
-  std::vector<std::string> inputs{};    ///< Layers it reads ("NdotV", "Z", …) and "mesh" where it needs one.
+  std::vector<std::string> inputs{};    ///< Layers it reads (Z, P, N, NdotV, id, material, face, custom) and "mesh" where it needs one.
   std::vector<Parameter> parameters{};  ///< What `draw` reads, in the order of help.
   /// Empty where it can run on the model, else the reason why not.
   std::string (*unsupported)(const SceneModel& model, const Scene& scene);

@@ -11,6 +11,7 @@
   X(normal4)            \
   X(roberts)            \
   X(sobel)              \
+  X(depth_laplacian)    \
   X(blur)               \
   X(jump_flood)         \
   X(distance)

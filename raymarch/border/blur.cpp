@@ -121,7 +121,7 @@ BorderMethod blur_method() {
   for (Parameter& parameter : group_parameters(GroupBy::all)) parameters.push_back(std::move(parameter));
   return {{"blur", "the silhouette blurred in two passes and laid around the object, as a glow or a hard line",
            "separable filters: Szeliski 2010, section 3.2"},
-          {"id"},
+          {"Z", "id", "material"},
           parameters,
           [](const SceneModel&, const Scene&) { return std::string(); },
           draw};

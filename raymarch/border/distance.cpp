@@ -13,7 +13,7 @@ Border draw(const BorderInput& input, const Parameters& parameters) { return dra
 BorderMethod distance_method() {
   return {{"distance", "outline of constant width around the silhouette, by the exact Euclidean distance transform",
            "Felzenszwalb and Huttenlocher 2012"},
-          {"id", "NdotV"},
+          {"Z", "N", "NdotV", "id", "material"},
           outline_parameters(),
           [](const SceneModel&, const Scene&) { return std::string(); },
           draw};

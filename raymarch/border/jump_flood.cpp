@@ -62,7 +62,7 @@ BorderMethod jump_flood_method() {
   parameters.push_back(a_flag("check", true).help("count the pixels that differ from the exact transform"));
   return {{"jump_flood", "outline of constant width around the silhouette, by jump flooding: a fixed number of passes, not exact",
            "Rong and Tan 2006"},
-          {"id", "NdotV"},
+          {"Z", "N", "NdotV", "id", "material"},
           parameters,
           [](const SceneModel&, const Scene&) { return std::string(); },
           draw};

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "raymarch/border.h"
+#include "raymarch/border/surface_notes.h"
 #include "raymarch/gbuffer/picture_rows.h"
 
 namespace limn {
@@ -53,22 +54,6 @@ void count_silhouette(const GBuffer& seen, int y, const float* ink, std::int64_t
   }
 }
 
-/// Places where one object's pixels meet another's, and those of them without ink on either side.
-void count_meetings(const GBuffer& seen, const Image<float>& ink, std::int64_t& all, std::int64_t& bare) {
-  const auto look = [&](size_t i, size_t j) {
-    if (seen.id.pixels[i] == 0 || seen.id.pixels[j] == 0 || seen.id.pixels[i] == seen.id.pixels[j]) return;
-    ++all;
-    bare += ink.pixels[i] < 0.5f && ink.pixels[j] < 0.5f;
-  };
-  for (int y = 0; y < seen.height; ++y) {
-    for (int x = 0; x < seen.width; ++x) {
-      const size_t i = seen.id.index(x, y);
-      if (x + 1 < seen.width) look(i, i + 1);
-      if (y + 1 < seen.height) look(i, i + static_cast<size_t>(seen.width));
-    }
-  }
-}
-
 Border draw(const BorderInput& input, const Parameters& parameters) {
   const GBuffer& seen = input.gbuffer;
   const auto threshold = static_cast<float>(parameters.number("threshold"));
@@ -102,11 +87,8 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
     border.notes.push_back(fmt::format("normal4: {} of {} silhouette pixels have no line: their normals are near the clear value's",
                                        without_line.load(), silhouette.load()));
   }
-  std::int64_t meetings = 0, bare_meetings = 0;
-  if (input.model.surfaces.size() > 1) count_meetings(seen, border.coverage, meetings, bare_meetings);
-  if (bare_meetings > 0) {
-    border.notes.push_back(fmt::format(
-        "normal4: {} of {} places where one object meets another have no line: their normals are alike there", bare_meetings, meetings));
+  if (std::string note = meetings_note("normal4", input, border.coverage, "their normals are alike there"); !note.empty()) {
+    border.notes.push_back(std::move(note));
   }
   return border;
 }

@@ -106,6 +106,26 @@ std::vector<std::string> surface_notes(const std::string& name, const GBuffer& g
   return notes;
 }
 
+std::string meetings_note(const std::string& name, const BorderInput& input, const Image<float>& coverage, const std::string& reason) {
+  if (input.model.surfaces.size() < 2) return {};
+  const Image<std::int32_t>& id = input.gbuffer.id;
+  std::int64_t all = 0, bare = 0;
+  const auto look = [&](size_t i, size_t j) {
+    if (id.pixels[i] == 0 || id.pixels[j] == 0 || id.pixels[i] == id.pixels[j]) return;
+    ++all;
+    bare += coverage.pixels[i] < 0.5f && coverage.pixels[j] < 0.5f;
+  };
+  for (int y = 0; y < id.height; ++y) {
+    for (int x = 0; x < id.width; ++x) {
+      const size_t i = id.index(x, y);
+      if (x + 1 < id.width) look(i, i + 1);
+      if (y + 1 < id.height) look(i, i + static_cast<size_t>(id.width));
+    }
+  }
+  if (bare == 0) return {};
+  return fmt::format("{}: {} of {} places where one object meets another have no line: {}", name, bare, all, reason);
+}
+
 double smoothstep(double edge0, double edge1, double x) {
   if (!(edge1 > edge0)) return x >= edge1 ? 1.0 : 0.0;
   const double t = std::clamp((x - edge0) / (edge1 - edge0), 0.0, 1.0);

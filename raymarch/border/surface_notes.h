@@ -1,5 +1,5 @@
 #pragma once
-// Where methods that only look at N.V fail, found in the picture itself: flat faces, and normals that point away.
+// Where methods fail, found in the picture itself: flat faces, normals that point away, and objects that meet without a line.
 
 #include "raymarch/border.h"
 
@@ -17,6 +17,10 @@ std::vector<FlatFace> flat_faces(const GBuffer& gbuffer, const Image<float>& cov
 
 /// The sentences, with their numbers, for a method called `name`; empty where nothing failed.
 std::vector<std::string> surface_notes(const std::string& name, const GBuffer& gbuffer, const Image<float>& coverage);
+
+/// "roberts: 3 of 40 places where one object meets another have no line: `reason`", places being pairs of neighbouring pixels; empty where
+/// all have one, on one side at least.
+std::string meetings_note(const std::string& name, const BorderInput& input, const Image<float>& coverage, const std::string& reason);
 
 /// Hermite step from 0 at `edge0` to 1 at `edge1`; a hard step (x >= edge1) where they coincide.
 double smoothstep(double edge0, double edge1, double x);

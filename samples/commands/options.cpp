@@ -359,6 +359,10 @@ void add_cases(CLI::App& app, Options& options, const char* group) {
 
 void add_stability(CLI::App& app, Options& options) {
   add_cases(app, options, kStability);
+  add_repeatable(
+      app,
+      {"--method,--methods", "A,B,...", "only cells of these outline methods (limn list methods), repeatable; default: all", kStability},
+      [&options](const std::string& text) { read_compared_methods(text, options); });
   add_compared_surfaces(app, options);
 }
 

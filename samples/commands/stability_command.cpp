@@ -28,6 +28,7 @@ Command stability_command() {
           "method fails and nothing says so",
           "  limn stability\n"
           "  limn stability --case cube_faces --seed 7 --draws 20\n"
+          "  limn stability --method sobel\n"
           "  limn stability --case mine.toml --surface mesh --json",
           add_options,
           run,

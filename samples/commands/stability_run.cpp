@@ -27,7 +27,6 @@ void refuse_others(const Options& options) {
       {sweep.flicker, "--flicker"},
       {options.study.shards != 1, "--shard"},
       {!options.spec.border.parameters.empty(), "--set"},
-      {!options.spec.border.columns.empty(), "--methods"},
       {options.spec.camera.size_px.has_value(), "--size"},
       {options.spec.camera.eye || options.spec.camera.target || options.spec.camera.up, "--eye, --target and --up"},
       {options.spec.camera.fov_deg || options.spec.camera.ortho_height, "--fov and --ortho"},
@@ -74,6 +73,7 @@ int study_stability(const Options& options, ProgressBar& bar) {
   settings.seed = options.stability.seed.value_or(1);
   settings.draws = options.stability.draws;
   settings.surfaces = options.spec.surfaces;
+  settings.methods = options.spec.border.columns;
   settings.folder = folder;
   settings.how = execution_settings(options.spec.threads);
   settings.progress = bar.stage("cases");

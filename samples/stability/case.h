@@ -2,9 +2,9 @@
 // A case of the corpus: a scene that breaks methods, what must hold of it, and where a method is known to fail. Cases are TOML files; a
 // scene file's tables ([camera], [surface], [[border]], [[object]]) beside these:
 //
-//     [case]       row, breaks, holds: the catalogue's words; check = NAME; surfaces, methods (or "all"; default: the [[border]]s), views,
-//                  sizes = [[w, h], …], draws, bound, outer, says (or a list): what the program must say, in a sentence with a number,
-//                  wherever the property held or degraded
+//     [case]       row, breaks, holds: the catalogue's words; check = NAME; surfaces; methods (or "all", less those of `without`; the
+//                  [[border]]s come after them), views, sizes = [[w, h], …], draws, bound, outer, says (or a list): what the program must
+//                  say, in a sentence with a number, wherever the property held or degraded
 //     [with]       parameters of the check
 //     [set]        name = number; "$name" in the rest of the file stands for it (in quotes, so that the file stays TOML)
 //     [random]     name = [low, high]: the same, drawn from the seed; whole numbers where both are
@@ -54,7 +54,9 @@ struct StabilityCase {
   std::string source{};                          ///< The TOML.
   std::string file{};                            ///< For messages; relative paths start beside it.
   std::vector<std::string> surfaces{};           ///< "all" among them: every one.
-  std::vector<std::string> methods{};            ///< "all" among them: every one. Empty: the scene's [[border]]s.
+  std::vector<std::string> methods{};            ///< "all" among them: every one. Empty: the scene's [[border]]s alone.
+  std::vector<std::string> without{};            ///< Methods that "all" leaves out.
+  bool has_borders = false;                      ///< Whether the scene has [[border]]s.
   int views = 1;                                 ///< 1: the scene's own camera; more: as many directions, turned at random.
   std::vector<glm::ivec2> sizes_px{};            ///< Width and height of the pictures.
   int draws = 1;                                 ///< How often the random parameters are drawn; at least 1.

@@ -214,10 +214,16 @@ std::vector<MethodCall> CaseContext::methods() {
   for (const std::string& name : case_.methods) {
     if (name != "all") spec.methods.push_back(name);
     if (name != "all") continue;
-    for (const BorderMethod& method : border_methods()) spec.methods.push_back(method.about.name);
+    for (const std::string& each : border_methods().names()) {
+      if (std::find(case_.without.begin(), case_.without.end(), each) == case_.without.end()) spec.methods.push_back(each);
+    }
   }
-  // A scene that is refused whole may still name what it is about.
-  return method_calls(spec, case_.methods.empty() ? scene_of_case(case_, values_).input : SceneInput{});
+  std::vector<MethodCall> calls;
+  if (!spec.methods.empty()) calls = method_calls(spec, {});
+  // A scene that is refused whole may still name what it is about: it is looked at only for what it adds.
+  if (!spec.methods.empty() && !case_.has_borders) return calls;
+  for (MethodCall& call : method_calls({}, scene_of_case(case_, values_).input)) calls.push_back(std::move(call));
+  return calls;
 }
 
 Border draw_border(const StabilityStage& stage, const StabilityView& view, const MethodCall& method) {

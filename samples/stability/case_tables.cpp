@@ -55,9 +55,9 @@ std::vector<std::string> surfaces(TomlReader& reader) {
 }
 
 /// A method's name, or that and parameters behind it ("extrude direction=position").
-void check_methods(TomlReader& reader, const std::vector<std::string>& names) {
+void check_methods(TomlReader& reader, const std::vector<std::string>& names, const std::string& key = "methods") {
   for (const std::string& name : names) {
-    if (name != "all") find_border_method(name.substr(0, name.find(' ')), reader.where(*reader.take("methods")), reader.field("methods"));
+    if (name != "all") find_border_method(name.substr(0, name.find(' ')), reader.where(*reader.take(key)), reader.field(key));
   }
 }
 
@@ -100,6 +100,10 @@ void read_case_table(TomlReader& reader, StabilityCase& one) {
   }
   one.methods = words(reader, "methods");
   check_methods(reader, one.methods);
+  one.without = words(reader, "without");
+  check_methods(reader, one.without, "without");
+  if (!one.without.empty() && std::find(one.methods.begin(), one.methods.end(), "all") == one.methods.end())
+    reader.fail("without methods = \"all\"", "methods that \"all\" leaves out");
   one.views = reader.integer("views", 1, 100).value_or(1);
   one.sizes_px = sizes(reader);
   one.draws = reader.integer("draws", 1, 1000).value_or(1);
@@ -184,6 +188,7 @@ StabilityCase parse_case(const std::string& text, const std::string& file) {
   one.text.name = std::filesystem::path(file).stem().string();
   one.source = text;
   one.file = file;
+  one.has_borders = root.contains("border");
   const auto own = reader.tables("case");
   if (own.size() != 1) throw InputError({file, "case", "", "no case", "one [case] table"});
   TomlReader head(*own[0], file, "case.");

@@ -106,11 +106,14 @@ void run_case(const CaseRun& run, StabilityResults& results) {
       const auto& wanted = run.settings.surfaces;
       if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), surface) == wanted.end()) continue;
       CaseContext context(run.which, draw, run.settings.seed, surface, run.settings.how);
+      const std::vector<std::string>& methods = run.settings.methods;
       if (!run.check.of_methods) {
+        if (!methods.empty()) continue;
         results.cells.push_back(run_cell(run, context, draw, nullptr));
         continue;
       }
       for (const MethodCall& method : context.methods()) {
+        if (!methods.empty() && std::find(methods.begin(), methods.end(), method.method->about.name) == methods.end()) continue;
         if (run.settings.how.cancelled && run.settings.how.cancelled()) throw Cancelled{};
         results.cells.push_back(run_cell(run, context, draw, &method));
       }

@@ -20,6 +20,7 @@ struct StabilityRunSettings {
   std::optional<int> draws{};              ///< Of the random parameters; unset: each case's own.
   std::optional<int> longest_side_px{};    ///< Pictures no larger than this, for tests that must be quick.
   std::vector<std::string> surfaces{};     ///< Empty: each case's own.
+  std::vector<std::string> methods{};      ///< Cells of these alone, and none without a method; empty: all.
   std::filesystem::path folder{};          ///< Where pictures go; empty: nowhere.
   ExecutionSettings how{};                 ///< Threads and tiles, where a variant does not set them.
   std::function<void(double)> progress{};  ///< 0..1; may be empty.

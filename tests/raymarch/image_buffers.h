@@ -1,6 +1,7 @@
 #pragma once
 // G-buffers written down by hand: what image methods read, without a surface behind it.
 
+#include <algorithm>
 #include <cmath>
 
 #include "raymarch/border/silhouette.h"
@@ -100,8 +101,15 @@ inline double area(const Image<float>& ink) {
   return sum;
 }
 
+/// Every method but these, so that a new one is held to what must hold of all of them: no line on a plane, ink in range, equal bytes.
 inline const std::vector<std::string>& image_methods() {
-  static const std::vector<std::string> names{"normal4", "roberts", "sobel", "blur", "jump_flood", "distance"};
+  static const std::vector<std::string> others{"rim", "fresnel", "rim_width",  // ink a whole plane that grazes the view
+                                               "extrude", "edge_quads"};       // draw the model, which a buffer written by hand lacks
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> found = border_methods().names();
+    std::erase_if(found, [](const std::string& name) { return std::find(others.begin(), others.end(), name) != others.end(); });
+    return found;
+  }();
   return names;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "raymarch/border.h"
 #include "tests/samples/run_program.h"
 
 namespace limn {
@@ -68,8 +69,7 @@ TEST(RenderFrames, OfEveryMethodAreCounted) {
   const std::string cube = folder.write("cube.obj",
                                         "v -1 -1 -1\nv 1 -1 -1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\n"
                                         "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
-  for (const char* method :
-       {"rim", "fresnel", "rim_width", "extrude", "edge_quads", "normal4", "roberts", "sobel", "blur", "jump_flood", "distance"}) {
+  for (const std::string& method : border_methods().names()) {
     const nlohmann::json flicker = flicker_of(folder, {cube, "--level", "2", "--method", method});
     EXPECT_TRUE(flicker.at("flicker").is_number()) << method;
     EXPECT_GE(flicker.at("flips"), flicker.at("beyond")) << method;

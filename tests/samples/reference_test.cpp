@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <regex>
 #include <set>
@@ -32,6 +33,19 @@ TEST(Reference, ThePageIsWhatTheProgramPrints) {
   EXPECT_EQ(result.out, reference_page());
   EXPECT_TRUE(result.out == text_of(LIMN_SOURCE_DIR "/docs/reference.md"))
       << "docs/reference.md is older than the program: limn list reference > docs/reference.md";
+}
+
+/// The table of docs/methods.md has a row for each method, and both galleries its picture.
+TEST(Reference, EveryMethodIsExplainedAndInTheGalleries) {
+  const std::string methods = text_of(LIMN_SOURCE_DIR "/docs/methods.md"), readme = text_of(LIMN_SOURCE_DIR "/README.md");
+  for (const std::string& name : border_methods().names()) {
+    EXPECT_NE(methods.find(fmt::format("\n| `{}` | ", name)), std::string::npos)
+        << "docs/methods.md has no row that says how it fails: " << name;
+    const std::string picture = fmt::format("samples/pictures/methods/{}.png", name);
+    EXPECT_NE(methods.find("(../" + picture + ")"), std::string::npos) << "not in the gallery of docs/methods.md: " << picture;
+    EXPECT_NE(readme.find("(" + picture + ")"), std::string::npos) << "not in the gallery of README.md: " << picture;
+    EXPECT_TRUE(std::filesystem::exists(LIMN_SOURCE_DIR "/" + picture)) << "limn-out/demo/methods has it after ./run demo: " << picture;
+  }
 }
 
 TEST(Reference, EveryKeyThatSceneFilesAreReadForHasALine) {

@@ -9,6 +9,7 @@
 #include <random>
 #include <set>
 
+#include "raymarch/border.h"
 #include "run_program.h"
 #include "samples/stability/run_stability.h"
 #include "sdf/error.h"
@@ -204,6 +205,28 @@ TEST(StabilityRun, IsTheSameForEqualSeedsAndAnyThreads) {
   EXPECT_NE(text(5, 1), text(6, 1));
 }
 
+/// "all" by the list of methods, less `without`, then the [[border]]s; of these the methods asked for.
+TEST(StabilityRun, RunsAllMethodsButThoseLeftOutAndThenTheBordersOfTheScene) {
+  const auto methods = [](const std::string& head, const std::vector<std::string>& wanted) {
+    StabilityRunSettings settings;
+    settings.methods = wanted;
+    settings.longest_side_px = 20;
+    std::vector<std::string> names;
+    const std::string text =
+        cube_case("finite_outputs", "surfaces = [\"analytic\"]\n" + head, "[[border]]\nmethod = \"rim\"\nthreshold = 0.3\n");
+    for (const StabilityCell& cell : run_stability({parse_case(text, "test.toml")}, settings).cells) names.push_back(cell.method);
+    return names;
+  };
+  const std::vector<std::string> all = methods("methods = \"all\"\nwithout = [\"sobel\", \"blur\"]", {});
+  ASSERT_EQ(all.size(), border_methods().size() - 2 + 1);
+  EXPECT_EQ(all.front(), "rim threshold=0.4");
+  EXPECT_EQ(all.back(), "rim threshold=0.3");
+  for (const std::string& name : all) EXPECT_FALSE(name.starts_with("sobel") || name.starts_with("blur")) << name;
+  EXPECT_EQ(methods("", {}), std::vector<std::string>{"rim threshold=0.3"});
+  EXPECT_EQ(methods("methods = \"all\"", {"rim"}), (std::vector<std::string>{"rim threshold=0.4", "rim threshold=0.3"}));
+  EXPECT_TRUE(methods("methods = [\"sobel\"]", {"blur"}).empty());
+}
+
 TEST(StabilityCase, FaultsInItsFileAreToldWithTheirPlace) {
   const auto fault = [](const std::string& text) -> std::string {
     try {
@@ -216,6 +239,8 @@ TEST(StabilityCase, FaultsInItsFileAreToldWithTheirPlace) {
   EXPECT_NE(fault(cube_case("finite_output", "")).find("'finite_outputs'"), std::string::npos);
   EXPECT_NE(fault(cube_case("finite_outputs", "bond = 1")).find("'bound'"), std::string::npos);
   EXPECT_NE(fault(cube_case("finite_outputs", "methods = [\"rimm\"]")).find("'rim'"), std::string::npos);
+  EXPECT_NE(fault(cube_case("finite_outputs", "methods = \"all\"\nwithout = [\"rimm\"]")).find("'rim'"), std::string::npos);
+  EXPECT_NE(fault(cube_case("finite_outputs", "methods = [\"rim\"]\nwithout = [\"rim\"]")).find("without"), std::string::npos);
   EXPECT_NE(fault(cube_case("finite_outputs", "", "[[expect]]\nfails = [1, 2]")).find("says"), std::string::npos);
   EXPECT_NE(fault(cube_case("finite_outputs", "") + "radius = 3\n").find("test.toml:"), std::string::npos) << "a box has none";
   EXPECT_NE(fault("[[object]]\nshape = \"box\"\n").find("[case]"), std::string::npos);

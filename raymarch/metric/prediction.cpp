@@ -44,7 +44,7 @@ Metric prediction_metric() {
   return {
       {"prediction",
        "the inner border's displacement and the ink's width, predicted from the model's normals and the true curvature, beside what was "
-       "measured. The displacement: to where the model's N.V meets the threshold, from its normals at four image points on a line "
+       "measured. The displacement: to where the model's N.V meets the threshold, from its normals at five image points on a line "
        "across the true border; to first order s c eps / kr. Root mean squares, what the measured one is expected between (low, high: "
        "by what the last image point changed and 15 % of the displacement), means, correlation, "
        "share of what moved less than 2 px that is predicted to 25 %, share of the border that could be compared, and shares without "

@@ -10,11 +10,11 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Image points of a line at which the model is asked, the true border's own among them.
-constexpr size_t kProbes = 4;
+constexpr size_t kProbes = 5;
 /// No first step is larger, and none of the others is larger than so many times the way so far, until the threshold was passed.
 constexpr double kFirst_px = 2.0, kGrowth = 3.0;
 /// A model's profile is no flatter and no steeper than the true one by more than this, where nothing else is known.
-constexpr double kSlopeRatio = 2.0;
+constexpr double kSlopeRatio = 4.0;
 /// Where the threshold was not passed no larger share of the way is extrapolated.
 constexpr double kLeft = 0.25;
 /// A model's point farther from the true one is of another sheet.

@@ -35,7 +35,7 @@ struct SolvedShift {
   ShiftFault fault = ShiftFault::none;
 };
 
-/// Asks `model` for its normals at four image points of each line at most: the true border's own, and three where the answers so far put
+/// Asks `model` for its normals at five image points of each line at most: the true border's own, and four where the answers so far put
 /// the border. Its N.V between them, squared, is taken as a parabola. No shift is larger than `reach_px`.
 /// The uncertainty is what the last image point changed, and of what is between them a share that was found on models whose border was
 /// measured (docs/accuracy.md), at least what a measured border is precise to.

@@ -163,32 +163,50 @@ TEST(SolvedShift, OnASphereIsTheDifferenceOfTwoSines) {
   }
 }
 
-TEST(SolvedShift, OnTiltedToriIsWithinAQuarterWhereTheFirstOrderIsOffByMore) {
+struct TiltedTorus {
+  double tilt = 0.0, turn = 0.0, eps = 0.0;
+};
+
+DisplacementPrediction prediction_of(const TiltedTorus& at) {
   const Scene scene = scene_of({object_of(make_shape("torus"))});
+  CameraSettings settings = view(320, 240, Projection::orthographic);
+  settings.direction = glm::dvec3(std::cos(at.tilt) * std::cos(at.turn), std::sin(at.tilt), std::cos(at.tilt) * std::sin(at.turn));
+  const Camera camera = framing(scene, settings);
+  const BorderTruth truth = solve_truth(scene, camera, {}, {});
+  const SceneModel model = turned_by(scene, at.eps);
+  const BorderCurves curves = measure_border(model, camera, render_gbuffer(model, camera, {}), {kThreshold, 0.002}, {});
+  const DisplacementPrediction found = predict_border(model, camera, truth, curves).displacement;
+  fmt::print("tilt {:.4f} eps {:+.3f}: first order {:.3f}, predicted {:.4f} ({:.4f} to {:.4f}), measured {:.4f} px, covered {:.3f}\n",
+             at.tilt, at.eps, found.first_order_rms_px, found.predicted_rms_px, found.low_px, found.high_px, found.measured_rms_px,
+             found.covered);
+  return found;
+}
+
+TEST(SolvedShift, OnTiltedToriIsWithinAQuarterAndItsBounds) {
   const std::uint32_t seed = random_seed();
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
-  int first_order_fails = 0, cells = 0;
   for (int i = 0; i < 8; ++i) {
-    CameraSettings settings = view(320, 240, Projection::orthographic);
-    // Tilted so far that N.V of the ring's top, where kr vanishes, passes near the threshold.
-    const double tilt = std::asin(kThreshold) + 0.15 * (unit(random) - 0.5), turn = 6.28 * unit(random);
-    settings.direction = glm::dvec3(std::cos(tilt) * std::cos(turn), std::sin(tilt), std::cos(tilt) * std::sin(turn));
-    const Camera camera = framing(scene, settings);
-    const BorderTruth truth = solve_truth(scene, camera, {}, {});
-    const SceneModel model = turned_by(scene, 0.02 * (unit(random) < 0.5 ? -1.0 : 1.0));
-    const BorderCurves curves = measure_border(model, camera, render_gbuffer(model, camera, {}), {kThreshold, 0.002}, {});
-    const DisplacementPrediction found = predict_border(model, camera, truth, curves).displacement;
-    fmt::print("tilt {:.3f}: first order {:.3f}, predicted {:.4f} ({:.4f} to {:.4f}), measured {:.4f} px, covered {:.3f}\n", tilt,
-               found.first_order_rms_px, found.predicted_rms_px, found.low_px, found.high_px, found.measured_rms_px, found.covered);
+    // Seen so that N.V of the ring's top, where kr vanishes, passes near the threshold.
+    const TiltedTorus at{std::asin(kThreshold) + 0.15 * (unit(random) - 0.5), 6.28 * unit(random), unit(random) < 0.5 ? -0.02 : 0.02};
+    const DisplacementPrediction found = prediction_of(at);
     EXPECT_NEAR(found.predicted_rms_px, found.measured_rms_px, 0.25 * found.measured_rms_px) << "seed " << seed;
     EXPECT_LE(found.low_px, found.measured_rms_px) << "seed " << seed;
     EXPECT_GE(found.high_px, found.measured_rms_px) << "seed " << seed;
-    ++cells;
-    first_order_fails += std::abs(found.first_order_rms_px - found.measured_rms_px) > 0.25 * found.measured_rms_px;
   }
-  fmt::print("seed {}: first order off by more than a quarter in {} of {}\n", seed, first_order_fails, cells);
-  EXPECT_GE(first_order_fails, 1) << "seed " << seed;
+}
+
+TEST(SolvedShift, HoldsOnTheTopOfATorusWhereTheFirstOrderIsOffByHalf) {
+  // Beside the tilt at which kr is 0 at the threshold. With N.V raised there the border parts in two; lowered, its branches swap, and which
+  // of them is whose partner is not theory's to say.
+  const std::pair<double, double> cases[] = {{-0.006, -0.005}, {-0.006, 0.005}, {0.0, -0.005}, {0.006, -0.005}, {0.006, 0.005}};
+  int off = 0;
+  for (const auto& [beside, eps] : cases) {
+    const DisplacementPrediction found = prediction_of({std::asin(kThreshold) + beside, 0.3, eps});
+    EXPECT_NEAR(found.predicted_rms_px, found.measured_rms_px, 0.05 * found.measured_rms_px) << beside << " " << eps;
+    off += std::abs(found.first_order_rms_px - found.measured_rms_px) > 0.5 * found.measured_rms_px;
+  }
+  EXPECT_GE(off, 1);
 }
 
 }  // namespace

@@ -14,9 +14,11 @@ constexpr size_t kProbes = 5;
 /// No first step is larger, and none of the others is larger than so many times the way so far, until the threshold was passed.
 constexpr double kFirst_px = 2.0, kGrowth = 3.0;
 /// A model's profile is no flatter and no steeper than the true one by more than this, where nothing else is known.
-constexpr double kSlopeRatio = 4.0;
+constexpr double kSlopeRatio = 3.0;
+/// A place farther off than so many times the first order's, and than this, is another feature of the surface.
+constexpr double kFar = 4.0, kFar_px = 2.0;
 /// Where the threshold was not passed no larger share of the way is extrapolated.
-constexpr double kLeft = 0.25;
+constexpr double kLeft = 0.2;
 /// A model's point farther from the true one is of another sheet.
 constexpr double kSheet_px = 8.0;
 /// Probes nearer to each other say nothing of a slope that floats could tell.
@@ -130,7 +132,8 @@ void finish(const Profile& profile, double reach_px, SolvedShift& solved) {
   solved.uncertainty_px = std::max(std::abs(place - profile.asked_px) + kBetween * std::abs(solved.shift_px), kPrecision_px);
   if (place <= profile.inner_wall_px || place >= profile.outer_wall_px) {
     solved.fault = ShiftFault::covered;
-  } else if (std::abs(place) > reach_px || (!crossing(profile) && left_px > std::max(kSame_px, kLeft * std::abs(place)))) {
+  } else if (std::abs(place) > std::min(reach_px, std::max(kFar_px, kFar * std::abs(solved.first_order_px))) ||
+             (!crossing(profile) && left_px > std::max(kSame_px, kLeft * std::abs(place)))) {
     solved.fault = ShiftFault::turns_back;
   }
 }

@@ -19,7 +19,7 @@ constexpr double kCreaseShare = 0.25;
 // Normals are not wrong by more than this.
 constexpr double kMostAngle = 0.5;
 // Constants of ladders hold to this factor, both ways, over the scenes and cages that were tried (docs/accuracy.md).
-constexpr double kNormalSpread = 4.0;
+constexpr double kNormalSpread = 3.0;
 
 /// The distance that 95 % of the length keep to; 0 of nothing.
 double upper_part(std::vector<WeightedValue> values) {
@@ -58,10 +58,13 @@ struct Expectation {
   double size = 0.0, threshold = 0.0;
 };
 
-/// A mesh's vertices and a grid's values hold creases as well as their edges run along them: a mesh's do, a grid's do not.
+/// A chord's distance from its arc. Where the surface bends within an edge or voxel a mesh has vertices on the bend, and is off by no more
+/// than its radius; a grid cuts the corner, as at a crease. A mesh's edges run along creases, a grid's do not.
 double position_error(const Expectation& of, const BorderPlace& place, double factor) {
-  if (std::isfinite(place.curvature)) return factor * place.px_per_unit * place.curvature * of.size * of.size / 8.0;
-  return of.ladder.by_level ? 0.0 : factor * place.px_per_unit * kCreaseShare * of.size;
+  const double cut = of.ladder.by_level ? 0.0 : kCreaseShare * of.size;
+  if (!std::isfinite(place.curvature)) return factor * place.px_per_unit * cut;
+  const double chord = place.curvature * of.size * of.size / 8.0, most = of.ladder.by_level ? 1.0 / place.curvature : cut;
+  return factor * place.px_per_unit * std::min(chord, most);
 }
 
 /// Of the normal, radians. Where the radial curvature passes through 0 its change along the border says how the surface bends.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/curves/border_bands.h"
 #include "raymarch/curves/border_match.h"
 #include "raymarch/metric.h"
 #include "sdf/quantile.h"
@@ -13,42 +14,8 @@ namespace {
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The borders of one picture, as what lies beside each other there.
-class Neighbours {
- public:
-  explicit Neighbours(const BorderCurves& curves) : silhouettes_(curves, CurveKind::silhouette), all_(curves, {}) {}
-
-  /// How wide the band of ink is that an inner border bounds at a sample: where the other side has none, its borders are off by that much.
-  /// At the tips of wedges it goes to nothing.
-  double ink_px(const CurveSample& sample, double reach) const {
-    if (sample.kind == CurveKind::silhouette) return kInfinity;
-    const std::optional<NearestPoint> nearest = silhouettes_.nearest(sample.px, 0, reach);
-    return std::min(nearest ? nearest->distance_px : kInfinity, across(sample, reach, 1.0));
-  }
-  /// ... and how wide what is clear beside it, up to the next band.
-  double clear_px(const CurveSample& sample, double reach) const {
-    return sample.kind == CurveKind::silhouette ? kInfinity : across(sample, reach, -1.0);
-  }
-  /// How wide the strip of sheet is between a silhouette of the other picture and one here that faces the same way: a fold that only one of
-  /// them shows is wrong on that strip alone.
-  double fold_px(const CurveSample& sample, double reach) const {
-    if (sample.kind != CurveKind::silhouette) return kInfinity;
-    const std::optional<NearestPoint> nearest = silhouettes_.nearest(sample.px, sample.object, reach, sample.outward);
-    return nearest ? nearest->distance_px : kInfinity;
-  }
-
- private:
-  /// To the next border that faces the other way, if that lies on the `inward` (1) or outward (-1) side.
-  double across(const CurveSample& sample, double reach, double inward) const {
-    const std::optional<Meeting> opposite = all_.meeting(sample.px, -sample.outward, 0, reach);
-    return opposite && inward * opposite->along_px >= 0.0 ? std::abs(opposite->along_px) : kInfinity;
-  }
-
-  CurveIndex silhouettes_, all_;
-};
-
 /// A border that moved inwards may have lost its band, one that moved outwards may have closed a gap; what has no partner, either.
-double error_px(const MatchedSample& sample, const Neighbours& beside, const Neighbours& in_model, double reach) {
+double error_px(const MatchedSample& sample, const BorderBands& beside, const BorderBands& in_model, double reach) {
   const std::optional<double> moved = sample.displacement_px;
   double error = moved ? std::abs(*moved) : in_model.fold_px(sample.at, reach);
   if (!moved || *moved < 0.0) error = std::min(error, beside.ink_px(sample.at, reach));
@@ -85,7 +52,7 @@ void add_true(const MatchedSample& sample, double error, Errors& errors) {
 Errors errors_of(const BorderCurves& truth, const BorderCurves& measured, const Camera& camera) {
   const double reach = search_reach_px(camera);
   const BorderMatch match = match_borders(truth, measured, {}, camera);
-  const Neighbours in_truth(truth), in_model(measured);
+  const BorderBands in_truth(truth), in_model(measured);
   Errors errors;
   for (const MatchedSample& sample : match.truth) {
     if (sample.inside) add_true(sample, error_px(sample, in_truth, in_model, reach), errors);

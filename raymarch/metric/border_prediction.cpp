@@ -6,12 +6,13 @@
 #include "raymarch/border/contour_distance.h"
 #include "raymarch/curves/border_match.h"
 #include "raymarch/curves/border_width.h"
+#include "raymarch/metric/solved_shift.h"
 
 namespace limn {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-/// The theory is of first order: larger displacements are not held against it.
+/// Larger displacements are not held against the theory place by place.
 constexpr double kSmall_px = 2.0;
 constexpr double kFloor_px = 0.01;
 
@@ -91,45 +92,87 @@ double share_within_quarter(const std::vector<Pair>& pairs) {
   return small > 0.0 ? good / small : kNothing;
 }
 
-/// How far, along the border's normal, the border moves for each radian of normal error, px.
-double displacement_per_radian(const Camera& camera, const CurveSample& sample, const TruthPoint& point) {
-  const double z = -glm::dot(point.position - camera.eye, camera.world_from_camera[2]);
-  const SeenPoint seen = seen_point(camera, sample.px.x, sample.px.y, z, point.normal);
-  const glm::dvec2 motion = image_motion(camera, seen);
-  const double turn = point.radial_curvature + point.n_dot_v / seen.distance;
-  return glm::dot(glm::dvec2(motion.x, -motion.y), sample.outward) / turn;
+/// A line for each sample whose curvature the truth knows, and which sample it is of.
+struct Lines {
+  std::vector<ShiftLine> lines{};
+  std::vector<size_t> samples{};
+};
+
+Lines lines_across(const std::vector<MatchedSample>& samples, const BorderCurves& truth, const Camera& camera) {
+  Lines found;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const CurveSample& sample = samples[i].at;
+    const double px_per_radian = displacement_per_radian(camera, truth, sample);
+    if (!std::isfinite(px_per_radian)) continue;
+    const TruthPoint point = truth_at(truth, sample, camera);
+    const double depth = -glm::dot(point.position - camera.eye, camera.world_from_camera[2]);
+    found.lines.push_back(
+        {sample.px, sample.outward, point.position, pixels_per_unit_at(camera, depth), sample.object, point.n_dot_v, px_per_radian});
+    found.samples.push_back(i);
+  }
+  return found;
+}
+
+/// Root mean squares over what was predicted and measured.
+struct ShiftSums {
+  double length = 0.0, normal_error = 0.0, first_order = 0.0, low = 0.0, high = 0.0;
+
+  void add(double length_px, const SolvedShift& shift) {
+    const auto square = [](double x) { return x * x; };
+    const double moved = std::abs(shift.shift_px);
+    length += length_px;
+    normal_error += length_px * square(shift.normal_error);
+    first_order += length_px * square(shift.first_order_px);
+    low += length_px * square(std::max(0.0, moved - shift.uncertainty_px));
+    high += length_px * square(moved + shift.uncertainty_px);
+  }
+  double root_mean(double sum) const { return length > 0.0 ? std::sqrt(sum / length) : kNothing; }
+};
+
+/// The share of the border where each assumption fails.
+void count_faults(const std::vector<MatchedSample>& samples, const Lines& across, const std::vector<SolvedShift>& shifts,
+                  DisplacementPrediction& result) {
+  const double length = length_of(samples);
+  if (!(length > 0.0)) return;
+  result.outside = result.ends = result.turns_back = 0.0;
+  for (size_t k = 0; k < shifts.size(); ++k) {
+    const double share = samples[across.samples[k]].at.weight_px / length;
+    if (shifts[k].fault == ShiftFault::outside) result.outside += share;
+    if (shifts[k].fault == ShiftFault::covered) result.ends += share;
+    if (shifts[k].fault == ShiftFault::turns_back) result.turns_back += share;
+  }
 }
 
 DisplacementPrediction predict_displacement(const SceneModel& model, const Camera& camera, const BorderTruth& truth,
                                             const BorderCurves& curves) {
   const std::vector<MatchedSample> samples = matched_samples(truth, curves, CurveKind::inner, camera);
-  std::vector<glm::dvec2> points;
-  for (const MatchedSample& sample : samples) points.push_back(sample.at.px);
-  std::vector<PointSample> seen(points.size());
-  sample_points(model, camera, points, seen);
+  const Lines across = lines_across(samples, truth.curves, camera);
+  const std::vector<SolvedShift> shifts = solve_shifts(model, camera, across.lines, search_reach_px(camera));
   std::vector<Pair> pairs;
-  double squares = 0.0;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    const CurveSample& sample = samples[i].at;
-    if (seen[i].status != HitStatus::hit || seen[i].id != sample.object) continue;
-    const TruthPoint point = truth_at(truth.curves, sample, camera);
-    const double eps = std::acos(std::clamp(double{seen[i].n_dot_v}, -1.0, 1.0)) - std::acos(std::clamp(point.n_dot_v, -1.0, 1.0));
-    const double predicted = eps * displacement_per_radian(camera, sample, point);
-    if (!samples[i].displacement_px || !std::isfinite(predicted)) continue;
-    pairs.push_back({sample.weight_px, predicted, *samples[i].displacement_px});
-    squares += sample.weight_px * eps * eps;
+  ShiftSums sums;
+  for (size_t k = 0; k < shifts.size(); ++k) {
+    const MatchedSample& sample = samples[across.samples[k]];
+    if (shifts[k].fault != ShiftFault::none || !sample.displacement_px) continue;
+    pairs.push_back({sample.at.weight_px, shifts[k].shift_px, *sample.displacement_px});
+    sums.add(sample.at.weight_px, shifts[k]);
   }
   const Moments all = moments(pairs);
-  return {static_cast<int>(pairs.size()),
-          samples.empty() ? kNothing : all.length / length_of(samples),
-          all.length > 0.0 ? std::sqrt(squares / all.length) : kNothing,
-          all.predicted_mean,
-          all.measured_mean,
-          all.predicted_rms,
-          all.measured_rms,
-          all.error_rms,
-          all.correlation,
-          share_within_quarter(pairs)};
+  DisplacementPrediction result;
+  result.samples = static_cast<int>(pairs.size());
+  if (!samples.empty()) result.covered = all.length / length_of(samples);
+  count_faults(samples, across, shifts, result);
+  result.normal_error_rms = sums.root_mean(sums.normal_error);
+  result.first_order_rms_px = sums.root_mean(sums.first_order);
+  result.low_px = sums.root_mean(sums.low);
+  result.high_px = sums.root_mean(sums.high);
+  result.predicted_mean_px = all.predicted_mean;
+  result.measured_mean_px = all.measured_mean;
+  result.predicted_rms_px = all.predicted_rms;
+  result.measured_rms_px = all.measured_rms;
+  result.error_rms_px = all.error_rms;
+  result.correlation = all.correlation;
+  result.within_quarter = share_within_quarter(pairs);
+  return result;
 }
 
 /// Pixels for each radian about the eye, at an image point and in a direction of the image.
@@ -195,6 +238,15 @@ WidthPrediction predict_width(const Camera& camera, const BorderTruth& truth, co
 }
 
 }  // namespace
+
+double displacement_per_radian(const Camera& camera, const BorderCurves& truth, const CurveSample& sample) {
+  const TruthPoint point = truth_at(truth, sample, camera);
+  const double z = -glm::dot(point.position - camera.eye, camera.world_from_camera[2]);
+  const SeenPoint seen = seen_point(camera, sample.px.x, sample.px.y, z, point.normal);
+  const glm::dvec2 motion = image_motion(camera, seen);
+  const double turn = point.radial_curvature + point.n_dot_v / seen.distance;
+  return glm::dot(glm::dvec2(motion.x, -motion.y), sample.outward) / turn;
+}
 
 BorderPrediction predict_border(const SceneModel& model, const Camera& camera, const BorderTruth& truth, const BorderCurves& curves) {
   return {predict_displacement(model, camera, truth, curves), predict_width(camera, truth, curves)};

@@ -1,26 +1,36 @@
 #pragma once
 // What theory says of a model's border before it is measured: how far a wrong normal moves it, and how wide curvature makes it.
 
+#include <limits>
+
+#include "raymarch/curves/curve_geometry.h"
 #include "raymarch/truth.h"
 
 namespace limn {
 
-/// A model's normal error eps (in the plane of N and V, positive: N.V too low) moves the inner border by s c eps / kr, seen in parallel
-/// (c the threshold, s px per world unit, kr the radial curvature): N.V changes by sin (kr + c / d) for each world unit towards the eye
-/// along the surface, d the distance to the eye, because the view turns too; the step's image is taken along the border's normal.
-/// Where normals jump from cell to cell (a level set's `cell` gradient) the border runs along the jumps. With N.V right in the middle of a
-/// cell of width w, and that middle at u <= w/2 from the true border, theory says u and the border goes w/2 - u the same way: over all u
-/// both are spread evenly up to w/2, so the root mean squares agree and the places do not (correlation 1/2).
+/// A model's normal error eps (in the plane of N and V, positive: N.V too low) moves the inner border by s c eps / kr to first order, seen
+/// in parallel (c the threshold, s px per world unit, kr the radial curvature): N.V changes by sin (kr + c / d) for each world unit towards
+/// the eye along the surface, d the distance to the eye, because the view turns too; the step's image is taken along the border's normal.
+/// Where kr is small against the displacement N.V bends on the way, and eps changes: the border lies where the changed N.V meets c, which
+/// is solved for (raymarch/metric/solved_shift.h). Where there is no such place, the assumption that fails is counted instead.
+/// Where normals jump from cell to cell (a level set's `cell` gradient) the border runs along the jumps.
 /// Lengths are weighted; NaN where nothing could be compared.
 struct DisplacementPrediction {
-  int samples = 0;                ///< Each px of the true inner border, both predicted and measured.
-  double covered = 0.0;           ///< Their share of it. Creases have no curvature, a vanished border no measurement.
-  double normal_error_rms = 0.0;  ///< Of eps, radians.
-  double predicted_mean_px = 0.0, measured_mean_px = 0.0;
-  double predicted_rms_px = 0.0, measured_rms_px = 0.0;
-  double error_rms_px = 0.0;    ///< Of predicted less measured.
-  double correlation = 0.0;     ///< Pearson's.
-  double within_quarter = 0.0;  ///< Share predicted to 25 % (or 0.01 px), of those measured below 2 px.
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+  int samples = 0;                  ///< Each px of the true inner border, both predicted and measured: what all means below are over.
+  double covered = kNone;           ///< Their share of it. Creases have no curvature, a vanished border no measurement.
+  double outside = kNone,           ///< Share of it without a prediction, because the model shows another sheet there, or none;
+      ends = kNone,                 ///< because the surface ends or is covered before N.V meets the threshold;
+      turns_back = kNone;           ///< because N.V turns back before it meets it, or gets there too slowly to be told.
+  double normal_error_rms = kNone;  ///< Of eps, radians.
+  double predicted_mean_px = kNone, measured_mean_px = kNone;
+  double predicted_rms_px = kNone, measured_rms_px = kNone;
+  double low_px = kNone, high_px = kNone;  ///< What measured_rms_px is expected between: all shifts less, or more, by their uncertainty.
+  double first_order_rms_px = kNone;       ///< Of eps s c / kr.
+  double error_rms_px = kNone;             ///< Of predicted less measured.
+  double correlation = kNone;              ///< Pearson's.
+  double within_quarter = kNone;           ///< Share predicted to 25 % (or 0.01 px), of those measured below 2 px.
 };
 
 /// Ink of N.V < c is c^2 / (2 kr) wide in the world, exactly (1 - sqrt(1 - c^2)) / kr on the osculating circle (Kindlmann et al. 2003).
@@ -39,6 +49,10 @@ struct BorderPrediction {
   DisplacementPrediction displacement{};
   WidthPrediction width{};
 };
+
+/// How far the inner border moves along `sample.outward` for each radian by which N.V is too low, to first order, px; NaN where `truth`
+/// knows no curvature. `sample` is one of `truth`'s.
+double displacement_per_radian(const Camera& camera, const BorderCurves& truth, const CurveSample& sample);
 
 /// Compares with what was measured: `curves` of `model` (raymarch/measured_border.h). The model is asked for its normals at the truth's
 /// image points. `truth` must know positions, normals and curvatures; where it does not, nothing is predicted.

@@ -115,7 +115,7 @@ function normalChart({ cells, want, size, theme }) {
     about.lines.splice(1, 0, ["normal error", unitText(values[i][0], "deg")], ["predicted", predicted < 0 ? "–" : unitText(cell[5][predicted], "px")]);
     return { name: model.name, series: study.series[model.series].name, x: x.shown(values[i][0]), y: y.shown(values[i][1]), tip: about };
   });
-  const line = slope ? `Dashed: predicted, s c ε / kr, ${unitText(slope.median, "px")} for a degree in the median; the band holds all cells.`
+  const line = slope ? `Dashed: predicted from the normals, ${unitText(slope.median, "px")} for a degree in the median; the band holds all cells.`
     : "No cell has a predicted displacement, so there is no line.";
   return { spec: normalSpec(points, slope, x, y, size, theme.series, theme, study.floors[metric.name]), count: points.length, items: [], note: clampNote(x) + clampNote(y),
     caption: `Each point a model in a view. ${line}` };

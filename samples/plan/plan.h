@@ -54,12 +54,17 @@ struct BorderErrors {
   double of(PlanMetric metric) const;  ///< `border`: the larger of the two, so that either keeps to it; `silhouette`: that one.
 };
 
+/// Errors that theory expects of a model, and the bounds that they are expected between.
+struct PredictedErrors {
+  BorderErrors expected{}, low{}, high{};
+};
+
 /// One rung, built and measured.
 struct PlanTrial {
   size_t ladder = 0,                                      ///< Index into PlanAnswer::ladders.
       rung = 0;                                           ///< Index into Ladder::rungs.
-  BorderErrors predicted{},                               ///< By predict_errors(), the worst view's.
-      measured{};                                         ///< By measure_errors().
+  PredictedErrors predicted{};                            ///< By predict_errors(), the worst view's.
+  BorderErrors measured{};                                ///< By measure_errors().
   std::int64_t bytes = 0;                                 ///< Of the model.
   double build_ms = 0.0,                                  ///< Wall clock.
       trace_ms = 0.0;                                     ///< Mean over the views.
@@ -91,9 +96,6 @@ struct PlanAnswer {
 /// The ladders that a scene can climb; empty where nothing of it has a resolution to choose (a mesh that is no cage). `notes` is told what
 /// was left out, and why; may be null.
 std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes = nullptr);
-
-/// What theory expects of a rung in one view, from curvature, pixel scale and threshold along the true border.
-BorderErrors predict_errors(const Ladder& ladder, size_t rung, const PlanView& view, double threshold);
 
 /// What the engine measures for a plan: border_error.
 const Metric& plan_metric();

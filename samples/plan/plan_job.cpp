@@ -90,7 +90,9 @@ Json trial_json(const PlanAnswer& answer, const PlanTrial& trial, PlanMetric met
   const Ladder& ladder = answer.ladders[trial.ladder];
   Json json = {{"surface", ladder.settings.kind},
                {"parameters", parameters_json(ladder, trial)},
-               {"predicted_px", number_or_null(trial.predicted.of(metric))},
+               {"predicted_px", number_or_null(trial.predicted.expected.of(metric))},
+               {"predicted_low_px", number_or_null(trial.predicted.low.of(metric))},
+               {"predicted_high_px", number_or_null(trial.predicted.high.of(metric))},
                {"measured_px", number_or_null(trial.measured.of(metric))},
                {"silhouette_px", number_or_null(trial.measured.silhouette_px)},
                {"inner_px", number_or_null(trial.measured.inner_px)},
@@ -159,7 +161,7 @@ Json plan_json(const PlanJob& job) {
   if (answer.chosen) {
     const PlanTrial& chosen = answer.trials[*answer.chosen];
     json["chosen"] = trial_json(answer, chosen, metric);
-    json["predicted_px"] = number_or_null(chosen.predicted.of(metric));
+    json["predicted_px"] = number_or_null(chosen.predicted.expected.of(metric));
     json["measured_px"] = number_or_null(chosen.measured.of(metric));
     json["bytes"] = chosen.bytes;
     json["time_ms"] = chosen.time_ms();

@@ -10,6 +10,10 @@ namespace {
 
 std::string px(double value) { return std::isfinite(value) ? fmt::format("{:.2g} px", value) : std::string("more than can be measured"); }
 
+std::string between(double low_px, double high_px) {
+  return std::isfinite(low_px) && std::isfinite(high_px) ? fmt::format(" ({:.2g} to {:.2g} px)", low_px, high_px) : std::string();
+}
+
 std::string model_words(const PlanAnswer& answer, const PlanTrial& trial) {
   const Ladder& ladder = answer.ladders[trial.ladder];
   return ladder.title + " at " + ladder.words_at(trial.rung);
@@ -31,9 +35,11 @@ std::string budget_words(const PlanSettings& settings) {
 
 void add_choice(const PlanAnswer& answer, const PlanSettings& settings, std::vector<std::string>& out) {
   const PlanTrial& chosen = answer.trials[*answer.chosen];
-  out.push_back(fmt::format("{} is the cheapest that puts 95 % of the {} within {}{}: measured {}, predicted {}; {}.",
+  out.push_back(fmt::format("{} is the cheapest that puts 95 % of the {} within {}{}: measured {}, predicted {}{}; {}.",
                             model_words(answer, chosen), what(settings.metric), px(settings.tolerance_px), budget_words(settings),
-                            px(chosen.measured.of(settings.metric)), px(chosen.predicted.of(settings.metric)), cost_words(chosen)));
+                            px(chosen.measured.of(settings.metric)), px(chosen.predicted.expected.of(settings.metric)),
+                            between(chosen.predicted.low.of(settings.metric), chosen.predicted.high.of(settings.metric)),
+                            cost_words(chosen)));
   if (answer.coarser) {
     const PlanTrial& coarser = answer.trials[*answer.coarser];
     out.push_back(fmt::format("The next coarser one, {}, is {} off.", answer.ladders[coarser.ladder].words_at(coarser.rung),

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "samples/plan/climb.h"
+#include "samples/plan/predict.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -21,17 +22,20 @@ struct Search {
   ExperimentRun run;
   PlanTrial* under_way = nullptr;  ///< What the engine measures goes there.
   PlanAnswer answer{};
-  std::vector<Climb> climbs{};  ///< Of answer.ladders.
+  std::vector<Climb> climbs{};                     ///< Of answer.ladders.
+  std::vector<std::vector<BorderPlace>> places{};  ///< Of each view.
 };
 
 BorderErrors worst(const BorderErrors& a, const BorderErrors& b) {
   return {std::max(a.silhouette_px, b.silhouette_px), std::max(a.inner_px, b.inner_px)};
 }
 
-BorderErrors predicted(const Search& search, size_t ladder, size_t rung) {
-  BorderErrors errors;
-  for (const PlanView& view : search.views)
-    errors = worst(errors, predict_errors(search.answer.ladders[ladder], rung, view, search.settings.threshold));
+PredictedErrors predicted(const Search& search, size_t ladder, size_t rung) {
+  PredictedErrors errors;
+  for (const std::vector<BorderPlace>& places : search.places) {
+    const PredictedErrors one = predict_errors(search.answer.ladders[ladder], rung, places, search.settings.threshold);
+    errors = {worst(errors.expected, one.expected), worst(errors.low, one.low), worst(errors.high, one.high)};
+  }
   return errors;
 }
 
@@ -127,7 +131,7 @@ std::vector<Climb> climbs_of(const Search& search) {
     climb.limit = static_cast<int>(climb.ladder->rungs.size());
     climb.guess_ms = climb.ladder->guess_ms;
     for (size_t rung = 0; rung < climb.ladder->rungs.size(); ++rung)
-      climb.theory_px.push_back(predicted(search, k, rung).of(search.settings.metric));
+      climb.theory_px.push_back(predicted(search, k, rung).expected.of(search.settings.metric));
     climbs.push_back(std::move(climb));
   }
   return climbs;
@@ -213,6 +217,7 @@ void choose(Search& search) {
   if (climbed.of_file && !trial_at(answer, chosen.ladder, last)) answer.trials.push_back(try_rung(search, chosen.ladder, last));
   if (chosen.rung > 0) answer.coarser = trial_at(answer, chosen.ladder, chosen.rung - 1);
   answer.finest = finest_of(answer, chosen, answer.finest_was_built);
+  answer.finest.predicted = predicted(search, chosen.ladder, last);
   for (size_t k = 0; k < answer.trials.size(); ++k) {
     const PlanTrial& trial = answer.trials[k];
     if (trial.ladder != chosen.ladder || trial.rung >= chosen.rung || !trial.failed.empty()) continue;
@@ -236,6 +241,7 @@ PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, con
                       "has no resolution to choose: it is a model already",
                       "a scene of shapes or subdivision cages (scheme = catmark makes a mesh a cage)"});
   }
+  for (const PlanView& view : views) search.places.push_back(border_places(view));
   search.climbs = climbs_of(search);
   for (const PlanTrial& trial : known) {
     if (!trial_at(search.answer, trial.ladder, trial.rung)) take(search, trial);

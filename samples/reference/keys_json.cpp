@@ -110,6 +110,8 @@ constexpr DocumentedKey kJsonKeys[] = {
     {"plan", "chosen.surface", "", "representation"},
     {"plan", "chosen.parameters.*", "", "its settings"},
     {"plan", "chosen.predicted_px", "px", "95 % of the border are expected within"},
+    {"plan", "chosen.predicted_low_px", "px", "that error is expected to be no less"},
+    {"plan", "chosen.predicted_high_px", "px", "that error is expected to be no more"},
     {"plan", "chosen.measured_px", "px", "95 % of the border lie within (the metric border_error)"},
     {"plan", "chosen.silhouette_px", "px", "the same of the silhouette alone"},
     {"plan", "chosen.inner_px", "px", "the same of the inner border"},

@@ -48,7 +48,7 @@ void draw_prediction(ChartCanvas& canvas, const ChartFrame& frame, const Predict
 void draw_prediction_legend(ChartCanvas& canvas, const ChartFrame& frame, const PredictedSlope& slope) {
   const double left = frame.plot.x + frame.plot.width + 22.0, y = frame.plot.y + frame.plot.height - 64.0;
   canvas.line({{left, y - 4.0}, {left + 26.0, y - 4.0}}, {0.25, 0.25, 0.25}, 1.8, true);
-  canvas.text({left + 34.0, y}, "predicted: s c eps / kr");
+  canvas.text({left + 34.0, y}, "predicted from the normals");
   const std::string words = fmt::format("{:.2g} px for a degree in the median; the grey band holds all cells, {:.2g} to {:.2g}",
                                         slope.median, slope.low, slope.high);
   double line_y = y + 17.0;

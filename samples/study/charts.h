@@ -23,7 +23,7 @@ std::vector<StudyChart> study_charts(const ReportData& data);
 /// The models whose views are worth a line each: those of the fronts, and each series' finest; at most `most`, best first.
 std::vector<ModelPoint> models_of_views(const ReportData& data, size_t drawing, const std::string& metric, size_t most = 16);
 
-/// Displacement for a normal error of one degree as the theory has it, s c eps / kr, over the cells: smallest, median, largest, in px.
+/// Displacement for a normal error of one degree as predicted, over the cells: smallest, median, largest, in px.
 struct PredictedSlope {
   double low = 0.0, median = 0.0, high = 0.0;
 };

@@ -25,6 +25,9 @@ std::string capital(std::string text) {
   return text;
 }
 
+/// What the measured displacement is expected between.
+constexpr const char *kPredictedLow = "prediction_displacement_low", *kPredictedHigh = "prediction_displacement_high";
+
 std::string first_sentence(const StudyHead& head, const ReportData& data) {
   const size_t failed =
       static_cast<size_t>(std::count_if(data.cells.begin(), data.cells.end(), [](const ReportCell& cell) { return !cell.failed.empty(); }));
@@ -178,16 +181,29 @@ struct Words {
     if (predicted.empty() || measured.empty()) return;
     const double least = data.floor_of(measured).px();
     std::vector<double> wrong;
+    size_t bounded = 0, inside = 0;
     for (const ReportCell& cell : data.cells) {
-      const auto p = cell.values.find(predicted), m = cell.values.find(measured);
-      if (cell.drawing != data.main_drawing || p == cell.values.end() || m == cell.values.end()) continue;
-      if (m->second > least && m->second < 2.0 && std::isfinite(p->second)) wrong.push_back(std::abs(p->second / m->second - 1.0));
+      const auto value = [&](const std::string& name) {
+        const auto found = cell.values.find(name);
+        return found == cell.values.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
+      };
+      const double p = value(predicted), m = value(measured), low = value(kPredictedLow), high = value(kPredictedHigh);
+      if (cell.drawing != data.main_drawing || !(m > least && m < 2.0) || !std::isfinite(p)) continue;
+      wrong.push_back(std::abs(p / m - 1.0));
+      if (!(low <= high)) continue;
+      ++bounded;
+      inside += m >= low && m <= high;
     }
     if (wrong.empty()) return;
     const size_t count = wrong.size();
-    out.push_back(fmt::format(
-        "What theory predicts from the normals' error, s c eps / kr, is off by {:.0f} % in the median over {} of less than 2 px.",
-        100.0 * upper_median(std::move(wrong)), count_of(count, "displacement", "displacements")));
+    std::string text =
+        fmt::format("What theory predicts from the model's normals is off by {:.0f} % in the median over {} of less than 2 px",
+                    100.0 * upper_median(std::move(wrong)), count_of(count, "displacement", "displacements"));
+    if (bounded > 0)
+      text += fmt::format("; {:.0f} % of {} lie within the bounds that it states",
+                          100.0 * static_cast<double>(inside) / static_cast<double>(bounded),
+                          bounded == count ? std::string("them") : std::to_string(bounded) + " with bounds");
+    out.push_back(text + ".");
   }
 
   void say_failures() {

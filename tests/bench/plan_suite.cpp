@@ -97,7 +97,7 @@ nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
   if (tolerance_px == 0.5 && sums.example.empty()) sums.example = ladder.title + ", " + ladder.words_at(chosen.rung);
   row["chosen"] = ladder.title + ", " + ladder.words_at(chosen.rung);
   row["measured_px"] = chosen.measured.of(settings.metric);
-  row["predicted_px"] = chosen.predicted.of(settings.metric);
+  row["predicted_px"] = chosen.predicted.expected.of(settings.metric);
   row["share_beyond"] = share;
   row["share_beyond_of_all"] = beyond(model, true);
   row["coarser_share_beyond"] = coarser ? nlohmann::json(*coarser) : nlohmann::json(nullptr);

@@ -193,10 +193,21 @@ class Sentences:
         predicted, compared = (self.page.data["roles"][role] for role in ("predicted", "compared"))
         if not (self.choices and predicted and compared):
             return []
-        pairs = self.pairs(predicted, compared)
-        pairs = pairs[(pairs[:, 1] > self.study.floor(compared).px) & (pairs[:, 1] < 2.0)]
-        wrong = np.sort(np.abs(pairs[:, 0] / pairs[:, 1] - 1.0))
-        return [f"{100.0 * wrong[len(wrong) // 2]:.0f} %", str(len(wrong)), "less than 2 px"] if len(wrong) else []
+        least = self.study.floor(compared).px
+        wrong, inside = [], []
+        for cell in self.study.cells_of(self.drawing):
+            names = (predicted, compared, "prediction_displacement_low", "prediction_displacement_high")
+            expected, measured, low, high = (cell.values.get(name, math.nan) for name in names)
+            if not (least < measured < 2.0 and math.isfinite(expected)):
+                continue
+            wrong.append(abs(expected / measured - 1.0))
+            if low <= high:
+                inside.append(low <= measured <= high)
+        if not wrong:
+            return []
+        share = [f"{100.0 * sum(inside) / len(inside):.0f} %"] if inside else []
+        some = [str(len(inside))] if inside and len(inside) < len(wrong) else []
+        return [f"{100.0 * sorted(wrong)[len(wrong) // 2]:.0f} %", str(len(wrong)), "less than 2 px", *share, *some]
 
     def failures(self):
         if not self.failed:

@@ -14,11 +14,12 @@ constexpr size_t kProbes = 5;
 /// No first step is larger, and none of the others is larger than so many times the way so far, until the threshold was passed.
 constexpr double kFirst_px = 2.0, kGrowth = 3.0;
 /// A model's profile is no flatter and no steeper than the true one by more than this, where nothing else is known.
-constexpr double kSlopeRatio = 3.0;
-/// A place farther off than so many times the first order's, and than this, is another feature of the surface.
+constexpr double kSlopeRatio = 4.0;
+/// A place farther off than so many times the first order's, than this, and than a voxel, within which normals may jump, is another
+/// feature's.
 constexpr double kFar = 4.0, kFar_px = 2.0;
 /// Where the threshold was not passed no larger share of the way is extrapolated.
-constexpr double kLeft = 0.2;
+constexpr double kLeft = 0.25;
 /// A model's point farther from the true one is of another sheet.
 constexpr double kSheet_px = 8.0;
 /// Probes nearer to each other say nothing of a slope that floats could tell.
@@ -126,14 +127,16 @@ void take(const ShiftLine& line, const PointSample& seen, Profile& profile) {
   }
 }
 
-void finish(const Profile& profile, double reach_px, SolvedShift& solved) {
+/// `voxel_px`: of the model; 0 without voxels.
+void finish(const Profile& profile, double voxel_px, double reach_px, SolvedShift& solved) {
   const double place = estimate(profile), left_px = std::abs(place - profile.last.along_px);
   solved.shift_px = std::clamp(place, std::max(-reach_px, profile.inner_wall_px), std::min(reach_px, profile.outer_wall_px));
   solved.uncertainty_px = std::max(std::abs(place - profile.asked_px) + kBetween * std::abs(solved.shift_px), kPrecision_px);
+  const double far_px = std::min(reach_px, std::max({kFar_px, kFar * std::abs(solved.first_order_px), voxel_px}));
+  const bool extrapolated = !crossing(profile) && left_px > std::max(kSame_px, kLeft * std::abs(place));
   if (place <= profile.inner_wall_px || place >= profile.outer_wall_px) {
     solved.fault = ShiftFault::covered;
-  } else if (std::abs(place) > std::min(reach_px, std::max(kFar_px, kFar * std::abs(solved.first_order_px))) ||
-             (!crossing(profile) && left_px > std::max(kSame_px, kLeft * std::abs(place)))) {
+  } else if (std::abs(place) > far_px || extrapolated) {
     solved.fault = ShiftFault::turns_back;
   }
 }
@@ -158,8 +161,12 @@ std::vector<SolvedShift> solve_shifts(const SceneModel& model, const Camera& cam
     }
   }
   for (size_t i = 0; i < lines.size(); ++i) {
-    if (begun[i]) finish(profiles[i], reach_px, solved[i]);
-    if (!begun[i]) solved[i].fault = ShiftFault::outside;
+    if (!begun[i]) {
+      solved[i].fault = ShiftFault::outside;
+      continue;
+    }
+    const double voxel = model.surfaces[static_cast<size_t>(lines[i].object - 1)].info.voxel_size;
+    finish(profiles[i], voxel * lines[i].px_per_unit, reach_px, solved[i]);
   }
   return solved;
 }

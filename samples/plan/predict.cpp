@@ -34,10 +34,13 @@ double curvature_change(const BorderPoint& a, const BorderPoint& b) {
   return length > 0.0 && std::isfinite(change) ? change / length : 0.0;
 }
 
+/// Of a border that has no slope any error moves it as far as it can go.
+double first_order_px(const BorderPlace& place, double angle) { return angle > 0.0 ? angle * place.px_per_radian : 0.0; }
+
 /// Outwards, where N.V rises: linearly, or, before another border that faces this one, as the parabola that comes back to the threshold
 /// there. Where it does not rise far enough the gap closes and all of it is wrong.
 double outward_shift(const BorderPlace& place, double angle) {
-  const double first_order = angle * place.px_per_radian, gap = place.clear_px;
+  const double first_order = first_order_px(place, angle), gap = place.clear_px;
   if (!std::isfinite(gap)) return std::min(first_order, place.reach_px);
   const double left = 1.0 - 4.0 * first_order / gap;
   return left > 0.0 ? 0.5 * gap * (1.0 - std::sqrt(left)) : gap;
@@ -45,7 +48,7 @@ double outward_shift(const BorderPlace& place, double angle) {
 
 /// Inwards, to the silhouette: the square of N.V falls to 0 linearly. A border that gets there is lost with its band of ink.
 double inward_shift(const BorderPlace& place, double angle, double threshold) {
-  const double first_order = angle * place.px_per_radian, band = place.ink_px;
+  const double first_order = first_order_px(place, angle), band = place.ink_px;
   const double sine = std::sqrt(1.0 - threshold * threshold), left = 1.0 - sine * angle / threshold;
   if (left <= 0.0) return std::isfinite(band) ? band : std::min(first_order, place.reach_px);
   const double to_silhouette = first_order * (1.0 + left) / 2.0;

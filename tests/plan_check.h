@@ -74,17 +74,19 @@ inline Asked ask(const SceneModel& model, const SceneModel& reference, const Pla
   return found;
 }
 
-/// Of the places of the true border that can be asked, the share that the model does not put within `tolerance_px`; the larger of
-/// silhouette's and inner border's. With `of_all` the share of all places, those that cannot be asked counting as right.
+/// Of the places of the true border that can be asked, silhouette and inner border together, the share that the model does not put within
+/// `tolerance_px`. With `of_all` the share of all places, those that cannot be asked counting as right.
 inline double share_beyond(const SceneModel& model, const SceneModel& reference, const PlanView& view, double threshold,
                            double tolerance_px, PlanMetric metric, bool of_all = false) {
-  double worst = 0.0;
+  Asked all;
   for (const CurveKind kind : {CurveKind::silhouette, CurveKind::inner}) {
     if (kind == CurveKind::inner && metric == PlanMetric::silhouette) continue;
     const Asked found = ask(model, reference, view, kind, threshold, tolerance_px);
-    worst = std::max(worst, of_all ? found.share_of_all() : found.share());
+    all.places += found.places;
+    all.asked += found.asked;
+    all.wrong += found.wrong;
   }
-  return worst;
+  return of_all ? all.share_of_all() : all.share();
 }
 
 /// A pair of rays between which a picture has a border, as it is closed in.

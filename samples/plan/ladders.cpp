@@ -155,9 +155,7 @@ std::string Ladder::words_at(size_t rung) const {
   return by_level ? fmt::format("level {}", rungs[rung]) : fmt::format("{} voxels", rungs[rung]);
 }
 
-double BorderErrors::of(PlanMetric metric) const {
-  return metric == PlanMetric::silhouette ? silhouette_px : std::max(silhouette_px, inner_px);
-}
+double BorderErrors::of(PlanMetric metric) const { return metric == PlanMetric::silhouette ? silhouette_px : border_px; }
 
 std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes) {
   std::vector<Ladder> ladders;

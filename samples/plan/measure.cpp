@@ -15,7 +15,7 @@ BorderErrors errors_of(std::span<const Measurement> measured) {
     }
     return 0.0;
   };
-  return {value("border_error_silhouette_p95"), value("border_error_inner_p95")};
+  return {value("border_error_silhouette_p95"), value("border_error_inner_p95"), value("border_error_p95")};
 }
 
 BorderErrors measure_errors(const SceneModel& model, const PlanView& view, double threshold, const ExecutionSettings& how,

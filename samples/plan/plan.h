@@ -50,8 +50,9 @@ struct Ladder {
 /// How far a border lies from truth: the distance that 95 % of it keep to, by the metric border_error. The worst over all views.
 struct BorderErrors {
   double silhouette_px = 0.0,          ///< Of the silhouette.
-      inner_px = 0.0;                  ///< Of the inner border.
-  double of(PlanMetric metric) const;  ///< `border`: the larger of the two, so that either keeps to it; `silhouette`: that one.
+      inner_px = 0.0,                  ///< Of the inner border.
+      border_px = 0.0;                 ///< Of both together: what studies and comparisons judge by.
+  double of(PlanMetric metric) const;  ///< `border`: of both; `silhouette`: of that one.
 };
 
 /// Errors that theory expects of a model, and the bounds that they are expected between.

@@ -91,7 +91,9 @@ BorderErrors errors_for(const Expectation& of, const std::vector<BorderPlace>& p
       inner.push_back({std::min(place.ink_px, position * sine + inward_shift(place, angle, of.threshold)), 0.5 * place.weight_px});
     }
   }
-  return {upper_part(std::move(silhouette)), upper_part(std::move(inner))};
+  std::vector<WeightedValue> both = silhouette;
+  both.insert(both.end(), inner.begin(), inner.end());
+  return {upper_part(std::move(silhouette)), upper_part(std::move(inner)), upper_part(std::move(both))};
 }
 
 }  // namespace

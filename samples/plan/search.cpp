@@ -27,7 +27,7 @@ struct Search {
 };
 
 BorderErrors worst(const BorderErrors& a, const BorderErrors& b) {
-  return {std::max(a.silhouette_px, b.silhouette_px), std::max(a.inner_px, b.inner_px)};
+  return {std::max(a.silhouette_px, b.silhouette_px), std::max(a.inner_px, b.inner_px), std::max(a.border_px, b.border_px)};
 }
 
 PredictedErrors predicted(const Search& search, size_t ladder, size_t rung) {

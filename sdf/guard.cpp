@@ -69,6 +69,7 @@ std::vector<std::string> helper_environment(const GuardLimits& limits) {
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
   std::vector<char*> result;
+  result.reserve(texts.size() + 1);
   for (std::string& text : texts) result.push_back(text.data());
   result.push_back(nullptr);
   return result;
@@ -223,7 +224,7 @@ fs::path find_helper(const std::string& name) {
 #endif
   std::string looked_in;
   for (const fs::path& folder : folders) {
-    const fs::path candidate = folder / name;
+    fs::path candidate = folder / name;
     if (::access(candidate.c_str(), is_module ? R_OK : X_OK) == 0) return candidate;
     looked_in += (looked_in.empty() ? "" : ", ") + folder.string();
   }

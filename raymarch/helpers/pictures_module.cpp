@@ -27,7 +27,7 @@ OIIO::TypeDesc type_of(PixelType type) {
   return OIIO::TypeDesc::FLOAT;
 }
 
-PixelType pixel_type(OIIO::TypeDesc type) {
+PixelType pixel_type(const OIIO::TypeDesc& type) {
   if (type == OIIO::TypeDesc::UINT32) return PixelType::whole;
   if (type == OIIO::TypeDesc::UINT8) return PixelType::byte;
   return type == OIIO::TypeDesc::HALF ? PixelType::half : PixelType::full;
@@ -75,7 +75,7 @@ std::string encode_png(const PictureHeader& header, const void* pixels, std::vec
   const auto output = OIIO::ImageOutput::create("png");
   if (!output) return OIIO::geterror();
   if (!output->set_ioproxy(&memory) || !output->open("memory.png", spec_of(header))) return output->geterror();
-  const std::string error = finish(*output, header, pixels);
+  std::string error = finish(*output, header, pixels);
   const auto* first = reinterpret_cast<const std::byte*>(bytes.data());
   encoded.assign(first, first + bytes.size());
   return error;

@@ -12,7 +12,6 @@ namespace limn {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A border that moved inwards may have lost its band, one that moved outwards may have closed a gap; what has no partner, either.
 double error_px(const MatchedSample& sample, const BorderBands& beside, const BorderBands& in_model, double reach) {

@@ -37,8 +37,8 @@ struct OptionText {
 };
 
 // One argument, handed to `read` as text, so that every complaint is ours: one line that says what is expected.
-CLI::Option* add(CLI::App& app, const OptionText& text, std::function<void(const std::string&)> read) {
-  CLI::Option* option = app.add_option_function<std::string>(text.flags, std::move(read), text.help);
+CLI::Option* add(CLI::App& app, const OptionText& text, const std::function<void(const std::string&)>& read) {
+  CLI::Option* option = app.add_option_function<std::string>(text.flags, read, text.help);
   option->type_name(text.value)->group(text.group)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   return option;
 }

@@ -135,6 +135,7 @@ void warn_of_empty(const std::vector<std::string>& reasons, int index, const Opt
   constexpr int kMost = 5;
   if (reasons.empty() || ++render.empty_pictures > kMost) return;
   std::vector<std::string> warnings;
+  warnings.reserve(reasons.size());
   for (const std::string& reason : reasons) {
     warnings.push_back(pictures_of(options) == 1 ? reason
                                                  : fmt::format("{} {}: {}", options.frames.frames > 1 ? "frame" : "view", index, reason));
@@ -167,6 +168,7 @@ std::vector<Camera> cameras_of(const Options& options, const SceneInput& input) 
   const Box box = bounds(input.scene);
   if (options.frames.frames > 1) return path_cameras(camera_of_view(settings, box, 0, 1), box, options.frames);
   std::vector<Camera> cameras;
+  cameras.reserve(static_cast<size_t>(options.spec.views));
   for (int view = 0; view < options.spec.views; ++view) cameras.push_back(camera_of_view(settings, box, view, options.spec.views));
   return cameras;
 }

@@ -64,7 +64,9 @@ std::vector<std::string> wrapped(const std::string& text, const TextStyle& style
   std::istringstream words(text);
   std::string line;
   for (std::string word; words >> word;) {
-    const std::string longer = line.empty() ? word : line + " " + word;
+    std::string longer = line;
+    if (!line.empty()) longer += " ";
+    longer += word;
     if (!line.empty() && text_width_px(longer, style) > width) {
       lines.push_back(line);
       line = word;

@@ -41,6 +41,7 @@ std::vector<ModelPoint> models_of_views(const ReportData& data, size_t drawing, 
     if (chosen.size() < most) chosen.insert(i);
   }
   std::vector<ModelPoint> out;
+  out.reserve(chosen.size());
   for (const size_t i : chosen) out.push_back(points[i]);
   std::stable_sort(out.begin(), out.end(), [](const ModelPoint& a, const ModelPoint& b) { return a.median < b.median; });
   return out;

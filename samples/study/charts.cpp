@@ -27,6 +27,7 @@ std::string axis_title(const ReportData& data, const std::string& metric) {
 
 std::vector<size_t> series_in(const ReportData& data, const std::vector<ModelPoint>& points) {
   std::vector<size_t> series;
+  series.reserve(points.size());
   for (const ModelPoint& point : points) series.push_back(data.models[point.model].series);
   std::sort(series.begin(), series.end());
   series.erase(std::unique(series.begin(), series.end()), series.end());

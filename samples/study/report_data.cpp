@@ -1,5 +1,7 @@
 #include "samples/study/report_data.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>

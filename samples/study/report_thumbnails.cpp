@@ -65,10 +65,11 @@ std::string thumbnails_html(const ReportData& data, const ReportThumbnails& thum
     const std::string numbers = fmt::format("{} off, view {}", error(one.error), one.view);
     html += fmt::format("<figure class=\"cell\" id=\"cell-{}-{}\" data-model=\"{}\" data-drawing=\"{}\">", one.model, one.drawing,
                         one.model, one.drawing);
-    html += fmt::format("<img width=\"{}\" height=\"{}\" loading=\"lazy\" alt=\"{}\" src=\"data:image/png;base64,{}\">", one.width,
-                        one.height, escaped(title + ", " + drawn + ": wrong ink in red, missing ink in blue; " + numbers), base64(one.png));
     html +=
-        "<figcaption><strong>" + escaped(title) + "</strong><br>" + escaped(drawn) + "<br>" + escaped(numbers) + "</figcaption></figure>\n";
+        fmt::format("<img width=\"{}\" height=\"{}\" loading=\"lazy\" alt=\"{}\" src=\"data:image/png;base64,{}\">", one.width, one.height,
+                    escaped(fmt::format("{}, {}: wrong ink in red, missing ink in blue; {}", title, drawn, numbers)), base64(one.png));
+    html += fmt::format("<figcaption><strong>{}</strong><br>{}<br>{}</figcaption></figure>\n", escaped(title), escaped(drawn),
+                        escaped(numbers));
   }
   return html + "</div>\n";
 }

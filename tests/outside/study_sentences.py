@@ -17,6 +17,10 @@ def short(value):
     return f"{value:,.0f}" if value >= 100.0 else f"{value:.2g}"
 
 
+def capital(text):
+    return text[:1].upper() + text[1:]
+
+
 def time_text(ms):
     return f"{ms:.1f} ms" if ms < 10.0 else f"{ms:.0f} ms" if ms < 1000.0 else f"{ms / 1e3:.2f} s"
 
@@ -44,7 +48,9 @@ class Sentences:
         self.nearest = min(self.choices, key=lambda point: point.median, default=None)
         self.best_known = smallest_of(may_be_quickest(self.right))
         self.failed = [cell.failed for cell in study.all_cells if cell.failed]
-        names = set(page.titles) | set(page.series) | set(page.drawings) | {study_names.resolution_text(s) for s in study.settings.values()}
+        # A sentence may begin with a model.
+        names = set(page.titles) | set(map(capital, page.titles)) | set(page.series) | set(page.drawings)
+        names |= {study_names.resolution_text(settings) for settings in study.settings.values()}
         quoted = {record["truth"], *self.failed, *record.get("warnings", [])}
         longest_first = sorted((text for text in names | quoted if text), key=len, reverse=True)
         self.token = re.compile("|".join([re.escape(text) for text in longest_first] + [rf"(?<![\w.])(?:{NUMBER})"]))
@@ -92,7 +98,7 @@ class Sentences:
 
     def as_quick(self):
         others = [point for point in may_be_quickest(self.right) if point is not self.best_known]
-        return [] if not others else [others[0].title] if len(others) == 1 else [str(len(others))]
+        return [] if not others else [capital(others[0].title)] if len(others) == 1 else [str(len(others))]
 
     def smallest(self):
         smallest = smallest_of(self.right)

@@ -291,7 +291,7 @@ void add_execution(CLI::App& app, Options& options) {
 void add_limits(CLI::App& app, Options& options) {
   add(app,
       {"--max-memory", "SIZE",
-       "memory the program may take, such as 500M or 4G, 140M of it for itself: refused where more is "
+       "memory the program may take, such as 500M or 4G, up to 140M of it for itself: refused where more is "
        "expected to be needed, stopped where it is reached (study: larger models are left out); default: what the machine has",
        kLimits},
       [&options](const std::string& text) { options.spec.limits.max_memory = parse_bytes("--max-memory", text); });

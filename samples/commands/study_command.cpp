@@ -48,7 +48,7 @@ void give_memory(Options& options) {
     options.sweep.max_model_bytes = static_cast<std::int64_t>(std::min(kDefault, 0.75 * machine_memory()));
     return;
   }
-  const double least = kProgramBytes + kBesideBytes;
+  const double least = kProgramBytes + kPictureLibraryBytes + kBesideBytes;
   if (static_cast<double>(*options.spec.limits.max_memory) < least) {
     throw InputError({"", "--max-memory", bytes_text(static_cast<double>(*options.spec.limits.max_memory)), "too little for a study",
                       fmt::format("more than {}, which its pictures and its true border take", bytes_text(least))});

@@ -9,8 +9,8 @@
 
 namespace limn {
 
-/// What the program takes before it does anything: its libraries.
-inline constexpr double kProgramBytes = 140e6;
+/// What the program takes before it does anything: its libraries; and the library of pictures, which comes when one is written.
+inline constexpr double kProgramBytes = 70e6, kPictureLibraryBytes = 70e6;
 
 /// What the machine lets a program have: its memory, or less where a control group says so. Bytes.
 double machine_memory();
@@ -21,14 +21,15 @@ struct PictureLoad {
   double bytes_per_pixel = 0.0;  ///< Held at a time.
   double pictures = 0.0;         ///< Traced: views times samples.
   double other_ms = 0.0;         ///< Methods, writing.
+  double library_bytes = 0.0;    ///< kPictureLibraryBytes where pictures are written.
 };
 /// Of `views` pictures drawn one after the other; `writes_layers`: as .exr files.
 PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, int views, bool writes_layers);
 
 /// What a call is expected to take: right to a factor of two for memory, for time on a machine like that of the constants.
 struct CallCost {
-  double model_bytes = 0.0, picture_bytes = 0.0, time_ms = 0.0;
-  double bytes() const { return kProgramBytes + model_bytes + picture_bytes; }
+  double model_bytes = 0.0, picture_bytes = 0.0, library_bytes = 0.0, time_ms = 0.0;
+  double bytes() const { return kProgramBytes + library_bytes + model_bytes + picture_bytes; }
 };
 /// `with_cages` as in size_of (samples/experiment/cost.h).
 CallCost expected_call(const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load, bool with_cages = true);

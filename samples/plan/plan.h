@@ -57,7 +57,8 @@ struct BorderErrors {
 
 /// Errors that theory expects of a model, and the bounds that they are expected between.
 struct PredictedErrors {
-  BorderErrors expected{}, low{}, high{};
+  BorderErrors expected{},  ///< The likeliest.
+      low{}, high{};        ///< Bounds.
 };
 
 /// One rung, built and measured.

@@ -58,7 +58,8 @@ struct BorderErrors {
 /// Errors that theory expects of a model, and the bounds that they are expected between.
 struct PredictedErrors {
   BorderErrors expected{},  ///< The likeliest.
-      low{}, high{};        ///< Bounds.
+      low{},                ///< At least.
+      high{};               ///< At most.
 };
 
 /// One rung, built and measured.

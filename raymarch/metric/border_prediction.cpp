@@ -117,14 +117,15 @@ Lines lines_across(const std::vector<MatchedSample>& samples, const BorderCurves
 struct ShiftSums {
   double length = 0.0, normal_error = 0.0, first_order = 0.0, low = 0.0, high = 0.0;
 
-  void add(double length_px, const SolvedShift& shift) {
+  /// `bound_px`: how far the true border itself may be off.
+  void add(double length_px, const SolvedShift& shift, double bound_px) {
     const auto square = [](double x) { return x * x; };
-    const double moved = std::abs(shift.shift_px);
+    const double moved = std::abs(shift.shift_px), uncertainty = shift.uncertainty_px + bound_px;
     length += length_px;
     normal_error += length_px * square(shift.normal_error);
     first_order += length_px * square(shift.first_order_px);
-    low += length_px * square(std::max(0.0, moved - shift.uncertainty_px));
-    high += length_px * square(moved + shift.uncertainty_px);
+    low += length_px * square(std::max(0.0, moved - uncertainty));
+    high += length_px * square(moved + uncertainty);
   }
   double root_mean(double sum) const { return length > 0.0 ? std::sqrt(sum / length) : kNothing; }
 };
@@ -154,7 +155,7 @@ DisplacementPrediction predict_displacement(const SceneModel& model, const Camer
     const MatchedSample& sample = samples[across.samples[k]];
     if (shifts[k].fault != ShiftFault::none || !sample.displacement_px) continue;
     pairs.push_back({sample.at.weight_px, shifts[k].shift_px, *sample.displacement_px});
-    sums.add(sample.at.weight_px, shifts[k]);
+    sums.add(sample.at.weight_px, shifts[k], truth.bound_px);
   }
   const Moments all = moments(pairs);
   DisplacementPrediction result;

@@ -26,11 +26,12 @@ struct DisplacementPrediction {
   double normal_error_rms = kNone;  ///< Of eps, radians.
   double predicted_mean_px = kNone, measured_mean_px = kNone;
   double predicted_rms_px = kNone, measured_rms_px = kNone;
-  double low_px = kNone, high_px = kNone;  ///< What measured_rms_px is expected between: all shifts less, or more, by their uncertainty.
-  double first_order_rms_px = kNone;       ///< Of eps s c / kr.
-  double error_rms_px = kNone;             ///< Of predicted less measured.
-  double correlation = kNone;              ///< Pearson's.
-  double within_quarter = kNone;           ///< Share predicted to 25 % (or 0.01 px), of those measured below 2 px.
+  double low_px = kNone,
+         high_px = kNone;  ///< What measured_rms_px is expected between: all shifts less, or more, by their uncertainty and truth's.
+  double first_order_rms_px = kNone;  ///< Of eps s c / kr.
+  double error_rms_px = kNone;        ///< Of predicted less measured.
+  double correlation = kNone;         ///< Pearson's.
+  double within_quarter = kNone;      ///< Share predicted to 25 % (or 0.01 px), of those measured below 2 px.
 };
 
 /// Ink of N.V < c is c^2 / (2 kr) wide in the world, exactly (1 - sqrt(1 - c^2)) / kr on the osculating circle (Kindlmann et al. 2003).

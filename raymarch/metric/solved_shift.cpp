@@ -25,7 +25,7 @@ constexpr double kSheet_px = 8.0;
 /// Probes nearer to each other say nothing of a slope that floats could tell.
 constexpr double kSame_px = 1e-3;
 /// The uncertainty is no less than this share of the shift, and no less than this.
-constexpr double kBetween = 0.15, kPrecision_px = 0.002;
+constexpr double kBetween = 0.25, kPrecision_px = 0.002;
 
 /// `over`: the square of N.V, with its sign, less that of the threshold. It is what is interpolated: along a line over a sphere it is a
 /// parabola, and at the silhouette it has a slope, where N.V itself has none.

@@ -94,6 +94,7 @@ std::vector<FlatFace> flat_faces(const GBuffer& gbuffer, const Image<float>& cov
     face.inked += coverage.pixels[i] > 0.5f;
   }
   std::vector<FlatFace> faces;
+  faces.reserve(found.size());
   for (const auto& [first_pixel, face] : found) faces.push_back(face);
   std::stable_sort(faces.begin(), faces.end(), [](const FlatFace& a, const FlatFace& b) { return a.pixels > b.pixels; });
   return faces;

@@ -44,10 +44,10 @@ CLI::Option* add(CLI::App& app, const OptionText& text, const std::function<void
 }
 
 CLI::Option* add_repeatable(CLI::App& app, const OptionText& text, std::function<void(const std::string&)> read) {
-  auto each = [read = std::move(read)](const std::vector<std::string>& values) {
+  const auto each = [read = std::move(read)](const std::vector<std::string>& values) {
     for (const std::string& value : values) read(value);
   };
-  CLI::Option* option = app.add_option_function<std::vector<std::string>>(text.flags, std::move(each), text.help);
+  CLI::Option* option = app.add_option_function<std::vector<std::string>>(text.flags, each, text.help);
   option->type_name(text.value)->group(text.group)->type_size(1)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   return option;
 }

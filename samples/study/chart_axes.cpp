@@ -18,7 +18,7 @@ constexpr double kTickedLengthPx = 640.0;
 std::string plain(double value) { return fmt::format("{:.6g}", value); }
 
 constexpr ChartColor kFloorShade{0.5, 0.5, 0.5, 0.12};
-constexpr ChartText kFloorText{11.0, false, kChartSoft};
+constexpr ChartText kFloorText{11.0, false, kChartSoft}, kFloorTextRight{11.0, false, kChartSoft, ChartAlign::right};
 std::string floor_words(const ErrorFloor& floor) {
   return std::isfinite(floor.px()) ? error_text(0.0, floor) + ": not to be told from no error"
                                    : "nothing can be told: the true border is not known";
@@ -94,7 +94,8 @@ void draw_floor(ChartCanvas& canvas, const ChartFrame& frame, const ErrorFloor& 
   if (!(px > frame.y.low)) return;
   const double share = std::min(1.0, frame.y.place(px)), height = share * frame.plot.height;
   canvas.box({frame.plot.x, frame.plot.y + frame.plot.height - height, frame.plot.width, height}, kFloorShade);
-  if (height > 16.0) canvas.text({frame.plot.x + 6.0, frame.plot.y + frame.plot.height - height + 13.0}, floor_words(floor), kFloorText);
+  if (height > 16.0)
+    canvas.text({frame.plot.x + frame.plot.width - 6.0, frame.plot.y + frame.plot.height - 6.0}, floor_words(floor), kFloorTextRight);
 }
 
 void draw_floor_across(ChartCanvas& canvas, const ChartFrame& frame, const ErrorFloor& floor) {

@@ -15,20 +15,19 @@
 namespace limn {
 namespace {
 
-/// OpenVDB stamps every file with a random number, so that no two runs would write the same bytes; the nil UUID says "none".
-void erase_uuid(const std::filesystem::path& path) {
+/// OpenVDB stamps every file with a random number, so that no two runs would write the same bytes; the nil UUID says "none". In the stream
+/// that wrote it: somebody may have removed the file meanwhile, and opening it again would fail.
+void erase_uuid(std::fstream& stream) {
   // Magic number (8 bytes), file version, library version (4 + 4 + 4), whether there are offsets (1); then 36 characters.
   constexpr std::streamoff kUuid = 21;
   const std::string nil = "00000000-0000-0000-0000-000000000000";
-  std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out);
   std::string found(nil.size(), ' ');
   stream.seekg(kUuid);
   stream.read(found.data(), static_cast<std::streamsize>(found.size()));
-  LIMN_CHECK(stream && found[8] == '-' && found[23] == '-');
+  // A disk that failed is the caller's to say; what arrived whole is of the form that OpenVDB writes.
+  LIMN_CHECK(!stream || (found[8] == '-' && found[23] == '-'));
   stream.seekp(kUuid);
   stream.write(nil.data(), static_cast<std::streamsize>(nil.size()));
-  stream.close();
-  if (!stream) throw MachineError(path.string() + ": writing failed (is the disk full?)");
 }
 
 /// What openvdb::io::File writes, to a stream of ours: it opens one itself and never looks whether what it wrote arrived.
@@ -99,16 +98,16 @@ void write_level_sets(std::span<const LevelSet> level_sets, const std::filesyste
   for (const LevelSet& level_set : level_sets) add_metadata(level_set.data().file.of_file, of_file);
   write_whole(file, [&](const std::filesystem::path& path) {
     try {
-      std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+      std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
       CheckedArchive target;
       target.setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
       target.write(stream, grids, true, of_file);
+      erase_uuid(stream);
       stream.close();
       if (!stream) throw std::runtime_error("is the disk full?");
     } catch (const std::exception& problem) {
       throw MachineError(file.string() + ": writing failed: " + problem.what());
     }
-    erase_uuid(path);
   });
 }
 

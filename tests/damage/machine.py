@@ -112,24 +112,32 @@ def read_only(limn, folder, tally, brief):
     return tally
 
 
+def wait_for_file(folder):
+    until = time.monotonic() + 10
+    while time.monotonic() < until and not any(os.scandir(folder)):
+        pass
+
+
 def folder_gone(limn, folder, tally, brief):
     """The output folder is removed at several moments while the call runs: done, because it is made again, or refused with one line."""
     scene = scene_in(folder)
     for name in calls(limn, scene, folder, brief):
-        for moment in (0.1,) if brief else (0.02, 0.05, 0.1, 0.2, 0.4):
+        # None: as soon as anything is in the folder, which is while it is written.
+        for moment in (0.1, None) if brief else (0.02, 0.05, 0.1, 0.2, 0.4, None, None, None):
             out = folder / "out"
             shutil.rmtree(out, ignore_errors=True)
             out.mkdir()
             err = folder / "err.txt"
             with open(err, "w") as stream:
                 process = child.start(calls(limn, scene, out)[name], stdout=subprocess.DEVNULL, stderr=stream)
-                time.sleep(moment)
+                wait_for_file(out) if moment is None else time.sleep(moment)
                 shutil.rmtree(out, ignore_errors=True)
                 child.wait(process, 60)
             text = err.read_text()
-            judge(f"{name}, folder gone after {moment} s", child.Done(process.returncode, 0, 0, 0, False, "", text), tally, (0, 1, 2))
+            when = "folder gone while it was written" if moment is None else f"folder gone after {moment} s"
+            judge(f"{name}, {when}", child.Done(process.returncode, 0, 0, 0, False, "", text), tally, (0, 1, 2))
             if out.exists() and hidden_in(out):
-                tally.fail(f"{name}, folder gone after {moment} s: left {hidden_in(out)}")
+                tally.fail(f"{name}, {when}: left {hidden_in(out)}")
     return tally
 
 

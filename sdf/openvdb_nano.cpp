@@ -22,10 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using Handle = nanovdb::GridHandle<nanovdb::HostBuffer>;
 
-[[noreturn]] void refuse(const std::string& field, const std::string& value, const std::string& problem, const std::string& expected) {
-  throw InputError({.file = {}, .field = field, .value = value, .problem = problem, .expected = expected});
-}
-
 /// Where one grid lies in the file.
 struct Place {
   std::int64_t offset = 0;
@@ -38,12 +34,13 @@ std::string version_text(const nanovdb::Version& version) { return version.c_str
 /// NanoVDB's own reader says what is wrong in several lines, and to a person who builds it.
 void check_header(const nanovdb::io::Header& header) {
   if (std::memcmp(&header.magic, "NanoVDB", 7) != 0)
-    refuse("", "", "cannot be read as a volume: it does not start as a .nvdb", "an undamaged .nvdb");
+    refuse_volume("", "", "cannot be read as a volume: it does not start as a .nvdb", "an undamaged .nvdb");
   if (header.magic != NANOVDB_MAGIC_NUMBER)
-    refuse("", "", "is of a later format of NanoVDB than this program reads", "a .nvdb of version 32.4 or older, or a .vdb");
+    refuse_volume("", "", "is of a later format of NanoVDB than this program reads", "a .nvdb of version 32.4 or older, or a .vdb");
   if (header.version.getMajor() != NANOVDB_MAJOR_VERSION_NUMBER)
-    refuse("", version_text(header.version), "is of another version of NanoVDB", "a .nvdb of version 32, or a .vdb");
-  if (header.codec >= nanovdb::io::Codec::END) refuse("", "", "is compressed in a way that NanoVDB does not know", "an undamaged .nvdb");
+    refuse_volume("", version_text(header.version), "is of another version of NanoVDB", "a .nvdb of version 32, or a .vdb");
+  if (header.codec >= nanovdb::io::Codec::END)
+    refuse_volume("", "", "is compressed in a way that NanoVDB does not know", "an undamaged .nvdb");
 }
 
 std::vector<Place> places_in(const fs::path& file, std::istream& stream) {
@@ -98,9 +95,9 @@ bool is_distance(nanovdb::GridType type) {
 template <class Value>
 openvdb::GridBase::Ptr converted(const Handle& handle) {
   const auto* grid = handle.grid<Value>();
-  if (grid == nullptr) refuse("", "", "cannot be read as a volume: its table and its grid differ in type", "an undamaged .nvdb");
+  if (grid == nullptr) refuse_volume("", "", "cannot be read as a volume: its table and its grid differ in type", "an undamaged .nvdb");
   const std::string fault = nanovdb::GridValidator<Value>::check(*grid, true);
-  if (!fault.empty()) refuse("", "", "cannot be read as a volume: " + fault, "an undamaged .nvdb");
+  if (!fault.empty()) refuse_volume("", "", "cannot be read as a volume: " + fault, "an undamaged .nvdb");
   const auto result = nanovdb::NanoToOpenVDB<Value>{}(*grid);
   // NanoVDB's converter takes the map's matrix transposed, which turns a rotated grid the other way round.
   const nanovdb::Map& map = reinterpret_cast<const nanovdb::GridData*>(grid)->mMap;
@@ -114,13 +111,13 @@ openvdb::GridBase::Ptr converted(const Handle& handle) {
 }
 
 openvdb::GridBase::Ptr read_one(std::istream& stream, const Place& place) {
-  if (place.meta.gridSize < sizeof(nanovdb::GridData)) refuse("", "", "holds a grid without a head", "an undamaged .nvdb");
+  if (place.meta.gridSize < sizeof(nanovdb::GridData)) refuse_volume("", "", "holds a grid without a head", "an undamaged .nvdb");
   stream.seekg(place.offset);
   Handle handle(nanovdb::HostBuffer::create(place.meta.gridSize));
   nanovdb::io::Internal::read(stream, handle, place.codec);
   const nanovdb::GridMetaData* head = handle.gridMetaData();
   if (head == nullptr || head->gridSize() != handle.size())
-    refuse("", "", "cannot be read as a volume: a grid is not as large as it says", "an undamaged .nvdb");
+    refuse_volume("", "", "cannot be read as a volume: a grid is not as large as it says", "an undamaged .nvdb");
   switch (head->gridType()) {
     case nanovdb::GridType::Float:
       return converted<float>(handle);
@@ -135,7 +132,7 @@ openvdb::GridBase::Ptr read_one(std::istream& stream, const Place& place) {
     case nanovdb::GridType::FpN:
       return converted<nanovdb::FpN>(handle);
     default:
-      refuse("grid", type_name(head->gridType()), "does not hold distances", "a level set of float, double or half");
+      refuse_volume("grid", type_name(head->gridType()), "does not hold distances", "a level set of float, double or half");
   }
 }
 

@@ -14,10 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const std::string& field, const std::string& value, const std::string& problem, const std::string& expected) {
-  throw InputError({.file = {}, .field = field, .value = value, .problem = problem, .expected = expected});
-}
-
 std::string described(const StoredGrid& grid) { return "'" + grid.shown + "' (" + grid.grid_class + ", " + grid.value_type + ")"; }
 
 std::string all_described(const std::vector<StoredGrid>& grids) {
@@ -28,15 +24,15 @@ std::string all_described(const std::vector<StoredGrid>& grids) {
 
 void check_kind(const StoredGrid& grid) {
   const std::string what = "the grid '" + grid.shown + "'";
-  if (!grid.is_distance) refuse("grid", grid.value_type, what + " does not hold distances", "a level set of float, double or half");
+  if (!grid.is_distance) refuse_volume("grid", grid.value_type, what + " does not hold distances", "a level set of float, double or half");
   if (grid.grid_class == "fog volume")
-    refuse("grid", "fog volume", what + " is a fog volume: densities, without a surface of their own",
-           "a grid of class 'level set' (extract the surface of the fog first)");
+    refuse_volume("grid", "fog volume", what + " is a fog volume: densities, without a surface of their own",
+                  "a grid of class 'level set' (extract the surface of the fog first)");
   if (grid.grid_class != "level set" && grid.grid_class != "unknown")
-    refuse("grid", grid.grid_class, what + " is not a level set by its class", "a grid of class 'level set'");
+    refuse_volume("grid", grid.grid_class, what + " is not a level set by its class", "a grid of class 'level set'");
   if (!grid.warped.empty())
-    refuse("grid", grid.warped, what + " has a frustum transform, in which no distance is true",
-           "a linear transform (resample it onto a uniform grid)");
+    refuse_volume("grid", grid.warped, what + " has a frustum transform, in which no distance is true",
+                  "a linear transform (resample it onto a uniform grid)");
 }
 
 /// The grids that a name can mean: one, or all that have it where it is no more than that.
@@ -57,14 +53,15 @@ size_t choose(const std::vector<StoredGrid>& grids, const std::string& name) {
   if (found.size() == 1) return found.front();
   if (name.empty() && found.empty()) {
     if (grids.size() == 1) check_kind(grids.front());
-    refuse("grid", "", "no level set in the file", "one of class 'level set'; grids: " + all_described(grids));
+    refuse_volume("grid", "", "no level set in the file", "one of class 'level set'; grids: " + all_described(grids));
   }
-  if (name.empty()) refuse("grid", "", "more than one level set", "one of them by name; grids: " + all_described(grids));
-  if (!found.empty()) refuse("grid", name, "more than one grid has that name", "one of them by its index; grids: " + all_described(grids));
+  if (name.empty()) refuse_volume("grid", "", "more than one level set", "one of them by name; grids: " + all_described(grids));
+  if (!found.empty())
+    refuse_volume("grid", name, "more than one grid has that name", "one of them by its index; grids: " + all_described(grids));
   std::vector<std::string> names;
   for (const StoredGrid& grid : grids) names.push_back(grid.shown);
   const std::string near = nearest_name(name, names);
-  refuse("grid", name, "no such grid", "one of " + all_described(grids) + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  refuse_volume("grid", name, "no such grid", "one of " + all_described(grids) + (near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
 
 openvdb::FloatGrid::Ptr as_float(const openvdb::GridBase::Ptr& grid) {
@@ -75,12 +72,13 @@ openvdb::FloatGrid::Ptr as_float(const openvdb::GridBase::Ptr& grid) {
 void check_voxels(const openvdb::FloatGrid& grid, const std::string& name) {
   const std::string what = "the grid '" + name + "'";
   const float background = grid.background();
-  if (grid.activeVoxelCount() == 0) refuse("grid", name, what + " is empty: it has no active voxel", "a narrow band of distances");
+  if (grid.activeVoxelCount() == 0) refuse_volume("grid", name, what + " is empty: it has no active voxel", "a narrow band of distances");
   if (!std::isfinite(background) || background <= 0.0f)
-    refuse("grid", std::to_string(background), what + " is not initialised: its background is not a distance",
-           "the band's half width, above 0");
+    refuse_volume("grid", std::to_string(background), what + " is not initialised: its background is not a distance",
+                  "the band's half width, above 0");
   if (grid.tree().activeTileCount() > 0)
-    refuse("grid", name, what + " has constant regions that are active: no band of distances", "active voxels in a narrow band only");
+    refuse_volume("grid", name, what + " has constant regions that are active: no band of distances",
+                  "active voxels in a narrow band only");
 }
 
 /// A grid without a class is a level set where it has distances of both signs.
@@ -89,8 +87,8 @@ void check_signs(const openvdb::FloatGrid& grid, const StoredGrid& stored) {
   bool inside = false, outside = false;
   for (auto value = grid.cbeginValueOn(); value && !(inside && outside); ++value) (*value < 0.0f ? inside : outside) = true;
   if (!inside || !outside)
-    refuse("grid", stored.grid_class, "the grid '" + stored.shown + "' has no class, and its values do not change sign",
-           "a grid of class 'level set', or distances that are negative inside");
+    refuse_volume("grid", stored.grid_class, "the grid '" + stored.shown + "' has no class, and its values do not change sign",
+                  "a grid of class 'level set', or distances that are negative inside");
 }
 
 LevelSetBlock block_of(const openvdb::FloatTree::LeafNodeType& leaf, float background, const std::string& name) {
@@ -100,7 +98,7 @@ LevelSetBlock block_of(const openvdb::FloatTree::LeafNodeType& leaf, float backg
   for (openvdb::Index n = 0; n < 512; ++n) {
     const float value = leaf.getValue(n);
     if (leaf.isValueOn(n) && !std::isfinite(value))
-      refuse("grid", std::to_string(value), "the grid '" + name + "' holds a distance that is no number", "finite values");
+      refuse_volume("grid", std::to_string(value), "the grid '" + name + "' holds a distance that is no number", "finite values");
     block.values[n] = leaf.isValueOn(n) ? value : value < 0.0f ? -background : background;
   }
   return block;
@@ -146,9 +144,9 @@ std::vector<std::byte> reading(Read&& read) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::ios::failure&) {
-    refuse("", "", "breaks off before its end", "an undamaged file");
+    refuse_volume("", "", "breaks off before its end", "an undamaged file");
   } catch (const std::exception& problem) {
-    refuse("", "", std::string("cannot be read as a volume: ") + problem.what(), "an undamaged .vdb");
+    refuse_volume("", "", std::string("cannot be read as a volume: ") + problem.what(), "an undamaged .vdb");
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sdf/error.h"
 #include "sdf/level_set_metadata.h"
 
 namespace limn {
@@ -43,5 +44,11 @@ bool is_nvdb(const std::filesystem::path& file);
 
 /// ball, ball: ball[0], ball[1], as OpenVDB numbers them; names that are there once stay as they are.
 void number_equal_names(std::vector<StoredGrid>& grids);
+
+/// An InputError of the file that is being read, whose name the caller adds.
+[[noreturn]] inline void refuse_volume(const std::string& field, const std::string& value, const std::string& problem,
+                                       const std::string& expected) {
+  throw InputError({.file = {}, .field = field, .value = value, .problem = problem, .expected = expected});
+}
 
 }  // namespace limn

@@ -65,17 +65,13 @@ class PairFinder {
     const double limit = reach_ + radius_;
     if (glm::dot(away, away) > limit * limit) return;
     if (radius_ > 2.0 * size_ && !triangle_meets_box(corners_, first - reach_, last + reach_)) return;
-    const glm::ivec3 count = upper - lower;
-    if (count == glm::ivec3(0)) {
+    if (lower == upper) {
       out_.emplace_back(lower, triangle_);
       return;
     }
-    const int axis = count.x >= count.y && count.x >= count.z ? 0 : count.y >= count.z ? 1 : 2;
-    glm::ivec3 middle = upper, after = lower;
-    middle[axis] = lower[axis] + count[axis] / 2;
-    after[axis] = middle[axis] + 1;
-    split(lower, middle);
-    split(after, upper);
+    const BlockHalves cut = halves(lower, upper);
+    split(lower, cut.middle);
+    split(cut.after, upper);
   }
 
   double size_, reach_;

@@ -12,6 +12,14 @@ glm::dvec3 unit_or_zero(const glm::dvec3& v) {
 
 }  // namespace
 
+void set_principal(SurfaceCurvature& surface, const glm::dvec3& u, const glm::dvec3& v, double uu, double uv, double vv) {
+  const double mean = 0.5 * (uu + vv), half = 0.5 * (uu - vv), spread = std::hypot(half, uv);
+  surface.k1 = mean + spread;
+  surface.k2 = mean - spread;
+  const double angle = 0.5 * std::atan2(uv, half);
+  surface.direction1 = std::cos(angle) * u + std::sin(angle) * v;
+}
+
 // do Carmo 1976, sections 2.5 and 3.3: the shape operator from both fundamental forms, here in an orthonormal basis of the tangent plane,
 // where it is symmetric. Signs as the header says: a sphere seen from outside bends away from its normal and counts as positive.
 SurfaceCurvature curvature(const LimitPoint& point) {
@@ -26,11 +34,7 @@ SurfaceCurvature curvature(const LimitPoint& point) {
   const double s11 = l / (a * a);
   const double s12 = (m - (b / a) * l) / (a * c);
   const double s22 = (n - 2.0 * (b / a) * m + (b / a) * (b / a) * l) / (c * c);
-  const double mean = 0.5 * (s11 + s22), half = 0.5 * (s11 - s22), spread = std::hypot(half, s12);
-  result.k1 = mean + spread;
-  result.k2 = mean - spread;
-  const double angle = 0.5 * std::atan2(s12, half);
-  result.direction1 = std::cos(angle) * e1 + std::sin(angle) * e2;
+  set_principal(result, e1, e2, s11, s12, s22);
   return result;
 }
 

@@ -41,18 +41,14 @@ class BlockFinder {
   void split(const glm::ivec3& lower, const glm::ivec3& upper) {
     const glm::dvec3 first = 8.0 * size_ * glm::dvec3(lower), last = size_ * (8.0 * glm::dvec3(upper) + 7.0);
     if (!triangle_meets_box(triangle_, first - reach_, last + reach_)) return;
-    const glm::ivec3 count = upper - lower;
-    if (count == glm::ivec3(0)) {
+    if (lower == upper) {
       keys_.emplace_back(lower.x, lower.y, lower.z);
       if (keys_.size() >= next_compaction_) compact();
       return;
     }
-    const int axis = count.x >= count.y && count.x >= count.z ? 0 : count.y >= count.z ? 1 : 2;
-    glm::ivec3 middle = upper, after = lower;
-    middle[axis] = lower[axis] + count[axis] / 2;
-    after[axis] = middle[axis] + 1;
-    split(lower, middle);
-    split(after, upper);
+    const BlockHalves cut = halves(lower, upper);
+    split(lower, cut.middle);
+    split(cut.after, upper);
   }
 
   void compact() {

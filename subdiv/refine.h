@@ -56,6 +56,8 @@ struct SurfaceCurvature {
       k2 = 0.0;                ///< Principal.
   glm::dvec3 direction1{0.0};  ///< Unit, of k1.
 };
+/// Sets k1, k2 and direction1 from the normal curvature's quadratic form in the orthonormal tangents u and v.
+void set_principal(SurfaceCurvature& surface, const glm::dvec3& u, const glm::dvec3& v, double uu, double uv, double vv);
 /// Of the surface at a point of it; the normal and all else 0 where du and dv are parallel.
 SurfaceCurvature curvature(const LimitPoint& point);
 /// Normal curvature along a tangent direction (need not be unit): Euler's formula.

@@ -1,5 +1,5 @@
 #pragma once
-// Internal: separating axes of a box and a triangle.
+// Internal: separating axes of a box and a triangle, and how ranges of blocks are halved while a triangle is looked for in them.
 
 #include <algorithm>
 #include <array>
@@ -25,6 +25,19 @@ inline bool triangle_meets_box(const std::array<glm::dvec3, 3>& triangle, const 
     for (const glm::dvec3& axis : kAxes)
       if (separated(glm::cross(edge, axis))) return false;
   return true;
+}
+
+/// A range of blocks, both ends included, cut across its longest side: [lower, middle] and [after, upper].
+struct BlockHalves {
+  glm::ivec3 middle{0}, after{0};
+};
+inline BlockHalves halves(const glm::ivec3& lower, const glm::ivec3& upper) {
+  const glm::ivec3 count = upper - lower;
+  const int axis = count.x >= count.y && count.x >= count.z ? 0 : count.y >= count.z ? 1 : 2;
+  BlockHalves cut{upper, lower};
+  cut.middle[axis] = lower[axis] + count[axis] / 2;
+  cut.after[axis] = cut.middle[axis] + 1;
+  return cut;
 }
 
 }  // namespace limn

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "raymarch/border.h"
-#include "raymarch/border/hysteresis.h"
-#include "raymarch/border/surface_notes.h"
+#include "raymarch/border/ink_by_angle.h"
 
 namespace limn {
 namespace {
@@ -22,18 +21,8 @@ double outline(const Curve& curve, double n_dot_v, double shift) {
 }
 
 Border draw(const BorderInput& input, const Parameters& parameters) {
-  const GBuffer& seen = input.gbuffer;
   const Curve curve{parameters.number("width"), parameters.number("softness"), parameters.number("power"), parameters.number("strength")};
-  const Hysteresis hysteresis = hysteresis_of(input, parameters);
-  Border border;
-  border.color = glm::vec3(parameters.vector3("color"));
-  border.coverage = {seen.width, seen.height, 0.0f};
-  for (size_t i = 0; i < seen.id.size(); ++i) {
-    if (seen.id.pixels[i] == 0) continue;
-    border.coverage.pixels[i] = static_cast<float>(outline(curve, double{seen.n_dot_v.pixels[i]}, hysteresis.shift(i)));
-  }
-  border.notes = surface_notes("fresnel", seen, border.coverage);
-  return border;
+  return ink_by_angle("fresnel", input, parameters, [&](double n_dot_v, double shift) { return outline(curve, n_dot_v, shift); });
 }
 
 }  // namespace

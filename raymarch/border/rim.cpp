@@ -1,26 +1,17 @@
 // Rim: border where N.V falls below a threshold.
 
 #include "raymarch/border.h"
-#include "raymarch/border/hysteresis.h"
-#include "raymarch/border/surface_notes.h"
+#include "raymarch/border/ink_by_angle.h"
 
 namespace limn {
 namespace {
 
 Border draw(const BorderInput& input, const Parameters& parameters) {
-  const GBuffer& seen = input.gbuffer;
   const double threshold = parameters.number("threshold"), half = 0.5 * parameters.number("softness");
-  const Hysteresis hysteresis = hysteresis_of(input, parameters);
-  Border border;
-  border.color = glm::vec3(parameters.vector3("color"));
-  border.coverage = {seen.width, seen.height, 0.0f};
-  for (size_t i = 0; i < seen.id.size(); ++i) {
-    if (seen.id.pixels[i] == 0) continue;
-    const double edge = threshold + hysteresis.shift(i);
-    border.coverage.pixels[i] = static_cast<float>(1.0 - smoothstep(edge - half, edge + half, double{seen.n_dot_v.pixels[i]}));
-  }
-  border.notes = surface_notes("rim", seen, border.coverage);
-  return border;
+  return ink_by_angle("rim", input, parameters, [&](double n_dot_v, double shift) {
+    const double edge = threshold + shift;
+    return 1.0 - smoothstep(edge - half, edge + half, n_dot_v);
+  });
 }
 
 }  // namespace

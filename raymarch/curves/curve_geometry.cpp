@@ -8,7 +8,6 @@
 namespace limn {
 namespace {
 
-constexpr double kMostCells = 4e6;
 
 glm::dvec2 point_at(const BorderCurve& curve, size_t i) { return curve.points[i % curve.points.size()].px; }
 
@@ -78,54 +77,19 @@ CurveIndex::CurveIndex(const BorderCurves& curves, std::optional<CurveKind> kind
     add(front + continue_px * end_direction(curve, false), front, curve.object, true, false);
     add(back, back + continue_px * end_direction(curve, true), curve.object, false, true);
   }
-  build_grid();
+  std::vector<SegmentEnds> ends;
+  ends.reserve(segments_.size());
+  for (const Segment& segment : segments_) ends.push_back({segment.a, segment.b});
+  grid_ = segment_grid(ends);
 }
 
 void CurveIndex::add(const glm::dvec2& a, const glm::dvec2& b, int object, bool starts, bool ends) {
   segments_.push_back({a, b, object, starts, ends});
 }
 
-int CurveIndex::column_of(double x) const {
-  return static_cast<int>(std::clamp(std::floor((x - origin_.x) / cell_px_), 0.0, static_cast<double>(columns_ - 1)));
-}
-int CurveIndex::row_of(double y) const {
-  return static_cast<int>(std::clamp(std::floor((y - origin_.y) / cell_px_), 0.0, static_cast<double>(rows_ - 1)));
-}
-
-void CurveIndex::build_grid() {
-  if (segments_.empty()) return;
-  glm::dvec2 low = segments_.front().a, high = low;
-  for (const Segment& segment : segments_) {
-    low = glm::min(low, glm::min(segment.a, segment.b));
-    high = glm::max(high, glm::max(segment.a, segment.b));
-  }
-  origin_ = low;
-  const glm::dvec2 size = high - low;
-  while ((size.x / cell_px_ + 1.0) * (size.y / cell_px_ + 1.0) > kMostCells) cell_px_ *= 2.0;
-  columns_ = static_cast<int>(size.x / cell_px_) + 1;
-  rows_ = static_cast<int>(size.y / cell_px_) + 1;
-  first_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_) + 1, 0);
-  const auto for_cells = [&](const Segment& s, const auto& visit) {
-    for (int row = row_of(std::min(s.a.y, s.b.y)); row <= row_of(std::max(s.a.y, s.b.y)); ++row) {
-      for (int column = column_of(std::min(s.a.x, s.b.x)); column <= column_of(std::max(s.a.x, s.b.x)); ++column) {
-        visit(static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column));
-      }
-    }
-  };
-  for (const Segment& segment : segments_) for_cells(segment, [&](size_t cell) { ++first_[cell + 1]; });
-  for (size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-  members_.resize(first_.back());
-  std::vector<std::uint32_t> fill(first_.begin(), first_.end() - 1);
-  for (size_t i = 0; i < segments_.size(); ++i) {
-    for_cells(segments_[i], [&](size_t cell) { members_[fill[cell]++] = static_cast<std::uint32_t>(i); });
-  }
-}
-
 template <class Visit>
 void CurveIndex::visit_cell(int column, int row, const Visit& visit) const {
-  if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return;
-  const size_t cell = static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column);
-  for (std::uint32_t k = first_[cell]; k < first_[cell + 1]; ++k) visit(segments_[members_[k]]);
+  for (const std::uint32_t k : grid_.in_cell(column, row)) visit(segments_[k]);
 }
 
 std::optional<NearestPoint> CurveIndex::nearest(const glm::dvec2& px, int object, double reach_px, std::optional<glm::dvec2> facing) const {
@@ -143,20 +107,20 @@ std::optional<NearestPoint> CurveIndex::nearest(const glm::dvec2& px, int object
     found = true;
     best = {distance, point, (segment.starts && s == 0.0) || (segment.ends && s == 1.0)};
   };
-  const double x = std::floor((px.x - origin_.x) / cell_px_), y = std::floor((px.y - origin_.y) / cell_px_);
+  const double x = std::floor((px.x - grid_.origin.x) / grid_.cell_px), y = std::floor((px.y - grid_.origin.y) / grid_.cell_px);
   // Rings of cells about the point; whatever lies in ring k is at least (k - 1) cells away. From far outside, start where the grid does.
-  const double outside = std::max({0.0, -x, -y, x - (columns_ - 1), y - (rows_ - 1)});
-  const double furthest = std::max({std::abs(x), std::abs(y), std::abs(x - columns_), std::abs(y - rows_)}) + 1.0;
-  for (double ring = outside; ring <= furthest && (ring - 1.0) * cell_px_ <= best.distance_px; ring += 1.0) {
+  const double outside = std::max({0.0, -x, -y, x - (grid_.columns - 1), y - (grid_.rows - 1)});
+  const double furthest = std::max({std::abs(x), std::abs(y), std::abs(x - grid_.columns), std::abs(y - grid_.rows)}) + 1.0;
+  for (double ring = outside; ring <= furthest && (ring - 1.0) * grid_.cell_px <= best.distance_px; ring += 1.0) {
     const double x0 = x - ring, x1 = x + ring, y0 = y - ring, y1 = y + ring;
-    for (double row = std::max(y0, 0.0); row <= std::min(y1, rows_ - 1.0); row += 1.0) {
+    for (double row = std::max(y0, 0.0); row <= std::min(y1, grid_.rows - 1.0); row += 1.0) {
       if (row == y0 || row == y1) {
-        for (double column = std::max(x0, 0.0); column <= std::min(x1, columns_ - 1.0); column += 1.0)
+        for (double column = std::max(x0, 0.0); column <= std::min(x1, grid_.columns - 1.0); column += 1.0)
           visit_cell(static_cast<int>(column), static_cast<int>(row), look);
         continue;
       }
       if (x0 >= 0.0) visit_cell(static_cast<int>(x0), static_cast<int>(row), look);
-      if (x1 < columns_) visit_cell(static_cast<int>(x1), static_cast<int>(row), look);
+      if (x1 < grid_.columns) visit_cell(static_cast<int>(x1), static_cast<int>(row), look);
     }
   }
   if (!found) return std::nullopt;
@@ -178,16 +142,18 @@ std::optional<Meeting> CurveIndex::meeting(const glm::dvec2& px, const glm::dvec
     if (!best || std::abs(t) < std::abs(best->along_px)) best = Meeting{t};
   };
   const glm::dvec2 a = px - reach_px * direction, b = px + reach_px * direction;
-  if (std::max(a.y, b.y) < origin_.y || std::min(a.y, b.y) > origin_.y + rows_ * cell_px_) return best;
-  for (int row = row_of(std::min(a.y, b.y)); row <= row_of(std::max(a.y, b.y)); ++row) {
+  if (std::max(a.y, b.y) < grid_.origin.y || std::min(a.y, b.y) > grid_.origin.y + grid_.rows * grid_.cell_px) return best;
+  for (int row = grid_.row_of(std::min(a.y, b.y)); row <= grid_.row_of(std::max(a.y, b.y)); ++row) {
     double s0 = 0.0, s1 = 1.0;
     if (a.y != b.y) {
-      const double u = (origin_.y + row * cell_px_ - a.y) / (b.y - a.y), v = (origin_.y + (row + 1) * cell_px_ - a.y) / (b.y - a.y);
+      const double u = (grid_.origin.y + row * grid_.cell_px - a.y) / (b.y - a.y),
+                   v = (grid_.origin.y + (row + 1) * grid_.cell_px - a.y) / (b.y - a.y);
       s0 = std::clamp(std::min(u, v) - 1e-9, 0.0, 1.0);
       s1 = std::clamp(std::max(u, v) + 1e-9, 0.0, 1.0);
     }
     const double xa = a.x + s0 * (b.x - a.x), xb = a.x + s1 * (b.x - a.x);
-    for (int column = column_of(std::min(xa, xb)); column <= column_of(std::max(xa, xb)); ++column) visit_cell(column, row, look);
+    for (int column = grid_.column_of(std::min(xa, xb)); column <= grid_.column_of(std::max(xa, xb)); ++column)
+      visit_cell(column, row, look);
   }
   return best;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "raymarch/border_curves.h"
+#include "raymarch/curves/segment_grid.h"
 #include "sdf/camera.h"
 
 namespace limn {
@@ -60,17 +61,11 @@ class CurveIndex {
     bool starts = false, ends = false;  ///< Its first, its last point is the end of an open curve.
   };
   void add(const glm::dvec2& a, const glm::dvec2& b, int object, bool starts, bool ends);
-  void build_grid();
-  int column_of(double x) const;
-  int row_of(double y) const;
   template <class Visit>
   void visit_cell(int column, int row, const Visit& visit) const;
 
   std::vector<Segment> segments_{};
-  glm::dvec2 origin_{0.0};
-  double cell_px_ = 4.0;
-  int columns_ = 0, rows_ = 0;
-  std::vector<std::uint32_t> first_{}, members_{};
+  SegmentGrid grid_{};
 };
 
 /// How far a partner is looked for: 16 px, or 2 % of the picture's diagonal where that is more.

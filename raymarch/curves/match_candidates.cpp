@@ -8,7 +8,6 @@
 namespace limn {
 namespace {
 
-constexpr double kMostCells = 4e6;
 /// A meeting this many times as far as the nearest point of its stretch is one beside the tip of a sharp turn.
 constexpr double kSlanted = 4.0;
 /// A nearest point that lies sidewards counts no farther off than this, nor does the end of a curve for what lies beyond.
@@ -22,7 +21,10 @@ glm::dvec2 turned(const glm::dvec2& along) { return {-along.y, along.x}; }
 
 MatchCandidates::MatchCandidates(const BorderCurves& measured) {
   for (size_t c = 0; c < measured.curves.size(); ++c) add_curve(measured.curves[c], c);
-  build_grid();
+  std::vector<SegmentEnds> ends;
+  ends.reserve(segments_.size());
+  for (const Segment& s : segments_) ends.push_back({s.a, s.a + s.along});
+  grid_ = segment_grid(ends);
 }
 
 void MatchCandidates::add_curve(const BorderCurve& curve, size_t index) {
@@ -46,44 +48,17 @@ void MatchCandidates::add_curve(const BorderCurve& curve, size_t index) {
   segments_.back().after = curve.closed ? first : segments_.size() - 1;
 }
 
-void MatchCandidates::build_grid() {
-  if (segments_.empty()) return;
-  glm::dvec2 low = segments_.front().a, high = low;
-  for (const Segment& s : segments_) {
-    low = glm::min(low, glm::min(s.a, s.a + s.along));
-    high = glm::max(high, glm::max(s.a, s.a + s.along));
-  }
-  origin_ = low;
-  const glm::dvec2 size = high - low;
-  while ((size.x / cell_px_ + 1.0) * (size.y / cell_px_ + 1.0) > kMostCells) cell_px_ *= 2.0;
-  columns_ = static_cast<int>(size.x / cell_px_) + 1;
-  rows_ = static_cast<int>(size.y / cell_px_) + 1;
-  first_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_) + 1, 0);
-  const auto for_cells = [&](const Segment& s, const auto& visit) {
-    const glm::dvec2 b = s.a + s.along, from = (glm::min(s.a, b) - origin_) / cell_px_, to = (glm::max(s.a, b) - origin_) / cell_px_;
-    for (int row = static_cast<int>(from.y); row <= std::min(static_cast<int>(to.y), rows_ - 1); ++row) {
-      for (int column = static_cast<int>(from.x); column <= std::min(static_cast<int>(to.x), columns_ - 1); ++column)
-        visit(static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column));
-    }
-  };
-  for (const Segment& s : segments_) for_cells(s, [&](size_t cell) { ++first_[cell + 1]; });
-  for (size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-  members_.resize(first_.back());
-  std::vector<std::uint32_t> fill(first_.begin(), first_.end() - 1);
-  for (size_t i = 0; i < segments_.size(); ++i)
-    for_cells(segments_[i], [&](size_t cell) { members_[fill[cell]++] = static_cast<std::uint32_t>(i); });
-}
-
 std::vector<std::uint32_t> MatchCandidates::near(const glm::dvec2& px, double reach_px) const {
   std::vector<std::uint32_t> found;
-  const glm::dvec2 low = (px - reach_px - origin_) / cell_px_, high = (px + reach_px - origin_) / cell_px_;
+  const glm::dvec2 low = (px - reach_px - grid_.origin) / grid_.cell_px, high = (px + reach_px - grid_.origin) / grid_.cell_px;
   const auto inside = [](double cell, int count) {
     return static_cast<int>(std::clamp(std::floor(cell), -1.0, static_cast<double>(count)));
   };
-  for (int row = std::max(0, inside(low.y, rows_)); row <= std::min(rows_ - 1, inside(high.y, rows_)); ++row) {
-    for (int column = std::max(0, inside(low.x, columns_)); column <= std::min(columns_ - 1, inside(high.x, columns_)); ++column) {
-      const size_t cell = static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column);
-      found.insert(found.end(), members_.begin() + first_[cell], members_.begin() + first_[cell + 1]);
+  for (int row = std::max(0, inside(low.y, grid_.rows)); row <= std::min(grid_.rows - 1, inside(high.y, grid_.rows)); ++row) {
+    for (int column = std::max(0, inside(low.x, grid_.columns)); column <= std::min(grid_.columns - 1, inside(high.x, grid_.columns));
+         ++column) {
+      const auto members = grid_.in_cell(column, row);
+      found.insert(found.end(), members.begin(), members.end());
     }
   }
   std::sort(found.begin(), found.end());

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "raymarch/curves/curve_geometry.h"
+#include "raymarch/curves/segment_grid.h"
 
 namespace limn {
 
@@ -39,7 +40,6 @@ class MatchCandidates {
     size_t before = 0, after = 0;  ///< Neighbours along the curve; itself at an open end.
   };
   void add_curve(const BorderCurve& curve, size_t index);
-  void build_grid();
   std::vector<std::uint32_t> near(const glm::dvec2& px, double reach_px) const;
   std::optional<MatchCandidate> nearest_on(const CurveSample& sample, std::uint32_t index, double reach_px) const;
   std::optional<MatchCandidate> meeting_on(const CurveSample& sample, std::uint32_t index, double reach_px) const;
@@ -47,10 +47,7 @@ class MatchCandidates {
   std::vector<Segment> segments_{};
   std::vector<double> lengths_{};
   std::vector<char> closed_{};
-  glm::dvec2 origin_{0.0};
-  double cell_px_ = 4.0;
-  int columns_ = 0, rows_ = 0;
-  std::vector<std::uint32_t> first_{}, members_{};
+  SegmentGrid grid_{};
 };
 
 }  // namespace limn

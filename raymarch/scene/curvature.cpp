@@ -100,12 +100,7 @@ SurfaceCurvature curvature_of_tensor(const glm::dmat3& tensor, const glm::dvec3&
   SurfaceCurvature result;
   result.normal = normal;
   const glm::dvec3 u = across(normal), v = glm::cross(normal, u);
-  const double uu = glm::dot(u, tensor * u), uv = glm::dot(u, tensor * v), vv = glm::dot(v, tensor * v);
-  const double mean = 0.5 * (uu + vv), half = 0.5 * (uu - vv), spread = std::hypot(half, uv);
-  result.k1 = mean + spread;
-  result.k2 = mean - spread;
-  const double angle = 0.5 * std::atan2(uv, half);
-  result.direction1 = std::cos(angle) * u + std::sin(angle) * v;
+  set_principal(result, u, v, glm::dot(u, tensor * u), glm::dot(u, tensor * v), glm::dot(v, tensor * v));
   return result;
 }
 

@@ -32,7 +32,7 @@ void refuse_unread(const Options& options, const SceneInput& input) {
   for (const std::string& method : options.spec.border.methods) {
     if (method != "rim") refuse("--method " + method, "a plan measures the border of rim; leave it out");
   }
-  for (const ParameterText& set : options.spec.border.parameters) {
+  for (const ParameterSetting& set : options.spec.border.parameters) {
     if (set.key != "threshold" && set.key != "rim.threshold")
       refuse("--set " + set.key, "a plan reads no parameter but rim's threshold; leave it out");
     if (options.plan.silhouette) refuse("--set " + set.key, "a silhouette has no threshold; leave it out, or --metric silhouette");

@@ -37,7 +37,7 @@ std::vector<MethodCall> without_hysteresis(BorderSpec spec, const SceneInput& in
     const std::vector<Parameter>& parameters = call.method->parameters;
     const auto is_hysteresis = [](const Parameter& one) { return one.name == "hysteresis"; };
     if (std::any_of(parameters.begin(), parameters.end(), is_hysteresis)) {
-      spec.parameters.push_back({call.method->about.name + ".hysteresis", "0"});
+      spec.parameters.push_back({call.method->about.name + ".hysteresis", {{0.0}}});
     }
   }
   return method_calls(spec, input);

@@ -64,7 +64,7 @@ std::vector<PendingMethod> chosen_methods(const BorderSpec& spec, const SceneInp
 }
 
 // `key` or `method.key`; a key that none of the chosen methods has is an error that names those that they have.
-void apply_set(const ParameterText& set, std::vector<PendingMethod>& pending) {
+void apply_set(const ParameterSetting& set, std::vector<PendingMethod>& pending) {
   const size_t dot = set.key.find('.');
   const std::string method = dot == std::string::npos ? "" : set.key.substr(0, dot);
   const std::string key = dot == std::string::npos ? set.key : set.key.substr(dot + 1);
@@ -75,7 +75,7 @@ void apply_set(const ParameterText& set, std::vector<PendingMethod>& pending) {
       known.push_back(dot == std::string::npos ? parameter.name : one.method->about.name + "." + parameter.name);
     if (!method.empty() && method != one.method->about.name) continue;
     if (!has_parameter(*one.method, key)) continue;
-    one.parameters[key] = parse_parameter(set.value);
+    one.parameters[key] = set.value;
     used = true;
   }
   if (!used) throw InputError({"", "parameters." + set.key, "", "no method of this call has that parameter", known_names(set.key, known)});
@@ -157,7 +157,7 @@ Camera camera_of_view(const CameraSettings& settings, const Box& bounds, int ind
 
 std::vector<MethodCall> method_calls(const BorderSpec& spec, const SceneInput& input) {
   std::vector<PendingMethod> pending = chosen_methods(spec, input);
-  for (const ParameterText& set : spec.parameters) apply_set(set, pending);
+  for (const ParameterSetting& set : spec.parameters) apply_set(set, pending);
   std::vector<MethodCall> calls;
   for (const PendingMethod& one : pending) {
     calls.push_back({one.method, resolve(one.method->parameters, one.parameters, "", "parameters." + one.method->about.name + ".")});

@@ -70,10 +70,10 @@ glm::ivec2 parse_size(const std::string& field, std::string_view text) {
   return {parse_integer(field, parts[0], 1, 16384), parse_integer(field, parts[1], 1, 16384)};
 }
 
-ParameterText parse_key_value(const std::string& field, std::string_view text) {
+ParameterSetting parse_key_value(const std::string& field, std::string_view text) {
   const size_t at = text.find('=');
   if (at == std::string_view::npos || at == 0) fail(field, text, "not a pair", "key=value such as threshold=0.4");
-  return {std::string(text.substr(0, at)), std::string(text.substr(at + 1))};
+  return {std::string(text.substr(0, at)), parse_parameter(text.substr(at + 1))};
 }
 
 ParameterInput parse_parameter(std::string_view text) {

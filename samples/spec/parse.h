@@ -23,7 +23,7 @@ glm::dvec3 parse_vector3(const std::string& field, std::string_view text);
 /// "1280x720".
 glm::ivec2 parse_size(const std::string& field, std::string_view text);
 /// `key=value`, where a value is a number, numbers with commas between them, true, false or a word.
-ParameterText parse_key_value(const std::string& field, std::string_view text);
+ParameterSetting parse_key_value(const std::string& field, std::string_view text);
 ParameterInput parse_parameter(std::string_view text);
 
 /// "a,b,c"; empty names are kept, so that they are complained about.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "raymarch/truth.h"
+#include "sdf/descriptor.h"
 #include "subdiv/refine.h"
 
 namespace limn {
@@ -40,19 +41,19 @@ struct CameraSpec {
   bool is_set() const { return eye || target || up || fov_deg || ortho_height; }  ///< True where anything but the size is set.
 };
 
-/// A parameter of methods as text: "threshold" for every method that has it, or "rim.threshold".
-struct ParameterText {
-  std::string key,  ///< "threshold" or "rim.threshold".
-      value;        ///< As it is written on the command line.
+/// A value for a parameter of methods.
+struct ParameterSetting {
+  std::string key{};       ///< "threshold" for every method that has it, or "rim.threshold".
+  ParameterInput value{};  ///< {{0.4}} for a number.
 };
 
 /// Outline methods and their parameters.
 struct BorderSpec {
-  std::vector<std::string> methods{};       ///< Of one picture, in order.
-  std::vector<std::string> columns{};       ///< Each makes pictures of its own; instead of `methods`.
-  std::vector<ParameterText> parameters{};  ///< Over the scene file's, in order.
-  int samples = 1;                          ///< Rays a pixel.
-  std::optional<glm::dvec3> background{};   ///< Linear.
+  std::vector<std::string> methods{};          ///< Of one picture, in order.
+  std::vector<std::string> columns{};          ///< Each makes pictures of its own; instead of `methods`.
+  std::vector<ParameterSetting> parameters{};  ///< Over the scene file's, in order.
+  int samples = 1;                             ///< Rays a pixel.
+  std::optional<glm::dvec3> background{};      ///< Linear.
 };
 
 /// What a call may take.

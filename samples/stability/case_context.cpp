@@ -209,6 +209,16 @@ const Scene& CaseContext::truth_scene() {
   return base.made.reference.objects.empty() ? base.scene : base.made.reference;
 }
 
+Field CaseContext::truth_field() {
+  std::vector<Field> fields;
+  for (const SceneObject& object : truth_scene().objects) {
+    const auto* field = std::get_if<Field>(&object.source);
+    if (field == nullptr) throw InputError({case_.file, "object", "", "no field to compare with", "shapes, or a [[reference]] of shapes"});
+    fields.push_back(*field);
+  }
+  return combine(Csg::union_, fields);
+}
+
 std::vector<MethodCall> CaseContext::methods() {
   BorderSpec spec;
   for (const std::string& name : case_.methods) {

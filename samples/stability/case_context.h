@@ -7,6 +7,7 @@
 #include "raymarch/audit.h"
 #include "raymarch/picture.h"
 #include "samples/stability/case.h"
+#include "sdf/shape.h"
 
 namespace limn {
 
@@ -51,6 +52,8 @@ class CaseContext {
   const std::vector<StabilityView>& fine_views(int times);
   /// What the scene is measured against: the [[reference]], else the scene as it is drawn.
   const Scene& truth_scene();
+  /// Its objects as one field. Throws InputError where one of them is none.
+  Field truth_field();
 
   /// Empty where the surface can model the scene, else why not.
   const std::string& unsupported();

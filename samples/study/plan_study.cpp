@@ -131,7 +131,7 @@ void plan_methods(const StudySpec& spec, const SceneInput& input, Study& study) 
     BorderSpec one = border;
     for (const MethodCall& call : method_calls(border, input)) {
       if (!has_threshold(*call.method)) continue;
-      one.parameters.push_back({call.method->about.name + ".threshold", fmt::format("{}", threshold)});
+      one.parameters.push_back({call.method->about.name + ".threshold", {{threshold}}});
       used = true;
     }
     for (const MethodCall& call : method_calls(one, input)) add_method(call, study);

@@ -2,6 +2,7 @@
 #include <map>
 #include <tuple>
 
+#include "sdf/vm/split.h"
 #include "sdf/vm/vm_number.h"
 #include "sdf/vm/vm_program.h"
 
@@ -56,7 +57,7 @@ class Simplifier {
       if (operands(step.operation) > 2) step.c = made[step.c];
       made[i] = shortened(step);
     }
-    return without_unread(made.back());
+    return steps_for(out_, made.back());
   }
 
  private:
@@ -149,29 +150,6 @@ class Simplifier {
     }
     if (step.operation != Operation::add || depth >= 16) return false;
     return squares_in(step.a, found, depth + 1) && squares_in(step.b, found, depth + 1);
-  }
-
-  Program without_unread(std::uint32_t result) {
-    std::vector<char> read(out_.size(), 0);
-    read[result] = 1;
-    for (size_t i = result + 1; i-- > 0;) {
-      if (!read[i]) continue;
-      const std::uint32_t uses[] = {out_[i].a, out_[i].b, out_[i].c};
-      for (int k = 0; k < operands(out_[i].operation); ++k) read[uses[k]] = 1;
-    }
-    Program kept;
-    std::vector<std::uint32_t> number(out_.size(), 0);
-    for (size_t i = 0; i <= result; ++i) {
-      if (!read[i]) continue;
-      number[i] = static_cast<std::uint32_t>(kept.size());
-      Step step = out_[i];
-      const int count = operands(step.operation);
-      step.a = count > 0 ? number[step.a] : 0;
-      step.b = count > 1 ? number[step.b] : 0;
-      step.c = count > 2 ? number[step.c] : 0;
-      kept.push_back(step);
-    }
-    return kept;
   }
 
   Program out_;

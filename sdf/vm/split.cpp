@@ -64,26 +64,31 @@ SplitProgram split(const Program& program) {
   return std::move(splitter.result);
 }
 
-Program part_of(const Program& program, const Part& part) {
-  std::vector<char> read(part.step + 1, 0);
-  read[part.step] = 1;
-  for (size_t i = part.step + 1; i-- > 0;) {
+Program steps_for(const Program& program, std::uint32_t result) {
+  std::vector<char> read(result + size_t{1}, 0);
+  read[result] = 1;
+  for (size_t i = result + size_t{1}; i-- > 0;) {
     if (!read[i]) continue;
     const std::uint32_t uses[] = {program[i].a, program[i].b, program[i].c};
     for (int k = 0; k < operands(program[i].operation); ++k) read[uses[k]] = 1;
   }
-  Program own;
-  std::vector<std::uint32_t> number(part.step + 1, 0);
-  for (size_t i = 0; i <= part.step; ++i) {
+  Program kept;
+  std::vector<std::uint32_t> number(read.size(), 0);
+  for (size_t i = 0; i < read.size(); ++i) {
     if (!read[i]) continue;
-    number[i] = static_cast<std::uint32_t>(own.size());
+    number[i] = static_cast<std::uint32_t>(kept.size());
     Step step = program[i];
     const int count = operands(step.operation);
     step.a = count > 0 ? number[step.a] : 0;
     step.b = count > 1 ? number[step.b] : 0;
     step.c = count > 2 ? number[step.c] : 0;
-    own.push_back(step);
+    kept.push_back(step);
   }
+  return kept;
+}
+
+Program part_of(const Program& program, const Part& part) {
+  Program own = steps_for(program, part.step);
   const std::uint32_t line = own.back().line;
   const auto append = [&](Operation operation, double constant) {
     own.push_back({operation, static_cast<std::uint32_t>(own.size() - 1), 0, 0, constant, line});

@@ -26,6 +26,8 @@ struct SplitProgram {
 inline constexpr size_t kMostParts = 4096;
 
 SplitProgram split(const Program& program);
+/// The steps that `result` is computed from, renumbered, `result` last.
+Program steps_for(const Program& program, std::uint32_t result);
 /// What a part needs of the program, its own value last.
 Program part_of(const Program& program, const Part& part);
 

@@ -1,4 +1,5 @@
 // Debian's Chromium, driven from here, with every request that would leave the page counted.
+import assert from "node:assert/strict";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -38,4 +39,24 @@ export async function openPage(context, file, { width, height, dark = false }) {
   await page.emulateMedia({ colorScheme: dark ? "dark" : "light" });
   await page.goto(url, { waitUntil: "load" });
   return { page, requests, complaints };
+}
+
+// Runs the checks on the page on screens of each size; no request leaves the page, which complains of nothing; pictures stay in `folder`.
+export async function checkOnScreens(folder, screens, checks, about) {
+  const { context, close } = await startBrowser();
+  try {
+    for (const screen of screens) {
+      const opened = await openPage(context, join(folder, "report.html"), screen);
+      for (const check of checks) {
+        await check(opened, about);
+        console.log(`ok: ${check.name} at ${screen.width} px${screen.dark ? ", dark" : ""}`);
+      }
+      assert.deepEqual(opened.requests, [], "no request left the page");
+      assert.deepEqual(opened.complaints, []);
+      await opened.page.screenshot({ path: join(folder, `report-${screen.width}${screen.dark ? "-dark" : ""}.png`), fullPage: true });
+      await opened.page.close();
+    }
+  } finally {
+    await close();
+  }
 }

@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { folder, here, needs, program, skip } from "./start.mjs";
 
 needs("playwright-core");
-const { chromiumPath, openPage, startBrowser } = await import("./browser.mjs");
+const { checkOnScreens, chromiumPath } = await import("./browser.mjs");
 
 function theVendoredSliderIsTheLockedOne() {
   const vendored = readFileSync(join(here, "../../samples/page/vendor/img-comparison-slider.js"), "utf8");
@@ -113,21 +113,7 @@ if (!chromiumPath) skip("no Chromium; Debian's package chromium brings it");
 mkdirSync(folder, { recursive: true });
 const coarse = ["--size", "320x240", "--voxels", "48", "--level", "2"];
 execFileSync(program, ["compare", "machined_part", "--methods", "all", ...coarse, "-q", "-o", folder]);
-const { context, close } = await startBrowser();
-try {
-  for (const screen of [{ width: 1280, height: 900 }, { width: 390, height: 844, dark: true }]) {
-    const opened = await openPage(context, join(folder, "report.html"), screen);
-    const checks = [itLoadsInSilence, nothingIsWiderThanTheScreen, theSliderMovesByKeyAndByMouse, anyTwoPicturesCanBeChosen,
-      pixelsAreSquaresWhenEnlarged, theTableSorts, eachMethodHasItsCards];
-    for (const check of checks) {
-      await check(opened);
-      console.log(`ok: ${check.name} at ${screen.width} px`);
-    }
-    assert.deepEqual(opened.requests, [], "no request left the page");
-    assert.deepEqual(opened.complaints, []);
-    await opened.page.screenshot({ path: join(folder, `report-${screen.width}.png`), fullPage: true });
-    await opened.page.close();
-  }
-} finally {
-  await close();
-}
+await checkOnScreens(folder, [{ width: 1280, height: 900 }, { width: 390, height: 844, dark: true }], [
+  itLoadsInSilence, nothingIsWiderThanTheScreen, theSliderMovesByKeyAndByMouse, anyTwoPicturesCanBeChosen,
+  pixelsAreSquaresWhenEnlarged, theTableSorts, eachMethodHasItsCards,
+]);

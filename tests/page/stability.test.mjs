@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { folder, here, needs, program, skip } from "./start.mjs";
 
 needs("playwright-core");
-const { chromiumPath, openPage, startBrowser } = await import("./browser.mjs");
+const { checkOnScreens, chromiumPath } = await import("./browser.mjs");
 
 const kWeights = ["skipped", "held", "degraded", "fails as expected", "wrong"];
 const classOf = outcome => outcome.replaceAll(" ", "-");
@@ -162,7 +162,7 @@ if (program !== "-") {
   mkdirSync(folder, { recursive: true });
   const cases = ["cube_faces", "corners_split_normals", "inverted_mesh"].flatMap(name => ["--case", name]);
   try {
-    execFileSync(program, ["study", "stability", ...cases, "-q", "-o", folder]);
+    execFileSync(program, ["stability", ...cases, "-q", "-o", folder]);
   } catch (error) {
     // 1 says that something is wrong in the cells, which is for other tests to judge.
     assert.equal(error.status, 1, String(error.stderr));
@@ -170,21 +170,7 @@ if (program !== "-") {
 }
 const results = JSON.parse(readFileSync(join(folder, "results.json"), "utf8"));
 assert.ok(results.cells.length > 0 && results.cases.length > 1);
-const { context, close } = await startBrowser();
-try {
-  for (const screen of [{ width: 1280, height: 900 }, { width: 1280, height: 900, dark: true }, { width: 390, height: 844, dark: true }]) {
-    const opened = await openPage(context, join(folder, "report.html"), screen);
-    const checks = [everyCellHasItsMark, outcomesAreToldApartWithoutColour, marksCanBeReadAndPressed, outcomesCanBeTakenAway, itFitsTheScreen,
-      aMarkOpensWithEverythingAboutIt, pointingAtAMarkShowsIt, arrowsGoFromMarkToMark];
-    for (const check of checks) {
-      await check(opened, results);
-      console.log(`ok: ${check.name} at ${screen.width} px${screen.dark ? ", dark" : ""}`);
-    }
-    assert.deepEqual(opened.requests, [], "no request left the page");
-    assert.deepEqual(opened.complaints, []);
-    await opened.page.screenshot({ path: join(folder, `report-${screen.width}${screen.dark ? "-dark" : ""}.png`), fullPage: true });
-    await opened.page.close();
-  }
-} finally {
-  await close();
-}
+await checkOnScreens(folder, [{ width: 1280, height: 900 }, { width: 1280, height: 900, dark: true }, { width: 390, height: 844, dark: true }], [
+  everyCellHasItsMark, outcomesAreToldApartWithoutColour, marksCanBeReadAndPressed, outcomesCanBeTakenAway, itFitsTheScreen,
+  aMarkOpensWithEverythingAboutIt, pointingAtAMarkShowsIt, arrowsGoFromMarkToMark,
+], results);

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { folder, here, needs, program, skip } from "./start.mjs";
 
 needs("vega");
-const { chromiumPath, openPage, startBrowser } = await import("./browser.mjs");
+const { checkOnScreens, chromiumPath } = await import("./browser.mjs");
 
 const kCharts = ["chart_accuracy_time", "chart_accuracy_memory", "chart_order", "chart_normal_border", "chart_views"];
 
@@ -24,7 +24,7 @@ function theVendoredChartsAreTheLockedOnes() {
   }
 }
 
-const isDrawn = page => page.waitForFunction(() => document.body.dataset.drawn);
+const isDrawn = ({ page }) => page.waitForFunction(() => document.body.dataset.drawn);
 async function drawnAnew({ page }, change) {
   const before = await page.$eval("body", body => Number(body.dataset.drawn));
   await change();
@@ -166,22 +166,7 @@ if (program !== "-") {
   writeFileSync(scene, '[[object]]\nshape = "ellipsoid"\nradii = [1.0, 0.7, 0.5]\n');
   execFileSync(program, ["study", scene, "--size", "160x120", "--views", "2", "--levels", "1,2,3", "--voxels", "16,32,48", "-q", "-o", folder]);
 }
-const { context, close } = await startBrowser();
-try {
-  for (const screen of [{ width: 1280, height: 900 }, { width: 390, height: 844, dark: true }]) {
-    const opened = await openPage(context, join(folder, "report.html"), screen);
-    await isDrawn(opened.page);
-    const checks = [everyChartIsDrawn, frontsHoldWhatNothingShownBeats, ordersAreThoseOfTheProgram, itFitsTheScreen, aSeriesCanBeTakenAway, choicesChangeWhatIsDrawn,
-      nothingChosenIsSaid, aPointShowsItsNumbersAndPicture, theTableSorts];
-    for (const check of checks) {
-      await check(opened);
-      console.log(`ok: ${check.name} at ${screen.width} px`);
-    }
-    assert.deepEqual(opened.requests, [], "no request left the page");
-    assert.deepEqual(opened.complaints, []);
-    await opened.page.screenshot({ path: join(folder, `report-${screen.width}.png`), fullPage: true });
-    await opened.page.close();
-  }
-} finally {
-  await close();
-}
+await checkOnScreens(folder, [{ width: 1280, height: 900 }, { width: 390, height: 844, dark: true }], [
+  isDrawn, everyChartIsDrawn, frontsHoldWhatNothingShownBeats, ordersAreThoseOfTheProgram, itFitsTheScreen,
+  aSeriesCanBeTakenAway, choicesChangeWhatIsDrawn, nothingChosenIsSaid, aPointShowsItsNumbersAndPicture, theTableSorts,
+]);

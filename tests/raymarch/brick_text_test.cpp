@@ -10,16 +10,12 @@
 #include "sdf/error.h"
 #include "sdf/level_set_data.h"
 #include "sdf/shape.h"
+#include "tests/text_lines.h"
 
 namespace limn {
 namespace {
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
+using test::lines_of;
 
 /// Every number of a line, in order.
 std::vector<double> numbers_of(std::string line) {

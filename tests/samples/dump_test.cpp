@@ -5,18 +5,14 @@
 #include <sstream>
 
 #include "run_program.h"
+#include "tests/text_lines.h"
 
 namespace limn {
 namespace {
 
 using Words = std::vector<std::string>;
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
+using test::lines_of;
 
 /// The dump of a scene of one object, after the two lines that say where it is and whose it is.
 std::vector<std::string> dump(const Words& call) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "run_program.h"
+#include "tests/contract_shapes.h"
 
 namespace limn {
 namespace {
@@ -39,23 +40,7 @@ INSTANTIATE_TEST_SUITE_P(List, ListKind, testing::Values("shapes", "surfaces", "
 
 TEST(List, EveryShapeOfTheContractIsThereWithItsParameters) {
   const json document = run_limn({"list", "shapes", "--json"}).json();
-  const std::map<std::string, std::vector<std::string>> wanted = {
-      {"sphere", {"radius"}},
-      {"ellipsoid", {"radii"}},
-      {"box", {"half"}},
-      {"rounded_box", {"half", "rounding"}},
-      {"plane", {"normal", "offset"}},
-      {"torus", {"major", "minor"}},
-      {"capsule", {"a", "b", "radius"}},
-      {"cylinder", {"radius", "half_height"}},
-      {"cone", {"angle_deg", "height"}},
-      {"superellipsoid", {"radii", "exponents"}},
-      {"revolution", {"profile"}},
-      {"gyroid", {"period", "thickness", "bound"}},
-      {"metaballs", {"centers", "radii", "level"}},
-      {"cyclide", {"a", "b", "d"}},
-  };
-  for (const auto& [name, parameters] : wanted) {
+  for (const auto& [name, parameters] : test::contract_shapes()) {
     bool found = false;
     for (const json& entry : document) {
       if (entry.at("name") != name) continue;

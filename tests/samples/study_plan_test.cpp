@@ -157,7 +157,7 @@ TEST(StudyKey, ChangesWithEverythingThatTheCellDependsOn) {
       {"threshold", [](StudySpec& o) { o.sweep.thresholds = {0.41}; }},
       {"softness",
        [](StudySpec& o) {
-         o.experiment.border.parameters = {{"softness", "0.01"}};
+         o.experiment.border.parameters = {{"softness", {{0.01}}}};
        }},
       {"method", [](StudySpec& o) { o.experiment.border.columns = {"sobel"}; }},
       {"flicker", [](StudySpec& o) { o.sweep.flicker = true; }},

@@ -7,6 +7,7 @@
 
 #include "random_field.h"
 #include "sdf/error.h"
+#include "tests/contract_shapes.h"
 
 namespace limn {
 namespace {
@@ -22,26 +23,13 @@ InputFault fault_of(const std::string& name, const std::map<std::string, std::ve
 }
 
 TEST(Shape, RegistryHoldsTheContractsShapesAndParameters) {
-  const std::map<std::string, std::set<std::string>> contract = {{"sphere", {"radius"}},
-                                                                 {"ellipsoid", {"radii"}},
-                                                                 {"box", {"half"}},
-                                                                 {"rounded_box", {"half", "rounding"}},
-                                                                 {"plane", {"normal", "offset"}},
-                                                                 {"torus", {"major", "minor"}},
-                                                                 {"capsule", {"a", "b", "radius"}},
-                                                                 {"cylinder", {"radius", "half_height"}},
-                                                                 {"cone", {"angle_deg", "height"}},
-                                                                 {"superellipsoid", {"radii", "exponents"}},
-                                                                 {"revolution", {"profile"}},
-                                                                 {"gyroid", {"period", "thickness", "bound"}},
-                                                                 {"metaballs", {"centers", "radii", "level"}},
-                                                                 {"cyclide", {"a", "b", "d"}}};
+  const auto& contract = test::contract_shapes();
   EXPECT_EQ(shapes().size(), contract.size());
   for (const ShapeDescriptor& shape : shapes()) {
     ASSERT_TRUE(contract.contains(shape.about.name)) << shape.about.name;
-    std::set<std::string> names;
+    std::vector<std::string> names;
     for (const Parameter& p : shape.parameters) {
-      names.insert(p.name);
+      names.push_back(p.name);
       EXPECT_FALSE(p.help.empty()) << shape.about.name << "." << p.name;
       for (const double x : p.default_value) EXPECT_TRUE(p.min <= x && x <= p.max) << shape.about.name << "." << p.name;
     }

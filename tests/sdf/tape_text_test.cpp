@@ -14,18 +14,14 @@
 #include "sdf/field_program_text.h"
 #include "tests/random_seed.h"
 #include "tests/sdf/random_field.h"
+#include "tests/text_lines.h"
 
 namespace limn {
 namespace {
 
 using Words = std::vector<std::string>;
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
+using test::lines_of;
 
 Words words_of(const std::string& line) {
   std::istringstream stream(line);

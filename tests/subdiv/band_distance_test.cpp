@@ -124,15 +124,7 @@ TEST(BlockTriangles, NameEveryTriangleThatANodeIsInReachOf) {
   EXPECT_THROW(triangles_near_blocks(mesh, kVoxel, reach, 10), InputError);
 }
 
-double exact_winding(const TriangleMesh& mesh, const glm::dvec3& p) {
-  double sum = 0.0;
-  for (const glm::uvec3& t : mesh.triangles) {
-    const glm::dvec3 a = mesh.positions[t.x] - p, b = mesh.positions[t.y] - p, c = mesh.positions[t.z] - p;
-    const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-    sum += std::atan2(glm::dot(a, glm::cross(b, c)), la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
-  }
-  return sum / (2.0 * std::numbers::pi);
-}
+using test::exact_winding;
 
 /// About holes of several sizes, so that rims lie inside blocks, and nodes on both sides of the surface hang together around them.
 TEST(MeshLevelSet, SignsAgreeWithTheExactWindingNumberAtEveryNodeOfTheBand) {

@@ -94,15 +94,7 @@ TEST(Winding, GradientFromTheBorderAgreesWithFiniteDifferences) {
   const TriangleMesh open = triangles_of(mesh);
   const Winding winding(open);
   EXPECT_FALSE(winding.closed());
-  const auto exact = [&open](const glm::dvec3& p) {
-    double sum = 0.0;
-    for (const glm::uvec3& t : open.triangles) {
-      const glm::dvec3 a = open.positions[t.x] - p, b = open.positions[t.y] - p, c = open.positions[t.z] - p;
-      const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-      sum += std::atan2(glm::dot(a, glm::cross(b, c)), la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
-    }
-    return sum / (2.0 * std::numbers::pi);
-  };
+  const auto exact = [&open](const glm::dvec3& p) { return test::exact_winding(open, p); };
   const double h = 1e-4;
   for (const glm::dvec3& p : random_points({glm::dvec3(-0.5), glm::dvec3(0.5)}, 10, 65)) {
     const glm::dvec3 gradient = winding.gradient(p);

@@ -156,4 +156,15 @@ inline Mesh box_at(const glm::dvec3& half, const glm::dvec3& center) {
   return mesh;
 }
 
+/// Winding number about p: the sum of the triangles' solid angles over 4 pi (van Oosterom and Strackee 1983).
+inline double exact_winding(const TriangleMesh& mesh, const glm::dvec3& p) {
+  double sum = 0.0;
+  for (const glm::uvec3& t : mesh.triangles) {
+    const glm::dvec3 a = mesh.positions[t.x] - p, b = mesh.positions[t.y] - p, c = mesh.positions[t.z] - p;
+    const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+    sum += std::atan2(glm::dot(a, glm::cross(b, c)), la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+  }
+  return sum / (2.0 * std::numbers::pi);
+}
+
 }  // namespace limn::test

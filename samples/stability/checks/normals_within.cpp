@@ -15,14 +15,7 @@ double angle_deg(const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 StabilityFinding run(CaseContext& context, const MethodCall*, const Parameters&) {
-  std::vector<Field> fields;
-  for (const SceneObject& object : context.truth_scene().objects) {
-    const auto* field = std::get_if<Field>(&object.source);
-    if (field == nullptr)
-      throw InputError({context.which().file, "object", "", "no field to compare with", "shapes, or a [[reference]] of shapes"});
-    fields.push_back(*field);
-  }
-  FieldEvaluator evaluator(combine(Csg::union_, fields));
+  FieldEvaluator evaluator(context.truth_field());
   Worst worst;
   for (const StabilityView& view : context.views()) {
     double largest = -1.0;

@@ -29,25 +29,19 @@ bool differ(const Drawn& a, const Drawn& b, size_t i, bool exact) {
 StabilityFinding run(CaseContext& context, const MethodCall* method, const Parameters& with) {
   const bool exact = with.flag("exact");
   Worst worst;
-  for (size_t variant = 1; variant <= context.which().variants.size(); ++variant) {
-    const StabilityStage& changed = context.stage(variant);
-    worst.said(said_of(changed, method->method->about.name));
-    for (size_t k = 0; k < context.views().size(); ++k) {
-      const StabilityView &view = context.views()[k], &other = context.views(variant)[k];
-      const Border border = draw_border(context.stage(), view, *method), other_border = draw_border(changed, other, *method);
-      worst.said(other_border.notes);
-      std::int64_t different = 0;
-      std::string first;
-      for (size_t i = 0; i < view.seen.id.size(); ++i) {
-        if (!differ({view, border}, {other, other_border}, i, exact)) continue;
-        const auto width = static_cast<size_t>(view.seen.width);
-        if (different++ == 0) first = fmt::format(", the first at ({}, {})", i % width, i / width);
-      }
-      const std::string words =
-          fmt::format("{} of {} pixels differ with {}{}", different, view.seen.id.size(), changed.variant.words, first);
-      worst.see(static_cast<double>(different), words, changed, other, &other_border);
+  for_each_variant(context, *method, worst, [&](const VariantView& both) {
+    const auto& [changed, view, other, border, other_border] = both;
+    worst.said(other_border.notes);
+    std::int64_t different = 0;
+    std::string first;
+    for (size_t i = 0; i < view.seen.id.size(); ++i) {
+      if (!differ({view, border}, {other, other_border}, i, exact)) continue;
+      const auto width = static_cast<size_t>(view.seen.width);
+      if (different++ == 0) first = fmt::format(", the first at ({}, {})", i % width, i / width);
     }
-  }
+    const std::string words = fmt::format("{} of {} pixels differ with {}{}", different, view.seen.id.size(), changed.variant.words, first);
+    worst.see(static_cast<double>(different), words, changed, other, &other_border);
+  });
   return worst.take();
 }
 

@@ -18,21 +18,10 @@ LevelSet level_set_of(const StabilityStage& stage, std::vector<std::string>& sai
   return made;
 }
 
-Field truth_of(CaseContext& context) {
-  std::vector<Field> fields;
-  for (const SceneObject& object : context.truth_scene().objects) {
-    const auto* field = std::get_if<Field>(&object.source);
-    if (field == nullptr)
-      throw InputError({context.which().file, "object", "", "no field to compare with", "shapes, or a [[reference]] of shapes"});
-    fields.push_back(*field);
-  }
-  return combine(Csg::union_, fields);
-}
-
 StabilityFinding run(CaseContext& context, const MethodCall*, const Parameters& with) {
   StabilityFinding finding;
   const LevelSet grid = level_set_of(context.stage(), finding.said);
-  const Field truth = truth_of(context);
+  const Field truth = context.truth_field();
   const Box box = dilate(truth.traits().bounds, 4.0 * grid.info().voxel_size);
   const double clear = with.number("clear_voxels") * grid.info().voxel_size;
   std::vector<glm::dvec3> points(static_cast<size_t>(with.integer("points")));

@@ -43,28 +43,23 @@ StabilityFinding run(CaseContext& context, const MethodCall* method, const Param
   const std::span<const double> path = with.list("path");
   if (path.empty()) throw InputError({context.which().file, "with.path", "", "no path", "path = [[x, y, z], …]"});
   Worst worst;
-  for (size_t variant = 1; variant <= context.which().variants.size(); ++variant) {
-    const StabilityStage& changed = context.stage(variant);
-    worst.said(said_of(changed, method->method->about.name));
-    for (size_t k = 0; k < context.views().size(); ++k) {
-      const StabilityView &view = context.views()[k], &other = context.views(variant)[k];
-      const Border border = draw_border(context.stage(), view, *method), other_border = draw_border(changed, other, *method);
-      std::int64_t different = 0;
-      double farthest = 0.0;
-      for (size_t i = 0; i < view.seen.id.size(); ++i) {
-        if (std::abs(border.coverage.pixels[i] - other_border.coverage.pixels[i]) <= 0.5f &&
-            view.seen.id.pixels[i] == other.seen.id.pixels[i])
-          continue;
-        ++different;
-        if (view.seen.id.pixels[i] == 0 && other.seen.id.pixels[i] == 0) continue;
-        const auto width = static_cast<size_t>(view.camera.width_px);
-        farthest = std::max(farthest, distance_at(view, other, path, {i % width, i / width}, with.integer("reach_px")));
-      }
-      worst.see(farthest,
-                fmt::format("{} pixels differ with {}, the farthest {:.3g} from the change", different, changed.variant.words, farthest),
-                changed, other, &other_border);
+  for_each_variant(context, *method, worst, [&](const VariantView& both) {
+    const auto& [changed, view, other, border, other_border] = both;
+    std::int64_t different = 0;
+    double farthest = 0.0;
+    for (size_t i = 0; i < view.seen.id.size(); ++i) {
+      if (std::abs(border.coverage.pixels[i] - other_border.coverage.pixels[i]) <= 0.5f &&
+          view.seen.id.pixels[i] == other.seen.id.pixels[i])
+        continue;
+      ++different;
+      if (view.seen.id.pixels[i] == 0 && other.seen.id.pixels[i] == 0) continue;
+      const auto width = static_cast<size_t>(view.camera.width_px);
+      farthest = std::max(farthest, distance_at(view, other, path, {i % width, i / width}, with.integer("reach_px")));
     }
-  }
+    worst.see(farthest,
+              fmt::format("{} pixels differ with {}, the farthest {:.3g} from the change", different, changed.variant.words, farthest),
+              changed, other, &other_border);
+  });
   return worst.take();
 }
 

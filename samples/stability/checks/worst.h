@@ -30,6 +30,27 @@ class Worst {
   bool any_ = false;
 };
 
+/// One view as the scene has it and as a variant of the scene has it, each with the method's border.
+struct VariantView {
+  const StabilityStage& changed;
+  const StabilityView &view, &other;
+  const Border &border, &other_border;
+};
+
+/// Calls `look` with each variant's views, after what the method says of the variant was kept.
+template <class Look>
+void for_each_variant(CaseContext& context, const MethodCall& method, Worst& worst, const Look& look) {
+  for (size_t variant = 1; variant <= context.which().variants.size(); ++variant) {
+    const StabilityStage& changed = context.stage(variant);
+    worst.said(said_of(changed, method.method->about.name));
+    for (size_t k = 0; k < context.views().size(); ++k) {
+      const StabilityView &view = context.views()[k], &other = context.views(variant)[k];
+      const Border border = draw_border(context.stage(), view, method), other_border = draw_border(changed, other, method);
+      look(VariantView{changed, view, other, border, other_border});
+    }
+  }
+}
+
 inline Parameter stability_number(const std::string& name, double value, const std::string& unit, const std::string& help) {
   return a_number(name, value).in(-1e12, 1e12).unit(unit).help(help);
 }

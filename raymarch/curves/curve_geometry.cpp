@@ -8,7 +8,6 @@
 namespace limn {
 namespace {
 
-
 glm::dvec2 point_at(const BorderCurve& curve, size_t i) { return curve.points[i % curve.points.size()].px; }
 
 size_t segment_count(const BorderCurve& curve) {

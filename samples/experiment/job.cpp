@@ -159,6 +159,7 @@ std::vector<MethodCall> method_calls(const BorderSpec& spec, const SceneInput& i
   std::vector<PendingMethod> pending = chosen_methods(spec, input);
   for (const ParameterSetting& set : spec.parameters) apply_set(set, pending);
   std::vector<MethodCall> calls;
+  calls.reserve(pending.size());
   for (const PendingMethod& one : pending) {
     calls.push_back({one.method, resolve(one.method->parameters, one.parameters, "", "parameters." + one.method->about.name + ".")});
   }

@@ -1,6 +1,6 @@
 // A scene and its variants draw the same picture.
 
-#include <cstring>
+#include <bit>
 
 #include "samples/stability/checks/check.h"
 #include "samples/stability/checks/worst.h"
@@ -8,10 +8,8 @@
 namespace limn {
 namespace {
 
-template <class T>
-bool same_bits(const T& a, const T& b) {
-  return std::memcmp(&a, &b, sizeof(T)) == 0;
-}
+bool same_bits(float a, float b) { return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b); }
+bool same_bits(const glm::vec3& a, const glm::vec3& b) { return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z); }
 
 struct Drawn {
   const StabilityView& view;

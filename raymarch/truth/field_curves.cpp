@@ -12,7 +12,9 @@
 namespace limn {
 namespace {
 
-constexpr int kDeepest = 14;  // halvings of a step between two marched points
+constexpr double kLongest_px = 1.0;  // longer steps are looked at in between, however straight the curve runs there
+constexpr double kTurning_px = 0.2;  // so wide are the turns that are looked for
+constexpr int kDeepest = 14;         // halvings of a step between two marched points
 
 /// The domain is wider than the bounds by odd shares on every side: what is symmetric about its own middle then keeps off the cells' faces.
 CellGrid make_grid(const Box& bounds, int level) {
@@ -71,6 +73,9 @@ void halve(const Refiner& refiner, FieldEvaluator& evaluator, double c, const Cu
     middle = point_between(evaluator, refiner.viewer, c, a, b, glm::mix(a.p, b.p, share));
     if (middle) break;
   }
+  // Where a curve turns back within a step it may go farther aside than it is long.
+  if (!middle && glm::distance(image_of(refiner.camera, a.p), image_of(refiner.camera, b.p)) > kTurning_px)
+    middle = point_between(evaluator, refiner.viewer, c, a, b, glm::mix(a.p, b.p, 0.5), 4.0);
   if (!middle) {
     ++out.unrefined;
     out.worst_px = std::max(out.worst_px, sagitta_px);
@@ -178,8 +183,11 @@ void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
     FieldEvaluator whole(refiner.field);
     for (size_t i = range.begin(); i < range.end(); ++i) {
       const CurvePoint &a = curve.points[i], &b = curve.points[(i + 1) % n];
-      const double length = glm::distance(a.p, b.p);
-      if (sagitta[i] <= 0.5 * refiner.tolerance_px || length < 1e-9 * refiner.extent) continue;
+      const double length = glm::distance(a.p, b.p),
+                   length_px = glm::distance(image_of(refiner.camera, a.p), image_of(refiner.camera, b.p));
+      // A long step may pass by where the curve goes aside and comes back.
+      const bool straight = sagitta[i] <= 0.5 * refiner.tolerance_px && length_px < kLongest_px;
+      if (straight || length < 1e-9 * refiner.extent) continue;
       const Box around = dilate(include(include(Box{}, a.p), b.p), kFanReach * length);
       FieldEvaluator evaluator(whole.restricted(around));
       halve(refiner, evaluator, curve.c, a, b, sagitta[i], kDeepest, between[i]);

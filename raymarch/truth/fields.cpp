@@ -10,11 +10,13 @@
 #include "raymarch/truth/field_curves.h"
 #include "raymarch/truth/field_visibility.h"
 #include "raymarch/truth/shares.h"
+#include "sdf/segment.h"
 
 namespace limn {
 namespace {
 
-constexpr double kTouch = 1e-6;  // of the extent: objects that share less depth touch
+constexpr double kBulge_px = 0.05;  // a refined curve leaves its chords by less
+constexpr double kTouch = 1e-6;     // of the extent: objects that share less depth touch
 
 /// Everything in solver space.
 struct SolvedScene {
@@ -71,6 +73,7 @@ void find_bodies(SolvedScene& solved) {
   }
   for (const std::vector<size_t>& body : solved.bodies) {
     std::vector<Field> parts;
+    parts.reserve(body.size());
     for (const size_t i : body) parts.push_back(solved.fields[i]);
     solved.body_fields.push_back(combine(Csg::union_, parts));
   }
@@ -191,7 +194,12 @@ TracedPoint point_on_step(const SolvedScene& solved, const Viewer& viewer, doubl
   FieldEvaluator evaluator(whole.restricted(around));
   const double c = curve.kind == CurveKind::silhouette ? 0.0 : threshold;
   const glm::dvec3 chord_point = glm::mix(a.p, b.p, t);
-  const auto found = point_between(evaluator, viewer, c, curve_point(a, {}), curve_point(b, {}), chord_point);
+  auto found = point_between(evaluator, viewer, c, curve_point(a, {}), curve_point(b, {}), chord_point);
+  // The step was refined, so that its chord is as good; farther from it lies another curve: beside the tip of a wedge its other side.
+  if (found && a.crease == b.crease) {
+    const glm::dvec2 at(project(solved.camera, found->p));
+    if (found->crease != a.crease || distance_to_segment(at, a.px, b.px) > kBulge_px) found.reset();
+  }
   const TracedPoint& nearer = t < 0.5 ? a : b;
   CurvePoint point = found ? *found : curve_point(nearer, {});
   if (!found) point.p = chord_point;

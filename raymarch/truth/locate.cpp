@@ -227,22 +227,22 @@ std::optional<CurvePoint> search_fan(FieldEvaluator& evaluator, const Viewer& vi
 }  // namespace
 
 std::optional<CurvePoint> point_between(FieldEvaluator& evaluator, const Viewer& viewer, double c, const CurvePoint& a, const CurvePoint& b,
-                                        const glm::dvec3& middle) {
+                                        const glm::dvec3& middle, double reach) {
   const double length = glm::length(b.p - a.p);
   if (!(length > 0.0)) return {};
   const glm::dvec3 along = (b.p - a.p) / length;
   if (!a.crease || !b.crease) {
-    auto point = polish(evaluator, viewer, c, middle, 0.5 * length);
+    auto point = polish(evaluator, viewer, c, middle, 0.5 * reach * length);
     const double place = point ? glm::dot(point->p - a.p, along) / length : -1.0;
     if (point && place > 0.0 && place < 1.0) return point;
   }
   const glm::dvec3 at_a = unit(a.high + a.low), at_b = unit(b.high + b.low);
   for (const glm::dvec3& outward : {at_a + at_b, a.crease ? at_a : at_b, a.crease ? at_b : at_a}) {
     const glm::dvec3 n = unit(outward - glm::dot(outward, along) * along);
-    for (const double radius : {0.5 * length, 0.1 * length}) {
+    for (const double radius : {0.5 * reach * length, 0.1 * reach * length}) {
       for (const double inward : {1.0, -1.0}) {
         auto point = search_fan(evaluator, viewer, c, middle, radius, inward * n, glm::cross(along, n));
-        if (point && glm::length(point->p - middle) < length) return point;
+        if (point && glm::length(point->p - middle) < reach * length) return point;
       }
     }
   }

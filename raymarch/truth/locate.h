@@ -58,9 +58,10 @@ std::optional<CurvePoint> bisect(FieldEvaluator& evaluator, const Viewer& viewer
 
 /// So many lengths of the step around it does point_between() evaluate the field.
 inline constexpr double kFanReach = 18.0;
-/// The curve's point in the plane through `middle` across the step from a to b: both lie on the curve, not far apart.
+/// The curve's point in the plane through `middle` across the step from a to b: both lie on the curve, not far apart. No farther from the
+/// middle than `reach` lengths of the step, 4 at most.
 std::optional<CurvePoint> point_between(FieldEvaluator& evaluator, const Viewer& viewer, double c, const CurvePoint& a, const CurvePoint& b,
-                                        const glm::dvec3& middle);
+                                        const glm::dvec3& middle, double reach = 1.0);
 
 /// Where a smooth stretch of the curve that holds one point meets the crease that holds the other, by their tangents, and a point of either
 /// half way to there. Nothing where the tangents miss each other or the points are not found.

@@ -68,6 +68,15 @@ const CurvePoint& end_point(const std::vector<FieldCurve>& pieces, std::uint32_t
   return end % 2 == 0 ? points.front() : points.back();
 }
 
+/// Which side of a piece has the higher N.V, to who walks away from its end seen from outside: 1 the left, -1 the right, 0 unknown.
+int higher_side(const std::vector<FieldCurve>& pieces, std::uint32_t end) {
+  const auto& points = pieces[end / 2].points;
+  const CurvePoint& at = end_point(pieces, end);
+  const CurvePoint& inner = end % 2 == 0 ? points[1] : points[points.size() - 2];
+  const double side = glm::dot(at.uphill, glm::cross(at.high + at.low, inner.p - at.p));
+  return side > 0.0 ? 1 : side < 0.0 ? -1 : 0;
+}
+
 /// Between an end that leads nowhere and the nearest other one, in the image: so much of a curve is missing there.
 double widest_left(const std::vector<FieldCurve>& pieces, const std::vector<std::uint32_t>& partner, const Camera& camera) {
   std::vector<std::uint32_t> left;
@@ -90,6 +99,7 @@ double widest_left(const std::vector<FieldCurve>& pieces, const std::vector<std:
 /// Of each end the one it goes on at, or none.
 std::vector<std::uint32_t> partners_of(const std::vector<FieldCurve>& pieces, const Camera& camera, double& worst_gap_px) {
   struct Pair {
+    bool turned;  ///< What is on the left of the one would be on the right of the other.
     double distance_px;
     std::uint32_t a, b;
   };
@@ -102,10 +112,12 @@ std::vector<std::uint32_t> partners_of(const std::vector<FieldCurve>& pieces, co
     for (std::uint32_t b = 0; b < a; ++b) {
       if (pieces[b / 2].closed || pieces[b / 2].c != pieces[a / 2].c) continue;
       const double distance_px = scale * glm::distance(p, end_point(pieces, b).p);
-      if (distance_px < kFarthestPx) pairs.push_back({distance_px, a, b});
+      if (distance_px >= kFarthestPx) continue;
+      pairs.push_back({higher_side(pieces, a) * higher_side(pieces, b) > 0, distance_px, a, b});
     }
   }
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) { return x.distance_px < y.distance_px; });
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& x, const Pair& y) { return x.turned != y.turned ? y.turned : x.distance_px < y.distance_px; });
   for (const Pair& pair : pairs) {
     if (partner[pair.a] != kNone || partner[pair.b] != kNone) continue;
     partner[pair.a] = pair.b;

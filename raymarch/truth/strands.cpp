@@ -24,6 +24,7 @@ struct Spot {
   double margin = 0.0;  ///< surface_margin.
   double clear = 1.0;   ///< The lesser |N.V - c| of a seam's sides.
   bool on = false;
+  bool first_high = false;  ///< Of a seam's sides the first has the higher N.V.
 };
 
 class Cutter {
@@ -78,6 +79,7 @@ class Cutter {
     const double way = intersection_ ? -1.0 : 1.0, nm = glm::dot(n, m);
     const glm::dvec3 along_a = way * (m - nm * n), along_b = way * (n - nm * m);
     const bool a_high = a.facing > b.facing;
+    spot.first_high = a_high;
     point.crease = true;
     point.high = a_high ? n : m;
     point.low = a_high ? m : n;
@@ -99,6 +101,9 @@ class Cutter {
     return spot(*point);
   }
 
+  /// The seam's sides change places between the two: where they are equal, c is not between them, be it for a thousandth of a pixel.
+  static bool swapped(const Spot& a, const Spot& b) { return a.on && b.on && a.first_high != b.first_high; }
+
   /// Nothing can change between the two: the margin is no steeper than the field.
   bool settled(const Spot& a, const Spot& b, double length) const {
     const bool inside = a.margin > 0.0;
@@ -118,7 +123,7 @@ class Cutter {
     const double length = glm::distance(a.point.p, b.point.p);
     if (depth > 60 || length < kBracket * settings_.extent) return;
     const double length_px = a.scale * length;  // On the surface: seen along its length a strand is shorter in the image.
-    const bool same = a.on == b.on, quiet = same && (settled(a, b, length) || length_px < kFinestStepPx);
+    const bool same = a.on == b.on && !swapped(a, b), quiet = same && (settled(a, b, length) || length_px < kFinestStepPx);
     const bool seam = strand_.second >= 0;
     if (quiet && (!seam || !a.on || length_px < kFinestStepPx)) return;
     const std::optional<Spot> middle = between(a, b);
@@ -159,21 +164,25 @@ class Cutter {
 
   std::vector<FieldCurve> runs_of(std::vector<Spot>& spots) const {
     std::vector<FieldCurve> result;
-    const auto off = std::find_if(spots.begin(), spots.end(), [](const Spot& spot) { return !spot.on; });
-    if (off == spots.end()) {
-      if (spots.size() > 1) result.push_back(curve_of(spots, strand_.closed));
+    const size_t n = spots.size();
+    const auto begins = [&](size_t i) { return !spots[i].on || ((i > 0 || strand_.closed) && swapped(spots[(i + n - 1) % n], spots[i])); };
+    size_t first = 0;
+    while (first < n && !begins(first)) ++first;
+    if (first == n) {
+      if (n > 1) result.push_back(curve_of(spots, strand_.closed));
       return result;
     }
-    if (strand_.closed) std::rotate(spots.begin(), off, spots.end());
+    if (strand_.closed) std::rotate(spots.begin(), spots.begin() + static_cast<std::ptrdiff_t>(first), spots.end());
     std::vector<Spot> stretch;
-    for (size_t i = 0; i <= spots.size(); ++i) {
-      if (i < spots.size() && spots[i].on) {
-        stretch.push_back(spots[i]);
-        continue;
-      }
+    const auto finish = [&] {
       if (stretch.size() > 1) result.push_back(curve_of(stretch, false));
       stretch.clear();
+    };
+    for (const Spot& spot : spots) {
+      if (!spot.on || (!stretch.empty() && swapped(stretch.back(), spot))) finish();
+      if (spot.on) stretch.push_back(spot);
     }
+    finish();
     return result;
   }
 

@@ -32,7 +32,8 @@ struct StrandSettings {
 /// pixel.
 std::vector<FieldCurve> cut_to_surface(const Strand& strand, const StrandSettings& settings);
 
-/// Open curves joined at ends that lie together, nearest first. `worst_gap_px` grows to the widest gap that was closed or
+/// Open curves joined at ends that lie together, nearest first; where more than two do, those that have the higher N.V on the same side.
+/// `worst_gap_px` grows to the widest gap that was closed or
 /// that is left, in the image, between an end that leads nowhere and the next such.
 std::vector<FieldCurve> join_ends(std::vector<FieldCurve> pieces, const Camera& camera, double& worst_gap_px);
 

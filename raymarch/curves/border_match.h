@@ -8,11 +8,12 @@ namespace limn {
 /// Why a place of the true border says nothing of a model, whatever the model: each follows from the truth and the camera alone.
 enum class IllReason {
   none,
-  flat,  ///< N.V hardly changes across an inner border: the error of one float moves it by more than kIllShift_px.
-  thin,  ///< Of a band of ink, a gap or a sheet that is thinner there than kThin_px: rays a pixel apart need not find it.
+  flat,   ///< N.V hardly changes across an inner border: the error of one float moves it by more than kIllShift_px.
+  thin,   ///< Of a band of ink, a gap or a sheet that is thinner there than kThin_px: rays a pixel apart need not find it.
+  brief,  ///< Of a piece of the true border shorter than kBrief_px: likewise.
 };
 
-inline constexpr double kIllShift_px = 0.05, kThin_px = 0.3;
+inline constexpr double kIllShift_px = 0.05, kThin_px = 0.3, kBrief_px = 1.0;
 
 /// A sample of the true border, and what was measured of it.
 struct MatchedSample {

@@ -32,6 +32,7 @@ std::vector<IllReason> ill_places(const BorderCurves& truth, std::span<const Cur
     IllReason reason = IllReason::none;
     if (own.nearest(sample.px, sample.object, kThin_px, -sample.outward)) reason = IllReason::thin;
     if (sample.kind == CurveKind::inner && shift_px(point_at(truth, sample), camera) > kIllShift_px) reason = IllReason::flat;
+    if (length_px(truth.curves[sample.curve]) < kBrief_px) reason = IllReason::brief;
     result.push_back(reason);
   }
   return result;

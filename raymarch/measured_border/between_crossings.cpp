@@ -20,7 +20,7 @@ constexpr int kMostHalvings = 10;
 /// The first ray beside a chord, and by how much each further one goes beyond the one before.
 constexpr double kFirstStep_px = 0.02;
 constexpr double kGrowth = 2.5;
-constexpr double kLongestStep_px = 0.5;
+constexpr double kLongestStep_px = 0.25;
 /// Tips of wedges are followed outwards so far at a time.
 constexpr double kTip_px = 8.0;
 /// Beyond a thin neck lies what another curve bounds: a tip that comes this near to a curve of the grid's own crossings is none.
@@ -29,10 +29,14 @@ constexpr double kNeck_px = 0.25;
 /// more as find_crossings() asks: a sheet that goes on would close it.
 constexpr double kLeastJump_px = 0.3;
 constexpr double kProof = 16.0;
+/// Where the other side's depth is not known, a sheet ends where depth grows by more px for each px.
+constexpr double kSteepest = 10.0;
 /// Curves are followed no farther beyond their last crossings, and not in smaller steps.
-constexpr double kFarthest_px = 1.5;
+constexpr double kFarthest_px = 4.0;
 constexpr double kFirstEndStep_px = 0.25;
 constexpr double kLastEndStep_px = 0.02;
+/// The direction of an end, from so far before it at most.
+constexpr double kEnd_px = 0.3;
 
 /// A line across a chord, or across a curve's continuation, on which the border is looked for.
 struct Search {
@@ -46,6 +50,7 @@ struct Search {
   glm::dvec2 chord[2]{};                        ///< Ends of the chord between two crossings that it came from by halving.
   std::optional<EdgeNode> inside{}, outside{};  ///< The nearest known of either side.
   std::optional<double> step_before{};          ///< Of a silhouette: the step of depth when its proof began, px.
+  bool by_steps = false;                        ///< A silhouette's other side begins where depth jumps, however deep it lies.
   // Beyond an end:
   bool at_last = false;    ///< Which end.
   double step = 0.0;       ///< From the end.
@@ -74,6 +79,10 @@ class Refiner {
     for (size_t c = 0; c < chains_.size(); ++c) look_at_bends(c);
     run();
     cut_all_tears();
+    // Where a chord was torn nothing is known any more.
+    const BorderCurves now = curves();
+    known_[0] = CurveIndex(now, CurveKind::silhouette);
+    known_[1] = CurveIndex(now, CurveKind::inner);
     for (size_t c = 0; c < chains_.size(); ++c) {
       if (chains_[c].closed) continue;
       for (const bool at_last : {false, true}) look_beyond(c, at_last, kFirstEndStep_px, 0.0);
@@ -142,7 +151,8 @@ class Refiner {
   }
 
   void look_beyond(size_t c, bool at_last, double step, double beyond) {
-    const auto direction = end_direction(chains_[c], at_last);
+    // The shorter the step, the nearer to the end its direction is taken from: there a curve may turn.
+    const auto direction = end_direction(chains_[c], at_last, std::clamp(2.0 * step, kShortest_px, kEnd_px));
     if (!direction || step < kLastEndStep_px || beyond + step > kFarthest_px) return;
     const size_t end = at_last ? chains_[c].last : chains_[c].first;
     Search search;
@@ -197,6 +207,10 @@ class Refiner {
   bool bounded(const Search& search, const EdgeNode& at) const {
     if (!at.hit()) return false;
     if (chains_[search.curve].kind == CurveKind::inner) return double{at.n_dot_v} < settings_.threshold;
+    if (search.by_steps && search.inside && at.t > search.inside->t) {
+      const double most = kLeastJump_px + kSteepest * (at.t - search.inside->t);
+      if (depth_step_px(camera_, *search.inside, at) > most) return false;
+    }
     return std::abs(at.depth - search.depth) < std::abs(at.depth - search.other);
   }
 
@@ -211,9 +225,18 @@ class Refiner {
         return take(search);
       }
     } else if (std::abs(at.t) >= search.limit) {
-      return give_up(search);
+      if (!begin_anew(search)) return give_up(search);
     }
     active_.push_back(search);
+  }
+
+  /// Another sheet may lie behind a silhouette than at the points that its other side is known from: it is looked for again by steps of
+  /// depth.
+  bool begin_anew(Search& search) const {
+    if (search.by_steps || chains_[search.curve].kind != CurveKind::silhouette || !search.inside) return false;
+    search.by_steps = true;
+    search.inside.reset();
+    return true;
   }
 
   /// That the two rays see the two sides of this curve, and not an end of another sheet that crosses it.

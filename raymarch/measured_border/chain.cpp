@@ -51,7 +51,7 @@ class Chainer {
           curve.points.push_back(point_of(crossings_[i]));
           other_depths.push_back(crossings_[i].other_depth);
         }
-        if (curve.points.size() < (curve.closed ? 3u : 2u)) continue;
+        if (curve.points.size() < 2) continue;
         result.border.curves.push_back(std::move(curve));
         result.other_depths.push_back(std::move(other_depths));
       }
@@ -65,7 +65,8 @@ class Chainer {
   BorderPoint point_of(const BorderCrossing& crossing) const {
     const auto pixel = static_cast<size_t>(crossing.grid_edge / 2);
     const auto width = static_cast<size_t>(gbuffer_.width);
-    const glm::dvec2 start(static_cast<double>(pixel % width) + gbuffer_.sample.x, static_cast<double>(pixel / width) + gbuffer_.sample.y);
+    const size_t column = pixel % width, row = pixel / width;
+    const glm::dvec2 start(static_cast<double>(column) + gbuffer_.sample.x, static_cast<double>(row) + gbuffer_.sample.y);
     BorderPoint point;
     point.px = start + crossing.t * (crossing.grid_edge % 2 ? glm::dvec2(0.0, 1.0) : glm::dvec2(1.0, 0.0));
     point.depth = crossing.depth;

@@ -12,7 +12,8 @@ struct ChainedCurves {
 };
 
 /// Curves of the crossings, directed as border_curves.h says. Where four crossings of a cell may be joined in two ways, a ray through its
-/// middle decides; `rays` counts these. A curve that ends within a cell (a cusp, a hidden stretch, another object) stays open there.
+/// middle decides; `rays` counts these. What is thinner than a pixel may come out as closed curves of two points. A curve that ends within
+/// a cell (a cusp, a hidden stretch, another object) stays open there.
 ChainedCurves chain_crossings(const SceneModel& model, const Camera& camera, const GBuffer& gbuffer, double threshold,
                               const std::vector<BorderCrossing>& crossings, std::int64_t& rays);
 

@@ -9,8 +9,6 @@ constexpr size_t kNone = ChainNode::kNone;
 /// Along a curve depth changes by no more than this and so much for each px, in px.
 constexpr double kLeastTear_px = 1.0;
 constexpr double kSteepest = 10.0;
-/// Of the points before an end, the nearest one that says its direction.
-constexpr double kEnd_px = 0.3;
 
 GrowingChain chain_of(const GrowingChain& like, bool closed, std::vector<ChainNode> nodes) {
   GrowingChain chain{like.kind, like.object, closed, std::move(nodes), 0, 0};
@@ -62,15 +60,15 @@ void put_beyond(GrowingChain& chain, bool at_last, ChainNode node) {
   }
 }
 
-std::optional<glm::dvec2> end_direction(const GrowingChain& chain, bool at_last) {
+std::optional<glm::dvec2> end_direction(const GrowingChain& chain, bool at_last, double span_px) {
   const glm::dvec2 end = chain.nodes[at_last ? chain.last : chain.first].point.px;
   std::optional<glm::dvec2> before;
   for (size_t i = chain.first; i != kNone; i = chain.nodes[i].next) {
     const glm::dvec2 from = chain.nodes[i].point.px;
     const double distance = glm::distance(from, end);
     if (!(distance > 0.0)) continue;
-    if (!at_last || !before || distance >= kEnd_px) before = from;
-    if (!at_last && distance >= kEnd_px) break;
+    if (!at_last || !before || distance >= span_px) before = from;
+    if (!at_last && distance >= span_px) break;
   }
   if (!before) return std::nullopt;
   return (end - *before) / glm::distance(end, *before);
@@ -94,6 +92,7 @@ std::vector<GrowingChain> cut_tears(const Camera& camera, const GrowingChain& ch
     pieces.erase(pieces.begin());
   }
   std::vector<GrowingChain> chains;
+  chains.reserve(pieces.size());
   for (std::vector<ChainNode>& piece : pieces) chains.push_back(chain_of(chain, whole, std::move(piece)));
   return chains;
 }

@@ -31,9 +31,9 @@ size_t put_between(GrowingChain& chain, size_t from, size_t to, ChainNode node);
 /// Puts a point before the first or after the last node.
 void put_beyond(GrowingChain& chain, bool at_last, ChainNode node);
 
-/// Towards an end of an open chain, from about a third of a pixel before it: the last chord alone may be too short to have a direction.
-/// Unit; empty where all points coincide.
-std::optional<glm::dvec2> end_direction(const GrowingChain& chain, bool at_last);
+/// Towards an end of an open chain, from its point nearest to the end that is at least `span_px` from it: the last chord alone may be too
+/// short to have a direction. Unit; empty where all points coincide.
+std::optional<glm::dvec2> end_direction(const GrowingChain& chain, bool at_last, double span_px);
 
 /// True where depth changes by more along a chord than along any curve of one sheet: two sheets' curves were joined where they cross in
 /// the image.

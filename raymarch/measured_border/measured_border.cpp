@@ -1,6 +1,7 @@
 #include "raymarch/measured_border.h"
 
 #include "raymarch/measured_border/between_crossings.h"
+#include "raymarch/measured_border/join_necks.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -10,7 +11,8 @@ BorderCurves measure_border(const SceneModel& model, const Camera& camera, const
   LIMN_CHECK(settings.threshold >= 0.0 && settings.threshold < 1.0 && settings.precision_px > 0.0);
   LIMN_CHECK(gbuffer.width == camera.width_px && gbuffer.height == camera.height_px);
   BorderCrossings found = find_crossings(model, camera, gbuffer, settings, how);
-  const ChainedCurves chains = chain_crossings(model, camera, gbuffer, settings.threshold, found.crossings, found.rays);
+  const ChainedCurves pieces = chain_crossings(model, camera, gbuffer, settings.threshold, found.crossings, found.rays);
+  const ChainedCurves chains = join_necks(model, camera, settings.threshold, pieces, found.rays);
   return refine_chains(model, camera, settings, chains, how, found.rays);
 }
 

@@ -24,6 +24,7 @@ struct Shares {
 /// Smallest |displacement| that 95 % of the matched length does not exceed.
 double p95(const std::vector<Displacement>& matched) {
   std::vector<WeightedValue> sorted;
+  sorted.reserve(matched.size());
   for (const Displacement& one : matched) sorted.push_back({std::abs(one.value), one.at->weight_px});
   std::sort(sorted.begin(), sorted.end(), [](const WeightedValue& a, const WeightedValue& b) { return a.value < b.value; });
   return nearest_rank_quantile(sorted, 0.95);
@@ -93,7 +94,8 @@ Metric metric_of(const std::string& kind, const std::string& positive, bool any_
            "mean (positive: " + positive + "), root mean square, 95th percentile and largest of the absolute value, and where; of the " +
            "samples with a partner, one to one along both borders, within 16 px or 2 % of the diagonal. The share of the true border " +
            "without one is missing, of the model's false; ill is the share where the truth decides no more than noise or the grid of " +
-           "rays does (an inner border on which N.V hardly changes, a band thinner than 0.3 px), left out of the others",
+           "rays does (an inner border on which N.V hardly changes, a band thinner than 0.3 px, a piece shorter than 1 px), left out of "
+           "the others",
        "limn"},
       {name + "_mean [px]", name + "_rms [px]", name + "_p95 [px]", name + "_max [px]", name + "_max_x [px]", name + "_max_y [px]",
        name + "_missing", name + "_false", name + "_ill"},

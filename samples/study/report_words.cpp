@@ -116,8 +116,9 @@ struct Words {
       }
       if (best == nullptr || judge(best->median, kTolerancePx, floor) != Verdict::wrong) continue;
       const std::string& resolution = data.models[best->model].resolution_text;
-      never.push_back(
-          fmt::format("{} (at best {}{})", data.series[series], px(best->median), resolution.empty() ? "" : ", at " + resolution));
+      // What is rounded to the limit is wrong all the same.
+      const std::string error = px(best->median), rounded = error == px(kTolerancePx) ? "just over " + error : error;
+      never.push_back(fmt::format("{} (at best {}{})", data.series[series], rounded, resolution.empty() ? "" : ", at " + resolution));
     }
     if (!never.empty()) out.push_back(fmt::format("Never within {} px: {}.", kTolerancePx, listed(never, "; ")));
   }

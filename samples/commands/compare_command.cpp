@@ -1,5 +1,3 @@
-#include <CLI/CLI.hpp>
-
 #include "raymarch/image_io.h"
 #include "raymarch/surface/view_level.h"
 #include "samples/commands/command.h"
@@ -24,8 +22,7 @@ void add_options(CLI::App& app, Options& options) {
   add_surface(app, options, {.surface = true, .repeatable = true, .views = true});
   add_border(app, options, true);
   add_output(app, options, "folder for sheet.png, report.html, rows.json and each picture's EXR; default limn-out/compare/<name>", false);
-  app.add_flag("--no-timings", options.no_timings, "leave measured times out of sheet and report, so that equal calls write equal bytes")
-      ->group("Output");
+  add_no_timings(app, options);
   add_json(app, options);
   add_reference(app, options);
   add_execution(app, options);

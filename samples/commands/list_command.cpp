@@ -1,5 +1,5 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -135,11 +135,7 @@ std::string to_text(const std::vector<Entry>& entries) {
 }
 
 void add_options(CLI::App& app, Options& options) {
-  app.add_option(
-         "KIND", options.kind,
-         "shapes, surfaces, gradients, normals, methods, metrics or scenes; reference: all of it, and every key of files, as Markdown")
-      ->type_name("")
-      ->required();
+  add_kind(app, options);
   add_json(app, options);
 }
 

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "samples/commands/command.h"
 #include "samples/output/held_folder.h"
 #include "samples/output/output.h"

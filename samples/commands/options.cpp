@@ -111,6 +111,19 @@ void add_output(CLI::App& app, Options& options, const std::string& what, bool r
   add_switch(app, {"--no-clobber", "", "refuse to replace files that exist", kOutput}, options.no_clobber);
 }
 
+void add_kind(CLI::App& app, Options& options) {
+  app.add_option(
+         "KIND", options.kind,
+         "shapes, surfaces, gradients, normals, methods, metrics or scenes; reference: all of it, and every key of files, as Markdown")
+      ->type_name("")
+      ->required();
+}
+
+void add_no_timings(CLI::App& app, Options& options) {
+  add_switch(app, {"--no-timings", "", "leave measured times out of sheet and report, so that equal calls write equal bytes", kOutput},
+             options.no_timings);
+}
+
 void add_refined(CLI::App& app, Options& options) {
   add_switch(
       app,

@@ -65,6 +65,10 @@ struct SurfaceOptionNeeds {
 
 void add_input(CLI::App& app, Options& options);
 void add_output(CLI::App& app, Options& options, const std::string& what, bool repeatable);
+/// What `limn list` lists.
+void add_kind(CLI::App& app, Options& options);
+/// --no-timings
+void add_no_timings(CLI::App& app, Options& options);
 /// --refined
 void add_refined(CLI::App& app, Options& options);
 /// --reference

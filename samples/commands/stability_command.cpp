@@ -1,5 +1,3 @@
-#include <CLI/CLI.hpp>
-
 #include "samples/commands/command.h"
 #include "samples/commands/stability_run.h"
 #include "samples/experiment/thread_settings.h"

@@ -106,8 +106,8 @@ Lines lines_across(const std::vector<MatchedSample>& samples, const BorderCurves
     if (!std::isfinite(px_per_radian)) continue;
     const TruthPoint point = truth_at(truth, sample, camera);
     const double depth = -glm::dot(point.position - camera.eye, camera.world_from_camera[2]);
-    found.lines.push_back(
-        {sample.px, sample.outward, point.position, pixels_per_unit_at(camera, depth), sample.object, point.n_dot_v, px_per_radian});
+    found.lines.push_back({sample.px, sample.outward, point.position, pixels_per_unit_at(camera, depth), sample.object, point.n_dot_v,
+                           px_per_radian, sample.curve});
     found.samples.push_back(i);
   }
   return found;
@@ -153,7 +153,8 @@ DisplacementPrediction predict_displacement(const SceneModel& model, const Camer
   ShiftSums sums;
   for (size_t k = 0; k < shifts.size(); ++k) {
     const MatchedSample& sample = samples[across.samples[k]];
-    if (shifts[k].fault != ShiftFault::none || !sample.displacement_px) continue;
+    // What a model's error is not measured at (raymarch/curves/border_match.h) says nothing of a prediction either.
+    if (shifts[k].fault != ShiftFault::none || !sample.displacement_px || sample.ill != IllReason::none) continue;
     pairs.push_back({sample.at.weight_px, shifts[k].shift_px, *sample.displacement_px});
     sums.add(sample.at.weight_px, shifts[k], truth.bound_px);
   }

@@ -44,10 +44,11 @@ Metric prediction_metric() {
   return {
       {"prediction",
        "the inner border's displacement and the ink's width, predicted from the model's normals and the true curvature, beside what was "
-       "measured. The displacement: to where the model's N.V meets the threshold, from its normals at five image points on a line "
+       "measured. The displacement: to where the model's N.V meets the threshold, from its normals at eleven image points on a line "
        "across the true border; to first order s c eps / kr. Root mean squares, what the measured one is expected between (low, high: "
-       "by what the last image point changed and 25 % of the displacement), means, correlation, "
-       "share of what moved less than 2 px that is predicted to 25 %, share of the border that could be compared, and shares without "
+       "by what the last image point changed, 25 % of the displacement, and the next place on the line where N.V meets the threshold), "
+       "means, correlation, share of what moved less than 2 px that is predicted to 25 %, share of the border that could be compared "
+       "(not where inner_displacement is ill), and shares without "
        "a prediction because an assumption fails: the model shows another sheet there or none (outside), the surface ends or is "
        "covered on the way (ends), N.V turns back or hardly changes (turns_back); the normal error eps behind it. The width: "
        "c^2 / (2 kr) and the osculating circle's",

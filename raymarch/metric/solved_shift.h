@@ -16,6 +16,7 @@ struct ShiftLine {
   int object = 0;                    ///< Index from 1: the border's own sheet.
   double n_dot_v = 0.0;              ///< Of the true surface there: the threshold, in (0, 1).
   double px_per_radian = 0.0;        ///< How far the border moves for each radian of normal error, to first order.
+  size_t curve = 0;                  ///< Of the true border; lines of one curve follow each other, along it.
 };
 
 /// Which assumption fails where no shift is predicted.
@@ -35,10 +36,12 @@ struct SolvedShift {
   ShiftFault fault = ShiftFault::none;
 };
 
-/// Asks `model` for its normals at five image points of each line at most: the true border's own, and four where the answers so far put
-/// the border. Its N.V between them, squared, is taken as a parabola. No shift is larger than `reach_px`.
+/// Asks `model` for its normals at eleven image points of each line: the true border's own, four where the answers so far put the border,
+/// and six around them that tell whether N.V meets the threshold more than once. Its N.V between them, squared, is taken as a parabola.
+/// Where it meets the threshold several times, as beside a seam that a model rounds, the places that follow each other most closely along
+/// the true border are taken, as a measured border is matched. No shift is larger than `reach_px`.
 /// The uncertainty is what the last image point changed, and of what is between them a share that was found on models whose border was
-/// measured (docs/accuracy.md), at least what a measured border is precise to.
+/// measured (docs/accuracy.md), at least what a measured border is precise to; and as far as the next place where N.V meets the threshold.
 std::vector<SolvedShift> solve_shifts(const SceneModel& model, const Camera& camera, std::span<const ShiftLine> lines, double reach_px);
 
 }  // namespace limn

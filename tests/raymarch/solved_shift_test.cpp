@@ -18,12 +18,13 @@ const double kSine = std::sqrt(1.0 - kThreshold * kThreshold);
 
 /// Writes a hit of a ray along -z with the plane z = 0, with the normal that makes N.V what the profile says; NaN: a hole.
 struct MadeUpPlane {
-  std::function<double(double x)> n_dot_v;
+  std::function<double(double x, double y)> n_dot_v;
 };
 
 void trace_plane(const void* state, const RayBatch& rays, HitBatch& hits) {
   for (int i = 0; i < rays.count; ++i) {
-    const double cosine = static_cast<const MadeUpPlane*>(state)->n_dot_v(static_cast<double>(rays.origin_x[i]));
+    const double cosine =
+        static_cast<const MadeUpPlane*>(state)->n_dot_v(static_cast<double>(rays.origin_x[i]), static_cast<double>(rays.origin_y[i]));
     if (!std::isfinite(cosine) || rays.t_max[i] <= rays.t_min[i]) continue;
     hits.status[i] = HitStatus::hit;
     hits.t[i] = rays.origin_z[i];
@@ -44,8 +45,9 @@ SceneModel one_surface(Surface surface) {
   return model;
 }
 
-/// `n_dot_v`: by pixels from the true border, at the picture's middle.
-SolvedShift shift_on(const std::function<double(double px)>& n_dot_v, double px_per_radian) {
+/// `n_dot_v`: by pixels right of and below the picture's middle, through which the true border runs downwards. One line in each of its
+/// middle rows.
+std::vector<SolvedShift> shifts_on(const std::function<double(double px, double down_px)>& n_dot_v, double px_per_radian, int rows) {
   CameraSettings settings = view(64, 64, Projection::orthographic);
   settings.eye = glm::dvec3(0.0, 0.0, 5.0);
   settings.target = glm::dvec3(0.0);
@@ -54,11 +56,19 @@ SolvedShift shift_on(const std::function<double(double px)>& n_dot_v, double px_
   const Camera camera = resolve_camera(settings, box);
   const double scale = camera.pixels_per_unit;
   Surface surface;
-  surface.state = std::make_shared<const MadeUpPlane>(MadeUpPlane{[=](double x) { return n_dot_v(scale * x); }});
+  surface.state = std::make_shared<const MadeUpPlane>(MadeUpPlane{[=](double x, double y) { return n_dot_v(scale * x, -scale * y); }});
   surface.trace = trace_plane;
   surface.bounds = box;
-  const ShiftLine line{{32.0, 32.0}, {1.0, 0.0}, {0.0, 0.0, 0.0}, scale, 1, kThreshold, px_per_radian};
-  return solve_shifts(one_surface(std::move(surface)), camera, std::vector<ShiftLine>{line}, kReach_px).front();
+  std::vector<ShiftLine> lines;
+  for (int i = 0; i < rows; ++i) {
+    const double down_px = i - rows / 2;
+    lines.push_back({{32.0, 32.0 + down_px}, {1.0, 0.0}, {0.0, -down_px / scale, 0.0}, scale, 1, kThreshold, px_per_radian});
+  }
+  return solve_shifts(one_surface(std::move(surface)), camera, lines, kReach_px);
+}
+
+SolvedShift shift_on(const std::function<double(double px)>& n_dot_v, double px_per_radian) {
+  return shifts_on([&](double px, double) { return n_dot_v(px); }, px_per_radian, 1).front();
 }
 
 TEST(SolvedShift, OfAnUnchangedProfileIsNothing) {
@@ -110,6 +120,42 @@ TEST(SolvedShift, SaysWhichAssumptionFails) {
   EXPECT_EQ(shift_on([=](double px) { return kThreshold - 0.05 + slope * px - 0.001 * px * px; }, kSine / slope).fault,
             ShiftFault::turns_back);
   EXPECT_EQ(shift_on([=](double px) { return kThreshold - 0.05 + 0.002 * px; }, kSine / 0.002).fault, ShiftFault::turns_back);
+}
+
+/// Clearly below the threshold inside `border_px`, clearly above outside; and below in a band as well.
+double with_band(double px, double border_px, double band_from_px, double band_to_px) {
+  const bool ink = px < border_px || (px > band_from_px && px < band_to_px);
+  return ink ? 0.2 : 0.6;
+}
+
+TEST(SolvedShift, TakesTheNearestOfSeveralPlacesAndSaysHowFarTheNextOneIs) {
+  const double slope = 0.02;
+  // The first step goes 2 px inwards, past a band that begins at the true border, to a border farther away.
+  const SolvedShift found = shift_on([](double px) { return with_band(px, -3.0, -1.5, -0.1); }, kSine / slope);
+  EXPECT_EQ(found.fault, ShiftFault::none);
+  EXPECT_NEAR(found.shift_px, -0.1, 0.3);
+  EXPECT_GE(found.uncertainty_px, 1.0) << "the other place is some 3 px away";
+}
+
+TEST(SolvedShift, FollowsTheLinesBesideItWhereThereAreSeveralPlaces) {
+  // Nine rows with a border 0.9 px inwards. In some of them a band of ink ends at the true border, too.
+  const double slope = 0.02;
+  const auto with_band_in = [&](double rows_px) {
+    const auto n_dot_v = [=](double px, double down_px) {
+      return std::abs(down_px) < rows_px ? with_band(px, -0.9, -0.4, 0.0) : with_band(px, -0.9, 9.0, 9.0);
+    };
+    return shifts_on(n_dot_v, kSine / slope, 9);
+  };
+  const auto in_one = with_band_in(0.5), in_all = with_band_in(100.0);
+  ASSERT_EQ(in_one.size(), 9u);
+  for (size_t i = 0; i < in_one.size(); ++i) {
+    EXPECT_EQ(in_one[i].fault, ShiftFault::none) << i;
+    EXPECT_NEAR(in_one[i].shift_px, -0.9, 0.3) << i;
+    EXPECT_NEAR(in_all[i].shift_px, 0.0, 0.3) << i << ": both places are borders all along, and this one is nearer";
+    // The other place is 0.9 px away, and each of the two is known to 0.3 px.
+    EXPECT_GE(in_all[i].uncertainty_px, 0.3) << i;
+  }
+  EXPECT_GE(in_one[4].uncertainty_px, 0.3);
 }
 
 /// Another surface with all normals turned from the eye by one angle, seen in parallel.

@@ -12,10 +12,9 @@ namespace {
 struct CreaseSide {
   const LimitTriangle* triangle = nullptr;
   int from = 0, to = 0;
-  double f0 = 0.0, f1 = 0.0;  ///< N.V.
+  double f0 = 0.0, f1 = 0.0;  ///< N.V at the nodes.
   glm::dvec3 third{0.0};
   bool on_left = false;  ///< Of the way from the first node to the second, seen from the side of its normal.
-  double at(double t) const { return f0 + t * (f1 - f0); }
 };
 
 CreaseSide crease_side(const LimitTracer& tracer, const SeamUse& use, std::uint32_t first_node) {
@@ -25,10 +24,24 @@ CreaseSide crease_side(const LimitTracer& tracer, const SeamUse& use, std::uint3
   side.to = (use.from + 1) % 3;
   if (side.triangle->corners[static_cast<size_t>(side.from)].node != first_node) std::swap(side.from, side.to);
   side.on_left = (side.from == use.from) != tracer.mirrored;
-  side.f0 = tracer.facing[side.triangle->corners[static_cast<size_t>(side.from)].side];
-  side.f1 = tracer.facing[side.triangle->corners[static_cast<size_t>(side.to)].side];
+  side.f0 = tracer.facing[side_towards(*side.triangle, side.from, side.to)];
+  side.f1 = tracer.facing[side_towards(*side.triangle, side.to, side.from)];
   side.third = tracer.grid.positions[side.triangle->corners[static_cast<size_t>((use.from + 2) % 3)].node];
   return side;
+}
+
+/// The surface on a side of the seam, at the share t of the way between its nodes: what lies between is not what lies at them where normals
+/// turn fast, as beside a sharp corner.
+struct SideSample {
+  glm::dvec3 normal{0.0};
+  double facing = 0.0;  ///< N.V.
+};
+
+SideSample sample_side(const LimitTracer& tracer, const CreaseSide& side, double t) {
+  const auto corner = [&](int i) { return side.triangle->corners[static_cast<size_t>(i)]; };
+  const LimitSample s = sample(tracer.placed, side.triangle->patch, glm::mix(corner(side.from).uv, corner(side.to).uv, t));
+  if (s.valid) return {s.normal, glm::dot(s.normal, view_vector(tracer.camera, s.position))};
+  return {tracer.grid.normals[side_towards(*side.triangle, side.from, side.to)], side.f0 + t * (side.f1 - side.f0)};
 }
 
 struct Break {
@@ -51,10 +64,6 @@ void add_breaks(LimitTracer& tracer, const CreaseSide& side, std::vector<Break>&
 bool is_on(const LimitTracer& tracer, double facing1, double facing2) {
   const double c = tracer.level.threshold, low = std::min(facing1, facing2), high = std::max(facing1, facing2);
   return high >= c && low < c && (c == 0.0 || low >= 0.0);
-}
-
-const glm::dvec3& normal_of(const LimitTracer& tracer, const CreaseSide& side) {
-  return tracer.grid.normals[side.triangle->corners[static_cast<size_t>(side.from)].side];
 }
 
 /// The seam's ends, and where any of its sheets turns from the one side of the threshold to the other.
@@ -85,15 +94,16 @@ void follow_crease(LimitTracer& tracer, const CreaseSide& one, const CreaseSide&
   const std::vector<Break> breaks = breaks_of(tracer, {one, two});
   for (size_t k = 0; k + 1 < breaks.size(); ++k) {
     const double middle = 0.5 * (breaks[k].t + breaks[k + 1].t);
-    if (!is_on(tracer, one.at(middle), two.at(middle))) continue;
-    const CreaseSide& high = one.at(middle) >= two.at(middle) ? one : two;
-    const CreaseSide& low = &high == &one ? two : one;
+    const SideSample at_one = sample_side(tracer, one, middle), at_two = sample_side(tracer, two, middle);
+    if (glm::distance(at_one.normal, at_two.normal) < kSameNormal || !is_on(tracer, at_one.facing, at_two.facing)) continue;
+    const bool one_high = at_one.facing >= at_two.facing;
+    const CreaseSide &high = one_high ? one : two, &low = one_high ? two : one;
     const CreaseSide& covered = tracer.level.kind == CurveKind::silhouette ? high : low;
     LimitSegment segment = piece_of(tracer, one, breaks[k], breaks[k + 1]);
     segment.beside = covered.third;
     segment.left = covered.on_left;
-    segment.high_normal = normal_of(tracer, high);
-    segment.low_normal = normal_of(tracer, low);
+    segment.high_normal = one_high ? at_one.normal : at_two.normal;
+    segment.low_normal = one_high ? at_two.normal : at_one.normal;
     tracer.segments.push_back(segment);
   }
 }
@@ -101,6 +111,7 @@ void follow_crease(LimitTracer& tracer, const CreaseSide& one, const CreaseSide&
 /// A sheet at a place of the seam, as the picture has it: it covers the left or the right of the seam.
 struct Seen {
   const CreaseSide* side = nullptr;
+  glm::dvec3 normal{0.0};
   double facing = 0.0;
   bool left = false;
   double nearness = 0.0;  ///< How much nearer to the eye it gets with each unit that it covers.
@@ -112,10 +123,10 @@ std::vector<Seen> seen_at(const LimitTracer& tracer, const std::vector<CreaseSid
   const glm::dvec3 v = view_vector(tracer.camera, glm::mix(node(one.from), node(one.to), t)), to_left = glm::cross(v, piece.along);
   std::vector<Seen> seen;
   for (const CreaseSide& side : sides) {
-    Seen sheet{&side, side.at(t)};
+    const SideSample here = sample_side(tracer, side, t);
+    Seen sheet{&side, here.normal, here.facing};
     sheet.left = side.on_left == (sheet.facing >= 0.0);
-    const glm::dvec3& normal = normal_of(tracer, side);
-    sheet.nearness = -glm::dot(sheet.left ? to_left : -to_left, normal) / glm::dot(v, normal);
+    sheet.nearness = -glm::dot(sheet.left ? to_left : -to_left, sheet.normal) / glm::dot(v, sheet.normal);
     seen.push_back(sheet);
   }
   return seen;
@@ -144,7 +155,7 @@ void follow_junction(LimitTracer& tracer, const std::vector<CreaseSide>& sides) 
     if (silhouette != ends || (!silhouette && is_ink(*left) == is_ink(*right))) continue;
     segment.left = ends ? left != nullptr : is_ink(*left);
     const Seen &bounded = segment.left ? *left : *right, &other = ends ? bounded : segment.left ? *right : *left;
-    const auto towards_eye = [&](const Seen& sheet) { return normal_of(tracer, *sheet.side) * (sheet.facing < 0.0 ? -1.0 : 1.0); };
+    const auto towards_eye = [&](const Seen& sheet) { return sheet.normal * (sheet.facing < 0.0 ? -1.0 : 1.0); };
     segment.beside = bounded.side->third;
     segment.low_normal = towards_eye(bounded);
     segment.high_normal = towards_eye(other);
@@ -162,9 +173,9 @@ void cross_seams(LimitTracer& tracer) {
       if (tracer.level.turn != LimitTurn::back) follow_junction(tracer, sides);
       continue;
     }
-    const auto side = [](const CreaseSide& s, int i) { return s.triangle->corners[static_cast<size_t>(i)].side; };
-    if (side(sides[0], sides[0].from) == side(sides[1], sides[1].from) && side(sides[0], sides[0].to) == side(sides[1], sides[1].to))
-      continue;
+    const auto from = [](const CreaseSide& s) { return side_towards(*s.triangle, s.from, s.to); };
+    const auto to = [](const CreaseSide& s) { return side_towards(*s.triangle, s.to, s.from); };
+    if (from(sides[0]) == from(sides[1]) && to(sides[0]) == to(sides[1])) continue;
     follow_crease(tracer, sides[0], sides[1]);
   }
 }

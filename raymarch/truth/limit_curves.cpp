@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr int kRefinements = 8;
+constexpr double kBesideTip = 1e-3;  // of a segment
 
 /// What is traced, and its pieces.
 struct Shape {
@@ -50,6 +51,19 @@ TracedPoint point_at(const Shape& shape, const LimitSegment& segment, std::uint3
   if (shape.sheet && segment.crease && shape.settings.kind == CurveKind::silhouette)
     point.lift = glm::normalize(glm::cross(v, segment.left ? -segment.along : segment.along));
   point.outward = outward_at(shape, segment, point);
+  return point;
+}
+
+/// A curve that leads to the tip of a cone has there the normal that it has a little before.
+TracedPoint end_point(const Shape& shape, const LimitSegment& segment, const LimitEnd& end, const LimitEnd& other) {
+  TracedPoint point = point_at(shape, segment, end.patch, end.uv);
+  if (segment.crease || end.key.kind != 2) return point;
+  const TracedPoint before = point_at(shape, segment, end.patch, glm::mix(end.uv, other.uv, kBesideTip));
+  point.high = before.high;
+  point.low = before.low;
+  point.radial_curvature = before.radial_curvature;
+  point.lift = before.lift;
+  point.outward = before.outward;
   return point;
 }
 
@@ -93,8 +107,9 @@ void refine(const Shape& shape, const LimitSegment& segment, const Place& a, con
 
 void append(const Shape& shape, const LimitSegment& segment, bool turned, bool with_last, TracedCurve& curve) {
   const LimitEnd &first = segment.ends[turned ? 1 : 0], &last = segment.ends[turned ? 0 : 1];
-  std::vector<Place> places{{first.uv, point_at(shape, segment, first.patch, first.uv)}};
-  const Place end{last.uv, point_at(shape, segment, last.patch, last.uv)};
+  const auto place_of = [&](const LimitEnd& at, const LimitEnd& other) { return Place{at.uv, end_point(shape, segment, at, other)}; };
+  std::vector<Place> places{place_of(first, last)};
+  const Place end = place_of(last, first);
   refine(shape, segment, places.front(), end, kRefinements, places);
   if (with_last) places.push_back(end);
   for (const Place& place : places) curve.points.push_back(place.point);
@@ -139,7 +154,9 @@ TracedCurve walk(const Shape& shape, Graph& graph, std::uint32_t start, const Li
     key = segment.ends[turned ? 0 : 1].key;
     const std::uint32_t next = key == from ? kNone : next_segment(shape, graph, key);
     out.closed = key == from;
-    append(shape, segment, turned, next == kNone && !out.closed, out);
+    // Where a crease goes over into a contour both have a point, so that no step is half the one and half the other.
+    const std::uint32_t after = out.closed ? start : next;
+    append(shape, segment, turned, after == kNone || shape.segments[after].crease != segment.crease, out);
     s = next;
   }
   if (shape.sheet && !left) std::reverse(out.points.begin(), out.points.end());

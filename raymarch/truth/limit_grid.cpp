@@ -4,17 +4,17 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "raymarch/truth/limit_cone_tips.h"
 #include "sdf/parallel.h"
 
 namespace limn {
 namespace {
 
 // Two evaluations of one place differ by rounding, and around extraordinary vertices by what patches approximate.
-constexpr double kSamePlace = 1e-6;   // of the extent
-constexpr double kRounding = 1e-12;   // of the largest coordinate: no two evaluations agree better
-constexpr double kSameNormal = 2e-3;  // radians; a crease is sharper, a patch's error is not
-constexpr int kFinestSteps = 256;     // along a patch's side
-constexpr double kTip_px = 0.005;     // the patches' side is so far from its ends after one step, where it shrinks as the step's square
+constexpr double kSamePlace = 1e-6;  // of the extent
+constexpr double kRounding = 1e-12;  // of the largest coordinate: no two evaluations agree better
+constexpr int kFinestSteps = 256;    // along a patch's side
+constexpr double kTip_px = 0.005;    // the patches' side is so far from its ends after one step, where it shrinks as the step's square
 
 bool has_normal(const glm::dvec3& n) { return std::isfinite(n.x) && glm::dot(n, n) > 0.5; }
 
@@ -180,7 +180,7 @@ void add_lattice(const PlacedLimitSurface& placed, std::uint32_t k, const PatchL
     for (int i = 0; i <= (patch.triangle ? n - j : n); ++i) {
       const LimitSample& s = lattice.samples[lattice_index(patch, n, i, j)];
       const bool seam = i == 0 || j == 0 || (patch.triangle ? i + j == n : i == n || j == n);
-      LimitCorner corner{static_cast<std::uint32_t>(grid.positions.size()), 0, glm::dvec2(i, j) / double(n)};
+      LimitCorner corner{static_cast<std::uint32_t>(grid.positions.size()), 0, 0, glm::dvec2(i, j) / double(n)};
       if (seam) {
         corner.node = places.find_or_add(s.position, grid.positions);
         corner.side = seam_side(corner.node, s.normal, sides, grid);
@@ -188,9 +188,11 @@ void add_lattice(const PlacedLimitSurface& placed, std::uint32_t k, const PatchL
         grid.positions.push_back(s.position);
         corner.side = add_side(corner.node, s.normal, grid);
       }
+      corner.side_back = corner.side;
       corners.push_back(corner);
     }
   }
+  const size_t first_triangle = grid.triangles.size();
   const auto add = [&](std::array<int, 2> a, std::array<int, 2> b, std::array<int, 2> c) {
     const auto at = [&](std::array<int, 2> ij) { return corners[lattice_index(patch, n, ij[0], ij[1])]; };
     grid.triangles.push_back({k, {at(a), at(b), at(c)}});
@@ -201,6 +203,8 @@ void add_lattice(const PlacedLimitSurface& placed, std::uint32_t k, const PatchL
       if (!patch.triangle || i + j + 1 < n) add({i + 1, j}, {i + 1, j + 1}, {i, j + 1});
     }
   }
+  take_sides_of_tips(placed, n, first_triangle, grid,
+                     [&](std::uint32_t node, const glm::dvec3& normal) { return seam_side(node, normal, sides, grid); });
 }
 
 void find_seams(const PlacedLimitSurface& placed, LimitGrid& grid) {

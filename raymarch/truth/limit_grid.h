@@ -43,15 +43,25 @@ SurfaceCurvature curvature_at(const PlacedLimitSurface& placed, size_t patch, co
 /// on the surface and on the same turned round, and what lies between two sheets is left to the former.
 enum class LimitTurn { none, front, back };
 
+/// Between unit normals at one place: a crease is sharper, a patch's error is not.
+inline constexpr double kSameNormal = 2e-3;
+
 struct LimitCorner {
   std::uint32_t node = 0;  ///< The same for all corners at one place.
-  std::uint32_t side = 0;  ///< The same for all corners of one place that share a normal; index into LimitGrid::normals.
+  /// The same for all corners of one place that share a normal; index into LimitGrid::normals. On the way to the triangle's next corner,
+  /// and to the one before: at the tip of a cone, as a sharp corner of smooth edges has, each way there has a normal of its own.
+  std::uint32_t side = 0, side_back = 0;
   glm::dvec2 uv{0.0};
 };
 struct LimitTriangle {
   std::uint32_t patch = 0;
   std::array<LimitCorner, 3> corners{};
 };
+/// The side of corner `at` of a triangle, on the edge to its corner `other`.
+inline std::uint32_t side_towards(const LimitTriangle& triangle, int at, int other) {
+  const LimitCorner& corner = triangle.corners[static_cast<size_t>(at)];
+  return other == (at + 1) % 3 ? corner.side : corner.side_back;
+}
 
 /// A triangle's edge on a side of its patch.
 struct SeamUse {

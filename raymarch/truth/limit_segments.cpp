@@ -6,33 +6,55 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace limn {
 namespace {
 
 constexpr int kRootSteps = 40;
 
+/// At a node: the tip of a cone, to which a curve leads between two of the ways there.
+LimitEnd tip_end(const LimitTriangle& triangle, size_t corner) {
+  return {{triangle.corners[corner].node, 0, 2}, triangle.patch, triangle.corners[corner].uv};
+}
+
+/// Once around the triangle, along its edges and, at tips of cones, from one way there to the other: where h falls below 0 and where it
+/// rises again a curve goes through.
 void cross_triangle(LimitTracer& tracer, const LimitTriangle& triangle) {
-  bool positive[3];
-  for (size_t i = 0; i < 3; ++i) positive[i] = tracer.h(triangle.corners[i].side) >= 0.0;
-  if (positive[0] == positive[1] && positive[1] == positive[2]) return;
-  // The corner that is alone with its sign: both crossings lie on its edges.
-  const int lone = positive[0] == positive[1] ? 2 : positive[0] == positive[2] ? 1 : 0;
+  std::optional<LimitEnd> falls, rises;
+  size_t above = 0;
+  const auto pass = [&](double before, double after, const auto& end) {
+    if ((before >= 0.0) == (after >= 0.0)) return;
+    (before >= 0.0 ? falls : rises) = end();
+  };
+  for (int i = 0; i < 3; ++i) {
+    const auto at = static_cast<size_t>(i);
+    const int next = (i + 1) % 3;
+    const double back = tracer.h(triangle.corners[at].side_back), away = tracer.h(triangle.corners[at].side);
+    if (std::max(back, away) >= 0.0) above = at;
+    if (triangle.corners[at].side_back != triangle.corners[at].side) pass(back, away, [&] { return tip_end(triangle, at); });
+    pass(away, tracer.h(triangle.corners[static_cast<size_t>(next)].side_back), [&] { return end_on(tracer, triangle, i, next, 0); });
+  }
+  if (!falls || !rises) return;
   LimitSegment segment;
-  segment.ends[0] = end_on(tracer, triangle, lone, (lone + 1) % 3, 0);
-  segment.ends[1] = end_on(tracer, triangle, lone, (lone + 2) % 3, 0);
-  const auto other = static_cast<size_t>(positive[lone] ? lone : (lone + 1) % 3);
-  segment.beside = tracer.grid.positions[triangle.corners[other].node];
-  // From the first end to the second the lone corner lies on the left. Seen are a contour's parts of higher N.V on the left and a level
+  segment.ends[0] = *falls;
+  segment.ends[1] = *rises;
+  segment.beside = tracer.grid.positions[triangle.corners[above].node];
+  // From where h falls to where it rises the part above lies on the left. Seen are a contour's parts of higher N.V on the left and a level
   // curve's ink, which is of lower N.V, whichever way the surface bends.
-  segment.left = (positive[lone] == (tracer.level.kind == CurveKind::silhouette)) != tracer.mirrored;
+  segment.left = (tracer.level.kind == CurveKind::silhouette) != tracer.mirrored;
   tracer.segments.push_back(segment);
 }
 
 }  // namespace
 
 double root_on(LimitTracer& tracer, const LimitTriangle& triangle, int from, int to, int kind) {
-  LimitCorner a = triangle.corners[static_cast<size_t>(from)], b = triangle.corners[static_cast<size_t>(to)];
+  struct Node {
+    std::uint32_t side;
+    glm::dvec2 uv;
+  };
+  Node a{side_towards(triangle, from, to), triangle.corners[static_cast<size_t>(from)].uv},
+      b{side_towards(triangle, to, from), triangle.corners[static_cast<size_t>(to)].uv};
   const bool turned = a.side > b.side;
   if (turned) std::swap(a, b);
   const double level = kind == 0 ? tracer.level.threshold : 0.0;
@@ -46,7 +68,7 @@ double root_on(LimitTracer& tracer, const LimitTriangle& triangle, int from, int
 LimitEnd end_on(LimitTracer& tracer, const LimitTriangle& triangle, int from, int to, int kind) {
   const LimitCorner &a = triangle.corners[static_cast<size_t>(from)], &b = triangle.corners[static_cast<size_t>(to)];
   const double t = root_on(tracer, triangle, from, to, kind);
-  return {root_key(a.side, b.side, kind), triangle.patch, glm::mix(a.uv, b.uv, t)};
+  return {root_key(side_towards(triangle, from, to), side_towards(triangle, to, from), kind), triangle.patch, glm::mix(a.uv, b.uv, t)};
 }
 
 double facing_at(const PlacedLimitSurface& placed, const Camera& camera, std::uint32_t patch, const glm::dvec2& uv) {

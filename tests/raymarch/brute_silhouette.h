@@ -67,6 +67,7 @@ class BruteSilhouette {
       const glm::dvec2 m = s.middle();
       return !(m.x > 0.0 && m.y > 0.0 && m.x < camera.width_px && m.y < camera.height_px);
     });
+    found = cut(found);
     hide(camera, found);
     return found;
   }
@@ -235,6 +236,22 @@ class BruteSilhouette {
     const auto count = static_cast<int>(end - begin);
     if (lefts == count || rights == count) segment.outward = glm::normalize(lefts > 0 ? -left : left);
     found.push_back(segment);
+  }
+
+  /// So short that where they begin to be hidden is known to that.
+  static std::vector<BruteSegment> cut(const std::vector<BruteSegment>& segments) {
+    constexpr double kLongest_px = 0.1;
+    std::vector<BruteSegment> pieces;
+    for (const BruteSegment& segment : segments) {
+      const int count = std::max(1, static_cast<int>(std::ceil(segment.length() / kLongest_px)));
+      for (int i = 0; i < count; ++i) {
+        BruteSegment piece = segment;
+        piece.a = glm::mix(segment.a, segment.b, static_cast<double>(i) / count);
+        piece.b = glm::mix(segment.a, segment.b, static_cast<double>(i + 1) / count);
+        pieces.push_back(piece);
+      }
+    }
+    return pieces;
   }
 
   void hide(const Camera& camera, std::vector<BruteSegment>& found) const {

@@ -45,8 +45,8 @@ void add(const BorderTruth& truth, const Agreement& seen, Sum& sum) {
   sum.all.worst_px = std::max(sum.all.worst_px, seen.worst_px);
 }
 
-/// Where a curve ends behind another one that it meets at a small angle, or beside a tip, the end is decided by rays 0.1 px beside it,
-/// which may be a pixel or three along it: of each view 1 % may be off by that, of all views together 1 in 2000.
+/// Beside the tip of a cone on an edge with three faces a contour may be 0.03 px off for a pixel or two: of each view 0.5 % may be, of all
+/// views together 1 in 10,000, and no place by more than 0.1 px.
 void expect_agreement(const BorderTruth& truth, const Agreement& seen, const std::string& what) {
   if (!truth.exact) {
     ASSERT_FALSE(truth.notes.empty()) << what;
@@ -56,8 +56,8 @@ void expect_agreement(const BorderTruth& truth, const Agreement& seen, const std
   }
   EXPECT_LT(truth.bound_px, 0.01) << what;
   EXPECT_GT(seen.length_px, 50.0) << what;
-  EXPECT_LT(seen.missing_px, 0.01 * seen.length_px) << what;
-  EXPECT_LT(seen.extra_px, 0.01 * seen.length_px) << what;
+  EXPECT_LT(seen.missing_px, 0.005 * seen.length_px) << what;
+  EXPECT_LT(seen.extra_px, 0.005 * seen.length_px) << what;
   EXPECT_LT(seen.wrong_px, 0.3) << what;
 }
 
@@ -86,7 +86,8 @@ TEST(TruthAwkwardCages, AreWithinAFiftiethOfAPixelOrNotCalledExact) {
   for (const auto& [kind, sum] : sums)
     fmt::print("{:24} {:3} of {:3} views exact, {:8.1f} px: missing {:.2f}, extra {:.2f}, wrong side {:.2f}, worst {:.3f}\n", kind,
                sum.exact, sum.views, sum.all.length_px, sum.all.missing_px, sum.all.extra_px, sum.all.wrong_px, sum.all.worst_px);
-  EXPECT_LT(all.all.missing_px + all.all.extra_px, 0.0005 * all.all.length_px);
+  EXPECT_LT(all.all.missing_px + all.all.extra_px, 0.0001 * all.all.length_px);
+  EXPECT_LT(all.all.worst_px, 0.1);
   EXPECT_LT(all.all.wrong_px, 0.00005 * all.all.length_px);
   EXPECT_GT(all.exact, all.views * 9 / 10);
 }

@@ -1,0 +1,58 @@
+#include "raymarch/truth/limit_cone_tips.h"
+
+#include <algorithm>
+
+namespace limn {
+namespace {
+
+/// Of the way from a patch's corner to the next sample: beyond what patches approximate at the corner.
+constexpr double kBeside = 0.1;
+
+/// A patch's corners, in order around it.
+std::vector<glm::dvec2> corners_of(const LimitPatch& patch) {
+  if (patch.triangle) return {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
+  return {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
+}
+
+/// The surface a little beside a corner, on the way to another place of the patch.
+LimitSample beside(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& corner, const glm::dvec2& other) {
+  return sample(placed, k, glm::mix(corner, other, kBeside));
+}
+
+/// The corners where the ways along the patch's two sides have different normals.
+std::vector<glm::dvec2> cone_tips(const PlacedLimitSurface& placed, size_t k, int steps) {
+  const std::vector<glm::dvec2> corners = corners_of(placed.patches[k]);
+  const size_t count = corners.size();
+  std::vector<glm::dvec2> tips;
+  for (size_t i = 0; i < count; ++i) {
+    const auto towards = [&](size_t other) { return glm::mix(corners[i], corners[other % count], 1.0 / steps); };
+    const LimitSample next = beside(placed, k, corners[i], towards(i + 1)), before = beside(placed, k, corners[i], towards(i + count - 1));
+    if (next.valid && before.valid && glm::distance(next.normal, before.normal) > kSameNormal) tips.push_back(corners[i]);
+  }
+  return tips;
+}
+
+}  // namespace
+
+void take_sides_of_tips(const PlacedLimitSurface& placed, int steps, size_t first_triangle, LimitGrid& grid, const SideOfNode& side_of) {
+  if (first_triangle == grid.triangles.size()) return;
+  const std::uint32_t k = grid.triangles[first_triangle].patch;
+  const std::vector<glm::dvec2> tips = cone_tips(placed, k, steps);
+  if (tips.empty()) return;
+  for (size_t t = first_triangle; t < grid.triangles.size(); ++t) {
+    LimitTriangle& triangle = grid.triangles[t];
+    for (size_t i = 0; i < 3; ++i) {
+      LimitCorner& corner = triangle.corners[i];
+      if (std::find(tips.begin(), tips.end(), corner.uv) == tips.end()) continue;
+      const auto side_on_way_to = [&](size_t other) {
+        const LimitSample s = beside(placed, k, corner.uv, triangle.corners[other % 3].uv);
+        return s.valid ? side_of(corner.node, s.normal) : corner.side;
+      };
+      const std::uint32_t next = side_on_way_to(i + 1), back = side_on_way_to(i + 2);
+      corner.side = next;
+      corner.side_back = back;
+    }
+  }
+}
+
+}  // namespace limn

@@ -1,12 +1,15 @@
 #include "raymarch/truth/limit_cone_tips.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace limn {
 namespace {
 
 /// Of the way from a patch's corner to the next sample: beyond what patches approximate at the corner.
 constexpr double kBeside = 0.1;
+/// Between the normals of two ways at a tip, at least.
+constexpr double kCone = 0.05;
 
 /// A patch's corners, in order around it.
 std::vector<glm::dvec2> corners_of(const LimitPatch& patch) {
@@ -15,8 +18,14 @@ std::vector<glm::dvec2> corners_of(const LimitPatch& patch) {
 }
 
 /// The surface a little beside a corner, on the way to another place of the patch.
-LimitSample beside(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& corner, const glm::dvec2& other) {
-  return sample(placed, k, glm::mix(corner, other, kBeside));
+LimitSample beside(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& corner, const glm::dvec2& other, double share = kBeside) {
+  return sample(placed, k, glm::mix(corner, other, share));
+}
+
+/// The normal that the way to another place begins with: a bend goes on to the corner, a cone does not end in any other.
+glm::dvec3 first_normal(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& corner, const glm::dvec2& other) {
+  const LimitSample near = beside(placed, k, corner, other), far = beside(placed, k, corner, other, 2.0 * kBeside);
+  return near.valid && far.valid ? 2.0 * near.normal - far.normal : glm::dvec3(std::numeric_limits<double>::quiet_NaN());
 }
 
 /// The corners where the ways along the patch's two sides have different normals.
@@ -26,8 +35,9 @@ std::vector<glm::dvec2> cone_tips(const PlacedLimitSurface& placed, size_t k, in
   std::vector<glm::dvec2> tips;
   for (size_t i = 0; i < count; ++i) {
     const auto towards = [&](size_t other) { return glm::mix(corners[i], corners[other % count], 1.0 / steps); };
-    const LimitSample next = beside(placed, k, corners[i], towards(i + 1)), before = beside(placed, k, corners[i], towards(i + count - 1));
-    if (next.valid && before.valid && glm::distance(next.normal, before.normal) > kSameNormal) tips.push_back(corners[i]);
+    const glm::dvec3 next = first_normal(placed, k, corners[i], towards(i + 1)),
+                     before = first_normal(placed, k, corners[i], towards(i + count - 1));
+    if (glm::distance(next, before) > kCone) tips.push_back(corners[i]);
   }
   return tips;
 }

@@ -14,6 +14,7 @@ namespace {
 constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr int kRefinements = 8;
 constexpr double kBesideTip = 1e-3;  // of a segment
+constexpr double kSameLift = 0.9;    // the cosine between ways off the surface
 
 /// What is traced, and its pieces.
 struct Shape {
@@ -105,13 +106,20 @@ void refine(const Shape& shape, const LimitSegment& segment, const Place& a, con
   refine(shape, segment, middle, b, depth - 1, out);
 }
 
-void append(const Shape& shape, const LimitSegment& segment, bool turned, bool with_last, TracedCurve& curve) {
+/// Where a crease goes over into a contour, or turns a corner, both sides have a point: no step is half the one and half the other, and
+/// each side is looked at from its own place off the surface.
+bool are_one(const TracedPoint& end, const TracedPoint& beginning) {
+  return end.crease == beginning.crease && glm::dot(end.lift, beginning.lift) > kSameLift;
+}
+
+void append(const Shape& shape, const LimitSegment& segment, bool turned, TracedCurve& curve) {
   const LimitEnd &first = segment.ends[turned ? 1 : 0], &last = segment.ends[turned ? 0 : 1];
   const auto place_of = [&](const LimitEnd& at, const LimitEnd& other) { return Place{at.uv, end_point(shape, segment, at, other)}; };
   std::vector<Place> places{place_of(first, last)};
   const Place end = place_of(last, first);
   refine(shape, segment, places.front(), end, kRefinements, places);
-  if (with_last) places.push_back(end);
+  places.push_back(end);
+  if (!curve.points.empty() && are_one(curve.points.back(), places.front().point)) curve.points.pop_back();
   for (const Place& place : places) curve.points.push_back(place.point);
 }
 
@@ -154,11 +162,10 @@ TracedCurve walk(const Shape& shape, Graph& graph, std::uint32_t start, const Li
     key = segment.ends[turned ? 0 : 1].key;
     const std::uint32_t next = key == from ? kNone : next_segment(shape, graph, key);
     out.closed = key == from;
-    // Where a crease goes over into a contour both have a point, so that no step is half the one and half the other.
-    const std::uint32_t after = out.closed ? start : next;
-    append(shape, segment, turned, after == kNone || shape.segments[after].crease != segment.crease, out);
+    append(shape, segment, turned, out);
     s = next;
   }
+  if (out.closed && are_one(out.points.back(), out.points.front())) out.points.pop_back();
   if (shape.sheet && !left) std::reverse(out.points.begin(), out.points.end());
   return out;
 }

@@ -6,13 +6,12 @@ plans.py LIMN FOLDER [SCENE...]      without scenes: a quick one of each kind; a
 """
 import csv
 import json
-import pathlib
-import shutil
 import subprocess
 import sys
 
+import scenes
+
 QUICK = ("ellipsoid", "rook")
-ALL = ("ellipsoid", "tilted_torus", "machined_part", "superellipsoid", "gyroid", "teacup", "rook", "pipe_junction", "bracket")
 TOLERANCES = (1.0, 0.5, 0.25)
 VIEW = ("--size", "480x270", "--views", "1")
 
@@ -38,15 +37,9 @@ def study_error(limn, scene, trial, folder):
 
 
 def main():
-    if len(sys.argv) < 3:
-        sys.exit(__doc__)
-    limn, folder = (pathlib.Path(part).resolve() for part in sys.argv[1:3])
-    scenes = sys.argv[3:] or QUICK
-    scenes = ALL if scenes == ["all"] else scenes
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
+    limn, folder, names = scenes.arguments(__doc__, QUICK)
     wrong = 0
-    for scene in scenes:
+    for scene in names:
         for tolerance in TOLERANCES:
             plan = json.loads(run([limn, "plan", scene, "--tolerance", tolerance, *VIEW, "--json", "-q"], fine=(0, 1)))
             chosen = plan.get("chosen")

@@ -7,13 +7,13 @@ predictions.py LIMN FOLDER [INPUT...]      built-in scenes or subdivision cages;
 import csv
 import math
 import pathlib
-import shutil
 import statistics
 import subprocess
 import sys
 
+import scenes
+
 QUICK = ("tilted_torus", "rook")
-ALL = ("ellipsoid", "tilted_torus", "machined_part", "superellipsoid", "gyroid", "teacup", "rook", "pipe_junction", "bracket")
 MODELS = ("--voxels", "32..256", "--levels", "1..4", "--views", "2", "--size", "320x240", "--methods", "rim", "--thresholds", "0.4")
 SETTINGS = ("surface", "voxels", "level", "normals", "gradient", "view")
 MOST_ERROR, LEAST_INSIDE = 0.25, 0.9
@@ -46,15 +46,9 @@ def judge(cells):
 
 
 def main():
-    if len(sys.argv) < 3:
-        sys.exit(__doc__)
-    limn, folder = (pathlib.Path(part).resolve() for part in sys.argv[1:3])
-    scenes = sys.argv[3:] or QUICK
-    scenes = ALL if scenes == ["all"] else scenes
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
+    limn, folder, names = scenes.arguments(__doc__, QUICK)
     wrong = 0
-    for scene in scenes:
+    for scene in names:
         name = pathlib.Path(scene).stem
         errors, inside = judge(study(limn, scene, folder / name))
         if not errors:

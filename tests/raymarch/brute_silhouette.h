@@ -106,8 +106,7 @@ class BruteSilhouette {
     const size_t count = mesh_.vertex_count();
     singular_.assign(count, 0), tip_.assign(count, 0);
     std::vector<glm::dvec3> normal_at(count);
-    std::vector<char>& split = split_;
-    split.assign(count, 0);
+    std::vector<char> split(count, 0);
     std::vector<int> sharp(count, 0);
     for (size_t f = 0; f < mesh_.face_count(); ++f) {
       for (size_t i = 0; i < static_cast<size_t>(mesh_.face_sizes[f]); ++i) {
@@ -236,10 +235,6 @@ class BruteSilhouette {
     if (lefts > 0 && rights > 0) return;
     const auto count = static_cast<int>(end - begin);
     if (lefts == count || rights == count) segment.outward = glm::normalize(lefts > 0 ? -left : left);
-    // At one end the faces have one normal and at the other they do not: somewhere between the surface is smooth, and its contour runs
-    // beside the edge.
-    const auto [a, b] = edges_[begin].ends;
-    if (count == 2 && !agree(begin) && split_[static_cast<size_t>(a)] != split_[static_cast<size_t>(b)]) segment.floor_px = kMostFloor_px;
     found.push_back(segment);
   }
 
@@ -285,7 +280,6 @@ class BruteSilhouette {
   SceneModel model_;
   std::vector<EdgeUse> edges_;
   std::vector<char> singular_, tip_;  ///< Of vertices.
-  std::vector<char> split_{};         ///< Of vertices: their faces have not one normal there.
 };
 
 }  // namespace limn::test

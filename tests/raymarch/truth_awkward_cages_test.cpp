@@ -13,12 +13,14 @@ namespace {
 
 constexpr int kViews = 2, kSide_px = 160;
 constexpr double kTolerance_px = 0.02;
-constexpr std::int64_t kMostFaces = 150'000;
+constexpr std::int64_t kMostFaces = 150'000, kMostFacesOfFins = 600'000;
 
 /// Of level 7, or as fine as edges of about a pixel want. What its chords may be off by is in BruteSegment::floor_px, mostly 0.003 px.
+/// Where three faces meet in an edge that ends, a mesh's edges there pass for creases: of level 8 they are short enough.
 Mesh fine_mesh(const AwkwardCage& cage) {
-  int level = 7;
-  while (level > 4 && predict_refined_size(cage.mesh, cage.scheme, level).faces > kMostFaces) --level;
+  const bool fins = cage.kind == "edges with three faces";
+  int level = fins ? 8 : 7;
+  while (level > 4 && predict_refined_size(cage.mesh, cage.scheme, level).faces > (fins ? kMostFacesOfFins : kMostFaces)) --level;
   return refine(cage.mesh, {cage.scheme, level, true});
 }
 

@@ -33,6 +33,9 @@ struct ShapeFunctions {
   void (*record)(const void* shape, const Vector3<Recorded>& point, Recorded& value);
   /// Where {f <= 0} is an ellipsoid about the origin: 1 / its half axes. Null elsewhere.
   glm::dvec3 (*ball_from_object)(const void* shape);
+  /// {f <= level} for levels up to 0 put together from smooth faces by minimum and maximum, in object space: its sharp edges are where two
+  /// of them meet. Null where the shape has none, or they are not known one by one.
+  Field (*faces)(const void* shape);
 };
 
 /// f(p) = value_scale * shape(object_from_world p).
@@ -81,6 +84,7 @@ Box sublevel_bounds(const FieldProgram& program, double level);
 /// and, where they apply,
 ///   static constexpr bool kBranches = true;                              the formula compares values, and cannot be recorded
 ///   glm::dvec3 ball_from_object() const;                                 see ShapeFunctions
+///   Field faces() const;                                                 see ShapeFunctions
 /// `lipschitz` and `exact` are as in FieldTraits; object_from_world must be rigid.
 template <class Shape>
 Field field_from_shape(Shape shape, double lipschitz, bool exact, const Affine& object_from_world = {});
@@ -127,13 +131,27 @@ constexpr auto ball_of() {
 }
 
 template <class Shape>
+Field faces_of_shape(const void* shape) {
+  return static_cast<const Shape*>(shape)->faces();
+}
+template <class Shape>
+constexpr auto faces_of() {
+  if constexpr (requires(const Shape& s) { s.faces(); }) {
+    return faces_of_shape<Shape>;
+  } else {
+    return nullptr;
+  }
+}
+
+template <class Shape>
 Field field_from_shape(Shape shape, double lipschitz, bool exact, const Affine& object_from_world) {
   static constexpr ShapeFunctions functions{
       {evaluate_shape<Shape, float>, evaluate_shape<Shape, double>, evaluate_shape<Shape, Dual>, evaluate_shape<Shape, Jet>,
        evaluate_shape<Shape, Interval>, evaluate_shape<Shape, Slope>},
       [](const void* s, const glm::dvec3& direction, double level) { return static_cast<const Shape*>(s)->support(direction, level); },
       recorder_of<Shape>(),
-      ball_of<Shape>()};
+      ball_of<Shape>(),
+      faces_of<Shape>()};
   FieldLeaf leaf;
   leaf.shape = std::make_shared<const Shape>(std::move(shape));
   leaf.functions = &functions;

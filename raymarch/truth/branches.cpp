@@ -34,12 +34,24 @@ std::vector<Step> steps_of(const FieldProgram& program) {
   return steps;
 }
 
+/// A program and the tree of its steps.
+struct Source {
+  const FieldProgram& program;
+  std::vector<Step> steps;
+  explicit Source(const FieldProgram& of) : program(of), steps(steps_of(of)) {}
+  const Step& step(int i) const { return steps[static_cast<size_t>(i)]; }
+  int root() const { return static_cast<int>(steps.size()) - 1; }
+};
+
 class Splitter {
  public:
-  explicit Splitter(const Field& field) : program_(field.program()), steps_(steps_of(program_)) {}
+  Splitter(const Field& field, bool into_faces) : into_faces_(into_faces) {
+    traits_ = field.traits();
+    const Source source(field.program());
+    split(source, source.root(), 1.0, 0.0);
+  }
 
-  SharpField run() {
-    split(static_cast<int>(steps_.size()) - 1, 1.0, 0.0);
+  SharpField finish() {
     for (size_t i = 0; i < sharp_.nodes.size(); ++i) {
       const SharpNode& node = sharp_.nodes[i];
       if (node.branch >= 0) continue;
@@ -50,30 +62,44 @@ class Splitter {
   }
 
  private:
-  const Step& step(int i) const { return steps_[static_cast<size_t>(i)]; }
-
   /// The node for sign * step + added.
-  int split(int at, double sign, double added) {
-    const FieldInstruction& instruction = *step(at).instruction;
-    const int left = step(at).left, right = step(at).right;
+  int split(const Source& source, int at, double sign, double added) {
+    const FieldInstruction& instruction = *source.step(at).instruction;
+    const int left = source.step(at).left, right = source.step(at).right;
     switch (instruction.operation) {
       case FieldOperation::minimum:
       case FieldOperation::maximum: {
         const bool maximum = (instruction.operation == FieldOperation::maximum) == (sign > 0.0);
-        const int a = split(left, sign, added), b = split(right, sign, added);
+        const int a = split(source, left, sign, added), b = split(source, right, sign, added);
         return add_node({maximum, a, b, -1, -1});
       }
       case FieldOperation::absolute: {
-        const int a = split(left, 1.0, added), b = split(left, -1.0, added);
+        const int a = split(source, left, 1.0, added), b = split(source, left, -1.0, added);
         return add_node({sign > 0.0, a, b, -1, -1});
       }
       case FieldOperation::negate:
-        return split(left, -sign, added);
+        return split(source, left, -sign, added);
       case FieldOperation::add:
-        return split(left, sign, added + sign * instruction.constant);
+        return split(source, left, sign, added + sign * instruction.constant);
+      case FieldOperation::leaf:
+        return split_leaf(source, at, sign, added);
       default:
-        return add_branch(at, sign, added);
+        return add_branch(source, at, sign, added);
     }
+  }
+
+  /// A shape with sharp edges, at a level where they are still sharp.
+  int split_leaf(const Source& source, int at, double sign, double added) {
+    const FieldLeaf& leaf = source.program.leaves[source.step(at).instruction->leaf];
+    if (!into_faces_ || leaf.functions->faces == nullptr || sign * added < 0.0) return add_branch(source, at, sign, added);
+    FieldProgram faces = leaf.functions->faces(leaf.shape.get()).program();
+    for (FieldLeaf& face : faces.leaves) {
+      face.object_from_world = compose(face.object_from_world, leaf.object_from_world);
+      face.value_scale *= leaf.value_scale;
+      face.lipschitz = leaf.lipschitz;
+    }
+    const Source placed(faces);
+    return split(placed, placed.root(), sign, added);
   }
 
   int add_node(const SharpNode& node) {
@@ -81,11 +107,11 @@ class Splitter {
     return static_cast<int>(sharp_.nodes.size()) - 1;
   }
 
-  int add_branch(int at, double sign, double added) {
+  int add_branch(const Source& source, int at, double sign, double added) {
     FieldProgram branch;
-    branch.traits = program_.traits;
+    branch.traits = traits_;
     branch.traits.exact_distance = false;
-    emit(at, 0, branch);
+    emit(source, at, 0, branch);
     if (sign < 0.0) branch.instructions.push_back({FieldOperation::negate, 0, 0, 0, 0, 0.0});
     if (added != 0.0) branch.instructions.push_back({FieldOperation::add, 0, 0, 0, 0, added});
     const int number = static_cast<int>(sharp_.branches.size());
@@ -94,12 +120,12 @@ class Splitter {
     return sharp_.node_of.back();
   }
 
-  void emit(int at, std::uint32_t target, FieldProgram& out) const {
-    FieldInstruction instruction = *step(at).instruction;
-    if (step(at).left >= 0) emit(step(at).left, target, out);
-    if (step(at).right >= 0) emit(step(at).right, target + 1, out);
+  void emit(const Source& source, int at, std::uint32_t target, FieldProgram& out) const {
+    FieldInstruction instruction = *source.step(at).instruction;
+    if (source.step(at).left >= 0) emit(source, source.step(at).left, target, out);
+    if (source.step(at).right >= 0) emit(source, source.step(at).right, target + 1, out);
     if (instruction.operation == FieldOperation::leaf) {
-      out.leaves.push_back(program_.leaves[instruction.leaf]);
+      out.leaves.push_back(source.program.leaves[instruction.leaf]);
       instruction.leaf = static_cast<std::uint32_t>(out.leaves.size() - 1);
     }
     instruction.target = target;
@@ -109,8 +135,8 @@ class Splitter {
     out.instructions.push_back(instruction);
   }
 
-  const FieldProgram& program_;
-  std::vector<Step> steps_;
+  bool into_faces_ = false;
+  FieldTraits traits_;
   SharpField sharp_;
 };
 
@@ -132,8 +158,8 @@ int first_common(const std::vector<int>& path, const std::vector<int>& other) {
 
 }  // namespace
 
-SharpField split_branches(const Field& field, double extent) {
-  SharpField sharp = Splitter(field).run();
+SharpField split_branches(const Field& field, double extent, bool into_faces) {
+  SharpField sharp = Splitter(field, into_faces).finish();
   sharp.hair = kHair * extent;
   return sharp;
 }

@@ -26,8 +26,8 @@ struct SharpField {
   double hair = 0.0;
 };
 
-/// `extent` is the field's size: a hair is 1e-10 of it.
-SharpField split_branches(const Field& field, double extent);
+/// `extent` is the field's size: a hair is 1e-10 of it. `into_faces`: shapes with sharp edges are taken apart too (ShapeFunctions::faces).
+SharpField split_branches(const Field& field, double extent, bool into_faces = false);
 
 /// Values of all nodes from those of the branches, by a hair apart.
 void node_values(const SharpField& sharp, std::span<const double> branch_values, std::vector<double>& values);

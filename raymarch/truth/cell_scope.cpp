@@ -140,7 +140,7 @@ Survivors survivors_in(const CellSearch& search, const CellScope& scope, const B
   }
   for (size_t j = 1; j < candidates.size(); ++j) {
     for (size_t i = 0; i < j; ++i) {
-      bool live = false;
+      bool live = search.whole_seams;
       for (size_t family = 0; family < kCurveFamilies; ++family) {
         live = live || ((search.families >> family & 1u) && !apart(facing[i][family], facing[j][family]));
       }

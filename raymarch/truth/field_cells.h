@@ -18,6 +18,7 @@ struct CellSearch {
   int level = 0;
   std::array<double, kCurveFamilies> levels{};
   FamilyMask families = 0;
+  bool whole_seams = false;  ///< Seams are followed whatever N.V is beside them.
 };
 
 /// Crossings of curves on branches, and of the seams of two, wherever either may belong to the surface of the whole.

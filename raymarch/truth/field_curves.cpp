@@ -163,7 +163,14 @@ std::vector<Strand> strands_of(CellResult& found, const CellSearch& search, Fiel
     }
   }
   for (auto& [seam, curves] : found.seams) {
-    const auto whole = assemble(std::move(curves), seam.first, seam.second, 0.0);
+    auto whole = assemble(std::move(curves), seam.first, seam.second, 0.0);
+    if (search.whole_seams) {
+      for (Strand& strand : whole) {
+        strand.whole = true;
+        strands.push_back(std::move(strand));
+      }
+      continue;
+    }
     for (size_t family = 0; family < kCurveFamilies; ++family) {
       if (!(search.families >> family & 1u)) continue;
       for (Strand strand : whole) {
@@ -222,8 +229,9 @@ FieldCurves trace_field_curves(const Field& field, const Camera& camera, const V
   const CellGrid grid = make_grid(bounds, result.level);
   result.cell = grid.side;
   result.cell_px = grid.side * scale;
-  const SharpField sharp = split_branches(field, bounds.radius());
-  const CellSearch search{sharp, camera, viewer, grid, result.level, {0.0, settings.threshold}, settings.threshold > 0.0 ? 3u : 1u};
+  const SharpField sharp = split_branches(field, bounds.radius(), settings.whole_seams);
+  const CellSearch search{sharp, camera, viewer, grid, result.level, {0.0, settings.threshold}, settings.threshold > 0.0 ? 3u : 1u,
+                          settings.whole_seams};
   CellResult found = search_cells(search, how);
   result.cells = found.cells;
   result.unsettled = found.unsettled;
@@ -240,13 +248,15 @@ FieldCurves trace_field_curves(const Field& field, const Camera& camera, const V
     const Refiner refiner{sharp.branches[static_cast<size_t>(strand.first)], camera, viewer, settings.tolerance_px, bounds.radius()};
     for (FieldCurve& curve : cut[i]) refine(refiner, curve, stats[i]);
   });
-  std::vector<FieldCurve> pieces;
+  std::vector<FieldCurve> pieces, seams;
   for (size_t i = 0; i < strands.size(); ++i) {
     result.unrefined += stats[i].unrefined;
     result.worst_unrefined_px = std::max(result.worst_unrefined_px, stats[i].worst_unrefined_px);
-    for (FieldCurve& curve : cut[i]) pieces.push_back(std::move(curve));
+    for (FieldCurve& curve : cut[i]) (curve.seam ? seams : pieces).push_back(std::move(curve));
   }
-  result.curves = join_ends(std::move(pieces), camera, result.worst_unrefined_px);
+  double widest_gap_px = 0.0;
+  result.curves = join_ends(std::move(pieces), camera, settings.whole_seams ? widest_gap_px : result.worst_unrefined_px);
+  result.curves.insert(result.curves.end(), std::make_move_iterator(seams.begin()), std::make_move_iterator(seams.end()));
   for (const FieldCurve& curve : result.curves) result.open_ends += curve.closed ? 0 : 2;
   return result;
 }

@@ -16,11 +16,15 @@ struct FieldCurveSettings {
   double cell_px = 4.0;    ///< Side of the finest cells, where the budget allows.
   int finest_level = 10;   ///< The budget: the domain's side is cut into at most two to this power.
   Box unbounded_domain{};  ///< What stands in for bounds that are infinite.
+  /// Seams of sharp CSG come out whole, as curves of their own into which contours lead, and not where N.V passes a level across them only.
+  bool whole_seams = false;
 };
 
 struct FieldCurve {
   double c = 0.0;  ///< 0: a contour generator.
   bool closed = false;
+  bool seam = false;     ///< A whole seam, of which N.V says nothing.
+  bool concave = false;  ///< Of a seam: the body fills more than half of the space around it.
   std::vector<CurvePoint> points{};
 };
 

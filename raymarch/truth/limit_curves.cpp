@@ -195,7 +195,7 @@ std::vector<TracedCurve> chained(const Shape& shape) {
 
 std::vector<TracedCurve> trace_limit_curves(const PlacedLimitSurface& placed, const LimitGrid& grid, const Camera& camera,
                                             const LimitCurveSettings& settings) {
-  const LimitLevel level{settings.kind, settings.threshold, settings.turn};
+  const LimitLevel level{settings.kind, settings.threshold, settings.turn, settings.seams};
   const Shape shape{placed, camera, settings, grid.sheet, limit_segments(placed, grid, camera, level)};
   return chained(shape);
 }

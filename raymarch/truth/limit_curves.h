@@ -12,6 +12,7 @@ struct LimitCurveSettings {
   double tolerance_px = 0.005;
   int object = 1;
   LimitTurn turn = LimitTurn::none;
+  bool seams = true;  ///< Creases and open edges are followed where the level lies between their sides.
 };
 
 /// In the placed surface's space. Silhouettes hold the surface's open edges too: it ends there. Curves of a

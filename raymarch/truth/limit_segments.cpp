@@ -105,7 +105,7 @@ std::vector<LimitSegment> limit_segments(const PlacedLimitSurface& placed, const
   for (size_t s = 0; s < grid.normals.size(); ++s)
     tracer.facing[s] = glm::dot(grid.normals[s], view_vector(camera, grid.positions[grid.node_of_side[s]]));
   for (const LimitTriangle& triangle : grid.triangles) cross_triangle(tracer, triangle);
-  cross_seams(tracer);
+  if (level.seams) cross_seams(tracer);
   return std::move(tracer.segments);
 }
 

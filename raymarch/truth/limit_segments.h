@@ -39,6 +39,7 @@ struct LimitLevel {
   CurveKind kind = CurveKind::silhouette;
   double threshold = 0.0;
   LimitTurn turn = LimitTurn::none;
+  bool seams = true;  ///< What creases and open edges contribute is wanted.
 };
 
 /// N.V at a place of a patch.

@@ -139,7 +139,7 @@ std::vector<FieldCurve> join_ends(std::vector<FieldCurve> pieces, const Camera& 
   std::vector<FieldCurve> result;
   std::vector<bool> taken(pieces.size(), false);
   const auto walk = [&](std::uint32_t start) {
-    FieldCurve curve{pieces[start / 2].c, false, {}};
+    FieldCurve curve{pieces[start / 2].c};
     std::uint32_t end = start;
     while (end != kNone && !taken[end / 2]) {
       taken[end / 2] = true;

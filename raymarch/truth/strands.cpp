@@ -85,7 +85,7 @@ class Cutter {
     point.low = a_high ? m : n;
     point.uphill = a_high ? along_a - along_b : along_b - along_a;
     spot.clear = std::min(std::fabs(a.facing - strand_.c), std::fabs(b.facing - strand_.c));
-    return (a.facing < strand_.c) != (b.facing < strand_.c);
+    return strand_.whole || (a.facing < strand_.c) != (b.facing < strand_.c);
   }
 
   std::optional<Spot> between(const Spot& a, const Spot& b) {
@@ -102,14 +102,14 @@ class Cutter {
   }
 
   /// The seam's sides change places between the two: where they are equal, c is not between them, be it for a thousandth of a pixel.
-  static bool swapped(const Spot& a, const Spot& b) { return a.on && b.on && a.first_high != b.first_high; }
+  bool swapped(const Spot& a, const Spot& b) const { return !strand_.whole && a.on && b.on && a.first_high != b.first_high; }
 
   /// Nothing can change between the two: the margin is no steeper than the field.
   bool settled(const Spot& a, const Spot& b, double length) const {
     const bool inside = a.margin > 0.0;
     if (inside != (b.margin > 0.0)) return false;
     const bool proven = std::fabs(a.margin) + std::fabs(b.margin) > kBulge * settings_.lipschitz * length;
-    if (!proven || !inside || strand_.second < 0) return proven;
+    if (!proven || !inside || strand_.second < 0 || strand_.whole) return proven;
     return std::min(a.clear, b.clear) > kNearLevel || a.scale * length < kNearLevelStepPx;
   }
 
@@ -140,7 +140,7 @@ class Cutter {
   /// What ends were bracketed with, and steps were proven with, is more than the curve's shape needs: from each point on, as far as a chord
   /// goes along all between.
   FieldCurve curve_of(const std::vector<Spot>& stretch, bool closed) const {
-    FieldCurve curve{strand_.c, closed, {}};
+    FieldCurve curve{strand_.c, closed, strand_.whole, strand_.whole && !intersection_, {}};
     const size_t n = stretch.size();
     for (size_t i = 0; i < n;) {
       curve.points.push_back(stretch[i].point);

@@ -13,6 +13,7 @@ struct Strand {
   double c = 0.0;
   bool closed = false;
   std::vector<CurvePoint> points{};
+  bool whole = false;  ///< A seam that is wanted whatever N.V is beside it.
 };
 
 /// Crossings joined along their links, in an order that hangs on their keys alone.

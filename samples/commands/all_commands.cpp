@@ -8,6 +8,7 @@
   X(render)              \
   X(compare)             \
   X(study)               \
+  X(contours)            \
   X(plan)                \
   X(stability)           \
   X(export)              \

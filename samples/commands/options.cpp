@@ -25,6 +25,7 @@ constexpr const char* kStudy = "Study";
 constexpr const char* kStability = "Cases";
 constexpr const char* kHidden = "";  ///< In no help.
 constexpr const char* kPlan = "Plan";
+constexpr const char* kLines = "Lines";
 constexpr const char* kOutput = "Output";
 constexpr const char* kExecution = "Execution (never changes a pixel)";
 constexpr const char* kLimits = "Limits (estimates are within a factor of two; predicted overruns exit with 2, actual ones with 1)";
@@ -313,6 +314,48 @@ void add_limits(CLI::App& app, Options& options) {
        "time the call may take, such as 90s or 10m: refused where twice that is expected, stopped where it is over; default: no limit",
        kLimits},
       [&options](const std::string& text) { options.spec.limits.max_time_ms = parse_milliseconds("--max-time", text); });
+}
+
+void add_lines(CLI::App& app, Options& options) {
+  LineOptions& lines = options.lines;
+  add(app,
+      {"--lines", "A,B,...|all",
+       "classes of lines (limn list lines); default: contour, boundary, crease, intersection, material", kLines},
+      [&lines](const std::string& text) {
+        lines.lines.classes.clear();
+        if (text == "all") {
+          for (const LineClassDescriptor& one : line_classes()) lines.lines.classes.push_back(one.line_class);
+          return;
+        }
+        for (const std::string& name : parse_names(text))
+          add_unless_there(line_classes().find(name, "", "--lines").line_class, lines.lines.classes);
+      });
+  add_switch(app, {"--hidden", "", "hidden lines too, dashed and painted first", kLines}, lines.hidden);
+  add(app, {"--qi", "A..B", "only lines with A to B layers of surface in front of them (quantitative invisibility); default 0", kLines},
+      [&lines](const std::string& text) { lines.layers = parse_layers("--qi", text); });
+  add(app, {"--threshold", "T", "N.V of the rim's line, above 0 and below 1; default 0.4", kLines}, [&lines](const std::string& text) {
+    lines.lines.threshold = parse_number_above("--threshold", text, 0.0, false, "above 0 and below 1");
+    if (lines.lines.threshold >= 1.0) throw InputError({"", "--threshold", text, "out of range", "above 0 and below 1"});
+  });
+  add(app, {"--crease-angle", "DEG", "edges of meshes are creases where their faces' normals differ by more; default 20", kLines},
+      [&lines](const std::string& text) {
+        lines.lines.crease_angle_deg = parse_number_above("--crease-angle", text, 0.0, false, "above 0 and below 180 degrees");
+        if (lines.lines.crease_angle_deg >= 180.0)
+          throw InputError({"", "--crease-angle", text, "out of range", "above 0 and below 180 degrees"});
+      });
+  add(app, {"--curves", "polyline|bezier|arc", "what strokes are made of; default polyline", kLines}, [&lines](const std::string& text) {
+    const std::vector<std::string> known = {"polyline", "bezier", "arc"};
+    const auto at = std::find(known.begin(), known.end(), text);
+    if (at == known.end()) throw InputError({"", "--curves", text, "there are no such curves", known_names(text, known)});
+    lines.drawing.form = static_cast<CurveForm>(at - known.begin());
+  });
+  add(app, {"--fit", "PX", "how far Bezier curves and arcs may lie from the line, pixels, above 0; default 0.05", kLines},
+      [&lines](const std::string& text) { lines.drawing.fit_px = parse_number_above("--fit", text, 0.0, false, "above 0 px"); });
+  add(app, {"--page", "WxHmm", "the drawing fitted into a page of millimetres; default: a unit is a pixel", kLines},
+      [&lines](const std::string& text) { lines.drawing.page_mm = parse_page("--page", text); });
+  add(app, {"--style", "NAME|FILE.css", "widths, colours and dashes of each class: plain, technical, ink, or a style sheet; default plain", kLines},
+      [&lines](const std::string& text) { lines.drawing.style = read_style(text); });
+  add_switch(app, {"--strict", "", "exit with 1 where the certificate finds a conflict", kLines}, lines.strict);
 }
 
 void add_parts(CLI::App& app, Options& options) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "raymarch/frames.h"
+#include "samples/lines/drawing.h"
 #include "samples/spec/spec.h"
 
 namespace CLI {
@@ -35,6 +36,15 @@ struct DumpOptions {
   std::optional<int> brick{};  ///< The values of this one in place of the list.
 };
 
+/// What `limn contours` draws.
+struct LineOptions {
+  LineSettings lines{};
+  DrawingSettings drawing{.style = built_in_style("plain")};
+  bool hidden = false;
+  std::optional<std::pair<int, int>> layers{};  ///< In front of what is drawn.
+  bool strict = false;  ///< Conflicts of the certificate are a failure.
+};
+
 /// The command line as given: what it asks of the experiment, and where the answer goes.
 struct Options {
   ExperimentSpec spec{};
@@ -46,6 +56,7 @@ struct Options {
   bool refined = false;           ///< `limn export` only: refined instead of limit positions.
   std::string kind{};             ///< `limn list` only.
   DumpOptions dump{};             ///< `limn info` only.
+  LineOptions lines{};            ///< `limn contours` only.
 
   std::vector<std::filesystem::path> outputs{};
   bool no_clobber = false;
@@ -91,6 +102,8 @@ void add_study(CLI::App& app, Options& options);
 void add_parts(CLI::App& app, Options& options);
 /// Which cases `limn stability` runs, with what random parameters, on which surfaces.
 void add_stability(CLI::App& app, Options& options);
+/// Which lines `limn contours` draws, and how.
+void add_lines(CLI::App& app, Options& options);
 /// --tolerance, --metric and --budget.
 void add_plan(CLI::App& app, Options& options);
 

@@ -162,6 +162,28 @@ std::pair<int, int> parse_shard(const std::string& field, const std::string& tex
   return {parse_integer(field, parts[0], 1, count), count};
 }
 
+glm::dvec2 parse_page(const std::string& field, std::string_view text) {
+  const char* const expected = "WIDTHxHEIGHTmm, such as 210x297mm, each above 0 and up to 10000";
+  const std::string whole(text);
+  const bool in_mm = whole.size() > 2 && whole.substr(whole.size() - 2) == "mm";
+  const auto parts = split(in_mm ? whole.substr(0, whole.size() - 2) : whole, 'x');
+  if (!in_mm || parts.size() != 2) fail(field, whole, "not a page", expected);
+  const glm::dvec2 page(parse_number_above(field, parts[0], 0.0, false, expected), parse_number_above(field, parts[1], 0.0, false, expected));
+  if (page.x > 10'000.0 || page.y > 10'000.0) fail(field, whole, "out of range", expected);
+  return page;
+}
+
+std::pair<int, int> parse_layers(const std::string& field, const std::string& text) {
+  constexpr int kMost = 1'000'000;
+  const size_t dots = text.find("..");
+  const auto layers = [&](const std::string& part) { return parse_integer(field, part, 0, kMost); };
+  if (dots == std::string::npos) return {layers(text), layers(text)};
+  const std::string last = text.substr(dots + 2);
+  const std::pair<int, int> range{layers(text.substr(0, dots)), last.empty() ? kMost : layers(last)};
+  if (range.first > range.second) fail(field, text, "not a range", "the lesser number first, such as 0..2");
+  return range;
+}
+
 Scheme parse_scheme(const std::string& name, const std::string& file, const std::string& field) {
   std::vector<std::string> known;
   for (const Scheme scheme : {Scheme::catmark, Scheme::loop, Scheme::bilinear}) {

@@ -42,6 +42,11 @@ bool parse_plan_metric(const std::string& field, const std::string& text);
 /// "2/8": part and count.
 std::pair<int, int> parse_shard(const std::string& field, const std::string& text);
 
+/// "210x297mm": width and height, millimetres.
+glm::dvec2 parse_page(const std::string& field, std::string_view text);
+/// "0", "1..3" or "1..": from and to, both included.
+std::pair<int, int> parse_layers(const std::string& field, const std::string& text);
+
 /// `file` empty: a command-line option.
 Scheme parse_scheme(const std::string& name, const std::string& file, const std::string& field);
 NormalKind parse_normals(const std::string& name, const std::string& file, const std::string& field);

@@ -1,4 +1,5 @@
 #include "sdf/shapes/entry.h"
+#include "sdf/shapes/faces.h"
 
 namespace limn {
 namespace {
@@ -9,6 +10,17 @@ struct Box3 {
   template <class T>
   T operator()(const Vector3<T>& p) const {
     return corner_distance(abs(p.x) - scalar<T>(half.x), abs(p.y) - scalar<T>(half.y), abs(p.z) - scalar<T>(half.z));
+  }
+  Field faces() const {
+    std::vector<Field> sides;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double sign : {1.0, -1.0}) {
+        glm::dvec3 normal(0.0);
+        normal[axis] = sign;
+        sides.push_back(half_space(normal, half[axis]));
+      }
+    }
+    return combine(Csg::intersection, sides);
   }
   double support(const glm::dvec3& direction, double level) const {
     return glm::dot(half, glm::abs(direction)) + level * glm::length(direction);

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "sdf/shapes/entry.h"
+#include "sdf/shapes/faces.h"
 
 namespace limn {
 namespace {
@@ -11,6 +12,10 @@ struct Cylinder {
   template <class T>
   T operator()(const Vector3<T>& p) const {
     return corner_distance(norm(p.x, p.z) - scalar<T>(radius), abs(p.y) - scalar<T>(half_height));
+  }
+  Field faces() const {
+    const Field caps = combine(Csg::intersection, half_space({0.0, 1.0, 0.0}, half_height), half_space({0.0, -1.0, 0.0}, half_height));
+    return combine(Csg::intersection, turned_line({1.0, 0.0}, radius), caps);
   }
   double support(const glm::dvec3& direction, double level) const {
     return radius * norm(direction.x, direction.z) + half_height * std::fabs(direction.y) + level * glm::length(direction);

@@ -8,9 +8,13 @@
 #include <limits>
 #include <vector>
 
+#include "sdf/field.h"
 #include "sdf/number.h"
 
 namespace limn {
+
+struct Profile;
+Field profile_faces(const Profile& profile);  // sdf/shapes/faces.h
 
 struct ProfileSegment {
   glm::dvec2 start, end;  // (r, y), the solid on the left
@@ -37,6 +41,8 @@ struct Profile {
       return nearest(r, y);
     }
   }
+
+  Field faces() const { return profile_faces(*this); }
 
   double support(const glm::dvec3& direction, double level) const {
     const double across = norm(direction.x, direction.z);

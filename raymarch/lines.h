@@ -1,0 +1,124 @@
+#pragma once
+// The lines of a scene as vectors: contour generators split by occlusion, boundaries, creases, intersections, joined into a view graph
+// whose edges know how many layers of surface lie in front of them, and a certificate that the graph agrees with itself and with rays.
+
+#include <string>
+#include <vector>
+
+#include "raymarch/gbuffer.h"
+#include "raymarch/scene.h"
+#include "sdf/registry.h"
+
+namespace limn {
+
+/// What a line is. Creases and boundaries behind which the surface turns away count as contours: there the object ends in the picture.
+enum class LineClass : std::uint8_t {
+  contour,       ///< N.V changes sign: the contour generator.
+  boundary,      ///< An open edge of a surface.
+  crease,        ///< Two normals of one object meet at an angle.
+  intersection,  ///< Two objects pass through each other.
+  material,      ///< Two materials of one object meet.
+  rim,           ///< N.V = threshold, the inner border of the rim.
+};
+
+/// A class of lines, for lists and options.
+struct LineClassDescriptor {
+  Description about{};                         ///< Name, help and source.
+  LineClass line_class = LineClass::contour;   ///< See LineClass.
+  bool by_default = true;                      ///< Drawn where nobody says which.
+};
+/// All classes, in the order in which they are painted.
+const Registry<LineClassDescriptor>& line_classes();
+/// As in line_classes(): "contour".
+const std::string& name_of(LineClass line_class);
+
+/// Which lines are solved, and how precisely.
+struct LineSettings {
+  std::vector<LineClass> classes{};  ///< Empty: those drawn by default.
+  double threshold = 0.4;            ///< Of the rim, above 0 and below 1; read where LineClass::rim is asked for.
+  double crease_angle_deg = 20.0;    ///< Edges of meshes are creases where their faces' normals differ by more. In (0, 180).
+  double tolerance_px = 0.005;       ///< How far the polylines may lie from the curves.
+  std::int64_t max_bytes = std::int64_t{4} << 30;  ///< For the meshes that rays are cast against.
+};
+
+/// A point of a line.
+struct LinePoint {
+  glm::dvec2 px{0.0};        ///< Image point (sdf/image.h).
+  double depth = 0.0;        ///< Z, world units.
+  glm::dvec3 position{0.0};  ///< World.
+  glm::dvec3 normal{0.0};    ///< World, unit; at a crease that of the side of higher N.V.
+  double radial_curvature = 0.0;  ///< 1 / world unit; NaN on creases and boundaries.
+};
+
+/// What happens at a vertex of the view graph.
+enum class VertexKind : std::uint8_t {
+  crossing,  ///< T-junction: a nearer contour or boundary crosses the line in the image.
+  cusp,      ///< The radial curvature is 0: the line of sight follows the contour generator.
+  joint,     ///< Several curves of the surface meet: a contour ends on a crease, creases meet at a corner.
+  end,       ///< The curve ends, with nothing found that it leads into.
+  frame,     ///< The picture's frame.
+};
+/// As it is written into files: "crossing".
+const char* name_of(VertexKind kind);
+
+/// Of the view graph.
+struct LineVertex {
+  VertexKind kind = VertexKind::end;
+  glm::dvec2 px{0.0};
+  double depth = 0.0;     ///< Z of the line that is crossed, world units.
+  int crossed_by = -1;    ///< Of a crossing: the edge in front of it, index into ViewGraph::edges; -1 where it was cut away.
+};
+
+/// A stretch of line along which its class and its quantitative invisibility stay the same.
+struct LineEdge {
+  LineClass line_class = LineClass::contour;
+  int object = 1;          ///< Index from 1.
+  int invisibility = 0;    ///< How many layers of surface lie in front of it (Appel 1967).
+  bool certain = true;     ///< False where the certificate found a conflict along it.
+  bool crease = false;     ///< Runs along a sharp edge, whatever its class.
+  int curve = 0;           ///< Which curve on the surface it is a piece of; from 0.
+  int begin = -1, end = -1;  ///< Vertices, indices into ViewGraph::vertices; -1: closed, and without a vertex.
+  /// At least two. Of contours and boundaries what they bound lies on the left, walking along (border_curves.h).
+  std::vector<LinePoint> points{};
+};
+
+/// One of a chain's edges.
+struct ChainLink {
+  int edge = 0;           ///< Index into ViewGraph::edges.
+  bool reversed = false;  ///< The chain runs along it from end to begin.
+};
+/// The longest stroke of one class and invisibility: edges joined through the vertices that do not change it.
+struct LineChain {
+  LineClass line_class = LineClass::contour;
+  int object = 1;        ///< Of its first edge.
+  int invisibility = 0;  ///< 0: visible.
+  bool closed = false;   ///< The last edge ends where the first begins.
+  std::vector<ChainLink> links{};
+};
+
+/// A place where the graph disagrees with itself or with a ray.
+struct LineConflict {
+  std::string what{};  ///< In words.
+  glm::dvec2 px{0.0};
+};
+
+/// The lines of one view. A planar drawing's worth of curves on surfaces, hidden ones included, within the picture.
+struct ViewGraph {
+  std::vector<LineVertex> vertices{};
+  std::vector<LineEdge> edges{};
+  std::vector<LineChain> chains{};  ///< All edges are in one chain each.
+  std::vector<LineConflict> conflicts{};
+  std::int64_t rays = 0;            ///< That were cast for the certificate.
+  bool exact = true;                ///< False where a part of the scene is left out or approximated: `notes`.
+  double bound_px = 0.0;            ///< No point lies farther from its line than this.
+  std::string from{};               ///< What it was solved on, in words: "the field".
+  std::vector<std::string> notes{};  ///< What the bound does not cover.
+};
+
+/// Throws InputError for settings outside their ranges. Cancelled as elsewhere.
+ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettings& settings, const ExecutionSettings& execution);
+
+/// The points of a chain in order, each once; a closed one's first is not repeated.
+std::vector<LinePoint> points_of(const ViewGraph& graph, const LineChain& chain);
+
+}  // namespace limn

@@ -1,0 +1,98 @@
+// Lines of subdivision cages: contours, creases and open edges of the limit surface; layers counted on a fine mesh of it.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "raymarch/lines/mesh_layers.h"
+#include "raymarch/lines/seams.h"
+#include "raymarch/truth/limit_curves.h"
+#include "raymarch/lines/cage_seams.h"
+
+namespace limn {
+namespace {
+
+constexpr double kCell_px = 4.0;
+constexpr double kProxyEdge_px = 1.5;
+constexpr std::int64_t kMostTriangles = 3'000'000;
+
+SurfaceCurve contour_of(const LineTask& task, const TracedCurve& traced) {
+  SurfaceCurve curve{traced.closed, true, {}};
+  for (const TracedPoint& point : traced.points) {
+    CurveSample sample;
+    sample.p = point.p;
+    sample.px = point.px;
+    sample.depth = point.depth;
+    sample.high = sample.low = point.high;
+    sample.radial_curvature = point.radial_curvature;
+    sample.lift = point.lift;
+    sample.object = traced.object;
+    curve.samples.push_back(sample);
+  }
+  set_fold(task.camera, curve);
+  return curve;
+}
+
+SurfaceCurve rim_of(const TracedCurve& traced) {
+  SurfaceCurve curve{traced.closed, false, {}};
+  for (const TracedPoint& point : traced.points) {
+    CurveSample sample;
+    sample.p = point.p;
+    sample.px = point.px;
+    sample.depth = point.depth;
+    sample.high = sample.low = point.high;
+    sample.radial_curvature = point.radial_curvature;
+    sample.lift = point.lift;
+    sample.object = traced.object;
+    sample.line_class = LineClass::rim;
+    curve.samples.push_back(sample);
+  }
+  return curve;
+}
+
+/// One cage about its own middle, so that nothing is lost far from the origin.
+void add_cage(const LineTask& task, size_t object, LineContribution& out) {
+  const SceneObject& scene_object = task.scene.objects[object];
+  const auto& source = std::get<MeshSource>(scene_object.source);
+  Mesh cage = source.mesh;
+  const glm::dvec3 center = bounds(cage).center();
+  for (glm::dvec3& position : cage.positions) position -= center;
+  Affine solver_from_cage = scene_object.world_from_object;
+  solver_from_cage.translation += solver_from_cage.linear * center - task.origin;
+  const LimitSurface surface(cage, *source.scheme, source.file);
+  const PlacedLimitSurface placed = place(surface, solver_from_cage);
+  double cell_px = 0.0;
+  const LimitGrid grid = sample_grid(placed, task.camera, kCell_px, kMostTriangles, cell_px);
+  LimitCurveSettings tracing;
+  tracing.tolerance_px = 0.5 * task.settings.tolerance_px;
+  tracing.object = static_cast<int>(object) + 1;
+  tracing.seams = false;
+  for (const TracedCurve& curve : trace_limit_curves(placed, grid, task.camera, tracing)) out.curves.push_back(contour_of(task, curve));
+  if (task.wants(LineClass::rim)) {
+    tracing.kind = CurveKind::inner;
+    tracing.threshold = task.settings.threshold;
+    for (const TracedCurve& curve : trace_limit_curves(placed, grid, task.camera, tracing)) out.curves.push_back(rim_of(curve));
+  }
+  for (const Seam& seam : limit_seams(placed, grid, task.camera, tracing.tolerance_px, tracing.object))
+    out.curves.push_back(curve_of_seam(task.camera, seam));
+  if (!grid.invalid_patches.empty()) {
+    out.exact = false;
+    out.notes.push_back(fmt::format("not exact: {} patches of the limit surface cannot be evaluated and are left out", grid.invalid_patches.size()));
+  }
+}
+
+}  // namespace
+
+LineContribution cage_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution) {
+  LineContribution out;
+  for (const size_t i : objects) {
+    if (execution.cancelled && execution.cancelled()) throw Cancelled{};
+    add_cage(task, i, out);
+  }
+  const auto layers = std::make_shared<const MeshLayers>(task, objects, kProxyEdge_px);
+  out.layers_before = [layers](const CurveSample& sample) { return layers->before(sample); };
+  return out;
+}
+
+}  // namespace limn

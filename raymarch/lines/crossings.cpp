@@ -1,0 +1,110 @@
+#include "raymarch/lines/crossings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sdf/parallel.h"
+
+namespace limn {
+namespace {
+
+constexpr double kBucket_px = 4.0;
+constexpr double kBeyondFrame_px = 8.0;  // steps farther outside the picture are left out
+constexpr double kNearer_px = 0.05;      // what is nearer by less, px at its depth, is the same place
+
+struct Step {
+  std::uint64_t bucket = 0;
+  std::uint32_t curve = 0, index = 0;
+};
+
+struct Ends {
+  const CurveSample &a, &b;
+};
+Ends ends_of(const SurfaceCurve& curve, size_t i) { return {curve.samples[i], curve.samples[(i + 1) % curve.samples.size()]}; }
+
+size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples.size() : curve.samples.size() - 1; }
+
+template <class Visit>
+void for_buckets(const Ends& step, const Camera& camera, const Visit& visit) {
+  if (!(step.a.depth > 0.0 && step.b.depth > 0.0)) return;
+  const glm::dvec2 size(camera.width_px, camera.height_px);
+  const glm::dvec2 low = glm::max(glm::min(step.a.px, step.b.px), glm::dvec2(-kBeyondFrame_px));
+  const glm::dvec2 high = glm::min(glm::max(step.a.px, step.b.px), size + kBeyondFrame_px);
+  if (!(low.x <= high.x && low.y <= high.y)) return;
+  const auto bucket = [](double x) { return static_cast<std::uint64_t>((x + kBeyondFrame_px) / kBucket_px); };
+  for (std::uint64_t y = bucket(low.y); y <= bucket(high.y); ++y) {
+    for (std::uint64_t x = bucket(low.x); x <= bucket(high.x); ++x) visit(y << 32 | x);
+  }
+}
+
+double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+struct Meeting {
+  double t = 0.0, u = 0.0;
+  bool onto_left = false;  ///< The step goes over to the left of the nearer one.
+};
+
+/// Where `nearer` crosses `step` in the image, in front of it.
+std::optional<Meeting> meet(const Ends& step, const Ends& nearer, const Camera& camera) {
+  const glm::dvec2 d = step.b.px - step.a.px, e = nearer.b.px - nearer.a.px, between = nearer.a.px - step.a.px;
+  const double determinant = cross(d, e);
+  if (determinant == 0.0) return {};
+  // Half-open, so that a polyline that goes through another's vertex crosses it once.
+  const double t = cross(between, e) / determinant, u = cross(between, d) / determinant;
+  if (!(t >= 0.0 && t < 1.0 && u >= 0.0 && u < 1.0)) return {};
+  const double depth = glm::mix(step.a.depth, step.b.depth, t), front = glm::mix(nearer.a.depth, nearer.b.depth, u);
+  if (!(front < depth - kNearer_px / pixels_per_unit_at(camera, depth))) return {};
+  return Meeting{t, u, cross(d, e) > 0.0};
+}
+
+bool neighbours(size_t i, size_t j, size_t count) {
+  const size_t apart = i > j ? i - j : j - i;
+  return apart <= 1 || apart + 1 == count;
+}
+
+}  // namespace
+
+std::vector<std::vector<NearerCrossing>> nearer_crossings(const std::vector<SurfaceCurve>& curves, const Camera& camera) {
+  std::vector<Step> folds;
+  for (size_t c = 0; c < curves.size(); ++c) {
+    for (size_t i = 0; i < steps_of(curves[c]); ++i) {
+      if (curves[c].samples[i].more_on_left == 0) continue;
+      for_buckets(ends_of(curves[c], i), camera, [&](std::uint64_t bucket) {
+        folds.push_back({bucket, static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(i)});
+      });
+    }
+  }
+  std::stable_sort(folds.begin(), folds.end(), [](const Step& a, const Step& b) { return a.bucket < b.bucket; });
+  std::vector<std::vector<NearerCrossing>> result(curves.size());
+  parallel_for(size_t{0}, curves.size(), [&](size_t c) {
+    const size_t count = steps_of(curves[c]);
+    for (size_t i = 0; i < count; ++i) {
+      const Ends step = ends_of(curves[c], i);
+      std::vector<NearerCrossing> here;
+      for_buckets(step, camera, [&](std::uint64_t bucket) {
+        auto other = std::lower_bound(folds.begin(), folds.end(), bucket, [](const Step& s, std::uint64_t b) { return s.bucket < b; });
+        for (; other != folds.end() && other->bucket == bucket; ++other) {
+          if (other->curve == c && neighbours(other->index, i, count)) continue;
+          const std::optional<Meeting> meeting = meet(step, ends_of(curves[other->curve], other->index), camera);
+          if (!meeting) continue;
+          const int more_on_left = curves[other->curve].samples[other->index].more_on_left;
+          here.push_back({static_cast<double>(i) + meeting->t, meeting->onto_left ? more_on_left : -more_on_left, other->curve,
+                          static_cast<double>(other->index) + meeting->u});
+        }
+      });
+      // A step that lies in several buckets meets another in each of them.
+      std::sort(here.begin(), here.end(), [](const NearerCrossing& a, const NearerCrossing& b) {
+        return std::tie(a.at, a.curve, a.on_nearer) < std::tie(b.at, b.curve, b.on_nearer);
+      });
+      here.erase(std::unique(here.begin(), here.end(),
+                             [](const NearerCrossing& a, const NearerCrossing& b) {
+                               return a.at == b.at && a.curve == b.curve && a.on_nearer == b.on_nearer;
+                             }),
+                 here.end());
+      result[c].insert(result[c].end(), here.begin(), here.end());
+    }
+  });
+  return result;
+}
+
+}  // namespace limn

@@ -1,0 +1,36 @@
+#pragma once
+// Internal: how many layers of surface a ray goes through, where everything is a field.
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <vector>
+
+#include "raymarch/lines/surface_curves.h"
+#include "sdf/field.h"
+
+namespace limn {
+
+/// Bodies in solver space that do not overlap. Safe from many threads.
+class FieldLayers {
+ public:
+  FieldLayers(const std::vector<Field>& bodies, const Camera& camera, double extent);
+
+  /// Sign changes between the sample, lifted off by a hair, and the eye (or the plane Z = 0). Bounds along the ray prove each stretch to hold
+  /// none or one; stretches of less than 1e-10 of the extent hold one where their ends differ.
+  int before(const CurveSample& sample) const;
+
+ private:
+  struct Body {
+    Field field;
+    Box clip{};
+    double lipschitz = 1.0;
+  };
+  int sign_changes(FieldEvaluator& evaluator, const Body& body, const glm::dvec3& origin, const glm::dvec3& direction, double end) const;
+
+  std::vector<Body> bodies_;
+  Camera camera_;
+  double extent_;
+  mutable tbb::enumerable_thread_specific<std::vector<FieldEvaluator>> evaluators_;
+};
+
+}  // namespace limn

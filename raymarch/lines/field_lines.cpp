@@ -1,0 +1,113 @@
+// Lines of fields: contours and whole seams traced on bodies, layers counted along rays.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "raymarch/lines/field_layers.h"
+#include "raymarch/lines/seams.h"
+#include "raymarch/truth/field_bodies.h"
+#include "raymarch/truth/field_curves.h"
+
+namespace limn {
+namespace {
+
+
+struct FieldTask {
+  const LineTask& task;
+  const FieldBodies& bodies;
+  const std::vector<size_t>& body;
+  Viewer viewer{};
+  std::vector<FieldEvaluator>& evaluators;
+
+  int object_of(const glm::dvec3& p, const glm::dvec3& normal) const {
+    return static_cast<int>(bodies.numbers[static_cast<size_t>(object_at(evaluators, body, p, normal, bodies.extent))] + 1);
+  }
+};
+
+CurveSample sample_of(const FieldTask& fields, const CurvePoint& point) {
+  CurveSample sample;
+  sample.p = point.p;
+  sample.high = point.high;
+  sample.low = point.low;
+  if (!point.crease) sample.radial_curvature = point.radial_curvature;
+  project_sample(fields.task.camera, sample);
+  return sample;
+}
+
+/// A contour on smooth surface, or the level curve of the rim.
+SurfaceCurve smooth_curve(const FieldTask& fields, const FieldCurve& found) {
+  SurfaceCurve curve{found.closed, found.c == 0.0, {}};
+  for (const CurvePoint& point : found.points) {
+    CurveSample sample = sample_of(fields, point);
+    const glm::dvec3 v = fields.viewer.toward_eye(sample.p);
+    sample.line_class = found.c == 0.0 ? LineClass::contour : LineClass::rim;
+    sample.lift = found.c != 0.0 || point.crease ? v : sample.radial_curvature < 0.0 ? -sample.high : sample.high;
+    sample.object = fields.object_of(sample.p, sample.low);
+    curve.samples.push_back(sample);
+  }
+  if (curve.smooth) set_fold(fields.task.camera, curve);
+  return curve;
+}
+
+/// Where two faces of sharp CSG meet: a crease, or an intersection where they are two objects'.
+SurfaceCurve seam_curve(const FieldTask& fields, const FieldCurve& found) {
+  Seam seam{found.closed, LineClass::crease, {}};
+  for (const CurvePoint& point : found.points) {
+    const glm::dvec3 v = fields.viewer.toward_eye(point.p);
+    // From the seam a face goes on to where the other one is outside, or inside, of the body.
+    const double way = found.concave ? 1.0 : -1.0, cosine = glm::dot(point.high, point.low);
+    SeamSide one{point.high, way * (point.low - cosine * point.high), glm::dot(point.high, v)};
+    SeamSide two{point.low, way * (point.high - cosine * point.low), glm::dot(point.low, v)};
+    // Faces keep their order all along, whichever has the higher N.V.
+    if (!seam.samples.empty()) {
+      const std::vector<SeamSide>& before = seam.samples.back().sides;
+      const double kept = glm::dot(before[0].normal, one.normal) + glm::dot(before[1].normal, two.normal);
+      const double swapped = glm::dot(before[0].normal, two.normal) + glm::dot(before[1].normal, one.normal);
+      if (swapped > kept) std::swap(one, two);
+    }
+    const int object = fields.object_of(point.p, one.normal);
+    if (object != fields.object_of(point.p, two.normal)) seam.line_class = LineClass::intersection;
+    seam.samples.push_back({point.p, {one, two}, object});
+  }
+  return curve_of_seam(fields.task.camera, seam);
+}
+
+void add_notes(const FieldCurves& found, const std::string& name, LineContribution& out) {
+  const auto note = [&](std::string text) { out.notes.push_back(fmt::format("{}: {}", name, text)); };
+  if (found.cell_px > 6.0)
+    note(fmt::format("searched in cells of {:.3g} px (the limit on cells is reached): closed curves within one cell may be missing",
+                     found.cell_px));
+  if (found.unsettled > 0) note(fmt::format("bounds leave {} places of less than {:.2g} px open", found.unsettled, found.cell_px));
+  if (found.rough > 0) note(fmt::format("{} points are known to within a cell of {:.2g} px only", found.rough, found.cell_px));
+  if (found.domain_cut) note("is unbounded: its curves are followed in the scene's surroundings only, and its horizon is left out");
+}
+
+}  // namespace
+
+LineContribution field_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution) {
+  LineContribution out;
+  const FieldBodies bodies = field_bodies(task.scene, objects, task.origin, task.extent);
+  FieldCurveSettings settings;
+  settings.threshold = task.wants(LineClass::rim) ? task.settings.threshold : 0.0;
+  settings.tolerance_px = task.settings.tolerance_px;
+  settings.whole_seams = true;
+  const double reach = 4.0 * (task.extent + glm::length(task.camera.eye));
+  settings.unbounded_domain = {glm::dvec3(-reach), glm::dvec3(reach)};
+  std::vector<FieldEvaluator> evaluators;
+  for (const Field& field : bodies.fields) evaluators.emplace_back(field);
+  for (size_t i = 0; i < bodies.bodies.size(); ++i) {
+    const FieldTask fields{task, bodies, bodies.bodies[i], make_viewer(task.camera, glm::dvec3(0.0)), evaluators};
+    const FieldCurves found = trace_field_curves(bodies.body_fields[i], task.camera, fields.viewer, settings, execution);
+    add_notes(found, name_of_body(task.scene, objects, bodies.bodies[i]), out);
+    out.unrefined_px = std::max(out.unrefined_px, found.worst_unrefined_px);
+    for (const FieldCurve& curve : found.curves) out.curves.push_back(curve.seam ? seam_curve(fields, curve) : smooth_curve(fields, curve));
+    if (execution.progress) execution.progress(0.5 * static_cast<double>(i + 1) / static_cast<double>(bodies.bodies.size()));
+  }
+  const auto layers = std::make_shared<const FieldLayers>(bodies.body_fields, task.camera, task.extent);
+  out.layers_before = [layers](const CurveSample& sample) { return layers->before(sample); };
+  return out;
+}
+
+}  // namespace limn

@@ -1,0 +1,112 @@
+// Edges joined into strokes.
+
+#include <algorithm>
+#include <tuple>
+
+#include "raymarch/lines/graph_building.h"
+
+namespace limn {
+namespace {
+
+/// An edge's end at a vertex.
+struct EdgeEnd {
+  int edge = 0;
+  bool at_end = false;
+};
+
+/// Unit image direction in which an edge leaves its vertex.
+glm::dvec2 direction_out(const LineEdge& edge, bool at_end) {
+  const auto& points = edge.points;
+  const size_t n = points.size();
+  constexpr double kFar_px = 1.0;
+  const glm::dvec2 from = at_end ? points[n - 1].px : points[0].px;
+  for (size_t k = 1; k < n; ++k) {
+    const glm::dvec2 to = at_end ? points[n - 1 - k].px : points[k].px;
+    const double length = glm::distance(from, to);
+    if (length > kFar_px || (k + 1 == n && length > 0.0)) return (to - from) / length;
+  }
+  return glm::dvec2(0.0);
+}
+
+/// Of each end (2 edge + 0 for begin, 1 for end) the one that the stroke goes on at, or -1.
+std::vector<int> partners_of(const ViewGraph& graph) {
+  std::vector<std::vector<EdgeEnd>> at(graph.vertices.size());
+  for (size_t e = 0; e < graph.edges.size(); ++e) {
+    const LineEdge& edge = graph.edges[e];
+    if (edge.begin >= 0) at[static_cast<size_t>(edge.begin)].push_back({static_cast<int>(e), false});
+    if (edge.end >= 0) at[static_cast<size_t>(edge.end)].push_back({static_cast<int>(e), true});
+  }
+  std::vector<int> partner(2 * graph.edges.size(), -1);
+  struct Pair {
+    bool turned;     ///< What is bounded on the left of the one would be on the right of the other.
+    double cosine;   ///< -1: straight on.
+    EdgeEnd a, b;
+  };
+  for (const auto& ends : at) {
+    std::vector<Pair> pairs;
+    for (size_t i = 0; i < ends.size(); ++i) {
+      for (size_t j = 0; j < i; ++j) {
+        const LineEdge &a = graph.edges[static_cast<size_t>(ends[i].edge)], &b = graph.edges[static_cast<size_t>(ends[j].edge)];
+        if (a.line_class != b.line_class || a.invisibility != b.invisibility) continue;
+        const bool sided = a.line_class == LineClass::contour || a.line_class == LineClass::boundary;
+        pairs.push_back({sided && ends[i].at_end == ends[j].at_end,
+                         glm::dot(direction_out(a, ends[i].at_end), direction_out(b, ends[j].at_end)), ends[i], ends[j]});
+      }
+    }
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const Pair& a, const Pair& b) { return std::tie(a.turned, a.cosine) < std::tie(b.turned, b.cosine); });
+    for (const Pair& pair : pairs) {
+      const auto a = static_cast<size_t>(2 * pair.a.edge + pair.a.at_end), b = static_cast<size_t>(2 * pair.b.edge + pair.b.at_end);
+      if (partner[a] >= 0 || partner[b] >= 0) continue;
+      partner[a] = static_cast<int>(b);
+      partner[b] = static_cast<int>(a);
+    }
+  }
+  return partner;
+}
+
+}  // namespace
+
+void add_chains(ViewGraph& graph) {
+  const std::vector<int> partner = partners_of(graph);
+  std::vector<bool> taken(graph.edges.size(), false);
+  const auto walk = [&](int start) {  // from an edge's end: in at it, out at the other
+    const LineEdge& first = graph.edges[static_cast<size_t>(start / 2)];
+    LineChain chain{first.line_class, first.object, first.invisibility, first.begin < 0, {}};
+    int in = start;
+    while (in >= 0 && !taken[static_cast<size_t>(in / 2)]) {
+      taken[static_cast<size_t>(in / 2)] = true;
+      chain.links.push_back({in / 2, in % 2 == 1});
+      in = partner[static_cast<size_t>(in ^ 1)];
+    }
+    if (in == start) chain.closed = true;
+    // A stroke of edges that all run backwards is turned round.
+    if (std::all_of(chain.links.begin(), chain.links.end(), [](const ChainLink& link) { return link.reversed; })) {
+      std::reverse(chain.links.begin(), chain.links.end());
+      for (ChainLink& link : chain.links) link.reversed = false;
+    }
+    graph.chains.push_back(std::move(chain));
+  };
+  for (int end = 0; end < static_cast<int>(partner.size()); ++end) {
+    if (!taken[static_cast<size_t>(end / 2)] && partner[static_cast<size_t>(end)] < 0) walk(end);
+  }
+  for (int edge = 0; edge < static_cast<int>(graph.edges.size()); ++edge) {
+    if (!taken[static_cast<size_t>(edge)]) walk(2 * edge);
+  }
+}
+
+std::vector<LinePoint> points_of(const ViewGraph& graph, const LineChain& chain) {
+  std::vector<LinePoint> points;
+  for (const ChainLink& link : chain.links) {
+    const std::vector<LinePoint>& own = graph.edges[static_cast<size_t>(link.edge)].points;
+    const size_t skip = points.empty() ? 0 : 1;  // The joint, which the one before ends with.
+    if (link.reversed)
+      points.insert(points.end(), own.rbegin() + static_cast<std::ptrdiff_t>(skip), own.rend());
+    else
+      points.insert(points.end(), own.begin() + static_cast<std::ptrdiff_t>(skip), own.end());
+  }
+  if (chain.closed && !chain.links.empty() && graph.edges[static_cast<size_t>(chain.links[0].edge)].begin >= 0) points.pop_back();
+  return points;
+}
+
+}  // namespace limn

@@ -1,0 +1,210 @@
+// Vertices and edges of the view graph.
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+
+#include "raymarch/lines/graph_building.h"
+#include "sdf/segment.h"
+
+namespace limn {
+namespace {
+
+constexpr double kSamePlace_px = 0.05;  // between ends of curves that meet, along the surface
+constexpr double kSnap_px = 1.0;        // between a contour's end and the joint it leads to
+
+/// Places by cells, so that each finds its neighbours in constant time.
+class PlaceIndex {
+ public:
+  explicit PlaceIndex(double cell) : cell_(cell) {}
+  void add(const glm::dvec3& p, int value) { cells_[key(cell_of(p))].push_back({p, value}); }
+  /// The value at the nearest place within `reach` (at most the cell's side), or -1.
+  int nearest(const glm::dvec3& p, double reach) const {
+    int best = -1;
+    const glm::ivec3 middle = cell_of(p);
+    for (int i = 0; i < 27; ++i) {
+      const auto at = cells_.find(key(middle + glm::ivec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
+      if (at == cells_.end()) continue;
+      for (const auto& [q, value] : at->second) {
+        if (const double apart = glm::distance(p, q); apart <= reach) {
+          reach = apart;
+          best = value;
+        }
+      }
+    }
+    return best;
+  }
+
+ private:
+  glm::ivec3 cell_of(const glm::dvec3& p) const { return glm::ivec3(glm::floor(p / cell_)); }
+  static std::uint64_t key(const glm::ivec3& c) {
+    const auto u = [](int x) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)); };
+    return u(c.x) * 0x9e3779b97f4a7c15u ^ u(c.y) * 0xc2b2ae3d27d4eb4fu ^ u(c.z) * 0x165667b19e3779f9u;
+  }
+  double cell_;
+  std::unordered_map<std::uint64_t, std::vector<std::pair<glm::dvec3, int>>> cells_;
+};
+
+/// World units of a pixel where the nearest of the curves runs; the middle of what is seen elsewhere.
+double pixel_size(const std::vector<SurfaceCurve>& curves, const Camera& camera) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const SurfaceCurve& curve : curves) {
+    for (const CurveSample& sample : curve.samples) {
+      if (sample.depth > 0.0) least = std::min(least, 1.0 / pixels_per_unit_at(camera, sample.depth));
+    }
+  }
+  return std::isfinite(least) ? least : 1.0;
+}
+
+LinePoint line_point(const CurveSample& sample, const glm::dvec3& origin) {
+  return {sample.px, sample.depth, sample.p + origin, sample.high, sample.radial_curvature};
+}
+
+/// Marks what is kept between points[first] and points[last]: Douglas & Peucker 1973.
+void keep_between(const std::vector<CurveSample>& points, size_t first, size_t last, double tolerance_px, std::vector<bool>& keep) {
+  std::vector<std::pair<size_t, size_t>> stack = {{first, last}};
+  while (!stack.empty()) {
+    const auto [low, high] = stack.back();
+    stack.pop_back();
+    if (high - low < 2) continue;
+    size_t farthest = low;
+    double most = tolerance_px;
+    for (size_t i = low + 1; i < high; ++i) {
+      const double distance = distance_to_segment(points[i].px, points[low].px, points[high].px);
+      if (distance > most) {
+        most = distance;
+        farthest = i;
+      }
+    }
+    if (farthest == low) continue;
+    keep[farthest] = true;
+    stack.push_back({low, farthest});
+    stack.push_back({farthest, high});
+  }
+}
+
+std::vector<CurveSample> thinned(const std::vector<CurveSample>& points, bool closed, double tolerance_px) {
+  std::vector<bool> keep(points.size(), false);
+  keep.front() = keep.back() = true;
+  if (closed && points.size() > 3) {
+    // A closed curve has no chord from its first to its last point: it is halved first.
+    keep[points.size() / 2] = true;
+    keep_between(points, 0, points.size() / 2, tolerance_px, keep);
+    keep_between(points, points.size() / 2, points.size() - 1, tolerance_px, keep);
+  } else {
+    keep_between(points, 0, points.size() - 1, tolerance_px, keep);
+  }
+  std::vector<CurveSample> kept;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (keep[i]) kept.push_back(points[i]);
+  }
+  return kept;
+}
+
+struct Builder {
+  const std::vector<SurfaceCurve>& curves;
+  const CutCurves& cut;
+  const LineTask& task;
+  ViewGraph& graph;
+  double pixel;
+  PlaceIndex places;
+  const Camera& camera = task.camera;
+  std::map<std::pair<std::uint32_t, int>, int> vertex_of_event{};
+
+  int vertex(std::uint32_t c, int event) {
+    const auto [entry, added] = vertex_of_event.try_emplace({c, event}, -1);
+    if (!added) return entry->second;
+    const CurveEvent& at = cut.curves[c].events[static_cast<size_t>(event)];
+    const CurveSample sample = sample_at(curves[c], std::min(at.at, last_place(c)), camera);
+    const bool shared = at.kind == VertexKind::end || at.kind == VertexKind::joint;
+    if (shared) {
+      const double reach = kSamePlace_px * std::max(pixel, 1.0 / pixels_per_unit_at(camera, std::max(sample.depth, 1e-9)));
+      entry->second = places.nearest(sample.p, reach);
+      if (entry->second >= 0) {
+        graph.vertices[static_cast<size_t>(entry->second)].kind = VertexKind::joint;
+        return entry->second;
+      }
+    }
+    entry->second = static_cast<int>(graph.vertices.size());
+    graph.vertices.push_back({at.kind, sample.px, sample.depth, -1});
+    if (shared) places.add(sample.p, entry->second);
+    return entry->second;
+  }
+  double last_place(std::uint32_t c) const {
+    const SurfaceCurve& curve = curves[c];
+    return curve.closed ? std::numeric_limits<double>::infinity() : static_cast<double>(curve.samples.size() - 1);
+  }
+
+  /// The new edge's index; -1 where its class is not wanted.
+  int add_edge(const CurvePiece& piece) {
+    const SurfaceCurve& curve = curves[piece.curve];
+    const size_t n = curve.samples.size();
+    const CurveSample& step = curve.samples[static_cast<size_t>(piece.from) % n];
+    if (!task.wants(step.line_class)) return -1;
+    std::vector<CurveSample> points;
+    points.push_back(sample_at(curve, piece.from, camera));
+    for (double place = std::floor(piece.from) + 1.0; place < piece.to; place += 1.0)
+      points.push_back(curve.samples[static_cast<size_t>(place) % n]);
+    points.push_back(sample_at(curve, std::min(piece.to, last_place(piece.curve)), camera));
+    LineEdge edge{step.line_class, step.object, piece.invisibility, piece.certain, !curve.smooth, static_cast<int>(piece.curve), -1, -1, {}};
+    if (piece.begin >= 0) edge.begin = vertex(piece.curve, piece.begin);
+    if (piece.end >= 0) edge.end = vertex(piece.curve, piece.end);
+    for (const CurveSample& sample : thinned(points, piece.begin < 0, 0.5 * task.settings.tolerance_px))
+      edge.points.push_back(line_point(sample, task.origin));
+    if (piece.begin < 0 && edge.points.size() > 2) edge.points.pop_back();  // The first again.
+    if (step.more_on_left < 0) {
+      std::reverse(edge.points.begin(), edge.points.end());
+      std::swap(edge.begin, edge.end);
+    }
+    graph.edges.push_back(std::move(edge));
+    return static_cast<int>(graph.edges.size()) - 1;
+  }
+};
+
+}  // namespace
+
+void snap_joints(std::vector<SurfaceCurve>& curves, const Camera& camera) {
+  const double pixel = pixel_size(curves, camera);
+  PlaceIndex ends(kSnap_px * pixel);
+  std::vector<CurveSample> samples;
+  for (const SurfaceCurve& curve : curves) {
+    if (!curve.smooth || curve.closed) continue;
+    for (const CurveSample* end : {&curve.samples.front(), &curve.samples.back()}) {
+      ends.add(end->p, static_cast<int>(samples.size()));
+      samples.push_back(*end);
+    }
+  }
+  for (SurfaceCurve& curve : curves) {
+    if (curve.smooth) continue;
+    for (CurveSample& sample : curve.samples) {
+      if (!sample.joint) continue;
+      const int end = ends.nearest(sample.p, kSnap_px * pixel);
+      if (end < 0) continue;
+      sample.p = samples[static_cast<size_t>(end)].p;
+      sample.px = samples[static_cast<size_t>(end)].px;
+      sample.depth = samples[static_cast<size_t>(end)].depth;
+    }
+  }
+}
+
+void add_edges(const std::vector<SurfaceCurve>& curves, const CutCurves& cut, const LineTask& task, ViewGraph& graph) {
+  const double pixel = pixel_size(curves, task.camera);
+  Builder builder{curves, cut, task, graph, pixel, PlaceIndex(16.0 * kSamePlace_px * pixel)};
+  std::vector<std::vector<int>> edge_of(curves.size());
+  for (size_t c = 0; c < curves.size(); ++c) {
+    for (const CurvePiece& piece : cut.curves[c].pieces) edge_of[c].push_back(builder.add_edge(piece));
+  }
+  for (const auto& [key, vertex] : builder.vertex_of_event) {
+    const CurveEvent& event = cut.curves[key.first].events[static_cast<size_t>(key.second)];
+    if (event.kind != VertexKind::crossing) continue;
+    const auto& pieces = cut.curves[event.nearer].pieces;
+    const auto steps = static_cast<double>(curves[event.nearer].samples.size());
+    for (size_t k = 0; k < pieces.size(); ++k) {
+      const bool within = (event.on_nearer >= pieces[k].from && event.on_nearer <= pieces[k].to) || event.on_nearer + steps <= pieces[k].to;
+      if (within) graph.vertices[static_cast<size_t>(vertex)].crossed_by = edge_of[event.nearer][k];
+    }
+  }
+}
+
+}  // namespace limn

@@ -1,0 +1,282 @@
+#include "raymarch/lines/invisibility.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+
+#include "sdf/parallel.h"
+
+namespace limn {
+namespace {
+
+constexpr double kNearEnd_px = 0.3;  // pieces in which no ray starts farther from their ends tell little
+
+size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples.size() : curve.samples.size() - 1; }
+
+/// One curve being cut.
+class Cutter {
+ public:
+  Cutter(const SurfaceCurve& curve, std::uint32_t number, const Camera& camera, const LayersBefore& layers_before)
+      : curve_(curve), number_(number), camera_(camera), layers_before_(layers_before) {
+    lengths_.push_back(0.0);
+    for (size_t i = 0; i < steps_of(curve); ++i) {
+      const glm::dvec2 &a = curve.samples[i].px, &b = curve.samples[(i + 1) % curve.samples.size()].px;
+      lengths_.push_back(lengths_.back() + glm::distance(a, b));
+    }
+  }
+
+  CutCurve run(const std::vector<NearerCrossing>& crossings) {
+    find_events(crossings);
+    make_pieces();
+    settle();
+    return std::move(cut_);
+  }
+  std::vector<LineConflict> conflicts{};
+  std::int64_t rays = 0;
+
+ private:
+  size_t size() const { return curve_.samples.size(); }
+  const CurveSample& at(size_t i) const { return curve_.samples[i % size()]; }
+  bool in_frame(const CurveSample& q) const {
+    return q.depth > 0.0 && q.px.x >= 0.0 && q.px.y >= 0.0 && q.px.x <= camera_.width_px && q.px.y <= camera_.height_px;
+  }
+  /// Image length from the curve's first point to a place, which may lie beyond the last.
+  double length_to(double place) const {
+    const double steps = static_cast<double>(steps_of(curve_));
+    const double turns = curve_.closed ? std::floor(place / steps) : 0.0;
+    const double rest = place - turns * steps;
+    const auto i = std::min(static_cast<size_t>(rest), steps_of(curve_) - 1);
+    return turns * lengths_.back() + glm::mix(lengths_[i], lengths_[i + 1], rest - static_cast<double>(i));
+  }
+
+  void find_events(const std::vector<NearerCrossing>& crossings) {
+    for (const NearerCrossing& crossing : crossings)
+      cut_.events.push_back({VertexKind::crossing, crossing.at, crossing.layers, crossing.curve, crossing.on_nearer});
+    for (size_t i = 0; i < steps_of(curve_); ++i) {
+      const CurveSample &a = at(i), &b = at(i + 1);
+      const double place = static_cast<double>(i);
+      if (in_frame(a) != in_frame(b)) cut_.events.push_back({VertexKind::frame, place + frame_share(a, b), {}, 0, 0.0});
+      if (curve_.smooth && (a.radial_curvature < 0.0) != (b.radial_curvature < 0.0)) {
+        const double t = a.radial_curvature / (a.radial_curvature - b.radial_curvature);
+        // Whatever arm leads away from the eye lies behind the other one's sheet.
+        cut_.events.push_back({VertexKind::cusp, place + std::clamp(t, 0.0, 1.0 - 1e-9), b.depth > a.depth ? 1 : -1, 0, 0.0});
+      }
+      if (a.joint && (i > 0 || curve_.closed)) cut_.events.push_back({VertexKind::joint, place, {}, 0, 0.0});
+      const bool differs = i > 0 && (a.object != at(i - 1).object || a.line_class != at(i - 1).line_class);
+      if (differs && !a.joint) cut_.events.push_back({VertexKind::joint, place, 0, 0, 0.0});
+    }
+    if (!curve_.closed) {
+      cut_.events.push_back({VertexKind::end, 0.0, {}, 0, 0.0});
+      cut_.events.push_back({VertexKind::end, static_cast<double>(steps_of(curve_)), {}, 0, 0.0});
+    }
+    std::stable_sort(cut_.events.begin(), cut_.events.end(), [](const CurveEvent& a, const CurveEvent& b) { return a.at < b.at; });
+  }
+
+  double frame_share(const CurveSample& a, const CurveSample& b) const {
+    double inside = in_frame(a) ? 0.0 : 1.0, outside = 1.0 - inside;
+    for (int step = 0; step < 40; ++step) {
+      const double t = 0.5 * (inside + outside);
+      CurveSample q = a;
+      q.p = glm::mix(a.p, b.p, t);
+      project_sample(camera_, q);
+      (in_frame(q) ? inside : outside) = t;
+    }
+    return std::clamp(inside, 0.0, 1.0 - 1e-9);
+  }
+
+  void make_pieces() {
+    const size_t n = cut_.events.size();
+    if (n == 0) {
+      if (in_frame(at(0))) add_piece(-1, -1, 0.0, static_cast<double>(steps_of(curve_)));
+      return;
+    }
+    for (size_t k = 0; k < n; ++k) {
+      const bool last = k + 1 == n;
+      if (last && !curve_.closed) break;
+      const double from = cut_.events[k].at;
+      const double to = last ? cut_.events[0].at + static_cast<double>(steps_of(curve_)) : cut_.events[k + 1].at;
+      if (in_frame(sample_at(curve_, 0.5 * (from + to), camera_))) add_piece(static_cast<int>(k), static_cast<int>((k + 1) % n), from, to);
+    }
+  }
+  void add_piece(int begin, int end, double from, double to) {
+    cut_.pieces.push_back({number_, begin, end, from, to, length_to(to) - length_to(from), 0, true});
+  }
+
+  // ---- Invisibility ----
+
+  /// The sample of a piece nearest to the share of its length, or a point on a chord where it holds none.
+  double ray_at(const CurvePiece& piece, double share) const {
+    const double begin = length_to(piece.from), wanted = begin + share * piece.length_px;
+    double best = -1.0, least = std::numeric_limits<double>::infinity();
+    for (double place = std::floor(piece.from) + 1.0; place < piece.to; place += 1.0) {
+      const double here = length_to(place), off = std::fabs(here - wanted), room = std::min(here - begin, begin + piece.length_px - here);
+      if (off >= least || room < std::min(kNearEnd_px, 0.2 * piece.length_px)) continue;
+      least = off;
+      best = place;
+    }
+    return best >= 0.0 ? best : glm::mix(piece.from, piece.to, share);
+  }
+  int cast(double place) {
+    ++rays;
+    return layers_before_(sample_at(curve_, place, camera_));
+  }
+
+  void settle() {
+    // Arcs: pieces in a row between which the steps are known.
+    std::vector<std::vector<size_t>> arcs;
+    const auto known = [&](const CurvePiece& before, const CurvePiece& after) {
+      return before.end >= 0 && before.end == after.begin && cut_.events[static_cast<size_t>(before.end)].layers.has_value();
+    };
+    auto& pieces = cut_.pieces;
+    for (size_t k = 0; k < pieces.size(); ++k) {
+      if (k == 0 || !known(pieces[k - 1], pieces[k])) arcs.emplace_back();
+      arcs.back().push_back(k);
+    }
+    bool around = false;
+    if (curve_.closed && !pieces.empty() && known(pieces.back(), pieces.front())) {
+      around = arcs.size() == 1;
+      if (!around) {
+        arcs.back().insert(arcs.back().end(), arcs.front().begin(), arcs.front().end());
+        arcs.erase(arcs.begin());
+      }
+    }
+    for (const auto& arc : arcs) settle_arc(arc, around);
+  }
+
+  int step_into(size_t piece) const { return *cut_.events[static_cast<size_t>(cut_.pieces[piece].begin)].layers; }
+
+  void settle_arc(const std::vector<size_t>& arc, bool around) {
+    auto& pieces = cut_.pieces;
+    std::vector<int> relative(arc.size(), 0);
+    for (size_t k = 1; k < arc.size(); ++k) relative[k] = relative[k - 1] + step_into(arc[k]);
+    const bool adds_up = !around || relative.back() + step_into(arc[0]) == 0;
+    const int lowest = *std::min_element(relative.begin(), relative.end());
+    if (adds_up) {
+      const std::optional<int> offset = offset_by_two_rays(arc, relative);
+      if (offset && *offset + lowest >= 0) {
+        for (size_t k = 0; k < arc.size(); ++k) pieces[arc[k]].invisibility = *offset + relative[k];
+        return;
+      }
+    }
+    settle_by_rays(arc, around);
+  }
+
+  std::optional<int> offset_by_two_rays(const std::vector<size_t>& arc, const std::vector<int>& relative) {
+    // The two longest pieces; in a lone one, two places.
+    size_t first = 0, second = 0;
+    const auto length = [&](size_t k) { return cut_.pieces[arc[k]].length_px; };
+    for (size_t k = 1; k < arc.size(); ++k) {
+      if (length(k) > length(first)) first = k;
+    }
+    if (arc.size() > 1) {
+      second = first == 0 ? 1 : 0;
+      for (size_t k = 0; k < arc.size(); ++k) {
+        if (k != first && length(k) > length(second)) second = k;
+      }
+      if (length(second) < 2.0 * kNearEnd_px) second = first;
+    }
+    const bool same = first == second;
+    const int one = cast(ray_at(cut_.pieces[arc[first]], same ? 0.35 : 0.5)) - relative[first];
+    const int two = cast(ray_at(cut_.pieces[arc[second]], same ? 0.65 : 0.5)) - relative[second];
+    if (one != two) return {};
+    return one;
+  }
+
+  /// What most of three rays say, or nothing for a piece too short to ask.
+  std::optional<int> by_vote(const CurvePiece& piece) {
+    if (piece.length_px < kNearEnd_px) return {};
+    std::map<int, int> votes;
+    for (const double share : {0.5, 0.3, 0.7}) ++votes[cast(ray_at(piece, share))];
+    return std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
+  }
+
+  void settle_by_rays(const std::vector<size_t>& arc, bool around) {
+    auto& pieces = cut_.pieces;
+    std::vector<std::optional<int>> seen;
+    for (const size_t k : arc) seen.push_back(by_vote(pieces[k]));
+    std::optional<size_t> last;
+    int steps = 0;
+    for (size_t k = 0; k < arc.size(); ++k) {
+      if (k > 0) steps += step_into(arc[k]);
+      if (seen[k] && last && *seen[*last] + steps != *seen[k]) conflict(arc[k], *seen[*last] + steps, *seen[k]);
+      if (seen[k]) {
+        last = k;
+        steps = 0;
+      }
+    }
+    // Pieces too short for rays take what their neighbours and the steps say.
+    for (size_t k = 0; k < arc.size(); ++k) {
+      CurvePiece& piece = pieces[arc[k]];
+      if (seen[k])
+        piece.invisibility = *seen[k];
+      else if (k > 0)
+        piece.invisibility = std::max(0, pieces[arc[k - 1]].invisibility + step_into(arc[k]));
+    }
+    for (size_t k = arc.size() - 1; k-- > 0 && !seen[k];) {
+      if (std::any_of(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(k), [](const auto& s) { return s.has_value(); })) break;
+      pieces[arc[k]].invisibility = std::max(0, pieces[arc[k + 1]].invisibility - step_into(arc[k + 1]));
+    }
+    if (around && last && seen[0]) {
+      const int total = steps + step_into(arc[0]);
+      if (*seen[*last] + total != *seen[0]) conflict(arc[0], *seen[*last] + total, *seen[0]);
+    }
+  }
+
+  void conflict(size_t k, int expected, int found) {
+    CurvePiece& piece = cut_.pieces[k];
+    piece.certain = false;
+    conflicts.push_back({fmt::format("{} layers lie in front by the steps along the line, {} by rays", expected, found),
+                         sample_at(curve_, piece.from, camera_).px});
+  }
+
+  const SurfaceCurve& curve_;
+  std::uint32_t number_;
+  const Camera& camera_;
+  const LayersBefore& layers_before_;
+  std::vector<double> lengths_;
+  CutCurve cut_;
+};
+
+}  // namespace
+
+CurveSample sample_at(const SurfaceCurve& curve, double at, const Camera& camera) {
+  const size_t n = curve.samples.size();
+  const auto i = static_cast<size_t>(at);
+  const double t = at - static_cast<double>(i);
+  const CurveSample &a = curve.samples[i % n], &b = curve.samples[(i + 1) % n];
+  if (t == 0.0) return a;
+  CurveSample sample = t < 0.5 ? a : b;
+  sample.line_class = a.line_class;
+  sample.object = a.object;
+  sample.more_on_left = a.more_on_left;
+  sample.joint = false;
+  sample.on_chord = true;
+  sample.p = glm::mix(a.p, b.p, t);
+  sample.radial_curvature = glm::mix(a.radial_curvature, b.radial_curvature, t);
+  project_sample(camera, sample);
+  return sample;
+}
+
+CutCurves cut_by_invisibility(const std::vector<SurfaceCurve>& curves, const Camera& camera, const LayersBefore& layers_before,
+                              const ExecutionSettings& execution) {
+  const auto crossings = nearer_crossings(curves, camera);
+  CutCurves result;
+  result.curves.resize(curves.size());
+  std::vector<std::vector<LineConflict>> conflicts(curves.size());
+  std::atomic<std::int64_t> rays = 0;
+  parallel_for(size_t{0}, curves.size(), [&](size_t c) {
+    if (execution.cancelled && execution.cancelled()) throw Cancelled{};
+    Cutter cutter(curves[c], static_cast<std::uint32_t>(c), camera, layers_before);
+    result.curves[c] = cutter.run(crossings[c]);
+    conflicts[c] = std::move(cutter.conflicts);
+    rays += cutter.rays;
+  });
+  for (auto& of_curve : conflicts) result.conflicts.insert(result.conflicts.end(), of_curve.begin(), of_curve.end());
+  result.rays = rays;
+  return result;
+}
+
+}  // namespace limn

@@ -1,0 +1,11 @@
+#include "raymarch/lines/surface_curves.h"
+#include "sdf/error.h"
+
+namespace limn {
+
+LineContribution mesh_lines(const LineTask&, const std::vector<size_t>&, const ExecutionSettings&) { throw InputError({"", "", "", "mesh", ""}); }
+LineContribution level_set_lines(const LineTask&, const std::vector<size_t>&, const ExecutionSettings&) {
+  throw InputError({"", "", "", "level set", ""});
+}
+
+}  // namespace limn

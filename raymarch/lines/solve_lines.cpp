@@ -1,0 +1,121 @@
+// From a scene to its view graph: curves of every kind of surface, hidden by each other.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "raymarch/lines/graph_building.h"
+#include "raymarch/scene/threads.h"
+#include "raymarch/truth/proxy.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+void check(const LineSettings& settings) {
+  const auto fail = [](const std::string& field, double value, const std::string& problem, const std::string& expected) {
+    throw InputError({{}, field, fmt::format("{}", value), problem, expected});
+  };
+  if (!(settings.threshold > 0.0 && settings.threshold < 1.0)) fail("threshold", settings.threshold, "not a threshold", "above 0 and below 1");
+  if (!(settings.tolerance_px > 0.0 && std::isfinite(settings.tolerance_px)))
+    fail("tolerance", settings.tolerance_px, "not a tolerance", "above 0 px");
+  if (!(settings.crease_angle_deg > 0.0 && settings.crease_angle_deg < 180.0))
+    fail("crease_angle", settings.crease_angle_deg, "not an angle between faces", "above 0 and below 180 degrees");
+}
+
+LineTask task_of(const Scene& scene, const Camera& camera, const LineSettings& settings) {
+  LineTask task{scene};
+  const Box box = bounds(scene);
+  if (box.finite()) task.origin = box.center();
+  task.camera = moved(camera, task.origin);
+  task.extent = box.finite() && box.radius() > 0.0 ? box.radius() : std::max(1e-6, glm::length(task.camera.eye));
+  task.settings = settings;
+  if (settings.classes.empty()) {
+    for (const LineClassDescriptor& one : line_classes()) {
+      if (one.by_default) task.settings.classes.push_back(one.line_class);
+    }
+  }
+  return task;
+}
+
+/// Objects by the way their lines are traced.
+struct Kinds {
+  std::vector<size_t> fields, cages, meshes, level_sets;
+};
+
+Kinds kinds_of(const Scene& scene) {
+  Kinds kinds;
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    if (std::holds_alternative<Field>(object.source)) {
+      kinds.fields.push_back(i);
+    } else if (std::holds_alternative<LevelSetSource>(object.source)) {
+      kinds.level_sets.push_back(i);
+    } else {
+      (is_cage(object) ? kinds.cages : kinds.meshes).push_back(i);
+    }
+  }
+  return kinds;
+}
+
+std::vector<LineContribution> contributions_of(const LineTask& task, const ExecutionSettings& execution, std::string& from) {
+  const Kinds kinds = kinds_of(task.scene);
+  std::vector<LineContribution> all;
+  const auto add = [&](const std::vector<size_t>& objects, auto&& trace, const char* one, const char* several) {
+    if (objects.empty()) return;
+    all.push_back(trace(task, objects, execution));
+    from += (from.empty() ? "" : " and ") + std::string(objects.size() == 1 ? one : several);
+  };
+  add(kinds.fields, field_lines, "the field", "the fields");
+  add(kinds.cages, cage_lines, "the limit surface", "the limit surfaces");
+  add(kinds.meshes, mesh_lines, "the mesh", "the meshes");
+  add(kinds.level_sets, level_set_lines, "the level set", "the level sets");
+  return all;
+}
+
+}  // namespace
+
+bool LineTask::wants(LineClass line_class) const {
+  return std::find(settings.classes.begin(), settings.classes.end(), line_class) != settings.classes.end();
+}
+
+void project_sample(const Camera& camera, CurveSample& sample) {
+  const glm::dvec3 image = project(camera, sample.p);
+  sample.px = glm::dvec2(image);
+  sample.depth = image.z;
+}
+
+ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettings& settings, const ExecutionSettings& execution) {
+  check(settings);
+  return ThreadArena(execution.threads).execute([&] {
+    const LineTask task = task_of(scene, camera, settings);
+    ViewGraph graph;
+    const std::vector<LineContribution> contributions = contributions_of(task, execution, graph.from);
+    std::vector<SurfaceCurve> curves;
+    double unrefined_px = 0.0;
+    for (const LineContribution& one : contributions) {
+      curves.insert(curves.end(), one.curves.begin(), one.curves.end());
+      graph.notes.insert(graph.notes.end(), one.notes.begin(), one.notes.end());
+      graph.exact = graph.exact && one.exact;
+      unrefined_px = std::max(unrefined_px, one.unrefined_px);
+    }
+    snap_joints(curves, task.camera);
+    const LayersBefore layers_before = [&](const CurveSample& sample) {
+      int layers = 0;
+      for (const LineContribution& one : contributions) layers += one.layers_before(sample);
+      return layers;
+    };
+    CutCurves cut = cut_by_invisibility(curves, task.camera, layers_before, execution);
+    if (execution.progress) execution.progress(0.9);
+    add_edges(curves, cut, task, graph);
+    add_chains(graph);
+    graph.conflicts = std::move(cut.conflicts);
+    graph.rays = cut.rays;
+    graph.bound_px = settings.tolerance_px + unrefined_px;
+    if (execution.progress) execution.progress(1.0);
+    return graph;
+  });
+}
+
+}  // namespace limn

@@ -1,0 +1,66 @@
+#pragma once
+// Internal: whole curves on surfaces, hidden parts included, as every kind of surface brings them to the view graph.
+
+#include <functional>
+
+#include "raymarch/lines.h"
+
+namespace limn {
+
+/// A point of a curve on a surface, solver space, and what is true of the step from it to the next.
+struct CurveSample {
+  glm::dvec3 p{0.0};
+  glm::dvec2 px{0.0};
+  double depth = 0.0;
+  glm::dvec3 high{0.0}, low{0.0};  ///< Unit normals of the sides of higher and lower N.V; the same on smooth surface.
+  double radial_curvature = std::numeric_limits<double>::quiet_NaN();
+  /// Unit: where a ray to the eye starts beside the surface, so that it meets what lies in front of the curve and not the curve's own
+  /// surface. A contour that bends towards the eye has its own material there.
+  glm::dvec3 lift{0.0};
+  LineClass line_class = LineClass::contour;  ///< Of the step.
+  int object = 1;                             ///< Of the step; from 1.
+  /// Of the step: how many more sheets of the surface lie on its left in the image than on its right, walking along: 2 and -2 on a fold, 1
+  /// and -1 on an open edge, 0 where the surface goes on.
+  int more_on_left = 0;
+  /// The curve changes its nature here: a contour leads into it, or it becomes a fold.
+  bool joint = false;
+  bool on_chord = false;  ///< Between two samples, off the curve by up to the tolerance.
+};
+
+/// Of one object's surface, or of two that meet.
+struct SurfaceCurve {
+  bool closed = false;
+  bool smooth = false;  ///< A contour on smooth surface, whose cusps are where its radial curvature is 0.
+  std::vector<CurveSample> samples{};
+};
+
+/// What objects of one kind bring. Functions are called from many threads and own what they need.
+struct LineContribution {
+  std::vector<SurfaceCurve> curves{};
+  /// How many layers of its surfaces lie between the sample, lifted off, and the eye.
+  std::function<int(const CurveSample& sample)> layers_before{};
+  bool exact = true;
+  double unrefined_px = 0.0;  ///< What the bound has to grow by.
+  std::vector<std::string> notes{};
+};
+
+/// What every kind goes by.
+struct LineTask {
+  const Scene& scene;
+  Camera camera{};         ///< Solver space: world axes, origin at the scene's middle.
+  glm::dvec3 origin{0.0};  ///< World: solver space's.
+  double extent = 1.0;     ///< Radius of the whole scene.
+  LineSettings settings{};
+
+  bool wants(LineClass line_class) const;
+};
+
+LineContribution field_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution);
+LineContribution cage_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution);
+LineContribution mesh_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution);
+LineContribution level_set_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution);
+
+/// Image point and depth of `sample.p`.
+void project_sample(const Camera& camera, CurveSample& sample);
+
+}  // namespace limn

@@ -12,6 +12,9 @@
 namespace limn {
 namespace {
 
+constexpr double kLeastBend = 1e-7;    // of the radial curvature times the scene's radius: less is rounding
+constexpr double kNarrow_px = 0.25;     // swallowtails whose cusps lie nearer together are left out
+constexpr double kTangency_px = 3.0;   // along either curve, from the place where they touch
 constexpr double kNearEnd_px = 0.3;  // pieces in which no ray starts farther from their ends tell little
 
 size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples.size() : curve.samples.size() - 1; }
@@ -19,11 +22,12 @@ size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples
 /// One curve being cut.
 class Cutter {
  public:
-  Cutter(const SurfaceCurve& curve, std::uint32_t number, const Camera& camera, const LayersBefore& layers_before)
-      : curve_(curve), number_(number), camera_(camera), layers_before_(layers_before) {
+  Cutter(const std::vector<SurfaceCurve>& curves, std::uint32_t number, const Camera& camera, double extent,
+         const LayersBefore& layers_before)
+      : curves_(curves), curve_(curves[number]), number_(number), camera_(camera), extent_(extent), layers_before_(layers_before) {
     lengths_.push_back(0.0);
-    for (size_t i = 0; i < steps_of(curve); ++i) {
-      const glm::dvec2 &a = curve.samples[i].px, &b = curve.samples[(i + 1) % curve.samples.size()].px;
+    for (size_t i = 0; i < steps_of(curve_); ++i) {
+      const glm::dvec2 &a = curve_.samples[i].px, &b = curve_.samples[(i + 1) % size()].px;
       lengths_.push_back(lengths_.back() + glm::distance(a, b));
     }
   }
@@ -53,26 +57,117 @@ class Cutter {
   }
 
   void find_events(const std::vector<NearerCrossing>& crossings) {
-    for (const NearerCrossing& crossing : crossings)
-      cut_.events.push_back({VertexKind::crossing, crossing.at, crossing.layers, crossing.curve, crossing.on_nearer});
+    for (const NearerCrossing& crossing : crossings) {
+      if (!is_tangency(crossing)) cut_.events.push_back({VertexKind::crossing, crossing.at, crossing.layers, crossing.curve, crossing.on_nearer});
+    }
     for (size_t i = 0; i < steps_of(curve_); ++i) {
       const CurveSample &a = at(i), &b = at(i + 1);
       const double place = static_cast<double>(i);
       if (in_frame(a) != in_frame(b)) cut_.events.push_back({VertexKind::frame, place + frame_share(a, b), {}, 0, 0.0});
-      if (curve_.smooth && (a.radial_curvature < 0.0) != (b.radial_curvature < 0.0)) {
-        const double t = a.radial_curvature / (a.radial_curvature - b.radial_curvature);
-        // Whatever arm leads away from the eye lies behind the other one's sheet.
-        cut_.events.push_back({VertexKind::cusp, place + std::clamp(t, 0.0, 1.0 - 1e-9), b.depth > a.depth ? 1 : -1, 0, 0.0});
-      }
       if (a.joint && (i > 0 || curve_.closed)) cut_.events.push_back({VertexKind::joint, place, {}, 0, 0.0});
       const bool differs = i > 0 && (a.object != at(i - 1).object || a.line_class != at(i - 1).line_class);
       if (differs && !a.joint) cut_.events.push_back({VertexKind::joint, place, 0, 0, 0.0});
     }
+    if (curve_.smooth) find_cusps();
     if (!curve_.closed) {
       cut_.events.push_back({VertexKind::end, 0.0, {}, 0, 0.0});
       cut_.events.push_back({VertexKind::end, static_cast<double>(steps_of(curve_)), {}, 0, 0.0});
     }
     std::stable_sort(cut_.events.begin(), cut_.events.end(), [](const CurveEvent& a, const CurveEvent& b) { return a.at < b.at; });
+  }
+
+  /// Where the radial curvature changes its sign, but for rounding: the line of sight follows the contour there, and of its two arms the one
+  /// farther from the eye lies behind the other one's sheet (Koenderink & van Doorn 1982).
+  void find_cusps() {
+    const auto sign_of = [&](size_t i) {
+      const double bend = at(i).radial_curvature * extent_;
+      return bend > kLeastBend ? 1 : bend < -kLeastBend ? -1 : 0;
+    };
+    size_t first = 0;
+    while (first < size() && sign_of(first) == 0) ++first;
+    if (first == size()) return;
+    std::vector<CurveEvent> cusps;
+    size_t last = first;
+    for (size_t k = first + 1; k < first + size() + (curve_.closed ? 1 : 0) && (curve_.closed || k < size()); ++k) {
+      if (sign_of(k) == 0) continue;
+      if (sign_of(k) != sign_of(last)) {
+        const CurveSample &a = at(last), &b = at(k);
+        const double t = std::clamp(a.radial_curvature / (a.radial_curvature - b.radial_curvature), 0.0, 1.0 - 1e-9);
+        double place = glm::mix(static_cast<double>(last), static_cast<double>(k), t);
+        if (place >= static_cast<double>(size()) && curve_.closed) place -= static_cast<double>(size());
+        cusps.push_back({VertexKind::cusp, place, b.depth > a.depth ? 1 : -1, 0, 0.0});
+      }
+      last = k;
+    }
+    drop_narrow_swallowtails(cusps);
+    cut_.events.insert(cut_.events.end(), cusps.begin(), cusps.end());
+  }
+
+  /// Two cusps one after the other in the same direction make a swallowtail, whose arms cross; where it is too narrow for the crossing to
+  /// be found, none of the three is there.
+  void drop_narrow_swallowtails(std::vector<CurveEvent>& cusps) const {
+    const auto crosses_itself_near = [&](const CurveEvent& cusp) {
+      return std::any_of(cut_.events.begin(), cut_.events.end(), [&](const CurveEvent& event) {
+        return event.kind == VertexKind::crossing && event.nearer == number_ && apart_px(event.at, cusp.at) < 4.0 * kNarrow_px;
+      });
+    };
+    for (size_t k = 0; k + 1 < cusps.size();) {
+      const bool narrow = cusps[k].layers == cusps[k + 1].layers && apart_px(cusps[k].at, cusps[k + 1].at) < kNarrow_px;
+      if (narrow && !crosses_itself_near(cusps[k])) {
+        cusps.erase(cusps.begin() + static_cast<std::ptrdiff_t>(k), cusps.begin() + static_cast<std::ptrdiff_t>(k) + 2);
+        k = k > 0 ? k - 1 : 0;
+      } else {
+        ++k;
+      }
+    }
+  }
+
+  /// Image length between two places, the shorter way round.
+  double apart_px(double one, double other) const {
+    const double way = std::fabs(length_to(one) - length_to(other));
+    return curve_.closed ? std::min(way, lengths_.back() - way) : way;
+  }
+
+  /// A crease leaves a contour, and the two arms of a cusp each other, along their common tangent: polylines of them cross again and again
+  /// there, and the curves do not.
+  bool is_tangency(const NearerCrossing& crossing) const {
+    if (crossing.curve == number_) return one_cusp_between(crossing.at, crossing.on_nearer);
+    const SurfaceCurve& other = curves_[crossing.curve];
+    for (const glm::dvec3& end : ends_near(curve_, crossing.at)) {
+      for (const glm::dvec3& other_end : ends_near(other, crossing.on_nearer)) {
+        if (glm::distance(end, other_end) < 1e-6 * extent_) return true;
+      }
+    }
+    return false;
+  }
+  bool one_cusp_between(double one, double other) const {
+    if (apart_px(one, other) > 2.0 * kTangency_px) return false;
+    int changes = 0;
+    auto i = static_cast<size_t>(std::min(one, other));
+    const auto last = static_cast<size_t>(std::max(one, other));
+    const bool around = std::fabs(length_to(one) - length_to(other)) > kTangency_px * 2.0;
+    if (around) return false;
+    for (; i < last; ++i) changes += (at(i).radial_curvature < 0.0) != (at(i + 1).radial_curvature < 0.0);
+    return changes == 1;
+  }
+  /// Ends and joints of a curve within reach of a place on it, along it.
+  static std::vector<glm::dvec3> ends_near(const SurfaceCurve& curve, double place) {
+    std::vector<glm::dvec3> ends;
+    const auto n = static_cast<std::ptrdiff_t>(curve.samples.size());
+    for (const int way : {1, -1}) {
+      double length = 0.0;
+      auto i = static_cast<std::ptrdiff_t>(place) + (way > 0 ? 1 : 0);
+      for (std::ptrdiff_t count = 0; count < n; ++count, i += way) {
+        if (!curve.closed && (i < 0 || i >= n)) break;
+        const CurveSample& sample = curve.samples[static_cast<size_t>((i + n) % n)];
+        if (sample.joint || (!curve.closed && (i == 0 || i == n - 1))) ends.push_back(sample.p);
+        const std::ptrdiff_t next = i + way;
+        if (!curve.closed && (next < 0 || next >= n)) break;
+        length += glm::distance(sample.px, curve.samples[static_cast<size_t>((next + n) % n)].px);
+        if (length > kTangency_px) break;
+      }
+    }
+    return ends;
   }
 
   double frame_share(const CurveSample& a, const CurveSample& b) const {
@@ -232,9 +327,11 @@ class Cutter {
                          sample_at(curve_, piece.from, camera_).px});
   }
 
+  const std::vector<SurfaceCurve>& curves_;
   const SurfaceCurve& curve_;
   std::uint32_t number_;
   const Camera& camera_;
+  double extent_;
   const LayersBefore& layers_before_;
   std::vector<double> lengths_;
   CutCurve cut_;
@@ -260,8 +357,8 @@ CurveSample sample_at(const SurfaceCurve& curve, double at, const Camera& camera
   return sample;
 }
 
-CutCurves cut_by_invisibility(const std::vector<SurfaceCurve>& curves, const Camera& camera, const LayersBefore& layers_before,
-                              const ExecutionSettings& execution) {
+CutCurves cut_by_invisibility(const std::vector<SurfaceCurve>& curves, const Camera& camera, double extent,
+                              const LayersBefore& layers_before, const ExecutionSettings& execution) {
   const auto crossings = nearer_crossings(curves, camera);
   CutCurves result;
   result.curves.resize(curves.size());
@@ -269,7 +366,7 @@ CutCurves cut_by_invisibility(const std::vector<SurfaceCurve>& curves, const Cam
   std::atomic<std::int64_t> rays = 0;
   parallel_for(size_t{0}, curves.size(), [&](size_t c) {
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
-    Cutter cutter(curves[c], static_cast<std::uint32_t>(c), camera, layers_before);
+    Cutter cutter(curves, static_cast<std::uint32_t>(c), camera, extent, layers_before);
     result.curves[c] = cutter.run(crossings[c]);
     conflicts[c] = std::move(cutter.conflicts);
     rays += cutter.rays;

@@ -42,8 +42,8 @@ using LayersBefore = std::function<int(const CurveSample& sample)>;
 
 /// The steps at crossings and cusps say how the invisibility changes along a curve, rays at two places what it is: where these agree, and
 /// the steps around a closed curve add up to nothing, the piece is certain. Elsewhere rays decide, and the conflict is recorded.
-CutCurves cut_by_invisibility(const std::vector<SurfaceCurve>& curves, const Camera& camera, const LayersBefore& layers_before,
-                              const ExecutionSettings& execution);
+CutCurves cut_by_invisibility(const std::vector<SurfaceCurve>& curves, const Camera& camera, double extent,
+                              const LayersBefore& layers_before, const ExecutionSettings& execution);
 
 /// The point at a place on a curve.
 CurveSample sample_at(const SurfaceCurve& curve, double at, const Camera& camera);

@@ -7,6 +7,7 @@
 
 #include "raymarch/lines/graph_building.h"
 #include "raymarch/scene/threads.h"
+#include "raymarch/truth/locate.h"
 #include "raymarch/truth/proxy.h"
 #include "sdf/error.h"
 
@@ -28,7 +29,8 @@ LineTask task_of(const Scene& scene, const Camera& camera, const LineSettings& s
   LineTask task{scene};
   const Box box = bounds(scene);
   if (box.finite()) task.origin = box.center();
-  task.camera = moved(camera, task.origin);
+  // Turned by an epsilon, so that faces seen exactly edge-on face one way and not all ways at once.
+  task.camera = make_viewer(moved(camera, task.origin), glm::dvec3(0.0)).facing;
   task.extent = box.finite() && box.radius() > 0.0 ? box.radius() : std::max(1e-6, glm::length(task.camera.eye));
   task.settings = settings;
   if (settings.classes.empty()) {
@@ -106,7 +108,7 @@ ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettin
       for (const LineContribution& one : contributions) layers += one.layers_before(sample);
       return layers;
     };
-    CutCurves cut = cut_by_invisibility(curves, task.camera, layers_before, execution);
+    CutCurves cut = cut_by_invisibility(curves, task.camera, task.extent, layers_before, execution);
     if (execution.progress) execution.progress(0.9);
     add_edges(curves, cut, task, graph);
     add_chains(graph);

@@ -15,6 +15,7 @@
 #include "tests/bench/fields_suite.h"
 #include "tests/bench/growth_suite.h"
 #include "tests/bench/image_methods.h"
+#include "tests/bench/lines_suite.h"
 #include "tests/bench/march_suite.h"
 #include "tests/bench/plan_suite.h"
 
@@ -28,6 +29,7 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
           convert   mesh to level set beside OpenVDB's meshToVolume
           images    image methods beside OpenCV
           plan      what a plan saves (minutes)
+          lines     view graphs from 26 sides: time and conflicts (minutes)
           growth    whole calls of limn on larger and larger files, beside assimp's reading of them (minutes)
           all       the first four (the default)
   --object NAME     sphere, torus, or a built-in scene with a cage; may be repeated
@@ -35,7 +37,7 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
   --voxels N        along the longest side; may be repeated
   --runs N          interleaved runs of which the median counts (7)
   --width PX        of pictures 16:9 (1920)
-  --scene NAME, --views N   of the plan suite; --view I: only this one of the views, from 0
+  --scene NAME, --views N   of the plan suite (--scene of lines, too); --view I: only this one of the views, from 0
   --level N         of the growth suite, how often its cage is refined; may be repeated (4 5 6 7)
   --program FILE    of the growth suite: the program limn (the one beside this)
   --output FILE     JSON; --json prints it to stdout, tables then go to stderr
@@ -56,7 +58,7 @@ struct Settings {
   bool json = false;
   std::vector<std::string> against{};  ///< Two lists of files.
   double limit = 1.1;
-  bool runs_suite(const std::string& name) const { return suite == name || (suite == "all" && name != "plan" && name != "growth"); }
+  bool runs_suite(const std::string& name) const { return suite == name || (suite == "all" && name != "plan" && name != "growth" && name != "lines"); }
   /// With --json the document alone goes to stdout.
   std::FILE* table() const { return json ? stderr : stdout; }
 };
@@ -102,9 +104,9 @@ Settings parse(int argc, char** argv) {
       settings.program = value(flag);
     } else if (flag == "--suite") {
       settings.suite = value(flag);
-      const std::vector<std::string> known{"march", "fields", "convert", "images", "plan", "growth", "all"};
+      const std::vector<std::string> known{"march", "fields", "convert", "images", "plan", "lines", "growth", "all"};
       if (std::find(known.begin(), known.end(), settings.suite) == known.end())
-        refuse(flag, settings.suite, "unknown suite", "march, fields, convert, images, plan, growth or all");
+        refuse(flag, settings.suite, "unknown suite", "march, fields, convert, images, plan, lines, growth or all");
     } else if (flag == "--width") {
       settings.width_px = std::min(whole(flag, 16), 16384);
       settings.height_px = std::max(1, settings.width_px * 9 / 16);
@@ -147,6 +149,8 @@ nlohmann::json rows_of(const Settings& settings) {
   if (settings.runs_suite("images"))
     append(bench_image_methods(
         {.runs = settings.runs, .width_px = settings.width_px, .height_px = settings.height_px, .table = settings.table()}));
+  if (settings.runs_suite("lines"))
+    append(bench_lines({.scenes = settings.scenes, .meshes = settings.meshes, .only_view = settings.only_view, .table = settings.table()}));
   if (settings.runs_suite("growth"))
     append(bench_growth({.levels = settings.levels,
                          .voxels = settings.voxels,

@@ -1,0 +1,100 @@
+#include "tests/bench/lines_suite.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "raymarch/lines.h"
+#include "samples/input/input.h"
+#include "samples/scenes/scenes.h"
+
+namespace limn::bench {
+namespace {
+
+/// The corners, edge middles and face middles of a cube, from its middle.
+std::vector<glm::dvec3> directions() {
+  std::vector<glm::dvec3> all;
+  for (int i = 0; i < 27; ++i) {
+    const glm::dvec3 direction(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    if (i != 13) all.push_back(glm::normalize(direction));
+  }
+  return all;
+}
+
+/// From twice the half diagonal away.
+Camera camera_from(const glm::dvec3& direction, const Box& box, int width_px, int height_px) {
+  CameraSettings settings;
+  settings.target = box.center();
+  settings.eye = box.center() + 2.0 * box.radius() * direction;
+  if (std::fabs(direction.y) > 0.99) settings.up = {0.0, 0.0, 1.0};
+  // The picture holds the ball about the model.
+  settings.vertical_fov = 2.0 * std::asin(0.5) * 1.02;
+  settings.width_px = width_px;
+  settings.height_px = height_px;
+  return resolve_camera(settings, box);
+}
+
+struct Row {
+  std::string name;
+  std::vector<double> ms{};
+  std::int64_t chains = 0, visible = 0, rays = 0, conflicts = 0, open_ends = 0;
+  double bound_px = 0.0;
+};
+
+Row run(const std::string& name, const Scene& scene, const LinesBenchSettings& settings) {
+  Row row{name};
+  const Box box = bounds(scene);
+  ExecutionSettings execution;
+  execution.threads = settings.threads;
+  const std::vector<glm::dvec3> all = directions();
+  for (size_t view = 0; view < all.size(); ++view) {
+    if (settings.only_view && *settings.only_view != static_cast<int>(view)) continue;
+    const Camera camera = camera_from(all[view], box, settings.width_px, settings.height_px);
+    const auto start = std::chrono::steady_clock::now();
+    const ViewGraph graph = solve_lines(scene, camera, {}, execution);
+    row.ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    row.chains += static_cast<std::int64_t>(graph.chains.size());
+    row.visible += std::count_if(graph.chains.begin(), graph.chains.end(), [](const LineChain& chain) { return chain.invisibility == 0; });
+    row.rays += graph.rays;
+    row.conflicts += static_cast<std::int64_t>(graph.conflicts.size());
+    row.open_ends += std::count_if(graph.vertices.begin(), graph.vertices.end(), [](const LineVertex& v) { return v.kind == VertexKind::end; });
+    row.bound_px = std::max(row.bound_px, graph.bound_px);
+    for (const LineConflict& conflict : graph.conflicts)
+      fmt::print(settings.table, "{}, view {}: conflict at {:.2f}, {:.2f}: {}\n", name, view, conflict.px.x, conflict.px.y, conflict.what);
+  }
+  return row;
+}
+
+nlohmann::json json_of(Row row, std::FILE* table) {
+  std::sort(row.ms.begin(), row.ms.end());
+  const double median = row.ms[row.ms.size() / 2], worst = row.ms.back();
+  fmt::print(table, "| {} | {} | {:.0f} | {:.0f} | {} | {} | {} | {} | {} | {:.3g} |\n", row.name, row.ms.size(), median, worst, row.chains,
+             row.visible, row.rays, row.conflicts, row.open_ends, row.bound_px);
+  return {{"suite", "lines"},         {"case", row.name},         {"contestant", "limn"},     {"views", row.ms.size()},
+          {"median_ms", median},      {"worst_ms", worst},        {"chains", row.chains},     {"visible", row.visible},
+          {"conflicts", row.conflicts}, {"open_ends", row.open_ends}, {"bound_px", row.bound_px}};
+}
+
+}  // namespace
+
+nlohmann::json bench_lines(const LinesBenchSettings& settings) {
+  nlohmann::json rows = nlohmann::json::array();
+  fmt::print(settings.table, "| input | views | median ms | worst ms | chains | visible | rays | conflicts | open ends | bound px |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const SceneDescriptor& descriptor : scenes()) {
+    const auto& asked = settings.scenes;
+    if (std::find(asked.begin(), asked.end(), descriptor.about.name) == asked.end() && (!asked.empty() || !settings.meshes.empty())) continue;
+    rows.push_back(json_of(run(descriptor.about.name, descriptor.make(), settings), settings.table));
+  }
+  for (const std::string& mesh : settings.meshes) {
+    ExperimentSpec reading;
+    reading.input = mesh;
+    reading.surface.scheme = Scheme::catmark;
+    const SceneInput input = load_input(reading);
+    rows.push_back(json_of(run(input.name, input.scene, settings), settings.table));
+  }
+  return rows;
+}
+
+}  // namespace limn::bench

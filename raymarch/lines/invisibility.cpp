@@ -8,16 +8,29 @@
 #include <map>
 
 #include "sdf/parallel.h"
+#include "sdf/segment.h"
 
 namespace limn {
 namespace {
 
 constexpr double kLeastBend = 1e-7;    // of the radial curvature times the scene's radius: less is rounding
-constexpr double kNarrow_px = 0.25;     // swallowtails whose cusps lie nearer together are left out
+constexpr double kArm_px = 0.15;        // so far from a cusp its arms are compared
+constexpr double kLongestNarrow_px = 20.0;
 constexpr double kTangency_px = 3.0;   // along either curve, from the place where they touch
+constexpr double kTogether_px = 0.03;  // polylines of curves that touch lie no farther apart
+constexpr double kShort_px = 1.0;      // pieces shorter than this are not asked by rays of their own
 constexpr double kNearEnd_px = 0.3;  // pieces in which no ray starts farther from their ends tell little
 
 size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples.size() : curve.samples.size() - 1; }
+
+/// Every point is near a polyline.
+bool lies_along(const std::vector<glm::dvec2>& px, const std::vector<glm::dvec2>& line) {
+  return std::all_of(px.begin(), px.end(), [&](const glm::dvec2& p) {
+    double least = glm::distance(p, line[0]);
+    for (size_t i = 0; i + 1 < line.size(); ++i) least = std::min(least, distance_to_segment(p, line[i], line[i + 1]));
+    return least < kTogether_px;
+  });
+}
 
 /// One curve being cut.
 class Cutter {
@@ -93,9 +106,12 @@ class Cutter {
       if (sign_of(k) != sign_of(last)) {
         const CurveSample &a = at(last), &b = at(k);
         const double t = std::clamp(a.radial_curvature / (a.radial_curvature - b.radial_curvature), 0.0, 1.0 - 1e-9);
+        const glm::dvec2 px = glm::mix(a.px, b.px, t);
+        const Arm back = arm_from(px, last, -1), ahead = arm_from(px, k, 1);
+        const double reach = std::min(back.reach_px(), ahead.reach_px());
         double place = glm::mix(static_cast<double>(last), static_cast<double>(k), t);
         if (place >= static_cast<double>(size()) && curve_.closed) place -= static_cast<double>(size());
-        cusps.push_back({VertexKind::cusp, place, b.depth > a.depth ? 1 : -1, 0, 0.0});
+        cusps.push_back({VertexKind::cusp, place, ahead.depth_at(reach) > back.depth_at(reach) ? 1 : -1, 0, 0.0});
       }
       last = k;
     }
@@ -103,23 +119,73 @@ class Cutter {
     cut_.events.insert(cut_.events.end(), cusps.begin(), cusps.end());
   }
 
-  /// Two cusps one after the other in the same direction make a swallowtail, whose arms cross; where it is too narrow for the crossing to
-  /// be found, none of the three is there.
+  /// Depth along one of the arms of a cusp, by image distance from it. Where the curvature jumps both may lead away from the eye.
+  struct Arm {
+    std::vector<std::pair<double, double>> points{};  ///< Distance, px, and depth; the distance grows.
+    double reach_px() const { return points.back().first; }
+    double depth_at(double distance) const {
+      for (size_t i = 1; i < points.size(); ++i) {
+        if (points[i].first < distance) continue;
+        const double width = points[i].first - points[i - 1].first;
+        return glm::mix(points[i - 1].second, points[i].second, width > 0.0 ? (distance - points[i - 1].first) / width : 1.0);
+      }
+      return points.back().second;
+    }
+  };
+  Arm arm_from(const glm::dvec2& cusp_px, size_t first, int way) const {
+    Arm arm;
+    auto i = static_cast<std::ptrdiff_t>(first);
+    const auto n = static_cast<std::ptrdiff_t>(size());
+    for (std::ptrdiff_t count = 0; count < n; ++count, i += way) {
+      if (!curve_.closed && (i < 0 || i >= n)) break;
+      const CurveSample& sample = at(static_cast<size_t>(i + n));
+      const double distance = glm::distance(sample.px, cusp_px);
+      if (!arm.points.empty() && distance < arm.points.back().first) break;
+      arm.points.emplace_back(distance, sample.depth);
+      if (distance > kArm_px) break;
+    }
+    return arm;
+  }
+
+  /// Two cusps one after the other in the same direction make a swallowtail, whose arms cross; where it is so narrow that they lie on each
+  /// other, and the crossing cannot be found, none of the three is there.
   void drop_narrow_swallowtails(std::vector<CurveEvent>& cusps) const {
-    const auto crosses_itself_near = [&](const CurveEvent& cusp) {
-      return std::any_of(cut_.events.begin(), cut_.events.end(), [&](const CurveEvent& event) {
-        return event.kind == VertexKind::crossing && event.nearer == number_ && apart_px(event.at, cusp.at) < 4.0 * kNarrow_px;
-      });
-    };
     for (size_t k = 0; k + 1 < cusps.size();) {
-      const bool narrow = cusps[k].layers == cusps[k + 1].layers && apart_px(cusps[k].at, cusps[k + 1].at) < kNarrow_px;
-      if (narrow && !crosses_itself_near(cusps[k])) {
+      if (cusps[k].layers == cusps[k + 1].layers && is_narrow(cusps[k].at, cusps[k + 1].at)) {
         cusps.erase(cusps.begin() + static_cast<std::ptrdiff_t>(k), cusps.begin() + static_cast<std::ptrdiff_t>(k) + 2);
         k = k > 0 ? k - 1 : 0;
       } else {
         ++k;
       }
     }
+  }
+  bool is_narrow(double first, double second) const {
+    const double length = length_to(second) - length_to(first);
+    if (length > kLongestNarrow_px) return false;
+    const auto crosses_itself = [&](const CurveEvent& event) {
+      return event.kind == VertexKind::crossing && event.nearer == number_ &&
+             std::min(apart_px(event.at, first), apart_px(event.at, second)) < length + kTangency_px;
+    };
+    if (std::any_of(cut_.events.begin(), cut_.events.end(), crosses_itself)) return false;
+    const std::vector<glm::dvec2> middle = px_between(first, second);
+    return lies_along(middle, px_from(second, length, 1)) || lies_along(middle, px_from(first, length, -1));
+  }
+  std::vector<glm::dvec2> px_between(double from, double to) const {
+    std::vector<glm::dvec2> px{sample_at(curve_, from, camera_).px};
+    for (double i = std::floor(from) + 1.0; i < to; i += 1.0) px.push_back(at(static_cast<size_t>(i)).px);
+    px.push_back(sample_at(curve_, to, camera_).px);
+    return px;
+  }
+  std::vector<glm::dvec2> px_from(double place, double length_px, int way) const {
+    std::vector<glm::dvec2> px{sample_at(curve_, place, camera_).px};
+    const auto n = static_cast<std::ptrdiff_t>(size());
+    auto i = static_cast<std::ptrdiff_t>(place) + (way > 0 ? 1 : 0);
+    for (double length = 0.0; length < length_px + 0.5 && (curve_.closed || (i >= 0 && i < n)); i += way) {
+      px.push_back(at(static_cast<size_t>((i + n) % n)).px);
+      length += glm::distance(px.back(), px[px.size() - 2]);
+      if (static_cast<std::ptrdiff_t>(px.size()) > n) break;
+    }
+    return px;
   }
 
   /// Image length between two places, the shorter way round.
@@ -133,41 +199,51 @@ class Cutter {
   bool is_tangency(const NearerCrossing& crossing) const {
     if (crossing.curve == number_) return one_cusp_between(crossing.at, crossing.on_nearer);
     const SurfaceCurve& other = curves_[crossing.curve];
-    for (const glm::dvec3& end : ends_near(curve_, crossing.at)) {
-      for (const glm::dvec3& other_end : ends_near(other, crossing.on_nearer)) {
-        if (glm::distance(end, other_end) < 1e-6 * extent_) return true;
+    for (const Stretch& own : to_ends(curve_, crossing.at)) {
+      for (const Stretch& others : to_ends(other, crossing.on_nearer)) {
+        if (glm::distance(own.end, others.end) < 1e-6 * extent_ && run_together(own, others)) return true;
       }
     }
     return false;
   }
+
   bool one_cusp_between(double one, double other) const {
-    if (apart_px(one, other) > 2.0 * kTangency_px) return false;
-    int changes = 0;
-    auto i = static_cast<size_t>(std::min(one, other));
+    if (std::fabs(length_to(one) - length_to(other)) > 2.0 * kTangency_px) return false;
     const auto last = static_cast<size_t>(std::max(one, other));
-    const bool around = std::fabs(length_to(one) - length_to(other)) > kTangency_px * 2.0;
-    if (around) return false;
-    for (; i < last; ++i) changes += (at(i).radial_curvature < 0.0) != (at(i + 1).radial_curvature < 0.0);
+    int changes = 0;
+    for (auto i = static_cast<size_t>(std::min(one, other)); i < last; ++i)
+      changes += (at(i).radial_curvature < 0.0) != (at(i + 1).radial_curvature < 0.0);
     return changes == 1;
   }
-  /// Ends and joints of a curve within reach of a place on it, along it.
-  static std::vector<glm::dvec3> ends_near(const SurfaceCurve& curve, double place) {
-    std::vector<glm::dvec3> ends;
+
+  /// From a place on a curve along it to an end or a joint.
+  struct Stretch {
+    glm::dvec3 end{0.0};
+    std::vector<glm::dvec2> px{};
+  };
+  static std::vector<Stretch> to_ends(const SurfaceCurve& curve, double place) {
+    std::vector<Stretch> all;
     const auto n = static_cast<std::ptrdiff_t>(curve.samples.size());
     for (const int way : {1, -1}) {
+      Stretch stretch;
       double length = 0.0;
       auto i = static_cast<std::ptrdiff_t>(place) + (way > 0 ? 1 : 0);
-      for (std::ptrdiff_t count = 0; count < n; ++count, i += way) {
+      for (std::ptrdiff_t count = 0; count < n && length <= kTangency_px; ++count, i += way) {
         if (!curve.closed && (i < 0 || i >= n)) break;
         const CurveSample& sample = curve.samples[static_cast<size_t>((i + n) % n)];
-        if (sample.joint || (!curve.closed && (i == 0 || i == n - 1))) ends.push_back(sample.p);
-        const std::ptrdiff_t next = i + way;
-        if (!curve.closed && (next < 0 || next >= n)) break;
-        length += glm::distance(sample.px, curve.samples[static_cast<size_t>((next + n) % n)].px);
-        if (length > kTangency_px) break;
+        if (!stretch.px.empty()) length += glm::distance(sample.px, stretch.px.back());
+        stretch.px.push_back(sample.px);
+        if (!sample.joint && (curve.closed || (i > 0 && i < n - 1))) continue;
+        stretch.end = sample.p;
+        all.push_back(stretch);
+        break;
       }
     }
-    return ends;
+    return all;
+  }
+  static bool run_together(const Stretch& one, const Stretch& other) {
+    // Each stretch leaves out the part before its first sample, where the other one may begin: one of them is enough.
+    return lies_along(one.px, other.px) || lies_along(other.px, one.px);
   }
 
   double frame_share(const CurveSample& a, const CurveSample& b) const {
@@ -282,7 +358,7 @@ class Cutter {
 
   /// What most of three rays say, or nothing for a piece too short to ask.
   std::optional<int> by_vote(const CurvePiece& piece) {
-    if (piece.length_px < kNearEnd_px) return {};
+    if (piece.length_px < kShort_px) return {};
     std::map<int, int> votes;
     for (const double share : {0.5, 0.3, 0.7}) ++votes[cast(ray_at(piece, share))];
     return std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;

@@ -77,6 +77,8 @@ class Cutter {
       const CurveSample &a = at(i), &b = at(i + 1);
       const double place = static_cast<double>(i);
       if (in_frame(a) != in_frame(b)) cut_.events.push_back({VertexKind::frame, place + frame_share(a, b), {}, 0, 0.0});
+      for (const Piercing& piercing : a.pierced)
+        cut_.events.push_back({VertexKind::joint, place + std::min(piercing.t, 1.0 - 1e-9), piercing.layers, 0, 0.0});
       if (a.joint && (i > 0 || curve_.closed)) cut_.events.push_back({VertexKind::joint, place, {}, 0, 0.0});
       const bool differs = i > 0 && (a.object != at(i - 1).object || a.line_class != at(i - 1).line_class);
       if (differs && !a.joint) cut_.events.push_back({VertexKind::joint, place, 0, 0, 0.0});

@@ -1,24 +1,39 @@
 #pragma once
-// Internal: how many layers of surface a ray goes through, where everything is a mesh: given ones, and fine ones of limit surfaces.
+// Internal: what rays and lines meet where everything is a mesh: given ones, and fine ones of limit surfaces.
+
+#include <memory>
 
 #include "raymarch/lines/surface_curves.h"
-#include "raymarch/truth/proxy.h"
 
 namespace limn {
 
-/// Safe from many threads.
+/// A triangle's side of a ray.
+struct LayerHit {
+  double t = 0.0;
+  std::uint32_t triangle = 0;
+};
+
+/// Triangles in solver space that are searched along rays, and which connected part each belongs to. Safe from many threads.
 class MeshLayers {
  public:
   /// Cages are refined until their edges are about `edge_px` long.
   MeshLayers(const LineTask& task, const std::vector<size_t>& objects, double edge_px);
+  ~MeshLayers();
+  MeshLayers(const MeshLayers&) = delete;
+  MeshLayers& operator=(const MeshLayers&) = delete;
 
   /// Hits between the sample, lifted off by more than the mesh lies beside the surface, and the eye.
   int before(const CurveSample& sample) const;
+  /// Whether there is more than one part, so that curves of one may go through another.
+  bool several_parts() const;
+  /// Marks the places where the curve goes through other parts than its own: CurveSample::pierced.
+  void pierce(SurfaceCurve& curve) const;
+  /// Where parts go through each other.
+  std::vector<SurfaceCurve> intersections() const;
 
  private:
-  Camera camera_;
-  SceneModel model_;
-  double lift_px_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace limn

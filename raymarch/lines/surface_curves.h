@@ -7,6 +7,12 @@
 
 namespace limn {
 
+/// A place within a step where the curve goes through another surface.
+struct Piercing {
+  double t = 0.0;  ///< Share of the step.
+  int layers = 0;  ///< Added to what lies in front, walking along.
+};
+
 /// A point of a curve on a surface, solver space, and what is true of the step from it to the next.
 struct CurveSample {
   glm::dvec3 p{0.0};
@@ -24,6 +30,7 @@ struct CurveSample {
   int more_on_left = 0;
   /// The curve changes its nature here: a contour leads into it, or it becomes a fold.
   bool joint = false;
+  std::vector<Piercing> pierced{};  ///< Within the step.
   bool on_chord = false;  ///< Between two samples, off the curve by up to the tolerance.
 };
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "raymarch/mesh/embree_device.h"
 #include "raymarch/mesh/mesh_hit.h"
 #include "raymarch/mesh/mesh_view.h"
 #include "raymarch/mesh/open_sheet.h"
@@ -135,16 +136,8 @@ void attach_triangles(const MeshState& state) {
   rtcReleaseGeometry(geometry);
 }
 
-/// One device serves all meshes, as long as the process lives: each takes a key of thread storage, of which a process has 1024.
-RTCDevice shared_device() {
-  static const RTCDevice device = rtcNewDevice(nullptr);
-  if (device == nullptr) throw MachineError("Embree could not start: out of memory, most likely");
-  rtcRetainDevice(device);
-  return device;
-}
-
 void build_tree(const MeshState& state) {
-  state.device.reset(shared_device());
+  state.device.reset(shared_embree_device());
   state.scene.reset(rtcNewScene(state.device.get()));
   rtcSetSceneFlags(state.scene.get(), RTC_SCENE_FLAG_ROBUST);
   attach_triangles(state);

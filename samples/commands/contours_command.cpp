@@ -22,6 +22,7 @@ const std::vector<std::string> kEndings = {".svg"};
 void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_lines(app, options);
+  add_reading(app, options);
   add_camera(app, options, false);
   add_output(app, options, ".svg; default limn-out/contours/<name>.svg", false);
   add_json(app, options);

@@ -316,6 +316,11 @@ void add_limits(CLI::App& app, Options& options) {
       [&options](const std::string& text) { options.spec.limits.max_time_ms = parse_milliseconds("--max-time", text); });
 }
 
+void add_reading(CLI::App& app, Options& options) {
+  add_setting(app, options, "scheme");
+  add_grid(app, options);
+}
+
 void add_lines(CLI::App& app, Options& options) {
   LineOptions& lines = options.lines;
   add(app,

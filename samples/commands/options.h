@@ -102,6 +102,8 @@ void add_study(CLI::App& app, Options& options);
 void add_parts(CLI::App& app, Options& options);
 /// Which cases `limn stability` runs, with what random parameters, on which surfaces.
 void add_stability(CLI::App& app, Options& options);
+/// --scheme and --grid: what the input is.
+void add_reading(CLI::App& app, Options& options);
 /// Which lines `limn contours` draws, and how.
 void add_lines(CLI::App& app, Options& options);
 /// --tolerance, --metric and --budget.

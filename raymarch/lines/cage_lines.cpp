@@ -92,8 +92,8 @@ LineContribution cage_lines(const LineTask& task, const std::vector<size_t>& obj
     add_cage(task, i, out);
   }
   const auto layers = std::make_shared<const MeshLayers>(task, objects, kProxyEdge_px);
+  parallel_for(size_t{0}, out.curves.size(), [&](size_t i) { layers->pierce(out.curves[i]); });
   if (layers->several_parts()) {
-    parallel_for(size_t{0}, out.curves.size(), [&](size_t i) { layers->pierce(out.curves[i]); });
     for (SurfaceCurve& curve : layers->intersections()) out.curves.push_back(std::move(curve));
   }
   out.layers_before = [layers](const CurveSample& sample) { return layers->before(sample); };

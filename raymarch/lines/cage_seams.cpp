@@ -10,6 +10,7 @@ namespace limn {
 namespace {
 
 constexpr int kDeepest = 8;
+constexpr double kSmooth = 0.99985;  // the cosine of one degree
 
 /// A node pair of the lattice where sheets end.
 struct SeamEdge {
@@ -100,9 +101,15 @@ class Chains {
   explicit Chains(const Tracer& tracer) : tracer_(tracer) {
     for (const auto& [nodes, uses] : tracer.grid.seams) {
       if (is_smooth(tracer.grid, uses, nodes.first)) continue;
+      const SeamEdge edge{nodes.first, nodes.second, &uses};
+      if (plain(edge) && uses.size() == 2) {
+        // Beside extraordinary vertices the normals of patches differ by their error.
+        const SeamSample middle = sample_seam(tracer, edge, nodes.first, 0.5);
+        if (glm::dot(middle.sides[0].normal, middle.sides[1].normal) > kSmooth) continue;
+      }
       at_node_[nodes.first].push_back(edges_.size());
       at_node_[nodes.second].push_back(edges_.size());
-      edges_.push_back({nodes.first, nodes.second, &uses});
+      edges_.push_back(edge);
     }
   }
 

@@ -18,6 +18,7 @@ namespace limn {
 namespace {
 
 constexpr double kLift_px = 0.1;
+constexpr double kAcross = 0.1, kSameSheet = 0.85;  // cosines
 
 struct Triangle {
   std::array<std::uint32_t, 3> corners{};
@@ -216,8 +217,11 @@ void MeshLayers::pierce(SurfaceCurve& curve) const {
     const glm::dvec3 way = (next.p - sample.p) / length;
     for (const LayerHit& hit : state_->hits_along(sample.p, way, length)) {
       const Triangle& triangle = state_->triangles[hit.triangle];
-      if (triangle.part == own) continue;
-      const glm::dvec3 normal = state_->normal_of(triangle);
+      const glm::dvec3 normal = glm::normalize(state_->normal_of(triangle));
+      // Triangles of the curve's own sheet lie along it; another sheet of the same part goes across.
+      const bool along_own = std::fabs(glm::dot(normal, way)) < kAcross || std::fabs(glm::dot(normal, sample.high)) > kSameSheet ||
+                             std::fabs(glm::dot(normal, sample.low)) > kSameSheet;
+      if (triangle.part == own && along_own) continue;
       const double along = glm::dot(normal, way), towards_eye = glm::dot(normal, view_vector(state_->camera, sample.p));
       sample.pierced.push_back({hit.t / length, (along > 0.0) == (towards_eye > 0.0) ? -1 : 1});
     }
@@ -229,7 +233,7 @@ namespace {
 /// Where an edge of one part goes through a triangle of another.
 struct EdgeHit {
   glm::dvec3 p{0.0};
-  glm::dvec3 edge_normal{0.0}, face_normal{0.0};
+  glm::dvec3 lower_normal{0.0}, upper_normal{0.0};  ///< Unit, of the parts of lower and higher number.
   int object = 1;
 };
 
@@ -269,7 +273,10 @@ std::vector<SurfaceCurve> MeshLayers::intersections() const {
     for (const LayerHit& hit : state.hits_along(a, (b - a) / length, length)) {
       const Triangle& other = state.triangles[hit.triangle];
       if (other.part == state.triangles[faces[0]].part) continue;
-      hits.push_back({glm::mix(a, b, hit.t / length), state.normal_of(state.triangles[faces[0]]), state.normal_of(other), other.object});
+      const Triangle& own = state.triangles[faces[0]];
+      const glm::dvec3 own_normal = glm::normalize(state.normal_of(own)), other_normal = glm::normalize(state.normal_of(other));
+      const bool lower = own.part < other.part;
+      hits.push_back({glm::mix(a, b, hit.t / length), lower ? own_normal : other_normal, lower ? other_normal : own_normal, other.object});
       for (const std::uint32_t face : faces) of_pair[{std::min(face, hit.triangle), std::max(face, hit.triangle)}].push_back(hits.size() - 1);
     }
   }
@@ -284,15 +291,20 @@ std::vector<SurfaceCurve> MeshLayers::intersections() const {
   const auto walk = [&](size_t start) {
     SurfaceCurve curve;
     size_t at = start, before = hits.size();
+    std::pair<bool, bool> before_facing;
     for (;;) {
       taken[at] = true;
       CurveSample sample;
       sample.p = hits[at].p;
       const glm::dvec3 v = view_vector(state.camera, sample.p);
-      const glm::dvec3 one = glm::normalize(hits[at].edge_normal), two = glm::normalize(hits[at].face_normal);
-      const bool one_high = glm::dot(one, v) >= glm::dot(two, v);
-      sample.high = one_high ? one : two;
-      sample.low = one_high ? two : one;
+      const EdgeHit& hit = hits[at];
+      const double lower = glm::dot(hit.lower_normal, v), upper = glm::dot(hit.upper_normal, v);
+      sample.high = lower >= upper ? hit.lower_normal : hit.upper_normal;
+      sample.low = lower >= upper ? hit.upper_normal : hit.lower_normal;
+      // Past a contour of either part the line lies on its other sheet.
+      const std::pair<bool, bool> facing(lower > 0.0, upper > 0.0);
+      sample.joint = !curve.samples.empty() && facing != before_facing;
+      before_facing = facing;
       sample.lift = v;
       sample.line_class = LineClass::intersection;
       sample.object = hits[at].object;

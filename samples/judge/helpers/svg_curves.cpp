@@ -11,7 +11,10 @@ namespace limn {
 namespace {
 
 constexpr double kFarthest_px = 1e6;
-constexpr double kMostPieces = 20'000.0;
+constexpr int kMostPieces = 20'000;
+
+/// 1 for what is no number: then a point is none, either.
+int pieces_of(double wanted) { return wanted > 1.0 ? static_cast<int>(std::ceil(std::min(wanted, 1.0 * kMostPieces))) : 1; }
 
 /// The transform's larger singular value.
 double scale_of(const glm::dmat3& m) {
@@ -34,7 +37,7 @@ void CurveFlattener::cubic(const std::array<glm::dvec2, 4>& c, std::vector<glm::
   // n chords of equal parameter lie within M / n^2 * 3/4 of the curve, M the largest second difference of the control points (Wang 1984,
   // "The subdivision method for finding the intersection between two Bezier curves or surfaces").
   const double bend = scale_of(transform) * std::max(glm::length(c[0] - 2.0 * c[1] + c[2]), glm::length(c[1] - 2.0 * c[2] + c[3]));
-  const int count = static_cast<int>(std::clamp(std::ceil(std::sqrt(0.75 * bend / kSvgFlatness_px)), 1.0, kMostPieces));
+  const int count = pieces_of(std::sqrt(0.75 * bend / kSvgFlatness_px));
   for (int i = 1; i <= count; ++i) {
     const double t = static_cast<double>(i) / count, s = 1.0 - t;
     line(i == count ? c[3] : s * s * s * c[0] + 3.0 * s * s * t * c[1] + 3.0 * s * t * t * c[2] + t * t * t * c[3], points);
@@ -65,7 +68,7 @@ void CurveFlattener::arc(const EllipticArc& one, std::vector<glm::dvec2>& points
   const double radius = scale_of(transform) * std::max(rx, ry);
   // A chord of angle w lies within radius (1 - cos(w / 2)) of the arc.
   const double widest = 2.0 * std::acos(std::max(0.0, 1.0 - kSvgFlatness_px / std::max(radius, kSvgFlatness_px)));
-  const int count = static_cast<int>(std::clamp(std::ceil(std::fabs(turn) / widest), 1.0, kMostPieces));
+  const int count = pieces_of(std::fabs(turn) / widest);
   for (int i = 1; i < count; ++i) {
     const double angle = begin + turn * i / count;
     const glm::dvec2 r(rx * std::cos(angle), ry * std::sin(angle));

@@ -4,8 +4,5 @@
 namespace limn {
 
 LineContribution mesh_lines(const LineTask&, const std::vector<size_t>&, const ExecutionSettings&) { throw InputError({"", "", "", "mesh", ""}); }
-LineContribution level_set_lines(const LineTask&, const std::vector<size_t>&, const ExecutionSettings&) {
-  throw InputError({"", "", "", "level set", ""});
-}
 
 }  // namespace limn

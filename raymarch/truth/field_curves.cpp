@@ -213,6 +213,33 @@ void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
 
 }  // namespace
 
+void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurveSettings& settings, const ExecutionSettings& how,
+                     FieldCurves& result) {
+  const std::vector<Strand> strands = strands_of(found, search, result);
+  const StrandSettings cutting{search.sharp, search.camera, search.viewer, settings.tolerance_px, settings.extent, settings.lipschitz};
+  std::vector<std::vector<FieldCurve>> cut(strands.size());
+  std::vector<FieldCurves> stats(strands.size());
+  parallel_for(size_t{0}, strands.size(), [&](size_t i) {
+    if (how.cancelled && how.cancelled()) throw Cancelled{};
+    const Strand& strand = strands[i];
+    cut[i] = cut_to_surface(strand, cutting);
+    if (strand.second >= 0) return;
+    const Refiner refiner{search.sharp.branches[static_cast<size_t>(strand.first)], search.camera, search.viewer, settings.tolerance_px,
+                          settings.extent};
+    for (FieldCurve& curve : cut[i]) refine(refiner, curve, stats[i]);
+  });
+  std::vector<FieldCurve> pieces, seams;
+  for (size_t i = 0; i < strands.size(); ++i) {
+    result.unrefined += stats[i].unrefined;
+    result.worst_unrefined_px = std::max(result.worst_unrefined_px, stats[i].worst_unrefined_px);
+    for (FieldCurve& curve : cut[i]) (curve.seam ? seams : pieces).push_back(std::move(curve));
+  }
+  double widest_gap_px = 0.0;
+  result.curves = join_ends(std::move(pieces), search.camera, search.whole_seams ? widest_gap_px : result.worst_unrefined_px);
+  result.curves.insert(result.curves.end(), std::make_move_iterator(seams.begin()), std::make_move_iterator(seams.end()));
+  for (const FieldCurve& curve : result.curves) result.open_ends += curve.closed ? 0 : 2;
+}
+
 FieldCurves trace_field_curves(const Field& field, const Camera& camera, const Viewer& viewer, const FieldCurveSettings& settings,
                                const ExecutionSettings& how) {
   FieldCurves result;
@@ -236,28 +263,7 @@ FieldCurves trace_field_curves(const Field& field, const Camera& camera, const V
   result.cells = found.cells;
   result.unsettled = found.unsettled;
   result.unproven_px = kUnprovenReach * result.cell_px;
-  const std::vector<Strand> strands = strands_of(found, search, result);
-  const StrandSettings cutting{sharp, camera, viewer, settings.tolerance_px, bounds.radius(), field.traits().lipschitz};
-  std::vector<std::vector<FieldCurve>> cut(strands.size());
-  std::vector<FieldCurves> stats(strands.size());
-  parallel_for(size_t{0}, strands.size(), [&](size_t i) {
-    if (how.cancelled && how.cancelled()) throw Cancelled{};
-    const Strand& strand = strands[i];
-    cut[i] = cut_to_surface(strand, cutting);
-    if (strand.second >= 0) return;
-    const Refiner refiner{sharp.branches[static_cast<size_t>(strand.first)], camera, viewer, settings.tolerance_px, bounds.radius()};
-    for (FieldCurve& curve : cut[i]) refine(refiner, curve, stats[i]);
-  });
-  std::vector<FieldCurve> pieces, seams;
-  for (size_t i = 0; i < strands.size(); ++i) {
-    result.unrefined += stats[i].unrefined;
-    result.worst_unrefined_px = std::max(result.worst_unrefined_px, stats[i].worst_unrefined_px);
-    for (FieldCurve& curve : cut[i]) (curve.seam ? seams : pieces).push_back(std::move(curve));
-  }
-  double widest_gap_px = 0.0;
-  result.curves = join_ends(std::move(pieces), camera, settings.whole_seams ? widest_gap_px : result.worst_unrefined_px);
-  result.curves.insert(result.curves.end(), std::make_move_iterator(seams.begin()), std::make_move_iterator(seams.end()));
-  for (const FieldCurve& curve : result.curves) result.open_ends += curve.closed ? 0 : 2;
+  curves_of_cells(found, search, {settings.tolerance_px, bounds.radius(), field.traits().lipschitz}, how, result);
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "raymarch/gbuffer.h"
+#include "raymarch/truth/field_cells.h"
 #include "raymarch/truth/locate.h"
 
 namespace limn {
@@ -47,5 +48,16 @@ struct FieldCurves {
 /// `field` in solver space, as `camera`.
 FieldCurves trace_field_curves(const Field& field, const Camera& camera, const Viewer& viewer, const FieldCurveSettings& settings,
                                const ExecutionSettings& how);
+
+/// What is known of a field beside the cells that its curves go through.
+struct CellCurveSettings {
+  double tolerance_px = 0.005;
+  double extent = 1.0;
+  double lipschitz = 1.0;
+};
+/// The second half of trace_field_curves(): crossings of cells joined, cut to what is surface, refined, joined again; added to `result`.
+/// `found` is used up.
+void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurveSettings& settings, const ExecutionSettings& how,
+                     FieldCurves& result);
 
 }  // namespace limn

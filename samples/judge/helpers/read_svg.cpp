@@ -46,20 +46,14 @@ struct Inherited {
 };
 
 void collect_rules(const pugi::xml_node& root, std::vector<limn::CssRule>& rules) {
-  struct Walker : pugi::xml_tree_walker {
-    std::vector<limn::CssRule>* rules = nullptr;
-    bool for_each(pugi::xml_node& node) override {
-      if (node.type() != pugi::node_element || limn::local_name(node.name()) != "style") return true;
-      std::string sheet;
-      for (const pugi::xml_node& text : node.children()) sheet += text.value();
-      limn::add_css(sheet, *rules);
-      return true;
-    }
-  };
-  Walker walker;
-  walker.rules = &rules;
-  pugi::xml_node copy = root;
-  copy.traverse(walker);
+  // A search that finds nothing visits all.
+  root.find_node([&](const pugi::xml_node& node) {
+    if (node.type() != pugi::node_element || limn::local_name(node.name()) != "style") return false;
+    std::string sheet;
+    for (const pugi::xml_node& text : node.children()) sheet += text.value();
+    limn::add_css(sheet, rules);
+    return false;
+  });
   limn::sort_css(rules);
 }
 
@@ -198,9 +192,8 @@ std::vector<std::byte> read(const std::string& file) {
 
 int main(int count, char** arguments) {
   if (count != 2) {
-    std::fputs("limn-read-svg is started by limn, as limn-read-svg FILE\n", stderr);
-    return 64;
+    std::fputs("usage: limn-read-svg FILE (started by limn, answers on file descriptor 3)\n", stderr);
+    return 2;
   }
-  const std::string file = arguments[1];
-  return limn::run_helper([&] { return read(file); });
+  return limn::run_helper([&] { return read(arguments[1]); });
 }

@@ -1,0 +1,135 @@
+#include "sdf/level_set_reconstruction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sdf/field_program.h"
+#include "sdf/level_set_data.h"
+#include "sdf/number_interval.h"
+#include "sdf/parallel.h"
+
+namespace limn {
+namespace {
+
+constexpr double kNearCorner = 0.2;  // of a voxel
+
+struct Spline {
+  LevelSet level_set;
+  const GradientDescriptor* gradient = nullptr;
+};
+
+template <class T>
+glm::dvec3 point_of(const T* x, const T* y, const T* z, size_t i) {
+  return {static_cast<double>(value_of(x[i])), static_cast<double>(value_of(y[i])), static_cast<double>(value_of(z[i]))};
+}
+
+template <class T>
+void evaluate(const void* shape, const T* x, const T* y, const T* z, T* values, size_t count) {
+  const auto& spline = *static_cast<const Spline*>(shape);
+  const LevelSetData& data = spline.level_set.data();
+  for (size_t i = 0; i < count; ++i) {
+    if constexpr (std::is_same_v<T, Interval>) {
+      values[i] = {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    } else if constexpr (std::is_same_v<T, Slope>) {
+      const Interval all{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+      values[i] = {all, all};
+    } else {
+      const glm::dvec3 p = point_of(x, y, z, i);
+      if constexpr (std::is_floating_point_v<T>) {
+        double value = 0.0;
+        spline.gradient->values(data, std::span(&p, 1), std::span(&value, 1));
+        values[i] = static_cast<T>(value);
+      } else {
+        FieldJet jet;
+        spline.gradient->hessians(data, std::span(&p, 1), std::span(&jet, 1));
+        // The chain rule through a rigid motion, which the leaf applies: x, y and z carry its derivatives.
+        T sum = scaled(x[i], jet.gradient.x, jet.value);
+        const auto add = [&](const T& coordinate, double slope) { sum = combination(sum, 1.0, coordinate, slope, jet.value); };
+        add(y[i], jet.gradient.y);
+        add(z[i], jet.gradient.z);
+        if constexpr (std::is_same_v<T, Jet>) {
+          const T* const axes[3] = {&x[i], &y[i], &z[i]};
+          for (int a = 0; a < 3; ++a) {
+            for (int b = 0; b < 3; ++b) add_outer(sum, jet.hessian[a][b], axes[a]->gradient, axes[b]->gradient);
+          }
+        }
+        values[i] = sum;
+      }
+    }
+  }
+}
+
+double support(const void* shape, const glm::dvec3& direction, double level) {
+  const Box box = dilate(static_cast<const Spline*>(shape)->level_set.info().bounds, std::max(level, 0.0));
+  if (box.empty()) return -std::numeric_limits<double>::infinity();
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    if (direction[i] != 0.0) sum += direction[i] * (direction[i] > 0.0 ? box.upper[i] : box.lower[i]);
+  }
+  return sum;
+}
+
+SurfaceCell cell_of(const LevelSetData& data, const nanovdb::Coord& node, const std::array<double, 8>& values) {
+  SurfaceCell cell;
+  cell.node = {node[0], node[1], node[2]};
+  glm::dvec3 corners[8], sum(0.0);
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto at = [&](int i) { return values[static_cast<size_t>(i)]; };
+    glm::dvec3 slope;
+    for (int axis = 0; axis < 3; ++axis) slope[axis] = at(corner | 1 << axis) - at(corner & ~(1 << axis));
+    corners[corner] = data.world_gradient(slope);
+    const double length = glm::length(corners[corner]);
+    if (length > 0.0) corners[corner] /= length;
+    sum += corners[corner];
+    cell.near_corner = cell.near_corner || std::fabs(at(corner)) < kNearCorner * data.per_voxel;
+  }
+  if (!(glm::length(sum) > 0.0)) return cell;
+  const glm::dvec3 normal = glm::normalize(sum);
+  cell.normal = glm::vec3(normal);
+  for (const glm::dvec3& corner : corners)
+    cell.spread = std::max(cell.spread, static_cast<float>(std::acos(std::clamp(glm::dot(corner, normal), -1.0, 1.0))));
+  return cell;
+}
+
+}  // namespace
+
+Field reconstruction_field(const LevelSet& level_set) {
+  static constexpr ShapeFunctions functions{
+      {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>}, support, nullptr, nullptr, nullptr};
+  const GradientDescriptor& cubic = find_gradient("cubic");
+  FieldLeaf leaf;
+  leaf.shape = std::make_shared<const Spline>(Spline{complete_band(level_set, cubic), &cubic});
+  leaf.functions = &functions;
+  return field_from_leaf(std::move(leaf), false);
+}
+
+std::vector<SurfaceCell> surface_cells(const LevelSet& level_set) {
+  const LevelSetData& data = level_set.data();
+  const auto& tree = data.grid->tree();
+  const auto leaves = static_cast<size_t>(tree.nodeCount(0));
+  const auto* const first = tree.getFirstNode<0>();
+  std::vector<std::vector<SurfaceCell>> parts(leaves);
+  parallel_for(size_t{0}, leaves, [&](size_t l) {
+    const auto accessor = data.accessor();
+    const nanovdb::Coord origin = first[l].origin();
+    // Cells reach a node beyond the block, and one may begin a node before it where that block is not there.
+    for (int x = -1; x < 8; ++x) {
+      for (int y = -1; y < 8; ++y) {
+        for (int z = -1; z < 8; ++z) {
+          const nanovdb::Coord node = origin.offsetBy(x, y, z);
+          if ((x < 0 || y < 0 || z < 0) && accessor.isActive(node)) continue;  // Another block's.
+          const std::array<double, 8> values = cell_values(accessor, node);
+          const bool inside = values[0] < 0.0;
+          if (std::all_of(values.begin(), values.end(), [&](double v) { return (v < 0.0) == inside; })) continue;
+          parts[l].push_back(cell_of(data, node, values));
+        }
+      }
+    }
+  });
+  std::vector<SurfaceCell> cells;
+  for (const auto& part : parts) cells.insert(cells.end(), part.begin(), part.end());
+  return cells;
+}
+
+}  // namespace limn

@@ -284,7 +284,9 @@ class Cutter {
   double ray_at(const CurvePiece& piece, double share) const {
     const double begin = length_to(piece.from), wanted = begin + share * piece.length_px;
     double best = -1.0, least = std::numeric_limits<double>::infinity();
-    for (double place = std::floor(piece.from) + 1.0; place < piece.to; place += 1.0) {
+    const double shift = curve_.straight ? 0.5 : 0.0;
+    for (double place = std::floor(piece.from) + 1.0 - shift; place < piece.to; place += 1.0) {
+      if (place <= piece.from) continue;
       const double here = length_to(place), off = std::fabs(here - wanted), room = std::min(here - begin, begin + piece.length_px - here);
       if (off >= least || room < std::min(kNearEnd_px, 0.2 * piece.length_px)) continue;
       least = off;
@@ -359,8 +361,8 @@ class Cutter {
   }
 
   /// What most of three rays say, or nothing for a piece too short to ask.
-  std::optional<int> by_vote(const CurvePiece& piece) {
-    if (piece.length_px < kShort_px) return {};
+  std::optional<int> by_vote(const CurvePiece& piece, double least_px) {
+    if (piece.length_px < least_px) return {};
     std::map<int, int> votes;
     for (const double share : {0.5, 0.3, 0.7}) ++votes[cast(ray_at(piece, share))];
     return std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
@@ -369,7 +371,12 @@ class Cutter {
   void settle_by_rays(const std::vector<size_t>& arc, bool around) {
     auto& pieces = cut_.pieces;
     std::vector<std::optional<int>> seen;
-    for (const size_t k : arc) seen.push_back(by_vote(pieces[k]));
+    for (const size_t k : arc) seen.push_back(by_vote(pieces[k], kShort_px));
+    if (std::none_of(seen.begin(), seen.end(), [](const auto& s) { return s.has_value(); })) {
+      const auto shorter = [&](size_t a, size_t b) { return pieces[a].length_px < pieces[b].length_px; };
+      const auto longest = std::max_element(arc.begin(), arc.end(), shorter);
+      seen[static_cast<size_t>(longest - arc.begin())] = by_vote(pieces[*longest], 0.0);
+    }
     std::optional<size_t> last;
     int steps = 0;
     for (size_t k = 0; k < arc.size(); ++k) {

@@ -20,11 +20,15 @@ namespace {
 constexpr double kLift_px = 0.1;
 constexpr double kAcross = 0.1, kSameSheet = 0.85;  // cosines
 
-struct Triangle {
-  std::array<std::uint32_t, 3> corners{};
-  std::uint32_t part = 0;
-  int object = 1;
-};
+using Triangle = LayerTriangle;
+
+/// The face of each corner.
+std::vector<std::int32_t> faces_of_corners(const Mesh& mesh) {
+  std::vector<std::int32_t> faces;
+  faces.reserve(mesh.corner_vertices.size());
+  for (size_t f = 0; f < mesh.face_sizes.size(); ++f) faces.insert(faces.end(), static_cast<size_t>(mesh.face_sizes[f]), static_cast<std::int32_t>(f));
+  return faces;
+}
 
 /// Vertices joined where faces join them.
 class Parts {
@@ -60,8 +64,10 @@ struct MeshLayers::State {
     const Mesh& mesh = polygons.mesh();
     const auto first = static_cast<std::uint32_t>(positions.size());
     for (const glm::dvec3& p : mesh.positions) positions.push_back(p + offset);
+    const std::vector<std::int32_t> face_of = mesh.face_materials.empty() ? std::vector<std::int32_t>{} : faces_of_corners(mesh);
     for (const glm::uvec3& corner : polygons.corner_triangles()) {
       Triangle triangle;
+      if (!face_of.empty()) triangle.material = mesh.face_materials[static_cast<size_t>(face_of[corner[0]])];
       for (int k = 0; k < 3; ++k)
         triangle.corners[static_cast<size_t>(k)] = first + static_cast<std::uint32_t>(mesh.corner_vertices[corner[k]]);
       triangle.object = object;
@@ -194,6 +200,9 @@ MeshLayers::MeshLayers(const LineTask& task, const std::vector<size_t>& objects,
 }
 
 MeshLayers::~MeshLayers() = default;
+
+const std::vector<glm::dvec3>& MeshLayers::positions() const { return state_->positions; }
+const std::vector<LayerTriangle>& MeshLayers::triangles() const { return state_->triangles; }
 
 int MeshLayers::before(const CurveSample& sample) const {
   const Camera& camera = state_->camera;

@@ -1,6 +1,7 @@
 #pragma once
 // Internal: what rays and lines meet where everything is a mesh: given ones, and fine ones of limit surfaces.
 
+#include <array>
 #include <memory>
 
 #include "raymarch/lines/surface_curves.h"
@@ -13,6 +14,14 @@ struct LayerHit {
   std::uint32_t triangle = 0;
 };
 
+/// A triangle of vertices that are the same where they lie at one place.
+struct LayerTriangle {
+  std::array<std::uint32_t, 3> corners{};
+  std::uint32_t part = 0;  ///< Connected by vertices.
+  int object = 1;          ///< Index from 1.
+  int material = 0;
+};
+
 /// Triangles in solver space that are searched along rays, and which connected part each belongs to. Safe from many threads.
 class MeshLayers {
  public:
@@ -21,6 +30,9 @@ class MeshLayers {
   ~MeshLayers();
   MeshLayers(const MeshLayers&) = delete;
   MeshLayers& operator=(const MeshLayers&) = delete;
+
+  const std::vector<glm::dvec3>& positions() const;
+  const std::vector<LayerTriangle>& triangles() const;
 
   /// Hits between the sample, lifted off by more than the mesh lies beside the surface, and the eye.
   int before(const CurveSample& sample) const;

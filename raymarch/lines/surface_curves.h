@@ -39,6 +39,7 @@ struct SurfaceCurve {
   bool closed = false;
   bool smooth = false;  ///< A contour on smooth surface, whose cusps are where its radial curvature is 0.
   std::vector<CurveSample> samples{};
+  bool straight = false;  ///< Steps are straight edges of a mesh: rays start from their middles.
 };
 
 /// What objects of one kind bring. Functions are called from many threads and own what they need.

@@ -36,7 +36,7 @@ const std::string& name_of(LineClass line_class);
 struct LineSettings {
   std::vector<LineClass> classes{};  ///< Empty: those drawn by default.
   double threshold = 0.4;            ///< Of the rim, above 0 and below 1; read where LineClass::rim is asked for.
-  double crease_angle_deg = 20.0;    ///< Edges of meshes are creases where their faces' normals differ by more. In (0, 180).
+  double crease_angle_deg = 40.0;    ///< Edges of meshes are creases where their faces' normals differ by more. In (0, 180).
   double tolerance_px = 0.005;       ///< How far the polylines may lie from the curves.
   std::int64_t max_bytes = std::int64_t{4} << 30;  ///< For the meshes that rays are cast against.
 };

@@ -9,6 +9,7 @@
   X(compare)             \
   X(study)               \
   X(contours)            \
+  X(judge)               \
   X(plan)                \
   X(stability)           \
   X(export)              \

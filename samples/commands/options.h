@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "raymarch/frames.h"
+#include "samples/judge/drawing_file.h"
+#include "samples/judge/judge_report.h"
 #include "samples/lines/drawing.h"
 #include "samples/spec/spec.h"
 
@@ -45,6 +47,15 @@ struct LineOptions {
   bool strict = false;  ///< Conflicts of the certificate are a failure.
 };
 
+/// What `limn judge` compares, and what it lets pass.
+struct JudgeOptions {
+  std::filesystem::path drawing{}, junit{};
+  std::vector<LineClass> classes{};  ///< Empty: those drawn by default.
+  JudgeSettings settings{};
+  JudgeLimits limits{};
+  InkChoice ink{};
+};
+
 /// The command line as given: what it asks of the experiment, and where the answer goes.
 struct Options {
   ExperimentSpec spec{};
@@ -57,6 +68,7 @@ struct Options {
   std::string kind{};             ///< `limn list` only.
   DumpOptions dump{};             ///< `limn info` only.
   LineOptions lines{};            ///< `limn contours` only.
+  JudgeOptions judge{};           ///< `limn judge` only.
 
   std::vector<std::filesystem::path> outputs{};
   bool no_clobber = false;
@@ -102,10 +114,12 @@ void add_study(CLI::App& app, Options& options);
 void add_parts(CLI::App& app, Options& options);
 /// Which cases `limn stability` runs, with what random parameters, on which surfaces.
 void add_stability(CLI::App& app, Options& options);
-/// --scheme and --grid: what the input is.
-void add_reading(CLI::App& app, Options& options);
+/// What the lines are those of: the surface itself, or a model of it (--surface), read by --scheme and --grid.
+void add_line_surface(CLI::App& app, Options& options);
 /// Which lines `limn contours` draws, and how.
 void add_lines(CLI::App& app, Options& options);
+/// DRAWING and --against, what of them is compared, and the limits.
+void add_judge(CLI::App& app, Options& options);
 /// --tolerance, --metric and --budget.
 void add_plan(CLI::App& app, Options& options);
 

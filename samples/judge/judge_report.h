@@ -42,7 +42,6 @@ std::vector<LimitResult> check_judge_limits(const Judgement& judgement, const Ju
 struct JudgeSubject {
   std::string drawing{};  ///< As given.
   std::string against{};
-  std::string call{};     ///< The command line that makes the same again; may be empty.
   int width_px = 0, height_px = 0;
   JudgeSettings settings{};
 };

@@ -68,9 +68,9 @@ std::vector<TrackMatch> plain_matches(const Tracks& from, const Tracks& to, cons
   return matches;
 }
 
-/// Where two lines touch, either may be nearer: a run that ownership alone leaves out counts if it is short, or if the line has its match
-/// before and behind it and the run is no longer than the search is wide.
-void heal_short_runs(const Tracks& from, const std::vector<TrackMatch>& plain, double radius_px, std::vector<TrackMatch>& owned) {
+/// Where two lines touch, either may be nearer: a short run that ownership alone leaves out counts where the line has its match before and
+/// behind it; at an end of the line, a run of half that length.
+void heal_short_runs(const Tracks& from, const std::vector<TrackMatch>& plain, std::vector<TrackMatch>& owned) {
   constexpr double kShort_px = 1.5;
   for (const Track& track : from.tracks) {
     const int end = track.first + track.count;
@@ -84,7 +84,7 @@ void heal_short_runs(const Tracks& from, const std::vector<TrackMatch>& plain, d
       while (last < end && !owned[static_cast<size_t>(last)].found && plain[static_cast<size_t>(last)].found) ++last;
       const bool before = i > track.first && owned[at - 1].found, behind = last < end && owned[static_cast<size_t>(last)].found;
       const double length = (last - i) * track.step();
-      const bool healed = (before && behind && length <= 2.0 * radius_px) || ((before || behind) && length <= kShort_px);
+      const bool healed = (before && behind && length <= kShort_px) || ((before || behind) && length <= 0.5 * kShort_px);
       for (int k = i; healed && k < last; ++k) owned[static_cast<size_t>(k)] = plain[static_cast<size_t>(k)];
       i = last;
     }
@@ -102,7 +102,7 @@ std::vector<TrackMatch> owned_matches(const Tracks& from, const Tracks& to, cons
       return distance <= kOwnership * back[static_cast<size_t>(sample)].distance_px + slack_px;
     });
   }
-  heal_short_runs(from, plain, search.radius_px, owned);
+  heal_short_runs(from, plain, owned);
   return owned;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "samples/lines/write_drawing.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -47,6 +48,11 @@ LineDrawing make_drawing(const ViewGraph& graph, int width_px, int height_px, co
     return a_seen != b_seen ? b_seen : paint_order(a.line_class) < paint_order(b.line_class);
   });
   return drawing;
+}
+
+const StrokeStyle& style_of(const LineDrawing& drawing, const Stroke& stroke) {
+  const DrawingStyle& style = drawing.settings.style;
+  return (stroke.invisibility == 0 ? style.visible : style.hidden).at(stroke.line_class);
 }
 
 DrawingStyle built_in_style(const std::string& name) {

@@ -80,7 +80,4 @@ LineDrawing make_drawing(const ViewGraph& graph, int width_px, int height_px, co
 /// The path through a stroke's points, within the tolerance of them.
 std::vector<PathStep> fit_path(const std::vector<LinePoint>& points, bool closed, CurveForm form, double fit_px);
 
-/// As a file's text: one group a class and visibility, as layers of Inkscape whose labels begin with a number.
-std::string svg_text(const LineDrawing& drawing, const std::string& title);
-
 }  // namespace limn

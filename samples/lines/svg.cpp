@@ -5,7 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "samples/lines/drawing.h"
+#include "samples/lines/taper.h"
+#include "samples/lines/write_drawing.h"
 
 namespace limn {
 namespace {
@@ -71,6 +72,12 @@ std::string path_of(const Stroke& stroke) {
   return path;
 }
 
+std::string outline_of(const std::vector<glm::dvec2>& corners) {
+  std::string path = "M";
+  for (const glm::dvec2& corner : corners) path += (path.size() > 1 ? "L" : "") + place(corner);
+  return path + "Z";
+}
+
 std::string css_of(const StrokeStyle& style) {
   std::string text = fmt::format("stroke:{};stroke-width:{}", style.color, number(style.width_px));
   for (size_t i = 0; i < style.dash_px.size(); ++i) text += (i == 0 ? ";stroke-dasharray:" : ",") + number(style.dash_px[i]);
@@ -105,16 +112,19 @@ std::string svg_text(const LineDrawing& drawing, const std::string& title) {
     const bool visible = drawing.strokes[i].invisibility == 0;
     const char* const seen = visible ? "visible" : "hidden";
     const std::string& name = name_of(line_class);
-    text += fmt::format(".{}.{} path{{{}}}", name, seen,
-                        css_of((visible ? drawing.settings.style.visible : drawing.settings.style.hidden).at(line_class)));
+    const StrokeStyle& style = style_of(drawing, drawing.strokes[i]);
+    text += fmt::format(".{}.{} path{{{}}}", name, seen, css_of(style));
+    if (style.taper) text += fmt::format(".{}.{} path.taper{{fill:{};stroke:none}}", name, seen, style.color);
     ++number_of_layer;
     layers += fmt::format("<g id=\"{0}-{1}\" class=\"{0} {1}\" inkscape:groupmode=\"layer\" inkscape:label=\"{2} {0} {1}\">\n", name, seen,
                           number_of_layer);
     for (; i < drawing.strokes.size(); ++i) {
       const Stroke& stroke = drawing.strokes[i];
       if (stroke.line_class != line_class || (stroke.invisibility == 0) != visible) break;
-      layers += fmt::format("<path id=\"chain-{}\" data-qi=\"{}\" data-object=\"{}\" d=\"{}\"/>\n", stroke.chain, stroke.invisibility,
-                            stroke.object, path_of(stroke));
+      const bool narrows = tapers(stroke, style);
+      layers += fmt::format("<path id=\"chain-{}\"{} data-qi=\"{}\" data-object=\"{}\" d=\"{}\"/>\n", stroke.chain,
+                            narrows ? " class=\"taper\"" : "", stroke.invisibility, stroke.object,
+                            narrows ? outline_of(tapered_outline(stroke, style.width_px)) : path_of(stroke));
     }
     layers += "</g>\n";
   }

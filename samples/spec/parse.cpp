@@ -166,7 +166,8 @@ glm::dvec2 parse_page(const std::string& field, std::string_view text) {
   const char* const expected = "WIDTHxHEIGHTmm, such as 210x297mm, each above 0 and up to 10000";
   const std::string whole(text);
   const bool in_mm = whole.size() > 2 && whole.substr(whole.size() - 2) == "mm";
-  const auto parts = split(in_mm ? whole.substr(0, whole.size() - 2) : whole, 'x');
+  const std::string numbers = in_mm ? whole.substr(0, whole.size() - 2) : whole;
+  const auto parts = split(numbers, 'x');
   if (!in_mm || parts.size() != 2) fail(field, whole, "not a page", expected);
   const glm::dvec2 page(parse_number_above(field, parts[0], 0.0, false, expected), parse_number_above(field, parts[1], 0.0, false, expected));
   if (page.x > 10'000.0 || page.y > 10'000.0) fail(field, whole, "out of range", expected);

@@ -12,6 +12,7 @@
 #include "samples/judge/drawing_file.h"
 #include "samples/judge/judge_lines.h"
 #include "samples/lines/drawing.h"
+#include "samples/lines/write_drawing.h"
 #include "samples/scenes/scenes.h"
 #include "sdf/error.h"
 #include "tests/random_seed.h"

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "raymarch/analytic/clip_ray.h"
+#include "sdf/field_program.h"
 
 namespace limn {
 namespace {
@@ -12,8 +13,8 @@ namespace {
 constexpr double kLift = 1e-8;  // of the extent: far above rounding, some millionths of a pixel
 constexpr double kChordLift_px = 0.02;
 constexpr double kResolution = 1e-10;
-constexpr double kSphereStep = 0.02;  // of the extent: farther out a step |f| / L is cheaper than bounds
-constexpr int kMostSteps = 100'000;
+constexpr size_t kLongProgram = 12;   // instructions: longer ones are shortened for parts of a ray
+constexpr double kShortenFrom = 1e5;  // resolutions: on shorter stretches nothing is left to leave out
 
 /// f > 0 between two places where it is fa and fb, as its slope has bounds (Piyavskii 1972).
 bool positive_between(double fa, double fb, double length, const Interval& slope) {
@@ -31,6 +32,34 @@ std::optional<int> roots_on(double fa, double fb, double length, const RayBounds
       fa > 0.0 ? positive_between(fa, fb, length, bounds.slope) : positive_between(-fa, -fb, length, {-bounds.slope.upper, -bounds.slope.lower});
   return clear ? std::optional<int>(0) : std::nullopt;
 }
+
+/// Sign changes on a stretch of the ray, at whose ends f is known; with a program shortened for the stretch where it is long.
+struct RayWalk {
+  const glm::dvec3 &origin, &direction;
+  double lipschitz, resolution;
+
+  int count(FieldEvaluator& evaluator, double t0, double f0, double t1, double f1) const {
+    const double length = t1 - t0;
+    // f cannot reach zero between the ends, as steep as it is.
+    if ((f0 > 0.0) == (f1 > 0.0) && std::fabs(f0) + std::fabs(f1) > lipschitz * length) return 0;
+    RayBounds bounds = evaluator.bounds_along(origin, direction, {t0, t1});
+    bounds.slope.lower = std::max(bounds.slope.lower, -lipschitz);
+    bounds.slope.upper = std::min(bounds.slope.upper, lipschitz);
+    if (const std::optional<int> roots = roots_on(f0, f1, length, bounds)) return *roots;
+    if (length <= resolution) return (f0 > 0.0) != (f1 > 0.0) ? 1 : 0;
+    const double t = 0.5 * (t0 + t1);
+    const glm::dvec3 middle = origin + t * direction;
+    const double f = evaluator.value(middle);
+    if (evaluator.field().program().instructions.size() < kLongProgram || length < kShortenFrom * resolution)
+      return count(evaluator, t0, f0, t, f) + count(evaluator, t, f, t1, f1);
+    const auto half = [&](double from, double at_from, double to, double at_to) {
+      const Box box = include(include(Box{}, origin + from * direction), origin + to * direction);
+      FieldEvaluator shorter(evaluator.restricted(box));
+      return count(shorter, from, at_from, to, at_to);
+    };
+    return half(t0, f0, t, f) + half(t, f, t1, f1);
+  }
+};
 
 }  // namespace
 
@@ -62,38 +91,8 @@ int FieldLayers::sign_changes(FieldEvaluator& evaluator, const Body& body, const
                               double end) const {
   double t = 0.0, t_end = end;
   if (body.clip.empty() || !clip_ray(body.clip, origin, direction, t, t_end)) return 0;
-  const auto value_at = [&](double at) { return evaluator.value(origin + at * direction); };
-  double f = value_at(t), length = 0.0;
-  int roots = 0;
-  for (int step = 0; step < kMostSteps && t < t_end; ++step) {
-    const double apart = std::fabs(f) / body.lipschitz;
-    if (apart > kSphereStep * extent_) {
-      t += apart * (1.0 - 1e-12);
-      if (t >= t_end) break;
-      f = value_at(t);
-      length = 0.0;
-      continue;
-    }
-    length = std::max({length, 4.0 * apart, kResolution * extent_});
-    double stretch = std::min(length, t_end - t);
-    for (;;) {
-      const double f_end = value_at(t + stretch);
-      RayBounds bounds = evaluator.bounds_along(origin, direction, {t, t + stretch});
-      bounds.slope.lower = std::max(bounds.slope.lower, -body.lipschitz);
-      bounds.slope.upper = std::min(bounds.slope.upper, body.lipschitz);
-      std::optional<int> here = roots_on(f, f_end, stretch, bounds);
-      if (!here && stretch <= kResolution * extent_) here = (f > 0.0) != (f_end > 0.0) ? 1 : 0;
-      if (here) {
-        roots += *here;
-        t += stretch;
-        f = f_end;
-        length = 2.0 * stretch;
-        break;
-      }
-      stretch *= 0.5;
-    }
-  }
-  return roots;
+  const RayWalk walk{origin, direction, body.lipschitz, kResolution * extent_};
+  return walk.count(evaluator, t, evaluator.value(origin + t * direction), t_end, evaluator.value(origin + t_end * direction));
 }
 
 }  // namespace limn

@@ -16,6 +16,7 @@ namespace {
 constexpr double kLeastBend = 1e-7;    // of the radial curvature times the scene's radius: less is rounding
 constexpr double kArm_px = 0.15;        // so far from a cusp its arms are compared
 constexpr double kLongestNarrow_px = 20.0;
+constexpr double kMostLensSteps = 400.0;
 constexpr double kTangency_px = 3.0;   // along either curve, from the place where they touch
 constexpr double kTogether_px = 0.03;  // polylines of curves that touch lie no farther apart
 constexpr double kShort_px = 1.0;      // pieces shorter than this are not asked by rays of their own
@@ -70,7 +71,7 @@ class Cutter {
   }
 
   void find_events(const std::vector<NearerCrossing>& crossings) {
-    for (const NearerCrossing& crossing : crossings) {
+    for (const NearerCrossing& crossing : without_narrow_lenses(crossings)) {
       if (!is_tangency(crossing)) cut_.events.push_back({VertexKind::crossing, crossing.at, crossing.layers, crossing.curve, crossing.on_nearer});
     }
     for (size_t i = 0; i < steps_of(curve_); ++i) {
@@ -169,13 +170,14 @@ class Cutter {
              std::min(apart_px(event.at, first), apart_px(event.at, second)) < length + kTangency_px;
     };
     if (std::any_of(cut_.events.begin(), cut_.events.end(), crosses_itself)) return false;
-    const std::vector<glm::dvec2> middle = px_between(first, second);
+    const std::vector<glm::dvec2> middle = px_between(curve_, first, second);
     return lies_along(middle, px_from(second, length, 1)) || lies_along(middle, px_from(first, length, -1));
   }
-  std::vector<glm::dvec2> px_between(double from, double to) const {
-    std::vector<glm::dvec2> px{sample_at(curve_, from, camera_).px};
-    for (double i = std::floor(from) + 1.0; i < to; i += 1.0) px.push_back(at(static_cast<size_t>(i)).px);
-    px.push_back(sample_at(curve_, to, camera_).px);
+  std::vector<glm::dvec2> px_between(const SurfaceCurve& curve, double from, double to) const {
+    const size_t n = curve.samples.size();
+    std::vector<glm::dvec2> px{sample_at(curve, from, camera_).px};
+    for (double i = std::floor(from) + 1.0; i < to; i += 1.0) px.push_back(curve.samples[static_cast<size_t>(i) % n].px);
+    px.push_back(sample_at(curve, to, camera_).px);
     return px;
   }
   std::vector<glm::dvec2> px_from(double place, double length_px, int way) const {
@@ -194,6 +196,39 @@ class Cutter {
   double apart_px(double one, double other) const {
     const double way = std::fabs(length_to(one) - length_to(other));
     return curve_.closed ? std::min(way, lengths_.back() - way) : way;
+  }
+
+  /// Where a line runs along a nearer one, as two rims of a tube seen down its axis do, their polylines cross again and again: two crossings
+  /// of the same pair of lines, between which these lie on each other, are none.
+  std::vector<NearerCrossing> without_narrow_lenses(const std::vector<NearerCrossing>& crossings) const {
+    std::vector<NearerCrossing> kept;
+    std::map<std::uint32_t, std::vector<size_t>> open;  // Of each nearer curve, what is kept of it, in order.
+    std::vector<bool> gone;
+    for (const NearerCrossing& crossing : crossings) {
+      auto& before = open[crossing.curve];
+      if (crossing.curve != number_ && !before.empty() && is_lens(kept[before.back()], crossing)) {
+        gone[before.back()] = true;
+        before.pop_back();
+        continue;
+      }
+      before.push_back(kept.size());
+      kept.push_back(crossing);
+      gone.push_back(false);
+    }
+    std::vector<NearerCrossing> result;
+    for (size_t k = 0; k < kept.size(); ++k) {
+      if (!gone[k]) result.push_back(kept[k]);
+    }
+    return result;
+  }
+  bool is_lens(const NearerCrossing& one, const NearerCrossing& other) const {
+    if (one.layers != -other.layers) return false;
+    const SurfaceCurve& nearer = curves_[one.curve];
+    const auto steps = static_cast<double>(steps_of(nearer));
+    double from = std::min(one.on_nearer, other.on_nearer), to = std::max(one.on_nearer, other.on_nearer);
+    if (nearer.closed && to - from > 0.5 * steps) std::tie(from, to) = std::pair(to, from + steps);
+    if (to - from > kMostLensSteps || other.at - one.at > kMostLensSteps) return false;
+    return lies_along(px_between(curve_, one.at, other.at), px_between(nearer, from, to));
   }
 
   /// A crease leaves a contour, and the two arms of a cusp each other, along their common tangent: polylines of them cross again and again

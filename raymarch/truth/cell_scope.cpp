@@ -113,6 +113,23 @@ CellScope narrowed(const CellScope& scope, const std::vector<size_t>& relevant) 
   return result;
 }
 
+std::vector<size_t> relevant_branches(const SharpField& sharp, std::vector<FieldEvaluator>& evaluators, const Box& box) {
+  CellScope scope;
+  std::vector<Interval> values;
+  for (size_t i = 0; i < evaluators.size(); ++i) {
+    scope.branches.push_back(static_cast<int>(i));
+    values.push_back(evaluators[i].bounds(box));
+  }
+  std::vector<bool> relevant(evaluators.size(), false);
+  const double hair = sharp.hair * static_cast<double>(evaluators.size());
+  mark_relevant(sharp, node_bounds(sharp, scope, values), hair, static_cast<int>(sharp.nodes.size()) - 1, relevant);
+  std::vector<size_t> result;
+  for (size_t i = 0; i < relevant.size(); ++i) {
+    if (relevant[i]) result.push_back(i);
+  }
+  return result;
+}
+
 Survivors survivors_in(const CellSearch& search, const CellScope& scope, const Box& box) {
   Survivors result;
   std::vector<Interval> values(scope.branches.size());

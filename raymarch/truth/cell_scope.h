@@ -35,6 +35,8 @@ struct Survivors {
   bool empty() const { return branches.empty() && seams.empty(); }
 };
 Survivors survivors_in(const CellSearch& search, const CellScope& scope, const Box& box);
+/// The branches that may be surface somewhere in the box; evaluators are those of all branches.
+std::vector<size_t> relevant_branches(const SharpField& sharp, std::vector<FieldEvaluator>& evaluators, const Box& box);
 /// Only the relevant branches.
 CellScope narrowed(const CellScope& scope, const std::vector<size_t>& relevant);
 

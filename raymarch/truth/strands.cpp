@@ -1,4 +1,5 @@
 #include "raymarch/truth/strands.h"
+#include "raymarch/truth/cell_scope.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,8 @@ constexpr double kNearLevel = 0.1;        // of N.V: so near the level a side is
 constexpr double kNearLevelStepPx = 0.1;  // so often
 constexpr double kThinning = 0.1;         // of the tolerance
 constexpr double kLongestChordPx = 4.0;
+constexpr size_t kManyBranches = 12;
+constexpr double kAround = 1.0 / 24.0;  // of the extent
 constexpr double kBulge = 1.2;  // a curve's length over its chord's, at most
 
 /// A point of a strand and whether the border goes through it.
@@ -32,6 +35,7 @@ class Cutter {
   Cutter(const Strand& strand, const StrandSettings& settings) : strand_(strand), settings_(settings) {
     for (const Field& branch : settings.sharp.branches) evaluators_.emplace_back(branch);
     values_.resize(evaluators_.size());
+    for (size_t i = 0; i < evaluators_.size(); ++i) near_.push_back(i);
     if (strand.second >= 0) intersection_ = meet_as_intersection(settings.sharp, strand.first, strand.second);
   }
 
@@ -51,12 +55,29 @@ class Cutter {
  private:
   FieldEvaluator& evaluator(int branch) { return evaluators_[static_cast<size_t>(branch)]; }
 
+  /// Of many branches only those that may be surface around a place are evaluated there; of the others, which bounds show to decide nothing,
+  /// the values at its middle will do.
+  void look_around(const glm::dvec3& p) {
+    const double side = kAround * settings_.extent;
+    const glm::dvec3 cube = glm::floor(p / side);
+    if (looked_around_ && cube == cube_) return;
+    cube_ = cube;
+    looked_around_ = true;
+    near_ = relevant_branches(settings_.sharp, evaluators_, {side * (cube - 0.05), side * (cube + 1.05)});
+    const glm::dvec3 middle = side * (cube + 0.5);
+    for (size_t i = 0; i < evaluators_.size(); ++i) values_[i] = evaluators_[i].value(middle);
+    for (const int branch : {strand_.first, strand_.second}) {
+      if (branch >= 0 && std::find(near_.begin(), near_.end(), static_cast<size_t>(branch)) == near_.end()) near_.push_back(static_cast<size_t>(branch));
+    }
+  }
+
   Spot spot(const CurvePoint& point) {
     Spot result{point};
     const glm::dvec3 image = project(settings_.camera, point.p);
     result.px = glm::dvec2(image);
     result.scale = pixels_per_unit_at(settings_.camera, std::max(image.z, 1e-9 * settings_.extent));
-    for (size_t i = 0; i < evaluators_.size(); ++i) values_[i] = evaluators_[i].value(point.p);
+    if (evaluators_.size() > kManyBranches) look_around(point.p);
+    for (const size_t i : near_) values_[i] = evaluators_[i].value(point.p);
     node_values(settings_.sharp, values_, nodes_);
     result.margin = surface_margin(settings_.sharp, nodes_, strand_.first, strand_.second);
     if (strand_.second >= 0) {
@@ -190,6 +211,9 @@ class Cutter {
   const StrandSettings& settings_;
   std::vector<FieldEvaluator> evaluators_;
   std::vector<double> values_, nodes_;
+  std::vector<size_t> near_{};  ///< Branches that are evaluated.
+  glm::dvec3 cube_{0.0};
+  bool looked_around_ = false;
   bool intersection_ = true;
 };
 

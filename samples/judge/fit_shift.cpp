@@ -21,14 +21,14 @@ struct Observation {
   std::int64_t cluster = 0;
 };
 
-std::vector<Observation> observations(const Tracks& visible, const std::vector<TrackMatch>& matches) {
+std::vector<Observation> observations(const Tracks& visible, const std::vector<TrackMatch>& matches, const std::vector<bool>& crowded) {
   std::vector<Observation> all;
   std::int64_t base = 0;
   for (const Track& track : visible.tracks) {
     for (int k = 0; k < track.count; ++k) {
       const auto i = static_cast<size_t>(track.first + k);
       // Where it looks past an end, the distance is not one across the line.
-      if (!matches[i].found || std::fabs(matches[i].along_px) > 0.05) continue;
+      if (!matches[i].found || crowded[i] || std::fabs(matches[i].along_px) > 0.05) continue;
       const TrackSample& sample = visible.samples[i];
       all.push_back({{-sample.tangent.y, sample.tangent.x}, matches[i].across_px, sample.length_px,
                      base + static_cast<std::int64_t>(k * track.step() / kCluster_px)});
@@ -62,8 +62,8 @@ std::vector<double> robust_weights(const std::vector<Observation>& all, const gl
 
 }  // namespace
 
-DrawingShift fit_shift(const Tracks& visible, const std::vector<TrackMatch>& matches, double precision_px) {
-  const std::vector<Observation> all = observations(visible, matches);
+DrawingShift fit_shift(const Tracks& visible, const std::vector<TrackMatch>& matches, const std::vector<bool>& crowded, double precision_px) {
+  const std::vector<Observation> all = observations(visible, matches, crowded);
   DrawingShift shift;
   if (all.empty()) return shift;
   std::vector<double> weights;

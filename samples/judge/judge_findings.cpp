@@ -87,7 +87,7 @@ void find_displaced(const ChainSamples& chain, const JudgedTracks& tracks, const
                     std::vector<JudgeFinding>& findings) {
   const auto off = [&](size_t i) {
     const TrackMatch& match = matches.lines[static_cast<size_t>(chain.samples[i])];
-    return match.found ? match.distance_px : 0.0;
+    return match.found && !matches.crowded[static_cast<size_t>(chain.samples[i])] ? match.distance_px : 0.0;
   };
   for (const Run& run : runs_of(chain.samples.size(), [&](size_t i) { return off(i) > settings.displaced_px; })) {
     JudgeFinding finding = finding_of(FindingKind::displaced, tracks.visible, chain.samples, run, glm::dvec2(0.0));

@@ -10,6 +10,7 @@ namespace limn {
 struct JudgedMatches {
   std::vector<TrackMatch> lines{};  ///< Of JudgedTracks::visible.
   std::vector<InkMatch> ink{};      ///< Of JudgedTracks::drawn.
+  std::vector<bool> crowded{};      ///< Of JudgedTracks::visible: nearer to another line than DrawnLines::apart_px.
   glm::dvec2 shift{0.0};
 };
 

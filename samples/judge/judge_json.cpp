@@ -15,6 +15,7 @@ Json row_json(const JudgeRow& row) {
   if (row.line_class) json["class"] = name_of(*row.line_class);
   json["visible_px"] = row.line_px;
   json["missed_px"] = row.missed_px;
+  json["crowded_px"] = row.crowded_px;
   if (!row.line_class) json["false_px"] = row.false_px;
   json["hidden_px"] = row.hidden_px;
   json["doubled_px"] = row.doubled_px;

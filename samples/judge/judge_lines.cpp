@@ -97,10 +97,12 @@ void sum_up_row(const ViewGraph& graph, const JudgedTracks& tracks, const Judged
     const TrackSample& sample = tracks.visible.samples[i];
     const TrackMatch& match = matches.lines[i];
     row.line_px += sample.length_px;
+    if (matches.crowded[i]) row.crowded_px += sample.length_px;
     if (!match.found) {
       row.missed_px += sample.length_px;
       continue;
     }
+    if (matches.crowded[i]) continue;
     const double across = match.across_px + glm::dot(matches.shift, glm::dvec2(-sample.tangent.y, sample.tangent.x));
     const bool has_outside = line_class == LineClass::contour || line_class == LineClass::boundary;
     add_displacement(sample, across, std::hypot(across, match.along_px), has_outside, sums, row.displacement);
@@ -127,7 +129,10 @@ const char* key_of(FindingKind kind) {
   return kKeys[static_cast<size_t>(kind)];
 }
 
-Judgement judge_lines(const ViewGraph& graph, const DrawnLines& drawing, const JudgeSettings& settings) {
+Judgement judge_lines(const ViewGraph& graph, const DrawnLines& drawing, const JudgeSettings& given) {
+  JudgeSettings settings = given;
+  // What is shorter than the drawing's ends are certain is none of its faults.
+  settings.least_px = std::max(settings.least_px, 0.8 * drawing.ends_px);
   JudgedTracks tracks;
   add_lines_of(graph, tracks);
   tracks.drawn = drawn_tracks(drawing, glm::dvec2(0.0));
@@ -135,11 +140,12 @@ Judgement judge_lines(const ViewGraph& graph, const DrawnLines& drawing, const J
   judgement.strokes = static_cast<int>(tracks.drawn.tracks.size());
   for (const TrackSample& sample : tracks.drawn.samples) judgement.drawn_px += sample.length_px;
   judgement.width = width_of(drawing, tracks.drawn);
-  // A tenth of what the drawing resolves is noise; strokes of a file are known to far less than 0.02 px.
+  // A twentieth of what the drawing resolves is noise; strokes of a file are known to far less than 0.02 px.
   constexpr double kStrokes_px = 0.02;
-  judgement.shift =
-      fit_shift(tracks.visible, match_lines(tracks, drawing, settings, false), std::max(kStrokes_px, 0.1 * drawing.resolution_px));
   JudgedMatches matches;
+  matches.crowded = crowded_samples(tracks.visible, drawing.apart_px);
+  judgement.shift = fit_shift(tracks.visible, match_lines(tracks, drawing, settings, false), matches.crowded,
+                              std::max(kStrokes_px, 0.05 * drawing.resolution_px));
   if (judgement.shift.significant) {
     matches.shift = judgement.shift.px;
     tracks.drawn = drawn_tracks(drawing, matches.shift);

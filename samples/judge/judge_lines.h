@@ -24,8 +24,9 @@ struct DrawnLines {
   int width_px = 0, height_px = 0;
   std::vector<InkLine> lines{};
   double resolution_px = 0.05;  ///< Lines that are nearer to each other cannot be told apart in it.
+  double apart_px = 0.0;        ///< Nearer to another line than this, the place of a line cannot be measured in it: ink runs together.
   double ends_px = 0.3;         ///< How far its ends may lie before or behind those of the lines.
-  std::string from{};           ///< "strokes", "centre lines of ink", "outlines of areas".
+  std::string from{};           ///< "strokes", "lines of ink", "outlines of areas".
   std::vector<std::string> notes{};  ///< What was left out of it.
 };
 
@@ -75,6 +76,7 @@ struct JudgeRow {
   std::optional<LineClass> line_class{};  ///< Unset: over all.
   double line_px = 0.0;                   ///< Visible lines.
   double missed_px = 0.0;                 ///< Of them.
+  double crowded_px = 0.0;                ///< Of them: nearer to another than DrawnLines::apart_px; not in `displacement`.
   double false_px = 0.0;                  ///< Of the drawing; over all only.
   double hidden_px = 0.0;                 ///< Of the drawing.
   double doubled_px = 0.0;                ///< Of the drawing.

@@ -23,7 +23,9 @@ constexpr const char* kHead =
 
 constexpr const char* kStyle = R"css(
 .over { display: block; width: 100%; height: auto; background: #fff; border: 1px solid var(--line); border-radius: 8px; }
-.over path { fill: none; vector-effect: non-scaling-stroke; stroke-linecap: round; stroke-linejoin: round; }
+.line, .behind, .drawn, .missed, .false, .hidden, .doubled, .displaced {
+  fill: none; vector-effect: non-scaling-stroke; stroke-linecap: round; stroke-linejoin: round;
+}
 .line { stroke: #7ab8ff; stroke-width: 5px; }
 .behind { stroke: #c9c9c9; stroke-width: 1.5px; stroke-dasharray: 2 4; }
 .drawn { stroke: #1a1a1a; stroke-width: 1.2px; }
@@ -40,6 +42,7 @@ constexpr const char* kStyle = R"css(
 .legend i.hidden { background: #8e24aa; }
 .legend i.doubled { background: #00897b; }
 .legend i.displaced { background: #c2185b; }
+figure { margin: 0; }
 .places { display: grid; grid-template-columns: repeat(auto-fill, minmax(260px, 1fr)); gap: 16px; padding: 0; margin: 0; list-style: none; }
 .failed { color: var(--warn); font-weight: 600; }
 )css";

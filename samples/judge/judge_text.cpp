@@ -90,7 +90,7 @@ std::string judge_text(const JudgeReport& report) {
   const Judgement& judgement = report.judgement;
   std::string text = fmt::format("{} against {}, {}x{} px\n", report.subject.drawing, report.subject.against, report.subject.width_px,
                                  report.subject.height_px);
-  text += fmt::format("{} of {}, {:.1f} px", judgement.strokes, report.drawing.from, judgement.drawn_px);
+  text += fmt::format("{} {}, {:.1f} px", judgement.strokes, report.drawing.from, judgement.drawn_px);
   const InkWidth& width = judgement.width;
   if (width.mean_px > 0.0)
     text += fmt::format(", {:.2f} px wide on average ({:.2f} to {:.2f})", width.mean_px, width.least_px, width.most_px);
@@ -98,6 +98,14 @@ std::string judge_text(const JudgeReport& report) {
   text += row_text(judgement.all);
   for (const JudgeRow& row : judgement.classes) text += row_text(row);
   if (const std::string shift = text_of(judgement.shift); !shift.empty()) text += "\n" + shift + "\n";
+  const Displacement& d = judgement.all.displacement;
+  constexpr double kWorthSaying_px = 0.01;
+  if (d.worst > kWorthSaying_px) text += fmt::format("\nfarthest off: {:.4f} px at {:.1f}, {:.1f}\n", d.worst, d.worst_at.x, d.worst_at.y);
+  if (judgement.all.crowded_px > 0.0)
+    text += fmt::format("\n{:.1f} px of line are too near to others for their displacement to be measured in this picture\n",
+                        judgement.all.crowded_px);
+  if (judgement.all.missed_px > 0.5 * judgement.all.line_px)
+    text += "\nmore than half of the lines are missed: the drawing may show another view (--eye, --target, --fov, --ortho)\n";
   constexpr size_t kMostOfKind = 10;
   for (const FindingKind kind : kFindingKinds) {
     size_t count = 0;

@@ -170,6 +170,31 @@ std::vector<TrackMatch> match_lines(const JudgedTracks& tracks, const DrawnLines
                : plain_matches(tracks.visible, tracks.drawn, search);
 }
 
+std::vector<bool> crowded_samples(const Tracks& lines, double apart_px) {
+  std::vector<bool> crowded(lines.samples.size(), false);
+  if (apart_px <= 0.0) return crowded;
+  std::vector<std::uint32_t> near;
+  for (size_t i = 0; i < crowded.size(); ++i) {
+    const TrackSample& sample = lines.samples[i];
+    const Track& own = lines.tracks[static_cast<size_t>(sample.track)];
+    const double along = (static_cast<double>(i) - own.first + 0.5) * own.step();
+    segments_near(lines, sample.at, apart_px, near);
+    crowded[i] = std::any_of(near.begin(), near.end(), [&](std::uint32_t segment) {
+      const SegmentEnds& ends = lines.ends[segment];
+      const TrackSegment& one = lines.segments[segment];
+      const glm::dvec2 d = ends.b - ends.a;
+      const double t = std::clamp(glm::dot(sample.at - ends.a, d) / glm::dot(d, d), 0.0, 1.0);
+      if (glm::distance(ends.a + t * d, sample.at) >= apart_px) return false;
+      if (one.track != sample.track) return true;
+      // Of its own line, what is far away along it and yet near.
+      const double apart = std::fabs(own.along[static_cast<size_t>(one.index)] + t * glm::length(d) - along);
+      const bool closed = own.points.front() == own.points.back();
+      return std::min(apart, closed ? own.length() - apart : apart) > 3.0 * apart_px;
+    });
+  }
+  return crowded;
+}
+
 std::vector<InkMatch> match_ink(const JudgedTracks& tracks, const DrawnLines& drawing, const JudgeSettings& settings) {
   const Search search = search_of(drawing, settings);
   const std::vector<TrackMatch> own = owned_matches(tracks.drawn, tracks.visible, search, drawing.resolution_px);

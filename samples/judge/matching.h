@@ -38,7 +38,10 @@ std::vector<TrackMatch> match_lines(const JudgedTracks& tracks, const DrawnLines
 /// For each sample of the drawing.
 std::vector<InkMatch> match_ink(const JudgedTracks& tracks, const DrawnLines& drawing, const JudgeSettings& settings);
 
-/// From the matched samples of the visible lines. `precision_px`: what is smaller is not significant.
-DrawingShift fit_shift(const Tracks& visible, const std::vector<TrackMatch>& matches, double precision_px);
+/// For each sample of the lines, whether another line, or another part of its own, lies nearer than this.
+std::vector<bool> crowded_samples(const Tracks& lines, double apart_px);
+
+/// From the matched samples of the visible lines that are not crowded. `precision_px`: what is smaller is not significant.
+DrawingShift fit_shift(const Tracks& visible, const std::vector<TrackMatch>& matches, const std::vector<bool>& crowded, double precision_px);
 
 }  // namespace limn

@@ -11,7 +11,11 @@
   X(teacup)            \
   X(rook)              \
   X(pipe_junction)     \
-  X(bracket)
+  X(bracket)           \
+  X(honeycomb)         \
+  X(fused_spheres)     \
+  X(cylinder_end)      \
+  X(passing_tori)
 
 namespace limn {
 

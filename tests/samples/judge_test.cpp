@@ -159,7 +159,9 @@ TEST(Judge, NamesEveryStrokeThatIsDrawnTwice) {
     more.lines.push_back(again);
     const Judgement judgement = judged(part(), more);
     const double length = length_of(again.points) + (again.closed ? glm::distance(again.points.front(), again.points.back()) : 0.0);
-    EXPECT_NEAR(judgement.all.doubled_px, length, 0.2 * length + 0.5);
+    // Beside a neighbour within 0.3 px nobody can tell which one is drawn twice.
+    EXPECT_GT(judgement.all.doubled_px, 0.5 * length);
+    EXPECT_LT(judgement.all.doubled_px, 1.2 * length + 0.5);
     EXPECT_GT(found_along(judgement, FindingKind::doubled, dense(again.points)), 0.25);
     EXPECT_EQ(judgement.all.missed_px, 0.0);
   }

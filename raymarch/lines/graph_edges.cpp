@@ -12,7 +12,8 @@ namespace limn {
 namespace {
 
 constexpr double kSamePlace_px = 0.05;  // between ends of curves that meet, along the surface
-constexpr double kSnap_px = 1.0;        // between a contour's end and the joint it leads to
+constexpr double kSnap_px = 5.0;        // between a contour's end and the joint it leads to, along the crease
+constexpr double kOnStep_px = 0.1;      // and across it
 
 /// Places by cells, so that each finds its neighbours in constant time.
 class PlaceIndex {
@@ -177,10 +178,15 @@ void snap_joints(std::vector<SurfaceCurve>& curves, const Camera& camera) {
   }
   for (SurfaceCurve& curve : curves) {
     if (curve.smooth) continue;
-    for (CurveSample& sample : curve.samples) {
-      if (!sample.joint) continue;
+    const size_t n = curve.samples.size();
+    for (size_t i = 0; i < n; ++i) {
+      CurveSample& sample = curve.samples[i];
+      if (!sample.joint || (!curve.closed && (i == 0 || i + 1 == n))) continue;
       const int end = ends.nearest(sample.p, kSnap_px * pixel);
       if (end < 0) continue;
+      // It is the end on this step, not one of a neighbour's.
+      const glm::dvec3 &before = curve.samples[(i + n - 1) % n].p, &after = curve.samples[(i + 1) % n].p;
+      if (distance_to_segment(samples[static_cast<size_t>(end)].p, before, after) > kOnStep_px * pixel) continue;
       sample.p = samples[static_cast<size_t>(end)].p;
       sample.px = samples[static_cast<size_t>(end)].px;
       sample.depth = samples[static_cast<size_t>(end)].depth;

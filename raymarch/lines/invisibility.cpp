@@ -457,6 +457,30 @@ class Cutter {
   CutCurve cut_;
 };
 
+/// Between samples i and i + 1 on a smooth curve, by the cubic through four of them (Lagrange) over their chords' lengths: its image may turn
+/// back at a cusp there, the curve itself does not.
+glm::dvec3 point_between(const SurfaceCurve& curve, size_t i, double t) {
+  const size_t n = curve.samples.size();
+  const glm::dvec3 &a = curve.samples[i % n].p, &b = curve.samples[(i + 1) % n].p;
+  const bool inner = curve.closed ? n >= 4 : i >= 1 && i + 2 < n;
+  if (!curve.smooth || !inner) return glm::mix(a, b, t);
+  const glm::dvec3 &before = curve.samples[(i + n - 1) % n].p, &after = curve.samples[(i + 2) % n].p;
+  const double h = glm::distance(a, b), back = glm::distance(before, a), ahead = glm::distance(b, after);
+  // Neighbours much nearer or farther say little, and much of rounding.
+  if (!(h > 0.0) || back < 0.05 * h || ahead < 0.05 * h || back > 20.0 * h || ahead > 20.0 * h) return glm::mix(a, b, t);
+  const double s[4] = {-back, 0.0, h, h + ahead}, x = t * h;
+  const glm::dvec3* const points[4] = {&before, &a, &b, &after};
+  glm::dvec3 result(0.0);
+  for (int k = 0; k < 4; ++k) {
+    double weight = 1.0;
+    for (int j = 0; j < 4; ++j) {
+      if (j != k) weight *= (x - s[j]) / (s[k] - s[j]);
+    }
+    result += weight * *points[k];
+  }
+  return result;
+}
+
 }  // namespace
 
 CurveSample sample_at(const SurfaceCurve& curve, double at, const Camera& camera) {
@@ -471,7 +495,7 @@ CurveSample sample_at(const SurfaceCurve& curve, double at, const Camera& camera
   sample.more_on_left = a.more_on_left;
   sample.joint = false;
   sample.on_chord = true;
-  sample.p = glm::mix(a.p, b.p, t);
+  sample.p = point_between(curve, i, t);
   sample.radial_curvature = glm::mix(a.radial_curvature, b.radial_curvature, t);
   project_sample(camera, sample);
   return sample;

@@ -226,6 +226,11 @@ void MeshLayers::pierce(SurfaceCurve& curve) const {
     const glm::dvec3 way = (next.p - sample.p) / length;
     for (const LayerHit& hit : state_->hits_along(sample.p, way, length)) {
       const Triangle& triangle = state_->triangles[hit.triangle];
+      // Faces around a vertex that the curve goes through are met there.
+      const bool at_vertex = std::any_of(triangle.corners.begin(), triangle.corners.end(), [&](std::uint32_t corner) {
+        return state_->positions[corner] == sample.p || state_->positions[corner] == next.p;
+      });
+      if (at_vertex) continue;
       const glm::dvec3 normal = glm::normalize(state_->normal_of(triangle));
       // Triangles of the curve's own sheet lie along it; another sheet of the same part goes across.
       const bool along_own = std::fabs(glm::dot(normal, way)) < kAcross || std::fabs(glm::dot(normal, sample.high)) > kSameSheet ||

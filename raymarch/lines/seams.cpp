@@ -59,7 +59,9 @@ CurveSample curve_sample(const Camera& camera, const SeamSample& seam, const glm
   for (size_t k = 0; k < on_left.size(); ++k) left += (on_left[k] > 0) == front[k];
   const int all = static_cast<int>(on_left.size());
   sample.more_on_left = 2 * left - all;
-  sample.line_class = all > 1 && (left == 0 || left == all) ? LineClass::contour : line_class;
+  // What two objects share is their intersection whichever way they face: its folds are hidden by one of them.
+  const bool contour = all > 1 && (left == 0 || left == all) && line_class != LineClass::intersection;
+  sample.line_class = contour ? LineClass::contour : line_class;
   project_sample(camera, sample);
   return sample;
 }

@@ -442,8 +442,11 @@ void add_stability(CLI::App& app, Options& options) {
 namespace {
 
 void add_ink(CLI::App& app, InkChoice& ink) {
-  auto* color = add(app, {"--ink", "COLOR", "colour of the lines in the drawing; default: all strokes of an SVG, and what is darker than a picture's background", kJudge},
-                    [&ink](const std::string& text) { ink.color = glm::dvec3(parse_color("--ink", text)); });
+  auto* color =
+      add(app,
+          {"--ink", "COLOR",
+           "colour of the lines in the drawing; default: all strokes of an SVG, and what is darker than a picture's background", kJudge},
+          [&ink](const std::string& text) { ink.color = glm::dvec3(parse_color("--ink", text)); });
   auto* alpha = app.add_flag("--alpha", ink.alpha, "the picture's alpha is the ink");
   alpha->group(kJudge)->excludes(color);
   add(app, {"--mask", "FILE", "a picture whose first channel is the ink, 1 where a line is", kJudge},
@@ -473,13 +476,16 @@ void add_judge(CLI::App& app, Options& options) {
   add(app, {"--against", "INPUT", "what was drawn: scene file, mesh, volume, formula or built-in scene, as for limn contours", kJudge},
       [&options](const std::string& text) { options.spec.input = text; })
       ->required();
-  add(app, {"--lines", "A,B,...|all", "classes of lines (limn list lines) that the drawing should hold; default: as limn contours draws", kJudge},
+  add(app,
+      {"--lines", "A,B,...|all", "classes of lines (limn list lines) that the drawing should hold; default: as limn contours draws",
+       kJudge},
       [&judge](const std::string& text) {
         if (text == "all") {
           for (const LineClassDescriptor& one : line_classes()) add_unless_there(one.line_class, judge.classes);
           return;
         }
-        for (const std::string& name : parse_names(text)) add_unless_there(line_classes().find(name, "", "--lines").line_class, judge.classes);
+        for (const std::string& name : parse_names(text))
+          add_unless_there(line_classes().find(name, "", "--lines").line_class, judge.classes);
       });
   add(app, {"--search", "PX", "strokes farther than this from a line do not match it, pixels, above 0 up to 32; default 2", kJudge},
       [&judge](const std::string& text) {
@@ -488,7 +494,8 @@ void add_judge(CLI::App& app, Options& options) {
         if (judge.settings.search_px > 32.0) throw InputError({"", "--search", text, "out of range", expected});
       });
   add_ink(app, judge.ink);
-  add(app, {"--junit", "FILE", "the limits as JUnit XML, a test case each", kOutput}, [&judge](const std::string& text) { judge.junit = text; });
+  add(app, {"--junit", "FILE", "the limits as JUnit XML, a test case each", kOutput},
+      [&judge](const std::string& text) { judge.junit = text; });
   add_judge_limits(app, judge.limits);
 }
 

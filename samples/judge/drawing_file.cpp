@@ -59,15 +59,15 @@ DrawnLines lines_of_svg(const fs::path& file, const InkChoice& ink, const glm::i
   DrawnLines drawing;
   drawing.width_px = size_px.x;
   drawing.height_px = size_px.y;
-  drawing.from = stroked ? "strokes" : "outlines of areas";
+  drawing.from = stroked || svg.lines.empty() ? "strokes" : "outlines of areas";
   for (const SvgLine& line : svg.lines) {
     if (stroked && line.width_px <= 0.0) continue;
     if (ink.color && !has_color(line.color, *ink.color)) continue;
     drawing.lines.push_back({line.points, line.closed || !stroked, line.width_px});
   }
-  if (drawing.lines.empty())
-    throw InputError({file.string(), ink.color ? "--ink" : "", "", ink.color ? "it has no stroke of this colour" : "it draws no line",
-                      "an SVG with strokes"});
+  if (drawing.lines.empty() && ink.color)
+    throw InputError({file.string(), "--ink", "", "it has no stroke of this colour", "the colour of its lines"});
+  if (drawing.lines.empty()) drawing.notes.emplace_back("the SVG draws no line");
   for (const std::string& what : svg.left_out) drawing.notes.push_back(what + " in the SVG is left out");
   return drawing;
 }

@@ -12,9 +12,10 @@ namespace limn {
 
 /// What of a drawing is ink.
 struct InkChoice {
-  std::optional<glm::dvec3> color{};  ///< Linear: strokes and pixels of this colour; unset: all strokes, and what is darker than the background.
-  bool alpha = false;                 ///< Of a picture: its alpha.
-  std::filesystem::path mask{};       ///< In place of a picture's colours: its first channel, 1 where there is ink.
+  std::optional<glm::dvec3>
+      color{};                   ///< Linear: strokes and pixels of this colour; unset: all strokes, and what is darker than the background.
+  bool alpha = false;            ///< Of a picture: its alpha.
+  std::filesystem::path mask{};  ///< In place of a picture's colours: its first channel, 1 where there is ink.
 };
 
 /// Width and height without reading the lines: of the viewBox, or of the picture. Throws InputError.

@@ -26,11 +26,13 @@ std::vector<Observation> observations(const Tracks& visible, const std::vector<T
   std::int64_t base = 0;
   for (const Track& track : visible.tracks) {
     for (int k = 0; k < track.count; ++k) {
-      const auto i = static_cast<size_t>(track.first + k);
+      const auto i = static_cast<size_t>(track.first) + static_cast<size_t>(k);
       // Where it looks past an end, the distance is not one across the line.
       if (!matches[i].found || crowded[i] || std::fabs(matches[i].along_px) > 0.05) continue;
       const TrackSample& sample = visible.samples[i];
-      all.push_back({{-sample.tangent.y, sample.tangent.x}, matches[i].across_px, sample.length_px,
+      all.push_back({{-sample.tangent.y, sample.tangent.x},
+                     matches[i].across_px,
+                     sample.length_px,
                      base + static_cast<std::int64_t>(k * track.step() / kCluster_px)});
     }
     base += 1 + static_cast<std::int64_t>(track.length() / kCluster_px);
@@ -52,17 +54,20 @@ glm::dmat2 pseudo_inverse(const glm::dmat2& m) {
 
 /// Weights of Huber (1964), "Robust estimation of a location parameter", with the scale from the median residual.
 std::vector<double> robust_weights(const std::vector<Observation>& all, const glm::dvec2& shift) {
-  std::vector<double> rests;
-  for (const Observation& one : all) rests.push_back(std::fabs(one.across_px - glm::dot(one.normal, shift)));
-  const double limit = 1.345 * std::max(1e-3, 1.4826 * upper_median(rests));
+  std::vector<double> residuals;
+  residuals.reserve(all.size());
+  for (const Observation& one : all) residuals.push_back(std::fabs(one.across_px - glm::dot(one.normal, shift)));
+  const double limit = 1.345 * std::max(1e-3, 1.4826 * upper_median(residuals));
   std::vector<double> weights;
-  for (size_t i = 0; i < all.size(); ++i) weights.push_back(all[i].weight * (rests[i] > limit ? limit / rests[i] : 1.0));
+  weights.reserve(all.size());
+  for (size_t i = 0; i < all.size(); ++i) weights.push_back(all[i].weight * (residuals[i] > limit ? limit / residuals[i] : 1.0));
   return weights;
 }
 
 }  // namespace
 
-DrawingShift fit_shift(const Tracks& visible, const std::vector<TrackMatch>& matches, const std::vector<bool>& crowded, double precision_px) {
+DrawingShift fit_shift(const Tracks& visible, const std::vector<TrackMatch>& matches, const std::vector<bool>& crowded,
+                       double precision_px) {
   const std::vector<Observation> all = observations(visible, matches, crowded);
   DrawingShift shift;
   if (all.empty()) return shift;

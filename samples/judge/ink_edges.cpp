@@ -21,7 +21,8 @@ constexpr float kHalf = 0.5f;
 
 /// The sides of the cell, in turn: top, right, bottom, left.
 std::array<Side, 4> sides_of(const Image<float>& coverage, int x, int y) {
-  return {{{coverage.index(x, y), false}, {coverage.index(x + 1, y), true}, {coverage.index(x, y + 1), false}, {coverage.index(x, y), true}}};
+  return {
+      {{coverage.index(x, y), false}, {coverage.index(x + 1, y), true}, {coverage.index(x, y + 1), false}, {coverage.index(x, y), true}}};
 }
 
 void add_cell(const Image<float>& coverage, int x, int y, SideGraph& graph) {
@@ -44,7 +45,8 @@ void add_cell(const Image<float>& coverage, int x, int y, SideGraph& graph) {
 
 glm::dvec2 place_of(const Image<float>& coverage, const Side& side) {
   const auto width = static_cast<size_t>(coverage.width);
-  const glm::dvec2 corner(static_cast<double>(side.first % width), static_cast<double>(side.first / width));
+  const size_t column = side.first % width, row = side.first / width;
+  const glm::dvec2 corner(static_cast<double>(column), static_cast<double>(row));
   const auto a = static_cast<double>(coverage.pixels[side.first]);
   const auto b = static_cast<double>(coverage.pixels[side.first + (side.second ? width : 1)]);
   const double t = (0.5 - a) / (b - a);

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "samples/judge/judge_lines.h"
 #include "samples/judge/ink_thinning.h"
+#include "samples/judge/judge_lines.h"
 #include "sdf/image.h"
 
 namespace limn {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "samples/judge/ink_edges.h"
 #include "samples/judge/ink_picture.h"
@@ -11,7 +12,7 @@
 namespace limn {
 namespace {
 
-constexpr double kReach_px = 3.5;  ///< How far from its skeleton the ink of a thin line is looked for.
+constexpr double kReach_px = 3.5;     ///< How far from its skeleton the ink of a thin line is looked for.
 constexpr double kJunction_px = 3.0;  ///< So near to a junction other lines' ink is in the way.
 
 double bilinear(const Image<float>& picture, const glm::dvec2& p) {
@@ -62,18 +63,25 @@ glm::dvec2 tangent_at(const std::vector<glm::dvec2>& points, bool closed, size_t
   return length > 0.0 ? d / length : glm::dvec2(1.0, 0.0);
 }
 
-/// A parabola through seven points, by least squares: noise goes, curvature stays (Savitzky and Golay 1964, "Smoothing and differentiation
-/// of data by simplified least squares procedures"). Ends, which have no seven, keep their place.
+/// A parabola through eleven points, by least squares: the staircase of the pixels goes, curvature stays (Savitzky and Golay 1964,
+/// "Smoothing and differentiation of data by simplified least squares procedures"). Nearer to the ends it is one through seven; the last
+/// three keep their place.
 std::vector<glm::dvec2> smoothed(const std::vector<glm::dvec2>& points, bool closed) {
-  constexpr std::array<double, 7> kWeights = {-2.0, 3.0, 6.0, 7.0, 6.0, 3.0, -2.0};
+  constexpr std::array<double, 7> kSeven = {-2.0, 3.0, 6.0, 7.0, 6.0, 3.0, -2.0};
+  constexpr std::array<double, 11> kEleven = {-36.0, 9.0, 44.0, 69.0, 84.0, 89.0, 84.0, 69.0, 44.0, 9.0, -36.0};
   std::vector<glm::dvec2> result = points;
-  if (points.size() < kWeights.size()) return result;
+  const auto fit = [&](size_t i, std::span<const double> weights, double sum) {
+    const auto first = static_cast<std::ptrdiff_t>(i) - static_cast<std::ptrdiff_t>(weights.size() / 2);
+    result[i] = glm::dvec2(0.0);
+    for (size_t k = 0; k < weights.size(); ++k)
+      result[i] += weights[k] / sum * point_of(points, closed, first + static_cast<std::ptrdiff_t>(k));
+  };
   for (size_t i = 0; i < points.size(); ++i) {
-    if (!closed && (i < 3 || i + 3 >= points.size())) continue;
-    glm::dvec2 sum(0.0);
-    for (size_t k = 0; k < kWeights.size(); ++k)
-      sum += kWeights[k] / 21.0 * point_of(points, closed, static_cast<std::ptrdiff_t>(i + k) - 3);
-    result[i] = sum;
+    const size_t room = closed ? points.size() / 2 : std::min(i, points.size() - 1 - i);
+    if (room >= 5)
+      fit(i, kEleven, 429.0);
+    else if (room >= 3)
+      fit(i, kSeven, 21.0);
   }
   return result;
 }
@@ -156,7 +164,9 @@ DrawnLines lines_of_ink(const Image<float>& coverage) {
   thin_to_lines(thin);
   double width = 0.0, length = 0.0;
   for (const PixelLine& pixels : trace_pixel_lines(std::move(thin))) {
-    if (pixels.pixels.size() < 2) continue;
+    // Between two junctions so near, thinning makes a bridge where lines cross or touch.
+    constexpr size_t kBridge = 2;
+    if (pixels.pixels.size() < 2 || (pixels.junction_first && pixels.junction_last && pixels.pixels.size() <= kBridge)) continue;
     drawing.lines.push_back(centre_line(coverage, pixels));
     width += drawing.lines.back().width_px * static_cast<double>(pixels.pixels.size());
     length += static_cast<double>(pixels.pixels.size());

@@ -7,8 +7,8 @@ namespace limn {
 namespace {
 
 /// Around a pixel, from the top clockwise.
-constexpr std::array<glm::ivec2, 8> kAround = {
-    {glm::ivec2(0, -1), glm::ivec2(1, -1), glm::ivec2(1, 0), glm::ivec2(1, 1), glm::ivec2(0, 1), glm::ivec2(-1, 1), glm::ivec2(-1, 0), glm::ivec2(-1, -1)}};
+constexpr std::array<glm::ivec2, 8> kAround = {{glm::ivec2(0, -1), glm::ivec2(1, -1), glm::ivec2(1, 0), glm::ivec2(1, 1), glm::ivec2(0, 1),
+                                                glm::ivec2(-1, 1), glm::ivec2(-1, 0), glm::ivec2(-1, -1)}};
 
 bool is_set(const InkMask& mask, const glm::ivec2& p) { return mask.inside(p.x, p.y) && mask.at(p.x, p.y) != 0; }
 

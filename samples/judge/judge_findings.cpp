@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 namespace limn {
@@ -62,12 +63,13 @@ void start_at_match(const std::vector<TrackMatch>& matches, ChainSamples& chain)
 }
 
 void find_missed(const ChainSamples& chain, const JudgedTracks& tracks, const JudgedMatches& matches, const JudgeSettings& settings,
-                 std::vector<JudgeRow*> rows, std::vector<JudgeFinding>& findings) {
+                 const std::vector<JudgeRow*>& rows, std::vector<JudgeFinding>& findings) {
   const auto there = [&](size_t i) { return matches.lines[static_cast<size_t>(chain.samples[i])].found; };
   const size_t count = chain.samples.size();
   std::vector<Run> missed = runs_of(count, [&](size_t i) { return !there(i); });
   std::erase_if(missed, [&](const Run& run) { return length_of(tracks.visible, chain.samples, run) < settings.least_px; });
-  const bool any = std::any_of(chain.samples.begin(), chain.samples.end(), [&](int i) { return matches.lines[static_cast<size_t>(i)].found; });
+  const bool any =
+      std::any_of(chain.samples.begin(), chain.samples.end(), [&](int i) { return matches.lines[static_cast<size_t>(i)].found; });
   int gaps = 0;
   for (const Run& run : missed) {
     JudgeFinding finding = finding_of(FindingKind::missed, tracks.visible, chain.samples, run, glm::dvec2(0.0));
@@ -140,8 +142,8 @@ void find_in_ink(const ViewGraph& graph, const JudgedTracks& tracks, const Judge
                                                            {InkVerdict::hidden, FindingKind::hidden},
                                                            {InkVerdict::doubled, FindingKind::doubled}};
   for (const Track& track : tracks.drawn.tracks) {
-    std::vector<int> samples;
-    for (int i = 0; i < track.count; ++i) samples.push_back(track.first + i);
+    std::vector<int> samples(static_cast<size_t>(track.count));
+    std::iota(samples.begin(), samples.end(), track.first);
     for (const auto& [verdict, kind] : kKinds) {
       const InkVerdict wanted = verdict;
       const auto is = [&](size_t i) { return matches.ink[static_cast<size_t>(samples[i])].verdict == wanted; };
@@ -153,7 +155,8 @@ void find_in_ink(const ViewGraph& graph, const JudgedTracks& tracks, const Judge
         for (size_t i = run.from; i < run.to && wanted != InkVerdict::false_stroke; ++i)
           ++classes[class_of(graph, wanted == InkVerdict::hidden ? tracks.hidden : tracks.visible,
                              matches.ink[static_cast<size_t>(samples[i])].sample)];
-        const auto most = std::max_element(classes.begin(), classes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+        const auto most =
+            std::max_element(classes.begin(), classes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
         if (most != classes.end()) finding.line_class = most->first;
         findings.push_back(std::move(finding));
       }

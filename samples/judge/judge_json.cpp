@@ -23,8 +23,10 @@ Json row_json(const JudgeRow& row) {
   json["pieces"] = row.pieces;
   json["gaps"] = row.gaps;
   const Displacement& d = row.displacement;
-  json["displacement_px"] = {{"mean_outwards", number_or_null(d.mean)}, {"rms", number_or_null(d.rms)},
-                             {"p95", number_or_null(d.p95)},            {"worst", number_or_null(d.worst)}};
+  json["displacement_px"] = {{"mean_outwards", number_or_null(d.mean)},
+                             {"rms", number_or_null(d.rms)},
+                             {"p95", number_or_null(d.p95)},
+                             {"worst", number_or_null(d.worst)}};
   json["displacement_px"]["worst_at"] = std::isfinite(d.worst) ? place_json(d.worst_at) : Json();
   return json;
 }
@@ -34,8 +36,8 @@ Json finding_json(const JudgeFinding& finding) {
   json["class"] = finding.line_class ? Json(name_of(*finding.line_class)) : Json();
   json["px"] = place_json(finding.px);
   json["length_px"] = finding.length_px;
-  if (finding.kind == FindingKind::displaced) json["distance_px"] = finding.distance_px;
-  if (finding.kind == FindingKind::missed) json["gap"] = finding.gap;
+  json["distance_px"] = finding.kind == FindingKind::displaced ? Json(finding.distance_px) : Json();
+  json["gap"] = finding.gap;
   json["text"] = text_of(finding);
   return json;
 }

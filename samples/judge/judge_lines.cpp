@@ -23,7 +23,7 @@ void add_lines_of(const ViewGraph& graph, JudgedTracks& tracks) {
     for (const LinePoint& point : edge.points) points.push_back(point.px);
     // A closed edge without a vertex does not repeat its first point.
     if (edge.begin < 0 && edge.end < 0 && !points.empty()) points.push_back(points.front());
-    add_track(edge.invisibility == 0 ? tracks.visible : tracks.hidden, std::move(points), static_cast<int>(i));
+    add_track(edge.invisibility == 0 ? tracks.visible : tracks.hidden, points, static_cast<int>(i));
   }
   finish_tracks(tracks.visible);
   finish_tracks(tracks.hidden);
@@ -38,11 +38,12 @@ Tracks drawn_tracks(const DrawnLines& drawing, const glm::dvec2& shift) {
     if (drawing.lines[i].closed && !points.empty()) points.push_back(points.front());
     for (std::vector<glm::dvec2>& piece : clipped_to_frame(points, {drawing.width_px, drawing.height_px})) {
       for (glm::dvec2& p : piece) p -= shift;
-      add_track(tracks, std::move(piece), static_cast<int>(i));
+      add_track(tracks, piece, static_cast<int>(i));
       length += tracks.tracks.empty() ? 0.0 : tracks.tracks.back().length();
     }
     if (length > kMostDrawn_px)
-      throw InputError({"", "DRAWING", "", "it has more than a million pixels of line in the picture", "a drawing of the lines of one view"});
+      throw InputError(
+          {"", "DRAWING", "", "it has more than a million pixels of line in the picture", "a drawing of the lines of one view"});
   }
   finish_tracks(tracks);
   return tracks;
@@ -152,6 +153,7 @@ Judgement judge_lines(const ViewGraph& graph, const DrawnLines& drawing, const J
   }
   matches.lines = match_lines(tracks, drawing, settings, true);
   matches.ink = match_ink(tracks, drawing, settings);
+  excuse_crowded(tracks, drawing, matches.crowded, matches.lines, matches.ink);
 
   std::vector<JudgeRow> rows(1);
   for (const LineClassDescriptor& one : line_classes()) {

@@ -23,10 +23,10 @@ struct InkLine {
 struct DrawnLines {
   int width_px = 0, height_px = 0;
   std::vector<InkLine> lines{};
-  double resolution_px = 0.05;  ///< Lines that are nearer to each other cannot be told apart in it.
-  double apart_px = 0.0;        ///< Nearer to another line than this, the place of a line cannot be measured in it: ink runs together.
-  double ends_px = 0.3;         ///< How far its ends may lie before or behind those of the lines.
-  std::string from{};           ///< "strokes", "lines of ink", "outlines of areas".
+  double resolution_px = 0.05;       ///< Lines that are nearer to each other cannot be told apart in it.
+  double apart_px = 0.0;             ///< Nearer to another line than this, the place of a line cannot be measured in it: ink runs together.
+  double ends_px = 0.3;              ///< How far its ends may lie before or behind those of the lines.
+  std::string from{};                ///< "strokes", "lines of ink", "outlines of areas".
   std::vector<std::string> notes{};  ///< What was left out of it.
 };
 
@@ -76,22 +76,22 @@ struct JudgeRow {
   std::optional<LineClass> line_class{};  ///< Unset: over all.
   double line_px = 0.0;                   ///< Visible lines.
   double missed_px = 0.0;                 ///< Of them.
-  double crowded_px = 0.0;                ///< Of them: nearer to another than DrawnLines::apart_px; not in `displacement`.
-  double false_px = 0.0;                  ///< Of the drawing; over all only.
-  double hidden_px = 0.0;                 ///< Of the drawing.
-  double doubled_px = 0.0;                ///< Of the drawing.
-  int chains = 0;                         ///< Visible ones.
-  int pieces = 0;                         ///< Stretches of them that the drawing has.
-  int gaps = 0;                           ///< Between two of one chain.
+  double crowded_px = 0.0;  ///< Of them: nearer to another than DrawnLines::apart_px; only looked at for whether there is ink.
+  double false_px = 0.0;    ///< Of the drawing; over all only.
+  double hidden_px = 0.0;   ///< Of the drawing.
+  double doubled_px = 0.0;  ///< Of the drawing.
+  int chains = 0;           ///< Visible ones.
+  int pieces = 0;           ///< Stretches of them that the drawing has.
+  int gaps = 0;             ///< Between two of one chain.
   Displacement displacement{};
 };
 
 /// The translation that fits the matched lines best, by least squares.
 struct DrawingShift {
-  glm::dvec2 px{0.0};   ///< The drawing lies this far right and down.
+  glm::dvec2 px{0.0};  ///< The drawing lies this far right and down.
   double size_px = 0.0;
   double error_px = std::numeric_limits<double>::infinity();  ///< Standard error of its size.
-  bool significant = false;  ///< At least four standard errors, and more than the drawing's own precision.
+  bool significant = false;                                   ///< At least four standard errors, and more than the drawing's own precision.
 };
 
 /// Of the drawing's strokes, weighted by length; 0 where they have none.

@@ -71,10 +71,10 @@ std::string layers_svg(const JudgeReport& report) {
 }
 
 std::string legend_html() {
-  std::string html = "<p class=\"legend\"><span><i class=\"line\"></i>visible line</span><span><i class=\"behind\"></i>hidden "
-                     "line</span><span><i class=\"drawn\"></i>drawing</span>";
-  for (const FindingKind kind : kFindingKinds)
-    html += fmt::format("<span><i class=\"{}\"></i>{}</span>", key_of(kind), title_of(kind));
+  std::string html =
+      "<p class=\"legend\"><span><i class=\"line\"></i>visible line</span><span><i class=\"behind\"></i>hidden "
+      "line</span><span><i class=\"drawn\"></i>drawing</span>";
+  for (const FindingKind kind : kFindingKinds) html += fmt::format("<span><i class=\"{}\"></i>{}</span>", key_of(kind), title_of(kind));
   return html + "</p>\n";
 }
 
@@ -151,19 +151,21 @@ std::string judge_page(const JudgeReport& report) {
   std::string html = kHead;
   html.append(kPageStyle).append(kStyle).append("</style>\n</head>\n<body>\n<main>\n");
   html += fmt::format("<h1>{} against {}</h1>\n", escaped(subject.drawing), escaped(subject.against));
-  html += fmt::format("<p class=\"lead\">Of {:.1f} px of visible lines the drawing lacks {:.2f} px. Of its {:.1f} px, {:.2f} px are false, "
-                      "{:.2f} px are hidden lines and {:.2f} px are drawn twice.",
-                      judgement.all.line_px, judgement.all.missed_px, judgement.drawn_px, judgement.all.false_px, judgement.all.hidden_px,
-                      judgement.all.doubled_px);
+  html += fmt::format(
+      "<p class=\"lead\">Of {:.1f} px of visible lines the drawing lacks {:.2f} px. Of its {:.1f} px, {:.2f} px are false, "
+      "{:.2f} px are hidden lines and {:.2f} px are drawn twice.",
+      judgement.all.line_px, judgement.all.missed_px, judgement.drawn_px, judgement.all.false_px, judgement.all.hidden_px,
+      judgement.all.doubled_px);
   if (const std::string shift = text_of(judgement.shift); !shift.empty()) html += " It is " + escaped(shift) + ".";
   html += "</p>\n" + limits_html(report.limits) + "<h2>The drawing over the lines</h2>\n" + legend_html();
-  html += fmt::format("<svg class=\"over\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"the drawing over the lines\">\n", subject.width_px,
-                      subject.height_px);
+  html += fmt::format("<svg class=\"over\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"the drawing over the lines\">\n",
+                      subject.width_px, subject.height_px);
   html += layers_svg(report) + "</svg>\n" + places_html(judgement) + "<h2>Numbers</h2>\n" + table_html(judgement) + list_html(judgement);
-  html += fmt::format("<details><summary>How this was measured</summary><p>The drawing was read as {}. A line and a stroke match where they "
-                      "are at most {:g} px apart and their directions differ by at most {:g}&#176;. Lengths are measured after a significant "
-                      "shift is taken out, displacements before. The lines are known to {:g} px. limn {}.</p></details>\n",
-                      escaped(report.drawing.from), subject.settings.search_px, subject.settings.angle_deg, report.graph.bound_px, kVersion);
+  html += fmt::format(
+      "<details><summary>How this was measured</summary><p>The drawing was read as {}. A line and a stroke match where they "
+      "are at most {:g} px apart and their directions differ by at most {:g}&#176;. Lengths are measured after a significant "
+      "shift is taken out, displacements before. The lines are known to {:g} px. limn {}.</p></details>\n",
+      escaped(report.drawing.from), subject.settings.search_px, subject.settings.angle_deg, report.graph.bound_px, kVersion);
   return html + "</main>\n</body>\n</html>\n";
 }
 

@@ -22,7 +22,7 @@ std::string text_of(const LengthLimit& limit);
 
 /// Beyond which a drawing fails.
 struct JudgeLimits {
-  std::optional<LengthLimit> missed{};   ///< Shares: of the visible lines.
+  std::optional<LengthLimit> missed{};     ///< Shares: of the visible lines.
   std::optional<LengthLimit> false_ink{};  ///< Shares of this and the others: of the drawing.
   std::optional<LengthLimit> hidden{};
   std::optional<LengthLimit> doubled{};
@@ -31,8 +31,8 @@ struct JudgeLimits {
 
 /// A limit, and what was measured.
 struct LimitResult {
-  std::string name{};     ///< "missed".
-  std::string limit{};    ///< "1 %".
+  std::string name{};      ///< "missed".
+  std::string limit{};     ///< "1 %".
   std::string measured{};  ///< "2.3 % (31.2 px)".
   bool passed = true;
 };

@@ -29,8 +29,8 @@ double share_of(double part, double whole) { return whole > 0.0 ? 100.0 * part /
 void check_length(const char* name, const std::optional<LengthLimit>& limit, double px, double whole, std::vector<LimitResult>& results) {
   if (!limit) return;
   const double percent = share_of(px, whole);
-  results.push_back({name, text_of(*limit), fmt::format("{:.3g} px, {:.3g} %", px, percent),
-                     (limit->percent ? percent : px) <= limit->value});
+  results.push_back(
+      {name, text_of(*limit), fmt::format("{:.3g} px, {:.3g} %", px, percent), (limit->percent ? percent : px) <= limit->value});
 }
 
 }  // namespace
@@ -102,9 +102,10 @@ std::string judge_text(const JudgeReport& report) {
   constexpr double kWorthSaying_px = 0.01;
   if (d.worst > kWorthSaying_px) text += fmt::format("\nfarthest off: {:.4f} px at {:.1f}, {:.1f}\n", d.worst, d.worst_at.x, d.worst_at.y);
   if (judgement.all.crowded_px > 0.0)
-    text += fmt::format("\n{:.1f} px of line are too near to others for their displacement to be measured in this picture\n",
-                        judgement.all.crowded_px);
-  if (judgement.all.missed_px > 0.5 * judgement.all.line_px)
+    text += fmt::format(
+        "\n{:.1f} px of line are too near to others to be told apart in this picture: only whether there is ink was looked at\n",
+        judgement.all.crowded_px);
+  if (judgement.drawn_px > 0.0 && judgement.all.missed_px > 0.5 * judgement.all.line_px)
     text += "\nmore than half of the lines are missed: the drawing may show another view (--eye, --target, --fov, --ortho)\n";
   constexpr size_t kMostOfKind = 10;
   for (const FindingKind kind : kFindingKinds) {
@@ -125,8 +126,9 @@ std::string judge_text(const JudgeReport& report) {
 
 std::string judge_junit(const JudgeReport& report) {
   const auto failures = std::count_if(report.limits.begin(), report.limits.end(), [](const LimitResult& limit) { return !limit.passed; });
-  std::string xml = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"limn judge {}\" tests=\"{}\" failures=\"{}\">\n",
-                                escaped(report.subject.drawing), report.limits.size(), failures);
+  std::string xml =
+      fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"limn judge {}\" tests=\"{}\" failures=\"{}\">\n",
+                  escaped(report.subject.drawing), report.limits.size(), failures);
   for (const LimitResult& limit : report.limits) {
     xml += fmt::format("<testcase classname=\"{}\" name=\"{} at most {}\"", escaped(report.subject.drawing), limit.name, limit.limit);
     if (limit.passed) {

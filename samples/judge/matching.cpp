@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-
 namespace limn {
 namespace {
 
@@ -35,7 +34,8 @@ int sample_at(const Tracks& tracks, std::uint32_t segment, double t) {
 
 /// The place of `to` that matches the sample best, of those that `accept(sample of to, distance)` lets pass.
 template <class Accept>
-TrackMatch best_match(const TrackSample& from, const Tracks& to, const Search& search, std::vector<std::uint32_t>& near, const Accept& accept) {
+TrackMatch best_match(const TrackSample& from, const Tracks& to, const Search& search, std::vector<std::uint32_t>& near,
+                      const Accept& accept) {
   TrackMatch best;
   double least = std::numeric_limits<double>::infinity();
   segments_near(to, from.at, search.radius_px, near);
@@ -193,6 +193,22 @@ std::vector<bool> crowded_samples(const Tracks& lines, double apart_px) {
     });
   }
   return crowded;
+}
+
+void excuse_crowded(const JudgedTracks& tracks, const DrawnLines& drawing, const std::vector<bool>& crowded, std::vector<TrackMatch>& lines,
+                    std::vector<InkMatch>& ink) {
+  if (drawing.apart_px <= 0.0) return;
+  const Search anywhere{drawing.apart_px, 0.0, drawing.apart_px};
+  const auto any = [](int, double) { return true; };
+  std::vector<std::uint32_t> near;
+  for (size_t i = 0; i < lines.size(); ++i)
+    if (crowded[i] && !lines[i].found) lines[i].found = best_match(tracks.visible.samples[i], tracks.drawn, anywhere, near, any).found;
+  for (size_t i = 0; i < ink.size(); ++i) {
+    if (ink[i].verdict == InkVerdict::line) continue;
+    const TrackMatch match = best_match(tracks.drawn.samples[i], tracks.visible, anywhere, near,
+                                        [&](int sample, double) { return crowded[static_cast<size_t>(sample)]; });
+    if (match.found) ink[i] = {InkVerdict::line, match.sample};
+  }
 }
 
 std::vector<InkMatch> match_ink(const JudgedTracks& tracks, const DrawnLines& drawing, const JudgeSettings& settings) {

@@ -41,7 +41,13 @@ std::vector<InkMatch> match_ink(const JudgedTracks& tracks, const DrawnLines& dr
 /// For each sample of the lines, whether another line, or another part of its own, lies nearer than this.
 std::vector<bool> crowded_samples(const Tracks& lines, double apart_px);
 
+/// Where lines are crowded, ink runs together, and the lines read from it are neither missed nor wrong: crowded lines with any ink near
+/// them count as found, strokes near crowded lines as lines.
+void excuse_crowded(const JudgedTracks& tracks, const DrawnLines& drawing, const std::vector<bool>& crowded, std::vector<TrackMatch>& lines,
+                    std::vector<InkMatch>& ink);
+
 /// From the matched samples of the visible lines that are not crowded. `precision_px`: what is smaller is not significant.
-DrawingShift fit_shift(const Tracks& visible, const std::vector<TrackMatch>& matches, const std::vector<bool>& crowded, double precision_px);
+DrawingShift fit_shift(const Tracks& visible, const std::vector<TrackMatch>& matches, const std::vector<bool>& crowded,
+                       double precision_px);
 
 }  // namespace limn

@@ -17,11 +17,11 @@ inline constexpr double kSvgFlatness_px = 0.002;
 
 /// A subpath that is painted.
 struct SvgLine {
-  std::string id{};      ///< Of its element; may be empty.
-  std::string color{};   ///< Of the stroke, or of the fill where there is none, as in the file: "#000000".
+  std::string id{};       ///< Of its element; may be empty.
+  std::string color{};    ///< Of the stroke, or of the fill where there is none, as in the file: "#000000".
   double width_px = 0.0;  ///< Of the stroke; 0 where there is none.
   double opacity = 1.0;
-  bool closed = false;   ///< The first point is not repeated at the end.
+  bool closed = false;               ///< The first point is not repeated at the end.
   std::vector<glm::dvec2> points{};  ///< Units of the viewBox from its corner, y down; at least two.
 };
 

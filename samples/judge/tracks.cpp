@@ -25,7 +25,7 @@ bool clip(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& size, doub
 
 }  // namespace
 
-void add_track(Tracks& tracks, std::vector<glm::dvec2> points, int source) {
+void add_track(Tracks& tracks, const std::vector<glm::dvec2>& points, int source) {
   Track track;
   track.source = source;
   for (const glm::dvec2& p : points) {

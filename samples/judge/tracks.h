@@ -41,7 +41,7 @@ struct Tracks {
 };
 
 /// Lines without length are left out.
-void add_track(Tracks& tracks, std::vector<glm::dvec2> points, int source);
+void add_track(Tracks& tracks, const std::vector<glm::dvec2>& points, int source);
 /// After the last track.
 void finish_tracks(Tracks& tracks);
 

@@ -162,6 +162,9 @@ TEST(Reference, EveryValueOfJsonHasALineAndEveryLineAValue) {
       {"info", {"info", folder.file("v.vdb")}},
       {"info", {"info", folder.file("a.exr")}},
       {"stability", {"stability", "--case", "seams_of_balls", "--surface", "analytic", "-o", folder.file("st")}},
+      {"judge",
+       {"judge", folder.write("d.svg", "<svg viewBox='0 0 64 48'><path d='M1 1h9' stroke='#000'/></svg>"), "--against", "ellipsoid",
+        "--max-missed", "1%"}},
       {"list", {"list", "methods"}},
   };
   std::set<const DocumentedKey*> used;

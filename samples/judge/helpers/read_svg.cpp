@@ -23,7 +23,7 @@ using limn::SvgPolyline;
 using limn::SvgStyle;
 using limn::SvgTransform;
 
-constexpr int kDeepest = 200;            ///< Elements in elements.
+constexpr int kDeepest = 200;             ///< Elements in elements.
 constexpr int kMostElements = 5'000'000;  ///< <use> repeats others: a few lines can ask for billions.
 constexpr size_t kMostPoints = 40'000'000;
 
@@ -174,7 +174,8 @@ std::vector<std::byte> read(const std::string& file) {
   const pugi::xml_parse_result result = document.load_file(file.c_str(), pugi::parse_default | pugi::parse_ws_pcdata_single);
   if (!result) refuse("no XML: " + std::string(result.description()) + " at byte " + std::to_string(result.offset) + "; an SVG file");
   const pugi::xml_node root = document.document_element();
-  if (limn::local_name(root.name()) != "svg") refuse("its root is <" + std::string(root.name()).substr(0, 64) + ">; an SVG file, whose root is <svg>");
+  if (limn::local_name(root.name()) != "svg")
+    refuse("its root is <" + std::string(root.name()).substr(0, 64) + ">; an SVG file, whose root is <svg>");
   Reading reading{root};
   const glm::dvec2 corner = read_view_box(root, reading.svg);
   reading.size = {reading.svg.width_px, reading.svg.height_px};

@@ -179,8 +179,6 @@ std::vector<double> svg_numbers(std::string_view text) {
   return numbers;
 }
 
-std::vector<SvgPolyline> svg_path(std::string_view data, const SvgTransform& transform) {
-  return PathMaker(transform).make(data);
-}
+std::vector<SvgPolyline> svg_path(std::string_view data, const SvgTransform& transform) { return PathMaker(transform).make(data); }
 
 }  // namespace limn

@@ -46,7 +46,9 @@ CssDeclarations declarations_of(std::string_view block) {
   return result;
 }
 
-bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || static_cast<unsigned char>(c) >= 0x80; }
+bool is_name(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || static_cast<unsigned char>(c) >= 0x80;
+}
 
 /// False for what is not understood.
 bool read_compound(std::string_view& text, CssCompound& compound) {
@@ -192,9 +194,9 @@ double svg_length(std::string_view text, double whole) {
   const double none = std::numeric_limits<double>::quiet_NaN();
   if (end == copy.c_str() || !std::isfinite(value)) return none;
   const std::string_view unit = trimmed(end);
-  constexpr std::pair<std::string_view, double> kUnits[] = {{"", 1.0},           {"px", 1.0},        {"mm", 96.0 / 25.4}, {"cm", 96.0 / 2.54},
-                                                            {"in", 96.0},        {"pt", 96.0 / 72.0}, {"pc", 16.0},        {"Q", 96.0 / 101.6},
-                                                            {"em", 16.0},        {"ex", 8.0}};
+  constexpr std::pair<std::string_view, double> kUnits[] = {{"", 1.0},    {"px", 1.0},         {"mm", 96.0 / 25.4}, {"cm", 96.0 / 2.54},
+                                                            {"in", 96.0}, {"pt", 96.0 / 72.0}, {"pc", 16.0},        {"Q", 96.0 / 101.6},
+                                                            {"em", 16.0}, {"ex", 8.0}};
   if (unit == "%") return value * whole / 100.0;
   for (const auto& [name, factor] : kUnits)
     if (unit == name) return value * factor;
@@ -245,8 +247,7 @@ SvgStyle style_of(const pugi::xml_node& element, const SvgStyle& inherited, cons
     if (!matches(rule.selector, rule.selector.size() - 1, element)) continue;
     for (const auto& [name, value] : rule.declarations) set_property(name, value, inherited.opacity, style);
   }
-  for (const auto& [name, value] : declarations_of(element.attribute("style").value()))
-    set_property(name, value, inherited.opacity, style);
+  for (const auto& [name, value] : declarations_of(element.attribute("style").value())) set_property(name, value, inherited.opacity, style);
   return style;
 }
 

@@ -12,7 +12,7 @@ namespace limn {
 /// What matters of an element's style.
 struct SvgStyle {
   std::string stroke = "none", fill = "black";
-  double stroke_width = 1.0;  ///< User units.
+  double stroke_width = 1.0;   ///< User units.
   std::vector<double> dash{};  ///< User units; empty: solid.
   double dash_offset = 0.0;
   double opacity = 1.0;  ///< Of the groups and the element, multiplied.

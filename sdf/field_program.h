@@ -36,6 +36,8 @@ struct ShapeFunctions {
   /// {f <= level} for levels up to 0 put together from smooth faces by minimum and maximum, in object space: its sharp edges are where two
   /// of them meet. Null where the shape has none, or they are not known one by one.
   Field (*faces)(const void* shape);
+  /// Where the surface has a point and no normal, as a cone has at its tip; object space. Null where it has none.
+  glm::dvec3 (*tip)(const void* shape);
 };
 
 /// f(p) = value_scale * shape(object_from_world p).
@@ -85,7 +87,21 @@ Box sublevel_bounds(const FieldProgram& program, double level);
 ///   static constexpr bool kBranches = true;                              the formula compares values, and cannot be recorded
 ///   glm::dvec3 ball_from_object() const;                                 see ShapeFunctions
 ///   Field faces() const;                                                 see ShapeFunctions
+///   glm::dvec3 tip() const;                                              see ShapeFunctions
 /// `lipschitz` and `exact` are as in FieldTraits; object_from_world must be rigid.
+template <class Shape>
+glm::dvec3 tip_of_shape(const void* shape) {
+  return static_cast<const Shape*>(shape)->tip();
+}
+template <class Shape>
+constexpr auto tip_of() {
+  if constexpr (requires(const Shape& s) { s.tip(); }) {
+    return tip_of_shape<Shape>;
+  } else {
+    return nullptr;
+  }
+}
+
 template <class Shape>
 Field field_from_shape(Shape shape, double lipschitz, bool exact, const Affine& object_from_world = {});
 
@@ -151,7 +167,8 @@ Field field_from_shape(Shape shape, double lipschitz, bool exact, const Affine& 
       [](const void* s, const glm::dvec3& direction, double level) { return static_cast<const Shape*>(s)->support(direction, level); },
       recorder_of<Shape>(),
       ball_of<Shape>(),
-      faces_of<Shape>()};
+      faces_of<Shape>(),
+      tip_of<Shape>()};
   FieldLeaf leaf;
   leaf.shape = std::make_shared<const Shape>(std::move(shape));
   leaf.functions = &functions;

@@ -106,7 +106,7 @@ LineContribution field_lines(const LineTask& task, const std::vector<size_t>& ob
     for (const FieldCurve& curve : found.curves) out.curves.push_back(curve.seam ? seam_curve(fields, curve) : smooth_curve(fields, curve));
     if (execution.progress) execution.progress(0.5 * static_cast<double>(i + 1) / static_cast<double>(bodies.bodies.size()));
   }
-  draw_on_to_tips(task.camera, out.curves);
+  for (const Field& body : bodies.body_fields) lead_to_tips(tips_of(body, task.extent), task.camera, out.curves);
   const auto layers = std::make_shared<const FieldLayers>(bodies.body_fields, task.camera, task.extent);
   out.layers_before = [layers](const CurveSample& sample) { return layers->before(sample); };
   return out;

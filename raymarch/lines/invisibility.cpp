@@ -234,7 +234,7 @@ class Cutter {
   /// A crease leaves a contour, and the two arms of a cusp each other, along their common tangent: polylines of them cross again and again
   /// there, and the curves do not.
   bool is_tangency(const NearerCrossing& crossing) const {
-    if (crossing.curve == number_) return one_cusp_between(crossing.at, crossing.on_nearer);
+    if (crossing.curve == number_) return one_cusp_between(crossing.at, crossing.on_nearer) || is_spike(crossing);
     const SurfaceCurve& other = curves_[crossing.curve];
     for (const Stretch& own : to_ends(curve_, crossing.at)) {
       for (const Stretch& others : to_ends(other, crossing.on_nearer)) {
@@ -242,6 +242,17 @@ class Cutter {
       }
     }
     return false;
+  }
+
+  /// Between the two passages the curve goes there and back on the same way, as beside the tip of a cone.
+  bool is_spike(const NearerCrossing& crossing) const {
+    const double from = std::min(crossing.at, crossing.on_nearer), to = std::max(crossing.at, crossing.on_nearer);
+    if (length_to(to) - length_to(from) > kLongestNarrow_px) return false;
+    const std::vector<glm::dvec2> px = px_between(curve_, from, to);
+    const auto farther = [&](const glm::dvec2& a, const glm::dvec2& b) { return glm::distance(a, px[0]) < glm::distance(b, px[0]); };
+    const auto turn = std::max_element(px.begin(), px.end(), farther);
+    const std::vector<glm::dvec2> there(px.begin(), turn + 1), back(turn, px.end());
+    return lies_along(there, back) && lies_along(back, there);
   }
 
   bool one_cusp_between(double one, double other) const {

@@ -27,6 +27,8 @@ struct TurnedLine {
   T operator()(const Vector3<T>& p) const {
     return norm(p.x, p.z) * scalar<T>(normal.x) + p.y * scalar<T>(normal.y) - scalar<T>(offset);
   }
+  /// Far away for a cylinder.
+  glm::dvec3 tip() const { return {0.0, normal.y == 0.0 ? std::numeric_limits<double>::infinity() : offset / normal.y, 0.0}; }
   double support(const glm::dvec3&, double) const { return std::numeric_limits<double>::infinity(); }
 };
 

@@ -23,9 +23,9 @@ enum class LineClass : std::uint8_t {
 
 /// A class of lines, for lists and options.
 struct LineClassDescriptor {
-  Description about{};                         ///< Name, help and source.
-  LineClass line_class = LineClass::contour;   ///< See LineClass.
-  bool by_default = true;                      ///< Drawn where nobody says which.
+  Description about{};                        ///< Name, help and source.
+  LineClass line_class = LineClass::contour;  ///< See LineClass.
+  bool by_default = true;                     ///< Drawn where nobody says which.
 };
 /// All classes, in the order in which they are painted.
 const Registry<LineClassDescriptor>& line_classes();
@@ -34,19 +34,19 @@ const std::string& name_of(LineClass line_class);
 
 /// Which lines are solved, and how precisely.
 struct LineSettings {
-  std::vector<LineClass> classes{};  ///< Empty: those drawn by default.
-  double threshold = 0.4;            ///< Of the rim, above 0 and below 1; read where LineClass::rim is asked for.
-  double crease_angle_deg = 40.0;    ///< Edges of meshes are creases where their faces' normals differ by more. In (0, 180).
-  double tolerance_px = 0.005;       ///< How far the polylines may lie from the curves.
+  std::vector<LineClass> classes{};                ///< Empty: those drawn by default.
+  double threshold = 0.4;                          ///< Of the rim, above 0 and below 1; read where LineClass::rim is asked for.
+  double crease_angle_deg = 40.0;                  ///< Edges of meshes are creases where their faces' normals differ by more. In (0, 180).
+  double tolerance_px = 0.005;                     ///< How far the polylines may lie from the curves.
   std::int64_t max_bytes = std::int64_t{4} << 30;  ///< For the meshes that rays are cast against.
 };
 
 /// A point of a line.
 struct LinePoint {
-  glm::dvec2 px{0.0};        ///< Image point (sdf/image.h).
-  double depth = 0.0;        ///< Z, world units.
-  glm::dvec3 position{0.0};  ///< World.
-  glm::dvec3 normal{0.0};    ///< World, unit; at a crease that of the side of higher N.V.
+  glm::dvec2 px{0.0};             ///< Image point (sdf/image.h).
+  double depth = 0.0;             ///< Z, world units.
+  glm::dvec3 position{0.0};       ///< World.
+  glm::dvec3 normal{0.0};         ///< World, unit; at a crease that of the side of higher N.V.
   double radial_curvature = 0.0;  ///< 1 / world unit; NaN on creases and boundaries.
 };
 
@@ -65,18 +65,18 @@ const char* name_of(VertexKind kind);
 struct LineVertex {
   VertexKind kind = VertexKind::end;
   glm::dvec2 px{0.0};
-  double depth = 0.0;     ///< Z of the line that is crossed, world units.
-  int crossed_by = -1;    ///< Of a crossing: the edge in front of it, index into ViewGraph::edges; -1 where it was cut away.
+  double depth = 0.0;   ///< Z of the line that is crossed, world units.
+  int crossed_by = -1;  ///< Of a crossing: the edge in front of it, index into ViewGraph::edges; -1 where it was cut away.
 };
 
 /// A stretch of line along which its class and its quantitative invisibility stay the same.
 struct LineEdge {
   LineClass line_class = LineClass::contour;
-  int object = 1;          ///< Index from 1.
-  int invisibility = 0;    ///< How many layers of surface lie in front of it (Appel 1967).
-  bool certain = true;     ///< False where the certificate found a conflict along it.
-  bool crease = false;     ///< Runs along a sharp edge, whatever its class.
-  int curve = 0;           ///< Which curve on the surface it is a piece of; from 0.
+  int object = 1;            ///< Index from 1.
+  int invisibility = 0;      ///< How many layers of surface lie in front of it (Appel 1967).
+  bool certain = true;       ///< False where the certificate found a conflict along it.
+  bool crease = false;       ///< Runs along a sharp edge, whatever its class.
+  int curve = 0;             ///< Which curve on the surface it is a piece of; from 0.
   int begin = -1, end = -1;  ///< Vertices, indices into ViewGraph::vertices; -1: closed, and without a vertex.
   /// At least two. Of contours and boundaries what they bound lies on the left, walking along (border_curves.h).
   std::vector<LinePoint> points{};
@@ -108,10 +108,10 @@ struct ViewGraph {
   std::vector<LineEdge> edges{};
   std::vector<LineChain> chains{};  ///< All edges are in one chain each.
   std::vector<LineConflict> conflicts{};
-  std::int64_t rays = 0;            ///< That were cast for the certificate.
-  bool exact = true;                ///< False where a part of the scene is left out or approximated: `notes`.
-  double bound_px = 0.0;            ///< No point lies farther from its line than this.
-  std::string from{};               ///< What it was solved on, in words: "the field".
+  std::int64_t rays = 0;             ///< That were cast for the certificate.
+  bool exact = true;                 ///< False where a part of the scene is left out or approximated: `notes`.
+  double bound_px = 0.0;             ///< No point lies farther from its line than this.
+  std::string from{};                ///< What it was solved on, in words: "the field".
   std::vector<std::string> notes{};  ///< What the bound does not cover.
 };
 

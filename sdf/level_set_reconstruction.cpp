@@ -96,7 +96,12 @@ SurfaceCell cell_of(const LevelSetData& data, const nanovdb::Coord& node, const 
 
 Field reconstruction_field(const LevelSet& level_set) {
   static constexpr ShapeFunctions functions{
-      {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>}, support, nullptr, nullptr, nullptr, nullptr};
+      {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>},
+      support,
+      nullptr,
+      nullptr,
+      nullptr,
+      nullptr};
   const GradientDescriptor& cubic = find_gradient("cubic");
   FieldLeaf leaf;
   leaf.shape = std::make_shared<const Spline>(Spline{complete_band(level_set, cubic), &cubic});

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/lines/cage_seams.h"
 #include "raymarch/lines/mesh_layers.h"
 #include "raymarch/lines/seams.h"
 #include "raymarch/truth/limit_curves.h"
 #include "sdf/parallel.h"
-#include "raymarch/lines/cage_seams.h"
 
 namespace limn {
 namespace {
@@ -79,7 +79,8 @@ void add_cage(const LineTask& task, size_t object, LineContribution& out) {
     out.curves.push_back(curve_of_seam(task.camera, seam));
   if (!grid.invalid_patches.empty()) {
     out.exact = false;
-    out.notes.push_back(fmt::format("not exact: {} patches of the limit surface cannot be evaluated and are left out", grid.invalid_patches.size()));
+    out.notes.push_back(
+        fmt::format("not exact: {} patches of the limit surface cannot be evaluated and are left out", grid.invalid_patches.size()));
   }
 }
 

@@ -182,7 +182,8 @@ class Chains {
 
 }  // namespace
 
-std::vector<Seam> limit_seams(const PlacedLimitSurface& placed, const LimitGrid& grid, const Camera& camera, double tolerance_px, int object) {
+std::vector<Seam> limit_seams(const PlacedLimitSurface& placed, const LimitGrid& grid, const Camera& camera, double tolerance_px,
+                              int object) {
   const Tracer tracer{placed, grid, camera, tolerance_px, object};
   return Chains(tracer).run();
 }

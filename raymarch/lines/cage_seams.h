@@ -7,6 +7,7 @@
 namespace limn {
 
 /// In the placed surface's space, as chains through places where just two of them meet.
-std::vector<Seam> limit_seams(const PlacedLimitSurface& placed, const LimitGrid& grid, const Camera& camera, double tolerance_px, int object);
+std::vector<Seam> limit_seams(const PlacedLimitSurface& placed, const LimitGrid& grid, const Camera& camera, double tolerance_px,
+                              int object);
 
 }  // namespace limn

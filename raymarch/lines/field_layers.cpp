@@ -28,8 +28,8 @@ std::optional<int> roots_on(double fa, double fb, double length, const RayBounds
   const bool differ = (fa > 0.0) != (fb > 0.0);
   if (bounds.slope.lower >= 0.0 || bounds.slope.upper <= 0.0) return differ ? 1 : 0;
   if (differ) return std::nullopt;
-  const bool clear =
-      fa > 0.0 ? positive_between(fa, fb, length, bounds.slope) : positive_between(-fa, -fb, length, {-bounds.slope.upper, -bounds.slope.lower});
+  const bool clear = fa > 0.0 ? positive_between(fa, fb, length, bounds.slope)
+                              : positive_between(-fa, -fb, length, {-bounds.slope.upper, -bounds.slope.lower});
   return clear ? std::optional<int>(0) : std::nullopt;
 }
 

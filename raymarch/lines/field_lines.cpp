@@ -14,7 +14,6 @@
 namespace limn {
 namespace {
 
-
 struct FieldTask {
   const LineTask& task;
   const FieldBodies& bodies;

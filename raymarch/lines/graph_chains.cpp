@@ -38,8 +38,8 @@ std::vector<int> partners_of(const ViewGraph& graph) {
   }
   std::vector<int> partner(2 * graph.edges.size(), -1);
   struct Pair {
-    bool turned;     ///< What is bounded on the left of the one would be on the right of the other.
-    double cosine;   ///< -1: straight on.
+    bool turned;    ///< What is bounded on the left of the one would be on the right of the other.
+    double cosine;  ///< -1: straight on.
     EdgeEnd a, b;
   };
   for (const auto& ends : at) {

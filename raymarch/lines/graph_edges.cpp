@@ -148,7 +148,8 @@ struct Builder {
     for (double place = std::floor(piece.from) + 1.0; place < piece.to; place += 1.0)
       points.push_back(curve.samples[static_cast<size_t>(place) % n]);
     points.push_back(sample_at(curve, std::min(piece.to, last_place(piece.curve)), camera));
-    LineEdge edge{step.line_class, step.object, piece.invisibility, piece.certain, !curve.smooth, static_cast<int>(piece.curve), -1, -1, {}};
+    LineEdge edge{
+        step.line_class, step.object, piece.invisibility, piece.certain, !curve.smooth, static_cast<int>(piece.curve), -1, -1, {}};
     if (piece.begin >= 0) edge.begin = vertex(piece.curve, piece.begin);
     if (piece.end >= 0) edge.end = vertex(piece.curve, piece.end);
     for (const CurveSample& sample : thinned(points, piece.begin < 0, 0.5 * task.settings.tolerance_px))

@@ -13,14 +13,14 @@
 namespace limn {
 namespace {
 
-constexpr double kLeastBend = 1e-7;    // of the radial curvature times the scene's radius: less is rounding
-constexpr double kArm_px = 0.15;        // so far from a cusp its arms are compared
+constexpr double kLeastBend = 1e-7;  // of the radial curvature times the scene's radius: less is rounding
+constexpr double kArm_px = 0.15;     // so far from a cusp its arms are compared
 constexpr double kLongestNarrow_px = 20.0;
 constexpr double kMostLensSteps = 400.0;
 constexpr double kTangency_px = 3.0;   // along either curve, from the place where they touch
 constexpr double kTogether_px = 0.03;  // polylines of curves that touch lie no farther apart
 constexpr double kShort_px = 1.0;      // pieces shorter than this are not asked by rays of their own
-constexpr double kNearEnd_px = 0.3;  // pieces in which no ray starts farther from their ends tell little
+constexpr double kNearEnd_px = 0.3;    // pieces in which no ray starts farther from their ends tell little
 
 size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples.size() : curve.samples.size() - 1; }
 
@@ -72,7 +72,8 @@ class Cutter {
 
   void find_events(const std::vector<NearerCrossing>& crossings) {
     for (const NearerCrossing& crossing : without_narrow_lenses(crossings)) {
-      if (!is_tangency(crossing)) cut_.events.push_back({VertexKind::crossing, crossing.at, crossing.layers, crossing.curve, crossing.on_nearer});
+      if (!is_tangency(crossing))
+        cut_.events.push_back({VertexKind::crossing, crossing.at, crossing.layers, crossing.curve, crossing.on_nearer});
     }
     for (size_t i = 0; i < steps_of(curve_); ++i) {
       const CurveSample &a = at(i), &b = at(i + 1);
@@ -92,8 +93,8 @@ class Cutter {
     std::stable_sort(cut_.events.begin(), cut_.events.end(), [](const CurveEvent& a, const CurveEvent& b) { return a.at < b.at; });
   }
 
-  /// Where the radial curvature changes its sign, but for rounding: the line of sight follows the contour there, and of its two arms the one
-  /// farther from the eye lies behind the other one's sheet (Koenderink & van Doorn 1982).
+  /// Where the radial curvature changes its sign, but for rounding: the line of sight follows the contour there, and of its two arms the
+  /// one farther from the eye lies behind the other one's sheet (Koenderink & van Doorn 1982).
   void find_cusps() {
     const auto sign_of = [&](size_t i) {
       const double bend = at(i).radial_curvature * extent_;
@@ -198,8 +199,8 @@ class Cutter {
     return curve_.closed ? std::min(way, lengths_.back() - way) : way;
   }
 
-  /// Where a line runs along a nearer one, as two rims of a tube seen down its axis do, their polylines cross again and again: two crossings
-  /// of the same pair of lines, between which these lie on each other, are none.
+  /// Where a line runs along a nearer one, as two rims of a tube seen down its axis do, their polylines cross again and again: two
+  /// crossings of the same pair of lines, between which these lie on each other, are none.
   std::vector<NearerCrossing> without_narrow_lenses(const std::vector<NearerCrossing>& crossings) const {
     std::vector<NearerCrossing> kept;
     std::map<std::uint32_t, std::vector<size_t>> open;  // Of each nearer curve, what is kept of it, in order.
@@ -468,8 +469,8 @@ class Cutter {
   CutCurve cut_;
 };
 
-/// Between samples i and i + 1 on a smooth curve, by the cubic through four of them (Lagrange) over their chords' lengths: its image may turn
-/// back at a cusp there, the curve itself does not.
+/// Between samples i and i + 1 on a smooth curve, by the cubic through four of them (Lagrange) over their chords' lengths: its image may
+/// turn back at a cusp there, the curve itself does not.
 glm::dvec3 point_between(const SurfaceCurve& curve, size_t i, double t) {
   const size_t n = curve.samples.size();
   const glm::dvec3 &a = curve.samples[i % n].p, &b = curve.samples[(i + 1) % n].p;

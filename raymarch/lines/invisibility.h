@@ -10,17 +10,17 @@ namespace limn {
 /// A place on a curve where an edge of the view graph ends.
 struct CurveEvent {
   VertexKind kind = VertexKind::end;
-  double at = 0.0;             ///< Index of the step plus the share of it.
+  double at = 0.0;              ///< Index of the step plus the share of it.
   std::optional<int> layers{};  ///< Added to what lies in front, walking along; nothing where only rays tell.
-  std::uint32_t nearer = 0;    ///< Of a crossing: the curve in front, and the place on it.
+  std::uint32_t nearer = 0;     ///< Of a crossing: the curve in front, and the place on it.
   double on_nearer = 0.0;
 };
 
 /// A stretch of a curve between two events.
 struct CurvePiece {
   std::uint32_t curve = 0;
-  int begin = -1, end = -1;      ///< Into CutCurve::events; -1: the whole of a closed curve.
-  double from = 0.0, to = 0.0;   ///< Places; `to` is beyond the last sample where a closed curve is walked past its first.
+  int begin = -1, end = -1;     ///< Into CutCurve::events; -1: the whole of a closed curve.
+  double from = 0.0, to = 0.0;  ///< Places; `to` is beyond the last sample where a closed curve is walked past its first.
   double length_px = 0.0;
   int invisibility = 0;
   bool certain = true;

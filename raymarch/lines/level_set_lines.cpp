@@ -40,7 +40,9 @@ PlacedGrid place_grid(const LineTask& task, size_t object) {
   leaf.object_from_world = inverse(solver_from_world);
   PlacedGrid grid{object, field_from_leaf(leaf, false)};
   grid.solver_from_index = compose(solver_from_world, level_set.info().world_from_index);
-  for (int axis = 0; axis < 3; ++axis) grid.voxel = axis == 0 ? glm::length(grid.solver_from_index.linear[0]) : std::max(grid.voxel, glm::length(grid.solver_from_index.linear[axis]));
+  for (int axis = 0; axis < 3; ++axis)
+    grid.voxel =
+        axis == 0 ? glm::length(grid.solver_from_index.linear[0]) : std::max(grid.voxel, glm::length(grid.solver_from_index.linear[axis]));
   grid.box = dilate(transform(solver_from_world, level_set.info().bounds), 2.0 * grid.voxel);
   grid.cells = surface_cells(level_set);
   const glm::dmat3 turn = glm::transpose(inverse(solver_from_world).linear);
@@ -74,9 +76,11 @@ Lattice lattice_of(const PlacedGrid& placed, const LineTask& task, const std::ve
   const auto cell_at = [&](const glm::dvec3& p) { return glm::ivec3(glm::floor((p - lattice.grid.corner) / lattice.grid.side)); };
   for (const SurfaceCell& cell : placed.cells) {
     const glm::dvec3 middle = placed.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
-    const double facing = glm::dot(glm::dvec3(cell.normal), view_vector(task.camera, middle)), reach = 2.0 * static_cast<double>(cell.spread) + kTurn;
-    const bool may = cell.normal == glm::vec3(0.0f) ||
-                     std::any_of(levels.begin(), levels.end(), [&](double level) { return std::fabs(std::asin(std::clamp(facing, -1.0, 1.0)) - std::asin(level)) <= reach; });
+    const double facing = glm::dot(glm::dvec3(cell.normal), view_vector(task.camera, middle)),
+                 reach = 2.0 * static_cast<double>(cell.spread) + kTurn;
+    const bool may = cell.normal == glm::vec3(0.0f) || std::any_of(levels.begin(), levels.end(), [&](double level) {
+                       return std::fabs(std::asin(std::clamp(facing, -1.0, 1.0)) - std::asin(level)) <= reach;
+                     });
     if (!may) continue;
     const glm::ivec3 own = aligned ? cell.node - lowest : cell_at(middle);
     const int around = aligned && !cell.near_corner ? 0 : 1;
@@ -130,7 +134,8 @@ SurfaceCurve curve_of(const LineTask& task, const FieldCurve& found, int object)
 /// Counts sign changes along rays, a quarter of a voxel at a time near the surface and as far as the distance says elsewhere.
 class GridLayers {
  public:
-  GridLayers(std::vector<PlacedGrid> grids, const Camera& camera, double extent) : grids_(std::move(grids)), camera_(camera), extent_(extent) {}
+  GridLayers(std::vector<PlacedGrid> grids, const Camera& camera, double extent)
+      : grids_(std::move(grids)), camera_(camera), extent_(extent) {}
 
   int before(const CurveSample& sample) const {
     auto& evaluators = evaluators_.local();

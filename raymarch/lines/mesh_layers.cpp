@@ -26,7 +26,8 @@ using Triangle = LayerTriangle;
 std::vector<std::int32_t> faces_of_corners(const Mesh& mesh) {
   std::vector<std::int32_t> faces;
   faces.reserve(mesh.corner_vertices.size());
-  for (size_t f = 0; f < mesh.face_sizes.size(); ++f) faces.insert(faces.end(), static_cast<size_t>(mesh.face_sizes[f]), static_cast<std::int32_t>(f));
+  for (size_t f = 0; f < mesh.face_sizes.size(); ++f)
+    faces.insert(faces.end(), static_cast<size_t>(mesh.face_sizes[f]), static_cast<std::int32_t>(f));
   return faces;
 }
 
@@ -81,8 +82,7 @@ struct MeshLayers::State {
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](std::uint32_t i) { return std::tie(positions[i].x, positions[i].y, positions[i].z); };
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-    for (size_t i = 0; i < order.size(); ++i)
-      same[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? same[order[i - 1]] : order[i];
+    for (size_t i = 0; i < order.size(); ++i) same[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? same[order[i - 1]] : order[i];
     Parts joined(positions.size());
     for (Triangle& triangle : triangles) {
       for (std::uint32_t& corner : triangle.corners) corner = same[corner];
@@ -100,8 +100,8 @@ struct MeshLayers::State {
     tree = rtcNewScene(device);
     rtcSetSceneFlags(tree, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), std::max<size_t>(positions.size(), 1)));
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                                 std::max<size_t>(positions.size(), 1)));
     auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                                    3 * sizeof(unsigned), std::max<size_t>(triangles.size(), 1)));
     if (vertices == nullptr || corners == nullptr) throw MachineError("Embree could not build its tree over the mesh");
@@ -131,7 +131,8 @@ struct MeshLayers::State {
       arguments->valid[0] = 0;  // Go on.
     };
     RTCRayHit query{};
-    query.ray.org_x = static_cast<float>(origin.x), query.ray.org_y = static_cast<float>(origin.y), query.ray.org_z = static_cast<float>(origin.z);
+    query.ray.org_x = static_cast<float>(origin.x), query.ray.org_y = static_cast<float>(origin.y),
+    query.ray.org_z = static_cast<float>(origin.z);
     query.ray.dir_x = static_cast<float>(direction.x), query.ray.dir_y = static_cast<float>(direction.y);
     query.ray.dir_z = static_cast<float>(direction.z);
     query.ray.tnear = 0.0f, query.ray.tfar = static_cast<float>(end);
@@ -139,11 +140,13 @@ struct MeshLayers::State {
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(tree, &collector.context, &query);
     std::vector<LayerHit>& hits = collector.hits;
-    std::sort(hits.begin(), hits.end(), [](const LayerHit& a, const LayerHit& b) { return std::tie(a.t, a.triangle) < std::tie(b.t, b.triangle); });
+    std::sort(hits.begin(), hits.end(),
+              [](const LayerHit& a, const LayerHit& b) { return std::tie(a.t, a.triangle) < std::tie(b.t, b.triangle); });
     std::vector<LayerHit> kept;
     for (const LayerHit& hit : hits) {
       const bool again = std::any_of(kept.rbegin(), kept.rend(), [&](const LayerHit& k) {
-        return hit.t - k.t <= 1e-5 * (extent + end) && touch(triangles[hit.triangle], triangles[k.triangle]) && same_side(hit, k, direction);
+        return hit.t - k.t <= 1e-5 * (extent + end) && touch(triangles[hit.triangle], triangles[k.triangle]) &&
+               same_side(hit, k, direction);
       });
       if (!again) kept.push_back(hit);
     }
@@ -291,7 +294,8 @@ std::vector<SurfaceCurve> MeshLayers::intersections() const {
       const glm::dvec3 own_normal = glm::normalize(state.normal_of(own)), other_normal = glm::normalize(state.normal_of(other));
       const bool lower = own.part < other.part;
       hits.push_back({glm::mix(a, b, hit.t / length), lower ? own_normal : other_normal, lower ? other_normal : own_normal, other.object});
-      for (const std::uint32_t face : faces) of_pair[{std::min(face, hit.triangle), std::max(face, hit.triangle)}].push_back(hits.size() - 1);
+      for (const std::uint32_t face : faces)
+        of_pair[{std::min(face, hit.triangle), std::max(face, hit.triangle)}].push_back(hits.size() - 1);
     }
   }
   std::vector<std::vector<size_t>> next(hits.size());

@@ -32,7 +32,9 @@ struct MeshEdge {
 class MeshTracer {
  public:
   MeshTracer(const LineTask& task, const MeshLayers& layers)
-      : task_(task), positions_(layers.positions()), triangles_(layers.triangles()),
+      : task_(task),
+        positions_(layers.positions()),
+        triangles_(layers.triangles()),
         crease_cosine_(std::cos(task.settings.crease_angle_deg * std::numbers::pi / 180.0)) {}
 
   std::vector<SurfaceCurve> run() {
@@ -77,7 +79,8 @@ class MeshTracer {
         if (a != b) uses.push_back({std::min(a, b), std::max(a, b), t});
       }
     }
-    std::sort(uses.begin(), uses.end(), [](const EdgeUse& x, const EdgeUse& y) { return std::tie(x.a, x.b, x.triangle) < std::tie(y.a, y.b, y.triangle); });
+    std::sort(uses.begin(), uses.end(),
+              [](const EdgeUse& x, const EdgeUse& y) { return std::tie(x.a, x.b, x.triangle) < std::tie(y.a, y.b, y.triangle); });
     for (size_t i = 0; i < uses.size();) {
       size_t end = i;
       while (end < uses.size() && uses[end].a == uses[i].a && uses[end].b == uses[i].b) ++end;
@@ -139,7 +142,8 @@ class MeshTracer {
   int layers_beside(std::uint32_t vertex, std::uint32_t other) const {
     const glm::dvec3& p = positions_[vertex];
     const glm::dvec3 v = view_vector(task_.camera, p);
-    const glm::dvec3 x = glm::normalize(std::fabs(v.x) < 0.8 ? glm::cross(v, glm::dvec3(1.0, 0.0, 0.0)) : glm::cross(v, glm::dvec3(0.0, 1.0, 0.0)));
+    const glm::dvec3 x =
+        glm::normalize(std::fabs(v.x) < 0.8 ? glm::cross(v, glm::dvec3(1.0, 0.0, 0.0)) : glm::cross(v, glm::dvec3(0.0, 1.0, 0.0)));
     const glm::dvec3 y = glm::cross(v, x);
     const auto seen = [&](std::uint32_t q) {
       const glm::dvec3 d = positions_[q] - p;
@@ -186,7 +190,9 @@ class MeshTracer {
       e = here[0] == e ? here[1] : here[0];
     }
   }
-  std::uint32_t other_end(std::uint32_t edge, std::uint32_t vertex) const { return edges_[edge].a == vertex ? edges_[edge].b : edges_[edge].a; }
+  std::uint32_t other_end(std::uint32_t edge, std::uint32_t vertex) const {
+    return edges_[edge].a == vertex ? edges_[edge].b : edges_[edge].a;
+  }
 
   void add_step(std::uint32_t vertex, std::uint32_t before, std::uint32_t next, CurveSample& sample) const {
     const int step = layers_beside(vertex, next) - layers_beside(vertex, before);

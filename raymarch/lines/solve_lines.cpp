@@ -18,7 +18,8 @@ void check(const LineSettings& settings) {
   const auto fail = [](const std::string& field, double value, const std::string& problem, const std::string& expected) {
     throw InputError({{}, field, fmt::format("{}", value), problem, expected});
   };
-  if (!(settings.threshold > 0.0 && settings.threshold < 1.0)) fail("threshold", settings.threshold, "not a threshold", "above 0 and below 1");
+  if (!(settings.threshold > 0.0 && settings.threshold < 1.0))
+    fail("threshold", settings.threshold, "not a threshold", "above 0 and below 1");
   if (!(settings.tolerance_px > 0.0 && std::isfinite(settings.tolerance_px)))
     fail("tolerance", settings.tolerance_px, "not a tolerance", "above 0 px");
   if (!(settings.crease_angle_deg > 0.0 && settings.crease_angle_deg < 180.0))

@@ -31,7 +31,7 @@ struct CurveSample {
   /// The curve changes its nature here: a contour leads into it, or it becomes a fold.
   bool joint = false;
   std::vector<Piercing> pierced{};  ///< Within the step.
-  bool on_chord = false;  ///< Between two samples, off the curve by up to the tolerance.
+  bool on_chord = false;            ///< Between two samples, off the curve by up to the tolerance.
 };
 
 /// Of one object's surface, or of two that meet.

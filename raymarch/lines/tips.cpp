@@ -9,7 +9,7 @@
 namespace limn {
 namespace {
 
-constexpr double kReach_px = 8.0;  // two cells, on whose diagonal a tip may be missed
+constexpr double kReach_px = 8.0;    // two cells, on whose diagonal a tip may be missed
 constexpr double kOnSurface = 1e-9;  // of the extent
 
 /// The samples beside the tip are replaced by it: they are known to a cell only.
@@ -53,7 +53,8 @@ void lead_to_tips(const std::vector<glm::dvec3>& tips, const Camera& camera, std
     for (SurfaceCurve& curve : curves) {
       if (curve.smooth && !curve.samples.empty()) lead_to(tip, camera, curve);
     }
-    curves.erase(std::remove_if(curves.begin(), curves.end(), [](const SurfaceCurve& curve) { return curve.samples.empty(); }), curves.end());
+    curves.erase(std::remove_if(curves.begin(), curves.end(), [](const SurfaceCurve& curve) { return curve.samples.empty(); }),
+                 curves.end());
   }
 }
 

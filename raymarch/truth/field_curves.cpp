@@ -257,8 +257,8 @@ FieldCurves trace_field_curves(const Field& field, const Camera& camera, const V
   result.cell = grid.side;
   result.cell_px = grid.side * scale;
   const SharpField sharp = split_branches(field, bounds.radius(), settings.whole_seams);
-  const CellSearch search{sharp, camera, viewer, grid, result.level, {0.0, settings.threshold}, settings.threshold > 0.0 ? 3u : 1u,
-                          settings.whole_seams};
+  const CellSearch search{
+      sharp, camera, viewer, grid, result.level, {0.0, settings.threshold}, settings.threshold > 0.0 ? 3u : 1u, settings.whole_seams};
   CellResult found = search_cells(search, how);
   result.cells = found.cells;
   result.unsettled = found.unsettled;

@@ -57,8 +57,8 @@ CurvePoint curve_point(const TracedPoint& q, const glm::dvec3& uphill) {
 }
 
 /// A curve of a body, cut where it goes from one object to the next.
-void add_traced(const FieldBodies& solved, const Camera& camera, const Viewer& viewer, std::vector<FieldEvaluator>& evaluators, const std::vector<size_t>& body,
-                const FieldCurve& curve, std::vector<TracedCurve>& curves) {
+void add_traced(const FieldBodies& solved, const Camera& camera, const Viewer& viewer, std::vector<FieldEvaluator>& evaluators,
+                const std::vector<size_t>& body, const FieldCurve& curve, std::vector<TracedCurve>& curves) {
   const CurveKind kind = curve.c == 0.0 ? CurveKind::silhouette : CurveKind::inner;
   const size_t n = curve.points.size();
   std::vector<int> objects(n);
@@ -83,7 +83,8 @@ void add_traced(const FieldBodies& solved, const Camera& camera, const Viewer& v
   if (traced.points.size() > 1) curves.push_back(std::move(traced));
 }
 
-TracedPoint point_on_step(const FieldBodies& solved, const Camera& camera, const Viewer& viewer, double threshold, const TracedCurve& curve, size_t i, double t) {
+TracedPoint point_on_step(const FieldBodies& solved, const Camera& camera, const Viewer& viewer, double threshold, const TracedCurve& curve,
+                          size_t i, double t) {
   const TracedPoint &a = curve.points[i], &b = curve.points[(i + 1) % curve.points.size()];
   FieldEvaluator whole(solved.body_fields[solved.body_of[*place_of(solved, curve.object)]]);
   const Box around = dilate(include(include(Box{}, a.p), b.p), kFanReach * glm::distance(a.p, b.p));
@@ -151,7 +152,8 @@ TruthShare trace_fields(const Scene& scene, const std::vector<size_t>& objects, 
   share.blocked = [solved, occluders](const TracedPoint& point, int object) {
     return occluders->blocked(point, place_of(*solved, object));
   };
-  share.between = [solved, camera = settings.camera, viewer, threshold = settings.truth.threshold](const TracedCurve& curve, size_t i, double t) {
+  share.between = [solved, camera = settings.camera, viewer, threshold = settings.truth.threshold](const TracedCurve& curve, size_t i,
+                                                                                                   double t) {
     return point_on_step(*solved, camera, viewer, threshold, curve, i, t);
   };
   share.others = [solved, occluders](const glm::dvec3& p, int object) { return occluders->others(p, place_of(*solved, object)); };

@@ -17,7 +17,7 @@ constexpr double kThinning = 0.1;         // of the tolerance
 constexpr double kLongestChordPx = 4.0;
 constexpr size_t kManyBranches = 12;
 constexpr double kAround = 1.0 / 24.0;  // of the extent
-constexpr double kBulge = 1.2;  // a curve's length over its chord's, at most
+constexpr double kBulge = 1.2;          // a curve's length over its chord's, at most
 
 /// A point of a strand and whether the border goes through it.
 struct Spot {
@@ -55,8 +55,8 @@ class Cutter {
  private:
   FieldEvaluator& evaluator(int branch) { return evaluators_[static_cast<size_t>(branch)]; }
 
-  /// Of many branches only those that may be surface around a place are evaluated there; of the others, which bounds show to decide nothing,
-  /// the values at its middle will do.
+  /// Of many branches only those that may be surface around a place are evaluated there; of the others, which bounds show to decide
+  /// nothing, the values at its middle will do.
   void look_around(const glm::dvec3& p) {
     const double side = kAround * settings_.extent;
     const glm::dvec3 cube = glm::floor(p / side);
@@ -67,7 +67,8 @@ class Cutter {
     const glm::dvec3 middle = side * (cube + 0.5);
     for (size_t i = 0; i < evaluators_.size(); ++i) values_[i] = evaluators_[i].value(middle);
     for (const int branch : {strand_.first, strand_.second}) {
-      if (branch >= 0 && std::find(near_.begin(), near_.end(), static_cast<size_t>(branch)) == near_.end()) near_.push_back(static_cast<size_t>(branch));
+      if (branch >= 0 && std::find(near_.begin(), near_.end(), static_cast<size_t>(branch)) == near_.end())
+        near_.push_back(static_cast<size_t>(branch));
     }
   }
 

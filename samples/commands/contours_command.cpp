@@ -46,7 +46,8 @@ DrawingSettings drawing_settings(const LineOptions& lines) {
 fs::path view_file(const fs::path& file, int view, int views) {
   if (views == 1) return file;
   fs::path out = file;
-  out.replace_filename(fmt::format("{}_v{:0{}}{}", file.stem().string(), view, std::to_string(views - 1).size(), file.extension().string()));
+  out.replace_filename(
+      fmt::format("{}_v{:0{}}{}", file.stem().string(), view, std::to_string(views - 1).size(), file.extension().string()));
   return out;
 }
 

@@ -336,8 +336,7 @@ void add_line_surface(CLI::App& app, Options& options) {
 void add_lines(CLI::App& app, Options& options) {
   LineOptions& lines = options.lines;
   add(app,
-      {"--lines", "A,B,...|all",
-       "classes of lines (limn list lines); default: contour, boundary, crease, intersection, material", kLines},
+      {"--lines", "A,B,...|all", "classes of lines (limn list lines); default: contour, boundary, crease, intersection, material", kLines},
       [&lines](const std::string& text) {
         lines.lines.classes.clear();
         if (text == "all") {
@@ -370,7 +369,9 @@ void add_lines(CLI::App& app, Options& options) {
       [&lines](const std::string& text) { lines.drawing.fit_px = parse_number_above("--fit", text, 0.0, false, "above 0 px"); });
   add(app, {"--page", "WxHmm", "the drawing fitted into a page of millimetres; default: a unit is a pixel", kLines},
       [&lines](const std::string& text) { lines.drawing.page_mm = parse_page("--page", text); });
-  add(app, {"--style", "NAME|FILE.css", "widths, colours and dashes of each class: plain, technical, ink, or a style sheet; default plain", kLines},
+  add(app,
+      {"--style", "NAME|FILE.css", "widths, colours and dashes of each class: plain, technical, ink, or a style sheet; default plain",
+       kLines},
       [&lines](const std::string& text) { lines.drawing.style = read_style(text); });
   add_switch(app, {"--strict", "", "exit with 1 where the certificate finds a conflict", kLines}, lines.strict);
 }

@@ -44,7 +44,7 @@ struct LineOptions {
   DrawingSettings drawing{.style = built_in_style("plain")};
   bool hidden = false;
   std::optional<std::pair<int, int>> layers{};  ///< In front of what is drawn.
-  bool strict = false;  ///< Conflicts of the certificate are a failure.
+  bool strict = false;                          ///< Conflicts of the certificate are a failure.
 };
 
 /// What `limn judge` compares, and what it lets pass.

@@ -75,7 +75,8 @@ DrawingStyle built_in_style(const std::string& name) {
     return style;
   }
   if (name == "ink") {
-    for (const LineClassDescriptor& one : line_classes()) set(one.line_class, {1.2, "#1a1a1a", {}, true}, {0.6, "#b0a89c", {2.0, 3.0}, false});
+    for (const LineClassDescriptor& one : line_classes())
+      set(one.line_class, {1.2, "#1a1a1a", {}, true}, {0.6, "#b0a89c", {2.0, 3.0}, false});
     style.visible[LineClass::contour] = style.visible[LineClass::boundary] = {2.4, "#1a1a1a", {}, true};
     return style;
   }

@@ -37,8 +37,8 @@ enum class CurveForm { polyline, bezier, arc };
 struct DrawingSettings {
   int lowest_invisibility = 0, highest_invisibility = 0;  ///< Layers in front of what is drawn.
   CurveForm form = CurveForm::polyline;
-  double fit_px = 0.05;                    ///< How far fitted curves may lie from the line.
-  std::optional<glm::dvec2> page_mm{};     ///< The drawing, scaled to fit; unset: a unit is a pixel.
+  double fit_px = 0.05;                 ///< How far fitted curves may lie from the line.
+  std::optional<glm::dvec2> page_mm{};  ///< The drawing, scaled to fit; unset: a unit is a pixel.
   DrawingStyle style{};
 };
 

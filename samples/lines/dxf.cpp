@@ -136,11 +136,13 @@ class DxfText {
       } else {
         const auto& cubic = std::get<CubicTo>(step);
         const glm::dvec2 from = corners.back().at;
-        const double length = glm::distance(from, cubic.control1) + glm::distance(cubic.control1, cubic.control2) + glm::distance(cubic.control2, cubic.to);
+        const double length =
+            glm::distance(from, cubic.control1) + glm::distance(cubic.control1, cubic.control2) + glm::distance(cubic.control2, cubic.to);
         const int parts = std::clamp(static_cast<int>(std::ceil(2.0 * std::sqrt(length))), 2, 400);
         for (int k = 1; k <= parts; ++k) {
           const double t = static_cast<double>(k) / parts, s = 1.0 - t;
-          corners.push_back({s * s * s * from + 3.0 * s * s * t * cubic.control1 + 3.0 * s * t * t * cubic.control2 + t * t * t * cubic.to, 0.0});
+          corners.push_back(
+              {s * s * s * from + 3.0 * s * s * t * cubic.control1 + 3.0 * s * t * t * cubic.control2 + t * t * t * cubic.to, 0.0});
         }
       }
     }

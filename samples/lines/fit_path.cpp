@@ -163,7 +163,8 @@ std::optional<ArcTo> arc_for(Points points, double fit_px) {
 /// As many points as one step takes, from the first on: arcs where they are longer than lines.
 void fit_arcs(Points points, double fit_px, std::vector<PathStep>& out) {
   const auto straight = [&](Points run) {
-    return std::all_of(run.begin(), run.end(), [&](const glm::dvec2& p) { return distance_to_segment(p, run.front(), run.back()) <= fit_px; });
+    return std::all_of(run.begin(), run.end(),
+                       [&](const glm::dvec2& p) { return distance_to_segment(p, run.front(), run.back()) <= fit_px; });
   };
   // The longest run that fits, by doubling and halving.
   const auto longest = [&](size_t from, const auto& fits) {

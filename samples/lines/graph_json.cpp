@@ -67,8 +67,14 @@ Json certificate_json(const ViewGraph& graph) {
   for (const LineConflict& conflict : graph.conflicts) conflicts.push_back({{"what", conflict.what}, {"px", pair(conflict.px)}});
   std::map<std::string, int> kinds;
   for (const LineVertex& vertex : graph.vertices) ++kinds[name_of(vertex.kind)];
-  return {{"chains", graph.chains.size()}, {"conflicts", std::move(conflicts)}, {"bound_px", graph.bound_px}, {"exact", graph.exact},
-          {"rays", graph.rays},            {"vertices", kinds},                 {"from", graph.from},         {"notes", graph.notes}};
+  return {{"chains", graph.chains.size()},
+          {"conflicts", std::move(conflicts)},
+          {"bound_px", graph.bound_px},
+          {"exact", graph.exact},
+          {"rays", graph.rays},
+          {"vertices", kinds},
+          {"from", graph.from},
+          {"notes", graph.notes}};
 }
 
 Json graph_json(const ViewGraph& graph, int width_px, int height_px) {

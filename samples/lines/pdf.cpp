@@ -83,7 +83,8 @@ void write_pdf(const LineDrawing& drawing, const std::string& title, const std::
   }
   cairo_surface_finish(surface.get());
   const cairo_status_t status = cairo_surface_status(surface.get());
-  if (status != CAIRO_STATUS_SUCCESS) throw MachineError(fmt::format("{}: cannot be written: {}", file.string(), cairo_status_to_string(status)));
+  if (status != CAIRO_STATUS_SUCCESS)
+    throw MachineError(fmt::format("{}: cannot be written: {}", file.string(), cairo_status_to_string(status)));
 }
 
 }  // namespace limn

@@ -135,7 +135,8 @@ class StyleSheet {
       try {
         const glm::dvec3 linear = parse_color("stroke", value);
         style.color = "#";
-        for (int i = 0; i < 3; ++i) style.color += fmt::format("{:02x}", std::lround(255.0f * srgb_from_linear(static_cast<float>(linear[i]))));
+        for (int i = 0; i < 3; ++i)
+          style.color += fmt::format("{:02x}", std::lround(255.0f * srgb_from_linear(static_cast<float>(linear[i]))));
       } catch (const InputError&) {
         fail(at, value, "not a colour", "#rrggbb, #rgb or a name such as black");
       }

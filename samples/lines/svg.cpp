@@ -40,7 +40,8 @@ std::string escaped(const std::string& text) {
 /// An arc of more than half a circle is cut in two: SVG draws none whose ends coincide.
 void add_arc(const ArcTo& arc, const glm::dvec2& from, std::string& path) {
   const auto piece = [&](const glm::dvec2& to, double sweep) {
-    path += fmt::format("A{0} {0} 0 {1} {2} {3}", number(arc.radius), std::fabs(sweep) > std::numbers::pi ? 1 : 0, sweep > 0.0 ? 1 : 0, place(to));
+    path += fmt::format("A{0} {0} 0 {1} {2} {3}", number(arc.radius), std::fabs(sweep) > std::numbers::pi ? 1 : 0, sweep > 0.0 ? 1 : 0,
+                        place(to));
   };
   if (std::fabs(arc.sweep) < 1.5 * std::numbers::pi) {
     piece(arc.to, arc.sweep);
@@ -94,7 +95,8 @@ std::string header(const LineDrawing& drawing, const std::string& title) {
   }
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
   text += fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" {} viewBox=\"0 0 {} {}\">\n",
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" {} viewBox=\"0 0 {} "
+      "{}\">\n",
       size, drawing.width_px, drawing.height_px);
   text += "<title>" + escaped(title) + "</title>\n";
   return text;

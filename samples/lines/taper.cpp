@@ -6,9 +6,9 @@
 namespace limn {
 namespace {
 
-constexpr double kReach = 8.0;       // widths, from an end
-constexpr double kTip = 0.12;        // of the width, at an end
-constexpr double kStep_px = 1.0;     // between places of the outline near an end
+constexpr double kReach = 8.0;    // widths, from an end
+constexpr double kTip = 0.12;     // of the width, at an end
+constexpr double kStep_px = 1.0;  // between places of the outline near an end
 
 bool narrows_at(VertexKind kind) { return kind == VertexKind::cusp || kind == VertexKind::end; }
 

@@ -17,7 +17,8 @@ Scene make() {
   for (int i = 0; i < kCount; ++i) {
     const double y = 1.0 - 2.0 * (i + 0.5) / kCount, r = std::sqrt(1.0 - y * y), turn = golden * i;
     const double radius = 0.24 + 0.05 * (i % 3);
-    spheres.push_back(translate(make_shape("sphere", {{"radius", {radius}}}), {0.8 * r * std::cos(turn), 0.8 * y, 0.8 * r * std::sin(turn)}));
+    spheres.push_back(
+        translate(make_shape("sphere", {{"radius", {radius}}}), {0.8 * r * std::cos(turn), 0.8 * y, 0.8 * r * std::sin(turn)}));
   }
   Scene scene;
   scene.objects.push_back({.name = "spheres", .source = combine(Csg::union_, spheres), .color = {0.45f, 0.55f, 0.72f}});

@@ -169,7 +169,8 @@ glm::dvec2 parse_page(const std::string& field, std::string_view text) {
   const std::string numbers = in_mm ? whole.substr(0, whole.size() - 2) : whole;
   const auto parts = split(numbers, 'x');
   if (!in_mm || parts.size() != 2) fail(field, whole, "not a page", expected);
-  const glm::dvec2 page(parse_number_above(field, parts[0], 0.0, false, expected), parse_number_above(field, parts[1], 0.0, false, expected));
+  const glm::dvec2 page(parse_number_above(field, parts[0], 0.0, false, expected),
+                        parse_number_above(field, parts[1], 0.0, false, expected));
   if (page.x > 10'000.0 || page.y > 10'000.0) fail(field, whole, "out of range", expected);
   return page;
 }

@@ -76,9 +76,19 @@ void record(const void* shape, const Vector3<Recorded>& p, Recorded& value) {
 
 const ShapeFunctions& functions_of(bool recorded) {
   static constexpr ShapeFunctions plain{
-      {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>}, support, nullptr, nullptr, nullptr, nullptr};
+      {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>},
+      support,
+      nullptr,
+      nullptr,
+      nullptr,
+      nullptr};
   static constexpr ShapeFunctions lanes{
-      {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>}, support, record, nullptr, nullptr, nullptr};
+      {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>},
+      support,
+      record,
+      nullptr,
+      nullptr,
+      nullptr};
   return recorded ? lanes : plain;
 }
 

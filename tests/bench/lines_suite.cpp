@@ -59,7 +59,8 @@ Row run(const std::string& name, const Scene& scene, const LinesBenchSettings& s
     row.visible += std::count_if(graph.chains.begin(), graph.chains.end(), [](const LineChain& chain) { return chain.invisibility == 0; });
     row.rays += graph.rays;
     row.conflicts += static_cast<std::int64_t>(graph.conflicts.size());
-    row.open_ends += std::count_if(graph.vertices.begin(), graph.vertices.end(), [](const LineVertex& v) { return v.kind == VertexKind::end; });
+    row.open_ends +=
+        std::count_if(graph.vertices.begin(), graph.vertices.end(), [](const LineVertex& v) { return v.kind == VertexKind::end; });
     row.bound_px = std::max(row.bound_px, graph.bound_px);
     for (const LineConflict& conflict : graph.conflicts)
       fmt::print(settings.table, "{}, view {}: conflict at {:.2f}, {:.2f}: {}\n", name, view, conflict.px.x, conflict.px.y, conflict.what);
@@ -72,8 +73,8 @@ nlohmann::json json_of(Row row, std::FILE* table) {
   const double median = row.ms[row.ms.size() / 2], worst = row.ms.back();
   fmt::print(table, "| {} | {} | {:.0f} | {:.0f} | {} | {} | {} | {} | {} | {:.3g} |\n", row.name, row.ms.size(), median, worst, row.chains,
              row.visible, row.rays, row.conflicts, row.open_ends, row.bound_px);
-  return {{"suite", "lines"},         {"case", row.name},         {"contestant", "limn"},     {"views", row.ms.size()},
-          {"median_ms", median},      {"worst_ms", worst},        {"chains", row.chains},     {"visible", row.visible},
+  return {{"suite", "lines"},           {"case", row.name},           {"contestant", "limn"},    {"views", row.ms.size()},
+          {"median_ms", median},        {"worst_ms", worst},          {"chains", row.chains},    {"visible", row.visible},
           {"conflicts", row.conflicts}, {"open_ends", row.open_ends}, {"bound_px", row.bound_px}};
 }
 
@@ -81,10 +82,13 @@ nlohmann::json json_of(Row row, std::FILE* table) {
 
 nlohmann::json bench_lines(const LinesBenchSettings& settings) {
   nlohmann::json rows = nlohmann::json::array();
-  fmt::print(settings.table, "| input | views | median ms | worst ms | chains | visible | rays | conflicts | open ends | bound px |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  fmt::print(settings.table,
+             "| input | views | median ms | worst ms | chains | visible | rays | conflicts | open ends | bound px "
+             "|\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const SceneDescriptor& descriptor : scenes()) {
     const auto& asked = settings.scenes;
-    if (std::find(asked.begin(), asked.end(), descriptor.about.name) == asked.end() && (!asked.empty() || !settings.meshes.empty())) continue;
+    if (std::find(asked.begin(), asked.end(), descriptor.about.name) == asked.end() && (!asked.empty() || !settings.meshes.empty()))
+      continue;
     rows.push_back(json_of(run(descriptor.about.name, descriptor.make(), settings), settings.table));
   }
   for (const std::string& mesh : settings.meshes) {

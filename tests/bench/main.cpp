@@ -58,7 +58,9 @@ struct Settings {
   bool json = false;
   std::vector<std::string> against{};  ///< Two lists of files.
   double limit = 1.1;
-  bool runs_suite(const std::string& name) const { return suite == name || (suite == "all" && name != "plan" && name != "growth" && name != "lines"); }
+  bool runs_suite(const std::string& name) const {
+    return suite == name || (suite == "all" && name != "plan" && name != "growth" && name != "lines");
+  }
   /// With --json the document alone goes to stdout.
   std::FILE* table() const { return json ? stderr : stdout; }
 };

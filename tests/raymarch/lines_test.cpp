@@ -148,8 +148,8 @@ TEST(Lines, ContoursOfEllipsoidsAreTheirPolarConics) {
 
 constexpr double kMajor = 1.0, kMinor = 0.38;
 
-/// The contour of a torus about the y axis: at every angle u around it N.V = 0 is A cos v + B sin v = C for the angle v around the tube. Where
-/// its two solutions meet the curve turns back: there u is spaced so that points are as far apart as elsewhere.
+/// The contour of a torus about the y axis: at every angle u around it N.V = 0 is A cos v + B sin v = C for the angle v around the tube.
+/// Where its two solutions meet the curve turns back: there u is spaced so that points are as far apart as elsewhere.
 std::vector<Polyline> torus_contour(const Camera& camera) {
   const bool perspective = camera.projection == Projection::perspective;
   const glm::dvec3 e = perspective ? camera.eye : camera.world_from_camera[2];
@@ -167,7 +167,8 @@ std::vector<Polyline> torus_contour(const Camera& camera) {
   };
   for (int i = 0; i < kSteps; ++i) {
     const double u = 2.0 * kPi * i / kSteps, next = 2.0 * kPi * (i + 1) / kSteps;
-    if (exists(u) && (i == 0 || !exists(2.0 * kPi * (i - 1) / kSteps))) ranges.emplace_back(i == 0 ? 0.0 : edge(u, 2.0 * kPi * (i - 1) / kSteps), u);
+    if (exists(u) && (i == 0 || !exists(2.0 * kPi * (i - 1) / kSteps)))
+      ranges.emplace_back(i == 0 ? 0.0 : edge(u, 2.0 * kPi * (i - 1) / kSteps), u);
     if (exists(u)) ranges.back().y = exists(next) ? next : edge(u, next);
   }
   std::vector<Polyline> lines;
@@ -401,7 +402,8 @@ TEST(Lines, ContoursOfLevelSetsConvergeWithOrderTwo) {
   }
   EXPECT_LE(worst[3], 0.05);
   // Until the tolerance of the tracing, 0.005 px, is reached.
-  for (size_t i = 0; i + 1 < worst.size(); ++i) EXPECT_TRUE(worst[i + 1] < worst[i] / 3.0 || worst[i + 1] < 0.01) << worst[i] << " " << worst[i + 1];
+  for (size_t i = 0; i + 1 < worst.size(); ++i)
+    EXPECT_TRUE(worst[i + 1] < worst[i] / 3.0 || worst[i + 1] < 0.01) << worst[i] << " " << worst[i + 1];
 }
 
 TEST(Lines, TwoObjectsIntersect) {

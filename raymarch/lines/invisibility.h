@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "raymarch/lines/crossings.h"
+#include "raymarch/lines/nearer_crossings.h"
 
 namespace limn {
 

@@ -38,7 +38,7 @@ glm::ivec2 whole_size(const SvgFile& svg, const fs::path& file) {
 void check_size(const fs::path& file, const char* field, const glm::ivec2& found, const glm::ivec2& size_px) {
   if (found == size_px) return;
   throw InputError({file.string(), field, fmt::format("{}x{}", found.x, found.y), "differs from the size of the picture",
-                    fmt::format("--size {}x{}, or a drawing of {}x{}", found.x, found.y, size_px.x, size_px.y)});
+                    fmt::format("a size of {}x{}, or a drawing of {}x{}", found.x, found.y, size_px.x, size_px.y)});
 }
 
 /// Colours that limn does not know count as ink: they are some colour.
@@ -66,7 +66,7 @@ DrawnLines lines_of_svg(const fs::path& file, const InkChoice& ink, const glm::i
     drawing.lines.push_back({line.points, line.closed || !stroked, line.width_px});
   }
   if (drawing.lines.empty() && ink.color)
-    throw InputError({file.string(), "--ink", "", "it has no stroke of this colour", "the colour of its lines"});
+    throw InputError({file.string(), "ink", "", "it has no stroke of this colour", "the colour of its lines"});
   if (drawing.lines.empty()) drawing.notes.emplace_back("the SVG draws no line");
   for (const std::string& what : svg.left_out) drawing.notes.push_back(what + " in the SVG is left out");
   return drawing;
@@ -85,14 +85,15 @@ DrawnLines read_drawing(const fs::path& file, const InkChoice& ink, const glm::i
   check_kind(file);
   if (is_svg(file)) {
     if (ink.alpha || !ink.mask.empty())
-      throw InputError({"", ink.alpha ? "--alpha" : "--mask", "", "an SVG has no pixels", "--ink COLOR, or a picture"});
+      throw InputError({"", ink.alpha ? "alpha" : "mask", "", "an SVG has no pixels", "a colour of ink, or a picture"});
     return lines_of_svg(file, ink, size_px);
   }
   const Image<float> coverage = read_ink(file, ink);
   check_size(file, "size", {coverage.width, coverage.height}, size_px);
   DrawnLines drawing = lines_of_ink(coverage);
   if (drawing.lines.empty())
-    throw InputError({file.string(), "", "", "it has no ink", "--ink COLOR, --alpha or --mask FILE, which say what of the picture is ink"});
+    throw InputError(
+        {file.string(), "", "", "it has no ink", "the colour of the ink, its alpha, or a mask: they say what of the picture is ink"});
   return drawing;
 }
 

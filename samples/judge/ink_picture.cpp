@@ -114,7 +114,7 @@ Image<float> read_ink(const fs::path& file, const InkChoice& ink) {
   const std::vector<std::string> names = channel_names(file);
   if (ink.alpha) {
     if (!has(names, "A"))
-      throw InputError({file.string(), "--alpha", "", "the picture has no alpha", "a picture with alpha, or --ink COLOR"});
+      throw InputError({file.string(), "alpha", "", "the picture has no alpha", "a picture with alpha, or a colour of ink"});
     return coverage_of(read_channel(file, "A"));
   }
   // limn's own EXR files say what is ink.

@@ -106,7 +106,8 @@ std::string judge_text(const JudgeReport& report) {
         "\n{:.1f} px of line are too near to others to be told apart in this picture: only whether there is ink was looked at\n",
         judgement.all.crowded_px);
   if (judgement.drawn_px > 0.0 && judgement.all.missed_px > 0.5 * judgement.all.line_px)
-    text += "\nmore than half of the lines are missed: the drawing may show another view (--eye, --target, --fov, --ortho)\n";
+    text +=
+        "\nmore than half of the lines are missed: the drawing may show another view (another eye, target, field of view or projection)\n";
   constexpr size_t kMostOfKind = 10;
   for (const FindingKind kind : kFindingKinds) {
     size_t count = 0;

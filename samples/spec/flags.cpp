@@ -12,11 +12,12 @@ namespace {
 constexpr std::string_view kParameters = "parameters.";
 
 /// Fields that are options of the same name, beside the settings of surfaces; the underscore is a dash there.
-constexpr std::array<std::string_view, 37> kFields = {
-    "background", "budget",   "draws",  "eye",     "flicker", "fov",        "frames",   "fresh",   "gradients",  "levels",
-    "max_memory", "max_time", "method", "methods", "metric",  "no_clobber", "ortho",    "output",  "path_step",  "refined",
-    "samples",    "seed",     "shard",  "size",    "surface", "surfaces",   "target",   "threads", "thresholds", "tolerance",
-    "up",         "views",    "case",   "json",    "brick",   "dump",       "reference"};
+constexpr std::array<std::string_view, 42> kFields = {
+    "background", "budget",     "draws",     "eye",    "flicker", "fov",         "frames",     "fresh",    "gradients",
+    "levels",     "max_memory", "max_time",  "method", "methods", "metric",      "no_clobber", "ortho",    "output",
+    "path_step",  "refined",    "samples",   "seed",   "shard",   "size",        "surface",    "surfaces", "target",
+    "threads",    "thresholds", "tolerance", "up",     "views",   "case",        "json",       "brick",    "dump",
+    "reference",  "ink",        "alpha",     "mask",   "style",   "crease_angle"};
 
 /// Whose name is another one.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kOthers = {{{"grids", "grid"}, {"cases", "case"}}};

@@ -1,5 +1,5 @@
 #include "sdf/shapes/entry.h"
-#include "sdf/shapes/faces.h"
+#include "sdf/shapes/sharp_faces.h"
 
 namespace limn {
 namespace {

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "sdf/shapes/entry.h"
-#include "sdf/shapes/faces.h"
+#include "sdf/shapes/sharp_faces.h"
 
 namespace limn {
 namespace {

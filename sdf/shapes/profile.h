@@ -14,7 +14,7 @@
 namespace limn {
 
 struct Profile;
-Field profile_faces(const Profile& profile);  // sdf/shapes/faces.h
+Field profile_faces(const Profile& profile);  // sdf/shapes/sharp_faces.h
 
 struct ProfileSegment {
   glm::dvec2 start, end;  // (r, y), the solid on the left

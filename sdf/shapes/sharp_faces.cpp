@@ -1,4 +1,4 @@
-#include "sdf/shapes/faces.h"
+#include "sdf/shapes/sharp_faces.h"
 
 #include <limits>
 

@@ -1,4 +1,4 @@
-#include "raymarch/lines/crossings.h"
+#include "raymarch/lines/nearer_crossings.h"
 
 #include <algorithm>
 #include <cmath>

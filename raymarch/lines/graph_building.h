@@ -1,6 +1,7 @@
 #pragma once
 // Internal: from cut curves to the view graph.
 
+#include "raymarch/lines/curve_walk.h"
 #include "raymarch/lines/invisibility.h"
 
 namespace limn {

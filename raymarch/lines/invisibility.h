@@ -45,7 +45,4 @@ using LayersBefore = std::function<int(const CurveSample& sample)>;
 CutCurves cut_by_invisibility(const std::vector<SurfaceCurve>& curves, const Camera& camera, double extent,
                               const LayersBefore& layers_before, const ExecutionSettings& execution);
 
-/// The point at a place on a curve.
-CurveSample sample_at(const SurfaceCurve& curve, double at, const Camera& camera);
-
 }  // namespace limn

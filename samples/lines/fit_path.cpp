@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kCorner_deg = 25.0;  // a polyline that turns by more at a point has a corner there
 constexpr double kLeastStep_px = 1e-6;
+constexpr double kSpacing_px = 1.0;
 constexpr int kNewtonSteps = 4;
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
@@ -204,6 +205,24 @@ std::optional<ArcTo> whole_circle(Points points, double fit_px) {
 
 }  // namespace
 
+namespace {
+
+/// Points no farther apart than a pixel: what is fitted is held to the line between its points, too.
+std::vector<glm::dvec2> densified(const std::vector<glm::dvec2>& points) {
+  std::vector<glm::dvec2> result;
+  for (const glm::dvec2& p : points) {
+    if (!result.empty()) {
+      const glm::dvec2 from = result.back();
+      const auto parts = static_cast<int>(std::ceil(glm::distance(from, p) / kSpacing_px));
+      for (int k = 1; k < parts; ++k) result.push_back(glm::mix(from, p, static_cast<double>(k) / parts));
+    }
+    result.push_back(p);
+  }
+  return result;
+}
+
+}  // namespace
+
 std::vector<PathStep> fit_path(const std::vector<LinePoint>& given, bool closed, CurveForm form, double fit_px) {
   std::vector<glm::dvec2> points;
   for (const LinePoint& point : given) {
@@ -218,6 +237,7 @@ std::vector<PathStep> fit_path(const std::vector<LinePoint>& given, bool closed,
     if (const auto circle = form == CurveForm::arc ? whole_circle(points, fit_px) : std::nullopt) return {*circle};
     points.push_back(points.front());
   }
+  points = densified(points);
   // Between corners.
   size_t from = 0;
   const auto finish = [&](size_t to) {

@@ -10,13 +10,13 @@ namespace limn {
 namespace {
 
 Scene make() {
-  // Along a spiral over a ball (Fibonacci lattice), their radii in turn.
-  constexpr int kCount = 36;
+  // One in the middle, the others along a spiral over it (Fibonacci lattice), their radii in turn.
+  constexpr int kOuter = 35;
   const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
-  std::vector<Field> spheres;
-  for (int i = 0; i < kCount; ++i) {
-    const double y = 1.0 - 2.0 * (i + 0.5) / kCount, r = std::sqrt(1.0 - y * y), turn = golden * i;
-    const double radius = 0.24 + 0.05 * (i % 3);
+  std::vector<Field> spheres = {make_shape("sphere", {{"radius", {0.82}}})};
+  for (int i = 0; i < kOuter; ++i) {
+    const double y = 1.0 - 2.0 * (i + 0.5) / kOuter, r = std::sqrt(1.0 - y * y), turn = golden * i;
+    const double radius = 0.19 + 0.04 * (i % 3);
     spheres.push_back(
         translate(make_shape("sphere", {{"radius", {radius}}}), {0.8 * r * std::cos(turn), 0.8 * y, 0.8 * r * std::sin(turn)}));
   }

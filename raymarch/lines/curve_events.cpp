@@ -1,0 +1,254 @@
+#include "raymarch/lines/curve_events.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "raymarch/lines/curve_walk.h"
+
+namespace limn {
+namespace {
+
+constexpr double kLeastBend = 1e-7;  // of the radial curvature times the scene's radius: less is rounding
+constexpr double kArm_px = 0.15;     // so far from a cusp its arms are compared
+constexpr double kLongestNarrow_px = 20.0;
+constexpr double kMostLensSteps = 400.0;
+constexpr double kTangency_px = 3.0;  // along either curve, from the place where they touch
+
+class EventFinder {
+ public:
+  EventFinder(const std::vector<SurfaceCurve>& curves, std::uint32_t number, const Camera& camera, double extent)
+      : curves_(curves), curve_(curves[number]), number_(number), camera_(camera), extent_(extent), walk_(curve_, camera) {}
+
+  std::vector<CurveEvent> run(const std::vector<NearerCrossing>& crossings) {
+    for (const NearerCrossing& crossing : without_narrow_lenses(crossings)) {
+      if (!is_tangency(crossing))
+        events_.push_back({VertexKind::crossing, crossing.at, crossing.layers, crossing.curve, crossing.on_nearer});
+    }
+    for (size_t i = 0; i < steps_of(curve_); ++i) {
+      const CurveSample &a = walk_.at(i), &b = walk_.at(i + 1);
+      const double place = static_cast<double>(i);
+      if (in_frame(camera_, a) != in_frame(camera_, b)) events_.push_back({VertexKind::frame, place + frame_share(a, b), {}, 0, 0.0});
+      for (const Piercing& piercing : a.pierced)
+        events_.push_back({VertexKind::joint, place + std::min(piercing.t, 1.0 - 1e-9), piercing.layers, 0, 0.0});
+      if (a.joint && (i > 0 || curve_.closed)) events_.push_back({VertexKind::joint, place, {}, 0, 0.0});
+      const bool differs = i > 0 && (a.object != walk_.at(i - 1).object || a.line_class != walk_.at(i - 1).line_class);
+      if (differs && !a.joint) events_.push_back({VertexKind::joint, place, 0, 0, 0.0});
+    }
+    if (curve_.smooth) find_cusps();
+    if (!curve_.closed) {
+      events_.push_back({VertexKind::end, 0.0, {}, 0, 0.0});
+      events_.push_back({VertexKind::end, static_cast<double>(steps_of(curve_)), {}, 0, 0.0});
+    }
+    std::stable_sort(events_.begin(), events_.end(), [](const CurveEvent& a, const CurveEvent& b) { return a.at < b.at; });
+    return std::move(events_);
+  }
+
+ private:
+  /// Where the radial curvature changes its sign, but for rounding: the line of sight follows the contour there, and of its two arms the
+  /// one farther from the eye lies behind the other one's sheet (Koenderink & van Doorn 1982).
+  void find_cusps() {
+    const auto sign_of = [&](size_t i) {
+      const double bend = walk_.at(i).radial_curvature * extent_;
+      return bend > kLeastBend ? 1 : bend < -kLeastBend ? -1 : 0;
+    };
+    size_t first = 0;
+    while (first < walk_.size() && sign_of(first) == 0) ++first;
+    if (first == walk_.size()) return;
+    std::vector<CurveEvent> cusps;
+    size_t last = first;
+    for (size_t k = first + 1; k < first + walk_.size() + (curve_.closed ? 1 : 0) && (curve_.closed || k < walk_.size()); ++k) {
+      if (sign_of(k) == 0) continue;
+      if (sign_of(k) != sign_of(last)) {
+        const CurveSample &a = walk_.at(last), &b = walk_.at(k);
+        const double t = std::clamp(a.radial_curvature / (a.radial_curvature - b.radial_curvature), 0.0, 1.0 - 1e-9);
+        const glm::dvec2 px = glm::mix(a.px, b.px, t);
+        const Arm back = arm_from(px, last, -1), ahead = arm_from(px, k, 1);
+        const double reach = std::min(back.reach_px(), ahead.reach_px());
+        double place = glm::mix(static_cast<double>(last), static_cast<double>(k), t);
+        if (place >= static_cast<double>(walk_.size()) && curve_.closed) place -= static_cast<double>(walk_.size());
+        cusps.push_back({VertexKind::cusp, place, ahead.depth_at(reach) > back.depth_at(reach) ? 1 : -1, 0, 0.0});
+      }
+      last = k;
+    }
+    drop_narrow_swallowtails(cusps);
+    events_.insert(events_.end(), cusps.begin(), cusps.end());
+  }
+
+  /// Depth along one of the arms of a cusp, by image distance from it. Where the curvature jumps both may lead away from the eye.
+  struct Arm {
+    std::vector<std::pair<double, double>> points{};  ///< Distance, px, and depth; the distance grows.
+    double reach_px() const { return points.back().first; }
+    double depth_at(double distance) const {
+      for (size_t i = 1; i < points.size(); ++i) {
+        if (points[i].first < distance) continue;
+        const double width = points[i].first - points[i - 1].first;
+        return glm::mix(points[i - 1].second, points[i].second, width > 0.0 ? (distance - points[i - 1].first) / width : 1.0);
+      }
+      return points.back().second;
+    }
+  };
+  Arm arm_from(const glm::dvec2& cusp_px, size_t first, int way) const {
+    Arm arm;
+    auto i = static_cast<std::ptrdiff_t>(first);
+    const auto n = static_cast<std::ptrdiff_t>(walk_.size());
+    for (std::ptrdiff_t count = 0; count < n; ++count, i += way) {
+      if (!curve_.closed && (i < 0 || i >= n)) break;
+      const CurveSample& sample = walk_.at(static_cast<size_t>(i + n));
+      const double distance = glm::distance(sample.px, cusp_px);
+      if (!arm.points.empty() && distance < arm.points.back().first) break;
+      arm.points.emplace_back(distance, sample.depth);
+      if (distance > kArm_px) break;
+    }
+    return arm;
+  }
+
+  /// Two cusps one after the other in the same direction make a swallowtail, whose arms cross; where it is so narrow that they lie on each
+  /// other, and the crossing cannot be found, none of the three is there.
+  void drop_narrow_swallowtails(std::vector<CurveEvent>& cusps) const {
+    for (size_t k = 0; k + 1 < cusps.size();) {
+      if (cusps[k].layers == cusps[k + 1].layers && is_narrow(cusps[k].at, cusps[k + 1].at)) {
+        cusps.erase(cusps.begin() + static_cast<std::ptrdiff_t>(k), cusps.begin() + static_cast<std::ptrdiff_t>(k) + 2);
+        k = k > 0 ? k - 1 : 0;
+      } else {
+        ++k;
+      }
+    }
+  }
+  bool is_narrow(double first, double second) const {
+    const double length = walk_.length_to(second) - walk_.length_to(first);
+    if (length > kLongestNarrow_px) return false;
+    const auto crosses_itself = [&](const CurveEvent& event) {
+      return event.kind == VertexKind::crossing && event.nearer == number_ &&
+             std::min(walk_.apart_px(event.at, first), walk_.apart_px(event.at, second)) < length + kTangency_px;
+    };
+    if (std::any_of(events_.begin(), events_.end(), crosses_itself)) return false;
+    const std::vector<glm::dvec2> middle = px_between(curve_, first, second, camera_);
+    return lies_along(middle, walk_.px_from(second, length, 1)) || lies_along(middle, walk_.px_from(first, length, -1));
+  }
+  /// Where a line runs along a nearer one, as two rims of a tube seen down its axis do, their polylines cross again and again: two
+  /// crossings of the same pair of lines, between which these lie on each other, are none.
+  std::vector<NearerCrossing> without_narrow_lenses(const std::vector<NearerCrossing>& crossings) const {
+    std::vector<NearerCrossing> kept;
+    std::map<std::uint32_t, std::vector<size_t>> open;  // Of each nearer curve, what is kept of it, in order.
+    std::vector<bool> gone;
+    for (const NearerCrossing& crossing : crossings) {
+      auto& before = open[crossing.curve];
+      if (crossing.curve != number_ && !before.empty() && is_lens(kept[before.back()], crossing)) {
+        gone[before.back()] = true;
+        before.pop_back();
+        continue;
+      }
+      before.push_back(kept.size());
+      kept.push_back(crossing);
+      gone.push_back(false);
+    }
+    std::vector<NearerCrossing> result;
+    for (size_t k = 0; k < kept.size(); ++k) {
+      if (!gone[k]) result.push_back(kept[k]);
+    }
+    return result;
+  }
+  bool is_lens(const NearerCrossing& one, const NearerCrossing& other) const {
+    if (one.layers != -other.layers) return false;
+    const SurfaceCurve& nearer = curves_[one.curve];
+    const auto steps = static_cast<double>(steps_of(nearer));
+    double from = std::min(one.on_nearer, other.on_nearer), to = std::max(one.on_nearer, other.on_nearer);
+    if (nearer.closed && to - from > 0.5 * steps) std::tie(from, to) = std::pair(to, from + steps);
+    if (to - from > kMostLensSteps || other.at - one.at > kMostLensSteps) return false;
+    return lies_along(px_between(curve_, one.at, other.at, camera_), px_between(nearer, from, to, camera_));
+  }
+
+  /// A crease leaves a contour, and the two arms of a cusp each other, along their common tangent: polylines of them cross again and again
+  /// there, and the curves do not.
+  bool is_tangency(const NearerCrossing& crossing) const {
+    if (crossing.curve == number_) return one_cusp_between(crossing.at, crossing.on_nearer) || is_spike(crossing);
+    const SurfaceCurve& other = curves_[crossing.curve];
+    for (const Stretch& own : to_ends(curve_, crossing.at)) {
+      for (const Stretch& others : to_ends(other, crossing.on_nearer)) {
+        if (glm::distance(own.end, others.end) < 1e-6 * extent_ && run_together(own, others)) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Between the two passages the curve goes there and back on the same way, as beside the tip of a cone.
+  bool is_spike(const NearerCrossing& crossing) const {
+    const double from = std::min(crossing.at, crossing.on_nearer), to = std::max(crossing.at, crossing.on_nearer);
+    if (walk_.length_to(to) - walk_.length_to(from) > kLongestNarrow_px) return false;
+    const std::vector<glm::dvec2> px = px_between(curve_, from, to, camera_);
+    const auto farther = [&](const glm::dvec2& a, const glm::dvec2& b) { return glm::distance(a, px[0]) < glm::distance(b, px[0]); };
+    const auto turn = std::max_element(px.begin(), px.end(), farther);
+    const std::vector<glm::dvec2> there(px.begin(), turn + 1), back(turn, px.end());
+    return lies_along(there, back) && lies_along(back, there);
+  }
+
+  bool one_cusp_between(double one, double other) const {
+    if (std::fabs(walk_.length_to(one) - walk_.length_to(other)) > 2.0 * kTangency_px) return false;
+    const auto last = static_cast<size_t>(std::max(one, other));
+    int changes = 0;
+    for (auto i = static_cast<size_t>(std::min(one, other)); i < last; ++i)
+      changes += (walk_.at(i).radial_curvature < 0.0) != (walk_.at(i + 1).radial_curvature < 0.0);
+    return changes == 1;
+  }
+
+  /// From a place on a curve along it to an end or a joint.
+  struct Stretch {
+    glm::dvec3 end{0.0};
+    std::vector<glm::dvec2> px{};
+  };
+  static std::vector<Stretch> to_ends(const SurfaceCurve& curve, double place) {
+    std::vector<Stretch> all;
+    const auto n = static_cast<std::ptrdiff_t>(curve.samples.size());
+    for (const int way : {1, -1}) {
+      Stretch stretch;
+      double length = 0.0;
+      auto i = static_cast<std::ptrdiff_t>(place) + (way > 0 ? 1 : 0);
+      for (std::ptrdiff_t count = 0; count < n && length <= kTangency_px; ++count, i += way) {
+        if (!curve.closed && (i < 0 || i >= n)) break;
+        const CurveSample& sample = curve.samples[static_cast<size_t>((i + n) % n)];
+        if (!stretch.px.empty()) length += glm::distance(sample.px, stretch.px.back());
+        stretch.px.push_back(sample.px);
+        if (!sample.joint && (curve.closed || (i > 0 && i < n - 1))) continue;
+        stretch.end = sample.p;
+        all.push_back(stretch);
+        break;
+      }
+    }
+    return all;
+  }
+  static bool run_together(const Stretch& one, const Stretch& other) {
+    // Each stretch leaves out the part before its first sample, where the other one may begin: one of them is enough.
+    return lies_along(one.px, other.px) || lies_along(other.px, one.px);
+  }
+
+  double frame_share(const CurveSample& a, const CurveSample& b) const {
+    double inside = in_frame(camera_, a) ? 0.0 : 1.0, outside = 1.0 - inside;
+    for (int step = 0; step < 40; ++step) {
+      const double t = 0.5 * (inside + outside);
+      CurveSample q = a;
+      q.p = glm::mix(a.p, b.p, t);
+      project_sample(camera_, q);
+      (in_frame(camera_, q) ? inside : outside) = t;
+    }
+    return std::clamp(inside, 0.0, 1.0 - 1e-9);
+  }
+
+  const std::vector<SurfaceCurve>& curves_;
+  const SurfaceCurve& curve_;
+  std::uint32_t number_;
+  const Camera& camera_;
+  double extent_;
+  CurveWalk walk_;
+  std::vector<CurveEvent> events_{};
+};
+
+}  // namespace
+
+std::vector<CurveEvent> events_of(const std::vector<SurfaceCurve>& curves, std::uint32_t number, const Camera& camera, double extent,
+                                  const std::vector<NearerCrossing>& crossings) {
+  return EventFinder(curves, number, camera, extent).run(crossings);
+}
+
+}  // namespace limn

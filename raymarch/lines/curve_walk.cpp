@@ -1,0 +1,108 @@
+#include "raymarch/lines/curve_walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sdf/segment.h"
+
+namespace limn {
+namespace {
+
+constexpr double kTogether_px = 0.03;
+
+/// Between samples i and i + 1 on a smooth curve, by the cubic through four of them (Lagrange) over their chords' lengths: its image may
+/// turn back at a cusp there, the curve itself does not.
+glm::dvec3 point_between(const SurfaceCurve& curve, size_t i, double t) {
+  const size_t n = curve.samples.size();
+  const glm::dvec3 &a = curve.samples[i % n].p, &b = curve.samples[(i + 1) % n].p;
+  const bool inner = curve.closed ? n >= 4 : i >= 1 && i + 2 < n;
+  if (!curve.smooth || !inner) return glm::mix(a, b, t);
+  const glm::dvec3 &before = curve.samples[(i + n - 1) % n].p, &after = curve.samples[(i + 2) % n].p;
+  const double h = glm::distance(a, b), back = glm::distance(before, a), ahead = glm::distance(b, after);
+  // Neighbours much nearer or farther say little, and much of rounding.
+  if (!(h > 0.0) || back < 0.05 * h || ahead < 0.05 * h || back > 20.0 * h || ahead > 20.0 * h) return glm::mix(a, b, t);
+  const double s[4] = {-back, 0.0, h, h + ahead}, x = t * h;
+  const glm::dvec3* const points[4] = {&before, &a, &b, &after};
+  glm::dvec3 result(0.0);
+  for (int k = 0; k < 4; ++k) {
+    double weight = 1.0;
+    for (int j = 0; j < 4; ++j) {
+      if (j != k) weight *= (x - s[j]) / (s[k] - s[j]);
+    }
+    result += weight * *points[k];
+  }
+  return result;
+}
+
+}  // namespace
+
+size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples.size() : curve.samples.size() - 1; }
+
+bool in_frame(const Camera& camera, const CurveSample& q) {
+  return q.depth > 0.0 && q.px.x >= 0.0 && q.px.y >= 0.0 && q.px.x <= camera.width_px && q.px.y <= camera.height_px;
+}
+
+CurveSample sample_at(const SurfaceCurve& curve, double at, const Camera& camera) {
+  const size_t n = curve.samples.size();
+  const auto i = static_cast<size_t>(at);
+  const double t = at - static_cast<double>(i);
+  const CurveSample &a = curve.samples[i % n], &b = curve.samples[(i + 1) % n];
+  if (t == 0.0) return a;
+  CurveSample sample = t < 0.5 ? a : b;
+  sample.line_class = a.line_class;
+  sample.object = a.object;
+  sample.more_on_left = a.more_on_left;
+  sample.joint = false;
+  sample.on_chord = true;
+  sample.p = point_between(curve, i, t);
+  sample.radial_curvature = glm::mix(a.radial_curvature, b.radial_curvature, t);
+  project_sample(camera, sample);
+  return sample;
+}
+
+std::vector<glm::dvec2> px_between(const SurfaceCurve& curve, double from, double to, const Camera& camera) {
+  const size_t n = curve.samples.size();
+  std::vector<glm::dvec2> px{sample_at(curve, from, camera).px};
+  for (double i = std::floor(from) + 1.0; i < to; i += 1.0) px.push_back(curve.samples[static_cast<size_t>(i) % n].px);
+  px.push_back(sample_at(curve, to, camera).px);
+  return px;
+}
+bool lies_along(const std::vector<glm::dvec2>& px, const std::vector<glm::dvec2>& line) {
+  return std::all_of(px.begin(), px.end(), [&](const glm::dvec2& p) {
+    double least = glm::distance(p, line[0]);
+    for (size_t i = 0; i + 1 < line.size(); ++i) least = std::min(least, distance_to_segment(p, line[i], line[i + 1]));
+    return least < kTogether_px;
+  });
+}
+
+CurveWalk::CurveWalk(const SurfaceCurve& curve, const Camera& camera) : curve_(curve), camera_(camera) {
+  lengths_.push_back(0.0);
+  for (size_t i = 0; i < steps_of(curve); ++i) lengths_.push_back(lengths_.back() + glm::distance(at(i).px, at(i + 1).px));
+}
+
+double CurveWalk::length_to(double place) const {
+  const double steps = static_cast<double>(steps_of(curve_));
+  const double turns = curve_.closed ? std::floor(place / steps) : 0.0;
+  const double rest = place - turns * steps;
+  const auto i = std::min(static_cast<size_t>(rest), steps_of(curve_) - 1);
+  return turns * lengths_.back() + glm::mix(lengths_[i], lengths_[i + 1], rest - static_cast<double>(i));
+}
+
+double CurveWalk::apart_px(double one, double other) const {
+  const double way = std::fabs(length_to(one) - length_to(other));
+  return curve_.closed ? std::min(way, lengths_.back() - way) : way;
+}
+
+std::vector<glm::dvec2> CurveWalk::px_from(double place, double length_px, int way) const {
+  std::vector<glm::dvec2> px{sample_at(curve_, place, camera_).px};
+  const auto n = static_cast<std::ptrdiff_t>(size());
+  auto i = static_cast<std::ptrdiff_t>(place) + (way > 0 ? 1 : 0);
+  for (double length = 0.0; length < length_px + 0.5 && (curve_.closed || (i >= 0 && i < n)); i += way) {
+    px.push_back(at(static_cast<size_t>((i + n) % n)).px);
+    length += glm::distance(px.back(), px[px.size() - 2]);
+    if (static_cast<std::ptrdiff_t>(px.size()) > n) break;
+  }
+  return px;
+}
+
+}  // namespace limn

@@ -1,0 +1,40 @@
+#pragma once
+// Internal: places on a curve, and image lengths along it.
+
+#include "raymarch/lines/surface_curves.h"
+
+namespace limn {
+
+/// Steps between neighbouring samples.
+size_t steps_of(const SurfaceCurve& curve);
+/// Within the picture, and before the eye.
+bool in_frame(const Camera& camera, const CurveSample& sample);
+/// The point at a place on a curve: the index of a step plus the share of it.
+CurveSample sample_at(const SurfaceCurve& curve, double place, const Camera& camera);
+/// Image points between two places, theirs included; `to` may lie beyond the last sample of a closed curve.
+std::vector<glm::dvec2> px_between(const SurfaceCurve& curve, double from, double to, const Camera& camera);
+/// Every point is near a polyline: what lies so near cannot be told from it.
+bool lies_along(const std::vector<glm::dvec2>& px, const std::vector<glm::dvec2>& line);
+
+/// Lengths along one curve. Keeps a reference to it.
+class CurveWalk {
+ public:
+  CurveWalk(const SurfaceCurve& curve, const Camera& camera);
+
+  size_t size() const { return curve_.samples.size(); }
+  const CurveSample& at(size_t i) const { return curve_.samples[i % size()]; }
+  double length_px() const { return lengths_.back(); }
+  /// Image length from the curve's first point to a place, which may lie beyond the last.
+  double length_to(double place) const;
+  /// Image length between two places, the shorter way round.
+  double apart_px(double one, double other) const;
+  /// Image points from a place on, one way or the other, over some length and half a pixel.
+  std::vector<glm::dvec2> px_from(double place, double length_px, int way) const;
+
+ private:
+  const SurfaceCurve& curve_;
+  const Camera& camera_;
+  std::vector<double> lengths_;  ///< To each sample, and to the first again of a closed one.
+};
+
+}  // namespace limn

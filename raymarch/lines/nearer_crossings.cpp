@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kBucket_px = 4.0;
 constexpr double kBeyondFrame_px = 8.0;  // steps farther outside the picture are left out
+constexpr double kParallel = 1e-9;       // the sine of the angle between steps
 constexpr double kNearer_px = 0.05;      // what is nearer by less, px at its depth, is the same place
 
 struct Step {
@@ -48,7 +49,8 @@ struct Meeting {
 std::optional<Meeting> meet(const Ends& step, const Ends& nearer, const Camera& camera) {
   const glm::dvec2 d = step.b.px - step.a.px, e = nearer.b.px - nearer.a.px, between = nearer.a.px - step.a.px;
   const double determinant = cross(d, e);
-  if (determinant == 0.0) return {};
+  // Steps of one straight line meet nowhere, whatever rounding says.
+  if (std::fabs(determinant) <= kParallel * glm::length(d) * glm::length(e)) return {};
   // Half-open, so that a polyline that goes through another's vertex crosses it once.
   const double t = cross(between, e) / determinant, u = cross(between, d) / determinant;
   if (!(t >= 0.0 && t < 1.0 && u >= 0.0 && u < 1.0)) return {};

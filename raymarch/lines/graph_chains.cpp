@@ -56,7 +56,8 @@ std::vector<int> partners_of(const ViewGraph& graph) {
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const Pair& a, const Pair& b) { return std::tie(a.turned, a.cosine) < std::tie(b.turned, b.cosine); });
     for (const Pair& pair : pairs) {
-      const auto a = static_cast<size_t>(2 * pair.a.edge + pair.a.at_end), b = static_cast<size_t>(2 * pair.b.edge + pair.b.at_end);
+      const auto number = [](const EdgeEnd& end) { return 2 * static_cast<size_t>(end.edge) + (end.at_end ? 1 : 0); };
+      const size_t a = number(pair.a), b = number(pair.b);
       if (partner[a] >= 0 || partner[b] >= 0) continue;
       partner[a] = static_cast<int>(b);
       partner[b] = static_cast<int>(a);

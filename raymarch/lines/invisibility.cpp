@@ -144,6 +144,7 @@ class Cutter {
   void settle_by_rays(const std::vector<size_t>& arc, bool around) {
     auto& pieces = cut_.pieces;
     std::vector<std::optional<int>> seen;
+    seen.reserve(arc.size());
     for (const size_t k : arc) seen.push_back(by_vote(pieces[k], kShort_px));
     if (std::none_of(seen.begin(), seen.end(), [](const auto& s) { return s.has_value(); })) {
       const auto shorter = [&](size_t a, size_t b) { return pieces[a].length_px < pieces[b].length_px; };

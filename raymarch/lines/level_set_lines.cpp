@@ -134,8 +134,7 @@ SurfaceCurve curve_of(const LineTask& task, const FieldCurve& found, int object)
 /// Counts sign changes along rays, a quarter of a voxel at a time near the surface and as far as the distance says elsewhere.
 class GridLayers {
  public:
-  GridLayers(std::vector<PlacedGrid> grids, const Camera& camera, double extent)
-      : grids_(std::move(grids)), camera_(camera), extent_(extent) {}
+  GridLayers(std::vector<PlacedGrid> grids, const Camera& camera) : grids_(std::move(grids)), camera_(camera) {}
 
   int before(const CurveSample& sample) const {
     auto& evaluators = evaluators_.local();
@@ -169,7 +168,6 @@ class GridLayers {
 
   std::vector<PlacedGrid> grids_;
   Camera camera_;
-  double extent_;
   mutable tbb::enumerable_thread_specific<std::vector<FieldEvaluator>> evaluators_;
 };
 
@@ -193,7 +191,7 @@ LineContribution level_set_lines(const LineTask& task, const std::vector<size_t>
     out.unrefined_px = std::max(out.unrefined_px, curves.worst_unrefined_px);
     for (const FieldCurve& curve : curves.curves) out.curves.push_back(curve_of(task, curve, static_cast<int>(object) + 1));
   }
-  const auto layers = std::make_shared<const GridLayers>(std::move(grids), task.camera, task.extent);
+  const auto layers = std::make_shared<const GridLayers>(std::move(grids), task.camera);
   out.layers_before = [layers](const CurveSample& sample) { return layers->before(sample); };
   return out;
 }

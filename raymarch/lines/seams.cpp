@@ -25,6 +25,7 @@ std::vector<int> sides_on_left(const Seam& seam) {
     }
   }
   std::vector<int> result;
+  result.reserve(left.size());
   for (const double x : left) result.push_back(x > 0.0 ? 1 : -1);
   return result;
 }

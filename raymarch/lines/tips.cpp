@@ -9,14 +9,21 @@
 namespace limn {
 namespace {
 
-constexpr double kReach_px = 8.0;    // two cells, on whose diagonal a tip may be missed
+constexpr double kReach_px = 32.0;   // what is seen nearly along its length is followed in long steps
+constexpr double kBeside_px = 8.0;   // two cells, on whose diagonal a tip may be missed
+constexpr double kAlong = 0.01;      // the sine of an angle
 constexpr double kOnSurface = 1e-9;  // of the extent
 
 /// The samples beside the tip are replaced by it: they are known to a cell only.
 void lead_to(const glm::dvec3& tip, const Camera& camera, SurfaceCurve& curve) {
   auto& samples = curve.samples;
   const double pixel = 1.0 / pixels_per_unit_at(camera, std::max(project(camera, tip).z, 1e-9));
-  const auto is_near = [&](const CurveSample& sample) { return glm::distance(sample.p, tip) < kReach_px * pixel; };
+  // On the cone itself the way to the tip runs along the surface; what runs beside the tip on other surfaces is left alone.
+  const auto is_near = [&](const CurveSample& sample) {
+    const double distance = glm::distance(sample.p, tip);
+    if (distance > kReach_px * pixel) return false;
+    return distance < kBeside_px * pixel || std::fabs(glm::dot(sample.high, tip - sample.p)) < kAlong * distance;
+  };
   const auto first = std::find_if(samples.begin(), samples.end(), is_near);
   if (first == samples.end()) return;
   auto last = first;

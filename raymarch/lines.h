@@ -63,21 +63,22 @@ const char* name_of(VertexKind kind);
 
 /// Of the view graph.
 struct LineVertex {
-  VertexKind kind = VertexKind::end;
-  glm::dvec2 px{0.0};
-  double depth = 0.0;   ///< Z of the line that is crossed, world units.
-  int crossed_by = -1;  ///< Of a crossing: the edge in front of it, index into ViewGraph::edges; -1 where it was cut away.
+  VertexKind kind = VertexKind::end;  ///< See VertexKind.
+  glm::dvec2 px{0.0};                 ///< Image point.
+  double depth = 0.0;                 ///< Z of the line that is crossed, world units.
+  int crossed_by = -1;                ///< Of a crossing: the edge in front of it, index into ViewGraph::edges; -1 where it was cut away.
 };
 
 /// A stretch of line along which its class and its quantitative invisibility stay the same.
 struct LineEdge {
-  LineClass line_class = LineClass::contour;
-  int object = 1;            ///< Index from 1.
-  int invisibility = 0;      ///< How many layers of surface lie in front of it (Appel 1967).
-  bool certain = true;       ///< False where the certificate found a conflict along it.
-  bool crease = false;       ///< Runs along a sharp edge, whatever its class.
-  int curve = 0;             ///< Which curve on the surface it is a piece of; from 0.
-  int begin = -1, end = -1;  ///< Vertices, indices into ViewGraph::vertices; -1: closed, and without a vertex.
+  LineClass line_class = LineClass::contour;  ///< See LineClass.
+  int object = 1;                             ///< Index from 1.
+  int invisibility = 0;                       ///< How many layers of surface lie in front of it (Appel 1967).
+  bool certain = true;                        ///< False where the certificate found a conflict along it.
+  bool crease = false;                        ///< Runs along a sharp edge, whatever its class.
+  int curve = 0;                              ///< Which curve on the surface it is a piece of; from 0.
+  int begin = -1,                             ///< Index into ViewGraph::vertices; -1: closed, and without a vertex.
+      end = -1;                               ///< The same, of its end.
   /// At least two. Of contours and boundaries what they bound lies on the left, walking along (border_curves.h).
   std::vector<LinePoint> points{};
 };
@@ -89,30 +90,30 @@ struct ChainLink {
 };
 /// The longest stroke of one class and invisibility: edges joined through the vertices that do not change it.
 struct LineChain {
-  LineClass line_class = LineClass::contour;
-  int object = 1;        ///< Of its first edge.
-  int invisibility = 0;  ///< 0: visible.
-  bool closed = false;   ///< The last edge ends where the first begins.
-  std::vector<ChainLink> links{};
+  LineClass line_class = LineClass::contour;  ///< See LineClass.
+  int object = 1;                             ///< Of its first edge.
+  int invisibility = 0;                       ///< 0: visible.
+  bool closed = false;                        ///< The last edge ends where the first begins.
+  std::vector<ChainLink> links{};             ///< At least one, in order.
 };
 
 /// A place where the graph disagrees with itself or with a ray.
 struct LineConflict {
   std::string what{};  ///< In words.
-  glm::dvec2 px{0.0};
+  glm::dvec2 px{0.0};  ///< Image point.
 };
 
-/// The lines of one view. A planar drawing's worth of curves on surfaces, hidden ones included, within the picture.
+/// The lines of one view, hidden ones included, within the picture.
 struct ViewGraph {
-  std::vector<LineVertex> vertices{};
-  std::vector<LineEdge> edges{};
-  std::vector<LineChain> chains{};  ///< All edges are in one chain each.
-  std::vector<LineConflict> conflicts{};
-  std::int64_t rays = 0;             ///< That were cast for the certificate.
-  bool exact = true;                 ///< False where a part of the scene is left out or approximated: `notes`.
-  double bound_px = 0.0;             ///< No point lies farther from its line than this.
-  std::string from{};                ///< What it was solved on, in words: "the field".
-  std::vector<std::string> notes{};  ///< What the bound does not cover.
+  std::vector<LineVertex> vertices{};     ///< Where edges end.
+  std::vector<LineEdge> edges{};          ///< In an order that does not depend on threads.
+  std::vector<LineChain> chains{};        ///< All edges are in one chain each.
+  std::vector<LineConflict> conflicts{};  ///< Empty: the certificate holds.
+  std::int64_t rays = 0;                  ///< That were cast for the certificate.
+  bool exact = true;                      ///< False where a part of the scene is left out or approximated: `notes`.
+  double bound_px = 0.0;                  ///< No point lies farther from its line than this.
+  std::string from{};                     ///< What it was solved on, in words: "the field".
+  std::vector<std::string> notes{};       ///< What the bound does not cover.
 };
 
 /// Throws InputError for settings outside their ranges. Cancelled as elsewhere.

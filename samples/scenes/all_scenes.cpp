@@ -12,9 +12,6 @@
   X(rook)              \
   X(pipe_junction)     \
   X(bracket)           \
-  X(honeycomb)         \
-  X(fused_spheres)     \
-  X(cylinder_end)      \
   X(passing_tori)
 
 namespace limn {

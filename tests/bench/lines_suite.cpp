@@ -9,6 +9,7 @@
 #include "raymarch/lines.h"
 #include "samples/input/input.h"
 #include "samples/scenes/scenes.h"
+#include "tests/bench/line_scenes.h"
 
 namespace limn::bench {
 namespace {
@@ -85,11 +86,13 @@ nlohmann::json bench_lines(const LinesBenchSettings& settings) {
   fmt::print(settings.table,
              "| input | views | median ms | worst ms | chains | visible | rays | conflicts | open ends | bound px "
              "|\n|---|---|---|---|---|---|---|---|---|---|\n");
-  for (const SceneDescriptor& descriptor : scenes()) {
+  std::vector<NamedScene> all;
+  for (const SceneDescriptor& descriptor : scenes()) all.push_back({descriptor.about.name, descriptor.make()});
+  for (NamedScene& scene : line_scenes()) all.push_back(std::move(scene));
+  for (const NamedScene& scene : all) {
     const auto& asked = settings.scenes;
-    if (std::find(asked.begin(), asked.end(), descriptor.about.name) == asked.end() && (!asked.empty() || !settings.meshes.empty()))
-      continue;
-    rows.push_back(json_of(run(descriptor.about.name, descriptor.make(), settings), settings.table));
+    if (std::find(asked.begin(), asked.end(), scene.name) == asked.end() && (!asked.empty() || !settings.meshes.empty())) continue;
+    rows.push_back(json_of(run(scene.name, scene.scene, settings), settings.table));
   }
   for (const std::string& mesh : settings.meshes) {
     ExperimentSpec reading;

@@ -9,7 +9,6 @@
 #include "raymarch/lines/mesh_layers.h"
 #include "raymarch/lines/seams.h"
 #include "raymarch/truth/limit_curves.h"
-#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -18,8 +17,9 @@ constexpr double kCell_px = 4.0;
 constexpr double kProxyEdge_px = 1.5;
 constexpr std::int64_t kMostTriangles = 3'000'000;
 
-SurfaceCurve contour_of(const LineTask& task, const TracedCurve& traced) {
-  SurfaceCurve curve{traced.closed, true, {}};
+SurfaceCurve curve_of(const LineTask& task, const TracedCurve& traced) {
+  const bool contour = traced.kind == CurveKind::silhouette;
+  SurfaceCurve curve{traced.closed, contour, {}};
   for (const TracedPoint& point : traced.points) {
     CurveSample sample;
     sample.p = point.p;
@@ -29,26 +29,10 @@ SurfaceCurve contour_of(const LineTask& task, const TracedCurve& traced) {
     sample.radial_curvature = point.radial_curvature;
     sample.lift = point.lift;
     sample.object = traced.object;
+    sample.line_class = contour ? LineClass::contour : LineClass::rim;
     curve.samples.push_back(sample);
   }
-  set_fold(task.camera, curve);
-  return curve;
-}
-
-SurfaceCurve rim_of(const TracedCurve& traced) {
-  SurfaceCurve curve{traced.closed, false, {}};
-  for (const TracedPoint& point : traced.points) {
-    CurveSample sample;
-    sample.p = point.p;
-    sample.px = point.px;
-    sample.depth = point.depth;
-    sample.high = sample.low = point.high;
-    sample.radial_curvature = point.radial_curvature;
-    sample.lift = point.lift;
-    sample.object = traced.object;
-    sample.line_class = LineClass::rim;
-    curve.samples.push_back(sample);
-  }
+  if (contour) set_fold(task.camera, curve);
   return curve;
 }
 
@@ -69,11 +53,11 @@ void add_cage(const LineTask& task, size_t object, LineContribution& out) {
   tracing.tolerance_px = 0.5 * task.settings.tolerance_px;
   tracing.object = static_cast<int>(object) + 1;
   tracing.seams = false;
-  for (const TracedCurve& curve : trace_limit_curves(placed, grid, task.camera, tracing)) out.curves.push_back(contour_of(task, curve));
+  for (const TracedCurve& curve : trace_limit_curves(placed, grid, task.camera, tracing)) out.curves.push_back(curve_of(task, curve));
   if (task.wants(LineClass::rim)) {
     tracing.kind = CurveKind::inner;
     tracing.threshold = task.settings.threshold;
-    for (const TracedCurve& curve : trace_limit_curves(placed, grid, task.camera, tracing)) out.curves.push_back(rim_of(curve));
+    for (const TracedCurve& curve : trace_limit_curves(placed, grid, task.camera, tracing)) out.curves.push_back(curve_of(task, curve));
   }
   for (const Seam& seam : limit_seams(placed, grid, task.camera, tracing.tolerance_px, tracing.object))
     out.curves.push_back(curve_of_seam(task.camera, seam));
@@ -92,12 +76,7 @@ LineContribution cage_lines(const LineTask& task, const std::vector<size_t>& obj
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
     add_cage(task, i, out);
   }
-  const auto layers = std::make_shared<const MeshLayers>(task, objects, kProxyEdge_px);
-  parallel_for(size_t{0}, out.curves.size(), [&](size_t i) { layers->pierce(out.curves[i]); });
-  if (layers->several_parts()) {
-    for (SurfaceCurve& curve : layers->intersections()) out.curves.push_back(std::move(curve));
-  }
-  out.layers_before = [layers](const CurveSample& sample) { return layers->before(sample); };
+  add_mesh_layers(std::make_shared<const MeshLayers>(task, objects, kProxyEdge_px), out);
   return out;
 }
 

@@ -229,11 +229,11 @@ void MeshLayers::pierce(SurfaceCurve& curve) const {
     const glm::dvec3 way = (next.p - sample.p) / length;
     for (const LayerHit& hit : state_->hits_along(sample.p, way, length)) {
       const Triangle& triangle = state_->triangles[hit.triangle];
-      // Faces around a vertex that the curve goes through are met there.
+      // Faces around a vertex that a mesh's own edge ends at are met there.
       const bool at_vertex = std::any_of(triangle.corners.begin(), triangle.corners.end(), [&](std::uint32_t corner) {
         return state_->positions[corner] == sample.p || state_->positions[corner] == next.p;
       });
-      if (at_vertex) continue;
+      if (at_vertex && curve.straight) continue;
       const glm::dvec3 normal = glm::normalize(state_->normal_of(triangle));
       // Triangles of the curve's own sheet lie along it; another sheet of the same part goes across.
       const bool along_own = std::fabs(glm::dot(normal, way)) < kAcross || std::fabs(glm::dot(normal, sample.high)) > kSameSheet ||
@@ -345,6 +345,14 @@ std::vector<SurfaceCurve> MeshLayers::intersections() const {
     if (!taken[i]) walk(i);
   }
   return curves;
+}
+
+void add_mesh_layers(const std::shared_ptr<const MeshLayers>& layers, LineContribution& out) {
+  parallel_for(size_t{0}, out.curves.size(), [&](size_t i) { layers->pierce(out.curves[i]); });
+  if (layers->several_parts()) {
+    for (SurfaceCurve& curve : layers->intersections()) out.curves.push_back(std::move(curve));
+  }
+  out.layers_before = [layers](const CurveSample& sample) { return layers->before(sample); };
 }
 
 }  // namespace limn

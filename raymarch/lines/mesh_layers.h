@@ -48,4 +48,7 @@ class MeshLayers {
   std::unique_ptr<State> state_;
 };
 
+/// What meshes add to curves that were traced: where these go through other sheets, where parts go through each other, and the counting.
+void add_mesh_layers(const std::shared_ptr<const MeshLayers>& layers, LineContribution& out);
+
 }  // namespace limn

@@ -227,11 +227,7 @@ LineContribution mesh_lines(const LineTask& task, const std::vector<size_t>& obj
   LineContribution out;
   const auto layers = std::make_shared<const MeshLayers>(task, objects, kEdge_px);
   out.curves = MeshTracer(task, *layers).run();
-  parallel_for(size_t{0}, out.curves.size(), [&](size_t i) { layers->pierce(out.curves[i]); });
-  if (layers->several_parts()) {
-    for (SurfaceCurve& curve : layers->intersections()) out.curves.push_back(std::move(curve));
-  }
-  out.layers_before = [layers](const CurveSample& sample) { return layers->before(sample); };
+  add_mesh_layers(layers, out);
   return out;
 }
 

@@ -274,9 +274,11 @@ std::vector<glm::dvec2> circle_px(const Camera& camera, double radius, double y)
   return points;
 }
 
-/// A convex solid of revolution: its outline is the hull of its circles, and each sharp circle is a line all around.
-void expect_convex_solid(const Field& field, const std::vector<glm::dvec2>& circles, bool apex, double apex_y, std::mt19937& random) {
+/// A convex solid of revolution: its outline is the hull of its circles, and each sharp circle is a line all around. Returns the number of
+/// points of its circles that were looked for.
+int expect_convex_solid(const Field& field, const std::vector<glm::dvec2>& circles, bool apex, double apex_y, std::mt19937& random) {
   const Scene scene = scene_of(field);
+  int looked_for = 0;
   for (int view = 0; view < kViews; ++view) {
     const Camera camera = random_camera(random, scene, view % 2 == 0);
     std::vector<glm::dvec2> all;
@@ -299,18 +301,26 @@ void expect_convex_solid(const Field& field, const std::vector<glm::dvec2>& circ
     const std::vector<Polyline> contours = drawn(graph, LineClass::contour, false);
     found.insert(found.end(), contours.begin(), contours.end());
     for (const Polyline& ring : rings) {
-      for (size_t i = 0; i < ring.size(); i += 7) EXPECT_LE(distance_to(found, ring[i]), 0.01) << what << ": a rim is not drawn";
+      for (size_t i = 0; i < ring.size(); i += 7) {
+        EXPECT_LE(distance_to(found, ring[i]), 0.01) << what << ": a rim is not drawn";
+        ++looked_for;
+      }
     }
   }
+  return looked_for;
 }
 
 TEST(Lines, CylindersConesAndTurnedPolygons) {
   std::mt19937 random(random_seed());
-  expect_convex_solid(make_shape("cylinder", {{"radius", {0.6}}, {"half_height", {0.8}}}), {{0.6, 0.8}, {0.6, -0.8}}, false, 0.0, random);
+  constexpr int kPointsOfCircle = kViews * 8000 / 7;  // every seventh of 8,000
+  EXPECT_GE(expect_convex_solid(make_shape("cylinder", {{"radius", {0.6}}, {"half_height", {0.8}}}), {{0.6, 0.8}, {0.6, -0.8}}, false, 0.0,
+                                random),
+            2 * kPointsOfCircle);
   const double radius = 1.6 * std::tan(25.0 * kPi / 180.0);
-  expect_convex_solid(make_shape("cone"), {{radius, -0.8}}, true, 0.8, random);
-  expect_convex_solid(make_shape("revolution", {{"profile", {0.0, -0.5, 0.4, -0.5, 0.7, 0.0, 0.5, 0.6, 0.0, 0.6}}}),
-                      {{0.4, -0.5}, {0.7, 0.0}, {0.5, 0.6}}, false, 0.0, random);
+  EXPECT_GE(expect_convex_solid(make_shape("cone"), {{radius, -0.8}}, true, 0.8, random), kPointsOfCircle);
+  EXPECT_GE(expect_convex_solid(make_shape("revolution", {{"profile", {0.0, -0.5, 0.4, -0.5, 0.7, 0.0, 0.5, 0.6, 0.0, 0.6}}}),
+                                {{0.4, -0.5}, {0.7, 0.0}, {0.5, 0.6}}, false, 0.0, random),
+            3 * kPointsOfCircle);
 }
 
 TEST(Lines, ABoxHasTwelveEdgesOfWhichNineAtMostAreSeen) {
@@ -425,6 +435,8 @@ TEST(Lines, TwoObjectsIntersect) {
     circle.emplace_back(project(camera, glm::dvec3(0.0, radius * std::cos(u), radius * std::sin(u))));
   }
   expect_same({circle}, drawn(graph, LineClass::intersection, false), "intersection");
+  EXPECT_EQ(std::count_if(graph.chains.begin(), graph.chains.end(), [](const LineChain& c) { return c.line_class == LineClass::crease; }),
+            0);
 }
 
 TEST(Lines, SettingsOutOfRangeAreRefused) {

@@ -11,6 +11,8 @@
 namespace limn {
 namespace {
 
+constexpr int kPoints = 20'000;
+
 /// A star-shaped polygon beside the axis, or one that touches it: [r, y] in order.
 std::vector<double> random_profile(std::mt19937& random, bool on_axis) {
   std::uniform_real_distribution<double> reach(0.15, 0.5);
@@ -25,30 +27,33 @@ std::vector<double> random_profile(std::mt19937& random, bool on_axis) {
   return numbers;
 }
 
-void expect_same_solid(const Field& shape, std::mt19937& random) {
+/// How many of random points have the same sign in both.
+int same_signs(const Field& shape, std::mt19937& random) {
   const FieldLeaf& leaf = shape.program().leaves[0];
-  ASSERT_NE(leaf.functions->faces, nullptr);
+  if (leaf.functions->faces == nullptr) return 0;
+  int same = 0;
   FieldEvaluator whole(shape), faces(leaf.functions->faces(leaf.shape.get()));
   std::uniform_real_distribution<double> coordinate(-1.5, 1.5);
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < kPoints; ++i) {
     const glm::dvec3 p(coordinate(random), coordinate(random), coordinate(random));
     const double value = whole.value(p);
-    if (std::fabs(value) < 1e-9) continue;
-    ASSERT_EQ(value < 0.0, faces.value(p) < 0.0) << p.x << " " << p.y << " " << p.z << ": " << value;
+    same += std::fabs(value) < 1e-9 || (value < 0.0) == (faces.value(p) < 0.0);
   }
+  return same;
 }
 
 TEST(Faces, AreTheSameSolid) {
   std::mt19937 random(random_seed());
-  expect_same_solid(make_shape("box"), random);
-  expect_same_solid(make_shape("cylinder"), random);
-  expect_same_solid(make_shape("cone"), random);
-  expect_same_solid(make_shape("revolution"), random);
+  EXPECT_EQ(same_signs(make_shape("box"), random), kPoints);
+  EXPECT_EQ(same_signs(make_shape("cylinder"), random), kPoints);
+  EXPECT_EQ(same_signs(make_shape("cone"), random), kPoints);
+  EXPECT_EQ(same_signs(make_shape("revolution"), random), kPoints);
 }
 
 TEST(Faces, OfAnyPolygonTurned) {
   std::mt19937 random(random_seed());
-  for (int i = 0; i < 60; ++i) expect_same_solid(make_shape("revolution", {{"profile", random_profile(random, i % 2 == 0)}}), random);
+  for (int i = 0; i < 60; ++i)
+    EXPECT_EQ(same_signs(make_shape("revolution", {{"profile", random_profile(random, i % 2 == 0)}}), random), kPoints) << i;
 }
 
 }  // namespace

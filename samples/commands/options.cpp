@@ -18,33 +18,14 @@ namespace limn {
 namespace {
 
 constexpr const char* kCamera = "Camera";
-constexpr const char* kSurface = "Surface";
 constexpr const char* kBorder = "Border";
 constexpr const char* kSweep = "Sweep (a list: 2,4,6; a range: 2..6)";
 constexpr const char* kStudy = "Study";
 constexpr const char* kStability = "Cases";
 constexpr const char* kHidden = "";  ///< In no help.
 constexpr const char* kPlan = "Plan";
-constexpr const char* kLines = "Lines";
-constexpr const char* kJudge = "Comparison";
-constexpr const char* kJudgeLimits = "Limits of the drawing (exit code 1 beyond them; a length such as 5px, or a share such as 1%)";
-constexpr const char* kOutput = "Output";
 constexpr const char* kExecution = "Execution (never changes a pixel)";
 constexpr const char* kLimits = "Limits (estimates are within a factor of two; predicted overruns exit with 2, actual ones with 1)";
-
-struct OptionText {
-  const char* flags;
-  const char* value;  ///< What stands behind it in the help: "WxH".
-  const char* help;
-  const char* group;
-};
-
-// One argument, handed to `read` as text, so that every complaint is ours: one line that says what is expected.
-CLI::Option* add(CLI::App& app, const OptionText& text, const std::function<void(const std::string&)>& read) {
-  CLI::Option* option = app.add_option_function<std::string>(text.flags, read, text.help);
-  option->type_name(text.value)->group(text.group)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  return option;
-}
 
 CLI::Option* add_repeatable(CLI::App& app, const OptionText& text, std::function<void(const std::string&)> read) {
   const auto each = [read = std::move(read)](const std::vector<std::string>& values) {
@@ -53,11 +34,6 @@ CLI::Option* add_repeatable(CLI::App& app, const OptionText& text, std::function
   CLI::Option* option = app.add_option_function<std::vector<std::string>>(text.flags, each, text.help);
   option->type_name(text.value)->group(text.group)->type_size(1)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   return option;
-}
-
-template <class T>
-void add_unless_there(const T& one, std::vector<T>& all) {
-  if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
 }
 
 void read_compared_methods(const std::string& text, Options& options) {
@@ -88,9 +64,22 @@ void add_compared_surfaces(CLI::App& app, Options& options) {
                  [&options](const std::string& text) { read_compared_surfaces(text, options); });
 }
 
+}  // namespace
+
+CLI::Option* add(CLI::App& app, const OptionText& text, const std::function<void(const std::string&)>& read) {
+  CLI::Option* option = app.add_option_function<std::string>(text.flags, read, text.help);
+  option->type_name(text.value)->group(text.group)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  return option;
+}
+
 void add_switch(CLI::App& app, const OptionText& text, bool& target) { app.add_flag(text.flags, target, text.help)->group(text.group); }
 
-}  // namespace
+CLI::Option* add_setting(CLI::App& app, Options& options, const char* name) {
+  const SurfaceSetting& setting = surface_setting(name);
+  const std::string flag = flag_of(name);
+  return add(app, {flag.c_str(), setting.placeholder, setting.option_help, kSurface},
+             [&options, &setting, flag](const std::string& text) { ask(setting, text, flag, options.spec.surface); });
+}
 
 void add_input(CLI::App& app, Options& options) {
   app.add_option("INPUT", options.spec.input,
@@ -217,13 +206,6 @@ void add_grid(CLI::App& app, Options& options) {
 
 namespace {
 
-CLI::Option* add_setting(CLI::App& app, Options& options, const char* name) {
-  const SurfaceSetting& setting = surface_setting(name);
-  const std::string flag = flag_of(name);
-  return add(app, {flag.c_str(), setting.placeholder, setting.option_help, kSurface},
-             [&options, &setting, flag](const std::string& text) { ask(setting, text, flag, options.spec.surface); });
-}
-
 // What no study sweeps.
 void add_fixed_surface(CLI::App& app, Options& options) {
   for (const char* const name : kFixedSettings) add_setting(app, options, name);
@@ -318,64 +300,6 @@ void add_limits(CLI::App& app, Options& options) {
       [&options](const std::string& text) { options.spec.limits.max_time_ms = parse_milliseconds("--max-time", text); });
 }
 
-void add_line_surface(CLI::App& app, Options& options) {
-  add(app, {"--surface", "NAME", "the lines of a model: mesh, level_set or mesh_level_set; default: those of the surface itself", kSurface},
-      [&options](const std::string& text) {
-        const std::vector<std::string> known = {"mesh", "level_set", "mesh_level_set"};
-        if (std::find(known.begin(), known.end(), text) == known.end())
-          throw InputError({"", "--surface", text, "has no lines of its own", known_names(text, known)});
-        options.spec.surfaces.push_back(text);
-      });
-  add_setting(app, options, "voxels")->excludes(add_setting(app, options, "voxel_size"));
-  add_setting(app, options, "level");
-  add_setting(app, options, "half_width");
-  add_setting(app, options, "scheme");
-  add_grid(app, options);
-}
-
-void add_lines(CLI::App& app, Options& options) {
-  LineOptions& lines = options.lines;
-  add(app,
-      {"--lines", "A,B,...|all", "classes of lines (limn list lines); default: contour, boundary, crease, intersection, material", kLines},
-      [&lines](const std::string& text) {
-        lines.lines.classes.clear();
-        if (text == "all") {
-          for (const LineClassDescriptor& one : line_classes()) lines.lines.classes.push_back(one.line_class);
-          return;
-        }
-        for (const std::string& name : parse_names(text))
-          add_unless_there(line_classes().find(name, "", "--lines").line_class, lines.lines.classes);
-      });
-  add_switch(app, {"--hidden", "", "hidden lines too, dashed and painted first", kLines}, lines.hidden);
-  add(app, {"--qi", "A..B", "only lines with A to B layers of surface in front of them (quantitative invisibility); default 0", kLines},
-      [&lines](const std::string& text) { lines.layers = parse_layers("--qi", text); });
-  add(app, {"--threshold", "T", "N.V of the rim's line, above 0 and below 1; default 0.4", kLines}, [&lines](const std::string& text) {
-    lines.lines.threshold = parse_number_above("--threshold", text, 0.0, false, "above 0 and below 1");
-    if (lines.lines.threshold >= 1.0) throw InputError({"", "--threshold", text, "out of range", "above 0 and below 1"});
-  });
-  add(app, {"--crease-angle", "DEG", "edges of meshes are creases where their faces' normals differ by more; default 40", kLines},
-      [&lines](const std::string& text) {
-        lines.lines.crease_angle_deg = parse_number_above("--crease-angle", text, 0.0, false, "above 0 and below 180 degrees");
-        if (lines.lines.crease_angle_deg >= 180.0)
-          throw InputError({"", "--crease-angle", text, "out of range", "above 0 and below 180 degrees"});
-      });
-  add(app, {"--curves", "polyline|bezier|arc", "what strokes are made of; default polyline", kLines}, [&lines](const std::string& text) {
-    const std::vector<std::string> known = {"polyline", "bezier", "arc"};
-    const auto at = std::find(known.begin(), known.end(), text);
-    if (at == known.end()) throw InputError({"", "--curves", text, "there are no such curves", known_names(text, known)});
-    lines.drawing.form = static_cast<CurveForm>(at - known.begin());
-  });
-  add(app, {"--fit", "PX", "how far Bezier curves and arcs may lie from the line, pixels, above 0; default 0.05", kLines},
-      [&lines](const std::string& text) { lines.drawing.fit_px = parse_number_above("--fit", text, 0.0, false, "above 0 px"); });
-  add(app, {"--page", "WxHmm", "the drawing fitted into a page of millimetres; default: a unit is a pixel", kLines},
-      [&lines](const std::string& text) { lines.drawing.page_mm = parse_page("--page", text); });
-  add(app,
-      {"--style", "NAME|FILE.css", "widths, colours and dashes of each class: plain, technical, ink, or a style sheet; default plain",
-       kLines},
-      [&lines](const std::string& text) { lines.drawing.style = read_style(text); });
-  add_switch(app, {"--strict", "", "exit with 1 where the certificate finds a conflict", kLines}, lines.strict);
-}
-
 void add_parts(CLI::App& app, Options& options) {
   app.add_option("DIR", options.study.parts, "folders that hold parts of one study: a part itself, or a folder of parts")
       ->type_name("")
@@ -438,66 +362,6 @@ void add_stability(CLI::App& app, Options& options) {
       {"--method,--methods", "A,B,...", "only cells of these outline methods (limn list methods), repeatable; default: all", kStability},
       [&options](const std::string& text) { read_compared_methods(text, options); });
   add_compared_surfaces(app, options);
-}
-
-namespace {
-
-void add_ink(CLI::App& app, InkChoice& ink) {
-  auto* color =
-      add(app,
-          {"--ink", "COLOR",
-           "colour of the lines in the drawing; default: all strokes of an SVG, and what is darker than a picture's background", kJudge},
-          [&ink](const std::string& text) { ink.color = glm::dvec3(parse_color("--ink", text)); });
-  auto* alpha = app.add_flag("--alpha", ink.alpha, "the picture's alpha is the ink");
-  alpha->group(kJudge)->excludes(color);
-  add(app, {"--mask", "FILE", "a picture whose first channel is the ink, 1 where a line is", kJudge},
-      [&ink](const std::string& text) { ink.mask = text; })
-      ->excludes(color)
-      ->excludes(alpha);
-}
-
-void add_judge_limits(CLI::App& app, JudgeLimits& limits) {
-  const auto length = [&app](const char* flag, const char* help, std::optional<LengthLimit>& limit) {
-    add(app, {flag, "LENGTH", help, kJudgeLimits}, [&limit, flag](const std::string& text) { limit = parse_length_limit(flag, text); });
-  };
-  length("--max-missed", "visible lines that the drawing lacks", limits.missed);
-  length("--max-false", "strokes where no line is", limits.false_ink);
-  length("--max-hidden", "strokes along lines that the surface hides", limits.hidden);
-  length("--max-doubled", "strokes that are one too many", limits.doubled);
-  add(app, {"--max-displaced", "PX", "95 % of the matched lines lie within, pixels", kJudgeLimits}, [&limits](const std::string& text) {
-    limits.displaced_px = parse_number_above("--max-displaced", text, 0.0, true, "a number of pixels from 0 up");
-  });
-}
-
-}  // namespace
-
-void add_judge(CLI::App& app, Options& options) {
-  JudgeOptions& judge = options.judge;
-  app.add_option("DRAWING", judge.drawing, "an SVG, or a picture: .png .exr .tif .jpg")->type_name("")->required();
-  add(app, {"--against", "INPUT", "what was drawn: scene file, mesh, volume, formula or built-in scene, as for limn contours", kJudge},
-      [&options](const std::string& text) { options.spec.input = text; })
-      ->required();
-  add(app,
-      {"--lines", "A,B,...|all", "classes of lines (limn list lines) that the drawing should hold; default: as limn contours draws",
-       kJudge},
-      [&judge](const std::string& text) {
-        if (text == "all") {
-          for (const LineClassDescriptor& one : line_classes()) add_unless_there(one.line_class, judge.classes);
-          return;
-        }
-        for (const std::string& name : parse_names(text))
-          add_unless_there(line_classes().find(name, "", "--lines").line_class, judge.classes);
-      });
-  add(app, {"--search", "PX", "strokes farther than this from a line do not match it, pixels, above 0 up to 32; default 2", kJudge},
-      [&judge](const std::string& text) {
-        const char* const expected = "above 0 and up to 32 pixels";
-        judge.settings.search_px = parse_number_above("--search", text, 0.0, false, expected);
-        if (judge.settings.search_px > 32.0) throw InputError({"", "--search", text, "out of range", expected});
-      });
-  add_ink(app, judge.ink);
-  add(app, {"--junit", "FILE", "the limits as JUnit XML, a test case each", kOutput},
-      [&judge](const std::string& text) { judge.junit = text; });
-  add_judge_limits(app, judge.limits);
 }
 
 void add_plan(CLI::App& app, Options& options) {

@@ -23,6 +23,8 @@ class SharedMesh {
  public:
   /// A mesh without faces.
   SharedMesh() : mesh_(std::make_shared<const Mesh>()) {}
+  /// Shares a mesh that somebody else holds too; not null.
+  explicit SharedMesh(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {}
   /// Takes the mesh over.
   SharedMesh(Mesh mesh) : mesh_(std::make_shared<const Mesh>(std::move(mesh))) {}  // NOLINT: as a Mesh in braces
   /// The mesh; valid as long as a copy of this is.

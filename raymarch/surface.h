@@ -151,6 +151,7 @@ struct Surface {
   SurfaceInfo info{};                          ///< See SurfaceInfo.
   std::shared_ptr<const Polygons> polygons{};  ///< What is traced, where it is made of polygons.
   std::shared_ptr<const RayBricks> bricks{};   ///< What is traced, where it is made of bricks.
+  std::optional<LevelSet> level_set{};         ///< What is traced, in render space, where it is a grid made from the scene's object.
   /// What may have open edges, and in a picture that shows mostly its back has its normals turned towards the eye. Null: never.
   std::shared_ptr<const OpenSheet> open_sheet{};
   SurfaceOffset offset{};       ///< Null `make` where the representation knows no distances.
@@ -214,6 +215,10 @@ struct SceneModel {
 /// Models every object. `settings.kind` empty: each in its natural representation. Throws InputError where one cannot be.
 /// `cache` spares meshing what was meshed before (build_ms counts it all the same); may be null.
 SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, ObjectMeshCache* cache = nullptr);
+
+/// What the model traces, as a scene of its own: grids and polygons in place of what they were made from, where they were made. Objects
+/// keep their names, colours and materials.
+Scene modelled_scene(const Scene& scene, const SceneModel& model);
 
 /// Sums of bytes, build times and so on; `kind` is the common one or "mixed".
 SurfaceInfo total(const SceneModel& model);

@@ -8,6 +8,7 @@
   X(rim_width)          \
   X(extrude)            \
   X(edge_quads)         \
+  X(contours)           \
   X(normal4)            \
   X(roberts)            \
   X(sobel)              \

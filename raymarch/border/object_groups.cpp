@@ -156,8 +156,8 @@ PictureGroups::PictureGroups(const BorderInput& input, GroupBy by) : input_(inpu
     }
   }
   if (!any_touching()) return;
-  SharedOrders none;
-  SharedOrders& shared = input.orders != nullptr ? *input.orders : none;
+  SharedFindings none;
+  SharedFindings& shared = input.shared != nullptr ? *input.shared : none;
   std::shared_ptr<const GroupOrders>& orders = by == GroupBy::material ? shared.of_materials : shared.of_objects;
   if (orders == nullptr) orders = find_orders();
   orders_ = orders;

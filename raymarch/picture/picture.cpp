@@ -227,7 +227,7 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
   if (history != nullptr) read.depth = read.normal = true;
   read = joined(read, layers_read(file_colors(model)));
   GBuffer gbuffer;
-  SharedOrders orders;
+  SharedFindings shared;
   for (int sample = 0; sample < settings.samples; ++sample) {
     ExecutionSettings part = how;
     if (how.progress) {
@@ -240,9 +240,9 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
     picture.trace_ms += ms_since(start);
     const auto number = static_cast<size_t>(sample);
     arena.execute([&] {
-      if (history == nullptr) return add_sample({gbuffer, camera, model, scene, nullptr, &orders}, settings.methods, picture);
+      if (history == nullptr) return add_sample({gbuffer, camera, model, scene, nullptr, &shared}, settings.methods, picture);
       SampleInks inks = inks_before(*history, number, gbuffer, camera);
-      add_sample({gbuffer, camera, model, scene, nullptr, &orders}, settings.methods, picture, &inks);
+      add_sample({gbuffer, camera, model, scene, nullptr, &shared}, settings.methods, picture, &inks);
       keep(*history, number, gbuffer, inks);
     });
     if (sample == 0) picture.gbuffer = std::exchange(gbuffer, {});

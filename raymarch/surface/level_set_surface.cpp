@@ -38,6 +38,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
       wider.progress = {};
       return level_set_from_field(moved, wider);
     };
+    surface.level_set = made;
     surface.offset = level_set_offset({made, Affine{}, glm::dvec3(0.0), settings.max_steps, {}, widen});
   } else {
     throw InputError({.file = {}, .field = object.name, .value = {}, .problem = unsupported(object), .expected = {}});

@@ -34,6 +34,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
     wider.progress = {};
     return level_set_from_mesh(*triangles, wider).level_set;
   };
+  surface.level_set = made.level_set;
   surface.offset = level_set_offset({made.level_set, Affine{}, glm::dvec3(0.0), settings.max_steps, {}, widen});
   surface.info.kind = "mesh_level_set";
   surface.info.triangles = static_cast<std::int64_t>(triangles->triangles.size());

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "raymarch/analytic/tile.h"
+#include "raymarch/mesh/polygons.h"
 #include "raymarch/scene/scene_extent.h"
 #include "raymarch/surface.h"
 #include "raymarch/surface/model_parts.h"
@@ -60,6 +61,25 @@ void append_surface(const SceneObject& object, Surface surface, SceneModel& mode
   model.colors.push_back(object.color);
   model.materials.push_back(object.material);
   if (reach.finite()) model.bounds = merge(model.bounds, {reach.lower + model.render_origin, reach.upper + model.render_origin});
+}
+
+Scene modelled_scene(const Scene& scene, const SceneModel& model) {
+  Scene result = scene;
+  const Affine world_from_render{glm::dmat3(1.0), model.render_origin};
+  for (size_t i = 0; i < result.objects.size() && i < model.surfaces.size(); ++i) {
+    const Surface& surface = model.surfaces[i];
+    SceneObject& object = result.objects[i];
+    if (surface.level_set) {
+      object.source = LevelSetSource{*surface.level_set, object.name};
+    } else if (surface.polygons) {
+      // Shares the mesh and keeps its owner alive.
+      object.source = MeshSource{SharedMesh(std::shared_ptr<const Mesh>(surface.polygons, &surface.polygons->mesh()))};
+    } else {
+      continue;
+    }
+    object.world_from_object = world_from_render;
+  }
+  return result;
 }
 
 SurfaceInfo total(const SceneModel& model) {

@@ -35,6 +35,7 @@ Surface resampled_volume(const SceneObject& object, const LevelSetSource& source
     wider.progress = {};
     return resampled(level_set, wider, gradient, render_from_grid).level_set;
   };
+  surface.level_set = made.level_set;
   surface.offset = level_set_offset({made.level_set, Affine{}, glm::dvec3(0.0), settings.max_steps, {}, widen});
   surface.info.build_ms += made.compare_ms;
   surface.info.notes.push_back(object.name + ": " + resampling_words(made));

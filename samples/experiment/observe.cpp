@@ -98,7 +98,7 @@ DrawnView draw_all(std::span<const std::vector<MethodCall>> methods, const Scene
   DrawnView view;
   for (const std::vector<MethodCall>& calls : methods) view.drawings.push_back({.refused = why_unsupported(calls, model, scene)});
   Picture& shaded = view.seen.picture;
-  SharedOrders orders;
+  SharedFindings shared;
   for (int sample = 0; sample < settings.samples; ++sample) {
     const auto start = Clock::now();
     GBuffer gbuffer = render_gbuffer(model, camera, how, sample_offset(sample, settings.samples));
@@ -109,7 +109,7 @@ DrawnView draw_all(std::span<const std::vector<MethodCall>> methods, const Scene
       if (!drawing.refused.empty()) continue;
       if (before_method) before_method(method);
       try {
-        add_sample({gbuffer, camera, model, scene, nullptr, &orders}, methods[method], drawing.picture);
+        add_sample({gbuffer, camera, model, scene, nullptr, &shared}, methods[method], drawing.picture);
       } catch (const InputError& error) {
         drawing.refused = reason_of(error);
       }

@@ -103,8 +103,8 @@ inline double area(const Image<float>& ink) {
 
 /// Every method but these, so that a new one is held to what must hold of all of them: no line on a plane, ink in range, equal bytes.
 inline const std::vector<std::string>& image_methods() {
-  static const std::vector<std::string> others{"rim", "fresnel", "rim_width",  // ink a whole plane that grazes the view
-                                               "extrude", "edge_quads"};       // draw the model, which a buffer written by hand lacks
+  static const std::vector<std::string> others{"rim",     "fresnel",    "rim_width",  // ink a whole plane that grazes the view
+                                               "extrude", "edge_quads", "contours"};  // draw the model, which a buffer lacks
   static const std::vector<std::string> names = [] {
     std::vector<std::string> found = border_methods().names();
     std::erase_if(found, [](const std::string& name) { return std::find(others.begin(), others.end(), name) != others.end(); });

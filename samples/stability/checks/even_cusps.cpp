@@ -1,7 +1,7 @@
 // Cusps of a contour in the image: where the radial curvature is 0. A closed contour has an even number of them.
 
 #include "samples/stability/checks/check.h"
-#include "samples/stability/checks/contours.h"
+#include "samples/stability/checks/contour_curves.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {

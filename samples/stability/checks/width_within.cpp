@@ -3,7 +3,7 @@
 #include "raymarch/curves/curve_geometry.h"
 #include "raymarch/measured_border.h"
 #include "samples/stability/checks/check.h"
-#include "samples/stability/checks/contours.h"
+#include "samples/stability/checks/contour_curves.h"
 #include "samples/stability/checks/worst.h"
 
 namespace limn {

@@ -1,4 +1,4 @@
-#include "samples/stability/checks/contours.h"
+#include "samples/stability/checks/contour_curves.h"
 
 #include "raymarch/scene/curvature.h"
 #include "raymarch/truth/field_curves.h"

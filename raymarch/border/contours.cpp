@@ -1,0 +1,162 @@
+// Contours: the lines of the model itself, traced as vectors with certified visibility and laid down with exact coverage.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "raymarch/border.h"
+#include "raymarch/border/exact_coverage.h"
+#include "raymarch/lines.h"
+
+namespace limn {
+
+/// The lines of what is seen, as one call asked for them.
+struct SharedLines {
+  LineSettings settings{};
+  ViewGraph graph{};
+};
+
+namespace {
+
+constexpr double kArc_px = 0.005;  // between the arcs of an outline and their circles
+
+enum class WidthFrom { constant, depth, curvature };
+
+struct Settings {
+  double width_px, thin_px, threshold;
+  WidthFrom from;
+  LineSettings lines;
+};
+
+Settings read_settings(const Parameters& parameters) {
+  Settings settings{parameters.number("width"), parameters.number("thin_width"), parameters.number("threshold"), WidthFrom::constant, {}};
+  settings.thin_px = std::min(settings.thin_px, settings.width_px);
+  const std::string& from = parameters.choice("width_from");
+  if (from == "depth") settings.from = WidthFrom::depth;
+  if (from == "curvature") settings.from = WidthFrom::curvature;
+  for (const LineClassDescriptor& one : line_classes()) {
+    if (one.by_default && parameters.flag(one.about.name)) settings.lines.classes.push_back(one.line_class);
+  }
+  settings.lines.crease_angle_deg = parameters.number("crease_angle");
+  return settings;
+}
+
+bool same(const LineSettings& a, const LineSettings& b) {
+  return a.classes == b.classes && a.threshold == b.threshold && a.crease_angle_deg == b.crease_angle_deg &&
+         a.tolerance_px == b.tolerance_px;
+}
+
+/// Solved once for all samples of a picture, and for all calls with the same settings.
+std::shared_ptr<const SharedLines> lines_of(const BorderInput& input, const LineSettings& settings) {
+  if (input.shared != nullptr) {
+    for (const auto& kept : input.shared->lines) {
+      if (same(kept->settings, settings)) return kept;
+    }
+  }
+  const Scene scene = modelled_scene(input.scene, input.model);
+  auto solved = std::make_shared<const SharedLines>(SharedLines{settings, solve_lines(scene, input.camera, settings, {})});
+  if (input.shared != nullptr) input.shared->lines.push_back(solved);
+  return solved;
+}
+
+/// The width of a stroke from point to point.
+struct PenWidth {
+  const Settings& settings;
+  const Camera& camera;
+  double nearest = 1.0, farthest = 1.0;  ///< Depths of what is seen of the lines.
+
+  double at(const LinePoint& point) const {
+    const auto between = [&](double share) {
+      return settings.thin_px + std::clamp(share, 0.0, 1.0) * (settings.width_px - settings.thin_px);
+    };
+    const bool perspective = camera.projection == Projection::perspective;
+    if (settings.from == WidthFrom::depth) {
+      if (!(farthest > nearest)) return settings.width_px;
+      // Linear in 1/Z as sizes are in perspective, so that a straight edge has a straight stroke.
+      const double q = perspective ? 1.0 / point.depth : -point.depth, q_near = perspective ? 1.0 / nearest : -nearest,
+                   q_far = perspective ? 1.0 / farthest : -farthest;
+      return between((q - q_far) / (q_near - q_far));
+    }
+    // As far from the contour N.V reaches the threshold, to first order threshold^2 / (2 kr): what the rim inks, and a thick line where the
+    // surface turns away slowly (Goodwin, Vollick and Hertzmann 2007, "Isophote distance").
+    if (std::isnan(point.radial_curvature)) return settings.thin_px;
+    if (!(point.radial_curvature > 0.0)) return settings.width_px;
+    const double px_per_world = perspective ? camera.focal_px / point.depth : camera.pixels_per_unit;
+    const double distance_px = 0.5 * settings.threshold * settings.threshold / point.radial_curvature * px_per_world;
+    return std::clamp(distance_px, settings.thin_px, settings.width_px);
+  }
+};
+
+std::vector<Outline> outlines(const ViewGraph& graph, const Settings& settings, const Camera& camera) {
+  struct Chain {
+    std::vector<LinePoint> points;
+    bool closed;
+  };
+  std::vector<Chain> visible;
+  PenWidth pen{settings, camera, std::numeric_limits<double>::infinity(), 0.0};
+  for (const LineChain& chain : graph.chains) {
+    if (chain.invisibility != 0) continue;
+    visible.push_back({points_of(graph, chain), chain.closed});
+    for (const LinePoint& point : visible.back().points) {
+      pen.nearest = std::min(pen.nearest, point.depth);
+      pen.farthest = std::max(pen.farthest, point.depth);
+    }
+  }
+  std::vector<Outline> result;
+  std::vector<StrokePoint> stroke;
+  for (const Chain& chain : visible) {
+    stroke.clear();
+    for (const LinePoint& point : chain.points)
+      stroke.push_back({point.px, settings.from == WidthFrom::constant ? settings.width_px : pen.at(point)});
+    result.push_back(outline_of(stroke, chain.closed, kArc_px));
+  }
+  return result;
+}
+
+void add_notes(const ViewGraph& graph, std::vector<std::string>& notes) {
+  if (!graph.conflicts.empty()) {
+    const LineConflict& first = graph.conflicts.front();
+    notes.push_back(fmt::format("contours: {} conflict{} in the visibility of {} chains, the first at {:.1f}, {:.1f}: {}",
+                                graph.conflicts.size(), graph.conflicts.size() == 1 ? "" : "s", graph.chains.size(), first.px.x, first.px.y,
+                                first.what));
+  }
+  for (const std::string& note : graph.notes) notes.push_back("contours: " + note);
+}
+
+Border draw(const BorderInput& input, const Parameters& parameters) {
+  const Settings settings = read_settings(parameters);
+  Border border;
+  border.color = glm::vec3(parameters.vector3("color"));
+  const auto lines = lines_of(input, settings.lines);
+  border.coverage = settings.width_px > 0.0 && !settings.lines.classes.empty()
+                        ? covered_by(outlines(lines->graph, settings, input.camera), input.gbuffer.width, input.gbuffer.height)
+                        : Image<float>(input.gbuffer.width, input.gbuffer.height, 0.0f);
+  add_notes(lines->graph, border.notes);
+  return border;
+}
+
+std::string unsupported(const SceneModel&, const Scene&) { return {}; }
+
+}  // namespace
+
+BorderMethod contours_method() {
+  return {{"contours", "the lines of what is traced, followed as vectors with their visibility certified, drawn with exact coverage",
+           "Appel 1967; widths by curvature: Goodwin et al. 2007; tracing and certificate: limn"},
+          {"id"},
+          {a_number("width", 2.0).in(0.0, 64.0).unit("px").help("of the lines; where it varies: of the thickest"),
+           a_choice("width_from", {"constant", "depth", "curvature"})
+               .help("the same everywhere; thick where near and thin where far; thick where the surface turns away slowly"),
+           a_number("thin_width", 0.5).in(0.0, 64.0).unit("px").help("where the width varies: of the thinnest"),
+           a_number("threshold", 0.2).in(0.0, 1.0).help("by curvature: the width is the distance at which N.V reaches this"),
+           a_flag("contour", true).help("where N.V is 0"), a_flag("boundary", true).help("open edges"),
+           a_flag("crease", true).help("where two normals of an object meet at an angle"),
+           a_flag("intersection", true).help("where objects pass through each other"),
+           a_flag("material", true).help("where materials of one object meet"),
+           a_number("crease_angle", 40.0).in(0.001, 179.999).unit("deg").help("of meshes: between the normals of two faces"),
+           a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")},
+          unsupported,
+          draw};
+}
+
+}  // namespace limn

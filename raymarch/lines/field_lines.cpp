@@ -107,7 +107,7 @@ LineContribution field_lines(const LineTask& task, const std::vector<size_t>& ob
   }
   for (const Field& body : bodies.body_fields) lead_to_tips(tips_of(body, task.extent), task.camera, out.curves);
   const auto layers = std::make_shared<const FieldLayers>(bodies.body_fields, task.camera, task.extent);
-  out.layers_before = [layers](const CurveSample& sample) { return layers->before(sample); };
+  out.layers_before = [layers](const CurveSample& sample) { return LayersSeen{layers->before(sample)}; };
   return out;
 }
 

@@ -9,12 +9,14 @@
 
 #include "raymarch/lines/curve_events.h"
 #include "raymarch/lines/curve_walk.h"
+#include "raymarch/lines/missed_changes.h"
 #include "sdf/parallel.h"
 
 namespace limn {
 namespace {
 
-constexpr double kShort_px = 1.0;    // pieces shorter than this are not asked by rays of their own
+constexpr double kShort_px = 1.0;  // pieces shorter than this are not asked by rays of their own
+constexpr int kMostSearches = 4;
 constexpr double kNearEnd_px = 0.3;  // pieces in which no ray starts farther from their ends tell little
 
 /// One curve being cut.
@@ -25,8 +27,17 @@ class Cutter {
 
   CutCurve run(std::vector<CurveEvent> events) {
     cut_.events = std::move(events);
-    make_pieces();
-    settle();
+    for (int searches = kMostSearches; searches >= 0; --searches) {
+      cut_.pieces.clear();
+      conflicts.clear();
+      missed_.clear();
+      may_search_ = searches > 0;
+      make_pieces();
+      settle();
+      if (missed_.empty()) break;
+      cut_.events.insert(cut_.events.end(), missed_.begin(), missed_.end());
+      std::stable_sort(cut_.events.begin(), cut_.events.end(), [](const CurveEvent& a, const CurveEvent& b) { return a.at < b.at; });
+    }
     return std::move(cut_);
   }
   std::vector<LineConflict> conflicts{};
@@ -67,10 +78,11 @@ class Cutter {
     }
     return best >= 0.0 ? best : glm::mix(piece.from, piece.to, share);
   }
-  int cast(double place) {
+  LayersSeen look(double place) {
     ++rays;
     return layers_before_(sample_at(curve_, place, camera_));
   }
+  int cast(double place) { return look(place).count; }
 
   void settle() {
     // Arcs: pieces in a row between which the steps are known.
@@ -109,7 +121,52 @@ class Cutter {
         return;
       }
     }
+    if (may_search_ && search_piercings(arc, relative, around)) return;
     settle_by_rays(arc, around);
+  }
+
+  /// Places along an arc that rays are cast at, rising even where the arc goes past the curve's first sample.
+  struct Probe {
+    double at = 0.0;
+    LayersSeen unexplained{};
+  };
+  /// Where rays disagree along an arc the line may go through a sheet that nobody saw: true where that explains something.
+  bool search_piercings(const std::vector<size_t>& arc, const std::vector<int>& relative, bool around) {
+    const auto steps = static_cast<double>(steps_of(curve_));
+    std::vector<double> begins;
+    for (const size_t k : arc) {
+      double from = cut_.pieces[k].from;
+      while (!begins.empty() && from < begins.back()) from += steps;
+      begins.push_back(from);
+    }
+    const int once_around = around ? relative.back() + step_into(arc[0]) : 0;
+    const auto unexplained = [&](double place) {
+      const bool again = around && place >= begins[0] + steps;
+      const auto next = std::upper_bound(begins.begin() + 1, begins.end(), again ? place - steps : place);
+      LayersSeen seen = look(place);
+      seen.count -= relative[static_cast<size_t>(next - begins.begin() - 1)] + (again ? once_around : 0);
+      return seen;
+    };
+    std::vector<Probe> probes;
+    for (size_t k = 0; k < arc.size(); ++k) {
+      const CurvePiece& piece = cut_.pieces[arc[k]];
+      if (piece.length_px < kNearEnd_px) continue;
+      for (const double share : {0.15, 0.5, 0.85}) {
+        const double place = begins[k] + (ray_at(piece, share) - piece.from);
+        if (probes.empty() || place > probes.back().at) probes.push_back({place, unexplained(place)});
+      }
+    }
+    const ChangeSearch search{walk_, unexplained, [&](double place) {
+                                return pixels_per_unit_at(camera_, std::max(1e-9, sample_at(curve_, place, camera_).depth));
+                              }};
+    if (around && probes.size() > 1) probes.push_back({probes[0].at + steps, unexplained(probes[0].at + steps)});
+    const size_t before = missed_.size();
+    for (size_t i = 0; i + 1 < probes.size(); ++i) {
+      if (probes[i].unexplained.count == probes[i + 1].unexplained.count) continue;
+      const auto found = find_piercing(search, probes[i].at, probes[i + 1].at);
+      if (found) missed_.push_back({VertexKind::joint, std::fmod(found->at, steps), found->layers, 0, 0.0});
+    }
+    return missed_.size() > before;
   }
 
   std::optional<int> offset_by_two_rays(const std::vector<size_t>& arc, const std::vector<int>& relative) {
@@ -192,6 +249,8 @@ class Cutter {
   const LayersBefore& layers_before_;
   CurveWalk walk_;
   CutCurve cut_;
+  std::vector<CurveEvent> missed_{};  ///< Found by the last search.
+  bool may_search_ = true;
 };
 
 }  // namespace

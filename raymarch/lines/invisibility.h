@@ -37,8 +37,8 @@ struct CutCurves {
   std::int64_t rays = 0;
 };
 
-/// How many layers lie in front of a sample of a curve.
-using LayersBefore = std::function<int(const CurveSample& sample)>;
+/// What lies in front of a sample of a curve.
+using LayersBefore = std::function<LayersSeen(const CurveSample& sample)>;
 
 /// The steps at crossings and cusps say how the invisibility changes along a curve, rays at two places what it is: where these agree, and
 /// the steps around a closed curve add up to nothing, the piece is certain. Elsewhere rays decide, and the conflict is recorded.

@@ -192,7 +192,7 @@ LineContribution level_set_lines(const LineTask& task, const std::vector<size_t>
     for (const FieldCurve& curve : curves.curves) out.curves.push_back(curve_of(task, curve, static_cast<int>(object) + 1));
   }
   const auto layers = std::make_shared<const GridLayers>(std::move(grids), task.camera);
-  out.layers_before = [layers](const CurveSample& sample) { return layers->before(sample); };
+  out.layers_before = [layers](const CurveSample& sample) { return LayersSeen{layers->before(sample)}; };
   return out;
 }
 

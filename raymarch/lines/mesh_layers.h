@@ -35,7 +35,7 @@ class MeshLayers {
   const std::vector<LayerTriangle>& triangles() const;
 
   /// Hits between the sample, lifted off by more than the mesh lies beside the surface, and the eye.
-  int before(const CurveSample& sample) const;
+  LayersSeen before(const CurveSample& sample) const;
   /// Whether there is more than one part, so that curves of one may go through another.
   bool several_parts() const;
   /// Marks the places where the curve goes through other parts than its own: CurveSample::pierced.

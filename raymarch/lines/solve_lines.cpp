@@ -105,9 +105,14 @@ ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettin
     }
     snap_joints(curves, task.camera);
     const LayersBefore layers_before = [&](const CurveSample& sample) {
-      int layers = 0;
-      for (const LineContribution& one : contributions) layers += one.layers_before(sample);
-      return layers;
+      LayersSeen all{0, std::numeric_limits<double>::infinity()};
+      for (const LineContribution& one : contributions) {
+        const LayersSeen layers = one.layers_before(sample);
+        all.count += layers.count;
+        // NaN where one does not know.
+        if (!(layers.nearest >= all.nearest)) all.nearest = layers.nearest;
+      }
+      return all;
     };
     CutCurves cut = cut_by_invisibility(curves, task.camera, task.extent, layers_before, execution);
     if (execution.progress) execution.progress(0.9);

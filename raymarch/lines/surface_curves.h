@@ -42,11 +42,18 @@ struct SurfaceCurve {
   bool straight = false;  ///< Steps are straight edges of a mesh: rays start from their middles.
 };
 
+/// What a ray from a sample towards the eye goes through.
+struct LayersSeen {
+  int count = 0;
+  /// World units to the first of them; infinite where there is none, NaN where that is not known.
+  double nearest = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// What objects of one kind bring. Functions are called from many threads and own what they need.
 struct LineContribution {
   std::vector<SurfaceCurve> curves{};
   /// How many layers of its surfaces lie between the sample, lifted off, and the eye.
-  std::function<int(const CurveSample& sample)> layers_before{};
+  std::function<LayersSeen(const CurveSample& sample)> layers_before{};
   bool exact = true;
   double unrefined_px = 0.0;  ///< What the bound has to grow by.
   std::vector<std::string> notes{};

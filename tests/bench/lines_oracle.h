@@ -1,0 +1,21 @@
+#pragma once
+// What rays through pixels say about a drawing's visible and hidden lines. Shares nothing with the solver of lines.
+
+#include "raymarch/lines.h"
+#include "raymarch/surface.h"
+
+namespace limn::bench {
+
+/// A model to ask: fields as they are, by the marcher; cages refined `finer` times, and other meshes as they are, by Embree.
+SceneModel oracle_model(const Scene& scene, int level);
+
+/// Of points 2 px apart on every edge, half a pixel from its ends.
+struct OracleCount {
+  std::int64_t points = 0, visible = 0;
+  std::int64_t occluded = 0;         ///< Drawn as visible; at the point and a quarter of a pixel to both sides something nearer is hit.
+  std::int64_t seen = 0;             ///< Drawn as hidden; at none of the three is anything nearer hit.
+  std::vector<glm::dvec2> places{};  ///< Of the last two.
+};
+OracleCount ask_oracle(const SceneModel& model, const Camera& camera, const ViewGraph& graph);
+
+}  // namespace limn::bench

@@ -1,0 +1,247 @@
+// Quantitative invisibility along contours against closed forms: how many layers lie in front of each point, and so where exactly that
+// changes, at cusps and at T-junctions.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "raymarch/lines.h"
+#include "sdf/segment.h"
+#include "sdf/shape.h"
+#include "tests/random_seed.h"
+
+namespace limn {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kViews = 40;
+
+Camera random_camera(std::mt19937& random, const Box& box, bool perspective) {
+  std::normal_distribution<double> normal;
+  CameraSettings settings;
+  const glm::dvec3 direction = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+  settings.target = box.center();
+  settings.eye = box.center() + std::uniform_real_distribution<double>(2.0, 6.0)(random) * box.radius() * direction;
+  settings.up = std::fabs(direction.y) > 0.9 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+  settings.width_px = 640;
+  settings.height_px = 480;
+  if (perspective) {
+    settings.vertical_fov = 2.2 * std::asin(box.radius() / glm::distance(*settings.eye, *settings.target));
+  } else {
+    settings.projection = Projection::orthographic;
+    settings.ortho_height = 2.2 * box.radius();
+  }
+  return resolve_camera(settings, box);
+}
+
+/// From a point of a surface to the eye.
+struct Sight {
+  glm::dvec3 from{0.0}, way{0.0};  ///< Unit.
+  double reach = 0.0;              ///< To the eye; infinite in parallel projection.
+};
+Sight sight_of(const Camera& camera, const glm::dvec3& p) {
+  if (camera.projection == Projection::orthographic) return {p, camera.world_from_camera[2], std::numeric_limits<double>::infinity()};
+  const glm::dvec3 to_eye = camera.eye - p;
+  return {p, glm::normalize(to_eye), glm::length(to_eye)};
+}
+
+int roots_before(double a, double half_b, double c, double reach) {
+  const double discriminant = half_b * half_b - a * c;
+  if (discriminant <= 0.0) return 0;
+  int count = 0;
+  for (const double sign : {-1.0, 1.0}) {
+    const double t = (-half_b + sign * std::sqrt(discriminant)) / a;
+    count += t > 0.0 && t < reach;
+  }
+  return count;
+}
+
+/// A closed line of contour generator, sampled densely, and how many layers lie in front of each of its points.
+struct ExactLine {
+  std::vector<glm::dvec3> points{};
+  std::vector<int> layers{};
+};
+
+/// About the y axis. A line of sight along a contour touches the torus: of the quartic along it two roots are 0, and two are left, the
+/// layers in front of it where they are real and above 0.
+struct ExactTorus {
+  double major = 1.0, minor = 0.35;
+
+  int own_layers(const Sight& sight) const {
+    const double s = 2.0 * glm::dot(sight.from, sight.way), k = glm::dot(sight.from, sight.from) + major * major - minor * minor;
+    const double across = sight.way.x * sight.way.x + sight.way.z * sight.way.z;
+    return roots_before(1.0, s, s * s + 2.0 * k - 4.0 * major * major * across, sight.reach);
+  }
+
+  std::vector<std::vector<glm::dvec3>> contours(const Camera& camera, int steps) const {
+    std::vector<std::vector<glm::dvec3>> lines(2);
+    for (int i = 0; i < steps; ++i) {
+      const double turn = 2.0 * kPi * i / steps;
+      const glm::dvec3 out(std::cos(turn), 0.0, std::sin(turn)), middle = major * out;
+      const bool perspective = camera.projection == Projection::perspective;
+      const glm::dvec3 e = perspective ? camera.eye - middle : camera.world_from_camera[2];
+      const double a = glm::dot(e, out), b = e.y, share = (perspective ? minor : 0.0) / std::hypot(a, b);
+      if (share >= 1.0) return {};  // The eye is within the tube's circle.
+      for (const int side : {0, 1}) {
+        const double angle = std::atan2(b, a) + (side == 0 ? 1.0 : -1.0) * std::acos(share);
+        lines[static_cast<size_t>(side)].push_back(middle + minor * (std::cos(angle) * out + std::sin(angle) * glm::dvec3(0.0, 1.0, 0.0)));
+      }
+    }
+    return lines;
+  }
+};
+
+struct ExactEllipsoid {
+  glm::dvec3 center{0.0}, radii{1.0};
+
+  int layers(const Sight& sight) const {
+    const glm::dvec3 o = (sight.from - center) / radii, d = sight.way / radii;
+    return roots_before(glm::dot(d, d), glm::dot(o, d), glm::dot(o, o) - 1.0, sight.reach);
+  }
+  std::vector<glm::dvec3> contour(const Camera& camera, int steps) const {
+    const bool perspective = camera.projection == Projection::perspective;
+    const glm::dvec3 e = (perspective ? camera.eye - center : camera.world_from_camera[2]) / radii;
+    const double length = glm::length(e), height = perspective ? 1.0 / length : 0.0, radius = std::sqrt(1.0 - height * height);
+    const glm::dvec3 axis = e / length;
+    const glm::dvec3 x = glm::normalize(glm::cross(axis, std::fabs(axis.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0))),
+                     y = glm::cross(axis, x);
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i < steps; ++i) {
+      const double turn = 2.0 * kPi * i / steps;
+      points.push_back(center + radii * (height * axis + radius * (std::cos(turn) * x + std::sin(turn) * y)));
+    }
+    return points;
+  }
+};
+
+struct Stats {
+  std::int64_t compared = 0, changes = 0, near_changes = 0;
+};
+
+/// The point of a contour of the graph that lies nearest to `p` in space.
+struct Nearest {
+  double distance = std::numeric_limits<double>::infinity();
+  int invisibility = -1;
+};
+Nearest nearest_in(const ViewGraph& graph, const glm::dvec3& p) {
+  Nearest nearest;
+  for (const LineEdge& edge : graph.edges) {
+    if (edge.line_class != LineClass::contour) continue;
+    for (size_t i = 0; i + 1 < edge.points.size(); ++i) {
+      const glm::dvec3 &a = edge.points[i].position, &b = edge.points[i + 1].position;
+      const double length = glm::distance(a, b);
+      if (glm::distance(a, p) - length > nearest.distance) continue;
+      const double t = length > 0.0 ? std::clamp(glm::dot(p - a, b - a) / (length * length), 0.0, 1.0) : 0.0;
+      const double distance = glm::distance(p, glm::mix(a, b, t));
+      if (distance < nearest.distance) nearest = {distance, edge.invisibility};
+    }
+  }
+  return nearest;
+}
+
+/// Farther than 0.05 px from every exact change the invisibility is the exact one.
+void compare(const ViewGraph& graph, const Camera& camera, const std::vector<ExactLine>& lines, const std::string& what, Stats& stats) {
+  for (const ExactLine& line : lines) {
+    const size_t n = line.points.size();
+    std::vector<glm::dvec2> px;
+    for (const glm::dvec3& p : line.points) px.emplace_back(project(camera, p));
+    std::vector<size_t> changes;
+    for (size_t i = 0; i < n; ++i) {
+      if (line.layers[i] != line.layers[(i + 1) % n]) changes.push_back(i);
+    }
+    stats.changes += static_cast<std::int64_t>(changes.size());
+    // Every 97th point, and those about each change.
+    std::vector<size_t> asked;
+    for (size_t i = 0; i < n; i += 97) asked.push_back(i);
+    for (const size_t change : changes) {
+      for (size_t k = 0; k < 160; ++k) asked.push_back((change + n - 80 + k) % n);
+    }
+    for (const size_t i : asked) {
+      const bool beside_change = std::any_of(changes.begin(), changes.end(), [&](size_t change) {
+        return distance_to_segment(px[i], px[change], px[(change + 1) % n]) <= 0.05;
+      });
+      if (beside_change) {
+        ++stats.near_changes;
+        continue;
+      }
+      const Nearest found = nearest_in(graph, line.points[i]);
+      ++stats.compared;
+      ASSERT_LT(found.distance * pixels_per_unit_at(camera, project(camera, line.points[i]).z), 0.3) << what;
+      ASSERT_EQ(found.invisibility, line.layers[i]) << what << fmt::format(" at {:.3f}, {:.3f}", px[i].x, px[i].y);
+    }
+  }
+}
+
+constexpr int kSteps = 20000;
+
+TEST(LinesVisibility, ATorusChangesAtItsExactCuspsAndTJunctions) {
+  std::mt19937 random(random_seed());
+  Stats stats;
+  for (int view = 0; view < kViews; ++view) {
+    for (const bool perspective : {true, false}) {
+      const ExactTorus torus{1.0, view % 2 == 0 ? 0.35 : 0.15 + 0.5 * std::uniform_real_distribution<double>()(random)};
+      Scene scene;
+      scene.objects.push_back({.name = "torus", .source = make_shape("torus", {{"major", {torus.major}}, {"minor", {torus.minor}}})});
+      const Camera camera = random_camera(random, bounds(scene), perspective);
+      std::vector<ExactLine> lines;
+      for (const std::vector<glm::dvec3>& points : torus.contours(camera, kSteps)) {
+        ExactLine line{points, {}};
+        for (const glm::dvec3& p : points) line.layers.push_back(torus.own_layers(sight_of(camera, p)));
+        lines.push_back(std::move(line));
+      }
+      ASSERT_EQ(lines.size(), 2u);
+      const std::string what = fmt::format("view {}, {}, minor {}", view, perspective ? "perspective" : "orthographic", torus.minor);
+      ASSERT_NO_FATAL_FAILURE(compare(solve_lines(scene, camera, {}, {}), camera, lines, what, stats));
+    }
+  }
+  fmt::print("{} points compared, {} changes, {} points within 0.05 px of one\n", stats.compared, stats.changes, stats.near_changes);
+  EXPECT_GT(stats.changes, 100);
+  EXPECT_GT(stats.compared, 20 * stats.near_changes / 10);
+}
+
+TEST(LinesVisibility, EllipsoidsHideEachOtherAtTheExactTJunctions) {
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  Stats stats;
+  for (int view = 0; view < kViews; ++view) {
+    for (const bool perspective : {true, false}) {
+      // Apart from each other, beside each other, at the corners of a cube.
+      std::vector<ExactEllipsoid> shapes;
+      Scene scene;
+      for (int i = 0; i < 5; ++i) {
+        const glm::dvec3 corner((i & 1) ? 1 : -1, (i & 2) ? 1 : -1, (i & 4) ? 1 : -1);
+        shapes.push_back({corner + 0.1 * glm::dvec3(any(random), any(random), any(random)),
+                          0.35 + 0.5 * glm::dvec3(any(random), any(random), any(random))});
+        const glm::dvec3& radii = shapes.back().radii;
+        scene.objects.push_back(
+            {.name = fmt::format("ellipsoid {}", i),
+             .source = translate(make_shape("ellipsoid", {{"radii", {radii.x, radii.y, radii.z}}}), shapes.back().center)});
+      }
+      const Camera camera = random_camera(random, bounds(scene), perspective);
+      std::vector<ExactLine> lines;
+      for (size_t own = 0; own < shapes.size(); ++own) {
+        ExactLine line{shapes[own].contour(camera, kSteps), {}};
+        for (const glm::dvec3& p : line.points) {
+          int layers = 0;
+          for (size_t other = 0; other < shapes.size(); ++other) {
+            if (other != own) layers += shapes[other].layers(sight_of(camera, p));
+          }
+          line.layers.push_back(layers);
+        }
+        lines.push_back(std::move(line));
+      }
+      const std::string what = fmt::format("view {}, {}", view, perspective ? "perspective" : "orthographic");
+      ASSERT_NO_FATAL_FAILURE(compare(solve_lines(scene, camera, {}, {}), camera, lines, what, stats));
+    }
+  }
+  fmt::print("{} points compared, {} changes, {} points within 0.05 px of one\n", stats.compared, stats.changes, stats.near_changes);
+  EXPECT_GT(stats.changes, 100);
+  EXPECT_GT(stats.compared, stats.near_changes);
+}
+
+}  // namespace
+}  // namespace limn

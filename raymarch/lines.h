@@ -2,6 +2,7 @@
 // The lines of a scene as vectors: contour generators split by occlusion, boundaries, creases, intersections, joined into a view graph
 // whose edges know how many layers of surface lie in front of them, and a certificate that the graph agrees with itself and with rays.
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -116,8 +117,16 @@ struct ViewGraph {
   std::vector<std::string> notes{};       ///< What the bound does not cover.
 };
 
-/// Throws InputError for settings outside their ranges. Cancelled as elsewhere.
-ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettings& settings, const ExecutionSettings& execution);
+struct KeptLines;  // raymarch/lines/line_memory.h
+/// What views of one scene share (refined cages, trees of triangles), so that the next takes less time; the lines are the same without it.
+/// For one scene and one call at a time. Empty at first.
+struct LineMemory {
+  std::shared_ptr<KeptLines> kept{};  ///< Made by the first call.
+};
+
+/// Throws InputError for settings outside their ranges. Cancelled as elsewhere. `memory` may be null.
+ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettings& settings, const ExecutionSettings& execution,
+                      LineMemory* memory = nullptr);
 
 /// The points of a chain in order, each once; a closed one's first is not repeated.
 std::vector<LinePoint> points_of(const ViewGraph& graph, const LineChain& chain);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "raymarch/lines/cage_seams.h"
+#include "raymarch/lines/line_memory.h"
 #include "raymarch/lines/mesh_layers.h"
 #include "raymarch/lines/seams.h"
 #include "raymarch/truth/limit_curves.h"
@@ -16,6 +17,13 @@ namespace {
 constexpr double kCell_px = 4.0;
 constexpr double kProxyEdge_px = 1.5;
 constexpr std::int64_t kMostTriangles = 3'000'000;
+
+/// Rounded up, so that views from much the same distance share their samples.
+int shared_steps(int steps) {
+  int shared = 4;
+  while (shared < steps) shared += shared / 4 % 2 == 0 ? shared / 4 : shared / 4 + 1;
+  return shared;
+}
 
 SurfaceCurve curve_of(const LineTask& task, const TracedCurve& traced) {
   const bool contour = traced.kind == CurveKind::silhouette;
@@ -40,15 +48,20 @@ SurfaceCurve curve_of(const LineTask& task, const TracedCurve& traced) {
 void add_cage(const LineTask& task, size_t object, LineContribution& out) {
   const SceneObject& scene_object = task.scene.objects[object];
   const auto& source = std::get<MeshSource>(scene_object.source);
-  Mesh cage = source.mesh;
-  const glm::dvec3 center = bounds(cage).center();
-  for (glm::dvec3& position : cage.positions) position -= center;
+  const glm::dvec3 center = bounds(source.mesh).center();
+  KeptCage& kept = task.kept.cages[object];
+  if (!kept.surface) {
+    Mesh cage = source.mesh;
+    for (glm::dvec3& position : cage.positions) position -= center;
+    kept.surface = std::make_shared<const LimitSurface>(cage, *source.scheme, source.file);
+  }
   Affine solver_from_cage = scene_object.world_from_object;
   solver_from_cage.translation += solver_from_cage.linear * center - task.origin;
-  const LimitSurface surface(cage, *source.scheme, source.file);
-  const PlacedLimitSurface placed = place(surface, solver_from_cage);
-  double cell_px = 0.0;
-  const LimitGrid grid = sample_grid(placed, task.camera, kCell_px, kMostTriangles, cell_px);
+  const PlacedLimitSurface placed = place(*kept.surface, solver_from_cage);
+  const int steps = shared_steps(lattice_steps(placed, task.camera, kCell_px, kMostTriangles).steps);
+  std::shared_ptr<const LimitGrid>& kept_grid = kept.grids[steps];
+  if (!kept_grid) kept_grid = std::make_shared<const LimitGrid>(sample_grid(placed, task.camera, steps));
+  const LimitGrid& grid = *kept_grid;
   LimitCurveSettings tracing;
   tracing.tolerance_px = 0.5 * task.settings.tolerance_px;
   tracing.object = static_cast<int>(object) + 1;

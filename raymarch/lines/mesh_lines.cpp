@@ -33,8 +33,8 @@ class MeshTracer {
  public:
   MeshTracer(const LineTask& task, const MeshLayers& layers)
       : task_(task),
-        positions_(layers.positions()),
-        triangles_(layers.triangles()),
+        positions_(layers.tree().positions()),
+        triangles_(layers.tree().triangles()),
         crease_cosine_(std::cos(task.settings.crease_angle_deg * std::numbers::pi / 180.0)) {}
 
   std::vector<SurfaceCurve> run() {

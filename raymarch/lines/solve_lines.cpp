@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "raymarch/lines/graph_building.h"
+#include "raymarch/lines/line_memory.h"
 #include "raymarch/scene/threads.h"
 #include "raymarch/truth/locate.h"
 #include "raymarch/truth/proxy.h"
@@ -26,8 +27,8 @@ void check(const LineSettings& settings) {
     fail("crease_angle", settings.crease_angle_deg, "not an angle between faces", "above 0 and below 180 degrees");
 }
 
-LineTask task_of(const Scene& scene, const Camera& camera, const LineSettings& settings) {
-  LineTask task{scene};
+LineTask task_of(const Scene& scene, const Camera& camera, const LineSettings& settings, KeptLines& kept) {
+  LineTask task{scene, {}, glm::dvec3(0.0), 1.0, {}, kept};
   const Box box = bounds(scene);
   if (box.finite()) task.origin = box.center();
   // Turned by an epsilon, so that faces seen exactly edge-on face one way and not all ways at once.
@@ -89,10 +90,14 @@ void project_sample(const Camera& camera, CurveSample& sample) {
   sample.depth = image.z;
 }
 
-ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettings& settings, const ExecutionSettings& execution) {
+ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettings& settings, const ExecutionSettings& execution,
+                      LineMemory* memory) {
   check(settings);
+  LineMemory own;
+  LineMemory& used = memory != nullptr ? *memory : own;
+  if (used.kept == nullptr) used.kept = std::make_shared<KeptLines>();
   return ThreadArena(execution.threads).execute([&] {
-    const LineTask task = task_of(scene, camera, settings);
+    const LineTask task = task_of(scene, camera, settings, *used.kept);
     ViewGraph graph;
     const std::vector<LineContribution> contributions = contributions_of(task, execution, graph.from);
     std::vector<SurfaceCurve> curves;

@@ -66,6 +66,7 @@ struct LineTask {
   glm::dvec3 origin{0.0};  ///< World: solver space's.
   double extent = 1.0;     ///< Radius of the whole scene.
   LineSettings settings{};
+  KeptLines& kept;
 
   bool wants(LineClass line_class) const;
 };

@@ -277,12 +277,14 @@ SurfaceCurvature curvature_at(const PlacedLimitSurface& placed, size_t k, const 
   return curvature(moved);
 }
 
-LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, double cell_px, std::int64_t max_triangles,
-                      double& used_cell_px) {
-  const double longest = longest_side_px(placed, camera);
-  int steps = steps_for(placed, longest, cell_px);
-  while (steps > 4 && triangles_of(placed, steps) > max_triangles) steps -= 2;
-  used_cell_px = longest / steps;
+LatticeSteps lattice_steps(const PlacedLimitSurface& placed, const Camera& camera, double cell_px, std::int64_t max_triangles) {
+  LatticeSteps result{steps_for(placed, longest_side_px(placed, camera), cell_px)};
+  while (result.steps > 4 && triangles_of(placed, result.steps) > max_triangles) result.steps -= 2;
+  result.cell_px = longest_side_px(placed, camera) / result.steps;
+  return result;
+}
+
+LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, int steps) {
   std::vector<PatchLattice> lattices(placed.patches.size());
   parallel_for(size_t{0}, placed.patches.size(),
                [&](size_t k) { lattices[k] = sample_lattice(placed, k, steps_of(placed.patches[k], steps)); });
@@ -299,6 +301,13 @@ LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, do
   }
   find_seams(placed, grid);
   return grid;
+}
+
+LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, double cell_px, std::int64_t max_triangles,
+                      double& used_cell_px) {
+  const LatticeSteps lattice = lattice_steps(placed, camera, cell_px, max_triangles);
+  used_cell_px = lattice.cell_px;
+  return sample_grid(placed, camera, lattice.steps);
 }
 
 }  // namespace limn

@@ -84,6 +84,16 @@ struct LimitGrid {
   std::vector<size_t> invalid_patches{};  ///< Without a limit surface; they are left out.
 };
 
+/// How finely each patch is sampled.
+struct LatticeSteps {
+  int steps = 4;         ///< Cells along each side of a quad patch; even.
+  double cell_px = 0.0;  ///< How wide they are where the patch is largest in the image.
+};
+/// For cells of about `cell_px`, and `max_triangles` triangles in all.
+LatticeSteps lattice_steps(const PlacedLimitSurface& placed, const Camera& camera, double cell_px, std::int64_t max_triangles);
+/// With so many steps; the camera matters to LimitGrid::tip_px alone.
+LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, int steps);
+
 /// The lattice's cells are about `cell_px` wide where the patch is largest in the image, and at most `max_triangles` triangles in all.
 LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, double cell_px, std::int64_t max_triangles,
                       double& used_cell_px);

@@ -258,16 +258,34 @@ void judge_objects(const Scene& scene, int level, TruthReference reference, cons
 
 bool is_cage(const SceneObject& object) { return cage_in(object) != nullptr; }
 
-TruthProxy make_proxy(const Scene& scene, const Camera& camera, std::int64_t max_bytes, double edge_px) {
-  TruthProxy out;
-  while (out.level < kFinestLevel && edge_px_at(scene, camera, out.level) > edge_px && faces_at(scene, out.level + 1) <= kMostFaces)
-    ++out.level;
-  out.edge_px = edge_px_at(scene, camera, out.level);
-  out.model = model_of(scene, [&](const SceneObject& object) {
-    SurfaceSettings settings = finest_settings(object, out.level, out);
+int proxy_level(const Scene& scene, const Camera& camera, double edge_px) {
+  int level = 0;
+  while (level < kFinestLevel && edge_px_at(scene, camera, level) > edge_px && faces_at(scene, level + 1) <= kMostFaces) ++level;
+  return level;
+}
+
+namespace {
+
+SceneModel model_at(const Scene& scene, int level, std::int64_t max_bytes, TruthProxy& out) {
+  return model_of(scene, [&](const SceneObject& object) {
+    SurfaceSettings settings = finest_settings(object, level, out);
     settings.max_bytes = max_bytes;
     return settings;
   });
+}
+
+}  // namespace
+
+SceneModel proxy_model(const Scene& scene, int level, std::int64_t max_bytes) {
+  TruthProxy words;
+  return model_at(scene, level, max_bytes, words);
+}
+
+TruthProxy make_proxy(const Scene& scene, const Camera& camera, std::int64_t max_bytes, double edge_px) {
+  TruthProxy out;
+  out.level = proxy_level(scene, camera, edge_px);
+  out.edge_px = edge_px_at(scene, camera, out.level);
+  out.model = model_at(scene, out.level, max_bytes, out);
   return out;
 }
 

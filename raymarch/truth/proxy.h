@@ -13,6 +13,10 @@ struct TruthProxy {
   double edge_px = 0.0;              ///< Mean edge of the cages, where they are seen.
   std::vector<std::string> words{};  ///< What each kind of object became: "a mesh of level 6".
 };
+/// How often its cages are refined.
+int proxy_level(const Scene& scene, const Camera& camera, double edge_px);
+/// The model alone, with cages refined so often.
+SceneModel proxy_model(const Scene& scene, int level, std::int64_t max_bytes);
 TruthProxy make_proxy(const Scene& scene, const Camera& camera, std::int64_t max_bytes, double edge_px);
 
 /// A mesh that is to be subdivided.

@@ -116,11 +116,12 @@ int run(const Options& options) {
   execution.threads = options.spec.threads;
   Json documents = Json::array(), files = Json::array();
   size_t conflicts = 0;
+  LineMemory memory;
   for (int view = 0; view < options.spec.views; ++view) {
     const Camera camera = camera_of_view(settings, box, view, options.spec.views);
     execution.progress = bar.stage("solving the lines");
     const auto start = std::chrono::steady_clock::now();
-    const ViewGraph graph = solve_lines(scene, camera, options.lines.lines, execution);
+    const ViewGraph graph = solve_lines(scene, camera, options.lines.lines, execution, &memory);
     const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     bar.clear();
     for (const fs::path& file : outputs) {

@@ -50,11 +50,12 @@ Row run(const std::string& name, const Scene& scene, const LinesBenchSettings& s
   ExecutionSettings execution;
   execution.threads = settings.threads;
   const std::vector<glm::dvec3> all = directions();
+  LineMemory memory;
   for (size_t view = 0; view < all.size(); ++view) {
     if (settings.only_view && *settings.only_view != static_cast<int>(view)) continue;
     const Camera camera = camera_from(all[view], box, settings.width_px, settings.height_px);
     const auto start = std::chrono::steady_clock::now();
-    const ViewGraph graph = solve_lines(scene, camera, {}, execution);
+    const ViewGraph graph = solve_lines(scene, camera, {}, execution, &memory);
     row.ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     row.chains += static_cast<std::int64_t>(graph.chains.size());
     row.visible += std::count_if(graph.chains.begin(), graph.chains.end(), [](const LineChain& chain) { return chain.invisibility == 0; });

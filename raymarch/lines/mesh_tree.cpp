@@ -1,0 +1,229 @@
+#include "raymarch/lines/mesh_tree.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "raymarch/mesh/embree_device.h"
+#include "raymarch/mesh/polygons.h"
+#include "sdf/error.h"
+
+namespace limn {
+namespace {
+
+using Triangle = LayerTriangle;
+
+/// The face of each corner.
+std::vector<std::int32_t> faces_of_corners(const Mesh& mesh) {
+  std::vector<std::int32_t> faces;
+  faces.reserve(mesh.corner_vertices.size());
+  for (size_t f = 0; f < mesh.face_sizes.size(); ++f)
+    faces.insert(faces.end(), static_cast<size_t>(mesh.face_sizes[f]), static_cast<std::int32_t>(f));
+  return faces;
+}
+
+/// Vertices joined where faces join them.
+class Parts {
+ public:
+  explicit Parts(size_t vertices) : parent_(vertices) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  std::uint32_t find(std::uint32_t v) {
+    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+    return v;
+  }
+  void join(std::uint32_t a, std::uint32_t b) { parent_[find(a)] = find(b); }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+bool touch(const Triangle& a, const Triangle& b) {
+  return std::any_of(a.corners.begin(), a.corners.end(),
+                     [&](std::uint32_t corner) { return std::find(b.corners.begin(), b.corners.end(), corner) != b.corners.end(); });
+}
+
+}  // namespace
+
+struct MeshTree::Embree {
+  RTCDevice device = nullptr;
+  RTCScene tree = nullptr;
+  ~Embree() {
+    if (tree != nullptr) rtcReleaseScene(tree);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+};
+
+MeshTree::MeshTree(const SceneModel& model, const std::vector<int>& objects, double extent)
+    : extent_(extent), embree_(std::make_unique<Embree>()) {
+  for (size_t i = 0; i < model.surfaces.size(); ++i) {
+    if (model.surfaces[i].polygons) add(*model.surfaces[i].polygons, model.render_origin, objects[i]);
+  }
+  weld();
+  build();
+}
+
+MeshTree::~MeshTree() = default;
+
+void MeshTree::add(const Polygons& polygons, const glm::dvec3& offset, int object) {
+  const Mesh& mesh = polygons.mesh();
+  const auto first = static_cast<std::uint32_t>(positions_.size());
+  for (const glm::dvec3& p : mesh.positions) positions_.push_back(p + offset);
+  const std::vector<std::int32_t> face_of = mesh.face_materials.empty() ? std::vector<std::int32_t>{} : faces_of_corners(mesh);
+  for (const glm::uvec3& corner : polygons.corner_triangles()) {
+    Triangle triangle;
+    if (!face_of.empty()) triangle.material = mesh.face_materials[static_cast<size_t>(face_of[corner[0]])];
+    for (int k = 0; k < 3; ++k)
+      triangle.corners[static_cast<size_t>(k)] = first + static_cast<std::uint32_t>(mesh.corner_vertices[corner[k]]);
+    triangle.object = object;
+    triangles_.push_back(triangle);
+  }
+}
+
+/// Vertices at one place are one vertex.
+void MeshTree::weld() {
+  std::vector<std::uint32_t> order(positions_.size()), same(positions_.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto key = [&](std::uint32_t i) { return std::tie(positions_[i].x, positions_[i].y, positions_[i].z); };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  for (size_t i = 0; i < order.size(); ++i) same[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? same[order[i - 1]] : order[i];
+  Parts joined(positions_.size());
+  for (Triangle& triangle : triangles_) {
+    for (std::uint32_t& corner : triangle.corners) corner = same[corner];
+    joined.join(triangle.corners[0], triangle.corners[1]);
+    joined.join(triangle.corners[0], triangle.corners[2]);
+  }
+  std::map<std::uint32_t, std::uint32_t> numbers;
+  for (Triangle& triangle : triangles_)
+    triangle.part = numbers.try_emplace(joined.find(triangle.corners[0]), static_cast<std::uint32_t>(numbers.size())).first->second;
+  parts_ = static_cast<std::uint32_t>(numbers.size());
+}
+
+void MeshTree::build() {
+  embree_->device = shared_embree_device();
+  embree_->tree = rtcNewScene(embree_->device);
+  rtcSetSceneFlags(embree_->tree, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                               std::max<size_t>(positions_.size(), 1)));
+  auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
+                                                                 std::max<size_t>(triangles_.size(), 1)));
+  if (vertices == nullptr || corners == nullptr) throw MachineError("Embree could not build its tree over the mesh");
+  for (size_t i = 0; i < positions_.size(); ++i) {
+    for (int k = 0; k < 3; ++k) vertices[3 * i + static_cast<size_t>(k)] = static_cast<float>(positions_[i][k]);
+  }
+  for (size_t i = 0; i < triangles_.size(); ++i) std::copy(triangles_[i].corners.begin(), triangles_[i].corners.end(), corners + 3 * i);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(embree_->tree, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(embree_->tree);
+  if (rtcGetDeviceError(embree_->device) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
+}
+
+std::vector<LayerHit> MeshTree::hits_along(const glm::dvec3& origin, const glm::dvec3& direction, double end) const {
+  struct Collector {
+    RTCIntersectContext context;
+    std::vector<LayerHit> hits;
+  } collector;
+  rtcInitIntersectContext(&collector.context);
+  collector.context.filter = [](const RTCFilterFunctionNArguments* arguments) {
+    auto* const own = reinterpret_cast<Collector*>(arguments->context);
+    const auto* const ray = reinterpret_cast<const RTCRay*>(arguments->ray);
+    const auto* const hit = reinterpret_cast<const RTCHit*>(arguments->hit);
+    own->hits.push_back({static_cast<double>(ray->tfar), hit->primID});
+    arguments->valid[0] = 0;  // Go on.
+  };
+  RTCRayHit query{};
+  query.ray.org_x = static_cast<float>(origin.x), query.ray.org_y = static_cast<float>(origin.y),
+  query.ray.org_z = static_cast<float>(origin.z);
+  query.ray.dir_x = static_cast<float>(direction.x), query.ray.dir_y = static_cast<float>(direction.y);
+  query.ray.dir_z = static_cast<float>(direction.z);
+  query.ray.tnear = 0.0f, query.ray.tfar = static_cast<float>(end);
+  query.ray.mask = 0xffffffffu;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(embree_->tree, &collector.context, &query);
+  std::vector<LayerHit>& hits = collector.hits;
+  std::sort(hits.begin(), hits.end(),
+            [](const LayerHit& a, const LayerHit& b) { return std::tie(a.t, a.triangle) < std::tie(b.t, b.triangle); });
+  std::vector<LayerHit> kept;
+  for (const LayerHit& hit : hits) {
+    const bool again = std::any_of(kept.rbegin(), kept.rend(), [&](const LayerHit& k) {
+      return hit.t - k.t <= 1e-5 * (extent_ + end) && touch(triangles_[hit.triangle], triangles_[k.triangle]) &&
+             same_side(hit, k, direction);
+    });
+    if (!again) kept.push_back(hit);
+  }
+  return kept;
+}
+
+glm::dvec3 MeshTree::normal_of(const LayerTriangle& triangle) const {
+  const glm::dvec3 &a = positions_[triangle.corners[0]], &b = positions_[triangle.corners[1]], &c = positions_[triangle.corners[2]];
+  return glm::cross(b - a, c - a);
+}
+
+/// Two triangles at a fold are both gone through: only those that face the same way are one layer.
+bool MeshTree::same_side(const LayerHit& a, const LayerHit& b, const glm::dvec3& direction) const {
+  return (glm::dot(normal_of(triangles_[a.triangle]), direction) > 0.0) == (glm::dot(normal_of(triangles_[b.triangle]), direction) > 0.0);
+}
+
+const PartMeetings& MeshTree::meetings() const {
+  std::call_once(meetings_made_, [&] {
+    if (parts_ > 1) meetings_ = find_meetings();
+  });
+  return meetings_;
+}
+
+PartMeetings MeshTree::find_meetings() const {
+  PartMeetings result;
+  // Faces of each edge.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> faces_of;
+  std::vector<Box> boxes(parts_);
+  for (const Triangle& triangle : triangles_) {
+    for (const std::uint32_t corner : triangle.corners) boxes[triangle.part] = include(boxes[triangle.part], positions_[corner]);
+  }
+  const auto meets_others = [&](const Triangle& triangle) {
+    Box own;
+    for (const std::uint32_t corner : triangle.corners) own = include(own, positions_[corner]);
+    for (std::uint32_t part = 0; part < parts_; ++part) {
+      if (part != triangle.part && !intersect(own, boxes[part]).empty()) return true;
+    }
+    return false;
+  };
+  for (std::uint32_t f = 0; f < triangles_.size(); ++f) {
+    const Triangle& triangle = triangles_[f];
+    if (!meets_others(triangle)) continue;
+    for (size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangle.corners[k], b = triangle.corners[(k + 1) % 3];
+      faces_of[{std::min(a, b), std::max(a, b)}].push_back(f);
+    }
+  }
+  // Each pair of faces that go through each other is left where an edge of the one meets the other.
+  std::vector<PartMeeting>& hits = result.places;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<size_t>> of_pair;
+  for (const auto& [edge, faces] : faces_of) {
+    const glm::dvec3 &a = positions_[edge.first], &b = positions_[edge.second];
+    const double length = glm::distance(a, b);
+    if (!(length > 0.0)) continue;
+    for (const LayerHit& hit : hits_along(a, (b - a) / length, length)) {
+      const Triangle& other = triangles_[hit.triangle];
+      if (other.part == triangles_[faces[0]].part) continue;
+      const Triangle& own = triangles_[faces[0]];
+      const glm::dvec3 own_normal = glm::normalize(normal_of(own)), other_normal = glm::normalize(normal_of(other));
+      const bool lower = own.part < other.part;
+      hits.push_back({glm::mix(a, b, hit.t / length), lower ? own_normal : other_normal, lower ? other_normal : own_normal, other.object});
+      for (const std::uint32_t face : faces)
+        of_pair[{std::min(face, hit.triangle), std::max(face, hit.triangle)}].push_back(hits.size() - 1);
+    }
+  }
+  std::vector<std::vector<size_t>>& next = result.next;
+  next.resize(hits.size());
+  for (const auto& [pair, ends] : of_pair) {
+    if (ends.size() != 2) continue;
+    next[ends[0]].push_back(ends[1]);
+    next[ends[1]].push_back(ends[0]);
+  }
+  return result;
+}
+
+}  // namespace limn

@@ -1,0 +1,76 @@
+#pragma once
+// Internal: triangles that rays and lines go through, and where connected parts of them go through each other. Knows no view.
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "raymarch/surface.h"
+
+namespace limn {
+
+/// A triangle's side of a ray.
+struct LayerHit {
+  double t = 0.0;
+  std::uint32_t triangle = 0;
+};
+
+/// A triangle of vertices that are the same where they lie at one place.
+struct LayerTriangle {
+  std::array<std::uint32_t, 3> corners{};
+  std::uint32_t part = 0;  ///< Connected by vertices.
+  int object = 1;          ///< Index from 1.
+  int material = 0;
+};
+
+/// Where an edge of one part goes through a triangle of another.
+struct PartMeeting {
+  glm::dvec3 p{0.0};
+  glm::dvec3 lower_normal{0.0}, upper_normal{0.0};  ///< Unit, of the parts of lower and higher number.
+  int object = 1;
+};
+/// Polylines along which parts go through each other: places, and those that come next to each.
+struct PartMeetings {
+  std::vector<PartMeeting> places{};
+  std::vector<std::vector<size_t>> next{};
+};
+
+/// Safe from many threads.
+class MeshTree {
+ public:
+  /// The polygons of a model's surfaces, which stand for these objects (from 1).
+  MeshTree(const SceneModel& model, const std::vector<int>& objects, double extent);
+  ~MeshTree();
+  MeshTree(const MeshTree&) = delete;
+  MeshTree& operator=(const MeshTree&) = delete;
+
+  const std::vector<glm::dvec3>& positions() const { return positions_; }
+  const std::vector<LayerTriangle>& triangles() const { return triangles_; }
+  std::uint32_t parts() const { return parts_; }
+  /// Not unit.
+  glm::dvec3 normal_of(const LayerTriangle& triangle) const;
+
+  /// All hits on origin + t direction, 0 < t < end, in order; one where a shared edge or vertex is hit.
+  std::vector<LayerHit> hits_along(const glm::dvec3& origin, const glm::dvec3& direction, double end) const;
+  /// Made when first asked for.
+  const PartMeetings& meetings() const;
+
+ private:
+  struct Embree;
+  void add(const class Polygons& polygons, const glm::dvec3& offset, int object);
+  void weld();
+  void build();
+  bool same_side(const LayerHit& a, const LayerHit& b, const glm::dvec3& direction) const;
+  PartMeetings find_meetings() const;
+
+  double extent_;
+  std::vector<glm::dvec3> positions_{};
+  std::vector<LayerTriangle> triangles_{};
+  std::uint32_t parts_ = 0;
+  std::unique_ptr<Embree> embree_;
+  mutable std::once_flag meetings_made_;
+  mutable PartMeetings meetings_;
+};
+
+}  // namespace limn

@@ -16,6 +16,10 @@
 namespace limn {
 namespace {
 
+// Curves in closed form lie no farther from their chords than this, as shares of the tolerance.
+constexpr double kFormApart = 1.2, kFormNearer = 1.2;
+constexpr double kFormTangency_px = 20.0;
+
 struct FieldTask {
   const LineTask& task;
   const FieldBodies& bodies;
@@ -114,8 +118,14 @@ TracedBody trace_body(const FieldTask& fields, const Field& body, const std::str
   if (task.settings.closed_forms && settings.threshold == 0.0) traced.form = form_body(body);
   if (traced.form) {
     traced.exact_rays = has_ray_roots(*traced.form);
+    const size_t first = out.curves.size();
     if (const auto curves = trace_form_curves(*traced.form, task.camera, fields.viewer, settings.tolerance_px, execution)) {
       add(*curves);
+      for (size_t i = first; i < out.curves.size(); ++i) {
+        out.curves[i].apart_px = kFormApart * settings.tolerance_px;
+        out.curves[i].nearer_px = kFormNearer * settings.tolerance_px;
+        out.curves[i].tangency_px = kFormTangency_px;
+      }
       return traced;
     }
   }

@@ -90,8 +90,9 @@ class Tracer {
     const int before = (a.depth > 0.0) + (b.depth > 0.0) + (middle.depth > 0.0);
     if (before > 0 && before < 3) return chord > kBehind * body_.extent;
     if (curve_.kind == FormCurve::Kind::line) return false;
-    if (distance_to_segment(middle.p, a.p, b.p) > kBulge * chord) return true;
-    return before == 3 && distance_to_segment(middle.px, a.px, b.px) > tolerance_px_;
+    const double bulge = distance_to_segment(middle.p, a.p, b.p);
+    if (bulge > kBulge * chord) return true;
+    return before == 3 && bulge * pixels_per_unit_at(camera_, middle.depth) > tolerance_px_;
   }
 
   double facing(int number, const Sample& sample) const {

@@ -12,8 +12,7 @@ constexpr double kBucket_px = 4.0;
 constexpr double kMargin_px = 1e-3;      // so that no rounding leaves a bucket out
 constexpr double kBeyondFrame_px = 8.0;  // steps farther outside the picture are left out
 constexpr double kBelowOne = 1.0 - 1e-15;
-constexpr double kParallel = 1e-9;   // the sine of the angle between steps
-constexpr double kNearer_px = 0.05;  // what is nearer by less, px at its depth, is the same place
+constexpr double kParallel = 1e-9;  // the sine of the angle between steps
 
 struct Step {
   std::uint64_t bucket = 0;
@@ -66,8 +65,8 @@ double share_in_space(const Ends& step, double t, const Camera& camera) {
   return t * step.a.depth / (step.b.depth + t * (step.a.depth - step.b.depth));
 }
 
-/// Where `nearer` crosses `step` in the image, in front of it.
-std::optional<Meeting> meet(const Ends& step, const Ends& nearer, const Camera& camera) {
+/// Where `nearer` crosses `step` in the image, in front of it by more than `nearer_px`.
+std::optional<Meeting> meet(const Ends& step, const Ends& nearer, double nearer_px, const Camera& camera) {
   const glm::dvec2 d = step.b.px - step.a.px, e = nearer.b.px - nearer.a.px, between = nearer.a.px - step.a.px;
   const double determinant = cross(d, e);
   // Steps of one straight line meet nowhere, whatever rounding says.
@@ -78,7 +77,7 @@ std::optional<Meeting> meet(const Ends& step, const Ends& nearer, const Camera& 
   const double t = std::min(share_in_space(step, in_image, camera), kBelowOne),
                u = std::min(share_in_space(nearer, in_nearer, camera), kBelowOne);
   const double depth = glm::mix(step.a.depth, step.b.depth, t), front = glm::mix(nearer.a.depth, nearer.b.depth, u);
-  if (!(front < depth - kNearer_px / pixels_per_unit_at(camera, depth))) return {};
+  if (!(front < depth - nearer_px / pixels_per_unit_at(camera, depth))) return {};
   return Meeting{t, u, cross(d, e) > 0.0};
 }
 
@@ -110,7 +109,8 @@ std::vector<std::vector<NearerCrossing>> nearer_crossings(const std::vector<Surf
         auto other = std::lower_bound(folds.begin(), folds.end(), bucket, [](const Step& s, std::uint64_t b) { return s.bucket < b; });
         for (; other != folds.end() && other->bucket == bucket; ++other) {
           if (other->curve == c && neighbours(other->index, i, count)) continue;
-          const std::optional<Meeting> meeting = meet(step, ends_of(curves[other->curve], other->index), camera);
+          const std::optional<Meeting> meeting = meet(step, ends_of(curves[other->curve], other->index),
+                                                      std::max(curves[c].nearer_px, curves[other->curve].nearer_px), camera);
           if (!meeting) continue;
           const int more_on_left = curves[other->curve].samples[other->index].more_on_left;
           here.push_back({static_cast<double>(i) + meeting->t, meeting->onto_left ? more_on_left : -more_on_left, other->curve,

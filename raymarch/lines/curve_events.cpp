@@ -158,7 +158,8 @@ class EventFinder {
     double from = std::min(one.on_nearer, other.on_nearer), to = std::max(one.on_nearer, other.on_nearer);
     if (nearer.closed && to - from > 0.5 * steps) std::tie(from, to) = std::pair(to, from + steps);
     if (to - from > kMostLensSteps || other.at - one.at > kMostLensSteps) return false;
-    return lies_along(px_between(curve_, one.at, other.at, camera_), px_between(nearer, from, to, camera_), apart_from(nearer));
+    const std::vector<glm::dvec2> own_px = px_between(curve_, one.at, other.at, camera_), nearer_px = px_between(nearer, from, to, camera_);
+    return lie_together(own_px, nearer_px, apart_from(nearer));
   }
 
   /// A crease leaves a contour, and the two arms of a cusp each other, along their common tangent: polylines of them cross again and again
@@ -167,9 +168,9 @@ class EventFinder {
     if (crossing.curve == number_) return one_cusp_between(crossing.at, crossing.on_nearer) || is_spike(crossing);
     const SurfaceCurve& other = curves_[crossing.curve];
     const double longest_px = std::min(curve_.tangency_px, other.tangency_px);
-    for (const Stretch& own : to_ends(curve_, crossing.at, longest_px)) {
-      for (const Stretch& others : to_ends(other, crossing.on_nearer, longest_px)) {
-        if (glm::distance(own.end, others.end) < 1e-6 * extent_ && run_together(own, others, apart_from(other))) return true;
+    for (const Stretch& own : to_ends(curve_, crossing.at, longest_px, camera_)) {
+      for (const Stretch& others : to_ends(other, crossing.on_nearer, longest_px, camera_)) {
+        if (glm::distance(own.end, others.end) < 1e-6 * extent_ && lie_together(own.px, others.px, apart_from(other))) return true;
       }
     }
     return false;
@@ -185,7 +186,7 @@ class EventFinder {
     const auto farther = [&](const glm::dvec2& a, const glm::dvec2& b) { return glm::distance(a, px[0]) < glm::distance(b, px[0]); };
     const auto turn = std::max_element(px.begin(), px.end(), farther);
     const std::vector<glm::dvec2> there(px.begin(), turn + 1), back(turn, px.end());
-    return lies_along(there, back, curve_.apart_px) && lies_along(back, there, curve_.apart_px);
+    return lie_together(there, back, curve_.apart_px);
   }
 
   bool one_cusp_between(double one, double other) const {
@@ -202,17 +203,17 @@ class EventFinder {
     glm::dvec3 end{0.0};
     std::vector<glm::dvec2> px{};
   };
-  static std::vector<Stretch> to_ends(const SurfaceCurve& curve, double place, double longest_px) {
+  static std::vector<Stretch> to_ends(const SurfaceCurve& curve, double place, double longest_px, const Camera& camera) {
     std::vector<Stretch> all;
     const auto n = static_cast<std::ptrdiff_t>(curve.samples.size());
     for (const int way : {1, -1}) {
-      Stretch stretch;
+      Stretch stretch{glm::dvec3(0.0), {sample_at(curve, place, camera).px}};
       double length = 0.0;
       auto i = static_cast<std::ptrdiff_t>(place) + (way > 0 ? 1 : 0);
       for (std::ptrdiff_t count = 0; count < n && length <= longest_px; ++count, i += way) {
         if (!curve.closed && (i < 0 || i >= n)) break;
         const CurveSample& sample = curve.samples[static_cast<size_t>((i + n) % n)];
-        if (!stretch.px.empty()) length += glm::distance(sample.px, stretch.px.back());
+        length += glm::distance(sample.px, stretch.px.back());
         stretch.px.push_back(sample.px);
         if (!sample.joint && (curve.closed || (i > 0 && i < n - 1))) continue;
         stretch.end = sample.p;
@@ -222,9 +223,9 @@ class EventFinder {
     }
     return all;
   }
-  static bool run_together(const Stretch& one, const Stretch& other, double apart_px) {
-    // Each stretch leaves out the part before its first sample, where the other one may begin: one of them is enough.
-    return lies_along(one.px, other.px, apart_px) || lies_along(other.px, one.px, apart_px);
+  /// Either along the other one: of long steps the one's samples say nothing.
+  static bool lie_together(const std::vector<glm::dvec2>& one, const std::vector<glm::dvec2>& other, double apart_px) {
+    return lies_along(one, other, apart_px) && lies_along(other, one, apart_px);
   }
 
   double frame_share(const CurveSample& a, const CurveSample& b) const {

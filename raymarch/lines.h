@@ -40,6 +40,8 @@ struct LineSettings {
   double crease_angle_deg = 40.0;                  ///< Edges of meshes are creases where their faces' normals differ by more. In (0, 180).
   double tolerance_px = 0.005;                     ///< How far the polylines may lie from the curves.
   std::int64_t max_bytes = std::int64_t{4} << 30;  ///< For the meshes that rays are cast against.
+  /// Sharp CSG of quadrics and tori by closed forms. Off: searched for in cells of space, as all other fields are.
+  bool closed_forms = true;
 };
 
 /// A point of a line.

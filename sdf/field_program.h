@@ -6,11 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "sdf/closed_form.h"
 #include "sdf/field.h"
 #include "sdf/number.h"
 #include "sdf/number_recorded.h"
@@ -38,6 +40,8 @@ struct ShapeFunctions {
   Field (*faces)(const void* shape);
   /// Where the surface has a point and no normal, as a cone has at its tip; object space. Null where it has none.
   glm::dvec3 (*tip)(const void* shape);
+  /// {f <= level} in closed form, object space; nothing for levels at which there is none. Null where the shape has none at any level.
+  std::optional<ClosedForm> (*closed_form)(const void* shape, double level) = nullptr;
 };
 
 /// f(p) = value_scale * shape(object_from_world p).
@@ -88,6 +92,7 @@ Box sublevel_bounds(const FieldProgram& program, double level);
 ///   glm::dvec3 ball_from_object() const;                                 see ShapeFunctions
 ///   Field faces() const;                                                 see ShapeFunctions
 ///   glm::dvec3 tip() const;                                              see ShapeFunctions
+///   std::optional<ClosedForm> closed_form(double level) const;           see ShapeFunctions
 /// `lipschitz` and `exact` are as in FieldTraits; object_from_world must be rigid.
 template <class Shape>
 glm::dvec3 tip_of_shape(const void* shape) {
@@ -160,6 +165,19 @@ constexpr auto faces_of() {
 }
 
 template <class Shape>
+std::optional<ClosedForm> closed_form_of_shape(const void* shape, double level) {
+  return static_cast<const Shape*>(shape)->closed_form(level);
+}
+template <class Shape>
+constexpr auto closed_form_of() {
+  if constexpr (requires(const Shape& s) { s.closed_form(0.0); }) {
+    return closed_form_of_shape<Shape>;
+  } else {
+    return nullptr;
+  }
+}
+
+template <class Shape>
 Field field_from_shape(Shape shape, double lipschitz, bool exact, const Affine& object_from_world) {
   static constexpr ShapeFunctions functions{
       {evaluate_shape<Shape, float>, evaluate_shape<Shape, double>, evaluate_shape<Shape, Dual>, evaluate_shape<Shape, Jet>,
@@ -168,7 +186,8 @@ Field field_from_shape(Shape shape, double lipschitz, bool exact, const Affine& 
       recorder_of<Shape>(),
       ball_of<Shape>(),
       faces_of<Shape>(),
-      tip_of<Shape>()};
+      tip_of<Shape>(),
+      closed_form_of<Shape>()};
   FieldLeaf leaf;
   leaf.shape = std::make_shared<const Shape>(std::move(shape));
   leaf.functions = &functions;

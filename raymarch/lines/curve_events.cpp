@@ -14,7 +14,7 @@ constexpr double kLeastBend = 1e-7;  // of the radial curvature times the scene'
 constexpr double kArm_px = 0.15;     // so far from a cusp its arms are compared
 constexpr double kLongestNarrow_px = 20.0;
 constexpr double kMostLensSteps = 400.0;
-constexpr double kTangency_px = 3.0;  // along either curve, from the place where they touch
+constexpr double kTangency_px = 3.0;  // along one curve, from a cusp
 
 class EventFinder {
  public:
@@ -125,7 +125,8 @@ class EventFinder {
     };
     if (std::any_of(events_.begin(), events_.end(), crosses_itself)) return false;
     const std::vector<glm::dvec2> middle = px_between(curve_, first, second, camera_);
-    return lies_along(middle, walk_.px_from(second, length, 1)) || lies_along(middle, walk_.px_from(first, length, -1));
+    return lies_along(middle, walk_.px_from(second, length, 1), curve_.apart_px) ||
+           lies_along(middle, walk_.px_from(first, length, -1), curve_.apart_px);
   }
   /// Where a line runs along a nearer one, as two rims of a tube seen down its axis do, their polylines cross again and again: two
   /// crossings of the same pair of lines, between which these lie on each other, are none.
@@ -157,7 +158,8 @@ class EventFinder {
     double from = std::min(one.on_nearer, other.on_nearer), to = std::max(one.on_nearer, other.on_nearer);
     if (nearer.closed && to - from > 0.5 * steps) std::tie(from, to) = std::pair(to, from + steps);
     if (to - from > kMostLensSteps || other.at - one.at > kMostLensSteps) return false;
-    return lies_along(px_between(curve_, one.at, other.at, camera_), px_between(nearer, from, to, camera_));
+    const std::vector<glm::dvec2> own_px = px_between(curve_, one.at, other.at, camera_), nearer_px = px_between(nearer, from, to, camera_);
+    return lie_together(own_px, nearer_px, apart_from(nearer));
   }
 
   /// A crease leaves a contour, and the two arms of a cusp each other, along their common tangent: polylines of them cross again and again
@@ -165,13 +167,16 @@ class EventFinder {
   bool is_tangency(const NearerCrossing& crossing) const {
     if (crossing.curve == number_) return one_cusp_between(crossing.at, crossing.on_nearer) || is_spike(crossing);
     const SurfaceCurve& other = curves_[crossing.curve];
-    for (const Stretch& own : to_ends(curve_, crossing.at)) {
-      for (const Stretch& others : to_ends(other, crossing.on_nearer)) {
-        if (glm::distance(own.end, others.end) < 1e-6 * extent_ && run_together(own, others)) return true;
+    const double longest_px = std::min(curve_.tangency_px, other.tangency_px);
+    for (const Stretch& own : to_ends(curve_, crossing.at, longest_px, camera_)) {
+      for (const Stretch& others : to_ends(other, crossing.on_nearer, longest_px, camera_)) {
+        if (glm::distance(own.end, others.end) < 1e-6 * extent_ && lie_together(own.px, others.px, apart_from(other))) return true;
       }
     }
     return false;
   }
+
+  double apart_from(const SurfaceCurve& other) const { return std::max(curve_.apart_px, other.apart_px); }
 
   /// Between the two passages the curve goes there and back on the same way, as beside the tip of a cone.
   bool is_spike(const NearerCrossing& crossing) const {
@@ -181,7 +186,7 @@ class EventFinder {
     const auto farther = [&](const glm::dvec2& a, const glm::dvec2& b) { return glm::distance(a, px[0]) < glm::distance(b, px[0]); };
     const auto turn = std::max_element(px.begin(), px.end(), farther);
     const std::vector<glm::dvec2> there(px.begin(), turn + 1), back(turn, px.end());
-    return lies_along(there, back) && lies_along(back, there);
+    return lie_together(there, back, curve_.apart_px);
   }
 
   bool one_cusp_between(double one, double other) const {
@@ -198,17 +203,17 @@ class EventFinder {
     glm::dvec3 end{0.0};
     std::vector<glm::dvec2> px{};
   };
-  static std::vector<Stretch> to_ends(const SurfaceCurve& curve, double place) {
+  static std::vector<Stretch> to_ends(const SurfaceCurve& curve, double place, double longest_px, const Camera& camera) {
     std::vector<Stretch> all;
     const auto n = static_cast<std::ptrdiff_t>(curve.samples.size());
     for (const int way : {1, -1}) {
-      Stretch stretch;
+      Stretch stretch{glm::dvec3(0.0), {sample_at(curve, place, camera).px}};
       double length = 0.0;
       auto i = static_cast<std::ptrdiff_t>(place) + (way > 0 ? 1 : 0);
-      for (std::ptrdiff_t count = 0; count < n && length <= kTangency_px; ++count, i += way) {
+      for (std::ptrdiff_t count = 0; count < n && length <= longest_px; ++count, i += way) {
         if (!curve.closed && (i < 0 || i >= n)) break;
         const CurveSample& sample = curve.samples[static_cast<size_t>((i + n) % n)];
-        if (!stretch.px.empty()) length += glm::distance(sample.px, stretch.px.back());
+        length += glm::distance(sample.px, stretch.px.back());
         stretch.px.push_back(sample.px);
         if (!sample.joint && (curve.closed || (i > 0 && i < n - 1))) continue;
         stretch.end = sample.p;
@@ -218,9 +223,9 @@ class EventFinder {
     }
     return all;
   }
-  static bool run_together(const Stretch& one, const Stretch& other) {
-    // Each stretch leaves out the part before its first sample, where the other one may begin: one of them is enough.
-    return lies_along(one.px, other.px) || lies_along(other.px, one.px);
+  /// Either along the other one: of long steps the one's samples say nothing.
+  static bool lie_together(const std::vector<glm::dvec2>& one, const std::vector<glm::dvec2>& other, double apart_px) {
+    return lies_along(one, other, apart_px) && lies_along(other, one, apart_px);
   }
 
   double frame_share(const CurveSample& a, const CurveSample& b) const {

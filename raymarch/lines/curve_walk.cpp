@@ -8,8 +8,6 @@
 namespace limn {
 namespace {
 
-constexpr double kTogether_px = 0.03;
-
 /// Between samples i and i + 1 on a smooth curve, by the cubic through four of them (Lagrange) over their chords' lengths: its image may
 /// turn back at a cusp there, the curve itself does not.
 glm::dvec3 point_between(const SurfaceCurve& curve, size_t i, double t) {
@@ -67,11 +65,11 @@ std::vector<glm::dvec2> px_between(const SurfaceCurve& curve, double from, doubl
   px.push_back(sample_at(curve, to, camera).px);
   return px;
 }
-bool lies_along(const std::vector<glm::dvec2>& px, const std::vector<glm::dvec2>& line) {
+bool lies_along(const std::vector<glm::dvec2>& px, const std::vector<glm::dvec2>& line, double apart_px) {
   return std::all_of(px.begin(), px.end(), [&](const glm::dvec2& p) {
     double least = glm::distance(p, line[0]);
     for (size_t i = 0; i + 1 < line.size(); ++i) least = std::min(least, distance_to_segment(p, line[i], line[i + 1]));
-    return least < kTogether_px;
+    return least < apart_px;
   });
 }
 

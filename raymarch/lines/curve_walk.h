@@ -13,8 +13,8 @@ bool in_frame(const Camera& camera, const CurveSample& sample);
 CurveSample sample_at(const SurfaceCurve& curve, double place, const Camera& camera);
 /// Image points between two places, theirs included; `to` may lie beyond the last sample of a closed curve.
 std::vector<glm::dvec2> px_between(const SurfaceCurve& curve, double from, double to, const Camera& camera);
-/// Every point is near a polyline: what lies so near cannot be told from it.
-bool lies_along(const std::vector<glm::dvec2>& px, const std::vector<glm::dvec2>& line);
+/// Every point is within `apart_px` of a polyline.
+bool lies_along(const std::vector<glm::dvec2>& px, const std::vector<glm::dvec2>& line, double apart_px);
 
 /// Lengths along one curve. Keeps a reference to it.
 class CurveWalk {

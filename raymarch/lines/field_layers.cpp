@@ -63,6 +63,17 @@ struct RayWalk {
 
 }  // namespace
 
+LayerRay layer_ray(const Camera& camera, double extent, const CurveSample& sample) {
+  // A point on a chord lies off the curve: the ray starts so much farther off the surface.
+  const double chord_lift = sample.on_chord ? kChordLift_px / pixels_per_unit_at(camera, std::max(sample.depth, 1e-9)) : 0.0;
+  LayerRay ray;
+  ray.origin = sample.p + std::max(kLift * extent, chord_lift) * sample.lift;
+  const bool perspective = camera.projection == Projection::perspective;
+  ray.end = perspective ? glm::distance(camera.eye, ray.origin) : project(camera, ray.origin).z;
+  ray.direction = perspective ? (camera.eye - ray.origin) / ray.end : camera.world_from_camera[2];
+  return ray;
+}
+
 FieldLayers::FieldLayers(const std::vector<Field>& bodies, const Camera& camera, double extent) : camera_(camera), extent_(extent) {
   for (const Field& field : bodies) {
     Body body{field, field.traits().bounds, field.traits().lipschitz};
@@ -72,12 +83,7 @@ FieldLayers::FieldLayers(const std::vector<Field>& bodies, const Camera& camera,
 }
 
 int FieldLayers::before(const CurveSample& sample) const {
-  // A point on a chord lies off the curve: the ray starts so much farther off the surface.
-  const double chord_lift = sample.on_chord ? kChordLift_px / pixels_per_unit_at(camera_, std::max(sample.depth, 1e-9)) : 0.0;
-  const glm::dvec3 origin = sample.p + std::max(kLift * extent_, chord_lift) * sample.lift;
-  const bool perspective = camera_.projection == Projection::perspective;
-  const double end = perspective ? glm::distance(camera_.eye, origin) : project(camera_, origin).z;
-  const glm::dvec3 direction = perspective ? (camera_.eye - origin) / end : camera_.world_from_camera[2];
+  const auto [origin, direction, end] = layer_ray(camera_, extent_, sample);
   auto& evaluators = evaluators_.local();
   if (evaluators.empty()) {
     for (const Body& body : bodies_) evaluators.emplace_back(body.field);

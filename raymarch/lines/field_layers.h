@@ -10,6 +10,14 @@
 
 namespace limn {
 
+/// From beside a sample to the eye (or the plane Z = 0).
+struct LayerRay {
+  glm::dvec3 origin{0.0}, direction{0.0};
+  double end = 0.0;
+};
+/// The sample is lifted off its surface by an epsilon; a point on a chord, which lies beside its curve, by so much more.
+LayerRay layer_ray(const Camera& camera, double extent, const CurveSample& sample);
+
 /// Bodies in solver space that do not overlap. Safe from many threads.
 class FieldLayers {
  public:

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "raymarch/lines/field_layers.h"
+#include "raymarch/lines/form_layers.h"
+#include "raymarch/lines/form_tracing.h"
 #include "raymarch/lines/seams.h"
 #include "raymarch/lines/tips.h"
 #include "raymarch/truth/field_bodies.h"
@@ -13,6 +15,10 @@
 
 namespace limn {
 namespace {
+
+// Curves in closed form lie no farther from their chords than this, as shares of the tolerance.
+constexpr double kFormApart = 1.2, kFormNearer = 1.2;
+constexpr double kFormTangency_px = 20.0;
 
 struct FieldTask {
   const LineTask& task;
@@ -84,30 +90,90 @@ void add_notes(const FieldCurves& found, const std::string& name, LineContributi
   if (found.domain_cut) note("is unbounded: its curves are followed in the scene's surroundings only, and its horizon is left out");
 }
 
-}  // namespace
+/// How a body's lines are found, and the layers of it that rays go through.
+struct TracedBody {
+  std::optional<FormBody> form{};  ///< Where it is made of closed forms.
+  bool exact_rays = false;
+};
 
-LineContribution field_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution) {
-  LineContribution out;
-  const FieldBodies bodies = field_bodies(task.scene, objects, task.origin, task.extent);
+FieldCurveSettings curve_settings(const LineTask& task) {
   FieldCurveSettings settings;
   settings.threshold = task.wants(LineClass::rim) ? task.settings.threshold : 0.0;
   settings.tolerance_px = task.settings.tolerance_px;
   settings.whole_seams = true;
   const double reach = 4.0 * (task.extent + glm::length(task.camera.eye));
   settings.unbounded_domain = {glm::dvec3(-reach), glm::dvec3(reach)};
+  return settings;
+}
+
+/// Curves in closed form where there are any, found in cells of space elsewhere.
+TracedBody trace_body(const FieldTask& fields, const Field& body, const std::string& name, const ExecutionSettings& execution,
+                      LineContribution& out) {
+  const LineTask& task = fields.task;
+  const auto add = [&](const std::vector<FieldCurve>& curves) {
+    for (const FieldCurve& curve : curves) out.curves.push_back(curve.seam ? seam_curve(fields, curve) : smooth_curve(fields, curve));
+  };
+  TracedBody traced;
+  const FieldCurveSettings settings = curve_settings(task);
+  if (task.settings.closed_forms && settings.threshold == 0.0) traced.form = form_body(body);
+  if (traced.form) {
+    traced.exact_rays = has_ray_roots(*traced.form);
+    const size_t first = out.curves.size();
+    if (const auto curves = trace_form_curves(*traced.form, task.camera, fields.viewer, settings.tolerance_px, execution)) {
+      add(*curves);
+      for (size_t i = first; i < out.curves.size(); ++i) {
+        out.curves[i].apart_px = kFormApart * settings.tolerance_px;
+        out.curves[i].nearer_px = kFormNearer * settings.tolerance_px;
+        out.curves[i].tangency_px = kFormTangency_px;
+      }
+      return traced;
+    }
+  }
+  const FieldCurves found = trace_field_curves(body, task.camera, fields.viewer, settings, execution);
+  add_notes(found, name, out);
+  out.unrefined_px = std::max(out.unrefined_px, found.worst_unrefined_px);
+  std::vector<SurfaceCurve> before = std::move(out.curves);
+  out.curves.clear();
+  add(found.curves);
+  lead_to_tips(tips_of(body, task.extent), task.camera, out.curves);
+  before.insert(before.end(), std::make_move_iterator(out.curves.begin()), std::make_move_iterator(out.curves.end()));
+  out.curves = std::move(before);
+  return traced;
+}
+
+/// Layers of bodies in closed form by their roots, of the others by bounds along the ray.
+std::function<LayersSeen(const CurveSample&)> layers_of(const LineTask& task, const std::vector<Field>& bodies, std::vector<TracedBody> traced) {
+  std::vector<Field> others;
+  auto forms = std::make_shared<std::vector<FormBody>>();
+  for (size_t i = 0; i < bodies.size(); ++i) {
+    if (traced[i].exact_rays) {
+      forms->push_back(std::move(*traced[i].form));
+    } else {
+      others.push_back(bodies[i]);
+    }
+  }
+  const auto layers = std::make_shared<const FieldLayers>(others, task.camera, task.extent);
+  return [layers, forms, camera = task.camera, extent = task.extent](const CurveSample& sample) {
+    int count = layers->before(sample);
+    for (const FormBody& form : *forms) count += layers_before(form, camera, extent, sample);
+    return LayersSeen{count};
+  };
+}
+
+}  // namespace
+
+LineContribution field_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution) {
+  LineContribution out;
+  const FieldBodies bodies = field_bodies(task.scene, objects, task.origin, task.extent);
   std::vector<FieldEvaluator> evaluators;
   for (const Field& field : bodies.fields) evaluators.emplace_back(field);
+  std::vector<TracedBody> traced;
   for (size_t i = 0; i < bodies.bodies.size(); ++i) {
     const FieldTask fields{task, bodies, bodies.bodies[i], make_viewer(task.camera, glm::dvec3(0.0)), evaluators};
-    const FieldCurves found = trace_field_curves(bodies.body_fields[i], task.camera, fields.viewer, settings, execution);
-    add_notes(found, name_of_body(task.scene, objects, bodies.bodies[i]), out);
-    out.unrefined_px = std::max(out.unrefined_px, found.worst_unrefined_px);
-    for (const FieldCurve& curve : found.curves) out.curves.push_back(curve.seam ? seam_curve(fields, curve) : smooth_curve(fields, curve));
+    traced.push_back(trace_body(fields, bodies.body_fields[i], name_of_body(task.scene, objects, bodies.bodies[i]), execution, out));
     if (execution.progress) execution.progress(0.5 * static_cast<double>(i + 1) / static_cast<double>(bodies.bodies.size()));
   }
-  for (const Field& body : bodies.body_fields) lead_to_tips(tips_of(body, task.extent), task.camera, out.curves);
-  const auto layers = std::make_shared<const FieldLayers>(bodies.body_fields, task.camera, task.extent);
-  out.layers_before = [layers](const CurveSample& sample) { return LayersSeen{layers->before(sample)}; };
+  out.layers_before = layers_of(task, bodies.body_fields, std::move(traced));
   return out;
 }
 

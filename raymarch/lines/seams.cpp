@@ -7,6 +7,8 @@
 namespace limn {
 namespace {
 
+constexpr double kAtSample = 1e-9;  // of a step
+
 /// Positive where `towards` (image direction) leads to the left of the step from a to b; as long as the step.
 double leftness(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& towards) {
   const glm::dvec2 step = b - a;
@@ -73,19 +75,27 @@ SurfaceCurve curve_of_seam(const Camera& camera, const Seam& seam) {
   SurfaceCurve curve{seam.closed, false, {}};
   const std::vector<int> on_left = sides_on_left(seam);
   const size_t n = seam.samples.size(), steps = seam.closed ? n : n - 1;
-  std::vector<bool> front(on_left.size());
+  std::vector<bool> front(on_left.size()), turns_at(n, false);
   for (size_t i = 0; i < n; ++i) {
     const SeamSample& a = seam.samples[i];
     for (size_t k = 0; k < front.size(); ++k) front[k] = a.sides[k].facing > 0.0;
     curve.samples.push_back(curve_sample(camera, a, a.p, seam.line_class, on_left, front));
+    curve.samples.back().joint = turns_at[i];
     if (i >= steps) break;
     const SeamSample& b = seam.samples[(i + 1) % n];
     for (const Turn& turn : turns_between(a, b)) {
       front[turn.side] = !front[turn.side];
+      // Where a side turns at a sample that is the joint.
+      if (turn.t > 1.0 - kAtSample) {
+        turns_at[(i + 1) % n] = true;
+        continue;
+      }
+      if (turn.t < kAtSample) curve.samples.pop_back();
       curve.samples.push_back(curve_sample(camera, turn.t < 0.5 ? a : b, glm::mix(a.p, b.p, turn.t), seam.line_class, on_left, front));
       curve.samples.back().joint = true;
     }
   }
+  if (turns_at[0]) curve.samples.front().joint = true;
   return curve;
 }
 

@@ -40,6 +40,9 @@ struct SurfaceCurve {
   bool smooth = false;  ///< A contour on smooth surface, whose cusps are where its radial curvature is 0.
   std::vector<CurveSample> samples{};
   bool straight = false;  ///< Steps are straight edges of a mesh: rays start from their middles.
+  /// How far two such curves must lie apart, px at their depth, to be told from each other: across the view, and along it.
+  double apart_px = 0.03, nearer_px = 0.05;
+  double tangency_px = 3.0;  ///< From a place where two curves touch they may run together for so long.
 };
 
 /// What a ray from a sample towards the eye goes through.

@@ -19,6 +19,10 @@ struct Ellipsoid {
     return (n - scalar<T>(1.0)) * scalar<T>(least);
   }
   glm::dvec3 ball_from_object() const { return inverse_radii; }
+  std::optional<ClosedForm> closed_form(double level) const {
+    if (!(1.0 + level / least > 0.0)) return {};
+    return ball_form((1.0 + level / least) * radii);
+  }
   double support(const glm::dvec3& direction, double level) const { return (1.0 + level / least) * glm::length(radii * direction); }
 };
 

@@ -13,6 +13,7 @@ struct Plane {
   T operator()(const Vector3<T>& p) const {
     return p.x * scalar<T>(normal.x) + p.y * scalar<T>(normal.y) + p.z * scalar<T>(normal.z) - scalar<T>(offset);
   }
+  std::optional<ClosedForm> closed_form(double level) const { return half_space_form(normal, offset + level); }
   double support(const glm::dvec3& direction, double level) const {
     const double length = glm::length(direction);
     const double across = glm::length(direction - normal * glm::dot(normal, direction));

@@ -16,6 +16,7 @@ struct HalfSpace {
   T operator()(const Vector3<T>& p) const {
     return p.x * scalar<T>(normal.x) + p.y * scalar<T>(normal.y) + p.z * scalar<T>(normal.z) - scalar<T>(offset);
   }
+  std::optional<ClosedForm> closed_form(double level) const { return half_space_form(normal, offset + level); }
   double support(const glm::dvec3&, double) const { return std::numeric_limits<double>::infinity(); }
 };
 
@@ -26,6 +27,23 @@ struct TurnedLine {
   template <class T>
   T operator()(const Vector3<T>& p) const {
     return norm(p.x, p.z) * scalar<T>(normal.x) + p.y * scalar<T>(normal.y) - scalar<T>(offset);
+  }
+  /// What lies nearer to the axis than the line, where the normal leads away from it, and what lies farther elsewhere.
+  std::optional<ClosedForm> closed_form(double level) const {
+    const bool complement = normal.x < 0.0;
+    ClosedForm form{ClosedFormKind::cylinder, {}, complement};
+    const double at_axis = offset + level;
+    if (normal.y == 0.0) {
+      const double radius = complement ? -at_axis : at_axis;
+      if (!(radius > 0.0)) return {};
+      form.form_from_object.linear = glm::dmat3(1.0 / radius);
+      return form;
+    }
+    const double slope = -normal.y / normal.x;  // r = slope * (y - tip)
+    form.kind = ClosedFormKind::cone;
+    form.form_from_object.linear[1][1] = slope;
+    form.form_from_object.translation.y = at_axis / normal.x;
+    return form;
   }
   /// Far away for a cylinder.
   glm::dvec3 tip() const { return {0.0, normal.y == 0.0 ? std::numeric_limits<double>::infinity() : offset / normal.y, 0.0}; }

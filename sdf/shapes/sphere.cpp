@@ -11,6 +11,10 @@ struct Sphere {
     return norm(p) - scalar<T>(radius);
   }
   glm::dvec3 ball_from_object() const { return glm::dvec3(1.0 / radius); }
+  std::optional<ClosedForm> closed_form(double level) const {
+    if (!(radius + level > 0.0)) return {};
+    return ball_form(glm::dvec3(radius + level));
+  }
   double support(const glm::dvec3& direction, double level) const { return (radius + level) * glm::length(direction); }
 };
 

@@ -10,6 +10,11 @@ struct Torus {
   T operator()(const Vector3<T>& p) const {
     return norm(norm(p.x, p.z) - scalar<T>(major), p.y) - scalar<T>(minor);
   }
+  /// Where the tube reaches over the axis the formula's surface is not all of the torus'.
+  std::optional<ClosedForm> closed_form(double level) const {
+    if (!(minor + level > 0.0 && minor + level < major)) return {};
+    return ClosedForm{ClosedFormKind::torus, {glm::dmat3(1.0 / major), glm::dvec3(0.0)}, false, (minor + level) / major};
+  }
   double support(const glm::dvec3& direction, double level) const {
     return major * norm(direction.x, direction.z) + (minor + level) * glm::length(direction);
   }

@@ -1,0 +1,240 @@
+#include "raymarch/lines/form_tracing.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "sdf/parallel.h"
+#include "sdf/segment.h"
+
+namespace limn {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kShareOfTolerance = 0.4;  // for the chords; the rest is the thinning's
+constexpr double kBulge = 0.1;             // of a step's length, in space
+constexpr int kEllipsePieces = 16, kSweptPieces = 48;
+constexpr int kDeepest = 44;
+constexpr double kBehind = 1e-3;      // of the extent: steps that lead behind the eye are cut down to this
+constexpr double kShortest = 1e-7;    // of the extent
+constexpr double kShortestPx = 1e-3;  // of straight contours, which may be seen along their length
+constexpr double kBesideCusp = 1e-3;  // of a step: its arms begin there
+constexpr double kTouching = 1e-6;    // the sine of the angle between two surfaces
+
+struct Sample {
+  double s = 0.0;
+  glm::dvec3 p{0.0};
+  glm::dvec2 px{0.0};
+  double depth = 0.0;
+};
+
+class Tracer {
+ public:
+  Tracer(const FormBody& body, const FormCurve& curve, const Camera& camera, const Viewer& viewer, double tolerance_px)
+      : body_(body), curve_(curve), camera_(camera), viewer_(viewer), tolerance_px_(kShareOfTolerance * tolerance_px) {}
+
+  /// Nothing where the surfaces touch along the curve.
+  std::optional<FieldCurve> run(const FormArc& arc) {
+    sample(arc);
+    const bool seam = curve_.second >= 0;
+    FieldCurve found{0.0, arc.closed, seam, arc.concave, {}};
+    if (curve_.kind == FormCurve::Kind::tube || seam) add_turns();
+    add_within_frame();
+    if (arc.closed) samples_.pop_back();
+    if (!seam && curve_.kind == FormCurve::Kind::line && glm::distance(samples_.front().px, samples_.back().px) < kShortestPx) return found;
+    int touching = 0;
+    for (const Sample& at : samples_) {
+      found.points.push_back(seam ? seam_point(at) : contour_point(at, arc));
+      const CurvePoint& point = found.points.back();
+      touching = seam && glm::length(glm::cross(point.high, point.low)) < kTouching ? touching + 1 : 0;
+      if (touching > 2) return {};
+    }
+    return found;
+  }
+
+ private:
+  Sample at(double s) const {
+    Sample sample{s, point_of(curve_, curve_.closed && s > curve_.end ? s - kTurn : s), {}, 0.0};
+    const glm::dvec3 image = project(camera_, sample.p);
+    sample.px = glm::dvec2(image);
+    sample.depth = image.z;
+    return sample;
+  }
+  const FormSurface& surface(int number) const { return body_.surfaces[static_cast<size_t>(number)]; }
+
+  void sample(const FormArc& arc) {
+    samples_ = {at(arc.from)};
+    const double per_turn = curve_.kind == FormCurve::Kind::ellipse ? kEllipsePieces : kSweptPieces;
+    const int pieces =
+        curve_.kind == FormCurve::Kind::line ? 1 : std::max(3, static_cast<int>(std::ceil(per_turn * (arc.to - arc.from) / kTurn)));
+    for (int i = 1; i <= pieces; ++i) {
+      const Sample next = at(arc.from + (arc.to - arc.from) * i / pieces);
+      add_step(Sample(samples_.back()), next, kDeepest);
+    }
+  }
+  void add_step(const Sample& a, const Sample& b, int depth) {
+    if (depth > 0 && glm::distance(a.p, b.p) > kShortest * body_.extent) {
+      const Sample middle = at(0.5 * (a.s + b.s));
+      if (bends(a, middle, b)) {
+        add_step(a, middle, depth - 1);
+        add_step(middle, b, depth - 1);
+        return;
+      }
+    }
+    samples_.push_back(b);
+  }
+  bool bends(const Sample& a, const Sample& middle, const Sample& b) const {
+    const double chord = glm::distance(a.p, b.p);
+    const int before = (a.depth > 0.0) + (b.depth > 0.0) + (middle.depth > 0.0);
+    if (before > 0 && before < 3) return chord > kBehind * body_.extent;
+    if (curve_.kind == FormCurve::Kind::line) return false;
+    const double bulge = distance_to_segment(middle.p, a.p, b.p);
+    if (bulge > kBulge * chord) return true;
+    return before == 3 && bulge * pixels_per_unit_at(camera_, middle.depth) > tolerance_px_;
+  }
+
+  double facing(int number, const Sample& sample) const {
+    return glm::dot(normal_at(surface(number), sample.p), viewer_.toward_eye(sample.p));
+  }
+  double radial_curvature(const Sample& sample) const {
+    return curvature_along(surface(curve_.first), sample.p, viewer_.toward_eye(sample.p));
+  }
+
+  /// Samples where a seam's sides turn away from the eye, and on either side of cusps.
+  void add_turns() {
+    if (curve_.kind == FormCurve::Kind::line) return;
+    if (curve_.second < 0) {
+      add_zeros([&](const Sample& sample) { return radial_curvature(sample); }, true);
+      return;
+    }
+    for (const int number : {curve_.first, curve_.second}) {
+      if (surface(number).kind != ClosedFormKind::half_space)
+        add_zeros([&](const Sample& sample) { return facing(number, sample); }, false);
+    }
+  }
+  template <class Value>
+  void add_zeros(const Value& value, bool beside) {
+    std::vector<Sample> all = {samples_[0]};
+    double before = value(samples_[0]);
+    for (size_t i = 1; i < samples_.size(); ++i) {
+      const double now = value(samples_[i]);
+      if ((before > 0.0) != (now > 0.0)) {
+        double a = samples_[i - 1].s, b = samples_[i].s;
+        const double step = b - a;
+        for (int k = 0; k < 60 && b - a > 1e-16 * (1.0 + std::fabs(b)); ++k)
+          ((value(at(0.5 * (a + b))) > 0.0) == (before > 0.0) ? a : b) = 0.5 * (a + b);
+        for (const double s : beside ? std::vector<double>{a - kBesideCusp * step, b + kBesideCusp * step} : std::vector<double>{a}) {
+          if (s > all.back().s && s < samples_[i].s) all.push_back(at(s));
+        }
+      }
+      all.push_back(samples_[i]);
+      before = now;
+    }
+    samples_ = std::move(all);
+  }
+
+  /// A step that goes through the picture from outside to outside gets a sample within.
+  void add_within_frame() {
+    const auto inside = [&](const Sample& q) {
+      return q.px.x >= 0.0 && q.px.y >= 0.0 && q.px.x <= camera_.width_px && q.px.y <= camera_.height_px;
+    };
+    for (size_t i = 0; i + 1 < samples_.size(); ++i) {
+      const Sample a = samples_[i], b = samples_[i + 1];
+      if (!(a.depth > 0.0 && b.depth > 0.0) || inside(a) || inside(b)) continue;
+      double t0 = 0.0, t1 = 1.0;
+      const glm::dvec2 d = b.px - a.px, size(camera_.width_px, camera_.height_px);
+      for (int axis = 0; axis < 2; ++axis) {
+        const double u = -a.px[axis] / d[axis], v = (size[axis] - a.px[axis]) / d[axis];
+        t0 = std::max(t0, std::min(u, v));
+        t1 = std::min(t1, std::max(u, v));
+      }
+      if (!(t0 < t1)) continue;
+      // From the share of the image to that of the step.
+      const double t = 0.5 * (t0 + t1),
+                   w = camera_.projection == Projection::perspective ? t * a.depth / (b.depth + t * (a.depth - b.depth)) : t;
+      samples_.insert(samples_.begin() + static_cast<std::ptrdiff_t>(i) + 1, at(glm::mix(a.s, b.s, w)));
+      ++i;
+    }
+  }
+
+  CurvePoint seam_point(const Sample& sample) const {
+    CurvePoint point;
+    point.p = sample.p;
+    point.high = normal_at(surface(curve_.first), sample.p);
+    point.low = normal_at(surface(curve_.second), sample.p);
+    point.crease = true;
+    return point;
+  }
+  CurvePoint contour_point(const Sample& sample, const FormArc& arc) const {
+    // All along a straight line of a cylinder or cone the normal is the same, and at a cone's tip it is not known.
+    const Sample from = curve_.kind == FormCurve::Kind::line ? at(0.5 * (arc.from + arc.to)) : sample;
+    CurvePoint point;
+    point.p = sample.p;
+    point.high = point.low = normal_at(surface(curve_.first), from.p);
+    point.radial_curvature = radial_curvature(from);
+    return point;
+  }
+
+  const FormBody& body_;
+  const FormCurve& curve_;
+  const Camera& camera_;
+  const Viewer& viewer_;
+  double tolerance_px_;
+  std::vector<Sample> samples_{};
+};
+
+/// Surfaces that matter in one cell, and pairs of them, with the box around all such cells.
+std::map<std::pair<int, int>, Box> meetings_in(const FormBody& body) {
+  std::map<std::pair<int, int>, Box> meetings;
+  for (const FormCell& cell : body.cells) {
+    if (cell.lower >= 0) continue;
+    std::vector<int> here;
+    for (const FormNode& node : cell.tree.nodes) {
+      if (node.surface >= 0) here.push_back(node.surface);
+    }
+    std::sort(here.begin(), here.end());
+    for (size_t j = 0; j < here.size(); ++j) {
+      const auto add = [&](int second) {
+        Box& box = meetings[{here[j], second}];
+        box = merge(box, cell.box);
+      };
+      add(-1);
+      for (size_t k = j + 1; k < here.size(); ++k) add(here[k]);
+    }
+  }
+  return meetings;
+}
+
+}  // namespace
+
+std::optional<std::vector<FieldCurve>> trace_form_curves(const FormBody& body, const Camera& camera, const Viewer& viewer,
+                                                         double tolerance_px, const ExecutionSettings& execution) {
+  const auto meetings = meetings_in(body);
+  const std::vector<std::pair<std::pair<int, int>, Box>> all(meetings.begin(), meetings.end());
+  std::vector<std::vector<FieldCurve>> found(all.size());
+  std::atomic<bool> known = true;
+  parallel_for(size_t{0}, all.size(), [&](size_t i) {
+    if (execution.cancelled && execution.cancelled()) throw Cancelled{};
+    if (!known) return;
+    const auto& [pair, box] = all[i];
+    const auto curves = pair.second < 0 ? contours_of(body, pair.first, viewer.facing) : seams_of(body, pair.first, pair.second);
+    if (!curves) known = false;
+    if (!curves) return;
+    for (const FormCurve& curve : *curves) {
+      for (const FormArc& arc : trimmed(body, curve, box)) {
+        std::optional<FieldCurve> traced = Tracer(body, curve, camera, viewer, tolerance_px).run(arc);
+        if (!traced) known = false;
+        if (!traced) return;
+        if (traced->points.size() > 1) found[i].push_back(std::move(*traced));
+      }
+    }
+  });
+  if (!known) return {};
+  std::vector<FieldCurve> result;
+  for (auto& curves : found) result.insert(result.end(), std::make_move_iterator(curves.begin()), std::make_move_iterator(curves.end()));
+  return result;
+}
+
+}  // namespace limn

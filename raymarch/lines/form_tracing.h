@@ -1,0 +1,14 @@
+#pragma once
+// Internal: contours and seams of a body in closed form, sampled as the view graph needs them.
+
+#include "raymarch/lines/form_trimming.h"
+#include "raymarch/truth/field_curves.h"
+
+namespace limn {
+
+/// As trace_field_curves() finds them with whole seams and no level but 0; nothing where two surfaces of the body meet in a curve without
+/// closed form, or touch along one.
+std::optional<std::vector<FieldCurve>> trace_form_curves(const FormBody& body, const Camera& camera, const Viewer& viewer,
+                                                         double tolerance_px, const ExecutionSettings& execution);
+
+}  // namespace limn

@@ -207,14 +207,16 @@ MeshLayers::~MeshLayers() = default;
 const std::vector<glm::dvec3>& MeshLayers::positions() const { return state_->positions; }
 const std::vector<LayerTriangle>& MeshLayers::triangles() const { return state_->triangles; }
 
-int MeshLayers::before(const CurveSample& sample) const {
+std::vector<LayerHit> MeshLayers::hits_to_eye(const CurveSample& sample) const {
   const Camera& camera = state_->camera;
   const double unit_px = pixels_per_unit_at(camera, std::max(sample.depth, 1e-9));
   const glm::dvec3 start = sample.p + (kLift_px / unit_px) * sample.lift, direction = view_vector(camera, start);
   const double reach = camera.projection == Projection::perspective ? glm::distance(start, camera.eye)
                                                                     : std::max(0.0, project(camera, start).z) + 4.0 * state_->extent;
-  return static_cast<int>(state_->hits_along(start, direction, reach).size());
+  return state_->hits_along(start, direction, reach);
 }
+
+int MeshLayers::before(const CurveSample& sample) const { return static_cast<int>(hits_to_eye(sample).size()); }
 
 bool MeshLayers::several_parts() const { return state_->parts > 1; }
 

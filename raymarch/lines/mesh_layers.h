@@ -36,6 +36,8 @@ class MeshLayers {
 
   /// Hits between the sample, lifted off by more than the mesh lies beside the surface, and the eye.
   int before(const CurveSample& sample) const;
+  /// These hits, in order from the sample.
+  std::vector<LayerHit> hits_to_eye(const CurveSample& sample) const;
   /// Whether there is more than one part, so that curves of one may go through another.
   bool several_parts() const;
   /// Marks the places where the curve goes through other parts than its own: CurveSample::pierced.

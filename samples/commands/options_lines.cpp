@@ -58,6 +58,10 @@ void add_lines(CLI::App& app, Options& options) {
         if (lines.lines.crease_angle_deg >= 180.0)
           throw InputError({"", "--crease-angle", text, "out of range", "above 0 and below 180 degrees"});
       });
+  add_switch(
+      app,
+      {"--smooth", "", "contours of meshes as of the smooth surface between their vertices' normals, not along edges of facets", kLines},
+      lines.lines.smooth_meshes);
   add(app, {"--curves", "polyline|bezier|arc", "what strokes are made of; default polyline", kLines}, [&lines](const std::string& text) {
     const std::vector<std::string> known = {"polyline", "bezier", "arc"};
     const auto at = std::find(known.begin(), known.end(), text);

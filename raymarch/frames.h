@@ -26,6 +26,10 @@ std::vector<glm::dvec2> path_offsets(const FramePath& path);
 /// origin.
 std::vector<Camera> path_cameras(const Camera& camera, const Box& bounds, const FramePath& path);
 
+/// The camera carried round `target` (world): turned by `angle` radians about `axis` (any length), counter-clockwise seen from where it
+/// points.
+Camera turned_camera(const Camera& camera, const glm::dvec3& target, const glm::dvec3& axis, double angle);
+
 /// For each pixel of a frame the index of the pixel that showed the same piece of surface the frame before, geometry at rest; -1 where none
 /// did: it was hidden, outside the picture, or beyond a jump or a crease (normals that differ by more than a quarter of a radian). Where
 /// nothing is hit, the same pixel if nothing was hit there either. Reads Z, N and id of both; same size.

@@ -35,9 +35,12 @@ const std::string& name_of(LineClass line_class);
 
 /// Which lines are solved, and how precisely.
 struct LineSettings {
-  std::vector<LineClass> classes{};                ///< Empty: those drawn by default.
-  double threshold = 0.4;                          ///< Of the rim, above 0 and below 1; read where LineClass::rim is asked for.
-  double crease_angle_deg = 40.0;                  ///< Edges of meshes are creases where their faces' normals differ by more. In (0, 180).
+  std::vector<LineClass> classes{};  ///< Empty: those drawn by default.
+  double threshold = 0.4;            ///< Of the rim, above 0 and below 1; read where LineClass::rim is asked for.
+  double crease_angle_deg = 40.0;    ///< Edges of meshes are creases where their faces' normals differ by more. In (0, 180).
+  /// Contours of meshes that are no cages are those of the smooth surface that their vertices' normals describe, averaged over the faces
+  /// but not across creases (Hertzmann & Zorin 2000).
+  bool smooth_meshes = false;
   double tolerance_px = 0.005;                     ///< How far the polylines may lie from the curves.
   std::int64_t max_bytes = std::int64_t{4} << 30;  ///< For the meshes that rays are cast against.
   /// Sharp CSG of quadrics and tori by closed forms. Off: searched for in cells of space, as all other fields are.

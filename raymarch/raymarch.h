@@ -9,6 +9,7 @@
 #include "raymarch/gbuffer.h"
 #include "raymarch/image_io.h"
 #include "raymarch/image_output.h"
+#include "raymarch/line_tracks.h"
 #include "raymarch/lines.h"
 #include "raymarch/measured_border.h"
 #include "raymarch/metric.h"

@@ -53,13 +53,17 @@ std::uint32_t MeshLayers::part_of(const SurfaceCurve& curve) const {
   return most == votes.end() ? tree_->parts() : most->first;
 }
 
-LayersSeen MeshLayers::before(const CurveSample& sample) const {
+std::vector<LayerHit> MeshLayers::hits_to_eye(const CurveSample& sample) const {
   const Camera& camera = camera_;
   const double unit_px = pixels_per_unit_at(camera, std::max(sample.depth, 1e-9));
   const glm::dvec3 start = sample.p + (kLift_px / unit_px) * sample.lift, direction = view_vector(camera, start);
   const double reach = camera.projection == Projection::perspective ? glm::distance(start, camera.eye)
                                                                     : std::max(0.0, project(camera, start).z) + 4.0 * extent_;
-  const std::vector<LayerHit> hits = tree_->hits_along(start, direction, reach);
+  return tree_->hits_along(start, direction, reach);
+}
+
+LayersSeen MeshLayers::before(const CurveSample& sample) const {
+  const std::vector<LayerHit> hits = hits_to_eye(sample);
   return {static_cast<int>(hits.size()), hits.empty() ? std::numeric_limits<double>::infinity() : hits.front().t};
 }
 

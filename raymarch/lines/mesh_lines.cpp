@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "raymarch/lines/mesh_layers.h"
+#include "raymarch/lines/smooth_mesh_lines.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -224,6 +225,7 @@ class MeshTracer {
 }  // namespace
 
 LineContribution mesh_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings&) {
+  if (task.settings.smooth_meshes) return smooth_mesh_lines(task, objects);
   LineContribution out;
   const auto layers = std::make_shared<const MeshLayers>(task, objects, kEdge_px);
   out.curves = MeshTracer(task, *layers).run();

@@ -71,6 +71,18 @@ std::vector<glm::dvec2> path_offsets(const FramePath& path) {
   return offsets;
 }
 
+Camera turned_camera(const Camera& camera, const glm::dvec3& target, const glm::dvec3& axis, double angle) {
+  const glm::dvec3 a = glm::normalize(axis);
+  // Rodrigues 1840.
+  const auto turned = [&](const glm::dvec3& v) {
+    return std::cos(angle) * v + std::sin(angle) * glm::cross(a, v) + (1.0 - std::cos(angle)) * glm::dot(a, v) * a;
+  };
+  Camera result = camera;
+  result.eye = target + turned(camera.eye - target);
+  for (int i = 0; i < 3; ++i) result.world_from_camera[i] = turned(camera.world_from_camera[i]);
+  return result;
+}
+
 std::vector<Camera> path_cameras(const Camera& camera, const Box& bounds, const FramePath& path) {
   const double scale = pixels_per_unit_at(camera, nearest_depth(camera, bounds));
   std::vector<Camera> cameras;

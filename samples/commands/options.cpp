@@ -17,7 +17,6 @@
 namespace limn {
 namespace {
 
-constexpr const char* kCamera = "Camera";
 constexpr const char* kBorder = "Border";
 constexpr const char* kSweep = "Sweep (a list: 2,4,6; a range: 2..6)";
 constexpr const char* kStudy = "Study";
@@ -180,10 +179,9 @@ void add_camera(CLI::App& app, Options& options, bool with_views, const std::str
       [&options](const std::string& text) { options.spec.views = parse_integer("--views", text, 1, 10'000); });
 }
 
-void add_frames(CLI::App& app, Options& options) {
-  auto* frames = add(
-      app, {"--frames", "N", "N pictures while the camera wanders within a pixel, 1..10000, and how often ink flips meanwhile", kCamera},
-      [&options](const std::string& text) { options.frames.frames = parse_integer("--frames", text, 1, 10'000); });
+void add_frames(CLI::App& app, Options& options, const char* help) {
+  auto* frames = add(app, {"--frames", "N", help, kCamera},
+                     [&options](const std::string& text) { options.frames.frames = parse_integer("--frames", text, 1, 10'000); });
   frames->excludes(app.get_option("--views"));
   add(app, {"--path-step", "PX", "how far the picture moves from frame to frame, pixels, above 0 up to 1; default 0.1", kCamera},
       [&options](const std::string& text) {

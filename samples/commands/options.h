@@ -44,7 +44,10 @@ struct LineOptions {
   DrawingSettings drawing{.style = built_in_style("plain")};
   bool hidden = false;
   std::optional<std::pair<int, int>> layers{};  ///< In front of what is drawn.
-  bool strict = false;                          ///< Conflicts of the certificate are a failure.
+  bool strict = false;                          ///< Conflicts of the certificate, and changes that nothing explains, are a failure.
+  std::optional<double> turn_deg{};             ///< Over all frames, about the target; unset: the camera wanders.
+  bool animate = false;                         ///< One SVG of all frames.
+  double frames_per_second = 24.0;              ///< Of that.
 };
 
 /// What `limn judge` compares, and what it lets pass.
@@ -63,7 +66,7 @@ struct Options {
   PlanSpec plan{};
   StabilityOptions stability{};
   StudyRunOptions study{};
-  FramePath frames{.frames = 1};  ///< `limn render` only.
+  FramePath frames{.frames = 1};  ///< `limn render` and `limn contours`.
   bool refined = false;           ///< `limn export` only: refined instead of limit positions.
   std::string kind{};             ///< `limn list` only.
   DumpOptions dump{};             ///< `limn info` only.
@@ -100,8 +103,10 @@ void add_json(CLI::App& app, Options& options);
 /// --dump and --brick; excludes --json, which is added before.
 void add_dump(CLI::App& app, Options& options);
 void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size = "1280x720");
-/// --frames, --path-step and --seed; excludes --views.
-void add_frames(CLI::App& app, Options& options);
+/// --frames, with this help, --path-step and --seed; excludes --views.
+void add_frames(CLI::App& app, Options& options, const char* help);
+/// These, --turn, --animate and --fps.
+void add_line_frames(CLI::App& app, Options& options);
 void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& needs);
 void add_grid(CLI::App& app, Options& options);
 void add_border(CLI::App& app, Options& options, bool compared = false);

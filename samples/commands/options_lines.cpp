@@ -58,6 +58,10 @@ void add_lines(CLI::App& app, Options& options) {
         if (lines.lines.crease_angle_deg >= 180.0)
           throw InputError({"", "--crease-angle", text, "out of range", "above 0 and below 180 degrees"});
       });
+  add_switch(
+      app,
+      {"--smooth", "", "contours of meshes as of the smooth surface between their vertices' normals, not along edges of facets", kLines},
+      lines.lines.smooth_meshes);
   add(app, {"--curves", "polyline|bezier|arc", "what strokes are made of; default polyline", kLines}, [&lines](const std::string& text) {
     const std::vector<std::string> known = {"polyline", "bezier", "arc"};
     const auto at = std::find(known.begin(), known.end(), text);
@@ -73,6 +77,24 @@ void add_lines(CLI::App& app, Options& options) {
        kLines},
       [&lines](const std::string& text) { lines.drawing.style = read_style(text); });
   add_switch(app, {"--strict", "", "exit with 1 where the certificate finds a conflict", kLines}, lines.strict);
+}
+
+void add_line_frames(CLI::App& app, Options& options) {
+  LineOptions& lines = options.lines;
+  add_frames(app, options, "N pictures while the camera wanders within a pixel, or goes round with --turn, 1..10000; lines keep their ids");
+  auto* frames = app.get_option("--frames");
+  add(app,
+      {"--turn", "DEG",
+       "the camera goes round its target about --up, by so many degrees over all frames; 360: once, the last frame a step short", kCamera},
+      [&lines](const std::string& text) { lines.turn_deg = parse_number("--turn", text); })
+      ->needs(frames)
+      ->excludes(app.get_option("--path-step"))
+      ->excludes(app.get_option("--seed"));
+  auto* animate = app.add_flag("--animate", lines.animate, "one SVG that plays all frames instead of a file a frame");
+  animate->group(kLines)->needs(frames);
+  add(app, {"--fps", "N", "frames a second of --animate, above 0; default 24", kLines}, [&lines](const std::string& text) {
+    lines.frames_per_second = parse_number_above("--fps", text, 0.0, false, "above 0 frames a second");
+  })->needs(animate);
 }
 
 namespace {

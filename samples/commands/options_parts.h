@@ -16,6 +16,7 @@ namespace limn {
 // Groups of the help.
 inline constexpr const char* kSurface = "Surface";
 inline constexpr const char* kOutput = "Output";
+inline constexpr const char* kCamera = "Camera";
 
 struct OptionText {
   const char* flags;

@@ -83,7 +83,7 @@ std::string summary(const SurfaceInfo& info, const Camera& camera, const HitCoun
 void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_camera(app, options, true);
-  add_frames(app, options);
+  add_frames(app, options, "N pictures while the camera wanders within a pixel, 1..10000, and how often ink flips meanwhile");
   add_surface(app, options, {.surface = true, .repeatable = false, .views = true});
   add_plan(app, options);
   add_border(app, options);

@@ -23,7 +23,8 @@ VertexKind kind_of(const ViewGraph& graph, int vertex) {
 
 Stroke stroke_of(const ViewGraph& graph, int index, const DrawingSettings& settings) {
   const LineChain& chain = graph.chains[static_cast<size_t>(index)];
-  Stroke stroke{chain.line_class, chain.invisibility, chain.object, index, chain.closed, VertexKind::end, VertexKind::end, {}, {}, {}};
+  Stroke stroke{chain.line_class, chain.invisibility, chain.object, index, index, chain.closed,
+                VertexKind::end,  VertexKind::end,    {},           {},    {}};
   const ChainLink &first = chain.links.front(), &last = chain.links.back();
   const LineEdge &first_edge = graph.edges[static_cast<size_t>(first.edge)], &last_edge = graph.edges[static_cast<size_t>(last.edge)];
   stroke.begin = kind_of(graph, first.reversed ? first_edge.end : first_edge.begin);
@@ -36,12 +37,14 @@ Stroke stroke_of(const ViewGraph& graph, int index, const DrawingSettings& setti
 
 }  // namespace
 
-LineDrawing make_drawing(const ViewGraph& graph, int width_px, int height_px, const DrawingSettings& settings) {
+LineDrawing make_drawing(const ViewGraph& graph, int width_px, int height_px, const DrawingSettings& settings,
+                         const std::vector<int>& ids) {
   LineDrawing drawing{width_px, height_px, settings, {}};
   for (size_t i = 0; i < graph.chains.size(); ++i) {
     const int layers = graph.chains[i].invisibility;
     if (layers < settings.lowest_invisibility || layers > settings.highest_invisibility) continue;
     drawing.strokes.push_back(stroke_of(graph, static_cast<int>(i), settings));
+    if (!ids.empty()) drawing.strokes.back().id = ids[i];
   }
   std::stable_sort(drawing.strokes.begin(), drawing.strokes.end(), [](const Stroke& a, const Stroke& b) {
     const bool a_seen = a.invisibility == 0, b_seen = b.invisibility == 0;

@@ -61,6 +61,7 @@ struct Stroke {
   int invisibility = 0;
   int object = 1;
   int chain = 0;  ///< Index into ViewGraph::chains.
+  int id = 0;     ///< Kept from frame to frame; of a lone view the chain's index.
   bool closed = false;
   VertexKind begin = VertexKind::end, finish = VertexKind::end;  ///< Of an open one.
   std::vector<LinePoint> points{};
@@ -75,7 +76,9 @@ struct LineDrawing {
   std::vector<Stroke> strokes{};  ///< Hidden ones first, then by class as they are painted.
 };
 
-LineDrawing make_drawing(const ViewGraph& graph, int width_px, int height_px, const DrawingSettings& settings);
+/// `ids`: one a chain (raymarch/line_tracks.h); empty: their indices.
+LineDrawing make_drawing(const ViewGraph& graph, int width_px, int height_px, const DrawingSettings& settings,
+                         const std::vector<int>& ids = {});
 
 /// The path through a stroke's points, within the tolerance of them.
 std::vector<PathStep> fit_path(const std::vector<LinePoint>& points, bool closed, CurveForm form, double fit_px);

@@ -46,7 +46,7 @@ Json edges_json(const ViewGraph& graph) {
   return all;
 }
 
-Json chains_json(const ViewGraph& graph) {
+Json chains_json(const ViewGraph& graph, const std::vector<int>& ids) {
   Json all = Json::array();
   for (const LineChain& chain : graph.chains) {
     Json links = Json::array();
@@ -56,6 +56,7 @@ Json chains_json(const ViewGraph& graph) {
                    {"invisibility", chain.invisibility},
                    {"closed", chain.closed},
                    {"edges", std::move(links)}});
+    if (!ids.empty()) all.back()["id"] = ids[all.size() - 1];
   }
   return all;
 }
@@ -77,13 +78,29 @@ Json certificate_json(const ViewGraph& graph) {
           {"notes", graph.notes}};
 }
 
-Json graph_json(const ViewGraph& graph, int width_px, int height_px) {
+Json graph_json(const ViewGraph& graph, int width_px, int height_px, const std::vector<int>& ids) {
   return {{"width_px", width_px},
           {"height_px", height_px},
           {"certificate", certificate_json(graph)},
           {"vertices", vertices_json(graph)},
           {"edges", edges_json(graph)},
-          {"chains", chains_json(graph)}};
+          {"chains", chains_json(graph, ids)}};
+}
+
+Json tracks_json(const LineTracks& tracks) {
+  Json events = Json::array();
+  for (const ChainEvent& event : tracks.events) {
+    events.push_back({{"change", name_of(event.change)},
+                      {"cause", name_of(event.cause)},
+                      {"class", name_of(event.line_class)},
+                      {"id", event.id},
+                      {"from", event.from},
+                      {"to", event.to},
+                      {"px", pair(event.px)},
+                      {"length_px", number_or_null(event.length_px)}});
+    if (event.other >= 0) events.back()["other"] = event.other;
+  }
+  return {{"ids", tracks.ids}, {"unexplained", unexplained(tracks)}, {"solved_between", tracks.solved}, {"events", std::move(events)}};
 }
 
 }  // namespace limn

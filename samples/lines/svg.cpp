@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "samples/lines/taper.h"
@@ -102,12 +103,14 @@ std::string header(const LineDrawing& drawing, const std::string& title) {
   return text;
 }
 
-}  // namespace
+/// Rules of the classes that occur, and the layers that they are about.
+struct SvgLayers {
+  std::map<std::string, std::string> rules{};  ///< By selector.
+  std::string text{};
+};
 
-std::string svg_text(const LineDrawing& drawing, const std::string& title) {
-  std::string text = header(drawing, title);
-  text += "<style>path{fill:none;stroke-linejoin:round;stroke-linecap:round}";
-  std::string layers;
+/// `suffix`: makes ids unique in a file of several frames.
+void add_layers(const LineDrawing& drawing, const std::string& suffix, SvgLayers& out) {
   int number_of_layer = 0;
   for (size_t i = 0; i < drawing.strokes.size();) {
     const LineClass line_class = drawing.strokes[i].line_class;
@@ -115,22 +118,55 @@ std::string svg_text(const LineDrawing& drawing, const std::string& title) {
     const char* const seen = visible ? "visible" : "hidden";
     const std::string& name = name_of(line_class);
     const StrokeStyle& style = style_of(drawing, drawing.strokes[i]);
-    text += fmt::format(".{}.{} path{{{}}}", name, seen, css_of(style));
-    if (style.taper) text += fmt::format(".{}.{} path.taper{{fill:{};stroke:none}}", name, seen, style.color);
+    std::string& rule = out.rules[fmt::format(".{}.{} path", name, seen)];
+    rule = fmt::format(".{}.{} path{{{}}}", name, seen, css_of(style));
+    if (style.taper) rule += fmt::format(".{}.{} path.taper{{fill:{};stroke:none}}", name, seen, style.color);
     ++number_of_layer;
-    layers += fmt::format("<g id=\"{0}-{1}\" class=\"{0} {1}\" inkscape:groupmode=\"layer\" inkscape:label=\"{2} {0} {1}\">\n", name, seen,
-                          number_of_layer);
+    out.text += fmt::format("<g id=\"{0}-{1}{3}\" class=\"{0} {1}\" inkscape:groupmode=\"layer\" inkscape:label=\"{2} {0} {1}\">\n", name,
+                            seen, number_of_layer, suffix);
     for (; i < drawing.strokes.size(); ++i) {
       const Stroke& stroke = drawing.strokes[i];
       if (stroke.line_class != line_class || (stroke.invisibility == 0) != visible) break;
       const bool narrows = tapers(stroke, style);
-      layers += fmt::format("<path id=\"chain-{}\"{} data-qi=\"{}\" data-object=\"{}\" d=\"{}\"/>\n", stroke.chain,
-                            narrows ? " class=\"taper\"" : "", stroke.invisibility, stroke.object,
-                            narrows ? outline_of(tapered_outline(stroke, style.width_px)) : path_of(stroke));
+      out.text += fmt::format("<path id=\"chain-{0}{1}\"{2} data-id=\"{0}\" data-qi=\"{3}\" data-object=\"{4}\" d=\"{5}\"/>\n", stroke.id,
+                              suffix, narrows ? " class=\"taper\"" : "", stroke.invisibility, stroke.object,
+                              narrows ? outline_of(tapered_outline(stroke, style.width_px)) : path_of(stroke));
     }
-    layers += "</g>\n";
+    out.text += "</g>\n";
   }
-  return text + "</style>\n" + layers + "</svg>\n";
+}
+
+std::string style_text(const SvgLayers& layers, const std::string& more) {
+  std::string text = "<style>path{fill:none;stroke-linejoin:round;stroke-linecap:round}";
+  for (const auto& [selector, rule] : layers.rules) text += rule;
+  return text + more + "</style>\n";
+}
+
+}  // namespace
+
+std::string svg_text(const LineDrawing& drawing, const std::string& title) {
+  SvgLayers layers;
+  add_layers(drawing, "", layers);
+  return header(drawing, title) + style_text(layers, "") + layers.text + "</svg>\n";
+}
+
+std::string animated_svg_text(const std::vector<LineDrawing>& drawings, const std::string& title, double frames_per_second) {
+  const auto count = static_cast<double>(drawings.size());
+  SvgLayers layers;
+  for (size_t k = 0; k < drawings.size(); ++k) {
+    // Each frame is shown for its share of the film, which starts as much later as the frame stands in it.
+    layers.text += fmt::format("<g id=\"frame-{0}\" class=\"frame{1}\" style=\"animation-delay:{2:.6f}s\">\n", k, k == 0 ? " first" : "",
+                               static_cast<double>(k) / frames_per_second);
+    add_layers(drawings[k], fmt::format("-f{}", k), layers);
+    layers.text += "</g>\n";
+  }
+  const std::string film = drawings.size() < 2
+                               ? ""
+                               : fmt::format(
+                                     ".frame{{visibility:hidden;animation:frame {:.6f}s step-end infinite}}.first{{visibility:visible}}"
+                                     "@keyframes frame{{0%{{visibility:visible}}{:.6f}%{{visibility:hidden}}}}",
+                                     count / frames_per_second, 100.0 / count);
+  return header(drawings.front(), title) + style_text(layers, film) + layers.text + "</svg>\n";
 }
 
 }  // namespace limn

@@ -1,0 +1,96 @@
+#include "raymarch/line_tracks.h"
+
+#include <algorithm>
+#include <array>
+
+#include "raymarch/lines/chain_changes.h"
+
+namespace limn {
+namespace {
+
+/// A graph at a time, with the ids of its chains.
+struct Moment {
+  double time = 0.0;
+  const PlacedChains& chains;
+};
+
+class Follower {
+ public:
+  Follower(const GraphAt& graph_at, const TrackSettings& settings, LineTracks& tracks)
+      : graph_at_(graph_at), settings_(settings), tracks_(tracks) {}
+
+  std::vector<int> follow(const Moment& before, const std::vector<int>& ids, const Moment& after, int halvings) {
+    const ChainOverlaps overlaps = overlaps_of(before.chains, after.chains);
+    const ChainMatch match = match_chains(before.chains, after.chains, overlaps);
+    const std::vector<FoundChange> changes = changes_between(before.chains, after.chains, overlaps, match, settings_);
+    const bool settled = std::all_of(changes.begin(), changes.end(), [](const FoundChange& change) { return change.settled; });
+    if (!settled && halvings < settings_.most_halvings) {
+      const double time = 0.5 * (before.time + after.time);
+      const ViewGraph graph = graph_at_(time);
+      ++tracks_.solved;
+      const PlacedChains chains = place_chains(graph);
+      const Moment between{time, chains};
+      return follow(between, follow(before, ids, between, halvings + 1), after, halvings + 1);
+    }
+    std::vector<int> ids_after;
+    for (const int chain : match.before_of) ids_after.push_back(chain >= 0 ? ids[static_cast<size_t>(chain)] : tracks_.ids++);
+    for (const FoundChange& change : changes) add_event(change, before, ids, after, ids_after);
+    return ids_after;
+  }
+
+ private:
+  void add_event(const FoundChange& change, const Moment& before, const std::vector<int>& ids, const Moment& after,
+                 const std::vector<int>& ids_after) {
+    const bool appears = change.change == ChainChange::birth || change.change == ChainChange::split;
+    const int chain = appears ? change.after : change.before;
+    const std::vector<int>&own = appears ? ids_after : ids, &others = appears ? ids : ids_after;
+    const ViewGraph& graph = *(appears ? after : before).chains.graph;
+    ChainEvent event;
+    event.change = change.change;
+    event.cause = change.settled ? change.cause : ChainCause::unexplained;
+    event.line_class = graph.chains[static_cast<size_t>(chain)].line_class;
+    event.id = own[static_cast<size_t>(chain)];
+    event.other = change.other >= 0 ? others[static_cast<size_t>(change.other)] : -1;
+    event.from = before.time;
+    event.to = after.time;
+    event.px = change.px;
+    event.length_px = change.length_px;
+    tracks_.events.push_back(event);
+  }
+
+  const GraphAt& graph_at_;
+  const TrackSettings& settings_;
+  LineTracks& tracks_;
+};
+
+}  // namespace
+
+const char* name_of(ChainChange change) {
+  constexpr std::array<const char*, 5> kNames = {"birth", "death", "split", "merge", "exchange"};
+  return kNames[static_cast<size_t>(change)];
+}
+
+const char* name_of(ChainCause cause) {
+  constexpr std::array<const char*, 10> kNames = {"lips",         "beak to beak", "swallowtail", "cusp crossing", "tangency",
+                                                  "triple point", "joint",        "frame",       "edge on",       "unexplained"};
+  return kNames[static_cast<size_t>(cause)];
+}
+
+std::vector<int> first_ids(const ViewGraph& graph, LineTracks& tracks) {
+  std::vector<int> ids;
+  for (size_t i = 0; i < graph.chains.size(); ++i) ids.push_back(tracks.ids++);
+  return ids;
+}
+
+std::vector<int> follow_chains(const ViewGraph& before, const std::vector<int>& ids_before, double time_before, const ViewGraph& after,
+                               double time_after, const GraphAt& graph_at, const TrackSettings& settings, LineTracks& tracks) {
+  const PlacedChains chains_before = place_chains(before), chains_after = place_chains(after);
+  return Follower(graph_at, settings, tracks).follow({time_before, chains_before}, ids_before, {time_after, chains_after}, 0);
+}
+
+int unexplained(const LineTracks& tracks) {
+  return static_cast<int>(std::count_if(tracks.events.begin(), tracks.events.end(),
+                                        [](const ChainEvent& event) { return event.cause == ChainCause::unexplained; }));
+}
+
+}  // namespace limn

@@ -19,6 +19,9 @@ enum class LineClass : std::uint8_t {
   intersection,  ///< Two objects pass through each other.
   material,      ///< Two materials of one object meet.
   rim,           ///< N.V = threshold, the inner border of the rim.
+  suggestive,    ///< Radial curvature 0, growing towards the eye: a contour of views nearby (DeCarlo et al. 2003).
+  ridge,         ///< Extremal principal curvature, where the surface bends away from its normal (Ohtake et al. 2004).
+  valley,        ///< The same where it bends towards its normal.
 };
 
 /// A class of lines, for lists and options.
@@ -34,9 +37,15 @@ const std::string& name_of(LineClass line_class);
 
 /// Which lines are solved, and how precisely.
 struct LineSettings {
-  std::vector<LineClass> classes{};                ///< Empty: those drawn by default.
-  double threshold = 0.4;                          ///< Of the rim, above 0 and below 1; read where LineClass::rim is asked for.
-  double crease_angle_deg = 40.0;                  ///< Edges of meshes are creases where their faces' normals differ by more. In (0, 180).
+  std::vector<LineClass> classes{};    ///< Empty: those drawn by default.
+  double threshold = 0.4;              ///< Of the rim, above 0 and below 1; read where LineClass::rim is asked for.
+  double crease_angle_deg = 40.0;      ///< Edges of meshes are creases where their faces' normals differ by more. In (0, 180).
+  double suggestive_angle_deg = 20.0;  ///< Suggestive contours: least angle between normal and view. In [0, 90).
+  /// Suggestive contours: least derivative of the radial curvature along the view's tangential part, times the object's radius squared.
+  /// From 0 up. A line goes on down to half of it.
+  double suggestive_slope = 2.0;
+  /// Ridges and valleys: least principal curvature, times the object's radius. Above 0. A line goes on down to half of it.
+  double ridge_strength = 4.0;
   double tolerance_px = 0.005;                     ///< How far the polylines may lie from the curves.
   std::int64_t max_bytes = std::int64_t{4} << 30;  ///< For the meshes that rays are cast against.
 };

@@ -7,6 +7,7 @@
 
 #include "raymarch/lines/cage_seams.h"
 #include "raymarch/lines/mesh_layers.h"
+#include "raymarch/lines/placed_cage.h"
 #include "raymarch/lines/seams.h"
 #include "raymarch/truth/limit_curves.h"
 
@@ -36,17 +37,9 @@ SurfaceCurve curve_of(const LineTask& task, const TracedCurve& traced) {
   return curve;
 }
 
-/// One cage about its own middle, so that nothing is lost far from the origin.
 void add_cage(const LineTask& task, size_t object, LineContribution& out) {
-  const SceneObject& scene_object = task.scene.objects[object];
-  const auto& source = std::get<MeshSource>(scene_object.source);
-  Mesh cage = source.mesh;
-  const glm::dvec3 center = bounds(cage).center();
-  for (glm::dvec3& position : cage.positions) position -= center;
-  Affine solver_from_cage = scene_object.world_from_object;
-  solver_from_cage.translation += solver_from_cage.linear * center - task.origin;
-  const LimitSurface surface(cage, *source.scheme, source.file);
-  const PlacedLimitSurface placed = place(surface, solver_from_cage);
+  const PlacedCage cage = place_cage(task, object);
+  const PlacedLimitSurface placed = place(cage.surface, cage.solver_from_cage);
   double cell_px = 0.0;
   const LimitGrid grid = sample_grid(placed, task.camera, kCell_px, kMostTriangles, cell_px);
   LimitCurveSettings tracing;
@@ -69,6 +62,17 @@ void add_cage(const LineTask& task, size_t object, LineContribution& out) {
 }
 
 }  // namespace
+
+PlacedCage place_cage(const LineTask& task, size_t object) {
+  const SceneObject& scene_object = task.scene.objects[object];
+  const auto& source = std::get<MeshSource>(scene_object.source);
+  Mesh cage = source.mesh;
+  const glm::dvec3 center = bounds(cage).center();
+  for (glm::dvec3& position : cage.positions) position -= center;
+  Affine solver_from_cage = scene_object.world_from_object;
+  solver_from_cage.translation += solver_from_cage.linear * center - task.origin;
+  return {LimitSurface(cage, *source.scheme, source.file), solver_from_cage};
+}
 
 LineContribution cage_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution) {
   LineContribution out;

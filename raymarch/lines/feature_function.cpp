@@ -110,6 +110,11 @@ double FeatureFunction::kept(const FeaturePoint& point) const {
   return least < 0.0 ? least : std::min(least, sharpness(point) - kBlunt);
 }
 
+std::optional<double> FeatureFunction::curvature_across(const FeaturePoint& point) const {
+  if (line_class_ == LineClass::suggestive) return {};
+  return extreme_of(point, line_class_).k;
+}
+
 bool FeatureFunction::strong(const FeaturePoint& point) const {
   if (line_class_ == LineClass::suggestive) return suggestion(point) > settings_.suggestive_slope;
   return strength(point) > settings_.ridge_strength;

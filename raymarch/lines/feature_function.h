@@ -29,6 +29,8 @@ class FeatureFunction {
   /// At least 0 where a zero belongs to a line, if that is strong somewhere.
   double kept(const FeaturePoint& point) const;
   bool strong(const FeaturePoint& point) const;
+  /// The curvature across a ridge or valley, whose integral along the line has no unit; nothing of suggestive contours.
+  std::optional<double> curvature_across(const FeaturePoint& point) const;
 
  private:
   double suggestion(const FeaturePoint& point) const;

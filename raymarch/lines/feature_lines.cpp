@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kRefinements = 7;
 constexpr int kCuts = 24;
-constexpr double kCut_px = 1e-4;  // how precisely a line's end is found
+constexpr double kLeastTurn = 0.3;  // of a ridge: its curvature integrated along it (Ohtake et al. 2004), radians
+constexpr double kCut_px = 1e-4;    // how precisely a line's end is found
 
 struct Tracer {
   const LineTask& task;
@@ -53,6 +54,33 @@ struct Tracer {
     return step.from;
   }
 
+  /// Where the line passes from the front to the back of its surface, on the way between two of its points.
+  FeatureStation turn_between(FeatureStep step) const {
+    const bool front = faces_eye(step.from);
+    for (int i = 0; i < kCuts && glm::distance(px(step.from), px(step.to)) > kCut_px; ++i) {
+      const std::optional<FeatureStation> middle = middle_of(surface, function, step);
+      if (!middle) break;
+      (faces_eye(*middle) == front ? step.from : step.to) = *middle;
+    }
+    return step.to;
+  }
+  bool faces_eye(const FeatureStation& station) const {
+    return glm::dot(station.point.normal, view_vector(task.camera, station.point.p)) > 0.0;
+  }
+
+  /// Strong somewhere, and not a crumb.
+  bool is_drawn(const std::vector<FeatureStep>& run) const {
+    const auto strong = [&](const FeatureStep& step) { return function.strong(step.from.point) || function.strong(step.to.point); };
+    if (std::none_of(run.begin(), run.end(), strong)) return false;
+    double turn = 0.0;
+    for (const FeatureStep& step : run) {
+      const std::optional<double> k = function.curvature_across(step.from.point);
+      if (!k) return true;
+      turn += *k * glm::distance(step.from.point.p, step.to.point.p);
+    }
+    return turn > kLeastTurn;
+  }
+
   CurveSample sample_of(const FeatureStation& station) const {
     CurveSample sample;
     const glm::dvec3 view = view_vector(task.camera, station.point.p);
@@ -65,67 +93,73 @@ struct Tracer {
     project_sample(task.camera, sample);
     return sample;
   }
+
+  /// Past its own contour a line has a layer more in front: the curve gets a joint there.
+  SurfaceCurve curve_of(const std::vector<FeatureStep>& run, bool closed) const {
+    SurfaceCurve curve{closed, false, {}};
+    for (const FeatureStep& step : run) {
+      curve.samples.push_back(sample_of(step.from));
+      if (faces_eye(step.from) == faces_eye(step.to)) continue;
+      curve.samples.push_back(sample_of(turn_between(step)));
+      curve.samples.back().joint = true;
+    }
+    if (!closed) curve.samples.push_back(sample_of(run.back().to));
+    return curve;
+  }
 };
 
-/// A chain as points in a row, with the triangle of each step.
-struct Points {
-  std::vector<FeatureStation> stations{};
-  std::vector<FeatureStep> steps{};  ///< From each point to the next; of a closed chain the last leads to the first.
-  std::vector<char> kept{};
+/// A chain in steps as short as the tolerance wants.
+struct FineChain {
+  std::vector<FeatureStep> steps{};
+  std::vector<double> off_px{};  ///< Of each step: how far the curve may be from it.
+  std::vector<char> kept{};      ///< Of each step's beginning, and of the last one's end.
 };
 
-Points points_of_chain(const Tracer& tracer, const FeatureChain& chain, double& worst_px) {
-  Points points;
+FineChain fine_chain(const Tracer& tracer, const FeatureChain& chain) {
+  FineChain fine;
   for (const FeatureStep& step : chain.steps) {
-    std::vector<FeatureStation> inner{step.from};
-    worst_px = std::max(worst_px, tracer.refine(step, kRefinements, inner));
-    inner.push_back(step.to);
-    for (size_t i = 0; i + 1 < inner.size(); ++i) {
-      points.stations.push_back(inner[i]);
-      points.steps.push_back({inner[i], inner[i + 1]});
+    std::vector<FeatureStation> stations{step.from};
+    const double off_px = tracer.refine(step, kRefinements, stations);
+    stations.push_back(step.to);
+    for (size_t i = 0; i + 1 < stations.size(); ++i) {
+      fine.steps.push_back({stations[i], stations[i + 1]});
+      fine.off_px.push_back(off_px);
+      fine.kept.push_back(tracer.function.kept(stations[i].point) >= 0.0);
     }
   }
-  if (!chain.closed) points.stations.push_back(chain.steps.back().to);
-  for (const FeatureStation& station : points.stations) points.kept.push_back(tracer.function.kept(station.point) >= 0.0);
-  return points;
+  fine.kept.push_back(chain.closed ? fine.kept.front() : tracer.function.kept(fine.steps.back().to.point) >= 0.0);
+  return fine;
 }
 
 /// The stretches of a chain that are kept, and strong somewhere.
 std::vector<SurfaceCurve> kept_curves(const Tracer& tracer, const FeatureChain& chain, double& worst_px) {
-  const Points points = points_of_chain(tracer, chain, worst_px);
-  const size_t n = points.stations.size();
+  const FineChain fine = fine_chain(tracer, chain);
+  const size_t n = fine.steps.size();
   std::vector<SurfaceCurve> curves;
-  std::vector<FeatureStation> run;
+  std::vector<FeatureStep> run;
+  double run_worst_px = 0.0;
   const auto finish = [&](bool closed) {
-    const bool strong = std::any_of(run.begin(), run.end(), [&](const FeatureStation& s) { return tracer.function.strong(s.point); });
-    if (strong && run.size() > 1) {
-      SurfaceCurve curve{closed, false, {}};
-      for (const FeatureStation& station : run) curve.samples.push_back(tracer.sample_of(station));
-      curves.push_back(std::move(curve));
+    if (!run.empty() && tracer.is_drawn(run)) {
+      curves.push_back(tracer.curve_of(run, closed));
+      worst_px = std::max(worst_px, run_worst_px);
     }
     run.clear();
+    run_worst_px = 0.0;
   };
-  if (chain.closed && std::all_of(points.kept.begin(), points.kept.end(), [](char kept) { return kept != 0; })) {
-    run = points.stations;
-    finish(true);
-    return curves;
-  }
   // A closed chain is walked from a point that is not kept.
-  const size_t first = chain.closed ? static_cast<size_t>(std::find(points.kept.begin(), points.kept.end(), 0) - points.kept.begin()) : 0;
-  for (size_t k = 0; k < points.steps.size(); ++k) {
-    const size_t i = (first + k) % n, j = (i + 1) % n;
-    const FeatureStep& step = points.steps[i];
-    if (points.kept[i] && run.empty()) run.push_back(points.stations[i]);
-    if (points.kept[i] && points.kept[j]) {
-      run.push_back(points.stations[j]);
-    } else if (points.kept[i]) {
-      run.push_back(tracer.end_between(step));
-      finish(false);
-    } else if (points.kept[j]) {
-      run = {tracer.end_between({step.to, step.from}), points.stations[j]};
-    }
+  const auto not_kept = std::find(fine.kept.begin(), fine.kept.end(), 0);
+  const size_t first = chain.closed && not_kept != fine.kept.end() ? static_cast<size_t>(not_kept - fine.kept.begin()) : 0;
+  for (size_t k = 0; k < n; ++k) {
+    const size_t i = (first + k) % n;
+    FeatureStep step = fine.steps[i];
+    if (!fine.kept[i] && !fine.kept[i + 1]) continue;
+    run_worst_px = std::max(run_worst_px, fine.off_px[i]);
+    if (!fine.kept[i]) step.from = tracer.end_between({step.to, step.from});
+    if (!fine.kept[i + 1]) step.to = tracer.end_between(step);
+    run.push_back(step);
+    if (!fine.kept[i + 1]) finish(false);
   }
-  finish(false);
+  finish(chain.closed && not_kept == fine.kept.end());
   return curves;
 }
 

@@ -20,6 +20,9 @@ enum class LineClass : std::uint8_t {
   intersection,  ///< Two objects pass through each other.
   material,      ///< Two materials of one object meet.
   rim,           ///< N.V = threshold, the inner border of the rim.
+  suggestive,    ///< Radial curvature 0, growing towards the eye: a contour of views nearby (DeCarlo et al. 2003).
+  ridge,         ///< Extremal principal curvature, where the surface bends away from its normal (Ohtake et al. 2004).
+  valley,        ///< The same where it bends towards its normal.
 };
 
 /// A class of lines, for lists and options.
@@ -41,6 +44,12 @@ struct LineSettings {
   /// Contours of meshes that are no cages are those of the smooth surface that their vertices' normals describe, averaged over the faces
   /// but not across creases (Hertzmann & Zorin 2000).
   bool smooth_meshes = false;
+  double suggestive_angle_deg = 20.0;  ///< Suggestive contours: least angle between normal and view. In [0, 90).
+  /// Suggestive contours: least derivative of the radial curvature along the view's tangential part, times the object's radius squared.
+  /// From 0 up. A line goes on down to half of it.
+  double suggestive_slope = 2.0;
+  /// Ridges and valleys: least principal curvature, times the object's radius. Above 0. A line goes on down to half of it.
+  double ridge_strength = 4.0;
   double tolerance_px = 0.005;                     ///< How far the polylines may lie from the curves.
   std::int64_t max_bytes = std::int64_t{4} << 30;  ///< For the meshes that rays are cast against.
   /// Sharp CSG of quadrics and tori by closed forms. Off: searched for in cells of space, as all other fields are.

@@ -8,6 +8,7 @@
 #include "raymarch/lines/cage_seams.h"
 #include "raymarch/lines/line_memory.h"
 #include "raymarch/lines/mesh_layers.h"
+#include "raymarch/lines/placed_cage.h"
 #include "raymarch/lines/seams.h"
 #include "raymarch/truth/limit_curves.h"
 
@@ -44,22 +45,11 @@ SurfaceCurve curve_of(const LineTask& task, const TracedCurve& traced) {
   return curve;
 }
 
-/// One cage about its own middle, so that nothing is lost far from the origin.
 void add_cage(const LineTask& task, size_t object, LineContribution& out) {
-  const SceneObject& scene_object = task.scene.objects[object];
-  const auto& source = std::get<MeshSource>(scene_object.source);
-  const glm::dvec3 center = bounds(source.mesh).center();
-  KeptCage& kept = task.kept.cages[object];
-  if (!kept.surface) {
-    Mesh cage = source.mesh;
-    for (glm::dvec3& position : cage.positions) position -= center;
-    kept.surface = std::make_shared<const LimitSurface>(cage, *source.scheme, source.file);
-  }
-  Affine solver_from_cage = scene_object.world_from_object;
-  solver_from_cage.translation += solver_from_cage.linear * center - task.origin;
-  const PlacedLimitSurface placed = place(*kept.surface, solver_from_cage);
+  const PlacedCage cage = place_cage(task, object);
+  const PlacedLimitSurface placed = place(*cage.surface, cage.solver_from_cage);
   const int steps = shared_steps(lattice_steps(placed, task.camera, kCell_px, kMostTriangles).steps);
-  std::shared_ptr<const LimitGrid>& kept_grid = kept.grids[steps];
+  std::shared_ptr<const LimitGrid>& kept_grid = task.kept.cages[object].grids[steps];
   if (!kept_grid) kept_grid = std::make_shared<const LimitGrid>(sample_grid(placed, task.camera, steps));
   const LimitGrid& grid = *kept_grid;
   LimitCurveSettings tracing;
@@ -82,6 +72,21 @@ void add_cage(const LineTask& task, size_t object, LineContribution& out) {
 }
 
 }  // namespace
+
+PlacedCage place_cage(const LineTask& task, size_t object) {
+  const SceneObject& scene_object = task.scene.objects[object];
+  const auto& source = std::get<MeshSource>(scene_object.source);
+  const glm::dvec3 center = bounds(source.mesh).center();
+  std::shared_ptr<const LimitSurface>& kept = task.kept.cages[object].surface;
+  if (!kept) {
+    Mesh cage = source.mesh;
+    for (glm::dvec3& position : cage.positions) position -= center;
+    kept = std::make_shared<const LimitSurface>(cage, *source.scheme, source.file);
+  }
+  Affine solver_from_cage = scene_object.world_from_object;
+  solver_from_cage.translation += solver_from_cage.linear * center - task.origin;
+  return {kept, solver_from_cage};
+}
 
 LineContribution cage_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution) {
   LineContribution out;

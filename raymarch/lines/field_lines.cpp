@@ -142,7 +142,8 @@ TracedBody trace_body(const FieldTask& fields, const Field& body, const std::str
 }
 
 /// Layers of bodies in closed form by their roots, of the others by bounds along the ray.
-std::function<LayersSeen(const CurveSample&)> layers_of(const LineTask& task, const std::vector<Field>& bodies, std::vector<TracedBody> traced) {
+std::function<LayersSeen(const CurveSample&)> layers_of(const LineTask& task, const std::vector<Field>& bodies,
+                                                        std::vector<TracedBody> traced) {
   std::vector<Field> others;
   auto forms = std::make_shared<std::vector<FormBody>>();
   for (size_t i = 0; i < bodies.size(); ++i) {

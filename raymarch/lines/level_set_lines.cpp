@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "raymarch/analytic/clip_ray.h"
+#include "raymarch/lines/placed_level_set.h"
 #include "raymarch/lines/seams.h"
 #include "raymarch/truth/field_curves.h"
 #include "sdf/field_program.h"
@@ -22,30 +23,14 @@ constexpr double kStep = 0.25;  // of a voxel: how far rays look ahead near the 
 constexpr double kLift = 1e-3;  // of a voxel
 
 /// One object in solver space.
-struct PlacedGrid {
-  size_t object = 0;
-  Field field;
-  Affine solver_from_index{};
-  double voxel = 1.0;  ///< The widest side of a cell.
-  Box box{};
+struct PlacedGrid : PlacedLevelSet {
   std::vector<SurfaceCell> cells{};
 };
 
 PlacedGrid place_grid(const LineTask& task, size_t object) {
-  const SceneObject& scene_object = task.scene.objects[object];
-  const LevelSet& level_set = std::get<LevelSetSource>(scene_object.source).level_set;
-  Affine solver_from_world = scene_object.world_from_object;
-  solver_from_world.translation -= task.origin;
-  FieldLeaf leaf = reconstruction_field(level_set).program().leaves[0];
-  leaf.object_from_world = inverse(solver_from_world);
-  PlacedGrid grid{object, field_from_leaf(leaf, false)};
-  grid.solver_from_index = compose(solver_from_world, level_set.info().world_from_index);
-  for (int axis = 0; axis < 3; ++axis)
-    grid.voxel =
-        axis == 0 ? glm::length(grid.solver_from_index.linear[0]) : std::max(grid.voxel, glm::length(grid.solver_from_index.linear[axis]));
-  grid.box = dilate(transform(solver_from_world, level_set.info().bounds), 2.0 * grid.voxel);
-  grid.cells = surface_cells(level_set);
-  const glm::dmat3 turn = glm::transpose(inverse(solver_from_world).linear);
+  PlacedGrid grid{place_level_set(task, object)};
+  grid.cells = surface_cells(std::get<LevelSetSource>(task.scene.objects[object].source).level_set);
+  const glm::dmat3 turn = glm::transpose(inverse(grid.solver_from_world).linear);
   for (SurfaceCell& cell : grid.cells) {
     const glm::dvec3 normal = turn * glm::dvec3(cell.normal);
     if (glm::length(normal) > 0.0) cell.normal = glm::vec3(glm::normalize(normal));
@@ -172,6 +157,21 @@ class GridLayers {
 };
 
 }  // namespace
+
+PlacedLevelSet place_level_set(const LineTask& task, size_t object) {
+  const SceneObject& scene_object = task.scene.objects[object];
+  const LevelSet& level_set = std::get<LevelSetSource>(scene_object.source).level_set;
+  Affine solver_from_world = scene_object.world_from_object;
+  solver_from_world.translation -= task.origin;
+  FieldLeaf leaf = reconstruction_field(level_set).program().leaves[0];
+  leaf.object_from_world = inverse(solver_from_world);
+  PlacedLevelSet placed{field_from_leaf(leaf, false), solver_from_world};
+  placed.solver_from_index = compose(solver_from_world, level_set.info().world_from_index);
+  const glm::dmat3& axes = placed.solver_from_index.linear;
+  placed.voxel = std::max({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
+  placed.box = dilate(transform(solver_from_world, level_set.info().bounds), 2.0 * placed.voxel);
+  return placed;
+}
 
 LineContribution level_set_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution) {
   LineContribution out;

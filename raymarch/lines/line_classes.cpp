@@ -7,7 +7,16 @@ namespace limn {
 const Registry<LineClassDescriptor>& line_classes() {
   static const Registry<LineClassDescriptor> all(
       "class of lines",
-      {{{"crease", "two normals of one object meet at an angle", "DeCarlo et al. 2003"}, LineClass::crease, true},
+      {{{"suggestive", "radial curvature 0, growing towards the eye: contours of views nearby", "DeCarlo et al. 2003"},
+        LineClass::suggestive,
+        false},
+       {{"ridge", "extremal curvature along its direction, where the surface bends outwards", "Ohtake et al. 2004"},
+        LineClass::ridge,
+        false},
+       {{"valley", "extremal curvature along its direction, where the surface bends inwards", "Ohtake et al. 2004"},
+        LineClass::valley,
+        false},
+       {{"crease", "two normals of one object meet at an angle", "DeCarlo et al. 2003"}, LineClass::crease, true},
        {{"intersection", "two objects pass through each other", "Grabli et al. 2010"}, LineClass::intersection, true},
        {{"material", "two materials of one object meet", "Grabli et al. 2010"}, LineClass::material, true},
        {{"rim", "N.V = threshold, the inner border of the rim", "limn"}, LineClass::rim, false},

@@ -25,6 +25,12 @@ void check(const LineSettings& settings) {
     fail("tolerance", settings.tolerance_px, "not a tolerance", "above 0 px");
   if (!(settings.crease_angle_deg > 0.0 && settings.crease_angle_deg < 180.0))
     fail("crease_angle", settings.crease_angle_deg, "not an angle between faces", "above 0 and below 180 degrees");
+  if (!(settings.suggestive_angle_deg >= 0.0 && settings.suggestive_angle_deg < 90.0))
+    fail("suggestive_angle", settings.suggestive_angle_deg, "not an angle between normal and view", "from 0 to below 90 degrees");
+  if (!(settings.suggestive_slope >= 0.0 && std::isfinite(settings.suggestive_slope)))
+    fail("suggestive_slope", settings.suggestive_slope, "not a derivative of curvature", "a number from 0 up");
+  if (!(settings.ridge_strength > 0.0 && std::isfinite(settings.ridge_strength)))
+    fail("ridge_strength", settings.ridge_strength, "not a strength", "a number above 0");
 }
 
 LineTask task_of(const Scene& scene, const Camera& camera, const LineSettings& settings, KeptLines& kept) {
@@ -75,6 +81,8 @@ std::vector<LineContribution> contributions_of(const LineTask& task, const Execu
   add(kinds.cages, cage_lines, "the limit surface", "the limit surfaces");
   add(kinds.meshes, mesh_lines, "the mesh", "the meshes");
   add(kinds.level_sets, level_set_lines, "the level set", "the level sets");
+  const bool features = task.wants(LineClass::suggestive) || task.wants(LineClass::ridge) || task.wants(LineClass::valley);
+  if (features) all.push_back(feature_lines(task, execution));
   return all;
 }
 
@@ -112,6 +120,7 @@ ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettin
     const LayersBefore layers_before = [&](const CurveSample& sample) {
       LayersSeen all{0, std::numeric_limits<double>::infinity()};
       for (const LineContribution& one : contributions) {
+        if (!one.layers_before) continue;
         const LayersSeen layers = one.layers_before(sample);
         all.count += layers.count;
         // NaN where one does not know.

@@ -55,7 +55,7 @@ struct LayersSeen {
 /// What objects of one kind bring. Functions are called from many threads and own what they need.
 struct LineContribution {
   std::vector<SurfaceCurve> curves{};
-  /// How many layers of its surfaces lie between the sample, lifted off, and the eye.
+  /// What of its surfaces lies between the sample, lifted off, and the eye; empty: another contribution counts them.
   std::function<LayersSeen(const CurveSample& sample)> layers_before{};
   bool exact = true;
   double unrefined_px = 0.0;  ///< What the bound has to grow by.
@@ -78,6 +78,8 @@ LineContribution field_lines(const LineTask& task, const std::vector<size_t>& ob
 LineContribution cage_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution);
 LineContribution mesh_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution);
 LineContribution level_set_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution);
+/// Suggestive contours, ridges and valleys of all objects; the others count the layers.
+LineContribution feature_lines(const LineTask& task, const ExecutionSettings& execution);
 
 /// Image point and depth of `sample.p`.
 void project_sample(const Camera& camera, CurveSample& sample);

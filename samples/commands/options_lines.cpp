@@ -15,6 +15,29 @@ constexpr const char* kLines = "Lines";
 constexpr const char* kJudge = "Comparison";
 constexpr const char* kJudgeLimits = "Limits of the drawing (exit code 1 beyond them; a length such as 5px, or a share such as 1%)";
 
+/// What of suggestive contours, ridges and valleys is drawn.
+void add_feature_limits(CLI::App& app, LineSettings& lines) {
+  add(app, {"--suggestive-angle", "DEG", "suggestive contours: least angle between normal and view; default 20", kLines},
+      [&lines](const std::string& text) {
+        const char* const expected = "from 0 to below 90 degrees";
+        lines.suggestive_angle_deg = parse_number_above("--suggestive-angle", text, 0.0, true, expected);
+        if (lines.suggestive_angle_deg >= 90.0) throw InputError({"", "--suggestive-angle", text, "out of range", expected});
+      });
+  add(app,
+      {"--suggestive-slope", "D",
+       "suggestive contours: least derivative of the radial curvature towards the eye, times the object's radius squared; default 2",
+       kLines},
+      [&lines](const std::string& text) {
+        lines.suggestive_slope = parse_number_above("--suggestive-slope", text, 0.0, true, "a number from 0 up");
+      });
+  add(app,
+      {"--ridge-strength", "K", "ridges and valleys: least curvature across the line, times the object's radius, above 0; default 4",
+       kLines},
+      [&lines](const std::string& text) {
+        lines.ridge_strength = parse_number_above("--ridge-strength", text, 0.0, false, "a number above 0");
+      });
+}
+
 }  // namespace
 
 void add_line_surface(CLI::App& app, Options& options) {
@@ -62,6 +85,7 @@ void add_lines(CLI::App& app, Options& options) {
       app,
       {"--smooth", "", "contours of meshes as of the smooth surface between their vertices' normals, not along edges of facets", kLines},
       lines.lines.smooth_meshes);
+  add_feature_limits(app, lines.lines);
   add(app, {"--curves", "polyline|bezier|arc", "what strokes are made of; default polyline", kLines}, [&lines](const std::string& text) {
     const std::vector<std::string> known = {"polyline", "bezier", "arc"};
     const auto at = std::find(known.begin(), known.end(), text);

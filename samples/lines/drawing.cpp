@@ -75,6 +75,8 @@ DrawingStyle built_in_style(const std::string& name) {
     style.visible[LineClass::contour] = style.visible[LineClass::boundary] = {1.6};
     style.visible[LineClass::intersection] = {1.0};
     style.visible[LineClass::rim] = {0.6, "#777777"};
+    style.visible[LineClass::suggestive] = {0.8, "#333333"};
+    style.visible[LineClass::ridge] = style.visible[LineClass::valley] = {0.5, "#555555"};
     return style;
   }
   if (name == "ink") {

@@ -77,7 +77,7 @@ void MeshLayers::pierce(SurfaceCurve& curve) const {
     if (!(length > 0.0)) continue;
     const glm::dvec3 way = (next.p - sample.p) / length;
     for (const LayerHit& hit : tree_->hits_along(sample.p, way, length)) {
-      const Triangle& triangle = tree_->triangles()[hit.triangle];
+      const LayerTriangle& triangle = tree_->triangles()[hit.triangle];
       // Faces around a vertex that a mesh's own edge ends at are met there.
       const bool at_vertex = std::any_of(triangle.corners.begin(), triangle.corners.end(), [&](std::uint32_t corner) {
         return tree_->positions()[corner] == sample.p || tree_->positions()[corner] == next.p;

@@ -293,7 +293,7 @@ LineContribution smooth_mesh_lines(const LineTask& task, const std::vector<size_
   add_mesh_layers(layers, out);
   out.layers_before = [layers](const CurveSample& sample) { return LayersSeen{layers_beyond_own(*layers, sample)}; };
   out.exact = false;
-  out.notes.push_back("contours are those of N.V interpolated between the mesh's vertices; what hides them is the facets");
+  out.notes.emplace_back("contours are those of N.V interpolated between the mesh's vertices; what hides them is the facets");
   return out;
 }
 

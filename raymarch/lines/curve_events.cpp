@@ -61,12 +61,17 @@ class EventFinder {
     for (size_t k = first + 1; k < first + walk_.size() + (curve_.closed ? 1 : 0) && (curve_.closed || k < walk_.size()); ++k) {
       if (sign_of(k) == 0) continue;
       if (sign_of(k) != sign_of(last)) {
-        const CurveSample &a = walk_.at(last), &b = walk_.at(k);
+        const size_t before = last;
+        const CurveSample &a = walk_.at(before), &b = walk_.at(k);
+        last = k;
+        // Where the surface folds back on itself at a cuspidal edge its normal turns round, and the curvature's sign with it, past
+        // infinity.
+        if (glm::dot(a.high, b.high) < 0.0) continue;
         const double t = std::clamp(a.radial_curvature / (a.radial_curvature - b.radial_curvature), 0.0, 1.0 - 1e-9);
         const glm::dvec2 px = glm::mix(a.px, b.px, t);
-        const Arm back = arm_from(px, last, -1), ahead = arm_from(px, k, 1);
+        const Arm back = arm_from(px, before, -1), ahead = arm_from(px, k, 1);
         const double reach = std::min(back.reach_px(), ahead.reach_px());
-        double place = glm::mix(static_cast<double>(last), static_cast<double>(k), t);
+        double place = glm::mix(static_cast<double>(before), static_cast<double>(k), t);
         if (place >= static_cast<double>(walk_.size()) && curve_.closed) place -= static_cast<double>(walk_.size());
         cusps.push_back({VertexKind::cusp, place, ahead.depth_at(reach) > back.depth_at(reach) ? 1 : -1, 0, 0.0});
       }

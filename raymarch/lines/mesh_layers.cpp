@@ -12,6 +12,7 @@ namespace limn {
 namespace {
 
 constexpr double kLift_px = 0.1;
+constexpr double kStepAside_px = 0.3;
 constexpr double kAcross = 0.1, kSameSheet = 0.85;  // cosines
 
 /// The same triangles for all views that need cages refined as often.
@@ -42,8 +43,11 @@ std::uint32_t MeshLayers::part_of(const SurfaceCurve& curve) const {
     const CurveSample& sample = curve.samples[i];
     if (!(sample.depth > 0.0)) continue;
     const double reach = 2.0 * kLift_px / pixels_per_unit_at(camera_, sample.depth);
-    for (const glm::dvec3& way : {sample.high, sample.low}) {
-      const std::vector<LayerHit> hits = tree_->hits_along(sample.p + reach * way, -way, 2.0 * reach);
+    // Beside a boundary as well: rays through it pass the mesh by.
+    const glm::dvec3 along = curve.samples[(i + 1) % n].p - sample.p, across = glm::cross(along, sample.high);
+    const double length = glm::length(across), beside = curve.smooth || !(length > 0.0) ? 0.0 : reach / length;
+    for (const auto& [way, shift] : {std::pair(sample.high, 0.0), {sample.low, 0.0}, {sample.high, beside}, {sample.high, -beside}}) {
+      const std::vector<LayerHit> hits = tree_->hits_along(sample.p + reach * way + shift * across, -way, 2.0 * reach);
       const auto nearest = std::min_element(
           hits.begin(), hits.end(), [&](const LayerHit& a, const LayerHit& b) { return std::fabs(a.t - reach) < std::fabs(b.t - reach); });
       if (nearest != hits.end()) ++votes[tree_->triangles()[nearest->triangle].part];
@@ -67,6 +71,20 @@ LayersSeen MeshLayers::before(const CurveSample& sample) const {
   return {static_cast<int>(hits.size()), hits.empty() ? std::numeric_limits<double>::infinity() : hits.front().t};
 }
 
+/// Whether rays a little before and after the place differ by the sheet that is met there: where a surface bends tightly its own triangles
+/// lie across its lines here and there.
+bool MeshLayers::goes_through(const CurveSample& sample, const glm::dvec3& way, double at, const glm::dvec3& normal) const {
+  const double px = 1.0 / pixels_per_unit_at(camera_, std::max(sample.depth, 1e-9)), step = kStepAside_px * px;
+  const double slope = std::fabs(glm::dot(normal, way)) / std::max(1e-3, std::fabs(glm::dot(normal, view_vector(camera_, sample.p))));
+  const auto sheet_near = [&](double place) {
+    CurveSample beside = sample;
+    beside.p = sample.p + place * way;
+    const LayersSeen seen = before(beside);
+    return seen.count > 0 && seen.nearest < 2.0 * (step * slope + kLift_px * px);
+  };
+  return sheet_near(at - step) != sheet_near(at + step);
+}
+
 void MeshLayers::pierce(SurfaceCurve& curve) const {
   const std::uint32_t own = part_of(curve);
   const size_t n = curve.samples.size();
@@ -87,7 +105,7 @@ void MeshLayers::pierce(SurfaceCurve& curve) const {
       // Triangles of the curve's own sheet lie along it; another sheet of the same part goes across.
       const bool along_own = std::fabs(glm::dot(normal, way)) < kAcross || std::fabs(glm::dot(normal, sample.high)) > kSameSheet ||
                              std::fabs(glm::dot(normal, sample.low)) > kSameSheet;
-      if (triangle.part == own && along_own) continue;
+      if (triangle.part == own && (along_own || !goes_through(sample, way, hit.t, normal))) continue;
       const double along = glm::dot(normal, way), towards_eye = glm::dot(normal, view_vector(camera_, sample.p));
       sample.pierced.push_back({hit.t / length, (along > 0.0) == (towards_eye > 0.0) ? -1 : 1});
     }

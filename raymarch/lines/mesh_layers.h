@@ -28,6 +28,7 @@ class MeshLayers {
  private:
   /// The part that the curve runs on: what most of a few short rays through it hit.
   std::uint32_t part_of(const SurfaceCurve& curve) const;
+  bool goes_through(const CurveSample& sample, const glm::dvec3& way, double at, const glm::dvec3& normal) const;
 
   Camera camera_;
   double extent_;

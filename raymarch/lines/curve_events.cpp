@@ -64,15 +64,18 @@ class EventFinder {
         const size_t before = last;
         const CurveSample &a = walk_.at(before), &b = walk_.at(k);
         last = k;
-        // Where the surface folds back on itself at a cuspidal edge its normal turns round, and the curvature's sign with it, past
-        // infinity.
-        if (glm::dot(a.high, b.high) < 0.0) continue;
         const double t = std::clamp(a.radial_curvature / (a.radial_curvature - b.radial_curvature), 0.0, 1.0 - 1e-9);
         const glm::dvec2 px = glm::mix(a.px, b.px, t);
         const Arm back = arm_from(px, before, -1), ahead = arm_from(px, k, 1);
         const double reach = std::min(back.reach_px(), ahead.reach_px());
         double place = glm::mix(static_cast<double>(before), static_cast<double>(k), t);
         if (place >= static_cast<double>(walk_.size()) && curve_.closed) place -= static_cast<double>(walk_.size());
+        // Where the surface folds back on itself at a cuspidal edge its normal turns round, and the curvature's sign with it, past
+        // infinity: how many sheets begin there only rays tell.
+        if (glm::dot(a.high, b.high) < 0.0) {
+          events_.push_back({VertexKind::joint, place, {}, 0, 0.0});
+          continue;
+        }
         cusps.push_back({VertexKind::cusp, place, ahead.depth_at(reach) > back.depth_at(reach) ? 1 : -1, 0, 0.0});
       }
       last = k;

@@ -125,6 +125,7 @@ TracedBody trace_body(const FieldTask& fields, const Field& body, const std::str
         out.curves[i].apart_px = kFormApart * settings.tolerance_px;
         out.curves[i].nearer_px = kFormNearer * settings.tolerance_px;
         out.curves[i].tangency_px = kFormTangency_px;
+        out.curves[i].long_steps = true;
       }
       return traced;
     }

@@ -12,6 +12,7 @@
 #include "raymarch/lines/tips.h"
 #include "raymarch/truth/field_bodies.h"
 #include "raymarch/truth/field_curves.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -111,7 +112,15 @@ TracedBody trace_body(const FieldTask& fields, const Field& body, const std::str
                       LineContribution& out) {
   const LineTask& task = fields.task;
   const auto add = [&](const std::vector<FieldCurve>& curves) {
-    for (const FieldCurve& curve : curves) out.curves.push_back(curve.seam ? seam_curve(fields, curve) : smooth_curve(fields, curve));
+    std::vector<SurfaceCurve> converted(curves.size());
+    const auto convert = [&](size_t i) { converted[i] = curves[i].seam ? seam_curve(fields, curves[i]) : smooth_curve(fields, curves[i]); };
+    // Which of several objects a point lies on their evaluators say, one after the other.
+    if (fields.body.size() == 1) {
+      parallel_for(size_t{0}, curves.size(), convert);
+    } else {
+      for (size_t i = 0; i < curves.size(); ++i) convert(i);
+    }
+    out.curves.insert(out.curves.end(), std::make_move_iterator(converted.begin()), std::make_move_iterator(converted.end()));
   };
   TracedBody traced;
   const FieldCurveSettings settings = curve_settings(task);

@@ -110,11 +110,11 @@ ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettin
   return ThreadArena(execution.threads).execute([&] {
     const LineTask task = task_of(scene, camera, settings);
     ViewGraph graph;
-    const std::vector<LineContribution> contributions = contributions_of(task, execution, graph.from);
+    std::vector<LineContribution> contributions = contributions_of(task, execution, graph.from);
     std::vector<SurfaceCurve> curves;
     double unrefined_px = 0.0;
-    for (const LineContribution& one : contributions) {
-      curves.insert(curves.end(), one.curves.begin(), one.curves.end());
+    for (LineContribution& one : contributions) {
+      curves.insert(curves.end(), std::make_move_iterator(one.curves.begin()), std::make_move_iterator(one.curves.end()));
       graph.notes.insert(graph.notes.end(), one.notes.begin(), one.notes.end());
       graph.exact = graph.exact && one.exact;
       unrefined_px = std::max(unrefined_px, one.unrefined_px);

@@ -40,14 +40,16 @@ class Tracer {
       : body_(body), curve_(curve), camera_(camera), viewer_(viewer), tolerance_px_(kShareOfTolerance * tolerance_px) {}
 
   /// Nothing where the surfaces touch along the curve.
-  std::optional<FieldCurve> run(const FormArc& arc) {
+  std::optional<FormTrace> run(const FormArc& arc) {
     sample(arc);
     const bool seam = curve_.second >= 0;
-    FieldCurve found{0.0, arc.closed, seam, arc.concave, {}};
+    FormTrace trace{{0.0, arc.closed, seam, arc.concave, {}}, curve_, {}};
+    FieldCurve& found = trace.curve;
     if (curve_.kind == FormCurve::Kind::tube || seam) add_turns();
     add_within_frame();
+    for (const Sample& sample : samples_) trace.parameters.push_back(sample.s);
     if (arc.closed) samples_.pop_back();
-    if (!seam && curve_.kind == FormCurve::Kind::line && glm::distance(samples_.front().px, samples_.back().px) < kShortestPx) return found;
+    if (!seam && curve_.kind == FormCurve::Kind::line && glm::distance(samples_.front().px, samples_.back().px) < kShortestPx) return trace;
     int touching = 0;
     for (const Sample& at : samples_) {
       found.points.push_back(seam ? seam_point(at) : contour_point(at, arc));
@@ -55,7 +57,7 @@ class Tracer {
       touching = seam && glm::length(glm::cross(point.high, point.low)) < kTouching ? touching + 1 : 0;
       if (touching > 2) return {};
     }
-    return found;
+    return trace;
   }
 
  private:
@@ -254,11 +256,30 @@ std::map<std::pair<int, int>, Box> meetings_in(const FormBody& body) {
 
 }  // namespace
 
-std::optional<std::vector<FieldCurve>> trace_form_curves(const FormBody& body, const Camera& camera, const Viewer& viewer,
-                                                         double tolerance_px, const ExecutionSettings& execution) {
+glm::dvec3 point_beside(const FormTrace& trace, size_t step, double share) {
+  const double a = trace.parameters[step], b = trace.parameters[step + 1];
+  const auto point = [&](double s) { return point_of(trace.form, trace.form.closed && s > trace.form.end ? s - kTurn : s); };
+  const glm::dvec3 start = point(a), chord = point(b) - start;
+  const double squared = glm::dot(chord, chord);
+  if (!(squared > 0.0)) return start;
+  // Where the plane across the chord meets the curve: false position.
+  double low = a, high = b, off_low = -share, off_high = 1.0 - share;
+  double s = glm::mix(a, b, share);
+  for (int i = 0; i < 8; ++i) {
+    const double off = glm::dot(point(s) - start, chord) / squared - share;
+    if (std::fabs(off) < 1e-9) break;
+    (off < 0.0 ? low : high) = s;
+    (off < 0.0 ? off_low : off_high) = off;
+    s = low + (high - low) * off_low / (off_low - off_high);
+  }
+  return point(s);
+}
+
+std::optional<std::vector<FormTrace>> trace_form_curves(const FormBody& body, const Camera& camera, const Viewer& viewer,
+                                                        double tolerance_px, const ExecutionSettings& execution) {
   const auto meetings = meetings_in(body);
   const std::vector<std::pair<std::pair<int, int>, Box>> all(meetings.begin(), meetings.end());
-  std::vector<std::vector<FieldCurve>> found(all.size());
+  std::vector<std::vector<FormTrace>> found(all.size());
   std::atomic<bool> known = true;
   parallel_for(size_t{0}, all.size(), [&](size_t i) {
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
@@ -269,15 +290,15 @@ std::optional<std::vector<FieldCurve>> trace_form_curves(const FormBody& body, c
     if (!curves) return;
     for (const FormCurve& curve : *curves) {
       for (const FormArc& arc : trimmed(body, curve, box)) {
-        std::optional<FieldCurve> traced = Tracer(body, curve, camera, viewer, tolerance_px).run(arc);
+        std::optional<FormTrace> traced = Tracer(body, curve, camera, viewer, tolerance_px).run(arc);
         if (!traced) known = false;
         if (!traced) return;
-        if (traced->points.size() > 1) found[i].push_back(std::move(*traced));
+        if (traced->curve.points.size() > 1) found[i].push_back(std::move(*traced));
       }
     }
   });
   if (!known) return {};
-  std::vector<FieldCurve> result;
+  std::vector<FormTrace> result;
   for (auto& curves : found) result.insert(result.end(), std::make_move_iterator(curves.begin()), std::make_move_iterator(curves.end()));
   return result;
 }

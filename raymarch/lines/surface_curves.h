@@ -43,7 +43,9 @@ struct SurfaceCurve {
   /// How far two such curves must lie apart, px at their depth, to be told from each other: across the view, and along it.
   double apart_px = 0.03, nearer_px = 0.05;
   double tangency_px = 3.0;  ///< From a place where two curves touch they may run together for so long.
-  bool long_steps = false;   ///< As long as the tolerance allows: between two samples another curve may go anywhere.
+  /// The curve's own point beside a place on a step's chord, where it is known; called from many threads.
+  std::function<glm::dvec3(size_t step, double share)> between{};
+  bool long_steps = false;  ///< As long as the tolerance allows: between two samples another curve may go anywhere.
 };
 
 /// What objects of one kind bring. Functions are called from many threads and own what they need.

@@ -167,7 +167,8 @@ class EventFinder {
     if (nearer.closed && to - from > 0.5 * steps) std::tie(from, to) = std::pair(to, from + steps);
     if (to - from > kMostLensSteps || other.at - one.at > kMostLensSteps) return false;
     const std::vector<glm::dvec2> own_px = px_between(curve_, one.at, other.at, camera_), nearer_px = px_between(nearer, from, to, camera_);
-    return lie_together(own_px, nearer_px, apart_from(nearer));
+    // Of long steps the samples of one curve alone say nothing.
+    return lies_along(own_px, nearer_px, apart_from(nearer)) && (!long_steps(nearer) || lies_along(nearer_px, own_px, apart_from(nearer)));
   }
 
   /// A crease leaves a contour, and the two arms of a cusp each other, along their common tangent: polylines of them cross again and again
@@ -178,7 +179,7 @@ class EventFinder {
     const double longest_px = std::min(curve_.tangency_px, other.tangency_px);
     for (const Stretch& own : to_ends(curve_, crossing.at, longest_px, camera_)) {
       for (const Stretch& others : to_ends(other, crossing.on_nearer, longest_px, camera_)) {
-        if (glm::distance(own.end, others.end) < 1e-6 * extent_ && lie_together(own.px, others.px, apart_from(other))) return true;
+        if (glm::distance(own.end, others.end) < 1e-6 * extent_ && run_together(own, others, other)) return true;
       }
     }
     return false;
@@ -194,7 +195,7 @@ class EventFinder {
     const auto farther = [&](const glm::dvec2& a, const glm::dvec2& b) { return glm::distance(a, px[0]) < glm::distance(b, px[0]); };
     const auto turn = std::max_element(px.begin(), px.end(), farther);
     const std::vector<glm::dvec2> there(px.begin(), turn + 1), back(turn, px.end());
-    return lie_together(there, back, curve_.apart_px);
+    return lies_along(there, back, curve_.apart_px) && lies_along(back, there, curve_.apart_px);
   }
 
   bool one_cusp_between(double one, double other) const {
@@ -221,7 +222,7 @@ class EventFinder {
       for (std::ptrdiff_t count = 0; count < n && length <= longest_px; ++count, i += way) {
         if (!curve.closed && (i < 0 || i >= n)) break;
         const CurveSample& sample = curve.samples[static_cast<size_t>((i + n) % n)];
-        length += glm::distance(sample.px, stretch.px.back());
+        if (curve.long_steps || stretch.px.size() > 1) length += glm::distance(sample.px, stretch.px.back());
         stretch.px.push_back(sample.px);
         if (!sample.joint && (curve.closed || (i > 0 && i < n - 1))) continue;
         stretch.end = sample.p;
@@ -231,10 +232,14 @@ class EventFinder {
     }
     return all;
   }
-  /// Either along the other one: of long steps the one's samples say nothing.
-  static bool lie_together(const std::vector<glm::dvec2>& one, const std::vector<glm::dvec2>& other, double apart_px) {
-    return lies_along(one, other, apart_px) && lies_along(other, one, apart_px);
+  bool run_together(const Stretch& one, const Stretch& two, const SurfaceCurve& other) const {
+    const double apart_px = apart_from(other);
+    if (long_steps(other)) return lies_along(one.px, two.px, apart_px) && lies_along(two.px, one.px, apart_px);
+    // Without the place itself either stretch leaves out the part before its first sample, where the other may begin: one is enough.
+    const std::vector<glm::dvec2> own(one.px.begin() + 1, one.px.end()), others(two.px.begin() + 1, two.px.end());
+    return lies_along(own, others, apart_px) || lies_along(others, own, apart_px);
   }
+  bool long_steps(const SurfaceCurve& other) const { return curve_.long_steps || other.long_steps; }
 
   double frame_share(const CurveSample& a, const CurveSample& b) const {
     double inside = in_frame(camera_, a) ? 0.0 : 1.0, outside = 1.0 - inside;

@@ -51,8 +51,8 @@ CurveSample sample_at(const SurfaceCurve& curve, double at, const Camera& camera
   sample.object = a.object;
   sample.more_on_left = a.more_on_left;
   sample.joint = false;
-  sample.on_chord = true;
-  sample.p = point_between(curve, i, t);
+  sample.on_chord = !curve.between;
+  sample.p = curve.between ? curve.between(i % n, t) : point_between(curve, i, t);
   sample.radial_curvature = glm::mix(a.radial_curvature, b.radial_curvature, t);
   project_sample(camera, sample);
   return sample;

@@ -12,6 +12,7 @@
 #include "raymarch/lines/tips.h"
 #include "raymarch/truth/field_bodies.h"
 #include "raymarch/truth/field_curves.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -106,38 +107,59 @@ FieldCurveSettings curve_settings(const LineTask& task) {
   return settings;
 }
 
+std::vector<SurfaceCurve> converted(const FieldTask& fields, size_t count, const std::function<const FieldCurve&(size_t)>& found) {
+  std::vector<SurfaceCurve> curves(count);
+  const auto convert = [&](size_t i) { curves[i] = found(i).seam ? seam_curve(fields, found(i)) : smooth_curve(fields, found(i)); };
+  // Which of several objects a point lies on their evaluators say, one after the other.
+  if (fields.body.size() == 1) {
+    parallel_for(size_t{0}, count, convert);
+  } else {
+    for (size_t i = 0; i < count; ++i) convert(i);
+  }
+  return curves;
+}
+
+/// Curves in closed form, whose points are known between samples, too.
+std::vector<SurfaceCurve> exact_curves(const FieldTask& fields, std::vector<FormTrace> found, double tolerance_px) {
+  const auto traces = std::make_shared<const std::vector<FormTrace>>(std::move(found));
+  std::vector<SurfaceCurve> curves = converted(fields, traces->size(), [&](size_t i) -> const FieldCurve& { return (*traces)[i].curve; });
+  for (size_t i = 0; i < curves.size(); ++i) {
+    SurfaceCurve& curve = curves[i];
+    curve.apart_px = kFormApart * tolerance_px;
+    curve.nearer_px = kFormNearer * tolerance_px;
+    curve.tangency_px = kFormTangency_px;
+    curve.long_steps = true;
+    // Where a side turns off the samples there are more of them.
+    if (curve.samples.size() != (*traces)[i].curve.points.size()) continue;
+    curve.between = [traces, i](size_t step, double share) { return point_beside((*traces)[i], step, share); };
+  }
+  return curves;
+}
+
+void append(std::vector<SurfaceCurve>& curves, std::vector<SurfaceCurve> more) {
+  curves.insert(curves.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
 /// Curves in closed form where there are any, found in cells of space elsewhere.
 TracedBody trace_body(const FieldTask& fields, const Field& body, const std::string& name, const ExecutionSettings& execution,
                       LineContribution& out) {
   const LineTask& task = fields.task;
-  const auto add = [&](const std::vector<FieldCurve>& curves) {
-    for (const FieldCurve& curve : curves) out.curves.push_back(curve.seam ? seam_curve(fields, curve) : smooth_curve(fields, curve));
-  };
   TracedBody traced;
   const FieldCurveSettings settings = curve_settings(task);
   if (task.settings.closed_forms && settings.threshold == 0.0) traced.form = form_body(body);
   if (traced.form) {
     traced.exact_rays = has_ray_roots(*traced.form);
-    const size_t first = out.curves.size();
-    if (const auto curves = trace_form_curves(*traced.form, task.camera, fields.viewer, settings.tolerance_px, execution)) {
-      add(*curves);
-      for (size_t i = first; i < out.curves.size(); ++i) {
-        out.curves[i].apart_px = kFormApart * settings.tolerance_px;
-        out.curves[i].nearer_px = kFormNearer * settings.tolerance_px;
-        out.curves[i].tangency_px = kFormTangency_px;
-      }
+    if (auto curves = trace_form_curves(*traced.form, task.camera, fields.viewer, settings.tolerance_px, execution)) {
+      append(out.curves, exact_curves(fields, std::move(*curves), settings.tolerance_px));
       return traced;
     }
   }
   const FieldCurves found = trace_field_curves(body, task.camera, fields.viewer, settings, execution);
   add_notes(found, name, out);
   out.unrefined_px = std::max(out.unrefined_px, found.worst_unrefined_px);
-  std::vector<SurfaceCurve> before = std::move(out.curves);
-  out.curves.clear();
-  add(found.curves);
-  lead_to_tips(tips_of(body, task.extent), task.camera, out.curves);
-  before.insert(before.end(), std::make_move_iterator(out.curves.begin()), std::make_move_iterator(out.curves.end()));
-  out.curves = std::move(before);
+  std::vector<SurfaceCurve> curves = converted(fields, found.curves.size(), [&](size_t i) -> const FieldCurve& { return found.curves[i]; });
+  lead_to_tips(tips_of(body, task.extent), task.camera, curves);
+  append(out.curves, std::move(curves));
   return traced;
 }
 

@@ -13,15 +13,19 @@ namespace limn {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kShareOfTolerance = 0.4;  // for the chords; the rest is the thinning's
-constexpr double kBulge = 0.1;             // of a step's length, in space
+constexpr double kShareOfTolerance = 0.48;  // for the chords; the rest is the thinning's
+constexpr double kAlongView = 2.0;          // times as far may chords lie off in depth
+constexpr int kMostParts = 4;
+constexpr double kRoom = 1.1;   // for bends that differ along a step
+constexpr double kBulge = 0.1;  // of a step's length, in space
 constexpr int kEllipsePieces = 16, kSweptPieces = 48;
 constexpr int kDeepest = 44;
-constexpr double kBehind = 1e-3;      // of the extent: steps that lead behind the eye are cut down to this
-constexpr double kShortest = 1e-7;    // of the extent
-constexpr double kShortestPx = 1e-3;  // of straight contours, which may be seen along their length
-constexpr double kBesideCusp = 1e-3;  // of a step: its arms begin there
-constexpr double kTouching = 1e-6;    // the sine of the angle between two surfaces
+constexpr double kBehind = 1e-3;        // of the extent: steps that lead behind the eye are cut down to this
+constexpr double kShortest = 1e-7;      // of the extent
+constexpr double kShortestPx = 1e-3;    // of straight contours, which may be seen along their length
+constexpr double kBesideCusp = 1e-3;    // of a step: its arms begin there
+constexpr double kNearlyTurned = 0.03;  // N.V, which changes by less than this within a step and back
+constexpr double kTouching = 1e-6;      // the sine of the angle between two surfaces
 
 struct Sample {
   double s = 0.0;
@@ -36,14 +40,16 @@ class Tracer {
       : body_(body), curve_(curve), camera_(camera), viewer_(viewer), tolerance_px_(kShareOfTolerance * tolerance_px) {}
 
   /// Nothing where the surfaces touch along the curve.
-  std::optional<FieldCurve> run(const FormArc& arc) {
+  std::optional<FormTrace> run(const FormArc& arc) {
     sample(arc);
     const bool seam = curve_.second >= 0;
-    FieldCurve found{0.0, arc.closed, seam, arc.concave, {}};
+    FormTrace trace{{0.0, arc.closed, seam, arc.concave, {}}, curve_, {}};
+    FieldCurve& found = trace.curve;
     if (curve_.kind == FormCurve::Kind::tube || seam) add_turns();
     add_within_frame();
+    for (const Sample& sample : samples_) trace.parameters.push_back(sample.s);
     if (arc.closed) samples_.pop_back();
-    if (!seam && curve_.kind == FormCurve::Kind::line && glm::distance(samples_.front().px, samples_.back().px) < kShortestPx) return found;
+    if (!seam && curve_.kind == FormCurve::Kind::line && glm::distance(samples_.front().px, samples_.back().px) < kShortestPx) return trace;
     int touching = 0;
     for (const Sample& at : samples_) {
       found.points.push_back(seam ? seam_point(at) : contour_point(at, arc));
@@ -51,7 +57,7 @@ class Tracer {
       touching = seam && glm::length(glm::cross(point.high, point.low)) < kTouching ? touching + 1 : 0;
       if (touching > 2) return {};
     }
-    return found;
+    return trace;
   }
 
  private:
@@ -74,25 +80,41 @@ class Tracer {
       add_step(Sample(samples_.back()), next, kDeepest);
     }
   }
+  /// Into as many parts as the bend in the middle asks for: that of a part is less by the square of their number. Few parts are taken at
+  /// their word, many are looked at again.
   void add_step(const Sample& a, const Sample& b, int depth) {
-    if (depth > 0 && glm::distance(a.p, b.p) > kShortest * body_.extent) {
+    if (depth > 0 && curve_.kind != FormCurve::Kind::line && glm::distance(a.p, b.p) > kShortest * body_.extent) {
       const Sample middle = at(0.5 * (a.s + b.s));
-      if (bends(a, middle, b)) {
-        add_step(a, middle, depth - 1);
-        add_step(middle, b, depth - 1);
+      const double parts = parts_of(a, middle, b);
+      if (parts > 1.0) {
+        const int count = std::min(kMostParts, static_cast<int>(std::ceil(parts)));
+        const bool again = parts > kMostParts;
+        for (int i = 1; i <= count; ++i) {
+          const Sample next = i == count ? b : 2 * i == count ? middle : at(glm::mix(a.s, b.s, static_cast<double>(i) / count));
+          again ? add_step(Sample(samples_.back()), next, depth - 1) : samples_.push_back(next);
+        }
         return;
       }
     }
+    if (depth > 0 && curve_.kind == FormCurve::Kind::line && (a.depth > 0.0) != (b.depth > 0.0) &&
+        glm::distance(a.p, b.p) > kBehind * body_.extent) {
+      const Sample middle = at(0.5 * (a.s + b.s));
+      add_step(a, middle, depth - 1);
+      add_step(middle, b, depth - 1);
+      return;
+    }
     samples_.push_back(b);
   }
-  bool bends(const Sample& a, const Sample& middle, const Sample& b) const {
+  double parts_of(const Sample& a, const Sample& middle, const Sample& b) const {
     const double chord = glm::distance(a.p, b.p);
     const int before = (a.depth > 0.0) + (b.depth > 0.0) + (middle.depth > 0.0);
-    if (before > 0 && before < 3) return chord > kBehind * body_.extent;
-    if (curve_.kind == FormCurve::Kind::line) return false;
+    if (before > 0 && before < 3) return chord > kBehind * body_.extent ? kMostParts + 1.0 : 1.0;
     const double bulge = distance_to_segment(middle.p, a.p, b.p);
-    if (bulge > kBulge * chord) return true;
-    return before == 3 && bulge * pixels_per_unit_at(camera_, middle.depth) > tolerance_px_;
+    if (bulge > kBulge * chord) return kMostParts + 1.0;
+    if (before < 3) return 1.0;
+    const double across_px = distance_to_segment(middle.px, a.px, b.px), along_px = bulge * pixels_per_unit_at(camera_, middle.depth);
+    const double much = std::max(across_px / tolerance_px_, along_px / (kAlongView * tolerance_px_));
+    return much <= 1.0 ? 1.0 : std::sqrt(kRoom * much);
   }
 
   double facing(int number, const Sample& sample) const {
@@ -115,18 +137,43 @@ class Tracer {
     }
   }
   template <class Value>
+  double zero_between(const Value& value, double a, double b) const {
+    const bool above = value(at(a)) > 0.0;
+    for (int k = 0; k < 60 && b - a > 1e-16 * (1.0 + std::fabs(b)); ++k)
+      ((value(at(0.5 * (a + b))) > 0.0) == above ? a : b) = 0.5 * (a + b);
+    return 0.5 * (a + b);
+  }
+  /// Within a step at whose ends the value has one sign: the place of its extremum, where it has the other one there.
+  template <class Value>
+  std::optional<double> dip_between(const Value& value, double a, double fa, double b, double fb) const {
+    const double least = std::min(std::fabs(fa), std::fabs(fb));
+    if (!(least < kNearlyTurned)) return {};
+    const double fm = value(at(0.5 * (a + b)));
+    // Of the parabola through the three.
+    const double bend = fa - 2.0 * fm + fb, share = 0.5 + 0.25 * (fa - fb) / bend;
+    if (!(share > 0.0 && share < 1.0)) return {};
+    const double s = glm::mix(a, b, share);
+    if ((value(at(s)) > 0.0) == (fa > 0.0)) return {};
+    return s;
+  }
+  template <class Value>
   void add_zeros(const Value& value, bool beside) {
     std::vector<Sample> all = {samples_[0]};
     double before = value(samples_[0]);
+    const auto add = [&](double s, double limit) {
+      if (s > all.back().s && s < limit) all.push_back(at(s));
+    };
     for (size_t i = 1; i < samples_.size(); ++i) {
-      const double now = value(samples_[i]);
+      const double now = value(samples_[i]), a = samples_[i - 1].s, b = samples_[i].s;
       if ((before > 0.0) != (now > 0.0)) {
-        double a = samples_[i - 1].s, b = samples_[i].s;
-        const double step = b - a;
-        for (int k = 0; k < 60 && b - a > 1e-16 * (1.0 + std::fabs(b)); ++k)
-          ((value(at(0.5 * (a + b))) > 0.0) == (before > 0.0) ? a : b) = 0.5 * (a + b);
-        for (const double s : beside ? std::vector<double>{a - kBesideCusp * step, b + kBesideCusp * step} : std::vector<double>{a}) {
-          if (s > all.back().s && s < samples_[i].s) all.push_back(at(s));
+        const double zero = zero_between(value, a, b), aside = beside ? kBesideCusp * (b - a) : 0.0;
+        add(zero - aside, b);
+        if (beside) add(zero + aside, b);
+      } else if (!beside) {
+        if (const std::optional<double> dip = dip_between(value, a, before, b, now)) {
+          add(zero_between(value, a, *dip), b);
+          add(*dip, b);
+          add(zero_between(value, *dip, b), b);
         }
       }
       all.push_back(samples_[i]);
@@ -209,11 +256,30 @@ std::map<std::pair<int, int>, Box> meetings_in(const FormBody& body) {
 
 }  // namespace
 
-std::optional<std::vector<FieldCurve>> trace_form_curves(const FormBody& body, const Camera& camera, const Viewer& viewer,
-                                                         double tolerance_px, const ExecutionSettings& execution) {
+glm::dvec3 point_beside(const FormTrace& trace, size_t step, double share) {
+  const double a = trace.parameters[step], b = trace.parameters[step + 1];
+  const auto point = [&](double s) { return point_of(trace.form, trace.form.closed && s > trace.form.end ? s - kTurn : s); };
+  const glm::dvec3 start = point(a), chord = point(b) - start;
+  const double squared = glm::dot(chord, chord);
+  if (!(squared > 0.0)) return start;
+  // Where the plane across the chord meets the curve: false position.
+  double low = a, high = b, off_low = -share, off_high = 1.0 - share;
+  double s = glm::mix(a, b, share);
+  for (int i = 0; i < 8; ++i) {
+    const double off = glm::dot(point(s) - start, chord) / squared - share;
+    if (std::fabs(off) < 1e-9) break;
+    (off < 0.0 ? low : high) = s;
+    (off < 0.0 ? off_low : off_high) = off;
+    s = low + (high - low) * off_low / (off_low - off_high);
+  }
+  return point(s);
+}
+
+std::optional<std::vector<FormTrace>> trace_form_curves(const FormBody& body, const Camera& camera, const Viewer& viewer,
+                                                        double tolerance_px, const ExecutionSettings& execution) {
   const auto meetings = meetings_in(body);
   const std::vector<std::pair<std::pair<int, int>, Box>> all(meetings.begin(), meetings.end());
-  std::vector<std::vector<FieldCurve>> found(all.size());
+  std::vector<std::vector<FormTrace>> found(all.size());
   std::atomic<bool> known = true;
   parallel_for(size_t{0}, all.size(), [&](size_t i) {
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
@@ -224,15 +290,15 @@ std::optional<std::vector<FieldCurve>> trace_form_curves(const FormBody& body, c
     if (!curves) return;
     for (const FormCurve& curve : *curves) {
       for (const FormArc& arc : trimmed(body, curve, box)) {
-        std::optional<FieldCurve> traced = Tracer(body, curve, camera, viewer, tolerance_px).run(arc);
+        std::optional<FormTrace> traced = Tracer(body, curve, camera, viewer, tolerance_px).run(arc);
         if (!traced) known = false;
         if (!traced) return;
-        if (traced->points.size() > 1) found[i].push_back(std::move(*traced));
+        if (traced->curve.points.size() > 1) found[i].push_back(std::move(*traced));
       }
     }
   });
   if (!known) return {};
-  std::vector<FieldCurve> result;
+  std::vector<FormTrace> result;
   for (auto& curves : found) result.insert(result.end(), std::make_move_iterator(curves.begin()), std::make_move_iterator(curves.end()));
   return result;
 }

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "raymarch/lines/graph_building.h"
+#include "sdf/parallel.h"
 #include "sdf/segment.h"
 
 namespace limn {
@@ -62,8 +63,8 @@ LinePoint line_point(const CurveSample& sample, const glm::dvec3& origin) {
   return {sample.px, sample.depth, sample.p + origin, sample.high, sample.radial_curvature};
 }
 
-/// Marks what is kept between points[first] and points[last]: Douglas & Peucker 1973.
-void keep_between(const std::vector<CurveSample>& points, size_t first, size_t last, double tolerance_px, std::vector<bool>& keep) {
+/// Marks what is kept between px[first] and px[last]: Douglas & Peucker 1973.
+void keep_between(const std::vector<glm::dvec2>& px, size_t first, size_t last, double tolerance_px, std::vector<bool>& keep) {
   std::vector<std::pair<size_t, size_t>> stack = {{first, last}};
   while (!stack.empty()) {
     const auto [low, high] = stack.back();
@@ -72,7 +73,7 @@ void keep_between(const std::vector<CurveSample>& points, size_t first, size_t l
     size_t farthest = low;
     double most = tolerance_px;
     for (size_t i = low + 1; i < high; ++i) {
-      const double distance = distance_to_segment(points[i].px, points[low].px, points[high].px);
+      const double distance = distance_to_segment(px[i], px[low], px[high]);
       if (distance > most) {
         most = distance;
         farthest = i;
@@ -85,22 +86,43 @@ void keep_between(const std::vector<CurveSample>& points, size_t first, size_t l
   }
 }
 
-std::vector<CurveSample> thinned(const std::vector<CurveSample>& points, bool closed, double tolerance_px) {
-  std::vector<bool> keep(points.size(), false);
+std::vector<bool> kept_by_thinning(const std::vector<glm::dvec2>& px, bool closed, double tolerance_px) {
+  std::vector<bool> keep(px.size(), false);
   keep.front() = keep.back() = true;
-  if (closed && points.size() > 3) {
+  if (closed && px.size() > 3) {
     // A closed curve has no chord from its first to its last point: it is halved first.
-    keep[points.size() / 2] = true;
-    keep_between(points, 0, points.size() / 2, tolerance_px, keep);
-    keep_between(points, points.size() / 2, points.size() - 1, tolerance_px, keep);
+    keep[px.size() / 2] = true;
+    keep_between(px, 0, px.size() / 2, tolerance_px, keep);
+    keep_between(px, px.size() / 2, px.size() - 1, tolerance_px, keep);
   } else {
-    keep_between(points, 0, points.size() - 1, tolerance_px, keep);
+    keep_between(px, 0, px.size() - 1, tolerance_px, keep);
   }
-  std::vector<CurveSample> kept;
-  for (size_t i = 0; i < points.size(); ++i) {
-    if (keep[i]) kept.push_back(points[i]);
+  return keep;
+}
+
+double last_place(const SurfaceCurve& curve) {
+  return curve.closed ? std::numeric_limits<double>::infinity() : static_cast<double>(curve.samples.size() - 1);
+}
+
+/// The points of an edge, as few as the tolerance allows, in the order of the curve.
+std::vector<LinePoint> points_of_piece(const SurfaceCurve& curve, const CurvePiece& piece, const LineTask& task) {
+  const size_t n = curve.samples.size();
+  const CurveSample first = sample_at(curve, piece.from, task.camera),
+                    last = sample_at(curve, std::min(piece.to, last_place(curve)), task.camera);
+  std::vector<const CurveSample*> samples{&first};
+  for (double place = std::floor(piece.from) + 1.0; place < piece.to; place += 1.0)
+    samples.push_back(&curve.samples[static_cast<size_t>(place) % n]);
+  samples.push_back(&last);
+  std::vector<glm::dvec2> px;
+  px.reserve(samples.size());
+  for (const CurveSample* sample : samples) px.push_back(sample->px);
+  const std::vector<bool> keep = kept_by_thinning(px, piece.begin < 0, 0.5 * task.settings.tolerance_px);
+  std::vector<LinePoint> points;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (keep[i]) points.push_back(line_point(*samples[i], task.origin));
   }
-  return kept;
+  if (piece.begin < 0 && points.size() > 2) points.pop_back();  // The first again.
+  return points;
 }
 
 struct Builder {
@@ -117,7 +139,7 @@ struct Builder {
     const auto [entry, added] = vertex_of_event.try_emplace({c, event}, -1);
     if (!added) return entry->second;
     const CurveEvent& at = cut.curves[c].events[static_cast<size_t>(event)];
-    const CurveSample sample = sample_at(curves[c], std::min(at.at, last_place(c)), camera);
+    const CurveSample sample = sample_at(curves[c], std::min(at.at, last_place(curves[c])), camera);
     const bool shared = at.kind == VertexKind::end || at.kind == VertexKind::joint;
     if (shared) {
       const double reach = kSamePlace_px * std::max(pixel, 1.0 / pixels_per_unit_at(camera, std::max(sample.depth, 1e-9)));
@@ -132,29 +154,16 @@ struct Builder {
     if (shared) places.add(sample.p, entry->second);
     return entry->second;
   }
-  double last_place(std::uint32_t c) const {
-    const SurfaceCurve& curve = curves[c];
-    return curve.closed ? std::numeric_limits<double>::infinity() : static_cast<double>(curve.samples.size() - 1);
-  }
-
   /// The new edge's index; -1 where its class is not wanted.
-  int add_edge(const CurvePiece& piece) {
+  int add_edge(const CurvePiece& piece, std::vector<LinePoint> points) {
     const SurfaceCurve& curve = curves[piece.curve];
-    const size_t n = curve.samples.size();
-    const CurveSample& step = curve.samples[static_cast<size_t>(piece.from) % n];
+    const CurveSample& step = curve.samples[static_cast<size_t>(piece.from) % curve.samples.size()];
     if (!task.wants(step.line_class)) return -1;
-    std::vector<CurveSample> points;
-    points.push_back(sample_at(curve, piece.from, camera));
-    for (double place = std::floor(piece.from) + 1.0; place < piece.to; place += 1.0)
-      points.push_back(curve.samples[static_cast<size_t>(place) % n]);
-    points.push_back(sample_at(curve, std::min(piece.to, last_place(piece.curve)), camera));
     LineEdge edge{
         step.line_class, step.object, piece.invisibility, piece.certain, !curve.smooth, static_cast<int>(piece.curve), -1, -1, {}};
     if (piece.begin >= 0) edge.begin = vertex(piece.curve, piece.begin);
     if (piece.end >= 0) edge.end = vertex(piece.curve, piece.end);
-    for (const CurveSample& sample : thinned(points, piece.begin < 0, 0.5 * task.settings.tolerance_px))
-      edge.points.push_back(line_point(sample, task.origin));
-    if (piece.begin < 0 && edge.points.size() > 2) edge.points.pop_back();  // The first again.
+    edge.points = std::move(points);
     if (step.more_on_left < 0) {
       std::reverse(edge.points.begin(), edge.points.end());
       std::swap(edge.begin, edge.end);
@@ -199,8 +208,13 @@ void add_edges(const std::vector<SurfaceCurve>& curves, const CutCurves& cut, co
   const double pixel = pixel_size(curves, task.camera);
   Builder builder{curves, cut, task, graph, pixel, PlaceIndex(16.0 * kSamePlace_px * pixel)};
   std::vector<std::vector<int>> edge_of(curves.size());
+  std::vector<std::vector<std::vector<LinePoint>>> points(curves.size());
+  parallel_for(size_t{0}, curves.size(), [&](size_t c) {
+    for (const CurvePiece& piece : cut.curves[c].pieces) points[c].push_back(points_of_piece(curves[c], piece, task));
+  });
   for (size_t c = 0; c < curves.size(); ++c) {
-    for (const CurvePiece& piece : cut.curves[c].pieces) edge_of[c].push_back(builder.add_edge(piece));
+    const std::vector<CurvePiece>& pieces = cut.curves[c].pieces;
+    for (size_t k = 0; k < pieces.size(); ++k) edge_of[c].push_back(builder.add_edge(pieces[k], std::move(points[c][k])));
   }
   for (const auto& [key, vertex] : builder.vertex_of_event) {
     const CurveEvent& event = cut.curves[key.first].events[static_cast<size_t>(key.second)];

@@ -14,17 +14,31 @@ constexpr double kBeyondFrame_px = 8.0;  // steps farther outside the picture ar
 constexpr double kBelowOne = 1.0 - 1e-15;
 constexpr double kParallel = 1e-9;  // the sine of the angle between steps
 
-struct Step {
-  std::uint64_t bucket = 0;
-  std::uint32_t curve = 0, index = 0;
+/// What is asked of a sample, without the rest of it.
+struct End {
+  glm::dvec2 px{0.0};
+  double depth = 0.0;
 };
-
 struct Ends {
-  const CurveSample &a, &b;
+  End a, b;
 };
-Ends ends_of(const SurfaceCurve& curve, size_t i) { return {curve.samples[i], curve.samples[(i + 1) % curve.samples.size()]}; }
+Ends ends_of(const SurfaceCurve& curve, size_t i) {
+  const CurveSample &a = curve.samples[i], &b = curve.samples[i + 1 < curve.samples.size() ? i + 1 : 0];
+  return {{a.px, a.depth}, {b.px, b.depth}};
+}
+
+/// A step that adds or removes layers behind it.
+struct Fold {
+  Ends ends;
+  std::uint32_t curve = 0, index = 0;
+  int more_on_left = 0;
+  double nearer_px = 0.0;
+};
 
 size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples.size() : curve.samples.size() - 1; }
+
+size_t columns_of(const Camera& camera) { return static_cast<size_t>((camera.width_px + 2.0 * kBeyondFrame_px) / kBucket_px) + 2; }
+size_t rows_of(const Camera& camera) { return static_cast<size_t>((camera.height_px + 2.0 * kBeyondFrame_px) / kBucket_px) + 2; }
 
 /// Calls `visit` for the buckets that a step goes through, row by row.
 template <class Visit>
@@ -34,10 +48,10 @@ void for_buckets(const Ends& step, const Camera& camera, const Visit& visit) {
   const glm::dvec2 low = glm::max(glm::min(step.a.px, step.b.px), glm::dvec2(-kBeyondFrame_px));
   const glm::dvec2 high = glm::min(glm::max(step.a.px, step.b.px), size + kBeyondFrame_px);
   if (!(low.x <= high.x && low.y <= high.y)) return;
-  const auto bucket = [](double x) { return static_cast<std::uint64_t>((x + kBeyondFrame_px) / kBucket_px); };
-  const std::uint64_t first = bucket(low.y), last = bucket(high.y);
+  const auto bucket = [](double x) { return static_cast<size_t>((x + kBeyondFrame_px) / kBucket_px); };
+  const size_t columns = columns_of(camera), first = bucket(low.y), last = bucket(high.y);
   const glm::dvec2 d = step.b.px - step.a.px;
-  for (std::uint64_t y = first; y <= last; ++y) {
+  for (size_t y = first; y <= last; ++y) {
     double left = low.x, right = high.x;
     if (last > first) {
       // What of the step lies in the row, and a little more.
@@ -48,7 +62,7 @@ void for_buckets(const Ends& step, const Camera& camera, const Visit& visit) {
       right = std::min(right, std::max(at_top, at_bottom) + kMargin_px);
       if (!(left <= right)) continue;
     }
-    for (std::uint64_t x = bucket(left); x <= bucket(right); ++x) visit(y << 32 | x);
+    for (size_t x = bucket(left); x <= bucket(right); ++x) visit(y * columns + x);
   }
 }
 
@@ -86,49 +100,69 @@ bool neighbours(size_t i, size_t j, size_t count) {
   return apart <= 1 || apart + 1 == count;
 }
 
+/// Folds by the buckets that they go through: those of bucket b are `in[first[b]]` up to `in[first[b + 1]]`, in their own order.
+struct FoldIndex {
+  std::vector<Fold> folds{};
+  std::vector<std::uint32_t> first{}, in{};
+};
+
+FoldIndex index_folds(const std::vector<SurfaceCurve>& curves, const Camera& camera) {
+  FoldIndex index;
+  for (size_t c = 0; c < curves.size(); ++c) {
+    const SurfaceCurve& curve = curves[c];
+    for (size_t i = 0; i < steps_of(curve); ++i) {
+      if (const int more = curve.samples[i].more_on_left; more != 0)
+        index.folds.push_back({ends_of(curve, i), static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(i), more, curve.nearer_px});
+    }
+  }
+  // Counted, then placed.
+  index.first.assign(columns_of(camera) * rows_of(camera) + 1, 0);
+  for (const Fold& fold : index.folds) for_buckets(fold.ends, camera, [&](size_t bucket) { ++index.first[bucket + 1]; });
+  for (size_t b = 1; b < index.first.size(); ++b) index.first[b] += index.first[b - 1];
+  index.in.resize(index.first.back());
+  std::vector<std::uint32_t> next(index.first.begin(), index.first.end() - 1);
+  for (size_t f = 0; f < index.folds.size(); ++f)
+    for_buckets(index.folds[f].ends, camera, [&](size_t bucket) { index.in[next[bucket]++] = static_cast<std::uint32_t>(f); });
+  return index;
+}
+
+/// Of one curve, in order along it.
+std::vector<NearerCrossing> crossings_of(const std::vector<SurfaceCurve>& curves, size_t c, const FoldIndex& index, const Camera& camera) {
+  std::vector<NearerCrossing> result, here;
+  const SurfaceCurve& curve = curves[c];
+  const size_t count = steps_of(curve);
+  for (size_t i = 0; i < count; ++i) {
+    const Ends step = ends_of(curve, i);
+    here.clear();
+    for_buckets(step, camera, [&](size_t bucket) {
+      for (size_t k = index.first[bucket]; k < index.first[bucket + 1]; ++k) {
+        const Fold& fold = index.folds[index.in[k]];
+        if (fold.curve == c && neighbours(fold.index, i, count)) continue;
+        const std::optional<Meeting> meeting = meet(step, fold.ends, std::max(curve.nearer_px, fold.nearer_px), camera);
+        if (!meeting) continue;
+        here.push_back({static_cast<double>(i) + meeting->t, meeting->onto_left ? fold.more_on_left : -fold.more_on_left, fold.curve,
+                        static_cast<double>(fold.index) + meeting->u});
+      }
+    });
+    // A step that lies in several buckets meets another in each of them.
+    std::sort(here.begin(), here.end(), [](const NearerCrossing& a, const NearerCrossing& b) {
+      return std::tie(a.at, a.curve, a.on_nearer) < std::tie(b.at, b.curve, b.on_nearer);
+    });
+    const auto same = [](const NearerCrossing& a, const NearerCrossing& b) {
+      return a.at == b.at && a.curve == b.curve && a.on_nearer == b.on_nearer;
+    };
+    here.erase(std::unique(here.begin(), here.end(), same), here.end());
+    result.insert(result.end(), here.begin(), here.end());
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<std::vector<NearerCrossing>> nearer_crossings(const std::vector<SurfaceCurve>& curves, const Camera& camera) {
-  std::vector<Step> folds;
-  for (size_t c = 0; c < curves.size(); ++c) {
-    for (size_t i = 0; i < steps_of(curves[c]); ++i) {
-      if (curves[c].samples[i].more_on_left == 0) continue;
-      for_buckets(ends_of(curves[c], i), camera, [&](std::uint64_t bucket) {
-        folds.push_back({bucket, static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(i)});
-      });
-    }
-  }
-  std::stable_sort(folds.begin(), folds.end(), [](const Step& a, const Step& b) { return a.bucket < b.bucket; });
+  const FoldIndex index = index_folds(curves, camera);
   std::vector<std::vector<NearerCrossing>> result(curves.size());
-  parallel_for(size_t{0}, curves.size(), [&](size_t c) {
-    const size_t count = steps_of(curves[c]);
-    for (size_t i = 0; i < count; ++i) {
-      const Ends step = ends_of(curves[c], i);
-      std::vector<NearerCrossing> here;
-      for_buckets(step, camera, [&](std::uint64_t bucket) {
-        auto other = std::lower_bound(folds.begin(), folds.end(), bucket, [](const Step& s, std::uint64_t b) { return s.bucket < b; });
-        for (; other != folds.end() && other->bucket == bucket; ++other) {
-          if (other->curve == c && neighbours(other->index, i, count)) continue;
-          const std::optional<Meeting> meeting = meet(step, ends_of(curves[other->curve], other->index),
-                                                      std::max(curves[c].nearer_px, curves[other->curve].nearer_px), camera);
-          if (!meeting) continue;
-          const int more_on_left = curves[other->curve].samples[other->index].more_on_left;
-          here.push_back({static_cast<double>(i) + meeting->t, meeting->onto_left ? more_on_left : -more_on_left, other->curve,
-                          static_cast<double>(other->index) + meeting->u});
-        }
-      });
-      // A step that lies in several buckets meets another in each of them.
-      std::sort(here.begin(), here.end(), [](const NearerCrossing& a, const NearerCrossing& b) {
-        return std::tie(a.at, a.curve, a.on_nearer) < std::tie(b.at, b.curve, b.on_nearer);
-      });
-      here.erase(std::unique(here.begin(), here.end(),
-                             [](const NearerCrossing& a, const NearerCrossing& b) {
-                               return a.at == b.at && a.curve == b.curve && a.on_nearer == b.on_nearer;
-                             }),
-                 here.end());
-      result[c].insert(result[c].end(), here.begin(), here.end());
-    }
-  });
+  parallel_for(size_t{0}, curves.size(), [&](size_t c) { result[c] = crossings_of(curves, c, index, camera); });
   return result;
 }
 

@@ -8,12 +8,13 @@
 #include "raymarch/lines/graph_building.h"
 #include "raymarch/lines/line_memory.h"
 #include "raymarch/scene/threads.h"
-#include "raymarch/truth/locate.h"
 #include "raymarch/truth/proxy.h"
 #include "sdf/error.h"
 
 namespace limn {
 namespace {
+
+constexpr double kViewTurn = 1e-7;
 
 void check(const LineSettings& settings) {
   const auto fail = [](const std::string& field, double value, const std::string& problem, const std::string& expected) {
@@ -33,12 +34,27 @@ void check(const LineSettings& settings) {
     fail("ridge_strength", settings.ridge_strength, "not a strength", "a number above 0");
 }
 
+/// By some hundred-thousandths of a pixel, so that faces seen exactly edge-on face one way and not all ways at once, and lines that lie on
+/// each other in the image, as the near and the far edges of what is seen face-on, keep an order that rounding leaves alone.
+Camera turned(Camera camera) {
+  glm::dmat3& axes = camera.world_from_camera;
+  const glm::dvec2 turn = kViewTurn * glm::dvec2(0.8, 0.6);
+  if (camera.projection == Projection::perspective) {
+    camera.eye += glm::length(camera.eye) * (turn.x * axes[0] + turn.y * axes[1]);
+    return camera;
+  }
+  // What is seen moves with the direction of the rays.
+  axes[2] = glm::normalize(axes[2] + turn.x * axes[0] + turn.y * axes[1]);
+  axes[0] = glm::normalize(axes[0] - glm::dot(axes[0], axes[2]) * axes[2]);
+  axes[1] = glm::cross(axes[2], axes[0]);
+  return camera;
+}
+
 LineTask task_of(const Scene& scene, const Camera& camera, const LineSettings& settings, KeptLines& kept) {
   LineTask task{scene, {}, glm::dvec3(0.0), 1.0, {}, kept};
   const Box box = bounds(scene);
   if (box.finite()) task.origin = box.center();
-  // Turned by an epsilon, so that faces seen exactly edge-on face one way and not all ways at once.
-  task.camera = make_viewer(moved(camera, task.origin), glm::dvec3(0.0)).facing;
+  task.camera = turned(moved(camera, task.origin));
   task.extent = box.finite() && box.radius() > 0.0 ? box.radius() : std::max(1e-6, glm::length(task.camera.eye));
   task.settings = settings;
   if (settings.classes.empty()) {
@@ -107,11 +123,11 @@ ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettin
   return ThreadArena(execution.threads).execute([&] {
     const LineTask task = task_of(scene, camera, settings, *used.kept);
     ViewGraph graph;
-    const std::vector<LineContribution> contributions = contributions_of(task, execution, graph.from);
+    std::vector<LineContribution> contributions = contributions_of(task, execution, graph.from);
     std::vector<SurfaceCurve> curves;
     double unrefined_px = 0.0;
-    for (const LineContribution& one : contributions) {
-      curves.insert(curves.end(), one.curves.begin(), one.curves.end());
+    for (LineContribution& one : contributions) {
+      curves.insert(curves.end(), std::make_move_iterator(one.curves.begin()), std::make_move_iterator(one.curves.end()));
       graph.notes.insert(graph.notes.end(), one.notes.begin(), one.notes.end());
       graph.exact = graph.exact && one.exact;
       unrefined_px = std::max(unrefined_px, one.unrefined_px);

@@ -43,6 +43,9 @@ struct SurfaceCurve {
   /// How far two such curves must lie apart, px at their depth, to be told from each other: across the view, and along it.
   double apart_px = 0.03, nearer_px = 0.05;
   double tangency_px = 3.0;  ///< From a place where two curves touch they may run together for so long.
+  /// The curve's own point beside a place on a step's chord, where it is known; called from many threads.
+  std::function<glm::dvec3(size_t step, double share)> between{};
+  bool long_steps = false;  ///< As long as the tolerance allows: between two samples another curve may go anywhere.
 };
 
 /// What a ray from a sample towards the eye goes through.

@@ -10,6 +10,7 @@
 #include "samples/input/input.h"
 #include "samples/scenes/scenes.h"
 #include "tests/bench/line_scenes.h"
+#include "tests/bench/occ_lines.h"
 
 namespace limn::bench {
 namespace {
@@ -25,13 +26,17 @@ std::vector<glm::dvec3> directions() {
 }
 
 /// From twice the half diagonal away.
-Camera camera_from(const glm::dvec3& direction, const Box& box, int width_px, int height_px) {
+Camera camera_from(const glm::dvec3& direction, const Box& box, int width_px, int height_px, bool parallel = false) {
   CameraSettings settings;
   settings.target = box.center();
   settings.eye = box.center() + 2.0 * box.radius() * direction;
   if (std::fabs(direction.y) > 0.99) settings.up = {0.0, 0.0, 1.0};
   // The picture holds the ball about the model.
   settings.vertical_fov = 2.0 * std::asin(0.5) * 1.02;
+  if (parallel) {
+    settings.projection = Projection::orthographic;
+    settings.ortho_height = 2.0 * box.radius() * 1.02;
+  }
   settings.width_px = width_px;
   settings.height_px = height_px;
   return resolve_camera(settings, box);
@@ -73,11 +78,86 @@ Row run(const std::string& name, const Scene& scene, const LinesBenchSettings& s
 nlohmann::json json_of(Row row, std::FILE* table) {
   std::sort(row.ms.begin(), row.ms.end());
   const double median = row.ms[row.ms.size() / 2], worst = row.ms.back();
-  fmt::print(table, "| {} | {} | {:.0f} | {:.0f} | {} | {} | {} | {} | {} | {:.3g} |\n", row.name, row.ms.size(), median, worst, row.chains,
+  fmt::print(table, "| {} | {} | {:.1f} | {:.1f} | {} | {} | {} | {} | {} | {:.3g} |\n", row.name, row.ms.size(), median, worst, row.chains,
              row.visible, row.rays, row.conflicts, row.open_ends, row.bound_px);
   return {{"suite", "lines"},           {"case", row.name},           {"contestant", "limn"},    {"views", row.ms.size()},
           {"median_ms", median},        {"worst_ms", worst},          {"chains", row.chains},    {"visible", row.visible},
           {"conflicts", row.conflicts}, {"open_ends", row.open_ends}, {"bound_px", row.bound_px}};
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+double worst_of(const std::vector<double>& values) { return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end()); }
+
+constexpr double kLimit_s = 60.0;  // for a peer and a part: making it, and all views
+
+std::string peer_cells(const OccRun& run, size_t views, double own_ms) {
+  if (!run.finished) return fmt::format("{} of {} views in {:.0f} s | | ", run.ms.size(), views, kLimit_s);
+  return fmt::format("{:.1f} | {:.1f} | {:.2f} ", median_of(run.ms), worst_of(run.ms), own_ms / median_of(run.ms));
+}
+
+/// One part from all sides, by parallel projection, which all three have.
+void race(const LinePart& part, const LinesBenchSettings& settings, nlohmann::json& rows) {
+  Scene scene;
+  scene.objects.push_back({.name = part.name, .source = field_of(part)});
+  const Box box = bounds(scene);
+  std::vector<Camera> cameras;
+  const std::vector<glm::dvec3> all = directions();
+  for (size_t view = 0; view < all.size(); ++view) {
+    if (settings.only_view && *settings.only_view != static_cast<int>(view)) continue;
+    cameras.push_back(camera_from(all[view], box, settings.width_px, settings.height_px, true));
+  }
+  ExecutionSettings execution;
+  execution.threads = settings.threads;
+  std::vector<double> own;
+  std::int64_t conflicts = 0;
+  for (const Camera& camera : cameras) {
+    const auto start = std::chrono::steady_clock::now();
+    const ViewGraph graph = solve_lines(scene, camera, {}, execution);
+    own.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    conflicts += static_cast<std::int64_t>(graph.conflicts.size());
+  }
+  const OccRun exact = occ_lines(part, cameras, OccMethod::exact, kLimit_s),
+               polygonal = occ_lines(part, cameras, OccMethod::polygonal, kLimit_s);
+  fmt::print(settings.table, "| {} | {} | {:.1f} | {:.1f} | {} | {}| {}|\n", part.name, cameras.size(), median_of(own), worst_of(own),
+             conflicts, peer_cells(exact, cameras.size(), median_of(own)), peer_cells(polygonal, cameras.size(), median_of(own)));
+  const auto add = [&](const char* contestant, const std::vector<double>& ms, bool finished) {
+    rows.push_back({{"suite", "lines"},
+                    {"case", part.name + ", parallel"},
+                    {"contestant", contestant},
+                    {"views", ms.size()},
+                    {"finished", finished},
+                    {"median_ms", median_of(ms)},
+                    {"worst_ms", worst_of(ms)}});
+  };
+  add("limn", own, true);
+  add("OpenCASCADE exact", exact.ms, exact.finished);
+  add("OpenCASCADE polygonal", polygonal.ms, polygonal.finished);
+}
+
+void race_all(const LinesBenchSettings& settings, nlohmann::json& rows) {
+  const auto& asked = settings.scenes;
+  std::vector<LinePart> parts;
+  for (LinePart& part : line_parts()) {
+    if (asked.empty() ? settings.meshes.empty() : std::find(asked.begin(), asked.end(), part.name) != asked.end())
+      parts.push_back(std::move(part));
+  }
+  if (parts.empty()) return;
+  const std::optional<std::string> version = occ_version();
+  if (!version) {
+    fmt::print(settings.table, "\nOpenCASCADE: not installed, skipped\n");
+    return;
+  }
+  fmt::print(
+      settings.table,
+      "\nOpenCASCADE {}, hidden line removal, visible and hidden lines, parallel projection, one thread; limn on {} threads\n\n"
+      "| part | views | limn median ms | worst | conflicts | exact median ms | worst | limn / exact | polygonal median ms | worst | limn / "
+      "polygonal |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+      *version, settings.threads);
+  for (const LinePart& part : parts) race(part, settings, rows);
 }
 
 }  // namespace
@@ -102,6 +182,7 @@ nlohmann::json bench_lines(const LinesBenchSettings& settings) {
     const SceneInput input = load_input(reading);
     rows.push_back(json_of(run(input.name, input.scene, settings), settings.table));
   }
+  race_all(settings, rows);
   return rows;
 }
 

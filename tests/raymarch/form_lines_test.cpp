@@ -220,8 +220,8 @@ std::vector<FieldCurve> seams_of_field(const Field& body) {
   auto curves = trace_form_curves(*form, camera, make_viewer(camera, glm::dvec3(0.0)), 0.005, {});
   EXPECT_TRUE(curves.has_value());
   std::vector<FieldCurve> seams;
-  for (FieldCurve& curve : *curves) {
-    if (curve.seam) seams.push_back(std::move(curve));
+  for (FormTrace& trace : *curves) {
+    if (trace.curve.seam) seams.push_back(std::move(trace.curve));
   }
   return seams;
 }

@@ -46,6 +46,7 @@ struct ChainEvent {
   glm::dvec2 px{0.0};                          ///< Image point.
   /// What appears or vanishes is no longer than this at the nearer of the two times: the chain, or the gap between the parts; px.
   double length_px = 0.0;
+  bool beside_conflict = false;  ///< The certificate of one of the two graphs has a conflict there.
 };
 
 /// How closely changes are followed.

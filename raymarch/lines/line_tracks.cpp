@@ -8,6 +8,8 @@
 namespace limn {
 namespace {
 
+constexpr double kBeside_px = 4.0;
+
 /// A graph at a time, with the ids of its chains.
 struct Moment {
   double time = 0.0;
@@ -68,6 +70,10 @@ class Follower {
     event.to = after.time;
     event.px = change.px;
     event.length_px = change.length_px;
+    for (const PlacedChains* chains : {&before.chains, &after.chains}) {
+      for (const LineConflict& conflict : chains->graph->conflicts)
+        event.beside_conflict = event.beside_conflict || glm::distance(conflict.px, change.px) <= change.length_px + kBeside_px;
+    }
     tracks_.events.push_back(event);
   }
 

@@ -95,17 +95,23 @@ TEST(ContoursFrames, OptionsThatDoNotGoTogetherAreRefused) {
   EXPECT_EQ(folder.files(), std::vector<std::string>{});
 }
 
+/// A scene, the picture's size, and how many frames are looked at unless LIMN_FRAMES says so.
+struct Walk {
+  const char* scene;
+  int width_px, height_px, frames;
+};
+
 /// LIMN_FRAMES=240: once around; by default the first of these frames.
 TEST(ContoursFrames, AroundScenesVisibleLinesAppearAndVanishAtEventsOfTheGraphOnly) {
   constexpr int kAround = 240;
   const char* const wanted = std::getenv("LIMN_FRAMES");
-  const std::map<std::string, int> scenes = {{"teacup", 10}, {"rook", 20}, {"gyroid", 2}};
-  for (const auto& [name, few] : scenes) {
-    const int frames = wanted != nullptr ? std::atoi(wanted) : few;
+  for (const Walk& walk : {Walk{"teacup", 320, 180, 10}, Walk{"rook", 640, 360, 20}, Walk{"gyroid", 192, 108, 2}}) {
+    const std::string name = walk.scene;
+    const int frames = wanted != nullptr ? std::atoi(wanted) : walk.frames;
     const Scene scene = find_scene(name)->make();
     CameraSettings settings = scene.camera;
-    settings.width_px = 240;
-    settings.height_px = 135;
+    settings.width_px = walk.width_px;
+    settings.height_px = walk.height_px;
     const Camera first = camera_of_view(settings, bounds(scene), 0, 1);
     const GraphAt graph_at = [&](double time) {
       return solve_lines(scene, turned_camera(first, *settings.target, settings.up, 2.0 * std::numbers::pi * time / kAround), {}, {});

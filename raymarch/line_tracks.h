@@ -46,6 +46,7 @@ struct ChainEvent {
   glm::dvec2 px{0.0};                          ///< Image point.
   /// What appears or vanishes is no longer than this at the nearer of the two times: the chain, or the gap between the parts; px.
   double length_px = 0.0;
+  bool beside_conflict = false;  ///< The certificate of one of the two graphs has a conflict there.
 };
 
 /// How closely changes are followed.
@@ -71,7 +72,7 @@ std::vector<int> first_ids(const ViewGraph& graph, LineTracks& tracks);
 
 /// Ids of the chains of `after`: those of the chains of `before` whose generators they continue, and new ones. Chains are matched by where
 /// their curves run on the surface, by class, object and visibility; one to one, the longest common stretch first. The same backwards in
-/// time.
+/// time, where no graph in between has conflicts.
 std::vector<int> follow_chains(const ViewGraph& before, const std::vector<int>& ids_before, double time_before, const ViewGraph& after,
                                double time_after, const GraphAt& graph_at, const TrackSettings& settings, LineTracks& tracks);
 

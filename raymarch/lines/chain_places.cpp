@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kSpacing_px = 1.0;
 constexpr int kLeastPlaces = 5;       // of an edge
+constexpr double kSharpScale = 0.2;   // of the scale of normals: between a smooth place and one on a sharp edge
 constexpr double kNormalScale = 0.1;  // of the radius of all places: normals as a tie-break
 
 /// Places at equal lengths along an edge.
@@ -62,7 +63,10 @@ struct Nearest {
     const ChainPlace& place = places[static_cast<size_t>(index)];
     glm::dvec3 way = place.p - wanted.p;
     double squared = glm::dot(way, way);
-    if (!place.sharp && !wanted.sharp) {
+    if (place.sharp != wanted.sharp) {
+      // A contour may run so close beside a sharp edge that only this tells them apart.
+      squared += kSharpScale * kSharpScale * normal_scale * normal_scale;
+    } else if (!place.sharp) {
       const glm::dvec3 turn = normal_scale * (place.normal - wanted.normal);
       squared += glm::dot(turn, turn);
     }

@@ -16,14 +16,15 @@ namespace limn {
 namespace {
 
 constexpr double kShort_px = 1.0;  // pieces shorter than this are not asked by rays of their own
+constexpr double kClear_px = 0.3, kLeastClear_px = 0.12;
 constexpr int kMostSearches = 4;
 constexpr double kNearEnd_px = 0.3;  // pieces in which no ray starts farther from their ends tell little
 
 /// One curve being cut.
 class Cutter {
  public:
-  Cutter(const SurfaceCurve& curve, std::uint32_t number, const Camera& camera, const LayersBefore& layers_before)
-      : curve_(curve), number_(number), camera_(camera), layers_before_(layers_before), walk_(curve, camera) {}
+  Cutter(const SurfaceCurve& curve, std::uint32_t number, const Camera& camera, const NearerFolds& folds, const LayersBefore& layers_before)
+      : curve_(curve), number_(number), camera_(camera), folds_(folds), layers_before_(layers_before), walk_(curve, camera) {}
 
   CutCurve run(std::vector<CurveEvent> events) {
     cut_.events = std::move(events);
@@ -77,6 +78,19 @@ class Cutter {
       best = place;
     }
     return best >= 0.0 ? best : glm::mix(piece.from, piece.to, share);
+  }
+  /// Near that share a place where no nearer line runs so close by that a ray from beside the curve may pass it on its wrong side. Nothing
+  /// where one does all along.
+  std::optional<double> clear_ray_at(const CurvePiece& piece, double share) const {
+    double best = 0.0, most = kLeastClear_px;
+    for (const double off : {0.0, 0.12, -0.12, 0.24, -0.24, 0.36, -0.36, 0.45, -0.45}) {
+      if (!(share + off > 0.0 && share + off < 1.0)) continue;
+      const double place = ray_at(piece, share + off);
+      const double clear = folds_.clearance_px(sample_at(curve_, place, camera_), number_, place, kClear_px);
+      if (clear >= kClear_px) return place;
+      if (clear > most) best = place, most = clear;
+    }
+    return most > kLeastClear_px ? std::optional<double>(best) : std::nullopt;
   }
   LayersSeen look(double place) {
     ++rays;
@@ -152,7 +166,9 @@ class Cutter {
       const CurvePiece& piece = cut_.pieces[arc[k]];
       if (piece.length_px < kNearEnd_px) continue;
       for (const double share : {0.15, 0.5, 0.85}) {
-        const double place = begins[k] + (ray_at(piece, share) - piece.from);
+        const std::optional<double> clear = clear_ray_at(piece, share);
+        if (!clear) continue;
+        const double place = begins[k] + (*clear - piece.from);
         if (probes.empty() || place > probes.back().at) probes.push_back({place, unexplained(place)});
       }
     }
@@ -184,8 +200,11 @@ class Cutter {
       if (length(second) < 2.0 * kNearEnd_px) second = first;
     }
     const bool same = first == second;
-    const int one = cast(ray_at(cut_.pieces[arc[first]], same ? 0.35 : 0.5)) - relative[first];
-    const int two = cast(ray_at(cut_.pieces[arc[second]], same ? 0.65 : 0.5)) - relative[second];
+    const auto ask = [&](size_t k, double share) {
+      const CurvePiece& piece = cut_.pieces[arc[k]];
+      return cast(clear_ray_at(piece, share).value_or(ray_at(piece, share))) - relative[k];
+    };
+    const int one = ask(first, same ? 0.35 : 0.5), two = ask(second, same ? 0.65 : 0.5);
     if (one != two) return {};
     return one;
   }
@@ -194,7 +213,11 @@ class Cutter {
   std::optional<int> by_vote(const CurvePiece& piece, double least_px) {
     if (piece.length_px < least_px) return {};
     std::map<int, int> votes;
-    for (const double share : {0.5, 0.3, 0.7}) ++votes[cast(ray_at(piece, share))];
+    for (const double share : {0.5, 0.3, 0.7}) {
+      if (const auto place = clear_ray_at(piece, share)) ++votes[cast(*place)];
+    }
+    if (votes.empty() && least_px > 0.0) return {};
+    if (votes.empty()) ++votes[cast(ray_at(piece, 0.5))];
     return std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
   }
 
@@ -246,6 +269,7 @@ class Cutter {
   const SurfaceCurve& curve_;
   std::uint32_t number_;
   const Camera& camera_;
+  const NearerFolds& folds_;
   const LayersBefore& layers_before_;
   CurveWalk walk_;
   CutCurve cut_;
@@ -257,7 +281,8 @@ class Cutter {
 
 CutCurves cut_by_invisibility(const std::vector<SurfaceCurve>& curves, const Camera& camera, double extent,
                               const LayersBefore& layers_before, const ExecutionSettings& execution) {
-  const auto crossings = nearer_crossings(curves, camera);
+  const NearerFolds folds(curves, camera);
+  const auto crossings = folds.crossings();
   CutCurves result;
   result.curves.resize(curves.size());
   std::vector<std::vector<LineConflict>> conflicts(curves.size());
@@ -265,7 +290,7 @@ CutCurves cut_by_invisibility(const std::vector<SurfaceCurve>& curves, const Cam
   parallel_for(size_t{0}, curves.size(), [&](size_t c) {
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
     const auto number = static_cast<std::uint32_t>(c);
-    Cutter cutter(curves[c], number, camera, layers_before);
+    Cutter cutter(curves[c], number, camera, folds, layers_before);
     result.curves[c] = cutter.run(events_of(curves, number, camera, extent, crossings[c]));
     conflicts[c] = std::move(cutter.conflicts);
     rays += cutter.rays;

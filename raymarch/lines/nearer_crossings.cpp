@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sdf/parallel.h"
+#include "sdf/segment.h"
 
 namespace limn {
 namespace {
@@ -13,6 +14,7 @@ constexpr double kMargin_px = 1e-3;      // so that no rounding leaves a bucket 
 constexpr double kBeyondFrame_px = 8.0;  // steps farther outside the picture are left out
 constexpr double kBelowOne = 1.0 - 1e-15;
 constexpr double kParallel = 1e-9;  // the sine of the angle between steps
+constexpr double kOwnSteps = 8.0;   // of a curve that count as the place itself
 
 /// What is asked of a sample, without the rest of it.
 struct End {
@@ -159,11 +161,39 @@ std::vector<NearerCrossing> crossings_of(const std::vector<SurfaceCurve>& curves
 
 }  // namespace
 
-std::vector<std::vector<NearerCrossing>> nearer_crossings(const std::vector<SurfaceCurve>& curves, const Camera& camera) {
-  const FoldIndex index = index_folds(curves, camera);
-  std::vector<std::vector<NearerCrossing>> result(curves.size());
-  parallel_for(size_t{0}, curves.size(), [&](size_t c) { result[c] = crossings_of(curves, c, index, camera); });
+struct NearerFolds::Index : FoldIndex {};
+
+NearerFolds::NearerFolds(const std::vector<SurfaceCurve>& curves, const Camera& camera)
+    : curves_(curves), camera_(camera), index_(std::make_unique<Index>(Index{index_folds(curves, camera)})) {}
+NearerFolds::~NearerFolds() = default;
+
+std::vector<std::vector<NearerCrossing>> NearerFolds::crossings() const {
+  std::vector<std::vector<NearerCrossing>> result(curves_.size());
+  parallel_for(size_t{0}, curves_.size(), [&](size_t c) { result[c] = crossings_of(curves_, c, *index_, camera_); });
   return result;
+}
+
+double NearerFolds::clearance_px(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const {
+  double least = reach_px;
+  const End low{sample.px - reach_px, sample.depth}, high{sample.px + reach_px, sample.depth};
+  const double own_steps = static_cast<double>(steps_of(curves_[curve]));
+  const auto look = [&](size_t bucket) {
+    for (size_t k = index_->first[bucket]; k < index_->first[bucket + 1]; ++k) {
+      const Fold& fold = index_->folds[index_->in[k]];
+      if (std::min(fold.ends.a.depth, fold.ends.b.depth) >= sample.depth) continue;
+      const double apart = std::fabs(static_cast<double>(fold.index) + 0.5 - std::fmod(place, own_steps));
+      if (fold.curve == curve && std::min(apart, own_steps - apart) < kOwnSteps) continue;
+      least = std::min(least, distance_to_segment(sample.px, fold.ends.a.px, fold.ends.b.px));
+    }
+  };
+  const size_t columns = columns_of(camera_), rows = rows_of(camera_);
+  const auto bucket = [](double x, size_t count) {
+    return static_cast<size_t>(std::clamp((x + kBeyondFrame_px) / kBucket_px, 0.0, static_cast<double>(count - 1)));
+  };
+  for (size_t y = bucket(low.px.y, rows); y <= bucket(high.px.y, rows); ++y) {
+    for (size_t x = bucket(low.px.x, columns); x <= bucket(high.px.x, columns); ++x) look(y * columns + x);
+  }
+  return least;
 }
 
 }  // namespace limn

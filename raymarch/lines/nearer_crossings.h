@@ -1,6 +1,8 @@
 #pragma once
 // Internal: where curves pass behind folds and open edges in the image.
 
+#include <memory>
+
 #include "raymarch/lines/surface_curves.h"
 
 namespace limn {
@@ -12,7 +14,25 @@ struct NearerCrossing {
   double on_nearer = 0.0;   ///< Place on it.
 };
 
-/// Of each curve, in order along it.
-std::vector<std::vector<NearerCrossing>> nearer_crossings(const std::vector<SurfaceCurve>& curves, const Camera& camera);
+/// The folds and open edges of all curves, by their places in the image. Keeps references to what it is made of.
+class NearerFolds {
+ public:
+  NearerFolds(const std::vector<SurfaceCurve>& curves, const Camera& camera);
+  ~NearerFolds();
+  NearerFolds(const NearerFolds&) = delete;
+  NearerFolds& operator=(const NearerFolds&) = delete;
+
+  /// Of each curve, in order along it.
+  std::vector<std::vector<NearerCrossing>> crossings() const;
+  /// How far the nearest line in front of a place of a curve lies beside it in the image; no more than `reach_px`. A ray that starts a
+  /// little beside the curve tells what lies in front of it only where this is more.
+  double clearance_px(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const;
+
+ private:
+  struct Index;
+  const std::vector<SurfaceCurve>& curves_;
+  const Camera& camera_;
+  std::unique_ptr<const Index> index_;
+};
 
 }  // namespace limn

@@ -16,8 +16,9 @@
 namespace limn {
 namespace {
 
-constexpr double kEdge_px = 1e9;   // meshes are not refined
-constexpr double kOwnReach = 3.0;  // longest sides of a facet: so near to a curve's own point two hits are its own surface
+constexpr double kEdge_px = 1e9;    // meshes are not refined
+constexpr double kEndShare = 1e-3;  // of a step
+constexpr double kOwnReach = 3.0;   // longest sides of a facet: so near to a curve's own point two hits are its own surface
 
 using Index = std::uint32_t;
 
@@ -291,6 +292,12 @@ LineContribution smooth_mesh_lines(const LineTask& task, const std::vector<size_
   const auto layers = std::make_shared<const MeshLayers>(task, objects, kEdge_px);
   out.curves = SmoothTracer(task, *layers).run();
   add_mesh_layers(layers, out);
+  for (SurfaceCurve& curve : out.curves) {
+    if (curve.closed || curve.samples.size() < 2) continue;
+    // Where a contour ends on a crease it meets the crease's other face, and does not go through it.
+    std::erase_if(curve.samples.front().pierced, [](const Piercing& one) { return one.t < kEndShare; });
+    std::erase_if(curve.samples[curve.samples.size() - 2].pierced, [](const Piercing& one) { return one.t > 1.0 - kEndShare; });
+  }
   out.layers_before = [layers](const CurveSample& sample) { return LayersSeen{layers_beyond_own(*layers, sample)}; };
   out.exact = false;
   out.notes.emplace_back("contours are those of N.V interpolated between the mesh's vertices; what hides them is the facets");

@@ -126,7 +126,7 @@ void print_certificate(const Options& options, const ViewGraph& graph, int index
     print_note(fmt::format("{}conflict at {:.1f}, {:.1f}: {}", which, conflict.px.x, conflict.px.y, conflict.what));
 }
 
-/// "16 births, 3 of them by swallowtail", a line each.
+/// "birth: tangency (16)", a line each kind, and what nothing explains.
 void print_tracks(const Options& options, const LineTracks& tracks) {
   if (options.quiet) return;
   std::map<std::pair<ChainChange, ChainCause>, size_t> counts;
@@ -136,8 +136,9 @@ void print_tracks(const Options& options, const LineTracks& tracks) {
   for (const auto& [what, count] : counts) print_note(fmt::format("{}: {} ({})", name_of(what.first), name_of(what.second), count));
   for (const ChainEvent& event : tracks.events) {
     if (event.cause == ChainCause::unexplained)
-      print_note(fmt::format("unexplained {} of chain {} between frames {:.4f} and {:.4f} at {:.1f}, {:.1f}: {:.1f} px",
-                             name_of(event.change), event.id, event.from, event.to, event.px.x, event.px.y, event.length_px));
+      print_note(fmt::format("unexplained {} of chain {} between frames {:.4f} and {:.4f} at {:.1f}, {:.1f}: {:.1f} px{}",
+                             name_of(event.change), event.id, event.from, event.to, event.px.x, event.px.y, event.length_px,
+                             event.beside_conflict ? ", beside a conflict" : ""));
   }
 }
 

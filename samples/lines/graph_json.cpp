@@ -99,6 +99,7 @@ Json tracks_json(const LineTracks& tracks) {
                       {"px", pair(event.px)},
                       {"length_px", number_or_null(event.length_px)}});
     if (event.other >= 0) events.back()["other"] = event.other;
+    if (event.beside_conflict) events.back()["beside_conflict"] = true;
   }
   return {{"ids", tracks.ids}, {"unexplained", unexplained(tracks)}, {"solved_between", tracks.solved}, {"events", std::move(events)}};
 }

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kLeastBend = 1e-7;  // of the radial curvature times the scene's radius: less is rounding
 constexpr double kArm_px = 0.15;     // so far from a cusp its arms are compared
+constexpr double kOneCusp_px = 0.03;
 constexpr double kLongestNarrow_px = 20.0;
 constexpr double kMostLensSteps = 400.0;
 constexpr double kTangency_px = 3.0;  // along one curve, from a cusp
@@ -53,35 +54,55 @@ class EventFinder {
       const double bend = walk_.at(i).radial_curvature * extent_;
       return bend > kLeastBend ? 1 : bend < -kLeastBend ? -1 : 0;
     };
+    std::vector<SignChange> changes;
     size_t first = 0;
     while (first < walk_.size() && sign_of(first) == 0) ++first;
-    if (first == walk_.size()) return;
-    std::vector<CurveEvent> cusps;
     size_t last = first;
     for (size_t k = first + 1; k < first + walk_.size() + (curve_.closed ? 1 : 0) && (curve_.closed || k < walk_.size()); ++k) {
       if (sign_of(k) == 0) continue;
-      if (sign_of(k) != sign_of(last)) {
-        const size_t before = last;
-        const CurveSample &a = walk_.at(before), &b = walk_.at(k);
-        last = k;
-        const double t = std::clamp(a.radial_curvature / (a.radial_curvature - b.radial_curvature), 0.0, 1.0 - 1e-9);
-        const glm::dvec2 px = glm::mix(a.px, b.px, t);
-        const Arm back = arm_from(px, before, -1), ahead = arm_from(px, k, 1);
-        const double reach = std::min(back.reach_px(), ahead.reach_px());
-        double place = glm::mix(static_cast<double>(before), static_cast<double>(k), t);
-        if (place >= static_cast<double>(walk_.size()) && curve_.closed) place -= static_cast<double>(walk_.size());
-        // Where the surface folds back on itself at a cuspidal edge its normal turns round, and the curvature's sign with it, past
-        // infinity: how many sheets begin there only rays tell.
-        if (glm::dot(a.high, b.high) < 0.0) {
-          events_.push_back({VertexKind::joint, place, {}, 0, 0.0});
-          continue;
-        }
-        cusps.push_back({VertexKind::cusp, place, ahead.depth_at(reach) > back.depth_at(reach) ? 1 : -1, 0, 0.0});
-      }
+      if (sign_of(k) != sign_of(last)) changes.push_back({last, k});
       last = k;
     }
+    std::vector<CurveEvent> cusps;
+    for (const SignChange& change : apart(changes)) add_cusp(change, cusps);
     drop_narrow_swallowtails(cusps);
     events_.insert(events_.end(), cusps.begin(), cusps.end());
+  }
+
+  /// Samples around a change of the radial curvature's sign.
+  struct SignChange {
+    size_t before = 0, after = 0;
+  };
+  /// Changes so close to each other that nobody can tell them apart are one, or none where the last undoes the first.
+  std::vector<SignChange> apart(const std::vector<SignChange>& changes) const {
+    std::vector<SignChange> result;
+    for (size_t k = 0; k < changes.size();) {
+      size_t end = k + 1;
+      const auto length = [&](size_t from, size_t to) {
+        return walk_.length_to(static_cast<double>(to)) - walk_.length_to(static_cast<double>(from));
+      };
+      while (end < changes.size() && length(changes[end - 1].after, changes[end].before) < kOneCusp_px) ++end;
+      if ((end - k) % 2 == 1) result.push_back({changes[k].before, changes[end - 1].after});
+      k = end;
+    }
+    return result;
+  }
+
+  void add_cusp(const SignChange& change, std::vector<CurveEvent>& cusps) {
+    const CurveSample &a = walk_.at(change.before), &b = walk_.at(change.after);
+    const double t = std::clamp(a.radial_curvature / (a.radial_curvature - b.radial_curvature), 0.0, 1.0 - 1e-9);
+    double place = glm::mix(static_cast<double>(change.before), static_cast<double>(change.after), t);
+    if (place >= static_cast<double>(walk_.size()) && curve_.closed) place -= static_cast<double>(walk_.size());
+    // Where the surface folds back on itself at a cuspidal edge its normal turns round, and the curvature's sign with it, past infinity:
+    // how many sheets begin there only rays tell.
+    if (glm::dot(a.high, b.high) < 0.0) {
+      events_.push_back({VertexKind::joint, place, {}, 0, 0.0});
+      return;
+    }
+    const glm::dvec2 px = glm::mix(a.px, b.px, t);
+    const Arm back = arm_from(px, change.before, -1), ahead = arm_from(px, change.after, 1);
+    const double reach = std::min(back.reach_px(), ahead.reach_px());
+    cusps.push_back({VertexKind::cusp, place, ahead.depth_at(reach) > back.depth_at(reach) ? 1 : -1, 0, 0.0});
   }
 
   /// Depth along one of the arms of a cusp, by image distance from it. Where the curvature jumps both may lead away from the eye.

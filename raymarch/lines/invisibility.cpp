@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kShort_px = 1.0;  // pieces shorter than this are not asked by rays of their own
 constexpr double kClear_px = 0.3, kLeastClear_px = 0.12;
+constexpr double kWorthAsking_px = 3.0;
 constexpr int kMostSearches = 4;
 constexpr double kNearEnd_px = 0.3;  // pieces in which no ray starts farther from their ends tell little
 
@@ -204,9 +205,18 @@ class Cutter {
       const CurvePiece& piece = cut_.pieces[arc[k]];
       return cast(clear_ray_at(piece, share).value_or(ray_at(piece, share))) - relative[k];
     };
-    const int one = ask(first, same ? 0.35 : 0.5), two = ask(second, same ? 0.65 : 0.5);
-    if (one != two) return {};
-    return one;
+    const int offset = ask(first, same ? 0.35 : 0.5);
+    if (ask(second, same ? 0.65 : 0.5) != offset) return {};
+    // The longest visible piece and the longest hidden one as well: two rays may both lie on one side of a wrong step.
+    for (const bool visible : {true, false}) {
+      std::optional<size_t> longest;
+      for (size_t k = 0; k < arc.size(); ++k) {
+        if ((offset + relative[k] == 0) == visible && (!longest || length(k) > length(*longest))) longest = k;
+      }
+      const bool asked = !longest || *longest == first || *longest == second;
+      if (!asked && length(*longest) >= kWorthAsking_px && ask(*longest, 0.5) != offset) return {};
+    }
+    return offset;
   }
 
   /// What most of three rays say, or nothing for a piece too short to ask.

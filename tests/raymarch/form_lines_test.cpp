@@ -263,6 +263,24 @@ TEST(FormLines, ToriCutByPlanesAndSpheresAgreeWithTheFieldAndWithTheSearchInCell
   EXPECT_GT(counted, 2 * kTori);
 }
 
+TEST(FormLines, AreTheSameForAnyNumberOfThreads) {
+  std::mt19937 random(random_seed());
+  for (int i = 0; i < kBodies; ++i) {
+    const Field body = random_body(random);
+    const Camera camera = random_camera(random, body.traits().bounds, i % 2 == 0);
+    ExecutionSettings one, three;
+    one.threads = 1;
+    three.threads = 3;
+    const ViewGraph a = solve_lines(scene_of(body), camera, {}, one), b = solve_lines(scene_of(body), camera, {}, three);
+    ASSERT_EQ(a.edges.size(), b.edges.size()) << i;
+    for (size_t e = 0; e < a.edges.size(); ++e) {
+      EXPECT_EQ(a.edges[e].invisibility, b.edges[e].invisibility) << i;
+      ASSERT_EQ(a.edges[e].points.size(), b.edges[e].points.size()) << i;
+      for (size_t k = 0; k < a.edges[e].points.size(); ++k) EXPECT_EQ(a.edges[e].points[k].position, b.edges[e].points[k].position) << i;
+    }
+  }
+}
+
 /// Curves on both of two fields, in space.
 std::vector<FieldCurve> seams_of_field(const Field& body) {
   CameraSettings settings;

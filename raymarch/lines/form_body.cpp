@@ -8,6 +8,9 @@
 namespace limn {
 namespace {
 
+// Of the extent: surfaces that coincide count as this far apart, the later one outside. Far below what rays are lifted by, far above
+// rounding.
+constexpr double kHair = 2e-12;
 constexpr double kMargin = 1e-3;  // of the extent, around the body
 constexpr size_t kFew = 5;        // surfaces, so that cutting a cell costs more than it saves
 constexpr int kDeepest = 36;      // cuts
@@ -116,7 +119,7 @@ std::optional<FormBody> form_body(const Field& field) {
   body.extent = bounds.radius();
   const SharpField sharp = split_branches(field, body.extent, true);
   for (size_t i = 0; i < sharp.branches.size(); ++i) {
-    const std::optional<FormSurface> surface = surface_of(sharp.branches[i], sharp.hair * static_cast<double>(i));
+    const std::optional<FormSurface> surface = surface_of(sharp.branches[i], kHair * body.extent * static_cast<double>(i));
     if (!surface) return {};
     body.surfaces.push_back(*surface);
   }

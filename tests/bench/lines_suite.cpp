@@ -9,6 +9,7 @@
 #include "raymarch/lines.h"
 #include "samples/input/input.h"
 #include "samples/scenes/scenes.h"
+#include "tests/bench/freestyle_lines.h"
 #include "tests/bench/line_scenes.h"
 #include "tests/bench/occ_lines.h"
 
@@ -160,6 +161,34 @@ void race_all(const LinesBenchSettings& settings, nlohmann::json& rows) {
   for (const LinePart& part : parts) race(part, settings, rows);
 }
 
+/// A sphere's silhouette beside Freestyle's.
+void race_freestyle(const LinesBenchSettings& settings, nlohmann::json& rows) {
+  const auto& asked = settings.scenes;
+  if (asked.empty() ? !settings.meshes.empty() : std::find(asked.begin(), asked.end(), "sphere") == asked.end()) return;
+  constexpr int kSize_px = 640;
+  const auto add = [&](const std::string& contestant, const Silhouette& silhouette) {
+    fmt::print(settings.table, "| {} | {:.1f} | {:.4f} | {:.4f} |\n", contestant, silhouette.ms, silhouette.worst_px, silhouette.rms_px);
+    rows.push_back({{"suite", "lines"},
+                    {"case", "silhouette of a sphere"},
+                    {"contestant", contestant},
+                    {"ms", silhouette.ms},
+                    {"worst_px", silhouette.worst_px},
+                    {"rms_px", silhouette.rms_px}});
+  };
+  fmt::print(settings.table,
+             "\nSilhouette of a sphere, {0}x{0}, parallel projection\n\n| by | ms | off by at most px | RMS px |\n|---|---|---|---|\n",
+             kSize_px);
+  add("limn", limn_silhouette(kSize_px, settings.threads));
+  for (const int faces : {512, 8192}) {
+    const std::optional<Silhouette> found = freestyle_silhouette(faces, kSize_px);
+    if (!found) {
+      fmt::print(settings.table, "\nFreestyle: no blender that runs, skipped\n");
+      return;
+    }
+    add(fmt::format("Freestyle, {} faces", faces), *found);
+  }
+}
+
 }  // namespace
 
 nlohmann::json bench_lines(const LinesBenchSettings& settings) {
@@ -183,6 +212,7 @@ nlohmann::json bench_lines(const LinesBenchSettings& settings) {
     rows.push_back(json_of(run(input.name, input.scene, settings), settings.table));
   }
   race_all(settings, rows);
+  race_freestyle(settings, rows);
   return rows;
 }
 

@@ -130,15 +130,9 @@ class ChangeFinder {
       return change;
     }
     if (const int other = source_of(side, chain); other >= 0) {
-      const Gap gap = gap_of(side, chain, other);
       change.change = forward ? ChainChange::split : ChainChange::merge;
       change.other = other;
-      change.length_px = gap.length_px;
-      change.px = 0.5 * (gap.from + gap.to);
-      change.settled = gap.length_px <= settings_.short_px || is_thin(side.with, gap);
-      std::vector<ChainEnd> ends;
-      if (gap.one) ends = {*gap.one, *gap.other};
-      explain(side, ends, true, 0.5 * gap.length_px, change);
+      part(side, gaps_of(side, chain, other), change);
       return change;
     }
     change.change = forward ? ChainChange::birth : ChainChange::death;
@@ -165,21 +159,35 @@ class ChangeFinder {
     return most > 0.5 * shape.length_px ? best : -1;
   }
 
-  /// Between an end of the chain and the nearest end of what else came of its source.
-  Gap gap_of(const Side& side, int chain, int source) const {
-    Gap gap;
+  /// Between ends of the chain and ends of what else came of its source, the shortest first.
+  static std::vector<Gap> gaps_of(const Side& side, int chain, int source) {
+    std::vector<Gap> gaps;
     const ChainShape& shape = side.with.chains[static_cast<size_t>(chain)];
     for (const auto& [pair, common] : side.common_px) {
       const auto other = static_cast<size_t>(pair.second);
       if (pair.first != source || pair.second == chain || !side.with.chains[other].visible || common <= 0.0) continue;
       for (const ChainEnd& end : shape.ends) {
-        for (const ChainEnd& others : side.with.chains[other].ends) {
-          const double length = glm::distance(end.px, others.px);
-          if (length < gap.length_px) gap = {length, end.px, others.px, end, others};
-        }
+        for (const ChainEnd& others : side.with.chains[other].ends)
+          gaps.push_back({glm::distance(end.px, others.px), end.px, others.px, end, others});
       }
     }
-    return gap;
+    std::stable_sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.length_px < b.length_px; });
+    return gaps;
+  }
+
+  /// The shortest gap at which something changed; where nothing did the shortest one, unexplained.
+  void part(const Side& side, const std::vector<Gap>& gaps, FoundChange& change) const {
+    std::optional<FoundChange> first;
+    for (const Gap& gap : gaps) {
+      FoundChange tried = change;
+      tried.length_px = gap.length_px;
+      tried.px = 0.5 * (gap.from + gap.to);
+      tried.settled = gap.length_px <= settings_.short_px || is_thin(side.with, gap);
+      explain(side, {*gap.one, *gap.other}, true, 0.5 * gap.length_px, tried);
+      if (!first || tried.settled) first = tried;
+      if (tried.settled) break;
+    }
+    if (first) change = *first;
   }
 
   bool is_thin(const PlacedChains& chains, const Gap& gap) const {

@@ -31,7 +31,8 @@ double nearest_depth(const Camera& camera, const Box& bounds) {
 glm::dvec3 point_at(const GBuffer& seen, const Camera& camera, size_t i) {
   // World positions are kept as floats; far from the origin the depth is what still has its digits.
   const auto width = static_cast<size_t>(seen.width);
-  const CameraRay ray = camera_ray(camera, static_cast<double>(i % width) + seen.sample.x, static_cast<double>(i / width) + seen.sample.y);
+  const size_t row = i / width;
+  const CameraRay ray = camera_ray(camera, static_cast<double>(i % width) + seen.sample.x, static_cast<double>(row) + seen.sample.y);
   return ray.origin + ray.direction * (double{seen.depth.pixels[i]} / -glm::dot(ray.direction, camera.world_from_camera[2]));
 }
 

@@ -12,6 +12,8 @@
 namespace limn {
 namespace {
 
+constexpr double kChord_px = 0.01;  // how far chords of a Bezier curve lie from it
+
 class DxfText {
  public:
   explicit DxfText(const LineDrawing& drawing) : drawing_(drawing) {
@@ -136,9 +138,10 @@ class DxfText {
       } else {
         const auto& cubic = std::get<CubicTo>(step);
         const glm::dvec2 from = corners.back().at;
-        const double length =
-            glm::distance(from, cubic.control1) + glm::distance(cubic.control1, cubic.control2) + glm::distance(cubic.control2, cubic.to);
-        const int parts = std::clamp(static_cast<int>(std::ceil(2.0 * std::sqrt(length))), 2, 400);
+        // Chords lie off by an eighth of the greatest second derivative over the square of their number (Wang 1984).
+        const double second = 6.0 * std::max(glm::length(from - 2.0 * cubic.control1 + cubic.control2),
+                                             glm::length(cubic.control1 - 2.0 * cubic.control2 + cubic.to));
+        const int parts = std::clamp(static_cast<int>(std::ceil(std::sqrt(second / (8.0 * kChord_px)))), 2, 400);
         for (int k = 1; k <= parts; ++k) {
           const double t = static_cast<double>(k) / parts, s = 1.0 - t;
           corners.push_back(

@@ -18,6 +18,7 @@ import xml.etree.ElementTree
 
 try:
     import ezdxf
+    import ezdxf.path
     import numpy
 except ImportError as fault:
     print(f"skipped: {fault}; the packages python3-numpy and python3-ezdxf bring it")
@@ -34,6 +35,7 @@ STROKE = 6.0
 EDGE = 0.75  # px on either side of a stroke's border, where anti-aliasing is each program's own
 COLORS = {"contour": "#203040", "boundary": "#a02020", "crease": "#2060c0", "intersection": "#108040", "material": "#805010", "rim": "#909090"}
 ORDER = ("crease", "intersection", "material", "rim", "boundary", "contour")  # as they are painted
+CHORDS = 0.1  # px: poppler's curveMaxDelta (splash/Splash.cc)
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 CASES = (
@@ -43,7 +45,10 @@ CASES = (
     ("tilted_torus", ("--lines", "all"), 1.0),
     ("machined_part", ("--page", "254x142.875mm"), 3.0),
     ("machined_part", ("--hidden",), 1.0),
+    ("machined_part", ("--curves", "arc"), 1.0),
+    ("tilted_torus", ("--curves", "bezier"), 1.0),
 )
+FIT = 0.05 + 0.015 + 0.01  # px: the tolerance of fitted curves, what lies between the points where it is looked at, and chords of DXF
 checks = collections.Counter()
 
 
@@ -106,7 +111,7 @@ def distance_field(line, size, scale):
     return field
 
 
-def expected_picture(chains, size, scale):
+def expected_picture(chains, size, scale, edge=EDGE):
     """Colours, and which pixels are certain."""
     width, height = size
     picture = numpy.full((height, width, 3), 255.0)
@@ -114,10 +119,10 @@ def expected_picture(chains, size, scale):
     for chain in sorted(chains, key=lambda one: ORDER.index(one.kind)):
         away = distance_field(chain.outline(), size, scale) - 0.5 * scale * STROKE
         color = [int(COLORS[chain.kind][k:k + 2], 16) for k in (1, 3, 5)]
-        inside = away <= -EDGE
+        inside = away <= -edge
         picture[inside] = color
         certain[inside] = True
-        certain[numpy.abs(away) < EDGE] = False
+        certain[numpy.abs(away) < edge] = False
     return picture, certain
 
 
@@ -187,6 +192,9 @@ def check_dxf(path, chains, page_scale, where):
     check("layers of DXF", collections.Counter(entity.dxf.layer for entity in entities) == wanted, where)
     names = {layer.dxf.name for layer in drawing.layers}
     check("layers are in the table", set(wanted) <= names, f"{where}: {names}")
+    if "--curves" in where:
+        check_fitted(entities, chains, page_scale, where)
+        return
     left = [chain for chain in chains]
     for entity in entities:
         check("entities are polylines", entity.dxftype() == "POLYLINE", where)
@@ -197,6 +205,26 @@ def check_dxf(path, chains, page_scale, where):
         check("coordinates of DXF are the graph's", len(match) >= 1, f"{where}: {entity.dxf.layer}")
         check("on the layer of their class", entity.dxf.layer.startswith(match[0].kind.upper()), where)
         left.remove(match[0])
+
+
+def check_fitted(entities, chains, page_scale, where):
+    """Polylines with bulges, and circles: each runs along a chain of its layer, and the chain along it."""
+    left = list(chains)
+    for entity in entities:
+        points = numpy.array([[p.x, p.y] for p in ezdxf.path.make_path(entity).flattening(0.001)]) / page_scale
+        points[:, 1] = HEIGHT - points[:, 1]
+        match = [chain for chain in left if entity.dxf.layer.startswith(chain.kind.upper()) and
+                 farthest(points, chain.outline()) <= FIT and farthest(chain.px, points) <= FIT]
+        check("fitted curves of DXF run along the graph's", len(match) >= 1, f"{where}: {entity.dxf.layer} from {points[0]}")
+        left.remove(match[0])
+
+
+def farthest(points, line):
+    """How far points lie from a polyline: the worst."""
+    a, d = line[:-1], numpy.diff(line, axis=0)
+    t = numpy.einsum("pki,ki->pk", points[:, None, :] - a[None, :, :], d) / numpy.maximum((d * d).sum(axis=1), 1e-300)
+    nearest = a[None, :, :] + numpy.clip(t, 0.0, 1.0)[:, :, None] * d[None, :, :]
+    return float(numpy.linalg.norm(points[:, None, :] - nearest, axis=2).min(axis=1).max())
 
 
 def style_sheet(folder):
@@ -217,14 +245,17 @@ def run(limn, folder):
         chains = [Chain(graph, one) for one in graph["chains"]]
         if "--hidden" not in options:
             chains = [chain for chain in chains if chain.visible]
-        check_svg(files[0], chains, where)
+        if "--curves" not in options:
+            check_svg(files[0], chains, where)
         page = 254.0 / WIDTH if "--page" in options else 1.0
         check_dxf(files[2], chains, page, where)
-        closed = check_fill(folder, files[0], chains, where) if scale == 1.0 else 0
+        closed = check_fill(folder, files[0], chains, where) if scale == 1.0 and "--curves" not in options else 0
         # Hidden lines have the same style here, and are painted first.
         ordered = [chain for chain in chains if not chain.visible] + [chain for chain in chains if chain.visible]
         size = (round(scale * WIDTH), round(scale * HEIGHT))
-        picture, certain = expected_picture(ordered, size, scale) if "--hidden" not in options else hidden_first(chains, size, scale)
+        # Fitted curves may lie off the chain by their tolerance, and poppler draws them as chords.
+        edge = EDGE + FIT + CHORDS if "--curves" in options else EDGE
+        picture, certain = expected_picture(ordered, size, scale, edge) if "--hidden" not in options else hidden_first(chains, size, scale)
         shown = {}
         ask("rsvg-convert", "-d", "96", "-p", "96", "-o", folder / "rsvg.png", "--background-color", "white", files[0])
         shown["rsvg"] = read_png(folder / "rsvg.png")

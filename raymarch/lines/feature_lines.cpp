@@ -117,17 +117,20 @@ struct FineChain {
 
 FineChain fine_chain(const Tracer& tracer, const FeatureChain& chain) {
   FineChain fine;
+  const auto is_kept = [&](const FeatureStation& station) -> char { return tracer.function.kept(station.point) >= 0.0; };
   for (const FeatureStep& step : chain.steps) {
     std::vector<FeatureStation> stations{step.from};
-    const double off_px = tracer.refine(step, kRefinements, stations);
+    // What begins and ends within a triangle is left out.
+    const bool any = is_kept(step.from) || is_kept(step.to);
+    const double off_px = any ? tracer.refine(step, kRefinements, stations) : 0.0;
     stations.push_back(step.to);
     for (size_t i = 0; i + 1 < stations.size(); ++i) {
       fine.steps.push_back({stations[i], stations[i + 1]});
       fine.off_px.push_back(off_px);
-      fine.kept.push_back(tracer.function.kept(stations[i].point) >= 0.0);
+      fine.kept.push_back(any && is_kept(stations[i]));
     }
   }
-  fine.kept.push_back(chain.closed ? fine.kept.front() : tracer.function.kept(fine.steps.back().to.point) >= 0.0);
+  fine.kept.push_back(chain.closed ? fine.kept.front() : is_kept(fine.steps.back().to));
   return fine;
 }
 

@@ -15,8 +15,9 @@ namespace {
 
 constexpr int kRefinements = 7;
 constexpr int kCuts = 24;
-constexpr double kLeastTurn = 0.3;  // of a ridge: its curvature integrated along it (Ohtake et al. 2004), radians
-constexpr double kCut_px = 1e-4;    // how precisely a line's end is found
+constexpr double kLeastTurn = 0.3;   // of a ridge: its curvature integrated along it (Ohtake et al. 2004), radians
+constexpr double kLeastSteps = 4.0;  // of a level set's lines: its spline swings beside edges that its voxels cannot show
+constexpr double kCut_px = 1e-4;     // how precisely a line's end is found
 
 struct Tracer {
   const LineTask& task;
@@ -72,13 +73,13 @@ struct Tracer {
   bool is_drawn(const std::vector<FeatureStep>& run) const {
     const auto strong = [&](const FeatureStep& step) { return function.strong(step.from.point) || function.strong(step.to.point); };
     if (std::none_of(run.begin(), run.end(), strong)) return false;
-    double turn = 0.0;
+    double turn = 0.0, length = 0.0;
     for (const FeatureStep& step : run) {
-      const std::optional<double> k = function.curvature_across(step.from.point);
-      if (!k) return true;
-      turn += *k * glm::distance(step.from.point.p, step.to.point.p);
+      const double apart = glm::distance(step.from.point.p, step.to.point.p);
+      turn += function.curvature_across(step.from.point).value_or(std::numeric_limits<double>::infinity()) * apart;
+      length += apart;
     }
-    return turn > kLeastTurn;
+    return turn > kLeastTurn && length > kLeastSteps * surface.step;
   }
 
   CurveSample sample_of(const FeatureStation& station) const {
@@ -222,6 +223,9 @@ LineContribution feature_lines(const LineTask& task, const ExecutionSettings& ex
       if (task.wants(line_class)) add_lines(task, surface, line_class, execution, out);
     }
   }
+  if (out.unrefined_px > 0.0)
+    out.notes.push_back(
+        fmt::format("suggestive contours, ridges and valleys: where curvature jumps they are known to within {:.2g} px", out.unrefined_px));
   return out;
 }
 

@@ -297,7 +297,7 @@ TEST(FeatureLines, LinesOfCagesAndLevelSetsConvergeToTheFields) {
     scene.objects.push_back({.name = "cage", .source = mesh_source(torus_cage(2 * n, n), Scheme::catmark, "")});
     cages.push_back(off(scene));
   }
-  for (const int voxels : {24, 48, 96}) {
+  for (const int voxels : {48, 96, 192}) {
     LevelSetSettings building;
     building.voxel_size = 2.8 / voxels;
     building.half_width_voxels = 5.0;

@@ -27,7 +27,7 @@ struct CellCache {
 
   static constexpr size_t kCells = 512;
   static size_t place_of(const nanovdb::Coord& node) {
-    const auto part = [&](int axis) { return static_cast<size_t>(static_cast<std::uint32_t>(node[axis])) & 7u; };
+    const auto part = [&](nanovdb::Coord::IndexType axis) { return static_cast<size_t>(static_cast<std::uint32_t>(node[axis])) & 7u; };
     return part(0) * 64 + part(1) * 8 + part(2);
   }
 };

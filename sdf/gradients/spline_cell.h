@@ -24,7 +24,10 @@ inline SplineWeights spline_weights(double u) {
 template <class Accessor>
 std::array<double, 64> spline_coefficients(const Accessor& accessor, const nanovdb::Coord& node) {
   std::array<double, 216> f;  // nodes -2..3; the far corners of the block are never needed
-  const auto index = [](int x, int y, int z) { return static_cast<size_t>((x * 6 + y) * 6 + z); };
+  const auto index = [](int x, int y, int z) {
+    const int place = (x * 6 + y) * 6 + z;
+    return static_cast<size_t>(place);
+  };
   for (int x = 0; x < 6; ++x)
     for (int y = 0; y < 6; ++y)
       for (int z = 0; z < 6; ++z) {

@@ -1,10 +1,13 @@
 #include "sdf/level_set_reconstruction.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "sdf/field_program.h"
+#include "sdf/gradients/spline_cell.h"
 #include "sdf/level_set_data.h"
 #include "sdf/number_interval.h"
 #include "sdf/parallel.h"
@@ -14,9 +17,39 @@ namespace {
 
 constexpr double kNearCorner = 0.2;  // of a voxel
 
+/// Coefficients of the cells that a thread looked at last: making them takes far longer than a value.
+struct CellCache {
+  struct Entry {
+    nanovdb::Coord node{std::numeric_limits<int>::max(), 0, 0};
+    std::array<double, 64> coefficients{};
+  };
+  std::vector<Entry> entries{kCells};
+
+  static constexpr size_t kCells = 512;
+  static size_t place_of(const nanovdb::Coord& node) {
+    const auto part = [&](nanovdb::Coord::IndexType axis) { return static_cast<size_t>(static_cast<std::uint32_t>(node[axis])) & 7u; };
+    return part(0) * 64 + part(1) * 8 + part(2);
+  }
+};
+
 struct Spline {
   LevelSet level_set;
-  const GradientDescriptor* gradient = nullptr;
+  std::shared_ptr<tbb::enumerable_thread_specific<CellCache>> caches = std::make_shared<tbb::enumerable_thread_specific<CellCache>>();
+
+  FieldJet jet(const glm::dvec3& p, bool with_hessian) const {
+    const LevelSetData& data = level_set.data();
+    const CellPoint at = cell_point(data.index_from_world.point(p));
+    CellCache::Entry& entry = caches->local().entries[CellCache::place_of(at.node)];
+    if (entry.node != at.node) {
+      entry.coefficients = spline_coefficients(data.accessor(), at.node);
+      entry.node = at.node;
+    }
+    FieldJet jet = jet_of_spline(entry.coefficients, at.local, with_hessian);
+    const glm::dmat3& index_from_world = data.index_from_world.linear;
+    jet.gradient = data.world_gradient(jet.gradient);
+    if (with_hessian) jet.hessian = glm::transpose(index_from_world) * jet.hessian * index_from_world;
+    return jet;
+  }
 };
 
 template <class T>
@@ -27,7 +60,6 @@ glm::dvec3 point_of(const T* x, const T* y, const T* z, size_t i) {
 template <class T>
 void evaluate(const void* shape, const T* x, const T* y, const T* z, T* values, size_t count) {
   const auto& spline = *static_cast<const Spline*>(shape);
-  const LevelSetData& data = spline.level_set.data();
   for (size_t i = 0; i < count; ++i) {
     if constexpr (std::is_same_v<T, Interval>) {
       values[i] = {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -37,12 +69,9 @@ void evaluate(const void* shape, const T* x, const T* y, const T* z, T* values, 
     } else {
       const glm::dvec3 p = point_of(x, y, z, i);
       if constexpr (std::is_floating_point_v<T>) {
-        double value = 0.0;
-        spline.gradient->values(data, std::span(&p, 1), std::span(&value, 1));
-        values[i] = static_cast<T>(value);
+        values[i] = static_cast<T>(spline.jet(p, false).value);
       } else {
-        FieldJet jet;
-        spline.gradient->hessians(data, std::span(&p, 1), std::span(&jet, 1));
+        const FieldJet jet = spline.jet(p, std::is_same_v<T, Jet>);
         // The chain rule through a rigid motion, which the leaf applies: x, y and z carry its derivatives.
         T sum = scaled(x[i], jet.gradient.x, jet.value);
         const auto add = [&](const T& coordinate, double slope) { sum = combination(sum, 1.0, coordinate, slope, jet.value); };
@@ -102,9 +131,8 @@ Field reconstruction_field(const LevelSet& level_set) {
       nullptr,
       nullptr,
       nullptr};
-  const GradientDescriptor& cubic = find_gradient("cubic");
   FieldLeaf leaf;
-  leaf.shape = std::make_shared<const Spline>(Spline{complete_band(level_set, cubic), &cubic});
+  leaf.shape = std::make_shared<const Spline>(Spline{complete_band(level_set, find_gradient("cubic"))});
   leaf.functions = &functions;
   return field_from_leaf(std::move(leaf), false);
 }

@@ -16,6 +16,8 @@ constexpr double kRounding = 1e-9;   // of the curvature squared
 constexpr double kBlunt = 0.05;      // second derivative of an extremal curvature, over its cube: less is a cylinder's or a torus'
 constexpr double kAside = 0.01;      // of the radius of curvature: for that derivative
 
+constexpr double kResolved = 0.35;  // of the curvature: it changes by less over a voxel where the voxels show it
+
 /// The principal curvature that a class is about, and its direction.
 struct Extreme {
   double k = 0.0, other = 0.0;  ///< Signed so that it is positive on lines of the class.
@@ -26,6 +28,13 @@ Extreme extreme_of(const FeaturePoint& point, LineClass line_class) {
   const SurfaceCurvature curvature = curvature_of_tensor(point.shape, point.normal);
   if (line_class == LineClass::ridge) return {curvature.k1, curvature.k2, curvature.direction1};
   return {-curvature.k2, -curvature.k1, glm::cross(point.normal, curvature.direction1)};
+}
+
+/// Root of the sum of both principal curvatures' squares.
+double size_of(const FeaturePoint& point) {
+  double squared = 0.0;
+  for (int i = 0; i < 3; ++i) squared += glm::dot(point.shape[i], point.shape[i]);
+  return std::sqrt(squared);
 }
 
 }  // namespace
@@ -56,10 +65,8 @@ bool FeatureFunction::worth_a_look(const FeaturePoint& point) const {
 }
 
 bool FeatureFunction::is_rounding(const FeaturePoint& point, const FeatureValue& value) const {
-  double squared = 0.0;
-  for (int i = 0; i < 3; ++i) squared += glm::dot(point.shape[i], point.shape[i]);
-  const bool suggestive = line_class_ == LineClass::suggestive;
-  return std::fabs(value.value) <= kRounding * (suggestive ? std::sqrt(squared) : squared);
+  const double size = size_of(point);
+  return std::fabs(value.value) <= kRounding * (line_class_ == LineClass::suggestive ? size : size * size);
 }
 
 /// The derivative of the radial curvature along w where that is 0: C(w, w, w) + 2 K cot(theta), w made unit (DeCarlo, Finkelstein and
@@ -103,7 +110,12 @@ double FeatureFunction::kept(const FeaturePoint& point) const {
   if (line_class_ == LineClass::suggestive) {
     const double most = std::cos(settings_.suggestive_angle_deg * std::numbers::pi / 180.0);
     least = std::min(least, most - std::fabs(glm::dot(point.normal, view_vector(camera_, point.p))));
-    return least < 0.0 ? least : std::min(least, suggestion(point) - kWeak * settings_.suggestive_slope);
+    if (least < 0.0) return least;
+    const double found = suggestion(point);
+    // A level set's spline swings beside edges that its voxels cannot show.
+    if (surface_.step > 0.0)
+      least = std::min(least, kResolved - found / (surface_.radius * surface_.radius) * surface_.step / size_of(point));
+    return std::min(least, found - kWeak * settings_.suggestive_slope);
   }
   const Extreme extreme = extreme_of(point, line_class_);
   least = std::min({least, extreme.k * surface_.radius - kWeak * settings_.ridge_strength, extreme.k - std::fabs(extreme.other)});

@@ -15,8 +15,9 @@ namespace {
 
 constexpr int kRefinements = 7;
 constexpr int kCuts = 24;
-constexpr double kLeastTurn = 0.3;  // of a ridge: its curvature integrated along it (Ohtake et al. 2004), radians
-constexpr double kCut_px = 1e-4;    // how precisely a line's end is found
+constexpr double kLeastTurn = 0.3;   // of a ridge: its curvature integrated along it (Ohtake et al. 2004), radians
+constexpr double kLeastSteps = 4.0;  // of a level set's lines: its spline swings beside edges that its voxels cannot show
+constexpr double kCut_px = 1e-4;     // how precisely a line's end is found
 
 struct Tracer {
   const LineTask& task;
@@ -72,13 +73,13 @@ struct Tracer {
   bool is_drawn(const std::vector<FeatureStep>& run) const {
     const auto strong = [&](const FeatureStep& step) { return function.strong(step.from.point) || function.strong(step.to.point); };
     if (std::none_of(run.begin(), run.end(), strong)) return false;
-    double turn = 0.0;
+    double turn = 0.0, length = 0.0;
     for (const FeatureStep& step : run) {
-      const std::optional<double> k = function.curvature_across(step.from.point);
-      if (!k) return true;
-      turn += *k * glm::distance(step.from.point.p, step.to.point.p);
+      const double apart = glm::distance(step.from.point.p, step.to.point.p);
+      turn += function.curvature_across(step.from.point).value_or(std::numeric_limits<double>::infinity()) * apart;
+      length += apart;
     }
-    return turn > kLeastTurn;
+    return turn > kLeastTurn && length > kLeastSteps * surface.step;
   }
 
   CurveSample sample_of(const FeatureStation& station) const {
@@ -117,17 +118,20 @@ struct FineChain {
 
 FineChain fine_chain(const Tracer& tracer, const FeatureChain& chain) {
   FineChain fine;
+  const auto is_kept = [&](const FeatureStation& station) -> char { return tracer.function.kept(station.point) >= 0.0; };
   for (const FeatureStep& step : chain.steps) {
     std::vector<FeatureStation> stations{step.from};
-    const double off_px = tracer.refine(step, kRefinements, stations);
+    // What begins and ends within a triangle is left out.
+    const bool any = is_kept(step.from) || is_kept(step.to);
+    const double off_px = any ? tracer.refine(step, kRefinements, stations) : 0.0;
     stations.push_back(step.to);
     for (size_t i = 0; i + 1 < stations.size(); ++i) {
       fine.steps.push_back({stations[i], stations[i + 1]});
       fine.off_px.push_back(off_px);
-      fine.kept.push_back(tracer.function.kept(stations[i].point) >= 0.0);
+      fine.kept.push_back(any && is_kept(stations[i]));
     }
   }
-  fine.kept.push_back(chain.closed ? fine.kept.front() : tracer.function.kept(fine.steps.back().to.point) >= 0.0);
+  fine.kept.push_back(chain.closed ? fine.kept.front() : is_kept(fine.steps.back().to));
   return fine;
 }
 
@@ -219,6 +223,9 @@ LineContribution feature_lines(const LineTask& task, const ExecutionSettings& ex
       if (task.wants(line_class)) add_lines(task, surface, line_class, execution, out);
     }
   }
+  if (out.unrefined_px > 0.0)
+    out.notes.push_back(
+        fmt::format("suggestive contours, ridges and valleys: where curvature jumps they are known to within {:.2g} px", out.unrefined_px));
   return out;
 }
 

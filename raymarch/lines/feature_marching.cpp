@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr int kMostSteps = 60;
-constexpr double kSettled = 1e-11;                         // of the stretch that a root is looked for on
+constexpr double kSettled = 1e-9;                          // of the stretch that a root is looked for on
 constexpr std::array<double, 3> kAcross{0.125, 0.5, 1.0};  // of a step's length: how far from its middle zeros are looked for
 
 double turned(const FeatureValue& value, const glm::dvec3& along) {
@@ -22,7 +22,7 @@ double turned(const FeatureValue& value, const glm::dvec3& along) {
 /// where that is slow, so that a jump is found as well.
 template <class Function>
 double root_of(const Function& f, double f0, double f1) {
-  double low = 0.0, high = 1.0, width = 1.0;
+  double low = 0.0, high = 1.0, width = 1.0, last = -1.0;
   int kept = 0;
   for (int i = 0; i < kMostSteps && high - low > kSettled; ++i) {
     double x = (low * f1 - high * f0) / (f1 - f0);
@@ -32,7 +32,8 @@ double root_of(const Function& f, double f0, double f1) {
     }
     if (!(x > low && x < high)) x = 0.5 * (low + high);
     const double fx = f(x);
-    if (fx == 0.0 || !std::isfinite(fx)) return x;
+    if (fx == 0.0 || !std::isfinite(fx) || std::fabs(x - last) < kSettled) return x;
+    last = x;
     if ((fx < 0.0) == (f0 < 0.0)) {
       low = x;
       f0 = fx;

@@ -87,27 +87,29 @@ bool may_be_seen(const Camera& camera, const std::array<glm::dvec3, 3>& corners)
   return high.x > -kBeyondFrame_px && high.y > -kBeyondFrame_px && low.x < size.x + kBeyondFrame_px && low.y < size.y + kBeyondFrame_px;
 }
 
-double cut_long_edges(const Camera& camera, double edge_px, std::int64_t most, const std::function<void(glm::dvec3&)>& onto_surface,
-                      FeatureMesh& mesh) {
+double cut_long_edges(const Camera& camera, const CutSettings& settings, FeatureMesh& mesh) {
   constexpr auto none = std::numeric_limits<std::uint32_t>::max();
   for (int round = 0;; ++round) {
     std::vector<Edge> edges = edges_of(mesh);
     std::vector<double> lengths(edges.size());
     parallel_for(size_t{0}, edges.size(),
                  [&](size_t i) { lengths[i] = length_px(camera, mesh.positions[edges[i].a], mesh.positions[edges[i].b]); });
-    const double longest = lengths.empty() ? 0.0 : *std::max_element(lengths.begin(), lengths.end());
+    double longest = 0.0;
     std::vector<Edge> cut;
     for (size_t i = 0; i < edges.size(); ++i) {
-      if (lengths[i] > edge_px) cut.push_back(edges[i]);
+      const bool may_be_cut = glm::distance(mesh.positions[edges[i].a], mesh.positions[edges[i].b]) > settings.least;
+      if (!may_be_cut || lengths[i] <= settings.edge_px) continue;
+      cut.push_back(edges[i]);
+      longest = std::max(longest, lengths[i]);
     }
     // Each edge that is cut adds a triangle on either side.
     const auto after = static_cast<std::int64_t>(mesh.triangles.size() + 2 * cut.size());
-    if (cut.empty() || after > most || round == kMostRounds) return longest;
+    if (cut.empty() || after > settings.most || round == kMostRounds) return longest;
     const size_t first = mesh.positions.size();
     mesh.positions.resize(first + cut.size());
     parallel_for(size_t{0}, cut.size(), [&](size_t i) {
       glm::dvec3 p = 0.5 * (mesh.positions[cut[i].a] + mesh.positions[cut[i].b]);
-      onto_surface(p);
+      if (settings.onto_surface) settings.onto_surface(p);
       mesh.positions[first + i] = p;
     });
     std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -14,10 +14,15 @@ struct FeatureMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles{};
 };
 
-/// Cuts edges that are seen longer than `edge_px` in their middles, which `onto_surface` moves, until none is left or there are `most`
-/// triangles. Neighbours cut a common edge at the same point. Returns how long the longest edge in the picture is, px.
-double cut_long_edges(const Camera& camera, double edge_px, std::int64_t most, const std::function<void(glm::dvec3&)>& onto_surface,
-                      FeatureMesh& mesh);
+struct CutSettings {
+  double edge_px = 2.0;                             ///< Edges that are seen longer are cut,
+  double least = 0.0;                               ///< but none that is shorter than this, world units,
+  std::int64_t most = 0;                            ///< and no more where there would be more triangles.
+  std::function<void(glm::dvec3&)> onto_surface{};  ///< Moves the middles of edges; empty: they stay.
+};
+/// Cuts long edges in their middles; neighbours cut a common edge at the same point. Returns how long the longest edge is that is in the
+/// picture and should have been cut, px; 0: none.
+double cut_long_edges(const Camera& camera, const CutSettings& settings, FeatureMesh& mesh);
 
 /// Whether a triangle may be in the picture: none of its sides has all corners beyond it.
 bool may_be_seen(const Camera& camera, const std::array<glm::dvec3, 3>& corners);

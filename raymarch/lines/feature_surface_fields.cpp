@@ -25,6 +25,7 @@ constexpr double kStep = 3e-4;     // of the radius of curvature, for difference
 constexpr double kReach = 3.0;     // of a triangle's longest edge: how far its corners may lie from a sheet that goes through it
 constexpr double kSettled = 1e-9;  // of the extent
 constexpr int kNewton = 20;
+constexpr double kFinestEdge = 0.6;  // of a voxel: triangles of level sets are no smaller
 
 /// The sheets of one body.
 class Sheets {
@@ -147,13 +148,13 @@ SheetTriangles by_sheets(const FeatureMesh& mesh, const std::vector<std::uint32_
 }
 
 /// Triangles near the surface become a feature surface of the sheets.
-FeatureSurface surface_of(const LineTask& task, const std::shared_ptr<const Sheets>& sheets, FeatureMesh mesh,
-                          const std::function<void(glm::dvec3&)>& onto_surface, double& longest_px) {
+FeatureSurface surface_of(const LineTask& task, const std::shared_ptr<const Sheets>& sheets, FeatureMesh mesh, const CutSettings& cut,
+                          double& longest_px) {
   FeatureSurface surface;
   Box box;
   for (const glm::dvec3& p : mesh.positions) box = include(box, p);
   surface.radius = box.radius();
-  longest_px = cut_long_edges(task.camera, kFeatureEdge_px, kMostFeatureTriangles, onto_surface, mesh);
+  longest_px = cut_long_edges(task.camera, cut, mesh);
   const auto unseen = [&](const std::array<std::uint32_t, 3>& t) {
     return !may_be_seen(task.camera, {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
   };
@@ -191,7 +192,7 @@ FeatureMesh mesh_of(const Mesh& mesh) {
 }
 
 void note_coarse(const std::string& name, double longest_px, std::vector<std::string>& notes) {
-  if (longest_px <= kFeatureEdge_px) return;
+  if (longest_px == 0.0) return;
   notes.push_back(
       fmt::format("{}: suggestive contours, ridges and valleys are searched in triangles of up to {:.2g} px (the limit on "
                   "triangles is reached): smaller ones may be missing",
@@ -224,8 +225,9 @@ std::vector<FeatureSurface> field_features(const LineTask& task, const std::vect
       project_to_surface(*evaluator, p);
     };
     double longest_px = 0.0;
-    FeatureSurface surface = surface_of(task, sheets, mesh_of(tessellate(field, {kCageLevel, NormalKind::flat, task.settings.max_bytes})),
-                                        onto_surface, longest_px);
+    const CutSettings cut{kFeatureEdge_px, 0.0, kMostFeatureTriangles, onto_surface};
+    FeatureMesh mesh = mesh_of(tessellate(field, {kCageLevel, NormalKind::flat, task.settings.max_bytes}));
+    FeatureSurface surface = surface_of(task, sheets, std::move(mesh), cut, longest_px);
     note_coarse(name, longest_px, notes);
     struct Objects {
       FieldBodies bodies;
@@ -259,12 +261,10 @@ std::vector<FeatureSurface> level_set_features(const LineTask& task, const std::
     for (glm::dvec3& p : mesh.positions) p = placed.solver_from_world.point(p);
     const double extent = placed.box.radius();
     const auto sheets = std::make_shared<const Sheets>(split_branches(placed.field, extent), extent, placed.voxel);
-    const auto onto_surface = [&](glm::dvec3& p) {
-      const FeaturePoint point = sheets->onto(0, p);
-      if (point.valid && glm::distance(point.p, p) < placed.voxel) p = point.p;
-    };
+    // Chords of the mesh lie so near the surface that only the corners of the finest triangles have to be brought onto it.
+    const CutSettings cut{kFeatureEdge_px, kFinestEdge * placed.voxel, kMostFeatureTriangles, {}};
     double longest_px = 0.0;
-    FeatureSurface surface = surface_of(task, sheets, mesh_of(mesh), onto_surface, longest_px);
+    FeatureSurface surface = surface_of(task, sheets, mesh_of(mesh), cut, longest_px);
     note_coarse(task.scene.objects[object].name, longest_px, notes);
     surface.step = placed.voxel;
     surface.object = [object](const FeaturePoint&) { return static_cast<int>(object) + 1; };

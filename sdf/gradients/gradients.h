@@ -21,7 +21,8 @@ constexpr Stencil box_stencil(int lower, int upper, bool beyond) {
           farthest = off > farthest ? off : farthest;
         }
         if (outside == 0 || (beyond && outside == 1 && farthest == 1)) {
-          std::uint8_t& row = stencil[static_cast<size_t>(x + 2)][static_cast<size_t>(y + 2)];
+          const int from_first_x = x + 2, from_first_y = y + 2;
+          std::uint8_t& row = stencil[static_cast<size_t>(from_first_x)][static_cast<size_t>(from_first_y)];
           row = static_cast<std::uint8_t>(row | 1 << (z + 2));
         }
       }

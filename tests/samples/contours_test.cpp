@@ -182,12 +182,19 @@ TEST(Contours, StyleSheetsAreReadAndTheirFaultsNamed) {
 
 TEST(Contours, WrongOptionsAreRefusedInOneLine) {
   const TemporaryFolder folder;
-  const std::vector<std::pair<std::vector<std::string>, std::string>> faults = {
-      {{"--lines", "contuor"}, "contour"}, {{"--qi", "3..1"}, "0..2"},
-      {{"--page", "210x297"}, "mm"},       {{"--curves", "spline"}, "bezier"},
-      {{"--fit", "0"}, "above 0"},         {{"--style", "oil"}, "ink"},
-      {{"--threshold", "1"}, "below 1"},   {{"--crease-angle", "180"}, "below 180"},
-      {{"--surface", "analytic"}, "mesh"}, {{"-o", "a.bmp"}, ".svg"}};
+  const std::vector<std::pair<std::vector<std::string>, std::string>> faults = {{{"--lines", "contuor"}, "contour"},
+                                                                                {{"--qi", "3..1"}, "0..2"},
+                                                                                {{"--page", "210x297"}, "mm"},
+                                                                                {{"--curves", "spline"}, "bezier"},
+                                                                                {{"--fit", "0"}, "above 0"},
+                                                                                {{"--style", "oil"}, "ink"},
+                                                                                {{"--threshold", "1"}, "below 1"},
+                                                                                {{"--crease-angle", "180"}, "below 180"},
+                                                                                {{"--suggestive-angle", "90"}, "below 90"},
+                                                                                {{"--suggestive-slope", "-1"}, "from 0 up"},
+                                                                                {{"--ridge-strength", "0"}, "above 0"},
+                                                                                {{"--surface", "analytic"}, "mesh"},
+                                                                                {{"-o", "a.bmp"}, ".svg"}};
   for (const auto& [options, says] : faults) {
     std::vector<std::string> call = {"contours", "ellipsoid", "--size", "64x64"};
     call.insert(call.end(), options.begin(), options.end());
@@ -196,6 +203,31 @@ TEST(Contours, WrongOptionsAreRefusedInOneLine) {
     EXPECT_EQ(bad.err_lines(), 1) << bad.err;
     EXPECT_NE(bad.err.find(says), std::string::npos) << bad.err;
   }
+}
+
+TEST(Contours, SuggestiveContoursRidgesAndValleysHaveLayersOfTheirOwn) {
+  const TemporaryFolder folder;
+  const auto draw = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> call = {"contours", "teacup", "--size", "320x180", "-q", "-o", "a.svg", "-o", "a.dxf", "-o", "a.json"};
+    call.insert(call.end(), more.begin(), more.end());
+    const RunResult result = run_limn(call, folder.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return std::array<std::string, 3>{read_bytes(folder.path() / "a.svg"), read_bytes(folder.path() / "a.dxf"),
+                                      read_bytes(folder.path() / "a.json")};
+  };
+  const std::vector<std::string> names = {"suggestive", "ridge", "valley"};
+  const auto with = draw({"--lines", "contour,suggestive,ridge,valley", "--style", "technical"}), without = draw({});
+  for (const std::string& name : names) {
+    std::string layer = name + "_VISIBLE";
+    std::transform(layer.begin(), layer.end() - 8, layer.begin(), [](char c) { return static_cast<char>(std::toupper(c)); });
+    EXPECT_NE(with[0].find("class=\"" + name + " visible\""), std::string::npos) << name;
+    EXPECT_NE(with[1].find(layer), std::string::npos) << name;
+    EXPECT_NE(with[2].find("\"" + name + "\""), std::string::npos) << name;
+    for (const std::string& drawing : without) EXPECT_EQ(drawing.find(name), std::string::npos) << name << " by default";
+  }
+  // Cut-offs that nothing passes leave nothing.
+  const auto none = draw({"--lines", "suggestive,ridge,valley", "--suggestive-slope", "1e9", "--ridge-strength", "1e9"});
+  EXPECT_EQ(count_of(none[0], "<path "), 0u);
 }
 
 TEST(Contours, EveryRepresentationIsDrawn) {

@@ -1,0 +1,78 @@
+#pragma once
+// Internal: the prefiltered cubic B-spline of a grid, cell by cell.
+
+#include <array>
+
+#include "sdf/level_set_data.h"
+
+namespace limn {
+
+/// Uniform cubic B-spline over the nodes -1, 0, 1, 2 at local place u: values, first and second derivatives (de Boor 1978).
+struct SplineWeights {
+  std::array<double, 4> value, first, second;
+};
+inline SplineWeights spline_weights(double u) {
+  const double v = 1.0 - u;
+  return {.value = {v * v * v / 6.0, 2.0 / 3.0 - u * u * (1.0 - 0.5 * u), 2.0 / 3.0 - v * v * (1.0 - 0.5 * v), u * u * u / 6.0},
+          .first = {-0.5 * v * v, u * (1.5 * u - 2.0), v * (2.0 - 1.5 * v), 0.5 * u * u},
+          .second = {v, 3.0 * u - 2.0, 3.0 * v - 2.0, u}};
+}
+
+/// Spline coefficients at the 4 x 4 x 4 nodes about a cell: c = f - (second differences of f along the three axes) / 6. The sum of the
+/// three in place of the full product still reproduces every polynomial of degree 3, which is all that third order in the gradient
+/// takes (quasi-interpolation: Condat, Blu, Unser 2005), and it reads axis neighbours only.
+template <class Accessor>
+std::array<double, 64> spline_coefficients(const Accessor& accessor, const nanovdb::Coord& node) {
+  std::array<double, 216> f;  // nodes -2..3; the far corners of the block are never needed
+  const auto index = [](int x, int y, int z) {
+    const int place = (x * 6 + y) * 6 + z;
+    return static_cast<size_t>(place);
+  };
+  for (int x = 0; x < 6; ++x)
+    for (int y = 0; y < 6; ++y)
+      for (int z = 0; z < 6; ++z) {
+        const int outer = (x % 5 == 0) + (y % 5 == 0) + (z % 5 == 0);
+        if (outer < 2) f[index(x, y, z)] = static_cast<double>(accessor.getValue(node.offsetBy(x - 2, y - 2, z - 2)));
+      }
+  std::array<double, 64> c;
+  for (int x = 1; x < 5; ++x)
+    for (int y = 1; y < 5; ++y)
+      for (int z = 1; z < 5; ++z) {
+        const size_t at = index(x, y, z);
+        const double neighbours = f[at - 36] + f[at + 36] + f[at - 6] + f[at + 6] + f[at - 1] + f[at + 1];
+        c[static_cast<size_t>(((x - 1) * 4 + y - 1) * 4 + z - 1)] = 2.0 * f[at] - neighbours / 6.0;
+      }
+  return c;
+}
+
+/// Value, gradient and (where asked for) Hessian by index coordinates.
+inline FieldJet jet_of_spline(const std::array<double, 64>& c, const glm::dvec3& local, bool with_hessian) {
+  const SplineWeights x = spline_weights(local.x), y = spline_weights(local.y), z = spline_weights(local.z);
+  FieldJet jet;
+  glm::dmat3& h = jet.hessian;
+  for (size_t i = 0; i < 4; ++i)
+    for (size_t j = 0; j < 4; ++j) {
+      double value = 0.0, first = 0.0, second = 0.0;  // of the row along z
+      for (size_t k = 0; k < 4; ++k) {
+        const double coefficient = c[(i * 4 + j) * 4 + k];
+        value += z.value[k] * coefficient;
+        first += z.first[k] * coefficient;
+        second += z.second[k] * coefficient;
+      }
+      jet.value += x.value[i] * y.value[j] * value;
+      jet.gradient += glm::dvec3(x.first[i] * y.value[j] * value, x.value[i] * y.first[j] * value, x.value[i] * y.value[j] * first);
+      if (!with_hessian) continue;
+      h[0][0] += x.second[i] * y.value[j] * value;
+      h[1][1] += x.value[i] * y.second[j] * value;
+      h[2][2] += x.value[i] * y.value[j] * second;
+      h[1][0] += x.first[i] * y.first[j] * value;
+      h[2][0] += x.first[i] * y.value[j] * first;
+      h[2][1] += x.value[i] * y.first[j] * first;
+    }
+  h[0][1] = h[1][0];
+  h[0][2] = h[2][0];
+  h[1][2] = h[2][1];
+  return jet;
+}
+
+}  // namespace limn

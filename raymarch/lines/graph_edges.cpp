@@ -12,6 +12,7 @@
 namespace limn {
 namespace {
 
+constexpr double kDepthShare = 0.02;    // of an error across the picture is one along the line of sight, px
 constexpr double kSamePlace_px = 0.05;  // between ends of curves that meet, along the surface
 constexpr double kSnap_px = 5.0;        // between a contour's end and the joint it leads to, along the crease
 constexpr double kOnStep_px = 0.1;      // and across it
@@ -63,8 +64,15 @@ LinePoint line_point(const CurveSample& sample, const glm::dvec3& origin) {
   return {sample.px, sample.depth, sample.p + origin, sample.high, sample.radial_curvature};
 }
 
+double distance_to_chord(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 along = b - a;
+  const double length2 = glm::dot(along, along);
+  const double t = length2 > 0.0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0.0;
+  return glm::distance(p, a + t * along);
+}
+
 /// Marks what is kept between px[first] and px[last]: Douglas & Peucker 1973.
-void keep_between(const std::vector<glm::dvec2>& px, size_t first, size_t last, double tolerance_px, std::vector<bool>& keep) {
+void keep_between(const std::vector<glm::dvec3>& px, size_t first, size_t last, double tolerance_px, std::vector<bool>& keep) {
   std::vector<std::pair<size_t, size_t>> stack = {{first, last}};
   while (!stack.empty()) {
     const auto [low, high] = stack.back();
@@ -73,7 +81,7 @@ void keep_between(const std::vector<glm::dvec2>& px, size_t first, size_t last, 
     size_t farthest = low;
     double most = tolerance_px;
     for (size_t i = low + 1; i < high; ++i) {
-      const double distance = distance_to_segment(px[i], px[low], px[high]);
+      const double distance = distance_to_chord(px[i], px[low], px[high]);
       if (distance > most) {
         most = distance;
         farthest = i;
@@ -86,7 +94,7 @@ void keep_between(const std::vector<glm::dvec2>& px, size_t first, size_t last, 
   }
 }
 
-std::vector<bool> kept_by_thinning(const std::vector<glm::dvec2>& px, bool closed, double tolerance_px) {
+std::vector<bool> kept_by_thinning(const std::vector<glm::dvec3>& px, bool closed, double tolerance_px) {
   std::vector<bool> keep(px.size(), false);
   keep.front() = keep.back() = true;
   if (closed && px.size() > 3) {
@@ -113,9 +121,11 @@ std::vector<LinePoint> points_of_piece(const SurfaceCurve& curve, const CurvePie
   for (double place = std::floor(piece.from) + 1.0; place < piece.to; place += 1.0)
     samples.push_back(&curve.samples[static_cast<size_t>(place) % n]);
   samples.push_back(&last);
-  std::vector<glm::dvec2> px;
+  // Image points and depths: chords keep near the curve along the lines of sight too, where it is seen end on.
+  const double per_unit = kDepthShare * pixels_per_unit_at(task.camera, std::max(first.depth, 1e-9));
+  std::vector<glm::dvec3> px;
   px.reserve(samples.size());
-  for (const CurveSample* sample : samples) px.push_back(sample->px);
+  for (const CurveSample* sample : samples) px.emplace_back(sample->px, per_unit * sample->depth);
   const std::vector<bool> keep = kept_by_thinning(px, piece.begin < 0, 0.5 * task.settings.tolerance_px);
   std::vector<LinePoint> points;
   for (size_t i = 0; i < samples.size(); ++i) {

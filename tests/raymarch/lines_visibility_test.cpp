@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -77,18 +78,45 @@ struct ExactTorus {
     return roots_before(1.0, s, s * s + 2.0 * k - 4.0 * major * major * across, sight.reach);
   }
 
+  /// Two closed lines around the ring; where the eye lies beside the plane of some of the tube's circles, too near for a tangent to them,
+  /// the two are joined at the ends of each run of angles.
   std::vector<std::vector<glm::dvec3>> contours(const Camera& camera, int steps) const {
-    std::vector<std::vector<glm::dvec3>> lines(2);
-    for (int i = 0; i < steps; ++i) {
-      const double turn = 2.0 * kPi * i / steps;
+    const bool perspective = camera.projection == Projection::perspective;
+    std::vector<std::array<glm::dvec3, 2>> points(static_cast<size_t>(steps));
+    std::vector<bool> valid(points.size(), false);
+    for (size_t i = 0; i < points.size(); ++i) {
+      const double turn = 2.0 * kPi * static_cast<double>(i) / steps;
       const glm::dvec3 out(std::cos(turn), 0.0, std::sin(turn)), middle = major * out;
-      const bool perspective = camera.projection == Projection::perspective;
       const glm::dvec3 e = perspective ? camera.eye - middle : camera.world_from_camera[2];
       const double a = glm::dot(e, out), b = e.y, share = (perspective ? minor : 0.0) / std::hypot(a, b);
-      if (share >= 1.0) return {};  // The eye is within the tube's circle.
+      valid[i] = share < 1.0;
       for (const int side : {0, 1}) {
-        const double angle = std::atan2(b, a) + (side == 0 ? 1.0 : -1.0) * std::acos(share);
-        lines[static_cast<size_t>(side)].push_back(middle + minor * (std::cos(angle) * out + std::sin(angle) * glm::dvec3(0.0, 1.0, 0.0)));
+        const double angle = std::atan2(b, a) + (side == 0 ? 1.0 : -1.0) * std::acos(std::min(share, 1.0));
+        points[i][static_cast<size_t>(side)] = middle + minor * (std::cos(angle) * out + std::sin(angle) * glm::dvec3(0.0, 1.0, 0.0));
+      }
+    }
+    std::vector<std::vector<glm::dvec3>> lines;
+    const auto gap = std::find(valid.begin(), valid.end(), false);
+    if (gap == valid.end()) {
+      lines.resize(2);
+      for (const auto& both : points) {
+        lines[0].push_back(both[0]);
+        lines[1].push_back(both[1]);
+      }
+      return lines;
+    }
+    const auto first = static_cast<size_t>(gap - valid.begin());
+    std::vector<glm::dvec3> there, back;
+    for (size_t k = 1; k <= points.size(); ++k) {
+      const size_t i = (first + k) % points.size();
+      if (valid[i]) {
+        there.push_back(points[i][0]);
+        back.push_back(points[i][1]);
+      } else if (!there.empty()) {
+        there.insert(there.end(), back.rbegin(), back.rend());
+        lines.push_back(std::move(there));
+        there.clear();
+        back.clear();
       }
     }
     return lines;
@@ -122,22 +150,27 @@ struct Stats {
   std::int64_t compared = 0, changes = 0, near_changes = 0;
 };
 
-/// The point of a contour of the graph that lies nearest to `p` in space.
+/// The place of a contour of the graph that is nearest in the image among those at the same depth, of which a pixel counts as 0.05 px.
 struct Nearest {
-  double distance = std::numeric_limits<double>::infinity();
+  double distance_px = std::numeric_limits<double>::infinity();
   int invisibility = -1;
 };
-Nearest nearest_in(const ViewGraph& graph, const glm::dvec3& p) {
+Nearest nearest_in(const ViewGraph& graph, const Camera& camera, const glm::dvec3& p) {
   Nearest nearest;
+  const glm::dvec3 image = project(camera, p);
+  const glm::dvec2 px(image);
+  const double per_unit = 0.05 * pixels_per_unit_at(camera, image.z);
   for (const LineEdge& edge : graph.edges) {
     if (edge.line_class != LineClass::contour) continue;
-    for (size_t i = 0; i + 1 < edge.points.size(); ++i) {
-      const glm::dvec3 &a = edge.points[i].position, &b = edge.points[i + 1].position;
-      const double length = glm::distance(a, b);
-      if (glm::distance(a, p) - length > nearest.distance) continue;
-      const double t = length > 0.0 ? std::clamp(glm::dot(p - a, b - a) / (length * length), 0.0, 1.0) : 0.0;
-      const double distance = glm::distance(p, glm::mix(a, b, t));
-      if (distance < nearest.distance) nearest = {distance, edge.invisibility};
+    const size_t n = edge.points.size();
+    for (size_t i = 0; i + (edge.begin < 0 ? 0 : 1) < n; ++i) {
+      const LinePoint &a = edge.points[i], &b = edge.points[(i + 1) % n];
+      const glm::dvec2 along = b.px - a.px;
+      const double length = glm::length(along);
+      if (glm::distance(a.px, px) - length > nearest.distance_px) continue;
+      const double t = length > 0.0 ? std::clamp(glm::dot(px - a.px, along) / (length * length), 0.0, 1.0) : 0.0;
+      const double distance = std::max(glm::distance(px, a.px + t * along), per_unit * std::fabs(glm::mix(a.depth, b.depth, t) - image.z));
+      if (distance < nearest.distance_px) nearest = {distance, edge.invisibility};
     }
   }
   return nearest;
@@ -168,9 +201,9 @@ void compare(const ViewGraph& graph, const Camera& camera, const std::vector<Exa
         ++stats.near_changes;
         continue;
       }
-      const Nearest found = nearest_in(graph, line.points[i]);
+      const Nearest found = nearest_in(graph, camera, line.points[i]);
       ++stats.compared;
-      ASSERT_LT(found.distance * pixels_per_unit_at(camera, project(camera, line.points[i]).z), 0.3) << what;
+      ASSERT_LT(found.distance_px, 0.05) << what;
       ASSERT_EQ(found.invisibility, line.layers[i]) << what << fmt::format(" at {:.3f}, {:.3f}", px[i].x, px[i].y);
     }
   }
@@ -193,14 +226,18 @@ TEST(LinesVisibility, ATorusChangesAtItsExactCuspsAndTJunctions) {
         for (const glm::dvec3& p : points) line.layers.push_back(torus.own_layers(sight_of(camera, p)));
         lines.push_back(std::move(line));
       }
-      ASSERT_EQ(lines.size(), 2u);
+      ASSERT_FALSE(lines.empty());
       const std::string what = fmt::format("view {}, {}, minor {}", view, perspective ? "perspective" : "orthographic", torus.minor);
-      ASSERT_NO_FATAL_FAILURE(compare(solve_lines(scene, camera, {}, {}), camera, lines, what, stats));
+      for (const bool closed_forms : {true, false}) {
+        LineSettings settings;
+        settings.closed_forms = closed_forms;
+        ASSERT_NO_FATAL_FAILURE(compare(solve_lines(scene, camera, settings, {}), camera, lines, what, stats));
+      }
     }
   }
   fmt::print("{} points compared, {} changes, {} points within 0.05 px of one\n", stats.compared, stats.changes, stats.near_changes);
   EXPECT_GT(stats.changes, 100);
-  EXPECT_GT(stats.compared, 20 * stats.near_changes / 10);
+  EXPECT_GT(stats.compared, stats.near_changes);
 }
 
 TEST(LinesVisibility, EllipsoidsHideEachOtherAtTheExactTJunctions) {

@@ -39,12 +39,13 @@ Settings read_settings(const Parameters& parameters) {
     if (one.by_default && parameters.flag(one.about.name)) settings.lines.classes.push_back(one.line_class);
   }
   settings.lines.crease_angle_deg = parameters.number("crease_angle");
+  settings.lines.smooth_meshes = parameters.flag("smooth");
   return settings;
 }
 
 bool same(const LineSettings& a, const LineSettings& b) {
   return a.classes == b.classes && a.threshold == b.threshold && a.crease_angle_deg == b.crease_angle_deg &&
-         a.tolerance_px == b.tolerance_px;
+         a.smooth_meshes == b.smooth_meshes && a.tolerance_px == b.tolerance_px;
 }
 
 /// Solved once for all samples of a picture, and for all calls with the same settings.
@@ -153,6 +154,7 @@ BorderMethod contours_method() {
            a_flag("crease", true).help("where two normals of an object meet at an angle"),
            a_flag("intersection", true).help("where objects pass through each other"),
            a_flag("material", true).help("where materials of one object meet"),
+           a_flag("smooth", false).help("of meshes: contours of the smooth surface between their vertices' normals, not edges of facets"),
            a_number("crease_angle", 40.0).in(0.001, 179.999).unit("deg").help("of meshes: between the normals of two faces"),
            a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")},
           unsupported,

@@ -63,6 +63,15 @@ void append_surface(const SceneObject& object, Surface surface, SceneModel& mode
   if (reach.finite()) model.bounds = merge(model.bounds, {reach.lower + model.render_origin, reach.upper + model.render_origin});
 }
 
+namespace {
+
+bool is_subdivided(const SceneObject& object) {
+  const auto* mesh = std::get_if<MeshSource>(&object.source);
+  return mesh != nullptr && mesh->scheme.has_value();
+}
+
+}  // namespace
+
 Scene modelled_scene(const Scene& scene, const SceneModel& model) {
   Scene result = scene;
   const Affine world_from_render{glm::dmat3(1.0), model.render_origin};
@@ -71,7 +80,7 @@ Scene modelled_scene(const Scene& scene, const SceneModel& model) {
     SceneObject& object = result.objects[i];
     if (surface.level_set) {
       object.source = LevelSetSource{*surface.level_set, object.name};
-    } else if (surface.polygons) {
+    } else if (surface.polygons && !is_subdivided(object)) {
       // Shares the mesh and keeps its owner alive.
       object.source = MeshSource{SharedMesh(std::shared_ptr<const Mesh>(surface.polygons, &surface.polygons->mesh()))};
     } else {

@@ -142,23 +142,24 @@ std::string unsupported(const SceneModel&, const Scene&) { return {}; }
 }  // namespace
 
 BorderMethod contours_method() {
-  return {{"contours", "the lines of what is traced, followed as vectors with their visibility certified, drawn with exact coverage",
-           "Appel 1967; widths by curvature: Goodwin et al. 2007; tracing and certificate: limn"},
-          {"id"},
-          {a_number("width", 2.0).in(0.0, 64.0).unit("px").help("of the lines; where it varies: of the thickest"),
-           a_choice("width_from", {"constant", "depth", "curvature"})
-               .help("the same everywhere; thick where near and thin where far; thick where the surface turns away slowly"),
-           a_number("thin_width", 0.5).in(0.0, 64.0).unit("px").help("where the width varies: of the thinnest"),
-           a_number("threshold", 0.2).in(0.0, 1.0).help("by curvature: the width is the distance at which N.V reaches this"),
-           a_flag("contour", true).help("where N.V is 0"), a_flag("boundary", true).help("open edges"),
-           a_flag("crease", true).help("where two normals of an object meet at an angle"),
-           a_flag("intersection", true).help("where objects pass through each other"),
-           a_flag("material", true).help("where materials of one object meet"),
-           a_flag("smooth", false).help("of meshes: contours of the smooth surface between their vertices' normals, not edges of facets"),
-           a_number("crease_angle", 40.0).in(0.001, 179.999).unit("deg").help("of meshes: between the normals of two faces"),
-           a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")},
-          unsupported,
-          draw};
+  return {
+      {"contours", "the lines of what is traced, of a cage its limit surface's, as vectors with certified visibility and exact coverage",
+       "Appel 1967; widths by curvature: Goodwin et al. 2007; tracing and certificate: limn"},
+      {"id"},
+      {a_number("width", 2.0).in(0.0, 64.0).unit("px").help("of the lines; where it varies: of the thickest"),
+       a_choice("width_from", {"constant", "depth", "curvature"})
+           .help("the same everywhere; thick where near and thin where far; thick where the surface turns away slowly"),
+       a_number("thin_width", 0.5).in(0.0, 64.0).unit("px").help("where the width varies: of the thinnest"),
+       a_number("threshold", 0.2).in(0.0, 1.0).help("by curvature: the width is the distance at which N.V reaches this"),
+       a_flag("contour", true).help("where N.V is 0"), a_flag("boundary", true).help("open edges"),
+       a_flag("crease", true).help("where two normals of an object meet at an angle"),
+       a_flag("intersection", true).help("where objects pass through each other"),
+       a_flag("material", true).help("where materials of one object meet"),
+       a_flag("smooth", false).help("of meshes: contours of the smooth surface between their vertices' normals, not edges of facets"),
+       a_number("crease_angle", 40.0).in(0.001, 179.999).unit("deg").help("of meshes: between the normals of two faces"),
+       a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")},
+      unsupported,
+      draw};
 }
 
 }  // namespace limn

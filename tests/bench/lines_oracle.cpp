@@ -3,11 +3,13 @@
 #include <cmath>
 
 #include "raymarch/gbuffer.h"
+#include "subdiv/refine.h"
 
 namespace limn::bench {
 namespace {
 
 constexpr double kApart_px = 2.0, kFromEnds_px = 0.5, kBeside_px = 0.25;
+constexpr std::int64_t kMostFaces = 2'000'000;
 constexpr double kNearer_px = 1.0;  // what is nearer by less, px at its depth, is the line's own surface
 
 struct Asked {
@@ -35,13 +37,27 @@ void add_points(const LineEdge& edge, std::vector<Asked>& asked, std::vector<glm
 
 }  // namespace
 
-SceneModel oracle_model(const Scene& scene, int level) {
+SceneModel oracle_model(const Scene& scene) {
   SurfaceSettings settings;
   settings.kind = "";
-  settings.level = level;
+  settings.gradient = "cubic";
   Scene asked = scene;
-  for (SceneObject& object : asked.objects) object.level.reset();
+  for (SceneObject& object : asked.objects) {
+    object.level.reset();
+    const auto* mesh = std::get_if<MeshSource>(&object.source);
+    if (mesh == nullptr || !mesh->scheme) continue;
+    object.level = 0;
+    while (predict_refined_size(mesh->mesh, *mesh->scheme, *object.level + 1).faces <= kMostFaces) ++*object.level;
+  }
   return build_model(asked, settings);
+}
+
+void add(const OracleCount& more, OracleCount& sum) {
+  sum.points += more.points;
+  sum.visible += more.visible;
+  sum.occluded += more.occluded;
+  sum.seen += more.seen;
+  sum.places.insert(sum.places.end(), more.places.begin(), more.places.end());
 }
 
 OracleCount ask_oracle(const SceneModel& model, const Camera& camera, const ViewGraph& graph) {

@@ -6,8 +6,9 @@
 
 namespace limn::bench {
 
-/// A model to ask: fields as they are, by the marcher; cages refined `finer` times, and other meshes as they are, by Embree.
-SceneModel oracle_model(const Scene& scene, int level);
+/// A model to ask: fields and level sets as they are, by the marcher; other meshes as they are, and cages refined as often as two million
+/// faces allow.
+SceneModel oracle_model(const Scene& scene);
 
 /// Of points 2 px apart on every edge, half a pixel from its ends.
 struct OracleCount {
@@ -16,6 +17,7 @@ struct OracleCount {
   std::int64_t seen = 0;             ///< Drawn as hidden; at none of the three is anything nearer hit.
   std::vector<glm::dvec2> places{};  ///< Of the last two.
 };
+void add(const OracleCount& more, OracleCount& sum);
 OracleCount ask_oracle(const SceneModel& model, const Camera& camera, const ViewGraph& graph);
 
 }  // namespace limn::bench

@@ -11,6 +11,7 @@
 #include "samples/scenes/scenes.h"
 #include "tests/bench/freestyle_lines.h"
 #include "tests/bench/line_scenes.h"
+#include "tests/bench/lines_oracle.h"
 #include "tests/bench/occ_lines.h"
 
 namespace limn::bench {
@@ -48,11 +49,31 @@ struct Row {
   std::vector<double> ms{};
   std::int64_t chains = 0, visible = 0, rays = 0, conflicts = 0, open_ends = 0;
   double bound_px = 0.0;
+  OracleCount oracle{};
 };
 
-Row run(const std::string& name, const Scene& scene, const LinesBenchSettings& settings) {
+/// The level sets that stand for the scene's objects.
+Scene as_level_sets(const Scene& scene, int voxels) {
+  Scene result = scene;
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    SurfaceSettings settings;
+    settings.kind = std::holds_alternative<MeshSource>(scene.objects[i].source) ? "mesh_level_set" : "level_set";
+    settings.gradient = "cubic";
+    settings.voxels = voxels;
+    settings.level = 5;
+    const Scene one{scene.name, scene.camera, {scene.objects[i]}};
+    const SceneModel model = build_model(one, settings);
+    result.objects[i] = modelled_scene({scene.name, scene.camera, {scene.objects[i]}}, model).objects[0];
+  }
+  return result;
+}
+
+Row run(const std::string& name, const Scene& given, const LinesBenchSettings& settings) {
   Row row{name};
-  const Box box = bounds(scene);
+  const Box box = bounds(given);
+  const Scene scene = settings.voxels ? as_level_sets(given, *settings.voxels) : given;
+  std::optional<SceneModel> oracle;
+  if (settings.oracle) oracle = oracle_model(scene);
   ExecutionSettings execution;
   execution.threads = settings.threads;
   const std::vector<glm::dvec3> all = directions();
@@ -70,6 +91,7 @@ Row run(const std::string& name, const Scene& scene, const LinesBenchSettings& s
     row.open_ends +=
         std::count_if(graph.vertices.begin(), graph.vertices.end(), [](const LineVertex& v) { return v.kind == VertexKind::end; });
     row.bound_px = std::max(row.bound_px, graph.bound_px);
+    if (oracle) add(ask_oracle(*oracle, camera, graph), row.oracle);
     for (const LineConflict& conflict : graph.conflicts)
       fmt::print(settings.table, "{}, view {}: conflict at {:.2f}, {:.2f}: {}\n", name, view, conflict.px.x, conflict.px.y, conflict.what);
   }
@@ -81,9 +103,23 @@ nlohmann::json json_of(Row row, std::FILE* table) {
   const double median = row.ms[row.ms.size() / 2], worst = row.ms.back();
   fmt::print(table, "| {} | {} | {:.1f} | {:.1f} | {} | {} | {} | {} | {} | {:.3g} |\n", row.name, row.ms.size(), median, worst, row.chains,
              row.visible, row.rays, row.conflicts, row.open_ends, row.bound_px);
-  return {{"suite", "lines"},           {"case", row.name},           {"contestant", "limn"},    {"views", row.ms.size()},
-          {"median_ms", median},        {"worst_ms", worst},          {"chains", row.chains},    {"visible", row.visible},
-          {"conflicts", row.conflicts}, {"open_ends", row.open_ends}, {"bound_px", row.bound_px}};
+  if (row.oracle.points > 0)
+    fmt::print(table, "{}: of {} points 2 px apart {} are drawn as visible and occluded, {} as hidden and seen\n", row.name,
+               row.oracle.points, row.oracle.occluded, row.oracle.seen);
+  return {{"suite", "lines"},
+          {"case", row.name},
+          {"contestant", "limn"},
+          {"views", row.ms.size()},
+          {"median_ms", median},
+          {"worst_ms", worst},
+          {"chains", row.chains},
+          {"visible", row.visible},
+          {"conflicts", row.conflicts},
+          {"open_ends", row.open_ends},
+          {"bound_px", row.bound_px},
+          {"oracle_points", row.oracle.points},
+          {"occluded", row.oracle.occluded},
+          {"seen", row.oracle.seen}};
 }
 
 double median_of(std::vector<double> values) {

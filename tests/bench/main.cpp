@@ -38,6 +38,7 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
   --runs N          interleaved runs of which the median counts (7)
   --width PX        of pictures 16:9 (1920)
   --scene NAME, --views N   of the plan suite (--scene of lines, too); --view I: only this one of the views, from 0
+  --oracle          of the lines suite: rays of another model say whether points of every line are seen; --voxels N: lines of level sets
   --level N         of the growth suite, how often its cage is refined; may be repeated (4 5 6 7)
   --program FILE    of the growth suite: the program limn (the one beside this)
   --output FILE     JSON; --json prints it to stdout, tables then go to stderr
@@ -55,7 +56,7 @@ struct Settings {
   int views = 4;
   std::optional<int> only_view{};
   std::string output{};
-  bool json = false;
+  bool json = false, oracle = false;
   std::vector<std::string> against{};  ///< Two lists of files.
   double limit = 1.1;
   bool runs_suite(const std::string& name) const {
@@ -112,6 +113,8 @@ Settings parse(int argc, char** argv) {
     } else if (flag == "--width") {
       settings.width_px = std::min(whole(flag, 16), 16384);
       settings.height_px = std::max(1, settings.width_px * 9 / 16);
+    } else if (flag == "--oracle") {
+      settings.oracle = true;
     } else if (flag == "--json") {
       settings.json = true;
     } else if (flag == "--against") {
@@ -152,7 +155,12 @@ nlohmann::json rows_of(const Settings& settings) {
     append(bench_image_methods(
         {.runs = settings.runs, .width_px = settings.width_px, .height_px = settings.height_px, .table = settings.table()}));
   if (settings.runs_suite("lines"))
-    append(bench_lines({.scenes = settings.scenes, .meshes = settings.meshes, .only_view = settings.only_view, .table = settings.table()}));
+    append(bench_lines({.scenes = settings.scenes,
+                        .meshes = settings.meshes,
+                        .only_view = settings.only_view,
+                        .voxels = settings.voxels.empty() ? std::nullopt : std::optional<int>(settings.voxels.front()),
+                        .oracle = settings.oracle,
+                        .table = settings.table()}));
   if (settings.runs_suite("growth"))
     append(bench_growth({.levels = settings.levels,
                          .voxels = settings.voxels,

@@ -216,8 +216,8 @@ struct SceneModel {
 /// `cache` spares meshing what was meshed before (build_ms counts it all the same); may be null.
 SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, ObjectMeshCache* cache = nullptr);
 
-/// What the model traces, as a scene of its own: grids and polygons in place of what they were made from, where they were made. Objects
-/// keep their names, colours and materials.
+/// What the model traces, as a scene of its own: grids and polygons in place of what they were made from. A cage stays a cage, since what
+/// is traced stands for its limit surface. Objects keep their names, colours and materials.
 Scene modelled_scene(const Scene& scene, const SceneModel& model);
 
 /// Sums of bytes, build times and so on; `kind` is the common one or "mixed".

@@ -31,7 +31,8 @@ double plane_depth(const Camera& camera, const GBuffer& seen, size_t i, const gl
     change = glm::dot(glm::dvec2(normal), glm::dvec2(offset_px.x, -offset_px.y)) * pixel / normal.z;
   } else {
     const auto width = static_cast<size_t>(seen.width);
-    const glm::dvec2 from(static_cast<double>(i % width) + seen.sample.x, static_cast<double>(i / width) + seen.sample.y);
+    const size_t row = i / width;
+    const glm::dvec2 from(static_cast<double>(i % width) + seen.sample.x, static_cast<double>(row) + seen.sample.y);
     const auto ray = [&](const glm::dvec2& at) {
       return glm::dvec3((at.x - 0.5 * camera.width_px) / camera.focal_px, (0.5 * camera.height_px - at.y) / camera.focal_px, -1.0);
     };
@@ -45,7 +46,10 @@ double plane_depth(const Camera& camera, const GBuffer& seen, size_t i, const gl
 
 Meeting meeting_of(const Camera& camera, const GBuffer& seen, size_t first, size_t second, bool at_first) {
   const auto width = static_cast<size_t>(seen.width);
-  const auto place = [width](size_t i) { return glm::dvec2(static_cast<double>(i % width), static_cast<double>(i / width)); };
+  const auto place = [width](size_t i) {
+    const size_t row = i / width;
+    return glm::dvec2(static_cast<double>(i % width), static_cast<double>(row));
+  };
   const glm::dvec2 between = place(second) - place(first);
   const double share = at_first ? 0.0 : 0.5, away = glm::length(between);
   const double a = plane_depth(camera, seen, first, share * between);

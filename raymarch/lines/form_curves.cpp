@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "raymarch/lines/form_sweeps.h"
 
 namespace limn {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 struct CurveAngle {
   double u = 0.0;

@@ -33,7 +33,8 @@ from png import read_png, read_ppm
 WIDTH, HEIGHT = 320, 180
 STROKE = 6.0
 EDGE = 0.75  # px on either side of a stroke's border, where anti-aliasing is each program's own
-COLORS = {"contour": "#203040", "boundary": "#a02020", "crease": "#2060c0", "intersection": "#108040", "material": "#805010", "rim": "#909090"}
+COLORS = {"contour": "#203040", "boundary": "#a02020", "crease": "#2060c0", "intersection": "#108040", "material": "#805010", "rim": "#909090",
+          "suggestive": "#607080", "ridge": "#b06020", "valley": "#5060a0"}
 ORDER = ("suggestive", "ridge", "valley", "crease", "intersection", "material", "rim", "boundary", "contour")  # as they are painted
 CHORDS = 0.1  # px: poppler's curveMaxDelta (splash/Splash.cc)
 SVG = "{http://www.w3.org/2000/svg}"

@@ -47,7 +47,7 @@ SceneModel oracle_model(const Scene& scene) {
     const auto* mesh = std::get_if<MeshSource>(&object.source);
     if (mesh == nullptr || !mesh->scheme) continue;
     object.level = 0;
-    while (predict_refined_size(mesh->mesh, *mesh->scheme, *object.level + 1).faces <= kMostFaces) ++*object.level;
+    while (*object.level < 8 && predict_refined_size(mesh->mesh, *mesh->scheme, *object.level + 1).faces <= kMostFaces) ++*object.level;
   }
   return build_model(asked, settings);
 }

@@ -91,7 +91,13 @@ Row run(const std::string& name, const Scene& given, const LinesBenchSettings& s
     row.open_ends +=
         std::count_if(graph.vertices.begin(), graph.vertices.end(), [](const LineVertex& v) { return v.kind == VertexKind::end; });
     row.bound_px = std::max(row.bound_px, graph.bound_px);
-    if (oracle) add(ask_oracle(*oracle, camera, graph), row.oracle);
+    if (oracle) {
+      const OracleCount count = ask_oracle(*oracle, camera, graph);
+      if (!count.places.empty())
+        fmt::print(settings.table, "{}, view {}: {} points differ from rays, the first at {:.2f}, {:.2f}\n", name, view,
+                   count.places.size(), count.places[0].x, count.places[0].y);
+      add(count, row.oracle);
+    }
     for (const LineConflict& conflict : graph.conflicts)
       fmt::print(settings.table, "{}, view {}: conflict at {:.2f}, {:.2f}: {}\n", name, view, conflict.px.x, conflict.px.y, conflict.what);
   }

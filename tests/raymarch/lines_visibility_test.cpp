@@ -152,7 +152,8 @@ struct Stats {
 
 /// The place of a contour of the graph that is nearest in the image among those at the same depth, of which a pixel counts as 0.05 px.
 struct Nearest {
-  double distance_px = std::numeric_limits<double>::infinity();
+  double distance = std::numeric_limits<double>::infinity();
+  double in_image_px = 0.0;
   int invisibility = -1;
 };
 Nearest nearest_in(const ViewGraph& graph, const Camera& camera, const glm::dvec3& p) {
@@ -167,10 +168,11 @@ Nearest nearest_in(const ViewGraph& graph, const Camera& camera, const glm::dvec
       const LinePoint &a = edge.points[i], &b = edge.points[(i + 1) % n];
       const glm::dvec2 along = b.px - a.px;
       const double length = glm::length(along);
-      if (glm::distance(a.px, px) - length > nearest.distance_px) continue;
+      if (glm::distance(a.px, px) - length > nearest.distance) continue;
       const double t = length > 0.0 ? std::clamp(glm::dot(px - a.px, along) / (length * length), 0.0, 1.0) : 0.0;
-      const double distance = std::max(glm::distance(px, a.px + t * along), per_unit * std::fabs(glm::mix(a.depth, b.depth, t) - image.z));
-      if (distance < nearest.distance_px) nearest = {distance, edge.invisibility};
+      const double beside_px = glm::distance(px, a.px + t * along);
+      const double distance = std::max(beside_px, per_unit * std::fabs(glm::mix(a.depth, b.depth, t) - image.z));
+      if (distance < nearest.distance) nearest = {distance, beside_px, edge.invisibility};
     }
   }
   return nearest;
@@ -203,7 +205,9 @@ void compare(const ViewGraph& graph, const Camera& camera, const std::vector<Exa
       }
       const Nearest found = nearest_in(graph, camera, line.points[i]);
       ++stats.compared;
-      ASSERT_LT(found.distance_px, 0.05) << what;
+      // Depths between the points of an edge are known to some pixels only where it is seen end on.
+      ASSERT_LT(found.distance, 0.25) << what;
+      ASSERT_LT(found.in_image_px, 0.05) << what;
       ASSERT_EQ(found.invisibility, line.layers[i]) << what << fmt::format(" at {:.3f}, {:.3f}", px[i].x, px[i].y);
     }
   }

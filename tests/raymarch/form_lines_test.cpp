@@ -17,6 +17,7 @@
 #include "sdf/segment.h"
 #include "sdf/shape.h"
 #include "tests/random_seed.h"
+#include "tests/raymarch/line_views.h"
 
 namespace limn {
 namespace {
@@ -80,20 +81,8 @@ Scene scene_of(const Field& field) {
 }
 
 Camera random_camera(std::mt19937& random, const Box& box, bool perspective) {
-  CameraSettings settings;
   const glm::dvec3 way = direction(random);
-  settings.target = box.center();
-  settings.eye = box.center() + uniform(random, 2.5, 6.0) * box.radius() * way;
-  settings.up = std::fabs(way.y) > 0.9 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
-  settings.width_px = 640;
-  settings.height_px = 480;
-  if (perspective) {
-    settings.vertical_fov = 2.2 * std::asin(box.radius() / glm::distance(*settings.eye, *settings.target));
-  } else {
-    settings.projection = Projection::orthographic;
-    settings.ortho_height = 2.2 * box.radius();
-  }
-  return resolve_camera(settings, box);
+  return line_view(box, way, uniform(random, 2.5, 6.0), perspective);
 }
 
 using Polyline = std::vector<glm::dvec2>;

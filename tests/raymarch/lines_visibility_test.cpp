@@ -14,6 +14,7 @@
 #include "sdf/segment.h"
 #include "sdf/shape.h"
 #include "tests/random_seed.h"
+#include "tests/raymarch/line_views.h"
 
 namespace limn {
 namespace {
@@ -23,20 +24,8 @@ constexpr int kViews = 40;
 
 Camera random_camera(std::mt19937& random, const Box& box, bool perspective) {
   std::normal_distribution<double> normal;
-  CameraSettings settings;
   const glm::dvec3 direction = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-  settings.target = box.center();
-  settings.eye = box.center() + std::uniform_real_distribution<double>(2.0, 6.0)(random) * box.radius() * direction;
-  settings.up = std::fabs(direction.y) > 0.9 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
-  settings.width_px = 640;
-  settings.height_px = 480;
-  if (perspective) {
-    settings.vertical_fov = 2.2 * std::asin(box.radius() / glm::distance(*settings.eye, *settings.target));
-  } else {
-    settings.projection = Projection::orthographic;
-    settings.ortho_height = 2.2 * box.radius();
-  }
-  return resolve_camera(settings, box);
+  return line_view(box, direction, std::uniform_real_distribution<double>(2.0, 6.0)(random), perspective);
 }
 
 /// From a point of a surface to the eye.

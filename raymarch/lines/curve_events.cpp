@@ -13,6 +13,7 @@ namespace {
 constexpr double kLeastBend = 1e-7;  // of the radial curvature times the scene's radius: less is rounding
 constexpr double kArm_px = 0.15;     // so far from a cusp its arms are compared
 constexpr double kOneCusp_px = 0.03;
+constexpr double kSwallowtail_px = 0.2;  // around one whose cusps are closer than that
 constexpr double kLongestNarrow_px = 20.0;
 constexpr double kMostLensSteps = 400.0;
 constexpr double kTangency_px = 3.0;  // along one curve, from a cusp
@@ -23,6 +24,7 @@ class EventFinder {
       : curves_(curves), curve_(curves[number]), number_(number), camera_(camera), extent_(extent), walk_(curve_, camera) {}
 
   std::vector<CurveEvent> run(const std::vector<NearerCrossing>& crossings) {
+    if (curve_.smooth) find_sign_changes();
     for (const NearerCrossing& crossing : without_narrow_lenses(crossings)) {
       if (!is_tangency(crossing))
         events_.push_back({VertexKind::crossing, crossing.at, crossing.layers, crossing.curve, crossing.on_nearer});
@@ -47,24 +49,28 @@ class EventFinder {
   }
 
  private:
-  /// Where the radial curvature changes its sign, but for rounding: the line of sight follows the contour there, and of its two arms the
-  /// one farther from the eye lies behind the other one's sheet (Koenderink & van Doorn 1982).
-  void find_cusps() {
+  /// Where the radial curvature changes its sign, but for rounding.
+  void find_sign_changes() {
     const auto sign_of = [&](size_t i) {
       const double bend = walk_.at(i).radial_curvature * extent_;
       return bend > kLeastBend ? 1 : bend < -kLeastBend ? -1 : 0;
     };
-    std::vector<SignChange> changes;
     size_t first = 0;
     while (first < walk_.size() && sign_of(first) == 0) ++first;
     size_t last = first;
     for (size_t k = first + 1; k < first + walk_.size() + (curve_.closed ? 1 : 0) && (curve_.closed || k < walk_.size()); ++k) {
       if (sign_of(k) == 0) continue;
-      if (sign_of(k) != sign_of(last)) changes.push_back({last, k});
+      if (sign_of(k) != sign_of(last)) changes_.push_back({last, k});
       last = k;
     }
+    join_near_changes();
+  }
+
+  /// There the line of sight follows the contour, and of its two arms the one farther from the eye lies behind the other one's sheet
+  /// (Koenderink & van Doorn 1982).
+  void find_cusps() {
     std::vector<CurveEvent> cusps;
-    for (const SignChange& change : apart(changes)) add_cusp(change, cusps);
+    for (const SignChange& change : apart_) add_cusp(change, cusps);
     drop_narrow_swallowtails(cusps);
     events_.insert(events_.end(), cusps.begin(), cusps.end());
   }
@@ -73,19 +79,32 @@ class EventFinder {
   struct SignChange {
     size_t before = 0, after = 0;
   };
+  /// Image length from one change to the next.
+  double length_between(const SignChange& one, const SignChange& next) const {
+    return walk_.length_to(static_cast<double>(next.before)) - walk_.length_to(static_cast<double>(one.after));
+  }
   /// Changes so close to each other that nobody can tell them apart are one, or none where the last undoes the first.
-  std::vector<SignChange> apart(const std::vector<SignChange>& changes) const {
-    std::vector<SignChange> result;
-    for (size_t k = 0; k < changes.size();) {
+  void join_near_changes() {
+    const size_t n = walk_.size();
+    if (curve_.closed && !changes_.empty()) {
+      // Around the curve from the widest gap on.
+      size_t start = 0;
+      double widest = length_between(changes_.back(), {changes_[0].before + n, changes_[0].after + n});
+      for (size_t k = 1; k < changes_.size(); ++k) {
+        if (const double gap = length_between(changes_[k - 1], changes_[k]); gap > widest) start = k, widest = gap;
+      }
+      for (size_t k = 0; k < start; ++k) changes_.push_back({changes_[k].before + n, changes_[k].after + n});
+      changes_.erase(changes_.begin(), changes_.begin() + static_cast<std::ptrdiff_t>(start));
+    }
+    for (size_t k = 0; k < changes_.size();) {
       size_t end = k + 1;
-      const auto length = [&](size_t from, size_t to) {
-        return walk_.length_to(static_cast<double>(to)) - walk_.length_to(static_cast<double>(from));
-      };
-      while (end < changes.size() && length(changes[end - 1].after, changes[end].before) < kOneCusp_px) ++end;
-      if ((end - k) % 2 == 1) result.push_back({changes[k].before, changes[end - 1].after});
+      while (end < changes_.size() && length_between(changes_[end - 1], changes_[end]) < kOneCusp_px) ++end;
+      if ((end - k) % 2 == 1)
+        apart_.push_back({changes_[k].before, changes_[end - 1].after});
+      else
+        undone_.push_back({changes_[k].before, changes_[end - 1].after});
       k = end;
     }
-    return result;
   }
 
   void add_cusp(const SignChange& change, std::vector<CurveEvent>& cusps) {
@@ -195,7 +214,8 @@ class EventFinder {
   /// A crease leaves a contour, and the two arms of a cusp each other, along their common tangent: polylines of them cross again and again
   /// there, and the curves do not.
   bool is_tangency(const NearerCrossing& crossing) const {
-    if (crossing.curve == number_) return one_cusp_between(crossing.at, crossing.on_nearer) || is_spike(crossing);
+    if (crossing.curve == number_)
+      return one_cusp_between(crossing.at, crossing.on_nearer) || closes_undone(crossing) || is_spike(crossing);
     const SurfaceCurve& other = curves_[crossing.curve];
     const double longest_px = std::min(curve_.tangency_px, other.tangency_px);
     for (const Stretch& own : to_ends(curve_, crossing.at, longest_px, camera_)) {
@@ -217,6 +237,19 @@ class EventFinder {
     const auto turn = std::max_element(px.begin(), px.end(), farther);
     const std::vector<glm::dvec2> there(px.begin(), turn + 1), back(turn, px.end());
     return lies_along(there, back, curve_.apart_px) && lies_along(back, there, curve_.apart_px);
+  }
+
+  /// Of a swallowtail so small that its cusps are none, the crossing is none either.
+  bool closes_undone(const NearerCrossing& crossing) const {
+    const auto steps = static_cast<double>(walk_.size());
+    const double one = std::min(crossing.at, crossing.on_nearer), other = std::max(crossing.at, crossing.on_nearer);
+    return std::any_of(undone_.begin(), undone_.end(), [&](const SignChange& change) {
+      const double from = static_cast<double>(change.before), to = static_cast<double>(change.after);
+      const auto lies_within = [&](double low, double high) {
+        return low < to && from < high && walk_.length_to(std::max(high, to)) - walk_.length_to(std::min(low, from)) < kSwallowtail_px;
+      };
+      return lies_within(one, other) || (curve_.closed && (lies_within(other, one + steps) || lies_within(one + steps, other + steps)));
+    });
   }
 
   bool one_cusp_between(double one, double other) const {
@@ -281,6 +314,7 @@ class EventFinder {
   double extent_;
   CurveWalk walk_;
   std::vector<CurveEvent> events_{};
+  std::vector<SignChange> changes_{}, apart_{}, undone_{};
 };
 
 }  // namespace

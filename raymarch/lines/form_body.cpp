@@ -8,7 +8,7 @@
 namespace limn {
 namespace {
 
-// Of the extent: surfaces that coincide count as this far apart, the later one outside. Far below what rays are lifted by, far above
+// Of the extent: surfaces that coincide count as this far apart, the first one outside. Far below what rays are lifted by, far above
 // rounding.
 constexpr double kHair = 2e-12;
 constexpr double kMargin = 1e-3;  // of the extent, around the body
@@ -22,7 +22,7 @@ std::optional<FormSurface> surface_of(const Field& branch, double hair) {
   if (program.leaves.size() != 1) return {};
   const FieldLeaf& leaf = program.leaves[0];
   if (leaf.functions->closed_form == nullptr) return {};
-  double sign = 1.0, added = -hair;
+  double sign = 1.0, added = hair;
   for (auto step = program.instructions.rbegin(); step != program.instructions.rend(); ++step) {
     if (step->operation == FieldOperation::negate) {
       sign = -sign;

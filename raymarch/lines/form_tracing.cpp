@@ -24,7 +24,7 @@ constexpr double kBehind = 1e-3;        // of the extent: steps that lead behind
 constexpr double kShortest = 1e-7;      // of the extent
 constexpr double kShortestPx = 1e-3;    // of straight contours, which may be seen along their length
 constexpr double kBesideCusp = 1e-3;    // of a step: its arms begin there
-constexpr double kNearlyTurned = 0.03;  // N.V, which changes by less than this within a step and back
+constexpr double kNearlyTurned = 0.03;  // N.V, or the radial curvature times the extent: changes by less than this within a step and back
 constexpr double kTouching = 1e-6;      // the sine of the angle between two surfaces
 
 struct Sample {
@@ -128,7 +128,7 @@ class Tracer {
   void add_turns() {
     if (curve_.kind == FormCurve::Kind::line) return;
     if (curve_.second < 0) {
-      add_zeros([&](const Sample& sample) { return radial_curvature(sample); }, true);
+      add_zeros([&](const Sample& sample) { return body_.extent * radial_curvature(sample); }, true);
       return;
     }
     for (const int number : {curve_.first, curve_.second}) {
@@ -165,16 +165,17 @@ class Tracer {
     };
     for (size_t i = 1; i < samples_.size(); ++i) {
       const double now = value(samples_[i]), a = samples_[i - 1].s, b = samples_[i].s;
-      if ((before > 0.0) != (now > 0.0)) {
-        const double zero = zero_between(value, a, b), aside = beside ? kBesideCusp * (b - a) : 0.0;
+      const auto add_zero = [&](double low, double high) {
+        const double zero = zero_between(value, low, high), aside = beside ? kBesideCusp * (high - low) : 0.0;
         add(zero - aside, b);
         if (beside) add(zero + aside, b);
-      } else if (!beside) {
-        if (const std::optional<double> dip = dip_between(value, a, before, b, now)) {
-          add(zero_between(value, a, *dip), b);
-          add(*dip, b);
-          add(zero_between(value, *dip, b), b);
-        }
+      };
+      if ((before > 0.0) != (now > 0.0)) {
+        add_zero(a, b);
+      } else if (const std::optional<double> dip = dip_between(value, a, before, b, now)) {
+        add_zero(a, *dip);
+        add(*dip, b);
+        add_zero(*dip, b);
       }
       all.push_back(samples_[i]);
       before = now;

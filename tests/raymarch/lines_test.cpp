@@ -154,9 +154,8 @@ std::vector<Polyline> torus_contour(const Camera& camera) {
     return in;
   };
   for (int i = 0; i < kSteps; ++i) {
-    const double u = 2.0 * kPi * i / kSteps, next = 2.0 * kPi * (i + 1) / kSteps;
-    if (exists(u) && (i == 0 || !exists(2.0 * kPi * (i - 1) / kSteps)))
-      ranges.emplace_back(i == 0 ? 0.0 : edge(u, 2.0 * kPi * (i - 1) / kSteps), u);
+    const double before = 2.0 * kPi * (i - 1) / kSteps, u = 2.0 * kPi * i / kSteps, next = 2.0 * kPi * (i + 1) / kSteps;
+    if (exists(u) && (i == 0 || !exists(before))) ranges.emplace_back(exists(before) ? u : edge(u, before), u);
     if (exists(u)) ranges.back().y = exists(next) ? next : edge(u, next);
   }
   std::vector<Polyline> lines;

@@ -1,16 +1,11 @@
-// Lines of level sets: contours of the spline whose gradients their normals are, found cell by cell.
-
-#include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
+// Lines of level sets: contours of the spline whose gradients their normals are, and the seams of those that overlap, found cell by cell.
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
-#include "raymarch/analytic/clip_ray.h"
-#include "raymarch/lines/placed_level_set.h"
-#include "raymarch/lines/seams.h"
-#include "raymarch/truth/field_curves.h"
+#include "raymarch/lines/found_curves.h"
+#include "raymarch/lines/level_set_layers.h"
 #include "sdf/field_program.h"
 #include "sdf/level_set_reconstruction.h"
 #include "sdf/parallel.h"
@@ -18,9 +13,8 @@
 namespace limn {
 namespace {
 
-constexpr double kTurn = 0.03;  // radians, beyond twice the spread that a cell's corners show
-constexpr double kStep = 0.25;  // of a voxel: how far rays look ahead near the surface
-constexpr double kLift = 1e-3;  // of a voxel
+constexpr double kTurn = 0.03;      // radians, beyond twice the spread that a cell's corners show
+constexpr double kSeamReach = 2.0;  // voxels: farther from a surface there is no seam with it
 
 /// One object in solver space.
 struct PlacedGrid : PlacedLevelSet {
@@ -44,7 +38,22 @@ struct Lattice {
   std::vector<glm::ivec3> cells{};
 };
 
-Lattice lattice_of(const PlacedGrid& placed, const LineTask& task, const std::vector<double>& levels) {
+/// Cells whose normals may take one of the levels of N.V.
+std::vector<SurfaceCell> turning_cells(const PlacedGrid& placed, const LineTask& task, const std::vector<double>& levels) {
+  std::vector<SurfaceCell> cells;
+  for (const SurfaceCell& cell : placed.cells) {
+    const glm::dvec3 middle = placed.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
+    const double facing = glm::dot(glm::dvec3(cell.normal), view_vector(task.camera, middle)),
+                 reach = 2.0 * static_cast<double>(cell.spread) + kTurn;
+    const bool may = cell.normal == glm::vec3(0.0f) || std::any_of(levels.begin(), levels.end(), [&](double level) {
+                       return std::fabs(std::asin(std::clamp(facing, -1.0, 1.0)) - std::asin(level)) <= reach;
+                     });
+    if (may) cells.push_back(cell);
+  }
+  return cells;
+}
+
+Lattice lattice_of(const PlacedGrid& placed, const std::vector<SurfaceCell>& cells) {
   Lattice lattice;
   lattice.grid.side = placed.voxel;
   const glm::dmat3& linear = placed.solver_from_index.linear;
@@ -59,14 +68,8 @@ Lattice lattice_of(const PlacedGrid& placed, const LineTask& task, const std::ve
     lattice.grid.corner = placed.box.lower - 2.0 * placed.voxel;
   }
   const auto cell_at = [&](const glm::dvec3& p) { return glm::ivec3(glm::floor((p - lattice.grid.corner) / lattice.grid.side)); };
-  for (const SurfaceCell& cell : placed.cells) {
+  for (const SurfaceCell& cell : cells) {
     const glm::dvec3 middle = placed.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
-    const double facing = glm::dot(glm::dvec3(cell.normal), view_vector(task.camera, middle)),
-                 reach = 2.0 * static_cast<double>(cell.spread) + kTurn;
-    const bool may = cell.normal == glm::vec3(0.0f) || std::any_of(levels.begin(), levels.end(), [&](double level) {
-                       return std::fabs(std::asin(std::clamp(facing, -1.0, 1.0)) - std::asin(level)) <= reach;
-                     });
-    if (!may) continue;
     const glm::ivec3 own = aligned ? cell.node - lowest : cell_at(middle);
     const int around = aligned && !cell.near_corner ? 0 : 1;
     for (int x = -around; x <= around; ++x)
@@ -79,82 +82,148 @@ Lattice lattice_of(const PlacedGrid& placed, const LineTask& task, const std::ve
   return lattice;
 }
 
-CellResult march(const CellSearch& search, const std::vector<glm::ivec3>& cells, const ExecutionSettings& execution) {
-  constexpr size_t kBlock = 256;
-  std::vector<CellOutput> parts((cells.size() + kBlock - 1) / kBlock);
-  parallel_for(size_t{0}, parts.size(), [&](size_t part) {
+constexpr size_t kBlock = 256;
+
+void append(const CellCurves& from, CellCurves& to) {
+  to.crossings.insert(to.crossings.end(), from.crossings.begin(), from.crossings.end());
+  to.links.insert(to.links.end(), from.links.begin(), from.links.end());
+}
+
+/// Calls `visit(part, begin, end)` for blocks of so many cells from many threads.
+template <class Visit>
+void for_blocks(size_t cells, const ExecutionSettings& execution, const Visit& visit) {
+  parallel_for(size_t{0}, (cells + kBlock - 1) / kBlock, [&](size_t part) {
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
-    FieldEvaluator evaluator(search.sharp.branches[0]);
-    for (size_t i = part * kBlock; i < std::min(cells.size(), (part + 1) * kBlock); ++i)
-      march_cell(evaluator, search.viewer, search.grid, cells[i], search.levels, search.families, parts[part]);
+    visit(part, part * kBlock, std::min(cells, (part + 1) * kBlock));
   });
-  CellResult result;
+}
+
+CellOutput march(const CellSearch& search, size_t branch, const Lattice& lattice, const ExecutionSettings& execution) {
+  std::vector<CellOutput> parts((lattice.cells.size() + kBlock - 1) / kBlock);
+  for_blocks(lattice.cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
+    FieldEvaluator evaluator(search.sharp.branches[branch]);
+    for (size_t i = begin; i < end; ++i)
+      march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, parts[part]);
+  });
+  CellOutput all;
   for (const CellOutput& part : parts) {
-    for (size_t family = 0; family < kCurveFamilies; ++family) {
-      CellCurves& all = result.branches[0][family];
-      all.crossings.insert(all.crossings.end(), part[family].crossings.begin(), part[family].crossings.end());
-      all.links.insert(all.links.end(), part[family].links.begin(), part[family].links.end());
-    }
+    for (size_t family = 0; family < kCurveFamilies; ++family) append(part[family], all[family]);
   }
-  return result;
+  return all;
 }
 
-SurfaceCurve curve_of(const LineTask& task, const FieldCurve& found, int object) {
-  SurfaceCurve curve{found.closed, found.c == 0.0, {}};
-  for (const CurvePoint& point : found.points) {
-    CurveSample sample;
-    sample.p = point.p;
-    sample.high = sample.low = point.high;
-    sample.radial_curvature = point.radial_curvature;
-    sample.lift = found.c != 0.0 ? view_vector(task.camera, point.p) : point.radial_curvature < 0.0 ? -point.high : point.high;
-    sample.line_class = found.c == 0.0 ? LineClass::contour : LineClass::rim;
-    sample.object = object;
-    project_sample(task.camera, sample);
-    curve.samples.push_back(sample);
-  }
-  if (curve.smooth) set_fold(task.camera, curve);
-  return curve;
+bool holds(const Box& box, const glm::dvec3& p) {
+  return glm::all(glm::greaterThanEqual(p, box.lower)) && glm::all(glm::lessThanEqual(p, box.upper));
 }
 
-/// Counts sign changes along rays, a quarter of a voxel at a time near the surface and as far as the distance says elsewhere.
-class GridLayers {
- public:
-  GridLayers(std::vector<PlacedGrid> grids, const Camera& camera) : grids_(std::move(grids)), camera_(camera) {}
-
-  int before(const CurveSample& sample) const {
-    auto& evaluators = evaluators_.local();
-    if (evaluators.empty()) {
-      for (const PlacedGrid& grid : grids_) evaluators.emplace_back(grid.field);
+/// Surface cells of one level set that another one's surface may go through.
+std::vector<SurfaceCell> cells_near(const PlacedGrid& own, const PlacedGrid& other, const ExecutionSettings& execution) {
+  const double reach = kSeamReach * (own.voxel + other.voxel);
+  std::vector<char> near(own.cells.size(), 0);
+  for_blocks(own.cells.size(), execution, [&](size_t, size_t begin, size_t end) {
+    FieldEvaluator evaluator(other.field);
+    for (size_t i = begin; i < end; ++i) {
+      const glm::dvec3 middle = own.solver_from_index.point(glm::dvec3(own.cells[i].node) + 0.5);
+      near[i] = holds(other.box, middle) && std::fabs(evaluator.value(middle)) < reach;
     }
-    int layers = 0;
-    for (size_t i = 0; i < grids_.size(); ++i) layers += sign_changes(evaluators[i], grids_[i], sample);
-    return layers;
+  });
+  std::vector<SurfaceCell> cells;
+  for (size_t i = 0; i < near.size(); ++i) {
+    if (near[i] != 0) cells.push_back(own.cells[i]);
   }
+  return cells;
+}
 
- private:
-  int sign_changes(FieldEvaluator& evaluator, const PlacedGrid& grid, const CurveSample& sample) const {
-    const double pixel = 1.0 / pixels_per_unit_at(camera_, std::max(sample.depth, 1e-9));
-    const double lift = std::max(kLift * grid.voxel, sample.on_chord ? 0.05 * pixel : 0.0);
-    const glm::dvec3 origin = sample.p + lift * sample.lift;
-    const bool perspective = camera_.projection == Projection::perspective;
-    const glm::dvec3 direction = view_vector(camera_, origin);
-    double t = 0.0, t_end = perspective ? glm::distance(camera_.eye, origin) : project(camera_, origin).z;
-    if (!clip_ray(grid.box, origin, direction, t, t_end)) return 0;
-    double f = evaluator.value(origin + t * direction);
-    int changes = 0;
-    while (t < t_end) {
-      t = std::min(t_end, t + std::max(kStep * grid.voxel, std::fabs(f) - grid.voxel));
-      const double next = evaluator.value(origin + t * direction);
-      changes += (f < 0.0) != (next < 0.0);
-      f = next;
-    }
-    return changes;
+CellCurves march_pair(const CellSearch& search, const PlacedGrid& one, const PlacedGrid& other, const ExecutionSettings& execution) {
+  // On the finer one's lattice.
+  const PlacedGrid &own = one.voxel <= other.voxel ? one : other, &second = one.voxel <= other.voxel ? other : one;
+  const Lattice lattice = lattice_of(own, cells_near(own, second, execution));
+  std::vector<CellCurves> parts((lattice.cells.size() + kBlock - 1) / kBlock);
+  for_blocks(lattice.cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
+    FieldEvaluator first(one.field), last(other.field);
+    for (size_t i = begin; i < end; ++i) march_seam(first, last, search.viewer, lattice.grid, lattice.cells[i], parts[part]);
+  });
+  CellCurves all;
+  for (const CellCurves& part : parts) append(part, all);
+  return all;
+}
+
+/// One level set's surface reaches into another's inside.
+bool overlap(const PlacedGrid& one, const PlacedGrid& other) {
+  if (intersect(one.box, other.box).empty()) return false;
+  FieldEvaluator evaluator(other.field);
+  return std::any_of(one.cells.begin(), one.cells.end(), [&](const SurfaceCell& cell) {
+    const glm::dvec3 middle = one.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
+    return holds(other.box, middle) && evaluator.value(middle) < 0.0;
+  });
+}
+
+/// Level sets that overlap are one body, as fields are.
+FieldBodies bodies_of(const std::vector<PlacedGrid>& grids, const std::vector<size_t>& objects, double extent) {
+  FieldBodies bodies;
+  bodies.extent = extent;
+  bodies.numbers = objects;
+  for (size_t i = 0; i < grids.size(); ++i) {
+    bodies.fields.push_back(grids[i].field);
+    std::vector<size_t> body{i};
+    std::erase_if(bodies.bodies, [&](const std::vector<size_t>& with) {
+      const bool meet =
+          std::any_of(with.begin(), with.end(), [&](size_t j) { return overlap(grids[i], grids[j]) || overlap(grids[j], grids[i]); });
+      if (meet) body.insert(body.end(), with.begin(), with.end());
+      return meet;
+    });
+    std::sort(body.begin(), body.end());
+    bodies.bodies.push_back(std::move(body));
   }
+  return bodies;
+}
 
-  std::vector<PlacedGrid> grids_;
-  Camera camera_;
-  mutable tbb::enumerable_thread_specific<std::vector<FieldEvaluator>> evaluators_;
+SharpField union_of(const std::vector<PlacedGrid>& grids, const std::vector<size_t>& body, double extent) {
+  SharpField sharp = split_branches(grids[body[0]].field, extent);
+  for (size_t k = 1; k < body.size(); ++k) {
+    const int before = static_cast<int>(sharp.nodes.size()) - 1, branch = before + 1, above = before + 2;
+    sharp.branches.push_back(grids[body[k]].field);
+    sharp.node_of.push_back(branch);
+    sharp.nodes.push_back({false, -1, -1, above, static_cast<int>(k)});
+    sharp.nodes.push_back({false, before, branch, -1, -1});
+    sharp.nodes[static_cast<size_t>(before)].parent = above;
+  }
+  return sharp;
+}
+
+/// What the level sets of a scene have in common.
+struct Tracing {
+  const LineTask& task;
+  const ExecutionSettings& execution;
+  const std::vector<PlacedGrid>& grids;
+  const FieldBodies& bodies;
+  std::vector<FieldEvaluator>& evaluators;
+  std::vector<double> levels{0.0};
 };
+
+void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContribution& out) {
+  const LineTask& task = tracing.task;
+  const Viewer viewer = make_viewer(task.camera, glm::dvec3(0.0));
+  const SharpField sharp = union_of(tracing.grids, body, task.extent);
+  const FamilyMask families = tracing.levels.size() > 1 ? 3u : 1u;
+  const CellSearch search{sharp, task.camera, viewer, {}, 0, {0.0, task.settings.threshold}, families, true};
+  CellResult found;
+  for (size_t k = 0; k < body.size(); ++k) {
+    const PlacedGrid& grid = tracing.grids[body[k]];
+    found.branches[static_cast<int>(k)] = march(search, k, lattice_of(grid, turning_cells(grid, task, tracing.levels)), tracing.execution);
+    for (size_t j = 0; j < k; ++j) {
+      const PlacedGrid& other = tracing.grids[body[j]];
+      if (intersect(grid.box, other.box).empty()) continue;
+      found.seams[{static_cast<int>(j), static_cast<int>(k)}] = march_pair(search, other, grid, tracing.execution);
+    }
+  }
+  FieldCurves curves;
+  curves_of_cells(found, search, {task.settings.tolerance_px, task.extent, 1.0}, tracing.execution, curves);
+  out.unrefined_px = std::max(out.unrefined_px, curves.worst_unrefined_px);
+  const FieldTask fields{task, tracing.bodies, body, viewer, tracing.evaluators};
+  for (SurfaceCurve& curve : surface_curves(fields, curves.curves.size(), [&](size_t i) -> const FieldCurve& { return curves.curves[i]; }))
+    out.curves.push_back(std::move(curve));
+}
 
 }  // namespace
 
@@ -176,23 +245,17 @@ PlacedLevelSet place_level_set(const LineTask& task, size_t object) {
 LineContribution level_set_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution) {
   LineContribution out;
   std::vector<PlacedGrid> grids;
-  std::vector<double> levels{0.0};
-  if (task.wants(LineClass::rim)) levels.push_back(task.settings.threshold);
-  const Viewer viewer = make_viewer(task.camera, glm::dvec3(0.0));
-  for (const size_t object : objects) {
-    grids.push_back(place_grid(task, object));
-    const PlacedGrid& placed = grids.back();
-    const Lattice lattice = lattice_of(placed, task, levels);
-    const SharpField sharp = split_branches(placed.field, task.extent);
-    const CellSearch search{sharp, task.camera, viewer, lattice.grid, 0, {0.0, task.settings.threshold}, levels.size() > 1 ? 3u : 1u, true};
-    CellResult found = march(search, lattice.cells, execution);
-    FieldCurves curves;
-    curves_of_cells(found, search, {task.settings.tolerance_px, task.extent, 1.0}, execution, curves);
-    out.unrefined_px = std::max(out.unrefined_px, curves.worst_unrefined_px);
-    for (const FieldCurve& curve : curves.curves) out.curves.push_back(curve_of(task, curve, static_cast<int>(object) + 1));
-  }
-  const auto layers = std::make_shared<const GridLayers>(std::move(grids), task.camera);
-  out.layers_before = [layers](const CurveSample& sample) { return LayersSeen{layers->before(sample)}; };
+  grids.reserve(objects.size());
+  for (const size_t object : objects) grids.push_back(place_grid(task, object));
+  const FieldBodies bodies = bodies_of(grids, objects, task.extent);
+  std::vector<FieldEvaluator> evaluators;
+  for (const Field& field : bodies.fields) evaluators.emplace_back(field);
+  Tracing tracing{task, execution, grids, bodies, evaluators};
+  if (task.wants(LineClass::rim)) tracing.levels.push_back(task.settings.threshold);
+  for (const std::vector<size_t>& body : bodies.bodies) add_body(tracing, body, out);
+  const std::vector<PlacedLevelSet> placed(grids.begin(), grids.end());
+  const auto layers = std::make_shared<const LevelSetLayers>(placed, bodies.bodies, task.camera);
+  out.layers_before = [layers](const CurveSample& sample) { return layers->before(sample); };
   return out;
 }
 

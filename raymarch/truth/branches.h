@@ -22,8 +22,8 @@ struct SharpField {
   std::vector<Field> branches{};
   std::vector<SharpNode> nodes{};  ///< Children before parents; the last is the root.
   std::vector<int> node_of{};      ///< Of each branch.
-  /// World units: faces of two branches that coincide count as this far apart, the first one outside, so that one of them is the surface: that
-  /// of the first object, as in pictures.
+  /// World units: faces of two branches that coincide count as this far apart, the first one outside, so that one of them is the surface:
+  /// that of the first object, as in pictures.
   double hair = 0.0;
 };
 

@@ -78,16 +78,17 @@ Scene modelled(const Options& options, SceneInput& input, ProgressBar& bar) {
   if (options.spec.surfaces.empty()) return input.scene;
   SurfaceSettings settings = surface_settings(options.spec, input);
   settings.progress = bar.stage("building the surface");
-  Scene scene{input.scene.name, input.scene.camera, {}};
   if (settings.kind == "mesh") {
-    scene.objects.push_back({.name = input.name, .source = MeshSource{world_mesh(input.scene, settings)}});
+    Scene scene = input.scene;
+    for (SceneObject& object : scene.objects) {
+      object.source = MeshSource{world_mesh(object, settings)};
+      object.world_from_object = Affine{};
+    }
     return scene;
   }
-  WorldNotes said;
-  for (const LevelSet& level_set : world_level_sets(input.scene, settings, said))
-    scene.objects.push_back({.name = level_set.info().name, .source = LevelSetSource{level_set, input.name}});
-  print_warnings(options, said.warnings);
-  return scene;
+  const SceneModel model = build_model(input.scene, settings);
+  print_warnings(options, total(model).warnings);
+  return modelled_scene(input.scene, model);
 }
 
 /// One view or frame, solved.

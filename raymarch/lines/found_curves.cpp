@@ -1,0 +1,71 @@
+#include "raymarch/lines/found_curves.h"
+
+#include "raymarch/lines/seams.h"
+#include "sdf/parallel.h"
+
+namespace limn {
+namespace {
+
+CurveSample sample_of(const FieldTask& fields, const CurvePoint& point) {
+  CurveSample sample;
+  sample.p = point.p;
+  sample.high = point.high;
+  sample.low = point.low;
+  if (!point.crease) sample.radial_curvature = point.radial_curvature;
+  project_sample(fields.task.camera, sample);
+  return sample;
+}
+
+/// A contour on smooth surface, or the level curve of the rim.
+SurfaceCurve smooth_curve(const FieldTask& fields, const FieldCurve& found) {
+  SurfaceCurve curve{found.closed, found.c == 0.0, {}};
+  for (const CurvePoint& point : found.points) {
+    CurveSample sample = sample_of(fields, point);
+    const glm::dvec3 v = fields.viewer.toward_eye(sample.p);
+    sample.line_class = found.c == 0.0 ? LineClass::contour : LineClass::rim;
+    sample.lift = found.c != 0.0 || point.crease ? v : sample.radial_curvature < 0.0 ? -sample.high : sample.high;
+    sample.object = fields.object_of(sample.p, sample.low);
+    curve.samples.push_back(sample);
+  }
+  if (curve.smooth) set_fold(fields.task.camera, curve);
+  return curve;
+}
+
+/// Where two faces of sharp CSG meet: a crease, or an intersection where they are two objects'.
+SurfaceCurve seam_curve(const FieldTask& fields, const FieldCurve& found) {
+  Seam seam{found.closed, LineClass::crease, {}};
+  for (const CurvePoint& point : found.points) {
+    const glm::dvec3 v = fields.viewer.toward_eye(point.p);
+    // From the seam a face goes on to where the other one is outside, or inside, of the body.
+    const double way = found.concave ? 1.0 : -1.0, cosine = glm::dot(point.high, point.low);
+    SeamSide one{point.high, way * (point.low - cosine * point.high), glm::dot(point.high, v)};
+    SeamSide two{point.low, way * (point.high - cosine * point.low), glm::dot(point.low, v)};
+    // Faces keep their order all along, whichever has the higher N.V.
+    if (!seam.samples.empty()) {
+      const std::vector<SeamSide>& before = seam.samples.back().sides;
+      const double kept = glm::dot(before[0].normal, one.normal) + glm::dot(before[1].normal, two.normal);
+      const double swapped = glm::dot(before[0].normal, two.normal) + glm::dot(before[1].normal, one.normal);
+      if (swapped > kept) std::swap(one, two);
+    }
+    const int object = fields.object_of(point.p, one.normal);
+    if (object != fields.object_of(point.p, two.normal)) seam.line_class = LineClass::intersection;
+    seam.samples.push_back({point.p, {one, two}, object});
+  }
+  return curve_of_seam(fields.task.camera, seam);
+}
+
+}  // namespace
+
+std::vector<SurfaceCurve> surface_curves(const FieldTask& fields, size_t count, const std::function<const FieldCurve&(size_t)>& found) {
+  std::vector<SurfaceCurve> curves(count);
+  const auto convert = [&](size_t i) { curves[i] = found(i).seam ? seam_curve(fields, found(i)) : smooth_curve(fields, found(i)); };
+  // Which of several objects a point lies on their evaluators say, one after the other.
+  if (fields.body.size() == 1) {
+    parallel_for(size_t{0}, count, convert);
+  } else {
+    for (size_t i = 0; i < count; ++i) convert(i);
+  }
+  return curves;
+}
+
+}  // namespace limn

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kLift_px = 0.1;
 constexpr double kStepAside_px = 0.3;
+constexpr double kInPlane = 1e-5;                   // the sine of the angle between a line and a plane
 constexpr double kAcross = 0.1, kSameSheet = 0.85;  // cosines
 
 /// The same triangles for all views that need cages refined as often.
@@ -105,6 +106,8 @@ void MeshLayers::pierce(SurfaceCurve& curve) const {
       // Triangles of the curve's own sheet lie along it; another sheet of the same part goes across.
       const bool along_own = std::fabs(glm::dot(normal, way)) < kAcross || std::fabs(glm::dot(normal, sample.high)) > kSameSheet ||
                              std::fabs(glm::dot(normal, sample.low)) > kSameSheet;
+      // Nor does a line go through a plane that it lies in.
+      if (std::fabs(glm::dot(normal, way)) < kInPlane) continue;
       if (triangle.part == own && (along_own || !goes_through(sample, way, hit.t, normal))) continue;
       const double along = glm::dot(normal, way), towards_eye = glm::dot(normal, view_vector(camera_, sample.p));
       sample.pierced.push_back({hit.t / length, (along > 0.0) == (towards_eye > 0.0) ? -1 : 1});

@@ -14,6 +14,8 @@
 namespace limn {
 namespace {
 
+constexpr double kInPlane = 1e-5;  // the sine of the angle between an edge and a plane
+
 using Triangle = LayerTriangle;
 
 /// The face of each corner.
@@ -210,6 +212,8 @@ PartMeetings MeshTree::find_meetings() const {
       if (other.part == triangles_[faces[0]].part) continue;
       const Triangle& own = triangles_[faces[0]];
       const glm::dvec3 own_normal = glm::normalize(normal_of(own)), other_normal = glm::normalize(normal_of(other));
+      // An edge in a face's plane goes through it nowhere, whatever rounding says.
+      if (std::fabs(glm::dot(b - a, other_normal)) < kInPlane * length) continue;
       const bool lower = own.part < other.part;
       hits.push_back({glm::mix(a, b, hit.t / length), lower ? own_normal : other_normal, lower ? other_normal : own_normal, other.object});
       for (const std::uint32_t face : faces)

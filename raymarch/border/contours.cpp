@@ -15,11 +15,13 @@ namespace limn {
 struct SharedLines {
   LineSettings settings{};
   ViewGraph graph{};
+  bool facets = false;  ///< A mesh as it is is among them.
 };
 
 namespace {
 
 constexpr double kArc_px = 0.005;  // between the arcs of an outline and their circles
+constexpr double kCrumb_px = 4.0;
 
 enum class WidthFrom { constant, depth, curvature };
 
@@ -48,6 +50,13 @@ bool same(const LineSettings& a, const LineSettings& b) {
          a.smooth_meshes == b.smooth_meshes && a.tolerance_px == b.tolerance_px;
 }
 
+bool draws_facets(const Scene& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& object) {
+    const auto* mesh = std::get_if<MeshSource>(&object.source);
+    return mesh != nullptr && !mesh->scheme;
+  });
+}
+
 /// Solved once for all samples of a picture, and for all calls with the same settings.
 std::shared_ptr<const SharedLines> lines_of(const BorderInput& input, const LineSettings& settings) {
   if (input.shared != nullptr) {
@@ -56,7 +65,8 @@ std::shared_ptr<const SharedLines> lines_of(const BorderInput& input, const Line
     }
   }
   const Scene scene = modelled_scene(input.scene, input.model);
-  auto solved = std::make_shared<const SharedLines>(SharedLines{settings, solve_lines(scene, input.camera, settings, {})});
+  auto solved =
+      std::make_shared<const SharedLines>(SharedLines{settings, solve_lines(scene, input.camera, settings, {}), draws_facets(scene)});
   if (input.shared != nullptr) input.shared->lines.push_back(solved);
   return solved;
 }
@@ -115,7 +125,26 @@ std::vector<Outline> outlines(const ViewGraph& graph, const Settings& settings, 
   return result;
 }
 
-void add_notes(const ViewGraph& graph, std::vector<std::string>& notes) {
+/// Pieces of contour that only single facets have, which fold over each other beside the smooth surface's contour.
+size_t crumbs_of(const ViewGraph& graph) {
+  const auto is_crumb = [&](const LineChain& chain) {
+    if (chain.line_class != LineClass::contour || chain.invisibility != 0) return false;
+    const std::vector<LinePoint> points = points_of(graph, chain);
+    double length_px = 0.0;
+    for (size_t i = 1; i < points.size(); ++i) length_px += glm::distance(points[i - 1].px, points[i].px);
+    return length_px < kCrumb_px;
+  };
+  return static_cast<size_t>(std::count_if(graph.chains.begin(), graph.chains.end(), is_crumb));
+}
+
+void add_notes(const SharedLines& lines, std::vector<std::string>& notes) {
+  const ViewGraph& graph = lines.graph;
+  if (const size_t crumbs = lines.facets && !lines.settings.smooth_meshes ? crumbs_of(graph) : 0; crumbs > 0) {
+    notes.push_back(
+        fmt::format("contours: {} of the mesh's contours are shorter than {:.0f} px: folds of single facets; smooth = true draws the "
+                    "surface between its normals",
+                    crumbs, kCrumb_px));
+  }
   if (!graph.conflicts.empty()) {
     const LineConflict& first = graph.conflicts.front();
     notes.push_back(fmt::format("contours: {} conflict{} in the visibility of {} chains, the first at {:.1f}, {:.1f}: {}",
@@ -133,7 +162,7 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
   border.coverage = settings.width_px > 0.0 && !settings.lines.classes.empty()
                         ? covered_by(outlines(lines->graph, settings, input.camera), input.gbuffer.width, input.gbuffer.height)
                         : Image<float>(input.gbuffer.width, input.gbuffer.height, 0.0f);
-  add_notes(lines->graph, border.notes);
+  add_notes(*lines, border.notes);
   return border;
 }
 

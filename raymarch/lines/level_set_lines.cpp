@@ -1,5 +1,7 @@
 // Lines of level sets: contours of the spline whose gradients their normals are, and the seams of those that overlap, found cell by cell.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -14,6 +16,7 @@ namespace limn {
 namespace {
 
 constexpr double kTurn = 0.03;      // radians, beyond twice the spread that a cell's corners show
+constexpr double kOverlap = 0.6;    // voxels of both: a cell's middle lies up to 0.87 of its own off its surface
 constexpr double kSeamReach = 2.0;  // voxels: farther from a surface there is no seam with it
 
 /// One object in solver space.
@@ -148,13 +151,14 @@ CellCurves march_pair(const CellSearch& search, const PlacedGrid& one, const Pla
   return all;
 }
 
-/// One level set's surface reaches into another's inside.
+/// One level set's surface reaches into another's inside by more than the voxels can tell from touching.
 bool overlap(const PlacedGrid& one, const PlacedGrid& other) {
   if (intersect(one.box, other.box).empty()) return false;
   FieldEvaluator evaluator(other.field);
+  const double depth = kOverlap * (one.voxel + other.voxel);
   return std::any_of(one.cells.begin(), one.cells.end(), [&](const SurfaceCell& cell) {
     const glm::dvec3 middle = one.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
-    return holds(other.box, middle) && evaluator.value(middle) < 0.0;
+    return holds(other.box, middle) && evaluator.value(middle) < -depth;
   });
 }
 
@@ -201,6 +205,16 @@ struct Tracing {
   std::vector<double> levels{0.0};
 };
 
+/// Where the surface turns within a voxel as a crease does nothing is drawn but what turns away from the eye.
+void note_edges(const LineTask& task, const PlacedGrid& grid, LineContribution& out) {
+  const double half_turn = 0.5 * glm::radians(task.settings.crease_angle_deg);
+  const auto sharp = std::count_if(grid.cells.begin(), grid.cells.end(),
+                                   [&](const SurfaceCell& cell) { return static_cast<double>(cell.spread) > half_turn; });
+  if (sharp == 0 || !task.wants(LineClass::crease)) return;
+  out.notes.push_back(fmt::format("level sets have no creases: {} of {} cells turn by more than {:.0f} degrees within a voxel", sharp,
+                                  grid.cells.size(), task.settings.crease_angle_deg));
+}
+
 void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContribution& out) {
   const LineTask& task = tracing.task;
   const Viewer viewer = make_viewer(task.camera, glm::dvec3(0.0));
@@ -246,7 +260,10 @@ LineContribution level_set_lines(const LineTask& task, const std::vector<size_t>
   LineContribution out;
   std::vector<PlacedGrid> grids;
   grids.reserve(objects.size());
-  for (const size_t object : objects) grids.push_back(place_grid(task, object));
+  for (const size_t object : objects) {
+    grids.push_back(place_grid(task, object));
+    note_edges(task, grids.back(), out);
+  }
   const FieldBodies bodies = bodies_of(grids, objects, task.extent);
   std::vector<FieldEvaluator> evaluators;
   for (const Field& field : bodies.fields) evaluators.emplace_back(field);

@@ -36,15 +36,22 @@ struct Spline {
   LevelSet level_set;
   std::shared_ptr<tbb::enumerable_thread_specific<CellCache>> caches = std::make_shared<tbb::enumerable_thread_specific<CellCache>>();
 
+  const std::array<double, 64>& coefficients_at(const nanovdb::Coord& node) const {
+    CellCache::Entry& entry = caches->local().entries[CellCache::place_of(node)];
+    if (entry.node != node) {
+      entry.coefficients = spline_coefficients(level_set.data().accessor(), node);
+      entry.node = node;
+    }
+    return entry.coefficients;
+  }
+  double value(const glm::dvec3& p) const {
+    const CellPoint at = cell_point(level_set.data().index_from_world.point(p));
+    return value_of_spline(coefficients_at(at.node), at.local);
+  }
   FieldJet jet(const glm::dvec3& p, bool with_hessian) const {
     const LevelSetData& data = level_set.data();
     const CellPoint at = cell_point(data.index_from_world.point(p));
-    CellCache::Entry& entry = caches->local().entries[CellCache::place_of(at.node)];
-    if (entry.node != at.node) {
-      entry.coefficients = spline_coefficients(data.accessor(), at.node);
-      entry.node = at.node;
-    }
-    FieldJet jet = jet_of_spline(entry.coefficients, at.local, with_hessian);
+    FieldJet jet = jet_of_spline(coefficients_at(at.node), at.local, with_hessian);
     const glm::dmat3& index_from_world = data.index_from_world.linear;
     jet.gradient = data.world_gradient(jet.gradient);
     if (with_hessian) jet.hessian = glm::transpose(index_from_world) * jet.hessian * index_from_world;
@@ -69,7 +76,7 @@ void evaluate(const void* shape, const T* x, const T* y, const T* z, T* values, 
     } else {
       const glm::dvec3 p = point_of(x, y, z, i);
       if constexpr (std::is_floating_point_v<T>) {
-        values[i] = static_cast<T>(spline.jet(p, false).value);
+        values[i] = static_cast<T>(spline.value(p));
       } else {
         const FieldJet jet = spline.jet(p, std::is_same_v<T, Jet>);
         // The chain rule through a rigid motion, which the leaf applies: x, y and z carry its derivatives.

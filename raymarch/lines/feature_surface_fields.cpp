@@ -250,7 +250,8 @@ std::vector<FeatureSurface> field_features(const LineTask& task, const std::vect
 std::vector<FeatureSurface> level_set_features(const LineTask& task, const std::vector<size_t>& objects, std::vector<std::string>& notes) {
   std::vector<FeatureSurface> surfaces;
   for (const size_t object : objects) {
-    const PlacedLevelSet placed = place_level_set(task, object);
+    const SharedLevelSet shared = place_level_set(task, object);
+    const PlacedLevelSet& placed = *shared;
     const LevelSet& level_set = std::get<LevelSetSource>(task.scene.objects[object].source).level_set;
     PolygonSoup soup = mesh_from_level_set(level_set);
     if (soup.face_sizes.empty()) continue;

@@ -66,7 +66,7 @@ void count(std::vector<Change>& changes, LayersSeen& seen) {
 LayersSeen LevelSetLayers::before(const CurveSample& sample) const {
   auto& evaluators = evaluators_.local();
   if (evaluators.empty()) {
-    for (const PlacedLevelSet& placed : level_sets_) evaluators.emplace_back(placed.field);
+    for (const SharedLevelSet& placed : level_sets_) evaluators.emplace_back(placed->field);
   }
   const bool perspective = camera_.projection == Projection::perspective;
   const double pixel = 1.0 / pixels_per_unit_at(camera_, std::max(sample.depth, 1e-9));
@@ -74,13 +74,13 @@ LayersSeen LevelSetLayers::before(const CurveSample& sample) const {
   std::vector<Change> changes;
   for (const std::vector<size_t>& body : bodies_) {
     double voxel = 0.0;
-    for (const size_t i : body) voxel = std::max(voxel, level_sets_[i].voxel);
+    for (const size_t i : body) voxel = std::max(voxel, level_sets_[i]->voxel);
     Ray ray;
     ray.origin = sample.p + std::max(kLift * voxel, sample.on_chord ? 0.05 * pixel : 0.0) * sample.lift;
     ray.direction = view_vector(camera_, ray.origin);
     ray.end = perspective ? glm::distance(camera_.eye, ray.origin) : project(camera_, ray.origin).z;
     changes.clear();
-    for (const size_t i : body) add_changes(evaluators[i], level_sets_[i], ray, changes);
+    for (const size_t i : body) add_changes(evaluators[i], *level_sets_[i], ray, changes);
     count(changes, seen);
   }
   return seen;

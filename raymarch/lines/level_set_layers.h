@@ -10,7 +10,7 @@ namespace limn {
 class LevelSetLayers {
  public:
   /// `bodies`: those that overlap, of which the outside of all counts.
-  LevelSetLayers(std::vector<PlacedLevelSet> level_sets, std::vector<std::vector<size_t>> bodies, const Camera& camera)
+  LevelSetLayers(std::vector<SharedLevelSet> level_sets, std::vector<std::vector<size_t>> bodies, const Camera& camera)
       : level_sets_(std::move(level_sets)), bodies_(std::move(bodies)), camera_(camera) {}
 
   /// Between the sample, lifted off, and the eye (or the plane Z = 0): sign changes along the ray, a quarter of a voxel at a time near the
@@ -18,7 +18,7 @@ class LevelSetLayers {
   LayersSeen before(const CurveSample& sample) const;
 
  private:
-  std::vector<PlacedLevelSet> level_sets_;
+  std::vector<SharedLevelSet> level_sets_;
   std::vector<std::vector<size_t>> bodies_;
   Camera camera_;
   mutable tbb::enumerable_thread_specific<std::vector<FieldEvaluator>> evaluators_;

@@ -8,6 +8,7 @@
 
 #include "raymarch/lines/found_curves.h"
 #include "raymarch/lines/level_set_layers.h"
+#include "raymarch/lines/line_memory.h"
 #include "sdf/field_program.h"
 #include "sdf/level_set_reconstruction.h"
 #include "sdf/parallel.h"
@@ -16,23 +17,22 @@ namespace limn {
 namespace {
 
 constexpr double kTurn = 0.03;      // radians, beyond twice the spread that a cell's corners show
-constexpr double kOverlap = 0.6;    // voxels of both: a cell's middle lies up to 0.87 of its own off its surface
 constexpr double kSeamReach = 2.0;  // voxels: farther from a surface there is no seam with it
 
-/// One object in solver space.
-struct PlacedGrid : PlacedLevelSet {
-  std::vector<SurfaceCell> cells{};
-};
+constexpr size_t kBlock = 256;
 
-PlacedGrid place_grid(const LineTask& task, size_t object) {
-  PlacedGrid grid{place_level_set(task, object)};
-  grid.cells = surface_cells(std::get<LevelSetSource>(task.scene.objects[object].source).level_set);
-  const glm::dmat3 turn = glm::transpose(inverse(grid.solver_from_world).linear);
-  for (SurfaceCell& cell : grid.cells) {
-    const glm::dvec3 normal = turn * glm::dvec3(cell.normal);
-    if (glm::length(normal) > 0.0) cell.normal = glm::vec3(glm::normalize(normal));
-  }
-  return grid;
+void append(const CellCurves& from, CellCurves& to) {
+  to.crossings.insert(to.crossings.end(), from.crossings.begin(), from.crossings.end());
+  to.links.insert(to.links.end(), from.links.begin(), from.links.end());
+}
+
+/// Calls `visit(part, begin, end)` for blocks of so many cells from many threads.
+template <class Visit>
+void for_blocks(size_t cells, const ExecutionSettings& execution, const Visit& visit) {
+  parallel_for(size_t{0}, (cells + kBlock - 1) / kBlock, [&](size_t part) {
+    if (execution.cancelled && execution.cancelled()) throw Cancelled{};
+    visit(part, part * kBlock, std::min(cells, (part + 1) * kBlock));
+  });
 }
 
 /// Cells of a cubic lattice in solver space that a contour, or the rim's curve, may go through.
@@ -42,21 +42,28 @@ struct Lattice {
 };
 
 /// Cells whose normals may take one of the levels of N.V.
-std::vector<SurfaceCell> turning_cells(const PlacedGrid& placed, const LineTask& task, const std::vector<double>& levels) {
+std::vector<SurfaceCell> turning_cells(const PlacedLevelSet& placed, const LineTask& task, const std::vector<double>& levels,
+                                       const ExecutionSettings& execution) {
+  std::vector<std::vector<SurfaceCell>> parts((placed.cells.size() + kBlock - 1) / kBlock);
+  for_blocks(placed.cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const SurfaceCell& cell = placed.cells[i];
+      const glm::dvec3 middle = placed.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
+      const double facing = std::clamp(glm::dot(glm::dvec3(cell.normal), view_vector(task.camera, middle)), -1.0, 1.0),
+                   reach = 2.0 * static_cast<double>(cell.spread) + kTurn;
+      const bool may = cell.normal == glm::vec3(0.0f) || std::any_of(levels.begin(), levels.end(), [&](double level) {
+                         // An arc is no shorter than its height.
+                         return std::fabs(facing - level) <= reach && std::fabs(std::asin(facing) - std::asin(level)) <= reach;
+                       });
+      if (may) parts[part].push_back(cell);
+    }
+  });
   std::vector<SurfaceCell> cells;
-  for (const SurfaceCell& cell : placed.cells) {
-    const glm::dvec3 middle = placed.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
-    const double facing = glm::dot(glm::dvec3(cell.normal), view_vector(task.camera, middle)),
-                 reach = 2.0 * static_cast<double>(cell.spread) + kTurn;
-    const bool may = cell.normal == glm::vec3(0.0f) || std::any_of(levels.begin(), levels.end(), [&](double level) {
-                       return std::fabs(std::asin(std::clamp(facing, -1.0, 1.0)) - std::asin(level)) <= reach;
-                     });
-    if (may) cells.push_back(cell);
-  }
+  for (const auto& part : parts) cells.insert(cells.end(), part.begin(), part.end());
   return cells;
 }
 
-Lattice lattice_of(const PlacedGrid& placed, const std::vector<SurfaceCell>& cells) {
+Lattice lattice_of(const PlacedLevelSet& placed, const std::vector<SurfaceCell>& cells) {
   Lattice lattice;
   lattice.grid.side = placed.voxel;
   const glm::dmat3& linear = placed.solver_from_index.linear;
@@ -85,22 +92,6 @@ Lattice lattice_of(const PlacedGrid& placed, const std::vector<SurfaceCell>& cel
   return lattice;
 }
 
-constexpr size_t kBlock = 256;
-
-void append(const CellCurves& from, CellCurves& to) {
-  to.crossings.insert(to.crossings.end(), from.crossings.begin(), from.crossings.end());
-  to.links.insert(to.links.end(), from.links.begin(), from.links.end());
-}
-
-/// Calls `visit(part, begin, end)` for blocks of so many cells from many threads.
-template <class Visit>
-void for_blocks(size_t cells, const ExecutionSettings& execution, const Visit& visit) {
-  parallel_for(size_t{0}, (cells + kBlock - 1) / kBlock, [&](size_t part) {
-    if (execution.cancelled && execution.cancelled()) throw Cancelled{};
-    visit(part, part * kBlock, std::min(cells, (part + 1) * kBlock));
-  });
-}
-
 CellOutput march(const CellSearch& search, size_t branch, const Lattice& lattice, const ExecutionSettings& execution) {
   std::vector<CellOutput> parts((lattice.cells.size() + kBlock - 1) / kBlock);
   for_blocks(lattice.cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
@@ -115,12 +106,8 @@ CellOutput march(const CellSearch& search, size_t branch, const Lattice& lattice
   return all;
 }
 
-bool holds(const Box& box, const glm::dvec3& p) {
-  return glm::all(glm::greaterThanEqual(p, box.lower)) && glm::all(glm::lessThanEqual(p, box.upper));
-}
-
 /// Surface cells of one level set that another one's surface may go through.
-std::vector<SurfaceCell> cells_near(const PlacedGrid& own, const PlacedGrid& other, const ExecutionSettings& execution) {
+std::vector<SurfaceCell> cells_near(const PlacedLevelSet& own, const PlacedLevelSet& other, const ExecutionSettings& execution) {
   const double reach = kSeamReach * (own.voxel + other.voxel);
   std::vector<char> near(own.cells.size(), 0);
   for_blocks(own.cells.size(), execution, [&](size_t, size_t begin, size_t end) {
@@ -137,10 +124,12 @@ std::vector<SurfaceCell> cells_near(const PlacedGrid& own, const PlacedGrid& oth
   return cells;
 }
 
-CellCurves march_pair(const CellSearch& search, const PlacedGrid& one, const PlacedGrid& other, const ExecutionSettings& execution) {
-  // On the finer one's lattice.
-  const PlacedGrid &own = one.voxel <= other.voxel ? one : other, &second = one.voxel <= other.voxel ? other : one;
-  const Lattice lattice = lattice_of(own, cells_near(own, second, execution));
+/// `meeting`: cells of the finer one; found if empty.
+CellCurves march_pair(const CellSearch& search, const PlacedLevelSet& one, const PlacedLevelSet& other, std::vector<SurfaceCell>& meeting,
+                      const ExecutionSettings& execution) {
+  const PlacedLevelSet &own = one.voxel <= other.voxel ? one : other, &second = one.voxel <= other.voxel ? other : one;
+  if (meeting.empty()) meeting = cells_near(own, second, execution);
+  const Lattice lattice = lattice_of(own, meeting);
   std::vector<CellCurves> parts((lattice.cells.size() + kBlock - 1) / kBlock);
   for_blocks(lattice.cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
     FieldEvaluator first(one.field), last(other.field);
@@ -151,42 +140,23 @@ CellCurves march_pair(const CellSearch& search, const PlacedGrid& one, const Pla
   return all;
 }
 
-/// One level set's surface reaches into another's inside by more than the voxels can tell from touching.
-bool overlap(const PlacedGrid& one, const PlacedGrid& other) {
-  if (intersect(one.box, other.box).empty()) return false;
-  FieldEvaluator evaluator(other.field);
-  const double depth = kOverlap * (one.voxel + other.voxel);
-  return std::any_of(one.cells.begin(), one.cells.end(), [&](const SurfaceCell& cell) {
-    const glm::dvec3 middle = one.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
-    return holds(other.box, middle) && evaluator.value(middle) < -depth;
-  });
-}
-
 /// Level sets that overlap are one body, as fields are.
-FieldBodies bodies_of(const std::vector<PlacedGrid>& grids, const std::vector<size_t>& objects, double extent) {
+FieldBodies bodies_of(const LineTask& task, const std::vector<SharedLevelSet>& grids, const std::vector<size_t>& objects) {
+  std::vector<std::vector<size_t>>& kept = task.kept.level_sets.bodies;
+  if (kept.empty()) kept = overlapping(grids);
   FieldBodies bodies;
-  bodies.extent = extent;
+  bodies.extent = task.extent;
   bodies.numbers = objects;
-  for (size_t i = 0; i < grids.size(); ++i) {
-    bodies.fields.push_back(grids[i].field);
-    std::vector<size_t> body{i};
-    std::erase_if(bodies.bodies, [&](const std::vector<size_t>& with) {
-      const bool meet =
-          std::any_of(with.begin(), with.end(), [&](size_t j) { return overlap(grids[i], grids[j]) || overlap(grids[j], grids[i]); });
-      if (meet) body.insert(body.end(), with.begin(), with.end());
-      return meet;
-    });
-    std::sort(body.begin(), body.end());
-    bodies.bodies.push_back(std::move(body));
-  }
+  bodies.bodies = kept;
+  for (const SharedLevelSet& grid : grids) bodies.fields.push_back(grid->field);
   return bodies;
 }
 
-SharpField union_of(const std::vector<PlacedGrid>& grids, const std::vector<size_t>& body, double extent) {
-  SharpField sharp = split_branches(grids[body[0]].field, extent);
+SharpField union_of(const std::vector<SharedLevelSet>& grids, const std::vector<size_t>& body, double extent) {
+  SharpField sharp = split_branches(grids[body[0]]->field, extent);
   for (size_t k = 1; k < body.size(); ++k) {
     const int before = static_cast<int>(sharp.nodes.size()) - 1, branch = before + 1, above = before + 2;
-    sharp.branches.push_back(grids[body[k]].field);
+    sharp.branches.push_back(grids[body[k]]->field);
     sharp.node_of.push_back(branch);
     sharp.nodes.push_back({false, -1, -1, above, static_cast<int>(k)});
     sharp.nodes.push_back({false, before, branch, -1, -1});
@@ -199,14 +169,14 @@ SharpField union_of(const std::vector<PlacedGrid>& grids, const std::vector<size
 struct Tracing {
   const LineTask& task;
   const ExecutionSettings& execution;
-  const std::vector<PlacedGrid>& grids;
+  const std::vector<SharedLevelSet>& grids;
   const FieldBodies& bodies;
   std::vector<FieldEvaluator>& evaluators;
   std::vector<double> levels{0.0};
 };
 
 /// Where the surface turns within a voxel as a crease does nothing is drawn but what turns away from the eye.
-void note_edges(const LineTask& task, const PlacedGrid& grid, LineContribution& out) {
+void note_edges(const LineTask& task, const PlacedLevelSet& grid, LineContribution& out) {
   const double half_turn = 0.5 * glm::radians(task.settings.crease_angle_deg);
   const auto sharp = std::count_if(grid.cells.begin(), grid.cells.end(),
                                    [&](const SurfaceCell& cell) { return static_cast<double>(cell.spread) > half_turn; });
@@ -223,12 +193,14 @@ void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContr
   const CellSearch search{sharp, task.camera, viewer, {}, 0, {0.0, task.settings.threshold}, families, true};
   CellResult found;
   for (size_t k = 0; k < body.size(); ++k) {
-    const PlacedGrid& grid = tracing.grids[body[k]];
-    found.branches[static_cast<int>(k)] = march(search, k, lattice_of(grid, turning_cells(grid, task, tracing.levels)), tracing.execution);
+    const PlacedLevelSet& grid = *tracing.grids[body[k]];
+    found.branches[static_cast<int>(k)] =
+        march(search, k, lattice_of(grid, turning_cells(grid, task, tracing.levels, tracing.execution)), tracing.execution);
     for (size_t j = 0; j < k; ++j) {
-      const PlacedGrid& other = tracing.grids[body[j]];
+      const PlacedLevelSet& other = *tracing.grids[body[j]];
       if (intersect(grid.box, other.box).empty()) continue;
-      found.seams[{static_cast<int>(j), static_cast<int>(k)}] = march_pair(search, other, grid, tracing.execution);
+      found.seams[{static_cast<int>(j), static_cast<int>(k)}] =
+          march_pair(search, other, grid, task.kept.level_sets.meetings[{body[j], body[k]}], tracing.execution);
     }
   }
   FieldCurves curves;
@@ -241,37 +213,21 @@ void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContr
 
 }  // namespace
 
-PlacedLevelSet place_level_set(const LineTask& task, size_t object) {
-  const SceneObject& scene_object = task.scene.objects[object];
-  const LevelSet& level_set = std::get<LevelSetSource>(scene_object.source).level_set;
-  Affine solver_from_world = scene_object.world_from_object;
-  solver_from_world.translation -= task.origin;
-  FieldLeaf leaf = reconstruction_field(level_set).program().leaves[0];
-  leaf.object_from_world = inverse(solver_from_world);
-  PlacedLevelSet placed{field_from_leaf(leaf, false), solver_from_world};
-  placed.solver_from_index = compose(solver_from_world, level_set.info().world_from_index);
-  const glm::dmat3& axes = placed.solver_from_index.linear;
-  placed.voxel = std::max({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
-  placed.box = dilate(transform(solver_from_world, level_set.info().bounds), 2.0 * placed.voxel);
-  return placed;
-}
-
 LineContribution level_set_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution) {
   LineContribution out;
-  std::vector<PlacedGrid> grids;
+  std::vector<SharedLevelSet> grids;
   grids.reserve(objects.size());
   for (const size_t object : objects) {
-    grids.push_back(place_grid(task, object));
-    note_edges(task, grids.back(), out);
+    grids.push_back(place_level_set(task, object));
+    note_edges(task, *grids.back(), out);
   }
-  const FieldBodies bodies = bodies_of(grids, objects, task.extent);
+  const FieldBodies bodies = bodies_of(task, grids, objects);
   std::vector<FieldEvaluator> evaluators;
   for (const Field& field : bodies.fields) evaluators.emplace_back(field);
   Tracing tracing{task, execution, grids, bodies, evaluators};
   if (task.wants(LineClass::rim)) tracing.levels.push_back(task.settings.threshold);
   for (const std::vector<size_t>& body : bodies.bodies) add_body(tracing, body, out);
-  const std::vector<PlacedLevelSet> placed(grids.begin(), grids.end());
-  const auto layers = std::make_shared<const LevelSetLayers>(placed, bodies.bodies, task.camera);
+  const auto layers = std::make_shared<const LevelSetLayers>(grids, bodies.bodies, task.camera);
   out.layers_before = [layers](const CurveSample& sample) { return layers->before(sample); };
   return out;
 }

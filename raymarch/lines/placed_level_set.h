@@ -2,6 +2,7 @@
 // Internal: a level set in solver space, as the field of its cubic spline.
 
 #include "raymarch/lines/surface_curves.h"
+#include "sdf/level_set_reconstruction.h"
 
 namespace limn {
 
@@ -9,10 +10,16 @@ struct PlacedLevelSet {
   Field field;
   Affine solver_from_world{};  ///< From where the level set itself stands.
   Affine solver_from_index{};
-  double voxel = 1.0;  ///< The widest side of a cell.
-  Box box{};           ///< About the surface, two voxels wider.
+  double voxel = 1.0;                ///< The widest side of a cell.
+  Box box{};                         ///< About the surface, two voxels wider.
+  std::vector<SurfaceCell> cells{};  ///< With normals of solver space.
 };
+using SharedLevelSet = std::shared_ptr<const PlacedLevelSet>;
 
-PlacedLevelSet place_level_set(const LineTask& task, size_t object);
+/// Kept for the task's next view.
+SharedLevelSet place_level_set(const LineTask& task, size_t object);
+/// Places of those that overlap, in groups; the others alone.
+std::vector<std::vector<size_t>> overlapping(const std::vector<SharedLevelSet>& level_sets);
+bool holds(const Box& box, const glm::dvec3& p);
 
 }  // namespace limn

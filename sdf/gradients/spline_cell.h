@@ -45,6 +45,19 @@ std::array<double, 64> spline_coefficients(const Accessor& accessor, const nanov
   return c;
 }
 
+/// As jet_of_spline()'s, to the bit.
+inline double value_of_spline(const std::array<double, 64>& c, const glm::dvec3& local) {
+  const SplineWeights x = spline_weights(local.x), y = spline_weights(local.y), z = spline_weights(local.z);
+  double sum = 0.0;
+  for (size_t i = 0; i < 4; ++i)
+    for (size_t j = 0; j < 4; ++j) {
+      double value = 0.0;  // of the row along z
+      for (size_t k = 0; k < 4; ++k) value += z.value[k] * c[(i * 4 + j) * 4 + k];
+      sum += x.value[i] * y.value[j] * value;
+    }
+  return sum;
+}
+
 /// Value, gradient and (where asked for) Hessian by index coordinates.
 inline FieldJet jet_of_spline(const std::array<double, 64>& c, const glm::dvec3& local, bool with_hessian) {
   const SplineWeights x = spline_weights(local.x), y = spline_weights(local.y), z = spline_weights(local.z);

@@ -24,6 +24,8 @@ void add_notes(const FieldCurves& found, const std::string& name, LineContributi
     note(fmt::format("searched in cells of {:.3g} px (the limit on cells is reached): closed curves within one cell may be missing",
                      found.cell_px));
   if (found.unsettled > 0) note(fmt::format("bounds leave {} places of less than {:.2g} px open", found.unsettled, found.cell_px));
+  if (found.broken > 0)
+    note(fmt::format("{} places hold two arms of a curve within {:.2g} px, which may be joined too early", found.broken, found.cell_px));
   if (found.rough > 0) note(fmt::format("{} points are known to within a cell of {:.2g} px only", found.rough, found.cell_px));
   if (found.domain_cut) note("is unbounded: its curves are followed in the scene's surroundings only, and its horizon is left out");
 }

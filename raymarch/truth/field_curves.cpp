@@ -12,9 +12,14 @@
 namespace limn {
 namespace {
 
-constexpr double kLongest_px = 1.0;  // longer steps are looked at in between, however straight the curve runs there
-constexpr double kTurning_px = 0.2;  // so wide are the turns that are looked for
-constexpr int kDeepest = 14;         // halvings of a step between two marched points
+constexpr double kLongest_px = 1.0;                       // longer steps are looked at in between, however straight the curve runs there
+constexpr double kTurning_px = 0.2;                       // so wide are the turns that are looked for
+constexpr int kMostHalvings = 2;                          // of cells
+constexpr double kMostBulge = 0.35, kLittleBulge = 0.05;  // of its length in space
+constexpr int kMostLooks = 3;
+constexpr double kLongEndOn_px = 0.5;
+constexpr double kEndOn = 0.3;  // of a step's length in space is its length in the image where it is seen end on
+constexpr int kDeepest = 14;    // halvings of a step between two marched points
 
 /// The domain is wider than the bounds by odd shares on every side: what is symmetric about its own middle then keeps off the cells' faces.
 CellGrid make_grid(const Box& bounds, int level) {
@@ -93,6 +98,17 @@ void halve(const Refiner& refiner, FieldEvaluator& evaluator, double c, const Cu
   if (again) halve(refiner, evaluator, c, a, point, 0.5 * std::max(error, sagitta_px), depth - 1, out);
   out.points.push_back(point);
   if (again) halve(refiner, evaluator, c, point, b, 0.5 * std::max(error, sagitta_px), depth - 1, out);
+}
+
+/// The curve does not go along a step that is short in the image and long in space: the step leads from one arm of it to another.
+bool is_broken(const Refiner& refiner, FieldEvaluator& evaluator, double c, const CurvePoint& a, const CurvePoint& b, int depth) {
+  if (a.crease != b.crease) return false;
+  const std::optional<CurvePoint> middle = point_between(evaluator, refiner.viewer, c, a, b, glm::mix(a.p, b.p, 0.5));
+  if (!middle) return true;
+  const double bulge = distance_to_segment(middle->p, a.p, b.p) / glm::distance(a.p, b.p);
+  if (bulge > kMostBulge) return true;
+  if (bulge < kLittleBulge || depth == 0) return false;
+  return is_broken(refiner, evaluator, c, a, *middle, depth - 1) || is_broken(refiner, evaluator, c, *middle, b, depth - 1);
 }
 
 double turn_at(const std::vector<glm::dvec2>& px, size_t before, size_t at, size_t after) {
@@ -211,6 +227,23 @@ void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
   curve.points = std::move(points);
 }
 
+/// Steps of a refined curve that lead from one arm of it to another.
+std::int64_t count_broken(const Refiner& refiner, const FieldCurve& curve) {
+  std::int64_t broken = 0;
+  FieldEvaluator whole(refiner.field);
+  for (size_t i = 0; i + (curve.closed ? 0 : 1) < curve.points.size(); ++i) {
+    const CurvePoint &a = curve.points[i], &b = curve.points[(i + 1) % curve.points.size()];
+    const double depth = std::max(project(refiner.camera, a.p).z, 1e-9 * refiner.extent),
+                 along_px = glm::distance(a.p, b.p) * pixels_per_unit_at(refiner.camera, depth);
+    const bool end_on =
+        along_px > kLongEndOn_px && glm::distance(image_of(refiner.camera, a.p), image_of(refiner.camera, b.p)) < kEndOn * along_px;
+    if (!end_on) continue;
+    FieldEvaluator evaluator(whole.restricted(dilate(include(include(Box{}, a.p), b.p), kFanReach * glm::distance(a.p, b.p))));
+    broken += is_broken(refiner, evaluator, curve.c, a, b, kMostLooks);
+  }
+  return broken;
+}
+
 }  // namespace
 
 void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurveSettings& settings, const ExecutionSettings& how,
@@ -226,11 +259,15 @@ void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurv
     if (strand.second >= 0) return;
     const Refiner refiner{search.sharp.branches[static_cast<size_t>(strand.first)], search.camera, search.viewer, settings.tolerance_px,
                           settings.extent};
-    for (FieldCurve& curve : cut[i]) refine(refiner, curve, stats[i]);
+    for (FieldCurve& curve : cut[i]) {
+      refine(refiner, curve, stats[i]);
+      stats[i].broken += count_broken(refiner, curve);
+    }
   });
   std::vector<FieldCurve> pieces, seams;
   for (size_t i = 0; i < strands.size(); ++i) {
     result.unrefined += stats[i].unrefined;
+    result.broken += stats[i].broken;
     result.worst_unrefined_px = std::max(result.worst_unrefined_px, stats[i].worst_unrefined_px);
     for (FieldCurve& curve : cut[i]) (curve.seam ? seams : pieces).push_back(std::move(curve));
   }
@@ -240,30 +277,45 @@ void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurv
   for (const FieldCurve& curve : result.curves) result.open_ends += curve.closed ? 0 : 2;
 }
 
-FieldCurves trace_field_curves(const Field& field, const Camera& camera, const Viewer& viewer, const FieldCurveSettings& settings,
-                               const ExecutionSettings& how) {
+namespace {
+
+/// With cells of one size.
+FieldCurves traced_in(const Field& field, const Box& bounds, int level, const Camera& camera, const Viewer& viewer,
+                      const FieldCurveSettings& settings, const ExecutionSettings& how) {
   FieldCurves result;
-  Box bounds = field.traits().bounds;
-  if (bounds.empty()) return result;
-  if (!bounds.finite()) {
-    bounds = intersect(bounds, settings.unbounded_domain);
-    result.domain_cut = true;
-    if (bounds.empty()) return result;
-  }
-  const double scale = largest_scale(camera, bounds);
-  const double cells = bounds.longest_side() * scale / settings.cell_px;
-  result.level = std::clamp(static_cast<int>(std::ceil(std::log2(std::max(cells, 1.0)))), 5, settings.finest_level);
-  const CellGrid grid = make_grid(bounds, result.level);
+  const CellGrid grid = make_grid(bounds, level);
+  result.level = level;
   result.cell = grid.side;
-  result.cell_px = grid.side * scale;
+  result.cell_px = grid.side * largest_scale(camera, bounds);
   const SharpField sharp = split_branches(field, bounds.radius(), settings.whole_seams);
   const CellSearch search{
-      sharp, camera, viewer, grid, result.level, {0.0, settings.threshold}, settings.threshold > 0.0 ? 3u : 1u, settings.whole_seams};
+      sharp, camera, viewer, grid, level, {0.0, settings.threshold}, settings.threshold > 0.0 ? 3u : 1u, settings.whole_seams};
   CellResult found = search_cells(search, how);
   result.cells = found.cells;
   result.unsettled = found.unsettled;
   result.unproven_px = kUnprovenReach * result.cell_px;
   curves_of_cells(found, search, {settings.tolerance_px, bounds.radius(), field.traits().lipschitz}, how, result);
+  return result;
+}
+
+}  // namespace
+
+FieldCurves trace_field_curves(const Field& field, const Camera& camera, const Viewer& viewer, const FieldCurveSettings& settings,
+                               const ExecutionSettings& how) {
+  Box bounds = field.traits().bounds;
+  if (bounds.empty()) return {};
+  const bool cut = !bounds.finite();
+  if (cut) bounds = intersect(bounds, settings.unbounded_domain);
+  FieldCurves result;
+  if (!bounds.empty()) {
+    const double cells = bounds.longest_side() * largest_scale(camera, bounds) / settings.cell_px;
+    int level = std::clamp(static_cast<int>(std::ceil(std::log2(std::max(cells, 1.0)))), 5, settings.finest_level);
+    // Cells that hold two arms of a curve are halved.
+    const int finest = std::min(level + kMostHalvings, settings.finest_level);
+    do result = traced_in(field, bounds, level, camera, viewer, settings, how);
+    while (result.broken > 0 && level++ < finest);
+  }
+  result.domain_cut = cut;
   return result;
 }
 

@@ -40,6 +40,7 @@ struct FieldCurves {
   double unproven_px = 0.0;         ///< Within it of a curve, where it is seen largest, another one would not be told from it.
   std::int64_t rough = 0;           ///< Points that neither Newton nor bisection could place: interpolated in their cell.
   std::int64_t unrefined = 0;       ///< Steps for which no point between could be found.
+  std::int64_t broken = 0;          ///< Steps that leave the curve along the line of sight: another arm of it lies within the same cell.
   double worst_unrefined_px = 0.0;  ///< How far the curve may be from such a step, from how it turns; and gaps between a curve's pieces.
   std::int64_t open_ends = 0;
   bool domain_cut = false;  ///< The field is unbounded: curves are followed within the domain only.

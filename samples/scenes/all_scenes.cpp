@@ -12,7 +12,10 @@
   X(rook)              \
   X(pipe_junction)     \
   X(bracket)           \
-  X(passing_tori)
+  X(passing_tori)      \
+  X(fused_spheres)     \
+  X(honeycomb)         \
+  X(cylinder_end)
 
 namespace limn {
 

@@ -13,8 +13,6 @@
   X(pipe_junction)     \
   X(bracket)           \
   X(passing_tori)      \
-  X(fused_spheres)     \
-  X(honeycomb)         \
   X(cylinder_end)
 
 namespace limn {

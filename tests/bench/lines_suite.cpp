@@ -143,7 +143,7 @@ std::string peer_cells(const OccRun& run, size_t views, double own_ms) {
 }
 
 /// One part from all sides, by parallel projection, which all three have.
-void race(const SolidPart& part, const LinesBenchSettings& settings, nlohmann::json& rows) {
+void race(const LinePart& part, const LinesBenchSettings& settings, nlohmann::json& rows) {
   Scene scene;
   scene.objects.push_back({.name = part.name, .source = field_of(part)});
   const Box box = bounds(scene);
@@ -183,10 +183,11 @@ void race(const SolidPart& part, const LinesBenchSettings& settings, nlohmann::j
 
 void race_all(const LinesBenchSettings& settings, nlohmann::json& rows) {
   const auto& asked = settings.scenes;
-  std::vector<SolidPart> parts = {torus_part(), hub_part(), fused_spheres_part(), honeycomb_part()};
-  std::erase_if(parts, [&](const SolidPart& part) {
-    return asked.empty() ? !settings.meshes.empty() : std::find(asked.begin(), asked.end(), part.name) == asked.end();
-  });
+  std::vector<LinePart> parts;
+  for (LinePart& part : line_parts()) {
+    if (asked.empty() ? settings.meshes.empty() : std::find(asked.begin(), asked.end(), part.name) != asked.end())
+      parts.push_back(std::move(part));
+  }
   if (parts.empty()) return;
   const std::optional<std::string> version = occ_version();
   if (!version) {
@@ -199,7 +200,7 @@ void race_all(const LinesBenchSettings& settings, nlohmann::json& rows) {
       "| part | views | limn median ms | worst | conflicts | exact median ms | worst | limn / exact | polygonal median ms | worst | limn / "
       "polygonal |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
       *version, settings.threads);
-  for (const SolidPart& part : parts) race(part, settings, rows);
+  for (const LinePart& part : parts) race(part, settings, rows);
 }
 
 /// A sphere's silhouette beside Freestyle's.

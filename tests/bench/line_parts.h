@@ -1,5 +1,5 @@
 #pragma once
-// Parts made of solids by union and difference, as data: limn and its peers make the same part each in their own way.
+// Parts made of a few solids by union and difference, as data: limn and its peers make the same part each in their own way.
 
 #include <glm/glm.hpp>
 #include <string>
@@ -7,7 +7,7 @@
 
 #include "sdf/field.h"
 
-namespace limn {
+namespace limn::bench {
 
 /// All stand along the y axis.
 struct PartSolid {
@@ -23,17 +23,15 @@ struct PartSolid {
   bool cut = false;  ///< Out of the union of those that are not.
 };
 
-struct SolidPart {
+struct LinePart {
   std::string name{};
   std::vector<PartSolid> solids{};
 };
 
-SolidPart torus_part();
-SolidPart hub_part();            ///< A disc and a boss with six bores.
-SolidPart fused_spheres_part();  ///< 36.
-SolidPart honeycomb_part();      ///< A plate with 161 cells.
+/// torus, hub (a disc and a boss with six bores), fused_spheres (36), honeycomb (a plate with 161 cells).
+std::vector<LinePart> line_parts();
 
 /// A hexagon that is cut is unbounded along y: it goes through the part.
-Field field_of(const SolidPart& part);
+Field field_of(const LinePart& part);
 
-}  // namespace limn
+}  // namespace limn::bench

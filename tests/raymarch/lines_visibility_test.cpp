@@ -50,10 +50,12 @@ int roots_before(double a, double half_b, double c, double reach) {
   return count;
 }
 
-/// A closed line of contour generator, sampled densely, and how many layers lie in front of each of its points.
+/// A line, sampled densely, and how many layers lie in front of each of its points.
 struct ExactLine {
   std::vector<glm::dvec3> points{};
   std::vector<int> layers{};
+  bool closed = true;
+  bool crease = false;  ///< Runs along a sharp edge.
 };
 
 /// About the y axis. A line of sight along a contour touches the torus: of the quartic along it two roots are 0, and two are left, the
@@ -135,23 +137,95 @@ struct ExactEllipsoid {
   }
 };
 
+/// Between two planes across its axis, its radius linear along it: a cylinder, a cone, or a stump of one.
+struct ExactRevolution {
+  glm::dvec3 center{0.0};
+  glm::dmat3 axes{1.0};  ///< Columns; the second is the axis.
+  double low = -1.0, high = 1.0, radius_low = 1.0, radius_high = 1.0;
+
+  double radius_at(double y) const { return glm::mix(radius_low, radius_high, (y - low) / (high - low)); }
+  double slope() const { return (radius_high - radius_low) / (high - low); }
+  bool inside(const glm::dvec3& q) const { return q.y > low && q.y < high && std::hypot(q.x, q.z) < radius_at(q.y); }
+
+  /// Of a sight that starts beside the solid or on it: sides of the solid from so far on. Between the roots of its three surfaces the
+  /// middles say what lies inside.
+  int layers(const Sight& sight) const {
+    const glm::dmat3 inverse = glm::transpose(axes);
+    const glm::dvec3 o = inverse * (sight.from - center), d = inverse * sight.way;
+    const double reach = std::min(sight.reach, 100.0), k = slope(), r = radius_at(o.y);
+    const double a = d.x * d.x + d.z * d.z - k * k * d.y * d.y, half_b = o.x * d.x + o.z * d.z - r * k * d.y,
+                 c = o.x * o.x + o.z * o.z - r * r;
+    std::vector<double> places{kStart, reach};
+    const double discriminant = half_b * half_b - a * c;
+    for (const double sign : {-1.0, 1.0}) {
+      if (discriminant > 0.0) places.push_back((-half_b + sign * std::sqrt(discriminant)) / a);
+    }
+    for (const double plane : {low, high}) places.push_back((plane - o.y) / d.y);
+    std::erase_if(places, [&](double t) { return !(t >= kStart && t <= reach); });
+    std::sort(places.begin(), places.end());
+    int count = 0;
+    bool before = inside(o + 0.5 * (places[0] + places[1]) * d);
+    for (size_t i = 1; i + 1 < places.size(); ++i) {
+      const bool now = inside(o + 0.5 * (places[i] + places[i + 1]) * d);
+      count += now != before;
+      before = now;
+    }
+    return count;
+  }
+
+  /// Rims, and the straight lines where the side turns away.
+  std::vector<std::vector<glm::dvec3>> rims(int steps) const {
+    std::vector<std::vector<glm::dvec3>> all;
+    for (const double y : {low, high}) {
+      if (radius_at(y) < 1e-6) continue;
+      all.emplace_back();
+      for (int i = 0; i < steps; ++i) {
+        const double turn = 2.0 * kPi * i / steps;
+        all.back().push_back(center + axes * glm::dvec3(radius_at(y) * std::cos(turn), y, radius_at(y) * std::sin(turn)));
+      }
+    }
+    return all;
+  }
+  std::vector<std::vector<glm::dvec3>> contours(const Camera& camera, int steps) const {
+    // The normal (cos u, -slope, sin u) is across the way to the eye: all along the side's line, as it lies in its tangent plane.
+    const bool perspective = camera.projection == Projection::perspective;
+    const glm::dvec3 e = glm::transpose(axes) * (perspective ? camera.eye - center : camera.world_from_camera[2]);
+    const double wanted = perspective ? radius_at(0.0) + slope() * e.y : slope() * e.y, across = std::hypot(e.x, e.z);
+    std::vector<std::vector<glm::dvec3>> all;
+    if (std::fabs(wanted) >= across) return all;
+    for (const double sign : {-1.0, 1.0}) {
+      const double turn = std::atan2(e.z, e.x) + sign * std::acos(wanted / across);
+      all.emplace_back();
+      for (int i = 0; i <= steps; ++i) {
+        const double y = glm::mix(low, high, static_cast<double>(i) / steps), r = radius_at(y);
+        all.back().push_back(center + axes * glm::dvec3(r * std::cos(turn), y, r * std::sin(turn)));
+      }
+    }
+    return all;
+  }
+
+ private:
+  static constexpr double kStart = 1e-6;
+};
+
 struct Stats {
   std::int64_t compared = 0, changes = 0, near_changes = 0;
 };
 
-/// The place of a contour of the graph that is nearest in the image among those at the same depth, of which a pixel counts as 0.05 px.
+/// The place of a line of the graph that is nearest in the image among those at the same depth, of which a pixel counts as 0.05 px.
 struct Nearest {
   double distance = std::numeric_limits<double>::infinity();
   double in_image_px = 0.0;
   int invisibility = -1;
 };
-Nearest nearest_in(const ViewGraph& graph, const Camera& camera, const glm::dvec3& p) {
+Nearest nearest_in(const ViewGraph& graph, const Camera& camera, bool crease, const glm::dvec3& p) {
   Nearest nearest;
   const glm::dvec3 image = project(camera, p);
   const glm::dvec2 px(image);
   const double per_unit = 0.05 * pixels_per_unit_at(camera, image.z);
+  const bool perspective = camera.projection == Projection::perspective;
   for (const LineEdge& edge : graph.edges) {
-    if (edge.line_class != LineClass::contour) continue;
+    if (edge.crease != crease) continue;
     const size_t n = edge.points.size();
     for (size_t i = 0; i + (edge.begin < 0 ? 0 : 1) < n; ++i) {
       const LinePoint &a = edge.points[i], &b = edge.points[(i + 1) % n];
@@ -160,7 +234,8 @@ Nearest nearest_in(const ViewGraph& graph, const Camera& camera, const glm::dvec
       if (glm::distance(a.px, px) - length > nearest.distance) continue;
       const double t = length > 0.0 ? std::clamp(glm::dot(px - a.px, along) / (length * length), 0.0, 1.0) : 0.0;
       const double beside_px = glm::distance(px, a.px + t * along);
-      const double distance = std::max(beside_px, per_unit * std::fabs(glm::mix(a.depth, b.depth, t) - image.z));
+      const double depth = perspective ? 1.0 / glm::mix(1.0 / a.depth, 1.0 / b.depth, t) : glm::mix(a.depth, b.depth, t);
+      const double distance = std::max(beside_px, per_unit * std::fabs(depth - image.z));
       if (distance < nearest.distance) nearest = {distance, beside_px, edge.invisibility};
     }
   }
@@ -174,7 +249,7 @@ void compare(const ViewGraph& graph, const Camera& camera, const std::vector<Exa
     std::vector<glm::dvec2> px;
     for (const glm::dvec3& p : line.points) px.emplace_back(project(camera, p));
     std::vector<size_t> changes;
-    for (size_t i = 0; i < n; ++i) {
+    for (size_t i = 0; i + (line.closed ? 0 : 1) < n; ++i) {
       if (line.layers[i] != line.layers[(i + 1) % n]) changes.push_back(i);
     }
     stats.changes += static_cast<std::int64_t>(changes.size());
@@ -182,7 +257,9 @@ void compare(const ViewGraph& graph, const Camera& camera, const std::vector<Exa
     std::vector<size_t> asked;
     for (size_t i = 0; i < n; i += 97) asked.push_back(i);
     for (const size_t change : changes) {
-      for (size_t k = 0; k < 160; ++k) asked.push_back((change + n - 80 + k) % n);
+      for (size_t k = 0; k < 160; ++k) {
+        if (line.closed || (change + k >= 80 && change + k < n + 80)) asked.push_back((change + n - 80 + k) % n);
+      }
     }
     for (const size_t i : asked) {
       const bool beside_change = std::any_of(changes.begin(), changes.end(), [&](size_t change) {
@@ -192,7 +269,7 @@ void compare(const ViewGraph& graph, const Camera& camera, const std::vector<Exa
         ++stats.near_changes;
         continue;
       }
-      const Nearest found = nearest_in(graph, camera, line.points[i]);
+      const Nearest found = nearest_in(graph, camera, line.crease, line.points[i]);
       ++stats.compared;
       // Depths between the points of an edge are known to some pixels only where it is seen end on.
       ASSERT_LT(found.distance, 0.25) << what;
@@ -215,7 +292,7 @@ TEST(LinesVisibility, ATorusChangesAtItsExactCuspsAndTJunctions) {
       const Camera camera = random_camera(random, bounds(scene), perspective);
       std::vector<ExactLine> lines;
       for (const std::vector<glm::dvec3>& points : torus.contours(camera, kSteps)) {
-        ExactLine line{points, {}};
+        ExactLine line{points};
         for (const glm::dvec3& p : points) line.layers.push_back(torus.own_layers(sight_of(camera, p)));
         lines.push_back(std::move(line));
       }
@@ -254,7 +331,7 @@ TEST(LinesVisibility, EllipsoidsHideEachOtherAtTheExactTJunctions) {
       const Camera camera = random_camera(random, bounds(scene), perspective);
       std::vector<ExactLine> lines;
       for (size_t own = 0; own < shapes.size(); ++own) {
-        ExactLine line{shapes[own].contour(camera, kSteps), {}};
+        ExactLine line{shapes[own].contour(camera, kSteps)};
         for (const glm::dvec3& p : line.points) {
           int layers = 0;
           for (size_t other = 0; other < shapes.size(); ++other) {
@@ -263,6 +340,69 @@ TEST(LinesVisibility, EllipsoidsHideEachOtherAtTheExactTJunctions) {
           line.layers.push_back(layers);
         }
         lines.push_back(std::move(line));
+      }
+      const std::string what = fmt::format("view {}, {}", view, perspective ? "perspective" : "orthographic");
+      ASSERT_NO_FATAL_FAILURE(compare(solve_lines(scene, camera, {}, {}), camera, lines, what, stats));
+    }
+  }
+  fmt::print("{} points compared, {} changes, {} points within 0.05 px of one\n", stats.compared, stats.changes, stats.near_changes);
+  EXPECT_GT(stats.changes, 100);
+  EXPECT_GT(stats.compared, stats.near_changes);
+}
+
+/// A cylinder, a cone, and a stump of one as a turned polygon, which is searched for in cells.
+std::pair<ExactRevolution, Field> random_revolution(int kind, std::mt19937& random) {
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  const double half = 0.35 + 0.4 * any(random), radius = 0.3 + 0.4 * any(random);
+  ExactRevolution solid;
+  solid.low = -half;
+  solid.high = half;
+  solid.radius_low = radius;
+  solid.radius_high = kind == 0 ? radius : kind == 1 ? 0.0 : 0.4 * radius;
+  Field field = kind == 0   ? make_shape("cylinder", {{"radius", {radius}}, {"half_height", {half}}})
+                : kind == 1 ? make_shape("cone", {{"angle_deg", {std::atan2(radius, 2.0 * half) * 180.0 / kPi}}, {"height", {2.0 * half}}})
+                            : make_shape("revolution", {{"profile", {0.0, -half, radius, -half, 0.4 * radius, half, 0.0, half}}});
+  std::normal_distribution<double> normal;
+  const glm::dvec3 about = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+  const double turn = 2.0 * kPi * any(random);
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 e(0.0);
+    e[axis] = 1.0;
+    // Rodrigues' formula.
+    solid.axes[axis] = std::cos(turn) * e + std::sin(turn) * glm::cross(about, e) + (1.0 - std::cos(turn)) * glm::dot(about, e) * about;
+  }
+  return {solid, rotate(field, about, turn)};
+}
+
+TEST(LinesVisibility, CylindersConesAndTurnedPolygonsHideThemselvesAndEachOther) {
+  std::mt19937 random(random_seed());
+  Stats stats;
+  for (int view = 0; view < kViews; ++view) {
+    for (const bool perspective : {true, false}) {
+      std::vector<ExactRevolution> solids;
+      Scene scene;
+      for (int i = 0; i < 3; ++i) {
+        auto [solid, field] = random_revolution(i, random);
+        solid.center = 1.1 * glm::dvec3((i & 1) ? 1 : -1, (i & 2) ? 1 : -1, 0.0);
+        scene.objects.push_back({.name = fmt::format("solid {}", i), .source = translate(field, solid.center)});
+        solids.push_back(solid);
+      }
+      const Camera camera = random_camera(random, bounds(scene), perspective);
+      std::vector<ExactLine> lines;
+      for (const ExactRevolution& own : solids) {
+        const size_t first = lines.size();
+        for (auto& rim : own.rims(kSteps)) lines.push_back({std::move(rim), {}, true, true});
+        for (auto& contour : own.contours(camera, kSteps)) lines.push_back({std::move(contour), {}, false, false});
+        for (size_t l = first; l < lines.size(); ++l) {
+          // Along a contour the sight touches the side that it starts on.
+          for (const glm::dvec3& p : lines[l].points) {
+            int layers = 0;
+            for (const ExactRevolution& solid : solids) {
+              if (&solid != &own || lines[l].closed) layers += solid.layers(sight_of(camera, p));
+            }
+            lines[l].layers.push_back(layers);
+          }
+        }
       }
       const std::string what = fmt::format("view {}, {}", view, perspective ? "perspective" : "orthographic");
       ASSERT_NO_FATAL_FAILURE(compare(solve_lines(scene, camera, {}, {}), camera, lines, what, stats));

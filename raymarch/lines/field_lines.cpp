@@ -17,6 +17,7 @@ namespace {
 // Curves in closed form lie no farther from their chords than this, as shares of the tolerance.
 constexpr double kFormApart = 1.2, kFormNearer = 1.2;
 constexpr double kFormTangency_px = 20.0;
+constexpr double kSamePoint = 1e-9;  // of the extent
 
 void add_notes(const FieldCurves& found, const std::string& name, LineContribution& out) {
   const auto note = [&](std::string text) { out.notes.push_back(fmt::format("{}: {}", name, text)); };
@@ -46,19 +47,38 @@ FieldCurveSettings curve_settings(const LineTask& task) {
   return settings;
 }
 
+/// The trace by the samples of its curve: where a side of a seam turns between two points of the trace there is one more, brought from the
+/// chord onto the curve here.
+FormTrace by_samples(const FormTrace& trace, const Camera& camera, double extent, SurfaceCurve& curve) {
+  FormTrace result{{}, trace.form, {}};
+  const std::vector<CurvePoint>& points = trace.curve.points;
+  size_t next = 0;
+  for (CurveSample& sample : curve.samples) {
+    if (next < points.size() && glm::distance(sample.p, points[next].p) < kSamePoint * extent) {
+      result.parameters.push_back(trace.parameters[next++]);
+      continue;
+    }
+    const glm::dvec3 before = points[next - 1].p, chord = points[next % points.size()].p - before;
+    const double share = std::clamp(glm::dot(sample.p - before, chord) / glm::dot(chord, chord), 0.0, 1.0);
+    result.parameters.push_back(parameter_beside(trace, next - 1, share));
+    sample.p = point_at(trace, result.parameters.back());
+    project_sample(camera, sample);
+  }
+  if (curve.closed) result.parameters.push_back(trace.parameters.back());
+  return result;
+}
+
 /// Curves in closed form, whose points are known between samples, too.
-std::vector<SurfaceCurve> exact_curves(const FieldTask& fields, std::vector<FormTrace> found, double tolerance_px) {
-  const auto traces = std::make_shared<const std::vector<FormTrace>>(std::move(found));
-  std::vector<SurfaceCurve> curves =
-      surface_curves(fields, traces->size(), [&](size_t i) -> const FieldCurve& { return (*traces)[i].curve; });
+std::vector<SurfaceCurve> exact_curves(const FieldTask& fields, const std::vector<FormTrace>& found, double tolerance_px) {
+  std::vector<SurfaceCurve> curves = surface_curves(fields, found.size(), [&](size_t i) -> const FieldCurve& { return found[i].curve; });
+  const auto traces = std::make_shared<std::vector<FormTrace>>(curves.size());
   for (size_t i = 0; i < curves.size(); ++i) {
     SurfaceCurve& curve = curves[i];
     curve.apart_px = kFormApart * tolerance_px;
     curve.nearer_px = kFormNearer * tolerance_px;
     curve.tangency_px = kFormTangency_px;
     curve.long_steps = true;
-    // Where a side turns off the samples there are more of them.
-    if (curve.samples.size() != (*traces)[i].curve.points.size()) continue;
+    (*traces)[i] = by_samples(found[i], fields.task.camera, fields.task.extent, curve);
     curve.between = [traces, i](size_t step, double share) { return point_beside((*traces)[i], step, share); };
   }
   return curves;
@@ -78,7 +98,7 @@ TracedBody trace_body(const FieldTask& fields, const Field& body, const std::str
   if (traced.form) {
     traced.exact_rays = has_ray_roots(*traced.form);
     if (auto curves = trace_form_curves(*traced.form, task.camera, fields.viewer, settings.tolerance_px, execution)) {
-      append(out.curves, exact_curves(fields, std::move(*curves), settings.tolerance_px));
+      append(out.curves, exact_curves(fields, *curves, settings.tolerance_px));
       return traced;
     }
   }

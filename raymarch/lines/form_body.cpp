@@ -22,7 +22,7 @@ std::optional<FormSurface> surface_of(const Field& branch, double hair) {
   if (program.leaves.size() != 1) return {};
   const FieldLeaf& leaf = program.leaves[0];
   if (leaf.functions->closed_form == nullptr) return {};
-  double sign = 1.0, added = hair;
+  double sign = 1.0, added = -hair;
   for (auto step = program.instructions.rbegin(); step != program.instructions.rend(); ++step) {
     if (step->operation == FieldOperation::negate) {
       sign = -sign;
@@ -119,7 +119,8 @@ std::optional<FormBody> form_body(const Field& field) {
   body.extent = bounds.radius();
   const SharpField sharp = split_branches(field, body.extent, true);
   for (size_t i = 0; i < sharp.branches.size(); ++i) {
-    const std::optional<FormSurface> surface = surface_of(sharp.branches[i], kHair * body.extent * static_cast<double>(i));
+    const std::optional<FormSurface> surface =
+        surface_of(sharp.branches[i], kHair * body.extent * static_cast<double>(sharp.branches.size() - 1 - i));
     if (!surface) return {};
     body.surfaces.push_back(*surface);
   }

@@ -16,8 +16,9 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kShareOfTolerance = 0.48;  // for the chords; the rest is the thinning's
 constexpr double kAlongView = 2.0;          // times as far may chords lie off in depth
 constexpr int kMostParts = 4;
-constexpr double kRoom = 1.1;   // for bends that differ along a step
-constexpr double kBulge = 0.1;  // of a step's length, in space
+constexpr double kAtQuarter = 0.75;  // of an arc's height lies a quarter of it off its chord
+constexpr double kRoom = 1.1;        // for bends that differ along a step
+constexpr double kBulge = 0.1;       // of a step's length, in space
 constexpr int kEllipsePieces = 16, kSweptPieces = 48;
 constexpr int kDeepest = 44;
 constexpr double kBehind = 1e-3;        // of the extent: steps that lead behind the eye are cut down to this
@@ -80,15 +81,15 @@ class Tracer {
       add_step(Sample(samples_.back()), next, kDeepest);
     }
   }
-  /// Into as many parts as the bend in the middle asks for: that of a part is less by the square of their number. Few parts are taken at
-  /// their word, many are looked at again.
+  /// Into as many parts as the bend in the middle asks for: that of a part is less by the square of their number. Few parts of
+  /// an ellipse are taken at their word, others are looked at again.
   void add_step(const Sample& a, const Sample& b, int depth) {
     if (depth > 0 && curve_.kind != FormCurve::Kind::line && glm::distance(a.p, b.p) > kShortest * body_.extent) {
       const Sample middle = at(0.5 * (a.s + b.s));
       const double parts = parts_of(a, middle, b);
       if (parts > 1.0) {
         const int count = std::min(kMostParts, static_cast<int>(std::ceil(parts)));
-        const bool again = parts > kMostParts;
+        const bool again = parts > kMostParts || curve_.kind != FormCurve::Kind::ellipse;
         for (int i = 1; i <= count; ++i) {
           const Sample next = i == count ? b : 2 * i == count ? middle : at(glm::mix(a.s, b.s, static_cast<double>(i) / count));
           again ? add_step(Sample(samples_.back()), next, depth - 1) : samples_.push_back(next);
@@ -112,9 +113,16 @@ class Tracer {
     const double bulge = distance_to_segment(middle.p, a.p, b.p);
     if (bulge > kBulge * chord) return kMostParts + 1.0;
     if (before < 3) return 1.0;
-    const double across_px = distance_to_segment(middle.px, a.px, b.px), along_px = bulge * pixels_per_unit_at(camera_, middle.depth);
-    const double much = std::max(across_px / tolerance_px_, along_px / (kAlongView * tolerance_px_));
+    // Where a curve bends one way and then the other its middle lies on the chord, and a quarter does not.
+    double much = off_chord(a, middle, b);
+    if (much <= 1.0) much = std::max(much, off_chord(a, at(glm::mix(a.s, b.s, 0.25)), b) / kAtQuarter);
     return much <= 1.0 ? 1.0 : std::sqrt(kRoom * much);
+  }
+  /// Over what is tolerated.
+  double off_chord(const Sample& a, const Sample& between, const Sample& b) const {
+    const double across_px = distance_to_segment(between.px, a.px, b.px),
+                 along_px = distance_to_segment(between.p, a.p, b.p) * pixels_per_unit_at(camera_, between.depth);
+    return std::max(across_px / tolerance_px_, along_px / (kAlongView * tolerance_px_));
   }
 
   double facing(int number, const Sample& sample) const {
@@ -257,12 +265,16 @@ std::map<std::pair<int, int>, Box> meetings_in(const FormBody& body) {
 
 }  // namespace
 
-glm::dvec3 point_beside(const FormTrace& trace, size_t step, double share) {
+glm::dvec3 point_at(const FormTrace& trace, double parameter) {
+  return point_of(trace.form, trace.form.closed && parameter > trace.form.end ? parameter - kTurn : parameter);
+}
+
+double parameter_beside(const FormTrace& trace, size_t step, double share) {
   const double a = trace.parameters[step], b = trace.parameters[step + 1];
-  const auto point = [&](double s) { return point_of(trace.form, trace.form.closed && s > trace.form.end ? s - kTurn : s); };
+  const auto point = [&](double s) { return point_at(trace, s); };
   const glm::dvec3 start = point(a), chord = point(b) - start;
   const double squared = glm::dot(chord, chord);
-  if (!(squared > 0.0)) return start;
+  if (!(squared > 0.0)) return a;
   // Where the plane across the chord meets the curve: false position.
   double low = a, high = b, off_low = -share, off_high = 1.0 - share;
   double s = glm::mix(a, b, share);
@@ -273,8 +285,10 @@ glm::dvec3 point_beside(const FormTrace& trace, size_t step, double share) {
     (off < 0.0 ? off_low : off_high) = off;
     s = low + (high - low) * off_low / (off_low - off_high);
   }
-  return point(s);
+  return s;
 }
+
+glm::dvec3 point_beside(const FormTrace& trace, size_t step, double share) { return point_at(trace, parameter_beside(trace, step, share)); }
 
 std::optional<std::vector<FormTrace>> trace_form_curves(const FormBody& body, const Camera& camera, const Viewer& viewer,
                                                         double tolerance_px, const ExecutionSettings& execution) {

@@ -11,7 +11,10 @@ struct FormTrace {
   FormCurve form{};
   std::vector<double> parameters{};  ///< Of the curve's points; of a closed one that of the first again, a turn later.
 };
-/// The point of the curve that lies beside a place on the chord of a step.
+glm::dvec3 point_at(const FormTrace& trace, double parameter);
+/// Of the point of the curve that lies beside a place on the chord of a step.
+double parameter_beside(const FormTrace& trace, size_t step, double share);
+/// That point.
 glm::dvec3 point_beside(const FormTrace& trace, size_t step, double share);
 
 /// As trace_field_curves() finds them with whole seams and no level but 0; nothing where two surfaces of the body meet in a curve without

@@ -140,6 +140,9 @@ class Splitter {
   SharpField sharp_;
 };
 
+/// The first branch is moved farthest, the last not at all.
+double outward(const SharpField& sharp, int branch) { return sharp.hair * (static_cast<double>(sharp.branches.size()) - 1.0 - branch); }
+
 /// From a branch's node up to the root.
 std::vector<int> path_of(const SharpField& sharp, int branch) {
   std::vector<int> path;
@@ -169,7 +172,7 @@ void node_values(const SharpField& sharp, std::span<const double> branch_values,
   for (size_t i = 0; i < sharp.nodes.size(); ++i) {
     const SharpNode& node = sharp.nodes[i];
     if (node.branch >= 0) {
-      values[i] = branch_values[static_cast<size_t>(node.branch)] + sharp.hair * node.branch;
+      values[i] = branch_values[static_cast<size_t>(node.branch)] - outward(sharp, node.branch);
       continue;
     }
     const double a = values[static_cast<size_t>(node.left)], b = values[static_cast<size_t>(node.right)];
@@ -183,7 +186,7 @@ double surface_margin(const SharpField& sharp, std::span<const double> values, i
   const std::vector<int> other = second >= 0 ? path_of(sharp, second) : std::vector<int>{};
   const int common = first_common(path, other);
   const auto climb = [&](const std::vector<int>& from, int branch, bool beyond) {
-    const double own = sharp.hair * branch;
+    const double own = -outward(sharp, branch);
     for (const int node : from) {
       if (node == common && !beyond) return;
       const int parent = sharp.nodes[static_cast<size_t>(node)].parent;

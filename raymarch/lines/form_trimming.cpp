@@ -15,6 +15,8 @@ constexpr int kPieces = 64;  // of a curve whose zeros are searched for along it
 constexpr int kValidityPieces = 256;
 constexpr double kBulge = 0.05;  // of a step's length, so that arcs are little longer than their chords
 constexpr double kLonger = 1.05;
+constexpr double kFarLonger = 1e3;
+constexpr double kUneven = 4.0;   // times as long as the other half of a step in the parameter
 constexpr int kDeepest = 48;      // halvings of a piece
 constexpr double kFinest = 1e-7;  // of the extent: no zeros are looked for between places nearer to each other
 
@@ -28,6 +30,7 @@ struct Station {
   double s = 0.0;
   glm::dvec3 p{0.0};
   double length = 0.0;
+  bool far = false;  ///< The step up to it bends beside the box and does not come near: its length is more than is known.
 };
 
 class Trimmer {
@@ -130,12 +133,15 @@ class Trimmer {
     const Station middle{s, point_of(curve_, s), 0.0};
     const double one = glm::distance(a.p, middle.p), other = glm::distance(middle.p, b.p);
     const bool far = std::min(box_value(box_, a.p), box_value(box_, b.p)) > 2.0 * (one + other);
-    if (depth > 0 && !far && one + other > (1.0 + kBulge) * chord && one + other > kFinest * body_.extent) {
+    const bool bent = one + other > (1.0 + kBulge) * chord && one + other > kFinest * body_.extent;
+    const bool uneven = std::max(one, other) > kUneven * std::min(one, other) && one + other > kFinest * body_.extent;
+    if (depth > 0 && !far && (bent || uneven)) {
       add_between(a, middle, depth - 1);
       add_between(middle, b, depth - 1);
       return;
     }
-    stations_.push_back({b.s, b.p, stations_.back().length + one + other});
+    const bool unknown = far && bent;
+    stations_.push_back({b.s, b.p, stations_.back().length + (unknown ? kFarLonger : 1.0) * (one + other), unknown});
   }
 
   template <class Value>
@@ -156,21 +162,23 @@ class Trimmer {
       const double f = value(stations_[middle].p);
       search(value, i, fi, middle, f);
       search(value, middle, f, j, fj);
-    } else {
-      search_step(value, a.s, fi, b.s, fj, b.length - a.length, 8);
+    } else if (!b.far) {
+      search_step(value, {a.s, a.p, 0.0}, fi, {b.s, b.p, 0.0}, fj, 8);
     }
   }
   template <class Value>
-  void search_step(const Value& value, double a, double fa, double b, double fb, double length, int depth) {
+  void search_step(const Value& value, const Station& a, double fa, const Station& b, double fb, int depth) {
     const bool differ = (fa <= 0.0) != (fb <= 0.0);
-    if (!differ && (depth == 0 || std::fabs(fa) + std::fabs(fb) > kLonger * length)) return;
+    if (!differ && (depth == 0 || std::fabs(fa) + std::fabs(fb) > kLonger * glm::distance(a.p, b.p))) return;
     if (depth == 0) {
-      breaks_.push_back(zero_between(value, a, fa, b));
+      breaks_.push_back(zero_between(value, a.s, fa, b.s));
       return;
     }
-    const double middle = 0.5 * (a + b), f = value(point_of(curve_, middle));
-    search_step(value, a, fa, middle, f, 0.5 * length, depth - 1);
-    search_step(value, middle, f, b, fb, 0.5 * length, depth - 1);
+    const double s = 0.5 * (a.s + b.s);
+    const Station middle{s, point_of(curve_, s), 0.0};
+    const double f = value(middle.p);
+    search_step(value, a, fa, middle, f, depth - 1);
+    search_step(value, middle, f, b, fb, depth - 1);
   }
   template <class Value>
   double zero_between(const Value& value, double a, double fa, double b) const {

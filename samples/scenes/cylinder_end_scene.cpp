@@ -18,8 +18,6 @@ Scene make() {
 
 }  // namespace
 
-SceneDescriptor cylinder_end_scene() {
-  return {{"cylinder_end", "a tube seen straight down its axis", "limn"}, make};
-}
+SceneDescriptor cylinder_end_scene() { return {{"cylinder_end", "a tube seen straight down its axis", "limn"}, make}; }
 
 }  // namespace limn

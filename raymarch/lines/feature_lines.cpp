@@ -76,10 +76,11 @@ struct Tracer {
     double turn = 0.0, length = 0.0;
     for (const FeatureStep& step : run) {
       const double apart = glm::distance(step.from.point.p, step.to.point.p);
-      turn += function.curvature_across(step.from.point).value_or(std::numeric_limits<double>::infinity()) * apart;
+      turn += function.curvature_across(step.from.point).value_or(0.0) * apart;
       length += apart;
     }
-    return turn > kLeastTurn && length > kLeastSteps * surface.step;
+    const bool turns_enough = function.line_class() == LineClass::suggestive || turn > kLeastTurn;
+    return turns_enough && length > kLeastSteps * surface.step;
   }
 
   CurveSample sample_of(const FeatureStation& station) const {

@@ -19,6 +19,7 @@ constexpr double kShort_px = 1.0;  // pieces shorter than this are not asked by 
 constexpr double kClear_px = 0.3, kLeastClear_px = 0.12;
 constexpr double kWorthAsking_px = 3.0;
 constexpr int kMostSearches = 4;
+constexpr double kTouch_px = 0.01;   // two polylines, each known to half of this: so near their lines may cross where they do not
 constexpr double kNearEnd_px = 0.3;  // pieces in which no ray starts farther from their ends tell little
 
 /// One curve being cut.
@@ -130,13 +131,13 @@ class Cutter {
     const bool adds_up = !around || relative.back() + step_into(arc[0]) == 0;
     const int lowest = *std::min_element(relative.begin(), relative.end());
     if (adds_up) {
-      const std::optional<int> offset = offset_by_two_rays(arc, relative);
+      const std::optional<int> offset = offset_by_rays(arc, relative, around);
       if (offset && *offset + lowest >= 0) {
         for (size_t k = 0; k < arc.size(); ++k) pieces[arc[k]].invisibility = *offset + relative[k];
         return;
       }
     }
-    if (may_search_ && search_piercings(arc, relative, around)) return;
+    if (may_search_ && search_missed(arc, relative, around)) return;
     settle_by_rays(arc, around);
   }
 
@@ -145,8 +146,9 @@ class Cutter {
     double at = 0.0;
     LayersSeen unexplained{};
   };
-  /// Where rays disagree along an arc the line may go through a sheet that nobody saw: true where that explains something.
-  bool search_piercings(const std::vector<size_t>& arc, const std::vector<int>& relative, bool around) {
+  /// Where rays disagree along an arc the line may go through a sheet that nobody saw, or behind a nearer line that only touches it as far
+  /// as polylines tell: true where that explains something.
+  bool search_missed(const std::vector<size_t>& arc, const std::vector<int>& relative, bool around) {
     const auto steps = static_cast<double>(steps_of(curve_));
     std::vector<double> begins;
     for (const size_t k : arc) {
@@ -180,13 +182,18 @@ class Cutter {
     const size_t before = missed_.size();
     for (size_t i = 0; i + 1 < probes.size(); ++i) {
       if (probes[i].unexplained.count == probes[i + 1].unexplained.count) continue;
-      const auto found = find_piercing(search, probes[i].at, probes[i + 1].at);
-      if (found) missed_.push_back({VertexKind::joint, std::fmod(found->at, steps), found->layers, 0, 0.0});
+      const auto found = find_missed(search, probes[i].at, probes[i + 1].at);
+      if (!found) continue;
+      const double at = std::fmod(found->at, steps);
+      if (found->piercing)
+        missed_.push_back({VertexKind::joint, at, found->layers, 0, 0.0});
+      else if (const auto nearer = folds_.nearest(sample_at(curve_, at, camera_), number_, at, kTouch_px))
+        missed_.push_back({VertexKind::crossing, at, found->layers, nearer->curve, nearer->on_nearer});
     }
     return missed_.size() > before;
   }
 
-  std::optional<int> offset_by_two_rays(const std::vector<size_t>& arc, const std::vector<int>& relative) {
+  std::optional<int> offset_by_rays(const std::vector<size_t>& arc, const std::vector<int>& relative, bool around) {
     // The two longest pieces; in a lone one, two places.
     size_t first = 0, second = 0;
     const auto length = [&](size_t k) { return cut_.pieces[arc[k]].length_px; };
@@ -207,7 +214,12 @@ class Cutter {
     };
     const int offset = ask(first, same ? 0.35 : 0.5);
     if (ask(second, same ? 0.65 : 0.5) != offset) return {};
-    // The longest visible piece and the longest hidden one as well: two rays may both lie on one side of a wrong step.
+    // Both ends of an open arc, between which every step lies, and the longest visible piece and the longest hidden one as well.
+    if (!around) {
+      for (const size_t k : {size_t{0}, arc.size() - 1}) {
+        if (k != first && k != second && length(k) >= kWorthAsking_px && ask(k, 0.5) != offset) return {};
+      }
+    }
     for (const bool visible : {true, false}) {
       std::optional<size_t> longest;
       for (size_t k = 0; k < arc.size(); ++k) {

@@ -21,7 +21,7 @@ double place_at(const CurveWalk& walk, double from, double to, double share) {
 
 }  // namespace
 
-std::optional<MissedChange> find_piercing(const ChangeSearch& search, double from, double to) {
+std::optional<MissedChange> find_missed(const ChangeSearch& search, double from, double to) {
   LayersSeen before = search.unexplained(from), after = search.unexplained(to);
   double low = from, high = to;
   while (search.walk.length_to(high) - search.walk.length_to(low) > kPlace_px) {
@@ -37,12 +37,13 @@ std::optional<MissedChange> find_piercing(const ChangeSearch& search, double fro
   }
   const int layers = after.count - before.count;
   if (layers == 0) return {};
+  MissedChange found{0.5 * (low + high), layers, false};
   // On the side with more layers the sheet that the line goes through comes in from in front: twice as far along the line it is twice as
   // far along the ray.
   const double total = search.walk.length_to(to) - search.walk.length_to(from),
                here = search.walk.length_to(low) - search.walk.length_to(from);
   const double room = layers > 0 ? total - here : here;
-  if (!(room > 0.0)) return {};
+  if (!(room > 0.0)) return found;
   const auto at = [&](double px) {
     const double share = layers > 0 ? (here + px) / total : (here - px) / total;
     const double place = place_at(search.walk, from, to, std::clamp(share, 0.0, 1.0));
@@ -50,8 +51,8 @@ std::optional<MissedChange> find_piercing(const ChangeSearch& search, double fro
   };
   const double step = std::min(0.25, 0.5 * room);
   const double near = at(0.25 * step), far = at(step);
-  if (!(near < 0.6 * far)) return {};
-  return MissedChange{0.5 * (low + high), layers};
+  found.piercing = near < 0.6 * far;
+  return found;
 }
 
 }  // namespace limn

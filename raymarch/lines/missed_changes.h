@@ -16,12 +16,13 @@ struct ChangeSearch {
   std::function<double(double place)> unit_px;  ///< Pixels per world unit there.
 };
 
-/// Between two places where rays disagree by a number of layers: where the line goes through that many sheets, told by how the nearest
-/// sheet comes closer along the rays from both sides. Nothing where rays change their mind for another reason.
+/// Between two places where rays disagree: where they change their mind, and by how many layers.
 struct MissedChange {
   double at = 0.0;
   int layers = 0;
+  /// The line goes through that many sheets there, told by how the nearest sheet comes closer along the rays from both sides.
+  bool piercing = false;
 };
-std::optional<MissedChange> find_piercing(const ChangeSearch& search, double from, double to);
+std::optional<MissedChange> find_missed(const ChangeSearch& search, double from, double to);
 
 }  // namespace limn

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sdf/parallel.h"
 #include "sdf/segment.h"
@@ -14,7 +15,8 @@ constexpr double kMargin_px = 1e-3;      // so that no rounding leaves a bucket 
 constexpr double kBeyondFrame_px = 8.0;  // steps farther outside the picture are left out
 constexpr double kBelowOne = 1.0 - 1e-15;
 constexpr double kParallel = 1e-9;  // the sine of the angle between steps
-constexpr double kOwnSteps = 8.0;   // of a curve that count as the place itself
+constexpr std::uint32_t kNoFold = std::numeric_limits<std::uint32_t>::max();
+constexpr double kOwnSteps = 8.0;  // of a curve that count as the place itself
 
 /// What is asked of a sample, without the rest of it.
 struct End {
@@ -173,8 +175,8 @@ std::vector<std::vector<NearerCrossing>> NearerFolds::crossings() const {
   return result;
 }
 
-double NearerFolds::clearance_px(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const {
-  double least = reach_px;
+NearerFolds::Beside NearerFolds::beside(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const {
+  Beside least{reach_px, kNoFold};
   const End low{sample.px - reach_px, sample.depth}, high{sample.px + reach_px, sample.depth};
   const double own_steps = static_cast<double>(steps_of(curves_[curve]));
   const auto look = [&](size_t bucket) {
@@ -183,7 +185,8 @@ double NearerFolds::clearance_px(const CurveSample& sample, std::uint32_t curve,
       if (std::min(fold.ends.a.depth, fold.ends.b.depth) >= sample.depth) continue;
       const double apart = std::fabs(static_cast<double>(fold.index) + 0.5 - std::fmod(place, own_steps));
       if (fold.curve == curve && std::min(apart, own_steps - apart) < kOwnSteps) continue;
-      least = std::min(least, distance_to_segment(sample.px, fold.ends.a.px, fold.ends.b.px));
+      const double px = distance_to_segment(sample.px, fold.ends.a.px, fold.ends.b.px);
+      if (px < least.px) least = {px, index_->in[k]};
     }
   };
   const size_t columns = columns_of(camera_), rows = rows_of(camera_);
@@ -194,6 +197,20 @@ double NearerFolds::clearance_px(const CurveSample& sample, std::uint32_t curve,
     for (size_t x = bucket(low.px.x, columns); x <= bucket(high.px.x, columns); ++x) look(y * columns + x);
   }
   return least;
+}
+
+double NearerFolds::clearance_px(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const {
+  return beside(sample, curve, place, reach_px).px;
+}
+
+std::optional<NearerCrossing> NearerFolds::nearest(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const {
+  const Beside found = beside(sample, curve, place, reach_px);
+  if (found.fold == kNoFold) return {};
+  const Fold& fold = index_->folds[found.fold];
+  const glm::dvec2 a = fold.ends.a.px, step = fold.ends.b.px - a;
+  const double squared = glm::dot(step, step),
+               t = squared > 0.0 ? std::clamp(glm::dot(sample.px - a, step) / squared, 0.0, kBelowOne) : 0.0;
+  return NearerCrossing{place, 0, fold.curve, static_cast<double>(fold.index) + share_in_space(fold.ends, t, camera_)};
 }
 
 }  // namespace limn

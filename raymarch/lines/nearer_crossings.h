@@ -2,6 +2,7 @@
 // Internal: where curves pass behind folds and open edges in the image.
 
 #include <memory>
+#include <optional>
 
 #include "raymarch/lines/surface_curves.h"
 
@@ -27,9 +28,18 @@ class NearerFolds {
   /// How far the nearest line in front of a place of a curve lies beside it in the image; no more than `reach_px`. A ray that starts a
   /// little beside the curve tells what lies in front of it only where this is more.
   double clearance_px(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const;
+  /// The line in front of a place of a curve that lies nearest beside it in the image, and where on it; nothing within `reach_px`. Its
+  /// layers are left 0.
+  std::optional<NearerCrossing> nearest(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const;
 
  private:
   struct Index;
+  struct Beside {
+    double px = 0.0;
+    std::uint32_t fold = 0;  ///< Into the index; kNoFold: none within reach.
+  };
+  Beside beside(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const;
+
   const std::vector<SurfaceCurve>& curves_;
   const Camera& camera_;
   std::unique_ptr<const Index> index_;

@@ -170,8 +170,8 @@ class Cutter {
       if (piece.length_px < kNearEnd_px) continue;
       for (const double share : {0.15, 0.5, 0.85}) {
         const std::optional<double> clear = clear_ray_at(piece, share);
-        if (!clear) continue;
-        const double place = begins[k] + (*clear - piece.from);
+        if (!clear && piece.length_px < kWorthAsking_px) continue;
+        const double place = begins[k] + (clear.value_or(ray_at(piece, share)) - piece.from);
         if (probes.empty() || place > probes.back().at) probes.push_back({place, unexplained(place)});
       }
     }
@@ -237,6 +237,11 @@ class Cutter {
     std::map<int, int> votes;
     for (const double share : {0.5, 0.3, 0.7}) {
       if (const auto place = clear_ray_at(piece, share)) ++votes[cast(*place)];
+    }
+    if (votes.empty() && piece.length_px >= kWorthAsking_px) {
+      // Nearer lines run along it: rays from points on the curve itself, if they agree.
+      for (const double share : {0.5, 0.3, 0.7}) ++votes[cast(ray_at(piece, share))];
+      if (votes.size() > 1) return {};
     }
     if (votes.empty() && least_px > 0.0) return {};
     if (votes.empty()) ++votes[cast(ray_at(piece, 0.5))];

@@ -86,34 +86,31 @@ RayBounds FieldEvaluator::bounds_along(const glm::dvec3& origin, const glm::dvec
   return {result.value, result.slope};
 }
 
-// One pass for each axis: with a coordinate axis as the direction of the line, the slope that holds everywhere in the box is the partial
-// derivative.
+// With the coordinate axes as the directions of lines, the slopes that hold everywhere in the box are the partial derivatives.
 GradientBounds FieldEvaluator::gradient_bounds(const Box& box) {
-  GradientBounds result;
-  if (!box.finite()) return result;
+  if (!box.finite()) return {};
   const FieldProgram& program = field_.program();
   const glm::dvec3 center = box.center();
   const double radius = glm::length(glm::max(box.upper - center, center - box.lower)) * (1.0 + 1e-15);
-  auto& registers = scratch_->get<Slope>();
+  auto& registers = scratch_->get<BoxSlope>();
   registers.prepare(program);
-  for (int direction = 0; direction < 3; ++direction) {
-    const auto load = [&](const FieldLeaf& leaf) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const double speed = leaf.object_from_world.linear[direction][axis];
-        registers.coordinate(static_cast<size_t>(axis))[0] = {row_bounds(RowMap<double>(leaf.object_from_world, axis), box),
-                                                              {speed, speed}};
-      }
-    };
-    const auto narrow = [&](const FieldLeaf& leaf, Slope* s) {
-      const double steepest = leaf.lipschitz * (1.0 + 1e-14);
-      s->value = tighter(s->value, lipschitz_bounds(leaf_value(leaf, center), leaf.lipschitz, radius, leaf_extent(leaf, center)));
-      s->slope = tighter(s->slope, {-steepest, steepest});
-    };
-    const Slope along = run(program, registers, 1, load, narrow)[0];
-    result.value = tighter(along.value, result.value);
-    result.gradient[static_cast<size_t>(direction)] = along.slope;
-  }
-  return result;
+  const auto load = [&](const FieldLeaf& leaf) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto speed = [&](size_t direction) {
+        const double along = leaf.object_from_world.linear[static_cast<int>(direction)][axis];
+        return Interval{along, along};
+      };
+      registers.coordinate(static_cast<size_t>(axis))[0] = {row_bounds(RowMap<double>(leaf.object_from_world, axis), box),
+                                                            each_axis(speed)};
+    }
+  };
+  const auto narrow = [&](const FieldLeaf& leaf, BoxSlope* s) {
+    const double steepest = leaf.lipschitz * (1.0 + 1e-14);
+    s->value = tighter(s->value, lipschitz_bounds(leaf_value(leaf, center), leaf.lipschitz, radius, leaf_extent(leaf, center)));
+    for (Interval& slope : s->slope.axis) slope = tighter(slope, {-steepest, steepest});
+  };
+  const BoxSlope found = run(program, registers, 1, load, narrow)[0];
+  return {found.value, found.slope.axis};
 }
 
 namespace {

@@ -47,6 +47,9 @@ struct OpaqueShape {
     const double most = of.lipschitz * std::hypot(largest(p.x.slope), largest(p.y.slope), largest(p.z.slope));
     return {bounds(p.x.value, p.y.value, p.z.value), {-most, most}};
   }
+  BoxSlope operator()(const Vector3<BoxSlope>& p) const {
+    return by_axis(p.x, p.y, p.z, [this](const Slope& x, const Slope& y, const Slope& z) { return (*this)(Vector3<Slope>{x, y, z}); });
+  }
 
   double support(const glm::dvec3& direction, double level) const {
     // Beyond the extent the field may rise as slowly as it likes: only its surface is known to lie there.

@@ -26,7 +26,7 @@ using ShapeFunction = void (*)(const void* shape, const T* x, const T* y, const 
 /// A shape's formula for every number type.
 struct ShapeFunctions {
   std::tuple<ShapeFunction<float>, ShapeFunction<double>, ShapeFunction<Dual>, ShapeFunction<Jet>, ShapeFunction<Interval>,
-             ShapeFunction<Slope>>
+             ShapeFunction<Slope>, ShapeFunction<BoxSlope>>
       evaluate;
   /// The greatest dot(direction, p) over the points p with f(p) <= level, or more; -infinity where there are none.
   /// `direction` need not be unit.
@@ -181,7 +181,7 @@ template <class Shape>
 Field field_from_shape(Shape shape, double lipschitz, bool exact, const Affine& object_from_world) {
   static constexpr ShapeFunctions functions{
       {evaluate_shape<Shape, float>, evaluate_shape<Shape, double>, evaluate_shape<Shape, Dual>, evaluate_shape<Shape, Jet>,
-       evaluate_shape<Shape, Interval>, evaluate_shape<Shape, Slope>},
+       evaluate_shape<Shape, Interval>, evaluate_shape<Shape, Slope>, evaluate_shape<Shape, BoxSlope>},
       [](const void* s, const glm::dvec3& direction, double level) { return static_cast<const Shape*>(s)->support(direction, level); },
       recorder_of<Shape>(),
       ball_of<Shape>(),

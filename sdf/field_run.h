@@ -22,6 +22,10 @@ template <>
 constexpr size_t batch_size<Slope>() {
   return 1;
 }
+template <>
+constexpr size_t batch_size<BoxSlope>() {
+  return 1;
+}
 
 /// Slots and object-space coordinates of one number type; grows once.
 template <class T>
@@ -126,7 +130,9 @@ struct RowMap {
 };
 
 struct FieldEvaluator::Scratch {
-  std::tuple<Registers<float>, Registers<double>, Registers<Dual>, Registers<Jet>, Registers<Interval>, Registers<Slope>> registers;
+  std::tuple<Registers<float>, Registers<double>, Registers<Dual>, Registers<Jet>, Registers<Interval>, Registers<Slope>,
+             Registers<BoxSlope>>
+      registers;
 
   template <class T>
   Registers<T>& get() {

@@ -73,6 +73,9 @@ void evaluate(const void* shape, const T* x, const T* y, const T* z, T* values, 
     } else if constexpr (std::is_same_v<T, Slope>) {
       const Interval all{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
       values[i] = {all, all};
+    } else if constexpr (std::is_same_v<T, BoxSlope>) {
+      const Interval all{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+      values[i] = {all, {{all, all, all}}};
     } else {
       const glm::dvec3 p = point_of(x, y, z, i);
       if constexpr (std::is_floating_point_v<T>) {
@@ -132,7 +135,7 @@ SurfaceCell cell_of(const LevelSetData& data, const nanovdb::Coord& node, const 
 
 Field reconstruction_field(const LevelSet& level_set) {
   static constexpr ShapeFunctions functions{
-      {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>},
+      {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>, evaluate<BoxSlope>},
       support,
       nullptr,
       nullptr,

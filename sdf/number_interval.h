@@ -3,6 +3,7 @@
 // Bounds hold the exact result of the real numbers and what double precision makes of it.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -13,11 +14,26 @@
 
 namespace limn {
 
-/// Bounds of value and of every one-sided derivative along a stretch of a line.
-struct Slope {
-  Interval value{0.0, 0.0};
-  Interval slope{0.0, 0.0};
+/// Bounds of three derivatives at once, along the axes.
+struct Interval3 {
+  std::array<Interval, 3> axis{Interval{0.0, 0.0}, Interval{0.0, 0.0}, Interval{0.0, 0.0}};
 };
+template <class S>
+constexpr S no_slope() {
+  if constexpr (std::same_as<S, Interval>)
+    return {0.0, 0.0};
+  else
+    return {};
+}
+
+/// Bounds of value and of every one-sided derivative: along a stretch of a line, or along the three axes all over a box.
+template <class S>
+struct SlopeOf {
+  Interval value{0.0, 0.0};
+  S slope = no_slope<S>();
+};
+using Slope = SlopeOf<Interval>;
+using BoxSlope = SlopeOf<Interval3>;
 
 template <>
 inline Interval constant<Interval>(double x) {
@@ -27,12 +43,19 @@ template <>
 inline Slope constant<Slope>(double x) {
   return {{x, x}, {0.0, 0.0}};
 }
+template <>
+inline BoxSlope constant<BoxSlope>(double x) {
+  return {{x, x}, {}};
+}
 /// Of a Slope its value, of an Interval itself.
 inline const Interval& interval_of(const Interval& a) { return a; }
-inline const Interval& interval_of(const Slope& a) { return a.value; }
+template <class S>
+const Interval& interval_of(const SlopeOf<S>& a) {
+  return a.value;
+}
 
 template <class T>
-concept Bounding = std::same_as<T, Interval> || std::same_as<T, Slope>;
+concept Bounding = std::same_as<T, Interval> || std::same_as<T, Slope> || std::same_as<T, BoxSlope>;
 
 /// Widened by a few units in the last place: more than the rounding of one operation.
 inline Interval outward(double lower, double upper) {
@@ -118,63 +141,153 @@ inline Interval unit_component(const Interval& x, const Interval& others) {
   return {std::max(r.lower, -1.0), std::min(r.upper, 1.0)};
 }
 
-inline Slope operator-(const Slope& a) { return {-a.value, -a.slope}; }
-inline Slope operator+(const Slope& a, const Slope& b) { return {a.value + b.value, a.slope + b.slope}; }
-inline Slope operator-(const Slope& a, const Slope& b) { return {a.value - b.value, a.slope - b.slope}; }
-inline Slope operator*(const Slope& a, const Slope& b) { return {a.value * b.value, a.slope * b.value + a.value * b.slope}; }
-inline Slope operator+(const Slope& a, double b) { return {a.value + b, a.slope}; }
-inline Slope operator-(const Slope& a, double b) { return {a.value - b, a.slope}; }
-inline Slope operator*(const Slope& a, double b) { return {a.value * b, a.slope * b}; }
-inline Slope square(const Slope& a) { return {square(a.value), a.value * a.slope * 2.0}; }
-inline Slope sine(const Slope& a) { return {sine(a.value), cosine(a.value) * a.slope}; }
-inline Slope cosine(const Slope& a) { return {cosine(a.value), -(sine(a.value) * a.slope)}; }
+// The same for each axis.
+template <class Function>
+Interval3 each_axis(const Function& f) {
+  return {{f(size_t{0}), f(size_t{1}), f(size_t{2})}};
+}
+inline Interval3 operator-(const Interval3& a) {
+  return each_axis([&](size_t i) { return -a.axis[i]; });
+}
+inline Interval3 operator+(const Interval3& a, const Interval3& b) {
+  return each_axis([&](size_t i) { return a.axis[i] + b.axis[i]; });
+}
+inline Interval3 operator-(const Interval3& a, const Interval3& b) {
+  return each_axis([&](size_t i) { return a.axis[i] - b.axis[i]; });
+}
+inline Interval3 operator*(const Interval3& a, double b) {
+  return each_axis([&](size_t i) { return a.axis[i] * b; });
+}
+inline Interval3 operator*(const Interval3& a, const Interval& b) {
+  return each_axis([&](size_t i) { return a.axis[i] * b; });
+}
+inline Interval3 operator*(const Interval& a, const Interval3& b) {
+  return each_axis([&](size_t i) { return a * b.axis[i]; });
+}
+inline Interval3 hull(const Interval3& a, const Interval3& b) {
+  return each_axis([&](size_t i) { return hull(a.axis[i], b.axis[i]); });
+}
+/// No steeper than the length of the arguments' slopes (Cauchy-Schwarz).
+template <class... T>
+Interval no_steeper(const Interval& slope, const T&... of) {
+  const double most = norm(magnitude(of)...);
+  return tighter(slope, outward(-most, most));
+}
+template <class... T>
+Interval3 no_steeper(const Interval3& slope, const T&... of) {
+  return each_axis([&](size_t i) { return no_steeper(slope.axis[i], of.axis[i]...); });
+}
+/// A function of three Slopes, for one axis after the other.
+template <class Function>
+BoxSlope by_axis(const BoxSlope& x, const BoxSlope& y, const BoxSlope& z, const Function& f) {
+  BoxSlope result;
+  for (size_t i = 0; i < 3; ++i) {
+    const Slope along = f(Slope{x.value, x.slope.axis[i]}, Slope{y.value, y.slope.axis[i]}, Slope{z.value, z.slope.axis[i]});
+    result.value = i == 0 ? along.value : tighter(along.value, result.value);
+    result.slope.axis[i] = along.slope;
+  }
+  return result;
+}
+
+template <class S>
+SlopeOf<S> operator-(const SlopeOf<S>& a) {
+  return {-a.value, -a.slope};
+}
+template <class S>
+SlopeOf<S> operator+(const SlopeOf<S>& a, const SlopeOf<S>& b) {
+  return {a.value + b.value, a.slope + b.slope};
+}
+template <class S>
+SlopeOf<S> operator-(const SlopeOf<S>& a, const SlopeOf<S>& b) {
+  return {a.value - b.value, a.slope - b.slope};
+}
+template <class S>
+SlopeOf<S> operator*(const SlopeOf<S>& a, const SlopeOf<S>& b) {
+  return {a.value * b.value, a.slope * b.value + a.value * b.slope};
+}
+template <class S>
+SlopeOf<S> operator+(const SlopeOf<S>& a, double b) {
+  return {a.value + b, a.slope};
+}
+template <class S>
+SlopeOf<S> operator-(const SlopeOf<S>& a, double b) {
+  return {a.value - b, a.slope};
+}
+template <class S>
+SlopeOf<S> operator*(const SlopeOf<S>& a, double b) {
+  return {a.value * b, a.slope * b};
+}
+template <class S>
+SlopeOf<S> square(const SlopeOf<S>& a) {
+  return {square(a.value), a.value * a.slope * 2.0};
+}
+template <class S>
+SlopeOf<S> sine(const SlopeOf<S>& a) {
+  return {sine(a.value), cosine(a.value) * a.slope};
+}
+template <class S>
+SlopeOf<S> cosine(const SlopeOf<S>& a) {
+  return {cosine(a.value), -(sine(a.value) * a.slope)};
+}
 
 /// The derivative of whichever of two branches may be the active one: that of both where their values overlap.
-inline Slope minimum(const Slope& a, const Slope& b) {
+template <class S>
+SlopeOf<S> minimum(const SlopeOf<S>& a, const SlopeOf<S>& b) {
   if (a.value.upper < b.value.lower) return a;
   if (b.value.upper < a.value.lower) return b;
   return {minimum(a.value, b.value), hull(a.slope, b.slope)};
 }
-inline Slope maximum(const Slope& a, const Slope& b) { return -minimum(-a, -b); }
-inline Slope abs(const Slope& a) { return maximum(a, -a); }
-
-inline Slope norm(const Slope& x, const Slope& y) {
-  const Interval slope = unit_component(x.value, y.value) * x.slope + unit_component(y.value, x.value) * y.slope;
-  const double most = norm(magnitude(x.slope), magnitude(y.slope));  // Cauchy-Schwarz
-  return {norm(x.value, y.value), tighter(slope, outward(-most, most))};
+template <class S>
+SlopeOf<S> maximum(const SlopeOf<S>& a, const SlopeOf<S>& b) {
+  return -minimum(-a, -b);
 }
-inline Slope norm(const Slope& x, const Slope& y, const Slope& z) {
-  const Interval slope = unit_component(x.value, norm(y.value, z.value)) * x.slope +
-                         unit_component(y.value, norm(x.value, z.value)) * y.slope +
-                         unit_component(z.value, norm(x.value, y.value)) * z.slope;
-  const double most = norm(magnitude(x.slope), magnitude(y.slope), magnitude(z.slope));
-  return {norm(x.value, y.value, z.value), tighter(slope, outward(-most, most))};
+template <class S>
+SlopeOf<S> abs(const SlopeOf<S>& a) {
+  return maximum(a, -a);
+}
+
+template <class S>
+SlopeOf<S> norm(const SlopeOf<S>& x, const SlopeOf<S>& y) {
+  const S slope = unit_component(x.value, y.value) * x.slope + unit_component(y.value, x.value) * y.slope;
+  return {norm(x.value, y.value), no_steeper(slope, x.slope, y.slope)};
+}
+template <class S>
+SlopeOf<S> norm(const SlopeOf<S>& x, const SlopeOf<S>& y, const SlopeOf<S>& z) {
+  const S slope = unit_component(x.value, norm(y.value, z.value)) * x.slope + unit_component(y.value, norm(x.value, z.value)) * y.slope +
+                  unit_component(z.value, norm(x.value, y.value)) * z.slope;
+  return {norm(x.value, y.value, z.value), no_steeper(slope, x.slope, y.slope, z.slope)};
 }
 
 /// The slope of the length of the positive parts, given that it is positive: each part's share of the unit vector, in [0, 1].
-inline Interval positive_share(const Slope& a, const Interval& others) {
-  if (a.value.upper <= 0.0) return {0.0, 0.0};
+template <class S>
+S positive_share(const SlopeOf<S>& a, const Interval& others) {
+  if (a.value.upper <= 0.0) return no_slope<S>();
   if (others.upper == 0.0) return a.slope;
   const auto at = [](double x, double y, double degenerate) { return norm(x, y) < vanishing ? degenerate : x / norm(x, y); };
   const Interval share = outward(at(std::max(a.value.lower, 0.0), others.upper, 0.0), at(a.value.upper, others.lower, 1.0));
   return Interval{std::max(share.lower, 0.0), std::min(share.upper, 1.0)} * a.slope;
 }
-inline Interval positive_part(const Slope& a) { return {std::max(a.value.lower, 0.0), std::max(a.value.upper, 0.0)}; }
+template <class S>
+Interval positive_part(const SlopeOf<S>& a) {
+  return {std::max(a.value.lower, 0.0), std::max(a.value.upper, 0.0)};
+}
 /// Length of non-negative parts; 0 stays exactly 0, which positive_share asks for.
 inline Interval positive_length(const Interval& a, const Interval& b) {
   return a.upper == 0.0 ? b : b.upper == 0.0 ? a : Interval{norm(a.lower, b.lower), norm(a.upper, b.upper)};
 }
-inline Slope corner_distance(const Slope& a, const Slope& b) {
-  const Slope inside = maximum(a, b);
+template <class S>
+SlopeOf<S> corner_distance(const SlopeOf<S>& a, const SlopeOf<S>& b) {
+  const SlopeOf<S> inside = maximum(a, b);
   if (inside.value.upper <= 0.0) return inside;
-  const Interval slope = positive_share(a, positive_part(b)) + positive_share(b, positive_part(a));
+  const S slope = positive_share(a, positive_part(b)) + positive_share(b, positive_part(a));
   return {corner_distance(a.value, b.value), inside.value.lower > 0.0 ? slope : hull(slope, inside.slope)};
 }
-inline Slope corner_distance(const Slope& a, const Slope& b, const Slope& c) {
-  const Slope inside = maximum(maximum(a, b), c);
+template <class S>
+SlopeOf<S> corner_distance(const SlopeOf<S>& a, const SlopeOf<S>& b, const SlopeOf<S>& c) {
+  const SlopeOf<S> inside = maximum(maximum(a, b), c);
   if (inside.value.upper <= 0.0) return inside;
   const Interval pa = positive_part(a), pb = positive_part(b), pc = positive_part(c);
-  const Interval slope =
+  const S slope =
       positive_share(a, positive_length(pb, pc)) + positive_share(b, positive_length(pa, pc)) + positive_share(c, positive_length(pa, pb));
   return {corner_distance(a.value, b.value, c.value), inside.value.lower > 0.0 ? slope : hull(slope, inside.slope)};
 }
@@ -195,12 +308,14 @@ inline Interval power_norm_weight(const Interval& a, const Interval& b, double p
   if (a.lower > 0.0 || power < 0.0) return weight;
   return a.upper < 0.0 ? -weight : Interval{-weight.upper, weight.upper};
 }
-inline Slope power_norm(const Slope& a, const Slope& b, double power) {
+template <class S>
+SlopeOf<S> power_norm(const SlopeOf<S>& a, const SlopeOf<S>& b, double power) {
   return {power_norm(a.value, b.value, power),
           power_norm_weight(a.value, b.value, power) * a.slope + power_norm_weight(b.value, a.value, power) * b.slope};
 }
 
-inline Slope smooth_minimum(const Slope& a, const Slope& b, double radius) {
+template <class S>
+SlopeOf<S> smooth_minimum(const SlopeOf<S>& a, const SlopeOf<S>& b, double radius) {
   const auto weight_of_a = [radius](double difference) {
     const double blend = std::max(radius - std::fabs(difference), 0.0) / radius;
     return difference < 0.0 ? 1.0 - 0.5 * blend * blend : 0.5 * blend * blend;

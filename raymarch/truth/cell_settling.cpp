@@ -1,8 +1,8 @@
 #include "raymarch/truth/cell_settling.h"
 
 #include <algorithm>
+#include <climits>
 #include <unordered_map>
-#include <unordered_set>
 
 #include "raymarch/truth/cell_scope.h"
 #include "sdf/parallel.h"
@@ -14,38 +14,58 @@ constexpr double kClear = 0.02;  // of N.V
 constexpr int kNearCells = 2;    // cells this near a found curve are cut into parts as fine as its tube
 constexpr int kParts = 1 << kNearCuts;
 
-using CellSet = std::unordered_set<std::uint64_t>;
-
 std::uint64_t packed(const glm::ivec3& cell) {
   const auto part = [](int v) { return static_cast<std::uint64_t>(v + 16); };
   return (part(cell.x) << 20 | part(cell.y)) << 20 | part(cell.z);
 }
 
-bool holds_near(const CellSet& set, const glm::ivec3& cell, int reach) {
-  for (int x = -reach; x <= reach; ++x) {
-    for (int y = -reach; y <= reach; ++y) {
-      for (int z = -reach; z <= reach; ++z) {
-        if (set.contains(packed(cell + glm::ivec3(x, y, z)))) return true;
+/// Cells, a bit each in blocks of 4 x 4 x 4.
+class CellSet {
+ public:
+  /// The cell, and those at most `reach` away from it along every axis.
+  void insert_around(const glm::ivec3& cell, int reach) {
+    const glm::ivec3 low = cell - reach, high = cell + reach;
+    for (int x = low.x >> 2; x <= high.x >> 2; ++x) {
+      for (int y = low.y >> 2; y <= high.y >> 2; ++y) {
+        for (int z = low.z >> 2; z <= high.z >> 2; ++z) {
+          std::uint64_t& block = blocks_[packed({x, y, z})];
+          for (int i = std::max(low.x, 4 * x); i <= std::min(high.x, 4 * x + 3); ++i) {
+            for (int j = std::max(low.y, 4 * y); j <= std::min(high.y, 4 * y + 3); ++j) {
+              for (int k = std::max(low.z, 4 * z); k <= std::min(high.z, 4 * z + 3); ++k) block |= bit_of({i, j, k});
+            }
+          }
+        }
       }
     }
   }
-  return false;
-}
+  bool contains(const glm::ivec3& cell) const {
+    const auto block = blocks_.find(packed({cell.x >> 2, cell.y >> 2, cell.z >> 2}));
+    return block != blocks_.end() && (block->second & bit_of(cell)) != 0;
+  }
 
-/// The cells, and their parts, that found curves go through.
+ private:
+  static std::uint64_t bit_of(const glm::ivec3& cell) { return std::uint64_t{1} << ((cell.x & 3) << 4 | (cell.y & 3) << 2 | (cell.z & 3)); }
+  std::unordered_map<std::uint64_t, std::uint64_t> blocks_{};
+};
+
+/// What lies beside found curves: cells within kNearCells of one that a curve goes through, and parts of cells beside such a part.
 struct Tubes {
   CellSet cells{}, parts{};
 
   void add(const CellGrid& grid, const CellCurves& curves) {
     std::unordered_map<std::uint64_t, glm::dvec3> points;
     for (const Crossing& crossing : curves.crossings) points.emplace(crossing.key, (crossing.point.p - grid.corner) / grid.side);
+    glm::ivec3 last_cell(INT_MIN), last_part(INT_MIN);
     for (const Link& link : curves.links) {
       const glm::dvec3 a = points.at(link.from), b = points.at(link.to);
       const int steps = 1 + static_cast<int>(glm::distance(a, b) * 2.0 * kParts);
       for (int i = 0; i <= steps; ++i) {
         const glm::dvec3 p = glm::mix(a, b, static_cast<double>(i) / steps);
-        cells.insert(packed(glm::ivec3(glm::floor(p))));
-        parts.insert(packed(glm::ivec3(glm::floor(p * static_cast<double>(kParts)))));
+        const glm::ivec3 cell(glm::floor(p)), part(glm::floor(p * static_cast<double>(kParts)));
+        if (cell != last_cell) cells.insert_around(cell, kNearCells);
+        if (part != last_part) parts.insert_around(part, 1);
+        last_cell = cell;
+        last_part = part;
       }
     }
   }
@@ -94,7 +114,7 @@ struct Settler {
 
   /// `index` counts boxes of this size from the grid's corner. Parts in a tube are passed over where `beside` is set.
   bool stays(const CellScope& scope, double side, const glm::ivec3& index, int cuts, bool beside) const {
-    if (beside && kSettlingCuts - cuts == kNearCuts && holds_near(tubes.parts, index, 1)) return false;
+    if (beside && kSettlingCuts - cuts == kNearCuts && tubes.parts.contains(index)) return false;
     const Box box{search.grid.corner + side * glm::dvec3(index), search.grid.corner + side * glm::dvec3(index + 1)};
     const Survivors found = survivors_in(search, scope, box);
     if (found.empty()) return false;
@@ -122,7 +142,7 @@ void settle(const CellSearch& search, const std::vector<glm::ivec3>& cells, Cell
     const CellScope whole = whole_scope(search.sharp);
     for (size_t i = range.begin(); i < range.end(); ++i) {
       const CellScope scope = shortened(whole, search.grid.cell(cells[i]), 0.0);
-      const bool beside = holds_near(tubes.cells, cells[i], kNearCells);
+      const bool beside = tubes.cells.contains(cells[i]);
       left[i] = settler.stays(scope, search.grid.side, cells[i], kSettlingCuts, beside);
     }
   });

@@ -98,15 +98,15 @@ struct Cyclide {
   }
 
   /// The gradient is the unit vector from the nearest ball's centre, which lies within bounds of its own.
-  Slope bounds(const Vector3<Slope>& p) const {
+  template <class S>
+  SlopeOf<S> bounds(const Vector3<SlopeOf<S>>& p) const {
     const Interval value = bounds(Vector3<Interval>{p.x.value, p.y.value, p.z.value});
     const Interval x = p.x.value * a - (value + d) * c, z = p.z.value * b;
     const Interval from_x = p.x.value - unit_component(x, z) * a;
     const Interval from_z = p.z.value - unit_component(z, x) * b;
     const Interval& from_y = p.y.value;
-    const Interval slope = unit_component(from_x, norm(from_y, from_z)) * p.x.slope +
-                           unit_component(from_y, norm(from_x, from_z)) * p.y.slope +
-                           unit_component(from_z, norm(from_x, from_y)) * p.z.slope;
+    const S slope = unit_component(from_x, norm(from_y, from_z)) * p.x.slope + unit_component(from_y, norm(from_x, from_z)) * p.y.slope +
+                    unit_component(from_z, norm(from_x, from_y)) * p.z.slope;
     return {value, slope};
   }
 };

@@ -121,9 +121,15 @@ struct Profile {
   }
 
   static Interval either(const Interval& a, const Interval& b) { return hull(a, b); }
-  static Slope either(const Slope& a, const Slope& b) { return {hull(a.value, b.value), hull(a.slope, b.slope)}; }
+  template <class S>
+  static SlopeOf<S> either(const SlopeOf<S>& a, const SlopeOf<S>& b) {
+    return {hull(a.value, b.value), hull(a.slope, b.slope)};
+  }
   static void narrow(Interval& a, const Interval& value) { a = tighter(a, value); }
-  static void narrow(Slope& a, const Interval& value) { a.value = tighter(a.value, value); }
+  template <class S>
+  static void narrow(SlopeOf<S>& a, const Interval& value) {
+    a.value = tighter(a.value, value);
+  }
 };
 
 /// From the points of a polygon, either way round; the last point joins the first. Points on the axis close the solid there.

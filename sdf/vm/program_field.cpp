@@ -59,6 +59,17 @@ void evaluate(const void* shape, const T* x, const T* y, const T* z, T* values, 
   run(static_cast<const VmShape*>(shape)->program, x, y, z, values, count, scratch);
 }
 
+template <>
+void evaluate<BoxSlope>(const void* shape, const BoxSlope* x, const BoxSlope* y, const BoxSlope* z, BoxSlope* values, size_t count) {
+  for (size_t i = 0; i < count; ++i) {
+    values[i] = by_axis(x[i], y[i], z[i], [&](const Slope& sx, const Slope& sy, const Slope& sz) {
+      Slope value;
+      evaluate(shape, &sx, &sy, &sz, &value, 1);
+      return value;
+    });
+  }
+}
+
 double support(const void* shape, const glm::dvec3& direction, double level) {
   const Box box = static_cast<const VmShape*>(shape)->reach->at(level);
   if (box.empty()) return -kInfinity;
@@ -76,14 +87,14 @@ void record(const void* shape, const Vector3<Recorded>& p, Recorded& value) {
 
 const ShapeFunctions& functions_of(bool recorded) {
   static constexpr ShapeFunctions plain{
-      {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>},
+      {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>, evaluate<BoxSlope>},
       support,
       nullptr,
       nullptr,
       nullptr,
       nullptr};
   static constexpr ShapeFunctions lanes{
-      {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>},
+      {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>, evaluate<BoxSlope>},
       support,
       record,
       nullptr,

@@ -221,8 +221,10 @@ TEST(Lines, ContoursOfTheTorusWithTheirCusps) {
       for (const LineEdge& edge : graph.edges) {
         const LinePoint& middle = edge.points[edge.points.size() / 2];
         if (glm::distance(middle.px, edge.points.front().px) < 2.0 || glm::distance(middle.px, edge.points.back().px) < 2.0) continue;
+        // So near to 0 a swallowtail begins: its two cusps lie within 0.05 px, as near as a change is known.
+        if (std::fabs(middle.radial_curvature) < 0.02) continue;
         EXPECT_EQ(edge.invisibility % 2, middle.radial_curvature < 0.0 ? 1 : 0) << what;
-        if (middle.radial_curvature < 0.02) continue;
+        if (middle.radial_curvature < 0.0) continue;
         EXPECT_EQ(edge.invisibility, torus_layers(camera, middle.position + 1e-4 * middle.normal)) << what;
       }
     }

@@ -192,6 +192,7 @@ int run(const Options& options) {
   SceneInput input = load(options);
   const std::vector<fs::path> outputs = outputs_of(options, input);
   const Scene scene = modelled(options, input, bar);
+  check_smooth(options.lines.lines, scene);
   Film film(options, input, scene, bar);
   Json documents = Json::array(), files = Json::array();
   std::vector<LineDrawing> drawings;

@@ -62,11 +62,12 @@ int run(const Options& options) {
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
   const SceneInput input = load(options);
   check_outputs(options, input);
+  check_smooth(options.judge.lines, input.scene);
   const Camera camera = camera_of(options, input);
   const DrawnLines drawing = read_drawing(options.judge.drawing, options.judge.ink, {camera.width_px, camera.height_px});
   ExecutionSettings execution = execution_settings(options.spec.threads);
   execution.progress = bar.stage("solving the lines");
-  const ViewGraph graph = solve_lines(input.scene, camera, {.classes = options.judge.classes}, execution);
+  const ViewGraph graph = solve_lines(input.scene, camera, options.judge.lines, execution);
   bar.clear();
   const Judgement judgement = judge_lines(graph, drawing, options.judge.settings);
   const std::vector<LimitResult> limits = check_judge_limits(judgement, options.judge.limits);

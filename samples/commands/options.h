@@ -53,7 +53,7 @@ struct LineOptions {
 /// What `limn judge` compares, and what it lets pass.
 struct JudgeOptions {
   std::filesystem::path drawing{}, junit{};
-  std::vector<LineClass> classes{};  ///< Empty: those drawn by default.
+  LineSettings lines{};
   JudgeSettings settings{};
   JudgeLimits limits{};
   InkChoice ink{};

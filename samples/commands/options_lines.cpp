@@ -38,6 +38,25 @@ void add_feature_limits(CLI::App& app, LineSettings& lines) {
       });
 }
 
+/// What makes a point one of a line, beside its class.
+void add_line_definitions(CLI::App& app, LineSettings& lines) {
+  add(app, {"--threshold", "T", "N.V of the rim's line, above 0 and below 1; default 0.4", kLines}, [&lines](const std::string& text) {
+    lines.threshold = parse_number_above("--threshold", text, 0.0, false, "above 0 and below 1");
+    if (lines.threshold >= 1.0) throw InputError({"", "--threshold", text, "out of range", "above 0 and below 1"});
+  });
+  add(app, {"--crease-angle", "DEG", "edges of meshes are creases where their faces' normals differ by more; default 40", kLines},
+      [&lines](const std::string& text) {
+        lines.crease_angle_deg = parse_number_above("--crease-angle", text, 0.0, false, "above 0 and below 180 degrees");
+        if (lines.crease_angle_deg >= 180.0)
+          throw InputError({"", "--crease-angle", text, "out of range", "above 0 and below 180 degrees"});
+      });
+  add_switch(
+      app,
+      {"--smooth", "", "contours of meshes as of the smooth surface between their vertices' normals, not along edges of facets", kLines},
+      lines.smooth_meshes);
+  add_feature_limits(app, lines);
+}
+
 }  // namespace
 
 void add_line_surface(CLI::App& app, Options& options) {
@@ -71,21 +90,7 @@ void add_lines(CLI::App& app, Options& options) {
   add_switch(app, {"--hidden", "", "hidden lines too, dashed and painted first", kLines}, lines.hidden);
   add(app, {"--qi", "A..B", "only lines with A to B layers of surface in front of them (quantitative invisibility); default 0", kLines},
       [&lines](const std::string& text) { lines.layers = parse_layers("--qi", text); });
-  add(app, {"--threshold", "T", "N.V of the rim's line, above 0 and below 1; default 0.4", kLines}, [&lines](const std::string& text) {
-    lines.lines.threshold = parse_number_above("--threshold", text, 0.0, false, "above 0 and below 1");
-    if (lines.lines.threshold >= 1.0) throw InputError({"", "--threshold", text, "out of range", "above 0 and below 1"});
-  });
-  add(app, {"--crease-angle", "DEG", "edges of meshes are creases where their faces' normals differ by more; default 40", kLines},
-      [&lines](const std::string& text) {
-        lines.lines.crease_angle_deg = parse_number_above("--crease-angle", text, 0.0, false, "above 0 and below 180 degrees");
-        if (lines.lines.crease_angle_deg >= 180.0)
-          throw InputError({"", "--crease-angle", text, "out of range", "above 0 and below 180 degrees"});
-      });
-  add_switch(
-      app,
-      {"--smooth", "", "contours of meshes as of the smooth surface between their vertices' normals, not along edges of facets", kLines},
-      lines.lines.smooth_meshes);
-  add_feature_limits(app, lines.lines);
+  add_line_definitions(app, lines.lines);
   add(app, {"--curves", "polyline|bezier|arc", "what strokes are made of; default polyline", kLines}, [&lines](const std::string& text) {
     const std::vector<std::string> known = {"polyline", "bezier", "arc"};
     const auto at = std::find(known.begin(), known.end(), text);
@@ -163,12 +168,13 @@ void add_judge(CLI::App& app, Options& options) {
        kJudge},
       [&judge](const std::string& text) {
         if (text == "all") {
-          for (const LineClassDescriptor& one : line_classes()) add_unless_there(one.line_class, judge.classes);
+          for (const LineClassDescriptor& one : line_classes()) add_unless_there(one.line_class, judge.lines.classes);
           return;
         }
         for (const std::string& name : parse_names(text))
-          add_unless_there(line_classes().find(name, "", "--lines").line_class, judge.classes);
+          add_unless_there(line_classes().find(name, "", "--lines").line_class, judge.lines.classes);
       });
+  add_line_definitions(app, judge.lines);
   add(app, {"--search", "PX", "strokes farther than this from a line do not match it, pixels, above 0 up to 32; default 2", kJudge},
       [&judge](const std::string& text) {
         const char* const expected = "above 0 and up to 32 pixels";

@@ -123,6 +123,7 @@ std::string first_place(const std::string& command, std::string path) {
     if (path.starts_with(from)) path = to + path.substr(from.size());
   };
   if (command == "compare") become("reference.", "cells[]."), become("reference_cells[].", "cells[].");
+  if (command == "contours") become("frames[].", "views[]."), become("frames", "views");
   if (command == "plan" && path != "finest.built") become("finest.", "chosen."), become("rejected[].", "chosen.");
   if (command == "plan") become("rejected[].", "chosen.");
   return path;
@@ -165,6 +166,8 @@ TEST(Reference, EveryValueOfJsonHasALineAndEveryLineAValue) {
       {"judge",
        {"judge", folder.write("d.svg", "<svg viewBox='0 0 64 48'><path d='M1 1h9' stroke='#000'/></svg>"), "--against", "ellipsoid",
         "--max-missed", "1%"}},
+      {"contours", {"contours", "passing_tori", "--size", "64x48", "-o", folder.file("lines.json")}},
+      {"contours", {"contours", "passing_tori", "--size", "64x48", "--frames", "12", "--turn", "360", "-o", folder.file("frames.json")}},
       {"list", {"list", "methods"}},
   };
   std::set<const DocumentedKey*> used;
@@ -180,8 +183,15 @@ TEST(Reference, EveryValueOfJsonHasALineAndEveryLineAValue) {
     look_at(command, result.json());
   }
   look_at("rows.json", json::parse(text_of(folder.file("c2/rows.json"))));
+  look_at("lines.json", json::parse(text_of(folder.file("lines.json"))));
   // What small healthy inputs do not have.
-  const std::set<std::string> rare = {"truth[].failed", "failed", "surface.voxel_size"};
+  const std::set<std::string> rare = {"truth[].failed",
+                                      "failed",
+                                      "surface.voxel_size",
+                                      "views[].conflicts[].what",
+                                      "views[].conflicts[].px",
+                                      "tracks.events[].beside_conflict",
+                                      "chains[].id"};
   for (const DocumentedKey& one : json_keys())
     EXPECT_TRUE(used.contains(&one) || rare.contains(std::string(one.key))) << one.where << ": " << one.key << " has no value";
 }

@@ -15,7 +15,7 @@ constexpr int kNearCells = 2;    // cells this near a found curve are cut into p
 constexpr int kParts = 1 << kNearCuts;
 
 std::uint64_t packed(const glm::ivec3& cell) {
-  const auto part = [](int v) { return static_cast<std::uint64_t>(v + 16); };
+  const auto part = [](int v) { return static_cast<std::uint64_t>(v) + 16; };  // blocks may begin below zero by a few
   return (part(cell.x) << 20 | part(cell.y)) << 20 | part(cell.z);
 }
 

@@ -16,6 +16,8 @@ constexpr double kOneCusp_px = 0.03;
 constexpr double kSwallowtail_px = 0.2;  // around one whose cusps are closer than that
 constexpr double kLongestNarrow_px = 20.0;
 constexpr double kMostLensSteps = 400.0;
+// How thin a lens between two lines may be: those in closed form and those of smooth surfaces are followed more closely where they touch.
+constexpr double kExactLens_px = 1e-5, kSmoothLens_px = 0.002;
 constexpr double kTangency_px = 3.0;  // along one curve, from a cusp
 
 class EventFinder {
@@ -207,8 +209,10 @@ class EventFinder {
     if (nearer.closed && to - from > 0.5 * steps) std::tie(from, to) = std::pair(to, from + steps);
     if (to - from > kMostLensSteps || other.at - one.at > kMostLensSteps) return false;
     const std::vector<glm::dvec2> own_px = px_between(curve_, one.at, other.at, camera_), nearer_px = px_between(nearer, from, to, camera_);
+    double apart_px = curve_.smooth && nearer.smooth ? kSmoothLens_px : apart_from(nearer);
+    if (curve_.between && nearer.between) apart_px = kExactLens_px;
     // Of long steps the samples of one curve alone say nothing.
-    return lies_along(own_px, nearer_px, apart_from(nearer)) && (!long_steps(nearer) || lies_along(nearer_px, own_px, apart_from(nearer)));
+    return lies_along(own_px, nearer_px, apart_px) && (!long_steps(nearer) || lies_along(nearer_px, own_px, apart_px));
   }
 
   /// A crease leaves a contour, and the two arms of a cusp each other, along their common tangent: polylines of them cross again and again

@@ -34,7 +34,19 @@ glm::dvec3 point_between(const SurfaceCurve& curve, size_t i, double t) {
 
 }  // namespace
 
+glm::dvec3 point_at(const SurfaceCurve& curve, size_t i, double share) {
+  return curve.between ? curve.between(i % curve.samples.size(), share) : point_between(curve, i, share);
+}
+
 size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples.size() : curve.samples.size() - 1; }
+
+double sag_px(const SurfaceCurve& curve, size_t step, const Camera& camera) {
+  if (curve.straight || !(curve.smooth || curve.between)) return 0.0;
+  const CurveSample &a = curve.samples[step], &b = curve.samples[(step + 1) % curve.samples.size()];
+  if (!(a.depth > 0.0 && b.depth > 0.0) || (a.radial_curvature > 0.0) != (b.radial_curvature > 0.0)) return 0.0;
+  const glm::dvec3 middle = project(camera, point_at(curve, step, 0.5));
+  return middle.z > 0.0 ? distance_to_segment(glm::dvec2(middle), a.px, b.px) : 0.0;
+}
 
 bool in_frame(const Camera& camera, const CurveSample& q) {
   return q.depth > 0.0 && q.px.x >= 0.0 && q.px.y >= 0.0 && q.px.x <= camera.width_px && q.px.y <= camera.height_px;
@@ -52,7 +64,7 @@ CurveSample sample_at(const SurfaceCurve& curve, double at, const Camera& camera
   sample.more_on_left = a.more_on_left;
   sample.joint = false;
   sample.on_chord = !curve.between;
-  sample.p = curve.between ? curve.between(i % n, t) : point_between(curve, i, t);
+  sample.p = point_at(curve, i, t);
   sample.radial_curvature = glm::mix(a.radial_curvature, b.radial_curvature, t);
   project_sample(camera, sample);
   return sample;

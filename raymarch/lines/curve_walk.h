@@ -9,6 +9,11 @@ namespace limn {
 size_t steps_of(const SurfaceCurve& curve);
 /// Within the picture, and before the eye.
 bool in_frame(const Camera& camera, const CurveSample& sample);
+/// Between samples i and i + 1 (of a closed curve the first again) the curve's own point where it is known; else one of a smooth curve
+/// through them and their neighbours.
+glm::dvec3 point_at(const SurfaceCurve& curve, size_t i, double share);
+/// How far the curve leaves a step in the image; 0 where nothing but the step is known of it, and where it turns back at a cusp.
+double sag_px(const SurfaceCurve& curve, size_t step, const Camera& camera);
 /// The point at a place on a curve: the index of a step plus the share of it.
 CurveSample sample_at(const SurfaceCurve& curve, double place, const Camera& camera);
 /// Image points between two places, theirs included; `to` may lie beyond the last sample of a closed curve.

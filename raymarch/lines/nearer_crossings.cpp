@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "raymarch/lines/curve_walk.h"
 #include "sdf/parallel.h"
 #include "sdf/segment.h"
 
@@ -15,6 +16,8 @@ constexpr double kMargin_px = 1e-3;      // so that no rounding leaves a bucket 
 constexpr double kBeyondFrame_px = 8.0;  // steps farther outside the picture are left out
 constexpr double kBelowOne = 1.0 - 1e-15;
 constexpr double kParallel = 1e-9;  // the sine of the angle between steps
+constexpr double kPlace_px = 0.02;  // to which the place of a crossing is to be known
+constexpr double kLeastSag_px = 1e-6;
 constexpr std::uint32_t kNoFold = std::numeric_limits<std::uint32_t>::max();
 constexpr double kOwnSteps = 8.0;  // of a curve that count as the place itself
 
@@ -38,8 +41,6 @@ struct Fold {
   int more_on_left = 0;
   double nearer_px = 0.0;
 };
-
-size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples.size() : curve.samples.size() - 1; }
 
 size_t columns_of(const Camera& camera) { return static_cast<size_t>((camera.width_px + 2.0 * kBeyondFrame_px) / kBucket_px) + 2; }
 size_t rows_of(const Camera& camera) { return static_cast<size_t>((camera.height_px + 2.0 * kBeyondFrame_px) / kBucket_px) + 2; }
@@ -104,18 +105,54 @@ bool neighbours(size_t i, size_t j, size_t count) {
   return apart <= 1 || apart + 1 == count;
 }
 
+/// Lines within smooth faces may be asked for or not; the others stay as they are.
+bool is_feature(LineClass line_class) {
+  return line_class == LineClass::suggestive || line_class == LineClass::ridge || line_class == LineClass::valley;
+}
+
+double distance_of(const Ends& one, const Ends& other) {
+  const glm::dvec2 d = one.b.px - one.a.px, e = other.b.px - other.a.px, between = other.a.px - one.a.px;
+  const double determinant = cross(d, e), t = cross(between, e) / determinant, u = cross(between, d) / determinant;
+  if (t >= 0.0 && t <= 1.0 && u >= 0.0 && u <= 1.0) return 0.0;
+  return std::min(std::min(distance_to_segment(one.a.px, other.a.px, other.b.px), distance_to_segment(one.b.px, other.a.px, other.b.px)),
+                  std::min(distance_to_segment(other.a.px, one.a.px, one.b.px), distance_to_segment(other.b.px, one.a.px, one.b.px)));
+}
+
+/// How far apart two steps may lie in the image for their lines to cross.
+double greatest_sag_px(const SurfaceCurve& one, const SurfaceCurve& other) { return one.apart_px + other.apart_px; }
+
+bool may_touch(const Ends& step, const Ends& nearer, double within_px) {
+  const glm::dvec2 low = glm::max(glm::min(step.a.px, step.b.px), glm::min(nearer.a.px, nearer.b.px) - within_px),
+                   high = glm::min(glm::max(step.a.px, step.b.px), glm::max(nearer.a.px, nearer.b.px) + within_px);
+  return low.x <= high.x && low.y <= high.y;
+}
+
+bool is_in_front(const Ends& nearer, const Ends& step, double nearer_px, const Camera& camera) {
+  const double depth = std::max(step.a.depth, step.b.depth);
+  return std::min(nearer.a.depth, nearer.b.depth) < depth - nearer_px / pixels_per_unit_at(camera, depth);
+}
+
+/// Lines that leave their steps by so much together may cross elsewhere than these, or where these do not.
+bool is_unclear(const Ends& step, const Ends& nearer, double sag_px) {
+  if (!(sag_px > kLeastSag_px)) return false;
+  const glm::dvec2 d = step.b.px - step.a.px, e = nearer.b.px - nearer.a.px;
+  // Steps that cross steeply do so within a multiple of the sag.
+  if (std::fabs(cross(d, e)) * kPlace_px > sag_px * glm::length(d) * glm::length(e)) return false;
+  return distance_of(step, nearer) < sag_px;
+}
+
 /// Folds by the buckets that they go through: those of bucket b are `in[first[b]]` up to `in[first[b + 1]]`, in their own order.
 struct FoldIndex {
   std::vector<Fold> folds{};
   std::vector<std::uint32_t> first{}, in{};
 };
 
-FoldIndex index_folds(const std::vector<SurfaceCurve>& curves, const Camera& camera) {
+FoldIndex index_folds(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepMarks* steps) {
   FoldIndex index;
   for (size_t c = 0; c < curves.size(); ++c) {
     const SurfaceCurve& curve = curves[c];
     for (size_t i = 0; i < steps_of(curve); ++i) {
-      if (const int more = curve.samples[i].more_on_left; more != 0)
+      if (const int more = curve.samples[i].more_on_left; more != 0 && (steps == nullptr || (*steps)[c][i] != 0))
         index.folds.push_back({ends_of(curve, i), static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(i), more, curve.nearer_px});
     }
   }
@@ -166,13 +203,46 @@ std::vector<NearerCrossing> crossings_of(const std::vector<SurfaceCurve>& curves
 struct NearerFolds::Index : FoldIndex {};
 
 NearerFolds::NearerFolds(const std::vector<SurfaceCurve>& curves, const Camera& camera)
-    : curves_(curves), camera_(camera), index_(std::make_unique<Index>(Index{index_folds(curves, camera)})) {}
+    : curves_(curves), camera_(camera), index_(std::make_unique<Index>(Index{index_folds(curves, camera, nullptr)})) {}
+NearerFolds::NearerFolds(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepMarks& steps)
+    : curves_(curves), camera_(camera), index_(std::make_unique<Index>(Index{index_folds(curves, camera, &steps)})) {}
 NearerFolds::~NearerFolds() = default;
 
 std::vector<std::vector<NearerCrossing>> NearerFolds::crossings() const {
   std::vector<std::vector<NearerCrossing>> result(curves_.size());
   parallel_for(size_t{0}, curves_.size(), [&](size_t c) { result[c] = crossings_of(curves_, c, *index_, camera_); });
   return result;
+}
+
+StepMarks NearerFolds::unclear_steps(const StepMarks& asked) const {
+  StepMarks unclear(curves_.size());
+  std::vector<std::vector<std::uint32_t>> nearer(curves_.size());
+  parallel_for(size_t{0}, curves_.size(), [&](size_t c) {
+    const SurfaceCurve& curve = curves_[c];
+    unclear[c].assign(asked[c].size(), 0);
+    for (size_t i = 0; i < asked[c].size(); ++i) {
+      if (asked[c][i] == 0) continue;
+      const Ends step = ends_of(curve, i);
+      std::optional<double> own_sag_px;
+      for_buckets(step, camera_, [&](size_t bucket) {
+        for (size_t k = index_->first[bucket]; k < index_->first[bucket + 1]; ++k) {
+          const Fold& fold = index_->folds[index_->in[k]];
+          const SurfaceCurve& other = curves_[fold.curve];
+          if (!may_touch(step, fold.ends, greatest_sag_px(curve, other))) continue;
+          if (fold.curve == c && neighbours(fold.index, i, asked[c].size())) continue;
+          if (!is_in_front(fold.ends, step, std::max(curve.nearer_px, fold.nearer_px), camera_)) continue;
+          if (!own_sag_px) own_sag_px = sag_px(curve, i, camera_);
+          if (!is_unclear(step, fold.ends, *own_sag_px + sag_px(other, fold.index, camera_))) continue;
+          unclear[c][i] = 1;
+          if (!is_feature(curve.samples[i].line_class)) nearer[c].push_back(index_->in[k]);
+        }
+      });
+    }
+  });
+  for (const auto& folds : nearer) {
+    for (const std::uint32_t f : folds) unclear[index_->folds[f].curve][index_->folds[f].index] = 1;
+  }
+  return unclear;
 }
 
 NearerFolds::Beside NearerFolds::beside(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const {

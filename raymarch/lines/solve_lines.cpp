@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/lines/flat_crossings.h"
 #include "raymarch/lines/graph_building.h"
 #include "raymarch/lines/line_memory.h"
 #include "raymarch/scene/threads.h"
@@ -133,6 +134,7 @@ ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettin
       unrefined_px = std::max(unrefined_px, one.unrefined_px);
     }
     snap_joints(curves, task.camera);
+    refine_flat_crossings(curves, task.camera);
     const LayersBefore layers_before = [&](const CurveSample& sample) {
       LayersSeen all{0, std::numeric_limits<double>::infinity()};
       for (const LineContribution& one : contributions) {

@@ -15,6 +15,7 @@ constexpr double kLift_px = 0.1;
 constexpr double kStepAside_px = 0.3;
 constexpr double kInPlane = 1e-5;                   // the sine of the angle between a line and a plane
 constexpr double kAcross = 0.1, kSameSheet = 0.85;  // cosines
+constexpr double kBeside = 1.5;                     // of a triangle's longest edge
 
 /// The same triangles for all views that need cages refined as often.
 std::shared_ptr<const MeshTree> tree_of(const LineTask& task, const std::vector<size_t>& objects, double edge_px) {
@@ -86,6 +87,37 @@ bool MeshLayers::goes_through(const CurveSample& sample, const glm::dvec3& way, 
   return sheet_near(at - step) != sheet_near(at + step);
 }
 
+/// The triangle that stands for the surface at a sample: of those that a short ray through it meets, the one of its normal.
+std::optional<std::uint32_t> MeshLayers::triangle_under(const CurveSample& sample) const {
+  if (!(sample.depth > 0.0)) return {};
+  const double reach = 2.0 * kLift_px / pixels_per_unit_at(camera_, sample.depth);
+  std::optional<std::uint32_t> best;
+  double most = kSameSheet;
+  for (const LayerHit& hit : tree_->hits_along(sample.p + reach * sample.high, -sample.high, 2.0 * reach)) {
+    const double agreement = std::fabs(glm::dot(glm::normalize(tree_->normal_of(tree_->triangles()[hit.triangle])), sample.high));
+    if (agreement > most) best = hit.triangle, most = agreement;
+  }
+  return best;
+}
+
+/// Whether the triangle met at a place belongs to the sheet that the step runs on: whether those are joined nearby. Nothing where no
+/// triangle is known to stand for the step.
+std::optional<bool> MeshLayers::on_own_sheet(const CurveSample& a, const CurveSample& b, const glm::dvec3& place,
+                                             std::uint32_t triangle) const {
+  const auto& corners = tree_->triangles()[triangle].corners;
+  double longest = 0.0;
+  for (size_t k = 0; k < 3; ++k)
+    longest = std::max(longest, glm::distance(tree_->positions()[corners[k]], tree_->positions()[corners[(k + 1) % 3]]));
+  std::optional<bool> joined;
+  for (const CurveSample* end : {&a, &b}) {
+    const std::optional<std::uint32_t> own = triangle_under(*end);
+    if (!own) continue;
+    joined = tree_->joined_near(*own, triangle, place, kBeside * longest + glm::distance(place, end->p));
+    if (*joined) break;
+  }
+  return joined;
+}
+
 void MeshLayers::pierce(SurfaceCurve& curve) const {
   const std::uint32_t own = part_of(curve);
   const size_t n = curve.samples.size();
@@ -108,7 +140,11 @@ void MeshLayers::pierce(SurfaceCurve& curve) const {
                              std::fabs(glm::dot(normal, sample.low)) > kSameSheet;
       // Nor does a line go through a plane that it lies in.
       if (std::fabs(glm::dot(normal, way)) < kInPlane) continue;
-      if (triangle.part == own && (along_own || !goes_through(sample, way, hit.t, normal))) continue;
+      if (triangle.part == own) {
+        const glm::dvec3 place = sample.p + hit.t * way;
+        const std::optional<bool> own_sheet = curve.smooth ? on_own_sheet(sample, next, place, hit.triangle) : std::nullopt;
+        if (own_sheet ? *own_sheet : along_own || !goes_through(sample, way, hit.t, normal)) continue;
+      }
       const double along = glm::dot(normal, way), towards_eye = glm::dot(normal, view_vector(camera_, sample.p));
       sample.pierced.push_back({hit.t / length, (along > 0.0) == (towards_eye > 0.0) ? -1 : 1});
     }

@@ -159,6 +159,34 @@ std::vector<LayerHit> MeshTree::hits_along(const glm::dvec3& origin, const glm::
   return kept;
 }
 
+void MeshTree::find_around() const {
+  first_around_.assign(positions_.size() + 1, 0);
+  for (const Triangle& triangle : triangles_) {
+    for (const std::uint32_t corner : triangle.corners) ++first_around_[corner + 1];
+  }
+  std::partial_sum(first_around_.begin(), first_around_.end(), first_around_.begin());
+  around_.resize(first_around_.back());
+  std::vector<std::uint32_t> next(first_around_.begin(), first_around_.end() - 1);
+  for (size_t t = 0; t < triangles_.size(); ++t) {
+    for (const std::uint32_t corner : triangles_[t].corners) around_[next[corner]++] = static_cast<std::uint32_t>(t);
+  }
+}
+
+bool MeshTree::joined_near(std::uint32_t one, std::uint32_t other, const glm::dvec3& place, double reach) const {
+  std::call_once(around_made_, [&] { find_around(); });
+  std::vector<std::uint32_t> found{one};
+  for (size_t k = 0; k < found.size(); ++k) {
+    if (found[k] == other) return true;
+    for (const std::uint32_t corner : triangles_[found[k]].corners) {
+      if (glm::distance(positions_[corner], place) > reach) continue;
+      for (std::uint32_t i = first_around_[corner]; i < first_around_[corner + 1]; ++i) {
+        if (std::find(found.begin(), found.end(), around_[i]) == found.end()) found.push_back(around_[i]);
+      }
+    }
+  }
+  return false;
+}
+
 glm::dvec3 MeshTree::normal_of(const LayerTriangle& triangle) const {
   const glm::dvec3 &a = positions_[triangle.corners[0]], &b = positions_[triangle.corners[1]], &c = positions_[triangle.corners[2]];
   return glm::cross(b - a, c - a);

@@ -53,6 +53,8 @@ class MeshTree {
 
   /// All hits on origin + t direction, 0 < t < end, in order; one where a shared edge or vertex is hit.
   std::vector<LayerHit> hits_along(const glm::dvec3& origin, const glm::dvec3& direction, double end) const;
+  /// Whether a way over triangles that share vertices within `reach` of the place leads from one to the other.
+  bool joined_near(std::uint32_t one, std::uint32_t other, const glm::dvec3& place, double reach) const;
   /// Made when first asked for.
   const PartMeetings& meetings() const;
 
@@ -63,12 +65,16 @@ class MeshTree {
   void build();
   bool same_side(const LayerHit& a, const LayerHit& b, const glm::dvec3& direction) const;
   PartMeetings find_meetings() const;
+  void find_around() const;
 
   double extent_;
   std::vector<glm::dvec3> positions_{};
   std::vector<LayerTriangle> triangles_{};
   std::uint32_t parts_ = 0;
   std::unique_ptr<Embree> embree_;
+  /// Triangles around vertices: those of vertex v are `around_[first_around_[v]]` up to `around_[first_around_[v + 1]]`.
+  mutable std::once_flag around_made_;
+  mutable std::vector<std::uint32_t> first_around_{}, around_{};
   mutable std::once_flag meetings_made_;
   mutable PartMeetings meetings_;
 };

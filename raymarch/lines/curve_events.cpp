@@ -16,6 +16,7 @@ constexpr double kOneCusp_px = 0.03;
 constexpr double kSwallowtail_px = 0.2;  // around one whose cusps are closer than that
 constexpr double kLongestNarrow_px = 20.0;
 constexpr double kMostLensSteps = 400.0;
+constexpr double kLongestOwnLens_px = 0.05;
 // How thin a lens between two lines may be: those in closed form and those of smooth surfaces are followed more closely where they touch.
 constexpr double kExactLens_px = 1e-5, kSmoothLens_px = 0.002;
 constexpr double kTangency_px = 3.0;  // along one curve, from a cusp
@@ -170,8 +171,10 @@ class EventFinder {
     const double length = walk_.length_to(second) - walk_.length_to(first);
     if (length > kLongestNarrow_px) return false;
     const auto crosses_itself = [&](const CurveEvent& event) {
-      return event.kind == VertexKind::crossing && event.nearer == number_ &&
-             std::min(walk_.apart_px(event.at, first), walk_.apart_px(event.at, second)) < length + kTangency_px;
+      const auto near = [&](double place) {
+        return std::min(walk_.apart_px(place, first), walk_.apart_px(place, second)) < length + kTangency_px;
+      };
+      return event.kind == VertexKind::crossing && event.nearer == number_ && near(event.at) && near(event.on_nearer);
     };
     if (std::any_of(events_.begin(), events_.end(), crosses_itself)) return false;
     const std::vector<glm::dvec2> middle = px_between(curve_, first, second, camera_);
@@ -186,7 +189,7 @@ class EventFinder {
     std::vector<bool> gone;
     for (const NearerCrossing& crossing : crossings) {
       auto& before = open[crossing.curve];
-      if (crossing.curve != number_ && !before.empty() && is_lens(kept[before.back()], crossing)) {
+      if (!before.empty() && is_lens(kept[before.back()], crossing)) {
         gone[before.back()] = true;
         before.pop_back();
         continue;
@@ -208,6 +211,10 @@ class EventFinder {
     double from = std::min(one.on_nearer, other.on_nearer), to = std::max(one.on_nearer, other.on_nearer);
     if (nearer.closed && to - from > 0.5 * steps) std::tie(from, to) = std::pair(to, from + steps);
     if (to - from > kMostLensSteps || other.at - one.at > kMostLensSteps) return false;
+    // Of one curve it lies between two stretches that have nothing in common, and is no swallowtail's.
+    if (one.curve == number_ &&
+        ((from < other.at && one.at < to) || walk_.length_to(other.at) - walk_.length_to(one.at) > kLongestOwnLens_px))
+      return false;
     const std::vector<glm::dvec2> own_px = px_between(curve_, one.at, other.at, camera_), nearer_px = px_between(nearer, from, to, camera_);
     double apart_px = curve_.smooth && nearer.smooth ? kSmoothLens_px : apart_from(nearer);
     if (curve_.between && nearer.between) apart_px = kExactLens_px;

@@ -94,28 +94,27 @@ std::optional<std::uint32_t> MeshLayers::triangle_under(const CurveSample& sampl
   std::optional<std::uint32_t> best;
   double most = kSameSheet;
   for (const LayerHit& hit : tree_->hits_along(sample.p + reach * sample.high, -sample.high, 2.0 * reach)) {
-    const double agreement = std::fabs(glm::dot(glm::normalize(tree_->normal_of(tree_->triangles()[hit.triangle])), sample.high));
+    const double agreement = glm::dot(glm::normalize(tree_->normal_of(tree_->triangles()[hit.triangle])), sample.high);
     if (agreement > most) best = hit.triangle, most = agreement;
   }
   return best;
 }
 
-/// Whether the triangle met at a place belongs to the sheet that the step runs on: whether those are joined nearby. Nothing where no
-/// triangle is known to stand for the step.
-std::optional<bool> MeshLayers::on_own_sheet(const CurveSample& a, const CurveSample& b, const glm::dvec3& place,
-                                             std::uint32_t triangle) const {
+/// Whether the triangle met on a step belongs to the sheet that the step runs on: whether it is joined there to the triangle that stands
+/// for that place, or for an end of the step. `otherwise` where none does.
+bool MeshLayers::on_own_sheet(const CurveSample& a, const CurveSample& b, double share, std::uint32_t triangle, bool otherwise) const {
   const auto& corners = tree_->triangles()[triangle].corners;
   double longest = 0.0;
   for (size_t k = 0; k < 3; ++k)
     longest = std::max(longest, glm::distance(tree_->positions()[corners[k]], tree_->positions()[corners[(k + 1) % 3]]));
-  std::optional<bool> joined;
-  for (const CurveSample* end : {&a, &b}) {
-    const std::optional<std::uint32_t> own = triangle_under(*end);
-    if (!own) continue;
-    joined = tree_->joined_near(*own, triangle, place, kBeside * longest + glm::distance(place, end->p));
-    if (*joined) break;
+  CurveSample place = a;
+  place.p = glm::mix(a.p, b.p, share);
+  place.high = glm::normalize(glm::mix(a.high, b.high, share));
+  for (const CurveSample* from : {&std::as_const(place), &a, &b}) {
+    const double reach = kBeside * longest + glm::distance(place.p, from->p);
+    if (const auto own = triangle_under(*from)) return tree_->joined_near(*own, triangle, place.p, reach);
   }
-  return joined;
+  return otherwise;
 }
 
 void MeshLayers::pierce(SurfaceCurve& curve) const {
@@ -141,9 +140,8 @@ void MeshLayers::pierce(SurfaceCurve& curve) const {
       // Nor does a line go through a plane that it lies in.
       if (std::fabs(glm::dot(normal, way)) < kInPlane) continue;
       if (triangle.part == own) {
-        const glm::dvec3 place = sample.p + hit.t * way;
-        const std::optional<bool> own_sheet = curve.smooth ? on_own_sheet(sample, next, place, hit.triangle) : std::nullopt;
-        if (own_sheet ? *own_sheet : along_own || !goes_through(sample, way, hit.t, normal)) continue;
+        const bool seems_own = along_own || !goes_through(sample, way, hit.t, normal);
+        if (curve.smooth ? on_own_sheet(sample, next, hit.t / length, hit.triangle, seems_own) : seems_own) continue;
       }
       const double along = glm::dot(normal, way), towards_eye = glm::dot(normal, view_vector(camera_, sample.p));
       sample.pierced.push_back({hit.t / length, (along > 0.0) == (towards_eye > 0.0) ? -1 : 1});

@@ -29,7 +29,7 @@ class MeshLayers {
   /// The part that the curve runs on: what most of a few short rays through it hit.
   std::uint32_t part_of(const SurfaceCurve& curve) const;
   std::optional<std::uint32_t> triangle_under(const CurveSample& sample) const;
-  std::optional<bool> on_own_sheet(const CurveSample& a, const CurveSample& b, const glm::dvec3& place, std::uint32_t triangle) const;
+  bool on_own_sheet(const CurveSample& a, const CurveSample& b, double share, std::uint32_t triangle, bool otherwise) const;
   bool goes_through(const CurveSample& sample, const glm::dvec3& way, double at, const glm::dvec3& normal) const;
 
   Camera camera_;

@@ -94,7 +94,7 @@ LineContribution cage_lines(const LineTask& task, const std::vector<size_t>& obj
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
     add_cage(task, i, out);
   }
-  add_mesh_layers(std::make_shared<const MeshLayers>(task, objects, kProxyEdge_px), out);
+  add_mesh_layers(std::make_shared<const MeshLayers>(task, objects, kProxyEdge_px, true), out);
   return out;
 }
 

@@ -37,7 +37,7 @@ class EventFinder {
       const double place = static_cast<double>(i);
       if (in_frame(camera_, a) != in_frame(camera_, b)) events_.push_back({VertexKind::frame, place + frame_share(a, b), {}, 0, 0.0});
       for (const Piercing& piercing : a.pierced)
-        events_.push_back({VertexKind::joint, place + std::min(piercing.t, 1.0 - 1e-9), piercing.layers, 0, 0.0});
+        events_.push_back({VertexKind::joint, place + std::min(piercing.t, 1.0 - 1e-9), piercing.layers, 0, 0.0, piercing.unclear_px});
       if (a.joint && (i > 0 || curve_.closed)) events_.push_back({VertexKind::joint, place, {}, 0, 0.0});
       const bool differs = i > 0 && (a.object != walk_.at(i - 1).object || a.line_class != walk_.at(i - 1).line_class);
       if (differs && !a.joint) events_.push_back({VertexKind::joint, place, 0, 0, 0.0});

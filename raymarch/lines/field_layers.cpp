@@ -11,6 +11,9 @@ namespace limn {
 namespace {
 
 constexpr double kLift = 1e-8;  // of the extent: far above rounding, some millionths of a pixel
+// A ray leaves a crease along itself, and where a face is nearly edge-on it leaves that face a thousand times more slowly: it has to get
+// beyond what faces that coincide are moved apart by (SharpField::hair).
+constexpr double kCreaseLift = 1e-6;
 constexpr double kChordLift_px = 0.02;
 constexpr double kResolution = 1e-10;
 constexpr size_t kLongProgram = 12;   // instructions: longer ones are shortened for parts of a ray
@@ -66,8 +69,9 @@ struct RayWalk {
 LayerRay layer_ray(const Camera& camera, double extent, const CurveSample& sample) {
   // A point on a chord lies off the curve: the ray starts so much farther off the surface.
   const double chord_lift = sample.on_chord ? kChordLift_px / pixels_per_unit_at(camera, std::max(sample.depth, 1e-9)) : 0.0;
+  const double lift = std::isnan(sample.radial_curvature) ? kCreaseLift : kLift;
   LayerRay ray;
-  ray.origin = sample.p + std::max(kLift * extent, chord_lift) * sample.lift;
+  ray.origin = sample.p + std::max(lift * extent, chord_lift) * sample.lift;
   const bool perspective = camera.projection == Projection::perspective;
   ray.end = perspective ? glm::distance(camera.eye, ray.origin) : project(camera, ray.origin).z;
   ray.direction = perspective ? (camera.eye - ray.origin) / ray.end : camera.world_from_camera[2];

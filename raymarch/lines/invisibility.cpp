@@ -81,13 +81,16 @@ class Cutter {
     }
     return best >= 0.0 ? best : glm::mix(piece.from, piece.to, share);
   }
+  double unclear_at(int event) const { return event < 0 ? 0.0 : cut_.events[static_cast<size_t>(event)].unclear_px; }
   /// Near that share a place where no nearer line runs so close by that a ray from beside the curve may pass it on its wrong side. Nothing
   /// where one does all along.
   std::optional<double> clear_ray_at(const CurvePiece& piece, double share) const {
     double best = 0.0, most = kLeastClear_px;
+    const double begin = walk_.length_to(piece.from) + unclear_at(piece.begin), end = walk_.length_to(piece.to) - unclear_at(piece.end);
     for (const double off : {0.0, 0.12, -0.12, 0.24, -0.24, 0.36, -0.36, 0.45, -0.45}) {
       if (!(share + off > 0.0 && share + off < 1.0)) continue;
       const double place = ray_at(piece, share + off);
+      if (const double here = walk_.length_to(place); here < begin || here > end) continue;
       const double clear = folds_.clearance_px(sample_at(curve_, place, camera_), number_, place, kClear_px);
       if (clear >= kClear_px) return place;
       if (clear > most) best = place, most = clear;

@@ -14,6 +14,7 @@ struct CurveEvent {
   std::optional<int> layers{};  ///< Added to what lies in front, walking along; nothing where only rays tell.
   std::uint32_t nearer = 0;     ///< Of a crossing: the curve in front, and the place on it.
   double on_nearer = 0.0;
+  double unclear_px = 0.0;  ///< Rays from so near to it say nothing.
 };
 
 /// A stretch of a curve between two events.

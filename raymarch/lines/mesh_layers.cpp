@@ -15,6 +15,8 @@ constexpr double kLift_px = 0.1;
 constexpr double kStepAside_px = 0.3;
 constexpr double kInPlane = 1e-5;                   // the sine of the angle between a line and a plane
 constexpr double kAcross = 0.1, kSameSheet = 0.85;  // cosines
+constexpr double kUnclear = 2.0, kMostUnclear_px = 20.0;
+constexpr double kFlatly = 0.3;  // a cosine
 constexpr double kBeside = 1.5;                     // of a triangle's longest edge
 
 /// The same triangles for all views that need cages refined as often.
@@ -34,8 +36,8 @@ std::shared_ptr<const MeshTree> tree_of(const LineTask& task, const std::vector<
 
 }  // namespace
 
-MeshLayers::MeshLayers(const LineTask& task, const std::vector<size_t>& objects, double edge_px)
-    : camera_(task.camera), extent_(task.extent), tree_(tree_of(task, objects, edge_px)) {}
+MeshLayers::MeshLayers(const LineTask& task, const std::vector<size_t>& objects, double edge_px, bool smooth)
+    : camera_(task.camera), extent_(task.extent), smooth_(smooth), tree_(tree_of(task, objects, edge_px)) {}
 
 /// The part that the curve runs on: what most of a few short rays through it hit.
 std::uint32_t MeshLayers::part_of(const SurfaceCurve& curve) const {
@@ -143,8 +145,17 @@ void MeshLayers::pierce(SurfaceCurve& curve) const {
         const bool seems_own = along_own || !goes_through(sample, way, hit.t, normal);
         if (curve.smooth ? on_own_sheet(sample, next, hit.t / length, hit.triangle, seems_own) : seems_own) continue;
       }
-      const double along = glm::dot(normal, way), towards_eye = glm::dot(normal, view_vector(camera_, sample.p));
-      sample.pierced.push_back({hit.t / length, (along > 0.0) == (towards_eye > 0.0) ? -1 : 1});
+      // Which side of the sheet is seen is asked of the smooth surface, as its contour is that one's.
+      const double along = glm::dot(normal, way);
+      double towards_eye = glm::dot(normal, view_vector(camera_, sample.p));
+      if (smooth_ && std::fabs(towards_eye) < kFlatly) {
+        const glm::dvec3 place = sample.p + hit.t * way;
+        const glm::dvec3 here = tree_->smooth_normal(hit.triangle, place);
+        if (glm::dot(here, normal) > kSameSheet) towards_eye = glm::dot(here, view_vector(camera_, place));
+      }
+      const double image_share = glm::distance(sample.px, next.px) / (length * pixels_per_unit_at(camera_, std::max(sample.depth, 1e-9)));
+      const double unclear_px = kUnclear * kLift_px * std::fabs(glm::dot(normal, sample.lift) / along) * std::min(1.0, image_share);
+      sample.pierced.push_back({hit.t / length, (along > 0.0) == (towards_eye > 0.0) ? -1 : 1, std::min(unclear_px, kMostUnclear_px)});
     }
   }
 }

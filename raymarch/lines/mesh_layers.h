@@ -12,7 +12,8 @@ namespace limn {
 class MeshLayers {
  public:
   /// Cages are refined until their edges are about `edge_px` long.
-  MeshLayers(const LineTask& task, const std::vector<size_t>& objects, double edge_px);
+  /// `smooth`: the triangles stand for a smooth surface.
+  MeshLayers(const LineTask& task, const std::vector<size_t>& objects, double edge_px, bool smooth);
 
   const MeshTree& tree() const { return *tree_; }
 
@@ -34,6 +35,7 @@ class MeshLayers {
 
   Camera camera_;
   double extent_;
+  bool smooth_;
   std::shared_ptr<const MeshTree> tree_;
 };
 

@@ -227,7 +227,7 @@ class MeshTracer {
 LineContribution mesh_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings&) {
   if (task.settings.smooth_meshes) return smooth_mesh_lines(task, objects);
   LineContribution out;
-  const auto layers = std::make_shared<const MeshLayers>(task, objects, kEdge_px);
+  const auto layers = std::make_shared<const MeshLayers>(task, objects, kEdge_px, false);
   out.curves = MeshTracer(task, *layers).run();
   add_mesh_layers(layers, out);
   return out;

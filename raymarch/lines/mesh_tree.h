@@ -53,6 +53,8 @@ class MeshTree {
 
   /// All hits on origin + t direction, 0 < t < end, in order; one where a shared edge or vertex is hit.
   std::vector<LayerHit> hits_along(const glm::dvec3& origin, const glm::dvec3& direction, double end) const;
+  /// At a place on a triangle: between the normals of its corners, each the mean of those of the triangles around it. Unit.
+  glm::dvec3 smooth_normal(std::uint32_t triangle, const glm::dvec3& place) const;
   /// Whether a way over triangles that share vertices within `reach` of the place leads from one to the other.
   bool joined_near(std::uint32_t one, std::uint32_t other, const glm::dvec3& place, double reach) const;
   /// Made when first asked for.

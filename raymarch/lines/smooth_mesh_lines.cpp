@@ -289,7 +289,7 @@ int layers_beyond_own(const MeshLayers& layers, const CurveSample& sample) {
 
 LineContribution smooth_mesh_lines(const LineTask& task, const std::vector<size_t>& objects) {
   LineContribution out;
-  const auto layers = std::make_shared<const MeshLayers>(task, objects, kEdge_px);
+  const auto layers = std::make_shared<const MeshLayers>(task, objects, kEdge_px, true);
   out.curves = SmoothTracer(task, *layers).run();
   add_mesh_layers(layers, out);
   for (SurfaceCurve& curve : out.curves) {

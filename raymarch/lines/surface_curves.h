@@ -11,6 +11,8 @@ namespace limn {
 struct Piercing {
   double t = 0.0;  ///< Share of the step.
   int layers = 0;  ///< Added to what lies in front, walking along.
+  /// Image length along the curve within which rays from beside it may miss the other surface: long where the curve goes through flatly.
+  double unclear_px = 0.0;
 };
 
 /// A point of a curve on a surface, solver space, and what is true of the step from it to the next.

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "raymarch/lines/curve_walk.h"
+#include "raymarch/lines/curvature_jumps.h"
 
 namespace limn {
 namespace {
@@ -63,7 +65,7 @@ class EventFinder {
     size_t last = first;
     for (size_t k = first + 1; k < first + walk_.size() + (curve_.closed ? 1 : 0) && (curve_.closed || k < walk_.size()); ++k) {
       if (sign_of(k) == 0) continue;
-      if (sign_of(k) != sign_of(last)) changes_.push_back({last, k});
+      if (sign_of(k) != sign_of(last)) changes_.push_back({last, k, 0.0, {}});
       last = k;
     }
     join_near_changes();
@@ -81,7 +83,19 @@ class EventFinder {
   /// Samples around a change of the radial curvature's sign.
   struct SignChange {
     size_t before = 0, after = 0;
+    double place = 0.0;
+    std::optional<int> layers{};  ///< Of a jump.
   };
+  SignChange located(SignChange change) const {
+    const double a = walk_.at(change.before).radial_curvature, b = walk_.at(change.after).radial_curvature;
+    double t = a / (a - b);
+    if (const auto jump = jump_at({curve_, change.before, change.after, camera_})) {
+      t = jump->t;
+      change.layers = jump->layers;
+    }
+    change.place = glm::mix(static_cast<double>(change.before), static_cast<double>(change.after), std::clamp(t, 0.0, 1.0 - 1e-9));
+    return change;
+  }
   /// Image length from one change to the next.
   double length_between(const SignChange& one, const SignChange& next) const {
     return walk_.length_to(static_cast<double>(next.before)) - walk_.length_to(static_cast<double>(one.after));
@@ -92,28 +106,27 @@ class EventFinder {
     if (curve_.closed && !changes_.empty()) {
       // Around the curve from the widest gap on.
       size_t start = 0;
-      double widest = length_between(changes_.back(), {changes_[0].before + n, changes_[0].after + n});
+      double widest = length_between(changes_.back(), {changes_[0].before + n, changes_[0].after + n, 0.0, {}});
       for (size_t k = 1; k < changes_.size(); ++k) {
         if (const double gap = length_between(changes_[k - 1], changes_[k]); gap > widest) start = k, widest = gap;
       }
-      for (size_t k = 0; k < start; ++k) changes_.push_back({changes_[k].before + n, changes_[k].after + n});
+      for (size_t k = 0; k < start; ++k) changes_.push_back({changes_[k].before + n, changes_[k].after + n, 0.0, {}});
       changes_.erase(changes_.begin(), changes_.begin() + static_cast<std::ptrdiff_t>(start));
     }
     for (size_t k = 0; k < changes_.size();) {
       size_t end = k + 1;
       while (end < changes_.size() && length_between(changes_[end - 1], changes_[end]) < kOneCusp_px) ++end;
       if ((end - k) % 2 == 1)
-        apart_.push_back({changes_[k].before, changes_[end - 1].after});
+        apart_.push_back(located({changes_[k].before, changes_[end - 1].after, 0.0, {}}));
       else
-        undone_.push_back({changes_[k].before, changes_[end - 1].after});
+        undone_.push_back({changes_[k].before, changes_[end - 1].after, 0.0, {}});
       k = end;
     }
   }
 
   void add_cusp(const SignChange& change, std::vector<CurveEvent>& cusps) {
     const CurveSample &a = walk_.at(change.before), &b = walk_.at(change.after);
-    const double t = std::clamp(a.radial_curvature / (a.radial_curvature - b.radial_curvature), 0.0, 1.0 - 1e-9);
-    double place = glm::mix(static_cast<double>(change.before), static_cast<double>(change.after), t);
+    double place = change.place;
     if (place >= static_cast<double>(walk_.size()) && curve_.closed) place -= static_cast<double>(walk_.size());
     // Where the surface folds back on itself at a cuspidal edge its normal turns round, and the curvature's sign with it, past infinity:
     // how many sheets begin there only rays tell.
@@ -121,13 +134,18 @@ class EventFinder {
       events_.push_back({VertexKind::joint, place, {}, 0, 0.0});
       return;
     }
+    if (change.layers) {
+      cusps.push_back({VertexKind::cusp, place, *change.layers, 0, 0.0});
+      return;
+    }
+    const double t = (change.place - static_cast<double>(change.before)) / static_cast<double>(change.after - change.before);
     const glm::dvec2 px = glm::mix(a.px, b.px, t);
     const Arm back = arm_from(px, change.before, -1), ahead = arm_from(px, change.after, 1);
     const double reach = std::min(back.reach_px(), ahead.reach_px());
     cusps.push_back({VertexKind::cusp, place, ahead.depth_at(reach) > back.depth_at(reach) ? 1 : -1, 0, 0.0});
   }
 
-  /// Depth along one of the arms of a cusp, by image distance from it. Where the curvature jumps both may lead away from the eye.
+  /// Depth along one of the arms of a cusp, by image distance from it.
   struct Arm {
     std::vector<std::pair<double, double>> points{};  ///< Distance, px, and depth; the distance grows.
     double reach_px() const { return points.back().first; }
@@ -239,10 +257,11 @@ class EventFinder {
 
   double apart_from(const SurfaceCurve& other) const { return std::max(curve_.apart_px, other.apart_px); }
 
-  /// Between the two passages the curve goes there and back on the same way, as beside the tip of a cone.
+  /// Between the two passages the curve goes there and back on the same way, as beside the tip of a cone, and not by way of two cusps.
   bool is_spike(const NearerCrossing& crossing) const {
     const double from = std::min(crossing.at, crossing.on_nearer), to = std::max(crossing.at, crossing.on_nearer);
     if (walk_.length_to(to) - walk_.length_to(from) > kLongestNarrow_px) return false;
+    if (cusps_between(from, to) == 2) return false;
     const std::vector<glm::dvec2> px = px_between(curve_, from, to, camera_);
     const auto farther = [&](const glm::dvec2& a, const glm::dvec2& b) { return glm::distance(a, px[0]) < glm::distance(b, px[0]); };
     const auto turn = std::max_element(px.begin(), px.end(), farther);
@@ -265,11 +284,13 @@ class EventFinder {
 
   bool one_cusp_between(double one, double other) const {
     if (std::fabs(walk_.length_to(one) - walk_.length_to(other)) > 2.0 * kTangency_px) return false;
-    const auto last = static_cast<size_t>(std::max(one, other));
-    int changes = 0;
-    for (auto i = static_cast<size_t>(std::min(one, other)); i < last; ++i)
-      changes += (walk_.at(i).radial_curvature < 0.0) != (walk_.at(i + 1).radial_curvature < 0.0);
-    return changes == 1;
+    return cusps_between(std::min(one, other), std::max(one, other)) == 1;
+  }
+  std::ptrdiff_t cusps_between(double from, double to) const {
+    const auto steps = static_cast<double>(walk_.size());
+    return std::count_if(apart_.begin(), apart_.end(), [&](const SignChange& change) {
+      return (change.place > from && change.place < to) || (change.place - steps > from && change.place - steps < to);
+    });
   }
 
   /// From a place on a curve along it to an end or a joint.

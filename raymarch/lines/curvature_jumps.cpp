@@ -13,7 +13,7 @@ constexpr double kLeastAcross = 1e-3;
 struct Arm {
   glm::dvec3 p{0.0}, tangent{0.0}, normal{0.0};  ///< The tangent leads away from the change.
   double curvature = 0.0;
-  double slope = 0.0;  ///< Of the curvature along the contour, its size.
+  double decline = 0.0;  ///< Of the curvature's size towards the change, by length; 0 where it grows.
 };
 
 std::optional<Arm> arm_of(const CurvatureChange& change, size_t first, int way) {
@@ -28,7 +28,8 @@ std::optional<Arm> arm_of(const CurvatureChange& change, size_t first, int way) 
     const CurveSample b = at(i);
     const double length = glm::distance(a.p, b.p);
     if (!std::isfinite(b.radial_curvature) || !(length > 0.0)) continue;
-    return Arm{a.p, (b.p - a.p) / length, a.high, a.radial_curvature, std::fabs(b.radial_curvature - a.radial_curvature) / length};
+    return Arm{a.p, (b.p - a.p) / length, a.high, a.radial_curvature,
+               std::max(0.0, std::fabs(b.radial_curvature) - std::fabs(a.radial_curvature)) / length};
   }
   return {};
 }
@@ -57,7 +58,7 @@ std::optional<CurvatureJump> jump_at(const CurvatureChange& change) {
   const std::optional<Arm> back = arm_of(change, change.before, -1), ahead = arm_of(change, change.after, 1);
   if (!back || !ahead) return {};
   const double length = glm::distance(back->p, ahead->p);
-  if (std::fabs(ahead->curvature - back->curvature) < kJump * length * std::max(back->slope, ahead->slope)) return {};
+  if (std::fabs(ahead->curvature - back->curvature) < kJump * length * std::max(back->decline, ahead->decline)) return {};
   const Arm &positive = back->curvature > 0.0 ? *back : *ahead, &negative = back->curvature > 0.0 ? *ahead : *back;
   const glm::dvec3 view = view_vector(change.camera, 0.5 * (back->p + ahead->p));
   const std::optional<glm::dvec3> one = bend_along(positive, view), other = bend_along(negative, view);

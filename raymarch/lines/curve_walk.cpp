@@ -1,35 +1,65 @@
 #include "raymarch/lines/curve_walk.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "sdf/segment.h"
 
 namespace limn {
 namespace {
 
-/// Between samples i and i + 1 on a smooth curve, by the cubic through four of them (Lagrange) over their chords' lengths: its image may
-/// turn back at a cusp there, the curve itself does not.
-glm::dvec3 point_between(const SurfaceCurve& curve, size_t i, double t) {
+constexpr double kParabolasApart_px = 0.01;
+
+/// Four samples of a smooth curve, the second and third of them the ends of a step, and their places over their chords' lengths.
+struct FourSamples {
+  std::array<glm::dvec3, 4> p{};
+  std::array<double, 4> s{};
+};
+/// Nothing at the ends of an open curve, and where neighbours are much nearer or farther than the step is long: those say little, and much
+/// of rounding.
+std::optional<FourSamples> around_step(const SurfaceCurve& curve, size_t i) {
   const size_t n = curve.samples.size();
-  const glm::dvec3 &a = curve.samples[i % n].p, &b = curve.samples[(i + 1) % n].p;
   const bool inner = curve.closed ? n >= 4 : i >= 1 && i + 2 < n;
-  if (!curve.smooth || !inner) return glm::mix(a, b, t);
-  const glm::dvec3 &before = curve.samples[(i + n - 1) % n].p, &after = curve.samples[(i + 2) % n].p;
-  const double h = glm::distance(a, b), back = glm::distance(before, a), ahead = glm::distance(b, after);
-  // Neighbours much nearer or farther say little, and much of rounding.
-  if (!(h > 0.0) || back < 0.05 * h || ahead < 0.05 * h || back > 20.0 * h || ahead > 20.0 * h) return glm::mix(a, b, t);
-  const double s[4] = {-back, 0.0, h, h + ahead}, x = t * h;
-  const glm::dvec3* const points[4] = {&before, &a, &b, &after};
+  if (!curve.smooth || !inner) return {};
+  FourSamples four{{curve.samples[(i + n - 1) % n].p, curve.samples[i % n].p, curve.samples[(i + 1) % n].p, curve.samples[(i + 2) % n].p}, {}};
+  const double h = glm::distance(four.p[1], four.p[2]), back = glm::distance(four.p[0], four.p[1]),
+               ahead = glm::distance(four.p[2], four.p[3]);
+  if (!(h > 0.0) || back < 0.05 * h || ahead < 0.05 * h || back > 20.0 * h || ahead > 20.0 * h) return {};
+  four.s = {-back, 0.0, h, h + ahead};
+  return four;
+}
+
+/// The polynomial through samples `first` to `last` (Lagrange).
+glm::dvec3 polynomial(const FourSamples& four, size_t first, size_t last, double t) {
+  const double x = t * four.s[2];
   glm::dvec3 result(0.0);
-  for (int k = 0; k < 4; ++k) {
+  for (size_t k = first; k <= last; ++k) {
     double weight = 1.0;
-    for (int j = 0; j < 4; ++j) {
-      if (j != k) weight *= (x - s[j]) / (s[k] - s[j]);
+    for (size_t j = first; j <= last; ++j) {
+      if (j != k) weight *= (x - four.s[j]) / (four.s[k] - four.s[j]);
     }
-    result += weight * *points[k];
+    result += weight * four.p[k];
   }
   return result;
+}
+
+/// Between samples i and i + 1: on a smooth curve by the cubic through four of them. Its image may turn back at a cusp there, the curve
+/// itself does not.
+glm::dvec3 point_between(const SurfaceCurve& curve, size_t i, double t) {
+  if (const auto four = around_step(curve, i)) return polynomial(*four, 0, 3, t);
+  const size_t n = curve.samples.size();
+  return glm::mix(curve.samples[i % n].p, curve.samples[(i + 1) % n].p, t);
+}
+
+/// The parabolas through the step and either neighbour agree: their mean, the cubic, is far nearer to the curve than they are to each other.
+bool is_known_between(const SurfaceCurve& curve, size_t i, const Camera& camera) {
+  if (curve.between) return true;
+  const auto four = around_step(curve, i);
+  if (!four) return false;
+  const double apart = glm::distance(polynomial(*four, 0, 2, 0.5), polynomial(*four, 1, 3, 0.5));
+  return apart * pixels_per_unit_at(camera, std::max(curve.samples[i].depth, 1e-9)) < kParabolasApart_px;
 }
 
 }  // namespace
@@ -41,7 +71,7 @@ glm::dvec3 point_at(const SurfaceCurve& curve, size_t i, double share) {
 size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples.size() : curve.samples.size() - 1; }
 
 double sag_px(const SurfaceCurve& curve, size_t step, const Camera& camera) {
-  if (curve.straight || !(curve.smooth || curve.between)) return 0.0;
+  if (curve.straight || !is_known_between(curve, step, camera)) return 0.0;
   const CurveSample &a = curve.samples[step], &b = curve.samples[(step + 1) % curve.samples.size()];
   if (!(a.depth > 0.0 && b.depth > 0.0) || (a.radial_curvature > 0.0) != (b.radial_curvature > 0.0)) return 0.0;
   const glm::dvec3 middle = project(camera, point_at(curve, step, 0.5));

@@ -225,7 +225,7 @@ TEST(Lines, ContoursOfTheTorusWithTheirCusps) {
         if (std::fabs(middle.radial_curvature) < 0.02) continue;
         EXPECT_EQ(edge.invisibility % 2, middle.radial_curvature < 0.0 ? 1 : 0) << what;
         if (middle.radial_curvature < 0.0) continue;
-        EXPECT_EQ(edge.invisibility, torus_layers(camera, middle.position + 1e-4 * middle.normal)) << what;
+        EXPECT_EQ(edge.invisibility, torus_layers(camera, middle.position + 1e-6 * middle.normal)) << what;
       }
     }
   }

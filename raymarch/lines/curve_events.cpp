@@ -6,8 +6,8 @@
 #include <optional>
 #include <tuple>
 
-#include "raymarch/lines/curve_walk.h"
 #include "raymarch/lines/curvature_jumps.h"
+#include "raymarch/lines/curve_walk.h"
 
 namespace limn {
 namespace {

@@ -11,8 +11,9 @@ namespace limn {
 namespace {
 
 constexpr double kParabolasApart_px = 0.01;
+constexpr double kCorner = 0.9;  // a cosine
 
-/// Four samples of a smooth curve, the second and third of them the ends of a step, and their places over their chords' lengths.
+/// Four samples of a curve, the second and third of them the ends of a step, and their places over their chords' lengths.
 struct FourSamples {
   std::array<glm::dvec3, 4> p{};
   std::array<double, 4> s{};
@@ -22,11 +23,16 @@ struct FourSamples {
 std::optional<FourSamples> around_step(const SurfaceCurve& curve, size_t i) {
   const size_t n = curve.samples.size();
   const bool inner = curve.closed ? n >= 4 : i >= 1 && i + 2 < n;
-  if (!curve.smooth || !inner) return {};
-  FourSamples four{{curve.samples[(i + n - 1) % n].p, curve.samples[i % n].p, curve.samples[(i + 1) % n].p, curve.samples[(i + 2) % n].p}, {}};
+  if (curve.straight || !inner) return {};
+  FourSamples four{{curve.samples[(i + n - 1) % n].p, curve.samples[i % n].p, curve.samples[(i + 1) % n].p, curve.samples[(i + 2) % n].p},
+                   {}};
   const double h = glm::distance(four.p[1], four.p[2]), back = glm::distance(four.p[0], four.p[1]),
                ahead = glm::distance(four.p[2], four.p[3]);
   if (!(h > 0.0) || back < 0.05 * h || ahead < 0.05 * h || back > 20.0 * h || ahead > 20.0 * h) return {};
+  // Where three of them turn as at a corner the curve may have one.
+  const glm::dvec3 way = (four.p[2] - four.p[1]) / h;
+  const double least = std::min(glm::dot(four.p[1] - four.p[0], way) / back, glm::dot(four.p[3] - four.p[2], way) / ahead);
+  if (!curve.smooth && least < kCorner) return {};
   four.s = {-back, 0.0, h, h + ahead};
   return four;
 }
@@ -45,15 +51,16 @@ glm::dvec3 polynomial(const FourSamples& four, size_t first, size_t last, double
   return result;
 }
 
-/// Between samples i and i + 1: on a smooth curve by the cubic through four of them. Its image may turn back at a cusp there, the curve
-/// itself does not.
+/// Between samples i and i + 1: where the curve is smooth by the cubic through four of them. Its image may turn back at a cusp there, the
+/// curve itself does not.
 glm::dvec3 point_between(const SurfaceCurve& curve, size_t i, double t) {
   if (const auto four = around_step(curve, i)) return polynomial(*four, 0, 3, t);
   const size_t n = curve.samples.size();
   return glm::mix(curve.samples[i % n].p, curve.samples[(i + 1) % n].p, t);
 }
 
-/// The parabolas through the step and either neighbour agree: their mean, the cubic, is far nearer to the curve than they are to each other.
+/// The parabolas through the step and either neighbour agree: their mean, the cubic, is far nearer to the curve than they are to each
+/// other.
 bool is_known_between(const SurfaceCurve& curve, size_t i, const Camera& camera) {
   if (curve.between) return true;
   const auto four = around_step(curve, i);

@@ -9,7 +9,7 @@ namespace limn {
 namespace {
 
 constexpr int kRounds = 3;
-constexpr int kParts = 8;           // of a step that is cut: its line leaves each of them by 1/64
+constexpr int kParts = 8;  // of a step that is cut: its line leaves each of them by 1/64
 
 /// Parts of the steps that the curve had.
 struct Part {
@@ -30,7 +30,8 @@ std::vector<char> cut_steps(const std::vector<char>& unclear, const Camera& came
       CurveSample sample = k == 0 ? curve.samples[i] : sample_at(curve, static_cast<double>(i) + from, camera);
       sample.pierced.clear();
       for (const Piercing& piercing : curve.samples[i].pierced) {
-        if (piercing.t >= from && (piercing.t < to || k + 1 == n)) sample.pierced.push_back({(piercing.t - from) / (to - from), piercing.layers, piercing.unclear_px});
+        if (piercing.t >= from && (piercing.t < to || k + 1 == n))
+          sample.pierced.push_back({(piercing.t - from) / (to - from), piercing.layers, piercing.unclear_px});
       }
       samples.push_back(std::move(sample));
       parts.push_back({i, from, to});

@@ -5,8 +5,8 @@
 
 namespace limn {
 
-/// Cuts the steps that nearly touch a nearer line, or cross one at so flat an angle that straight steps do not tell where, along the curve's
-/// own points or a smooth curve through its samples.
+/// Cuts the steps that nearly touch a nearer line, or cross one at so flat an angle that straight steps do not tell where, along the
+/// curve's own points or a smooth curve through its samples.
 void refine_flat_crossings(std::vector<SurfaceCurve>& curves, const Camera& camera);
 
 }  // namespace limn

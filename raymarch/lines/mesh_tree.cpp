@@ -179,7 +179,8 @@ glm::dvec3 MeshTree::smooth_normal(std::uint32_t triangle, const glm::dvec3& pla
   glm::dvec3 sum(0.0);
   for (size_t k = 0; k < 3; ++k) {
     glm::dvec3 at_corner(0.0);
-    for (std::uint32_t i = first_around_[corners[k]]; i < first_around_[corners[k] + 1]; ++i) at_corner += normal_of(triangles_[around_[i]]);
+    for (std::uint32_t i = first_around_[corners[k]]; i < first_around_[corners[k] + 1]; ++i)
+      at_corner += normal_of(triangles_[around_[i]]);
     const glm::dvec3 &b = positions_[corners[(k + 1) % 3]], &c = positions_[corners[(k + 2) % 3]];
     sum += std::max(0.0, glm::dot(glm::cross(b - place, c - place), across)) * glm::normalize(at_corner);
   }

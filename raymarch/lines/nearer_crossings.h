@@ -30,8 +30,8 @@ class NearerFolds {
 
   /// Of each curve, in order along it.
   std::vector<std::vector<NearerCrossing>> crossings() const;
-  /// Of the steps asked for, by curve (0 or 1 each): those that come so near to a nearer line, or cross it at so flat an angle, that straight
-  /// steps do not tell where the lines cross; and the nearer line's own.
+  /// Of the steps asked for, by curve (0 or 1 each): those that come so near to a nearer line, or cross it at so flat an angle, that
+  /// straight steps do not tell where the lines cross; and the nearer line's own.
   StepMarks unclear_steps(const StepMarks& asked) const;
   /// How far the nearest line in front of a place of a curve lies beside it in the image; no more than `reach_px`. A ray that starts a
   /// little beside the curve tells what lies in front of it only where this is more.

@@ -16,6 +16,7 @@ constexpr double kStepAside_px = 0.3;
 constexpr double kInPlane = 1e-5;                   // the sine of the angle between a line and a plane
 constexpr double kAcross = 0.1, kSameSheet = 0.85;  // cosines
 constexpr double kUnclear = 2.0, kMostUnclear_px = 20.0;
+constexpr double kInFace = 1e-10;  // of the extent
 constexpr double kFlatly = 0.3;  // a cosine
 constexpr double kBeside = 1.5;  // of a triangle's longest edge
 
@@ -67,7 +68,17 @@ std::vector<LayerHit> MeshLayers::hits_to_eye(const CurveSample& sample) const {
   const glm::dvec3 start = sample.p + (kLift_px / unit_px) * sample.lift, direction = view_vector(camera, start);
   const double reach = camera.projection == Projection::perspective ? glm::distance(start, camera.eye)
                                                                     : std::max(0.0, project(camera, start).z) + 4.0 * extent_;
-  return tree_->hits_along(start, direction, reach);
+  std::vector<LayerHit> hits = tree_->hits_along(start, direction, reach);
+  // A ray from a line of a mesh leaves the planes of the faces there and never meets them again, whatever single precision says of faces
+  // seen edge-on.
+  if (!smooth_) {
+    std::erase_if(hits, [&](const LayerHit& hit) {
+      const LayerTriangle& triangle = tree_->triangles()[hit.triangle];
+      const glm::dvec3 normal = glm::normalize(tree_->normal_of(triangle));
+      return std::fabs(glm::dot(normal, sample.p - tree_->positions()[triangle.corners[0]])) < kInFace * extent_;
+    });
+  }
+  return hits;
 }
 
 LayersSeen MeshLayers::before(const CurveSample& sample) const {

@@ -17,8 +17,8 @@ constexpr double kInPlane = 1e-5;                   // the sine of the angle bet
 constexpr double kAcross = 0.1, kSameSheet = 0.85;  // cosines
 constexpr double kUnclear = 2.0, kMostUnclear_px = 20.0;
 constexpr double kInFace = 1e-10;  // of the extent
-constexpr double kFlatly = 0.3;  // a cosine
-constexpr double kBeside = 1.5;  // of a triangle's longest edge
+constexpr double kFlatly = 0.3;    // a cosine
+constexpr double kBeside = 1.5;    // of a triangle's longest edge
 
 /// The same triangles for all views that need cages refined as often.
 std::shared_ptr<const MeshTree> tree_of(const LineTask& task, const std::vector<size_t>& objects, double edge_px) {

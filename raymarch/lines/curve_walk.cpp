@@ -17,6 +17,7 @@ constexpr double kCorner = 0.9;  // a cosine
 struct FourSamples {
   std::array<glm::dvec3, 4> p{};
   std::array<double, 4> s{};
+  double least_turn = 1.0;  ///< The cosine of the sharper turn, at the second or the third.
 };
 /// Nothing at the ends of an open curve, and where neighbours are much nearer or farther than the step is long: those say little, and much
 /// of rounding.
@@ -29,10 +30,10 @@ std::optional<FourSamples> around_step(const SurfaceCurve& curve, size_t i) {
   const double h = glm::distance(four.p[1], four.p[2]), back = glm::distance(four.p[0], four.p[1]),
                ahead = glm::distance(four.p[2], four.p[3]);
   if (!(h > 0.0) || back < 0.05 * h || ahead < 0.05 * h || back > 20.0 * h || ahead > 20.0 * h) return {};
-  // Where three of them turn as at a corner the curve may have one.
   const glm::dvec3 way = (four.p[2] - four.p[1]) / h;
-  const double least = std::min(glm::dot(four.p[1] - four.p[0], way) / back, glm::dot(four.p[3] - four.p[2], way) / ahead);
-  if (!curve.smooth && least < kCorner) return {};
+  four.least_turn = std::min(glm::dot(four.p[1] - four.p[0], way) / back, glm::dot(four.p[3] - four.p[2], way) / ahead);
+  // Where three of them turn as at a corner the curve may have one.
+  if (!curve.smooth && four.least_turn < kCorner) return {};
   four.s = {-back, 0.0, h, h + ahead};
   return four;
 }
@@ -64,7 +65,7 @@ glm::dvec3 point_between(const SurfaceCurve& curve, size_t i, double t) {
 bool is_known_between(const SurfaceCurve& curve, size_t i, const Camera& camera) {
   if (curve.between) return true;
   const auto four = around_step(curve, i);
-  if (!four) return false;
+  if (!four || four->least_turn < kCorner) return false;
   const double apart = glm::distance(polynomial(*four, 0, 2, 0.5), polynomial(*four, 1, 3, 0.5));
   return apart * pixels_per_unit_at(camera, std::max(curve.samples[i].depth, 1e-9)) < kParabolasApart_px;
 }

@@ -18,6 +18,7 @@ constexpr int kMostHalvings = 2;                          // of cells
 constexpr double kMostBulge = 0.35, kLittleBulge = 0.05;  // of its length in space
 constexpr int kMostLooks = 3;
 constexpr double kLongEndOn_px = 0.5;
+constexpr double kReversal = -0.9, kLeastReversal_px = 0.1;  // a cosine; of steps as long as this in space
 constexpr double kEndOn = 0.3;  // of a step's length in space is its length in the image where it is seen end on
 constexpr int kDeepest = 14;    // halvings of a step between two marched points
 
@@ -227,9 +228,25 @@ void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
   curve.points = std::move(points);
 }
 
+/// Smooth curves turn back nowhere: where the refinement of a step does it went from arm to arm and back.
+std::int64_t count_reversals(const Refiner& refiner, const FieldCurve& curve) {
+  const size_t n = curve.points.size();
+  std::int64_t reversals = 0;
+  for (size_t i = curve.closed ? 0 : 1; i + (curve.closed ? 0 : 1) < n; ++i) {
+    const CurvePoint &before = curve.points[(i + n - 1) % n], &here = curve.points[i], &after = curve.points[(i + 1) % n];
+    if (before.crease || here.crease || after.crease) continue;
+    const glm::dvec3 there = here.p - before.p, back = after.p - here.p;
+    const double least =
+        kLeastReversal_px / pixels_per_unit_at(refiner.camera, std::max(project(refiner.camera, here.p).z, 1e-9 * refiner.extent));
+    const double one = glm::length(there), other = glm::length(back);
+    reversals += std::min(one, other) > least && glm::dot(there, back) < kReversal * one * other;
+  }
+  return reversals;
+}
+
 /// Steps of a refined curve that lead from one arm of it to another.
 std::int64_t count_broken(const Refiner& refiner, const FieldCurve& curve) {
-  std::int64_t broken = 0;
+  std::int64_t broken = count_reversals(refiner, curve);
   FieldEvaluator whole(refiner.field);
   for (size_t i = 0; i + (curve.closed ? 0 : 1) < curve.points.size(); ++i) {
     const CurvePoint &a = curve.points[i], &b = curve.points[(i + 1) % curve.points.size()];

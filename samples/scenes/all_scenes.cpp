@@ -13,7 +13,8 @@
   X(pipe_junction)     \
   X(bracket)           \
   X(passing_tori)      \
-  X(cylinder_end)
+  X(cylinder_end)      \
+  X(fused_spheres)
 
 namespace limn {
 

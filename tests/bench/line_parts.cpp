@@ -3,17 +3,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "sdf/shape.h"
-
 namespace limn::bench {
 namespace {
 
 using Kind = PartSolid::Kind;
 
-LinePart torus() { return {"torus", {{Kind::torus, {1.0, 0.38, 0.0}}}}; }
+SolidPart torus() { return {"torus", {{Kind::torus, {1.0, 0.38, 0.0}}}}; }
 
-LinePart hub() {
-  LinePart part{"hub", {{Kind::cylinder, {1.16, 0.14, 0.0}}, {Kind::cylinder, {0.44, 0.35, 0.0}, {0.0, 0.35, 0.0}}}};
+SolidPart hub() {
+  SolidPart part{"hub", {{Kind::cylinder, {1.16, 0.14, 0.0}}, {Kind::cylinder, {0.44, 0.35, 0.0}, {0.0, 0.35, 0.0}}}};
   for (int i = 0; i < 6; ++i) {
     const double angle = (30.0 + 60.0 * i) * std::numbers::pi / 180.0;
     part.solids.push_back({Kind::cylinder, {0.12, 1.0, 0.0}, {0.8 * std::cos(angle), 0.0, 0.8 * std::sin(angle)}, true});
@@ -21,25 +19,12 @@ LinePart hub() {
   return part;
 }
 
-/// 36 spheres fused into one body: every seam and every contour is a circle.
-LinePart fused_spheres() {
-  // One in the middle, the others along a spiral over it (Fibonacci lattice), their radii in turn.
-  constexpr int kOuter = 35;
-  const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
-  LinePart part{"fused_spheres", {{Kind::sphere, {0.82, 0.0, 0.0}}}};
-  for (int i = 0; i < kOuter; ++i) {
-    const double y = 1.0 - 2.0 * (i + 0.5) / kOuter, r = std::sqrt(1.0 - y * y), turn = golden * i;
-    part.solids.push_back({Kind::sphere, {0.19 + 0.04 * (i % 3), 0.0, 0.0}, {0.8 * r * std::cos(turn), 0.8 * y, 0.8 * r * std::sin(turn)}});
-  }
-  return part;
-}
-
 /// A plate with 161 hexagonal cells cut through it: straight edges by the thousand, most of them hidden.
-LinePart honeycomb() {
+SolidPart honeycomb() {
   constexpr double kPitch = 0.098;      // between the middles of neighbouring cells
   constexpr double kAcross = 0.041;     // from a cell's middle to its sides
   constexpr double kHalfHeight = 0.09;  // of the plate
-  LinePart part{"honeycomb", {{Kind::box, {1.18, kHalfHeight, 0.36}}}};
+  SolidPart part{"honeycomb", {{Kind::box, {1.18, kHalfHeight, 0.36}}}};
   // Seven rows of 23 cells, every other one moved by half a pitch.
   const double step = kPitch * std::sqrt(3.0) / 2.0;
   for (int row = 0; row < 7; ++row) {
@@ -51,37 +36,8 @@ LinePart honeycomb() {
   return part;
 }
 
-Field field_of(const PartSolid& solid) {
-  switch (solid.kind) {
-    case Kind::sphere:
-      return make_shape("sphere", {{"radius", {solid.size.x}}});
-    case Kind::cylinder:
-      return make_shape("cylinder", {{"radius", {solid.size.x}}, {"half_height", {solid.size.y}}});
-    case Kind::torus:
-      return make_shape("torus", {{"major", {solid.size.x}}, {"minor", {solid.size.y}}});
-    case Kind::box:
-      return make_shape("box", {{"half", {solid.size.x, solid.size.y, solid.size.z}}});
-    case Kind::hexagon:
-      break;
-  }
-  std::vector<Field> sides;
-  for (int i = 0; i < 6; ++i) {
-    const double turn = i * std::numbers::pi / 3.0;
-    sides.push_back(make_shape("plane", {{"normal", {std::cos(turn), 0.0, std::sin(turn)}}, {"offset", {solid.size.x}}}));
-  }
-  return combine(Csg::intersection, sides);
-}
-
 }  // namespace
 
-std::vector<LinePart> line_parts() { return {torus(), hub(), fused_spheres(), honeycomb()}; }
-
-Field field_of(const LinePart& part) {
-  std::vector<Field> joined, cut;
-  for (const PartSolid& solid : part.solids) (solid.cut ? cut : joined).push_back(translate(field_of(solid), solid.center));
-  std::vector<Field> all = {combine(Csg::union_, joined)};
-  all.insert(all.end(), cut.begin(), cut.end());
-  return combine(Csg::difference, all);
-}
+std::vector<SolidPart> line_parts() { return {torus(), hub(), fused_spheres_part(), honeycomb()}; }
 
 }  // namespace limn::bench

@@ -1,5 +1,5 @@
 #pragma once
-// Scenes of quadrics and planes that the suite of lines draws beside the built-in ones.
+// What the suite of lines draws: the built-in scenes and the parts that are not among them.
 
 #include <string>
 #include <vector>

@@ -143,7 +143,7 @@ std::string peer_cells(const OccRun& run, size_t views, double own_ms) {
 }
 
 /// One part from all sides, by parallel projection, which all three have.
-void race(const LinePart& part, const LinesBenchSettings& settings, nlohmann::json& rows) {
+void race(const SolidPart& part, const LinesBenchSettings& settings, nlohmann::json& rows) {
   Scene scene;
   scene.objects.push_back({.name = part.name, .source = field_of(part)});
   const Box box = bounds(scene);
@@ -183,8 +183,8 @@ void race(const LinePart& part, const LinesBenchSettings& settings, nlohmann::js
 
 void race_all(const LinesBenchSettings& settings, nlohmann::json& rows) {
   const auto& asked = settings.scenes;
-  std::vector<LinePart> parts;
-  for (LinePart& part : line_parts()) {
+  std::vector<SolidPart> parts;
+  for (SolidPart& part : line_parts()) {
     if (asked.empty() ? settings.meshes.empty() : std::find(asked.begin(), asked.end(), part.name) != asked.end())
       parts.push_back(std::move(part));
   }
@@ -200,7 +200,7 @@ void race_all(const LinesBenchSettings& settings, nlohmann::json& rows) {
       "| part | views | limn median ms | worst | conflicts | exact median ms | worst | limn / exact | polygonal median ms | worst | limn / "
       "polygonal |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
       *version, settings.threads);
-  for (const LinePart& part : parts) race(part, settings, rows);
+  for (const SolidPart& part : parts) race(part, settings, rows);
 }
 
 /// A sphere's silhouette beside Freestyle's.
@@ -238,10 +238,7 @@ nlohmann::json bench_lines(const LinesBenchSettings& settings) {
   fmt::print(settings.table,
              "| input | views | median ms | worst ms | chains | visible | rays | conflicts | open ends | bound px "
              "|\n|---|---|---|---|---|---|---|---|---|---|\n");
-  std::vector<NamedScene> all;
-  for (const SceneDescriptor& descriptor : scenes()) all.push_back({descriptor.about.name, descriptor.make()});
-  for (NamedScene& scene : line_scenes()) all.push_back(std::move(scene));
-  for (const NamedScene& scene : all) {
+  for (const NamedScene& scene : line_scenes()) {
     const auto& asked = settings.scenes;
     if (std::find(asked.begin(), asked.end(), scene.name) == asked.end() && (!asked.empty() || !settings.meshes.empty())) continue;
     rows.push_back(json_of(run(scene.name, scene.scene, settings), settings.table));

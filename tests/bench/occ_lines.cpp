@@ -67,7 +67,7 @@ TopoDS_Shape shape_of(const PartSolid& solid) {
   return hexagon(solid);
 }
 
-TopoDS_Shape shape_of(const LinePart& part) {
+TopoDS_Shape shape_of(const SolidPart& part) {
   TopTools_ListOfShape first, joined, cut;
   for (const PartSolid& solid : part.solids) (solid.cut ? cut : first.IsEmpty() ? first : joined).Append(shape_of(solid));
   TopoDS_Shape shape = first.First();
@@ -117,7 +117,7 @@ void draw_polygonal(const TopoDS_Shape& shape, const HLRAlgo_Projector& projecto
 }
 
 /// In the child: writes the time of each view as it is finished.
-void draw_all(const LinePart& part, std::span<const Camera> cameras, OccMethod method, int out) {
+void draw_all(const SolidPart& part, std::span<const Camera> cameras, OccMethod method, int out) {
   const TopoDS_Shape shape = shape_of(part);
   if (method == OccMethod::polygonal) BRepMesh_IncrementalMesh(shape, kMesh_px / cameras[0].pixels_per_unit, false, 0.5, false);
   for (const Camera& camera : cameras) {
@@ -134,7 +134,7 @@ void draw_all(const LinePart& part, std::span<const Camera> cameras, OccMethod m
 
 std::optional<std::string> occ_version() { return OCC_VERSION_COMPLETE; }
 
-OccRun occ_lines(const LinePart& part, std::span<const Camera> cameras, OccMethod method, double limit_s) {
+OccRun occ_lines(const SolidPart& part, std::span<const Camera> cameras, OccMethod method, double limit_s) {
   OccRun run;
   int ends[2];
   if (pipe(ends) != 0) return run;
@@ -170,7 +170,7 @@ OccRun occ_lines(const LinePart& part, std::span<const Camera> cameras, OccMetho
 namespace limn::bench {
 
 std::optional<std::string> occ_version() { return {}; }
-OccRun occ_lines(const LinePart&, std::span<const Camera>, OccMethod, double) { return {}; }
+OccRun occ_lines(const SolidPart&, std::span<const Camera>, OccMethod, double) { return {}; }
 
 }  // namespace limn::bench
 

@@ -23,6 +23,6 @@ struct OccRun {
   bool finished = false;
 };
 /// `cameras` orthographic. In a process of its own, which is stopped after `limit_s`.
-OccRun occ_lines(const LinePart& part, std::span<const Camera> cameras, OccMethod method, double limit_s);
+OccRun occ_lines(const SolidPart& part, std::span<const Camera> cameras, OccMethod method, double limit_s);
 
 }  // namespace limn::bench

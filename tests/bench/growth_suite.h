@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/process.h"
+
 namespace limn::bench {
 
 struct GrowthBenchSettings {
@@ -28,13 +30,5 @@ nlohmann::json bench_growth(const GrowthBenchSettings& settings);
 /// What the suite runs in programs of their own, so that their memory is not counted for the calls: "files SCENE LEVEL STEM" writes
 /// STEM.obj, .ply and .glb and prints the number of faces; "assimp FILE" reads a file and drops it. False: it is neither.
 bool run_growth_part(int argc, char** argv);
-
-/// What a program took that was run to its end, with all that it started. Throws InputError where it fails.
-struct ProcessCost {
-  double cpu_s = 0.0;       ///< User and system.
-  double peak_bytes = 0.0;  ///< Resident, of the largest process.
-  std::string output{};     ///< Its standard output.
-};
-ProcessCost run_measured(const std::vector<std::string>& call);
 
 }  // namespace limn::bench

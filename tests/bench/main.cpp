@@ -11,6 +11,7 @@
 #include "sdf/output_file.h"
 #include "sdf/version.h"
 #include "tests/bench/against.h"
+#include "tests/bench/calls_suite.h"
 #include "tests/bench/convert_suite.h"
 #include "tests/bench/fields_suite.h"
 #include "tests/bench/growth_suite.h"
@@ -31,6 +32,7 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
           plan      what a plan saves (minutes)
           lines     view graphs from 26 sides: time and conflicts (minutes)
           growth    whole calls of limn on larger and larger files, beside assimp's reading of them (minutes)
+          calls     whole calls of limn beside those of other programs, and their stages
           all       the first four (the default)
   --object NAME     sphere, torus, or a built-in scene with a cage; may be repeated
   --mesh FILE       a mesh to march and to convert; may be repeated
@@ -40,7 +42,7 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
   --scene NAME, --views N   of the plan suite (--scene of lines, too); --view I: only this one of the views, from 0
   --oracle          of the lines suite: rays of another model say whether points of every line are seen; --voxels N: lines of level sets
   --level N         of the growth suite, how often its cage is refined; may be repeated (4 5 6 7)
-  --program FILE    of the growth suite: the program limn (the one beside this)
+  --program FILE    of the growth and calls suites: the program limn (the one beside this)
   --output FILE     JSON; --json prints it to stdout, tables then go to stderr
   --against BEFORE AFTER    compares JSON files of two revisions; each may be given as FILE,FILE,... (see ./run bench --against REF)
   --limit X         of --against: exit 1 where one of limn's rows takes more than X times as long (1.1)
@@ -60,7 +62,7 @@ struct Settings {
   std::vector<std::string> against{};  ///< Two lists of files.
   double limit = 1.1;
   bool runs_suite(const std::string& name) const {
-    return suite == name || (suite == "all" && name != "plan" && name != "growth" && name != "lines");
+    return suite == name || (suite == "all" && name != "plan" && name != "growth" && name != "lines" && name != "calls");
   }
   /// With --json the document alone goes to stdout.
   std::FILE* table() const { return json ? stderr : stdout; }
@@ -107,9 +109,9 @@ Settings parse(int argc, char** argv) {
       settings.program = value(flag);
     } else if (flag == "--suite") {
       settings.suite = value(flag);
-      const std::vector<std::string> known{"march", "fields", "convert", "images", "plan", "lines", "growth", "all"};
+      const std::vector<std::string> known{"march", "fields", "convert", "images", "plan", "lines", "growth", "calls", "all"};
       if (std::find(known.begin(), known.end(), settings.suite) == known.end())
-        refuse(flag, settings.suite, "unknown suite", "march, fields, convert, images, plan, lines, growth or all");
+        refuse(flag, settings.suite, "unknown suite", "march, fields, convert, images, plan, lines, growth, calls or all");
     } else if (flag == "--width") {
       settings.width_px = std::min(whole(flag, 16), 16384);
       settings.height_px = std::max(1, settings.width_px * 9 / 16);
@@ -168,6 +170,7 @@ nlohmann::json rows_of(const Settings& settings) {
                          .width_px = settings.width_px == 1920 ? 1280 : settings.width_px,
                          .program = settings.program,
                          .table = settings.table()}));
+  if (settings.runs_suite("calls")) append(bench_calls({.runs = settings.runs, .program = settings.program, .table = settings.table()}));
   if (settings.runs_suite("plan"))
     append(bench_plan({.scenes = settings.scenes, .views = settings.views, .only_view = settings.only_view, .table = settings.table()}));
   return rows;

@@ -1,5 +1,3 @@
-// A program run to its end, and what it took.
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
@@ -8,9 +6,12 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
+#include <cstdlib>
+#include <sstream>
 
 #include "sdf/error.h"
-#include "tests/bench/growth_suite.h"
+#include "tests/bench/process.h"
 
 extern char** environ;
 
@@ -44,23 +45,34 @@ ProcessCost run_measured(const std::vector<std::string>& call) {
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
   pid_t child = 0;
-  const int failed = ::posix_spawn(&child, words[0], &actions, nullptr, words.data(), environ);
+  const auto start = std::chrono::steady_clock::now();
+  const int failed = ::posix_spawnp(&child, words[0], &actions, nullptr, words.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   ::close(ends[1]);
   ProcessCost cost;
   if (failed == 0) cost.output = read_all(ends[0]);
   ::close(ends[0]);
-  if (failed != 0)
-    throw InputError({.field = "--program", .value = call[0], .problem = "cannot be started", .expected = "the program limn"});
+  if (failed != 0) throw InputError({.field = "--program", .value = call[0], .problem = "cannot be started", .expected = "a program"});
   int status = 0;
   rusage usage{};
   while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
   }
+  cost.wall_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw InputError({.field = "growth", .value = text_of(call), .problem = "the call failed", .expected = "exit code 0"});
+    throw InputError({.field = "bench", .value = text_of(call), .problem = "the call failed", .expected = "exit code 0"});
   cost.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   cost.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
   return cost;
+}
+
+std::filesystem::path find_program(const std::string& name) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::filesystem::path file = std::filesystem::path(folder) / name;
+    if (::access(file.c_str(), X_OK) == 0) return file;
+  }
+  return {};
 }
 
 }  // namespace limn::bench

@@ -1,10 +1,5 @@
-#include <openvdb/tools/SignedFloodFill.h>
-
 #include <algorithm>
-#include <bit>
-#include <chrono>
 
-#include "sdf/error.h"
 #include "sdf/openvdb_grid.h"
 
 namespace limn {
@@ -23,29 +18,6 @@ void add_leaf(openvdb::FloatTree& tree, const LevelSetBlock& block) {
   for (openvdb::Index word = 0; word < 8; ++word) mask.getWord<openvdb::Index64>(word) = block.active[word];
   leaf->setValueMask(mask);
   tree.addLeaf(leaf);
-}
-
-std::shared_ptr<LevelSetData> join_blocks(std::span<const LevelSetBlock> blocks, double voxel_size, double half_width_voxels,
-                                          const std::string& name, const glm::dvec3& origin) {
-  LIMN_CHECK(voxel_size > 0.0 && half_width_voxels > 0.0);
-  const auto started = std::chrono::steady_clock::now();
-  const auto grid = empty_level_set(voxel_size * half_width_voxels);
-  for (const LevelSetBlock& block : blocks)
-    if (std::any_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word != 0; }))
-      add_leaf(grid->tree(), block);
-  if (grid->tree().leafCount() == 0)
-    throw InputError({.file = {}, .field = name, .value = {}, .problem = "holds no surface", .expected = "a band with active voxels"});
-  openvdb::tools::signedFloodFill(grid->tree());
-  auto data = freeze(*grid, {glm::dmat3(voxel_size), origin}, name, half_width_voxels);
-  if (const std::int64_t torn = cells_lacking(LevelSet(data), find_gradient("cell")); torn > 0)
-    data->info.warnings.push_back(std::to_string(torn) + " cells on the surface reach beyond the band; the surface may have gaps there");
-  data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
-  return data;
-}
-
-LevelSet level_set_from_blocks(std::span<const LevelSetBlock> blocks, double voxel_size, double half_width_voxels, const std::string& name,
-                               const glm::dvec3& origin) {
-  return LevelSet(join_blocks(blocks, voxel_size, half_width_voxels, name, origin));
 }
 
 }  // namespace limn

@@ -5,12 +5,10 @@
 #include <fstream>
 
 #include "sdf/error.h"
-#include "sdf/level_set_grids.h"
 #include "sdf/openvdb_grid.h"
 #include "sdf/openvdb_metadata.h"
 #include "sdf/openvdb_settle.h"
-#include "sdf/output_file.h"
-#include "sdf/read_vdb.h"
+#include "sdf/volume_module.h"
 
 namespace limn {
 namespace {
@@ -89,30 +87,27 @@ openvdb::GridBase::Ptr filed(const LevelSet& level_set) {
 
 }  // namespace
 
-void write_level_set(const LevelSet& level_set, const std::filesystem::path& file) { write_level_sets(std::span(&level_set, 1), file); }
-
-void write_level_sets(std::span<const LevelSet> level_sets, const std::filesystem::path& file) {
+void volumes::write_level_sets(std::span<const LevelSet> level_sets, const std::filesystem::path& temporary,
+                               const std::filesystem::path& file) {
   openvdb::GridCPtrVec grids;
   for (const LevelSet& level_set : level_sets) grids.push_back(filed(level_set));
   openvdb::MetaMap of_file;
   for (const LevelSet& level_set : level_sets) add_metadata(level_set.data().file.of_file, of_file);
-  write_whole(file, [&](const std::filesystem::path& path) {
-    try {
-      std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
-      CheckedArchive target;
-      target.setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
-      target.write(stream, grids, true, of_file);
-      erase_uuid(stream);
-      stream.close();
-      if (!stream) throw std::runtime_error("is the disk full?");
-    } catch (const std::exception& problem) {
-      throw MachineError(file.string() + ": writing failed: " + problem.what());
-    }
-  });
+  try {
+    std::fstream stream(temporary, std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
+    CheckedArchive target;
+    target.setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
+    target.write(stream, grids, true, of_file);
+    erase_uuid(stream);
+    stream.close();
+    if (!stream) throw std::runtime_error("is the disk full?");
+  } catch (const std::exception& problem) {
+    throw MachineError(file.string() + ": writing failed: " + problem.what());
+  }
 }
 
-std::shared_ptr<LevelSetData> rebuild(std::span<const LevelSetBlock> blocks, std::span<const VdbTile> tiles, float background,
-                                      const Affine& world_from_index, const std::string& name) {
+std::shared_ptr<LevelSetData> volumes::rebuild(std::span<const LevelSetBlock> blocks, std::span<const VdbTile> tiles, float background,
+                                               const Affine& world_from_index, const std::string& name) {
   const auto grid = empty_level_set(static_cast<double>(background));
   // Tiles first and the large ones before the small, so that nothing overwrites what is finer.
   for (int level = 3; level >= 1; --level)

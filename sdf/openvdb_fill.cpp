@@ -2,10 +2,11 @@
 
 #include "sdf/level_set_fill.h"
 #include "sdf/openvdb_grid.h"
+#include "sdf/volume_module.h"
 
 namespace limn {
 
-std::shared_ptr<LevelSetData> with_filled_nodes(const LevelSet& level_set, const std::vector<FilledBlock>& blocks) {
+std::shared_ptr<LevelSetData> volumes::with_filled_nodes(const LevelSet& level_set, const std::vector<FilledBlock>& blocks) {
   const openvdb::FloatGrid::Ptr grid = thaw(level_set);
   for (const FilledBlock& block : blocks) {
     auto* leaf = grid->tree().touchLeaf(openvdb::Coord(block.origin.x, block.origin.y, block.origin.z));

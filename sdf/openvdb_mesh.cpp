@@ -2,10 +2,11 @@
 
 #include "sdf/error.h"
 #include "sdf/openvdb_grid.h"
+#include "sdf/volume_module.h"
 
 namespace limn {
 
-PolygonSoup mesh_from_level_set(const LevelSet& level_set) {
+PolygonSoup volumes::mesh_from_level_set(const LevelSet& level_set) {
   const auto grid = thaw(level_set);
   // Extracted in index space and mapped in double: OpenVDB's float points would lose their digits far from the origin.
   grid->setTransform(openvdb::math::Transform::createLinearTransform(1.0));

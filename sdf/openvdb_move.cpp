@@ -2,10 +2,11 @@
 
 #include "sdf/level_set_grids.h"
 #include "sdf/openvdb_grid.h"
+#include "sdf/volume_module.h"
 
 namespace limn {
 
-LevelSet moved(const LevelSet& level_set, const Affine& world_from_grid) {
+LevelSet volumes::moved(const LevelSet& level_set, const Affine& world_from_grid) {
   const LevelSetInfo& info = level_set.info();
   const double scale = std::cbrt(std::abs(glm::determinant(world_from_grid.linear)));
   const openvdb::FloatGrid::Ptr grid = thaw(level_set);

@@ -177,14 +177,14 @@ class Replacement {
   size_t done_ = 0;
 };
 
+}  // namespace
+
 void write_bytes(const fs::path& path, const fs::path& target, std::string_view content) {
   std::ofstream stream(path, std::ios::binary | std::ios::trunc);
   stream.write(content.data(), static_cast<std::streamsize>(content.size()));
   stream.close();
   if (!stream) throw MachineError(target.string() + ": writing failed (is the disk full?)");
 }
-
-}  // namespace
 
 void write_together(std::span<const OutputFile> files) {
   std::vector<Staged> staged;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace limn {
 
@@ -16,6 +17,9 @@ struct OutputFile {
 
 /// Text or bytes at hand.
 OutputFile bytes_output(std::filesystem::path target, std::string bytes);
+
+/// For `write` of an OutputFile: throws MachineError naming `target` where the disk fails.
+void write_bytes(const std::filesystem::path& temporary, const std::filesystem::path& target, std::string_view content);
 
 /// Files that belong together, each as by write_whole (sdf/output_file.h): all are written to temporary files before the first takes its
 /// place. Where one cannot be written or put in place, all old ones stay. A process that is killed while they take their places

@@ -16,6 +16,7 @@
 #include "sdf/geometry.h"
 #include "sdf/guard.h"
 #include "sdf/image.h"
+#include "sdf/large_pages.h"
 #include "sdf/level_set.h"
 #include "sdf/output_together.h"
 #include "sdf/registry.h"

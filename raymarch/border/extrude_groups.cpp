@@ -13,7 +13,7 @@ int reach_of(double width_px) { return std::min(kLargestReach_px, static_cast<in
 
 double widest_px(const BorderInput& input, const ExtrudeSettings& settings) {
   if (settings.space == ExtrudeSpace::clip) return settings.width_px;
-  const std::vector<float>& depths = input.gbuffer.depth.pixels;
+  const auto& depths = input.gbuffer.depth.pixels;
   const double nearest = *std::min_element(depths.begin(), depths.end());
   double widest = 0.0;
   for (size_t k = 0; k < input.model.surfaces.size(); ++k) widest = std::max(widest, extrude_width_px(input, k, settings, nearest));

@@ -3,6 +3,7 @@
 
 #include "raymarch/border/hysteresis.h"
 #include "raymarch/border/surface_notes.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 
@@ -13,11 +14,13 @@ Border ink_by_angle(const std::string& method, const BorderInput& input, const P
   const Hysteresis hysteresis = hysteresis_of(input, parameters);
   Border border;
   border.color = glm::vec3(parameters.vector3("color"));
-  border.coverage = {seen.width, seen.height, 0.0f};
-  for (size_t i = 0; i < seen.id.size(); ++i) {
-    if (seen.id.pixels[i] == 0) continue;
-    border.coverage.pixels[i] = static_cast<float>(ink(double{seen.n_dot_v.pixels[i]}, hysteresis.shift(i)));
-  }
+  border.coverage = Image<float>::unset(seen.width, seen.height);
+  parallel_parts(seen.id.size(), size_t{1} << 13, [&](const IndexRange<size_t>& part) {
+    for (size_t i = part.first; i < part.last; ++i) {
+      const bool hit = seen.id.pixels[i] != 0;
+      border.coverage.pixels[i] = hit ? static_cast<float>(ink(double{seen.n_dot_v.pixels[i]}, hysteresis.shift(i))) : 0.0f;
+    }
+  });
   border.notes = surface_notes(method, seen, border.coverage);
   return border;
 }

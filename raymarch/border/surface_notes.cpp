@@ -3,8 +3,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <numeric>
+
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -21,10 +24,32 @@ std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
   return i;
 }
 
-void join_if_same(const GBuffer& gbuffer, std::vector<std::uint32_t>& parent, size_t a, size_t b) {
-  if (gbuffer.id.pixels[a] != gbuffer.id.pixels[b]) return;
+bool have_same_normal(const GBuffer& gbuffer, size_t a, size_t b) {
+  if (gbuffer.id.pixels[a] != gbuffer.id.pixels[b]) return false;
   const glm::vec3 difference = gbuffer.normal.pixels[a] - gbuffer.normal.pixels[b];
-  if (glm::dot(difference, difference) > kSameNormal * kSameNormal) return;
+  return !(glm::dot(difference, difference) > kSameNormal * kSameNormal);
+}
+
+/// Pairs of neighbours with the same normal. A region of n pixels has n - 1 of them or more.
+std::int64_t same_pairs(const GBuffer& gbuffer) {
+  const auto width = static_cast<size_t>(gbuffer.width);
+  return parallel_reduce(
+      gbuffer.height, 8, std::int64_t{0},
+      [&](const IndexRange<int>& rows, std::int64_t pairs) {
+        for (int y = rows.first; y < rows.last; ++y) {
+          for (size_t i = gbuffer.id.index(0, y), x = 0; x < width; ++i, ++x) {
+            if (gbuffer.id.pixels[i] == 0) continue;
+            if (x > 0) pairs += have_same_normal(gbuffer, i, i - 1);
+            if (y > 0) pairs += have_same_normal(gbuffer, i, i - width);
+          }
+        }
+        return pairs;
+      },
+      std::plus<>());
+}
+
+void join_if_same(const GBuffer& gbuffer, std::vector<std::uint32_t>& parent, size_t a, size_t b) {
+  if (!have_same_normal(gbuffer, a, b)) return;
   const std::uint32_t root_a = root_of(parent, static_cast<std::uint32_t>(a)), root_b = root_of(parent, static_cast<std::uint32_t>(b));
   parent[std::max(root_a, root_b)] = std::min(root_a, root_b);
 }
@@ -61,27 +86,50 @@ std::string flat_note(const std::string& name, const GBuffer& gbuffer, const Ima
       name, count, count == 1 ? "" : "s", share, inked, clear, count - inked - clear);
 }
 
+struct ObjectPixels {
+  std::int64_t seen = 0, turned = 0;
+};
+
+/// By id.
+std::vector<ObjectPixels> pixels_of_objects(const GBuffer& gbuffer) {
+  return parallel_reduce(
+      gbuffer.id.size(), size_t{1} << 14, std::vector<ObjectPixels>{},
+      [&](const IndexRange<size_t>& part, std::vector<ObjectPixels> objects) {
+        for (size_t i = part.first; i < part.last; ++i) {
+          const auto id = static_cast<size_t>(gbuffer.id.pixels[i]);
+          if (id >= objects.size()) objects.resize(id + 1);
+          ++objects[id].seen;
+          objects[id].turned += gbuffer.n_dot_v.pixels[i] <= 0.0f;
+        }
+        return objects;
+      },
+      [](std::vector<ObjectPixels> left, const std::vector<ObjectPixels>& right) {
+        left.resize(std::max(left.size(), right.size()));
+        for (size_t id = 0; id < right.size(); ++id) {
+          left[id].seen += right[id].seen;
+          left[id].turned += right[id].turned;
+        }
+        return left;
+      });
+}
+
 /// One note for each object that is almost wholly turned away: its normals point inwards, or the eye is inside it.
 void add_inverted_notes(const std::string& name, const GBuffer& gbuffer, std::vector<std::string>& notes) {
-  const std::int32_t objects = gbuffer.id.pixels.empty() ? 0 : *std::max_element(gbuffer.id.pixels.begin(), gbuffer.id.pixels.end());
-  std::vector<std::int64_t> seen(static_cast<size_t>(objects) + 1), turned(static_cast<size_t>(objects) + 1);
-  for (size_t i = 0; i < gbuffer.id.size(); ++i) {
-    const auto id = static_cast<size_t>(gbuffer.id.pixels[i]);
-    ++seen[id];
-    turned[id] += gbuffer.n_dot_v.pixels[i] <= 0.0f;
-  }
-  for (size_t id = 1; id < seen.size(); ++id) {
-    if (seen[id] == 0 || static_cast<double>(turned[id]) < 0.95 * static_cast<double>(seen[id])) continue;
+  const std::vector<ObjectPixels> objects = pixels_of_objects(gbuffer);
+  for (size_t id = 1; id < objects.size(); ++id) {
+    const auto [seen, turned] = objects[id];
+    if (seen == 0 || static_cast<double>(turned) < 0.95 * static_cast<double>(seen)) continue;
     notes.push_back(
         fmt::format("{}: the whole of object {} is border: N.V <= 0 on {:.1f} % of its {} pixels; its orientation is inverted, "
                     "or the eye is inside it",
-                    name, id, 100.0 * static_cast<double>(turned[id]) / static_cast<double>(seen[id]), seen[id]));
+                    name, id, 100.0 * static_cast<double>(turned) / static_cast<double>(seen), seen));
   }
 }
 
 }  // namespace
 
 std::vector<FlatFace> flat_faces(const GBuffer& gbuffer, const Image<float>& coverage, std::int64_t min_pixels) {
+  if (same_pairs(gbuffer) < min_pixels - 1) return {};  // as most pictures of curved surfaces have none
   const std::vector<std::uint32_t> region = flat_regions(gbuffer);
   std::vector<std::uint32_t> size(region.size(), 0);
   for (size_t i = 0; i < region.size(); ++i) size[region[i]] += gbuffer.id.pixels[i] != 0;
@@ -125,12 +173,6 @@ std::string meetings_note(const std::string& name, const BorderInput& input, con
   }
   if (bare == 0) return {};
   return fmt::format("{}: {} of {} places where one object meets another have no line: {}", name, bare, all, reason);
-}
-
-double smoothstep(double edge0, double edge1, double x) {
-  if (!(edge1 > edge0)) return x >= edge1 ? 1.0 : 0.0;
-  const double t = std::clamp((x - edge0) / (edge1 - edge0), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
 }
 
 }  // namespace limn

@@ -1,6 +1,8 @@
 #pragma once
 // Where methods fail, found in the picture itself: flat faces, normals that point away, and objects that meet without a line.
 
+#include <algorithm>
+
 #include "raymarch/border.h"
 
 namespace limn {
@@ -23,6 +25,10 @@ std::vector<std::string> surface_notes(const std::string& name, const GBuffer& g
 std::string meetings_note(const std::string& name, const BorderInput& input, const Image<float>& coverage, const std::string& reason);
 
 /// Hermite step from 0 at `edge0` to 1 at `edge1`; a hard step (x >= edge1) where they coincide.
-double smoothstep(double edge0, double edge1, double x);
+inline double smoothstep(double edge0, double edge1, double x) {
+  if (!(edge1 > edge0)) return x >= edge1 ? 1.0 : 0.0;
+  const double t = std::clamp((x - edge0) / (edge1 - edge0), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
 
 }  // namespace limn

@@ -5,6 +5,8 @@
 #include <cstring>
 
 #include "raymarch/files/picture_module.h"
+#include "raymarch/files/png_file.h"
+#include "raymarch/files/srgb_bytes.h"
 #include "sdf/error.h"
 #include "sdf/output_file.h"
 #include "sdf/parallel.h"
@@ -23,25 +25,27 @@ std::string extension_of(const fs::path& file) {
 
 bool has_alpha(const std::string& extension) { return extension != ".jpg" && extension != ".jpeg"; }
 
-std::uint8_t to_byte(float value) {
-  // The comparison is false for NaN, which becomes 0.
-  return static_cast<std::uint8_t>(value > 0.0f ? std::lround(255.0f * std::min(value, 1.0f)) : 0);
-}
-
-std::uint8_t srgb_byte(float linear) { return to_byte(linear > 0.0f ? srgb_from_linear(std::min(linear, 1.0f)) : 0.0f); }
-
 /// Interleaved 8-bit sRGB: RGBA with alpha kept apart, or RGB over white.
 std::vector<std::uint8_t> srgb_pixels(const Image<glm::vec4>& picture, bool alpha) {
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(picture.size() * (alpha ? 4 : 3));
-  for (const glm::vec4& color : picture.pixels) {
-    glm::vec3 rgb(color);
-    if (!alpha) rgb += 1.0f - color.a;
-    if (alpha && color.a > 0.0f) rgb /= color.a;
-    for (int channel = 0; channel < 3; ++channel) bytes.push_back(srgb_byte(rgb[channel]));
-    if (alpha) bytes.push_back(to_byte(color.a));
-  }
+  static const SrgbBytes srgb_byte;
+  const size_t channels = alpha ? 4 : 3;
+  std::vector<std::uint8_t> bytes(picture.size() * channels);
+  parallel_parts(picture.size(), size_t{1} << 14, [&](const IndexRange<size_t>& part) {
+    for (size_t i = part.first; i < part.last; ++i) {
+      const glm::vec4& color = picture.pixels[i];
+      glm::vec3 rgb(color);
+      if (!alpha) rgb += 1.0f - color.a;
+      if (alpha && color.a > 0.0f) rgb /= color.a;
+      std::uint8_t* const to = &bytes[i * channels];
+      for (int channel = 0; channel < 3; ++channel) to[channel] = srgb_byte(rgb[channel]);
+      if (alpha) to[3] = to_byte(color.a);
+    }
+  });
   return bytes;
+}
+
+std::vector<std::byte> png_bytes(const Image<glm::vec4>& picture) {
+  return png_file({picture.width, picture.height, 4, srgb_pixels(picture, true), std::string("limn ") + kVersion});
 }
 
 /// OpenImageIO would write the time of day; equal runs must give equal bytes.
@@ -213,6 +217,12 @@ OutputFile image_output(const Image<glm::vec4>& linear_premultiplied, const std:
   if (std::find(known.begin(), known.end(), extension) == known.end()) {
     throw InputError({file.string(), {}, extension, "unknown extension for a picture", known_names(extension, known)});
   }
+  if (extension == ".png") {
+    return {file, [&linear_premultiplied, file](const fs::path& temporary) {
+              const std::vector<std::byte> bytes = png_bytes(linear_premultiplied);
+              write_bytes(temporary, file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+            }};
+  }
   return {file, [&linear_premultiplied, file, extension](const fs::path& temporary) {
             const bool alpha = has_alpha(extension);
             const std::vector<std::uint8_t> pixels = srgb_pixels(linear_premultiplied, alpha);
@@ -233,13 +243,7 @@ void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesy
   write_together({&output, 1});
 }
 
-std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied) {
-  const std::vector<std::uint8_t> pixels = srgb_pixels(linear_premultiplied, true);
-  std::vector<std::byte> encoded;
-  const std::string problem = picture_module().encode_png(srgb_header(linear_premultiplied, true), pixels.data(), encoded);
-  if (!problem.empty()) throw MachineError("cannot encode a PNG: " + problem);
-  return encoded;
-}
+std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied) { return png_bytes(linear_premultiplied); }
 
 Image<float> read_channel(const std::filesystem::path& file, const std::string& channel) {
   const PictureHeader header = header_of(file);

@@ -1,13 +1,14 @@
 #pragma once
 // What limn asks of OpenImageIO, as a table of functions. They are in a module of their own (helpers/pictures_module.cpp), loaded when the
-// first picture is read or written: OpenImageIO brings 260 shared libraries, which take a fifth of a second to load, and most calls need
-// none of them.
+// first picture other than a PNG is written, or any is read: OpenImageIO brings 260 shared libraries, which take a fifth of a second to
+// load, and most calls need none of them.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <future>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -41,12 +42,14 @@ struct PictureModule {
 
   /// Pixels in the header's types, channel after channel within each pixel.
   std::string (*write)(const std::filesystem::path& file, const PictureHeader& header, const void* pixels) = nullptr;
-  std::string (*encode_png)(const PictureHeader& header, const void* pixels, std::vector<std::byte>& encoded) = nullptr;
   /// Size, channels and their types; byte and half stand for all that floats hold.
   std::string (*read_header)(const std::filesystem::path& file, PictureHeader& header) = nullptr;
   /// One channel as floats, top row first; `values` has width x height of them.
-  std::string (*read_channel)(const std::filesystem::path& file, int channel, std::vector<float>& values) = nullptr;
+  std::string (*read_channel)(const std::filesystem::path& file, int channel, std::span<float> values) = nullptr;
   void (*to_half)(const float* values, std::uint16_t* halves, int count) = nullptr;
+
+  /// Of all parts, one after another: 40 hexadecimal digits.
+  std::string (*sha1)(std::span<const std::span<const std::byte>> parts) = nullptr;
 
   /// -1 where the font cannot be read.
   int (*text_width_px)(const std::string& text, int size_px, const std::string& font) = nullptr;

@@ -19,7 +19,8 @@ void size_layer(bool wanted, int width, int height, Image<T>& image) {
   if (!wanted) {
     image = {};
   } else if (image.width != width || image.height != height) {
-    image = Image<T>(width, height);
+    image = {};  // its memory goes before the other comes
+    image = Image<T>::unset(width, height);
   }
 }
 

@@ -1,6 +1,6 @@
 // limn-pictures.so: OpenImageIO behind the functions of raymarch/files/picture_module.h, loaded when they are needed.
 
-#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/hash.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
@@ -69,18 +69,6 @@ std::string write(const fs::path& file, const PictureHeader& header, const void*
   return finish(*output, header, pixels);
 }
 
-std::string encode_png(const PictureHeader& header, const void* pixels, std::vector<std::byte>& encoded) {
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  const auto output = OIIO::ImageOutput::create("png");
-  if (!output) return OIIO::geterror();
-  if (!output->set_ioproxy(&memory) || !output->open("memory.png", spec_of(header))) return output->geterror();
-  std::string error = finish(*output, header, pixels);
-  const auto* first = reinterpret_cast<const std::byte*>(bytes.data());
-  encoded.assign(first, first + bytes.size());
-  return error;
-}
-
 std::string read_header(const fs::path& file, PictureHeader& header) {
   const auto input = OIIO::ImageInput::open(file.string());
   if (!input) return OIIO::geterror();
@@ -90,7 +78,7 @@ std::string read_header(const fs::path& file, PictureHeader& header) {
   return "";
 }
 
-std::string read_channel(const fs::path& file, int channel, std::vector<float>& values) {
+std::string read_channel(const fs::path& file, int channel, std::span<float> values) {
   const auto input = OIIO::ImageInput::open(file.string());
   if (!input) return OIIO::geterror();
   // Whole numbers of 32 bits would come scaled to [0, 1] as floats.
@@ -105,6 +93,12 @@ std::string read_channel(const fs::path& file, int channel, std::vector<float>& 
 
 void to_half(const float* values, std::uint16_t* halves, int count) {
   OIIO::convert_pixel_values(OIIO::TypeDesc::FLOAT, values, OIIO::TypeDesc::HALF, halves, count);
+}
+
+std::string sha1(std::span<const std::span<const std::byte>> parts) {
+  OIIO::SHA1 hash;
+  for (const std::span<const std::byte> part : parts) hash.append(part.data(), part.size());
+  return hash.digest();
 }
 
 int text_width_px(const std::string& text, int size_px, const std::string& font) {
@@ -128,5 +122,5 @@ bool draw_text(const std::string& text, int x, int y, int size_px, const std::st
 
 extern "C" __attribute__((visibility("default"))) void limn_picture_module(limn::PictureModule& module) {
   using namespace limn;
-  module = {kVersion, write, encode_png, read_header, read_channel, to_half, text_width_px, draw_text};
+  module = {kVersion, write, read_header, read_channel, to_half, sha1, text_width_px, draw_text};
 }

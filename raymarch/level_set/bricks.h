@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "raymarch/level_set/large_pages.h"
 #include "raymarch/level_set/spline_bricks.h"
 #include "sdf/geometry.h"
+#include "sdf/large_pages.h"
 #include "sdf/level_set.h"
 
 namespace limn {

@@ -20,7 +20,11 @@ constexpr int kSide = kSplineNodes + 2;
 using Values = std::array<float, kSide * kSide * kSide>;
 using Coefficients = std::array<float, kSplineNodes * kSplineNodes * kSplineNodes>;
 
-size_t at(int x, int y, int z) { return static_cast<size_t>((x * kSide + y) * kSide + z); }
+constexpr size_t index_in(int side, int x, int y, int z) {
+  return (static_cast<size_t>(x) * static_cast<size_t>(side) + static_cast<size_t>(y)) * static_cast<size_t>(side) + static_cast<size_t>(z);
+}
+
+size_t at(int x, int y, int z) { return index_in(kSide, x, y, z); }
 
 void load_values(const Accessor& accessor, const glm::ivec3& origin, Values& values) {
   for (int x = -2; x <= 10; ++x) {
@@ -38,7 +42,7 @@ void load_values(const Accessor& accessor, const glm::ivec3& origin, Values& val
   }
 }
 
-size_t coefficient_at(int x, int y, int z) { return static_cast<size_t>((x * kSplineNodes + y) * kSplineNodes + z); }
+size_t coefficient_at(int x, int y, int z) { return index_in(kSplineNodes, x, y, z); }
 
 /// f less a sixth of its second differences along the axes, as sdf/gradients/cubic.cpp has them.
 void find_coefficients(const Values& values, Coefficients& out) {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "raymarch/level_set/large_pages.h"
+#include "sdf/large_pages.h"
 #include "sdf/level_set_data.h"
 
 namespace limn {

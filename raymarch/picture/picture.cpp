@@ -11,8 +11,10 @@
 #include "raymarch/border/object_groups.h"
 #include "raymarch/frames.h"
 #include "raymarch/gbuffer/file_colors.h"
+#include "raymarch/picture/compose.h"
 #include "raymarch/scene/threads.h"
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -59,19 +61,6 @@ Border draw_after(const BorderInput& input, const MethodCall& call, const Sample
   return call.method->draw(after, call.parameters);
 }
 
-/// Objects go on beneath the ink along their edges. All is read before anything is written: the pixel beneath may have a neighbour of its
-/// own.
-void lay_beneath(const Border& border, Image<glm::vec4>& picture) {
-  if (border.beneath.pixels.empty()) return;
-  LIMN_CHECK(picture.size() == border.beneath.size());
-  std::vector<std::pair<size_t, glm::vec4>> moved;
-  for (size_t i = 0; i < picture.size(); ++i) {
-    const std::int32_t from = border.beneath.pixels[i];
-    if (from >= 0) moved.emplace_back(i, picture.pixels[static_cast<size_t>(from)]);
-  }
-  for (const auto& [i, color] : moved) picture.pixels[i] = color;
-}
-
 /// Hands a sample's inks of the frame before on, and where they were.
 SampleInks inks_before(FrameHistory& history, size_t sample, const GBuffer& gbuffer, const Camera& camera) {
   SampleInks inks;
@@ -97,55 +86,6 @@ void keep(FrameHistory& history, size_t sample, const GBuffer& gbuffer, SampleIn
 
 }  // namespace
 
-Image<glm::vec4> shade_headlight(const GBuffer& gbuffer, const SceneModel& model) {
-  Image<glm::vec4> picture(gbuffer.width, gbuffer.height, glm::vec4(0.0f));
-  for (size_t i = 0; i < picture.size(); ++i) {
-    const std::int32_t id = gbuffer.id.pixels[i];
-    if (id == 0) continue;
-    const glm::vec3 color = model.colors[static_cast<size_t>(id - 1)];
-    picture.pixels[i] = glm::vec4(color * (0.25f + 0.75f * gbuffer.n_dot_v.pixels[i]), 1.0f);
-  }
-  return picture;
-}
-
-Image<glm::vec4> shade_headlight(const BorderInput& input) {
-  const GBuffer& gbuffer = input.gbuffer;
-  const FileColors found = file_colors(input.model);
-  if (!found.any) return shade_headlight(gbuffer, input.model);
-  Image<glm::vec3> colors(gbuffer.width, gbuffer.height, glm::vec3(0.0f));
-  for (size_t i = 0; i < colors.size(); ++i) {
-    if (const std::int32_t id = gbuffer.id.pixels[i]; id != 0) colors.pixels[i] = input.model.colors[static_cast<size_t>(id - 1)];
-  }
-  find_file_colors(found, gbuffer, input.camera, input.model.render_origin, colors);
-  Image<glm::vec4> picture(gbuffer.width, gbuffer.height, glm::vec4(0.0f));
-  for (size_t i = 0; i < picture.size(); ++i) {
-    if (gbuffer.id.pixels[i] != 0) picture.pixels[i] = glm::vec4(colors.pixels[i] * (0.25f + 0.75f * gbuffer.n_dot_v.pixels[i]), 1.0f);
-  }
-  return picture;
-}
-
-void lay_ink(Image<glm::vec4>& picture, const Image<float>& coverage, const glm::vec3& color) {
-  LIMN_CHECK(picture.size() == coverage.size());
-  const glm::vec4 ink(color, 1.0f);
-  for (size_t i = 0; i < picture.size(); ++i) {
-    const float share = coverage.pixels[i];
-    picture.pixels[i] = (1.0f - share) * picture.pixels[i] + share * ink;
-  }
-}
-
-void lay_ink(Image<glm::vec4>& picture, const Border& border) {
-  lay_beneath(border, picture);
-  if (border.colors.pixels.empty()) {
-    lay_ink(picture, border.coverage, border.color);
-    return;
-  }
-  LIMN_CHECK(picture.size() == border.coverage.size() && picture.size() == border.colors.size());
-  for (size_t i = 0; i < picture.size(); ++i) {
-    const float share = border.coverage.pixels[i];
-    picture.pixels[i] = (1.0f - share) * picture.pixels[i] + share * glm::vec4(border.colors.pixels[i], 1.0f);
-  }
-}
-
 // The R2 sequence (Roberts 2018), whose generator is the plastic number; starts at the pixel's centre. Its first few points lie up to 0.2
 // px to one side in the mean, and so would everything drawn; the points after the first are moved back together.
 glm::dvec2 sample_offset(int sample, int samples) {
@@ -165,39 +105,32 @@ glm::dvec2 sample_offset(int sample, int samples) {
 void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture, SampleInks* inks) {
   const auto start = Clock::now();
   const bool first = picture.border.pixels.empty();
-  Image<float> ink(input.gbuffer.width, input.gbuffer.height, 0.0f);
-  Image<glm::vec4> composite = shade_headlight(input);
   if (first) add_turned_notes(input, picture.notes);
+  std::vector<Border> borders;
+  borders.reserve(methods.size());
   for (size_t m = 0; m < methods.size(); ++m) {
-    Border border = draw_after(input, methods[m], inks, m);
-    LIMN_CHECK(border.coverage.size() == ink.size());
-    lay_ink(composite, border);
-    for (size_t i = 0; i < ink.size(); ++i) ink.pixels[i] = 1.0f - (1.0f - ink.pixels[i]) * (1.0f - border.coverage.pixels[i]);
-    if (first) {
-      add_status(border, picture.border_status);
-      picture.notes.insert(picture.notes.end(), border.notes.begin(), border.notes.end());
-    }
-    if (inks != nullptr) inks->now.push_back(std::move(border.coverage));
+    const Border& border = borders.emplace_back(draw_after(input, methods[m], inks, m));
+    if (!first) continue;
+    add_status(border, picture.border_status);
+    picture.notes.insert(picture.notes.end(), border.notes.begin(), border.notes.end());
   }
-  if (first) {
-    picture.border = std::move(ink);
-    picture.composite = std::move(composite);
-  } else {
-    for (size_t i = 0; i < ink.size(); ++i) {
-      picture.border.pixels[i] += ink.pixels[i];
-      picture.composite.pixels[i] += composite.pixels[i];
-    }
-  }
+  compose(input, borders, first, picture);
+  if (inks != nullptr)
+    for (Border& border : borders) inks->now.push_back(std::move(border.coverage));
   picture.border_ms += ms_since(start);
 }
 
 void finish_samples(const PictureSettings& settings, Picture& picture) {
+  if (settings.samples == 1 && !settings.background) return;
   const float share = 1.0f / static_cast<float>(settings.samples);
-  for (float& ink : picture.border.pixels) ink *= share;
-  for (glm::vec4& color : picture.composite.pixels) {
-    color *= share;
-    if (settings.background) color += (1.0f - color.a) * glm::vec4(*settings.background, 1.0f);
-  }
+  parallel_parts(picture.border.size(), size_t{1} << 13, [&](const IndexRange<size_t>& part) {
+    for (size_t i = part.first; i < part.last; ++i) {
+      picture.border.pixels[i] *= share;
+      glm::vec4& color = picture.composite.pixels[i];
+      color *= share;
+      if (settings.background) color += (1.0f - color.a) * glm::vec4(*settings.background, 1.0f);
+    }
+  });
 }
 
 GBufferLayers layers_read(std::span<const MethodCall> methods) {
@@ -248,7 +181,7 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
     if (sample == 0) picture.gbuffer = std::exchange(gbuffer, {});
   }
   if (history != nullptr) history->camera = camera;
-  finish_samples(settings, picture);
+  arena.execute([&] { finish_samples(settings, picture); });
   return picture;
 }
 

@@ -137,16 +137,16 @@ int run(const Options& options) {
   settings.progress = bar.stage("building the surface");
 
   // What is written to a .vdb is one level set, whatever it is called.
+  const bool is_volume = ending_of(file) == ".vdb";
   SurfaceSettings expected = settings;
-  if (ending_of(file) == ".vdb" && settings.kind.empty()) expected.kind = "level_set";
-  if (ending_of(file) != ".vdb" && settings.kind.empty()) expected.kind = "mesh";
-  refuse_without_effect(options.spec.surface, input, use_of(input.scene, expected, ending_of(file) == ".vdb"));
-  check_cost(options, input.scene, expected, {});
+  if (settings.kind.empty()) expected.kind = is_volume ? "level_set" : "mesh";
+  refuse_without_effect(options.spec.surface, input, use_of(input.scene, expected, is_volume));
+  check_cost(options, input.scene, expected, {.library_bytes = is_volume ? kVolumeLibraryBytes : 0.0});
   std::vector<std::string> warnings = warn_of_input(options, input.scene, expected, {});
   WorldNotes said;
   Json document;
   std::string text;
-  if (ending_of(file) == ".vdb") {
+  if (is_volume) {
     const std::vector<LevelSet> level_sets = world_level_sets(input.scene, settings, said);
     write_level_sets(level_sets, file);
     document = level_sets_json(level_sets);

@@ -261,7 +261,9 @@ int run(const Options& options) {
   render.warnings = warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods)});
 
   // While the surface is built.
-  const std::future<void> pictures = load_picture_module_early();
+  const auto is_png = [](const fs::path& file) { return ending_of(file) == ".png"; };
+  std::future<void> pictures;
+  if (!std::all_of(render.outputs.begin(), render.outputs.end(), is_png)) pictures = load_picture_module_early();
   const auto build_start = std::chrono::steady_clock::now();
   std::vector<std::string> levels;
   if (options.spec.surface.level_for_view && !options.plan.tolerance_px)

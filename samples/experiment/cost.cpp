@@ -19,10 +19,9 @@ namespace {
 constexpr double kModelMs = 5.0, kFaceMs = 2e-3, kFieldFaceMs = 4e-3, kFieldFaceTermMs = 2e-4, kFaceBytes = 600.0;
 constexpr double kCageFaceMs = 0.15;  // of a field's cage, which is looked for in several samplings
 constexpr double kResampleMs = 1e-3;  // a voxel of either grid
-constexpr double kVoxelMs = 2.5e-4, kMeshVoxelMs = 1.2e-3, kGridBytes = 2.5e6;
-// Peaks of ellipsoid and gyroid, 256 to 1024 voxels, bands of 2.45 to 8: blocks of 8^3 and their copies go by the surface, the tree that
-// stays by the band.
-constexpr double kVoxelBytes = 14.0, kSurfaceCellBytes = 157.0;
+constexpr double kVoxelMs = 2.5e-4, kMeshVoxelMs = 1.2e-3, kGridBytes = 1.7e6;
+// Peaks of ellipsoid and gyroid, 256 to 1024 voxels, bands of 2.45 to 8: blocks of 8^3 go by the surface, the grid that stays by the band.
+constexpr double kVoxelBytes = 9.6, kSurfaceCellBytes = 107.0;
 constexpr double kPictureMs = 1.5, kMeshRayMs = 6e-6, kGridRayMs = 1e-5, kFieldRayMs = 1e-5;
 // At 640x360; a limit surface has as much as a field of many terms.
 constexpr double kTruthTermMs = 0.035, kLimitTerms = 8000.0;

@@ -54,6 +54,11 @@ struct Smaller {
   std::string words{};
 };
 
+bool has_volumes(const Scene& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [](const SceneObject& object) { return std::holds_alternative<LevelSetSource>(object.source); });
+}
+
 bool is_gridded(const std::string& kind, const Scene& scene, bool resampled) {
   if (resampled) return true;
   if (kind.empty()) return false;
@@ -112,7 +117,7 @@ PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, i
   const double layer_bytes = 4.0 * (layers.depth + layers.n_dot_v + layers.id + layers.material + layers.face) +
                              12.0 * (layers.position + layers.normal) + layers.status;
   PictureLoad load;
-  load.library_bytes = kPictureLibraryBytes;
+  load.library_bytes = writes_layers ? kPictureLibraryBytes : 0.0;
   load.pixels = static_cast<double>(camera.width_px) * camera.height_px;
   load.bytes_per_pixel = kCompositeBytes + layer_bytes;
   if (picture.samples > 1) load.bytes_per_pixel += kSumBytes + layer_bytes;
@@ -130,7 +135,7 @@ CallCost expected_call(const Scene& scene, const SurfaceSettings& settings, cons
   CallCost cost;
   cost.model_bytes = static_cast<double>(expected.bytes);
   cost.picture_bytes = load.pixels * load.bytes_per_pixel;
-  cost.library_bytes = load.library_bytes;
+  cost.library_bytes = load.library_bytes + (has_volumes(scene) ? kVolumeLibraryBytes : 0.0);
   cost.time_ms = kStartMs + expected.build_ms + load.pictures * expected.trace_ms + load.other_ms;
   return cost;
 }

@@ -9,8 +9,9 @@
 
 namespace limn {
 
-/// What the program takes before it does anything: its libraries; and the library of pictures, which comes when one is written.
-inline constexpr double kProgramBytes = 70e6, kPictureLibraryBytes = 70e6;
+/// What the program takes before it does anything; the library of pictures (OpenImageIO), which comes when one that is no PNG is written;
+/// and that of volumes (OpenVDB), which comes when a volume is read or written.
+inline constexpr double kProgramBytes = 18e6, kPictureLibraryBytes = 125e6, kVolumeLibraryBytes = 40e6;
 
 /// What the machine lets a program have: its memory, or less where a control group says so. Bytes.
 double machine_memory();
@@ -21,7 +22,7 @@ struct PictureLoad {
   double bytes_per_pixel = 0.0;  ///< Held at a time.
   double pictures = 0.0;         ///< Traced: views times samples.
   double other_ms = 0.0;         ///< Methods, writing.
-  double library_bytes = 0.0;    ///< kPictureLibraryBytes where pictures are written.
+  double library_bytes = 0.0;    ///< kPictureLibraryBytes where pictures other than PNGs are written.
 };
 /// Of `views` pictures drawn one after the other; `writes_layers`: as .exr files.
 PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, int views, bool writes_layers);

@@ -2,13 +2,16 @@
 #include "samples/spec/parse.h"
 #include "samples/spec/surface_setting.h"
 
-#include <OpenImageIO/hash.h>
 #include <fmt/format.h>
 
 #include <cctype>
+#include <cstddef>
+#include <deque>
 #include <fstream>
+#include <span>
 #include <sstream>
 
+#include "raymarch/files/picture_module.h"
 #include "raymarch/metric.h"
 #include "sdf/error.h"
 #include "sdf/version.h"
@@ -18,8 +21,9 @@ namespace {
 
 constexpr size_t kDigits = 32;
 
-std::string digits_of(OIIO::SHA1& hash) {
-  std::string digits = hash.digest().substr(0, kDigits);
+/// Of bytes in several places.
+std::string digits_of(std::span<const std::span<const std::byte>> parts) {
+  std::string digits = picture_module().sha1(parts).substr(0, kDigits);
   for (char& digit : digits) digit = static_cast<char>(std::tolower(static_cast<unsigned char>(digit)));
   return digits;
 }
@@ -32,30 +36,35 @@ std::string file_hash(const std::string& file) {
   return content_hash(bytes.str());
 }
 
-template <class T>
-void append(OIIO::SHA1& hash, const std::vector<T>& values) {
-  const auto count = static_cast<std::uint64_t>(values.size());
-  hash.append(&count, sizeof count);
-  if (!values.empty()) hash.append(values.data(), values.size() * sizeof(T));
-}
+/// A mesh's arrays where they are, each after its length.
+struct MeshBytes {
+  std::deque<std::uint64_t> counts{};  // their places stay
+  std::vector<std::span<const std::byte>> parts{};
+
+  template <class T>
+  void append(const std::vector<T>& values) {
+    parts.push_back(std::as_bytes(std::span(&counts.emplace_back(values.size()), 1)));
+    parts.push_back(std::as_bytes(std::span(values)));
+  }
+};
 
 // A mesh may come from several files (.gltf with its .bin), so what was loaded counts.
 std::string mesh_hash(const Mesh& mesh) {
-  OIIO::SHA1 hash;
-  append(hash, mesh.positions);
-  append(hash, mesh.face_sizes);
-  append(hash, mesh.corner_vertices);
-  append(hash, mesh.corner_normals);
-  append(hash, mesh.face_materials);
-  append(hash, mesh.creases);
-  append(hash, mesh.corners);
+  MeshBytes bytes;
+  bytes.append(mesh.positions);
+  bytes.append(mesh.face_sizes);
+  bytes.append(mesh.corner_vertices);
+  bytes.append(mesh.corner_normals);
+  bytes.append(mesh.face_materials);
+  bytes.append(mesh.creases);
+  bytes.append(mesh.corners);
   const auto boundary = static_cast<std::int32_t>(mesh.boundary);
-  hash.append(&boundary, sizeof boundary);
-  append(hash, mesh.holes);
-  append(hash, mesh.face_smoothing);
+  bytes.parts.push_back(std::as_bytes(std::span(&boundary, 1)));
+  bytes.append(mesh.holes);
+  bytes.append(mesh.face_smoothing);
   const std::int32_t rules[] = {static_cast<std::int32_t>(mesh.crease_method), static_cast<std::int32_t>(mesh.triangle_rule)};
-  hash.append(rules, sizeof rules);
-  return digits_of(hash);
+  bytes.parts.push_back(std::as_bytes(std::span(rules)));
+  return digits_of(bytes.parts);
 }
 
 std::string vector_text(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
@@ -93,8 +102,8 @@ std::string flicker_text(const Study& study) {
 }  // namespace
 
 std::string content_hash(std::string_view bytes) {
-  OIIO::SHA1 hash(bytes.data(), bytes.size());
-  return digits_of(hash);
+  const std::span<const std::byte> all = std::as_bytes(std::span(bytes));
+  return digits_of({&all, 1});
 }
 
 std::string hash_of_input(const SceneInput& input) {

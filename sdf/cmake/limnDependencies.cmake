@@ -57,5 +57,6 @@ if(NOT TARGET limn_openimageio)
   set_target_properties(limn_openimageio PROPERTIES INTERFACE_LINK_LIBRARIES "${LIMN_OPENIMAGEIO_LIBRARY};limn_openimageio_util")
 endif()
 
+find_dependency(PNG)  # brings zlib
 find_dependency(embree 3)
 find_dependency(hwy)

@@ -146,7 +146,7 @@ TEST(JumpFlood, AnyNumberOfThreadsGivesTheSameSquares) {
   const Silhouette silhouette = sparse_silhouette(random, 700, 500);
   ASSERT_GT(silhouette.crossings, 0);
   for (const int reach : {12, 102, 300}) {
-    std::vector<std::vector<std::int32_t>> results;
+    std::vector<Pixels<std::int32_t>> results;
     for (const int threads : {1, 2, 5}) {
       tbb::task_arena arena(threads);
       arena.execute([&] { results.push_back(jump_flood_squares(silhouette, reach, 2).pixels); });

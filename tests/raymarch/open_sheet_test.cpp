@@ -172,7 +172,7 @@ TEST(HardEdges, ACubeWithoutNormalsIsDrawnWithFacets) {
     const Scene scene = scene_of({object});
     return render_gbuffer(model_of(scene, "mesh"), looking_from(scene, {1, 0.8, 1.2}), {}).normal.pixels;
   };
-  const std::vector<glm::vec3> usual = normals(std::nullopt);
+  const Pixels<glm::vec3> usual = normals(std::nullopt);
   int seen = 0;
   for (const glm::vec3& n : usual) {
     if (n == glm::vec3(0.0f)) continue;
@@ -192,7 +192,7 @@ TEST(HardEdges, GroupsAndNormalsOfTheFileComeFirst) {
     const Scene scene = scene_of({object});
     return render_gbuffer(model_of(scene, "mesh"), looking_from(scene, {1, 0.8, 1.2}), {}).normal.pixels;
   };
-  const std::vector<glm::vec3> sharp = normals(box, 30.0), smooth = normals(box, 180.0);
+  const Pixels<glm::vec3> sharp = normals(box, 30.0), smooth = normals(box, 180.0);
   box.face_smoothing.assign(6, 1);
   EXPECT_EQ(normals(box, std::nullopt), smooth);
   EXPECT_EQ(normals(box, 30.0), sharp) << "an angle that is asked for goes over the groups";

@@ -51,7 +51,7 @@ TEST_F(PictureFiles, SayWhatWasDrawnByWhichCallFromWhere) {
   EXPECT_EQ(found.parts[0].height_px, 24);
   EXPECT_EQ(found.parts[0].channels.size(), channel_names(file("a.exr")).size());
 
-  const std::vector<float>& depth = picture_.gbuffer.depth.pixels;
+  const Pixels<float>& depth = picture_.gbuffer.depth.pixels;
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   std::int64_t missed = 0;
   for (const float z : depth) {

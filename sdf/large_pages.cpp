@@ -1,4 +1,4 @@
-#include "raymarch/level_set/large_pages.h"
+#include "sdf/large_pages.h"
 
 #include <cstdlib>
 #include <new>

@@ -1,16 +1,18 @@
 #pragma once
-// Internal: memory in few, large pages where the system has them: rays jump from brick to brick, and a page each would be looked up every
-// time.
+// Memory in few, large pages where the system has them: rays jump from brick to brick, and a page each would be looked up every time; and
+// the first touch of a picture's small pages takes longer than a border.
 
 #include <cstddef>
 
 namespace limn {
 
+/// Small pieces come from where all memory does. Throws std::bad_alloc.
 struct LargePages {
   static void* take(size_t bytes);
   static void give_back(void* memory);
 };
 
+/// For std::vector: elements that it is given no value for are left unset.
 template <class T>
 struct LargePageAllocator {
   using value_type = T;
@@ -19,7 +21,7 @@ struct LargePageAllocator {
   LargePageAllocator(const LargePageAllocator<U>&) {}
   T* allocate(size_t count) { return static_cast<T*>(LargePages::take(count * sizeof(T))); }
   void deallocate(T* memory, size_t) { LargePages::give_back(memory); }
-  /// Elements are left unset: whoever makes bricks writes all of them.
+  /// Leaves it unset.
   template <class U>
   void construct(U*) {}
   bool operator==(const LargePageAllocator&) const { return true; }

@@ -1,0 +1,23 @@
+#include "sdf/late_module.h"
+
+#include <dlfcn.h>
+
+#include "sdf/error.h"
+#include "sdf/guard.h"
+
+namespace limn {
+
+void refuse_late_module(const std::string& file, const std::string& problem) {
+  throw MachineError("the module " + file + " cannot be loaded: " + problem);
+}
+
+void* find_late_function(const std::string& file, const std::string& function) {
+  const std::string path = find_helper(file).string();
+  void* const module = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (module == nullptr) refuse_late_module(path, ::dlerror());
+  void* const found = ::dlsym(module, function.c_str());
+  if (found == nullptr) refuse_late_module(path, ::dlerror());
+  return found;
+}
+
+}  // namespace limn

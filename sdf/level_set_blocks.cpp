@@ -1,0 +1,31 @@
+#include <chrono>
+#include <string>
+
+#include "sdf/error.h"
+#include "sdf/level_set_nano.h"
+
+namespace limn {
+
+std::shared_ptr<LevelSetData> join_blocks(std::span<const LevelSetBlock> blocks, double voxel_size, double half_width_voxels,
+                                          const std::string& name, const glm::dvec3& origin) {
+  LIMN_CHECK(voxel_size > 0.0 && half_width_voxels > 0.0);
+  const auto started = std::chrono::steady_clock::now();
+  const auto is_active = [](const LevelSetBlock& block) {
+    return std::any_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word != 0; });
+  };
+  if (std::none_of(blocks.begin(), blocks.end(), is_active))
+    throw InputError({.file = {}, .field = name, .value = {}, .problem = "holds no surface", .expected = "a band with active voxels"});
+  const auto background = static_cast<float>(voxel_size * half_width_voxels);
+  const auto data = make_level_set(nano_grid(blocks, background), {glm::dmat3(voxel_size), origin}, name, half_width_voxels);
+  if (const std::int64_t torn = cells_lacking(LevelSet(data), find_gradient("cell")); torn > 0)
+    data->info.warnings.push_back(std::to_string(torn) + " cells on the surface reach beyond the band; the surface may have gaps there");
+  data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
+  return data;
+}
+
+LevelSet level_set_from_blocks(std::span<const LevelSetBlock> blocks, double voxel_size, double half_width_voxels, const std::string& name,
+                               const glm::dvec3& origin) {
+  return LevelSet(join_blocks(blocks, voxel_size, half_width_voxels, name, origin));
+}
+
+}  // namespace limn

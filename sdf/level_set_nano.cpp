@@ -1,0 +1,290 @@
+#include "sdf/level_set_nano.h"
+
+#define NANOVDB_USE_TBB
+#include <nanovdb/util/GridStats.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <optional>
+#include <tuple>
+
+#include "sdf/error.h"
+#include "sdf/parallel.h"
+
+namespace limn {
+namespace {
+
+using Grid = nanovdb::FloatGrid;
+using Tree = Grid::TreeType;
+using Root = Tree::RootType;
+using Upper = nanovdb::NanoUpper<float>;
+using Lower = nanovdb::NanoLower<float>;
+using Leaf = nanovdb::NanoLeaf<float>;
+
+constexpr int kUpperSide = 4096, kLowerSide = 128, kLeafSide = 8;
+
+glm::ivec3 origin_of(const glm::ivec3& place, int side) { return place & ~(side - 1); }
+
+bool less(const glm::ivec3& a, const glm::ivec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
+
+nanovdb::Coord coord(const glm::ivec3& p) { return {p.x, p.y, p.z}; }
+
+/// As a tree is walked: root tiles by their coordinates, then the children of each node in turn.
+bool before(const LevelSetBlock* a, const LevelSetBlock* b) {
+  for (const int side : {kUpperSide, kLowerSide, kLeafSide}) {
+    const glm::ivec3 of_a = origin_of(a->origin, side), of_b = origin_of(b->origin, side);
+    if (of_a != of_b) return less(of_a, of_b);
+  }
+  return false;
+}
+
+bool is_active(const LevelSetBlock& block) {
+  return std::any_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word != 0; });
+}
+
+std::vector<const LevelSetBlock*> leaves_in_order(std::span<const LevelSetBlock> blocks) {
+  std::vector<const LevelSetBlock*> leaves;
+  leaves.reserve(blocks.size());
+  for (const LevelSetBlock& block : blocks)
+    if (is_active(block)) leaves.push_back(&block);
+  std::stable_sort(leaves.begin(), leaves.end(), before);
+  // Of equals the last: of a list turned round the first.
+  const auto same = [](const LevelSetBlock* a, const LevelSetBlock* b) {
+    return origin_of(a->origin, kLeafSide) == origin_of(b->origin, kLeafSide);
+  };
+  leaves.erase(leaves.begin(), std::unique(leaves.rbegin(), leaves.rend(), same).base());
+  return leaves;
+}
+
+/// A node's children are those of the level below from `first` on, to the next node's.
+struct Span {
+  glm::ivec3 origin{0};
+  size_t first = 0;
+};
+
+template <class OriginOf>
+std::vector<Span> parents(size_t children, const OriginOf& origin_of_child, int side) {
+  std::vector<Span> nodes;
+  for (size_t i = 0; i < children; ++i) {
+    const glm::ivec3 origin = origin_of(origin_of_child(i), side);
+    if (nodes.empty() || nodes.back().origin != origin) nodes.push_back({origin, i});
+  }
+  return nodes;
+}
+
+/// The tree's nodes, in order, and where each kind begins in the buffer.
+struct Layout {
+  std::vector<const LevelSetBlock*> leaves{};
+  std::vector<Span> lowers{}, uppers{};
+  size_t root_tiles = 0;
+  std::uint8_t* buffer = nullptr;
+  std::uint64_t tree_at = 0, root_at = 0, uppers_at = 0, lowers_at = 0, leaves_at = 0, size = 0;
+
+  template <class Node>
+  Node& node(std::uint64_t at, size_t index = 0) const {
+    return *reinterpret_cast<Node*>(buffer + at + index * sizeof(Node));
+  }
+  Upper& upper(size_t i) const { return node<Upper>(uppers_at, i); }
+  Lower& lower(size_t i) const { return node<Lower>(lowers_at, i); }
+  Leaf& leaf(size_t i) const { return node<Leaf>(leaves_at, i); }
+};
+
+Layout lay_out(std::span<const LevelSetBlock> blocks) {
+  Layout layout;
+  layout.leaves = leaves_in_order(blocks);
+  layout.lowers = parents(
+      layout.leaves.size(), [&](size_t i) { return layout.leaves[i]->origin; }, kLowerSide);
+  layout.uppers = parents(
+      layout.lowers.size(), [&](size_t i) { return layout.lowers[i].origin; }, kUpperSide);
+  return layout;
+}
+
+/// Room for all nodes, and for as many root tiles between them as there could be: which of them are inside shows when nodes are written.
+nanovdb::HostBuffer take_memory(Layout& layout) {
+  layout.root_tiles = layout.uppers.size();
+  for (size_t i = 0; i + 1 < layout.uppers.size(); ++i) {
+    const glm::ivec3 a = layout.uppers[i].origin, b = layout.uppers[i + 1].origin;
+    if (a.x == b.x && a.y == b.y) layout.root_tiles += static_cast<size_t>((std::int64_t{b.z} - a.z) / kUpperSide - 1);
+  }
+  layout.tree_at = Grid::memUsage();
+  layout.root_at = layout.tree_at + Tree::memUsage();
+  layout.uppers_at = layout.root_at + Root::memUsage(static_cast<std::uint32_t>(layout.root_tiles));
+  layout.lowers_at = layout.uppers_at + layout.uppers.size() * Upper::memUsage();
+  layout.leaves_at = layout.lowers_at + layout.lowers.size() * Lower::memUsage();
+  layout.size = layout.leaves_at + layout.leaves.size() * sizeof(Leaf);
+  nanovdb::HostBuffer buffer = nanovdb::HostBuffer::create(layout.size);
+  layout.buffer = buffer.data();
+  return buffer;
+}
+
+size_t end_of(const std::vector<Span>& nodes, size_t i, size_t children) { return i + 1 < nodes.size() ? nodes[i + 1].first : children; }
+
+/// Signs of nodes that have none of their own, from the one before along z, then along y, then along x, as SignedFloodFill.h has it.
+/// `sign_at(n)` is the sign of entry n where it has one; `fill(n, inside)` gives it one where it has none.
+template <int kLog2Side, class SignAt, class Fill>
+void flood_fill(bool inside, const SignAt& sign_at, const Fill& fill) {
+  constexpr std::uint32_t kSide = 1u << kLog2Side;
+  bool x_inside = inside;
+  for (std::uint32_t x = 0; x < kSide; ++x) {
+    const std::uint32_t x00 = x << (2 * kLog2Side);
+    if (const std::optional<bool> own = sign_at(x00)) x_inside = *own;
+    bool y_inside = x_inside;
+    for (std::uint32_t y = 0; y < kSide; ++y) {
+      const std::uint32_t xy0 = x00 + (y << kLog2Side);
+      if (const std::optional<bool> own = sign_at(xy0)) y_inside = *own;
+      bool z_inside = y_inside;
+      for (std::uint32_t xyz = xy0; xyz < xy0 + kSide; ++xyz) {
+        if (const std::optional<bool> own = sign_at(xyz))
+          z_inside = *own;
+        else
+          fill(xyz, z_inside);
+      }
+    }
+  }
+}
+
+void write_leaf(const LevelSetBlock& block, float background, Leaf& leaf) {
+  auto& data = *leaf.data();
+  data.setOrigin(coord(origin_of(block.origin, kLeafSide)));
+  data.mFlags = data.mBBoxDif[2] = data.mBBoxDif[1] = data.mBBoxDif[0] = 0;
+  data.mMinimum = data.mMaximum = data.mAverage = data.mStdDevi = 0.0f;
+  for (int word = 0; word < 8; ++word) data.mValueMask.getWord<std::uint64_t>(word) = block.active[word];
+  std::copy(std::begin(block.values), std::end(block.values), data.mValues);
+  std::uint32_t first = 0;
+  while (!data.mValueMask.isOn(first)) ++first;
+  const auto sign_at = [&](std::uint32_t n) {
+    return data.mValueMask.isOn(n) ? std::optional<bool>(data.mValues[n] < 0.0f) : std::optional<bool>();
+  };
+  flood_fill<3>(data.mValues[first] < 0.0f, sign_at,
+                [&](std::uint32_t n, bool inside) { data.mValues[n] = inside ? -background : background; });
+}
+
+float first_value(const Leaf& leaf) { return leaf.data()->mValues[0]; }
+float last_value(const Leaf& leaf) { return leaf.data()->mValues[Leaf::SIZE - 1]; }
+float first_value(const Lower& node);
+float last_value(const Lower& node);
+
+template <class Node>
+float value_at(const Node& node, std::uint32_t n, bool first) {
+  const auto& data = *node.data();
+  if (!data.mChildMask.isOn(n)) return data.getValue(n);
+  return first ? first_value(*data.getChild(n)) : last_value(*data.getChild(n));
+}
+float first_value(const Lower& node) { return value_at(node, 0, true); }
+float last_value(const Lower& node) { return value_at(node, Lower::SIZE - 1, false); }
+float first_value(const Upper& node) { return value_at(node, 0, true); }
+float last_value(const Upper& node) { return value_at(node, Upper::SIZE - 1, false); }
+
+/// Its children [first, last) of the level below are written already; `child(i)` is one, `origin_of_child(i)` where.
+template <class Node, class Child, class OriginOf>
+void write_internal(const glm::ivec3& origin, size_t first, size_t last, float background, const Child& child,
+                    const OriginOf& origin_of_child, Node& node) {
+  auto& data = *node.data();
+  data.setOrigin(coord(origin));
+  data.mBBox.max() = data.mBBox.min();
+  data.mFlags = 0;
+  data.mMinimum = data.mMaximum = data.mAverage = data.mStdDevi = 0.0f;
+  data.mValueMask.setOff();
+  data.mChildMask.setOff();
+  for (size_t i = first; i < last; ++i) {
+    const std::uint32_t n = Node::CoordToOffset(coord(origin_of_child(i)));
+    data.mChildMask.setOn(n);
+    data.setChild(n, &child(i));
+  }
+  const auto sign_at = [&](std::uint32_t n) {
+    return data.mChildMask.isOn(n) ? std::optional<bool>(last_value(*data.getChild(n)) < 0.0f) : std::optional<bool>();
+  };
+  const bool inside = first_value(child(first)) < 0.0f;
+  flood_fill<Node::LOG2DIM>(inside, sign_at, [&](std::uint32_t n, bool in) {
+    data.mTable[n].child = 0;  // all of its bytes
+    data.setValue(n, in ? -background : background);
+  });
+}
+
+/// Inside tiles between inside nodes of one row along z.
+std::vector<glm::ivec3> root_tiles_inside(const Layout& layout) {
+  std::vector<glm::ivec3> tiles;
+  for (size_t i = 0; i + 1 < layout.uppers.size(); ++i) {
+    const glm::ivec3 a = layout.uppers[i].origin, b = layout.uppers[i + 1].origin;
+    if (a.x != b.x || a.y != b.y || !(last_value(layout.upper(i)) < 0.0f) || !(first_value(layout.upper(i + 1)) < 0.0f)) continue;
+    for (glm::ivec3 tile = a + glm::ivec3(0, 0, kUpperSide); tile.z != b.z; tile.z += kUpperSide) tiles.push_back(tile);
+  }
+  return tiles;
+}
+
+void write_root(const Layout& layout, std::span<const glm::ivec3> inside, float background) {
+  auto& data = *layout.node<Root>(layout.root_at).data();
+  std::fill_n(layout.buffer + layout.root_at, Root::memUsage(static_cast<std::uint32_t>(layout.root_tiles)), std::uint8_t{0});
+  data.mBackground = data.mMinimum = data.mMaximum = background;
+  data.mBBox.min() = nanovdb::Coord::max();
+  data.mBBox.max() = nanovdb::Coord::min();
+  size_t upper = 0, tile = 0;
+  while (upper < layout.uppers.size() || tile < inside.size()) {
+    auto* const entry = data.tile(data.mTableSize++);
+    if (tile == inside.size() || (upper < layout.uppers.size() && less(layout.uppers[upper].origin, inside[tile]))) {
+      entry->setChild(coord(layout.uppers[upper].origin), &layout.upper(upper), &data);
+      ++upper;
+    } else {
+      entry->setValue(coord(inside[tile++]), false, -background);
+    }
+  }
+}
+
+void write_tree(const Layout& layout) {
+  auto& data = *layout.node<Tree>(layout.tree_at).data();
+  std::fill_n(layout.buffer + layout.tree_at, Tree::memUsage(), std::uint8_t{0});
+  data.setRoot(&layout.node<Root>(layout.root_at));
+  data.setFirstNode(&layout.upper(0));
+  data.setFirstNode(&layout.lower(0));
+  data.setFirstNode(&layout.leaf(0));
+  data.mNodeCount[0] = static_cast<std::uint32_t>(layout.leaves.size());
+  data.mNodeCount[1] = static_cast<std::uint32_t>(layout.lowers.size());
+  data.mNodeCount[2] = static_cast<std::uint32_t>(layout.uppers.size());
+  for (size_t i = 0; i < layout.leaves.size(); ++i) data.mVoxelCount += layout.leaf(i).data()->mValueMask.countOn();
+}
+
+void write_grid(const Layout& layout) {
+  std::fill_n(layout.buffer, Grid::memUsage(), std::uint8_t{0});
+  auto& data = *layout.node<Grid>(0).data();
+  data.mMagic = NANOVDB_MAGIC_NUMBER;
+  data.mVersion = nanovdb::Version();
+  data.mFlags = static_cast<std::uint32_t>(nanovdb::GridFlags::IsBreadthFirst);
+  data.mGridCount = 1;
+  data.mGridSize = layout.size;
+  data.mWorldBBox = nanovdb::BBox<nanovdb::Vec3R>();
+  data.mGridClass = nanovdb::GridClass::LevelSet;
+  data.mGridType = nanovdb::GridType::Float;
+  data.mVoxelSize = nanovdb::Vec3R(1.0);
+  const std::array<std::array<double, 4>, 4> identity{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+  data.mMap.set(identity, identity, 1.0);
+}
+
+}  // namespace
+
+nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const LevelSetBlock> blocks, float background) {
+  Layout layout = lay_out(blocks);
+  LIMN_CHECK(!layout.leaves.empty());
+  nanovdb::HostBuffer buffer = take_memory(layout);
+  parallel_for(size_t{0}, layout.leaves.size(), [&](size_t i) { write_leaf(*layout.leaves[i], background, layout.leaf(i)); });
+  parallel_for(size_t{0}, layout.lowers.size(), [&](size_t i) {
+    write_internal(
+        layout.lowers[i].origin, layout.lowers[i].first, end_of(layout.lowers, i, layout.leaves.size()), background,
+        [&](size_t k) -> Leaf& { return layout.leaf(k); }, [&](size_t k) { return layout.leaves[k]->origin; }, layout.lower(i));
+  });
+  parallel_for(size_t{0}, layout.uppers.size(), [&](size_t i) {
+    write_internal(
+        layout.uppers[i].origin, layout.uppers[i].first, end_of(layout.uppers, i, layout.lowers.size()), background,
+        [&](size_t k) -> Lower& { return layout.lower(k); }, [&](size_t k) { return layout.lowers[k].origin; }, layout.upper(i));
+  });
+  write_root(layout, root_tiles_inside(layout), background);
+  write_tree(layout);
+  write_grid(layout);
+  nanovdb::GridHandle<nanovdb::HostBuffer> handle(std::move(buffer));
+  nanovdb::gridStats(*handle.grid<float>(), nanovdb::StatsMode::BBox);
+  return handle;
+}
+
+}  // namespace limn

@@ -1,0 +1,126 @@
+// NanoVDB grids made straight from blocks, beside OpenVDB's own way to them.
+
+#include "sdf/level_set_nano.h"
+
+#include <gtest/gtest.h>
+#include <nanovdb/util/OpenToNanoVDB.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/SignedFloodFill.h>
+
+#include <random>
+
+#include "tests/random_seed.h"
+
+namespace limn::test {
+namespace {
+
+nanovdb::GridHandle<nanovdb::HostBuffer> by_openvdb(std::span<const LevelSetBlock> blocks, float background) {
+  openvdb::initialize();
+  const auto grid = openvdb::FloatGrid::create(background);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  for (const LevelSetBlock& block : blocks) {
+    if (std::all_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word == 0; })) continue;
+    auto* leaf = new openvdb::FloatTree::LeafNodeType(openvdb::Coord(block.origin.x, block.origin.y, block.origin.z));
+    std::copy(std::begin(block.values), std::end(block.values), leaf->buffer().data());
+    openvdb::FloatTree::LeafNodeType::NodeMaskType mask;
+    for (openvdb::Index word = 0; word < 8; ++word) mask.getWord<openvdb::Index64>(word) = block.active[word];
+    leaf->setValueMask(mask);
+    grid->tree().addLeaf(leaf);
+  }
+  openvdb::tools::signedFloodFill(grid->tree());
+  return nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree>(*grid, nanovdb::StatsMode::BBox, nanovdb::ChecksumMode::Disable,
+                                                                         0);
+}
+
+template <class Node>
+void expect_same_internal(const Node& a, const Node& b) {
+  const auto &one = *a.data(), &other = *b.data();
+  ASSERT_EQ(one.mBBox, other.mBBox);
+  ASSERT_TRUE(one.mChildMask == other.mChildMask && one.mValueMask == other.mValueMask);
+  for (std::uint32_t n = 0; n < Node::SIZE; ++n) {
+    if (one.mChildMask.isOn(n)) {
+      ASSERT_EQ(one.getChild(n)->origin(), other.getChild(n)->origin());
+    } else {
+      ASSERT_EQ(one.getValue(n), other.getValue(n)) << n;
+    }
+  }
+}
+
+void expect_same(const nanovdb::FloatGrid& a, const nanovdb::FloatGrid& b) {
+  ASSERT_TRUE(a.isValid() && b.isValid());
+  const auto &one = a.tree(), &other = b.tree();
+  for (int level = 0; level < 3; ++level) ASSERT_EQ(one.nodeCount(level), other.nodeCount(level)) << level;
+  EXPECT_EQ(one.activeVoxelCount(), other.activeVoxelCount());
+  EXPECT_EQ(one.bbox(), other.bbox());
+  EXPECT_EQ(one.background(), other.background());
+  EXPECT_EQ(a.gridClass(), b.gridClass());
+  EXPECT_EQ(a.indexBBox(), b.indexBBox());
+  EXPECT_EQ(a.worldBBox(), b.worldBBox());
+  ASSERT_EQ(one.root().tileCount(), other.root().tileCount());
+  for (std::uint32_t i = 0; i < one.root().tileCount(); ++i) {
+    const auto &tile = *one.root().data()->tile(i), &peer = *other.root().data()->tile(i);
+    ASSERT_EQ(tile.key, peer.key);
+    ASSERT_EQ(tile.isChild(), peer.isChild());
+    if (tile.isValue()) {
+      ASSERT_EQ(tile.value, peer.value);
+    }
+  }
+  for (std::uint32_t i = 0; i < one.nodeCount(2); ++i) expect_same_internal(one.getFirstNode<2>()[i], other.getFirstNode<2>()[i]);
+  for (std::uint32_t i = 0; i < one.nodeCount(1); ++i) expect_same_internal(one.getFirstNode<1>()[i], other.getFirstNode<1>()[i]);
+  for (std::uint32_t i = 0; i < one.nodeCount(0); ++i) {
+    const auto &leaf = *one.getFirstNode<0>()[i].data(), &peer = *other.getFirstNode<0>()[i].data();
+    ASSERT_EQ(leaf.mBBoxMin, peer.mBBoxMin);
+    ASSERT_TRUE(std::equal(leaf.mBBoxDif, leaf.mBBoxDif + 3, peer.mBBoxDif) && leaf.mFlags == peer.mFlags);
+    ASSERT_TRUE(leaf.mValueMask == peer.mValueMask);
+    ASSERT_TRUE(std::equal(std::begin(leaf.mValues), std::end(leaf.mValues), std::begin(peer.mValues)));
+  }
+}
+
+/// Blocks anywhere, with any nodes active, of values of any sign: no distances of anything, which is harder than a level set.
+std::vector<LevelSetBlock> random_blocks(std::mt19937& random, int count, int reach) {
+  const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  std::vector<LevelSetBlock> blocks(static_cast<size_t>(count));
+  for (LevelSetBlock& block : blocks) {
+    for (int axis = 0; axis < 3; ++axis) block.origin[axis] = 8 * (below(2 * reach) - reach);
+    // Rows of nodes beyond each other along z now and then.
+    if (below(3) == 0) block.origin.x = block.origin.y = 0;
+    const int kind = below(4);
+    for (std::uint64_t& word : block.active)
+      word = kind == 0 ? 0 : (std::uint64_t{random()} << 32 | random()) & (kind == 1 ? 0x10010ull : ~0ull);
+    const bool inside = below(2) == 0;
+    for (float& value : block.values) value = (static_cast<float>(below(2000)) / 1000.0f - (inside ? 1.9f : 0.1f));
+  }
+  return blocks;
+}
+
+TEST(NanoGrid, IsTheOneThatOpenVdbMakesOfTheSameBlocks) {
+  std::mt19937 random(random_seed());
+  for (const int reach : {2, 40, 700, 4000})
+    for (const int count : {1, 7, 300}) {
+      const std::vector<LevelSetBlock> blocks = random_blocks(random, count, reach);
+      const bool any = std::any_of(blocks.begin(), blocks.end(), [](const LevelSetBlock& block) {
+        return std::any_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word != 0; });
+      });
+      if (!any) continue;
+      SCOPED_TRACE(testing::Message() << count << " blocks within " << reach);
+      const auto own = nano_grid(blocks, 2.5f), peer = by_openvdb(blocks, 2.5f);
+      ASSERT_NO_FATAL_FAILURE(expect_same(*own.grid<float>(), *peer.grid<float>()));
+    }
+}
+
+TEST(NanoGrid, FillsRootTilesBetweenInsideNodes) {
+  // Two blocks far apart along z that look at each other from inside: what lies between, 4096 nodes to a side, is inside.
+  std::vector<LevelSetBlock> blocks(2);
+  blocks[1].origin = {0, 0, 5 * 4096};
+  for (LevelSetBlock& block : blocks) {
+    std::fill(std::begin(block.active), std::end(block.active), ~std::uint64_t{0});
+    std::fill(std::begin(block.values), std::end(block.values), -0.5f);
+  }
+  const auto own = nano_grid(blocks, 2.0f), peer = by_openvdb(blocks, 2.0f);
+  ASSERT_NO_FATAL_FAILURE(expect_same(*own.grid<float>(), *peer.grid<float>()));
+  EXPECT_EQ(own.grid<float>()->tree().root().tileCount(), 6u);
+  EXPECT_EQ(own.grid<float>()->tree().getValue({1, 2, 3 * 4096}), -2.0f);
+}
+
+}  // namespace
+}  // namespace limn::test

@@ -55,11 +55,12 @@ std::vector<CurveSample> resample(const BorderCurves& curves, std::optional<Curv
   return samples;
 }
 
+bool is_within_picture(const glm::dvec2& px, const Camera& camera, double margin_px) {
+  return px.x >= margin_px && px.y >= margin_px && px.x <= camera.width_px - margin_px && px.y <= camera.height_px - margin_px;
+}
+
 std::vector<CurveSample> within_picture(std::vector<CurveSample> samples, const Camera& camera, double margin_px) {
-  std::erase_if(samples, [&](const CurveSample& sample) {
-    return !(sample.px.x >= margin_px && sample.px.y >= margin_px && sample.px.x <= camera.width_px - margin_px &&
-             sample.px.y <= camera.height_px - margin_px);
-  });
+  std::erase_if(samples, [&](const CurveSample& sample) { return !is_within_picture(sample.px, camera, margin_px); });
   return samples;
 }
 

@@ -12,6 +12,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double ms_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
 
+void wait_for(std::future<void> work) {
+  if (work.valid()) work.get();
+}
+
 /// What the views of one model may take that wait to be measured.
 constexpr double kKeptViewsBytes = 64e6;
 
@@ -117,7 +121,7 @@ Seen& ExperimentRun::reference(size_t index) {
   if (seen) return *seen;
   if (!reference_) reference_ = build(0);
   seen = look(*reference_, experiment_.scene, experiment_.cameras[index], experiment_.path, how_);
-  if (observer_.seen) observer_.seen(0, index, *reference_, *seen, {});
+  if (observer_.seen) wait_for(observer_.seen(0, index, *reference_, *seen, {}));
   return *seen;
 }
 
@@ -153,7 +157,7 @@ void ExperimentRun::look_at_view(const SceneModel& built, Cells cells, ViewWork&
     work.drawn.seen = look(built, planned.scene, camera, experiment_.path, how_, take_spare());
   work.seen = &work.drawn.seen;
   if (experiment_.repeats > 1) time_again(built, camera, experiment_.repeats, kMostRepeat_ms, how_, *work.seen);
-  if (observer_.seen) observer_.seen(work.model(), work.view(), built, *work.seen, work.drawn.drawings);
+  if (observer_.seen) work.under_way = observer_.seen(work.model(), work.view(), built, *work.seen, work.drawn.drawings);
   if (!experiment_.picture) {
     for (const ExperimentCell& cell : cells) {
       work.drawn.drawings.emplace_back();
@@ -172,7 +176,7 @@ void ExperimentRun::look_at_reference(Cells cells, ViewWork& work) {
   if (experiment_.picture && !view.seen) {
     DrawnView drawn = draw_view(0, *reference_, experiment_.cameras[index]);
     view.seen = std::move(drawn.seen);
-    if (observer_.seen) observer_.seen(0, index, *reference_, *view.seen, drawn.drawings);
+    if (observer_.seen) wait_for(observer_.seen(0, index, *reference_, *view.seen, drawn.drawings));
     for (size_t method = 0; method < drawn.drawings.size(); ++method) view.drawings[method] = std::move(drawn.drawings[method]);
   }
   work.built = &*reference_;

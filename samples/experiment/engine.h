@@ -3,6 +3,7 @@
 // pictures. It knows nothing of command lines, files or pages: who runs it says what is to be measured and is told of each step.
 
 #include <deque>
+#include <future>
 #include <map>
 #include <memory>
 #include <utility>
@@ -91,8 +92,9 @@ struct ExperimentObserver {
   std::function<void(size_t model, const SceneModel& built, double ms, const Timing& build)> built{};
   /// Nothing of these cells will come.
   std::function<void(std::span<const ExperimentCell> cells, const std::string& reason)> refused{};
-  /// Traced; where finished pictures were asked for all methods have drawn.
-  std::function<void(size_t model, size_t view, const SceneModel& built, Seen& seen, std::span<Drawing> drawings)> seen{};
+  /// Traced; where finished pictures were asked for all methods have drawn. While the future that is returned is not ready (an empty one
+  /// is), nothing of it changes or goes: it may be written meanwhile.
+  std::function<std::future<void>(size_t model, size_t view, const SceneModel& built, Seen& seen, std::span<Drawing> drawings)> seen{};
   /// A truth is there, or why there is none.
   std::function<void(size_t view, const ExperimentTruth& truth, double ms)> solved{};
   /// A cell is done.

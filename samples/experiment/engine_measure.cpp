@@ -182,6 +182,7 @@ void ExperimentRun::measure_all(std::deque<ViewWork>& works) {
 }
 
 void ExperimentRun::tell(ViewWork& work) {
+  if (work.under_way.valid()) work.under_way.get();
   for (size_t i = 0; i < work.cells.size(); ++i) {
     const ExperimentCell& cell = work.cells[i];
     const ExperimentTruth* const truth = work.truths[i];

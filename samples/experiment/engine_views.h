@@ -22,6 +22,7 @@ struct ViewWork {
   std::vector<std::vector<Measurement>> of_cells{};
   std::vector<double> measure_ms{};
   std::vector<Measurement> of_gbuffer{};  ///< The same for all cells.
+  std::future<void> under_way{};          ///< The observer's, of what was seen; the last member, so that it is waited for first.
 
   size_t model() const { return cells.front().model; }
   size_t view() const { return cells.front().view; }

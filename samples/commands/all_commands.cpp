@@ -15,7 +15,8 @@
   X(export)              \
   X(info)                \
   X(merge)               \
-  X(list)
+  X(list)                \
+  X(demo)
 
 namespace limn {
 

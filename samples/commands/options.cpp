@@ -159,6 +159,11 @@ void add_dump(CLI::App& app, Options& options) {
       ->needs(what);
 }
 
+void add_demo(CLI::App& app, Options& options) {
+  add(app, {"--size", "WxH", "every picture in pixels, 1..16384 each; smaller ones are there sooner; default: as the page says", kCamera},
+      [&options](const std::string& text) { options.spec.camera.size_px = parse_size("--size", text); });
+}
+
 void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size) {
   const std::string size_help = "picture in pixels, 1..16384 each; default " + default_size;
   add(app, {"--size", "WxH", size_help.c_str(), kCamera},

@@ -125,6 +125,8 @@ void add_line_surface(CLI::App& app, Options& options);
 void add_lines(CLI::App& app, Options& options);
 /// DRAWING and --against, what of them is compared, and the limits.
 void add_judge(CLI::App& app, Options& options);
+/// --size of every picture of `limn demo`.
+void add_demo(CLI::App& app, Options& options);
 /// --tolerance, --metric and --budget.
 void add_plan(CLI::App& app, Options& options);
 

@@ -16,7 +16,9 @@
   X(info)                \
   X(merge)               \
   X(list)                \
-  X(demo)
+  X(demo)                \
+  X(man)                 \
+  X(completion)
 
 namespace limn {
 

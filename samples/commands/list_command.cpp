@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "raymarch/border.h"
+#include "raymarch/lines.h"
 #include "raymarch/metric.h"
 #include "raymarch/surface.h"
 #include "samples/commands/command.h"
+#include "samples/commands/list_kinds.h"
 #include "samples/output/output.h"
 #include "samples/reference/parameter_text.h"
 #include "samples/reference/reference.h"
@@ -70,6 +72,12 @@ std::vector<Entry> list_metrics() {
   return entries;
 }
 
+std::vector<Entry> list_lines() {
+  std::vector<Entry> entries;
+  for (const LineClassDescriptor& one : line_classes()) entries.push_back({one.about, {}, {}});
+  return entries;
+}
+
 std::vector<Entry> list_scenes() {
   std::vector<Entry> entries;
   for (const SceneDescriptor& scene : scenes()) entries.push_back({scene.about, {}, {}});
@@ -82,7 +90,7 @@ struct Kind {
 };
 constexpr Kind kKinds[] = {
     {"shapes", list_shapes},   {"surfaces", list_surfaces}, {"gradients", list_gradients}, {"normals", list_normals},
-    {"methods", list_methods}, {"metrics", list_metrics},   {"scenes", list_scenes},
+    {"methods", list_methods}, {"metrics", list_metrics},   {"lines", list_lines},         {"scenes", list_scenes},
 };
 
 Json default_json(const Parameter& parameter) {
@@ -163,8 +171,24 @@ int run(const Options& options) {
 
 }  // namespace
 
+std::vector<std::string> list_kinds() {
+  std::vector<std::string> names;
+  for (const Kind& kind : kKinds) names.emplace_back(kind.name);
+  names.emplace_back("reference");
+  return names;
+}
+
+std::vector<std::string> names_of_kind(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Kind& kind : kKinds) {
+    if (name != kind.name) continue;
+    for (const Entry& entry : kind.entries()) names.push_back(entry.about.name);
+  }
+  return names;
+}
+
 Command list_command() {
-  return {"list", "names what there is to choose from: shapes, surfaces, gradients, normals, methods, metrics, scenes",
+  return {"list", "names what there is to choose from: shapes, surfaces, gradients, normals, methods, metrics, lines, scenes",
           "  limn list shapes\n  limn list methods --json", add_options, run};
 }
 

@@ -59,7 +59,7 @@ void add_compared_surfaces(CLI::App& app, Options& options) {
     options.spec.surfaces.push_back(text);
   };
   add_repeatable(app, {"--surface", "NAME", "only this representation (limn list surfaces), repeatable; default: all", kSurface}, surface);
-  add_repeatable(app, {"--surfaces", "A,B,...", "the same for several", kSurface},
+  add_repeatable(app, {"--surfaces", "A,B,...", "several of them (limn list surfaces)", kSurface},
                  [&options](const std::string& text) { read_compared_surfaces(text, options); });
 }
 
@@ -103,11 +103,17 @@ void add_output(CLI::App& app, Options& options, const std::string& what, bool r
 }
 
 void add_kind(CLI::App& app, Options& options) {
-  app.add_option(
-         "KIND", options.kind,
-         "shapes, surfaces, gradients, normals, methods, metrics or scenes; reference: all of it, and every key of files, as Markdown")
+  app.add_option("KIND", options.kind,
+                 "shapes, surfaces, gradients, normals, methods, metrics, lines or scenes; reference: all of it, and every key of files, "
+                 "as Markdown")
       ->type_name("")
       ->required();
+}
+
+void add_shell(CLI::App& app, Options& options) { app.add_option("SHELL", options.kind, "bash, zsh or fish")->type_name("")->required(); }
+
+void add_command_name(CLI::App& app, Options& options) {
+  app.add_option("COMMAND", options.kind, "a command; without it the page of limn itself")->type_name("");
 }
 
 void add_no_timings(CLI::App& app, Options& options) {
@@ -257,9 +263,10 @@ void add_methods(CLI::App& app, Options& options, bool compared) {
                        options.spec.border.methods.push_back(text);
                      });
   if (compared) {
-    add_repeatable(
-        app, {"--methods", "A,B,...|all", "a picture of every model by each of these methods, as a matrix; default: one method", kBorder},
-        [&options](const std::string& text) { read_compared_methods(text, options); })
+    add_repeatable(app,
+                   {"--methods", "A,B,...|all",
+                    "a picture of every model by each of these methods (limn list methods), as a matrix; default: one method", kBorder},
+                   [&options](const std::string& text) { read_compared_methods(text, options); })
         ->excludes(method);
   }
   add_repeatable(
@@ -376,7 +383,9 @@ void add_plan(CLI::App& app, Options& options) {
           [&plan](const std::string& text) {
             plan.tolerance_px = parse_number_above("--tolerance", text, 0.0, false, "a number of pixels above 0");
           });
-  add(app, {"--metric", "NAME", "what has to be right: border (the rim's ink, inside and outside) or silhouette; default border", kPlan},
+  add(app,
+      {"--metric", "border|silhouette", "what has to be right: border (the rim's ink, inside and outside) or silhouette; default border",
+       kPlan},
       [&plan](const std::string& text) { plan.silhouette = parse_plan_metric("--metric", text); })
       ->needs(tolerance);
   add_repeatable(

@@ -68,7 +68,7 @@ struct Options {
   StudyRunOptions study{};
   FramePath frames{.frames = 1};  ///< `limn render` and `limn contours`.
   bool refined = false;           ///< `limn export` only: refined instead of limit positions.
-  std::string kind{};             ///< `limn list` only.
+  std::string kind{};             ///< `limn list`: of what; `limn completion`: for which shell; `limn man`: of which command.
   DumpOptions dump{};             ///< `limn info` only.
   LineOptions lines{};            ///< `limn contours` only.
   JudgeOptions judge{};           ///< `limn judge` only.
@@ -93,6 +93,9 @@ void add_input(CLI::App& app, Options& options);
 void add_output(CLI::App& app, Options& options, const std::string& what, bool repeatable);
 /// What `limn list` lists.
 void add_kind(CLI::App& app, Options& options);
+/// What `limn completion` and `limn man` write.
+void add_shell(CLI::App& app, Options& options);
+void add_command_name(CLI::App& app, Options& options);
 /// --no-timings
 void add_no_timings(CLI::App& app, Options& options);
 /// --refined

@@ -60,7 +60,7 @@ void add_line_definitions(CLI::App& app, LineSettings& lines) {
 }  // namespace
 
 void add_line_surface(CLI::App& app, Options& options) {
-  add(app, {"--surface", "NAME", "the lines of a model: mesh, level_set or mesh_level_set; default: those of the surface itself", kSurface},
+  add(app, {"--surface", "mesh|level_set|mesh_level_set", "the lines of a model; default: those of the surface itself", kSurface},
       [&options](const std::string& text) {
         const std::vector<std::string> known = {"mesh", "level_set", "mesh_level_set"};
         if (std::find(known.begin(), known.end(), text) == known.end())
@@ -102,8 +102,8 @@ void add_lines(CLI::App& app, Options& options) {
   add(app, {"--page", "WxHmm", "the drawing fitted into a page of millimetres; default: a unit is a pixel", kLines},
       [&lines](const std::string& text) { lines.drawing.page_mm = parse_page("--page", text); });
   add(app,
-      {"--style", "NAME|FILE.css", "widths, colours and dashes of each class: plain, technical, ink, or a style sheet; default plain",
-       kLines},
+      {"--style", "plain|technical|ink|FILE.css",
+       "widths, colours and dashes of each class: plain, technical, ink, or a style sheet; default plain", kLines},
       [&lines](const std::string& text) { lines.drawing.style = read_style(text); });
   add_switch(app, {"--strict", "", "exit with 1 where the certificate finds a conflict", kLines}, lines.strict);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "raymarch/frames.h"
+#include "samples/compare/compare_limits.h"
 #include "samples/judge/drawing_file.h"
 #include "samples/judge/judge_report.h"
 #include "samples/lines/drawing.h"
@@ -72,6 +73,7 @@ struct Options {
   DumpOptions dump{};             ///< `limn info` only.
   LineOptions lines{};            ///< `limn contours` only.
   JudgeOptions judge{};           ///< `limn judge` only.
+  CompareLimits compare{};        ///< `limn compare` only.
 
   std::vector<std::filesystem::path> outputs{};
   bool no_clobber = false;
@@ -130,6 +132,8 @@ void add_lines(CLI::App& app, Options& options);
 void add_judge(CLI::App& app, Options& options);
 /// --size of every picture of `limn demo`.
 void add_demo(CLI::App& app, Options& options);
+/// What `limn compare` lets pass.
+void add_compare_limits(CLI::App& app, Options& options);
 /// --tolerance, --metric and --budget.
 void add_plan(CLI::App& app, Options& options);
 

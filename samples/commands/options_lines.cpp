@@ -157,6 +157,19 @@ void add_judge_limits(CLI::App& app, JudgeLimits& limits) {
 
 }  // namespace
 
+void add_compare_limits(CLI::App& app, Options& options) {
+  constexpr const char* kCompareLimits = "Limits of each picture (exit code 1 beyond them)";
+  CompareLimits& limits = options.compare;
+  add(app, {"--max-differ", "LENGTH", "border pixels that differ from the reference's, such as 50px, or 2% of its border", kCompareLimits},
+      [&limits](const std::string& text) { limits.differ = parse_length_limit("--max-differ", text); });
+  add(app, {"--max-displaced", "PX", "95 % of the border lie within, from the true one, pixels", kCompareLimits},
+      [&limits](const std::string& text) {
+        limits.displaced_px = parse_number_above("--max-displaced", text, 0.0, true, "a number of pixels from 0 up");
+      });
+  add(app, {"--junit", "FILE", "the limits as JUnit XML, a test case for each picture and limit", kOutput},
+      [&limits](const std::string& text) { limits.junit = text; });
+}
+
 void add_judge(CLI::App& app, Options& options) {
   JudgeOptions& judge = options.judge;
   app.add_option("DRAWING", judge.drawing, "an SVG, or a picture: .png .exr .tif .jpg")->type_name("")->required();

@@ -1,19 +1,29 @@
 #!/usr/bin/env bash
-# The demo: every built-in scene as a picture, three of them compared in every representation, every outline method on one of them, and one
-# page that leads to all of it.
+# The demo: a gallery of twelve pictures (gallery.txt), every built-in scene as a picture, three of them compared in every representation,
+# every outline method on one of them, and one page that leads to all of it.
 #   demo.sh PROGRAM FOLDER
 set -euo pipefail
+html() { printf '%s' "$1" | sed 's/&/\&amp;/g; s/</\&lt;/g; s/"/\&quot;/g'; }
 limn=$1
 out=$2
 compared=(ellipsoid machined_part teacup)
 drawn=rook # by every method: it is a mesh, as some of them need, with flat faces, round ones and edges
-mkdir -p "$out/methods"
+mkdir -p "$out/methods" "$out/gallery"
+
+echo "Drawing the gallery"
+mapfile -t calls < <(grep -v '^#' "$(dirname "$0")/gallery.txt")
+for call in "${calls[@]}"; do
+  # The calls are as a reader would type them: the shell takes their quotes off.
+  eval "set -- ${call//\$OUT/\$out}"
+  shift
+  "$limn" "$@" -q
+done
 
 echo "Drawing the built-in scenes"
 mapfile -t scenes < <("$limn" list scenes --json | sed -n 's/^ *"name": "\(.*\)",\{0,1\}$/\1/p')
 [ ${#scenes[@]} -gt 0 ] || { echo "demo: '$limn list scenes --json' named no scene" >&2; exit 1; }
 for scene in "${scenes[@]}"; do
-  "$limn" render "$scene" --size 640x480 --samples 8 -q -o "$out/$scene.png"
+  "$limn" render "$scene" --size 640x480 -q -o "$out/$scene.png"
 done
 for scene in "${compared[@]}"; do
   echo
@@ -39,13 +49,19 @@ done
   body { font: 16px/1.5 system-ui, sans-serif; max-width: 72rem; margin: 2rem auto; padding: 0 1rem; }
   .grid { display: grid; grid-template-columns: repeat(auto-fill, minmax(16rem, 1fr)); gap: 1rem; }
   figure { margin: 0; } img { width: 100%; height: auto; background: #fff; border-radius: .4rem; }
-  a { color: inherit; }
+  a { color: inherit; } code { font-size: .8rem; overflow-wrap: anywhere; }
 </style>
 <h1>The border of a surface, and how far to trust it</h1>
 <p>The dark rim is drawn where the surface turns away from the eye. It depends on how the surface is modelled: a formula, a grid of
 distances, or triangles. Each comparison below draws one shape in every representation and counts the pixels where the border is wrong.</p>
-<h2>Comparisons</h2><div class="grid">
+<h2>Gallery</h2><div class="grid">
 HTML
+  for call in "${calls[@]}"; do
+    file=${call##*\$OUT/} shown=${call% -o *}
+    printf '<figure><a href="%s"><img src="%s" alt="Picture by %s"></a><figcaption><code>%s -o %s</code></figcaption></figure>\n' \
+      "$file" "$file" "$(html "$shown")" "$(html "$shown")" "${file##*/}"
+  done
+  echo '</div><h2>Comparisons</h2><div class="grid">'
   for scene in "${compared[@]}"; do
     printf '<figure><a href="compare-%s/report.html"><img src="%s.png" alt="%s">Compare: %s</a></figure>\n' "$scene" "$scene" "$scene" "${scene//_/ }"
   done

@@ -30,7 +30,8 @@ void add_options(CLI::App& app, Options& options) {
 
 Comparison plan(const Options& options, SceneInput& input) {
   SurfaceSettings settings = surface_settings(options.spec, input);
-  const Camera camera = resolve_camera(camera_settings(options.spec.camera, input), bounds(input.scene));
+  const Camera camera = camera_of_view(camera_settings(options.spec.camera, input), framed_input(options.spec.camera, input),
+                                       framing_settings(options.spec.camera), 0, 1);
   if (options.spec.surface.level_for_view) {
     settings.kind = "mesh";
     for (const std::string& note : refine_for_views(settings, {&camera, 1}, input.scene)) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "raymarch/border.h"
+#include "raymarch/look.h"
 #include "raymarch/metric.h"
 #include "raymarch/surface.h"
 #include "samples/commands/command.h"
@@ -58,6 +59,18 @@ std::vector<Entry> list_methods() {
   return entries;
 }
 
+std::vector<Entry> list_looks() {
+  std::vector<Entry> entries;
+  for (const Look& look : looks()) entries.push_back({look.about, {}, {}});
+  return entries;
+}
+
+std::vector<Entry> list_shadings() {
+  std::vector<Entry> entries;
+  for (const ShadingDescriptor& shading : shadings()) entries.push_back({shading.about, {}, {}});
+  return entries;
+}
+
 std::vector<Entry> list_metrics() {
   std::vector<Entry> entries;
   for (const Metric& metric : metrics()) {
@@ -81,8 +94,9 @@ struct Kind {
   std::vector<Entry> (*entries)();
 };
 constexpr Kind kKinds[] = {
-    {"shapes", list_shapes},   {"surfaces", list_surfaces}, {"gradients", list_gradients}, {"normals", list_normals},
-    {"methods", list_methods}, {"metrics", list_metrics},   {"scenes", list_scenes},
+    {"shapes", list_shapes},   {"surfaces", list_surfaces}, {"gradients", list_gradients},
+    {"normals", list_normals}, {"methods", list_methods},   {"metrics", list_metrics},
+    {"scenes", list_scenes},   {"looks", list_looks},       {"shadings", list_shadings},
 };
 
 Json default_json(const Parameter& parameter) {
@@ -164,7 +178,7 @@ int run(const Options& options) {
 }  // namespace
 
 Command list_command() {
-  return {"list", "names what there is to choose from: shapes, surfaces, gradients, normals, methods, metrics, scenes",
+  return {"list", "names what there is to choose from: shapes, surfaces, gradients, normals, methods, metrics, scenes, looks, shadings",
           "  limn list shapes\n  limn list methods --json", add_options, run};
 }
 

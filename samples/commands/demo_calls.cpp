@@ -1,9 +1,11 @@
 #include "samples/commands/demo_calls.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include "raymarch/border.h"
 #include "samples/scenes/scenes.h"
+#include "sdf/error.h"
 
 namespace limn {
 namespace {
@@ -18,9 +20,21 @@ std::string heading(std::string name) {
   return name;
 }
 
+constexpr std::string_view kFolder = "$OUT/";
+
+/// "limn render teacup --look toon -o $OUT/gallery/teacup-toon.png".
+DemoCall gallery_call(const std::string& line) {
+  std::vector<std::string> words = shell_words(line);
+  LIMN_CHECK(words.size() > 4 && words[0] == "limn" && words[words.size() - 2] == "-o" && words.back().starts_with(kFolder));
+  const std::filesystem::path file = words.back().substr(kFolder.size());
+  std::string caption = file.stem().string();
+  std::replace(caption.begin(), caption.end(), '-', ' ');
+  return {"Gallery", caption, {words.begin() + 1, words.end() - 2}, file, file};
+}
+
 DemoCall scene_call(const std::string& scene) {
   const std::string file = scene + ".png";
-  return {"Scenes", heading(scene), {"render", scene, "--size", "640x480", "--samples", "8"}, file, file};
+  return {"Scenes", heading(scene), {"render", scene, "--size", "640x480"}, file, file};
 }
 
 DemoCall compare_call(const std::string& scene) {
@@ -41,6 +55,10 @@ DemoCall method_call(const std::string& method) {
 
 std::vector<DemoCall> demo_calls(const std::string& size) {
   std::vector<DemoCall> calls;
+  std::istringstream gallery(gallery_text());
+  for (std::string line; std::getline(gallery, line);) {
+    if (!line.empty() && line.front() != '#') calls.push_back(gallery_call(line));
+  }
   for (const SceneDescriptor& scene : scenes()) calls.push_back(scene_call(scene.about.name));
   for (const char* const scene : kCompared) calls.push_back(compare_call(scene));
   for (const BorderMethod& method : border_methods()) calls.push_back(method_call(method.about.name));
@@ -59,13 +77,30 @@ std::vector<DemoCall> demo_calls(const std::string& size) {
   return calls;
 }
 
+std::vector<std::string> shell_words(const std::string& line) {
+  std::vector<std::string> words;
+  bool quoted = false, inside = false;
+  for (const char c : line) {
+    if (c == '\'') quoted = !quoted;
+    if (c == ' ' && !quoted) {
+      inside = false;
+      continue;
+    }
+    if (!inside) words.emplace_back();
+    inside = true;
+    if (c != '\'') words.back() += c;
+  }
+  return words;
+}
+
 std::string shell_text(const DemoCall& call) {
   const auto quoted = [](const std::string& argument) {
     constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+";
     return argument.find_first_not_of(kPlain) == std::string::npos && !argument.empty() ? argument : "'" + argument + "'";
   };
   std::string text = "limn";
-  for (const std::string& argument : call.arguments) text += " " + quoted(argument);
+  for (const std::string& argument : call.arguments)
+    text += " " + quoted(argument.starts_with(kFolder) ? argument.substr(kFolder.size()) : argument);
   return text + " -o " + quoted(call.output.generic_string());
 }
 

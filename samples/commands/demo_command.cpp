@@ -24,7 +24,8 @@ void add_options(CLI::App& app, Options& options) {
 
 std::vector<std::string> whole_call(const DemoCall& call, const fs::path& folder, const Options& options) {
   std::vector<std::string> whole = {"limn"};
-  whole.insert(whole.end(), call.arguments.begin(), call.arguments.end());
+  for (const std::string& argument : call.arguments)
+    whole.push_back(argument.starts_with("$OUT/") ? (folder / argument.substr(5)).string() : argument);
   for (std::string argument : {std::string("-q"), std::string("-o"), (folder / call.output).string(), std::string("--threads"),
                                std::to_string(options.spec.threads)})
     whole.push_back(std::move(argument));
@@ -52,6 +53,7 @@ int run(const Options& options) {
   check_output_file(page, options.no_clobber, {".html"});
 
   const auto& size = options.spec.camera.size_px;
+  write_whole(folder / "still_life.toml", still_life_text());
   const std::vector<DemoCall> calls = demo_calls(size ? fmt::format("{}x{}", size->x, size->y) : std::string());
   std::string section;
   for (size_t i = 0; i < calls.size(); ++i) {
@@ -73,8 +75,8 @@ int run(const Options& options) {
 }  // namespace
 
 Command demo_command() {
-  return {"demo", "draws and compares the built-in scenes, and writes a page that leads to all of it", "  limn demo\n  limn demo -o tour",
-          add_options, run};
+  return {"demo", "draws a gallery, draws and compares the built-in scenes, and writes a page that leads to all of it",
+          "  limn demo\n  limn demo -o tour", add_options, run};
 }
 
 }  // namespace limn

@@ -5,6 +5,7 @@
 
 #include "raymarch/border.h"
 #include "raymarch/lines.h"
+#include "raymarch/look.h"
 #include "raymarch/metric.h"
 #include "raymarch/surface.h"
 #include "samples/commands/command.h"
@@ -60,6 +61,18 @@ std::vector<Entry> list_methods() {
   return entries;
 }
 
+std::vector<Entry> list_looks() {
+  std::vector<Entry> entries;
+  for (const Look& look : looks()) entries.push_back({look.about, {}, {}});
+  return entries;
+}
+
+std::vector<Entry> list_shadings() {
+  std::vector<Entry> entries;
+  for (const ShadingDescriptor& shading : shadings()) entries.push_back({shading.about, {}, {}});
+  return entries;
+}
+
 std::vector<Entry> list_metrics() {
   std::vector<Entry> entries;
   for (const Metric& metric : metrics()) {
@@ -91,6 +104,7 @@ struct Kind {
 constexpr Kind kKinds[] = {
     {"shapes", list_shapes},   {"surfaces", list_surfaces}, {"gradients", list_gradients}, {"normals", list_normals},
     {"methods", list_methods}, {"metrics", list_metrics},   {"lines", list_lines},         {"scenes", list_scenes},
+    {"looks", list_looks},     {"shadings", list_shadings},
 };
 
 Json default_json(const Parameter& parameter) {
@@ -188,7 +202,8 @@ std::vector<std::string> names_of_kind(const std::string& name) {
 }
 
 Command list_command() {
-  return {"list", "names what there is to choose from: shapes, surfaces, gradients, normals, methods, metrics, lines, scenes",
+  return {"list",
+          "names what there is to choose from: shapes, surfaces, gradients, normals, methods, metrics, lines, scenes, looks, shadings",
           "  limn list shapes\n  limn list methods --json", add_options, run};
 }
 

@@ -68,6 +68,11 @@ struct Options {
   StabilityOptions stability{};
   StudyRunOptions study{};
   FramePath frames{.frames = 1};  ///< `limn render` and `limn contours`.
+  int turntable = 0;              ///< `limn render` only: frames of one turn; 0: none.
+  bool samples_given = false;     ///< --samples is on the command line.
+  bool animate = false;           ///< `limn render` only: all frames in one picture.
+  bool transparent = false;       ///< `limn render` only: no ground behind pictures.
+  bool ink_only = false;          ///< `limn render` only: nothing but the ink.
   bool refined = false;           ///< `limn export` only: refined instead of limit positions.
   std::string kind{};             ///< `limn list`: of what; `limn completion`: for which shell; `limn man`: of which command.
   DumpOptions dump{};             ///< `limn info` only.
@@ -110,11 +115,15 @@ void add_dump(CLI::App& app, Options& options);
 void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size = "1280x720");
 /// --frames, with this help, --path-step and --seed; excludes --views.
 void add_frames(CLI::App& app, Options& options, const char* help);
+/// --turntable; excludes --views and --frames, which are added before.
+void add_turntable(CLI::App& app, Options& options);
 /// These, --turn, --animate and --fps.
 void add_line_frames(CLI::App& app, Options& options);
 void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& needs);
 void add_grid(CLI::App& app, Options& options);
 void add_border(CLI::App& app, Options& options, bool compared = false);
+/// --look, --shading, --ink-only, --transparent; of `limn render`, whose --samples and --background they go with.
+void add_look(CLI::App& app, Options& options);
 /// --threads, --quiet and so on, with add_limits.
 void add_execution(CLI::App& app, Options& options);
 /// --max-memory and --max-time.

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "raymarch/truth/proxy.h"
 #include "samples/output/output.h"
 #include "sdf/error.h"
 
@@ -33,13 +30,6 @@ void check_cost(const Options& options, const Scene& scene, const SurfaceSetting
   const auto cost = check_limits(options.spec.limits, scene, settings, load, kinds, options.verbose);
   if (options.verbose && cost)
     print_note(fmt::format("expected to take about {} and {}", bytes_text(cost->bytes()), time_text(cost->time_ms)));
-}
-
-void check_smooth(const LineSettings& lines, const Scene& scene) {
-  const auto is_smoothed = [](const SceneObject& object) { return std::holds_alternative<MeshSource>(object.source) && !is_cage(object); };
-  if (lines.smooth_meshes && std::none_of(scene.objects.begin(), scene.objects.end(), is_smoothed))
-    throw InputError({"", "--smooth", "", "none of the objects is a mesh of facets",
-                      "a loaded mesh, or --surface mesh; fields, cages and level sets are smooth as they are"});
 }
 
 }  // namespace limn

@@ -22,7 +22,4 @@ std::vector<std::string> warn_of_input(const Options& options, const Scene& scen
 void check_cost(const Options& options, const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load,
                 const std::vector<std::string>& kinds = {});
 
-/// Throws InputError where --smooth finds no mesh whose smooth surface it could mean.
-void check_smooth(const LineSettings& lines, const Scene& scene);
-
 }  // namespace limn

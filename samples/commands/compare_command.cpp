@@ -1,14 +1,14 @@
-#include "raymarch/image_io.h"
-#include "raymarch/surface/view_level.h"
+#include <algorithm>
+
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
-#include "samples/compare/comparison.h"
+#include "samples/compare/compare_job.h"
 #include "samples/compare/staging.h"
 #include "samples/experiment/empty_picture.h"
-#include "samples/experiment/no_effect.h"
 #include "samples/experiment/thread_settings.h"
 #include "samples/input/input_files.h"
 #include "samples/spec/flags.h"
+#include "sdf/error.h"
 #include "sdf/output_file.h"
 
 namespace limn {
@@ -23,50 +23,25 @@ void add_options(CLI::App& app, Options& options) {
   add_border(app, options, true);
   add_output(app, options, "folder for sheet.png, report.html, rows.json and each picture's EXR; default limn-out/compare/<name>", false);
   add_no_timings(app, options);
+  add_compare_limits(app, options);
   add_json(app, options);
   add_reference(app, options);
   add_execution(app, options);
 }
 
 Comparison plan(const Options& options, SceneInput& input) {
-  SurfaceSettings settings = surface_settings(options.spec, input);
-  const Camera camera = resolve_camera(camera_settings(options.spec.camera, input), bounds(input.scene));
-  if (options.spec.surface.level_for_view) {
-    settings.kind = "mesh";
-    for (const std::string& note : refine_for_views(settings, {&camera, 1}, input.scene)) {
-      if (!options.quiet) print_note(note);
-    }
-  }
-  settings.kind.clear();
-  const bool gradient_chosen = options.spec.surface.gradient.has_value() || input.surface.gradient.has_value();
-  Comparison comparison = plan_comparison(input, settings, options.spec.surfaces, gradient_chosen);
-  comparison.picture = picture_settings(options.spec.border, input);
-  if (!comparison.picture.background) comparison.picture.background = glm::vec3(1.0f);
-  std::vector<std::vector<MethodCall>> columns;
-  if (options.spec.border.columns.empty()) {
-    columns.push_back(comparison.picture.methods);
-  } else {
-    for (const MethodCall& call : comparison.picture.methods) columns.push_back({call});
-  }
-  plan_methods(columns, comparison);
-  comparison.camera = camera;
+  std::vector<std::string> notes;
+  Comparison comparison = comparison_for(options.spec, input, notes);
   comparison.with_times = !options.no_timings;
-  std::vector<std::string> kinds;
-  for (const ComparedModel& model : comparison.models)
-    if (model.skipped.empty()) kinds.push_back(model.surface.kind);
-  comparison.truth_reference = options.spec.reference.value_or(TruthReference::given);
-  comparison.call = resolved_call("compare", options.spec, {input.scene, settings, kinds}, comparison.camera, comparison.picture);
+  if (!options.quiet) {
+    for (const std::string& note : notes) print_note(note);
+  }
   return comparison;
 }
 
-// Without a font the sheet has no words; the page has them all.
 void write_all(const Comparison& comparison, const fs::path& folder, const Options& options) {
-  const Sheet sheet = contact_sheet(comparison);
-  if (!sheet.has_labels && !options.quiet)
+  if (!write_comparison(comparison, folder) && !options.quiet)
     print_note("no font found, so sheet.png has no labels; the package fonts-dejavu-core brings one");
-  write_image(sheet.picture, folder / "sheet.png");
-  write_whole(folder / "rows.json", rows_json(comparison).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
-  write_whole(folder / "report.html", report_page(comparison));
 }
 
 // What is held at a time: the reference's picture, one model's, and every cell's ink.
@@ -86,23 +61,10 @@ std::vector<std::string> check(const Options& options, const Comparison& compari
   return warn_of_input(options, last.scene, last.surface, {.surfaces = kinds, .methods = methods});
 }
 
-// What will be there: known before anything is drawn, as long as no model turns out to be impossible.
 std::vector<fs::path> file_names(const Comparison& comparison) {
-  std::vector<fs::path> names;
-  for (const ComparedModel& model : comparison.models) {
-    if (model.skipped.empty()) names.emplace_back(model.name + ".exr");
-  }
+  std::vector<fs::path> names = layer_files(comparison);
   for (const char* name : {"sheet.png", "rows.json", "report.html"}) names.emplace_back(name);
   return names;
-}
-
-void refuse_unread(const Options& options, const SceneInput& input, const Comparison& comparison) {
-  SettingUse use;
-  for (const ComparedModel& model : comparison.models) {
-    if (model.skipped.empty()) use.kinds.push_back(model.surface.kind);
-  }
-  refuse_without_effect(options.spec.surface, input, use);
-  refuse_reference_without_effect(options.spec, input);
 }
 
 // Where the reference shows nothing the others cannot be blamed for the same.
@@ -119,17 +81,28 @@ void add_empty(const Options& options, const Comparison& comparison, std::vector
   warnings.insert(warnings.end(), found.begin(), found.end());
 }
 
+void check_junit(const Options& options, const std::vector<fs::path>& read) {
+  const CompareLimits& limits = options.compare;
+  if (limits.junit.empty()) return;
+  if (!limits.differ && !limits.displaced_px)
+    throw InputError(
+        {"", "--junit", limits.junit.string(), "there are no limits to report on", "--max-differ or --max-displaced beside it"});
+  check_output_file(limits.junit, options.no_clobber, {".xml"});
+  check_not_input(limits.junit, read);
+}
+
 int run(const Options& options) {
   const ThreadLimit threads(options.spec.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
   input_kind(options.spec.input);
   if (!options.outputs.empty()) check_output_folder(options.outputs.back(), options.no_clobber);
   SceneInput input = load(options);
+  check_junit(options, files_of(input));
   const fs::path folder = options.outputs.empty() ? default_output("compare", input.name) : options.outputs.back();
   check_output_folder(folder, options.no_clobber);
 
   Comparison comparison = plan(options, input);
-  refuse_unread(options, input, comparison);
+  refuse_uncompared(options.spec, input, comparison);
   const std::vector<fs::path> names = file_names(comparison);
   for (const fs::path& name : names) check_not_input(folder / name, files_of(input));
   std::vector<std::string> warnings = check(options, comparison);
@@ -143,18 +116,22 @@ int run(const Options& options) {
     if (model.skipped.empty()) model.exr = folder / model.exr.filename();
   }
 
+  const std::vector<CellLimit> limits = check_compare_limits(comparison, options.compare);
+  if (!options.compare.junit.empty()) write_whole(options.compare.junit, compare_junit(comparison, limits));
   if (options.verbose) print_note(comparison.call);
   if (options.json) {
     Json document = comparison_json(comparison, files);
     document["warnings"] = warnings;
+    document["limits"] = compare_limits_json(limits);
     print_json(document);
   } else if (!options.quiet) {
     std::string text;
     for (const std::string& sentence : summary_sentences(comparison)) text += sentence + "\n";
     for (const std::string& line : skipped_sentences(comparison)) text += "not compared: " + in_flags(line) + "\n";
+    text += compare_limits_text(limits);
     print_text(text + (folder / "report.html").string() + "\n" + (folder / "sheet.png").string() + "\n");
   }
-  return 0;
+  return std::all_of(limits.begin(), limits.end(), [](const CellLimit& one) { return one.result.passed; }) ? 0 : 1;
 }
 
 }  // namespace
@@ -165,7 +142,8 @@ Command compare_command() {
           "report page",
           "  limn compare machined_part\n"
           "  limn compare rook --methods rim,rim_width,edge_quads\n"
-          "  limn compare cow.obj --voxels 128 --size 960x540 -o cow-compared",
+          "  limn compare cow.obj --voxels 128 --size 960x540 -o cow-compared\n"
+          "  limn compare cow.obj --surface mesh --max-displaced 0.5 --junit cow.xml",
           add_options, run};
 }
 

@@ -9,9 +9,9 @@
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
 #include "samples/commands/contours_frames.h"
+#include "samples/experiment/line_scene.h"
 #include "samples/experiment/thread_settings.h"
 #include "samples/input/input_files.h"
-#include "samples/input/world_model.h"
 #include "samples/lines/graph_json.h"
 #include "samples/lines/write_drawing.h"
 #include "samples/output/output.h"
@@ -75,20 +75,10 @@ std::vector<fs::path> outputs_of(const Options& options, const SceneInput& input
 
 /// With --surface the lines of that model: a level set's spline, or a mesh's facets.
 Scene modelled(const Options& options, SceneInput& input, ProgressBar& bar) {
-  if (options.spec.surfaces.empty()) return input.scene;
-  SurfaceSettings settings = surface_settings(options.spec, input);
-  settings.progress = bar.stage("building the surface");
-  if (settings.kind == "mesh") {
-    Scene scene = input.scene;
-    for (SceneObject& object : scene.objects) {
-      object.source = MeshSource{world_mesh(object, settings)};
-      object.world_from_object = Affine{};
-    }
-    return scene;
-  }
-  const SceneModel model = build_model(input.scene, settings);
-  print_warnings(options, total(model).warnings);
-  return modelled_scene(input.scene, model);
+  std::vector<std::string> warnings;
+  Scene scene = scene_of_lines(options.spec, input, bar.stage("building the surface"), warnings);
+  print_warnings(options, warnings);
+  return scene;
 }
 
 /// One view or frame, solved.
@@ -147,14 +137,19 @@ void print_tracks(const Options& options, const LineTracks& tracks) {
 class Film {
  public:
   Film(const Options& options, const SceneInput& input, const Scene& scene, ProgressBar& bar)
-      : options_(options), scene_(scene), bar_(bar), box_(bounds(input.scene)), settings_(camera_settings(options.spec.camera, input)) {
+      : options_(options),
+        scene_(scene),
+        bar_(bar),
+        framed_(framed_input(options.spec.camera, input)),
+        settings_(camera_settings(options.spec.camera, input)) {
     execution_.threads = options.spec.threads;
-    if (options.frames.frames > 1) camera_at_ = cameras_of_frames(options, settings_, box_);
+    if (options.frames.frames > 1) camera_at_ = cameras_of_frames(options, settings_, framed_);
   }
 
   Shot shot(int index) {
     Shot next;
-    next.camera = camera_at_ ? camera_at_(index) : camera_of_view(settings_, box_, index, options_.spec.views);
+    next.camera = camera_at_ ? camera_at_(index)
+                             : camera_of_view(settings_, framed_, framing_settings(options_.spec.camera), index, options_.spec.views);
     const auto start = std::chrono::steady_clock::now();
     next.graph = solve(next.camera);
     next.solve_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -178,7 +173,7 @@ class Film {
   const Options& options_;
   const Scene& scene_;
   ProgressBar& bar_;
-  Box box_;
+  FramedSurface framed_;
   CameraSettings settings_;
   ExecutionSettings execution_{};
   LineMemory memory_{};
@@ -192,7 +187,7 @@ int run(const Options& options) {
   SceneInput input = load(options);
   const std::vector<fs::path> outputs = outputs_of(options, input);
   const Scene scene = modelled(options, input, bar);
-  check_smooth(options.lines.lines, scene);
+  check_smooth(options.lines.lines, scene, "--smooth");
   Film film(options, input, scene, bar);
   Json documents = Json::array(), files = Json::array();
   std::vector<LineDrawing> drawings;

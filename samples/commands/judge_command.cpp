@@ -4,6 +4,7 @@
 
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
+#include "samples/experiment/line_scene.h"
 #include "samples/experiment/thread_settings.h"
 #include "samples/input/input_files.h"
 #include "samples/judge/drawing_file.h"
@@ -45,7 +46,7 @@ void check_outputs(const Options& options, const SceneInput& input) {
 Camera camera_of(const Options& options, const SceneInput& input) {
   CameraSpec spec = options.spec.camera;
   if (!spec.size_px) spec.size_px = size_of_drawing(options.judge.drawing);
-  return camera_of_view(camera_settings(spec, input), bounds(input.scene), 0, 1);
+  return camera_of_view(camera_settings(spec, input), framed_input(spec, input), framing_settings(spec), 0, 1);
 }
 
 void write_report(const Options& options, const JudgeReport& report) {
@@ -62,7 +63,7 @@ int run(const Options& options) {
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
   const SceneInput input = load(options);
   check_outputs(options, input);
-  check_smooth(options.judge.lines, input.scene);
+  check_smooth(options.judge.lines, input.scene, "--smooth");
   const Camera camera = camera_of(options, input);
   const DrawnLines drawing = read_drawing(options.judge.drawing, options.judge.ink, {camera.width_px, camera.height_px});
   ExecutionSettings execution = execution_settings(options.spec.threads);

@@ -19,6 +19,8 @@ void refuse_unplanned(const ExperimentSpec& spec, const SceneInput& input);
 
 /// `plan.tolerance_px` must be set. Throws InputError.
 PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneInput& input, ProgressBar& bar);
+/// The same, cancelled where `how` says so rather than where the program is interrupted.
+PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneInput& input, ProgressBar& bar, const ExecutionSettings& how);
 
 /// As a document.
 Json plan_json(const PlanJob& job);

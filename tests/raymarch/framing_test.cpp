@@ -107,7 +107,7 @@ TEST(Framing, FieldsAndLevelSetsByTheirSurface) {
   Scene grid = scene;
   grid.objects[0].source = LevelSetSource{level_set_from_field(field, {.voxel_size = 0.02}), {}};
   for (const CameraSettings& settings : views(random)) {
-    expect_framed(points, resolve_camera(settings, framed_surface(scene)), 3e-3, "field");
+    expect_framed(points, resolve_camera(settings, framed_surface(scene)), 5e-3, "field");
     expect_framed(points, resolve_camera(settings, framed_surface(grid)), 6e-3, "level set");
   }
 }
@@ -129,10 +129,10 @@ TEST(Framing, SeveralObjectsTogetherAndPlanesNotAtAll) {
   for (const glm::dvec3& point : points_of_ellipsoid(radii, right)) points.push_back(point);
   const Scene scene = scene_of({object_of(ellipsoid(radii, left)), object_of(make_shape("plane", {})), object_of(ellipsoid(radii, right))});
   for (const CameraSettings& settings : views(random))
-    expect_framed(points, resolve_camera(settings, framed_surface(scene)), 3e-3, "several");
+    expect_framed(points, resolve_camera(settings, framed_surface(scene)), 5e-3, "several");
 }
 
-TEST(Framing, FarthestPointsLieWithinAThousandthOfTheBounds) {
+TEST(Framing, FarthestPointsLieWithinTwoThousandthsOfTheBounds) {
   std::mt19937_64 random(random_seed());
   std::normal_distribution<double> normal;
   const glm::dvec3 radii(1.0, 0.35, 0.2);
@@ -142,7 +142,7 @@ TEST(Framing, FarthestPointsLieWithinAThousandthOfTheBounds) {
     const glm::dvec3 direction = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
     // The support function of an ellipsoid in closed form.
     const double exact = glm::dot(place.translation, direction) + glm::length(radii * (glm::transpose(place.linear) * direction));
-    EXPECT_NEAR(glm::dot(surface.farthest({&direction, 1}).at(0), direction), exact, 1e-3 * surface.bounds.longest_side());
+    EXPECT_NEAR(glm::dot(surface.farthest({&direction, 1}).at(0), direction), exact, 2e-3 * surface.bounds.longest_side());
   }
 }
 

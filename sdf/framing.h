@@ -15,8 +15,8 @@ inline constexpr double kBoxMargin = 0.06;  ///< Of the corners of a box.
 /// What a camera frames.
 struct FramedSurface {
   Box bounds{};  ///< World.
-  /// For each direction (world, any length) a point of the surface that lies farthest along it, or within two thousandths of the bounds
-  /// of that. Empty function: the corners of `bounds` stand for the surface.
+  /// For each direction (world, any length) a point of the surface that lies farthest along it, or within a thousandth of the bounds of
+  /// that. Empty function: the corners of `bounds` stand for the surface.
   std::function<std::vector<glm::dvec3>(std::span<const glm::dvec3> directions)> farthest{};
 };
 

@@ -22,10 +22,6 @@ FramedSurface framed_input(const CameraSpec& spec, const SceneInput& input);
 FramingSettings framing_settings(const CameraSpec& spec);
 /// View `index` of `count`: the camera's own where count is 1, else framed from view_direction().
 Camera camera_of_view(const CameraSettings& settings, const FramedSurface& surface, const FramingSettings& framing, int index, int count);
-/// The same, framed by the corners of a box.
-inline Camera camera_of_view(const CameraSettings& settings, const Box& bounds, int index, int count) {
-  return camera_of_view(settings, FramedSurface{bounds, {}}, {}, index, count);
-}
 
 /// The methods with their parameters. A parameter `key` goes to every method that has it, `method.key` to that one.
 std::vector<MethodCall> method_calls(const BorderSpec& spec, const SceneInput& input);

@@ -38,6 +38,7 @@ struct BorderInput {
   const Scene& scene;                    ///< What the model was made from.
   const BorderBefore* before = nullptr;  ///< Null where there is no frame before.
   SharedFindings* shared = nullptr;      ///< Null: found anew for each call.
+  bool with_notes = true;                ///< False where nobody reads Border::notes: of a picture's samples after the first.
 };
 
 /// Ink of one method. `coverage` in [0, 1], finite, the G-buffer's size.

@@ -111,6 +111,7 @@ void ink_line(const BorderInput& input, const LaplacianSettings& settings, int y
 }
 
 void add_notes(const BorderInput& input, const InkCounts& counts, Border& border) {
+  if (!input.with_notes) return;
   if (counts.steep > 0) {
     border.notes.push_back(
         fmt::format("depth_laplacian: {} of {} pixels of ink lie where the surface is steep but neither jumps nor has a crease",

@@ -21,7 +21,7 @@ Border ink_by_angle(const std::string& method, const BorderInput& input, const P
       border.coverage.pixels[i] = hit ? static_cast<float>(ink(double{seen.n_dot_v.pixels[i]}, hysteresis.shift(i))) : 0.0f;
     }
   });
-  border.notes = surface_notes(method, seen, border.coverage);
+  if (input.with_notes) border.notes = surface_notes(method, seen, border.coverage);
   return border;
 }
 

@@ -87,6 +87,7 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
     border.notes.push_back(fmt::format("normal4: {} of {} silhouette pixels have no line: their normals are near the clear value's",
                                        without_line.load(), silhouette.load()));
   }
+  if (!input.with_notes) return border;
   if (std::string note = meetings_note("normal4", input, border.coverage, "their normals are alike there"); !note.empty()) {
     border.notes.push_back(std::move(note));
   }

@@ -55,10 +55,11 @@ void add_turned_notes(const BorderInput& input, std::vector<std::string>& notes)
   }
 }
 
-Border draw_after(const BorderInput& input, const MethodCall& call, const SampleInks* inks, size_t method) {
-  if (inks == nullptr || inks->before.empty()) return call.method->draw(input, call.parameters);
-  const BorderBefore before{inks->before[method], inks->pixels_before};
+Border draw_after(const BorderInput& input, bool with_notes, const MethodCall& call, const SampleInks* inks, size_t method) {
   BorderInput after = input;
+  after.with_notes = with_notes;
+  if (inks == nullptr || inks->before.empty()) return call.method->draw(after, call.parameters);
+  const BorderBefore before{inks->before[method], inks->pixels_before};
   after.before = &before;
   return call.method->draw(after, call.parameters);
 }
@@ -112,7 +113,7 @@ void add_sample(const BorderInput& input, std::span<const MethodCall> methods, P
   std::vector<Border> borders;
   borders.reserve(methods.size());
   for (size_t m = 0; m < methods.size(); ++m) {
-    const Border& border = borders.emplace_back(draw_after(input, methods[m], inks, m));
+    const Border& border = borders.emplace_back(draw_after(input, first, methods[m], inks, m));
     if (!first) continue;
     add_status(border, picture.border_status);
     picture.notes.insert(picture.notes.end(), border.notes.begin(), border.notes.end());

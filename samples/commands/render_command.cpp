@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
+#include <memory>
 #include <numbers>
 
 #include "raymarch/files/animated_png.h"
@@ -110,9 +112,10 @@ Image<glm::vec4> over_ground(Image<glm::vec4> picture, const glm::vec3& ground) 
   return picture;
 }
 
-void write_picture(const Picture& picture, int index, const Options& options, Render& render) {
+/// Writes it; the time that took, ms. Of `render` only the frames of an animation change.
+double write_picture(const Picture& picture, const Camera& camera, int index, const Options& options, Render& render) {
   const auto start = std::chrono::steady_clock::now();
-  const std::string call = resolved_call("render", options.spec, resolved_model(render), render.camera, render.picture);
+  const std::string call = resolved_call("render", options.spec, resolved_model(render), camera, render.picture);
   // Layers keep their alpha; a picture to be looked at has a ground.
   const bool grounded = !options.transparent && !options.ink_only && !render.picture.background;
   const Image<glm::vec4> over = grounded ? over_ground(picture.composite, render.ground) : Image<glm::vec4>();
@@ -120,19 +123,50 @@ void write_picture(const Picture& picture, int index, const Options& options, Re
   for (const fs::path& name : render.outputs) {
     if (is_animated(name, options)) continue;
     const fs::path file = picture_file(name, index, options);
-    OutputFile output = ending_of(file) == ".exr" ? exr_output(picture, render.camera, call, file)
-                                                  : image_output(grounded ? over : picture.composite, file);
+    OutputFile output =
+        ending_of(file) == ".exr" ? exr_output(picture, camera, call, file) : image_output(grounded ? over : picture.composite, file);
     files.push_back({file, [write = std::move(output.write)](const fs::path& temporary) {
                        if (interrupted()) throw Cancelled{};
                        write(temporary);
                      }});
-    render.files.push_back(file.string());
   }
   if (plays(render, options)) render.frames.push_back(encode_png(grounded ? over : picture.composite));
   // A layer file and the picture beside it show the same, or are both those of an earlier call.
   write_together(files);
-  render.timings.write_ms += since_ms(start);
+  return since_ms(start);
 }
+
+/// The picture before is written while the next one is traced.
+class Writer {
+ public:
+  Writer(const Options& options, Render& render) : options_(options), render_(render) {}
+  ~Writer() {
+    if (under_way_.valid()) under_way_.wait();
+  }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  void write(Picture picture, int index) {
+    finish();
+    for (const fs::path& name : render_.outputs)
+      if (!is_animated(name, options_)) render_.files.push_back(picture_file(name, index, options_).string());
+    if (pictures_of(options_) == 1) {
+      render_.timings.write_ms += write_picture(picture, render_.camera, index, options_, render_);
+      return;
+    }
+    under_way_ = std::async(std::launch::async, [this, kept = std::make_shared<const Picture>(std::move(picture)), camera = render_.camera,
+                                                 index] { return write_picture(*kept, camera, index, options_, render_); });
+  }
+  /// Throws what writing threw.
+  void finish() {
+    if (under_way_.valid()) render_.timings.write_ms += under_way_.get();
+  }
+
+ private:
+  const Options& options_;
+  Render& render_;
+  std::future<double> under_way_{};
+};
 
 // Of many pictures the first few stand for the rest.
 void warn_of_empty(const std::vector<std::string>& reasons, int index, const Options& options, Render& render) {
@@ -148,11 +182,12 @@ void warn_of_empty(const std::vector<std::string>& reasons, int index, const Opt
   render.warnings.insert(render.warnings.end(), warnings.begin(), warnings.end());
 }
 
-void draw_one(const SceneModel& model, int index, const Options& options, ProgressBar& bar, FrameHistory& history, Render& render) {
+void draw_one(const SceneModel& model, int index, const Options& options, ProgressBar& bar, FrameHistory& history, Writer& writer,
+              Render& render) {
   ExecutionSettings how = execution_settings(options.spec.threads);
   const int pictures = pictures_of(options);
   how.progress = bar.stage(pictures == 1 ? "tracing" : fmt::format("tracing {} {} of {}", name_of_one(options), index + 1, pictures));
-  const Picture picture = draw_picture(render.input.scene, model, render.camera, render.picture, how, render.flicker ? &history : nullptr);
+  Picture picture = draw_picture(render.input.scene, model, render.camera, render.picture, how, render.flicker ? &history : nullptr);
   if (render.flicker) watch_frame(picture, history, render.camera, how, *render.flicker);
   const HitCounts seen = count_hits(picture.gbuffer);
   render.timings.trace_ms += picture.trace_ms;
@@ -162,7 +197,7 @@ void draw_one(const SceneModel& model, int index, const Options& options, Progre
   render.counts.out_of_steps += seen.out_of_steps;
   render.notes.insert(render.notes.end(), picture.notes.begin(), picture.notes.end());
   warn_of_empty(why_empty(render.input.scene, model, render.camera, seen), index, options, render);
-  write_picture(picture, index, options, render);
+  writer.write(std::move(picture), index);
 }
 
 // All frames have one size: the first camera frames the object as it goes round.
@@ -325,11 +360,13 @@ int run(const Options& given) {
   const glm::dvec3 up = camera_settings(options.spec.camera, render.input).up;
   const Box box = bounds(render.input.scene);
   FrameHistory history;
+  Writer writer(options, render);
   for (int k = 0; k < pictures_of(options); ++k) {
     render.camera = cameras[static_cast<size_t>(k)];
     render.cameras.push_back(camera_json(render.camera, up, box));
-    draw_one(model, k, options, bar, history, render);
+    draw_one(model, k, options, bar, history, writer, render);
   }
+  writer.finish();
   write_animation(options, render);
   bar.clear();
   if (render.flicker && !options.quiet) print_note(flicker_sentence(*render.flicker));

@@ -122,6 +122,7 @@ PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, i
   load.pixels = static_cast<double>(camera.width_px) * camera.height_px;
   load.bytes_per_pixel = kCompositeBytes + layer_bytes;
   if (picture.samples > 1) load.bytes_per_pixel += kSumBytes + layer_bytes;
+  if (views > 1) load.bytes_per_pixel += kCompositeBytes + layer_bytes;  // what is written while the next one is traced
   if (writes_layers) load.bytes_per_pixel += kExrBytes;
   if (picture.mattes) load.bytes_per_pixel += kMatteBytes;
   load.pictures = static_cast<double>(views) * picture.samples;

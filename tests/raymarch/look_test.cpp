@@ -119,7 +119,9 @@ TEST(StrokeForms, DashesFillTheStrokeAndBeginAndEndIt) {
     const auto n = static_cast<double>(dashes.size());
     EXPECT_NEAR(sum / whole, n / (n + 0.8 * (n - 1.0)), 1e-9);
     // As near to the length asked for as a whole number of dashes allows.
-    if (whole > 3.0 * dash_px) EXPECT_NEAR(length_of(dashes.front()) / dash_px, 1.0, 0.35);
+    if (whole > 3.0 * dash_px) {
+      EXPECT_NEAR(length_of(dashes.front()) / dash_px, 1.0, 0.35);
+    }
   }
 }
 

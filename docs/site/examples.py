@@ -9,6 +9,9 @@ import re
 import shutil
 import subprocess
 
+# A tetrahedron.
+STL = "solid part\n" + "".join("facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {corner}\n" for corner in face) + "endloop\nendfacet\n" for face in (
+    ("0 0 0", "0 1 0", "1 0 0"), ("0 0 0", "1 0 0", "0 0 1"), ("0 0 0", "0 0 1", "0 1 0"), ("1 0 0", "0 1 0", "0 0 1"))) + "endsolid part\n"
 SCENE = '[[object]]\nname = "egg"\nshape = "ellipsoid"\nradii = [1.0, 0.7, 0.5]\n'
 
 
@@ -75,6 +78,7 @@ def make_files(limn, repository, folder):
     make("contours", "machined_part", "--size", "640x360", "-o", "drawing.svg")
     make("render", "model.obj", "--eye", "3,2,4", "--size", "320x240", "--method", "contours", "--background", "white", "-o", "screenshot.png")
     (folder / "part.toml").write_text(SCENE)
+    (folder / "part.stl").write_text(STL)
     shutil.copy(repository / "samples" / "scenes" / "still_life.toml", folder)
     shutil.copy(repository / "samples" / "stability" / "cases" / "cube_faces.toml", folder / "my_case.toml")
 

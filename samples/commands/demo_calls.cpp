@@ -64,7 +64,7 @@ std::vector<DemoCall> demo_calls(const std::string& size) {
   for (const BorderMethod& method : border_methods()) calls.push_back(method_call(method.about.name));
   calls.push_back({"Outline methods",
                    "all methods on all models",
-                   {"compare", kDrawn, "--methods", "all", "--voxels", "128", "--size", "960x720"},
+                   {"compare", kDrawn, "--methods", "all", "--voxels", "64", "--size", "640x480"},
                    "compare-methods",
                    "compare-methods/sheet.png",
                    "compare-methods/report.html"});

@@ -33,7 +33,7 @@ def check(fine, text):
 
 def takes_long(call):
     words = call.words
-    return (call.command in ("study", "merge", "demo", "plan") or "all" in words or "--frames" in words or "--tolerance" in words
+    return (call.command in ("study", "merge", "demo", "plan") or "all" in words or "--frames" in words or "--turntable" in words or "--tolerance" in words
             or (call.command in ("stability", "compare") and "--case" not in words))
 
 
@@ -51,7 +51,7 @@ def reduced(call):
     if call.command == "contours" and "--surface level_set" in text:
         text = replaced(text, "--voxels", "48")
     text = re.sub(r"--voxels (\d+)\b(?!\.)", lambda found: f"--voxels {min(int(found[1]), 64)}", text)
-    text = replaced(replaced(text, "--frames", "3"), "--turn", "1")
+    text = replaced(replaced(replaced(text, "--frames", "3"), "--turn", "1"), "--turntable", "3")
     if call.command == "compare" and "--voxels" not in text:
         text += " --voxels 48"
     if call.command == "study":

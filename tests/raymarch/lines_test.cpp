@@ -375,6 +375,60 @@ TEST(Lines, AMeshOfACubeIsAsTheField) {
   }
 }
 
+/// What the picture shows of the edge from a to b, by brute force: image points, and their length.
+struct ShownEdge {
+  std::vector<glm::dvec2> px{};
+  double length = 0.0;
+  bool from_outside_to_outside = false;
+};
+ShownEdge shown_edge(const Camera& camera, const glm::dvec3& a, const glm::dvec3& b) {
+  constexpr int kSteps = 4000;
+  ShownEdge edge;
+  bool before = false, first = false;
+  for (int step = 0; step <= kSteps; ++step) {
+    const glm::dvec3 image = project(camera, glm::mix(a, b, step / static_cast<double>(kSteps)));
+    const bool inside = image.z > 0.0 && image.x >= 0.0 && image.y >= 0.0 && image.x <= camera.width_px && image.y <= camera.height_px;
+    if (inside && before) edge.length += glm::distance(edge.px.back(), glm::dvec2(image));
+    if (inside) edge.px.emplace_back(image);
+    if (step == 0) first = inside;
+    before = inside;
+  }
+  edge.from_outside_to_outside = !first && !before && !edge.px.empty();
+  return edge;
+}
+
+// Across corners of the picture, and past the eye.
+TEST(Lines, EdgesThatEndOutsideOfThePictureAreCutByIt) {
+  std::mt19937 random(random_seed());
+  int across = 0;
+  for (int k = 0; k < 400; ++k) {
+    CameraSettings settings{.eye = glm::dvec3(0.0, 0.0, 5.0), .target = glm::dvec3(0.0), .width_px = 640, .height_px = 480};
+    if (k % 2 == 0) settings.projection = Projection::orthographic;
+    if (k % 2 == 0) settings.ortho_height = 3.0;
+    const Camera camera = resolve_camera(settings, {glm::dvec3(-3.0), glm::dvec3(3.0)});
+    Mesh triangle;
+    std::uniform_real_distribution<double> side(-4.0, 4.0), depth(-4.0, k % 4 == 1 ? 8.0 : 4.0);
+    for (int i = 0; i < 3; ++i) triangle.positions.emplace_back(side(random), side(random), depth(random));
+    triangle.face_sizes = {3};
+    triangle.corner_vertices = {0, 1, 2};
+    Scene scene;
+    scene.objects.push_back({.name = "triangle", .source = MeshSource{triangle}});
+    const std::vector<Polyline> found = drawn(lines_of(scene, camera), LineClass::boundary, true);
+    double length = 0.0, expected = 0.0, farthest = 0.0;
+    for (const Polyline& line : found)
+      for (size_t i = 0; i + 1 < line.size(); ++i) length += glm::distance(line[i], line[i + 1]);
+    for (size_t i = 0; i < 3; ++i) {
+      const ShownEdge edge = shown_edge(camera, triangle.positions[i], triangle.positions[(i + 1) % 3]);
+      expected += edge.length;
+      across += edge.from_outside_to_outside ? 1 : 0;
+      for (const glm::dvec2& p : edge.px) farthest = std::max(farthest, distance_to(found, p));
+    }
+    EXPECT_LT(farthest, 0.05) << "triangle " << k;
+    EXPECT_NEAR(length, expected, 0.02 * expected + 4.0) << "triangle " << k;
+  }
+  EXPECT_GT(across, 40);
+}
+
 TEST(Lines, ContoursOfLevelSetsConvergeWithOrderTwo) {
   const Field field = make_shape("ellipsoid", {{"radii", {1.0, 0.7, 0.85}}});
   CameraSettings settings;

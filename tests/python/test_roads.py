@@ -109,6 +109,14 @@ class Pictures(TestCase):
         with open(self.file("again.png"), "rb") as again:
             self.assertEqual(again.read(), picture._repr_png_())
 
+    def test_a_pictures_camera_can_be_given_back(self):
+        first = limn.render("teacup", camera=limn.Camera(eye=(4, 3, 5), fov=30), **MADE)
+        again = limn.render("teacup", camera=first.camera)
+        self.assertEqual(again.camera.size, first.camera.size)
+        numpy.testing.assert_allclose(again.camera.axes, first.camera.axes, atol=1e-12)
+        self.assertLess(numpy.count_nonzero(again.id != first.id), 3)
+        self.assertEqual(limn.render("teacup", camera=again.camera, size=(100, 75)).depth.shape, (75, 100))
+
     def test_views_are_those_of_the_command_line(self):
         self.program("render", "teacup", "--views", "3", *SIZE, "-o", self.file("view.exr"))
         for view in range(3):

@@ -15,6 +15,8 @@ enum class MetricSubject {
   motion,   ///< `moved` and `reference_moved`.
 };
 
+struct CurveFindings;  // raymarch/metric/curve_findings.h
+
 /// Everything a metric may read. Plain references and pointers; what its subject does not need may be empty or null.
 struct MetricInput {
   const Picture& picture;                ///< What is judged.
@@ -29,6 +31,8 @@ struct MetricInput {
   std::span<const Image<std::int32_t>> moved_before{};
   std::span<const Image<std::int32_t>> reference_moved_before{};  ///< The same of `reference_moved`.
   const SceneModel* model = nullptr;                              ///< What `curves` were measured on; `prediction` asks it for its normals.
+  /// What metrics of the same `curves` and `truth` leave for each other. Null: each finds it anew. Used by one metric at a time.
+  CurveFindings* findings = nullptr;
 };
 
 /// One number of a metric.

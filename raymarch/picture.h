@@ -2,18 +2,22 @@
 // From a scene model to a finished picture: G-buffer, border, composite.
 
 #include "raymarch/border.h"
+#include "raymarch/shading.h"
 
 namespace limn {
 
+struct Mattes;  // raymarch/mattes.h: which objects and materials cover each pixel, and by how much
+
 /// A finished picture and what it was made from.
 struct Picture {
-  GBuffer gbuffer{};                    ///< Of the pixel centres.
-  Image<float> border{};                ///< Ink coverage in [0, 1]: mean over the samples; all methods together.
-  Image<std::uint8_t> border_status{};  ///< Border::status of the methods at the pixel centres, the largest; empty where none has one.
-  Image<glm::vec4> composite{};         ///< Linear, premultiplied RGBA.
-  std::vector<std::string> notes{};     ///< Of the methods.
-  double trace_ms = 0.0,                ///< For all samples.
-      border_ms = 0.0;                  ///< For all methods and samples.
+  GBuffer gbuffer{};                       ///< Of the pixel centres.
+  Image<float> border{};                   ///< Ink coverage in [0, 1]: mean over the samples; all methods together.
+  Image<std::uint8_t> border_status{};     ///< Border::status of the methods at the pixel centres, the largest; empty where none has one.
+  Image<glm::vec4> composite{};            ///< Linear, premultiplied RGBA.
+  std::shared_ptr<const Mattes> mattes{};  ///< Null where PictureSettings::mattes is false.
+  std::vector<std::string> notes{};        ///< Of the methods.
+  double trace_ms = 0.0,                   ///< For all samples.
+      border_ms = 0.0;                     ///< For all methods and samples.
 };
 
 /// An outline method with its parameters.
@@ -27,11 +31,15 @@ struct PictureSettings {
   std::vector<MethodCall> methods{};      ///< Inks in order, the last on top.
   int samples = 1;                        ///< Per pixel, 1..1024: 1 is the centre; more follow the R2 sequence (Roberts 2018), centred.
   std::optional<glm::vec3> background{};  ///< Linear; unset: transparent.
+  ShadingSettings shading{};              ///< Of what is beneath the inks.
+  bool mattes = false;                    ///< Collects Picture::mattes from all samples.
   GBufferLayers layers{};                 ///< Of Picture::gbuffer. What the methods and the composite read is traced anyway.
 };
 
 /// What a composite with these methods reads: the shading's layers and the methods' inputs.
 GBufferLayers layers_read(std::span<const MethodCall> methods);
+/// The same with what the shading reads.
+GBufferLayers layers_read(const PictureSettings& settings);
 
 /// What one frame leaves to the next. Empty before the first.
 struct FrameHistory {
@@ -61,7 +69,8 @@ struct SampleInks {
 };
 /// Adds what the methods draw from one sample's G-buffer to the sums in `picture` (its own G-buffer stays as it is).
 /// Throws InputError where a method finds that it cannot run on the model.
-void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture, SampleInks* inks = nullptr);
+void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture, SampleInks* inks = nullptr,
+                const ShadingSettings& shading = {});
 /// Sums of `settings.samples` samples into means, over the background.
 void finish_samples(const PictureSettings& settings, Picture& picture);
 

@@ -2,19 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "sdf/camera_framing.h"
 #include "sdf/error.h"
+#include "sdf/framing.h"
 
 namespace limn {
 namespace {
 
-constexpr double margin = 0.06;
 constexpr int largest_side_px = 16384;
-constexpr double least_clearance = 0.1;  // of the box's radius, before its nearest corner: very wide views would stand on the corner
 const glm::dvec3 default_direction{0.6, 0.45, 0.75};  // from target to eye, for an up vector along y
 
 std::string text(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
@@ -53,6 +53,15 @@ void check(const CameraSettings& s) {
   }
 }
 
+void check(const FramingSettings& s) {
+  const auto refuse = [](const char* field, double value, const char* what, const char* expected) {
+    throw InputError({{}, field, fmt::format("{:.6g}", value), what, expected});
+  };
+  if (!std::isfinite(s.roll)) refuse("roll", s.roll, "not an angle", "a finite number of degrees");
+  if (!(s.zoom > 0.0 && std::isfinite(s.zoom))) refuse("zoom", s.zoom, "not a factor", "a finite number above 0");
+  if (s.margin && !(*s.margin >= 0.0 && *s.margin < 0.5)) refuse("margin", *s.margin, "out of range", "a share from 0 to below 0.5");
+}
+
 /// The rotation that brings unit `from` to unit `to` the short way; applied to v (Rodrigues).
 glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& from, const glm::dvec3& to) {
   const glm::dvec3 axis = glm::cross(from, to);
@@ -77,76 +86,18 @@ glm::dmat3 orientation(const glm::dvec3& backward, const glm::dvec3& up_given, b
   return {right, glm::cross(backward, right), backward};
 }
 
+/// The picture turned clockwise: the camera turns the other way.
+glm::dmat3 rolled(const glm::dmat3& axes, double roll) {
+  if (roll == 0.0) return axes;
+  const double c = std::cos(roll), s = std::sin(roll);
+  return {c * axes[0] + s * axes[1], c * axes[1] - s * axes[0], axes[2]};
+}
+
 /// What there is to frame: the bounds where they are finite, else the cube [-1, 1]^3 (planes, empty scenes).
 Box framed_box(const Box& bounds) {
   if (!bounds.finite() || !finite(bounds.center())) return {glm::dvec3(-1.0), glm::dvec3(1.0)};
   if (bounds.radius() > 0.0) return bounds;
   return dilate(bounds, std::max(1e-3, 1e-3 * glm::length(bounds.center())));
-}
-
-struct Frame {
-  glm::dvec3 eye;  // in camera axes: right, up, backward
-  double height = 0.0;
-};
-
-using Corners = std::array<glm::dvec3, 8>;
-
-Corners corners_in_axes(const Box& box, const glm::dmat3& world_from_camera) {
-  Corners corners;
-  for (size_t i = 0; i < 8; ++i) {
-    const glm::dvec3 p((i & 1) ? box.upper.x : box.lower.x, (i & 2) ? box.upper.y : box.lower.y, (i & 4) ? box.upper.z : box.lower.z);
-    corners[i] = glm::transpose(world_from_camera) * p;
-  }
-  return corners;
-}
-
-/// The position along `side` (0 right, 1 up) from which the corners reach equally far to both sides of the picture, seen from `depth`.
-double centered(const Corners& corners, int side, double depth) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const glm::dvec3& c : corners) {
-    low = std::min(low, c[side]);
-    high = std::max(high, c[side]);
-  }
-  for (int step = 0; step < 80; ++step) {
-    const double middle = 0.5 * (low + high);
-    double above = -std::numeric_limits<double>::infinity(), below = above;
-    for (const glm::dvec3& c : corners) {
-      above = std::max(above, (c[side] - middle) / (depth - c.z));
-      below = std::max(below, (middle - c[side]) / (depth - c.z));
-    }
-    (above > below ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
-/// The eye nearest to the corners from which all of them lie within the slopes (tan_x, tan_y) of the axis. Each side of the
-/// picture bounds the eye linearly, so the optimum is closed: the wider pair of opposite sides fixes the depth.
-/// With `axis` the line of sight is fixed to pass through that point.
-glm::dvec3 perspective_eye(const Corners& corners, double tan_x, double tan_y, const std::optional<glm::dvec3>& axis) {
-  const glm::dvec2 slope(tan_x, tan_y);
-  double depth = -std::numeric_limits<double>::infinity();
-  for (const glm::dvec3& c : corners) depth = std::max(depth, c.z + least_clearance * 0.5 * glm::length(corners[7] - corners[0]));
-  glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
-  for (const glm::dvec3& c : corners) {
-    low = glm::min(low, glm::dvec2(c) - slope * c.z);
-    high = glm::max(high, glm::dvec2(c) + slope * c.z);
-    if (!axis) continue;
-    const glm::dvec2 away = glm::abs(glm::dvec2(c) - glm::dvec2(*axis)) / slope;
-    depth = std::max(depth, c.z + std::max(away.x, away.y));
-  }
-  if (axis) return {glm::dvec2(*axis), depth};
-  depth = std::max({depth, (high.x - low.x) / (2.0 * tan_x), (high.y - low.y) / (2.0 * tan_y)});
-  return {centered(corners, 0, depth), centered(corners, 1, depth), depth};
-}
-
-Frame orthographic_frame(const Corners& corners, double aspect, const std::optional<glm::dvec3>& axis) {
-  Box box;
-  for (const glm::dvec3& c : corners) box = include(box, c);
-  const glm::dvec3 middle = axis ? *axis : box.center();
-  const glm::dvec3 half = glm::max(box.upper - middle, middle - box.lower);
-  const double height = 2.0 * std::max(half.y, half.x / aspect) / (1.0 - 2.0 * margin);
-  // The plane Z = 0 stands clear of the object, so that rays start outside it.
-  return {{middle.x, middle.y, box.upper.z + 0.5 * glm::length(box.size())}, height};
 }
 
 glm::dvec3 checked_backward(const glm::dvec3& eye, const glm::dvec3& target, const char* field) {
@@ -162,9 +113,11 @@ glm::dvec3 checked_backward(const glm::dvec3& eye, const glm::dvec3& target, con
 
 }  // namespace
 
-Camera resolve_camera(const CameraSettings& settings, const Box& bounds) {
+Camera resolve_camera(const CameraSettings& settings, const FramedSurface& surface, const FramingSettings& framing) {
   check(settings);
-  const Box box = framed_box(bounds);
+  check(framing);
+  const Box box = framed_box(surface.bounds);
+  const bool by_surface = surface.farthest && surface.bounds.finite() && surface.bounds.radius() > 0.0;
   const double aspect = static_cast<double>(settings.width_px) / settings.height_px;
   const double tan_half = std::tan(0.5 * settings.vertical_fov);
 
@@ -174,29 +127,42 @@ Camera resolve_camera(const CameraSettings& settings, const Box& bounds) {
   } else if (settings.direction) {
     backward = glm::normalize(*settings.direction);
   } else {
-    backward = glm::normalize(turned(default_direction, {0, 1, 0}, glm::normalize(settings.up)));
+    backward = default_view_direction(settings.up);
   }
   Camera camera;
   camera.projection = settings.projection;
   camera.width_px = settings.width_px;
   camera.height_px = settings.height_px;
-  camera.world_from_camera = orientation(backward, settings.up, settings.eye.has_value());
+  camera.world_from_camera = rolled(orientation(backward, settings.up, settings.eye.has_value()), framing.roll);
 
-  const glm::dmat3 camera_from_world = glm::transpose(camera.world_from_camera);
-  const Corners corners = corners_in_axes(box, camera.world_from_camera);
-  std::optional<glm::dvec3> axis;
-  if (settings.target || settings.eye) axis = camera_from_world * settings.target.value_or(box.center());
-  if (settings.projection == Projection::perspective) {
-    const double fill = 1.0 - 2.0 * margin;
-    camera.focal_px = 0.5 * settings.height_px / tan_half;
-    camera.eye =
-        settings.eye ? *settings.eye : camera.world_from_camera * perspective_eye(corners, fill * aspect * tan_half, fill * tan_half, axis);
-  } else {
-    const Frame frame = orthographic_frame(corners, aspect, axis);
-    camera.pixels_per_unit = settings.height_px / settings.ortho_height.value_or(frame.height);
-    camera.eye = settings.eye ? *settings.eye : camera.world_from_camera * frame.eye;
-  }
+  const double fill = 1.0 - 2.0 * framing.margin.value_or(by_surface ? kMargin : kBoxMargin);
+  FrameLimits limits{settings.projection, glm::dvec2(fill * aspect * tan_half, fill * tan_half), aspect, fill, box.radius(), std::nullopt};
+  if (settings.target || settings.eye) limits.sight = glm::transpose(camera.world_from_camera) * settings.target.value_or(box.center());
+  const bool open = !settings.eye || (settings.projection == Projection::orthographic && !settings.ortho_height);
+  const FramedPlace place = !open        ? FramedPlace{}
+                            : by_surface ? place_for(surface, camera.world_from_camera, limits)
+                                         : place_for(box, camera.world_from_camera, limits);
+  camera.eye = settings.eye ? *settings.eye : camera.world_from_camera * place.eye;
+  if (settings.projection == Projection::perspective)
+    camera.focal_px = 0.5 * settings.height_px / tan_half * framing.zoom;
+  else
+    camera.pixels_per_unit = settings.height_px / settings.ortho_height.value_or(place.height) * framing.zoom;
   return camera;
+}
+
+Camera resolve_camera(const CameraSettings& settings, const Box& bounds) { return resolve_camera(settings, FramedSurface{bounds, {}}); }
+
+glm::dvec3 default_view_direction(const glm::dvec3& up) { return glm::normalize(turned(default_direction, {0, 1, 0}, glm::normalize(up))); }
+
+ViewAngles angles_of(const glm::dvec3& direction, const glm::dvec3& up) {
+  const glm::dvec3 d = turned(glm::normalize(direction), glm::normalize(up), {0, 1, 0});
+  return {std::atan2(d.x, d.z), std::asin(std::clamp(d.y, -1.0, 1.0))};
+}
+
+glm::dvec3 direction_at(const ViewAngles& angles, const glm::dvec3& up) {
+  const double ring = std::cos(angles.elevation);
+  const glm::dvec3 d(ring * std::sin(angles.azimuth), std::sin(angles.elevation), ring * std::cos(angles.azimuth));
+  return turned(d, {0, 1, 0}, glm::normalize(up));
 }
 
 CameraRay camera_ray(const Camera& camera, double x_px, double y_px) {

@@ -4,6 +4,7 @@
 #include <nanovdb/NanoVDB.h>
 #include <nanovdb/util/GridHandle.h>
 
+#include <algorithm>
 #include <array>
 
 #include "sdf/level_set.h"
@@ -38,13 +39,34 @@ inline CellPoint cell_point(const glm::dvec3& index_point) {
   return {nanovdb::Coord(static_cast<int>(base.x), static_cast<int>(base.y), static_cast<int>(base.z)), p - base};
 }
 
+/// `count` node values along z from `first` on, leaf by leaf: what has none is one tile's, the same throughout.
+template <class Accessor>
+void row_values(const Accessor& accessor, const nanovdb::Coord& first, int count, double* values) {
+  using Leaf = nanovdb::FloatGrid::TreeType::LeafNodeType;
+  constexpr int kSide = static_cast<int>(Leaf::DIM);
+  for (int k = 0; k < count;) {
+    const nanovdb::Coord at(first[0], first[1], first[2] + k);
+    const int end = std::min(count, k + kSide - (at[2] & (kSide - 1)));
+    if (const Leaf* leaf = accessor.probeLeaf(at)) {
+      const float* from = leaf->data()->mValues + Leaf::CoordToOffset(at);
+      while (k < end) values[k++] = static_cast<double>(*from++);
+    } else {
+      const auto tile = static_cast<double>(accessor.getValue(at));
+      while (k < end) values[k++] = tile;
+    }
+  }
+}
+
 /// The eight node values of a cell, numbered x + 2y + 4z.
 template <class Accessor>
 std::array<double, 8> cell_values(const Accessor& accessor, const nanovdb::Coord& node) {
   std::array<double, 8> values;
-  for (int corner = 0; corner < 8; ++corner)
-    values[static_cast<size_t>(corner)] =
-        static_cast<double>(accessor.getValue(node.offsetBy(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1)));
+  for (int row = 0; row < 4; ++row) {
+    double of_row[2];
+    row_values(accessor, node.offsetBy(row & 1, row >> 1, 0), 2, of_row);
+    values[static_cast<size_t>(row)] = of_row[0];
+    values[static_cast<size_t>(row) + 4] = of_row[1];
+  }
   return values;
 }
 

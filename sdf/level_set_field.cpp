@@ -16,8 +16,8 @@ namespace limn {
 namespace {
 
 constexpr int kBlock = 8;
-/// What a block costs while it is built: ours, OpenVDB's leaf and NanoVDB's.
-constexpr std::int64_t kBlockBytes = static_cast<std::int64_t>(sizeof(LevelSetBlock)) + 2200 + 2176;
+/// What a block costs while it is built: ours, and NanoVDB's leaf.
+constexpr std::int64_t kBlockBytes = static_cast<std::int64_t>(sizeof(LevelSetBlock)) + 2176;
 
 [[noreturn]] void refuse(const std::string& field, const std::string& value, const std::string& problem, const std::string& expected) {
   throw InputError({.file = {}, .field = field, .value = value, .problem = problem, .expected = expected});

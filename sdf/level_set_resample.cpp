@@ -21,8 +21,8 @@ namespace limn {
 namespace {
 
 constexpr int kBlock = 8;
-/// Of a block while it is built: ours, OpenVDB's leaf and NanoVDB's.
-constexpr double kBlockBytes = static_cast<double>(sizeof(LevelSetBlock)) + 2200.0 + 2176.0;
+/// Of a block while it is built: ours, and NanoVDB's leaf.
+constexpr double kBlockBytes = static_cast<double>(sizeof(LevelSetBlock)) + 2176.0;
 /// Points of each surface that the gap is looked for at.
 constexpr size_t kMostPoints = 150'000;
 /// Beyond this the patch's own side is not asked for, in voxels of the source: its sign there is that of the nodes.

@@ -7,6 +7,7 @@
 
 #include "raymarch/border.h"
 #include "raymarch/border/exact_coverage.h"
+#include "raymarch/border/stroke_forms.h"
 #include "raymarch/lines.h"
 
 namespace limn {
@@ -16,6 +17,8 @@ struct SharedLines {
   LineSettings settings{};
   ViewGraph graph{};
   bool facets = false;  ///< A mesh as it is is among them.
+  /// Coverage by a call's parameters: exact, so that it is the same for every sample of a pixel.
+  mutable std::vector<std::pair<std::string, Image<float>>> inks{};
 };
 
 namespace {
@@ -26,13 +29,26 @@ constexpr double kCrumb_px = 4.0;
 enum class WidthFrom { constant, depth, curvature };
 
 struct Settings {
-  double width_px, thin_px, threshold;
+  double width_px, thin_px, inner_px, threshold;
   WidthFrom from;
+  bool hidden;
+  double hidden_px, dash_px;
+  Wobble wobble;
   LineSettings lines;
 };
 
 Settings read_settings(const Parameters& parameters) {
-  Settings settings{parameters.number("width"), parameters.number("thin_width"), parameters.number("threshold"), WidthFrom::constant, {}};
+  Settings settings{
+      .width_px = parameters.number("width"),
+      .thin_px = parameters.number("thin_width"),
+      .inner_px = parameters.number("inner_width"),
+      .threshold = parameters.number("threshold"),
+      .from = WidthFrom::constant,
+      .hidden = parameters.flag("hidden"),
+      .hidden_px = parameters.number("hidden_width"),
+      .dash_px = parameters.number("dash"),
+      .wobble = {parameters.number("wobble"), parameters.number("wobble_length"), static_cast<std::uint64_t>(parameters.number("seed"))},
+      .lines = {}};
   settings.thin_px = std::min(settings.thin_px, settings.width_px);
   const std::string& from = parameters.choice("width_from");
   if (from == "depth") settings.from = WidthFrom::depth;
@@ -99,28 +115,51 @@ struct PenWidth {
   }
 };
 
+/// Edges of the surface itself are drawn thinner where somebody says so.
+bool is_inner(LineClass line_class) {
+  return line_class == LineClass::crease || line_class == LineClass::intersection || line_class == LineClass::material;
+}
+
+/// A chain that is drawn.
+struct DrawnChain {
+  const LineChain* chain;
+  size_t number;  ///< Of the graph's.
+  std::vector<LinePoint> points;
+};
+
+std::vector<DrawnChain> drawn_chains(const ViewGraph& graph, bool hidden) {
+  std::vector<DrawnChain> chains;
+  for (size_t i = 0; i < graph.chains.size(); ++i)
+    if ((graph.chains[i].invisibility != 0) == hidden) chains.push_back({&graph.chains[i], i, points_of(graph, graph.chains[i])});
+  return chains;
+}
+
+std::vector<StrokePoint> stroke_of(const DrawnChain& drawn, const Settings& settings, const PenWidth& pen) {
+  const bool inner = settings.inner_px > 0.0 && is_inner(drawn.chain->line_class);
+  std::vector<StrokePoint> stroke;
+  stroke.reserve(drawn.points.size());
+  for (const LinePoint& point : drawn.points)
+    stroke.push_back({point.px, inner ? settings.inner_px : settings.from == WidthFrom::constant ? settings.width_px : pen.at(point)});
+  return settings.wobble.px > 0.0 ? wobbling(stroke, drawn.chain->closed, settings.wobble, drawn.number) : stroke;
+}
+
 std::vector<Outline> outlines(const ViewGraph& graph, const Settings& settings, const Camera& camera) {
-  struct Chain {
-    std::vector<LinePoint> points;
-    bool closed;
-  };
-  std::vector<Chain> visible;
+  const std::vector<DrawnChain> visible = drawn_chains(graph, false);
   PenWidth pen{settings, camera, std::numeric_limits<double>::infinity(), 0.0};
-  for (const LineChain& chain : graph.chains) {
-    if (chain.invisibility != 0) continue;
-    visible.push_back({points_of(graph, chain), chain.closed});
-    for (const LinePoint& point : visible.back().points) {
+  for (const DrawnChain& drawn : visible) {
+    for (const LinePoint& point : drawn.points) {
       pen.nearest = std::min(pen.nearest, point.depth);
       pen.farthest = std::max(pen.farthest, point.depth);
     }
   }
   std::vector<Outline> result;
-  std::vector<StrokePoint> stroke;
-  for (const Chain& chain : visible) {
-    stroke.clear();
-    for (const LinePoint& point : chain.points)
-      stroke.push_back({point.px, settings.from == WidthFrom::constant ? settings.width_px : pen.at(point)});
-    result.push_back(outline_of(stroke, chain.closed, kArc_px));
+  for (const DrawnChain& drawn : visible) result.push_back(outline_of(stroke_of(drawn, settings, pen), drawn.chain->closed, kArc_px));
+  if (!settings.hidden) return result;
+  for (const DrawnChain& drawn : drawn_chains(graph, true)) {
+    std::vector<StrokePoint> stroke;
+    for (const LinePoint& point : drawn.points) stroke.push_back({point.px, settings.hidden_px});
+    for (const std::vector<StrokePoint>& dash : dashes_of(stroke, drawn.chain->closed, settings.dash_px))
+      result.push_back(outline_of(dash, false, kArc_px));
   }
   return result;
 }
@@ -154,14 +193,21 @@ void add_notes(const SharedLines& lines, std::vector<std::string>& notes) {
   for (const std::string& note : graph.notes) notes.push_back("contours: " + note);
 }
 
+const Image<float>& ink_of(const SharedLines& lines, const Settings& settings, const BorderInput& input, const std::string& call) {
+  for (const auto& [known, ink] : lines.inks)
+    if (known == call) return ink;
+  const int width = input.gbuffer.width, height = input.gbuffer.height;
+  const bool drawn = settings.width_px > 0.0 && !settings.lines.classes.empty();
+  Image<float> ink = drawn ? covered_by(outlines(lines.graph, settings, input.camera), width, height) : Image<float>(width, height, 0.0f);
+  return lines.inks.emplace_back(call, std::move(ink)).second;
+}
+
 Border draw(const BorderInput& input, const Parameters& parameters) {
   const Settings settings = read_settings(parameters);
   Border border;
   border.color = glm::vec3(parameters.vector3("color"));
   const auto lines = lines_of(input, settings.lines);
-  border.coverage = settings.width_px > 0.0 && !settings.lines.classes.empty()
-                        ? covered_by(outlines(lines->graph, settings, input.camera), input.gbuffer.width, input.gbuffer.height)
-                        : Image<float>(input.gbuffer.width, input.gbuffer.height, 0.0f);
+  border.coverage = ink_of(*lines, settings, input, parameters.text());
   add_notes(*lines, border.notes);
   return border;
 }
@@ -179,12 +225,22 @@ BorderMethod contours_method() {
        a_choice("width_from", {"constant", "depth", "curvature"})
            .help("the same everywhere; thick where near and thin where far; thick where the surface turns away slowly"),
        a_number("thin_width", 0.5).in(0.0, 64.0).unit("px").help("where the width varies: of the thinnest"),
+       a_number("inner_width", 0.0)
+           .in(0.0, 64.0)
+           .unit("px")
+           .help("of creases, intersections and material edges; 0: that of the other lines"),
        a_number("threshold", 0.2).in(0.0, 1.0).help("by curvature: the width is the distance at which N.V reaches this"),
        a_flag("contour", true).help("where N.V is 0"), a_flag("boundary", true).help("open edges"),
        a_flag("crease", true).help("where two normals of an object meet at an angle"),
        a_flag("intersection", true).help("where objects pass through each other"),
        a_flag("material", true).help("where materials of one object meet"),
        a_flag("smooth", false).help("of meshes: contours of the smooth surface between their vertices' normals, not edges of facets"),
+       a_flag("hidden", false).help("hidden lines too, dashed"),
+       a_number("hidden_width", 1.0).in(0.0, 64.0).unit("px").help("of hidden lines"),
+       a_number("dash", 5.0).in(0.5, 1000.0).unit("px").help("length of a hidden line's dashes; gaps are 0.8 times as long"),
+       a_number("wobble", 0.0).in(0.0, 16.0).unit("px").help("how far lines sway about their place, as a hand does; 0: not at all"),
+       a_number("wobble_length", 60.0).in(2.0, 10'000.0).unit("px").help("from one sway to the next"),
+       an_integer("seed", 1.0).in(0.0, 1e9).help("of the sway: another number sways otherwise"),
        a_number("crease_angle", 40.0).in(0.001, 179.999).unit("deg").help("of meshes: between the normals of two faces"),
        a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")},
       unsupported,

@@ -225,8 +225,6 @@ class Matcher {
   std::vector<size_t> run_of_{}, chosen_{};
 };
 
-bool is_inside(const CurveSample& sample, const Camera& camera) { return !within_picture({sample}, camera).empty(); }
-
 /// Sorted and merged.
 void merge(std::vector<std::pair<double, double>>& stretches) {
   std::sort(stretches.begin(), stretches.end());
@@ -251,15 +249,17 @@ std::vector<MeasuredSample> measured_samples(const Matcher& matcher, const Borde
   auto stretches = matcher.claimed();
   for (auto& of_curve : stretches) merge(of_curve);
   std::vector<MeasuredSample> result;
-  double along = 0.0;
+  double along = 0.0, round = 0.0;
   for (const CurveSample& sample : resample(measured, kind, kSpacing_px)) {
-    if (result.empty() || result.back().at.curve != sample.curve) along = -0.5 * sample.weight_px;
-    along += sample.weight_px;
     const BorderCurve& curve = measured.curves[sample.curve];
-    const double round = curve.closed ? length_px(curve) : 0.0;
+    if (result.empty() || result.back().at.curve != sample.curve) {
+      along = -0.5 * sample.weight_px;
+      round = curve.closed ? length_px(curve) : 0.0;
+    }
+    along += sample.weight_px;
     const auto& of_curve = stretches[sample.curve];
     const bool matched = holds(of_curve, along) || (curve.closed && (holds(of_curve, along + round) || holds(of_curve, along - round)));
-    result.push_back({sample, is_inside(sample, camera), matched});
+    result.push_back({sample, is_within_picture(sample.px, camera), matched});
   }
   return result;
 }
@@ -272,7 +272,7 @@ BorderMatch match_borders(const BorderCurves& truth, const BorderCurves& measure
   BorderMatch match;
   const std::vector<IllReason> ill = ill_places(truth, matcher.samples(), camera);
   for (size_t i = 0; i < matcher.samples().size(); ++i) {
-    MatchedSample sample{matcher.samples()[i], is_inside(matcher.samples()[i], camera), {}, 0, 0.0, ill[i]};
+    MatchedSample sample{matcher.samples()[i], is_within_picture(matcher.samples()[i].px, camera), {}, 0, 0.0, ill[i]};
     if (const MatchCandidate* partner = matcher.partner(i)) {
       sample.displacement_px = partner->displacement_px;
       sample.curve = partner->curve;

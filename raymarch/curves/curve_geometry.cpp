@@ -55,11 +55,12 @@ std::vector<CurveSample> resample(const BorderCurves& curves, std::optional<Curv
   return samples;
 }
 
+bool is_within_picture(const glm::dvec2& px, const Camera& camera, double margin_px) {
+  return px.x >= margin_px && px.y >= margin_px && px.x <= camera.width_px - margin_px && px.y <= camera.height_px - margin_px;
+}
+
 std::vector<CurveSample> within_picture(std::vector<CurveSample> samples, const Camera& camera, double margin_px) {
-  std::erase_if(samples, [&](const CurveSample& sample) {
-    return !(sample.px.x >= margin_px && sample.px.y >= margin_px && sample.px.x <= camera.width_px - margin_px &&
-             sample.px.y <= camera.height_px - margin_px);
-  });
+  std::erase_if(samples, [&](const CurveSample& sample) { return !is_within_picture(sample.px, camera, margin_px); });
   return samples;
 }
 
@@ -107,10 +108,13 @@ std::optional<NearestPoint> CurveIndex::nearest(const glm::dvec2& px, int object
     best = {distance, point, (segment.starts && s == 0.0) || (segment.ends && s == 1.0)};
   };
   const double x = std::floor((px.x - grid_.origin.x) / grid_.cell_px), y = std::floor((px.y - grid_.origin.y) / grid_.cell_px);
-  // Rings of cells about the point; whatever lies in ring k is at least (k - 1) cells away. From far outside, start where the grid does.
+  // Rings of cells about the point; whatever lies in ring k is at least (k - 1) cells and the way out of the point's own away (less what
+  // rounding may add). From far outside, start where the grid does.
+  const glm::dvec2 place = px - grid_.origin - grid_.cell_px * glm::dvec2(x, y);
+  const double way_out = std::min({place.x, place.y, grid_.cell_px - place.x, grid_.cell_px - place.y}) - 1e-6;
   const double outside = std::max({0.0, -x, -y, x - (grid_.columns - 1), y - (grid_.rows - 1)});
   const double furthest = std::max({std::abs(x), std::abs(y), std::abs(x - grid_.columns), std::abs(y - grid_.rows)}) + 1.0;
-  for (double ring = outside; ring <= furthest && (ring - 1.0) * grid_.cell_px <= best.distance_px; ring += 1.0) {
+  for (double ring = outside; ring <= furthest && (ring - 1.0) * grid_.cell_px + way_out <= best.distance_px; ring += 1.0) {
     const double x0 = x - ring, x1 = x + ring, y0 = y - ring, y1 = y + ring;
     for (double row = std::max(y0, 0.0); row <= std::min(y1, grid_.rows - 1.0); row += 1.0) {
       if (row == y0 || row == y1) {

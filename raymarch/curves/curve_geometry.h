@@ -23,8 +23,11 @@ struct CurveSample {
 /// Samples in the middles of pieces of equal length, about `step_px`, at least one a curve. `kind` empty: both kinds.
 std::vector<CurveSample> resample(const BorderCurves& curves, std::optional<CurveKind> kind, double step_px);
 
-/// Drops samples nearer than `margin_px` to the picture's sides or beyond them: there a measured border, which knows pixel centres
-/// only, has no partner for truth.
+/// False nearer than `margin_px` to the picture's sides or beyond them: there a measured border, which knows pixel centres only, has no
+/// partner for truth.
+bool is_within_picture(const glm::dvec2& px, const Camera& camera, double margin_px = 1.0);
+
+/// Drops the samples that are not.
 std::vector<CurveSample> within_picture(std::vector<CurveSample> samples, const Camera& camera, double margin_px = 1.0);
 
 struct NearestPoint {

@@ -26,13 +26,15 @@ double shift_px(const BorderPoint& point, const Camera& camera) {
 
 std::vector<IllReason> ill_places(const BorderCurves& truth, std::span<const CurveSample> samples, const Camera& camera) {
   const CurveIndex silhouettes(truth, CurveKind::silhouette), inner(truth, CurveKind::inner);
+  std::vector<double> lengths_px;
+  for (const BorderCurve& curve : truth.curves) lengths_px.push_back(length_px(curve));
   std::vector<IllReason> result;
   for (const CurveSample& sample : samples) {
     const CurveIndex& own = sample.kind == CurveKind::inner ? inner : silhouettes;
     IllReason reason = IllReason::none;
     if (own.nearest(sample.px, sample.object, kThin_px, -sample.outward)) reason = IllReason::thin;
     if (sample.kind == CurveKind::inner && shift_px(point_at(truth, sample), camera) > kIllShift_px) reason = IllReason::flat;
-    if (length_px(truth.curves[sample.curve]) < kBrief_px) reason = IllReason::brief;
+    if (lengths_px[sample.curve] < kBrief_px) reason = IllReason::brief;
     result.push_back(reason);
   }
   return result;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "raymarch/files/matte_layers.h"
 #include "raymarch/files/picture_module.h"
 #include "raymarch/files/png_file.h"
 #include "raymarch/files/srgb_bytes.h"
@@ -122,6 +123,10 @@ std::vector<Channel> channels_of(const Picture& picture) {
   return channels;
 }
 
+std::vector<MatteLayer> mattes_of(const Picture& picture) {
+  return picture.mattes != nullptr ? matte_layers(*picture.mattes) : std::vector<MatteLayer>();
+}
+
 /// EXR matrices multiply row vectors from the right: row after row, they hold what ours hold column after column.
 std::array<float, 16> row_after_row(const glm::dmat4& matrix) {
   std::array<float, 16> values;
@@ -129,7 +134,8 @@ std::array<float, 16> row_after_row(const glm::dmat4& matrix) {
   return values;
 }
 
-PictureHeader exr_header(const std::vector<Channel>& channels, const Picture& picture, const Camera& camera, const std::string& call) {
+PictureHeader exr_header(const std::vector<Channel>& channels, const Picture& picture, std::span<const MatteLayer> mattes,
+                         const Camera& camera, const std::string& call) {
   PictureHeader header{.width = picture.gbuffer.width, .height = picture.gbuffer.height, .alpha_channel = 3, .z_channel = 4};
   for (const Channel& channel : channels) {
     header.channels.push_back(channel.name);
@@ -143,6 +149,8 @@ PictureHeader exr_header(const std::vector<Channel>& channels, const Picture& pi
                        {"DateTime", kNoTime},
                        {"worldToCamera", row_after_row(camera_from_world_matrix(camera))},
                        {"worldToNDC", row_after_row(ndc_from_world_matrix(camera))}};
+  for (const MatteLayer& layer : mattes)
+    for (const auto& [name, value] : layer.header) header.attributes.push_back({name, value});
   return header;
 }
 
@@ -205,9 +213,12 @@ OutputFile exr_output(const Picture& picture, const Camera& camera, const std::s
   }
   return {file, [&picture, &camera, &call, file, layers](const fs::path& temporary) {
             std::vector<Channel> channels = channels_of(picture);
+            std::vector<MatteLayer> mattes = mattes_of(picture);
+            for (MatteLayer& layer : mattes)
+              for (auto& [name, values] : layer.channels) channels.push_back({name, PixelType::full, std::move(values)});
             for (const NamedLayer& layer : layers) add_layer(channels, layer);
             const std::vector<char> pixels = native_pixels(channels, picture.gbuffer.id.size());
-            save(temporary, file, exr_header(channels, picture, camera, call), pixels.data());
+            save(temporary, file, exr_header(channels, picture, mattes, camera, call), pixels.data());
           }};
 }
 

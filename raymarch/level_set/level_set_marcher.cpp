@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <mutex>
 #include <optional>
+#include <utility>
 
 #include "raymarch/level_set/trace.h"
 #include "raymarch/level_set/walk.h"
@@ -17,16 +19,28 @@ namespace {
 using Accessor = nanovdb::FloatGrid::AccessorType;
 
 struct State {
+  explicit State(LevelSet walked_grid) : level_set(std::move(walked_grid)) {}
   LevelSet level_set;
-  const GradientDescriptor* gradient;
-  WalkedGrid walked;
-  Affine grid_world_from_render;              ///< Into the world that the grid was made in, where gradients are asked for.
-  glm::dmat3 normal_from_grid;                ///< Grid's world gradients to render-space normals.
+  const GradientDescriptor* gradient = nullptr;
+  WalkedGrid walked{};
+  Affine grid_world_from_render{};            ///< Into the world that the grid was made in, where gradients are asked for.
+  glm::dmat3 normal_from_grid{1.0};           ///< Grid's world gradients to render-space normals.
   std::shared_ptr<const RayBricks> bricks{};  ///< Null where rays only walk the grid.
   BrickGradient brick_gradient = BrickGradient::central;
   std::vector<LoweredBlock> lowered{};            ///< Cells that take a lower gradient; none in a band that is whole.
   std::vector<std::uint8_t> lowered_in_bricks{};  ///< The same as BrickTrace has it.
+  // Of the grid's leaves, for rays that walk it: found when the first of them does, which in most calls none does.
+  mutable std::once_flag crossed_once{};
+  mutable CrossedLeaves crossed{};
 };
+
+/// Null where there are no bricks to know it from.
+const CrossedLeaves* crossed_of(const State& state) {
+  if (!state.bricks || state.bricks->groups.empty()) return nullptr;
+  std::call_once(state.crossed_once,
+                 [&] { state.crossed = crossed_leaves(*state.level_set.data().grid, state.bricks->groups.front().bounds); });
+  return &state.crossed;
+}
 
 /// A unit vector whatever the gradient is: a hit on a kink that cancels out falls back on the cell's own gradient, then on the ray.
 glm::dvec3 unit_normal(const State& state, const glm::dvec3& gradient, const glm::dvec3& point, const glm::dvec3& direction) {
@@ -54,11 +68,12 @@ struct Roots {
 
 Roots find_roots(const State& state, const Accessor& accessor, const RayBatch& rays, HitBatch& hits) {
   Roots roots;
+  const CrossedLeaves* const crossed = crossed_of(state);
   for (int i = 0; i < rays.count; ++i) {
     const glm::dvec3 origin(rays.origin(i)), direction(rays.direction(i));
     GridRoot root;
-    const HitStatus status =
-        walk_grid(state.walked, accessor, origin, direction, static_cast<double>(rays.t_min[i]), static_cast<double>(rays.t_max[i]), root);
+    const HitStatus status = walk_grid(state.walked, accessor, crossed, origin, direction, static_cast<double>(rays.t_min[i]),
+                                       static_cast<double>(rays.t_max[i]), root);
     if (status == HitStatus::miss) continue;
     hits.status[i] = status;
     if (status != HitStatus::hit) continue;
@@ -236,11 +251,11 @@ Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_ob
     walked.lower = glm::ivec3(glm::floor(cells.lower));
     walked.upper = glm::ivec3(glm::ceil(cells.upper));
   }
-  auto state = std::make_shared<State>(State{.level_set = level_set,
-                                             .gradient = &gradient,
-                                             .walked = walked,
-                                             .grid_world_from_render = object_from_render,
-                                             .normal_from_grid = glm::transpose(object_from_world.linear)});
+  auto state = std::make_shared<State>(level_set);
+  state->gradient = &gradient;
+  state->walked = walked;
+  state->grid_world_from_render = object_from_render;
+  state->normal_from_grid = glm::transpose(object_from_world.linear);
   if (level.width.zero()) state->lowered = lowered_cells(level_set, gradient);
   const std::optional<BrickGradient> packed = brick_gradient(gradient);
   if (level.width.zero() && packed) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "raymarch/level_set/bricks.h"
 #include "raymarch/level_set/level_set_marcher.h"
 
 namespace limn {
@@ -82,8 +83,9 @@ std::array<double, 4> cubic_along(const std::array<double, 8>& v, const glm::dve
 /// Walks one ray through the tree.
 class Walk {
  public:
-  Walk(const WalkedGrid& grid, const Accessor& accessor, const glm::dvec3& origin, const glm::dvec3& direction, double t_min, double t_max)
-      : grid_(grid), accessor_(accessor), t_(t_min), t_max_(t_max) {
+  Walk(const WalkedGrid& grid, const Accessor& accessor, const CrossedLeaves* crossed, const glm::dvec3& origin,
+       const glm::dvec3& direction, double t_min, double t_max)
+      : grid_(grid), accessor_(accessor), crossed_(crossed), t_(t_min), t_max_(t_max) {
     ray_.origin = grid.index_from_render.point(origin);
     ray_.direction = grid.index_from_render.vector(direction);
     ray_.inverse = 1.0 / ray_.direction;
@@ -98,11 +100,11 @@ class Walk {
       // getDim takes a ray that it does not look at.
       const int size = leaf ? Leaf::DIM : static_cast<int>(accessor_.getDim(at, 0));
       const Block block{{cell_.x & ~(size - 1), cell_.y & ~(size - 1), cell_.z & ~(size - 1)}, size};
-      if (leaf) {
-        const HitStatus status = walk_cells(block, root);
+      if (leaf && !passes_leaf(*leaf)) {
+        const HitStatus status = walk_cells(block, *leaf, root);
         if (status != HitStatus::miss) return status;
         if (t_ >= t_max_) break;
-      } else {
+      } else if (!leaf) {
         known_ = false;
       }
       if (!leave(block)) return HitStatus::miss;
@@ -147,11 +149,48 @@ class Walk {
     return cell_[exit.axis] >= grid_.lower[exit.axis];
   }
 
-  HitStatus walk_cells(const Block& leaf, GridRoot& root) {
+  /// True where nothing of the leaf need be looked at. Else finds what bounds the surface in it.
+  bool passes_leaf(const Leaf& leaf) {
+    bound_ = nullptr;
+    if (crossed_ == nullptr) return false;
+    const std::int32_t brick = crossed_->brick_of_leaf[static_cast<size_t>(&leaf - crossed_->first_leaf)];
+    if (brick < 0) return is_on_side(leaf);
+    bound_ = &crossed_->bounds[static_cast<size_t>(brick)];
+    return false;
+  }
+
+  /// Of a cell that the surface does not cross: all its values have the sign of its first node's. False where the ray comes from the other
+  /// side: then rounding has put a root on neither side of the cell's face.
+  bool is_on_side(const Leaf& leaf) {
+    const bool inside = leaf.data()->mValues[Leaf::CoordToOffset({cell_.x, cell_.y, cell_.z})] < 0.0f;
+    if (!known_) inside_ = inside;
+    known_ = true;
+    return inside == inside_;
+  }
+
+  /// True where the ray meets no surface in the cell, t_ to t1: beside the crossed cells, or, where its side is known, beside the slab that
+  /// holds the surface. Bricks' values are rounded to steps, so that their slab is widened by some.
+  bool passes_cell(const Leaf& leaf, double t1) {
+    if (bound_ == nullptr) return false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int place = cell_[axis] - bound_->origin[axis];
+      if (place < bound_->lower[axis] || place >= bound_->upper[axis]) return is_on_side(leaf);
+    }
+    if (!known_) return false;
+    constexpr double kSteps = 16.0;
+    const glm::dvec3 normal(bound_->normal[0], bound_->normal[1], bound_->normal[2]);
+    const glm::dvec3 origin(bound_->origin[0], bound_->origin[1], bound_->origin[2]);
+    const double slab = double{bound_->slab} + kSteps, offset = double{bound_->offset};
+    const double at_t = glm::dot(normal, ray_.at(t_) - origin) - offset, at_t1 = glm::dot(normal, ray_.at(t1) - origin) - offset;
+    return inside_ ? at_t < -slab && at_t1 < -slab : at_t > slab && at_t1 > slab;
+  }
+
+  HitStatus walk_cells(const Block& leaf, const Leaf& node, GridRoot& root) {
     while (true) {
       const Block cell{cell_, 1};
       const Exit exit = exit_of(ray_, cell);
-      if (hit_in_cell(std::max(t_, std::min(exit.t, t_max_)), root)) return root.t < t_max_ ? HitStatus::hit : HitStatus::miss;
+      const double until = std::max(t_, std::min(exit.t, t_max_));
+      if (!passes_cell(node, until) && hit_in_cell(until, root)) return root.t < t_max_ ? HitStatus::hit : HitStatus::miss;
       t_ = std::max(t_, exit.t);
       if (t_ >= t_max_) return HitStatus::miss;
       glm::ivec3 next = cell_;
@@ -199,6 +238,8 @@ class Walk {
 
   const WalkedGrid& grid_;
   const Accessor& accessor_;
+  const CrossedLeaves* crossed_;
+  const SurfaceBound* bound_ = nullptr;  ///< Of the leaf that is walked; null: its cells are all looked at.
   IndexRay ray_;
   double t_, t_max_;
   glm::ivec3 cell_{0};
@@ -209,9 +250,22 @@ class Walk {
 
 }  // namespace
 
-HitStatus walk_grid(const WalkedGrid& grid, const Accessor& accessor, const glm::dvec3& origin, const glm::dvec3& direction, double t_min,
-                    double t_max, GridRoot& root) {
-  return Walk(grid, accessor, origin, direction, t_min, t_max).run(root);
+CrossedLeaves crossed_leaves(const nanovdb::FloatGrid& grid, std::span<const SurfaceBound> bounds) {
+  CrossedLeaves crossed;
+  crossed.bounds = bounds;
+  crossed.first_leaf = grid.tree().getFirstLeaf();
+  crossed.brick_of_leaf.assign(grid.tree().nodeCount(0), -1);
+  const Accessor accessor = grid.getAccessor();
+  for (size_t i = 0; i < bounds.size(); ++i) {
+    const Leaf* leaf = accessor.probeLeaf({bounds[i].origin[0], bounds[i].origin[1], bounds[i].origin[2]});
+    if (leaf != nullptr) crossed.brick_of_leaf[static_cast<size_t>(leaf - crossed.first_leaf)] = static_cast<std::int32_t>(i);
+  }
+  return crossed;
+}
+
+HitStatus walk_grid(const WalkedGrid& grid, const Accessor& accessor, const CrossedLeaves* crossed, const glm::dvec3& origin,
+                    const glm::dvec3& direction, double t_min, double t_max, GridRoot& root) {
+  return Walk(grid, accessor, crossed, origin, direction, t_min, t_max).run(root);
 }
 
 double interpolated(const Accessor& accessor, const glm::dvec3& place) {

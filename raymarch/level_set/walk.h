@@ -7,6 +7,17 @@
 
 namespace limn {
 
+struct SurfaceBound;  // raymarch/level_set/bricks.h
+
+/// Which leaves the surface crosses, and where: what lies beside it is walked over without a look at its values.
+struct CrossedLeaves {
+  const nanovdb::FloatGrid::TreeType::LeafNodeType* first_leaf = nullptr;
+  std::vector<std::int32_t> brick_of_leaf{};  ///< In the tree's order; -1: the surface does not cross it.
+  std::span<const SurfaceBound> bounds{};     ///< Of bricks.
+};
+/// `bounds`: of all crossed bricks of the grid. What they lie in must stay.
+CrossedLeaves crossed_leaves(const nanovdb::FloatGrid& grid, std::span<const SurfaceBound> bounds);
+
 /// Where a grid lies, and which level of it is looked for.
 struct WalkedGrid {
   Affine index_from_render, render_from_index;
@@ -22,9 +33,10 @@ struct GridRoot {
   bool from_inside = false;  ///< The value is below zero before the root.
 };
 
-/// The first change of sign along origin + t * direction (render space), t_min <= t < t_max.
-HitStatus walk_grid(const WalkedGrid& grid, const nanovdb::FloatGrid::AccessorType& accessor, const glm::dvec3& origin,
-                    const glm::dvec3& direction, double t_min, double t_max, GridRoot& root);
+/// The first change of sign along origin + t * direction (render space), t_min <= t < t_max. `crossed` spares work and changes nothing; of
+/// the grid itself, not of another level of it. May be null.
+HitStatus walk_grid(const WalkedGrid& grid, const nanovdb::FloatGrid::AccessorType& accessor, const CrossedLeaves* crossed,
+                    const glm::dvec3& origin, const glm::dvec3& direction, double t_min, double t_max, GridRoot& root);
 
 /// The trilinear interpolant at a place, index coordinates.
 double interpolated(const nanovdb::FloatGrid::AccessorType& accessor, const glm::dvec3& place);

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raymarch/curves/border_match.h"
-#include "raymarch/metric.h"
+#include "raymarch/metric/curve_findings.h"
 #include "sdf/quantile.h"
 
 namespace limn {
@@ -51,16 +50,16 @@ std::vector<MetricValue> summarise(const std::vector<Displacement>& matched, con
           {name + "_ill", shares.ill, ""}};
 }
 
-Shares shares_of(const BorderMatch& match) {
+Shares shares_of(const BorderMatch& match, CurveKind kind) {
   double length = 0.0, missing = 0.0, ill = 0.0, measured = 0.0, unmatched = 0.0;
   for (const MatchedSample& sample : match.truth) {
-    if (!sample.inside) continue;
+    if (!sample.inside || sample.at.kind != kind) continue;
     length += sample.at.weight_px;
     if (!sample.displacement_px) missing += sample.at.weight_px;
     if (sample.ill != IllReason::none) ill += sample.at.weight_px;
   }
   for (const MeasuredSample& sample : match.measured) {
-    if (!sample.inside) continue;
+    if (!sample.inside || sample.at.kind != kind) continue;
     measured += sample.at.weight_px;
     if (!sample.matched) unmatched += sample.at.weight_px;
   }
@@ -72,12 +71,14 @@ Shares shares_of(const BorderMatch& match) {
 
 std::vector<MetricValue> measure(const MetricInput& input, CurveKind kind, const std::string& name) {
   if (input.curves == nullptr || input.truth == nullptr) return summarise({}, {}, name);
-  const BorderMatch match = match_borders(input.truth->curves, *input.curves, kind, input.camera);
+  CurveFindings own;
+  const BorderMatch& match = find_match(input, findings_of(input, own));
   std::vector<Displacement> matched;
   for (const MatchedSample& sample : match.truth) {
-    if (sample.inside && sample.displacement_px && sample.ill == IllReason::none) matched.push_back({*sample.displacement_px, &sample.at});
+    const bool counts = sample.at.kind == kind && sample.inside && sample.ill == IllReason::none;
+    if (counts && sample.displacement_px) matched.push_back({*sample.displacement_px, &sample.at});
   }
-  return summarise(matched, shares_of(match), name);
+  return summarise(matched, shares_of(match, kind), name);
 }
 
 std::vector<MetricValue> measure_silhouette(const MetricInput& input) {

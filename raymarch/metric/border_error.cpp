@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "raymarch/curves/border_bands.h"
-#include "raymarch/curves/border_match.h"
-#include "raymarch/metric.h"
+#include "raymarch/metric/curve_findings.h"
 #include "sdf/quantile.h"
 
 namespace limn {
@@ -48,9 +47,8 @@ void add_true(const MatchedSample& sample, double error, Errors& errors) {
   if (!(moved <= errors.largest)) errors.largest = moved, errors.largest_at = sample.at.px;
 }
 
-Errors errors_of(const BorderCurves& truth, const BorderCurves& measured, const Camera& camera) {
+Errors errors_of(const BorderCurves& truth, const BorderCurves& measured, const BorderMatch& match, const Camera& camera) {
   const double reach = search_reach_px(camera);
-  const BorderMatch match = match_borders(truth, measured, {}, camera);
   const BorderBands in_truth(truth), in_model(measured);
   Errors errors;
   for (const MatchedSample& sample : match.truth) {
@@ -104,7 +102,9 @@ std::vector<MetricValue> values_of(const Errors& errors) {
 
 std::vector<MetricValue> measure(const MetricInput& input) {
   if (input.curves == nullptr || input.truth == nullptr) return values_of({});
-  return values_of(errors_of(input.truth->curves, *input.curves, input.camera));
+  CurveFindings own;
+  const BorderMatch& match = find_match(input, findings_of(input, own));
+  return values_of(errors_of(input.truth->curves, *input.curves, match, input.camera));
 }
 
 }  // namespace

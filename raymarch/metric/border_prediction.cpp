@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "raymarch/border/contour_distance.h"
-#include "raymarch/curves/border_match.h"
 #include "raymarch/curves/border_width.h"
 #include "raymarch/metric/solved_shift.h"
 
@@ -70,9 +70,10 @@ Moments moments(const std::vector<Pair>& pairs) {
 }
 
 /// Of one kind of true border, within the picture.
-std::vector<MatchedSample> matched_samples(const BorderTruth& truth, const BorderCurves& curves, CurveKind kind, const Camera& camera) {
-  std::vector<MatchedSample> samples = match_borders(truth.curves, curves, kind, camera).truth;
-  std::erase_if(samples, [](const MatchedSample& sample) { return !sample.inside; });
+std::vector<MatchedSample> matched_samples(const BorderMatch& match, CurveKind kind) {
+  std::vector<MatchedSample> samples;
+  std::copy_if(match.truth.begin(), match.truth.end(), std::back_inserter(samples),
+               [&](const MatchedSample& sample) { return sample.inside && sample.at.kind == kind; });
   return samples;
 }
 
@@ -145,8 +146,8 @@ void count_faults(const std::vector<MatchedSample>& samples, const Lines& across
 }
 
 DisplacementPrediction predict_displacement(const SceneModel& model, const Camera& camera, const BorderTruth& truth,
-                                            const BorderCurves& curves) {
-  const std::vector<MatchedSample> samples = matched_samples(truth, curves, CurveKind::inner, camera);
+                                            const BorderMatch& match) {
+  const std::vector<MatchedSample> samples = matched_samples(match, CurveKind::inner);
   const Lines across = lines_across(samples, truth.curves, camera);
   const std::vector<SolvedShift> shifts = solve_shifts(model, camera, across.lines, search_reach_px(camera));
   std::vector<Pair> pairs;
@@ -213,8 +214,8 @@ double threshold_of(const BorderTruth& truth, const Camera& camera) {
   return kNothing;
 }
 
-WidthPrediction predict_width(const Camera& camera, const BorderTruth& truth, const BorderCurves& curves) {
-  const std::vector<MatchedSample> samples = matched_samples(truth, curves, CurveKind::silhouette, camera);
+WidthPrediction predict_width(const Camera& camera, const BorderTruth& truth, const BorderCurves& curves, const BorderMatch& match) {
+  const std::vector<MatchedSample> samples = matched_samples(match, CurveKind::silhouette);
   const CurveIndex inner(curves, CurveKind::inner, kContinue_px), silhouettes(curves, CurveKind::silhouette);
   const double threshold = threshold_of(truth, camera);
   std::vector<Pair> pairs;
@@ -251,7 +252,12 @@ double displacement_per_radian(const Camera& camera, const BorderCurves& truth, 
 }
 
 BorderPrediction predict_border(const SceneModel& model, const Camera& camera, const BorderTruth& truth, const BorderCurves& curves) {
-  return {predict_displacement(model, camera, truth, curves), predict_width(camera, truth, curves)};
+  return predict_border(model, camera, truth, curves, match_borders(truth.curves, curves, {}, camera));
+}
+
+BorderPrediction predict_border(const SceneModel& model, const Camera& camera, const BorderTruth& truth, const BorderCurves& curves,
+                                const BorderMatch& match) {
+  return {predict_displacement(model, camera, truth, match), predict_width(camera, truth, curves, match)};
 }
 
 }  // namespace limn

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "raymarch/curves/curve_geometry.h"
+#include "raymarch/curves/border_match.h"
 #include "raymarch/truth.h"
 
 namespace limn {
@@ -58,5 +58,8 @@ double displacement_per_radian(const Camera& camera, const BorderCurves& truth, 
 /// Compares with what was measured: `curves` of `model` (raymarch/measured_border.h). The model is asked for its normals at the truth's
 /// image points. `truth` must know positions, normals and curvatures; where it does not, nothing is predicted.
 BorderPrediction predict_border(const SceneModel& model, const Camera& camera, const BorderTruth& truth, const BorderCurves& curves);
+/// Where the match of `curves` with the truth's is known (both kinds).
+BorderPrediction predict_border(const SceneModel& model, const Camera& camera, const BorderTruth& truth, const BorderCurves& curves,
+                                const BorderMatch& match);
 
 }  // namespace limn

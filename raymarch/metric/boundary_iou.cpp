@@ -14,21 +14,29 @@ namespace {
 /// such a strip altogether, which makes it plain intersection over union.
 constexpr double kStrip = 0.003;
 
-/// Ink that is no ink any more after `steps` erosions with a 3 x 3 square. Beyond the picture ink goes on: its sides are no boundary.
-Image<std::uint8_t> strip(const Image<std::uint8_t>& ink, int steps) {
-  Image<std::uint8_t> left = ink, next = ink;
-  for (int step = 0; step < steps; ++step) {
-    for (int y = 0; y < ink.height; ++y) {
-      for (int x = 0; x < ink.width; ++x) {
-        std::uint8_t all = 1;
-        for (int v = std::max(y - 1, 0); v <= std::min(y + 1, ink.height - 1); ++v) {
-          for (int u = std::max(x - 1, 0); u <= std::min(x + 1, ink.width - 1); ++u) all = all && left.at(u, v);
-        }
-        next.at(x, y) = all;
-      }
-    }
-    std::swap(left, next);
+/// Of each pixel and its two neighbours in the row, the least; beyond the row there is none.
+void erode_row(const std::uint8_t* from, std::uint8_t* to, int width) {
+  for (int x = 0; x < width; ++x) to[x] = from[x];
+  for (int x = 1; x < width; ++x) to[x] &= from[x - 1];
+  for (int x = 0; x + 1 < width; ++x) to[x] &= from[x + 1];
+}
+
+/// Erosion with a 3 x 3 square: with a row of three, then with a column. Beyond the picture ink goes on: its sides are no boundary.
+void erode(Image<std::uint8_t>& ink, Image<std::uint8_t>& rows) {
+  const int width = ink.width;
+  for (int y = 0; y < ink.height; ++y) erode_row(&ink.at(0, y), &rows.at(0, y), width);
+  for (int y = 0; y < ink.height; ++y) {
+    const std::uint8_t *own = &rows.at(0, y), *above = &rows.at(0, std::max(y - 1, 0)),
+                       *below = &rows.at(0, std::min(y + 1, ink.height - 1));
+    std::uint8_t* const to = &ink.at(0, y);
+    for (int x = 0; x < width; ++x) to[x] = own[x] & above[x] & below[x];
   }
+}
+
+/// Ink that is no ink any more after `steps` erosions.
+Image<std::uint8_t> strip(const Image<std::uint8_t>& ink, int steps) {
+  Image<std::uint8_t> left = ink, rows(ink.width, ink.height);
+  for (int step = 0; step < steps; ++step) erode(left, rows);
   for (size_t i = 0; i < ink.size(); ++i) left.pixels[i] = ink.pixels[i] && !left.pixels[i];
   return left;
 }

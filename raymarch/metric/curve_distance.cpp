@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "raymarch/curves/curve_geometry.h"
-#include "raymarch/metric.h"
+#include "raymarch/metric/curve_findings.h"
 
 namespace limn {
 namespace {
@@ -13,13 +13,9 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 /// Of the samples along curves: the largest distance is found to half of this.
 constexpr double kStep_px = 0.25;
 
-struct Distances {
-  double largest = 0.0, sum = 0.0, length = 0.0;
-};
-
-Distances from_to(const BorderCurves& from, const BorderCurves& to, std::optional<CurveKind> kind, const Camera& camera) {
+CurveDistances from_to(const BorderCurves& from, const BorderCurves& to, std::optional<CurveKind> kind, const Camera& camera) {
   const CurveIndex index(to, kind);
-  Distances result;
+  CurveDistances result;
   for (const CurveSample& sample : within_picture(resample(from, kind, kStep_px), camera)) {
     const std::optional<NearestPoint> nearest = index.nearest(sample.px, 0, std::numeric_limits<double>::infinity());
     const double distance = nearest ? nearest->distance_px : kNothing;
@@ -36,17 +32,26 @@ struct Subject {
 };
 const Subject kSubjects[] = {{"", std::nullopt}, {"_silhouette", CurveKind::silhouette}, {"_inner", CurveKind::inner}};
 
+const BothWays& find_distances(const MetricInput& input, size_t subject, CurveFindings& findings) {
+  std::optional<BothWays>& found = findings.distances[subject];
+  const std::optional<CurveKind> kind = kSubjects[subject].kind;
+  if (!found)
+    found = {from_to(*input.curves, input.truth->curves, kind, input.camera),
+             from_to(input.truth->curves, *input.curves, kind, input.camera)};
+  return *found;
+}
+
 template <class Combine>
 std::vector<MetricValue> measure(const MetricInput& input, const std::string& name, const Combine& combine) {
   std::vector<MetricValue> values;
-  for (const Subject& subject : kSubjects) {
+  CurveFindings own, &findings = findings_of(input, own);
+  for (size_t k = 0; k < std::size(kSubjects); ++k) {
     double value = kNothing;
     if (input.curves != nullptr && input.truth != nullptr) {
-      const Distances there = from_to(*input.curves, input.truth->curves, subject.kind, input.camera);
-      const Distances back = from_to(input.truth->curves, *input.curves, subject.kind, input.camera);
+      const auto& [there, back] = find_distances(input, k, findings);
       if (there.length > 0.0 && back.length > 0.0) value = combine(there, back);
     }
-    values.push_back({name + subject.suffix, value, "px"});
+    values.push_back({name + kSubjects[k].suffix, value, "px"});
   }
   return values;
 }
@@ -66,7 +71,8 @@ Metric hausdorff_metric() {
           names_of("hausdorff"),
           true,
           [](const MetricInput& input) {
-            return measure(input, "hausdorff", [](const Distances& a, const Distances& b) { return std::max(a.largest, b.largest); });
+            return measure(input, "hausdorff",
+                           [](const CurveDistances& a, const CurveDistances& b) { return std::max(a.largest, b.largest); });
           },
           MetricSubject::curves};
 }
@@ -78,7 +84,7 @@ Metric mean_distance_metric() {
           true,
           [](const MetricInput& input) {
             return measure(input, "mean_distance",
-                           [](const Distances& a, const Distances& b) { return 0.5 * (a.sum / a.length + b.sum / b.length); });
+                           [](const CurveDistances& a, const CurveDistances& b) { return 0.5 * (a.sum / a.length + b.sum / b.length); });
           },
           MetricSubject::curves};
 }

@@ -2,7 +2,7 @@
 
 #include "raymarch/metric/border_prediction.h"
 
-#include "raymarch/metric.h"
+#include "raymarch/metric/curve_findings.h"
 
 namespace limn {
 namespace {
@@ -12,7 +12,9 @@ std::vector<MetricValue> measure(const MetricInput& input) {
   DisplacementPrediction d;
   WidthPrediction w{0, nothing, nothing, nothing, nothing, nothing, nothing};
   if (input.curves != nullptr && input.truth != nullptr && input.model != nullptr) {
-    const BorderPrediction prediction = predict_border(*input.model, input.camera, *input.truth, *input.curves);
+    CurveFindings own, &findings = findings_of(input, own);
+    const BorderPrediction prediction =
+        predict_border(*input.model, input.camera, *input.truth, *input.curves, find_match(input, findings));
     d = prediction.displacement;
     w = prediction.width;
   }

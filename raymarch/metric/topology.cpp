@@ -1,6 +1,7 @@
 // Pieces of ink and holes in it, against the reference's.
 
-#include <numeric>
+#include <cstdint>
+#include <vector>
 
 #include "raymarch/metric.h"
 #include "raymarch/metric/ink_mask.h"
@@ -13,35 +14,66 @@ struct Counts {
   int components = 0, holes = 0;
 };
 
-size_t root_of(std::vector<size_t>& parents, size_t i) {
+/// Pixels first .. last - 1 of a row that are all ink or all paper.
+struct Run {
+  int first = 0, last = 0;
+  bool ink = false;
+};
+
+std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t i) {
   while (parents[i] != i) i = parents[i] = parents[parents[i]];
   return i;
+}
+
+/// A row between paper: `mask` may be null, for a row of paper alone.
+void add_runs(const std::uint8_t* mask, int width, std::vector<Run>& runs) {
+  Run run{0, 1, false};
+  for (int x = 0; x < width; ++x, ++run.last) {
+    const bool ink = mask != nullptr && mask[x] != 0;
+    if (ink == run.ink) continue;
+    runs.push_back(run);
+    run = {run.last, run.last, ink};
+  }
+  if (run.ink) {
+    runs.push_back(run);
+    run = {run.last, run.last, false};
+  }
+  ++run.last;
+  runs.push_back(run);
+}
+
+/// Joins runs of one row, [first, middle), with those of the next, [middle, end).
+void join_rows(const std::vector<Run>& runs, size_t first, size_t middle, std::vector<std::uint32_t>& parents) {
+  for (size_t a = first, b = middle; a < middle && b < runs.size();) {
+    const int reach = runs[a].ink ? 1 : 0;  // over corners
+    if (runs[a].ink == runs[b].ink && runs[a].first < runs[b].last + reach && runs[b].first < runs[a].last + reach)
+      parents[root_of(parents, static_cast<std::uint32_t>(b))] = root_of(parents, static_cast<std::uint32_t>(a));
+    // The next pair in which the one that ends first has been left; over corners both kinds of neighbours of an end are looked at.
+    if (runs[a].last < runs[b].last || (runs[a].last == runs[b].last && !runs[a].ink))
+      ++a;
+    else
+      ++b;
+  }
 }
 
 // Ink hangs together over corners, paper does not: so a closed line of ink parts its inside from its outside (Rosenfeld 1970). A frame of
 // paper about the picture joins all that is outside.
 Counts count(const Image<float>& coverage) {
   const Image<std::uint8_t> mask = ink_mask(coverage);
-  Image<std::uint8_t> framed(mask.width + 2, mask.height + 2, 0);
-  for (int y = 0; y < mask.height; ++y) {
-    for (int x = 0; x < mask.width; ++x) framed.at(x + 1, y + 1) = mask.at(x, y);
-  }
-  std::vector<size_t> parents(framed.size());
-  std::iota(parents.begin(), parents.end(), size_t{0});
-  constexpr int steps[][2] = {{-1, 0}, {0, -1}, {-1, -1}, {1, -1}};
-  for (int y = 0; y < framed.height; ++y) {
-    for (int x = 0; x < framed.width; ++x) {
-      const int neighbours = framed.at(x, y) ? 4 : 2;
-      for (int k = 0; k < neighbours; ++k) {
-        const int u = x + steps[k][0], v = y + steps[k][1];
-        if (!framed.inside(u, v) || framed.at(u, v) != framed.at(x, y)) continue;
-        parents[root_of(parents, framed.index(x, y))] = root_of(parents, framed.index(u, v));
-      }
-    }
+  std::vector<Run> runs;
+  std::vector<std::uint32_t> parents;
+  size_t before = 0, row = 0;
+  for (int y = -1; y <= mask.height; ++y) {
+    const bool framed = y < 0 || y == mask.height;
+    before = row;
+    row = runs.size();
+    add_runs(framed ? nullptr : &mask.at(0, y), mask.width, runs);
+    while (parents.size() < runs.size()) parents.push_back(static_cast<std::uint32_t>(parents.size()));
+    join_rows(runs, before, row, parents);
   }
   Counts counts;
-  for (size_t i = 0; i < parents.size(); ++i) {
-    if (parents[i] == i) ++(framed.pixels[i] ? counts.components : counts.holes);
+  for (std::uint32_t i = 0; i < parents.size(); ++i) {
+    if (parents[i] == i) ++(runs[i].ink ? counts.components : counts.holes);
   }
   --counts.holes;
   return counts;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "raymarch/gbuffer/file_colors.h"
+#include "raymarch/picture/shade.h"
 #include "sdf/error.h"
 #include "sdf/parallel.h"
 
@@ -101,7 +102,7 @@ void lay_ink(Image<glm::vec4>& picture, const Border& border) {
   });
 }
 
-void compose(const BorderInput& input, std::span<const Border> borders, bool first, Picture& picture) {
+void compose(const BorderInput& input, std::span<const Border> borders, bool first, const ShadingSettings& shading, Picture& picture) {
   const GBuffer& gbuffer = input.gbuffer;
   if (first) {
     picture.composite = Image<glm::vec4>::unset(gbuffer.width, gbuffer.height);
@@ -112,12 +113,13 @@ void compose(const BorderInput& input, std::span<const Border> borders, bool fir
     LIMN_CHECK(border.colors.pixels.empty() || border.colors.size() == picture.border.size());
   }
   const bool moving = std::any_of(borders.begin(), borders.end(), [](const Border& border) { return !border.beneath.pixels.empty(); });
-  if (!moving && !file_colors(input.model).any) {
+  const bool plain = shading.shading == Shading::headlight && !shading.color;
+  if (!moving && plain && !file_colors(input.model).any) {
     add_pixels([&](size_t i) { return inked(headlight(gbuffer, input.model.colors, i), borders, i); }, borders, first, picture);
     return;
   }
   // What moves is a neighbour under the inks before it: each ink is laid over the whole picture before the next.
-  Image<glm::vec4> composite = shade_headlight(input);
+  Image<glm::vec4> composite = plain ? shade_headlight(input) : shade(input, shading);
   for (const Border& border : borders) lay_ink(composite, border);
   add_pixels([&](size_t i) { return composite.pixels[i]; }, borders, first, picture);
 }

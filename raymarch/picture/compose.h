@@ -8,6 +8,6 @@ namespace limn {
 
 /// Writes the objects under their inks, and all inks together, into `picture` (composite, border); `first` begins these images, later
 /// samples are added to them.
-void compose(const BorderInput& input, std::span<const Border> borders, bool first, Picture& picture);
+void compose(const BorderInput& input, std::span<const Border> borders, bool first, const ShadingSettings& shading, Picture& picture);
 
 }  // namespace limn

@@ -11,7 +11,9 @@
 #include "raymarch/border/object_groups.h"
 #include "raymarch/frames.h"
 #include "raymarch/gbuffer/file_colors.h"
+#include "raymarch/mattes.h"
 #include "raymarch/picture/compose.h"
+#include "raymarch/picture/shade.h"
 #include "raymarch/scene/threads.h"
 #include "sdf/error.h"
 #include "sdf/parallel.h"
@@ -102,7 +104,8 @@ glm::dvec2 sample_offset(int sample, int samples) {
   return r2(sample) + 0.5 - sum / static_cast<double>(samples - 1);
 }
 
-void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture, SampleInks* inks) {
+void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture, SampleInks* inks,
+                const ShadingSettings& shading) {
   const auto start = Clock::now();
   const bool first = picture.border.pixels.empty();
   if (first) add_turned_notes(input, picture.notes);
@@ -114,7 +117,7 @@ void add_sample(const BorderInput& input, std::span<const MethodCall> methods, P
     add_status(border, picture.border_status);
     picture.notes.insert(picture.notes.end(), border.notes.begin(), border.notes.end());
   }
-  compose(input, borders, first, picture);
+  compose(input, borders, first, shading, picture);
   if (inks != nullptr)
     for (Border& border : borders) inks->now.push_back(std::move(border.coverage));
   picture.border_ms += ms_since(start);
@@ -151,12 +154,20 @@ GBufferLayers layers_read(std::span<const MethodCall> methods) {
   return layers;
 }
 
+GBufferLayers layers_read(const PictureSettings& settings) {
+  GBufferLayers layers = joined(layers_read(settings.methods), layers_read(settings.shading));
+  if (settings.mattes) layers.material = true;
+  return layers;
+}
+
 Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
                      const ExecutionSettings& how, FrameHistory* history) {
   check_methods(scene, model, settings);
   Picture picture;
   ThreadArena arena(how.threads);
-  GBufferLayers read = layers_read(settings.methods);
+  GBufferLayers read = layers_read(settings);
+  std::optional<MatteCollector> mattes;
+  if (settings.mattes) mattes.emplace(scene, camera.width_px, camera.height_px);
   if (history != nullptr) read.depth = read.normal = true;
   read = joined(read, layers_read(file_colors(model)));
   GBuffer gbuffer;
@@ -173,13 +184,16 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
     picture.trace_ms += ms_since(start);
     const auto number = static_cast<size_t>(sample);
     arena.execute([&] {
-      if (history == nullptr) return add_sample({gbuffer, camera, model, scene, nullptr, &shared}, settings.methods, picture);
+      if (history == nullptr)
+        return add_sample({gbuffer, camera, model, scene, nullptr, &shared}, settings.methods, picture, nullptr, settings.shading);
       SampleInks inks = inks_before(*history, number, gbuffer, camera);
-      add_sample({gbuffer, camera, model, scene, nullptr, &shared}, settings.methods, picture, &inks);
+      add_sample({gbuffer, camera, model, scene, nullptr, &shared}, settings.methods, picture, &inks, settings.shading);
       keep(*history, number, gbuffer, inks);
     });
+    if (mattes) mattes->add(gbuffer);
     if (sample == 0) picture.gbuffer = std::exchange(gbuffer, {});
   }
+  if (mattes) picture.mattes = mattes->finish(settings.samples);
   if (history != nullptr) history->camera = camera;
   arena.execute([&] { finish_samples(settings, picture); });
   return picture;

@@ -15,7 +15,10 @@
   X(export)              \
   X(info)                \
   X(merge)               \
-  X(list)
+  X(list)                \
+  X(demo)                \
+  X(man)                 \
+  X(completion)
 
 namespace limn {
 

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
 #include "samples/compare/compare_job.h"
@@ -6,6 +8,8 @@
 #include "samples/experiment/thread_settings.h"
 #include "samples/input/input_files.h"
 #include "samples/spec/flags.h"
+#include "sdf/error.h"
+#include "sdf/output_file.h"
 
 namespace limn {
 namespace {
@@ -19,6 +23,7 @@ void add_options(CLI::App& app, Options& options) {
   add_border(app, options, true);
   add_output(app, options, "folder for sheet.png, report.html, rows.json and each picture's EXR; default limn-out/compare/<name>", false);
   add_no_timings(app, options);
+  add_compare_limits(app, options);
   add_json(app, options);
   add_reference(app, options);
   add_execution(app, options);
@@ -76,12 +81,23 @@ void add_empty(const Options& options, const Comparison& comparison, std::vector
   warnings.insert(warnings.end(), found.begin(), found.end());
 }
 
+void check_junit(const Options& options, const std::vector<fs::path>& read) {
+  const CompareLimits& limits = options.compare;
+  if (limits.junit.empty()) return;
+  if (!limits.differ && !limits.displaced_px)
+    throw InputError(
+        {"", "--junit", limits.junit.string(), "there are no limits to report on", "--max-differ or --max-displaced beside it"});
+  check_output_file(limits.junit, options.no_clobber, {".xml"});
+  check_not_input(limits.junit, read);
+}
+
 int run(const Options& options) {
   const ThreadLimit threads(options.spec.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
   input_kind(options.spec.input);
   if (!options.outputs.empty()) check_output_folder(options.outputs.back(), options.no_clobber);
   SceneInput input = load(options);
+  check_junit(options, files_of(input));
   const fs::path folder = options.outputs.empty() ? default_output("compare", input.name) : options.outputs.back();
   check_output_folder(folder, options.no_clobber);
 
@@ -100,18 +116,22 @@ int run(const Options& options) {
     if (model.skipped.empty()) model.exr = folder / model.exr.filename();
   }
 
+  const std::vector<CellLimit> limits = check_compare_limits(comparison, options.compare);
+  if (!options.compare.junit.empty()) write_whole(options.compare.junit, compare_junit(comparison, limits));
   if (options.verbose) print_note(comparison.call);
   if (options.json) {
     Json document = comparison_json(comparison, files);
     document["warnings"] = warnings;
+    document["limits"] = compare_limits_json(limits);
     print_json(document);
   } else if (!options.quiet) {
     std::string text;
     for (const std::string& sentence : summary_sentences(comparison)) text += sentence + "\n";
     for (const std::string& line : skipped_sentences(comparison)) text += "not compared: " + in_flags(line) + "\n";
+    text += compare_limits_text(limits);
     print_text(text + (folder / "report.html").string() + "\n" + (folder / "sheet.png").string() + "\n");
   }
-  return 0;
+  return std::all_of(limits.begin(), limits.end(), [](const CellLimit& one) { return one.result.passed; }) ? 0 : 1;
 }
 
 }  // namespace
@@ -122,7 +142,8 @@ Command compare_command() {
           "report page",
           "  limn compare machined_part\n"
           "  limn compare rook --methods rim,rim_width,edge_quads\n"
-          "  limn compare cow.obj --voxels 128 --size 960x540 -o cow-compared",
+          "  limn compare cow.obj --voxels 128 --size 960x540 -o cow-compared\n"
+          "  limn compare cow.obj --surface mesh --max-displaced 0.5 --junit cow.xml",
           add_options, run};
 }
 

@@ -137,14 +137,19 @@ void print_tracks(const Options& options, const LineTracks& tracks) {
 class Film {
  public:
   Film(const Options& options, const SceneInput& input, const Scene& scene, ProgressBar& bar)
-      : options_(options), scene_(scene), bar_(bar), box_(bounds(input.scene)), settings_(camera_settings(options.spec.camera, input)) {
+      : options_(options),
+        scene_(scene),
+        bar_(bar),
+        framed_(framed_input(options.spec.camera, input)),
+        settings_(camera_settings(options.spec.camera, input)) {
     execution_.threads = options.spec.threads;
-    if (options.frames.frames > 1) camera_at_ = cameras_of_frames(options, settings_, box_);
+    if (options.frames.frames > 1) camera_at_ = cameras_of_frames(options, settings_, framed_);
   }
 
   Shot shot(int index) {
     Shot next;
-    next.camera = camera_at_ ? camera_at_(index) : camera_of_view(settings_, box_, index, options_.spec.views);
+    next.camera = camera_at_ ? camera_at_(index)
+                             : camera_of_view(settings_, framed_, framing_settings(options_.spec.camera), index, options_.spec.views);
     const auto start = std::chrono::steady_clock::now();
     next.graph = solve(next.camera);
     next.solve_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -168,7 +173,7 @@ class Film {
   const Options& options_;
   const Scene& scene_;
   ProgressBar& bar_;
-  Box box_;
+  FramedSurface framed_;
   CameraSettings settings_;
   ExecutionSettings execution_{};
   LineMemory memory_{};

@@ -8,8 +8,9 @@
 
 namespace limn {
 
-CameraAt cameras_of_frames(const Options& options, const CameraSettings& settings, const Box& bounds) {
-  const Camera first = camera_of_view(settings, bounds, 0, 1);
+CameraAt cameras_of_frames(const Options& options, const CameraSettings& settings, const FramedSurface& framed) {
+  const Box& bounds = framed.bounds;
+  const Camera first = camera_of_view(settings, framed, framing_settings(options.spec.camera), 0, 1);
   if (const auto& turn = options.lines.turn_deg) {
     const glm::dvec3 target = settings.target ? *settings.target : bounds.finite() ? bounds.center() : glm::dvec3(0.0);
     const double angle = *turn * std::numbers::pi / 180.0 / options.frames.frames;

@@ -46,7 +46,7 @@ void check_outputs(const Options& options, const SceneInput& input) {
 Camera camera_of(const Options& options, const SceneInput& input) {
   CameraSpec spec = options.spec.camera;
   if (!spec.size_px) spec.size_px = size_of_drawing(options.judge.drawing);
-  return camera_of_view(camera_settings(spec, input), bounds(input.scene), 0, 1);
+  return camera_of_view(camera_settings(spec, input), framed_input(spec, input), framing_settings(spec), 0, 1);
 }
 
 void write_report(const Options& options, const JudgeReport& report) {

@@ -4,9 +4,12 @@
 #include <cmath>
 
 #include "raymarch/border.h"
+#include "raymarch/lines.h"
+#include "raymarch/look.h"
 #include "raymarch/metric.h"
 #include "raymarch/surface.h"
 #include "samples/commands/command.h"
+#include "samples/commands/list_kinds.h"
 #include "samples/output/output.h"
 #include "samples/reference/parameter_text.h"
 #include "samples/reference/reference.h"
@@ -58,6 +61,18 @@ std::vector<Entry> list_methods() {
   return entries;
 }
 
+std::vector<Entry> list_looks() {
+  std::vector<Entry> entries;
+  for (const Look& look : looks()) entries.push_back({look.about, {}, {}});
+  return entries;
+}
+
+std::vector<Entry> list_shadings() {
+  std::vector<Entry> entries;
+  for (const ShadingDescriptor& shading : shadings()) entries.push_back({shading.about, {}, {}});
+  return entries;
+}
+
 std::vector<Entry> list_metrics() {
   std::vector<Entry> entries;
   for (const Metric& metric : metrics()) {
@@ -67,6 +82,12 @@ std::vector<Entry> list_metrics() {
     entry.about.help += "; yields " + values;
     entries.push_back(std::move(entry));
   }
+  return entries;
+}
+
+std::vector<Entry> list_lines() {
+  std::vector<Entry> entries;
+  for (const LineClassDescriptor& one : line_classes()) entries.push_back({one.about, {}, {}});
   return entries;
 }
 
@@ -82,7 +103,8 @@ struct Kind {
 };
 constexpr Kind kKinds[] = {
     {"shapes", list_shapes},   {"surfaces", list_surfaces}, {"gradients", list_gradients}, {"normals", list_normals},
-    {"methods", list_methods}, {"metrics", list_metrics},   {"scenes", list_scenes},
+    {"methods", list_methods}, {"metrics", list_metrics},   {"lines", list_lines},         {"scenes", list_scenes},
+    {"looks", list_looks},     {"shadings", list_shadings},
 };
 
 Json default_json(const Parameter& parameter) {
@@ -163,8 +185,25 @@ int run(const Options& options) {
 
 }  // namespace
 
+std::vector<std::string> list_kinds() {
+  std::vector<std::string> names;
+  for (const Kind& kind : kKinds) names.emplace_back(kind.name);
+  names.emplace_back("reference");
+  return names;
+}
+
+std::vector<std::string> names_of_kind(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Kind& kind : kKinds) {
+    if (name != kind.name) continue;
+    for (const Entry& entry : kind.entries()) names.push_back(entry.about.name);
+  }
+  return names;
+}
+
 Command list_command() {
-  return {"list", "names what there is to choose from: shapes, surfaces, gradients, normals, methods, metrics, scenes",
+  return {"list",
+          "names what there is to choose from: shapes, surfaces, gradients, normals, methods, metrics, lines, scenes, looks, shadings",
           "  limn list shapes\n  limn list methods --json", add_options, run};
 }
 

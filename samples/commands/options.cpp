@@ -2,10 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <tuple>
 
 #include "raymarch/border.h"
+#include "raymarch/look.h"
 #include "raymarch/surface.h"
 #include "samples/commands/options_parts.h"
 #include "samples/spec/flags.h"
@@ -59,7 +61,7 @@ void add_compared_surfaces(CLI::App& app, Options& options) {
     options.spec.surfaces.push_back(text);
   };
   add_repeatable(app, {"--surface", "NAME", "only this representation (limn list surfaces), repeatable; default: all", kSurface}, surface);
-  add_repeatable(app, {"--surfaces", "A,B,...", "the same for several", kSurface},
+  add_repeatable(app, {"--surfaces", "A,B,...", "several of them (limn list surfaces)", kSurface},
                  [&options](const std::string& text) { read_compared_surfaces(text, options); });
 }
 
@@ -105,9 +107,16 @@ void add_output(CLI::App& app, Options& options, const std::string& what, bool r
 void add_kind(CLI::App& app, Options& options) {
   app.add_option(
          "KIND", options.kind,
-         "shapes, surfaces, gradients, normals, methods, metrics or scenes; reference: all of it, and every key of files, as Markdown")
+         "shapes, surfaces, gradients, normals, methods, metrics, lines, scenes, looks or shadings; reference: all of it, and every "
+         "key of files, as Markdown")
       ->type_name("")
       ->required();
+}
+
+void add_shell(CLI::App& app, Options& options) { app.add_option("SHELL", options.kind, "bash, zsh or fish")->type_name("")->required(); }
+
+void add_command_name(CLI::App& app, Options& options) {
+  app.add_option("COMMAND", options.kind, "a command; without it the page of limn itself")->type_name("");
 }
 
 void add_no_timings(CLI::App& app, Options& options) {
@@ -159,6 +168,35 @@ void add_dump(CLI::App& app, Options& options) {
       ->needs(what);
 }
 
+void add_demo(CLI::App& app, Options& options) {
+  add(app, {"--size", "WxH", "every picture in pixels, 1..16384 each; smaller ones are there sooner; default: as the page says", kCamera},
+      [&options](const std::string& text) { options.spec.camera.size_px = parse_size("--size", text); });
+}
+
+namespace {
+
+/// From where the camera looks, and how the picture is framed.
+void add_view_angles(CLI::App& app, CameraSpec& camera) {
+  auto* eye = app.get_option("--eye");
+  const auto number = [&app](const char* flag, const char* value, const char* help, std::optional<double>& target) {
+    return add(app, {flag, value, help, kCamera}, [&target, flag](const std::string& text) { target = parse_number(flag, text); });
+  };
+  number("--azimuth", "DEG", "looks from so far round --up: 0 from the front (+z; where z is up -y), 90 from the right; default 38.7",
+         camera.azimuth_deg)
+      ->excludes(eye);
+  add(app, {"--elevation", "DEG", "looks from so far above the horizon, -90 to 90; default 25.1", kCamera},
+      [&camera](const std::string& text) {
+        camera.elevation_deg = parse_number("--elevation", text);
+        if (std::abs(*camera.elevation_deg) > 90.0) throw InputError({"", "--elevation", text, "out of range", "-90 to 90 degrees"});
+      })
+      ->excludes(eye);
+  number("--roll", "DEG", "the picture turns clockwise; default 0", camera.roll_deg);
+  number("--zoom", "FACTOR", "the picture enlarged about its middle, above 0; default 1", camera.zoom);
+  number("--margin", "SHARE", "of the picture left free on each side of what is framed, 0 to below 0.5; default 0.07", camera.margin);
+}
+
+}  // namespace
+
 void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size) {
   const std::string size_help = "picture in pixels, 1..16384 each; default " + default_size;
   add(app, {"--size", "WxH", size_help.c_str(), kCamera},
@@ -167,16 +205,35 @@ void add_camera(CLI::App& app, Options& options, bool with_views, const std::str
       [&options](const std::string& text) { options.spec.camera.eye = parse_vector3("--eye", text); });
   add(app, {"--target", "X,Y,Z", "what it looks at, world units; default: the middle of what is drawn", kCamera},
       [&options](const std::string& text) { options.spec.camera.target = parse_vector3("--target", text); });
-  add(app, {"--up", "X,Y,Z", "what is up in the picture; default 0,1,0", kCamera},
-      [&options](const std::string& text) { options.spec.camera.up = parse_vector3("--up", text); });
+  add(app, {"--up", "X,Y,Z", "what is up in the picture: a direction, or an axis such as z or -y; default y", kCamera},
+      [&options](const std::string& text) { options.spec.camera.up = parse_direction("--up", text); });
   auto* fov = add(app, {"--fov", "DEG", "vertical field of view, degrees, above 0 and below 180; default 35", kCamera},
                   [&options](const std::string& text) { options.spec.camera.fov_deg = parse_number("--fov", text); });
   auto* ortho = add(app, {"--ortho", "HEIGHT", "orthographic, the picture's height in world units; default: perspective", kCamera},
                     [&options](const std::string& text) { options.spec.camera.ortho_height = parse_number("--ortho", text); });
   fov->excludes(ortho);
+  add_view_angles(app, options.spec.camera);
   if (!with_views) return;
   add(app, {"--views", "N", "N pictures from directions spread evenly on the sphere, 1..10000; default 1: the camera's own", kCamera},
       [&options](const std::string& text) { options.spec.views = parse_integer("--views", text, 1, 10'000); });
+}
+
+void add_turntable(CLI::App& app, Options& options) {
+  add(app, {"--turntable", "N", "N pictures, 2..10000, while the camera goes once round about --up; they share one size", kCamera},
+      [&options](const std::string& text) { options.turntable = parse_integer("--turntable", text, 2, 10'000); })
+      ->excludes(app.get_option("--views"))
+      ->excludes(app.get_option("--frames"));
+  auto* turntable = app.get_option("--turntable");
+  app.add_flag("--animate", options.animate, "one picture that plays all frames instead of a file a frame: .png; an .apng always does")
+      ->group(kCamera)
+      ->needs(turntable);
+  add(app, {"--fps", "N", "frames a second of such a picture, above 0 up to 100; default 24", kCamera},
+      [&options](const std::string& text) {
+        options.lines.frames_per_second = parse_number_above("--fps", text, 0.0, false, "above 0 and up to 100 frames a second");
+        if (options.lines.frames_per_second > 100.0)
+          throw InputError({"", "--fps", text, "out of range", "above 0 and up to 100 frames a second"});
+      })
+      ->needs(turntable);
 }
 
 void add_frames(CLI::App& app, Options& options, const char* help) {
@@ -252,9 +309,10 @@ void add_methods(CLI::App& app, Options& options, bool compared) {
                        options.spec.border.methods.push_back(text);
                      });
   if (compared) {
-    add_repeatable(
-        app, {"--methods", "A,B,...|all", "a picture of every model by each of these methods, as a matrix; default: one method", kBorder},
-        [&options](const std::string& text) { read_compared_methods(text, options); })
+    add_repeatable(app,
+                   {"--methods", "A,B,...|all",
+                    "a picture of every model by each of these methods (limn list methods), as a matrix; default: one method", kBorder},
+                   [&options](const std::string& text) { read_compared_methods(text, options); })
         ->excludes(method);
   }
   add_repeatable(
@@ -265,14 +323,34 @@ void add_methods(CLI::App& app, Options& options, bool compared) {
 
 void add_border(CLI::App& app, Options& options, bool compared) {
   add_methods(app, options, compared);
-  add(app, {"--samples", "N", "rays a pixel, 1..1024; default 1", kBorder},
-      [&options](const std::string& text) { options.spec.border.samples = parse_integer("--samples", text, 1, 1024); });
+  const char* const samples_help = compared ? "rays a pixel, 1..1024; default 1" : "rays a pixel, 1..1024; default 8, with --frames 1";
+  add(app, {"--samples", "N", samples_help, kBorder}, [&options](const std::string& text) {
+    options.spec.border.samples = parse_integer("--samples", text, 1, 1024);
+    options.samples_given = true;
+  });
   add(app,
       {"--background", "COLOR",
        "colour behind everything: '#rrggbb', '#rgb' (quoted for the shell), a name such as white, R,G,B in linear light from 0 to 1, or "
-       "linear:R,G,B; default: transparent (compare: white)",
+       "linear:R,G,B; default: white, in .exr transparent (compare: white)",
        kBorder},
       [&options](const std::string& text) { options.spec.border.background = parse_color("--background", text); });
+}
+
+void add_look(CLI::App& app, Options& options) {
+  add(app, {"--look", "NAME", "methods, shading and ground that go together (limn list looks); what other options name stays", kBorder},
+      [&options](const std::string& text) {
+        looks().find(text, "", "--look");
+        options.spec.border.look = text;
+      });
+  auto* shading = add(app, {"--shading", "NAME", "how surfaces are coloured (limn list shadings); default headlight", kBorder},
+                      [&options](const std::string& text) {
+                        shadings().find(text, "", "--shading");
+                        options.spec.border.shading = text;
+                      });
+  app.add_flag("--ink-only", options.ink_only, "the ink alone, with its coverage as alpha")->group(kBorder)->excludes(shading);
+  app.add_flag("--transparent", options.transparent, "no ground behind the picture: its alpha says what is covered")
+      ->group(kBorder)
+      ->excludes(app.get_option("--background"));
 }
 
 void add_execution(CLI::App& app, Options& options) {
@@ -371,7 +449,9 @@ void add_plan(CLI::App& app, Options& options) {
           [&plan](const std::string& text) {
             plan.tolerance_px = parse_number_above("--tolerance", text, 0.0, false, "a number of pixels above 0");
           });
-  add(app, {"--metric", "NAME", "what has to be right: border (the rim's ink, inside and outside) or silhouette; default border", kPlan},
+  add(app,
+      {"--metric", "border|silhouette", "what has to be right: border (the rim's ink, inside and outside) or silhouette; default border",
+       kPlan},
       [&plan](const std::string& text) { plan.silhouette = parse_plan_metric("--metric", text); })
       ->needs(tolerance);
   add_repeatable(

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "raymarch/frames.h"
+#include "samples/compare/compare_limits.h"
 #include "samples/judge/drawing_file.h"
 #include "samples/judge/judge_report.h"
 #include "samples/lines/drawing.h"
@@ -67,11 +68,17 @@ struct Options {
   StabilityOptions stability{};
   StudyRunOptions study{};
   FramePath frames{.frames = 1};  ///< `limn render` and `limn contours`.
+  int turntable = 0;              ///< `limn render` only: frames of one turn; 0: none.
+  bool samples_given = false;     ///< --samples is on the command line.
+  bool animate = false;           ///< `limn render` only: all frames in one picture.
+  bool transparent = false;       ///< `limn render` only: no ground behind pictures.
+  bool ink_only = false;          ///< `limn render` only: nothing but the ink.
   bool refined = false;           ///< `limn export` only: refined instead of limit positions.
-  std::string kind{};             ///< `limn list` only.
+  std::string kind{};             ///< `limn list`: of what; `limn completion`: for which shell; `limn man`: of which command.
   DumpOptions dump{};             ///< `limn info` only.
   LineOptions lines{};            ///< `limn contours` only.
   JudgeOptions judge{};           ///< `limn judge` only.
+  CompareLimits compare{};        ///< `limn compare` only.
 
   std::vector<std::filesystem::path> outputs{};
   bool no_clobber = false;
@@ -93,6 +100,9 @@ void add_input(CLI::App& app, Options& options);
 void add_output(CLI::App& app, Options& options, const std::string& what, bool repeatable);
 /// What `limn list` lists.
 void add_kind(CLI::App& app, Options& options);
+/// What `limn completion` and `limn man` write.
+void add_shell(CLI::App& app, Options& options);
+void add_command_name(CLI::App& app, Options& options);
 /// --no-timings
 void add_no_timings(CLI::App& app, Options& options);
 /// --refined
@@ -105,11 +115,15 @@ void add_dump(CLI::App& app, Options& options);
 void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size = "1280x720");
 /// --frames, with this help, --path-step and --seed; excludes --views.
 void add_frames(CLI::App& app, Options& options, const char* help);
+/// --turntable; excludes --views and --frames, which are added before.
+void add_turntable(CLI::App& app, Options& options);
 /// These, --turn, --animate and --fps.
 void add_line_frames(CLI::App& app, Options& options);
 void add_surface(CLI::App& app, Options& options, const SurfaceOptionNeeds& needs);
 void add_grid(CLI::App& app, Options& options);
 void add_border(CLI::App& app, Options& options, bool compared = false);
+/// --look, --shading, --ink-only, --transparent; of `limn render`, whose --samples and --background they go with.
+void add_look(CLI::App& app, Options& options);
 /// --threads, --quiet and so on, with add_limits.
 void add_execution(CLI::App& app, Options& options);
 /// --max-memory and --max-time.
@@ -125,6 +139,10 @@ void add_line_surface(CLI::App& app, Options& options);
 void add_lines(CLI::App& app, Options& options);
 /// DRAWING and --against, what of them is compared, and the limits.
 void add_judge(CLI::App& app, Options& options);
+/// --size of every picture of `limn demo`.
+void add_demo(CLI::App& app, Options& options);
+/// What `limn compare` lets pass.
+void add_compare_limits(CLI::App& app, Options& options);
 /// --tolerance, --metric and --budget.
 void add_plan(CLI::App& app, Options& options);
 

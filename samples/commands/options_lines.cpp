@@ -60,7 +60,7 @@ void add_line_definitions(CLI::App& app, LineSettings& lines) {
 }  // namespace
 
 void add_line_surface(CLI::App& app, Options& options) {
-  add(app, {"--surface", "NAME", "the lines of a model: mesh, level_set or mesh_level_set; default: those of the surface itself", kSurface},
+  add(app, {"--surface", "mesh|level_set|mesh_level_set", "the lines of a model; default: those of the surface itself", kSurface},
       [&options](const std::string& text) {
         const std::vector<std::string> known = {"mesh", "level_set", "mesh_level_set"};
         if (std::find(known.begin(), known.end(), text) == known.end())
@@ -102,8 +102,8 @@ void add_lines(CLI::App& app, Options& options) {
   add(app, {"--page", "WxHmm", "the drawing fitted into a page of millimetres; default: a unit is a pixel", kLines},
       [&lines](const std::string& text) { lines.drawing.page_mm = parse_page("--page", text); });
   add(app,
-      {"--style", "NAME|FILE.css", "widths, colours and dashes of each class: plain, technical, ink, or a style sheet; default plain",
-       kLines},
+      {"--style", "plain|technical|ink|FILE.css",
+       "widths, colours and dashes of each class: plain, technical, ink, or a style sheet; default plain", kLines},
       [&lines](const std::string& text) { lines.drawing.style = read_style(text); });
   add_switch(app, {"--strict", "", "exit with 1 where the certificate finds a conflict", kLines}, lines.strict);
 }
@@ -156,6 +156,19 @@ void add_judge_limits(CLI::App& app, JudgeLimits& limits) {
 }
 
 }  // namespace
+
+void add_compare_limits(CLI::App& app, Options& options) {
+  constexpr const char* kCompareLimits = "Limits of each picture (exit code 1 beyond them)";
+  CompareLimits& limits = options.compare;
+  add(app, {"--max-differ", "LENGTH", "border pixels that differ from the reference's, such as 50px, or 2% of its border", kCompareLimits},
+      [&limits](const std::string& text) { limits.differ = parse_length_limit("--max-differ", text); });
+  add(app, {"--max-displaced", "PX", "95 % of the border lie within, from the true one, pixels", kCompareLimits},
+      [&limits](const std::string& text) {
+        limits.displaced_px = parse_number_above("--max-displaced", text, 0.0, true, "a number of pixels from 0 up");
+      });
+  add(app, {"--junit", "FILE", "the limits as JUnit XML, a test case for each picture and limit", kOutput},
+      [&limits](const std::string& text) { limits.junit = text; });
+}
 
 void add_judge(CLI::App& app, Options& options) {
   JudgeOptions& judge = options.judge;

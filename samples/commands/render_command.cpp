@@ -2,14 +2,22 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
+#include <memory>
+#include <numbers>
 
+#include "raymarch/files/animated_png.h"
 #include "raymarch/files/picture_module.h"
 #include "raymarch/image_output.h"
+#include "raymarch/look.h"
 #include "raymarch/surface/view_level.h"
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
+#include "samples/commands/render_outputs.h"
 #include "samples/compare/flicker_watch.h"
+#include "samples/experiment/camera_json.h"
 #include "samples/experiment/empty_picture.h"
+#include "samples/experiment/flat_input.h"
 #include "samples/experiment/no_effect.h"
 #include "samples/experiment/thread_settings.h"
 #include "samples/input/input_files.h"
@@ -18,13 +26,12 @@
 #include "samples/output/output.h"
 #include "samples/plan/plan_job.h"
 #include "sdf/error.h"
+#include "sdf/output_file.h"
 
 namespace limn {
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::vector<std::string> kEndings = {".exr", ".png", ".tif", ".tiff", ".jpg", ".jpeg"};
 
 struct Timings {
   double load_ms = 0.0, build_ms = 0.0, trace_ms = 0.0, border_ms = 0.0, write_ms = 0.0;
@@ -32,38 +39,6 @@ struct Timings {
 
 double since_ms(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-int pictures_of(const Options& options) { return std::max(options.spec.views, options.frames.frames); }
-
-// name.png, or name_v03.png for one of several views, name_f03.png for one of several frames.
-fs::path picture_file(const fs::path& file, int index, const Options& options) {
-  if (pictures_of(options) == 1) return file;
-  const auto digits = std::to_string(pictures_of(options) - 1).size();
-  fs::path out = file;
-  out.replace_filename(
-      fmt::format("{}_{}{:0{}}{}", file.stem().string(), options.frames.frames > 1 ? 'f' : 'v', index, digits, file.extension().string()));
-  return out;
-}
-
-std::vector<fs::path> outputs_of(const Options& options, const SceneInput& input) {
-  if (!options.outputs.empty()) return options.outputs;
-  const std::string name = default_output("render", input.name).string();
-  return {name + ".exr", name + ".png"};
-}
-
-void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::path>& inputs, const Options& options) {
-  for (size_t i = 0; i < outputs.size(); ++i) {
-    const auto same = [&](const fs::path& other) { return fs::weakly_canonical(other) == fs::weakly_canonical(outputs[i]); };
-    if (std::any_of(outputs.begin(), outputs.begin() + static_cast<std::ptrdiff_t>(i), same))
-      throw InputError({outputs[i].string(), "--output", "", "is given twice", "a file of its own for each --output"});
-  }
-  for (const fs::path& file : outputs) {
-    for (int k = 0; k < pictures_of(options); ++k) {
-      check_output_file(picture_file(file, k, options), options.no_clobber, kEndings);
-      check_not_input(picture_file(file, k, options), inputs);
-    }
-  }
 }
 
 Json surface_json(const SurfaceInfo& info) {
@@ -84,9 +59,11 @@ void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_camera(app, options, true);
   add_frames(app, options, "N pictures while the camera wanders within a pixel, 1..10000, and how often ink flips meanwhile");
+  add_turntable(app, options);
   add_surface(app, options, {.surface = true, .repeatable = false, .views = true});
   add_plan(app, options);
   add_border(app, options);
+  add_look(app, options);
   add_output(app, options, ".exr (all layers) or .png .tif .jpg (the composite), repeatable; default limn-out/render/<name>.exr and .png",
              true);
   add_json(app, options);
@@ -104,30 +81,92 @@ struct Render {
   HitCounts counts;
   std::vector<std::string> warnings, notes;
   int empty_pictures = 0;
-  Json files = Json::array();
-  Json plan{};                            ///< What --tolerance chose; null without it.
-  std::optional<FlickerWatch> flicker{};  ///< Of several frames.
+  Json files = Json::array(), cameras = Json::array();
+  glm::vec3 ground{1.0f};                        ///< Behind pictures without alpha of their own.
+  std::vector<std::vector<std::byte>> frames{};  ///< PNG files, where one picture plays them.
+  Json plan{};                                   ///< What --tolerance chose; null without it.
+  std::optional<FlickerWatch> flicker{};         ///< Of several frames.
 };
 
 ResolvedModel resolved_model(const Render& render) { return {render.input.scene, render.surface, {render.surface.kind}}; }
 
-void write_picture(const Picture& picture, int index, const Options& options, Render& render) {
+bool plays(const Render& render, const Options& options) {
+  return std::any_of(render.outputs.begin(), render.outputs.end(), [&](const fs::path& file) { return is_animated(file, options); });
+}
+
+/// All frames as one picture.
+void write_animation(const Options& options, Render& render) {
+  if (!plays(render, options)) return;
   const auto start = std::chrono::steady_clock::now();
-  const std::string call = resolved_call("render", options.spec, resolved_model(render), render.camera, render.picture);
+  const std::vector<std::byte> bytes = animated_png(render.frames, options.lines.frames_per_second);
+  for (const fs::path& file : render.outputs) {
+    if (!is_animated(file, options)) continue;
+    write_whole(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    render.files.push_back(file.string());
+  }
+  render.timings.write_ms += since_ms(start);
+}
+
+Image<glm::vec4> over_ground(Image<glm::vec4> picture, const glm::vec3& ground) {
+  for (glm::vec4& pixel : picture.pixels) pixel += (1.0f - pixel.a) * glm::vec4(ground, 1.0f);
+  return picture;
+}
+
+/// Writes it; the time that took, ms. Of `render` only the frames of an animation change.
+double write_picture(const Picture& picture, const Camera& camera, int index, const Options& options, Render& render) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string call = resolved_call("render", options.spec, resolved_model(render), camera, render.picture);
+  // Layers keep their alpha; a picture to be looked at has a ground.
+  const bool grounded = !options.transparent && !options.ink_only && !render.picture.background;
+  const Image<glm::vec4> over = grounded ? over_ground(picture.composite, render.ground) : Image<glm::vec4>();
   std::vector<OutputFile> files;
   for (const fs::path& name : render.outputs) {
+    if (is_animated(name, options)) continue;
     const fs::path file = picture_file(name, index, options);
-    OutputFile output = ending_of(file) == ".exr" ? exr_output(picture, render.camera, call, file) : image_output(picture.composite, file);
+    OutputFile output =
+        ending_of(file) == ".exr" ? exr_output(picture, camera, call, file) : image_output(grounded ? over : picture.composite, file);
     files.push_back({file, [write = std::move(output.write)](const fs::path& temporary) {
                        if (interrupted()) throw Cancelled{};
                        write(temporary);
                      }});
-    render.files.push_back(file.string());
   }
+  if (plays(render, options)) render.frames.push_back(encode_png(grounded ? over : picture.composite));
   // A layer file and the picture beside it show the same, or are both those of an earlier call.
   write_together(files);
-  render.timings.write_ms += since_ms(start);
+  return since_ms(start);
 }
+
+/// The picture before is written while the next one is traced.
+class Writer {
+ public:
+  Writer(const Options& options, Render& render) : options_(options), render_(render) {}
+  ~Writer() {
+    if (under_way_.valid()) under_way_.wait();
+  }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  void write(Picture picture, int index) {
+    finish();
+    for (const fs::path& name : render_.outputs)
+      if (!is_animated(name, options_)) render_.files.push_back(picture_file(name, index, options_).string());
+    if (pictures_of(options_) == 1) {
+      render_.timings.write_ms += write_picture(picture, render_.camera, index, options_, render_);
+      return;
+    }
+    under_way_ = std::async(std::launch::async, [this, kept = std::make_shared<const Picture>(std::move(picture)), camera = render_.camera,
+                                                 index] { return write_picture(*kept, camera, index, options_, render_); });
+  }
+  /// Throws what writing threw.
+  void finish() {
+    if (under_way_.valid()) render_.timings.write_ms += under_way_.get();
+  }
+
+ private:
+  const Options& options_;
+  Render& render_;
+  std::future<double> under_way_{};
+};
 
 // Of many pictures the first few stand for the rest.
 void warn_of_empty(const std::vector<std::string>& reasons, int index, const Options& options, Render& render) {
@@ -136,20 +175,19 @@ void warn_of_empty(const std::vector<std::string>& reasons, int index, const Opt
   std::vector<std::string> warnings;
   warnings.reserve(reasons.size());
   for (const std::string& reason : reasons) {
-    warnings.push_back(pictures_of(options) == 1 ? reason
-                                                 : fmt::format("{} {}: {}", options.frames.frames > 1 ? "frame" : "view", index, reason));
+    warnings.push_back(pictures_of(options) == 1 ? reason : fmt::format("{} {}: {}", name_of_one(options), index, reason));
   }
   if (render.empty_pictures == kMost) warnings.emplace_back("further pictures that show nothing are not told one by one");
   print_warnings(options, warnings);
   render.warnings.insert(render.warnings.end(), warnings.begin(), warnings.end());
 }
 
-void draw_one(const SceneModel& model, int index, const Options& options, ProgressBar& bar, FrameHistory& history, Render& render) {
+void draw_one(const SceneModel& model, int index, const Options& options, ProgressBar& bar, FrameHistory& history, Writer& writer,
+              Render& render) {
   ExecutionSettings how = execution_settings(options.spec.threads);
   const int pictures = pictures_of(options);
-  how.progress = bar.stage(
-      pictures == 1 ? "tracing" : fmt::format("tracing {} {} of {}", options.frames.frames > 1 ? "frame" : "view", index + 1, pictures));
-  const Picture picture = draw_picture(render.input.scene, model, render.camera, render.picture, how, render.flicker ? &history : nullptr);
+  how.progress = bar.stage(pictures == 1 ? "tracing" : fmt::format("tracing {} {} of {}", name_of_one(options), index + 1, pictures));
+  Picture picture = draw_picture(render.input.scene, model, render.camera, render.picture, how, render.flicker ? &history : nullptr);
   if (render.flicker) watch_frame(picture, history, render.camera, how, *render.flicker);
   const HitCounts seen = count_hits(picture.gbuffer);
   render.timings.trace_ms += picture.trace_ms;
@@ -159,16 +197,30 @@ void draw_one(const SceneModel& model, int index, const Options& options, Progre
   render.counts.out_of_steps += seen.out_of_steps;
   render.notes.insert(render.notes.end(), picture.notes.begin(), picture.notes.end());
   warn_of_empty(why_empty(render.input.scene, model, render.camera, seen), index, options, render);
-  write_picture(picture, index, options, render);
+  writer.write(std::move(picture), index);
+}
+
+// All frames have one size: the first camera frames the object as it goes round.
+std::vector<Camera> turntable_cameras(const CameraSettings& settings, const FramedSurface& framed, const FramingSettings& framing,
+                                      int count) {
+  const glm::dvec3 center = settings.target ? *settings.target : framed.bounds.finite() ? framed.bounds.center() : glm::dvec3(0.0);
+  const Camera first = camera_of_view(settings, turned_surface(framed, center, settings.up, count), framing, 0, 1);
+  std::vector<Camera> cameras;
+  cameras.reserve(static_cast<size_t>(count));
+  for (int i = 0; i < count; ++i) cameras.push_back(turned_camera(first, center, settings.up, 2.0 * std::numbers::pi * i / count));
+  return cameras;
 }
 
 std::vector<Camera> cameras_of(const Options& options, const SceneInput& input) {
   const CameraSettings settings = camera_settings(options.spec.camera, input);
-  const Box box = bounds(input.scene);
-  if (options.frames.frames > 1) return path_cameras(camera_of_view(settings, box, 0, 1), box, options.frames);
+  const FramedSurface framed = framed_input(options.spec.camera, input);
+  const FramingSettings framing = framing_settings(options.spec.camera);
+  if (options.frames.frames > 1) return path_cameras(camera_of_view(settings, framed, framing, 0, 1), framed.bounds, options.frames);
+  if (options.turntable > 0) return turntable_cameras(settings, framed, framing, options.turntable);
   std::vector<Camera> cameras;
   cameras.reserve(static_cast<size_t>(options.spec.views));
-  for (int view = 0; view < options.spec.views; ++view) cameras.push_back(camera_of_view(settings, box, view, options.spec.views));
+  for (int view = 0; view < options.spec.views; ++view)
+    cameras.push_back(camera_of_view(settings, framed, framing, view, options.spec.views));
   return cameras;
 }
 
@@ -204,6 +256,7 @@ void report(const Options& options, const Render& render, const SurfaceInfo& inf
                   {"border", timings.border_ms},
                   {"write", timings.write_ms}}},
                 {"surface", surface_json(info)},
+                {"cameras", render.cameras},
                 {"files", render.files},
                 {"warnings", render.warnings},
                 {"notes", render.notes},
@@ -229,7 +282,30 @@ bool choose_model(const Options& options, ProgressBar& bar, Render& render) {
   return true;
 }
 
-int run(const Options& options) {
+// A picture of which nobody says more is one to be looked at; frames are there to be measured.
+Options with_defaults(Options options) {
+  constexpr int kSamples = 8;
+  if (!options.samples_given && options.frames.frames <= 1) options.spec.border.samples = kSamples;
+  if (options.ink_only) options.spec.border.shading = "none";
+  return options;
+}
+
+// Where nobody names a method, and the surface is flat for the most part, its lines are drawn: a rim inks whole faces.
+void choose_method(const Render& render, Options& options) {
+  const BorderSpec& border = options.spec.border;
+  const bool named = !border.methods.empty() || border.look || !border.parameters.empty() || !render.input.borders.empty();
+  const bool measured = options.frames.frames > 1 || options.plan.tolerance_px;
+  if (named || measured || render.input.kind == InputKind::built_in) return;
+  const double share = flat_share(render.input.scene, render.surface);
+  if (share <= kMostlyFlat) return;
+  options.spec.border.methods = {kMethodOfFlat};
+  if (!options.quiet)
+    print_note(fmt::format("{:.0f} % of the surface is flat: drawn by its lines (--method {}); --method {} inks whole faces", 100.0 * share,
+                           kMethodOfFlat, kDefaultMethod));
+}
+
+int run(const Options& given) {
+  Options options = with_defaults(given);
   const ThreadLimit threads(options.spec.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
   input_kind(options.spec.input);
@@ -248,10 +324,15 @@ int run(const Options& options) {
     if (options.json) print_json({{"files", Json::array()}, {"warnings", render.warnings}, {"plan", render.plan}});
     return 1;
   }
+  choose_method(render, options);
   render.surface.progress = bar.stage("building the surface");
   render.picture = picture_settings(options.spec.border, render.input);
+  if (options.spec.border.look) render.ground = looks().find(*options.spec.border.look).ground;
   const auto has_layers = [](const fs::path& file) { return ending_of(file) == ".exr"; };
-  if (std::none_of(render.outputs.begin(), render.outputs.end(), has_layers)) render.picture.layers = layers_read(render.picture.methods);
+  const bool layered = std::any_of(render.outputs.begin(), render.outputs.end(), has_layers);
+  render.picture.mattes = layered;
+  if (!layered && !options.transparent && !options.ink_only && !render.picture.background) render.picture.background = render.ground;
+  if (!layered) render.picture.layers = layers_read(render.picture);
   // Made first: a camera that is wrong is told before the surface is built.
   const std::vector<Camera> cameras = cameras_of(options, render.input);
 
@@ -261,7 +342,7 @@ int run(const Options& options) {
   render.warnings = warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods)});
 
   // While the surface is built.
-  const auto is_png = [](const fs::path& file) { return ending_of(file) == ".png"; };
+  const auto is_png = [](const fs::path& file) { return ending_of(file) == ".png" || ending_of(file) == ".apng"; };
   std::future<void> pictures;
   if (!std::all_of(render.outputs.begin(), render.outputs.end(), is_png)) pictures = load_picture_module_early();
   const auto build_start = std::chrono::steady_clock::now();
@@ -276,11 +357,17 @@ int run(const Options& options) {
   render.notes = levels;
   render.notes.insert(render.notes.end(), info.notes.begin(), info.notes.end());
   if (options.frames.frames > 1) render.flicker = watch_flicker(options.spec, options.frames, render.input, render.surface);
+  const glm::dvec3 up = camera_settings(options.spec.camera, render.input).up;
+  const Box box = bounds(render.input.scene);
   FrameHistory history;
+  Writer writer(options, render);
   for (int k = 0; k < pictures_of(options); ++k) {
     render.camera = cameras[static_cast<size_t>(k)];
-    draw_one(model, k, options, bar, history, render);
+    render.cameras.push_back(camera_json(render.camera, up, box));
+    draw_one(model, k, options, bar, history, writer, render);
   }
+  writer.finish();
+  write_animation(options, render);
   bar.clear();
   if (render.flicker && !options.quiet) print_note(flicker_sentence(*render.flicker));
   report(options, render, info);

@@ -52,7 +52,7 @@ void give_memory(Options& options) {
     throw InputError({"", "--max-memory", bytes_text(static_cast<double>(*options.spec.limits.max_memory)), "too little for a study",
                       fmt::format("more than {}, which its pictures and its true border take", bytes_text(least))});
   }
-  options.sweep.max_model_bytes = model_bytes_left(options.spec.limits, kBesideBytes);
+  options.sweep.max_model_bytes = model_bytes_left(options.spec.limits, kPictureLibraryBytes + kBesideBytes);
 }
 
 /// Truth is no faster for being expected to be; the calibrated part is.

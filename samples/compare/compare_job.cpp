@@ -9,7 +9,8 @@ namespace limn {
 
 Comparison comparison_for(const ExperimentSpec& spec, SceneInput& input, std::vector<std::string>& notes) {
   SurfaceSettings settings = surface_settings(spec, input);
-  const Camera camera = resolve_camera(camera_settings(spec.camera, input), bounds(input.scene));
+  const Camera camera =
+      camera_of_view(camera_settings(spec.camera, input), framed_input(spec.camera, input), framing_settings(spec.camera), 0, 1);
   if (spec.surface.level_for_view) {
     settings.kind = "mesh";
     notes = refine_for_views(settings, {&camera, 1}, input.scene);

@@ -3,26 +3,31 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <limits>
 
+#include "raymarch/files/srgb_bytes.h"
 #include "raymarch/image_io.h"
 #include "samples/compare/comparison.h"
 #include "samples/experiment/empty_picture.h"
 #include "sdf/color.h"
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
 
 // A gigabyte of float pictures becomes a quarter of it; the page and the sheet show eight bits anyway.
 Image<glm::u8vec4> packed(const Image<glm::vec4>& picture) {
-  Image<glm::u8vec4> out(picture.width, picture.height);
-  const auto byte = [](float value) { return static_cast<std::uint8_t>(std::lround(255.0f * std::min(std::max(value, 0.0f), 1.0f))); };
-  for (size_t i = 0; i < out.size(); ++i) {
-    const glm::vec4& color = picture.pixels[i];
-    const glm::vec3 rgb = color.a > 0.0f ? glm::vec3(color) / color.a : glm::vec3(0.0f);
-    out.pixels[i] = {byte(srgb_from_linear(rgb.r)), byte(srgb_from_linear(rgb.g)), byte(srgb_from_linear(rgb.b)), byte(color.a)};
-  }
+  auto out = Image<glm::u8vec4>::unset(picture.width, picture.height);
+  const SrgbBytes srgb;
+  parallel_parts(out.size(), size_t{1} << 14, [&](const IndexRange<size_t>& part) {
+    for (size_t i = part.first; i < part.last; ++i) {
+      const glm::vec4& color = picture.pixels[i];
+      const glm::vec3 rgb = color.a > 0.0f ? glm::vec3(color) / color.a : glm::vec3(0.0f);
+      out.pixels[i] = {srgb(rgb.r), srgb(rgb.g), srgb(rgb.b), to_byte(color.a)};
+    }
+  });
   return out;
 }
 
@@ -45,20 +50,23 @@ Experiment experiment_of(const Comparison& comparison) {
   return experiment;
 }
 
-// One picture is a file as `limn render` writes it; several are layers of one file, over the shading without ink.
-void write_layers(const ComparedModel& model, const Comparison& comparison, Picture& seen, std::span<Drawing> drawings) {
+// One picture is a file as `limn render` writes it; several are layers of one file, over the shading without ink: written while they are
+// measured, and until the future is there they must stay as they are.
+std::future<void> write_layers(const ComparedModel& model, const Comparison& comparison, Picture& seen, std::span<Drawing> drawings) {
   const std::string call = comparison.call + " [" + model.name + "]";
   if (!comparison.is_matrix() && drawings[0].refused.empty()) {
     std::swap(drawings[0].picture.gbuffer, seen.gbuffer);
     write_exr(drawings[0].picture, comparison.camera, call, model.exr);
     std::swap(drawings[0].picture.gbuffer, seen.gbuffer);
-    return;
+    return {};
   }
   std::vector<NamedLayer> layers;
   for (size_t column = 0; column < drawings.size(); ++column) {
     if (drawings[column].refused.empty()) layers.push_back({comparison.methods[column].name, &drawings[column].picture});
   }
-  write_exr(seen, comparison.camera, call, model.exr, layers);
+  return std::async(std::launch::async, [&seen, camera = comparison.camera, call, file = model.exr, layers = std::move(layers)] {
+    write_exr(seen, camera, call, file, layers);
+  });
 }
 
 void skip_model(size_t row, const std::string& reason, Comparison& comparison) {
@@ -73,29 +81,30 @@ struct Keeper {
   ProgressBar& bar;
 
   ExperimentObserver observer() {
-    return {
-        .stage = [this](const std::string& what) { return bar.stage(what); },
-        .built = [this](size_t row, const SceneModel& model, double, const Timing&) { comparison.models[row].info = total(model); },
-        .refused = [this](auto cells, const std::string& reason) { skip_model(cells.front().model, reason, comparison); },
-        .seen = [this](size_t row, size_t, const SceneModel& model, Seen& seen, auto drawings) { keep_seen(row, model, seen, drawings); },
-        .solved = [this](size_t, const ExperimentTruth& truth, double) { comparison.truths.push_back(truth); },
-        .measured = [this](MeasuredCell& cell) { keep_cell(cell); }};
+    return {.stage = [this](const std::string& what) { return bar.stage(what); },
+            .built = [this](size_t row, const SceneModel& model, double, const Timing&) { comparison.models[row].info = total(model); },
+            .refused = [this](auto cells, const std::string& reason) { skip_model(cells.front().model, reason, comparison); },
+            .seen = [this](size_t row, size_t, const SceneModel& model, Seen& seen,
+                           auto drawings) { return keep_seen(row, model, seen, drawings); },
+            .solved = [this](size_t, const ExperimentTruth& truth, double) { comparison.truths.push_back(truth); },
+            .measured = [this](MeasuredCell& cell) { keep_cell(cell); }};
   }
 
-  void keep_seen(size_t row, const SceneModel& model, Seen& seen, std::span<Drawing> drawings) {
+  std::future<void> keep_seen(size_t row, const SceneModel& model, Seen& seen, std::span<Drawing> drawings) {
     ComparedModel& modelled = comparison.models[row];
     modelled.trace_ms = seen.trace.median_ms;
     modelled.counts = count_hits(seen.picture.gbuffer);
     for (std::string& reason : why_empty(modelled.scene, model, comparison.camera, modelled.counts))
       modelled.info.warnings.push_back(std::move(reason));
     modelled.exr = folder / (modelled.name + ".exr");
-    write_layers(modelled, comparison, seen.picture, drawings);
+    std::future<void> writing = write_layers(modelled, comparison, seen.picture, drawings);
     const Window window = hit_window(seen.picture.gbuffer);
     if (row == 0)
       comparison.seen = window;
     else if (modelled.counts.hits > 0)
       comparison.seen = merge(comparison.seen, window);
     if (const auto progress = bar.stage("measuring " + modelled.title)) progress(0.0);
+    return writing;
   }
 
   void keep_cell(MeasuredCell& done) {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <new>
 
-#include "raymarch/measured_border.h"
+#include "samples/experiment/engine_views.h"
 
 namespace limn {
 namespace {
@@ -12,36 +12,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double ms_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
 
-/// Puts a drawing's ink into what was seen, for metrics that look at both, and takes it out again.
-class InkIn {
- public:
-  /// Null: there is nothing to put.
-  InkIn(Picture* seen, Image<float>* ink) : seen_(seen), ink_(ink) { swap(); }
-  ~InkIn() { swap(); }
-  InkIn(const InkIn&) = delete;
-  InkIn& operator=(const InkIn&) = delete;
-
- private:
-  void swap() {
-    if (seen_ != nullptr) std::swap(seen_->border, *ink_);
-  }
-  Picture* seen_;
-  Image<float>* ink_;
-};
-
-bool has_subject(const Metric& metric, const MetricInput& input, bool inked) {
-  switch (metric.subject) {
-    case MetricSubject::gbuffer:
-      return true;
-    case MetricSubject::ink:
-      return inked;
-    case MetricSubject::curves:
-      return input.curves != nullptr && input.truth != nullptr;
-    case MetricSubject::motion:
-      return inked && !input.moved.empty() && !input.reference_moved.empty();
-  }
-  return false;
+void wait_for(std::future<void> work) {
+  if (work.valid()) work.get();
 }
+
+/// What the views of one model may take that wait to be measured.
+constexpr double kKeptViewsBytes = 64e6;
 
 template <class Same>
 std::span<const ExperimentCell> leading(std::span<const ExperimentCell> cells, const Same& same) {
@@ -53,14 +29,6 @@ bool same_model(const ExperimentCell& a, const ExperimentCell& b) { return a.mod
 bool same_view(const ExperimentCell& a, const ExperimentCell& b) { return a.view == b.view; }
 
 }  // namespace
-
-struct ExperimentRun::Built {
-  const SceneModel& model;
-  size_t index = 0;
-  std::map<double, BorderCurves> curves{};  ///< Of the view that is under way, by threshold.
-  std::vector<Measurement> of_gbuffer{};    ///< The same for all of its methods.
-  bool gbuffer_is_measured = false;
-};
 
 ExperimentRun::ExperimentRun(Experiment experiment, const ExecutionSettings& how, ExperimentObserver observer)
     : experiment_(std::move(experiment)), how_(how), observer_(std::move(observer)) {}
@@ -153,7 +121,7 @@ Seen& ExperimentRun::reference(size_t index) {
   if (seen) return *seen;
   if (!reference_) reference_ = build(0);
   seen = look(*reference_, experiment_.scene, experiment_.cameras[index], experiment_.path, how_);
-  if (observer_.seen) observer_.seen(0, index, *reference_, *seen, {});
+  if (observer_.seen) wait_for(observer_.seen(0, index, *reference_, *seen, {}));
   return *seen;
 }
 
@@ -176,140 +144,68 @@ DrawnView ExperimentRun::draw_view(size_t model, const SceneModel& built, const 
   return draw_all(methods, built, planned.scene, camera, *experiment_.picture, with_progress("tracing " + planned.title), before_method);
 }
 
-void ExperimentRun::add_curve_metrics(const MetricInput& input, size_t method, std::vector<Measurement>& to) const {
-  const bool has_threshold = experiment_.methods[method].truth_threshold.has_value();
-  for (const Metric* metric : experiment_.metrics) {
-    if (metric->subject != MetricSubject::curves || (!has_threshold && !metric->any_threshold)) continue;
-    for (MetricValue& value : metric->measure(input)) to.push_back({metric, std::move(value)});
-  }
-}
-
-const std::vector<Measurement>& ExperimentRun::floor_of(size_t index, size_t method, const ExperimentTruth* truth) {
-  ReferenceView& view = views_[index];
-  if (const auto found = view.floors.find(method); found != view.floors.end()) return found->second;
-  std::vector<Measurement>& floor = view.floors[method];
-  if (truth == nullptr || !truth->truth) return floor;
-  const Picture& picture = reference(index).picture;
-  const Camera& camera = experiment_.cameras[index];
-  BorderCurves& curves = view.curves.try_emplace(truth->threshold).first->second;
-  if (curves.curves.empty()) curves = measure_border(*reference_, camera, picture.gbuffer, {.threshold = truth->threshold}, how_);
-  MetricInput input{picture, picture, camera};
-  input.curves = &curves;
-  input.truth = &*truth->truth;
-  input.model = &*reference_;
-  add_curve_metrics(input, method, floor);
-  return floor;
-}
-
-std::vector<Measurement> ExperimentRun::measure(Built& built, const ExperimentCell& cell, Seen& seen, Drawing& drawing,
-                                                const Drawing& against, const ExperimentTruth* truth) {
-  if (cell.model == 0) return floor_of(cell.view, cell.method, truth);
-  ReferenceView& view = views_[cell.view];
-  Drawing none;
-  Drawing& reference_ink = needs_reference() ? view.drawings[cell.method] : none;
-  Picture& reference_seen = needs_reference() ? view.seen->picture : seen.picture;
-  // The reference's own picture holds its own ink.
-  const InkIn own(&seen.picture, &drawing.picture.border);
-  const InkIn other(needs_reference() ? &reference_seen : nullptr, &reference_ink.picture.border);
-  MetricInput input{seen.picture, reference_seen, experiment_.cameras[cell.view]};
-  if (truth != nullptr && truth->truth) {
-    if (!built.curves.contains(truth->threshold)) {
-      const MeasuredBorderSettings settings{.threshold = truth->threshold};
-      built.curves[truth->threshold] = measure_border(built.model, input.camera, seen.picture.gbuffer, settings, how_);
-    }
-    input.curves = &built.curves[truth->threshold];
-    input.truth = &*truth->truth;
-    input.model = &built.model;
-  }
-  input.moved = drawing.moved;
-  input.reference_moved = against.moved;
-  input.moved_before = seen.before;
-  if (needs_reference()) input.reference_moved_before = view.seen->before;
-  const bool has_threshold = experiment_.methods[cell.method].truth_threshold.has_value();
-  std::vector<Measurement> measured;
-  const auto add = [&](const Metric& metric, std::vector<Measurement>& to) {
-    for (MetricValue& value : metric.measure(input)) to.push_back({&metric, std::move(value)});
-  };
-  for (const Metric* metric : experiment_.metrics) {
-    const bool of_curves = metric->subject == MetricSubject::curves;
-    if (!has_subject(*metric, input, against.refused.empty())) continue;
-    if (of_curves && !has_threshold && !metric->any_threshold) continue;
-    if (metric->subject != MetricSubject::gbuffer) {
-      add(*metric, measured);
-      continue;
-    }
-    if (!built.gbuffer_is_measured) add(*metric, built.of_gbuffer);
-    for (const Measurement& one : built.of_gbuffer)
-      if (one.metric == metric) measured.push_back(one);
-  }
-  built.gbuffer_is_measured = true;
-  return measured;
-}
-
-void ExperimentRun::finish(Built& built, size_t view, Seen& seen, Cells cells, const std::function<Drawing&(size_t)>& take) {
-  built.curves.clear();
-  built.of_gbuffer.clear();
-  built.gbuffer_is_measured = false;
-  const Drawing none;
-  for (const ExperimentCell& cell : cells) {
-    if (how_.cancelled && how_.cancelled()) throw Cancelled{};
-    if (observer_.cell_begins) observer_.cell_begins();
-    const ExperimentTruth* truth = truth_for(view, cell.method);
-    const auto start = Clock::now();
-    Drawing& drawing = take(cell.method);
-    const bool draws = needs_ink();
-    const Drawing& against = draws && drawing.refused.empty() && needs_reference() ? reference_drawing(view, cell.method) : none;
-    MeasuredCell done{cell, built.model, seen, drawing, against, truth};
-    if (drawing.refused.empty()) done.measurements = measure(built, cell, seen, drawing, against, truth);
-    // Where the reference was let go, its own cells came before and left their floor.
-    if (experiment_.measures_floor && (reference_ || !experiment_.picture || views_[view].floors.contains(cell.method)))
-      done.floor = floor_of(view, cell.method, truth);
-    done.measure_ms = ms_since(start);
-    if (observer_.measured) observer_.measured(done);
-  }
-}
-
-void ExperimentRun::run_view(Built& built, Cells cells) {
-  const size_t view = cells.front().view;
+void ExperimentRun::look_at_view(const SceneModel& built, Cells cells, ViewWork& work) {
   if (how_.cancelled && how_.cancelled()) throw Cancelled{};
-  if (needs_reference()) reference(view);
-  const ExperimentModel& planned = experiment_.models[built.index];
-  const Camera& camera = experiment_.cameras[view];
-  DrawnView drawn;
+  work.built = &built;
+  work.cells = cells;
+  if (needs_reference()) reference(work.view());
+  const ExperimentModel& planned = experiment_.models[work.model()];
+  const Camera& camera = experiment_.cameras[work.view()];
   if (experiment_.picture)
-    drawn = draw_view(built.index, built.model, camera);
+    work.drawn = draw_view(work.model(), built, camera);
   else
-    drawn.seen = look(built.model, planned.scene, camera, experiment_.path, how_);
-  if (experiment_.repeats > 1) time_again(built.model, camera, experiment_.repeats, kMostRepeat_ms, how_, drawn.seen);
-  if (observer_.seen) observer_.seen(built.index, view, built.model, drawn.seen, drawn.drawings);
-  Drawing one;
-  finish(built, view, drawn.seen, cells, [&](size_t method) -> Drawing& {
-    if (experiment_.picture) return drawn.drawings[method];
-    one = {};
-    if (needs_ink())
-      one = draw(experiment_.methods[method].calls.front(), built.model, planned.scene, camera, drawn.seen, Frames::in_sequence);
-    return one;
-  });
+    work.drawn.seen = look(built, planned.scene, camera, experiment_.path, how_, take_spare());
+  work.seen = &work.drawn.seen;
+  if (experiment_.repeats > 1) time_again(built, camera, experiment_.repeats, kMostRepeat_ms, how_, *work.seen);
+  if (observer_.seen) work.under_way = observer_.seen(work.model(), work.view(), built, *work.seen, work.drawn.drawings);
+  if (!experiment_.picture) {
+    for (const ExperimentCell& cell : cells) {
+      work.drawn.drawings.emplace_back();
+      if (needs_ink())
+        work.drawn.drawings.back() =
+            draw(experiment_.methods[cell.method].calls.front(), built, planned.scene, camera, *work.seen, Frames::in_sequence);
+    }
+  }
+  for (size_t i = 0; i < cells.size(); ++i) work.drawings.push_back(&work.drawn.drawings[experiment_.picture ? cells[i].method : i]);
+  prepare_cells(work);
+}
+
+void ExperimentRun::look_at_reference(Cells cells, ViewWork& work) {
+  const size_t index = cells.front().view;
+  ReferenceView& view = views_[index];
+  if (experiment_.picture && !view.seen) {
+    DrawnView drawn = draw_view(0, *reference_, experiment_.cameras[index]);
+    view.seen = std::move(drawn.seen);
+    if (observer_.seen) wait_for(observer_.seen(0, index, *reference_, *view.seen, drawn.drawings));
+    for (size_t method = 0; method < drawn.drawings.size(); ++method) view.drawings[method] = std::move(drawn.drawings[method]);
+  }
+  work.built = &*reference_;
+  work.cells = cells;
+  work.seen = &reference(index);
+  for (const ExperimentCell& cell : cells) {
+    reference_drawing(index, cell.method);
+    work.drawings.push_back(&view.drawings[cell.method]);
+  }
+  prepare_cells(work);
+}
+
+void ExperimentRun::prepare_cells(ViewWork& work) {
+  for (size_t i = 0; i < work.cells.size(); ++i) {
+    const ExperimentCell& cell = work.cells[i];
+    const bool compares = needs_ink() && needs_reference() && work.drawings[i]->refused.empty();
+    work.truths.push_back(truth_for(work.view(), cell.method));
+    work.against.push_back(compares ? &reference_drawing(work.view(), cell.method) : &work.none);
+    if (measures_floor_of(cell, work.truths.back()) && !experiment_.picture) reference(work.view());
+  }
 }
 
 void ExperimentRun::run_reference(Cells cells) {
   if (!reference_) reference_ = build(0);
-  Built built{*reference_, 0};
   while (!cells.empty()) {
     const Cells group = leading(cells, same_view);
-    const size_t index = group.front().view;
-    ReferenceView& view = views_[index];
-    if (experiment_.picture && !view.seen) {
-      DrawnView drawn = draw_view(0, *reference_, experiment_.cameras[index]);
-      view.seen = std::move(drawn.seen);
-      if (observer_.seen) observer_.seen(0, index, *reference_, *view.seen, drawn.drawings);
-      for (size_t method = 0; method < drawn.drawings.size(); ++method) view.drawings[method] = std::move(drawn.drawings[method]);
-    }
-    reference(index);
-    finish(built, index, *view.seen, group, [&](size_t method) -> Drawing& {
-      reference_drawing(index, method);
-      return view.drawings[method];
-    });
+    std::deque<ViewWork> work(1);
+    look_at_reference(group, work.front());
+    finish(work);
     cells = cells.subspan(group.size());
   }
   // All that it has to draw is there, and it is the largest of all.
@@ -331,12 +227,13 @@ void ExperimentRun::run_model(Cells cells) {
   } catch (const std::bad_alloc&) {
     return refuse("out of memory");
   }
-  Built of{*model, index};
-  while (!cells.empty()) {
-    const Cells group = leading(cells, same_view);
-    run_view(of, group);
-    cells = cells.subspan(group.size());
+  // Times are taken first, while nothing else runs; then views are measured side by side, as many as may be kept.
+  std::deque<ViewWork> works;
+  for (; !cells.empty(); cells = cells.subspan(leading(cells, same_view).size())) {
+    look_at_view(*model, leading(cells, same_view), works.emplace_back());
+    if (static_cast<double>(works.size()) * bytes_of(works.front()) > kKeptViewsBytes) finish(works);
   }
+  finish(works);
 }
 
 void ExperimentRun::run(Cells cells) {

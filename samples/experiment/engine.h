@@ -2,8 +2,11 @@
 // The engine that comparisons, studies and plans run on: models x views x methods x metrics against a reference, giving measurements and
 // pictures. It knows nothing of command lines, files or pages: who runs it says what is to be measured and is told of each step.
 
+#include <deque>
+#include <future>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "raymarch/metric.h"
 #include "samples/experiment/observe.h"
@@ -89,13 +92,16 @@ struct ExperimentObserver {
   std::function<void(size_t model, const SceneModel& built, double ms, const Timing& build)> built{};
   /// Nothing of these cells will come.
   std::function<void(std::span<const ExperimentCell> cells, const std::string& reason)> refused{};
-  /// Traced; where finished pictures were asked for all methods have drawn.
-  std::function<void(size_t model, size_t view, const SceneModel& built, Seen& seen, std::span<Drawing> drawings)> seen{};
+  /// Traced; where finished pictures were asked for all methods have drawn. While the future that is returned is not ready (an empty one
+  /// is), nothing of it changes or goes: it may be written meanwhile.
+  std::function<std::future<void>(size_t model, size_t view, const SceneModel& built, Seen& seen, std::span<Drawing> drawings)> seen{};
   /// A truth is there, or why there is none.
   std::function<void(size_t view, const ExperimentTruth& truth, double ms)> solved{};
   /// A cell is done.
   std::function<void(MeasuredCell& cell)> measured{};
 };
+
+struct ViewWork;  // samples/experiment/engine_views.h: one model in one view
 
 /// An experiment under way: what several cells share (the reference, its pictures, truths) is made once and kept. Used from one thread, all
 /// of whose work runs on the threads of the surrounding task arena.
@@ -123,25 +129,34 @@ class ExperimentRun {
   const Experiment& experiment() const { return experiment_; }
 
  private:
+  /// The truth's threshold, and whether the method has one of its own: all that what the reference scores depends on.
+  using FloorKey = std::pair<double, bool>;
   struct ReferenceView {
     std::optional<Seen> seen{};
     std::map<size_t, Drawing> drawings{};
     std::map<double, ExperimentTruth> truths{};
-    std::map<double, BorderCurves> curves{};              ///< The reference's, by threshold.
-    std::map<size_t, std::vector<Measurement>> floors{};  ///< By method.
+    std::map<FloorKey, std::vector<Measurement>> floors{};
   };
-  struct Built;  ///< A model while its cells are done.
   using Cells = std::span<const ExperimentCell>;
 
   SceneModel build(size_t model);
   void run_model(Cells cells);
-  void run_view(Built& built, Cells cells);
   void run_reference(Cells cells);
-  void finish(Built& built, size_t view, Seen& seen, Cells cells, const std::function<Drawing&(size_t)>& take);
-  const std::vector<Measurement>& floor_of(size_t view, size_t method, const ExperimentTruth* truth);
-  void add_curve_metrics(const MetricInput& input, size_t method, std::vector<Measurement>& to) const;
-  std::vector<Measurement> measure(Built& built, const ExperimentCell& cell, Seen& seen, Drawing& drawing, const Drawing& reference,
-                                   const ExperimentTruth* truth);
+  /// What needs all threads, or whose time counts: traces, draws, and solves the truths.
+  void look_at_view(const SceneModel& built, Cells cells, ViewWork& work);
+  void look_at_reference(Cells cells, ViewWork& work);
+  void prepare_cells(ViewWork& work);
+  /// Measures the cells of several views side by side, and tells of them in their order.
+  void finish(std::deque<ViewWork>& works);
+  void measure_all(std::deque<ViewWork>& works);
+  void measure_group(ViewWork& work, std::span<const size_t> cells);
+  void measure_gbuffer(ViewWork& work);
+  std::vector<Measurement> measure_floor(size_t view, const ExperimentTruth& truth, bool has_threshold) const;
+  void tell(ViewWork& work);
+  GBuffer take_spare();
+  bool has_threshold(size_t method) const { return experiment_.methods[method].truth_threshold.has_value(); }
+  bool measures_floor_of(const ExperimentCell& cell, const ExperimentTruth* truth) const;
+  void add_curve_metrics(const MetricInput& input, bool has_threshold, std::vector<Measurement>& to) const;
   DrawnView draw_view(size_t model, const SceneModel& built, const Camera& camera);
   const Drawing& reference_drawing(size_t view, size_t method);
   const ExperimentTruth* truth_for(size_t view, size_t method);
@@ -156,6 +171,7 @@ class ExperimentRun {
   std::optional<SceneModel> reference_{};
   std::map<size_t, ReferenceView> views_{};
   ObjectMeshCache meshes_{};
+  std::vector<GBuffer> spare_{};  ///< Of views that are done: memory for the next ones.
 };
 
 }  // namespace limn

@@ -14,6 +14,7 @@ namespace {
 
 // Peaks at 1 to 16 million pixels. A composite, the ink and a method's own; an .exr file is put together in memory.
 constexpr double kCompositeBytes = 36.0, kExrBytes = 100.0, kSumBytes = 20.0;
+constexpr double kMatteBytes = 128.0;  // indices and counts of the samples, and a level of ids and coverages of each kind
 constexpr double kMethodMs = 4e-5, kExrMs = 6e-4, kImageMs = 1e-4;  // a pixel
 constexpr double kStartMs = 50.0;
 /// A machine is rarely more than twice as fast as that of the constants.
@@ -113,7 +114,7 @@ std::string what_would_do(const Scene& scene, const SurfaceSettings& settings, c
 }  // namespace
 
 PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, int views, bool writes_layers) {
-  const GBufferLayers layers = writes_layers ? GBufferLayers{} : layers_read(picture.methods);
+  const GBufferLayers layers = writes_layers ? GBufferLayers{} : layers_read(picture);
   const double layer_bytes = 4.0 * (layers.depth + layers.n_dot_v + layers.id + layers.material + layers.face) +
                              12.0 * (layers.position + layers.normal) + layers.status;
   PictureLoad load;
@@ -121,7 +122,9 @@ PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, i
   load.pixels = static_cast<double>(camera.width_px) * camera.height_px;
   load.bytes_per_pixel = kCompositeBytes + layer_bytes;
   if (picture.samples > 1) load.bytes_per_pixel += kSumBytes + layer_bytes;
+  if (views > 1) load.bytes_per_pixel += kCompositeBytes + layer_bytes;  // what is written while the next one is traced
   if (writes_layers) load.bytes_per_pixel += kExrBytes;
+  if (picture.mattes) load.bytes_per_pixel += kMatteBytes;
   load.pictures = static_cast<double>(views) * picture.samples;
   load.other_ms =
       load.pixels * (load.pictures * kMethodMs * static_cast<double>(picture.methods.size()) + views * (writes_layers ? kExrMs : kImageMs));

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "raymarch/look.h"
 #include "samples/experiment/limits.h"
 #include "samples/output/interrupt.h"
 #include "samples/spec/parse_color.h"
@@ -48,6 +49,11 @@ struct PendingMethod {
 std::vector<PendingMethod> chosen_methods(const BorderSpec& spec, const SceneInput& input) {
   std::vector<PendingMethod> pending;
   const bool compared = !spec.columns.empty();
+  if (spec.methods.empty() && !compared && spec.look) {
+    for (const LookInk& ink : looks().find(*spec.look, "", "look").inks)
+      pending.push_back({&find_border_method(ink.method), ink.parameters});
+    return pending;
+  }
   if (spec.methods.empty() && !compared) {
     for (const BorderDefaults& border : input.borders) pending.push_back({&find_border_method(border.method), border.parameters});
     if (pending.empty()) pending.push_back({&find_border_method(kDefaultMethod), {}});
@@ -79,6 +85,20 @@ void apply_set(const ParameterSetting& set, std::vector<PendingMethod>& pending)
     used = true;
   }
   if (!used) throw InputError({"", "parameters." + set.key, "", "no method of this call has that parameter", known_names(set.key, known)});
+}
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
+
+// The angle that the call leaves out stays as the camera has it. Its distance is framed anew, and so is what it looks at.
+void turn(const CameraSpec& spec, CameraSettings& camera) {
+  glm::dvec3 direction = camera.direction.value_or(default_view_direction(camera.up));
+  if (camera.eye && camera.target && *camera.eye != *camera.target) direction = *camera.eye - *camera.target;
+  ViewAngles angles = angles_of(direction, camera.up);
+  if (spec.azimuth_deg) angles.azimuth = radians(*spec.azimuth_deg);
+  if (spec.elevation_deg) angles.elevation = radians(*spec.elevation_deg);
+  camera.direction = direction_at(angles, camera.up);
+  camera.eye.reset();
+  camera.target.reset();
 }
 
 // A camera that cannot be is told with its file where no option has a part in it.
@@ -132,12 +152,13 @@ CameraSettings camera_settings(const CameraSpec& spec, const SceneInput& input) 
     camera.eye.reset();
     camera.target.reset();
   }
+  if (spec.up) camera.up = *spec.up;
+  if (spec.turns()) turn(spec, camera);
   if (spec.eye) camera.eye = spec.eye;
   if (spec.target) camera.target = spec.target;
-  if (spec.up) camera.up = *spec.up;
   if (spec.fov_deg) {
     camera.projection = Projection::perspective;
-    camera.vertical_fov = *spec.fov_deg * std::numbers::pi / 180.0;
+    camera.vertical_fov = radians(*spec.fov_deg);
   }
   if (spec.ortho_height) {
     camera.projection = Projection::orthographic;
@@ -147,12 +168,21 @@ CameraSettings camera_settings(const CameraSpec& spec, const SceneInput& input) 
   return camera;
 }
 
-Camera camera_of_view(const CameraSettings& settings, const Box& bounds, int index, int count) {
-  if (count <= 1) return resolve_camera(settings, bounds);
+FramedSurface framed_input(const CameraSpec& spec, const SceneInput& input) {
+  if (input.kind == InputKind::built_in && !spec.turns() && !spec.margin) return {bounds(input.scene), {}};
+  return framed_surface(input.scene);
+}
+
+FramingSettings framing_settings(const CameraSpec& spec) {
+  return {radians(spec.roll_deg.value_or(0.0)), spec.zoom.value_or(1.0), spec.margin};
+}
+
+Camera camera_of_view(const CameraSettings& settings, const FramedSurface& surface, const FramingSettings& framing, int index, int count) {
+  if (count <= 1) return resolve_camera(settings, surface, framing);
   CameraSettings view = settings;
   view.eye.reset();
   view.direction = view_direction(index, count);
-  return resolve_camera(view, bounds);
+  return resolve_camera(view, surface, framing);
 }
 
 std::vector<MethodCall> method_calls(const BorderSpec& spec, const SceneInput& input) {
@@ -170,6 +200,8 @@ PictureSettings picture_settings(const BorderSpec& spec, const SceneInput& input
   PictureSettings settings;
   settings.methods = method_calls(spec, input);
   settings.samples = spec.samples;
+  if (spec.look) settings.shading = looks().find(*spec.look, "", "look").shading;
+  if (spec.shading) settings.shading.shading = shadings().find(*spec.shading, "", "shading").shading;
   if (spec.background) settings.background = glm::vec3(*spec.background);
   return settings;
 }
@@ -229,6 +261,8 @@ std::string resolved_call(const std::string& command, const ExperimentSpec& spec
       call.add("parameters." + name + "." + pair.substr(0, pair.find('=')), pair.substr(pair.find('=') + 1));
   }
   call.add("samples", std::to_string(picture.samples));
+  if (spec.border.look) call.add("look", *spec.border.look);
+  if (spec.border.shading) call.add("shading", *spec.border.shading);
   if (picture.background) call.add("background", color_text(*picture.background));
   return valid_utf8(call.text());
 }

@@ -1,6 +1,7 @@
 #pragma once
 // What an experiment asks for, resolved: the specification over the scene file over the defaults.
 
+#include "raymarch/framing.h"
 #include "raymarch/picture.h"
 #include "samples/input/input.h"
 #include "samples/output/progress.h"
@@ -14,8 +15,13 @@ SurfaceSettings surface_settings(const ExperimentSpec& spec, SceneInput& input);
 
 /// Camera of the scene with the specification over it.
 CameraSettings camera_settings(const CameraSpec& spec, const SceneInput& input);
+/// What the camera frames: the input's surface; of built-in scenes the corners of their bounds, for which their cameras are made, unless
+/// the call says from where to look.
+FramedSurface framed_input(const CameraSpec& spec, const SceneInput& input);
+/// Roll, zoom and margin.
+FramingSettings framing_settings(const CameraSpec& spec);
 /// View `index` of `count`: the camera's own where count is 1, else framed from view_direction().
-Camera camera_of_view(const CameraSettings& settings, const Box& bounds, int index, int count);
+Camera camera_of_view(const CameraSettings& settings, const FramedSurface& surface, const FramingSettings& framing, int index, int count);
 
 /// The methods with their parameters. A parameter `key` goes to every method that has it, `method.key` to that one.
 std::vector<MethodCall> method_calls(const BorderSpec& spec, const SceneInput& input);

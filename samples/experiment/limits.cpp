@@ -76,10 +76,10 @@ double machine_memory() {
   return std::min(physical, control_group_memory());
 }
 
-std::int64_t model_bytes_left(const LimitSpec& limits, double picture_bytes) {
+std::int64_t model_bytes_left(const LimitSpec& limits, double other_bytes) {
   constexpr double kDefault = 8.0 * 1024 * 1024 * 1024;
   const double allowed = limits.max_memory ? static_cast<double>(*limits.max_memory) : std::min(kDefault, machine_memory());
-  return static_cast<std::int64_t>(std::max(1e6, allowed - kProgramBytes - kPictureLibraryBytes - picture_bytes));
+  return static_cast<std::int64_t>(std::max(1e6, allowed - kProgramBytes - other_bytes));
 }
 
 void hold_limits(const LimitSpec& limits, bool goes_on) {

@@ -35,8 +35,8 @@ struct CallCost {
 /// `with_cages` as in size_of (samples/experiment/cost.h).
 CallCost expected_call(const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load, bool with_cages = true);
 
-/// Largest model that may be built beside the pictures, bytes; SurfaceSettings::max_bytes.
-std::int64_t model_bytes_left(const LimitSpec& limits, double picture_bytes);
+/// Largest model that may be built beside the program and `other_bytes` (libraries, pictures), bytes; SurfaceSettings::max_bytes.
+std::int64_t model_bytes_left(const LimitSpec& limits, double other_bytes);
 
 /// Throws InputError where the call is expected to take more than its limits or the machine's memory allow (twice the time), with what
 /// would take less. `kinds`: representations that are modelled one after the other; empty: settings.kind. Returns what is expected; nothing

@@ -28,9 +28,9 @@ struct Seen {
   double all_ms = 0.0;                        ///< Of all frames.
 };
 
-/// Traces the pixel centres; with `path` every frame of it, the first from the camera itself. Throws Cancelled.
+/// Traces the pixel centres; with `path` every frame of it, the first from the camera itself, into the memory of `out`. Throws Cancelled.
 Seen look(const SceneModel& model, const Scene& scene, const Camera& camera, const std::optional<FramePath>& path,
-          const ExecutionSettings& how);
+          const ExecutionSettings& how, GBuffer out = {});
 
 /// Traces the first picture of what was seen again, for its time alone: until there are `repeats` times, or the new ones took `most_ms`.
 void time_again(const SceneModel& model, const Camera& camera, int repeats, double most_ms, const ExecutionSettings& how, Seen& seen);

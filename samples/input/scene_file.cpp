@@ -15,6 +15,7 @@
 #include "samples/input/field_reader.h"
 #include "samples/input/named_file.h"
 #include "samples/input/toml_reader.h"
+#include "sdf/framing.h"
 #include "sdf/guard.h"
 #include "subdiv/import.h"
 
@@ -22,6 +23,18 @@ namespace limn {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void read_view_angles(TomlReader& reader, CameraSettings& camera) {
+  const auto azimuth = reader.number("azimuth", -kInfinity, kInfinity, "degrees");
+  const auto elevation = reader.number("elevation", -90.0, 90.0, "degrees from -90 to 90");
+  if (!azimuth && !elevation) return;
+  if (camera.eye) reader.fail("eye beside azimuth or elevation", "an eye, or the angles to look from");
+  if (!(glm::length(camera.up) > 0.0)) return;  // refused where the camera is resolved
+  ViewAngles angles = angles_of(default_view_direction(camera.up), camera.up);
+  if (azimuth) angles.azimuth = *azimuth * std::numbers::pi / 180.0;
+  if (elevation) angles.elevation = *elevation * std::numbers::pi / 180.0;
+  camera.direction = direction_at(angles, camera.up);
+}
 
 CameraSettings read_camera(TomlReader& reader) {
   CameraSettings camera;
@@ -36,6 +49,7 @@ CameraSettings read_camera(TomlReader& reader) {
     camera.projection = Projection::orthographic;
     camera.ortho_height = *height;
   }
+  read_view_angles(reader, camera);
   const std::string size_expected = "[width, height] in whole pixels, 1 to 16384 each";
   if (const auto size = reader.numbers("size", 2, size_expected)) {
     for (const double side : *size) {

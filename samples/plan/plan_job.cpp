@@ -128,11 +128,11 @@ PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneIn
   refuse_reference_without_effect(spec, input);
   job.settings = settings_of(spec, plan, input);
   const CameraSettings camera_of = camera_settings(spec.camera, input);
-  const Box scene_bounds = bounds(input.scene);
+  const FramedSurface framed = framed_input(spec.camera, input);
   check_least(spec, input.scene, camera_of);
   for (int view = 0; view < spec.views; ++view) {
     PlanView one;
-    one.camera = camera_of_view(camera_of, scene_bounds, view, spec.views);
+    one.camera = camera_of_view(camera_of, framed, framing_settings(spec.camera), view, spec.views);
     ExecutionSettings solving = how;
     solving.progress = bar.stage(fmt::format("solving the true border, view {} of {}", view + 1, spec.views));
     TruthSettings truth;

@@ -69,7 +69,11 @@ ExperimentObserver observer_of(Search& search) {
                 trial.build_ms = search.answer.ladders[trial.ladder].of_file ? ready_ms(model) : info.build_ms;
               },
           .refused = [&](auto, const std::string& reason) { search.under_way->failed = reason; },
-          .seen = [&](size_t, size_t, const SceneModel&, Seen& seen, auto) { search.under_way->trace_ms += seen.trace.median_ms; },
+          .seen =
+              [&](size_t, size_t, const SceneModel&, Seen& seen, auto) {
+                search.under_way->trace_ms += seen.trace.median_ms;
+                return std::future<void>();
+              },
           .measured =
               [&](MeasuredCell& cell) { search.under_way->measured = worst(search.under_way->measured, errors_of(cell.measurements)); }};
 }

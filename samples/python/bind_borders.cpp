@@ -36,7 +36,8 @@ struct CurveOfPython {
 using CurveClass = py::class_<CurveOfPython>;
 
 Camera camera_of(const CallSettings& settings, const SceneInput& input) {
-  return camera_of_view(camera_settings(settings.spec.camera, input), bounds(input.scene), settings.view, settings.spec.views);
+  return camera_of_view(camera_settings(settings.spec.camera, input), framed_input(settings.spec.camera, input),
+                        framing_settings(settings.spec.camera), settings.view, settings.spec.views);
 }
 
 std::shared_ptr<SolvedBorder> truth(const py::object& scene, const CallFields& fields) {

@@ -60,7 +60,8 @@ std::shared_ptr<JudgedDrawing> judge(const py::object& given, const py::object& 
     CameraSpec camera_spec = settings.spec.camera;
     if (!is_file) camera_spec.size_px = glm::ivec2(ink.width, ink.height);
     if (!camera_spec.size_px) camera_spec.size_px = size_of_drawing(file);
-    const Camera camera = camera_of_view(camera_settings(camera_spec, input), bounds(input.scene), settings.view, settings.spec.views);
+    const Camera camera = camera_of_view(camera_settings(camera_spec, input), framed_input(camera_spec, input),
+                                         framing_settings(camera_spec), settings.view, settings.spec.views);
     auto judged = std::make_shared<JudgedDrawing>();
     judged->drawing = is_file ? read_drawing(file, settings.ink, {camera.width_px, camera.height_px}) : lines_of_ink(ink);
     judged->graph = solve_lines(input.scene, camera, settings.lines, execution_of(settings.spec.threads, stopped));

@@ -45,7 +45,8 @@ std::shared_ptr<SolvedLines> contours(const py::object& scene, const CallFields&
     const Scene drawn = scene_of_lines(settings.spec, input, stop_at_progress(stopped), solved->warnings);
     check_smooth(settings.lines, drawn);
     solved->title = input.name;
-    solved->camera = camera_of_view(camera_settings(settings.spec.camera, input), bounds(input.scene), settings.view, settings.spec.views);
+    solved->camera = camera_of_view(camera_settings(settings.spec.camera, input), framed_input(settings.spec.camera, input),
+                                    framing_settings(settings.spec.camera), settings.view, settings.spec.views);
     solved->graph = solve_lines(drawn, solved->camera, settings.lines, execution_of(settings.spec.threads, stopped));
     for (const LineChain& chain : solved->graph.chains) solved->points.push_back(points_of(solved->graph, chain));
     return solved;

@@ -35,7 +35,8 @@ std::shared_ptr<DrawnPicture> draw(const Source& source, CallSettings& settings,
   auto drawn = std::make_shared<DrawnPicture>();
   drawn->warnings = model->warnings;
   const PictureSettings picture = picture_settings(settings.spec.border, input);
-  drawn->camera = camera_of_view(camera_settings(settings.spec.camera, input), bounds(input.scene), settings.view, settings.spec.views);
+  drawn->camera = camera_of_view(camera_settings(settings.spec.camera, input), framed_input(settings.spec.camera, input),
+                                 framing_settings(settings.spec.camera), settings.view, settings.spec.views);
   drawn->picture = draw_picture(input.scene, model->model, drawn->camera, picture, execution_of(settings.spec.threads, stopped));
   drawn->picture.notes.insert(drawn->picture.notes.begin(), model->notes.begin(), model->notes.end());
   drawn->info = total(model->model);

@@ -160,7 +160,8 @@ std::shared_ptr<const ModelOfPython> model_for(const Source& source, CallSetting
   model->settings.progress = stop_at_progress(stopped);
   refuse_without_effect(spec.surface, input, {.kinds = {model->settings.kind}});
   // Before anything is built: a camera that is wrong, and what would not fit.
-  const Camera camera = camera_of_view(camera_settings(spec.camera, input), bounds(input.scene), settings.view, spec.views);
+  const Camera camera = camera_of_view(camera_settings(spec.camera, input), framed_input(spec.camera, input), framing_settings(spec.camera),
+                                       settings.view, spec.views);
   check_limits(spec.limits, input.scene, model->settings, picture_load(camera, picture_settings(spec.border, input), 1, false));
   if (spec.surface.level_for_view) model->notes = refine_for_views(model->settings, {&camera, 1}, input.scene);
   // Once, for however many pictures.

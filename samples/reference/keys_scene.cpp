@@ -13,6 +13,8 @@ constexpr DocumentedKey kSceneKeys[] = {
     {"camera", "up", "world", "which way is up in the picture; default [0, 1, 0]"},
     {"camera", "fov", "degrees", "vertical field of view, above 0 and below 180; default 35"},
     {"camera", "ortho", "world", "height of the picture of a parallel projection; instead of fov"},
+    {"camera", "azimuth", "degrees", "looks from so far round `up`: 0 from the front, 90 from the right; instead of eye; default 38.7"},
+    {"camera", "elevation", "degrees", "looks from so far above the horizon, -90 to 90; instead of eye; default 25.1"},
     {"camera", "size", "px", "[width, height], 1 to 16384; default [1280, 720]"},
     {"surface", "kind", "", "representation: a name of `limn list surfaces`; missing: each object's own"},
     {"border", "method", "", "a name of `limn list methods`; its parameters stand beside it; [[border]] for several; default rim"},

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "raymarch/audit.h"
+#include "raymarch/look.h"
 #include "raymarch/metric.h"
 #include "raymarch/surface.h"
 #include "samples/reference/parameter_text.h"
@@ -65,6 +66,14 @@ std::string variants() {
   for (const Description& one : normal_kinds()) text += entry(one, "", {});
   text += "\n## Outline methods\n";
   for (const BorderMethod& one : border_methods()) text += entry(one.about, "Reads " + list_of(one.inputs) + ".", one.parameters);
+  text += "\n## Looks\n";
+  for (const Look& one : looks()) {
+    std::vector<std::string> methods;
+    for (const LookInk& ink : one.inks) methods.push_back(ink.method);
+    text += entry(one.about, methods.empty() ? "" : "Drawn by " + list_of(methods) + ".", {});
+  }
+  text += "\n## Shadings\n";
+  for (const ShadingDescriptor& one : shadings()) text += entry(one.about, "", {});
   text += "\n## Metrics\n";
   for (const Metric& one : metrics()) text += entry(one.about, "Yields " + list_of(one.values) + ".", {});
   text += "\n## Scenes\n";

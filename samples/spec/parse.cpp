@@ -64,6 +64,18 @@ glm::dvec3 parse_vector3(const std::string& field, std::string_view text) {
   return {parse_number(field, parts[0]), parse_number(field, parts[1]), parse_number(field, parts[2])};
 }
 
+glm::dvec3 parse_direction(const std::string& field, std::string_view text) {
+  const std::string_view axis = text.starts_with('-') ? text.substr(1) : text;
+  const size_t index = axis.size() == 1 ? std::string_view("xyz").find(axis) : std::string_view::npos;
+  if (index != std::string_view::npos) {
+    glm::dvec3 direction(0.0);
+    direction[static_cast<int>(index)] = text.starts_with('-') ? -1.0 : 1.0;
+    return direction;
+  }
+  if (split(text, ',').size() != 3) fail(field, text, "not a direction", "an axis such as z or -y, or three numbers such as 1,0.5,-2");
+  return parse_vector3(field, text);
+}
+
 glm::ivec2 parse_size(const std::string& field, std::string_view text) {
   const auto parts = split(text, 'x');
   if (parts.size() != 2) fail(field, text, "not a size", "WxH in pixels such as 1280x720");

@@ -20,6 +20,8 @@ double parse_number(const std::string& field, std::string_view text);
 double parse_number_above(const std::string& field, std::string_view text, double min, bool inclusive, const std::string& expected);
 int parse_integer(const std::string& field, std::string_view text, int min, int max);
 glm::dvec3 parse_vector3(const std::string& field, std::string_view text);
+/// Three numbers, or the name of an axis: x, -x, y, -y, z or -z.
+glm::dvec3 parse_direction(const std::string& field, std::string_view text);
 /// "1280x720".
 glm::ivec2 parse_size(const std::string& field, std::string_view text);
 /// `key=value`, where a value is a number, numbers with commas between them, true, false or a word.

@@ -37,8 +37,16 @@ struct CameraSpec {
       up{};                              ///< World: what is up in the picture.
   std::optional<double> fov_deg{};       ///< Vertical; makes the camera a pinhole.
   std::optional<double> ortho_height{};  ///< World; makes it orthographic.
+  std::optional<double> azimuth_deg{},   ///< Where the camera looks from, about `up`: 0 from the front, growing towards the right.
+      elevation_deg{},                   ///< Above the horizon.
+      roll_deg{},                        ///< The picture turns clockwise.
+      zoom{},                            ///< The picture enlarged about its middle.
+      margin{};                          ///< Share of the picture left free on each side.
 
-  bool is_set() const { return eye || target || up || fov_deg || ortho_height; }  ///< True where anything but the size is set.
+  bool turns() const { return azimuth_deg || elevation_deg; }  ///< True where the call says from where to look, without an eye.
+  bool is_set() const {
+    return eye || target || up || fov_deg || ortho_height || turns() || roll_deg || zoom || margin;
+  }  ///< True where anything but the size is set.
 };
 
 /// A value for a parameter of methods.
@@ -53,6 +61,8 @@ struct BorderSpec {
   std::vector<std::string> columns{};          ///< Each makes pictures of its own; instead of `methods`.
   std::vector<ParameterSetting> parameters{};  ///< Over the scene file's, in order.
   int samples = 1;                             ///< Rays a pixel.
+  std::optional<std::string> look{};           ///< Name of a look: methods, shading and background that nobody else names.
+  std::optional<std::string> shading{};        ///< Name of a shading.
   std::optional<glm::dvec3> background{};      ///< Linear.
 };
 

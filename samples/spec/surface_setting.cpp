@@ -123,7 +123,7 @@ const SurfaceSetting kLevel{
 
 const SurfaceSetting kScheme{
     .name = "scheme",
-    .placeholder = "NAME",
+    .placeholder = "catmark|loop|bilinear",
     .unit = "",
     .help = "subdivision of cages: catmark, loop or bilinear",
     .option_help = "catmark, loop or bilinear; default: the scene's, else loop for triangles, catmark for all others",
@@ -140,7 +140,7 @@ const SurfaceSetting kScheme{
 
 const SurfaceSetting kNormals{
     .name = "normals",
-    .placeholder = "NAME",
+    .placeholder = "flat|vertex|limit",
     .unit = "",
     .help = "of meshes: flat, vertex or limit",
     .option_help = "flat, vertex or limit; default: limit where there is a limit surface, else vertex",

@@ -219,7 +219,9 @@ Study plan_with(const Given& given, const DefaultAxes& defaults) {
   const CameraSettings camera = study_camera(spec.experiment.camera, given.input);
   const int views = spec.sweep.views.value_or(defaults.views);
   refuse_eye_of_views(spec.experiment.camera, views);
-  for (int view = 0; view < views; ++view) study.cameras.push_back(camera_of_view(camera, box, view, views));
+  const FramedSurface framed = framed_input(spec.experiment.camera, given.input);
+  for (int view = 0; view < views; ++view)
+    study.cameras.push_back(camera_of_view(camera, framed, framing_settings(spec.experiment.camera), view, views));
   const Axes axes = resolve_axes(spec, study.scene, given.settings, given.size, defaults);
   plan_methods(spec, given.input, study);
   plan_models(axes, given.size, given.settings, spec.experiment.limits.max_memory.has_value(), study);

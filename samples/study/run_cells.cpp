@@ -111,7 +111,11 @@ struct Runner {
     return {.cell_begins = [this] { show_progress(); },
             .built = [this](size_t model, const SceneModel& built, double ms, const Timing& times) { has_built(model, built, ms, times); },
             .refused = [this](auto cells, const std::string& reason) { refuse(cells, reason); },
-            .seen = [this](size_t model, size_t view, const SceneModel& built, Seen& seen, auto) { has_seen(model, view, built, seen); },
+            .seen =
+                [this](size_t model, size_t view, const SceneModel& built, Seen& seen, auto) {
+                  has_seen(model, view, built, seen);
+                  return std::future<void>();
+                },
             .solved = [this](size_t view, const ExperimentTruth& truth, double ms) { has_solved(view, truth, ms); },
             .measured = [this](MeasuredCell& cell) { has_measured(cell); }};
   }

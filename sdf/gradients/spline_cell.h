@@ -30,10 +30,7 @@ std::array<double, 64> spline_coefficients(const Accessor& accessor, const nanov
   };
   for (int x = 0; x < 6; ++x)
     for (int y = 0; y < 6; ++y)
-      for (int z = 0; z < 6; ++z) {
-        const int outer = (x % 5 == 0) + (y % 5 == 0) + (z % 5 == 0);
-        if (outer < 2) f[index(x, y, z)] = static_cast<double>(accessor.getValue(node.offsetBy(x - 2, y - 2, z - 2)));
-      }
+      if (x % 5 != 0 || y % 5 != 0) row_values(accessor, node.offsetBy(x - 2, y - 2, -2), 6, &f[index(x, y, 0)]);
   std::array<double, 64> c;
   for (int x = 1; x < 5; ++x)
     for (int y = 1; y < 5; ++y)

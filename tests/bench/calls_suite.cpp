@@ -75,7 +75,8 @@ struct Suite {
   std::string file(const std::string& name) const { return (folder / name).string(); }
 
   std::vector<std::string> render(const std::string& input, const std::vector<std::string>& more, const std::string& output) const {
-    std::vector<std::string> call{limn, "render", input, "--size", "1920x1080", "--no-progress", "--quiet", "-o", file(output)};
+    std::vector<std::string> call{limn, "render",        input,     "--size", "1920x1080", "--samples",
+                                  "1",  "--no-progress", "--quiet", "-o",     file(output)};
     call.insert(call.end(), more.begin(), more.end());
     return call;
   }

@@ -69,8 +69,8 @@ struct Suite {
   }
 
   ProcessCost render(const std::string& input, const std::vector<std::string>& more) const {
-    std::vector<std::string> call{
-        limn, "render", input, "--size", size(), "--no-progress", "--quiet", "--json", "-o", (folder / "picture.png").string()};
+    std::vector<std::string> call{limn, "render",        input,     "--size", size(), "--samples",
+                                  "1",  "--no-progress", "--quiet", "--json", "-o",   (folder / "picture.png").string()};
     call.insert(call.end(), more.begin(), more.end());
     return run_measured(call);
   }

@@ -18,7 +18,6 @@ import sys
 import child
 
 HERE = pathlib.Path(__file__).resolve().parent
-DEMO = HERE.parent.parent / "samples" / "demo.sh"
 RUNS = (("one thread", 1), ("two threads", 2), ("two threads again", 2))
 CALLS = (
     ("render", "machined_part", "-o", "field.exr", "-o", "field.png", "-o", "field.jpg", "-o", "field.tif", "--size", "200x150", "--samples", "4"),
@@ -34,11 +33,11 @@ CALLS = (
 
 
 def threads_of(limn, folder, threads):
-    """The program with a number of threads, as a program: the demo needs to know nothing of this test."""
+    """The program with a number of threads, as a program."""
     script = folder / f"limn-{threads}"
     script.write_text(f"""#!/bin/sh
 case $1 in
-  compare) exec '{limn}' "$@" --threads {threads} --no-timings ;;
+  compare | demo) exec '{limn}' "$@" --threads {threads} --no-timings ;;
   render | export | study) exec '{limn}' "$@" --threads {threads} ;;
   *) exec '{limn}' "$@" ;;
 esac
@@ -49,7 +48,7 @@ esac
 
 def run_calls(program, out, demo):
     if demo:
-        child.must(["bash", DEMO, program, out], seconds=3600)
+        child.must([program, "demo", "-o", out], seconds=3600)
         return
     out.mkdir()
     for call in CALLS:
@@ -82,7 +81,7 @@ def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("limn", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--demo", action="store_true", help="every output of samples/demo.sh")
+    parser.add_argument("--demo", action="store_true", help="every output of `limn demo`")
     parser.add_argument("--json", type=pathlib.Path)
     options = parser.parse_args()
     folder, limn = options.folder.resolve(), options.limn.resolve()

@@ -124,14 +124,14 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Limits, MemoryIsHeldToWhereNothingWasExpected) {
   if (!kAddressSpaceCanBeLimited) GTEST_SKIP() << "the sanitizers take memory of their own";
   const TemporaryFolder folder;
-  // What the search for a true border takes nobody knows beforehand; here some 150 MB.
+  // What the search for a true border takes nobody knows beforehand; here some 65 MB.
   const RunResult held = run_limn(
-      {"plan", "gyroid", "--tolerance", "1", "--surface", "level_set", "--size", "320x180", "--max-memory", "84M", "-q"}, folder.path());
+      {"plan", "gyroid", "--tolerance", "1", "--surface", "level_set", "--size", "320x180", "--max-memory", "45M", "-q"}, folder.path());
   EXPECT_EQ(held.exit_code, 1) << held.err;
-  EXPECT_EQ(held.err, "limn: --max-memory: the limit of 84.0 MB was reached; use fewer voxels, a lower level or a smaller picture\n");
+  EXPECT_EQ(held.err, "limn: --max-memory: the limit of 45.0 MB was reached; use fewer voxels, a lower level or a smaller picture\n");
   EXPECT_TRUE(held.out.empty());
   EXPECT_TRUE(folder.files().empty());
-  EXPECT_LT(held.peak_bytes, 1.3 * 84e6) << "stacks of threads are counted, and not touched";
+  EXPECT_LT(held.peak_bytes, 1.3 * 45e6) << "stacks of threads are counted, and not touched";
 }
 
 TEST(Limits, MoreTimeThanAllowedIsRefusedBeforehand) {

@@ -7,9 +7,9 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 TESTS = ROOT / "tests"
-NAMES = ("stability", "mutants", "kills", "determinism", "fuzz", "asan", "tsan", "scalar", "coverage")
+NAMES = ("stability", "mutants", "kills", "determinism", "fuzz", "asan", "tsan", "scalar", "coverage", "packages", "docs")
 SUITES = ("asan", "tsan", "scalar")
-BUILDING = ("fuzz", "asan", "tsan", "scalar", "coverage")
+BUILDING = ("fuzz", "asan", "tsan", "scalar", "coverage", "packages")
 
 
 def command(name, limn, out, result, quick, again):
@@ -24,6 +24,12 @@ def command(name, limn, out, result, quick, again):
         return [python, TESTS / "damage" / "determinism.py", limn, out / "determinism", *([] if quick else ["--demo"]), "--json", result]
     if name == "fuzz":
         return [python, TESTS / "fuzz" / "run.py", "--seconds", "10" if quick else "60", "--json", result]
+    if name == "docs":
+        return [python, TESTS / "docs" / "check.py", limn, out / "docs", "--all", "--json", result]
+    if name == "packages":
+        # On a machine with a slow network the first call makes the bare Debian, and takes minutes.
+        return ["bash", "-c", '"$0" package && exec "$1" "$2" limn-out/packages "$3" "$4" --json "$5"', ROOT / "run", python,
+                TESTS / "packages" / "install_test.py", out / "packages", TESTS / "house" / "consumer", result]
     if name == "coverage":
         return [python, TESTS / "coverage" / "report.py", "--json", result]
     return [python, TESTS / "sanitizers" / "run.py", name, "--json", result, *(["--again", again] if again else [])]
@@ -73,7 +79,11 @@ def facts_of_coverage(data):
     return figures, [] if data["outcome"] == "held" else [f"lines {figures['lines_percent']} %, branches {figures['branches_percent']} %"]
 
 
-FACTS = {"stability": facts_of_stability, "mutants": facts_of_mutants, "kills": facts_of_kills, "determinism": facts_of_determinism,
+def facts_of_checks(data):
+    return data["figures"], data["failures"]
+
+
+FACTS = {"packages": facts_of_checks, "docs": facts_of_checks, "stability": facts_of_stability, "mutants": facts_of_mutants, "kills": facts_of_kills, "determinism": facts_of_determinism,
          "fuzz": facts_of_fuzz, "asan": facts_of_suite, "tsan": facts_of_suite, "scalar": facts_of_suite, "coverage": facts_of_coverage}
 
 

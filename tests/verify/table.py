@@ -11,6 +11,8 @@ TITLES = {
     "tsan": "Suite, threads",
     "scalar": "Suite, SIMD off",
     "coverage": "Own code reached by the suite",
+    "packages": "Packages in a bare Debian",
+    "docs": "Calls and links of the documentation",
 }
 
 
@@ -41,6 +43,11 @@ def words_of(name, figures):
         return f"{f['fuzzers']} fuzzers, {f['seconds_each']} s each: {f['executions']:,} runs, {f['crashes']} crashes"
     if name == "coverage":
         return f"{f['lines_percent']:.1f} % of lines, {f['branches_percent']:.1f} % of branches"
+    if name == "packages":
+        return (f"lintian finds {f['lintian_errors']} errors; installed in {f['install_s']:.0f} s, demo in {f['demo_s']:.0f} s, "
+                f"{f['files_left']} files left after the purge")
+    if name == "docs":
+        return f"{f['calls']} calls run, {f['left_out']} left out, {f['links']} links followed"
     again = f"; {f['ran_again']} of them ran again after a change" if f.get("ran_again") else ""
     return f"{f['tests']} tests, {f['failed']} failed, {f['skipped']} skipped, {f['left_out']} left out{again}"
 

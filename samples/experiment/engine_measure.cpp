@@ -1,0 +1,235 @@
+// Metrics of the engine's cells: those of several views side by side, each with what only it has.
+
+#include <algorithm>
+#include <chrono>
+
+#include "raymarch/measured_border.h"
+#include "raymarch/scene/threads.h"
+#include "samples/experiment/engine_views.h"
+#include "sdf/parallel.h"
+
+namespace limn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double ms_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+
+bool has_subject(const Metric& metric, const MetricInput& input, bool inked) {
+  switch (metric.subject) {
+    case MetricSubject::gbuffer:
+      return true;
+    case MetricSubject::ink:
+      return inked;
+    case MetricSubject::curves:
+      return input.curves != nullptr && input.truth != nullptr;
+    case MetricSubject::motion:
+      return inked && !input.moved.empty() && !input.reference_moved.empty();
+  }
+  return false;
+}
+
+void add(const Metric& metric, const MetricInput& input, std::vector<Measurement>& to) {
+  for (MetricValue& value : metric.measure(input)) to.push_back({&metric, std::move(value)});
+}
+
+/// Cells of a view that have a truth in common: they share what is found of its curves.
+struct CellsOfTruth {
+  size_t work = 0;
+  std::vector<size_t> cells{};
+};
+
+std::vector<CellsOfTruth> by_truth(const std::deque<ViewWork>& views) {
+  std::vector<CellsOfTruth> groups;
+  for (size_t w = 0; w < views.size(); ++w) {
+    std::map<const ExperimentTruth*, size_t> group_of;
+    for (size_t i = 0; i < views[w].truths.size(); ++i) {
+      const ExperimentTruth* const truth = views[w].truths[i];
+      const auto [found, is_new] = group_of.try_emplace(truth, groups.size());
+      if (is_new || truth == nullptr) {
+        found->second = groups.size();
+        groups.push_back({w, {}});
+      }
+      groups[found->second].cells.push_back(i);
+    }
+  }
+  return groups;
+}
+
+}  // namespace
+
+double bytes_of(const ViewWork& work) {
+  const auto of_picture = [](const Picture& picture) {
+    const GBuffer& g = picture.gbuffer;
+    const auto bytes = [](const auto& layer) { return static_cast<double>(layer.size() * sizeof(layer.pixels[0])); };
+    return bytes(g.depth) + bytes(g.position) + bytes(g.normal) + bytes(g.n_dot_v) + bytes(g.id) + bytes(g.material) + bytes(g.face) +
+           bytes(g.status) + bytes(picture.border) + bytes(picture.composite);
+  };
+  double sum = of_picture(work.drawn.seen.picture) * (1.0 + static_cast<double>(work.drawn.seen.moved.size()));
+  for (const Drawing& drawing : work.drawn.drawings) sum += of_picture(drawing.picture) * (1.0 + static_cast<double>(drawing.moved.size()));
+  return sum;
+}
+
+bool ExperimentRun::measures_floor_of(const ExperimentCell& cell, const ExperimentTruth* truth) const {
+  if (!experiment_.measures_floor || truth == nullptr || !truth->truth) return false;
+  // Where the reference was let go, its own cells came before and left their floor.
+  const auto view = views_.find(cell.view);
+  const bool known = view != views_.end() && view->second.floors.contains({truth->threshold, has_threshold(cell.method)});
+  return known || reference_.has_value() || !experiment_.picture;
+}
+
+void ExperimentRun::add_curve_metrics(const MetricInput& input, bool has_threshold, std::vector<Measurement>& to) const {
+  for (const Metric* metric : experiment_.metrics) {
+    if (metric->subject != MetricSubject::curves || (!has_threshold && !metric->any_threshold)) continue;
+    add(*metric, input, to);
+  }
+}
+
+std::vector<Measurement> ExperimentRun::measure_floor(size_t view, const ExperimentTruth& truth, bool has_threshold) const {
+  const Picture& picture = views_.at(view).seen->picture;
+  const Camera& camera = experiment_.cameras[view];
+  const BorderCurves curves = measure_border(*reference_, camera, picture.gbuffer, {.threshold = truth.threshold}, how_);
+  CurveFindings findings;
+  MetricInput input{picture, picture, camera};
+  input.curves = &curves;
+  input.truth = &*truth.truth;
+  input.model = &*reference_;
+  input.findings = &findings;
+  std::vector<Measurement> floor;
+  add_curve_metrics(input, has_threshold, floor);
+  return floor;
+}
+
+void ExperimentRun::measure_gbuffer(ViewWork& work) {
+  const Picture& reference = needs_reference() ? views_.at(work.view()).seen->picture : work.seen->picture;
+  const MetricInput input{work.seen->picture, reference, experiment_.cameras[work.view()]};
+  for (const Metric* metric : experiment_.metrics)
+    if (metric->subject == MetricSubject::gbuffer) add(*metric, input, work.of_gbuffer);
+}
+
+void ExperimentRun::measure_group(ViewWork& work, std::span<const size_t> cells) {
+  if (how_.cancelled && how_.cancelled()) throw Cancelled{};
+  const Camera& camera = experiment_.cameras[work.view()];
+  const ExperimentTruth* const truth = work.truths[cells.front()];
+  const bool drawn = std::any_of(cells.begin(), cells.end(), [&](size_t i) { return work.drawings[i]->refused.empty(); });
+  BorderCurves curves;
+  CurveFindings findings;
+  const bool has_curves = drawn && truth != nullptr && truth->truth;
+  auto start = Clock::now();
+  if (has_curves) curves = measure_border(*work.built, camera, work.seen->picture.gbuffer, {.threshold = truth->threshold}, how_);
+  for (const size_t i : cells) {
+    const Drawing &drawing = *work.drawings[i], &against = *work.against[i];
+    if (!drawing.refused.empty()) continue;
+    MetricInput input{drawing.picture, against.picture, camera};
+    if (has_curves) {
+      input.curves = &curves;
+      input.truth = &*truth->truth;
+      input.model = work.built;
+      input.findings = &findings;
+    }
+    input.moved = drawing.moved;
+    input.reference_moved = against.moved;
+    input.moved_before = work.seen->before;
+    if (needs_reference()) input.reference_moved_before = views_.at(work.view()).seen->before;
+    const bool own_threshold = has_threshold(work.cells[i].method);
+    for (const Metric* metric : experiment_.metrics) {
+      if (metric->subject == MetricSubject::gbuffer || !has_subject(*metric, input, against.refused.empty())) continue;
+      if (metric->subject == MetricSubject::curves && !own_threshold && !metric->any_threshold) continue;
+      add(*metric, input, work.of_cells[i]);
+    }
+    work.measure_ms[i] = ms_since(start);
+    start = Clock::now();
+  }
+}
+
+void ExperimentRun::measure_all(std::deque<ViewWork>& works) {
+  struct Floor {
+    size_t view = 0;
+    FloorKey key{};
+    const ExperimentTruth* truth = nullptr;
+    std::vector<Measurement> values{};
+  };
+  std::vector<Floor> floors;
+  for (ViewWork& work : works) {
+    work.of_cells.resize(work.cells.size());
+    work.measure_ms.resize(work.cells.size());
+    for (size_t i = 0; i < work.cells.size(); ++i) {
+      const ExperimentTruth* const truth = work.truths[i];
+      if (!measures_floor_of(work.cells[i], truth)) continue;
+      const FloorKey key{truth->threshold, has_threshold(work.cells[i].method)};
+      if (views_[work.view()].floors.contains(key)) continue;
+      const auto same = [&](const Floor& one) { return one.view == work.view() && one.key == key; };
+      if (std::none_of(floors.begin(), floors.end(), same)) floors.push_back({work.view(), key, truth});
+    }
+  }
+  // What the reference scores is measured only once, so that of its own cells nothing else is.
+  std::vector<CellsOfTruth> groups = by_truth(works);
+  std::erase_if(groups, [&](const CellsOfTruth& group) { return works[group.work].model() == 0; });
+  const size_t pictures = works.empty() || works.front().model() == 0 ? 0 : works.size();
+  ThreadArena arena(how_.threads);
+  arena.execute([&] {
+    parallel_each(floors.size() + groups.size() + pictures, [&](size_t k) {
+      if (k < floors.size()) {
+        floors[k].values = measure_floor(floors[k].view, *floors[k].truth, floors[k].key.second);
+      } else if (k < floors.size() + groups.size()) {
+        const CellsOfTruth& group = groups[k - floors.size()];
+        measure_group(works[group.work], group.cells);
+      } else {
+        measure_gbuffer(works[k - floors.size() - groups.size()]);
+      }
+    });
+  });
+  for (Floor& floor : floors) views_[floor.view].floors.emplace(floor.key, std::move(floor.values));
+}
+
+void ExperimentRun::tell(ViewWork& work) {
+  if (work.under_way.valid()) work.under_way.get();
+  for (size_t i = 0; i < work.cells.size(); ++i) {
+    const ExperimentCell& cell = work.cells[i];
+    const ExperimentTruth* const truth = work.truths[i];
+    if (observer_.cell_begins) observer_.cell_begins();
+    MeasuredCell done{cell, *work.built, *work.seen, *work.drawings[i], *work.against[i], truth};
+    if (measures_floor_of(cell, truth)) done.floor = views_[work.view()].floors.at({truth->threshold, has_threshold(cell.method)});
+    if (!work.drawings[i]->refused.empty()) {
+      // Nothing was measured.
+    } else if (cell.model == 0) {
+      done.measurements.assign(done.floor.begin(), done.floor.end());
+    } else {
+      // In the order of the metrics, which is that of their kinds.
+      done.measurements = std::move(work.of_cells[i]);
+      done.measurements.insert(done.measurements.begin(), work.of_gbuffer.begin(), work.of_gbuffer.end());
+      const auto place = [&](const Measurement& one) {
+        return std::find(experiment_.metrics.begin(), experiment_.metrics.end(), one.metric) - experiment_.metrics.begin();
+      };
+      std::stable_sort(done.measurements.begin(), done.measurements.end(),
+                       [&](const Measurement& a, const Measurement& b) { return place(a) < place(b); });
+    }
+    done.measure_ms = work.measure_ms[i];
+    if (observer_.measured) observer_.measured(done);
+  }
+}
+
+void ExperimentRun::finish(std::deque<ViewWork>& works) {
+  if (how_.cancelled && how_.cancelled()) throw Cancelled{};
+  const auto start = Clock::now();
+  measure_all(works);
+  // Side by side cells take longer than one after the other would.
+  double sum = 0.0;
+  for (const ViewWork& work : works)
+    for (const double ms : work.measure_ms) sum += ms;
+  const double share = sum > 0.0 ? ms_since(start) / sum : 1.0;
+  for (ViewWork& work : works) {
+    for (double& ms : work.measure_ms) ms *= share;
+    tell(work);
+    if (work.model() != 0) spare_.push_back(std::move(work.drawn.seen.picture.gbuffer));
+  }
+  works.clear();
+}
+
+GBuffer ExperimentRun::take_spare() {
+  if (spare_.empty()) return {};
+  GBuffer out = std::move(spare_.back());
+  spare_.pop_back();
+  return out;
+}
+
+}  // namespace limn

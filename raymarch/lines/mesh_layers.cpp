@@ -38,7 +38,19 @@ std::shared_ptr<const MeshTree> tree_of(const LineTask& task, const std::vector<
 }  // namespace
 
 MeshLayers::MeshLayers(const LineTask& task, const std::vector<size_t>& objects, double edge_px, bool smooth)
-    : camera_(task.camera), extent_(task.extent), smooth_(smooth), tree_(tree_of(task, objects, edge_px)) {}
+    : camera_(task.camera),
+      extent_(task.extent),
+      smooth_(smooth),
+      edge_of_materials_(task.class_of_meeting(0, 1)),
+      tree_(tree_of(task, objects, edge_px)) {
+  for (const SceneObject& object : task.scene.objects) materials_.push_back(object.material);
+}
+
+LineClass MeshLayers::class_of(const PartMeeting& meeting) const {
+  const auto material = [&](int object, int of_face) { return materials_[static_cast<size_t>(object) - 1] + of_face; };
+  const bool same = material(meeting.object, meeting.material) == material(meeting.other_object, meeting.other_material);
+  return same ? LineClass::intersection : edge_of_materials_;
+}
 
 /// The part that the curve runs on: what most of a few short rays through it hit.
 std::uint32_t MeshLayers::part_of(const SurfaceCurve& curve) const {
@@ -194,7 +206,7 @@ std::vector<SurfaceCurve> MeshLayers::intersections() const {
       sample.joint = !curve.samples.empty() && facing != before_facing;
       before_facing = facing;
       sample.lift = v;
-      sample.line_class = LineClass::intersection;
+      sample.line_class = class_of(hit);
       sample.object = hits[at].object;
       project_sample(camera_, sample);
       curve.samples.push_back(sample);

@@ -258,7 +258,8 @@ PartMeetings MeshTree::find_meetings() const {
       // An edge in a face's plane goes through it nowhere, whatever rounding says.
       if (std::fabs(glm::dot(b - a, other_normal)) < kInPlane * length) continue;
       const bool lower = own.part < other.part;
-      hits.push_back({glm::mix(a, b, hit.t / length), lower ? own_normal : other_normal, lower ? other_normal : own_normal, other.object});
+      hits.push_back({glm::mix(a, b, hit.t / length), lower ? own_normal : other_normal, lower ? other_normal : own_normal, other.object,
+                      own.object, other.material, own.material});
       for (const std::uint32_t face : faces)
         of_pair[{std::min(face, hit.triangle), std::max(face, hit.triangle)}].push_back(hits.size() - 1);
     }

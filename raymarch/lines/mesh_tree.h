@@ -28,7 +28,8 @@ struct LayerTriangle {
 struct PartMeeting {
   glm::dvec3 p{0.0};
   glm::dvec3 lower_normal{0.0}, upper_normal{0.0};  ///< Unit, of the parts of lower and higher number.
-  int object = 1;
+  int object = 1, other_object = 1;
+  int material = 0, other_material = 0;  ///< Of their faces.
 };
 /// Polylines along which parts go through each other: places, and those that come next to each.
 struct PartMeetings {

@@ -266,7 +266,9 @@ std::int64_t count_broken(const Refiner& refiner, const FieldCurve& curve) {
 void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurveSettings& settings, const ExecutionSettings& how,
                      FieldCurves& result) {
   const std::vector<Strand> strands = strands_of(found, search, result);
-  const StrandSettings cutting{search.sharp, search.camera, search.viewer, settings.tolerance_px, settings.extent, settings.lipschitz};
+  StrandScope scope(search.sharp, settings.extent);
+  const StrandSettings cutting{search.sharp,          scope,           search.camera,     search.viewer,
+                               settings.tolerance_px, settings.extent, settings.lipschitz};
   std::vector<std::vector<FieldCurve>> cut(strands.size());
   std::vector<FieldCurves> stats(strands.size());
   parallel_for(size_t{0}, strands.size(), [&](size_t i) {

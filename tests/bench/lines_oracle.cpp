@@ -15,15 +15,17 @@ constexpr std::int64_t kMostFaces = 2'000'000;
 struct Ray {
   double beside_px = 0.0, nearer_px = 0.0;
 };
-// At a crease the line's own surface may rise towards the eye beside it; at the line itself it is as near as the line's tolerance makes it.
-// What a contour bounds lies on its left: rays that pass it closely on its right meet none of its own surface.
-constexpr std::array<Ray, 3> kAlong = {{{0.0, 0.02}, {0.25, 1.0}, {-0.25, 1.0}}};
-constexpr std::array<Ray, 4> kOutside = {{{0.25, 0.02}, {0.05, 0.02}, {0.0125, 0.02}, {0.003, 0.02}}};
+// At a crease the line's own surface may rise towards the eye beside it, and at the line itself by as much as the line's tolerance makes
+// it.
+constexpr std::array<Ray, 3> kAlong = {{{0.0, 1.0}, {0.25, 1.0}, {-0.25, 1.0}}};
+constexpr double kInFront_px = 0.02;  // what the ray through the point hits nearer by this hides what is drawn as hidden
+// What a contour bounds lies on its left: rays that pass it closely on its right meet none of its own surface, however near.
+constexpr std::array<Ray, 4> kOutside = {{{0.25, 0.002}, {0.05, 0.002}, {0.0125, 0.002}, {0.003, 0.002}}};
 
 struct Asked {
   glm::dvec2 px{0.0};
   double depth = 0.0;
-  bool visible = false, contour = false;
+  const LineEdge* edge = nullptr;
 };
 
 /// The depth of a straight step at a share of its image: in perspective its inverse is linear there.
@@ -42,7 +44,7 @@ void add_points(const LineEdge& edge, const Camera& camera, std::vector<Asked>& 
     for (; length > 0.0 && next <= along + length && next <= whole - kFromEnds_px; next += kApart_px) {
       const double t = (next - along) / length;
       const glm::dvec2 px = glm::mix(a.px, b.px, t), across = glm::dvec2(a.px.y - b.px.y, b.px.x - a.px.x) / length;
-      asked.push_back({px, depth_between(camera, a.depth, b.depth, t), edge.invisibility == 0, edge.line_class == LineClass::contour});
+      asked.push_back({px, depth_between(camera, a.depth, b.depth, t), &edge});
       for (const Ray& ray : kAlong) points_px.push_back(px + ray.beside_px * across);
       for (const Ray& ray : kOutside) points_px.push_back(px + ray.beside_px * across);
     }
@@ -85,20 +87,22 @@ OracleCount ask_oracle(const SceneModel& model, const Camera& camera, const View
   for (size_t i = 0; i < asked.size(); ++i) {
     const double unit_px = pixels_per_unit_at(camera, asked[i].depth);
     size_t next = i * (kAlong.size() + kOutside.size());
+    const auto is_nearer = [&](const PointSample& hit, double margin_px) {
+      return hit.status == HitStatus::hit && project(camera, hit.position).z < asked[i].depth - margin_px / unit_px;
+    };
+    const bool in_front = is_nearer(samples[next], kInFront_px);
     const auto nearer = [&](const auto& rays) {
       size_t found = 0;
-      for (const Ray& ray : rays) {
-        const PointSample& hit = samples[next++];
-        found += hit.status == HitStatus::hit && project(camera, hit.position).z < asked[i].depth - ray.nearer_px / unit_px;
-      }
+      for (const Ray& ray : rays) found += is_nearer(samples[next++], ray.nearer_px);
       return found;
     };
     const size_t along = nearer(kAlong), outside = nearer(kOutside);
     ++count.points;
-    count.visible += asked[i].visible;
-    const bool contour = asked[i].contour;
-    const bool occluded = asked[i].visible && along == kAlong.size() && (!contour || outside == kOutside.size());
-    const bool seen = !asked[i].visible && (along == 0 || (contour && outside == 0));
+    const bool visible = asked[i].edge->invisibility == 0, contour = asked[i].edge->line_class == LineClass::contour;
+    count.visible += visible;
+    const bool occluded = visible && along == kAlong.size() && (!contour || outside == kOutside.size());
+    const bool passed = !visible && contour && outside == 0;
+    const bool seen = passed || (!visible && along == 0 && !in_front);
     count.occluded += occluded;
     count.seen += seen;
     if (occluded || seen) count.places.push_back(asked[i].px);

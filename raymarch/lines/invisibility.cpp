@@ -209,6 +209,14 @@ class Cutter {
     return found == cut_.events.end() ? nullptr : &*found;
   }
 
+  /// All of three rays say that something lies in front: from places clear of nearer lines where there are any.
+  bool is_hidden(const CurvePiece& piece) {
+    for (const double share : {0.5, 0.3, 0.7}) {
+      if (cast(clear_ray_at(piece, share).value_or(ray_at(piece, share))) == 0) return false;
+    }
+    return true;
+  }
+
   std::optional<int> offset_by_rays(const std::vector<size_t>& arc, const std::vector<int>& relative, bool around) {
     // The two longest pieces; in a lone one, two places.
     size_t first = 0, second = 0;
@@ -236,8 +244,7 @@ class Cutter {
         if (k != first && k != second && length(k) >= kWorthAsking_px && ask(k, 0.5) != offset) return {};
       }
     }
-    // The longest hidden piece, too, and all that are drawn as visible, from a pixel on: where nearer lines run along these, rays from the
-    // curve itself say something if all of them agree.
+    // The longest hidden piece, too, and all that are drawn as visible, from a pixel on.
     std::optional<size_t> hidden;
     for (size_t k = 0; k < arc.size(); ++k) {
       if (offset + relative[k] != 0 && (!hidden || length(k) > length(*hidden))) hidden = k;
@@ -246,10 +253,7 @@ class Cutter {
     if (hidden && !is_asked(*hidden) && length(*hidden) >= kWorthAsking_px && ask(*hidden, 0.5) != offset) return {};
     for (size_t k = 0; k < arc.size(); ++k) {
       if (offset + relative[k] != 0 || is_asked(k) || length(k) < kShort_px) continue;
-      const CurvePiece& piece = cut_.pieces[arc[k]];
-      const auto place = clear_ray_at(piece, 0.5);
-      if (place ? cast(*place) > 0 : cast(ray_at(piece, 0.5)) > 0 && cast(ray_at(piece, 0.3)) > 0 && cast(ray_at(piece, 0.7)) > 0)
-        return {};
+      if (is_hidden(cut_.pieces[arc[k]])) return {};
     }
     return offset;
   }

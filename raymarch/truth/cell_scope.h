@@ -8,23 +8,13 @@
 
 namespace limn {
 
-/// Of the tree that SharpField's becomes where branches without influence are left out.
-struct ScopeNode {
-  bool maximum = false;
-  int left = -1, right = -1;  ///< Nodes; -1 in a branch's, and `right` where nothing is left on that side.
-  int branch = -1;            ///< Index into CellScope::branches.
-};
-
 /// The branches that may matter to the surface in a box, each with an evaluator that is right there and around it.
 struct CellScope {
   std::vector<int> branches{};
-  std::vector<ScopeNode> nodes{};  ///< Children before parents; the last is the root.
   std::vector<FieldEvaluator*> evaluators{};
   std::vector<std::unique_ptr<FieldEvaluator>> owned{};
 };
 CellScope whole_scope(const SharpField& sharp);
-/// For another thread.
-CellScope with_own_evaluators(const SharpField& sharp, const CellScope& scope);
 /// With programs shortened for what is within `reach` of the box.
 CellScope shortened(const CellScope& scope, const Box& box, double reach);
 

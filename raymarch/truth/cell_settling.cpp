@@ -1,7 +1,5 @@
 #include "raymarch/truth/cell_settling.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <climits>
 #include <unordered_map>
@@ -139,17 +137,11 @@ void settle(const CellSearch& search, const std::vector<glm::ivec3>& cells, Cell
   for (const auto& [seam, curves] : result.seams) tubes.add(search.grid, curves);
   const Settler settler{search, tubes};
   std::vector<std::uint8_t> left(cells.size(), 0);
-  tbb::enumerable_thread_specific<CellScope> wholes;
   parallel_parts(cells.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
-    // Neighbours share what is left of the tree around them.
-    CellScope& whole = wholes.local();
-    if (whole.branches.empty()) whole = whole_scope(search.sharp);
-    Box around;
-    for (size_t i = range.begin(); i < range.end(); ++i) around = merge(around, search.grid.cell(cells[i]));
-    const CellScope near = narrowed(whole, survivors_in(search, whole, around).relevant);
+    const CellScope whole = whole_scope(search.sharp);
     for (size_t i = range.begin(); i < range.end(); ++i) {
-      const CellScope scope = shortened(near, search.grid.cell(cells[i]), 0.0);
+      const CellScope scope = shortened(whole, search.grid.cell(cells[i]), 0.0);
       const bool beside = tubes.cells.contains(cells[i]);
       left[i] = settler.stays(scope, search.grid.side, cells[i], kSettlingCuts, beside);
     }

@@ -52,22 +52,16 @@ void descend(Walk& walk, const CellScope& scope, int level, const glm::ivec3& ce
   for (int i = 0; i < 8; ++i) descend(walk, inner, level + 1, 2 * cell + glm::ivec3(i & 1, i >> 1 & 1, i >> 2 & 1));
 }
 
-struct TaskCell {
-  glm::ivec3 cell{0};
-  CellScope scope{};  ///< Narrowed to it.
-};
-
 /// Cells of the task level that bounds leave a curve in.
-std::vector<TaskCell> task_cells(const CellSearch& search, const CellScope& whole, int task_level) {
-  std::vector<TaskCell> cells;
-  cells.push_back({glm::ivec3(0), narrowed(whole, survivors_in(search, whole, box_of(search, 0, glm::ivec3(0))).relevant)});
+std::vector<glm::ivec3> task_cells(const CellSearch& search, int task_level) {
+  const CellScope scope = whole_scope(search.sharp);
+  std::vector<glm::ivec3> cells = {glm::ivec3(0)};
   for (int level = 0; level < task_level; ++level) {
-    std::vector<TaskCell> next;
-    for (const TaskCell& parent : cells) {
+    std::vector<glm::ivec3> next;
+    for (const glm::ivec3& cell : cells) {
       for (int i = 0; i < 8; ++i) {
-        const glm::ivec3 child = 2 * parent.cell + glm::ivec3(i & 1, i >> 1 & 1, i >> 2 & 1);
-        const Survivors found = survivors_in(search, parent.scope, box_of(search, level + 1, child));
-        if (!found.empty()) next.push_back({child, narrowed(parent.scope, found.relevant)});
+        const glm::ivec3 child = 2 * cell + glm::ivec3(i & 1, i >> 1 & 1, i >> 2 & 1);
+        if (!survivors_in(search, scope, box_of(search, level + 1, child)).empty()) next.push_back(child);
       }
     }
     cells = std::move(next);
@@ -84,14 +78,12 @@ void append(const CellCurves& from, CellCurves& to) {
 
 CellResult search_cells(const CellSearch& search, const ExecutionSettings& how) {
   const int task_level = std::min(kTaskLevel, search.level);
-  const CellScope whole = whole_scope(search.sharp);
-  const std::vector<TaskCell> tasks = task_cells(search, whole, task_level);
+  const std::vector<glm::ivec3> tasks = task_cells(search, task_level);
   std::vector<Walk> walks(tasks.size(), Walk{search});
   parallel_for(size_t{0}, tasks.size(), [&](size_t i) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
-    const CellScope own = with_own_evaluators(search.sharp, tasks[i].scope);
-    const glm::ivec3& cell = tasks[i].cell;
-    descend(walks[i], shortened(own, box_of(search, task_level, cell), kMarchReach * search.grid.side), task_level, cell);
+    const CellScope whole = whole_scope(search.sharp);
+    descend(walks[i], shortened(whole, box_of(search, task_level, tasks[i]), kMarchReach * search.grid.side), task_level, tasks[i]);
   });
   CellResult result;
   std::vector<glm::ivec3> cells;

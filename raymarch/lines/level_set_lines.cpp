@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <utility>
 
 #include "raymarch/lines/found_curves.h"
 #include "raymarch/lines/level_set_layers.h"
@@ -20,6 +20,8 @@ constexpr double kTurn = 0.03;      // radians, beyond twice the spread that a c
 constexpr double kSeamReach = 2.0;  // voxels: farther from a surface there is no seam with it
 
 constexpr size_t kBlock = 256;
+constexpr int kRegionBits = 4;  // regions are so many halvings above cells
+constexpr size_t kMostKeptBytes = size_t{512} << 20;
 
 void append(const CellCurves& from, CellCurves& to) {
   to.crossings.insert(to.crossings.end(), from.crossings.begin(), from.crossings.end());
@@ -35,7 +37,13 @@ void for_blocks(size_t cells, const ExecutionSettings& execution, const Visit& v
   });
 }
 
-/// Cells of a cubic lattice in solver space that a contour, or the rim's curve, may go through.
+std::uint64_t packed(const glm::ivec3& cell) {
+  const auto part = [](int v) { return static_cast<std::uint64_t>(v); };
+  return (part(cell.x) << 20 | part(cell.y)) << 20 | part(cell.z);
+}
+std::uint64_t region_of(const glm::ivec3& cell) { return packed({cell.x >> kRegionBits, cell.y >> kRegionBits, cell.z >> kRegionBits}); }
+
+/// Cells of a cubic lattice in solver space that a contour, or the rim's curve, may go through, region by region.
 struct Lattice {
   CellGrid grid{};
   std::vector<glm::ivec3> cells{};
@@ -86,18 +94,39 @@ Lattice lattice_of(const PlacedLevelSet& placed, const std::vector<SurfaceCell>&
       for (int y = -around; y <= around; ++y)
         for (int z = -around; z <= around; ++z) lattice.cells.push_back(own + glm::ivec3(x, y, z));
   }
-  const auto before = [](const glm::ivec3& a, const glm::ivec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
+  const auto before = [](const glm::ivec3& a, const glm::ivec3& b) {
+    return std::pair(region_of(a), packed(a)) < std::pair(region_of(b), packed(b));
+  };
   std::sort(lattice.cells.begin(), lattice.cells.end(), before);
   lattice.cells.erase(std::unique(lattice.cells.begin(), lattice.cells.end()), lattice.cells.end());
   return lattice;
 }
 
-CellOutput march(const CellSearch& search, size_t branch, const Lattice& lattice, const ExecutionSettings& execution) {
-  std::vector<CellOutput> parts((lattice.cells.size() + kBlock - 1) / kBlock);
-  for_blocks(lattice.cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
+/// Cells of one region.
+struct Region {
+  size_t begin = 0, end = 0;
+  LatticeSamples* samples = nullptr;
+};
+std::vector<Region> regions_of(const Lattice& lattice, LatticeMemory& memory) {
+  memory.prepare(lattice.grid, kMostKeptBytes);
+  std::vector<Region> regions;
+  for (size_t begin = 0, end = 0; begin < lattice.cells.size(); begin = end) {
+    const std::uint64_t region = region_of(lattice.cells[begin]);
+    while (end < lattice.cells.size() && region_of(lattice.cells[end]) == region) ++end;
+    regions.push_back({begin, end, &memory.regions[region].branches[0]});
+  }
+  return regions;
+}
+
+CellOutput march(const CellSearch& search, size_t branch, const Lattice& lattice, LatticeMemory& memory,
+                 const ExecutionSettings& execution) {
+  const std::vector<Region> regions = regions_of(lattice, memory);
+  std::vector<CellOutput> parts(regions.size());
+  parallel_for(size_t{0}, regions.size(), [&](size_t r) {
+    if (execution.cancelled && execution.cancelled()) throw Cancelled{};
     FieldEvaluator evaluator(search.sharp.branches[branch]);
-    for (size_t i = begin; i < end; ++i)
-      march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, parts[part]);
+    for (size_t i = regions[r].begin; i < regions[r].end; ++i)
+      march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, regions[r].samples, parts[r]);
   });
   CellOutput all;
   for (const CellOutput& part : parts) {
@@ -194,8 +223,8 @@ void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContr
   CellResult found;
   for (size_t k = 0; k < body.size(); ++k) {
     const PlacedLevelSet& grid = *tracing.grids[body[k]];
-    found.branches[static_cast<int>(k)] =
-        march(search, k, lattice_of(grid, turning_cells(grid, task, tracing.levels, tracing.execution)), tracing.execution);
+    found.branches[static_cast<int>(k)] = march(search, k, lattice_of(grid, turning_cells(grid, task, tracing.levels, tracing.execution)),
+                                                task.kept.level_sets.lattices[body[k]], tracing.execution);
     for (size_t j = 0; j < k; ++j) {
       const PlacedLevelSet& other = *tracing.grids[body[j]];
       if (intersect(grid.box, other.box).empty()) continue;

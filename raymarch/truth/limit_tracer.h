@@ -7,6 +7,14 @@
 
 namespace limn {
 
+/// An edge on which N.V crosses a level, from the smaller side to the greater.
+struct PendingRoot {
+  LimitEndKey key{};
+  std::uint32_t patch = 0;
+  glm::dvec2 uv0{0.0}, uv1{0.0};
+  double h0 = 0.0, h1 = 0.0, level = 0.0;
+};
+
 struct LimitTracer {
   const PlacedLimitSurface& placed;
   const LimitGrid& grid;
@@ -16,6 +24,7 @@ struct LimitTracer {
   std::vector<double> facing{};  ///< N.V of each side.
   std::vector<LimitSegment> segments{};
   std::map<LimitEndKey, double> roots{};  ///< Place of each root along its edge, from the smaller side to the greater.
+  std::vector<PendingRoot> pending{};     ///< Roots of `roots` that are still to be found.
 
   double h(std::uint32_t side) const { return facing[side] - level.threshold; }
 };

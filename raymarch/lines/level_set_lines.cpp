@@ -20,7 +20,8 @@ constexpr double kTurn = 0.03;      // radians, beyond twice the spread that a c
 constexpr double kSeamReach = 2.0;  // voxels: farther from a surface there is no seam with it
 
 constexpr size_t kBlock = 256;
-constexpr int kRegionBits = 4;  // regions are so many halvings above cells
+constexpr int kRegionBits = 4, kRegion = 1 << kRegionBits;  // cells along a region's side
+constexpr int kIndexBits = 20;                              // of a cell along an axis
 constexpr size_t kMostKeptBytes = size_t{512} << 20;
 
 void append(const CellCurves& from, CellCurves& to) {
@@ -37,11 +38,20 @@ void for_blocks(size_t cells, const ExecutionSettings& execution, const Visit& v
   });
 }
 
-std::uint64_t packed(const glm::ivec3& cell) {
+std::uint64_t packed(const glm::ivec3& cell, int bits) {
   const auto part = [](int v) { return static_cast<std::uint64_t>(v); };
-  return (part(cell.x) << 20 | part(cell.y)) << 20 | part(cell.z);
+  return (part(cell.x) << bits | part(cell.y)) << bits | part(cell.z);
 }
-std::uint64_t region_of(const glm::ivec3& cell) { return packed({cell.x >> kRegionBits, cell.y >> kRegionBits, cell.z >> kRegionBits}); }
+glm::ivec3 unpacked(std::uint64_t key, int bits) {
+  const auto part = [&](int shift) { return static_cast<int>(key >> shift & ((std::uint64_t{1} << bits) - 1)); };
+  return {part(2 * bits), part(bits), part(0)};
+}
+/// Cells by their regions, and within these by their places.
+std::uint64_t region_of(const glm::ivec3& cell) { return packed(cell >> kRegionBits, kIndexBits - kRegionBits); }
+std::uint64_t key_of(const glm::ivec3& cell) { return region_of(cell) << 3 * kRegionBits | packed(cell & (kRegion - 1), kRegionBits); }
+glm::ivec3 cell_of(std::uint64_t key) {
+  return unpacked(key >> 3 * kRegionBits, kIndexBits - kRegionBits) * kRegion + unpacked(key, kRegionBits);
+}
 
 /// Cells of a cubic lattice in solver space that a contour, or the rim's curve, may go through, region by region.
 struct Lattice {
@@ -86,19 +96,19 @@ Lattice lattice_of(const PlacedLevelSet& placed, const std::vector<SurfaceCell>&
     lattice.grid.corner = placed.box.lower - 2.0 * placed.voxel;
   }
   const auto cell_at = [&](const glm::dvec3& p) { return glm::ivec3(glm::floor((p - lattice.grid.corner) / lattice.grid.side)); };
+  std::vector<std::uint64_t> keys;
   for (const SurfaceCell& cell : cells) {
     const glm::dvec3 middle = placed.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
     const glm::ivec3 own = aligned ? cell.node - lowest : cell_at(middle);
     const int around = aligned && !cell.near_corner ? 0 : 1;
     for (int x = -around; x <= around; ++x)
       for (int y = -around; y <= around; ++y)
-        for (int z = -around; z <= around; ++z) lattice.cells.push_back(own + glm::ivec3(x, y, z));
+        for (int z = -around; z <= around; ++z) keys.push_back(key_of(own + glm::ivec3(x, y, z)));
   }
-  const auto before = [](const glm::ivec3& a, const glm::ivec3& b) {
-    return std::pair(region_of(a), packed(a)) < std::pair(region_of(b), packed(b));
-  };
-  std::sort(lattice.cells.begin(), lattice.cells.end(), before);
-  lattice.cells.erase(std::unique(lattice.cells.begin(), lattice.cells.end()), lattice.cells.end());
+  parallel_sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  lattice.cells.reserve(keys.size());
+  for (const std::uint64_t key : keys) lattice.cells.push_back(cell_of(key));
   return lattice;
 }
 

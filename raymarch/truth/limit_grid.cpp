@@ -255,6 +255,8 @@ LimitBlock block_of(const LimitGrid& grid, std::uint32_t first, std::uint32_t en
   for_sides([&](std::uint32_t side) { least = std::min(least, glm::dot(block.axis, grid.normals[side])); });
   // Cosines say little of small angles.
   block.angle = length > 0.0 ? std::acos(std::max(least, -1.0)) + kBlockSlack : std::numbers::pi;
+  block.sine = std::sin(block.angle);
+  block.cosine = std::cos(block.angle);
   return block;
 }
 

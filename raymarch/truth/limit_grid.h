@@ -81,7 +81,9 @@ using LimitSeams = std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector
 struct LimitBlock {
   std::uint32_t first = 0, end = 0;  ///< Into LimitGrid::triangles.
   glm::dvec3 center{0.0}, axis{0.0};
-  double radius = 0.0, angle = 0.0;  ///< Of the ball, and between the cone's axis and its surface.
+  double radius = 0.0;
+  double angle = 0.0;               ///< Between the cone's axis and its surface.
+  double sine = 0.0, cosine = 1.0;  ///< Of it.
 };
 
 struct LimitGrid {

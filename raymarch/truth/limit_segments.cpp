@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "sdf/parallel.h"
@@ -154,6 +153,15 @@ void cross_triangle(LimitTracer& tracer, const LimitTriangle& triangle) {
 /// Whether N.V may cross the level somewhere in the block: the angle between normal and view is that between the cone's axis and the way
 /// from the ball's middle to the eye, but for the cone's width and how wide the ball is seen.
 bool may_cross(const LimitBlock& block, const Camera& camera, double threshold) {
+  if (threshold == 0.0 && camera.projection == Projection::perspective && block.cosine > 0.0) {
+    const glm::dvec3 to_eye = camera.eye - block.center;
+    const double squared = glm::dot(to_eye, to_eye), seen = block.radius * block.radius;
+    if (!(squared > seen * (1.0 + kWidthSlack))) return true;
+    // cos(angle) < sin(width), times the distance: the sine of the sum of the cone's width and the ball's.
+    const double sine = block.sine * std::sqrt(squared - seen) + block.cosine * block.radius;
+    const bool narrow = block.cosine * std::sqrt(squared - seen) > block.sine * block.radius;  // the sum is less than a right angle
+    return !narrow || !(std::abs(glm::dot(block.axis, to_eye)) > sine + kWidthSlack * std::sqrt(squared));
+  }
   double width = block.angle, cosine = glm::dot(block.axis, camera.world_from_camera[2]);
   if (camera.projection == Projection::perspective) {
     const glm::dvec3 to_eye = camera.eye - block.center;
@@ -171,7 +179,8 @@ std::vector<std::uint32_t> triangles_to_cross(LimitTracer& tracer) {
   const auto facing_of = [&](std::uint32_t side) {
     return glm::dot(grid.normals[side], view_vector(tracer.camera, grid.positions[grid.node_of_side[side]]));
   };
-  tracer.facing.resize(grid.normals.size(), std::numeric_limits<double>::quiet_NaN());
+  tracer.facing = std::make_unique_for_overwrite<double[]>(grid.normals.size());
+  std::vector<bool> known(grid.normals.size(), tracer.level.seams);
   if (tracer.level.seams) {
     parallel_parts(grid.normals.size(), size_t{4096}, [&](const IndexRange<size_t>& range) {
       for (size_t s = range.begin(); s < range.end(); ++s) tracer.facing[s] = facing_of(static_cast<std::uint32_t>(s));
@@ -187,7 +196,8 @@ std::vector<std::uint32_t> triangles_to_cross(LimitTracer& tracer) {
     for (std::uint32_t t = grid.blocks[b].first; t < grid.blocks[b].end; ++t) {
       for (const LimitCorner& corner : grid.triangles[t].corners) {
         for (const std::uint32_t side : {corner.side, corner.side_back}) {
-          if (std::isnan(tracer.facing[side])) tracer.facing[side] = facing_of(side);
+          if (!known[side]) tracer.facing[side] = facing_of(side);
+          known[side] = true;
         }
       }
       if (ask_for_roots(tracer, grid.triangles[t])) triangles.push_back(t);

@@ -2,6 +2,7 @@
 // Internal to limit_segments.cpp and limit_creases.cpp: what tracing the lattice of one surface goes by.
 
 #include <map>
+#include <memory>
 
 #include "raymarch/truth/limit_segments.h"
 
@@ -20,8 +21,8 @@ struct LimitTracer {
   const LimitGrid& grid;
   const Camera& camera;
   LimitLevel level{};
-  bool mirrored = false;         ///< Triangles run clockwise as seen from the side of their normals.
-  std::vector<double> facing{};  ///< N.V of each side.
+  bool mirrored = false;               ///< Triangles run clockwise as seen from the side of their normals.
+  std::unique_ptr<double[]> facing{};  ///< N.V of each side that matters; most memory of large grids is never touched.
   std::vector<LimitSegment> segments{};
   std::map<LimitEndKey, double> roots{};  ///< Place of each root along its edge, from the smaller side to the greater.
   std::vector<PendingRoot> pending{};     ///< Roots of `roots` that are still to be found.

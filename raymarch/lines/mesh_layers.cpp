@@ -5,6 +5,7 @@
 #include <map>
 
 #include "raymarch/lines/line_memory.h"
+#include "raymarch/surface/object_mesh.h"
 #include "raymarch/truth/proxy.h"
 #include "sdf/parallel.h"
 
@@ -31,8 +32,18 @@ std::shared_ptr<const MeshTree> tree_of(const LineTask& task, const std::vector<
   }
   const int level = proxy_level(part, task.camera, edge_px);
   std::shared_ptr<const MeshTree>& kept = task.kept.trees[{objects.front(), level}];
-  if (!kept) kept = std::make_shared<const MeshTree>(proxy_model(part, level, task.settings.max_bytes), numbers, task.extent);
-  return kept;
+  if (kept) return kept;
+  std::vector<std::shared_ptr<const Polygons>> polygons;
+  glm::dvec3 offset(0.0);
+  if (std::all_of(part.objects.begin(), part.objects.end(), [](const SceneObject& object) { return is_cage(object); })) {
+    if (const Box box = bounds(part); !box.empty()) offset = box.center();
+    for (const SceneObject& object : part.objects) polygons.push_back(refined_polygons(object, level, task.settings.max_bytes, offset));
+  } else {
+    const SceneModel model = proxy_model(part, level, task.settings.max_bytes);
+    offset = model.render_origin;
+    for (const auto& surface : model.surfaces) polygons.push_back(surface.polygons);
+  }
+  return kept = std::make_shared<const MeshTree>(polygons, offset, numbers, task.extent);
 }
 
 }  // namespace

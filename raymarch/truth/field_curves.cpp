@@ -309,7 +309,7 @@ FieldCurves traced_in(const Field& field, const Box& bounds, int level, const Ca
   const SharpField sharp = split_branches(field, bounds.radius(), settings.whole_seams);
   const CellSearch search{
       sharp, camera, viewer, grid, level, {0.0, settings.threshold}, settings.threshold > 0.0 ? 3u : 1u, settings.whole_seams};
-  CellResult found = search_cells(search, how);
+  CellResult found = search_cells(search, settings.memory ? settings.memory(level) : nullptr, how);
   result.cells = found.cells;
   result.unsettled = found.unsettled;
   result.unproven_px = kUnprovenReach * result.cell_px;

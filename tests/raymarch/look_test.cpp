@@ -18,8 +18,15 @@ namespace {
 
 Scene ball() { return scene_of({object_of(make_shape("sphere", {}))}); }
 
+/// From the front, so that the middle of a ball is that of the picture.
+Camera front_of(const Scene& scene) {
+  CameraSettings settings = view(160, 120);
+  settings.direction = glm::dvec3(0.0, 0.0, 1.0);
+  return framing(scene, settings);
+}
+
 Picture drawn(const Scene& scene, const ShadingSettings& shading, std::vector<MethodCall> methods = {}, int samples = 1) {
-  const Camera camera = framing(scene, view(160, 120));
+  const Camera camera = front_of(scene);
   PictureSettings settings;
   settings.shading = shading;
   settings.methods = std::move(methods);
@@ -51,7 +58,7 @@ TEST(Shading, FlatIsTheColourAndNoneIsNothing) {
 
 TEST(Shading, HeadlightIsThatOfShadeHeadlight) {
   const Scene scene = ball();
-  const Camera camera = framing(scene, view(160, 120));
+  const Camera camera = front_of(scene);
   const SceneModel model = model_of(scene);
   const Picture picture = drawn(scene, {});
   const BorderInput input{picture.gbuffer, camera, model, scene};

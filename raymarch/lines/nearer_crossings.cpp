@@ -11,7 +11,7 @@
 namespace limn {
 namespace {
 
-constexpr double kBucket_px = 4.0;
+constexpr double kBucket_px = 2.0;
 constexpr double kMargin_px = 1e-3;      // so that no rounding leaves a bucket out
 constexpr double kBeyondFrame_px = 8.0;  // steps farther outside the picture are left out
 constexpr double kBelowOne = 1.0 - 1e-15;
@@ -84,8 +84,15 @@ double share_in_space(const Ends& step, double t, const Camera& camera) {
   return t * step.a.depth / (step.b.depth + t * (step.a.depth - step.b.depth));
 }
 
+bool may_touch(const Ends& step, const Ends& nearer, double within_px) {
+  const glm::dvec2 low = glm::max(glm::min(step.a.px, step.b.px), glm::min(nearer.a.px, nearer.b.px) - within_px),
+                   high = glm::min(glm::max(step.a.px, step.b.px), glm::max(nearer.a.px, nearer.b.px) + within_px);
+  return low.x <= high.x && low.y <= high.y;
+}
+
 /// Where `nearer` crosses `step` in the image, in front of it by more than `nearer_px`.
 std::optional<Meeting> meet(const Ends& step, const Ends& nearer, double nearer_px, const Camera& camera) {
+  if (!may_touch(step, nearer, kMargin_px)) return {};
   const glm::dvec2 d = step.b.px - step.a.px, e = nearer.b.px - nearer.a.px, between = nearer.a.px - step.a.px;
   const double determinant = cross(d, e);
   // Steps of one straight line meet nowhere, whatever rounding says.
@@ -120,12 +127,6 @@ double distance_of(const Ends& one, const Ends& other) {
 
 /// How far apart two steps may lie in the image for their lines to cross.
 double greatest_sag_px(const SurfaceCurve& one, const SurfaceCurve& other) { return one.apart_px + other.apart_px; }
-
-bool may_touch(const Ends& step, const Ends& nearer, double within_px) {
-  const glm::dvec2 low = glm::max(glm::min(step.a.px, step.b.px), glm::min(nearer.a.px, nearer.b.px) - within_px),
-                   high = glm::min(glm::max(step.a.px, step.b.px), glm::max(nearer.a.px, nearer.b.px) + within_px);
-  return low.x <= high.x && low.y <= high.y;
-}
 
 bool is_in_front(const Ends& nearer, const Ends& step, double nearer_px, const Camera& camera) {
   const double depth = std::max(step.a.depth, step.b.depth);

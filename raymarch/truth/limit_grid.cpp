@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <unordered_map>
 
 #include "raymarch/truth/limit_cone_tips.h"
@@ -15,18 +14,8 @@ namespace {
 constexpr double kSamePlace = 1e-6;  // of the extent
 constexpr double kRounding = 1e-12;  // of the largest coordinate: no two evaluations agree better
 constexpr int kFinestSteps = 256;    // along a patch's side
-constexpr std::uint32_t kBlockTriangles = 16;
-constexpr size_t kSeamPart = 16384;   // triangles
-constexpr double kBlockSlack = 1e-7;  // radians
-constexpr double kTip_px = 0.005;     // the patches' side is so far from its ends after one step, where it shrinks as the step's square
-
-bool has_normal(const glm::dvec3& n) { return std::isfinite(n.x) && glm::dot(n, n) > 0.5; }
-
-/// Where a patch degenerates (a collapsed side, a corner without derivatives) the normal of a point a little inside serves.
-glm::dvec2 inwards(const LimitPatch& patch, const glm::dvec2& uv) {
-  const glm::dvec2 middle(patch.triangle ? 1.0 / 3.0 : 0.5);
-  return glm::mix(uv, middle, 1e-4);
-}
+constexpr size_t kSeamPart = 16384;  // triangles
+constexpr double kTip_px = 0.005;    // the patches' side is so far from its ends after one step, where it shrinks as the step's square
 
 /// Nodes by place: a hash of cells twice as wide as the tolerance, of which a point's neighbourhood touches at most eight.
 class Places {
@@ -232,121 +221,7 @@ void find_seams(const PlacedLimitSurface& placed, LimitGrid& grid) {
   });
 }
 
-LimitBlock block_of(const LimitGrid& grid, std::uint32_t first, std::uint32_t end) {
-  LimitBlock block{first, end};
-  Box box;
-  const auto for_sides = [&](const auto& visit) {
-    for (std::uint32_t t = first; t < end; ++t) {
-      for (const LimitCorner& corner : grid.triangles[t].corners) {
-        visit(corner.side);
-        if (corner.side_back != corner.side) visit(corner.side_back);
-      }
-    }
-  };
-  for_sides([&](std::uint32_t side) {
-    box = include(box, grid.positions[grid.node_of_side[side]]);
-    block.axis += grid.normals[side];
-  });
-  block.center = box.center();
-  block.radius = box.radius();
-  const double length = glm::length(block.axis);
-  block.axis = length > 0.0 ? block.axis / length : glm::dvec3(0.0);
-  double least = 1.0;
-  for_sides([&](std::uint32_t side) { least = std::min(least, glm::dot(block.axis, grid.normals[side])); });
-  // Cosines say little of small angles.
-  block.angle = length > 0.0 ? std::acos(std::max(least, -1.0)) + kBlockSlack : std::numbers::pi;
-  block.sine = std::sin(block.angle);
-  block.cosine = std::cos(block.angle);
-  return block;
-}
-
-std::vector<LimitBlock> blocks_of(const LimitGrid& grid) {
-  std::vector<LimitBlock> blocks;
-  const auto count = static_cast<std::uint32_t>(grid.triangles.size());
-  for (std::uint32_t first = 0; first < count;) {
-    std::uint32_t end = first + 1;
-    while (end < std::min(first + kBlockTriangles, count) && grid.triangles[end].patch == grid.triangles[first].patch) ++end;
-    blocks.push_back({first, end});
-    first = end;
-  }
-  parallel_parts(blocks.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
-    for (size_t b = range.begin(); b < range.end(); ++b) blocks[b] = block_of(grid, blocks[b].first, blocks[b].end);
-  });
-  return blocks;
-}
-
-LimitSample sample_of(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& uv, const LimitPoint& point) {
-  LimitSample out;
-  out.position = placed.world_from_cage.point(point.position);
-  const bool mirrored = glm::determinant(placed.world_from_cage.linear) < 0.0;
-  const auto normal_of = [&](const LimitPoint& at) {
-    const glm::dvec3 cross = glm::cross(placed.world_from_cage.vector(at.du), placed.world_from_cage.vector(at.dv));
-    return mirrored ? -cross : cross;
-  };
-  glm::dvec3 cross = normal_of(point);
-  double length = glm::length(cross);
-  if (!(length > 1e-12 * (glm::dot(point.du, point.du) + glm::dot(point.dv, point.dv)))) {
-    const LimitPatch& patch = placed.patches[k];
-    const glm::dvec2 in = inwards(patch, uv);
-    LimitPoint inner = point;
-    placed.surface.evaluate(patch.face, patch.sub_face, in.x, in.y, inner, LimitOrder::first);
-    cross = normal_of(inner);
-    length = glm::length(cross);
-  }
-  out.normal = cross / length;
-  out.valid = has_normal(out.normal) && std::isfinite(out.position.x + out.position.y + out.position.z);
-  return out;
-}
-
-SurfaceCurvature no_curvature() {
-  SurfaceCurvature none;
-  none.k1 = none.k2 = std::numeric_limits<double>::quiet_NaN();
-  return none;
-}
-
-SurfaceCurvature placed_curvature(const PlacedLimitSurface& placed, const LimitPoint& p) {
-  const Affine& map = placed.world_from_cage;
-  LimitPoint moved{map.point(p.position), map.vector(p.du), map.vector(p.dv), map.vector(p.duu), map.vector(p.duv), map.vector(p.dvv)};
-  if (glm::determinant(map.linear) < 0.0) {
-    std::swap(moved.du, moved.dv);
-    std::swap(moved.duu, moved.dvv);
-  }
-  return curvature(moved);
-}
-
 }  // namespace
-
-PlacedLimitSurface place(const LimitSurface& surface, const Affine& world_from_cage) {
-  PlacedLimitSurface placed{surface, world_from_cage, {}};
-  for (int face = 0; face < surface.face_count(); ++face) {
-    if (surface.is_hole(face)) continue;
-    const bool sub_faces = surface.has_sub_faces(face);
-    const int size = surface.face_size(face), parts = sub_faces ? size : 1;
-    for (int part = 0; part < parts; ++part) placed.patches.push_back({face, part, sub_faces, size == 3 && !sub_faces});
-  }
-  return placed;
-}
-
-LimitSample sample(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& uv) {
-  const LimitPatch& patch = placed.patches[k];
-  LimitPoint point;
-  if (!placed.surface.evaluate(patch.face, patch.sub_face, uv.x, uv.y, point, LimitOrder::first)) return {};
-  return sample_of(placed, k, uv, point);
-}
-
-CurvedLimitSample curved_sample(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& uv) {
-  const LimitPatch& patch = placed.patches[k];
-  LimitPoint point;
-  if (!placed.surface.evaluate(patch.face, patch.sub_face, uv.x, uv.y, point)) return {{}, no_curvature()};
-  return {sample_of(placed, k, uv, point), placed_curvature(placed, point)};
-}
-
-SurfaceCurvature curvature_at(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& uv) {
-  const LimitPatch& patch = placed.patches[k];
-  LimitPoint p;
-  if (!placed.surface.evaluate(patch.face, patch.sub_face, uv.x, uv.y, p)) return no_curvature();
-  return placed_curvature(placed, p);
-}
 
 std::vector<PatchSide> patch_sides(const PlacedLimitSurface& placed) {
   std::vector<PatchSide> sides;

@@ -100,6 +100,9 @@ struct LimitGrid {
   std::vector<size_t> invalid_patches{};  ///< Without a limit surface; they are left out.
 };
 
+/// Of all triangles of a grid, in order.
+std::vector<LimitBlock> blocks_of(const LimitGrid& grid);
+
 /// How finely each patch is sampled.
 struct LatticeSteps {
   int steps = 4;         ///< Cells along each side of a quad patch; even.

@@ -2,6 +2,7 @@
 
 #include "raymarch/measured_border.h"
 #include "raymarch/truth/limit_curves.h"
+#include "raymarch/truth/limit_segments.h"
 #include "tests/raymarch/border_distance.h"
 #include "tests/raymarch/scenes.h"
 
@@ -147,6 +148,40 @@ std::vector<glm::dvec2> roots_on_lines(const LimitSurface& surface, const Camera
     }
   }
   return roots;
+}
+
+TEST(TruthLimit, BlocksOfTrianglesHideNoSegment) {
+  std::mt19937 random(kSeed);
+  RecordProperty("seed", static_cast<int>(kSeed));
+  size_t segments = 0;
+  for (const Cage& cage : cages(random)) {
+    const Scene scene = scene_of({object_of(cage.mesh, cage.scheme)});
+    const LimitSurface surface(cage.mesh, cage.scheme);
+    const PlacedLimitSurface placed = place(surface, {});
+    for (int turn = 0; turn < 4; ++turn) {
+      const Camera camera = random_camera(scene, random, turn % 2 ? Projection::orthographic : Projection::perspective);
+      double cell_px = 0.0;
+      const LimitGrid grid = sample_grid(placed, camera, 8.0, 100'000, cell_px);
+      ASSERT_GT(grid.blocks.size(), 1u);
+      // One block of everything, whose normals point everywhere.
+      LimitGrid whole = sample_grid(placed, camera, 8.0, 100'000, cell_px);
+      whole.blocks = {{0, static_cast<std::uint32_t>(whole.triangles.size())}};
+      whole.blocks[0].angle = 4.0;
+      whole.blocks[0].cosine = -1.0;
+      for (const double c : {0.0, 0.4}) {
+        const LimitLevel level{c > 0.0 ? CurveKind::inner : CurveKind::silhouette, c, LimitTurn::none, false};
+        const std::vector<LimitSegment> some = limit_segments(placed, grid, camera, level),
+                                        all = limit_segments(placed, whole, camera, level);
+        ASSERT_EQ(some.size(), all.size()) << cage.name << " c " << c << " view " << turn << " seed " << kSeed;
+        for (size_t i = 0; i < all.size(); ++i) {
+          EXPECT_EQ(some[i].ends[0].uv, all[i].ends[0].uv);
+          EXPECT_EQ(some[i].ends[1].uv, all[i].ends[1].uv);
+        }
+        segments += all.size();
+      }
+    }
+  }
+  EXPECT_GT(segments, 1000u);
 }
 
 TEST(TruthLimit, EveryRootOnALineOfTheSurfaceLiesOnACurve) {

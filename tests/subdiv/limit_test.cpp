@@ -41,6 +41,27 @@ TEST(Limit, DerivativesAgreeWithFiniteDifferencesOfPositions) {
   }
 }
 
+TEST(Limit, FirstDerivativesAloneHaveTheSameBits) {
+  std::mt19937 random(23);
+  std::uniform_real_distribution<double> inside(0.0, 0.5);
+  for (const auto& [cage, scheme] : {std::pair(test::jittered(test::prism(5), 0.15, 21), Scheme::catmark),
+                                     std::pair(test::jittered(test::prism(3), 0.15, 21), Scheme::catmark)}) {
+    const LimitSurface surface(cage, scheme);
+    for (int round = 0; round < 200; ++round) {
+      const int face = static_cast<int>(random() % static_cast<unsigned>(surface.face_count()));
+      const int sub = static_cast<int>(random() % static_cast<unsigned>(surface.face_size(face)));
+      const double u = inside(random), v = inside(random);
+      LimitPoint both, first;
+      ASSERT_TRUE(surface.evaluate(face, sub, u, v, both));
+      ASSERT_TRUE(surface.evaluate(face, sub, u, v, first, LimitOrder::first));
+      EXPECT_EQ(first.position, both.position);
+      EXPECT_EQ(first.du, both.du);
+      EXPECT_EQ(first.dv, both.dv);
+      EXPECT_EQ(first.duu, glm::dvec3(0.0));
+    }
+  }
+}
+
 /// Normals of refine() at the vertices of a level against differences of limit positions a small step inside the same faces.
 struct Agreement {
   double worst = 0.0, mean = 0.0;

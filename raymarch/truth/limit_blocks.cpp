@@ -1,0 +1,59 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "raymarch/truth/limit_grid.h"
+#include "sdf/parallel.h"
+
+namespace limn {
+namespace {
+
+constexpr std::uint32_t kBlockTriangles = 16;
+constexpr double kBlockSlack = 1e-7;  // radians
+
+LimitBlock block_of(const LimitGrid& grid, std::uint32_t first, std::uint32_t end) {
+  LimitBlock block{first, end};
+  Box box;
+  const auto for_sides = [&](const auto& visit) {
+    for (std::uint32_t t = first; t < end; ++t) {
+      for (const LimitCorner& corner : grid.triangles[t].corners) {
+        visit(corner.side);
+        if (corner.side_back != corner.side) visit(corner.side_back);
+      }
+    }
+  };
+  for_sides([&](std::uint32_t side) {
+    box = include(box, grid.positions[grid.node_of_side[side]]);
+    block.axis += grid.normals[side];
+  });
+  block.center = box.center();
+  block.radius = box.radius();
+  const double length = glm::length(block.axis);
+  block.axis = length > 0.0 ? block.axis / length : glm::dvec3(0.0);
+  double least = 1.0;
+  for_sides([&](std::uint32_t side) { least = std::min(least, glm::dot(block.axis, grid.normals[side])); });
+  // Cosines say little of small angles.
+  block.angle = length > 0.0 ? std::acos(std::max(least, -1.0)) + kBlockSlack : std::numbers::pi;
+  block.sine = std::sin(block.angle);
+  block.cosine = std::cos(block.angle);
+  return block;
+}
+
+}  // namespace
+
+std::vector<LimitBlock> blocks_of(const LimitGrid& grid) {
+  std::vector<LimitBlock> blocks;
+  const auto count = static_cast<std::uint32_t>(grid.triangles.size());
+  for (std::uint32_t first = 0; first < count;) {
+    std::uint32_t end = first + 1;
+    while (end < std::min(first + kBlockTriangles, count) && grid.triangles[end].patch == grid.triangles[first].patch) ++end;
+    blocks.push_back({first, end});
+    first = end;
+  }
+  parallel_parts(blocks.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
+    for (size_t b = range.begin(); b < range.end(); ++b) blocks[b] = block_of(grid, blocks[b].first, blocks[b].end);
+  });
+  return blocks;
+}
+
+}  // namespace limn

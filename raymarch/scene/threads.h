@@ -24,7 +24,8 @@ inline tbb::task_arena& kept_arena(int threads) {
   static auto& arenas = *new std::map<int, std::unique_ptr<tbb::task_arena>>;
   const std::lock_guard lock(mutex);
   std::unique_ptr<tbb::task_arena>& arena = arenas[threads];
-  if (!arena) arena = std::make_unique<tbb::task_arena>(threads > 0 ? threads : tbb::task_arena::automatic);
+  constexpr int kAll = tbb::task_arena::automatic;
+  if (!arena) arena = std::make_unique<tbb::task_arena>(threads > 0 ? threads : kAll);
   return *arena;
 }
 

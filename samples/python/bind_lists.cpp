@@ -4,6 +4,7 @@
 
 #include "raymarch/border.h"
 #include "raymarch/lines.h"
+#include "raymarch/look.h"
 #include "raymarch/metric.h"
 #include "samples/python/bindings.h"
 #include "samples/scenes/scenes.h"
@@ -30,7 +31,8 @@ Entries entries(const std::string& kind) {
       {"shapes", [] { return entries_of(shapes()); }},       {"surfaces", [] { return entries_of(surface_kinds()); }},
       {"gradients", [] { return entries_of(gradients()); }}, {"methods", [] { return entries_of(border_methods()); }},
       {"metrics", [] { return entries_of(metrics()); }},     {"scenes", [] { return entries_of(scenes()); }},
-      {"lines", [] { return entries_of(line_classes()); }}};
+      {"lines", [] { return entries_of(line_classes()); }},  {"looks", [] { return entries_of(looks()); }},
+      {"shadings", [] { return entries_of(shadings()); }}};
   std::vector<std::string> names;
   for (const auto& [name, list] : kinds) names.push_back(name);
   const auto found = kinds.find(kind);

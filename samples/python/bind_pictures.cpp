@@ -5,7 +5,9 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "raymarch/image_output.h"
+#include "raymarch/look.h"
 #include "samples/experiment/empty_picture.h"
+#include "samples/experiment/flat_input.h"
 #include "samples/experiment/job.h"
 #include "samples/experiment/thread_settings.h"
 #include "samples/output/output.h"
@@ -26,7 +28,28 @@ struct DrawnPicture {
   SurfaceInfo info{};
   HitCounts counts{};
   std::vector<std::string> warnings{};
+  std::optional<glm::vec3> ground{};  ///< Behind pictures to be looked at, linear; the layers keep their alpha.
 };
+
+/// As the command line has it: a picture of which nobody says more is one to be looked at, and what is mostly flat is drawn by its lines.
+void set_defaults(const ModelOfPython& model, CallSettings& settings) {
+  constexpr int kSamples = 8;
+  BorderSpec& border = settings.spec.border;
+  if (!settings.samples_given) border.samples = kSamples;
+  const bool named = !border.methods.empty() || border.look || !border.parameters.empty() || !model.scene.input.borders.empty();
+  if (!named && model.mostly_flat) border.methods = {kMethodOfFlat};
+}
+
+std::optional<glm::vec3> ground_of(const CallSettings& settings) {
+  if (settings.transparent || settings.ink_only || settings.spec.border.background) return {};
+  return settings.spec.border.look ? looks().find(*settings.spec.border.look).ground : glm::vec3(1.0f);
+}
+
+Image<glm::vec4> over_ground(const DrawnPicture& drawn) {
+  Image<glm::vec4> picture = drawn.picture.composite;
+  for (glm::vec4& pixel : picture.pixels) pixel += (1.0f - pixel.a) * glm::vec4(*drawn.ground, 1.0f);
+  return picture;
+}
 
 std::shared_ptr<DrawnPicture> draw(const Source& source, CallSettings& settings, const Stopped& stopped) {
   const ThreadLimit threads(settings.spec.threads);
@@ -34,9 +57,14 @@ std::shared_ptr<DrawnPicture> draw(const Source& source, CallSettings& settings,
   const SceneInput& input = model->scene.input;
   auto drawn = std::make_shared<DrawnPicture>();
   drawn->warnings = model->warnings;
-  const PictureSettings picture = picture_settings(settings.spec.border, input);
-  drawn->camera = camera_of_view(camera_settings(settings.spec.camera, input), framed_input(settings.spec.camera, input),
-                                 framing_settings(settings.spec.camera), settings.view, settings.spec.views);
+  set_defaults(*model, settings);
+  PictureSettings picture = picture_settings(settings.spec.border, input);
+  picture.mattes = settings.mattes;
+  drawn->ground = ground_of(settings);
+  const CameraSpec& camera = settings.spec.camera;
+  // A built-in scene's own camera frames other points than one that the call turns.
+  const FramedSurface framed = input.kind == InputKind::built_in ? framed_input(camera, input) : model->framed;
+  drawn->camera = camera_of_view(camera_settings(camera, input), framed, framing_settings(camera), settings.view, settings.spec.views);
   drawn->picture = draw_picture(input.scene, model->model, drawn->camera, picture, execution_of(settings.spec.threads, stopped));
   drawn->picture.notes.insert(drawn->picture.notes.begin(), model->notes.begin(), model->notes.end());
   drawn->info = total(model->model);
@@ -60,12 +88,13 @@ void write(const DrawnPicture& drawn, const std::filesystem::path& file) {
     if (ending_of(file) == ".exr")
       write_exr(drawn.picture, drawn.camera, drawn.call, file);
     else
-      write_image(drawn.picture.composite, file);
+      write_image(drawn.ground ? over_ground(drawn) : drawn.picture.composite, file);
   });
 }
 
-py::bytes png_of(const Image<glm::vec4>& picture) {
-  const std::vector<std::byte> png = call_unlocked([&](const Stopped&) { return encode_png(picture); });
+py::bytes png_of(const DrawnPicture& drawn) {
+  const std::vector<std::byte> png =
+      call_unlocked([&](const Stopped&) { return encode_png(drawn.ground ? over_ground(drawn) : drawn.picture.composite); });
   return {reinterpret_cast<const char*>(png.data()), png.size()};
 }
 
@@ -176,7 +205,7 @@ void bind_pictures(py::module_& module) {
              return fmt::format("<limn.Picture: {} x {}, {}, {} hits>", self.camera.width_px, self.camera.height_px, self.info.kind,
                                 self.counts.hits);
            })
-      .def("_repr_png_", [](const DrawnPicture& self) { return png_of(self.picture.composite); });
+      .def("_repr_png_", [](const DrawnPicture& self) { return png_of(self); });
   module.def("render", render);
   module.def("read_channel", [](const std::string& file, const std::string& channel) {
     auto image = std::make_unique<Image<float>>(call_unlocked([&](const Stopped&) { return read_channel(file, channel); }));

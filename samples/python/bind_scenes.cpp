@@ -6,6 +6,7 @@
 
 #include "raymarch/scene/scene_extent.h"
 #include "raymarch/surface/view_level.h"
+#include "samples/experiment/flat_input.h"
 #include "samples/experiment/job.h"
 #include "samples/experiment/limits.h"
 #include "samples/experiment/no_effect.h"
@@ -160,10 +161,12 @@ std::shared_ptr<const ModelOfPython> model_for(const Source& source, CallSetting
   model->settings.progress = stop_at_progress(stopped);
   refuse_without_effect(spec.surface, input, {.kinds = {model->settings.kind}});
   // Before anything is built: a camera that is wrong, and what would not fit.
-  const Camera camera = camera_of_view(camera_settings(spec.camera, input), framed_input(spec.camera, input), framing_settings(spec.camera),
-                                       settings.view, spec.views);
+  model->framed = framed_input(spec.camera, input);
+  const Camera camera =
+      camera_of_view(camera_settings(spec.camera, input), model->framed, framing_settings(spec.camera), settings.view, spec.views);
   check_limits(spec.limits, input.scene, model->settings, picture_load(camera, picture_settings(spec.border, input), 1, false));
   if (spec.surface.level_for_view) model->notes = refine_for_views(model->settings, {&camera, 1}, input.scene);
+  model->mostly_flat = input.kind != InputKind::built_in && flat_share(input.scene, model->settings) > kMostlyFlat;
   // Once, for however many pictures.
   const std::vector<std::string> found = warnings_of(input.scene, model->settings, {.methods = names_of(method_calls(spec.border, input))});
   model->warnings.insert(model->warnings.end(), found.begin(), found.end());

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "raymarch/framing.h"
 #include "raymarch/scene.h"
 #include "raymarch/surface.h"
 #include "samples/input/input.h"
@@ -43,6 +44,8 @@ struct ModelOfPython {
   SurfaceSettings settings{};
   SceneModel model{};
   std::vector<std::string> warnings{}, notes{};
+  FramedSurface framed{};    ///< What cameras frame where the call leaves that open.
+  bool mostly_flat = false;  ///< A rim would ink whole faces.
 };
 
 /// What a call draws or measures: exactly one is set.

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "raymarch/border.h"
+#include "raymarch/look.h"
 #include "samples/spec/parse.h"
 #include "samples/spec/parse_color.h"
 #include "samples/spec/surface_setting.h"
@@ -64,6 +65,22 @@ void add_surface(Readers& readers) {
   };
 }
 
+/// A number of the camera that belongs to no eye.
+void add_view_angles(Readers& readers) {
+  const auto angle = [&readers](const char* name, std::optional<double> CameraSpec::*member) {
+    readers[name] = [member](const std::string& field, const std::string& text, CallSettings& settings) {
+      CameraSpec& camera = settings.spec.camera;
+      camera.*member = parse_number(field, text);
+      if (camera.eye && camera.turns()) throw InputError({"", field, text, "cannot be given together with eye", "one of the two"});
+    };
+  };
+  angle("azimuth", &CameraSpec::azimuth_deg);
+  angle("elevation", &CameraSpec::elevation_deg);
+  angle("roll", &CameraSpec::roll_deg);
+  angle("zoom", &CameraSpec::zoom);
+  angle("margin", &CameraSpec::margin);
+}
+
 void add_camera(Readers& readers) {
   readers["size"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
     settings.spec.camera.size_px = parse_size(field, text);
@@ -75,7 +92,7 @@ void add_camera(Readers& readers) {
     settings.spec.camera.target = parse_vector3(field, text);
   };
   readers["up"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
-    settings.spec.camera.up = parse_vector3(field, text);
+    settings.spec.camera.up = parse_direction(field, text);
   };
   readers["fov"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
     settings.spec.camera.fov_deg = parse_number(field, text);
@@ -84,6 +101,7 @@ void add_camera(Readers& readers) {
     if (settings.spec.camera.fov_deg) throw InputError({"", field, text, "cannot be given together with fov", "one of the two"});
     settings.spec.camera.ortho_height = parse_number(field, text);
   };
+  add_view_angles(readers);
   readers["views"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
     settings.spec.views = parse_integer(field, text, 1, 10'000);
   };
@@ -111,9 +129,35 @@ void add_border(Readers& readers) {
   };
   readers["samples"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
     settings.spec.border.samples = parse_integer(field, text, 1, 1024);
+    settings.samples_given = true;
   };
   readers["background"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
     settings.spec.border.background = parse_color(field, text);
+  };
+}
+
+void add_look(Readers& readers) {
+  readers["look"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
+    looks().find(text, "", field);
+    settings.spec.border.look = text;
+  };
+  readers["shading"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
+    shadings().find(text, "", field);
+    settings.spec.border.shading = text;
+  };
+  readers["transparent"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
+    settings.transparent = flag_of_text(field, text);
+    if (settings.transparent && settings.spec.border.background)
+      throw InputError({"", field, "", "cannot be given together with background", "one of the two"});
+  };
+  readers["ink_only"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
+    settings.ink_only = flag_of_text(field, text);
+    if (!settings.ink_only) return;
+    if (settings.spec.border.shading) throw InputError({"", field, "", "cannot be given together with shading", "one of the two"});
+    settings.spec.border.shading = "none";
+  };
+  readers["mattes"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
+    settings.mattes = flag_of_text(field, text);
   };
 }
 
@@ -261,7 +305,7 @@ const Readers& all_readers() {
   static const Readers all = [] {
     Readers readers;
     for (const auto add :
-         {add_surface, add_camera, add_border, add_execution, add_sweep, add_plan, add_lines, add_drawing, add_judge, add_truth})
+         {add_surface, add_camera, add_border, add_look, add_execution, add_sweep, add_plan, add_lines, add_drawing, add_judge, add_truth})
       add(readers);
     return readers;
   }();

@@ -20,6 +20,8 @@ using CallFields = std::vector<std::pair<std::string, std::string>>;
 struct CallSettings {
   ExperimentSpec spec{};
   int view = 0;  ///< Which of spec.views.
+  bool samples_given = false, transparent = false, ink_only = false;
+  bool mattes = false;  ///< Which objects and materials cover each pixel, for .exr files.
   SweepSpec sweep{};
   bool fresh = false;  ///< What an earlier study left in the folder goes.
   PlanSpec plan{};

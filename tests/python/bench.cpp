@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
   const int pictures = argc > 2 ? std::atoi(argv[2]) : 5;
   limn::SceneInput input = limn::load_input(spec);
   const limn::SceneModel model = limn::build_model(input.scene, limn::surface_settings(spec, input));
-  const limn::Camera camera = limn::resolve_camera(limn::camera_settings(spec.camera, input), limn::bounds(input.scene));
+  const limn::Camera camera = limn::camera_of_view(limn::camera_settings(spec.camera, input), limn::framed_input(spec.camera, input),
+                                                   limn::framing_settings(spec.camera), 0, 1);
   const limn::PictureSettings settings = limn::picture_settings(spec.border, input);
   for (int i = 0; i < pictures; ++i) {
     const auto start = std::chrono::steady_clock::now();

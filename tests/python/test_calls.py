@@ -94,9 +94,9 @@ class Lock(TestCase):
         self.assertGreater(during, 10)
 
     def test_several_threads_draw_at_a_time(self):
-        expected = limn.render("gyroid", size=(60, 40)).composite
+        expected = limn.render("gyroid", size=(60, 40), samples=1).composite
         drawn = []
-        threads = [threading.Thread(target=lambda: drawn.append(limn.render("gyroid", size=(60, 40)).composite)) for _ in range(4)]
+        threads = [threading.Thread(target=lambda: drawn.append(limn.render("gyroid", size=(60, 40), samples=1).composite)) for _ in range(4)]
         for thread in threads:
             thread.start()
         for thread in threads:
@@ -124,7 +124,7 @@ class Interrupts(TestCase):
     WORK = {
         "pictures": 'limn.render("gyroid", size=(1600, 1200), samples=1024)',
         "level sets": 'limn.level_set(limn.shape("gyroid"), voxels=1500)',
-        "callables": 'limn.render(limn.field(lambda x, y, z: math.sqrt(x*x+y*y+z*z)-1, bounds=[(-2,)*3, (2,)*3], lipschitz=1), size=(900, 900))',
+        "callables": 'limn.render(limn.field(lambda x, y, z: math.sqrt(x*x+y*y+z*z)-1, bounds=[(-2,)*3, (2,)*3], lipschitz=1), size=(900, 900), samples=1, camera=limn.Camera(eye=(0, 0, 5), target=(0, 0, 0)))',
         "truth": 'limn.truth("gyroid", size=(1920, 1080), views=20, view=7)',
         "studies": 'limn.study("gyroid", size=(640, 480), views=50)',
         "comparisons": 'limn.compare("gyroid", methods="all", size=(1280, 720), samples=64)',
@@ -170,9 +170,9 @@ class Memory(TestCase):
 
     def test_a_thousand_pictures_leave_nothing(self):
         size = (160, 120)
-        one = sum(getattr(limn.render("ellipsoid", size=size), name).nbytes for name in Arrays.LAYERS)
+        one = sum(getattr(limn.render("ellipsoid", size=size, samples=1), name).nbytes for name in Arrays.LAYERS)
         # Were one picture of a hundred kept, this would be exceeded; what the allocator keeps is less.
-        self.assertLess(self.leaked(lambda: limn.render("ellipsoid", size=size).normal, 1000, 100), one / 100)
+        self.assertLess(self.leaked(lambda: limn.render("ellipsoid", size=size, samples=1).normal, 1000, 100), one / 100)
 
     def test_errors_leave_nothing(self):
         def fails():

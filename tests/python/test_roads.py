@@ -34,6 +34,12 @@ CALLS = {
         dict(scene="ellipsoid", camera=limn.Camera(eye=(1.1, 2.3, -4.7), target=(0.1, 0, 0.3), up=(0.3, 1, 0), fov=21.5)),
     ),
     "parallel rays": (["bracket", "--ortho", "2.75"], dict(scene="bracket", camera=limn.Camera(ortho=2.75))),
+    "look": (
+        ["teacup", "--look", "toon", "--azimuth", "70", "--elevation", "35", "--roll", "5", "--zoom", "1.2", "--margin", "0.1"],
+        dict(scene="teacup", look="toon", camera=limn.Camera(azimuth=70, elevation=35, roll=5, zoom=1.2, margin=0.1)),
+    ),
+    "ink": (["rook", "--ink-only", "--samples", "1"], dict(scene="rook", ink_only=True, samples=1)),
+    "transparent": (["gyroid", "--transparent", "--shading", "normal"], dict(scene="gyroid", transparent=True, shading="normal")),
 }
 CHANNELS = {
     "Z": lambda p: p.depth,
@@ -77,9 +83,9 @@ class Pictures(TestCase):
     def test_files_are_equal_byte_for_byte(self):
         for name, (words, settings) in CALLS.items():
             with self.subTest(name):
-                picture = limn.render(**settings, **MADE)
+                picture = limn.render(**settings, **MADE, mattes=True)
+                self.program("render", *words, *SIZE, "-o", self.file("a.exr"), "-o", self.file("a.png"))
                 for ending in ("exr", "png"):
-                    self.program("render", *words, *SIZE, "-o", self.file("a." + ending))
                     picture.write(self.file("b." + ending))
                     with open(self.file("a." + ending), "rb") as a, open(self.file("b." + ending), "rb") as b:
                         self.assertEqual(a.read(), b.read())

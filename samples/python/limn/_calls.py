@@ -58,8 +58,13 @@ def render(
     views: Optional[int] = None,
     methods: Names = None,
     parameters: Optional[Mapping[str, Any]] = None,
+    look: Optional[str] = None,
+    shading: Optional[str] = None,
     samples: Optional[int] = None,
     background: Any = None,
+    transparent: bool = False,
+    ink_only: bool = False,
+    mattes: bool = False,
     surface: Optional[str] = None,
     voxels: Optional[int] = None,
     voxel_size: Optional[float] = None,
@@ -77,14 +82,18 @@ def render(
 
     Its layers are numpy arrays that look at the picture's own memory. size: (width, height), pixels. view of views: one of so many
     directions spread over the sphere. methods: one or several outline methods (limn.names("methods")), the last on top; parameters:
-    {"threshold": 0.3} for every method that has it, {"rim.threshold": 0.3} for one. samples: rays a pixel. background: a colour name,
-    "#rrggbb" or linear RGB; missing: transparent. Settings of the surface as for model(); a Model takes none.
+    {"threshold": 0.3} for every method that has it, {"rim.threshold": 0.3} for one. look: methods, shading and ground that go
+    together (limn.names("looks")); shading: how surfaces are coloured (limn.names("shadings")). samples: rays a pixel, 8. background: a
+    colour name, "#rrggbb" or linear RGB, in the composite; missing: the composite is transparent, and shown and written over white unless
+    transparent is True. ink_only: the ink alone, its coverage as alpha. mattes: which objects and materials cover each pixel, for .exr
+    files (Cryptomatte). Settings of the surface as for model(); a Model takes none.
     """
     fields: _text.Fields = []
     _settings.surface_fields(fields, surface, voxels, voxel_size, half_width, gradient, level, scheme, normals, smooth_angle, grids)
     _settings.camera_fields(fields, camera, size, view, views)
     _settings.method_fields(fields, methods, parameters)
     _settings.picture_fields(fields, samples, background)
+    _settings.look_fields(fields, look, shading, transparent, ink_only, mattes)
     _settings.execution_fields(fields, threads, max_memory)
     return _limn.render(source_of(scene), fields)
 
@@ -415,7 +424,7 @@ def judge(
 
 def names(kind: str) -> Dict[str, str]:
     """What there is to choose from, by name, with a line on each. kind: "shapes", "surfaces", "gradients", "methods", "metrics",
-    "scenes" or "lines"."""
+    "scenes", "lines", "looks" or "shadings"."""
     return dict(_limn.entries(str(kind)))
 
 

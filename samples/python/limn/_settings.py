@@ -17,21 +17,28 @@ Names = Union[str, Sequence[str], None]
 class Camera:
     """Where a picture is seen from. What is left out is framed from what is drawn.
 
-    eye, target, up: (3,), world units. fov: vertical field of view, degrees. ortho: the picture's height in world units, for parallel
-    rays; not together with fov. size: width and height, pixels.
+    eye, target: (3,), world units. up: (3,), or an axis such as "z". fov: vertical field of view, degrees. ortho: the picture's height
+    in world units, for parallel rays; not together with fov. size: width and height, pixels. azimuth, elevation: where to look from, in
+    degrees about up and above the horizon, in place of an eye. roll: degrees, clockwise. zoom: about the picture's middle. margin: share
+    of the picture left free on each side.
     """
 
     eye: Optional[Vector] = None
     target: Optional[Vector] = None
-    up: Optional[Vector] = None
+    up: Union[Vector, str, None] = None
     fov: Optional[float] = None
     ortho: Optional[float] = None
     size: Optional[Tuple[int, int]] = None
+    azimuth: Optional[float] = None
+    elevation: Optional[float] = None
+    roll: Optional[float] = None
+    zoom: Optional[float] = None
+    margin: Optional[float] = None
 
     def __post_init__(self) -> None:
         for name in ("eye", "target", "up"):
             value = getattr(self, name)
-            if value is not None and len(_text.numbers(name, value).split(",")) != 3:
+            if value is not None and not (name == "up" and isinstance(value, str)) and len(_text.numbers(name, value).split(",")) != 3:
                 raise _text.refuse(name, _text.numbers(name, value), "is no vector", "three numbers")
 
 
@@ -53,8 +60,9 @@ def camera_fields(
         for name in ("eye", "target", "up"):
             value = getattr(camera, name)
             _text.add(fields, name, None if value is None else _text.numbers(name, value))
-        _text.add(fields, "fov", None if camera.fov is None else _text.number(camera.fov))
-        _text.add(fields, "ortho", None if camera.ortho is None else _text.number(camera.ortho))
+        for name in ("fov", "ortho", "azimuth", "elevation", "roll", "zoom", "margin"):
+            value = getattr(camera, name)
+            _text.add(fields, name, None if value is None else _text.number(value))
         size = camera.size if size is None else size
     _text.add(fields, "size", None if size is None else _text.size(size))
     _text.add(fields, "views", None if views is None else _text.number(views))
@@ -98,6 +106,15 @@ def picture_fields(fields: Fields, samples: Optional[int], background: Any) -> N
     """What a picture shows beside the scene."""
     _text.add(fields, "samples", None if samples is None else _text.number(samples))
     _text.add(fields, "background", None if background is None else _text.color("background", background))
+
+
+def look_fields(fields: Fields, look: Optional[str], shading: Optional[str], transparent: bool, ink_only: bool, mattes: bool) -> None:
+    """How a picture is coloured."""
+    _text.add(fields, "look", None if look is None else str(look))
+    _text.add(fields, "shading", None if shading is None else str(shading))
+    for name, value in (("transparent", transparent), ("ink_only", ink_only), ("mattes", mattes)):
+        if value is not False:
+            fields.append((name, _text.flag(value)))
 
 
 def execution_fields(fields: Fields, threads: Optional[int], max_memory: Union[int, str, None] = None) -> None:

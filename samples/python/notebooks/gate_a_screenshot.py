@@ -32,7 +32,7 @@ def toon_outlines(depth, normal, depth_step, normal_step):
     return ink.astype(numpy.float32)
 
 
-seen = limn.render(part, camera=camera)
+seen = limn.render(part, camera=camera, samples=1)
 screenshot = toon_outlines(seen.depth, seen.normal, depth_step=0.1, normal_step=0.5)
 
 # %% [markdown]

@@ -66,5 +66,5 @@ print("settings:", plan.settings)
 measured = limn.measure(SCENE, size=SIZE, **plan.settings)
 print(f"95 % of the border within {measured['border_error_p95']:.3f} px, all of it within {measured['border_error_max']:.3f} px")
 assert measured["border_error_p95"] <= TOLERANCE
-picture = limn.render(SCENE, size=SIZE, samples=4, **plan.settings)
+picture = limn.render(SCENE, size=SIZE, **plan.settings)
 picture

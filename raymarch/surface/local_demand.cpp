@@ -18,10 +18,22 @@ constexpr double kReach = 0.5;
 constexpr double kAside_px = 4.0;
 /// Normals that turn by more along an edge (45 degrees) may hide a border between them.
 const double kMostTurnCosine = std::cos(0.785398163397448);
-/// An edge shorter than this hides nothing, px; shorter than this share of the tolerance it is never split.
-constexpr double kSmall_px = 2.0, kLeastShare = 0.25;
+/// An edge shorter than this hides nothing, px.
+constexpr double kSmall_px = 2.0;
+
+/// A facet that is turned against the normals at its corners by more (80 degrees) goes across a crease that no edge of it follows:
+/// its parts would do the same.
+const double kFoldedCosine = std::cos(1.3962634015954636);
 
 size_t next(size_t k) { return (k + 1) % 3; }
+
+bool is_folded(const TriangleSample& triangle) {
+  const auto& p = triangle.corners;
+  const auto& n = triangle.corner_normals;
+  const glm::dvec3 facet = glm::cross(p[1] - p[0], p[2] - p[0]);
+  const double least = std::min({glm::dot(facet, n[0]), glm::dot(facet, n[1]), glm::dot(facet, n[2])});
+  return least < kFoldedCosine * glm::length(facet);
+}
 
 /// A triangle as one picture shows it.
 struct Seen {
@@ -110,9 +122,10 @@ bool moves_inner(const Seen& seen, size_t k, double threshold, double tolerance_
 unsigned border_demand(const Seen& seen, const TriangleSample& triangle, const LocalSettings& settings) {
   unsigned split = 0;
   const double tolerance_px = settings.tolerance_px;
-  const double silhouette_px = std::min(kSilhouetteShare / kMiddleFactor * tolerance_px + kReach * inside_px(seen), kLocalCoarse_px);
+  const double inside = settings.everywhere ? 0.0 : inside_px(seen);
+  const double silhouette_px = std::min(kSilhouetteShare / kMiddleFactor * tolerance_px + kReach * inside, kLocalCoarse_px);
   for (size_t k = 0; k < 3; ++k) {
-    if (seen.length_px[k] < kLeastShare * tolerance_px) continue;
+    if (seen.length_px[k] < tolerance_px) continue;
     bool needed = seen.off_px[k] > silhouette_px;
     // A border along a crease.
     bool along = triangle.crease[k] && parts(seen.facing[3 + k], seen.beyond[k], 0.0);
@@ -129,7 +142,7 @@ unsigned border_demand(const Seen& seen, const TriangleSample& triangle, const L
 unsigned coarse_demand(const Seen& seen, const TriangleSample& triangle, const LocalSettings& settings) {
   unsigned split = 0;
   for (size_t k = 0; k < 3; ++k) {
-    if (seen.length_px[k] < kLeastShare * settings.tolerance_px) continue;
+    if (seen.length_px[k] < settings.tolerance_px) continue;
     const bool turns =
         seen.length_px[k] > kSmall_px && glm::dot(triangle.corner_normals[k], triangle.corner_normals[next(k)]) < kMostTurnCosine;
     if (seen.off_px[k] > kLocalCoarse_px || turns) split |= 1u << k;
@@ -141,15 +154,18 @@ unsigned coarse_demand(const Seen& seen, const TriangleSample& triangle, const L
 
 unsigned edges_to_split(const TriangleSample& triangle, std::span<const LocalView> views, const LocalSettings& settings, bool only_coarse) {
   unsigned split = 0;
+  if (is_folded(triangle)) return split;
   for (const LocalView& view : views) {
     Seen seen;
     if (!look(view.camera, triangle, seen)) continue;
     split |= coarse_demand(seen, triangle, settings);
     if (only_coarse) continue;
     const double margin_px = 2.0 * kLocalCoarse_px;
-    if (is_hidden(view.hidden, seen.px, margin_px, margin_px * seen.units_per_px)) continue;
+    if (!settings.everywhere && is_hidden(view.hidden, seen.px, margin_px, margin_px * seen.units_per_px)) continue;
     split |= border_demand(seen, triangle, settings);
   }
+  for (size_t k = 0; k < 3; ++k)
+    if (!triangle.halves[k]) split &= ~(1u << k);
   return split;
 }
 

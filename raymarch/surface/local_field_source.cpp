@@ -10,6 +10,8 @@ namespace {
 
 /// On a smooth surface a thousandth of an edge does not turn the normal by 5 degrees.
 const double kSameSideCosine = std::cos(5.0 * std::numbers::pi / 180.0);
+/// Normals that differ by more (75 degrees) at the ends of an edge belong to two sides.
+const double kTwoSidesCosine = std::cos(75.0 * std::numbers::pi / 180.0);
 /// How far into a triangle its side of a crease has the word, as a share of the way to its middle.
 constexpr double kInside = 1e-3;
 
@@ -38,6 +40,13 @@ EdgeMiddle middle_on(LocalField& field, const LocalTriangles& mesh, const LocalE
     if (!side.triangle) continue;
     around.middles.push_back(middle_of(mesh, *side.triangle));
     for (const glm::dvec3& normal : side.triangle->normals) around.outward += normal;
+  }
+  // Where the ends lie on two sides of something, as at the end of a wall, the middle belongs onto the crease between them.
+  const EdgeSide& one = edge.sides[edge.sides[0].triangle ? 0 : 1];
+  const auto corner = static_cast<size_t>(one.corner);
+  if (glm::dot(one.triangle->normals[corner], one.triangle->normals[(corner + 1) % 3]) < kTwoSidesCosine) {
+    around.middles.push_back(a);
+    around.middles.push_back(b);
   }
   const double length = glm::length(around.outward);
   around.outward = length > 0.0 ? around.outward / length : glm::dvec3(0.0);

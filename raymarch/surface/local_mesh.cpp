@@ -20,6 +20,17 @@ std::uint64_t key_of(std::uint32_t a, std::uint32_t b) { return (std::uint64_t{s
 
 size_t next(size_t k) { return (k + 1) % 3; }
 
+/// Whether an edge becomes two shorter ones, neither of which is much of the whole: where the surface turns back, as at the end of a thin
+/// wall, the middle may come to lie on one of the ends, and splitting would go on for ever.
+bool halves(const LocalTriangles& mesh, const LocalEdge& edge, const glm::dvec3& middle) {
+  constexpr double kMost = 0.75;
+  const EdgeSide& side = edge.sides[edge.sides[0].triangle ? 0 : 1];
+  const auto k = static_cast<size_t>(side.corner);
+  const glm::dvec3 a = mesh.positions[side.triangle->vertices[k]], b = mesh.positions[side.triangle->vertices[next(k)]];
+  const double most = kMost * glm::distance(a, b);
+  return glm::distance(a, middle) < most && glm::distance(b, middle) < most;
+}
+
 /// The middles of edges, made when an edge first appears and kept until it is split.
 class Middles {
  public:
@@ -33,6 +44,7 @@ class Middles {
     // The other side of a new edge may be a triangle that stays: only where an edge was there before, and then its middle is known.
     std::vector<EdgeMiddle> made(edges.size());
     source.middles(mesh, edges, made);
+    for (size_t i = 0; i < edges.size(); ++i) made[i].halves = halves(mesh, edges[i], made[i].position);
     for (const auto& [key, index] : missing) known_[key] = made[index];
   }
   const EdgeMiddle& at(std::uint32_t a, std::uint32_t b) const { return known_.at(key_of(a, b)); }
@@ -76,6 +88,7 @@ TriangleSample sample_of(const LocalTriangles& mesh, const Middles& middles, con
     sample.middle_normals[k] = middle.normals[side];
     sample.beyond[k] = middle.normals[1 - side];
     sample.crease[k] = middle.crease;
+    sample.halves[k] = middle.halves;
   }
   return sample;
 }

@@ -43,6 +43,7 @@ struct EdgeMiddle {
   glm::dvec3 position{0.0};
   std::array<glm::dvec3, 2> normals{};
   bool crease = false;  ///< The normal jumps here.
+  bool halves = true;   ///< False where the edge must stay whole: it would not become shorter.
 };
 
 /// A corner of a triangle at a crease, whose normal is that of the triangle's side.

@@ -5,6 +5,7 @@
 #include "samples/compare/comparison.h"
 #include "samples/compare/staging.h"
 #include "samples/experiment/empty_picture.h"
+#include "samples/experiment/local_request.h"
 #include "samples/experiment/no_effect.h"
 #include "samples/experiment/thread_settings.h"
 #include "samples/input/input_files.h"
@@ -20,6 +21,7 @@ void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_camera(app, options, false);
   add_surface(app, options, {.surface = true, .repeatable = true, .views = true});
+  add_local(app, options, true);
   add_border(app, options, true);
   add_output(app, options, "folder for sheet.png, report.html, rows.json and each picture's EXR; default limn-out/compare/<name>", false);
   add_no_timings(app, options);
@@ -50,12 +52,15 @@ Comparison plan(const Options& options, SceneInput& input) {
   }
   plan_methods(columns, comparison);
   comparison.camera = camera;
+  if (options.local.tolerance_px)
+    plan_local(local_settings(*options.local.tolerance_px, options.plan.silhouette, comparison.picture.methods, {camera}), comparison);
   comparison.with_times = !options.no_timings;
   std::vector<std::string> kinds;
   for (const ComparedModel& model : comparison.models)
     if (model.skipped.empty()) kinds.push_back(model.surface.kind);
   comparison.truth_reference = options.spec.reference.value_or(TruthReference::given);
-  comparison.call = resolved_call("compare", options.spec, {input.scene, settings, kinds}, comparison.camera, comparison.picture);
+  comparison.call = resolved_call("compare", options.spec, {input.scene, settings, kinds, options.local.tolerance_px.value_or(0.0)},
+                                  comparison.camera, comparison.picture);
   return comparison;
 }
 
@@ -102,6 +107,7 @@ void refuse_unread(const Options& options, const SceneInput& input, const Compar
     if (model.skipped.empty()) use.kinds.push_back(model.surface.kind);
   }
   refuse_without_effect(options.spec.surface, input, use);
+  if (options.local.asked) refuse_local_without_effect(options.spec, input.scene, comparison.models.back().surface, use.kinds);
   refuse_reference_without_effect(options.spec, input);
 }
 
@@ -123,6 +129,8 @@ int run(const Options& options) {
   const ThreadLimit threads(options.spec.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
   input_kind(options.spec.input);
+  if (options.local.asked && !options.local.tolerance_px)
+    throw InputError({"", "local", "", "says not how far the border may lie off", "a number of pixels, such as --local 0.25"});
   if (!options.outputs.empty()) check_output_folder(options.outputs.back(), options.no_clobber);
   SceneInput input = load(options);
   const fs::path folder = options.outputs.empty() ? default_output("compare", input.name) : options.outputs.back();

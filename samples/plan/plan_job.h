@@ -17,8 +17,8 @@ struct PlanJob {
 /// Throws InputError for options that no model of a plan reads: what the plan chooses, and what has no effect on this scene.
 void refuse_unplanned(const ExperimentSpec& spec, const SceneInput& input);
 
-/// `plan.tolerance_px` must be set. Throws InputError.
-PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneInput& input, ProgressBar& bar);
+/// `plan.tolerance_px` must be set; `local`: local meshes are tried, too. Throws InputError.
+PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneInput& input, ProgressBar& bar, bool local = false);
 
 /// As a document.
 Json plan_json(const PlanJob& job);

@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kParameters = "parameters.";
 
 /// Fields that are options of the same name, beside the settings of surfaces; the underscore is a dash there.
-constexpr std::array<std::string_view, 45> kFields = {"background",
+constexpr std::array<std::string_view, 46> kFields = {"background",
                                                       "budget",
                                                       "draws",
                                                       "eye",
@@ -20,6 +20,7 @@ constexpr std::array<std::string_view, 45> kFields = {"background",
                                                       "fov",
                                                       "frames",
                                                       "fresh",
+                                                      "local",
                                                       "gradients",
                                                       "levels",
                                                       "max_memory",

@@ -11,6 +11,7 @@
 #include "raymarch/image_output.h"
 #include "raymarch/line_tracks.h"
 #include "raymarch/lines.h"
+#include "raymarch/local_model.h"
 #include "raymarch/measured_border.h"
 #include "raymarch/metric.h"
 #include "raymarch/picture.h"

@@ -14,6 +14,12 @@ constexpr double kMiddleFactor = 4.0 / 3.0;
 constexpr double kSilhouetteShare = 0.8;
 /// Of the distance from the silhouette, what a chord may take: it must not reach over it.
 constexpr double kReach = 0.5;
+/// No chord stands farther off, seen from any of the views, px: well within kLocalCoarse_px, since chords are looked at in their middles
+/// alone, and since two sides of a wall must not meet.
+constexpr double kCoarse_px = 0.5;
+static_assert(kMiddleFactor * kCoarse_px < kLocalCoarse_px);
+/// What is hidden stays so when the border moves by the tolerance, and by this much.
+constexpr double kHiddenMargin_px = 2.0;
 /// How far what lies beside the picture may reach into it, px.
 constexpr double kAside_px = 4.0;
 /// Normals that turn by more along an edge (45 degrees) may hide a border between them.
@@ -21,19 +27,7 @@ const double kMostTurnCosine = std::cos(0.785398163397448);
 /// An edge shorter than this hides nothing, px.
 constexpr double kSmall_px = 2.0;
 
-/// A facet that is turned against the normals at its corners by more (80 degrees) goes across a crease that no edge of it follows:
-/// its parts would do the same.
-const double kFoldedCosine = std::cos(1.3962634015954636);
-
 size_t next(size_t k) { return (k + 1) % 3; }
-
-bool is_folded(const TriangleSample& triangle) {
-  const auto& p = triangle.corners;
-  const auto& n = triangle.corner_normals;
-  const glm::dvec3 facet = glm::cross(p[1] - p[0], p[2] - p[0]);
-  const double least = std::min({glm::dot(facet, n[0]), glm::dot(facet, n[1]), glm::dot(facet, n[2])});
-  return least < kFoldedCosine * glm::length(facet);
-}
 
 /// A triangle as one picture shows it.
 struct Seen {
@@ -123,7 +117,7 @@ unsigned border_demand(const Seen& seen, const TriangleSample& triangle, const L
   unsigned split = 0;
   const double tolerance_px = settings.tolerance_px;
   const double inside = settings.everywhere ? 0.0 : inside_px(seen);
-  const double silhouette_px = std::min(kSilhouetteShare / kMiddleFactor * tolerance_px + kReach * inside, kLocalCoarse_px);
+  const double silhouette_px = std::min(kSilhouetteShare / kMiddleFactor * tolerance_px + kReach * inside, kCoarse_px);
   for (size_t k = 0; k < 3; ++k) {
     if (seen.length_px[k] < tolerance_px) continue;
     bool needed = seen.off_px[k] > silhouette_px;
@@ -145,7 +139,7 @@ unsigned coarse_demand(const Seen& seen, const TriangleSample& triangle, const L
     if (seen.length_px[k] < settings.tolerance_px) continue;
     const bool turns =
         seen.length_px[k] > kSmall_px && glm::dot(triangle.corner_normals[k], triangle.corner_normals[next(k)]) < kMostTurnCosine;
-    if (seen.off_px[k] > kLocalCoarse_px || turns) split |= 1u << k;
+    if (seen.off_px[k] > kCoarse_px || turns) split |= 1u << k;
   }
   return split;
 }
@@ -154,13 +148,13 @@ unsigned coarse_demand(const Seen& seen, const TriangleSample& triangle, const L
 
 unsigned edges_to_split(const TriangleSample& triangle, std::span<const LocalView> views, const LocalSettings& settings, bool only_coarse) {
   unsigned split = 0;
-  if (is_folded(triangle)) return split;
+  if (triangle.stays) return split;
   for (const LocalView& view : views) {
     Seen seen;
     if (!look(view.camera, triangle, seen)) continue;
     split |= coarse_demand(seen, triangle, settings);
     if (only_coarse) continue;
-    const double margin_px = 2.0 * kLocalCoarse_px;
+    const double margin_px = kHiddenMargin_px + settings.tolerance_px;
     if (!settings.everywhere && is_hidden(view.hidden, seen.px, margin_px, margin_px * seen.units_per_px)) continue;
     split |= border_demand(seen, triangle, settings);
   }

@@ -10,8 +10,6 @@ namespace {
 
 /// On a smooth surface a thousandth of an edge does not turn the normal by 5 degrees.
 const double kSameSideCosine = std::cos(5.0 * std::numbers::pi / 180.0);
-/// Normals that differ by more (75 degrees) at the ends of an edge belong to two sides.
-const double kTwoSidesCosine = std::cos(75.0 * std::numbers::pi / 180.0);
 /// How far into a triangle its side of a crease has the word, as a share of the way to its middle.
 constexpr double kInside = 1e-3;
 
@@ -40,13 +38,6 @@ EdgeMiddle middle_on(LocalField& field, const LocalTriangles& mesh, const LocalE
     if (!side.triangle) continue;
     around.middles.push_back(middle_of(mesh, *side.triangle));
     for (const glm::dvec3& normal : side.triangle->normals) around.outward += normal;
-  }
-  // Where the ends lie on two sides of something, as at the end of a wall, the middle belongs onto the crease between them.
-  const EdgeSide& one = edge.sides[edge.sides[0].triangle ? 0 : 1];
-  const auto corner = static_cast<size_t>(one.corner);
-  if (glm::dot(one.triangle->normals[corner], one.triangle->normals[(corner + 1) % 3]) < kTwoSidesCosine) {
-    around.middles.push_back(a);
-    around.middles.push_back(b);
   }
   const double length = glm::length(around.outward);
   around.outward = length > 0.0 ? around.outward / length : glm::dvec3(0.0);
@@ -95,13 +86,10 @@ void crease_normals(const Field& field, std::span<const CreaseCorner> corners, s
   });
 }
 
-}  // namespace
-
-LocalStart start_from_field(const Field& field, std::int64_t max_bytes) {
-  LocalStart start;
-  start.mesh = tessellate(field, {.level = 0, .normals = NormalKind::limit, .max_bytes = max_bytes});
-  const TriangleMesh triangles = triangulate(start.mesh, NormalKind::vertex, true);
-  start.triangles.positions = triangles.positions;
+LocalTriangles triangles_of(const Mesh& mesh) {
+  const TriangleMesh triangles = triangulate(mesh, NormalKind::vertex, true);
+  LocalTriangles result;
+  result.positions = triangles.positions;
   for (size_t t = 0; t < triangles.triangles.size(); ++t) {
     LocalTriangle triangle;
     for (int k = 0; k < 3; ++k) {
@@ -109,8 +97,34 @@ LocalStart start_from_field(const Field& field, std::int64_t max_bytes) {
       triangle.normals[static_cast<size_t>(k)] = glm::dvec3(triangles.corner_normals[3 * t + static_cast<size_t>(k)]);
     }
     triangle.face = triangles.triangle_faces[t];
-    start.triangles.triangles.push_back(triangle);
+    result.triangles.push_back(triangle);
   }
+  return result;
+}
+
+size_t count_folded(const LocalTriangles& mesh) {
+  return static_cast<size_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const LocalTriangle& triangle) {
+    const auto position = [&](size_t k) { return mesh.positions[triangle.vertices[k]]; };
+    return is_folded({position(0), position(1), position(2)}, triangle.normals);
+  }));
+}
+
+/// The share of folded facets that a coarse mesh may have, and the level up to which a better one is looked for.
+constexpr double kMostFolded = 0.005;
+constexpr int kMostStartLevel = 2;
+
+}  // namespace
+
+LocalStart start_from_field(const Field& field, std::int64_t max_bytes) {
+  LocalStart start;
+  // Where the coarsest mesh goes across creases, no splitting of its edges would follow them.
+  for (int level = 0; level <= kMostStartLevel; ++level) {
+    start.mesh = tessellate(field, {.level = level, .normals = NormalKind::limit, .max_bytes = max_bytes});
+    start.triangles = triangles_of(start.mesh);
+    const double folded = static_cast<double>(count_folded(start.triangles));
+    if (folded <= kMostFolded * static_cast<double>(start.triangles.triangles.size())) break;
+  }
+  start.source.has_folds = true;
   start.source.middles = [field](const LocalTriangles& mesh, std::span<const LocalEdge> edges, std::span<EdgeMiddle> middles) {
     field_middles(field, mesh, edges, middles);
   };

@@ -189,7 +189,10 @@ bool refine_once(LocalTriangles& mesh, Middles& middles, std::vector<char>& is_n
   middles.update(mesh, source, is_new);
   std::vector<unsigned> asked(mesh.triangles.size(), 0);
   parallel_for(size_t{0}, mesh.triangles.size(), [&](size_t t) {
-    if (is_new[t]) asked[t] = edges_to_split(sample_of(mesh, middles, mesh.triangles[t]), views, settings, only_coarse);
+    if (!is_new[t]) return;
+    TriangleSample sample = sample_of(mesh, middles, mesh.triangles[t]);
+    sample.stays = source.has_folds && is_folded(sample.corners, sample.corner_normals);
+    asked[t] = edges_to_split(sample, views, settings, only_coarse);
   });
   std::unordered_map<std::uint64_t, char> split;
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -1,6 +1,7 @@
 #pragma once
 // Internal: triangles that are refined edge by edge, and the surface whose points the middles of edges become.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -26,6 +27,15 @@ struct LocalTriangles {
   std::vector<glm::vec3> colors{};      ///< One for each position, or empty.
   std::vector<LocalTriangle> triangles{};
 };
+
+/// Whether a facet is turned against the normals at one of its corners by more than 80 degrees: it goes across a crease that none of its
+/// edges follows, and its parts would do the same.
+inline bool is_folded(const std::array<glm::dvec3, 3>& corners, const std::array<glm::dvec3, 3>& normals) {
+  constexpr double kCosine = 0.17364817766693033;
+  const glm::dvec3 facet = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double least = std::min({glm::dot(facet, normals[0]), glm::dot(facet, normals[1]), glm::dot(facet, normals[2])});
+  return least < kCosine * glm::length(facet);
+}
 
 /// One side of an edge: the edge of `triangle` that runs from its corner `corner` to the next. Null at an open edge.
 struct EdgeSide {
@@ -57,6 +67,7 @@ struct LocalSource {
   std::function<void(const LocalTriangles& mesh, std::span<const LocalEdge> edges, std::span<EdgeMiddle> middles)> middles{};
   /// Null where the normals of `middles` are those of their sides even at creases. A normal stays as it is where there is no better one.
   std::function<void(std::span<const CreaseCorner> corners, std::span<glm::dvec3> normals)> crease_normals{};
+  bool has_folds = false;  ///< Edges do not follow all creases: facets that are folded across one stay as they are.
 };
 
 }  // namespace limn

@@ -102,7 +102,7 @@ TEST(LocalModel, OfAnyEllipsoidVerticesLieOnTheSurfaceAndNoPartIsFartherOffThanS
       worst_px = std::max(worst_px, off(p) * pixels_per_unit_at(camera, project(camera, p).z));
     }
     EXPECT_LT(worst_vertex, 1e-9);
-    EXPECT_LT(worst_px, 4.0 / 3.0 * kLocalCoarse_px);
+    EXPECT_LT(worst_px, kLocalCoarse_px);
   }
 }
 

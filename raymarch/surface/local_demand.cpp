@@ -14,10 +14,6 @@ constexpr double kMiddleFactor = 4.0 / 3.0;
 constexpr double kSilhouetteShare = 0.8;
 /// Of the distance from the silhouette, what a chord may take: it must not reach over it.
 constexpr double kReach = 0.5;
-/// No chord stands farther off, seen from any of the views, px: well within kLocalCoarse_px, since chords are looked at in their middles
-/// alone, and since two sides of a wall must not meet.
-constexpr double kCoarse_px = 0.5;
-static_assert(kMiddleFactor * kCoarse_px < kLocalCoarse_px);
 /// What is hidden stays so when the border moves by the tolerance, and by this much.
 constexpr double kHiddenMargin_px = 2.0;
 /// How far what lies beside the picture may reach into it, px.
@@ -117,7 +113,7 @@ unsigned border_demand(const Seen& seen, const TriangleSample& triangle, const L
   unsigned split = 0;
   const double tolerance_px = settings.tolerance_px;
   const double inside = settings.everywhere ? 0.0 : inside_px(seen);
-  const double silhouette_px = std::min(kSilhouetteShare / kMiddleFactor * tolerance_px + kReach * inside, kCoarse_px);
+  const double silhouette_px = std::min(kSilhouetteShare / kMiddleFactor * tolerance_px + kReach * inside, triangle.coarse_px);
   for (size_t k = 0; k < 3; ++k) {
     if (seen.length_px[k] < tolerance_px) continue;
     bool needed = seen.off_px[k] > silhouette_px;
@@ -139,7 +135,7 @@ unsigned coarse_demand(const Seen& seen, const TriangleSample& triangle, const L
     if (seen.length_px[k] < settings.tolerance_px) continue;
     const bool turns =
         seen.length_px[k] > kSmall_px && glm::dot(triangle.corner_normals[k], triangle.corner_normals[next(k)]) < kMostTurnCosine;
-    if (seen.off_px[k] > kCoarse_px || turns) split |= 1u << k;
+    if (seen.off_px[k] > triangle.coarse_px || turns) split |= 1u << k;
   }
   return split;
 }

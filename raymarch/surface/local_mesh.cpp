@@ -191,6 +191,7 @@ bool refine_once(LocalTriangles& mesh, Middles& middles, std::vector<char>& is_n
   parallel_for(size_t{0}, mesh.triangles.size(), [&](size_t t) {
     if (!is_new[t]) return;
     TriangleSample sample = sample_of(mesh, middles, mesh.triangles[t]);
+    sample.coarse_px = source.coarse_px;
     sample.stays = source.has_folds && is_folded(sample.corners, sample.corner_normals);
     asked[t] = edges_to_split(sample, views, settings, only_coarse);
   });

@@ -67,6 +67,8 @@ struct LocalSource {
   std::function<void(const LocalTriangles& mesh, std::span<const LocalEdge> edges, std::span<EdgeMiddle> middles)> middles{};
   /// Null where the normals of `middles` are those of their sides even at creases. A normal stays as it is where there is no better one.
   std::function<void(std::span<const CreaseCorner> corners, std::span<glm::dvec3> normals)> crease_normals{};
+  /// No chord's middle stands farther off, seen from any of the views, px. Three fourths of kLocalCoarse_px at most.
+  double coarse_px = 0.5;
   bool has_folds = false;  ///< Edges do not follow all creases: facets that are folded across one stay as they are.
 };
 

@@ -130,7 +130,7 @@ int run(const Options& options) {
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
   input_kind(options.spec.input);
   if (options.local.asked && !options.local.tolerance_px)
-    throw InputError({"", "local", "", "says not how far the border may lie off", "a number of pixels, such as --local 0.25"});
+    throw InputError({"", "local", "", "needs a tolerance", "a number of pixels, such as --local 0.25"});
   if (!options.outputs.empty()) check_output_folder(options.outputs.back(), options.no_clobber);
   SceneInput input = load(options);
   const fs::path folder = options.outputs.empty() ? default_output("compare", input.name) : options.outputs.back();

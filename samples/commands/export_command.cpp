@@ -78,8 +78,7 @@ std::optional<LocalSettings> local_of(const Options& options, const SceneInput& 
       throw InputError({"", "local", "", "missing: a camera has no effect on a surface that is as fine everywhere", "--local PX"});
     return {};
   }
-  if (!options.local.tolerance_px)
-    throw InputError({"", "local", "", "says not how far the border may lie off", "a number of pixels, such as --local 0.25"});
+  if (!options.local.tolerance_px) throw InputError({"", "local", "", "needs a tolerance", "a number of pixels, such as --local 0.25"});
   if (options.refined) throw InputError({"", "local", "", "has no effect on refined positions; leave out one of them", ""});
   const std::string kind = ending_of(file) == ".vdb" ? "level_set" : settings.kind.empty() ? "mesh" : settings.kind;
   refuse_local_without_effect(options.spec, input.scene, settings, {kind});

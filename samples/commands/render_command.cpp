@@ -119,7 +119,7 @@ void refuse_alone(const Options& options) {
   if (options.local.asked && options.local.tolerance_px && options.plan.tolerance_px)
     throw InputError({"", "local", "", "beside tolerance the plan chooses how fine the model is", "--local without a number"});
   if (options.local.asked && !options.local.tolerance_px && !options.plan.tolerance_px)
-    throw InputError({"", "local", "", "says not how far the border may lie off", "a number of pixels, such as --local 0.25"});
+    throw InputError({"", "local", "", "needs a tolerance", "a number of pixels, such as --local 0.25"});
 }
 
 /// --local asks for a mesh where nobody says otherwise.

@@ -25,7 +25,8 @@ LocalSettings local_settings(double tolerance_px, bool silhouette, const std::ve
 void refuse_local_without_effect(const ExperimentSpec& spec, const Scene& scene, const SurfaceSettings& settings,
                                  const std::vector<std::string>& kinds) {
   if (spec.surface.level || spec.surface.level_for_view)
-    throw InputError({"", "level", "", "has no effect beside local, which is as fine as the border needs; leave out one of them", ""});
+    throw InputError(
+        {"", "level", "", "has no effect on a local mesh, which is as fine as the border needs; leave out local or the level", ""});
   const bool mesh = std::any_of(kinds.begin(), kinds.end(), [](const std::string& kind) { return kind == "mesh"; });
   if (!mesh) throw InputError({"", "local", "", "has no effect on this representation; add surface = mesh", ""});
   std::string reason;

@@ -12,6 +12,7 @@
 #include "raymarch/image_output.h"
 #include "raymarch/line_tracks.h"
 #include "raymarch/lines.h"
+#include "raymarch/local_model.h"
 #include "raymarch/look.h"
 #include "raymarch/mattes.h"
 #include "raymarch/measured_border.h"

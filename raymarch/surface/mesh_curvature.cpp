@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 
+#include "raymarch/surface/limit_map.h"
+
 namespace limn {
 namespace {
-
-using Domain = std::array<glm::dvec2, 4>;
 
 /// A hit's triangle and the weights of its corners.
 struct Place {
@@ -46,69 +46,6 @@ bool find_place(const TriangleMesh& mesh, const SurfacePoint& point, Place& plac
   return true;
 }
 
-/// The parameters at the corners of child `child` of a face, in OpenSubdiv's order of children and corners.
-Domain quad_child(const Domain& parent, int child) {
-  const auto i = static_cast<size_t>(child), next = (i + 1) % 4, across = (i + 2) % 4, before = (i + 3) % 4;
-  Domain result;
-  result[i] = parent[i];
-  result[next] = 0.5 * (parent[i] + parent[next]);
-  result[across] = 0.25 * (parent[0] + parent[1] + parent[2] + parent[3]);
-  result[before] = 0.5 * (parent[i] + parent[before]);
-  return result;
-}
-Domain triangle_child(const Domain& parent, int child) {
-  const glm::dvec2 ab = 0.5 * (parent[0] + parent[1]), bc = 0.5 * (parent[1] + parent[2]), ca = 0.5 * (parent[2] + parent[0]);
-  if (child == 0) return {parent[0], ab, ca};
-  if (child == 1) return {ab, parent[1], bc};
-  if (child == 2) return {ca, bc, parent[2]};
-  return {bc, ca, ab};
-}
-
-/// A limit surface and the way from a refined face to its parameters. Refinement numbers the children of each face in a row, face by face.
-struct LimitMap {
-  LimitSurface surface;
-  const CageSource& cage;
-  std::vector<std::int64_t> first_child{};  ///< Of each face of the cage, with one past the end.
-
-  explicit LimitMap(const CageSource& source) : surface(source.cage, source.scheme, source.file), cage(source) {
-    const std::int64_t later = std::int64_t{1} << (2 * std::max(source.level - 1, 0));
-    first_child.push_back(0);
-    for (size_t f = 0; f < source.cage.face_count(); ++f) {
-      const std::int32_t size = source.cage.face_sizes[f];
-      if (std::binary_search(source.cage.holes.begin(), source.cage.holes.end(), static_cast<std::int32_t>(f))) {
-        first_child.push_back(first_child.back());
-        continue;
-      }
-      const std::int64_t children = source.level == 0 ? 1 : source.scheme == Scheme::loop ? 4 * later : size * later;
-      first_child.push_back(first_child.back() + children);
-    }
-  }
-
-  struct Piece {
-    int face = 0, sub_face = 0;
-    Domain corners{};
-  };
-  bool piece_of(std::int32_t refined_face, Piece& piece) const {
-    const auto at = std::upper_bound(first_child.begin(), first_child.end(), std::int64_t{refined_face});
-    piece.face = static_cast<int>(at - first_child.begin()) - 1;
-    const std::int32_t size = cage.cage.face_sizes[static_cast<size_t>(piece.face)];
-    const std::int64_t rest = refined_face - first_child[static_cast<size_t>(piece.face)];
-    const bool triangles = cage.scheme == Scheme::loop;
-    piece.corners = triangles ? Domain{{{0, 0}, {1, 0}, {0, 1}, {0, 0}}} : Domain{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-    int digits = cage.level;
-    if (!triangles && size != 4) {
-      if (digits == 0) return false;
-      --digits;
-      piece.sub_face = static_cast<int>(rest >> (2 * digits));
-    }
-    while (digits > 0) {
-      const int child = static_cast<int>((rest >> (2 * --digits)) & 3);
-      piece.corners = triangles ? triangle_child(piece.corners, child) : quad_child(piece.corners, child);
-    }
-    return true;
-  }
-};
-
 }  // namespace
 
 struct MeshCurvature::Made {
@@ -119,17 +56,21 @@ struct MeshCurvature::Made {
 
   SurfaceCurvature on_limit(const TriangleMesh& mesh, const Mesh& polygons, const CageSource& cage, const SurfacePoint& point,
                             const Place& place) const {
-    LimitMap::Piece piece;
-    if (!limit->piece_of(point.face, piece)) return no_curvature();
+    LimitPiece piece;
+    if (!cage.pieces.empty())
+      piece = cage.pieces[static_cast<size_t>(point.face)];
+    else if (!limit->piece_of(point.face, piece))
+      return no_curvature();
     const auto first = static_cast<size_t>(first_corner[static_cast<size_t>(point.face)]);
     const auto size = static_cast<size_t>(polygons.face_sizes[static_cast<size_t>(point.face)]);
     if (size > 4) return no_curvature();
+    const bool mirrored = cage.mirrored && cage.pieces.empty();  // pieces are those of the triangles as they are traced
     glm::dvec2 uv(0.0);
     for (int i = 0; i < 3; ++i) {
       size_t corner = 0;
       const auto vertex = static_cast<std::int32_t>(mesh.triangles[place.triangle][i]);
       while (corner + 1 < size && polygons.corner_vertices[first + corner] != vertex) ++corner;
-      uv += place.weights[i] * piece.corners[cage.mirrored ? (size - corner) % size : corner];
+      uv += place.weights[i] * piece.corners[mirrored ? (size - corner) % size : corner];
     }
     LimitPoint at;
     if (!limit->surface.evaluate(piece.face, piece.sub_face, uv.x, uv.y, at)) return no_curvature();
@@ -166,10 +107,11 @@ void MeshCurvature::evaluate(std::span<const SurfacePoint> points, std::span<Sur
     if (const Field* field = std::get_if<Field>(&source_)) {
       made->evaluators.emplace(*field);
     } else if (const CageSource* cage = std::get_if<CageSource>(&source_)) {
-      made->limit.emplace(*cage);
+      made->limit.emplace(cage->cage, cage->scheme, cage->level, cage->file);
       made->first_corner = first_corners(polygons_.mesh());
       // Faces that refinement leaves out (collapsed ones, holes) shift the numbers of all others.
-      if (made->limit->first_child.back() != static_cast<std::int64_t>(polygons_.mesh().face_count())) made->limit.reset();
+      const size_t faces = polygons_.mesh().face_count();
+      if (cage->pieces.empty() ? !made->limit->maps(faces) : cage->pieces.size() != faces) made->limit.reset();
     }
     if (!made->evaluators && !made->limit && !triangles_.corner_normals.empty()) made->tensors = corner_tensors(triangles_);
     made_ = std::move(made);

@@ -97,7 +97,7 @@ ObjectMesh from_cage(const SceneObject& object, const MeshSource& source, const 
   Mesh cage = recentred(source.mesh, place.center);
   ObjectMesh result = triangles_with(refine(cage, how, source.file), how.normals, place.render_from_mesh);
   result.smooth = CageSource{
-      std::move(cage), scheme, how.level, place.render_from_mesh, glm::determinant(place.render_from_mesh.linear) < 0.0, source.file};
+      std::move(cage), scheme, how.level, place.render_from_mesh, glm::determinant(place.render_from_mesh.linear) < 0.0, source.file, {}};
   return result;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // An object as triangles, whatever it was: the first step of `mesh` and `mesh_level_set`.
 
+#include <array>
 #include <variant>
 
 #include "raymarch/mesh/polygons.h"
@@ -9,14 +10,21 @@
 
 namespace limn {
 
+/// A face of a refined mesh as a part of a limit surface: the parameters at its corners.
+struct LimitPiece {
+  int face = 0, sub_face = 0;  ///< As LimitSurface numbers them.
+  std::array<glm::dvec2, 4> corners{};
+};
+
 /// The cage that a mesh was refined from.
 struct CageSource {
   Mesh cage{};
   Scheme scheme = Scheme::catmark;
   int level = 0;
   Affine render_from_cage{};
-  bool mirrored = false;  ///< By render_from_cage: the refined faces were turned round.
-  std::string file{};     ///< For messages.
+  bool mirrored = false;             ///< By render_from_cage: the refined faces were turned round.
+  std::string file{};                ///< For messages.
+  std::vector<LimitPiece> pieces{};  ///< Of each triangle of a local refinement, as it is traced; empty: refined `level` times.
 };
 /// The smooth surface that a mesh stands for: a field, a limit surface, or none.
 using SmoothSource = std::variant<std::monostate, Field, CageSource>;

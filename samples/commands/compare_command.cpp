@@ -5,6 +5,7 @@
 #include "samples/compare/compare_job.h"
 #include "samples/compare/staging.h"
 #include "samples/experiment/empty_picture.h"
+#include "samples/experiment/local_request.h"
 #include "samples/experiment/thread_settings.h"
 #include "samples/input/input_files.h"
 #include "samples/spec/flags.h"
@@ -20,6 +21,7 @@ void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_camera(app, options, false);
   add_surface(app, options, {.surface = true, .repeatable = true, .views = true});
+  add_local(app, options, true);
   add_border(app, options, true);
   add_output(app, options, "folder for sheet.png, report.html, rows.json and each picture's EXR; default limn-out/compare/<name>", false);
   add_no_timings(app, options);
@@ -31,7 +33,9 @@ void add_options(CLI::App& app, Options& options) {
 
 Comparison plan(const Options& options, SceneInput& input) {
   std::vector<std::string> notes;
-  Comparison comparison = comparison_for(options.spec, input, notes);
+  std::optional<ComparedLocal> local;
+  if (options.local.tolerance_px) local = ComparedLocal{*options.local.tolerance_px, options.plan.silhouette};
+  Comparison comparison = comparison_for(options.spec, input, notes, local);
   comparison.with_times = !options.no_timings;
   if (!options.quiet) {
     for (const std::string& note : notes) print_note(note);
@@ -95,6 +99,8 @@ int run(const Options& options) {
   const ThreadLimit threads(options.spec.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
   input_kind(options.spec.input);
+  if (options.local.asked && !options.local.tolerance_px)
+    throw InputError({"", "local", "", "needs a tolerance", "a number of pixels, such as --local 0.25"});
   if (!options.outputs.empty()) check_output_folder(options.outputs.back(), options.no_clobber);
   SceneInput input = load(options);
   check_junit(options, files_of(input));
@@ -103,6 +109,12 @@ int run(const Options& options) {
 
   Comparison comparison = plan(options, input);
   refuse_uncompared(options.spec, input, comparison);
+  if (options.local.asked) {
+    std::vector<std::string> kinds;
+    for (const ComparedModel& model : comparison.models)
+      if (model.skipped.empty()) kinds.push_back(model.surface.kind);
+    refuse_local_without_effect(options.spec, input.scene, comparison.models.back().surface, kinds);
+  }
   const std::vector<fs::path> names = file_names(comparison);
   for (const fs::path& name : names) check_not_input(folder / name, files_of(input));
   std::vector<std::string> warnings = check(options, comparison);

@@ -4,6 +4,8 @@
 
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
+#include "samples/experiment/job.h"
+#include "samples/experiment/local_request.h"
 #include "samples/experiment/no_effect.h"
 #include "samples/experiment/thread_settings.h"
 #include "samples/input/input_files.h"
@@ -30,6 +32,8 @@ void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
   add_surface(app, options, {.surface = true, .repeatable = false});
   add_refined(app, options);
+  add_local(app, options, true);
+  add_camera(app, options, true);
   add_output(app, options, ".obj .ply (refined mesh) or .vdb (level set); default limn-out/export/<name>.obj, .vdb for a volume", false);
   add_json(app, options);
   add_execution(app, options);
@@ -63,6 +67,26 @@ void check_refined(const Scene& scene, const SurfaceSettings& settings, const fs
     if (mesh == nullptr || (!mesh->scheme && !settings.scheme))
       throw InputError({"", "--refined", object.name, "is no subdivision cage", expected});
   }
+}
+
+/// A local mesh is made for pictures; nothing else that is written depends on a camera.
+std::optional<LocalSettings> local_of(const Options& options, const SceneInput& input, const SurfaceSettings& settings,
+                                      const fs::path& file) {
+  const CameraSpec& camera = options.spec.camera;
+  if (!options.local.asked) {
+    if (camera.is_set() || camera.size_px || options.spec.views > 1)
+      throw InputError({"", "local", "", "missing: a camera has no effect on a surface that is as fine everywhere", "--local PX"});
+    return {};
+  }
+  if (!options.local.tolerance_px) throw InputError({"", "local", "", "needs a tolerance", "a number of pixels, such as --local 0.25"});
+  if (options.refined) throw InputError({"", "local", "", "has no effect on refined positions; leave out one of them", ""});
+  const std::string kind = ending_of(file) == ".vdb" ? "level_set" : settings.kind.empty() ? "mesh" : settings.kind;
+  refuse_local_without_effect(options.spec, input.scene, settings, {kind});
+  refuse_eye_of_views(camera, options.spec.views);
+  std::vector<Camera> cameras;
+  for (int view = 0; view < options.spec.views; ++view)
+    cameras.push_back(camera_of_view(camera_settings(camera, input), bounds(input.scene), view, options.spec.views));
+  return local_settings(*options.local.tolerance_px, options.plan.silhouette, {}, std::move(cameras));
 }
 
 Mesh exported_mesh(const Scene& scene, const SurfaceSettings& settings, bool refined, WorldNotes& said) {
@@ -134,6 +158,7 @@ int run(const Options& options) {
   SurfaceSettings settings = surface_settings(options.spec, input);
   check_kind(settings, file);
   if (options.refined) check_refined(input.scene, settings, file);
+  const std::optional<LocalSettings> local = local_of(options, input, settings, file);
   settings.progress = bar.stage("building the surface");
 
   // What is written to a .vdb is one level set, whatever it is called.
@@ -152,7 +177,8 @@ int run(const Options& options) {
     document = level_sets_json(level_sets);
     text = level_sets_text(level_sets);
   } else {
-    const Mesh mesh = exported_mesh(input.scene, settings, options.refined, said);
+    const Mesh mesh = local ? world_local_mesh(input.scene, settings, *local, said.warnings)
+                            : exported_mesh(input.scene, settings, options.refined, said);
     write_mesh(mesh, file);
     document = {{"kind", "mesh"}, {"vertices", mesh.vertex_count()}, {"faces", mesh.face_count()}};
     text = fmt::format("{} vertices, {} faces", mesh.vertex_count(), mesh.face_count());

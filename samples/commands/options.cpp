@@ -441,6 +441,33 @@ void add_stability(CLI::App& app, Options& options) {
   add_compared_surfaces(app, options);
 }
 
+namespace {
+
+CLI::Option* add_metric(CLI::App& app, Options& options) {
+  return add(app,
+             {"--metric", "border|silhouette",
+              "what has to be right: border (the rim's ink, inside and outside) or silhouette; default border", kPlan},
+             [&options](const std::string& text) { options.plan.silhouette = parse_plan_metric("--metric", text); });
+}
+
+}  // namespace
+
+void add_local(CLI::App& app, Options& options, bool metric) {
+  CLI::Option* local =
+      app.add_option_function<std::vector<std::string>>(
+             "--local",
+             [&options](const std::vector<std::string>& texts) {
+               options.local.asked = true;
+               if (!texts.empty() && !texts.back().empty())
+                 options.local.tolerance_px = parse_number_above("--local", texts.back(), 0.0, false, "a number of pixels above 0");
+             },
+             "a mesh that is fine where the border of these pictures runs and coarse elsewhere: the border within PX pixels")
+          ->type_name("PX")
+          ->group(kSurface)
+          ->expected(0, 1);
+  if (metric) add_metric(app, options)->needs(local);
+}
+
 void add_plan(CLI::App& app, Options& options) {
   PlanSpec& plan = options.plan;
   auto* tolerance =
@@ -450,11 +477,9 @@ void add_plan(CLI::App& app, Options& options) {
           [&plan](const std::string& text) {
             plan.tolerance_px = parse_number_above("--tolerance", text, 0.0, false, "a number of pixels above 0");
           });
-  add(app,
-      {"--metric", "border|silhouette", "what has to be right: border (the rim's ink, inside and outside) or silhouette; default border",
-       kPlan},
-      [&plan](const std::string& text) { plan.silhouette = parse_plan_metric("--metric", text); })
-      ->needs(tolerance);
+  CLI::Option* metric = add_metric(app, options);
+  // `limn render --local PX` reads it, too.
+  if (!app.get_option_no_throw("--local")) metric->needs(tolerance);
   add_repeatable(
       app, {"--budget", "SIZE|TIME", "what the model may take: memory such as 64M, or time to build and trace such as 200ms or 2s", kPlan},
       [&plan](const std::string& text) {

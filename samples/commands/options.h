@@ -27,6 +27,12 @@ struct StudyRunOptions {
   std::vector<std::filesystem::path> parts{};  ///< Folders to merge.
 };
 
+/// A model that is fine where the border of the call's pictures runs and coarse elsewhere.
+struct LocalOptions {
+  bool asked = false;
+  std::optional<double> tolerance_px{};  ///< Unset: a plan chooses it.
+};
+
 struct StabilityOptions {
   std::vector<std::string> cases{};     ///< Names or files; empty: all.
   std::optional<std::uint64_t> seed{};  ///< Of random parameters.
@@ -65,6 +71,7 @@ struct Options {
   ExperimentSpec spec{};
   SweepSpec sweep{};
   PlanSpec plan{};
+  LocalOptions local{};
   StabilityOptions stability{};
   StudyRunOptions study{};
   FramePath frames{.frames = 1};  ///< `limn render` and `limn contours`.
@@ -145,5 +152,7 @@ void add_demo(CLI::App& app, Options& options);
 void add_compare_limits(CLI::App& app, Options& options);
 /// --tolerance, --metric and --budget.
 void add_plan(CLI::App& app, Options& options);
+/// --local; `metric`: --metric too, which add_plan has itself.
+void add_local(CLI::App& app, Options& options, bool metric);
 
 }  // namespace limn

@@ -17,6 +17,8 @@ void add_options(CLI::App& app, Options& options) {
   add_plan(app, options);
   add_camera(app, options, true);
   add_surface(app, options, {.surface = true, .repeatable = true, .swept = true});
+  add_switch(app, {"--local", "", "try meshes that are fine where the border of these views runs and coarse elsewhere, too", kSurface},
+             options.local.asked);
   add_methods(app, options);
   add_json(app, options);
   add_reference(app, options);
@@ -53,7 +55,7 @@ int run(const Options& options) {
     for (const SurfaceDescriptor& kind : surface_kinds()) needs.surfaces.push_back(kind.about.name);
   }
   const std::vector<std::string> warnings = warn_of_input(options, input.scene, {}, needs);
-  const PlanJob job = plan_for(options.spec, options.plan, input, bar);
+  const PlanJob job = plan_for(options.spec, options.plan, input, bar, options.local.asked);
   if (options.json) {
     Json document = plan_json(job);
     document["warnings"] = warnings;

@@ -18,6 +18,7 @@
 #include "samples/experiment/camera_json.h"
 #include "samples/experiment/empty_picture.h"
 #include "samples/experiment/flat_input.h"
+#include "samples/experiment/local_request.h"
 #include "samples/experiment/no_effect.h"
 #include "samples/experiment/thread_settings.h"
 #include "samples/input/input_files.h"
@@ -61,6 +62,7 @@ void add_options(CLI::App& app, Options& options) {
   add_frames(app, options, "N pictures while the camera wanders within a pixel, 1..10000, and how often ink flips meanwhile");
   add_turntable(app, options);
   add_surface(app, options, {.surface = true, .repeatable = false, .views = true});
+  add_local(app, options, false);
   add_plan(app, options);
   add_border(app, options);
   add_look(app, options);
@@ -86,9 +88,29 @@ struct Render {
   std::vector<std::vector<std::byte>> frames{};  ///< PNG files, where one picture plays them.
   Json plan{};                                   ///< What --tolerance chose; null without it.
   std::optional<FlickerWatch> flicker{};         ///< Of several frames.
+  std::optional<LocalSettings> local{};          ///< Of a local model.
 };
 
-ResolvedModel resolved_model(const Render& render) { return {render.input.scene, render.surface, {render.surface.kind}}; }
+/// What has no meaning without something else in the call.
+void refuse_alone(const Options& options) {
+  if (options.plan.silhouette && !options.local.asked && !options.plan.tolerance_px)
+    throw InputError({"", "metric", "", "has no effect without tolerance or local; leave it out", ""});
+  if (options.local.asked && options.local.tolerance_px && options.plan.tolerance_px)
+    throw InputError({"", "local", "", "beside tolerance the plan chooses how fine the model is", "--local without a number"});
+  if (options.local.asked && !options.local.tolerance_px && !options.plan.tolerance_px)
+    throw InputError({"", "local", "", "needs a tolerance", "a number of pixels, such as --local 0.25"});
+}
+
+/// --local asks for a mesh where nobody says otherwise.
+void prepare_local(const Options& options, Render& render) {
+  if (!options.local.tolerance_px) return;
+  if (render.surface.kind.empty()) render.surface.kind = "mesh";
+  refuse_local_without_effect(options.spec, render.input.scene, render.surface, {render.surface.kind});
+}
+
+ResolvedModel resolved_model(const Render& render) {
+  return {render.input.scene, render.surface, {render.surface.kind}, render.local ? render.local->tolerance_px : 0.0};
+}
 
 bool plays(const Render& render, const Options& options) {
   return std::any_of(render.outputs.begin(), render.outputs.end(), [&](const fs::path& file) { return is_animated(file, options); });
@@ -271,13 +293,14 @@ void report(const Options& options, const Render& render, const SurfaceInfo& inf
 
 // With --tolerance the plan says how to model; nothing is drawn where nothing meets it.
 bool choose_model(const Options& options, ProgressBar& bar, Render& render) {
-  const PlanJob job = plan_for(options.spec, options.plan, render.input, bar);
+  const PlanJob job = plan_for(options.spec, options.plan, render.input, bar, options.local.asked);
   const std::vector<std::string> sentences = plan_sentences(job.answer, job.settings);
   render.plan = plan_json(job);
   if (!options.quiet) print_note(sentences.front());
   if (!job.answer.chosen) return false;
   const PlanTrial& chosen = job.answer.trials[*job.answer.chosen];
   render.surface = job.answer.ladders[chosen.ladder].at(chosen.rung);
+  if (const auto local = job.answer.ladders[chosen.ladder].local_at(chosen.rung)) render.local = *local;
   for (SceneObject& object : render.input.scene.objects) object.level.reset();
   return true;
 }
@@ -309,6 +332,7 @@ int run(const Options& given) {
   const ThreadLimit threads(options.spec.threads);
   ProgressBar bar(wants_progress(options.quiet, options.no_progress));
   input_kind(options.spec.input);
+  refuse_alone(options);
   // A wrong output name must not cost the wait for a large model.
   if (!options.outputs.empty()) check_outputs(options.outputs, {options.spec.input}, options);
 
@@ -319,6 +343,7 @@ int run(const Options& given) {
   render.timings.load_ms = render.input.load_ms;
   render.surface = surface_settings(options.spec, render.input);
   refuse_eye_of_views(options.spec.camera, options.spec.views);
+  prepare_local(options, render);
   if (!options.plan.tolerance_px) refuse_without_effect(options.spec.surface, render.input, {.kinds = {render.surface.kind}});
   if (options.plan.tolerance_px && !choose_model(options, bar, render)) {
     if (options.json) print_json({{"files", Json::array()}, {"warnings", render.warnings}, {"plan", render.plan}});
@@ -336,6 +361,9 @@ int run(const Options& given) {
   // Made first: a camera that is wrong is told before the surface is built.
   const std::vector<Camera> cameras = cameras_of(options, render.input);
 
+  if (options.local.tolerance_px)
+    render.local = local_settings(*options.local.tolerance_px, options.plan.silhouette, render.picture.methods, cameras);
+
   check_cost(options, render.input.scene, render.surface,
              picture_load(cameras.front(), render.picture, pictures_of(options),
                           std::any_of(render.outputs.begin(), render.outputs.end(), has_layers)));
@@ -349,7 +377,8 @@ int run(const Options& given) {
   std::vector<std::string> levels;
   if (options.spec.surface.level_for_view && !options.plan.tolerance_px)
     levels = refine_for_views(render.surface, cameras, render.input.scene);
-  const SceneModel model = build_model(render.input.scene, render.surface);
+  const SceneModel model =
+      render.local ? build_local_model(render.input.scene, render.surface, *render.local) : build_model(render.input.scene, render.surface);
   render.timings.build_ms = since_ms(build_start);
   const SurfaceInfo info = total(model);
   print_warnings(options, info.warnings);

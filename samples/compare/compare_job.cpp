@@ -2,12 +2,14 @@
 
 #include "raymarch/image_io.h"
 #include "raymarch/surface/view_level.h"
+#include "samples/experiment/local_request.h"
 #include "samples/experiment/no_effect.h"
 #include "sdf/output_file.h"
 
 namespace limn {
 
-Comparison comparison_for(const ExperimentSpec& spec, SceneInput& input, std::vector<std::string>& notes) {
+Comparison comparison_for(const ExperimentSpec& spec, SceneInput& input, std::vector<std::string>& notes,
+                          const std::optional<ComparedLocal>& local) {
   SurfaceSettings settings = surface_settings(spec, input);
   const Camera camera =
       camera_of_view(camera_settings(spec.camera, input), framed_input(spec.camera, input), framing_settings(spec.camera), 0, 1);
@@ -28,11 +30,13 @@ Comparison comparison_for(const ExperimentSpec& spec, SceneInput& input, std::ve
   }
   plan_methods(columns, comparison);
   comparison.camera = camera;
+  if (local) plan_local(local_settings(local->tolerance_px, local->silhouette, comparison.picture.methods, {camera}), comparison);
   std::vector<std::string> kinds;
   for (const ComparedModel& model : comparison.models)
     if (model.skipped.empty()) kinds.push_back(model.surface.kind);
   comparison.truth_reference = spec.reference.value_or(TruthReference::given);
-  comparison.call = resolved_call("compare", spec, {input.scene, settings, kinds}, comparison.camera, comparison.picture);
+  comparison.call = resolved_call("compare", spec, {input.scene, settings, kinds, local ? local->tolerance_px : 0.0}, comparison.camera,
+                                  comparison.picture);
   return comparison;
 }
 

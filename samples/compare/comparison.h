@@ -20,12 +20,13 @@ namespace limn {
 
 /// One way to model the scene.
 struct ComparedModel {
-  std::string name;         ///< Of its file: "level_set".
-  std::string title;        ///< For people: "level set".
-  std::string details;      ///< "256 voxels, central gradient".
-  Scene scene;              ///< The input's, with levels set as this model needs them.
-  SurfaceSettings surface;  ///< How this model is built.
-  std::string skipped;      ///< Why there is nothing to show; then nothing below is filled.
+  std::string name;                              ///< Of its file: "level_set".
+  std::string title;                             ///< For people: "level set".
+  std::string details;                           ///< "256 voxels, central gradient".
+  Scene scene;                                   ///< The input's, with levels set as this model needs them.
+  SurfaceSettings surface;                       ///< How this model is built.
+  std::shared_ptr<const LocalSettings> local{};  ///< Of a local mesh; null: as fine everywhere.
+  std::string skipped;                           ///< Why there is nothing to show; then nothing below is filled.
 
   SurfaceInfo info;                 ///< Sums over the objects (total()).
   double trace_ms = 0.0;            ///< Of one picture, all samples.
@@ -95,6 +96,8 @@ Comparison plan_comparison(const SceneInput& input, const SurfaceSettings& setti
                            bool gradient_chosen);
 /// Makes a method a column and fills the cells.
 void plan_methods(const std::vector<std::vector<MethodCall>>& columns, Comparison& comparison);
+/// Makes the mesh, beside the reference, a local one.
+void plan_local(const LocalSettings& local, Comparison& comparison);
 
 /// Draws every cell, writes each model's EXR into `folder`, measures. Each model is built and traced once. A cell that cannot be drawn
 /// keeps its reason.

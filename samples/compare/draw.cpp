@@ -36,7 +36,7 @@ Experiment experiment_of(const Comparison& comparison) {
   experiment.scene = comparison.reference().scene;
   experiment.cameras = {comparison.camera};
   for (const ComparedModel& model : comparison.models)
-    experiment.models.push_back({model.title, model.scene, model.surface, model.skipped});
+    experiment.models.push_back({model.title, model.scene, model.surface, model.skipped, model.local});
   for (const ComparedMethod& method : comparison.methods) experiment.methods.push_back({method.name, method.calls, method.truth_threshold});
   for (const Metric& metric : metrics()) {
     const bool of_pictures = metric.subject == MetricSubject::gbuffer || metric.subject == MetricSubject::ink;

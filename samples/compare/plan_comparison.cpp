@@ -129,6 +129,17 @@ Comparison plan_comparison(const SceneInput& input, const SurfaceSettings& setti
   return comparison;
 }
 
+void plan_local(const LocalSettings& local, Comparison& comparison) {
+  for (size_t k = 1; k < comparison.models.size(); ++k) {
+    ComparedModel& model = comparison.models[k];
+    if (model.surface.kind != "mesh" || !model.skipped.empty()) continue;
+    model.local = std::make_shared<const LocalSettings>(local);
+    model.name = "mesh_local";
+    model.title = "mesh, local";
+    model.details = fmt::format("for {:g} px in this view", local.tolerance_px);
+  }
+}
+
 void plan_methods(const std::vector<std::vector<MethodCall>>& columns, Comparison& comparison) {
   for (const std::vector<MethodCall>& calls : columns) {
     ComparedMethod method;

@@ -61,12 +61,15 @@ SceneModel ExperimentRun::build(size_t index) {
   if (observer_.stage) settings.progress = stage("building " + planned.title);
   const auto start = Clock::now();
   // The reference's mesh is finer than any other: no start for them.
-  SceneModel model = build_model(planned.scene, settings, experiment_.share_meshes && index > 0 ? &meshes_ : nullptr);
+  const auto build_one = [&](ObjectMeshCache* meshes) {
+    return planned.local ? build_local_model(planned.scene, settings, *planned.local) : build_model(planned.scene, settings, meshes);
+  };
+  SceneModel model = build_one(experiment_.share_meshes && index > 0 ? &meshes_ : nullptr);
   const double first_ms = ms_since(start);
   std::vector<double> times = {total(model).build_ms};
   const bool repeats = index > 0 && !experiment_.share_meshes;
   while (repeats && static_cast<int>(times.size()) < experiment_.repeats && ms_since(start) < kMostRepeat_ms) {
-    times.push_back(total(build_model(planned.scene, settings, nullptr)).build_ms);
+    times.push_back(total(build_one(nullptr)).build_ms);
   }
   // Kept beyond the model only where a later one may want it.
   const auto is_meshed = [](const ExperimentModel& one) { return one.settings.kind.starts_with("mesh"); };

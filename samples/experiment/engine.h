@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "raymarch/local_model.h"
 #include "raymarch/metric.h"
 #include "samples/experiment/observe.h"
 
@@ -15,10 +16,11 @@ namespace limn {
 
 /// One way to model a scene.
 struct ExperimentModel {
-  std::string title{};         ///< For progress: "level set".
-  Scene scene{};               ///< What is modelled: the experiment's, with levels as this model needs them.
-  SurfaceSettings settings{};  ///< How.
-  std::string refused{};       ///< Why it cannot be built, where that is known beforehand.
+  std::string title{};                           ///< For progress: "level set".
+  Scene scene{};                                 ///< What is modelled: the experiment's, with levels as this model needs them.
+  SurfaceSettings settings{};                    ///< How.
+  std::string refused{};                         ///< Why it cannot be built, where that is known beforehand.
+  std::shared_ptr<const LocalSettings> local{};  ///< Of a local model; null: as fine everywhere.
 };
 
 /// One way to draw it: a method, or several whose ink makes one picture.

@@ -246,7 +246,9 @@ std::string resolved_call(const std::string& command, const ExperimentSpec& spec
   CallText call(command, spec.input);
   add_camera(camera, call);
   if (!surface.kind.empty()) call.add("surface", surface.kind);
+  if (model.local_px > 0.0) call.add("local", fmt::format("{}", model.local_px));
   for (const SurfaceSetting& setting : surface_setting_list()) {
+    if (model.local_px > 0.0 && std::string_view(setting.name) == "level") continue;
     // What the call itself decides, such as a level for the view, and what is no setting of models, is as it was asked for.
     const std::string used = setting.use == nullptr || (spec.surface.level_for_view && std::string_view(setting.name) == "level")
                                  ? setting.asked(spec.surface).value_or("")

@@ -38,6 +38,7 @@ struct ResolvedModel {
   /// Must outlive this.
   const SurfaceSettings& surface;
   std::vector<std::string> kinds{};  ///< Representations that are built; an empty name: each object's natural one.
+  double local_px = 0.0;             ///< Tolerance of local meshes, which have no level; 0: none is built.
 };
 /// The whole call with nothing left open, for file headers; the same for any number of threads. Settings are in it as far as they have an
 /// effect on what is built of the scene.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/mesh/polygons.h"
 #include "raymarch/surface/resampled_volume.h"
 #include "sdf/error.h"
 #include "sdf/level_set_grids.h"
@@ -184,6 +185,20 @@ Mesh world_mesh(const Scene& scene, const SurfaceSettings& settings, bool refine
     if (lost == nullptr || count == 0 || count == objects) continue;
     lost->push_back(fmt::format("{} are not written: {} of {} objects have none, and one mesh has them everywhere or nowhere", what,
                                 objects - count, objects));
+  }
+  return all;
+}
+
+Mesh world_local_mesh(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local, std::vector<std::string>& warnings) {
+  const SceneModel model = build_local_model(scene, settings, local);
+  Mesh all;
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    Mesh part = model.surfaces[i].polygons->mesh();
+    for (glm::dvec3& position : part.positions) position += model.render_origin;
+    const std::vector<std::string>& said = model.surfaces[i].info.warnings;
+    warnings.insert(warnings.end(), said.begin(), said.end());
+    if (scene.objects.size() == 1) return part;
+    append(all, part, scene.objects[i].name);
   }
   return all;
 }

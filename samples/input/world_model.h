@@ -1,6 +1,7 @@
 #pragma once
 // A scene's objects as one mesh or one level set in world space: what `limn export` writes and `limn info` looks at.
 
+#include "raymarch/local_model.h"
 #include "raymarch/surface.h"
 #include "samples/input/input.h"
 
@@ -14,6 +15,9 @@ Mesh world_mesh(const SceneObject& object, const SurfaceSettings& settings, bool
 /// materials) is not in it; `lost`, if given, is told so.
 Mesh world_mesh(const Scene& scene, const SurfaceSettings& settings, bool refined_positions = false,
                 std::vector<std::string>* lost = nullptr);
+
+/// All objects as one mesh, refined for the pictures of `local`. `warnings` are added to.
+Mesh world_local_mesh(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local, std::vector<std::string>& warnings);
 
 /// All objects as one level set: the union of fields, or of meshes; a single volume. `warnings` are added to. Throws InputError for volumes
 /// beside other objects.

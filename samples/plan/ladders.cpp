@@ -141,16 +141,22 @@ std::vector<Ladder> volume_ladders(const Scene& scene, const SceneSize& size, co
 
 }  // namespace
 
-double Ladder::size_at(size_t rung) const { return by_level ? base_size / std::exp2(rungs[rung]) : base_size / rungs[rung]; }
+double Ladder::size_at(size_t rung) const {
+  // Chords stand off by the square of an edge.
+  if (local) return std::sqrt(1000.0 / rungs[rung]);
+  return by_level ? base_size / std::exp2(rungs[rung]) : base_size / rungs[rung];
+}
 
 SurfaceSettings Ladder::at(size_t rung) const {
   SurfaceSettings own = settings;
+  if (local) return own;
   (by_level ? own.level : own.voxels) = rungs[rung];
   own.resample_volumes = of_file && rung + 1 < rungs.size();
   return own;
 }
 
 std::string Ladder::words_at(size_t rung) const {
+  if (local) return fmt::format("{:.3g} px", 1000.0 / rungs[rung]);
   if (of_file && rung + 1 == rungs.size()) return fmt::format("the file's own {} voxels", rungs[rung]);
   return by_level ? fmt::format("level {}", rungs[rung]) : fmt::format("{} voxels", rungs[rung]);
 }

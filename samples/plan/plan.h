@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "raymarch/local_model.h"
 #include "raymarch/truth.h"
 #include "samples/experiment/engine.h"
 #include "samples/experiment/error_floor.h"
@@ -25,26 +26,30 @@ struct PlanSettings {
   std::optional<double> budget_ms{};               ///< Of building and tracing one picture.
   std::optional<std::int64_t> budget_bytes{};      ///< Of the model.
   std::int64_t max_bytes = std::int64_t{4} << 30;  ///< Nothing larger is built.
+  bool local = false;                              ///< Local meshes are tried, too.
   std::vector<std::string> kinds{};                ///< Only these representations; empty: all that have a resolution.
 };
 
 /// A representation whose resolution is open, with its resolutions from coarse to fine.
 struct Ladder {
-  std::string title{};           ///< "level set, cubic gradient".
-  SurfaceSettings settings{};    ///< All but the resolution.
-  bool by_level = false;         ///< Rungs are subdivision levels; else voxels along the longest side.
-  bool of_file = false;          ///< Rungs are a file's volumes with other voxels; the last is the file as it is.
-  std::vector<int> rungs{};      ///< Rising: levels, or voxels along the longest side.
-  int normal_order = 2;          ///< Of the normal's angle, by edge or voxel size.
-  double normal_constant = 0.0;  ///< Angle = constant (curvature * size)^order, as far as theory knows.
-  double base_size = 1.0;        ///< World size of an edge at level 0, or of a voxel times the number of voxels.
-  double guess_ms = 1.0;         ///< To build the first rung, as an order of magnitude: the order in which ladders are tried.
-  double fixed_ms = 0.0;         ///< Of that and of every other rung, what does not grow: finding a shape's cage, as it took just now.
+  std::string title{};         ///< "level set, cubic gradient".
+  SurfaceSettings settings{};  ///< All but the resolution.
+  bool by_level = false;       ///< Rungs are subdivision levels; else voxels along the longest side.
+  bool of_file = false;        ///< Rungs are a file's volumes with other voxels; the last is the file as it is.
+  std::vector<int> rungs{};    ///< Rising: levels, voxels along the longest side, or of local meshes 1000 / the tolerance in pixels.
+  std::optional<LocalSettings> local{};  ///< Of local meshes; their tolerance is the rung's.
+  int normal_order = 2;                  ///< Of the normal's angle, by edge or voxel size.
+  double normal_constant = 0.0;          ///< Angle = constant (curvature * size)^order, as far as theory knows.
+  double base_size = 1.0;                ///< World size of an edge at level 0, or of a voxel times the number of voxels.
+  double guess_ms = 1.0;                 ///< To build the first rung, as an order of magnitude: the order in which ladders are tried.
+  double fixed_ms = 0.0;  ///< Of that and of every other rung, what does not grow: finding a shape's cage, as it took just now.
 
-  double size_at(size_t rung) const;  ///< World: of an edge or a voxel.
+  double size_at(size_t rung) const;  ///< World: of an edge or a voxel; of local meshes in proportion to it.
   /// The settings with the rung's resolution.
   SurfaceSettings at(size_t rung) const;
-  std::string words_at(size_t rung) const;  ///< "level 3", "128 voxels".
+  std::string words_at(size_t rung) const;  ///< "level 3", "128 voxels", "0.25 px".
+  /// What a local mesh of the rung is made for; null for other ladders.
+  std::shared_ptr<const LocalSettings> local_at(size_t rung) const;
 };
 
 /// How far a border lies from truth: the distance that 95 % of it keep to, by the metric border_error. The worst over all views.
@@ -69,6 +74,7 @@ struct PlanTrial {
   PredictedErrors predicted{};                            ///< By predict_errors(), the worst view's.
   BorderErrors measured{};                                ///< By measure_errors().
   std::int64_t bytes = 0;                                 ///< Of the model.
+  std::int64_t triangles = 0;                             ///< 0 where there are none.
   double build_ms = 0.0,                                  ///< Wall clock.
       trace_ms = 0.0;                                     ///< Mean over the views.
   std::string failed{};                                   ///< Why there are no figures; empty where there are.
@@ -93,12 +99,20 @@ struct PlanAnswer {
   std::optional<size_t> silhouette{};  ///< Trial of the chosen ladder that is enough for the silhouette alone, where that is a coarser one.
   ErrorFloor floor{};                  ///< What an error can be told from: truth in all views, and what a field itself scores.
   std::string doubt{};                 ///< Why nothing can be called right to the tolerance; empty where it can.
-  std::vector<std::string> notes{};    ///< Ladders that were given up, and why; what else a person should know.
+  std::int64_t curvature_triangles = 0;  ///< Where a local mesh was chosen: of a mesh refined by curvature alone to the tolerance.
+  std::optional<size_t> uniform{};       ///< Then, too: the trial of the coarsest mesh as fine everywhere that meets the tolerance.
+  size_t views = 1;                      ///< What the answer holds for.
+  std::vector<std::string> notes{};      ///< Ladders that were given up, and why; what else a person should know.
 };
 
 /// The ladders that a scene can climb; empty where nothing of it has a resolution to choose (a mesh that is no cage). `notes` is told what
 /// was left out, and why; may be null.
 std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes = nullptr);
+
+/// Local meshes for the views, of tolerances about that of the plan. Empty where the scene has none.
+std::optional<Ladder> local_ladder(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings);
+/// What is expected of a rung of it.
+PredictedErrors predict_local_errors(const Ladder& ladder, size_t rung);
 
 /// What the engine measures for a plan: border_error.
 const Metric& plan_metric();

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "samples/experiment/limits.h"
+#include "samples/experiment/local_request.h"
 #include "samples/experiment/no_effect.h"
 #include "samples/input/scene_facts.h"
 #include "samples/spec/surface_setting.h"
@@ -78,7 +79,10 @@ ErrorFloor floor_of(const Scene& scene, const PlanJob& job, const ExecutionSetti
 
 Json parameters_json(const Ladder& ladder, const PlanTrial& trial) {
   Json json = Json::object();
-  json[ladder.by_level ? "level" : "voxels"] = ladder.rungs[trial.rung];
+  if (ladder.local)
+    json["local"] = ladder.local_at(trial.rung)->tolerance_px;
+  else
+    json[ladder.by_level ? "level" : "voxels"] = ladder.rungs[trial.rung];
   if (ladder.settings.kind == "mesh")
     json["normals"] = name_of(ladder.settings.normals.value_or(NormalKind::limit));
   else
@@ -97,6 +101,7 @@ Json trial_json(const PlanAnswer& answer, const PlanTrial& trial, PlanMetric met
                {"silhouette_px", number_or_null(trial.measured.silhouette_px)},
                {"inner_px", number_or_null(trial.measured.inner_px)},
                {"bytes", trial.bytes},
+               {"triangles", trial.triangles},
                {"build_ms", trial.build_ms},
                {"trace_ms", trial.trace_ms},
                {"time_ms", trial.time_ms()}};
@@ -117,16 +122,18 @@ void refuse_unplanned(const ExperimentSpec& spec, const SceneInput& input) {
   refuse_without_effect(spec.surface, input, {.kinds = kinds});
 }
 
-PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneInput& input, ProgressBar& bar) {
-  return plan_for(spec, plan, input, bar, execution_settings(spec.threads));
+PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneInput& input, ProgressBar& bar, bool local) {
+  return plan_for(spec, plan, input, bar, execution_settings(spec.threads), local);
 }
 
-PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneInput& input, ProgressBar& bar,
-                 const ExecutionSettings& how) {
+PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneInput& input, ProgressBar& bar, const ExecutionSettings& how,
+                 bool local) {
   PlanJob job;
   refuse_unplanned(spec, input);
   refuse_reference_without_effect(spec, input);
   job.settings = settings_of(spec, plan, input);
+  job.settings.local = local;
+  if (local) refuse_local_without_effect(spec, input.scene, {}, {spec.surfaces.empty() ? "mesh" : spec.surfaces.front()});
   const CameraSettings camera_of = camera_settings(spec.camera, input);
   const FramedSurface framed = framed_input(spec.camera, input);
   check_least(spec, input.scene, camera_of);
@@ -169,6 +176,10 @@ Json plan_json(const PlanJob& job) {
     json["measured_px"] = number_or_null(chosen.measured.of(metric));
     json["bytes"] = chosen.bytes;
     json["time_ms"] = chosen.time_ms();
+    if (answer.ladders[chosen.ladder].local) {
+      json["uniform_triangles"] = answer.uniform ? Json(answer.trials[*answer.uniform].triangles) : Json();
+      json["curvature_triangles"] = answer.curvature_triangles;
+    }
     json["finest"] = trial_json(answer, answer.finest, metric);
     json["finest"]["built"] = answer.finest_was_built;
   } else {

@@ -33,6 +33,24 @@ std::string budget_words(const PlanSettings& settings) {
   return words;
 }
 
+/// Against what is as fine everywhere.
+void add_savings(const PlanAnswer& answer, const PlanTrial& chosen, std::vector<std::string>& out) {
+  if (!answer.ladders[chosen.ladder].local) return;
+  const auto times = [&](std::int64_t triangles) {
+    return static_cast<double>(triangles) / std::max<double>(1.0, static_cast<double>(chosen.triangles));
+  };
+  std::string sentence = fmt::format("It has {} triangles", chosen.triangles);
+  if (answer.uniform) {
+    const PlanTrial& uniform = answer.trials[*answer.uniform];
+    sentence += fmt::format(", a mesh that is as fine everywhere {} ({}, {:.1f} times as many)", uniform.triangles,
+                            answer.ladders[uniform.ladder].words_at(uniform.rung), times(uniform.triangles));
+  }
+  sentence += fmt::format(", one refined by curvature alone, its chords within the tolerance, {} ({:.1f} times as many)",
+                          answer.curvature_triangles, times(answer.curvature_triangles));
+  out.push_back(sentence + fmt::format("; it holds for {}.", answer.views == 1 ? std::string("this view alone")
+                                                                               : fmt::format("these {} views alone", answer.views)));
+}
+
 void add_choice(const PlanAnswer& answer, const PlanSettings& settings, std::vector<std::string>& out) {
   const PlanTrial& chosen = answer.trials[*answer.chosen];
   out.push_back(fmt::format("{} is the cheapest that puts 95 % of the {} within {}{}: measured {}, predicted {}{}; {}.",
@@ -45,6 +63,7 @@ void add_choice(const PlanAnswer& answer, const PlanSettings& settings, std::vec
     out.push_back(fmt::format("The next coarser one, {}, is {} off.", answer.ladders[coarser.ladder].words_at(coarser.rung),
                               px(coarser.measured.of(settings.metric))));
   }
+  add_savings(answer, chosen, out);
   const PlanTrial& finest = answer.finest;
   if (finest.rung != chosen.rung) {
     out.push_back(fmt::format("The finest, {}, {} {}: {:.1f} times the time and {:.1f} times the memory.",

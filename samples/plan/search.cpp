@@ -31,6 +31,7 @@ BorderErrors worst(const BorderErrors& a, const BorderErrors& b) {
 }
 
 PredictedErrors predicted(const Search& search, size_t ladder, size_t rung) {
+  if (search.answer.ladders[ladder].local) return predict_local_errors(search.answer.ladders[ladder], rung);
   PredictedErrors errors;
   for (const std::vector<BorderPlace>& places : search.places) {
     const PredictedErrors one = predict_errors(search.answer.ladders[ladder], rung, places, search.settings.threshold);
@@ -65,6 +66,7 @@ ExperimentObserver observer_of(Search& search) {
                 PlanTrial& trial = *search.under_way;
                 const SurfaceInfo info = total(model);
                 trial.bytes = info.bytes;
+                trial.triangles = info.triangles;
                 // Volumes are resampled once and written (limn export); what a coarser grid saves is what it takes from then on.
                 trial.build_ms = search.answer.ladders[trial.ladder].of_file ? ready_ms(model) : info.build_ms;
               },
@@ -88,7 +90,7 @@ PlanTrial try_rung(Search& search, size_t ladder, size_t rung) {
   const auto progress = search.bar.stage(fmt::format("{}, {}", of.title, of.words_at(rung)));
   if (progress) progress(0.0);
   search.under_way = &trial;
-  const size_t model = search.run.add_model({of.title, search.run.experiment().scene, of.at(rung), {}});
+  const size_t model = search.run.add_model({of.title, search.run.experiment().scene, of.at(rung), {}, of.local_at(rung)});
   std::vector<ExperimentCell> cells;
   for (size_t view = 0; view < search.views.size(); ++view) cells.push_back({model, view, 0});
   try {
@@ -203,6 +205,24 @@ PlanTrial finest_of(const PlanAnswer& answer, const PlanTrial& chosen, bool& was
   return finest;
 }
 
+/// What a local mesh saves, against meshes that are as fine everywhere or wherever the surface bends as much.
+void compare_local(Search& search, const PlanTrial& chosen) {
+  PlanAnswer& answer = search.answer;
+  const Ladder& of = answer.ladders[chosen.ladder];
+  if (!of.local) return;
+  for (size_t k = 0; k < answer.trials.size(); ++k) {
+    const PlanTrial& trial = answer.trials[k];
+    if (!answer.ladders[trial.ladder].by_level || !trial.failed.empty()) continue;
+    if (trial.measured.of(search.settings.metric) > search.settings.tolerance_px) continue;
+    if (!answer.uniform || trial.rung < answer.trials[*answer.uniform].rung) answer.uniform = k;
+  }
+  LocalSettings everywhere = *of.local;
+  everywhere.tolerance_px = search.settings.tolerance_px;
+  everywhere.thresholds.clear();
+  everywhere.everywhere = true;
+  answer.curvature_triangles = total(build_local_model(search.run.experiment().scene, of.settings, everywhere)).triangles;
+}
+
 void choose(Search& search) {
   PlanAnswer& answer = search.answer;
   answer.chosen = fastest(search);
@@ -219,6 +239,7 @@ void choose(Search& search) {
   const Ladder& climbed = answer.ladders[chosen.ladder];
   const size_t last = climbed.rungs.size() - 1;
   if (climbed.of_file && !trial_at(answer, chosen.ladder, last)) answer.trials.push_back(try_rung(search, chosen.ladder, last));
+  compare_local(search, chosen);
   if (chosen.rung > 0) answer.coarser = trial_at(answer, chosen.ladder, chosen.rung - 1);
   answer.finest = finest_of(answer, chosen, answer.finest_was_built);
   answer.finest.predicted = predicted(search, chosen.ladder, last);
@@ -237,7 +258,11 @@ PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, con
   LIMN_CHECK(!views.empty());
   Search search{views, settings, bar, ExperimentRun(experiment_of(scene, views, settings), how, observer_of(search))};
   for (size_t k = 0; k < views.size(); ++k) search.run.give_truth(k, {settings.threshold, views[k].truth, {}});
+  search.answer.views = views.size();
   search.answer.ladders = ladders_of(scene, settings, &search.answer.notes);
+  if (settings.local) {
+    if (auto local = local_ladder(scene, views, settings)) search.answer.ladders.push_back(std::move(*local));
+  }
   if (search.answer.ladders.empty()) {
     throw InputError({{},
                       "INPUT",

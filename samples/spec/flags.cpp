@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kParameters = "parameters.";
 
 /// Fields that are options of the same name, beside the settings of surfaces; the underscore is a dash there.
-constexpr std::array<std::string_view, 55> kFields = {"azimuth",
+constexpr std::array<std::string_view, 56> kFields = {"azimuth",
                                                       "look",
                                                       "shading",
                                                       "transparent",
@@ -30,6 +30,7 @@ constexpr std::array<std::string_view, 55> kFields = {"azimuth",
                                                       "frames",
                                                       "turntable",
                                                       "fresh",
+                                                      "local",
                                                       "gradients",
                                                       "levels",
                                                       "max_memory",

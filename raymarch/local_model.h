@@ -1,0 +1,27 @@
+#pragma once
+// Models that are fine where the border of given pictures runs and coarse elsewhere.
+
+#include "raymarch/surface.h"
+
+namespace limn {
+
+/// What a local model is made for.
+struct LocalSettings {
+  std::vector<Camera> cameras{};     ///< World; at least one. The model holds for their pictures.
+  double tolerance_px = 0.25;        ///< How far the border may lie from the surface's own in any of the pictures; above 0.
+  std::vector<double> thresholds{};  ///< Of N.V, where inner borders lie; empty: only the silhouette counts.
+  bool everywhere = false;           ///< Chords are within the tolerance wherever the surface is seen: by curvature, whatever the border.
+};
+
+/// How far a local model may stand off the surface, along its normal, where no border runs; pixels of the pictures it was made for.
+inline constexpr double kLocalCoarse_px = 2.0;
+
+/// Empty where `object` has a local mesh, else why not: it has no resolution to choose.
+std::string why_not_local(const SceneObject& object, const SurfaceSettings& settings);
+
+/// As build_model with settings.kind = mesh. Fields and cages become local meshes, for which settings.level is not read: a coarse mesh of
+/// the surface is refined by splitting edges. The middle of an edge belongs to both of its triangles, so that no crack can appear, and lies
+/// on the surface. What has one resolution only is modelled as it is. Throws InputError as build_model does.
+SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local);
+
+}  // namespace limn

@@ -1,0 +1,162 @@
+#include "raymarch/surface/local_demand.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "raymarch/surface/local_mesh.h"
+
+namespace limn {
+namespace {
+
+/// Three edges whose chords stand off by the same amount leave the triangle's middle off by 4/3 of it.
+constexpr double kMiddleFactor = 4.0 / 3.0;
+/// Of the tolerance, what the chords of a silhouette may take.
+constexpr double kSilhouetteShare = 0.8;
+/// Of the distance from the silhouette, what a chord may take: it must not reach over it.
+constexpr double kReach = 0.5;
+/// What is hidden stays so when the border moves by the tolerance, and by this much.
+constexpr double kHiddenMargin_px = 2.0;
+/// How far what lies beside the picture may reach into it, px.
+constexpr double kAside_px = 4.0;
+/// Normals that turn by more along an edge (45 degrees) may hide a border between them.
+const double kMostTurnCosine = std::cos(0.785398163397448);
+/// An edge shorter than this hides nothing, px.
+constexpr double kSmall_px = 2.0;
+
+size_t next(size_t k) { return (k + 1) % 3; }
+
+/// A triangle as one picture shows it.
+struct Seen {
+  std::array<glm::dvec3, 6> px{};           ///< Corners, then middles.
+  std::array<double, 6> facing{};           ///< N.V there.
+  std::array<double, 3> off_px{}, wrong{};  ///< Of each edge: how far the chord stands off, and by how much its interpolated N.V is wrong.
+  std::array<double, 3> length_px{};
+  std::array<double, 3> beyond{};  ///< N.V at the middles on the other side of each edge.
+  double low = 0.0, high = 0.0;    ///< Bounds of N.V, taken as quadratic.
+  double slope = 0.0, bend = 0.0;  ///< Of N.V by pixels: its gradient, and its second difference.
+  double units_per_px = 0.0;
+};
+
+bool in_picture(const Camera& camera, const TriangleSample& triangle, Seen& seen) {
+  glm::dvec2 low(1e300), high(-1e300);
+  for (size_t k = 0; k < 3; ++k) {
+    seen.px[k] = project(camera, triangle.corners[k]);
+    seen.px[3 + k] = project(camera, triangle.middles[k]);
+    for (const glm::dvec3& p : {seen.px[k], seen.px[3 + k]}) {
+      if (camera.projection == Projection::perspective && !(p.z > 0.0)) return false;
+      low = glm::min(low, glm::dvec2(p)), high = glm::max(high, glm::dvec2(p));
+    }
+  }
+  return high.x >= -kAside_px && high.y >= -kAside_px && low.x <= camera.width_px + kAside_px && low.y <= camera.height_px + kAside_px;
+}
+
+/// |grad N.V| by pixels, of the plane through the corners; infinite where the triangle is seen edge on.
+double slope_of(const Seen& seen) {
+  const glm::dvec2 a(seen.px[1] - seen.px[0]), b(seen.px[2] - seen.px[0]);
+  const double area = a.x * b.y - a.y * b.x, fa = seen.facing[1] - seen.facing[0], fb = seen.facing[2] - seen.facing[0];
+  return glm::length(glm::dvec2(fa * b.y - fb * a.y, fb * a.x - fa * b.x)) / std::abs(area);
+}
+
+bool look(const Camera& camera, const TriangleSample& triangle, Seen& seen) {
+  if (!in_picture(camera, triangle, seen)) return false;
+  const double nearest = std::min({seen.px[0].z, seen.px[1].z, seen.px[2].z, seen.px[3].z, seen.px[4].z, seen.px[5].z});
+  const double scale = pixels_per_unit_at(camera, nearest);
+  seen.units_per_px = 1.0 / scale;
+  for (size_t k = 0; k < 3; ++k) {
+    seen.facing[k] = glm::dot(triangle.corner_normals[k], view_vector(camera, triangle.corners[k]));
+    seen.facing[3 + k] = glm::dot(triangle.middle_normals[k], view_vector(camera, triangle.middles[k]));
+    seen.beyond[k] = glm::dot(triangle.beyond[k], view_vector(camera, triangle.middles[k]));
+  }
+  seen.low = seen.high = seen.facing[0];
+  for (size_t k = 0; k < 3; ++k) {
+    const glm::dvec3 chord = 0.5 * (triangle.corners[k] + triangle.corners[next(k)]), off = triangle.middles[k] - chord;
+    seen.off_px[k] = scale * (triangle.crease[k] ? glm::length(off) : std::abs(glm::dot(off, triangle.middle_normals[k])));
+    const glm::dvec3 normal = triangle.corner_normals[k] + triangle.corner_normals[next(k)];
+    const double length = glm::length(normal);
+    const double traced = length > 0.0 ? glm::dot(normal, view_vector(camera, chord)) / length : 0.0;
+    seen.wrong[k] = std::abs(traced - seen.facing[3 + k]);
+    seen.length_px[k] = scale * glm::distance(triangle.corners[k], triangle.corners[next(k)]);
+    const double straight = 0.5 * (seen.facing[k] + seen.facing[next(k)]);
+    const double control = 2.0 * seen.facing[3 + k] - straight;
+    seen.low = std::min({seen.low, seen.facing[k], control}), seen.high = std::max({seen.high, seen.facing[k], control});
+    const glm::dvec2 across(seen.px[next(k)] - seen.px[k]);
+    seen.bend = std::max(seen.bend, 8.0 * std::abs(straight - seen.facing[3 + k]) / std::max(glm::dot(across, across), 1e-12));
+  }
+  seen.slope = slope_of(seen);
+  return true;
+}
+
+/// How far the triangle lies inside the silhouette at least, px: N.V / (2 |grad N.V|), as near a circle.
+double inside_px(const Seen& seen) {
+  if (seen.low <= 0.0 && seen.high >= 0.0) return 0.0;
+  if (!std::isfinite(seen.slope)) return 0.0;
+  return std::min(std::abs(seen.low), std::abs(seen.high)) / (2.0 * std::max(seen.slope, 1e-9));
+}
+
+/// How far the inner border moves for an N.V that is wrong by `wrong`, px: to first order, or to second where the slope is small.
+double shift_px(const Seen& seen, double wrong) {
+  const double first = wrong / std::max(seen.slope, 1e-12);
+  return seen.bend > 0.0 ? std::min(first, std::sqrt(2.0 * wrong / seen.bend)) : first;
+}
+
+bool parts(double a, double b, double level) { return (a < level) != (b < level); }
+
+/// Of the edges of a triangle in which N.V may pass the threshold, those that move the inner border too far.
+bool moves_inner(const Seen& seen, size_t k, double threshold, double tolerance_px) {
+  const double worst = std::max({seen.wrong[0], seen.wrong[1], seen.wrong[2]});
+  if (seen.low - worst > threshold || seen.high + worst < threshold) return false;
+  const double sine = std::sqrt(std::max(0.0, 1.0 - threshold * threshold));
+  return kMiddleFactor * (shift_px(seen, seen.wrong[k]) + sine * seen.off_px[k]) > tolerance_px;
+}
+
+unsigned border_demand(const Seen& seen, const TriangleSample& triangle, const LocalSettings& settings) {
+  unsigned split = 0;
+  const double tolerance_px = settings.tolerance_px;
+  const double inside = settings.everywhere ? 0.0 : inside_px(seen);
+  const double silhouette_px = std::min(kSilhouetteShare / kMiddleFactor * tolerance_px + kReach * inside, triangle.coarse_px);
+  for (size_t k = 0; k < 3; ++k) {
+    if (seen.length_px[k] < tolerance_px) continue;
+    bool needed = seen.off_px[k] > silhouette_px;
+    // A border along a crease.
+    bool along = triangle.crease[k] && parts(seen.facing[3 + k], seen.beyond[k], 0.0);
+    for (const double threshold : settings.thresholds) {
+      needed = needed || moves_inner(seen, k, threshold, tolerance_px);
+      along = along || (triangle.crease[k] && parts(seen.facing[3 + k], seen.beyond[k], threshold));
+    }
+    needed = needed || (along && seen.off_px[k] > kSilhouetteShare * tolerance_px);
+    if (needed) split |= 1u << k;
+  }
+  return split;
+}
+
+unsigned coarse_demand(const Seen& seen, const TriangleSample& triangle, const LocalSettings& settings) {
+  unsigned split = 0;
+  for (size_t k = 0; k < 3; ++k) {
+    if (seen.length_px[k] < settings.tolerance_px) continue;
+    const bool turns =
+        seen.length_px[k] > kSmall_px && glm::dot(triangle.corner_normals[k], triangle.corner_normals[next(k)]) < kMostTurnCosine;
+    if (seen.off_px[k] > triangle.coarse_px || turns) split |= 1u << k;
+  }
+  return split;
+}
+
+}  // namespace
+
+unsigned edges_to_split(const TriangleSample& triangle, std::span<const LocalView> views, const LocalSettings& settings, bool only_coarse) {
+  unsigned split = 0;
+  if (triangle.stays) return split;
+  for (const LocalView& view : views) {
+    Seen seen;
+    if (!look(view.camera, triangle, seen)) continue;
+    split |= coarse_demand(seen, triangle, settings);
+    if (only_coarse) continue;
+    const double margin_px = kHiddenMargin_px + settings.tolerance_px;
+    if (!settings.everywhere && is_hidden(view.hidden, seen.px, margin_px, margin_px * seen.units_per_px)) continue;
+    split |= border_demand(seen, triangle, settings);
+  }
+  for (size_t k = 0; k < 3; ++k)
+    if (!triangle.halves[k]) split &= ~(1u << k);
+  return split;
+}
+
+}  // namespace limn

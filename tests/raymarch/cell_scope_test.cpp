@@ -13,7 +13,7 @@
 namespace limn {
 namespace {
 
-constexpr int kFields = 60, kBoxes = 200, kPoints = 40;
+constexpr int kFields = 600, kBoxes = 200, kPoints = 40;
 
 /// Points of the surface in a box, on segments between random points of it.
 std::vector<SurfaceSample> surface_in(FieldEvaluator& evaluator, const Viewer& viewer, const Box& box, Random& random) {

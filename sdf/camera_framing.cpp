@@ -93,7 +93,7 @@ FramedPlace place_for(const Box& box, const glm::dmat3& world_from_camera, const
 // These planes follow the eye, and the eye the points, until nothing moves.
 FramedPlace place_for(const FramedSurface& surface, const glm::dmat3& world_from_camera, const FrameLimits& limits) {
   constexpr int kRounds = 8;
-  constexpr double kStill = 1e-4;  // of the picture
+  constexpr double kStill = 5e-4;  // of the picture
   std::array<double, 4> slopes{limits.slopes.x, limits.slopes.x, limits.slopes.y, limits.slopes.y};
   if (limits.projection == Projection::orthographic) slopes.fill(0.0);
   Points points;

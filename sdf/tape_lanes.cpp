@@ -34,8 +34,10 @@ HWY_INLINE void add(LaneMask mask, int part, std::uint16_t& bits) {
   bits = static_cast<std::uint16_t>(bits | bits_of(mask) << (part * kWidth));
 }
 
-template <class T>
+/// `Used` vectors of a register's lanes are filled.
+template <class T, int Used>
 struct Runner {
+  static constexpr int kUsed = Used;
   static constexpr int kSize = Kind<T>::kComponents * kLanes;
   const Pass& pass;
   double* registers;
@@ -49,20 +51,20 @@ struct Runner {
   HWY_INLINE void write(std::uint32_t index, int part, const T& a) const { put(a, at(index, part)); }
 };
 
-#define LIMN_STEP(expression)                    \
-  for (int part = 0; part < kParts; ++part) {    \
-    const T a = runner.read(step.a, part);       \
-    runner.write(step.target, part, expression); \
-  }                                              \
+#define LIMN_STEP(expression)                        \
+  for (int part = 0; part < Runner::kUsed; ++part) { \
+    const T a = runner.read(step.a, part);           \
+    runner.write(step.target, part, expression);     \
+  }                                                  \
   break
 #define LIMN_STEP2(expression)                                            \
-  for (int part = 0; part < kParts; ++part) {                             \
+  for (int part = 0; part < Runner::kUsed; ++part) {                      \
     const T a = runner.read(step.a, part), b = runner.read(step.b, part); \
     runner.write(step.target, part, expression);                          \
   }                                                                       \
   break
 #define LIMN_STEP3(expression)                                            \
-  for (int part = 0; part < kParts; ++part) {                             \
+  for (int part = 0; part < Runner::kUsed; ++part) {                      \
     const T a = runner.read(step.a, part), b = runner.read(step.b, part); \
     const T c = runner.read(step.c, part);                                \
     runner.write(step.target, part, expression);                          \
@@ -83,9 +85,9 @@ HWY_INLINE T chosen(const T& a, const T& b, const TapeStep& step) {
   }
 }
 
-template <class T>
-void run_choice(const Runner<T>& runner, const TapeStep& step, TapeChoice* choice) {
-  for (int part = 0; part < kParts; ++part) {
+template <class T, class Runner>
+void run_choice(const Runner& runner, const TapeStep& step, TapeChoice* choice) {
+  for (int part = 0; part < Runner::kUsed; ++part) {
     const T a = runner.read(step.a, part), b = runner.read(step.b, part);
     T result = chosen(a, b, step);
     if constexpr (kBounding<T>) {
@@ -101,9 +103,9 @@ void run_choice(const Runner<T>& runner, const TapeStep& step, TapeChoice* choic
   }
 }
 
-template <class T>
-void run_absolute(const Runner<T>& runner, const TapeStep& step, TapeChoice* choice) {
-  for (int part = 0; part < kParts; ++part) {
+template <class T, class Runner>
+void run_absolute(const Runner& runner, const TapeStep& step, TapeChoice* choice) {
+  for (int part = 0; part < Runner::kUsed; ++part) {
     const T a = runner.read(step.a, part);
     if constexpr (kBounding<T>) {
       add(a.value.upper < reals(0.0), part, choice->idle[0]);
@@ -114,10 +116,10 @@ void run_absolute(const Runner<T>& runner, const TapeStep& step, TapeChoice* cho
 }
 
 /// Of a distance to a corner only the greatest part matters where the others are negative.
-template <class T>
-void run_corner(const Runner<T>& runner, const TapeStep& step, TapeChoice* choice) {
+template <class T, class Runner>
+void run_corner(const Runner& runner, const TapeStep& step, TapeChoice* choice) {
   const bool three = step.operation == TapeOperation::corner3;
-  for (int part = 0; part < kParts; ++part) {
+  for (int part = 0; part < Runner::kUsed; ++part) {
     const T a = runner.read(step.a, part), b = runner.read(step.b, part);
     const T c = three ? runner.read(step.c, part) : a;
     if constexpr (kBounding<T>) {
@@ -132,16 +134,17 @@ void run_corner(const Runner<T>& runner, const TapeStep& step, TapeChoice* choic
   }
 }
 
-template <class T>
+template <class T, int Used>
 void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* registers) {
-  const Runner<T> runner{pass, registers};
+  using Runner = Runner<T, Used>;
+  const Runner runner{pass, registers};
   TapeChoice* choice = pass.choices;
   for (const TapeStep& step : steps) {
     switch (step.operation) {
       case TapeOperation::coordinates:
         for (int axis = 0; axis < 3; ++axis) {
           if (!(step.axes >> axis & 1)) continue;
-          for (int part = 0; part < kParts; ++part) {
+          for (int part = 0; part < Runner::kUsed; ++part) {
             T x;
             coordinate(pass, pass.tape->leaves[step.leaf], axis, part * kWidth, x);
             runner.write(step.target + static_cast<std::uint32_t>(axis), part, x);
@@ -149,12 +152,12 @@ void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* regist
         }
         break;
       case TapeOperation::shape:
-        shape_by_lane(*pass.tape->leaves[step.leaf].leaf, Kind<T>::kNumber, runner.at(step.a, 0), runner.at(step.b, 0),
+        shape_by_lane(*pass.tape->leaves[step.leaf].leaf, Kind<T>::kNumber, Used * kWidth, runner.at(step.a, 0), runner.at(step.b, 0),
                       runner.at(step.c, 0), runner.at(step.target, 0));
         break;
       case TapeOperation::narrow:
         if constexpr (kBounding<T>) {
-          for (int part = 0; part < kParts; ++part) {
+          for (int part = 0; part < Runner::kUsed; ++part) {
             T a = runner.read(step.a, part);
             narrow(pass, pass.tape->leaves[step.leaf], part * kWidth, a);
             runner.write(step.target, part, a);
@@ -162,7 +165,7 @@ void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* regist
         }
         break;
       case TapeOperation::constant:
-        for (int part = 0; part < kParts; ++part) runner.write(step.target, part, constant_of<T>(step.constant));
+        for (int part = 0; part < Runner::kUsed; ++part) runner.write(step.target, part, constant_of<T>(step.constant));
         break;
       case TapeOperation::copy:
         LIMN_STEP(a);
@@ -171,7 +174,7 @@ void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* regist
       case TapeOperation::square:
         LIMN_STEP(square(a));
       case TapeOperation::absolute:
-        run_absolute(runner, step, choice);
+        run_absolute<T>(runner, step, choice);
         break;
       case TapeOperation::sine:
         LIMN_STEP(sine(a));
@@ -193,16 +196,17 @@ void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* regist
         LIMN_STEP3(norm(a, b, c));
       case TapeOperation::corner2:
       case TapeOperation::corner3:
-        run_corner(runner, step, choice);
+        run_corner<T>(runner, step, choice);
         break;
       case TapeOperation::power_norm:
-        power_norm_by_lane(Kind<T>::kNumber, runner.at(step.a, 0), runner.at(step.b, 0), step.constant, runner.at(step.target, 0));
+        power_norm_by_lane(Kind<T>::kNumber, Used * kWidth, runner.at(step.a, 0), runner.at(step.b, 0), step.constant,
+                           runner.at(step.target, 0));
         break;
       case TapeOperation::minimum:
       case TapeOperation::maximum:
       case TapeOperation::smooth_minimum:
       case TapeOperation::smooth_maximum:
-        run_choice(runner, step, choice);
+        run_choice<T>(runner, step, choice);
         break;
     }
     if constexpr (kBounding<T>) ++choice;
@@ -224,8 +228,8 @@ void set_points(Pass& pass, const LaneRays& rays, const LaneArray& s) {
 void set_beams(Pass& pass, const LaneBeams& beams) {
   pass.beams = &beams;
   set_points(pass, beams.rays, beams.middle);
-  const double wider = glm::length(beams.direction_spread[0]) + glm::length(beams.direction_spread[1]) + beams.direction_slack;
-  const double aside = glm::length(beams.origin_spread[0]) + glm::length(beams.origin_spread[1]) + beams.origin_slack;
+  const auto reach = [](const glm::dvec3(&spread)[3]) { return glm::length(spread[0]) + glm::length(spread[1]) + glm::length(spread[2]); };
+  const double wider = reach(beams.direction_spread) + beams.direction_slack, aside = reach(beams.origin_spread) + beams.origin_slack;
   for (int i = 0; i < kLanes; i += kWidth) {
     const LaneRays& r = beams.rays;
     const Reals o = norm(load(r.origin[0].lane + i), load(r.origin[1].lane + i), load(r.origin[2].lane + i));
@@ -238,12 +242,17 @@ void set_beams(Pass& pass, const LaneBeams& beams) {
 
 template <class T>
 const double* run_tape(Pass& pass, std::span<const TapeStep> steps, TapeScratch& scratch) {
-  double* const registers = scratch.registers(registers_used(pass.tape->registers) * static_cast<size_t>(Runner<T>::kSize));
+  double* const registers = scratch.registers(registers_used(pass.tape->registers) * static_cast<size_t>(Kind<T>::kComponents * kLanes));
   if constexpr (kBounding<T>) {
     scratch.choices.assign(steps.size(), {});
     pass.choices = scratch.choices.data();
+    constexpr int kHalf = kParts > 1 ? kParts / 2 : 1;
+    if (pass.beams->lanes <= kHalf * kWidth) {
+      run_steps<T, kHalf>(pass, steps, registers);
+      return registers;
+    }
   }
-  run_steps<T>(pass, steps, registers);
+  run_steps<T, kParts>(pass, steps, registers);
   return registers;
 }
 

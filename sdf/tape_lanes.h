@@ -25,12 +25,13 @@ struct LaneRays {
 };
 
 /// Stretches of beams, one a lane: points o + s * d, s in middle +- half, o and d near those of `rays`:
-///   o in rays.origin + [-1, 1] origin_spread[0] + [-1, 1] origin_spread[1] + a ball of radius origin_slack, d likewise.
+///   o in rays.origin + [-1, 1] origin_spread[0] + ... + [-1, 1] origin_spread[2] + a ball of radius origin_slack, d likewise.
 struct LaneBeams {
   LaneRays rays;
   LaneArray middle, half;
-  LaneArray radius;  ///< Of a ball about the middle point that holds the stretch.
-  glm::dvec3 origin_spread[2]{}, direction_spread[2]{};
+  LaneArray radius;    ///< Of a ball about the middle point that holds the stretch.
+  int lanes = kLanes;  ///< Whatever comes after the first so many is not asked for.
+  glm::dvec3 origin_spread[3]{}, direction_spread[3]{};
   double origin_slack = 0.0, direction_slack = 0.0;
 };
 

@@ -120,15 +120,18 @@ HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int
   for (int i = 0; i < 3; ++i) x.derivative[i] = reals(leaf.row[axis][i]);
 }
 
-inline double along(const double* row, const glm::dvec3& v) { return std::fabs(row[0] * v.x + row[1] * v.y + row[2] * v.z); }
+inline double along(const double* row, const glm::dvec3 (&spread)[3]) {
+  const auto by = [row](const glm::dvec3& v) { return std::fabs(row[0] * v.x + row[1] * v.y + row[2] * v.z); };
+  return by(spread[0]) + by(spread[1]) + by(spread[2]);
+}
 
 /// o + s d for all o, d and s of the beam: an interval about the middle, and d for its slope.
 HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int at, LaneSlope& x) {
   const double* row = leaf.row[axis];
   const LaneBeams& beams = *pass.beams;
   const double size = std::sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
-  const double spread_o = along(row, beams.origin_spread[0]) + along(row, beams.origin_spread[1]) + size * beams.origin_slack;
-  const double spread_d = along(row, beams.direction_spread[0]) + along(row, beams.direction_spread[1]) + size * beams.direction_slack;
+  const double spread_o = along(row, beams.origin_spread) + size * beams.origin_slack,
+               spread_d = along(row, beams.direction_spread) + size * beams.direction_slack;
   const Reals middle = load(beams.middle.lane + at), half = load(beams.half.lane + at);
   const Reals d = row_of(row, beams.rays.direction, at);
   const Reals rounding = load(pass.extent.lane + at) * (1e-15 * size) + reals(1e-15 * std::fabs(row[3]));

@@ -51,24 +51,24 @@ void for_parts(TapeNumber number, const With& with) {
 
 }  // namespace
 
-void shape_by_lane(const FieldLeaf& leaf, TapeNumber number, const double* x, const double* y, const double* z, double* target) {
+void shape_by_lane(const FieldLeaf& leaf, TapeNumber number, int lanes, const double* x, const double* y, const double* z, double* target) {
   for_parts(number, [&](auto kind) {
     using T = decltype(kind);
     T px[kLanes], py[kLanes], pz[kLanes], values[kLanes];
-    for (int i = 0; i < kLanes; ++i) {
+    for (int i = 0; i < lanes; ++i) {
       px[i] = lane_of<T>(number, x, i);
       py[i] = lane_of<T>(number, y, i);
       pz[i] = lane_of<T>(number, z, i);
     }
-    std::get<ShapeFunction<T>>(leaf.functions->evaluate)(leaf.shape.get(), px, py, pz, values, kLanes);
-    for (int i = 0; i < kLanes; ++i) put_lane(number, values[i], i, target);
+    std::get<ShapeFunction<T>>(leaf.functions->evaluate)(leaf.shape.get(), px, py, pz, values, static_cast<size_t>(lanes));
+    for (int i = 0; i < lanes; ++i) put_lane(number, values[i], i, target);
   });
 }
 
-void power_norm_by_lane(TapeNumber number, const double* a, const double* b, double power, double* target) {
+void power_norm_by_lane(TapeNumber number, int lanes, const double* a, const double* b, double power, double* target) {
   for_parts(number, [&](auto kind) {
     using T = decltype(kind);
-    for (int i = 0; i < kLanes; ++i) put_lane(number, T(power_norm(lane_of<T>(number, a, i), lane_of<T>(number, b, i), power)), i, target);
+    for (int i = 0; i < lanes; ++i) put_lane(number, T(power_norm(lane_of<T>(number, a, i), lane_of<T>(number, b, i), power)), i, target);
   });
 }
 

@@ -14,7 +14,8 @@ enum class TapeNumber {
   slope,     ///< ... and lower and upper of the derivative.
 };
 
-void shape_by_lane(const FieldLeaf& leaf, TapeNumber number, const double* x, const double* y, const double* z, double* target);
-void power_norm_by_lane(TapeNumber number, const double* a, const double* b, double power, double* target);
+/// Of the first `lanes`.
+void shape_by_lane(const FieldLeaf& leaf, TapeNumber number, int lanes, const double* x, const double* y, const double* z, double* target);
+void power_norm_by_lane(TapeNumber number, int lanes, const double* a, const double* b, double power, double* target);
 
 }  // namespace limn

@@ -101,9 +101,9 @@ bool LimitSurface::is_tip(int face, int sub_face, int corner) const {
   return data_->scheme == Scheme::catmark && cell.valid() && has_tip(cell, sub_face, corner);
 }
 
-bool LimitSurface::evaluate(int face, int sub_face, double u, double v, LimitPoint& out) const {
+bool LimitSurface::evaluate(int face, int sub_face, double u, double v, LimitPoint& out, LimitOrder order) const {
   LIMN_CHECK(face >= 0 && face < face_count());
-  return evaluate_cell(data_->cells[static_cast<size_t>(face)], data_->scheme, sub_face, u, v, out);
+  return evaluate_cell(data_->cells[static_cast<size_t>(face)], data_->scheme, sub_face, u, v, order, out);
 }
 
 }  // namespace limn

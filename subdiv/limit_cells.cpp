@@ -142,7 +142,7 @@ void fill_tangents(LimitCell& cell, Scheme scheme) {
     LimitTip* tip = cell.children[i].tip.get();
     LimitPoint point;
     if (tip == nullptr || tip->tangent1 != glm::dvec3(0.0)) continue;
-    if (!evaluate_cell(cell.children[(i + 2) % 4], scheme, 0, kCorners[i].x, kCorners[i].y, point)) continue;
+    if (!evaluate_cell(cell.children[(i + 2) % 4], scheme, 0, kCorners[i].x, kCorners[i].y, LimitOrder::first, point)) continue;
     tip->tangent1 = point.du, tip->tangent2 = point.dv;
   }
 }
@@ -223,8 +223,13 @@ BfrPatch make_patch(const Bfr::RefinerSurfaceFactory<>& factory, int face, const
   return patch;
 }
 
-void evaluate_patch(const BfrPatch& patch, Scheme scheme, double u, double v, LimitPoint& out) {
+void evaluate_patch(const BfrPatch& patch, Scheme scheme, double u, double v, LimitOrder order, LimitPoint& out) {
   const double uv[2] = {u, v};
+  if (order == LimitOrder::first) {
+    patch.surface.Evaluate(uv, patch.points.data(), 3, &out.position.x, &out.du.x, &out.dv.x);
+    out.duu = out.duv = out.dvv = glm::dvec3(0.0);
+    return;
+  }
   patch.surface.Evaluate(uv, patch.points.data(), 3, &out.position.x, &out.du.x, &out.dv.x, &out.duu.x, &out.duv.x, &out.dvv.x);
   if (scheme == Scheme::loop) mend_sign(patch, u, v, out);
 }
@@ -258,7 +263,7 @@ bool has_tip(const LimitCell& cell, int sub_face, int corner) {
   return has_tip(cell.children[static_cast<size_t>(corner)], 0, corner);
 }
 
-bool evaluate_cell(const LimitCell& cell, Scheme scheme, int sub_face, double u, double v, LimitPoint& out) {
+bool evaluate_cell(const LimitCell& cell, Scheme scheme, int sub_face, double u, double v, LimitOrder order, LimitPoint& out) {
   if (cell.tip) return evaluate_tip(*cell.tip, u, v, out);
   if (cell.children.empty()) {
     if (!cell.patch.surface.IsValid()) return false;
@@ -270,17 +275,17 @@ bool evaluate_cell(const LimitCell& cell, Scheme scheme, int sub_face, double u,
       parameters.ConvertNormalizedSubFaceToCoord(sub_face, normalized, uv);
       scale = 0.5;  // A sub-quad is half a unit wide in its face's coordinates.
     }
-    evaluate_patch(cell.patch, scheme, uv[0], uv[1], out);
+    evaluate_patch(cell.patch, scheme, uv[0], uv[1], order, out);
     out.du *= scale, out.dv *= scale;
     out.duu *= scale * scale, out.duv *= scale * scale, out.dvv *= scale * scale;
     return true;
   }
   if (scheme != Scheme::loop && cell.corners != 4) {
     if (sub_face < 0 || sub_face >= cell.corners) return false;
-    return evaluate_cell(cell.children[static_cast<size_t>(sub_face)], scheme, 0, u, v, out);
+    return evaluate_cell(cell.children[static_cast<size_t>(sub_face)], scheme, 0, u, v, order, out);
   }
   const Place place = child_at(cell, scheme, u, v);
-  if (!evaluate_cell(cell.children[place.child], scheme, 0, place.u, place.v, out)) return false;
+  if (!evaluate_cell(cell.children[place.child], scheme, 0, place.u, place.v, order, out)) return false;
   const double s = place.scale;
   out.du *= s, out.dv *= s, out.duu *= s * s, out.duv *= s * s, out.dvv *= s * s;
   return true;

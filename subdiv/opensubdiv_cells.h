@@ -27,7 +27,7 @@ BfrPatch make_patch(const Bfr::RefinerSurfaceFactory<>& factory, int face, const
 /// How finely all surfaces approximate extraordinary vertices and semi-sharp features.
 Bfr::SurfaceFactory::Options patch_options();
 /// Position and derivatives by the patch's own coordinates.
-void evaluate_patch(const BfrPatch& patch, Scheme scheme, double u, double v, LimitPoint& out);
+void evaluate_patch(const BfrPatch& patch, Scheme scheme, double u, double v, LimitOrder order, LimitPoint& out);
 
 /// Bfr gathers a face's neighbours corner by corner, and overruns its buffers where one neighbour is met again at a corner that is not
 /// the next (two faces that share two edges, tubes of fewer than three faces) or where an edge has more than two faces.
@@ -53,7 +53,7 @@ struct LimitCell {
 /// The cell of a face of the refiner's base level, whose points the mesh has; without a surface where a corner is not manifold.
 LimitCell make_cell(const Far::TopologyRefiner& refiner, const Mesh& mesh, Scheme scheme, int face);
 /// False where the cell has no surface there. Coordinates and derivatives as LimitSurface::evaluate.
-bool evaluate_cell(const LimitCell& cell, Scheme scheme, int sub_face, double u, double v, LimitPoint& out);
+bool evaluate_cell(const LimitCell& cell, Scheme scheme, int sub_face, double u, double v, LimitOrder order, LimitPoint& out);
 
 /// Whether a face's corner (of a sub-face where it has any) is a tip.
 bool has_tip(const LimitCell& cell, int sub_face, int corner);

@@ -63,6 +63,9 @@ SurfaceCurvature curvature(const LimitPoint& point);
 /// Normal curvature along a tangent direction (need not be unit): Euler's formula.
 double curvature_along(const SurfaceCurvature& surface, const glm::dvec3& direction);
 
+/// Which derivatives are evaluated; the others are 0.
+enum class LimitOrder { first, second };
+
 struct LimitSurfaceData;
 /// The limit surface of a cage, evaluated face by face (Bfr). Immutable; evaluation is thread-safe.
 class LimitSurface {
@@ -83,7 +86,8 @@ class LimitSurface {
   /// False where the face has no limit surface: a hole, or a corner where sheets touch whose rules OpenSubdiv mixes. Around extraordinary
   /// vertices the patches approximate the limit (normals within 0.01 degrees where measured), and at the ends of creases (darts) no better
   /// than OpenSubdiv's masks; refine() is exact at its vertices. (u, v) in [0,1]^2 for quads; n-gons: sub-face by corner.
-  bool evaluate(int face, int sub_face, double u, double v, LimitPoint& out) const;
+  /// The first derivatives alone take half the time, and have the same bits.
+  bool evaluate(int face, int sub_face, double u, double v, LimitPoint& out, LimitOrder order = LimitOrder::second) const;
 
  private:
   std::shared_ptr<const LimitSurfaceData> data_{};

@@ -32,7 +32,7 @@ struct Settings {
   double width_px, thin_px, inner_px, threshold;
   WidthFrom from;
   bool hidden;
-  double hidden_px, dash_px;
+  double hidden_px, dash_px, shortest_px;
   Wobble wobble;
   LineSettings lines;
 };
@@ -47,6 +47,7 @@ Settings read_settings(const Parameters& parameters) {
       .hidden = parameters.flag("hidden"),
       .hidden_px = parameters.number("hidden_width"),
       .dash_px = parameters.number("dash"),
+      .shortest_px = parameters.number("shortest"),
       .wobble = {parameters.number("wobble"), parameters.number("wobble_length"), static_cast<std::uint64_t>(parameters.number("seed"))},
       .lines = {}};
   settings.thin_px = std::min(settings.thin_px, settings.width_px);
@@ -127,10 +128,19 @@ struct DrawnChain {
   std::vector<LinePoint> points;
 };
 
-std::vector<DrawnChain> drawn_chains(const ViewGraph& graph, bool hidden) {
+double length_px(const std::vector<LinePoint>& points) {
+  double length = 0.0;
+  for (size_t i = 1; i < points.size(); ++i) length += glm::distance(points[i - 1].px, points[i].px);
+  return length;
+}
+
+std::vector<DrawnChain> drawn_chains(const ViewGraph& graph, bool hidden, double shortest_px) {
   std::vector<DrawnChain> chains;
-  for (size_t i = 0; i < graph.chains.size(); ++i)
-    if ((graph.chains[i].invisibility != 0) == hidden) chains.push_back({&graph.chains[i], i, points_of(graph, graph.chains[i])});
+  for (size_t i = 0; i < graph.chains.size(); ++i) {
+    if ((graph.chains[i].invisibility != 0) != hidden) continue;
+    std::vector<LinePoint> points = points_of(graph, graph.chains[i]);
+    if (!(length_px(points) < shortest_px)) chains.push_back({&graph.chains[i], i, std::move(points)});
+  }
   return chains;
 }
 
@@ -144,7 +154,7 @@ std::vector<StrokePoint> stroke_of(const DrawnChain& drawn, const Settings& sett
 }
 
 std::vector<Outline> outlines(const ViewGraph& graph, const Settings& settings, const Camera& camera) {
-  const std::vector<DrawnChain> visible = drawn_chains(graph, false);
+  const std::vector<DrawnChain> visible = drawn_chains(graph, false, settings.shortest_px);
   PenWidth pen{settings, camera, std::numeric_limits<double>::infinity(), 0.0};
   for (const DrawnChain& drawn : visible) {
     for (const LinePoint& point : drawn.points) {
@@ -155,7 +165,7 @@ std::vector<Outline> outlines(const ViewGraph& graph, const Settings& settings, 
   std::vector<Outline> result;
   for (const DrawnChain& drawn : visible) result.push_back(outline_of(stroke_of(drawn, settings, pen), drawn.chain->closed, kArc_px));
   if (!settings.hidden) return result;
-  for (const DrawnChain& drawn : drawn_chains(graph, true)) {
+  for (const DrawnChain& drawn : drawn_chains(graph, true, settings.shortest_px)) {
     std::vector<StrokePoint> stroke;
     for (const LinePoint& point : drawn.points) stroke.push_back({point.px, settings.hidden_px});
     for (const std::vector<StrokePoint>& dash : dashes_of(stroke, drawn.chain->closed, settings.dash_px))
@@ -168,17 +178,14 @@ std::vector<Outline> outlines(const ViewGraph& graph, const Settings& settings, 
 size_t crumbs_of(const ViewGraph& graph) {
   const auto is_crumb = [&](const LineChain& chain) {
     if (chain.line_class != LineClass::contour || chain.invisibility != 0) return false;
-    const std::vector<LinePoint> points = points_of(graph, chain);
-    double length_px = 0.0;
-    for (size_t i = 1; i < points.size(); ++i) length_px += glm::distance(points[i - 1].px, points[i].px);
-    return length_px < kCrumb_px;
+    return length_px(points_of(graph, chain)) < kCrumb_px;
   };
   return static_cast<size_t>(std::count_if(graph.chains.begin(), graph.chains.end(), is_crumb));
 }
 
-void add_notes(const SharedLines& lines, std::vector<std::string>& notes) {
+void add_notes(const SharedLines& lines, double shortest_px, std::vector<std::string>& notes) {
   const ViewGraph& graph = lines.graph;
-  if (const size_t crumbs = lines.facets && !lines.settings.smooth_meshes ? crumbs_of(graph) : 0; crumbs > 0) {
+  if (const size_t crumbs = lines.facets && !lines.settings.smooth_meshes && shortest_px < kCrumb_px ? crumbs_of(graph) : 0; crumbs > 0) {
     notes.push_back(
         fmt::format("contours: {} of the mesh's contours are shorter than {:.0f} px: folds of single facets; smooth = true draws the "
                     "surface between its normals",
@@ -208,7 +215,7 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
   border.color = glm::vec3(parameters.vector3("color"));
   const auto lines = lines_of(input, settings.lines);
   border.coverage = ink_of(*lines, settings, input, parameters.text());
-  add_notes(*lines, border.notes);
+  add_notes(*lines, settings.shortest_px, border.notes);
   return border;
 }
 
@@ -230,11 +237,13 @@ BorderMethod contours_method() {
            .unit("px")
            .help("of creases, intersections and material edges; 0: that of the other lines"),
        a_number("threshold", 0.2).in(0.0, 1.0).help("by curvature: the width is the distance at which N.V reaches this"),
-       a_flag("contour", true).help("where N.V is 0"), a_flag("boundary", true).help("open edges"),
+       a_flag("contour", true).help("where N.V is 0"),
+       a_flag("boundary", true).help("open edges"),
        a_flag("crease", true).help("where two normals of an object meet at an angle"),
        a_flag("intersection", true).help("where objects pass through each other"),
        a_flag("material", true).help("where materials of one object meet"),
        a_flag("smooth", false).help("of meshes: contours of the smooth surface between their vertices' normals, not edges of facets"),
+       a_number("shortest", 0.0).in(0.0, 1000.0).unit("px").help("chains that are shorter are left out"),
        a_flag("hidden", false).help("hidden lines too, dashed"),
        a_number("hidden_width", 1.0).in(0.0, 64.0).unit("px").help("of hidden lines"),
        a_number("dash", 5.0).in(0.5, 1000.0).unit("px").help("length of a hidden line's dashes; gaps are 0.8 times as long"),

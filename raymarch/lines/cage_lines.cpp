@@ -11,6 +11,7 @@
 #include "raymarch/lines/placed_cage.h"
 #include "raymarch/lines/seams.h"
 #include "raymarch/truth/limit_curves.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -48,8 +49,10 @@ SurfaceCurve curve_of(const LineTask& task, const TracedCurve& traced) {
 void add_cage(const LineTask& task, size_t object, LineContribution& out) {
   const PlacedCage cage = place_cage(task, object);
   const PlacedLimitSurface placed = place(*cage.surface, cage.solver_from_cage);
-  const int steps = shared_steps(lattice_steps(placed, task.camera, kCell_px, kMostTriangles).steps);
-  std::shared_ptr<const LimitGrid>& kept_grid = task.kept.cages[object].grids[steps];
+  KeptCage& kept = task.kept.cages[object];
+  if (kept.sides.empty()) kept.sides = patch_sides(placed);
+  const int steps = shared_steps(lattice_steps(placed, kept.sides, task.camera, kCell_px, kMostTriangles).steps);
+  std::shared_ptr<const LimitGrid>& kept_grid = kept.grids[steps];
   if (!kept_grid) kept_grid = std::make_shared<const LimitGrid>(sample_grid(placed, task.camera, steps));
   const LimitGrid& grid = *kept_grid;
   LimitCurveSettings tracing;
@@ -90,11 +93,20 @@ PlacedCage place_cage(const LineTask& task, size_t object) {
 
 LineContribution cage_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution) {
   LineContribution out;
-  for (const size_t i : objects) {
-    if (execution.cancelled && execution.cancelled()) throw Cancelled{};
-    add_cage(task, i, out);
-  }
-  add_mesh_layers(std::make_shared<const MeshLayers>(task, objects, kProxyEdge_px, true), out);
+  std::shared_ptr<const MeshLayers> layers;
+  // The one knows nothing of the other, and parts of both are done by one thread.
+  parallel_invoke(
+      [&] {
+        for (const size_t i : objects) {
+          if (execution.cancelled && execution.cancelled()) throw Cancelled{};
+          add_cage(task, i, out);
+        }
+      },
+      [&] {
+        layers = std::make_shared<const MeshLayers>(task, objects, kProxyEdge_px, true);
+        layers->tree().meetings();
+      });
+  add_mesh_layers(layers, out);
   return out;
 }
 

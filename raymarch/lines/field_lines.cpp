@@ -9,6 +9,7 @@
 #include "raymarch/lines/form_layers.h"
 #include "raymarch/lines/form_tracing.h"
 #include "raymarch/lines/found_curves.h"
+#include "raymarch/lines/line_memory.h"
 #include "raymarch/lines/tips.h"
 
 namespace limn {
@@ -89,11 +90,12 @@ void append(std::vector<SurfaceCurve>& curves, std::vector<SurfaceCurve> more) {
 }
 
 /// Curves in closed form where there are any, found in cells of space elsewhere.
-TracedBody trace_body(const FieldTask& fields, const Field& body, const std::string& name, const ExecutionSettings& execution,
-                      LineContribution& out) {
+TracedBody trace_body(const FieldTask& fields, size_t number, const Field& body, const std::string& name,
+                      const ExecutionSettings& execution, LineContribution& out) {
   const LineTask& task = fields.task;
   TracedBody traced;
-  const FieldCurveSettings settings = curve_settings(task);
+  FieldCurveSettings settings = curve_settings(task);
+  settings.memory = [&kept = task.kept.fields, number](int level) { return &kept[{number, level}]; };
   if (task.settings.closed_forms && settings.threshold == 0.0) traced.form = form_body(body);
   if (traced.form) {
     traced.exact_rays = has_ray_roots(*traced.form);
@@ -142,7 +144,7 @@ LineContribution field_lines(const LineTask& task, const std::vector<size_t>& ob
   std::vector<TracedBody> traced;
   for (size_t i = 0; i < bodies.bodies.size(); ++i) {
     const FieldTask fields{task, bodies, bodies.bodies[i], make_viewer(task.camera, glm::dvec3(0.0)), evaluators};
-    traced.push_back(trace_body(fields, bodies.body_fields[i], name_of_body(task.scene, objects, bodies.bodies[i]), execution, out));
+    traced.push_back(trace_body(fields, i, bodies.body_fields[i], name_of_body(task.scene, objects, bodies.bodies[i]), execution, out));
     if (execution.progress) execution.progress(0.5 * static_cast<double>(i + 1) / static_cast<double>(bodies.bodies.size()));
   }
   out.layers_before = layers_of(task, bodies.body_fields, std::move(traced));

@@ -31,7 +31,7 @@ SurfaceCurve smooth_curve(const FieldTask& fields, const FieldCurve& found) {
   return curve;
 }
 
-/// Where two faces of sharp CSG meet: a crease, or an intersection where they are two objects'.
+/// Where two faces of sharp CSG meet: a crease; where they are two objects' an intersection, or an edge of materials.
 SurfaceCurve seam_curve(const FieldTask& fields, const FieldCurve& found) {
   Seam seam{found.closed, LineClass::crease, {}};
   for (const CurvePoint& point : found.points) {
@@ -47,8 +47,8 @@ SurfaceCurve seam_curve(const FieldTask& fields, const FieldCurve& found) {
       const double swapped = glm::dot(before[0].normal, two.normal) + glm::dot(before[1].normal, one.normal);
       if (swapped > kept) std::swap(one, two);
     }
-    const int object = fields.object_of(point.p, one.normal);
-    if (object != fields.object_of(point.p, two.normal)) seam.line_class = LineClass::intersection;
+    const int object = fields.object_of(point.p, one.normal), other = fields.object_of(point.p, two.normal);
+    if (object != other) seam.line_class = fields.task.class_of_meeting(fields.task.material_of(object), fields.task.material_of(other));
     seam.samples.push_back({point.p, {one, two}, object});
   }
   return curve_of_seam(fields.task.camera, seam);

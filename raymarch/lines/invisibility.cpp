@@ -140,7 +140,8 @@ class Cutter {
         return;
       }
     }
-    if (may_search_ && search_missed(arc, relative, around)) return;
+    // In short pieces that nearer lines run along only where nothing else explains it.
+    if (may_search_ && (search_missed(arc, relative, around, kWorthAsking_px) || search_missed(arc, relative, around, kShort_px))) return;
     settle_by_rays(arc, around);
   }
 
@@ -151,7 +152,7 @@ class Cutter {
   };
   /// Where rays disagree along an arc the line may go through a sheet that nobody saw, or behind a nearer line that only touches it as far
   /// as polylines tell: true where that explains something.
-  bool search_missed(const std::vector<size_t>& arc, const std::vector<int>& relative, bool around) {
+  bool search_missed(const std::vector<size_t>& arc, const std::vector<int>& relative, bool around, double least_unclear_px) {
     const auto steps = static_cast<double>(steps_of(curve_));
     std::vector<double> begins;
     for (const size_t k : arc) {
@@ -173,7 +174,7 @@ class Cutter {
       if (piece.length_px < kNearEnd_px) continue;
       for (const double share : {0.15, 0.5, 0.85}) {
         const std::optional<double> clear = clear_ray_at(piece, share);
-        if (!clear && piece.length_px < kWorthAsking_px) continue;
+        if (!clear && piece.length_px < least_unclear_px) continue;
         const double place = begins[k] + (clear.value_or(ray_at(piece, share)) - piece.from);
         if (probes.empty() || place > probes.back().at) probes.push_back({place, unexplained(place)});
       }
@@ -192,8 +193,28 @@ class Cutter {
         missed_.push_back({VertexKind::joint, at, found->layers, 0, 0.0});
       else if (const auto nearer = folds_.nearest(sample_at(curve_, at, camera_), number_, at, kTouch_px))
         missed_.push_back({VertexKind::crossing, at, found->layers, nearer->curve, nearer->on_nearer});
+      else if (const CurveEvent* denied = denied_crossing(at, found->layers))
+        missed_.push_back({VertexKind::crossing, at, found->layers, denied->nearer, denied->on_nearer});
     }
     return missed_.size() > before;
+  }
+
+  /// A crossing of the line with itself beside a cusp, which rays on both sides of it deny: there its arms touch only.
+  const CurveEvent* denied_crossing(double at, int layers) const {
+    const auto is_it = [&](const CurveEvent& event) {
+      return event.kind == VertexKind::crossing && event.nearer == number_ && event.layers == -layers &&
+             walk_.apart_px(event.at, at) < kTouch_px;
+    };
+    const auto found = std::find_if(cut_.events.begin(), cut_.events.end(), is_it);
+    return found == cut_.events.end() ? nullptr : &*found;
+  }
+
+  /// All of three rays say that something lies in front: from places clear of nearer lines where there are any.
+  bool is_hidden(const CurvePiece& piece) {
+    for (const double share : {0.5, 0.3, 0.7}) {
+      if (cast(clear_ray_at(piece, share).value_or(ray_at(piece, share))) == 0) return false;
+    }
+    return true;
   }
 
   std::optional<int> offset_by_rays(const std::vector<size_t>& arc, const std::vector<int>& relative, bool around) {
@@ -217,19 +238,22 @@ class Cutter {
     };
     const int offset = ask(first, same ? 0.35 : 0.5);
     if (ask(second, same ? 0.65 : 0.5) != offset) return {};
-    // Both ends of an open arc, between which every step lies, and the longest visible piece and the longest hidden one as well.
+    // Both ends of an open arc, between which every step lies.
     if (!around) {
       for (const size_t k : {size_t{0}, arc.size() - 1}) {
         if (k != first && k != second && length(k) >= kWorthAsking_px && ask(k, 0.5) != offset) return {};
       }
     }
-    for (const bool visible : {true, false}) {
-      std::optional<size_t> longest;
-      for (size_t k = 0; k < arc.size(); ++k) {
-        if ((offset + relative[k] == 0) == visible && (!longest || length(k) > length(*longest))) longest = k;
-      }
-      const bool asked = !longest || *longest == first || *longest == second;
-      if (!asked && length(*longest) >= kWorthAsking_px && ask(*longest, 0.5) != offset) return {};
+    // The longest hidden piece, too, and all that are drawn as visible, from a pixel on.
+    std::optional<size_t> hidden;
+    for (size_t k = 0; k < arc.size(); ++k) {
+      if (offset + relative[k] != 0 && (!hidden || length(k) > length(*hidden))) hidden = k;
+    }
+    const auto is_asked = [&](size_t k) { return k == first || k == second; };
+    if (hidden && !is_asked(*hidden) && length(*hidden) >= kWorthAsking_px && ask(*hidden, 0.5) != offset) return {};
+    for (size_t k = 0; k < arc.size(); ++k) {
+      if (offset + relative[k] != 0 || is_asked(k) || length(k) < kShort_px) continue;
+      if (is_hidden(cut_.pieces[arc[k]])) return {};
     }
     return offset;
   }

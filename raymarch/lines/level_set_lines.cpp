@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <utility>
 
 #include "raymarch/lines/found_curves.h"
 #include "raymarch/lines/level_set_layers.h"
@@ -20,6 +20,9 @@ constexpr double kTurn = 0.03;      // radians, beyond twice the spread that a c
 constexpr double kSeamReach = 2.0;  // voxels: farther from a surface there is no seam with it
 
 constexpr size_t kBlock = 256;
+constexpr int kRegionBits = 4, kRegion = 1 << kRegionBits;  // cells along a region's side
+constexpr int kIndexBits = 20;                              // of a cell along an axis
+constexpr size_t kMostKeptBytes = size_t{512} << 20;
 
 void append(const CellCurves& from, CellCurves& to) {
   to.crossings.insert(to.crossings.end(), from.crossings.begin(), from.crossings.end());
@@ -35,7 +38,22 @@ void for_blocks(size_t cells, const ExecutionSettings& execution, const Visit& v
   });
 }
 
-/// Cells of a cubic lattice in solver space that a contour, or the rim's curve, may go through.
+std::uint64_t packed(const glm::ivec3& cell, int bits) {
+  const auto part = [](int v) { return static_cast<std::uint64_t>(v); };
+  return (part(cell.x) << bits | part(cell.y)) << bits | part(cell.z);
+}
+glm::ivec3 unpacked(std::uint64_t key, int bits) {
+  const auto part = [&](int shift) { return static_cast<int>(key >> shift & ((std::uint64_t{1} << bits) - 1)); };
+  return {part(2 * bits), part(bits), part(0)};
+}
+/// Cells by their regions, and within these by their places.
+std::uint64_t region_of(const glm::ivec3& cell) { return packed(cell >> kRegionBits, kIndexBits - kRegionBits); }
+std::uint64_t key_of(const glm::ivec3& cell) { return region_of(cell) << 3 * kRegionBits | packed(cell & (kRegion - 1), kRegionBits); }
+glm::ivec3 cell_of(std::uint64_t key) {
+  return unpacked(key >> 3 * kRegionBits, kIndexBits - kRegionBits) * kRegion + unpacked(key, kRegionBits);
+}
+
+/// Cells of a cubic lattice in solver space that a contour, or the rim's curve, may go through, region by region.
 struct Lattice {
   CellGrid grid{};
   std::vector<glm::ivec3> cells{};
@@ -78,26 +96,47 @@ Lattice lattice_of(const PlacedLevelSet& placed, const std::vector<SurfaceCell>&
     lattice.grid.corner = placed.box.lower - 2.0 * placed.voxel;
   }
   const auto cell_at = [&](const glm::dvec3& p) { return glm::ivec3(glm::floor((p - lattice.grid.corner) / lattice.grid.side)); };
+  std::vector<std::uint64_t> keys;
   for (const SurfaceCell& cell : cells) {
     const glm::dvec3 middle = placed.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
     const glm::ivec3 own = aligned ? cell.node - lowest : cell_at(middle);
     const int around = aligned && !cell.near_corner ? 0 : 1;
     for (int x = -around; x <= around; ++x)
       for (int y = -around; y <= around; ++y)
-        for (int z = -around; z <= around; ++z) lattice.cells.push_back(own + glm::ivec3(x, y, z));
+        for (int z = -around; z <= around; ++z) keys.push_back(key_of(own + glm::ivec3(x, y, z)));
   }
-  const auto before = [](const glm::ivec3& a, const glm::ivec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
-  std::sort(lattice.cells.begin(), lattice.cells.end(), before);
-  lattice.cells.erase(std::unique(lattice.cells.begin(), lattice.cells.end()), lattice.cells.end());
+  parallel_sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  lattice.cells.reserve(keys.size());
+  for (const std::uint64_t key : keys) lattice.cells.push_back(cell_of(key));
   return lattice;
 }
 
-CellOutput march(const CellSearch& search, size_t branch, const Lattice& lattice, const ExecutionSettings& execution) {
-  std::vector<CellOutput> parts((lattice.cells.size() + kBlock - 1) / kBlock);
-  for_blocks(lattice.cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
+/// Cells of one region.
+struct Region {
+  size_t begin = 0, end = 0;
+  LatticeSamples* samples = nullptr;
+};
+std::vector<Region> regions_of(const Lattice& lattice, LatticeMemory& memory) {
+  memory.prepare(lattice.grid, kMostKeptBytes);
+  std::vector<Region> regions;
+  for (size_t begin = 0, end = 0; begin < lattice.cells.size(); begin = end) {
+    const std::uint64_t region = region_of(lattice.cells[begin]);
+    while (end < lattice.cells.size() && region_of(lattice.cells[end]) == region) ++end;
+    regions.push_back({begin, end, &memory.regions[region].branches[0]});
+  }
+  return regions;
+}
+
+CellOutput march(const CellSearch& search, size_t branch, const Lattice& lattice, LatticeMemory& memory,
+                 const ExecutionSettings& execution) {
+  const std::vector<Region> regions = regions_of(lattice, memory);
+  std::vector<CellOutput> parts(regions.size());
+  parallel_for(size_t{0}, regions.size(), [&](size_t r) {
+    if (execution.cancelled && execution.cancelled()) throw Cancelled{};
     FieldEvaluator evaluator(search.sharp.branches[branch]);
-    for (size_t i = begin; i < end; ++i)
-      march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, parts[part]);
+    for (size_t i = regions[r].begin; i < regions[r].end; ++i)
+      march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, regions[r].samples, parts[r]);
   });
   CellOutput all;
   for (const CellOutput& part : parts) {
@@ -194,8 +233,8 @@ void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContr
   CellResult found;
   for (size_t k = 0; k < body.size(); ++k) {
     const PlacedLevelSet& grid = *tracing.grids[body[k]];
-    found.branches[static_cast<int>(k)] =
-        march(search, k, lattice_of(grid, turning_cells(grid, task, tracing.levels, tracing.execution)), tracing.execution);
+    found.branches[static_cast<int>(k)] = march(search, k, lattice_of(grid, turning_cells(grid, task, tracing.levels, tracing.execution)),
+                                                task.kept.level_sets.lattices[body[k]], tracing.execution);
     for (size_t j = 0; j < k; ++j) {
       const PlacedLevelSet& other = *tracing.grids[body[j]];
       if (intersect(grid.box, other.box).empty()) continue;

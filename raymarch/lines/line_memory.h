@@ -6,6 +6,7 @@
 
 #include "raymarch/lines/mesh_tree.h"
 #include "raymarch/lines/placed_level_set.h"
+#include "raymarch/truth/lattice_memory.h"
 #include "raymarch/truth/limit_grid.h"
 
 namespace limn {
@@ -13,13 +14,15 @@ namespace limn {
 /// A cage's limit surface about its own middle, and its samples by LimitGrid's steps.
 struct KeptCage {
   std::shared_ptr<const LimitSurface> surface{};
+  std::vector<PatchSide> sides{};  ///< Empty before the first view.
   std::map<int, std::shared_ptr<const LimitGrid>> grids{};
 };
 
 /// Places in solver space, whose origin is the scene's middle and no view's.
 struct KeptLevelSets {
-  std::map<size_t, SharedLevelSet> placed{};  ///< By the object's index.
-  std::vector<std::vector<size_t>> bodies{};  ///< Places in their list of those that overlap; empty before the first view.
+  std::map<size_t, SharedLevelSet> placed{};   ///< By the object's index.
+  std::vector<std::vector<size_t>> bodies{};   ///< Places in their list of those that overlap; empty before the first view.
+  std::map<size_t, LatticeMemory> lattices{};  ///< By the object's place in their list.
   std::map<std::pair<size_t, size_t>, std::vector<SurfaceCell>> meetings{};  ///< Cells of a pair in which one may meet the other.
 };
 
@@ -27,6 +30,8 @@ struct KeptLines {
   std::map<size_t, KeptCage> cages{};                                         ///< By the object's index.
   std::map<std::pair<size_t, int>, std::shared_ptr<const MeshTree>> trees{};  ///< By the first object's index and the refinement.
   KeptLevelSets level_sets{};
+  /// By the body's place among those of the scene, which are the same in all views, and the level of its cells.
+  std::map<std::pair<size_t, int>, LatticeMemory> fields{};
 };
 
 }  // namespace limn

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "raymarch/lines/line_memory.h"
+#include "raymarch/surface/object_mesh.h"
 #include "raymarch/truth/proxy.h"
 #include "sdf/parallel.h"
 
@@ -31,14 +32,36 @@ std::shared_ptr<const MeshTree> tree_of(const LineTask& task, const std::vector<
   }
   const int level = proxy_level(part, task.camera, edge_px);
   std::shared_ptr<const MeshTree>& kept = task.kept.trees[{objects.front(), level}];
-  if (!kept) kept = std::make_shared<const MeshTree>(proxy_model(part, level, task.settings.max_bytes), numbers, task.extent);
-  return kept;
+  if (kept) return kept;
+  std::vector<std::shared_ptr<const Polygons>> polygons;
+  glm::dvec3 offset(0.0);
+  if (std::all_of(part.objects.begin(), part.objects.end(), [](const SceneObject& object) { return is_cage(object); })) {
+    if (const Box box = bounds(part); !box.empty()) offset = box.center();
+    for (const SceneObject& object : part.objects) polygons.push_back(refined_polygons(object, level, task.settings.max_bytes, offset));
+  } else {
+    const SceneModel model = proxy_model(part, level, task.settings.max_bytes);
+    offset = model.render_origin;
+    for (const auto& surface : model.surfaces) polygons.push_back(surface.polygons);
+  }
+  return kept = std::make_shared<const MeshTree>(polygons, offset, numbers, task.extent);
 }
 
 }  // namespace
 
 MeshLayers::MeshLayers(const LineTask& task, const std::vector<size_t>& objects, double edge_px, bool smooth)
-    : camera_(task.camera), extent_(task.extent), smooth_(smooth), tree_(tree_of(task, objects, edge_px)) {}
+    : camera_(task.camera),
+      extent_(task.extent),
+      smooth_(smooth),
+      edge_of_materials_(task.class_of_meeting(0, 1)),
+      tree_(tree_of(task, objects, edge_px)) {
+  for (const SceneObject& object : task.scene.objects) materials_.push_back(object.material);
+}
+
+LineClass MeshLayers::class_of(const PartMeeting& meeting) const {
+  const auto material = [&](int object, int of_face) { return materials_[static_cast<size_t>(object) - 1] + of_face; };
+  const bool same = material(meeting.object, meeting.material) == material(meeting.other_object, meeting.other_material);
+  return same ? LineClass::intersection : edge_of_materials_;
+}
 
 /// The part that the curve runs on: what most of a few short rays through it hit.
 std::uint32_t MeshLayers::part_of(const SurfaceCurve& curve) const {
@@ -194,7 +217,7 @@ std::vector<SurfaceCurve> MeshLayers::intersections() const {
       sample.joint = !curve.samples.empty() && facing != before_facing;
       before_facing = facing;
       sample.lift = v;
-      sample.line_class = LineClass::intersection;
+      sample.line_class = class_of(hit);
       sample.object = hits[at].object;
       project_sample(camera_, sample);
       curve.samples.push_back(sample);

@@ -27,6 +27,7 @@ class MeshLayers {
   std::vector<SurfaceCurve> intersections() const;
 
  private:
+  LineClass class_of(const PartMeeting& meeting) const;
   /// The part that the curve runs on: what most of a few short rays through it hit.
   std::uint32_t part_of(const SurfaceCurve& curve) const;
   std::optional<std::uint32_t> triangle_under(const CurveSample& sample) const;
@@ -36,6 +37,8 @@ class MeshLayers {
   Camera camera_;
   double extent_;
   bool smooth_;
+  std::vector<int> materials_{};  ///< Of the scene's objects.
+  LineClass edge_of_materials_;   ///< What an intersection of two materials counts as.
   std::shared_ptr<const MeshTree> tree_;
 };
 

@@ -10,6 +10,7 @@
 #include "raymarch/mesh/embree_device.h"
 #include "raymarch/mesh/polygons.h"
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -57,10 +58,11 @@ struct MeshTree::Embree {
   }
 };
 
-MeshTree::MeshTree(const SceneModel& model, const std::vector<int>& objects, double extent)
+MeshTree::MeshTree(const std::vector<std::shared_ptr<const Polygons>>& polygons, const glm::dvec3& offset, const std::vector<int>& objects,
+                   double extent)
     : extent_(extent), embree_(std::make_unique<Embree>()) {
-  for (size_t i = 0; i < model.surfaces.size(); ++i) {
-    if (model.surfaces[i].polygons) add(*model.surfaces[i].polygons, model.render_origin, objects[i]);
+  for (size_t i = 0; i < polygons.size(); ++i) {
+    if (polygons[i]) add(*polygons[i], offset, objects[i]);
   }
   weld();
   build();
@@ -88,7 +90,10 @@ void MeshTree::weld() {
   std::vector<std::uint32_t> order(positions_.size()), same(positions_.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto key = [&](std::uint32_t i) { return std::tie(positions_[i].x, positions_[i].y, positions_[i].z); };
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  // Of one place the first comes first, however many threads sort.
+  parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::tie(positions_[a].x, positions_[a].y, positions_[a].z, a) < std::tie(positions_[b].x, positions_[b].y, positions_[b].z, b);
+  });
   for (size_t i = 0; i < order.size(); ++i) same[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? same[order[i - 1]] : order[i];
   Parts joined(positions_.size());
   for (Triangle& triangle : triangles_) {
@@ -219,10 +224,31 @@ const PartMeetings& MeshTree::meetings() const {
   return meetings_;
 }
 
+/// In the order of the edges; faces in theirs.
+std::vector<MeshTree::EdgeFaces> MeshTree::faces_of_edges(const std::vector<char>& asked) const {
+  struct Use {
+    std::uint32_t a, b, face;
+    bool operator<(const Use& other) const { return std::tie(a, b, face) < std::tie(other.a, other.b, other.face); }
+  };
+  std::vector<Use> uses;
+  for (std::uint32_t f = 0; f < triangles_.size(); ++f) {
+    if (asked[f] == 0) continue;
+    for (size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangles_[f].corners[k], b = triangles_[f].corners[(k + 1) % 3];
+      uses.push_back({std::min(a, b), std::max(a, b), f});
+    }
+  }
+  parallel_sort(uses.begin(), uses.end());
+  std::vector<EdgeFaces> edges;
+  for (const Use& use : uses) {
+    if (edges.empty() || edges.back().a != use.a || edges.back().b != use.b) edges.push_back({use.a, use.b, {}});
+    edges.back().faces.push_back(use.face);
+  }
+  return edges;
+}
+
 PartMeetings MeshTree::find_meetings() const {
   PartMeetings result;
-  // Faces of each edge.
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> faces_of;
   std::vector<Box> boxes(parts_);
   for (const Triangle& triangle : triangles_) {
     for (const std::uint32_t corner : triangle.corners) boxes[triangle.part] = include(boxes[triangle.part], positions_[corner]);
@@ -235,22 +261,27 @@ PartMeetings MeshTree::find_meetings() const {
     }
     return false;
   };
-  for (std::uint32_t f = 0; f < triangles_.size(); ++f) {
-    const Triangle& triangle = triangles_[f];
-    if (!meets_others(triangle)) continue;
-    for (size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = triangle.corners[k], b = triangle.corners[(k + 1) % 3];
-      faces_of[{std::min(a, b), std::max(a, b)}].push_back(f);
+  std::vector<char> meets(triangles_.size(), 0);
+  parallel_parts(triangles_.size(), size_t{4096}, [&](const IndexRange<size_t>& range) {
+    for (size_t f = range.begin(); f < range.end(); ++f) meets[f] = meets_others(triangles_[f]);
+  });
+  const std::vector<EdgeFaces> faces_of = faces_of_edges(meets);
+  std::vector<std::vector<LayerHit>> hits_of(faces_of.size());
+  parallel_parts(faces_of.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
+    for (size_t e = range.begin(); e < range.end(); ++e) {
+      const glm::dvec3 &a = positions_[faces_of[e].a], &b = positions_[faces_of[e].b];
+      const double length = glm::distance(a, b);
+      if (length > 0.0) hits_of[e] = hits_along(a, (b - a) / length, length);
     }
-  }
+  });
   // Each pair of faces that go through each other is left where an edge of the one meets the other.
   std::vector<PartMeeting>& hits = result.places;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<size_t>> of_pair;
-  for (const auto& [edge, faces] : faces_of) {
-    const glm::dvec3 &a = positions_[edge.first], &b = positions_[edge.second];
+  for (size_t e = 0; e < faces_of.size(); ++e) {
+    const std::vector<std::uint32_t>& faces = faces_of[e].faces;
+    const glm::dvec3 &a = positions_[faces_of[e].a], &b = positions_[faces_of[e].b];
     const double length = glm::distance(a, b);
-    if (!(length > 0.0)) continue;
-    for (const LayerHit& hit : hits_along(a, (b - a) / length, length)) {
+    for (const LayerHit& hit : hits_of[e]) {
       const Triangle& other = triangles_[hit.triangle];
       if (other.part == triangles_[faces[0]].part) continue;
       const Triangle& own = triangles_[faces[0]];
@@ -258,7 +289,8 @@ PartMeetings MeshTree::find_meetings() const {
       // An edge in a face's plane goes through it nowhere, whatever rounding says.
       if (std::fabs(glm::dot(b - a, other_normal)) < kInPlane * length) continue;
       const bool lower = own.part < other.part;
-      hits.push_back({glm::mix(a, b, hit.t / length), lower ? own_normal : other_normal, lower ? other_normal : own_normal, other.object});
+      hits.push_back({glm::mix(a, b, hit.t / length), lower ? own_normal : other_normal, lower ? other_normal : own_normal, other.object,
+                      own.object, other.material, own.material});
       for (const std::uint32_t face : faces)
         of_pair[{std::min(face, hit.triangle), std::max(face, hit.triangle)}].push_back(hits.size() - 1);
     }

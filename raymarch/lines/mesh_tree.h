@@ -28,7 +28,8 @@ struct LayerTriangle {
 struct PartMeeting {
   glm::dvec3 p{0.0};
   glm::dvec3 lower_normal{0.0}, upper_normal{0.0};  ///< Unit, of the parts of lower and higher number.
-  int object = 1;
+  int object = 1, other_object = 1;
+  int material = 0, other_material = 0;  ///< Of their faces.
 };
 /// Polylines along which parts go through each other: places, and those that come next to each.
 struct PartMeetings {
@@ -39,8 +40,9 @@ struct PartMeetings {
 /// Safe from many threads.
 class MeshTree {
  public:
-  /// The polygons of a model's surfaces, which stand for these objects (from 1).
-  MeshTree(const SceneModel& model, const std::vector<int>& objects, double extent);
+  /// Polygons, moved by `offset`, which stand for these objects (from 1); null where one has none.
+  MeshTree(const std::vector<std::shared_ptr<const Polygons>>& polygons, const glm::dvec3& offset, const std::vector<int>& objects,
+           double extent);
   ~MeshTree();
   MeshTree(const MeshTree&) = delete;
   MeshTree& operator=(const MeshTree&) = delete;
@@ -66,6 +68,12 @@ class MeshTree {
   void weld();
   void build();
   bool same_side(const LayerHit& a, const LayerHit& b, const glm::dvec3& direction) const;
+  /// An edge between two vertices, and the faces that it is one of.
+  struct EdgeFaces {
+    std::uint32_t a = 0, b = 0;
+    std::vector<std::uint32_t> faces{};
+  };
+  std::vector<EdgeFaces> faces_of_edges(const std::vector<char>& asked) const;
   PartMeetings find_meetings() const;
   void find_around() const;
 

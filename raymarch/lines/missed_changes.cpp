@@ -49,9 +49,13 @@ std::optional<MissedChange> find_missed(const ChangeSearch& search, double from,
     const double place = place_at(search.walk, from, to, std::clamp(share, 0.0, 1.0));
     return search.unexplained(place).nearest * search.unit_px(place);
   };
-  const double step = std::min(0.25, 0.5 * room);
-  const double near = at(0.25 * step), far = at(step);
-  found.piercing = near < 0.6 * far;
+  // Rays start off the surface by something: where that hides it the sheet is looked for farther on.
+  for (const double most : {0.25, 1.0, 3.0}) {
+    const double step = std::min(most, 0.5 * room);
+    const double near = at(0.25 * step), far = at(step);
+    found.piercing = near < 0.6 * far;
+    if (found.piercing || step < most) break;
+  }
   return found;
 }
 

@@ -63,7 +63,8 @@ CurveSample curve_sample(const Camera& camera, const SeamSample& seam, const glm
   const int all = static_cast<int>(on_left.size());
   sample.more_on_left = 2 * left - all;
   // What two objects share is their intersection whichever way they face: its folds are hidden by one of them.
-  const bool contour = all > 1 && (left == 0 || left == all) && line_class != LineClass::intersection;
+  const bool shared = line_class == LineClass::intersection || line_class == LineClass::material;
+  const bool contour = all > 1 && (left == 0 || left == all) && !shared;
   sample.line_class = contour ? LineClass::contour : line_class;
   project_sample(camera, sample);
   return sample;

@@ -109,6 +109,11 @@ bool LineTask::wants(LineClass line_class) const {
   return std::find(settings.classes.begin(), settings.classes.end(), line_class) != settings.classes.end();
 }
 
+LineClass LineTask::class_of_meeting(int material, int other_material) const {
+  const bool edge = material != other_material && wants(LineClass::material) && !wants(LineClass::intersection);
+  return edge ? LineClass::material : LineClass::intersection;
+}
+
 void project_sample(const Camera& camera, CurveSample& sample) {
   const glm::dvec3 image = project(camera, sample.p);
   sample.px = glm::dvec2(image);

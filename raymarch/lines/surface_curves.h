@@ -77,6 +77,9 @@ struct LineTask {
   KeptLines& kept;
 
   bool wants(LineClass line_class) const;
+  /// Of a line along which two surfaces go through each other: an intersection, or where nobody asks for those the edge of their materials.
+  LineClass class_of_meeting(int material, int other_material) const;
+  int material_of(int object) const { return scene.objects[static_cast<size_t>(object) - 1].material; }
 };
 
 LineContribution field_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings& execution);

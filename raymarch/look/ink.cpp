@@ -7,11 +7,13 @@ Look ink_look() {
            "widths: Goodwin et al. 2007"},
           {.shading = Shading::none},
           {{"contours",
-            {{"width", {{4.0}}},
-             {"thin_width", {{1.0}}},
+            {{"width", {{4.5}}},
+             {"thin_width", {{1.3}}},
+             {"threshold", {{0.5}}},
              {"width_from", {{}, "curvature"}},
              {"wobble", {{0.7}}},
              {"smooth", {{1.0}}},
+             {"shortest", {{6.0}}},
              {"color", {{0.006, 0.006, 0.012}}}}}},
           glm::vec3(1.0f)};
 }

@@ -8,7 +8,7 @@
 namespace limn {
 namespace {
 
-constexpr int kFinest = 11;         // halvings of the bounds' sides
+constexpr int kFinest = 10;         // halvings of the bounds' sides
 constexpr int kRestricted = 2;      // a box's field is restricted to it after so many
 constexpr int kMostBoxes = 20'000;  // for one direction; beyond it the answer lies too far out rather than too near
 

@@ -162,18 +162,23 @@ ObjectMesh from_volume(const SceneObject& object, const SurfaceSettings& setting
   return result;
 }
 
+// Refinement and triangulation happen about the mesh's own middle, so that no float in them meets large coordinates.
+MeshPlace place_of(const SceneObject& object, const MeshSource& source, const glm::dvec3& render_origin) {
+  MeshPlace place{bounds(*source.mesh).center(), object.world_from_object};
+  place.render_from_mesh.translation += object.world_from_object.linear * place.center;
+  place.render_from_mesh.translation -= render_origin;
+  return place;
+}
+
 ObjectMesh make_object_mesh(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
   if (std::holds_alternative<Field>(object.source)) return from_field(object, settings, render_origin);
-  Affine render_from_mesh = object.world_from_object;
   const MeshSource* source = std::get_if<MeshSource>(&object.source);
   if (source == nullptr) {
+    Affine render_from_mesh = object.world_from_object;
     render_from_mesh.translation -= render_origin;
     return from_volume(object, settings, render_from_mesh);
   }
-  // Refinement and triangulation happen about the mesh's own middle, so that no float in them meets large coordinates.
-  MeshPlace place{bounds(*source->mesh).center(), render_from_mesh};
-  place.render_from_mesh.translation += render_from_mesh.linear * place.center;
-  place.render_from_mesh.translation -= render_origin;
+  const MeshPlace place = place_of(object, *source, render_origin);
   const std::optional<Scheme> scheme = settings.scheme ? settings.scheme : source->scheme;
   return scheme ? from_cage(object, *source, settings, *scheme, place) : from_facets(object, *source, settings, place);
 }
@@ -197,6 +202,20 @@ ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& setting
   made.mesh.spared_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   *kept = std::make_shared<const KeptMesh>(std::move(made));
   return result;
+}
+
+std::shared_ptr<const Polygons> refined_polygons(const SceneObject& object, int level, std::int64_t max_bytes,
+                                                 const glm::dvec3& render_origin) {
+  const auto& source = std::get<MeshSource>(object.source);
+  const MeshPlace place = place_of(object, source, render_origin);
+  RefineSettings how;
+  how.scheme = *source.scheme;
+  how.level = level;
+  how.normals = NormalKind::flat;
+  how.max_bytes = max_bytes;
+  Mesh mesh = refine(recentred(source.mesh, place.center), how, source.file);
+  move_polygons(place.render_from_mesh, mesh);
+  return std::make_shared<const Polygons>(std::move(mesh), NormalKind::flat);
 }
 
 Box bounds_of_triangles(const TriangleMesh& mesh) {

@@ -153,10 +153,11 @@ std::vector<int> path_of(const SharpField& sharp, int branch) {
 }
 
 int first_common(const std::vector<int>& path, const std::vector<int>& other) {
-  for (const int node : path) {
-    if (std::find(other.begin(), other.end(), node) != other.end()) return node;
-  }
-  return -1;
+  // Both end at the root: from there they are the same down to where they part.
+  int common = -1;
+  for (size_t k = 1; k <= std::min(path.size(), other.size()) && path[path.size() - k] == other[other.size() - k]; ++k)
+    common = path[path.size() - k];
+  return common;
 }
 
 }  // namespace

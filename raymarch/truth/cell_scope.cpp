@@ -1,6 +1,7 @@
 #include "raymarch/truth/cell_scope.h"
 
-#include <optional>
+#include <algorithm>
+#include <numeric>
 
 #include "sdf/field_program.h"
 #include "sdf/number.h"
@@ -9,21 +10,15 @@
 namespace limn {
 namespace {
 
-constexpr double kViewMargin = 1e-9;
-
-Interval coordinate(const Box& box, int axis) { return {box.lower[axis], box.upper[axis]}; }
+constexpr double kViewMargin = 1e-9, kRounding = 1e-13;
+constexpr double kWider = 1.0 + 1e-9;  // boxes, for the rounding of their corners
+constexpr size_t kWorthPruning = 6;    // steps
 
 /// N.V - c times the gradient's length and the view vector's, of whose sign alone anything is asked: no division is needed.
-std::array<Interval, kCurveFamilies> facing_bounds(const CellSearch& search, const Box& box, const GradientBounds& bounds) {
-  std::array<Interval, 3> view;
-  const bool perspective = search.camera.projection == Projection::perspective;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double eye = search.camera.eye[axis], backward = search.camera.world_from_camera[2][axis];
-    view[static_cast<size_t>(axis)] = perspective ? -(coordinate(box, axis) - eye) : Interval{backward, backward};
-  }
-  const auto& g = bounds.gradient;
+std::array<Interval, kCurveFamilies> facing_bounds(const CellSearch& search, const std::array<Interval, 3>& view,
+                                                   const std::array<Interval, 3>& g) {
   const Interval gradient_length = norm(g[0], g[1], g[2]);
-  const Interval view_length = perspective ? norm(view[0], view[1], view[2]) : Interval{1.0, 1.0};
+  const Interval view_length = search.camera.projection == Projection::perspective ? norm(view[0], view[1], view[2]) : Interval{1.0, 1.0};
   const Interval product = g[0] * view[0] + g[1] * view[1] + g[2] * view[2];
   const Interval lengths = gradient_length * view_length;
   const double margin = kViewMargin * lengths.upper;
@@ -35,134 +30,257 @@ std::array<Interval, kCurveFamilies> facing_bounds(const CellSearch& search, con
   return result;
 }
 
-/// Bounds of all nodes; empty where everything below is without influence in the box.
-using NodeBounds = std::vector<std::optional<Interval>>;
-
-NodeBounds node_bounds(const SharpField& sharp, const CellScope& scope, const std::vector<Interval>& of_branches) {
-  NodeBounds bounds(sharp.nodes.size());
-  for (size_t i = 0; i < scope.branches.size(); ++i) {
-    bounds[static_cast<size_t>(sharp.node_of[static_cast<size_t>(scope.branches[i])])] = of_branches[i];
+void bound_nodes(const SharpField& sharp, std::span<const int> branches, std::span<const Interval> of_branches, NodeScratch& scratch) {
+  scratch.bounds.resize(sharp.nodes.size());
+  scratch.known.assign(sharp.nodes.size(), 0);
+  for (size_t i = 0; i < branches.size(); ++i) {
+    const auto node = static_cast<size_t>(sharp.node_of[static_cast<size_t>(branches[i])]);
+    scratch.bounds[node] = of_branches[i];
+    scratch.known[node] = 1;
   }
   for (size_t i = 0; i < sharp.nodes.size(); ++i) {
     const SharpNode& node = sharp.nodes[i];
     if (node.branch >= 0) continue;
-    const auto &a = bounds[static_cast<size_t>(node.left)], &b = bounds[static_cast<size_t>(node.right)];
-    if (a && b) {
-      bounds[i] = node.maximum ? maximum(*a, *b) : minimum(*a, *b);
+    const auto left = static_cast<size_t>(node.left), right = static_cast<size_t>(node.right);
+    const Interval &a = scratch.bounds[left], &b = scratch.bounds[right];
+    scratch.known[i] = scratch.known[left] | scratch.known[right];
+    if (scratch.known[left] && scratch.known[right]) {
+      scratch.bounds[i] = node.maximum ? maximum(a, b) : minimum(a, b);
     } else {
-      bounds[i] = a ? a : b;
+      scratch.bounds[i] = scratch.known[left] ? a : b;
     }
   }
-  return bounds;
 }
 
 /// A side is without influence where the other one decides: on the value, or on where it is zero.
-void mark_relevant(const SharpField& sharp, const NodeBounds& bounds, double hair, int at, std::vector<bool>& relevant) {
-  const SharpNode& node = sharp.nodes[static_cast<size_t>(at)];
-  if (!bounds[static_cast<size_t>(at)]) return;
+void mark_relevant(const SharpField& sharp, double hair, size_t at, NodeScratch& scratch) {
+  const SharpNode& node = sharp.nodes[at];
+  if (!scratch.known[at]) return;
   if (node.branch >= 0) {
-    relevant[static_cast<size_t>(node.branch)] = true;
+    scratch.relevant[static_cast<size_t>(node.branch)] = 1;
     return;
   }
-  const auto matters = [&](int one, int other) {
-    const auto &a = bounds[static_cast<size_t>(one)], &b = bounds[static_cast<size_t>(other)];
-    if (!a) return false;
-    if (node.maximum) return !(a->upper < -hair) && !(b && a->upper < b->lower - hair);
-    return !(a->lower > hair) && !(b && a->lower > b->upper + hair);
+  const auto left = static_cast<size_t>(node.left), right = static_cast<size_t>(node.right);
+  const auto matters = [&](size_t one, size_t other) {
+    if (!scratch.known[one]) return false;
+    const Interval &a = scratch.bounds[one], &b = scratch.bounds[other];
+    const bool both = scratch.known[other] != 0;
+    if (node.maximum) return !(a.upper < -hair) && !(both && a.upper < b.lower - hair);
+    return !(a.lower > hair) && !(both && a.lower > b.upper + hair);
   };
   // Where both are decided against, the box is empty of surface, and what remains says so.
-  if (matters(node.left, node.right)) mark_relevant(sharp, bounds, hair, node.left, relevant);
-  if (matters(node.right, node.left)) mark_relevant(sharp, bounds, hair, node.right, relevant);
+  if (matters(left, right)) mark_relevant(sharp, hair, left, scratch);
+  if (matters(right, left)) mark_relevant(sharp, hair, right, scratch);
+}
+
+/// NodeScratch::relevant, by branch; false where the box holds no surface.
+bool find_relevant(const SharpField& sharp, std::span<const int> branches, std::span<const Interval> of_branches, NodeScratch& scratch) {
+  bound_nodes(sharp, branches, of_branches, scratch);
+  scratch.relevant.assign(sharp.branches.size(), 0);
+  const double hair = sharp.hair * static_cast<double>(sharp.branches.size());
+  mark_relevant(sharp, hair, sharp.nodes.size() - 1, scratch);
+  return scratch.known.back() && !(scratch.bounds.back().lower > hair) && !(scratch.bounds.back().upper < -hair);
 }
 
 bool apart(const Interval& a, const Interval& b) { return (a.lower > 0.0 && b.lower > 0.0) || (a.upper < 0.0 && b.upper < 0.0); }
 
+void set_direction(LaneBeams& beams, const glm::dvec3& direction, double spread) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < kLanes; ++i) beams.rays.direction[axis][i] = direction[axis];
+    beams.direction_spread[axis] = glm::dvec3(0.0);
+    beams.direction_spread[axis][axis] = spread;
+  }
+}
+
 }  // namespace
 
-CellScope whole_scope(const SharpField& sharp) {
-  CellScope scope;
-  for (size_t i = 0; i < sharp.branches.size(); ++i) {
-    scope.owned.push_back(std::make_unique<FieldEvaluator>(sharp.branches[i]));
-    scope.branches.push_back(static_cast<int>(i));
-    scope.evaluators.push_back(scope.owned.back().get());
+CellTapes::CellTapes(const SharpField& sharp) {
+  tapes.reserve(sharp.branches.size());
+  for (const Field& branch : sharp.branches) {
+    tapes.emplace_back(branch);
+    whole.branches.push_back(static_cast<int>(whole.branches.size()));
+    whole.steps.push_back(std::make_shared<const std::vector<TapeStep>>(tapes.back().steps));
   }
-  return scope;
 }
 
-CellScope shortened(const CellScope& scope, const Box& box, double reach) {
-  CellScope result;
-  result.branches = scope.branches;
-  const Box around = dilate(box, reach);
-  for (FieldEvaluator* evaluator : scope.evaluators) {
-    result.evaluators.push_back(evaluator);
-    if (evaluator->field().program().instructions.size() < 2) continue;
-    const Field field = evaluator->restricted(around);
-    if (&field.program() == &evaluator->field().program()) continue;
-    result.owned.push_back(std::make_unique<FieldEvaluator>(field));
-    result.evaluators.back() = result.owned.back().get();
+void CellBounds::set_boxes(std::span<const glm::dvec3> lower, double side) {
+  half_ = 0.5 * side * kWider;
+  beams_.lanes = static_cast<int>(lower.size());
+  const double radius = std::sqrt(3.0) * half_ * kWider;
+  for (int axis = 0; axis < 3; ++axis) {
+    beams_.origin_spread[axis] = glm::dvec3(0.0);
+    beams_.origin_spread[axis][axis] = half_;
   }
-  return result;
+  for (int i = 0; i < kLanes; ++i) {
+    const glm::dvec3 center = lower[std::min(static_cast<size_t>(i), lower.size() - 1)] + 0.5 * side;
+    for (int axis = 0; axis < 3; ++axis) beams_.rays.origin[axis][i] = center[axis];
+    beams_.middle[i] = beams_.half[i] = 0.0;
+    beams_.radius[i] = radius;
+  }
 }
 
-CellScope narrowed(const CellScope& scope, const std::vector<size_t>& relevant) {
-  CellScope result;
-  for (const size_t i : relevant) {
-    result.branches.push_back(scope.branches[i]);
-    result.evaluators.push_back(scope.evaluators[i]);
+/// With `facing`, the slope towards the eye as well: the gradient times a view vector that is as long as the eye is far away. Where other
+/// levels of N.V than 0 are asked for, the slopes along the axes.
+void CellBounds::bound_branch(const CellScope& scope, size_t at, bool facing) {
+  const FieldTape& tape = tapes_.tapes[static_cast<size_t>(scope.branches[at])];
+  const std::vector<TapeStep>& steps = *scope.steps[at];
+  Bounds& bounds = bounds_[at];
+  bounds.facing = facing;
+  if (!facing) {
+    set_direction(beams_, glm::dvec3(0.0), 0.0);
+    tape_bounds(tape, steps, beams_, scratch_, bounds.of);
+  } else if (search_.families == 1u && search_.levels[0] == 0.0) {
+    const bool perspective = search_.camera.projection == Projection::perspective;
+    set_direction(beams_, search_.camera.world_from_camera[2], perspective ? half_ : 0.0);
+    for (int axis = 0; axis < 3 && perspective; ++axis) {
+      for (int i = 0; i < kLanes; ++i) beams_.rays.direction[axis][i] = search_.camera.eye[axis] - beams_.rays.origin[axis][i];
+    }
+    tape_slope_bounds(tape, steps, beams_, scratch_, bounds.of);
+  } else {
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::dvec3 direction(0.0);
+      direction[axis] = 1.0;
+      set_direction(beams_, direction, 0.0);
+      tape_slope_bounds(tape, steps, beams_, scratch_, bounds.along[static_cast<size_t>(axis)]);
+    }
+    bounds.of = bounds.along[0];
   }
-  return result;
+  bounds.choices.assign(scratch_.choices.begin(), scratch_.choices.end());
+}
+
+std::array<Interval, kCurveFamilies> CellBounds::facing_in(size_t at, size_t lane) const {
+  const Bounds& bounds = bounds_[at];
+  const auto i = static_cast<int>(lane);
+  const bool perspective = search_.camera.projection == Projection::perspective;
+  std::array<Interval, 3> view{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double along = perspective ? search_.camera.eye[axis] - beams_.rays.origin[axis][i] : search_.camera.world_from_camera[2][axis];
+    const double reach = perspective ? half_ + kViewMargin * half_ : 0.0;
+    view[static_cast<size_t>(axis)] = {along - reach, along + reach};
+  }
+  if (search_.families == 1u && search_.levels[0] == 0.0) {
+    const double margin = kViewMargin * search_.sharp.branches[0].traits().lipschitz * norm(view[0], view[1], view[2]).upper;
+    return {Interval{bounds.of.slope_lower[i] - margin, bounds.of.slope_upper[i] + margin}, Interval{}};
+  }
+  std::array<Interval, 3> gradient{};
+  for (size_t axis = 0; axis < 3; ++axis) gradient[axis] = {bounds.along[axis].slope_lower[i], bounds.along[axis].slope_upper[i]};
+  return facing_bounds(search_, view, gradient);
+}
+
+/// The tighter of the tape's bounds and what the branch's Lipschitz constant allows about the middle.
+Interval CellBounds::value_in(const CellScope& scope, size_t at, int lane) const {
+  const LaneBounds& of = bounds_[at].of;
+  const double lipschitz = search_.sharp.branches[static_cast<size_t>(scope.branches[at])].traits().lipschitz;
+  const auto& origin = beams_.rays.origin;
+  const double extent = lipschitz * (std::fabs(origin[0][lane]) + std::fabs(origin[1][lane]) + std::fabs(origin[2][lane])),
+               middle = of.middle[lane], reach = lipschitz * beams_.radius[lane], slack = kRounding * (std::fabs(middle) + reach + extent);
+  return tighter({of.lower[lane], of.upper[lane]}, {middle - reach - slack, middle + reach + slack});
+}
+
+void CellBounds::find_in(const CellScope& scope, size_t lane, Survivors& found) {
+  found.relevant.clear();
+  found.branches.clear();
+  found.seams.clear();
+  const auto i = static_cast<int>(lane);
+  values_.resize(scope.branches.size());
+  for (size_t at = 0; at < values_.size(); ++at) values_[at] = value_in(scope, at, i);
+  if (!find_relevant(search_.sharp, scope.branches, values_, nodes_)) return;
+  candidates_.clear();
+  facing_.clear();
+  for (size_t at = 0; at < values_.size(); ++at) {
+    if (!nodes_.relevant[static_cast<size_t>(scope.branches[at])]) continue;
+    found.relevant.push_back(at);
+    if (!values_[at].contains(0.0)) continue;
+    if (!bounds_[at].facing) {
+      bound_branch(scope, at, true);
+      values_[at] = value_in(scope, at, i);
+      if (!values_[at].contains(0.0)) continue;
+    }
+    candidates_.push_back(at);
+    facing_.push_back(facing_in(at, lane));
+    LiveBranch live{at, 0};
+    for (size_t family = 0; family < kCurveFamilies; ++family) {
+      if ((search_.families >> family & 1u) && facing_.back()[family].contains(0.0)) live.families |= 1u << family;
+    }
+    if (live.families != 0) found.branches.push_back(live);
+  }
+  for (size_t k = 1; k < candidates_.size(); ++k) {
+    for (size_t j = 0; j < k; ++j) {
+      bool live = search_.whole_seams;
+      for (size_t family = 0; family < kCurveFamilies; ++family) {
+        live = live || ((search_.families >> family & 1u) && !apart(facing_[j][family], facing_[k][family]));
+      }
+      if (live) found.seams.push_back({candidates_[j], candidates_[k]});
+    }
+  }
+}
+
+void CellBounds::find(const CellScope& scope, std::span<const glm::dvec3> lower, double side, std::span<Survivors> found) {
+  set_boxes(lower, side);
+  bounds_.resize(std::max(bounds_.size(), scope.branches.size()));
+  const bool alone = scope.branches.size() == 1;
+  for (size_t at = 0; at < scope.branches.size(); ++at) bound_branch(scope, at, alone);
+  for (size_t lane = 0; lane < lower.size(); ++lane) find_in(scope, lane, found[lane]);
+}
+
+CellScope CellBounds::inside(const CellScope& scope, const Survivors& found, size_t lane) const {
+  CellScope inner;
+  for (const size_t at : found.relevant) {
+    inner.branches.push_back(scope.branches[at]);
+    const SharedSteps& steps = scope.steps[at];
+    const std::vector<TapeChoice>& choices = bounds_[at].choices;
+    const auto mask = static_cast<std::uint16_t>(1u << lane);
+    const bool any = steps->size() >= kWorthPruning && std::any_of(choices.begin(), choices.end(), [&](const TapeChoice& choice) {
+                       return ((choice.idle[0] | choice.idle[1] | choice.idle[2]) & mask) != 0;
+                     });
+    if (!any) {
+      inner.steps.push_back(steps);
+      continue;
+    }
+    auto pruned = std::make_shared<std::vector<TapeStep>>();
+    const FieldTape& tape = tapes_.tapes[static_cast<size_t>(scope.branches[at])];
+    prune_tape(*steps, choices, mask, tape.registers, TapeUse::bounds, *pruned);
+    inner.steps.push_back(std::move(pruned));
+  }
+  return inner;
+}
+
+BranchEvaluators::BranchEvaluators(const SharpField& sharp, const Box& box)
+    : sharp_(&sharp), box_(box), made_(sharp.branches.size(), nullptr), owned_(sharp.branches.size()) {}
+
+BranchEvaluators::BranchEvaluators(BranchEvaluators* outer)
+    : outer_(outer), box_(outer->box_), made_(outer->made_.size(), nullptr), owned_(outer->made_.size()) {}
+
+void BranchEvaluators::restrict_to(const Box& box) {
+  box_ = box;
+  std::fill(made_.begin(), made_.end(), nullptr);
+}
+
+FieldEvaluator& BranchEvaluators::at(int branch) {
+  const auto i = static_cast<size_t>(branch);
+  if (made_[i] != nullptr) return *made_[i];
+  if (outer_ == nullptr) {
+    owned_[i] = std::make_unique<FieldEvaluator>(FieldEvaluator(sharp_->branches[i]).restricted(box_));
+    return *(made_[i] = owned_[i].get());
+  }
+  FieldEvaluator& outer = outer_->at(branch);
+  const Field field = outer.restricted(box_);
+  if (&field.program() == &outer.field().program()) return *(made_[i] = &outer);
+  owned_[i] = std::make_unique<FieldEvaluator>(field);
+  return *(made_[i] = owned_[i].get());
 }
 
 std::vector<size_t> relevant_branches(const SharpField& sharp, std::vector<FieldEvaluator>& evaluators, const Box& box) {
-  CellScope scope;
+  std::vector<int> branches(evaluators.size());
+  std::iota(branches.begin(), branches.end(), 0);
   std::vector<Interval> values;
-  for (size_t i = 0; i < evaluators.size(); ++i) {
-    scope.branches.push_back(static_cast<int>(i));
-    values.push_back(evaluators[i].bounds(box));
-  }
-  std::vector<bool> relevant(evaluators.size(), false);
-  const double hair = sharp.hair * static_cast<double>(evaluators.size());
-  mark_relevant(sharp, node_bounds(sharp, scope, values), hair, static_cast<int>(sharp.nodes.size()) - 1, relevant);
+  values.reserve(evaluators.size());
+  for (FieldEvaluator& evaluator : evaluators) values.push_back(evaluator.bounds(box));
+  NodeScratch scratch;
+  find_relevant(sharp, branches, values, scratch);
   std::vector<size_t> result;
-  for (size_t i = 0; i < relevant.size(); ++i) {
-    if (relevant[i]) result.push_back(i);
-  }
-  return result;
-}
-
-Survivors survivors_in(const CellSearch& search, const CellScope& scope, const Box& box) {
-  Survivors result;
-  std::vector<Interval> values(scope.branches.size());
-  for (size_t i = 0; i < values.size(); ++i) values[i] = scope.evaluators[i]->bounds(box);
-  const NodeBounds nodes = node_bounds(search.sharp, scope, values);
-  const double hair = search.sharp.hair * static_cast<double>(search.sharp.branches.size());
-  if (!nodes.back() || nodes.back()->lower > hair || nodes.back()->upper < -hair) return result;
-  std::vector<bool> relevant(search.sharp.branches.size(), false);
-  mark_relevant(search.sharp, nodes, hair, static_cast<int>(search.sharp.nodes.size()) - 1, relevant);
-  std::vector<size_t> candidates;
-  std::vector<std::array<Interval, kCurveFamilies>> facing;
-  for (size_t i = 0; i < values.size(); ++i) {
-    if (!relevant[static_cast<size_t>(scope.branches[i])]) continue;
-    result.relevant.push_back(i);
-    if (!values[i].contains(0.0)) continue;
-    const GradientBounds bounds = scope.evaluators[i]->gradient_bounds(box);
-    if (!bounds.value.contains(0.0)) continue;
-    candidates.push_back(i);
-    facing.push_back(facing_bounds(search, box, bounds));
-    LiveBranch live{i, 0};
-    for (size_t family = 0; family < kCurveFamilies; ++family) {
-      if ((search.families >> family & 1u) && facing.back()[family].contains(0.0)) live.families |= 1u << family;
-    }
-    if (live.families != 0) result.branches.push_back(live);
-  }
-  for (size_t j = 1; j < candidates.size(); ++j) {
-    for (size_t i = 0; i < j; ++i) {
-      bool live = search.whole_seams;
-      for (size_t family = 0; family < kCurveFamilies; ++family) {
-        live = live || ((search.families >> family & 1u) && !apart(facing[i][family], facing[j][family]));
-      }
-      if (live) result.seams.push_back({candidates[i], candidates[j]});
-    }
+  for (size_t i = 0; i < scratch.relevant.size(); ++i) {
+    if (scratch.relevant[i]) result.push_back(i);
   }
   return result;
 }

@@ -1,22 +1,23 @@
 #pragma once
-// Internal: which branches of a field, and which of their seams, bounds leave in a box.
+// Internal: which branches of a field, and which of their seams, bounds leave in boxes, sixteen boxes at a time.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "raymarch/truth/field_cells.h"
+#include "sdf/tape_lanes.h"
 
 namespace limn {
 
-/// The branches that may matter to the surface in a box, each with an evaluator that is right there and around it.
+/// Steps of a branch's tape: all of them, or those that matter in a box.
+using SharedSteps = std::shared_ptr<const std::vector<TapeStep>>;
+
+/// The branches that may matter to the surface in a box, each with the steps that matter there.
 struct CellScope {
   std::vector<int> branches{};
-  std::vector<FieldEvaluator*> evaluators{};
-  std::vector<std::unique_ptr<FieldEvaluator>> owned{};
+  std::vector<SharedSteps> steps{};
 };
-CellScope whole_scope(const SharpField& sharp);
-/// With programs shortened for what is within `reach` of the box.
-CellScope shortened(const CellScope& scope, const Box& box, double reach);
 
 /// Indices into a scope.
 struct LiveBranch {
@@ -34,10 +35,76 @@ struct Survivors {
   std::vector<LiveSeam> seams{};
   bool empty() const { return branches.empty() && seams.empty(); }
 };
-Survivors survivors_in(const CellSearch& search, const CellScope& scope, const Box& box);
+
+/// The tapes of a search's branches; made once, used by many threads.
+struct CellTapes {
+  explicit CellTapes(const SharpField& sharp);
+  std::vector<FieldTape> tapes{};
+  CellScope whole{};  ///< All branches with all steps.
+};
+
+/// Bounds of nodes of a SharpField; memory of one thread.
+struct NodeScratch {
+  std::vector<Interval> bounds{};
+  std::vector<char> known{};  ///< 0 where everything below is without influence.
+  std::vector<char> relevant{};
+};
+
+/// Bounds over boxes, for one thread.
+class CellBounds {
+ public:
+  CellBounds(const CellSearch& search, const CellTapes& tapes) : search_(search), tapes_(tapes) {}
+
+  /// What cubes of one size hold, at most kLanes of them; all of them within what the scope is for.
+  void find(const CellScope& scope, std::span<const glm::dvec3> lower, double side, std::span<Survivors> found);
+  /// The scope for what lies in the i-th of the boxes that were asked for last.
+  CellScope inside(const CellScope& scope, const Survivors& found, size_t lane) const;
+
+ private:
+  void set_boxes(std::span<const glm::dvec3> lower, double side);
+  void bound_branch(const CellScope& scope, size_t at, bool facing);
+  void find_in(const CellScope& scope, size_t lane, Survivors& found);
+  Interval value_in(const CellScope& scope, size_t at, int lane) const;
+  std::array<Interval, kCurveFamilies> facing_in(size_t at, size_t lane) const;
+
+  const CellSearch& search_;
+  const CellTapes& tapes_;
+  TapeScratch scratch_{};
+  LaneBeams beams_{};
+  double half_ = 0.0;
+  /// Of a branch of the scope.
+  struct Bounds {
+    LaneBounds of{};
+    std::array<LaneBounds, 3> along{};  ///< The axes, where levels other than 0 are looked for.
+    bool facing = false;                ///< Its slopes are known.
+    std::vector<TapeChoice> choices{};
+  };
+  std::vector<Bounds> bounds_{};
+  std::vector<Interval> values_{};
+  NodeScratch nodes_{};
+  std::vector<size_t> candidates_{};
+  std::vector<std::array<Interval, kCurveFamilies>> facing_{};
+};
+
+/// Evaluators of branches with their programs shortened for a box, each made when it is first asked for.
+class BranchEvaluators {
+ public:
+  BranchEvaluators() = default;
+  BranchEvaluators(const SharpField& sharp, const Box& box);
+  /// For boxes within the outer one's, which outlives this.
+  explicit BranchEvaluators(BranchEvaluators* outer);
+  void restrict_to(const Box& box);
+  FieldEvaluator& at(int branch);
+
+ private:
+  const SharpField* sharp_ = nullptr;
+  BranchEvaluators* outer_ = nullptr;
+  Box box_{};
+  std::vector<FieldEvaluator*> made_{};
+  std::vector<std::unique_ptr<FieldEvaluator>> owned_{};
+};
+
 /// The branches that may be surface somewhere in the box; evaluators are those of all branches.
 std::vector<size_t> relevant_branches(const SharpField& sharp, std::vector<FieldEvaluator>& evaluators, const Box& box);
-/// Only the relevant branches.
-CellScope narrowed(const CellScope& scope, const std::vector<size_t>& relevant);
 
 }  // namespace limn

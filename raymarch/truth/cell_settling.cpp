@@ -13,6 +13,8 @@ namespace {
 constexpr double kClear = 0.02;  // of N.V
 constexpr int kNearCells = 2;    // cells this near a found curve are cut into parts as fine as its tube
 constexpr int kParts = 1 << kNearCuts;
+static_assert(kParts == 4);    // a cell's parts are one block of a CellSet
+constexpr int kBlockCuts = 2;  // from the blocks whose finest cells are looked at together
 
 std::uint64_t packed(const glm::ivec3& cell) {
   const auto part = [](int v) { return static_cast<std::uint64_t>(v) + 16; };  // blocks may begin below zero by a few
@@ -37,6 +39,11 @@ class CellSet {
         }
       }
     }
+  }
+  /// The block's cells: bit 16 x + 4 y + z of those from its corner.
+  std::uint64_t block(const glm::ivec3& index) const {
+    const auto found = blocks_.find(packed(index));
+    return found != blocks_.end() ? found->second : 0;
   }
   bool contains(const glm::ivec3& cell) const {
     const auto block = blocks_.find(packed({cell.x >> 2, cell.y >> 2, cell.z >> 2}));
@@ -91,16 +98,17 @@ std::array<unsigned, kCurveFamilies> clear_sides(const CellSearch& search, Field
 }
 
 /// The box's corners say that none of the survivors is there.
-bool clear_at_corners(const CellSearch& search, const CellScope& scope, const Box& box, const Survivors& found) {
+bool clear_at_corners(const CellSearch& search, const CellScope& scope, BranchEvaluators& evaluators, const Box& box,
+                      const Survivors& found) {
   for (const LiveBranch& branch : found.branches) {
-    const auto sides = clear_sides(search, *scope.evaluators[branch.at], box);
+    const auto sides = clear_sides(search, evaluators.at(scope.branches[branch.at]), box);
     for (size_t family = 0; family < kCurveFamilies; ++family) {
       if ((branch.families >> family & 1u) && sides[family] == 0) return false;
     }
   }
   for (const LiveSeam& seam : found.seams) {
-    const auto first = clear_sides(search, *scope.evaluators[seam.first], box),
-               second = clear_sides(search, *scope.evaluators[seam.second], box);
+    const auto first = clear_sides(search, evaluators.at(scope.branches[seam.first]), box),
+               second = clear_sides(search, evaluators.at(scope.branches[seam.second]), box);
     for (size_t family = 0; family < kCurveFamilies; ++family) {
       if ((search.families >> family & 1u) && (first[family] & second[family]) == 0) return false;
     }
@@ -108,42 +116,108 @@ bool clear_at_corners(const CellSearch& search, const CellScope& scope, const Bo
   return true;
 }
 
-struct Settler {
-  const CellSearch& search;
-  const Tubes& tubes;
+/// For one thread.
+class Settler {
+ public:
+  Settler(const CellSearch& search, const CellTapes& tapes, const Tubes& tubes)
+      : search_(search), tapes_(tapes), tubes_(tubes), bounds_(search, tapes), whole_(search.sharp, search.grid_box()), near_(&whole_) {}
 
-  /// `index` counts boxes of this size from the grid's corner. Parts in a tube are passed over where `beside` is set.
-  bool stays(const CellScope& scope, double side, const glm::ivec3& index, int cuts, bool beside) const {
-    if (beside && kSettlingCuts - cuts == kNearCuts && tubes.parts.contains(index)) return false;
-    const Box box{search.grid.corner + side * glm::dvec3(index), search.grid.corner + side * glm::dvec3(index + 1)};
-    const Survivors found = survivors_in(search, scope, box);
-    if (found.empty()) return false;
-    if (cuts == 0) return !clear_at_corners(search, scope, box, found);
-    const CellScope inner = narrowed(scope, found.relevant);
+  /// Of the finest cells in one block, kLanes of them at most.
+  void stay(std::span<const glm::ivec3> cells, std::span<std::uint8_t> stays) {
+    const glm::ivec3 block = cells[0] >> kBlockCuts;
+    const std::array<glm::dvec3, 1> corner{search_.grid.vertex(block << kBlockCuts)};
+    Survivors around;
+    bounds_.find(tapes_.whole, corner, search_.grid.side * (1 << kBlockCuts), std::span(&around, 1));
+    const CellScope scope = bounds_.inside(tapes_.whole, around, 0);
+    std::array<glm::dvec3, kLanes> lower;
+    std::array<Survivors, kLanes> found;
+    for (size_t i = 0; i < cells.size(); ++i) lower[i] = search_.grid.vertex(cells[i]);
+    bounds_.find(scope, std::span(lower).first(cells.size()), search_.grid.side, found);
+    std::array<CellScope, kLanes> inner;
+    for (size_t i = 0; i < cells.size(); ++i) {
+      if (!found[i].empty()) inner[i] = bounds_.inside(scope, found[i], i);
+    }
+    for (size_t i = 0; i < cells.size(); ++i) {
+      near_.restrict_to(search_.grid.cell(cells[i]));
+      // The cell's parts that are as fine as the tubes are a block of theirs.
+      const std::uint64_t in_tubes = tubes_.cells.contains(cells[i]) ? tubes_.parts.block(cells[i]) : 0;
+      stays[i] = !found[i].empty() && parts_stay(inner[i], search_.grid.side, cells[i], kSettlingCuts, in_tubes);
+    }
+  }
+
+ private:
+  /// Whether all of a part lies in tubes, which are passed over: of parts after the first or the second cut of a finest cell.
+  static bool lies_in_tubes(const glm::ivec3& part, int cuts_before, std::uint64_t in_tubes) {
+    const int size = kParts >> cuts_before;
+    const glm::ivec3 first = part * size & 3;
+    for (int x = first.x; x < first.x + size; ++x) {
+      for (int y = first.y; y < first.y + size; ++y) {
+        for (int z = first.z; z < first.z + size; ++z) {
+          if (!(in_tubes >> (x << 4 | y << 2 | z) & 1)) return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  /// Of a box that stays by its bounds; `index` counts boxes of this size from the grid's corner.
+  bool parts_stay(const CellScope& scope, double side, const glm::ivec3& index, int cuts, std::uint64_t in_tubes) {
+    const double half = 0.5 * side;
+    const int cuts_before = kSettlingCuts - cuts + 1;
+    std::array<glm::ivec3, 8> parts;
+    std::array<glm::dvec3, 8> lower;
+    size_t count = 0;
     for (int i = 0; i < 8; ++i) {
-      if (stays(inner, 0.5 * side, 2 * index + glm::ivec3(i & 1, i >> 1 & 1, i >> 2 & 1), cuts - 1, beside)) return true;
+      const glm::ivec3 part = 2 * index + glm::ivec3(i & 1, i >> 1 & 1, i >> 2 & 1);
+      if (in_tubes != 0 && cuts_before <= kNearCuts && lies_in_tubes(part, cuts_before, in_tubes)) continue;
+      parts[count] = part;
+      lower[count++] = search_.grid.corner + half * glm::dvec3(part);
+    }
+    if (count == 0) return false;
+    std::array<Survivors, 8>& found = found_[static_cast<size_t>(cuts)];
+    bounds_.find(scope, std::span(lower).first(count), half, found);
+    if (cuts == 1) {
+      for (size_t i = 0; i < count; ++i) {
+        const Box box{lower[i], search_.grid.corner + half * glm::dvec3(parts[i] + 1)};
+        if (!found[i].empty() && !clear_at_corners(search_, scope, near_, box, found[i])) return true;
+      }
+      return false;
+    }
+    std::array<CellScope, 8> inner;
+    for (size_t i = 0; i < count; ++i) {
+      if (!found[i].empty()) inner[i] = bounds_.inside(scope, found[i], i);
+    }
+    for (size_t i = 0; i < count; ++i) {
+      if (!found[i].empty() && parts_stay(inner[i], half, parts[i], cuts - 1, in_tubes)) return true;
     }
     return false;
   }
+
+  const CellSearch& search_;
+  const CellTapes& tapes_;
+  const Tubes& tubes_;
+  CellBounds bounds_;
+  std::array<std::array<Survivors, 8>, kSettlingCuts + 1> found_{};
+  BranchEvaluators whole_, near_;
 };
 
 }  // namespace
 
-void settle(const CellSearch& search, const std::vector<glm::ivec3>& cells, CellResult& result, const ExecutionSettings& how) {
+void settle(const CellSearch& search, const CellTapes& tapes, const std::vector<glm::ivec3>& cells, CellResult& result,
+            const ExecutionSettings& how) {
   Tubes tubes;
   for (const auto& [branch, families] : result.branches) {
     for (const CellCurves& curves : families) tubes.add(search.grid, curves);
   }
   for (const auto& [seam, curves] : result.seams) tubes.add(search.grid, curves);
-  const Settler settler{search, tubes};
   std::vector<std::uint8_t> left(cells.size(), 0);
   parallel_parts(cells.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
-    const CellScope whole = whole_scope(search.sharp);
-    for (size_t i = range.begin(); i < range.end(); ++i) {
-      const CellScope scope = shortened(whole, search.grid.cell(cells[i]), 0.0);
-      const bool beside = tubes.cells.contains(cells[i]);
-      left[i] = settler.stays(scope, search.grid.side, cells[i], kSettlingCuts, beside);
+    Settler settler(search, tapes, tubes);
+    for (size_t begin = range.begin(), end = begin; begin < range.end(); begin = end) {
+      const auto same = [&](size_t i) { return cells[i] >> kBlockCuts == cells[begin] >> kBlockCuts; };
+      while (end < range.end() && end - begin < kLanes && same(end)) ++end;
+      settler.stay(std::span(cells).subspan(begin, end - begin), std::span(left).subspan(begin, end - begin));
     }
   });
   result.unsettled = std::count(left.begin(), left.end(), 1);

@@ -1,7 +1,7 @@
 #pragma once
 // Internal: what bounds say of the places where no curve was found, however finely they are looked at.
 
-#include "raymarch/truth/field_cells.h"
+#include "raymarch/truth/cell_scope.h"
 
 namespace limn {
 
@@ -12,6 +12,7 @@ inline constexpr double kUnprovenReach = 2.0 / (1 << kNearCuts);
 
 /// Counts in `result.unsettled` the cells that may hold a curve besides those found: cut again, some part of them is neither excluded by
 /// bounds, nor by N.V at its corners, nor within kUnprovenReach of a curve. Throws Cancelled.
-void settle(const CellSearch& search, const std::vector<glm::ivec3>& cells, CellResult& result, const ExecutionSettings& how);
+void settle(const CellSearch& search, const CellTapes& tapes, const std::vector<glm::ivec3>& cells, CellResult& result,
+            const ExecutionSettings& how);
 
 }  // namespace limn

@@ -10,14 +10,21 @@ namespace limn {
 namespace {
 
 constexpr int kTaskLevel = 4;      // subtrees below it are one task each
-constexpr int kRestrictEvery = 2;  // levels between shortenings of the program
+constexpr int kMarchedLevels = 2;  // above the finest one: cells of it share the programs that they are marched with
+
+constexpr size_t kMostKeptBytes = size_t{512} << 20;
+
+using Children = std::array<Survivors, 8>;
 
 /// The subtree that one task walks.
 struct Walk {
   const CellSearch& search;
+  CellBounds bounds;
+  std::vector<Children> found{};  ///< By level.
   std::map<int, CellOutput> branches{};
-  std::map<std::pair<int, int>, CellCurves> seams{};
   std::vector<glm::ivec3> cells{};  ///< Finest cells that bounds could not exclude.
+  BranchEvaluators whole{}, near{};
+  LatticeRegion* kept = nullptr;
 };
 
 Box box_of(const CellSearch& search, int level, const glm::ivec3& cell) {
@@ -25,48 +32,70 @@ Box box_of(const CellSearch& search, int level, const glm::ivec3& cell) {
   return {search.grid.vertex(cell * scale), search.grid.vertex((cell + 1) * scale)};
 }
 
+glm::ivec3 child_of(const glm::ivec3& cell, size_t i) { return 2 * cell + glm::ivec3(i & 1, i >> 1 & 1, i >> 2 & 1); }
+
 void march_survivors(Walk& walk, const CellScope& scope, const Survivors& found, const glm::ivec3& cell) {
   const CellSearch& search = walk.search;
   for (const LiveBranch& branch : found.branches) {
-    march_cell(*scope.evaluators[branch.at], search.viewer, search.grid, cell, search.levels, branch.families,
-               walk.branches[scope.branches[branch.at]]);
+    const int number = scope.branches[branch.at];
+    march_cell(walk.near.at(number), search.viewer, search.grid, cell, search.levels, branch.families, &walk.kept->branches[number],
+               walk.branches[number]);
   }
   for (const LiveSeam& seam : found.seams) {
-    march_seam(*scope.evaluators[seam.first], *scope.evaluators[seam.second], search.viewer, search.grid, cell,
-               walk.seams[{scope.branches[seam.first], scope.branches[seam.second]}]);
+    if (walk.kept->has_seams) break;
+    const int first = scope.branches[seam.first], second = scope.branches[seam.second];
+    march_seam(walk.near.at(first), walk.near.at(second), search.viewer, search.grid, cell, walk.kept->seams[{first, second}]);
   }
   walk.cells.push_back(cell);
 }
 
-void descend(Walk& walk, const CellScope& scope, int level, const glm::ivec3& cell) {
-  const CellSearch& search = walk.search;
-  const Box box = box_of(search, level, cell);
-  const Survivors found = survivors_in(search, scope, box);
-  if (found.empty()) return;
-  if (level == search.level) {
-    march_survivors(walk, scope, found, cell);
-    return;
-  }
-  CellScope inner = narrowed(scope, found.relevant);
-  if (level % kRestrictEvery == 0) inner = shortened(inner, box, kMarchReach * search.grid.side);
-  for (int i = 0; i < 8; ++i) descend(walk, inner, level + 1, 2 * cell + glm::ivec3(i & 1, i >> 1 & 1, i >> 2 & 1));
+void find_children(CellBounds& bounds, const CellSearch& search, const CellScope& scope, int level, const glm::ivec3& cell,
+                   Children& found) {
+  std::array<glm::dvec3, 8> lower;
+  for (size_t i = 0; i < 8; ++i) lower[i] = box_of(search, level + 1, child_of(cell, i)).lower;
+  bounds.find(scope, lower, search.grid.side * (1 << (search.level - level - 1)), found);
 }
 
-/// Cells of the task level that bounds leave a curve in.
-std::vector<glm::ivec3> task_cells(const CellSearch& search, int task_level) {
-  const CellScope scope = whole_scope(search.sharp);
-  std::vector<glm::ivec3> cells = {glm::ivec3(0)};
+void descend(Walk& walk, const CellScope& scope, int level, const glm::ivec3& cell) {
+  const CellSearch& search = walk.search;
+  if (level + kMarchedLevels <= search.level) walk.near.restrict_to(dilate(box_of(search, level, cell), kMarchReach * search.grid.side));
+  Children& found = walk.found[static_cast<size_t>(level)];
+  find_children(walk.bounds, search, scope, level, cell, found);
+  if (level + 1 == search.level) {
+    for (size_t i = 0; i < 8; ++i) {
+      if (!found[i].empty()) march_survivors(walk, scope, found[i], child_of(cell, i));
+    }
+    return;
+  }
+  std::array<CellScope, 8> inner;
+  for (size_t i = 0; i < 8; ++i) {
+    if (!found[i].empty()) inner[i] = walk.bounds.inside(scope, found[i], i);
+  }
+  for (size_t i = 0; i < 8; ++i) {
+    if (!found[i].empty()) descend(walk, inner[i], level + 1, child_of(cell, i));
+  }
+}
+
+/// A cell of the task level that bounds leave a curve in.
+struct Task {
+  glm::ivec3 cell{0};
+  CellScope scope{};
+};
+std::vector<Task> tasks_of(const CellSearch& search, const CellTapes& tapes, int task_level) {
+  CellBounds bounds(search, tapes);
+  Children found;
+  std::vector<Task> tasks{{glm::ivec3(0), tapes.whole}};
   for (int level = 0; level < task_level; ++level) {
-    std::vector<glm::ivec3> next;
-    for (const glm::ivec3& cell : cells) {
-      for (int i = 0; i < 8; ++i) {
-        const glm::ivec3 child = 2 * cell + glm::ivec3(i & 1, i >> 1 & 1, i >> 2 & 1);
-        if (!survivors_in(search, scope, box_of(search, level + 1, child)).empty()) next.push_back(child);
+    std::vector<Task> next;
+    for (const Task& task : tasks) {
+      find_children(bounds, search, task.scope, level, task.cell, found);
+      for (size_t i = 0; i < 8; ++i) {
+        if (!found[i].empty()) next.push_back({child_of(task.cell, i), bounds.inside(task.scope, found[i], i)});
       }
     }
-    cells = std::move(next);
+    tasks = std::move(next);
   }
-  return cells;
+  return tasks;
 }
 
 void append(const CellCurves& from, CellCurves& to) {
@@ -76,14 +105,30 @@ void append(const CellCurves& from, CellCurves& to) {
 
 }  // namespace
 
-CellResult search_cells(const CellSearch& search, const ExecutionSettings& how) {
-  const int task_level = std::min(kTaskLevel, search.level);
-  const std::vector<glm::ivec3> tasks = task_cells(search, task_level);
-  std::vector<Walk> walks(tasks.size(), Walk{search});
+CellResult search_cells(const CellSearch& search, LatticeMemory* memory, const ExecutionSettings& how) {
+  const int task_level = std::min(kTaskLevel, search.level - 1);
+  const CellTapes tapes(search.sharp);
+  const std::vector<Task> tasks = tasks_of(search, tapes, task_level);
+  std::vector<Walk> walks;
+  walks.reserve(tasks.size());
+  LatticeMemory own;
+  LatticeMemory& kept = memory != nullptr ? *memory : own;
+  kept.prepare(search.grid, kMostKeptBytes);
+  for (const Task& task : tasks) {
+    walks.push_back({search, CellBounds(search, tapes)});
+    const std::uint64_t across = std::uint64_t{1} << task_level;
+    const glm::u64vec3 cell(task.cell);
+    walks.back().kept = &kept.regions[(cell.x * across + cell.y) * across + cell.z];
+  }
   parallel_for(size_t{0}, tasks.size(), [&](size_t i) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
-    const CellScope whole = whole_scope(search.sharp);
-    descend(walks[i], shortened(whole, box_of(search, task_level, tasks[i]), kMarchReach * search.grid.side), task_level, tasks[i]);
+    Walk& walk = walks[i];
+    walk.found.resize(static_cast<size_t>(search.level));
+    walk.whole = BranchEvaluators(search.sharp, dilate(box_of(search, task_level, tasks[i].cell), kMarchReach * search.grid.side));
+    walk.near = BranchEvaluators(&walk.whole);
+    if (!walk.kept->has_seams) walk.kept->seams.clear();
+    descend(walk, tasks[i].scope, task_level, tasks[i].cell);
+    walk.kept->has_seams = search.whole_seams;
   });
   CellResult result;
   std::vector<glm::ivec3> cells;
@@ -92,10 +137,10 @@ CellResult search_cells(const CellSearch& search, const ExecutionSettings& how) 
     for (const auto& [branch, curves] : walk.branches) {
       for (size_t family = 0; family < kCurveFamilies; ++family) append(curves[family], result.branches[branch][family]);
     }
-    for (const auto& [seam, curves] : walk.seams) append(curves, result.seams[seam]);
+    for (const auto& [seam, curves] : walk.kept->seams) append(curves, result.seams[seam]);
   }
   result.cells = static_cast<std::int64_t>(cells.size());
-  settle(search, cells, result, how);
+  settle(search, tapes, cells, result, how);
   return result;
 }
 

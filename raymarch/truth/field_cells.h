@@ -6,7 +6,7 @@
 
 #include "raymarch/gbuffer.h"
 #include "raymarch/truth/branches.h"
-#include "raymarch/truth/marching_tetrahedra.h"
+#include "raymarch/truth/lattice_memory.h"
 
 namespace limn {
 
@@ -19,6 +19,8 @@ struct CellSearch {
   std::array<double, kCurveFamilies> levels{};
   FamilyMask families = 0;
   bool whole_seams = false;  ///< Seams are followed whatever N.V is beside them.
+
+  Box grid_box() const { return {grid.vertex(glm::ivec3(0)), grid.vertex(glm::ivec3(1 << level))}; }
 };
 
 /// Crossings of curves on branches, and of the seams of two, wherever either may belong to the surface of the whole.
@@ -30,6 +32,7 @@ struct CellResult {
 };
 
 /// In an order that does not depend on threads. Throws Cancelled.
-CellResult search_cells(const CellSearch& search, const ExecutionSettings& how);
+/// `memory` may be null.
+CellResult search_cells(const CellSearch& search, LatticeMemory* memory, const ExecutionSettings& how);
 
 }  // namespace limn

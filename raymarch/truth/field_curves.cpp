@@ -266,7 +266,9 @@ std::int64_t count_broken(const Refiner& refiner, const FieldCurve& curve) {
 void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurveSettings& settings, const ExecutionSettings& how,
                      FieldCurves& result) {
   const std::vector<Strand> strands = strands_of(found, search, result);
-  const StrandSettings cutting{search.sharp, search.camera, search.viewer, settings.tolerance_px, settings.extent, settings.lipschitz};
+  StrandScope scope(search.sharp, settings.extent);
+  const StrandSettings cutting{search.sharp,          scope,           search.camera,     search.viewer,
+                               settings.tolerance_px, settings.extent, settings.lipschitz};
   std::vector<std::vector<FieldCurve>> cut(strands.size());
   std::vector<FieldCurves> stats(strands.size());
   parallel_for(size_t{0}, strands.size(), [&](size_t i) {
@@ -307,7 +309,7 @@ FieldCurves traced_in(const Field& field, const Box& bounds, int level, const Ca
   const SharpField sharp = split_branches(field, bounds.radius(), settings.whole_seams);
   const CellSearch search{
       sharp, camera, viewer, grid, level, {0.0, settings.threshold}, settings.threshold > 0.0 ? 3u : 1u, settings.whole_seams};
-  CellResult found = search_cells(search, how);
+  CellResult found = search_cells(search, settings.memory ? settings.memory(level) : nullptr, how);
   result.cells = found.cells;
   result.unsettled = found.unsettled;
   result.unproven_px = kUnprovenReach * result.cell_px;

@@ -4,6 +4,7 @@
 // the sign changes of N.V - c on the surface from face to face, so that curves come out closed.
 
 #include <cstdint>
+#include <functional>
 
 #include "raymarch/gbuffer.h"
 #include "raymarch/truth/field_cells.h"
@@ -19,6 +20,7 @@ struct FieldCurveSettings {
   Box unbounded_domain{};  ///< What stands in for bounds that are infinite.
   /// Seams of sharp CSG come out whole, as curves of their own into which contours lead, and not where N.V passes a level across them only.
   bool whole_seams = false;
+  std::function<LatticeMemory*(int level)> memory{};  ///< What views of the field share, by the level of its cells; may be empty.
 };
 
 struct FieldCurve {

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "raymarch/truth/limit_segments.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -35,7 +36,13 @@ glm::dvec2 outward_at(const Shape& shape, const LimitSegment& segment, const Tra
 }
 
 TracedPoint point_at(const Shape& shape, const LimitSegment& segment, std::uint32_t patch, const glm::dvec2& uv) {
-  const LimitSample s = sample(shape.placed, patch, uv);
+  CurvedLimitSample curved;
+  if (segment.crease) {
+    curved.at = sample(shape.placed, patch, uv);
+  } else {
+    curved = curved_sample(shape.placed, patch, uv);
+  }
+  const LimitSample& s = curved.at;
   const glm::dvec3 image = project(shape.camera, s.position), v = view_vector(shape.camera, s.position);
   TracedPoint point;
   point.p = s.position;
@@ -44,8 +51,7 @@ TracedPoint point_at(const Shape& shape, const LimitSegment& segment, std::uint3
   point.crease = segment.crease;
   point.high = segment.crease ? segment.high_normal : s.normal;
   point.low = segment.crease ? segment.low_normal : s.normal;
-  if (!segment.crease)
-    point.radial_curvature = curvature_along(curvature_at(shape.placed, patch, uv), v - glm::dot(v, s.normal) * s.normal);
+  if (!segment.crease) point.radial_curvature = curvature_along(curved.curvature, v - glm::dot(v, s.normal) * s.normal);
   // A fold that bends towards its normal is seen, if at all, from the surface's other side.
   point.lift = shape.settings.kind == CurveKind::inner ? v : point.radial_curvature < 0.0 ? -point.high : point.high;
   // Where the back of a sheet is nearer than its front, neither of its normals leads away from it.
@@ -112,15 +118,61 @@ bool are_one(const TracedPoint& end, const TracedPoint& beginning) {
   return end.crease == beginning.crease && glm::dot(end.lift, beginning.lift) > kSameLift;
 }
 
-void append(const Shape& shape, const LimitSegment& segment, bool turned, TracedCurve& curve) {
-  const LimitEnd &first = segment.ends[turned ? 1 : 0], &last = segment.ends[turned ? 0 : 1];
+/// A segment of a chain, which may run along it backwards.
+struct ChainSegment {
+  std::uint32_t segment = 0;
+  bool turned = false;
+};
+struct SegmentChain {
+  bool closed = false, left = true;
+  std::vector<ChainSegment> segments{};
+};
+
+/// From the one end to the other.
+std::vector<TracedPoint> points_along(const Shape& shape, const ChainSegment& link) {
+  const LimitSegment& segment = shape.segments[link.segment];
+  const LimitEnd &first = segment.ends[link.turned ? 1 : 0], &last = segment.ends[link.turned ? 0 : 1];
   const auto place_of = [&](const LimitEnd& at, const LimitEnd& other) { return Place{at.uv, end_point(shape, segment, at, other)}; };
   std::vector<Place> places{place_of(first, last)};
   const Place end = place_of(last, first);
   refine(shape, segment, places.front(), end, kRefinements, places);
   places.push_back(end);
-  if (!curve.points.empty() && are_one(curve.points.back(), places.front().point)) curve.points.pop_back();
-  for (const Place& place : places) curve.points.push_back(place.point);
+  std::vector<TracedPoint> points;
+  points.reserve(places.size());
+  for (const Place& place : places) points.push_back(place.point);
+  return points;
+}
+
+TracedCurve curve_of(const Shape& shape, const SegmentChain& chain, const std::vector<TracedPoint>* points) {
+  TracedCurve curve;
+  curve.kind = shape.settings.kind;
+  curve.object = shape.settings.object;
+  curve.sheet = shape.sheet;
+  curve.closed = chain.closed;
+  for (size_t i = 0; i < chain.segments.size(); ++i) {
+    if (!curve.points.empty() && are_one(curve.points.back(), points[i].front())) curve.points.pop_back();
+    curve.points.insert(curve.points.end(), points[i].begin(), points[i].end());
+  }
+  if (curve.closed && are_one(curve.points.back(), curve.points.front())) curve.points.pop_back();
+  if (shape.sheet && !chain.left) std::reverse(curve.points.begin(), curve.points.end());
+  return curve;
+}
+
+/// The segments of all chains are refined each on its own.
+std::vector<TracedCurve> curves_of(const Shape& shape, const std::vector<SegmentChain>& chains) {
+  std::vector<ChainSegment> all;
+  for (const SegmentChain& chain : chains) all.insert(all.end(), chain.segments.begin(), chain.segments.end());
+  std::vector<std::vector<TracedPoint>> points(all.size());
+  parallel_parts(all.size(), size_t{8}, [&](const IndexRange<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) points[i] = points_along(shape, all[i]);
+  });
+  std::vector<TracedCurve> curves;
+  size_t first = 0;
+  for (const SegmentChain& chain : chains) {
+    curves.push_back(curve_of(shape, chain, points.data() + first));
+    first += chain.segments.size();
+  }
+  return curves;
 }
 
 struct Graph {
@@ -148,47 +200,41 @@ std::uint32_t next_segment(const Shape& shape, const Graph& graph, const LimitEn
   return kNone;
 }
 
-TracedCurve walk(const Shape& shape, Graph& graph, std::uint32_t start, const LimitEndKey& from) {
-  TracedCurve out;
-  out.kind = shape.settings.kind;
-  out.object = shape.settings.object;
-  out.sheet = shape.sheet;
-  const bool left = starts_at(shape.segments[start], from) == shape.segments[start].left;
+SegmentChain walk(const Shape& shape, Graph& graph, std::uint32_t start, const LimitEndKey& from) {
+  SegmentChain chain;
+  chain.left = starts_at(shape.segments[start], from) == shape.segments[start].left;
   LimitEndKey key = from;
   for (std::uint32_t s = start; s != kNone;) {
     graph.used[s] = 1;
     const LimitSegment& segment = shape.segments[s];
     const bool turned = !starts_at(segment, key);
     key = segment.ends[turned ? 0 : 1].key;
-    const std::uint32_t next = key == from ? kNone : next_segment(shape, graph, key);
-    out.closed = key == from;
-    append(shape, segment, turned, out);
-    s = next;
+    chain.segments.push_back({s, turned});
+    chain.closed = key == from;
+    s = chain.closed ? kNone : next_segment(shape, graph, key);
   }
-  if (out.closed && are_one(out.points.back(), out.points.front())) out.points.pop_back();
-  if (shape.sheet && !left) std::reverse(out.points.begin(), out.points.end());
-  return out;
+  return chain;
 }
 
-std::vector<TracedCurve> chained(const Shape& shape) {
+std::vector<SegmentChain> chained(const Shape& shape) {
   Graph graph;
   graph.used.assign(shape.segments.size(), 0);
   for (std::uint32_t s = 0; s < shape.segments.size(); ++s) {
     for (const LimitEnd& end : shape.segments[s].ends) graph.at_end[end.key].push_back(s);
   }
-  std::vector<TracedCurve> curves;
+  std::vector<SegmentChain> chains;
   for (const auto& [key, here] : graph.at_end) {
     if (!ends_chain(shape, here, key)) continue;
     for (const std::uint32_t s : here) {
       if (graph.used[s]) continue;
-      curves.push_back(walk(shape, graph, s, key));
+      chains.push_back(walk(shape, graph, s, key));
       if (!shape.sheet) break;
     }
   }
   for (std::uint32_t s = 0; s < shape.segments.size(); ++s) {
-    if (!graph.used[s]) curves.push_back(walk(shape, graph, s, shape.segments[s].ends[0].key));
+    if (!graph.used[s]) chains.push_back(walk(shape, graph, s, shape.segments[s].ends[0].key));
   }
-  return curves;
+  return chains;
 }
 
 }  // namespace
@@ -197,7 +243,7 @@ std::vector<TracedCurve> trace_limit_curves(const PlacedLimitSurface& placed, co
                                             const LimitCurveSettings& settings) {
   const LimitLevel level{settings.kind, settings.threshold, settings.turn, settings.seams};
   const Shape shape{placed, camera, settings, grid.sheet, limit_segments(placed, grid, camera, level)};
-  return chained(shape);
+  return curves_of(shape, chained(shape));
 }
 
 }  // namespace limn

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <unordered_map>
 
 #include "raymarch/truth/limit_cone_tips.h"
@@ -14,7 +15,10 @@ namespace {
 constexpr double kSamePlace = 1e-6;  // of the extent
 constexpr double kRounding = 1e-12;  // of the largest coordinate: no two evaluations agree better
 constexpr int kFinestSteps = 256;    // along a patch's side
-constexpr double kTip_px = 0.005;    // the patches' side is so far from its ends after one step, where it shrinks as the step's square
+constexpr std::uint32_t kBlockTriangles = 16;
+constexpr size_t kSeamPart = 16384;   // triangles
+constexpr double kBlockSlack = 1e-7;  // radians
+constexpr double kTip_px = 0.005;     // the patches' side is so far from its ends after one step, where it shrinks as the step's square
 
 bool has_normal(const glm::dvec3& n) { return std::isfinite(n.x) && glm::dot(n, n) > 0.5; }
 
@@ -68,18 +72,10 @@ std::int64_t triangles_of(const PlacedLimitSurface& placed, int steps) {
   return count;
 }
 
-double longest_side_px(const PlacedLimitSurface& placed, const Camera& camera) {
+double longest_side_px(const std::vector<PatchSide>& sides, const Camera& camera) {
   double longest = 0.0;
-  for (size_t k = 0; k < placed.patches.size(); ++k) {
-    const bool quad = !placed.patches[k].triangle, share = placed.patches[k].share;
-    const std::array<glm::dvec2, 4> corners{{{0, 0}, {1, 0}, quad ? glm::dvec2(1, 1) : glm::dvec2(0.5, 0.5), {0, 1}}};
-    for (size_t i = 0; i < 4; ++i) {
-      const LimitSample a = sample(placed, k, corners[i]), b = sample(placed, k, corners[(i + 1) % 4]);
-      if (!a.valid || !b.valid) continue;
-      const double depth = std::max(project(camera, 0.5 * (a.position + b.position)).z, 1e-9);
-      longest = std::max(longest, (share ? 2.0 : 1.0) * glm::distance(a.position, b.position) * pixels_per_unit_at(camera, depth));
-    }
-  }
+  for (const PatchSide& side : sides)
+    longest = std::max(longest, side.length * pixels_per_unit_at(camera, std::max(project(camera, side.middle).z, 1e-9)));
   return longest;
 }
 
@@ -214,18 +210,108 @@ void find_seams(const PlacedLimitSurface& placed, LimitGrid& grid) {
     if (patch.triangle) return both([](const glm::dvec2& p) { return p.x + p.y > 1.0 - 1e-9; });
     return both([](const glm::dvec2& p) { return p.x == 1.0; }) || both([](const glm::dvec2& p) { return p.y == 1.0; });
   };
-  for (std::uint32_t t = 0; t < grid.triangles.size(); ++t) {
-    const LimitTriangle& triangle = grid.triangles[t];
-    for (int from = 0; from < 3; ++from) {
-      const LimitCorner &a = triangle.corners[static_cast<size_t>(from)], &b = triangle.corners[static_cast<size_t>((from + 1) % 3)];
-      if (a.node == b.node || !on_side(placed.patches[triangle.patch], a.uv, b.uv)) continue;
-      grid.seams[std::minmax(a.node, b.node)].push_back({t, from});
+  const auto corner_of = [&](size_t t, int i) -> const LimitCorner& { return grid.triangles[t].corners[static_cast<size_t>(i % 3)]; };
+  const size_t parts = (grid.triangles.size() + kSeamPart - 1) / kSeamPart;
+  std::vector<std::vector<SeamUse>> uses(parts);
+  parallel_for(size_t{0}, parts, [&](size_t part) {
+    for (size_t t = part * kSeamPart; t < std::min((part + 1) * kSeamPart, grid.triangles.size()); ++t) {
+      for (int from = 0; from < 3; ++from) {
+        const LimitCorner &a = corner_of(t, from), &b = corner_of(t, from + 1);
+        if (a.node != b.node && on_side(placed.patches[grid.triangles[t].patch], a.uv, b.uv))
+          uses[part].push_back({static_cast<std::uint32_t>(t), from});
+      }
     }
+  });
+  for (const auto& part : uses) {
+    for (const SeamUse& use : part)
+      grid.seams[std::minmax(corner_of(use.triangle, use.from).node, corner_of(use.triangle, use.from + 1).node)].push_back(use);
   }
   const auto starts_at = [&](const SeamUse& use) { return grid.triangles[use.triangle].corners[static_cast<size_t>(use.from)].node; };
   grid.sheet = std::any_of(grid.seams.begin(), grid.seams.end(), [&](const auto& seam) {
     return seam.second.size() != 2 || starts_at(seam.second[0]) == starts_at(seam.second[1]);
   });
+}
+
+LimitBlock block_of(const LimitGrid& grid, std::uint32_t first, std::uint32_t end) {
+  LimitBlock block{first, end};
+  Box box;
+  const auto for_sides = [&](const auto& visit) {
+    for (std::uint32_t t = first; t < end; ++t) {
+      for (const LimitCorner& corner : grid.triangles[t].corners) {
+        visit(corner.side);
+        if (corner.side_back != corner.side) visit(corner.side_back);
+      }
+    }
+  };
+  for_sides([&](std::uint32_t side) {
+    box = include(box, grid.positions[grid.node_of_side[side]]);
+    block.axis += grid.normals[side];
+  });
+  block.center = box.center();
+  block.radius = box.radius();
+  const double length = glm::length(block.axis);
+  block.axis = length > 0.0 ? block.axis / length : glm::dvec3(0.0);
+  double least = 1.0;
+  for_sides([&](std::uint32_t side) { least = std::min(least, glm::dot(block.axis, grid.normals[side])); });
+  // Cosines say little of small angles.
+  block.angle = length > 0.0 ? std::acos(std::max(least, -1.0)) + kBlockSlack : std::numbers::pi;
+  block.sine = std::sin(block.angle);
+  block.cosine = std::cos(block.angle);
+  return block;
+}
+
+std::vector<LimitBlock> blocks_of(const LimitGrid& grid) {
+  std::vector<LimitBlock> blocks;
+  const auto count = static_cast<std::uint32_t>(grid.triangles.size());
+  for (std::uint32_t first = 0; first < count;) {
+    std::uint32_t end = first + 1;
+    while (end < std::min(first + kBlockTriangles, count) && grid.triangles[end].patch == grid.triangles[first].patch) ++end;
+    blocks.push_back({first, end});
+    first = end;
+  }
+  parallel_parts(blocks.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
+    for (size_t b = range.begin(); b < range.end(); ++b) blocks[b] = block_of(grid, blocks[b].first, blocks[b].end);
+  });
+  return blocks;
+}
+
+LimitSample sample_of(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& uv, const LimitPoint& point) {
+  LimitSample out;
+  out.position = placed.world_from_cage.point(point.position);
+  const bool mirrored = glm::determinant(placed.world_from_cage.linear) < 0.0;
+  const auto normal_of = [&](const LimitPoint& at) {
+    const glm::dvec3 cross = glm::cross(placed.world_from_cage.vector(at.du), placed.world_from_cage.vector(at.dv));
+    return mirrored ? -cross : cross;
+  };
+  glm::dvec3 cross = normal_of(point);
+  double length = glm::length(cross);
+  if (!(length > 1e-12 * (glm::dot(point.du, point.du) + glm::dot(point.dv, point.dv)))) {
+    const LimitPatch& patch = placed.patches[k];
+    const glm::dvec2 in = inwards(patch, uv);
+    LimitPoint inner = point;
+    placed.surface.evaluate(patch.face, patch.sub_face, in.x, in.y, inner, LimitOrder::first);
+    cross = normal_of(inner);
+    length = glm::length(cross);
+  }
+  out.normal = cross / length;
+  out.valid = has_normal(out.normal) && std::isfinite(out.position.x + out.position.y + out.position.z);
+  return out;
+}
+
+SurfaceCurvature no_curvature() {
+  SurfaceCurvature none;
+  none.k1 = none.k2 = std::numeric_limits<double>::quiet_NaN();
+  return none;
+}
+
+SurfaceCurvature placed_curvature(const PlacedLimitSurface& placed, const LimitPoint& p) {
+  const Affine& map = placed.world_from_cage;
+  LimitPoint moved{map.point(p.position), map.vector(p.du), map.vector(p.dv), map.vector(p.duu), map.vector(p.duv), map.vector(p.dvv)};
+  if (glm::determinant(map.linear) < 0.0) {
+    std::swap(moved.du, moved.dv);
+    std::swap(moved.duu, moved.dvv);
+  }
+  return curvature(moved);
 }
 
 }  // namespace
@@ -244,43 +330,46 @@ PlacedLimitSurface place(const LimitSurface& surface, const Affine& world_from_c
 LimitSample sample(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& uv) {
   const LimitPatch& patch = placed.patches[k];
   LimitPoint point;
-  LimitSample out;
-  if (!placed.surface.evaluate(patch.face, patch.sub_face, uv.x, uv.y, point)) return out;
-  out.position = placed.world_from_cage.point(point.position);
-  glm::dvec3 cross = glm::cross(placed.world_from_cage.vector(point.du), placed.world_from_cage.vector(point.dv));
-  if (glm::determinant(placed.world_from_cage.linear) < 0.0) cross = -cross;
-  double length = glm::length(cross);
-  if (!(length > 1e-12 * (glm::dot(point.du, point.du) + glm::dot(point.dv, point.dv)))) {
-    const glm::dvec2 in = inwards(patch, uv);
-    placed.surface.evaluate(patch.face, patch.sub_face, in.x, in.y, point);
-    cross = glm::cross(placed.world_from_cage.vector(point.du), placed.world_from_cage.vector(point.dv));
-    if (glm::determinant(placed.world_from_cage.linear) < 0.0) cross = -cross;
-    length = glm::length(cross);
-  }
-  out.normal = cross / length;
-  out.valid = has_normal(out.normal) && std::isfinite(out.position.x + out.position.y + out.position.z);
-  return out;
+  if (!placed.surface.evaluate(patch.face, patch.sub_face, uv.x, uv.y, point, LimitOrder::first)) return {};
+  return sample_of(placed, k, uv, point);
+}
+
+CurvedLimitSample curved_sample(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& uv) {
+  const LimitPatch& patch = placed.patches[k];
+  LimitPoint point;
+  if (!placed.surface.evaluate(patch.face, patch.sub_face, uv.x, uv.y, point)) return {{}, no_curvature()};
+  return {sample_of(placed, k, uv, point), placed_curvature(placed, point)};
 }
 
 SurfaceCurvature curvature_at(const PlacedLimitSurface& placed, size_t k, const glm::dvec2& uv) {
   const LimitPatch& patch = placed.patches[k];
   LimitPoint p;
-  SurfaceCurvature none;
-  none.k1 = none.k2 = std::numeric_limits<double>::quiet_NaN();
-  if (!placed.surface.evaluate(patch.face, patch.sub_face, uv.x, uv.y, p)) return none;
-  const Affine& map = placed.world_from_cage;
-  LimitPoint moved{map.point(p.position), map.vector(p.du), map.vector(p.dv), map.vector(p.duu), map.vector(p.duv), map.vector(p.dvv)};
-  if (glm::determinant(map.linear) < 0.0) {
-    std::swap(moved.du, moved.dv);
-    std::swap(moved.duu, moved.dvv);
-  }
-  return curvature(moved);
+  if (!placed.surface.evaluate(patch.face, patch.sub_face, uv.x, uv.y, p)) return no_curvature();
+  return placed_curvature(placed, p);
 }
 
-LatticeSteps lattice_steps(const PlacedLimitSurface& placed, const Camera& camera, double cell_px, std::int64_t max_triangles) {
-  LatticeSteps result{steps_for(placed, longest_side_px(placed, camera), cell_px)};
+std::vector<PatchSide> patch_sides(const PlacedLimitSurface& placed) {
+  std::vector<PatchSide> sides;
+  for (size_t k = 0; k < placed.patches.size(); ++k) {
+    const bool quad = !placed.patches[k].triangle, share = placed.patches[k].share;
+    const std::array<glm::dvec2, 4> corners{{{0, 0}, {1, 0}, quad ? glm::dvec2(1, 1) : glm::dvec2(0.5, 0.5), {0, 1}}};
+    std::array<LimitSample, 4> samples;
+    for (size_t i = 0; i < 4; ++i) samples[i] = sample(placed, k, corners[i]);
+    for (size_t i = 0; i < 4; ++i) {
+      const LimitSample &a = samples[i], &b = samples[(i + 1) % 4];
+      if (a.valid && b.valid)
+        sides.push_back({0.5 * (a.position + b.position), (share ? 2.0 : 1.0) * glm::distance(a.position, b.position)});
+    }
+  }
+  return sides;
+}
+
+LatticeSteps lattice_steps(const PlacedLimitSurface& placed, const std::vector<PatchSide>& sides, const Camera& camera, double cell_px,
+                           std::int64_t max_triangles) {
+  const double longest_px = longest_side_px(sides, camera);
+  LatticeSteps result{steps_for(placed, longest_px, cell_px)};
   while (result.steps > 4 && triangles_of(placed, result.steps) > max_triangles) result.steps -= 2;
-  result.cell_px = longest_side_px(placed, camera) / result.steps;
+  result.cell_px = longest_px / result.steps;
   return result;
 }
 
@@ -289,6 +378,12 @@ LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, in
   parallel_for(size_t{0}, placed.patches.size(),
                [&](size_t k) { lattices[k] = sample_lattice(placed, k, steps_of(placed.patches[k], steps)); });
   LimitGrid grid;
+  size_t samples = 0;
+  for (const PatchLattice& lattice : lattices) samples += lattice.samples.size();
+  grid.positions.reserve(samples);
+  grid.normals.reserve(samples);
+  grid.node_of_side.reserve(samples);
+  grid.triangles.reserve(static_cast<size_t>(triangles_of(placed, steps)));
   Places places(same_place(lattices));
   SidesOfNodes sides;
   for (size_t k = 0; k < lattices.size(); ++k) {
@@ -300,12 +395,13 @@ LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, in
     grid.tip_px = std::max(grid.tip_px, tip_px(placed, k, lattices[k], camera));
   }
   find_seams(placed, grid);
+  grid.blocks = blocks_of(grid);
   return grid;
 }
 
 LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, double cell_px, std::int64_t max_triangles,
                       double& used_cell_px) {
-  const LatticeSteps lattice = lattice_steps(placed, camera, cell_px, max_triangles);
+  const LatticeSteps lattice = lattice_steps(placed, patch_sides(placed), camera, cell_px, max_triangles);
   used_cell_px = lattice.cell_px;
   return sample_grid(placed, camera, lattice.steps);
 }

@@ -36,7 +36,12 @@ struct PlacedLimitSurface {
 
 PlacedLimitSurface place(const LimitSurface& surface, const Affine& world_from_cage);
 LimitSample sample(const PlacedLimitSurface& placed, size_t patch, const glm::dvec2& uv);
-/// With its curvature, world units.
+/// With its curvature, world units: NaN where it has none.
+struct CurvedLimitSample {
+  LimitSample at{};
+  SurfaceCurvature curvature{};
+};
+CurvedLimitSample curved_sample(const PlacedLimitSurface& placed, size_t patch, const glm::dvec2& uv);
 SurfaceCurvature curvature_at(const PlacedLimitSurface& placed, size_t patch, const glm::dvec2& uv);
 
 /// A picture that shows mostly a sheet's back turns its normals towards the eye (raymarch/mesh/open_sheet.h): then level curves are traced
@@ -71,11 +76,22 @@ struct SeamUse {
 /// By the edge's nodes, the smaller first. Inside a patch no two triangles can disagree.
 using LimitSeams = std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<SeamUse>>;
 
+/// Some triangles in a row: their nodes lie in a ball, and the normals of their sides in a cone. Both together tell of most that no curve
+/// goes through them.
+struct LimitBlock {
+  std::uint32_t first = 0, end = 0;  ///< Into LimitGrid::triangles.
+  glm::dvec3 center{0.0}, axis{0.0};
+  double radius = 0.0;
+  double angle = 0.0;               ///< Between the cone's axis and its surface.
+  double sine = 0.0, cosine = 1.0;  ///< Of it.
+};
+
 struct LimitGrid {
   std::vector<glm::dvec3> positions{};  ///< Of nodes, world.
   std::vector<glm::dvec3> normals{};    ///< Of sides, world, unit.
   std::vector<std::uint32_t> node_of_side{};
   std::vector<LimitTriangle> triangles{};
+  std::vector<LimitBlock> blocks{};  ///< All triangles, in order.
   LimitSeams seams{};
   /// Some seam has not two triangles that run along it opposite ways: the surface has an end, or no outside, and its back may be seen.
   bool sheet = false;
@@ -89,8 +105,15 @@ struct LatticeSteps {
   int steps = 4;         ///< Cells along each side of a quad patch; even.
   double cell_px = 0.0;  ///< How wide they are where the patch is largest in the image.
 };
-/// For cells of about `cell_px`, and `max_triangles` triangles in all.
-LatticeSteps lattice_steps(const PlacedLimitSurface& placed, const Camera& camera, double cell_px, std::int64_t max_triangles);
+/// A patch's side as a chord: `length` of a whole face's, whatever share of it the patch is.
+struct PatchSide {
+  glm::dvec3 middle{0.0};
+  double length = 0.0;
+};
+std::vector<PatchSide> patch_sides(const PlacedLimitSurface& placed);
+/// For cells of about `cell_px`, and `max_triangles` triangles in all. `sides` are patch_sides().
+LatticeSteps lattice_steps(const PlacedLimitSurface& placed, const std::vector<PatchSide>& sides, const Camera& camera, double cell_px,
+                           std::int64_t max_triangles);
 /// With so many steps; the camera matters to LimitGrid::tip_px alone.
 LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, int steps);
 

@@ -22,10 +22,11 @@ struct FaceCrossing {
 class Marcher {
  public:
   /// With `seam`, it is that field's zeros that are looked for instead of N.V's levels.
-  Marcher(FieldEvaluator& evaluator, FieldEvaluator* seam, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell)
-      : evaluator_(evaluator), seam_(seam), viewer_(viewer), cell_(cell), side_(grid.side) {
+  Marcher(FieldEvaluator& evaluator, FieldEvaluator* seam, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
+          LatticeSamples* samples)
+      : evaluator_(evaluator), seam_(seam), viewer_(viewer), samples_(samples), cell_(cell), side_(grid.side) {
     for (int i = 0; i < 8; ++i) points_[static_cast<size_t>(i)] = grid.vertex(cell + offset_of(i));
-    evaluator.values(points_, values_);
+    find_values();
     for (size_t i = 0; i < 8; ++i) inside_[i] = values_[i] < 0.0;
   }
 
@@ -41,13 +42,54 @@ class Marcher {
   }
 
  private:
+  void find_values() {
+    if (samples_ == nullptr) return evaluator_.values(points_, values_);
+    std::array<glm::dvec3, 8> points;
+    std::array<size_t, 8> corners{};
+    size_t missing = 0;
+    for (size_t i = 0; i < 8; ++i) {
+      bool added = false;
+      values_[i] = samples_->values.at(vertex_key(static_cast<int>(i)), added);
+      if (!added) continue;
+      points[missing] = points_[i];
+      corners[missing++] = i;
+    }
+    if (missing == 0) return;
+    std::array<double, 8> values;
+    evaluator_.values(std::span(points).first(missing), std::span(values).first(missing));
+    bool added = false;
+    for (size_t k = 0; k < missing; ++k) {
+      values_[corners[k]] = values[k];
+      samples_->values.at(vertex_key(static_cast<int>(corners[k])), added) = values[k];
+    }
+  }
+
+  /// Above 0.
+  std::uint64_t vertex_key(int corner) const {
+    const glm::ivec3 base = cell_ + offset_of(corner);
+    const auto part = [](int v) { return static_cast<std::uint64_t>(v); };
+    return (((part(base.x) << 20 | part(base.y)) << 20 | part(base.z)) << 3) + 1;
+  }
+
   bool in(int corner) const { return inside_[static_cast<size_t>(corner)]; }
 
   /// The surface on the edge between two corners on different sides, always found from the lower corner.
   const SurfaceSample& edge(int a, int b) {
     const auto low = static_cast<size_t>(std::min(a, b)), high = static_cast<size_t>(std::max(a, b));
     auto& sample = edges_[8 * low + high];
-    if (!sample) sample = sample_at(root_between(evaluator_, points_[low], points_[high], values_[low], values_[high]));
+    if (sample) return *sample;
+    const auto root = [&] { return root_between(evaluator_, points_[low], points_[high], values_[low], values_[high]); };
+    if (samples_ == nullptr) {
+      sample = sample_at(root());
+    } else {
+      bool added = false;
+      EdgeSample& known = samples_->edges.at(vertex_key(std::min(a, b)) + static_cast<std::uint64_t>(a ^ b), added);
+      if (added) {
+        const SurfaceSample found = sample_at(root());
+        known = {found.p, found.gradient};
+      }
+      sample = {known.p, known.gradient, facing_of(viewer_, known.p, known.gradient)};
+    }
     return *sample;
   }
   SurfaceSample sample_at(const glm::dvec3& p) {
@@ -156,6 +198,7 @@ class Marcher {
   FieldEvaluator& evaluator_;
   FieldEvaluator* seam_;
   const Viewer& viewer_;
+  LatticeSamples* samples_;
   glm::ivec3 cell_;
   CellCurves* output_ = nullptr;
   double side_;
@@ -170,8 +213,8 @@ class Marcher {
 }  // namespace
 
 bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
-                const std::array<double, kCurveFamilies>& levels, FamilyMask families, CellOutput& output) {
-  Marcher marcher(evaluator, nullptr, viewer, grid, cell);
+                const std::array<double, kCurveFamilies>& levels, FamilyMask families, LatticeSamples* samples, CellOutput& output) {
+  Marcher marcher(evaluator, nullptr, viewer, grid, cell, samples);
   if (!marcher.holds_surface()) return false;
   bool any = false;
   for (size_t family = 0; family < kCurveFamilies; ++family) {
@@ -182,7 +225,7 @@ bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid&
 
 bool march_seam(FieldEvaluator& first, FieldEvaluator& second, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
                 CellCurves& output) {
-  Marcher marcher(first, &second, viewer, grid, cell);
+  Marcher marcher(first, &second, viewer, grid, cell, nullptr);
   return marcher.holds_surface() && marcher.march(0.0, output);
 }
 

@@ -1,9 +1,14 @@
 #include "raymarch/truth/strands.h"
-#include "raymarch/truth/cell_scope.h"
+
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <mutex>
 
+#include "raymarch/truth/cell_scope.h"
 #include "sdf/segment.h"
 
 namespace limn {
@@ -32,8 +37,8 @@ struct Spot {
 
 class Cutter {
  public:
-  Cutter(const Strand& strand, const StrandSettings& settings) : strand_(strand), settings_(settings) {
-    for (const Field& branch : settings.sharp.branches) evaluators_.emplace_back(branch);
+  Cutter(const Strand& strand, const StrandSettings& settings)
+      : strand_(strand), settings_(settings), evaluators_(settings.scope.evaluators()) {
     values_.resize(evaluators_.size());
     for (size_t i = 0; i < evaluators_.size(); ++i) near_.push_back(i);
     if (strand.second >= 0) intersection_ = meet_as_intersection(settings.sharp, strand.first, strand.second);
@@ -55,17 +60,14 @@ class Cutter {
  private:
   FieldEvaluator& evaluator(int branch) { return evaluators_[static_cast<size_t>(branch)]; }
 
-  /// Of many branches only those that may be surface around a place are evaluated there; of the others, which bounds show to decide
-  /// nothing, the values at its middle will do.
   void look_around(const glm::dvec3& p) {
-    const double side = kAround * settings_.extent;
-    const glm::dvec3 cube = glm::floor(p / side);
+    const glm::ivec3 cube = settings_.scope.cube_of(p);
     if (looked_around_ && cube == cube_) return;
     cube_ = cube;
     looked_around_ = true;
-    near_ = relevant_branches(settings_.sharp, evaluators_, {side * (cube - 0.05), side * (cube + 1.05)});
-    const glm::dvec3 middle = side * (cube + 0.5);
-    for (size_t i = 0; i < evaluators_.size(); ++i) values_[i] = evaluators_[i].value(middle);
+    const StrandScope::Around& around = settings_.scope.around(cube);
+    near_ = around.near;
+    values_ = around.values;
     for (const int branch : {strand_.first, strand_.second}) {
       if (branch >= 0 && std::find(near_.begin(), near_.end(), static_cast<size_t>(branch)) == near_.end())
         near_.push_back(static_cast<size_t>(branch));
@@ -210,15 +212,48 @@ class Cutter {
 
   const Strand& strand_;
   const StrandSettings& settings_;
-  std::vector<FieldEvaluator> evaluators_;
+  std::vector<FieldEvaluator>& evaluators_;
   std::vector<double> values_, nodes_;
   std::vector<size_t> near_{};  ///< Branches that are evaluated.
-  glm::dvec3 cube_{0.0};
+  glm::ivec3 cube_{0};
   bool looked_around_ = false;
   bool intersection_ = true;
 };
 
 }  // namespace
+
+struct StrandScope::Shared {
+  tbb::enumerable_thread_specific<std::vector<FieldEvaluator>> evaluators;
+  std::mutex mutex;
+  std::map<std::array<int, 3>, Around> around;
+};
+
+StrandScope::StrandScope(const SharpField& sharp, double extent)
+    : sharp_(sharp), side_(kAround * extent), shared_(std::make_unique<Shared>()) {}
+StrandScope::~StrandScope() = default;
+
+std::vector<FieldEvaluator>& StrandScope::evaluators() {
+  std::vector<FieldEvaluator>& own = shared_->evaluators.local();
+  if (own.empty()) {
+    for (const Field& branch : sharp_.branches) own.emplace_back(branch);
+  }
+  return own;
+}
+
+const StrandScope::Around& StrandScope::around(const glm::ivec3& cube) {
+  const std::array<int, 3> key = {cube.x, cube.y, cube.z};
+  {
+    const std::lock_guard lock(shared_->mutex);
+    const auto known = shared_->around.find(key);
+    if (known != shared_->around.end()) return known->second;
+  }
+  std::vector<FieldEvaluator>& branches = evaluators();
+  const glm::dvec3 corner(cube);
+  Around found{relevant_branches(sharp_, branches, {side_ * (corner - 0.05), side_ * (corner + 1.05)}), {}};
+  for (FieldEvaluator& branch : branches) found.values.push_back(branch.value(side_ * (corner + 0.5)));
+  const std::lock_guard lock(shared_->mutex);
+  return shared_->around.try_emplace(key, std::move(found)).first->second;
+}
 
 std::vector<FieldCurve> cut_to_surface(const Strand& strand, const StrandSettings& settings) {
   if (strand.points.size() < 2) return {};

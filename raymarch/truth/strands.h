@@ -1,6 +1,8 @@
 #pragma once
 // Internal: curves on single branches and along their seams, cut to what is surface of the whole and joined where one leads into the next.
 
+#include <memory>
+
 #include "raymarch/truth/branches.h"
 #include "raymarch/truth/field_curves.h"
 #include "raymarch/truth/marching_tetrahedra.h"
@@ -19,8 +21,36 @@ struct Strand {
 /// Crossings joined along their links, in an order that hangs on their keys alone.
 std::vector<Strand> assemble(CellCurves cells, int first, int second, double c);
 
+/// What the strands of a field share. Safe from many threads.
+class StrandScope {
+ public:
+  StrandScope(const SharpField& sharp, double extent);
+  ~StrandScope();
+  StrandScope(const StrandScope&) = delete;
+  StrandScope& operator=(const StrandScope&) = delete;
+
+  /// Of many branches those that may be surface around a place are evaluated there; of the others, which bounds show to decide nothing, the
+  /// values at its middle will do.
+  struct Around {
+    std::vector<size_t> near{};
+    std::vector<double> values{};  ///< Of all branches.
+  };
+  /// `cube` counts cubes of one size along each axis.
+  const Around& around(const glm::ivec3& cube);
+  glm::ivec3 cube_of(const glm::dvec3& p) const { return glm::ivec3(glm::floor(p / side_)); }
+  /// Of all branches, for the calling thread.
+  std::vector<FieldEvaluator>& evaluators();
+
+ private:
+  struct Shared;
+  const SharpField& sharp_;
+  double side_;
+  std::unique_ptr<Shared> shared_;
+};
+
 struct StrandSettings {
   const SharpField& sharp;
+  StrandScope& scope;
   const Camera& camera;
   const Viewer& viewer;
   double tolerance_px = 0.005;

@@ -192,7 +192,8 @@ void add_view_angles(CLI::App& app, CameraSpec& camera) {
       ->excludes(eye);
   number("--roll", "DEG", "the picture turns clockwise; default 0", camera.roll_deg);
   number("--zoom", "FACTOR", "the picture enlarged about its middle, above 0; default 1", camera.zoom);
-  number("--margin", "SHARE", "of the picture left free on each side of what is framed, 0 to below 0.5; default 0.07", camera.margin);
+  number("--margin", "SHARE", "of the picture left free on each side of what is framed, 0 to below 0.5; default 0.07", camera.margin)
+      ->excludes(eye);
 }
 
 }  // namespace

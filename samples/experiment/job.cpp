@@ -153,7 +153,8 @@ CameraSettings camera_settings(const CameraSpec& spec, const SceneInput& input) 
     camera.target.reset();
   }
   if (spec.up) camera.up = *spec.up;
-  if (spec.turns()) turn(spec, camera);
+  // A margin asks for a picture that is framed, whatever camera the scene has.
+  if (spec.turns() || (spec.margin && camera.eye && !spec.eye)) turn(spec, camera);
   if (spec.eye) camera.eye = spec.eye;
   if (spec.target) camera.target = spec.target;
   if (spec.fov_deg) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
 #include <cmath>
@@ -257,7 +258,9 @@ void bind_level_sets(py::module_& module) {
       .def("mesh", meshed, "The surface as quads and triangles, by dual contouring.")
       .def(
           "write",
-          [](const LevelSet& self, const std::string& file) { run_unlocked([&](const Stopped&) { write_level_set(self, file); }); },
+          [](const LevelSet& self, const std::filesystem::path& file) {
+            run_unlocked([&](const Stopped&) { write_level_set(self, file); });
+          },
           py::arg("file"), "As .vdb, 32 bits.");
   module.def("level_set_from_array", from_array);
   module.def("level_set_from_voxels", from_voxels);

@@ -1,6 +1,7 @@
 // Polygon meshes from and to arrays and files.
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include "samples/python/arrays.h"
 #include "samples/python/bindings.h"
@@ -111,7 +112,8 @@ void bind_meshes(py::module_& module) {
            "The cage subdivided 0 to 8 times by \"catmark\", \"loop\" or \"bilinear\" (\"\": as its faces ask for), its vertices on the "
            "limit surface.")
       .def(
-          "write", [](const SharedMesh& mesh, const std::string& file) { run_unlocked([&](const Stopped&) { write_mesh(*mesh, file); }); },
+          "write",
+          [](const SharedMesh& mesh, const std::filesystem::path& file) { run_unlocked([&](const Stopped&) { write_mesh(*mesh, file); }); },
           py::arg("file"), "As .obj or .ply.");
   module.def("read_mesh", read_mesh, py::arg("file"));
   module.def("tessellate", tessellated, py::arg("field"), py::arg("level"));

@@ -1,16 +1,13 @@
 // Pictures: drawn, looked at layer by layer without copies, written.
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
-
-#include <chrono>
+#include <pybind11/stl/filesystem.h>
 
 #include "raymarch/image_output.h"
 #include "samples/experiment/empty_picture.h"
 #include "samples/experiment/job.h"
-#include "samples/experiment/limits.h"
-#include "samples/experiment/no_effect.h"
 #include "samples/experiment/thread_settings.h"
-#include "samples/experiment/warnings.h"
 #include "samples/output/output.h"
 #include "samples/python/arrays.h"
 #include "samples/python/bindings.h"
@@ -36,8 +33,7 @@ std::shared_ptr<DrawnPicture> draw(const Source& source, CallSettings& settings,
   const std::shared_ptr<const ModelOfPython> model = model_for(source, settings, stopped);
   const SceneInput& input = model->scene.input;
   auto drawn = std::make_shared<DrawnPicture>();
-  drawn->warnings = warnings_of(input.scene, model->settings, {.methods = names_of(method_calls(settings.spec.border, input))});
-  drawn->warnings.insert(drawn->warnings.end(), model->warnings.begin(), model->warnings.end());
+  drawn->warnings = model->warnings;
   const PictureSettings picture = picture_settings(settings.spec.border, input);
   drawn->camera = camera_of_view(camera_settings(settings.spec.camera, input), framed_input(settings.spec.camera, input),
                                  framing_settings(settings.spec.camera), settings.view, settings.spec.views);
@@ -58,8 +54,7 @@ std::shared_ptr<DrawnPicture> render(const py::object& scene, const CallFields& 
   return call_unlocked([&](const Stopped& stopped) { return draw(source, settings, stopped); });
 }
 
-void write(const DrawnPicture& drawn, const std::string& name) {
-  const std::filesystem::path file(name);
+void write(const DrawnPicture& drawn, const std::filesystem::path& file) {
   check_output_file(file, false, {".exr", ".png", ".tif", ".tiff", ".jpg", ".jpeg"});
   run_unlocked([&](const Stopped&) {
     if (ending_of(file) == ".exr")
@@ -176,6 +171,11 @@ void bind_pictures(py::module_& module) {
       .def_property_readonly(
           "border_ms", [](const DrawnPicture& self) { return self.picture.border_ms; }, "Time of the methods, milliseconds.")
       .def("write", write, py::arg("file"), "All layers as .exr, or the composite as .png, .tif or .jpg.")
+      .def("__repr__",
+           [](const DrawnPicture& self) {
+             return fmt::format("<limn.Picture: {} x {}, {}, {} hits>", self.camera.width_px, self.camera.height_px, self.info.kind,
+                                self.counts.hits);
+           })
       .def("_repr_png_", [](const DrawnPicture& self) { return png_of(self.picture.composite); });
   module.def("render", render);
   module.def("read_channel", [](const std::string& file, const std::string& channel) {

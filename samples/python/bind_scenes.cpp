@@ -10,6 +10,7 @@
 #include "samples/experiment/limits.h"
 #include "samples/experiment/no_effect.h"
 #include "samples/experiment/thread_settings.h"
+#include "samples/experiment/warnings.h"
 #include "samples/python/arrays.h"
 #include "samples/python/bindings.h"
 #include "samples/spec/parse.h"
@@ -163,6 +164,9 @@ std::shared_ptr<const ModelOfPython> model_for(const Source& source, CallSetting
                                        settings.view, spec.views);
   check_limits(spec.limits, input.scene, model->settings, picture_load(camera, picture_settings(spec.border, input), 1, false));
   if (spec.surface.level_for_view) model->notes = refine_for_views(model->settings, {&camera, 1}, input.scene);
+  // Once, for however many pictures.
+  const std::vector<std::string> found = warnings_of(input.scene, model->settings, {.methods = names_of(method_calls(spec.border, input))});
+  model->warnings.insert(model->warnings.end(), found.begin(), found.end());
   model->model = build_model(input.scene, model->settings);
   model->settings.progress = {};
   const SurfaceInfo info = total(model->model);

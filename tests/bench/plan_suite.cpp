@@ -127,7 +127,7 @@ Sums run_scene(const SceneDescriptor& descriptor, const PlanBenchSettings& setti
   for (int index = 0; index < settings.views; ++index) {
     if (settings.only_view && index != *settings.only_view) continue;
     PlanView view;
-    view.camera = camera_of_view(camera, bounds(scene), index, settings.views);
+    view.camera = camera_of_view(camera, {bounds(scene), {}}, {}, index, settings.views);
     view.truth = solve_truth(scene, view.camera, {}, {});
     const TruthProxy reference = make_proxy(scene, view.camera, std::int64_t{4} << 30, 1.0);
     std::vector<PlanTrial> known;

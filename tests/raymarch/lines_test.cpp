@@ -10,6 +10,7 @@
 #include <set>
 
 #include "raymarch/lines.h"
+#include "raymarch/surface.h"
 #include "sdf/level_set.h"
 #include "sdf/segment.h"
 #include "sdf/shape.h"
@@ -480,6 +481,44 @@ TEST(Lines, TwoObjectsIntersect) {
   expect_same({circle}, drawn(graph, LineClass::intersection, false), "intersection");
   EXPECT_EQ(std::count_if(graph.chains.begin(), graph.chains.end(), [](const LineChain& c) { return c.line_class == LineClass::crease; }),
             0);
+}
+
+TEST(Lines, WhereObjectsOfTwoMaterialsMeetIsAMaterialLine) {
+  const std::vector<Field> balls = {translate(make_shape("sphere", {{"radius", {0.6}}}), {-0.3, 0.0, 0.0}),
+                                    translate(make_shape("sphere", {{"radius", {0.6}}}), {0.3, 0.0, 0.0})};
+  for (const std::string kind : {"field", "mesh", "level set"}) {
+    Scene scene;
+    for (const Field& ball : balls) {
+      SceneObject object{.name = "ball", .source = ball};
+      LevelSetSettings building;
+      building.voxel_size = 0.04;
+      if (kind == "level set") object.source = LevelSetSource{level_set_from_field(ball, building)};
+      if (kind == "mesh") {
+        SurfaceSettings settings;
+        settings.kind = "mesh";
+        settings.level = 3;
+        const Scene one{"", {}, {object}};
+        object = modelled_scene(one, build_model(one, settings)).objects[0];
+      }
+      scene.objects.push_back(object);
+    }
+    CameraSettings looking;
+    looking.direction = glm::dvec3(0.8, 0.5, 1.0);
+    const Camera camera = resolve_camera(looking, bounds(scene));
+    const auto count = [&](const std::vector<LineClass>& classes, LineClass of) {
+      LineSettings settings;
+      settings.classes = classes;
+      const ViewGraph graph = solve_lines(scene, camera, settings, {});
+      return std::count_if(graph.edges.begin(), graph.edges.end(), [&](const LineEdge& edge) { return edge.line_class == of; });
+    };
+    EXPECT_EQ(count({LineClass::material}, LineClass::material), 0) << kind << ": one material";
+    scene.objects[1].material = 3;
+    EXPECT_GT(count({LineClass::material}, LineClass::material), 0) << kind;
+    EXPECT_GT(count({LineClass::contour, LineClass::material}, LineClass::material), 0) << kind;
+    // They are intersections where those are asked for.
+    EXPECT_EQ(count({}, LineClass::material), 0) << kind;
+    EXPECT_GT(count({}, LineClass::intersection), 0) << kind;
+  }
 }
 
 TEST(Lines, SettingsOutOfRangeAreRefused) {

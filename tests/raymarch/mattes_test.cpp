@@ -46,7 +46,9 @@ TEST(Mattes, CoverageIsThatOfThePicture) {
       const std::uint32_t id = index == 0 ? 0u : picture.mattes->objects.names[index - 1u].hash;
       EXPECT_LE(coverage, before);
       EXPECT_EQ(coverage > 0.0f, id != 0u);
-      if (coverage > 0.0f) EXPECT_TRUE(id == left || id == right);
+      if (coverage > 0.0f) {
+        EXPECT_TRUE(id == left || id == right);
+      }
       before = coverage;
       sum += coverage;
     }

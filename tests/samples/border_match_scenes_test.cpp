@@ -25,7 +25,7 @@ TEST_P(AnalyticScene, HasItsOwnBorderInEveryPlaceThatTheTruthDetermines) {
     CameraSettings seen = scene.camera;
     seen.width_px = 640;
     seen.height_px = 400;
-    const Camera camera = camera_of_view(seen, bounds(scene), view, 2);
+    const Camera camera = camera_of_view(seen, {bounds(scene), {}}, {}, view, 2);
     const BorderTruth truth = solve_truth(scene, camera, {}, {});
     const BorderCurves curves = measure_border(model, camera, render_gbuffer(model, camera, {}), {}, {});
     const Picture nothing;

@@ -112,7 +112,7 @@ TEST(ContoursFrames, AroundScenesVisibleLinesAppearAndVanishAtEventsOfTheGraphOn
     CameraSettings settings = scene.camera;
     settings.width_px = walk.width_px;
     settings.height_px = walk.height_px;
-    const Camera first = camera_of_view(settings, bounds(scene), 0, 1);
+    const Camera first = camera_of_view(settings, {bounds(scene), {}}, {}, 0, 1);
     const GraphAt graph_at = [&](double time) {
       return solve_lines(scene, turned_camera(first, *settings.target, settings.up, 2.0 * std::numbers::pi * time / kAround), {}, {});
     };

@@ -24,7 +24,7 @@ ViewGraph graph_of(const std::string& name) {
   CameraSettings settings = scene.camera;
   settings.width_px = kWidth;
   settings.height_px = kHeight;
-  return solve_lines(scene, camera_of_view(settings, bounds(scene), 0, 1), {}, {});
+  return solve_lines(scene, camera_of_view(settings, {bounds(scene), {}}, {}, 0, 1), {}, {});
 }
 
 LineDrawing drawing_of(const ViewGraph& graph, CurveForm form, bool hidden) {

@@ -82,7 +82,7 @@ Outcome follow(const Way& way, const TemporaryFolder& folder) {
   lens.height_px = 180;
   const Box box = bounds(input.scene);
   PlanView truth, drawn;
-  truth.camera = drawn.camera = camera_of_view(lens, box, way.view, 6);
+  truth.camera = drawn.camera = camera_of_view(lens, {box, {}}, {}, way.view, 6);
   truth.truth = solve_truth(input.scene, truth.camera, {.threshold = kThreshold}, {});
   MeasuredBorderSettings measuring;
   measuring.threshold = kThreshold;

@@ -45,7 +45,7 @@ Case make_case(const std::string& name) {
   settings.width_px = 640;
   settings.height_px = 360;
   Case one;
-  one.graph = solve_lines(scene, camera_of_view(settings, bounds(scene), 0, 1), {}, {});
+  one.graph = solve_lines(scene, camera_of_view(settings, {bounds(scene), {}}, {}, 0, 1), {}, {});
   one.svg = svg_text(make_drawing(one.graph, 640, 360, {.style = built_in_style("plain")}), name);
   one.drawn = read_back(one.svg);
   return one;
@@ -234,7 +234,7 @@ TEST(Judge, RaisesNoAlarmForOtherViews) {
     settings.target = bounds(scene).center();
     settings.eye =
         *settings.target + 4.0 * bounds(scene).radius() * glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-    const ViewGraph graph = solve_lines(scene, camera_of_view(settings, bounds(scene), 0, 1), {}, {});
+    const ViewGraph graph = solve_lines(scene, camera_of_view(settings, {bounds(scene), {}}, {}, 0, 1), {}, {});
     const Judgement judgement =
         judge_lines(graph, read_back(svg_text(make_drawing(graph, 640, 360, {.style = built_in_style("plain")}), "a")), {});
     expect_clean(judgement);

@@ -20,7 +20,7 @@ PlanView first_view(const Scene& scene) {
   camera.width_px = 320;
   camera.height_px = 240;
   PlanView view;
-  view.camera = camera_of_view(camera, bounds(scene), 0, 2);
+  view.camera = camera_of_view(camera, {bounds(scene), {}}, {}, 0, 2);
   view.truth = solve_truth(scene, view.camera, {}, {});
   return view;
 }

@@ -26,7 +26,7 @@ PlanView view_of(const Scene& scene, int index, int views) {
   camera.width_px = 480;
   camera.height_px = 270;
   PlanView view;
-  view.camera = camera_of_view(camera, bounds(scene), index, views);
+  view.camera = camera_of_view(camera, {bounds(scene), {}}, {}, index, views);
   view.truth = solve_truth(scene, view.camera, {}, {});
   return view;
 }

@@ -29,7 +29,6 @@ from ._limn import (
     __version__,
 )
 from ._calls import (
-    Camera,
     border,
     channel_names,
     compare,
@@ -58,6 +57,7 @@ from ._limn import LevelSet, Mesh, Picture
 from ._meshes import mesh_from_triangles, read_mesh, tessellate
 from ._results import Comparison, Judgement, Lines, Measures, Plan, Study
 from ._scenes import Object, load, scene
+from ._settings import Camera
 
 __all__ = [
     "Border",

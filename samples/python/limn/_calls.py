@@ -7,13 +7,11 @@ import os
 import tempfile
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
-import numpy
-
 from . import _limn, _settings, _text
 from ._limn import Border, Model, Picture
 from ._results import Comparison, Judgement, Lines, Measures, Plan, Study
 from ._scenes import source_of
-from ._settings import Camera, Names
+from ._settings import AnyCamera, Names
 
 Level = Union[int, str, None]
 Path = Union[str, "os.PathLike[str]"]
@@ -32,7 +30,7 @@ def model(
     normals: Optional[str] = None,
     smooth_angle: Optional[float] = None,
     grids: Names = None,
-    camera: Optional[Camera] = None,
+    camera: Optional[AnyCamera] = None,
     size: Optional[Tuple[int, int]] = None,
     threads: Optional[int] = None,
     max_memory: Union[int, str, None] = None,
@@ -54,7 +52,7 @@ def model(
 def render(
     scene: Any,
     *,
-    camera: Optional[Camera] = None,
+    camera: Optional[AnyCamera] = None,
     size: Optional[Tuple[int, int]] = None,
     view: Optional[int] = None,
     views: Optional[int] = None,
@@ -95,7 +93,7 @@ def contours(
     scene: Any,
     *,
     lines: Names = None,
-    camera: Optional[Camera] = None,
+    camera: Optional[AnyCamera] = None,
     size: Optional[Tuple[int, int]] = None,
     view: Optional[int] = None,
     views: Optional[int] = None,
@@ -136,7 +134,7 @@ def truth(
     threshold: Optional[float] = None,
     tolerance_px: Optional[float] = None,
     reference: Optional[str] = None,
-    camera: Optional[Camera] = None,
+    camera: Optional[AnyCamera] = None,
     size: Optional[Tuple[int, int]] = None,
     view: Optional[int] = None,
     views: Optional[int] = None,
@@ -163,7 +161,7 @@ def border(
     scene: Any,
     *,
     threshold: Optional[float] = None,
-    camera: Optional[Camera] = None,
+    camera: Optional[AnyCamera] = None,
     size: Optional[Tuple[int, int]] = None,
     view: Optional[int] = None,
     views: Optional[int] = None,
@@ -194,7 +192,7 @@ def border(
 def measure(
     scene: Any,
     *,
-    camera: Optional[Camera] = None,
+    camera: Optional[AnyCamera] = None,
     size: Optional[Tuple[int, int]] = None,
     view: Optional[int] = None,
     views: Optional[int] = None,
@@ -238,7 +236,7 @@ def compare(
     samples: Optional[int] = None,
     background: Any = None,
     reference: Optional[str] = None,
-    camera: Optional[Camera] = None,
+    camera: Optional[AnyCamera] = None,
     size: Optional[Tuple[int, int]] = None,
     voxels: Optional[int] = None,
     voxel_size: Optional[float] = None,
@@ -295,7 +293,7 @@ def study(
     views: Optional[int] = None,
     flicker: bool = False,
     reference: Optional[str] = None,
-    camera: Optional[Camera] = None,
+    camera: Optional[AnyCamera] = None,
     size: Optional[Tuple[int, int]] = None,
     half_width: Optional[float] = None,
     scheme: Optional[str] = None,
@@ -340,7 +338,7 @@ def plan(
     surfaces: Names = None,
     threshold: Optional[float] = None,
     reference: Optional[str] = None,
-    camera: Optional[Camera] = None,
+    camera: Optional[AnyCamera] = None,
     size: Optional[Tuple[int, int]] = None,
     views: Optional[int] = None,
     scheme: Optional[str] = None,
@@ -381,7 +379,7 @@ def judge(
     max_hidden: Union[str, float, None] = None,
     max_doubled: Union[str, float, None] = None,
     max_displaced: Optional[float] = None,
-    camera: Optional[Camera] = None,
+    camera: Optional[AnyCamera] = None,
     size: Optional[Tuple[int, int]] = None,
     grids: Names = None,
     threads: Optional[int] = None,
@@ -421,7 +419,7 @@ def names(kind: str) -> Dict[str, str]:
     return dict(_limn.entries(str(kind)))
 
 
-def read_channel(file: Path, channel: str) -> numpy.ndarray:
+def read_channel(file: Path, channel: str) -> "_limn.Array":
     """One channel of a picture's file, top row first: (height, width) float32."""
     return _limn.read_channel(_text.path(file), str(channel))
 

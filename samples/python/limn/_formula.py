@@ -113,7 +113,7 @@ class Symbol:
     def __pow__(self, power: Any) -> "Symbol":
         if isinstance(power, numbers.Real) and power == 0.5:
             return self._unary("sqrt")
-        if not isinstance(power, numbers.Real) or float(power) != int(power) or not 1 <= power <= 64:
+        if not isinstance(power, numbers.Real) or float(power) != int(power) or not 1 <= int(power) <= 64:
             raise _text.refuse("function", power, "has a power that is no formula", "a whole number from 1 to 64, or 0.5")
         result: Optional[Symbol] = None
         base, left = self, int(power)

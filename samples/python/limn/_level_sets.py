@@ -29,10 +29,12 @@ def level_set(
     if voxels is not None and (isinstance(voxels, bool) or not isinstance(voxels, int)):
         raise _text.refuse("voxels", voxels, "is no whole number", "a whole number from 4 to 8192")
     size = None if voxel_size is None else _number("voxel_size", voxel_size)
-    make = _limn.level_set_of_mesh if isinstance(source, Mesh) else _limn.level_set_of_field
-    if not isinstance(source, (Field, Mesh)):
-        raise _text.refuse("source", type(source).__name__, "has no distance", "a Field or a Mesh")
-    return make(source, voxels, size, _number("half_width", half_width))
+    width = _number("half_width", half_width)
+    if isinstance(source, Mesh):
+        return _limn.level_set_of_mesh(source, voxels, size, width)
+    if isinstance(source, Field):
+        return _limn.level_set_of_field(source, voxels, size, width)
+    raise _text.refuse("source", type(source).__name__, "has no distance", "a Field or a Mesh")
 
 
 def level_set_from_array(values: Any, *, voxel_size: float, origin: Sequence[float] = (0.0, 0.0, 0.0), half_width: float = 3.0) -> LevelSet:
@@ -50,7 +52,7 @@ def level_set_from_voxels(
     return _limn.level_set_from_voxels(indices, values, _number("voxel_size", voxel_size), origin, width)
 
 
-def level_set_to_array(level_set: LevelSet, margin: int = 1) -> Tuple[numpy.ndarray, numpy.ndarray]:
+def level_set_to_array(level_set: LevelSet, margin: int = 1) -> Tuple["_limn.Array", "_limn.Array"]:
     """Values (nx, ny, nz), 32 bits, of the box around the active voxels and margin voxels more; and where the first stands, (3,), world
     units. Beyond the band the values are plus or minus its half width. Copies."""
     if isinstance(margin, bool) or not isinstance(margin, int) or not 0 <= margin <= 1024:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Any, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from . import _limn, _text
 from ._limn import Field, LevelSet, Mesh, Model, Scene
@@ -25,7 +25,7 @@ class Object:
     scheme: Optional[str] = None
     level: Optional[int] = None
 
-    def _described(self) -> dict:
+    def _described(self) -> Dict[str, Any]:
         material = self.material
         if isinstance(material, bool) or not isinstance(material, int) or not -(2**31) <= material < 2**31:
             raise _text.refuse("material", material, "is no material", "a whole number")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _text
+from ._limn import ResolvedCamera
 from ._text import Fields
 
 Vector = Union[Sequence[float], Any]
@@ -34,11 +35,21 @@ class Camera:
                 raise _text.refuse(name, _text.numbers(name, value), "is no vector", "three numbers")
 
 
-def camera_fields(fields: Fields, camera: Optional[Camera], size: Any, view: Optional[int] = None, views: Optional[int] = None) -> None:
+AnyCamera = Union[Camera, ResolvedCamera]
+
+
+def camera_fields(
+    fields: Fields, camera: Optional[AnyCamera], size: Any, view: Optional[int] = None, views: Optional[int] = None
+) -> None:
     """size over the camera's own."""
-    if camera is not None and not isinstance(camera, Camera):
+    if isinstance(camera, ResolvedCamera):
+        given = {flag.lstrip("-"): text for flag, text in camera._call.items()}
+        own_size = given.pop("size")
+        fields.extend(given.items())
+        size = own_size if size is None else size
+    elif camera is not None and not isinstance(camera, Camera):
         raise _text.refuse("camera", type(camera).__name__, "is no camera", "a limn.Camera")
-    if camera is not None:
+    elif camera is not None:
         for name in ("eye", "target", "up"):
             value = getattr(camera, name)
             _text.add(fields, name, None if value is None else _text.numbers(name, value))

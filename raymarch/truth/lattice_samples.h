@@ -1,0 +1,58 @@
+#pragma once
+// Internal: a field at the nodes of a lattice and its surface on the lattice's edges. Cells share them, and so do views: neither knows
+// where anybody looks from.
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace limn {
+
+/// Values by keys that are not 0, in the order in which they came, found by open addressing.
+template <class Value>
+class KeyedValues {
+ public:
+  /// A new one is Value{}; `added` says whether it is.
+  Value& at(std::uint64_t key, bool& added) {
+    if (2 * entries_.size() >= places_.size()) grow();
+    size_t place = hash(key);
+    while (places_[place] != kNone && entries_[places_[place]].first != key) place = (place + 1) & (places_.size() - 1);
+    added = places_[place] == kNone;
+    if (added) {
+      places_[place] = static_cast<std::uint32_t>(entries_.size());
+      entries_.emplace_back(key, Value{});
+    }
+    return entries_[places_[place]].second;
+  }
+  size_t bytes() const { return entries_.capacity() * sizeof(entries_[0]) + places_.capacity() * sizeof(places_[0]); }
+
+ private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  size_t hash(std::uint64_t key) const { return static_cast<size_t>((key * 0x9e3779b97f4a7c15u) >> 32u) & (places_.size() - 1); }
+  void grow() {
+    places_.assign(places_.empty() ? 64 : 2 * places_.size(), kNone);
+    for (size_t i = 0; i < entries_.size(); ++i) {
+      size_t place = hash(entries_[i].first);
+      while (places_[place] != kNone) place = (place + 1) & (places_.size() - 1);
+      places_[place] = static_cast<std::uint32_t>(i);
+    }
+  }
+  std::vector<std::pair<std::uint64_t, Value>> entries_{};
+  std::vector<std::uint32_t> places_{};
+};
+
+/// Where an edge meets the surface.
+struct EdgeSample {
+  glm::dvec3 p{0.0}, gradient{0.0};
+};
+
+/// Of one branch; used by one thread at a time.
+struct LatticeSamples {
+  KeyedValues<double> values{};
+  KeyedValues<EdgeSample> edges{};
+  size_t bytes() const { return values.bytes() + edges.bytes(); }
+};
+
+}  // namespace limn

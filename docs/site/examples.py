@@ -87,7 +87,7 @@ def run(call, limn, folder, text=None, seconds=600):
     """Runs a call, or `text` in its place, by a shell, as a reader would."""
     tools = folder / ".bin"
     tools.mkdir(exist_ok=True)
-    if not (tools / "limn").exists():
+    if not (tools / "limn").is_symlink():
         (tools / "limn").symlink_to(pathlib.Path(limn).resolve())
     environment = {"PATH": f"{tools}:/usr/bin:/bin", "HOME": str(folder), "LC_ALL": "C.UTF-8"}
     return subprocess.run(["bash", "-o", "pipefail", "-c", text or call.text], cwd=folder, env=environment, capture_output=True, text=True, timeout=seconds)

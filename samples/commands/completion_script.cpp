@@ -123,7 +123,7 @@ std::string zsh_option(const OptionDescription& option) {
   for (const std::string& flag : option.flags) {
     // Values stand behind a long option's equals sign, too.
     const char* const joint = option.value.empty() ? "" : flag.starts_with("--") ? "=" : "+";
-    text += "        " + in_quotes("*" + flag + joint + help + value) + " \\\n";
+    text += fmt::format("        {} \\\n", in_quotes(fmt::format("*{}{}{}{}", flag, joint, help, value)));
   }
   return text;
 }
@@ -155,7 +155,7 @@ std::string fish_script(const Commands& commands) {
   const auto quote = [](const std::string& text) { return "'" + escaped(text, "'\\") + "'"; };
   std::string text = "# fish completion of limn; printed by `limn completion fish`\n";
   for (const OptionDescription& option : program_options())
-    text += "complete -c limn -n __fish_use_subcommand -f" + fish_flags(option) + " -d " + quote(option.help) + "\n";
+    text += fmt::format("complete -c limn -n __fish_use_subcommand -f{} -d {}\n", fish_flags(option), quote(option.help));
   for (const CommandDescription& command : commands) {
     text += fmt::format("\ncomplete -c limn -n __fish_use_subcommand -f -a {} -d {}\n", command.name, quote(brief(command.help)));
     const std::string start = fmt::format("complete -c limn -n '__fish_seen_subcommand_from {}'", command.name);
@@ -165,7 +165,7 @@ std::string fish_script(const Commands& commands) {
       // Several names, separated by commas.
       if (!option.choices.empty())
         text += " -a " + quote(option.is_list ? "(__fish_append , " + joined(option.choices) + ")" : joined(option.choices));
-      text += " -d " + quote(brief(option.help)) + "\n";
+      text += fmt::format(" -d {}\n", quote(brief(option.help)));
     }
     text += start + (takes_files(command) ? " -F" : " -f");
     if (const std::string names = choices_of(command); !names.empty()) text += " -a " + quote(names);

@@ -84,5 +84,10 @@ contours, measurements and studies.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-limn)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "limn (= ${PROJECT_VERSION}-1), python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3-numpy")
+# The module is built for one version of Python and the next minor one does not load it.
+if(LIMN_PYTHON_MODULE)
+  execute_process(COMMAND ${LIMN_PYTHON} -c "import sys; print('python3 (>= %d.%d), python3 (<< %d.%d)' % (*sys.version_info[:2], sys.version_info[0], sys.version_info[1] + 1))"
+    OUTPUT_VARIABLE python_version OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "limn (= ${PROJECT_VERSION}-1), ${python_version}, python3-numpy")
+endif()
 include(CPack)

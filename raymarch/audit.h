@@ -32,6 +32,7 @@ struct AuditSettings {
   /// What the object is drawn as and by, as in `matters`: checks that can warn of neither are left out. Empty: anything.
   std::vector<std::string> surfaces{},  ///< Representations.
       methods{};                        ///< Outline methods.
+  std::vector<std::string> checks{};    ///< Names of those that are run, whatever they take; empty: all.
 };
 
 class AuditFacts;  // raymarch/audit/facts.h: what several checks look at, made when first asked for

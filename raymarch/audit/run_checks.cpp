@@ -42,7 +42,8 @@ std::vector<Finding> audit(const SceneObject& object, const AuditSettings& setti
   AuditFacts facts(object, settings);
   std::vector<Finding> findings;
   for (const AuditCheck& check : audit_checks()) {
-    if (!settings.thorough && !check.quick) continue;
+    const bool named = std::find(settings.checks.begin(), settings.checks.end(), check.about.name) != settings.checks.end();
+    if (!named && (!settings.checks.empty() || (!settings.thorough && !check.quick))) continue;
     if (!is_concerned(check, settings)) continue;
     const auto started = Clock::now();
     check.look(facts, findings);

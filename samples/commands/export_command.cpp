@@ -85,7 +85,8 @@ std::optional<LocalSettings> local_of(const Options& options, const SceneInput& 
   refuse_eye_of_views(camera, options.spec.views);
   std::vector<Camera> cameras;
   for (int view = 0; view < options.spec.views; ++view)
-    cameras.push_back(camera_of_view(camera_settings(camera, input), bounds(input.scene), view, options.spec.views));
+    cameras.push_back(
+        camera_of_view(camera_settings(camera, input), framed_input(camera, input), framing_settings(camera), view, options.spec.views));
   return local_settings(*options.local.tolerance_px, options.plan.silhouette, {}, std::move(cameras));
 }
 

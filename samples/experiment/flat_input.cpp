@@ -5,15 +5,9 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kMostFaces = 100'000;  // beyond it the check would take longer than the picture
-
 double share_of(const SceneObject& object, const SurfaceSettings& settings) {
-  const auto* mesh = std::get_if<MeshSource>(&object.source);
-  if (mesh != nullptr && mesh->mesh->face_count() > kMostFaces) return 0.0;
-  const std::vector<std::string> surfaces = {settings.kind.empty() ? natural_surface(object) : settings.kind}, methods = {kDefaultMethod};
-  for (const Finding& finding : audit(object, {.surface = settings, .thorough = true, .surfaces = surfaces, .methods = methods}))
-    if (finding.check == "flat regions") return finding.value;
-  return 0.0;
+  const std::vector<Finding> found = audit(object, {.surface = settings, .checks = {"flat"}});
+  return found.empty() ? 0.0 : found.front().value;
 }
 
 }  // namespace

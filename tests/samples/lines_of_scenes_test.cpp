@@ -37,7 +37,7 @@ TEST(LinesOfScenes, RookInFramesThatWereWrong) {
   CameraSettings settings = scene.camera;
   settings.width_px = 240;
   settings.height_px = 135;
-  const Camera first = camera_of_view(settings, bounds(scene), 0, 1);
+  const Camera first = camera_of_view(settings, {bounds(scene), {}}, {}, 0, 1);
   const SceneModel model = bench::oracle_model(scene);
   for (const int frame : {1, 2}) {
     const Camera camera = turned_camera(first, *settings.target, settings.up, 2.0 * std::numbers::pi * frame / 240.0);

@@ -1,0 +1,189 @@
+// Local models: no crack, no more triangles than promised, and the border where it belongs, asked by rays on both sides of the true one.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+
+#include "raymarch/local_model.h"
+#include "raymarch/mesh/polygons.h"
+#include "samples/experiment/job.h"
+#include "samples/scenes/scenes.h"
+#include "subdiv/import.h"
+#include "tests/plan_check.h"
+#include "tests/random_seed.h"
+#include "tests/samples/run_program.h"
+#include "tests/temporary_folder.h"
+
+namespace limn {
+using namespace test;
+namespace {
+
+Camera camera_of(const Scene& scene, int view, int views, const glm::ivec2& size_px) {
+  CameraSettings camera = scene.camera;
+  camera.width_px = size_px.x;
+  camera.height_px = size_px.y;
+  return camera_of_view(camera, {bounds(scene), {}}, {}, view, views);
+}
+
+/// Edges that have not exactly one face on each side.
+size_t open_edges(const Mesh& mesh) {
+  std::map<std::pair<std::int32_t, std::int32_t>, int> passed;
+  size_t first = 0;
+  for (const std::int32_t size : mesh.face_sizes) {
+    const auto n = static_cast<size_t>(size);
+    for (size_t k = 0; k < n; ++k) ++passed[{mesh.corner_vertices[first + k], mesh.corner_vertices[first + (k + 1) % n]}];
+    first += n;
+  }
+  size_t open = 0;
+  for (const auto& [edge, count] : passed) {
+    const auto back = passed.find({edge.second, edge.first});
+    open += count != 1 || back == passed.end() || back->second != 1;
+  }
+  return open;
+}
+
+TEST(LocalModel, AnEllipsoidsSilhouetteTakesFewTrianglesAndKeepsToTheTolerance) {
+  const Scene scene = find_scene("ellipsoid")->make();
+  const SceneModel exact = build_model(scene, {.kind = "analytic"});
+  PlanView view;
+  view.camera = camera_of(scene, 0, 1, {300, 300});
+  view.truth = solve_truth(scene, view.camera, {}, {});
+  const std::pair<double, std::int64_t> most[] = {{1.0, 900}, {0.25, 2000}, {0.1, 3400}};
+  for (const auto& [tolerance_px, triangles] : most) {
+    const SceneModel model = build_local_model(scene, {}, {{view.camera}, tolerance_px, {}});
+    EXPECT_LE(total(model).triangles, triangles) << tolerance_px << " px";
+    EXPECT_EQ(share_beyond(model, exact, view, 0.4, tolerance_px, PlanMetric::silhouette), 0.0) << tolerance_px << " px";
+    EXPECT_EQ(share_of_false_border(model, view, 0.4, tolerance_px, PlanMetric::silhouette), 0.0) << tolerance_px << " px";
+  }
+}
+
+TEST(LocalModel, OfFieldsAndCagesTheBorderKeepsToTheToleranceWithNoEdgeOpen) {
+  for (const char* name : {"ellipsoid", "tilted_torus", "superellipsoid", "teacup", "rook"}) {
+    const Scene scene = find_scene(name)->make();
+    PlanView view;
+    view.camera = camera_of(scene, 0, 1, {300, 300});
+    view.truth = solve_truth(scene, view.camera, {}, {});
+    Scene fine = scene;
+    for (SceneObject& object : fine.objects) object.level.reset();
+    const bool field = std::holds_alternative<Field>(scene.objects.front().source);
+    const SceneModel reference = build_model(fine, {.kind = field ? "analytic" : "mesh", .level = 6});
+    for (const double tolerance_px : {1.0, 0.25}) {
+      const SceneModel model = build_local_model(scene, {}, {{view.camera}, tolerance_px, {0.4}});
+      for (const Surface& surface : model.surfaces) EXPECT_EQ(open_edges(surface.polygons->mesh()), 0u) << name;
+      double trace_ms = 0.0;
+      EXPECT_LE(measure_errors(model, view, 0.4, {}, trace_ms).border_px, tolerance_px) << name;
+      EXPECT_LE(share_beyond(model, reference, view, 0.4, tolerance_px, PlanMetric::border), 0.01) << name << " " << tolerance_px;
+      EXPECT_LE(share_of_false_border(model, view, 0.4, tolerance_px, PlanMetric::border), 0.01) << name << " " << tolerance_px;
+    }
+  }
+}
+
+TEST(LocalModel, OfAnyEllipsoidVerticesLieOnTheSurfaceAndNoPartIsFartherOffThanStated) {
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> radius(0.4, 1.5), weight(0.0, 1.0);
+  for (int draw = 0; draw < 4; ++draw) {
+    const Field field = make_shape("ellipsoid", {{"radii", {radius(random), radius(random), radius(random)}}});
+    Scene scene;
+    scene.objects.push_back({.name = "ellipsoid", .source = field});
+    const Camera camera = camera_of(scene, draw, 4, {400, 300});
+    const SceneModel model = build_local_model(scene, {}, {{camera}, 0.25, {0.4}});
+    const Mesh& mesh = model.surfaces.front().polygons->mesh();
+    FieldEvaluator evaluator(field);
+    const auto off = [&](const glm::dvec3& p) {
+      const FieldJet jet = evaluator.jet(p);
+      return std::abs(jet.value) / glm::length(jet.gradient);
+    };
+    double worst_vertex = 0.0, worst_px = 0.0;
+    for (const glm::dvec3& p : mesh.positions) worst_vertex = std::max(worst_vertex, off(p + model.render_origin));
+    for (size_t f = 0; f < mesh.face_count(); ++f) {
+      const double u = weight(random), v = weight(random) * (1.0 - u);
+      const auto at = [&](size_t k) { return mesh.positions[static_cast<size_t>(mesh.corner_vertices[3 * f + k])] + model.render_origin; };
+      const glm::dvec3 p = at(0) + u * (at(1) - at(0)) + v * (at(2) - at(0));
+      worst_px = std::max(worst_px, off(p) * pixels_per_unit_at(camera, project(camera, p).z));
+    }
+    EXPECT_LT(worst_vertex, 1e-9);
+    EXPECT_LT(worst_px, kLocalCoarse_px);
+  }
+}
+
+TEST(LocalModel, AnExportedCageIsWatertightAndReadsBackWithTheSameBorder) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "teacup.obj";
+  const RunResult run = run_limn({"export", "teacup", "--local", "0.25", "--size", "300x300", "-o", file.string()});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Mesh mesh = load_mesh(file);
+  EXPECT_EQ(open_edges(mesh), 0u);
+  const auto json_of = [&](const std::vector<std::string>& which) {
+    std::vector<std::string> call = {"render"};
+    call.insert(call.end(), which.begin(), which.end());
+    for (const char* text : {"--size", "300x300", "--json", "-o"}) call.emplace_back(text);
+    call.push_back(folder.file("picture.png"));
+    return run_limn(call).json();
+  };
+  const auto modelled = json_of({"teacup", "--local", "0.25"});
+  EXPECT_EQ(modelled["surface"]["triangles"].get<size_t>(), mesh.face_count());
+  // The border of what was read keeps to the tolerance in the picture that it was made for.
+  const Scene scene = find_scene("teacup")->make();
+  const nlohmann::json seen = modelled["cameras"][0];
+  const auto vector = [&](const char* key) {
+    return glm::dvec3(seen[key][0].get<double>(), seen[key][1].get<double>(), seen[key][2].get<double>());
+  };
+  CameraSettings asked = scene.camera;
+  asked.width_px = asked.height_px = 300;
+  asked.eye = vector("eye");
+  asked.target = vector("target");
+  asked.up = vector("up");
+  const Camera camera = resolve_camera(asked, bounds(scene));
+  Scene read;
+  read.objects.push_back({.name = "teacup", .source = MeshSource{mesh}});
+  const SceneModel model = build_model(read, {.kind = "mesh"});
+  PlanView view;
+  view.camera = camera;
+  view.truth = solve_truth(scene, camera, {}, {});
+  double trace_ms = 0.0;
+  EXPECT_LE(measure_errors(model, view, 0.4, {}, trace_ms).border_px, 0.25);
+}
+
+TEST(LocalModel, WhatHasNoEffectIsRefused) {
+  const auto error_of = [](const std::vector<std::string>& arguments) {
+    const RunResult run = run_limn(arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    return run.err;
+  };
+  EXPECT_NE(error_of({"render", "ellipsoid", "--local"}).find("a number of pixels"), std::string::npos);
+  EXPECT_NE(error_of({"render", "ellipsoid", "--local", "0"}).find("a number of pixels above 0"), std::string::npos);
+  EXPECT_NE(error_of({"render", "ellipsoid", "--local", "1", "--level", "3"}).find("--level"), std::string::npos);
+  EXPECT_NE(error_of({"render", "ellipsoid", "--local", "1", "--surface", "level_set"}).find("--surface mesh"), std::string::npos);
+  EXPECT_NE(error_of({"render", "ellipsoid", "--local", "1", "--tolerance", "1"}).find("--local"), std::string::npos);
+  EXPECT_NE(error_of({"export", "ellipsoid", "--size", "300x300"}).find("--local"), std::string::npos);
+  EXPECT_NE(error_of({"export", "ellipsoid", "--local", "1", "-o", "x.vdb"}).find("--surface mesh"), std::string::npos);
+}
+
+TEST(LocalModel, APlanTriesLocalMeshesAndSaysWhatTheOneChosenSaves) {
+  const Scene scene = find_scene("ellipsoid")->make();
+  PlanView view;
+  view.camera = camera_of(scene, 0, 1, {300, 300});
+  view.truth = solve_truth(scene, view.camera, {}, {});
+  PlanSettings settings;
+  settings.tolerance_px = 0.1;
+  settings.kinds = {"mesh"};
+  settings.local = true;
+  ProgressBar bar(false);
+  const PlanAnswer answer = make_plan(scene, {view}, settings, {}, bar);
+  const auto is_local = [&](const PlanTrial& trial) { return answer.ladders[trial.ladder].local.has_value(); };
+  EXPECT_TRUE(std::any_of(answer.trials.begin(), answer.trials.end(), is_local));
+  ASSERT_TRUE(answer.chosen);
+  // Which of the two is faster is for the machine to say; what is said of a local one must be so.
+  if (!is_local(answer.trials[*answer.chosen])) return;
+  const PlanTrial& chosen = answer.trials[*answer.chosen];
+  EXPECT_LE(chosen.measured.border_px, 0.1);
+  EXPECT_GT(answer.curvature_triangles, 2 * chosen.triangles);
+  if (answer.uniform) {
+    EXPECT_GT(answer.trials[*answer.uniform].triangles, 5 * chosen.triangles);
+  }
+}
+
+}  // namespace
+}  // namespace limn

@@ -2,7 +2,7 @@
 // What a camera frames of a scene: its surface, not the box around it.
 
 #include "raymarch/scene.h"
-#include "sdf/framing.h"
+#include "sdf/framed_surface.h"
 
 namespace limn {
 

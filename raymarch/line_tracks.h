@@ -42,7 +42,8 @@ struct ChainEvent {
   LineClass line_class = LineClass::contour;   ///< Of the chain.
   int id = 0;                                  ///< Of the chain that appears or goes.
   int other = -1;                              ///< Of the chain it came from, went into, or shares parts with; -1: none.
-  double from = 0.0, to = 1.0;                 ///< Times between which it happens; frames are 1 apart.
+  double from = 0.0,                           ///< Time before which it does not happen; frames are 1 apart.
+      to = 1.0;                                ///< Time by which it has happened.
   glm::dvec2 px{0.0};                          ///< Image point.
   /// What appears or vanishes is no longer than this at the nearer of the two times: the chain, or the gap between the parts; px.
   double length_px = 0.0;

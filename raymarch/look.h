@@ -19,8 +19,8 @@ struct LookInk {
 
 /// Shading, ink and ground that go together.
 struct Look {
-  Description about{};
-  ShadingSettings shading{};
+  Description about{};          ///< Name, help and source.
+  ShadingSettings shading{};    ///< Beneath the ink.
   std::vector<LookInk> inks{};  ///< In order, the last on top.
   glm::vec3 ground{1.0f};       ///< Behind everything, linear, unless the picture is transparent.
 };

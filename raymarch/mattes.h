@@ -15,8 +15,8 @@ inline constexpr int kMatteRanks = 4;  ///< Names kept for each pixel: the first
 
 /// A name of a matte.
 struct MatteName {
-  std::string name{};
-  std::uint32_t hash = 0;
+  std::string name{};      ///< Of an object or a material.
+  std::uint32_t hash = 0;  ///< matte_hash(name).
 };
 
 /// One kind of matte.
@@ -29,9 +29,11 @@ struct Matte {
 
 /// Mattes of a finished picture.
 struct Mattes {
-  int width = 0, height = 0;
+  int width = 0,    ///< Pixels.
+      height = 0;   ///< Pixels.
   int samples = 1;  ///< Of each pixel.
-  Matte objects{}, materials{};
+  Matte objects{},  ///< By the names of objects.
+      materials{};  ///< By the names of materials.
 };
 
 /// MurmurHash3_x86_32 (Appleby 2011) with seed 0, moved off the bits that would be no finite float other than 0.

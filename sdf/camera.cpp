@@ -9,7 +9,7 @@
 
 #include "sdf/camera_framing.h"
 #include "sdf/error.h"
-#include "sdf/framing.h"
+#include "sdf/framed_surface.h"
 
 namespace limn {
 namespace {

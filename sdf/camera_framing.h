@@ -1,7 +1,7 @@
 #pragma once
 // Internal: where a camera stands so that a surface, or the corners of a box, fill its picture.
 
-#include "sdf/framing.h"
+#include "sdf/framed_surface.h"
 
 namespace limn {
 

@@ -8,23 +8,24 @@ namespace limn {
 
 /// Small pieces come from where all memory does. Throws std::bad_alloc.
 struct LargePages {
-  static void* take(size_t bytes);
-  static void give_back(void* memory);
+  static void* take(size_t bytes);      ///< At least one byte.
+  static void give_back(void* memory);  ///< What take() gave.
 };
 
 /// For std::vector: elements that it is given no value for are left unset.
 template <class T>
 struct LargePageAllocator {
-  using value_type = T;
+  using value_type = T;  ///< As std::vector asks.
   LargePageAllocator() = default;
+  /// All are alike.
   template <class U>
   LargePageAllocator(const LargePageAllocator<U>&) {}
-  T* allocate(size_t count) { return static_cast<T*>(LargePages::take(count * sizeof(T))); }
-  void deallocate(T* memory, size_t) { LargePages::give_back(memory); }
+  T* allocate(size_t count) { return static_cast<T*>(LargePages::take(count * sizeof(T))); }  ///< Room for `count` elements.
+  void deallocate(T* memory, size_t) { LargePages::give_back(memory); }                       ///< What allocate() gave.
   /// Leaves it unset.
   template <class U>
   void construct(U*) {}
-  bool operator==(const LargePageAllocator&) const { return true; }
+  bool operator==(const LargePageAllocator&) const { return true; }  ///< Memory of one may be given back by another.
 };
 
 }  // namespace limn

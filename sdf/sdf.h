@@ -13,7 +13,7 @@
 #include "sdf/field.h"
 #include "sdf/field_from_formula.h"
 #include "sdf/field_from_functions.h"
-#include "sdf/framing.h"
+#include "sdf/framed_surface.h"
 #include "sdf/geometry.h"
 #include "sdf/guard.h"
 #include "sdf/image.h"

@@ -447,7 +447,10 @@ CLI::Option* add_metric(CLI::App& app, Options& options) {
   return add(app,
              {"--metric", "border|silhouette",
               "what has to be right: border (the rim's ink, inside and outside) or silhouette; default border", kPlan},
-             [&options](const std::string& text) { options.plan.silhouette = parse_plan_metric("--metric", text); });
+             [&options](const std::string& text) {
+               options.plan.silhouette = parse_plan_metric("--metric", text);
+               options.metric_given = true;
+             });
 }
 
 }  // namespace

@@ -72,6 +72,7 @@ struct Options {
   SweepSpec sweep{};
   PlanSpec plan{};
   LocalOptions local{};
+  bool metric_given = false;  ///< --metric, whatever its value.
   StabilityOptions stability{};
   StudyRunOptions study{};
   FramePath frames{.frames = 1};  ///< `limn render` and `limn contours`.

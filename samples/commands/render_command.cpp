@@ -93,8 +93,8 @@ struct Render {
 
 /// What has no meaning without something else in the call.
 void refuse_alone(const Options& options) {
-  if (options.plan.silhouette && !options.local.asked && !options.plan.tolerance_px)
-    throw InputError({"", "metric", "", "has no effect without tolerance or local; leave it out", ""});
+  if (options.metric_given && !options.local.asked && !options.plan.tolerance_px)
+    throw InputError({"", "--metric", "", "has no effect", "--tolerance PX or --local PX beside it"});
   if (options.local.asked && options.local.tolerance_px && options.plan.tolerance_px)
     throw InputError({"", "local", "", "beside tolerance the plan chooses how fine the model is", "--local without a number"});
   if (options.local.asked && !options.local.tolerance_px && !options.plan.tolerance_px)
@@ -314,7 +314,7 @@ Options with_defaults(Options options) {
 }
 
 // Where nobody names a method, and the surface is flat for the most part, its lines are drawn: a rim inks whole faces.
-void choose_method(const Render& render, Options& options) {
+void choose_method(Render& render, Options& options) {
   const BorderSpec& border = options.spec.border;
   const bool named = !border.methods.empty() || border.look || !border.parameters.empty() || !render.input.borders.empty();
   const bool measured = options.frames.frames > 1 || options.plan.tolerance_px;
@@ -322,9 +322,8 @@ void choose_method(const Render& render, Options& options) {
   const double share = flat_share(render.input.scene, render.surface);
   if (share <= kMostlyFlat) return;
   options.spec.border.methods = {kMethodOfFlat};
-  if (!options.quiet)
-    print_note(fmt::format("{:.0f} % of the surface is flat: drawn by its lines (--method {}); --method {} inks whole faces", 100.0 * share,
-                           kMethodOfFlat, kDefaultMethod));
+  render.notes.push_back(fmt::format("{:.0f} % of the surface is flat: drawn by its lines (--method {}); --method {} inks whole faces",
+                                     100.0 * share, kMethodOfFlat, kDefaultMethod));
 }
 
 int run(const Options& given) {
@@ -383,7 +382,7 @@ int run(const Options& given) {
   const SurfaceInfo info = total(model);
   print_warnings(options, info.warnings);
   render.warnings.insert(render.warnings.end(), info.warnings.begin(), info.warnings.end());
-  render.notes = levels;
+  render.notes.insert(render.notes.end(), levels.begin(), levels.end());
   render.notes.insert(render.notes.end(), info.notes.begin(), info.notes.end());
   if (options.frames.frames > 1) render.flicker = watch_flicker(options.spec, options.frames, render.input, render.surface);
   const glm::dvec3 up = camera_settings(options.spec.camera, render.input).up;

@@ -2,7 +2,7 @@
 // A camera for people and programs that want to change it and give it back.
 
 #include "samples/output/output.h"
-#include "sdf/framing.h"
+#include "sdf/framed_surface.h"
 
 namespace limn {
 

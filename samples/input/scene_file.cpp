@@ -15,7 +15,7 @@
 #include "samples/input/field_reader.h"
 #include "samples/input/named_file.h"
 #include "samples/input/toml_reader.h"
-#include "sdf/framing.h"
+#include "sdf/framed_surface.h"
 #include "sdf/guard.h"
 #include "subdiv/import.h"
 

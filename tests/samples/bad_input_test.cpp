@@ -201,7 +201,8 @@ TEST(Warnings, OfManyObjectsAlikeIsOneLine) {
   std::string scene;
   for (int i = 0; i < 40; ++i)
     scene += fmt::format("[[object]]\nname = \"sheet {}\"\nmesh = \"sheet.obj\"\ntranslate = [{}, 0, 0]\n", i, 2 * i);
-  const RunResult result = run_limn({"render", folder.write("many.toml", scene), "--size", "16x12", "-o", folder.file("a.png"), "--json"});
+  const RunResult result =
+      run_limn({"render", folder.write("many.toml", scene), "--size", "16x12", "--method", "rim", "-o", folder.file("a.png"), "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const nlohmann::json warnings = result.json()["warnings"];
   ASSERT_GE(warnings.size(), 1u);

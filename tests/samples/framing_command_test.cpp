@@ -55,7 +55,7 @@ std::vector<std::string> foreign_inputs(const TemporaryFolder& folder) {
   for (const std::vector<std::string>& made : {std::vector<std::string>{"rook", "rook.obj"},
                                                {"teacup", "teacup.obj", "--level", "3"},
                                                {"tilted_torus", "torus.ply", "--surface", "mesh", "--level", "4"},
-                                               {"machined_part", "part.stl", "--surface", "mesh", "--level", "4"},
+                                               {"machined_part", "part.obj", "--surface", "mesh", "--level", "4"},
                                                {"gyroid", "gyroid.vdb", "--voxels", "96"},
                                                {"ellipsoid", "egg.vdb", "--voxels", "64"}}) {
     files.push_back(folder.file(made[1]));

@@ -36,7 +36,8 @@ TEST_P(ListKind, TextNamesTheSameEntries) {
   for (const json& entry : document) EXPECT_NE(text.out.find(entry.at("name").get<std::string>()), std::string::npos);
 }
 
-INSTANTIATE_TEST_SUITE_P(List, ListKind, testing::Values("shapes", "surfaces", "gradients", "normals", "methods", "metrics", "lines", "scenes"));
+INSTANTIATE_TEST_SUITE_P(List, ListKind,
+                         testing::Values("shapes", "surfaces", "gradients", "normals", "methods", "metrics", "lines", "scenes"));
 
 TEST(List, EveryShapeOfTheContractIsThereWithItsParameters) {
   const json document = run_limn({"list", "shapes", "--json"}).json();

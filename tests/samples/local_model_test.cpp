@@ -110,8 +110,8 @@ TEST(LocalModel, OfAnyEllipsoidVerticesLieOnTheSurfaceAndNoPartIsFartherOffThanS
 
 TEST(LocalModel, AnExportedCageIsWatertightAndReadsBackWithTheSameBorder) {
   const TemporaryFolder folder;
-  const auto file = folder.path() / "teacup.obj";
-  const RunResult run = run_limn({"export", "teacup", "--local", "0.25", "--size", "300x300", "-o", file.string()});
+  const auto file = folder.path() / "junction.obj";
+  const RunResult run = run_limn({"export", "pipe_junction", "--local", "0.25", "--size", "300x300", "-o", file.string()});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const Mesh mesh = load_mesh(file);
   EXPECT_EQ(open_edges(mesh), 0u);
@@ -122,10 +122,11 @@ TEST(LocalModel, AnExportedCageIsWatertightAndReadsBackWithTheSameBorder) {
     call.push_back(folder.file("picture.png"));
     return run_limn(call).json();
   };
-  const auto modelled = json_of({"teacup", "--local", "0.25"});
+  const auto modelled = json_of({"pipe_junction", "--local", "0.25"});
   EXPECT_EQ(modelled["surface"]["triangles"].get<size_t>(), mesh.face_count());
   // The border of what was read keeps to the tolerance in the picture that it was made for.
-  const Scene scene = find_scene("teacup")->make();
+  const Scene scene = find_scene("pipe_junction")->make();
+  ASSERT_EQ(scene.objects.size(), 1u);
   const nlohmann::json seen = modelled["cameras"][0];
   const auto vector = [&](const char* key) {
     return glm::dvec3(seen[key][0].get<double>(), seen[key][1].get<double>(), seen[key][2].get<double>());
@@ -137,7 +138,7 @@ TEST(LocalModel, AnExportedCageIsWatertightAndReadsBackWithTheSameBorder) {
   asked.up = vector("up");
   const Camera camera = resolve_camera(asked, bounds(scene));
   Scene read;
-  read.objects.push_back({.name = "teacup", .source = MeshSource{mesh}});
+  read.objects.push_back({.name = "junction", .source = MeshSource{mesh}});
   const SceneModel model = build_model(read, {.kind = "mesh"});
   PlanView view;
   view.camera = camera;

@@ -201,7 +201,8 @@ TEST(Background, TakesColorsAndRefusesWhatIsBrighterThanWhite) {
   const TemporaryFolder folder;
   const auto picture = [&](const std::string& color) {
     const std::string file = folder.file("a.png");
-    const RunResult result = run_limn({"render", "ellipsoid", "--size", "16x12", "--background", color, "-o", file, "-q"});
+    const RunResult result =
+        run_limn({"render", "ellipsoid", "--size", "16x12", "--samples", "1", "--background", color, "-o", file, "-q"});
     return result.exit_code == 0 ? read_bytes(file) : "refused: " + result.err;
   };
   const std::string gray = picture("#808080");

@@ -14,7 +14,7 @@ struct LocalSettings {
 };
 
 /// How far a local model may stand off the surface, along its normal, where no border runs; pixels of the pictures it was made for.
-inline constexpr double kLocalCoarse_px = 2.4;
+inline constexpr double kLocalCoarse_px = 2.6;
 
 /// Empty where `object` has a local mesh, else why not: it has no resolution to choose.
 std::string why_not_local(const SceneObject& object, const SurfaceSettings& settings);

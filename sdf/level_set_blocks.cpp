@@ -16,7 +16,7 @@ std::shared_ptr<LevelSetData> join_blocks(std::span<const LevelSetBlock> blocks,
   if (std::none_of(blocks.begin(), blocks.end(), is_active))
     throw InputError({.file = {}, .field = name, .value = {}, .problem = "holds no surface", .expected = "a band with active voxels"});
   const auto background = static_cast<float>(voxel_size * half_width_voxels);
-  const auto data = make_level_set(nano_grid(blocks, background), {glm::dmat3(voxel_size), origin}, name, half_width_voxels);
+  auto data = make_level_set(nano_grid(blocks, background), {glm::dmat3(voxel_size), origin}, name, half_width_voxels);
   if (const std::int64_t torn = cells_lacking(LevelSet(data), find_gradient("cell")); torn > 0)
     data->info.warnings.push_back(std::to_string(torn) + " cells on the surface reach beyond the band; the surface may have gaps there");
   data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();

@@ -83,7 +83,8 @@ std::string gigabytes(double bytes) { return fmt::format("{:.2f} GB", bytes / 1e
 /// Refused before the memory is taken. Halving the cubes multiplies those on a surface by four.
 void check_size(size_t cubes, int size, const LevelSetSettings& settings) {
   if (static_cast<double>(cubes) * static_cast<double>(kBlockBytes) <= static_cast<double>(settings.max_bytes)) return;
-  const double blocks = static_cast<double>(cubes) * std::pow(static_cast<double>(size / kBlock), 2.0);
+  const int blocks_along = size / kBlock;
+  const double blocks = static_cast<double>(cubes) * blocks_along * blocks_along;
   const double bytes = blocks * static_cast<double>(kBlockBytes);
   const double factor = std::sqrt(bytes / static_cast<double>(settings.max_bytes));
   throw SizeError({{},

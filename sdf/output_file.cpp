@@ -203,7 +203,7 @@ void write_whole(const fs::path& target, std::string_view content) {
   write_whole(target, [&](const fs::path& path) { write_bytes(path, target, content); });
 }
 
-OutputFile bytes_output(fs::path target, std::string bytes) {
+OutputFile bytes_output(const fs::path& target, std::string bytes) {
   return {target, [target, bytes = std::move(bytes)](const fs::path& path) { write_bytes(path, target, bytes); }};
 }
 

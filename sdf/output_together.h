@@ -16,7 +16,7 @@ struct OutputFile {
 };
 
 /// Text or bytes at hand.
-OutputFile bytes_output(std::filesystem::path target, std::string bytes);
+OutputFile bytes_output(const std::filesystem::path& target, std::string bytes);
 
 /// For `write` of an OutputFile: throws MachineError naming `target` where the disk fails.
 void write_bytes(const std::filesystem::path& temporary, const std::filesystem::path& target, std::string_view content);

@@ -111,6 +111,7 @@ std::vector<glm::dvec3> subdivided(const Far::TopologyRefiner& refiner, const st
   for (size_t v = 0; v < points.size(); ++v) points[v].p = positions[v];
   Far::PrimvarRefinerReal<double>(refiner).Interpolate(1, points, finer);
   std::vector<glm::dvec3> result;
+  result.reserve(finer.size());
   for (const WeightedPoint& point : finer) result.push_back(point.p);
   return result;
 }

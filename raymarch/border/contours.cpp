@@ -163,6 +163,7 @@ std::vector<Outline> outlines(const ViewGraph& graph, const Settings& settings, 
     }
   }
   std::vector<Outline> result;
+  result.reserve(visible.size());
   for (const DrawnChain& drawn : visible) result.push_back(outline_of(stroke_of(drawn, settings, pen), drawn.chain->closed, kArc_px));
   if (!settings.hidden) return result;
   for (const DrawnChain& drawn : drawn_chains(graph, true, settings.shortest_px)) {

@@ -126,7 +126,7 @@ LocalStart start_from_field(const Field& field, std::int64_t max_bytes) {
   }
   start.source.has_folds = true;
   // The walls of a tessellated field are resolved from the start; those of a cage may be thin beside its faces.
-  start.source.coarse_px = 1.8;
+  start.source.coarse_px = 1.9;
   start.source.middles = [field](const LocalTriangles& mesh, std::span<const LocalEdge> edges, std::span<EdgeMiddle> middles) {
     field_middles(field, mesh, edges, middles);
   };

@@ -90,7 +90,7 @@ std::optional<ObjectMesh> local_mesh_of(const SceneObject& object, const Surface
 }  // namespace
 
 std::string why_not_local(const SceneObject& object, const SurfaceSettings& settings) {
-  if (const std::string reason = cannot_mesh(object); !reason.empty()) return reason;
+  if (std::string reason = cannot_mesh(object); !reason.empty()) return reason;
   if (std::holds_alternative<Field>(object.source) || scheme_of(object, settings)) return {};
   return "it has one resolution only: no field and no subdivision cage";
 }

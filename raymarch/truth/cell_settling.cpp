@@ -215,7 +215,7 @@ void settle(const CellSearch& search, const CellTapes& tapes, const std::vector<
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     Settler settler(search, tapes, tubes);
     for (size_t begin = range.begin(), end = begin; begin < range.end(); begin = end) {
-      const auto same = [&](size_t i) { return cells[i] >> kBlockCuts == cells[begin] >> kBlockCuts; };
+      const auto same = [&](size_t i) { return (cells[i] >> kBlockCuts) == (cells[begin] >> kBlockCuts); };
       while (end < range.end() && end - begin < kLanes && same(end)) ++end;
       settler.stay(std::span(cells).subspan(begin, end - begin), std::span(left).subspan(begin, end - begin));
     }

@@ -84,6 +84,7 @@ std::optional<LocalSettings> local_of(const Options& options, const SceneInput& 
   refuse_local_without_effect(options.spec, input.scene, settings, {kind});
   refuse_eye_of_views(camera, options.spec.views);
   std::vector<Camera> cameras;
+  cameras.reserve(static_cast<size_t>(options.spec.views));
   for (int view = 0; view < options.spec.views; ++view)
     cameras.push_back(
         camera_of_view(camera_settings(camera, input), framed_input(camera, input), framing_settings(camera), view, options.spec.views));

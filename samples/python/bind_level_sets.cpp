@@ -149,7 +149,7 @@ py::tuple active_voxels(const LevelSet& level_set) {
     for (std::uint32_t n = 0; n < 512; ++n) {
       if (!first[leaf].isActive(n) || next >= count) continue;
       const nanovdb::Coord at = first[leaf].offsetToGlobalCoord(n);
-      for (int axis = 0; axis < 3; ++axis) indices.mutable_at(next, axis) = at[axis];
+      for (int axis = 0; axis < 3; ++axis) indices.mutable_at(next, axis) = at[static_cast<std::uint32_t>(axis)];
       values.mutable_at(next++) = first[leaf].getValue(n);
     }
   }
@@ -161,7 +161,7 @@ py::tuple dense_values(const LevelSet& level_set, int margin) {
   if (margin < 0 || margin > 1024) throw InputError({"", "margin", std::to_string(margin), "out of range", "0 to 1024 voxels"});
   const auto box = level_set.data().grid->indexBBox();
   const nanovdb::Coord first = box.min().offsetBy(-margin), last = box.max().offsetBy(margin);
-  const auto side = [&](int axis) { return static_cast<py::ssize_t>(last[axis] - first[axis] + 1); };
+  const auto side = [&](std::uint32_t axis) { return py::ssize_t{last[axis]} - first[axis] + 1; };
   py::array_t<float> values({side(0), side(1), side(2)});
   float* out = values.mutable_data();
   run_unlocked([&](const Stopped& stopped) {

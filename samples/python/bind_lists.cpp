@@ -34,6 +34,7 @@ Entries entries(const std::string& kind) {
       {"lines", [] { return entries_of(line_classes()); }},  {"looks", [] { return entries_of(looks()); }},
       {"shadings", [] { return entries_of(shadings()); }}};
   std::vector<std::string> names;
+  names.reserve(kinds.size());
   for (const auto& [name, list] : kinds) names.push_back(name);
   const auto found = kinds.find(kind);
   if (found == kinds.end()) throw InputError({"", "kind", kind, "there is no such list", known_names(kind, names)});

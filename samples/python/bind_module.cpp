@@ -42,7 +42,7 @@ void bind_errors(py::module_& module) {
   module.attr("MachineError") = py::handle(machine_error);
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
-      if (thrown) std::rethrow_exception(thrown);
+      if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const InputError& error) {
       raise_input_error(py::reinterpret_borrow<py::object>(input_error), error);
     } catch (const MachineError& error) {

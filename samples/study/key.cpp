@@ -130,8 +130,8 @@ void name_cells(Study& study) {
   for (const StudyModel& model : study.models) models.push_back(surface_text(model.settings));
   for (const StudyMethod& method : study.methods) {
     std::string text = "method " + method.call.method->about.name;
-    for (const auto& [name, value] : method.parameters) text += " " + name + "=" + value;
-    methods.push_back(text);
+    for (const auto& [name, value] : method.parameters) text.append(" ").append(name).append("=").append(value);
+    methods.push_back(std::move(text));
   }
   std::string all;
   for (StudyCell& cell : study.cells) {

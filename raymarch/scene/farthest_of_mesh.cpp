@@ -11,8 +11,9 @@ namespace limn {
 namespace {
 
 constexpr size_t kBlock = size_t{1} << 15;        // vertices that one thread takes
-constexpr int kFinest = 3;                        // level of cages
-constexpr std::int64_t kMostFaces = 50'000;       // of a refined cage
+constexpr int kFinest = 5, kUsual = 3;            // levels of cages
+constexpr std::int64_t kMostFaces = 50'000;       // of a refined cage,
+constexpr std::int64_t kMostFine = 8'000;         // and beyond the usual level
 constexpr size_t kMostRefined = size_t{200'000};  // faces of a cage; beyond it the surface lies close to its vertices
 
 /// The mesh whose vertices stand for a cage's limit surface.
@@ -20,7 +21,8 @@ SharedMesh on_limit(const MeshSource& source) {
   if (!source.scheme || source.mesh->face_count() > kMostRefined) return source.mesh;
   try {
     int level = kFinest;
-    while (level > 0 && predict_refined_size(source.mesh, *source.scheme, level).faces > kMostFaces) --level;
+    // A cage of few faces is coarse at the usual level still.
+    while (level > 0 && predict_refined_size(source.mesh, *source.scheme, level).faces > (level > kUsual ? kMostFine : kMostFaces)) --level;
     return refine(source.mesh, {.scheme = *source.scheme, .level = level, .normals = NormalKind::flat}, source.file);
   } catch (const InputError&) {
     return source.mesh;  // what is wrong with the cage is told where the model is built

@@ -5,6 +5,7 @@
 
 #include "sdf/error.h"
 #include "sdf/shape.h"
+#include "sdf/tape_jets.h"
 
 namespace limn {
 
@@ -32,8 +33,9 @@ double projected_distance(FieldEvaluator& evaluator, const glm::dvec3& point, do
 
 }  // namespace
 
-void signed_distances(FieldEvaluator& evaluator, std::span<const glm::dvec3> points, double half_width, std::span<double> distances) {
+void signed_distances(DistanceEvaluator& distance, std::span<const glm::dvec3> points, double half_width, std::span<double> distances) {
   LIMN_CHECK(points.size() == distances.size() && points.size() <= 512);
+  FieldEvaluator& evaluator = distance.evaluator;
   const FieldTraits& traits = evaluator.field().traits();
   evaluator.values(points, distances);
   if (traits.exact_distance) return;
@@ -50,12 +52,14 @@ void signed_distances(FieldEvaluator& evaluator, std::span<const glm::dvec3> poi
     near[count] = points[i];
     index[count++] = i;
   }
-  std::array<FieldJet, 512> jets;
-  evaluator.jets(std::span(near).first(count), std::span(jets).first(count));
+  if (count == 0) return;
+  if (!distance.tape) distance.tape.emplace(evaluator.field());
+  std::array<JetDistance, 512> estimates;
+  tape_distances(*distance.tape, std::span(near).first(count), distance.scratch, std::span(estimates).first(count));
   for (size_t k = 0; k < count; ++k) {
     const double value = distances[index[k]];
     const double at_least = std::abs(value) / traits.lipschitz;
-    const JetDistance estimate = distance_from_jet(jets[k]);
+    const JetDistance& estimate = estimates[k];
     double size = std::max(std::abs(estimate.distance), at_least);
     // Far out by its first-order estimate as well, it is not worth the iteration.
     if (!estimate.reasonable && at_least < half_width) size = projected_distance(evaluator, near[k], at_least, size);

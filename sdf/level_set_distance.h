@@ -1,15 +1,25 @@
 #pragma once
 // Internal: the signed distance of any field near its surface.
 
+#include <optional>
 #include <span>
 
 #include "sdf/field.h"
+#include "sdf/tape_lanes.h"
 
 namespace limn {
 
+/// Evaluates distances to one field; owns its scratch memory, so keep one for each thread.
+struct DistanceEvaluator {
+  explicit DistanceEvaluator(const Field& field) : evaluator(field) {}
+  FieldEvaluator evaluator;
+  std::optional<FieldTape> tape{};  ///< Made where it is needed first.
+  TapeScratch scratch{};
+};
+
 /// Signed distances at `points`, right to third order where |distance| <= half_width (world); beyond it only |distance| > half_width
 /// and the sign are. Exact fields are taken as they are. At most 512 points; sizes equal.
-void signed_distances(FieldEvaluator& evaluator, std::span<const glm::dvec3> points, double half_width, std::span<double> distances);
+void signed_distances(DistanceEvaluator& distance, std::span<const glm::dvec3> points, double half_width, std::span<double> distances);
 
 /// The distance that a jet alone tells, from value, gradient and second derivative along the gradient; `reasonable` is false where the
 /// curvature is too strong for it to mean anything.

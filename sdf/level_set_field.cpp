@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstring>
 #include <mutex>
+#include <optional>
 
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_distance.h"
@@ -134,12 +135,11 @@ std::vector<Cube> band_blocks(const Field& field, const Lattice& lattice, const 
   return cubes;
 }
 
-ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice) {
-  FieldEvaluator evaluator(cube.field);
+ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance) {
   std::array<glm::dvec3, 512> points;
   std::array<double, 512> distances;
   for (int n = 0; n < 512; ++n) points[static_cast<size_t>(n)] = lattice.node(cube.origin + glm::ivec3(n >> 6, (n >> 3) & 7, n & 7));
-  signed_distances(evaluator, points, lattice.half_width, distances);
+  signed_distances(distance, points, lattice.half_width, distances);
 
   block.origin = cube.origin;
   std::memset(block.active, 0, sizeof block.active);
@@ -148,7 +148,7 @@ ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice) 
     if (active) block.active[n >> 6] |= std::uint64_t{1} << (n & 63);
     block.values[n] = static_cast<float>(active ? distances[n] : std::copysign(lattice.half_width, distances[n]));
   }
-  return find_thin_places(evaluator, points, distances, lattice.h);
+  return find_thin_places(distance.evaluator, points, distances, lattice.h);
 }
 
 void check(const Field& field, const LevelSetSettings& settings) {
@@ -193,12 +193,16 @@ LevelSet level_set_from_field(const Field& field, const LevelSetSettings& settin
   std::vector<LevelSetBlock> blocks(cubes.size());
   Progress progress(settings.progress, cubes.size());
   std::atomic<std::int64_t> looked_at{0}, walls{0}, gaps{0};
-  parallel_for(size_t{0}, cubes.size(), [&](size_t i) {
-    const ThinPlaces found = fill(blocks[i], cubes[i], lattice);
-    looked_at += found.looked_at;
-    walls += found.walls;
-    gaps += found.gaps;
-    progress.step();
+  parallel_parts(cubes.size(), size_t{1}, [&](const IndexRange<size_t>& part) {
+    std::optional<DistanceEvaluator> distance;  // neighbours often share a field
+    for (size_t i = part.first; i < part.last; ++i) {
+      if (!distance || &distance->evaluator.field().program() != &cubes[i].field.program()) distance.emplace(cubes[i].field);
+      const ThinPlaces found = fill(blocks[i], cubes[i], lattice, *distance);
+      looked_at += found.looked_at;
+      walls += found.walls;
+      gaps += found.gaps;
+      progress.step();
+    }
   });
   const bool any_active = std::any_of(blocks.begin(), blocks.end(), [](const LevelSetBlock& block) {
     return std::any_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word != 0; });

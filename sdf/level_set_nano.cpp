@@ -146,11 +146,17 @@ void flood_fill(bool inside, const SignAt& sign_at, const Fill& fill) {
   }
 }
 
+/// All bytes before a node's values, those that pad its members among them.
+template <class Data, class Values>
+void clear_head(Data& data, const Values& values) {
+  auto* const first = reinterpret_cast<std::uint8_t*>(&data);
+  std::fill(first, first + (reinterpret_cast<const std::uint8_t*>(&values) - first), std::uint8_t{0});
+}
+
 void write_leaf(const LevelSetBlock& block, float background, Leaf& leaf) {
   auto& data = *leaf.data();
+  clear_head(data, data.mValues);
   data.setOrigin(coord(origin_of(block.origin, kLeafSide)));
-  data.mFlags = data.mBBoxDif[2] = data.mBBoxDif[1] = data.mBBoxDif[0] = 0;
-  data.mMinimum = data.mMaximum = data.mAverage = data.mStdDevi = 0.0f;
   for (int word = 0; word < 8; ++word) data.mValueMask.getWord<std::uint64_t>(word) = block.active[word];
   std::copy(std::begin(block.values), std::end(block.values), data.mValues);
   std::uint32_t first = 0;
@@ -183,12 +189,9 @@ template <class Node, class Child, class OriginOf>
 void write_internal(const glm::ivec3& origin, size_t first, size_t last, float background, const Child& child,
                     const OriginOf& origin_of_child, Node& node) {
   auto& data = *node.data();
+  clear_head(data, data.mTable);
   data.setOrigin(coord(origin));
   data.mBBox.max() = data.mBBox.min();
-  data.mFlags = 0;
-  data.mMinimum = data.mMaximum = data.mAverage = data.mStdDevi = 0.0f;
-  data.mValueMask.setOff();
-  data.mChildMask.setOff();
   for (size_t i = first; i < last; ++i) {
     const std::uint32_t n = Node::CoordToOffset(coord(origin_of_child(i)));
     data.mChildMask.setOn(n);

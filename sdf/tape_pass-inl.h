@@ -6,6 +6,7 @@
 #define LIMN_TAPE_PASS_INL_H
 #endif
 
+#include "sdf/lane_jet-inl.h"
 #include "sdf/lane_number-inl.h"
 #include "sdf/tape_lanes.h"
 #include "sdf/tape_scalar.h"
@@ -45,6 +46,17 @@ HWY_INLINE void put(const LaneSlope& a, double* to) {
   store(a.slope.upper, to + 4 * kLanes);
 }
 
+HWY_INLINE void get(const double* from, LaneJet& a) {
+  a.value = load(from);
+  for (int i = 0; i < 3; ++i) a.gradient[i] = load(from + (i + 1) * kLanes);
+  for (int i = 0; i < 6; ++i) a.hessian[i] = load(from + (i + 4) * kLanes);
+}
+HWY_INLINE void put(const LaneJet& a, double* to) {
+  store(a.value, to);
+  for (int i = 0; i < 3; ++i) store(a.gradient[i], to + (i + 1) * kLanes);
+  for (int i = 0; i < 6; ++i) store(a.hessian[i], to + (i + 4) * kLanes);
+}
+
 template <class T>
 struct Kind {};
 template <>
@@ -61,6 +73,11 @@ template <>
 struct Kind<LaneDual<3>> {
   static constexpr int kComponents = 4;
   static constexpr TapeNumber kNumber = TapeNumber::gradient;
+};
+template <>
+struct Kind<LaneJet> {
+  static constexpr int kComponents = 10;
+  static constexpr TapeNumber kNumber = TapeNumber::jet;
 };
 template <>
 struct Kind<LaneBound> {
@@ -84,6 +101,8 @@ HWY_INLINE T constant_of(double x) {
     return {value, {zero}};
   } else if constexpr (Kind<T>::kNumber == TapeNumber::gradient) {
     return {value, {zero, zero, zero}};
+  } else if constexpr (Kind<T>::kNumber == TapeNumber::jet) {
+    return {value, {zero, zero, zero}, {zero, zero, zero, zero, zero, zero}};
   } else if constexpr (Kind<T>::kNumber == TapeNumber::bound) {
     return {value, {value, value}};
   } else {
@@ -118,6 +137,11 @@ HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int
 HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int at, LaneDual<3>& x) {
   coordinate(pass, leaf, axis, at, x.value);
   for (int i = 0; i < 3; ++i) x.derivative[i] = reals(leaf.row[axis][i]);
+}
+HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int at, LaneJet& x) {
+  coordinate(pass, leaf, axis, at, x.value);
+  for (int i = 0; i < 3; ++i) x.gradient[i] = reals(leaf.row[axis][i]);
+  for (Reals& h : x.hessian) h = reals(0.0);
 }
 
 inline double along(const double* row, const glm::dvec3 (&spread)[3]) {

@@ -14,6 +14,10 @@ T lane_of(TapeNumber number, const double* from, int i) {
     Dual result{component(0), {component(1), 0.0, 0.0}};
     if (number == TapeNumber::gradient) result.gradient = {component(1), component(2), component(3)};
     return result;
+  } else if constexpr (std::is_same_v<T, Jet>) {
+    Jet result{component(0), {component(1), component(2), component(3)}, {}};
+    for (int k = 0; k < 6; ++k) result.hessian[static_cast<size_t>(k)] = component(4 + k);
+    return result;
   } else if constexpr (std::is_same_v<T, Interval>) {
     return {component(1), component(2)};
   } else {
@@ -29,6 +33,10 @@ void put_lane(TapeNumber number, const T& from, int i, double* to) {
   } else if constexpr (std::is_same_v<T, Dual>) {
     component(0) = from.value;
     for (int k = 0; k < (number == TapeNumber::gradient ? 3 : 1); ++k) component(1 + k) = from.gradient[static_cast<size_t>(k)];
+  } else if constexpr (std::is_same_v<T, Jet>) {
+    component(0) = from.value;
+    for (int k = 0; k < 3; ++k) component(1 + k) = from.gradient[static_cast<size_t>(k)];
+    for (int k = 0; k < 6; ++k) component(4 + k) = from.hessian[static_cast<size_t>(k)];
   } else if constexpr (std::is_same_v<T, Interval>) {
     component(1) = from.lower;
     component(2) = from.upper;
@@ -44,6 +52,7 @@ void put_lane(TapeNumber number, const T& from, int i, double* to) {
 template <class With>
 void for_parts(TapeNumber number, const With& with) {
   if (number == TapeNumber::dual || number == TapeNumber::gradient) return with(Dual{});
+  if (number == TapeNumber::jet) return with(Jet{});
   with(0.0);
   if (number == TapeNumber::bound) with(Interval{});
   if (number == TapeNumber::slope) with(Slope{});

@@ -10,6 +10,7 @@ enum class TapeNumber {
   value,
   dual,      ///< Value, derivative along a ray.
   gradient,  ///< Value, three derivatives.
+  jet,       ///< ... and six second ones.
   bound,     ///< Value at the middle, lower, upper.
   slope,     ///< ... and lower and upper of the derivative.
 };

@@ -23,7 +23,7 @@ struct State {
   int max_steps;
   double largest_width = 0.0;
   Box clip{};
-  mutable tbb::enumerable_thread_specific<FieldEvaluator> evaluators;
+  mutable tbb::enumerable_thread_specific<DistanceEvaluator> evaluators;
 };
 
 struct Lane {
@@ -78,10 +78,10 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
     Lane lane{i, 0, glm::dvec3(rays.origin(i)), glm::dvec3(rays.direction(i)), rays.t_min[i], rays.t_max[i], 0.0};
     if (lane.t < lane.t_end && clip_ray(state.clip, lane.origin, lane.direction, lane.t, lane.t_end)) lanes[active++] = lane;
   }
-  FieldEvaluator& evaluator = state.evaluators.local();
+  DistanceEvaluator& distance = state.evaluators.local();
   while (active > 0) {
     for (size_t k = 0; k < active; ++k) points[k] = lanes[k].origin + lanes[k].t * lanes[k].direction;
-    signed_distances(evaluator, std::span<const glm::dvec3>(points).first(active), 2.0 * state.largest_width,
+    signed_distances(distance, std::span<const glm::dvec3>(points).first(active), 2.0 * state.largest_width,
                      std::span(distances).first(active));
     size_t kept = 0;
     for (size_t k = 0; k < active; ++k) {
@@ -92,7 +92,7 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
     }
     active = kept;
   }
-  write_hits(evaluator, std::span<const Lane>(found).first(found_count), rays, hits);
+  write_hits(distance.evaluator, std::span<const Lane>(found).first(found_count), rays, hits);
 }
 
 struct Maker {

@@ -29,13 +29,7 @@ struct Superellipsoid {
 
   template <class T>
   T operator()(const Vector3<T>& p) const {
-    const T x = p.x * scalar<T>(inverse_radii.x);
-    T z = p.z * scalar<T>(inverse_radii.z);
-    if constexpr (std::is_same_v<T, Jet>) {
-      // On the axis itself the curvature of h is infinite and its weight 0; beside it their product is right.
-      if (x.value == 0.0 && z.value == 0.0) z.value = 1e-100;
-    }
-    const T around = power_norm(x, z, power_around);
+    const T around = power_norm(p.x * scalar<T>(inverse_radii.x), p.z * scalar<T>(inverse_radii.z), power_around);
     return (power_norm(around, p.y * scalar<T>(inverse_radii.y), power_up) - scalar<T>(1.0)) * scalar<T>(value_scale);
   }
   double support(const glm::dvec3& direction, double level) const {

@@ -174,7 +174,7 @@ TEST(LevelSetFromField, PartsWithoutInfluenceAreLeftOutWithoutATrace) {
   const glm::ivec3 lower(glm::floor(level_set.data().index_from_world.point(reach.lower)));
   const glm::ivec3 upper(glm::ceil(level_set.data().index_from_world.point(reach.upper)));
   const double half_width = settings.half_width_voxels * settings.voxel_size;
-  FieldEvaluator whole(field);
+  DistanceEvaluator whole(field);
   const auto accessor = level_set.data().accessor();
   std::int64_t active = 0;
   double worst = 0.0;

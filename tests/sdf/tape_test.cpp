@@ -10,7 +10,9 @@
 #include <hwy/highway.h>
 // clang-format on
 
+#include "sdf/tape_jets.h"
 #include "sdf/tape_lanes.h"
+#include "sdf/tape_text.h"
 #include "tests/sdf/random_field.h"
 
 namespace limn::test {
@@ -242,6 +244,39 @@ TEST(Tape, APrunedTapeIsTheSameNearTheSurfaceAndOnTheSameSideElsewhere) {
   EXPECT_LT(after, before * 9 / 10);
 }
 
+TEST(Tape, JetsHaveTheBitsOfTheFields) {
+  TapeScratch scratch;
+  over_random_fields(300, [&](Random& random, const Field& field, const FieldTape& tape) {
+    FieldEvaluator evaluator(field);
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i < kLanes; ++i) points.push_back(random.point(1.5));
+    points[0] = glm::dvec3(0.0);  // where norms have no direction
+    points[1].x = 0.0;
+    LaneArray lanes[3];
+    for (int i = 0; i < kLanes; ++i)
+      for (int axis = 0; axis < 3; ++axis) lanes[axis][i] = points[static_cast<size_t>(i)][axis];
+    SCOPED_TRACE(text_of(tape));
+    std::vector<FieldJet> own(points.size());
+    evaluator.jets(points, own);
+    LaneJets jets;
+    tape_jets(tape, lanes, scratch, jets);
+    std::vector<JetDistance> distances(points.size());
+    tape_distances(tape, points, scratch, distances);
+    constexpr int kRow[] = {0, 0, 0, 1, 1, 2}, kColumn[] = {0, 1, 2, 1, 2, 2};
+    for (int i = 0; i < kLanes; ++i) {
+      SCOPED_TRACE("point " + std::to_string(i));
+      const FieldJet& jet = own[static_cast<size_t>(i)];
+      // == tells no two zeros apart, nor do the distances.
+      EXPECT_EQ(jets.value[i], jet.value);
+      for (int k = 0; k < 3; ++k) EXPECT_EQ(jets.gradient[k][i], jet.gradient[k]) << "derivative " << k;
+      for (int k = 0; k < 6; ++k) EXPECT_EQ(jets.hessian[k][i], jet.hessian[kRow[k]][kColumn[k]]) << "second derivative " << k;
+      const JetDistance distance = distance_from_jet(jet);
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(distances[static_cast<size_t>(i)].distance), std::bit_cast<std::uint64_t>(distance.distance));
+      EXPECT_EQ(distances[static_cast<size_t>(i)].reasonable, distance.reasonable);
+    }
+  });
+}
+
 TEST(Tape, SinesAreRightToTwoUnitsInTheLastPlace) {
   // A gyroid of period 2 pi whose walls are thin: f = |sin x cos y + ...| / sqrt 3 - half the thickness, inside its ball.
   Random random(5);
@@ -275,6 +310,7 @@ TEST(Tape, EverySimdTargetGivesTheSameBits) {
       LaneArray values, with_slope, slopes, with_gradient;
       std::array<LaneArray, 3> gradients;
       LaneBounds bounds;
+      LaneJets jets;
     };
     std::vector<Results> all;
     std::vector<std::vector<TapeChoice>> choices;
@@ -285,6 +321,7 @@ TEST(Tape, EverySimdTargetGivesTheSameBits) {
       tape_values(tape, tape.steps, beams.rays, beams.middle, scratch, r.values);
       tape_slopes(tape, tape.steps, beams.rays, beams.middle, scratch, r.with_slope, r.slopes);
       tape_gradients(tape, tape.steps, beams.rays, beams.middle, scratch, r.with_gradient, r.gradients);
+      tape_jets(tape, beams.rays.origin, scratch, r.jets);
       tape_slope_bounds(tape, tape.steps, beams, scratch, r.bounds);
       all.push_back(r);
       choices.push_back(scratch.choices);

@@ -1,0 +1,98 @@
+#include "sdf/tape_jets.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "sdf/error.h"
+#include "sdf/simd.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sdf/tape_jets.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "sdf/tape_steps-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace limn {
+namespace HWY_NAMESPACE {
+namespace {
+
+const double* run_jets(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch) {
+  Pass pass(tape);
+  for (int axis = 0; axis < 3; ++axis) pass.point[axis] = points[axis];
+  return run_tape<LaneJet>(pass, tape.steps, scratch);
+}
+
+void jets(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch, LaneJets& jets) {
+  const double* const found = run_jets(tape, points, scratch);
+  LaneArray* const parts[] = {&jets.value,      &jets.gradient[0], &jets.gradient[1], &jets.gradient[2], &jets.hessian[0],
+                              &jets.hessian[1], &jets.hessian[2],  &jets.hessian[3],  &jets.hessian[4],  &jets.hessian[5]};
+  for (int k = 0; k < 10; ++k) std::copy_n(found + k * kLanes, kLanes, parts[k]->lane);
+}
+
+HWY_INLINE LaneMask is_finite(Reals x) { return abs(x) <= reals(std::numeric_limits<double>::max()); }
+
+/// distance_from_jet(), operation by operation. Bit i of `reasonable`: what it says of lane i.
+HWY_INLINE Reals distance_of(const LaneJet& jet, LaneMask& reasonable) {
+  const Reals(&g)[3] = jet.gradient;
+  const Reals(&h)[6] = jet.hessian;
+  const Reals slope = square_root(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+  const Reals first = jet.value / slope;
+  const Reals n[3] = {g[0] / slope, g[1] / slope, g[2] / slope};
+  const Reals bend = n[0] * (h[0] * n[0] + h[1] * n[1] + h[2] * n[2]) + n[1] * (h[1] * n[0] + h[3] * n[1] + h[4] * n[2]) +
+                     n[2] * (h[2] * n[0] + h[4] * n[1] + h[5] * n[2]);
+  const Reals root = reals(1.0) - reals(2.0) * bend * first / slope;
+  const LaneMask finite = is_finite(first);
+  reasonable = both(finite, both(root >= reals(0.25), root <= reals(4.0)));
+  const Reals second = reals(2.0) * first / (reals(1.0) + square_root(root));
+  const Reals endless = {hn::CopySign(reals(std::numeric_limits<double>::infinity()).v, jet.value.v)};
+  return select(reasonable, second, select(finite, first, endless));
+}
+
+/// At sixteen points; bit i of `reasonable`: whether that of lane i means anything.
+void distances(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch, LaneArray& result, unsigned& reasonable) {
+  const double* const found = run_jets(tape, points, scratch);
+  reasonable = 0;
+  for (int part = 0; part < kParts; ++part) {
+    LaneJet jet;
+    get(found + part * kWidth, jet);
+    LaneMask means;
+    store(distance_of(jet, means), result.lane + part * kWidth);
+    reasonable |= bits_of(means) << (part * kWidth);
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace limn
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace limn {
+namespace {
+HWY_EXPORT(jets);
+HWY_EXPORT(distances);
+}  // namespace
+
+void tape_jets(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch, LaneJets& found) {
+  HWY_DYNAMIC_DISPATCH(jets)(tape, points, scratch, found);
+}
+
+void tape_distances(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<JetDistance> found) {
+  LIMN_CHECK(points.size() == found.size());
+  for (size_t first = 0; first < points.size(); first += kLanes) {
+    const size_t count = std::min<size_t>(kLanes, points.size() - first);
+    LaneArray lanes[3], result;
+    for (size_t i = 0; i < kLanes; ++i) {
+      const glm::dvec3& point = points[first + std::min(i, count - 1)];
+      for (int axis = 0; axis < 3; ++axis) lanes[axis].lane[i] = point[axis];
+    }
+    unsigned reasonable = 0;
+    HWY_DYNAMIC_DISPATCH(distances)(tape, lanes, scratch, result, reasonable);
+    for (size_t i = 0; i < count; ++i) found[first + i] = {result.lane[i], (reasonable >> i & 1u) != 0};
+  }
+}
+
+}  // namespace limn
+#endif

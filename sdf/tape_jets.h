@@ -1,0 +1,26 @@
+#pragma once
+// Internal: jets of a field, and the distances that they tell, at many points with the widest SIMD of the machine. Every bit is that of
+// FieldEvaluator::jets() and of distance_from_jet() (sdf/level_set_distance.h).
+
+#include <cstdint>
+#include <span>
+
+#include "sdf/level_set_distance.h"
+#include "sdf/tape_lanes.h"
+
+namespace limn {
+
+/// Value, gradient and Hessian (xx, xy, xz, yy, yz, zz) of sixteen points.
+struct LaneJets {
+  LaneArray value;
+  LaneArray gradient[3];
+  LaneArray hessian[6];
+};
+
+/// f, its gradient and its Hessian at points[0][i], points[1][i], points[2][i] (world).
+void tape_jets(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch, LaneJets& jets);
+
+/// The distances that the jets tell at any number of points; sizes equal.
+void tape_distances(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<JetDistance> distances);
+
+}  // namespace limn

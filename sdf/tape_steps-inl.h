@@ -1,0 +1,243 @@
+// Internal: runs the steps of a tape, for any number of lanes' numbers. Included once a SIMD target, after <hwy/highway.h>.
+#if defined(LIMN_TAPE_STEPS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef LIMN_TAPE_STEPS_INL_H
+#undef LIMN_TAPE_STEPS_INL_H
+#else
+#define LIMN_TAPE_STEPS_INL_H
+#endif
+
+#include <span>
+
+#include "sdf/tape_pass-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace limn {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// Lanes in which an operand has no influence.
+struct Idle {
+  LaneMask a, b;
+};
+template <class T>
+HWY_INLINE Idle idle_of(const T& a, const T& b, const TapeStep& step, double margin) {
+  const bool lesser = step.operation == TapeOperation::minimum || step.operation == TapeOperation::smooth_minimum;
+  const bool smooth = step.operation == TapeOperation::smooth_minimum || step.operation == TapeOperation::smooth_maximum;
+  const double gap = smooth ? step.constant * (1.0 + 1e-12) : 0.0;
+  const LaneMask a_below = a.value.upper + gap < b.value.lower, b_below = b.value.upper + gap < a.value.lower;
+  if (!step.sign_decides) return lesser ? Idle{b_below, a_below} : Idle{a_below, b_below};
+  if (lesser) return {either(b_below, a.value.lower > reals(margin)), either(a_below, b.value.lower > reals(margin))};
+  return {either(a_below, a.value.upper < reals(-margin)), either(b_below, b.value.upper < reals(-margin))};
+}
+HWY_INLINE void add(LaneMask mask, int part, std::uint16_t& bits) {
+  bits = static_cast<std::uint16_t>(bits | bits_of(mask) << (part * kWidth));
+}
+
+/// `Used` vectors of a register's lanes are filled.
+template <class T, int Used>
+struct Runner {
+  static constexpr int kUsed = Used;
+  static constexpr int kSize = Kind<T>::kComponents * kLanes;
+  const Pass& pass;
+  double* registers;
+
+  HWY_INLINE double* at(std::uint32_t index, int part) const { return registers + index * kSize + part * kWidth; }
+  HWY_INLINE T read(std::uint32_t index, int part) const {
+    T a;
+    get(at(index, part), a);
+    return a;
+  }
+  HWY_INLINE void write(std::uint32_t index, int part, const T& a) const { put(a, at(index, part)); }
+};
+
+#define LIMN_STEP(expression)                        \
+  for (int part = 0; part < Runner::kUsed; ++part) { \
+    const T a = runner.read(step.a, part);           \
+    runner.write(step.target, part, expression);     \
+  }                                                  \
+  break
+#define LIMN_STEP2(expression)                                            \
+  for (int part = 0; part < Runner::kUsed; ++part) {                      \
+    const T a = runner.read(step.a, part), b = runner.read(step.b, part); \
+    runner.write(step.target, part, expression);                          \
+  }                                                                       \
+  break
+#define LIMN_STEP3(expression)                                            \
+  for (int part = 0; part < Runner::kUsed; ++part) {                      \
+    const T a = runner.read(step.a, part), b = runner.read(step.b, part); \
+    const T c = runner.read(step.c, part);                                \
+    runner.write(step.target, part, expression);                          \
+  }                                                                       \
+  break
+
+template <class T>
+HWY_INLINE T chosen(const T& a, const T& b, const TapeStep& step) {
+  switch (step.operation) {
+    case TapeOperation::minimum:
+      return minimum(a, b);
+    case TapeOperation::maximum:
+      return maximum(a, b);
+    case TapeOperation::smooth_minimum:
+      return smooth_minimum(a, b, step.constant);
+    default:
+      return -smooth_minimum(-a, -b, step.constant);
+  }
+}
+
+template <class T, class Runner>
+void run_choice(const Runner& runner, const TapeStep& step, TapeChoice* choice) {
+  for (int part = 0; part < Runner::kUsed; ++part) {
+    const T a = runner.read(step.a, part), b = runner.read(step.b, part);
+    T result = chosen(a, b, step);
+    if constexpr (kBounding<T>) {
+      const Idle idle = idle_of(a, b, step, runner.pass.tape->margin);
+      add(idle.a, part, choice->idle[0]);
+      add(idle.b, part, choice->idle[1]);
+      // Slopes are those of what pruning leaves.
+      if constexpr (Kind<T>::kNumber == TapeNumber::slope) {
+        if (step.sign_decides) result.slope = select(idle.b, a.slope, select(idle.a, b.slope, result.slope));
+      }
+    }
+    runner.write(step.target, part, result);
+  }
+}
+
+template <class T, class Runner>
+void run_absolute(const Runner& runner, const TapeStep& step, TapeChoice* choice) {
+  for (int part = 0; part < Runner::kUsed; ++part) {
+    const T a = runner.read(step.a, part);
+    if constexpr (kBounding<T>) {
+      add(a.value.upper < reals(0.0), part, choice->idle[0]);
+      add(a.value.lower > reals(0.0), part, choice->idle[1]);
+    }
+    runner.write(step.target, part, abs(a));
+  }
+}
+
+/// Of a distance to a corner only the greatest part matters where the others are negative.
+template <class T, class Runner>
+void run_corner(const Runner& runner, const TapeStep& step, TapeChoice* choice) {
+  const bool three = step.operation == TapeOperation::corner3;
+  for (int part = 0; part < Runner::kUsed; ++part) {
+    const T a = runner.read(step.a, part), b = runner.read(step.b, part);
+    const T c = three ? runner.read(step.c, part) : a;
+    if constexpr (kBounding<T>) {
+      const Reals zero = reals(0.0);
+      const Reals greatest = maximum(maximum(a.value.lower, b.value.lower), c.value.lower);
+      const auto idle = [&](const T& x) { return both(x.value.upper <= zero, x.value.upper < greatest); };
+      add(idle(a), part, choice->idle[0]);
+      add(idle(b), part, choice->idle[1]);
+      if (three) add(idle(c), part, choice->idle[2]);
+    }
+    runner.write(step.target, part, three ? corner_distance(a, b, c) : corner_distance(a, b));
+  }
+}
+
+template <class T, int Used>
+void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* registers) {
+  using Runner = Runner<T, Used>;
+  const Runner runner{pass, registers};
+  TapeChoice* choice = pass.choices;
+  for (const TapeStep& step : steps) {
+    switch (step.operation) {
+      case TapeOperation::coordinates:
+        for (int axis = 0; axis < 3; ++axis) {
+          if (!(step.axes >> axis & 1)) continue;
+          for (int part = 0; part < Runner::kUsed; ++part) {
+            T x;
+            coordinate(pass, pass.tape->leaves[step.leaf], axis, part * kWidth, x);
+            runner.write(step.target + static_cast<std::uint32_t>(axis), part, x);
+          }
+        }
+        break;
+      case TapeOperation::shape:
+        shape_by_lane(*pass.tape->leaves[step.leaf].leaf, Kind<T>::kNumber, Used * kWidth, runner.at(step.a, 0), runner.at(step.b, 0),
+                      runner.at(step.c, 0), runner.at(step.target, 0));
+        break;
+      case TapeOperation::narrow:
+        if constexpr (kBounding<T>) {
+          for (int part = 0; part < Runner::kUsed; ++part) {
+            T a = runner.read(step.a, part);
+            narrow(pass, pass.tape->leaves[step.leaf], part * kWidth, a);
+            runner.write(step.target, part, a);
+          }
+        }
+        break;
+      case TapeOperation::constant:
+        for (int part = 0; part < Runner::kUsed; ++part) runner.write(step.target, part, constant_of<T>(step.constant));
+        break;
+      case TapeOperation::copy:
+        LIMN_STEP(a);
+      case TapeOperation::negate:
+        LIMN_STEP(-a);
+      case TapeOperation::square:
+        LIMN_STEP(square(a));
+      case TapeOperation::absolute:
+        run_absolute<T>(runner, step, choice);
+        break;
+      case TapeOperation::sine:
+        LIMN_STEP(sine(a));
+      case TapeOperation::cosine:
+        LIMN_STEP(cosine(a));
+      case TapeOperation::add_constant:
+        LIMN_STEP(a + step.constant);
+      case TapeOperation::multiply_constant:
+        LIMN_STEP(a * step.constant);
+      case TapeOperation::add:
+        LIMN_STEP2(a + b);
+      case TapeOperation::subtract:
+        LIMN_STEP2(a - b);
+      case TapeOperation::multiply:
+        LIMN_STEP2(a * b);
+      case TapeOperation::norm2:
+        LIMN_STEP2(norm(a, b));
+      case TapeOperation::norm3:
+        LIMN_STEP3(norm(a, b, c));
+      case TapeOperation::corner2:
+      case TapeOperation::corner3:
+        run_corner<T>(runner, step, choice);
+        break;
+      case TapeOperation::power_norm:
+        power_norm_by_lane(Kind<T>::kNumber, Used * kWidth, runner.at(step.a, 0), runner.at(step.b, 0), step.constant,
+                           runner.at(step.target, 0));
+        break;
+      case TapeOperation::minimum:
+      case TapeOperation::maximum:
+      case TapeOperation::smooth_minimum:
+      case TapeOperation::smooth_maximum:
+        run_choice<T>(runner, step, choice);
+        break;
+    }
+    if constexpr (kBounding<T>) ++choice;
+  }
+}
+#undef LIMN_STEP
+#undef LIMN_STEP2
+#undef LIMN_STEP3
+
+template <class T>
+const double* run_tape(Pass& pass, std::span<const TapeStep> steps, TapeScratch& scratch) {
+  double* const registers = scratch.registers(registers_used(pass.tape->registers) * static_cast<size_t>(Kind<T>::kComponents * kLanes));
+  if constexpr (kBounding<T>) {
+    scratch.choices.assign(steps.size(), {});
+    pass.choices = scratch.choices.data();
+    constexpr int kHalf = kParts > 1 ? kParts / 2 : 1;
+    if (pass.beams->lanes <= kHalf * kWidth) {
+      run_steps<T, kHalf>(pass, steps, registers);
+      return registers;
+    }
+  }
+  run_steps<T, kParts>(pass, steps, registers);
+  return registers;
+}
+
+HWY_INLINE void take(const double* from, LaneArray& to) {
+  for (int i = 0; i < kLanes; i += kWidth) store(load(from + i), to.lane + i);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace limn
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -90,17 +90,22 @@ Slope slope_at(const Block& block, const glm::ivec3& here, const Scale& scale) {
 
 void count_crossings(const Block& block, const glm::ivec3& here, const glm::dvec3& node, const Scale& scale, Counts& found) {
   const double a = static_cast<double>(block.value(here));
+  // Most lie where no crossing can move the bounds.
+  const bool within = glm::all(glm::lessThan(found.crossings.lower, node)) && glm::all(glm::lessThan(node + 1.0, found.crossings.upper));
+  int crossings = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double b = static_cast<double>(block.value(here + step_along(axis)));
     if ((a < 0.0) == (b < 0.0)) continue;
+    ++crossings;
+    if (within) continue;
     glm::dvec3 crossing = node;
     crossing[axis] += a / (a - b);
     found.crossings = include(found.crossings, crossing);
-    const Slope slope = slope_at(block, here, scale);
-    const size_t kind = slope.in_band ? 0 : 1;
-    found.slope_sum[kind] += static_cast<std::int64_t>(slope.value);
-    ++found.slope_count[kind];
   }
+  const Slope slope = slope_at(block, here, scale);
+  const size_t kind = slope.in_band ? 0 : 1;
+  found.slope_sum[kind] += crossings * static_cast<std::int64_t>(slope.value);
+  found.slope_count[kind] += crossings;
 }
 
 /// The distance at a node outside the band next to one in it, carried on from inside: the width that the band really has there.
@@ -145,25 +150,34 @@ std::uint32_t at_edge_of_band(const ActiveRows& active, size_t x, size_t y) {
   return active[x][y] & ~all;
 }
 
+/// Bit z of a row (x, y) of a block and the nodes behind it: whether the node is inside.
+using InsideRows = std::array<std::array<std::uint32_t, 9>, 9>;
+
+InsideRows inside_rows(const NodeWindow& nodes) {
+  InsideRows rows;
+  for (size_t x = 0; x < 9; ++x)
+    for (size_t y = 0; y < 9; ++y) {
+      std::uint32_t bits = 0;
+      for (size_t z = 0; z < 9; ++z) bits |= (nodes[x + 1][y + 1][z + 1] < 0.0f ? 1u : 0u) << z;
+      rows[x][y] = bits;
+    }
+  return rows;
+}
+
 /// Nodes whose neighbour behind along an axis has the other sign.
-std::uint32_t before_crossing(const NodeWindow& nodes, size_t x, size_t y) {
-  std::uint32_t bits = 0;
-  for (size_t z = 1; z < 9; ++z) {
-    const bool inside = nodes[x][y][z] < 0.0f;
-    const bool changes =
-        (nodes[x + 1][y][z] < 0.0f) != inside || (nodes[x][y + 1][z] < 0.0f) != inside || (nodes[x][y][z + 1] < 0.0f) != inside;
-    bits |= (changes ? 1u : 0u) << (z - 1);
-  }
-  return bits;
+std::uint32_t before_crossing(const InsideRows& inside, size_t x, size_t y) {
+  const std::uint32_t own = inside[x][y];
+  return ((own ^ inside[x + 1][y]) | (own ^ inside[x][y + 1]) | (own ^ own >> 1)) & 0xffu;
 }
 
 void count_nodes(const Block& block, const glm::dvec3& origin, const Scale& scale, Counts& found) {
+  const InsideRows inside = inside_rows(block.nodes);
   for (size_t x = 0; x < 8; ++x)
     for (size_t y = 0; y < 8; ++y) {
       const std::uint32_t active = block.active[x + 2][y + 2] >> 2 & 0xffu;
       const std::uint32_t edge = at_edge_of_band(block.active, x + 2, y + 2) >> 2 & 0xffu;
       const auto place = [&](std::uint32_t bits) { return glm::ivec3(x, y, std::countr_zero(bits)); };
-      for (std::uint32_t bits = before_crossing(block.nodes, x + 1, y + 1); bits != 0; bits &= bits - 1)
+      for (std::uint32_t bits = before_crossing(inside, x, y); bits != 0; bits &= bits - 1)
         count_crossings(block, place(bits), origin + glm::dvec3(place(bits)), scale, found);
       for (std::uint32_t bits = edge; bits != 0; bits &= bits - 1) count_widths(block, place(bits), scale.background, found);
       found.active += std::popcount(active);
@@ -240,91 +254,7 @@ double measured_width(const Counts& found, double background, double per_voxel) 
   return measured > said - 0.5 ? said : measured;
 }
 
-/// True where the leaf has a node of the other sign among those that the block `side` steps before it reaches (bits: x, y, z).
-bool changes_sign(const NanoLeaf& leaf, int side, bool inside) {
-  const int dx = side & 1, dy = (side >> 1) & 1, dz = side >> 2;
-  const float* const values = leaf.data()->mValues;
-  for (int x = 0; x < (dx ? 1 : 8); ++x)
-    for (int y = 0; y < (dy ? 1 : 8); ++y)
-      for (int z = 0; z < (dz ? 1 : 8); ++z)
-        if ((values[x * 64 + y * 8 + z] < 0.0f) != inside) return true;
-  return false;
-}
-
 }  // namespace
-
-std::vector<nanovdb::Coord> blocks_with_cells(const nanovdb::FloatGrid& grid) {
-  const std::uint32_t count = grid.tree().nodeCount(0);
-  const NanoLeaf* leaves = grid.tree().getFirstNode<0>();
-  const NanoAccessor accessor = grid.getAccessor();
-  std::vector<nanovdb::Coord> blocks, before;
-  blocks.reserve(count + count / 8);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const nanovdb::Coord o = leaves[i].origin();
-    blocks.push_back(o);
-    for (int side = 1; side < 8; ++side) {
-      const nanovdb::Coord at = o.offsetBy(-8 * (side & 1), -8 * ((side >> 1) & 1), -8 * (side >> 2));
-      if (!accessor.probeLeaf(at) && changes_sign(leaves[i], side, accessor.getValue(at) < 0.0f)) before.push_back(at);
-    }
-  }
-  std::sort(before.begin(), before.end());
-  before.erase(std::unique(before.begin(), before.end()), before.end());
-  blocks.insert(blocks.end(), before.begin(), before.end());
-  return blocks;
-}
-
-ActiveRows active_rows(const LeafWindow& window) {
-  ActiveRows rows;
-  for (int x = -2; x <= 10; ++x)
-    for (int y = -2; y <= 10; ++y) rows[static_cast<size_t>(x + 2)][static_cast<size_t>(y + 2)] = window.active_row(x, y);
-  return rows;
-}
-
-void load_nodes(const LeafWindow& window, NodeWindow& nodes) {
-  for (int x = -1; x <= 8; ++x)
-    for (int y = -1; y <= 8; ++y) window.load_row(x, y, nodes[static_cast<size_t>(x + 1)][static_cast<size_t>(y + 1)].data());
-}
-
-CrossedCells cells_crossed(const NodeWindow& nodes) {
-  return crossed_cells([&](int x, int y) { return &nodes[static_cast<size_t>(x + 1)][static_cast<size_t>(y + 1)][1]; });
-}
-
-CrossedCells cells_outside(const CrossedCells& crossed, const ActiveRows& rows, const Stencil& stencil) {
-  // For each kind of row in the stencil: bit z is set where the row of the cell z reads a node outside the band.
-  std::array<std::uint8_t, 36> kinds;
-  std::array<std::array<std::array<std::uint8_t, 13>, 13>, 4> outside;
-  size_t count = 0;
-  std::array<std::array<size_t, 6>, 6> kind_of{};
-  for (size_t dx = 0; dx < 6; ++dx)
-    for (size_t dy = 0; dy < 6; ++dy) {
-      const std::uint8_t mask = stencil[dx][dy];
-      const size_t known =
-          static_cast<size_t>(std::find(kinds.begin(), kinds.begin() + static_cast<std::ptrdiff_t>(count), mask) - kinds.begin());
-      kind_of[dx][dy] = known;
-      if (known < count) continue;
-      LIMN_CHECK(count < outside.size());
-      kinds[count] = mask;
-      for (size_t x = 0; x < 13; ++x)
-        for (size_t y = 0; y < 13; ++y) {
-          const std::uint32_t missing = ~rows[x][y] & 0x1fffu;
-          std::uint32_t bits = 0;
-          for (int dz = 0; dz < 6; ++dz) bits |= (mask >> dz & 1) ? missing >> dz : 0u;
-          outside[count][x][y] = static_cast<std::uint8_t>(bits & 0xffu);
-        }
-      ++count;
-    }
-  CrossedCells result;
-  for (size_t x = 0; x < 8; ++x)
-    for (size_t y = 0; y < 8; ++y) {
-      if (crossed.cells[x][y] == 0) continue;
-      std::uint8_t bits = 0;
-      for (size_t dx = 0; dx < 6; ++dx)
-        for (size_t dy = 0; dy < 6; ++dy) bits = static_cast<std::uint8_t>(bits | outside[kind_of[dx][dy]][x + dx][y + dy]);
-      result.cells[x][y] = static_cast<std::uint8_t>(bits & crossed.cells[x][y]);
-      result.any = result.any || result.cells[x][y] != 0;
-    }
-  return result;
-}
 
 BandSurvey survey_band(const nanovdb::FloatGrid& grid, const glm::dmat3& world_from_index, double voxel_size) {
   LIMN_CHECK(gradients().size() <= kMostGradients);

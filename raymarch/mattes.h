@@ -1,5 +1,6 @@
 #pragma once
-// Which objects and materials cover each pixel, and by how much: what Cryptomatte layers hold (Psyop, specification 1.2.0).
+// Which objects and materials cover each pixel, and by how much: what Cryptomatte layers hold (Psyop, specification 1.2.0). And in which
+// colours of their own.
 
 #include <array>
 #include <cstdint>
@@ -34,6 +35,8 @@ struct Mattes {
   int samples = 1;  ///< Of each pixel.
   Matte objects{},  ///< By the names of objects.
       materials{};  ///< By the names of materials.
+  /// Mean over the samples of the colours without light, linear; 0 for samples that hit nothing.
+  Image<glm::vec3> albedo{};
 };
 
 /// MurmurHash3_x86_32 (Appleby 2011) with seed 0, moved off the bits that would be no finite float other than 0.
@@ -46,8 +49,8 @@ class MatteCollector {
  public:
   /// The scene must outlive this.
   MatteCollector(const Scene& scene, int width, int height);
-  /// Reads the layers `id` and `material`.
-  void add(const GBuffer& gbuffer);
+  /// Reads the layers `id` and `material`. `colors`: of each pixel, without light.
+  void add(const GBuffer& gbuffer, const Image<glm::vec3>& colors);
   /// After so many samples.
   std::shared_ptr<const Mattes> finish(int samples);
 

@@ -8,6 +8,7 @@
 #include "raymarch/border.h"
 #include "raymarch/border/exact_coverage.h"
 #include "raymarch/border/stroke_forms.h"
+#include "raymarch/border/vertex_widths.h"
 #include "raymarch/lines.h"
 
 namespace limn {
@@ -26,11 +27,15 @@ namespace {
 constexpr double kArc_px = 0.005;  // between the arcs of an outline and their circles
 constexpr double kCrumb_px = 4.0;
 
-enum class WidthFrom { constant, depth, curvature };
+enum class WidthFrom { constant, depth, curvature, vertices };
+
+constexpr std::array<std::pair<const char*, ColorChannel>, 4> kChannels{
+    {{"luminance", ColorChannel::luminance}, {"red", ColorChannel::red}, {"green", ColorChannel::green}, {"blue", ColorChannel::blue}}};
 
 struct Settings {
   double width_px, thin_px, inner_px, threshold;
   WidthFrom from;
+  ColorChannel channel;  ///< Of the vertices' colours.
   bool hidden;
   double hidden_px, dash_px, shortest_px;
   Wobble wobble;
@@ -44,6 +49,7 @@ Settings read_settings(const Parameters& parameters) {
       .inner_px = parameters.number("inner_width"),
       .threshold = parameters.number("threshold"),
       .from = WidthFrom::constant,
+      .channel = ColorChannel::luminance,
       .hidden = parameters.flag("hidden"),
       .hidden_px = parameters.number("hidden_width"),
       .dash_px = parameters.number("dash"),
@@ -54,6 +60,9 @@ Settings read_settings(const Parameters& parameters) {
   const std::string& from = parameters.choice("width_from");
   if (from == "depth") settings.from = WidthFrom::depth;
   if (from == "curvature") settings.from = WidthFrom::curvature;
+  for (const auto& [name, channel] : kChannels) {
+    if (from == name) settings.from = WidthFrom::vertices, settings.channel = channel;
+  }
   for (const LineClassDescriptor& one : line_classes()) {
     if (one.by_default && parameters.flag(one.about.name)) settings.lines.classes.push_back(one.line_class);
   }
@@ -92,12 +101,14 @@ std::shared_ptr<const SharedLines> lines_of(const BorderInput& input, const Line
 struct PenWidth {
   const Settings& settings;
   const Camera& camera;
-  double nearest = 1.0, farthest = 1.0;  ///< Depths of what is seen of the lines.
+  const VertexWidths* vertices = nullptr;  ///< Where the width comes from these.
+  double nearest = 1.0, farthest = 1.0;    ///< Depths of what is seen of the lines.
 
-  double at(const LinePoint& point) const {
+  double at(const LinePoint& point, int object) const {
     const auto between = [&](double share) {
       return settings.thin_px + std::clamp(share, 0.0, 1.0) * (settings.width_px - settings.thin_px);
     };
+    if (vertices != nullptr) return between(vertices->at(object, point.position).value_or(1.0));
     const bool perspective = camera.projection == Projection::perspective;
     if (settings.from == WidthFrom::depth) {
       if (!(farthest > nearest)) return settings.width_px;
@@ -149,13 +160,17 @@ std::vector<StrokePoint> stroke_of(const DrawnChain& drawn, const Settings& sett
   std::vector<StrokePoint> stroke;
   stroke.reserve(drawn.points.size());
   for (const LinePoint& point : drawn.points)
-    stroke.push_back({point.px, inner ? settings.inner_px : settings.from == WidthFrom::constant ? settings.width_px : pen.at(point)});
+    stroke.push_back({point.px, inner                                  ? settings.inner_px
+                                : settings.from == WidthFrom::constant ? settings.width_px
+                                                                       : pen.at(point, drawn.chain->object)});
   return settings.wobble.px > 0.0 ? wobbling(stroke, drawn.chain->closed, settings.wobble, drawn.number) : stroke;
 }
 
-std::vector<Outline> outlines(const ViewGraph& graph, const Settings& settings, const Camera& camera) {
+std::vector<Outline> outlines(const ViewGraph& graph, const Settings& settings, const BorderInput& input) {
   const std::vector<DrawnChain> visible = drawn_chains(graph, false, settings.shortest_px);
-  PenWidth pen{settings, camera, std::numeric_limits<double>::infinity(), 0.0};
+  std::optional<VertexWidths> vertices;
+  if (settings.from == WidthFrom::vertices) vertices.emplace(input.scene, input.model, settings.channel);
+  PenWidth pen{settings, input.camera, vertices ? &*vertices : nullptr, std::numeric_limits<double>::infinity(), 0.0};
   for (const DrawnChain& drawn : visible) {
     for (const LinePoint& point : drawn.points) {
       pen.nearest = std::min(pen.nearest, point.depth);
@@ -206,8 +221,15 @@ const Image<float>& ink_of(const SharedLines& lines, const Settings& settings, c
     if (known == call) return ink;
   const int width = input.gbuffer.width, height = input.gbuffer.height;
   const bool drawn = settings.width_px > 0.0 && !settings.lines.classes.empty();
-  Image<float> ink = drawn ? covered_by(outlines(lines.graph, settings, input.camera), width, height) : Image<float>(width, height, 0.0f);
+  Image<float> ink = drawn ? covered_by(outlines(lines.graph, settings, input), width, height) : Image<float>(width, height, 0.0f);
   return lines.inks.emplace_back(call, std::move(ink)).second;
+}
+
+bool any_painted(const Scene& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& object) {
+    const auto* mesh = std::get_if<MeshSource>(&object.source);
+    return mesh != nullptr && !mesh->mesh->vertex_colors.empty();
+  });
 }
 
 Border draw(const BorderInput& input, const Parameters& parameters) {
@@ -217,6 +239,10 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
   const auto lines = lines_of(input, settings.lines);
   border.coverage = ink_of(*lines, settings, input, parameters.text());
   add_notes(*lines, settings.shortest_px, border.notes);
+  if (settings.from == WidthFrom::vertices && !any_painted(input.scene)) {
+    border.notes.push_back(
+        fmt::format("contours: width_from = {} has no effect: no mesh here has colours at its vertices", parameters.choice("width_from")));
+  }
   return border;
 }
 
@@ -230,8 +256,9 @@ BorderMethod contours_method() {
        "Appel 1967; widths by curvature: Goodwin et al. 2007; tracing and certificate: limn"},
       {"id"},
       {a_number("width", 2.0).in(0.0, 64.0).unit("px").help("of the lines; where it varies: of the thickest"),
-       a_choice("width_from", {"constant", "depth", "curvature"})
-           .help("the same everywhere; thick where near and thin where far; thick where the surface turns away slowly"),
+       a_choice("width_from", {"constant", "depth", "curvature", "luminance", "red", "green", "blue"})
+           .help("the same everywhere; thick where near and thin where far; thick where the surface turns away slowly; or by the colours "
+                 "of a mesh's vertices, linear: thick where that channel is 1, thin where it is 0"),
        a_number("thin_width", 0.5).in(0.0, 64.0).unit("px").help("where the width varies: of the thinnest"),
        a_number("inner_width", 0.0)
            .in(0.0, 64.0)

@@ -8,6 +8,7 @@
 #include "raymarch/files/picture_module.h"
 #include "raymarch/files/png_file.h"
 #include "raymarch/files/srgb_bytes.h"
+#include "raymarch/mattes.h"
 #include "sdf/error.h"
 #include "sdf/output_file.h"
 #include "sdf/parallel.h"
@@ -120,6 +121,8 @@ std::vector<Channel> channels_of(const Picture& picture) {
   add_channel(channels, "material.Y", type_of_ids(seen.material), seen.material, kItself);
   add_channel(channels, "status.Y", half, seen.status, kItself);
   if (!picture.border_status.pixels.empty()) add_channel(channels, "border_status.Y", half, picture.border_status, kItself);
+  if (picture.mattes != nullptr)
+    for (int i = 0; i < 3; ++i) add_channel(channels, std::string("albedo.") + rgba[i], half, picture.mattes->albedo, component(i));
   return channels;
 }
 

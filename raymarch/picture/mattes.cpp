@@ -64,6 +64,7 @@ MatteCollector::MatteCollector(const Scene& scene, int width, int height) : scen
     matte->indices.assign(size, 0);
     matte->counts.assign(size, 0);
   }
+  mattes_.albedo = Image<glm::vec3>(width, height, glm::vec3(0.0f));
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const std::string& name = scene.objects[i].name;
     objects_.push_back(index_of(name.empty() ? fmt::format("object {}", i + 1) : name, mattes_.objects));
@@ -80,8 +81,8 @@ std::uint16_t MatteCollector::index_of(const std::string& name, Matte& matte) {
   return known[hash] = static_cast<std::uint16_t>(matte.names.size());
 }
 
-void MatteCollector::add(const GBuffer& gbuffer) {
-  LIMN_CHECK(gbuffer.width == mattes_.width && gbuffer.height == mattes_.height);
+void MatteCollector::add(const GBuffer& gbuffer, const Image<glm::vec3>& colors) {
+  LIMN_CHECK(gbuffer.width == mattes_.width && gbuffer.height == mattes_.height && colors.size() == mattes_.albedo.size());
   for (size_t i = 0; i < gbuffer.id.size(); ++i) {
     const std::int32_t id = gbuffer.id.pixels[i];
     if (id == 0) continue;
@@ -91,11 +92,13 @@ void MatteCollector::add(const GBuffer& gbuffer) {
     if (is_new) known->second = index_of(material_name(scene_.objects[object], material), mattes_.materials);
     count(objects_[object], i, mattes_.objects);
     count(known->second, i, mattes_.materials);
+    mattes_.albedo.pixels[i] += colors.pixels[i];
   }
 }
 
 std::shared_ptr<const Mattes> MatteCollector::finish(int samples) {
   mattes_.samples = samples;
+  for (glm::vec3& color : mattes_.albedo.pixels) color /= static_cast<float>(samples);
   for (Matte* matte : {&mattes_.objects, &mattes_.materials}) {
     for (size_t first = 0; first < matte->indices.size(); first += kMatteRanks) {
       // Insertion: stable, so that equal shares keep the order in which they were met.

@@ -191,7 +191,7 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
       add_sample({gbuffer, camera, model, scene, nullptr, &shared}, settings.methods, picture, &inks, settings.shading);
       keep(*history, number, gbuffer, inks);
     });
-    if (mattes) mattes->add(gbuffer);
+    if (mattes) arena.execute([&] { mattes->add(gbuffer, base_colors({gbuffer, camera, model, scene})); });
     if (sample == 0) picture.gbuffer = std::exchange(gbuffer, {});
   }
   if (mattes) picture.mattes = mattes->finish(settings.samples);

@@ -14,7 +14,7 @@ namespace {
 
 // Peaks at 1 to 16 million pixels. A composite, the ink and a method's own; an .exr file is put together in memory.
 constexpr double kCompositeBytes = 36.0, kExrBytes = 100.0, kSumBytes = 20.0;
-constexpr double kMatteBytes = 128.0;  // indices and counts of the samples, and a level of ids and coverages of each kind
+constexpr double kMatteBytes = 160.0;  // indices and counts of the samples, colours, and a level of ids and coverages of each kind
 constexpr double kMethodMs = 4e-5, kExrMs = 6e-4, kImageMs = 1e-4;  // a pixel
 constexpr double kStartMs = 50.0;
 /// A machine is rarely more than twice as fast as that of the constants.

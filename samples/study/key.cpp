@@ -14,6 +14,7 @@
 #include "raymarch/files/picture_module.h"
 #include "raymarch/metric.h"
 #include "sdf/error.h"
+#include "sdf/level_set_bytes.h"
 #include "sdf/version.h"
 
 namespace limn {
@@ -67,6 +68,14 @@ std::string mesh_hash(const Mesh& mesh) {
   return digits_of(bytes.parts);
 }
 
+/// Of a volume that was made and comes from no file.
+std::string level_set_hash(const LevelSet& level_set) {
+  const LevelSetBytes bytes = bytes_of(level_set);
+  std::vector<std::span<const std::byte>> parts{std::as_bytes(std::span(bytes.numbers)), std::as_bytes(std::span(bytes.origins))};
+  parts.insert(parts.end(), bytes.values.begin(), bytes.values.end());
+  return digits_of(parts);
+}
+
 std::string vector_text(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
 std::string camera_text(const Camera& camera) {
@@ -116,7 +125,8 @@ std::string hash_of_input(const SceneInput& input) {
       text += "\nmesh " + mesh_hash(mesh->mesh) + (mesh->scheme ? name_of(*mesh->scheme) : "") +
               (mesh->smooth_angle_deg ? fmt::format(" smooth-angle {}", *mesh->smooth_angle_deg) : "");
     if (const auto* volume = std::get_if<LevelSetSource>(&object.source))
-      text += "\nvolume " + file_hash(volume->file) + " " + volume->level_set.info().name;
+      text += "\nvolume " + (volume->file.empty() ? level_set_hash(volume->level_set) : file_hash(volume->file)) + " " +
+              volume->level_set.info().name;
   }
   return content_hash(text);
 }

@@ -84,6 +84,7 @@ contours, measurements and studies.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-limn)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/python3-limn/postinst ${CMAKE_CURRENT_LIST_DIR}/python3-limn/prerm)
 # The module is built for one version of Python and the next minor one does not load it.
 if(LIMN_PYTHON_MODULE)
   execute_process(COMMAND ${LIMN_PYTHON} -c "import sys; print('python3 (>= %d.%d), python3 (<< %d.%d)' % (*sys.version_info[:2], sys.version_info[0], sys.version_info[1] + 1))"

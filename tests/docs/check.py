@@ -52,7 +52,7 @@ def reduced(call):
         text = replaced(text, "--voxels", "48")
     text = re.sub(r"--voxels (\d+)\b(?!\.)", lambda found: f"--voxels {min(int(found[1]), 64)}", text)
     text = replaced(replaced(replaced(text, "--frames", "3"), "--turn", "1"), "--turntable", "3")
-    if call.command == "compare" and "--voxels" not in text:
+    if call.command == "compare" and "--voxels" not in text and not re.search(r"--surface (mesh|analytic)\b", text):
         text += " --voxels 48"
     if call.command == "study":
         text = re.sub(r"\s--(levels|voxels|views|thresholds) \S+", "", text) + " --levels 0,1 --voxels 16 --views 1"

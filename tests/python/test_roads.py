@@ -214,10 +214,30 @@ class Numbers(TestCase):
                 if not missing:
                     self.assertEqual(row[name] if isinstance(value, str) else float(row[name]), value, name)
 
+    def test_a_study_of_a_made_level_set_is_that_of_its_file(self):
+        level_set = limn.level_set(limn.shape("torus"), voxels=24)
+        level_set.write(self.file("torus.vdb"))
+        settings = dict(voxels=[12, 16], gradients="central", views=1, **MADE)
+        made, again = limn.study(level_set, **settings), limn.study(limn.scene(limn.Object(level_set, name="torus"), name="torus"), **settings)
+        read = limn.study(self.file("torus.vdb"), **settings)
+        numbers = lambda study: [{k: v for k, v in without_times(row).items() if k not in ("scene", "object")} for row in study.rows]
+        self.assertEqual(numbers(made), numbers(again))
+        self.assertEqual(numbers(made), numbers(read))
+        self.assertGreater(len(made.rows), 1)
+        # Keys follow from the voxels.
+        other = limn.study(limn.level_set(limn.shape("torus", minor=0.2), voxels=24), **settings)
+        keys = [{row["key"] for row in study.rows} for study in (made, again, other)]
+        self.assertEqual(keys[0], keys[1])
+        self.assertTrue(keys[0].isdisjoint(keys[2]))
+
     def test_plans_choose_the_same(self):
         words = ["plan", "ellipsoid", "--tolerance", "0.5", "--surface", "level_set", *SIZE, "--json"]
-        expected = json.loads(self.program(*words))
-        plan = limn.plan("ellipsoid", tolerance=0.5, surfaces="level_set", **MADE)
+        # What is cheapest is a matter of times, which a busy machine may measure otherwise the next moment.
+        for _ in range(8):
+            expected = json.loads(self.program(*words))
+            plan = limn.plan("ellipsoid", tolerance=0.5, surfaces="level_set", **MADE)
+            if expected["chosen"]["parameters"] == plan.chosen["parameters"]:
+                break
         for name in ("tolerance_px", "metric", "threshold", "truth", "measured_px", "predicted_px", "bytes", "floor_px", "doubt"):
             self.assertEqual(expected[name], plan[name], name)
         self.assertEqual(expected["chosen"]["parameters"], plan.chosen["parameters"])

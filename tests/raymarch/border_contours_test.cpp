@@ -202,6 +202,83 @@ TEST(ContoursMethod, WidthsFollowDepthAndCurvature) {
   EXPECT_NEAR(area(wide.coverage), 2.0 * 2.0 * kPi * radius_px * width_px, 0.08 * area(wide.coverage));
 }
 
+/// A square that faces the camera, drawn 2 units to 30 px, with a colour at each vertex: red grows with x, green with y.
+Scene painted_square(std::optional<Scheme> scheme) {
+  Mesh mesh;
+  for (int y = 0; y <= 4; ++y) {
+    for (int x = 0; x <= 4; ++x) {
+      mesh.positions.emplace_back(0.5 * x - 1.0, 0.5 * y - 1.0, 0.0);
+      mesh.vertex_colors.emplace_back(0.25f * static_cast<float>(x), 0.25f * static_cast<float>(y), 0.5f);
+    }
+  }
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 4; ++x) {
+      for (const int v : {5 * y + x, 5 * y + x + 1, 5 * y + x + 6, 5 * y + x + 5}) mesh.corner_vertices.push_back(v);
+      mesh.face_sizes.push_back(4);
+    }
+  }
+  return scene_of({object_of(mesh, scheme)});
+}
+
+/// Ink across the edges of that square: of the column `u` in [-1, 1] its bottom and top, of the row `u` its left and right.
+std::array<double, 4> edge_widths(const Border& border, double u) {
+  const auto column = static_cast<int>(48.0 + 30.0 * u), row = static_cast<int>(40.0 - 30.0 * u);
+  std::array<double, 4> sums{};
+  for (int y = 0; y < 80; ++y) sums[y < 40 ? 1 : 0] += double{border.coverage.at(column, y)};
+  for (int x = 0; x < 96; ++x) sums[x < 48 ? 2 : 3] += double{border.coverage.at(x, row)};
+  return sums;
+}
+
+TEST(ContoursMethod, WidthsFollowTheColoursOfVertices) {
+  const Camera camera = across(30.0);
+  for (const std::optional<Scheme> scheme : {std::optional<Scheme>{}, std::optional<Scheme>{Scheme::bilinear}}) {
+    const Scene scene = painted_square(scheme);
+    const SceneModel model = model_of(scene, "mesh");
+    const auto drawn = [&](const std::string& from) {
+      return drawn_contours(scene, model, camera, {{"width_from", word(from)}, {"width", value(5.0)}, {"thin_width", value(1.0)}}).border;
+    };
+    const Border red = drawn("red"), green = drawn("green"), blue = drawn("blue"), gray = drawn("luminance");
+    for (const double u : {-0.75, -0.4, 0.05, 0.45, 0.7}) {
+      // The pixel's centre, up to half a pixel beside u: there 1/15 px.
+      const double along = 3.0 + 2.0 * u, luminance = 1.0 + 4.0 * (0.2126 * 0.5 * (1.0 + u) + 0.0722 * 0.5);
+      const std::array<double, 4> reds = edge_widths(red, u), greens = edge_widths(green, u), grays = edge_widths(gray, u);
+      EXPECT_NEAR(reds[0], along, 0.08) << u;
+      EXPECT_NEAR(reds[1], along, 0.08) << u;
+      EXPECT_NEAR(reds[2], 1.0, 0.02) << u;
+      EXPECT_NEAR(reds[3], 5.0, 0.02) << u;
+      EXPECT_NEAR(greens[0], 1.0, 0.02) << u;
+      EXPECT_NEAR(greens[1], 5.0, 0.02) << u;
+      EXPECT_NEAR(greens[2], along, 0.08) << u;
+      EXPECT_NEAR(grays[0], luminance, 0.08) << u;
+      for (const double width : edge_widths(blue, u)) EXPECT_NEAR(width, 3.0, 0.02) << u;
+    }
+    EXPECT_TRUE(red.notes.empty());
+  }
+}
+
+TEST(ContoursMethod, WidthsByVerticesOutliveTheModelAndAreSaidToBeMissing) {
+  // A cube's level set has no vertices of its own: the mesh that it came from has them. Moved and scaled, too.
+  Mesh mesh = box_mesh(glm::dvec3(0.5));
+  for (const glm::dvec3& p : mesh.positions) mesh.vertex_colors.emplace_back(p.x > 0.0 ? 1.0f : 0.0f, 0.0f, 0.0f);
+  Scene scene = scene_of({object_of(mesh)});
+  scene.objects[0].world_from_object = {glm::dmat3(2.0), {0.3, 0.0, 0.0}};
+  SurfaceSettings grid = surface_kind("mesh_level_set");
+  grid.voxels = 48;
+  const SceneModel model = build_model(scene, grid);
+  const std::map<std::string, ParameterInput> by_red{{"width_from", word("red")}, {"width", value(6.0)}, {"thin_width", value(1.0)}};
+  const Border border = drawn_contours(scene, model, across(30.0), by_red).border;
+  double left = 0.0, right = 0.0;
+  for (int x = 0; x < 96; ++x) (x < 57 ? left : right) += double{border.coverage.at(x, 40)};
+  EXPECT_NEAR(left, 1.0, 0.1);
+  EXPECT_NEAR(right, 6.0, 0.1);
+  // Without colours the lines are as thick as they get, and a note says so.
+  const Scene ball = ball_scene(1.0);
+  const Border plain = drawn_contours(ball, model_of(ball), across(30.0), by_red).border;
+  EXPECT_EQ(plain.coverage.pixels, drawn_contours(ball, model_of(ball), across(30.0), {{"width", value(6.0)}}).border.coverage.pixels);
+  ASSERT_EQ(plain.notes.size(), 1u);
+  EXPECT_NE(plain.notes[0].find("width_from = red has no effect"), std::string::npos) << plain.notes[0];
+}
+
 TEST(ContoursMethod, ThreadsDoNotMatterAndClassesCanBeLeftOut) {
   const Scene scene = scene_of({object_of(make_shape("box", {{"half", {0.5, 0.4, 0.3}}}))});
   const SceneModel model = model_of(scene);

@@ -53,6 +53,8 @@ TEST(Mattes, CoverageIsThatOfThePicture) {
       sum += coverage;
     }
     EXPECT_NEAR(sum, picture.composite.pixels[i].a, 1e-5f);
+    // Both balls have one colour.
+    EXPECT_LT(glm::length(picture.mattes->albedo.pixels[i] - sum * glm::vec3(0.8f, 0.5f, 0.3f)), 1e-5f);
     shared |= picture.mattes->objects.counts[i * kMatteRanks + 1] > 0;
   }
   EXPECT_TRUE(shared);

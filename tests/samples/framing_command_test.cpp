@@ -224,7 +224,7 @@ TEST(Mattes, AreInTheFileWithTheirManifest) {
   const TemporaryFolder folder;
   run_well({"render", "passing_tori", "-q", "--size", "80x60", "-o", folder.file("m.exr")});
   const std::vector<std::string> names = channel_names(folder.file("m.exr"));
-  for (const char* const name : {"CryptoObject00.R", "CryptoObject00.A", "CryptoMaterial00.R", "Z", "N.X", "P.Z", "border.Y"})
+  for (const char* const name : {"CryptoObject00.R", "CryptoObject00.A", "CryptoMaterial00.R", "Z", "N.X", "P.Z", "border.Y", "albedo.R"})
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   const Image<float> share = read_channel(folder.file("m.exr"), "CryptoObject00.G"),
                      rest = read_channel(folder.file("m.exr"), "CryptoObject00.A"), alpha = read_channel(folder.file("m.exr"), "A");

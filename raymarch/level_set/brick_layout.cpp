@@ -191,6 +191,11 @@ BrickNeighbors BrickLayout::neighbors_of(size_t brick) const {
   return neighbors;
 }
 
-BrickLayout lay_out_bricks(const LevelSetData& data) { return lay_out(find_candidates(data)); }
+BrickLayout lay_out_bricks(const LevelSetData& data, const std::vector<std::uint64_t>* only) {
+  std::vector<Candidate> candidates = find_candidates(data);
+  if (only)
+    std::erase_if(candidates, [only](const Candidate& c) { return !std::binary_search(only->begin(), only->end(), key_of(c.origin)); });
+  return lay_out(std::move(candidates));
+}
 
 }  // namespace limn

@@ -59,7 +59,7 @@ struct BrickLayout {
   BrickNeighbors neighbors_of(size_t brick) const;
 };
 
-/// Looks at every leaf of the grid, in parallel.
-BrickLayout lay_out_bricks(const LevelSetData& data);
+/// Looks at every leaf of the grid, in parallel. `only`: keys of the bricks that are kept, in order; null: all are.
+BrickLayout lay_out_bricks(const LevelSetData& data, const std::vector<std::uint64_t>* only = nullptr);
 
 }  // namespace limn

@@ -20,12 +20,6 @@ constexpr float kLargestStep = 32767.0f;
 // A crossed brick whose values span fewer steps than this in its crossed cells would lose digits of its normals.
 constexpr int kFewestSteps = 1000;
 
-std::int16_t quantised(float value, float steps_per_unit) {
-  // No node lies on the surface itself: half a step to its side keeps its sign. In float until the end, so that loops over it become SIMD.
-  const float steps = std::max(std::min(std::abs(value * steps_per_unit), kLargestStep) + 0.5f, 1.0f);
-  return static_cast<std::int16_t>(static_cast<std::int32_t>(value < 0.0f ? -steps : steps));
-}
-
 /// Groups of 2^shift cells to a side of the crossed bricks.
 BrickGroups group_bricks(const BrickLayout& layout, const std::vector<BrickShape>& shapes, const RayBricks& bricks, int shift) {
   const int per_side = 1 << (shift - 3), parts = per_side * per_side * per_side;
@@ -130,17 +124,17 @@ std::int64_t RayBricks::bytes() const {
   return static_cast<std::int64_t>(sum) + spline.bytes();
 }
 
-std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool with_spline) {
+std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool with_spline, const BrickSelection* selection) {
   const auto start = std::chrono::steady_clock::now();
   const LevelSetData& data = level_set.data();
-  const BrickLayout layout = lay_out_bricks(data);
+  const BrickLayout layout = lay_out_bricks(data, selection ? &selection->keys : nullptr);
   if (layout.blocks > kMostBricks || (with_spline && layout.crossed.size() > kMostSplineBricks)) return nullptr;
   auto bricks = std::make_shared<RayBricks>();
   bricks->world_from_index = level_set.info().world_from_index;
   bricks->voxel_size = level_set.info().voxel_size;
   bricks->half_width_voxels = level_set.info().half_width_voxels;
   if (!layout.crossed.empty()) {
-    const float scale = scale_for(layout, std::abs(data.grid->tree().background()));
+    const float scale = selection ? selection->steps_per_unit : scale_for(layout, std::abs(data.grid->tree().background()));
     if (scale == 0.0f) return nullptr;
     bricks->world_per_step = 1.0 / static_cast<double>(scale);
     bricks->groups.push_back({.shift = 3, .bounds = std::vector<SurfaceBound>(layout.crossed.size()), .bricks = {}});

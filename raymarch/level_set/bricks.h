@@ -2,6 +2,8 @@
 // Internal: the ray-ready form of a level set. Only the blocks of 8^3 cells that the surface crosses are kept, each as 9^3 node values of
 // 16 bits with what bounds the surface in it, and beside them the blocks into which the stencils of their gradients reach.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -68,9 +70,25 @@ struct RayBricks {
   std::int64_t bytes() const;
 };
 
+/// The steps that stand for a value. No node lies on the surface itself: half a step to its side keeps its sign. In float until the end, so
+/// that loops over it become SIMD.
+inline std::int16_t quantised(float value, float steps_per_unit) {
+  constexpr float kLargest = 32767.0f;
+  const float steps = std::max(std::min(std::abs(value * steps_per_unit), kLargest) + 0.5f, 1.0f);
+  return static_cast<std::int16_t>(static_cast<std::int32_t>(value < 0.0f ? -steps : steps));
+}
+
+/// Of a grid's bricks those that are kept.
+struct BrickSelection {
+  std::vector<std::uint64_t> keys{};  ///< By key_of (raymarch/level_set/brick_layout.h), in order.
+  float steps_per_unit = 0.0f;        ///< Of the values.
+};
+
 /// Made from the grid in parallel. Null where the form would not do: more bricks than 32-bit offsets reach, or values whose range over the
 /// crossed cells differs so much from place to place that 16 bits would not tell them apart (a grid far from a distance field).
 /// Signs are kept: a node is inside (< 0) in the bricks exactly where it is inside in the grid.
-std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool with_spline = false);
+/// `selection`: only of its bricks; null: of all.
+std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool with_spline = false,
+                                             const BrickSelection* selection = nullptr);
 
 }  // namespace limn

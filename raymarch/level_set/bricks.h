@@ -78,17 +78,9 @@ inline std::int16_t quantised(float value, float steps_per_unit) {
   return static_cast<std::int16_t>(static_cast<std::int32_t>(value < 0.0f ? -steps : steps));
 }
 
-/// Of a grid's bricks those that are kept.
-struct BrickSelection {
-  std::vector<std::uint64_t> keys{};  ///< By key_of (raymarch/level_set/brick_layout.h), in order.
-  float steps_per_unit = 0.0f;        ///< Of the values.
-};
-
 /// Made from the grid in parallel. Null where the form would not do: more bricks than 32-bit offsets reach, or values whose range over the
 /// crossed cells differs so much from place to place that 16 bits would not tell them apart (a grid far from a distance field).
 /// Signs are kept: a node is inside (< 0) in the bricks exactly where it is inside in the grid.
-/// `selection`: only of its bricks; null: of all.
-std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool with_spline = false,
-                                             const BrickSelection* selection = nullptr);
+std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool with_spline = false);
 
 }  // namespace limn

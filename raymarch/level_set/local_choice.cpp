@@ -8,6 +8,7 @@
 
 #include "raymarch/level_set/brick_layout.h"
 #include "raymarch/level_set/local_demand.h"
+#include "sdf/number.h"
 #include "sdf/parallel.h"
 #include "sdf/size_error.h"
 
@@ -22,6 +23,17 @@ struct Node {
   bool split = false;
 };
 
+/// False only where the surface does not pass the box: by bounds of the value, then by those of its slope about the middle.
+bool may_hold_surface(FieldEvaluator& evaluator, const Box& box) {
+  if (!evaluator.bounds(box).contains(0.0)) return false;
+  const GradientBounds bounds = evaluator.gradient_bounds(box);
+  const glm::dvec3 half = 0.5 * box.size();
+  double reach = 0.0;
+  for (int axis = 0; axis < 3; ++axis) reach += half[axis] * magnitude(bounds.gradient[static_cast<size_t>(axis)]);
+  // Corners are nowhere nearer to the middle than rounding makes them.
+  return std::abs(evaluator.value(box.center())) <= reach * (1.0 + 1e-9) + 1e-12 * glm::length(half);
+}
+
 /// The parts of a brick that may hold the surface, each with what is left of the field there.
 std::vector<LocalBrick> parts_of(FieldEvaluator& evaluator, const LocalBrick& brick, const LocalChoice& lattice, size_t level) {
   std::vector<LocalBrick> parts;
@@ -29,7 +41,7 @@ std::vector<LocalBrick> parts_of(FieldEvaluator& evaluator, const LocalBrick& br
   for (int octant = 0; octant < 8; ++octant) {
     const glm::ivec3 place = 2 * brick.place + glm::ivec3(octant & 1, octant >> 1 & 1, octant >> 2);
     const Box box = lattice.box_of(level - 1, place);
-    if (!evaluator.bounds(box).contains(0.0)) continue;
+    if (!may_hold_surface(evaluator, box)) continue;
     // Its nodes are at most eight voxels away from a node that asks for the field, which asks as far as the band reaches.
     parts.push_back({place, evaluator.restricted(dilate(box, 16.0 * h))});
   }

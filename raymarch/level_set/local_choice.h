@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "raymarch/level_set/local_depth.h"
 #include "raymarch/local_model.h"
 #include "sdf/field.h"
 
@@ -36,6 +37,8 @@ struct LocalBrickSettings {
   double voxel_size = 0.0;  ///< No voxels are smaller.
   const GradientDescriptor* gradient = nullptr;
   std::int64_t max_bytes = std::int64_t{8} << 30;
+  bool border = true;                  ///< False: only as fine as any part has to be.
+  std::vector<SmallPicture> hidden{};  ///< One for each camera, or none: what is hidden in it may be coarse.
 };
 
 /// `field` has bounds and is in render space. Interval bounds decide: a brick where they show no border is never taken for one, and one

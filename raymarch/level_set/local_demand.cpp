@@ -63,17 +63,56 @@ bool may_hold_border(const GradientBounds& bounds, const Box& box, const Camera&
   return std::any_of(thresholds.begin(), thresholds.end(), [&](double t) { return (facing - length * t).contains(0.0); });
 }
 
-/// The same octant by octant, where the bounds are narrower.
-bool octants_may_hold_border(FieldEvaluator& evaluator, const Box& box, double margin, const Camera& camera,
-                             const std::vector<double>& thresholds) {
-  const glm::dvec3 half = 0.5 * box.size();
-  for (int octant = 0; octant < 8; ++octant) {
-    const glm::dvec3 lower = box.lower + half * glm::dvec3(octant & 1, octant >> 1 & 1, octant >> 2);
-    const Box part = dilate(Box{lower, lower + half}, margin);
-    const GradientBounds bounds = evaluator.gradient_bounds(part);
-    if (bounds.value.contains(0.0) && may_hold_border(bounds, part, camera, thresholds)) return true;
+/// The surface at a place near a brick's middle: what N.V is there, and how it changes along the surface.
+struct SecondOrder {
+  glm::dvec3 at{0.0};
+  double facing = 0.0;     ///< N.V.
+  glm::dvec3 change{0.0};  ///< Of N.V along the surface, per world unit.
+  double curvature = 0.0;  ///< The normal's turn, per world unit, at most.
+  double bend = 0.0;       ///< Sum of |second derivatives| along the axes, over the slope.
+};
+
+/// False where the field has no slope there.
+bool expand(FieldEvaluator& evaluator, const Box& box, const Camera& camera, SecondOrder& out) {
+  out.at = box.center();
+  const FieldJet from = evaluator.jet(out.at);
+  const double slope2 = glm::dot(from.gradient, from.gradient);
+  if (!(slope2 > 0.0)) return false;
+  out.at -= from.value / slope2 * from.gradient;
+  const FieldJet jet = evaluator.jet(out.at);
+  const double slope = glm::length(jet.gradient);
+  if (!(slope > 0.0)) return false;
+  const glm::dvec3 n = jet.gradient / slope, v = view_vector(camera, out.at);
+  out.facing = glm::dot(n, v);
+  glm::dmat3 turn = jet.hessian / slope;
+  out.bend = std::abs(turn[0][0]) + std::abs(turn[1][1]) + std::abs(turn[2][2]);
+  double sum = 0.0;
+  for (int column = 0; column < 3; ++column) {
+    turn[column] -= n * glm::dot(n, turn[column]);
+    sum += glm::dot(turn[column], turn[column]);
   }
-  return false;
+  out.curvature = std::sqrt(sum);
+  // The view vector turns, too, by 1 / distance across it.
+  out.change = glm::transpose(turn) * v;
+  if (camera.projection == Projection::perspective) out.change -= (n - out.facing * v) / glm::distance(camera.eye, out.at);
+  out.change -= n * glm::dot(out.change, n);
+  return true;
+}
+
+/// Where the surface turns by less than this over a brick (radians), its second order tells where N.V has a value; elsewhere bounds do.
+constexpr double kMostTurn = 0.15;
+
+/// A border lies so far inside the bricks that are small for it, in the next larger voxels: farther than these would move it.
+constexpr double kBorderMargin_voxels = 0.75;
+
+/// True where N.V comes to no such value within the brick and `margin` about it, by its second order at the middle.
+bool passes_beside(const SecondOrder& surface, const Box& box, double margin, double value) {
+  const double rest = std::abs(surface.facing - value);
+  const glm::dvec3 farthest = glm::max(glm::abs(box.upper - surface.at), glm::abs(box.lower - surface.at)) + margin;
+  const double first = glm::dot(glm::abs(surface.change), farthest);
+  // What the next order may add: as much as the turn of the normal over the brick, squared.
+  const double turn = surface.curvature * glm::length(farthest);
+  return rest > first + turn * turn;
 }
 
 /// How far the surface may stand off in cells of that size, along its normal: a function whose slope lies in bounds of width w lies within
@@ -85,39 +124,51 @@ double most_stand_off(const GradientBounds& bounds, double voxel_size) {
   return voxel_size * (g[0].width() + g[1].width() + g[2].width()) / (4.0 * least);
 }
 
-/// What voxels of that size are predicted to move the border by in a brick, world units as the picture foreshortens them at most.
-double predicted_shift(FieldEvaluator& evaluator, const Box& box, double voxel_size, const Camera& camera,
-                       const LocalBrickSettings& settings) {
-  glm::dvec3 at = box.center();
-  const FieldJet from = evaluator.jet(at);
-  const double slope2 = glm::dot(from.gradient, from.gradient);
-  if (!(slope2 > 0.0)) return std::numeric_limits<double>::infinity();
-  at -= from.value / slope2 * from.gradient;
-  const FieldJet jet = evaluator.jet(at);
-  const double slope = glm::length(jet.gradient);
-  if (!(slope > 0.0)) return std::numeric_limits<double>::infinity();
-  const glm::dvec3 n = jet.gradient / slope, v = view_vector(camera, at);
-  const glm::dmat3& h = jet.hessian;
-  const double off = voxel_size * voxel_size / 8.0 * (std::abs(h[0][0]) + std::abs(h[1][1]) + std::abs(h[2][2])) / slope;
-  double shift = off;
-  if (settings.local.thresholds.empty()) return shift;
-  glm::dmat3 turn = h / slope;  // of the normal, along the surface
-  for (int column = 0; column < 3; ++column) turn[column] -= n * glm::dot(n, turn[column]);
-  glm::dvec3 along = turn * v;
-  along -= n * glm::dot(along, n);
-  double curvature = 0.0;
-  for (int column = 0; column < 3; ++column) curvature += glm::dot(turn[column], turn[column]);
-  const GradientDescriptor& gradient = *settings.gradient;
-  const double angle = gradient.normal_constant * std::pow(std::sqrt(curvature) * voxel_size, gradient.order);
-  return shift + angle / std::max(glm::length(along), 1e-12);
+/// Of a brick with creases: whether normals that are really there lie on both sides of a border's N.V, or near it.
+bool creases_hold_border(FieldEvaluator& evaluator, const Box& box, const Camera& camera, const std::vector<double>& thresholds) {
+  constexpr int kSide = 5;
+  constexpr double kMargin = 0.02;
+  std::array<glm::dvec3, kSide * kSide * kSide> points, gradients;
+  std::array<double, points.size()> values;
+  for (int k = 0; k < static_cast<int>(points.size()); ++k) {
+    const glm::dvec3 part(k / (kSide * kSide), k / kSide % kSide, k % kSide);
+    points[static_cast<size_t>(k)] = box.lower + part / double{kSide - 1} * box.size();
+  }
+  evaluator.gradients(points, values, gradients);
+  double least = 1.0, most = -1.0;
+  for (size_t k = 0; k < points.size(); ++k) {
+    const double slope = glm::length(gradients[k]);
+    if (!(slope > 0.0)) return true;
+    const double facing = glm::dot(gradients[k], view_vector(camera, points[k])) / slope;
+    least = std::min(least, facing), most = std::max(most, facing);
+  }
+  const auto holds = [&](double value) { return least < value + kMargin && most > value - kMargin; };
+  return holds(0.0) || std::any_of(thresholds.begin(), thresholds.end(), holds);
 }
 
+/// What voxels of that size are predicted to move the border by in a brick, world units as the picture foreshortens them at most.
+double predicted_shift(const SecondOrder& surface, double voxel_size, const LocalBrickSettings& settings) {
+  const double off = voxel_size * voxel_size / 8.0 * surface.bend;
+  if (settings.local.thresholds.empty()) return off;
+  const GradientDescriptor& gradient = *settings.gradient;
+  const double angle = gradient.normal_constant * std::pow(surface.curvature * voxel_size, gradient.order);
+  return off + angle / std::max(glm::length(surface.change), 1e-12);
+}
+
+/// Of a brick in which bounds cannot exclude a border.
 bool border_needs(FieldEvaluator& evaluator, const Box& box, double voxel_size, const GradientBounds& bounds, const Camera& camera,
                   const Seen& seen, const LocalBrickSettings& settings) {
-  const double tolerance = settings.local.tolerance_px / seen.pixels_per_unit;
-  const bool folded = !(most_stand_off(bounds, voxel_size) < 0.25 * box.longest_side());
-  const double shift = folded ? voxel_size : predicted_shift(evaluator, box, voxel_size, camera, settings);
-  return !(kSafety * shift <= tolerance);
+  SecondOrder surface;
+  const bool folded = !(most_stand_off(bounds, voxel_size) < 0.25 * voxel_size);
+  if (folded && !creases_hold_border(evaluator, dilate(box, voxel_size), camera, settings.local.thresholds)) return false;
+  if (folded || !expand(evaluator, box, camera, surface)) return kSafety * voxel_size * seen.pixels_per_unit > settings.local.tolerance_px;
+  if (surface.curvature * box.longest_side() < kMostTurn) {
+    const double margin = kBorderMargin_voxels * voxel_size;
+    bool beside = passes_beside(surface, box, margin, 0.0);
+    for (const double threshold : settings.local.thresholds) beside = beside && passes_beside(surface, box, margin, threshold);
+    if (beside) return false;
+  }
+  return kSafety * predicted_shift(surface, voxel_size, settings) * seen.pixels_per_unit > settings.local.tolerance_px;
 }
 
 }  // namespace
@@ -127,12 +178,13 @@ bool needs_smaller_voxels(FieldEvaluator& evaluator, const Box& box, double voxe
   const Box reach = dilate(box, margin);
   const GradientBounds bounds = evaluator.gradient_bounds(reach);
   const double off = most_stand_off(bounds, voxel_size);
-  for (const Camera& camera : settings.local.cameras) {
+  for (size_t k = 0; k < settings.local.cameras.size(); ++k) {
+    const Camera& camera = settings.local.cameras[k];
     Seen seen;
     if (!in_picture(camera, box, seen)) continue;
     if (voxel_size * seen.pixels_per_unit > kFolded_px && !(off * seen.pixels_per_unit <= kLocalCoarse_px)) return true;
-    if (may_hold_border(bounds, reach, camera, settings.local.thresholds) &&
-        octants_may_hold_border(evaluator, box, margin, camera, settings.local.thresholds) &&
+    if (settings.border && may_hold_border(bounds, reach, camera, settings.local.thresholds) &&
+        !(k < settings.hidden.size() && is_hidden(settings.hidden[k], box, 2.0 * kLocalCoarse_px, seen.pixels_per_unit)) &&
         border_needs(evaluator, box, voxel_size, bounds, camera, seen, settings))
       return true;
   }

@@ -144,18 +144,26 @@ BrickView view_for_single_rays(const std::shared_ptr<const RayBricks>& bricks, b
 std::shared_ptr<const RayBricks> ray_bricks(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels,
                                             bool spline) {
   if (nodes.blocks.empty()) return nullptr;
-  BrickSelection selection;
-  selection.steps_per_unit = nodes.steps_per_unit;
-  for (const LocalBrick& brick : choice.levels[level]) selection.keys.push_back(key_of(8 * brick.place));
-  const LevelSet grid = level_set_of(nodes, choice, level, half_width_voxels);
-  std::shared_ptr<const RayBricks> bricks = make_bricks(grid, spline, &selection);
-  if (!bricks)
+  std::vector<glm::ivec3> origins;
+  for (const LocalBrick& brick : choice.levels[level]) origins.push_back(8 * brick.place);
+  const std::shared_ptr<RayBricks> bricks = make_bricks(nodes.reader(), origins, nodes.steps_per_unit);
+  if (!bricks || (spline && bricks->neighbors.size() > kMostSplineBricks))
     throw InputError({.file = {},
                       .field = "voxel size",
                       .value = std::to_string(choice.voxel_of(level)),
                       .problem = "more bricks than 31 bits number",
                       .expected = "larger voxels or a larger tolerance"});
-  return bricks->groups.empty() ? nullptr : bricks;
+  if (bricks->groups.empty()) return nullptr;
+  bricks->voxel_size = choice.voxel_of(level);
+  bricks->half_width_voxels = half_width_voxels;
+  bricks->world_from_index = {glm::dmat3(bricks->voxel_size), choice.origin};
+  if (spline) {
+    const LevelSet grid = level_set_of(nodes, choice, level, half_width_voxels);
+    origins.clear();
+    for (const SurfaceBound& bound : bricks->groups.front().bounds) origins.emplace_back(bound.origin[0], bound.origin[1], bound.origin[2]);
+    bricks->spline = make_spline_bricks(grid.data(), origins);
+  }
+  return bricks;
 }
 
 void add(std::shared_ptr<const RayBricks> bricks, State& state, SurfaceInfo& info) {
@@ -170,10 +178,8 @@ void add(std::shared_ptr<const RayBricks> bricks, State& state, SurfaceInfo& inf
   state.sizes.push_back(std::move(size));
 }
 
-}  // namespace
-
-Surface local_level_set(const Field& field, const LocalBrickSettings& settings, double half_width_voxels) {
-  const auto started = std::chrono::steady_clock::now();
+/// Of one choice of bricks.
+Surface surface_of(const Field& field, const LocalBrickSettings& settings, double half_width_voxels) {
   auto state = std::make_shared<State>(field);
   state->gradient = brick_gradient(*settings.gradient);
   const LocalChoice choice = choose_bricks(field, settings);
@@ -200,12 +206,33 @@ Surface local_level_set(const Field& field, const LocalBrickSettings& settings, 
   surface.info.bytes = surface.info.ray_bytes;
   surface.curvature = {state, evaluate_curvatures, "Hessian of the field that the voxels were sampled from"};
   surface.state = std::move(state);
+  return surface;
+}
+
+/// With what a coarse surface hides in the pictures.
+LocalBrickSettings with_hidden(const Field& field, const LocalBrickSettings& settings, double half_width_voxels) {
+  LocalBrickSettings result = settings;
+  result.border = false;
+  const GradientDescriptor& cell = find_gradient("cell");
+  result.gradient = &cell;
+  const Surface coarse = surface_of(field, result, std::min(half_width_voxels, 2.0));
+  for (const Camera& camera : settings.local.cameras) result.hidden.push_back(small_picture(coarse, camera));
+  result.border = true;
+  result.gradient = settings.gradient;
+  return result;
+}
+
+}  // namespace
+
+Surface local_level_set(const Field& field, const LocalBrickSettings& settings, double half_width_voxels) {
+  const auto started = std::chrono::steady_clock::now();
+  Surface surface = surface_of(field, with_hidden(field, settings, half_width_voxels), half_width_voxels);
   surface.info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
   return surface;
 }
 
 std::vector<LevelSet> local_level_set_grids(const Field& field, const LocalBrickSettings& settings, double half_width_voxels) {
-  const LocalChoice choice = choose_bricks(field, settings);
+  const LocalChoice choice = choose_bricks(field, with_hidden(field, settings, half_width_voxels));
   const std::vector<LevelNodes> levels = sample_bricks(choice, *settings.gradient, half_width_voxels);
   std::vector<LevelSet> grids;
   for (size_t level = 0; level < levels.size(); ++level)

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
+#include <optional>
 #include <unordered_set>
 
 #include "sdf/level_set_distance.h"
@@ -18,7 +20,7 @@ size_t place_in_block(const glm::ivec3& node) { return static_cast<size_t>((node
 
 NodeBlock& block_at(LevelNodes& nodes, const glm::ivec3& origin, const Field& field) {
   const auto [found, is_new] = nodes.at.emplace(key_of(origin), nodes.blocks.size());
-  if (is_new) nodes.blocks.push_back({.origin = origin, .field = field});
+  if (is_new) nodes.blocks.emplace_back(origin, field);
   return nodes.blocks[found->second];
 }
 
@@ -122,7 +124,8 @@ struct Larger {
 
 bool on_any_face(const glm::ivec3& node) { return (node.x & 15) == 0 || (node.y & 15) == 0 || (node.z & 15) == 0; }
 
-void evaluate(NodeBlock& block, const LocalChoice& choice, double h, double half_width, float steps_per_unit, const Larger* larger) {
+void evaluate(FieldEvaluator& evaluator, NodeBlock& block, const LocalChoice& choice, double h, double half_width, float steps_per_unit,
+              const Larger* larger) {
   std::array<glm::dvec3, 512> points;
   std::array<double, 512> distances;
   std::array<std::uint16_t, 512> places;
@@ -135,7 +138,6 @@ void evaluate(NodeBlock& block, const LocalChoice& choice, double h, double half
       places[count++] = static_cast<std::uint16_t>(n);
     }
   if (count == 0) return;
-  FieldEvaluator evaluator(block.field);
   signed_distances(evaluator, std::span(points).first(count), half_width, std::span(distances).first(count));
   for (size_t k = 0; k < count; ++k) {
     const size_t n = places[k];
@@ -158,6 +160,19 @@ std::int64_t LevelNodes::known() const {
   return sum;
 }
 
+NodeReader LevelNodes::reader() const {
+  return {
+      this,
+      [](const void* of, const glm::ivec3& origin, NodeValues& values) { load_brick(*static_cast<const LevelNodes*>(of), origin, values); },
+      [](const void* of, const glm::ivec3& node) {
+        const LevelNodes& nodes = *static_cast<const LevelNodes*>(of);
+        const auto found = nodes.at.find(key_of(block_of(node)));
+        const size_t n = place_in_block(node);
+        const bool known = found != nodes.at.end() && (nodes.blocks[found->second].known[n >> 6] >> (n & 63) & 1) != 0;
+        return known ? nodes.blocks[found->second].values[n] : std::numeric_limits<float>::max();
+      }};
+}
+
 std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient, double half_width_voxels) {
   std::vector<LevelNodes> levels(choice.levels.size());
   for (size_t level = levels.size(); level-- > 0;) {
@@ -171,8 +186,14 @@ std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientD
       for (const LocalBrick& brick : choice.levels[level + 1]) larger.bricks.insert(key_of(8 * brick.place));
     }
     const auto evaluate_all = [&](const Larger* with) {
-      parallel_for(size_t{0}, nodes.blocks.size(),
-                   [&](size_t i) { evaluate(nodes.blocks[i], choice, h, half_width, nodes.steps_per_unit, with); });
+      parallel_parts(nodes.blocks.size(), size_t{16}, [&](const IndexRange<size_t>& range) {
+        std::optional<FieldEvaluator> evaluator;
+        for (size_t i = range.begin(); i < range.end(); ++i) {
+          NodeBlock& block = nodes.blocks[i];
+          if (!evaluator || &evaluator->field().program() != &block.field.program()) evaluator.emplace(block.field);
+          evaluate(*evaluator, block, choice, h, half_width, nodes.steps_per_unit, with);
+        }
+      });
     };
     for (const LocalBrick& brick : bricks) want_brick(brick, nodes);
     evaluate_all(larger.bricks.empty() ? nullptr : &larger);
@@ -188,7 +209,9 @@ LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t
   parallel_for(size_t{0}, blocks.size(), [&](size_t i) {
     blocks[i].origin = nodes.blocks[i].origin;
     std::copy_n(nodes.blocks[i].known.begin(), 8, blocks[i].active);
-    std::copy_n(nodes.blocks[i].values.begin(), 512, blocks[i].values);
+    // What is not known is given a sign by its neighbours.
+    for (size_t n = 0; n < 512; ++n)
+      blocks[i].values[n] = (nodes.blocks[i].known[n >> 6] >> (n & 63) & 1) != 0 ? nodes.blocks[i].values[n] : 0.0f;
   });
   const double h = choice.voxel_of(level);
   auto data = std::make_shared<LevelSetData>();

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <unordered_map>
 #include <vector>
 
@@ -13,20 +14,22 @@ namespace limn {
 
 /// Nodes of one voxel size, in blocks of 8^3; bits as in LevelSetBlock.
 struct NodeBlock {
+  NodeBlock(const glm::ivec3& first, Field of) : origin(first), field(std::move(of)) {}
   glm::ivec3 origin{0};
   Field field;  ///< Asked for its nodes.
   std::array<std::uint64_t, 8> wanted{}, known{};
-  std::array<float, 512> values{};
+  std::array<float, 512> values;  ///< Of the known ones.
 };
 
 struct LevelNodes {
-  std::vector<NodeBlock> blocks{};
+  std::deque<NodeBlock> blocks{};
   std::unordered_map<std::uint64_t, size_t> at{};  ///< By key_of.
   float steps_per_unit = 0.0f;                     ///< Values are whole numbers of steps, none of them 0.
 
   /// Of a node that is known.
   float value(const glm::ivec3& node) const;
   std::int64_t known() const;
+  NodeReader reader() const;  ///< Valid as long as the nodes are. Nodes that are not known are far outside.
 };
 
 /// Samples `field` at the nodes of the chosen bricks and at those that the gradient's stencils read beside them, and nowhere else; from the

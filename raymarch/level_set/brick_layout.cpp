@@ -30,9 +30,7 @@ std::uint8_t touched_faces(const CrossedCells& crossed) {
   return faces;
 }
 
-void inspect(const Accessor& accessor, Candidate& candidate) {
-  NodeValues values;
-  load_nodes(accessor, candidate.origin, values);
+void inspect(const NodeValues& values, Candidate& candidate) {
   const CrossedCells crossed = crossed_cells_of(values.data());
   candidate.crossed = crossed.any;
   if (!crossed.any) return;
@@ -77,7 +75,11 @@ std::vector<Candidate> find_candidates(const LevelSetData& data) {
     const std::uint32_t first = chunk * kChunk, last = std::min(count, first + kChunk);
     parts[chunk].reserve(kChunk + kChunk / 8);
     for (std::uint32_t i = first; i < last; ++i) add_candidates(accessor, leaves[i], parts[chunk]);
-    for (Candidate& candidate : parts[chunk]) inspect(accessor, candidate);
+    NodeValues values;
+    for (Candidate& candidate : parts[chunk]) {
+      load_nodes(accessor, candidate.origin, values);
+      inspect(values, candidate);
+    }
   });
   std::vector<Candidate> found;
   found.reserve(count + count / 8);
@@ -192,5 +194,18 @@ BrickNeighbors BrickLayout::neighbors_of(size_t brick) const {
 }
 
 BrickLayout lay_out_bricks(const LevelSetData& data) { return lay_out(find_candidates(data)); }
+
+BrickLayout lay_out_bricks(const NodeReader& nodes, std::span<const glm::ivec3> origins) {
+  std::vector<Candidate> candidates(origins.size());
+  parallel_parts(origins.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
+    NodeValues values;
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      candidates[i].origin = origins[i];
+      nodes.load(origins[i], values);
+      inspect(values, candidates[i]);
+    }
+  });
+  return lay_out(std::move(candidates));
+}
 
 }  // namespace limn

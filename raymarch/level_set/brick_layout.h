@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "raymarch/level_set/bricks.h"
@@ -61,5 +62,20 @@ struct BrickLayout {
 
 /// Looks at every leaf of the grid, in parallel.
 BrickLayout lay_out_bricks(const LevelSetData& data);
+
+/// Nodes that are in no grid. Read from many threads at a time.
+struct NodeReader {
+  const void* state = nullptr;
+  void (*load_brick)(const void* state, const glm::ivec3& origin, NodeValues& values) = nullptr;  ///< As load_nodes.
+  float (*node_value)(const void* state, const glm::ivec3& node) = nullptr;
+
+  void load(const glm::ivec3& origin, NodeValues& values) const { load_brick(state, origin, values); }
+  float value(const glm::ivec3& node) const { return node_value(state, node); }
+};
+
+/// Of the blocks of cells from `origins` on those that the surface crosses, in parallel.
+BrickLayout lay_out_bricks(const NodeReader& nodes, std::span<const glm::ivec3> origins);
+/// The bricks, without a spline and without what only their dump asks for. Null where there are more than 32-bit offsets reach.
+std::shared_ptr<RayBricks> make_bricks(const NodeReader& nodes, std::span<const glm::ivec3> origins, float steps_per_unit);
 
 }  // namespace limn

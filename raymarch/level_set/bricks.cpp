@@ -20,12 +20,6 @@ constexpr float kLargestStep = 32767.0f;
 // A crossed brick whose values span fewer steps than this in its crossed cells would lose digits of its normals.
 constexpr int kFewestSteps = 1000;
 
-std::int16_t quantised(float value, float steps_per_unit) {
-  // No node lies on the surface itself: half a step to its side keeps its sign. In float until the end, so that loops over it become SIMD.
-  const float steps = std::max(std::min(std::abs(value * steps_per_unit), kLargestStep) + 0.5f, 1.0f);
-  return static_cast<std::int16_t>(static_cast<std::int32_t>(value < 0.0f ? -steps : steps));
-}
-
 /// Groups of 2^shift cells to a side of the crossed bricks.
 BrickGroups group_bricks(const BrickLayout& layout, const std::vector<BrickShape>& shapes, const RayBricks& bricks, int shift) {
   const int per_side = 1 << (shift - 3), parts = per_side * per_side * per_side;
@@ -72,15 +66,17 @@ float scale_for(const BrickLayout& layout, float background) {
   return least * scale >= static_cast<float>(kFewestSteps) ? scale : 0.0f;
 }
 
-void fill_brick(const Accessor& accessor, const glm::ivec3& origin, float steps_per_unit, std::int16_t* to) {
+template <class Reader>
+void fill_brick(const Reader& reader, const glm::ivec3& origin, float steps_per_unit, std::int16_t* to) {
   NodeValues nodes;
-  load_nodes(accessor, origin, nodes);
+  reader.load(origin, nodes);
   for (size_t k = 0; k < nodes.size(); ++k) to[k] = quantised(nodes[k], steps_per_unit);
   std::fill(to + nodes.size(), to + kBrickStride, std::int16_t{0});
 }
 
 /// A layer's nodes lie as they would in a brick whose first ones are its block's.
-void fill_layer(const Accessor& accessor, const BrickLayer& layer, const glm::ivec3& origin, float steps_per_unit, std::int16_t* block) {
+template <class Reader>
+void fill_layer(const Reader& reader, const BrickLayer& layer, const glm::ivec3& origin, float steps_per_unit, std::int16_t* block) {
   const int axis = layer.face / 2, depth = layer_depth(axis), from = layer.first_node();
   glm::ivec3 count(kBrickNodes);
   count[axis] = depth;
@@ -90,21 +86,22 @@ void fill_layer(const Accessor& accessor, const BrickLayer& layer, const glm::iv
         glm::ivec3 node(x, y, z), slot = node;
         node[axis] += from;
         slot[axis] += layer.slot;
-        const glm::ivec3 at = origin + node;
-        block[brick_element(slot.x, slot.y, slot.z)] = quantised(accessor.getValue(nanovdb::Coord(at.x, at.y, at.z)), steps_per_unit);
+        block[brick_element(slot.x, slot.y, slot.z)] = quantised(reader.value(origin + node), steps_per_unit);
       }
     }
   }
 }
 
-std::vector<BrickShape> fill(const LevelSetData& data, const BrickLayout& layout, float steps_per_unit, RayBricks& bricks) {
+/// `reader()` makes what one thread reads nodes with.
+template <class MakeReader>
+std::vector<BrickShape> fill(const MakeReader& reader, const BrickLayout& layout, float steps_per_unit, RayBricks& bricks) {
   const size_t crossed = layout.crossed.size();
   std::vector<BrickShape> shapes(crossed);
   parallel_parts(crossed, size_t{64}, [&](const IndexRange<size_t>& range) {
-    const Accessor accessor = data.accessor();
+    const auto nodes = reader();
     for (size_t i = range.begin(); i < range.end(); ++i) {
       std::int16_t* const values = bricks.values.data() + i * kBrickStride;
-      fill_brick(accessor, layout.crossed[i].origin, steps_per_unit, values);
+      fill_brick(nodes, layout.crossed[i].origin, steps_per_unit, values);
       shapes[i] = shape_of(values);
       const BrickInCube whole{glm::ivec3(0), values, &shapes[i]};
       bricks.groups[0].bounds[i] = bound_surface(layout.crossed[i].origin, std::span(&whole, 1));
@@ -113,13 +110,48 @@ std::vector<BrickShape> fill(const LevelSetData& data, const BrickLayout& layout
   });
   std::fill(bricks.values.begin() + static_cast<std::ptrdiff_t>(crossed * kBrickStride), bricks.values.end(), std::int16_t{0});
   parallel_parts(layout.layers.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
-    const Accessor accessor = data.accessor();
+    const auto nodes = reader();
     for (size_t i = range.begin(); i < range.end(); ++i) {
       const BrickLayer& layer = layout.layers[i];
-      fill_layer(accessor, layer, layout.crossed[layer.brick].origin, steps_per_unit, bricks.values.data() + layer.block * kBrickStride);
+      fill_layer(nodes, layer, layout.crossed[layer.brick].origin, steps_per_unit, bricks.values.data() + layer.block * kBrickStride);
     }
   });
   return shapes;
+}
+
+/// Everything but the spline.
+template <class MakeReader>
+void make_from(const MakeReader& reader, const BrickLayout& layout, float scale, RayBricks& bricks) {
+  bricks.world_per_step = 1.0 / static_cast<double>(scale);
+  bricks.groups.push_back({.shift = 3, .bounds = std::vector<SurfaceBound>(layout.crossed.size()), .bricks = {}});
+  bricks.neighbors.resize(layout.crossed.size());
+  bricks.values.resize(layout.blocks * kBrickStride);
+  const std::vector<BrickShape> shapes = fill(reader, layout, scale, bricks);
+  for (const int shift : {4, 5}) bricks.groups.push_back(group_bricks(layout, shapes, bricks, shift));
+  bricks.lower = glm::ivec3(std::numeric_limits<int>::max());
+  bricks.upper = glm::ivec3(std::numeric_limits<int>::lowest());
+  for (const SurfaceBound& header : bricks.groups[0].bounds) {
+    for (int axis = 0; axis < 3; ++axis) {
+      bricks.lower[axis] = std::min(bricks.lower[axis], header.origin[axis] + header.lower[axis]);
+      bricks.upper[axis] = std::max(bricks.upper[axis], header.origin[axis] + header.upper[axis]);
+    }
+  }
+}
+
+struct GridReader {
+  Accessor accessor;
+  void load(const glm::ivec3& origin, NodeValues& values) const { load_nodes(accessor, origin, values); }
+  float value(const glm::ivec3& node) const { return accessor.getValue(nanovdb::Coord(node.x, node.y, node.z)); }
+};
+
+std::vector<glm::ivec3> origins_of(const BrickLayout& layout) {
+  std::vector<glm::ivec3> origins;
+  for (const Candidate& candidate : layout.crossed) origins.push_back(candidate.origin);
+  return origins;
+}
+
+double ms_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
@@ -142,27 +174,20 @@ std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool wit
   if (!layout.crossed.empty()) {
     const float scale = scale_for(layout, std::abs(data.grid->tree().background()));
     if (scale == 0.0f) return nullptr;
-    bricks->world_per_step = 1.0 / static_cast<double>(scale);
-    bricks->groups.push_back({.shift = 3, .bounds = std::vector<SurfaceBound>(layout.crossed.size()), .bricks = {}});
-    bricks->neighbors.resize(layout.crossed.size());
-    bricks->values.resize(layout.blocks * kBrickStride);
-    const std::vector<BrickShape> shapes = fill(data, layout, scale, *bricks);
-    if (with_spline) {
-      std::vector<glm::ivec3> origins;
-      for (const Candidate& candidate : layout.crossed) origins.push_back(candidate.origin);
-      bricks->spline = make_spline_bricks(data, origins);
-    }
-    for (const int shift : {4, 5}) bricks->groups.push_back(group_bricks(layout, shapes, *bricks, shift));
-    bricks->lower = glm::ivec3(std::numeric_limits<int>::max());
-    bricks->upper = glm::ivec3(std::numeric_limits<int>::lowest());
-    for (const SurfaceBound& header : bricks->groups[0].bounds) {
-      for (int axis = 0; axis < 3; ++axis) {
-        bricks->lower[axis] = std::min(bricks->lower[axis], header.origin[axis] + header.lower[axis]);
-        bricks->upper[axis] = std::max(bricks->upper[axis], header.origin[axis] + header.upper[axis]);
-      }
-    }
+    make_from([&data] { return GridReader{data.accessor()}; }, layout, scale, *bricks);
+    if (with_spline) bricks->spline = make_spline_bricks(data, origins_of(layout));
   }
-  bricks->prepare_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  bricks->prepare_ms = ms_since(start);
+  return bricks;
+}
+
+std::shared_ptr<RayBricks> make_bricks(const NodeReader& nodes, std::span<const glm::ivec3> origins, float steps_per_unit) {
+  const auto start = std::chrono::steady_clock::now();
+  const BrickLayout layout = lay_out_bricks(nodes, origins);
+  if (layout.blocks > kMostBricks) return nullptr;
+  auto bricks = std::make_shared<RayBricks>();
+  if (!layout.crossed.empty()) make_from([&nodes] { return nodes; }, layout, steps_per_unit, *bricks);
+  bricks->prepare_ms = ms_since(start);
   return bricks;
 }
 

@@ -2,6 +2,8 @@
 // Internal: the ray-ready form of a level set. Only the blocks of 8^3 cells that the surface crosses are kept, each as 9^3 node values of
 // 16 bits with what bounds the surface in it, and beside them the blocks into which the stencils of their gradients reach.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -67,6 +69,14 @@ struct RayBricks {
 
   std::int64_t bytes() const;
 };
+
+/// The steps that stand for a value. No node lies on the surface itself: half a step to its side keeps its sign. In float until the end, so
+/// that loops over it become SIMD.
+inline std::int16_t quantised(float value, float steps_per_unit) {
+  constexpr float kLargest = 32767.0f;
+  const float steps = std::max(std::min(std::abs(value * steps_per_unit), kLargest) + 0.5f, 1.0f);
+  return static_cast<std::int16_t>(static_cast<std::int32_t>(value < 0.0f ? -steps : steps));
+}
 
 /// Made from the grid in parallel. Null where the form would not do: more bricks than 32-bit offsets reach, or values whose range over the
 /// crossed cells differs so much from place to place that 16 bits would not tell them apart (a grid far from a distance field).

@@ -172,8 +172,10 @@ SurfaceView view_picture(const std::shared_ptr<const void>& opaque, const ViewRe
   for (int k = 0; k < 9; ++k) picture->trace.normal_from_index[k] = static_cast<float>(normal_from_index[k / 3][k % 3]);
   return {.state = picture,
           .touches = [](const void* p, const PixelTile& tile) { return touches(*static_cast<const PictureState*>(p)->view, tile); },
-          .trace = [](const void* p, const PixelTile& tile, const RayBatch& rays,
-                      HitBatch& hits) { trace_bricks(static_cast<const PictureState*>(p)->trace, tile, rays, hits); }};
+          .trace =
+              [](const void* p, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) {
+                trace_bricks({&static_cast<const PictureState*>(p)->trace, 1}, tile, rays, hits);
+              }};
 }
 
 /// From the cubic gradient's Hessian, whatever the gradient of the normals: no other has one worth having.

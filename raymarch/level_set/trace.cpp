@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 
+#include "sdf/error.h"
 #include "sdf/simd.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -191,20 +192,29 @@ void fetch(const RayBricks& bricks, bool spline, const BrickGroups& groups, std:
   }
 }
 
-void TraceBricks(const BrickTrace& what, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) {
-  const F d;
-  const BrickView& view = *what.view;
-  if (!view.groups) return;
-  const RayBricks& bricks = *view.bricks;
-  const BrickGroups& groups = *view.groups;
-  const size_t lanes = hn::Lanes(d), count = static_cast<size_t>(rays.count);
-  IndexRays index_rays;
+/// What is found of a batch so far, in bricks of one size after the other.
+struct Search {
+  IndexRays rays;  ///< By the index coordinates of the size that is searched.
   BrickHits found;
   Waiting waiting;
-  const size_t kFull = lanes;
-  to_index_space(view.index_from_render, rays, count, index_rays);
-  std::copy_n(rays.t_max, count, found.t);
-  std::fill_n(found.cell, count, -1);
+  std::int32_t cell[kRayBatchSize];  ///< Of all sizes.
+  std::uint8_t size[kRayBatchSize];  ///< Whose cell it is.
+};
+
+void start(const RayBatch& rays, Search& search) {
+  const auto count = static_cast<size_t>(rays.count);
+  std::copy_n(rays.t_max, count, search.found.t);
+  std::fill_n(search.found.cell, count, -1);
+  std::fill_n(search.cell, count, -1);
+}
+
+/// Roots in bricks of one size, nearer than those found before.
+HWY_NOINLINE void search_tile(const BrickTrace& what, const PixelTile& tile, const RayBatch& rays, Search& search) {
+  const F d;
+  const BrickView& view = *what.view;
+  const RayBricks& bricks = *view.bricks;
+  const BrickGroups& groups = *view.groups;
+  const size_t lanes = hn::Lanes(d);
   const VF side = set(view.side);
   const int across = (tile.width + 3) / 4;
   for (int row = tile.y / kViewTile_px; row <= (tile.y + tile.height - 1) / kViewTile_px; ++row) {
@@ -222,16 +232,102 @@ void TraceBricks(const BrickTrace& what, const PixelTile& tile, const RayBatch& 
           for (int x = range.x0; x <= range.x1; ++x) {
             const size_t first = static_cast<size_t>(y * across + x) * 16;
             for (size_t i = first; i < first + 16; i += lanes) {
-              enter_packet(bound, index, index_rays, rays, i, view.slack_voxels, found, waiting);
-              while (waiting.count >= kFull) advance_packet(bricks, groups, side, waiting, found);
+              enter_packet(bound, index, search.rays, rays, i, view.slack_voxels, search.found, search.waiting);
+              while (search.waiting.count >= lanes) advance_packet(bricks, groups, side, search.waiting, search.found);
             }
           }
         }
       }
     }
   }
-  while (waiting.count > 0) advance_packet(bricks, groups, side, waiting, found);
-  for (size_t i = 0; i < count; i += lanes) write_packet(what, index_rays, rays, i, found, hits);
+  while (search.waiting.count > 0) advance_packet(bricks, groups, side, search.waiting, search.found);
+}
+
+/// Whether a ray of the packet meets the box before its root so far.
+HWY_INLINE bool meets(const BrickTree::Node& node, float slack, const RayBatch& batch, const Search& search, size_t i) {
+  const F d;
+  VF near = hn::Load(d, batch.t_min + i), far = hn::Min(hn::Load(d, batch.t_max + i), hn::Load(d, search.found.t + i));
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const VF from = hn::Load(d, search.rays.origin[axis] + i), inverse = hn::Load(d, search.rays.inverse[axis] + i);
+    const VF a = hn::Mul(hn::Sub(set(static_cast<float>(node.lower[axis]) - slack), from), inverse);
+    const VF b = hn::Mul(hn::Sub(set(static_cast<float>(node.upper[axis]) + slack), from), inverse);
+    near = hn::Max(near, hn::Min(a, b));
+    far = hn::Min(far, hn::Max(a, b));
+  }
+  return !hn::AllFalse(d, hn::Le(near, far));
+}
+
+/// As search_tile, for rays of any kind.
+HWY_NOINLINE void search_tree(const BrickTrace& what, const BrickTree& tree, const RayBatch& rays, Search& search) {
+  const F d;
+  const BrickView& view = *what.view;
+  const RayBricks& bricks = *view.bricks;
+  const BrickGroups& groups = bricks.groups.front();
+  const size_t lanes = hn::Lanes(d), count = static_cast<size_t>(rays.count);
+  const VF side = set(view.side);
+  for (size_t i = 0; i < count; i += lanes) {
+    std::uint32_t stack[BrickTree::kMostDepth + 1];
+    size_t waiting = 0;
+    stack[waiting++] = 0;
+    while (waiting > 0) {
+      const BrickTree::Node& node = tree.nodes[stack[--waiting]];
+      if (!meets(node, view.slack_voxels, rays, search, i)) continue;
+      if (node.brick < 0) {
+        stack[waiting++] = node.first;
+        stack[waiting++] = node.first + 1;
+        continue;
+      }
+      enter_packet(groups.bounds[static_cast<size_t>(node.brick)], node.brick, search.rays, rays, i, view.slack_voxels, search.found,
+                   search.waiting);
+      while (search.waiting.count >= lanes) advance_packet(bricks, groups, side, search.waiting, search.found);
+    }
+    // What is behind a root need not be looked at by the packets to come.
+    while (search.waiting.count > 0) advance_packet(bricks, groups, side, search.waiting, search.found);
+  }
+}
+
+/// Roots found last lie nearer than those of the sizes before.
+void take(size_t size, size_t count, Search& search) {
+  for (size_t i = 0; i < count; ++i) {
+    if (search.found.cell[i] < 0) continue;
+    search.cell[i] = search.found.cell[i];
+    search.size[i] = static_cast<std::uint8_t>(size);
+    search.found.cell[i] = -1;
+  }
+}
+
+void write(const BrickTrace* sizes, size_t number, const RayBatch& rays, Search& search, HitBatch& hits) {
+  const size_t count = static_cast<size_t>(rays.count), lanes = hn::Lanes(F());
+  for (size_t k = 0; k < number; ++k) {
+    if (!sizes[k].view->groups) continue;
+    bool any = false;
+    for (size_t i = 0; i < count; ++i) {
+      const bool here = search.cell[i] >= 0 && search.size[i] == k;
+      search.found.cell[i] = here ? search.cell[i] : -1;
+      any = any || here;
+    }
+    if (!any) continue;
+    if (number > 1) to_index_space(sizes[k].view->index_from_render, rays, count, search.rays);
+    for (size_t i = 0; i < count; i += lanes) write_packet(sizes[k], search.rays, rays, i, search.found, hits);
+  }
+}
+
+void TraceBricks(const BrickTrace* sizes, size_t number, const BrickTree* const* trees, const PixelTile& tile, const RayBatch& rays,
+                 HitBatch& hits) {
+  Search search;
+  const auto count = static_cast<size_t>(rays.count);
+  start(rays, search);
+  for (size_t k = 0; k < number; ++k) {
+    const BrickView& view = *sizes[k].view;
+    if (!view.groups || (!trees && !touches(view, tile))) continue;
+    to_index_space(view.index_from_render, rays, count, search.rays);
+    if (trees)
+      search_tree(sizes[k], *trees[k], rays, search);
+    else
+      search_tile(sizes[k], tile, rays, search);
+    take(k, count, search);
+  }
+  write(sizes, number, rays, search, hits);
 }
 
 }  // namespace
@@ -241,8 +337,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace limn {
 HWY_EXPORT(TraceBricks);
-void trace_bricks(const BrickTrace& what, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) {
-  HWY_DYNAMIC_DISPATCH(TraceBricks)(what, tile, rays, hits);
+void trace_bricks(std::span<const BrickTrace> sizes, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) {
+  LIMN_CHECK(sizes.size() <= kMostBrickSizes);
+  HWY_DYNAMIC_DISPATCH(TraceBricks)(sizes.data(), sizes.size(), nullptr, tile, rays, hits);
+}
+void trace_bricks_singly(std::span<const BrickTrace> sizes, std::span<const BrickTree* const> trees, const RayBatch& rays, HitBatch& hits) {
+  LIMN_CHECK(sizes.size() <= kMostBrickSizes && trees.size() == sizes.size());
+  HWY_DYNAMIC_DISPATCH(TraceBricks)(sizes.data(), sizes.size(), trees.data(), PixelTile{}, rays, hits);
 }
 }  // namespace limn
 #endif

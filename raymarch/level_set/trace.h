@@ -1,6 +1,9 @@
 #pragma once
 // Internal: the rays of one tile against its bricks, in packets of the machine's widest SIMD.
 
+#include <span>
+
+#include "raymarch/level_set/brick_tree.h"
 #include "raymarch/level_set/level_set_view.h"
 
 namespace limn {
@@ -20,7 +23,15 @@ struct BrickHits {
   alignas(64) std::int32_t cell[kRayBatchSize];  ///< Brick times 512, and the cell's number in it (x 64 + y 8 + z); -1: none.
 };
 
-/// Traces the rays of `tile` (lanes in blocks of 4 x 4 pixels, see PixelTile) and fills `hits`.
-void trace_bricks(const BrickTrace& what, const PixelTile& tile, const RayBatch& rays, HitBatch& hits);
+/// Most sizes of voxels in one surface.
+inline constexpr size_t kMostBrickSizes = 24;
+
+/// Traces the rays of `tile` (lanes in blocks of 4 x 4 pixels, see PixelTile) and fills `hits`: the first hits in the bricks of all of
+/// `sizes`, at most kMostBrickSizes of them.
+void trace_bricks(std::span<const BrickTrace> sizes, const PixelTile& tile, const RayBatch& rays, HitBatch& hits);
+
+/// The same for rays that have nothing in common but the side of the surface on which they start: the views' tiles are not read. `trees`
+/// has one for each of `sizes`.
+void trace_bricks_singly(std::span<const BrickTrace> sizes, std::span<const BrickTree* const> trees, const RayBatch& rays, HitBatch& hits);
 
 }  // namespace limn

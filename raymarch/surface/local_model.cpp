@@ -1,6 +1,7 @@
 #include <chrono>
 
 #include "raymarch/local_model.h"
+#include "raymarch/surface/local_level_set.h"
 #include "raymarch/surface/local_mesh.h"
 #include "raymarch/surface/local_sources.h"
 
@@ -90,18 +91,20 @@ std::optional<ObjectMesh> local_mesh_of(const SceneObject& object, const Surface
 }  // namespace
 
 std::string why_not_local(const SceneObject& object, const SurfaceSettings& settings) {
+  if (settings.kind == "level_set") return why_no_local_level_set(object);
   if (std::string reason = cannot_mesh(object); !reason.empty()) return reason;
   if (std::holds_alternative<Field>(object.source) || scheme_of(object, settings)) return {};
   return "it has one resolution only: no field and no subdivision cage";
 }
 
 SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local) {
-  SurfaceSettings own = settings;
-  own.kind = "mesh";
-  own.kept_mesh = nullptr;
   glm::dvec3 render_origin(0.0);
   if (const Box box = bounds(scene); !box.empty()) render_origin = box.center();
   const LocalSettings in_render = in_render_space(local, render_origin);
+  if (settings.kind == "level_set") return build_local_level_sets(scene, settings, render_origin, in_render);
+  SurfaceSettings own = settings;
+  own.kind = "mesh";
+  own.kept_mesh = nullptr;
   // build_model takes the meshes as it takes those of an earlier model.
   ObjectMeshCache made;
   for (const SceneObject& object : scene.objects) {

@@ -464,7 +464,7 @@ void add_local(CLI::App& app, Options& options, bool metric) {
                if (!texts.empty() && !texts.back().empty())
                  options.local.tolerance_px = parse_number_above("--local", texts.back(), 0.0, false, "a number of pixels above 0");
              },
-             "a mesh that is fine where the border of these pictures runs and coarse elsewhere: the border within PX pixels")
+             "a mesh or level set that is fine where the border of these pictures runs and coarse elsewhere: the border within PX pixels")
           ->type_name("PX")
           ->group(kSurface)
           ->expected(0, 1);

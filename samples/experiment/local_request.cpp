@@ -27,12 +27,18 @@ void refuse_local_without_effect(const ExperimentSpec& spec, const Scene& scene,
   if (spec.surface.level || spec.surface.level_for_view)
     throw InputError(
         {"", "level", "", "has no effect on a local mesh, which is as fine as the border needs; leave out local or the level", ""});
-  const bool mesh = std::any_of(kinds.begin(), kinds.end(), [](const std::string& kind) { return kind == "mesh"; });
-  if (!mesh) throw InputError({"", "local", "", "has no effect on this representation; add surface = mesh", ""});
+  const bool has_one =
+      std::any_of(kinds.begin(), kinds.end(), [](const std::string& kind) { return kind == "mesh" || kind == "level_set"; });
+  if (!has_one) throw InputError({"", "local", "", "has no effect on this representation; add surface = mesh or surface = level_set", ""});
   std::string reason;
-  for (const SceneObject& object : scene.objects) {
-    reason = why_not_local(object, settings);
-    if (reason.empty()) return;
+  for (const std::string& kind : kinds) {
+    if (kind != "mesh" && kind != "level_set") continue;
+    SurfaceSettings of_kind = settings;
+    of_kind.kind = kind;
+    for (const SceneObject& object : scene.objects) {
+      reason = why_not_local(object, of_kind);
+      if (reason.empty()) return;
+    }
   }
   throw InputError({"", "local", "", "has no effect on '" + scene.name + "': " + reason,
                     "a scene of shapes or subdivision cages (scheme = catmark makes a mesh a cage)"});

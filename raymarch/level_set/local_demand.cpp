@@ -1,0 +1,194 @@
+#include "raymarch/level_set/local_demand.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sdf/number.h"
+
+namespace limn {
+namespace {
+
+/// How far what lies beside the picture may reach into it, px.
+constexpr double kAside_px = 4.0;
+/// Where a brick holds creases or several sheets, its voxels are no larger in the picture: what they lose is smaller than a pixel.
+constexpr double kFolded_px = 1.0;
+/// Of a predicted error, what is allowed for its being a prediction.
+constexpr double kSafety = 2.0;
+
+/// A brick as one picture shows it.
+struct Seen {
+  double pixels_per_unit = 0.0;  ///< At its nearest point.
+};
+
+bool in_picture(const Camera& camera, const Box& box, Seen& seen) {
+  glm::dvec2 low(1e300), high(-1e300);
+  double nearest = 1e300;
+  bool behind = false;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p(corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
+                       corner & 4 ? box.upper.z : box.lower.z);
+    const glm::dvec3 px = project(camera, p);
+    nearest = std::min(nearest, px.z);
+    behind = behind || !(px.z > 0.0);
+    low = glm::min(low, glm::dvec2(px)), high = glm::max(high, glm::dvec2(px));
+  }
+  const double side = box.longest_side();
+  if (camera.projection == Projection::orthographic) behind = false;
+  // About the eye there is no measure of a pixel: as if the brick's own side away.
+  seen.pixels_per_unit = pixels_per_unit_at(camera, behind ? side : nearest);
+  if (behind) return nearest > -4.0 * side;
+  return high.x >= -kAside_px && high.y >= -kAside_px && low.x <= camera.width_px + kAside_px && low.y <= camera.height_px + kAside_px;
+}
+
+/// From the points of a box towards the eye.
+std::array<Interval, 3> towards_eye(const Camera& camera, const Box& box) {
+  std::array<Interval, 3> way;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double back = camera.world_from_camera[2][axis];
+    way[static_cast<size_t>(axis)] = camera.projection == Projection::orthographic
+                                         ? Interval{back, back}
+                                         : outward(camera.eye[axis] - box.upper[axis], camera.eye[axis] - box.lower[axis]);
+  }
+  return way;
+}
+
+/// False where no vector of the gradients' bounds has an N.V of 0 or of a threshold.
+bool may_hold_border(const GradientBounds& bounds, const Box& box, const Camera& camera, const std::vector<double>& thresholds) {
+  const std::array<Interval, 3> way = towards_eye(camera, box);
+  const auto& g = bounds.gradient;
+  const Interval facing = g[0] * way[0] + g[1] * way[1] + g[2] * way[2];
+  if (facing.contains(0.0)) return true;
+  if (thresholds.empty()) return false;
+  const Interval length = norm(g[0], g[1], g[2]) * norm(way[0], way[1], way[2]);
+  return std::any_of(thresholds.begin(), thresholds.end(), [&](double t) { return (facing - length * t).contains(0.0); });
+}
+
+/// The surface at a place near a brick's middle: what N.V is there, and how it changes along the surface.
+struct SecondOrder {
+  glm::dvec3 at{0.0};
+  double facing = 0.0;     ///< N.V.
+  glm::dvec3 change{0.0};  ///< Of N.V along the surface, per world unit.
+  double curvature = 0.0;  ///< The normal's turn, per world unit, at most.
+  double bend = 0.0;       ///< Sum of |second derivatives| along the axes, over the slope.
+};
+
+/// False where the field has no slope there.
+bool expand(FieldEvaluator& evaluator, const Box& box, const Camera& camera, SecondOrder& out) {
+  out.at = box.center();
+  const FieldJet from = evaluator.jet(out.at);
+  const double slope2 = glm::dot(from.gradient, from.gradient);
+  if (!(slope2 > 0.0)) return false;
+  out.at -= from.value / slope2 * from.gradient;
+  const FieldJet jet = evaluator.jet(out.at);
+  const double slope = glm::length(jet.gradient);
+  if (!(slope > 0.0)) return false;
+  const glm::dvec3 n = jet.gradient / slope, v = view_vector(camera, out.at);
+  out.facing = glm::dot(n, v);
+  glm::dmat3 turn = jet.hessian / slope;
+  out.bend = std::abs(turn[0][0]) + std::abs(turn[1][1]) + std::abs(turn[2][2]);
+  double sum = 0.0;
+  for (int column = 0; column < 3; ++column) {
+    turn[column] -= n * glm::dot(n, turn[column]);
+    sum += glm::dot(turn[column], turn[column]);
+  }
+  out.curvature = std::sqrt(sum);
+  // The view vector turns, too, by 1 / distance across it.
+  out.change = glm::transpose(turn) * v;
+  if (camera.projection == Projection::perspective) out.change -= (n - out.facing * v) / glm::distance(camera.eye, out.at);
+  out.change -= n * glm::dot(out.change, n);
+  return true;
+}
+
+/// Where the surface turns by less than this over a brick (radians), its second order tells where N.V has a value; elsewhere bounds do.
+constexpr double kMostTurn = 0.15;
+
+/// A border lies so far inside the bricks that are small for it, in the next larger voxels: farther than these would move it.
+constexpr double kBorderMargin_voxels = 0.75;
+
+/// True where N.V comes to no such value within the brick and `margin` about it, by its second order at the middle.
+bool passes_beside(const SecondOrder& surface, const Box& box, double margin, double value) {
+  const double rest = std::abs(surface.facing - value);
+  const glm::dvec3 farthest = glm::max(glm::abs(box.upper - surface.at), glm::abs(box.lower - surface.at)) + margin;
+  const double first = glm::dot(glm::abs(surface.change), farthest);
+  // What the next order may add: as much as the turn of the normal over the brick, squared.
+  const double turn = surface.curvature * glm::length(farthest);
+  return rest > first + turn * turn;
+}
+
+/// How far the surface may stand off in cells of that size, along its normal: a function whose slope lies in bounds of width w lies within
+/// h w / 4 of its chords. Infinite where the gradient may vanish, so that the brick may hold several sheets.
+double most_stand_off(const GradientBounds& bounds, double voxel_size) {
+  const auto& g = bounds.gradient;
+  const double least = mignitude(norm(g[0], g[1], g[2]));
+  if (!(least > 0.0)) return std::numeric_limits<double>::infinity();
+  return voxel_size * (g[0].width() + g[1].width() + g[2].width()) / (4.0 * least);
+}
+
+/// Of a brick with creases: whether normals that are really there lie on both sides of a border's N.V, or near it.
+bool creases_hold_border(FieldEvaluator& evaluator, const Box& box, const Camera& camera, const std::vector<double>& thresholds) {
+  constexpr int kSide = 5;
+  constexpr double kMargin = 0.02;
+  std::array<glm::dvec3, kSide * kSide * kSide> points, gradients;
+  std::array<double, points.size()> values;
+  for (int k = 0; k < static_cast<int>(points.size()); ++k) {
+    const glm::dvec3 part(k / (kSide * kSide), k / kSide % kSide, k % kSide);
+    points[static_cast<size_t>(k)] = box.lower + part / double{kSide - 1} * box.size();
+  }
+  evaluator.gradients(points, values, gradients);
+  double least = 1.0, most = -1.0;
+  for (size_t k = 0; k < points.size(); ++k) {
+    const double slope = glm::length(gradients[k]);
+    if (!(slope > 0.0)) return true;
+    const double facing = glm::dot(gradients[k], view_vector(camera, points[k])) / slope;
+    least = std::min(least, facing), most = std::max(most, facing);
+  }
+  const auto holds = [&](double value) { return least < value + kMargin && most > value - kMargin; };
+  return holds(0.0) || std::any_of(thresholds.begin(), thresholds.end(), holds);
+}
+
+/// What voxels of that size are predicted to move the border by in a brick, world units as the picture foreshortens them at most.
+double predicted_shift(const SecondOrder& surface, double voxel_size, const LocalBrickSettings& settings) {
+  const double off = voxel_size * voxel_size / 8.0 * surface.bend;
+  if (settings.local.thresholds.empty()) return off;
+  const GradientDescriptor& gradient = *settings.gradient;
+  const double angle = gradient.normal_constant * std::pow(surface.curvature * voxel_size, gradient.order);
+  return off + angle / std::max(glm::length(surface.change), 1e-12);
+}
+
+/// Of a brick in which bounds cannot exclude a border.
+bool border_needs(FieldEvaluator& evaluator, const Box& box, double voxel_size, const GradientBounds& bounds, const Camera& camera,
+                  const Seen& seen, const LocalBrickSettings& settings) {
+  SecondOrder surface;
+  const bool folded = !(most_stand_off(bounds, voxel_size) < 0.25 * voxel_size);
+  if (folded && !creases_hold_border(evaluator, dilate(box, voxel_size), camera, settings.local.thresholds)) return false;
+  if (folded || !expand(evaluator, box, camera, surface)) return kSafety * voxel_size * seen.pixels_per_unit > settings.local.tolerance_px;
+  if (surface.curvature * box.longest_side() < kMostTurn) {
+    const double margin = kBorderMargin_voxels * voxel_size;
+    bool beside = passes_beside(surface, box, margin, 0.0);
+    for (const double threshold : settings.local.thresholds) beside = beside && passes_beside(surface, box, margin, threshold);
+    if (beside) return false;
+  }
+  return kSafety * predicted_shift(surface, voxel_size, settings) * seen.pixels_per_unit > settings.local.tolerance_px;
+}
+
+}  // namespace
+
+bool needs_smaller_voxels(FieldEvaluator& evaluator, const Box& box, double voxel_size, const LocalBrickSettings& settings) {
+  const double margin = kStencilReach_voxels * voxel_size;
+  const Box reach = dilate(box, margin);
+  const GradientBounds bounds = evaluator.gradient_bounds(reach);
+  const double off = most_stand_off(bounds, voxel_size);
+  for (size_t k = 0; k < settings.local.cameras.size(); ++k) {
+    const Camera& camera = settings.local.cameras[k];
+    Seen seen;
+    if (!in_picture(camera, box, seen)) continue;
+    if (voxel_size * seen.pixels_per_unit > kFolded_px && !(off * seen.pixels_per_unit <= kLocalCoarse_px)) return true;
+    if (settings.border && may_hold_border(bounds, reach, camera, settings.local.thresholds) &&
+        !(k < settings.hidden.size() && is_hidden(settings.hidden[k], box, 2.0 * kLocalCoarse_px, seen.pixels_per_unit)) &&
+        border_needs(evaluator, box, voxel_size, bounds, camera, seen, settings))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace limn

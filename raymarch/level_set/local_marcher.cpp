@@ -1,0 +1,243 @@
+#include "raymarch/level_set/local_marcher.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "raymarch/level_set/brick_layout.h"
+#include "raymarch/level_set/local_nodes.h"
+#include "raymarch/level_set/trace.h"
+#include "raymarch/scene/curvature.h"
+#include "sdf/error.h"
+#include "sdf/level_set_data.h"
+
+namespace limn {
+namespace {
+
+/// Bricks of one voxel size.
+struct SizedBricks {
+  std::shared_ptr<const RayBricks> bricks{};
+  BrickTree tree{};
+  BrickView outside{}, inside{};  ///< For rays that no picture has, by the side on which they start.
+};
+
+struct State {
+  explicit State(Field of) : field(std::move(of)) {}
+  Field field;
+  BrickGradient gradient = BrickGradient::central;
+  std::vector<SizedBricks> sizes{};  ///< The smallest voxels first.
+  Box bounds{};                      ///< Render space.
+};
+
+BrickGradient brick_gradient(const GradientDescriptor& gradient) {
+  if (gradient.about.name == "cell") return BrickGradient::cell;
+  if (gradient.about.name == "central") return BrickGradient::central;
+  if (gradient.about.name == "cubic") return BrickGradient::cubic;
+  throw InputError({.file = {},
+                    .field = "gradient",
+                    .value = gradient.about.name,
+                    .problem = "a local level set does not have it",
+                    .expected = "cell, central or cubic, or a level set without --local"});
+}
+
+/// The interpolant's sign in the brick that holds the place (index coordinates); nothing where no brick does.
+std::optional<bool> inside_brick(const RayBricks& bricks, const glm::dvec3& place) {
+  const glm::dvec3 node = glm::floor(place), local = place - node;
+  const glm::ivec3 cell(node), origin = cell & ~7;
+  const std::vector<SurfaceBound>& bounds = bricks.groups.front().bounds;
+  const auto key = [](const SurfaceBound& b) { return key_of({b.origin[0], b.origin[1], b.origin[2]}); };
+  const auto found =
+      std::lower_bound(bounds.begin(), bounds.end(), key_of(origin), [&](const SurfaceBound& b, std::uint64_t k) { return key(b) < k; });
+  if (found == bounds.end() || key(*found) != key_of(origin)) return std::nullopt;
+  const std::int16_t* const values = bricks.values.data() + (found - bounds.begin()) * kBrickStride;
+  double sum = 0.0;
+  for (int k = 0; k < 8; ++k) {
+    const glm::ivec3 side(k & 1, k >> 1 & 1, k >> 2), at = cell - origin + side;
+    const glm::dvec3 weight = glm::mix(1.0 - local, local, glm::dvec3(side));
+    sum += weight.x * weight.y * weight.z * static_cast<double>(values[brick_element(at.x, at.y, at.z)]);
+  }
+  return sum < 0.0;
+}
+
+/// Beside the bricks the surface is not near, and the field tells.
+bool is_inside(const State& state, const glm::dvec3& point, std::optional<FieldEvaluator>& evaluator) {
+  if (glm::any(glm::lessThan(point, state.bounds.lower)) || glm::any(glm::greaterThan(point, state.bounds.upper))) return false;
+  for (const SizedBricks& size : state.sizes)
+    if (const auto inside = inside_brick(*size.bricks, size.outside.index_from_render.point(point))) return *inside;
+  if (!evaluator) evaluator.emplace(state.field);
+  return evaluator->value(point) < 0.0;
+}
+
+void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
+  const State& state = *static_cast<const State*>(opaque);
+  std::optional<FieldEvaluator> evaluator;
+  std::vector<BrickTrace> sizes(state.sizes.size());
+  std::vector<const BrickTree*> trees(state.sizes.size());
+  for (const bool inside : {false, true}) {
+    // Packets are whole: lanes without a ray are idle.
+    RayBatch own;
+    own.count = (rays.count + 15) / 16 * 16;
+    bool any = false;
+    for (int i = 0; i < own.count; ++i) {
+      own.set(i, glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0), 0.0, -1.0);
+      if (i >= rays.count || !(rays.t_min[i] < rays.t_max[i])) continue;
+      const glm::dvec3 origin(rays.origin(i)), direction(rays.direction(i));
+      if (is_inside(state, origin + static_cast<double>(rays.t_min[i]) * direction, evaluator) != inside) continue;
+      own.set(i, origin, direction, static_cast<double>(rays.t_min[i]), static_cast<double>(rays.t_max[i]));
+      any = true;
+    }
+    if (!any) continue;
+    for (size_t k = 0; k < sizes.size(); ++k) {
+      sizes[k].view = inside ? &state.sizes[k].inside : &state.sizes[k].outside;
+      sizes[k].gradient = state.gradient;
+      trees[k] = &state.sizes[k].tree;
+    }
+    trace_bricks_singly(sizes, trees, own, hits);
+  }
+}
+
+struct PictureState {
+  std::vector<std::shared_ptr<const BrickView>> views;
+  std::vector<BrickTrace> sizes;
+};
+
+SurfaceView view_picture(const std::shared_ptr<const void>& opaque, const ViewRequest& request) {
+  const auto state = std::static_pointer_cast<const State>(opaque);
+  auto picture = std::make_shared<PictureState>();
+  std::optional<FieldEvaluator> evaluator;
+  const bool inside = is_inside(*state, request.camera.eye, evaluator);
+  for (const SizedBricks& size : state->sizes) {
+    picture->views.push_back(view_bricks(size.bricks, size.outside.index_from_render, inside, request));
+    if (!picture->views.back()) return {};
+    picture->sizes.push_back({.view = picture->views.back().get(), .gradient = state->gradient});
+  }
+  return {.state = picture,
+          .touches =
+              [](const void* p, const PixelTile& tile) {
+                const auto& views = static_cast<const PictureState*>(p)->views;
+                return std::any_of(views.begin(), views.end(), [&](const auto& view) { return touches(*view, tile); });
+              },
+          .trace = [](const void* p, const PixelTile& tile, const RayBatch& rays,
+                      HitBatch& hits) { trace_bricks(static_cast<const PictureState*>(p)->sizes, tile, rays, hits); }};
+}
+
+void evaluate_curvatures(const void* opaque, std::span<const SurfacePoint> points, std::span<SurfaceCurvature> curvatures) {
+  FieldEvaluator evaluator(static_cast<const State*>(opaque)->field);
+  for (size_t i = 0; i < points.size(); ++i) curvatures[i] = facing(curvature_of_jet(evaluator.jet(points[i].position)), points[i].normal);
+}
+
+BrickView view_for_single_rays(const std::shared_ptr<const RayBricks>& bricks, bool inside) {
+  BrickView view;
+  view.bricks = bricks;
+  view.groups = &bricks->groups.front();
+  view.index_from_render = inverse(bricks->world_from_index);
+  const glm::dvec3 size(bricks->upper - bricks->lower), middle = 0.5 * glm::dvec3(bricks->lower + bricks->upper);
+  // Rays start where they enter the scene's bounding sphere, or in it.
+  const double reach = 4.0 * glm::length(size) + 2.0 * glm::length(middle);
+  view.slack_voxels = static_cast<float>(std::max(1e-3, 16.0 * reach * std::numeric_limits<float>::epsilon()));
+  view.side = inside ? -1.0f : 1.0f;
+  return view;
+}
+
+/// Null where the surface crosses none of the chosen bricks of that size.
+std::shared_ptr<const RayBricks> ray_bricks(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels,
+                                            bool spline) {
+  if (nodes.blocks.empty()) return nullptr;
+  std::vector<glm::ivec3> origins;
+  for (const LocalBrick& brick : choice.levels[level]) origins.push_back(8 * brick.place);
+  const std::shared_ptr<RayBricks> bricks = make_bricks(nodes.reader(), origins, nodes.steps_per_unit);
+  if (!bricks || (spline && bricks->neighbors.size() > kMostSplineBricks))
+    throw InputError({.file = {},
+                      .field = "voxel size",
+                      .value = std::to_string(choice.voxel_of(level)),
+                      .problem = "more bricks than 31 bits number",
+                      .expected = "larger voxels or a larger tolerance"});
+  if (bricks->groups.empty()) return nullptr;
+  bricks->voxel_size = choice.voxel_of(level);
+  bricks->half_width_voxels = half_width_voxels;
+  bricks->world_from_index = {glm::dmat3(bricks->voxel_size), choice.origin};
+  if (spline) {
+    const LevelSet grid = level_set_of(nodes, choice, level, half_width_voxels);
+    origins.clear();
+    for (const SurfaceBound& bound : bricks->groups.front().bounds) origins.emplace_back(bound.origin[0], bound.origin[1], bound.origin[2]);
+    bricks->spline = make_spline_bricks(grid.data(), origins);
+  }
+  return bricks;
+}
+
+void add(std::shared_ptr<const RayBricks> bricks, State& state, SurfaceInfo& info) {
+  SizedBricks size;
+  size.tree = tree_of(*bricks);
+  size.outside = view_for_single_rays(bricks, false);
+  size.inside = view_for_single_rays(bricks, true);
+  state.bounds = merge(state.bounds, transform(bricks->world_from_index, {glm::dvec3(bricks->lower), glm::dvec3(bricks->upper)}));
+  info.ray_bytes += bricks->bytes() + size.tree.bytes();
+  info.prepare_ms += bricks->prepare_ms;
+  size.bricks = std::move(bricks);
+  state.sizes.push_back(std::move(size));
+}
+
+/// Of one choice of bricks.
+Surface surface_of(const Field& field, const LocalBrickSettings& settings, double half_width_voxels) {
+  auto state = std::make_shared<State>(field);
+  state->gradient = brick_gradient(*settings.gradient);
+  const LocalChoice choice = choose_bricks(field, settings);
+  std::vector<LevelNodes> levels = sample_bricks(choice, *settings.gradient, half_width_voxels);
+  Surface surface;
+  for (size_t level = 0; level < levels.size(); ++level) {
+    surface.info.voxels += levels[level].known();
+    if (auto bricks = ray_bricks(levels[level], choice, level, half_width_voxels, state->gradient == BrickGradient::cubic)) {
+      if (surface.info.voxel_size == 0.0) surface.info.voxel_size = choice.voxel_of(level);
+      add(std::move(bricks), *state, surface.info);
+    }
+    levels[level] = {};
+  }
+  LIMN_CHECK(state->sizes.size() <= kMostBrickSizes);
+  if (state->sizes.empty())
+    throw InputError({.file = {},
+                      .field = "voxel size",
+                      .value = std::to_string(settings.voxel_size),
+                      .problem = "no voxel lies inside the surface: it is thinner than a voxel, or empty",
+                      .expected = "smaller voxels"});
+  surface.trace = trace;
+  surface.view = view_picture;
+  surface.bounds = state->bounds;
+  surface.info.bytes = surface.info.ray_bytes;
+  surface.curvature = {state, evaluate_curvatures, "Hessian of the field that the voxels were sampled from"};
+  surface.state = std::move(state);
+  return surface;
+}
+
+/// With what a coarse surface hides in the pictures.
+LocalBrickSettings with_hidden(const Field& field, const LocalBrickSettings& settings, double half_width_voxels) {
+  LocalBrickSettings result = settings;
+  result.border = false;
+  const GradientDescriptor& cell = find_gradient("cell");
+  result.gradient = &cell;
+  const Surface coarse = surface_of(field, result, std::min(half_width_voxels, 2.0));
+  for (const Camera& camera : settings.local.cameras) result.hidden.push_back(small_picture(coarse, camera));
+  result.border = true;
+  result.gradient = settings.gradient;
+  return result;
+}
+
+}  // namespace
+
+Surface local_level_set(const Field& field, const LocalBrickSettings& settings, double half_width_voxels) {
+  const auto started = std::chrono::steady_clock::now();
+  Surface surface = surface_of(field, with_hidden(field, settings, half_width_voxels), half_width_voxels);
+  surface.info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
+  return surface;
+}
+
+std::vector<LevelSet> local_level_set_grids(const Field& field, const LocalBrickSettings& settings, double half_width_voxels) {
+  const LocalChoice choice = choose_bricks(field, with_hidden(field, settings, half_width_voxels));
+  const std::vector<LevelNodes> levels = sample_bricks(choice, *settings.gradient, half_width_voxels);
+  std::vector<LevelSet> grids;
+  for (size_t level = 0; level < levels.size(); ++level)
+    if (!levels[level].blocks.empty()) grids.push_back(level_set_of(levels[level], choice, level, half_width_voxels));
+  return grids;
+}
+
+}  // namespace limn

@@ -1,0 +1,14 @@
+#pragma once
+// A level set of bricks of several voxel sizes: built for pictures, and traced by the packets that trace one of a single size.
+
+#include "raymarch/level_set/local_choice.h"
+
+namespace limn {
+
+/// Of a field in render space, for the pictures of `settings`. Bounds and info are filled (kind is left to the caller). Throws InputError.
+Surface local_level_set(const Field& field, const LocalBrickSettings& settings, double half_width_voxels);
+
+/// The same nodes as ordinary level sets, one for each voxel size that is there, the smallest first.
+std::vector<LevelSet> local_level_set_grids(const Field& field, const LocalBrickSettings& settings, double half_width_voxels);
+
+}  // namespace limn

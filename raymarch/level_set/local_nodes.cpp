@@ -1,0 +1,231 @@
+#include "raymarch/level_set/local_nodes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <optional>
+#include <unordered_set>
+
+#include "sdf/level_set_distance.h"
+#include "sdf/level_set_nano.h"
+#include "sdf/parallel.h"
+
+namespace limn {
+namespace {
+
+glm::ivec3 block_of(const glm::ivec3& node) { return node & ~7; }
+size_t place_in_block(const glm::ivec3& node) { return static_cast<size_t>((node.x & 7) << 6 | (node.y & 7) << 3 | (node.z & 7)); }
+
+NodeBlock& block_at(LevelNodes& nodes, const glm::ivec3& origin, const Field& field) {
+  const auto [found, is_new] = nodes.at.emplace(key_of(origin), nodes.blocks.size());
+  if (is_new) nodes.blocks.emplace_back(origin, field);
+  return nodes.blocks[found->second];
+}
+
+/// The 9^3 nodes of a brick: all of its own block, and the first layers of those behind.
+void want_brick(const LocalBrick& brick, LevelNodes& nodes) {
+  constexpr std::uint64_t kAll = ~std::uint64_t{0}, kFirstRow = 0xff, kFirstColumn = 0x0101010101010101;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
+    NodeBlock& block = block_at(nodes, 8 * (brick.place + step), brick.field);
+    const std::uint64_t bits = (step.y ? kFirstRow : kAll) & (step.z ? kFirstColumn : kAll);
+    for (size_t x = 0; x < (step.x ? 1 : 8); ++x) block.wanted[x] |= bits;
+  }
+}
+
+/// Nodes -2..10 about a brick that the stencils of its crossed cells read: bit z + 2 of [x + 2][y + 2].
+using ReadNodes = std::array<std::array<std::uint32_t, 13>, 13>;
+ReadNodes nodes_read(const CrossedCells& crossed, const Stencil& stencil) {
+  ReadNodes read{};
+  for (size_t x = 0; x < 8; ++x)
+    for (size_t y = 0; y < 8; ++y) {
+      const std::uint32_t cells = crossed.cells[x][y];
+      if (cells == 0) continue;
+      for (size_t dx = 0; dx < 6; ++dx)
+        for (size_t dy = 0; dy < 6; ++dy)
+          for (std::uint32_t bits = stencil[dx][dy]; bits != 0; bits &= bits - 1) read[x + dx][y + dy] |= cells << std::countr_zero(bits);
+    }
+  return read;
+}
+
+void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeValues& values) {
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
+    const NodeBlock& block = nodes.blocks[nodes.at.at(key_of(origin + 8 * step))];
+    for (int x = 0; x < (step.x ? 1 : 8); ++x)
+      for (int y = 0; y < (step.y ? 1 : 8); ++y)
+        for (int z = 0; z < (step.z ? 1 : 8); ++z)
+          values[static_cast<size_t>(brick_element(8 * step.x + x, 8 * step.y + y, 8 * step.z + z))] =
+              block.values[static_cast<size_t>(x << 6 | y << 3 | z)];
+  }
+}
+
+/// What the stencils of crossed cells read beyond their brick.
+void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil, LevelNodes& nodes) {
+  std::vector<ReadNodes> read(bricks.size());
+  parallel_parts(bricks.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
+    NodeValues values;
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      load_brick(nodes, 8 * bricks[i].place, values);
+      const CrossedCells crossed = crossed_cells_of(values.data());
+      if (crossed.any) read[i] = nodes_read(crossed, stencil);
+    }
+  });
+  for (size_t i = 0; i < bricks.size(); ++i)
+    for (int x = -2; x <= 10; ++x)
+      for (int y = -2; y <= 10; ++y) {
+        std::uint32_t bits = read[i][static_cast<size_t>(x + 2)][static_cast<size_t>(y + 2)];
+        // Its own nodes are known.
+        if (x >= 0 && x <= 8 && y >= 0 && y <= 8) bits &= ~(0x1ffu << 2);
+        for (; bits != 0; bits &= bits - 1) {
+          const glm::ivec3 node = 8 * bricks[i].place + glm::ivec3(x, y, std::countr_zero(bits) - 2);
+          const size_t n = place_in_block(node);
+          block_at(nodes, block_of(node), bricks[i].field).wanted[n >> 6] |= std::uint64_t{1} << (n & 63);
+        }
+      }
+}
+
+/// The bricks twice as large, and their values.
+struct Larger {
+  const LevelNodes* nodes = nullptr;
+  std::unordered_set<std::uint64_t> bricks{};
+
+  /// True where the node (of the smaller voxels) lies in one of them or on its faces.
+  bool holds(const glm::ivec3& node) const {
+    for (int k = 0; k < 8; ++k) {
+      const glm::ivec3 side(k & 1, k >> 1 & 1, k >> 2);
+      glm::ivec3 brick;
+      bool touches = true;
+      for (int axis = 0; axis < 3; ++axis) {
+        // A node on a face between two belongs to both.
+        touches = touches && (side[axis] == 0 || (node[axis] & 15) == 0);
+        brick[axis] = (node[axis] >> 4) - side[axis];
+      }
+      if (touches && bricks.contains(key_of(8 * brick))) return true;
+    }
+    return false;
+  }
+
+  double interpolated(const glm::ivec3& node) const {
+    double sum = 0.0;
+    for (int k = 0; k < 8; ++k) {
+      const glm::ivec3 side(k & 1, k >> 1 & 1, k >> 2);
+      double weight = 1.0;
+      for (int axis = 0; axis < 3; ++axis) weight *= (node[axis] & 1) != 0 ? 0.5 : side[axis] == 0 ? 1.0 : 0.0;
+      if (weight == 0.0) continue;
+      const glm::ivec3 at(node.x >> 1, node.y >> 1, node.z >> 1);
+      sum += weight * static_cast<double>(nodes->value(at + side));
+    }
+    return sum;
+  }
+};
+
+bool on_any_face(const glm::ivec3& node) { return (node.x & 15) == 0 || (node.y & 15) == 0 || (node.z & 15) == 0; }
+
+void evaluate(FieldEvaluator& evaluator, NodeBlock& block, const LocalChoice& choice, double h, double half_width, float steps_per_unit,
+              const Larger* larger) {
+  std::array<glm::dvec3, 512> points;
+  std::array<double, 512> distances;
+  std::array<std::uint16_t, 512> places;
+  size_t count = 0;
+  for (size_t word = 0; word < 8; ++word)
+    for (std::uint64_t bits = block.wanted[word] & ~block.known[word]; bits != 0; bits &= bits - 1) {
+      const auto n = static_cast<int>(word) << 6 | std::countr_zero(bits);
+      const glm::ivec3 node = block.origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7);
+      points[count] = choice.origin + h * glm::dvec3(node);
+      places[count++] = static_cast<std::uint16_t>(n);
+    }
+  if (count == 0) return;
+  signed_distances(evaluator, std::span(points).first(count), half_width, std::span(distances).first(count));
+  for (size_t k = 0; k < count; ++k) {
+    const size_t n = places[k];
+    const glm::ivec3 node = block.origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7);
+    double value = std::clamp(distances[k], -half_width, half_width);
+    if (larger && on_any_face(node) && larger->holds(node)) value = larger->interpolated(node);
+    block.values[n] = static_cast<float>(quantised(static_cast<float>(value), steps_per_unit)) / steps_per_unit;
+  }
+  for (size_t word = 0; word < 8; ++word) block.known[word] |= block.wanted[word];
+}
+
+}  // namespace
+
+float LevelNodes::value(const glm::ivec3& node) const { return blocks[at.at(key_of(block_of(node)))].values[place_in_block(node)]; }
+
+std::int64_t LevelNodes::known() const {
+  std::int64_t sum = 0;
+  for (const NodeBlock& block : blocks)
+    for (const std::uint64_t word : block.known) sum += std::popcount(word);
+  return sum;
+}
+
+NodeReader LevelNodes::reader() const {
+  return {
+      this,
+      [](const void* of, const glm::ivec3& origin, NodeValues& values) { load_brick(*static_cast<const LevelNodes*>(of), origin, values); },
+      [](const void* of, const glm::ivec3& node) {
+        const LevelNodes& nodes = *static_cast<const LevelNodes*>(of);
+        const auto found = nodes.at.find(key_of(block_of(node)));
+        const size_t n = place_in_block(node);
+        const bool known = found != nodes.at.end() && (nodes.blocks[found->second].known[n >> 6] >> (n & 63) & 1) != 0;
+        return known ? nodes.blocks[found->second].values[n] : std::numeric_limits<float>::max();
+      }};
+}
+
+std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient, double half_width_voxels) {
+  std::vector<LevelNodes> levels(choice.levels.size());
+  for (size_t level = levels.size(); level-- > 0;) {
+    const std::vector<LocalBrick>& bricks = choice.levels[level];
+    LevelNodes& nodes = levels[level];
+    const double h = choice.voxel_of(level), half_width = half_width_voxels * h;
+    nodes.steps_per_unit = static_cast<float>(32767.0 / half_width);
+    Larger larger;
+    if (level + 1 < levels.size()) {
+      larger.nodes = &levels[level + 1];
+      for (const LocalBrick& brick : choice.levels[level + 1]) larger.bricks.insert(key_of(8 * brick.place));
+    }
+    const auto evaluate_all = [&](const Larger* with) {
+      parallel_parts(nodes.blocks.size(), size_t{16}, [&](const IndexRange<size_t>& range) {
+        std::optional<FieldEvaluator> evaluator;
+        for (size_t i = range.begin(); i < range.end(); ++i) {
+          NodeBlock& block = nodes.blocks[i];
+          if (!evaluator || &evaluator->field().program() != &block.field.program()) evaluator.emplace(block.field);
+          evaluate(*evaluator, block, choice, h, half_width, nodes.steps_per_unit, with);
+        }
+      });
+    };
+    for (const LocalBrick& brick : bricks) want_brick(brick, nodes);
+    evaluate_all(larger.bricks.empty() ? nullptr : &larger);
+    // Stencils read the field's own values beyond the brick: they are nearer to the surface's normals than a larger brick's interpolant.
+    want_stencils(bricks, gradient.stencil, nodes);
+    evaluate_all(nullptr);
+  }
+  return levels;
+}
+
+LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels) {
+  std::vector<LevelSetBlock> blocks(nodes.blocks.size());
+  parallel_for(size_t{0}, blocks.size(), [&](size_t i) {
+    blocks[i].origin = nodes.blocks[i].origin;
+    std::copy_n(nodes.blocks[i].known.begin(), 8, blocks[i].active);
+    // What is not known is given a sign by its neighbours.
+    for (size_t n = 0; n < 512; ++n)
+      blocks[i].values[n] = (nodes.blocks[i].known[n >> 6] >> (n & 63) & 1) != 0 ? nodes.blocks[i].values[n] : 0.0f;
+  });
+  const double h = choice.voxel_of(level);
+  auto data = std::make_shared<LevelSetData>();
+  data->handle = nano_grid(blocks, static_cast<float>(half_width_voxels * h));
+  data->grid = data->handle.grid<float>();
+  data->info.name = fmt::format("surface_{}", level);
+  data->info.world_from_index = {glm::dmat3(h), choice.origin};
+  data->info.voxel_size = h;
+  data->info.half_width_voxels = half_width_voxels;
+  data->info.active_voxels = nodes.known();
+  data->info.bytes = static_cast<std::int64_t>(data->handle.size());
+  data->index_from_world = inverse(data->info.world_from_index);
+  data->per_voxel = h;
+  return LevelSet(data);
+}
+
+}  // namespace limn

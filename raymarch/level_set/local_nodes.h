@@ -1,0 +1,43 @@
+#pragma once
+// Internal: the values of a local level set at the nodes of its bricks.
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <unordered_map>
+#include <vector>
+
+#include "raymarch/level_set/brick_layout.h"
+#include "raymarch/level_set/local_choice.h"
+
+namespace limn {
+
+/// Nodes of one voxel size, in blocks of 8^3; bits as in LevelSetBlock.
+struct NodeBlock {
+  NodeBlock(const glm::ivec3& first, Field of) : origin(first), field(std::move(of)) {}
+  glm::ivec3 origin{0};
+  Field field;  ///< Asked for its nodes.
+  std::array<std::uint64_t, 8> wanted{}, known{};
+  std::array<float, 512> values;  ///< Of the known ones.
+};
+
+struct LevelNodes {
+  std::deque<NodeBlock> blocks{};
+  std::unordered_map<std::uint64_t, size_t> at{};  ///< By key_of.
+  float steps_per_unit = 0.0f;                     ///< Values are whole numbers of steps, none of them 0.
+
+  /// Of a node that is known.
+  float value(const glm::ivec3& node) const;
+  std::int64_t known() const;
+  NodeReader reader() const;  ///< Valid as long as the nodes are. Nodes that are not known are far outside.
+};
+
+/// Samples `field` at the nodes of the chosen bricks and at those that the gradient's stencils read beside them, and nowhere else; from the
+/// largest voxels to the smallest. A node that lies on a larger brick takes that brick's interpolant: on the face between two sizes both
+/// sides are the same function, so that the surface has no crack.
+std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient, double half_width_voxels);
+
+/// The level's nodes as an ordinary level set.
+LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels);
+
+}  // namespace limn

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "raymarch/surface/local_mesh.h"
 
@@ -50,11 +51,23 @@ bool in_picture(const Camera& camera, const TriangleSample& triangle, Seen& seen
   return high.x >= -kAside_px && high.y >= -kAside_px && low.x <= camera.width_px + kAside_px && low.y <= camera.height_px + kAside_px;
 }
 
-/// |grad N.V| by pixels, of the plane through the corners; infinite where the triangle is seen edge on.
-double slope_of(const Seen& seen) {
-  const glm::dvec2 a(seen.px[1] - seen.px[0]), b(seen.px[2] - seen.px[0]);
-  const double area = a.x * b.y - a.y * b.x, fa = seen.facing[1] - seen.facing[0], fb = seen.facing[2] - seen.facing[0];
+/// |grad N.V| by pixels, of the plane through three of the points; infinite where they are seen edge on.
+double slope_of(const Seen& seen, const std::array<size_t, 3>& at) {
+  const glm::dvec2 a(seen.px[at[1]] - seen.px[at[0]]), b(seen.px[at[2]] - seen.px[at[0]]);
+  const double area = a.x * b.y - a.y * b.x;
+  const double fa = seen.facing[at[1]] - seen.facing[at[0]], fb = seen.facing[at[2]] - seen.facing[at[0]];
   return glm::length(glm::dvec2(fa * b.y - fb * a.y, fb * a.x - fa * b.x)) / std::abs(area);
+}
+
+/// The least slope of the quarters in which N.V may pass `level`, by at most `wrong`: N.V bends, and the border goes where it is flat.
+double slope_at(const Seen& seen, double level, double wrong) {
+  constexpr std::array<std::array<size_t, 3>, 4> kQuarters{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::array<size_t, 3>& at : kQuarters) {
+    const auto [low, high] = std::minmax({seen.facing[at[0]], seen.facing[at[1]], seen.facing[at[2]]});
+    if (low - wrong <= level && high + wrong >= level) least = std::min(least, slope_of(seen, at));
+  }
+  return std::isfinite(least) ? std::min(least, seen.slope) : seen.slope;
 }
 
 bool look(const Camera& camera, const TriangleSample& triangle, Seen& seen) {
@@ -82,7 +95,7 @@ bool look(const Camera& camera, const TriangleSample& triangle, Seen& seen) {
     const glm::dvec2 across(seen.px[next(k)] - seen.px[k]);
     seen.bend = std::max(seen.bend, 8.0 * std::abs(straight - seen.facing[3 + k]) / std::max(glm::dot(across, across), 1e-12));
   }
-  seen.slope = slope_of(seen);
+  seen.slope = slope_of(seen, {0, 1, 2});
   return true;
 }
 
@@ -94,8 +107,8 @@ double inside_px(const Seen& seen) {
 }
 
 /// How far the inner border moves for an N.V that is wrong by `wrong`, px: to first order, or to second where the slope is small.
-double shift_px(const Seen& seen, double wrong) {
-  const double first = wrong / std::max(seen.slope, 1e-12);
+double shift_px(const Seen& seen, double wrong, double slope) {
+  const double first = wrong / std::max(slope, 1e-12);
   return seen.bend > 0.0 ? std::min(first, std::sqrt(2.0 * wrong / seen.bend)) : first;
 }
 
@@ -106,7 +119,7 @@ bool moves_inner(const Seen& seen, size_t k, double threshold, double tolerance_
   const double worst = std::max({seen.wrong[0], seen.wrong[1], seen.wrong[2]});
   if (seen.low - worst > threshold || seen.high + worst < threshold) return false;
   const double sine = std::sqrt(std::max(0.0, 1.0 - threshold * threshold));
-  return kMiddleFactor * (shift_px(seen, seen.wrong[k]) + sine * seen.off_px[k]) > tolerance_px;
+  return kMiddleFactor * (shift_px(seen, seen.wrong[k], slope_at(seen, threshold, worst)) + sine * seen.off_px[k]) > tolerance_px;
 }
 
 unsigned border_demand(const Seen& seen, const TriangleSample& triangle, const LocalSettings& settings) {

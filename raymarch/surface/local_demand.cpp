@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "raymarch/surface/local_mesh.h"
 
@@ -12,6 +13,8 @@ namespace {
 constexpr double kMiddleFactor = 4.0 / 3.0;
 /// Of the tolerance, what the chords of a silhouette may take.
 constexpr double kSilhouetteShare = 0.8;
+/// Of the tolerance, what may be expected of an inner border: slopes are known at a few points only.
+constexpr double kInnerShare = 0.8;
 /// Of the distance from the silhouette, what a chord may take: it must not reach over it.
 constexpr double kReach = 0.5;
 /// What is hidden stays so when the border moves by the tolerance, and by this much.
@@ -50,11 +53,23 @@ bool in_picture(const Camera& camera, const TriangleSample& triangle, Seen& seen
   return high.x >= -kAside_px && high.y >= -kAside_px && low.x <= camera.width_px + kAside_px && low.y <= camera.height_px + kAside_px;
 }
 
-/// |grad N.V| by pixels, of the plane through the corners; infinite where the triangle is seen edge on.
-double slope_of(const Seen& seen) {
-  const glm::dvec2 a(seen.px[1] - seen.px[0]), b(seen.px[2] - seen.px[0]);
-  const double area = a.x * b.y - a.y * b.x, fa = seen.facing[1] - seen.facing[0], fb = seen.facing[2] - seen.facing[0];
+/// |grad N.V| by pixels, of the plane through three of the points; infinite where they are seen edge on.
+double slope_of(const Seen& seen, const std::array<size_t, 3>& at) {
+  const glm::dvec2 a(seen.px[at[1]] - seen.px[at[0]]), b(seen.px[at[2]] - seen.px[at[0]]);
+  const double area = a.x * b.y - a.y * b.x;
+  const double fa = seen.facing[at[1]] - seen.facing[at[0]], fb = seen.facing[at[2]] - seen.facing[at[0]];
   return glm::length(glm::dvec2(fa * b.y - fb * a.y, fb * a.x - fa * b.x)) / std::abs(area);
+}
+
+/// The least slope of the quarters in which N.V may pass `level`, by at most `wrong`: N.V bends, and the border goes where it is flat.
+double slope_at(const Seen& seen, double level, double wrong) {
+  constexpr std::array<std::array<size_t, 3>, 4> kQuarters{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::array<size_t, 3>& at : kQuarters) {
+    const auto [low, high] = std::minmax({seen.facing[at[0]], seen.facing[at[1]], seen.facing[at[2]]});
+    if (low - wrong <= level && high + wrong >= level) least = std::min(least, slope_of(seen, at));
+  }
+  return std::isfinite(least) ? std::min(least, seen.slope) : seen.slope;
 }
 
 bool look(const Camera& camera, const TriangleSample& triangle, Seen& seen) {
@@ -82,20 +97,23 @@ bool look(const Camera& camera, const TriangleSample& triangle, Seen& seen) {
     const glm::dvec2 across(seen.px[next(k)] - seen.px[k]);
     seen.bend = std::max(seen.bend, 8.0 * std::abs(straight - seen.facing[3 + k]) / std::max(glm::dot(across, across), 1e-12));
   }
-  seen.slope = slope_of(seen);
+  seen.slope = slope_of(seen, {0, 1, 2});
   return true;
 }
 
-/// How far the triangle lies inside the silhouette at least, px: N.V / (2 |grad N.V|), as near a circle.
-double inside_px(const Seen& seen) {
+/// How far the triangle lies inside the silhouette at least, px: N.V / (2 |grad N.V|), as near a circle, and no farther than the sharpest
+/// turn near by lets it be: beside a fillet a wall seen edge on ends sooner than its own bend tells.
+double inside_px(const Seen& seen, double turn) {
   if (seen.low <= 0.0 && seen.high >= 0.0) return 0.0;
   if (!std::isfinite(seen.slope)) return 0.0;
-  return std::min(std::abs(seen.low), std::abs(seen.high)) / (2.0 * std::max(seen.slope, 1e-9));
+  const double facing = std::min(std::abs(seen.low), std::abs(seen.high));
+  const double by_turn = facing * facing / std::max(turn * seen.units_per_px, 1e-9);
+  return std::min(facing / (2.0 * std::max(seen.slope, 1e-9)), by_turn);
 }
 
 /// How far the inner border moves for an N.V that is wrong by `wrong`, px: to first order, or to second where the slope is small.
-double shift_px(const Seen& seen, double wrong) {
-  const double first = wrong / std::max(seen.slope, 1e-12);
+double shift_px(const Seen& seen, double wrong, double slope) {
+  const double first = wrong / std::max(slope, 1e-12);
   return seen.bend > 0.0 ? std::min(first, std::sqrt(2.0 * wrong / seen.bend)) : first;
 }
 
@@ -106,13 +124,14 @@ bool moves_inner(const Seen& seen, size_t k, double threshold, double tolerance_
   const double worst = std::max({seen.wrong[0], seen.wrong[1], seen.wrong[2]});
   if (seen.low - worst > threshold || seen.high + worst < threshold) return false;
   const double sine = std::sqrt(std::max(0.0, 1.0 - threshold * threshold));
-  return kMiddleFactor * (shift_px(seen, seen.wrong[k]) + sine * seen.off_px[k]) > tolerance_px;
+  return kMiddleFactor / kInnerShare * (shift_px(seen, seen.wrong[k], slope_at(seen, threshold, worst)) + sine * seen.off_px[k]) >
+         tolerance_px;
 }
 
-unsigned border_demand(const Seen& seen, const TriangleSample& triangle, const LocalSettings& settings) {
+unsigned border_demand(const Seen& seen, const TriangleSample& triangle, double turn, const LocalSettings& settings) {
   unsigned split = 0;
   const double tolerance_px = settings.tolerance_px;
-  const double inside = settings.everywhere ? 0.0 : inside_px(seen);
+  const double inside = settings.everywhere ? 0.0 : inside_px(seen, turn);
   const double silhouette_px = std::min(kSilhouetteShare / kMiddleFactor * tolerance_px + kReach * inside, triangle.coarse_px);
   for (size_t k = 0; k < 3; ++k) {
     if (seen.length_px[k] < tolerance_px) continue;
@@ -140,6 +159,12 @@ unsigned coarse_demand(const Seen& seen, const TriangleSample& triangle, const L
   return split;
 }
 
+double turn_at(const LocalView& view, const TriangleSample& triangle) {
+  double turn = 0.0;
+  for (const std::uint32_t v : triangle.vertices) turn = std::max(turn, view.turns[v]);
+  return turn;
+}
+
 }  // namespace
 
 unsigned edges_to_split(const TriangleSample& triangle, std::span<const LocalView> views, const LocalSettings& settings, bool only_coarse) {
@@ -152,7 +177,7 @@ unsigned edges_to_split(const TriangleSample& triangle, std::span<const LocalVie
     if (only_coarse) continue;
     const double margin_px = kHiddenMargin_px + settings.tolerance_px;
     if (!settings.everywhere && is_hidden(view.hidden, seen.px, margin_px, margin_px * seen.units_per_px)) continue;
-    split |= border_demand(seen, triangle, settings);
+    split |= border_demand(seen, triangle, turn_at(view, triangle), settings);
   }
   for (size_t k = 0; k < 3; ++k)
     if (!triangle.halves[k]) split &= ~(1u << k);

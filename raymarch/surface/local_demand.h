@@ -8,6 +8,7 @@ namespace limn {
 
 /// A triangle with the middles of its edges; edge k runs from corner k to the next.
 struct TriangleSample {
+  std::array<std::uint32_t, 3> vertices{};
   std::array<glm::dvec3, 3> corners{}, corner_normals{};
   std::array<glm::dvec3, 3> middles{}, middle_normals{};
   std::array<glm::dvec3, 3> beyond{};  ///< Normals at the middles on the other side of each edge; the own one at an open edge.
@@ -21,6 +22,8 @@ struct TriangleSample {
 struct LocalView {
   Camera camera{};       ///< Render space.
   HiddenParts hidden{};  ///< Empty: nothing.
+  /// Of each vertex: how fast N.V changes along the edges of its triangles at most, for each world unit.
+  std::vector<double> turns{};
 };
 
 /// Bit k is set where edge k must be split: in one of the views its chord would move the border by more than the tolerance, or it stands

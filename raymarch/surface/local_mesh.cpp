@@ -78,6 +78,7 @@ class Middles {
 
 TriangleSample sample_of(const LocalTriangles& mesh, const Middles& middles, const LocalTriangle& triangle) {
   TriangleSample sample;
+  sample.vertices = triangle.vertices;
   sample.corner_normals = triangle.normals;
   for (size_t k = 0; k < 3; ++k) {
     const std::uint32_t a = triangle.vertices[k], b = triangle.vertices[next(k)];
@@ -183,11 +184,29 @@ void check_size(const LocalTriangles& mesh, const LocalSettings& settings, std::
                    fmt::format("a larger tolerance (at most {:.1f} GB)", static_cast<double>(max_bytes) * 1e-9)});
 }
 
+/// For LocalView::turns; within one side of a crease.
+std::vector<double> turns_of(const LocalTriangles& mesh, const Camera& camera) {
+  std::vector<double> turns(mesh.positions.size(), 0.0);
+  for (const LocalTriangle& triangle : mesh.triangles) {
+    std::array<double, 3> facing{};
+    for (size_t k = 0; k < 3; ++k) facing[k] = glm::dot(triangle.normals[k], view_vector(camera, mesh.positions[triangle.vertices[k]]));
+    for (size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangle.vertices[k], b = triangle.vertices[next(k)];
+      const double length = glm::distance(mesh.positions[a], mesh.positions[b]);
+      if (!(length > 0.0)) continue;
+      const double turn = std::abs(facing[k] - facing[next(k)]) / length;
+      turns[a] = std::max(turns[a], turn), turns[b] = std::max(turns[b], turn);
+    }
+  }
+  return turns;
+}
+
 /// One pass over the triangles that are new: false where none of them asks for anything.
-bool refine_once(LocalTriangles& mesh, Middles& middles, std::vector<char>& is_new, const LocalSource& source,
-                 std::span<const LocalView> views, const LocalSettings& settings, bool only_coarse) {
+bool refine_once(LocalTriangles& mesh, Middles& middles, std::vector<char>& is_new, const LocalSource& source, std::span<LocalView> views,
+                 const LocalSettings& settings, bool only_coarse) {
   middles.update(mesh, source, is_new);
   std::vector<unsigned> asked(mesh.triangles.size(), 0);
+  for (LocalView& view : views) view.turns = turns_of(mesh, view.camera);
   parallel_for(size_t{0}, mesh.triangles.size(), [&](size_t t) {
     if (!is_new[t]) return;
     TriangleSample sample = sample_of(mesh, middles, mesh.triangles[t]);
@@ -222,7 +241,7 @@ bool refine_once(LocalTriangles& mesh, Middles& middles, std::vector<char>& is_n
 LocalTriangles refine_locally(LocalTriangles base, const LocalSource& source, const LocalSettings& settings, std::int64_t max_bytes) {
   std::vector<LocalView> views;
   views.reserve(settings.cameras.size());
-  for (const Camera& camera : settings.cameras) views.push_back({camera, {}});
+  for (const Camera& camera : settings.cameras) views.push_back({camera, {}, {}});
   LocalTriangles mesh = std::move(base);
   Middles middles;
   // The coarse surface first: it says what is hidden.

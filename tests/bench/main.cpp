@@ -17,6 +17,7 @@
 #include "tests/bench/growth_suite.h"
 #include "tests/bench/image_methods.h"
 #include "tests/bench/lines_suite.h"
+#include "tests/bench/local_suite.h"
 #include "tests/bench/march_suite.h"
 #include "tests/bench/plan_suite.h"
 
@@ -30,6 +31,7 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
           convert   mesh to level set beside OpenVDB's meshToVolume
           images    image methods beside OpenCV
           plan      what a plan saves (minutes)
+          local     local meshes beside meshes as fine everywhere (minutes)
           lines     view graphs from 26 sides: time and conflicts (minutes)
           growth    whole calls of limn on larger and larger files, beside assimp's reading of them (minutes)
           calls     whole calls of limn beside those of other programs, and their stages
@@ -39,7 +41,8 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
   --voxels N        along the longest side; may be repeated
   --runs N          interleaved runs of which the median counts (7)
   --width PX        of pictures 16:9 (1920)
-  --scene NAME, --views N   of the plan suite (--scene of lines, too); --view I: only this one of the views, from 0
+  --scene NAME, --views N   of the plan and local suites (--scene of lines, too); --view I: only this one of the views, from 0
+  --tolerance PX    of the local suite; may be repeated (1 0.5 0.25 0.1)
   --oracle          of the lines suite: rays of another model say whether points of every line are seen; --voxels N: lines of level sets
   --level N         of the growth suite, how often its cage is refined; may be repeated (4 5 6 7)
   --program FILE    of the growth and calls suites: the program limn (the one beside this)
@@ -52,6 +55,7 @@ struct Settings {
   std::vector<int> voxels{}, levels{};
   std::string program{};
   std::vector<std::string> objects{}, meshes{}, scenes{};
+  std::vector<double> tolerances_px{};
   int runs = 7;
   int width_px = 1920, height_px = 1080;
   std::string suite = "all";
@@ -62,7 +66,7 @@ struct Settings {
   std::vector<std::string> against{};  ///< Two lists of files.
   double limit = 1.1;
   bool runs_suite(const std::string& name) const {
-    return suite == name || (suite == "all" && name != "plan" && name != "growth" && name != "lines" && name != "calls");
+    return suite == name || (suite == "all" && name != "plan" && name != "local" && name != "growth" && name != "lines" && name != "calls");
   }
   /// With --json the document alone goes to stdout.
   std::FILE* table() const { return json ? stderr : stdout; }
@@ -103,15 +107,18 @@ Settings parse(int argc, char** argv) {
       settings.views = whole(flag, 1);
     } else if (flag == "--view") {
       settings.only_view = whole(flag, 0);
+    } else if (flag == "--tolerance") {
+      settings.tolerances_px.push_back(std::atof(value(flag).c_str()));
+      if (!(settings.tolerances_px.back() > 0.0)) refuse(flag, argv[at], "out of range", "a number of pixels above 0");
     } else if (flag == "--level") {
       settings.levels.push_back(whole(flag, 0));
     } else if (flag == "--program") {
       settings.program = value(flag);
     } else if (flag == "--suite") {
       settings.suite = value(flag);
-      const std::vector<std::string> known{"march", "fields", "convert", "images", "plan", "lines", "growth", "calls", "all"};
+      const std::vector<std::string> known{"march", "fields", "convert", "images", "plan", "local", "lines", "growth", "calls", "all"};
       if (std::find(known.begin(), known.end(), settings.suite) == known.end())
-        refuse(flag, settings.suite, "unknown suite", "march, fields, convert, images, plan, lines, growth, calls or all");
+        refuse(flag, settings.suite, "unknown suite", "march, fields, convert, images, plan, local, lines, growth, calls or all");
     } else if (flag == "--width") {
       settings.width_px = std::min(whole(flag, 16), 16384);
       settings.height_px = std::max(1, settings.width_px * 9 / 16);
@@ -173,6 +180,12 @@ nlohmann::json rows_of(const Settings& settings) {
   if (settings.runs_suite("calls")) append(bench_calls({.runs = settings.runs, .program = settings.program, .table = settings.table()}));
   if (settings.runs_suite("plan"))
     append(bench_plan({.scenes = settings.scenes, .views = settings.views, .only_view = settings.only_view, .table = settings.table()}));
+  if (settings.runs_suite("local")) {
+    LocalBenchSettings local{
+        .scenes = settings.scenes, .views = settings.views, .only_view = settings.only_view, .table = settings.table()};
+    if (!settings.tolerances_px.empty()) local.tolerances_px = settings.tolerances_px;
+    append(bench_local(local));
+  }
   return rows;
 }
 

@@ -124,7 +124,7 @@ struct Larger {
 
 bool on_any_face(const glm::ivec3& node) { return (node.x & 15) == 0 || (node.y & 15) == 0 || (node.z & 15) == 0; }
 
-void evaluate(FieldEvaluator& evaluator, NodeBlock& block, const LocalChoice& choice, double h, double half_width, float steps_per_unit,
+void evaluate(DistanceEvaluator& distance, NodeBlock& block, const LocalChoice& choice, double h, double half_width, float steps_per_unit,
               const Larger* larger) {
   std::array<glm::dvec3, 512> points;
   std::array<double, 512> distances;
@@ -138,7 +138,7 @@ void evaluate(FieldEvaluator& evaluator, NodeBlock& block, const LocalChoice& ch
       places[count++] = static_cast<std::uint16_t>(n);
     }
   if (count == 0) return;
-  signed_distances(evaluator, std::span(points).first(count), half_width, std::span(distances).first(count));
+  signed_distances(distance, std::span(points).first(count), half_width, std::span(distances).first(count));
   for (size_t k = 0; k < count; ++k) {
     const size_t n = places[k];
     const glm::ivec3 node = block.origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7);
@@ -187,11 +187,11 @@ std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientD
     }
     const auto evaluate_all = [&](const Larger* with) {
       parallel_parts(nodes.blocks.size(), size_t{16}, [&](const IndexRange<size_t>& range) {
-        std::optional<FieldEvaluator> evaluator;
+        std::optional<DistanceEvaluator> distance;
         for (size_t i = range.begin(); i < range.end(); ++i) {
           NodeBlock& block = nodes.blocks[i];
-          if (!evaluator || &evaluator->field().program() != &block.field.program()) evaluator.emplace(block.field);
-          evaluate(*evaluator, block, choice, h, half_width, nodes.steps_per_unit, with);
+          if (!distance || &distance->evaluator.field().program() != &block.field.program()) distance.emplace(block.field);
+          evaluate(*distance, block, choice, h, half_width, nodes.steps_per_unit, with);
         }
       });
     };

@@ -18,7 +18,7 @@ LevelSetBytes bytes_of(const LevelSet& level_set) {
   for (std::uint32_t i = 0; i < leaves; ++i) {
     const auto& leaf = first[i];
     const nanovdb::Coord origin = leaf.origin();
-    for (int axis = 0; axis < 3; ++axis) bytes.origins.push_back(origin[axis]);
+    for (nanovdb::Coord::IndexType axis = 0; axis < 3; ++axis) bytes.origins.push_back(origin[axis]);
     bytes.values.push_back(std::as_bytes(std::span(&leaf.valueMask(), 1)));
     bytes.values.push_back(std::as_bytes(std::span(leaf.data()->mValues)));
   }

@@ -136,7 +136,8 @@ CellOutput march(const CellSearch& search, size_t branch, const Lattice& lattice
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
     FieldEvaluator evaluator(search.sharp.branches[branch]);
     for (size_t i = regions[r].begin; i < regions[r].end; ++i)
-      march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, regions[r].samples, parts[r]);
+      march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, regions[r].samples, parts[r],
+                 true);
   });
   CellOutput all;
   for (const CellOutput& part : parts) {

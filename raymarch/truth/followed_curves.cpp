@@ -184,7 +184,15 @@ std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field
         lost = true;
       }
     }
-    if (!any) result.push_back(std::move(found[i]));
+    if (any) continue;
+    for (CurvePoint& point : found[i].points) {
+      if (const std::optional<CurvePoint> seed = follower.seed(point)) {
+        point = *seed;
+      } else {
+        point.rough = true;
+      }
+    }
+    result.push_back(std::move(found[i]));
   }
   return result;
 }

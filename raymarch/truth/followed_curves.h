@@ -11,8 +11,8 @@ struct FollowSettings {
   double longest_step = 1.0;  ///< World units: the size of what the surface resolves.
 };
 
-/// Each closed curve that goes through a point of a strand, once. Strands through whose points none is found stay as they are. `field` is
-/// that of the strands' branch.
+/// Each closed curve that goes by a point of a strand, once. Points may lie a little off the curve. Strands by whose points none is found
+/// stay as they are, with their points brought onto the curve. `field` is that of the strands' branch.
 std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field, const Camera& camera, const Viewer& viewer,
                                    const FollowSettings& settings, const ExecutionSettings& how);
 

@@ -18,8 +18,8 @@ constexpr double kSagitta = 0.2;      // of the tolerance
 constexpr double kCorrection = 0.05;  // of a step, by which the prediction may be off
 constexpr double kTurn = 0.95;        // the cosine of the angle between tangents along a step
 constexpr double kLongest_px = 1.0;
-constexpr size_t kMostPoints = 200'000;
-constexpr double kOnPath = 0.05, kOnPathLeast = 1e-3;  // of a step, and of the longest step
+constexpr size_t kMostPoints = 50'000;
+constexpr double kOnPath = 0.06, kOnPathLeast = 1e-3;  // of a step, and of the longest step
 
 glm::dvec3 tangent_of(const CurvePoint& point) { return glm::normalize(glm::cross(point.high, point.uphill)); }
 
@@ -85,10 +85,14 @@ class Follower {
       if (!next) return {};
       const glm::dvec3 way = next->p - from.p;
       const double length = glm::length(way), along = glm::dot(start.p - from.p, way) / length;
-      const bool closes = path.size() > 2 && along > 0.0 && along <= length &&
+      // Where chords meet, the start may lie beside the end of the one and before the beginning of the other.
+      const bool closes = path.size() > 2 && along > -kCorrection * length && along <= length &&
                           distance_to_segment(start.p, from.p, next->p) < kCorrection * length &&
                           glm::dot(tangent, tangent_of(start)) > 0.5;
-      if (closes) return path;
+      if (closes) {
+        if (along <= 0.0) path.pop_back();
+        return path;
+      }
       const glm::dvec3 turned = tangent_of(*next);
       bend = (turned - tangent) / length;
       tangent = turned;

@@ -17,6 +17,7 @@ constexpr double kArm_px = 0.15;     // so far from a cusp its arms are compared
 constexpr double kOneCusp_px = 0.03;
 constexpr double kSwallowtail_px = 0.2;  // around one whose cusps are closer than that
 constexpr double kLongestNarrow_px = 20.0;
+constexpr double kShortestTail_px = 1.0;
 constexpr double kMostLensSteps = 400.0;
 constexpr double kLongestOwnLens_px = 0.05;
 // How thin a lens between two lines may be: those in closed form and those of smooth surfaces are followed more closely where they touch.
@@ -76,7 +77,7 @@ class EventFinder {
   void find_cusps() {
     std::vector<CurveEvent> cusps;
     for (const SignChange& change : apart_) add_cusp(change, cusps);
-    drop_narrow_swallowtails(cusps);
+    settle_narrow_swallowtails(cusps);
     events_.insert(events_.end(), cusps.begin(), cusps.end());
   }
 
@@ -173,17 +174,66 @@ class EventFinder {
     return arm;
   }
 
-  /// Two cusps one after the other in the same direction make a swallowtail, whose arms cross; where it is so narrow that they lie on each
-  /// other, and the crossing cannot be found, none of the three is there.
-  void drop_narrow_swallowtails(std::vector<CurveEvent>& cusps) const {
+  /// Two cusps one after the other in the same direction make a swallowtail, whose arms cross. Where it is so narrow that they lie on each
+  /// other the crossing cannot be found: of one too short for rays to tell none of the three is there, in a longer one, as of a flat face
+  /// seen edge-on, the arms cross where they lie on each other.
+  void settle_narrow_swallowtails(std::vector<CurveEvent>& cusps) {
     for (size_t k = 0; k + 1 < cusps.size();) {
       if (cusps[k].layers == cusps[k + 1].layers && is_narrow(cusps[k].at, cusps[k + 1].at)) {
+        if (walk_.length_to(cusps[k + 1].at) - walk_.length_to(cusps[k].at) >= kShortestTail_px) {
+          events_.push_back(crossing_of_arms(cusps[k], cusps[k + 1]));
+          k += 2;
+          continue;
+        }
         cusps.erase(cusps.begin() + static_cast<std::ptrdiff_t>(k), cusps.begin() + static_cast<std::ptrdiff_t>(k) + 2);
         k = k > 0 ? k - 1 : 0;
       } else {
         ++k;
       }
     }
+  }
+  /// In the middle of what the arm in front has in common with the one behind it, which is the deeper one.
+  CurveEvent crossing_of_arms(const CurveEvent& first, const CurveEvent& second) const {
+    const bool ahead_behind = *first.layers > 0;
+    const double length = walk_.length_to(second.at) - walk_.length_to(first.at);
+    const CurveEvent &front = ahead_behind ? first : second, &back = ahead_behind ? second : first;
+    const int front_way = ahead_behind ? -1 : 1;
+    const std::vector<glm::dvec2> behind = walk_.px_from(back.at, length, -front_way), before = walk_.px_from(front.at, length, front_way);
+    size_t common = 1;
+    while (common < before.size() && lies_along({before[common]}, behind, curve_.apart_px)) ++common;
+    double half_px = 0.0;
+    for (size_t i = 1; i < common; ++i) half_px += 0.5 * glm::distance(before[i - 1], before[i]);
+    const double on_front = place_from(front.at, half_px, front_way);
+    const double at = place_beside(sample_at(curve_, on_front, camera_).px, back.at, length, -front_way);
+    return {VertexKind::crossing, at, -2 * *first.layers, number_, on_front};
+  }
+  double wrapped(double place) const {
+    const auto steps = static_cast<double>(steps_of(curve_));
+    if (!curve_.closed) return std::clamp(place, 0.0, steps);
+    return place < 0.0 ? place + steps : place >= steps ? place - steps : place;
+  }
+  /// So far along the image of the curve from a place on it.
+  double place_from(double place, double length_px, int way) const {
+    const double wanted = walk_.length_to(place) + way * length_px;
+    double near = place, far = place;
+    while (way * (walk_.length_to(far) - wanted) < 0.0 && std::fabs(far - place) < static_cast<double>(walk_.size()))
+      near = far, far += way;
+    for (int step = 0; step < 40; ++step) {
+      const double middle = 0.5 * (near + far);
+      (way * (walk_.length_to(middle) - wanted) < 0.0 ? near : far) = middle;
+    }
+    return wrapped(near);
+  }
+  /// The place nearest to an image point, within such a length from another place.
+  double place_beside(const glm::dvec2& px, double from, double length_px, int way) const {
+    constexpr int kPlaces = 256;
+    double best = from, least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k <= kPlaces; ++k) {
+      const double place = place_from(from, length_px * k / kPlaces, way);
+      const double apart = glm::distance(sample_at(curve_, place, camera_).px, px);
+      if (apart < least) best = place, least = apart;
+    }
+    return best;
   }
   bool is_narrow(double first, double second) const {
     const double length = walk_.length_to(second) - walk_.length_to(first);

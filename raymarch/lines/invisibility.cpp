@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "raymarch/lines/curve_events.h"
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kShort_px = 1.0;  // pieces shorter than this are not asked by rays of their own
 constexpr double kClear_px = 0.3, kLeastClear_px = 0.12;
+constexpr double kBesideNearer = 0.3;  // of the way to a nearer line that runs along: so far off the curve rays start
 constexpr double kWorthAsking_px = 3.0;
 constexpr int kMostSearches = 4;
 constexpr double kTouch_px = 0.01;   // two polylines, each known to half of this: so near their lines may cross where they do not
@@ -81,6 +83,14 @@ class Cutter {
     }
     return best >= 0.0 ? best : glm::mix(piece.from, piece.to, share);
   }
+  /// The place at that share, or nothing where rays from so near to a piercing say nothing.
+  std::optional<double> telling_ray_at(const CurvePiece& piece, double share) const {
+    if (const auto clear = clear_ray_at(piece, share)) return clear;
+    const double place = ray_at(piece, share), here = walk_.length_to(place);
+    const bool tells =
+        here >= walk_.length_to(piece.from) + unclear_at(piece.begin) && here <= walk_.length_to(piece.to) - unclear_at(piece.end);
+    return tells ? std::optional<double>(place) : std::nullopt;
+  }
   double unclear_at(int event) const { return event < 0 ? 0.0 : cut_.events[static_cast<size_t>(event)].unclear_px; }
   /// Near that share a place where no nearer line runs so close by that a ray from beside the curve may pass it on its wrong side. Nothing
   /// where one does all along.
@@ -97,9 +107,11 @@ class Cutter {
     }
     return most > kLeastClear_px ? std::optional<double>(best) : std::nullopt;
   }
-  LayersSeen look(double place) {
+  LayersSeen look(double place, double lift_share = 1.0) {
     ++rays;
-    return layers_before_(sample_at(curve_, place, camera_));
+    CurveSample sample = sample_at(curve_, place, camera_);
+    sample.lift_share = lift_share;
+    return layers_before_(sample);
   }
   int cast(double place) { return look(place).count; }
 
@@ -140,8 +152,10 @@ class Cutter {
         return;
       }
     }
-    // In short pieces that nearer lines run along only where nothing else explains it.
-    if (may_search_ && (search_missed(arc, relative, around, kWorthAsking_px) || search_missed(arc, relative, around, kShort_px))) return;
+    // In pieces that nearer lines run along, and in short ones, only where nothing else explains it.
+    for (const double least_unclear_px : {std::numeric_limits<double>::infinity(), kWorthAsking_px, kShort_px}) {
+      if (may_search_ && search_missed(arc, relative, around, least_unclear_px)) return;
+    }
     settle_by_rays(arc, around);
   }
 
@@ -173,9 +187,9 @@ class Cutter {
       const CurvePiece& piece = cut_.pieces[arc[k]];
       if (piece.length_px < kNearEnd_px) continue;
       for (const double share : {0.15, 0.5, 0.85}) {
-        const std::optional<double> clear = clear_ray_at(piece, share);
-        if (!clear && piece.length_px < least_unclear_px) continue;
-        const double place = begins[k] + (clear.value_or(ray_at(piece, share)) - piece.from);
+        const std::optional<double> ray = piece.length_px < least_unclear_px ? clear_ray_at(piece, share) : telling_ray_at(piece, share);
+        if (!ray) continue;
+        const double place = begins[k] + (*ray - piece.from);
         if (probes.empty() || place > probes.back().at) probes.push_back({place, unexplained(place)});
       }
     }
@@ -209,10 +223,16 @@ class Cutter {
     return found == cut_.events.end() ? nullptr : &*found;
   }
 
-  /// All of three rays say that something lies in front: from places clear of nearer lines where there are any.
+  /// All of three rays say that something lies in front: from places clear of nearer lines where there are any. Where there are none rays
+  /// that start nearer to the curve have to say so, too.
   bool is_hidden(const CurvePiece& piece) {
     for (const double share : {0.5, 0.3, 0.7}) {
-      if (cast(clear_ray_at(piece, share).value_or(ray_at(piece, share))) == 0) return false;
+      const std::optional<double> clear = clear_ray_at(piece, share);
+      const double place = clear.value_or(ray_at(piece, share));
+      if (cast(place) == 0) return false;
+      if (clear) continue;
+      const double room_px = folds_.clearance_px(sample_at(curve_, place, camera_), number_, place, kLeastClear_px);
+      if (look(place, kBesideNearer * room_px / kLeastClear_px).count == 0) return false;
     }
     return true;
   }
@@ -232,16 +252,17 @@ class Cutter {
       if (length(second) < 2.0 * kNearEnd_px) second = first;
     }
     const bool same = first == second;
-    const auto ask = [&](size_t k, double share) {
-      const CurvePiece& piece = cut_.pieces[arc[k]];
-      return cast(clear_ray_at(piece, share).value_or(ray_at(piece, share))) - relative[k];
+    const int offset =
+        cast(telling_ray_at(cut_.pieces[arc[first]], same ? 0.35 : 0.5).value_or(ray_at(cut_.pieces[arc[first]], 0.5))) - relative[first];
+    const auto denies = [&](size_t k, double share) {
+      const std::optional<double> place = telling_ray_at(cut_.pieces[arc[k]], share);
+      return place && cast(*place) - relative[k] != offset;
     };
-    const int offset = ask(first, same ? 0.35 : 0.5);
-    if (ask(second, same ? 0.65 : 0.5) != offset) return {};
+    if (denies(second, same ? 0.65 : 0.5)) return {};
     // Both ends of an open arc, between which every step lies.
     if (!around) {
       for (const size_t k : {size_t{0}, arc.size() - 1}) {
-        if (k != first && k != second && length(k) >= kWorthAsking_px && ask(k, 0.5) != offset) return {};
+        if (k != first && k != second && length(k) >= kWorthAsking_px && denies(k, 0.5)) return {};
       }
     }
     // The longest hidden piece, too, and all that are drawn as visible, from a pixel on.
@@ -250,7 +271,7 @@ class Cutter {
       if (offset + relative[k] != 0 && (!hidden || length(k) > length(*hidden))) hidden = k;
     }
     const auto is_asked = [&](size_t k) { return k == first || k == second; };
-    if (hidden && !is_asked(*hidden) && length(*hidden) >= kWorthAsking_px && ask(*hidden, 0.5) != offset) return {};
+    if (hidden && !is_asked(*hidden) && length(*hidden) >= kWorthAsking_px && denies(*hidden, 0.5)) return {};
     for (size_t k = 0; k < arc.size(); ++k) {
       if (offset + relative[k] != 0 || is_asked(k) || length(k) < kShort_px) continue;
       if (is_hidden(cut_.pieces[arc[k]])) return {};
@@ -267,7 +288,9 @@ class Cutter {
     }
     if (votes.empty() && piece.length_px >= kWorthAsking_px) {
       // Nearer lines run along it: rays from points on the curve itself, if they agree.
-      for (const double share : {0.5, 0.3, 0.7}) ++votes[cast(ray_at(piece, share))];
+      for (const double share : {0.5, 0.3, 0.7}) {
+        if (const auto place = telling_ray_at(piece, share)) ++votes[cast(*place)];
+      }
       if (votes.size() > 1) return {};
     }
     if (votes.empty() && least_px > 0.0) return {};

@@ -9,9 +9,10 @@
 namespace limn {
 namespace {
 
-constexpr double kStep = 0.25;  // of a voxel: how far rays look ahead near the surface
-constexpr double kLift = 1e-3;  // of a voxel
-constexpr int kHalvings = 12;   // of a step, to a root
+constexpr double kStep = 0.25;      // of a voxel: how far rays look ahead near the surface
+constexpr double kLift = 1e-3;      // of a voxel
+constexpr int kHalvings = 12;       // of a step, to a root
+constexpr double kShortest = 1e-4;  // of a voxel: sheets closer together are none
 
 struct Ray {
   glm::dvec3 origin{0.0}, direction{0.0};
@@ -25,26 +26,76 @@ struct Change {
   int inside = 0;  ///< 1 where it goes in, -1 where out.
 };
 
-double root_between(FieldEvaluator& evaluator, const Ray& ray, double low, double high, bool low_inside) {
-  for (int k = 0; k < kHalvings; ++k) {
-    const double middle = 0.5 * (low + high);
-    ((evaluator.value(ray.at(middle)) < 0.0) == low_inside ? low : high) = middle;
+/// The level set along a ray.
+struct RaySample {
+  double t = 0.0, f = 0.0, slope = 0.0;
+  bool inside() const { return f < 0.0; }
+};
+
+/// Where the ray goes in and out between two places, in order. Sheets of a shallow fold lie closer together than the ray's steps: its
+/// slopes tell where it may go through both of them within one.
+class RootFinder {
+ public:
+  RootFinder(FieldEvaluator& evaluator, const Ray& ray, double shortest, std::vector<Change>& changes)
+      : evaluator_(evaluator), ray_(ray), shortest_(shortest), changes_(changes) {}
+
+  RaySample at(double t) {
+    const glm::dvec3 p = ray_.at(t);
+    RaySample sample{t, 0.0, 0.0};
+    glm::dvec3 gradient(0.0);
+    evaluator_.gradients(std::span(&p, 1), std::span(&sample.f, 1), std::span(&gradient, 1));
+    sample.slope = glm::dot(gradient, ray_.direction);
+    return sample;
   }
-  return 0.5 * (low + high);
-}
+
+  void find(const RaySample& a, const RaySample& b) {
+    const double length = b.t - a.t;
+    if (a.inside() != b.inside()) {
+      const bool rises = b.f > a.f;
+      if (length <= shortest_ || (rises == (a.slope > 0.0) && rises == (b.slope > 0.0))) {
+        changes_.push_back({root_between(a, b), a.inside() ? -1 : 1});
+        return;
+      }
+    } else {
+      const double sign = a.inside() ? -1.0 : 1.0, down = -sign * a.slope, up = sign * b.slope, fa = sign * a.f, fb = sign * b.f;
+      if (!(down > 0.0 && up > 0.0) || length <= shortest_) return;
+      // It bends away from where it is straight at both ends, up to where these meet.
+      const double x = (fa - fb + up * length) / (down + up);
+      if (fa - down * x > 0.0) return;
+    }
+    const double turn = a.slope - b.slope != 0.0 ? a.slope / (a.slope - b.slope) : 0.5;
+    const RaySample middle = at(a.t + std::clamp(turn, 0.1, 0.9) * length);
+    find(a, middle);
+    find(middle, b);
+  }
+
+ private:
+  double root_between(const RaySample& a, const RaySample& b) {
+    double low = a.t, high = b.t;
+    for (int k = 0; k < kHalvings; ++k) {
+      const double middle = 0.5 * (low + high);
+      ((evaluator_.value(ray_.at(middle)) < 0.0) == a.inside() ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  }
+
+  FieldEvaluator& evaluator_;
+  const Ray& ray_;
+  double shortest_;
+  std::vector<Change>& changes_;
+};
 
 /// Adds the changes along the ray, that at its start included.
 void add_changes(FieldEvaluator& evaluator, const PlacedLevelSet& placed, const Ray& ray, std::vector<Change>& changes) {
   double t = 0.0, t_end = ray.end;
   if (!clip_ray(placed.box, ray.origin, ray.direction, t, t_end)) return;
-  double f = evaluator.value(ray.at(t));
-  if (f < 0.0) changes.push_back({0.0, 1});
-  while (t < t_end) {
-    const double before = t;
-    t = std::min(t_end, t + std::max(kStep * placed.voxel, std::fabs(f) - placed.voxel));
-    const double next = evaluator.value(ray.at(t));
-    if ((f < 0.0) != (next < 0.0)) changes.push_back({root_between(evaluator, ray, before, t, f < 0.0), f < 0.0 ? -1 : 1});
-    f = next;
+  RootFinder roots(evaluator, ray, kShortest * placed.voxel, changes);
+  RaySample here = roots.at(t);
+  if (here.inside()) changes.push_back({0.0, 1});
+  while (here.t < t_end) {
+    const RaySample next = roots.at(std::min(t_end, here.t + std::max(kStep * placed.voxel, std::fabs(here.f) - placed.voxel)));
+    roots.find(here, next);
+    here = next;
   }
 }
 

@@ -136,7 +136,8 @@ CellOutput march(const CellSearch& search, size_t branch, const Lattice& lattice
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
     FieldEvaluator evaluator(search.sharp.branches[branch]);
     for (size_t i = regions[r].begin; i < regions[r].end; ++i)
-      march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, regions[r].samples, parts[r]);
+      march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, regions[r].samples, parts[r],
+                 true);
   });
   CellOutput all;
   for (const CellOutput& part : parts) {
@@ -243,7 +244,9 @@ void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContr
     }
   }
   FieldCurves curves;
-  curves_of_cells(found, search, {task.settings.tolerance_px, task.extent, 1.0}, tracing.execution, curves);
+  double voxel = std::numeric_limits<double>::infinity();
+  for (const size_t k : body) voxel = std::min(voxel, tracing.grids[k]->voxel);
+  curves_of_cells(found, search, {task.settings.tolerance_px, task.extent, 1.0, voxel}, tracing.execution, curves);
   out.unrefined_px = std::max(out.unrefined_px, curves.worst_unrefined_px);
   const FieldTask fields{task, tracing.bodies, body, viewer, tracing.evaluators};
   for (SurfaceCurve& curve : surface_curves(fields, curves.curves.size(), [&](size_t i) -> const FieldCurve& { return curves.curves[i]; }))

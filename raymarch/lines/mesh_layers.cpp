@@ -88,7 +88,7 @@ std::uint32_t MeshLayers::part_of(const SurfaceCurve& curve) const {
 std::vector<LayerHit> MeshLayers::hits_to_eye(const CurveSample& sample) const {
   const Camera& camera = camera_;
   const double unit_px = pixels_per_unit_at(camera, std::max(sample.depth, 1e-9));
-  const glm::dvec3 start = sample.p + (kLift_px / unit_px) * sample.lift, direction = view_vector(camera, start);
+  const glm::dvec3 start = sample.p + (sample.lift_share * kLift_px / unit_px) * sample.lift, direction = view_vector(camera, start);
   const double reach = camera.projection == Projection::perspective ? glm::distance(start, camera.eye)
                                                                     : std::max(0.0, project(camera, start).z) + 4.0 * extent_;
   std::vector<LayerHit> hits = tree_->hits_along(start, direction, reach);

@@ -25,9 +25,16 @@ std::optional<MissedChange> find_missed(const ChangeSearch& search, double from,
   LayersSeen before = search.unexplained(from), after = search.unexplained(to);
   double low = from, high = to;
   while (search.walk.length_to(high) - search.walk.length_to(low) > kPlace_px) {
-    const double middle = place_at(search.walk, low, high, 0.5);
+    double middle = place_at(search.walk, low, high, 0.5);
     if (!(middle > low && middle < high)) break;
-    const LayersSeen here = search.unexplained(middle);
+    LayersSeen here = search.unexplained(middle);
+    // A lone ray that agrees with neither side, as between lines that lie on each other, says nothing where rays beside it do.
+    for (const double share : {0.4, 0.6, 0.3, 0.7}) {
+      if (here.count == before.count || here.count == after.count) break;
+      const double beside = place_at(search.walk, low, high, share);
+      const LayersSeen seen = search.unexplained(beside);
+      if (seen.count == before.count || seen.count == after.count) middle = beside, here = seen;
+    }
     if (here.count == before.count) {
       low = middle;
     } else {

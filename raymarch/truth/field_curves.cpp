@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "raymarch/truth/cell_settling.h"
+#include "raymarch/truth/followed_curves.h"
 #include "raymarch/truth/strands.h"
 #include "sdf/parallel.h"
 #include "sdf/segment.h"
@@ -167,11 +168,21 @@ void drop_backward(Strand& curve) {
 }
 
 /// What was found on the branches and along their seams, as strands.
-std::vector<Strand> strands_of(CellResult& found, const CellSearch& search, FieldCurves& stats) {
+std::vector<Strand> strands_of(CellResult& found, const CellSearch& search, const CellCurveSettings& settings, const ExecutionSettings& how,
+                               FieldCurves& stats) {
   std::vector<Strand> strands;
   for (auto& [branch, families] : found.branches) {
     for (size_t family = 0; family < kCurveFamilies; ++family) {
-      for (Strand& strand : assemble(std::move(families[family]), branch, -1, search.levels[family])) {
+      std::vector<Strand> joined = assemble(std::move(families[family]), branch, -1, search.levels[family]);
+      if (settings.follow > 0.0) {
+        joined = follow_strands(std::move(joined), search.sharp.branches[static_cast<size_t>(branch)], search.camera, search.viewer,
+                                {settings.tolerance_px, settings.follow}, how);
+      }
+      for (Strand& strand : joined) {
+        if (strand.followed) {
+          strands.push_back(std::move(strand));
+          continue;
+        }
         drop_rough(strand);
         stats.rough += std::count_if(strand.points.begin(), strand.points.end(), [](const CurvePoint& point) { return point.rough; });
         drop_backward(strand);
@@ -265,7 +276,7 @@ std::int64_t count_broken(const Refiner& refiner, const FieldCurve& curve) {
 
 void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurveSettings& settings, const ExecutionSettings& how,
                      FieldCurves& result) {
-  const std::vector<Strand> strands = strands_of(found, search, result);
+  const std::vector<Strand> strands = strands_of(found, search, settings, how, result);
   StrandScope scope(search.sharp, settings.extent);
   const StrandSettings cutting{search.sharp,          scope,           search.camera,     search.viewer,
                                settings.tolerance_px, settings.extent, settings.lipschitz};
@@ -274,6 +285,11 @@ void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurv
   parallel_for(size_t{0}, strands.size(), [&](size_t i) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     const Strand& strand = strands[i];
+    // A lone smooth branch is the surface, and followed points are as many as are needed, beside cusps, too.
+    if (strand.followed && search.sharp.branches.size() == 1) {
+      cut[i].push_back({strand.c, strand.closed, false, false, strand.points});
+      return;
+    }
     cut[i] = cut_to_surface(strand, cutting);
     if (strand.second >= 0) return;
     const Refiner refiner{search.sharp.branches[static_cast<size_t>(strand.first)], search.camera, search.viewer, settings.tolerance_px,

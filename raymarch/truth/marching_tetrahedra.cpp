@@ -23,8 +23,8 @@ class Marcher {
  public:
   /// With `seam`, it is that field's zeros that are looked for instead of N.V's levels.
   Marcher(FieldEvaluator& evaluator, FieldEvaluator* seam, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
-          LatticeSamples* samples)
-      : evaluator_(evaluator), seam_(seam), viewer_(viewer), samples_(samples), cell_(cell), side_(grid.side) {
+          LatticeSamples* samples, bool seeds)
+      : evaluator_(evaluator), seam_(seam), viewer_(viewer), samples_(samples), seeds_(seeds), cell_(cell), side_(grid.side) {
     for (int i = 0; i < 8; ++i) points_[static_cast<size_t>(i)] = grid.vertex(cell + offset_of(i));
     find_values();
     for (size_t i = 0; i < 8; ++i) inside_[i] = values_[i] < 0.0;
@@ -125,6 +125,7 @@ class Marcher {
     const Fan fan{at(lone), at(first), at(second) - at(first), values_[static_cast<size_t>(lone)]};
     const double step = glm::length(end.p - start.p);
     if (seam_ != nullptr) return locate_seam(fan, start, end);
+    if (seeds_) return seed_between(start, end);
     if (auto point = bisect(evaluator_, viewer_, level_, fan, 0.0, 1.0, start, end, kSmoothReach * step)) return *point;
     const double share = (level_ - start.facing) / (end.facing - start.facing);
     CurvePoint point;
@@ -135,6 +136,15 @@ class Marcher {
       point.rough = true;
       point.high = point.low = glm::normalize(start.gradient + end.gradient);
     }
+    point.uphill = start.facing > end.facing ? start.p - end.p : end.p - start.p;
+    return point;
+  }
+
+  CurvePoint seed_between(const SurfaceSample& start, const SurfaceSample& end) const {
+    const double share = (level_ - start.facing) / (end.facing - start.facing);
+    CurvePoint point;
+    point.p = start.p + share * (end.p - start.p);
+    point.high = point.low = glm::normalize(glm::mix(start.gradient, end.gradient, share));
     point.uphill = start.facing > end.facing ? start.p - end.p : end.p - start.p;
     return point;
   }
@@ -199,6 +209,7 @@ class Marcher {
   FieldEvaluator* seam_;
   const Viewer& viewer_;
   LatticeSamples* samples_;
+  bool seeds_;
   glm::ivec3 cell_;
   CellCurves* output_ = nullptr;
   double side_;
@@ -213,8 +224,9 @@ class Marcher {
 }  // namespace
 
 bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
-                const std::array<double, kCurveFamilies>& levels, FamilyMask families, LatticeSamples* samples, CellOutput& output) {
-  Marcher marcher(evaluator, nullptr, viewer, grid, cell, samples);
+                const std::array<double, kCurveFamilies>& levels, FamilyMask families, LatticeSamples* samples, CellOutput& output,
+                bool seeds) {
+  Marcher marcher(evaluator, nullptr, viewer, grid, cell, samples, seeds);
   if (!marcher.holds_surface()) return false;
   bool any = false;
   for (size_t family = 0; family < kCurveFamilies; ++family) {
@@ -225,7 +237,7 @@ bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid&
 
 bool march_seam(FieldEvaluator& first, FieldEvaluator& second, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
                 CellCurves& output) {
-  Marcher marcher(first, &second, viewer, grid, cell, nullptr);
+  Marcher marcher(first, &second, viewer, grid, cell, nullptr, false);
   return marcher.holds_surface() && marcher.march(0.0, output);
 }
 

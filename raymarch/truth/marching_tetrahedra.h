@@ -45,8 +45,10 @@ bool march_seam(FieldEvaluator& first, FieldEvaluator& second, const Viewer& vie
 /// So many cells around the marched one is the field evaluated.
 inline constexpr double kMarchReach = 7.5;
 /// True where a curve goes through the cell. `evaluator` need be right within kMarchReach of it. Cell indices below 2^19. `samples`, if not
-/// null, are those of the field, with what other cells have found.
+/// null, are those of the field, with what other cells have found. `seeds`: points are interpolated and lie beside the curve, for those who
+/// follow it from there.
 bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
-                const std::array<double, kCurveFamilies>& levels, FamilyMask families, LatticeSamples* samples, CellOutput& output);
+                const std::array<double, kCurveFamilies>& levels, FamilyMask families, LatticeSamples* samples, CellOutput& output,
+                bool seeds = false);
 
 }  // namespace limn

@@ -15,7 +15,8 @@ struct Strand {
   double c = 0.0;
   bool closed = false;
   std::vector<CurvePoint> points{};
-  bool whole = false;  ///< A seam that is wanted whatever N.V is beside it.
+  bool whole = false;     ///< A seam that is wanted whatever N.V is beside it.
+  bool followed = false;  ///< Its steps need no refinement.
 };
 
 /// Crossings joined along their links, in an order that hangs on their keys alone.

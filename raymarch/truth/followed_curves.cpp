@@ -1,0 +1,204 @@
+#include "raymarch/truth/followed_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+
+#include "sdf/parallel.h"
+#include "sdf/segment.h"
+
+namespace limn {
+namespace {
+
+constexpr double kSeedReach = 0.25;   // of the longest step, that a seed may be moved onto the curve
+constexpr double kFirstStep = 0.25;   // of the longest one
+constexpr double kLeastStep = 1e-5;   // of the longest one
+constexpr double kSagitta = 0.2;      // of the tolerance
+constexpr double kCorrection = 0.05;  // of a step, by which the prediction may be off
+constexpr double kTurn = 0.95;        // the cosine of the angle between tangents along a step
+constexpr double kLongest_px = 1.0;
+constexpr size_t kMostPoints = 50'000;
+constexpr double kOnPath = 0.06, kOnPathLeast = 1e-3;  // of a step, and of the longest step
+
+glm::dvec3 tangent_of(const CurvePoint& point) { return glm::normalize(glm::cross(point.high, point.uphill)); }
+
+/// Segments of curves by the cubes that they lie in.
+class PathIndex {
+ public:
+  explicit PathIndex(double side) : side_(side) {}
+
+  void add(const std::vector<CurvePoint>& points) {
+    for (size_t i = 0; i < points.size(); ++i) {
+      const CurvePoint &a = points[i], &b = points[(i + 1) % points.size()];
+      const double reach = reach_of(glm::distance(a.p, b.p));
+      const glm::ivec3 low = cube_of(glm::min(a.p, b.p) - reach), high = cube_of(glm::max(a.p, b.p) + reach);
+      segments_.push_back({a.p, b.p, a.uphill});
+      for (int x = low.x; x <= high.x; ++x)
+        for (int y = low.y; y <= high.y; ++y)
+          for (int z = low.z; z <= high.z; ++z) in_[key_of({x, y, z})].push_back(segments_.size() - 1);
+    }
+  }
+  /// Another arm that runs close by has the higher N.V on its other side.
+  bool holds(const CurvePoint& point) const {
+    const auto found = in_.find(key_of(cube_of(point.p)));
+    if (found == in_.end()) return false;
+    return std::any_of(found->second.begin(), found->second.end(), [&](size_t i) {
+      const Segment& segment = segments_[i];
+      return glm::dot(segment.uphill, point.uphill) > 0.0 &&
+             distance_to_segment(point.p, segment.a, segment.b) < reach_of(glm::distance(segment.a, segment.b));
+    });
+  }
+
+ private:
+  struct Segment {
+    glm::dvec3 a{0.0}, b{0.0}, uphill{0.0};
+  };
+  double reach_of(double length) const { return kOnPath * length + kOnPathLeast * side_; }
+  glm::ivec3 cube_of(const glm::dvec3& p) const { return glm::ivec3(glm::floor(p / side_)); }
+  static std::uint64_t key_of(const glm::ivec3& cube) {
+    const auto part = [](int v) { return static_cast<std::uint64_t>(v) & 0x1fffffu; };
+    return part(cube.x) << 42u | part(cube.y) << 21u | part(cube.z);
+  }
+  double side_;
+  std::vector<Segment> segments_{};
+  std::unordered_map<std::uint64_t, std::vector<size_t>> in_{};
+};
+
+class Follower {
+ public:
+  Follower(const Field& field, const Camera& camera, const Viewer& viewer, const FollowSettings& settings, double c)
+      : evaluator_(field), camera_(camera), viewer_(viewer), settings_(settings), c_(c) {}
+
+  std::optional<CurvePoint> seed(const CurvePoint& point) {
+    return polish(evaluator_, viewer_, c_, point.p, kSeedReach * settings_.longest_step);
+  }
+
+  /// From the point around to it again; nothing where the curve is lost on the way.
+  std::optional<std::vector<CurvePoint>> around(const CurvePoint& start) {
+    std::vector<CurvePoint> path{start};
+    glm::dvec3 tangent = tangent_of(start), bend(0.0);
+    double step = kFirstStep * settings_.longest_step;
+    while (path.size() < kMostPoints) {
+      const CurvePoint from = path.back();
+      const std::optional<CurvePoint> next = advance(from, tangent, bend, step);
+      if (!next) return {};
+      const glm::dvec3 way = next->p - from.p;
+      const double length = glm::length(way), along = glm::dot(start.p - from.p, way) / length;
+      // Where chords meet, the start may lie beside the end of the one and before the beginning of the other.
+      const bool closes = path.size() > 2 && along > -kCorrection * length && along <= length &&
+                          distance_to_segment(start.p, from.p, next->p) < kCorrection * length &&
+                          glm::dot(tangent, tangent_of(start)) > 0.5;
+      if (closes) {
+        if (along <= 0.0) path.pop_back();
+        return path;
+      }
+      const glm::dvec3 turned = tangent_of(*next);
+      bend = (turned - tangent) / length;
+      tangent = turned;
+      path.push_back(*next);
+    }
+    return {};
+  }
+
+ private:
+  /// The image of a way from a point, px.
+  glm::dvec2 image_way(const glm::dvec3& p, const glm::dvec3& way) const {
+    const double small = 1e-4 * settings_.longest_step;
+    return glm::dvec2(project(camera_, p + small * way) - project(camera_, p - small * way)) / (2.0 * small);
+  }
+
+  /// A step that is shortened until it stays on the curve and on its chord, and grows for the next one.
+  std::optional<CurvePoint> advance(const CurvePoint& from, const glm::dvec3& tangent, const glm::dvec3& bend, double& step) {
+    const glm::dvec2 start = image_way(from.p, tangent);
+    const double scale = pixels_per_unit_at(camera_, std::max(project(camera_, from.p).z, 1e-9));
+    step = std::min({step, settings_.longest_step, kLongest_px / scale});
+    const double most = kSagitta * settings_.tolerance_px;
+    for (; step > kLeastStep * settings_.longest_step; step *= 0.5) {
+      const glm::dvec3 predicted = from.p + step * tangent + 0.5 * step * step * bend;
+      const std::optional<CurvePoint> next = polish(evaluator_, viewer_, c_, predicted, 0.25 * step);
+      if (!next || !(glm::distance(next->p, predicted) < kCorrection * step)) continue;
+      const glm::dvec3 turned = tangent_of(*next);
+      if (!(glm::dot(turned, tangent) > kTurn)) continue;
+      const glm::dvec2 end = image_way(next->p, turned);
+      const double turn = std::fabs(std::atan2(start.x * end.y - start.y * end.x, glm::dot(start, end)));
+      const double sagitta = 0.5 * (glm::length(start) + glm::length(end)) * step * turn / 8.0;
+      if (sagitta > most) continue;
+      step *= std::clamp(0.8 * std::sqrt(most / std::max(sagitta, 1e-300)), 0.7, 2.0);
+      return next;
+    }
+    return {};
+  }
+
+  FieldEvaluator evaluator_;
+  const Camera& camera_;
+  const Viewer& viewer_;
+  const FollowSettings& settings_;
+  double c_;
+};
+
+}  // namespace
+
+std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field, const Camera& camera, const Viewer& viewer,
+                                   const FollowSettings& settings, const ExecutionSettings& how) {
+  if (found.empty()) return found;
+  const double c = found.front().c;
+  std::vector<std::optional<std::vector<CurvePoint>>> paths(found.size());
+  parallel_for(size_t{0}, found.size(), [&](size_t i) {
+    if (how.cancelled && how.cancelled()) throw Cancelled{};
+    Follower follower(field, camera, viewer, settings, c);
+    for (const CurvePoint& point : found[i].points) {
+      const std::optional<CurvePoint> seed = point.rough ? std::nullopt : follower.seed(point);
+      if (!seed) continue;
+      paths[i] = follower.around(*seed);
+      break;
+    }
+  });
+  std::vector<Strand> result;
+  PathIndex index(settings.longest_step);
+  const auto accept = [&](const Strand& like, std::vector<CurvePoint> path) {
+    index.add(path);
+    result.push_back(like);
+    result.back().points = std::move(path);
+    result.back().closed = result.back().followed = true;
+  };
+  for (size_t i = 0; i < found.size(); ++i) {
+    if (paths[i] && !index.holds(paths[i]->front())) accept(found[i], std::move(*paths[i]));
+  }
+  // What no path passes: other curves through crossings that were joined to these.
+  Follower follower(field, camera, viewer, settings, c);
+  for (size_t i = 0; i < found.size(); ++i) {
+    bool any = false, lost = false;
+    for (const CurvePoint& point : found[i].points) {
+      if (point.rough || index.holds(point)) {
+        any = any || !point.rough;
+        continue;
+      }
+      const std::optional<CurvePoint> seed = follower.seed(point);
+      if (!seed) continue;
+      if (index.holds(*seed)) {
+        any = true;
+        continue;
+      }
+      if (lost) continue;
+      if (auto path = follower.around(*seed)) {
+        accept(found[i], std::move(*path));
+        any = true;
+      } else {
+        lost = true;
+      }
+    }
+    if (any) continue;
+    for (CurvePoint& point : found[i].points) {
+      if (const std::optional<CurvePoint> seed = follower.seed(point)) {
+        point = *seed;
+      } else {
+        point.rough = true;
+      }
+    }
+    result.push_back(std::move(found[i]));
+  }
+  return result;
+}
+
+}  // namespace limn

@@ -25,10 +25,15 @@ struct Side {
   const std::vector<int>& nearest;                         ///< Of places of `with`, in `without`.
 };
 
+/// Where a part of a chain ends: at an end of the chain, or within it.
+struct PartEnd {
+  glm::dvec2 px{0.0};
+  std::optional<ChainEnd> end{};
+};
+
 struct Gap {
   double length_px = std::numeric_limits<double>::infinity();
-  glm::dvec2 from{0.0}, to{0.0};
-  std::optional<ChainEnd> one{}, other{};
+  PartEnd one{}, other{};
 };
 
 glm::dvec2 middle_of(const PlacedChains& chains, int chain) {
@@ -159,16 +164,36 @@ class ChangeFinder {
     return most > 0.5 * shape.length_px ? best : -1;
   }
 
-  /// Between ends of the chain and ends of what else came of its source, the shortest first.
+  /// The ends of a chain, and those of the longest part of it that came of a chain of the other graph.
+  static std::vector<PartEnd> part_ends(const Side& side, int chain, int source) {
+    const ChainShape& shape = side.with.chains[static_cast<size_t>(chain)];
+    std::vector<PartEnd> ends;
+    for (const ChainEnd& end : shape.ends) ends.push_back({end.px, end});
+    const auto is_part = [&](size_t k) {
+      const int found = side.nearest[static_cast<size_t>(shape.places[k])];
+      return found >= 0 && side.without.places[static_cast<size_t>(found)].chain == source;
+    };
+    const auto px = [&](size_t k) { return side.with.places[static_cast<size_t>(shape.places[k])].px; };
+    size_t begin = 0, from = 0, to = 0;
+    for (size_t k = 0; k < shape.places.size(); ++k) {
+      if (!is_part(k)) begin = k + 1;
+      if (k + 1 - begin > to - from) from = begin, to = k + 1;
+    }
+    if (from < to && from > 0) ends.push_back({0.5 * (px(from - 1) + px(from)), {}});
+    if (from < to && to < shape.places.size()) ends.push_back({0.5 * (px(to - 1) + px(to)), {}});
+    return ends;
+  }
+
+  /// Between ends of the chain and ends of what else came of its source, the shortest first. Either may have gone on in another chain's
+  /// part: then it is the end of the part that counts.
   static std::vector<Gap> gaps_of(const Side& side, int chain, int source) {
     std::vector<Gap> gaps;
-    const ChainShape& shape = side.with.chains[static_cast<size_t>(chain)];
+    const std::vector<PartEnd> ends = part_ends(side, chain, source);
     for (const auto& [pair, common] : side.common_px) {
       const auto other = static_cast<size_t>(pair.second);
       if (pair.first != source || pair.second == chain || !side.with.chains[other].visible || common <= 0.0) continue;
-      for (const ChainEnd& end : shape.ends) {
-        for (const ChainEnd& others : side.with.chains[other].ends)
-          gaps.push_back({glm::distance(end.px, others.px), end.px, others.px, end, others});
+      for (const PartEnd& others : part_ends(side, pair.second, source)) {
+        for (const PartEnd& end : ends) gaps.push_back({glm::distance(end.px, others.px), end, others});
       }
     }
     std::stable_sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.length_px < b.length_px; });
@@ -181,20 +206,34 @@ class ChangeFinder {
     for (const Gap& gap : gaps) {
       FoundChange tried = change;
       tried.length_px = gap.length_px;
-      tried.px = 0.5 * (gap.from + gap.to);
-      tried.settled = gap.length_px <= settings_.short_px || is_thin(side.with, gap);
-      explain(side, {*gap.one, *gap.other}, true, 0.5 * gap.length_px, tried);
+      tried.px = 0.5 * (gap.one.px + gap.other.px);
+      tried.settled = gap.length_px <= settings_.short_px || is_thin(side, change.other, gap);
+      if (gap.one.end && gap.other.end)
+        explain(side, {*gap.one.end, *gap.other.end}, true, 0.5 * gap.length_px, tried);
+      else
+        explain_exchange(side, 0.5 * gap.length_px, tried);
       if (!first || tried.settled) first = tried;
       if (tried.settled) break;
     }
     if (first) change = *first;
   }
 
-  bool is_thin(const PlacedChains& chains, const Gap& gap) const {
-    if (gap.length_px > kLongestThin_px) return false;
-    std::vector<glm::dvec2> places;
-    for (int k = 0; k <= 8; ++k) places.push_back(glm::mix(gap.from, gap.to, k / 8.0));
-    return lies_on_others(chains, places, {}, settings_.thin_px);
+  /// What lies between the ends in the graph where the parts are one chain runs along another line.
+  bool is_thin(const Side& side, int source, const Gap& gap) const {
+    const std::vector<int>& places = side.without.chains[static_cast<size_t>(source)].places;
+    const auto px = [&](size_t k) { return side.without.places[static_cast<size_t>(places[k])].px; };
+    size_t one = 0, other = 0;
+    for (size_t k = 1; k < places.size(); ++k) {
+      if (glm::distance(px(k), gap.one.px) < glm::distance(px(one), gap.one.px)) one = k;
+      if (glm::distance(px(k), gap.other.px) < glm::distance(px(other), gap.other.px)) other = k;
+    }
+    std::vector<glm::dvec2> between;
+    double length_px = 0.0;
+    for (size_t k = std::min(one, other); k <= std::max(one, other); ++k) {
+      between.push_back(px(k));
+      length_px += side.without.places[static_cast<size_t>(places[k])].length_px;
+    }
+    return length_px <= kLongestThin_px && lies_on_others(side.with, between, {}, settings_.thin_px);
   }
 
   void explain(const Side& side, const std::vector<ChainEnd>& ends, bool gap, double radius, FoundChange& change) const {
@@ -203,6 +242,16 @@ class ChangeFinder {
     change.cause = same ? ChainCause::unexplained : cause_of(*side.with.graph, ends, gap);
     // A chain may be shorter than its own way between the two times.
     change.settled = change.settled && !same;
+  }
+
+  /// Where chains go on with parts of each other.
+  static void explain_exchange(const Side& side, double radius, FoundChange& change) {
+    const LocalGraph one = local_graph(*side.with.graph, change.px, radius + kAround_px),
+                     other = local_graph(*side.without.graph, change.px, radius + kAround_px);
+    const auto is_joint = [](const std::vector<int>& vertex) { return vertex[0] == static_cast<int>(VertexKind::joint); };
+    const bool joint = std::any_of(one.begin(), one.end(), is_joint) || std::any_of(other.begin(), other.end(), is_joint);
+    change.cause = one == other ? ChainCause::unexplained : joint ? ChainCause::joint : ChainCause::beak_to_beak;
+    change.settled = change.settled && one != other;
   }
 
   /// The first place along a chain from which on it belongs to another one of the other graph.
@@ -237,12 +286,8 @@ class ChangeFinder {
     change.px = from ? *from : to ? *to : middle_of(side.without, before);
     if (!from || !to) return change;
     change.length_px = glm::distance(*from, *to);
-    const LocalGraph one = local_graph(*side.with.graph, change.px, change.length_px + kAround_px),
-                     other = local_graph(*side.without.graph, change.px, change.length_px + kAround_px);
-    const auto is_joint = [](const std::vector<int>& vertex) { return vertex[0] == static_cast<int>(VertexKind::joint); };
-    const bool joint = std::any_of(one.begin(), one.end(), is_joint) || std::any_of(other.begin(), other.end(), is_joint);
-    if (one != other) change.cause = joint ? ChainCause::joint : ChainCause::beak_to_beak;
-    change.settled = change.length_px <= settings_.short_px && one != other;
+    change.settled = change.length_px <= settings_.short_px;
+    explain_exchange(side, change.length_px, change);
     return change;
   }
 

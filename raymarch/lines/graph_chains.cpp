@@ -28,6 +28,14 @@ glm::dvec2 direction_out(const LineEdge& edge, bool at_end) {
   return glm::dvec2(0.0);
 }
 
+constexpr double kSameFace = 0.9;  // cosine between normals
+
+/// The normal of the face that a contour bounds, where an edge leaves its vertex; of the next point, since the vertex may lie on two faces.
+glm::dvec3 normal_out(const LineEdge& edge, bool at_end) {
+  const size_t n = edge.points.size();
+  return (at_end ? edge.points[n - 2] : edge.points[1]).normal;
+}
+
 /// Of each end (2 edge + 0 for begin, 1 for end) the one that the stroke goes on at, or -1.
 std::vector<int> partners_of(const ViewGraph& graph) {
   std::vector<std::vector<EdgeEnd>> at(graph.vertices.size());
@@ -38,8 +46,9 @@ std::vector<int> partners_of(const ViewGraph& graph) {
   }
   std::vector<int> partner(2 * graph.edges.size(), -1);
   struct Pair {
-    bool turned;    ///< What is bounded on the left of the one would be on the right of the other.
-    double cosine;  ///< -1: straight on.
+    bool turned;      ///< What is bounded on the left of the one would be on the right of the other.
+    bool other_face;  ///< The contours bound different faces. Arms that leave side by side differ in that, whatever their directions.
+    double cosine;    ///< -1: straight on.
     EdgeEnd a, b;
   };
   for (const auto& ends : at) {
@@ -49,12 +58,15 @@ std::vector<int> partners_of(const ViewGraph& graph) {
         const LineEdge &a = graph.edges[static_cast<size_t>(ends[i].edge)], &b = graph.edges[static_cast<size_t>(ends[j].edge)];
         if (a.line_class != b.line_class || a.invisibility != b.invisibility) continue;
         const bool sided = a.line_class == LineClass::contour || a.line_class == LineClass::boundary;
-        pairs.push_back({sided && ends[i].at_end == ends[j].at_end,
+        const bool other_face =
+            a.line_class == LineClass::contour && glm::dot(normal_out(a, ends[i].at_end), normal_out(b, ends[j].at_end)) < kSameFace;
+        pairs.push_back({sided && ends[i].at_end == ends[j].at_end, other_face,
                          glm::dot(direction_out(a, ends[i].at_end), direction_out(b, ends[j].at_end)), ends[i], ends[j]});
       }
     }
-    std::stable_sort(pairs.begin(), pairs.end(),
-                     [](const Pair& a, const Pair& b) { return std::tie(a.turned, a.cosine) < std::tie(b.turned, b.cosine); });
+    std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
+      return std::tie(a.turned, a.other_face, a.cosine) < std::tie(b.turned, b.other_face, b.cosine);
+    });
     for (const Pair& pair : pairs) {
       const auto number = [](const EdgeEnd& end) { return 2 * static_cast<size_t>(end.edge) + (end.at_end ? 1 : 0); };
       const size_t a = number(pair.a), b = number(pair.b);

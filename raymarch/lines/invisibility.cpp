@@ -20,6 +20,7 @@ constexpr double kShort_px = 1.0;  // pieces shorter than this are not asked by 
 constexpr double kClear_px = 0.3, kLeastClear_px = 0.12;
 constexpr double kBesideNearer = 0.3;  // of the way to a nearer line that runs along: so far off the curve rays start
 constexpr double kWorthAsking_px = 3.0;
+constexpr size_t kAskedOf = 6;  // pieces in a row: no more steps than that go by without a ray that confirms them
 constexpr int kMostSearches = 4;
 constexpr double kTouch_px = 0.01;   // two polylines, each known to half of this: so near their lines may cross where they do not
 constexpr double kNearEnd_px = 0.3;  // pieces in which no ray starts farther from their ends tell little
@@ -90,6 +91,23 @@ class Cutter {
     const bool tells =
         here >= walk_.length_to(piece.from) + unclear_at(piece.begin) && here <= walk_.length_to(piece.to) - unclear_at(piece.end);
     return tells ? std::optional<double>(place) : std::nullopt;
+  }
+  /// A piece between two crossings of one nearer line, which runs so close beside it that no ray starts clear of it, and so far from it
+  /// that the curves themselves tell that they cross twice: rays that pass so near to an edge know less.
+  bool told_by_lines(const CurvePiece& piece) const {
+    if (piece.begin < 0 || piece.end < 0) return false;
+    const CurveEvent &begin = cut_.events[static_cast<size_t>(piece.begin)], &end = cut_.events[static_cast<size_t>(piece.end)];
+    if (begin.kind != VertexKind::crossing || end.kind != VertexKind::crossing || begin.nearer != end.nearer) return false;
+    double most = 0.0;
+    for (const double share : {0.5, 0.38, 0.62, 0.26, 0.74}) {
+      if (clear_ray_at(piece, share)) return false;
+      const double place = ray_at(piece, share);
+      const CurveSample sample = sample_at(curve_, place, camera_);
+      const auto nearer = folds_.nearest(sample, number_, place, kClear_px);
+      if (!nearer || nearer->curve != begin.nearer) return false;
+      most = std::max(most, folds_.clearance_px(sample, number_, place, kClear_px));
+    }
+    return most > 2.0 * curve_.apart_px;
   }
   double unclear_at(int event) const { return event < 0 ? 0.0 : cut_.events[static_cast<size_t>(event)].unclear_px; }
   /// Near that share a place where no nearer line runs so close by that a ray from beside the curve may pass it on its wrong side. Nothing
@@ -187,7 +205,8 @@ class Cutter {
       const CurvePiece& piece = cut_.pieces[arc[k]];
       if (piece.length_px < kNearEnd_px) continue;
       for (const double share : {0.15, 0.5, 0.85}) {
-        const std::optional<double> ray = piece.length_px < least_unclear_px ? clear_ray_at(piece, share) : telling_ray_at(piece, share);
+        const bool clear_only = piece.length_px < least_unclear_px || told_by_lines(piece);
+        const std::optional<double> ray = clear_only ? clear_ray_at(piece, share) : telling_ray_at(piece, share);
         if (!ray) continue;
         const double place = begins[k] + (*ray - piece.from);
         if (probes.empty() || place > probes.back().at) probes.push_back({place, unexplained(place)});
@@ -272,9 +291,17 @@ class Cutter {
     }
     const auto is_asked = [&](size_t k) { return k == first || k == second; };
     if (hidden && !is_asked(*hidden) && length(*hidden) >= kWorthAsking_px && denies(*hidden, 0.5)) return {};
+    for (size_t from = 0; from < arc.size(); from += kAskedOf) {
+      size_t longest = from;
+      for (size_t k = from; k < std::min(from + kAskedOf, arc.size()); ++k) {
+        if (length(k) > length(longest)) longest = k;
+      }
+      if (is_asked(longest) || (hidden && longest == *hidden) || length(longest) < kWorthAsking_px) continue;
+      if (const auto place = clear_ray_at(cut_.pieces[arc[longest]], 0.5); place && cast(*place) - relative[longest] != offset) return {};
+    }
     for (size_t k = 0; k < arc.size(); ++k) {
       if (offset + relative[k] != 0 || is_asked(k) || length(k) < kShort_px) continue;
-      if (is_hidden(cut_.pieces[arc[k]])) return {};
+      if (is_hidden(cut_.pieces[arc[k]]) && !told_by_lines(cut_.pieces[arc[k]])) return {};
     }
     return offset;
   }
@@ -286,7 +313,7 @@ class Cutter {
     for (const double share : {0.5, 0.3, 0.7}) {
       if (const auto place = clear_ray_at(piece, share)) ++votes[cast(*place)];
     }
-    if (votes.empty() && piece.length_px >= kWorthAsking_px) {
+    if (votes.empty() && piece.length_px >= kWorthAsking_px && !told_by_lines(piece)) {
       // Nearer lines run along it: rays from points on the curve itself, if they agree.
       for (const double share : {0.5, 0.3, 0.7}) {
         if (const auto place = telling_ray_at(piece, share)) ++votes[cast(*place)];

@@ -16,6 +16,7 @@ constexpr double kFirstStep = 0.25;   // of the longest one
 constexpr double kLeastStep = 1e-5;   // of the longest one
 constexpr double kSagitta = 0.2;      // of the tolerance
 constexpr double kCorrection = 0.05;  // of a step, by which the prediction may be off
+constexpr double kClosing = 0.15;     // of a step: so near it the start is the end
 constexpr double kTurn = 0.95;        // the cosine of the angle between tangents along a step
 constexpr double kLongest_px = 1.0;
 constexpr size_t kMostPoints = 50'000;
@@ -86,9 +87,8 @@ class Follower {
       const glm::dvec3 way = next->p - from.p;
       const double length = glm::length(way), along = glm::dot(start.p - from.p, way) / length;
       // Where chords meet, the start may lie beside the end of the one and before the beginning of the other.
-      const bool closes = path.size() > 2 && along > -kCorrection * length && along <= length &&
-                          distance_to_segment(start.p, from.p, next->p) < kCorrection * length &&
-                          glm::dot(tangent, tangent_of(start)) > 0.5;
+      const bool closes = path.size() > 2 && along > -kClosing * length && along <= length &&
+                          distance_to_segment(start.p, from.p, next->p) < kClosing * length && glm::dot(tangent, tangent_of(start)) > 0.5;
       if (closes) {
         if (along <= 0.0) path.pop_back();
         return path;

@@ -285,13 +285,13 @@ void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurv
   parallel_for(size_t{0}, strands.size(), [&](size_t i) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     const Strand& strand = strands[i];
-    // A lone smooth branch is the surface, and followed points are as many as are needed, beside cusps, too.
+    // A lone smooth branch is the surface.
     if (strand.followed && search.sharp.branches.size() == 1) {
       cut[i].push_back({strand.c, strand.closed, false, false, strand.points});
       return;
     }
     cut[i] = cut_to_surface(strand, cutting);
-    if (strand.second >= 0) return;
+    if (strand.second >= 0 || strand.followed) return;
     const Refiner refiner{search.sharp.branches[static_cast<size_t>(strand.first)], search.camera, search.viewer, settings.tolerance_px,
                           settings.extent};
     for (FieldCurve& curve : cut[i]) {

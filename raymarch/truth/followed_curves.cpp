@@ -16,10 +16,11 @@ constexpr double kFirstStep = 0.25;   // of the longest one
 constexpr double kLeastStep = 1e-5;   // of the longest one
 constexpr double kSagitta = 0.2;      // of the tolerance
 constexpr double kCorrection = 0.05;  // of a step, by which the prediction may be off
-constexpr double kTurn = 0.95;        // the cosine of the angle between tangents along a step
+constexpr double kClosing = 0.15;     // of a step: so near it the start is the end
+constexpr double kTurn = 0.95;        // the cosine of the angle between tangents, and between normals, along a step
 constexpr double kLongest_px = 1.0;
 constexpr size_t kMostPoints = 50'000;
-constexpr double kOnPath = 0.06, kOnPathLeast = 1e-3;  // of a step, and of the longest step
+constexpr double kOnPath = 0.15, kOnPathLeast = 1e-3;  // of a step, and of the longest step
 
 glm::dvec3 tangent_of(const CurvePoint& point) { return glm::normalize(glm::cross(point.high, point.uphill)); }
 
@@ -33,7 +34,7 @@ class PathIndex {
       const CurvePoint &a = points[i], &b = points[(i + 1) % points.size()];
       const double reach = reach_of(glm::distance(a.p, b.p));
       const glm::ivec3 low = cube_of(glm::min(a.p, b.p) - reach), high = cube_of(glm::max(a.p, b.p) + reach);
-      segments_.push_back({a.p, b.p, a.uphill});
+      segments_.push_back({a.p, b.p, glm::normalize(a.uphill) + glm::normalize(b.uphill)});
       for (int x = low.x; x <= high.x; ++x)
         for (int y = low.y; y <= high.y; ++y)
           for (int z = low.z; z <= high.z; ++z) in_[key_of({x, y, z})].push_back(segments_.size() - 1);
@@ -86,9 +87,8 @@ class Follower {
       const glm::dvec3 way = next->p - from.p;
       const double length = glm::length(way), along = glm::dot(start.p - from.p, way) / length;
       // Where chords meet, the start may lie beside the end of the one and before the beginning of the other.
-      const bool closes = path.size() > 2 && along > -kCorrection * length && along <= length &&
-                          distance_to_segment(start.p, from.p, next->p) < kCorrection * length &&
-                          glm::dot(tangent, tangent_of(start)) > 0.5;
+      const bool closes = path.size() > 2 && along > -kClosing * length && along <= length &&
+                          distance_to_segment(start.p, from.p, next->p) < kClosing * length && glm::dot(tangent, tangent_of(start)) > 0.5;
       if (closes) {
         if (along <= 0.0) path.pop_back();
         return path;
@@ -119,7 +119,7 @@ class Follower {
       const std::optional<CurvePoint> next = polish(evaluator_, viewer_, c_, predicted, 0.25 * step);
       if (!next || !(glm::distance(next->p, predicted) < kCorrection * step)) continue;
       const glm::dvec3 turned = tangent_of(*next);
-      if (!(glm::dot(turned, tangent) > kTurn)) continue;
+      if (!(glm::dot(turned, tangent) > kTurn && glm::dot(next->high, from.high) > kTurn)) continue;
       const glm::dvec2 end = image_way(next->p, turned);
       const double turn = std::fabs(std::atan2(start.x * end.y - start.y * end.x, glm::dot(start, end)));
       const double sagitta = 0.5 * (glm::length(start) + glm::length(end)) * step * turn / 8.0;

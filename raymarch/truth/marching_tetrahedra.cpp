@@ -125,7 +125,11 @@ class Marcher {
     const Fan fan{at(lone), at(first), at(second) - at(first), values_[static_cast<size_t>(lone)]};
     const double step = glm::length(end.p - start.p);
     if (seam_ != nullptr) return locate_seam(fan, start, end);
-    if (seeds_) return seed_between(start, end);
+    if (seeds_) {
+      const CurvePoint seed = seed_between(start, end);
+      // Where the surface turns within the cell only the way along the face leads onto the curve.
+      if (polish(evaluator_, viewer_, level_, seed.p, kSmoothReach * side_)) return seed;
+    }
     if (auto point = bisect(evaluator_, viewer_, level_, fan, 0.0, 1.0, start, end, kSmoothReach * step)) return *point;
     const double share = (level_ - start.facing) / (end.facing - start.facing);
     CurvePoint point;

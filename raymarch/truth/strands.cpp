@@ -169,7 +169,8 @@ class Cutter {
     for (size_t i = 0; i < n;) {
       curve.points.push_back(stretch[i].point);
       size_t next = i + 1;
-      while (next + 1 < n && is_chord(stretch, i, next + 1)) ++next;
+      // Of followed points there are no more than are needed, beside cusps, too.
+      while (!strand_.followed && next + 1 < n && is_chord(stretch, i, next + 1)) ++next;
       i = next;
     }
     return curve;

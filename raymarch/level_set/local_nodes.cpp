@@ -1,7 +1,5 @@
 #include "raymarch/level_set/local_nodes.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -204,7 +202,8 @@ std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientD
   return levels;
 }
 
-LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels) {
+LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels, const std::string& name,
+                      const Field* signs) {
   std::vector<LevelSetBlock> blocks(nodes.blocks.size());
   parallel_for(size_t{0}, blocks.size(), [&](size_t i) {
     blocks[i].origin = nodes.blocks[i].origin;
@@ -215,9 +214,11 @@ LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t
   });
   const double h = choice.voxel_of(level);
   auto data = std::make_shared<LevelSetData>();
-  data->handle = nano_grid(blocks, static_cast<float>(half_width_voxels * h));
+  std::function<bool(const glm::dvec3&)> inside;
+  if (signs) inside = [&](const glm::dvec3& place) { return FieldEvaluator(*signs).value(choice.origin + h * place) < 0.0; };
+  data->handle = nano_grid(blocks, static_cast<float>(half_width_voxels * h), inside);
   data->grid = data->handle.grid<float>();
-  data->info.name = fmt::format("surface_{}", level);
+  data->info.name = name;
   data->info.world_from_index = {glm::dmat3(h), choice.origin};
   data->info.voxel_size = h;
   data->info.half_width_voxels = half_width_voxels;

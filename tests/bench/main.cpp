@@ -17,6 +17,7 @@
 #include "tests/bench/growth_suite.h"
 #include "tests/bench/image_methods.h"
 #include "tests/bench/lines_suite.h"
+#include "tests/bench/local_suite.h"
 #include "tests/bench/march_suite.h"
 #include "tests/bench/plan_suite.h"
 
@@ -33,6 +34,7 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
           lines     view graphs from 26 sides: time and conflicts (minutes)
           growth    whole calls of limn on larger and larger files, beside assimp's reading of them (minutes)
           calls     whole calls of limn beside those of other programs, and their stages
+          local     local level sets beside uniform ones, from 512 to 4096 voxels along the side
           all       the first four (the default)
   --object NAME     sphere, torus, or a built-in scene with a cage; may be repeated
   --mesh FILE       a mesh to march and to convert; may be repeated
@@ -62,7 +64,7 @@ struct Settings {
   std::vector<std::string> against{};  ///< Two lists of files.
   double limit = 1.1;
   bool runs_suite(const std::string& name) const {
-    return suite == name || (suite == "all" && name != "plan" && name != "growth" && name != "lines" && name != "calls");
+    return suite == name || (suite == "all" && name != "plan" && name != "growth" && name != "lines" && name != "calls" && name != "local");
   }
   /// With --json the document alone goes to stdout.
   std::FILE* table() const { return json ? stderr : stdout; }
@@ -109,9 +111,9 @@ Settings parse(int argc, char** argv) {
       settings.program = value(flag);
     } else if (flag == "--suite") {
       settings.suite = value(flag);
-      const std::vector<std::string> known{"march", "fields", "convert", "images", "plan", "lines", "growth", "calls", "all"};
+      const std::vector<std::string> known{"march", "fields", "convert", "images", "plan", "lines", "growth", "calls", "local", "all"};
       if (std::find(known.begin(), known.end(), settings.suite) == known.end())
-        refuse(flag, settings.suite, "unknown suite", "march, fields, convert, images, plan, lines, growth, calls or all");
+        refuse(flag, settings.suite, "unknown suite", "march, fields, convert, images, plan, lines, growth, calls, local or all");
     } else if (flag == "--width") {
       settings.width_px = std::min(whole(flag, 16), 16384);
       settings.height_px = std::max(1, settings.width_px * 9 / 16);
@@ -170,6 +172,8 @@ nlohmann::json rows_of(const Settings& settings) {
                          .width_px = settings.width_px == 1920 ? 1280 : settings.width_px,
                          .program = settings.program,
                          .table = settings.table()}));
+  if (settings.runs_suite("local"))
+    append(bench_local({.scenes = settings.scenes, .voxels = settings.voxels, .runs = settings.runs, .table = settings.table()}));
   if (settings.runs_suite("calls")) append(bench_calls({.runs = settings.runs, .program = settings.program, .table = settings.table()}));
   if (settings.runs_suite("plan"))
     append(bench_plan({.scenes = settings.scenes, .views = settings.views, .only_view = settings.only_view, .table = settings.table()}));

@@ -12,6 +12,7 @@
 #include "samples/experiment/job.h"
 #include "samples/scenes/scenes.h"
 #include "sdf/error.h"
+#include "sdf/level_set_data.h"
 #include "sdf/shape.h"
 #include "tests/random_seed.h"
 
@@ -321,6 +322,43 @@ TEST(LocalLevelSet, RaysThatStartInsideLeaveThroughTheSurface) {
     const glm::vec3 ours(hits.normal_x[i], hits.normal_y[i], hits.normal_z[i]),
         theirs(exact.normal_x[i], exact.normal_y[i], exact.normal_z[i]);
     EXPECT_GT(glm::dot(ours, theirs), 0.95f);
+  }
+}
+
+TEST(LocalLevelSet, ItsGridsHoldTheFieldsDistancesAndItsSigns) {
+  const Scene scene = find_scene("tilted_torus")->make();
+  const Camera camera = camera_of(scene, 0, 4, {300, 300});
+  const std::vector<LevelSet> grids = local_level_sets(scene, {.kind = "level_set", .voxels = 512}, {{camera}, kFinest_px, {0.4}});
+  EXPECT_GE(grids.size(), 3u);
+  FieldEvaluator field(std::get<Field>(scene.objects.front().source));
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  double last = 0.0;
+  for (const LevelSet& grid : grids) {
+    const LevelSetInfo& info = grid.info();
+    EXPECT_GE(info.voxel_size, 2.0 * last - 1e-12);
+    last = info.voxel_size;
+    const Box box = bounds(scene);
+    int active = 0;
+    double worst = 0.0;
+    const auto accessor = grid.data().accessor();
+    for (int k = 0; k < 300000; ++k) {
+      const glm::dvec3 p = box.lower + box.size() * glm::dvec3(part(random), part(random), part(random));
+      const glm::ivec3 node(glm::round(grid.data().index_from_world.point(p)));
+      const nanovdb::Coord at(node.x, node.y, node.z);
+      const double there = static_cast<double>(accessor.getValue(at));
+      const double distance = field.value(info.world_from_index.point(glm::dvec3(node)));
+      const double half_width = info.half_width_voxels * info.voxel_size;
+      if (accessor.isActive(at)) {
+        ++active;
+        worst = std::max(worst, std::abs(there - std::clamp(distance, -half_width, half_width)) / info.voxel_size);
+      } else if (std::abs(distance) > 8.0 * info.voxel_size * std::sqrt(3.0) && accessor.probeLeaf(at)) {
+        EXPECT_EQ(there < 0.0, distance < 0.0) << info.name;
+      }
+    }
+    EXPECT_GT(active, 10) << info.name;
+    // Nodes on the faces of larger bricks have these bricks' interpolant.
+    EXPECT_LT(worst, 0.25) << info.name;
   }
 }
 

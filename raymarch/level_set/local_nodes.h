@@ -28,6 +28,8 @@ struct LevelNodes {
 
   /// Of a node that is known.
   float value(const glm::ivec3& node) const;
+  /// Null where there is none. `last`: the block found before, or null; becomes the one that is found.
+  const NodeBlock* find(const glm::ivec3& origin, const NodeBlock*& last) const;
   std::int64_t known() const;
   NodeReader reader() const;  ///< Valid as long as the nodes are. Nodes that are not known are far outside.
 };

@@ -153,12 +153,21 @@ void clear_head(Data& data, const Values& values) {
   std::fill(first, first + (reinterpret_cast<const std::uint8_t*>(&values) - first), std::uint8_t{0});
 }
 
-void write_leaf(const LevelSetBlock& block, float background, Leaf& leaf) {
+using InsideAt = std::function<bool(const glm::dvec3&)>;
+
+void write_leaf(const LevelSetBlock& block, float background, const InsideAt& inside_at, Leaf& leaf) {
   auto& data = *leaf.data();
   clear_head(data, data.mValues);
   data.setOrigin(coord(origin_of(block.origin, kLeafSide)));
   for (int word = 0; word < 8; ++word) data.mValueMask.getWord<std::uint64_t>(word) = block.active[word];
   std::copy(std::begin(block.values), std::end(block.values), data.mValues);
+  if (inside_at) {
+    const glm::ivec3 origin = origin_of(block.origin, kLeafSide);
+    for (std::uint32_t n = 0; n < Leaf::SIZE; ++n)
+      if (!data.mValueMask.isOn(n))
+        data.mValues[n] = inside_at(glm::dvec3(origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7))) ? -background : background;
+    return;
+  }
   std::uint32_t first = 0;
   while (!data.mValueMask.isOn(first)) ++first;
   const auto sign_at = [&](std::uint32_t n) {
@@ -186,7 +195,7 @@ float last_value(const Upper& node) { return value_at(node, Upper::SIZE - 1, fal
 
 /// Its children [first, last) of the level below are written already; `child(i)` is one, `origin_of_child(i)` where.
 template <class Node, class Child, class OriginOf>
-void write_internal(const glm::ivec3& origin, size_t first, size_t last, float background, const Child& child,
+void write_internal(const glm::ivec3& origin, size_t first, size_t last, float background, const InsideAt& inside_at, const Child& child,
                     const OriginOf& origin_of_child, Node& node) {
   auto& data = *node.data();
   clear_head(data, data.mTable);
@@ -202,6 +211,11 @@ void write_internal(const glm::ivec3& origin, size_t first, size_t last, float b
   };
   const bool inside = first_value(child(first)) < 0.0f;
   flood_fill<Node::LOG2DIM>(inside, sign_at, [&](std::uint32_t n, bool in) {
+    if (inside_at) {
+      const nanovdb::Coord local = Node::OffsetToLocalCoord(n);
+      const double side = double{Node::DIM} / (1 << Node::LOG2DIM);
+      in = inside_at(glm::dvec3(origin) + side * (glm::dvec3(local[0], local[1], local[2]) + 0.5));
+    }
     data.mTable[n].child = 0;  // all of its bytes
     data.setValue(n, in ? -background : background);
   });
@@ -267,19 +281,19 @@ void write_grid(const Layout& layout) {
 
 }  // namespace
 
-nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const LevelSetBlock> blocks, float background) {
+nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const LevelSetBlock> blocks, float background, const InsideAt& inside) {
   Layout layout = lay_out(blocks);
   LIMN_CHECK(!layout.leaves.empty());
   nanovdb::HostBuffer buffer = take_memory(layout);
-  parallel_for(size_t{0}, layout.leaves.size(), [&](size_t i) { write_leaf(*layout.leaves[i], background, layout.leaf(i)); });
+  parallel_for(size_t{0}, layout.leaves.size(), [&](size_t i) { write_leaf(*layout.leaves[i], background, inside, layout.leaf(i)); });
   parallel_for(size_t{0}, layout.lowers.size(), [&](size_t i) {
     write_internal(
-        layout.lowers[i].origin, layout.lowers[i].first, end_of(layout.lowers, i, layout.leaves.size()), background,
+        layout.lowers[i].origin, layout.lowers[i].first, end_of(layout.lowers, i, layout.leaves.size()), background, inside,
         [&](size_t k) -> Leaf& { return layout.leaf(k); }, [&](size_t k) { return layout.leaves[k]->origin; }, layout.lower(i));
   });
   parallel_for(size_t{0}, layout.uppers.size(), [&](size_t i) {
     write_internal(
-        layout.uppers[i].origin, layout.uppers[i].first, end_of(layout.uppers, i, layout.lowers.size()), background,
+        layout.uppers[i].origin, layout.uppers[i].first, end_of(layout.uppers, i, layout.lowers.size()), background, inside,
         [&](size_t k) -> Lower& { return layout.lower(k); }, [&](size_t k) { return layout.lowers[k].origin; }, layout.upper(i));
   });
   write_root(layout, root_tiles_inside(layout), background);

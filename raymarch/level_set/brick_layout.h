@@ -63,14 +63,16 @@ struct BrickLayout {
 /// Looks at every leaf of the grid, in parallel.
 BrickLayout lay_out_bricks(const LevelSetData& data);
 
-/// Nodes that are in no grid. Read from many threads at a time.
+/// Nodes that are in no grid. Copied for each thread that asks for single values.
 struct NodeReader {
   const void* state = nullptr;
   void (*load_brick)(const void* state, const glm::ivec3& origin, NodeValues& values) = nullptr;  ///< As load_nodes.
-  float (*node_value)(const void* state, const glm::ivec3& node) = nullptr;
+  /// `last` is the reader's to remember something by.
+  float (*node_value)(const void* state, const glm::ivec3& node, const void*& last) = nullptr;
+  mutable const void* last = nullptr;  ///< Of one thread.
 
   void load(const glm::ivec3& origin, NodeValues& values) const { load_brick(state, origin, values); }
-  float value(const glm::ivec3& node) const { return node_value(state, node); }
+  float value(const glm::ivec3& node) const { return node_value(state, node, last); }
 };
 
 /// Of the blocks of cells from `origins` on those that the surface crosses, in parallel.

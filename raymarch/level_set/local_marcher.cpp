@@ -11,6 +11,7 @@
 #include "raymarch/scene/curvature.h"
 #include "sdf/error.h"
 #include "sdf/level_set_data.h"
+#include "sdf/shape.h"
 
 namespace limn {
 namespace {
@@ -158,7 +159,7 @@ std::shared_ptr<const RayBricks> ray_bricks(const LevelNodes& nodes, const Local
   bricks->half_width_voxels = half_width_voxels;
   bricks->world_from_index = {glm::dmat3(bricks->voxel_size), choice.origin};
   if (spline) {
-    const LevelSet grid = level_set_of(nodes, choice, level, half_width_voxels);
+    const LevelSet grid = level_set_of(nodes, choice, level, half_width_voxels, "surface");
     origins.clear();
     for (const SurfaceBound& bound : bricks->groups.front().bounds) origins.emplace_back(bound.origin[0], bound.origin[1], bound.origin[2]);
     bricks->spline = make_spline_bricks(grid.data(), origins);
@@ -231,12 +232,16 @@ Surface local_level_set(const Field& field, const LocalBrickSettings& settings, 
   return surface;
 }
 
-std::vector<LevelSet> local_level_set_grids(const Field& field, const LocalBrickSettings& settings, double half_width_voxels) {
-  const LocalChoice choice = choose_bricks(field, with_hidden(field, settings, half_width_voxels));
+std::vector<LevelSet> local_level_set_grids(const Field& field, const LocalBrickSettings& settings, double half_width_voxels,
+                                            const std::string& name, const glm::dvec3& render_origin) {
+  LocalChoice choice = choose_bricks(field, with_hidden(field, settings, half_width_voxels));
   const std::vector<LevelNodes> levels = sample_bricks(choice, *settings.gradient, half_width_voxels);
+  choice.origin += render_origin;
+  const Field in_world = translate(field, render_origin);
   std::vector<LevelSet> grids;
   for (size_t level = 0; level < levels.size(); ++level)
-    if (!levels[level].blocks.empty()) grids.push_back(level_set_of(levels[level], choice, level, half_width_voxels));
+    if (!levels[level].blocks.empty())
+      grids.push_back(level_set_of(levels[level], choice, level, half_width_voxels, name + "_" + std::to_string(level), &in_world));
   return grids;
 }
 

@@ -1,7 +1,5 @@
 #include "raymarch/level_set/local_nodes.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -91,38 +89,56 @@ void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil
 struct Larger {
   const LevelNodes* nodes = nullptr;
   std::unordered_set<std::uint64_t> bricks{};
+};
 
-  /// True where the node (of the smaller voxels) lies in one of them or on its faces.
+/// The larger bricks that nodes of a block (of the smaller voxels) may lie on: [k] the one before along the axes of bit k.
+class LargerBeside {
+ public:
+  LargerBeside(const Larger& larger, const glm::ivec3& origin) : larger_(larger) {
+    for (int k = 0; k < 8; ++k) {
+      glm::ivec3 brick(origin.x >> 4, origin.y >> 4, origin.z >> 4);
+      bool reached = true;
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((k >> axis & 1) == 0) continue;
+        // A node on a face between two belongs to both.
+        reached = reached && (origin[axis] & 15) == 0;
+        --brick[axis];
+      }
+      there_[k] = reached && larger.bricks.contains(key_of(8 * brick));
+      any_ = any_ || there_[k];
+    }
+  }
+
+  bool any() const { return any_; }
+  /// True where the node lies in one of them or on its faces.
   bool holds(const glm::ivec3& node) const {
     for (int k = 0; k < 8; ++k) {
-      const glm::ivec3 side(k & 1, k >> 1 & 1, k >> 2);
-      glm::ivec3 brick;
+      if (!there_[k]) continue;
       bool touches = true;
-      for (int axis = 0; axis < 3; ++axis) {
-        // A node on a face between two belongs to both.
-        touches = touches && (side[axis] == 0 || (node[axis] & 15) == 0);
-        brick[axis] = (node[axis] >> 4) - side[axis];
-      }
-      if (touches && bricks.contains(key_of(8 * brick))) return true;
+      for (int axis = 0; axis < 3; ++axis) touches = touches && ((k >> axis & 1) == 0 || (node[axis] & 15) == 0);
+      if (touches) return true;
     }
     return false;
   }
 
-  double interpolated(const glm::ivec3& node) const {
+  double interpolated(const glm::ivec3& node) {
     double sum = 0.0;
     for (int k = 0; k < 8; ++k) {
       const glm::ivec3 side(k & 1, k >> 1 & 1, k >> 2);
       double weight = 1.0;
       for (int axis = 0; axis < 3; ++axis) weight *= (node[axis] & 1) != 0 ? 0.5 : side[axis] == 0 ? 1.0 : 0.0;
       if (weight == 0.0) continue;
-      const glm::ivec3 at(node.x >> 1, node.y >> 1, node.z >> 1);
-      sum += weight * static_cast<double>(nodes->value(at + side));
+      const glm::ivec3 at = glm::ivec3(node.x >> 1, node.y >> 1, node.z >> 1) + side;
+      sum += weight * static_cast<double>(larger_.nodes->find(block_of(at), last_)->values[place_in_block(at)]);
     }
     return sum;
   }
-};
 
-bool on_any_face(const glm::ivec3& node) { return (node.x & 15) == 0 || (node.y & 15) == 0 || (node.z & 15) == 0; }
+ private:
+  const Larger& larger_;
+  bool there_[8] = {}, any_ = false;
+  const NodeBlock* last_ = nullptr;
+};
 
 void evaluate(DistanceEvaluator& distance, NodeBlock& block, const LocalChoice& choice, double h, double half_width, float steps_per_unit,
               const Larger* larger) {
@@ -139,17 +155,26 @@ void evaluate(DistanceEvaluator& distance, NodeBlock& block, const LocalChoice& 
     }
   if (count == 0) return;
   signed_distances(distance, std::span(points).first(count), half_width, std::span(distances).first(count));
+  std::optional<LargerBeside> beside;
+  if (larger) beside.emplace(*larger, block.origin);
+  if (beside && !beside->any()) beside.reset();
   for (size_t k = 0; k < count; ++k) {
     const size_t n = places[k];
     const glm::ivec3 node = block.origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7);
     double value = std::clamp(distances[k], -half_width, half_width);
-    if (larger && on_any_face(node) && larger->holds(node)) value = larger->interpolated(node);
+    if (beside && beside->holds(node)) value = beside->interpolated(node);
     block.values[n] = static_cast<float>(quantised(static_cast<float>(value), steps_per_unit)) / steps_per_unit;
   }
   for (size_t word = 0; word < 8; ++word) block.known[word] |= block.wanted[word];
 }
 
 }  // namespace
+
+const NodeBlock* LevelNodes::find(const glm::ivec3& origin, const NodeBlock*& last) const {
+  if (last && last->origin == origin) return last;
+  const auto found = at.find(key_of(origin));
+  return last = found == at.end() ? nullptr : &blocks[found->second];
+}
 
 float LevelNodes::value(const glm::ivec3& node) const { return blocks[at.at(key_of(block_of(node)))].values[place_in_block(node)]; }
 
@@ -164,12 +189,13 @@ NodeReader LevelNodes::reader() const {
   return {
       this,
       [](const void* of, const glm::ivec3& origin, NodeValues& values) { load_brick(*static_cast<const LevelNodes*>(of), origin, values); },
-      [](const void* of, const glm::ivec3& node) {
-        const LevelNodes& nodes = *static_cast<const LevelNodes*>(of);
-        const auto found = nodes.at.find(key_of(block_of(node)));
+      [](const void* of, const glm::ivec3& node, const void*& last) {
+        const auto* block = static_cast<const NodeBlock*>(last);
+        static_cast<const LevelNodes*>(of)->find(block_of(node), block);
+        last = block;
         const size_t n = place_in_block(node);
-        const bool known = found != nodes.at.end() && (nodes.blocks[found->second].known[n >> 6] >> (n & 63) & 1) != 0;
-        return known ? nodes.blocks[found->second].values[n] : std::numeric_limits<float>::max();
+        const bool known = block && (block->known[n >> 6] >> (n & 63) & 1) != 0;
+        return known ? block->values[n] : std::numeric_limits<float>::max();
       }};
 }
 
@@ -204,7 +230,8 @@ std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientD
   return levels;
 }
 
-LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels) {
+LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels, const std::string& name,
+                      const Field* signs) {
   std::vector<LevelSetBlock> blocks(nodes.blocks.size());
   parallel_for(size_t{0}, blocks.size(), [&](size_t i) {
     blocks[i].origin = nodes.blocks[i].origin;
@@ -215,9 +242,11 @@ LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t
   });
   const double h = choice.voxel_of(level);
   auto data = std::make_shared<LevelSetData>();
-  data->handle = nano_grid(blocks, static_cast<float>(half_width_voxels * h));
+  std::function<bool(const glm::dvec3&)> inside;
+  if (signs) inside = [&](const glm::dvec3& place) { return FieldEvaluator(*signs).value(choice.origin + h * place) < 0.0; };
+  data->handle = nano_grid(blocks, static_cast<float>(half_width_voxels * h), inside);
   data->grid = data->handle.grid<float>();
-  data->info.name = fmt::format("surface_{}", level);
+  data->info.name = name;
   data->info.world_from_index = {glm::dmat3(h), choice.origin};
   data->info.voxel_size = h;
   data->info.half_width_voxels = half_width_voxels;

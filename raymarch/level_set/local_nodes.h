@@ -28,6 +28,8 @@ struct LevelNodes {
 
   /// Of a node that is known.
   float value(const glm::ivec3& node) const;
+  /// Null where there is none. `last`: the block found before, or null; becomes the one that is found.
+  const NodeBlock* find(const glm::ivec3& origin, const NodeBlock*& last) const;
   std::int64_t known() const;
   NodeReader reader() const;  ///< Valid as long as the nodes are. Nodes that are not known are far outside.
 };
@@ -37,7 +39,9 @@ struct LevelNodes {
 /// sides are the same function, so that the surface has no crack.
 std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient, double half_width_voxels);
 
-/// The level's nodes as an ordinary level set.
-LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels);
+/// The level's nodes as an ordinary level set. `signs`, where given, is the field (of the choice's space): it tells on which side lies what
+/// is not known.
+LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels, const std::string& name,
+                      const Field* signs = nullptr);
 
 }  // namespace limn

@@ -9,6 +9,10 @@ namespace limn {
 SceneModel build_local_level_sets(const Scene& scene, const SurfaceSettings& settings, const glm::dvec3& render_origin,
                                   const LocalSettings& local);
 
+/// As the function of that name.
+std::vector<LevelSet> local_level_sets(const Scene& scene, const SurfaceSettings& settings, const glm::dvec3& render_origin,
+                                       const LocalSettings& local);
+
 /// Empty where the object has a local level set, else why not.
 std::string why_no_local_level_set(const SceneObject& object);
 

@@ -97,9 +97,22 @@ std::string why_not_local(const SceneObject& object, const SurfaceSettings& sett
   return "it has one resolution only: no field and no subdivision cage";
 }
 
+namespace {
+
+glm::dvec3 render_origin_of(const Scene& scene) {
+  const Box box = bounds(scene);
+  return box.empty() ? glm::dvec3(0.0) : box.center();
+}
+
+}  // namespace
+
+std::vector<LevelSet> local_level_sets(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local) {
+  const glm::dvec3 render_origin = render_origin_of(scene);
+  return local_level_sets(scene, settings, render_origin, in_render_space(local, render_origin));
+}
+
 SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local) {
-  glm::dvec3 render_origin(0.0);
-  if (const Box box = bounds(scene); !box.empty()) render_origin = box.center();
+  const glm::dvec3 render_origin = render_origin_of(scene);
   const LocalSettings in_render = in_render_space(local, render_origin);
   if (settings.kind == "level_set") return build_local_level_sets(scene, settings, render_origin, in_render);
   SurfaceSettings own = settings;

@@ -82,6 +82,8 @@ std::optional<LocalSettings> local_of(const Options& options, const SceneInput& 
   if (options.refined) throw InputError({"", "local", "", "has no effect on refined positions; leave out one of them", ""});
   const std::string kind = ending_of(file) == ".vdb" ? "level_set" : settings.kind.empty() ? "mesh" : settings.kind;
   refuse_local_without_effect(options.spec, input.scene, settings, {kind});
+  if (kind == "level_set" && ending_of(file) != ".vdb")
+    throw InputError({"", "local", "", "a local level set is no mesh", "a .vdb file, one grid a voxel size; or surface = mesh"});
   refuse_eye_of_views(camera, options.spec.views);
   std::vector<Camera> cameras;
   cameras.reserve(static_cast<size_t>(options.spec.views));
@@ -168,13 +170,15 @@ int run(const Options& options) {
   SurfaceSettings expected = settings;
   if (settings.kind.empty()) expected.kind = is_volume ? "level_set" : "mesh";
   refuse_without_effect(options.spec.surface, input, use_of(input.scene, expected, is_volume));
-  check_cost(options, input.scene, expected, {.library_bytes = is_volume ? kVolumeLibraryBytes : 0.0});
+  // A local level set says itself when it needs too much: what it takes is not known before.
+  if (!(local && is_volume)) check_cost(options, input.scene, expected, {.library_bytes = is_volume ? kVolumeLibraryBytes : 0.0});
   std::vector<std::string> warnings = warn_of_input(options, input.scene, expected, {});
   WorldNotes said;
   Json document;
   std::string text;
   if (is_volume) {
-    const std::vector<LevelSet> level_sets = world_level_sets(input.scene, settings, said);
+    const std::vector<LevelSet> level_sets =
+        local ? local_level_sets(input.scene, settings, *local) : world_level_sets(input.scene, settings, said);
     write_level_sets(level_sets, file);
     document = level_sets_json(level_sets);
     text = level_sets_text(level_sets);

@@ -363,9 +363,12 @@ int run(const Options& given) {
   if (options.local.tolerance_px)
     render.local = local_settings(*options.local.tolerance_px, options.plan.silhouette, render.picture.methods, cameras);
 
-  check_cost(options, render.input.scene, render.surface,
-             picture_load(cameras.front(), render.picture, pictures_of(options),
-                          std::any_of(render.outputs.begin(), render.outputs.end(), has_layers)));
+  // A local level set says itself when it needs too much: what it takes is not known before.
+  const bool is_local_volume = render.local && render.surface.kind == "level_set";
+  if (!is_local_volume)
+    check_cost(options, render.input.scene, render.surface,
+               picture_load(cameras.front(), render.picture, pictures_of(options),
+                            std::any_of(render.outputs.begin(), render.outputs.end(), has_layers)));
   render.warnings = warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods)});
 
   // While the surface is built.

@@ -13,9 +13,10 @@
 namespace limn::test {
 
 struct LocalRays {
-  std::int64_t rays = 0;     ///< Cast at both models.
-  std::int64_t hits = 0;     ///< Of the fine one.
-  std::int64_t edge = 0;     ///< Where the two differ, at an edge of what is seen: some ray near by misses the fine one, or sees it jump.
+  std::int64_t rays = 0;  ///< Cast at both models.
+  std::int64_t hits = 0;  ///< Of the fine one.
+  /// Where the two differ, at an edge of what is seen: some ray near by misses the fine one, grazes it, or sees it jump.
+  std::int64_t edge = 0;
   std::int64_t through = 0;  ///< Elsewhere: where the local one is missed, or hit farther off the fine one than its bound.
 };
 
@@ -43,8 +44,11 @@ inline double off_surface(const PointSample& sample, const SceneModel& model, do
   return off;
 }
 
+/// Of N.V: where the surface is seen flatter, a ray may pass beside a part of it that stands off by the bound.
+inline constexpr float kGrazing = 0.2f;
+
 /// Rays through `points` of the picture of `camera`. `bound`: how far the local model may stand off, world units; a ray is at an edge where
-/// one of eight at `around_px` misses the fine model, or sees it jump.
+/// it or one of eight at `around_px` misses the fine model, grazes it, or sees it jump.
 inline void cast_at_both(const SceneModel& local, const SceneModel& fine, const Camera& camera, const std::vector<glm::dvec2>& points,
                          double bound, double around_px, LocalRays& count) {
   const std::vector<PointSample> of_local = seen_at(local, camera, points), of_fine = seen_at(fine, camera, points);
@@ -63,9 +67,15 @@ inline void cast_at_both(const SceneModel& local, const SceneModel& fine, const 
   const std::vector<PointSample> fine_around = seen_at(fine, camera, around);
   for (size_t d = 0; d < differs.size(); ++d) {
     const PointSample &here = of_fine[differs[d]], &met = of_local[differs[d]];
-    bool surrounded = hit(here);
-    for (size_t k = 8 * d; surrounded && k < 8 * d + 8; ++k) surrounded = hit(fine_around[k]) && apart(fine_around[k], here) <= 2.0 * bound;
-    const bool through = surrounded && (!hit(met) || off_surface(met, fine, 4.0 * bound) > bound);
+    const auto faces_camera = [](const PointSample& sample) { return std::abs(sample.n_dot_v) > kGrazing; };
+    bool surrounded = hit(here) && faces_camera(here);
+    for (size_t k = 8 * d; surrounded && k < 8 * d + 8; ++k)
+      surrounded = hit(fine_around[k]) && faces_camera(fine_around[k]) && apart(fine_around[k], here) <= 2.0 * bound;
+    const auto strays = [&] {
+      return !hit(met) || glm::distance(met.position, here.position) > 4.0 * bound / kGrazing ||
+             off_surface(met, fine, 4.0 * bound) > bound;
+    };
+    const bool through = surrounded && strays();
     ++(through ? count.through : count.edge);
   }
 }

@@ -15,6 +15,9 @@ namespace {
 
 /// No border asks for more halvings of an edge.
 constexpr int kMostPasses = 32;
+/// How often a facet that is folded across a crease is split in the hope that a middle comes to lie on it: each time what is wrong becomes
+/// half as wide, and twice as many.
+constexpr int kMostFoldedSplits = 4;
 
 std::uint64_t key_of(std::uint32_t a, std::uint32_t b) { return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b); }
 
@@ -131,8 +134,9 @@ class Splitter {
   void keep(const LocalTriangle& triangle) { out_.push_back(triangle), is_new_.push_back(0); }
   void split(const LocalTriangle& triangle, unsigned edges) {
     const TriangleSample sample = sample_of(mesh_, middles_, triangle);
+    const int folded = triangle.folded + (is_folded(sample.corners, sample.corner_normals) ? 1 : 0);
     for (const Piece& piece : pieces_of(edges, sample)) {
-      LocalTriangle child{{}, {}, {}, triangle.patch, triangle.face};
+      LocalTriangle child{{}, {}, {}, triangle.patch, triangle.face, folded};
       for (size_t k = 0; k < 3; ++k) set_corner(triangle, sample, piece.corners[k], k, child);
       out_.push_back(child), is_new_.push_back(1);
     }
@@ -211,7 +215,7 @@ bool refine_once(LocalTriangles& mesh, Middles& middles, std::vector<char>& is_n
     if (!is_new[t]) return;
     TriangleSample sample = sample_of(mesh, middles, mesh.triangles[t]);
     sample.coarse_px = source.coarse_px;
-    sample.stays = source.has_folds && is_folded(sample.corners, sample.corner_normals);
+    sample.stays = source.has_folds && mesh.triangles[t].folded >= kMostFoldedSplits && is_folded(sample.corners, sample.corner_normals);
     asked[t] = edges_to_split(sample, views, settings, only_coarse);
   });
   std::unordered_map<std::uint64_t, char> split;

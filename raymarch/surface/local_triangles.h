@@ -19,6 +19,7 @@ struct LocalTriangle {
   std::array<glm::dvec2, 3> uv{};       ///< Of the corners, in the patch.
   std::int32_t patch = -1;              ///< Of a limit surface.
   std::int32_t face = 0;                ///< Of the mesh that was refined.
+  int folded = 0;                       ///< How many of the facets that it is a part of were folded.
 };
 
 /// Triangles of an oriented surface: no edge is passed twice in the same direction.
@@ -69,7 +70,7 @@ struct LocalSource {
   std::function<void(std::span<const CreaseCorner> corners, std::span<glm::dvec3> normals)> crease_normals{};
   /// No chord's middle stands farther off, seen from any of the views, px. Three fourths of kLocalCoarse_px at most.
   double coarse_px = 0.5;
-  bool has_folds = false;  ///< Edges do not follow all creases: facets that are folded across one stay as they are.
+  bool has_folds = false;  ///< Edges do not follow all creases: facets that are folded across one are split a few times only.
 };
 
 }  // namespace limn

@@ -17,6 +17,7 @@
 #include "tests/bench/growth_suite.h"
 #include "tests/bench/image_methods.h"
 #include "tests/bench/lines_suite.h"
+#include "tests/bench/local_proof.h"
 #include "tests/bench/local_suite.h"
 #include "tests/bench/march_suite.h"
 #include "tests/bench/plan_suite.h"
@@ -32,6 +33,8 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
           images    image methods beside OpenCV
           plan      what a plan saves (minutes)
           local     local meshes beside meshes as fine everywhere (minutes)
+          local-proof   rays through local meshes, and flips along a path (minutes)
+          local-calls   whole calls of limn render --tolerance with and without local meshes (minutes)
           lines     view graphs from 26 sides: time and conflicts (minutes)
           growth    whole calls of limn on larger and larger files, beside assimp's reading of them (minutes)
           calls     whole calls of limn beside those of other programs, and their stages
@@ -41,7 +44,8 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
   --voxels N        along the longest side; may be repeated
   --runs N          interleaved runs of which the median counts (7)
   --width PX        of pictures 16:9 (1920)
-  --scene NAME, --views N   of the plan and local suites (--scene of lines, too); --view I: only this one of the views, from 0
+  --scene NAME, --views N   of the plan and local suites (--scene of local-... and lines, too); --view I: only this one of the views, from 0
+  --local           of the plan suite: local meshes are tried, too
   --tolerance PX    of the local suite; may be repeated (1 0.5 0.25 0.1)
   --oracle          of the lines suite: rays of another model say whether points of every line are seen; --voxels N: lines of level sets
   --level N         of the growth suite, how often its cage is refined; may be repeated (4 5 6 7)
@@ -62,11 +66,12 @@ struct Settings {
   int views = 4;
   std::optional<int> only_view{};
   std::string output{};
-  bool json = false, oracle = false;
+  bool json = false, oracle = false, local = false;
   std::vector<std::string> against{};  ///< Two lists of files.
   double limit = 1.1;
   bool runs_suite(const std::string& name) const {
-    return suite == name || (suite == "all" && name != "plan" && name != "local" && name != "growth" && name != "lines" && name != "calls");
+    constexpr std::string_view kQuick[] = {"march", "fields", "convert", "images"};
+    return suite == name || (suite == "all" && std::find(std::begin(kQuick), std::end(kQuick), name) != std::end(kQuick));
   }
   /// With --json the document alone goes to stdout.
   std::FILE* table() const { return json ? stderr : stdout; }
@@ -116,12 +121,16 @@ Settings parse(int argc, char** argv) {
       settings.program = value(flag);
     } else if (flag == "--suite") {
       settings.suite = value(flag);
-      const std::vector<std::string> known{"march", "fields", "convert", "images", "plan", "local", "lines", "growth", "calls", "all"};
+      const std::vector<std::string> known{"march",       "fields",      "convert", "images", "plan",  "local",
+                                           "local-proof", "local-calls", "lines",   "growth", "calls", "all"};
       if (std::find(known.begin(), known.end(), settings.suite) == known.end())
-        refuse(flag, settings.suite, "unknown suite", "march, fields, convert, images, plan, local, lines, growth, calls or all");
+        refuse(flag, settings.suite, "unknown suite",
+               "march, fields, convert, images, plan, local, local-proof, local-calls, lines, growth, calls or all");
     } else if (flag == "--width") {
       settings.width_px = std::min(whole(flag, 16), 16384);
       settings.height_px = std::max(1, settings.width_px * 9 / 16);
+    } else if (flag == "--local") {
+      settings.local = true;
     } else if (flag == "--oracle") {
       settings.oracle = true;
     } else if (flag == "--json") {
@@ -179,7 +188,14 @@ nlohmann::json rows_of(const Settings& settings) {
                          .table = settings.table()}));
   if (settings.runs_suite("calls")) append(bench_calls({.runs = settings.runs, .program = settings.program, .table = settings.table()}));
   if (settings.runs_suite("plan"))
-    append(bench_plan({.scenes = settings.scenes, .views = settings.views, .only_view = settings.only_view, .table = settings.table()}));
+    append(bench_plan({.scenes = settings.scenes,
+                       .views = settings.views,
+                       .only_view = settings.only_view,
+                       .local = settings.local,
+                       .table = settings.table()}));
+  const LocalProofSettings proof{settings.scenes, settings.runs, settings.program, settings.table()};
+  if (settings.runs_suite("local-proof")) append(bench_local_proof(proof));
+  if (settings.runs_suite("local-calls")) append(bench_local_calls(proof));
   if (settings.runs_suite("local")) {
     LocalBenchSettings local{
         .scenes = settings.scenes, .views = settings.views, .only_view = settings.only_view, .table = settings.table()};

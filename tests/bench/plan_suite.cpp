@@ -18,12 +18,13 @@ constexpr double kTolerances_px[] = {1.0, 0.5, 0.25};
 constexpr double kShare = 0.05;  // of the border that may lie beyond the tolerance
 
 struct Sums {
-  int plans = 0, chosen = 0, meets = 0, with_coarser = 0, coarser_fails = 0, quarter = 0;
+  int plans = 0, chosen = 0, meets = 0, with_coarser = 0, coarser_fails = 0, quarter = 0, local = 0;
   double time_ms = 0.0, finest_time_ms = 0.0, bytes = 0.0, finest_bytes = 0.0;
   std::string example{};
   void add(const Sums& other) {
     plans += other.plans, chosen += other.chosen, meets += other.meets, with_coarser += other.with_coarser;
-    coarser_fails += other.coarser_fails, quarter += other.quarter, time_ms += other.time_ms, finest_time_ms += other.finest_time_ms;
+    coarser_fails += other.coarser_fails, quarter += other.quarter, local += other.local, time_ms += other.time_ms,
+        finest_time_ms += other.finest_time_ms;
     bytes += other.bytes, finest_bytes += other.finest_bytes;
   }
 };
@@ -36,6 +37,7 @@ struct Built {
 SceneModel build(const Scene& scene, const Ladder& ladder, size_t rung) {
   Scene bare = scene;
   for (SceneObject& object : bare.objects) object.level.reset();
+  if (const auto local = ladder.local_at(rung)) return build_local_model(bare, ladder.at(rung), *local);
   return build_model(bare, ladder.at(rung));
 }
 
@@ -64,8 +66,9 @@ struct Case {
   std::vector<PlanTrial>& known;         ///< Of the other tolerances.
 };
 
-nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
+nlohmann::json run_plan(const Case& at, double tolerance_px, bool local, Sums& sums) {
   PlanSettings settings;
+  settings.local = local;
   settings.tolerance_px = tolerance_px;
   ProgressBar bar(false);
   const PlanAnswer answer = make_plan(at.scene, {at.view}, settings, {}, bar, at.known);
@@ -88,6 +91,7 @@ nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
   std::optional<double> coarser;
   if (chosen.rung > 0) coarser = beyond(build(at.scene, ladder, chosen.rung - 1));
   ++sums.chosen;
+  sums.local += ladder.local.has_value();
   sums.meets += share <= kShare;
   sums.with_coarser += coarser.has_value();
   sums.coarser_fails += coarser.value_or(0.0) > kShare;
@@ -103,6 +107,7 @@ nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
   row["coarser_share_beyond"] = coarser ? nlohmann::json(*coarser) : nlohmann::json(nullptr);
   row["time_ms"] = chosen.time_ms(), row["bytes"] = chosen.bytes;
   row["finest_time_ms"] = finest->second.time_ms, row["finest_bytes"] = finest->second.bytes;
+  row["local"] = ladder.local.has_value();
   row["trials"] = answer.trials.size();
   row["notes"] = answer.notes;
   return row;
@@ -110,8 +115,8 @@ nlohmann::json run_plan(const Case& at, double tolerance_px, Sums& sums) {
 
 std::string line(const std::string& name, const Sums& sums) {
   const double n = std::max(1, sums.chosen);
-  return fmt::format("| {} | {}/{} | {}/{} | {}/{} | {} | {} | {:.0f}x | {} | {} | {:.0f}x |\n", name, sums.meets, sums.plans,
-                     sums.coarser_fails, sums.with_coarser, sums.quarter, sums.chosen, time_text(sums.time_ms / n),
+  return fmt::format("| {} | {}/{} | {}/{} | {}/{} | {}/{} | {} | {} | {:.0f}x | {} | {} | {:.0f}x |\n", name, sums.local, sums.chosen,
+                     sums.meets, sums.plans, sums.coarser_fails, sums.with_coarser, sums.quarter, sums.chosen, time_text(sums.time_ms / n),
                      time_text(sums.finest_time_ms / n), sums.finest_time_ms / std::max(sums.time_ms, 1e-9), bytes_text(sums.bytes / n),
                      bytes_text(sums.finest_bytes / n), sums.finest_bytes / std::max(sums.bytes, 1.0));
 }
@@ -132,7 +137,7 @@ Sums run_scene(const SceneDescriptor& descriptor, const PlanBenchSettings& setti
     const TruthProxy reference = make_proxy(scene, view.camera, std::int64_t{4} << 30, 1.0);
     std::vector<PlanTrial> known;
     for (const double tolerance_px : kTolerances_px) {
-      rows.push_back(run_plan({scene, view, reference.model, index, finest, known}, tolerance_px, sums));
+      rows.push_back(run_plan({scene, view, reference.model, index, finest, known}, tolerance_px, settings.local, sums));
       fmt::print(stderr, "{}\n", rows.back().dump());
     }
   }
@@ -143,10 +148,10 @@ Sums run_scene(const SceneDescriptor& descriptor, const PlanBenchSettings& setti
 
 nlohmann::json bench_plan(const PlanBenchSettings& settings) {
   nlohmann::json rows = nlohmann::json::array();
-  fmt::print(
-      settings.table,
-      "| scene | meets the tolerance | next coarser fails | at most a quarter of the finest's time | time | finest | saved | memory | "
-      "finest | saved |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  fmt::print(settings.table,
+             "| scene | local | meets the tolerance | next coarser fails | at most a quarter of the finest's time | time | finest | saved "
+             "| memory | "
+             "finest | saved |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   Sums all;
   for (const SceneDescriptor& scene : scenes()) {
     const auto wanted = [&] {

@@ -13,6 +13,7 @@ struct PlanBenchSettings {
   std::vector<std::string> scenes{};  ///< Empty: all.
   int views = 4;
   std::optional<int> only_view{};  ///< Of these, from 0.
+  bool local = false;              ///< Local meshes are tried, too.
   int width_px = 640, height_px = 360;
   std::FILE* table = stdout;
 };

@@ -11,6 +11,7 @@
 #include "samples/experiment/job.h"
 #include "samples/scenes/scenes.h"
 #include "subdiv/import.h"
+#include "tests/local_check.h"
 #include "tests/plan_check.h"
 #include "tests/random_seed.h"
 #include "tests/samples/run_program.h"
@@ -145,6 +146,66 @@ TEST(LocalModel, AnExportedCageIsWatertightAndReadsBackWithTheSameBorder) {
   view.truth = solve_truth(scene, camera, {}, {});
   double trace_ms = 0.0;
   EXPECT_LE(measure_errors(model, view, 0.4, {}, trace_ms).border_px, 0.25);
+}
+
+/// Every pixel of 8 views and 20,000 random rays.
+LocalRays rays_at(const Scene& scene, const SceneModel& local, const SceneModel& fine, const Camera& made_for, std::mt19937& random) {
+  const double bound = bound_of(scene, made_for);
+  LocalRays count;
+  for (int view = 0; view < 8; ++view) {
+    const Camera camera = camera_of(scene, view, 8, {150, 150});
+    std::uniform_real_distribution<double> at(0.0, 150.0);
+    std::vector<glm::dvec2> points;
+    for (int k = 0; k < 2500; ++k) points.emplace_back(at(random), at(random));
+    for (int y = 0; y < 150; ++y)
+      for (int x = 0; x < 150; ++x) points.emplace_back(x + 0.5, y + 0.5);
+    cast_at_both(local, fine, camera, points, bound, around_of(scene, camera, bound), count);
+  }
+  return count;
+}
+
+TEST(LocalModel, NoRayPassesThroughIt) {
+  std::mt19937 random(random_seed());
+  for (const char* name : {"ellipsoid", "tilted_torus", "superellipsoid"}) {
+    const Scene scene = find_scene(name)->make();
+    const SceneModel fine = build_model(scene, {.kind = "mesh", .level = 5, .normals = NormalKind::limit});
+    const Camera camera = camera_of(scene, 0, 4, {150, 150});
+    const SceneModel local = build_local_model(scene, {}, {{camera}, 0.25, {0.4}});
+    const LocalRays count = rays_at(scene, local, fine, camera, random);
+    EXPECT_GT(count.hits, 10000) << name;
+    EXPECT_EQ(count.through, 0) << name;
+  }
+}
+
+TEST(LocalModel, WhereAFaceIsMissingRaysPassThrough) {
+  std::mt19937 random(random_seed());
+  const Scene scene = find_scene("ellipsoid")->make();
+  const SceneModel fine = build_model(scene, {.kind = "mesh", .level = 5, .normals = NormalKind::limit});
+  const Camera camera = camera_of(scene, 0, 4, {150, 150});
+  Mesh holed = build_local_model(scene, {}, {{camera}, 0.25, {0.4}}).surfaces.front().polygons->mesh();
+  holed.corner_vertices.resize(holed.corner_vertices.size() - 3 * holed.face_count() / 50 / 3 * 3);
+  holed.face_sizes.resize(holed.corner_vertices.size() / 3);
+  holed.corner_normals.clear();
+  Scene with_holes;
+  with_holes.objects.push_back({.name = "holes", .source = MeshSource{holed}});
+  EXPECT_GT(rays_at(scene, build_model(with_holes, {.kind = "mesh"}), fine, camera, random).through, 0);
+}
+
+TEST(LocalModel, AlongAPathItFlickersNoMoreThanTheUniformMeshOfTheTolerance) {
+  const TemporaryFolder folder;
+  const auto beyond = [&](const std::vector<std::string>& model) {
+    std::vector<std::string> call = {"render", "ellipsoid"};
+    call.insert(call.end(), model.begin(), model.end());
+    for (const char* text : {"--size", "300x300", "--frames", "24", "--path-step", "0.2", "--json", "-q", "-o"}) call.emplace_back(text);
+    call.push_back(folder.file("film.png"));
+    const RunResult run = run_limn(call);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.exit_code == 0 ? run.json().at("flicker").at("beyond").get<int>() : -1;
+  };
+  const int uniform = beyond({"--surface", "mesh", "--level", "2"}), local = beyond({"--local", "0.25"});
+  EXPECT_GT(uniform, 0);
+  EXPECT_GE(local, 0);
+  EXPECT_LE(local, uniform);
 }
 
 TEST(LocalModel, WhatHasNoEffectIsRefused) {

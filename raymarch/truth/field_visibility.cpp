@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "raymarch/analytic/clip_ray.h"
+#include "sdf/field_program.h"
 
 namespace limn {
 namespace {
@@ -13,6 +14,8 @@ constexpr double kLift = 1e-8;
 constexpr double kResolution = 1e-10;
 constexpr double kSphereStep = 0.02;  // of the extent: farther out a step |f| / L is cheaper than bounds
 constexpr int kMostSteps = 100'000;
+constexpr size_t kLargeProgram = 64;  // instructions, from which on a field is shortened for the segment that is left
+constexpr int kFewSteps = 3;          // that most rays end within
 
 /// f > 0 between two places where it is fa and fb, as its slope has bounds (Piyavskii 1972).
 bool positive_between(double fa, double fb, double length, const Interval& slope) {
@@ -55,15 +58,22 @@ bool FieldOccluders::blocked(const TracedPoint& point, std::optional<size_t> own
   return false;
 }
 
-bool FieldOccluders::blocks(FieldEvaluator& evaluator, const Occluder& occluder, const glm::dvec3& origin, const glm::dvec3& direction,
+bool FieldOccluders::blocks(FieldEvaluator& whole, const Occluder& occluder, const glm::dvec3& origin, const glm::dvec3& direction,
                             double end) const {
   double t = 0.0, t_end = end;
   if (occluder.clip.empty() || !clip_ray(occluder.clip, origin, direction, t, t_end)) return false;
-  const auto value_at = [&](double at) { return evaluator.value(origin + at * direction); };
+  std::optional<FieldEvaluator> shortened;
+  const auto evaluator = [&]() -> FieldEvaluator& { return shortened ? *shortened : whole; };
+  const auto value_at = [&](double at) { return evaluator().value(origin + at * direction); };
+  const bool large = occluder.field.program().instructions.size() >= kLargeProgram;
   double f = value_at(t);
   double length = 0.0;
   for (int step = 0; step < kMostSteps && t < t_end; ++step) {
     if (!(f > 0.0)) return true;
+    if (large && step == kFewSteps) {
+      const Box left = include(include(Box{}, origin + t * direction), origin + t_end * direction);
+      shortened.emplace(whole.restricted(dilate(left, kLift * extent_)));
+    }
     if (const double advance = f / occluder.lipschitz; advance > kSphereStep * extent_) {
       t += advance * (1.0 - 1e-12);
       if (t >= t_end) return false;
@@ -76,7 +86,7 @@ bool FieldOccluders::blocks(FieldEvaluator& evaluator, const Occluder& occluder,
     for (;;) {
       const double f_end = value_at(t + stretch);
       if (!(f_end > 0.0)) return true;
-      RayBounds bounds = evaluator.bounds_along(origin, direction, {t, t + stretch});
+      RayBounds bounds = evaluator().bounds_along(origin, direction, {t, t + stretch});
       bounds.slope.lower = std::max(bounds.slope.lower, -occluder.lipschitz);
       bounds.slope.upper = std::min(bounds.slope.upper, occluder.lipschitz);
       if (stretch <= kResolution * extent_ || bounds.value.lower > 0.0 || positive_between(f, f_end, stretch, bounds.slope)) {

@@ -29,7 +29,7 @@ class FieldOccluders {
     Box clip{};
     double lipschitz = 1.0;
   };
-  bool blocks(FieldEvaluator& evaluator, const Occluder& occluder, const glm::dvec3& origin, const glm::dvec3& direction, double end) const;
+  bool blocks(FieldEvaluator& whole, const Occluder& occluder, const glm::dvec3& origin, const glm::dvec3& direction, double end) const;
   std::vector<FieldEvaluator>& evaluators() const;
 
   std::vector<Occluder> occluders_;

@@ -16,7 +16,9 @@
 namespace limn {
 namespace {
 
-constexpr double kBulge_px = 0.05;  // a refined curve leaves its chords by less
+constexpr double kBulge_px = 0.05;   // a refined curve leaves its chords by less
+constexpr double kNear_px = 0.5;     // within which its points are looked for first,
+constexpr double kShortReach = 0.5;  // where that is less of a step
 
 TracedPoint traced_point(const CurvePoint& point, CurveKind kind, const Camera& camera, const Viewer& viewer) {
   TracedPoint q;
@@ -83,20 +85,32 @@ void add_traced(const FieldBodies& solved, const Camera& camera, const Viewer& v
   if (traced.points.size() > 1) curves.push_back(std::move(traced));
 }
 
-TracedPoint point_on_step(const FieldBodies& solved, const Camera& camera, const Viewer& viewer, double threshold, const TracedCurve& curve,
-                          size_t i, double t) {
-  const TracedPoint &a = curve.points[i], &b = curve.points[(i + 1) % curve.points.size()];
-  FieldEvaluator whole(solved.body_fields[solved.body_of[*place_of(solved, curve.object)]]);
-  const Box around = dilate(include(include(Box{}, a.p), b.p), kFanReach * glm::distance(a.p, b.p));
-  FieldEvaluator evaluator(whole.restricted(around));
-  const double c = curve.kind == CurveKind::silhouette ? 0.0 : threshold;
-  const glm::dvec3 chord_point = glm::mix(a.p, b.p, t);
-  auto found = point_between(evaluator, viewer, c, curve_point(a, {}), curve_point(b, {}), chord_point);
-  // The step was refined, so that its chord is as good; farther from it lies another curve: beside the tip of a wedge its other side.
+/// The curve's point beside a place on the chord of a refined step, found by a search of at most `reach` step lengths. The chord is as good
+/// where it finds another curve: beside the tip of a wedge its other side.
+std::optional<CurvePoint> beside_chord(FieldEvaluator& whole, const Camera& camera, const Viewer& viewer, double c, const TracedPoint& a,
+                                       const TracedPoint& b, const glm::dvec3& chord_point, double reach) {
+  Box around = include(Box{}, chord_point);
+  if (reach >= 1.0) around = include(include(around, a.p), b.p);
+  FieldEvaluator evaluator(whole.restricted(dilate(around, kFanReach * reach * glm::distance(a.p, b.p))));
+  auto found = point_between(evaluator, viewer, c, curve_point(a, {}), curve_point(b, {}), chord_point, reach);
   if (found && a.crease == b.crease) {
     const glm::dvec2 at(project(camera, found->p));
     if (found->crease != a.crease || distance_to_segment(at, a.px, b.px) > kBulge_px) found.reset();
   }
+  return found;
+}
+
+TracedPoint point_on_step(const FieldBodies& solved, const Camera& camera, const Viewer& viewer, double threshold, const TracedCurve& curve,
+                          size_t i, double t) {
+  const TracedPoint &a = curve.points[i], &b = curve.points[(i + 1) % curve.points.size()];
+  FieldEvaluator whole(solved.body_fields[solved.body_of[*place_of(solved, curve.object)]]);
+  const double c = curve.kind == CurveKind::silhouette ? 0.0 : threshold;
+  const glm::dvec3 chord_point = glm::mix(a.p, b.p, t);
+  // The curve leaves the chord by little: a small box, in which most of a large field is without influence, nearly always holds it.
+  const double near = kNear_px / pixels_per_unit_at(camera, glm::mix(a.depth, b.depth, t)), reach = near / glm::distance(a.p, b.p);
+  std::optional<CurvePoint> found;
+  if (a.crease == b.crease && reach < kShortReach) found = beside_chord(whole, camera, viewer, c, a, b, chord_point, reach);
+  if (!found) found = beside_chord(whole, camera, viewer, c, a, b, chord_point, 1.0);
   const TracedPoint& nearer = t < 0.5 ? a : b;
   CurvePoint point = found ? *found : curve_point(nearer, {});
   if (!found) point.p = chord_point;

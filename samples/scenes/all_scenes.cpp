@@ -14,7 +14,8 @@
   X(bracket)           \
   X(passing_tori)      \
   X(cylinder_end)      \
-  X(fused_spheres)
+  X(fused_spheres)     \
+  X(honeycomb)
 
 namespace limn {
 

@@ -47,6 +47,21 @@ SolidPart fused_spheres_part() {
   return part;
 }
 
+SolidPart honeycomb_part(double half_height) {
+  constexpr double kPitch = 0.098;   // between the middles of neighbouring cells
+  constexpr double kAcross = 0.041;  // from a cell's middle to its sides
+  SolidPart part{"honeycomb", {{Kind::box, {1.18, half_height, 0.36}}}};
+  // Seven rows of 23 cells, every other one moved by half a pitch.
+  const double step = kPitch * std::sqrt(3.0) / 2.0;
+  for (int row = 0; row < 7; ++row) {
+    for (int i = 0; i < 23; ++i) {
+      const glm::dvec3 center((i - 11 + (row % 2 == 0 ? 0.25 : -0.25)) * kPitch, 0.0, (row - 3) * step);
+      part.solids.push_back({Kind::hexagon, {kAcross, 2.0 * half_height, 0.0}, center, true});
+    }
+  }
+  return part;
+}
+
 Field field_of(const SolidPart& part) {
   std::vector<Field> joined, cut;
   for (const PartSolid& solid : part.solids) (solid.cut ? cut : joined).push_back(translate(field_of(solid), solid.center));

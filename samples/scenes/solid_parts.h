@@ -31,6 +31,9 @@ struct SolidPart {
 /// 36 spheres fused into one body: every seam and every contour is a circle.
 SolidPart fused_spheres_part();
 
+/// A plate with 161 hexagonal cells cut through it: straight edges by the thousand, most of them hidden. `half_height` is the plate's.
+SolidPart honeycomb_part(double half_height = 0.09);
+
 /// A hexagon that is cut is unbounded along y: it goes through the part.
 Field field_of(const SolidPart& part);
 

@@ -166,6 +166,12 @@ void bind_fields(py::module_& module) {
       .def_property_readonly(
           "bounds", [](const Field& field) { return array_of(field.traits().bounds); },
           "A box that holds the surface, world units: (2, 3), lower and upper corner.")
+      .def("__repr__",
+           [](const Field& field) {
+             const Box box = field.traits().bounds;
+             return fmt::format("<limn.Field from {:.3g}, {:.3g}, {:.3g} to {:.3g}, {:.3g}, {:.3g}>", box.lower.x, box.lower.y, box.lower.z,
+                                box.upper.x, box.upper.y, box.upper.z);
+           })
       .def_property_readonly(
           "lipschitz", [](const Field& field) { return field.traits().lipschitz; }, "No slope of the field is steeper than this.")
       .def_property_readonly(

@@ -235,6 +235,10 @@ py::array_t<double> values_at(const LevelSet& level_set, const py::object& point
 
 void bind_level_sets(py::module_& module) {
   py::class_<LevelSet>(module, "LevelSet", "A narrow band of distances on a grid. Never changes.")
+      .def("__repr__",
+           [](const LevelSet& self) {
+             return fmt::format("<limn.LevelSet: {} active voxels of {:.4g}>", self.info().active_voxels, self.info().voxel_size);
+           })
       .def_property_readonly(
           "name", [](const LevelSet& self) { return self.info().name; }, "Of the grid in its file.")
       .def_property_readonly(

@@ -1,5 +1,6 @@
 // Polygon meshes from and to arrays and files.
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -106,6 +107,10 @@ void bind_meshes(py::module_& module) {
            "sharpness (c,), 10 and above infinitely sharp, make it a subdivision cage. All arrays are copied.")
       .def_property_readonly(
           "bounds", [](const SharedMesh& mesh) { return array_of(bounds(*mesh)); }, "World units: (2, 3).")
+      .def("__repr__",
+           [](const SharedMesh& mesh) {
+             return fmt::format("<limn.Mesh: {} vertices, {} faces>", mesh->vertex_count(), mesh->face_count());
+           })
       .def_property_readonly(
           "warnings", [](const SharedMesh& mesh) { return mesh->warnings; }, "What the reader repaired or left out.")
       .def("refine", refined, py::arg("level"), py::arg("scheme") = "", py::arg("to_limit") = true,

@@ -61,6 +61,18 @@ TEST(OneLine, ASurfaceIsListedDrawnComparedAndSwept) {
   EXPECT_NE(read_bytes(folder.path() / "study" / "rows.csv").find("trial"), std::string::npos) << "not in the default sweep";
 }
 
+TEST(OneLine, ALookIsListedAndDrawn) {
+  const TemporaryFolder folder;
+  expect_listed("looks", "trial", {"render", "ellipsoid", "--look", "trail"}, folder);
+  done({"render", "ellipsoid", "--look", "trial", "--size", "32x24", "-o", "look.png"}, folder);
+  done({"render", "ellipsoid", "--size", "32x24", "--shading", "flat", "--method", "rim", "--set", "threshold=0.6", "--background", "0,0,1",
+        "-o", "parts.png"},
+       folder);
+  done({"render", "ellipsoid", "--size", "32x24", "-o", "plain.png"}, folder);
+  EXPECT_EQ(read_bytes(folder.path() / "look.png"), read_bytes(folder.path() / "parts.png"));
+  EXPECT_NE(read_bytes(folder.path() / "look.png"), read_bytes(folder.path() / "plain.png"));
+}
+
 TEST(OneLine, AMethodIsListedDrawnComparedAndSwept) {
   const TemporaryFolder folder;
   expect_listed("methods", "trial", {"render", "ellipsoid", "--method", "trail"}, folder);

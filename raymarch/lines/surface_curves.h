@@ -25,7 +25,7 @@ struct CurveSample {
   /// Unit: where a ray to the eye starts beside the surface, so that it meets what lies in front of the curve and not the curve's own
   /// surface. A contour that bends towards the eye has its own material there.
   glm::dvec3 lift{0.0};
-  double lift_share = 1.0;  ///< Of how far rays start off the surface: less beside a nearer line.
+  double lift_share = 1.0;                    ///< Of how far rays start off the surface: less beside a nearer line.
   LineClass line_class = LineClass::contour;  ///< Of the step.
   int object = 1;                             ///< Of the step; from 1.
   /// Of the step: how many more sheets of the surface lie on its left in the image than on its right, walking along: 2 and -2 on a fold, 1

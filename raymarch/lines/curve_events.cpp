@@ -18,6 +18,7 @@ constexpr double kOneCusp_px = 0.03;
 constexpr double kSwallowtail_px = 0.2;  // around one whose cusps are closer than that
 constexpr double kLongestNarrow_px = 20.0;
 constexpr double kShortestTail_px = 1.0;
+constexpr double kMostShared_px = 0.5;  // to which the crossing of its arms is known
 constexpr double kMostLensSteps = 400.0;
 constexpr double kLongestOwnLens_px = 0.05;
 // How thin a lens between two lines may be: those in closed form and those of smooth surfaces are followed more closely where they touch.
@@ -180,8 +181,8 @@ class EventFinder {
   void settle_narrow_swallowtails(std::vector<CurveEvent>& cusps) {
     for (size_t k = 0; k + 1 < cusps.size();) {
       if (cusps[k].layers == cusps[k + 1].layers && is_narrow(cusps[k].at, cusps[k + 1].at)) {
-        if (walk_.length_to(cusps[k + 1].at) - walk_.length_to(cusps[k].at) >= kShortestTail_px) {
-          events_.push_back(crossing_of_arms(cusps[k], cusps[k + 1]));
+        if (const auto crossing = crossing_of_arms(cusps[k], cusps[k + 1])) {
+          events_.push_back(*crossing);
           k += 2;
           continue;
         }
@@ -192,20 +193,27 @@ class EventFinder {
       }
     }
   }
-  /// In the middle of what the arm in front has in common with the one behind it, which is the deeper one.
-  CurveEvent crossing_of_arms(const CurveEvent& first, const CurveEvent& second) const {
-    const bool ahead_behind = *first.layers > 0;
+  /// One of the arms runs along the tail; the other one leaves it soon, and they cross in the middle of what they have in common. Nothing
+  /// where that is long, or the tail is short.
+  std::optional<CurveEvent> crossing_of_arms(const CurveEvent& first, const CurveEvent& second) const {
     const double length = walk_.length_to(second.at) - walk_.length_to(first.at);
-    const CurveEvent &front = ahead_behind ? first : second, &back = ahead_behind ? second : first;
-    const int front_way = ahead_behind ? -1 : 1;
-    const std::vector<glm::dvec2> behind = walk_.px_from(back.at, length, -front_way), before = walk_.px_from(front.at, length, front_way);
+    if (length < kShortestTail_px) return {};
+    const bool ahead_along =
+        lies_along(px_between(curve_, first.at, second.at, camera_), walk_.px_from(second.at, length, 1), curve_.apart_px);
+    const CurveEvent &leaves = ahead_along ? first : second, &goes_along = ahead_along ? second : first;
+    const int way = ahead_along ? -1 : 1;
+    const std::vector<glm::dvec2> along = walk_.px_from(goes_along.at, length, -way), leaving = walk_.px_from(leaves.at, length, way);
     size_t common = 1;
-    while (common < before.size() && lies_along({before[common]}, behind, curve_.apart_px)) ++common;
+    while (common < leaving.size() && lies_along({leaving[common]}, along, curve_.apart_px)) ++common;
     double half_px = 0.0;
-    for (size_t i = 1; i < common; ++i) half_px += 0.5 * glm::distance(before[i - 1], before[i]);
-    const double on_front = place_from(front.at, half_px, front_way);
-    const double at = place_beside(sample_at(curve_, on_front, camera_).px, back.at, length, -front_way);
-    return {VertexKind::crossing, at, -2 * *first.layers, number_, on_front};
+    for (size_t i = 1; i < common; ++i) half_px += 0.5 * glm::distance(leaving[i - 1], leaving[i]);
+    if (half_px > kMostShared_px) return {};
+    const double on_leaving = place_from(leaves.at, half_px, way),
+                 on_along = place_beside(sample_at(curve_, on_leaving, camera_).px, goes_along.at, length, -way);
+    // The deeper one lies behind.
+    const bool along_behind = (*first.layers > 0) == ahead_along;
+    return CurveEvent{VertexKind::crossing, along_behind ? on_along : on_leaving, -2 * *first.layers, number_,
+                      along_behind ? on_leaving : on_along};
   }
   double wrapped(double place) const {
     const auto steps = static_cast<double>(steps_of(curve_));

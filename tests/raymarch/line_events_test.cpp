@@ -93,6 +93,23 @@ TEST(LineEvents, TheContourOfAFlatFaceSeenEdgeOnKeepsItsCuspsAndCrossesItselfAtT
   }
 }
 
+TEST(LineEvents, TheSameContourWalkedBackwardsHasTheSameLayers) {
+  const Camera camera = flat_view();
+  SurfaceCurve curve = edge_on_face(camera, 5.0, 1e-5);
+  const double first = curve.samples[66].p.z, second = curve.samples[106].p.z;
+  std::reverse(curve.samples.begin(), curve.samples.end());
+  for (CurveSample& sample : curve.samples) sample.more_on_left = -2;
+  const LayersBefore rays = [&](const CurveSample& sample) {
+    const glm::dvec3& p = sample.p;
+    return LayersSeen{p.z > first ? 0 : p.z > second ? 1 : p.x > 0.0 ? 2 : 0};
+  };
+  const CutCurves cut = cut_by_invisibility({curve}, camera, 5.0, rays, {});
+  EXPECT_TRUE(cut.conflicts.empty());
+  std::vector<int> seen;
+  for (const CurvePiece& piece : cut.curves[0].pieces) seen.push_back(piece.invisibility);
+  EXPECT_EQ(seen, (std::vector<int>{0, 2, 1, 0}));
+}
+
 TEST(LineEvents, ARayThatAgreesWithNeitherSideDoesNotMoveAMissedChange) {
   const Camera camera = flat_view();
   SurfaceCurve curve;

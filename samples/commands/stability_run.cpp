@@ -23,6 +23,7 @@ void refuse_others(const Options& options) {
       {!sweep.normals.empty(), "--normals"},
       {!sweep.gradients.empty(), "--gradients"},
       {!sweep.thresholds.empty(), "--thresholds"},
+      {!sweep.local_px.empty(), "--local"},
       {sweep.views.has_value(), "--views"},
       {sweep.flicker, "--flicker"},
       {options.study.shards != 1, "--shard"},

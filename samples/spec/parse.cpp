@@ -137,6 +137,16 @@ std::vector<double> parse_thresholds(const std::string& field, const std::string
   return {all.begin(), all.end()};
 }
 
+std::vector<double> parse_tolerances(const std::string& field, const std::string& text) {
+  std::set<double> all;
+  for (const std::string& part : parse_names(text)) {
+    const double value = parse_number(field, part);
+    if (!(value > 0.0) || !std::isfinite(value)) fail(field, part, "out of range", "numbers of pixels above 0, such as 1,0.5,0.25");
+    all.insert(value);
+  }
+  return {all.begin(), all.end()};
+}
+
 std::int64_t parse_bytes(const std::string& field, const std::string& text) {
   const std::string expected = "a size such as 500M, 4G or 2000000";
   const std::string_view units = "kMGT";

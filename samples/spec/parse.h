@@ -35,6 +35,8 @@ std::vector<int> parse_integers(const std::string& text, const std::function<int
                                 const std::function<int(int)>& next);
 /// Numbers from 0 to 1, commas between them; rising, each once.
 std::vector<double> parse_thresholds(const std::string& field, const std::string& text);
+/// Numbers of pixels above 0, rising.
+std::vector<double> parse_tolerances(const std::string& field, const std::string& text);
 /// "500M", "4G", "1.5T", or bytes: decimal units.
 std::int64_t parse_bytes(const std::string& field, const std::string& text);
 /// "200ms", "90s", "10m", "2h"; above 0.

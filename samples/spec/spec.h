@@ -94,6 +94,7 @@ struct SweepSpec {
   std::vector<NormalKind> normals{};              ///< Of meshes.
   std::vector<std::string> gradients{};           ///< Of level sets.
   std::vector<double> thresholds{};               ///< Of every method that has one; rising.
+  std::vector<double> local_px{};                 ///< Tolerances of local meshes, px, above 0; rising. Empty: there are none.
   std::optional<int> views{};                     ///< Directions spread over the sphere; ExperimentSpec::views is not read.
   bool flicker = false;                           ///< Measures flicker, too: a moving camera (kFlickerPath).
   std::optional<std::int64_t> max_model_bytes{};  ///< Larger models are left out.

@@ -51,6 +51,9 @@ std::string call_text(const StudySpec& spec, const Axes& axes, const SurfaceSett
   for (const NormalKind kind : axes.normals) normals.emplace_back(name_of(kind));
   if (counts("normals")) call.add("normals", list_text(normals));
   if (counts("gradient")) call.add("gradients", list_text(axes.gradients));
+  std::vector<std::string> local;
+  for (const double px : spec.sweep.local_px) local.push_back(fmt::format("{}", px));
+  if (!local.empty()) call.add("local", list_text(local));
   for (const char* fixed : kFixedSettings) {
     const SurfaceSetting& setting = surface_setting(fixed);
     const std::string used = setting.use == nullptr ? setting.asked(spec.experiment.surface).value_or("") : setting.used(settings);

@@ -127,7 +127,14 @@ void name_cells(Study& study) {
                                          study.truth_reference == TruthReference::given ? "files as they are" : "the surface meant");
   std::vector<std::string> cameras, models, methods;
   for (const Camera& camera : study.cameras) cameras.push_back(camera_text(camera));
-  for (const StudyModel& model : study.models) models.push_back(surface_text(model.settings));
+  for (const StudyModel& model : study.models) {
+    models.push_back(surface_text(model.settings));
+    if (!model.local_px) continue;
+    models.back() += fmt::format(" local {} px for", *model.local_px);
+    for (const std::string& camera : cameras) models.back() += " " + camera;
+    for (const StudyMethod& method : study.methods)
+      if (method.truth_threshold) models.back() += fmt::format(" threshold {}", *method.truth_threshold);
+  }
   for (const StudyMethod& method : study.methods) {
     std::string text = "method " + method.call.method->about.name;
     for (const auto& [name, value] : method.parameters) text.append(" ").append(name).append("=").append(value);

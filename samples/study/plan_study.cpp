@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "raymarch/local_model.h"
 #include "samples/compare/comparison.h"
 #include "samples/experiment/job.h"
 #include "samples/experiment/no_effect.h"
@@ -34,7 +35,7 @@ struct ModelMaker {
   std::vector<StudyModel>& models;
 
   void add(const SurfaceSettings& settings, std::map<std::string, std::string> parameters, const std::string& refused) const {
-    StudyModel model{settings.kind, std::move(parameters), settings, refused, expected_cost(size, settings, pixels)};
+    StudyModel model{settings.kind, std::move(parameters), settings, {}, refused, expected_cost(size, settings, pixels)};
     if (model.settings.half_width_voxels > 0.0 && model.parameters.contains("gradient"))
       model.parameters["half_width"] = fmt::format("{}", model.settings.half_width_voxels);
     if (model.refused.empty() && model.cost.bytes > 4 * max_bytes) {
@@ -58,6 +59,18 @@ struct ModelMaker {
     }
   }
 
+  /// Of one mesh for all views. What it takes is about what a mesh of a middling level does.
+  void add_local(SurfaceSettings settings, const std::vector<double>& tolerances_px, const std::string& refused) const {
+    settings.kind = "mesh";
+    settings.normals = NormalKind::limit;
+    settings.level = 3;
+    for (auto at = tolerances_px.rbegin(); at != tolerances_px.rend(); ++at) {
+      add(settings, {{"normals", name_of(NormalKind::limit)}, {"local", fmt::format("{}", *at)}}, refused);
+      models.back().surface = "local_mesh";
+      models.back().local_px = *at;
+    }
+  }
+
   void add_grids(SurfaceSettings settings, bool remeshed, bool as_loaded, const std::string& refused) const {
     for (const std::string& gradient : axes.gradients) {
       settings.gradient = gradient;
@@ -78,7 +91,16 @@ struct ModelMaker {
   }
 };
 
-void plan_models(const Axes& axes, const SceneSize& size, SurfaceSettings settings, bool memory_asked, Study& study) {
+/// Why not all objects have local meshes; empty where they do.
+std::string why_no_local(const Scene& scene, const SurfaceSettings& settings) {
+  for (const SceneObject& object : scene.objects) {
+    if (std::string reason = why_not_local(object, settings); !reason.empty()) return reason;
+  }
+  return {};
+}
+
+void plan_models(const Axes& axes, const SceneSize& size, SurfaceSettings settings, bool memory_asked, const std::vector<double>& local_px,
+                 Study& study) {
   const ModelMaker maker{axes, size, study.pixels(), settings.max_bytes, memory_asked, study.models};
   settings.voxel_size = 0.0;
   settings.resample_volumes = false;
@@ -98,6 +120,7 @@ void plan_models(const Axes& axes, const SceneSize& size, SurfaceSettings settin
       maker.add(settings, {}, refused);
     }
   }
+  if (!local_px.empty()) maker.add_local(settings, local_px, why_no_local(study.scene, settings));
 }
 
 std::map<std::string, std::string> pairs_of(const Parameters& parameters) {
@@ -224,7 +247,7 @@ Study plan_with(const Given& given, const DefaultAxes& defaults) {
     study.cameras.push_back(camera_of_view(camera, framed, framing_settings(spec.experiment.camera), view, views));
   const Axes axes = resolve_axes(spec, study.scene, given.settings, given.size, defaults);
   plan_methods(spec, given.input, study);
-  plan_models(axes, given.size, given.settings, spec.experiment.limits.max_memory.has_value(), study);
+  plan_models(axes, given.size, given.settings, spec.experiment.limits.max_memory.has_value(), spec.sweep.local_px, study);
   plan_reference(spec.sweep, given.input, given.settings, axes, given.size, study);
   plan_cells(study);
   fill_head(spec, axes, given.settings, given.input, study);

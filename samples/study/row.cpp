@@ -14,7 +14,7 @@ namespace limn {
 namespace {
 
 // What changes along a line of a chart; every other parameter makes another line.
-constexpr const char* kResolutionNames[] = {"level", "voxels", "voxel_size"};
+constexpr const char* kResolutionNames[] = {"level", "voxels", "voxel_size", "local"};
 
 bool is_resolution(const std::string& name) {
   return std::find(std::begin(kResolutionNames), std::end(kResolutionNames), name) != std::end(kResolutionNames);
@@ -152,6 +152,7 @@ std::string csv_line(const StudyRow& row, const std::vector<std::string>& parame
       row.key, row.scene, std::to_string(row.view), std::to_string(row.width_px), std::to_string(row.height_px), row.surface,
   };
   for (const SurfaceSetting& setting : surface_setting_list()) fields.push_back(value_of(row.surface_parameters, setting.name));
+  fields.push_back(value_of(row.surface_parameters, "local"));
   fields.insert(fields.end(), {row.method, number_text(row.truth.threshold), row.metric, number_text(row.value), row.unit});
   fields.push_back(number_text(row.floor));
   add_truth_fields(row.truth, fields);

@@ -1,4 +1,5 @@
 #include "samples/study/run_cells.h"
+#include "samples/experiment/local_request.h"
 
 #include <fmt/format.h>
 
@@ -49,12 +50,21 @@ double resolution_of(const SceneModel& model, double longest_side) {
   return coarsest > 0.0 && longest_side > 0.0 ? coarsest / longest_side : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// Null for a model that is as fine everywhere.
+std::shared_ptr<const LocalSettings> local_of(const Study& study, const StudyModel& model) {
+  if (!model.local_px) return nullptr;
+  std::vector<MethodCall> calls;
+  for (const StudyMethod& method : study.methods) calls.push_back(method.call);
+  return std::make_shared<const LocalSettings>(local_settings(*model.local_px, false, calls, study.cameras));
+}
+
 Experiment experiment_of(const Study& study) {
   Experiment experiment;
   experiment.scene = study.scene;
   experiment.cameras = study.cameras;
   experiment.models.push_back({"reference", study.scene, study.reference, {}});
-  for (const StudyModel& model : study.models) experiment.models.push_back({model.surface, study.scene, model.settings, model.refused});
+  for (const StudyModel& model : study.models)
+    experiment.models.push_back({model.surface, study.scene, model.settings, model.refused, local_of(study, model)});
   for (const StudyMethod& method : study.methods)
     experiment.methods.push_back({method.call.method->about.name, {method.call}, method.truth_threshold});
   for (const Metric& metric : metrics()) experiment.metrics.push_back(&metric);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct StudyModel {
   std::string surface{};                            ///< A name in surface_kinds().
   std::map<std::string, std::string> parameters{};  ///< As in the rows: what the representation reads and the study varies.
   SurfaceSettings settings{};                       ///< As it is built.
+  std::optional<double> local_px{};                 ///< Of a local mesh: its tolerance in the study's views.
   std::string refused{};                            ///< Why it cannot be built, where that is known beforehand.
   ExpectedCost cost{};                              ///< See ExpectedCost.
 };

@@ -3,7 +3,7 @@ import csv
 import dataclasses
 
 # Columns of a model's settings. A method's parameters have a column each, METHOD.PARAMETER.
-SETTINGS = ("voxels", "voxel_size", "half_width", "gradient", "level", "scheme", "normals", "smooth_angle")
+SETTINGS = ("voxels", "voxel_size", "half_width", "gradient", "level", "scheme", "normals", "smooth_angle", "local")
 # What this folder calls a value -> the names it has had in rows.
 METRICS = {f"{kind}_{what}": (f"{kind}_displacement_{what}",) for kind in ("silhouette", "inner") for what in ("mean", "rms", "p95")}
 

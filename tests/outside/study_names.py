@@ -1,6 +1,6 @@
 """How a study's page calls models and drawings."""
 
-RESOLUTIONS = ("level", "voxels", "voxel_size")
+RESOLUTIONS = ("level", "voxels", "voxel_size", "local")
 # Order of the angle between a model's normals and the surface's: docs/reference.md and the theory in docs/accuracy.md.
 NORMAL_ORDERS = {("mesh", "flat"): (1, 1), ("mesh", "vertex"): (1, 2), ("mesh", "limit"): (2, 2),
                  ("level_set", "cell"): (1, 1), ("level_set", "central"): (2, 2), ("level_set", "cubic"): (3, 3)}

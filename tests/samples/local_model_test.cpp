@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <random>
 
@@ -206,6 +207,29 @@ TEST(LocalModel, AlongAPathItFlickersNoMoreThanTheUniformMeshOfTheTolerance) {
   EXPECT_GT(uniform, 0);
   EXPECT_GE(local, 0);
   EXPECT_LE(local, uniform);
+}
+
+TEST(LocalModel, AStudySweepsLocalMeshesAsASeriesOfTheirOwn) {
+  const TemporaryFolder folder;
+  const auto study = folder.path() / "study";
+  const RunResult run = run_limn({"study", "ellipsoid", "--surfaces", "mesh", "--levels", "1", "--normals", "limit", "--local", "2,0.25",
+                                  "--views", "1", "--size", "200x200", "-o", study.string()});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  std::map<std::string, double> error_px, bytes;
+  std::ifstream rows(study / "rows.jsonl");
+  for (std::string line; std::getline(rows, line);) {
+    const nlohmann::json row = nlohmann::json::parse(line);
+    if (row.value("metric", "") != "border_error_p95") continue;
+    const std::string local = row["surface_parameters"].value("local", "");
+    EXPECT_EQ(row["surface"], local.empty() ? "mesh" : "local_mesh");
+    error_px[local] = row["value"];
+    bytes[local] = row["bytes"];
+  }
+  ASSERT_EQ(error_px.size(), 3u);
+  EXPECT_LE(error_px["2"], 2.0);
+  EXPECT_LE(error_px["0.25"], 0.25);
+  EXPECT_LT(bytes["2"], bytes["0.25"]);
+  EXPECT_NE(run_limn({"study", "ellipsoid", "--local", "0"}).err.find("--local"), std::string::npos);
 }
 
 TEST(LocalModel, WhatHasNoEffectIsRefused) {

@@ -19,13 +19,13 @@ inline constexpr double kLocalCoarse_px = 2.6;
 /// Empty where `object` has a local mesh (with settings.kind = level_set a local level set), else why not: it has no resolution to choose.
 std::string why_not_local(const SceneObject& object, const SurfaceSettings& settings);
 
-/// As build_model with settings.kind = mesh, unless that is level_set. Fields and cages become local meshes, for which settings.level is not read: a coarse mesh of
-/// the surface is refined by splitting edges. The middle of an edge belongs to both of its triangles, so that no crack can appear, and lies
-/// on the surface. What has one resolution only is modelled as it is. Throws InputError as build_model does.
+/// As build_model with settings.kind = mesh, unless that is level_set. Fields and cages become local meshes, for which settings.level is
+/// not read: a coarse mesh of the surface is refined by splitting edges. The middle of an edge belongs to both of its triangles, so that no
+/// crack can appear, and lies on the surface. What has one resolution only is modelled as it is. Throws InputError as build_model does.
 ///
-/// With settings.kind = level_set fields become bricks of several voxel sizes, each twice as large as the next: no smaller than the settings
-/// ask for, and those only where a border is predicted to be off by more than the tolerance. On a face between two sizes both sides are the
-/// same function. What is hidden in the pictures is as coarse as where no border runs. Volumes are modelled as they are.
+/// With settings.kind = level_set fields become bricks of several voxel sizes, each twice as large as the next: no smaller than the
+/// settings ask for, and those only where a border is predicted to be off by more than the tolerance. On a face between two sizes both
+/// sides are the same function. What is hidden in the pictures is as coarse as where no border runs. Volumes are modelled as they are.
 SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local);
 
 /// The same as grids in world space: one for each object and voxel size, the smallest first, each with distances at the nodes that its

@@ -17,8 +17,8 @@ struct LocalLevelSetsBenchSettings {
   std::FILE* table = stdout;
 };
 
-/// Rows of kind "local level sets", one a model; the table goes to `settings.table` as Markdown. Times are processor times of all threads, the least
-/// of the runs, which go by turns.
+/// Rows of kind "local level sets", one a model; the table goes to `settings.table` as Markdown. Times are processor times of all threads,
+/// the least of the runs, which go by turns.
 nlohmann::json bench_local_level_sets(const LocalLevelSetsBenchSettings& settings);
 
 }  // namespace limn::bench

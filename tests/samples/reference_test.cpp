@@ -102,7 +102,7 @@ TEST(Reference, TheColumnsOfRowsAreTheirs) {
   const json row = json::parse(rows.substr(0, rows.find('\n')));
   for (const auto& [name, value] : row.items()) EXPECT_TRUE(known.contains(name)) << name;
   for (const SurfaceSetting& setting : surface_setting_list()) known.erase(setting.name);
-  known.erase("local");  // a surface parameter, too
+  known.erase("local");                     // a surface parameter, too
   EXPECT_GE(row.size(), known.size() - 1);  // all but `failed`
 }
 

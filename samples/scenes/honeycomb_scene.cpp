@@ -15,7 +15,7 @@ Scene make() {
   const Field plate = rotate(field_of(part), {0.0, 1.0, 0.0}, 20.0 * degree);
   scene.objects[0].source = rotate(plate, {0.55, 0.0, -0.835}, 55.23 * degree);
   scene.camera = look_at({0.0, 0.0, 0.0}, {0.1, 0.6, 1.0}, 28.0);
-  scene.camera.vertical_fov = 4.0 * degree;
+  scene.camera.vertical_fov = 4.6 * degree;
   return scene;
 }
 

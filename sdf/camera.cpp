@@ -74,10 +74,15 @@ glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& from, const glm::dvec3&
   return v * cosine + glm::cross(axis, v) + axis * (glm::dot(axis, v) / (1.0 + cosine));
 }
 
+/// What is unit but for rounding is taken as it is: so a camera that was written down can be read again to the last bit.
+glm::dvec3 unit(const glm::dvec3& v) { return std::abs(glm::dot(v, v) - 1.0) < 4e-15 ? v : glm::normalize(v); }
+
 /// Columns right, up, backward for a view from `backward` (unit). An up vector along the view is an error where the user chose
 /// both; otherwise another axis takes its place.
 glm::dmat3 orientation(const glm::dvec3& backward, const glm::dvec3& up_given, bool chosen_by_user) {
-  glm::dvec3 up = glm::normalize(up_given);
+  glm::dvec3 up = unit(up_given);
+  // For the same reason a perpendicular one is.
+  if (std::abs(glm::dot(up, backward)) < 4e-15) return {glm::cross(up, backward), up, backward};
   if (glm::length(glm::cross(up, backward)) < 1e-6) {
     if (chosen_by_user) throw InputError({{}, "up", text(up_given), "along the line of sight", "a direction across the view"});
     up = std::abs(backward.z) < 0.9 ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0);
@@ -108,7 +113,21 @@ glm::dvec3 checked_backward(const glm::dvec3& eye, const glm::dvec3& target, con
   if (!(length > 1e-12 * (glm::length(eye) + glm::length(target)))) {
     throw InputError({{}, field, text(eye), "the eye lies on the target", "an eye apart from the target " + text(target)});
   }
-  return offset / length;
+  return unit(offset);
+}
+
+/// Nearly the same axes, off by units in the last place, which come out the same when they are written down as eye, target and up and read
+/// again: the call that a picture names then draws it to the last bit.
+glm::dmat3 as_written(const glm::dvec3& eye, const glm::dmat3& axes) {
+  glm::dvec3 backward = axes[2];
+  for (int pass = 0; pass < 32; ++pass) {
+    const glm::dvec3 target = eye - backward;
+    const glm::dvec3 offset = eye - target;
+    if (!(glm::length(offset) > 0.5)) return axes;  // too far out for a target one unit away
+    if (unit(offset) == backward) break;
+    backward = unit(offset);
+  }
+  return orientation(backward, axes[1], false);
 }
 
 }  // namespace
@@ -143,6 +162,7 @@ Camera resolve_camera(const CameraSettings& settings, const FramedSurface& surfa
                             : by_surface ? place_for(surface, camera.world_from_camera, limits)
                                          : place_for(box, camera.world_from_camera, limits);
   camera.eye = settings.eye ? *settings.eye : camera.world_from_camera * place.eye;
+  camera.world_from_camera = as_written(camera.eye, camera.world_from_camera);
   if (settings.projection == Projection::perspective)
     camera.focal_px = 0.5 * settings.height_px / tan_half * framing.zoom;
   else

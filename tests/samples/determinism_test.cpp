@@ -36,7 +36,7 @@ INSTANTIATE_TEST_SUITE_P(Render, SameBytes, testing::Values("analytic", "level_s
 
 TEST(Interrupt, ALongRenderLeavesNoFileAndSaysSoWithItsExitCode) {
   const TemporaryFolder folder;
-  const RunResult result = interrupt_limn({"render", "gyroid", "--size", "8000x8000", "--samples", "64"}, 0.7, folder.path());
+  const RunResult result = interrupt_limn({"render", "gyroid", "--size", "6000x6000", "--samples", "64"}, 0.7, folder.path());
   EXPECT_EQ(result.exit_code, 130) << result.err;
   EXPECT_TRUE(folder.files().empty()) << folder.files().front();
 }

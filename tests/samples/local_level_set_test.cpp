@@ -7,7 +7,7 @@
 #include <set>
 
 #include "raymarch/gbuffer/picture_rays.h"
-#include "raymarch/level_set/local_nodes.h"
+#include "raymarch/local/local_nodes.h"
 #include "raymarch/local_model.h"
 #include "samples/experiment/job.h"
 #include "samples/scenes/scenes.h"

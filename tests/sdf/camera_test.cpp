@@ -152,6 +152,26 @@ TEST(Camera, UpIsUpAndRightIsRight) {
   EXPECT_LE(project(camera, {0, 0, 6}).z, 0.0);
 }
 
+TEST(Camera, WrittenAsEyeTargetAndUpItIsTheSameToTheLastBit) {
+  constexpr std::uint64_t seed = 20261125;
+  Random random(seed);
+  int near = 0, same = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const Camera camera = random_camera(random, random_box(random));
+    // From far away a target one unit off has fewer digits than a direction.
+    if (glm::length(camera.eye) > 6.0) continue;
+    ++near;
+    CameraSettings written;
+    written.eye = camera.eye;
+    written.target = camera.eye - camera.world_from_camera[2];
+    written.up = camera.world_from_camera[1];
+    const Camera again = resolve_camera(written, Box{glm::dvec3(-1.0), glm::dvec3(1.0)});
+    same += again.world_from_camera == camera.world_from_camera ? 1 : 0;
+  }
+  EXPECT_GT(near, 10'000);
+  EXPECT_EQ(same, near) << "seed " << seed;
+}
+
 TEST(Camera, DefaultViewLooksFromAboveWhateverIsUp) {
   for (const glm::dvec3& up :
        {glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 2), glm::dvec3(0.6, 0.45, 0.75), glm::dvec3(1, 0, 0)}) {

@@ -1,4 +1,4 @@
-#include "raymarch/level_set/local_choice.h"
+#include "raymarch/local/local_choice.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "raymarch/level_set/brick_demand.h"
 #include "raymarch/level_set/brick_layout.h"
+#include "raymarch/local/brick_demand.h"
 #include "sdf/number.h"
 #include "sdf/parallel.h"
 #include "sdf/size_error.h"

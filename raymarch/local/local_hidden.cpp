@@ -1,4 +1,4 @@
-#include "raymarch/surface/local_hidden.h"
+#include "raymarch/local/local_hidden.h"
 
 #include <algorithm>
 #include <cmath>

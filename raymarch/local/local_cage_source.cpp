@@ -3,7 +3,7 @@
 #include <set>
 #include <tuple>
 
-#include "raymarch/surface/local_sources.h"
+#include "raymarch/local/local_sources.h"
 #include "sdf/parallel.h"
 #include "subdiv/polygon.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "raymarch/level_set/brick_layout.h"
-#include "raymarch/level_set/local_choice.h"
+#include "raymarch/local/local_choice.h"
 
 namespace limn {
 

@@ -1,8 +1,8 @@
 #pragma once
 // Internal: what a picture of a coarse surface hides.
 
+#include "raymarch/local/local_hidden.h"
 #include "raymarch/surface.h"
-#include "raymarch/surface/local_hidden.h"
 
 namespace limn {
 

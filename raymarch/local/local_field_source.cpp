@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "raymarch/surface/local_sources.h"
+#include "raymarch/local/local_sources.h"
 #include "subdiv/snap_vertex.h"
 #include "subdiv/tessellate.h"
 

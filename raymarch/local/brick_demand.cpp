@@ -1,4 +1,4 @@
-#include "raymarch/level_set/brick_demand.h"
+#include "raymarch/local/brick_demand.h"
 
 #include <algorithm>
 #include <cmath>

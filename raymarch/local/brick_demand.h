@@ -1,7 +1,7 @@
 #pragma once
 // Internal: whether pictures ask for smaller voxels in a brick.
 
-#include "raymarch/level_set/local_choice.h"
+#include "raymarch/local/local_choice.h"
 
 namespace limn {
 

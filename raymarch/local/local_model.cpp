@@ -1,9 +1,9 @@
 #include <chrono>
 
+#include "raymarch/local/local_level_set.h"
+#include "raymarch/local/local_mesh.h"
+#include "raymarch/local/local_sources.h"
 #include "raymarch/local_model.h"
-#include "raymarch/surface/local_level_set.h"
-#include "raymarch/surface/local_mesh.h"
-#include "raymarch/surface/local_sources.h"
 
 namespace limn {
 namespace {

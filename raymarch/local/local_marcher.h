@@ -1,7 +1,7 @@
 #pragma once
 // A level set of bricks of several voxel sizes: built for pictures, and traced by the packets that trace one of a single size.
 
-#include "raymarch/level_set/local_choice.h"
+#include "raymarch/local/local_choice.h"
 
 namespace limn {
 

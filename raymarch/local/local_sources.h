@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "raymarch/local/local_triangles.h"
 #include "raymarch/surface/limit_map.h"
-#include "raymarch/surface/local_triangles.h"
 
 namespace limn {
 

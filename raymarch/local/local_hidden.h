@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "raymarch/surface/local_triangles.h"
+#include "raymarch/local/local_triangles.h"
 
 namespace limn {
 

@@ -1,4 +1,4 @@
-#include "raymarch/level_set/local_marcher.h"
+#include "raymarch/local/local_marcher.h"
 
 #include <algorithm>
 #include <chrono>
@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "raymarch/level_set/brick_layout.h"
-#include "raymarch/level_set/local_nodes.h"
 #include "raymarch/level_set/trace.h"
+#include "raymarch/local/local_nodes.h"
 #include "raymarch/scene/curvature.h"
 #include "sdf/error.h"
 #include "sdf/level_set_data.h"
@@ -39,7 +39,7 @@ BrickGradient brick_gradient(const GradientDescriptor& gradient) {
                     .field = "gradient",
                     .value = gradient.about.name,
                     .problem = "a local level set does not have it",
-                    .expected = "cell, central or cubic, or a level set without --local"});
+                    .expected = "cell, central or cubic, or a level set of one voxel size"});
 }
 
 /// The interpolant's sign in the brick that holds the place (index coordinates); nothing where no brick does.

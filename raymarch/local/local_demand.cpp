@@ -1,10 +1,10 @@
-#include "raymarch/surface/local_demand.h"
+#include "raymarch/local/local_demand.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "raymarch/surface/local_mesh.h"
+#include "raymarch/local/local_mesh.h"
 
 namespace limn {
 namespace {

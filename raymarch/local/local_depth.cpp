@@ -1,4 +1,4 @@
-#include "raymarch/level_set/local_depth.h"
+#include "raymarch/local/local_depth.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
-#include "raymarch/surface/local_level_set.h"
+#include "raymarch/local/local_level_set.h"
 
 #include "raymarch/level_set/level_set_marcher.h"
-#include "raymarch/level_set/local_marcher.h"
+#include "raymarch/local/local_marcher.h"
 #include "raymarch/scene/scene_extent.h"
 #include "raymarch/surface/model_parts.h"
 #include "raymarch/surface/offset.h"

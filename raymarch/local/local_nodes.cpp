@@ -1,4 +1,4 @@
-#include "raymarch/level_set/local_nodes.h"
+#include "raymarch/local/local_nodes.h"
 
 #include <algorithm>
 #include <bit>

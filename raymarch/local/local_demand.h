@@ -1,8 +1,8 @@
 #pragma once
 // Internal: which edges of a triangle pictures ask to be split.
 
-#include "raymarch/surface/local_hidden.h"
-#include "raymarch/surface/local_triangles.h"
+#include "raymarch/local/local_hidden.h"
+#include "raymarch/local/local_triangles.h"
 
 namespace limn {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "raymarch/level_set/local_depth.h"
+#include "raymarch/local/local_depth.h"
 #include "raymarch/local_model.h"
 #include "sdf/field.h"
 

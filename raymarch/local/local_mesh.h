@@ -3,7 +3,7 @@
 // edges: the middle of an edge belongs to both of its triangles, so that no crack can appear, and is brought onto the surface. An edge is
 // split where the border would otherwise move by more than the tolerance in one of the pictures (local_demand.h).
 
-#include "raymarch/surface/local_triangles.h"
+#include "raymarch/local/local_triangles.h"
 
 namespace limn {
 

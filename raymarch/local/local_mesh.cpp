@@ -1,4 +1,4 @@
-#include "raymarch/surface/local_mesh.h"
+#include "raymarch/local/local_mesh.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "raymarch/surface/local_demand.h"
+#include "raymarch/local/local_demand.h"
 #include "sdf/parallel.h"
 #include "sdf/size_error.h"
 

@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "samples/plan/climb.h"
 
@@ -70,7 +71,28 @@ RC_GTEST_PROP(PlanClimb, EndsAtTheCoarsestRungThatMeetsTheToleranceAndHasSeenThe
   RC_ASSERT(reason.empty());
   RC_ASSERT(climb.coarsest_meeting(tolerance_px)->rung == answer);
   if (answer > 0) RC_ASSERT(climb.finest_failing(tolerance_px)->rung == answer - 1);
-  RC_ASSERT(climb.climbed.size() <= 8u);
+  RC_ASSERT(climb.climbed.size() <= 11u);
+}
+
+TEST(PlanClimb, OfOneLadderInTwoHundredMoreThanEightRungsAreBuilt) {
+  // Measured: 71 of 20,000, where theory has another order and is off by more than ten times.
+  const Ladder ladder = grids();
+  constexpr unsigned seed = 20261125;
+  std::mt19937 random(seed);
+  const auto between = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high - 1)(random); };
+  int more = 0;
+  constexpr int kLadders = 20'000;
+  for (int i = 0; i < kLadders; ++i) {
+    Law law;
+    law.order = between(10, 40) / 10.0;
+    law.constant = 0.97 / std::pow(ladder.size_at(static_cast<size_t>(between(0, kRungs))), law.order);
+    law.theory_factor = between(1, 100) / 20.0;
+    law.theory_order = between(1, 4);
+    Climb climb = begin(ladder, law);
+    EXPECT_EQ(climb_to_end(climb, law, 1.0, {}), "");
+    more += climb.climbed.size() > 8 ? 1 : 0;
+  }
+  EXPECT_LE(more, kLadders / 200) << "seed " << seed;
 }
 
 TEST(PlanClimb, TheoryThatIsRightNeedsNoMoreThanTheChoiceAndItsNeighbour) {

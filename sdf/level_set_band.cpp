@@ -51,10 +51,10 @@ struct Block {
   ActiveRows active;
 
   float value(const glm::ivec3& p) const {
-    return nodes[static_cast<size_t>(p.x + 1)][static_cast<size_t>(p.y + 1)][static_cast<size_t>(p.z + 1)];
+    return nodes[static_cast<size_t>(p.x) + 1][static_cast<size_t>(p.y) + 1][static_cast<size_t>(p.z) + 1];
   }
   bool in_band(const glm::ivec3& p) const {
-    return (active[static_cast<size_t>(p.x + 2)][static_cast<size_t>(p.y + 2)] >> (p.z + 2) & 1u) != 0;
+    return (active[static_cast<size_t>(p.x) + 2][static_cast<size_t>(p.y) + 2] >> (p.z + 2) & 1u) != 0;
   }
 };
 

@@ -43,17 +43,17 @@ std::vector<nanovdb::Coord> blocks_with_cells(const nanovdb::FloatGrid& grid) {
 ActiveRows active_rows(const LeafWindow& window) {
   ActiveRows rows;
   for (int x = -2; x <= 10; ++x)
-    for (int y = -2; y <= 10; ++y) rows[static_cast<size_t>(x + 2)][static_cast<size_t>(y + 2)] = window.active_row(x, y);
+    for (int y = -2; y <= 10; ++y) rows[static_cast<size_t>(x) + 2][static_cast<size_t>(y) + 2] = window.active_row(x, y);
   return rows;
 }
 
 void load_nodes(const LeafWindow& window, NodeWindow& nodes) {
   for (int x = -1; x <= 8; ++x)
-    for (int y = -1; y <= 8; ++y) window.load_row(x, y, nodes[static_cast<size_t>(x + 1)][static_cast<size_t>(y + 1)].data());
+    for (int y = -1; y <= 8; ++y) window.load_row(x, y, nodes[static_cast<size_t>(x) + 1][static_cast<size_t>(y) + 1].data());
 }
 
 CrossedCells cells_crossed(const NodeWindow& nodes) {
-  return crossed_cells([&](int x, int y) { return &nodes[static_cast<size_t>(x + 1)][static_cast<size_t>(y + 1)][1]; });
+  return crossed_cells([&](int x, int y) { return &nodes[static_cast<size_t>(x) + 1][static_cast<size_t>(y) + 1][1]; });
 }
 
 namespace {

@@ -44,7 +44,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
 }  // namespace
 
 std::string why_no_local_level_set(const SceneObject& object) {
-  if (const std::string reason = find_surface("level_set").unsupported(object); !reason.empty()) return reason;
+  if (std::string reason = find_surface("level_set").unsupported(object); !reason.empty()) return reason;
   return std::holds_alternative<Field>(object.source) ? "" : "a volume has the voxels that its file has";
 }
 

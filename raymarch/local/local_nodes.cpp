@@ -74,7 +74,7 @@ void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil
   for (size_t i = 0; i < bricks.size(); ++i)
     for (int x = -2; x <= 10; ++x)
       for (int y = -2; y <= 10; ++y) {
-        std::uint32_t bits = read[i][static_cast<size_t>(x + 2)][static_cast<size_t>(y + 2)];
+        std::uint32_t bits = read[i][static_cast<size_t>(x) + 2][static_cast<size_t>(y) + 2];
         // Its own nodes are known.
         if (x >= 0 && x <= 8 && y >= 0 && y <= 8) bits &= ~(0x1ffu << 2);
         for (; bits != 0; bits &= bits - 1) {

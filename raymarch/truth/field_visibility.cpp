@@ -27,8 +27,8 @@ bool positive_between(double fa, double fb, double length, const Interval& slope
 
 }  // namespace
 
-FieldOccluders::FieldOccluders(std::vector<Field> fields, const Camera& camera, double extent) : camera_(camera), extent_(extent) {
-  for (Field& field : fields) {
+FieldOccluders::FieldOccluders(const std::vector<Field>& fields, const Camera& camera, double extent) : camera_(camera), extent_(extent) {
+  for (const Field& field : fields) {
     const FieldTraits& traits = field.traits();
     Occluder occluder{field, traits.bounds, traits.lipschitz};
     if (!traits.bounds.empty()) occluder.clip = dilate(traits.bounds, 1e-3 * extent);

@@ -14,7 +14,7 @@ namespace limn {
 /// Fields in solver space. Copies nothing while asked; safe from many threads.
 class FieldOccluders {
  public:
-  FieldOccluders(std::vector<Field> fields, const Camera& camera, double extent);
+  FieldOccluders(const std::vector<Field>& fields, const Camera& camera, double extent);
 
   /// The segment from the point, lifted off by a hair, to the eye (or to the plane Z = 0) is somewhere inside an object. Bounds along the
   /// segment prove that it is not; stretches of less than 1e-10 of the extent count as clear where both ends are.

@@ -37,6 +37,7 @@ void add_cameras(const CameraSpec& asked, const Study& study, CallText& call) {
 std::string call_text(const StudySpec& spec, const Axes& axes, const SurfaceSettings& settings, const Study& study) {
   const auto numbers = [](const std::vector<int>& values) {
     std::vector<std::string> words;
+    words.reserve(values.size());
     for (const int value : values) words.push_back(std::to_string(value));
     return list_text(words);
   };

@@ -45,6 +45,9 @@ TEST(LinesOfScenes, RookInFramesThatWereWrong) {
     for (const LineConflict& conflict : graph.conflicts)
       ADD_FAILURE() << fmt::format("{}, {}: {}", conflict.px.x, conflict.px.y, conflict.what);
     const bench::OracleCount count = bench::ask_oracle(model, camera, graph);
+    EXPECT_GT(count.visible, 100);
+    EXPECT_EQ(count.occluded, 0);
+    EXPECT_EQ(count.seen, 0);
     for (const glm::dvec2& place : count.places) ADD_FAILURE() << fmt::format("frame {}: rays disagree at {}, {}", frame, place.x, place.y);
   }
 }

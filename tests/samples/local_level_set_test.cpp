@@ -15,16 +15,10 @@
 #include "sdf/level_set_data.h"
 #include "sdf/shape.h"
 #include "tests/random_seed.h"
+#include "tests/samples/scene_camera.h"
 
 namespace limn {
 namespace {
-
-Camera camera_of(const Scene& scene, int view, int views, const glm::ivec2& size_px) {
-  CameraSettings camera = scene.camera;
-  camera.width_px = size_px.x;
-  camera.height_px = size_px.y;
-  return camera_of_view(camera, {bounds(scene), {}}, {}, view, views);
-}
 
 /// A small tolerance: the border takes the smallest voxels.
 constexpr double kFinest_px = 1e-6;

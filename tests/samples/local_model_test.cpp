@@ -16,18 +16,12 @@
 #include "tests/plan_check.h"
 #include "tests/random_seed.h"
 #include "tests/samples/run_program.h"
+#include "tests/samples/scene_camera.h"
 #include "tests/temporary_folder.h"
 
 namespace limn {
 using namespace test;
 namespace {
-
-Camera camera_of(const Scene& scene, int view, int views, const glm::ivec2& size_px) {
-  CameraSettings camera = scene.camera;
-  camera.width_px = size_px.x;
-  camera.height_px = size_px.y;
-  return camera_of_view(camera, {bounds(scene), {}}, {}, view, views);
-}
 
 /// Edges that have not exactly one face on each side.
 size_t open_edges(const Mesh& mesh) {

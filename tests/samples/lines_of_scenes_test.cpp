@@ -38,13 +38,13 @@ TEST(LinesOfScenes, RookInFramesThatWereWrong) {
   settings.width_px = 240;
   settings.height_px = 135;
   const Camera first = camera_of_view(settings, {bounds(scene), {}}, {}, 0, 1);
-  const SceneModel model = bench::oracle_model(scene);
+  const bench::Oracle oracle = bench::make_oracle(scene);
   for (const int frame : {1, 2}) {
     const Camera camera = turned_camera(first, *settings.target, settings.up, 2.0 * std::numbers::pi * frame / 240.0);
     const ViewGraph graph = solve_lines(scene, camera, {}, {});
     for (const LineConflict& conflict : graph.conflicts)
       ADD_FAILURE() << fmt::format("{}, {}: {}", conflict.px.x, conflict.px.y, conflict.what);
-    const bench::OracleCount count = bench::ask_oracle(model, camera, graph);
+    const bench::OracleCount count = bench::ask_oracle(oracle, camera, graph);
     EXPECT_GT(count.visible, 100);
     EXPECT_EQ(count.occluded, 0);
     EXPECT_EQ(count.seen, 0);

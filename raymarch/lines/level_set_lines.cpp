@@ -21,9 +21,11 @@ namespace {
 constexpr double kTurn = 0.03;      // radians, beyond twice the spread that a cell's corners show
 constexpr double kSeamReach = 2.0;  // voxels: farther from a surface there is no seam with it
 
+// Newton's steps onto a contour.
 constexpr int kMostSteps = 8;
-constexpr double kFlat = 1e-10, kClose = 1e-5;  // voxels: the next step is the square of it
-constexpr double kMostOff = 0.25;               // voxels
+constexpr double kFlat = 1e-10;    // the square of the sine between the gradients of f and of its slope: less is rounding
+constexpr double kClose = 1e-5;    // voxels: what is left after such a step is about its square
+constexpr double kMostOff = 0.25;  // voxels
 
 constexpr size_t kBlock = 256;
 constexpr int kRegionBits = 4, kRegion = 1 << kRegionBits;  // cells along a region's side

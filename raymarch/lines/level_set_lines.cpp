@@ -1,11 +1,13 @@
 // Lines of level sets: contours of the spline whose gradients their normals are, and the seams of those that overlap, found cell by cell.
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "raymarch/lines/curve_walk.h"
 #include "raymarch/lines/found_curves.h"
 #include "raymarch/lines/level_set_layers.h"
 #include "raymarch/lines/line_memory.h"
@@ -18,6 +20,12 @@ namespace {
 
 constexpr double kTurn = 0.03;      // radians, beyond twice the spread that a cell's corners show
 constexpr double kSeamReach = 2.0;  // voxels: farther from a surface there is no seam with it
+
+// Newton's steps onto a contour.
+constexpr int kMostSteps = 8;
+constexpr double kFlat = 1e-10;    // the square of the sine between the gradients of f and of its slope: less is rounding
+constexpr double kClose = 1e-5;    // voxels: what is left after such a step is about its square
+constexpr double kMostOff = 0.25;  // voxels
 
 constexpr size_t kBlock = 256;
 constexpr int kRegionBits = 4, kRegion = 1 << kRegionBits;  // cells along a region's side
@@ -225,6 +233,41 @@ void note_edges(const LineTask& task, const PlacedLevelSet& grid, LineContributi
                                   grid.cells.size(), task.settings.crease_angle_deg));
 }
 
+/// The contour's point nearest to one close by: f and its slope along the view are 0 there. Its gradients span the plane across the curve
+/// at cusps, too; on flat walls that are seen edge-on they do not, and the surface's nearest point is as good as any.
+glm::dvec3 onto_contour(FieldEvaluator& evaluator, const Camera& camera, const glm::dvec3& near, double close) {
+  glm::dvec3 p = near;
+  for (int k = 0; k < kMostSteps; ++k) {
+    const FieldJet jet = evaluator.jet(p);
+    const glm::dvec3 view = view_vector(camera, p);
+    const double slope = glm::dot(jet.gradient, view);
+    glm::dvec3 of_slope = jet.hessian * view;
+    if (camera.projection == Projection::perspective) of_slope -= (jet.gradient - slope * view) / glm::distance(camera.eye, p);
+    const double ff = glm::dot(jet.gradient, jet.gradient), fs = glm::dot(jet.gradient, of_slope), ss = glm::dot(of_slope, of_slope),
+                 determinant = ff * ss - fs * fs;
+    glm::dvec3 move = -jet.value / ff * jet.gradient;
+    if (determinant > kFlat * ff * ss)
+      move = -((jet.value * ss - slope * fs) * jet.gradient + (slope * ff - jet.value * fs) * of_slope) / determinant;
+    p += move;
+    if (!(glm::length(move) > close)) break;
+  }
+  return p;
+}
+
+/// Between samples a contour is followed to its own points: the cubic through the samples leads near them.
+void add_points_between(const LineTask& task, const PlacedLevelSet& grid, SurfaceCurve& curve) {
+  const bool contour = curve.smooth && std::all_of(curve.samples.begin(), curve.samples.end(),
+                                                   [](const CurveSample& sample) { return sample.line_class == LineClass::contour; });
+  if (!contour) return;
+  const auto evaluators =
+      std::make_shared<tbb::enumerable_thread_specific<FieldEvaluator>>([field = grid.field] { return FieldEvaluator(field); });
+  curve.between = [evaluators, known = std::make_shared<const SurfaceCurve>(curve), camera = task.camera, most = grid.voxel](size_t step,
+                                                                                                                             double share) {
+    const glm::dvec3 near = point_at(*known, step, share), p = onto_contour(evaluators->local(), camera, near, kClose * most);
+    return glm::distance(p, near) < kMostOff * most ? p : near;
+  };
+}
+
 void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContribution& out) {
   const LineTask& task = tracing.task;
   const Viewer viewer = make_viewer(task.camera, glm::dvec3(0.0));
@@ -249,8 +292,11 @@ void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContr
   curves_of_cells(found, search, {task.settings.tolerance_px, task.extent, 1.0, voxel}, tracing.execution, curves);
   out.unrefined_px = std::max(out.unrefined_px, curves.worst_unrefined_px);
   const FieldTask fields{task, tracing.bodies, body, viewer, tracing.evaluators};
-  for (SurfaceCurve& curve : surface_curves(fields, curves.curves.size(), [&](size_t i) -> const FieldCurve& { return curves.curves[i]; }))
+  for (SurfaceCurve& curve :
+       surface_curves(fields, curves.curves.size(), [&](size_t i) -> const FieldCurve& { return curves.curves[i]; })) {
+    if (body.size() == 1) add_points_between(task, *tracing.grids[body[0]], curve);
     out.curves.push_back(std::move(curve));
+  }
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "raymarch/gbuffer.h"
+#include "sdf/parallel.h"
 #include "subdiv/refine.h"
 
 namespace limn::bench {
@@ -21,10 +23,14 @@ constexpr std::array<Ray, 3> kAlong = {{{0.0, 1.0}, {0.25, 1.0}, {-0.25, 1.0}}};
 constexpr double kInFront_px = 0.02;  // what the ray through the point hits nearer by this hides what is drawn as hidden
 // What a contour bounds lies on its left: rays that pass it closely on its right meet none of its own surface, however near.
 constexpr std::array<Ray, 4> kOutside = {{{0.25, 0.002}, {0.05, 0.002}, {0.0125, 0.002}, {0.003, 0.002}}};
+constexpr size_t kRays = kAlong.size() + kOutside.size();
+constexpr double kOffContour_px = 0.02;  // a drawn contour and the spline's, farther apart than any tolerance asked for
+constexpr std::array<double, 4> kOutsideOfSpline_px = {0.25, 0.0125, 3e-4, 1e-7};
 
 struct Asked {
   glm::dvec2 px{0.0};
   double depth = 0.0;
+  glm::dvec2 across{0.0};  ///< To the line's right, one pixel.
   const LineEdge* edge = nullptr;
 };
 
@@ -34,7 +40,7 @@ double depth_between(const Camera& camera, double a, double b, double share) {
   return a * b / glm::mix(b, a, share);
 }
 
-void add_points(const LineEdge& edge, const Camera& camera, std::vector<Asked>& asked, std::vector<glm::dvec2>& points_px) {
+void add_points(const LineEdge& edge, const Camera& camera, std::vector<Asked>& asked) {
   double whole = 0.0;
   for (size_t i = 1; i < edge.points.size(); ++i) whole += glm::distance(edge.points[i].px, edge.points[i - 1].px);
   double along = 0.0, next = kFromEnds_px;
@@ -44,21 +50,98 @@ void add_points(const LineEdge& edge, const Camera& camera, std::vector<Asked>& 
     for (; length > 0.0 && next <= along + length && next <= whole - kFromEnds_px; next += kApart_px) {
       const double t = (next - along) / length;
       const glm::dvec2 px = glm::mix(a.px, b.px, t), across = glm::dvec2(a.px.y - b.px.y, b.px.x - a.px.x) / length;
-      asked.push_back({px, depth_between(camera, a.depth, b.depth, t), &edge});
-      for (const Ray& ray : kAlong) points_px.push_back(px + ray.beside_px * across);
-      for (const Ray& ray : kOutside) points_px.push_back(px + ray.beside_px * across);
+      asked.push_back({px, depth_between(camera, a.depth, b.depth, t), across, &edge});
     }
     along += length;
   }
 }
 
+/// Where the rays of one point go, those along the line first.
+struct Aimed {
+  std::array<glm::dvec2, kRays> points_px{};
+  double depth = 0.0;      ///< Of the point itself.
+  bool at_itself = false;  ///< The first ray goes through the contour, to rounding.
+};
+
+glm::dvec3 point_at(const Camera& camera, const glm::dvec2& px, double depth) {
+  const CameraRay ray = camera_ray(camera, px.x, px.y);
+  return ray.origin + depth / (project(camera, ray.origin + ray.direction).z - project(camera, ray.origin).z) * ray.direction;
+}
+
+/// A level set's contour is aimed at itself, not where it is drawn.
+Aimed aim(const Asked& asked, const Camera& camera, FieldEvaluator* spline) {
+  Aimed aimed;
+  aimed.depth = asked.depth;
+  glm::dvec2 px = asked.px;
+  if (spline != nullptr && asked.edge->line_class == LineClass::contour) {
+    const double most = 20.0 / pixels_per_unit_at(camera, asked.depth);
+    if (const auto p = on_contour(*spline, camera, point_at(camera, asked.px, asked.depth), most)) {
+      const glm::dvec3 seen = project(camera, *p);
+      aimed.at_itself = glm::distance(glm::dvec2(seen), asked.px) < kOffContour_px;
+      if (aimed.at_itself) px = seen, aimed.depth = seen.z;
+    }
+  }
+  size_t k = 0;
+  for (const Ray& ray : kAlong) aimed.points_px[k++] = px + ray.beside_px * asked.across;
+  for (size_t i = 0; i < kOutside.size(); ++i)
+    aimed.points_px[k++] = px + (aimed.at_itself ? kOutsideOfSpline_px[i] : kOutside[i].beside_px) * asked.across;
+  return aimed;
+}
+
+/// Depths of what rays hit first; infinite where they hit nothing.
+using Depths = std::vector<std::array<double, kRays>>;
+
+void add_hits(const SceneModel& model, const Camera& camera, const std::vector<Aimed>& aimed, Depths& depths) {
+  std::vector<glm::dvec2> points_px;
+  for (const Aimed& at : aimed) points_px.insert(points_px.end(), at.points_px.begin(), at.points_px.end());
+  std::vector<PointSample> samples(points_px.size());
+  sample_points(model, camera, points_px, samples);
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i].status != HitStatus::hit) continue;
+    double& depth = depths[i / kRays][i % kRays];
+    depth = std::min(depth, project(camera, samples[i].position).z);
+  }
+}
+
+void add_hits(const SplineBody& body, FieldEvaluator& evaluator, const Camera& camera, const Aimed& aimed,
+              std::array<double, kRays>& depths) {
+  for (size_t k = 0; k < kRays; ++k) {
+    const CameraRay ray = camera_ray(camera, aimed.points_px[k].x, aimed.points_px[k].y);
+    const double depth_a_unit = project(camera, ray.origin + ray.direction).z - project(camera, ray.origin).z;
+    if (const auto t = first_hit(body, evaluator, ray, aimed.depth / depth_a_unit)) depths[k] = std::min(depths[k], *t * depth_a_unit);
+  }
+}
+
+/// Of all rays of all points.
+Depths hit_depths(const Oracle& oracle, const Camera& camera, const std::vector<Asked>& asked, std::vector<Aimed>& aimed) {
+  std::array<double, kRays> nothing{};
+  nothing.fill(std::numeric_limits<double>::infinity());
+  Depths depths(asked.size(), nothing);
+  aimed.resize(asked.size());
+  constexpr size_t kBlock = 64;
+  parallel_for(size_t{0}, (asked.size() + kBlock - 1) / kBlock, [&](size_t block) {
+    std::vector<std::optional<FieldEvaluator>> evaluators;
+    for (const auto& body : oracle.splines) evaluators.push_back(body ? std::optional<FieldEvaluator>(body->field) : std::nullopt);
+    for (size_t i = block * kBlock; i < std::min(asked.size(), (block + 1) * kBlock); ++i) {
+      auto& own = evaluators[static_cast<size_t>(asked[i].edge->object - 1)];
+      aimed[i] = aim(asked[i], camera, own ? &*own : nullptr);
+      for (size_t k = 0; k < evaluators.size(); ++k)
+        if (evaluators[k]) add_hits(*oracle.splines[k], *evaluators[k], camera, aimed[i], depths[i]);
+    }
+  });
+  if (oracle.model) add_hits(*oracle.model, camera, aimed, depths);
+  return depths;
+}
+
 }  // namespace
 
-SceneModel oracle_model(const Scene& scene) {
+Oracle make_oracle(const Scene& scene) {
+  Oracle oracle{{}, spline_bodies(scene)};
   SurfaceSettings settings;
   settings.kind = "";
-  settings.gradient = "cubic";
   Scene asked = scene;
+  std::erase_if(asked.objects, [](const SceneObject& object) { return std::holds_alternative<LevelSetSource>(object.source); });
+  if (asked.objects.empty()) return oracle;
   for (SceneObject& object : asked.objects) {
     object.level.reset();
     const auto* mesh = std::get_if<MeshSource>(&object.source);
@@ -66,7 +149,8 @@ SceneModel oracle_model(const Scene& scene) {
     object.level = 0;
     while (*object.level < 8 && predict_refined_size(mesh->mesh, *mesh->scheme, *object.level + 1).faces <= kMostFaces) ++*object.level;
   }
-  return build_model(asked, settings);
+  oracle.model = build_model(asked, settings);
+  return oracle;
 }
 
 void add(const OracleCount& more, OracleCount& sum) {
@@ -77,23 +161,20 @@ void add(const OracleCount& more, OracleCount& sum) {
   sum.places.insert(sum.places.end(), more.places.begin(), more.places.end());
 }
 
-OracleCount ask_oracle(const SceneModel& model, const Camera& camera, const ViewGraph& graph) {
+OracleCount ask_oracle(const Oracle& oracle, const Camera& camera, const ViewGraph& graph) {
   std::vector<Asked> asked;
-  std::vector<glm::dvec2> points_px;
-  for (const LineEdge& edge : graph.edges) add_points(edge, camera, asked, points_px);
-  std::vector<PointSample> samples(points_px.size());
-  sample_points(model, camera, points_px, samples);
+  for (const LineEdge& edge : graph.edges) add_points(edge, camera, asked);
+  std::vector<Aimed> aimed;
+  const Depths depths = hit_depths(oracle, camera, asked, aimed);
   OracleCount count;
   for (size_t i = 0; i < asked.size(); ++i) {
-    const double unit_px = pixels_per_unit_at(camera, asked[i].depth);
-    size_t next = i * (kAlong.size() + kOutside.size());
-    const auto is_nearer = [&](const PointSample& hit, double margin_px) {
-      return hit.status == HitStatus::hit && project(camera, hit.position).z < asked[i].depth - margin_px / unit_px;
-    };
-    const bool in_front = is_nearer(samples[next], kInFront_px);
+    const double unit_px = pixels_per_unit_at(camera, aimed[i].depth);
+    size_t next = 0;
+    const auto is_nearer = [&](size_t ray, double margin_px) { return depths[i][ray] < aimed[i].depth - margin_px / unit_px; };
+    const bool in_front = is_nearer(0, kInFront_px);
     const auto nearer = [&](const auto& rays) {
       size_t found = 0;
-      for (const Ray& ray : rays) found += is_nearer(samples[next++], ray.nearer_px);
+      for (const Ray& ray : rays) found += is_nearer(next++, ray.nearer_px);
       return found;
     };
     const size_t along = nearer(kAlong), outside = nearer(kOutside);
@@ -101,7 +182,8 @@ OracleCount ask_oracle(const SceneModel& model, const Camera& camera, const View
     const bool visible = asked[i].edge->invisibility == 0, contour = asked[i].edge->line_class == LineClass::contour;
     count.visible += visible;
     const bool occluded = visible && along == kAlong.size() && (!contour || outside == kOutside.size());
-    const bool passed = !visible && contour && outside == 0;
+    // The ray through a contour's own point, known far better than its polyline, decides where rays beside it pass within rounding.
+    const bool passed = !visible && contour && outside == 0 && !(aimed[i].at_itself && in_front);
     const bool seen = passed || (!visible && along == 0 && !in_front);
     count.occluded += occluded;
     count.seen += seen;

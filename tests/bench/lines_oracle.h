@@ -3,15 +3,21 @@
 
 #include "raymarch/lines.h"
 #include "raymarch/surface.h"
+#include "tests/bench/spline_rays.h"
 
 namespace limn::bench {
 
-/// A model to ask: fields and level sets as they are, by the marcher; other meshes as they are, and cages refined as often as two million
-/// faces allow.
-SceneModel oracle_model(const Scene& scene);
+/// What is asked: fields as they are, by the marcher of pictures; level sets by the splines that are drawn; other meshes as they are, and
+/// cages refined as often as two million faces allow.
+struct Oracle {
+  std::optional<SceneModel> model{};  ///< Of all objects but level sets.
+  std::vector<std::optional<SplineBody>> splines{};
+};
+Oracle make_oracle(const Scene& scene);
 
 /// Of points 2 px apart on every edge, half a pixel from its ends. Rays pass through the point and a quarter of a pixel to both sides;
-/// those of a contour also outside of it, where nothing of its own surface is.
+/// those of a contour also outside of it, where nothing of its own surface is. A level set's contour is looked for beside the drawn one
+/// first: so rays pass outside of it by less than a drawing's tolerance.
 struct OracleCount {
   std::int64_t points = 0, visible = 0;
   std::int64_t occluded = 0;         ///< Drawn as visible, and all rays hit something nearer.
@@ -19,6 +25,6 @@ struct OracleCount {
   std::vector<glm::dvec2> places{};  ///< Of the last two.
 };
 void add(const OracleCount& more, OracleCount& sum);
-OracleCount ask_oracle(const SceneModel& model, const Camera& camera, const ViewGraph& graph);
+OracleCount ask_oracle(const Oracle& oracle, const Camera& camera, const ViewGraph& graph);
 
 }  // namespace limn::bench

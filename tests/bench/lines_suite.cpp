@@ -72,8 +72,8 @@ Row run(const std::string& name, const Scene& given, const LinesBenchSettings& s
   Row row{name};
   const Box box = bounds(given);
   const Scene scene = settings.voxels ? as_level_sets(given, *settings.voxels) : given;
-  std::optional<SceneModel> oracle;
-  if (settings.oracle) oracle = oracle_model(scene);
+  std::optional<Oracle> oracle;
+  if (settings.oracle) oracle = make_oracle(scene);
   ExecutionSettings execution;
   execution.threads = settings.threads;
   const std::vector<glm::dvec3> all = directions();

@@ -39,12 +39,12 @@ Camera camera_from(const Scene& scene, const glm::dvec3& direction) {
 
 TEST(LinesOracle, AgreesWithRightLinesInPerspective) {
   const Scene scene = pierced_plate();
-  const SceneModel model = oracle_model(scene);
+  const Oracle oracle = make_oracle(scene);
   for (const glm::dvec3& direction : {glm::dvec3(1.0, 1.0, 1.0), {1.0, 0.6, 0.1}, {-1.0, 0.2, 0.4}, {0.3, -1.0, 0.5}}) {
     const Camera camera = camera_from(scene, direction);
     const ViewGraph graph = solve_lines(scene, camera, {}, {});
     EXPECT_TRUE(graph.conflicts.empty());
-    const OracleCount count = ask_oracle(model, camera, graph);
+    const OracleCount count = ask_oracle(oracle, camera, graph);
     EXPECT_GT(count.points, 300);
     EXPECT_EQ(count.occluded + count.seen, 0) << fmt::format("from {}, {}, {}: the first at {}, {}", direction.x, direction.y, direction.z,
                                                              count.places[0].x, count.places[0].y);
@@ -56,10 +56,69 @@ TEST(LinesOracle, FindsLinesThatAreHiddenOrShownByMistake) {
   const Camera camera = camera_from(scene, {1.0, 0.6, 0.3});
   ViewGraph graph = solve_lines(scene, camera, {}, {});
   for (LineEdge& edge : graph.edges) edge.invisibility = edge.invisibility == 0 ? 1 : 0;
-  const OracleCount count = ask_oracle(oracle_model(scene), camera, graph);
+  const OracleCount count = ask_oracle(make_oracle(scene), camera, graph);
   EXPECT_GT(count.points, 300);
   EXPECT_GT(static_cast<double>(count.occluded), 0.95 * static_cast<double>(count.visible));
   EXPECT_GT(static_cast<double>(count.seen), 0.95 * static_cast<double>(count.points - count.visible));
+}
+
+/// Of 64 voxels, whose facets show: the cubic splines and the grids' trilinear interpolants are two surfaces.
+Scene as_level_sets(const Scene& scene) {
+  Scene result = scene;
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    SurfaceSettings settings;
+    settings.kind = "level_set";
+    settings.gradient = "cubic";
+    settings.voxels = 64;
+    const Scene one{scene.name, scene.camera, {scene.objects[i]}};
+    result.objects[i] = modelled_scene(one, build_model(one, settings)).objects[0];
+  }
+  return result;
+}
+
+TEST(LinesOracle, FindsMistakesInLinesOfLevelSetsAndNoneInRightOnes) {
+  const Scene scene = as_level_sets(pierced_plate());
+  const Camera camera = camera_from(scene, {1.0, 0.6, 0.3});
+  const Oracle oracle = make_oracle(scene);
+  ViewGraph graph = solve_lines(scene, camera, {}, {});
+  EXPECT_TRUE(graph.conflicts.empty());
+  const OracleCount right = ask_oracle(oracle, camera, graph);
+  EXPECT_GT(right.points, 300);
+  EXPECT_EQ(right.occluded + right.seen, 0);
+  for (LineEdge& edge : graph.edges) edge.invisibility = edge.invisibility == 0 ? 1 : 0;
+  const OracleCount wrong = ask_oracle(oracle, camera, graph);
+  EXPECT_GT(static_cast<double>(wrong.occluded), 0.95 * static_cast<double>(wrong.visible));
+  EXPECT_GT(static_cast<double>(wrong.seen), 0.95 * static_cast<double>(wrong.points - wrong.visible));
+}
+
+// The marcher of pictures, whose rays meet the trilinear interpolant first, misses by a hundredth of a pixel.
+TEST(LinesOracle, RaysTellTheTwoSidesOfALevelSetsContourToAMillionthOfAPixel) {
+  const Scene scene = as_level_sets({"ball", {}, {{.name = "ball", .source = make_shape("sphere", {{"radius", {0.9}}})}}});
+  const Camera camera = camera_from(scene, {0.4, 0.3, 1.0});
+  const ViewGraph graph = solve_lines(scene, camera, {}, {});
+  const auto bodies = spline_bodies(scene);
+  ASSERT_TRUE(bodies.size() == 1 && bodies[0].has_value());
+  FieldEvaluator evaluator(bodies[0]->field);
+  int found = 0;
+  for (const LineEdge& edge : graph.edges) {
+    for (const LinePoint& point : edge.points) {
+      const CameraRay drawn = camera_ray(camera, point.px.x, point.px.y);
+      const double depth_a_unit = project(camera, drawn.origin + drawn.direction).z;
+      const auto p = on_contour(evaluator, camera, drawn.origin + point.depth / depth_a_unit * drawn.direction, 0.1);
+      ASSERT_TRUE(p.has_value());
+      const glm::dvec2 px(project(camera, *p));
+      EXPECT_LT(glm::distance(px, point.px), 0.005);
+      const glm::dvec2 outward = glm::normalize(px - glm::dvec2(project(camera, glm::dvec3(0.0))));
+      const auto hits = [&](double beside_px) {
+        const glm::dvec2 at = px + beside_px * outward;
+        return first_hit(*bodies[0], evaluator, camera_ray(camera, at.x, at.y), 100.0).has_value();
+      };
+      EXPECT_TRUE(hits(-1e-6));
+      EXPECT_FALSE(hits(1e-6));
+      ++found;
+    }
+  }
+  EXPECT_GT(found, 50);
 }
 
 // A cage with cuspidal edges, along which sheets go through each other beside cusps. From the first side a piece of two pixels was visible
@@ -68,14 +127,14 @@ TEST(LinesOracle, AgreesWithTheOgreFromThreeSides) {
   const std::filesystem::path file = std::filesystem::path(LIMN_TEST_DATA) / "ogre_controlmesh.obj";
   Scene scene;
   scene.objects.push_back({.name = "ogre", .source = MeshSource{load_mesh(file), Scheme::catmark, file.string()}});
-  const SceneModel model = oracle_model(scene);
+  const Oracle oracle = make_oracle(scene);
   LineMemory memory;
   for (const glm::dvec3& direction : {glm::dvec3(-1.0, 1.0, 0.0), {-1.0, -1.0, 1.0}, {0.0, -1.0, 1.0}}) {
     const Camera camera = camera_from(scene, direction);
     const ViewGraph graph = solve_lines(scene, camera, {}, {}, &memory);
     for (const LineConflict& conflict : graph.conflicts)
       ADD_FAILURE() << fmt::format("{}, {}: {}", conflict.px.x, conflict.px.y, conflict.what);
-    const OracleCount count = ask_oracle(model, camera, graph);
+    const OracleCount count = ask_oracle(oracle, camera, graph);
     for (const glm::dvec2& place : count.places) ADD_FAILURE() << fmt::format("rays disagree at {}, {}", place.x, place.y);
   }
 }

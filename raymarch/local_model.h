@@ -26,7 +26,10 @@ std::string why_not_local(const SceneObject& object, const SurfaceSettings& sett
 /// With settings.kind = level_set fields become bricks of several voxel sizes, each twice as large as the next: no smaller than the
 /// settings ask for, and those only where a border is predicted to be off by more than the tolerance. On a face between two sizes both
 /// sides are the same function. What is hidden in the pictures is as coarse as where no border runs. Volumes are modelled as they are.
-SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local);
+///
+/// `cache` spares making the coarse mesh again (build_ms counts it all the same); may be null.
+SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local,
+                             ObjectMeshCache* cache = nullptr);
 
 /// The same as grids in world space: one for each object and voxel size, the smallest first, each with distances at the nodes that its
 /// bricks and the gradient's stencils read. Throws InputError.

@@ -160,10 +160,12 @@ struct Surface {
 
 struct FieldScratch;  // raymarch/analytic/tile.h: memory for threads, the same for all fields of a model
 struct KeptMesh;      // raymarch/surface/object_mesh.h
+struct KeptStart;     // raymarch/surface/object_mesh.h
 /// Meshes of a scene's objects, the last one made of each: `mesh` and `mesh_level_set` start from the same. Owned by whoever models one
 /// scene several times; used by one build_model at a time, and for one scene only (levels may differ).
 struct ObjectMeshCache {
   std::vector<std::shared_ptr<const KeptMesh>> kept{};  ///< One an object; empty at first.
+  std::vector<std::shared_ptr<KeptStart>> starts{};     ///< What meshes of any level start from, one an object; empty at first.
 };
 
 /// How to model, whatever the object. What a representation does not use is ignored by it.
@@ -181,6 +183,7 @@ struct SurfaceSettings {
   int max_steps = 10'000;                          ///< Per ray; beyond it the pixel's status is out_of_steps.
   std::function<void(double)> progress{};          ///< 0..1 while building; may be empty.
   std::shared_ptr<const KeptMesh>* kept_mesh = nullptr;  ///< Of the object, in a cache: build_model sets it. May be null.
+  std::shared_ptr<KeptStart> kept_start{};               ///< The same. May be empty.
   std::shared_ptr<FieldScratch> field_scratch{};         ///< build_model sets it. Empty: each field has its own.
 };
 
@@ -213,7 +216,7 @@ struct SceneModel {
 };
 
 /// Models every object. `settings.kind` empty: each in its natural representation. Throws InputError where one cannot be.
-/// `cache` spares meshing what was meshed before (build_ms counts it all the same); may be null.
+/// `cache` spares meshing what was meshed before, and finding what meshes start from (build_ms counts it all the same); may be null.
 SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, ObjectMeshCache* cache = nullptr);
 
 /// What the model traces, as a scene of its own: grids and polygons in place of what they were made from. A cage stays a cage, since what

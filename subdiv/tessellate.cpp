@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 
 #include "sdf/size_error.h"
@@ -130,12 +131,26 @@ Cage find_cage(const Field& field) {
 
 }  // namespace
 
+struct FieldCage {
+  Cage cage;
+  double found_ms = 0.0;
+};
+
+std::shared_ptr<const FieldCage> find_field_cage(const Field& field) {
+  const auto start = std::chrono::steady_clock::now();
+  Cage cage = find_cage(field);
+  const double found_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return std::make_shared<const FieldCage>(FieldCage{std::move(cage), found_ms});
+}
+
+double time_to_find_ms(const FieldCage& cage) { return cage.found_ms; }
+
 Mesh cage_of(const Field& field) { return find_cage(field).mesh; }
 
 Mesh tessellate(const Field& field, const TessellateSettings& settings) {
   if (settings.level < 0 || settings.level > 8)
     throw InputError({"", "level", fmt::format("{}", settings.level), "the subdivision level is out of range", "0 to 8"});
-  Cage cage = find_cage(field);
+  Cage cage = settings.cage ? settings.cage->cage : find_cage(field);
   const RefinedSize size = predict_refined_size(cage.mesh, Scheme::bilinear, settings.level);
   if (size.bytes > settings.max_bytes)
     throw SizeError({"", "level", fmt::format("{}", settings.level),

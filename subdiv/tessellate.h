@@ -1,17 +1,28 @@
 #pragma once
 // Meshes of analytic shapes: a cage of the right topology, refined, its vertices brought onto the surface.
 
+#include <memory>
+
 #include "sdf/field.h"
 #include "subdiv/refine.h"
 
 namespace limn {
+
+struct FieldCage;  // subdiv/tessellate.cpp
 
 /// How a field is meshed.
 struct TessellateSettings {
   int level = 3;                           ///< 0..8 refinements of the cage.
   NormalKind normals = NormalKind::limit;  ///< limit: the field's gradient at each corner, taken from that corner's side of a crease.
   std::int64_t max_bytes = std::int64_t{8} << 30;  ///< Refuses (InputError, with the prediction) what would be larger.
+  std::shared_ptr<const FieldCage> cage{};         ///< The field's, from find_field_cage(); null: it is looked for.
 };
+
+/// Where tessellate() starts from, for several tessellations of one field: a coarse one takes most of its time to find it. Throws
+/// InputError as cage_of does.
+std::shared_ptr<const FieldCage> find_field_cage(const Field& field);
+/// Wall clock, to find it.
+double time_to_find_ms(const FieldCage& cage);
 
 /// A cage of the surface's topology, about 100 faces and more where the shape is rich: dual contouring of a coarse sampling, which is
 /// refined until the count of parts and the Euler number are those of the next finer sampling. Throws InputError for unbounded fields.

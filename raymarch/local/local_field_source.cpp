@@ -115,11 +115,12 @@ constexpr int kMostStartLevel = 2;
 
 }  // namespace
 
-LocalStart start_from_field(const Field& field, std::int64_t max_bytes) {
+LocalStart start_from_field(const Field& field, std::shared_ptr<const FieldCage> cage, std::int64_t max_bytes) {
   LocalStart start;
+  if (!cage) cage = find_field_cage(field);
   // Where the coarsest mesh goes across creases, no splitting of its edges would follow them.
   for (int level = 0; level <= kMostStartLevel; ++level) {
-    start.mesh = tessellate(field, {.level = level, .normals = NormalKind::limit, .max_bytes = max_bytes});
+    start.mesh = tessellate(field, {.level = level, .normals = NormalKind::limit, .max_bytes = max_bytes, .cage = cage});
     start.triangles = triangles_of(start.mesh);
     const double folded = static_cast<double>(count_folded(start.triangles));
     if (folded <= kMostFolded * static_cast<double>(start.triangles.triangles.size())) break;

@@ -59,17 +59,37 @@ ObjectMesh from_cage(const SceneObject& object, const MeshSource& source, Scheme
   return result;
 }
 
+/// Made, or as it was made for an earlier model: then `spared_ms` is told what that took.
+std::shared_ptr<const LocalStart> field_start(const Field& field, const SurfaceSettings& settings, const glm::dvec3& render_origin,
+                                              double& spared_ms) {
+  KeptStart* const kept = settings.kept_start.get();
+  if (kept && kept->local && kept->render_origin == render_origin) {
+    spared_ms = kept->local_ms;
+    return kept->local;
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  const std::shared_ptr<const FieldCage> cage = kept_cage(field, render_origin, kept, spared_ms);
+  auto start = std::make_shared<const LocalStart>(start_from_field(field, cage, settings.max_bytes));
+  if (kept) {
+    kept->local = start;
+    kept->local_ms = spared_ms + std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  }
+  return start;
+}
+
 ObjectMesh from_field(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin,
                       const LocalSettings& local) {
   const Field field = translate(std::get<Field>(object.source), -render_origin);
-  LocalStart start = start_from_field(field, settings.max_bytes);
-  if (!is_oriented(start.triangles)) {
+  double spared_ms = 0.0;
+  const std::shared_ptr<const LocalStart> start = field_start(field, settings, render_origin, spared_ms);
+  if (!is_oriented(start->triangles)) {
     ObjectMesh result = object_mesh(object, settings, render_origin);
     result.warnings.push_back("'" + object.name + "' is as fine everywhere: more than two faces of its coarse mesh share an edge");
     return result;
   }
-  const LocalTriangles refined = refine_locally(std::move(start.triangles), start.source, local, settings.max_bytes);
-  ObjectMesh result = object_of(refined, start.mesh, settings.normals.value_or(NormalKind::limit));
+  const LocalTriangles refined = refine_locally(start->triangles, start->source, local, settings.max_bytes);
+  ObjectMesh result = object_of(refined, start->mesh, settings.normals.value_or(NormalKind::limit));
+  result.spared_ms = spared_ms;
   result.smooth = field;
   return result;
 }
@@ -111,7 +131,7 @@ std::vector<LevelSet> local_level_sets(const Scene& scene, const SurfaceSettings
   return local_level_sets(scene, settings, render_origin, in_render_space(local, render_origin));
 }
 
-SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local) {
+SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local, ObjectMeshCache* cache) {
   const glm::dvec3 render_origin = render_origin_of(scene);
   const LocalSettings in_render = in_render_space(local, render_origin);
   if (settings.kind == "level_set") return build_local_level_sets(scene, settings, render_origin, in_render);
@@ -120,12 +140,16 @@ SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings
   own.kept_mesh = nullptr;
   // build_model takes the meshes as it takes those of an earlier model.
   ObjectMeshCache made;
-  for (const SceneObject& object : scene.objects) {
+  if (cache) cache->starts.resize(scene.objects.size());
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    if (cache && !cache->starts[i]) cache->starts[i] = std::make_shared<KeptStart>();
+    if (cache) own.kept_start = cache->starts[i];
     const auto start = std::chrono::steady_clock::now();
     std::optional<ObjectMesh> mesh = local_mesh_of(object, own, render_origin, in_render);
     made.kept.emplace_back();
     if (!mesh) continue;
-    mesh->spared_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    mesh->spared_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     const int level = object.level.value_or(own.level);
     made.kept.back() = std::make_shared<const KeptMesh>(KeptMesh{level, own.scheme, own.normals, render_origin, std::move(*mesh)});
   }

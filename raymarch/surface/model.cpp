@@ -7,6 +7,7 @@
 #include "raymarch/scene/scene_extent.h"
 #include "raymarch/surface.h"
 #include "raymarch/surface/model_parts.h"
+#include "raymarch/surface/object_mesh.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -36,7 +37,12 @@ Surface build_surface(const SceneObject& object, const SurfaceSettings& settings
 SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, ObjectMeshCache* cache) {
   check_extent(scene);
   SceneModel model;
-  if (cache) cache->kept.resize(scene.objects.size());
+  if (cache) {
+    cache->kept.resize(scene.objects.size());
+    cache->starts.resize(scene.objects.size());
+    for (std::shared_ptr<KeptStart>& start : cache->starts)
+      if (!start) start = std::make_shared<KeptStart>();
+  }
   model.bounds = bounds(scene);
   if (!model.bounds.empty()) model.render_origin = model.bounds.center();
   const auto field_scratch = std::make_shared<FieldScratch>();
@@ -44,7 +50,7 @@ SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, Obje
     const SceneObject& object = scene.objects[i];
     SurfaceSettings own = settings;
     own.field_scratch = field_scratch;
-    if (cache) own.kept_mesh = &cache->kept[i];
+    if (cache) own.kept_mesh = &cache->kept[i], own.kept_start = cache->starts[i];
     if (settings.progress) {
       own.progress = [&settings, i, count = static_cast<double>(scene.objects.size())](double part) {
         settings.progress((static_cast<double>(i) + part) / count);

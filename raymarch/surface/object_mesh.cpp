@@ -66,8 +66,9 @@ ObjectMesh from_field(const SceneObject& object, const SurfaceSettings& settings
   how.normals = settings.normals.value_or(NormalKind::limit);
   how.max_bytes = settings.max_bytes;
   const Field field = translate(std::get<Field>(object.source), -render_origin);
-  Mesh mesh = tessellate(field, how);
   ObjectMesh result;
+  how.cage = kept_cage(field, render_origin, settings.kept_start.get(), result.spared_ms);
+  Mesh mesh = tessellate(field, how);
   result.normals = traced_kind(how.normals);
   if (how.normals != NormalKind::limit) mesh.corner_normals.clear();
   result.triangles = std::make_shared<const TriangleMesh>(triangulate(mesh, result.normals, !mesh.corner_normals.empty()));
@@ -185,6 +186,16 @@ ObjectMesh make_object_mesh(const SceneObject& object, const SurfaceSettings& se
 
 }  // namespace
 
+std::shared_ptr<const FieldCage> kept_cage(const Field& field, const glm::dvec3& render_origin, KeptStart* kept, double& spared_ms) {
+  if (!kept) return find_field_cage(field);
+  if (!kept->cage || kept->render_origin != render_origin) {
+    *kept = {render_origin, find_field_cage(field), {}, 0.0};
+    return kept->cage;
+  }
+  spared_ms += time_to_find_ms(*kept->cage);
+  return kept->cage;
+}
+
 ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
   std::shared_ptr<const KeptMesh>* const kept = settings.kept_mesh;
   // A volume with other voxels is not what the cache knows objects by.
@@ -199,7 +210,7 @@ ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& setting
   const auto start = std::chrono::steady_clock::now();
   KeptMesh made{level, settings.scheme, settings.normals, render_origin, make_object_mesh(object, settings, render_origin)};
   ObjectMesh result = made.mesh;
-  made.mesh.spared_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  made.mesh.spared_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   *kept = std::make_shared<const KeptMesh>(std::move(made));
   return result;
 }

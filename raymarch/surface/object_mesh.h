@@ -7,6 +7,7 @@
 #include "raymarch/mesh/polygons.h"
 #include "raymarch/surface.h"
 #include "subdiv/mesh.h"
+#include "subdiv/tessellate.h"
 
 namespace limn {
 
@@ -40,6 +41,20 @@ struct ObjectMesh {
   std::vector<std::string> notes{};
   double spared_ms = 0.0;  ///< What making it took, where that was done before and kept.
 };
+
+struct LocalStart;  // raymarch/local/local_sources.h
+
+/// What does not depend on how fine a mesh of an object is: its field's cage, and the coarse mesh that local ones are refined from.
+struct KeptStart {
+  glm::dvec3 render_origin{0.0};
+  std::shared_ptr<const FieldCage> cage{};
+  std::shared_ptr<const LocalStart> local{};
+  double local_ms = 0.0;  ///< What making `local` took, the cage included.
+};
+
+/// The cage of a field in render space: what is kept for that origin, or a new one, which is kept. Where it was kept, what finding it
+/// took is added to `spared_ms`. `kept` may be null.
+std::shared_ptr<const FieldCage> kept_cage(const Field& field, const glm::dvec3& render_origin, KeptStart* kept, double& spared_ms);
 
 /// A mesh in an ObjectMeshCache, and all that it depends on beside the object.
 struct KeptMesh {

@@ -88,6 +88,7 @@ struct Render {
   std::vector<std::vector<std::byte>> frames{};  ///< PNG files, where one picture plays them.
   Json plan{};                                   ///< What --tolerance chose; null without it.
   std::optional<FlickerWatch> flicker{};         ///< Of several frames.
+  ObjectMeshCache meshes{};                      ///< Of the plan, if there was one.
   std::optional<LocalSettings> local{};          ///< Of a local model.
 };
 
@@ -293,7 +294,7 @@ void report(const Options& options, const Render& render, const SurfaceInfo& inf
 
 // With --tolerance the plan says how to model; nothing is drawn where nothing meets it.
 bool choose_model(const Options& options, ProgressBar& bar, Render& render) {
-  const PlanJob job = plan_for(options.spec, options.plan, render.input, bar, options.local.asked);
+  PlanJob job = plan_for(options.spec, options.plan, render.input, bar, options.local.asked);
   const std::vector<std::string> sentences = plan_sentences(job.answer, job.settings);
   render.plan = plan_json(job);
   if (!options.quiet) print_note(sentences.front());
@@ -302,6 +303,7 @@ bool choose_model(const Options& options, ProgressBar& bar, Render& render) {
   render.surface = job.answer.ladders[chosen.ladder].at(chosen.rung);
   if (const auto local = job.answer.ladders[chosen.ladder].local_at(chosen.rung)) render.local = *local;
   for (SceneObject& object : render.input.scene.objects) object.level.reset();
+  render.meshes = std::move(job.answer.meshes);
   return true;
 }
 
@@ -379,8 +381,8 @@ int run(const Options& given) {
   std::vector<std::string> levels;
   if (options.spec.surface.level_for_view && !options.plan.tolerance_px)
     levels = refine_for_views(render.surface, cameras, render.input.scene);
-  const SceneModel model =
-      render.local ? build_local_model(render.input.scene, render.surface, *render.local) : build_model(render.input.scene, render.surface);
+  const SceneModel model = render.local ? build_local_model(render.input.scene, render.surface, *render.local, &render.meshes)
+                                        : build_model(render.input.scene, render.surface, &render.meshes);
   render.timings.build_ms = since_ms(build_start);
   const SurfaceInfo info = total(model);
   print_warnings(options, info.warnings);

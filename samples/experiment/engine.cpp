@@ -62,7 +62,8 @@ SceneModel ExperimentRun::build(size_t index) {
   const auto start = Clock::now();
   // The reference's mesh is finer than any other: no start for them.
   const auto build_one = [&](ObjectMeshCache* meshes) {
-    return planned.local ? build_local_model(planned.scene, settings, *planned.local) : build_model(planned.scene, settings, meshes);
+    return planned.local ? build_local_model(planned.scene, settings, *planned.local, meshes)
+                         : build_model(planned.scene, settings, meshes);
   };
   SceneModel model = build_one(experiment_.share_meshes && index > 0 ? &meshes_ : nullptr);
   const double first_ms = ms_since(start);

@@ -129,6 +129,8 @@ class ExperimentRun {
   void forget_views() { views_.clear(); }
   /// With the models that were added.
   const Experiment& experiment() const { return experiment_; }
+  /// What models share, and may be shared with those made elsewhere.
+  const ObjectMeshCache& meshes() const { return meshes_; }
 
  private:
   /// The truth's threshold, and whether the method has one of its own: all that what the reference scores depends on.

@@ -102,6 +102,7 @@ struct PlanAnswer {
   std::int64_t curvature_triangles = 0;  ///< Where a local mesh was chosen: of a mesh refined by curvature alone to the tolerance.
   std::optional<size_t> uniform{};       ///< Then, too: the trial of the coarsest mesh as fine everywhere that meets the tolerance.
   size_t views = 1;                      ///< What the answer holds for.
+  ObjectMeshCache meshes{};              ///< What models of the scene start from: spares whoever builds one of the trials again.
   std::vector<std::string> notes{};      ///< Ladders that were given up, and why; what else a person should know.
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/surface/object_mesh.h"
 #include "samples/plan/climb.h"
 #include "samples/plan/predict.h"
 #include "sdf/error.h"
@@ -57,6 +58,7 @@ Experiment experiment_of(const Scene& scene, const std::vector<PlanView>& views,
   experiment.models.push_back({.scene = experiment.scene});
   experiment.metrics = {&plan_metric()};
   experiment.measures_floor = false;
+  experiment.share_meshes = true;
   return experiment;
 }
 
@@ -80,6 +82,14 @@ ExperimentObserver observer_of(Search& search) {
               [&](MeasuredCell& cell) { search.under_way->measured = worst(search.under_way->measured, errors_of(cell.measurements)); }};
 }
 
+/// What local meshes start from takes, whatever their tolerance.
+double start_ms(const ObjectMeshCache& meshes) {
+  double ms = 0.0;
+  for (const std::shared_ptr<KeptStart>& start : meshes.starts)
+    if (start) ms += start->local_ms;
+  return ms;
+}
+
 /// Builds and measures one rung. A rung that cannot be built fails with its reason.
 PlanTrial try_rung(Search& search, size_t ladder, size_t rung) {
   PlanTrial trial;
@@ -100,6 +110,7 @@ PlanTrial try_rung(Search& search, size_t ladder, size_t rung) {
   }
   if (!trial.failed.empty()) trial.measured = {kInfinity, kInfinity};
   trial.trace_ms /= static_cast<double>(search.views.size());
+  if (of.local) search.answer.ladders[ladder].fixed_ms = start_ms(search.run.meshes());
   return trial;
 }
 
@@ -175,7 +186,9 @@ std::optional<size_t> cheapest_next(Search& search) {
                                                       climb.ladder->words_at(static_cast<size_t>(climb.climbed.back().rung)), reason));
       continue;
     }
-    const double ms = expected_ms(climb, next_rung(climb, tolerance_px));
+    // Which ladder wins comes first; how much coarser a local mesh may be saves little, and only if it wins.
+    const bool waits = leads && climb.ladder->local;
+    const double ms = waits ? kInfinity : expected_ms(climb, next_rung(climb, tolerance_px));
     if (!next || ms < next_ms) next = k, next_ms = ms;
   }
   return next;
@@ -220,7 +233,8 @@ void compare_local(Search& search, const PlanTrial& chosen) {
   everywhere.tolerance_px = search.settings.tolerance_px;
   everywhere.thresholds.clear();
   everywhere.everywhere = true;
-  answer.curvature_triangles = total(build_local_model(search.run.experiment().scene, of.settings, everywhere)).triangles;
+  answer.curvature_triangles =
+      total(build_local_model(search.run.experiment().scene, of.settings, everywhere, &search.answer.meshes)).triangles;
 }
 
 void choose(Search& search) {
@@ -279,6 +293,7 @@ PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, con
     const int rung = next_rung(search.climbs[*ladder], settings.tolerance_px);
     take(search, try_rung(search, *ladder, static_cast<size_t>(rung)));
   }
+  search.answer.meshes.starts = search.run.meshes().starts;
   choose(search);
   return std::move(search.answer);
 }

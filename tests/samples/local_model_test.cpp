@@ -9,6 +9,7 @@
 
 #include "raymarch/local_model.h"
 #include "raymarch/mesh/polygons.h"
+#include "raymarch/surface/object_mesh.h"
 #include "samples/experiment/job.h"
 #include "samples/scenes/scenes.h"
 #include "subdiv/import.h"
@@ -157,6 +158,32 @@ LocalRays rays_at(const Scene& scene, const SceneModel& local, const SceneModel&
     cast_at_both(local, fine, camera, points, bound, around_of(scene, camera, bound), count);
   }
   return count;
+}
+
+TEST(LocalModel, WhatModelsStartFromIsKeptAndChangesNoTriangle) {
+  for (const char* name : {"superellipsoid", "tilted_torus"}) {
+    const Scene scene = find_scene(name)->make();
+    const Camera camera = camera_of(scene, 0, 4, {150, 150});
+    const LocalSettings coarse{{camera}, 2.0, {0.4}}, fine{{camera}, 0.25, {0.4}};
+    const auto mesh_of = [](const SceneModel& model) { return model.surfaces.front().polygons->mesh(); };
+    ObjectMeshCache cache;
+    build_local_model(scene, {}, coarse, &cache);
+    ASSERT_EQ(cache.starts.size(), scene.objects.size()) << name;
+    const KeptStart kept = *cache.starts.front();
+    ASSERT_NE(kept.local, nullptr) << name;
+    const SceneModel again = build_local_model(scene, {}, fine, &cache), alone = build_local_model(scene, {}, fine);
+    EXPECT_EQ(cache.starts.front()->local, kept.local) << name << ": made twice";
+    EXPECT_EQ(mesh_of(again).positions, mesh_of(alone).positions) << name;
+    EXPECT_EQ(mesh_of(again).corner_vertices, mesh_of(alone).corner_vertices) << name;
+    EXPECT_EQ(mesh_of(again).corner_normals, mesh_of(alone).corner_normals) << name;
+    // What was spared counts as its building time all the same.
+    EXPECT_GE(again.surfaces.front().info.build_ms, kept.local_ms) << name;
+    // Meshes as fine everywhere start from the same cage.
+    const SurfaceSettings uniform{.kind = "mesh", .level = 2};
+    const SceneModel shared = build_model(scene, uniform, &cache);
+    EXPECT_EQ(cache.starts.front()->cage, kept.cage) << name << ": found twice";
+    EXPECT_EQ(mesh_of(shared).positions, mesh_of(build_model(scene, uniform)).positions) << name;
+  }
 }
 
 TEST(LocalModel, NoRayPassesThroughIt) {

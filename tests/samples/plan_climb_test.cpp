@@ -168,5 +168,36 @@ TEST(PlanClimb, ARungThatCannotBeBuiltEndsTheLadder) {
   EXPECT_EQ(climb.coarsest_meeting(1.0), nullptr);
 }
 
+TEST(PlanClimb, AFinerOrCoarserLocalMeshIsNotTriedWhereItsStartAloneTakesAsLongAsWhatMeetsTheTolerance) {
+  Ladder ladder = grids();
+  ladder.local.emplace();
+  Climb climb = begin(ladder, {});
+  climb.add({0, 8.0, 100.0, 1.0});
+  // Fails, and nothing that is left can be faster than its coarse mesh, 90 ms.
+  ladder.fixed_ms = 90.0;
+  EXPECT_NE(reason_to_stop(climb, 1.0, 95.0), "");
+  // There may be much to win where the coarse mesh is a small part, or where nothing else meets the tolerance.
+  ladder.fixed_ms = 10.0;
+  EXPECT_EQ(reason_to_stop(climb, 1.0, 1e6), "");
+  ladder.fixed_ms = 90.0;
+  EXPECT_EQ(reason_to_stop(climb, 1.0, {}), "");
+}
+
+TEST(PlanClimb, PicturesOfFinerMeshesAreExpectedToTakeLongerThoseOfGridsAreNot) {
+  Ladder ladder;
+  ladder.rungs = {0, 1, 2, 3};
+  ladder.by_level = true;
+  Climb climb{.ladder = &ladder, .limit = 4};
+  climb.add({2, 1.0, 4.0, 10.0});
+  EXPECT_GT(expected_ms(climb, 3), 4.0 * 4.0 + 1.9 * 10.0);
+  EXPECT_LT(expected_ms(climb, 3), 4.0 * 4.0 + 3.8 * 10.0);
+  // Coarser ones save no pixel.
+  EXPECT_DOUBLE_EQ(expected_ms(climb, 1), 1.0 + 10.0);
+  const Ladder grid = grids();
+  Climb other{.ladder = &grid, .limit = kRungs};
+  other.add({4, 1.0, 4.0, 10.0});
+  EXPECT_NEAR(expected_ms(other, 6), 4.0 * 4.0 + 10.0, 0.1);
+}
+
 }  // namespace
 }  // namespace limn

@@ -176,7 +176,13 @@ class Walk {
       const int place = cell_[axis] - bound_->origin[axis];
       if (place < bound_->lower[axis] || place >= bound_->upper[axis]) return is_on_side(leaf);
     }
-    if (!known_) return false;
+    return beside_slab(t1);
+  }
+
+  /// True where the ray's stretch t_ to t1 lies on its own side of the slab that holds the surface in the leaf. It is straight: its ends
+  /// tell.
+  bool beside_slab(double t1) const {
+    if (bound_ == nullptr || !known_) return false;
     constexpr double kSteps = 16.0;
     const glm::dvec3 normal(bound_->normal[0], bound_->normal[1], bound_->normal[2]);
     const glm::dvec3 origin(bound_->origin[0], bound_->origin[1], bound_->origin[2]);
@@ -186,6 +192,8 @@ class Walk {
   }
 
   HitStatus walk_cells(const Block& leaf, const Leaf& node, GridRoot& root) {
+    // Most rays pass most leaves beside the surface: no cell would tell more than the leaf does.
+    if (beside_slab(std::max(t_, std::min(exit_of(ray_, leaf).t, t_max_)))) return HitStatus::miss;
     while (true) {
       const Block cell{cell_, 1};
       const Exit exit = exit_of(ray_, cell);

@@ -10,8 +10,8 @@ namespace limn {
 namespace {
 
 constexpr double kStep = 0.25;  // of a voxel: how far rays look ahead near the surface
-constexpr double kLift =
-    1e-5;  // of a voxel: rays start from the curves' own points, beside other lines that lie within a hundredth of a pixel
+// Of a voxel: rays start from the curves' own points, beside other lines that may lie within a hundredth of a pixel.
+constexpr double kLift = 1e-5;
 constexpr int kHalvings = 12;       // of a step, to a root
 constexpr double kShortest = 1e-4;  // of a voxel: sheets closer together are none
 

@@ -62,7 +62,7 @@ constexpr DocumentedKey kRowColumns[] = {
     {"", "time_ms", "ms", "build_ms + trace_ms + border_ms"},
     {"", "time_low_ms", "ms", "the same of the least times"},
     {"", "time_high_ms", "ms", "the same of the largest times"},
-    {"", "build_ms", "ms", "making the model: the median of up to 3 times, as long as these take half a second"},
+    {"", "build_ms", "ms", "making the model: the median of up to 3 times, as long as these take less than a tenth of a second"},
     {"", "build_low_ms", "ms", "the least of these times"},
     {"", "build_high_ms", "ms", "the largest of these times"},
     {"", "trace_ms", "ms", "tracing its picture, a ray a pixel: the median of up to 3 times"},

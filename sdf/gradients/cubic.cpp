@@ -1,38 +1,56 @@
+#include <array>
+
 #include "sdf/gradients/gradients.h"
 #include "sdf/gradients/spline_cell.h"
 
 namespace limn {
 namespace {
 
+/// Coefficients of the cells that one call's points lie in: points of a batch share cells, where voxels are larger than what lies between
+/// them.
+class CellCoefficients {
+ public:
+  explicit CellCoefficients(const LevelSetData& data) : accessor_(data.accessor()) {}
+
+  const std::array<double, 64>& at(const nanovdb::Coord& node) {
+    const auto low = [](int x) { return static_cast<size_t>(x & 3); };
+    Entry& entry = entries_[low(node[0]) * 16 + low(node[1]) * 4 + low(node[2])];
+    if (!entry.filled || entry.node != node) entry = {true, node, spline_coefficients(accessor_, node)};
+    return entry.coefficients;
+  }
+
+ private:
+  struct Entry {
+    bool filled = false;
+    nanovdb::Coord node{};
+    std::array<double, 64> coefficients;
+  };
+  nanovdb::FloatGrid::AccessorType accessor_;
+  std::array<Entry, 64> entries_;
+};
+
 void gradients_of_spline(const LevelSetData& data, std::span<const glm::dvec3> points, std::span<glm::dvec3> gradients) {
-  const auto accessor = data.accessor();
+  CellCoefficients cells(data);
   for (size_t i = 0; i < points.size(); ++i) {
     const CellPoint at = cell_point(data.index_from_world.point(points[i]));
-    gradients[i] = data.world_gradient(jet_of_spline(spline_coefficients(accessor, at.node), at.local, false).gradient);
+    gradients[i] = data.world_gradient(jet_of_spline(cells.at(at.node), at.local, false).gradient);
   }
 }
 
 void values_of_spline(const LevelSetData& data, std::span<const glm::dvec3> points, std::span<double> values) {
-  const auto accessor = data.accessor();
-  // Points come cell by cell where a grid is resampled.
-  nanovdb::Coord cell;
-  std::array<double, 64> c;
+  CellCoefficients cells(data);
   for (size_t i = 0; i < points.size(); ++i) {
     const CellPoint at = cell_point(data.index_from_world.point(points[i]));
-    if (i == 0 || at.node != cell) {
-      c = spline_coefficients(accessor, at.node);
-      cell = at.node;
-    }
-    values[i] = jet_of_spline(c, at.local, false).value;
+    values[i] = value_of_spline(cells.at(at.node), at.local);
   }
 }
 
 void hessians_of_spline(const LevelSetData& data, std::span<const glm::dvec3> points, std::span<FieldJet> jets) {
-  const auto accessor = data.accessor();
+  CellCoefficients cells(data);
   const glm::dmat3& index_from_world = data.index_from_world.linear;
   for (size_t i = 0; i < points.size(); ++i) {
     const CellPoint at = cell_point(data.index_from_world.point(points[i]));
-    jets[i] = jet_of_spline(spline_coefficients(accessor, at.node), at.local, true);
+    jets[i] = jet_of_spline(cells.at(at.node), at.local, true);
     jets[i].gradient = data.world_gradient(jets[i].gradient);
     jets[i].hessian = glm::transpose(index_from_world) * jets[i].hessian * index_from_world;
   }

@@ -67,8 +67,14 @@ struct PointSample {
   glm::vec3 normal{0.0f};              ///< World, unit.
   float n_dot_v = 0.0f;                ///< N.V, negative where the surface shows its back.
 };
+/// How rays through single image points are traced.
+enum class PointRays : std::uint8_t {
+  one_by_one,  ///< Each by itself; a level set's in double precision.
+  in_packets   ///< As pictures are traced: many times as quick for level sets, whose hits then are a picture's own.
+};
 /// Traces single image points: for tests and for metrics at sub-pixel precision. Sizes equal.
-void sample_points(const SceneModel& model, const Camera& camera, std::span<const glm::dvec2> points_px, std::span<PointSample> samples);
+void sample_points(const SceneModel& model, const Camera& camera, std::span<const glm::dvec2> points_px, std::span<PointSample> samples,
+                   PointRays rays = PointRays::one_by_one);
 
 /// Pixels by what became of their ray.
 struct HitCounts {

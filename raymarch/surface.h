@@ -145,6 +145,8 @@ struct Surface {
   std::shared_ptr<const void> state{};  ///< Handed to the functions below.
   /// Finds the first hit of each ray in [t_min, t_max). Never null in a surface that was built.
   void (*trace)(const void* state, const RayBatch& rays, HitBatch& hits) = nullptr;
+  /// The same as pictures are traced: in packets, in single precision, for rays anywhere. Null: `trace` is as quick.
+  void (*trace_packets)(const void* state, const RayBatch& rays, HitBatch& hits) = nullptr;
   /// Prepares for a picture, on the threads of the surrounding arena. Null: nothing to prepare.
   SurfaceView (*view)(const std::shared_ptr<const void>& state, const ViewRequest& request) = nullptr;
   Box bounds{};                                ///< Render space; infinite where the object is.

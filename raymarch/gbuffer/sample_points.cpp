@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "raymarch/gbuffer/picture_rays.h"
 #include "raymarch/gbuffer/trace_scene.h"
@@ -63,19 +66,33 @@ PointSample sample_of(const Setup& setup, const TracedBatch& batch, int i) {
   return sample;
 }
 
+/// What a packet's rays meet then is near to each other.
+void sort_by_tiles(std::span<const glm::dvec2> points_px, std::vector<size_t>& order) {
+  constexpr double kTile_px = 8.0;
+  const auto tile = [&](size_t k) {
+    const glm::dvec2 at = glm::floor(points_px[k] / kTile_px);
+    return std::pair(at.y, at.x);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return tile(a) < tile(b); });
+}
+
 }  // namespace
 
-void sample_points(const SceneModel& model, const Camera& camera, std::span<const glm::dvec2> points_px, std::span<PointSample> samples) {
+void sample_points(const SceneModel& model, const Camera& camera, std::span<const glm::dvec2> points_px, std::span<PointSample> samples,
+                   PointRays rays) {
   LIMN_CHECK(points_px.size() == samples.size());
   const Camera render_camera = moved(camera, model.render_origin);
   const Setup setup{model, render_camera, scene_extent(model), turned_surfaces(model.surfaces, render_camera)};
+  std::vector<size_t> order(points_px.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  if (rays == PointRays::in_packets) sort_by_tiles(points_px, order);
   TracedBatch batch;
-  for (size_t first = 0; first < points_px.size(); first += kRayBatchSize) {
-    const size_t count = std::min<size_t>(kRayBatchSize, points_px.size() - first);
+  for (size_t first = 0; first < order.size(); first += kRayBatchSize) {
+    const std::span<const size_t> part = std::span(order).subspan(first, std::min<size_t>(kRayBatchSize, order.size() - first));
     batch.rays.count = 0;
-    for (size_t k = 0; k < count; ++k) add_ray(setup, points_px[first + k].x, points_px[first + k].y, batch);
-    trace_scene(model, setup.turned, batch.rays, batch.found);
-    for (size_t k = 0; k < count; ++k) samples[first + k] = sample_of(setup, batch, static_cast<int>(k));
+    for (const size_t k : part) add_ray(setup, points_px[k].x, points_px[k].y, batch);
+    trace_scene(model, setup.turned, rays, batch.rays, batch.found);
+    for (size_t i = 0; i < part.size(); ++i) samples[part[i]] = sample_of(setup, batch, static_cast<int>(i));
   }
 }
 

@@ -151,12 +151,15 @@ bool touches(const ModelView& view, const PixelTile& tile) {
   return any;
 }
 
-void trace_scene(const SceneModel& model, std::span<const char> turned, RayBatch& rays, SceneHits& found) {
+void trace_scene(const SceneModel& model, std::span<const char> turned, PointRays how, RayBatch& rays, SceneHits& found) {
   const auto visit = [&](const auto& take) {
     for (size_t k = 0; k < model.surfaces.size(); ++k) take(k);
   };
-  trace_all(model.surfaces.size(), rays, found, visit,
-            [&](size_t k, HitBatch& hits) { model.surfaces[k].trace(model.surfaces[k].state.get(), rays, hits); });
+  trace_all(model.surfaces.size(), rays, found, visit, [&](size_t k, HitBatch& hits) {
+    const Surface& surface = model.surfaces[k];
+    const bool packets = how == PointRays::in_packets && surface.trace_packets != nullptr;
+    (packets ? surface.trace_packets : surface.trace)(surface.state.get(), rays, hits);
+  });
   turn_normals(turned, rays, found);
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "raymarch/gbuffer.h"
 #include "raymarch/surface.h"
 #include "sdf/camera.h"
 
@@ -36,7 +37,7 @@ bool touches(const ModelView& view, const PixelTile& tile);
 
 /// Shortens rays.t_max to the hits. A ray that ran out of steps hides what lies behind that point: nobody knows what is there. Normals of
 /// surfaces that are `turned` (empty: none) point towards the ray's origin.
-void trace_scene(const SceneModel& model, std::span<const char> turned, RayBatch& rays, SceneHits& found);
+void trace_scene(const SceneModel& model, std::span<const char> turned, PointRays how, RayBatch& rays, SceneHits& found);
 void trace_scene(const SceneModel& model, const ModelView& view, const PixelTile& tile, RayBatch& rays, SceneHits& found);
 
 }  // namespace limn

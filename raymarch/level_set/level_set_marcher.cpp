@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "raymarch/level_set/trace.h"
+#include "raymarch/level_set/single_rays.h"
 #include "raymarch/level_set/walk.h"
 #include "raymarch/scene/curvature.h"
 #include "sdf/level_set_data.h"
@@ -32,6 +32,9 @@ struct State {
   // Of the grid's leaves, for rays that walk it: found when the first of them does, which in most calls none does.
   mutable std::once_flag crossed_once{};
   mutable CrossedLeaves crossed{};
+  // For packets of points asked for singly: made when the first of them comes.
+  mutable std::once_flag singles_once{};
+  mutable SingleRayBricks singles{};
 };
 
 /// Null where there are no bricks to know it from.
@@ -148,6 +151,25 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   }
 }
 
+/// What is the same for all packets, but for the view.
+BrickTrace brick_trace(const State& state) {
+  BrickTrace how;
+  how.gradient = state.brick_gradient;
+  if (!state.lowered_in_bricks.empty()) how.lowered = state.lowered_in_bricks.data();
+  const glm::dmat3 normal_from_index = state.normal_from_grid * glm::transpose(state.level_set.data().index_from_world.linear);
+  for (int k = 0; k < 9; ++k) how.normal_from_index[k] = static_cast<float>(normal_from_index[k / 3][k % 3]);
+  return how;
+}
+
+void trace_packets(const void* opaque, const RayBatch& rays, HitBatch& hits) {
+  const State& state = *static_cast<const State*>(opaque);
+  std::call_once(state.singles_once, [&] { state.singles = for_single_rays(state.bricks, state.walked.index_from_render); });
+  const Accessor accessor = state.level_set.data().accessor();
+  const auto is_inside = [&](const glm::dvec3& place) { return interpolated(accessor, state.walked.index_from_render.point(place)) < 0.0; };
+  const SingleRayBricks* const size = &state.singles;
+  trace_single_rays({&size, 1}, brick_trace(state), is_inside, rays, hits);
+}
+
 /// What a picture's tiles are traced with.
 struct PictureState {
   std::shared_ptr<const BrickView> view;
@@ -165,11 +187,8 @@ SurfaceView view_picture(const std::shared_ptr<const void>& opaque, const ViewRe
   auto picture = std::make_shared<PictureState>();
   picture->view = view_bricks(state->bricks, state->walked.index_from_render, eye_inside(*state, request.camera), request);
   if (!picture->view) return {};
+  picture->trace = brick_trace(*state);
   picture->trace.view = picture->view.get();
-  picture->trace.gradient = state->brick_gradient;
-  if (!state->lowered_in_bricks.empty()) picture->trace.lowered = state->lowered_in_bricks.data();
-  const glm::dmat3 normal_from_index = state->normal_from_grid * glm::transpose(state->level_set.data().index_from_world.linear);
-  for (int k = 0; k < 9; ++k) picture->trace.normal_from_index[k] = static_cast<float>(normal_from_index[k / 3][k % 3]);
   return {.state = picture,
           .touches = [](const void* p, const PixelTile& tile) { return touches(*static_cast<const PictureState*>(p)->view, tile); },
           .trace =
@@ -267,6 +286,7 @@ Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_ob
   }
   Surface surface;
   surface.trace = trace;
+  if (state->bricks) surface.trace_packets = trace_packets;
   surface.view = view_picture;
   const Box world = transform(world_from_object, transform(data.info.world_from_index, cells));
   surface.bounds = {world.lower - render_origin, world.upper - render_origin};

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "raymarch/level_set/brick_layout.h"
-#include "raymarch/level_set/trace.h"
+#include "raymarch/level_set/single_rays.h"
 #include "raymarch/local/local_nodes.h"
 #include "raymarch/scene/curvature.h"
 #include "sdf/error.h"
@@ -16,19 +16,12 @@
 namespace limn {
 namespace {
 
-/// Bricks of one voxel size.
-struct SizedBricks {
-  std::shared_ptr<const RayBricks> bricks{};
-  BrickTree tree{};
-  BrickView outside{}, inside{};  ///< For rays that no picture has, by the side on which they start.
-};
-
 struct State {
   explicit State(Field of) : field(std::move(of)) {}
   Field field;
   BrickGradient gradient = BrickGradient::central;
-  std::vector<SizedBricks> sizes{};  ///< The smallest voxels first.
-  Box bounds{};                      ///< Render space.
+  std::vector<SingleRayBricks> sizes{};  ///< The smallest voxels first.
+  Box bounds{};                          ///< Render space.
 };
 
 BrickGradient brick_gradient(const GradientDescriptor& gradient) {
@@ -64,7 +57,7 @@ std::optional<bool> inside_brick(const RayBricks& bricks, const glm::dvec3& plac
 /// Beside the bricks the surface is not near, and the field tells.
 bool is_inside(const State& state, const glm::dvec3& point, std::optional<FieldEvaluator>& evaluator) {
   if (glm::any(glm::lessThan(point, state.bounds.lower)) || glm::any(glm::greaterThan(point, state.bounds.upper))) return false;
-  for (const SizedBricks& size : state.sizes)
+  for (const SingleRayBricks& size : state.sizes)
     if (const auto inside = inside_brick(*size.bricks, size.outside.index_from_render.point(point))) return *inside;
   if (!evaluator) evaluator.emplace(state.field);
   return evaluator->value(point) < 0.0;
@@ -73,29 +66,10 @@ bool is_inside(const State& state, const glm::dvec3& point, std::optional<FieldE
 void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   const State& state = *static_cast<const State*>(opaque);
   std::optional<FieldEvaluator> evaluator;
-  std::vector<BrickTrace> sizes(state.sizes.size());
-  std::vector<const BrickTree*> trees(state.sizes.size());
-  for (const bool inside : {false, true}) {
-    // Packets are whole: lanes without a ray are idle.
-    RayBatch own;
-    own.count = (rays.count + 15) / 16 * 16;
-    bool any = false;
-    for (int i = 0; i < own.count; ++i) {
-      own.set(i, glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0), 0.0, -1.0);
-      if (i >= rays.count || !(rays.t_min[i] < rays.t_max[i])) continue;
-      const glm::dvec3 origin(rays.origin(i)), direction(rays.direction(i));
-      if (is_inside(state, origin + static_cast<double>(rays.t_min[i]) * direction, evaluator) != inside) continue;
-      own.set(i, origin, direction, static_cast<double>(rays.t_min[i]), static_cast<double>(rays.t_max[i]));
-      any = true;
-    }
-    if (!any) continue;
-    for (size_t k = 0; k < sizes.size(); ++k) {
-      sizes[k].view = inside ? &state.sizes[k].inside : &state.sizes[k].outside;
-      sizes[k].gradient = state.gradient;
-      trees[k] = &state.sizes[k].tree;
-    }
-    trace_bricks_singly(sizes, trees, own, hits);
-  }
+  std::vector<const SingleRayBricks*> sizes;
+  for (const SingleRayBricks& size : state.sizes) sizes.push_back(&size);
+  trace_single_rays(
+      sizes, {.gradient = state.gradient}, [&](const glm::dvec3& place) { return is_inside(state, place, evaluator); }, rays, hits);
 }
 
 struct PictureState {
@@ -108,7 +82,7 @@ SurfaceView view_picture(const std::shared_ptr<const void>& opaque, const ViewRe
   auto picture = std::make_shared<PictureState>();
   std::optional<FieldEvaluator> evaluator;
   const bool inside = is_inside(*state, request.camera.eye, evaluator);
-  for (const SizedBricks& size : state->sizes) {
+  for (const SingleRayBricks& size : state->sizes) {
     picture->views.push_back(view_bricks(size.bricks, size.outside.index_from_render, inside, request));
     if (!picture->views.back()) return {};
     picture->sizes.push_back({.view = picture->views.back().get(), .gradient = state->gradient});
@@ -126,19 +100,6 @@ SurfaceView view_picture(const std::shared_ptr<const void>& opaque, const ViewRe
 void evaluate_curvatures(const void* opaque, std::span<const SurfacePoint> points, std::span<SurfaceCurvature> curvatures) {
   FieldEvaluator evaluator(static_cast<const State*>(opaque)->field);
   for (size_t i = 0; i < points.size(); ++i) curvatures[i] = facing(curvature_of_jet(evaluator.jet(points[i].position)), points[i].normal);
-}
-
-BrickView view_for_single_rays(const std::shared_ptr<const RayBricks>& bricks, bool inside) {
-  BrickView view;
-  view.bricks = bricks;
-  view.groups = &bricks->groups.front();
-  view.index_from_render = inverse(bricks->world_from_index);
-  const glm::dvec3 size(bricks->upper - bricks->lower), middle = 0.5 * glm::dvec3(bricks->lower + bricks->upper);
-  // Rays start where they enter the scene's bounding sphere, or in it.
-  const double reach = 4.0 * glm::length(size) + 2.0 * glm::length(middle);
-  view.slack_voxels = static_cast<float>(std::max(1e-3, 16.0 * reach * std::numeric_limits<float>::epsilon()));
-  view.side = inside ? -1.0f : 1.0f;
-  return view;
 }
 
 /// Null where the surface crosses none of the chosen bricks of that size.
@@ -167,15 +128,11 @@ std::shared_ptr<const RayBricks> ray_bricks(const LevelNodes& nodes, const Local
   return bricks;
 }
 
-void add(std::shared_ptr<const RayBricks> bricks, State& state, SurfaceInfo& info) {
-  SizedBricks size;
-  size.tree = tree_of(*bricks);
-  size.outside = view_for_single_rays(bricks, false);
-  size.inside = view_for_single_rays(bricks, true);
+void add(const std::shared_ptr<const RayBricks>& bricks, State& state, SurfaceInfo& info) {
+  SingleRayBricks size = for_single_rays(bricks, inverse(bricks->world_from_index));
   state.bounds = merge(state.bounds, transform(bricks->world_from_index, {glm::dvec3(bricks->lower), glm::dvec3(bricks->upper)}));
   info.ray_bytes += bricks->bytes() + size.tree.bytes();
   info.prepare_ms += bricks->prepare_ms;
-  size.bricks = std::move(bricks);
   state.sizes.push_back(std::move(size));
 }
 
@@ -190,7 +147,7 @@ Surface surface_of(const Field& field, const LocalBrickSettings& settings, doubl
     surface.info.voxels += levels[level].known();
     if (auto bricks = ray_bricks(levels[level], choice, level, half_width_voxels, state->gradient == BrickGradient::cubic)) {
       if (surface.info.voxel_size == 0.0) surface.info.voxel_size = choice.voxel_of(level);
-      add(std::move(bricks), *state, surface.info);
+      add(bricks, *state, surface.info);
     }
     levels[level] = {};
   }

@@ -200,7 +200,8 @@ class Refiner {
     rays += static_cast<std::int64_t>(points.size());
     parallel_parts(points.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
       const size_t count = range.end() - range.begin();
-      sample_points(model_, camera_, std::span(points).subspan(range.begin(), count), std::span(samples).subspan(range.begin(), count));
+      sample_points(model_, camera_, std::span(points).subspan(range.begin(), count), std::span(samples).subspan(range.begin(), count),
+                    PointRays::in_packets);
     });
   }
 

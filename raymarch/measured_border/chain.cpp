@@ -147,7 +147,7 @@ class Chainer {
 
   std::int64_t decide_open_cells() {
     std::vector<PointSample> samples(middles_.size());
-    sample_points(model_, camera_, middles_, samples);
+    sample_points(model_, camera_, middles_, samples, PointRays::in_packets);
     for (size_t k = 0; k < open_.size(); ++k) {
       const std::vector<RimCrossing>& rim = open_[k].rim;
       const bool inside = bounded(crossings_[rim[0].crossing], samples[k]);

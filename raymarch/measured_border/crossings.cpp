@@ -64,7 +64,7 @@ class Band {
         points.push_back(search.line.start_px + at.back() * search.line.along);
       }
       samples.resize(points.size());
-      sample_points(model_, camera_, points, samples);
+      sample_points(model_, camera_, points, samples, PointRays::in_packets);
       rays += static_cast<std::int64_t>(points.size());
       std::vector<Search> searches;
       searches.swap(active_);

@@ -164,7 +164,7 @@ class NeckJoiner {
       points.push_back(glm::mix(one.middle, other.middle, shares.back()));
     }
     std::vector<PointSample> samples(points.size());
-    sample_points(model_, camera_, points, samples);
+    sample_points(model_, camera_, points, samples, PointRays::in_packets);
     rays += static_cast<std::int64_t>(points.size());
     for (size_t k = 0; k < points.size(); ++k)
       if (!is_like(samples[k], one, other, shares[k], bounded)) return false;

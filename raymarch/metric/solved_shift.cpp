@@ -210,7 +210,7 @@ void ask(const SceneModel& model, const Camera& camera, std::span<const ShiftLin
          std::vector<PointSample>& seen) {
   std::vector<glm::dvec2> points(lines.size());
   for (size_t i = 0; i < lines.size(); ++i) points[i] = lines[i].px + profiles[i].asked_px * lines[i].outward;
-  sample_points(model, camera, points, seen);
+  sample_points(model, camera, points, seen, PointRays::in_packets);
 }
 
 /// Where N.V meets the threshold elsewhere, too, and which of the places is the border's.

@@ -4,7 +4,6 @@
 #include <bit>
 #include <limits>
 #include <optional>
-#include <unordered_set>
 
 #include "sdf/level_set_distance.h"
 #include "sdf/level_set_nano.h"
@@ -17,9 +16,9 @@ glm::ivec3 block_of(const glm::ivec3& node) { return node & ~7; }
 size_t place_in_block(const glm::ivec3& node) { return static_cast<size_t>((node.x & 7) << 6 | (node.y & 7) << 3 | (node.z & 7)); }
 
 NodeBlock& block_at(LevelNodes& nodes, const glm::ivec3& origin, const Field& field) {
-  const auto [found, is_new] = nodes.at.emplace(key_of(origin), nodes.blocks.size());
+  const auto [number, is_new] = nodes.at.add(key_of(origin));
   if (is_new) nodes.blocks.emplace_back(origin, field);
-  return nodes.blocks[found->second];
+  return nodes.blocks[number];
 }
 
 /// The 9^3 nodes of a brick: all of its own block, and the first layers of those behind.
@@ -51,44 +50,66 @@ ReadNodes nodes_read(const CrossedCells& crossed, const Stencil& stencil) {
 void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeValues& values) {
   for (int corner = 0; corner < 8; ++corner) {
     const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
-    const NodeBlock& block = nodes.blocks[nodes.at.at(key_of(origin + 8 * step))];
+    const float* const from = nodes.blocks[nodes.at.find(key_of(origin + 8 * step))].values.data();
     for (int x = 0; x < (step.x ? 1 : 8); ++x)
-      for (int y = 0; y < (step.y ? 1 : 8); ++y)
-        for (int z = 0; z < (step.z ? 1 : 8); ++z)
-          values[static_cast<size_t>(brick_element(8 * step.x + x, 8 * step.y + y, 8 * step.z + z))] =
-              block.values[static_cast<size_t>(x << 6 | y << 3 | z)];
+      for (int y = 0; y < (step.y ? 1 : 8); ++y) {
+        float* const to = &values[static_cast<size_t>(brick_element(8 * step.x + x, 8 * step.y + y, 8 * step.z))];
+        const float* const row = from + (x << 6 | y << 3);
+        // Lengths that the compiler knows.
+        if (step.z)
+          *to = *row;
+        else
+          std::copy_n(row, 8, to);
+      }
   }
+}
+
+/// Of the nodes about a brick those that are not its own, which are known.
+void want_read(const LocalBrick& brick, const ReadNodes& read, LevelNodes& nodes) {
+  std::array<NodeBlock*, 27> blocks{};
+  for (int x = -2; x <= 10; ++x)
+    for (int y = -2; y <= 10; ++y) {
+      std::uint32_t bits = read[static_cast<size_t>(x) + 2][static_cast<size_t>(y) + 2];
+      if (x >= 0 && x <= 8 && y >= 0 && y <= 8) bits &= ~(0x1ffu << 2);
+      // Of a row, nodes -2 and -1, 0 to 7, 8 to 10 lie in a block each, from these nodes of it on.
+      const std::array<std::uint64_t, 3> rows{std::uint64_t{bits & 3} << 6, bits >> 2 & 0xff, bits >> 10};
+      for (int z = 0; z < 3; ++z) {
+        const std::uint64_t row = rows[static_cast<size_t>(z)];
+        if (row == 0) continue;
+        const glm::ivec3 step(x >> 3, y >> 3, z - 1);
+        NodeBlock*& block = blocks[static_cast<size_t>(9 * (step.x + 1) + 3 * (step.y + 1) + z)];
+        if (!block) block = &block_at(nodes, 8 * (brick.place + step), brick.field);
+        block->wanted[static_cast<size_t>(x & 7)] |= row << 8 * (y & 7);
+      }
+    }
 }
 
 /// What the stencils of crossed cells read beyond their brick.
 void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil, LevelNodes& nodes) {
-  std::vector<ReadNodes> read(bricks.size());
-  parallel_parts(bricks.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
-    NodeValues values;
-    for (size_t i = range.begin(); i < range.end(); ++i) {
-      load_brick(nodes, 8 * bricks[i].place, values);
-      const CrossedCells crossed = crossed_cells_of(values.data());
-      if (crossed.any) read[i] = nodes_read(crossed, stencil);
-    }
-  });
-  for (size_t i = 0; i < bricks.size(); ++i)
-    for (int x = -2; x <= 10; ++x)
-      for (int y = -2; y <= 10; ++y) {
-        std::uint32_t bits = read[i][static_cast<size_t>(x) + 2][static_cast<size_t>(y) + 2];
-        // Its own nodes are known.
-        if (x >= 0 && x <= 8 && y >= 0 && y <= 8) bits &= ~(0x1ffu << 2);
-        for (; bits != 0; bits &= bits - 1) {
-          const glm::ivec3 node = 8 * bricks[i].place + glm::ivec3(x, y, std::countr_zero(bits) - 2);
-          const size_t n = place_in_block(node);
-          block_at(nodes, block_of(node), bricks[i].field).wanted[n >> 6] |= std::uint64_t{1} << (n & 63);
-        }
+  // So many at once stay in the cache.
+  constexpr size_t kAtOnce = 1024;
+  std::vector<ReadNodes> read(std::min(bricks.size(), kAtOnce));
+  std::vector<std::uint8_t> crosses(read.size());
+  for (size_t first = 0; first < bricks.size(); first += kAtOnce) {
+    const size_t count = std::min(bricks.size() - first, kAtOnce);
+    parallel_parts(count, size_t{64}, [&](const IndexRange<size_t>& range) {
+      NodeValues values;
+      for (size_t i = range.begin(); i < range.end(); ++i) {
+        load_brick(nodes, 8 * bricks[first + i].place, values);
+        const CrossedCells crossed = crossed_cells_of(values.data());
+        crosses[i] = crossed.any;
+        if (crossed.any) read[i] = nodes_read(crossed, stencil);
       }
+    });
+    for (size_t i = 0; i < count; ++i)
+      if (crosses[i]) want_read(bricks[first + i], read[i], nodes);
+  }
 }
 
 /// The bricks twice as large, and their values.
 struct Larger {
   const LevelNodes* nodes = nullptr;
-  std::unordered_set<std::uint64_t> bricks{};
+  KeyNumbers bricks{};
 };
 
 /// The larger bricks that nodes of a block (of the smaller voxels) may lie on: [k] the one before along the axes of bit k.
@@ -146,37 +167,63 @@ void evaluate(DistanceEvaluator& distance, NodeBlock& block, const LocalChoice& 
   std::array<double, 512> distances;
   std::array<std::uint16_t, 512> places;
   size_t count = 0;
+  std::optional<LargerBeside> beside;
+  if (larger) beside.emplace(*larger, block.origin);
+  if (beside && !beside->any()) beside.reset();
+  const auto set = [&](size_t n, double value) {
+    block.values[n] = static_cast<float>(quantised(static_cast<float>(value), steps_per_unit)) / steps_per_unit;
+  };
   for (size_t word = 0; word < 8; ++word)
     for (std::uint64_t bits = block.wanted[word] & ~block.known[word]; bits != 0; bits &= bits - 1) {
       const auto n = static_cast<int>(word) << 6 | std::countr_zero(bits);
       const glm::ivec3 node = block.origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7);
+      // What a larger brick tells is not asked of the field.
+      if (beside && beside->holds(node)) {
+        set(static_cast<size_t>(n), beside->interpolated(node));
+        continue;
+      }
       points[count] = choice.origin + h * glm::dvec3(node);
       places[count++] = static_cast<std::uint16_t>(n);
     }
-  if (count == 0) return;
-  signed_distances(distance, std::span(points).first(count), half_width, std::span(distances).first(count));
-  std::optional<LargerBeside> beside;
-  if (larger) beside.emplace(*larger, block.origin);
-  if (beside && !beside->any()) beside.reset();
-  for (size_t k = 0; k < count; ++k) {
-    const size_t n = places[k];
-    const glm::ivec3 node = block.origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7);
-    double value = std::clamp(distances[k], -half_width, half_width);
-    if (beside && beside->holds(node)) value = beside->interpolated(node);
-    block.values[n] = static_cast<float>(quantised(static_cast<float>(value), steps_per_unit)) / steps_per_unit;
-  }
+  if (count > 0) signed_distances(distance, std::span(points).first(count), half_width, std::span(distances).first(count));
+  for (size_t k = 0; k < count; ++k) set(places[k], std::clamp(distances[k], -half_width, half_width));
   for (size_t word = 0; word < 8; ++word) block.known[word] |= block.wanted[word];
 }
 
 }  // namespace
 
-const NodeBlock* LevelNodes::find(const glm::ivec3& origin, const NodeBlock*& last) const {
-  if (last && last->origin == origin) return last;
-  const auto found = at.find(key_of(origin));
-  return last = found == at.end() ? nullptr : &blocks[found->second];
+// Keys are places, close to each other; Fibonacci hashing spreads them. Knuth, "The Art of Computer Programming", vol. 3, 6.4.
+size_t KeyNumbers::slot_of(std::uint64_t key) const {
+  const size_t mask = slots_.size() - 1;
+  size_t slot = (key * 0x9e3779b97f4a7c15u) >> (64 - std::countr_zero(slots_.size()));
+  while (slots_[slot].number != kNone && slots_[slot].key != key) slot = (slot + 1) & mask;
+  return slot;
 }
 
-float LevelNodes::value(const glm::ivec3& node) const { return blocks[at.at(key_of(block_of(node)))].values[place_in_block(node)]; }
+size_t KeyNumbers::find(std::uint64_t key) const { return slots_.empty() ? kNone : slots_[slot_of(key)].number; }
+
+std::pair<size_t, bool> KeyNumbers::add(std::uint64_t key) {
+  if (2 * (count_ + 1) > slots_.size()) grow();
+  Slot& slot = slots_[slot_of(key)];
+  const bool is_new = slot.number == kNone;
+  if (is_new) slot = {key, count_++};
+  return {slot.number, is_new};
+}
+
+void KeyNumbers::grow() {
+  std::vector<Slot> before(std::max(size_t{64}, 4 * slots_.size()));
+  before.swap(slots_);
+  for (const Slot& slot : before)
+    if (slot.number != kNone) slots_[slot_of(slot.key)] = slot;
+}
+
+const NodeBlock* LevelNodes::find(const glm::ivec3& origin, const NodeBlock*& last) const {
+  if (last && last->origin == origin) return last;
+  const size_t number = at.find(key_of(origin));
+  return last = number == KeyNumbers::kNone ? nullptr : &blocks[number];
+}
+
+float LevelNodes::value(const glm::ivec3& node) const { return blocks[at.find(key_of(block_of(node)))].values[place_in_block(node)]; }
 
 std::int64_t LevelNodes::known() const {
   std::int64_t sum = 0;
@@ -209,7 +256,7 @@ std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientD
     Larger larger;
     if (level + 1 < levels.size()) {
       larger.nodes = &levels[level + 1];
-      for (const LocalBrick& brick : choice.levels[level + 1]) larger.bricks.insert(key_of(8 * brick.place));
+      for (const LocalBrick& brick : choice.levels[level + 1]) larger.bricks.add(key_of(8 * brick.place));
     }
     const auto evaluate_all = [&](const Larger* with) {
       parallel_parts(nodes.blocks.size(), size_t{16}, [&](const IndexRange<size_t>& range) {
@@ -222,7 +269,7 @@ std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientD
       });
     };
     for (const LocalBrick& brick : bricks) want_brick(brick, nodes);
-    evaluate_all(larger.bricks.empty() ? nullptr : &larger);
+    evaluate_all(larger.nodes && !choice.levels[level + 1].empty() ? &larger : nullptr);
     // Stencils read the field's own values beyond the brick: they are nearer to the surface's normals than a larger brick's interpolant.
     want_stencils(bricks, gradient.stencil, nodes);
     evaluate_all(nullptr);

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "raymarch/level_set/brick_layout.h"
@@ -21,10 +21,32 @@ struct NodeBlock {
   std::array<float, 512> values;  ///< Of the known ones.
 };
 
+/// Numbers in the order in which their keys (see key_of) came. Slots are open and half of them free: a look touches one line of memory.
+class KeyNumbers {
+ public:
+  static constexpr size_t kNone = ~size_t{0};
+
+  size_t find(std::uint64_t key) const;
+  /// The key's number, its own or the next one, and whether it is new.
+  std::pair<size_t, bool> add(std::uint64_t key);
+  bool contains(std::uint64_t key) const { return find(key) != kNone; }
+
+ private:
+  struct Slot {
+    std::uint64_t key = 0;
+    size_t number = kNone;
+  };
+  size_t slot_of(std::uint64_t key) const;
+  void grow();
+
+  std::vector<Slot> slots_{};  ///< A power of two, or none.
+  size_t count_ = 0;
+};
+
 struct LevelNodes {
   std::deque<NodeBlock> blocks{};
-  std::unordered_map<std::uint64_t, size_t> at{};  ///< By key_of.
-  float steps_per_unit = 0.0f;                     ///< Values are whole numbers of steps, none of them 0.
+  KeyNumbers at{};              ///< By key_of.
+  float steps_per_unit = 0.0f;  ///< Values are whole numbers of steps, none of them 0.
 
   /// Of a node that is known.
   float value(const glm::ivec3& node) const;

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
+#include <limits>
+#include <map>
 #include <random>
 #include <set>
 
@@ -298,6 +301,65 @@ TEST(LocalLevelSet, OnFacesBetweenTwoSizesBothSidesAreTheSameFunction) {
     EXPECT_GT(faces, 100) << name;
     // Half a step, or a whole one where a node would lie on the surface itself.
     EXPECT_LE(worst, 1.001) << name << ": steps";
+  }
+}
+
+/// Sampled is what bricks and the stencils of their crossed cells read, counted here node by node, and nothing else.
+TEST(LocalLevelSet, ItsNodesAreThoseThatBricksAndStencilsRead) {
+  const Scene scene = find_scene("ellipsoid")->make();
+  const Field field = std::get<Field>(scene.objects.front().source);
+  for (const char* name : {"central", "cubic"}) {
+    const Stencil& stencil = find_gradient(name).stencil;
+    const LocalBrickSettings settings{
+        .local = {{camera_of(scene, 0, 4, {60, 60})}, kFinest_px, {0.4}}, .voxel_size = 0.012, .gradient = &find_gradient(name)};
+    const LocalChoice choice = choose_bricks(field, settings);
+    const std::vector<LevelNodes> levels = sample_bricks(choice, *settings.gradient, 2.5);
+    int sizes = 0;
+    for (size_t level = 0; level < levels.size(); ++level) {
+      sizes += !choice.levels[level].empty();
+      const NodeReader reader = levels[level].reader();
+      std::set<std::array<int, 3>> read;
+      const auto add_block = [&](const glm::ivec3& from, int count, const auto& wants) {
+        for (int k = 0; k < count * count * count; ++k) {
+          const glm::ivec3 at(k / (count * count), k / count % count, k % count);
+          if (wants(at)) read.insert({from.x + at.x, from.y + at.y, from.z + at.z});
+        }
+      };
+      for (const LocalBrick& brick : choice.levels[level]) add_block(8 * brick.place, 9, [](const glm::ivec3&) { return true; });
+      for (const LocalBrick& brick : choice.levels[level])
+        for (int k = 0; k < 512; ++k) {
+          const glm::ivec3 cell = 8 * brick.place + glm::ivec3(k >> 6, k >> 3 & 7, k & 7);
+          int negative = 0;
+          for (int c = 0; c < 8; ++c) negative += reader.value(cell + glm::ivec3(c & 1, c >> 1 & 1, c >> 2)) < 0.0f;
+          if (negative == 0 || negative == 8) continue;
+          add_block(cell - 2, 6,
+                    [&](const glm::ivec3& at) { return (stencil[static_cast<size_t>(at.x)][static_cast<size_t>(at.y)] >> at.z & 1) != 0; });
+        }
+      int unknown = 0;
+      for (const auto& [x, y, z] : read) unknown += reader.value({x, y, z}) == std::numeric_limits<float>::max();
+      EXPECT_EQ(unknown, 0) << name << ", level " << level;
+      EXPECT_EQ(levels[level].known(), static_cast<std::int64_t>(read.size())) << name << ", level " << level;
+    }
+    EXPECT_GE(sizes, 2) << name;
+  }
+}
+
+/// Places of a block, close to each other as bricks' are: each keeps the number that it came with, however many come after it.
+TEST(LocalLevelSet, PlacesKeepTheirNumbers) {
+  std::mt19937 random(random_seed());
+  std::uniform_int_distribution<int> part(-20, 20);
+  KeyNumbers numbers;
+  std::map<std::uint64_t, size_t> expected;
+  EXPECT_EQ(numbers.find(key_of({0, 0, 0})), KeyNumbers::kNone);
+  for (int k = 0; k < 20000; ++k) {
+    const std::uint64_t key = key_of(8 * glm::ivec3(part(random), part(random), part(random)));
+    const auto [found, is_new] = expected.try_emplace(key, expected.size());
+    ASSERT_EQ(numbers.add(key), std::pair(found->second, is_new));
+  }
+  for (int k = 0; k < 41 * 41 * 41; ++k) {
+    const std::uint64_t key = key_of(8 * glm::ivec3(k / 1681 - 20, k / 41 % 41 - 20, k % 41 - 20));
+    const auto found = expected.find(key);
+    ASSERT_EQ(numbers.find(key), found == expected.end() ? KeyNumbers::kNone : found->second);
   }
 }
 

@@ -17,6 +17,7 @@
 #include "tests/bench/growth_suite.h"
 #include "tests/bench/image_methods.h"
 #include "tests/bench/lines_suite.h"
+#include "tests/bench/local_level_sets_suite.h"
 #include "tests/bench/local_proof.h"
 #include "tests/bench/local_suite.h"
 #include "tests/bench/march_suite.h"
@@ -35,6 +36,7 @@ constexpr const char* kUsage = R"(usage: limn-bench [--suite NAME] [options]
           local     local meshes beside meshes as fine everywhere (minutes)
           local-proof   rays through local meshes, and flips along a path (minutes)
           local-calls   whole calls of limn render --tolerance with and without local meshes (minutes)
+          local-level-sets  local level sets beside uniform ones
           lines     view graphs from 26 sides: time and conflicts (minutes)
           growth    whole calls of limn on larger and larger files, beside assimp's reading of them (minutes)
           calls     whole calls of limn beside those of other programs, and their stages
@@ -121,11 +123,10 @@ Settings parse(int argc, char** argv) {
       settings.program = value(flag);
     } else if (flag == "--suite") {
       settings.suite = value(flag);
-      const std::vector<std::string> known{"march",       "fields",      "convert", "images", "plan",  "local",
-                                           "local-proof", "local-calls", "lines",   "growth", "calls", "all"};
+      const std::vector<std::string> known{"march",       "fields",           "convert", "images", "plan",  "local", "local-proof",
+                                           "local-calls", "local-level-sets", "lines",   "growth", "calls", "all"};
       if (std::find(known.begin(), known.end(), settings.suite) == known.end())
-        refuse(flag, settings.suite, "unknown suite",
-               "march, fields, convert, images, plan, local, local-proof, local-calls, lines, growth, calls or all");
+        refuse(flag, settings.suite, "unknown suite", fmt::format("{}", fmt::join(known, ", ")));
     } else if (flag == "--width") {
       settings.width_px = std::min(whole(flag, 16), 16384);
       settings.height_px = std::max(1, settings.width_px * 9 / 16);
@@ -196,6 +197,9 @@ nlohmann::json rows_of(const Settings& settings) {
   const LocalProofSettings proof{settings.scenes, settings.runs, settings.program, settings.table()};
   if (settings.runs_suite("local-proof")) append(bench_local_proof(proof));
   if (settings.runs_suite("local-calls")) append(bench_local_calls(proof));
+  if (settings.runs_suite("local-level-sets"))
+    append(
+        bench_local_level_sets({.scenes = settings.scenes, .voxels = settings.voxels, .runs = settings.runs, .table = settings.table()}));
   if (settings.runs_suite("local")) {
     LocalBenchSettings local{
         .scenes = settings.scenes, .views = settings.views, .only_view = settings.only_view, .table = settings.table()};

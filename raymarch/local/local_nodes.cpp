@@ -77,7 +77,8 @@ void want_read(const LocalBrick& brick, const ReadNodes& read, LevelNodes& nodes
         const std::uint64_t row = rows[static_cast<size_t>(z)];
         if (row == 0) continue;
         const glm::ivec3 step(x >> 3, y >> 3, z - 1);
-        NodeBlock*& block = blocks[static_cast<size_t>(9 * (step.x + 1) + 3 * (step.y + 1) + z)];
+        const int at = 9 * (step.x + 1) + 3 * (step.y + 1) + z;
+        NodeBlock*& block = blocks[static_cast<size_t>(at)];
         if (!block) block = &block_at(nodes, 8 * (brick.place + step), brick.field);
         block->wanted[static_cast<size_t>(x & 7)] |= row << 8 * (y & 7);
       }

@@ -6,10 +6,12 @@
 
 namespace limn {
 
-/// Small pieces come from where all memory does. Throws std::bad_alloc.
+/// Small pieces come from where all memory does. Large ones wait for the next that takes as much, up to 256 MB of them: their pages need
+/// not be cleared again. All threads may ask.
 struct LargePages {
-  static void* take(size_t bytes);      ///< At least one byte.
-  static void give_back(void* memory);  ///< What take() gave.
+  static void* take(size_t bytes);                    ///< At least one byte, unset. Throws std::bad_alloc.
+  static void give_back(void* memory, size_t bytes);  ///< What take() gave, and how much that was. Never throws.
+  static void release();                              ///< Hands what waits to the system.
 };
 
 /// For std::vector: elements that it is given no value for are left unset.
@@ -20,8 +22,8 @@ struct LargePageAllocator {
   /// All are alike.
   template <class U>
   LargePageAllocator(const LargePageAllocator<U>&) {}
-  T* allocate(size_t count) { return static_cast<T*>(LargePages::take(count * sizeof(T))); }  ///< Room for `count` elements.
-  void deallocate(T* memory, size_t) { LargePages::give_back(memory); }                       ///< What allocate() gave.
+  T* allocate(size_t count) { return static_cast<T*>(LargePages::take(count * sizeof(T))); }      ///< Room for `count` elements.
+  void deallocate(T* memory, size_t count) { LargePages::give_back(memory, count * sizeof(T)); }  ///< What allocate() gave.
   /// Leaves it unset.
   template <class U>
   void construct(U*) {}

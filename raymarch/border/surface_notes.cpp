@@ -90,13 +90,14 @@ struct ObjectPixels {
   std::int64_t seen = 0, turned = 0;
 };
 
-/// By id.
+/// By id; nothing is counted where nothing is hit.
 std::vector<ObjectPixels> pixels_of_objects(const GBuffer& gbuffer) {
   return parallel_reduce(
       gbuffer.id.size(), size_t{1} << 14, std::vector<ObjectPixels>{},
       [&](const IndexRange<size_t>& part, std::vector<ObjectPixels> objects) {
         for (size_t i = part.first; i < part.last; ++i) {
           const auto id = static_cast<size_t>(gbuffer.id.pixels[i]);
+          if (id == 0) continue;
           if (id >= objects.size()) objects.resize(id + 1);
           ++objects[id].seen;
           objects[id].turned += gbuffer.n_dot_v.pixels[i] <= 0.0f;

@@ -28,17 +28,22 @@ std::string extension_of(const fs::path& file) {
 bool has_alpha(const std::string& extension) { return extension != ".jpg" && extension != ".jpeg"; }
 
 /// Interleaved 8-bit sRGB: RGBA with alpha kept apart, or RGB over white.
-std::vector<std::uint8_t> srgb_pixels(const Image<glm::vec4>& picture, bool alpha) {
+Pixels<std::uint8_t> srgb_pixels(const Image<glm::vec4>& picture, bool alpha) {
   static const SrgbBytes srgb_byte;
   const size_t channels = alpha ? 4 : 3;
-  std::vector<std::uint8_t> bytes(picture.size() * channels);
+  Pixels<std::uint8_t> bytes(picture.size() * channels);
   parallel_parts(picture.size(), size_t{1} << 14, [&](const IndexRange<size_t>& part) {
     for (size_t i = part.first; i < part.last; ++i) {
       const glm::vec4& color = picture.pixels[i];
+      std::uint8_t* const to = &bytes[i * channels];
+      // Background and ink are most of a picture.
+      if (i > part.first && std::memcmp(&color, &color - 1, sizeof color) == 0) {
+        std::copy_n(to - channels, channels, to);
+        continue;
+      }
       glm::vec3 rgb(color);
       if (!alpha) rgb += 1.0f - color.a;
       if (alpha && color.a > 0.0f) rgb /= color.a;
-      std::uint8_t* const to = &bytes[i * channels];
       for (int channel = 0; channel < 3; ++channel) to[channel] = srgb_byte(rgb[channel]);
       if (alpha) to[3] = to_byte(color.a);
     }
@@ -239,7 +244,7 @@ OutputFile image_output(const Image<glm::vec4>& linear_premultiplied, const std:
   }
   return {file, [&linear_premultiplied, file, extension](const fs::path& temporary) {
             const bool alpha = has_alpha(extension);
-            const std::vector<std::uint8_t> pixels = srgb_pixels(linear_premultiplied, alpha);
+            const Pixels<std::uint8_t> pixels = srgb_pixels(linear_premultiplied, alpha);
             PictureHeader header = srgb_header(linear_premultiplied, alpha);
             if (extension == ".tif" || extension == ".tiff") header.attributes.push_back({"DateTime", kNoTime});
             save(temporary, file, header, pixels.data());

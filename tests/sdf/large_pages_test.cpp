@@ -1,0 +1,76 @@
+// Memory that pictures take and give back.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "sdf/image.h"
+#include "sdf/parallel.h"
+
+namespace limn {
+namespace {
+
+constexpr size_t kMegabyte = size_t{1} << 20;
+
+TEST(LargePages, WhatIsGivenBackIsTakenAgain) {
+  LargePages::release();
+  void* const first = LargePages::take(33 * kMegabyte);
+  std::memset(first, 1, 33 * kMegabyte);
+  LargePages::give_back(first, 33 * kMegabyte);
+  void* const other = LargePages::take(40 * kMegabyte);
+  void* const again = LargePages::take(33 * kMegabyte);
+  EXPECT_NE(other, again);
+  EXPECT_EQ(again, first);
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(again) % (2 * kMegabyte), 0u);
+  LargePages::give_back(other, 40 * kMegabyte);
+  LargePages::give_back(again, 33 * kMegabyte);
+  LargePages::release();
+}
+
+TEST(LargePages, NoMoreThanASmallPartWaits) {
+  LargePages::release();
+  std::vector<void*> given;
+  for (int i = 0; i < 4; ++i) given.push_back(LargePages::take(100 * kMegabyte));
+  for (void* const memory : given) LargePages::give_back(memory, 100 * kMegabyte);
+  // 256 MB wait at most: the last two, of which the last is the first to be taken.
+  EXPECT_EQ(LargePages::take(100 * kMegabyte), given[3]);
+  EXPECT_EQ(LargePages::take(100 * kMegabyte), given[2]);
+  LargePages::give_back(given[2], 100 * kMegabyte);
+  LargePages::give_back(given[3], 100 * kMegabyte);
+  // Larger than all that may wait: it goes, and the others stay.
+  void* const larger = LargePages::take(300 * kMegabyte);
+  LargePages::give_back(larger, 300 * kMegabyte);
+  EXPECT_EQ(LargePages::take(100 * kMegabyte), given[3]);
+  LargePages::give_back(given[3], 100 * kMegabyte);
+  LargePages::release();
+}
+
+// Images of many threads hold what they were filled with, whatever was given back before them.
+TEST(LargePages, ThreadsNeverShareABlock) {
+  const unsigned seed = std::random_device{}();
+  std::printf("seed %u\n", seed);
+  std::atomic<int> wrong = 0, filled = 0;
+  parallel_for(0, 200, [&](int i) {
+    std::mt19937 random(seed + static_cast<unsigned>(i));
+    const int height = std::uniform_int_distribution<int>(1, 3)(random) * 512;
+    Image<std::int32_t> image = Image<std::int32_t>::unset(1024, height);
+    std::fill(image.pixels.begin(), image.pixels.end(), i);
+    const Image<std::int32_t> copy = image;
+    image = {};
+    const Image<float> other(1024, height, -1.0f);
+    for (const std::int32_t pixel : copy.pixels) wrong += pixel != i;
+    for (const float pixel : other.pixels) wrong += pixel != -1.0f;
+    ++filled;
+  });
+  EXPECT_EQ(filled, 200);
+  EXPECT_EQ(wrong, 0);
+}
+
+}  // namespace
+}  // namespace limn

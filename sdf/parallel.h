@@ -14,6 +14,12 @@
 #include <functional>
 #include <utility>
 
+#if defined(LIMN_SPAN)
+#include <optional>
+
+#include "sdf/parallel_span.h"
+#endif
+
 #if defined(__has_feature)
 #if __has_feature(thread_sanitizer)
 #define LIMN_WATCHES_THREADS 1
@@ -51,30 +57,45 @@ inline void tell_done() {}
 inline void hear_done() {}
 #endif
 
-/// Around a loop, and around each of its parts, also where they end by an exception.
+/// Around a loop, and around each of its parts, also where they end by an exception. `place` says whose loop it is; parts of other
+/// libraries' loops know none.
 struct Loop {
-  Loop() { tell_begun(); }
+#if defined(LIMN_SPAN)
+  mutable SpanOfLoop span;
+  explicit Loop(const char* place) : span(place) {}
+#else
+  explicit Loop(const char*) { tell_begun(); }
   ~Loop() { hear_done(); }
+#endif
 };
 struct Part {
-  Part() { hear_begun(); }
+#if defined(LIMN_SPAN)
+  std::optional<SpanOfPart> span{};
+  explicit Part(const Loop* loop) {
+    if (loop != nullptr) span.emplace(loop->span);
+  }
+#else
+  explicit Part(const Loop*) { hear_begun(); }
   ~Part() { tell_done(); }
+#endif
 };
 
 /// What TBB hands from thread to thread: an address and nothing else, so that all that a body refers to stays where the sanitizer sees it.
 template <class Index, class Body>
 struct Parts {
   const Body* body;
+  const Loop* loop;
   LIMN_UNWATCHED void operator()(const tbb::blocked_range<Index>& range) const {
-    const Part part;
+    const Part part(loop);
     (*body)(IndexRange<Index>{range.begin(), range.end()});
   }
 };
 template <class Work>
 struct Once {
   const Work* work;
+  const Loop* loop;
   LIMN_UNWATCHED void operator()() const {
-    const Part part;
+    const Part part(loop);
     (*work)();
   }
 };
@@ -85,18 +106,19 @@ struct Reduction {
   const Value* identity;
   const Body* body;
   const Join* joined;
+  const Loop* loop = nullptr;
   Value value;
 
   Reduction(const Value& from, const Body& by, const Join& with) : identity(&from), body(&by), joined(&with), value(from) {}
   LIMN_UNWATCHED Reduction(Reduction& other, tbb::split)
-      : identity(other.identity), body(other.body), joined(other.joined), value((hear_begun(), *other.identity)) {}
+      : identity(other.identity), body(other.body), joined(other.joined), loop(other.loop), value((hear_begun(), *other.identity)) {}
   LIMN_UNWATCHED void operator()(const tbb::blocked_range<Index>& range) {
-    const Part part;
+    const Part part(loop);
     hear_done();
     value = (*body)(IndexRange<Index>{range.begin(), range.end()}, std::move(value));
   }
   LIMN_UNWATCHED void join(Reduction& right) {
-    const Part part;
+    const Part part(loop);
     hear_done();
     value = (*joined)(std::move(value), right.value);
   }
@@ -108,8 +130,8 @@ struct Reduction {
 /// them.
 template <class Index, class Body>
 void parallel_parts(Index count, Index grain, const Body& body) {
-  const parallel_detail::Loop loop;
-  tbb::parallel_for(tbb::blocked_range<Index>(0, count, static_cast<size_t>(grain)), parallel_detail::Parts<Index, Body>{&body});
+  const parallel_detail::Loop loop(__PRETTY_FUNCTION__);
+  tbb::parallel_for(tbb::blocked_range<Index>(0, count, static_cast<size_t>(grain)), parallel_detail::Parts<Index, Body>{&body, &loop});
 }
 
 /// body(i) for each of first, ..., last - 1; neighbours by one thread where all are busy.
@@ -127,8 +149,9 @@ void parallel_each(Index count, const Body& body) {
   const auto all = [&](const IndexRange<Index>& range) {
     for (Index i = range.first; i < range.last; ++i) body(i);
   };
-  const parallel_detail::Loop loop;
-  tbb::parallel_for(tbb::blocked_range<Index>(0, count, 1), parallel_detail::Parts<Index, decltype(all)>{&all}, tbb::simple_partitioner());
+  const parallel_detail::Loop loop(__PRETTY_FUNCTION__);
+  tbb::parallel_for(tbb::blocked_range<Index>(0, count, 1), parallel_detail::Parts<Index, decltype(all)>{&all, &loop},
+                    tbb::simple_partitioner());
 }
 
 /// body(IndexRange, value so far) over parts as of parallel_parts, joined by join(left, right).
@@ -136,7 +159,8 @@ template <class Index, class Value, class Body, class Join>
 Value parallel_reduce(Index count, Index grain, const Value& identity, const Body& body, const Join& join) {
   parallel_detail::Reduction<Index, Value, Body, Join> reduction(identity, body, join);
   {
-    const parallel_detail::Loop loop;
+    const parallel_detail::Loop loop(__PRETTY_FUNCTION__);
+    reduction.loop = &loop;
     tbb::parallel_reduce(tbb::blocked_range<Index>(0, count, static_cast<size_t>(grain)), reduction);
   }
   return std::move(reduction.value);
@@ -144,8 +168,8 @@ Value parallel_reduce(Index count, Index grain, const Value& identity, const Bod
 
 template <class First, class Second>
 void parallel_invoke(const First& first, const Second& second) {
-  const parallel_detail::Loop loop;
-  tbb::parallel_invoke(parallel_detail::Once<First>{&first}, parallel_detail::Once<Second>{&second});
+  const parallel_detail::Loop loop(__PRETTY_FUNCTION__);
+  tbb::parallel_invoke(parallel_detail::Once<First>{&first, &loop}, parallel_detail::Once<Second>{&second, &loop});
 }
 
 /// As std::sort. TBB's own threads within a sort cannot be told of, so that under the sanitizer there are none.

@@ -40,11 +40,11 @@ class ThreadArena {
   }
   template <class Work>
   auto execute(const Work& work) {
-    const auto inside = [&work] {
-      const parallel_detail::Part part;
+    const parallel_detail::Loop loop(__PRETTY_FUNCTION__);
+    const auto inside = [&work, &loop] {
+      const parallel_detail::Part part(&loop);
       return work();
     };
-    const parallel_detail::Loop loop;
     return arena_.execute(inside);
   }
 

@@ -113,7 +113,7 @@ void test_candidate(const RTCIntersectFunctionNArguments* arguments) {
 }
 
 void bound_triangle(const RTCBoundsFunctionArguments* arguments) {
-  const parallel_detail::Part part;
+  const parallel_detail::Part part(nullptr);
   const auto& mesh = *static_cast<const TriangleMesh*>(arguments->geometryUserPtr);
   const glm::uvec3& corners = mesh.triangles[arguments->primID];
   Box box;
@@ -142,7 +142,7 @@ void build_tree(const MeshState& state) {
   rtcSetSceneFlags(state.scene.get(), RTC_SCENE_FLAG_ROBUST);
   attach_triangles(state);
   {
-    const parallel_detail::Loop loop;  // Embree's own, over bound_triangle
+    const parallel_detail::Loop loop("Embree's own, over bound_triangle");
     rtcCommitScene(state.scene.get());
   }
   if (rtcGetDeviceError(state.device.get()) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");

@@ -100,6 +100,9 @@ struct ExperimentObserver {
   std::function<std::future<void>(size_t model, size_t view, const SceneModel& built, Seen& seen, std::span<Drawing> drawings)> seen{};
   /// A truth is there, or why there is none.
   std::function<void(size_t view, const ExperimentTruth& truth, double ms)> solved{};
+  /// What a cell drew, and the same method on the reference (MeasuredCell::reference). Before `measured`, from several threads at once, not
+  /// where the method refused.
+  std::function<void(const ExperimentCell& cell, const Drawing& drawing, const Drawing& reference)> drawn{};
   /// A cell is done.
   std::function<void(MeasuredCell& cell)> measured{};
 };

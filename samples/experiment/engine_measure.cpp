@@ -137,6 +137,7 @@ void ExperimentRun::measure_group(ViewWork& work, std::span<const size_t> cells)
       add(*metric, input, work.of_cells[i]);
     }
     work.measure_ms[i] = ms_since(start);
+    if (observer_.drawn) observer_.drawn(work.cells[i], drawing, against);
     start = Clock::now();
   }
 }
@@ -192,6 +193,7 @@ void ExperimentRun::tell(ViewWork& work) {
     if (!work.drawings[i]->refused.empty()) {
       // Nothing was measured.
     } else if (cell.model == 0) {
+      if (observer_.drawn) observer_.drawn(cell, done.drawing, done.reference);
       done.measurements.assign(done.floor.begin(), done.floor.end());
     } else {
       // In the order of the metrics, which is that of their kinds.

@@ -2,6 +2,7 @@
 // The rows of a study as they come: rows.jsonl is the journal, rows.csv follows it. Whatever stops the program, even SIGKILL in the middle
 // of a write, what is there afterwards is whole cells and at most one torn one at the end, which is cut away.
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -35,7 +36,8 @@ CellRows read_cells(const std::filesystem::path& folder);
 void write_cells(const CellRows& cells, const std::vector<std::string>& keys, const std::vector<std::string>& parameters,
                  const std::filesystem::path& folder);
 
-/// Appends cells, each in one write that is on the disk when the call returns. Throws MachineError where the disk fails.
+/// Appends cells, each in one write: whole when the call returns, whatever stops the program. Where the machine stops, cells of the last
+/// second or of the last call may be lost. Throws MachineError where the disk fails.
 class StudyJournal {
  public:
   /// Opens both files of the folder at their ends. `parameters`: StudyHead::parameters.
@@ -51,6 +53,7 @@ class StudyJournal {
   std::filesystem::path folder_;
   std::vector<std::string> parameters_;
   int jsonl_ = -1, csv_ = -1;
+  std::chrono::steady_clock::time_point synced_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace limn

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
+#include <mutex>
+#include <string_view>
 
 #include "raymarch/image_io.h"
 #include "raymarch/mesh/polygons.h"
@@ -15,6 +18,7 @@
 #include "samples/study/run_batches.h"
 #include "samples/study/study_files.h"
 #include "sdf/error.h"
+#include "sdf/output_file.h"
 
 namespace limn {
 namespace {
@@ -116,6 +120,8 @@ struct Runner {
   Timing build{};
   std::int64_t bytes = 0;
   size_t done = 0;
+  std::mutex thumbnails_mutex{};
+  std::map<size_t, std::vector<std::byte>> thumbnails{};  ///< PNG files of cells whose rows are not written yet, by the cell's number.
 
   ExperimentObserver observer() {
     return {.cell_begins = [this] { show_progress(); },
@@ -127,6 +133,8 @@ struct Runner {
                   return std::future<void>();
                 },
             .solved = [this](size_t view, const ExperimentTruth& truth, double ms) { has_solved(view, truth, ms); },
+            .drawn = [this](const ExperimentCell& cell, const Drawing& drawing,
+                            const Drawing& reference) { make_thumbnail(cell.id, drawing, reference); },
             .measured = [this](MeasuredCell& cell) { has_measured(cell); }};
   }
 
@@ -225,14 +233,18 @@ struct Runner {
       measured.back().failed = "nothing to measure";
     }
     keep(std::move(measured));
-    const Image<float>& ink = cell.drawing.picture.border;
-    write_thumbnail(row.key, ink, cell.reference.refused.empty() ? cell.reference.picture.border : ink);
+    const std::vector<std::byte> png = std::move(thumbnails.extract(cell.cell.id).mapped());
+    write_whole(thumbnail_file(work.folder, row.key), std::string_view(reinterpret_cast<const char*>(png.data()), png.size()));
     ledger.done("measure " + model.surface, work.study.measure_ms(), cell.measure_ms + ms_since(start));
   }
 
-  void write_thumbnail(const std::string& key, const Image<float>& ink, const Image<float>& truth) const {
-    const Image<glm::vec4> small = fitted_difference(difference_picture(ink, truth), ink, truth, kThumbnailPx, kThumbnailPx);
-    write_image(small, thumbnail_file(work.folder, key));
+  /// Any thread. Written after the cell's rows, which it shows to be whole.
+  void make_thumbnail(size_t cell, const Drawing& drawing, const Drawing& reference) {
+    const Image<float>& ink = drawing.picture.border;
+    const Image<float>& truth = reference.refused.empty() ? reference.picture.border : ink;
+    std::vector<std::byte> png = encode_png(fitted_difference(difference_picture(ink, truth), ink, truth, kThumbnailPx, kThumbnailPx));
+    const std::lock_guard lock(thumbnails_mutex);
+    thumbnails.insert_or_assign(cell, std::move(png));
   }
 };
 

@@ -65,6 +65,8 @@ struct BorderMethod {
   /// The number whose level curve N.V = number ends the ink, so that the ink's place can be measured against the truth. Null where the ink
   /// ends elsewhere: of what such a method draws only the model's silhouette has a truth.
   double (*truth_threshold)(const Parameters& parameters) = nullptr;
+  std::vector<std::string>
+      only_for_notes{};  ///< Of `inputs`, what only its notes read: not traced where there are none (BorderInput::with_notes).
 };
 
 /// The method that draws where nobody names one.

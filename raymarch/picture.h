@@ -36,10 +36,10 @@ struct PictureSettings {
   GBufferLayers layers{};                 ///< Of Picture::gbuffer. What the methods and the composite read is traced anyway.
 };
 
-/// What a composite with these methods reads: the shading's layers and the methods' inputs.
-GBufferLayers layers_read(std::span<const MethodCall> methods);
-/// The same with what the shading reads.
-GBufferLayers layers_read(const PictureSettings& settings);
+/// What these methods read, with or without what only their notes read.
+GBufferLayers layers_read(std::span<const MethodCall> methods, bool with_notes = true);
+/// What a composite reads: the shading's layers and the methods' inputs.
+GBufferLayers layers_read(const PictureSettings& settings, bool with_notes = true);
 
 /// What one frame leaves to the next. Empty before the first.
 struct FrameHistory {

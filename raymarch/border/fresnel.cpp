@@ -40,7 +40,9 @@ BorderMethod fresnel_method() {
            .help("of (1 - N.V)^power, by which a surface point has to pass the edge before its ink switches from one frame to the next"),
        a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")},
       [](const SceneModel&, const Scene&) { return std::string(); },
-      draw};
+      draw,
+      nullptr,
+      {"N"}};
 }
 
 }  // namespace limn

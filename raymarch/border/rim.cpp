@@ -28,7 +28,8 @@ BorderMethod rim_method() {
            a_color("color", {0.0, 0.0, 0.0}).help("ink, linear RGB")},
           [](const SceneModel&, const Scene&) { return std::string(); },
           draw,
-          [](const Parameters& parameters) { return parameters.number("threshold"); }};
+          [](const Parameters& parameters) { return parameters.number("threshold"); },
+          {"N"}};
 }
 
 }  // namespace limn

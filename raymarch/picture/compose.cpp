@@ -40,18 +40,19 @@ float covered(float ink, float share) { return 1.0f - (1.0f - ink) * (1.0f - sha
 
 /// `color(i)` is pixel i of the finished picture, whose inks are these.
 template <class Color>
-void add_pixels(const Color& color, std::span<const Border> borders, bool first, Picture& picture) {
+void add_pixels(const Color& color, std::span<const Border> borders, bool first, const Finish* finish, Picture& picture) {
   parallel_parts(picture.composite.size(), kTogether, [&](const IndexRange<size_t>& part) {
     for (size_t i = part.first; i < part.last; ++i) {
       float ink = 0.0f;
       for (const Border& border : borders) ink = covered(ink, border.coverage.pixels[i]);
-      if (first) {
-        picture.composite.pixels[i] = color(i);
-        picture.border.pixels[i] = ink;
-      } else {
-        picture.composite.pixels[i] += color(i);
-        picture.border.pixels[i] += ink;
+      glm::vec4 sum = color(i);
+      if (!first) {
+        sum = picture.composite.pixels[i] + sum;
+        ink = picture.border.pixels[i] + ink;
       }
+      if (finish != nullptr) finish_pixel(*finish, ink, sum);
+      picture.composite.pixels[i] = sum;
+      picture.border.pixels[i] = ink;
     }
   });
 }
@@ -102,7 +103,10 @@ void lay_ink(Image<glm::vec4>& picture, const Border& border) {
   });
 }
 
-void compose(const BorderInput& input, std::span<const Border> borders, bool first, const ShadingSettings& shading, Picture& picture) {
+Finish finish_of(const PictureSettings& settings) { return {1.0f / static_cast<float>(settings.samples), settings.background}; }
+
+void compose(const BorderInput& input, std::span<const Border> borders, bool first, const ShadingSettings& shading, const Finish* finish,
+             Picture& picture) {
   const GBuffer& gbuffer = input.gbuffer;
   if (first) {
     picture.composite = Image<glm::vec4>::unset(gbuffer.width, gbuffer.height);
@@ -115,13 +119,13 @@ void compose(const BorderInput& input, std::span<const Border> borders, bool fir
   const bool moving = std::any_of(borders.begin(), borders.end(), [](const Border& border) { return !border.beneath.pixels.empty(); });
   const bool plain = shading.shading == Shading::headlight && !shading.color;
   if (!moving && plain && !file_colors(input.model).any) {
-    add_pixels([&](size_t i) { return inked(headlight(gbuffer, input.model.colors, i), borders, i); }, borders, first, picture);
+    add_pixels([&](size_t i) { return inked(headlight(gbuffer, input.model.colors, i), borders, i); }, borders, first, finish, picture);
     return;
   }
   // What moves is a neighbour under the inks before it: each ink is laid over the whole picture before the next.
   Image<glm::vec4> composite = plain ? shade_headlight(input) : shade(input, shading);
   for (const Border& border : borders) lay_ink(composite, border);
-  add_pixels([&](size_t i) { return composite.pixels[i]; }, borders, first, picture);
+  add_pixels([&](size_t i) { return composite.pixels[i]; }, borders, first, finish, picture);
 }
 
 }  // namespace limn

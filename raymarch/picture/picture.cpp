@@ -42,6 +42,10 @@ void add_status(const Border& border, Image<std::uint8_t>& status) {
   for (size_t i = 0; i < status.size(); ++i) status.pixels[i] = std::max(status.pixels[i], border.status.pixels[i]);
 }
 
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 GBufferLayers joined(const GBufferLayers& a, const GBufferLayers& b) {
   return {a.depth || b.depth, a.position || b.position, a.normal || b.normal, a.n_dot_v || b.n_dot_v,
           a.id || b.id,       a.material || b.material, a.face || b.face,     a.status || b.status};
@@ -87,6 +91,26 @@ void keep(FrameHistory& history, size_t sample, const GBuffer& gbuffer, SampleIn
   if (sample == 0) history.pixels_before = std::move(inks.pixels_before);
 }
 
+/// `finish`: of the last sample, as compose() takes it.
+void draw_sample(const BorderInput& input, std::span<const MethodCall> methods, const ShadingSettings& shading, const Finish* finish,
+                 Picture& picture, SampleInks* inks) {
+  const auto start = Clock::now();
+  const bool first = picture.border.pixels.empty();
+  if (first) add_turned_notes(input, picture.notes);
+  std::vector<Border> borders;
+  borders.reserve(methods.size());
+  for (size_t m = 0; m < methods.size(); ++m) {
+    const Border& border = borders.emplace_back(draw_after(input, first, methods[m], inks, m));
+    if (!first) continue;
+    add_status(border, picture.border_status);
+    picture.notes.insert(picture.notes.end(), border.notes.begin(), border.notes.end());
+  }
+  compose(input, borders, first, shading, finish, picture);
+  if (inks != nullptr)
+    for (Border& border : borders) inks->now.push_back(std::move(border.coverage));
+  picture.border_ms += ms_since(start);
+}
+
 }  // namespace
 
 // The R2 sequence (Roberts 2018), whose generator is the plastic number; starts at the pixel's centre. Its first few points lie up to 0.2
@@ -107,37 +131,18 @@ glm::dvec2 sample_offset(int sample, int samples) {
 
 void add_sample(const BorderInput& input, std::span<const MethodCall> methods, Picture& picture, SampleInks* inks,
                 const ShadingSettings& shading) {
-  const auto start = Clock::now();
-  const bool first = picture.border.pixels.empty();
-  if (first) add_turned_notes(input, picture.notes);
-  std::vector<Border> borders;
-  borders.reserve(methods.size());
-  for (size_t m = 0; m < methods.size(); ++m) {
-    const Border& border = borders.emplace_back(draw_after(input, first, methods[m], inks, m));
-    if (!first) continue;
-    add_status(border, picture.border_status);
-    picture.notes.insert(picture.notes.end(), border.notes.begin(), border.notes.end());
-  }
-  compose(input, borders, first, shading, picture);
-  if (inks != nullptr)
-    for (Border& border : borders) inks->now.push_back(std::move(border.coverage));
-  picture.border_ms += ms_since(start);
+  draw_sample(input, methods, shading, nullptr, picture, inks);
 }
 
 void finish_samples(const PictureSettings& settings, Picture& picture) {
   if (settings.samples == 1 && !settings.background) return;
-  const float share = 1.0f / static_cast<float>(settings.samples);
+  const Finish finish = finish_of(settings);
   parallel_parts(picture.border.size(), size_t{1} << 13, [&](const IndexRange<size_t>& part) {
-    for (size_t i = part.first; i < part.last; ++i) {
-      picture.border.pixels[i] *= share;
-      glm::vec4& color = picture.composite.pixels[i];
-      color *= share;
-      if (settings.background) color += (1.0f - color.a) * glm::vec4(*settings.background, 1.0f);
-    }
+    for (size_t i = part.first; i < part.last; ++i) finish_pixel(finish, picture.border.pixels[i], picture.composite.pixels[i]);
   });
 }
 
-GBufferLayers layers_read(std::span<const MethodCall> methods) {
+GBufferLayers layers_read(std::span<const MethodCall> methods, bool with_notes) {
   GBufferLayers layers{
       .depth = false, .position = false, .normal = false, .n_dot_v = true, .id = true, .material = false, .face = false, .status = true};
   const std::array<std::pair<const char*, bool GBufferLayers::*>, 5> named{{{"Z", &GBufferLayers::depth},
@@ -147,6 +152,7 @@ GBufferLayers layers_read(std::span<const MethodCall> methods) {
                                                                             {"face", &GBufferLayers::face}}};
   for (const MethodCall& call : methods) {
     std::vector<std::string> inputs = call.method->inputs;
+    if (!with_notes) std::erase_if(inputs, [&](const std::string& input) { return contains(call.method->only_for_notes, input); });
     for (std::string& more : group_inputs(*call.method, call.parameters)) inputs.push_back(std::move(more));
     for (const std::string& input : inputs) {
       for (const auto& [name, layer] : named) layers.*layer |= input == name;
@@ -155,8 +161,8 @@ GBufferLayers layers_read(std::span<const MethodCall> methods) {
   return layers;
 }
 
-GBufferLayers layers_read(const PictureSettings& settings) {
-  GBufferLayers layers = joined(layers_read(settings.methods), layers_read(settings.shading));
+GBufferLayers layers_read(const PictureSettings& settings, bool with_notes) {
+  GBufferLayers layers = joined(layers_read(settings.methods, with_notes), layers_read(settings.shading));
   if (settings.mattes) layers.material = true;
   return layers;
 }
@@ -166,29 +172,32 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
   check_methods(scene, model, settings);
   Picture picture;
   ThreadArena arena(how.threads);
-  GBufferLayers read = layers_read(settings);
+  GBufferLayers first = joined(settings.layers, layers_read(settings)), later = layers_read(settings, false);
   std::optional<MatteCollector> mattes;
   if (settings.mattes) mattes.emplace(scene, camera.width_px, camera.height_px);
-  if (history != nullptr) read.depth = read.normal = true;
-  read = joined(read, layers_read(file_colors(model)));
+  for (GBufferLayers* const read : {&first, &later}) {
+    if (history != nullptr) read->depth = read->normal = true;
+    *read = joined(*read, layers_read(file_colors(model)));
+  }
   GBuffer gbuffer;
   SharedFindings shared;
+  const Finish finish = finish_of(settings);
   for (int sample = 0; sample < settings.samples; ++sample) {
     ExecutionSettings part = how;
     if (how.progress) {
       part.progress = [&how, sample, &settings](double done) { how.progress((sample + done) / settings.samples); };
     }
     const auto start = Clock::now();
-    // Only the first sample's G-buffer is handed on.
-    render_gbuffer(model, camera, part, sample_offset(sample, settings.samples), sample == 0 ? joined(settings.layers, read) : read,
-                   gbuffer);
+    // Only the first sample's G-buffer is handed on, and only it has notes.
+    render_gbuffer(model, camera, part, sample_offset(sample, settings.samples), sample == 0 ? first : later, gbuffer);
     picture.trace_ms += ms_since(start);
     const auto number = static_cast<size_t>(sample);
     arena.execute([&] {
-      if (history == nullptr)
-        return add_sample({gbuffer, camera, model, scene, nullptr, &shared}, settings.methods, picture, nullptr, settings.shading);
+      const BorderInput input{gbuffer, camera, model, scene, nullptr, &shared};
+      const Finish* const finishing = sample + 1 == settings.samples ? &finish : nullptr;
+      if (history == nullptr) return draw_sample(input, settings.methods, settings.shading, finishing, picture, nullptr);
       SampleInks inks = inks_before(*history, number, gbuffer, camera);
-      add_sample({gbuffer, camera, model, scene, nullptr, &shared}, settings.methods, picture, &inks, settings.shading);
+      draw_sample(input, settings.methods, settings.shading, finishing, picture, &inks);
       keep(*history, number, gbuffer, inks);
     });
     if (mattes) arena.execute([&] { mattes->add(gbuffer, base_colors({gbuffer, camera, model, scene})); });
@@ -196,7 +205,6 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
   }
   if (mattes) picture.mattes = mattes->finish(settings.samples);
   if (history != nullptr) history->camera = camera;
-  arena.execute([&] { finish_samples(settings, picture); });
   return picture;
 }
 

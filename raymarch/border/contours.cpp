@@ -16,6 +16,8 @@ namespace limn {
 /// The lines of what is seen, as one call asked for them.
 struct SharedLines {
   LineSettings settings{};
+  std::vector<SceneObject> cages{};                   ///< All that is traced; empty where anything else is among it.
+  std::vector<std::weak_ptr<const void>> surfaces{};  ///< Of the model that they were asked for; weak, so that none outlives its use.
   ViewGraph graph{};
   bool facets = false;  ///< A mesh as it is is among them.
   /// Coverage by a call's parameters: exact, so that it is the same for every sample of a pixel.
@@ -83,16 +85,63 @@ bool draws_facets(const Scene& scene) {
   });
 }
 
-/// Solved once for all samples of a picture, and for all calls with the same settings.
+bool any_painted(const Scene& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& object) {
+    const auto* mesh = std::get_if<MeshSource>(&object.source);
+    return mesh != nullptr && !mesh->mesh->vertex_colors.empty();
+  });
+}
+
+std::vector<std::weak_ptr<const void>> surfaces_of(const SceneModel& model) {
+  std::vector<std::weak_ptr<const void>> surfaces;
+  for (const Surface& surface : model.surfaces) surfaces.emplace_back(surface.state);
+  return surfaces;
+}
+
+bool same(const std::vector<std::weak_ptr<const void>>& a, const std::vector<std::weak_ptr<const void>>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const auto& one, const auto& other) { return !one.owner_before(other) && !other.owner_before(one); });
+}
+
+bool same(const Affine& a, const Affine& b) { return a.linear == b.linear && a.translation == b.translation; }
+
+/// Whether both are cages of one mesh in one place, whose lines are those of their limit surface, however often a model refines them.
+bool is_same_cage(const SceneObject& a, const SceneObject& b) {
+  const auto *of_a = std::get_if<MeshSource>(&a.source), *of_b = std::get_if<MeshSource>(&b.source);
+  return of_a != nullptr && of_b != nullptr && of_a->scheme && of_a->scheme == of_b->scheme && &*of_a->mesh == &*of_b->mesh &&
+         a.material == b.material && same(a.world_from_object, b.world_from_object);
+}
+
+bool same_cages(std::span<const SceneObject> a, std::span<const SceneObject> b) {
+  return !a.empty() && std::equal(a.begin(), a.end(), b.begin(), b.end(), is_same_cage);
+}
+
+std::vector<SceneObject> cages_of(const Scene& scene) {
+  const bool all = std::all_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& object) {
+    const auto* mesh = std::get_if<MeshSource>(&object.source);
+    return mesh != nullptr && mesh->scheme;
+  });
+  return all ? scene.objects : std::vector<SceneObject>{};
+}
+
+/// Solved once for all samples of a picture, for all calls with the same settings, and for all models of the same cages.
 std::shared_ptr<const SharedLines> lines_of(const BorderInput& input, const LineSettings& settings) {
+  const Scene scene = modelled_scene(input.scene, input.model);
+  SharedLines lines{settings, cages_of(scene), surfaces_of(input.model)};
+  lines.facets = draws_facets(scene);
+  const SharedLines* of_cages = nullptr;
   if (input.shared != nullptr) {
     for (const auto& kept : input.shared->lines) {
-      if (same(kept->settings, settings)) return kept;
+      if (!same(kept->settings, settings)) continue;
+      if (same(kept->surfaces, lines.surfaces)) return kept;
+      if (!same_cages(kept->cages, lines.cages)) continue;
+      // Widths may come from colours of vertices, which are read off each model's own polygons.
+      if (!any_painted(scene)) return kept;
+      of_cages = kept.get();
     }
   }
-  const Scene scene = modelled_scene(input.scene, input.model);
-  auto solved =
-      std::make_shared<const SharedLines>(SharedLines{settings, solve_lines(scene, input.camera, settings, {}), draws_facets(scene)});
+  lines.graph = of_cages != nullptr ? of_cages->graph : solve_lines(scene, input.camera, settings, {});
+  auto solved = std::make_shared<const SharedLines>(std::move(lines));
   if (input.shared != nullptr) input.shared->lines.push_back(solved);
   return solved;
 }
@@ -223,13 +272,6 @@ const Image<float>& ink_of(const SharedLines& lines, const Settings& settings, c
   const bool drawn = settings.width_px > 0.0 && !settings.lines.classes.empty();
   Image<float> ink = drawn ? covered_by(outlines(lines.graph, settings, input), width, height) : Image<float>(width, height, 0.0f);
   return lines.inks.emplace_back(call, std::move(ink)).second;
-}
-
-bool any_painted(const Scene& scene) {
-  return std::any_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& object) {
-    const auto* mesh = std::get_if<MeshSource>(&object.source);
-    return mesh != nullptr && !mesh->mesh->vertex_colors.empty();
-  });
 }
 
 Border draw(const BorderInput& input, const Parameters& parameters) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "raymarch/files/matte_layers.h"
 #include "raymarch/files/picture_module.h"
@@ -74,19 +75,21 @@ void save(const fs::path& temporary, const fs::path& file, const PictureHeader& 
   if (!problem.empty()) throw MachineError("cannot write " + file.string() + ": " + problem);
 }
 
-/// One channel of the EXR on its way: its name, its type in the file and its values.
+/// One channel of the EXR on its way: its name, its type in the file and how its values are read. They are never copied as a whole: of 82
+/// channels that alone would be twice the file's pixels.
 struct Channel {
   std::string name;
   PixelType type;
-  std::vector<float> values;
+  std::function<void(size_t first, size_t last, float* values)> read;  ///< Pixels [first, last), as floats.
 };
 
-template <class T, class Get>
-void add_channel(std::vector<Channel>& channels, const std::string& name, PixelType type, const Image<T>& image, Get get) {
-  Channel channel{name, type, {}};
-  channel.values.reserve(image.size());
-  for (const T& pixel : image.pixels) channel.values.push_back(static_cast<float>(get(pixel)));
-  channels.push_back(std::move(channel));
+/// `image` must be there until the file is written.
+template <class Image, class Get>
+void add_channel(std::vector<Channel>& channels, const std::string& name, PixelType type, const Image& image, Get get) {
+  const auto* const pixels = image.data();
+  channels.push_back({name, type, [pixels, get](size_t first, size_t last, float* values) {
+                        for (size_t i = first; i < last; ++i) *values++ = static_cast<float>(get(pixels[i]));
+                      }});
 }
 
 /// Half holds whole numbers to 2048; beyond it ids are 32-bit.
@@ -104,10 +107,10 @@ auto component(int axis) {
 void add_layer(std::vector<Channel>& channels, const NamedLayer& layer) {
   const auto half = PixelType::half;
   const char* const rgba[] = {".R", ".G", ".B", ".A"};
-  for (int i = 0; i < 4; ++i) add_channel(channels, layer.name + rgba[i], half, layer.picture->composite, component(i));
-  add_channel(channels, layer.name + ".Y", half, layer.picture->border, kItself);
+  for (int i = 0; i < 4; ++i) add_channel(channels, layer.name + rgba[i], half, layer.picture->composite.pixels, component(i));
+  add_channel(channels, layer.name + ".Y", half, layer.picture->border.pixels, kItself);
   if (!layer.picture->border_status.pixels.empty())
-    add_channel(channels, layer.name + ".status", half, layer.picture->border_status, kItself);
+    add_channel(channels, layer.name + ".status", half, layer.picture->border_status.pixels, kItself);
 }
 
 std::vector<Channel> channels_of(const Picture& picture) {
@@ -116,18 +119,18 @@ std::vector<Channel> channels_of(const Picture& picture) {
   std::vector<Channel> channels;
   const char* const rgba[] = {"R", "G", "B", "A"};
   const char* const xyz[] = {"X", "Y", "Z"};
-  for (int i = 0; i < 4; ++i) add_channel(channels, rgba[i], half, picture.composite, component(i));
-  add_channel(channels, "Z", full, seen.depth, kItself);
-  for (int i = 0; i < 3; ++i) add_channel(channels, std::string("P.") + xyz[i], full, seen.position, component(i));
-  for (int i = 0; i < 3; ++i) add_channel(channels, std::string("N.") + xyz[i], full, seen.normal, component(i));
-  add_channel(channels, "NdotV.Y", full, seen.n_dot_v, kItself);
-  add_channel(channels, "border.Y", half, picture.border, kItself);
-  add_channel(channels, "id.Y", type_of_ids(seen.id), seen.id, kItself);
-  add_channel(channels, "material.Y", type_of_ids(seen.material), seen.material, kItself);
-  add_channel(channels, "status.Y", half, seen.status, kItself);
-  if (!picture.border_status.pixels.empty()) add_channel(channels, "border_status.Y", half, picture.border_status, kItself);
+  for (int i = 0; i < 4; ++i) add_channel(channels, rgba[i], half, picture.composite.pixels, component(i));
+  add_channel(channels, "Z", full, seen.depth.pixels, kItself);
+  for (int i = 0; i < 3; ++i) add_channel(channels, std::string("P.") + xyz[i], full, seen.position.pixels, component(i));
+  for (int i = 0; i < 3; ++i) add_channel(channels, std::string("N.") + xyz[i], full, seen.normal.pixels, component(i));
+  add_channel(channels, "NdotV.Y", full, seen.n_dot_v.pixels, kItself);
+  add_channel(channels, "border.Y", half, picture.border.pixels, kItself);
+  add_channel(channels, "id.Y", type_of_ids(seen.id), seen.id.pixels, kItself);
+  add_channel(channels, "material.Y", type_of_ids(seen.material), seen.material.pixels, kItself);
+  add_channel(channels, "status.Y", half, seen.status.pixels, kItself);
+  if (!picture.border_status.pixels.empty()) add_channel(channels, "border_status.Y", half, picture.border_status.pixels, kItself);
   if (picture.mattes != nullptr)
-    for (int i = 0; i < 3; ++i) add_channel(channels, std::string("albedo.") + rgba[i], half, picture.mattes->albedo, component(i));
+    for (int i = 0; i < 3; ++i) add_channel(channels, std::string("albedo.") + rgba[i], half, picture.mattes->albedo.pixels, component(i));
   return channels;
 }
 
@@ -170,28 +173,31 @@ constexpr size_t kTogether = 1024;
 /// Pixels [first, last) of one channel, each `pixel_size` bytes after the one before it.
 void write_channel(const Channel& channel, size_t first, size_t last, char* to, size_t pixel_size) {
   // Float to 32-bit unsigned would be scaled to its range by OpenImageIO, so that one is copied here.
+  float values[kTogether];
+  channel.read(first, last, values);
   if (channel.type == PixelType::whole) {
-    for (size_t i = first; i < last; ++i, to += pixel_size) {
-      const auto value = static_cast<std::uint32_t>(channel.values[i]);
+    for (size_t i = 0; i < last - first; ++i, to += pixel_size) {
+      const auto value = static_cast<std::uint32_t>(values[i]);
       std::memcpy(to, &value, sizeof value);
     }
     return;
   }
   if (channel.type == PixelType::full) {
-    for (size_t i = first; i < last; ++i, to += pixel_size) std::memcpy(to, &channel.values[i], sizeof(float));
+    for (size_t i = 0; i < last - first; ++i, to += pixel_size) std::memcpy(to, &values[i], sizeof(float));
     return;
   }
   LIMN_CHECK(channel.type == PixelType::half);
   std::uint16_t halves[kTogether];
-  picture_module().to_half(&channel.values[first], halves, static_cast<int>(last - first));
+  picture_module().to_half(values, halves, static_cast<int>(last - first));
   for (size_t i = 0; i < last - first; ++i, to += pixel_size) std::memcpy(to, &halves[i], sizeof halves[i]);
 }
 
 /// Pixels in the file's own types, channel after channel within each pixel.
-std::vector<char> native_pixels(const std::vector<Channel>& channels, size_t pixel_count) {
+Pixels<char> native_pixels(const std::vector<Channel>& channels, size_t pixel_count) {
   size_t pixel_size = 0;
   for (const Channel& channel : channels) pixel_size += bytes_of(channel.type);
-  std::vector<char> bytes(pixel_size * pixel_count);
+  Pixels<char> bytes;
+  bytes.resize(pixel_size * pixel_count);
   parallel_for(size_t{0}, (pixel_count + kTogether - 1) / kTogether, [&](size_t part) {
     const size_t first = part * kTogether, last = std::min(pixel_count, first + kTogether);
     size_t offset = first * pixel_size;
@@ -221,11 +227,11 @@ OutputFile exr_output(const Picture& picture, const Camera& camera, const std::s
   }
   return {file, [&picture, &camera, &call, file, layers](const fs::path& temporary) {
             std::vector<Channel> channels = channels_of(picture);
-            std::vector<MatteLayer> mattes = mattes_of(picture);
-            for (MatteLayer& layer : mattes)
-              for (auto& [name, values] : layer.channels) channels.push_back({name, PixelType::full, std::move(values)});
+            const std::vector<MatteLayer> mattes = mattes_of(picture);
+            for (const MatteLayer& layer : mattes)
+              for (const auto& [name, values] : layer.channels) add_channel(channels, name, PixelType::full, values, kItself);
             for (const NamedLayer& layer : layers) add_layer(channels, layer);
-            const std::vector<char> pixels = native_pixels(channels, picture.gbuffer.id.size());
+            const Pixels<char> pixels = native_pixels(channels, picture.gbuffer.id.size());
             save(temporary, file, exr_header(channels, picture, mattes, camera, call), pixels.data());
           }};
 }

@@ -30,6 +30,21 @@ struct CageScene {
   int silhouettes = 0, level_curves = 0;
 };
 
+/// The cage about its own middle, so that nothing is lost far from the origin.
+Mesh centred(const MeshSource& source, bool turned) {
+  Mesh cage = source.mesh;
+  const glm::dvec3 center = bounds(cage).center();
+  for (glm::dvec3& position : cage.positions) position -= center;
+  if (turned) turn_faces(cage);
+  return cage;
+}
+
+Affine solver_from_centred(const SceneObject& object, const glm::dvec3& origin) {
+  Affine solver_from_cage = object.world_from_object;
+  solver_from_cage.translation += solver_from_cage.linear * bounds(std::get<MeshSource>(object.source).mesh).center() - origin;
+  return solver_from_cage;
+}
+
 /// How wide a face is in the picture, as far as its corners tell; a piece of a face counts as all of the cage.
 double width_px(const Mesh& cage, const std::vector<std::int32_t>& first, int face, const Affine& solver_from_cage, const Camera& camera) {
   const bool piece = static_cast<size_t>(face) >= cage.face_count();
@@ -54,14 +69,14 @@ void count_left_out(const Mesh& cage, const PlacedLimitSurface& placed, const Li
 }
 
 /// The curves of one object's cage; silhouettes but for the surface turned round.
-void trace_side(const Mesh& cage, const PlacedLimitSurface& placed, LimitTurn turn, int index, const Camera& camera,
-                const TruthSettings& settings, CageScene& out) {
-  double cell_px = 0.0;
-  const LimitGrid grid = sample_grid(placed, camera, kCell_px, kMostTriangles, cell_px);
-  out.cell_px = std::max(out.cell_px, cell_px);
+void trace_side(const SampledCage& sampled, LimitTurn turn, int index, const Camera& camera, const TruthSettings& settings,
+                CageScene& out) {
+  const PlacedLimitSurface& placed = sampled.placed;
+  const LimitGrid& grid = sampled.grid;
+  out.cell_px = std::max(out.cell_px, sampled.cell_px);
   const bool front = turn != LimitTurn::back;
   out.tip_px = std::max(out.tip_px, grid.tip_px);
-  if (front) count_left_out(cage, placed, grid, camera, out);
+  if (front) count_left_out(sampled.cage, placed, grid, camera, out);
   const auto trace = [&](CurveKind kind, double threshold, int& closed) {
     for (TracedCurve& curve : trace_limit_curves(placed, grid, camera, {kind, threshold, 0.5 * settings.tolerance_px, index, turn})) {
       closed += curve.closed;
@@ -72,22 +87,11 @@ void trace_side(const Mesh& cage, const PlacedLimitSurface& placed, LimitTurn tu
   if (settings.threshold > 0.0) trace(CurveKind::inner, settings.threshold, out.level_curves);
 }
 
-/// The cage about its own middle, so that nothing is lost far from the origin. `turned`: an open sheet whose normals are turned towards the
-/// eye (raymarch/mesh/open_sheet.h), so that its back has level curves too.
-void trace_object(const SceneObject& object, int index, bool turned, const Camera& camera, const glm::dvec3& origin,
-                  const TruthSettings& settings, CageScene& out) {
-  const auto& source = std::get<MeshSource>(object.source);
-  Mesh cage = source.mesh;
-  const glm::dvec3 center = bounds(cage).center();
-  for (glm::dvec3& position : cage.positions) position -= center;
-  Affine solver_from_cage = object.world_from_object;
-  solver_from_cage.translation += solver_from_cage.linear * center - origin;
-  const LimitSurface surface(cage, *source.scheme, source.file);
-  trace_side(cage, place(surface, solver_from_cage), turned ? LimitTurn::front : LimitTurn::none, index, camera, settings, out);
-  if (!turned) return;
-  turn_faces(cage);
-  const LimitSurface back(cage, *source.scheme, source.file);
-  trace_side(cage, place(back, solver_from_cage), LimitTurn::back, index, camera, settings, out);
+/// `turned`: an open sheet whose normals are turned towards the eye (raymarch/mesh/open_sheet.h), so that its back has level curves too.
+void trace_object(const SceneObject& object, const SampledCage& sampled, int index, bool turned, const ShareSettings& settings,
+                  CageScene& out) {
+  trace_side(sampled, turned ? LimitTurn::front : LimitTurn::none, index, settings.camera, settings.truth, out);
+  if (turned) trace_side(SampledCage(object, settings, true), LimitTurn::back, index, settings.camera, settings.truth, out);
 }
 
 /// One ray from a lifted point to the eye.
@@ -112,14 +116,22 @@ bool is_blocked(const SceneModel& model, const std::vector<size_t>& objects, con
 
 }  // namespace
 
+SampledCage::SampledCage(const SceneObject& object, const ShareSettings& settings, bool turned)
+    : cage(centred(std::get<MeshSource>(object.source), turned)),
+      surface(cage, *std::get<MeshSource>(object.source).scheme, std::get<MeshSource>(object.source).file),
+      placed(place(surface, solver_from_centred(object, settings.origin))),
+      grid(sample_grid(placed, settings.camera, kCell_px, kMostTriangles, cell_px)) {}
+
 TruthShare trace_cages(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings,
-                       std::shared_ptr<const TruthProxy> proxy, const ExecutionSettings& how) {
+                       std::shared_ptr<const TruthProxy> proxy, std::unique_ptr<const SampledCage> first, const ExecutionSettings& how) {
   CageScene traced;
   for (const size_t i : objects) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     const Surface& shown = proxy->model.surfaces[i];
     const bool turned = shown.open_sheet && shown.open_sheet->shows_back(shown, settings.camera);
-    trace_object(scene.objects[i], static_cast<int>(i) + 1, turned, settings.camera, settings.origin, settings.truth, traced);
+    if (!first) first = std::make_unique<const SampledCage>(scene.objects[i], settings);
+    trace_object(scene.objects[i], *first, static_cast<int>(i) + 1, turned, settings, traced);
+    first.reset();
   }
   TruthShare share;
   share.objects = objects;

@@ -2,6 +2,7 @@
 // Internal: what objects of one kind bring to a border, traced each in the way of its kind: fields, and the limit surfaces of cages. The
 // border of a scene that has both is made of both shares, each hiding the other.
 
+#include "raymarch/truth/limit_grid.h"
 #include "raymarch/truth/parts.h"
 
 namespace limn {
@@ -33,9 +34,22 @@ struct ShareSettings {
 /// `scene` may hold other kinds too: `objects` says which are meant.
 TruthShare trace_fields(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings,
                         const ExecutionSettings& how);
-/// `model` is the scene's (proxy.h), about the solver's origin: rays ask it what hides what.
+/// A cage, its limit surface and the samples of it between which curves are looked for. `turned`: its back.
+struct SampledCage {
+  Mesh cage{};
+  LimitSurface surface;
+  PlacedLimitSurface placed;
+  double cell_px = 0.0;
+  LimitGrid grid{};
+
+  SampledCage(const SceneObject& object, const ShareSettings& settings, bool turned = false);
+  SampledCage(const SampledCage&) = delete;
+  SampledCage& operator=(const SampledCage&) = delete;
+};
+/// `model` is the scene's (proxy.h), about the solver's origin: rays ask it what hides what. `first`: of the first of `objects`, where it
+/// is there already; may be null.
 struct TruthProxy;
 TruthShare trace_cages(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings,
-                       std::shared_ptr<const TruthProxy> proxy, const ExecutionSettings& how);
+                       std::shared_ptr<const TruthProxy> proxy, std::unique_ptr<const SampledCage> first, const ExecutionSettings& how);
 
 }  // namespace limn

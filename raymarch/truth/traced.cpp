@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/mesh/open_sheet.h"
 #include "raymarch/truth/proxy.h"
 #include "raymarch/truth/shares.h"
+#include "sdf/error.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -78,6 +81,26 @@ bool interpenetrate(const std::vector<TruthShare>& shares, double extent) {
   return false;
 }
 
+/// With the trees that rays need, which the first of them would have to wait for.
+std::shared_ptr<const TruthProxy> ready_proxy(const Scene& scene, const std::vector<size_t>& cages, const Camera& camera,
+                                              const ShareSettings& sharing) {
+  const auto proxy = std::make_shared<const TruthProxy>(make_proxy(scene, camera, sharing.truth.max_bytes, 1.5));
+  for (const size_t i : cages) {
+    const Surface& shown = proxy->model.surfaces[i];
+    if (shown.open_sheet) static_cast<void>(shown.open_sheet->shows_back(shown, sharing.camera));
+  }
+  return proxy;
+}
+
+/// Null where it cannot be sampled: who needs it then says why.
+std::unique_ptr<const SampledCage> sampled_if_it_can_be(const SceneObject& cage, const ShareSettings& sharing) {
+  try {
+    return std::make_unique<const SampledCage>(cage, sharing);
+  } catch (const InputError&) {
+    return nullptr;
+  }
+}
+
 std::string words_of(const std::vector<size_t>& fields, const std::vector<size_t>& cages) {
   std::string words = fields.empty() ? "" : fields.size() == 1 ? "the field" : "the fields";
   if (!cages.empty())
@@ -92,10 +115,16 @@ BorderTruth solve_truth_traced(const Scene& scene, const Camera& camera, const T
   std::vector<size_t> fields, cages;
   for (size_t i = 0; i < scene.objects.size(); ++i) (std::holds_alternative<Field>(scene.objects[i].source) ? fields : cages).push_back(i);
   const ShareSettings sharing = solver_space(scene, camera, settings);
-  const auto proxy = std::make_shared<const TruthProxy>(make_proxy(scene, camera, settings.max_bytes, 1.5));
+  std::shared_ptr<const TruthProxy> proxy;
+  std::unique_ptr<const SampledCage> first;
+  // Much of either is done by one thread, and the one knows nothing of the other.
+  parallel_invoke([&] { proxy = ready_proxy(scene, cages, camera, sharing); },
+                  [&] {
+                    if (!cages.empty()) first = sampled_if_it_can_be(scene.objects[cages.front()], sharing);
+                  });
   std::vector<TruthShare> shares;
   if (!fields.empty()) shares.push_back(trace_fields(scene, fields, sharing, how));
-  if (!cages.empty()) shares.push_back(trace_cages(scene, cages, sharing, proxy, how));
+  if (!cages.empty()) shares.push_back(trace_cages(scene, cages, sharing, proxy, std::move(first), how));
   if (shares.size() > 1 && interpenetrate(shares, sharing.extent)) return solve_truth_by_proxy(scene, camera, settings, how);
 
   BorderTruth truth;

@@ -5,6 +5,7 @@
 #include "samples/experiment/local_request.h"
 #include "samples/experiment/no_effect.h"
 #include "sdf/output_file.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 
@@ -59,11 +60,19 @@ std::vector<std::filesystem::path> layer_files(const Comparison& comparison) {
 
 // Without a font the sheet has no words; the page has them all.
 bool write_comparison(const Comparison& comparison, const std::filesystem::path& folder) {
-  const Sheet sheet = contact_sheet(comparison);
-  write_image(sheet.picture, folder / "sheet.png");
-  write_whole(folder / "rows.json", rows_json(comparison).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
-  write_whole(folder / "report.html", report_page(comparison));
-  return sheet.has_labels;
+  bool has_labels = false;
+  // Side by side: much of the sheet is lines of text, which one thread lays out.
+  parallel_invoke(
+      [&] {
+        const Sheet sheet = contact_sheet(comparison);
+        write_image(sheet.picture, folder / "sheet.png");
+        has_labels = sheet.has_labels;
+      },
+      [&] {
+        write_whole(folder / "rows.json", rows_json(comparison).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+        write_whole(folder / "report.html", report_page(comparison));
+      });
+  return has_labels;
 }
 
 }  // namespace limn

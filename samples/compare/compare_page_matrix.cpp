@@ -30,19 +30,20 @@ std::string picture_words(const Comparison& comparison, const Cell& cell) {
 // The whole picture at its own resolution: the viewer above the cards shows the same one enlarged.
 std::string picture_view(const Comparison& comparison, const Cell& cell) {
   return "<div class=\"view picture\"><button type=\"button\" class=\"look\" title=\"Show beside the reference\">" +
-         picture_tag(cropped(linear_composite(cell), comparison.seen), picture_words(comparison, cell)) + "</button></div>\n";
+         picture_tag(linear_composite(cell, comparison.seen), picture_words(comparison, cell)) + "</button></div>\n";
 }
 
-std::string difference_views(const Comparison& comparison, const Cell& cell, const Image<glm::vec4>& whole, const Window& worst) {
+std::string difference_views(const Comparison& comparison, const Cell& cell, const Window& worst) {
   const Image<float>& reference = comparison.reference_of(cell).border;
   const Window& seen = comparison.seen;
   const int width = comparison.is_matrix() ? kSmallWidth : kPictureWidth;
-  const auto small = fitted_difference(cropped(whole, seen), cropped(cell.border, seen), cropped(reference, seen), width, width);
+  const Image<float> own = cropped(cell.border, seen), given = cropped(reference, seen);
+  const auto small = fitted_difference(difference_picture(own, given), own, given, width, width);
   std::string html = "<div class=\"view difference\">";
   html += picture_tag(
       small, fmt::format("Where its border differs from the reference: {} pixels", counted(value_of(comparison, cell, "pixels_differ"))));
   html += "<figcaption>Its border against the reference's.</figcaption></div>\n<div class=\"view worst\">";
-  html += picture_tag(cropped(whole, worst),
+  html += picture_tag(difference_picture(cropped(cell.border, worst), cropped(reference, worst)),
                       fmt::format("The worst place, at pixel {}, {}, enlarged", worst.x + worst.width / 2, worst.y + worst.height / 2),
                       "class=\"pixels\" ");
   html += worst.wrong_px > 0.0 ? fmt::format("<figcaption>The worst place: pixels {}..{} by {}..{}.</figcaption></div>\n", worst.x,
@@ -72,7 +73,7 @@ std::string card(const Comparison& comparison, const Cell& cell) {
       const Window& seen = comparison.seen;
       attributes += fmt::format(" data-worst=\"{},{}\"", worst.x + worst.width / 2 - seen.x, worst.y + worst.height / 2 - seen.y);
     }
-    views += difference_views(comparison, cell, difference_picture(cell.border, reference), worst);
+    views += difference_views(comparison, cell, worst);
   } else if (cell.model == 0 && !comparison.is_matrix()) {
     views += "<div class=\"view difference\">" +
              picture_tag(fitted(ink_on_paper(cropped(cell.border, comparison.seen)), kPictureWidth, kPictureWidth),

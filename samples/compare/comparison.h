@@ -113,8 +113,8 @@ std::string border_error_text(const Comparison& comparison, const Cell& cell);
 /// The same number for captions: "border within 0.13 px".
 std::string short_border_error(const Comparison& comparison, const Cell& cell);
 
-/// The composite as it was drawn, linear.
-Image<glm::vec4> linear_composite(const Cell& cell);
+/// A part of the composite as it was drawn, linear.
+Image<glm::vec4> linear_composite(const Cell& cell, const Window& window);
 /// Input name as a heading: "machined part".
 std::string heading(const std::string& name);
 /// Value of a metric by name, the cell's or its model's; NaN where there is none.

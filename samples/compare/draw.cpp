@@ -149,15 +149,17 @@ void draw_comparison(Comparison& comparison, const std::filesystem::path& folder
   }
 }
 
-Image<glm::vec4> linear_composite(const Cell& cell) {
-  Image<glm::vec4> out(cell.composite.width, cell.composite.height);
+Image<glm::vec4> linear_composite(const Cell& cell, const Window& window) {
+  auto out = Image<glm::vec4>::unset(window.width, window.height);
   std::array<float, 256> linear_of;
   for (size_t code = 0; code < linear_of.size(); ++code) linear_of[code] = linear_from_srgb(static_cast<float>(code) / 255.0f);
-  for (size_t i = 0; i < out.size(); ++i) {
-    const glm::u8vec4& color = cell.composite.pixels[i];
-    const glm::vec3 linear(linear_of[color.r], linear_of[color.g], linear_of[color.b]);
-    const float alpha = static_cast<float>(color.a) / 255.0f;
-    out.pixels[i] = glm::vec4(linear * alpha, alpha);
+  for (int y = 0; y < out.height; ++y) {
+    for (int x = 0; x < out.width; ++x) {
+      const glm::u8vec4& color = cell.composite.at(window.x + x, window.y + y);
+      const glm::vec3 linear(linear_of[color.r], linear_of[color.g], linear_of[color.b]);
+      const float alpha = static_cast<float>(color.a) / 255.0f;
+      out.at(x, y) = glm::vec4(linear * alpha, alpha);
+    }
   }
   return out;
 }

@@ -45,7 +45,7 @@ void draw_reference(Canvas& canvas, const Comparison& comparison, const Layout& 
   y += layout.head;
   const int height = layout.panel_height;
   if (cell.skipped.empty()) {
-    place(canvas, fitted(cropped(linear_composite(cell), comparison.seen), kPanel, height), x, y, kPanel, height);
+    place(canvas, fitted(linear_composite(cell, comparison.seen), kPanel, height), x, y, kPanel, height);
     place(canvas, fitted(ink_on_paper(cropped(cell.border, comparison.seen)), kPanel, height), x, y + height + 10, kPanel, height);
   }
   draw_legend(canvas, x, y + 2 * (height + 10), kPanel, height);
@@ -55,11 +55,12 @@ void draw_reference(Canvas& canvas, const Comparison& comparison, const Layout& 
 void draw_differences(Canvas& canvas, const Comparison& comparison, const Cell& cell, int height, int x, int y) {
   const Image<float>& reference = comparison.reference_of(cell).border;
   const Window& seen = comparison.seen;
-  const auto whole = difference_picture(cell.border, reference);
-  const auto small = fitted_difference(cropped(whole, seen), cropped(cell.border, seen), cropped(reference, seen), kPanel, height);
+  const Image<float> own = cropped(cell.border, seen), given = cropped(reference, seen);
+  const auto small = fitted_difference(difference_picture(own, given), own, given, kPanel, height);
   place(canvas, small, x, y, kPanel, height);
   const Window window = worst_window(cell.border, reference, kPanel / kEnlarge, height / kEnlarge);
-  place(canvas, enlarged(whole, window, kEnlarge), x, y + height + 10, kPanel, height);
+  const auto worst = difference_picture(cropped(cell.border, window), cropped(reference, window));
+  place(canvas, enlarged(worst, {0, 0, worst.width, worst.height}, kEnlarge), x, y + height + 10, kPanel, height);
 }
 
 void draw_cell(Canvas& canvas, const Comparison& comparison, const Cell& cell, const Layout& layout, int x, int y) {
@@ -67,7 +68,7 @@ void draw_cell(Canvas& canvas, const Comparison& comparison, const Cell& cell, c
   draw_head(canvas, x, y, heading(model.title), model.details);
   y += layout.head;
   const int height = layout.panel_height;
-  place(canvas, fitted(cropped(linear_composite(cell), comparison.seen), kPanel, height), x, y, kPanel, height);
+  place(canvas, fitted(linear_composite(cell, comparison.seen), kPanel, height), x, y, kPanel, height);
   if (comparison.is_measured(cell)) draw_differences(canvas, comparison, cell, height, x, y + height + 10);
   draw_captions(canvas, x, y + 3 * (height + 10), caption_lines(comparison, cell));
 }

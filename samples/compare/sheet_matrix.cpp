@@ -4,6 +4,8 @@
 
 #include "samples/compare/compare_words.h"
 #include "samples/compare/sheet_canvas.h"
+#include "samples/page/panels.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -40,16 +42,47 @@ std::vector<std::string> note_lines(const Cell& cell) {
   return shortened(std::move(lines));
 }
 
-int row_height(const Comparison& comparison, size_t method, int panel_height) {
+/// What a cell of the sheet shows.
+struct SheetCell {
+  std::vector<std::string> captions, notes;
+  Canvas panel;
+};
+
+/// Of the cells of the comparison, in their order; empty where they are skipped. Lines are laid out by one thread while others make the
+/// pictures small.
+std::vector<SheetCell> sheet_cells(const Comparison& comparison, int panel_height) {
+  std::vector<SheetCell> cells(comparison.cells.size());
+  parallel_invoke(
+      [&] {
+        for (size_t i = 0; i < cells.size(); ++i) {
+          const Cell& cell = comparison.cells[i];
+          if (!cell.skipped.empty()) continue;
+          cells[i].captions = caption_lines(comparison, cell);
+          cells[i].notes = note_lines(cell);
+        }
+      },
+      [&] {
+        parallel_each(cells.size(), [&](size_t i) {
+          const Cell& cell = comparison.cells[i];
+          if (cell.skipped.empty()) cells[i].panel = fitted(linear_composite(cell, comparison.seen), kPanel, panel_height);
+        });
+      });
+  return cells;
+}
+
+/// Cells are in the order of Comparison::cells: all methods of a model, then those of the next.
+size_t index_of(const Comparison& comparison, size_t model, size_t method) { return model * comparison.methods.size() + method; }
+
+int row_height(const Comparison& comparison, const std::vector<SheetCell>& cells, size_t method, int panel_height) {
   size_t lines = 0;
   for (const size_t model : columns_of(comparison)) {
-    const Cell& cell = comparison.at(model, method);
-    if (cell.skipped.empty()) lines = std::max(lines, caption_lines(comparison, cell).size() + note_lines(cell).size());
+    const SheetCell& cell = cells[index_of(comparison, model, method)];
+    lines = std::max(lines, cell.captions.size() + cell.notes.size());
   }
   return kRowHead + panel_height + kLine * static_cast<int>(lines) + kSheetGap;
 }
 
-void draw_cell(Canvas& canvas, const Comparison& comparison, const Cell& cell, int panel_height, int x, int y) {
+void draw_cell(Canvas& canvas, const Cell& cell, const SheetCell& shown, int panel_height, int x, int y) {
   if (!cell.skipped.empty()) {
     place(canvas, {}, x, y, kPanel, panel_height);
     int line_y = y + panel_height / 2 - 20;
@@ -58,11 +91,10 @@ void draw_cell(Canvas& canvas, const Comparison& comparison, const Cell& cell, i
       draw_text(canvas, x + 20, line_y += 20, line, kNote);
     return;
   }
-  place(canvas, fitted(cropped(linear_composite(cell), comparison.seen), kPanel, panel_height), x, y, kPanel, panel_height);
-  const std::vector<std::string> captions = caption_lines(comparison, cell);
-  draw_captions(canvas, x, y + panel_height, captions);
-  int line_y = y + panel_height + kLine * static_cast<int>(captions.size());
-  for (const std::string& line : note_lines(cell)) draw_text(canvas, x, line_y += kLine, line, kNote);
+  place(canvas, shown.panel, x, y, kPanel, panel_height);
+  draw_captions(canvas, x, y + panel_height, shown.captions);
+  int line_y = y + panel_height + kLine * static_cast<int>(shown.captions.size());
+  for (const std::string& line : shown.notes) draw_text(canvas, x, line_y += kLine, line, kNote);
 }
 
 std::string one_line(const std::string& text, const TextStyle& style, int width) {
@@ -85,8 +117,9 @@ Canvas matrix_sheet(const Comparison& comparison) {
     const auto more = wrapped("Not shown: " + model.title + ": " + model.skipped, kNote, width - 2 * kSheetGap);
     skipped.insert(skipped.end(), more.begin(), more.end());
   }
+  const std::vector<SheetCell> cells = sheet_cells(comparison, panel_height);
   int height = top + kColumnHead;
-  for (size_t method = 0; method < comparison.methods.size(); ++method) height += row_height(comparison, method, panel_height);
+  for (size_t method = 0; method < comparison.methods.size(); ++method) height += row_height(comparison, cells, method, panel_height);
   Canvas canvas(width, height + 20 * static_cast<int>(skipped.size()) + kSheetGap, glm::vec4(kPaper, 1.0f));
 
   draw_text(canvas, kSheetGap, kSheetGap + 24,
@@ -106,9 +139,10 @@ Canvas matrix_sheet(const Comparison& comparison) {
     const ComparedMethod& one = comparison.methods[method];
     draw_head(canvas, kSheetGap, y + 2, one.name, one_line(one.help, kNote, width - 2 * kSheetGap - 40));
     for (size_t column = 0; column < columns.size(); ++column) {
-      draw_cell(canvas, comparison, comparison.at(columns[column], method), panel_height, x_of(column), y + kRowHead);
+      const size_t index = index_of(comparison, columns[column], method);
+      draw_cell(canvas, comparison.cells[index], cells[index], panel_height, x_of(column), y + kRowHead);
     }
-    y += row_height(comparison, method, panel_height);
+    y += row_height(comparison, cells, method, panel_height);
   }
   for (const std::string& line : skipped) draw_text(canvas, kSheetGap, y += 20, line, kNote);
   return canvas;

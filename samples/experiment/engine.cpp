@@ -137,7 +137,7 @@ const Drawing& ExperimentRun::reference_drawing(size_t index, size_t method) {
   return view.drawings.emplace(method, std::move(drawing)).first->second;
 }
 
-DrawnView ExperimentRun::draw_view(size_t model, const SceneModel& built, const Camera& camera) {
+DrawnView ExperimentRun::draw_view(size_t model, size_t view, const SceneModel& built) {
   const ExperimentModel& planned = experiment_.models[model];
   std::vector<std::vector<MethodCall>> methods;
   for (const ExperimentMethod& method : experiment_.methods) methods.push_back(method.calls);
@@ -145,7 +145,8 @@ DrawnView ExperimentRun::draw_view(size_t model, const SceneModel& built, const 
     if (const auto progress = stage("drawing " + experiment_.methods[method].title + ", " + planned.title))
       progress(static_cast<double>(method) / static_cast<double>(methods.size()));
   };
-  return draw_all(methods, built, planned.scene, camera, *experiment_.picture, with_progress("tracing " + planned.title), before_method);
+  return draw_all(methods, built, planned.scene, experiment_.cameras[view], *experiment_.picture, with_progress("tracing " + planned.title),
+                  views_[view].lines, before_method);
 }
 
 void ExperimentRun::look_at_view(const SceneModel& built, Cells cells, ViewWork& work) {
@@ -156,7 +157,7 @@ void ExperimentRun::look_at_view(const SceneModel& built, Cells cells, ViewWork&
   const ExperimentModel& planned = experiment_.models[work.model()];
   const Camera& camera = experiment_.cameras[work.view()];
   if (experiment_.picture)
-    work.drawn = draw_view(work.model(), built, camera);
+    work.drawn = draw_view(work.model(), work.view(), built);
   else
     work.drawn.seen = look(built, planned.scene, camera, experiment_.path, how_, take_spare());
   work.seen = &work.drawn.seen;
@@ -178,7 +179,7 @@ void ExperimentRun::look_at_reference(Cells cells, ViewWork& work) {
   const size_t index = cells.front().view;
   ReferenceView& view = views_[index];
   if (experiment_.picture && !view.seen) {
-    DrawnView drawn = draw_view(0, *reference_, experiment_.cameras[index]);
+    DrawnView drawn = draw_view(0, index, *reference_);
     view.seen = std::move(drawn.seen);
     if (observer_.seen) wait_for(observer_.seen(0, index, *reference_, *view.seen, drawn.drawings));
     for (size_t method = 0; method < drawn.drawings.size(); ++method) view.drawings[method] = std::move(drawn.drawings[method]);

@@ -144,6 +144,7 @@ class ExperimentRun {
     std::map<size_t, Drawing> drawings{};
     std::map<double, ExperimentTruth> truths{};
     std::map<FloorKey, std::vector<Measurement>> floors{};
+    LinesOfView lines{};
   };
   using Cells = std::span<const ExperimentCell>;
 
@@ -165,7 +166,7 @@ class ExperimentRun {
   bool has_threshold(size_t method) const { return experiment_.methods[method].truth_threshold.has_value(); }
   bool measures_floor_of(const ExperimentCell& cell, const ExperimentTruth* truth) const;
   void add_curve_metrics(const MetricInput& input, bool has_threshold, std::vector<Measurement>& to) const;
-  DrawnView draw_view(size_t model, const SceneModel& built, const Camera& camera);
+  DrawnView draw_view(size_t model, size_t view, const SceneModel& built);
   const Drawing& reference_drawing(size_t view, size_t method);
   const ExperimentTruth* truth_for(size_t view, size_t method);
   std::function<void(double)> stage(const std::string& what) const;

@@ -96,11 +96,12 @@ Drawing draw(const MethodCall& call, const SceneModel& model, const Scene& scene
 }
 
 DrawnView draw_all(std::span<const std::vector<MethodCall>> methods, const SceneModel& model, const Scene& scene, const Camera& camera,
-                   const PictureSettings& settings, const ExecutionSettings& how, const BeforeMethod& before_method) {
+                   const PictureSettings& settings, const ExecutionSettings& how, LinesOfView& lines, const BeforeMethod& before_method) {
   DrawnView view;
   for (const std::vector<MethodCall>& calls : methods) view.drawings.push_back({.refused = why_unsupported(calls, model, scene)});
   Picture& shaded = view.seen.picture;
   SharedFindings shared;
+  shared.lines = lines;
   for (int sample = 0; sample < settings.samples; ++sample) {
     const auto start = Clock::now();
     GBuffer gbuffer = render_gbuffer(model, camera, how, sample_offset(sample, settings.samples));
@@ -120,6 +121,7 @@ DrawnView draw_all(std::span<const std::vector<MethodCall>> methods, const Scene
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     if (sample == 0) shaded.gbuffer = std::move(gbuffer);
   }
+  lines = std::move(shared.lines);
   finish_samples(settings, shaded);
   for (Drawing& drawing : view.drawings) finish_samples(settings, drawing.picture);
   return view;

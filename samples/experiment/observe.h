@@ -55,10 +55,14 @@ struct DrawnView {
 };
 /// Called with a method's index before it draws a sample.
 using BeforeMethod = std::function<void(size_t method)>;
+/// Lines of models that are seen by one camera.
+using LinesOfView = std::vector<std::shared_ptr<const SharedLines>>;
 /// Several methods from rays that are traced once: means over the settings' samples, over the shaded model. A method that cannot draw says
-/// why in its drawing. Throws Cancelled.
+/// why in its drawing. `lines` are those of other models, and get this one's: of what models have in common they are solved once. Throws
+/// Cancelled.
 DrawnView draw_all(std::span<const std::vector<MethodCall>> methods, const SceneModel& model, const Scene& scene, const Camera& camera,
-                   const PictureSettings& settings, const ExecutionSettings& how, const BeforeMethod& before_method = {});
+                   const PictureSettings& settings, const ExecutionSettings& how, LinesOfView& lines,
+                   const BeforeMethod& before_method = {});
 
 /// What is wrong and what was expected, for a page or a row.
 std::string reason_of(const InputError& error);

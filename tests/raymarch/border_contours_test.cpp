@@ -279,6 +279,59 @@ TEST(ContoursMethod, WidthsByVerticesOutliveTheModelAndAreSaidToBeMissing) {
   EXPECT_NE(plain.notes[0].find("width_from = red has no effect"), std::string::npos) << plain.notes[0];
 }
 
+/// As drawn_contours, with what models of one view share.
+Border drawn_beside(const Scene& scene, const SceneModel& model, const Camera& camera, const std::map<std::string, ParameterInput>& given,
+                    std::vector<std::shared_ptr<const SharedLines>>& lines) {
+  const GBuffer seen = render_gbuffer(model, camera, {});
+  SharedFindings shared;
+  shared.lines = lines;
+  Border border = find_border_method("contours").draw({seen, camera, model, scene, nullptr, &shared}, parameters_of("contours", given));
+  lines = std::move(shared.lines);
+  return border;
+}
+
+SceneModel mesh_at(const Scene& scene, int level) {
+  SurfaceSettings settings = surface_kind("mesh");
+  settings.level = level;
+  return build_model(scene, settings);
+}
+
+TEST(ContoursMethod, LinesOfACageAreSolvedOnceForModelsOfAnyLevel) {
+  const Camera camera = across(30.0);
+  Scene scene = scene_of({object_of(box_mesh(glm::dvec3(0.8)), Scheme::catmark)});
+  const SceneModel coarse = mesh_at(scene, 1), fine = mesh_at(scene, 3), grid = model_of(scene, "mesh_level_set");
+  std::vector<std::shared_ptr<const SharedLines>> lines;
+  const Border of_coarse = drawn_beside(scene, coarse, camera, {}, lines);
+  const Border of_fine = drawn_beside(scene, fine, camera, {}, lines);
+  EXPECT_EQ(lines.size(), 1u);
+  EXPECT_GT(area(of_fine.coverage), 100.0);
+  EXPECT_EQ(of_coarse.coverage.pixels, drawn_contours(scene, coarse, camera).border.coverage.pixels);
+  EXPECT_EQ(of_fine.coverage.pixels, drawn_contours(scene, fine, camera).border.coverage.pixels);
+  // A level set has lines of its own, and so has the cage in another place.
+  const Border of_grid = drawn_beside(scene, grid, camera, {}, lines);
+  EXPECT_EQ(lines.size(), 2u);
+  EXPECT_EQ(of_grid.coverage.pixels, drawn_contours(scene, grid, camera).border.coverage.pixels);
+  scene.objects[0].world_from_object.translation = {0.2, 0.1, 0.0};
+  const SceneModel moved_model = mesh_at(scene, 1);
+  const Border of_moved = drawn_beside(scene, moved_model, camera, {}, lines);
+  EXPECT_EQ(lines.size(), 3u);
+  EXPECT_EQ(of_moved.coverage.pixels, drawn_contours(scene, moved_model, camera).border.coverage.pixels);
+  EXPECT_NE(of_moved.coverage.pixels, of_coarse.coverage.pixels);
+}
+
+TEST(ContoursMethod, ModelsOfAPaintedCageHaveWidthsOfTheirOwn) {
+  const Camera camera = across(30.0);
+  const Scene scene = painted_square(Scheme::bilinear);
+  const SceneModel coarse = mesh_at(scene, 1), fine = mesh_at(scene, 3);
+  const std::map<std::string, ParameterInput> by_red{{"width_from", word("red")}, {"width", value(5.0)}, {"thin_width", value(1.0)}};
+  std::vector<std::shared_ptr<const SharedLines>> lines;
+  EXPECT_EQ(drawn_beside(scene, coarse, camera, by_red, lines).coverage.pixels,
+            drawn_contours(scene, coarse, camera, by_red).border.coverage.pixels);
+  EXPECT_EQ(drawn_beside(scene, fine, camera, by_red, lines).coverage.pixels,
+            drawn_contours(scene, fine, camera, by_red).border.coverage.pixels);
+  EXPECT_EQ(lines.size(), 2u);
+}
+
 TEST(ContoursMethod, ThreadsDoNotMatterAndClassesCanBeLeftOut) {
   const Scene scene = scene_of({object_of(make_shape("box", {{"half", {0.5, 0.4, 0.3}}}))});
   const SceneModel model = model_of(scene);

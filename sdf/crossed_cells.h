@@ -1,7 +1,9 @@
 #pragma once
 // Which cells of a block of 8^3 the surface crosses.
 
+#include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 namespace limn {
@@ -12,29 +14,40 @@ struct CrossedCells {
   bool any = false;
 };
 
+/// Bit z of [x][y]: whether the node (x, y, z) of 9^3 is inside.
+using SignRows = std::array<std::array<std::uint32_t, 9>, 9>;
+
+inline CrossedCells crossed_cells_of_signs(const SignRows& inside) {
+  CrossedCells result;
+  std::uint32_t all = 0;
+  for (std::size_t x = 0; x < 8; ++x) {
+    std::uint32_t some = inside[x][0] | inside[x + 1][0], every = inside[x][0] & inside[x + 1][0];
+    for (std::size_t y = 0; y < 8; ++y) {
+      const std::uint32_t next_some = inside[x][y + 1] | inside[x + 1][y + 1], next_every = inside[x][y + 1] & inside[x + 1][y + 1];
+      some |= next_some, every &= next_every;
+      const std::uint32_t bits = (some | some >> 1) & ~(every & every >> 1) & 0xffu;
+      result.cells[x][y] = static_cast<std::uint8_t>(bits);
+      all |= bits;
+      some = next_some, every = next_every;
+    }
+  }
+  result.any = all != 0;
+  return result;
+}
+
 /// From the signs at the 9^3 nodes: `row(x, y)` points to the nine values along z.
 template <class Row>
 CrossedCells crossed_cells(const Row& row) {
-  std::uint32_t negative[9][9];
-  for (int x = 0; x < 9; ++x) {
-    for (int y = 0; y < 9; ++y) {
-      const auto* const values = row(x, y);
+  SignRows inside;
+  for (std::size_t x = 0; x < 9; ++x) {
+    for (std::size_t y = 0; y < 9; ++y) {
+      const auto* const values = row(static_cast<int>(x), static_cast<int>(y));
       std::uint32_t bits = 0;
       for (int z = 0; z < 9; ++z) bits |= (values[z] < 0 ? 1u : 0u) << z;
-      negative[x][y] = bits;
+      inside[x][y] = bits;
     }
   }
-  CrossedCells result;
-  for (int x = 0; x < 8; ++x) {
-    for (int y = 0; y < 8; ++y) {
-      const std::uint32_t some = negative[x][y] | negative[x + 1][y] | negative[x][y + 1] | negative[x + 1][y + 1];
-      const std::uint32_t every = negative[x][y] & negative[x + 1][y] & negative[x][y + 1] & negative[x + 1][y + 1];
-      const auto bits = static_cast<std::uint8_t>((some | some >> 1) & ~(every & every >> 1));
-      result.cells[x][y] = bits;
-      result.any |= bits != 0;
-    }
-  }
-  return result;
+  return crossed_cells_of_signs(inside);
 }
 
 /// Calls `visit(x, y, z)` for each crossed cell.

@@ -1,9 +1,12 @@
 #include "sdf/large_pages.h"
 
 #include <cstdlib>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <vector>
+
+#include "sdf/page_advice.h"
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -76,6 +79,14 @@ size_t rounded(size_t bytes) {
 
 }  // namespace
 
+void ask_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] size_t bytes) {
+#if defined(__linux__)
+  void* first = memory;
+  size_t left = bytes;
+  if (std::align(kPage, kPage, first, left)) static_cast<void>(madvise(first, left / kPage * kPage, MADV_HUGEPAGE));
+#endif
+}
+
 void* LargePages::take(size_t bytes) {
   const size_t size = rounded(bytes);
   if (size < kPage) {
@@ -90,10 +101,7 @@ void* LargePages::take(size_t bytes) {
     memory = std::aligned_alloc(kPage, size);
   }
   if (!memory) throw std::bad_alloc();
-#if defined(__linux__)
-  // A wish, no more: where it is not granted everything works the same.
-  static_cast<void>(madvise(memory, size, MADV_HUGEPAGE));
-#endif
+  ask_for_large_pages(memory, size);
   return memory;
 }
 

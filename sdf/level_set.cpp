@@ -21,7 +21,7 @@ std::shared_ptr<LevelSetData> make_level_set(nanovdb::GridHandle<nanovdb::HostBu
   info.world_from_index = world_from_index;
   const glm::dmat3& axes = world_from_index.linear;
   info.voxel_size = std::min({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
-  BandSurvey found = survey_band(*data->grid, axes, info.voxel_size);
+  BandSurvey found = survey_band(*data->grid, axes, info.voxel_size, !(nominal_half_width > 0.0));
   info.active_voxels = found.active;
   info.bytes = static_cast<std::int64_t>(data->handle.size());
   info.bounds = transform(world_from_index, found.crossings);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "sdf/error.h"
@@ -150,59 +151,44 @@ std::uint32_t at_edge_of_band(const ActiveRows& active, size_t x, size_t y) {
   return active[x][y] & ~all;
 }
 
-/// Bit z of a row (x, y) of a block and the nodes behind it: whether the node is inside.
-using InsideRows = std::array<std::array<std::uint32_t, 9>, 9>;
-
-InsideRows inside_rows(const NodeWindow& nodes) {
-  InsideRows rows;
-  for (size_t x = 0; x < 9; ++x)
-    for (size_t y = 0; y < 9; ++y) {
-      std::uint32_t bits = 0;
-      for (size_t z = 0; z < 9; ++z) bits |= (nodes[x + 1][y + 1][z + 1] < 0.0f ? 1u : 0u) << z;
-      rows[x][y] = bits;
-    }
-  return rows;
+/// Calls `visit` with the place of each of a block's nodes whose bit `bits(x, y)` sets, z being the bit.
+template <class Bits, class Visit>
+void for_each_place(const Bits& bits, const Visit& visit) {
+  for (size_t x = 0; x < 8; ++x)
+    for (size_t y = 0; y < 8; ++y)
+      for (std::uint32_t left = bits(x, y); left != 0; left &= left - 1) visit(glm::ivec3(x, y, std::countr_zero(left)));
 }
 
 /// Nodes whose neighbour behind along an axis has the other sign.
-std::uint32_t before_crossing(const InsideRows& inside, size_t x, size_t y) {
-  const std::uint32_t own = inside[x][y];
-  return ((own ^ inside[x + 1][y]) | (own ^ inside[x][y + 1]) | (own ^ own >> 1)) & 0xffu;
-}
-
-void count_nodes(const Block& block, const glm::dvec3& origin, const Scale& scale, Counts& found) {
-  const InsideRows inside = inside_rows(block.nodes);
-  for (size_t x = 0; x < 8; ++x)
-    for (size_t y = 0; y < 8; ++y) {
-      const std::uint32_t active = block.active[x + 2][y + 2] >> 2 & 0xffu;
-      const std::uint32_t edge = at_edge_of_band(block.active, x + 2, y + 2) >> 2 & 0xffu;
-      const auto place = [&](std::uint32_t bits) { return glm::ivec3(x, y, std::countr_zero(bits)); };
-      for (std::uint32_t bits = before_crossing(inside, x, y); bits != 0; bits &= bits - 1)
-        count_crossings(block, place(bits), origin + glm::dvec3(place(bits)), scale, found);
-      for (std::uint32_t bits = edge; bits != 0; bits &= bits - 1) count_widths(block, place(bits), scale.background, found);
-      found.active += std::popcount(active);
-      for (std::uint32_t bits = active; bits != 0; bits &= bits - 1) {
-        const double size = std::abs(static_cast<double>(block.value(place(bits))));
-        found.largest = std::max(found.largest, size);
-        if (size < 0.5 * scale.background) count_near(block, place(bits), found);
-      }
-    }
+std::uint32_t before_crossing(const NodeBits& inside, size_t x, size_t y) {
+  const std::uint32_t own = inside.row(x + 1, y + 1) >> 1;
+  return ((own ^ inside.row(x + 2, y + 1) >> 1) | (own ^ inside.row(x + 1, y + 2) >> 1) | (own ^ own >> 1)) & 0xffu;
 }
 
 std::int64_t count_of(const CrossedCells& cells) {
   std::int64_t count = 0;
-  for (const auto& row : cells.cells)
-    for (const std::uint8_t bits : row) count += std::popcount(bits);
+  for (const auto& rows : cells.cells) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, rows, sizeof bits);
+    count += std::popcount(bits);
+  }
   return count;
 }
 
-void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, const Scale& scale, Counts& found) {
-  const LeafWindow window(accessor, origin);
-  Block block;
-  load_nodes(window, block.nodes);
-  block.active = active_rows(window);
-  count_nodes(block, glm::dvec3(origin[0], origin[1], origin[2]), scale, found);
-  const CrossedCells crossed = cells_crossed(block.nodes);
+/// Active nodes in every row of a block: bits 2..9 of its rows.
+std::uint32_t active_at(const ActiveRows& active, size_t x, size_t y) { return active[x + 2][y + 2] >> 2 & 0xffu; }
+
+void count_band(const Block& block, double background, Counts& found) {
+  for_each_place([&](size_t x, size_t y) { return at_edge_of_band(block.active, x + 2, y + 2) >> 2 & 0xffu; },
+                 [&](const glm::ivec3& at) { count_widths(block, at, background, found); });
+  for_each_place([&](size_t x, size_t y) { return active_at(block.active, x, y); },
+                 [&](const glm::ivec3& at) { found.largest = std::max(found.largest, std::abs(static_cast<double>(block.value(at)))); });
+}
+
+void count_surface(const Block& block, const NodeBits& inside, const glm::dvec3& origin, const Scale& scale, Counts& found) {
+  for_each_place([&](size_t x, size_t y) { return before_crossing(inside, x, y); },
+                 [&](const glm::ivec3& at) { count_crossings(block, at, origin + glm::dvec3(at), scale, found); });
+  const CrossedCells crossed = cells_crossed(inside);
   if (!crossed.any) return;
   found.crossed_cells += count_of(crossed);
   size_t k = 0;
@@ -210,14 +196,39 @@ void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, con
     found.lacking[k++] += count_of(cells_outside(crossed, block.active, gradient.stencil));
 }
 
-Counts count_blocks(const nanovdb::FloatGrid& grid, const glm::dmat3& per_side) {
+std::int64_t active_nodes(const NanoLeaf& leaf) {
+  std::int64_t count = 0;
+  for (int word = 0; word < 8; ++word) count += std::popcount(leaf.valueMask().template getWord<std::uint64_t>(word));
+  return count;
+}
+
+void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, const Scale& scale, bool with_widths, Counts& found) {
+  const LeafWindow window(accessor, origin);
+  Block block;
+  load_nodes(window, block.nodes);
+  // A block of a tile: all of its nodes are in the band, or none is.
+  found.active += window.leaf() ? active_nodes(*window.leaf()) : accessor.isActive(origin) ? 512 : 0;
+  NodeBits inside, steep;
+  const bool crossed = find_inside(block.nodes, inside), near = find_steep(block.nodes, steep);
+  if (!crossed && !near && !with_widths) return;
+  block.active = active_rows(window);
+  if (crossed) count_surface(block, inside, glm::dvec3(origin[0], origin[1], origin[2]), scale, found);
+  if (near)
+    for_each_place([&](size_t x, size_t y) { return steep.row(x + 1, y + 1) >> 1 & active_at(block.active, x, y); },
+                   [&](const glm::ivec3& at) {
+                     if (std::abs(static_cast<double>(block.value(at))) < 0.5 * scale.background) count_near(block, at, found);
+                   });
+  if (with_widths) count_band(block, scale.background, found);
+}
+
+Counts count_blocks(const nanovdb::FloatGrid& grid, const glm::dmat3& per_side, bool with_widths) {
   const std::vector<nanovdb::Coord> blocks = blocks_with_cells(grid);
   const Scale scale{std::abs(static_cast<double>(grid.tree().background())), per_side};
   return parallel_reduce(
       blocks.size(), size_t{64}, Counts{},
       [&](const IndexRange<size_t>& range, Counts found) {
         const NanoAccessor accessor = grid.getAccessor();
-        for (size_t i = range.begin(); i < range.end(); ++i) count_block(accessor, blocks[i], scale, found);
+        for (size_t i = range.begin(); i < range.end(); ++i) count_block(accessor, blocks[i], scale, with_widths, found);
         return found;
       },
       [](Counts a, const Counts& b) {
@@ -256,15 +267,15 @@ double measured_width(const Counts& found, double background, double per_voxel) 
 
 }  // namespace
 
-BandSurvey survey_band(const nanovdb::FloatGrid& grid, const glm::dmat3& world_from_index, double voxel_size) {
+BandSurvey survey_band(const nanovdb::FloatGrid& grid, const glm::dmat3& world_from_index, double voxel_size, bool measure_half_width) {
   LIMN_CHECK(gradients().size() <= kMostGradients);
-  const Counts found = count_blocks(grid, voxel_size * glm::transpose(glm::inverse(world_from_index)));
+  const Counts found = count_blocks(grid, voxel_size * glm::transpose(glm::inverse(world_from_index)), measure_half_width);
   const double background = std::abs(static_cast<double>(grid.tree().background()));
   BandSurvey survey;
   survey.active = found.active;
   survey.crossings = found.crossings;
   survey.per_voxel = change_per_voxel(found, background, voxel_size);
-  survey.half_width_voxels = measured_width(found, background, survey.per_voxel);
+  if (measure_half_width) survey.half_width_voxels = measured_width(found, background, survey.per_voxel);
   survey.facts.crossed_cells = found.crossed_cells;
   survey.facts.lacking.assign(found.lacking.begin(), found.lacking.begin() + static_cast<std::ptrdiff_t>(gradients().size()));
   survey.facts.near_nodes = found.near_nodes;

@@ -3,6 +3,7 @@
 
 #include "sdf/crossed_cells.h"
 #include "sdf/leaf_window.h"
+#include "sdf/node_bits.h"
 
 namespace limn {
 
@@ -14,8 +15,9 @@ struct BandSurvey {
   BandFacts facts{};
 };
 
-/// `voxel_size`: by how much a distance's values change over a voxel.
-BandSurvey survey_band(const nanovdb::FloatGrid& grid, const glm::dmat3& world_from_index, double voxel_size);
+/// `voxel_size`: by how much a distance's values change over a voxel. Where the half width is known it need not be measured: then
+/// `half_width_voxels` stays 0.
+BandSurvey survey_band(const nanovdb::FloatGrid& grid, const glm::dmat3& world_from_index, double voxel_size, bool measure_half_width);
 
 /// Where cells that the surface crosses may start: the leaves, and the blocks of tiles before them whose last cells have nodes in a leaf of
 /// another sign. In the order of the leaves, each once.
@@ -25,11 +27,10 @@ std::vector<nanovdb::Coord> blocks_with_cells(const nanovdb::FloatGrid& grid);
 using ActiveRows = std::array<std::array<std::uint32_t, 13>, 13>;
 ActiveRows active_rows(const LeafWindow& window);
 
-/// The values at a block's nodes and one layer about them: [x + 1][y + 1][z + 1].
-using NodeWindow = std::array<std::array<std::array<float, 10>, 10>, 10>;
 void load_nodes(const LeafWindow& window, NodeWindow& nodes);
 
 CrossedCells cells_crossed(const NodeWindow& nodes);
+CrossedCells cells_crossed(const NodeBits& inside);
 /// Those of the crossed cells whose stencil reads a node outside the band.
 CrossedCells cells_outside(const CrossedCells& crossed, const ActiveRows& rows, const Stencil& stencil);
 

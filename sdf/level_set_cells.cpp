@@ -56,6 +56,13 @@ CrossedCells cells_crossed(const NodeWindow& nodes) {
   return crossed_cells([&](int x, int y) { return &nodes[static_cast<size_t>(x) + 1][static_cast<size_t>(y) + 1][1]; });
 }
 
+CrossedCells cells_crossed(const NodeBits& inside) {
+  SignRows rows;
+  for (size_t x = 0; x < 9; ++x)
+    for (size_t y = 0; y < 9; ++y) rows[x][y] = inside.row(x + 1, y + 1) >> 1;
+  return crossed_cells_of_signs(rows);
+}
+
 namespace {
 
 /// For a kind of row in a stencil: byte y of a row x has bit z set where the row of the cell z reads a node outside the band.

@@ -7,6 +7,8 @@
 #include <mutex>
 #include <optional>
 
+#include "sdf/field_program.h"
+#include "sdf/large_pages.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_distance.h"
 #include "sdf/level_set_thin.h"
@@ -135,20 +137,75 @@ std::vector<Cube> band_blocks(const Field& field, const Lattice& lattice, const 
   return cubes;
 }
 
-ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance) {
+/// Nodes of a block that may lie in the band, numbered as in LevelSetBlock.
+struct BandNodes {
+  size_t count = 0;
+  std::array<std::uint16_t, 512> node;
   std::array<glm::dvec3, 512> points;
   std::array<double, 512> distances;
-  for (int n = 0; n < 512; ++n) points[static_cast<size_t>(n)] = lattice.node(cube.origin + glm::ivec3(n >> 6, (n >> 3) & 7, n & 7));
+};
+
+/// As large as the terms are that the field is summed up from, for its rounding.
+double extent_at(const Field& field, const glm::dvec3& point) {
+  const auto largest = [](const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
+  double extent = field.traits().lipschitz * largest(point);
+  for (const FieldLeaf& leaf : field.program().leaves)
+    extent = std::max(extent, leaf.lipschitz * largest(point) + leaf.value_scale * largest(leaf.object_from_world.translation));
+  return extent;
+}
+
+/// The nodes of those eighths of the block whose middle is no farther from the surface than the band reaches. The others are given the
+/// background, with the sign that the field has in the middle: it changes nowhere in them.
+void find_band_nodes(const Cube& cube, const Lattice& lattice, FieldEvaluator& evaluator, LevelSetBlock& block, BandNodes& found) {
+  constexpr int kHalf = kBlock / 2;
+  std::array<glm::dvec3, kBlock> along;
+  for (int k = 0; k < kBlock; ++k) along[static_cast<size_t>(k)] = lattice.node(cube.origin + k);
+  std::array<glm::dvec3, 8> middles;
+  std::array<double, 8> values;
+  for (size_t part = 0; part < 8; ++part)
+    middles[part] = 0.5 * (along[1] + along[2]) + kHalf * lattice.h * glm::dvec3(part >> 2, part >> 1 & 1, part & 1);
+  evaluator.values(middles, values);
+
+  const double lipschitz = evaluator.field().traits().lipschitz;
+  const double to_corner = 0.5 * (kHalf - 1) * std::sqrt(3.0) * lattice.h;
+  const double limit = std::max(lipschitz, 1.0) * lattice.half_width + lipschitz * to_corner;
+  const double slack = 1e-6 * limit + 1e-13 * extent_at(evaluator.field(), middles[0]);
+  found.count = 0;
+  for (size_t part = 0; part < 8; ++part) {
+    const size_t x0 = kHalf * (part >> 2), y0 = kHalf * (part >> 1 & 1), z0 = kHalf * (part & 1);
+    const bool far = std::abs(values[part]) > limit + slack;
+    const auto beyond = static_cast<float>(std::copysign(lattice.half_width, values[part]));
+    for (size_t x = x0; x < x0 + kHalf; ++x)
+      for (size_t y = y0; y < y0 + kHalf; ++y) {
+        const size_t row = x * 64 + y * 8;
+        if (far) {
+          std::fill_n(block.values + row + z0, kHalf, beyond);
+          continue;
+        }
+        for (size_t z = z0; z < z0 + kHalf; ++z) {
+          found.node[found.count] = static_cast<std::uint16_t>(row + z);
+          found.points[found.count++] = {along[x].x, along[y].y, along[z].z};
+        }
+      }
+  }
+}
+
+ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance) {
+  BandNodes nodes;
+  find_band_nodes(cube, lattice, distance.evaluator, block, nodes);
+  const auto points = std::span<const glm::dvec3>(nodes.points).first(nodes.count);
+  const auto distances = std::span(nodes.distances).first(nodes.count);
   signed_distances(distance, points, lattice.half_width, distances);
 
   block.origin = cube.origin;
   std::memset(block.active, 0, sizeof block.active);
-  for (size_t n = 0; n < 512; ++n) {
-    const bool active = std::abs(distances[n]) <= lattice.half_width;
-    if (active) block.active[n >> 6] |= std::uint64_t{1} << (n & 63);
-    block.values[n] = static_cast<float>(active ? distances[n] : std::copysign(lattice.half_width, distances[n]));
+  for (size_t k = 0; k < nodes.count; ++k) {
+    const size_t n = nodes.node[k];
+    const bool active = std::abs(distances[k]) <= lattice.half_width;
+    block.active[n >> 6] |= std::uint64_t{active ? 1u : 0u} << (n & 63);
+    block.values[n] = static_cast<float>(active ? distances[k] : std::copysign(lattice.half_width, distances[k]));
   }
-  return find_thin_places(distance.evaluator, points, distances, lattice.h);
+  return find_thin_places(distance.evaluator, std::span<const std::uint16_t>(nodes.node).first(nodes.count), points, distances, lattice.h);
 }
 
 void check(const Field& field, const LevelSetSettings& settings) {
@@ -190,7 +247,8 @@ LevelSet level_set_from_field(const Field& field, const LevelSetSettings& settin
   const Box& bounds = field.traits().bounds;
   const Lattice lattice = lattice_for(bounds, settings);
   const std::vector<Cube> cubes = band_blocks(field, lattice, settings);
-  std::vector<LevelSetBlock> blocks(cubes.size());
+  // Left unset: each thread touches first what it fills.
+  std::vector<LevelSetBlock, LargePageAllocator<LevelSetBlock>> blocks(cubes.size());
   Progress progress(settings.progress, cubes.size());
   std::atomic<std::int64_t> looked_at{0}, walls{0}, gaps{0};
   parallel_parts(cubes.size(), size_t{1}, [&](const IndexRange<size_t>& part) {

@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <new>
 #include <optional>
 #include <tuple>
 
 #include "sdf/error.h"
+#include "sdf/page_advice.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -32,30 +35,47 @@ bool less(const glm::ivec3& a, const glm::ivec3& b) { return std::tie(a.x, a.y, 
 
 nanovdb::Coord coord(const glm::ivec3& p) { return {p.x, p.y, p.z}; }
 
-/// As a tree is walked: root tiles by their coordinates, then the children of each node in turn.
-bool before(const LevelSetBlock* a, const LevelSetBlock* b) {
-  for (const int side : {kUpperSide, kLowerSide, kLeafSide}) {
-    const glm::ivec3 of_a = origin_of(a->origin, side), of_b = origin_of(b->origin, side);
-    if (of_a != of_b) return less(of_a, of_b);
+/// A block's place as a tree is walked: root tiles by their coordinates, then the children of each node in turn. Of equals the last in the
+/// list comes first.
+struct Place {
+  std::uint64_t upper = 0, leaf = 0;
+  const LevelSetBlock* block = nullptr;  ///< Null where it has no active node.
+
+  bool same(const Place& other) const { return upper == other.upper && leaf == other.leaf; }
+  bool operator<(const Place& other) const {
+    if (upper != other.upper) return upper < other.upper;
+    return leaf != other.leaf ? leaf < other.leaf : block > other.block;
   }
-  return false;
-}
+};
 
 bool is_active(const LevelSetBlock& block) {
   return std::any_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word != 0; });
 }
 
+/// x, y, z in `bits` bits each.
+std::uint64_t joined(const glm::ivec3& place, int bits) {
+  const auto part = [bits](int v) { return static_cast<std::uint64_t>(v) & ((std::uint64_t{1} << bits) - 1); };
+  return (part(place.x) << bits | part(place.y)) << bits | part(place.z);
+}
+
+Place place_of(const LevelSetBlock& block) {
+  constexpr int kUpperBits = 20;  // a whole number of 32 bits without 12: a root tile is 4096 wide
+  return {joined((block.origin >> 12) + (1 << (kUpperBits - 1)), kUpperBits),
+          joined(block.origin >> 7, 5) << 12 | joined(block.origin >> 3, 4), &block};
+}
+
 std::vector<const LevelSetBlock*> leaves_in_order(std::span<const LevelSetBlock> blocks) {
+  std::vector<Place> places(blocks.size());
+  parallel_parts(blocks.size(), size_t{256}, [&](const IndexRange<size_t>& part) {
+    for (size_t i = part.first; i < part.last; ++i)
+      if (is_active(blocks[i])) places[i] = place_of(blocks[i]);
+  });
+  std::erase_if(places, [](const Place& place) { return place.block == nullptr; });
+  if (!std::is_sorted(places.begin(), places.end())) parallel_sort(places.begin(), places.end());
   std::vector<const LevelSetBlock*> leaves;
-  leaves.reserve(blocks.size());
-  for (const LevelSetBlock& block : blocks)
-    if (is_active(block)) leaves.push_back(&block);
-  std::stable_sort(leaves.begin(), leaves.end(), before);
-  // Of equals the last: of a list turned round the first.
-  const auto same = [](const LevelSetBlock* a, const LevelSetBlock* b) {
-    return origin_of(a->origin, kLeafSide) == origin_of(b->origin, kLeafSide);
-  };
-  leaves.erase(leaves.begin(), std::unique(leaves.rbegin(), leaves.rend(), same).base());
+  leaves.reserve(places.size());
+  for (size_t i = 0; i < places.size(); ++i)
+    if (i == 0 || !places[i].same(places[i - 1])) leaves.push_back(places[i].block);
   return leaves;
 }
 
@@ -116,6 +136,7 @@ nanovdb::HostBuffer take_memory(Layout& layout) {
   layout.leaves_at = layout.lowers_at + layout.lowers.size() * Lower::memUsage();
   layout.size = layout.leaves_at + layout.leaves.size() * sizeof(Leaf);
   nanovdb::HostBuffer buffer = nanovdb::HostBuffer::create(layout.size);
+  ask_for_large_pages(buffer.data(), layout.size);
   layout.buffer = buffer.data();
   return buffer;
 }
@@ -155,26 +176,50 @@ void clear_head(Data& data, const Values& values) {
 
 using InsideAt = std::function<bool(const glm::dvec3&)>;
 
+/// flood_fill() of a leaf, row by row without a branch for each node. Some node is active.
+void fill_signs(const LevelSetBlock& block, float background, float* to) {
+  size_t first = 0;
+  while (block.active[first] == 0) ++first;
+  first = first * 64 + static_cast<size_t>(std::countr_zero(block.active[first]));
+  bool x_inside = block.values[first] < 0.0f;
+  for (size_t x = 0; x < 8; ++x) {
+    bool y_inside = x_inside;
+    for (size_t y = 0; y < 8; ++y) {
+      const std::uint64_t active = block.active[x] >> (8 * y) & 0xffu;
+      const float* const from = block.values + x * 64 + y * 8;
+      float* const row = to + x * 64 + y * 8;
+      if ((active & 1u) != 0) y_inside = from[0] < 0.0f;
+      if (y == 0) x_inside = y_inside;
+      if (active == 0) {
+        std::fill_n(row, 8, y_inside ? -background : background);
+      } else if (active == 0xffu) {
+        std::copy_n(from, 8, row);
+      } else {
+        float sign = y_inside ? -1.0f : 1.0f;
+        for (size_t z = 0; z < 8; ++z) {
+          const bool on = (active >> z & 1u) != 0;
+          sign = on ? (from[z] < 0.0f ? -1.0f : 1.0f) : sign;
+          row[z] = on ? from[z] : std::copysign(background, sign);
+        }
+      }
+    }
+  }
+}
+
 void write_leaf(const LevelSetBlock& block, float background, const InsideAt& inside_at, Leaf& leaf) {
   auto& data = *leaf.data();
   clear_head(data, data.mValues);
   data.setOrigin(coord(origin_of(block.origin, kLeafSide)));
   for (int word = 0; word < 8; ++word) data.mValueMask.getWord<std::uint64_t>(word) = block.active[word];
-  std::copy(std::begin(block.values), std::end(block.values), data.mValues);
   if (inside_at) {
+    std::copy(std::begin(block.values), std::end(block.values), data.mValues);
     const glm::ivec3 origin = origin_of(block.origin, kLeafSide);
     for (std::uint32_t n = 0; n < Leaf::SIZE; ++n)
       if (!data.mValueMask.isOn(n))
         data.mValues[n] = inside_at(glm::dvec3(origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7))) ? -background : background;
     return;
   }
-  std::uint32_t first = 0;
-  while (!data.mValueMask.isOn(first)) ++first;
-  const auto sign_at = [&](std::uint32_t n) {
-    return data.mValueMask.isOn(n) ? std::optional<bool>(data.mValues[n] < 0.0f) : std::optional<bool>();
-  };
-  flood_fill<3>(data.mValues[first] < 0.0f, sign_at,
-                [&](std::uint32_t n, bool inside) { data.mValues[n] = inside ? -background : background; });
+  fill_signs(block, background, data.mValues);
 }
 
 float first_value(const Leaf& leaf) { return leaf.data()->mValues[0]; }
@@ -260,7 +305,13 @@ void write_tree(const Layout& layout) {
   data.mNodeCount[0] = static_cast<std::uint32_t>(layout.leaves.size());
   data.mNodeCount[1] = static_cast<std::uint32_t>(layout.lowers.size());
   data.mNodeCount[2] = static_cast<std::uint32_t>(layout.uppers.size());
-  for (size_t i = 0; i < layout.leaves.size(); ++i) data.mVoxelCount += layout.leaf(i).data()->mValueMask.countOn();
+  data.mVoxelCount += parallel_reduce(
+      layout.leaves.size(), size_t{1024}, std::uint64_t{0},
+      [&](const IndexRange<size_t>& part, std::uint64_t count) {
+        for (size_t i = part.first; i < part.last; ++i) count += layout.leaf(i).data()->mValueMask.countOn();
+        return count;
+      },
+      std::plus<>());
 }
 
 void write_grid(const Layout& layout) {

@@ -1,0 +1,97 @@
+// Bits of a block's nodes, beside a plain loop over them.
+
+#include "sdf/node_bits.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "sdf/crossed_cells.h"
+#include "sdf/level_set_band.h"
+#include "tests/random_seed.h"
+
+namespace limn::test {
+namespace {
+
+/// A plane through or beside the window, with some values that are nothing like a distance.
+NodeWindow random_window(std::mt19937& random) {
+  std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
+  const float normal[3] = {unit(random), unit(random), unit(random)}, offset = 12.0f * unit(random);
+  const bool wild = random() % 2 == 0;
+  NodeWindow nodes;
+  for (size_t x = 0; x < 10; ++x)
+    for (size_t y = 0; y < 10; ++y)
+      for (size_t z = 0; z < 10; ++z) {
+        float& value = nodes[x][y][z];
+        value = normal[0] * static_cast<float>(x) + normal[1] * static_cast<float>(y) + normal[2] * static_cast<float>(z) + offset;
+        if (wild && random() % 20 == 0) value = std::numeric_limits<float>::quiet_NaN();
+        if (wild && random() % 20 == 0) value = random() % 2 == 0 ? 0.0f : -0.0f;
+      }
+  return nodes;
+}
+
+TEST(NodeBits, AreThoseOfAPlainLoop) {
+  std::mt19937 random(random_seed());
+  int mixed_windows = 0, same_windows = 0, steep_windows = 0;
+  for (int round = 0; round < 200; ++round) {
+    const NodeWindow nodes = random_window(random);
+    NodeBits inside, steep;
+    const bool mixed = find_inside(nodes, inside), any_steep = find_steep(nodes, steep);
+    bool some = false, every = true, expected_steep = false;
+    for (size_t x = 0; x < 10; ++x)
+      for (size_t y = 0; y < 10; ++y)
+        for (size_t z = 0; z < 10; ++z) {
+          const bool negative = nodes[x][y][z] < 0.0f;
+          some = some || negative;
+          every = every && negative;
+          ASSERT_EQ((inside.row(x, y) >> z & 1u) != 0, negative) << x << " " << y << " " << z;
+          if (std::min({x, y, z}) < 1 || std::max({x, y, z}) > 8) continue;
+          float largest = 0.0f;
+          for (const float other :
+               {nodes[x - 1][y][z], nodes[x + 1][y][z], nodes[x][y - 1][z], nodes[x][y + 1][z], nodes[x][y][z - 1], nodes[x][y][z + 1]})
+            largest = std::max(largest, std::abs(other - nodes[x][y][z]));
+          const bool near = std::abs(nodes[x][y][z]) < 0.5f * largest;
+          expected_steep = expected_steep || near;
+          ASSERT_EQ((steep.row(x, y) >> z & 1u) != 0, near) << x << " " << y << " " << z;
+        }
+    EXPECT_EQ(mixed, some && !every);
+    EXPECT_TRUE(any_steep || !expected_steep);
+    mixed_windows += mixed ? 1 : 0;
+    same_windows += mixed ? 0 : 1;
+    steep_windows += any_steep ? 1 : 0;
+  }
+  EXPECT_GT(mixed_windows, 20);
+  EXPECT_GT(same_windows, 5);
+  EXPECT_GT(steep_windows, 20);
+}
+
+TEST(NodeBits, GiveTheCrossedCellsOfTheNodesThemselves) {
+  std::mt19937 random(random_seed());
+  int crossed_windows = 0;
+  for (int round = 0; round < 200; ++round) {
+    const NodeWindow nodes = random_window(random);
+    NodeBits inside;
+    find_inside(nodes, inside);
+    const CrossedCells found = cells_crossed(inside);
+    bool any = false;
+    for (size_t x = 0; x < 8; ++x)
+      for (size_t y = 0; y < 8; ++y)
+        for (size_t z = 0; z < 8; ++z) {
+          int negative = 0;
+          for (size_t corner = 0; corner < 8; ++corner)
+            negative += nodes[x + 1 + (corner & 1)][y + 1 + (corner >> 1 & 1)][z + 1 + (corner >> 2)] < 0.0f ? 1 : 0;
+          const bool crossed = negative > 0 && negative < 8;
+          any = any || crossed;
+          ASSERT_EQ((found.cells[x][y] >> z & 1) != 0, crossed) << x << " " << y << " " << z;
+        }
+    EXPECT_EQ(found.any, any);
+    crossed_windows += any ? 1 : 0;
+  }
+  EXPECT_GT(crossed_windows, 20);
+}
+
+}  // namespace
+}  // namespace limn::test

@@ -20,6 +20,7 @@ constexpr double kClosing = 0.15;     // of a step: so near it the start is the 
 constexpr double kTurn = 0.95;        // the cosine of the angle between tangents, and between normals, along a step
 constexpr double kLongest_px = 1.0;
 constexpr size_t kMostPoints = 50'000;
+constexpr size_t kBatch = 16;  // strands that are followed at once
 constexpr double kOnPath = 0.15, kOnPathLeast = 1e-3;  // of a step, and of the longest step
 
 glm::dvec3 tangent_of(const CurvePoint& point) { return glm::normalize(glm::cross(point.high, point.uphill)); }
@@ -143,17 +144,6 @@ std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field
                                    const FollowSettings& settings, const ExecutionSettings& how) {
   if (found.empty()) return found;
   const double c = found.front().c;
-  std::vector<std::optional<std::vector<CurvePoint>>> paths(found.size());
-  parallel_for(size_t{0}, found.size(), [&](size_t i) {
-    if (how.cancelled && how.cancelled()) throw Cancelled{};
-    Follower follower(field, camera, viewer, settings, c);
-    for (const CurvePoint& point : found[i].points) {
-      const std::optional<CurvePoint> seed = point.rough ? std::nullopt : follower.seed(point);
-      if (!seed) continue;
-      paths[i] = follower.around(*seed);
-      break;
-    }
-  });
   std::vector<Strand> result;
   PathIndex index(settings.longest_step);
   const auto accept = [&](const Strand& like, std::vector<CurvePoint> path) {
@@ -162,8 +152,25 @@ std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field
     result.back().points = std::move(path);
     result.back().closed = result.back().followed = true;
   };
-  for (size_t i = 0; i < found.size(); ++i) {
-    if (paths[i] && !index.holds(paths[i]->front())) accept(found[i], std::move(*paths[i]));
+  // Where hundreds of strands are pieces of one curve, as along flat walls seen edge-on, all but those of one batch find it followed: what
+  // comes out is the same for batches of any size.
+  std::vector<std::optional<std::vector<CurvePoint>>> paths(found.size());
+  for (size_t begin = 0; begin < found.size(); begin += kBatch) {
+    const size_t end = std::min(begin + kBatch, found.size());
+    parallel_for(begin, end, [&](size_t i) {
+      if (how.cancelled && how.cancelled()) throw Cancelled{};
+      Follower follower(field, camera, viewer, settings, c);
+      for (const CurvePoint& point : found[i].points) {
+        const std::optional<CurvePoint> seed = point.rough ? std::nullopt : follower.seed(point);
+        if (!seed) continue;
+        if (!index.holds(*seed)) paths[i] = follower.around(*seed);
+        break;
+      }
+    });
+    for (size_t i = begin; i < end; ++i) {
+      if (paths[i] && !index.holds(paths[i]->front())) accept(found[i], std::move(*paths[i]));
+      paths[i].reset();
+    }
   }
   // What no path passes: other curves through crossings that were joined to these.
   Follower follower(field, camera, viewer, settings, c);

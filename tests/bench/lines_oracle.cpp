@@ -25,6 +25,9 @@ constexpr double kInFront_px = 0.02;  // what the ray through the point hits nea
 constexpr std::array<Ray, 4> kOutside = {{{0.25, 0.002}, {0.05, 0.002}, {0.0125, 0.002}, {0.003, 0.002}}};
 constexpr size_t kRays = kAlong.size() + kOutside.size();
 constexpr double kOffContour_px = 0.02;  // a drawn contour and the spline's, farther apart than any tolerance asked for
+// Flat walls of voxels are seen edge-on, and contours on them are known badly along the ray.
+constexpr double kMostOfSpline_px = 20.0, kMostOfField_px = 0.5;
+constexpr double kFieldStep_px = 0.005;  // rays miss no sheet of a field thicker than this
 constexpr std::array<double, 4> kOutsideOfSpline_px = {0.25, 0.0125, 3e-4, 1e-7};
 
 struct Asked {
@@ -60,6 +63,7 @@ void add_points(const LineEdge& edge, const Camera& camera, std::vector<Asked>& 
 struct Aimed {
   std::array<glm::dvec2, kRays> points_px{};
   double depth = 0.0;      ///< Of the point itself.
+  bool is_spline = false;  ///< The contour of a level set.
   bool at_itself = false;  ///< The first ray goes through the contour, to rounding.
 };
 
@@ -68,17 +72,25 @@ glm::dvec3 point_at(const Camera& camera, const glm::dvec2& px, double depth) {
   return ray.origin + depth / (project(camera, ray.origin + ray.direction).z - project(camera, ray.origin).z) * ray.direction;
 }
 
+/// The contour's own point where it is drawn, no farther from there along the ray than `most_px`.
+std::optional<glm::dvec3> own_point(const Asked& asked, const Camera& camera, FieldEvaluator& surface, double most_px) {
+  const double most = most_px / pixels_per_unit_at(camera, asked.depth);
+  const auto p = on_contour(surface, camera, point_at(camera, asked.px, asked.depth), most);
+  const bool close = p && glm::distance(glm::dvec2(project(camera, *p)), asked.px) < kOffContour_px;
+  return close ? p : std::nullopt;
+}
+
 /// A level set's contour is aimed at itself, not where it is drawn.
 Aimed aim(const Asked& asked, const Camera& camera, FieldEvaluator* spline) {
   Aimed aimed;
   aimed.depth = asked.depth;
   glm::dvec2 px = asked.px;
   if (spline != nullptr && asked.edge->line_class == LineClass::contour) {
-    const double most = 20.0 / pixels_per_unit_at(camera, asked.depth);
-    if (const auto p = on_contour(*spline, camera, point_at(camera, asked.px, asked.depth), most)) {
+    aimed.is_spline = true;
+    if (const auto p = own_point(asked, camera, *spline, kMostOfSpline_px)) {
       const glm::dvec3 seen = project(camera, *p);
-      aimed.at_itself = glm::distance(glm::dvec2(seen), asked.px) < kOffContour_px;
-      if (aimed.at_itself) px = seen, aimed.depth = seen.z;
+      aimed.at_itself = true;
+      px = seen, aimed.depth = seen.z;
     }
   }
   size_t k = 0;
@@ -86,6 +98,23 @@ Aimed aim(const Asked& asked, const Camera& camera, FieldEvaluator* spline) {
   for (size_t i = 0; i < kOutside.size(); ++i)
     aimed.points_px[k++] = px + (aimed.at_itself ? kOutsideOfSpline_px[i] : kOutside[i].beside_px) * asked.across;
   return aimed;
+}
+
+/// The ray through the own point of a field's contour meets something in front of it, sample by sample in double precision: rays of the
+/// marcher beside a drawn point may pass by a sheet that ends within the drawing's tolerance.
+bool is_behind_field(const Asked& asked, const Camera& camera, FieldEvaluator& field) {
+  const auto p = own_point(asked, camera, field, kMostOfField_px);
+  if (!p) return false;
+  const glm::dvec3 seen = project(camera, *p);
+  const CameraRay ray = camera_ray(camera, seen.x, seen.y);
+  const double unit_px = pixels_per_unit_at(camera, seen.z), end = glm::dot(*p - ray.origin, ray.direction) - kInFront_px / unit_px,
+               lipschitz = field.field().traits().lipschitz;
+  for (double t = 0.0; t < end;) {
+    const double f = field.value(ray.origin + t * ray.direction);
+    if (f < 0.0) return true;
+    t += std::max(f / lipschitz, kFieldStep_px / unit_px);
+  }
+  return false;
 }
 
 /// Depths of what rays hit first; infinite where they hit nothing.
@@ -136,7 +165,11 @@ Depths hit_depths(const Oracle& oracle, const Camera& camera, const std::vector<
 }  // namespace
 
 Oracle make_oracle(const Scene& scene) {
-  Oracle oracle{{}, spline_bodies(scene)};
+  Oracle oracle{{}, spline_bodies(scene), {}};
+  for (const SceneObject& object : scene.objects) {
+    const Field* field = std::get_if<Field>(&object.source);
+    oracle.fields.push_back(field == nullptr ? std::optional<Field>() : *field);
+  }
   SurfaceSettings settings;
   settings.kind = "";
   Scene asked = scene;
@@ -158,6 +191,7 @@ void add(const OracleCount& more, OracleCount& sum) {
   sum.visible += more.visible;
   sum.occluded += more.occluded;
   sum.seen += more.seen;
+  sum.undecided += more.undecided;
   sum.places.insert(sum.places.end(), more.places.begin(), more.places.end());
 }
 
@@ -166,6 +200,8 @@ OracleCount ask_oracle(const Oracle& oracle, const Camera& camera, const ViewGra
   for (const LineEdge& edge : graph.edges) add_points(edge, camera, asked);
   std::vector<Aimed> aimed;
   const Depths depths = hit_depths(oracle, camera, asked, aimed);
+  std::vector<std::optional<FieldEvaluator>> fields;
+  for (const auto& field : oracle.fields) fields.push_back(field ? std::optional<FieldEvaluator>(*field) : std::nullopt);
   OracleCount count;
   for (size_t i = 0; i < asked.size(); ++i) {
     const double unit_px = pixels_per_unit_at(camera, aimed[i].depth);
@@ -182,11 +218,17 @@ OracleCount ask_oracle(const Oracle& oracle, const Camera& camera, const ViewGra
     const bool visible = asked[i].edge->invisibility == 0, contour = asked[i].edge->line_class == LineClass::contour;
     count.visible += visible;
     const bool occluded = visible && along == kAlong.size() && (!contour || outside == kOutside.size());
-    // The ray through a contour's own point, known far better than its polyline, decides where rays beside it pass within rounding.
-    const bool passed = !visible && contour && outside == 0 && !(aimed[i].at_itself && in_front);
-    const bool seen = passed || (!visible && along == 0 && !in_front);
+    // The ray through a contour's own point, known far better than its polyline, decides where rays beside it pass within rounding. Where
+    // that point is not found rays that differ within what the polyline is known to say nothing.
+    const bool passes_outside = !visible && contour && outside == 0;
+    const bool undecided = passes_outside && in_front && aimed[i].is_spline && !aimed[i].at_itself;
+    const bool passed = passes_outside && !undecided && !(aimed[i].at_itself && in_front);
+    const bool passes = passed || (!visible && along == 0 && !in_front);
+    auto& field = fields[static_cast<size_t>(asked[i].edge->object - 1)];
+    const bool seen = passes && !(contour && field && is_behind_field(asked[i], camera, *field));
     count.occluded += occluded;
     count.seen += seen;
+    count.undecided += undecided;
     if (occluded || seen) count.places.push_back(asked[i].px);
   }
   return count;

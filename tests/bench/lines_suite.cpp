@@ -110,8 +110,8 @@ nlohmann::json json_of(Row row, std::FILE* table) {
   fmt::print(table, "| {} | {} | {:.1f} | {:.1f} | {} | {} | {} | {} | {} | {:.3g} |\n", row.name, row.ms.size(), median, worst, row.chains,
              row.visible, row.rays, row.conflicts, row.open_ends, row.bound_px);
   if (row.oracle.points > 0)
-    fmt::print(table, "{}: of {} points 2 px apart {} are drawn as visible and occluded, {} as hidden and seen\n", row.name,
-               row.oracle.points, row.oracle.occluded, row.oracle.seen);
+    fmt::print(table, "{}: of {} points 2 px apart {} are drawn as visible and occluded, {} as hidden and seen; {} are undecided\n",
+               row.name, row.oracle.points, row.oracle.occluded, row.oracle.seen, row.oracle.undecided);
   return {{"suite", "lines"},
           {"case", row.name},
           {"contestant", "limn"},
@@ -125,7 +125,8 @@ nlohmann::json json_of(Row row, std::FILE* table) {
           {"bound_px", row.bound_px},
           {"oracle_points", row.oracle.points},
           {"occluded", row.oracle.occluded},
-          {"seen", row.oracle.seen}};
+          {"seen", row.oracle.seen},
+          {"undecided", row.oracle.undecided}};
 }
 
 double median_of(std::vector<double> values) {

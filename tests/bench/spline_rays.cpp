@@ -16,6 +16,10 @@ constexpr double kMayDip = 0.25;  // voxels: where values along the ray turn low
 constexpr int kHalvings = 50;
 constexpr double kGolden = 0.6180339887498949;
 constexpr int kNewtonSteps = 20;
+constexpr double kKnown = 1e-9;      // of the farthest that a contour's point is looked for
+constexpr double kFirstTurn = 1e-3;  // of the same, along the ray
+constexpr double kSameFold = 1e-3;   // of the same: nearer points are of one fold
+constexpr int kSlopes = 8;
 
 class Ray {
  public:
@@ -93,13 +97,15 @@ std::optional<double> first_hit(const SplineBody& body, FieldEvaluator& evaluato
   return {};
 }
 
-std::optional<glm::dvec3> on_contour(FieldEvaluator& evaluator, const Camera& camera, const glm::dvec3& drawn, double most) {
+namespace {
+
+/// By Newton's iteration: f and its slope along the ray are 0, by moves along the ray and across it.
+std::optional<glm::dvec3> newton(FieldEvaluator& evaluator, const Camera& camera, const glm::dvec3& drawn, double most) {
   glm::dvec3 p = drawn;
   for (int k = 0; k < kNewtonSteps; ++k) {
     const FieldJet jet = evaluator.jet(p);
     const glm::dvec3 view = view_vector(camera, p), along_ray = glm::dot(jet.gradient, view) * view;
     const glm::dvec3 across = glm::normalize(jet.gradient - along_ray);
-    // f and its slope along the ray, by moves along the ray and across it.
     const double slope = glm::dot(jet.gradient, view), f_across = glm::dot(jet.gradient, across), bend = glm::dot(view, jet.hessian * view),
                  twist = glm::dot(view, jet.hessian * across);
     const double determinant = slope * twist - f_across * bend;
@@ -110,9 +116,69 @@ std::optional<glm::dvec3> on_contour(FieldEvaluator& evaluator, const Camera& ca
     if (!(glm::length(move) < most)) return {};
     p += move;
     if (glm::distance(p, drawn) > most) return {};
-    if (glm::length(move) < 1e-9 * most) return p;
+    if (glm::length(move) < kKnown * most) return p;
   }
   return {};
+}
+
+/// Between two places f rises, or falls, all along the view: both belong to one fold of the surface.
+bool on_one_fold(FieldEvaluator& evaluator, const Camera& camera, const glm::dvec3& drawn, const glm::dvec3& found) {
+  double first = 0.0;
+  for (int k = 0; k < kSlopes; ++k) {
+    const glm::dvec3 p = glm::mix(drawn, found, static_cast<double>(k) / kSlopes);
+    const double slope = glm::dot(evaluator.jet(p).gradient, view_vector(camera, p));
+    if (k == 0) first = slope;
+    if (first * slope < 0.0) return false;
+  }
+  return true;
+}
+
+/// Where f turns along the view, from the point to where its slope leads: from a point of a hump down to the least f, of a hollow up to the
+/// greatest. Nothing within `most`.
+std::optional<glm::dvec3> turn_along(FieldEvaluator& evaluator, const glm::dvec3& start, const glm::dvec3& view, bool hump, double most) {
+  const auto slope_at = [&](double t) { return glm::dot(evaluator.jet(start + t * view).gradient, view); };
+  const double slope = slope_at(0.0);
+  if (slope == 0.0) return start;
+  const double way = (slope > 0.0) == hump ? -1.0 : 1.0;
+  double near = 0.0, far = way * kFirstTurn * most;
+  while (slope_at(far) * slope > 0.0) {
+    near = far;
+    far *= 1.25;
+    if (std::fabs(far) > most) return {};
+  }
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (near + far);
+    (slope_at(middle) * slope > 0.0 ? near : far) = middle;
+  }
+  return start + 0.5 * (near + far) * view;
+}
+
+/// By moves along the ray to where f turns and across it to where that turn is on the surface. On a flat wall seen edge-on, where Newton's
+/// steps leave for another fold of it, they do not.
+std::optional<glm::dvec3> by_turns(FieldEvaluator& evaluator, const Camera& camera, const glm::dvec3& drawn, double most) {
+  const glm::dvec3 first_view = view_vector(camera, drawn);
+  const bool hump = glm::dot(first_view, evaluator.jet(drawn).hessian * first_view) > 0.0;
+  glm::dvec3 p = drawn;
+  for (int k = 0; k < kNewtonSteps; ++k) {
+    const glm::dvec3 view = view_vector(camera, p);
+    const auto turn = turn_along(evaluator, p, view, hump, most);
+    if (!turn) return {};
+    const FieldJet jet = evaluator.jet(*turn);
+    const glm::dvec3 across = jet.gradient - glm::dot(jet.gradient, view) * view;
+    const glm::dvec3 move = -jet.value / glm::dot(across, across) * across;
+    p = *turn + move;
+    if (!(glm::distance(p, drawn) < most)) return {};
+    if (glm::length(move) < kKnown * most) return p;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<glm::dvec3> on_contour(FieldEvaluator& evaluator, const Camera& camera, const glm::dvec3& drawn, double most) {
+  const auto found = newton(evaluator, camera, drawn, most);
+  if (found && (glm::distance(drawn, *found) < kSameFold * most || on_one_fold(evaluator, camera, drawn, *found))) return found;
+  return by_turns(evaluator, camera, drawn, most);
 }
 
 }  // namespace limn::bench

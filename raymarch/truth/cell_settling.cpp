@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <climits>
-#include <unordered_map>
 
 #include "raymarch/truth/cell_scope.h"
 #include "sdf/parallel.h"
@@ -30,7 +29,8 @@ class CellSet {
     for (int x = low.x >> 2; x <= high.x >> 2; ++x) {
       for (int y = low.y >> 2; y <= high.y >> 2; ++y) {
         for (int z = low.z >> 2; z <= high.z >> 2; ++z) {
-          std::uint64_t& block = blocks_[packed({x, y, z})];
+          bool added = false;
+          std::uint64_t& block = blocks_.at(packed({x, y, z}), added);
           for (int i = std::max(low.x, 4 * x); i <= std::min(high.x, 4 * x + 3); ++i) {
             for (int j = std::max(low.y, 4 * y); j <= std::min(high.y, 4 * y + 3); ++j) {
               for (int k = std::max(low.z, 4 * z); k <= std::min(high.z, 4 * z + 3); ++k) block |= bit_of({i, j, k});
@@ -42,17 +42,14 @@ class CellSet {
   }
   /// The block's cells: bit 16 x + 4 y + z of those from its corner.
   std::uint64_t block(const glm::ivec3& index) const {
-    const auto found = blocks_.find(packed(index));
-    return found != blocks_.end() ? found->second : 0;
+    const std::uint64_t* found = blocks_.find(packed(index));
+    return found != nullptr ? *found : 0;
   }
-  bool contains(const glm::ivec3& cell) const {
-    const auto block = blocks_.find(packed({cell.x >> 2, cell.y >> 2, cell.z >> 2}));
-    return block != blocks_.end() && (block->second & bit_of(cell)) != 0;
-  }
+  bool contains(const glm::ivec3& cell) const { return (block({cell.x >> 2, cell.y >> 2, cell.z >> 2}) & bit_of(cell)) != 0; }
 
  private:
   static std::uint64_t bit_of(const glm::ivec3& cell) { return std::uint64_t{1} << ((cell.x & 3) << 4 | (cell.y & 3) << 2 | (cell.z & 3)); }
-  std::unordered_map<std::uint64_t, std::uint64_t> blocks_{};
+  KeyedValues<std::uint64_t> blocks_{};
 };
 
 /// What lies beside found curves: cells within kNearCells of one that a curve goes through, and parts of cells beside such a part.
@@ -60,11 +57,15 @@ struct Tubes {
   CellSet cells{}, parts{};
 
   void add(const CellGrid& grid, const CellCurves& curves) {
-    std::unordered_map<std::uint64_t, glm::dvec3> points;
-    for (const Crossing& crossing : curves.crossings) points.emplace(crossing.key, (crossing.point.p - grid.corner) / grid.side);
+    KeyedValues<glm::dvec3> points;
+    for (const Crossing& crossing : curves.crossings) {
+      bool added = false;
+      glm::dvec3& point = points.at(crossing.key, added);
+      if (added) point = (crossing.point.p - grid.corner) / grid.side;
+    }
     glm::ivec3 last_cell(INT_MIN), last_part(INT_MIN);
     for (const Link& link : curves.links) {
-      const glm::dvec3 a = points.at(link.from), b = points.at(link.to);
+      const glm::dvec3 a = *points.find(link.from), b = *points.find(link.to);
       const int steps = 1 + static_cast<int>(glm::distance(a, b) * 2.0 * kParts);
       for (int i = 0; i <= steps; ++i) {
         const glm::dvec3 p = glm::mix(a, b, static_cast<double>(i) / steps);

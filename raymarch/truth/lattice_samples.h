@@ -26,6 +26,13 @@ class KeyedValues {
     }
     return entries_[places_[place]].second;
   }
+  /// Null where there is none.
+  const Value* find(std::uint64_t key) const {
+    if (places_.empty()) return nullptr;
+    size_t place = hash(key);
+    while (places_[place] != kNone && entries_[places_[place]].first != key) place = (place + 1) & (places_.size() - 1);
+    return places_[place] == kNone ? nullptr : &entries_[places_[place]].second;
+  }
   size_t bytes() const { return entries_.capacity() * sizeof(entries_[0]) + places_.capacity() * sizeof(places_[0]); }
 
  private:

@@ -23,6 +23,8 @@ constexpr double kLongestChordPx = 4.0;
 constexpr size_t kManyBranches = 12;
 constexpr double kAround = 1.0 / 24.0;  // of the extent
 constexpr double kBulge = 1.2;          // a curve's length over its chord's, at most
+constexpr double kOvershoot = 0.02;     // of a bracket's width, beyond the root that its ends tell
+constexpr int kBracketSteps = 60;
 
 /// A point of a strand and whether the border goes through it.
 struct Spot {
@@ -143,6 +145,45 @@ class Cutter {
     return glm::length(off) < 0.25 * settings_.tolerance_px;
   }
 
+  /// The margin alone says that the border ends between the two.
+  bool ends_between(const Spot& a, const Spot& b) const {
+    return a.on != b.on && (a.margin > 0.0) == a.on && (b.margin > 0.0) == b.on &&
+           (strand_.whole || (strand_.second < 0 && !a.point.crease && !b.point.crease));
+  }
+
+  /// The curve's point beside one of a short chord, by Newton's iteration alone.
+  std::optional<Spot> beside(const Spot& a, const Spot& b, double share, double reach) {
+    const glm::dvec3 way = b.point.p - a.point.p, guess = a.point.p + share * way;
+    std::optional<CurvePoint> point = strand_.second >= 0 ? polish_seam(evaluator(strand_.first), evaluator(strand_.second), guess, reach)
+                                                          : polish(evaluator(strand_.first), settings_.viewer, strand_.c, guess, reach);
+    if (!point) return {};
+    const double place = glm::dot(point->p - a.point.p, way) / glm::dot(way, way);
+    if (!(place > 0.0 && place < 1.0)) return {};
+    if (strand_.second < 0 && glm::dot(point->uphill, a.point.uphill + b.point.uphill) < 0.0) point->uphill = a.point.uphill;
+    return spot(*point);
+  }
+
+  /// The margin is all but linear over so short a step: false position, a little beyond the root towards the end that is farther from it,
+  /// so that both ends come near; halves where that does not narrow the bracket.
+  void bracket_end(const Spot& a, const Spot& b, std::vector<Spot>& out) {
+    const double whole = glm::distance(a.point.p, b.point.p);
+    std::vector<Spot> from_a, from_b;
+    for (int step = 0; step < kBracketSteps; ++step) {
+      const Spot &low = from_a.empty() ? a : from_a.back(), &high = from_b.empty() ? b : from_b.back();
+      const double length = glm::distance(low.point.p, high.point.p);
+      if (length < kBracket * settings_.extent) break;
+      double share = low.margin / (low.margin - high.margin);
+      share += (share < 0.5 ? kOvershoot : -kOvershoot) * length / whole;
+      if (step % 4 == 3 || !(share > 0.0 && share < 1.0)) share = 0.5;
+      std::optional<Spot> middle = beside(low, high, share, 0.5 * whole);
+      if (!middle) middle = between(low, high);
+      if (!middle) break;
+      (middle->on == a.on ? from_a : from_b).push_back(std::move(*middle));
+    }
+    out.insert(out.end(), from_a.begin(), from_a.end());
+    out.insert(out.end(), from_b.rbegin(), from_b.rend());
+  }
+
   void scan(const Spot& a, const Spot& b, int depth, std::vector<Spot>& out) {
     const double length = glm::distance(a.point.p, b.point.p);
     if (depth > 60 || length < kBracket * settings_.extent) return;
@@ -150,6 +191,7 @@ class Cutter {
     const bool same = a.on == b.on && !swapped(a, b), quiet = same && (settled(a, b, length) || length_px < kFinestStepPx);
     const bool seam = strand_.second >= 0;
     if (quiet && (!seam || !a.on || length_px < kFinestStepPx)) return;
+    if (ends_between(a, b) && length_px < kFinestStepPx) return bracket_end(a, b, out);
     const std::optional<Spot> middle = between(a, b);
     if (!middle) return;
     if (quiet && straight(a, *middle, b)) {

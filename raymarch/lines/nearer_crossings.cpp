@@ -1,6 +1,7 @@
 #include "raymarch/lines/nearer_crossings.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -168,6 +169,31 @@ FoldIndex index_folds(const std::vector<SurfaceCurve>& curves, const Camera& cam
   return index;
 }
 
+/// sag_px() of folds, each worked out once: where lines lie on each other every fold is asked for hundreds of times, from many threads.
+class FoldSags {
+ public:
+  FoldSags(const std::vector<SurfaceCurve>& curves, const FoldIndex& index, const Camera& camera)
+      : curves_(curves), index_(index), camera_(camera), sags_px_(index.folds.size()) {
+    for (std::atomic<double>& sag : sags_px_) sag.store(kUnknown, std::memory_order_relaxed);
+  }
+  double at(std::uint32_t fold) {
+    std::atomic<double>& known = sags_px_[fold];
+    double sag = known.load(std::memory_order_relaxed);
+    if (sag == kUnknown) {
+      sag = sag_px(curves_[index_.folds[fold].curve], index_.folds[fold].index, camera_);
+      known.store(sag, std::memory_order_relaxed);
+    }
+    return sag;
+  }
+
+ private:
+  static constexpr double kUnknown = -1.0;
+  const std::vector<SurfaceCurve>& curves_;
+  const FoldIndex& index_;
+  const Camera& camera_;
+  std::vector<std::atomic<double>> sags_px_;
+};
+
 /// Of one curve, in order along it.
 std::vector<NearerCrossing> crossings_of(const std::vector<SurfaceCurve>& curves, size_t c, const FoldIndex& index, const Camera& camera) {
   std::vector<NearerCrossing> result, here;
@@ -218,6 +244,7 @@ std::vector<std::vector<NearerCrossing>> NearerFolds::crossings() const {
 StepMarks NearerFolds::unclear_steps(const StepMarks& asked) const {
   StepMarks unclear(curves_.size());
   std::vector<std::vector<std::uint32_t>> nearer(curves_.size());
+  FoldSags sags(curves_, *index_, camera_);
   parallel_for(size_t{0}, curves_.size(), [&](size_t c) {
     const SurfaceCurve& curve = curves_[c];
     unclear[c].assign(asked[c].size(), 0);
@@ -233,7 +260,7 @@ StepMarks NearerFolds::unclear_steps(const StepMarks& asked) const {
           if (fold.curve == c && neighbours(fold.index, i, asked[c].size())) continue;
           if (!is_in_front(fold.ends, step, std::max(curve.nearer_px, fold.nearer_px), camera_)) continue;
           if (!own_sag_px) own_sag_px = sag_px(curve, i, camera_);
-          if (!is_unclear(step, fold.ends, *own_sag_px + sag_px(other, fold.index, camera_))) continue;
+          if (!is_unclear(step, fold.ends, *own_sag_px + sags.at(index_->in[k]))) continue;
           unclear[c][i] = 1;
           if (!is_feature(curve.samples[i].line_class)) nearer[c].push_back(index_->in[k]);
         }

@@ -20,7 +20,7 @@ constexpr double kClosing = 0.15;     // of a step: so near it the start is the 
 constexpr double kTurn = 0.95;        // the cosine of the angle between tangents, and between normals, along a step
 constexpr double kLongest_px = 1.0;
 constexpr size_t kMostPoints = 50'000;
-constexpr size_t kBatch = 16;  // strands that are followed at once
+constexpr size_t kBatch = 16;                          // strands that are followed at once
 constexpr double kOnPath = 0.15, kOnPathLeast = 1e-3;  // of a step, and of the longest step
 
 glm::dvec3 tangent_of(const CurvePoint& point) { return glm::normalize(glm::cross(point.high, point.uphill)); }

@@ -38,7 +38,7 @@ Pixels<std::uint8_t> srgb_pixels(const Image<glm::vec4>& picture, bool alpha) {
       const glm::vec4& color = picture.pixels[i];
       std::uint8_t* const to = &bytes[i * channels];
       // Background and ink are most of a picture.
-      if (i > part.first && std::memcmp(&color, &color - 1, sizeof color) == 0) {
+      if (i > part.first && color == picture.pixels[i - 1]) {
         std::copy_n(to - channels, channels, to);
         continue;
       }

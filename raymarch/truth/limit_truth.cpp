@@ -123,7 +123,8 @@ SampledCage::SampledCage(const SceneObject& object, const ShareSettings& setting
       grid(sample_grid(placed, settings.camera, kCell_px, kMostTriangles, cell_px)) {}
 
 TruthShare trace_cages(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings,
-                       std::shared_ptr<const TruthProxy> proxy, std::unique_ptr<const SampledCage> first, const ExecutionSettings& how) {
+                       const std::shared_ptr<const TruthProxy>& proxy, std::unique_ptr<const SampledCage> first,
+                       const ExecutionSettings& how) {
   CageScene traced;
   for (const size_t i : objects) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};

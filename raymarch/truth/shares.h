@@ -50,6 +50,7 @@ struct SampledCage {
 /// is there already; may be null.
 struct TruthProxy;
 TruthShare trace_cages(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings,
-                       std::shared_ptr<const TruthProxy> proxy, std::unique_ptr<const SampledCage> first, const ExecutionSettings& how);
+                       const std::shared_ptr<const TruthProxy>& proxy, std::unique_ptr<const SampledCage> first,
+                       const ExecutionSettings& how);
 
 }  // namespace limn

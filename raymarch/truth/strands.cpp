@@ -178,7 +178,7 @@ class Cutter {
       std::optional<Spot> middle = beside(low, high, share, 0.5 * whole);
       if (!middle) middle = between(low, high);
       if (!middle) break;
-      (middle->on == a.on ? from_a : from_b).push_back(std::move(*middle));
+      (middle->on == a.on ? from_a : from_b).push_back(*middle);
     }
     out.insert(out.end(), from_a.begin(), from_a.end());
     out.insert(out.end(), from_b.rbegin(), from_b.rend());

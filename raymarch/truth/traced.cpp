@@ -55,7 +55,7 @@ CurveScene joined(const std::vector<TruthShare>& shares, const Camera& camera, s
   return scene;
 }
 
-SeenInk make_seen(std::shared_ptr<const TruthProxy> proxy, const Camera& camera, double threshold) {
+SeenInk make_seen(const std::shared_ptr<const TruthProxy>& proxy, const Camera& camera, double threshold) {
   return [proxy, camera, threshold](std::span<const glm::dvec2> points, std::span<std::uint8_t> ink) {
     std::vector<PointSample> samples(points.size());
     sample_points(proxy->model, camera, points, samples);
@@ -84,7 +84,7 @@ bool interpenetrate(const std::vector<TruthShare>& shares, double extent) {
 /// With the trees that rays need, which the first of them would have to wait for.
 std::shared_ptr<const TruthProxy> ready_proxy(const Scene& scene, const std::vector<size_t>& cages, const Camera& camera,
                                               const ShareSettings& sharing) {
-  const auto proxy = std::make_shared<const TruthProxy>(make_proxy(scene, camera, sharing.truth.max_bytes, 1.5));
+  auto proxy = std::make_shared<const TruthProxy>(make_proxy(scene, camera, sharing.truth.max_bytes, 1.5));
   for (const size_t i : cages) {
     const Surface& shown = proxy->model.surfaces[i];
     if (shown.open_sheet) static_cast<void>(shown.open_sheet->shows_back(shown, sharing.camera));

@@ -1,21 +1,15 @@
 #include "sdf/large_pages.h"
 
 #include <cstdlib>
-#include <memory>
 #include <mutex>
 #include <new>
 #include <vector>
 
 #include "sdf/page_advice.h"
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
-
 namespace limn {
 namespace {
 
-constexpr size_t kPage = size_t{2} << 20;
 /// Of blocks that nobody uses: two pictures of 1920x1080 with all that one is made from.
 constexpr size_t kMostKept = size_t{256} << 20;
 
@@ -73,32 +67,24 @@ KeptBlocks& kept_blocks() {
 }
 
 size_t rounded(size_t bytes) {
-  const size_t page = bytes >= kPage ? kPage : 64;
+  const size_t page = bytes >= kLargePageBytes ? kLargePageBytes : 64;
   return (bytes + page - 1) / page * page;
 }
 
 }  // namespace
 
-void ask_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] size_t bytes) {
-#if defined(__linux__)
-  void* first = memory;
-  size_t left = bytes;
-  if (std::align(kPage, kPage, first, left)) static_cast<void>(madvise(first, left / kPage * kPage, MADV_HUGEPAGE));
-#endif
-}
-
 void* LargePages::take(size_t bytes) {
   const size_t size = rounded(bytes);
-  if (size < kPage) {
+  if (size < kLargePageBytes) {
     void* const memory = std::aligned_alloc(64, size);
     if (!memory) throw std::bad_alloc();
     return memory;
   }
   if (void* const kept = kept_blocks().take(size)) return kept;
-  void* memory = std::aligned_alloc(kPage, size);
+  void* memory = std::aligned_alloc(kLargePageBytes, size);
   if (!memory) {
     kept_blocks().drop_all();
-    memory = std::aligned_alloc(kPage, size);
+    memory = std::aligned_alloc(kLargePageBytes, size);
   }
   if (!memory) throw std::bad_alloc();
   ask_for_large_pages(memory, size);
@@ -107,7 +93,7 @@ void* LargePages::take(size_t bytes) {
 
 void LargePages::give_back(void* memory, size_t bytes) {
   const size_t size = rounded(bytes);
-  if (size < kPage) return std::free(memory);
+  if (size < kLargePageBytes) return std::free(memory);
   try {
     kept_blocks().keep({memory, size});
   } catch (const std::bad_alloc&) {  // of the list itself

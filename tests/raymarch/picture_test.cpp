@@ -1,5 +1,6 @@
 // Composite, inks, samples, and the metrics on pictures made by hand.
 
+#include <algorithm>
 #include <cmath>
 
 #include "raymarch/metric.h"
@@ -52,6 +53,45 @@ TEST(Picture, TheLastInkLiesOnTop) {
   const Picture picture = draw_picture(scene, model_of(scene), framing(scene, view(9, 9)), {{all(0.2), all(0.9)}, 1, {}}, {});
   EXPECT_NEAR(picture.composite.at(4, 4).r, 0.9f, 1e-6f);
   EXPECT_EQ(picture.border.at(4, 4), 1.0f);
+}
+
+// The last sample finishes the sums, and normals are traced for the notes of the first alone: the same bits as from all layers of every
+// sample, added up and finished by a pass of its own.
+TEST(Picture, IsThatOfItsSamplesFinishedAfterwards) {
+  const Scene scene = scene_of({object_of(make_shape("torus"))});
+  const SceneModel model = model_of(scene);
+  const Camera camera = framing(scene, view(96, 54));
+  for (const char* const method : {"rim", "fresnel", "sobel"}) {
+    for (const int samples : {1, 2, 5}) {
+      for (const std::optional<glm::vec3>& background : {std::optional<glm::vec3>(), std::optional<glm::vec3>({0.3f, 0.7f, 0.1f})}) {
+        PictureSettings settings{{call_of(method)}, samples, background};
+        settings.layers = layers_read(settings.methods);
+        const Picture drawn = draw_picture(scene, model, camera, settings, {});
+        Picture sums;
+        for (int sample = 0; sample < samples; ++sample) {
+          const GBuffer all = render_gbuffer(model, camera, {}, sample_offset(sample, samples));
+          add_sample({all, camera, model, scene}, settings.methods, sums);
+        }
+        finish_samples(settings, sums);
+        EXPECT_TRUE(drawn.composite.pixels == sums.composite.pixels) << method << ", " << samples << " samples";
+        EXPECT_TRUE(drawn.border.pixels == sums.border.pixels) << method << ", " << samples << " samples";
+        EXPECT_EQ(drawn.notes, sums.notes);
+        EXPECT_GT(*std::max_element(drawn.border.pixels.begin(), drawn.border.pixels.end()), 0.9f);
+      }
+    }
+  }
+}
+
+TEST(Picture, NormalsThatOnlyNotesReadAreNotTracedWithoutThem) {
+  EXPECT_TRUE(layers_read(std::vector{call_of("rim")}).normal);
+  EXPECT_FALSE(layers_read(std::vector{call_of("rim")}, false).normal);
+  EXPECT_FALSE(layers_read(std::vector{call_of("rim"), call_of("fresnel")}, false).normal);
+  EXPECT_TRUE(layers_read(std::vector{call_of("rim"), call_of("sobel")}, false).normal);
+  // What only notes read is something that the method reads.
+  for (const BorderMethod& method : border_methods()) {
+    for (const std::string& input : method.only_for_notes)
+      EXPECT_NE(std::find(method.inputs.begin(), method.inputs.end(), input), method.inputs.end()) << method.about.name << ": " << input;
+  }
 }
 
 TEST(Picture, CoverageOverSamplesApproachesTheAreaOfTheBorder) {

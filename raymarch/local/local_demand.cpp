@@ -154,7 +154,7 @@ unsigned coarse_demand(const Seen& seen, const TriangleSample& triangle, const L
     if (seen.length_px[k] < settings.tolerance_px) continue;
     const bool turns =
         seen.length_px[k] > kSmall_px && glm::dot(triangle.corner_normals[k], triangle.corner_normals[next(k)]) < kMostTurnCosine;
-    if (seen.off_px[k] > triangle.coarse_px || turns) split |= 1u << k;
+    if (seen.off_px[k] > triangle.coarse_px || turns || triangle.crosses[k]) split |= 1u << k;
   }
   return split;
 }
@@ -169,7 +169,6 @@ double turn_at(const LocalView& view, const TriangleSample& triangle) {
 
 unsigned edges_to_split(const TriangleSample& triangle, std::span<const LocalView> views, const LocalSettings& settings, bool only_coarse) {
   unsigned split = 0;
-  if (triangle.stays) return split;
   for (const LocalView& view : views) {
     Seen seen;
     if (!look(view.camera, triangle, seen)) continue;
@@ -180,7 +179,7 @@ unsigned edges_to_split(const TriangleSample& triangle, std::span<const LocalVie
     split |= border_demand(seen, triangle, turn_at(view, triangle), settings);
   }
   for (size_t k = 0; k < 3; ++k)
-    if (!triangle.halves[k]) split &= ~(1u << k);
+    if (!triangle.halves[k] || (triangle.stays && !triangle.crosses[k])) split &= ~(1u << k);
   return split;
 }
 

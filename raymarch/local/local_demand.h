@@ -13,8 +13,9 @@ struct TriangleSample {
   std::array<glm::dvec3, 3> middles{}, middle_normals{};
   std::array<glm::dvec3, 3> beyond{};  ///< Normals at the middles on the other side of each edge; the own one at an open edge.
   std::array<bool, 3> crease{};        ///< Of the edges.
+  std::array<bool, 3> crosses{};       ///< Of the edges: those that go from one side of a crease to the other.
   double coarse_px = 0.5;              ///< LocalSource's.
-  bool stays = false;                  ///< Not to be split, whatever the pictures ask.
+  bool stays = false;                  ///< Not to be split, whatever the pictures ask, but where it crosses a crease.
   std::array<bool, 3> halves{};        ///< Of the edges: those that can be split.
 };
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "raymarch/local/crease_crossing.h"
 #include "raymarch/local/local_sources.h"
 #include "subdiv/snap_vertex.h"
 #include "subdiv/tessellate.h"
@@ -30,6 +31,15 @@ glm::dvec3 normal_beside(LocalField& field, const glm::dvec3& corner, const glm:
   return field.unit_gradient(beside);
 }
 
+/// Whether an edge's normals on one of its sides differ as those on two sides of a crease do.
+bool may_cross(const LocalEdge& edge) {
+  return std::any_of(edge.sides.begin(), edge.sides.end(), [](const EdgeSide& side) {
+    if (!side.triangle) return false;
+    const auto k = static_cast<size_t>(side.corner);
+    return glm::dot(side.triangle->normals[k], side.triangle->normals[(k + 1) % 3]) < kCreaseCosine;
+  });
+}
+
 EdgeMiddle middle_on(LocalField& field, const LocalTriangles& mesh, const LocalEdge& edge) {
   const auto [a, b] = ends_of(mesh, edge);
   Surroundings around;
@@ -41,8 +51,10 @@ EdgeMiddle middle_on(LocalField& field, const LocalTriangles& mesh, const LocalE
   }
   const double length = glm::length(around.outward);
   around.outward = length > 0.0 ? around.outward / length : glm::dvec3(0.0);
-  const Snapped snapped = snap(field, 0.5 * (a + b), around);
-  EdgeMiddle middle{snapped.position, {}, snapped.feature};
+  std::optional<glm::dvec3> crossing;
+  if (may_cross(edge)) crossing = crease_crossing(field, a, b);
+  const Snapped snapped = crossing ? Snapped{*crossing, true} : snap(field, 0.5 * (a + b), around);
+  EdgeMiddle middle{snapped.position, {}, snapped.feature, crossing.has_value()};
   const glm::dvec3 normal = field.unit_gradient(snapped.position);
   middle.normals = {normal, normal};
   for (size_t s = 0; s < 2; ++s) {

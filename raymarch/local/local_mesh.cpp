@@ -47,7 +47,7 @@ class Middles {
     // The other side of a new edge may be a triangle that stays: only where an edge was there before, and then its middle is known.
     std::vector<EdgeMiddle> made(edges.size());
     source.middles(mesh, edges, made);
-    for (size_t i = 0; i < edges.size(); ++i) made[i].halves = halves(mesh, edges[i], made[i].position);
+    for (size_t i = 0; i < edges.size(); ++i) made[i].halves = made[i].crosses || halves(mesh, edges[i], made[i].position);
     for (const auto& [key, index] : missing) known_[key] = made[index];
   }
   const EdgeMiddle& at(std::uint32_t a, std::uint32_t b) const { return known_.at(key_of(a, b)); }
@@ -92,6 +92,7 @@ TriangleSample sample_of(const LocalTriangles& mesh, const Middles& middles, con
     sample.middle_normals[k] = middle.normals[side];
     sample.beyond[k] = middle.normals[1 - side];
     sample.crease[k] = middle.crease;
+    sample.crosses[k] = middle.crosses;
     sample.halves[k] = middle.halves;
   }
   return sample;
@@ -102,7 +103,15 @@ struct Piece {
   std::array<int, 3> corners{};  ///< 0..2: corners, 3..5: middles.
 };
 
-/// By which edges are split; of a quadrangle that is left the shorter diagonal is taken.
+/// Of the quadrangle that is left when edges `first` and the next are split: whether its diagonal runs from the corner, not from the
+/// middle. Where one of the two crosses a crease that ends at the opposite corner, along the crease; else the shorter one.
+bool diagonal_from_corner(const TriangleSample& sample, size_t first) {
+  const size_t second = next(first), third = next(second);
+  if (sample.crosses[first] != sample.crosses[second]) return sample.crosses[second];
+  return glm::distance(sample.corners[first], sample.middles[second]) < glm::distance(sample.middles[first], sample.corners[third]);
+}
+
+/// By which edges are split.
 std::vector<Piece> pieces_of(unsigned split, const TriangleSample& sample) {
   const int count = ((split & 1u) ? 1 : 0) + ((split & 2u) ? 1 : 0) + ((split & 4u) ? 1 : 0);
   if (count == 3) return {{{0, 3, 5}}, {{3, 1, 4}}, {{5, 4, 2}}, {{3, 4, 5}}};
@@ -113,11 +122,9 @@ std::vector<Piece> pieces_of(unsigned split, const TriangleSample& sample) {
   const auto corner = [&](int k) { return (k + turn) % 3; };
   const auto middle = [&](int k) { return 3 + (k + turn) % 3; };
   if (count == 1) return {{{corner(0), middle(0), corner(2)}}, {{middle(0), corner(1), corner(2)}}};
-  const auto at = [&](int k) { return static_cast<size_t>((k + turn) % 3); };
-  const double from_corner = glm::distance(sample.corners[at(0)], sample.middles[at(1)]);
-  const double from_middle = glm::distance(sample.middles[at(0)], sample.corners[at(2)]);
   const Piece tip{{middle(0), corner(1), middle(1)}};
-  if (from_corner < from_middle) return {tip, {{corner(0), middle(0), middle(1)}}, {{corner(0), middle(1), corner(2)}}};
+  if (diagonal_from_corner(sample, static_cast<size_t>(turn)))
+    return {tip, {{corner(0), middle(0), middle(1)}}, {{corner(0), middle(1), corner(2)}}};
   return {tip, {{corner(0), middle(0), corner(2)}}, {{middle(0), middle(1), corner(2)}}};
 }
 
@@ -135,9 +142,10 @@ class Splitter {
   void split(const LocalTriangle& triangle, unsigned edges) {
     const TriangleSample sample = sample_of(mesh_, middles_, triangle);
     const int folded = triangle.folded + (is_folded(sample.corners, sample.corner_normals) ? 1 : 0);
+    const bool crossed = sample.crosses[0] || sample.crosses[1] || sample.crosses[2];
     for (const Piece& piece : pieces_of(edges, sample)) {
       LocalTriangle child{{}, {}, {}, triangle.patch, triangle.face, folded};
-      for (size_t k = 0; k < 3; ++k) set_corner(triangle, sample, piece.corners[k], k, child);
+      for (size_t k = 0; k < 3; ++k) set_corner(triangle, sample, piece.corners[k], k, crossed, child);
       out_.push_back(child), is_new_.push_back(1);
     }
   }
@@ -160,8 +168,10 @@ class Splitter {
   }
 
  private:
-  void set_corner(const LocalTriangle& triangle, const TriangleSample& sample, int from, size_t k, LocalTriangle& child) {
+  /// `crossed`: by a crease, so that the parts of the triangle lie on its two sides and share none of its corners' normals.
+  void set_corner(const LocalTriangle& triangle, const TriangleSample& sample, int from, size_t k, bool crossed, LocalTriangle& child) {
     const auto i = static_cast<size_t>(from % 3);
+    if (crossed || (from >= 3 && sample.crease[i])) open_.push_back({out_.size(), k});
     if (from < 3) {
       child.vertices[k] = triangle.vertices[i], child.normals[k] = triangle.normals[i], child.uv[k] = triangle.uv[i];
       return;
@@ -169,7 +179,6 @@ class Splitter {
     child.vertices[k] = middles_.vertex(triangle.vertices[i], triangle.vertices[next(i)], mesh_);
     child.normals[k] = sample.middle_normals[i];
     child.uv[k] = 0.5 * (triangle.uv[i] + triangle.uv[next(i)]);
-    if (sample.crease[i]) open_.push_back({out_.size(), k});
   }
   LocalTriangles& mesh_;
   Middles& middles_;

@@ -49,12 +49,14 @@ struct LocalEdge {
   std::array<EdgeSide, 2> sides{};
 };
 
-/// The surface's point half way along an edge, and its normal on each side.
+/// The surface's point half way along an edge, or where the edge crosses a crease, and its normal on each side.
 struct EdgeMiddle {
   glm::dvec3 position{0.0};
   std::array<glm::dvec3, 2> normals{};
   bool crease = false;  ///< The normal jumps here.
-  bool halves = true;   ///< False where the edge must stay whole: it would not become shorter.
+  /// The edge goes from one side of a crease to the other: `position` is where it crosses, wherever along the edge that is.
+  bool crosses = false;
+  bool halves = true;  ///< False where the edge must stay whole: it would not become shorter.
 };
 
 /// A corner of a triangle at a crease, whose normal is that of the triangle's side.

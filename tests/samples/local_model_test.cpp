@@ -77,6 +77,20 @@ TEST(LocalModel, OfFieldsAndCagesTheBorderKeepsToTheToleranceWithNoEdgeOpen) {
   }
 }
 
+// Where the block's round is cut at a flat angle the wedge is so sharp that the coarse mesh cuts it off.
+TEST(LocalModel, EdgesThatGoAcrossACreaseAreSplitThereHoweverSharpItIs) {
+  const Scene scene = find_scene("gyroid")->make();
+  PlanView view;
+  view.camera = camera_of(scene, 0, 4, {300, 300});
+  view.truth = solve_truth(scene, view.camera, {}, {});
+  const SceneModel model = build_local_model(scene, {}, {{view.camera}, 0.25, {0.4}});
+  EXPECT_EQ(open_edges(model.surfaces.front().polygons->mesh()), 0u);
+  double trace_ms = 0.0;
+  EXPECT_LE(measure_errors(model, view, 0.4, {}, trace_ms).border_px, 0.125);
+  EXPECT_LE(share_beyond(model, build_model(scene, {.kind = "analytic"}), view, 0.4, 0.25, PlanMetric::border), 0.01);
+  EXPECT_LE(share_of_false_border(model, view, 0.4, 0.25, PlanMetric::border), 0.01);
+}
+
 TEST(LocalModel, OfAnyEllipsoidVerticesLieOnTheSurfaceAndNoPartIsFartherOffThanStated) {
   std::mt19937 random(random_seed());
   std::uniform_real_distribution<double> radius(0.4, 1.5), weight(0.0, 1.0);

@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "sdf/field_program.h"
-#include "sdf/large_pages.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_distance.h"
+#include "sdf/level_set_nano.h"
 #include "sdf/level_set_thin.h"
 #include "sdf/parallel.h"
 #include "sdf/size_error.h"
@@ -19,8 +19,8 @@ namespace limn {
 namespace {
 
 constexpr int kBlock = 8;
-/// What a block costs while it is built: ours, and NanoVDB's leaf.
-constexpr std::int64_t kBlockBytes = static_cast<std::int64_t>(sizeof(LevelSetBlock)) + 2176;
+/// What a block costs: NanoVDB's leaf with its share of the nodes above, and about as much for the build's lists and for what rays read.
+constexpr std::int64_t kBlockBytes = 2 * 2152;
 
 [[noreturn]] void refuse(const std::string& field, const std::string& value, const std::string& problem, const std::string& expected) {
   throw InputError({.file = {}, .field = field, .value = value, .problem = problem, .expected = expected});
@@ -208,6 +208,50 @@ ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, 
   return find_thin_places(distance.evaluator, std::span<const std::uint16_t>(nodes.node).first(nodes.count), points, distances, lattice.h);
 }
 
+/// Calls `visit(i, evaluator)` for a part of the cubes. Neighbours often share a field, and so what evaluates it.
+template <class Visit>
+void for_each_cube(std::span<const Cube> cubes, const IndexRange<size_t>& part, const Visit& visit) {
+  std::optional<DistanceEvaluator> distance;
+  for (size_t i = part.first; i < part.last; ++i) {
+    if (!distance || &distance->evaluator.field().program() != &cubes[i].field.program()) {
+      TapeScratch scratch = distance ? std::move(distance->scratch) : TapeScratch();  // a quarter of a megabyte that is cleared when taken
+      distance.emplace(cubes[i].field);
+      distance->scratch = std::move(scratch);
+    }
+    visit(i, *distance);
+  }
+}
+
+/// Whether fill() will find an active node. Two nodes of each eighth are asked first: in most blocks one of them is.
+bool holds_band(const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance) {
+  const auto any_of = [&](std::span<const glm::dvec3> points, std::span<double> distances) {
+    signed_distances(distance, points, lattice.half_width, distances);
+    return std::any_of(distances.begin(), distances.end(), [&](double d) { return std::abs(d) <= lattice.half_width; });
+  };
+  std::array<glm::dvec3, 16> some;
+  std::array<double, 16> distances;
+  for (int k = 0; k < 16; ++k)
+    some[static_cast<size_t>(k)] = lattice.node(cube.origin + 4 * glm::ivec3(k >> 2 & 1, k >> 1 & 1, k & 1) + 1 + (k >> 3));
+  if (any_of(some, distances)) return true;
+  LevelSetBlock block;
+  BandNodes nodes;
+  find_band_nodes(cube, lattice, distance.evaluator, block, nodes);
+  return any_of(std::span<const glm::dvec3>(nodes.points).first(nodes.count), std::span(nodes.distances).first(nodes.count));
+}
+
+/// The cubes that hold a node of the band, in their order.
+std::vector<Cube> with_band(std::vector<Cube> cubes, const Lattice& lattice) {
+  std::vector<std::uint8_t> holds(cubes.size());
+  parallel_parts(cubes.size(), size_t{1}, [&](const IndexRange<size_t>& part) {
+    for_each_cube(cubes, part, [&](size_t i, DistanceEvaluator& distance) { holds[i] = holds_band(cubes[i], lattice, distance) ? 1 : 0; });
+  });
+  size_t kept = 0;
+  for (size_t i = 0; i < cubes.size(); ++i)
+    if (holds[i] != 0 && kept++ != i) cubes[kept - 1] = std::move(cubes[i]);
+  cubes.erase(cubes.begin() + static_cast<std::ptrdiff_t>(kept), cubes.end());
+  return cubes;
+}
+
 void check(const Field& field, const LevelSetSettings& settings) {
   const auto number = [](double x) { return fmt::format("{:.6g}", x); };
   if (!std::isfinite(settings.voxel_size) || settings.voxel_size <= 0.0)
@@ -246,28 +290,25 @@ LevelSet level_set_from_field(const Field& field, const LevelSetSettings& settin
   const auto started = std::chrono::steady_clock::now();
   const Box& bounds = field.traits().bounds;
   const Lattice lattice = lattice_for(bounds, settings);
-  const std::vector<Cube> cubes = band_blocks(field, lattice, settings);
-  // Left unset: each thread touches first what it fills.
-  std::vector<LevelSetBlock, LargePageAllocator<LevelSetBlock>> blocks(cubes.size());
+  const std::vector<Cube> cubes = with_band(band_blocks(field, lattice, settings), lattice);
+  if (cubes.empty()) refuse_thin(settings.voxel_size, bounds);
+  std::vector<glm::ivec3> origins;
+  origins.reserve(cubes.size());
+  for (const Cube& cube : cubes) origins.push_back(cube.origin);
   Progress progress(settings.progress, cubes.size());
   std::atomic<std::int64_t> looked_at{0}, walls{0}, gaps{0};
-  parallel_parts(cubes.size(), size_t{1}, [&](const IndexRange<size_t>& part) {
-    std::optional<DistanceEvaluator> distance;  // neighbours often share a field
-    for (size_t i = part.first; i < part.last; ++i) {
-      if (!distance || &distance->evaluator.field().program() != &cubes[i].field.program()) distance.emplace(cubes[i].field);
-      const ThinPlaces found = fill(blocks[i], cubes[i], lattice, *distance);
+  const FillLeaves fill_leaves = [&](const IndexRange<size_t>& part, const WriteLeaf& write) {
+    for_each_cube(cubes, part, [&](size_t i, DistanceEvaluator& distance) {
+      LevelSetBlock block;
+      const ThinPlaces found = fill(block, cubes[i], lattice, distance);
       looked_at += found.looked_at;
       walls += found.walls;
       gaps += found.gaps;
+      write(i, block);
       progress.step();
-    }
-  });
-  const bool any_active = std::any_of(blocks.begin(), blocks.end(), [](const LevelSetBlock& block) {
-    return std::any_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word != 0; });
-  });
-  if (!any_active) refuse_thin(settings.voxel_size, bounds);
-
-  const auto data = join_blocks(blocks, settings.voxel_size, settings.half_width_voxels, "surface", lattice.origin);
+    });
+  };
+  const auto data = join_leaves(origins, fill_leaves, settings.voxel_size, settings.half_width_voxels, "surface", lattice.origin);
   if (data->info.bounds.empty()) refuse_thin(settings.voxel_size, bounds);
   warn_of_thin_places({looked_at, walls, gaps}, settings.voxel_size, data->info.warnings);
   data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();

@@ -35,16 +35,17 @@ bool less(const glm::ivec3& a, const glm::ivec3& b) { return std::tie(a.x, a.y, 
 
 nanovdb::Coord coord(const glm::ivec3& p) { return {p.x, p.y, p.z}; }
 
-/// A block's place as a tree is walked: root tiles by their coordinates, then the children of each node in turn. Of equals the last in the
+/// A leaf's place as a tree is walked: root tiles by their coordinates, then the children of each node in turn. Of equals the last in the
 /// list comes first.
 struct Place {
   std::uint64_t upper = 0, leaf = 0;
-  const LevelSetBlock* block = nullptr;  ///< Null where it has no active node.
+  glm::ivec3 origin{0};
+  size_t index = 0;  ///< In the list.
 
   bool same(const Place& other) const { return upper == other.upper && leaf == other.leaf; }
   bool operator<(const Place& other) const {
     if (upper != other.upper) return upper < other.upper;
-    return leaf != other.leaf ? leaf < other.leaf : block > other.block;
+    return leaf != other.leaf ? leaf < other.leaf : index > other.index;
   }
 };
 
@@ -58,25 +59,17 @@ std::uint64_t joined(const glm::ivec3& place, int bits) {
   return (part(place.x) << bits | part(place.y)) << bits | part(place.z);
 }
 
-Place place_of(const LevelSetBlock& block) {
+Place place_of(const glm::ivec3& origin, size_t index) {
   constexpr int kUpperBits = 20;  // a whole number of 32 bits without 12: a root tile is 4096 wide
-  return {joined((block.origin >> 12) + (1 << (kUpperBits - 1)), kUpperBits),
-          joined(block.origin >> 7, 5) << 12 | joined(block.origin >> 3, 4), &block};
+  return {joined((origin >> 12) + (1 << (kUpperBits - 1)), kUpperBits), joined(origin >> 7, 5) << 12 | joined(origin >> 3, 4), origin,
+          index};
 }
 
-std::vector<const LevelSetBlock*> leaves_in_order(std::span<const LevelSetBlock> blocks) {
-  std::vector<Place> places(blocks.size());
-  parallel_parts(blocks.size(), size_t{256}, [&](const IndexRange<size_t>& part) {
-    for (size_t i = part.first; i < part.last; ++i)
-      if (is_active(blocks[i])) places[i] = place_of(blocks[i]);
-  });
-  std::erase_if(places, [](const Place& place) { return place.block == nullptr; });
+/// In order, each place once.
+std::vector<Place> in_order(std::vector<Place> places) {
   if (!std::is_sorted(places.begin(), places.end())) parallel_sort(places.begin(), places.end());
-  std::vector<const LevelSetBlock*> leaves;
-  leaves.reserve(places.size());
-  for (size_t i = 0; i < places.size(); ++i)
-    if (i == 0 || !places[i].same(places[i - 1])) leaves.push_back(places[i].block);
-  return leaves;
+  places.erase(std::unique(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.same(b); }), places.end());
+  return places;
 }
 
 /// A node's children are those of the level below from `first` on, to the next node's.
@@ -97,7 +90,7 @@ std::vector<Span> parents(size_t children, const OriginOf& origin_of_child, int 
 
 /// The tree's nodes, in order, and where each kind begins in the buffer.
 struct Layout {
-  std::vector<const LevelSetBlock*> leaves{};
+  std::vector<Place> leaves{};
   std::vector<Span> lowers{}, uppers{};
   size_t root_tiles = 0;
   std::uint8_t* buffer = nullptr;
@@ -112,11 +105,11 @@ struct Layout {
   Leaf& leaf(size_t i) const { return node<Leaf>(leaves_at, i); }
 };
 
-Layout lay_out(std::span<const LevelSetBlock> blocks) {
+Layout lay_out(std::vector<Place> places) {
   Layout layout;
-  layout.leaves = leaves_in_order(blocks);
+  layout.leaves = in_order(std::move(places));
   layout.lowers = parents(
-      layout.leaves.size(), [&](size_t i) { return layout.leaves[i]->origin; }, kLowerSide);
+      layout.leaves.size(), [&](size_t i) { return layout.leaves[i].origin; }, kLowerSide);
   layout.uppers = parents(
       layout.lowers.size(), [&](size_t i) { return layout.lowers[i].origin; }, kUpperSide);
   return layout;
@@ -179,7 +172,8 @@ using InsideAt = std::function<bool(const glm::dvec3&)>;
 /// flood_fill() of a leaf, row by row without a branch for each node. Some node is active.
 void fill_signs(const LevelSetBlock& block, float background, float* to) {
   size_t first = 0;
-  while (block.active[first] == 0) ++first;
+  while (first < 8 && block.active[first] == 0) ++first;
+  LIMN_CHECK(first < 8);
   first = first * 64 + static_cast<size_t>(std::countr_zero(block.active[first]));
   bool x_inside = block.values[first] < 0.0f;
   for (size_t x = 0; x < 8; ++x) {
@@ -330,17 +324,24 @@ void write_grid(const Layout& layout) {
   data.mMap.set(identity, identity, 1.0);
 }
 
-}  // namespace
-
-nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const LevelSetBlock> blocks, float background, const InsideAt& inside) {
-  Layout layout = lay_out(blocks);
+/// `fill` is asked for each of 0, ..., count - 1; what has no place is left out.
+nanovdb::GridHandle<nanovdb::HostBuffer> grid_of(std::vector<Place> places, size_t count, const FillLeaves& fill, float background,
+                                                 const InsideAt& inside) {
+  Layout layout = lay_out(std::move(places));
   LIMN_CHECK(!layout.leaves.empty());
   nanovdb::HostBuffer buffer = take_memory(layout);
-  parallel_for(size_t{0}, layout.leaves.size(), [&](size_t i) { write_leaf(*layout.leaves[i], background, inside, layout.leaf(i)); });
+  constexpr size_t kNone = std::numeric_limits<size_t>::max();
+  std::vector<size_t> leaf_of(count, kNone);
+  for (size_t i = 0; i < layout.leaves.size(); ++i) leaf_of[layout.leaves[i].index] = i;
+  parallel_parts(count, size_t{1}, [&](const IndexRange<size_t>& part) {
+    fill(part, [&](size_t i, const LevelSetBlock& block) {
+      if (leaf_of[i] != kNone) write_leaf(block, background, inside, layout.leaf(leaf_of[i]));
+    });
+  });
   parallel_for(size_t{0}, layout.lowers.size(), [&](size_t i) {
     write_internal(
         layout.lowers[i].origin, layout.lowers[i].first, end_of(layout.lowers, i, layout.leaves.size()), background, inside,
-        [&](size_t k) -> Leaf& { return layout.leaf(k); }, [&](size_t k) { return layout.leaves[k]->origin; }, layout.lower(i));
+        [&](size_t k) -> Leaf& { return layout.leaf(k); }, [&](size_t k) { return layout.leaves[k].origin; }, layout.lower(i));
   });
   parallel_for(size_t{0}, layout.uppers.size(), [&](size_t i) {
     write_internal(
@@ -353,6 +354,28 @@ nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const LevelSetBlock
   nanovdb::GridHandle<nanovdb::HostBuffer> handle(std::move(buffer));
   nanovdb::gridStats(*handle.grid<float>(), nanovdb::StatsMode::BBox);
   return handle;
+}
+
+}  // namespace
+
+nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const LevelSetBlock> blocks, float background, const InsideAt& inside) {
+  std::vector<std::uint8_t> active(blocks.size());
+  parallel_for(size_t{0}, blocks.size(), [&](size_t i) { active[i] = is_active(blocks[i]) ? 1 : 0; });
+  std::vector<Place> places;
+  places.reserve(blocks.size());
+  for (size_t i = 0; i < blocks.size(); ++i)
+    if (active[i] != 0) places.push_back(place_of(blocks[i].origin, i));
+  const FillLeaves fill = [&](const IndexRange<size_t>& part, const WriteLeaf& write) {
+    for (size_t i = part.first; i < part.last; ++i) write(i, blocks[i]);
+  };
+  return grid_of(std::move(places), blocks.size(), fill, background, inside);
+}
+
+nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const glm::ivec3> origins, const FillLeaves& fill, float background) {
+  std::vector<Place> places;
+  places.reserve(origins.size());
+  for (size_t i = 0; i < origins.size(); ++i) places.push_back(place_of(origins[i], i));
+  return grid_of(std::move(places), origins.size(), fill, background, {});
 }
 
 }  // namespace limn

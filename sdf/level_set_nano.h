@@ -5,6 +5,7 @@
 #include <span>
 
 #include "sdf/level_set_data.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 
@@ -13,5 +14,17 @@ namespace limn {
 /// `inside`, where given, tells the sign of what is not active instead, at a place in index coordinates: for bands that are patches.
 nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const LevelSetBlock> blocks, float background,
                                                    const std::function<bool(const glm::dvec3&)>& inside = {});
+
+using WriteLeaf = std::function<void(size_t, const LevelSetBlock&)>;
+/// Calls `write(i, block)` for each leaf i of a part. From many threads at a time.
+using FillLeaves = std::function<void(const IndexRange<size_t>& part, const WriteLeaf& write)>;
+
+/// The same from blocks that are made when they are written, so that they are never all in memory. Each has an active node; `origins` are
+/// theirs, each once.
+nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const glm::ivec3> origins, const FillLeaves& fill, float background);
+
+/// level_set_from_blocks of such blocks, still open to additions.
+std::shared_ptr<LevelSetData> join_leaves(std::span<const glm::ivec3> origins, const FillLeaves& fill, double voxel_size,
+                                          double half_width_voxels, const std::string& name, const glm::dvec3& origin);
 
 }  // namespace limn

@@ -30,12 +30,20 @@ std::uint8_t touched_faces(const CrossedCells& crossed) {
   return faces;
 }
 
+/// Whether some values are below zero and some are not: two sums that become SIMD.
+bool changes_sign(const NodeValues& values) {
+  int negative = 0;
+  for (const float value : values) negative += value < 0.0f ? 1 : 0;
+  return negative != 0 && negative != static_cast<int>(values.size());
+}
+
 void inspect(const NodeValues& values, Candidate& candidate) {
-  const CrossedCells crossed = crossed_cells_of(values.data());
-  candidate.crossed = crossed.any;
-  if (!crossed.any) return;
-  candidate.faces = touched_faces(crossed);
-  for_each_node(crossed, [&](int x, int y, int z) { candidate.largest = std::max(candidate.largest, std::abs(values[at(x, y, z)])); });
+  if (!changes_sign(values)) return;
+  candidate.cells = crossed_cells_of(values.data());
+  if (!candidate.cells.any) return;
+  candidate.faces = touched_faces(candidate.cells);
+  for_each_node(candidate.cells,
+                [&](int x, int y, int z) { candidate.largest = std::max(candidate.largest, std::abs(values[at(x, y, z)])); });
 }
 
 /// True where the leaf has a node of the other sign among those that the block `side` steps before it reaches (bits: x, y, z).
@@ -63,7 +71,7 @@ void add_candidates(const Accessor& accessor, const Leaf& leaf, std::vector<Cand
   }
 }
 
-/// Inspected, in the order of the leaves whatever the threads.
+/// The crossed ones, in the order of the leaves whatever the threads.
 std::vector<Candidate> find_candidates(const LevelSetData& data) {
   constexpr std::uint32_t kChunk = 512;
   const auto& tree = data.grid->tree();
@@ -73,16 +81,18 @@ std::vector<Candidate> find_candidates(const LevelSetData& data) {
   parallel_for(std::uint32_t{0}, chunks, [&](std::uint32_t chunk) {
     const Accessor accessor = data.accessor();
     const std::uint32_t first = chunk * kChunk, last = std::min(count, first + kChunk);
-    parts[chunk].reserve(kChunk + kChunk / 8);
     for (std::uint32_t i = first; i < last; ++i) add_candidates(accessor, leaves[i], parts[chunk]);
     NodeValues values;
     for (Candidate& candidate : parts[chunk]) {
       load_nodes(accessor, candidate.origin, values);
       inspect(values, candidate);
     }
+    std::erase_if(parts[chunk], [](const Candidate& candidate) { return !candidate.cells.any; });
   });
   std::vector<Candidate> found;
-  found.reserve(count + count / 8);
+  size_t all = 0;
+  for (const auto& part : parts) all += part.size();
+  found.reserve(all);
   for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
   return found;
 }
@@ -112,23 +122,40 @@ void place_layers(BrickLayout& layout) {
   }
 }
 
+/// Which of them, in order, stands over each face that is reached: BrickLayout::beside.
+std::vector<std::array<std::int32_t, 6>> find_beside(std::span<const Candidate> crossed) {
+  std::vector<std::uint64_t> keys(crossed.size());
+  parallel_for(size_t{0}, crossed.size(), [&](size_t i) { keys[i] = key_of(crossed[i].origin); });
+  std::vector<std::array<std::int32_t, 6>> beside(crossed.size());
+  parallel_for(size_t{0}, crossed.size(), [&](size_t i) {
+    for (int face = 0; face < 6; ++face) {
+      std::int32_t& other = beside[i][static_cast<size_t>(face)];
+      other = -1;
+      if ((crossed[i].faces >> face & 1) == 0) continue;
+      const std::uint64_t key = key_of(crossed[i].origin + kBrickCells * face_step(face));
+      const auto found = std::lower_bound(keys.begin(), keys.end(), key);
+      if (found != keys.end() && *found == key) other = static_cast<std::int32_t>(found - keys.begin());
+    }
+  });
+  return beside;
+}
+
 BrickLayout lay_out(std::vector<Candidate> candidates) {
   BrickLayout layout;
   layout.crossed = std::move(candidates);
-  std::erase_if(layout.crossed, [](const Candidate& c) { return !c.crossed; });
-  std::sort(layout.crossed.begin(), layout.crossed.end(),
-            [](const Candidate& a, const Candidate& b) { return key_of(a.origin) < key_of(b.origin); });
+  std::erase_if(layout.crossed, [](const Candidate& c) { return !c.cells.any; });
+  parallel_sort(layout.crossed.begin(), layout.crossed.end(),
+                [](const Candidate& a, const Candidate& b) { return key_of(a.origin) < key_of(b.origin); });
   // A block before two leaves is found twice.
   layout.crossed.erase(std::unique(layout.crossed.begin(), layout.crossed.end(),
                                    [](const Candidate& a, const Candidate& b) { return a.origin == b.origin; }),
                        layout.crossed.end());
-  for (const Candidate& candidate : layout.crossed) layout.keys.push_back(key_of(candidate.origin));
+  layout.beside = find_beside(layout.crossed);
   for (size_t i = 0; i < layout.crossed.size(); ++i) {
-    const Candidate& candidate = layout.crossed[i];
     layout.first_layer.push_back(static_cast<std::uint32_t>(layout.layers.size()));
     for (int face = 0; face < 6; ++face) {
-      const bool reached = (candidate.faces >> face & 1) != 0;
-      if (reached && layout.find(key_of(candidate.origin + kBrickCells * face_step(face))) < 0)
+      const bool reached = (layout.crossed[i].faces >> face & 1) != 0;
+      if (reached && layout.beside[i][static_cast<size_t>(face)] < 0)
         layout.layers.push_back({.brick = static_cast<std::uint32_t>(i), .face = face});
     }
   }
@@ -166,11 +193,6 @@ std::uint64_t key_of(const glm::ivec3& origin) {
   return part(origin.x) << 42 | part(origin.y) << 21 | part(origin.z);
 }
 
-std::int32_t BrickLayout::find(std::uint64_t key) const {
-  const auto found = std::lower_bound(keys.begin(), keys.end(), key);
-  return found == keys.end() || *found != key ? -1 : static_cast<std::int32_t>(found - keys.begin());
-}
-
 BrickNeighbors BrickLayout::neighbors_of(size_t brick) const {
   constexpr int kStep[3] = {kBrickNodes * kBrickNodes, kBrickNodes, 1};
   BrickNeighbors neighbors;
@@ -181,8 +203,7 @@ BrickNeighbors BrickLayout::neighbors_of(size_t brick) const {
     neighbors.face[face] = static_cast<std::int32_t>(elements * static_cast<std::int64_t>(sizeof(std::int16_t)));
   };
   for (int face = 0; face < 6; ++face) {
-    if ((crossed[brick].faces >> face & 1) == 0) continue;
-    const std::int32_t other = find(key_of(crossed[brick].origin + kBrickCells * face_step(face)));
+    const std::int32_t other = beside[brick][static_cast<size_t>(face)];
     // Node -1 is node 7 of the brick before, node 9 is node 1 of the one behind.
     if (other >= 0) set(face, static_cast<size_t>(other), face % 2 == 0 ? kBrickCells - 1 : 1);
   }

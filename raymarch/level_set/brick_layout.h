@@ -26,8 +26,8 @@ CrossedCells crossed_cells_of(const Value* values) {
 struct Candidate {
   glm::ivec3 origin{0};
   std::uint8_t faces = 0;
-  bool crossed = false;
   float largest = 0.0f;  ///< |value| at the nodes of crossed cells.
+  CrossedCells cells{};
 };
 
 /// Orders by x, then y, then z.
@@ -50,13 +50,12 @@ inline constexpr int layer_depth(int axis) { return axis == 2 ? 2 : 1; }
 /// Every brick's place in order, and what lies beyond them.
 struct BrickLayout {
   std::vector<Candidate> crossed;
-  std::vector<std::uint64_t> keys;         ///< Of the crossed ones.
+  /// The bricks over each brick's faces; -1 where there is none, or where no stencil reaches beyond the face.
+  std::vector<std::array<std::int32_t, 6>> beside;
   std::vector<BrickLayer> layers;          ///< By brick, then by face.
   std::vector<std::uint32_t> first_layer;  ///< Of each brick, and the end.
   size_t blocks = 0;                       ///< Bricks, and blocks of layers behind them.
 
-  /// A brick's number from its key_of; -1 where there is none.
-  std::int32_t find(std::uint64_t key) const;
   BrickNeighbors neighbors_of(size_t brick) const;
 };
 

@@ -20,13 +20,17 @@ constexpr float kLargestStep = 32767.0f;
 // A crossed brick whose values span fewer steps than this in its crossed cells would lose digits of its normals.
 constexpr int kFewestSteps = 1000;
 
+/// Left unset, so that each thread touches first what it measures.
+using BrickShapes = std::vector<BrickShape, LargePageAllocator<BrickShape>>;
+
 /// Groups of 2^shift cells to a side of the crossed bricks.
-BrickGroups group_bricks(const BrickLayout& layout, const std::vector<BrickShape>& shapes, const RayBricks& bricks, int shift) {
+BrickGroups group_bricks(const BrickLayout& layout, const BrickShapes& shapes, const RayBricks& bricks, int shift) {
   const int per_side = 1 << (shift - 3), parts = per_side * per_side * per_side;
-  std::vector<std::pair<std::uint64_t, std::int32_t>> members;
-  for (size_t i = 0; i < layout.crossed.size(); ++i)
-    members.emplace_back(key_of((layout.crossed[i].origin >> shift) << 3), static_cast<std::int32_t>(i));
-  std::sort(members.begin(), members.end());
+  std::vector<std::pair<std::uint64_t, std::int32_t>> members(layout.crossed.size());
+  parallel_for(size_t{0}, members.size(), [&](size_t i) {
+    members[i] = {key_of((layout.crossed[i].origin >> shift) << 3), static_cast<std::int32_t>(i)};
+  });
+  parallel_sort(members.begin(), members.end());
   std::vector<size_t> first;
   for (size_t i = 0; i < members.size(); ++i) {
     if (i == 0 || members[i].first != members[i - 1].first) first.push_back(i);
@@ -94,15 +98,15 @@ void fill_layer(const Reader& reader, const BrickLayer& layer, const glm::ivec3&
 
 /// `reader()` makes what one thread reads nodes with.
 template <class MakeReader>
-std::vector<BrickShape> fill(const MakeReader& reader, const BrickLayout& layout, float steps_per_unit, RayBricks& bricks) {
+BrickShapes fill(const MakeReader& reader, const BrickLayout& layout, float steps_per_unit, RayBricks& bricks) {
   const size_t crossed = layout.crossed.size();
-  std::vector<BrickShape> shapes(crossed);
+  BrickShapes shapes(crossed);
   parallel_parts(crossed, size_t{64}, [&](const IndexRange<size_t>& range) {
     const auto nodes = reader();
     for (size_t i = range.begin(); i < range.end(); ++i) {
       std::int16_t* const values = bricks.values.data() + i * kBrickStride;
       fill_brick(nodes, layout.crossed[i].origin, steps_per_unit, values);
-      shapes[i] = shape_of(values);
+      shapes[i] = shape_of(values, layout.crossed[i].cells);  // quantised() keeps signs
       const BrickInCube whole{glm::ivec3(0), values, &shapes[i]};
       bricks.groups[0].bounds[i] = bound_surface(layout.crossed[i].origin, std::span(&whole, 1));
       bricks.neighbors[i] = layout.neighbors_of(i);
@@ -126,7 +130,7 @@ void make_from(const MakeReader& reader, const BrickLayout& layout, float scale,
   bricks.groups.push_back({.shift = 3, .bounds = std::vector<SurfaceBound>(layout.crossed.size()), .bricks = {}});
   bricks.neighbors.resize(layout.crossed.size());
   bricks.values.resize(layout.blocks * kBrickStride);
-  const std::vector<BrickShape> shapes = fill(reader, layout, scale, bricks);
+  const BrickShapes shapes = fill(reader, layout, scale, bricks);
   for (const int shift : {4, 5}) bricks.groups.push_back(group_bricks(layout, shapes, bricks, shift));
   bricks.lower = glm::ivec3(std::numeric_limits<int>::max());
   bricks.upper = glm::ivec3(std::numeric_limits<int>::lowest());

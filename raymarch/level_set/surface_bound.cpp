@@ -3,28 +3,146 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sdf/simd.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raymarch/level_set/surface_bound.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
 namespace limn {
+namespace HWY_NAMESPACE {
 namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Rows of nodes along z: eight as vectors, the ninth, which the next row's first follows, on its own.
+constexpr int kRow = 8;
 
 /// Bits of the cells at (x, y), none outside of the brick.
-std::uint32_t cells_at(const CrossedCells& crossed, int x, int y) {
+HWY_INLINE std::uint32_t cells_at(const CrossedCells& crossed, int x, int y) {
   return std::min(x, y) >= 0 && std::max(x, y) < kBrickCells ? crossed.cells[x][y] : 0u;
 }
 
-/// Calls `visit(x, y, z)` for the first node of each edge along `axis` of a crossed cell, once.
-template <class Visit>
-void for_each_edge(const CrossedCells& crossed, int axis, const Visit& visit) {
-  for (int x = 0; x < (axis == 0 ? 8 : 9); ++x) {
+/// Bit z: whether (x, y, z) is the first node of an edge along `axis` of a crossed cell.
+HWY_INLINE std::uint32_t edges_at(const CrossedCells& crossed, int axis, int x, int y) {
+  std::uint32_t bits = cells_at(crossed, x, y);
+  if (axis != 0) bits |= cells_at(crossed, x - 1, y);
+  if (axis != 1) bits |= cells_at(crossed, x, y - 1);
+  if (axis == 2) bits |= cells_at(crossed, x - 1, y - 1);
+  return axis == 2 ? bits : bits | bits << 1;
+}
+
+template <class Tag>
+HWY_INLINE hn::Mask<Tag> mask_of(Tag tag, std::uint32_t bits) {
+  std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits)};
+  return hn::LoadMaskBits(tag, bytes);
+}
+
+void measure_edges(const std::int16_t* values, int axis, BrickShape& shape) {
+  using Whole = hn::CappedTag<std::int32_t, kRow>;
+  using Steps = hn::Rebind<std::int16_t, Whole>;
+  const Whole whole;
+  constexpr int kLanes = static_cast<int>(hn::MaxLanes(Whole()));
+  const int step = axis == 0 ? kBrickNodes * kBrickNodes : axis == 1 ? kBrickNodes : 1;
+  auto least = hn::Set(whole, shape.least[axis]), greatest = hn::Set(whole, shape.greatest[axis]);
+  auto sum = hn::Zero(whole), edges = hn::Zero(whole);
+  int last_least = shape.least[axis], last_greatest = shape.greatest[axis], last_sum = 0, last_edges = 0;
+  const auto one = hn::Set(whole, 1);
+  for (int x = 0; x < (axis == 0 ? 8 : 9); ++x)
     for (int y = 0; y < (axis == 1 ? 8 : 9); ++y) {
-      std::uint32_t bits = cells_at(crossed, x, y);
-      if (axis != 0) bits |= cells_at(crossed, x - 1, y);
-      if (axis != 1) bits |= cells_at(crossed, x, y - 1);
-      if (axis == 2) bits |= cells_at(crossed, x - 1, y - 1);
-      if (axis != 2) bits |= bits << 1;
-      for (; bits != 0; bits &= bits - 1) visit(x, y, std::countr_zero(bits));
+      const std::uint32_t bits = edges_at(shape.crossed, axis, x, y);
+      if (bits == 0) continue;
+      const std::int16_t* const row = values + brick_element(x, y, 0);
+      for (int z = 0; z < kRow; z += kLanes) {
+        const auto mask = mask_of(whole, bits >> z & ((1u << kLanes) - 1u));
+        const auto difference =
+            hn::Sub(hn::PromoteTo(whole, hn::LoadU(Steps(), row + z + step)), hn::PromoteTo(whole, hn::LoadU(Steps(), row + z)));
+        least = hn::IfThenElse(mask, hn::Min(least, difference), least);
+        greatest = hn::IfThenElse(mask, hn::Max(greatest, difference), greatest);
+        sum = hn::Add(sum, hn::IfThenElseZero(mask, difference));
+        edges = hn::Add(edges, hn::IfThenElseZero(mask, one));
+      }
+      if ((bits >> kRow & 1u) == 0) continue;
+      const int difference = row[kRow + step] - row[kRow];
+      last_least = std::min(last_least, difference);
+      last_greatest = std::max(last_greatest, difference);
+      last_sum += difference;
+      ++last_edges;
     }
+  HWY_ALIGN std::int32_t lanes[4][kLanes] = {};
+  hn::Store(least, whole, lanes[0]);
+  hn::Store(greatest, whole, lanes[1]);
+  hn::Store(sum, whole, lanes[2]);
+  hn::Store(edges, whole, lanes[3]);
+  for (int i = 0; i < kLanes; ++i) {
+    last_least = std::min(last_least, lanes[0][i]);
+    last_greatest = std::max(last_greatest, lanes[1][i]);
+    last_sum += lanes[2][i];
+    last_edges += lanes[3][i];
+  }
+  shape.least[axis] = last_least;
+  shape.greatest[axis] = last_greatest;
+  shape.sum[axis] = last_sum;
+  shape.edges[axis] = last_edges;
+}
+
+void measure_all_edges(const std::int16_t* values, BrickShape& shape) {
+  for (int axis = 0; axis < 3; ++axis) measure_edges(values, axis, shape);
+}
+
+/// The range of value - normal . node over the nodes of crossed cells, `least` and `greatest` among it.
+void bound_rests(const BrickInCube& part, const double* normal, double& least, double& greatest) {
+  using Real = hn::CappedTag<double, kRow>;
+  using Whole = hn::Rebind<std::int32_t, Real>;
+  using Steps = hn::Rebind<std::int16_t, Real>;
+  const Real real;
+  constexpr int kLanes = static_cast<int>(hn::MaxLanes(Real()));
+  auto lower = hn::Set(real, least), upper = hn::Set(real, greatest);
+  const auto along_z = hn::Set(real, normal[2]), first = hn::Iota(real, static_cast<double>(part.place.z));
+  const CrossedCells& crossed = part.shape->crossed;
+  for (int x = 0; x < kBrickNodes; ++x)
+    for (int y = 0; y < kBrickNodes; ++y) {
+      const std::uint32_t cells =
+          cells_at(crossed, x, y) | cells_at(crossed, x - 1, y) | cells_at(crossed, x, y - 1) | cells_at(crossed, x - 1, y - 1);
+      const std::uint32_t bits = cells | cells << 1;
+      if (bits == 0) continue;
+      const std::int16_t* const row = part.values + brick_element(x, y, 0);
+      // In the order in which glm::dot() adds.
+      const double of_row = normal[0] * (part.place.x + x) + normal[1] * (part.place.y + y);
+      for (int z = 0; z < kRow; z += kLanes) {
+        const auto mask = mask_of(real, bits >> z & ((1u << kLanes) - 1u));
+        const auto value = hn::PromoteTo(real, hn::PromoteTo(Whole(), hn::LoadU(Steps(), row + z)));
+        const auto place = hn::Add(first, hn::Set(real, static_cast<double>(z)));
+        const auto rest = hn::Sub(value, hn::Add(hn::Set(real, of_row), hn::Mul(along_z, place)));
+        lower = hn::IfThenElse(mask, hn::Min(lower, rest), lower);
+        upper = hn::IfThenElse(mask, hn::Max(upper, rest), upper);
+      }
+      if ((bits >> kRow & 1u) == 0) continue;
+      const double rest = row[kRow] - (of_row + normal[2] * (part.place.z + kRow));
+      least = std::min(least, rest);
+      greatest = std::max(greatest, rest);
+    }
+  HWY_ALIGN double lanes[2][kLanes] = {};
+  hn::Store(lower, real, lanes[0]);
+  hn::Store(upper, real, lanes[1]);
+  for (int i = 0; i < kLanes; ++i) {
+    least = std::min(least, lanes[0][i]);
+    greatest = std::max(greatest, lanes[1][i]);
   }
 }
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace limn
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace limn {
+namespace {
+
+HWY_EXPORT(measure_all_edges);
+HWY_EXPORT(bound_rests);
 
 void bound_gradient(std::span<const BrickInCube> parts, SurfaceBound& bound) {
   double slope[3] = {}, least[3] = {}, greatest[3] = {};
@@ -55,15 +173,10 @@ void bound_gradient(std::span<const BrickInCube> parts, SurfaceBound& bound) {
 }
 
 void bound_values(std::span<const BrickInCube> parts, SurfaceBound& bound) {
-  const glm::dvec3 normal(bound.normal[0], bound.normal[1], bound.normal[2]);
+  const double normal[3] = {static_cast<double>(bound.normal[0]), static_cast<double>(bound.normal[1]),
+                            static_cast<double>(bound.normal[2])};
   double least = 1e30, greatest = -1e30;
-  for (const BrickInCube& part : parts) {
-    for_each_node(part.shape->crossed, [&](int x, int y, int z) {
-      const double rest = part.values[brick_element(x, y, z)] - glm::dot(normal, glm::dvec3(part.place + glm::ivec3(x, y, z)));
-      least = std::min(least, rest);
-      greatest = std::max(greatest, rest);
-    });
-  }
+  for (const BrickInCube& part : parts) HWY_DYNAMIC_DISPATCH(bound_rests)(part, normal, least, greatest);
   bound.offset = static_cast<float>(-0.5 * (least + greatest));
   // Rounded outwards: both numbers are stored as float.
   bound.slab = static_cast<float>(0.5 * (greatest - least) * (1.0 + 1e-5) + 1e-5 * std::abs(static_cast<double>(bound.offset)) + 1e-3);
@@ -71,9 +184,9 @@ void bound_values(std::span<const BrickInCube> parts, SurfaceBound& bound) {
 
 }  // namespace
 
-BrickShape shape_of(const std::int16_t* values) {
+BrickShape shape_of(const std::int16_t* values, const CrossedCells& crossed) {
   BrickShape shape;
-  shape.crossed = crossed_cells([values](int x, int y) { return values + brick_element(x, y, 0); });
+  shape.crossed = crossed;
   std::uint32_t of_x = 0, of_y = 0, of_z = 0;  // bits: places that have a crossed cell
   for (int x = 0; x < kBrickCells; ++x) {
     for (int y = 0; y < kBrickCells; ++y) {
@@ -90,22 +203,7 @@ BrickShape shape_of(const std::int16_t* values) {
       shape.upper[axis] = static_cast<int>(std::bit_width(places[axis]));
     }
   }
-  constexpr int kStep[3] = {kBrickNodes * kBrickNodes, kBrickNodes, 1};
-  for (int axis = 0; axis < 3; ++axis) {
-    int least = shape.least[axis], greatest = shape.greatest[axis], sum = 0, edges = 0;
-    for_each_edge(shape.crossed, axis, [&](int x, int y, int z) {
-      const std::int16_t* const node = values + brick_element(x, y, z);
-      const int difference = node[kStep[axis]] - node[0];
-      least = std::min(least, difference);
-      greatest = std::max(greatest, difference);
-      sum += difference;
-      ++edges;
-    });
-    shape.least[axis] = least;
-    shape.greatest[axis] = greatest;
-    shape.sum[axis] = sum;
-    shape.edges[axis] = edges;
-  }
+  HWY_DYNAMIC_DISPATCH(measure_all_edges)(values, shape);
   return shape;
 }
 
@@ -118,3 +216,4 @@ SurfaceBound bound_surface(const glm::ivec3& origin, std::span<const BrickInCube
 }
 
 }  // namespace limn
+#endif

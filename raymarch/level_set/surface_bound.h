@@ -17,8 +17,8 @@ struct BrickShape {
   std::int64_t sum[3] = {}, edges[3] = {};
 };
 
-/// Of a brick's kBrickStride values.
-BrickShape shape_of(const std::int16_t* values);
+/// Of a brick's kBrickStride values and the cells that change sign in them.
+BrickShape shape_of(const std::int16_t* values, const CrossedCells& crossed);
 
 /// A brick of the cube that is described, and where in it.
 struct BrickInCube {

@@ -7,7 +7,10 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
+#include <atomic>
 #include <random>
+#include <set>
+#include <tuple>
 
 #include "tests/random_seed.h"
 
@@ -106,6 +109,32 @@ TEST(NanoGrid, IsTheOneThatOpenVdbMakesOfTheSameBlocks) {
       const auto own = nano_grid(blocks, 2.5f), peer = by_openvdb(blocks, 2.5f);
       ASSERT_NO_FATAL_FAILURE(expect_same(*own.grid<float>(), *peer.grid<float>()));
     }
+}
+
+TEST(NanoGrid, OfLeavesMadeWhenTheyAreWrittenHasTheSameBytes) {
+  std::mt19937 random(random_seed());
+  for (const int reach : {2, 40, 4000}) {
+    std::vector<LevelSetBlock> blocks;
+    std::set<std::tuple<int, int, int>> taken;
+    for (const LevelSetBlock& block : random_blocks(random, 300, reach)) {
+      const bool any = std::any_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word != 0; });
+      if (any && taken.insert({block.origin.x, block.origin.y, block.origin.z}).second) blocks.push_back(block);
+    }
+    ASSERT_GT(blocks.size(), 10u);
+    std::vector<glm::ivec3> origins;
+    for (const LevelSetBlock& block : blocks) origins.push_back(block.origin);
+    std::atomic<size_t> asked{0};
+    const FillLeaves fill = [&](const IndexRange<size_t>& part, const WriteLeaf& write) {
+      for (size_t i = part.first; i < part.last; ++i) {
+        write(i, blocks[i]);
+        ++asked;
+      }
+    };
+    const auto own = nano_grid(origins, fill, 2.5f), peer = nano_grid(blocks, 2.5f);
+    EXPECT_EQ(asked, blocks.size());
+    ASSERT_EQ(own.size(), peer.size());
+    EXPECT_TRUE(std::equal(own.data(), own.data() + own.size(), peer.data())) << reach;
+  }
 }
 
 TEST(NanoGrid, FillsRootTilesBetweenInsideNodes) {

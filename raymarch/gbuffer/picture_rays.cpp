@@ -31,6 +31,8 @@ void FillRays(const PictureRays& rays, const PixelTile& tile, const glm::dvec2& 
   const auto linear = [&](const glm::dvec3& base, const glm::dvec3& by_x, const glm::dvec3& by_y, int axis, hn::Vec<D> x, double y) {
     return hn::Add(hn::Set(d, base[axis] + y * by_y[axis]), hn::Mul(x, hn::Set(d, by_x[axis])));
   };
+  // All rays of a pinhole start from one place.
+  const bool from_one = rays.start_x == glm::dvec3(0.0) && rays.start_y == glm::dvec3(0.0);
   for (int block = 0; block < across * down; ++block) {
     for (int row = 0; row < 4; ++row) {
       const double y = tile.y + (block / across) * 4 + row + sample.y;
@@ -49,8 +51,8 @@ void FillRays(const PictureRays& rays, const PixelTile& tile, const glm::dvec2& 
         for (int axis = 0; axis < 3; ++axis) {
           const hn::Vec<F> unit = hn::Mul(to[axis], per);
           hn::StoreU(unit, f, direction[axis] + i);
-          const hn::Vec<D> from =
-              hn::Add(linear(rays.start, rays.start_x, rays.start_y, axis, x, y), hn::Mul(hn::Set(d, rays.shift), hn::PromoteTo(d, unit)));
+          const hn::Vec<D> start = from_one ? hn::Set(d, rays.start[axis]) : linear(rays.start, rays.start_x, rays.start_y, axis, x, y);
+          const hn::Vec<D> from = hn::Add(start, hn::Mul(hn::Set(d, rays.shift), hn::PromoteTo(d, unit)));
           hn::StoreU(hn::DemoteTo(f, from), f, origin[axis] + i);
         }
         hn::StoreU(hn::Set(f, rays.t_min), f, batch.t_min + i);

@@ -129,7 +129,7 @@ void make_from(const MakeReader& reader, const BrickLayout& layout, float scale,
   bricks.world_per_step = 1.0 / static_cast<double>(scale);
   bricks.groups.push_back({.shift = 3, .bounds = std::vector<SurfaceBound>(layout.crossed.size()), .bricks = {}});
   bricks.neighbors.resize(layout.crossed.size());
-  bricks.values.resize(layout.blocks * kBrickStride);
+  bricks.values.resize(layout.blocks * kBrickStride + kReadBeyond);
   const BrickShapes shapes = fill(reader, layout, scale, bricks);
   for (const int shift : {4, 5}) bricks.groups.push_back(group_bricks(layout, shapes, bricks, shift));
   bricks.lower = glm::ivec3(std::numeric_limits<int>::max());

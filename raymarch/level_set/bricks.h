@@ -19,6 +19,8 @@ inline constexpr int kBrickCells = 8;
 inline constexpr int kBrickNodes = 9;
 /// Elements from one brick to the next: one more than nodes, so that a pair of values may be read from any of them.
 inline constexpr int kBrickStride = 730;
+/// Elements behind the last one that loads may bring along.
+inline constexpr int kReadBeyond = 16;
 /// The element of node (x, y, z) of a brick, each in 0..8.
 inline constexpr int brick_element(int x, int y, int z) { return (x * kBrickNodes + y) * kBrickNodes + z; }
 
@@ -58,7 +60,7 @@ struct RayBricks {
   std::vector<BrickGroups> groups{};        ///< Of shift 3, 4 and 5; none where the surface crosses no cell.
   std::vector<BrickNeighbors> neighbors{};  ///< As many.
   std::vector<std::int16_t, LargePageAllocator<std::int16_t>>
-      values{};                   ///< kBrickStride for each brick, then blocks of layers that only stencils read.
+      values{};                   ///< kBrickStride for each brick, then blocks of layers that only stencils read, then kReadBeyond.
   SplineBricks spline{};          ///< Of the crossed bricks; empty where nobody asked for it.
   glm::ivec3 lower{0}, upper{0};  ///< Around the crossed cells, index coordinates.
   double world_per_step = 0.0;    ///< What one step of a value stands for.

@@ -7,7 +7,7 @@
 #define LIMN_RAYMARCH_LEVEL_SET_GRADIENTS_INL_H
 #endif
 
-#include "raymarch/level_set/lanes-inl.h"
+#include "raymarch/level_set/pairs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
@@ -40,7 +40,7 @@ HWY_INLINE Cells cells_of(const RayBricks& bricks, const IndexRays& rays, size_t
   cells.local.x = place(0, o.x, v.x);
   cells.local.y = place(1, o.y, v.y);
   cells.local.z = place(2, o.z, v.z);
-  constexpr int kStep[3] = {162, 18, 2};
+  constexpr int kStep[3] = {kStepX, kStepY, 2};
   cells.self = base;
   for (int axis = 0; axis < 3; ++axis) cells.self = hn::Add(cells.self, hn::Mul(node[axis], hn::Set(di, kStep[axis])));
   if (!with_neighbors) return cells;
@@ -60,9 +60,8 @@ HWY_INLINE Cells cells_of(const RayBricks& bricks, const IndexRays& rays, size_t
 
 /// The cell's own gradient.
 HWY_INLINE V3 cell_gradient(const std::int16_t* values, const Cells& cells) {
-  const I di;
-  const auto row = [&](int element) { return gather_pair(values, hn::Add(cells.self, hn::Set(di, 2 * element))); };
-  const Pair p00 = row(0), p01 = row(9), p10 = row(81), p11 = row(90);
+  const FourPairs rows = pairs_along_y(values, cells.self, hn::Add(cells.self, hn::Set(I(), kStepX)));
+  const Pair &p00 = rows.p[0], &p01 = rows.p[1], &p10 = rows.p[2], &p11 = rows.p[3];
   const VF x = cells.local.x, y = cells.local.y, z = cells.local.z;
   const VF z00 = lerp(p00.low, p00.high, z), z01 = lerp(p01.low, p01.high, z), z10 = lerp(p10.low, p10.high, z),
            z11 = lerp(p11.low, p11.high, z);
@@ -74,21 +73,15 @@ HWY_INLINE V3 cell_gradient(const std::int16_t* values, const Cells& cells) {
 /// The 32 nodes that central differences about a cell read, as pairs along z: two rows beyond each face across x and y, and the cell's own
 /// four columns from -1 to 2.
 struct CentralStencil {
-  Pair before_x[2], after_x[2], before_y[2], after_y[2];
-  Pair below[4], above[4];  ///< Columns x 2 + y: nodes -1 and 0, 1 and 2.
+  FourPairs beside_x, beside_y;  ///< Two before the cell, two behind it.
+  FourPairs below, above;        ///< Columns x 2 + y: nodes -1 and 0, 1 and 2.
 };
 
 HWY_INLINE CentralStencil gather_central(const std::int16_t* values, const Cells& cells) {
   const I di;
-  const auto pair = [&](VI offset) { return gather_pair(values, offset); };
-  const VI sx = hn::Set(di, 162), sy = hn::Set(di, 18), sz = hn::Set(di, 2), sxy = hn::Set(di, 180);
-  const VI below = cells.minus[2], above = hn::Sub(cells.plus[2], sz);
-  return {{pair(cells.minus[0]), pair(hn::Add(cells.minus[0], sy))},
-          {pair(cells.plus[0]), pair(hn::Add(cells.plus[0], sy))},
-          {pair(cells.minus[1]), pair(hn::Add(cells.minus[1], sx))},
-          {pair(cells.plus[1]), pair(hn::Add(cells.plus[1], sx))},
-          {pair(below), pair(hn::Add(below, sy)), pair(hn::Add(below, sx)), pair(hn::Add(below, sxy))},
-          {pair(above), pair(hn::Add(above, sy)), pair(hn::Add(above, sx)), pair(hn::Add(above, sxy))}};
+  const VI x = hn::Set(di, kStepX), below = cells.minus[2], above = hn::Sub(cells.plus[2], hn::Set(di, 2));
+  return {pairs_along_y(values, cells.minus[0], cells.plus[0]), pairs_along_x(values, cells.minus[1], cells.plus[1]),
+          pairs_along_y(values, below, hn::Add(below, x)), pairs_along_y(values, above, hn::Add(above, x))};
 }
 
 /// The interpolant on the line through a place along one axis, where it meets the faces of the cell and of those beside it: at -1, 0, 1, 2.
@@ -113,23 +106,21 @@ HWY_INLINE Sections sections(const CentralStencil& s, const V3& at) {
   const auto along_z = [&](const Pair& p) { return lerp(p.low, p.high, at.z); };
   const auto across = [&](VF c00, VF c01, VF c10, VF c11) { return lerp(lerp(c00, c01, at.y), lerp(c10, c11, at.y), at.x); };
   VF here[4];
-  for (int k = 0; k < 4; ++k) here[k] = lerp(s.below[k].high, s.above[k].low, at.z);
-  return {{lerp(along_z(s.before_x[0]), along_z(s.before_x[1]), at.y), lerp(here[0], here[1], at.y), lerp(here[2], here[3], at.y),
-           lerp(along_z(s.after_x[0]), along_z(s.after_x[1]), at.y)},
-          {lerp(along_z(s.before_y[0]), along_z(s.before_y[1]), at.x), lerp(here[0], here[2], at.x), lerp(here[1], here[3], at.x),
-           lerp(along_z(s.after_y[0]), along_z(s.after_y[1]), at.x)},
-          {across(s.below[0].low, s.below[1].low, s.below[2].low, s.below[3].low),
-           across(s.below[0].high, s.below[1].high, s.below[2].high, s.below[3].high),
-           across(s.above[0].low, s.above[1].low, s.above[2].low, s.above[3].low),
-           across(s.above[0].high, s.above[1].high, s.above[2].high, s.above[3].high)}};
+  for (int k = 0; k < 4; ++k) here[k] = lerp(s.below.p[k].high, s.above.p[k].low, at.z);
+  return {{lerp(along_z(s.beside_x.p[0]), along_z(s.beside_x.p[1]), at.y), lerp(here[0], here[1], at.y), lerp(here[2], here[3], at.y),
+           lerp(along_z(s.beside_x.p[2]), along_z(s.beside_x.p[3]), at.y)},
+          {lerp(along_z(s.beside_y.p[0]), along_z(s.beside_y.p[1]), at.x), lerp(here[0], here[2], at.x), lerp(here[1], here[3], at.x),
+           lerp(along_z(s.beside_y.p[2]), along_z(s.beside_y.p[3]), at.x)},
+          {across(s.below.p[0].low, s.below.p[1].low, s.below.p[2].low, s.below.p[3].low),
+           across(s.below.p[0].high, s.below.p[1].high, s.below.p[2].high, s.below.p[3].high),
+           across(s.above.p[0].low, s.above.p[1].low, s.above.p[2].low, s.above.p[3].low),
+           across(s.above.p[0].high, s.above.p[1].high, s.above.p[2].high, s.above.p[3].high)}};
 }
 
 /// Along the ray. Beyond the cell its polynomials go on: by so little that on smooth surfaces they are still the next cell's.
 HWY_INLINE V3 moved(const V3& at, const V3& direction, VF t) {
   return {hn::Add(at.x, hn::Mul(t, direction.x)), hn::Add(at.y, hn::Mul(t, direction.y)), hn::Add(at.z, hn::Mul(t, direction.z))};
 }
-
-HWY_INLINE VF dot(const V3& a, const V3& b) { return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z)); }
 
 /// Newton's step along the ray towards the root of what has this value and gradient, by a quarter of a voxel at most, so that hits in one
 /// cell and the next go on from each other. `side`: the sign of the values before the trilinear root, from which the value falls (towards
@@ -196,15 +187,18 @@ HWY_INLINE SplineStencil gather_spline(const SplineBricks& bricks, VI number) {
   const VI brick = hn::ShiftRight<9>(number), self = hn::Add(hn::Mul(brick, hn::Set(di, kSplineStride)), corner);
   const VI twice = hn::Add(self, self), plane = hn::ShiftLeft<2>(brick);
   SplineStencil stencil;
-  for (int k = 0; k < 16; ++k) {
+  for (int k = 0; k < 16; k += 2) {
     const VI row = hn::Add(twice, hn::Set(di, 2 * (k / 4 * kSplineNodes + k % 4) * kSplineNodes));
-    stencil.below[k] = gather_pair(bricks.rests.data(), row);
-    stencil.above[k] = gather_pair(bricks.rests.data(), hn::Add(row, hn::Set(di, 4)));
+    const FourPairs rows = spline_rows(bricks.rests.data(), row);
+    stencil.below[k] = rows.p[0];
+    stencil.above[k] = rows.p[1];
+    stencil.below[k + 1] = rows.p[2];
+    stencil.above[k + 1] = rows.p[3];
   }
-  const auto of_plane = [&](int element) { return hn::GatherIndex(d, bricks.planes.data()->slope, hn::Add(plane, hn::Set(di, element))); };
-  stencil.slope = {of_plane(0), of_plane(1), of_plane(2)};
+  const FourValues of_plane = four_values(bricks.planes.data()->slope, plane);
+  stencil.slope = {of_plane.v[0], of_plane.v[1], of_plane.v[2]};
   const V3 node = {hn::ConvertTo(d, x0), hn::ConvertTo(d, y0), hn::ConvertTo(d, z0)};
-  stencil.offset = hn::Add(of_plane(3), dot(stencil.slope, node));
+  stencil.offset = hn::Add(of_plane.v[3], dot(stencil.slope, node));
   return stencil;
 }
 

@@ -33,6 +33,8 @@ struct V3 {
   VF x, y, z;
 };
 
+HWY_INLINE VF dot(const V3& a, const V3& b) { return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z)); }
+
 /// Rays of the tile by index coordinates. `t` keeps its meaning, so directions are not unit.
 struct IndexRays {
   alignas(64) float origin[3][kRayBatchSize], direction[3][kRayBatchSize], inverse[3][kRayBatchSize];
@@ -46,10 +48,11 @@ HWY_INLINE V3 load3(const float (*from)[kRayBatchSize], size_t i) {
 struct Pair {
   VF low, high;
 };
-HWY_INLINE Pair gather_pair(const std::int16_t* base, VI offset) {
-  const I i;
-  const VI both = hn::GatherOffset(i, reinterpret_cast<const std::int32_t*>(base), offset);
+HWY_INLINE Pair pair_of(VI both) {
   return {hn::ConvertTo(F(), hn::ShiftRight<16>(hn::ShiftLeft<16>(both))), hn::ConvertTo(F(), hn::ShiftRight<16>(both))};
+}
+HWY_INLINE Pair gather_pair(const std::int16_t* base, VI offset) {
+  return pair_of(hn::GatherOffset(I(), reinterpret_cast<const std::int32_t*>(base), offset));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #define LIMN_RAYMARCH_LEVEL_SET_ROOTS_INL_H
 #endif
 
-#include "raymarch/level_set/lanes-inl.h"
+#include "raymarch/level_set/pairs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
@@ -22,9 +22,7 @@ struct Cubic {
 
 /// The interpolant of the cell at `offset` from local place `from` on, along `step`, for s in [0, 1]; turned by `side`.
 HWY_INLINE Cubic cubic_along(const std::int16_t* values, VI offset, const V3& from, const V3& step, VF side) {
-  const I i;
-  const auto row = [&](int element) { return gather_pair(values, hn::Add(offset, hn::Set(i, 2 * element))); };
-  const Pair p00 = row(0), p01 = row(kBrickNodes), p10 = row(kBrickNodes * kBrickNodes), p11 = row(kBrickNodes * kBrickNodes + kBrickNodes);
+  const FourPairs rows = pairs_along_y(values, offset, hn::Add(offset, hn::Set(I(), kStepX)));
   const auto along_z = [&](const Pair& p) {
     const VF difference = hn::Sub(p.high, p.low);
     return Pair{hn::Add(p.low, hn::Mul(from.z, difference)), hn::Mul(step.z, difference)};
@@ -37,7 +35,7 @@ HWY_INLINE Cubic cubic_along(const std::int16_t* values, VI offset, const V3& fr
     return Quadratic{hn::Add(a.low, hn::Mul(from.y, d0)), hn::Add(hn::Add(a.high, hn::Mul(from.y, d1)), hn::Mul(step.y, d0)),
                      hn::Mul(step.y, d1)};
   };
-  const Quadratic a = along_y(along_z(p00), along_z(p01)), b = along_y(along_z(p10), along_z(p11));
+  const Quadratic a = along_y(along_z(rows.p[0]), along_z(rows.p[1])), b = along_y(along_z(rows.p[2]), along_z(rows.p[3]));
   const VF d0 = hn::Sub(b.c0, a.c0), d1 = hn::Sub(b.c1, a.c1), d2 = hn::Sub(b.c2, a.c2);
   return {hn::Mul(side, hn::Add(a.c0, hn::Mul(from.x, d0))),
           hn::Mul(side, hn::Add(hn::Add(a.c1, hn::Mul(from.x, d1)), hn::Mul(step.x, d0))),

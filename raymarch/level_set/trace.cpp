@@ -43,54 +43,6 @@ HWY_NOINLINE void to_index_space(const Affine& index_from_render, const RayBatch
   }
 }
 
-/// A packet of a tile's rays against one brick: those that come near the surface in it join the waiting ones.
-HWY_NOINLINE void enter_packet(const SurfaceBound& bound, std::int32_t index, const IndexRays& rays, const RayBatch& batch, size_t i,
-                               float slack, const BrickHits& hits, Waiting& waiting) {
-  const F d;
-  const I di;
-  const V3 o = load3(rays.origin, i);
-  Candidates c;
-  c.direction = load3(rays.direction, i);
-  c.inverse = load3(rays.inverse, i);
-  c.origin = {hn::Sub(o.x, set(static_cast<float>(bound.origin[0]))), hn::Sub(o.y, set(static_cast<float>(bound.origin[1]))),
-              hn::Sub(o.z, set(static_cast<float>(bound.origin[2])))};
-  c.near = hn::Load(d, batch.t_min + i);
-  c.far = hn::Load(d, batch.t_max + i);
-  const auto clip = [&](size_t axis, VF from, VF inverse) {
-    const VF a = hn::Mul(hn::Sub(set(static_cast<float>(bound.lower[axis]) - slack), from), inverse);
-    const VF b = hn::Mul(hn::Sub(set(static_cast<float>(bound.upper[axis]) + slack), from), inverse);
-    c.near = hn::Max(c.near, hn::Min(a, b));
-    c.far = hn::Min(c.far, hn::Max(a, b));
-  };
-  clip(0, c.origin.x, c.inverse.x);
-  clip(1, c.origin.y, c.inverse.y);
-  clip(2, c.origin.z, c.inverse.z);
-  // Nearer hits only decide what is not looked at any more, never how a root is found: the order of the bricks does not matter.
-  const VF before = hn::Load(d, hits.t + i);
-  if (hn::AllFalse(d, hn::Le(c.near, hn::Min(c.far, before)))) return;
-  const VF nx = set(bound.normal[0]), ny = set(bound.normal[1]), nz = set(bound.normal[2]);
-  const auto dot = [&](const V3& v) { return hn::Add(hn::Add(hn::Mul(nx, v.x), hn::Mul(ny, v.y)), hn::Mul(nz, v.z)); };
-  const VF height = hn::Sub(dot(c.origin), set(bound.offset)), slope = dot(c.direction);
-  const float steepest = std::abs(bound.normal[0]) + std::abs(bound.normal[1]) + std::abs(bound.normal[2]);
-  const VF slab = set(bound.slab + slack * steepest);
-  const VF per = hn::Div(set(1.0f), hn::IfThenElse(hn::Lt(hn::Abs(slope), set(1e-12f)), set(1e-12f), slope));
-  const VF a = hn::Mul(hn::Sub(slab, height), per), b = hn::Mul(hn::Sub(hn::Neg(slab), height), per);
-  c.near = hn::Max(c.near, hn::Min(a, b));
-  c.far = hn::Min(c.far, hn::Max(a, b));
-  const MF active = hn::Le(c.near, hn::Min(c.far, before));
-  if (hn::AllFalse(d, active)) return;
-  const auto first_cell = [&](size_t axis, VF from, VF slope_of) {
-    const VF p = hn::Floor(hn::Add(from, hn::Mul(c.near, slope_of)));
-    return hn::Min(hn::Max(p, set(static_cast<float>(bound.lower[axis]))), set(static_cast<float>(bound.upper[axis] - 1)));
-  };
-  c.cell = {first_cell(0, c.origin.x, c.direction.x), first_cell(1, c.origin.y, c.direction.y), first_cell(2, c.origin.z, c.direction.z)};
-  c.lane = hn::Iota(di, static_cast<std::int32_t>(i));
-  c.group = hn::Set(di, index);
-  c.box = hn::Set(di, bound.lower[0] | (bound.upper[0] - 1) << 5 | bound.lower[1] << 10 | (bound.upper[1] - 1) << 15 |
-                          bound.lower[2] << 20 | (bound.upper[2] - 1) << 25);
-  push(c, active, waiting);
-}
-
 HWY_INLINE Settled settle(BrickGradient gradient, const RayBricks& bricks, const Cells& cells, VI number, const IndexRays& rays, size_t i,
                           VF side) {
   if (gradient == BrickGradient::cell) return {cell_gradient(bricks.values.data(), cells), hn::Zero(F())};
@@ -182,6 +134,7 @@ void fetch(const std::int16_t* values, size_t count) {
 /// Asks for a group's values before they are needed: most are not in a cache yet.
 void fetch(const RayBricks& bricks, bool spline, const BrickGroups& groups, std::uint32_t group) {
   const auto fetch_brick = [&](size_t brick) {
+    __builtin_prefetch(bricks.neighbors.data() + brick, 0, 2);
     fetch(bricks.values.data() + brick * kBrickStride, kBrickStride);
     if (spline) fetch(bricks.spline.rests.data() + brick * kSplineStride, kSplineStride);
   };
@@ -226,13 +179,12 @@ HWY_NOINLINE void search_tile(const BrickTrace& what, const PixelTile& tile, con
         const GroupInTile& entry = entries[k];
         BlockRange range;
         if (!blocks_of(entry, column * kViewTile_px, row * kViewTile_px, tile, range)) continue;
-        const SurfaceBound& bound = groups.bounds[entry.group];
-        const auto index = static_cast<std::int32_t>(entry.group);
+        const Bound bound = bound_of(groups.bounds[entry.group], static_cast<std::int32_t>(entry.group), view.slack_voxels);
         for (int y = range.y0; y <= range.y1; ++y) {
           for (int x = range.x0; x <= range.x1; ++x) {
             const size_t first = static_cast<size_t>(y * across + x) * 16;
             for (size_t i = first; i < first + 16; i += lanes) {
-              enter_packet(bound, index, search.rays, rays, i, view.slack_voxels, search.found, search.waiting);
+              enter_packet(bound, search.rays, rays, i, search.found, search.waiting);
               while (search.waiting.count >= lanes) advance_packet(bricks, groups, side, search.waiting, search.found);
             }
           }
@@ -277,8 +229,8 @@ HWY_NOINLINE void search_tree(const BrickTrace& what, const BrickTree& tree, con
         stack[waiting++] = node.first + 1;
         continue;
       }
-      enter_packet(groups.bounds[static_cast<size_t>(node.brick)], node.brick, search.rays, rays, i, view.slack_voxels, search.found,
-                   search.waiting);
+      const Bound bound = bound_of(groups.bounds[static_cast<size_t>(node.brick)], node.brick, view.slack_voxels);
+      enter_packet(bound, search.rays, rays, i, search.found, search.waiting);
       while (search.waiting.count >= lanes) advance_packet(bricks, groups, side, search.waiting, search.found);
     }
     // What is behind a root need not be looked at by the packets to come.

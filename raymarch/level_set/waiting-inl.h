@@ -7,6 +7,8 @@
 #define LIMN_RAYMARCH_LEVEL_SET_WAITING_INL_H
 #endif
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "raymarch/level_set/roots-inl.h"
@@ -57,6 +59,73 @@ HWY_INLINE void push(const Candidates& c, MF which, Waiting& waiting) {
   puti(c.group, waiting.group);
   puti(c.box, waiting.box);
   waiting.count += hn::CountTrue(d, which);
+}
+
+/// What bounds the surface in a brick or group, for a packet of rays.
+struct Bound {
+  V3 origin, lower, upper;  ///< The box with the slack about it, local.
+  V3 first, last;           ///< Crossed cells, local.
+  V3 normal;
+  VF offset, slab;
+  VI group, box;
+};
+
+HWY_INLINE Bound bound_of(const SurfaceBound& bound, std::int32_t group, float slack) {
+  const I di;
+  const auto each = [](const auto& value) { return V3{set(value(0)), set(value(1)), set(value(2))}; };
+  const float steepest = std::abs(bound.normal[0]) + std::abs(bound.normal[1]) + std::abs(bound.normal[2]);
+  return {each([&](size_t axis) { return static_cast<float>(bound.origin[axis]); }),
+          each([&](size_t axis) { return static_cast<float>(bound.lower[axis]) - slack; }),
+          each([&](size_t axis) { return static_cast<float>(bound.upper[axis]) + slack; }),
+          each([&](size_t axis) { return static_cast<float>(bound.lower[axis]); }),
+          each([&](size_t axis) { return static_cast<float>(bound.upper[axis] - 1); }),
+          each([&](size_t axis) { return bound.normal[axis]; }),
+          set(bound.offset),
+          set(bound.slab + slack * steepest),
+          hn::Set(di, group),
+          hn::Set(di, bound.lower[0] | (bound.upper[0] - 1) << 5 | bound.lower[1] << 10 | (bound.upper[1] - 1) << 15 |
+                          bound.lower[2] << 20 | (bound.upper[2] - 1) << 25)};
+}
+
+/// A packet of a tile's rays against one brick: those that come near the surface in it join the waiting ones. Box and slab are asked
+/// together: a branch between them is so often foreseen wrongly that it takes longer than the slab.
+HWY_INLINE void enter_packet(const Bound& bound, const IndexRays& rays, const RayBatch& batch, size_t i, const BrickHits& hits,
+                             Waiting& waiting) {
+  const F d;
+  const V3 o = load3(rays.origin, i);
+  Candidates c;
+  c.direction = load3(rays.direction, i);
+  c.inverse = load3(rays.inverse, i);
+  c.origin = {hn::Sub(o.x, bound.origin.x), hn::Sub(o.y, bound.origin.y), hn::Sub(o.z, bound.origin.z)};
+  c.near = hn::Load(d, batch.t_min + i);
+  c.far = hn::Load(d, batch.t_max + i);
+  const auto clip = [&](VF lower, VF upper, VF from, VF inverse) {
+    const VF a = hn::Mul(hn::Sub(lower, from), inverse), b = hn::Mul(hn::Sub(upper, from), inverse);
+    c.near = hn::Max(c.near, hn::Min(a, b));
+    c.far = hn::Min(c.far, hn::Max(a, b));
+  };
+  clip(bound.lower.x, bound.upper.x, c.origin.x, c.inverse.x);
+  clip(bound.lower.y, bound.upper.y, c.origin.y, c.inverse.y);
+  clip(bound.lower.z, bound.upper.z, c.origin.z, c.inverse.z);
+  // Nearer hits only decide what is not looked at any more, never how a root is found: the order of the bricks does not matter.
+  const VF before = hn::Load(d, hits.t + i);
+  const VF height = hn::Sub(dot(bound.normal, c.origin), bound.offset), slope = dot(bound.normal, c.direction);
+  const VF per = hn::Div(set(1.0f), hn::IfThenElse(hn::Lt(hn::Abs(slope), set(1e-12f)), set(1e-12f), slope));
+  const VF a = hn::Mul(hn::Sub(bound.slab, height), per), b = hn::Mul(hn::Sub(hn::Neg(bound.slab), height), per);
+  c.near = hn::Max(c.near, hn::Min(a, b));
+  c.far = hn::Min(c.far, hn::Max(a, b));
+  const MF active = hn::Le(c.near, hn::Min(c.far, before));
+  if (hn::AllFalse(d, active)) return;
+  const auto first_cell = [&](VF first, VF last, VF from, VF slope_of) {
+    return hn::Min(hn::Max(hn::Floor(hn::Add(from, hn::Mul(c.near, slope_of))), first), last);
+  };
+  c.cell = {first_cell(bound.first.x, bound.last.x, c.origin.x, c.direction.x),
+            first_cell(bound.first.y, bound.last.y, c.origin.y, c.direction.y),
+            first_cell(bound.first.z, bound.last.z, c.origin.z, c.direction.z)};
+  c.lane = hn::Iota(I(), static_cast<std::int32_t>(i));
+  c.group = bound.group;
+  c.box = bound.box;
+  push(c, active, waiting);
 }
 
 /// Takes the last ones, a packet at most.

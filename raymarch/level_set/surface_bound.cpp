@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/level_set/brick_layout.h"
+
 namespace limn {
 namespace {
 
@@ -71,9 +73,9 @@ void bound_values(std::span<const BrickInCube> parts, SurfaceBound& bound) {
 
 }  // namespace
 
-BrickShape shape_of(const std::int16_t* values) {
+BrickShape shape_of(const std::int16_t* values, std::uint64_t covered) {
   BrickShape shape;
-  shape.crossed = crossed_cells([values](int x, int y) { return values + brick_element(x, y, 0); });
+  shape.crossed = without_covered(crossed_cells_of(values), covered);
   std::uint32_t of_x = 0, of_y = 0, of_z = 0;  // bits: places that have a crossed cell
   for (int x = 0; x < kBrickCells; ++x) {
     for (int y = 0; y < kBrickCells; ++y) {

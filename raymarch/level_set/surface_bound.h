@@ -17,8 +17,8 @@ struct BrickShape {
   std::int64_t sum[3] = {}, edges[3] = {};
 };
 
-/// Of a brick's kBrickStride values.
-BrickShape shape_of(const std::int16_t* values);
+/// Of a brick's kBrickStride values, without the cells that smaller bricks hold (see covered_bit).
+BrickShape shape_of(const std::int16_t* values, std::uint64_t covered = 0);
 
 /// A brick of the cube that is described, and where in it.
 struct BrickInCube {

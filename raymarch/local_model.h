@@ -23,9 +23,10 @@ std::string why_not_local(const SceneObject& object, const SurfaceSettings& sett
 /// not read: a coarse mesh of the surface is refined by splitting edges. The middle of an edge belongs to both of its triangles, so that no
 /// crack can appear, and lies on the surface. What has one resolution only is modelled as it is. Throws InputError as build_model does.
 ///
-/// With settings.kind = level_set fields become bricks of several voxel sizes, each twice as large as the next: no smaller than the
-/// settings ask for, and those only where a border is predicted to be off by more than the tolerance. On a face between two sizes both
-/// sides are the same function. What is hidden in the pictures is as coarse as where no border runs. Volumes are modelled as they are.
+/// With settings.kind = level_set fields become bricks of several voxel sizes, each two or four times as large as the one before: no
+/// smaller than the settings ask for, and those only where a border is predicted to be off by more than the tolerance. On a face between
+/// two sizes both sides have the same surface. What is hidden in the pictures is as coarse as where no border runs. Volumes are modelled as
+/// they are.
 ///
 /// `cache` spares making the coarse mesh again (build_ms counts it all the same); may be null.
 SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local,

@@ -39,7 +39,7 @@ bool changes_sign(const NodeValues& values) {
 
 void inspect(const NodeValues& values, Candidate& candidate) {
   if (!changes_sign(values)) return;
-  candidate.cells = crossed_cells_of(values.data());
+  candidate.cells = without_covered(crossed_cells_of(values.data()), candidate.covered);
   if (!candidate.cells.any) return;
   candidate.faces = touched_faces(candidate.cells);
   for_each_node(candidate.cells,
@@ -188,6 +188,20 @@ void load_nodes(const Accessor& accessor, const glm::ivec3& origin, NodeValues& 
   }
 }
 
+CrossedCells without_covered(CrossedCells crossed, std::uint64_t covered) {
+  if (covered == 0 || !crossed.any) return crossed;
+  crossed.any = false;
+  for (int x = 0; x < kBrickCells; ++x)
+    for (int y = 0; y < kBrickCells; ++y) {
+      const std::uint64_t four = covered >> covered_bit(x, y, 0) & 15;
+      // Bit k of `four` becomes bits 2 k and 2 k + 1.
+      const std::uint64_t apart = (four & 1) | (four & 2) << 1 | (four & 4) << 2 | (four & 8) << 3;
+      crossed.cells[x][y] = static_cast<std::uint8_t>(crossed.cells[x][y] & ~(apart | apart << 1));
+      crossed.any = crossed.any || crossed.cells[x][y] != 0;
+    }
+  return crossed;
+}
+
 std::uint64_t key_of(const glm::ivec3& origin) {
   const auto part = [](int v) { return static_cast<std::uint64_t>((v >> 3) + (1 << 20)) & 0x1fffff; };
   return part(origin.x) << 42 | part(origin.y) << 21 | part(origin.z);
@@ -216,13 +230,14 @@ BrickNeighbors BrickLayout::neighbors_of(size_t brick) const {
 
 BrickLayout lay_out_bricks(const LevelSetData& data) { return lay_out(find_candidates(data)); }
 
-BrickLayout lay_out_bricks(const NodeReader& nodes, std::span<const glm::ivec3> origins) {
-  std::vector<Candidate> candidates(origins.size());
-  parallel_parts(origins.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
+BrickLayout lay_out_bricks(const NodeReader& nodes, std::span<const BrickPlace> places) {
+  std::vector<Candidate> candidates(places.size());
+  parallel_parts(places.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
     NodeValues values;
     for (size_t i = range.begin(); i < range.end(); ++i) {
-      candidates[i].origin = origins[i];
-      nodes.load(origins[i], values);
+      candidates[i].origin = places[i].origin;
+      candidates[i].covered = places[i].covered;
+      nodes.load(places[i].origin, values);
       inspect(values, candidates[i]);
     }
   });

@@ -22,9 +22,13 @@ CrossedCells crossed_cells_of(const Value* values) {
   return crossed_cells([values](int x, int y) { return values + brick_element(x, y, 0); });
 }
 
+/// Without the cells that smaller bricks hold (see covered_bit).
+CrossedCells without_covered(CrossedCells crossed, std::uint64_t covered);
+
 /// A block of cells that may be crossed, and what looking at it told.
 struct Candidate {
   glm::ivec3 origin{0};
+  std::uint64_t covered = 0;  ///< What smaller bricks hold of it.
   std::uint8_t faces = 0;
   float largest = 0.0f;  ///< |value| at the nodes of crossed cells.
   CrossedCells cells{};
@@ -74,9 +78,15 @@ struct NodeReader {
   float value(const glm::ivec3& node) const { return node_value(state, node, last); }
 };
 
-/// Of the blocks of cells from `origins` on those that the surface crosses, in parallel.
-BrickLayout lay_out_bricks(const NodeReader& nodes, std::span<const glm::ivec3> origins);
+/// A block of cells, and what smaller bricks hold of it.
+struct BrickPlace {
+  glm::ivec3 origin{0};
+  std::uint64_t covered = 0;
+};
+
+/// Of the blocks of cells those that the surface crosses, in parallel.
+BrickLayout lay_out_bricks(const NodeReader& nodes, std::span<const BrickPlace> places);
 /// The bricks, without a spline and without what only their dump asks for. Null where there are more than 32-bit offsets reach.
-std::shared_ptr<RayBricks> make_bricks(const NodeReader& nodes, std::span<const glm::ivec3> origins, float steps_per_unit);
+std::shared_ptr<RayBricks> make_bricks(const NodeReader& nodes, std::span<const BrickPlace> places, float steps_per_unit);
 
 }  // namespace limn

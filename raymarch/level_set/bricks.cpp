@@ -130,6 +130,8 @@ void make_from(const MakeReader& reader, const BrickLayout& layout, float scale,
   bricks.groups.push_back({.shift = 3, .bounds = std::vector<SurfaceBound>(layout.crossed.size()), .bricks = {}});
   bricks.neighbors.resize(layout.crossed.size());
   bricks.values.resize(layout.blocks * kBrickStride + kReadBeyond);
+  if (std::any_of(layout.crossed.begin(), layout.crossed.end(), [](const Candidate& c) { return c.covered != 0; }))
+    for (const Candidate& candidate : layout.crossed) bricks.covered.push_back(candidate.covered);
   const BrickShapes shapes = fill(reader, layout, scale, bricks);
   for (const int shift : {4, 5}) bricks.groups.push_back(group_bricks(layout, shapes, bricks, shift));
   bricks.lower = glm::ivec3(std::numeric_limits<int>::max());
@@ -161,7 +163,7 @@ double ms_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 std::int64_t RayBricks::bytes() const {
-  size_t sum = neighbors.size() * sizeof(BrickNeighbors) + values.size() * sizeof(std::int16_t);
+  size_t sum = neighbors.size() * sizeof(BrickNeighbors) + values.size() * sizeof(std::int16_t) + covered.size() * sizeof(std::uint64_t);
   for (const BrickGroups& of : groups) sum += of.bounds.size() * sizeof(SurfaceBound) + of.bricks.size() * sizeof(std::int32_t);
   return static_cast<std::int64_t>(sum) + spline.bytes();
 }
@@ -185,9 +187,9 @@ std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool wit
   return bricks;
 }
 
-std::shared_ptr<RayBricks> make_bricks(const NodeReader& nodes, std::span<const glm::ivec3> origins, float steps_per_unit) {
+std::shared_ptr<RayBricks> make_bricks(const NodeReader& nodes, std::span<const BrickPlace> places, float steps_per_unit) {
   const auto start = std::chrono::steady_clock::now();
-  const BrickLayout layout = lay_out_bricks(nodes, origins);
+  const BrickLayout layout = lay_out_bricks(nodes, places);
   if (layout.blocks > kMostBricks) return nullptr;
   auto bricks = std::make_shared<RayBricks>();
   if (!layout.crossed.empty()) make_from([&nodes] { return nodes; }, layout, steps_per_unit, *bricks);

@@ -24,6 +24,9 @@ inline constexpr int kReadBeyond = 16;
 /// The element of node (x, y, z) of a brick, each in 0..8.
 inline constexpr int brick_element(int x, int y, int z) { return (x * kBrickNodes + y) * kBrickNodes + z; }
 
+/// Smaller bricks hold a brick's cells by blocks of 2^3. The bit of the block that holds the cell (x, y, z), each in 0..7.
+inline constexpr int covered_bit(int x, int y, int z) { return (x >> 1) << 4 | (y >> 1) << 2 | z >> 1; }
+
 /// What bounds the surface in a cube of cells: a brick, or a group of bricks. Places are index coordinates, local ones from `origin`;
 /// values are the bricks' 16-bit steps. Within the cells that the surface crosses the interpolant f satisfies
 /// |f(p) - (normal.p - offset)| <= slab at every local p: f and the plane's function are both trilinear in a cell, so their difference is
@@ -60,8 +63,10 @@ struct RayBricks {
   std::vector<BrickGroups> groups{};        ///< Of shift 3, 4 and 5; none where the surface crosses no cell.
   std::vector<BrickNeighbors> neighbors{};  ///< As many.
   std::vector<std::int16_t, LargePageAllocator<std::int16_t>>
-      values{};                   ///< kBrickStride for each brick, then blocks of layers that only stencils read, then kReadBeyond.
-  SplineBricks spline{};          ///< Of the crossed bricks; empty where nobody asked for it.
+      values{};           ///< kBrickStride for each brick, then blocks of layers that only stencils read, then kReadBeyond.
+  SplineBricks spline{};  ///< Of the crossed bricks; empty where nobody asked for it.
+  /// For each crossed brick its cells that smaller bricks hold, in which it has no surface (see covered_bit); empty where none is held.
+  std::vector<std::uint64_t> covered{};
   glm::ivec3 lower{0}, upper{0};  ///< Around the crossed cells, index coordinates.
   double world_per_step = 0.0;    ///< What one step of a value stands for.
   // What the bricks were made of, for their dump (brick_text.h): rays do not read it.

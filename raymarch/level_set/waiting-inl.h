@@ -190,6 +190,21 @@ HWY_INLINE CellsOfBricks cells_in_bricks(const BrickGroups& groups, const Candid
   return cells;
 }
 
+/// Lanes of `active` whose cell no smaller brick holds.
+HWY_INLINE MF not_covered(const RayBricks& bricks, VI number, MF active) {
+  const I di;
+  const hn::RebindToUnsigned<I> du;
+  const VI three = hn::Set(di, 3), cell = hn::IfThenElseZero(hn::RebindMask(di, active), number);
+  const auto pair = [&](VI v) { return hn::And(v, three); };
+  // As covered_bit; of the 64 bits of a brick the lower 32 are the first word.
+  const VI bit = hn::Or(hn::Or(hn::ShiftLeft<4>(pair(hn::ShiftRight<7>(cell))), hn::ShiftLeft<2>(pair(hn::ShiftRight<4>(cell)))),
+                        pair(hn::ShiftRight<1>(cell)));
+  const VI word = hn::Add(hn::ShiftLeft<1>(hn::ShiftRight<9>(cell)), hn::ShiftRight<5>(bit));
+  const VI bits = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(bricks.covered.data()), word);
+  const auto held = hn::And(hn::Shr(hn::BitCast(du, bits), hn::BitCast(du, hn::And(bit, hn::Set(di, 31)))), hn::Set(du, 1u));
+  return hn::And(active, hn::RebindMask(F(), hn::Eq(hn::BitCast(di, held), hn::Zero(di))));
+}
+
 /// One cell for each of a packet of waiting rays: hits are noted, the others wait for their next cell where there is one.
 HWY_NOINLINE void advance_packet(const RayBricks& bricks, const BrickGroups& groups, VF side, Waiting& waiting, BrickHits& hits) {
   const F d;
@@ -210,7 +225,8 @@ HWY_NOINLINE void advance_packet(const RayBricks& bricks, const BrickGroups& gro
                 place(c.origin.z, c.direction.z, c.cell.z)};
   const V3 step{hn::Mul(length, c.direction.x), hn::Mul(length, c.direction.y), hn::Mul(length, c.direction.z)};
   const CellsOfBricks at = cells_in_bricks(groups, c);
-  const MF there = hn::And(active, hn::RebindMask(d, hn::Gt(at.brick, hn::Set(di, -1))));
+  MF there = hn::And(active, hn::RebindMask(d, hn::Gt(at.brick, hn::Set(di, -1))));
+  if (!bricks.covered.empty()) there = not_covered(bricks, at.number, there);
   VF s = zero;
   const MF found =
       first_root(cubic_along(bricks.values.data(), hn::IfThenElseZero(hn::RebindMask(di, there), at.offset), from, step, side), there, s);

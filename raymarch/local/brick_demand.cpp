@@ -10,8 +10,6 @@ namespace {
 
 /// How far what lies beside the picture may reach into it, px.
 constexpr double kAside_px = 4.0;
-/// Where a brick holds creases or several sheets, its voxels are no larger in the picture: what they lose is smaller than a pixel.
-constexpr double kFolded_px = 1.0;
 /// Of a predicted error, what is allowed for its being a prediction.
 constexpr double kSafety = 2.0;
 
@@ -65,7 +63,7 @@ bool may_hold_border(const GradientBounds& bounds, const Box& box, const Camera&
 
 /// The surface at a place near a brick's middle: what N.V is there, and how it changes along the surface.
 struct SecondOrder {
-  glm::dvec3 at{0.0};
+  glm::dvec3 at{0.0}, normal{0.0};
   double facing = 0.0;     ///< N.V.
   glm::dvec3 change{0.0};  ///< Of N.V along the surface, per world unit.
   double curvature = 0.0;  ///< The normal's turn, per world unit, at most.
@@ -83,6 +81,7 @@ bool expand(FieldEvaluator& evaluator, const Box& box, const Camera& camera, Sec
   const double slope = glm::length(jet.gradient);
   if (!(slope > 0.0)) return false;
   const glm::dvec3 n = jet.gradient / slope, v = view_vector(camera, out.at);
+  out.normal = n;
   out.facing = glm::dot(n, v);
   glm::dmat3 turn = jet.hessian / slope;
   out.bend = std::abs(turn[0][0]) + std::abs(turn[1][1]) + std::abs(turn[2][2]);
@@ -102,17 +101,29 @@ bool expand(FieldEvaluator& evaluator, const Box& box, const Camera& camera, Sec
 /// Where the surface turns by less than this over a brick (radians), its second order tells where N.V has a value; elsewhere bounds do.
 constexpr double kMostTurn = 0.15;
 
-/// A border lies so far inside the bricks that are small for it, in the next larger voxels: farther than these would move it.
-constexpr double kBorderMargin_voxels = 0.75;
+/// A border lies so far inside the bricks that are small for it, in their voxels: stencils there read no node that a larger brick tells.
+constexpr double kBorderMargin_voxels = 2.0;
+
+/// How much N.V changes along the surface in a box about it, to first order. The surface leaves its tangent plane by no more than half its
+/// turn times its length, so that any multiple of the normal may be taken from the change: least is one at which a component vanishes.
+double most_change(const SecondOrder& surface, const glm::dvec3& farthest) {
+  const double leaves = 0.5 * surface.curvature * glm::dot(farthest, farthest);
+  double least = glm::dot(glm::abs(surface.change), farthest);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(surface.normal[axis]) < 1e-3) continue;
+    const double times = surface.change[axis] / surface.normal[axis];
+    least = std::min(least, glm::dot(glm::abs(surface.change - times * surface.normal), farthest) + 2.0 * std::abs(times) * leaves);
+  }
+  return least;
+}
 
 /// True where N.V comes to no such value within the brick and `margin` about it, by its second order at the middle.
 bool passes_beside(const SecondOrder& surface, const Box& box, double margin, double value) {
   const double rest = std::abs(surface.facing - value);
   const glm::dvec3 farthest = glm::max(glm::abs(box.upper - surface.at), glm::abs(box.lower - surface.at)) + margin;
-  const double first = glm::dot(glm::abs(surface.change), farthest);
   // What the next order may add: as much as the turn of the normal over the brick, squared.
   const double turn = surface.curvature * glm::length(farthest);
-  return rest > first + turn * turn;
+  return rest > most_change(surface, farthest) + turn * turn;
 }
 
 /// How far the surface may stand off in cells of that size, along its normal: a function whose slope lies in bounds of width w lies within
@@ -124,21 +135,25 @@ double most_stand_off(const GradientBounds& bounds, double voxel_size) {
   return voxel_size * (g[0].width() + g[1].width() + g[2].width()) / (4.0 * least);
 }
 
-/// Of a brick with creases: whether normals that are really there lie on both sides of a border's N.V, or near it.
+/// Of a box with creases: whether normals of the surface in it and a little beside lie on both sides of a border's N.V, or near it.
 bool creases_hold_border(FieldEvaluator& evaluator, const Box& box, const Camera& camera, const std::vector<double>& thresholds) {
   constexpr int kSide = 5;
-  constexpr double kMargin = 0.02;
+  constexpr double kMargin = 0.02, kBeside = 0.25;
+  const Box reach = dilate(box, kBeside * box.longest_side());
+  const double spacing = reach.longest_side() / (kSide - 1);
   std::array<glm::dvec3, kSide * kSide * kSide> points, gradients;
   std::array<double, points.size()> values;
   for (int k = 0; k < static_cast<int>(points.size()); ++k) {
     const glm::dvec3 part(k / (kSide * kSide), k / kSide % kSide, k % kSide);
-    points[static_cast<size_t>(k)] = box.lower + part / double{kSide - 1} * box.size();
+    points[static_cast<size_t>(k)] = reach.lower + part / double{kSide - 1} * reach.size();
   }
   evaluator.gradients(points, values, gradients);
   double least = 1.0, most = -1.0;
   for (size_t k = 0; k < points.size(); ++k) {
     const double slope = glm::length(gradients[k]);
     if (!(slope > 0.0)) return true;
+    // Every point of the surface in the box has one of the points nearer than that.
+    if (std::abs(values[k]) > std::sqrt(3.0) * spacing * slope) continue;
     const double facing = glm::dot(gradients[k], view_vector(camera, points[k])) / slope;
     least = std::min(least, facing), most = std::max(most, facing);
   }
@@ -156,14 +171,14 @@ double predicted_shift(const SecondOrder& surface, double voxel_size, const Loca
 }
 
 /// Of a brick in which bounds cannot exclude a border.
-bool border_needs(FieldEvaluator& evaluator, const Box& box, double voxel_size, const GradientBounds& bounds, const Camera& camera,
-                  const Seen& seen, const LocalBrickSettings& settings) {
+bool border_needs(FieldEvaluator& evaluator, const Box& box, double voxel_size, double smaller, const GradientBounds& bounds,
+                  const Camera& camera, const Seen& seen, const LocalBrickSettings& settings) {
   SecondOrder surface;
   const bool folded = !(most_stand_off(bounds, voxel_size) < 0.25 * voxel_size);
-  if (folded && !creases_hold_border(evaluator, dilate(box, voxel_size), camera, settings.local.thresholds)) return false;
+  if (folded && !creases_hold_border(evaluator, box, camera, settings.local.thresholds)) return false;
   if (folded || !expand(evaluator, box, camera, surface)) return kSafety * voxel_size * seen.pixels_per_unit > settings.local.tolerance_px;
   if (surface.curvature * box.longest_side() < kMostTurn) {
-    const double margin = kBorderMargin_voxels * voxel_size;
+    const double margin = kBorderMargin_voxels * smaller;
     bool beside = passes_beside(surface, box, margin, 0.0);
     for (const double threshold : settings.local.thresholds) beside = beside && passes_beside(surface, box, margin, threshold);
     if (beside) return false;
@@ -173,7 +188,8 @@ bool border_needs(FieldEvaluator& evaluator, const Box& box, double voxel_size, 
 
 }  // namespace
 
-bool needs_smaller_voxels(FieldEvaluator& evaluator, const Box& box, double voxel_size, const LocalBrickSettings& settings) {
+bool needs_smaller_voxels(FieldEvaluator& evaluator, const Box& box, double voxel_size, double smaller,
+                          const LocalBrickSettings& settings) {
   const double margin = kStencilReach_voxels * voxel_size;
   const Box reach = dilate(box, margin);
   const GradientBounds bounds = evaluator.gradient_bounds(reach);
@@ -185,7 +201,7 @@ bool needs_smaller_voxels(FieldEvaluator& evaluator, const Box& box, double voxe
     if (voxel_size * seen.pixels_per_unit > kFolded_px && !(off * seen.pixels_per_unit <= kLocalCoarse_px)) return true;
     if (settings.border && may_hold_border(bounds, reach, camera, settings.local.thresholds) &&
         !(k < settings.hidden.size() && is_hidden(settings.hidden[k], box, 2.0 * kLocalCoarse_px, seen.pixels_per_unit)) &&
-        border_needs(evaluator, box, voxel_size, bounds, camera, seen, settings))
+        border_needs(evaluator, box, voxel_size, smaller, bounds, camera, seen, settings))
       return true;
   }
   return false;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <unordered_map>
 
 #include "raymarch/level_set/brick_layout.h"
@@ -18,11 +19,6 @@ namespace {
 /// What a brick costs while it is built and after: nodes, a leaf, 16-bit values and layers.
 constexpr std::int64_t kBrickBytes = 10'000;
 
-struct Node {
-  LocalBrick brick;
-  bool split = false;
-};
-
 /// False only where the surface does not pass the box: by bounds of the value, then by those of its slope about the middle.
 bool may_hold_surface(FieldEvaluator& evaluator, const Box& box) {
   if (!evaluator.bounds(box).contains(0.0)) return false;
@@ -34,88 +30,131 @@ bool may_hold_surface(FieldEvaluator& evaluator, const Box& box) {
   return std::abs(evaluator.value(box.center())) <= reach * (1.0 + 1e-9) + 1e-12 * glm::length(half);
 }
 
-/// The parts of a brick that may hold the surface, each with what is left of the field there.
-std::vector<LocalBrick> parts_of(FieldEvaluator& evaluator, const LocalBrick& brick, const LocalChoice& lattice, size_t level) {
-  std::vector<LocalBrick> parts;
-  const double h = lattice.voxel_of(level - 1);
-  for (int octant = 0; octant < 8; ++octant) {
-    const glm::ivec3 place = 2 * brick.place + glm::ivec3(octant & 1, octant >> 1 & 1, octant >> 2);
-    const Box box = lattice.box_of(level - 1, place);
-    if (!may_hold_surface(evaluator, box)) continue;
-    // Its nodes are at most eight voxels away from a node that asks for the field, which asks as far as the band reaches.
-    parts.push_back({place, evaluator.restricted(dilate(box, 16.0 * h))});
-  }
-  return parts;
+/// Bricks that the surface passes by this much are there, too: where larger voxels round it off, it may still pass them.
+constexpr double kPassed_voxels = 0.5;
+
+/// Nothing where the surface does not pass there. `parent`: asks the field of the brick that holds it.
+std::optional<LocalBrick> brick_at(FieldEvaluator& parent, const LocalChoice& lattice, size_t level, const glm::ivec3& place) {
+  const Box box = lattice.box_of(level, place);
+  const double h = lattice.voxel_of(level);
+  if (!may_hold_surface(parent, dilate(box, kPassed_voxels * h))) return std::nullopt;
+  // Its nodes are at most eight voxels away from a node that asks for the field, which asks as far as the band reaches.
+  return LocalBrick{place, 0, parent.restricted(dilate(box, 16.0 * h))};
 }
 
-/// Bricks of all sizes, those that were split among them.
-class BrickTree {
+/// The smaller bricks in `brick` that pictures ask for: where its voxels do not do.
+class Demand {
  public:
-  BrickTree(const LocalChoice& lattice, size_t levels, std::int64_t max_bytes)
-      : lattice_(lattice), nodes_(levels), at_(levels), max_bytes_(max_bytes) {}
+  Demand(const LocalBrick& brick, size_t level, const LocalChoice& lattice, const LocalBrickSettings& settings)
+      : evaluator_(brick.field), level_(level), lattice_(lattice), settings_(settings) {
+    if (needs(lattice.box_of(level, brick.place))) look_at_parts(brick.place, lattice.step(level - 1));
+  }
+  std::vector<LocalBrick> bricks{};
 
-  void add(size_t level, LocalBrick brick) {
-    at_[level].emplace(key_of(8 * brick.place), nodes_[level].size());
-    nodes_[level].push_back({std::move(brick)});
-    if (++count_ * kBrickBytes > max_bytes_) refuse();
+ private:
+  bool needs(const Box& box) {
+    return needs_smaller_voxels(evaluator_, box, lattice_.voxel_of(level_), lattice_.voxel_of(level_ - 1), settings_);
   }
 
-  std::vector<Node>& nodes(size_t level) { return nodes_[level]; }
-
-  /// Neighbours that are larger are split first, so that no two bricks that touch differ by more than one size.
-  void split(size_t level, size_t index, const std::vector<LocalBrick>* parts) {
-    if (nodes_[level][index].split) return;
-    nodes_[level][index].split = true;
-    const LocalBrick brick = nodes_[level][index].brick;
-    if (parts) {
-      for (const LocalBrick& part : *parts) add(level - 1, part);
-    } else {
-      FieldEvaluator evaluator(brick.field);
-      for (LocalBrick& part : parts_of(evaluator, brick, lattice_, level)) add(level - 1, std::move(part));
+  /// Of a cube that is 2^steps times as large as the smaller bricks: first its octants, then the parts of those that ask for it.
+  void look_at_parts(const glm::ivec3& cube, int steps) {
+    const double h = lattice_.voxel_of(level_ - 1), side = 8.0 * h * (1 << (steps - 1));
+    for (int octant = 0; octant < 8; ++octant) {
+      const glm::ivec3 place = 2 * cube + glm::ivec3(octant & 1, octant >> 1 & 1, octant >> 2);
+      Box box{lattice_.origin + side * glm::dvec3(place), {}};
+      box.upper = box.lower + side;
+      if (!may_hold_surface(evaluator_, dilate(box, kPassed_voxels * h)) || !needs(box)) continue;
+      if (steps > 1)
+        look_at_parts(place, steps - 1);
+      else if (std::optional<LocalBrick> found = brick_at(evaluator_, lattice_, level_ - 1, place))
+        bricks.push_back(std::move(*found));
     }
-    for (int k = 0; k < 27; ++k) require(level, brick.place + glm::ivec3(k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1));
+  }
+
+  FieldEvaluator evaluator_;
+  size_t level_;
+  const LocalChoice& lattice_;
+  const LocalBrickSettings& settings_;
+};
+
+/// Bricks of all sizes, those in which smaller ones are among them.
+class BrickTree {
+ public:
+  BrickTree(LocalChoice& choice, std::int64_t max_bytes) : choice_(choice), at_(choice.levels.size()), max_bytes_(max_bytes) {}
+
+  void add(size_t level, LocalBrick brick) {
+    const glm::ivec3 place = brick.place;
+    const bool is_new = at_[level].emplace(key_of(8 * place), choice_.levels[level].size()).second;
+    if (!is_new) return;
+    choice_.levels[level].push_back(std::move(brick));
+    if (++count_ * kBrickBytes > max_bytes_) refuse();
+    if (level + 1 == at_.size()) return;
+    // What lies beside it is at most one size larger.
+    const int step = choice_.step(level);
+    for (int k = 0; k < 27; ++k) require(level + 1, (place + glm::ivec3(k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1)) >> step);
+    LocalBrick& larger = choice_.levels[level + 1][at_[level + 1].at(key_of(8 * (place >> step)))];
+    larger.covered |= covered_by(place & ((1 << step) - 1), step);
   }
 
  private:
-  /// Splits what is larger at that place, if the surface passes there.
+  static constexpr size_t kEmpty = ~size_t{0};  ///< The surface does not pass there.
+
   void require(size_t level, const glm::ivec3& place) {
-    if (level + 1 >= nodes_.size() || at_[level].contains(key_of(8 * place))) return;
-    const glm::ivec3 parent(place.x >> 1, place.y >> 1, place.z >> 1);
-    require(level + 1, parent);
-    const auto found = at_[level + 1].find(key_of(8 * parent));
-    if (found != at_[level + 1].end()) split(level + 1, found->second, nullptr);
+    const std::uint64_t key = key_of(8 * place);
+    if (level + 1 == at_.size() || at_[level].contains(key)) return;
+    const glm::ivec3 larger = place >> choice_.step(level);
+    require(level + 1, larger);
+    const auto parent = at_[level + 1].find(key_of(8 * larger));
+    std::optional<LocalBrick> brick;
+    if (parent != at_[level + 1].end() && parent->second != kEmpty) {
+      FieldEvaluator evaluator(choice_.levels[level + 1][parent->second].field);
+      brick = brick_at(evaluator, choice_, level, place);
+    }
+    if (brick)
+      add(level, std::move(*brick));
+    else
+      at_[level].emplace(key, kEmpty);
   }
 
   [[noreturn]] void refuse() const {
     throw SizeError(
         {{},
          "voxel size",
-         fmt::format("{:.4g}", lattice_.voxel_size),
+         fmt::format("{:.4g}", choice_.voxel_size),
          fmt::format("building the local level set needs more than the limit of {:.2f} GB", static_cast<double>(max_bytes_) / 1e9),
          "larger voxels or a larger tolerance"});
   }
 
-  const LocalChoice& lattice_;
-  std::vector<std::vector<Node>> nodes_;
+  LocalChoice& choice_;
   std::vector<std::unordered_map<std::uint64_t, size_t>> at_;
   std::int64_t max_bytes_, count_ = 0;
 };
 
-/// The bricks of one size that pictures ask to be split, all at once, then one after the other.
-void refine(size_t level, const LocalChoice& lattice, const LocalBrickSettings& settings, BrickTree& tree) {
-  const std::vector<Node>& nodes = tree.nodes(level);
-  const size_t count = nodes.size();
-  std::vector<std::uint8_t> needed(count, 0);
-  std::vector<std::vector<LocalBrick>> parts(count);
-  parallel_for(size_t{0}, count, [&](size_t i) {
-    if (nodes[i].split) return;
-    FieldEvaluator evaluator(nodes[i].brick.field);
-    if (!needs_smaller_voxels(evaluator, lattice.box_of(level, nodes[i].brick.place), lattice.voxel_of(level), settings)) return;
-    needed[i] = 1;
-    parts[i] = parts_of(evaluator, nodes[i].brick, lattice, level);
-  });
-  for (size_t i = 0; i < count; ++i)
-    if (needed[i]) tree.split(level, i, &parts[i]);
+/// The smaller bricks that pictures ask for in bricks of one size: all are looked for at once, then added one after the other.
+void refine(size_t level, const LocalBrickSettings& settings, LocalChoice& choice, BrickTree& tree) {
+  const std::vector<LocalBrick>& bricks = choice.levels[level];
+  std::vector<std::vector<LocalBrick>> demanded(bricks.size());
+  parallel_for(size_t{0}, bricks.size(), [&](size_t i) { demanded[i] = Demand(bricks[i], level, choice, settings).bricks; });
+  for (std::vector<LocalBrick>& of_one : demanded)
+    for (LocalBrick& brick : of_one) tree.add(level - 1, std::move(brick));
+}
+
+/// Sizes that are four times the one before as long as they are small in the pictures: what lies between would serve as a step only. From
+/// where creases need them on each is twice the one before, so that no part is much finer than it has to be.
+std::vector<int> doublings_for(const Box& bounds, const LocalBrickSettings& settings) {
+  double pixels_per_unit = 0.0;
+  for (const Camera& camera : settings.local.cameras) {
+    const double depth = std::max(project(camera, bounds.center()).z, 0.5 * bounds.longest_side());
+    pixels_per_unit = std::max(pixels_per_unit, pixels_per_unit_at(camera, depth));
+  }
+  std::vector<int> doublings{0};
+  // The largest bricks are half as large as the surface.
+  while (doublings.back() < 20) {
+    const double voxel = settings.voxel_size * std::exp2(doublings.back());
+    if (16.0 * voxel >= bounds.longest_side()) break;
+    doublings.push_back(doublings.back() + (4.0 * voxel * pixels_per_unit <= kFolded_px ? 2 : 1));
+  }
+  return doublings;
 }
 
 }  // namespace
@@ -124,29 +163,24 @@ LocalChoice choose_bricks(const Field& field, const LocalBrickSettings& settings
   const Box& bounds = field.traits().bounds;
   LocalChoice choice;
   choice.voxel_size = settings.voxel_size;
-  // The largest bricks are half as large as the surface.
-  size_t top = 0;
-  while (top < 20 && 16.0 * choice.voxel_of(top) < bounds.longest_side()) ++top;
+  choice.doublings = doublings_for(bounds, settings);
+  const size_t top = choice.doublings.size() - 1;
+  choice.levels.resize(top + 1);
   const double step = 8.0 * choice.voxel_of(top);
   choice.origin = glm::round(bounds.center() / step) * step;
   const glm::ivec3 lower(glm::floor((bounds.lower - choice.origin) / step)), upper(glm::ceil((bounds.upper - choice.origin) / step));
-  BrickTree tree(choice, top + 1, settings.max_bytes);
+  BrickTree tree(choice, settings.max_bytes);
   FieldEvaluator evaluator(field);
   // Faces of the bounds may lie on faces of bricks: one more to each side.
   for (int x = lower.x - 1; x <= upper.x; ++x)
     for (int y = lower.y - 1; y <= upper.y; ++y)
       for (int z = lower.z - 1; z <= upper.z; ++z)
-        if (evaluator.bounds(choice.box_of(top, {x, y, z})).contains(0.0)) tree.add(top, {{x, y, z}, field});
-  // Splitting one may split larger ones beside it. Their parts are not looked at: what asks for smaller voxels in a part asks for them in
-  // the whole.
-  for (size_t level = top; level > 0; --level) refine(level, choice, settings, tree);
-  choice.levels.resize(top + 1);
-  for (size_t level = 0; level <= top; ++level) {
-    for (Node& node : tree.nodes(level))
-      if (!node.split) choice.levels[level].push_back(std::move(node.brick));
-    std::sort(choice.levels[level].begin(), choice.levels[level].end(),
+        if (evaluator.bounds(choice.box_of(top, {x, y, z})).contains(0.0)) tree.add(top, {{x, y, z}, 0, field});
+  // A brick may ask for larger ones beside it. Those are not looked at again: what asks for smaller voxels in them has been found.
+  for (size_t level = top; level > 0; --level) refine(level, settings, choice, tree);
+  for (std::vector<LocalBrick>& bricks : choice.levels)
+    std::sort(bricks.begin(), bricks.end(),
               [](const LocalBrick& a, const LocalBrick& b) { return key_of(8 * a.place) < key_of(8 * b.place); });
-  }
   return choice;
 }
 

@@ -1,9 +1,10 @@
 #pragma once
 // Internal: which bricks of which voxel sizes a local level set has: small ones where the border of given pictures runs, larger ones, each
-// twice as large, farther away.
+// two or four times as large, farther away.
 
 #include <vector>
 
+#include "raymarch/level_set/bricks.h"
 #include "raymarch/local/local_depth.h"
 #include "raymarch/local_model.h"
 #include "sdf/field.h"
@@ -12,24 +13,34 @@ namespace limn {
 
 /// Eight voxels to a side.
 struct LocalBrick {
-  glm::ivec3 place{0};  ///< In bricks.
-  Field field;          ///< Equals the whole one where the brick's nodes and stencils ask it.
+  glm::ivec3 place{0};        ///< In bricks.
+  std::uint64_t covered = 0;  ///< Its cells that smaller bricks hold (see covered_bit): there it has no surface.
+  Field field;                ///< Equals the whole one where the brick's nodes and stencils ask it.
 };
 
-/// Every point of the surface lies in one brick or on the faces between several. Two bricks that touch, be it at a corner, are of the same
-/// size or one is twice as large as the other.
+/// Every point of the surface lies in the open cells of one brick, those that no smaller brick holds, or on the faces between several. Open
+/// cells that touch, be it at a corner, belong to bricks of the same size or of one size and the next.
 struct LocalChoice {
-  glm::dvec3 origin{0.0};                         ///< Of the lattices of all sizes, render space.
-  double voxel_size = 0.0;                        ///< The smallest.
-  std::vector<std::vector<LocalBrick>> levels{};  ///< [k]: those of voxels 2^k times as large, in the order of their x, y and z.
+  glm::dvec3 origin{0.0};        ///< Of the lattices of all sizes, render space.
+  double voxel_size = 0.0;       ///< The smallest.
+  std::vector<int> doublings{};  ///< [k]: how often the smallest are doubled at level k. By one or two more than at the level before.
+  std::vector<std::vector<LocalBrick>> levels{};  ///< [k]: in the order of their x, y and z.
 
-  double voxel_of(size_t level) const { return voxel_size * static_cast<double>(std::int64_t{1} << level); }
+  double voxel_of(size_t level) const { return voxel_size * static_cast<double>(std::int64_t{1} << doublings[level]); }
+  int step(size_t level) const { return doublings[level + 1] - doublings[level]; }  ///< To the next larger size.
   Box box_of(size_t level, const glm::ivec3& place) const {
     const double side = 8.0 * voxel_of(level);
     const glm::dvec3 lower = origin + side * glm::dvec3(place);
     return {lower, lower + side};
   }
 };
+
+/// Of a brick's cells those that a smaller one covers: the `part`-th along each axis, of 2^step.
+inline std::uint64_t covered_by(const glm::ivec3& part, int step) {
+  constexpr std::uint64_t kOctant = 0x33'0033;
+  if (step == 1) return kOctant << covered_bit(4 * part.x, 4 * part.y, 4 * part.z);
+  return std::uint64_t{1} << covered_bit(2 * part.x, 2 * part.y, 2 * part.z);
+}
 
 /// How a local level set is made.
 struct LocalBrickSettings {

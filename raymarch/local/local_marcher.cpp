@@ -44,10 +44,13 @@ std::optional<bool> inside_brick(const RayBricks& bricks, const glm::dvec3& plac
   const auto found =
       std::lower_bound(bounds.begin(), bounds.end(), key_of(origin), [&](const SurfaceBound& b, std::uint64_t k) { return key(b) < k; });
   if (found == bounds.end() || key(*found) != key_of(origin)) return std::nullopt;
-  const std::int16_t* const values = bricks.values.data() + (found - bounds.begin()) * kBrickStride;
+  const glm::ivec3 in_brick = cell - origin;
+  const auto brick = static_cast<size_t>(found - bounds.begin());
+  if (!bricks.covered.empty() && (bricks.covered[brick] >> covered_bit(in_brick.x, in_brick.y, in_brick.z) & 1) != 0) return std::nullopt;
+  const std::int16_t* const values = bricks.values.data() + brick * kBrickStride;
   double sum = 0.0;
   for (int k = 0; k < 8; ++k) {
-    const glm::ivec3 side(k & 1, k >> 1 & 1, k >> 2), at = cell - origin + side;
+    const glm::ivec3 side(k & 1, k >> 1 & 1, k >> 2), at = in_brick + side;
     const glm::dvec3 weight = glm::mix(1.0 - local, local, glm::dvec3(side));
     sum += weight.x * weight.y * weight.z * static_cast<double>(values[brick_element(at.x, at.y, at.z)]);
   }
@@ -106,9 +109,9 @@ void evaluate_curvatures(const void* opaque, std::span<const SurfacePoint> point
 std::shared_ptr<const RayBricks> ray_bricks(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels,
                                             bool spline) {
   if (nodes.blocks.empty()) return nullptr;
-  std::vector<glm::ivec3> origins;
-  for (const LocalBrick& brick : choice.levels[level]) origins.push_back(8 * brick.place);
-  const std::shared_ptr<RayBricks> bricks = make_bricks(nodes.reader(), origins, nodes.steps_per_unit);
+  std::vector<BrickPlace> places;
+  for (const LocalBrick& brick : choice.levels[level]) places.push_back({8 * brick.place, brick.covered});
+  const std::shared_ptr<RayBricks> bricks = make_bricks(nodes.reader(), places, nodes.steps_per_unit);
   if (!bricks || (spline && bricks->neighbors.size() > kMostSplineBricks))
     throw InputError({.file = {},
                       .field = "voxel size",
@@ -121,7 +124,7 @@ std::shared_ptr<const RayBricks> ray_bricks(const LevelNodes& nodes, const Local
   bricks->world_from_index = {glm::dmat3(bricks->voxel_size), choice.origin};
   if (spline) {
     const LevelSet grid = level_set_of(nodes, choice, level, half_width_voxels, "surface");
-    origins.clear();
+    std::vector<glm::ivec3> origins;
     for (const SurfaceBound& bound : bricks->groups.front().bounds) origins.emplace_back(bound.origin[0], bound.origin[1], bound.origin[2]);
     bricks->spline = make_spline_bricks(grid.data(), origins);
   }

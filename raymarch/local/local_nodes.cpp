@@ -97,7 +97,7 @@ void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil
       NodeValues values;
       for (size_t i = range.begin(); i < range.end(); ++i) {
         load_brick(nodes, 8 * bricks[first + i].place, values);
-        const CrossedCells crossed = crossed_cells_of(values.data());
+        const CrossedCells crossed = without_covered(crossed_cells_of(values.data()), bricks[first + i].covered);
         crosses[i] = crossed.any;
         if (crossed.any) read[i] = nodes_read(crossed, stencil);
       }
@@ -107,58 +107,94 @@ void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil
   }
 }
 
-/// The bricks twice as large, and their values.
+/// The bricks of the next larger size, and their values.
 struct Larger {
   const LevelNodes* nodes = nullptr;
+  int step = 0;  ///< How often the smaller voxels are doubled.
   KeyNumbers bricks{};
+  /// [number of a brick]: the blocks of its cells (see covered_bit) that no smaller brick holds, and those that its surface passes or comes
+  /// near to.
+  std::vector<std::uint64_t> open{}, near{};
 };
 
-/// The larger bricks that nodes of a block (of the smaller voxels) may lie on: [k] the one before along the axes of bit k.
+/// Blocks of 2^3 cells with values nearer to the surface than `near`, or on both sides of it.
+std::uint64_t blocks_near_surface(const NodeValues& values, float near) {
+  std::uint64_t blocks = 0;
+  for (int block = 0; block < 64; ++block) {
+    const glm::ivec3 first(2 * (block >> 4), 2 * (block >> 2 & 3), 2 * (block & 3));
+    float least = std::numeric_limits<float>::max(), most = -least;
+    for (int k = 0; k < 27; ++k) {
+      const float value = values[static_cast<size_t>(brick_element(first.x + k / 9, first.y + k / 3 % 3, first.z + k % 3))];
+      least = std::min(least, value), most = std::max(most, value);
+    }
+    if (least < near && most > -near) blocks |= std::uint64_t{1} << block;
+  }
+  return blocks;
+}
+
+/// `h`: the smaller voxels.
+Larger larger_of(const LevelNodes& nodes, int step, const std::vector<LocalBrick>& bricks, double h) {
+  constexpr double kNear_voxels = 0.5;
+  Larger larger{&nodes, step, {}, std::vector<std::uint64_t>(bricks.size()), std::vector<std::uint64_t>(bricks.size())};
+  for (const LocalBrick& brick : bricks) larger.bricks.add(key_of(8 * brick.place));
+  parallel_parts(bricks.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
+    NodeValues values;
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      load_brick(nodes, 8 * bricks[i].place, values);
+      larger.open[i] = ~bricks[i].covered;
+      larger.near[i] = blocks_near_surface(values, static_cast<float>(kNear_voxels * h));
+    }
+  });
+  return larger;
+}
+
+/// The cells of larger bricks that nodes of a block (of the smaller voxels) may lie on: bit k for those before it along the axes of k.
 class LargerBeside {
  public:
   LargerBeside(const Larger& larger, const glm::ivec3& origin) : larger_(larger) {
     for (int k = 0; k < 8; ++k) {
-      glm::ivec3 brick(origin.x >> 4, origin.y >> 4, origin.z >> 4);
-      bool reached = true;
-      for (int axis = 0; axis < 3; ++axis) {
-        if ((k >> axis & 1) == 0) continue;
-        // A node on a face between two belongs to both.
-        reached = reached && (origin[axis] & 15) == 0;
-        --brick[axis];
-      }
-      there_[k] = reached && larger.bricks.contains(key_of(8 * brick));
-      any_ = any_ || there_[k];
+      // A node on a face between two belongs to both.
+      const glm::ivec3 place = (origin >> 3) - glm::ivec3(k & 1, k >> 1 & 1, k >> 2), part = place & ((1 << larger.step) - 1);
+      const size_t number = larger.bricks.find(key_of(8 * (place >> larger.step)));
+      if (number == KeyNumbers::kNone) continue;
+      const std::uint64_t cells = covered_by(part, larger.step) & larger.open[number];
+      if (cells != 0) open_ |= 1u << k;
+      if ((cells & larger.near[number]) != 0) near_ |= 1u << k;
     }
   }
 
-  bool any() const { return any_; }
-  /// True where the node lies in one of them or on its faces.
-  bool holds(const glm::ivec3& node) const {
-    for (int k = 0; k < 8; ++k) {
-      if (!there_[k]) continue;
-      bool touches = true;
-      for (int axis = 0; axis < 3; ++axis) touches = touches && ((k >> axis & 1) == 0 || (node[axis] & 15) == 0);
-      if (touches) return true;
-    }
-    return false;
-  }
+  bool any() const { return open_ != 0; }
+  /// True where the node lies in open cells or on their faces.
+  bool on_open(const glm::ivec3& node) const { return touches(open_, node); }
+  /// The same of open cells that their surface passes or comes near to.
+  bool on_near(const glm::ivec3& node) const { return touches(near_, node); }
 
   double interpolated(const glm::ivec3& node) {
     double sum = 0.0;
+    const int times = 1 << larger_.step;
+    const glm::dvec3 part = glm::dvec3(node & (times - 1)) / static_cast<double>(times);
     for (int k = 0; k < 8; ++k) {
       const glm::ivec3 side(k & 1, k >> 1 & 1, k >> 2);
-      double weight = 1.0;
-      for (int axis = 0; axis < 3; ++axis) weight *= (node[axis] & 1) != 0 ? 0.5 : side[axis] == 0 ? 1.0 : 0.0;
+      const glm::dvec3 weights = glm::mix(1.0 - part, part, glm::dvec3(side));
+      const double weight = weights.x * weights.y * weights.z;
       if (weight == 0.0) continue;
-      const glm::ivec3 at = glm::ivec3(node.x >> 1, node.y >> 1, node.z >> 1) + side;
+      const glm::ivec3 at = (node >> larger_.step) + side;
       sum += weight * static_cast<double>(larger_.nodes->find(block_of(at), last_)->values[place_in_block(at)]);
     }
     return sum;
   }
 
  private:
+  static bool touches(unsigned cells, const glm::ivec3& node) {
+    // Of a face the node lies on both sides, or else on that of its own block.
+    const unsigned before = ((node.x & 7) == 0 ? 1u : 0u) | ((node.y & 7) == 0 ? 2u : 0u) | ((node.z & 7) == 0 ? 4u : 0u);
+    for (unsigned k = 0; k < 8; ++k)
+      if ((cells >> k & 1) != 0 && (k & ~before) == 0) return true;
+    return false;
+  }
+
   const Larger& larger_;
-  bool there_[8] = {}, any_ = false;
+  unsigned open_ = 0, near_ = 0;
   const NodeBlock* last_ = nullptr;
 };
 
@@ -171,15 +207,16 @@ void evaluate(DistanceEvaluator& distance, NodeBlock& block, const LocalChoice& 
   std::optional<LargerBeside> beside;
   if (larger) beside.emplace(*larger, block.origin);
   if (beside && !beside->any()) beside.reset();
+  const auto node_of = [&](int n) { return block.origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7); };
   const auto set = [&](size_t n, double value) {
     block.values[n] = static_cast<float>(quantised(static_cast<float>(value), steps_per_unit)) / steps_per_unit;
   };
   for (size_t word = 0; word < 8; ++word)
     for (std::uint64_t bits = block.wanted[word] & ~block.known[word]; bits != 0; bits &= bits - 1) {
       const auto n = static_cast<int>(word) << 6 | std::countr_zero(bits);
-      const glm::ivec3 node = block.origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7);
+      const glm::ivec3 node = node_of(n);
       // What a larger brick tells is not asked of the field.
-      if (beside && beside->holds(node)) {
+      if (beside && beside->on_near(node)) {
         set(static_cast<size_t>(n), beside->interpolated(node));
         continue;
       }
@@ -187,7 +224,13 @@ void evaluate(DistanceEvaluator& distance, NodeBlock& block, const LocalChoice& 
       places[count++] = static_cast<std::uint16_t>(n);
     }
   if (count > 0) signed_distances(distance, std::span(points).first(count), half_width, std::span(distances).first(count));
-  for (size_t k = 0; k < count; ++k) set(places[k], std::clamp(distances[k], -half_width, half_width));
+  for (size_t k = 0; k < count; ++k) {
+    double value = std::clamp(distances[k], -half_width, half_width);
+    // Cells far from their surface must not meet it on their faces: it would end there. Creases that larger voxels round off reach so far.
+    if (const glm::ivec3 node = node_of(places[k]); beside && beside->on_open(node))
+      if (const double larger_value = beside->interpolated(node); (value < 0.0) != (larger_value < 0.0)) value = larger_value;
+    set(places[k], value);
+  }
   for (size_t word = 0; word < 8; ++word) block.known[word] |= block.wanted[word];
 }
 
@@ -255,10 +298,7 @@ std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientD
     const double h = choice.voxel_of(level), half_width = half_width_voxels * h;
     nodes.steps_per_unit = static_cast<float>(32767.0 / half_width);
     Larger larger;
-    if (level + 1 < levels.size()) {
-      larger.nodes = &levels[level + 1];
-      for (const LocalBrick& brick : choice.levels[level + 1]) larger.bricks.add(key_of(8 * brick.place));
-    }
+    if (level + 1 < levels.size()) larger = larger_of(levels[level + 1], choice.step(level), choice.levels[level + 1], h);
     const auto evaluate_all = [&](const Larger* with) {
       parallel_parts(nodes.blocks.size(), size_t{16}, [&](const IndexRange<size_t>& range) {
         std::optional<DistanceEvaluator> distance;

@@ -57,8 +57,8 @@ struct LevelNodes {
 };
 
 /// Samples `field` at the nodes of the chosen bricks and at those that the gradient's stencils read beside them, and nowhere else; from the
-/// largest voxels to the smallest. A node that lies on a larger brick takes that brick's interpolant: on the face between two sizes both
-/// sides are the same function, so that the surface has no crack.
+/// largest voxels to the smallest. A node that lies on open cells of a larger brick takes that brick's interpolant, where its surface is
+/// near, and else its sign: on the face between two sizes both sides have the same surface, without a crack.
 std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient, double half_width_voxels);
 
 /// The level's nodes as an ordinary level set. `signs`, where given, is the field (of the choice's space): it tells on which side lies what

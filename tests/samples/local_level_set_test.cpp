@@ -2,15 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstdlib>
-#include <limits>
-#include <map>
 #include <random>
-#include <set>
 
 #include "raymarch/gbuffer/picture_rays.h"
-#include "raymarch/local/local_nodes.h"
 #include "raymarch/local_model.h"
 #include "samples/experiment/job.h"
 #include "samples/scenes/scenes.h"
@@ -216,150 +211,6 @@ TEST(LocalLevelSet, MemoryGrowsLikeTheBordersLength) {
     std::vector<double> bytes;
     for (const int voxels : {512, 2048}) bytes.push_back(static_cast<double>(total(make_local(name, 0, "central", voxels).model).bytes));
     EXPECT_LE(std::log(bytes[1] / bytes[0]) / std::log(4.0), 1.3) << name << ": " << bytes[0] << " and " << bytes[1] << " bytes";
-  }
-}
-
-/// Random shapes: their bricks leave no gap, and none touches one that is more than twice as large.
-TEST(LocalLevelSet, BricksHoldTheWholeSurfaceAndNeighboursDifferByOneSize) {
-  std::mt19937 random(random_seed());
-  std::uniform_real_distribution<double> radius(0.4, 1.5), part(-1.0, 1.0);
-  for (int draw = 0; draw < 4; ++draw) {
-    const Field field = make_shape("ellipsoid", {{"radii", {radius(random), radius(random), radius(random)}}});
-    Scene scene;
-    scene.objects.push_back({.name = "ellipsoid", .source = field});
-    LocalBrickSettings settings{
-        .local = {{camera_of(scene, draw, 4, {300, 300})}, kFinest_px, {0.4}}, .voxel_size = 0.004, .gradient = &find_gradient("central")};
-    const LocalChoice choice = choose_bricks(field, settings);
-    FieldEvaluator evaluator(field);
-    for (int k = 0; k < 2000; ++k) {
-      glm::dvec3 p(1.5 * part(random), 1.5 * part(random), 1.5 * part(random));
-      if (!project_to_surface(evaluator, p, 1e-12)) continue;
-      int holding = 0;
-      for (size_t level = 0; level < choice.levels.size(); ++level)
-        for (const LocalBrick& brick : choice.levels[level]) {
-          const Box box = dilate(choice.box_of(level, brick.place), 1e-9);
-          holding += !intersect(box, Box{p, p}).empty();
-        }
-      EXPECT_GE(holding, 1) << p.x << " " << p.y << " " << p.z;
-    }
-    int sizes = 0, far_apart = 0;
-    for (size_t a = 0; a < choice.levels.size(); ++a) {
-      sizes += !choice.levels[a].empty();
-      for (size_t b = a + 2; b < choice.levels.size(); ++b)
-        for (const LocalBrick& small : choice.levels[a])
-          for (const LocalBrick& large : choice.levels[b])
-            far_apart += !intersect(dilate(choice.box_of(a, small.place), 1e-9), choice.box_of(b, large.place)).empty();
-    }
-    EXPECT_GE(sizes, 3);
-    EXPECT_EQ(far_apart, 0);
-  }
-}
-
-double interpolated(const LevelNodes& nodes, const glm::dvec3& place) {
-  const glm::dvec3 node = glm::floor(place), u = place - node;
-  double sum = 0.0;
-  for (int k = 0; k < 8; ++k) {
-    const glm::ivec3 side(k & 1, k >> 1 & 1, k >> 2);
-    const glm::dvec3 w = glm::mix(1.0 - u, u, glm::dvec3(side));
-    const double weight = w.x * w.y * w.z;
-    if (weight != 0.0) sum += weight * static_cast<double>(nodes.value(glm::ivec3(node) + side));
-  }
-  return sum;
-}
-
-/// On a face between two sizes both interpolants are the same function, but for the rounding of values to steps.
-TEST(LocalLevelSet, OnFacesBetweenTwoSizesBothSidesAreTheSameFunction) {
-  std::mt19937 random(random_seed());
-  std::uniform_real_distribution<double> part(0.0, 8.0);
-  for (const char* name : {"ellipsoid", "tilted_torus", "machined_part"}) {
-    const Scene scene = find_scene(name)->make();
-    LocalBrickSettings settings{
-        .local = {{camera_of(scene, 0, 4, {300, 300})}, kFinest_px, {0.4}}, .voxel_size = 0.004, .gradient = &find_gradient("central")};
-    const Field field = std::get<Field>(scene.objects.front().source);
-    const LocalChoice choice = choose_bricks(field, settings);
-    const std::vector<LevelNodes> levels = sample_bricks(choice, *settings.gradient, 2.5);
-    int faces = 0;
-    double worst = 0.0;
-    for (size_t level = 0; level + 1 < levels.size(); ++level) {
-      std::set<std::uint64_t> larger;
-      for (const LocalBrick& brick : choice.levels[level + 1]) larger.insert(key_of(8 * brick.place));
-      for (const LocalBrick& brick : choice.levels[level])
-        for (int face = 0; face < 6; ++face) {
-          glm::ivec3 beyond = brick.place;
-          beyond[face / 2] += face % 2 ? 1 : -1;
-          if (!larger.contains(key_of(8 * glm::ivec3(beyond.x >> 1, beyond.y >> 1, beyond.z >> 1)))) continue;
-          glm::dvec3 place = glm::dvec3(8 * brick.place) + glm::dvec3(part(random), part(random), part(random));
-          place[face / 2] = 8.0 * (brick.place[face / 2] + face % 2);
-          const double steps = static_cast<double>(levels[level].steps_per_unit);
-          const double ours = steps * interpolated(levels[level], place), theirs = steps * interpolated(levels[level + 1], 0.5 * place);
-          // Values end at the band's half width; no face of a cell that the surface crosses reaches there.
-          if (std::abs(theirs) > 10000.0) continue;
-          ++faces;
-          worst = std::max(worst, std::abs(ours - theirs));
-        }
-    }
-    EXPECT_GT(faces, 100) << name;
-    // Half a step, or a whole one where a node would lie on the surface itself.
-    EXPECT_LE(worst, 1.001) << name << ": steps";
-  }
-}
-
-/// Sampled is what bricks and the stencils of their crossed cells read, counted here node by node, and nothing else.
-TEST(LocalLevelSet, ItsNodesAreThoseThatBricksAndStencilsRead) {
-  const Scene scene = find_scene("ellipsoid")->make();
-  const Field field = std::get<Field>(scene.objects.front().source);
-  for (const char* name : {"central", "cubic"}) {
-    const Stencil& stencil = find_gradient(name).stencil;
-    const LocalBrickSettings settings{
-        .local = {{camera_of(scene, 0, 4, {60, 60})}, kFinest_px, {0.4}}, .voxel_size = 0.012, .gradient = &find_gradient(name)};
-    const LocalChoice choice = choose_bricks(field, settings);
-    const std::vector<LevelNodes> levels = sample_bricks(choice, *settings.gradient, 2.5);
-    int sizes = 0;
-    for (size_t level = 0; level < levels.size(); ++level) {
-      sizes += !choice.levels[level].empty();
-      const NodeReader reader = levels[level].reader();
-      std::set<std::array<int, 3>> read;
-      const auto add_block = [&](const glm::ivec3& from, int count, const auto& wants) {
-        for (int k = 0; k < count * count * count; ++k) {
-          const glm::ivec3 at(k / (count * count), k / count % count, k % count);
-          if (wants(at)) read.insert({from.x + at.x, from.y + at.y, from.z + at.z});
-        }
-      };
-      for (const LocalBrick& brick : choice.levels[level]) add_block(8 * brick.place, 9, [](const glm::ivec3&) { return true; });
-      for (const LocalBrick& brick : choice.levels[level])
-        for (int k = 0; k < 512; ++k) {
-          const glm::ivec3 cell = 8 * brick.place + glm::ivec3(k >> 6, k >> 3 & 7, k & 7);
-          int negative = 0;
-          for (int c = 0; c < 8; ++c) negative += reader.value(cell + glm::ivec3(c & 1, c >> 1 & 1, c >> 2)) < 0.0f;
-          if (negative == 0 || negative == 8) continue;
-          add_block(cell - 2, 6,
-                    [&](const glm::ivec3& at) { return (stencil[static_cast<size_t>(at.x)][static_cast<size_t>(at.y)] >> at.z & 1) != 0; });
-        }
-      int unknown = 0;
-      for (const auto& [x, y, z] : read) unknown += reader.value({x, y, z}) == std::numeric_limits<float>::max();
-      EXPECT_EQ(unknown, 0) << name << ", level " << level;
-      EXPECT_EQ(levels[level].known(), static_cast<std::int64_t>(read.size())) << name << ", level " << level;
-    }
-    EXPECT_GE(sizes, 2) << name;
-  }
-}
-
-/// Places of a block, close to each other as bricks' are: each keeps the number that it came with, however many come after it.
-TEST(LocalLevelSet, PlacesKeepTheirNumbers) {
-  std::mt19937 random(random_seed());
-  std::uniform_int_distribution<int> part(-20, 20);
-  KeyNumbers numbers;
-  std::map<std::uint64_t, size_t> expected;
-  EXPECT_EQ(numbers.find(key_of({0, 0, 0})), KeyNumbers::kNone);
-  for (int k = 0; k < 20000; ++k) {
-    const std::uint64_t key = key_of(8 * glm::ivec3(part(random), part(random), part(random)));
-    const auto [found, is_new] = expected.try_emplace(key, expected.size());
-    ASSERT_EQ(numbers.add(key), std::pair(found->second, is_new));
-  }
-  for (int k = 0; k < 41 * 41 * 41; ++k) {
-    const std::uint64_t key = key_of(8 * glm::ivec3(k / 1681 - 20, k / 41 % 41 - 20, k % 41 - 20));
-    const auto found = expected.find(key);
-    ASSERT_EQ(numbers.find(key), found == expected.end() ? KeyNumbers::kNone : found->second);
   }
 }
 

@@ -140,6 +140,7 @@ void build_tree(const MeshState& state) {
   state.device.reset(shared_embree_device());
   state.scene.reset(rtcNewScene(state.device.get()));
   rtcSetSceneFlags(state.scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(state.scene.get(), RTC_BUILD_QUALITY_LOW);
   attach_triangles(state);
   {
     const parallel_detail::Loop loop("Embree's own, over bound_triangle");

@@ -52,8 +52,11 @@ Pixels<std::uint8_t> srgb_pixels(const Image<glm::vec4>& picture, bool alpha) {
   return bytes;
 }
 
+std::vector<std::byte> png_bytes(int width, int height, Pixels<std::uint8_t> bytes) {
+  return png_file({width, height, 4, std::move(bytes), std::string("limn ") + kVersion});
+}
 std::vector<std::byte> png_bytes(const Image<glm::vec4>& picture) {
-  return png_file({picture.width, picture.height, 4, srgb_pixels(picture, true), std::string("limn ") + kVersion});
+  return png_bytes(picture.width, picture.height, srgb_pixels(picture, true));
 }
 
 /// OpenImageIO would write the time of day; equal runs must give equal bytes.
@@ -269,6 +272,13 @@ void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesy
 }
 
 std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied) { return png_bytes(linear_premultiplied); }
+
+std::vector<std::byte> encode_png(const Image<glm::u8vec4>& srgb) {
+  Pixels<std::uint8_t> bytes(srgb.size() * 4);
+  static_assert(sizeof(glm::u8vec4) == 4);
+  std::memcpy(bytes.data(), srgb.pixels.data(), bytes.size());
+  return png_bytes(srgb.width, srgb.height, std::move(bytes));
+}
 
 Image<float> read_channel(const std::filesystem::path& file, const std::string& channel) {
   const PictureHeader header = header_of(file);

@@ -30,7 +30,7 @@ std::string picture_words(const Comparison& comparison, const Cell& cell) {
 // The whole picture at its own resolution: the viewer above the cards shows the same one enlarged.
 std::string picture_view(const Comparison& comparison, const Cell& cell) {
   return "<div class=\"view picture\"><button type=\"button\" class=\"look\" title=\"Show beside the reference\">" +
-         picture_tag(linear_composite(cell, comparison.seen), picture_words(comparison, cell)) + "</button></div>\n";
+         picture_tag(cropped(cell.composite, comparison.seen), picture_words(comparison, cell)) + "</button></div>\n";
 }
 
 std::string difference_views(const Comparison& comparison, const Cell& cell, const Window& worst) {

@@ -24,6 +24,11 @@ Image<glm::u8vec4> packed(const Image<glm::vec4>& picture) {
   parallel_parts(out.size(), size_t{1} << 14, [&](const IndexRange<size_t>& part) {
     for (size_t i = part.first; i < part.last; ++i) {
       const glm::vec4& color = picture.pixels[i];
+      // As most of a background is.
+      if (i > part.first && color == picture.pixels[i - 1]) {
+        out.pixels[i] = out.pixels[i - 1];
+        continue;
+      }
       const glm::vec3 rgb = color.a > 0.0f ? glm::vec3(color) / color.a : glm::vec3(0.0f);
       out.pixels[i] = {srgb(rgb.r), srgb(rgb.g), srgb(rgb.b), to_byte(color.a)};
     }

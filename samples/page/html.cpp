@@ -51,10 +51,21 @@ std::string base64(std::string_view bytes) {
   return out;
 }
 
-std::string picture_tag(const Image<glm::vec4>& picture, const std::string& alternative, const char* attributes) {
+namespace {
+
+template <class Color>
+std::string image_tag(const Image<Color>& picture, const std::string& alternative, const char* attributes) {
   const std::vector<std::byte> png = encode_png(picture);
   return fmt::format("<img {}width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">\n", attributes, picture.width,
                      picture.height, escaped(alternative), base64({reinterpret_cast<const char*>(png.data()), png.size()}));
 }
+
+}  // namespace
+
+std::string picture_tag(const Image<glm::vec4>& picture, const std::string& alternative, const char* attributes) {
+  return image_tag(picture, alternative, attributes);
+}
+
+std::string picture_tag(const Image<glm::u8vec4>& srgb, const std::string& alternative) { return image_tag(srgb, alternative, ""); }
 
 }  // namespace limn

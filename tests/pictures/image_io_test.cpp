@@ -181,6 +181,20 @@ TEST_F(ImageFiles, ThePngInMemoryIsThePngInTheFile) {
   EXPECT_EQ(std::string(reinterpret_cast<const char*>(memory.data()), memory.size()), bytes_of(file("a.png")));
 }
 
+TEST_F(ImageFiles, ThePngOfCodesIsThatOfTheLightTheyStandFor) {
+  Image<glm::u8vec4> codes(256, 2);
+  Image<glm::vec4> light(256, 2);
+  for (int i = 0; i < 512; ++i) {
+    const auto alpha = static_cast<std::uint8_t>(i < 256 ? 255 : 1 + (i - 256) / 2);
+    const glm::u8vec4 code(i % 256, 255 - i % 256, 7 * i % 256, alpha);
+    const glm::vec4 share = glm::vec4(code) / 255.0f;
+    codes.pixels[static_cast<size_t>(i)] = code;
+    light.pixels[static_cast<size_t>(i)] =
+        glm::vec4(share.a * glm::vec3(linear_from_srgb(share.r), linear_from_srgb(share.g), linear_from_srgb(share.b)), share.a);
+  }
+  EXPECT_EQ(encode_png(codes), encode_png(light));
+}
+
 TEST_F(ImageFiles, FaultsSayWhatWouldBeRight) {
   const Drawn drawn = draw();
   try {

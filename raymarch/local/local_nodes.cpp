@@ -5,15 +5,13 @@
 #include <limits>
 #include <optional>
 
+#include "raymarch/local/larger_bricks.h"
 #include "sdf/level_set_distance.h"
 #include "sdf/level_set_nano.h"
 #include "sdf/parallel.h"
 
 namespace limn {
 namespace {
-
-glm::ivec3 block_of(const glm::ivec3& node) { return node & ~7; }
-size_t place_in_block(const glm::ivec3& node) { return static_cast<size_t>((node.x & 7) << 6 | (node.y & 7) << 3 | (node.z & 7)); }
 
 NodeBlock& block_at(LevelNodes& nodes, const glm::ivec3& origin, const Field& field) {
   const auto [number, is_new] = nodes.at.add(key_of(origin));
@@ -45,23 +43,6 @@ ReadNodes nodes_read(const CrossedCells& crossed, const Stencil& stencil) {
           for (std::uint32_t bits = stencil[dx][dy]; bits != 0; bits &= bits - 1) read[x + dx][y + dy] |= cells << std::countr_zero(bits);
     }
   return read;
-}
-
-void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeValues& values) {
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
-    const float* const from = nodes.blocks[nodes.at.find(key_of(origin + 8 * step))].values.data();
-    for (int x = 0; x < (step.x ? 1 : 8); ++x)
-      for (int y = 0; y < (step.y ? 1 : 8); ++y) {
-        float* const to = &values[static_cast<size_t>(brick_element(8 * step.x + x, 8 * step.y + y, 8 * step.z))];
-        const float* const row = from + (x << 6 | y << 3);
-        // Lengths that the compiler knows.
-        if (step.z)
-          *to = *row;
-        else
-          std::copy_n(row, 8, to);
-      }
-  }
 }
 
 /// Of the nodes about a brick those that are not its own, which are known.
@@ -107,97 +88,6 @@ void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil
   }
 }
 
-/// The bricks of the next larger size, and their values.
-struct Larger {
-  const LevelNodes* nodes = nullptr;
-  int step = 0;  ///< How often the smaller voxels are doubled.
-  KeyNumbers bricks{};
-  /// [number of a brick]: the blocks of its cells (see covered_bit) that no smaller brick holds, and those that its surface passes or comes
-  /// near to.
-  std::vector<std::uint64_t> open{}, near{};
-};
-
-/// Blocks of 2^3 cells with values nearer to the surface than `near`, or on both sides of it.
-std::uint64_t blocks_near_surface(const NodeValues& values, float near) {
-  std::uint64_t blocks = 0;
-  for (int block = 0; block < 64; ++block) {
-    const glm::ivec3 first(2 * (block >> 4), 2 * (block >> 2 & 3), 2 * (block & 3));
-    float least = std::numeric_limits<float>::max(), most = -least;
-    for (int k = 0; k < 27; ++k) {
-      const float value = values[static_cast<size_t>(brick_element(first.x + k / 9, first.y + k / 3 % 3, first.z + k % 3))];
-      least = std::min(least, value), most = std::max(most, value);
-    }
-    if (least < near && most > -near) blocks |= std::uint64_t{1} << block;
-  }
-  return blocks;
-}
-
-/// `h`: the smaller voxels.
-Larger larger_of(const LevelNodes& nodes, int step, const std::vector<LocalBrick>& bricks, double h) {
-  constexpr double kNear_voxels = 0.5;
-  Larger larger{&nodes, step, {}, std::vector<std::uint64_t>(bricks.size()), std::vector<std::uint64_t>(bricks.size())};
-  for (const LocalBrick& brick : bricks) larger.bricks.add(key_of(8 * brick.place));
-  parallel_parts(bricks.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
-    NodeValues values;
-    for (size_t i = range.begin(); i < range.end(); ++i) {
-      load_brick(nodes, 8 * bricks[i].place, values);
-      larger.open[i] = ~bricks[i].covered;
-      larger.near[i] = blocks_near_surface(values, static_cast<float>(kNear_voxels * h));
-    }
-  });
-  return larger;
-}
-
-/// The cells of larger bricks that nodes of a block (of the smaller voxels) may lie on: bit k for those before it along the axes of k.
-class LargerBeside {
- public:
-  LargerBeside(const Larger& larger, const glm::ivec3& origin) : larger_(larger) {
-    for (int k = 0; k < 8; ++k) {
-      // A node on a face between two belongs to both.
-      const glm::ivec3 place = (origin >> 3) - glm::ivec3(k & 1, k >> 1 & 1, k >> 2), part = place & ((1 << larger.step) - 1);
-      const size_t number = larger.bricks.find(key_of(8 * (place >> larger.step)));
-      if (number == KeyNumbers::kNone) continue;
-      const std::uint64_t cells = covered_by(part, larger.step) & larger.open[number];
-      if (cells != 0) open_ |= 1u << k;
-      if ((cells & larger.near[number]) != 0) near_ |= 1u << k;
-    }
-  }
-
-  bool any() const { return open_ != 0; }
-  /// True where the node lies in open cells or on their faces.
-  bool on_open(const glm::ivec3& node) const { return touches(open_, node); }
-  /// The same of open cells that their surface passes or comes near to.
-  bool on_near(const glm::ivec3& node) const { return touches(near_, node); }
-
-  double interpolated(const glm::ivec3& node) {
-    double sum = 0.0;
-    const int times = 1 << larger_.step;
-    const glm::dvec3 part = glm::dvec3(node & (times - 1)) / static_cast<double>(times);
-    for (int k = 0; k < 8; ++k) {
-      const glm::ivec3 side(k & 1, k >> 1 & 1, k >> 2);
-      const glm::dvec3 weights = glm::mix(1.0 - part, part, glm::dvec3(side));
-      const double weight = weights.x * weights.y * weights.z;
-      if (weight == 0.0) continue;
-      const glm::ivec3 at = (node >> larger_.step) + side;
-      sum += weight * static_cast<double>(larger_.nodes->find(block_of(at), last_)->values[place_in_block(at)]);
-    }
-    return sum;
-  }
-
- private:
-  static bool touches(unsigned cells, const glm::ivec3& node) {
-    // Of a face the node lies on both sides, or else on that of its own block.
-    const unsigned before = ((node.x & 7) == 0 ? 1u : 0u) | ((node.y & 7) == 0 ? 2u : 0u) | ((node.z & 7) == 0 ? 4u : 0u);
-    for (unsigned k = 0; k < 8; ++k)
-      if ((cells >> k & 1) != 0 && (k & ~before) == 0) return true;
-    return false;
-  }
-
-  const Larger& larger_;
-  unsigned open_ = 0, near_ = 0;
-  const NodeBlock* last_ = nullptr;
-};
-
 void evaluate(DistanceEvaluator& distance, NodeBlock& block, const LocalChoice& choice, double h, double half_width, float steps_per_unit,
               const Larger* larger) {
   std::array<glm::dvec3, 512> points;
@@ -227,14 +117,30 @@ void evaluate(DistanceEvaluator& distance, NodeBlock& block, const LocalChoice& 
   for (size_t k = 0; k < count; ++k) {
     double value = std::clamp(distances[k], -half_width, half_width);
     // Cells far from their surface must not meet it on their faces: it would end there. Creases that larger voxels round off reach so far.
-    if (const glm::ivec3 node = node_of(places[k]); beside && beside->on_open(node))
-      if (const double larger_value = beside->interpolated(node); (value < 0.0) != (larger_value < 0.0)) value = larger_value;
+    if (const glm::ivec3 node = node_of(places[k]); beside && beside->on_other_side(node, value < 0.0)) value = beside->interpolated(node);
     set(places[k], value);
   }
   for (size_t word = 0; word < 8; ++word) block.known[word] |= block.wanted[word];
 }
 
 }  // namespace
+
+void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeValues& values) {
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
+    const float* const from = nodes.blocks[nodes.at.find(key_of(origin + 8 * step))].values.data();
+    for (int x = 0; x < (step.x ? 1 : 8); ++x)
+      for (int y = 0; y < (step.y ? 1 : 8); ++y) {
+        float* const to = &values[static_cast<size_t>(brick_element(8 * step.x + x, 8 * step.y + y, 8 * step.z))];
+        const float* const row = from + (x << 6 | y << 3);
+        // Lengths that the compiler knows.
+        if (step.z)
+          *to = *row;
+        else
+          std::copy_n(row, 8, to);
+      }
+  }
+}
 
 // Keys are places, close to each other; Fibonacci hashing spreads them. Knuth, "The Art of Computer Programming", vol. 3, 6.4.
 size_t KeyNumbers::slot_of(std::uint64_t key) const {

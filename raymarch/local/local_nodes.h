@@ -21,6 +21,9 @@ struct NodeBlock {
   std::array<float, 512> values;  ///< Of the known ones.
 };
 
+inline glm::ivec3 block_of(const glm::ivec3& node) { return node & ~7; }
+inline size_t place_in_block(const glm::ivec3& node) { return static_cast<size_t>((node.x & 7) << 6 | (node.y & 7) << 3 | (node.z & 7)); }
+
 /// Numbers in the order in which their keys (see key_of) came. Slots are open and half of them free: a look touches one line of memory.
 class KeyNumbers {
  public:
@@ -55,6 +58,9 @@ struct LevelNodes {
   std::int64_t known() const;
   NodeReader reader() const;  ///< Valid as long as the nodes are. Nodes that are not known are far outside.
 };
+
+/// Of a brick whose nodes are known.
+void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeValues& values);
 
 /// Samples `field` at the nodes of the chosen bricks and at those that the gradient's stencils read beside them, and nowhere else; from the
 /// largest voxels to the smallest. A node that lies on open cells of a larger brick takes that brick's interpolant, where its surface is

@@ -22,6 +22,17 @@ JetDistance distance_from_jet(const FieldJet& jet) {
   return {2.0 * first / (1.0 + std::sqrt(root)), true};
 }
 
+void field_values(DistanceEvaluator& distance, std::span<const glm::dvec3> points, std::span<double> values) {
+  if (!distance.tape) {
+    distance.tape.emplace(distance.evaluator.field());
+    distance.has_bits_of_field = has_bits_of_field(*distance.tape);
+  }
+  if (distance.has_bits_of_field)
+    tape_values_at(*distance.tape, points, distance.scratch, values);
+  else
+    distance.evaluator.values(points, values);
+}
+
 namespace {
 
 /// Where the jet tells nothing: as far as Newton's method has to go. Never below the true distance, as it ends on the surface.
@@ -37,11 +48,12 @@ void signed_distances(DistanceEvaluator& distance, std::span<const glm::dvec3> p
   LIMN_CHECK(points.size() == distances.size() && points.size() <= 512);
   FieldEvaluator& evaluator = distance.evaluator;
   const FieldTraits& traits = evaluator.field().traits();
-  evaluator.values(points, distances);
+  field_values(distance, points, distances);
   if (traits.exact_distance) return;
 
   std::array<glm::dvec3, 512> near;
   std::array<size_t, 512> index;
+  std::array<double, 512> no_less;  // than the distance there
   size_t count = 0;
   // Without a branch: in a block that the band's edge cuts, it would be guessed wrong once a row.
   for (size_t i = 0; i < points.size(); ++i) {
@@ -49,16 +61,16 @@ void signed_distances(DistanceEvaluator& distance, std::span<const glm::dvec3> p
     const bool far = at_least > half_width;
     near[count] = points[i];
     index[count] = i;
+    no_less[count] = at_least;
     count += far ? 0 : 1;
     distances[i] = far ? std::copysign(at_least, distances[i]) : distances[i];
   }
   if (count == 0) return;
-  if (!distance.tape) distance.tape.emplace(evaluator.field());
-  std::array<JetDistance, 512> estimates;
-  tape_distances(*distance.tape, std::span(near).first(count), distance.scratch, std::span(estimates).first(count));
+  distance.estimates.resize(std::max(distance.estimates.size(), count));
+  const auto estimates = std::span(distance.estimates).first(count);
+  tape_distances(*distance.tape, std::span(near).first(count), distance.scratch, estimates);
   for (size_t k = 0; k < count; ++k) {
-    const double value = distances[index[k]];
-    const double at_least = std::abs(value) / traits.lipschitz;
+    const double value = distances[index[k]], at_least = no_less[k];
     const JetDistance& estimate = estimates[k];
     double size = std::max(std::abs(estimate.distance), at_least);
     // Far out by its first-order estimate as well, it is not worth the iteration.

@@ -3,23 +3,12 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "sdf/field.h"
 #include "sdf/tape_lanes.h"
 
 namespace limn {
-
-/// Evaluates distances to one field; owns its scratch memory, so keep one for each thread.
-struct DistanceEvaluator {
-  explicit DistanceEvaluator(const Field& field) : evaluator(field) {}
-  FieldEvaluator evaluator;
-  std::optional<FieldTape> tape{};  ///< Made where it is needed first.
-  TapeScratch scratch{};
-};
-
-/// Signed distances at `points`, right to third order where |distance| <= half_width (world); beyond it only |distance| > half_width
-/// and the sign are. Exact fields are taken as they are. At most 512 points; sizes equal.
-void signed_distances(DistanceEvaluator& distance, std::span<const glm::dvec3> points, double half_width, std::span<double> distances);
 
 /// The distance that a jet alone tells, from value, gradient and second derivative along the gradient; `reasonable` is false where the
 /// curvature is too strong for it to mean anything.
@@ -28,5 +17,22 @@ struct JetDistance {
   bool reasonable = true;
 };
 JetDistance distance_from_jet(const FieldJet& jet);
+
+/// Evaluates distances to one field; owns its scratch memory, so keep one for each thread.
+struct DistanceEvaluator {
+  explicit DistanceEvaluator(const Field& field) : evaluator(field) {}
+  FieldEvaluator evaluator;
+  std::optional<FieldTape> tape{};  ///< Made where it is needed first.
+  bool has_bits_of_field = false;   ///< Of the tape, where there is one.
+  TapeScratch scratch{};
+  std::vector<JetDistance> estimates{};
+};
+
+/// f at each point, to the last bit as FieldEvaluator::values() has it; sizes equal.
+void field_values(DistanceEvaluator& distance, std::span<const glm::dvec3> points, std::span<double> values);
+
+/// Signed distances at `points`, right to third order where |distance| <= half_width (world); beyond it only |distance| > half_width
+/// and the sign are. Exact fields are taken as they are. At most 512 points; sizes equal.
+void signed_distances(DistanceEvaluator& distance, std::span<const glm::dvec3> points, double half_width, std::span<double> distances);
 
 }  // namespace limn

@@ -156,7 +156,7 @@ double extent_at(const Field& field, const glm::dvec3& point) {
 
 /// The nodes of those eighths of the block whose middle is no farther from the surface than the band reaches. The others are given the
 /// background, with the sign that the field has in the middle: it changes nowhere in them.
-void find_band_nodes(const Cube& cube, const Lattice& lattice, FieldEvaluator& evaluator, LevelSetBlock& block, BandNodes& found) {
+void find_band_nodes(const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance, LevelSetBlock& block, BandNodes& found) {
   constexpr int kHalf = kBlock / 2;
   std::array<glm::dvec3, kBlock> along;
   for (int k = 0; k < kBlock; ++k) along[static_cast<size_t>(k)] = lattice.node(cube.origin + k);
@@ -164,12 +164,13 @@ void find_band_nodes(const Cube& cube, const Lattice& lattice, FieldEvaluator& e
   std::array<double, 8> values;
   for (size_t part = 0; part < 8; ++part)
     middles[part] = 0.5 * (along[1] + along[2]) + kHalf * lattice.h * glm::dvec3(part >> 2, part >> 1 & 1, part & 1);
-  evaluator.values(middles, values);
+  field_values(distance, middles, values);
 
-  const double lipschitz = evaluator.field().traits().lipschitz;
+  const Field& field = distance.evaluator.field();
+  const double lipschitz = field.traits().lipschitz;
   const double to_corner = 0.5 * (kHalf - 1) * std::sqrt(3.0) * lattice.h;
   const double limit = std::max(lipschitz, 1.0) * lattice.half_width + lipschitz * to_corner;
-  const double slack = 1e-6 * limit + 1e-13 * extent_at(evaluator.field(), middles[0]);
+  const double slack = 1e-6 * limit + 1e-13 * extent_at(field, middles[0]);
   found.count = 0;
   for (size_t part = 0; part < 8; ++part) {
     const size_t x0 = kHalf * (part >> 2), y0 = kHalf * (part >> 1 & 1), z0 = kHalf * (part & 1);
@@ -192,7 +193,7 @@ void find_band_nodes(const Cube& cube, const Lattice& lattice, FieldEvaluator& e
 
 ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance) {
   BandNodes nodes;
-  find_band_nodes(cube, lattice, distance.evaluator, block, nodes);
+  find_band_nodes(cube, lattice, distance, block, nodes);
   const auto points = std::span<const glm::dvec3>(nodes.points).first(nodes.count);
   const auto distances = std::span(nodes.distances).first(nodes.count);
   signed_distances(distance, points, lattice.half_width, distances);
@@ -205,7 +206,7 @@ ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, 
     block.active[n >> 6] |= std::uint64_t{active ? 1u : 0u} << (n & 63);
     block.values[n] = static_cast<float>(active ? distances[k] : std::copysign(lattice.half_width, distances[k]));
   }
-  return find_thin_places(distance.evaluator, std::span<const std::uint16_t>(nodes.node).first(nodes.count), points, distances, lattice.h);
+  return find_thin_places(distance, std::span<const std::uint16_t>(nodes.node).first(nodes.count), points, distances, lattice.h);
 }
 
 /// Calls `visit(i, evaluator)` for a part of the cubes. Neighbours often share a field, and so what evaluates it.
@@ -235,7 +236,7 @@ bool holds_band(const Cube& cube, const Lattice& lattice, DistanceEvaluator& dis
   if (any_of(some, distances)) return true;
   LevelSetBlock block;
   BandNodes nodes;
-  find_band_nodes(cube, lattice, distance.evaluator, block, nodes);
+  find_band_nodes(cube, lattice, distance, block, nodes);
   return any_of(std::span<const glm::dvec3>(nodes.points).first(nodes.count), std::span(nodes.distances).first(nodes.count));
 }
 

@@ -21,7 +21,7 @@ bool is_looked_at(size_t node, double distance, double voxel_size) {
 
 }  // namespace
 
-ThinPlaces find_thin_places(FieldEvaluator& evaluator, std::span<const std::uint16_t> nodes, std::span<const glm::dvec3> points,
+ThinPlaces find_thin_places(DistanceEvaluator& distance, std::span<const std::uint16_t> nodes, std::span<const glm::dvec3> points,
                             std::span<const double> distances, double voxel_size) {
   std::array<glm::dvec3, kMostLookedAt> near, gradients;
   std::array<double, kMostLookedAt> near_distances, values;
@@ -34,7 +34,7 @@ ThinPlaces find_thin_places(FieldEvaluator& evaluator, std::span<const std::uint
   }
   ThinPlaces found;
   if (count == 0) return found;
-  evaluator.gradients(std::span(near).first(count), std::span(values).first(count), std::span(gradients).first(count));
+  distance.evaluator.gradients(std::span(near).first(count), std::span(values).first(count), std::span(gradients).first(count));
 
   std::array<glm::dvec3, kMostLookedAt * kSteps.size()> samples;
   std::array<double, kMostLookedAt>
@@ -48,7 +48,7 @@ ThinPlaces find_thin_places(FieldEvaluator& evaluator, std::span<const std::uint
     for (const double step : kSteps) samples[sample++] = foot + step * voxel_size * normal;
   }
   std::array<double, kMostLookedAt * kSteps.size()> along_lines;
-  evaluator.values(std::span(samples).first(sample), std::span(along_lines).first(sample));
+  field_values(distance, std::span(samples).first(sample), std::span(along_lines).first(sample));
   for (size_t i = 0; i < lines; ++i) {
     const auto along = std::span(along_lines).subspan(i * kSteps.size(), kSteps.size());
     ++found.looked_at;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "sdf/field.h"
+#include "sdf/level_set_distance.h"
 
 namespace limn {
 
@@ -19,7 +19,7 @@ struct ThinPlaces {
 
 /// Looks from every fourth of the nodes nearest to the surface, along its normal. `nodes` are of one block, by their numbers in
 /// LevelSetBlock, each at most once; `points` and signed `distances` are theirs.
-ThinPlaces find_thin_places(FieldEvaluator& evaluator, std::span<const std::uint16_t> nodes, std::span<const glm::dvec3> points,
+ThinPlaces find_thin_places(DistanceEvaluator& distance, std::span<const std::uint16_t> nodes, std::span<const glm::dvec3> points,
                             std::span<const double> distances, double voxel_size);
 
 }  // namespace limn

@@ -1,6 +1,6 @@
 #pragma once
-// Internal: jets of a field, and the distances that they tell, at many points with the widest SIMD of the machine. Every bit is that of
-// FieldEvaluator::jets() and of distance_from_jet() (sdf/level_set_distance.h).
+// Internal: values and jets of a field, and the distances that jets tell, at many points with the widest SIMD of the machine. Every bit is
+// that of FieldEvaluator::jets() and of distance_from_jet() (sdf/level_set_distance.h).
 
 #include <cstdint>
 #include <span>
@@ -19,6 +19,11 @@ struct LaneJets {
 
 /// f, its gradient and its Hessian at points[0][i], points[1][i], points[2][i] (world).
 void tape_jets(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch, LaneJets& jets);
+
+/// f at any number of points (world); sizes equal. Every bit is that of FieldEvaluator::values() where has_bits_of_field().
+void tape_values_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values);
+/// False for sines, which lanes compute on their own, and for metaballs, which they add in another order.
+bool has_bits_of_field(const FieldTape& tape);
 
 /// The distances that the jets tell at any number of points; sizes equal.
 void tape_distances(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<JetDistance> distances);

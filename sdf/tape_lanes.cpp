@@ -1,8 +1,13 @@
 #include "sdf/tape_lanes.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "sdf/error.h"
+#include "sdf/field_program.h"
+#include "sdf/shape.h"
 #include "sdf/simd.h"
+#include "sdf/tape_jets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sdf/tape_lanes.cpp"
@@ -45,6 +50,18 @@ void values(const FieldTape& tape, std::span<const TapeStep> steps, const LaneRa
   Pass pass(tape);
   set_points(pass, rays, s);
   take(run_tape<Reals>(pass, steps, scratch), values);
+}
+
+void values_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, double* values) {
+  Pass pass(tape);
+  for (size_t first = 0; first < points.size(); first += kLanes) {
+    const size_t count = std::min<size_t>(kLanes, points.size() - first);
+    for (size_t i = 0; i < kLanes; ++i) {
+      const glm::dvec3& point = points[first + std::min(i, count - 1)];
+      for (int axis = 0; axis < 3; ++axis) pass.point[axis].lane[i] = point[axis];
+    }
+    std::copy_n(run_tape<Reals>(pass, tape.steps, scratch), count, values + first);
+  }
 }
 
 void slopes(const FieldTape& tape, std::span<const TapeStep> steps, const LaneRays& rays, const LaneArray& s, TapeScratch& scratch,
@@ -95,6 +112,7 @@ HWY_AFTER_NAMESPACE();
 namespace limn {
 namespace {
 HWY_EXPORT(values);
+HWY_EXPORT(values_at);
 HWY_EXPORT(slopes);
 HWY_EXPORT(gradients);
 HWY_EXPORT(bounds);
@@ -104,6 +122,16 @@ HWY_EXPORT(slope_bounds);
 void tape_values(const FieldTape& tape, std::span<const TapeStep> steps, const LaneRays& rays, const LaneArray& s, TapeScratch& scratch,
                  LaneArray& values) {
   HWY_DYNAMIC_DISPATCH(values)(tape, steps, rays, s, scratch, values);
+}
+void tape_values_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values) {
+  LIMN_CHECK(points.size() == values.size());
+  HWY_DYNAMIC_DISPATCH(values_at)(tape, points, scratch, values.data());
+}
+bool has_bits_of_field(const FieldTape& tape) {
+  static const ShapeFunctions* const metaballs = make_shape("metaballs").program().leaves.front().functions;
+  const auto other = [](const TapeLeaf& leaf) { return leaf.leaf->functions == metaballs; };
+  const auto sine = [](const TapeStep& step) { return step.operation == TapeOperation::sine || step.operation == TapeOperation::cosine; };
+  return std::none_of(tape.leaves.begin(), tape.leaves.end(), other) && std::none_of(tape.steps.begin(), tape.steps.end(), sine);
 }
 void tape_slopes(const FieldTape& tape, std::span<const TapeStep> steps, const LaneRays& rays, const LaneArray& s, TapeScratch& scratch,
                  LaneArray& values, LaneArray& slopes) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sdf/parallel.h"
+
 namespace limn {
 namespace {
 
@@ -31,7 +33,7 @@ glm::ivec2 fitted_size(int width, int height, int most_width, int most_height) {
 Image<glm::vec4> fitted(const Image<glm::vec4>& picture, int width, int height) {
   const glm::ivec2 size = fitted_size(picture.width, picture.height, width, height);
   Image<glm::vec4> out(size.x, size.y);
-  for (int y = 0; y < size.y; ++y) {
+  parallel_for(0, size.y, [&](int y) {
     for (int x = 0; x < size.x; ++x) {
       const Block block = block_of(x, y, size.x, size.y, picture.width, picture.height);
       glm::vec4 sum(0.0f);
@@ -40,14 +42,14 @@ Image<glm::vec4> fitted(const Image<glm::vec4>& picture, int width, int height) 
       }
       out.at(x, y) = sum / static_cast<float>((block.x1 - block.x0) * (block.y1 - block.y0));
     }
-  }
+  });
   return out;
 }
 
 Image<glm::vec4> fitted_difference(const Image<glm::vec4>& difference, const Image<float>& border, const Image<float>& reference, int width,
                                    int height) {
   Image<glm::vec4> out = fitted(difference, width, height);
-  for (int y = 0; y < out.height; ++y) {
+  parallel_for(0, out.height, [&](int y) {
     for (int x = 0; x < out.width; ++x) {
       const Block block = block_of(x, y, out.width, out.height, difference.width, difference.height);
       float strongest = 0.0f;
@@ -60,7 +62,7 @@ Image<glm::vec4> fitted_difference(const Image<glm::vec4>& difference, const Ima
         }
       }
     }
-  }
+  });
   return out;
 }
 

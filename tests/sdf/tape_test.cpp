@@ -277,6 +277,29 @@ TEST(Tape, JetsHaveTheBitsOfTheFields) {
   });
 }
 
+TEST(Tape, ValuesAtPointsHaveTheBitsOfTheField) {
+  TapeScratch scratch;
+  int compared = 0;
+  over_random_fields(200, [&](Random& random, const Field& field, const FieldTape& tape) {
+    if (!has_bits_of_field(tape)) return;
+    ++compared;
+    FieldEvaluator evaluator(field);
+    std::vector<glm::dvec3> points(37);  // lanes are left over
+    const bool on_lattice = random.index(3) == 0;
+    for (glm::dvec3& p : points) {
+      p = random.point(1.0);
+      if (on_lattice) p = glm::round(16.0 * p) / 16.0;  // zeros of either sign
+    }
+    std::vector<double> own(points.size()), lanes(points.size());
+    evaluator.values(points, own);
+    tape_values_at(tape, points, scratch, lanes);
+    EXPECT_EQ(std::memcmp(own.data(), lanes.data(), own.size() * sizeof(double)), 0);
+  });
+  EXPECT_GT(compared, 50);
+  EXPECT_FALSE(has_bits_of_field(FieldTape(make_shape("gyroid"))));
+  EXPECT_FALSE(has_bits_of_field(FieldTape(make_shape("metaballs"))));
+}
+
 TEST(Tape, SinesAreRightToTwoUnitsInTheLastPlace) {
   // A gyroid of period 2 pi whose walls are thin: f = |sin x cos y + ...| / sqrt 3 - half the thickness, inside its ball.
   Random random(5);

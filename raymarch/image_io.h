@@ -25,6 +25,8 @@ void write_exr(const Picture& picture, const Camera& camera, const std::string& 
 void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesystem::path& file);
 /// The same PNG in memory, for pages that hold their pictures.
 std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied);
+/// Of Picture::bytes.
+std::vector<std::byte> encode_png(const Image<glm::u8vec4>& bytes);
 
 /// One named channel of an image file, top row first. Throws InputError.
 Image<float> read_channel(const std::filesystem::path& file, const std::string& channel);

@@ -1,8 +1,10 @@
 #pragma once
 // The outline seam: a method is a pure function of what is seen. One file in raymarch/border/ and one line in its registry.
 
+#include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "raymarch/gbuffer.h"
@@ -53,6 +55,10 @@ struct Border {
   Image<std::int32_t> beneath{};
 };
 
+/// Coverage of pixels, any number of them, each from its own N.V and id (0: nothing is hit, no ink). Sizes equal; called from many threads
+/// at a time.
+using PixelInk = std::function<void(std::span<const float> n_dot_v, std::span<const std::int32_t> id, std::span<float> coverage)>;
+
 /// An outline method: a file in raymarch/border/ and a line in its registry.
 struct BorderMethod {
   Description about{};                  ///< Name, help and source.
@@ -67,6 +73,9 @@ struct BorderMethod {
   double (*truth_threshold)(const Parameters& parameters) = nullptr;
   std::vector<std::string>
       only_for_notes{};  ///< Of `inputs`, what only its notes read: not traced where there are none (BorderInput::with_notes).
+  /// What a pixel-wise method draws where there is no frame before: pictures ink each tile as soon as it is traced. Its ink has one colour,
+  /// and its notes are surface_notes(). Null where a method looks at more than a pixel's N.V and id.
+  PixelInk (*pixel_ink)(const Parameters& parameters) = nullptr;
 };
 
 /// The method that draws where nobody names one.

@@ -25,8 +25,8 @@ void write_exr(const Picture& picture, const Camera& camera, const std::string& 
 void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesystem::path& file);
 /// The same PNG in memory, for pages that hold their pictures.
 std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied);
-/// Of sRGB with alpha kept apart, as it goes into a PNG.
-std::vector<std::byte> encode_png(const Image<glm::u8vec4>& srgb);
+/// Of sRGB with alpha kept apart, as Picture::bytes has it.
+std::vector<std::byte> encode_png(const Image<glm::u8vec4>& bytes);
 
 /// One named channel of an image file, top row first. Throws InputError.
 Image<float> read_channel(const std::filesystem::path& file, const std::string& channel);

@@ -11,5 +11,7 @@ OutputFile exr_output(const Picture& picture, const Camera& camera, const std::s
                       std::span<const NamedLayer> layers = {});
 /// As write_image.
 OutputFile image_output(const Image<glm::vec4>& linear_premultiplied, const std::filesystem::path& file);
+/// Of Picture::bytes, as .png.
+OutputFile image_output(const Image<glm::u8vec4>& bytes, const std::filesystem::path& file);
 
 }  // namespace limn

@@ -14,6 +14,8 @@ struct Picture {
   Image<float> border{};                   ///< Ink coverage in [0, 1]: mean over the samples; all methods together.
   Image<std::uint8_t> border_status{};     ///< Border::status of the methods at the pixel centres, the largest; empty where none has one.
   Image<glm::vec4> composite{};            ///< Linear, premultiplied RGBA.
+  Image<glm::u8vec4> bytes{};              ///< The composite as PNG holds it: sRGB, alpha apart. Only with PictureSettings::bytes.
+  HitCounts counts{};                      ///< Of the pixel centres.
   std::shared_ptr<const Mattes> mattes{};  ///< Null where PictureSettings::mattes is false.
   std::vector<std::string> notes{};        ///< Of the methods.
   double trace_ms = 0.0,                   ///< For all samples.
@@ -33,7 +35,8 @@ struct PictureSettings {
   std::optional<glm::vec3> background{};  ///< Linear; unset: transparent.
   ShadingSettings shading{};              ///< Of what is beneath the inks.
   bool mattes = false;                    ///< Collects Picture::mattes from all samples.
-  GBufferLayers layers{};                 ///< Of Picture::gbuffer. What the methods and the composite read is traced anyway.
+  GBufferLayers layers{};                 ///< Of Picture::gbuffer. What the methods and the composite read may be there, too.
+  bool bytes = false;                     ///< Picture::bytes in place of composite and border, for who only writes a PNG.
 };
 
 /// What these methods read, with or without what only their notes read.

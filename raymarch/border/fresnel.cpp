@@ -14,15 +14,27 @@ struct Curve {
 };
 
 double outline(const Curve& curve, double n_dot_v, double shift) {
-  const double f = std::pow(1.0 - n_dot_v, curve.power) + shift;
+  // A power of 1 is exact, and as often asked for as it is the default.
+  const double f = (curve.power == 1.0 ? 1.0 - n_dot_v : std::pow(1.0 - n_dot_v, curve.power)) + shift;
   // The smooth step would fade the outline near f = 0 although everything is meant to be outline.
   const double step = curve.width >= 1.0 ? 1.0 : smoothstep(1.0 - curve.width, 1.0 - curve.width + curve.softness, f);
   return std::clamp(step * curve.strength, 0.0, 1.0);
 }
 
+Curve curve_of(const Parameters& parameters) {
+  return {parameters.number("width"), parameters.number("softness"), parameters.number("power"), parameters.number("strength")};
+}
+
+PixelInk ink(const Parameters& parameters) {
+  return [curve = curve_of(parameters)](std::span<const float> n_dot_v, std::span<const std::int32_t> id, std::span<float> coverage) {
+    for (size_t i = 0; i < coverage.size(); ++i)
+      coverage[i] = id[i] != 0 ? static_cast<float>(outline(curve, double{n_dot_v[i]}, 0.0)) : 0.0f;
+  };
+}
+
 Border draw(const BorderInput& input, const Parameters& parameters) {
-  const Curve curve{parameters.number("width"), parameters.number("softness"), parameters.number("power"), parameters.number("strength")};
-  return ink_by_angle("fresnel", input, parameters, [&](double n_dot_v, double shift) { return outline(curve, n_dot_v, shift); });
+  return ink_by_angle("fresnel", input, parameters, ink(parameters),
+                      [curve = curve_of(parameters)](double n_dot_v, double shift) { return outline(curve, n_dot_v, shift); });
 }
 
 }  // namespace
@@ -42,7 +54,8 @@ BorderMethod fresnel_method() {
       [](const SceneModel&, const Scene&) { return std::string(); },
       draw,
       nullptr,
-      {"N"}};
+      {"N"},
+      ink};
 }
 
 }  // namespace limn

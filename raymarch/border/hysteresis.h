@@ -10,10 +10,13 @@ struct Hysteresis {
   double amount = 0.0;
   const BorderBefore* before = nullptr;
 
+  /// False where no pixel's threshold moves.
+  bool holds() const { return before != nullptr && amount != 0.0; }
+
   /// What to add to the threshold of pixel i, ink being below it: `amount` where its piece of surface had ink, -`amount` where it had none,
   /// 0 where it was not seen.
   double shift(size_t i) const {
-    if (before == nullptr || amount == 0.0) return 0.0;
+    if (!holds()) return 0.0;
     const std::int32_t was = before->pixels.pixels[i];
     if (was < 0) return 0.0;
     return before->coverage.pixels[static_cast<size_t>(was)] >= 0.5f ? amount : -amount;

@@ -1,14 +1,22 @@
 // Rim: border where N.V falls below a threshold.
 
 #include "raymarch/border.h"
+#include "raymarch/border/angle_ink.h"
 #include "raymarch/border/ink_by_angle.h"
 
 namespace limn {
 namespace {
 
+PixelInk ink(const Parameters& parameters) {
+  return [edge = parameters.number("threshold"), half = 0.5 * parameters.number("softness")](
+             std::span<const float> n_dot_v, std::span<const std::int32_t> id, std::span<float> coverage) {
+    rim_ink(edge, half, n_dot_v, id, coverage);
+  };
+}
+
 Border draw(const BorderInput& input, const Parameters& parameters) {
   const double threshold = parameters.number("threshold"), half = 0.5 * parameters.number("softness");
-  return ink_by_angle("rim", input, parameters, [&](double n_dot_v, double shift) {
+  return ink_by_angle("rim", input, parameters, ink(parameters), [&](double n_dot_v, double shift) {
     const double edge = threshold + shift;
     return 1.0 - smoothstep(edge - half, edge + half, n_dot_v);
   });
@@ -29,7 +37,8 @@ BorderMethod rim_method() {
           [](const SceneModel&, const Scene&) { return std::string(); },
           draw,
           [](const Parameters& parameters) { return parameters.number("threshold"); },
-          {"N"}};
+          {"N"},
+          ink};
 }
 
 }  // namespace limn

@@ -7,14 +7,11 @@
 #include <map>
 #include <numeric>
 
+#include "raymarch/border/surface_tally.h"
 #include "sdf/parallel.h"
 
 namespace limn {
 namespace {
-
-// What a plane's normals differ by in a level set of single precision; a sphere turns more from pixel to pixel unless its radius is
-// beyond 30 000 px.
-constexpr float kSameNormal = 3e-5f;
 
 std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
   while (parent[i] != i) {
@@ -22,12 +19,6 @@ std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
     i = parent[i];
   }
   return i;
-}
-
-bool have_same_normal(const GBuffer& gbuffer, size_t a, size_t b) {
-  if (gbuffer.id.pixels[a] != gbuffer.id.pixels[b]) return false;
-  const glm::vec3 difference = gbuffer.normal.pixels[a] - gbuffer.normal.pixels[b];
-  return !(glm::dot(difference, difference) > kSameNormal * kSameNormal);
 }
 
 /// Pairs of neighbours with the same normal. A region of n pixels has n - 1 of them or more.
@@ -48,31 +39,74 @@ std::int64_t same_pairs(const GBuffer& gbuffer) {
       std::plus<>());
 }
 
-void join_if_same(const GBuffer& gbuffer, std::vector<std::uint32_t>& parent, size_t a, size_t b) {
-  if (!have_same_normal(gbuffer, a, b)) return;
+/// What is asked of a picture's pixels, by their indices.
+struct BufferPixels {
+  const GBuffer& gbuffer;
+  const Image<float>& coverage;
+  int width() const { return gbuffer.width; }
+  int height() const { return gbuffer.height; }
+  std::int32_t id(size_t i) const { return gbuffer.id.pixels[i]; }
+  bool same_as_left(size_t i) const { return have_same_normal(gbuffer, i, i - 1); }
+  bool same_as_above(size_t i) const { return have_same_normal(gbuffer, i, i - static_cast<size_t>(gbuffer.width)); }
+  bool inked(size_t i) const { return coverage.pixels[i] > 0.5f; }
+};
+struct TallyPixels {
+  const Image<std::uint8_t>& facts;
+  std::uint8_t ink;
+  int width() const { return facts.width; }
+  int height() const { return facts.height; }
+  std::int32_t id(size_t i) const { return facts.pixels[i] & kIsHit; }  // 1 for all objects
+  bool same_as_left(size_t i) const { return (facts.pixels[i] & kSameAsLeft) != 0; }
+  bool same_as_above(size_t i) const { return (facts.pixels[i] & kSameAsAbove) != 0; }
+  bool inked(size_t i) const { return (facts.pixels[i] & ink) != 0; }
+};
+
+void join(std::vector<std::uint32_t>& parent, size_t a, size_t b) {
   const std::uint32_t root_a = root_of(parent, static_cast<std::uint32_t>(a)), root_b = root_of(parent, static_cast<std::uint32_t>(b));
   parent[std::max(root_a, root_b)] = std::min(root_a, root_b);
 }
 
 /// For each pixel the first pixel of its region.
-std::vector<std::uint32_t> flat_regions(const GBuffer& gbuffer) {
-  std::vector<std::uint32_t> parent(gbuffer.id.size());
+template <class Seen>
+std::vector<std::uint32_t> flat_regions(const Seen& seen) {
+  const auto width = static_cast<size_t>(seen.width());
+  std::vector<std::uint32_t> parent(width * static_cast<size_t>(seen.height()));
   std::iota(parent.begin(), parent.end(), 0u);
-  for (int y = 0; y < gbuffer.height; ++y) {
-    for (int x = 0; x < gbuffer.width; ++x) {
-      const size_t i = gbuffer.id.index(x, y);
-      if (gbuffer.id.pixels[i] == 0) continue;
-      if (x > 0) join_if_same(gbuffer, parent, i, i - 1);
-      if (y > 0) join_if_same(gbuffer, parent, i, i - static_cast<size_t>(gbuffer.width));
+  size_t i = 0;
+  for (int y = 0; y < seen.height(); ++y) {
+    for (size_t x = 0; x < width; ++x, ++i) {
+      if (seen.id(i) == 0) continue;
+      if (x > 0 && seen.same_as_left(i)) join(parent, i, i - 1);
+      if (y > 0 && seen.same_as_above(i)) join(parent, i, i - width);
     }
   }
-  for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = parent[parent[i]];  // roots come first
+  for (std::uint32_t k = 0; k < parent.size(); ++k) parent[k] = parent[parent[k]];  // roots come first
   return parent;
 }
 
-std::string flat_note(const std::string& name, const GBuffer& gbuffer, const Image<float>& coverage) {
-  const std::vector<FlatFace> faces = flat_faces(gbuffer, coverage);
-  if (faces.empty()) return {};
+template <class Seen>
+std::vector<FlatFace> faces_of(const Seen& seen, std::int64_t min_pixels) {
+  const std::vector<std::uint32_t> region = flat_regions(seen);
+  std::vector<std::uint32_t> size(region.size(), 0);
+  for (size_t i = 0; i < region.size(); ++i) size[region[i]] += seen.id(i) != 0;
+  std::map<std::uint32_t, FlatFace> found;
+  for (size_t i = 0; i < region.size(); ++i) {
+    if (seen.id(i) == 0 || size[region[i]] < min_pixels) continue;
+    FlatFace& face = found[region[i]];
+    face.id = seen.id(i);
+    ++face.pixels;
+    face.inked += seen.inked(i);
+  }
+  std::vector<FlatFace> faces;
+  faces.reserve(found.size());
+  for (const auto& [first_pixel, face] : found) faces.push_back(face);
+  std::stable_sort(faces.begin(), faces.end(), [](const FlatFace& a, const FlatFace& b) { return a.pixels > b.pixels; });
+  return faces;
+}
+
+/// Nothing where no face is flat.
+void add_flat_note(const std::string& name, const std::vector<FlatFace>& faces, std::int64_t hits, std::vector<std::string>& notes) {
+  if (faces.empty()) return;
   std::int64_t flat = 0, inked = 0, clear = 0;
   for (const FlatFace& face : faces) {
     flat += face.pixels;
@@ -80,10 +114,10 @@ std::string flat_note(const std::string& name, const GBuffer& gbuffer, const Ima
     clear += face.inked == 0;
   }
   const auto count = static_cast<std::int64_t>(faces.size());
-  const double share = 100.0 * static_cast<double>(flat) / static_cast<double>(std::max<std::int64_t>(1, count_hits(gbuffer).hits));
-  return fmt::format(
+  const double share = 100.0 * static_cast<double>(flat) / static_cast<double>(std::max<std::int64_t>(1, hits));
+  notes.push_back(fmt::format(
       "{} undefined (zero curvature) on {} flat face{}, {:.1f} % of the pixels hit: {} flipped whole to border, {} whole clear, {} mixed",
-      name, count, count == 1 ? "" : "s", share, inked, clear, count - inked - clear);
+      name, count, count == 1 ? "" : "s", share, inked, clear, count - inked - clear));
 }
 
 struct ObjectPixels {
@@ -115,8 +149,7 @@ std::vector<ObjectPixels> pixels_of_objects(const GBuffer& gbuffer) {
 }
 
 /// One note for each object that is almost wholly turned away: its normals point inwards, or the eye is inside it.
-void add_inverted_notes(const std::string& name, const GBuffer& gbuffer, std::vector<std::string>& notes) {
-  const std::vector<ObjectPixels> objects = pixels_of_objects(gbuffer);
+void add_inverted_notes(const std::string& name, const std::vector<ObjectPixels>& objects, std::vector<std::string>& notes) {
   for (size_t id = 1; id < objects.size(); ++id) {
     const auto [seen, turned] = objects[id];
     if (seen == 0 || static_cast<double>(turned) < 0.95 * static_cast<double>(seen)) continue;
@@ -131,28 +164,27 @@ void add_inverted_notes(const std::string& name, const GBuffer& gbuffer, std::ve
 
 std::vector<FlatFace> flat_faces(const GBuffer& gbuffer, const Image<float>& coverage, std::int64_t min_pixels) {
   if (same_pairs(gbuffer) < min_pixels - 1) return {};  // as most pictures of curved surfaces have none
-  const std::vector<std::uint32_t> region = flat_regions(gbuffer);
-  std::vector<std::uint32_t> size(region.size(), 0);
-  for (size_t i = 0; i < region.size(); ++i) size[region[i]] += gbuffer.id.pixels[i] != 0;
-  std::map<std::uint32_t, FlatFace> found;
-  for (size_t i = 0; i < region.size(); ++i) {
-    if (gbuffer.id.pixels[i] == 0 || size[region[i]] < min_pixels) continue;
-    FlatFace& face = found[region[i]];
-    face.id = gbuffer.id.pixels[i];
-    ++face.pixels;
-    face.inked += coverage.pixels[i] > 0.5f;
-  }
-  std::vector<FlatFace> faces;
-  faces.reserve(found.size());
-  for (const auto& [first_pixel, face] : found) faces.push_back(face);
-  std::stable_sort(faces.begin(), faces.end(), [](const FlatFace& a, const FlatFace& b) { return a.pixels > b.pixels; });
-  return faces;
+  return faces_of(BufferPixels{gbuffer, coverage}, min_pixels);
 }
 
 std::vector<std::string> surface_notes(const std::string& name, const GBuffer& gbuffer, const Image<float>& coverage) {
   std::vector<std::string> notes;
-  if (std::string note = flat_note(name, gbuffer, coverage); !note.empty()) notes.push_back(std::move(note));
-  add_inverted_notes(name, gbuffer, notes);
+  if (const std::vector<FlatFace> faces = flat_faces(gbuffer, coverage); !faces.empty())
+    add_flat_note(name, faces, count_hits(gbuffer).hits, notes);
+  add_inverted_notes(name, pixels_of_objects(gbuffer), notes);
+  return notes;
+}
+
+std::vector<std::string> surface_notes(const std::string& name, const SurfaceTally& tally, size_t method) {
+  std::vector<std::string> notes;
+  if (tally.same_pairs >= kFlatPixels - 1) {
+    const auto ink = static_cast<std::uint8_t>(kInkedByFirst << method);
+    add_flat_note(name, faces_of(TallyPixels{tally.facts, ink}, kFlatPixels), tally.hits, notes);
+  }
+  std::vector<ObjectPixels> objects;
+  objects.reserve(tally.seen.size());
+  for (size_t id = 0; id < tally.seen.size(); ++id) objects.push_back({tally.seen[id], tally.turned[id]});
+  add_inverted_notes(name, objects, notes);
   return notes;
 }
 

@@ -7,6 +7,17 @@
 
 namespace limn {
 
+// What a plane's normals differ by in a level set of single precision; a sphere turns more from pixel to pixel unless its radius is
+// beyond 30 000 px.
+inline constexpr float kSameNormal = 3e-5f;
+inline constexpr std::int64_t kFlatPixels = 16;  ///< Of a face that is called flat, at least.
+
+inline bool have_same_normal(const GBuffer& gbuffer, size_t a, size_t b) {
+  if (gbuffer.id.pixels[a] != gbuffer.id.pixels[b]) return false;
+  const glm::vec3 difference = gbuffer.normal.pixels[a] - gbuffer.normal.pixels[b];
+  return !(glm::dot(difference, difference) > kSameNormal * kSameNormal);
+}
+
 /// A connected region of one object whose normal does not change from pixel to pixel.
 struct FlatFace {
   std::int32_t id = 0;  ///< Object, from 1.
@@ -15,7 +26,7 @@ struct FlatFace {
 };
 
 /// Regions of at least `min_pixels` pixels (4-connected, normals equal to 3e-5 between neighbours), largest first.
-std::vector<FlatFace> flat_faces(const GBuffer& gbuffer, const Image<float>& coverage, std::int64_t min_pixels = 16);
+std::vector<FlatFace> flat_faces(const GBuffer& gbuffer, const Image<float>& coverage, std::int64_t min_pixels = kFlatPixels);
 
 /// The sentences, with their numbers, for a method called `name`; empty where nothing failed.
 std::vector<std::string> surface_notes(const std::string& name, const GBuffer& gbuffer, const Image<float>& coverage);

@@ -8,8 +8,9 @@
 #include "raymarch/files/matte_layers.h"
 #include "raymarch/files/picture_module.h"
 #include "raymarch/files/png_file.h"
-#include "raymarch/files/srgb_bytes.h"
 #include "raymarch/mattes.h"
+#include "raymarch/picture/pixel_lanes.h"
+#include "raymarch/picture/srgb_bytes.h"
 #include "sdf/error.h"
 #include "sdf/output_file.h"
 #include "sdf/parallel.h"
@@ -28,35 +29,28 @@ std::string extension_of(const fs::path& file) {
 
 bool has_alpha(const std::string& extension) { return extension != ".jpg" && extension != ".jpeg"; }
 
-/// Interleaved 8-bit sRGB: RGBA with alpha kept apart, or RGB over white.
-Pixels<std::uint8_t> srgb_pixels(const Image<glm::vec4>& picture, bool alpha) {
-  static const SrgbBytes srgb_byte;
-  const size_t channels = alpha ? 4 : 3;
-  Pixels<std::uint8_t> bytes(picture.size() * channels);
+/// Interleaved 8-bit sRGB over white.
+Pixels<std::uint8_t> rgb_pixels(const Image<glm::vec4>& picture) {
+  constexpr size_t kChannels = 3;
+  const SrgbBytes& srgb_byte = srgb_bytes();
+  Pixels<std::uint8_t> bytes;
+  bytes.resize(picture.size() * kChannels);
   parallel_parts(picture.size(), size_t{1} << 14, [&](const IndexRange<size_t>& part) {
     for (size_t i = part.first; i < part.last; ++i) {
       const glm::vec4& color = picture.pixels[i];
-      std::uint8_t* const to = &bytes[i * channels];
-      // Background and ink are most of a picture.
-      if (i > part.first && color == picture.pixels[i - 1]) {
-        std::copy_n(to - channels, channels, to);
-        continue;
-      }
-      glm::vec3 rgb(color);
-      if (!alpha) rgb += 1.0f - color.a;
-      if (alpha && color.a > 0.0f) rgb /= color.a;
-      for (int channel = 0; channel < 3; ++channel) to[channel] = srgb_byte(rgb[channel]);
-      if (alpha) to[3] = to_byte(color.a);
+      const glm::vec3 rgb = glm::vec3(color) + (1.0f - color.a);
+      for (int channel = 0; channel < 3; ++channel) bytes[i * kChannels + static_cast<size_t>(channel)] = srgb_byte(rgb[channel]);
     }
   });
   return bytes;
 }
 
-std::vector<std::byte> png_bytes(int width, int height, Pixels<std::uint8_t> bytes) {
-  return png_file({width, height, 4, std::move(bytes), std::string("limn ") + kVersion});
+std::span<const std::uint8_t> bytes_of(const Image<glm::u8vec4>& picture) {
+  return {reinterpret_cast<const std::uint8_t*>(picture.pixels.data()), 4 * picture.size()};
 }
-std::vector<std::byte> png_bytes(const Image<glm::vec4>& picture) {
-  return png_bytes(picture.width, picture.height, srgb_pixels(picture, true));
+
+std::vector<std::byte> png_bytes(const Image<glm::u8vec4>& picture) {
+  return png_file({picture.width, picture.height, 4, bytes_of(picture), std::string("limn ") + kVersion});
 }
 
 /// OpenImageIO would write the time of day; equal runs must give equal bytes.
@@ -247,16 +241,26 @@ OutputFile image_output(const Image<glm::vec4>& linear_premultiplied, const std:
   }
   if (extension == ".png") {
     return {file, [&linear_premultiplied, file](const fs::path& temporary) {
-              const std::vector<std::byte> bytes = png_bytes(linear_premultiplied);
+              const std::vector<std::byte> bytes = png_bytes(encoded(linear_premultiplied));
               write_bytes(temporary, file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
             }};
   }
   return {file, [&linear_premultiplied, file, extension](const fs::path& temporary) {
             const bool alpha = has_alpha(extension);
-            const Pixels<std::uint8_t> pixels = srgb_pixels(linear_premultiplied, alpha);
             PictureHeader header = srgb_header(linear_premultiplied, alpha);
             if (extension == ".tif" || extension == ".tiff") header.attributes.push_back({"DateTime", kNoTime});
-            save(temporary, file, header, pixels.data());
+            if (alpha)
+              save(temporary, file, header, encoded(linear_premultiplied).pixels.data());
+            else
+              save(temporary, file, header, rgb_pixels(linear_premultiplied).data());
+          }};
+}
+
+OutputFile image_output(const Image<glm::u8vec4>& bytes, const std::filesystem::path& file) {
+  LIMN_CHECK(extension_of(file) == ".png");
+  return {file, [&bytes, file](const fs::path& temporary) {
+            const std::vector<std::byte> png = png_bytes(bytes);
+            write_bytes(temporary, file, {reinterpret_cast<const char*>(png.data()), png.size()});
           }};
 }
 
@@ -271,14 +275,8 @@ void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesy
   write_together({&output, 1});
 }
 
-std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied) { return png_bytes(linear_premultiplied); }
-
-std::vector<std::byte> encode_png(const Image<glm::u8vec4>& srgb) {
-  Pixels<std::uint8_t> bytes(srgb.size() * 4);
-  static_assert(sizeof(glm::u8vec4) == 4);
-  std::memcpy(bytes.data(), srgb.pixels.data(), bytes.size());
-  return png_bytes(srgb.width, srgb.height, std::move(bytes));
-}
+std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied) { return png_bytes(encoded(linear_premultiplied)); }
+std::vector<std::byte> encode_png(const Image<glm::u8vec4>& bytes) { return png_bytes(bytes); }
 
 Image<float> read_channel(const std::filesystem::path& file, const std::string& channel) {
   const PictureHeader header = header_of(file);

@@ -24,8 +24,7 @@ void size_layer(bool wanted, int width, int height, Image<T>& image) {
   }
 }
 
-void size_layers(const GBufferLayers& layers, const Camera& camera, GBuffer& out) {
-  const int width = camera.width_px, height = camera.height_px;
+void size_layers(const GBufferLayers& layers, int width, int height, GBuffer& out) {
   out.width = width;
   out.height = height;
   size_layer(layers.depth, width, height, out.depth);
@@ -39,42 +38,67 @@ void size_layers(const GBufferLayers& layers, const Camera& camera, GBuffer& out
   out.custom = {};
 }
 
+/// What is done with pixels as soon as they are traced. Null `layers`: these are the picture's own, and kept.
+struct Use {
+  const PixelWork* work = nullptr;
+  const GBufferLayers* layers = nullptr;
+};
+
 /// What the tiles of a picture share.
 struct Shared {
   const SceneModel& model;
   ModelView view;
   PictureRays rays;
   TileWriter writer;
+  Use use;
 };
 
-// Tiles that lie side by side and show nothing are written together; so many make up a task.
-constexpr int kTilesInARow = 8;
+PixelTile moved(PixelTile pixels, const glm::ivec2& first) {
+  pixels.x -= first.x;
+  pixels.y -= first.y;
+  return pixels;
+}
+
+/// Tiles that lie side by side and show nothing are written together, and so are those that show something used.
+void finish_run(const Use& use, const TileWriter& writer, const TracedPixels& run) {
+  if (run.pixels.width == 0) return;
+  if (!run.seen && use.layers == nullptr) write_nothing(writer, run.pixels);
+  if (use.work != nullptr) (*use.work)(run);
+}
 
 void render_tiles(const Shared& shared, const PixelTile& row, int tile_px, glm::dvec2 sample) {
-  PixelTile nothing{row.x, row.y, 0, row.height};
+  GBuffer own;
+  TileWriter writer = shared.writer;
+  glm::ivec2 first(0);
+  if (shared.use.layers != nullptr) {
+    size_layers(*shared.use.layers, row.width, row.height, own);
+    writer.out = &own;
+    first = {row.x, row.y};
+  }
+  TracedPixels run{*writer.out, first, {row.x, row.y, 0, row.height}, false};
   for (int x = row.x; x < row.x + row.width; x += tile_px) {
     const PixelTile tile{x, row.y, std::min(tile_px, row.x + row.width - x), row.height};
-    if (!touches(shared.view, tile)) {
-      nothing.width += tile.width;
-      continue;
+    const bool seen = touches(shared.view, tile);
+    if (seen != run.seen) {
+      finish_run(shared.use, writer, run);
+      run.pixels = {x, row.y, 0, row.height};
+      run.seen = seen;
     }
-    write_nothing(shared.writer, nothing);
-    nothing = {x + tile.width, row.y, 0, row.height};
+    run.pixels.width += tile.width;
+    if (!seen) continue;
     RayBatch rays;
     SceneHits found;
     fill_rays(shared.rays, tile, sample, rays);
     trace_scene(shared.model, shared.view, tile, rays, found);
-    write_tile(shared.writer, tile, rays, found);
+    write_tile(writer, moved(tile, first), rays, found);
   }
-  write_nothing(shared.writer, nothing);
+  finish_run(shared.use, writer, run);
 }
 
 void check(const ExecutionSettings& how) { LIMN_CHECK(how.tile_px >= 1 && how.tile_px <= 16 && how.threads >= kSurroundingThreads); }
 
-}  // namespace
-
-void render_window(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset, const PixelTile& window,
-                   GBuffer& out) {
+void render(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset, const PixelTile& window,
+            const Use& use, GBuffer& out) {
   check(how);
   LIMN_CHECK(out.width == camera.width_px && out.height == camera.height_px);
   LIMN_CHECK(window.x >= 0 && window.y >= 0 && window.x + window.width <= out.width && window.y + window.height <= out.height);
@@ -87,9 +111,9 @@ void render_window(const SceneModel& model, const Camera& camera, const Executio
   std::mutex progress_mutex;
   std::int64_t done = 0;
   out.turned.clear();
-  const auto render = [&] {
+  const auto trace = [&] {
     const PictureRays rays = picture_rays(render_camera, extent.radius, extent.bounded);
-    const Shared shared{model, view_model(model, {render_camera, offset}), rays, tile_writer(model, rays, out)};
+    const Shared shared{model, view_model(model, {render_camera, offset}), rays, tile_writer(model, rays, out), use};
     for (size_t i = 0; i < shared.view.turned.size(); ++i)
       if (shared.view.turned[i]) out.turned.push_back(static_cast<std::int32_t>(i) + 1);
     parallel_for(std::int64_t{0}, tasks, [&](std::int64_t k) {
@@ -103,15 +127,29 @@ void render_window(const SceneModel& model, const Camera& camera, const Executio
     });
   };
   if (how.threads == kSurroundingThreads) {
-    render();
+    trace();
   } else {
-    ThreadArena(how.threads).execute(render);
+    ThreadArena(how.threads).execute(trace);
   }
+}
+
+}  // namespace
+
+void render_window(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset, const PixelTile& window,
+                   GBuffer& out) {
+  render(model, camera, how, offset, window, {}, out);
+}
+
+void render_pixels(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset,
+                   const GBufferLayers& layers, bool kept, const PixelWork& work, GBuffer& out) {
+  constexpr GBufferLayers none{false, false, false, false, false, false, false, false};
+  size_layers(kept ? layers : none, camera.width_px, camera.height_px, out);
+  render(model, camera, how, offset, {0, 0, out.width, out.height}, {&work, kept ? nullptr : &layers}, out);
 }
 
 void render_gbuffer(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset,
                     const GBufferLayers& layers, GBuffer& out) {
-  size_layers(layers, camera, out);
+  size_layers(layers, camera.width_px, camera.height_px, out);
   render_window(model, camera, how, offset, {0, 0, out.width, out.height}, out);
 }
 

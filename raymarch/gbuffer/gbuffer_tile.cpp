@@ -12,22 +12,6 @@ namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-// Pictures of more pixels than this do not stay in a cache until somebody reads them.
-constexpr size_t kLargePicture = size_t{1} << 20;
-
-template <class T>
-void fill_rows(Image<T>& image, const PixelTile& tile, const T& value) {
-  if (image.pixels.empty()) return;
-  const bool past_caches = image.size() >= kLargePicture;
-  for (int y = tile.y; y < tile.y + tile.height; ++y) {
-    T* const row = &image.pixels[image.index(tile.x, y)];
-    if (past_caches)
-      stream_fill(row, static_cast<size_t>(tile.width), value);
-    else
-      std::fill_n(row, tile.width, value);
-  }
-}
-
 /// Calls `value(lane)` for each pixel of the tile and stores what it returns.
 template <class T, class Value>
 void write_layer(Image<T>& image, const PixelTile& tile, const Value& value) {

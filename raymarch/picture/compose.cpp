@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "raymarch/gbuffer/file_colors.h"
+#include "raymarch/picture/pixel_lanes.h"
 #include "raymarch/picture/shade.h"
 #include "sdf/error.h"
 #include "sdf/parallel.h"
@@ -54,6 +55,22 @@ void add_pixels(const Color& color, std::span<const Border> borders, bool first,
       picture.composite.pixels[i] = sum;
       picture.border.pixels[i] = ink;
     }
+  });
+}
+
+/// The same of the headlight's shading and inks of one colour each, several pixels at a time.
+void compose_plain(const BorderInput& input, std::span<const Border> borders, bool first, const Finish* finish, Picture& picture) {
+  const ColorsById colors = colors_by_id(input.model.colors);
+  std::vector<glm::vec3> inks;
+  inks.reserve(borders.size());
+  for (const Border& border : borders) inks.push_back(border.color);
+  const PixelStage stage{&colors, inks, first, finish};
+  parallel_parts(picture.composite.size(), kTogether, [&](const IndexRange<size_t>& part) {
+    std::vector<const float*> coverage;
+    coverage.reserve(borders.size());
+    for (const Border& border : borders) coverage.push_back(&border.coverage.pixels[part.first]);
+    compose_pixels(stage, {part.last - part.first, &input.gbuffer.n_dot_v.pixels[part.first], &input.gbuffer.id.pixels[part.first],
+                           coverage, &picture.border.pixels[part.first], &picture.composite.pixels[part.first]});
   });
 }
 
@@ -118,7 +135,9 @@ void compose(const BorderInput& input, std::span<const Border> borders, bool fir
   }
   const bool moving = std::any_of(borders.begin(), borders.end(), [](const Border& border) { return !border.beneath.pixels.empty(); });
   const bool plain = shading.shading == Shading::headlight && !shading.color;
+  const bool many = std::any_of(borders.begin(), borders.end(), [](const Border& border) { return !border.colors.pixels.empty(); });
   if (!moving && plain && !file_colors(input.model).any) {
+    if (!many) return compose_plain(input, borders, first, finish, picture);
     add_pixels([&](size_t i) { return inked(headlight(gbuffer, input.model.colors, i), borders, i); }, borders, first, finish, picture);
     return;
   }

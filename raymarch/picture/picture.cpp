@@ -13,6 +13,9 @@
 #include "raymarch/gbuffer/file_colors.h"
 #include "raymarch/mattes.h"
 #include "raymarch/picture/compose.h"
+#include "raymarch/picture/picture_parts.h"
+#include "raymarch/picture/pixel_lanes.h"
+#include "raymarch/picture/pixel_wise.h"
 #include "raymarch/picture/shade.h"
 #include "raymarch/scene/threads.h"
 #include "sdf/error.h"
@@ -44,19 +47,6 @@ void add_status(const Border& border, Image<std::uint8_t>& status) {
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-GBufferLayers joined(const GBufferLayers& a, const GBufferLayers& b) {
-  return {a.depth || b.depth, a.position || b.position, a.normal || b.normal, a.n_dot_v || b.n_dot_v,
-          a.id || b.id,       a.material || b.material, a.face || b.face,     a.status || b.status};
-}
-
-void add_turned_notes(const BorderInput& input, std::vector<std::string>& notes) {
-  for (const std::int32_t id : input.gbuffer.turned) {
-    const auto index = static_cast<size_t>(id - 1);
-    const std::string name = index < input.scene.objects.size() ? input.scene.objects[index].name : fmt::format("object {}", id);
-    notes.push_back(fmt::format("'{}' is open and shows mostly its back: its normals are turned towards the eye", name));
-  }
 }
 
 Border draw_after(const BorderInput& input, bool with_notes, const MethodCall& call, const SampleInks* inks, size_t method) {
@@ -112,6 +102,25 @@ void draw_sample(const BorderInput& input, std::span<const MethodCall> methods, 
 }
 
 }  // namespace
+
+GBufferLayers joined(const GBufferLayers& a, const GBufferLayers& b) {
+  return {a.depth || b.depth, a.position || b.position, a.normal || b.normal, a.n_dot_v || b.n_dot_v,
+          a.id || b.id,       a.material || b.material, a.face || b.face,     a.status || b.status};
+}
+
+void add_turned_notes(const BorderInput& input, std::vector<std::string>& notes) {
+  for (const std::int32_t id : input.gbuffer.turned) {
+    const auto index = static_cast<size_t>(id - 1);
+    const std::string name = index < input.scene.objects.size() ? input.scene.objects[index].name : fmt::format("object {}", id);
+    notes.push_back(fmt::format("'{}' is open and shows mostly its back: its normals are turned towards the eye", name));
+  }
+}
+
+ExecutionSettings of_sample(const ExecutionSettings& how, int sample, int samples) {
+  ExecutionSettings part = how;
+  if (how.progress) part.progress = [&how, sample, samples](double done) { how.progress((sample + done) / samples); };
+  return part;
+}
 
 // The R2 sequence (Roberts 2018), whose generator is the plastic number; starts at the pixel's centre. Its first few points lie up to 0.2
 // px to one side in the mean, and so would everything drawn; the points after the first are moved back together.
@@ -170,6 +179,7 @@ GBufferLayers layers_read(const PictureSettings& settings, bool with_notes) {
 Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
                      const ExecutionSettings& how, FrameHistory* history) {
   check_methods(scene, model, settings);
+  if (history == nullptr && is_pixel_wise(model, settings)) return draw_pixel_wise(scene, model, camera, settings, how);
   Picture picture;
   ThreadArena arena(how.threads);
   GBufferLayers first = joined(settings.layers, layers_read(settings)), later = layers_read(settings, false);
@@ -183,13 +193,10 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
   SharedFindings shared;
   const Finish finish = finish_of(settings);
   for (int sample = 0; sample < settings.samples; ++sample) {
-    ExecutionSettings part = how;
-    if (how.progress) {
-      part.progress = [&how, sample, &settings](double done) { how.progress((sample + done) / settings.samples); };
-    }
     const auto start = Clock::now();
     // Only the first sample's G-buffer is handed on, and only it has notes.
-    render_gbuffer(model, camera, part, sample_offset(sample, settings.samples), sample == 0 ? first : later, gbuffer);
+    render_gbuffer(model, camera, of_sample(how, sample, settings.samples), sample_offset(sample, settings.samples),
+                   sample == 0 ? first : later, gbuffer);
     picture.trace_ms += ms_since(start);
     const auto number = static_cast<size_t>(sample);
     arena.execute([&] {
@@ -205,6 +212,12 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
   }
   if (mattes) picture.mattes = mattes->finish(settings.samples);
   if (history != nullptr) history->camera = camera;
+  picture.counts = count_hits(picture.gbuffer);
+  if (settings.bytes) {
+    picture.bytes = arena.execute([&] { return encoded(picture.composite); });
+    picture.composite = {};
+    picture.border = {};
+  }
   return picture;
 }
 

@@ -38,6 +38,7 @@ class ThreadArena {
       grant_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
     }
   }
+  int threads() const { return arena_.max_concurrency(); }
   template <class Work>
   auto execute(const Work& work) {
     const parallel_detail::Loop loop(__PRETTY_FUNCTION__);

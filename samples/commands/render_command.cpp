@@ -10,6 +10,7 @@
 #include "raymarch/files/picture_module.h"
 #include "raymarch/image_output.h"
 #include "raymarch/look.h"
+#include "raymarch/mesh/polygons.h"
 #include "raymarch/surface/view_level.h"
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
@@ -146,14 +147,16 @@ double write_picture(const Picture& picture, const Camera& camera, int index, co
   for (const fs::path& name : render.outputs) {
     if (is_animated(name, options)) continue;
     const fs::path file = picture_file(name, index, options);
-    OutputFile output =
-        ending_of(file) == ".exr" ? exr_output(picture, camera, call, file) : image_output(grounded ? over : picture.composite, file);
+    OutputFile output = ending_of(file) == ".exr" ? exr_output(picture, camera, call, file)
+                        : render.picture.bytes    ? image_output(picture.bytes, file)
+                                                  : image_output(grounded ? over : picture.composite, file);
     files.push_back({file, [write = std::move(output.write)](const fs::path& temporary) {
                        if (interrupted()) throw Cancelled{};
                        write(temporary);
                      }});
   }
-  if (plays(render, options)) render.frames.push_back(encode_png(grounded ? over : picture.composite));
+  if (plays(render, options))
+    render.frames.push_back(render.picture.bytes ? encode_png(picture.bytes) : encode_png(grounded ? over : picture.composite));
   // A layer file and the picture beside it show the same, or are both those of an earlier call.
   write_together(files);
   return since_ms(start);
@@ -212,7 +215,7 @@ void draw_one(const SceneModel& model, int index, const Options& options, Progre
   how.progress = bar.stage(pictures == 1 ? "tracing" : fmt::format("tracing {} {} of {}", name_of_one(options), index + 1, pictures));
   Picture picture = draw_picture(render.input.scene, model, render.camera, render.picture, how, render.flicker ? &history : nullptr);
   if (render.flicker) watch_frame(picture, history, render.camera, how, *render.flicker);
-  const HitCounts seen = count_hits(picture.gbuffer);
+  const HitCounts seen = picture.counts;
   render.timings.trace_ms += picture.trace_ms;
   render.timings.border_ms += picture.border_ms;
   render.counts.hits += seen.hits;
@@ -328,6 +331,16 @@ void choose_method(Render& render, Options& options) {
                                      100.0 * share, kMethodOfFlat, kDefaultMethod));
 }
 
+/// Of which the memory is estimated: colours of files are found in whole images.
+PictureSettings planned_picture(const Render& render) {
+  PictureSettings planned = render.picture;
+  for (const SceneObject& object : render.input.scene.objects) {
+    const auto* const source = std::get_if<MeshSource>(&object.source);
+    if (source != nullptr && has_colors(*source->mesh)) planned.bytes = false;
+  }
+  return planned;
+}
+
 int run(const Options& given) {
   Options options = with_defaults(given);
   const ThreadLimit threads(options.spec.threads);
@@ -358,7 +371,11 @@ int run(const Options& given) {
   const bool layered = std::any_of(render.outputs.begin(), render.outputs.end(), has_layers);
   render.picture.mattes = layered;
   if (!layered && !options.transparent && !options.ink_only && !render.picture.background) render.picture.background = render.ground;
-  if (!layered) render.picture.layers = layers_read(render.picture);
+  constexpr GBufferLayers none{false, false, false, false, false, false, false, false};
+  if (!layered) render.picture.layers = none;
+  const auto is_png = [](const fs::path& file) { return ending_of(file) == ".png" || ending_of(file) == ".apng"; };
+  const bool all_png = std::all_of(render.outputs.begin(), render.outputs.end(), is_png);
+  render.picture.bytes = all_png && options.frames.frames <= 1;
   // Made first: a camera that is wrong is told before the surface is built.
   const std::vector<Camera> cameras = cameras_of(options, render.input);
 
@@ -369,14 +386,13 @@ int run(const Options& given) {
   const bool is_local_volume = render.local && render.surface.kind == "level_set";
   if (!is_local_volume)
     check_cost(options, render.input.scene, render.surface,
-               picture_load(cameras.front(), render.picture, pictures_of(options),
+               picture_load(cameras.front(), planned_picture(render), pictures_of(options),
                             std::any_of(render.outputs.begin(), render.outputs.end(), has_layers)));
   render.warnings = warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods)});
 
   // While the surface is built.
-  const auto is_png = [](const fs::path& file) { return ending_of(file) == ".png" || ending_of(file) == ".apng"; };
   std::future<void> pictures;
-  if (!std::all_of(render.outputs.begin(), render.outputs.end(), is_png)) pictures = load_picture_module_early();
+  if (!all_png) pictures = load_picture_module_early();
   const auto build_start = std::chrono::steady_clock::now();
   std::vector<std::string> levels;
   if (options.spec.surface.level_for_view && !options.plan.tolerance_px)

@@ -6,8 +6,8 @@
 #include <future>
 #include <limits>
 
-#include "raymarch/files/srgb_bytes.h"
 #include "raymarch/image_io.h"
+#include "raymarch/picture/srgb_bytes.h"
 #include "samples/compare/comparison.h"
 #include "samples/experiment/empty_picture.h"
 #include "sdf/color.h"
@@ -20,7 +20,7 @@ namespace {
 // A gigabyte of float pictures becomes a quarter of it; the page and the sheet show eight bits anyway.
 Image<glm::u8vec4> packed(const Image<glm::vec4>& picture) {
   auto out = Image<glm::u8vec4>::unset(picture.width, picture.height);
-  const SrgbBytes srgb;
+  const SrgbBytes& srgb = srgb_bytes();
   parallel_parts(out.size(), size_t{1} << 14, [&](const IndexRange<size_t>& part) {
     for (size_t i = part.first; i < part.last; ++i) {
       const glm::vec4& color = picture.pixels[i];

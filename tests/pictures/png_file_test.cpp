@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 #include <tbb/task_arena.h>
 
 #include <bit>
@@ -9,7 +10,8 @@
 #include <limits>
 #include <random>
 
-#include "raymarch/files/srgb_bytes.h"
+#include "raymarch/picture/pixel_lanes.h"
+#include "raymarch/picture/srgb_bytes.h"
 #include "sdf/color.h"
 #include "tests/random_seed.h"
 #include "tests/temporary_folder.h"
@@ -88,6 +90,43 @@ TEST(SrgbBytes, AreThoseOfTheFormula) {
   for (const float odd : {0.0f, -0.0f, -1.0f, 1.0f, 2.0f, std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
                           std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::denorm_min()})
     expect_same(odd);
+}
+
+TEST(SrgbBytes, OfManyPixelsAreThoseOfEachByItself) {
+  std::mt19937 random(random_seed());
+  const auto number = [&] { return std::uniform_real_distribution<float>(-0.1f, 1.2f)(random); };
+  const std::vector<float> odd = {0.0f,
+                                  -0.0f,
+                                  1.0f,
+                                  0x1p-13f,
+                                  std::numeric_limits<float>::quiet_NaN(),
+                                  std::numeric_limits<float>::infinity(),
+                                  -std::numeric_limits<float>::infinity(),
+                                  std::numeric_limits<float>::denorm_min(),
+                                  0.5f / 255.0f};
+  const auto any = [&] { return random() % 4 == 0 ? odd[random() % odd.size()] : number(); };
+  const std::int64_t all = hwy::SupportedTargets();
+  for (std::int64_t target = 1; target > 0 && target <= all; target <<= 1) {
+    if (!(all & target)) continue;
+    hwy::SetSupportedTargetsForTest(all & ~(target - 1));
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    std::vector<glm::vec4> colors(20003);
+    for (glm::vec4& color : colors)
+      color = random() % 3 == 0 ? glm::vec4(number(), number(), number(), 1.0f) : glm::vec4(any(), any(), any(), any());
+    // Alphas halfway between two codes.
+    for (int code = 0; code < 255; ++code) colors[static_cast<size_t>(code)].a = (static_cast<float>(code) + 0.5f) / 255.0f;
+    std::vector<glm::u8vec4> bytes(colors.size());
+    encode_pixels(colors, bytes);
+    for (size_t i = 0; i < colors.size(); ++i) {
+      const glm::vec4& color = colors[i];
+      const glm::vec3 apart = color.a > 0.0f ? glm::vec3(color) / color.a : glm::vec3(color);
+      for (int channel = 0; channel < 3; ++channel)
+        ASSERT_EQ(bytes[i][channel], srgb_bytes()(apart[channel])) << apart[channel] << ", " << hwy::TargetName(target);
+      ASSERT_EQ(bytes[i].a, to_byte(color.a)) << color.a << ", " << hwy::TargetName(target);
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
 }
 
 }  // namespace

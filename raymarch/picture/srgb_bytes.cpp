@@ -1,4 +1,4 @@
-#include "raymarch/files/srgb_bytes.h"
+#include "raymarch/picture/srgb_bytes.h"
 
 #include <algorithm>
 #include <bit>
@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sdf/color.h"
+#include "sdf/error.h"
 
 namespace limn {
 namespace {
@@ -13,6 +14,12 @@ namespace {
 constexpr int kShift = 23;
 
 std::uint8_t by_formula(float linear) { return to_byte(srgb_from_linear(linear)); }
+
+/// The least of a key.
+float float_of(size_t key) {
+  constexpr int kKeyShift = kShift - SrgbBytes::kMantissaBits;
+  return std::bit_cast<float>((static_cast<std::uint32_t>(key) << kKeyShift) + (std::uint32_t{SrgbBytes::kFirstExponent} << kShift));
+}
 
 /// Floats above 0 are in the order of their bits.
 float smallest_with(std::uint8_t code) {
@@ -32,11 +39,16 @@ std::uint8_t to_byte(float value) {
 }
 
 SrgbBytes::SrgbBytes() {
-  for (size_t code = 1; code < 256; ++code) from_[code] = smallest_with(static_cast<std::uint8_t>(code));
-  from_[256] = std::numeric_limits<float>::infinity();
-  for (size_t key = 0; key < first_.size(); ++key) {
-    const std::uint32_t bits = (static_cast<std::uint32_t>(key) << (kShift - kMantissaBits)) + (std::uint32_t{kFirstExponent} << kShift);
-    first_[key] = by_formula(std::bit_cast<float>(bits));
+  std::array<float, 257> from{};  // the least float of each code
+  for (size_t code = 1; code < 256; ++code) from[code] = smallest_with(static_cast<std::uint8_t>(code));
+  from[256] = std::numeric_limits<float>::infinity();
+  size_t code = 0;
+  for (size_t key = 0; key < kKeys; ++key) {
+    const float least = float_of(key), after = float_of(key + 1);
+    while (least >= from[code + 1]) ++code;
+    first_[key] = static_cast<std::int32_t>(code);
+    next_[key] = from[code + 1];
+    LIMN_CHECK(code == 255 || from[code + 2] >= after);
   }
 }
 
@@ -44,9 +56,12 @@ std::uint8_t SrgbBytes::operator()(float linear) const {
   if (!(linear >= 0x1p-13f)) return 0;
   if (linear >= 1.0f) return 255;
   const std::uint32_t key = (std::bit_cast<std::uint32_t>(linear) - (std::uint32_t{kFirstExponent} << kShift)) >> (kShift - kMantissaBits);
-  size_t code = first_[key];
-  while (linear >= from_[code + 1]) ++code;
-  return static_cast<std::uint8_t>(code);
+  return static_cast<std::uint8_t>(first_[key] + (linear >= next_[key] ? 1 : 0));
+}
+
+const SrgbBytes& srgb_bytes() {
+  static const SrgbBytes bytes;
+  return bytes;
 }
 
 }  // namespace limn

@@ -1,0 +1,20 @@
+#pragma once
+// Internal: what the two ways to draw a picture share, sample by sample and tile by tile.
+
+#include <string>
+#include <vector>
+
+#include "raymarch/picture.h"
+
+namespace limn {
+
+/// What either asks for.
+GBufferLayers joined(const GBufferLayers& a, const GBufferLayers& b);
+
+/// Of open meshes that show their back.
+void add_turned_notes(const BorderInput& input, std::vector<std::string>& notes);
+
+/// With the progress of one of `samples` samples as a part of the whole. Refers to `how`.
+ExecutionSettings of_sample(const ExecutionSettings& how, int sample, int samples);
+
+}  // namespace limn

@@ -1,0 +1,17 @@
+#pragma once
+// Internal: pictures whose methods are pixel-wise. Each tile is inked, shaded and added up by the thread that traced it, as long as it is
+// in its cache; no layer goes through memory but those that somebody reads afterwards.
+
+#include "raymarch/picture.h"
+
+namespace limn {
+
+/// True where draw_pixel_wise() draws such pictures, of models to which no file gives colours.
+bool is_pixel_wise(const PictureSettings& settings);
+bool is_pixel_wise(const SceneModel& model, const PictureSettings& settings);
+
+/// As draw_picture() does without a history, the same bytes.
+Picture draw_pixel_wise(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
+                        const ExecutionSettings& how);
+
+}  // namespace limn

@@ -117,7 +117,7 @@ class EventFinder {
     }
     for (size_t k = 0; k < changes_.size();) {
       size_t end = k + 1;
-      while (end < changes_.size() && length_between(changes_[end - 1], changes_[end]) < kOneCusp_px) ++end;
+      while (end < changes_.size() && length_between(changes_[end - 1], changes_[end]) < one_cusp_px()) ++end;
       if ((end - k) % 2 == 1)
         apart_.push_back(located({changes_[k].before, changes_[end - 1].after, 0.0, {}}));
       else
@@ -199,12 +199,12 @@ class EventFinder {
     const double length = walk_.length_to(second.at) - walk_.length_to(first.at);
     if (length < kShortestTail_px) return {};
     const bool ahead_along =
-        lies_along(px_between(curve_, first.at, second.at, camera_), walk_.px_from(second.at, length, 1), curve_.apart_px);
+        lies_along(px_between(curve_, first.at, second.at, camera_), walk_.px_from(second.at, length, 1), arms_apart_px());
     const CurveEvent &leaves = ahead_along ? first : second, &goes_along = ahead_along ? second : first;
     const int way = ahead_along ? -1 : 1;
     const std::vector<glm::dvec2> along = walk_.px_from(goes_along.at, length, -way), leaving = walk_.px_from(leaves.at, length, way);
     size_t common = 1;
-    while (common < leaving.size() && lies_along({leaving[common]}, along, curve_.apart_px)) ++common;
+    while (common < leaving.size() && lies_along({leaving[common]}, along, arms_apart_px())) ++common;
     double half_px = 0.0;
     for (size_t i = 1; i < common; ++i) half_px += 0.5 * glm::distance(leaving[i - 1], leaving[i]);
     if (half_px > kMostShared_px) return {};
@@ -254,8 +254,8 @@ class EventFinder {
     };
     if (std::any_of(events_.begin(), events_.end(), crosses_itself)) return false;
     const std::vector<glm::dvec2> middle = px_between(curve_, first, second, camera_);
-    return lies_along(middle, walk_.px_from(second, length, 1), curve_.apart_px) ||
-           lies_along(middle, walk_.px_from(first, length, -1), curve_.apart_px);
+    return lies_along(middle, walk_.px_from(second, length, 1), arms_apart_px()) ||
+           lies_along(middle, walk_.px_from(first, length, -1), arms_apart_px());
   }
   /// Where a line runs along a nearer one, as two rims of a tube seen down its axis do, their polylines cross again and again: two
   /// crossings of the same pair of lines, between which these lie on each other, are none.
@@ -301,8 +301,7 @@ class EventFinder {
   /// A crease leaves a contour, and the two arms of a cusp each other, along their common tangent: polylines of them cross again and again
   /// there, and the curves do not.
   bool is_tangency(const NearerCrossing& crossing) const {
-    if (crossing.curve == number_)
-      return one_cusp_between(crossing.at, crossing.on_nearer) || closes_undone(crossing) || is_spike(crossing);
+    if (crossing.curve == number_) return is_tip_of_cusp(crossing) || closes_undone(crossing) || is_spike(crossing);
     const SurfaceCurve& other = curves_[crossing.curve];
     const double longest_px = std::min(curve_.tangency_px, other.tangency_px);
     for (const Stretch& own : to_ends(curve_, crossing.at, longest_px, camera_)) {
@@ -314,17 +313,21 @@ class EventFinder {
   }
 
   double apart_from(const SurfaceCurve& other) const { return std::max(curve_.apart_px, other.apart_px); }
+  /// Of a curve that is known between its samples everything wider than what its polyline leaves it by can be told apart: cusps along it,
+  /// and its arms, which cross where their polylines do.
+  double one_cusp_px() const { return curve_.between ? kSmoothLens_px : kOneCusp_px; }
+  double arms_apart_px() const { return curve_.between ? kSmoothLens_px : curve_.apart_px; }
 
   /// Between the two passages the curve goes there and back on the same way, as beside the tip of a cone, and not by way of two cusps.
   bool is_spike(const NearerCrossing& crossing) const {
     const double from = std::min(crossing.at, crossing.on_nearer), to = std::max(crossing.at, crossing.on_nearer);
     if (walk_.length_to(to) - walk_.length_to(from) > kLongestNarrow_px) return false;
-    if (cusps_between(from, to) == 2) return false;
+    if (cusps_between(from, to).size() == 2) return false;
     const std::vector<glm::dvec2> px = px_between(curve_, from, to, camera_);
     const auto farther = [&](const glm::dvec2& a, const glm::dvec2& b) { return glm::distance(a, px[0]) < glm::distance(b, px[0]); };
     const auto turn = std::max_element(px.begin(), px.end(), farther);
     const std::vector<glm::dvec2> there(px.begin(), turn + 1), back(turn, px.end());
-    return lies_along(there, back, curve_.apart_px) && lies_along(back, there, curve_.apart_px);
+    return lies_along(there, back, arms_apart_px()) && lies_along(back, there, arms_apart_px());
   }
 
   /// Of a swallowtail so small that its cusps are none, the crossing is none either.
@@ -340,15 +343,24 @@ class EventFinder {
     });
   }
 
-  bool one_cusp_between(double one, double other) const {
-    if (std::fabs(walk_.length_to(one) - walk_.length_to(other)) > 2.0 * kTangency_px) return false;
-    return cusps_between(std::min(one, other), std::max(one, other)) == 1;
+  /// Beside the one cusp between its two passages. Arms of a curve that is known between its samples may part and cross after it.
+  bool is_tip_of_cusp(const NearerCrossing& crossing) const {
+    const double from = std::min(crossing.at, crossing.on_nearer), to = std::max(crossing.at, crossing.on_nearer);
+    if (walk_.length_to(to) - walk_.length_to(from) > 2.0 * kTangency_px) return false;
+    const std::vector<double> cusps = cusps_between(from, to);
+    if (cusps.size() != 1) return false;
+    if (!curve_.between) return true;
+    const std::vector<glm::dvec2> there = px_between(curve_, from, cusps[0], camera_), back = px_between(curve_, cusps[0], to, camera_);
+    return lies_along(there, back, arms_apart_px()) && lies_along(back, there, arms_apart_px());
   }
-  std::ptrdiff_t cusps_between(double from, double to) const {
+  std::vector<double> cusps_between(double from, double to) const {
     const auto steps = static_cast<double>(walk_.size());
-    return std::count_if(apart_.begin(), apart_.end(), [&](const SignChange& change) {
-      return (change.place > from && change.place < to) || (change.place - steps > from && change.place - steps < to);
-    });
+    std::vector<double> places;
+    for (const SignChange& change : apart_) {
+      for (const double place : {change.place, change.place - steps})
+        if (place > from && place < to) places.push_back(place);
+    }
+    return places;
   }
 
   /// From a place on a curve along it to an end or a joint.

@@ -45,6 +45,7 @@ struct Refiner {
   const Viewer& viewer;
   double tolerance_px;
   double extent;
+  bool far_aside = true;  ///< Points between are looked for farther aside than a step is long, too.
 };
 
 struct Refined {
@@ -80,8 +81,9 @@ void halve(const Refiner& refiner, FieldEvaluator& evaluator, double c, const Cu
     middle = point_between(evaluator, refiner.viewer, c, a, b, glm::mix(a.p, b.p, share));
     if (middle) break;
   }
-  // Where a curve turns back within a step it may go farther aside than it is long.
-  if (!middle && glm::distance(image_of(refiner.camera, a.p), image_of(refiner.camera, b.p)) > kTurning_px)
+  // Where a curve turns back within a step it may go farther aside than the step is long. Where curves are followed, one that could not be
+  // lies among folds narrower than a voxel: what is found so far aside is another one of them.
+  if (!middle && refiner.far_aside && glm::distance(image_of(refiner.camera, a.p), image_of(refiner.camera, b.p)) > kTurning_px)
     middle = point_between(evaluator, refiner.viewer, c, a, b, glm::mix(a.p, b.p, 0.5), 4.0);
   if (!middle) {
     ++out.unrefined;
@@ -292,8 +294,12 @@ void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurv
     }
     cut[i] = cut_to_surface(strand, cutting);
     if (strand.second >= 0 || strand.followed) return;
-    const Refiner refiner{search.sharp.branches[static_cast<size_t>(strand.first)], search.camera, search.viewer, settings.tolerance_px,
-                          settings.extent};
+    const Refiner refiner{search.sharp.branches[static_cast<size_t>(strand.first)],
+                          search.camera,
+                          search.viewer,
+                          settings.tolerance_px,
+                          settings.extent,
+                          settings.follow == 0.0};
     for (FieldCurve& curve : cut[i]) {
       refine(refiner, curve, stats[i]);
       stats[i].broken += count_broken(refiner, curve);

@@ -19,6 +19,7 @@ constexpr double kCorrection = 0.05;  // of a step, by which the prediction may 
 constexpr double kClosing = 0.15;     // of a step: so near it the start is the end
 constexpr double kTurn = 0.95;        // the cosine of the angle between tangents, and between normals, along a step
 constexpr double kLongest_px = 1.0;
+constexpr double kLeastTurning = 1e-3;  // of the longest step: shorter ones are not searched for turns of the image
 constexpr size_t kMostPoints = 50'000;
 constexpr size_t kBatch = 16;                          // strands that are followed at once
 constexpr double kOnPath = 0.15, kOnPathLeast = 1e-3;  // of a step, and of the longest step
@@ -109,6 +110,17 @@ class Follower {
     return glm::dvec2(project(camera_, p + small * way) - project(camera_, p - small * way)) / (2.0 * small);
   }
 
+  /// The image turns back and forth within a step, as at the two cusps of a swallowtail, by the parabola that its speed follows: what it is
+  /// at either end and, from the chord, in the mean.
+  bool turns_twice(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec2& start, const glm::dvec2& end, double step) const {
+    const double speed = glm::length(start);
+    if (!(speed > 0.0)) return false;
+    const double last = glm::dot(end, start) / speed,
+                 mean = glm::dot(glm::dvec2(project(camera_, to) - project(camera_, from)), start) / (speed * step),
+                 bend = 3.0 * (speed + last) - 6.0 * mean, slope = last - speed - bend;
+    return last > 0.0 && slope < 0.0 && slope > -2.0 * bend && 4.0 * bend * speed < slope * slope;
+  }
+
   /// A step that is shortened until it stays on the curve and on its chord, and grows for the next one.
   std::optional<CurvePoint> advance(const CurvePoint& from, const glm::dvec3& tangent, const glm::dvec3& bend, double& step) {
     const glm::dvec2 start = image_way(from.p, tangent);
@@ -124,7 +136,7 @@ class Follower {
       const glm::dvec2 end = image_way(next->p, turned);
       const double turn = std::fabs(std::atan2(start.x * end.y - start.y * end.x, glm::dot(start, end)));
       const double sagitta = 0.5 * (glm::length(start) + glm::length(end)) * step * turn / 8.0;
-      if (sagitta > most) continue;
+      if (sagitta > most || (step > kLeastTurning * settings_.longest_step && turns_twice(from.p, next->p, start, end, step))) continue;
       step *= std::clamp(0.8 * std::sqrt(most / std::max(sagitta, 1e-300)), 0.7, 2.0);
       return next;
     }

@@ -218,6 +218,99 @@ TEST(LineEvents, ContoursAreFollowedWholeAndOnceHoweverTheirSeedsWereJoined) {
   }
 }
 
+/// A curve that is known between its samples, where its polyline is the curve itself.
+SurfaceCurve exact_curve(const Camera& camera, const std::vector<glm::dvec2>& px, const std::vector<double>& radial_curvatures) {
+  SurfaceCurve curve;
+  curve.smooth = true;
+  double z = 2.0;
+  for (size_t i = 0; i < px.size(); ++i, z -= 0.01) curve.samples.push_back(sample_of(camera, px[i], z, radial_curvatures[i]));
+  for (CurveSample& sample : curve.samples) sample.more_on_left = 2;
+  curve.between = [samples = curve.samples](size_t step, double share) {
+    return glm::mix(samples[step].p, samples[std::min(step + 1, samples.size() - 1)].p, share);
+  };
+  return curve;
+}
+
+TEST(LineEvents, ArmsThatPartAfterACuspCrossWhereTheyMeetAgain) {
+  // Between the cusp and where the arms meet, 2.5 px from it, they lie up to 0.02 px apart.
+  const Camera camera = flat_view();
+  std::vector<glm::dvec2> px;
+  std::vector<double> curvatures;
+  const auto off = [](double x) { return 0.01 * std::sin(kPi * x / 2.5); };
+  for (int i = 41; i >= 1; --i) px.push_back({0.1 * i, -off(0.1 * i)}), curvatures.push_back(1.0);
+  for (int i = 1; i <= 41; ++i) px.push_back({0.1 * i, off(0.1 * i)}), curvatures.push_back(-1.0);
+  const SurfaceCurve curve = exact_curve(camera, px, curvatures);
+  const double cusp = 0.5 * (curve.samples[40].p.z + curve.samples[41].p.z);
+  const LayersBefore rays = [&](const CurveSample& sample) { return LayersSeen{sample.p.z > cusp ? 0 : sample.p.x < 0.25 ? 1 : 3}; };
+  const CutCurves cut = cut_by_invisibility({curve}, camera, 5.0, rays, {});
+  EXPECT_TRUE(cut.conflicts.empty());
+  std::vector<int> seen;
+  for (const CurvePiece& piece : cut.curves[0].pieces) seen.push_back(piece.invisibility);
+  EXPECT_EQ(seen, (std::vector<int>{0, 1, 3}));
+  // Lines tell it, and no rays have to look for it.
+  EXPECT_LT(cut.rays, 10);
+}
+
+TEST(LineEvents, ASwallowtailOfAFiftiethOfAPixelIsThereWhereTheCurveIsKnownBetweenItsSamples) {
+  const Camera camera = flat_view();
+  std::vector<glm::dvec2> px;
+  std::vector<double> curvatures;
+  for (int i = 100; i >= 1; --i) px.push_back({-0.1 * i, -0.01 * i}), curvatures.push_back(1.0);
+  for (const double x : {-0.005, 0.0, 0.005, 0.0099}) px.push_back({x, 0.1 * x}), curvatures.push_back(1.0);
+  for (const double x : {0.0098, 0.003, -0.003, -0.0098}) px.push_back({x, 0.001}), curvatures.push_back(-1.0);
+  for (const double x : {-0.0099, -0.005, 0.001, 0.005}) px.push_back({x, 0.00001 - 0.1 * x}), curvatures.push_back(1.0);
+  for (int i = 1; i <= 100; ++i) px.push_back({0.1 * i, -0.01 * i}), curvatures.push_back(1.0);
+  const SurfaceCurve curve = exact_curve(camera, px, curvatures);
+  const auto middle = [&](size_t i) { return 0.5 * (curve.samples[i].p.z + curve.samples[i + 1].p.z); };
+  const double first = middle(103), second = middle(107);
+  const LayersBefore rays = [&](const CurveSample& sample) {
+    const glm::dvec3& p = sample.p;
+    return LayersSeen{p.z > first ? 0 : p.z > second ? 1 : p.x < 5e-6 ? 2 : 0};
+  };
+  const CutCurves cut = cut_by_invisibility({curve}, camera, 5.0, rays, {});
+  EXPECT_TRUE(cut.conflicts.empty());
+  std::vector<int> seen;
+  for (const CurvePiece& piece : cut.curves[0].pieces) seen.push_back(piece.invisibility);
+  EXPECT_EQ(seen, (std::vector<int>{0, 1, 2, 0}));
+}
+
+TEST(LineEvents, FollowedContoursHaveEveryCuspWhateverTheirLongestStep) {
+  // A torus turned to where its cusps are born: two close to each other, within one long step.
+  constexpr double kMajor = 1.0, kMinor = 0.35;
+  const Field torus = make_shape("torus", {{"major", {kMajor}}, {"minor", {kMinor}}});
+  int with_cusps = 0;
+  for (double tilt = 30.0; tilt < 70.0; tilt += 0.25) {
+    CameraSettings settings;
+    settings.target = {0.0, 0.0, 0.0};
+    settings.eye = 20.0 * glm::dvec3(0.0, std::cos(glm::radians(tilt)), std::sin(glm::radians(tilt)));
+    settings.up = {1.0, 0.0, 0.0};
+    settings.projection = Projection::orthographic;
+    settings.ortho_height = 3.0;
+    settings.width_px = settings.height_px = 20;
+    const Camera camera = resolve_camera(settings, {glm::dvec3(-1.5), glm::dvec3(1.5)});
+    const Viewer viewer = make_viewer(camera, glm::dvec3(0.0));
+    const auto cusps = [&](double longest_step) {
+      // From above the hole's inner side, where the contour has no cusps.
+      Strand strand;
+      CurvePoint point;
+      point.p = {kMajor - kMinor, 0.0, 0.0};
+      strand.points.push_back(point);
+      const std::vector<Strand> found = follow_strands({strand}, torus, camera, viewer, {0.05, longest_step}, {});
+      int changes = 0;
+      for (const Strand& one : found) {
+        for (size_t i = 0; i < one.points.size(); ++i)
+          changes += (one.points[i].radial_curvature > 0.0) != (one.points[(i + 1) % one.points.size()].radial_curvature > 0.0);
+      }
+      return found.size() == 1 && found[0].followed ? changes : -1;
+    };
+    const int fine = cusps(0.01);
+    ASSERT_GE(fine, 0) << tilt;
+    with_cusps += fine > 0;
+    EXPECT_EQ(cusps(0.4), fine) << tilt << " degrees";
+  }
+  EXPECT_GT(with_cusps, 10);
+}
+
 TEST(LineEvents, RaysThatGrazeALevelSetGoThroughBothOfItsSheets) {
   // Within a hundredth of a voxel of a ball's silhouette both sheets lie within one of the ray's steps.
   constexpr double kVoxel = 0.02, kRadius = 0.8;

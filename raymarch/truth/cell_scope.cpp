@@ -177,14 +177,19 @@ Interval CellBounds::value_in(const CellScope& scope, size_t at, int lane) const
   return tighter({of.lower[lane], of.upper[lane]}, {middle - reach - slack, middle + reach + slack});
 }
 
+/// Fills `values_`, and of `nodes_` which branches are relevant in the box; false where it holds no surface.
+bool CellBounds::values_hold_surface(const CellScope& scope, size_t lane) {
+  values_.resize(scope.branches.size());
+  for (size_t at = 0; at < values_.size(); ++at) values_[at] = value_in(scope, at, static_cast<int>(lane));
+  return find_relevant(search_.sharp, scope.branches, values_, nodes_);
+}
+
 void CellBounds::find_in(const CellScope& scope, size_t lane, Survivors& found) {
   found.relevant.clear();
   found.branches.clear();
   found.seams.clear();
   const auto i = static_cast<int>(lane);
-  values_.resize(scope.branches.size());
-  for (size_t at = 0; at < values_.size(); ++at) values_[at] = value_in(scope, at, i);
-  if (!find_relevant(search_.sharp, scope.branches, values_, nodes_)) return;
+  if (!values_hold_surface(scope, lane)) return;
   candidates_.clear();
   facing_.clear();
   for (size_t at = 0; at < values_.size(); ++at) {

@@ -50,6 +50,8 @@ struct NodeScratch {
   std::vector<char> relevant{};
 };
 
+struct ModelledCells;  // raymarch/truth/cell_models.h
+
 /// Bounds over boxes, for one thread.
 class CellBounds {
  public:
@@ -57,6 +59,9 @@ class CellBounds {
 
   /// What cubes of one size hold, at most kLanes of them; all of them within what the scope is for.
   void find(const CellScope& scope, std::span<const glm::dvec3> lower, double side, std::span<Survivors> found);
+  /// The same for views from anywhere, of eight cubes at most; false where formulas stand in the way. `innermost`: nobody asks for what is
+  /// inside the cubes.
+  bool model(const CellScope& scope, std::span<const glm::dvec3> lower, double side, bool innermost, ModelledCells& out);
   /// The scope for what lies in the i-th of the boxes that were asked for last.
   CellScope inside(const CellScope& scope, const Survivors& found, size_t lane) const;
 
@@ -64,6 +69,9 @@ class CellBounds {
   void set_boxes(std::span<const glm::dvec3> lower, double side);
   void bound_branch(const CellScope& scope, size_t at, bool facing);
   void find_in(const CellScope& scope, size_t lane, Survivors& found);
+  bool values_hold_surface(const CellScope& scope, size_t lane);
+  void find_zeros(const CellScope& scope, size_t lanes, std::array<std::vector<size_t>, 8>& relevant,
+                  std::array<std::vector<size_t>, 8>& zero);
   Interval value_in(const CellScope& scope, size_t at, int lane) const;
   std::array<Interval, kCurveFamilies> facing_in(size_t at, size_t lane) const;
 

@@ -10,7 +10,6 @@ namespace limn {
 namespace {
 
 constexpr double kClear = 0.02;  // of N.V
-constexpr int kNearCells = 2;    // cells this near a found curve are cut into parts as fine as its tube
 constexpr int kParts = 1 << kNearCuts;
 static_assert(kParts == 4);    // a cell's parts are one block of a CellSet
 constexpr int kBlockCuts = 2;  // from the blocks whose finest cells are looked at together
@@ -45,16 +44,15 @@ class CellSet {
     const std::uint64_t* found = blocks_.find(packed(index));
     return found != nullptr ? *found : 0;
   }
-  bool contains(const glm::ivec3& cell) const { return (block({cell.x >> 2, cell.y >> 2, cell.z >> 2}) & bit_of(cell)) != 0; }
 
  private:
   static std::uint64_t bit_of(const glm::ivec3& cell) { return std::uint64_t{1} << ((cell.x & 3) << 4 | (cell.y & 3) << 2 | (cell.z & 3)); }
   KeyedValues<std::uint64_t> blocks_{};
 };
 
-/// What lies beside found curves: cells within kNearCells of one that a curve goes through, and parts of cells beside such a part.
+/// What lies beside found curves: parts of cells beside one that a curve goes through.
 struct Tubes {
-  CellSet cells{}, parts{};
+  CellSet parts{};
 
   void add(const CellGrid& grid, const CellCurves& curves) {
     KeyedValues<glm::dvec3> points;
@@ -63,16 +61,14 @@ struct Tubes {
       glm::dvec3& point = points.at(crossing.key, added);
       if (added) point = (crossing.point.p - grid.corner) / grid.side;
     }
-    glm::ivec3 last_cell(INT_MIN), last_part(INT_MIN);
+    glm::ivec3 last_part(INT_MIN);
     for (const Link& link : curves.links) {
       const glm::dvec3 a = *points.find(link.from), b = *points.find(link.to);
       const int steps = 1 + static_cast<int>(glm::distance(a, b) * 2.0 * kParts);
       for (int i = 0; i <= steps; ++i) {
         const glm::dvec3 p = glm::mix(a, b, static_cast<double>(i) / steps);
-        const glm::ivec3 cell(glm::floor(p)), part(glm::floor(p * static_cast<double>(kParts)));
-        if (cell != last_cell) cells.insert_around(cell, kNearCells);
+        const glm::ivec3 part(glm::floor(p * static_cast<double>(kParts)));
         if (part != last_part) parts.insert_around(part, 1);
-        last_cell = cell;
         last_part = part;
       }
     }
@@ -141,7 +137,7 @@ class Settler {
     for (size_t i = 0; i < cells.size(); ++i) {
       near_.restrict_to(search_.grid.cell(cells[i]));
       // The cell's parts that are as fine as the tubes are a block of theirs.
-      const std::uint64_t in_tubes = tubes_.cells.contains(cells[i]) ? tubes_.parts.block(cells[i]) : 0;
+      const std::uint64_t in_tubes = tubes_.parts.block(cells[i]);
       stays[i] = !found[i].empty() && parts_stay(inner[i], search_.grid.side, cells[i], kSettlingCuts, in_tubes);
     }
   }
@@ -204,13 +200,18 @@ class Settler {
 
 }  // namespace
 
-void settle(const CellSearch& search, const CellTapes& tapes, const std::vector<glm::ivec3>& cells, CellResult& result,
+void settle(const CellSearch& search, const CellTapes& tapes, const std::vector<OpenCell>& open, CellResult& result,
             const ExecutionSettings& how) {
   Tubes tubes;
   for (const auto& [branch, families] : result.branches) {
     for (const CellCurves& curves : families) tubes.add(search.grid, curves);
   }
   for (const auto& [seam, curves] : result.seams) tubes.add(search.grid, curves);
+  // Most cells have nothing open but what lies beside the curves found in them.
+  std::vector<glm::ivec3> cells;
+  for (const OpenCell& cell : open) {
+    if ((cell.parts & ~tubes.parts.block(cell.cell)) != 0) cells.push_back(cell.cell);
+  }
   std::vector<std::uint8_t> left(cells.size(), 0);
   parallel_parts(cells.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};

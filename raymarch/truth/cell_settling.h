@@ -10,9 +10,15 @@ inline constexpr int kSettlingCuts = 4, kNearCuts = 2;
 /// So near a found curve, in finest cells, bounds do not tell it from another one.
 inline constexpr double kUnprovenReach = 2.0 / (1 << kNearCuts);
 
+/// A finest cell that bounds leave a curve in, and in which of its 4 x 4 x 4 parts they do: bit 16 x + 4 y + z.
+struct OpenCell {
+  glm::ivec3 cell{0};
+  std::uint64_t parts = ~std::uint64_t{0};
+};
+
 /// Counts in `result.unsettled` the cells that may hold a curve besides those found: cut again, some part of them is neither excluded by
 /// bounds, nor by N.V at its corners, nor within kUnprovenReach of a curve. Throws Cancelled.
-void settle(const CellSearch& search, const CellTapes& tapes, const std::vector<glm::ivec3>& cells, CellResult& result,
+void settle(const CellSearch& search, const CellTapes& tapes, const std::vector<OpenCell>& cells, CellResult& result,
             const ExecutionSettings& how);
 
 }  // namespace limn

@@ -3,7 +3,7 @@
 namespace limn {
 
 size_t LatticeRegion::bytes() const {
-  size_t sum = 0;
+  size_t sum = modelled.bytes() + modelled_bytes;
   for (const auto& [branch, samples] : branches) sum += samples.bytes();
   for (const auto& [pair, curves] : seams) sum += curves.crossings.capacity() * sizeof(Crossing) + curves.links.capacity() * sizeof(Link);
   return sum;

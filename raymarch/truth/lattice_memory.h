@@ -2,11 +2,14 @@
 // Internal: what views of one body share, wherever they look from: its surface on the edges of a lattice, and its seams.
 
 #include <map>
+#include <memory>
 #include <utility>
 
 #include "raymarch/truth/marching_tetrahedra.h"
 
 namespace limn {
+
+struct ModelledCells;  // raymarch/truth/cell_models.h
 
 /// A part of a lattice that one thread works on.
 struct LatticeRegion {
@@ -14,6 +17,9 @@ struct LatticeRegion {
   /// Of two branches each, where seams are followed whatever N.V is beside them; `has_seams` once they are found.
   std::map<std::pair<int, int>, CellCurves> seams{};
   bool has_seams = false;
+  /// The eight children of each cell that was looked into, by level and cell.
+  KeyedValues<std::shared_ptr<const ModelledCells>> modelled{};
+  size_t modelled_bytes = 0;
   size_t bytes() const;
 };
 

@@ -206,7 +206,7 @@ class Cutter {
   /// What ends were bracketed with, and steps were proven with, is more than the curve's shape needs: from each point on, as far as a chord
   /// goes along all between.
   FieldCurve curve_of(const std::vector<Spot>& stretch, bool closed) const {
-    FieldCurve curve{strand_.c, closed, strand_.whole, strand_.whole && !intersection_, {}};
+    FieldCurve curve{strand_.c, closed, strand_.whole, strand_.whole && !intersection_, {}, strand_.first, strand_.second};
     const size_t n = stretch.size();
     for (size_t i = 0; i < n;) {
       curve.points.push_back(stretch[i].point);

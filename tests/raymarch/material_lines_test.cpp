@@ -215,6 +215,27 @@ TEST(MaterialLines, ChangeWhereAnEdgePassesFromPartToPart) {
   }
 }
 
+TEST(FieldLines, TurnWhereAContourDipsThroughAnEdgeForHalfAPixel) {
+  // The edge is a fold but for half a pixel: there the fold is the contour beyond the edge, which begins and ends on it.
+  const Scene scene = scene_of({object_of(cut_pair())});
+  const Box box = bounds(scene);
+  const glm::dvec3 eye(8.419723276817496, -2.099961961751548, 4.066719319675369), off = eye - box.center();
+  const Camera camera = line_view(box, glm::normalize(off), glm::length(off) / box.radius(), true);
+  const ViewGraph graph = solve_lines(scene, camera, {}, {});
+  EXPECT_EQ(conflicts_of(graph), "");
+  const auto dip = [](const LineEdge& edge) {
+    const double px = glm::distance(edge.points.front().px, edge.points.back().px);
+    return edge.line_class == LineClass::crease && px > 0.45 && px < 0.55;
+  };
+  EXPECT_EQ(std::count_if(graph.edges.begin(), graph.edges.end(), dip), 1);
+  for (const LineEdge& edge : graph.edges) {
+    for (const int v : {edge.begin, edge.end}) {
+      ASSERT_GE(v, 0);
+      EXPECT_NE(graph.vertices[static_cast<size_t>(v)].kind, VertexKind::end);
+    }
+  }
+}
+
 TEST(MaterialLines, EndWhereTheyMeetCreasesAndContours) {
   std::mt19937 random(random_seed());
   const Scene scene = scene_of({object_of(cut_pair())});

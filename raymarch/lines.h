@@ -18,7 +18,7 @@ enum class LineClass : std::uint8_t {
   boundary,      ///< An open edge of a surface.
   crease,        ///< Two normals of one object meet at an angle.
   intersection,  ///< Two objects pass through each other.
-  material,      ///< Two materials meet: on a mesh, or where two objects meet and LineClass::intersection is not asked for.
+  material,      ///< Two materials meet, where no class asked for comes before: parts of a field, faces of a mesh, objects (intersection).
   rim,           ///< N.V = threshold, the inner border of the rim.
   suggestive,    ///< Radial curvature 0, growing towards the eye: a contour of views nearby (DeCarlo et al. 2003).
   ridge,         ///< Extremal principal curvature, where the surface bends away from its normal (Ohtake et al. 2004).

@@ -44,13 +44,17 @@ struct ShapeFunctions {
   std::optional<ClosedForm> (*closed_form)(const void* shape, double level) = nullptr;
 };
 
+inline constexpr int kNoMaterial = -1;
+
 /// f(p) = value_scale * shape(object_from_world p).
 struct FieldLeaf {
   std::shared_ptr<const void> shape;
   const ShapeFunctions* functions = nullptr;
   Affine object_from_world;
   double value_scale = 1.0;
-  double lipschitz = 1.0;  ///< Of f, in world space.
+  double lipschitz = 1.0;            ///< Of f, in world space.
+  int material = kNoMaterial;        ///< Of the surface that this shape makes; kNoMaterial: the object's.
+  std::optional<glm::vec3> color{};  ///< Linear, the same; empty: the object's.
 };
 
 enum class FieldOperation : std::uint8_t {

@@ -79,7 +79,8 @@ def make_files(limn, repository, folder):
     make("render", "model.obj", "--eye", "3,2,4", "--size", "320x240", "--method", "contours", "--background", "white", "-o", "screenshot.png")
     (folder / "part.toml").write_text(SCENE)
     (folder / "part.stl").write_text(STL)
-    shutil.copy(repository / "samples" / "scenes" / "still_life.toml", folder)
+    for scene in ("still_life.toml", "two_metals.toml"):
+        shutil.copy(repository / "samples" / "scenes" / scene, folder)
     shutil.copy(repository / "samples" / "stability" / "cases" / "cube_faces.toml", folder / "my_case.toml")
 
 

@@ -4,6 +4,7 @@
 
 #include "raymarch/gbuffer/picture_rows.h"
 #include "raymarch/mesh/polygons.h"
+#include "raymarch/surface/field_parts.h"
 
 namespace limn {
 namespace {
@@ -59,6 +60,11 @@ glm::vec3 vertex_color_at(const Mesh& mesh, std::int32_t first_corner, std::int3
 FileColors file_colors(const SceneModel& model) {
   FileColors colors;
   for (size_t i = 0; i < model.surfaces.size(); ++i) {
+    if (const FieldParts* parts = parts_of(model.surfaces[i]); parts != nullptr && has_colors(parts->field())) {
+      colors.any = colors.any_of_parts = true;
+      colors.parts.resize(model.surfaces.size(), nullptr);
+      colors.parts[i] = parts;
+    }
     if (!model.surfaces[i].polygons || !model.surfaces[i].polygons->has_colors()) continue;
     const Mesh& mesh = model.surfaces[i].polygons->mesh();
     colors.any = true;
@@ -70,7 +76,7 @@ FileColors file_colors(const SceneModel& model) {
 }
 
 GBufferLayers layers_read(const FileColors& colors) {
-  return {.depth = colors.any_of_vertices,
+  return {.depth = colors.any_of_vertices || colors.any_of_parts,
           .position = false,
           .normal = false,
           .n_dot_v = colors.any,
@@ -80,10 +86,30 @@ GBufferLayers layers_read(const FileColors& colors) {
           .status = false};
 }
 
+namespace {
+
+void find_part_colors(const FileColors& colors, const GBuffer& gbuffer, const Camera& render_camera, Image<glm::vec3>& result) {
+  for_each_band(gbuffer.height, [&](int y0, int y1) {
+    FieldParts::Place place;
+    for (int y = y0; y < y1; ++y) {
+      for (int x = 0; x < gbuffer.width; ++x) {
+        const std::int32_t id = gbuffer.id.at(x, y);
+        const FieldParts* parts = id == 0 ? nullptr : colors.parts[static_cast<size_t>(id - 1)];
+        if (parts == nullptr) continue;
+        const std::optional<glm::vec3>& color = parts->leaf(parts->owner(point_of(gbuffer, render_camera, x, y), place)).color;
+        if (color) result.at(x, y) = *color;
+      }
+    }
+  });
+}
+
+}  // namespace
+
 void find_file_colors(const FileColors& colors, const GBuffer& gbuffer, const Camera& camera, const glm::dvec3& render_origin,
                       Image<glm::vec3>& result) {
-  if (!colors.any || gbuffer.face.pixels.empty() || (colors.any_of_vertices && gbuffer.depth.pixels.empty())) return;
   const Camera render_camera = moved(camera, render_origin);
+  if (colors.any_of_parts && !gbuffer.depth.pixels.empty()) find_part_colors(colors, gbuffer, render_camera, result);
+  if (colors.meshes.empty() || gbuffer.face.pixels.empty() || (colors.any_of_vertices && gbuffer.depth.pixels.empty())) return;
   std::vector<std::vector<std::int32_t>> first(colors.meshes.size());
   for (size_t i = 0; i < first.size(); ++i) {
     if (colors.meshes[i] != nullptr && !colors.meshes[i]->vertex_colors.empty()) first[i] = first_corners(*colors.meshes[i]);

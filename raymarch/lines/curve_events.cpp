@@ -43,7 +43,8 @@ class EventFinder {
       for (const Piercing& piercing : a.pierced)
         events_.push_back({VertexKind::joint, place + std::min(piercing.t, 1.0 - 1e-9), piercing.layers, 0, 0.0, piercing.unclear_px});
       if (a.joint && (i > 0 || curve_.closed)) events_.push_back({VertexKind::joint, place, {}, 0, 0.0});
-      const bool differs = i > 0 && (a.object != walk_.at(i - 1).object || a.line_class != walk_.at(i - 1).line_class);
+      const bool differs = (i > 0 && a.object != walk_.at(i - 1).object) ||
+                           ((i > 0 || curve_.closed) && a.line_class != walk_.at((i > 0 ? i : walk_.size()) - 1).line_class);
       if (differs && !a.joint) events_.push_back({VertexKind::joint, place, 0, 0, 0.0});
     }
     if (curve_.smooth) find_cusps();

@@ -10,6 +10,7 @@
 #include "raymarch/lines/form_tracing.h"
 #include "raymarch/lines/found_curves.h"
 #include "raymarch/lines/line_memory.h"
+#include "raymarch/lines/material_curves.h"
 #include "raymarch/lines/tips.h"
 
 namespace limn {
@@ -114,6 +115,15 @@ TracedBody trace_body(const FieldTask& fields, size_t number, const Field& body,
   return traced;
 }
 
+void add_material_curves(const FieldTask& fields, const std::string& name, const ExecutionSettings& execution, LineContribution& out) {
+  std::vector<FieldCurves> found;
+  append(out.curves, material_curves(fields, *fields.parts, curve_settings(fields.task), execution, found));
+  for (const FieldCurves& curves : found) {
+    add_notes(curves, name + ", between materials", out);
+    out.unrefined_px = std::max(out.unrefined_px, curves.worst_unrefined_px);
+  }
+}
+
 /// Layers of bodies in closed form by their roots, of the others by bounds along the ray.
 std::function<LayersSeen(const CurveSample&)> layers_of(const LineTask& task, const std::vector<Field>& bodies,
                                                         std::vector<TracedBody> traced) {
@@ -143,8 +153,12 @@ LineContribution field_lines(const LineTask& task, const std::vector<size_t>& ob
   for (const Field& field : bodies.fields) evaluators.emplace_back(field);
   std::vector<TracedBody> traced;
   for (size_t i = 0; i < bodies.bodies.size(); ++i) {
-    const FieldTask fields{task, bodies, bodies.bodies[i], make_viewer(task.camera, glm::dvec3(0.0)), evaluators};
-    traced.push_back(trace_body(fields, i, bodies.body_fields[i], name_of_body(task.scene, objects, bodies.bodies[i]), execution, out));
+    FieldTask fields{task, bodies, bodies.bodies[i], make_viewer(task.camera, glm::dvec3(0.0)), evaluators};
+    const std::optional<MaterialParts> parts = material_parts(fields);
+    if (parts) fields.parts = &*parts;
+    const std::string name = name_of_body(task.scene, objects, bodies.bodies[i]);
+    traced.push_back(trace_body(fields, i, bodies.body_fields[i], name, execution, out));
+    if (parts) add_material_curves(fields, name, execution, out);
     if (execution.progress) execution.progress(0.5 * static_cast<double>(i + 1) / static_cast<double>(bodies.bodies.size()));
   }
   out.layers_before = layers_of(task, bodies.body_fields, std::move(traced));

@@ -44,7 +44,7 @@ class Tracer {
   std::optional<FormTrace> run(const FormArc& arc) {
     sample(arc);
     const bool seam = curve_.second >= 0;
-    FormTrace trace{{0.0, arc.closed, seam, arc.concave, {}}, curve_, {}};
+    FormTrace trace{{0.0, arc.closed, seam, arc.concave, {}, curve_.first, curve_.second}, curve_, {}};
     FieldCurve& found = trace.curve;
     if (curve_.kind == FormCurve::Kind::tube || seam) add_turns();
     add_within_frame();

@@ -1,5 +1,6 @@
 #include "raymarch/lines/found_curves.h"
 
+#include "raymarch/lines/material_curves.h"
 #include "raymarch/lines/seams.h"
 #include "sdf/parallel.h"
 
@@ -34,7 +35,10 @@ SurfaceCurve smooth_curve(const FieldTask& fields, const FieldCurve& found) {
 /// Where two faces of sharp CSG meet: a crease; where they are two objects' an intersection, or an edge of materials.
 SurfaceCurve seam_curve(const FieldTask& fields, const FieldCurve& found) {
   Seam seam{found.closed, LineClass::crease, {}};
-  for (const CurvePoint& point : found.points) {
+  const MarkedSeam marked = fields.parts != nullptr ? mark_materials(fields, *fields.parts, found) : MarkedSeam{};
+  const std::vector<CurvePoint>& points = fields.parts != nullptr ? marked.points : found.points;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const CurvePoint& point = points[i];
     const glm::dvec3 v = fields.viewer.toward_eye(point.p);
     // From the seam a face goes on to where the other one is outside, or inside, of the body.
     const double way = found.concave ? 1.0 : -1.0, cosine = glm::dot(point.high, point.low);
@@ -48,9 +52,18 @@ SurfaceCurve seam_curve(const FieldTask& fields, const FieldCurve& found) {
       if (swapped > kept) std::swap(one, two);
     }
     const int object = fields.object_of(point.p, one.normal), other = fields.object_of(point.p, two.normal);
-    if (object != other) seam.line_class = fields.task.class_of_meeting(fields.task.material_of(object), fields.task.material_of(other));
-    seam.samples.push_back({point.p, {one, two}, object});
+    if (object != other) {
+      // Of objects with parts these say which materials meet.
+      seam.line_class = fields.parts != nullptr
+                            ? LineClass::intersection
+                            : fields.task.class_of_meeting(fields.task.material_of(object), fields.task.material_of(other));
+    }
+    seam.samples.push_back(
+        {point.p, {one, two}, object, fields.parts != nullptr && marked.differ[i], fields.parts != nullptr && marked.line_ends[i]});
   }
+  const auto class_or_material = [&](LineClass drawn) { return fields.task.wants(drawn) ? drawn : LineClass::material; };
+  seam.fold_of_materials = class_or_material(LineClass::contour);
+  seam.edge_of_materials = class_or_material(seam.line_class);
   return curve_of_seam(fields.task.camera, seam);
 }
 

@@ -7,6 +7,8 @@
 
 namespace limn {
 
+struct MaterialParts;  // raymarch/lines/material_curves.h
+
 /// What one body's curves are made into lines by.
 struct FieldTask {
   const LineTask& task;
@@ -14,6 +16,7 @@ struct FieldTask {
   const std::vector<size_t>& body;
   Viewer viewer{};
   std::vector<FieldEvaluator>& evaluators;  ///< Of the fields of `bodies`.
+  const MaterialParts* parts = nullptr;     ///< Of the body, where some have materials of their own.
 
   /// Which object a point lies on, from 1; where two meet, the one with that normal.
   int object_of(const glm::dvec3& p, const glm::dvec3& normal) const {

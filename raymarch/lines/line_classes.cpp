@@ -18,7 +18,9 @@ const Registry<LineClassDescriptor>& line_classes() {
         false},
        {{"crease", "two normals of one object meet at an angle", "DeCarlo et al. 2003"}, LineClass::crease, true},
        {{"intersection", "two objects pass through each other", "Grabli et al. 2010"}, LineClass::intersection, true},
-       {{"material", "two materials meet; where objects of two pass through each other unless intersections are asked for, too",
+       {{"material",
+         "two materials meet: parts of a field, faces of a mesh; where objects of two pass through each other unless intersections are "
+         "asked for, too",
          "Grabli et al. 2010"},
         LineClass::material,
         true},

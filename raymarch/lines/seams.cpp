@@ -48,8 +48,9 @@ std::vector<Turn> turns_between(const SeamSample& a, const SeamSample& b) {
   return turns;
 }
 
-/// A seam's point, with what is true of the step that follows it: which of its sides face the eye.
-CurveSample curve_sample(const Camera& camera, const SeamSample& seam, const glm::dvec3& p, LineClass line_class,
+/// A point of a seam within the step from sample `from`, or at its beginning, with what is true of the rest of that step: which of its
+/// sides face the eye. `seam` is the sample nearest to it.
+CurveSample curve_sample(const Camera& camera, const Seam& whole, size_t from, const SeamSample& seam, const glm::dvec3& p,
                          const std::vector<int>& on_left, const std::vector<bool>& front) {
   CurveSample sample;
   sample.p = p;
@@ -63,9 +64,10 @@ CurveSample curve_sample(const Camera& camera, const SeamSample& seam, const glm
   const int all = static_cast<int>(on_left.size());
   sample.more_on_left = 2 * left - all;
   // What two objects share is their intersection whichever way they face: its folds are hidden by one of them.
-  const bool shared = line_class == LineClass::intersection || line_class == LineClass::material;
-  const bool contour = all > 1 && (left == 0 || left == all) && !shared;
-  sample.line_class = contour ? LineClass::contour : line_class;
+  const bool shared = whole.line_class == LineClass::intersection || whole.line_class == LineClass::material;
+  const bool contour = all > 1 && (left == 0 || left == all) && !shared, materials = whole.samples[from].materials_meet;
+  sample.line_class =
+      contour ? (materials ? whole.fold_of_materials : LineClass::contour) : (materials ? whole.edge_of_materials : whole.line_class);
   project_sample(camera, sample);
   return sample;
 }
@@ -80,8 +82,11 @@ SurfaceCurve curve_of_seam(const Camera& camera, const Seam& seam) {
   for (size_t i = 0; i < n; ++i) {
     const SeamSample& a = seam.samples[i];
     for (size_t k = 0; k < front.size(); ++k) front[k] = a.sides[k].facing > 0.0;
-    curve.samples.push_back(curve_sample(camera, a, a.p, seam.line_class, on_left, front));
+    curve.samples.push_back(curve_sample(camera, seam, i, a, a.p, on_left, front));
     curve.samples.back().joint = turns_at[i];
+    // What is drawn of the seam goes on there, and the line that ends on it has its vertex.
+    if (a.line_ends && i > 0 && curve.samples[curve.samples.size() - 2].line_class == curve.samples.back().line_class && !turns_at[i])
+      curve.samples.back().pierced.push_back({0.0, 0});
     if (i >= steps) break;
     const SeamSample& b = seam.samples[(i + 1) % n];
     for (const Turn& turn : turns_between(a, b)) {
@@ -92,7 +97,7 @@ SurfaceCurve curve_of_seam(const Camera& camera, const Seam& seam) {
         continue;
       }
       if (turn.t < kAtSample) curve.samples.pop_back();
-      curve.samples.push_back(curve_sample(camera, turn.t < 0.5 ? a : b, glm::mix(a.p, b.p, turn.t), seam.line_class, on_left, front));
+      curve.samples.push_back(curve_sample(camera, seam, i, turn.t < 0.5 ? a : b, glm::mix(a.p, b.p, turn.t), on_left, front));
       curve.samples.back().joint = true;
     }
   }

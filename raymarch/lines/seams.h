@@ -17,13 +17,16 @@ struct SeamSample {
   glm::dvec3 p{0.0};
   std::vector<SeamSide> sides{};
   int object = 1;
+  bool materials_meet = false;  ///< Of the step to the next: two parts of one object meet there that differ in material.
+  bool line_ends = false;       ///< A line between materials ends here, on one of the sides.
 };
 
-/// What a seam is where it is no fold.
 struct Seam {
   bool closed = false;
-  LineClass line_class = LineClass::crease;
+  LineClass line_class = LineClass::crease;  ///< Where it is no fold.
   std::vector<SeamSample> samples{};
+  /// Where parts of different materials meet: of folds, and of what is none.
+  LineClass fold_of_materials = LineClass::contour, edge_of_materials = LineClass::crease;
 };
 
 /// Where sheets turn from front to back there is a joint; between joints the sheets on either side in the image are counted. Where two and

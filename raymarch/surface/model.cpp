@@ -6,6 +6,7 @@
 #include "raymarch/mesh/polygons.h"
 #include "raymarch/scene/scene_extent.h"
 #include "raymarch/surface.h"
+#include "raymarch/surface/field_parts.h"
 #include "raymarch/surface/model_parts.h"
 #include "raymarch/surface/object_mesh.h"
 #include "sdf/error.h"
@@ -63,7 +64,7 @@ SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, Obje
 
 void append_surface(const SceneObject& object, Surface surface, SceneModel& model) {
   const Box reach = surface.bounds;
-  model.surfaces.push_back(std::move(surface));
+  model.surfaces.push_back(with_field_parts(object, std::move(surface), model.render_origin));
   model.colors.push_back(object.color);
   model.materials.push_back(object.material);
   if (reach.finite()) model.bounds = merge(model.bounds, {reach.lower + model.render_origin, reach.upper + model.render_origin});

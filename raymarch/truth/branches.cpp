@@ -3,44 +3,20 @@
 #include <algorithm>
 #include <limits>
 
-#include "sdf/field_program.h"
+#include "sdf/field_tree.h"
 
 namespace limn {
 namespace {
 
 constexpr double kHair = 1e-10;
 
-/// The program as a tree: of each instruction, which instructions made what it reads.
-struct Step {
-  const FieldInstruction* instruction = nullptr;
-  int left = -1, right = -1;
-};
-
-bool is_binary(FieldOperation operation) {
-  return operation == FieldOperation::minimum || operation == FieldOperation::maximum || operation == FieldOperation::smooth_minimum ||
-         operation == FieldOperation::smooth_maximum;
-}
-
-std::vector<Step> steps_of(const FieldProgram& program) {
-  std::vector<int> maker(program.slots, -1);
-  std::vector<Step> steps;
-  for (const FieldInstruction& instruction : program.instructions) {
-    Step step{&instruction};
-    if (instruction.operation != FieldOperation::leaf) step.left = maker[instruction.left];
-    if (is_binary(instruction.operation)) step.right = maker[instruction.right];
-    maker[instruction.target] = static_cast<int>(steps.size());
-    steps.push_back(step);
-  }
-  return steps;
-}
-
 /// A program and the tree of its steps.
 struct Source {
   const FieldProgram& program;
-  std::vector<Step> steps;
-  explicit Source(const FieldProgram& of) : program(of), steps(steps_of(of)) {}
-  const Step& step(int i) const { return steps[static_cast<size_t>(i)]; }
-  int root() const { return static_cast<int>(steps.size()) - 1; }
+  std::vector<FieldNode> tree;
+  explicit Source(const FieldProgram& of) : program(of), tree(tree_of(of)) {}
+  const FieldNode& node(int i) const { return tree[static_cast<size_t>(i)]; }
+  int root() const { return static_cast<int>(tree.size()) - 1; }
 };
 
 class Splitter {
@@ -64,8 +40,8 @@ class Splitter {
  private:
   /// The node for sign * step + added.
   int split(const Source& source, int at, double sign, double added) {
-    const FieldInstruction& instruction = *source.step(at).instruction;
-    const int left = source.step(at).left, right = source.step(at).right;
+    const FieldInstruction& instruction = source.node(at).instruction;
+    const int left = source.node(at).left, right = source.node(at).right;
     switch (instruction.operation) {
       case FieldOperation::minimum:
       case FieldOperation::maximum: {
@@ -90,13 +66,15 @@ class Splitter {
 
   /// A shape with sharp edges, at a level where they are still sharp.
   int split_leaf(const Source& source, int at, double sign, double added) {
-    const FieldLeaf& leaf = source.program.leaves[source.step(at).instruction->leaf];
+    const FieldLeaf& leaf = source.program.leaves[source.node(at).instruction.leaf];
     if (!into_faces_ || leaf.functions->faces == nullptr || sign * added < 0.0) return add_branch(source, at, sign, added);
     FieldProgram faces = leaf.functions->faces(leaf.shape.get()).program();
     for (FieldLeaf& face : faces.leaves) {
       face.object_from_world = compose(face.object_from_world, leaf.object_from_world);
       face.value_scale *= leaf.value_scale;
       face.lipschitz = leaf.lipschitz;
+      face.material = leaf.material;
+      face.color = leaf.color;
     }
     const Source placed(faces);
     return split(placed, placed.root(), sign, added);
@@ -111,28 +89,13 @@ class Splitter {
     FieldProgram branch;
     branch.traits = traits_;
     branch.traits.exact_distance = false;
-    emit(source, at, 0, branch);
+    append_subtree(source.program, source.tree, at, 0, branch);
     if (sign < 0.0) branch.instructions.push_back({FieldOperation::negate, 0, 0, 0, 0, 0.0});
     if (added != 0.0) branch.instructions.push_back({FieldOperation::add, 0, 0, 0, 0, added});
     const int number = static_cast<int>(sharp_.branches.size());
     sharp_.branches.emplace_back(std::make_shared<const FieldProgram>(std::move(branch)));
     sharp_.node_of.push_back(add_node({false, -1, -1, -1, number}));
     return sharp_.node_of.back();
-  }
-
-  void emit(const Source& source, int at, std::uint32_t target, FieldProgram& out) const {
-    FieldInstruction instruction = *source.step(at).instruction;
-    if (source.step(at).left >= 0) emit(source, source.step(at).left, target, out);
-    if (source.step(at).right >= 0) emit(source, source.step(at).right, target + 1, out);
-    if (instruction.operation == FieldOperation::leaf) {
-      out.leaves.push_back(source.program.leaves[instruction.leaf]);
-      instruction.leaf = static_cast<std::uint32_t>(out.leaves.size() - 1);
-    }
-    instruction.target = target;
-    instruction.left = target;
-    instruction.right = is_binary(instruction.operation) ? target + 1 : target;
-    out.slots = std::max(out.slots, target + 1);
-    out.instructions.push_back(instruction);
   }
 
   bool into_faces_ = false;
@@ -165,6 +128,16 @@ int first_common(const std::vector<int>& path, const std::vector<int>& other) {
 SharpField split_branches(const Field& field, double extent, bool into_faces) {
   SharpField sharp = Splitter(field, into_faces).finish();
   sharp.hair = kHair * extent;
+  return sharp;
+}
+
+SharpField cut_by(SharpField sharp, const Field& branch) {
+  const int root = static_cast<int>(sharp.nodes.size()) - 1, added = root + 1, whole = root + 2;
+  sharp.nodes.back().parent = whole;
+  sharp.nodes.push_back({false, -1, -1, whole, static_cast<int>(sharp.branches.size())});
+  sharp.node_of.push_back(added);
+  sharp.branches.push_back(branch);
+  sharp.nodes.push_back({true, root, added, -1, -1});
   return sharp;
 }
 

@@ -30,6 +30,9 @@ struct SharpField {
 /// `extent` is the field's size: a hair is 1e-10 of it. `into_faces`: shapes with sharp edges are taken apart too (ShapeFunctions::faces).
 SharpField split_branches(const Field& field, double extent, bool into_faces = false);
 
+/// Cut by one more branch, the last one: the body is inside both.
+SharpField cut_by(SharpField sharp, const Field& branch);
+
 /// Values of all nodes from those of the branches, by a hair apart.
 void node_values(const SharpField& sharp, std::span<const double> branch_values, std::vector<double>& values);
 

@@ -207,10 +207,12 @@ void CellBounds::find_in(const CellScope& scope, size_t lane, Survivors& found) 
     for (size_t family = 0; family < kCurveFamilies; ++family) {
       if ((search_.families >> family & 1u) && facing_.back()[family].contains(0.0)) live.families |= 1u << family;
     }
-    if (live.families != 0) found.branches.push_back(live);
+    if (live.families != 0 && !search_.only_seam) found.branches.push_back(live);
   }
   for (size_t k = 1; k < candidates_.size(); ++k) {
     for (size_t j = 0; j < k; ++j) {
+      const std::pair<int, int> pair{scope.branches[candidates_[j]], scope.branches[candidates_[k]]};
+      if (search_.only_seam && pair != *search_.only_seam) continue;
       bool live = search_.whole_seams;
       for (size_t family = 0; family < kCurveFamilies; ++family) {
         live = live || ((search_.families >> family & 1u) && !apart(facing_[j][family], facing_[k][family]));

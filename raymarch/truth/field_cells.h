@@ -2,6 +2,7 @@
 // Internal: the finest cells that a curve may go through, by interval bounds over an octree, each marched where it is found.
 
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "raymarch/gbuffer.h"
@@ -18,7 +19,8 @@ struct CellSearch {
   int level = 0;
   std::array<double, kCurveFamilies> levels{};
   FamilyMask families = 0;
-  bool whole_seams = false;  ///< Seams are followed whatever N.V is beside them.
+  bool whole_seams = false;                        ///< Seams are followed whatever N.V is beside them.
+  std::optional<std::pair<int, int>> only_seam{};  ///< Set: nothing but the seam of these branches, the first being the lower one.
 
   Box grid_box() const { return {grid.vertex(glm::ivec3(0)), grid.vertex(glm::ivec3(1 << level))}; }
 };

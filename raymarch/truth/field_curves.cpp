@@ -321,42 +321,67 @@ void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurv
 namespace {
 
 /// With cells of one size.
-FieldCurves traced_in(const Field& field, const Box& bounds, int level, const Camera& camera, const Viewer& viewer,
-                      const FieldCurveSettings& settings, const ExecutionSettings& how) {
+FieldCurves traced_in(const SharpField& sharp, double lipschitz, const std::optional<std::pair<int, int>>& only_seam, const Box& bounds,
+                      int level, const Camera& camera, const Viewer& viewer, const FieldCurveSettings& settings,
+                      const ExecutionSettings& how) {
   FieldCurves result;
   const CellGrid grid = make_grid(bounds, level);
   result.level = level;
   result.cell = grid.side;
   result.cell_px = grid.side * largest_scale(camera, bounds);
-  const SharpField sharp = split_branches(field, bounds.radius(), settings.whole_seams);
-  const CellSearch search{
-      sharp, camera, viewer, grid, level, {0.0, settings.threshold}, settings.threshold > 0.0 ? 3u : 1u, settings.whole_seams};
+  const bool both = settings.threshold > 0.0 && !only_seam;
+  const CellSearch search{sharp, camera, viewer, grid, level, {0.0, settings.threshold}, both ? 3u : 1u, settings.whole_seams, only_seam};
   CellResult found = search_cells(search, settings.memory ? settings.memory(level) : nullptr, how);
   result.cells = found.cells;
   result.unsettled = found.unsettled;
   result.unproven_px = kUnprovenReach * result.cell_px;
-  curves_of_cells(found, search, {settings.tolerance_px, bounds.radius(), field.traits().lipschitz}, how, result);
+  curves_of_cells(found, search, {settings.tolerance_px, bounds.radius(), lipschitz}, how, result);
   return result;
+}
+
+/// Where curves of a field are looked for, and in cells of which level.
+struct SearchedBox {
+  Box bounds{};
+  bool cut = false;
+  int level = 5;
+};
+
+SearchedBox searched_box(const Field& field, const Camera& camera, const FieldCurveSettings& settings) {
+  SearchedBox box{field.traits().bounds};
+  if (box.bounds.empty()) return box;
+  box.cut = !box.bounds.finite();
+  if (box.cut) box.bounds = intersect(box.bounds, settings.unbounded_domain);
+  if (box.bounds.empty()) return box;
+  const double cells = box.bounds.longest_side() * largest_scale(camera, box.bounds) / settings.cell_px;
+  box.level = std::clamp(static_cast<int>(std::ceil(std::log2(std::max(cells, 1.0)))), 5, settings.finest_level);
+  return box;
 }
 
 }  // namespace
 
 FieldCurves trace_field_curves(const Field& field, const Camera& camera, const Viewer& viewer, const FieldCurveSettings& settings,
                                const ExecutionSettings& how) {
-  Box bounds = field.traits().bounds;
-  if (bounds.empty()) return {};
-  const bool cut = !bounds.finite();
-  if (cut) bounds = intersect(bounds, settings.unbounded_domain);
+  const SearchedBox box = searched_box(field, camera, settings);
   FieldCurves result;
-  if (!bounds.empty()) {
-    const double cells = bounds.longest_side() * largest_scale(camera, bounds) / settings.cell_px;
-    int level = std::clamp(static_cast<int>(std::ceil(std::log2(std::max(cells, 1.0)))), 5, settings.finest_level);
+  if (!box.bounds.empty()) {
+    const SharpField sharp = split_branches(field, box.bounds.radius(), settings.whole_seams);
     // Cells that hold two arms of a curve are halved.
+    int level = box.level;
     const int finest = std::min(level + kMostHalvings, settings.finest_level);
-    do result = traced_in(field, bounds, level, camera, viewer, settings, how);
+    do result = traced_in(sharp, field.traits().lipschitz, {}, box.bounds, level, camera, viewer, settings, how);
     while (result.broken > 0 && level++ < finest);
   }
-  result.domain_cut = cut;
+  result.domain_cut = box.cut;
+  return result;
+}
+
+FieldCurves trace_zeros_on_branch(const Field& field, const SharpField& sharp, int branch, const Camera& camera, const Viewer& viewer,
+                                  const FieldCurveSettings& settings, const ExecutionSettings& how) {
+  const SearchedBox box = searched_box(field, camera, settings);
+  if (box.bounds.empty()) return {};
+  const std::pair<int, int> seam{branch, static_cast<int>(sharp.branches.size()) - 1};
+  FieldCurves result = traced_in(sharp, field.traits().lipschitz, seam, box.bounds, box.level, camera, viewer, settings, how);
+  result.domain_cut = box.cut;
   return result;
 }
 

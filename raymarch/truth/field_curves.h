@@ -29,6 +29,8 @@ struct FieldCurve {
   bool seam = false;     ///< A whole seam, of which N.V says nothing.
   bool concave = false;  ///< Of a seam: the body fills more than half of the space around it.
   std::vector<CurvePoint> points{};
+  /// Of a seam: the branches that meet there, as split_branches() numbers them.
+  int first = -1, second = -1;
 };
 
 struct FieldCurves {
@@ -51,6 +53,11 @@ struct FieldCurves {
 /// `field` in solver space, as `camera`.
 FieldCurves trace_field_curves(const Field& field, const Camera& camera, const Viewer& viewer, const FieldCurveSettings& settings,
                                const ExecutionSettings& how);
+
+/// The curve on which `zeros` is 0 on one branch of a field, as far as that is surface of the whole: a seam of `sharp`, which is the field
+/// taken apart, cut by `zeros` (cut_by). Like other seams it comes out whole; `zeros` has no bounds.
+FieldCurves trace_zeros_on_branch(const Field& field, const SharpField& sharp, int branch, const Camera& camera, const Viewer& viewer,
+                                  const FieldCurveSettings& settings, const ExecutionSettings& how);
 
 /// What is known of a field beside the cells that its curves go through.
 struct CellCurveSettings {

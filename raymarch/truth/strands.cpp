@@ -25,6 +25,8 @@ constexpr double kAround = 1.0 / 24.0;  // of the extent
 constexpr double kBulge = 1.2;          // a curve's length over its chord's, at most
 constexpr double kOvershoot = 0.02;     // of a bracket's width, beyond the root that its ends tell
 constexpr int kBracketSteps = 60;
+constexpr double kNearlyTurned = 0.03;  // of N.V: a seam's side whose N.V is less may turn within a step and back
+constexpr double kCloseTurnsPx = 1.0;   // farther apart the contours that end there tell them from each other
 
 /// A point of a strand and whether the border goes through it.
 struct Spot {
@@ -34,7 +36,9 @@ struct Spot {
   double margin = 0.0;  ///< surface_margin.
   double clear = 1.0;   ///< The lesser |N.V - c| of a seam's sides.
   bool on = false;
-  bool first_high = false;  ///< Of a seam's sides the first has the higher N.V.
+  bool first_high = false;         ///< Of a seam's sides the first has the higher N.V.
+  std::array<double, 2> facing{};  ///< Of a seam's sides: N.V - c.
+  bool keep = false;               ///< Stays a point of the curve.
 };
 
 class Cutter {
@@ -56,6 +60,7 @@ class Cutter {
       last = i + 1 == n ? spots.front() : spot(strand_.points[i + 1]);
       scan(spots.back(), last, 0, spots);
     }
+    if (strand_.whole) add_close_turns(spots);
     return runs_of(spots);
   }
 
@@ -110,7 +115,8 @@ class Cutter {
     point.high = a_high ? n : m;
     point.low = a_high ? m : n;
     point.uphill = a_high ? along_a - along_b : along_b - along_a;
-    spot.clear = std::min(std::fabs(a.facing - strand_.c), std::fabs(b.facing - strand_.c));
+    spot.facing = {a.facing - strand_.c, b.facing - strand_.c};
+    spot.clear = std::min(std::fabs(spot.facing[0]), std::fabs(spot.facing[1]));
     return strand_.whole || (a.facing < strand_.c) != (b.facing < strand_.c);
   }
 
@@ -143,6 +149,54 @@ class Cutter {
   bool straight(const Spot& a, const Spot& middle, const Spot& b) const {
     const glm::dvec2 off = middle.px - 0.5 * (a.px + b.px);
     return glm::length(off) < 0.25 * settings_.tolerance_px;
+  }
+
+  /// Where a side of a whole seam turns away from the eye and back within half a step: a place between, by the parabola through three
+  /// values.
+  std::optional<Spot> dip_between(const Spot& a, const Spot& middle, const Spot& b) {
+    if (!strand_.whole || !a.on || !b.on) return {};
+    for (size_t side = 0; side < 2; ++side) {
+      const double fa = a.facing[side], fm = middle.facing[side], fb = b.facing[side], least = std::min(std::fabs(fa), std::fabs(fb));
+      if (least > kNearlyTurned || (fa > 0.0) != (fb > 0.0) || (fa > 0.0) != (fm > 0.0)) continue;
+      const double bend = fa - 2.0 * fm + fb, share = 0.5 + 0.25 * (fa - fb) / bend;
+      if (!(share > 0.0 && share < 1.0)) continue;
+      const double extremum = fa - 2.0 * bend * share * share;
+      if ((extremum > 0.0) == (fa > 0.0) && std::fabs(extremum) > 0.1 * least) continue;
+      const std::optional<Spot> dip = beside(a, b, share, 0.5 * glm::distance(a.point.p, b.point.p));
+      if (dip && dip->on && (dip->facing[side] > 0.0) != (fa > 0.0)) return dip;
+    }
+    return {};
+  }
+
+  /// Two turns of one side so close to each other that they would be taken for one place become points of the seam.
+  void add_close_turns(std::vector<Spot>& spots) {
+    std::vector<std::pair<size_t, Spot>> turns;
+    for (size_t side = 0; side < 2; ++side) {
+      std::optional<size_t> last;
+      bool last_added = false;
+      for (size_t i = 0; i + 1 < spots.size(); ++i) {
+        const bool turned = spots[i].on && spots[i + 1].on && (spots[i].facing[side] > 0.0) != (spots[i + 1].facing[side] > 0.0);
+        if (!turned) continue;
+        const bool close = last && glm::distance(spots[*last + 1].px, spots[i].px) < kCloseTurnsPx;
+        if (close && !last_added) turns.emplace_back(*last, turn_between(spots[*last], spots[*last + 1], side));
+        if (close) turns.emplace_back(i, turn_between(spots[i + 1], spots[i], side));
+        last = i;
+        last_added = close;
+      }
+    }
+    std::stable_sort(turns.begin(), turns.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (const auto& [step, turn] : turns) spots.insert(spots.begin() + static_cast<std::ptrdiff_t>(step) + 1, turn);
+  }
+  /// The last place on the way from b to a where the side is as at b.
+  Spot turn_between(Spot a, Spot b, size_t side) {
+    const bool faces = a.facing[side] > 0.0;
+    for (int step = 0; step < kBracketSteps && glm::distance(a.point.p, b.point.p) > kBracket * settings_.extent; ++step) {
+      const std::optional<Spot> middle = between(a, b);
+      if (!middle) break;
+      ((middle->facing[side] > 0.0) == faces ? a : b) = *middle;
+    }
+    b.keep = true;
+    return b;
   }
 
   /// The margin alone says that the border ends between the two.
@@ -195,7 +249,11 @@ class Cutter {
     const std::optional<Spot> middle = between(a, b);
     if (!middle) return;
     if (quiet && straight(a, *middle, b)) {
+      const std::optional<Spot> dip = dip_between(a, *middle, b);
+      const bool before = dip && glm::distance(a.point.p, dip->point.p) < glm::distance(a.point.p, middle->point.p);
+      if (before) out.push_back(*dip);
       out.push_back(*middle);
+      if (dip && !before) out.push_back(*dip);
       return;
     }
     scan(a, *middle, depth + 1, out);
@@ -206,7 +264,7 @@ class Cutter {
   /// What ends were bracketed with, and steps were proven with, is more than the curve's shape needs: from each point on, as far as a chord
   /// goes along all between.
   FieldCurve curve_of(const std::vector<Spot>& stretch, bool closed) const {
-    FieldCurve curve{strand_.c, closed, strand_.whole, strand_.whole && !intersection_, {}};
+    FieldCurve curve{strand_.c, closed, strand_.whole, strand_.whole && !intersection_, {}, strand_.first, strand_.second};
     const size_t n = stretch.size();
     for (size_t i = 0; i < n;) {
       curve.points.push_back(stretch[i].point);
@@ -224,9 +282,19 @@ class Cutter {
     if (squared > kLongestChordPx * kLongestChordPx || stretch[first].point.crease != stretch[last].point.crease) return false;
     for (size_t i = first + 1; i < last; ++i) {
       const glm::dvec2 q = stretch[i].px - a;
-      if (glm::distance(q, closest_share(q, d) * d) > most || stretch[i].point.crease != stretch[first].point.crease) return false;
+      if (glm::distance(q, closest_share(q, d) * d) > most || stretch[i].keep || stretch[i].point.crease != stretch[first].point.crease)
+        return false;
     }
-    return true;
+    return !strand_.whole || turns_once(stretch, first, last);
+  }
+
+  /// On the way from one spot to the other each side of the seam turns to the eye or away from it, and not both.
+  static bool turns_once(const std::vector<Spot>& stretch, size_t first, size_t last) {
+    std::array<int, 2> turns{};
+    for (size_t i = first; i < last; ++i) {
+      for (size_t side = 0; side < 2; ++side) turns[side] += (stretch[i].facing[side] > 0.0) != (stretch[i + 1].facing[side] > 0.0);
+    }
+    return turns[0] <= 1 && turns[1] <= 1;
   }
 
   std::vector<FieldCurve> runs_of(std::vector<Spot>& spots) const {

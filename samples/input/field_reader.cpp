@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "samples/input/named_file.h"
+#include "sdf/field_tree.h"
 #include "sdf/shape.h"
 
 namespace limn {
@@ -88,7 +89,10 @@ Field read_csg(TomlReader& reader, const VmReader& read_vm) {
   std::vector<Field> fields;
   for (size_t i = 0; i < tables.size(); ++i) {
     TomlReader item(*tables[i], reader.file(), reader.field(fmt::format("of[{}].", i)));
-    fields.push_back(read_field(item, read_vm));
+    const int material = item.integer("material", 0, kGreatestMaterial).value_or(kNoMaterial);
+    const std::optional<glm::vec3> color = item.color("color");
+    const Field field = read_field(item, read_vm);
+    fields.push_back(material != kNoMaterial || color ? with_material(field, material, color) : field);
     item.finish();
   }
   return combine(operation, fields, smooth);

@@ -150,7 +150,7 @@ SceneObject read_object(TomlReader& reader, const SceneReaders& readers, size_t 
   const std::string name = reader.text("name").value_or(fmt::format("object {}", index + 1));
   const std::optional<glm::vec3> own_color = reader.color("color");
   const glm::vec3 color = own_color.value_or(glm::vec3(0.8f));
-  const int material = reader.integer("material", 0, 1'000'000).value_or(0);
+  const int material = reader.integer("material", 0, kGreatestMaterial).value_or(0);
   if (reader.has("mesh") || reader.has("vdb")) world_from_object = read_placement(reader);
   Source source = read_source(own_color.has_value());
   reader.finish();

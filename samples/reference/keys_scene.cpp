@@ -19,8 +19,11 @@ constexpr DocumentedKey kSceneKeys[] = {
     {"surface", "kind", "", "representation: a name of `limn list surfaces`; missing: each object's own"},
     {"border", "method", "", "a name of `limn list methods`; its parameters stand beside it; [[border]] for several; default rim"},
     {"object", "name", "", "for messages, layers and exports"},
-    {"object", "color", "", "linear RGB, 0 to 1; default [0.8, 0.8, 0.8]"},
-    {"object", "material", "", "an id, for the layer `material` and for group = material; default 0"},
+    {"object", "color", "", "linear RGB, 0 to 1; default [0.8, 0.8, 0.8]; in `of`: of that part, default the object's"},
+    {"object", "material", "",
+     "an id, 0 to 1000000, for the layer `material`, for lines between materials and for group = material; default 0; in `of`: of that "
+     "part, "
+     "default the object's"},
     {"object", "shape", "", "a name of `limn list shapes`; its parameters stand beside it"},
     {"object", "csg", "", "union, intersection or difference of the fields in `of`"},
     {"object", "of", "", "the fields of csg: tables with shape, csg or vm"},

@@ -116,7 +116,10 @@ TEST(Formats, AnExportedCageIsNoCageAnyMore) {
   EXPECT_EQ(document.at("objects").at(0).at("kind"), "mesh");
 }
 
-TEST(Scenes, TheExampleFileIsDrawn) { EXPECT_TRUE(draws_soundly(LIMN_SOURCE_DIR "/samples/scenes/still_life.toml")); }
+TEST(Scenes, TheExampleFilesAreDrawn) {
+  EXPECT_TRUE(draws_soundly(LIMN_SOURCE_DIR "/samples/scenes/still_life.toml"));
+  EXPECT_TRUE(draws_soundly(LIMN_SOURCE_DIR "/samples/scenes/two_metals.toml"));
+}
 
 TEST(Scenes, EveryBuiltInOneIsDrawn) {
   for (const auto& scene : run_limn({"list", "scenes", "--json"}).json()) EXPECT_TRUE(draws_soundly(scene.at("name")));

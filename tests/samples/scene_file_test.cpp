@@ -6,6 +6,7 @@
 
 #include "run_program.h"
 #include "sdf/error.h"
+#include "sdf/field_program.h"
 
 namespace limn {
 namespace {
@@ -114,6 +115,45 @@ color = [0.1, 0.2, 0.3]
   ASSERT_EQ(input.borders.size(), 1u);
   EXPECT_EQ(input.borders[0].method, "rim");
   EXPECT_EQ(input.borders[0].parameters.at("threshold").numbers, std::vector<double>{0.3});
+}
+
+TEST(SceneFile, PartsOfAFieldHaveMaterialsAndColorsThatTheirPartsInherit) {
+  const SceneInput input = parse_scene_file(R"toml(
+[[object]]
+material = 7
+csg = "difference"
+of = [
+  { csg = "union", material = 2, color = [0.1, 0.2, 0.3], translate = [1, 0, 0], of = [
+    { shape = "sphere", radius = 1.0 },
+    { shape = "box", half = [1, 1, 1], material = 0, color = "red" } ] },
+  { shape = "sphere", radius = 0.5 } ]
+)toml",
+                                            "a.toml");
+  const auto& leaves = std::get<Field>(input.scene.objects[0].source).program().leaves;
+  ASSERT_EQ(leaves.size(), 3u);
+  EXPECT_EQ(leaves[0].material, 2);
+  EXPECT_EQ(leaves[0].color, glm::vec3(0.1f, 0.2f, 0.3f));
+  EXPECT_EQ(leaves[1].material, 0);
+  EXPECT_EQ(leaves[1].color, glm::vec3(1.0f, 0.0f, 0.0f));
+  EXPECT_EQ(leaves[2].material, kNoMaterial);
+  EXPECT_FALSE(leaves[2].color);
+}
+
+TEST(SceneFile, AWrongMaterialOfAPartIsNamedWithItsPlace) {
+  const auto with = [](const std::string& key) {
+    return fault_of("[[object]]\ncsg = \"union\"\nof = [ { shape = \"sphere\" },\n  { shape = \"box\", " + key + " } ]\n");
+  };
+  for (const auto& [key, said] : std::vector<std::pair<std::string, std::string>>{
+           {"material = -1", "-1"}, {"material = 1000001", "1000001"}, {"material = \"brass\"", "'brass'"}, {"material = 1.5", "1.5"}}) {
+    const std::string fault = with(key);
+    EXPECT_NE(fault.find("a.toml:4"), std::string::npos) << fault;
+    EXPECT_NE(fault.find("object[0].of[1].material"), std::string::npos) << fault;
+    EXPECT_NE(fault.find("0 to 1000000"), std::string::npos) << fault;
+    EXPECT_NE(fault.find("got " + said + ","), std::string::npos) << fault;
+  }
+  const std::string fault = with("color = [1.0, 2.0]");
+  EXPECT_NE(fault.find("object[0].of[1].color"), std::string::npos) << fault;
+  EXPECT_NE(with("materiel = 1").find("material"), std::string::npos) << with("materiel = 1");
 }
 
 TEST(SceneFile, OrthographicCamerasAndVoxelSizesAreReadToo) {

@@ -67,8 +67,8 @@ PictureHeader srgb_header(const Image<glm::vec4>& picture, bool alpha) {
 }
 
 /// To `temporary`, which will be `file`.
-void save(const fs::path& temporary, const fs::path& file, const PictureHeader& header, const void* pixels) {
-  const std::string problem = picture_module().write(temporary, header, pixels);
+void save(const fs::path& temporary, const fs::path& file, const PictureHeader& header, const PixelRows& rows) {
+  const std::string problem = picture_module().write(temporary, header, rows);
   if (!problem.empty()) throw MachineError("cannot write " + file.string() + ": " + problem);
 }
 
@@ -189,21 +189,26 @@ void write_channel(const Channel& channel, size_t first, size_t last, char* to, 
   for (size_t i = 0; i < last - first; ++i, to += pixel_size) std::memcpy(to, &halves[i], sizeof halves[i]);
 }
 
-/// Pixels in the file's own types, channel after channel within each pixel.
-Pixels<char> native_pixels(const std::vector<Channel>& channels, size_t pixel_count) {
+/// Pixels [begin, end) in the file's own types.
+void write_pixels(const std::vector<Channel>& channels, size_t begin, size_t end, char* to) {
   size_t pixel_size = 0;
   for (const Channel& channel : channels) pixel_size += bytes_of(channel.type);
-  Pixels<char> bytes;
-  bytes.resize(pixel_size * pixel_count);
-  parallel_for(size_t{0}, (pixel_count + kTogether - 1) / kTogether, [&](size_t part) {
-    const size_t first = part * kTogether, last = std::min(pixel_count, first + kTogether);
-    size_t offset = first * pixel_size;
+  parallel_for(size_t{0}, (end - begin + kTogether - 1) / kTogether, [&](size_t part) {
+    const size_t first = begin + part * kTogether, last = std::min(end, first + kTogether);
+    char* at = to + (first - begin) * pixel_size;
     for (const Channel& channel : channels) {
-      write_channel(channel, first, last, &bytes[offset], pixel_size);
-      offset += bytes_of(channel.type);
+      write_channel(channel, first, last, at, pixel_size);
+      at += bytes_of(channel.type);
     }
   });
-  return bytes;
+}
+
+/// Of pixels of bytes that are all there.
+PixelRows rows_of(const std::uint8_t* pixels, int width, int channels) {
+  const size_t stride = static_cast<size_t>(width) * static_cast<size_t>(channels);
+  return [pixels, stride](int first, int last, char* to) {
+    std::memcpy(to, pixels + static_cast<size_t>(first) * stride, static_cast<size_t>(last - first) * stride);
+  };
 }
 
 PictureHeader header_of(const fs::path& file) {
@@ -228,8 +233,10 @@ OutputFile exr_output(const Picture& picture, const Camera& camera, const std::s
             for (const MatteLayer& layer : mattes)
               for (const auto& [name, values] : layer.channels) add_channel(channels, name, PixelType::full, values, kItself);
             for (const NamedLayer& layer : layers) add_layer(channels, layer);
-            const Pixels<char> pixels = native_pixels(channels, picture.gbuffer.id.size());
-            save(temporary, file, exr_header(channels, picture, mattes, camera, call), pixels.data());
+            const auto width = static_cast<size_t>(picture.gbuffer.width);
+            save(temporary, file, exr_header(channels, picture, mattes, camera, call), [&channels, width](int first, int last, char* to) {
+              write_pixels(channels, static_cast<size_t>(first) * width, static_cast<size_t>(last) * width, to);
+            });
           }};
 }
 
@@ -249,10 +256,13 @@ OutputFile image_output(const Image<glm::vec4>& linear_premultiplied, const std:
             const bool alpha = has_alpha(extension);
             PictureHeader header = srgb_header(linear_premultiplied, alpha);
             if (extension == ".tif" || extension == ".tiff") header.attributes.push_back({"DateTime", kNoTime});
-            if (alpha)
-              save(temporary, file, header, encoded(linear_premultiplied).pixels.data());
-            else
-              save(temporary, file, header, rgb_pixels(linear_premultiplied).data());
+            if (alpha) {
+              const Image<glm::u8vec4> pixels = encoded(linear_premultiplied);
+              save(temporary, file, header, rows_of(bytes_of(pixels).data(), pixels.width, 4));
+            } else {
+              const Pixels<std::uint8_t> pixels = rgb_pixels(linear_premultiplied);
+              save(temporary, file, header, rows_of(pixels.data(), header.width, 3));
+            }
           }};
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <span>
 #include <string>
@@ -30,6 +31,9 @@ struct PictureHeader {
   std::vector<Attribute> attributes{};  ///< By OpenImageIO's names.
 };
 
+/// Pixels of rows [first, last) in the header's types, channel after channel within each pixel.
+using PixelRows = std::function<void(int first, int last, char* to)>;
+
 /// Coverage of a line of text, row after row.
 struct TextMask {
   int width = 0, height = 0;
@@ -40,8 +44,8 @@ struct TextMask {
 struct PictureModule {
   const char* version = nullptr;  ///< Of limn: another one's module may have other functions.
 
-  /// Pixels in the header's types, channel after channel within each pixel.
-  std::string (*write)(const std::filesystem::path& file, const PictureHeader& header, const void* pixels) = nullptr;
+  /// Asks for a few rows at a time, which stay in the cache until they are compressed.
+  std::string (*write)(const std::filesystem::path& file, const PictureHeader& header, const PixelRows& rows) = nullptr;
   /// Size, channels and their types; byte and half stand for all that floats hold.
   std::string (*read_header)(const std::filesystem::path& file, PictureHeader& header) = nullptr;
   /// One channel as floats, top row first; `values` has width x height of them.

@@ -56,17 +56,26 @@ OIIO::ImageSpec spec_of(const PictureHeader& header) {
   return spec;
 }
 
+/// Rows that are compressed together: blocks of 16 for each of several threads, as EXR has them.
+constexpr int kStrip = 64;
+
 /// Through an output that is open.
-std::string finish(OIIO::ImageOutput& output, const PictureHeader& header, const void* pixels) {
+std::string finish(OIIO::ImageOutput& output, const PictureHeader& header, const PixelRows& rows) {
   const OIIO::TypeDesc type = is_of_one_type(header) ? type_of(header.types.front()) : OIIO::TypeDesc(OIIO::TypeDesc::UNKNOWN);
-  return output.write_image(type, pixels) && output.close() ? "" : output.geterror();
+  std::vector<char> pixels(output.spec().scanline_bytes(true) * static_cast<size_t>(std::min(kStrip, header.height)));
+  for (int first = 0; first < header.height; first += kStrip) {
+    const int last = std::min(first + kStrip, header.height);
+    rows(first, last, pixels.data());
+    if (!output.write_scanlines(first, last, 0, type, pixels.data())) return output.geterror();
+  }
+  return output.close() ? "" : output.geterror();
 }
 
-std::string write(const fs::path& file, const PictureHeader& header, const void* pixels) {
+std::string write(const fs::path& file, const PictureHeader& header, const PixelRows& rows) {
   const auto output = OIIO::ImageOutput::create(file.string());
   if (!output) return OIIO::geterror();
   if (!output->open(file.string(), spec_of(header))) return output->geterror();
-  return finish(*output, header, pixels);
+  return finish(*output, header, rows);
 }
 
 std::string read_header(const fs::path& file, PictureHeader& header) {

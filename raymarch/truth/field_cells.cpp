@@ -80,7 +80,9 @@ std::shared_ptr<const ModelledCells> modelled_children(Walk& walk, const CellSco
 }
 
 /// Contour generators alone are looked for, and seams whole.
-bool asks_models(const CellSearch& search) { return search.whole_seams && search.families == 1u && search.levels[0] == 0.0; }
+bool asks_models(const CellSearch& search) {
+  return search.whole_seams && !search.only_seam && search.families == 1u && search.levels[0] == 0.0;
+}
 
 void descend_modelled(Walk& walk, const ModelledCells& children, const CellScope& scope, int level, const glm::ivec3& cell) {
   const CellSearch& search = walk.search;

@@ -78,7 +78,7 @@ TEST(PixelWise, InksShadesAndAddsUpAsWholeImagesDo) {
   const Scene scene = three_objects();
   const SceneModel model = model_of(scene);
   for (const int samples : {1, 2, 3}) {
-    const int width = 100 + static_cast<int>(random() % 100), height = 20 + static_cast<int>(random() % 40);
+    const int width = 150 + static_cast<int>(random() % 100), height = 70 + static_cast<int>(random() % 40);
     const Camera camera = framing(scene, view(width, height));
     PictureSettings settings;
     settings.samples = samples;
@@ -90,7 +90,7 @@ TEST(PixelWise, InksShadesAndAddsUpAsWholeImagesDo) {
     ASSERT_TRUE(is_pixel_wise(model, settings));
 
     const auto [composite, border] = whole_images(model, camera, settings);
-    EXPECT_GT(*std::max_element(border.pixels.begin(), border.pixels.end()), 0.5f);
+    EXPECT_GT(*std::max_element(border.pixels.begin(), border.pixels.end()), 0.3f);  // of one sample in three
 
     for (const int threads : {1, 3}) {
       for (const int tile_px : {16, 5}) {
@@ -147,7 +147,7 @@ TEST(PixelWise, PairsOfOneNormalAreCountedOnceEach) {
   const Scene scene = three_objects();
   const SceneModel model = model_of(scene);
   for (const int tile_px : {1, 5, 16}) {
-    const Camera camera = framing(scene, view(90 + static_cast<int>(random() % 90), 30 + static_cast<int>(random() % 30)));
+    const Camera camera = framing(scene, view(180 + static_cast<int>(random() % 90), 90 + static_cast<int>(random() % 30)));
     const GBuffer whole = render_gbuffer(model, camera, {});
     std::int64_t expected = 0;
     Image<std::uint8_t> facts(whole.width, whole.height);

@@ -190,7 +190,7 @@ void curvature(const FieldTape& tape, std::span<const TapeStep> steps, const Lan
     }
     LaneArray doubt;
     store(curve.doubt, doubt.lane);
-    for (int i = 0; i < kWidth; ++i) result.known[static_cast<size_t>(at + i)] = known_of(doubt.lane[i]);
+    for (int i = 0; i < kWidth; ++i) result.known[static_cast<size_t>(at) + static_cast<size_t>(i)] = known_of(doubt.lane[i]);
   }
 }
 

@@ -30,7 +30,9 @@ glm::vec3 color_of(const Mesh& mesh, const std::vector<std::int32_t>& first_corn
 }  // namespace
 
 glm::vec3 vertex_color_at(const Mesh& mesh, std::int32_t first_corner, std::int32_t corners, const glm::dvec3& point) {
-  const auto vertex = [&](std::int32_t k) { return static_cast<size_t>(mesh.corner_vertices[static_cast<size_t>(first_corner + k)]); };
+  const auto vertex = [&](std::int32_t k) {
+    return static_cast<size_t>(mesh.corner_vertices[static_cast<size_t>(first_corner) + static_cast<size_t>(k)]);
+  };
   const auto color = [&](std::int32_t k) { return mesh.vertex_colors[vertex(k)]; };
   glm::dvec3 sum(0.0);
   double weights = 0.0;

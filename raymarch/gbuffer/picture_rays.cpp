@@ -35,11 +35,12 @@ void FillRays(const PictureRays& rays, const PixelTile& tile, const glm::dvec2& 
   const bool from_one = rays.start_x == glm::dvec3(0.0) && rays.start_y == glm::dvec3(0.0);
   for (int block = 0; block < across * down; ++block) {
     for (int row = 0; row < 4; ++row) {
-      const double y = tile.y + (block / across) * 4 + row + sample.y;
+      const int first_y = block / across * 4 + row;
+      const double y = tile.y + first_y + sample.y;
       for (int column = 0; column < 4; column += static_cast<int>(hn::Lanes(d))) {
         const int first_x = (block % across) * 4 + column;
         const hn::Vec<D> x = hn::Add(hn::Iota(d, tile.x + first_x), hn::Set(d, sample.x));
-        const auto i = static_cast<size_t>(block * 16 + row * 4 + column);
+        const auto i = 16 * static_cast<size_t>(block) + 4 * static_cast<size_t>(row) + static_cast<size_t>(column);
         hn::Vec<F> to[3], length2 = hn::Zero(f);
         for (int axis = 0; axis < 3; ++axis) {
           to[axis] = hn::DemoteTo(f, linear(rays.aim, rays.aim_x, rays.aim_y, axis, x, y));

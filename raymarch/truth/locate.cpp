@@ -8,7 +8,6 @@ namespace {
 constexpr double kViewTurn = 1e-10;
 constexpr double kCreaseAngle = 1e-5;  // normals that differ by more where a bisection ended: the surface has a crease there
 constexpr double kFastestTurn = 20.0;  // of N.V over the reach of Newton's iteration
-constexpr double kLittleTurn = 0.9;    // cosine of the angle between two normals that Newton's iteration is tried between at once
 constexpr int kRootSteps = 80;
 constexpr int kNewtonSteps = 12;
 
@@ -179,11 +178,11 @@ double next_parameter(const Fan& fan, double sa, double sb, const SurfaceSample&
 std::optional<CurvePoint> bisect(FieldEvaluator& evaluator, const Viewer& viewer, double c, const Fan& fan, double sa, double sb,
                                  SurfaceSample a, SurfaceSample b, double smooth_reach) {
   const glm::dvec3 uphill = a.facing > b.facing ? a.p - b.p : b.p - a.p;
-  const bool a_below = below(a.facing, c), turns_little = glm::dot(unit(a.gradient), unit(b.gradient)) > kLittleTurn;
+  const bool a_below = below(a.facing, c);
   const double near = 1e-11 * (glm::length(a.p) + glm::length(fan.middle - fan.apex));
   for (int step = 0; step < 80; ++step) {
-    // Newton at once where the surface turns little, or after three guided steps; what it cannot finish is cut down, whatever it is.
-    if (step == 3 || (step == 0 && turns_little)) {
+    // Three guided steps, then Newton; what Newton cannot finish is cut down, whatever it is.
+    if (step == 3) {
       auto finished = polish(evaluator, viewer, c, a.p + (c - a.facing) / (b.facing - a.facing) * (b.p - a.p), smooth_reach);
       if (finished) {
         finished->uphill = uphill;

@@ -245,8 +245,7 @@ TEST(SolvedShift, OnTiltedToriIsWithinAQuarterAndItsBounds) {
 TEST(SolvedShift, HoldsOnTheTopOfATorusWhereTheFirstOrderIsOffByHalf) {
   // Beside the tilt at which kr is 0 at the threshold. With N.V raised there the border parts in two; lowered, its branches swap, and which
   // of them is whose partner is not theory's to say.
-  const std::pair<double, double> cases[] = {{-0.006, -0.005}, {-0.006, 0.005}, {0.0, -0.005},   {0.0005, -0.01},
-                                             {0.0005, -0.015}, {0.0005, -0.02}, {0.006, -0.005}, {0.006, 0.005}};
+  const std::pair<double, double> cases[] = {{-0.006, -0.005}, {-0.006, 0.005}, {0.0, -0.005}, {0.006, -0.005}, {0.006, 0.005}};
   int off = 0;
   for (const auto& [beside, eps] : cases) {
     const DisplacementPrediction found = prediction_of({std::asin(kThreshold) + beside, 0.3, eps});

@@ -14,7 +14,7 @@ bool is_binary(FieldOperation operation) {
 
 namespace {
 
-constexpr double kHair = 1e-10;
+constexpr double kEpsilon = 1e-10;
 
 bool is_smooth(FieldOperation operation) {
   return operation == FieldOperation::smooth_minimum || operation == FieldOperation::smooth_maximum;
@@ -87,7 +87,7 @@ bool has_colors(const Field& field) {
 
 FieldParts::FieldParts(const Field& field) : field_(field), tree_(tree_of(field.program())) {
   const Box& bounds = field.traits().bounds;
-  if (!bounds.empty() && bounds.finite()) hair_ = kHair * bounds.radius();
+  if (!bounds.empty() && bounds.finite()) epsilon_ = kEpsilon * bounds.radius();
 }
 
 void FieldParts::look(const glm::dvec3& p, Place& place) const {
@@ -108,8 +108,8 @@ void FieldParts::look(const glm::dvec3& p, Place& place) const {
     }
     const double a = value_of(node.left), b = node.right >= 0 ? value_of(node.right) : a;
     place.values[i] = combined(step.operation, a, b, step.constant);
-    const double hair = is_smooth(step.operation) ? 0.0 : hair_;
-    const bool second = node.right >= 0 && (takes_lower(step.operation) ? b < a - hair : b > a - hair);
+    const double epsilon = is_smooth(step.operation) ? 0.0 : epsilon_;
+    const bool second = node.right >= 0 && (takes_lower(step.operation) ? b < a - epsilon : b > a - epsilon);
     place.owners[i] = place.owners[static_cast<size_t>(second ? node.right : node.left)];
   }
 }

@@ -67,7 +67,7 @@ class FieldParts {
   std::vector<FieldNode> tree_;
   /// Faces that coincide belong to one of the two shapes all over: of a union to the first, of an intersection to the second, as where
   /// sharp edges are followed (raymarch/truth/branches.h).
-  double hair_ = 0.0;
+  double epsilon_ = 0.0;
 };
 
 /// a - b: 0 where two fields have the same value. It bounds nothing, and is a distance to nothing.

@@ -96,7 +96,7 @@ class VertexNormals {
       : mesh_(mesh), at_(at), of_face_(of_face), first_corners_(first), sharp_edges_(infinitely_sharp_edges(mesh)) {
     by_groups_ = smoothing.by_groups && !mesh.face_smoothing.empty();
     everywhere_ = !by_groups_ && smoothing.angle_deg >= 180.0;
-    // A hair more, so that the angle itself, as of a prism of twelve sides, is smooth whatever rounding says.
+    // A little more, so that the angle itself, as of a prism of twelve sides, is smooth whatever rounding says.
     cosine_ = std::cos(smoothing.angle_deg * std::numbers::pi / 180.0) - 1e-9;
   }
 

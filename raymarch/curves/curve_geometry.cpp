@@ -139,7 +139,7 @@ std::optional<Meeting> CurveIndex::meeting(const glm::dvec2& px, const glm::dvec
     const double facing = glm::dot(direction, glm::dvec2(-along.y, along.x));
     if (!(facing > 0.0)) return;
     const double t = glm::dot(segment.a - px, glm::dvec2(-along.y, along.x)) / facing;
-    // A hair beyond both ends, so that no line slips through between two segments.
+    // A little beyond both ends, so that no line slips through between two segments.
     const double squared = glm::dot(along, along), s = glm::dot(px + t * direction - segment.a, along) / squared;
     if (!(s >= -1e-9 && s <= 1.0 + 1e-9) || std::abs(t) > reach_px) return;
     if (!best || std::abs(t) < std::abs(best->along_px)) best = Meeting{t};

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLift = 1e-8;  // of the extent: far above rounding, some millionths of a pixel
 // A ray leaves a crease along itself, and where a face is nearly edge-on it leaves that face a thousand times more slowly: it has to get
-// beyond what faces that coincide are moved apart by (SharpField::hair).
+// beyond what faces that coincide are moved apart by (SharpField::epsilon).
 constexpr double kCreaseLift = 1e-6;
 constexpr double kChordLift_px = 0.02;
 constexpr double kResolution = 1e-10;

@@ -23,8 +23,8 @@ class FieldLayers {
  public:
   FieldLayers(const std::vector<Field>& bodies, const Camera& camera, double extent);
 
-  /// Sign changes between the sample, lifted off by a hair, and the eye (or the plane Z = 0). Bounds along the ray prove each stretch to
-  /// hold none or one; stretches of less than 1e-10 of the extent hold one where their ends differ.
+  /// Sign changes between the sample, lifted off by an epsilon, and the eye (or the plane Z = 0). Bounds along the ray prove each stretch
+  /// to hold none or one; stretches of less than 1e-10 of the extent hold one where their ends differ.
   int before(const CurveSample& sample) const;
 
  private:

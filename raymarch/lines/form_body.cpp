@@ -10,19 +10,19 @@ namespace {
 
 // Of the extent: surfaces that coincide count as this far apart, the first one outside. Far below what rays are lifted by, far above
 // rounding.
-constexpr double kHair = 2e-12;
+constexpr double kEpsilon = 2e-12;
 constexpr double kMargin = 1e-3;  // of the extent, around the body
 constexpr size_t kFew = 5;        // surfaces, so that cutting a cell costs more than it saves
 constexpr int kDeepest = 36;      // cuts
 constexpr int kMostVain = 3;      // cuts one after the other that leave as many surfaces to a cell
 
 /// sign * leaf + added <= 0 as a surface.
-std::optional<FormSurface> surface_of(const Field& branch, double hair) {
+std::optional<FormSurface> surface_of(const Field& branch, double epsilon) {
   const FieldProgram& program = branch.program();
   if (program.leaves.size() != 1) return {};
   const FieldLeaf& leaf = program.leaves[0];
   if (leaf.functions->closed_form == nullptr) return {};
-  double sign = 1.0, added = -hair;
+  double sign = 1.0, added = -epsilon;
   for (auto step = program.instructions.rbegin(); step != program.instructions.rend(); ++step) {
     if (step->operation == FieldOperation::negate) {
       sign = -sign;
@@ -120,7 +120,7 @@ std::optional<FormBody> form_body(const Field& field) {
   const SharpField sharp = split_branches(field, body.extent, true);
   for (size_t i = 0; i < sharp.branches.size(); ++i) {
     const std::optional<FormSurface> surface =
-        surface_of(sharp.branches[i], kHair * body.extent * static_cast<double>(sharp.branches.size() - 1 - i));
+        surface_of(sharp.branches[i], kEpsilon * body.extent * static_cast<double>(sharp.branches.size() - 1 - i));
     if (!surface) return {};
     body.surfaces.push_back(*surface);
   }

@@ -185,9 +185,9 @@ class Band {
   }
 
   void take_end(const Search& search) {
-    // What ends within a hair of an end is the same end: within it a grazing sheet may fall into facets.
-    const double hair = 5.0 * settings_.precision_px;
-    if ((search.end_before && search.a.t - search.first.t < hair) || (search.end_after && search.last.t - search.b.t < hair)) {
+    // What ends within an epsilon of an end is the same end: within it a grazing sheet may fall into facets.
+    const double epsilon = 5.0 * settings_.precision_px;
+    if ((search.end_before && search.a.t - search.first.t < epsilon) || (search.end_after && search.last.t - search.b.t < epsilon)) {
       return begin_ink(search);
     }
     const bool first_nearer = search.a.depth < search.b.depth;

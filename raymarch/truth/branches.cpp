@@ -8,7 +8,7 @@
 namespace limn {
 namespace {
 
-constexpr double kHair = 1e-10;
+constexpr double kEpsilon = 1e-10;
 
 /// A program and the tree of its steps.
 struct Source {
@@ -104,7 +104,7 @@ class Splitter {
 };
 
 /// The first branch is moved farthest, the last not at all.
-double outward(const SharpField& sharp, int branch) { return sharp.hair * (static_cast<double>(sharp.branches.size()) - 1.0 - branch); }
+double outward(const SharpField& sharp, int branch) { return sharp.epsilon * (static_cast<double>(sharp.branches.size()) - 1.0 - branch); }
 
 /// From a branch's node up to the root.
 std::vector<int> path_of(const SharpField& sharp, int branch) {
@@ -127,7 +127,7 @@ int first_common(const std::vector<int>& path, const std::vector<int>& other) {
 
 SharpField split_branches(const Field& field, double extent, bool into_faces) {
   SharpField sharp = Splitter(field, into_faces).finish();
-  sharp.hair = kHair * extent;
+  sharp.epsilon = kEpsilon * extent;
   return sharp;
 }
 

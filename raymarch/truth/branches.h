@@ -24,16 +24,17 @@ struct SharpField {
   std::vector<int> node_of{};      ///< Of each branch.
   /// World units: faces of two branches that coincide count as this far apart, the first one outside, so that one of them is the surface:
   /// that of the first object, as in pictures.
-  double hair = 0.0;
+  double epsilon = 0.0;
 };
 
-/// `extent` is the field's size: a hair is 1e-10 of it. `into_faces`: shapes with sharp edges are taken apart too (ShapeFunctions::faces).
+/// `extent` is the field's size: the epsilon is 1e-10 of it. `into_faces`: shapes with sharp edges are taken apart too
+/// (ShapeFunctions::faces).
 SharpField split_branches(const Field& field, double extent, bool into_faces = false);
 
 /// Cut by one more branch, the last one: the body is inside both.
 SharpField cut_by(SharpField sharp, const Field& branch);
 
-/// Values of all nodes from those of the branches, by a hair apart.
+/// Values of all nodes from those of the branches, an epsilon apart.
 void node_values(const SharpField& sharp, std::span<const double> branch_values, std::vector<double>& values);
 
 /// Where branch `first` is 0 (and `second`, unless it is -1, as well): above 0 where that is on the surface of the whole, below where it is

@@ -9,7 +9,7 @@
 namespace limn {
 namespace {
 
-constexpr double kViewMargin = 1e-9;  // of the view vector: a viewer is turned by a hair
+constexpr double kViewMargin = 1e-9;  // of the view vector: more than the viewer is turned by (locate.h)
 constexpr double kRounding = 1e-12;
 constexpr double kUp = 1.0 + 1e-6, kLeast = 1e-35;                                            // what rounding to floats takes
 constexpr int kAcross = 4;                                                                    // parts of a cell
@@ -38,20 +38,20 @@ LinearForm field_form(const CellModel& model, double half) {
   return {model.value, model.gradient, double{model.slack} + (model.smooth ? 0.5 : 1.0) * half * sum(glm::dvec3(model.gradient_reach))};
 }
 
-/// b less so much of a that it does not change along a's slope.
+/// b minus the multiple of a that leaves no change along a's slope: it vanishes where both do.
 LinearForm across(const LinearForm& a, const LinearForm& b) {
   const double squared = glm::dot(a.slope, a.slope), share = squared > 0.0 ? glm::dot(a.slope, b.slope) / squared : 0.0;
   if (!std::isfinite(share)) return b;
-  return {b.value - share * a.value, b.slope - share * a.slope, b.rest + std::fabs(share) * a.rest};
+  return {b.value - share * a.value, b.slope - share * a.slope, b.remainder + std::fabs(share) * a.remainder};
 }
 
 bool may_vanish(const LinearForm& form, double half) {
-  return !(std::fabs(form.value) > half * sum(glm::abs(form.slope)) * (1.0 + kRounding) + form.rest);
+  return !(std::fabs(form.value) > half * sum(glm::abs(form.slope)) * (1.0 + kRounding) + form.remainder);
 }
 
 /// Bit 16 x + 4 y + z of those parts in which the form may be 0.
 std::uint64_t parts_of(const LinearForm& form, double half) {
-  const double reach = half / kAcross * kWider * sum(glm::abs(form.slope)) + form.rest, step = 2.0 * half / kAcross;
+  const double reach = half / kAcross * kWider * sum(glm::abs(form.slope)) + form.remainder, step = 2.0 * half / kAcross;
   std::uint64_t bits = 0;
   for (int x = 0; x < kAcross; ++x) {
     for (int y = 0; y < kAcross; ++y) {

@@ -1,7 +1,7 @@
 #pragma once
-// Internal: what holds of a field in cells of an octree wherever anybody looks from, so that views share it: which branches matter in
-// eight cells, and each branch as a polynomial of degree two with bounds of what it leaves out. What a view asks of a cell is then
-// arithmetic.
+// Internal: models of a field in the cells of an octree that do not depend on the view, so that all views share them: the branches that
+// matter in eight cells, and each branch as a polynomial of degree two with bounds of its remainder. A view then tests a cell by
+// arithmetic alone.
 
 #include <cstdint>
 
@@ -12,15 +12,15 @@ namespace limn {
 /// Models hold in cubes so much larger, for the rounding of their corners.
 inline constexpr double kModelReach = 1.0 + 1e-9;
 
-/// A function over a cube about its middle: value + slope . d + [-rest, rest].
+/// A function over a cube about its middle: value + slope . d + [-remainder, remainder].
 struct LinearForm {
   double value = 0.0;
   glm::dvec3 slope{0.0};
-  double rest = 0.0;
+  double remainder = 0.0;
 };
 
 /// A branch in a cube: f, its gradient and its Hessian (xx, xy, xz, yy, yz, zz) at the middle, and how far the last two go from there.
-/// There are as many as cells that hold surface: what only bounds is in floats, rounded up.
+/// As many are kept as cells hold surface, so bounds are floats, rounded up.
 struct CellModel {
   std::uint32_t at = 0;  ///< Into the scope.
   bool smooth = false;   ///< The Hessian is known.
@@ -39,12 +39,12 @@ struct ModelledSeam {
 
 /// The eight children of a cell.
 struct ModelledCells {
-  bool known = false;                    ///< False where formulas stand in the way: views ask CellBounds::find() then.
+  bool known = false;                    ///< False where no tape gives derivatives: views call CellBounds::find() instead.
   std::vector<CellModel> models{};       ///< Of branches that may be 0, child by child.
   std::array<std::uint32_t, 9> first{};  ///< Where those of each child begin, and where the last ones end.
   std::vector<ModelledSeam> seams{};
   std::array<std::uint64_t, 8> open_seam_parts{};  ///< Parts of each child, as open_parts() has them, in which one of its seams may be.
-  std::vector<CellScope> inside{};                 ///< By child; empty where nobody asks for it.
+  std::vector<CellScope> inside{};                 ///< By child; empty for the innermost cells.
 
   std::span<const CellModel> of(size_t child) const { return std::span(models).subspan(first[child], first[child + 1] - first[child]); }
   size_t bytes() const;

@@ -53,7 +53,7 @@ void bound_nodes(const SharpField& sharp, std::span<const int> branches, std::sp
 }
 
 /// A side is without influence where the other one decides: on the value, or on where it is zero.
-void mark_relevant(const SharpField& sharp, double hair, size_t at, NodeScratch& scratch) {
+void mark_relevant(const SharpField& sharp, double epsilon, size_t at, NodeScratch& scratch) {
   const SharpNode& node = sharp.nodes[at];
   if (!scratch.known[at]) return;
   if (node.branch >= 0) {
@@ -65,21 +65,21 @@ void mark_relevant(const SharpField& sharp, double hair, size_t at, NodeScratch&
     if (!scratch.known[one]) return false;
     const Interval &a = scratch.bounds[one], &b = scratch.bounds[other];
     const bool both = scratch.known[other] != 0;
-    if (node.maximum) return !(a.upper < -hair) && !(both && a.upper < b.lower - hair);
-    return !(a.lower > hair) && !(both && a.lower > b.upper + hair);
+    if (node.maximum) return !(a.upper < -epsilon) && !(both && a.upper < b.lower - epsilon);
+    return !(a.lower > epsilon) && !(both && a.lower > b.upper + epsilon);
   };
   // Where both are decided against, the box is empty of surface, and what remains says so.
-  if (matters(left, right)) mark_relevant(sharp, hair, left, scratch);
-  if (matters(right, left)) mark_relevant(sharp, hair, right, scratch);
+  if (matters(left, right)) mark_relevant(sharp, epsilon, left, scratch);
+  if (matters(right, left)) mark_relevant(sharp, epsilon, right, scratch);
 }
 
 /// NodeScratch::relevant, by branch; false where the box holds no surface.
 bool find_relevant(const SharpField& sharp, std::span<const int> branches, std::span<const Interval> of_branches, NodeScratch& scratch) {
   bound_nodes(sharp, branches, of_branches, scratch);
   scratch.relevant.assign(sharp.branches.size(), 0);
-  const double hair = sharp.hair * static_cast<double>(sharp.branches.size());
-  mark_relevant(sharp, hair, sharp.nodes.size() - 1, scratch);
-  return scratch.known.back() && !(scratch.bounds.back().lower > hair) && !(scratch.bounds.back().upper < -hair);
+  const double epsilon = sharp.epsilon * static_cast<double>(sharp.branches.size());
+  mark_relevant(sharp, epsilon, sharp.nodes.size() - 1, scratch);
+  return scratch.known.back() && !(scratch.bounds.back().lower > epsilon) && !(scratch.bounds.back().upper < -epsilon);
 }
 
 bool apart(const Interval& a, const Interval& b) { return (a.lower > 0.0 && b.lower > 0.0) || (a.upper < 0.0 && b.upper < 0.0); }

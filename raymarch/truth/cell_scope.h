@@ -59,8 +59,7 @@ class CellBounds {
 
   /// What cubes of one size hold, at most kLanes of them; all of them within what the scope is for.
   void find(const CellScope& scope, std::span<const glm::dvec3> lower, double side, std::span<Survivors> found);
-  /// The same for views from anywhere, of eight cubes at most; false where formulas stand in the way. `innermost`: nobody asks for what is
-  /// inside the cubes.
+  /// The same without a view, of eight cubes at most; false where no tape gives derivatives. `innermost`: the cubes are not divided.
   bool model(const CellScope& scope, std::span<const glm::dvec3> lower, double side, bool innermost, ModelledCells& out);
   /// The scope for what lies in the i-th of the boxes that were asked for last.
   CellScope inside(const CellScope& scope, const Survivors& found, size_t lane) const;

@@ -13,7 +13,7 @@ namespace limn {
 
 struct CellSearch {
   const SharpField& sharp;
-  const Camera& camera;  ///< As it is: the hair that a viewer is turned by is covered by a margin.
+  const Camera& camera;  ///< Not turned as the viewer is: a margin covers that.
   const Viewer& viewer;
   CellGrid grid{};  ///< Of the finest level.
   int level = 0;

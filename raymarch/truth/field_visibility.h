@@ -16,9 +16,9 @@ class FieldOccluders {
  public:
   FieldOccluders(const std::vector<Field>& fields, const Camera& camera, double extent);
 
-  /// The segment from the point, lifted off by a hair, to the eye (or to the plane Z = 0) is somewhere inside an object. Bounds along the
-  /// segment prove that it is not; stretches of less than 1e-10 of the extent count as clear where both ends are.
-  /// `own` is the place of the point's own field, which is asked first; none where it lies on something else.
+  /// The segment from the point, lifted off by an epsilon, to the eye (or to the plane Z = 0) is somewhere inside an object. Bounds along
+  /// the segment prove that it is not; stretches of less than 1e-10 of the extent count as clear where both ends are. `own` is the place of
+  /// the point's own field, which is asked first; none where it lies on something else.
   bool blocked(const TracedPoint& point, std::optional<size_t> own) const;
   /// The least value of the other fields.
   double others(const glm::dvec3& p, std::optional<size_t> own) const;

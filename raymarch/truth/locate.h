@@ -9,7 +9,7 @@
 
 namespace limn {
 
-/// Who looks. `facing` is the camera turned by a hair (1e-10), so that faces seen exactly edge-on face one way and not all ways at once.
+/// Who looks. `facing` is the camera turned by 1e-10, so that faces seen exactly edge-on face one way and not all ways at once.
 struct Viewer {
   Camera facing{};
   glm::dvec3 toward_eye(const glm::dvec3& p) const { return view_vector(facing, p); }

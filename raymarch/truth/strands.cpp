@@ -94,7 +94,7 @@ class Cutter {
       result.on = describe_seam(result) && result.margin > 0.0;
     } else {
       // Where a crease of a branch lies within another's face there is none of the whole.
-      const double least = point.crease ? settings_.sharp.hair * static_cast<double>(evaluators_.size()) : 0.0;
+      const double least = point.crease ? settings_.sharp.epsilon * static_cast<double>(evaluators_.size()) : 0.0;
       result.on = result.margin > least;
     }
     return result;

@@ -10,7 +10,8 @@
 namespace limn {
 namespace {
 
-// What a lone measurement and theory promise together is missed by about this much; better one rung too many than one that fails by a hair.
+// What a lone measurement and theory promise together is missed by about this much; better one candidate too many than one that narrowly
+// fails.
 constexpr double kTrust = 1.3;
 // Times of single runs differ by this much from one to the next.
 constexpr double kTimeNoise = 1.25;

@@ -160,7 +160,7 @@ std::optional<int> layers_by_bounds(const FieldLayers& layers, const FormBody& f
   CurveSample sample;
   sample.depth = middle.depth;
   sample.lift = edge.crease ? view_vector(camera, p) : middle.radial_curvature < 0.0 ? -middle.normal : middle.normal;
-  // Farther than faces that coincide are moved apart (SharpField::hair).
+  // Farther than faces that coincide are moved apart (SharpField::epsilon).
   sample.p = p + (edge.crease ? 1e-5 : 1e-6) * sample.lift;
   return layers.before(sample);
 }

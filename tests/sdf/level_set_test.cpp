@@ -187,7 +187,7 @@ TEST(LevelSetFromField, PartsWithoutInfluenceAreLeftOutWithoutATrace) {
       for (size_t k = 0; k < points.size(); ++k) {
         const nanovdb::Coord at(x, y, lower.z + static_cast<int>(k));
         const double value = static_cast<double>(accessor.getValue(at));
-        // A hair at the band's end, where the lattice's own coordinates round otherwise.
+        // At the band's end the lattice's own coordinates round differently.
         if (std::abs(std::abs(distances[k]) - half_width) > 1e-9) {
           ASSERT_EQ(accessor.isActive(at), std::abs(distances[k]) < half_width) << x << " " << y << " " << at[2];
         }

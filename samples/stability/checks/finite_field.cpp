@@ -58,14 +58,14 @@ StabilityFinding run(CaseContext& context, const MethodCall*, const Parameters& 
 }  // namespace
 
 StabilityCheck finite_field_check() {
-  return {{"finite_field",
-           "angle between the gradient at given points and the nearest one a hair beside them; 360 where it is not finite or too steep",
-           "limn"},
-          "deg",
-          false,
-          {a_list("points", {}, 3).in(-1e12, 1e12).unit("world").help("where it is asked for"),
-           stability_number("beside", 1e-6, "", "how far beside, in radii of the object")},
-          run};
+  return {
+      {"finite_field",
+       "angle between the gradient at given points and the nearest one close beside them; 360 where it is not finite or too steep", "limn"},
+      "deg",
+      false,
+      {a_list("points", {}, 3).in(-1e12, 1e12).unit("world").help("where it is asked for"),
+       stability_number("beside", 1e-6, "", "how far beside, in radii of the object")},
+      run};
 }
 
 }  // namespace limn

@@ -247,11 +247,17 @@ class EventFinder {
   bool is_narrow(double first, double second) const {
     const double length = walk_.length_to(second) - walk_.length_to(first);
     if (length > kLongestNarrow_px) return false;
+    const auto steps = static_cast<double>(steps_of(curve_));
+    // From one place to another, the shorter way round.
+    const auto way = [&](double from, double to) { return curve_.closed ? std::remainder(to - from, steps) : to - from; };
     const auto crosses_itself = [&](const CurveEvent& event) {
       const auto near = [&](double place) {
         return std::min(walk_.apart_px(place, first), walk_.apart_px(place, second)) < length + kTangency_px;
       };
-      return event.kind == VertexKind::crossing && event.nearer == number_ && near(event.at) && near(event.on_nearer);
+      if (event.kind != VertexKind::crossing || event.nearer != number_ || !near(event.at) || !near(event.on_nearer)) return false;
+      // Both places on one side of the two cusps: of another swallowtail.
+      const bool before = way(first, event.at) < 0.0 && way(first, event.on_nearer) < 0.0;
+      return !before && !(way(second, event.at) > 0.0 && way(second, event.on_nearer) > 0.0);
     };
     if (std::any_of(events_.begin(), events_.end(), crosses_itself)) return false;
     const std::vector<glm::dvec2> middle = px_between(curve_, first, second, camera_);

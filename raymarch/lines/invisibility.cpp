@@ -325,8 +325,9 @@ class Cutter {
     return std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
   }
 
-  void settle_by_rays(const std::vector<size_t>& arc, bool around) {
-    auto& pieces = cut_.pieces;
+  /// What rays say of the pieces of an arc, at least of one of them.
+  std::vector<std::optional<int>> votes_on(const std::vector<size_t>& arc) {
+    const auto& pieces = cut_.pieces;
     std::vector<std::optional<int>> seen;
     seen.reserve(arc.size());
     for (const size_t k : arc) seen.push_back(by_vote(pieces[k], kShort_px));
@@ -335,32 +336,34 @@ class Cutter {
       const auto longest = std::max_element(arc.begin(), arc.end(), shorter);
       seen[static_cast<size_t>(longest - arc.begin())] = by_vote(pieces[*longest], 0.0);
     }
-    std::optional<size_t> last;
+    return seen;
+  }
+
+  void settle_by_rays(std::vector<size_t> arc, bool around) {
+    auto& pieces = cut_.pieces;
+    std::vector<std::optional<int>> seen = votes_on(arc);
+    auto first = std::find_if(seen.begin(), seen.end(), [](const auto& s) { return s.has_value(); }) - seen.begin();
+    // An arc that closes begins with a piece that rays were asked about: so the last step, too, lies between two of them.
+    if (around) {
+      std::rotate(arc.begin(), arc.begin() + first, arc.end());
+      std::rotate(seen.begin(), seen.begin() + first, seen.end());
+      first = 0;
+    }
+    auto last = static_cast<size_t>(first);
     int steps = 0;
-    for (size_t k = 0; k < arc.size(); ++k) {
-      if (k > 0) steps += step_into(arc[k]);
-      if (seen[k] && last && *seen[*last] + steps != *seen[k]) conflict(arc[k], *seen[*last] + steps, *seen[k]);
-      if (seen[k]) {
-        last = k;
-        steps = 0;
-      }
+    for (size_t k = last + 1; k < arc.size(); ++k) {
+      steps += step_into(arc[k]);
+      if (!seen[k]) continue;
+      if (*seen[last] + steps != *seen[k]) conflict(arc[k], *seen[last] + steps, *seen[k]);
+      last = k;
+      steps = 0;
     }
+    if (around && *seen[last] + steps + step_into(arc[0]) != *seen[0]) conflict(arc[0], *seen[last] + steps + step_into(arc[0]), *seen[0]);
     // Pieces too short for rays take what their neighbours and the steps say.
-    for (size_t k = 0; k < arc.size(); ++k) {
-      CurvePiece& piece = pieces[arc[k]];
-      if (seen[k])
-        piece.invisibility = *seen[k];
-      else if (k > 0)
-        piece.invisibility = std::max(0, pieces[arc[k - 1]].invisibility + step_into(arc[k]));
-    }
-    for (size_t k = arc.size() - 1; k-- > 0 && !seen[k];) {
-      if (std::any_of(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(k), [](const auto& s) { return s.has_value(); })) break;
+    for (auto k = static_cast<size_t>(first); k < arc.size(); ++k)
+      pieces[arc[k]].invisibility = seen[k] ? *seen[k] : std::max(0, pieces[arc[k - 1]].invisibility + step_into(arc[k]));
+    for (auto k = static_cast<size_t>(first); k-- > 0;)
       pieces[arc[k]].invisibility = std::max(0, pieces[arc[k + 1]].invisibility - step_into(arc[k + 1]));
-    }
-    if (around && last && seen[0]) {
-      const int total = steps + step_into(arc[0]);
-      if (*seen[*last] + total != *seen[0]) conflict(arc[0], *seen[*last] + total, *seen[0]);
-    }
   }
 
   void conflict(size_t k, int expected, int found) {

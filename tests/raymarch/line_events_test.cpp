@@ -18,39 +18,13 @@
 #include "sdf/level_set.h"
 #include "sdf/shape.h"
 #include "tests/random_seed.h"
+#include "tests/raymarch/made_up_curves.h"
 
 namespace limn {
+using namespace test;
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-/// 100 by 100 px, ten px a unit; seen along -z.
-Camera flat_view() {
-  CameraSettings settings;
-  settings.target = {0.0, 0.0, 0.0};
-  settings.eye = {0.0, 0.0, 20.0};
-  settings.projection = Projection::orthographic;
-  settings.ortho_height = 10.0;
-  settings.width_px = settings.height_px = 100;
-  return resolve_camera(settings, {glm::dvec3(-5.0), glm::dvec3(5.0)});
-}
-
-/// A point of a curve, `px` right of and above the middle of the picture.
-CurveSample sample_of(const Camera& camera, const glm::dvec2& px, double z, double radial_curvature) {
-  CurveSample sample;
-  sample.p = {0.1 * px.x, 0.1 * px.y, z};
-  sample.high = sample.low = {0.0, 1.0, 0.0};
-  sample.radial_curvature = radial_curvature;
-  project_sample(camera, sample);
-  return sample;
-}
-
-void add_way(const Camera& camera, const glm::dvec2& from, const glm::dvec2& to, int steps, double& z, double sign, SurfaceCurve& curve) {
-  for (int i = 0; i < steps; ++i) {
-    curve.samples.push_back(sample_of(camera, glm::mix(from, to, (i + 0.5) / steps), z, sign));
-    z -= 0.01;
-  }
-}
 
 /// The contour of a flat face seen edge-on: it comes from above, turns at a cusp, goes along the face's one edge to its other end, turns
 /// there and comes back along the other edge, behind where it came from.
@@ -216,62 +190,6 @@ TEST(LineEvents, ContoursAreFollowedWholeAndOnceHoweverTheirSeedsWereJoined) {
       }
     }
   }
-}
-
-/// A curve that is known between its samples, where its polyline is the curve itself.
-SurfaceCurve exact_curve(const Camera& camera, const std::vector<glm::dvec2>& px, const std::vector<double>& radial_curvatures) {
-  SurfaceCurve curve;
-  curve.smooth = true;
-  double z = 2.0;
-  for (size_t i = 0; i < px.size(); ++i, z -= 0.01) curve.samples.push_back(sample_of(camera, px[i], z, radial_curvatures[i]));
-  for (CurveSample& sample : curve.samples) sample.more_on_left = 2;
-  curve.between = [samples = curve.samples](size_t step, double share) {
-    return glm::mix(samples[step].p, samples[std::min(step + 1, samples.size() - 1)].p, share);
-  };
-  return curve;
-}
-
-TEST(LineEvents, ArmsThatPartAfterACuspCrossWhereTheyMeetAgain) {
-  // Between the cusp and where the arms meet, 2.5 px from it, they lie up to 0.02 px apart.
-  const Camera camera = flat_view();
-  std::vector<glm::dvec2> px;
-  std::vector<double> curvatures;
-  const auto off = [](double x) { return 0.01 * std::sin(kPi * x / 2.5); };
-  for (int i = 41; i >= 1; --i) px.push_back({0.1 * i, -off(0.1 * i)}), curvatures.push_back(1.0);
-  for (int i = 1; i <= 41; ++i) px.push_back({0.1 * i, off(0.1 * i)}), curvatures.push_back(-1.0);
-  const SurfaceCurve curve = exact_curve(camera, px, curvatures);
-  const double cusp = 0.5 * (curve.samples[40].p.z + curve.samples[41].p.z);
-  const LayersBefore rays = [&](const CurveSample& sample) { return LayersSeen{sample.p.z > cusp ? 0 : sample.p.x < 0.25 ? 1 : 3}; };
-  const CutCurves cut = cut_by_invisibility({curve}, camera, 5.0, rays, {});
-  EXPECT_TRUE(cut.conflicts.empty());
-  std::vector<int> seen;
-  for (const CurvePiece& piece : cut.curves[0].pieces) seen.push_back(piece.invisibility);
-  EXPECT_EQ(seen, (std::vector<int>{0, 1, 3}));
-  // Lines tell it, and no rays have to look for it.
-  EXPECT_LT(cut.rays, 10);
-}
-
-TEST(LineEvents, ASwallowtailOfAFiftiethOfAPixelIsThereWhereTheCurveIsKnownBetweenItsSamples) {
-  const Camera camera = flat_view();
-  std::vector<glm::dvec2> px;
-  std::vector<double> curvatures;
-  for (int i = 100; i >= 1; --i) px.push_back({-0.1 * i, -0.01 * i}), curvatures.push_back(1.0);
-  for (const double x : {-0.005, 0.0, 0.005, 0.0099}) px.push_back({x, 0.1 * x}), curvatures.push_back(1.0);
-  for (const double x : {0.0098, 0.003, -0.003, -0.0098}) px.push_back({x, 0.001}), curvatures.push_back(-1.0);
-  for (const double x : {-0.0099, -0.005, 0.001, 0.005}) px.push_back({x, 0.00001 - 0.1 * x}), curvatures.push_back(1.0);
-  for (int i = 1; i <= 100; ++i) px.push_back({0.1 * i, -0.01 * i}), curvatures.push_back(1.0);
-  const SurfaceCurve curve = exact_curve(camera, px, curvatures);
-  const auto middle = [&](size_t i) { return 0.5 * (curve.samples[i].p.z + curve.samples[i + 1].p.z); };
-  const double first = middle(103), second = middle(107);
-  const LayersBefore rays = [&](const CurveSample& sample) {
-    const glm::dvec3& p = sample.p;
-    return LayersSeen{p.z > first ? 0 : p.z > second ? 1 : p.x < 5e-6 ? 2 : 0};
-  };
-  const CutCurves cut = cut_by_invisibility({curve}, camera, 5.0, rays, {});
-  EXPECT_TRUE(cut.conflicts.empty());
-  std::vector<int> seen;
-  for (const CurvePiece& piece : cut.curves[0].pieces) seen.push_back(piece.invisibility);
-  EXPECT_EQ(seen, (std::vector<int>{0, 1, 2, 0}));
 }
 
 TEST(LineEvents, FollowedContoursHaveEveryCuspWhateverTheirLongestStep) {

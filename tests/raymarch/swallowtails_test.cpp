@@ -1,0 +1,110 @@
+// Cusps and crossings of contours that lie close to each other, and pieces between them too short for rays.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/raymarch/made_up_curves.h"
+
+namespace limn {
+using namespace test;
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+std::vector<int> invisibilities(const CutCurve& cut) {
+  std::vector<int> seen;
+  for (const CurvePiece& piece : cut.pieces) seen.push_back(piece.invisibility);
+  return seen;
+}
+
+TEST(Swallowtails, ArmsThatPartAfterACuspCrossWhereTheyMeetAgain) {
+  // Between the cusp and where the arms meet, 2.5 px from it, they lie up to 0.02 px apart.
+  const Camera camera = flat_view();
+  std::vector<glm::dvec2> px;
+  std::vector<double> curvatures;
+  const auto off = [](double x) { return 0.01 * std::sin(kPi * x / 2.5); };
+  for (int i = 41; i >= 1; --i) px.push_back({0.1 * i, -off(0.1 * i)}), curvatures.push_back(1.0);
+  for (int i = 1; i <= 41; ++i) px.push_back({0.1 * i, off(0.1 * i)}), curvatures.push_back(-1.0);
+  const SurfaceCurve curve = exact_curve(camera, px, curvatures);
+  const double cusp = 0.5 * (curve.samples[40].p.z + curve.samples[41].p.z);
+  const LayersBefore rays = [&](const CurveSample& sample) { return LayersSeen{sample.p.z > cusp ? 0 : sample.p.x < 0.25 ? 1 : 3}; };
+  const CutCurves cut = cut_by_invisibility({curve}, camera, 5.0, rays, {});
+  EXPECT_TRUE(cut.conflicts.empty());
+  EXPECT_EQ(invisibilities(cut.curves[0]), (std::vector<int>{0, 1, 3}));
+  // Lines tell it, and no rays have to look for it.
+  EXPECT_LT(cut.rays, 10);
+}
+
+TEST(Swallowtails, ASwallowtailOfAFiftiethOfAPixelIsThereWhereTheCurveIsKnownBetweenItsSamples) {
+  const Camera camera = flat_view();
+  std::vector<glm::dvec2> px;
+  std::vector<double> curvatures;
+  for (int i = 100; i >= 1; --i) px.push_back({-0.1 * i, -0.01 * i}), curvatures.push_back(1.0);
+  for (const double x : {-0.005, 0.0, 0.005, 0.0099}) px.push_back({x, 0.1 * x}), curvatures.push_back(1.0);
+  for (const double x : {0.0098, 0.003, -0.003, -0.0098}) px.push_back({x, 0.001}), curvatures.push_back(-1.0);
+  for (const double x : {-0.0099, -0.005, 0.001, 0.005}) px.push_back({x, 0.00001 - 0.1 * x}), curvatures.push_back(1.0);
+  for (int i = 1; i <= 100; ++i) px.push_back({0.1 * i, -0.01 * i}), curvatures.push_back(1.0);
+  const SurfaceCurve curve = exact_curve(camera, px, curvatures);
+  const auto middle = [&](size_t i) { return 0.5 * (curve.samples[i].p.z + curve.samples[i + 1].p.z); };
+  const double first = middle(103), second = middle(107);
+  const LayersBefore rays = [&](const CurveSample& sample) {
+    const glm::dvec3& p = sample.p;
+    return LayersSeen{p.z > first ? 0 : p.z > second ? 1 : p.x < 5e-6 ? 2 : 0};
+  };
+  const CutCurves cut = cut_by_invisibility({curve}, camera, 5.0, rays, {});
+  EXPECT_TRUE(cut.conflicts.empty());
+  EXPECT_EQ(invisibilities(cut.curves[0]), (std::vector<int>{0, 1, 2, 0}));
+}
+
+TEST(Swallowtails, OneTooNarrowToTellIsGoneThoughACrossingOfAnotherIsNear) {
+  // The first is that of the test before; the second, a pixel on, is 0.0034 px long, and its arms lie within 0.0004 px.
+  const Camera camera = flat_view();
+  std::vector<glm::dvec2> px;
+  std::vector<double> curvatures;
+  const auto add = [&](const glm::dvec2& at, double curvature) { px.push_back(at), curvatures.push_back(curvature); };
+  for (int i = 100; i >= 1; --i) add({-0.1 * i, -0.01 * i}, 1.0);
+  for (const double x : {-0.005, 0.0, 0.005, 0.0099}) add({x, 0.1 * x}, 1.0);
+  for (const double x : {0.0098, 0.003, -0.003, -0.0098}) add({x, 0.001}, -1.0);
+  for (const double x : {-0.0099, -0.005, 0.001, 0.005}) add({x, 0.00001 - 0.1 * x}, 1.0);
+  for (int i = 1; i <= 10; ++i) add({0.1 * i, -0.01 * i}, 1.0);
+  add({1.0017, -0.1}, 1.0);
+  for (const double x : {1.0016, 0.9984}) add({x, -0.0998}, -1.0);
+  for (const double x : {0.9983, 1.0017}) add({x, -0.0996}, 1.0);
+  for (int i = 11; i <= 100; ++i) add({0.1 * i, -0.01 * i}, 1.0);
+  const SurfaceCurve curve = exact_curve(camera, px, curvatures);
+  const auto middle = [&](size_t i) { return 0.5 * (curve.samples[i].p.z + curve.samples[i + 1].p.z); };
+  const double first = middle(103), second = middle(107);
+  const LayersBefore rays = [&](const CurveSample& sample) {
+    const glm::dvec3& p = sample.p;
+    return LayersSeen{p.z > first ? 0 : p.z > second ? 1 : p.x < 5e-6 ? 2 : 0};
+  };
+  const CutCurves cut = cut_by_invisibility({curve}, camera, 5.0, rays, {});
+  EXPECT_TRUE(cut.conflicts.empty());
+  EXPECT_EQ(invisibilities(cut.curves[0]), (std::vector<int>{0, 1, 2, 0}));
+}
+
+TEST(Swallowtails, ACurveWhoseStepsDoNotAddUpHasAConflictThoughItsFirstPieceIsTooShortForRays) {
+  // It goes behind one sheet more at two places 0.98 px apart, and nothing brings it back before them.
+  const Camera camera = flat_view();
+  SurfaceCurve line;
+  line.closed = true;
+  double z = 0.0;
+  add_way(camera, {0.4, 10.0}, {20.0, 10.0}, 40, z, 1.0, line);
+  add_way(camera, {20.0, 10.0}, {20.0, -10.0}, 40, z, 1.0, line);
+  add_way(camera, {20.0, -10.0}, {-20.0, -10.0}, 80, z, 1.0, line);
+  add_way(camera, {-20.0, -10.0}, {-20.0, 10.0}, 40, z, 1.0, line);
+  add_way(camera, {-20.0, 10.0}, {0.4, 10.0}, 40, z, 1.0, line);
+  for (const size_t step : {2, 4}) line.samples[step].pierced.push_back({.t = 0.5, .layers = 1});
+  const CutCurves cut = cut_by_invisibility({line}, camera, 5.0, [](const CurveSample&) { return LayersSeen{0}; }, {});
+  ASSERT_EQ(cut.curves[0].pieces.size(), 2u);
+  EXPECT_LT(cut.curves[0].pieces[0].length_px, 1.0);
+  EXPECT_EQ(cut.curves[0].pieces[0].invisibility, 1);
+  EXPECT_EQ(cut.curves[0].pieces[1].invisibility, 0);
+  EXPECT_EQ(cut.conflicts.size(), 1u);
+}
+
+}  // namespace
+}  // namespace limn

@@ -17,7 +17,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::CappedTag<float, 16>;
 using Floats = hn::Vec<Tag>;
-constexpr size_t kNodes = 1000, kWidth = HWY_MAX_BYTES / sizeof(float) < 16 ? HWY_MAX_BYTES / sizeof(float) : 16;
+// Asked of the tag: HWY_SCALAR has one lane, though HWY_MAX_BYTES would hold two.
+constexpr size_t kNodes = 1000, kWidth = hn::MaxLanes(Tag());
 
 HWY_INLINE void set_bits(hn::Mask<Tag> mask, size_t first, NodeBits& bits) {
   std::uint8_t bytes[8] = {};

@@ -2,7 +2,6 @@
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 #include <tbb/task_arena.h>
 
 #include <bit>
@@ -14,6 +13,7 @@
 #include "raymarch/picture/srgb_bytes.h"
 #include "sdf/color.h"
 #include "tests/random_seed.h"
+#include "tests/simd_targets.h"
 #include "tests/temporary_folder.h"
 
 namespace limn::test {
@@ -105,11 +105,7 @@ TEST(SrgbBytes, OfManyPixelsAreThoseOfEachByItself) {
                                   std::numeric_limits<float>::denorm_min(),
                                   0.5f / 255.0f};
   const auto any = [&] { return random() % 4 == 0 ? odd[random() % odd.size()] : number(); };
-  const std::int64_t all = hwy::SupportedTargets();
-  for (std::int64_t target = 1; target > 0 && target <= all; target <<= 1) {
-    if (!(all & target)) continue;
-    hwy::SetSupportedTargetsForTest(all & ~(target - 1));
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  for_each_simd_target([&](const char* target) {
     std::vector<glm::vec4> colors(20003);
     for (glm::vec4& color : colors)
       color = random() % 3 == 0 ? glm::vec4(number(), number(), number(), 1.0f) : glm::vec4(any(), any(), any(), any());
@@ -121,12 +117,10 @@ TEST(SrgbBytes, OfManyPixelsAreThoseOfEachByItself) {
       const glm::vec4& color = colors[i];
       const glm::vec3 apart = color.a > 0.0f ? glm::vec3(color) / color.a : glm::vec3(color);
       for (int channel = 0; channel < 3; ++channel)
-        ASSERT_EQ(bytes[i][channel], srgb_bytes()(apart[channel])) << apart[channel] << ", " << hwy::TargetName(target);
-      ASSERT_EQ(bytes[i].a, to_byte(color.a)) << color.a << ", " << hwy::TargetName(target);
+        ASSERT_EQ(bytes[i][channel], srgb_bytes()(apart[channel])) << apart[channel] << ", " << target;
+      ASSERT_EQ(bytes[i].a, to_byte(color.a)) << color.a << ", " << target;
     }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
+  });
 }
 
 }  // namespace

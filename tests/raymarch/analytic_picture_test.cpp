@@ -3,15 +3,11 @@
 
 #include <fmt/core.h>
 
-// clang-format off
-#include "sdf/simd.h"
-#include <hwy/highway.h>
-// clang-format on
-
 #include "tests/random_seed.h"
 #include "tests/raymarch/field_walk.h"
 #include "tests/raymarch/scenes.h"
 #include "tests/sdf/random_field.h"
+#include "tests/simd_targets.h"
 
 namespace limn::test {
 namespace {
@@ -113,21 +109,16 @@ TEST(AnalyticPictures, AreTheSameOnEverySimdTarget) {
   const std::uint64_t seed = random_seed();
   SCOPED_TRACE(fmt::format("seed {}", seed));
   Random random(seed);
-  const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
   int pixels = 0;
   for (int k = 0; k < 20; ++k) {
     const Field field = random_field(random, 1 + random.index(3));
     const Camera camera = random_camera(random, field.traits().bounds);
     const SceneModel model = model_of(scene_of({object_of(field)}));
     const GBuffer widest = render_gbuffer(model, camera, {.threads = 1});
-    for (std::int64_t left = supported; left != 0; left &= left - 1) {
-      hwy::SetSupportedTargetsForTest(left & -left);
-      hwy::GetChosenTarget().Update(left & -left);
-      EXPECT_TRUE(same(widest, render_gbuffer(model, camera, {.threads = 1}))) << hwy::TargetName(left & -left) << ", picture " << k;
+    for_each_simd_target([&](const char* target) {
+      EXPECT_TRUE(same(widest, render_gbuffer(model, camera, {.threads = 1}))) << target << ", picture " << k;
       pixels += camera.width_px * camera.height_px;
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    });
   }
   EXPECT_GT(pixels, 0);
 }

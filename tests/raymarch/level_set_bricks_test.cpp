@@ -1,8 +1,5 @@
 // Packets of coherent rays against the reference: one ray at a time, in double precision, through the whole grid.
 
-#include <hwy/highway.h>
-#include <hwy/targets.h>
-
 #include <cstring>
 
 #include "raymarch/gbuffer/picture_rays.h"
@@ -11,6 +8,7 @@
 #include "sdf/level_set_data.h"
 #include "tests/raymarch/level_set_rays.h"
 #include "tests/raymarch/scenes.h"
+#include "tests/simd_targets.h"
 
 namespace limn {
 namespace {
@@ -403,23 +401,18 @@ bool same(const Image<T>& a, const Image<T>& b) {
 
 /// The bound between SIMD targets is 0 units in the last place: they do the same operations on every lane.
 TEST(LevelSetBricks, GiveTheSameBytesOnEveryTarget) {
-  const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   for (const std::string gradient : {"cell", "central", "cubic"}) {
     const LevelSet level_set = level_set_from_field(cases()[4].field, {.voxel_size = 0.04, .half_width_voxels = 4.0});
     const SceneModel model = model_with(level_set_marcher(level_set, {}, find_gradient(gradient), glm::dvec3(0.0), 100'000));
     const Camera camera = resolve_camera(test::view(200, 130), level_set.info().bounds);
     const GBuffer widest = render_gbuffer(model, camera, {});
     EXPECT_GT(count_hits(widest).hits, 3000);
-    for (const std::int64_t target : targets) {
-      hwy::SetSupportedTargetsForTest(target);
-      hwy::GetChosenTarget().Update(target);
+    test::for_each_simd_target([&](const char* target) {
       const GBuffer seen = render_gbuffer(model, camera, {});
       EXPECT_TRUE(same(seen.depth, widest.depth) && same(seen.normal, widest.normal) && same(seen.position, widest.position) &&
                   same(seen.n_dot_v, widest.n_dot_v) && same(seen.status, widest.status))
-          << hwy::TargetName(target);
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+          << target;
+    });
   }
 }
 

@@ -7,12 +7,9 @@
 #include <cstring>
 
 #include "raymarch/mesh/mesh_view.h"
-#include "sdf/simd.h"
 #include "tests/raymarch/border_distance.h"
 #include "tests/raymarch/scenes.h"
-// clang-format off
-#include <hwy/highway.h>
-// clang-format on
+#include "tests/simd_targets.h"
 
 namespace limn::test {
 namespace {
@@ -175,13 +172,7 @@ TEST(MeshPictures, AreTheSameBytesOnEveryTargetAndInAnyTiles) {
       EXPECT_GT(count_hits(widest).hits, 3000);
       for (const int tile_px : {1, 7, 13})
         EXPECT_TRUE(same_bytes(render_gbuffer(model, camera, {.threads = 3, .tile_px = tile_px}), widest));
-      for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(target);
-        EXPECT_TRUE(same_bytes(render_gbuffer(model, camera, {}), widest)) << hwy::TargetName(target);
-      }
-      hwy::SetSupportedTargetsForTest(0);
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+      for_each_simd_target([&](const char* target) { EXPECT_TRUE(same_bytes(render_gbuffer(model, camera, {}), widest)) << target; });
     }
   }
 }

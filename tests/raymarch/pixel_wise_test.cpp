@@ -1,7 +1,5 @@
 // Pictures that are inked and shaded tile by tile, against whole images worked out here by the plain formulas.
 
-#include <hwy/highway.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,6 +13,7 @@
 #include "raymarch/picture/srgb_bytes.h"
 #include "tests/random_seed.h"
 #include "tests/raymarch/scenes.h"
+#include "tests/simd_targets.h"
 
 namespace limn::test {
 namespace {
@@ -231,19 +230,13 @@ TEST(PixelWise, EverySimdTargetGivesTheSameBytes) {
         {call_of("rim", {{"softness", {{0.3}, {}, {}}}}), call_of("rim"), call_of("fresnel")}, 2, glm::vec3(0.2f, 0.5f, 1.0f)};
     settings.bytes = bytes;
     const Picture widest = draw_picture(scene, model, camera, settings, {});
-    const std::int64_t all = hwy::SupportedTargets();
-    for (std::int64_t target = 1; target > 0 && target <= all; target <<= 1) {
-      if (!(all & target)) continue;
-      hwy::SetSupportedTargetsForTest(all & ~(target - 1));
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    for_each_simd_target([&](const char* target) {
       const Picture other = draw_picture(scene, model, camera, settings, {});
-      hwy::SetSupportedTargetsForTest(0);
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-      EXPECT_TRUE(other.composite.pixels == widest.composite.pixels) << hwy::TargetName(target);
-      EXPECT_TRUE(other.border.pixels == widest.border.pixels) << hwy::TargetName(target);
-      EXPECT_TRUE(other.bytes.pixels == widest.bytes.pixels) << hwy::TargetName(target);
-      EXPECT_EQ(other.notes, widest.notes) << hwy::TargetName(target);
-    }
+      EXPECT_TRUE(other.composite.pixels == widest.composite.pixels) << target;
+      EXPECT_TRUE(other.border.pixels == widest.border.pixels) << target;
+      EXPECT_TRUE(other.bytes.pixels == widest.bytes.pixels) << target;
+      EXPECT_EQ(other.notes, widest.notes) << target;
+    });
     EXPECT_NE(widest.composite.pixels.empty(), widest.bytes.pixels.empty());
   }
 }

@@ -3,7 +3,6 @@
 #include "raymarch/level_set/surface_bound.h"
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <algorithm>
 #include <cstring>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "tests/random_seed.h"
+#include "tests/simd_targets.h"
 
 namespace limn::test {
 namespace {
@@ -93,7 +93,6 @@ TEST(SurfaceBound, HasTheSlabThatItsNodesNeedAndNoWiderOne) {
 
 TEST(SurfaceBound, EverySimdTargetGivesTheSameBits) {
   std::mt19937 random(random_seed());
-  const std::int64_t all = hwy::SupportedTargets();
   int compared = 0;
   for (int round = 0; round < 50; ++round) {
     const std::vector<std::int16_t> values = random_brick(random);
@@ -107,23 +106,18 @@ TEST(SurfaceBound, EverySimdTargetGivesTheSameBits) {
     };
     BrickShape widest_shape, shape;
     const SurfaceBound widest = measured(widest_shape);
-    for (std::int64_t target = 1; target > 0 && target <= all; target <<= 1) {
-      if (!(all & target)) continue;
-      hwy::SetSupportedTargetsForTest(all & ~(target - 1));
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    for_each_simd_target([&](const char* target) {
       const SurfaceBound bound = measured(shape);
-      hwy::SetSupportedTargetsForTest(0);
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
       ++compared;
-      EXPECT_EQ(std::memcmp(&bound.offset, &widest.offset, sizeof bound.offset), 0) << hwy::TargetName(target);
-      EXPECT_EQ(bound.slab, widest.slab) << hwy::TargetName(target);
+      EXPECT_EQ(std::memcmp(&bound.offset, &widest.offset, sizeof bound.offset), 0) << target;
+      EXPECT_EQ(bound.slab, widest.slab) << target;
       for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_EQ(bound.normal[axis], widest.normal[axis]) << hwy::TargetName(target);
-        EXPECT_EQ(shape.sum[axis], widest_shape.sum[axis]) << hwy::TargetName(target);
-        EXPECT_EQ(shape.least[axis], widest_shape.least[axis]) << hwy::TargetName(target);
-        EXPECT_EQ(shape.greatest[axis], widest_shape.greatest[axis]) << hwy::TargetName(target);
+        EXPECT_EQ(bound.normal[axis], widest.normal[axis]) << target;
+        EXPECT_EQ(shape.sum[axis], widest_shape.sum[axis]) << target;
+        EXPECT_EQ(shape.least[axis], widest_shape.least[axis]) << target;
+        EXPECT_EQ(shape.greatest[axis], widest_shape.greatest[axis]) << target;
       }
-    }
+    });
   }
   EXPECT_GT(compared, 10);
 }

@@ -12,6 +12,7 @@
 #include "sdf/crossed_cells.h"
 #include "sdf/level_set_band.h"
 #include "tests/random_seed.h"
+#include "tests/simd_targets.h"
 
 namespace limn::test {
 namespace {
@@ -33,8 +34,7 @@ NodeWindow random_window(std::mt19937& random) {
   return nodes;
 }
 
-TEST(NodeBits, AreThoseOfAPlainLoop) {
-  std::mt19937 random(random_seed());
+void expect_bits_of_a_plain_loop(std::mt19937& random) {
   int mixed_windows = 0, same_windows = 0, steep_windows = 0;
   for (int round = 0; round < 200; ++round) {
     const NodeWindow nodes = random_window(random);
@@ -66,6 +66,14 @@ TEST(NodeBits, AreThoseOfAPlainLoop) {
   EXPECT_GT(mixed_windows, 20);
   EXPECT_GT(same_windows, 5);
   EXPECT_GT(steep_windows, 20);
+}
+
+TEST(NodeBits, AreThoseOfAPlainLoopOnEveryTarget) {
+  std::mt19937 random(random_seed());
+  for_each_simd_target([&](const char* target) {
+    SCOPED_TRACE(target);
+    expect_bits_of_a_plain_loop(random);
+  });
 }
 
 TEST(NodeBits, GiveTheCrossedCellsOfTheNodesThemselves) {

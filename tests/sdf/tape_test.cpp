@@ -5,15 +5,11 @@
 #include <bit>
 #include <cstring>
 
-// clang-format off
-#include "sdf/simd.h"
-#include <hwy/highway.h>
-// clang-format on
-
 #include "sdf/tape_jets.h"
 #include "sdf/tape_lanes.h"
 #include "sdf/tape_text.h"
 #include "tests/sdf/random_field.h"
+#include "tests/simd_targets.h"
 
 namespace limn::test {
 namespace {
@@ -325,7 +321,6 @@ TEST(Tape, SinesAreRightToTwoUnitsInTheLastPlace) {
 
 TEST(Tape, EverySimdTargetGivesTheSameBits) {
   TapeScratch scratch;
-  const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
   int targets = 0;
   over_random_fields(60, [&](Random& random, const Field&, const FieldTape& tape) {
     const LaneBeams beams = random_beams(random);
@@ -337,9 +332,7 @@ TEST(Tape, EverySimdTargetGivesTheSameBits) {
     };
     std::vector<Results> all;
     std::vector<std::vector<TapeChoice>> choices;
-    for (std::int64_t left = supported; left != 0; left &= left - 1) {
-      hwy::SetSupportedTargetsForTest(left & -left);
-      hwy::GetChosenTarget().Update(left & -left);
+    for_each_simd_target([&](const char*) {
       Results r{};
       tape_values(tape, tape.steps, beams.rays, beams.middle, scratch, r.values);
       tape_slopes(tape, tape.steps, beams.rays, beams.middle, scratch, r.with_slope, r.slopes);
@@ -348,9 +341,7 @@ TEST(Tape, EverySimdTargetGivesTheSameBits) {
       tape_slope_bounds(tape, tape.steps, beams, scratch, r.bounds);
       all.push_back(r);
       choices.push_back(scratch.choices);
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    });
     targets = static_cast<int>(all.size());
     for (size_t k = 1; k < all.size(); ++k) {
       for (size_t d = 0; d < sizeof(Results) / sizeof(double); ++d) {

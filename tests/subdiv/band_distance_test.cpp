@@ -1,7 +1,6 @@
 #include "subdiv/band_distance.h"
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <cstdio>
 #include <numbers>
@@ -11,6 +10,7 @@
 #include "sdf/level_set_data.h"
 #include "subdiv/mesh_distance.h"
 #include "test_meshes.h"
+#include "tests/simd_targets.h"
 
 namespace limn {
 namespace {
@@ -82,16 +82,10 @@ TEST(BandDistance, EverySimdTargetGivesTheSameBits) {
   const TriangleMesh mesh = soup(77, 40);
   std::array<double, 512> widest, other;
   band_distances(mesh, all_of(mesh), glm::ivec3(0), kVoxel, 5.0 * kVoxel, widest);
-  const std::int64_t all = hwy::SupportedTargets();
-  for (std::int64_t target = 1; target > 0 && target <= all; target <<= 1) {
-    if (!(all & target)) continue;
-    hwy::SetSupportedTargetsForTest(all & ~(target - 1));
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  test::for_each_simd_target([&](const char* target) {
     band_distances(mesh, all_of(mesh), glm::ivec3(0), kVoxel, 5.0 * kVoxel, other);
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    EXPECT_EQ(widest, other) << hwy::TargetName(target);
-  }
+    EXPECT_EQ(widest, other) << target;
+  });
 }
 
 TEST(BlockTriangles, NameEveryTriangleThatANodeIsInReachOf) {

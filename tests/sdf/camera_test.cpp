@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <limits>
 #include <numbers>
 
 #include "random_field.h"
@@ -98,18 +99,24 @@ RC_GTEST_PROP(Camera, FramingFillsThePictureUpToTheMargin, (std::uint64_t seed))
     high_y = std::max(high_y, image.y / camera.height_px);
   }
   const double tightest = std::min({low_x, low_y, 1.0 - high_x, 1.0 - high_y});
-  RC_ASSERT(tightest >= 0.06 - 1e-9);
+  // The axes are those that an eye and a target one unit before it give again: an eye far away, as narrow pictures have it, rounds them.
+  const double distance = glm::distance(camera.eye, box.center());
+  const double rounding = std::numeric_limits<double>::epsilon() * glm::length(camera.eye) * (1.0 + distance) *
+                          pixels_per_unit_at(camera, distance) / std::min(camera.width_px, camera.height_px);
+  const double slack = 1e-9 + rounding;
+  RC_ASSERT(rounding < 1e-3);
+  RC_ASSERT(tightest >= 0.06 - slack);
   double nearest = 1e9;
   for (const glm::dvec3& corner : corners(box)) nearest = std::min(nearest, project(camera, corner).z);
   const bool kept_clear = settings.projection == Projection::perspective && nearest < 0.1001 * box.radius();
-  if (!kept_clear) RC_ASSERT(tightest <= 0.06 + 1e-9);
+  if (!kept_clear) RC_ASSERT(tightest <= 0.06 + slack);
   if (!around_target) {  // centred: both sides of the tight pair touch
     RC_ASSERT(std::abs(low_x - (1.0 - high_x)) <= 1e-6);
     RC_ASSERT(std::abs(low_y - (1.0 - high_y)) <= 1e-6);
   } else {
     const glm::dvec3 middle = project(camera, *settings.target);
-    RC_ASSERT(std::abs(middle.x / camera.width_px - 0.5) <= 1e-9);
-    RC_ASSERT(std::abs(middle.y / camera.height_px - 0.5) <= 1e-9);
+    RC_ASSERT(std::abs(middle.x / camera.width_px - 0.5) <= slack);
+    RC_ASSERT(std::abs(middle.y / camera.height_px - 0.5) <= slack);
   }
 }
 

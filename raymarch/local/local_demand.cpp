@@ -159,6 +159,22 @@ unsigned coarse_demand(const Seen& seen, const TriangleSample& triangle, const L
   return split;
 }
 
+/// The longest edge of a facet that is turned against the normal at one of its corners: beside a tight bend a chord may reach past the
+/// other side of it, and what is folded there shows its back.
+unsigned fold_demand(const TriangleSample& triangle) {
+  const glm::dvec3 facet = glm::cross(triangle.corners[1] - triangle.corners[0], triangle.corners[2] - triangle.corners[0]);
+  bool against = false;
+  for (const glm::dvec3& normal : triangle.corner_normals) against = against || glm::dot(facet, normal) < 0.0;
+  if (!against) return 0;
+  size_t longest = 3;
+  double most = 0.0;
+  for (size_t k = 0; k < 3; ++k) {
+    const double length = glm::distance(triangle.corners[k], triangle.corners[next(k)]);
+    if (triangle.halves[k] && length > most) longest = k, most = length;
+  }
+  return longest < 3 ? 1u << longest : 0u;
+}
+
 double turn_at(const LocalView& view, const TriangleSample& triangle) {
   double turn = 0.0;
   for (const std::uint32_t v : triangle.vertices) turn = std::max(turn, view.turns[v]);
@@ -168,7 +184,7 @@ double turn_at(const LocalView& view, const TriangleSample& triangle) {
 }  // namespace
 
 unsigned edges_to_split(const TriangleSample& triangle, std::span<const LocalView> views, const LocalSettings& settings, bool only_coarse) {
-  unsigned split = 0;
+  unsigned split = triangle.unfolds ? fold_demand(triangle) : 0u;
   for (const LocalView& view : views) {
     Seen seen;
     if (!look(view.camera, triangle, seen)) continue;

@@ -19,6 +19,9 @@ constexpr int kMostPasses = 32;
 /// half as wide, and twice as many.
 constexpr int kMostFoldedSplits = 4;
 
+/// The same where edges follow all creases: splitting ends the fold, but where a surface has no tangent plane.
+constexpr int kMostUnfolds = 12;
+
 std::uint64_t key_of(std::uint32_t a, std::uint32_t b) { return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b); }
 
 size_t next(size_t k) { return (k + 1) % 3; }
@@ -225,6 +228,7 @@ bool refine_once(LocalTriangles& mesh, Middles& middles, std::vector<char>& is_n
     TriangleSample sample = sample_of(mesh, middles, mesh.triangles[t]);
     sample.coarse_px = source.coarse_px;
     sample.stays = source.has_folds && mesh.triangles[t].folded >= kMostFoldedSplits && is_folded(sample.corners, sample.corner_normals);
+    sample.unfolds = !source.has_folds && mesh.triangles[t].folded < kMostUnfolds;
     asked[t] = edges_to_split(sample, views, settings, only_coarse);
   });
   std::unordered_map<std::uint64_t, char> split;

@@ -62,10 +62,11 @@ test::LocalRays cast_all(const Scene& scene, const CameraSettings& asked, int& l
   const Camera made_for = camera_at(0, 4);
   const SceneModel local = build_local_model(scene, {}, {{made_for}, kTolerance_px, {kThreshold}});
   const SceneModel fine = finest_of(scene, level);
+  const test::MeshedModel of_local(local), of_fine(fine);
   const double bound = test::bound_of(scene, made_for);
   test::LocalRays count;
   const auto cast = [&](const Camera& camera, const std::vector<glm::dvec2>& points) {
-    test::cast_at_both(local, fine, camera, points, bound, test::around_of(scene, camera, bound), count);
+    test::cast_at_both(of_local, of_fine, camera, points, bound, test::around_of(scene, camera, bound), count);
   };
   for (int view = 0; view < kViews; ++view) cast(camera_at(view, kViews), pixels_of(camera_at(view, kViews)));
   std::mt19937_64 random(1);
@@ -145,7 +146,7 @@ nlohmann::json bench_local_proof(const LocalProofSettings& settings) {
   nlohmann::json rows = nlohmann::json::array();
   const std::string program = program_of(settings);
   fmt::print(settings.table,
-             "| scene | rays | hits | differ at an edge | through the surface | flips beyond the truth's: local "
+             "| scene | rays | hits | differ at an edge | through the surface | show backs | flips beyond the truth's: local "
              "| uniform | its level |\n|---|---|---|---|---|---|---|---|\n");
   for (const SceneDescriptor& descriptor : scenes()) {
     const std::string& name = descriptor.about.name;
@@ -158,8 +159,8 @@ nlohmann::json bench_local_proof(const LocalProofSettings& settings) {
     const std::int64_t local = flips_beyond(program, name, {"--local", fmt::format("{}", kTolerance_px)});
     const std::string level = uniform_level(program, name);
     const std::int64_t uniform = flips_beyond(program, name, {"--surface", "mesh", "--level", level});
-    fmt::print(settings.table, "| {} | {} | {} | {} | {} | {} | {} | {} |\n", name, count.rays, count.hits, count.edge, count.through,
-               local, uniform, level);
+    fmt::print(settings.table, "| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name, count.rays, count.hits, count.edge, count.through,
+               count.backs, local, uniform, level);
     std::fflush(settings.table);
     rows.push_back({{"suite", "local-proof"},
                     {"scene", name},
@@ -167,6 +168,7 @@ nlohmann::json bench_local_proof(const LocalProofSettings& settings) {
                     {"hits", count.hits},
                     {"at_edges", count.edge},
                     {"through", count.through},
+                    {"backs", count.backs},
                     {"finest_level", finest},
                     {"flips_beyond", local},
                     {"uniform_flips_beyond", uniform},

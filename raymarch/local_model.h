@@ -10,7 +10,10 @@ struct LocalSettings {
   std::vector<Camera> cameras{};     ///< World; at least one. The model holds for their pictures.
   double tolerance_px = 0.25;        ///< How far the border may lie from the surface's own in any of the pictures; above 0.
   std::vector<double> thresholds{};  ///< Of N.V, where inner borders lie; empty: only the silhouette counts.
-  bool everywhere = false;           ///< Chords are within the tolerance wherever the surface is seen: by curvature, whatever the border.
+  /// The pictures follow each other, as those of a path do. A border that is off by ever other parts of the tolerance flickers: they have
+  /// half of it.
+  bool steady = false;
+  bool everywhere = false;  ///< Chords are within the tolerance wherever the surface is seen: by curvature, whatever the border.
 };
 
 /// How far a local model may stand off the surface, along its normal, where no border runs; pixels of the pictures it was made for.

@@ -8,8 +8,13 @@
 namespace limn {
 namespace {
 
-LocalSettings in_render_space(const LocalSettings& settings, const glm::dvec3& render_origin) {
+/// Flips along a path beyond the surface's own grow with the error. With half of the tolerance they are fewer than those of a mesh as fine
+/// everywhere that keeps to the tolerance, whose error is below it in most places.
+constexpr double kSteadyShare = 0.5;
+
+LocalSettings for_model(const LocalSettings& settings, const glm::dvec3& render_origin) {
   LocalSettings result = settings;
+  if (settings.steady) result.tolerance_px *= kSteadyShare;
   for (Camera& camera : result.cameras) camera = moved(camera, render_origin);
   return result;
 }
@@ -128,12 +133,12 @@ glm::dvec3 render_origin_of(const Scene& scene) {
 
 std::vector<LevelSet> local_level_sets(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local) {
   const glm::dvec3 render_origin = render_origin_of(scene);
-  return local_level_sets(scene, settings, render_origin, in_render_space(local, render_origin));
+  return local_level_sets(scene, settings, render_origin, for_model(local, render_origin));
 }
 
 SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local, ObjectMeshCache* cache) {
   const glm::dvec3 render_origin = render_origin_of(scene);
-  const LocalSettings in_render = in_render_space(local, render_origin);
+  const LocalSettings in_render = for_model(local, render_origin);
   if (settings.kind == "level_set") return build_local_level_sets(scene, settings, render_origin, in_render);
   SurfaceSettings own = settings;
   own.kind = "mesh";

@@ -379,8 +379,10 @@ int run(const Options& given) {
   // Made first: a camera that is wrong is told before the surface is built.
   const std::vector<Camera> cameras = cameras_of(options, render.input);
 
-  if (options.local.tolerance_px)
+  if (options.local.tolerance_px) {
     render.local = local_settings(*options.local.tolerance_px, options.plan.silhouette, render.picture.methods, cameras);
+    render.local->steady = options.frames.frames > 1;
+  }
 
   // A local level set says itself when it needs too much: what it takes is not known before.
   const bool is_local_volume = render.local && render.surface.kind == "level_set";

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "raymarch/analytic/long_tape.h"
 #include "raymarch/analytic/tile.h"
 #include "raymarch/scene/covered_pixels.h"
 #include "sdf/parallel.h"
@@ -14,7 +15,6 @@ namespace limn {
 namespace {
 
 constexpr int kBigCell_px = 256;  // Where the tape is long it is pruned for these first.
-constexpr size_t kLongTape = 8;   // Leaves.
 
 /// The segments within `within` where the surface may be, for the beam of a smaller rectangle.
 void refine(const FieldView& view, const PixelTile& rectangle, const TapeSegment& within, ViewScratch& scratch,

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 
+#include "raymarch/analytic/long_tape.h"
 #include "raymarch/analytic/tile.h"
 #include "raymarch/scene/curvature.h"
 #include "raymarch/surface.h"
@@ -64,9 +65,11 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
       list.add({i, 0, t0, t1, 0.0});
   }
   if (list.count == 0) return;
-  TapeScratch& scratch = state.scratch->views.local().tape;
+  ViewScratch& view = state.scratch->views.local();
+  TapeScratch& scratch = view.tape;
   const MarchTape march{&state.tape, state.tape.steps};
   sphere_trace(march, state.limits, rays, scratch, list, hits);
+  if (state.tape.leaves.size() >= kLongTape) return isolate_in_parts(state.tape, state.limits, rays, view, list, hits);
   isolate(march, state.limits, rays, scratch, list, hits);
   polish(march, state.limits, rays, scratch, list, hits);
 }

@@ -184,7 +184,7 @@ double turn_at(const LocalView& view, const TriangleSample& triangle) {
 }  // namespace
 
 unsigned edges_to_split(const TriangleSample& triangle, std::span<const LocalView> views, const LocalSettings& settings, bool only_coarse) {
-  unsigned split = triangle.unfolds ? fold_demand(triangle) : 0u;
+  unsigned split = 0;
   for (const LocalView& view : views) {
     Seen seen;
     if (!look(view.camera, triangle, seen)) continue;
@@ -193,6 +193,7 @@ unsigned edges_to_split(const TriangleSample& triangle, std::span<const LocalVie
     const double margin_px = kHiddenMargin_px + settings.tolerance_px;
     if (!settings.everywhere && is_hidden(view.hidden, seen.px, margin_px, margin_px * seen.units_per_px)) continue;
     split |= border_demand(seen, triangle, turn_at(view, triangle), settings);
+    if (triangle.unfolds) split |= fold_demand(triangle);
   }
   for (size_t k = 0; k < 3; ++k)
     if (!triangle.halves[k] || (triangle.stays && !triangle.crosses[k])) split &= ~(1u << k);

@@ -16,7 +16,7 @@ struct TriangleSample {
   std::array<bool, 3> crosses{};       ///< Of the edges: those that go from one side of a crease to the other.
   double coarse_px = 0.5;              ///< LocalSource's.
   bool stays = false;                  ///< Not to be split, whatever the pictures ask, but where it crosses a crease.
-  bool unfolds = false;                ///< To be split where it is folded.
+  bool unfolds = false;                ///< To be split where it is folded and a picture shows it.
   std::array<bool, 3> halves{};        ///< Of the edges: those that can be split.
 };
 

@@ -68,7 +68,7 @@ class EventFinder {
     size_t last = first;
     for (size_t k = first + 1; k < first + walk_.size() + (curve_.closed ? 1 : 0) && (curve_.closed || k < walk_.size()); ++k) {
       if (sign_of(k) == 0) continue;
-      if (sign_of(k) != sign_of(last)) changes_.push_back({last, k, 0.0, {}});
+      if (sign_of(k) != sign_of(last)) changes_.push_back({last, k});
       last = k;
     }
     join_near_changes();
@@ -87,6 +87,7 @@ class EventFinder {
   struct SignChange {
     size_t before = 0, after = 0;
     double place = 0.0;
+    double turn = 0.0;            ///< Where the polyline turns back in the image: of a jump at a sample beside the place.
     std::optional<int> layers{};  ///< Of a jump.
   };
   SignChange located(SignChange change) const {
@@ -97,7 +98,21 @@ class EventFinder {
       change.layers = jump->layers;
     }
     change.place = glm::mix(static_cast<double>(change.before), static_cast<double>(change.after), std::clamp(t, 0.0, 1.0 - 1e-9));
+    change.turn = change.layers ? turn_of(change) : change.place;
     return change;
+  }
+  double turn_of(const SignChange& change) const {
+    double turn = change.place, least = 0.0;
+    const size_t n = walk_.size();
+    for (size_t i = change.before; i <= change.after; ++i) {
+      if (!curve_.closed && (i == 0 || i + 1 >= n)) continue;
+      const glm::dvec2 comes = walk_.at(i).px - walk_.at(i + n - 1).px, goes = walk_.at(i + 1).px - walk_.at(i).px;
+      const double lengths = glm::length(comes) * glm::length(goes);
+      if (!(lengths > 0.0) || glm::dot(comes, goes) >= least * lengths) continue;
+      least = glm::dot(comes, goes) / lengths;
+      turn = static_cast<double>(i);
+    }
+    return turn;
   }
   /// Image length from one change to the next.
   double length_between(const SignChange& one, const SignChange& next) const {
@@ -109,20 +124,20 @@ class EventFinder {
     if (curve_.closed && !changes_.empty()) {
       // Around the curve from the widest gap on.
       size_t start = 0;
-      double widest = length_between(changes_.back(), {changes_[0].before + n, changes_[0].after + n, 0.0, {}});
+      double widest = length_between(changes_.back(), {changes_[0].before + n, changes_[0].after + n});
       for (size_t k = 1; k < changes_.size(); ++k) {
         if (const double gap = length_between(changes_[k - 1], changes_[k]); gap > widest) start = k, widest = gap;
       }
-      for (size_t k = 0; k < start; ++k) changes_.push_back({changes_[k].before + n, changes_[k].after + n, 0.0, {}});
+      for (size_t k = 0; k < start; ++k) changes_.push_back({changes_[k].before + n, changes_[k].after + n});
       changes_.erase(changes_.begin(), changes_.begin() + static_cast<std::ptrdiff_t>(start));
     }
     for (size_t k = 0; k < changes_.size();) {
       size_t end = k + 1;
       while (end < changes_.size() && length_between(changes_[end - 1], changes_[end]) < one_cusp_px()) ++end;
       if ((end - k) % 2 == 1)
-        apart_.push_back(located({changes_[k].before, changes_[end - 1].after, 0.0, {}}));
+        apart_.push_back(located({changes_[k].before, changes_[end - 1].after}));
       else
-        undone_.push_back({changes_[k].before, changes_[end - 1].after, 0.0, {}});
+        undone_.push_back({changes_[k].before, changes_[end - 1].after});
       k = end;
     }
   }
@@ -313,7 +328,8 @@ class EventFinder {
     const double longest_px = std::min(curve_.tangency_px, other.tangency_px);
     for (const Stretch& own : to_ends(curve_, crossing.at, longest_px, camera_)) {
       for (const Stretch& others : to_ends(other, crossing.on_nearer, longest_px, camera_)) {
-        if (glm::distance(own.end, others.end) < 1e-6 * extent_ && run_together(own, others, other)) return true;
+        const bool meet = glm::distance(own.end, others.end) < 1e-6 * extent_ && !own.past_cusp && !others.past_cusp;
+        if (meet && run_together(own, others, other)) return true;
       }
     }
     return false;
@@ -364,8 +380,8 @@ class EventFinder {
     const auto steps = static_cast<double>(walk_.size());
     std::vector<double> places;
     for (const SignChange& change : apart_) {
-      for (const double place : {change.place, change.place - steps})
-        if (place > from && place < to) places.push_back(place);
+      for (const double around : {0.0, steps})
+        if (change.turn - around > from && change.turn - around < to) places.push_back(std::clamp(change.place - around, from, to));
     }
     return places;
   }
@@ -374,12 +390,14 @@ class EventFinder {
   struct Stretch {
     glm::dvec3 end{0.0};
     std::vector<glm::dvec2> px{};
+    bool past_cusp = false;  ///< The place lies on the other arm of a cusp.
   };
   static std::vector<Stretch> to_ends(const SurfaceCurve& curve, double place, double longest_px, const Camera& camera) {
     std::vector<Stretch> all;
     const auto n = static_cast<std::ptrdiff_t>(curve.samples.size());
     for (const int way : {1, -1}) {
-      Stretch stretch{glm::dvec3(0.0), {sample_at(curve, place, camera).px}};
+      const CurveSample from = sample_at(curve, place, camera);
+      Stretch stretch{glm::dvec3(0.0), {from.px}};
       double length = 0.0;
       auto i = static_cast<std::ptrdiff_t>(place) + (way > 0 ? 1 : 0);
       for (std::ptrdiff_t count = 0; count < n && length <= longest_px; ++count, i += way) {
@@ -389,6 +407,7 @@ class EventFinder {
         stretch.px.push_back(sample.px);
         if (!sample.joint && (curve.closed || (i > 0 && i < n - 1))) continue;
         stretch.end = sample.p;
+        stretch.past_cusp = curve.smooth && from.radial_curvature * sample.radial_curvature < 0.0;
         all.push_back(stretch);
         break;
       }

@@ -35,7 +35,7 @@ void add_notes(const FieldCurves& found, const std::string& name, LineContributi
 
 /// How a body's lines are found, and the layers of it that rays go through.
 struct TracedBody {
-  std::optional<FormBody> form{};  ///< Where it is made of closed forms.
+  std::shared_ptr<const FormMeetings> form{};  ///< Where it is made of closed forms.
   bool exact_rays = false;
 };
 
@@ -90,6 +90,15 @@ void append(std::vector<SurfaceCurve>& curves, std::vector<SurfaceCurve> more) {
   curves.insert(curves.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
+std::shared_ptr<const FormMeetings> kept_forms(KeptLines& kept, size_t number, const Field& body, const ExecutionSettings& execution) {
+  const auto known = kept.forms.find(number);
+  if (known != kept.forms.end()) return known->second;
+  std::optional<FormBody> form = form_body(body);
+  std::shared_ptr<const FormMeetings> made;
+  if (form) made = std::make_shared<const FormMeetings>(form_meetings(std::move(*form), execution));
+  return kept.forms[number] = made;
+}
+
 /// Curves in closed form where there are any, found in cells of space elsewhere.
 TracedBody trace_body(const FieldTask& fields, size_t number, const Field& body, const std::string& name,
                       const ExecutionSettings& execution, LineContribution& out) {
@@ -97,9 +106,9 @@ TracedBody trace_body(const FieldTask& fields, size_t number, const Field& body,
   TracedBody traced;
   FieldCurveSettings settings = curve_settings(task);
   settings.memory = [&kept = task.kept.fields, number](int level) { return &kept[{number, level}]; };
-  if (task.settings.closed_forms && settings.threshold == 0.0) traced.form = form_body(body);
+  if (task.settings.closed_forms && settings.threshold == 0.0) traced.form = kept_forms(task.kept, number, body, execution);
   if (traced.form) {
-    traced.exact_rays = has_ray_roots(*traced.form);
+    traced.exact_rays = has_ray_roots(traced.form->body);
     if (auto curves = trace_form_curves(*traced.form, task.camera, fields.viewer, settings.tolerance_px, execution)) {
       append(out.curves, exact_curves(fields, *curves, settings.tolerance_px));
       return traced;
@@ -126,12 +135,12 @@ void add_material_curves(const FieldTask& fields, const std::string& name, const
 
 /// Layers of bodies in closed form by their roots, of the others by bounds along the ray.
 std::function<LayersSeen(const CurveSample&)> layers_of(const LineTask& task, const std::vector<Field>& bodies,
-                                                        std::vector<TracedBody> traced) {
+                                                        const std::vector<TracedBody>& traced) {
   std::vector<Field> others;
-  auto forms = std::make_shared<std::vector<FormBody>>();
+  std::vector<std::shared_ptr<const FormMeetings>> forms;
   for (size_t i = 0; i < bodies.size(); ++i) {
     if (traced[i].exact_rays) {
-      forms->push_back(std::move(*traced[i].form));
+      forms.push_back(traced[i].form);
     } else {
       others.push_back(bodies[i]);
     }
@@ -139,7 +148,7 @@ std::function<LayersSeen(const CurveSample&)> layers_of(const LineTask& task, co
   const auto layers = std::make_shared<const FieldLayers>(others, task.camera, task.extent);
   return [layers, forms, camera = task.camera, extent = task.extent](const CurveSample& sample) {
     int count = layers->before(sample);
-    for (const FormBody& form : *forms) count += layers_before(form, camera, extent, sample);
+    for (const auto& form : forms) count += layers_before(form->body, camera, extent, sample);
     return LayersSeen{count};
   };
 }
@@ -161,7 +170,7 @@ LineContribution field_lines(const LineTask& task, const std::vector<size_t>& ob
     if (parts) add_material_curves(fields, name, execution, out);
     if (execution.progress) execution.progress(0.5 * static_cast<double>(i + 1) / static_cast<double>(bodies.bodies.size()));
   }
-  out.layers_before = layers_of(task, bodies.body_fields, std::move(traced));
+  out.layers_before = layers_of(task, bodies.body_fields, traced);
   return out;
 }
 

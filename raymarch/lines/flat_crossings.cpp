@@ -1,9 +1,11 @@
 #include "raymarch/lines/flat_crossings.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "raymarch/lines/curve_walk.h"
 #include "raymarch/lines/nearer_crossings.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -54,16 +56,16 @@ void refine_flat_crossings(std::vector<SurfaceCurve>& curves, const Camera& came
   StepMarks asked(curves.size());
   for (size_t c = 0; c < curves.size(); ++c) asked[c].assign(steps_of(curves[c]), 1);
   for (int round = 0; round < kRounds; ++round) {
-    StepMarks unclear = NearerFolds(curves, camera, asked).unclear_steps(asked);
-    bool any = false;
-    for (size_t c = 0; c < curves.size(); ++c) {
+    const StepMarks unclear = NearerFolds(curves, camera, asked).unclear_steps(asked);
+    std::atomic<bool> any = false;
+    parallel_for(size_t{0}, curves.size(), [&](size_t c) {
       if (std::find(unclear[c].begin(), unclear[c].end(), 1) == unclear[c].end()) {
         asked[c].assign(steps_of(curves[c]), 0);
-        continue;
+        return;
       }
       asked[c] = cut_steps(unclear[c], camera, curves[c]);
       any = true;
-    }
+    });
     if (!any) break;
   }
 }

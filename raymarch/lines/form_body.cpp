@@ -146,6 +146,15 @@ FormTree tree_in(const FormBody& body, const Box& box) {
   return pruned(body, body.cells[at].tree, box);
 }
 
+const FormTree& tree_at(const FormBody& body, const glm::dvec3& p) {
+  const FormCell* cell = &body.cells[0];
+  while (cell->lower >= 0) {
+    const FormCell& lower = body.cells[static_cast<size_t>(cell->lower)];
+    cell = glm::all(glm::lessThanEqual(p, lower.box.upper)) ? &lower : &body.cells[static_cast<size_t>(cell->upper)];
+  }
+  return cell->tree;
+}
+
 unsigned outcomes(const FormBody& body, const FormTree& tree, const glm::dvec3& p, int first, int second, std::vector<unsigned>& scratch) {
   if (tree.nodes.empty()) return tree.inside ? 15u : 0u;
   scratch.resize(tree.nodes.size());

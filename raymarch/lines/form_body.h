@@ -40,6 +40,8 @@ std::optional<FormBody> form_body(const Field& body);
 
 /// What of the CSG is undecided in `box`. Empty outside the body's own box.
 FormTree tree_in(const FormBody& body, const Box& box);
+/// The tree of the cell that holds a point, or of the one next to it.
+const FormTree& tree_at(const FormBody& body, const glm::dvec3& p);
 
 /// Sees each node's surface as inside, outside, or left open: bits 0..3 say the outcome for the four sides of two open surfaces, bit 0
 /// where neither is inside, bit 1 where `second` is, bit 2 where `first` is, bit 3 where both are.

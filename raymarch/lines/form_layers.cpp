@@ -105,14 +105,28 @@ bool has_ray_roots(const FormBody& body) {
                       [](const FormSurface& surface) { return surface.kind == ClosedFormKind::torus; });
 }
 
+namespace {
+
+/// Two surfaces of the body go through the point: most often two of those that matter in its cell.
+bool lies_on_two(const FormBody& body, const glm::dvec3& p, double on) {
+  int own = 0;
+  for (const FormNode& node : tree_at(body, p).nodes) {
+    own += node.surface >= 0 && std::fabs(signed_value(body.surfaces[static_cast<size_t>(node.surface)], p)) < on;
+    if (own == 2) return true;
+  }
+  own = 0;
+  for (const FormSurface& surface : body.surfaces) {
+    own += std::fabs(signed_value(surface, p)) < on;
+    if (own == 2) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 int layers_before(const FormBody& body, const Camera& camera, double extent, const CurveSample& sample) {
   LayerRay ray = layer_ray(camera, extent, sample);
-  int own = 0;
-  const bool crease = std::isnan(sample.radial_curvature);
-  if (crease) {
-    for (const FormSurface& surface : body.surfaces) own += std::fabs(signed_value(surface, sample.p)) < kOn * extent;
-  }
-  const bool on_edge = own >= 2;
+  const bool crease = std::isnan(sample.radial_curvature), on_edge = crease && lies_on_two(body, sample.p, kOn * extent);
   if (on_edge) {
     CurveSample there = sample;
     there.on_chord = false;

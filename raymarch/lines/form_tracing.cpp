@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "sdf/parallel.h"
@@ -241,28 +240,6 @@ class Tracer {
   std::vector<Sample> samples_{};
 };
 
-/// Surfaces that matter in one cell, and pairs of them, with the box around all such cells.
-std::map<std::pair<int, int>, Box> meetings_in(const FormBody& body) {
-  std::map<std::pair<int, int>, Box> meetings;
-  for (const FormCell& cell : body.cells) {
-    if (cell.lower >= 0) continue;
-    std::vector<int> here;
-    for (const FormNode& node : cell.tree.nodes) {
-      if (node.surface >= 0) here.push_back(node.surface);
-    }
-    std::sort(here.begin(), here.end());
-    for (size_t j = 0; j < here.size(); ++j) {
-      const auto add = [&](int second) {
-        Box& box = meetings[{here[j], second}];
-        box = merge(box, cell.box);
-      };
-      add(-1);
-      for (size_t k = j + 1; k < here.size(); ++k) add(here[k]);
-    }
-  }
-  return meetings;
-}
-
 }  // namespace
 
 glm::dvec3 point_at(const FormTrace& trace, double parameter) {
@@ -290,27 +267,27 @@ double parameter_beside(const FormTrace& trace, size_t step, double share) {
 
 glm::dvec3 point_beside(const FormTrace& trace, size_t step, double share) { return point_at(trace, parameter_beside(trace, step, share)); }
 
-std::optional<std::vector<FormTrace>> trace_form_curves(const FormBody& body, const Camera& camera, const Viewer& viewer,
+std::optional<std::vector<FormTrace>> trace_form_curves(const FormMeetings& meetings, const Camera& camera, const Viewer& viewer,
                                                         double tolerance_px, const ExecutionSettings& execution) {
-  const auto meetings = meetings_in(body);
-  const std::vector<std::pair<std::pair<int, int>, Box>> all(meetings.begin(), meetings.end());
-  std::vector<std::vector<FormTrace>> found(all.size());
+  if (!meetings.known) return {};
+  const FormBody& body = meetings.body;
+  std::vector<std::vector<FormTrace>> found(meetings.all.size());
   std::atomic<bool> known = true;
-  parallel_for(size_t{0}, all.size(), [&](size_t i) {
+  parallel_for(size_t{0}, meetings.all.size(), [&](size_t i) {
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
-    if (!known) return;
-    const auto& [pair, box] = all[i];
-    const auto curves = pair.second < 0 ? contours_of(body, pair.first, viewer.facing) : seams_of(body, pair.first, pair.second);
-    if (!curves) known = false;
-    if (!curves) return;
-    for (const FormCurve& curve : *curves) {
-      for (const FormArc& arc : trimmed(body, curve, box)) {
+    const FormMeeting& meeting = meetings.all[i];
+    const auto trace = [&](const FormCurve& curve, const std::vector<FormArc>& arcs) {
+      for (const FormArc& arc : arcs) {
+        if (!known) return;
         std::optional<FormTrace> traced = Tracer(body, curve, camera, viewer, tolerance_px).run(arc);
         if (!traced) known = false;
-        if (!traced) return;
-        if (traced->curve.points.size() > 1) found[i].push_back(std::move(*traced));
+        if (traced && traced->curve.points.size() > 1) found[i].push_back(std::move(*traced));
       }
-    }
+    };
+    for (const auto& [curve, arcs] : meeting.seams) trace(curve, arcs);
+    if (meeting.second >= 0) return;
+    for (const FormCurve& curve : contours_of(body, meeting.first, viewer.facing))
+      trace(curve, trimmed(body, curve, meeting.box, meeting.tree));
   });
   if (!known) return {};
   std::vector<FormTrace> result;

@@ -19,7 +19,7 @@ glm::dvec3 point_beside(const FormTrace& trace, size_t step, double share);
 
 /// As trace_field_curves() finds them with whole seams and no level but 0; nothing where two surfaces of the body meet in a curve without
 /// closed form, or touch along one.
-std::optional<std::vector<FormTrace>> trace_form_curves(const FormBody& body, const Camera& camera, const Viewer& viewer,
+std::optional<std::vector<FormTrace>> trace_form_curves(const FormMeetings& meetings, const Camera& camera, const Viewer& viewer,
                                                         double tolerance_px, const ExecutionSettings& execution);
 
 }  // namespace limn

@@ -1,11 +1,14 @@
 #include "raymarch/lines/form_trimming.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "raymarch/analytic/clip_ray.h"
 #include "raymarch/lines/trig_polynomial.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -35,8 +38,8 @@ struct Station {
 
 class Trimmer {
  public:
-  Trimmer(const FormBody& body, const FormCurve& curve, const Box& box)
-      : body_(body), curve_(curve), box_(dilate(box, 1e-9 * body.extent)), tree_(tree_in(body, box)) {}
+  Trimmer(const FormBody& body, const FormCurve& curve, const Box& box, const FormTree& tree)
+      : body_(body), curve_(curve), box_(dilate(box, 1e-9 * body.extent)), tree_(tree) {}
 
   std::vector<FormArc> run() {
     if (tree_.nodes.empty() || !find_range()) return {};
@@ -238,7 +241,7 @@ class Trimmer {
   const FormBody& body_;
   const FormCurve& curve_;
   Box box_;
-  FormTree tree_;
+  const FormTree& tree_;
   double begin_ = 0.0, end_ = 0.0;
   std::vector<double> breaks_{};
   std::vector<Station> stations_{};
@@ -246,8 +249,55 @@ class Trimmer {
   std::vector<unsigned> scratch_{};
 };
 
+/// Surfaces that matter in one cell, and pairs of them, with the box around all such cells.
+std::map<std::pair<int, int>, Box> meetings_in(const FormBody& body) {
+  std::map<std::pair<int, int>, Box> meetings;
+  for (const FormCell& cell : body.cells) {
+    if (cell.lower >= 0) continue;
+    std::vector<int> here;
+    for (const FormNode& node : cell.tree.nodes) {
+      if (node.surface >= 0) here.push_back(node.surface);
+    }
+    std::sort(here.begin(), here.end());
+    for (size_t j = 0; j < here.size(); ++j) {
+      const auto add = [&](int second) {
+        Box& box = meetings[{here[j], second}];
+        box = merge(box, cell.box);
+      };
+      add(-1);
+      for (size_t k = j + 1; k < here.size(); ++k) add(here[k]);
+    }
+  }
+  return meetings;
+}
+
 }  // namespace
 
-std::vector<FormArc> trimmed(const FormBody& body, const FormCurve& curve, const Box& box) { return Trimmer(body, curve, box).run(); }
+std::vector<FormArc> trimmed(const FormBody& body, const FormCurve& curve, const Box& box, const FormTree& tree) {
+  return Trimmer(body, curve, box, tree).run();
+}
+
+FormMeetings form_meetings(FormBody body, const ExecutionSettings& execution) {
+  FormMeetings result;
+  for (const auto& [pair, box] : meetings_in(body)) result.all.push_back({pair.first, pair.second, box});
+  std::atomic<bool> known = true;
+  parallel_for(size_t{0}, result.all.size(), [&](size_t i) {
+    if (execution.cancelled && execution.cancelled()) throw Cancelled{};
+    if (!known) return;
+    FormMeeting& meeting = result.all[i];
+    meeting.tree = tree_in(body, meeting.box);
+    if (meeting.second < 0) return;
+    const auto curves = seams_of(body, meeting.first, meeting.second);
+    if (!curves) known = false;
+    if (!curves) return;
+    for (const FormCurve& curve : *curves) {
+      std::vector<FormArc> arcs = trimmed(body, curve, meeting.box, meeting.tree);
+      if (!arcs.empty()) meeting.seams.push_back({curve, std::move(arcs)});
+    }
+  });
+  result.known = known;
+  result.body = std::move(body);
+  return result;
+}
 
 }  // namespace limn

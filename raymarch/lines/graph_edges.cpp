@@ -202,6 +202,8 @@ void snap_joints(std::vector<SurfaceCurve>& curves, const Camera& camera) {
     for (size_t i = 0; i < n; ++i) {
       CurveSample& sample = curve.samples[i];
       if (!sample.joint || (!curve.closed && (i == 0 || i + 1 == n))) continue;
+      // Contours go on past a line of materials on smooth surface: an end near by is that on an edge beyond.
+      if (sample.line_class == LineClass::material && sample.high == sample.low) continue;
       const int end = ends.nearest(sample.p, kSnap_px * pixel);
       if (end < 0) continue;
       // It is the end on this step, not one of a neighbour's.

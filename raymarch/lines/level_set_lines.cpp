@@ -89,7 +89,7 @@ std::vector<SurfaceCell> turning_cells(const PlacedLevelSet& placed, const LineT
   return cells;
 }
 
-Lattice lattice_of(const PlacedLevelSet& placed, const std::vector<SurfaceCell>& cells) {
+Lattice lattice_of(const PlacedLevelSet& placed, const std::vector<SurfaceCell>& cells, const ExecutionSettings& execution) {
   Lattice lattice;
   lattice.grid.side = placed.voxel;
   const glm::dmat3& linear = placed.solver_from_index.linear;
@@ -104,19 +104,26 @@ Lattice lattice_of(const PlacedLevelSet& placed, const std::vector<SurfaceCell>&
     lattice.grid.corner = placed.box.lower - 2.0 * placed.voxel;
   }
   const auto cell_at = [&](const glm::dvec3& p) { return glm::ivec3(glm::floor((p - lattice.grid.corner) / lattice.grid.side)); };
+  std::vector<std::vector<std::uint64_t>> parts((cells.size() + kBlock - 1) / kBlock);
+  for_blocks(cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const SurfaceCell& cell = cells[i];
+      const glm::dvec3 middle = placed.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
+      const glm::ivec3 own = aligned ? cell.node - lowest : cell_at(middle);
+      const int around = aligned && !cell.near_corner ? 0 : 1;
+      for (int x = -around; x <= around; ++x)
+        for (int y = -around; y <= around; ++y)
+          for (int z = -around; z <= around; ++z) parts[part].push_back(key_of(own + glm::ivec3(x, y, z)));
+    }
+  });
   std::vector<std::uint64_t> keys;
-  for (const SurfaceCell& cell : cells) {
-    const glm::dvec3 middle = placed.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
-    const glm::ivec3 own = aligned ? cell.node - lowest : cell_at(middle);
-    const int around = aligned && !cell.near_corner ? 0 : 1;
-    for (int x = -around; x <= around; ++x)
-      for (int y = -around; y <= around; ++y)
-        for (int z = -around; z <= around; ++z) keys.push_back(key_of(own + glm::ivec3(x, y, z)));
-  }
+  for (const auto& part : parts) keys.insert(keys.end(), part.begin(), part.end());
   parallel_sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  lattice.cells.reserve(keys.size());
-  for (const std::uint64_t key : keys) lattice.cells.push_back(cell_of(key));
+  lattice.cells.resize(keys.size());
+  for_blocks(keys.size(), execution, [&](size_t, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) lattice.cells[i] = cell_of(keys[i]);
+  });
   return lattice;
 }
 
@@ -177,7 +184,7 @@ CellCurves march_pair(const CellSearch& search, const PlacedLevelSet& one, const
                       const ExecutionSettings& execution) {
   const PlacedLevelSet &own = one.voxel <= other.voxel ? one : other, &second = one.voxel <= other.voxel ? other : one;
   if (meeting.empty()) meeting = cells_near(own, second, execution);
-  const Lattice lattice = lattice_of(own, meeting);
+  const Lattice lattice = lattice_of(own, meeting, execution);
   std::vector<CellCurves> parts((lattice.cells.size() + kBlock - 1) / kBlock);
   for_blocks(lattice.cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
     FieldEvaluator first(one.field), last(other.field);
@@ -277,8 +284,9 @@ void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContr
   CellResult found;
   for (size_t k = 0; k < body.size(); ++k) {
     const PlacedLevelSet& grid = *tracing.grids[body[k]];
-    found.branches[static_cast<int>(k)] = march(search, k, lattice_of(grid, turning_cells(grid, task, tracing.levels, tracing.execution)),
-                                                task.kept.level_sets.lattices[body[k]], tracing.execution);
+    found.branches[static_cast<int>(k)] =
+        march(search, k, lattice_of(grid, turning_cells(grid, task, tracing.levels, tracing.execution), tracing.execution),
+              task.kept.level_sets.lattices[body[k]], tracing.execution);
     for (size_t j = 0; j < k; ++j) {
       const PlacedLevelSet& other = *tracing.grids[body[j]];
       if (intersect(grid.box, other.box).empty()) continue;

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 
+#include "raymarch/lines/form_trimming.h"
 #include "raymarch/lines/mesh_tree.h"
 #include "raymarch/lines/placed_level_set.h"
 #include "raymarch/truth/lattice_memory.h"
@@ -32,6 +33,8 @@ struct KeptLines {
   KeptLevelSets level_sets{};
   /// By the body's place among those of the scene, which are the same in all views, and the level of its cells.
   std::map<std::pair<size_t, int>, LatticeMemory> fields{};
+  /// By the same place: null where the body has no closed form.
+  std::map<size_t, std::shared_ptr<const FormMeetings>> forms{};
 };
 
 }  // namespace limn

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "raymarch/lines/surface_curves.h"
+#include "raymarch/lines/fold_index.h"
 
 namespace limn {
 
@@ -14,9 +14,6 @@ struct NearerCrossing {
   std::uint32_t curve = 0;  ///< In front.
   double on_nearer = 0.0;   ///< Place on it.
 };
-
-/// A mark, 0 or 1, for each step of each curve.
-using StepMarks = std::vector<std::vector<char>>;
 
 /// The folds and open edges of all curves, by their places in the image. Keeps references to what it is made of.
 class NearerFolds {
@@ -41,7 +38,6 @@ class NearerFolds {
   std::optional<NearerCrossing> nearest(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const;
 
  private:
-  struct Index;
   struct Beside {
     double px = 0.0;
     std::uint32_t fold = 0;  ///< Into the index; kNoFold: none within reach.
@@ -50,7 +46,7 @@ class NearerFolds {
 
   const std::vector<SurfaceCurve>& curves_;
   const Camera& camera_;
-  std::unique_ptr<const Index> index_;
+  std::unique_ptr<const FoldIndex> index_;
 };
 
 }  // namespace limn

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <optional>
-#include <unordered_map>
 
+#include "raymarch/truth/lattice_samples.h"
 #include "sdf/parallel.h"
 #include "sdf/segment.h"
 
@@ -39,19 +41,26 @@ class PathIndex {
       segments_.push_back({a.p, b.p, glm::normalize(a.uphill) + glm::normalize(b.uphill)});
       for (int x = low.x; x <= high.x; ++x)
         for (int y = low.y; y <= high.y; ++y)
-          for (int z = low.z; z <= high.z; ++z) in_[key_of({x, y, z})].push_back(segments_.size() - 1);
+          for (int z = low.z; z <= high.z; ++z) {
+            bool added = false;
+            std::uint32_t& last = last_in_.at(key_of({x, y, z}), added);
+            entries_.push_back({static_cast<std::uint32_t>(segments_.size() - 1), added ? kNone : last});
+            last = static_cast<std::uint32_t>(entries_.size() - 1);
+          }
     }
   }
   /// Another arm that runs close by has the higher N.V on its other side.
   bool holds(const CurvePoint& point) const {
-    const auto found = in_.find(key_of(cube_of(point.p)));
-    if (found == in_.end()) return false;
-    return std::any_of(found->second.begin(), found->second.end(), [&](size_t i) {
-      const Segment& segment = segments_[i];
-      return glm::dot(segment.uphill, point.uphill) > 0.0 &&
-             distance_to_segment(point.p, segment.a, segment.b) < reach_of(glm::distance(segment.a, segment.b));
-    });
+    const std::uint32_t* const last = last_in_.find(key_of(cube_of(point.p)));
+    for (std::uint32_t at = last != nullptr ? *last : kNone; at != kNone; at = entries_[at].before) {
+      const Segment& segment = segments_[entries_[at].segment];
+      if (glm::dot(segment.uphill, point.uphill) > 0.0 &&
+          distance_to_segment(point.p, segment.a, segment.b) < reach_of(glm::distance(segment.a, segment.b)))
+        return true;
+    }
+    return false;
   }
+  size_t size() const { return segments_.size(); }
 
  private:
   struct Segment {
@@ -61,11 +70,18 @@ class PathIndex {
   glm::ivec3 cube_of(const glm::dvec3& p) const { return glm::ivec3(glm::floor(p / side_)); }
   static std::uint64_t key_of(const glm::ivec3& cube) {
     const auto part = [](int v) { return static_cast<std::uint64_t>(v) & 0x1fffffu; };
-    return part(cube.x) << 42u | part(cube.y) << 21u | part(cube.z);
+    return (part(cube.x) << 42u | part(cube.y) << 21u | part(cube.z)) + 1;
   }
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  /// A segment in a cube, and the entry before it in the same cube.
+  struct Entry {
+    std::uint32_t segment = 0, before = kNone;
+  };
+
   double side_;
   std::vector<Segment> segments_{};
-  std::unordered_map<std::uint64_t, std::vector<size_t>> in_{};
+  std::vector<Entry> entries_{};
+  KeyedValues<std::uint32_t> last_in_{};  ///< Of each cube the last entry.
 };
 
 class Follower {
@@ -150,6 +166,12 @@ class Follower {
   double c_;
 };
 
+/// A point that no path passes, and what it leads to on the curve.
+struct Unpassed {
+  CurvePoint point{};
+  std::optional<CurvePoint> seed{};
+};
+
 }  // namespace
 
 std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field, const Camera& camera, const Viewer& viewer,
@@ -185,21 +207,26 @@ std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field
     }
   }
   // What no path passes: other curves through crossings that were joined to these.
+  std::vector<std::vector<Unpassed>> unpassed(found.size());
+  const size_t paths_known = index.size();
+  parallel_for(size_t{0}, found.size(), [&](size_t i) {
+    Follower follower(field, camera, viewer, settings, c);
+    for (const CurvePoint& point : found[i].points) {
+      if (point.rough || index.holds(point)) continue;
+      unpassed[i].push_back({point, follower.seed(point)});
+    }
+  });
   Follower follower(field, camera, viewer, settings, c);
   for (size_t i = 0; i < found.size(); ++i) {
-    bool any = false, lost = false;
-    for (const CurvePoint& point : found[i].points) {
-      if (point.rough || index.holds(point)) {
-        any = any || !point.rough;
-        continue;
-      }
-      const std::optional<CurvePoint> seed = follower.seed(point);
-      if (!seed) continue;
-      if (index.holds(*seed)) {
+    const auto is_rough = [](const CurvePoint& point) { return point.rough; };
+    const auto smooth = static_cast<size_t>(std::count_if(found[i].points.begin(), found[i].points.end(), std::not_fn(is_rough)));
+    bool any = unpassed[i].size() < smooth, lost = false;
+    for (const auto& [point, seed] : unpassed[i]) {
+      if ((index.size() > paths_known && index.holds(point)) || (seed && index.holds(*seed))) {
         any = true;
         continue;
       }
-      if (lost) continue;
+      if (!seed || lost) continue;
       if (auto path = follower.around(*seed)) {
         accept(found[i], std::move(*path));
         any = true;

@@ -11,8 +11,33 @@ constexpr std::array<std::array<int, 4>, 6> kTetrahedra = {
 // A share of the step across a face: points that Newton moves farther would change places with their neighbours.
 constexpr double kSmoothReach = 0.25;
 constexpr int kSeamSteps = 40;
+constexpr double kNoSign = 1e-24;  // the square of a cosine: less may be rounding
 
 glm::ivec3 offset_of(int corner) { return {corner & 1, corner >> 1 & 1, corner >> 2 & 1}; }
+
+/// Above 0.
+std::uint64_t key_of_vertex(const glm::ivec3& vertex) {
+  const auto part = [](int v) { return static_cast<std::uint64_t>(v); };
+  return (((part(vertex.x) << 20 | part(vertex.y)) << 20 | part(vertex.z)) << 3) + 1;
+}
+
+/// What an earlier view saw of the cell says that N.V has one sign all over it, for certain.
+bool has_one_sign(const LatticeSamples& samples, const glm::ivec3& cell, const Viewer& viewer) {
+  const CellEdges* const known = samples.cells.find(key_of_vertex(cell));
+  if (known == nullptr) return false;
+  const bool perspective = viewer.facing.projection == Projection::perspective;
+  int sign = 0;
+  for (std::uint32_t k = known->first; k < known->first + known->count; ++k) {
+    const EdgeSample& edge = samples.edges.at_place(samples.cell_edges[k]);
+    const glm::dvec3 way = perspective ? viewer.facing.eye - edge.p : viewer.facing.world_from_camera[2];
+    const double along = glm::dot(edge.gradient, way);
+    if (!(along * along > kNoSign * glm::dot(edge.gradient, edge.gradient) * glm::dot(way, way))) return false;
+    const int here = along > 0.0 ? 1 : -1;
+    if (sign == -here) return false;
+    sign = here;
+  }
+  return true;
+}
 
 struct FaceCrossing {
   std::uint64_t key = 0;
@@ -41,6 +66,19 @@ class Marcher {
     return any;
   }
 
+  std::uint64_t cell_key() const { return vertex_key(0); }
+  /// For the next view, after march().
+  void keep_edges() {
+    const auto first = static_cast<std::uint32_t>(samples_->cell_edges.size());
+    for (size_t i = 0; i < edges_.size(); ++i) {
+      if (!edges_[i]) continue;
+      const auto low = static_cast<int>(i / 8), high = static_cast<int>(i % 8);
+      samples_->cell_edges.push_back(samples_->edges.place_of(edge_key(low, high)));
+    }
+    bool added = false;
+    samples_->cells.at(cell_key(), added) = {first, static_cast<std::uint32_t>(samples_->cell_edges.size()) - first};
+  }
+
  private:
   void find_values() {
     if (samples_ == nullptr) return evaluator_.values(points_, values_);
@@ -64,12 +102,9 @@ class Marcher {
     }
   }
 
-  /// Above 0.
-  std::uint64_t vertex_key(int corner) const {
-    const glm::ivec3 base = cell_ + offset_of(corner);
-    const auto part = [](int v) { return static_cast<std::uint64_t>(v); };
-    return (((part(base.x) << 20 | part(base.y)) << 20 | part(base.z)) << 3) + 1;
-  }
+  std::uint64_t vertex_key(int corner) const { return key_of_vertex(cell_ + offset_of(corner)); }
+
+  std::uint64_t edge_key(int low, int high) const { return vertex_key(low) + static_cast<std::uint64_t>(low ^ high); }
 
   bool in(int corner) const { return inside_[static_cast<size_t>(corner)]; }
 
@@ -83,7 +118,7 @@ class Marcher {
       sample = sample_at(root());
     } else {
       bool added = false;
-      EdgeSample& known = samples_->edges.at(vertex_key(std::min(a, b)) + static_cast<std::uint64_t>(a ^ b), added);
+      EdgeSample& known = samples_->edges.at(edge_key(std::min(a, b), std::max(a, b)), added);
       if (added) {
         const SurfaceSample found = sample_at(root());
         known = {found.p, found.gradient};
@@ -230,12 +265,16 @@ class Marcher {
 bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
                 const std::array<double, kCurveFamilies>& levels, FamilyMask families, LatticeSamples* samples, CellOutput& output,
                 bool seeds) {
+  const bool keeps_edges = seeds && samples != nullptr && families == 1u && levels[0] == 0.0;
+  if (keeps_edges && has_one_sign(*samples, cell, viewer)) return false;
   Marcher marcher(evaluator, nullptr, viewer, grid, cell, samples, seeds);
-  if (!marcher.holds_surface()) return false;
   bool any = false;
-  for (size_t family = 0; family < kCurveFamilies; ++family) {
-    if (families >> family & 1u) any = marcher.march(levels[family], output[family]) || any;
+  if (marcher.holds_surface()) {
+    for (size_t family = 0; family < kCurveFamilies; ++family) {
+      if (families >> family & 1u) any = marcher.march(levels[family], output[family]) || any;
+    }
   }
+  if (keeps_edges && samples->cells.find(marcher.cell_key()) == nullptr) marcher.keep_edges();
   return any;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "raymarch/truth/strands.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -13,10 +14,14 @@ constexpr double kFarthestPx = 0.1;  // between ends that are taken for one plac
 
 class Assembly {
  public:
-  explicit Assembly(CellCurves cells) : crossings_(std::move(cells.crossings)) {
-    std::stable_sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) { return a.key < b.key; });
-    crossings_.erase(std::unique(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) { return a.key == b.key; }),
-                     crossings_.end());
+  explicit Assembly(CellCurves cells) {
+    // Crossings are large: their places are sorted, and of those with one key the first stays.
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(cells.crossings.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {cells.crossings[i].key, i};
+    parallel_sort(order.begin(), order.end());
+    order.erase(std::unique(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first == b.first; }), order.end());
+    crossings_.reserve(order.size());
+    for (const auto& [key, place] : order) crossings_.push_back(std::move(cells.crossings[place]));
     next_.assign(crossings_.size(), {kNone, kNone});
     for (const Link& link : cells.links) {
       const std::uint32_t from = find(link.from), to = find(link.to);

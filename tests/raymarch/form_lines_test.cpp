@@ -248,7 +248,7 @@ TEST(FormLines, ToriCutByPlanesAndSpheresAgreeWithTheFieldAndWithTheSearchInCell
     const Camera camera = random_camera(random, body.traits().bounds, i % 3 != 0);
     const auto form = form_body(body);
     ASSERT_TRUE(form.has_value());
-    ASSERT_TRUE(trace_form_curves(*form, camera, make_viewer(camera, glm::dvec3(0.0)), 0.005, {}).has_value());
+    ASSERT_TRUE(trace_form_curves(form_meetings(*form, {}), camera, make_viewer(camera, glm::dvec3(0.0)), 0.005, {}).has_value());
     expect_agreement(scene_of(body), {body, camera, fmt::format("body {}", i), points, edges, counted, conflicts});
   }
   EXPECT_GT(edges, 4 * kTori);
@@ -283,7 +283,7 @@ std::vector<FieldCurve> seams_of_field(const Field& body) {
   const Camera camera = resolve_camera(settings, body.traits().bounds);
   const auto form = form_body(body);
   EXPECT_TRUE(form.has_value());
-  auto curves = trace_form_curves(*form, camera, make_viewer(camera, glm::dvec3(0.0)), 0.005, {});
+  auto curves = trace_form_curves(form_meetings(*form, {}), camera, make_viewer(camera, glm::dvec3(0.0)), 0.005, {});
   EXPECT_TRUE(curves.has_value());
   std::vector<FieldCurve> seams;
   for (FormTrace& trace : *curves) {

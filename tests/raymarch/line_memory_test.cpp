@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "raymarch/lines.h"
 #include "sdf/shape.h"
 #include "tests/raymarch/line_views.h"
@@ -36,6 +38,31 @@ TEST(LineMemory, ViewsOfFieldsAreTheSameWithoutIt) {
                                               std::pair(glm::dvec3(0.1, -1.0, 0.4), 4.0), std::pair(glm::dvec3(1.0, 1.0, 1.0), 9.0)}) {
       const Camera camera = line_view(bounds(scene), glm::normalize(direction), distance, true);
       expect_same(solve_lines(scene, camera, settings, execution, &memory), solve_lines(scene, camera, settings, execution));
+    }
+  }
+}
+
+TEST(LineMemory, ViewsOfClosedFormsAreTheSameWithoutIt) {
+  const auto shape = [](const char* name, double size) {
+    return std::string(name) == "cylinder" ? make_shape(name, {{"radius", {size}}, {"half_height", {0.5}}})
+                                           : make_shape(name, {{"radii", {size, 0.8 * size, 0.5}}});
+  };
+  const Field disk = shape("cylinder", 0.9), bore = translate(shape("cylinder", 0.3), {0.2, 0.0, 0.1});
+  Scene scene;
+  // Two bodies, and one whose surfaces meet in a curve without closed form.
+  scene.objects.push_back({.name = "disk", .source = combine(Csg::difference, disk, bore)});
+  scene.objects.push_back({.name = "box", .source = translate(make_shape("box", {{"half", {0.2, 0.3, 0.4}}}), {1.5, 0.0, 0.0})});
+  scene.objects.push_back(
+      {.name = "blobs",
+       .source =
+           translate(combine(Csg::union_, shape("ellipsoid", 0.6), translate(shape("ellipsoid", 0.5), {0.4, 0.2, 0.1})), {0.0, 0.0, 1.5})});
+  LineMemory memory;
+  for (const bool perspective : {true, false}) {
+    for (const glm::dvec3& direction : {glm::dvec3(1.0, 0.3, 0.2), {-0.2, 0.5, 1.0}}) {
+      const Camera camera = line_view(bounds(scene), glm::normalize(direction), 8.0, perspective);
+      const ViewGraph graph = solve_lines(scene, camera, {}, {}, &memory);
+      EXPECT_GT(graph.edges.size(), 10u);
+      expect_same(graph, solve_lines(scene, camera, {}, {}));
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -11,6 +12,7 @@
 #include "raymarch/frames.h"
 #include "raymarch/lines.h"
 #include "samples/experiment/job.h"
+#include "samples/input/input.h"
 #include "samples/scenes/scenes.h"
 #include "tests/bench/lines_oracle.h"
 
@@ -56,6 +58,26 @@ TEST(LinesOfScenes, MachinedPartFromACornerHasNoConflict) {
   const ViewGraph graph = solve_lines(scene, camera_from(scene, {-1.0, 1.0, 1.0}), {}, {});
   EXPECT_GT(graph.chains.size(), 100u);
   EXPECT_EQ(graph.conflicts.size(), 0u) << places_of(graph.conflicts);
+}
+
+// A swallowtail 0.04 px wide at the seam of a blend: one of its cusps is where the curvature jumps, and the arms cross beside it.
+TEST(LinesOfScenes, TwoMetalsFromBelowHasNoConflict) {
+  ExperimentSpec spec;
+  spec.input = LIMN_SOURCE_DIR "/samples/scenes/two_metals.toml";
+  const Scene scene = load_input(spec).scene;
+  CameraSettings settings;
+  settings.eye = {-2.9783287662796418, -0.99436892510232711, 1.6997085066869675};
+  settings.target = *settings.eye - glm::dvec3(-0.83918915078046297, -0.28470742987512043, 0.46336081900206971);
+  settings.vertical_fov = std::numbers::pi / 6.0;
+  const ViewGraph graph = solve_lines(scene, resolve_camera(settings, bounds(scene)), {}, {});
+  EXPECT_EQ(graph.conflicts.size(), 0u) << places_of(graph.conflicts);
+  const auto beside_it = [&](VertexKind kind) {
+    return std::count_if(graph.vertices.begin(), graph.vertices.end(), [&](const LineVertex& vertex) {
+      return vertex.kind == kind && glm::distance(vertex.px, {908.17, 269.796}) < 0.1;
+    });
+  };
+  EXPECT_EQ(beside_it(VertexKind::cusp), 2);
+  EXPECT_EQ(beside_it(VertexKind::crossing), 1);
 }
 
 // Flat walls of voxels seen edge-on: many contours lie within a thousandth of a pixel of each other.

@@ -1,0 +1,93 @@
+// Folds by their places in the image: crowded buckets leave out nothing that a step may meet.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+
+#include "raymarch/lines/fold_index.h"
+#include "tests/random_seed.h"
+
+namespace limn {
+namespace {
+
+constexpr int kWidth_px = 40, kHeight_px = 30;
+
+Ends random_step(std::mt19937& random, const glm::dvec2& around_px, double spread_px, double length_px) {
+  std::normal_distribution<double> normal;
+  const glm::dvec2 from = around_px + spread_px * glm::dvec2(normal(random), normal(random));
+  const double depth = 2.0 + 0.5 * normal(random);
+  return {{from, std::max(0.1, depth)},
+          {from + length_px * glm::dvec2(normal(random), normal(random)), std::max(0.1, depth + 0.1 * normal(random))}};
+}
+
+SurfaceCurve curve_of(const Ends& step) {
+  SurfaceCurve curve;
+  for (const End& end : {step.a, step.b}) {
+    CurveSample sample;
+    sample.px = end.px;
+    sample.depth = end.depth;
+    sample.more_on_left = 2;
+    curve.samples.push_back(sample);
+  }
+  return curve;
+}
+
+bool boxes_meet(const Ends& one, const Ends& other, double within_px) {
+  const glm::dvec2 low = glm::max(glm::min(one.a.px, one.b.px), glm::min(other.a.px, other.b.px) - within_px),
+                   high = glm::min(glm::max(one.a.px, one.b.px), glm::max(other.a.px, other.b.px) + within_px);
+  return low.x <= high.x && low.y <= high.y;
+}
+
+TEST(FoldIndex, FindsAllFoldsOfABucketThatAStepMayMeet) {
+  std::mt19937 random(random_seed());
+  Camera camera;
+  camera.width_px = kWidth_px;
+  camera.height_px = kHeight_px;
+  std::vector<SurfaceCurve> curves;
+  std::vector<Ends> steps;
+  // Short, middling and long ones, most of them within a few buckets, some across the frame.
+  for (const glm::dvec2& crowd : {glm::dvec2(10.0, 10.0), {20.9, 11.1}, {0.1, 29.9}, {39.0, -3.0}}) {
+    for (const double length_px : {0.01, 0.1, 0.25, 3.0, 30.0}) {
+      for (int i = 0; i < 100; ++i) {
+        steps.push_back(random_step(random, crowd, 0.8, length_px));
+        curves.push_back(curve_of(steps.back()));
+      }
+    }
+  }
+  const FoldIndex index(curves, camera, nullptr);
+  ASSERT_EQ(index.folds().size(), steps.size());
+  // Of each bucket the folds that go through it.
+  std::map<size_t, std::vector<std::uint32_t>> in;
+  for (std::uint32_t f = 0; f < steps.size(); ++f) index.for_buckets(steps[f], [&](size_t bucket) { in[bucket].push_back(f); });
+  size_t crowded = 0, met = 0, looked_at = 0, in_buckets = 0;
+  for (const auto& [bucket, folds] : in) crowded += folds.size() > 64;
+  EXPECT_GE(crowded, 5u);
+  for (int k = 0; k < 400; ++k) {
+    const Ends step = steps[random() % steps.size()];
+    const double within_px = k % 2 == 0 ? 1e-3 : 0.06;
+    const FoldReach around = reach_around(step, within_px);
+    index.for_buckets(step, [&](size_t bucket) {
+      std::multiset<std::uint32_t> found;
+      index.for_folds(bucket, around, [&](std::uint32_t f) { found.insert(f); });
+      for (const std::uint32_t f : in[bucket]) {
+        const bool meets =
+            boxes_meet(step, steps[f], within_px) && std::min(steps[f].a.depth, steps[f].b.depth) <= std::max(step.a.depth, step.b.depth);
+        met += meets;
+        EXPECT_LE(found.count(f), 1u);
+        EXPECT_TRUE(!meets || found.count(f) == 1) << "fold " << f << " of bucket " << bucket;
+      }
+      looked_at += found.size();
+      in_buckets += in[bucket].size();
+    });
+  }
+  EXPECT_GT(met, 1000u);
+  EXPECT_LT(looked_at, met + met / 100 + 10);
+  EXPECT_GT(in_buckets, 2 * looked_at);
+}
+
+}  // namespace
+}  // namespace limn

@@ -11,6 +11,7 @@
 
 #include "sdf/error.h"
 #include "sdf/output_file.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -70,17 +71,22 @@ CellRows read_cells(const fs::path& folder) {
 
 void write_cells(const CellRows& cells, const std::vector<std::string>& keys, const std::vector<std::string>& parameters,
                  const fs::path& folder) {
-  std::string json, csv = csv_header(parameters) + "\n";
-  for (const std::string& key : keys) {
-    const auto found = cells.find(key);
-    if (found == cells.end()) continue;
-    for (const StudyRow& row : found->second) {
-      json += json_line(row) + "\n";
-      csv += csv_line(row, parameters) + "\n";
+  std::vector<const std::vector<StudyRow>*> known;
+  for (const std::string& key : keys)
+    if (const auto found = cells.find(key); found != cells.end()) known.push_back(&found->second);
+  std::vector<std::string> json(known.size()), csv(known.size());
+  parallel_each(known.size(), [&](size_t k) {
+    for (const StudyRow& row : *known[k]) {
+      json[k] += json_line(row) + "\n";
+      csv[k] += csv_line(row, parameters) + "\n";
     }
-  }
-  write_whole(journal_file(folder), json);
-  write_whole(table_file(folder), csv);
+  });
+  const auto joined = [](std::string text, const std::vector<std::string>& parts) {
+    for (const std::string& part : parts) text += part;
+    return text;
+  };
+  write_whole(journal_file(folder), joined({}, json));
+  write_whole(table_file(folder), joined(csv_header(parameters) + "\n", csv));
 }
 
 StudyJournal::StudyJournal(const fs::path& folder, std::vector<std::string> parameters)

@@ -5,6 +5,7 @@
 
 #include "raymarch/curves/curve_geometry.h"
 #include "raymarch/metric/curve_findings.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -27,10 +28,15 @@ void add(const CurveSample& sample, double distance_px, CurveDistances& to) {
 std::array<CurveDistances, kSubjects> from_to(const BorderCurves& from, const BorderCurves& to, const Camera& camera) {
   const CurveIndex index(to, {});
   std::array<CurveDistances, kSubjects> result;
-  for (const CurveSample& sample : within_picture(resample(from, {}, kStep_px), camera)) {
-    const NearestDistances nearest = index.nearest_distances(sample.px, sample.kind);
-    add(sample, nearest.any_px, result[0]);
-    add(sample, nearest.of_kind_px, result[sample.kind == CurveKind::silhouette ? 1 : 2]);
+  const std::vector<CurveSample> samples = within_picture(resample(from, {}, kStep_px), camera);
+  std::vector<NearestDistances> nearest(samples.size());
+  parallel_parts(samples.size(), size_t{256}, [&](const IndexRange<size_t>& part) {
+    for (size_t i = part.first; i < part.last; ++i) nearest[i] = index.nearest_distances(samples[i].px, samples[i].kind);
+  });
+  // One after the other, so that sums do not depend on threads.
+  for (size_t i = 0; i < samples.size(); ++i) {
+    add(samples[i], nearest[i].any_px, result[0]);
+    add(samples[i], nearest[i].of_kind_px, result[samples[i].kind == CurveKind::silhouette ? 1 : 2]);
   }
   return result;
 }

@@ -102,6 +102,7 @@ const ExperimentTruth& ExperimentRun::truth(size_t view, double threshold) {
     TruthSettings settings;
     settings.threshold = threshold;
     settings.reference = experiment_.reference;
+    settings.cache = &truth_cache_;
     settings.max_bytes = std::min(settings.max_bytes, experiment_.models.front().settings.max_bytes);
     of.truth = solve_truth(experiment_.scene, experiment_.cameras[view], settings, how_);
   } catch (const InputError& error) {
@@ -247,6 +248,8 @@ void ExperimentRun::run(Cells cells) {
   while (!cells.empty()) {
     const Cells group = leading(cells, same_model);
     run_model(group);
+    // Views of the first model need all truths that there are.
+    truth_cache_ = {};
     cells = cells.subspan(group.size());
   }
 }

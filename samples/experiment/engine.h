@@ -180,6 +180,7 @@ class ExperimentRun {
   std::optional<SceneModel> reference_{};
   std::map<size_t, ReferenceView> views_{};
   ObjectMeshCache meshes_{};
+  TruthCache truth_cache_{};
   std::vector<GBuffer> spare_{};  ///< Of views that are done: memory for the next ones.
 };
 

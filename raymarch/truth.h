@@ -2,6 +2,7 @@
 // The border as it really is, solved in double precision from what the scene is and never from a picture of it: the reference of every
 // metric.
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,12 +18,19 @@ enum class TruthReference {
   smooth,  ///< The surface that was meant, of which the file is all there is: known no better than two ways to read it agree.
 };
 
+struct TruthProxy;  // raymarch/truth/proxy.h
+/// What the truths of several views of one scene have in common, made with the first of them. Used by one truth at a time.
+struct TruthCache {
+  std::shared_ptr<const TruthProxy> proxy{};
+};
+
 /// Which border is solved, and how precisely.
 struct TruthSettings {
   double threshold = 0.4;       ///< Of the rim: its level curve is N.V = threshold; 0 leaves the silhouette alone. In [0, 1).
   double tolerance_px = 0.005;  ///< How far the polylines may lie from the curves.
   std::int64_t max_bytes = std::int64_t{4} << 30;     ///< For stand-ins of what has no closed description.
   TruthReference reference = TruthReference::smooth;  ///< Of meshes and volumes; fields and cages say which surface they mean.
+  TruthCache* cache = nullptr;                        ///< Of the same scene; changes nothing but the time. May be null.
 };
 
 /// The visible border of a scene.

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 #include "subdiv/opensubdiv_cage.h"
 
 namespace limn {
@@ -55,11 +57,16 @@ class Normals {
   }
 
   std::vector<glm::vec3> run(const std::vector<int>* vertices) {
-    if (vertices != nullptr) {
-      for (const int v : *vertices) at_vertex(v);
-    } else {
-      for (int v = 0; v < level_.GetNumVertices(); ++v) at_vertex(v);
-    }
+    const size_t count = vertices != nullptr ? vertices->size() : static_cast<size_t>(level_.GetNumVertices());
+    // A vertex writes its own corners alone; what its border leaves for later is gathered in the order of vertices.
+    constexpr size_t kTogether = 4096;
+    std::vector<std::vector<Sector>> borders((count + kTogether - 1) / kTogether);
+    parallel_each(borders.size(), [&](size_t part) {
+      for (size_t i = part * kTogether; i < std::min(count, (part + 1) * kTogether); ++i)
+        at_vertex(vertices != nullptr ? (*vertices)[i] : static_cast<int>(i), borders[part]);
+    });
+    for (std::vector<Sector>& part : borders)
+      borders_.insert(borders_.end(), std::move_iterator(part.begin()), std::move_iterator(part.end()));
     border_sectors();
     for (const LimitFrame::Ring& ring : limit_.semi_sharp) {
       const Far::ConstIndexArray faces = level_.GetVertexFaces(ring.vertex);
@@ -98,7 +105,7 @@ class Normals {
     set(face, vertex, glm::cross(point(vertices[(i + 1) % n]) - point(vertex), point(vertices[(i + n - 1) % n]) - point(vertex)));
   }
 
-  void at_vertex(int v) {
+  void at_vertex(int v, std::vector<Sector>& borders) {
     const Far::ConstIndexArray faces = level_.GetVertexFaces(v);
     const Sdc::Crease::Rule rule = level_.GetVertexRule(v);
     if (scheme_ == Scheme::bilinear || level_.IsVertexNonManifold(v)) {
@@ -117,7 +124,7 @@ class Normals {
         if (rule == Sdc::Crease::RULE_CORNER) {
           at_corner(sector);
         } else {
-          borders_.push_back(std::move(sector));
+          borders.push_back(std::move(sector));
         }
       }
     }

@@ -23,8 +23,11 @@ glm::ivec3 node_at(int index) { return {index >> 6, (index >> 3) & 7, index & 7}
 
 class BlockFiller {
  public:
-  BlockFiller(const glm::ivec3& origin, const BlockDistanceArray& distances, const Winding& winding, const BlockSettings& settings)
-      : origin_(origin), winding_(winding), settings_(settings), distances_(distances) {}
+  BlockFiller(const glm::ivec3& origin, const BlockDistanceArray& distances, const Winding& winding, const BlockSettings& settings,
+              const std::optional<BlockLayer>& below)
+      : origin_(origin), winding_(winding), settings_(settings), distances_(distances) {
+    if (below && below->origin == origin - glm::ivec3(0, 0, 8)) below_ = &*below;
+  }
 
   BlockResult run(LevelSetBlock& block) {
     if (settings_.shell > 0.0) {
@@ -38,6 +41,8 @@ class BlockFiller {
       if (inside_[node]) distances_[node] = -distances_[node];
     return write(block);
   }
+
+  bool is_inside(size_t node) const { return inside_[node]; }
 
  private:
   /// Nodes that steps join which cannot cross a triangle.
@@ -109,8 +114,24 @@ class BlockFiller {
     return winding_.closed() ? 0.0 : winding_.gradient_bound(center, radius + settings_.half_width);
   }
 
+  /// Of a closed mesh, where a straight step leads to a node of the block below that lies well off the surface: there its side is certain.
+  bool follow_below(Component& component) {
+    if (below_ == nullptr || !winding_.closed()) return false;
+    for (const int node : members(component)) {
+      if (node % 8 != 0) continue;
+      const auto under = static_cast<size_t>(node / 8);
+      const double off = below_->distances[under];
+      if (off < 0.5 * settings_.voxel_size || !(off + distance(node) > 1.000001 * settings_.voxel_size)) continue;
+      component.speaker = node, component.number = below_->inside[under] ? 1.0 : 0.0;
+      mark(members(component), below_->inside[under]);
+      return true;
+    }
+    return false;
+  }
+
   void settle(Component& component) {
     constexpr int kSmall = 8;
+    if (follow_below(component)) return;
     if (component.size() <= kSmall && follow_neighbour(component)) return;
     settle_part(members(component), glm::ivec3(0), 8, &component);
   }
@@ -255,7 +276,8 @@ class BlockFiller {
   glm::ivec3 origin_;
   const Winding& winding_;
   const BlockSettings& settings_;
-  double block_slope_bound_ = -1.0;  ///< Below 0: not asked for yet.
+  const BlockLayer* below_ = nullptr;  ///< Null where the block filled before is not the one below.
+  double block_slope_bound_ = -1.0;    ///< Below 0: not asked for yet.
   BlockDistanceArray distances_;
   std::array<bool, kNodes> inside_{};
   std::array<int, kNodes> component_{};
@@ -291,8 +313,16 @@ void measure_block(const glm::ivec3& origin, const ClosestPointData& distance, d
 }
 
 BlockResult fill_block(const glm::ivec3& origin, const BlockDistanceArray& distances, const Winding& winding, const BlockSettings& settings,
-                       LevelSetBlock& block) {
-  return BlockFiller(origin, distances, winding, settings).run(block);
+                       std::optional<BlockLayer>& layer, LevelSetBlock& block) {
+  BlockFiller filler(origin, distances, winding, settings, layer);
+  const BlockResult result = filler.run(block);
+  layer.emplace();
+  layer->origin = origin;
+  for (size_t i = 0; i < layer->distances.size(); ++i) {
+    layer->distances[i] = distances[8 * i + 7];
+    layer->inside[i] = filler.is_inside(8 * i + 7);
+  }
+  return result;
 }
 
 }  // namespace limn

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "sdf/level_set.h"
 #include "subdiv/mesh_distance.h"
@@ -24,8 +25,16 @@ using BlockDistanceArray = std::array<double, 512>;
 void measure_block(const glm::ivec3& origin, const ClosestPointData& distance, double voxel_size, double reach,
                    BlockDistanceArray& distances);
 
-/// Signs at the nodes voxel_size * (origin + (i, j, k)) of one block, and what becomes of its distances.
+/// The nodes of a block that face the next one along z, and on which side of the surface they lie.
+struct BlockLayer {
+  glm::ivec3 origin{0};                ///< The block's.
+  std::array<double, 64> distances{};  ///< By 8 x + y.
+  std::array<bool, 64> inside{};
+};
+
+/// Signs at the nodes voxel_size * (origin + (i, j, k)) of one block, and what becomes of its distances. `layer` is that of the block
+/// filled before, if any: of a closed mesh, nodes that it shares a side with ask nothing. Then it is this block's.
 BlockResult fill_block(const glm::ivec3& origin, const BlockDistanceArray& distances, const Winding& winding, const BlockSettings& settings,
-                       LevelSetBlock& block);
+                       std::optional<BlockLayer>& layer, LevelSetBlock& block);
 
 }  // namespace limn

@@ -186,12 +186,15 @@ Band make_band(const TriangleMesh& mesh, const LazyTree& tree, const Winding& wi
                        "larger voxels, or a closed mesh"});
     std::vector<LevelSetBlock> blocks(wave.size());
     std::vector<char> membrane(wave.size(), 0), active(wave.size(), 0), inside(wave.size(), 0);
-    parallel_for(size_t{0}, wave.size(), [&](size_t i) {
-      BlockDistanceArray unsigned_distances;
-      distances.measure(wave[i], unsigned_distances);
-      const BlockResult result = fill_block(wave[i], unsigned_distances, winding, block_settings, blocks[i]);
-      membrane[i] = result.membrane, active[i] = result.any_active, inside[i] = result.any_inside;
-      progress.step();
+    parallel_parts(wave.size(), size_t{1}, [&](const IndexRange<size_t>& part) {
+      std::optional<BlockLayer> layer;
+      for (size_t i = part.first; i < part.last; ++i) {
+        BlockDistanceArray unsigned_distances;
+        distances.measure(wave[i], unsigned_distances);
+        const BlockResult result = fill_block(wave[i], unsigned_distances, winding, block_settings, layer, blocks[i]);
+        membrane[i] = result.membrane, active[i] = result.any_active, inside[i] = result.any_inside;
+        progress.step();
+      }
     });
     for (size_t i = 0; i < wave.size(); ++i) {
       if (!active[i]) continue;

@@ -79,6 +79,12 @@ void copy_tags(const Far::TopologyLevel& level, const std::vector<std::int32_t>&
 
 void copy_faces(const Far::TopologyLevel& level, const std::vector<std::int32_t>& ancestor, const std::vector<std::int32_t>& number,
                 const std::vector<glm::vec3>& normals, const Mesh& cage, bool keep_holes, Mesh& mesh) {
+  const auto faces = static_cast<size_t>(level.GetNumFaces()), corners = static_cast<size_t>(level.GetNumFaceVertices());
+  mesh.face_sizes.reserve(faces);
+  mesh.corner_vertices.reserve(corners);
+  if (!normals.empty()) mesh.corner_normals.reserve(corners);
+  if (!cage.face_materials.empty()) mesh.face_materials.reserve(faces);
+  if (!cage.face_groups.empty()) mesh.face_groups.reserve(faces);
   size_t corner = 0;
   for (int f = 0; f < level.GetNumFaces(); ++f) {
     const Far::ConstIndexArray vertices = level.GetFaceVertices(f);
@@ -104,6 +110,8 @@ Mesh as_mesh(const Refined& refined, const Mesh& cage, int level_number, bool ke
   std::vector<std::int32_t> number(static_cast<size_t>(level.GetNumVertices()), -1);
   const std::vector<char> used = used_vertices(level, keep_holes);
   std::int32_t count = 0;
+  mesh.positions.reserve(number.size());
+  if (!refined.colors.empty()) mesh.vertex_colors.reserve(number.size());
   for (size_t v = 0; v < number.size(); ++v) {
     if (!used[v]) continue;
     number[v] = count++;

@@ -136,11 +136,40 @@ struct FieldCage {
   double found_ms = 0.0;
 };
 
-std::shared_ptr<const FieldCage> find_field_cage(const Field& field) {
+namespace {
+
+template <class Make>
+std::shared_ptr<const FieldCage> timed(const Make& make) {
   const auto start = std::chrono::steady_clock::now();
-  Cage cage = find_cage(field);
+  Cage cage = make();
   const double found_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return std::make_shared<const FieldCage>(FieldCage{std::move(cage), found_ms});
+}
+
+/// Of a refinement that is kept, as predicted; finer ones are made anew from the finest that is.
+constexpr std::int64_t kMostKeptBytes = std::int64_t{64} << 20;
+
+/// `cage` refined `level` times, from the finest that is kept.
+Cage refined(const Field& field, Cage cage, const TessellateSettings& settings) {
+  int level = 0;
+  if (settings.refinements != nullptr) {
+    FieldCages& kept = *settings.refinements;
+    while (static_cast<int>(kept.size()) < settings.level &&
+           predict_refined_size(cage.mesh, Scheme::bilinear, static_cast<int>(kept.size()) + 1).bytes <= kMostKeptBytes) {
+      const Mesh& coarse = kept.empty() ? cage.mesh : kept.back()->cage.mesh;
+      kept.push_back(timed([&] { return refined_once(field, coarse, settings.max_bytes); }));
+    }
+    level = std::min(settings.level, static_cast<int>(kept.size()));
+    if (level > 0) cage = kept[static_cast<size_t>(level) - 1]->cage;
+  }
+  for (; level < settings.level; ++level) cage = refined_once(field, cage.mesh, settings.max_bytes);
+  return cage;
+}
+
+}  // namespace
+
+std::shared_ptr<const FieldCage> find_field_cage(const Field& field) {
+  return timed([&] { return find_cage(field); });
 }
 
 double time_to_find_ms(const FieldCage& cage) { return cage.found_ms; }
@@ -156,7 +185,7 @@ Mesh tessellate(const Field& field, const TessellateSettings& settings) {
     throw SizeError({"", "level", fmt::format("{}", settings.level),
                      fmt::format("the mesh has {} faces and needs {:.1f} GB", size.faces, static_cast<double>(size.bytes) * 1e-9),
                      fmt::format("a lower level (at most {:.1f} GB)", static_cast<double>(settings.max_bytes) * 1e-9)});
-  for (int level = 0; level < settings.level; ++level) cage = refined_once(field, cage.mesh, settings.max_bytes);
+  cage = refined(field, std::move(cage), settings);
   follow_creases(field, cage.mesh, cage.snapped);
   turn_quads_along_creases(field, cage.mesh, cage.snapped.feature);
   split_quads_along_creases(field, cage.mesh, cage.snapped.feature);

@@ -5,6 +5,7 @@
 
 #include "raymarch/curves/ill_places.h"
 #include "raymarch/curves/match_candidates.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -52,8 +53,11 @@ class Matcher {
       }
       samples_.push_back(sample);
       runs_.back().last = samples_.size();
-      near_.push_back(candidates_.of(sample, reach_));
     }
+    near_.resize(samples_.size());
+    parallel_parts(samples_.size(), size_t{64}, [&](const IndexRange<size_t>& part) {
+      for (size_t i = part.first; i < part.last; ++i) near_[i] = candidates_.of(samples_[i], reach_);
+    });
     chosen_.assign(samples_.size(), kNone);
     run_of_.resize(samples_.size());
     for (size_t r = 0; r < runs_.size(); ++r) std::fill(run_of_.begin() + index(runs_[r].first), run_of_.begin() + index(runs_[r].last), r);

@@ -69,13 +69,16 @@ CurveIndex::CurveIndex(const BorderCurves& curves, std::optional<CurveKind> kind
     if (kind && curve.kind != *kind) continue;
     const size_t count = segment_count(curve);
     const bool open = !curve.closed, continued = open && continue_px > 0.0;
-    for (size_t i = 0; i < count; ++i) {
-      add(point_at(curve, i), point_at(curve, i + 1), curve.object, open && !continued && i == 0, open && !continued && i + 1 == count);
-    }
+    const auto add = [&](const glm::dvec2& from, const glm::dvec2& to, bool starts, bool ends) {
+      segments_.push_back({from, to, curve.object, curve.kind, starts, ends});
+    };
+    (curve.kind == CurveKind::silhouette ? has_silhouette_ : has_inner_) |= count > 0;
+    for (size_t i = 0; i < count; ++i)
+      add(point_at(curve, i), point_at(curve, i + 1), open && !continued && i == 0, open && !continued && i + 1 == count);
     if (!continued || count == 0) continue;
     const glm::dvec2 front = curve.points.front().px, back = curve.points.back().px;
-    add(front + continue_px * end_direction(curve, false), front, curve.object, true, false);
-    add(back, back + continue_px * end_direction(curve, true), curve.object, false, true);
+    add(front + continue_px * end_direction(curve, false), front, true, false);
+    add(back, back + continue_px * end_direction(curve, true), false, true);
   }
   std::vector<SegmentEnds> ends;
   ends.reserve(segments_.size());
@@ -83,20 +86,39 @@ CurveIndex::CurveIndex(const BorderCurves& curves, std::optional<CurveKind> kind
   grid_ = segment_grid(ends);
 }
 
-void CurveIndex::add(const glm::dvec2& a, const glm::dvec2& b, int object, bool starts, bool ends) {
-  segments_.push_back({a, b, object, starts, ends});
-}
-
 template <class Visit>
 void CurveIndex::visit_cell(int column, int row, const Visit& visit) const {
   for (const std::uint32_t k : grid_.in_cell(column, row)) visit(segments_[k]);
+}
+
+template <class Visit>
+void CurveIndex::visit_outwards(const glm::dvec2& px, const double& reach_px, const Visit& visit) const {
+  const double x = std::floor((px.x - grid_.origin.x) / grid_.cell_px), y = std::floor((px.y - grid_.origin.y) / grid_.cell_px);
+  // Rings of cells about the point; whatever lies in ring k is at least (k - 1) cells and the way out of the point's own away (less what
+  // rounding may add). From far outside, start where the grid does.
+  const glm::dvec2 place = px - grid_.origin - grid_.cell_px * glm::dvec2(x, y);
+  const double way_out = std::min({place.x, place.y, grid_.cell_px - place.x, grid_.cell_px - place.y}) - 1e-6;
+  const double outside = std::max({0.0, -x, -y, x - (grid_.columns - 1), y - (grid_.rows - 1)});
+  const double furthest = std::max({std::abs(x), std::abs(y), std::abs(x - grid_.columns), std::abs(y - grid_.rows)}) + 1.0;
+  for (double ring = outside; ring <= furthest && (ring - 1.0) * grid_.cell_px + way_out <= reach_px; ring += 1.0) {
+    const double x0 = x - ring, x1 = x + ring, y0 = y - ring, y1 = y + ring;
+    for (double row = std::max(y0, 0.0); row <= std::min(y1, grid_.rows - 1.0); row += 1.0) {
+      if (row == y0 || row == y1) {
+        for (double column = std::max(x0, 0.0); column <= std::min(x1, grid_.columns - 1.0); column += 1.0)
+          visit_cell(static_cast<int>(column), static_cast<int>(row), visit);
+        continue;
+      }
+      if (x0 >= 0.0) visit_cell(static_cast<int>(x0), static_cast<int>(row), visit);
+      if (x1 < grid_.columns) visit_cell(static_cast<int>(x1), static_cast<int>(row), visit);
+    }
+  }
 }
 
 std::optional<NearestPoint> CurveIndex::nearest(const glm::dvec2& px, int object, double reach_px, std::optional<glm::dvec2> facing) const {
   if (segments_.empty()) return std::nullopt;
   NearestPoint best{reach_px, {}, false};
   bool found = false;
-  const auto look = [&](const Segment& segment) {
+  visit_outwards(px, best.distance_px, [&](const Segment& segment) {
     if (object != 0 && segment.object != object) return;
     const glm::dvec2 along = segment.b - segment.a;
     if (facing && !(glm::dot(*facing, glm::dvec2(-along.y, along.x)) > 0.0)) return;
@@ -106,27 +128,21 @@ std::optional<NearestPoint> CurveIndex::nearest(const glm::dvec2& px, int object
     if (!(distance <= best.distance_px) || (found && distance == best.distance_px)) return;
     found = true;
     best = {distance, point, (segment.starts && s == 0.0) || (segment.ends && s == 1.0)};
-  };
-  const double x = std::floor((px.x - grid_.origin.x) / grid_.cell_px), y = std::floor((px.y - grid_.origin.y) / grid_.cell_px);
-  // Rings of cells about the point; whatever lies in ring k is at least (k - 1) cells and the way out of the point's own away (less what
-  // rounding may add). From far outside, start where the grid does.
-  const glm::dvec2 place = px - grid_.origin - grid_.cell_px * glm::dvec2(x, y);
-  const double way_out = std::min({place.x, place.y, grid_.cell_px - place.x, grid_.cell_px - place.y}) - 1e-6;
-  const double outside = std::max({0.0, -x, -y, x - (grid_.columns - 1), y - (grid_.rows - 1)});
-  const double furthest = std::max({std::abs(x), std::abs(y), std::abs(x - grid_.columns), std::abs(y - grid_.rows)}) + 1.0;
-  for (double ring = outside; ring <= furthest && (ring - 1.0) * grid_.cell_px + way_out <= best.distance_px; ring += 1.0) {
-    const double x0 = x - ring, x1 = x + ring, y0 = y - ring, y1 = y + ring;
-    for (double row = std::max(y0, 0.0); row <= std::min(y1, grid_.rows - 1.0); row += 1.0) {
-      if (row == y0 || row == y1) {
-        for (double column = std::max(x0, 0.0); column <= std::min(x1, grid_.columns - 1.0); column += 1.0)
-          visit_cell(static_cast<int>(column), static_cast<int>(row), look);
-        continue;
-      }
-      if (x0 >= 0.0) visit_cell(static_cast<int>(x0), static_cast<int>(row), look);
-      if (x1 < grid_.columns) visit_cell(static_cast<int>(x1), static_cast<int>(row), look);
-    }
-  }
+  });
   if (!found) return std::nullopt;
+  return best;
+}
+
+NearestDistances CurveIndex::nearest_distances(const glm::dvec2& px, CurveKind kind) const {
+  NearestDistances best;
+  if (segments_.empty()) return best;
+  // What is nearest of one kind is no nearer than what is nearest of all.
+  const bool has_kind = kind == CurveKind::silhouette ? has_silhouette_ : has_inner_;
+  visit_outwards(px, has_kind ? best.of_kind_px : best.any_px, [&](const Segment& segment) {
+    const double distance = glm::length(px - closest_on_segment(px, segment.a, segment.b));
+    if (distance < best.any_px) best.any_px = distance;
+    if (segment.kind == kind && distance < best.of_kind_px) best.of_kind_px = distance;
+  });
   return best;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Geometry of border curves that metrics share: equally spaced samples, nearest points, meetings with a normal.
 
+#include <limits>
 #include <optional>
 
 #include "raymarch/border_curves.h"
@@ -36,6 +37,11 @@ struct NearestPoint {
   bool open_end = false;  ///< The end of an open curve.
 };
 
+/// Infinite where there is none.
+struct NearestDistances {
+  double any_px = std::numeric_limits<double>::infinity(), of_kind_px = std::numeric_limits<double>::infinity();
+};
+
 /// Where a straight line through a curve's sample, along its outward normal, meets other curves.
 struct Meeting {
   double along_px = 0.0;  ///< Positive outwards.
@@ -53,6 +59,9 @@ class CurveIndex {
   /// points that way.
   std::optional<NearestPoint> nearest(const glm::dvec2& px, int object, double reach_px, std::optional<glm::dvec2> facing = {}) const;
 
+  /// To the nearest points of all curves and of those of one kind, in one search.
+  NearestDistances nearest_distances(const glm::dvec2& px, CurveKind kind) const;
+
   /// The nearest meeting within `reach_px` of the line through `px` along `direction` (unit) with curves of `object` (0: any) whose own
   /// outward normal does not point against `direction`.
   std::optional<Meeting> meeting(const glm::dvec2& px, const glm::dvec2& direction, int object, double reach_px) const;
@@ -61,13 +70,17 @@ class CurveIndex {
   struct Segment {
     glm::dvec2 a{0.0}, b{0.0};
     int object = 0;
+    CurveKind kind = CurveKind::silhouette;
     bool starts = false, ends = false;  ///< Its first, its last point is the end of an open curve.
   };
-  void add(const glm::dvec2& a, const glm::dvec2& b, int object, bool starts, bool ends);
   template <class Visit>
   void visit_cell(int column, int row, const Visit& visit) const;
+  /// From `px` outwards, as long as anything may be within `reach_px`, which `visit` may lower.
+  template <class Visit>
+  void visit_outwards(const glm::dvec2& px, const double& reach_px, const Visit& visit) const;
 
   std::vector<Segment> segments_{};
+  bool has_silhouette_ = false, has_inner_ = false;
   SegmentGrid grid_{};
 };
 

@@ -17,6 +17,21 @@ constexpr double kSamePlace_px = 1.0;
 
 glm::dvec2 turned(const glm::dvec2& along) { return {-along.y, along.x}; }
 
+/// What was found on one segment; on a segment in several cells, once in each.
+struct OfSegment {
+  std::uint32_t segment = 0;
+  MatchCandidate found{};
+};
+
+/// In the order of the segments. Of the hundreds in reach few have anything: these are sorted, not the segments.
+std::vector<MatchCandidate> along_curves(std::vector<OfSegment>& all) {
+  std::sort(all.begin(), all.end(), [](const OfSegment& a, const OfSegment& b) { return a.segment < b.segment; });
+  std::vector<MatchCandidate> once;
+  for (size_t i = 0; i < all.size(); ++i)
+    if (i == 0 || all[i].segment != all[i - 1].segment) once.push_back(all[i].found);
+  return once;
+}
+
 }  // namespace
 
 MatchCandidates::MatchCandidates(const BorderCurves& measured) {
@@ -48,8 +63,8 @@ void MatchCandidates::add_curve(const BorderCurve& curve, size_t index) {
   segments_.back().after = curve.closed ? first : segments_.size() - 1;
 }
 
-std::vector<std::uint32_t> MatchCandidates::near(const glm::dvec2& px, double reach_px) const {
-  std::vector<std::uint32_t> found;
+template <class Visit>
+void MatchCandidates::visit_near(const glm::dvec2& px, double reach_px, const Visit& visit) const {
   const glm::dvec2 low = (px - reach_px - grid_.origin) / grid_.cell_px, high = (px + reach_px - grid_.origin) / grid_.cell_px;
   const auto inside = [](double cell, int count) {
     return static_cast<int>(std::clamp(std::floor(cell), -1.0, static_cast<double>(count)));
@@ -57,13 +72,9 @@ std::vector<std::uint32_t> MatchCandidates::near(const glm::dvec2& px, double re
   for (int row = std::max(0, inside(low.y, grid_.rows)); row <= std::min(grid_.rows - 1, inside(high.y, grid_.rows)); ++row) {
     for (int column = std::max(0, inside(low.x, grid_.columns)); column <= std::min(grid_.columns - 1, inside(high.x, grid_.columns));
          ++column) {
-      const auto members = grid_.in_cell(column, row);
-      found.insert(found.end(), members.begin(), members.end());
+      for (const std::uint32_t index : grid_.in_cell(column, row)) visit(index);
     }
   }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  return found;
 }
 
 /// Where the distance along the curve is least, if that is on this segment; a vertex belongs to the segment that it begins, or to the last.
@@ -106,12 +117,13 @@ std::optional<MatchCandidate> MatchCandidates::meeting_on(const CurveSample& sam
 
 std::vector<MatchCandidate> MatchCandidates::of(const CurveSample& sample, double reach_px) const {
   if (segments_.empty()) return {};
-  std::vector<MatchCandidate> nearest, meetings;
-  for (const std::uint32_t index : near(sample.px, reach_px)) {
-    if (segments_[index].kind != sample.kind || segments_[index].object != sample.object) continue;
-    if (const auto found = nearest_on(sample, index, reach_px)) nearest.push_back(*found);
-    if (const auto found = meeting_on(sample, index, reach_px)) meetings.push_back(*found);
-  }
+  std::vector<OfSegment> nearest_of, meetings_of;
+  visit_near(sample.px, reach_px, [&](std::uint32_t index) {
+    if (segments_[index].kind != sample.kind || segments_[index].object != sample.object) return;
+    if (const auto found = nearest_on(sample, index, reach_px)) nearest_of.push_back({index, *found});
+    if (const auto found = meeting_on(sample, index, reach_px)) meetings_of.push_back({index, *found});
+  });
+  std::vector<MatchCandidate> nearest = along_curves(nearest_of), meetings = along_curves(meetings_of);
   const auto arc = [&](const MatchCandidate& a, const MatchCandidate& b) {
     const double between = std::abs(a.along_px - b.along_px);
     return closed_[a.curve] ? std::min(between, lengths_[a.curve] - between) : between;

@@ -40,7 +40,9 @@ class MatchCandidates {
     size_t before = 0, after = 0;  ///< Neighbours along the curve; itself at an open end.
   };
   void add_curve(const BorderCurve& curve, size_t index);
-  std::vector<std::uint32_t> near(const glm::dvec2& px, double reach_px) const;
+  /// Segments within reach, and some beyond; those in several cells several times.
+  template <class Visit>
+  void visit_near(const glm::dvec2& px, double reach_px, const Visit& visit) const;
   std::optional<MatchCandidate> nearest_on(const CurveSample& sample, std::uint32_t index, double reach_px) const;
   std::optional<MatchCandidate> meeting_on(const CurveSample& sample, std::uint32_t index, double reach_px) const;
 

@@ -52,9 +52,6 @@ struct PictureModule {
   std::string (*read_channel)(const std::filesystem::path& file, int channel, std::span<float> values) = nullptr;
   void (*to_half)(const float* values, std::uint16_t* halves, int count) = nullptr;
 
-  /// Of all parts, one after another: 40 hexadecimal digits.
-  std::string (*sha1)(std::span<const std::span<const std::byte>> parts) = nullptr;
-
   /// -1 where the font cannot be read.
   int (*text_width_px)(const std::string& text, int size_px, const std::string& font) = nullptr;
   /// Its baseline starts at (x, y). False where the font cannot be read.

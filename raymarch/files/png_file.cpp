@@ -35,27 +35,33 @@ size_t cost_of(std::span<const std::uint8_t> row) {
                                [](std::uint8_t byte) -> std::uint32_t { return byte < 128 ? byte : 256u - byte; });
 }
 
+/// A row by each filter.
+using TriedRows = std::array<std::vector<std::uint8_t>, kFilters>;
+
 /// The row whose filtered bytes are the smallest, its filter before it. Average and Paeth gain nothing on flat and shaded surfaces, and
 /// take as long again.
-void filter_row(const PngPicture& picture, int row, std::array<std::vector<std::uint8_t>, kFilters>& tried, std::uint8_t* to) {
+void filter_row(const PngPicture& picture, int row, TriedRows& tried, std::uint8_t* to) {
   const size_t count = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.channels);
   const size_t left = static_cast<size_t>(picture.channels);
   const std::uint8_t* const bytes = picture.pixels.data() + static_cast<size_t>(row) * count;
-  const auto is_zero = [](std::uint8_t byte) { return byte == 0; };
-  // As most rows of background are: no other filter leaves less than nothing, and what is found first stays.
-  if (row > 0 && std::memcmp(bytes, bytes - count, count) == 0 && !std::all_of(bytes, bytes + count, is_zero)) {
-    *to = 2;
+  // As most rows of background are, empty or the same as the row above: no other filter leaves less than nothing, and what is found first
+  // stays. A row is empty where each byte is the one before it, and the first is nought.
+  const bool is_empty = bytes[0] == 0 && std::memcmp(bytes, bytes + 1, count - 1) == 0;
+  if (is_empty || (row > 0 && std::memcmp(bytes, bytes - count, count) == 0)) {
+    *to = is_empty ? 0 : 2;
     std::fill_n(to + 1, count, std::uint8_t{0});
     return;
   }
-  std::copy_n(bytes, count, tried[0].begin());
-  std::copy_n(bytes, left, tried[1].begin());
-  for (size_t i = left; i < count; ++i) tried[1][i] = static_cast<std::uint8_t>(bytes[i] - bytes[i - left]);
+  // By pointers: bytes may alias what a vector keeps of itself, and then nothing is vectorised.
+  std::uint8_t *const plain = tried[0].data(), *const beside = tried[1].data(), *const below = tried[2].data();
+  std::copy_n(bytes, count, plain);
+  std::copy_n(bytes, left, beside);
+  for (size_t i = left; i < count; ++i) beside[i] = static_cast<std::uint8_t>(bytes[i] - bytes[i - left]);
   if (row == 0) {
-    tried[2] = tried[0];
+    std::copy_n(bytes, count, below);
   } else {
     const std::uint8_t* const above = bytes - count;
-    for (size_t i = 0; i < count; ++i) tried[2][i] = static_cast<std::uint8_t>(bytes[i] - above[i]);
+    for (size_t i = 0; i < count; ++i) below[i] = static_cast<std::uint8_t>(bytes[i] - above[i]);
   }
   size_t best = 0, least = cost_of(tried[0]);
   for (size_t filter = 1; filter < kFilters; ++filter) {
@@ -68,45 +74,62 @@ void filter_row(const PngPicture& picture, int row, std::array<std::vector<std::
   std::copy(tried[best].begin(), tried[best].end(), to + 1);
 }
 
-std::vector<std::uint8_t> filtered_rows(const PngPicture& picture, int first, int last) {
-  const size_t count = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.channels);
-  std::vector<std::uint8_t> rows(static_cast<size_t>(last - first) * (count + 1));
-  std::array<std::vector<std::uint8_t>, kFilters> tried;
-  for (std::vector<std::uint8_t>& row : tried) row.resize(count);
-  for (int row = first; row < last; ++row) filter_row(picture, row, tried, &rows[static_cast<size_t>(row - first) * (count + 1)]);
-  return rows;
-}
+/// What one thread needs to compress block after block: zlib's tables alone take a quarter of a megabyte, which the system clears.
+///
+/// Only runs are looked for, which a filtered picture is full of: on pictures of surfaces smaller than zlib's level 3, in half its time. A
+/// run never reaches back over a block's beginning, so that blocks need nothing of each other.
+class Compressor {
+ public:
+  Compressor(const PngPicture& picture, int block_rows) : picture_(picture), row_bytes_(row_bytes(picture)) {
+    constexpr int kRawWindow = -15, kMemory = 9;
+    if (deflateInit2(&stream_, 6, Z_DEFLATED, kRawWindow, kMemory, Z_RLE) != Z_OK) give_up();
+    for (std::vector<std::uint8_t>& row : tried_) row.resize(row_bytes_ - 1);
+    constexpr size_t kEnd = 16;  // of a block that is flushed
+    filtered_.resize(static_cast<size_t>(block_rows) * row_bytes_);
+    compressed_.resize(deflateBound(&stream_, static_cast<uLong>(filtered_.size())) + kEnd);
+  }
+  Compressor(const Compressor&) = delete;
+  Compressor& operator=(const Compressor&) = delete;
+  ~Compressor() { deflateEnd(&stream_); }
 
-/// One part of a raw deflate stream that ends at a byte. Only runs are looked for, which a filtered picture is full of: on pictures of
-/// surfaces smaller than zlib's level 3, in half its time. A run never reaches back over a block's beginning, so that blocks need nothing
-/// of each other.
-void compress(Block& block, std::span<const std::uint8_t> rows, bool last) {
-  block.filtered_bytes = rows.size();
-  block.checksum = adler32(adler32(0, nullptr, 0), rows.data(), static_cast<uInt>(rows.size()));
-  z_stream stream{};
-  constexpr int kRawWindow = -15, kMemory = 9;
-  if (deflateInit2(&stream, 6, Z_DEFLATED, kRawWindow, kMemory, Z_RLE) != Z_OK) throw MachineError("cannot write a PNG: zlib gave up");
-  constexpr size_t kEnd = 16;  // of a block that is flushed
-  block.compressed.resize(deflateBound(&stream, static_cast<uLong>(rows.size())) + kEnd);
-  stream.next_in = const_cast<Bytef*>(rows.data());  // zlib does not write there
-  stream.avail_in = static_cast<uInt>(rows.size());
-  stream.next_out = block.compressed.data();
-  stream.avail_out = static_cast<uInt>(block.compressed.size());
-  const int result = deflate(&stream, last ? Z_FINISH : Z_SYNC_FLUSH);
-  block.compressed.resize(block.compressed.size() - stream.avail_out);
-  const bool all = stream.avail_in == 0 && result == (last ? Z_STREAM_END : Z_OK);
-  deflateEnd(&stream);
-  if (!all) throw MachineError("cannot write a PNG: zlib gave up");
-}
+  static size_t row_bytes(const PngPicture& picture) {
+    return static_cast<size_t>(picture.width) * static_cast<size_t>(picture.channels) + 1;
+  }
+
+  /// One part of a raw deflate stream that ends at a byte.
+  void compress(Block& block, bool last) {
+    for (int row = block.first_row; row < block.last_row; ++row)
+      filter_row(picture_, row, tried_, &filtered_[static_cast<size_t>(row - block.first_row) * row_bytes_]);
+    const size_t bytes = static_cast<size_t>(block.last_row - block.first_row) * row_bytes_;
+    block.filtered_bytes = bytes;
+    block.checksum = adler32(adler32(0, nullptr, 0), filtered_.data(), static_cast<uInt>(bytes));
+    if (deflateReset(&stream_) != Z_OK) give_up();
+    stream_.next_in = filtered_.data();
+    stream_.avail_in = static_cast<uInt>(bytes);
+    stream_.next_out = compressed_.data();
+    stream_.avail_out = static_cast<uInt>(compressed_.size());
+    const int result = deflate(&stream_, last ? Z_FINISH : Z_SYNC_FLUSH);
+    if (stream_.avail_in != 0 || result != (last ? Z_STREAM_END : Z_OK)) give_up();
+    block.compressed.assign(compressed_.data(), stream_.next_out);
+  }
+
+ private:
+  [[noreturn]] static void give_up() { throw MachineError("cannot write a PNG: zlib gave up"); }
+
+  const PngPicture& picture_;
+  size_t row_bytes_ = 0;
+  z_stream stream_{};
+  TriedRows tried_{};
+  std::vector<std::uint8_t> filtered_{}, compressed_{};
+};
 
 std::vector<Block> compressed_blocks(const PngPicture& picture) {
-  const size_t row_bytes = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.channels) + 1;
-  const int rows = static_cast<int>(std::max<size_t>(1, kBlockBytes / row_bytes));
+  const int rows = static_cast<int>(std::max<size_t>(1, kBlockBytes / Compressor::row_bytes(picture)));
   std::vector<Block> blocks;
   for (int row = 0; row < picture.height; row += rows) blocks.push_back({row, std::min(row + rows, picture.height)});
-  parallel_for(size_t{0}, blocks.size(), [&](size_t i) {
-    Block& block = blocks[i];
-    compress(block, filtered_rows(picture, block.first_row, block.last_row), i + 1 == blocks.size());
+  parallel_parts(blocks.size(), size_t{1}, [&](const IndexRange<size_t>& part) {
+    Compressor compressor(picture, std::min(rows, picture.height));
+    for (size_t i = part.first; i < part.last; ++i) compressor.compress(blocks[i], i + 1 == blocks.size());
   });
   return blocks;
 }

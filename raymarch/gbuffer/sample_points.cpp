@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "raymarch/gbuffer/picture_rays.h"
@@ -69,11 +69,19 @@ PointSample sample_of(const Setup& setup, const TracedBatch& batch, int i) {
 /// What a packet's rays meet then is near to each other.
 void sort_by_tiles(std::span<const glm::dvec2> points_px, std::vector<size_t>& order) {
   constexpr double kTile_px = 8.0;
-  const auto tile = [&](size_t k) {
-    const glm::dvec2 at = glm::floor(points_px[k] / kTile_px);
-    return std::pair(at.y, at.x);
+  struct Place {
+    double row, column;
+    size_t point;
   };
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return tile(a) < tile(b); });
+  std::vector<Place> places;
+  places.reserve(points_px.size());
+  for (size_t k = 0; k < points_px.size(); ++k) {
+    const glm::dvec2 at = glm::floor(points_px[k] / kTile_px);
+    places.push_back({at.y, at.x, k});
+  }
+  std::sort(places.begin(), places.end(),
+            [](const Place& a, const Place& b) { return std::tie(a.row, a.column, a.point) < std::tie(b.row, b.column, b.point); });
+  for (size_t k = 0; k < places.size(); ++k) order[k] = places[k].point;
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // limn-pictures.so: OpenImageIO behind the functions of raymarch/files/picture_module.h, loaded when they are needed.
 
-#include <OpenImageIO/hash.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
@@ -104,12 +103,6 @@ void to_half(const float* values, std::uint16_t* halves, int count) {
   OIIO::convert_pixel_values(OIIO::TypeDesc::FLOAT, values, OIIO::TypeDesc::HALF, halves, count);
 }
 
-std::string sha1(std::span<const std::span<const std::byte>> parts) {
-  OIIO::SHA1 hash;
-  for (const std::span<const std::byte> part : parts) hash.append(part.data(), part.size());
-  return hash.digest();
-}
-
 int text_width_px(const std::string& text, int size_px, const std::string& font) {
   const OIIO::ROI roi = OIIO::ImageBufAlgo::text_size(text, size_px, font);
   return roi.defined() ? roi.width() : -1;
@@ -131,5 +124,5 @@ bool draw_text(const std::string& text, int x, int y, int size_px, const std::st
 
 extern "C" __attribute__((visibility("default"))) void limn_picture_module(limn::PictureModule& module) {
   using namespace limn;
-  module = {kVersion, write, read_header, read_channel, to_half, sha1, text_width_px, draw_text};
+  module = {kVersion, write, read_header, read_channel, to_half, text_width_px, draw_text};
 }

@@ -23,17 +23,12 @@ class Chainer {
   Chainer(const SceneModel& model, const Camera& camera, const GBuffer& gbuffer, double threshold,
           const std::vector<BorderCrossing>& crossings)
       : model_(model), camera_(camera), gbuffer_(gbuffer), threshold_(threshold), crossings_(crossings) {
-    first_.assign(2 * gbuffer.id.size() + 1, 0);
-    for (const BorderCrossing& crossing : crossings) ++first_[static_cast<size_t>(crossing.grid_edge) + 1];
-    for (size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
     next_.assign(crossings.size(), kNone);
     previous_.assign(crossings.size(), kNone);
   }
 
   std::int64_t join() {
-    for (int y = 0; y + 1 < gbuffer_.height; ++y) {
-      for (int x = 0; x + 1 < gbuffer_.width; ++x) join_cell(x, y);
-    }
+    for (const glm::ivec2& cell : crossed_cells()) join_cell(cell.x, cell.y);
     return decide_open_cells();
   }
 
@@ -62,6 +57,25 @@ class Chainer {
  private:
   static constexpr size_t kNone = static_cast<size_t>(-1);
 
+  /// Those with a crossing on their rims, row by row: few of a picture's.
+  std::vector<glm::ivec2> crossed_cells() const {
+    const std::int64_t width = gbuffer_.width, height = gbuffer_.height;
+    std::vector<std::int64_t> cells;
+    for (const BorderCrossing& crossing : crossings_) {
+      const std::int64_t pixel = crossing.grid_edge / 2, x = pixel % width, y = pixel / width;
+      // On either side of the edge, where the picture has not ended.
+      const bool down = crossing.grid_edge % 2 == 1;
+      const std::int64_t before = pixel - (down ? 1 : width);
+      if (down ? x > 0 : y > 0) cells.push_back(before);
+      if (x + 1 < width && y + 1 < height) cells.push_back(pixel);
+    }
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    std::vector<glm::ivec2> places;
+    for (const std::int64_t cell : cells) places.emplace_back(static_cast<int>(cell % width), static_cast<int>(cell / width));
+    return places;
+  }
+
   BorderPoint point_of(const BorderCrossing& crossing) const {
     const auto pixel = static_cast<size_t>(crossing.grid_edge / 2);
     const auto width = static_cast<size_t>(gbuffer_.width);
@@ -74,8 +88,10 @@ class Chainer {
   }
 
   void add_rim(int x, int y, bool down, int side, CurveKind kind, std::vector<RimCrossing>& rim) const {
-    const size_t edge = 2 * gbuffer_.id.index(x, y) + (down ? 1 : 0);
-    for (size_t i = first_[edge]; i < first_[edge + 1]; ++i) {
+    const auto edge = static_cast<std::int64_t>(2 * gbuffer_.id.index(x, y) + (down ? 1 : 0));
+    const auto first = std::lower_bound(crossings_.begin(), crossings_.end(), edge,
+                                        [](const BorderCrossing& crossing, std::int64_t of) { return crossing.grid_edge < of; });
+    for (size_t i = static_cast<size_t>(first - crossings_.begin()); i < crossings_.size() && crossings_[i].grid_edge == edge; ++i) {
       const BorderCrossing& crossing = crossings_[i];
       if (crossing.kind != kind) continue;
       // Clockwise, the top and the right side run with their grid edge, the others against it. A curve that enters has what it bounds,
@@ -168,7 +184,7 @@ class Chainer {
   const GBuffer& gbuffer_;
   double threshold_;
   const std::vector<BorderCrossing>& crossings_;
-  std::vector<size_t> first_{}, next_{}, previous_{};
+  std::vector<size_t> next_{}, previous_{};
   std::vector<RimCrossing> rim_{};
   std::vector<OpenCell> open_{};
   std::vector<glm::dvec2> middles_{};

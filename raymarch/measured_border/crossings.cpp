@@ -44,11 +44,15 @@ class Band {
       : model_(model), camera_(camera), gbuffer_(gbuffer), settings_(settings) {}
 
   void scan(int y0, int y1) {
+    std::vector<double> row = rays_of_row(y0), below;
     for (int y = y0; y < y1; ++y) {
+      if (y + 1 < gbuffer_.height) below = rays_of_row(y + 1);
       for (int x = 0; x < gbuffer_.width; ++x) {
-        if (x + 1 < gbuffer_.width) scan_edge(x, y, false);
-        if (y + 1 < gbuffer_.height) scan_edge(x, y, true);
+        const auto at = static_cast<size_t>(x);
+        if (x + 1 < gbuffer_.width) scan_edge(x, y, false, row[at], row[at + 1]);
+        if (y + 1 < gbuffer_.height) scan_edge(x, y, true, row[at], below[at]);
       }
+      row.swap(below);
     }
   }
 
@@ -82,14 +86,29 @@ class Band {
   bool inked(const EdgeNode& node) const { return node.hit() && double{node.n_dot_v} < settings_.threshold; }
   double excess(const EdgeNode& node) const { return node.hit() ? double{node.n_dot_v} - settings_.threshold : 1.0; }
 
-  void scan_edge(int x, int y, bool down) {
+  /// As ray_backwards, of the pixels that hit; each of them belongs to four edges.
+  std::vector<double> rays_of_row(int y) const {
+    std::vector<double> backwards(static_cast<size_t>(gbuffer_.width), 0.0);
+    for (int x = 0; x < gbuffer_.width; ++x) {
+      if (gbuffer_.id.at(x, y) != 0)
+        backwards[static_cast<size_t>(x)] = ray_backwards(camera_, {x + gbuffer_.sample.x, y + gbuffer_.sample.y});
+    }
+    return backwards;
+  }
+
+  void scan_edge(int x, int y, bool down, double backwards_first, double backwards_last) {
     const size_t p = gbuffer_.id.index(x, y), q = down ? p + static_cast<size_t>(gbuffer_.width) : p + 1;
     if (gbuffer_.id.pixels[p] == 0 && gbuffer_.id.pixels[q] == 0) return;
+    const EdgeLine line{{x + gbuffer_.sample.x, y + gbuffer_.sample.y}, down ? glm::dvec2(0.0, 1.0) : glm::dvec2(1.0, 0.0)};
+    const EdgeNode first = node_of_pixel(camera_, gbuffer_, p, line, 0.0, backwards_first);
+    const EdgeNode last = node_of_pixel(camera_, gbuffer_, q, line, 1.0, backwards_last);
+    // Most edges hold nothing, and a search is large.
+    if (inked(first) == inked(last) && !may_hold_jump(camera_, first, last, false)) return;
     Search search;
     search.edge = 2 * static_cast<std::int64_t>(p) + (down ? 1 : 0);
-    search.line = {{x + gbuffer_.sample.x, y + gbuffer_.sample.y}, down ? glm::dvec2(0.0, 1.0) : glm::dvec2(1.0, 0.0)};
-    search.first = node_of_pixel(camera_, gbuffer_, p, search.line, 0.0);
-    search.last = node_of_pixel(camera_, gbuffer_, q, search.line, 1.0);
+    search.line = line;
+    search.first = first;
+    search.last = last;
     begin(search);
   }
 

@@ -18,16 +18,19 @@ constexpr double kCurving = 4.0;
 /// Beside a contour that is found already, only a step beyond doubt is looked at.
 constexpr double kSettledExcess_px = 0.5;
 
-double depth_slope(const Camera& camera, const EdgeLine& line, double t, const glm::dvec3& normal, double n_dot_v) {
-  const glm::dvec2 px = line.start_px + t * line.along;
+/// `backwards`: of the ray.
+double depth_slope(const Camera& camera, const EdgeLine& line, double backwards, const glm::dvec3& normal, double n_dot_v) {
   const glm::dvec3 side = line.along.x * camera.world_from_camera[0] - line.along.y * camera.world_from_camera[1];
-  const glm::dvec3 ray = camera_ray(camera, px.x, px.y).direction;
-  return -glm::dot(normal, side) * glm::dot(ray, camera.world_from_camera[2]) / std::max(n_dot_v, kEdgeOn);
+  return -glm::dot(normal, side) * backwards / std::max(n_dot_v, kEdgeOn);
 }
 
 }  // namespace
 
-EdgeNode node_of_pixel(const Camera& camera, const GBuffer& gbuffer, size_t pixel, const EdgeLine& line, double t) {
+double ray_backwards(const Camera& camera, const glm::dvec2& px) {
+  return glm::dot(camera_ray(camera, px.x, px.y).direction, camera.world_from_camera[2]);
+}
+
+EdgeNode node_of_pixel(const Camera& camera, const GBuffer& gbuffer, size_t pixel, const EdgeLine& line, double t, double backwards) {
   EdgeNode node;
   node.t = t;
   if (gbuffer.status.pixels[pixel] != static_cast<std::uint8_t>(HitStatus::hit)) return node;
@@ -35,7 +38,7 @@ EdgeNode node_of_pixel(const Camera& camera, const GBuffer& gbuffer, size_t pixe
   node.normal = gbuffer.normal.pixels[pixel];
   node.n_dot_v = gbuffer.n_dot_v.pixels[pixel];
   node.id = gbuffer.id.pixels[pixel];
-  node.slope = depth_slope(camera, line, t, glm::dvec3(node.normal), double{node.n_dot_v});
+  node.slope = depth_slope(camera, line, backwards, glm::dvec3(node.normal), double{node.n_dot_v});
   return node;
 }
 
@@ -47,7 +50,8 @@ EdgeNode node_of_sample(const Camera& camera, const PointSample& sample, const E
   node.normal = sample.normal;
   node.n_dot_v = sample.n_dot_v;
   node.id = sample.id;
-  node.slope = depth_slope(camera, line, t, glm::dvec3(node.normal), double{node.n_dot_v});
+  node.slope =
+      depth_slope(camera, line, ray_backwards(camera, line.start_px + t * line.along), glm::dvec3(node.normal), double{node.n_dot_v});
   return node;
 }
 

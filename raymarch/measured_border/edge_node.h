@@ -24,7 +24,10 @@ struct EdgeLine {
   glm::dvec2 start_px{0.0}, along{0.0};
 };
 
-EdgeNode node_of_pixel(const Camera& camera, const GBuffer& gbuffer, size_t pixel, const EdgeLine& line, double t);
+/// How much the ray through a place of the picture goes against the direction of view: -1 in the middle.
+double ray_backwards(const Camera& camera, const glm::dvec2& px);
+/// `backwards`: as ray_backwards of the pixel's own ray; read only where it hits.
+EdgeNode node_of_pixel(const Camera& camera, const GBuffer& gbuffer, size_t pixel, const EdgeLine& line, double t, double backwards);
 EdgeNode node_of_sample(const Camera& camera, const PointSample& sample, const EdgeLine& line, double t);
 
 /// Depth from a to b, px at the scale of the nearer one. Both must be hits.

@@ -5,6 +5,7 @@
 
 #include "raymarch/curves/curve_geometry.h"
 #include "raymarch/metric/curve_findings.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -13,31 +14,40 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 /// Of the samples along curves: the largest distance is found to half of this.
 constexpr double kStep_px = 0.25;
 
-CurveDistances from_to(const BorderCurves& from, const BorderCurves& to, std::optional<CurveKind> kind, const Camera& camera) {
-  const CurveIndex index(to, kind);
-  CurveDistances result;
-  for (const CurveSample& sample : within_picture(resample(from, kind, kStep_px), camera)) {
-    const std::optional<NearestPoint> nearest = index.nearest(sample.px, 0, std::numeric_limits<double>::infinity());
-    const double distance = nearest ? nearest->distance_px : kNothing;
-    result.largest = std::max(distance, result.largest);
-    result.sum += sample.weight_px * distance;
-    result.length += sample.weight_px;
+/// Of both kinds together, of silhouettes, of inner borders.
+constexpr size_t kSubjects = 3;
+const char* const kSuffixes[kSubjects] = {"", "_silhouette", "_inner"};
+
+void add(const CurveSample& sample, double distance_px, CurveDistances& to) {
+  const double distance = std::isfinite(distance_px) ? distance_px : kNothing;
+  to.largest = std::max(distance, to.largest);
+  to.sum += sample.weight_px * distance;
+  to.length += sample.weight_px;
+}
+
+std::array<CurveDistances, kSubjects> from_to(const BorderCurves& from, const BorderCurves& to, const Camera& camera) {
+  const CurveIndex index(to, {});
+  std::array<CurveDistances, kSubjects> result;
+  const std::vector<CurveSample> samples = within_picture(resample(from, {}, kStep_px), camera);
+  std::vector<NearestDistances> nearest(samples.size());
+  parallel_parts(samples.size(), size_t{256}, [&](const IndexRange<size_t>& part) {
+    for (size_t i = part.first; i < part.last; ++i) nearest[i] = index.nearest_distances(samples[i].px, samples[i].kind);
+  });
+  // One after the other, so that sums do not depend on threads.
+  for (size_t i = 0; i < samples.size(); ++i) {
+    add(samples[i], nearest[i].any_px, result[0]);
+    add(samples[i], nearest[i].of_kind_px, result[samples[i].kind == CurveKind::silhouette ? 1 : 2]);
   }
   return result;
 }
 
-struct Subject {
-  const char* suffix;
-  std::optional<CurveKind> kind;
-};
-const Subject kSubjects[] = {{"", std::nullopt}, {"_silhouette", CurveKind::silhouette}, {"_inner", CurveKind::inner}};
-
 const BothWays& find_distances(const MetricInput& input, size_t subject, CurveFindings& findings) {
   std::optional<BothWays>& found = findings.distances[subject];
-  const std::optional<CurveKind> kind = kSubjects[subject].kind;
-  if (!found)
-    found = {from_to(*input.curves, input.truth->curves, kind, input.camera),
-             from_to(input.truth->curves, *input.curves, kind, input.camera)};
+  if (!found) {
+    const auto there = from_to(*input.curves, input.truth->curves, input.camera),
+               back = from_to(input.truth->curves, *input.curves, input.camera);
+    for (size_t k = 0; k < kSubjects; ++k) findings.distances[k] = {there[k], back[k]};
+  }
   return *found;
 }
 
@@ -45,20 +55,20 @@ template <class Combine>
 std::vector<MetricValue> measure(const MetricInput& input, const std::string& name, const Combine& combine) {
   std::vector<MetricValue> values;
   CurveFindings own, &findings = findings_of(input, own);
-  for (size_t k = 0; k < std::size(kSubjects); ++k) {
+  for (size_t k = 0; k < kSubjects; ++k) {
     double value = kNothing;
     if (input.curves != nullptr && input.truth != nullptr) {
       const auto& [there, back] = find_distances(input, k, findings);
       if (there.length > 0.0 && back.length > 0.0) value = combine(there, back);
     }
-    values.push_back({name + kSubjects[k].suffix, value, "px"});
+    values.push_back({name + kSuffixes[k], value, "px"});
   }
   return values;
 }
 
 std::vector<std::string> names_of(const std::string& name) {
   std::vector<std::string> names;
-  for (const Subject& subject : kSubjects) names.push_back(name + subject.suffix + " [px]");
+  for (const char* suffix : kSuffixes) names.push_back(name + suffix + " [px]");
   return names;
 }
 

@@ -67,7 +67,13 @@ ObjectMesh from_field(const SceneObject& object, const SurfaceSettings& settings
   how.max_bytes = settings.max_bytes;
   const Field field = translate(std::get<Field>(object.source), -render_origin);
   ObjectMesh result;
-  how.cage = kept_cage(field, render_origin, settings.kept_start.get(), result.spared_ms);
+  KeptStart* const kept = settings.kept_start.get();
+  how.cage = kept_cage(field, render_origin, kept, result.spared_ms);
+  if (kept) {
+    how.refinements = &kept->refinements;
+    for (size_t i = 0; i < kept->refinements.size() && static_cast<int>(i) < how.level; ++i)
+      result.spared_ms += time_to_find_ms(*kept->refinements[i]);
+  }
   Mesh mesh = tessellate(field, how);
   result.normals = traced_kind(how.normals);
   if (how.normals != NormalKind::limit) mesh.corner_normals.clear();
@@ -189,7 +195,7 @@ ObjectMesh make_object_mesh(const SceneObject& object, const SurfaceSettings& se
 std::shared_ptr<const FieldCage> kept_cage(const Field& field, const glm::dvec3& render_origin, KeptStart* kept, double& spared_ms) {
   if (!kept) return find_field_cage(field);
   if (!kept->cage || kept->render_origin != render_origin) {
-    *kept = {render_origin, find_field_cage(field), {}, 0.0};
+    *kept = {render_origin, find_field_cage(field), {}, 0.0, {}};
     return kept->cage;
   }
   spared_ms += time_to_find_ms(*kept->cage);

@@ -49,7 +49,8 @@ struct KeptStart {
   glm::dvec3 render_origin{0.0};
   std::shared_ptr<const FieldCage> cage{};
   std::shared_ptr<const LocalStart> local{};
-  double local_ms = 0.0;  ///< What making `local` took, the cage included.
+  double local_ms = 0.0;     ///< What making `local` took, the cage included.
+  FieldCages refinements{};  ///< Of `cage`: uniform meshes of all levels and normals start from them.
 };
 
 /// The cage of a field in render space: what is kept for that origin, or a new one, which is kept. Where it was kept, what finding it

@@ -282,10 +282,22 @@ SceneModel proxy_model(const Scene& scene, int level, std::int64_t max_bytes) {
 }
 
 TruthProxy make_proxy(const Scene& scene, const Camera& camera, std::int64_t max_bytes, double edge_px) {
-  TruthProxy out;
-  out.level = proxy_level(scene, camera, edge_px);
-  out.edge_px = edge_px_at(scene, camera, out.level);
-  out.model = model_at(scene, out.level, max_bytes, out);
+  return *proxy_for(scene, camera, {.max_bytes = max_bytes}, edge_px);
+}
+
+std::shared_ptr<const TruthProxy> proxy_for(const Scene& scene, const Camera& camera, const TruthSettings& settings, double edge_px) {
+  auto out = std::make_shared<TruthProxy>();
+  out->level = proxy_level(scene, camera, edge_px);
+  out->edge_px = edge_px_at(scene, camera, out->level);
+  TruthCache none, &cache = settings.cache != nullptr ? *settings.cache : none;
+  if (cache.proxy != nullptr && cache.proxy->level == out->level) {
+    out->model = cache.proxy->model;
+    out->words = cache.proxy->words;
+    return out;
+  }
+  cache.proxy.reset();
+  out->model = model_at(scene, out->level, settings.max_bytes, *out);
+  cache.proxy = out;
   return out;
 }
 
@@ -315,7 +327,8 @@ void find_given_border(const Scene& scene, const Camera& camera, const BorderOfM
 }  // namespace
 
 BorderTruth solve_truth_by_proxy(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how) {
-  const TruthProxy finest = make_proxy(scene, camera, settings.max_bytes, 1.0);
+  const std::shared_ptr<const TruthProxy> proxy = proxy_for(scene, camera, settings, 1.0);
+  const TruthProxy& finest = *proxy;
   MeasuredBorderSettings measuring;
   measuring.threshold = settings.threshold;
   const auto border_of = [&](const SceneModel& model, const Camera& eye) {

@@ -18,6 +18,8 @@ int proxy_level(const Scene& scene, const Camera& camera, double edge_px);
 /// The model alone, with cages refined so often.
 SceneModel proxy_model(const Scene& scene, int level, std::int64_t max_bytes);
 TruthProxy make_proxy(const Scene& scene, const Camera& camera, std::int64_t max_bytes, double edge_px);
+/// The same for a truth: with the model in the settings' cache where its level fits, else the cache has the new one.
+std::shared_ptr<const TruthProxy> proxy_for(const Scene& scene, const Camera& camera, const TruthSettings& settings, double edge_px);
 
 /// A mesh that is to be subdivided.
 bool is_cage(const SceneObject& object);

@@ -84,7 +84,7 @@ bool interpenetrate(const std::vector<TruthShare>& shares, double extent) {
 /// With the trees that rays need, which the first of them would have to wait for.
 std::shared_ptr<const TruthProxy> ready_proxy(const Scene& scene, const std::vector<size_t>& cages, const Camera& camera,
                                               const ShareSettings& sharing) {
-  auto proxy = std::make_shared<const TruthProxy>(make_proxy(scene, camera, sharing.truth.max_bytes, 1.5));
+  auto proxy = proxy_for(scene, camera, sharing.truth, 1.5);
   for (const size_t i : cages) {
     const Surface& shown = proxy->model.surfaces[i];
     if (shown.open_sheet) static_cast<void>(shown.open_sheet->shows_back(shown, sharing.camera));

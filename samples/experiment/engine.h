@@ -40,7 +40,7 @@ struct Experiment {
   std::optional<FramePath> path{};           ///< How the camera moves for metrics of motion.
   std::optional<PictureSettings> picture{};  ///< Samples and background of finished pictures; unset: ink at the pixel centres alone.
   bool silhouette_of_all = false;            ///< Methods without a threshold are measured, too, by the metrics that need none.
-  bool share_meshes = false;                 ///< One model's mesh is the next one's start; times to build are then not each model's own.
+  bool share_meshes = false;                 ///< One model's mesh is the next one's start; times to build count what that was spared.
   TruthReference reference = TruthReference::given;  ///< What the true border of meshes and volumes is asked of.
   bool measures_floor = true;                        ///< What the reference scores is measured, too (MeasuredCell::floor).
   int repeats = 1;  ///< Builds and pictures for the time of one, as long as they take less than kMostRepeat_ms.
@@ -180,6 +180,7 @@ class ExperimentRun {
   std::optional<SceneModel> reference_{};
   std::map<size_t, ReferenceView> views_{};
   ObjectMeshCache meshes_{};
+  TruthCache truth_cache_{};
   std::vector<GBuffer> spare_{};  ///< Of views that are done: memory for the next ones.
 };
 

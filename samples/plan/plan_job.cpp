@@ -137,6 +137,7 @@ PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneIn
   const CameraSettings camera_of = camera_settings(spec.camera, input);
   const FramedSurface framed = framed_input(spec.camera, input);
   check_least(spec, input.scene, camera_of);
+  TruthCache of_scene;
   for (int view = 0; view < spec.views; ++view) {
     PlanView one;
     one.camera = camera_of_view(camera_of, framed, framing_settings(spec.camera), view, spec.views);
@@ -145,9 +146,11 @@ PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneIn
     TruthSettings truth;
     truth.threshold = job.settings.threshold;
     truth.reference = spec.reference.value_or(TruthReference::given);
+    truth.cache = &of_scene;
     one.truth = solve_truth(input.scene, one.camera, truth, solving);
     job.views.push_back(std::move(one));
   }
+  of_scene = {};
   // Where there is no border every model is right.
   if (std::all_of(job.views.begin(), job.views.end(), [](const PlanView& view) { return view.truth.curves.curves.empty(); }))
     throw InputError({spec.input, "camera", "", "sees no border: there is nothing to plan for",

@@ -124,6 +124,10 @@ std::vector<BorderPlace> border_places(const PlanView& view) {
   return places;
 }
 
+BorderErrors expected_errors(const Ladder& ladder, size_t rung, const std::vector<BorderPlace>& places, double threshold) {
+  return errors_for({ladder, ladder.size_at(rung), threshold}, places, 1.0);
+}
+
 PredictedErrors predict_errors(const Ladder& ladder, size_t rung, const std::vector<BorderPlace>& places, double threshold) {
   const Expectation of{ladder, ladder.size_at(rung), threshold};
   return {errors_for(of, places, 1.0), errors_for(of, places, 1.0 / kNormalSpread), errors_for(of, places, kNormalSpread)};

@@ -27,5 +27,7 @@ std::vector<BorderPlace> border_places(const PlanView& view);
 /// next border or the silhouette ends; what gets there is lost, and counts as off by the width of its band. The bounds are those of a
 /// constant smaller and larger by kNormalSpread.
 PredictedErrors predict_errors(const Ladder& ladder, size_t rung, const std::vector<BorderPlace>& places, double threshold);
+/// `expected` alone of predict_errors, in a third of its time.
+BorderErrors expected_errors(const Ladder& ladder, size_t rung, const std::vector<BorderPlace>& places, double threshold);
 
 }  // namespace limn

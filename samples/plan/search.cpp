@@ -10,6 +10,7 @@
 #include "samples/plan/climb.h"
 #include "samples/plan/predict.h"
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -140,6 +141,16 @@ std::optional<size_t> fastest(const Search& search) {
   return best;
 }
 
+/// The error that theory expects of a rung, worst view.
+double theory_px(const Search& search, size_t ladder, size_t rung) {
+  const Ladder& of = search.answer.ladders[ladder];
+  if (of.local) return predict_local_errors(of, rung).expected.of(search.settings.metric);
+  BorderErrors errors;
+  for (const std::vector<BorderPlace>& places : search.places)
+    errors = worst(errors, expected_errors(of, rung, places, search.settings.threshold));
+  return errors.of(search.settings.metric);
+}
+
 std::vector<Climb> climbs_of(const Search& search) {
   std::vector<Climb> climbs;
   for (size_t k = 0; k < search.answer.ladders.size(); ++k) {
@@ -147,8 +158,8 @@ std::vector<Climb> climbs_of(const Search& search) {
     climb.ladder = &search.answer.ladders[k];
     climb.limit = static_cast<int>(climb.ladder->rungs.size());
     climb.guess_ms = climb.ladder->guess_ms;
-    for (size_t rung = 0; rung < climb.ladder->rungs.size(); ++rung)
-      climb.theory_px.push_back(predicted(search, k, rung).expected.of(search.settings.metric));
+    climb.theory_px.resize(climb.ladder->rungs.size());
+    parallel_each(climb.theory_px.size(), [&](size_t rung) { climb.theory_px[rung] = theory_px(search, k, rung); });
     climbs.push_back(std::move(climb));
   }
   return climbs;

@@ -6,14 +6,17 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <numbers>
 #include <regex>
 #include <sstream>
 
+#include "raymarch/files/png_file.h"
 #include "samples/page/html.h"
 #include "sdf/error.h"
 #include "sdf/output_together.h"
+#include "sdf/version.h"
 
 namespace limn {
 namespace {
@@ -76,14 +79,26 @@ std::string svg_of(double width, double height, const std::string& title, const 
 
 std::string png_of(double width, double height, const std::function<void(ChartCanvas&)>& draw) {
   constexpr double kScale = 2.0;
-  std::string bytes;
-  const Surface target(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(kScale * width), static_cast<int>(kScale * height)));
+  const int width_px = static_cast<int>(kScale * width), height_px = static_cast<int>(kScale * height);
+  const Surface target(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px));
   cairo_scale(target.context, kScale, kScale);
   paint(target, width, height, draw);
   target.check();
-  if (cairo_surface_write_to_png_stream(target.surface, append, &bytes) != CAIRO_STATUS_SUCCESS)
-    throw MachineError("a chart could not be packed as PNG");
-  return bytes;
+  cairo_surface_flush(target.surface);
+  // Cairo's own PNG writer takes ten times as long. A pixel is a number of 32 bits: red, green and blue in the lower three bytes.
+  const unsigned char* const data = cairo_image_surface_get_data(target.surface);
+  const auto stride = static_cast<size_t>(cairo_image_surface_get_stride(target.surface));
+  std::vector<std::uint8_t> pixels;
+  pixels.reserve(3 * static_cast<size_t>(width_px) * static_cast<size_t>(height_px));
+  for (size_t y = 0; y < static_cast<size_t>(height_px); ++y) {
+    for (size_t x = 0; x < static_cast<size_t>(width_px); ++x) {
+      std::uint32_t pixel = 0;
+      std::memcpy(&pixel, data + y * stride + sizeof pixel * x, sizeof pixel);
+      for (const int shift : {16, 8, 0}) pixels.push_back(static_cast<std::uint8_t>(pixel >> shift & 0xff));
+    }
+  }
+  const std::vector<std::byte> png = png_file({width_px, height_px, 3, pixels, std::string("limn ") + kVersion});
+  return {reinterpret_cast<const char*>(png.data()), png.size()};
 }
 
 void choose_font(cairo_t* context, const ChartText& style) {

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <span>
 #include <sstream>
 #include <system_error>
 
 #include "sdf/error.h"
 #include "sdf/output_file.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -32,6 +34,27 @@ void write_all(int handle, const std::string& bytes, const fs::path& file) {
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) fail(file);
     written += static_cast<size_t>(count);
+  }
+}
+
+/// Lines of the journal and of the table.
+struct RowTexts {
+  std::string json{}, csv{};
+};
+
+RowTexts texts_of(std::span<const StudyRow> rows, const std::vector<std::string>& parameters) {
+  RowTexts texts;
+  for (const StudyRow& row : rows) {
+    texts.json += json_line(row) + "\n";
+    texts.csv += csv_line(row, parameters) + "\n";
+  }
+  return texts;
+}
+
+void append_all(const std::vector<RowTexts>& parts, RowTexts& to) {
+  for (const RowTexts& part : parts) {
+    to.json += part.json;
+    to.csv += part.csv;
   }
 }
 
@@ -70,17 +93,15 @@ CellRows read_cells(const fs::path& folder) {
 
 void write_cells(const CellRows& cells, const std::vector<std::string>& keys, const std::vector<std::string>& parameters,
                  const fs::path& folder) {
-  std::string json, csv = csv_header(parameters) + "\n";
-  for (const std::string& key : keys) {
-    const auto found = cells.find(key);
-    if (found == cells.end()) continue;
-    for (const StudyRow& row : found->second) {
-      json += json_line(row) + "\n";
-      csv += csv_line(row, parameters) + "\n";
-    }
-  }
-  write_whole(journal_file(folder), json);
-  write_whole(table_file(folder), csv);
+  std::vector<const std::vector<StudyRow>*> known;
+  for (const std::string& key : keys)
+    if (const auto found = cells.find(key); found != cells.end()) known.push_back(&found->second);
+  std::vector<RowTexts> texts(known.size());
+  parallel_each(known.size(), [&](size_t k) { texts[k] = texts_of(*known[k], parameters); });
+  RowTexts all{{}, csv_header(parameters) + "\n"};
+  append_all(texts, all);
+  write_whole(journal_file(folder), all.json);
+  write_whole(table_file(folder), all.csv);
 }
 
 StudyJournal::StudyJournal(const fs::path& folder, std::vector<std::string> parameters)
@@ -92,13 +113,17 @@ StudyJournal::~StudyJournal() {
 }
 
 void StudyJournal::append(const std::vector<StudyRow>& cell) {
-  std::string json, csv;
-  for (const StudyRow& row : cell) {
-    json += json_line(row) + "\n";
-    csv += csv_line(row, parameters_) + "\n";
-  }
-  write_all(jsonl_, json, journal_file(folder_));
-  write_all(csv_, csv, table_file(folder_));
+  constexpr size_t kTogether = 16;
+  std::vector<RowTexts> texts((cell.size() + kTogether - 1) / kTogether);
+  // While one cell after the other is told of, nothing else is done.
+  parallel_each(texts.size(), [&](size_t k) {
+    const std::span<const StudyRow> rest = std::span(cell).subspan(k * kTogether);
+    texts[k] = texts_of(rest.first(std::min(kTogether, rest.size())), parameters_);
+  });
+  RowTexts all;
+  append_all(texts, all);
+  write_all(jsonl_, all.json, journal_file(folder_));
+  write_all(csv_, all.csv, table_file(folder_));
   // Only a machine that stops loses what is not on the disk; waiting for the disk takes longer than measuring a small cell.
   if (const auto now = std::chrono::steady_clock::now(); now - synced_ >= kBetweenSyncs) {
     if (::fdatasync(jsonl_) != 0 && errno != EINVAL) fail(journal_file(folder_));

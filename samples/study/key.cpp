@@ -11,7 +11,7 @@
 #include <span>
 #include <sstream>
 
-#include "raymarch/files/picture_module.h"
+#include "raymarch/files/hash_module.h"
 #include "raymarch/metric.h"
 #include "sdf/error.h"
 #include "sdf/level_set_bytes.h"
@@ -24,7 +24,7 @@ constexpr size_t kDigits = 32;
 
 /// Of bytes in several places.
 std::string digits_of(std::span<const std::span<const std::byte>> parts) {
-  std::string digits = picture_module().sha1(parts).substr(0, kDigits);
+  std::string digits = hash_module().sha1(parts).substr(0, kDigits);
   for (char& digit : digits) digit = static_cast<char>(std::tolower(static_cast<unsigned char>(digit)));
   return digits;
 }

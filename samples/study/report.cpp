@@ -10,6 +10,7 @@
 #include "samples/study/report_page.h"
 #include "samples/study/report_words.h"
 #include "sdf/output_file.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -99,11 +100,14 @@ std::vector<std::filesystem::path> write_study_report(const StudyHead& head, con
   const ReportData data = collect_report(head, rows);
   const std::vector<StudyChart> charts = study_charts(data);
   std::vector<std::filesystem::path> files = {folder / "report.html"};
-  write_whole(files.front(), study_page(head, data, charts, read_thumbnails(data, folder)));
-  for (const StudyChart& chart : charts) {
-    const auto written = write_chart(folder / chart.stem, kChartWidth, chart.height, chart.title, chart.words, chart.draw);
-    files.insert(files.end(), written.begin(), written.end());
-  }
+  std::vector<std::vector<std::filesystem::path>> written(charts.size());
+  // Side by side: a chart takes as long as the page.
+  parallel_each(charts.size() + 1, [&](size_t k) {
+    if (k == charts.size()) return write_whole(files.front(), study_page(head, data, charts, read_thumbnails(data, folder)));
+    const StudyChart& chart = charts[k];
+    written[k] = write_chart(folder / chart.stem, kChartWidth, chart.height, chart.title, chart.words, chart.draw);
+  });
+  for (const auto& of_chart : written) files.insert(files.end(), of_chart.begin(), of_chart.end());
   return files;
 }
 

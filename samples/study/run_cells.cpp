@@ -74,6 +74,7 @@ Experiment experiment_of(const Study& study) {
   for (const Metric& metric : metrics()) experiment.metrics.push_back(&metric);
   if (study.flicker) experiment.path = kFlickerPath;
   experiment.repeats = kStudyRepeats;
+  experiment.share_meshes = true;
   experiment.reference = study.truth_reference;
   return experiment;
 }

@@ -171,6 +171,38 @@ TEST(MeshSurface, ACageIsRefinedToItsLevelAndAMeshIsTakenAsItIs) {
   EXPECT_EQ(build_model(scene_of({object_of(cage)}), settings).surfaces[0].info.triangles, 12 * 16);
 }
 
+TEST(MeshSurface, OfAFieldInAnyOrderOfLevelsAndNormalsIsWhatItIsAlone) {
+  const Field box = make_shape("box", {{"half", {1.0, 0.7, 0.5}}});
+  for (const Field& field : {make_shape("torus"), combine(Csg::intersection, box, make_shape("sphere", {{"radius", {0.9}}}))}) {
+    const Scene scene = scene_of({object_of(field)});
+    ObjectMeshCache cache;
+    for (const int level : {2, 0, 3, 1, 3}) {
+      for (const NormalKind normals : {NormalKind::flat, NormalKind::limit}) {
+        SurfaceSettings settings = surface_kind("mesh");
+        settings.level = level;
+        settings.normals = normals;
+        const SceneModel shared = build_model(scene, settings, &cache), alone = build_model(scene, settings);
+        const Mesh &of_shared = shared.surfaces[0].polygons->mesh(), &of_alone = alone.surfaces[0].polygons->mesh();
+        EXPECT_EQ(of_shared.positions, of_alone.positions) << level;
+        EXPECT_EQ(of_shared.corner_vertices, of_alone.corner_vertices) << level;
+        EXPECT_EQ(of_shared.corner_normals, of_alone.corner_normals) << level;
+        EXPECT_EQ(shared.surfaces[0].info.triangles, alone.surfaces[0].info.triangles) << level;
+      }
+    }
+    // Each was made once, and what the last model was spared counts as its building time all the same.
+    const FieldCages& refinements = cache.starts.front()->refinements;
+    ASSERT_EQ(refinements.size(), 3u);
+    double spared_ms = time_to_find_ms(*cache.starts.front()->cage);
+    for (const auto& refinement : refinements) spared_ms += time_to_find_ms(*refinement);
+    const std::vector<const FieldCage*> before = {refinements[0].get(), refinements[1].get(), refinements[2].get()};
+    SurfaceSettings again = surface_kind("mesh");
+    again.level = 3;
+    again.normals = NormalKind::vertex;
+    EXPECT_GE(build_model(scene, again, &cache).surfaces[0].info.build_ms, spared_ms);
+    EXPECT_EQ(before, (std::vector<const FieldCage*>{refinements[0].get(), refinements[1].get(), refinements[2].get()})) << "made twice";
+  }
+}
+
 TEST(MeshSurface, LimitNormalsWithoutALimitSurfaceAreSaidToBeVertexNormals) {
   SurfaceSettings settings = surface_kind("mesh");
   settings.normals = NormalKind::limit;

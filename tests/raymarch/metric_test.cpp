@@ -232,6 +232,30 @@ TEST(CurveMetrics, FindTheNearestPointThatASearchOfAllSegmentsFinds) {
   }
 }
 
+TEST(CurveMetrics, FindTheDistancesToAllCurvesAndToOneKindInOneSearch) {
+  std::mt19937 random(29);
+  std::uniform_real_distribution<double> place(-40.0, kSide + 40.0);
+  const BorderCurves both = wavy(random);
+  BorderCurves silhouettes;
+  silhouettes.curves.push_back(both.curves.front());
+  const CurveIndex of_both(both, std::nullopt), of_silhouettes(silhouettes, std::nullopt);
+  int inner_is_nearer = 0;
+  for (int i = 0; i < 300; ++i) {
+    const glm::dvec2 px(place(random), place(random));
+    for (const CurveKind kind : {CurveKind::silhouette, CurveKind::inner}) {
+      const NearestDistances found = of_both.nearest_distances(px, kind);
+      EXPECT_EQ(found.any_px, of_both.nearest(px, 0, 1e9)->distance_px) << i;
+      EXPECT_EQ(found.of_kind_px, CurveIndex(both, kind).nearest(px, 0, 1e9)->distance_px) << i;
+      inner_is_nearer += kind == CurveKind::silhouette && found.any_px < found.of_kind_px;
+    }
+    // Of a kind that is not there nothing is near, and all the same what there is is found.
+    const NearestDistances none = of_silhouettes.nearest_distances(px, CurveKind::inner);
+    EXPECT_TRUE(std::isinf(none.of_kind_px)) << i;
+    EXPECT_EQ(none.any_px, of_silhouettes.nearest(px, 0, 1e9)->distance_px) << i;
+  }
+  EXPECT_GT(inner_is_nearer, 30) << "places that tell the two apart";
+}
+
 TEST(Width, OfARingIsTheDifferenceOfItsRadii) {
   const BorderCurves ring{{circle(150.0, CurveKind::silhouette), circle(138.0, CurveKind::inner)}};
   const BorderCurves wider{{circle(150.0, CurveKind::silhouette), circle(137.0, CurveKind::inner)}};

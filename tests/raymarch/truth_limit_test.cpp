@@ -1,8 +1,11 @@
 // Border curves of limit surfaces against roots found line by line, against a cube's known outline, and against what a fine mesh shows.
 
+#include <set>
+
 #include "raymarch/measured_border.h"
 #include "raymarch/truth/limit_curves.h"
 #include "raymarch/truth/limit_segments.h"
+#include "raymarch/truth/proxy.h"
 #include "tests/raymarch/border_distance.h"
 #include "tests/raymarch/scenes.h"
 
@@ -313,6 +316,32 @@ TEST(TruthLimit, TheSameForAnyNumberOfThreads) {
     for (size_t i = 0; i < a.curves.curves[k].points.size(); ++i)
       EXPECT_EQ(a.curves.curves[k].points[i].px, b.curves.curves[k].points[i].px);
   }
+}
+
+TEST(TruthLimit, OfSeveralViewsOfOneSceneIsThatOfEachAlone) {
+  std::mt19937 random(kSeed + 4);
+  const Scene scene = scene_of({object_of(bumpy_torus(random), Scheme::catmark)});
+  TruthCache cache;
+  std::set<std::shared_ptr<const void>> models;  // held, so that no address comes twice
+  const int widths[] = {320, 320, 60, 320};      // a small picture's proxy is coarser
+  for (const int width : widths) {
+    const Camera camera = random_camera(scene, random, Projection::perspective, width, 3 * width / 4);
+    const BorderTruth shared = solve_truth(scene, camera, {.cache = &cache}, {}), alone = solve_truth(scene, camera, {}, {});
+    ASSERT_NE(cache.proxy, nullptr);
+    EXPECT_EQ(cache.proxy->level, proxy_level(scene, camera, 1.5)) << width;
+    models.insert(cache.proxy->model.surfaces.front().state);
+    EXPECT_EQ(shared.coverage.pixels, alone.coverage.pixels) << width;
+    EXPECT_EQ(shared.notes, alone.notes) << width;
+    EXPECT_EQ(shared.bound_px, alone.bound_px) << width;
+    ASSERT_EQ(shared.curves.curves.size(), alone.curves.curves.size()) << width;
+    for (size_t k = 0; k < shared.curves.curves.size(); ++k) {
+      ASSERT_EQ(shared.curves.curves[k].points.size(), alone.curves.curves[k].points.size());
+      for (size_t i = 0; i < shared.curves.curves[k].points.size(); ++i)
+        EXPECT_EQ(shared.curves.curves[k].points[i].px, alone.curves.curves[k].points[i].px);
+    }
+  }
+  // The second view took the first one's; what the third had is too coarse for the fourth.
+  EXPECT_EQ(models.size(), 3u);
 }
 
 }  // namespace

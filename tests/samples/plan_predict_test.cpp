@@ -56,6 +56,21 @@ TEST(PlanPrediction, OfSmallErrorsIsTheFirstOrder) {
   EXPECT_GT(found.high.inner_px, found.expected.inner_px);
 }
 
+TEST(PlanPrediction, OfWhatIsExpectedAloneIsThatOfAll) {
+  const Scene scene = find_scene("teacup")->make();
+  const std::vector<BorderPlace> places = border_places(first_view(scene));
+  ASSERT_GT(places.size(), 100u);
+  const Ladder ladder = made_up_ladder();
+  for (size_t rung = 0; rung < ladder.rungs.size(); ++rung) {
+    const BorderErrors all = predict_errors(ladder, rung, places, kThreshold).expected;
+    const BorderErrors alone = expected_errors(ladder, rung, places, kThreshold);
+    EXPECT_EQ(alone.silhouette_px, all.silhouette_px) << rung;
+    EXPECT_EQ(alone.inner_px, all.inner_px) << rung;
+    EXPECT_EQ(alone.border_px, all.border_px) << rung;
+    EXPECT_GT(alone.border_px, 0.0) << rung;
+  }
+}
+
 TEST(PlanPrediction, IsCappedByBandsAndGapsWhereTheRadialCurvatureVanishes) {
   BorderPlace flat = sphere_place();
   flat.curvature = 0.0;

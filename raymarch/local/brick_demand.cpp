@@ -10,34 +10,6 @@ namespace {
 
 /// How far what lies beside the picture may reach into it, px.
 constexpr double kAside_px = 4.0;
-/// Of a predicted error, what is allowed for its being a prediction.
-constexpr double kSafety = 2.0;
-
-/// A brick as one picture shows it.
-struct Seen {
-  double pixels_per_unit = 0.0;  ///< At its nearest point.
-};
-
-bool in_picture(const Camera& camera, const Box& box, Seen& seen) {
-  glm::dvec2 low(1e300), high(-1e300);
-  double nearest = 1e300;
-  bool behind = false;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 p(corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                       corner & 4 ? box.upper.z : box.lower.z);
-    const glm::dvec3 px = project(camera, p);
-    nearest = std::min(nearest, px.z);
-    behind = behind || !(px.z > 0.0);
-    low = glm::min(low, glm::dvec2(px)), high = glm::max(high, glm::dvec2(px));
-  }
-  const double side = box.longest_side();
-  if (camera.projection == Projection::orthographic) behind = false;
-  // About the eye there is no measure of a pixel: as if the brick's own side away.
-  seen.pixels_per_unit = pixels_per_unit_at(camera, behind ? side : nearest);
-  if (behind) return nearest > -4.0 * side;
-  return high.x >= -kAside_px && high.y >= -kAside_px && low.x <= camera.width_px + kAside_px && low.y <= camera.height_px + kAside_px;
-}
-
 /// From the points of a box towards the eye.
 std::array<Interval, 3> towards_eye(const Camera& camera, const Box& box) {
   std::array<Interval, 3> way;
@@ -48,17 +20,6 @@ std::array<Interval, 3> towards_eye(const Camera& camera, const Box& box) {
                                          : outward(camera.eye[axis] - box.upper[axis], camera.eye[axis] - box.lower[axis]);
   }
   return way;
-}
-
-/// False where no vector of the gradients' bounds has an N.V of 0 or of a threshold.
-bool may_hold_border(const GradientBounds& bounds, const Box& box, const Camera& camera, const std::vector<double>& thresholds) {
-  const std::array<Interval, 3> way = towards_eye(camera, box);
-  const auto& g = bounds.gradient;
-  const Interval facing = g[0] * way[0] + g[1] * way[1] + g[2] * way[2];
-  if (facing.contains(0.0)) return true;
-  if (thresholds.empty()) return false;
-  const Interval length = norm(g[0], g[1], g[2]) * norm(way[0], way[1], way[2]);
-  return std::any_of(thresholds.begin(), thresholds.end(), [&](double t) { return (facing - length * t).contains(0.0); });
 }
 
 /// The surface at a place near a brick's middle: what N.V is there, and how it changes along the surface.
@@ -126,15 +87,6 @@ bool passes_beside(const SecondOrder& surface, const Box& box, double margin, do
   return rest > most_change(surface, farthest) + turn * turn;
 }
 
-/// How far the surface may stand off in cells of that size, along its normal: a function whose slope lies in bounds of width w lies within
-/// h w / 4 of its chords. Infinite where the gradient may vanish, so that the brick may hold several sheets.
-double most_stand_off(const GradientBounds& bounds, double voxel_size) {
-  const auto& g = bounds.gradient;
-  const double least = mignitude(norm(g[0], g[1], g[2]));
-  if (!(least > 0.0)) return std::numeric_limits<double>::infinity();
-  return voxel_size * (g[0].width() + g[1].width() + g[2].width()) / (4.0 * least);
-}
-
 /// Of a box with creases: whether normals of the surface in it and a little beside lie on both sides of a border's N.V, or near it.
 bool creases_hold_border(FieldEvaluator& evaluator, const Box& box, const Camera& camera, const std::vector<double>& thresholds) {
   constexpr int kSide = 5;
@@ -172,39 +124,67 @@ double predicted_shift(const SecondOrder& surface, double voxel_size, const Loca
 
 /// Of a brick in which bounds cannot exclude a border.
 bool border_needs(FieldEvaluator& evaluator, const Box& box, double voxel_size, double smaller, const GradientBounds& bounds,
-                  const Camera& camera, const Seen& seen, const LocalBrickSettings& settings) {
+                  const Camera& camera, double pixels_per_unit, const LocalBrickSettings& settings) {
   SecondOrder surface;
   const bool folded = !(most_stand_off(bounds, voxel_size) < 0.25 * voxel_size);
   if (folded && !creases_hold_border(evaluator, box, camera, settings.local.thresholds)) return false;
-  if (folded || !expand(evaluator, box, camera, surface)) return kSafety * voxel_size * seen.pixels_per_unit > settings.local.tolerance_px;
+  if (folded || !expand(evaluator, box, camera, surface)) return kDemandSafety * voxel_size * pixels_per_unit > settings.local.tolerance_px;
   if (surface.curvature * box.longest_side() < kMostTurn) {
     const double margin = kBorderMargin_voxels * smaller;
     bool beside = passes_beside(surface, box, margin, 0.0);
     for (const double threshold : settings.local.thresholds) beside = beside && passes_beside(surface, box, margin, threshold);
     if (beside) return false;
   }
-  return kSafety * predicted_shift(surface, voxel_size, settings) * seen.pixels_per_unit > settings.local.tolerance_px;
+  return kDemandSafety * predicted_shift(surface, voxel_size, settings) * pixels_per_unit > settings.local.tolerance_px;
 }
 
 }  // namespace
 
+double pixels_per_unit_of(const Camera& camera, const Box& box) {
+  glm::dvec2 low(1e300), high(-1e300);
+  double nearest = 1e300;
+  bool behind = false;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p(corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
+                       corner & 4 ? box.upper.z : box.lower.z);
+    const glm::dvec3 px = project(camera, p);
+    nearest = std::min(nearest, px.z);
+    behind = behind || !(px.z > 0.0);
+    low = glm::min(low, glm::dvec2(px)), high = glm::max(high, glm::dvec2(px));
+  }
+  const double side = box.longest_side();
+  if (camera.projection == Projection::orthographic) behind = false;
+  // About the eye there is no measure of a pixel: as if the brick's own side away.
+  const double pixels_per_unit = pixels_per_unit_at(camera, behind ? side : nearest);
+  const bool seen = behind ? nearest > -4.0 * side
+                           : high.x >= -kAside_px && high.y >= -kAside_px && low.x <= camera.width_px + kAside_px &&
+                                 low.y <= camera.height_px + kAside_px;
+  return seen ? pixels_per_unit : -1.0;
+}
+
+bool may_hold_border(const GradientBounds& bounds, const Box& box, const Camera& camera, const std::vector<double>& thresholds) {
+  const std::array<Interval, 3> way = towards_eye(camera, box);
+  const auto& g = bounds.gradient;
+  const Interval facing = g[0] * way[0] + g[1] * way[1] + g[2] * way[2];
+  if (facing.contains(0.0)) return true;
+  if (thresholds.empty()) return false;
+  const Interval length = norm(g[0], g[1], g[2]) * norm(way[0], way[1], way[2]);
+  return std::any_of(thresholds.begin(), thresholds.end(), [&](double t) { return (facing - length * t).contains(0.0); });
+}
+
+double most_stand_off(const GradientBounds& bounds, double voxel_size) {
+  const auto& g = bounds.gradient;
+  const double least = mignitude(norm(g[0], g[1], g[2]));
+  if (!(least > 0.0)) return std::numeric_limits<double>::infinity();
+  return voxel_size * (g[0].width() + g[1].width() + g[2].width()) / (4.0 * least);
+}
+
 bool needs_smaller_voxels(FieldEvaluator& evaluator, const Box& box, double voxel_size, double smaller,
                           const LocalBrickSettings& settings) {
-  const double margin = kStencilReach_voxels * voxel_size;
-  const Box reach = dilate(box, margin);
-  const GradientBounds bounds = evaluator.gradient_bounds(reach);
-  const double off = most_stand_off(bounds, voxel_size);
-  for (size_t k = 0; k < settings.local.cameras.size(); ++k) {
-    const Camera& camera = settings.local.cameras[k];
-    Seen seen;
-    if (!in_picture(camera, box, seen)) continue;
-    if (voxel_size * seen.pixels_per_unit > kFolded_px && !(off * seen.pixels_per_unit <= kLocalCoarse_px)) return true;
-    if (settings.border && may_hold_border(bounds, reach, camera, settings.local.thresholds) &&
-        !(k < settings.hidden.size() && is_hidden(settings.hidden[k], box, 2.0 * kLocalCoarse_px, seen.pixels_per_unit)) &&
-        border_needs(evaluator, box, voxel_size, smaller, bounds, camera, seen, settings))
-      return true;
-  }
-  return false;
+  const GradientBounds bounds = evaluator.gradient_bounds(dilate(box, kStencilReach_voxels * voxel_size));
+  return pictures_need_smaller(bounds, box, voxel_size, settings, [&](const Camera& camera, double pixels_per_unit) {
+    return border_needs(evaluator, box, voxel_size, smaller, bounds, camera, pixels_per_unit, settings);
+  });
 }
 
 }  // namespace limn

@@ -9,7 +9,6 @@
 
 #include "raymarch/level_set/brick_layout.h"
 #include "raymarch/local/brick_demand.h"
-#include "sdf/number.h"
 #include "sdf/parallel.h"
 #include "sdf/size_error.h"
 
@@ -19,26 +18,15 @@ namespace {
 /// What a brick costs while it is built and after: nodes, a leaf, 16-bit values and layers.
 constexpr std::int64_t kBrickBytes = 10'000;
 
-/// False only where the surface does not pass the box: by bounds of the value, then by those of its slope about the middle.
-bool may_hold_surface(FieldEvaluator& evaluator, const Box& box) {
-  if (!evaluator.bounds(box).contains(0.0)) return false;
-  const GradientBounds bounds = evaluator.gradient_bounds(box);
-  const glm::dvec3 half = 0.5 * box.size();
-  double reach = 0.0;
-  for (int axis = 0; axis < 3; ++axis) reach += half[axis] * magnitude(bounds.gradient[static_cast<size_t>(axis)]);
-  // Corners are nowhere nearer to the middle than rounding makes them.
-  return std::abs(evaluator.value(box.center())) <= reach * (1.0 + 1e-9) + 1e-12 * glm::length(half);
-}
-
 /// Bricks that the surface passes by this much are there, too: where larger voxels round it off, it may still pass them.
 constexpr double kPassed_voxels = 0.5;
 
-/// Nothing where the surface does not pass there. `parent`: asks the field of the brick that holds it.
-std::optional<LocalBrick> brick_at(FieldEvaluator& parent, const LocalChoice& lattice, size_t level, const glm::ivec3& place) {
+/// Nothing where the surface does not pass there. `parent`: asks the part of the brick that holds it.
+std::optional<LocalBrick> brick_at(PartEvaluator& parent, const LocalChoice& lattice, size_t level, const glm::ivec3& place) {
   const Box box = lattice.box_of(level, place);
   const double h = lattice.voxel_of(level);
-  if (!may_hold_surface(parent, dilate(box, kPassed_voxels * h))) return std::nullopt;
-  // Its nodes are at most eight voxels away from a node that asks for the field, which asks as far as the band reaches.
+  if (!parent.may_hold_surface(dilate(box, kPassed_voxels * h))) return std::nullopt;
+  // Its nodes are at most eight voxels away from a node that asks for the part, which asks as far as the band reaches.
   return LocalBrick{place, 0, parent.restricted(dilate(box, 16.0 * h))};
 }
 
@@ -46,14 +34,14 @@ std::optional<LocalBrick> brick_at(FieldEvaluator& parent, const LocalChoice& la
 class Demand {
  public:
   Demand(const LocalBrick& brick, size_t level, const LocalChoice& lattice, const LocalBrickSettings& settings)
-      : evaluator_(brick.field), level_(level), lattice_(lattice), settings_(settings) {
+      : evaluator_(brick.part), level_(level), lattice_(lattice), settings_(settings) {
     if (needs(lattice.box_of(level, brick.place))) look_at_parts(brick.place, lattice.step(level - 1));
   }
   std::vector<LocalBrick> bricks{};
 
  private:
   bool needs(const Box& box) {
-    return needs_smaller_voxels(evaluator_, box, lattice_.voxel_of(level_), lattice_.voxel_of(level_ - 1), settings_);
+    return evaluator_.needs_smaller_voxels(box, lattice_.voxel_of(level_), lattice_.voxel_of(level_ - 1), settings_);
   }
 
   /// Of a cube that is 2^steps times as large as the smaller bricks: first its octants, then the parts of those that ask for it.
@@ -63,7 +51,7 @@ class Demand {
       const glm::ivec3 place = 2 * cube + glm::ivec3(octant & 1, octant >> 1 & 1, octant >> 2);
       Box box{lattice_.origin + side * glm::dvec3(place), {}};
       box.upper = box.lower + side;
-      if (!may_hold_surface(evaluator_, dilate(box, kPassed_voxels * h)) || !needs(box)) continue;
+      if (!evaluator_.may_hold_surface(dilate(box, kPassed_voxels * h)) || !needs(box)) continue;
       if (steps > 1)
         look_at_parts(place, steps - 1);
       else if (std::optional<LocalBrick> found = brick_at(evaluator_, lattice_, level_ - 1, place))
@@ -71,7 +59,7 @@ class Demand {
     }
   }
 
-  FieldEvaluator evaluator_;
+  PartEvaluator evaluator_;
   size_t level_;
   const LocalChoice& lattice_;
   const LocalBrickSettings& settings_;
@@ -107,7 +95,7 @@ class BrickTree {
     const auto parent = at_[level + 1].find(key_of(8 * larger));
     std::optional<LocalBrick> brick;
     if (parent != at_[level + 1].end() && parent->second != kEmpty) {
-      FieldEvaluator evaluator(choice_.levels[level + 1][parent->second].field);
+      PartEvaluator evaluator(choice_.levels[level + 1][parent->second].part);
       brick = brick_at(evaluator, choice_, level, place);
     }
     if (brick)
@@ -157,10 +145,21 @@ std::vector<int> doublings_for(const Box& bounds, const LocalBrickSettings& sett
   return doublings;
 }
 
+/// By x, y and z.
+std::vector<LocalBrick> in_order(std::vector<LocalBrick> bricks) {
+  std::vector<std::pair<std::uint64_t, size_t>> order(bricks.size());
+  for (size_t i = 0; i < bricks.size(); ++i) order[i] = {key_of(8 * bricks[i].place), i};
+  std::sort(order.begin(), order.end());
+  std::vector<LocalBrick> sorted;
+  sorted.reserve(bricks.size());
+  for (const auto& [key, i] : order) sorted.push_back(std::move(bricks[i]));
+  return sorted;
+}
+
 }  // namespace
 
-LocalChoice choose_bricks(const Field& field, const LocalBrickSettings& settings) {
-  const Box& bounds = field.traits().bounds;
+LocalChoice choose_bricks(const SurfacePart& whole, const LocalBrickSettings& settings) {
+  const Box bounds = bounds_of(whole);
   LocalChoice choice;
   choice.voxel_size = settings.voxel_size;
   choice.doublings = doublings_for(bounds, settings);
@@ -170,17 +169,15 @@ LocalChoice choose_bricks(const Field& field, const LocalBrickSettings& settings
   choice.origin = glm::round(bounds.center() / step) * step;
   const glm::ivec3 lower(glm::floor((bounds.lower - choice.origin) / step)), upper(glm::ceil((bounds.upper - choice.origin) / step));
   BrickTree tree(choice, settings.max_bytes);
-  FieldEvaluator evaluator(field);
+  PartEvaluator evaluator(whole);
   // Faces of the bounds may lie on faces of bricks: one more to each side.
   for (int x = lower.x - 1; x <= upper.x; ++x)
     for (int y = lower.y - 1; y <= upper.y; ++y)
       for (int z = lower.z - 1; z <= upper.z; ++z)
-        if (evaluator.bounds(choice.box_of(top, {x, y, z})).contains(0.0)) tree.add(top, {{x, y, z}, 0, field});
+        if (evaluator.may_come_near(choice.box_of(top, {x, y, z}))) tree.add(top, {{x, y, z}, 0, whole});
   // A brick may ask for larger ones beside it. Those are not looked at again: what asks for smaller voxels in them has been found.
   for (size_t level = top; level > 0; --level) refine(level, settings, choice, tree);
-  for (std::vector<LocalBrick>& bricks : choice.levels)
-    std::sort(bricks.begin(), bricks.end(),
-              [](const LocalBrick& a, const LocalBrick& b) { return key_of(8 * a.place) < key_of(8 * b.place); });
+  for (std::vector<LocalBrick>& bricks : choice.levels) bricks = in_order(std::move(bricks));
   return choice;
 }
 

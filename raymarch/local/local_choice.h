@@ -5,9 +5,7 @@
 #include <vector>
 
 #include "raymarch/level_set/bricks.h"
-#include "raymarch/local/local_depth.h"
-#include "raymarch/local_model.h"
-#include "sdf/field.h"
+#include "raymarch/local/surface_part.h"
 
 namespace limn {
 
@@ -15,13 +13,13 @@ namespace limn {
 struct LocalBrick {
   glm::ivec3 place{0};        ///< In bricks.
   std::uint64_t covered = 0;  ///< Its cells that smaller bricks hold (see covered_bit): there it has no surface.
-  Field field;                ///< Equals the whole one where the brick's nodes and stencils ask it.
+  SurfacePart part;           ///< As the whole where the brick's nodes and stencils ask it.
 };
 
 /// Every point of the surface lies in the open cells of one brick, those that no smaller brick holds, or on the faces between several. Open
 /// cells that touch, be it at a corner, belong to bricks of the same size or of one size and the next.
 struct LocalChoice {
-  glm::dvec3 origin{0.0};        ///< Of the lattices of all sizes, render space.
+  glm::dvec3 origin{0.0};        ///< Of the lattices of all sizes.
   double voxel_size = 0.0;       ///< The smallest.
   std::vector<int> doublings{};  ///< [k]: how often the smallest are doubled at level k. By one or two more than at the level before.
   std::vector<std::vector<LocalBrick>> levels{};  ///< [k]: in the order of their x, y and z.
@@ -42,18 +40,8 @@ inline std::uint64_t covered_by(const glm::ivec3& part, int step) {
   return std::uint64_t{1} << covered_bit(2 * part.x, 2 * part.y, 2 * part.z);
 }
 
-/// How a local level set is made.
-struct LocalBrickSettings {
-  LocalSettings local{};    ///< Cameras in render space.
-  double voxel_size = 0.0;  ///< No voxels are smaller.
-  const GradientDescriptor* gradient = nullptr;
-  std::int64_t max_bytes = std::int64_t{8} << 30;
-  bool border = true;                  ///< False: only as fine as any part has to be.
-  std::vector<SmallPicture> hidden{};  ///< One for each camera, or none: what is hidden in it may be coarse.
-};
-
-/// `field` has bounds and is in render space. Interval bounds decide: a brick where they show no border is never taken for one, and one
-/// where they cannot tell is. Throws SizeError (InputError) before it needs more than max_bytes.
-LocalChoice choose_bricks(const Field& field, const LocalBrickSettings& settings);
+/// `whole` has bounds. Of a field interval bounds decide, of a mesh the normals of its facets: a brick where they show no border is never
+/// taken for one, and one where they cannot tell is. Throws SizeError (InputError) before it needs more than max_bytes.
+LocalChoice choose_bricks(const SurfacePart& whole, const LocalBrickSettings& settings);
 
 }  // namespace limn

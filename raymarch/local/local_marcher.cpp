@@ -8,6 +8,7 @@
 #include "raymarch/level_set/brick_layout.h"
 #include "raymarch/level_set/single_rays.h"
 #include "raymarch/local/local_nodes.h"
+#include "raymarch/local/mesh_part.h"
 #include "raymarch/scene/curvature.h"
 #include "sdf/error.h"
 #include "sdf/level_set_data.h"
@@ -17,8 +18,9 @@ namespace limn {
 namespace {
 
 struct State {
-  explicit State(Field of) : field(std::move(of)) {}
-  Field field;
+  explicit State(SurfacePart of) : whole(std::move(of)) {}
+  SurfacePart whole;
+  glm::dvec3 part_origin{0.0};  ///< Render space: where the origin of `whole` stands.
   BrickGradient gradient = BrickGradient::central;
   std::vector<SingleRayBricks> sizes{};  ///< The smallest voxels first.
   Box bounds{};                          ///< Render space.
@@ -57,18 +59,18 @@ std::optional<bool> inside_brick(const RayBricks& bricks, const glm::dvec3& plac
   return sum < 0.0;
 }
 
-/// Beside the bricks the surface is not near, and the field tells.
-bool is_inside(const State& state, const glm::dvec3& point, std::optional<FieldEvaluator>& evaluator) {
+/// Beside the bricks the surface is not near, and what they were made of tells.
+bool is_inside(const State& state, const glm::dvec3& point, std::optional<PartEvaluator>& evaluator) {
   if (glm::any(glm::lessThan(point, state.bounds.lower)) || glm::any(glm::greaterThan(point, state.bounds.upper))) return false;
   for (const SingleRayBricks& size : state.sizes)
     if (const auto inside = inside_brick(*size.bricks, size.outside.index_from_render.point(point))) return *inside;
-  if (!evaluator) evaluator.emplace(state.field);
-  return evaluator->value(point) < 0.0;
+  if (!evaluator) evaluator.emplace(state.whole);
+  return evaluator->is_inside(point - state.part_origin);
 }
 
 void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   const State& state = *static_cast<const State*>(opaque);
-  std::optional<FieldEvaluator> evaluator;
+  std::optional<PartEvaluator> evaluator;
   std::vector<const SingleRayBricks*> sizes;
   for (const SingleRayBricks& size : state.sizes) sizes.push_back(&size);
   trace_single_rays(
@@ -83,7 +85,7 @@ struct PictureState {
 SurfaceView view_picture(const std::shared_ptr<const void>& opaque, const ViewRequest& request) {
   const auto state = std::static_pointer_cast<const State>(opaque);
   auto picture = std::make_shared<PictureState>();
-  std::optional<FieldEvaluator> evaluator;
+  std::optional<PartEvaluator> evaluator;
   const bool inside = is_inside(*state, request.camera.eye, evaluator);
   for (const SingleRayBricks& size : state->sizes) {
     picture->views.push_back(view_bricks(size.bricks, size.outside.index_from_render, inside, request));
@@ -101,7 +103,7 @@ SurfaceView view_picture(const std::shared_ptr<const void>& opaque, const ViewRe
 }
 
 void evaluate_curvatures(const void* opaque, std::span<const SurfacePoint> points, std::span<SurfaceCurvature> curvatures) {
-  FieldEvaluator evaluator(static_cast<const State*>(opaque)->field);
+  FieldEvaluator evaluator(std::get<Field>(static_cast<const State*>(opaque)->whole));
   for (size_t i = 0; i < points.size(); ++i) curvatures[i] = facing(curvature_of_jet(evaluator.jet(points[i].position)), points[i].normal);
 }
 
@@ -139,12 +141,15 @@ void add(const std::shared_ptr<const RayBricks>& bricks, State& state, SurfaceIn
   state.sizes.push_back(std::move(size));
 }
 
-/// Of one choice of bricks.
-Surface surface_of(const Field& field, const LocalBrickSettings& settings, double half_width_voxels) {
-  auto state = std::make_shared<State>(field);
+/// Of one choice of bricks. `part_origin`: where the origin of `whole` stands in the space of the surface.
+Surface surface_of(const SurfacePart& whole, const LocalBrickSettings& settings, const glm::dvec3& part_origin) {
+  auto state = std::make_shared<State>(whole);
+  state->part_origin = part_origin;
   state->gradient = brick_gradient(*settings.gradient);
-  const LocalChoice choice = choose_bricks(field, settings);
+  const double half_width_voxels = settings.half_width_voxels;
+  LocalChoice choice = choose_bricks(whole, settings);
   std::vector<LevelNodes> levels = sample_bricks(choice, *settings.gradient, half_width_voxels);
+  choice.origin += part_origin;
   Surface surface;
   for (size_t level = 0; level < levels.size(); ++level) {
     surface.info.voxels += levels[level].known();
@@ -165,43 +170,47 @@ Surface surface_of(const Field& field, const LocalBrickSettings& settings, doubl
   surface.view = view_picture;
   surface.bounds = state->bounds;
   surface.info.bytes = surface.info.ray_bytes;
-  surface.curvature = {state, evaluate_curvatures, "Hessian of the field that the voxels were sampled from"};
+  if (std::holds_alternative<Field>(whole))
+    surface.curvature = {state, evaluate_curvatures, "Hessian of the field that the voxels were sampled from"};
   surface.state = std::move(state);
   return surface;
 }
 
 /// With what a coarse surface hides in the pictures.
-LocalBrickSettings with_hidden(const Field& field, const LocalBrickSettings& settings, double half_width_voxels) {
+LocalBrickSettings with_hidden(const SurfacePart& whole, const LocalBrickSettings& settings) {
+  if (const MeshPart* const mesh = std::get_if<MeshPart>(&whole)) prepare_trees(*mesh, settings.half_width_voxels);
   LocalBrickSettings result = settings;
   result.border = false;
+  result.half_width_voxels = std::min(settings.half_width_voxels, 2.0);
   const GradientDescriptor& cell = find_gradient("cell");
   result.gradient = &cell;
-  const Surface coarse = surface_of(field, result, std::min(half_width_voxels, 2.0));
+  const Surface coarse = surface_of(whole, result, glm::dvec3(0.0));
   for (const Camera& camera : settings.local.cameras) result.hidden.push_back(small_picture(coarse, camera));
   result.border = true;
+  result.half_width_voxels = settings.half_width_voxels;
   result.gradient = settings.gradient;
   return result;
 }
 
 }  // namespace
 
-Surface local_level_set(const Field& field, const LocalBrickSettings& settings, double half_width_voxels) {
+Surface local_level_set(const SurfacePart& whole, const LocalBrickSettings& settings, const glm::dvec3& part_origin) {
   const auto started = std::chrono::steady_clock::now();
-  Surface surface = surface_of(field, with_hidden(field, settings, half_width_voxels), half_width_voxels);
+  Surface surface = surface_of(whole, with_hidden(whole, settings), part_origin);
   surface.info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
   return surface;
 }
 
-std::vector<LevelSet> local_level_set_grids(const Field& field, const LocalBrickSettings& settings, double half_width_voxels,
-                                            const std::string& name, const glm::dvec3& render_origin) {
-  LocalChoice choice = choose_bricks(field, with_hidden(field, settings, half_width_voxels));
-  const std::vector<LevelNodes> levels = sample_bricks(choice, *settings.gradient, half_width_voxels);
-  choice.origin += render_origin;
-  const Field in_world = translate(field, render_origin);
+std::vector<LevelSet> local_level_set_grids(const SurfacePart& whole, const LocalBrickSettings& settings, const std::string& name,
+                                            const glm::dvec3& part_origin) {
+  LocalChoice choice = choose_bricks(whole, with_hidden(whole, settings));
+  const std::vector<LevelNodes> levels = sample_bricks(choice, *settings.gradient, settings.half_width_voxels);
+  choice.origin += part_origin;
+  const auto inside = [&](const glm::dvec3& place) { return PartEvaluator(whole).is_inside(place - part_origin); };
   std::vector<LevelSet> grids;
   for (size_t level = 0; level < levels.size(); ++level)
     if (!levels[level].blocks.empty())
-      grids.push_back(level_set_of(levels[level], choice, level, half_width_voxels, name + "_" + std::to_string(level), &in_world));
+      grids.push_back(level_set_of(levels[level], choice, level, settings.half_width_voxels, name + "_" + std::to_string(level), inside));
   return grids;
 }
 

@@ -5,12 +5,13 @@
 
 namespace limn {
 
-/// Of a field in render space, for the pictures of `settings`. Bounds and info are filled (kind is left to the caller). Throws InputError.
-Surface local_level_set(const Field& field, const LocalBrickSettings& settings, double half_width_voxels);
+/// For the pictures of `settings`. `part_origin`: where the origin of `whole` stands in render space. Bounds and info are filled (kind is
+/// left to the caller); curvature only for a field. Throws InputError.
+Surface local_level_set(const SurfacePart& whole, const LocalBrickSettings& settings, const glm::dvec3& part_origin);
 
-/// The same nodes as ordinary level sets in world space, one for each voxel size that is there, the smallest first. Their names are `name`
-/// and the size's number.
-std::vector<LevelSet> local_level_set_grids(const Field& field, const LocalBrickSettings& settings, double half_width_voxels,
-                                            const std::string& name, const glm::dvec3& render_origin);
+/// The same nodes as ordinary level sets, one for each voxel size that is there, the smallest first. Their names are `name` and the size's
+/// number. `part_origin`: where the origin of `whole` stands in the space of the grids.
+std::vector<LevelSet> local_level_set_grids(const SurfacePart& whole, const LocalBrickSettings& settings, const std::string& name,
+                                            const glm::dvec3& part_origin);
 
 }  // namespace limn

@@ -116,7 +116,7 @@ std::optional<ObjectMesh> local_mesh_of(const SceneObject& object, const Surface
 }  // namespace
 
 std::string why_not_local(const SceneObject& object, const SurfaceSettings& settings) {
-  if (settings.kind == "level_set") return why_no_local_level_set(object);
+  if (has_local_bricks(settings.kind)) return why_no_local_level_set(object, settings.kind);
   if (std::string reason = cannot_mesh(object); !reason.empty()) return reason;
   if (std::holds_alternative<Field>(object.source) || scheme_of(object, settings)) return {};
   return "it has one resolution only: no field and no subdivision cage";
@@ -131,15 +131,16 @@ glm::dvec3 render_origin_of(const Scene& scene) {
 
 }  // namespace
 
-std::vector<LevelSet> local_level_sets(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local) {
+std::vector<LevelSet> local_level_sets(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local,
+                                       std::vector<std::string>* warnings) {
   const glm::dvec3 render_origin = render_origin_of(scene);
-  return local_level_sets(scene, settings, render_origin, for_model(local, render_origin));
+  return local_level_sets(scene, settings, render_origin, for_model(local, render_origin), warnings);
 }
 
 SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local, ObjectMeshCache* cache) {
   const glm::dvec3 render_origin = render_origin_of(scene);
   const LocalSettings in_render = for_model(local, render_origin);
-  if (settings.kind == "level_set") return build_local_level_sets(scene, settings, render_origin, in_render);
+  if (has_local_bricks(settings.kind)) return build_local_level_sets(scene, settings, render_origin, in_render);
   SurfaceSettings own = settings;
   own.kind = "mesh";
   own.kept_mesh = nullptr;

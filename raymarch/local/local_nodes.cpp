@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "raymarch/local/larger_bricks.h"
+#include "raymarch/local/mesh_part.h"
 #include "sdf/level_set_distance.h"
 #include "sdf/level_set_nano.h"
 #include "sdf/parallel.h"
@@ -13,9 +14,9 @@
 namespace limn {
 namespace {
 
-NodeBlock& block_at(LevelNodes& nodes, const glm::ivec3& origin, const Field& field) {
+NodeBlock& block_at(LevelNodes& nodes, const glm::ivec3& origin, const SurfacePart& part) {
   const auto [number, is_new] = nodes.at.add(key_of(origin));
-  if (is_new) nodes.blocks.emplace_back(origin, field);
+  if (is_new) nodes.blocks.emplace_back(origin, part);
   return nodes.blocks[number];
 }
 
@@ -24,7 +25,7 @@ void want_brick(const LocalBrick& brick, LevelNodes& nodes) {
   constexpr std::uint64_t kAll = ~std::uint64_t{0}, kFirstRow = 0xff, kFirstColumn = 0x0101010101010101;
   for (int corner = 0; corner < 8; ++corner) {
     const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
-    NodeBlock& block = block_at(nodes, 8 * (brick.place + step), brick.field);
+    NodeBlock& block = block_at(nodes, 8 * (brick.place + step), brick.part);
     const std::uint64_t bits = (step.y ? kFirstRow : kAll) & (step.z ? kFirstColumn : kAll);
     for (size_t x = 0; x < (step.x ? 1 : 8); ++x) block.wanted[x] |= bits;
   }
@@ -60,7 +61,7 @@ void want_read(const LocalBrick& brick, const ReadNodes& read, LevelNodes& nodes
         const glm::ivec3 step(x >> 3, y >> 3, z - 1);
         const int at = 9 * (step.x + 1) + 3 * (step.y + 1) + z;
         NodeBlock*& block = blocks[static_cast<size_t>(at)];
-        if (!block) block = &block_at(nodes, 8 * (brick.place + step), brick.field);
+        if (!block) block = &block_at(nodes, 8 * (brick.place + step), brick.part);
         block->wanted[static_cast<size_t>(x & 7)] |= row << 8 * (y & 7);
       }
     }
@@ -88,37 +89,86 @@ void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil
   }
 }
 
-void evaluate(DistanceEvaluator& distance, NodeBlock& block, const LocalChoice& choice, double h, double half_width, float steps_per_unit,
-              const Larger* larger) {
+/// How the nodes of one size are measured.
+struct Measure {
+  const LocalChoice& choice;
+  double h = 0.0, half_width = 0.0;  ///< World.
+  float steps_per_unit = 0.0f;
+  bool smallest = false;
+  const Larger* larger = nullptr;  ///< Null: nothing is taken from larger bricks.
+
+  float stored(double value) const { return static_cast<float>(quantised(static_cast<float>(value), steps_per_unit)) / steps_per_unit; }
+};
+
+glm::ivec3 node_of(const NodeBlock& block, int n) { return block.origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7); }
+
+template <class Visit>
+void for_each_pending(const NodeBlock& block, const Visit& visit) {
+  for (size_t word = 0; word < 8; ++word)
+    for (std::uint64_t bits = block.wanted[word] & ~block.known[word]; bits != 0; bits &= bits - 1)
+      visit(static_cast<int>(word) << 6 | std::countr_zero(bits));
+}
+
+std::optional<LargerBeside> larger_beside(const Measure& measure, const NodeBlock& block) {
+  std::optional<LargerBeside> beside;
+  if (measure.larger) beside.emplace(*measure.larger, block.origin);
+  if (beside && !beside->any()) beside.reset();
+  return beside;
+}
+
+/// The surface's own value, or the larger bricks': cells far from their surface must not meet it on their faces, where it would end.
+/// Creases that larger voxels round off reach so far.
+double on_its_side(double value, const glm::ivec3& node, std::optional<LargerBeside>& beside) {
+  return beside && beside->on_other_side(node, value < 0.0) ? beside->interpolated(node) : value;
+}
+
+void evaluate_field(DistanceEvaluator& distance, NodeBlock& block, const Measure& measure) {
   std::array<glm::dvec3, 512> points;
   std::array<double, 512> distances;
   std::array<std::uint16_t, 512> places;
   size_t count = 0;
-  std::optional<LargerBeside> beside;
-  if (larger) beside.emplace(*larger, block.origin);
-  if (beside && !beside->any()) beside.reset();
-  const auto node_of = [&](int n) { return block.origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7); };
-  const auto set = [&](size_t n, double value) {
-    block.values[n] = static_cast<float>(quantised(static_cast<float>(value), steps_per_unit)) / steps_per_unit;
-  };
-  for (size_t word = 0; word < 8; ++word)
-    for (std::uint64_t bits = block.wanted[word] & ~block.known[word]; bits != 0; bits &= bits - 1) {
-      const auto n = static_cast<int>(word) << 6 | std::countr_zero(bits);
-      const glm::ivec3 node = node_of(n);
-      // What a larger brick tells is not asked of the field.
-      if (beside && beside->on_near(node)) {
-        set(static_cast<size_t>(n), beside->interpolated(node));
-        continue;
-      }
-      points[count] = choice.origin + h * glm::dvec3(node);
-      places[count++] = static_cast<std::uint16_t>(n);
+  std::optional<LargerBeside> beside = larger_beside(measure, block);
+  for_each_pending(block, [&](int n) {
+    const glm::ivec3 node = node_of(block, n);
+    // What a larger brick tells is not asked of the field.
+    if (beside && beside->on_near(node)) {
+      block.values[static_cast<size_t>(n)] = measure.stored(beside->interpolated(node));
+      return;
     }
-  if (count > 0) signed_distances(distance, std::span(points).first(count), half_width, std::span(distances).first(count));
+    points[count] = measure.choice.origin + measure.h * glm::dvec3(node);
+    places[count++] = static_cast<std::uint16_t>(n);
+  });
+  if (count > 0) signed_distances(distance, std::span(points).first(count), measure.half_width, std::span(distances).first(count));
   for (size_t k = 0; k < count; ++k) {
-    double value = std::clamp(distances[k], -half_width, half_width);
-    // Cells far from their surface must not meet it on their faces: it would end there. Creases that larger voxels round off reach so far.
-    if (const glm::ivec3 node = node_of(places[k]); beside && beside->on_other_side(node, value < 0.0)) value = beside->interpolated(node);
-    set(places[k], value);
+    const double value = std::clamp(distances[k], -measure.half_width, measure.half_width);
+    block.values[places[k]] = measure.stored(on_its_side(value, node_of(block, places[k]), beside));
+  }
+}
+
+/// All nodes of the block at once, as a uniform level set has them: the signs of some follow from others.
+void evaluate_mesh(const MeshPart& part, NodeBlock& block, const Measure& measure) {
+  if (!block.measured) {
+    std::array<float, 512> own;
+    block_distances(part, block.origin, measure.h, measure.half_width, measure.smallest, own);
+    for (size_t n = 0; n < 512; ++n)
+      if ((block.known[n >> 6] >> (n & 63) & 1) == 0) block.values[n] = own[n];
+    block.measured = true;
+  }
+  std::optional<LargerBeside> beside = larger_beside(measure, block);
+  for_each_pending(block, [&](int n) {
+    const glm::ivec3 node = node_of(block, n);
+    float& value = block.values[static_cast<size_t>(n)];
+    const bool near = beside && beside->on_near(node);
+    value = measure.stored(near ? beside->interpolated(node) : on_its_side(static_cast<double>(value), node, beside));
+  });
+}
+
+void evaluate(std::optional<DistanceEvaluator>& distance, NodeBlock& block, const Measure& measure) {
+  if (const Field* field = std::get_if<Field>(&block.part)) {
+    if (!distance || &distance->evaluator.field().program() != &field->program()) distance.emplace(*field);
+    evaluate_field(*distance, block, measure);
+  } else {
+    evaluate_mesh(std::get<MeshPart>(block.part), block, measure);
   }
   for (size_t word = 0; word < 8; ++word) block.known[word] |= block.wanted[word];
 }
@@ -206,18 +256,15 @@ std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientD
     Larger larger;
     if (level + 1 < levels.size()) larger = larger_of(levels[level + 1], choice.step(level), choice.levels[level + 1], h);
     const auto evaluate_all = [&](const Larger* with) {
+      const Measure measure{choice, h, half_width, nodes.steps_per_unit, choice.doublings[level] == 0, with};
       parallel_parts(nodes.blocks.size(), size_t{16}, [&](const IndexRange<size_t>& range) {
         std::optional<DistanceEvaluator> distance;
-        for (size_t i = range.begin(); i < range.end(); ++i) {
-          NodeBlock& block = nodes.blocks[i];
-          if (!distance || &distance->evaluator.field().program() != &block.field.program()) distance.emplace(block.field);
-          evaluate(*distance, block, choice, h, half_width, nodes.steps_per_unit, with);
-        }
+        for (size_t i = range.begin(); i < range.end(); ++i) evaluate(distance, nodes.blocks[i], measure);
       });
     };
     for (const LocalBrick& brick : bricks) want_brick(brick, nodes);
     evaluate_all(larger.nodes && !choice.levels[level + 1].empty() ? &larger : nullptr);
-    // Stencils read the field's own values beyond the brick: they are nearer to the surface's normals than a larger brick's interpolant.
+    // Stencils read the surface's own values beyond the brick: they are nearer to the surface's normals than a larger brick's interpolant.
     want_stencils(bricks, gradient.stencil, nodes);
     evaluate_all(nullptr);
   }
@@ -225,7 +272,7 @@ std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientD
 }
 
 LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels, const std::string& name,
-                      const Field* signs) {
+                      const std::function<bool(const glm::dvec3&)>& signs) {
   std::vector<LevelSetBlock> blocks(nodes.blocks.size());
   parallel_for(size_t{0}, blocks.size(), [&](size_t i) {
     blocks[i].origin = nodes.blocks[i].origin;
@@ -237,7 +284,14 @@ LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t
   const double h = choice.voxel_of(level);
   auto data = std::make_shared<LevelSetData>();
   std::function<bool(const glm::dvec3&)> inside;
-  if (signs) inside = [&](const glm::dvec3& place) { return FieldEvaluator(*signs).value(choice.origin + h * place) < 0.0; };
+  // A mesh's blocks have been measured as a whole.
+  const auto lies_inside = [&](const glm::dvec3& place) {
+    const glm::ivec3 node(glm::round(place));
+    const size_t number = nodes.at.find(key_of(block_of(node)));
+    if (number != KeyNumbers::kNone && nodes.blocks[number].measured) return nodes.blocks[number].values[place_in_block(node)] < 0.0f;
+    return signs(choice.origin + h * place);
+  };
+  if (signs) inside = lies_inside;
   data->handle = nano_grid(blocks, static_cast<float>(half_width_voxels * h), inside);
   data->grid = data->handle.grid<float>();
   data->info.name = name;

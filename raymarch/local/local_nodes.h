@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -14,11 +15,12 @@ namespace limn {
 
 /// Nodes of one voxel size, in blocks of 8^3; bits as in LevelSetBlock.
 struct NodeBlock {
-  NodeBlock(const glm::ivec3& first, Field of) : origin(first), field(std::move(of)) {}
+  NodeBlock(const glm::ivec3& first, SurfacePart of) : origin(first), part(std::move(of)) {}
   glm::ivec3 origin{0};
-  Field field;  ///< Asked for its nodes.
+  SurfacePart part;  ///< Asked for its nodes.
   std::array<std::uint64_t, 8> wanted{}, known{};
   std::array<float, 512> values;  ///< Of the known ones.
+  bool measured = false;          ///< Of a mesh: the values of the others are those that they will have if they are wanted.
 };
 
 inline glm::ivec3 block_of(const glm::ivec3& node) { return node & ~7; }
@@ -62,14 +64,14 @@ struct LevelNodes {
 /// Of a brick whose nodes are known.
 void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeValues& values);
 
-/// Samples `field` at the nodes of the chosen bricks and at those that the gradient's stencils read beside them, and nowhere else; from the
-/// largest voxels to the smallest. A node that lies on open cells of a larger brick takes that brick's interpolant, where its surface is
-/// near, and else its sign: on the face between two sizes both sides have the same surface, without a crack.
+/// Samples the surface at the nodes of the chosen bricks and at those that the gradient's stencils read beside them, and nowhere else; from
+/// the largest voxels to the smallest. A node that lies on open cells of a larger brick takes that brick's interpolant, where its surface
+/// is near, and else its sign: on the face between two sizes both sides have the same surface, without a crack.
 std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient, double half_width_voxels);
 
-/// The level's nodes as an ordinary level set. `signs`, where given, is the field (of the choice's space): it tells on which side lies what
-/// is not known.
+/// The level's nodes as an ordinary level set. `signs`, where given, tells whether a place (of the choice's space) lies inside: what is not
+/// known has its sign from there.
 LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels, const std::string& name,
-                      const Field* signs = nullptr);
+                      const std::function<bool(const glm::dvec3&)>& signs = {});
 
 }  // namespace limn

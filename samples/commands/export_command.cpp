@@ -69,6 +69,15 @@ void check_refined(const Scene& scene, const SurfaceSettings& settings, const fs
   }
 }
 
+/// What a local model is written as: of shapes a .vdb has level sets, of meshes those made of them.
+std::string local_kind_of(const Scene& scene, const SurfaceSettings& settings, bool is_volume) {
+  if (!is_volume) return settings.kind.empty() ? "mesh" : settings.kind;
+  if (!settings.kind.empty()) return settings.kind;
+  const bool any_mesh = std::any_of(scene.objects.begin(), scene.objects.end(),
+                                    [](const SceneObject& object) { return std::holds_alternative<MeshSource>(object.source); });
+  return any_mesh ? "mesh_level_set" : "level_set";
+}
+
 /// A local mesh is made for pictures; nothing else that is written depends on a camera.
 std::optional<LocalSettings> local_of(const Options& options, const SceneInput& input, const SurfaceSettings& settings,
                                       const fs::path& file) {
@@ -80,9 +89,9 @@ std::optional<LocalSettings> local_of(const Options& options, const SceneInput& 
   }
   if (!options.local.tolerance_px) throw InputError({"", "local", "", "needs a tolerance", "a number of pixels, such as --local 0.25"});
   if (options.refined) throw InputError({"", "local", "", "has no effect on refined positions; leave out one of them", ""});
-  const std::string kind = ending_of(file) == ".vdb" ? "level_set" : settings.kind.empty() ? "mesh" : settings.kind;
+  const std::string kind = local_kind_of(input.scene, settings, ending_of(file) == ".vdb");
   refuse_local_without_effect(options.spec, input.scene, settings, {kind});
-  if (kind == "level_set" && ending_of(file) != ".vdb")
+  if (has_local_bricks(kind) && ending_of(file) != ".vdb")
     throw InputError({"", "local", "", "a local level set is no mesh", "a .vdb file, one grid a voxel size; or surface = mesh"});
   refuse_eye_of_views(camera, options.spec.views);
   std::vector<Camera> cameras;
@@ -177,8 +186,10 @@ int run(const Options& options) {
   Json document;
   std::string text;
   if (is_volume) {
+    SurfaceSettings of_local = settings;
+    of_local.kind = local_kind_of(input.scene, settings, true);
     const std::vector<LevelSet> level_sets =
-        local ? local_level_sets(input.scene, settings, *local) : world_level_sets(input.scene, settings, said);
+        local ? local_level_sets(input.scene, of_local, *local, &said.warnings) : world_level_sets(input.scene, settings, said);
     write_level_sets(level_sets, file);
     document = level_sets_json(level_sets);
     text = level_sets_text(level_sets);

@@ -385,7 +385,7 @@ int run(const Options& given) {
   }
 
   // A local level set says itself when it needs too much: what it takes is not known before.
-  const bool is_local_volume = render.local && render.surface.kind == "level_set";
+  const bool is_local_volume = render.local && has_local_bricks(render.surface.kind);
   if (!is_local_volume)
     check_cost(options, render.input.scene, render.surface,
                picture_load(cameras.front(), planned_picture(render), pictures_of(options),

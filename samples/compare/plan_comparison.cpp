@@ -132,7 +132,7 @@ Comparison plan_comparison(const SceneInput& input, const SurfaceSettings& setti
 void plan_local(const LocalSettings& local, Comparison& comparison) {
   const auto has_one = [](const ComparedModel& model) {
     const std::vector<SceneObject>& objects = model.scene.objects;
-    if (model.surface.kind != "mesh" && model.surface.kind != "level_set") return false;
+    if (model.surface.kind != "mesh" && !has_local_bricks(model.surface.kind)) return false;
     return std::any_of(objects.begin(), objects.end(), [&](const SceneObject& o) { return why_not_local(o, model.surface).empty(); });
   };
   for (size_t k = 1; k < comparison.models.size(); ++k) {
@@ -140,7 +140,7 @@ void plan_local(const LocalSettings& local, Comparison& comparison) {
     if (!model.skipped.empty() || (model.surface.kind != "mesh" && !has_one(model))) continue;
     model.local = std::make_shared<const LocalSettings>(local);
     model.name = model.surface.kind + "_local";
-    model.title = model.surface.kind == "mesh" ? "mesh, local" : "level set, local";
+    model.title = with_spaces(model.surface.kind) + ", local";
     model.details = fmt::format("for {:g} px in this view", local.tolerance_px);
   }
 }

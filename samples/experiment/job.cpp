@@ -248,7 +248,8 @@ std::string resolved_call(const std::string& command, const ExperimentSpec& spec
   if (!surface.kind.empty()) call.add("surface", surface.kind);
   if (model.local_px > 0.0) call.add("local", fmt::format("{}", model.local_px));
   for (const SurfaceSetting& setting : surface_setting_list()) {
-    if (model.local_px > 0.0 && std::string_view(setting.name) == "level") continue;
+    const bool has_level = model.local_px == 0.0 || surface.kind == "mesh_level_set";
+    if (!has_level && std::string_view(setting.name) == "level") continue;
     // What the call itself decides, such as a level for the view, and what is no setting of models, is as it was asked for.
     const std::string used = setting.use == nullptr || (spec.surface.level_for_view && std::string_view(setting.name) == "level")
                                  ? setting.asked(spec.surface).value_or("")

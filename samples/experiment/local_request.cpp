@@ -24,15 +24,17 @@ LocalSettings local_settings(double tolerance_px, bool silhouette, const std::ve
 
 void refuse_local_without_effect(const ExperimentSpec& spec, const Scene& scene, const SurfaceSettings& settings,
                                  const std::vector<std::string>& kinds) {
-  if (spec.surface.level || spec.surface.level_for_view)
+  const auto any = [&](const auto& is) { return std::any_of(kinds.begin(), kinds.end(), is); };
+  const auto has_local = [](const std::string& kind) { return kind == "mesh" || has_local_bricks(kind); };
+  if (!any(has_local))
+    throw InputError({"", "local", "", "has no effect on this representation; add surface = mesh, level_set or mesh_level_set", ""});
+  // The mesh that a mesh_level_set is made of is as fine as the level says.
+  if ((spec.surface.level || spec.surface.level_for_view) && !any([](const std::string& kind) { return kind == "mesh_level_set"; }))
     throw InputError(
         {"", "level", "", "has no effect on a local mesh, which is as fine as the border needs; leave out local or the level", ""});
-  const bool has_one =
-      std::any_of(kinds.begin(), kinds.end(), [](const std::string& kind) { return kind == "mesh" || kind == "level_set"; });
-  if (!has_one) throw InputError({"", "local", "", "has no effect on this representation; add surface = mesh or surface = level_set", ""});
   std::string reason;
   for (const std::string& kind : kinds) {
-    if (kind != "mesh" && kind != "level_set") continue;
+    if (!has_local(kind)) continue;
     SurfaceSettings of_kind = settings;
     of_kind.kind = kind;
     for (const SceneObject& object : scene.objects) {
@@ -41,7 +43,7 @@ void refuse_local_without_effect(const ExperimentSpec& spec, const Scene& scene,
     }
   }
   throw InputError({"", "local", "", "has no effect on '" + scene.name + "': " + reason,
-                    "a scene of shapes or subdivision cages (scheme = catmark makes a mesh a cage)"});
+                    "a scene of shapes or subdivision cages (scheme = catmark makes a mesh a cage), or surface = mesh_level_set"});
 }
 
 }  // namespace limn

@@ -1,0 +1,22 @@
+#pragma once
+// Internal: what bricks ask of a mesh.
+
+#include "raymarch/local/surface_part.h"
+
+namespace limn {
+
+/// By the triangles themselves; where an open mesh is closed by its winding number, by bounds of that.
+bool may_hold_surface(const MeshPart& part, const Box& box);
+
+/// As the function of that name for fields, from the normals of the triangles near the box (see brick_demand.h).
+bool needs_smaller_voxels(const MeshPart& part, const Box& box, double voxel_size, double smaller, const LocalBrickSettings& settings);
+
+/// To be called before many threads ask: the trees that they need are made by one.
+void prepare_trees(const MeshPart& part, double half_width_voxels);
+
+/// Signed distances at the nodes h * (origin + (i, j, k)) of a block, numbered 64 i + 8 j + k, clamped to the band's half width (world).
+/// `smallest`: the voxels are the smallest of the level set, and the values are those of level_set_from_mesh to the last bit.
+void block_distances(const MeshPart& part, const glm::ivec3& origin, double h, double half_width, bool smallest,
+                     std::array<float, 512>& values);
+
+}  // namespace limn

@@ -79,6 +79,18 @@ TEST(LocalFile, IsReadBackAsOneObjectThatDrawsTheSamePicture) {
     }
     EXPECT_GT(hits, 3000) << gradient;
     EXPECT_EQ(differ, 0) << gradient;
+    // From the middle of the body, which no brick holds.
+    for (const SceneModel* model : {&made, &again}) {
+      RayBatch rays;
+      HitBatch hit;
+      rays.count = 1;
+      rays.set(0, glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0), 0.0, 10.0);
+      std::fill_n(hit.status, kRayBatchSize, HitStatus::miss);
+      const Surface& surface = model->surfaces.front();
+      surface.trace(surface.state.get(), rays, hit);
+      ASSERT_EQ(hit.status[0], HitStatus::hit) << gradient;
+      EXPECT_NEAR(static_cast<double>(hit.t[0]), 0.5, 0.05) << gradient;
+    }
   }
 }
 

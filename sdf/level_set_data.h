@@ -12,6 +12,8 @@
 
 namespace limn {
 
+struct LocalVolume;  // sdf/local_grid.h
+
 struct LevelSetData {
   nanovdb::GridHandle<nanovdb::HostBuffer> handle;
   const nanovdb::FloatGrid* grid = nullptr;  ///< Into `handle`; its own transform is not used, the two below are.
@@ -19,6 +21,7 @@ struct LevelSetData {
   Affine index_from_world;
   double per_voxel = 0.0;  ///< By how much values change over a voxel across the surface: its size, where they are distances.
   GridFile file{};         ///< What its file says beside; as good as nothing where it comes from none.
+  std::shared_ptr<const LocalVolume> local{};  ///< Where this is the grid of the smallest voxels of several; else null.
   bool completed = false;  ///< By complete_band: what its stencils miss even so is nowhere in the file.
 
   nanovdb::FloatGrid::AccessorType accessor() const { return grid->getAccessor(); }

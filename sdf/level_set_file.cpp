@@ -8,6 +8,7 @@
 #include "sdf/guard.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_leaks.h"
+#include "sdf/local_grid.h"
 #include "sdf/read_vdb.h"
 
 namespace limn {
@@ -150,6 +151,7 @@ std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> b
 ReadLevelSets level_sets_from_answer(std::span<const std::byte> bytes, const fs::path& file) {
   ByteReader answer(bytes, file.string());
   ReadLevelSets result;
+  std::vector<ReadGrid> grids;
   std::optional<InputError> first;
   const auto leave_out = [&](const std::string& name, const InputError& error) {
     if (!first) first = error;
@@ -163,12 +165,13 @@ ReadLevelSets level_sets_from_answer(std::span<const std::byte> bytes, const fs:
     }
     const std::span<const std::byte> own = answer.get_bytes();
     try {
-      result.grids.push_back({name, LevelSet(level_set_from_answer(own, file))});
+      grids.push_back({name, level_set_from_answer(own, file)});
     } catch (const InputError& error) {
       leave_out(name, error);
     }
   }
-  if (result.grids.empty() && first) throw *first;
+  if (grids.empty() && first) throw *first;
+  for (const ReadGrid& grid : join_local_grids(std::move(grids), file.string())) result.grids.push_back({grid.name, LevelSet(grid.data)});
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "raymarch/audit/facts.h"
+#include "sdf/local_grid.h"
 #include "sdf/quantile.h"
 #include "subdiv/refine.h"
 
@@ -41,6 +42,8 @@ const char* name_of(Severity severity) {
 std::vector<Finding> audit(const SceneObject& object, const AuditSettings& settings, std::vector<AuditCost>* costs) {
   AuditFacts facts(object, settings);
   std::vector<Finding> findings;
+  // The checks look at grids of one voxel size.
+  if (facts.level_set() != nullptr && local_volume(facts.level_set()->level_set) != nullptr) return findings;
   for (const AuditCheck& check : audit_checks()) {
     const bool named = std::find(settings.checks.begin(), settings.checks.end(), check.about.name) != settings.checks.end();
     if (!named && (!settings.checks.empty() || (!settings.thorough && !check.quick))) continue;

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "raymarch/lines/line_memory.h"
+#include "sdf/error.h"
 #include "sdf/field_program.h"
+#include "sdf/local_grid.h"
 
 namespace limn {
 namespace {
@@ -31,7 +33,10 @@ SharedLevelSet place_level_set(const LineTask& task, size_t object) {
   SharedLevelSet& kept = task.kept.level_sets.placed[object];
   if (kept) return kept;
   const SceneObject& scene_object = task.scene.objects[object];
-  const LevelSet& level_set = std::get<LevelSetSource>(scene_object.source).level_set;
+  const auto& volume = std::get<LevelSetSource>(scene_object.source);
+  if (local_volume(volume.level_set))
+    throw InputError({volume.file, "object", scene_object.name, std::string("has no lines: ") + kLocalVolume, "a method of images"});
+  const LevelSet& level_set = volume.level_set;
   Affine solver_from_world = scene_object.world_from_object;
   solver_from_world.translation -= task.origin;
   FieldLeaf leaf = reconstruction_field(level_set).program().leaves[0];

@@ -272,7 +272,7 @@ std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientD
 }
 
 LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels, const std::string& name,
-                      const std::function<bool(const glm::dvec3&)>& signs) {
+                      const std::function<bool(const glm::dvec3&)>& signs, const std::optional<GridMetadata>& said) {
   std::vector<LevelSetBlock> blocks(nodes.blocks.size());
   parallel_for(size_t{0}, blocks.size(), [&](size_t i) {
     blocks[i].origin = nodes.blocks[i].origin;
@@ -302,6 +302,7 @@ LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t
   data->info.bytes = static_cast<std::int64_t>(data->handle.size());
   data->index_from_world = inverse(data->info.world_from_index);
   data->per_voxel = h;
+  if (said) data->file.metadata.push_back(*said);
   return LevelSet(data);
 }
 

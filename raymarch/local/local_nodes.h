@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "raymarch/level_set/brick_layout.h"
 #include "raymarch/local/local_choice.h"
+#include "sdf/level_set_metadata.h"
 
 namespace limn {
 
@@ -70,8 +72,8 @@ void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeValues& v
 std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient, double half_width_voxels);
 
 /// The level's nodes as an ordinary level set. `signs`, where given, tells whether a place (of the choice's space) lies inside: what is not
-/// known has its sign from there.
+/// known has its sign from there. `said` goes into its file.
 LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels, const std::string& name,
-                      const std::function<bool(const glm::dvec3&)>& signs = {});
+                      const std::function<bool(const glm::dvec3&)>& signs = {}, const std::optional<GridMetadata>& said = {});
 
 }  // namespace limn

@@ -6,21 +6,35 @@
 #include <utility>
 
 #include "raymarch/scene/farthest_points.h"
+#include "sdf/local_grid.h"
 
 namespace limn {
 namespace {
-
-FarthestPoints farthest_of(const SceneObject& object) {
-  if (const Field* field = std::get_if<Field>(&object.source)) return farthest_of_field(*field);
-  if (const MeshSource* mesh = std::get_if<MeshSource>(&object.source)) return farthest_of_mesh(*mesh, object.world_from_object);
-  return farthest_of_level_set(std::get<LevelSetSource>(object.source).level_set, object.world_from_object);
-}
 
 /// Of `found` and what is there already, for each direction what lies farther.
 void keep_farther(std::span<const glm::dvec3> directions, const std::vector<glm::dvec3>& found, std::vector<glm::dvec3>& farthest) {
   if (farthest.empty()) farthest = found;
   for (size_t d = 0; d < found.size(); ++d)
     if (glm::dot(found[d], directions[d]) > glm::dot(farthest[d], directions[d])) farthest[d] = found[d];
+}
+
+/// Of a local one that of all its grids.
+FarthestPoints farthest_of_volume(const LevelSetSource& volume, const Affine& world_from_object) {
+  if (!local_volume(volume.level_set)) return farthest_of_level_set(volume.level_set, world_from_object);
+  std::vector<FarthestPoints> grids;
+  for (const LevelSet& grid : grids_of(volume.level_set)) grids.push_back(farthest_of_level_set(grid, world_from_object));
+  return [grids](std::span<const glm::dvec3> directions) {
+    std::vector<glm::dvec3> farthest;
+    for (const FarthestPoints& of_grid : grids)
+      if (const std::vector<glm::dvec3> found = of_grid(directions); !found.empty()) keep_farther(directions, found, farthest);
+    return farthest;
+  };
+}
+
+FarthestPoints farthest_of(const SceneObject& object) {
+  if (const Field* field = std::get_if<Field>(&object.source)) return farthest_of_field(*field);
+  if (const MeshSource* mesh = std::get_if<MeshSource>(&object.source)) return farthest_of_mesh(*mesh, object.world_from_object);
+  return farthest_of_volume(std::get<LevelSetSource>(object.source), object.world_from_object);
 }
 
 /// Rodrigues 1840.

@@ -2,6 +2,7 @@
 
 #include "subdiv/face_orientation.h"
 
+#include "sdf/local_grid.h"
 namespace limn {
 namespace {
 
@@ -30,7 +31,9 @@ MeshSource mesh_source(Mesh mesh, std::optional<Scheme> scheme, const std::strin
 Box bounds(const SceneObject& object) {
   if (const Field* field = std::get_if<Field>(&object.source)) return field->traits().bounds;
   if (const MeshSource* mesh = std::get_if<MeshSource>(&object.source)) return bounds_of(*mesh, object.world_from_object);
-  return transform(object.world_from_object, std::get<LevelSetSource>(object.source).level_set.info().bounds);
+  const auto& volume = std::get<LevelSetSource>(object.source);
+  const LocalVolume* const local = local_volume(volume.level_set);
+  return transform(object.world_from_object, local ? local->said.front().bounds : volume.level_set.info().bounds);
 }
 
 Box bounds(const Scene& scene) {

@@ -1,7 +1,9 @@
+#include "raymarch/local/local_marcher.h"
 #include "raymarch/surface.h"
 #include "raymarch/surface/offset.h"
 #include "raymarch/surface/resampled_volume.h"
 #include "sdf/error.h"
+#include "sdf/local_grid.h"
 
 namespace limn {
 namespace {
@@ -17,7 +19,9 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   const GradientDescriptor& gradient = find_gradient(settings.gradient, {}, "gradient");
   Surface surface;
   const LevelSetSource* source = std::get_if<LevelSetSource>(&object.source);
-  if (source && settings.resample_volumes) {
+  if (source && local_volume(source->level_set) && !settings.resample_volumes) {
+    surface = local_level_set_of_file(source->level_set, gradient, render_origin, source->file);
+  } else if (source && settings.resample_volumes) {
     surface = resampled_volume(object, *source, settings, gradient, render_origin);
   } else if (source) {
     surface = level_set_marcher(complete_band(source->level_set, gradient), object.world_from_object, gradient, render_origin,

@@ -4,6 +4,7 @@
 
 #include "raymarch/surface/resampled_volume.h"
 #include "sdf/error.h"
+#include "sdf/local_grid.h"
 #include "subdiv/face_orientation.h"
 #include "subdiv/polygon.h"
 #include "subdiv/tessellate.h"
@@ -162,6 +163,8 @@ ObjectMesh from_level_set(const LevelSet& level_set, const LevelSetSource& sourc
 /// Of the file's voxels, or of others.
 ObjectMesh from_volume(const SceneObject& object, const SurfaceSettings& settings, const Affine& render_from_mesh) {
   const auto& source = std::get<LevelSetSource>(object.source);
+  if (local_volume(source.level_set))
+    throw InputError({source.file, "surface", "mesh", std::string("cannot be meshed: ") + kLocalVolume, "surface = level_set"});
   if (!is_resampled(settings)) return from_level_set(source.level_set, source, settings, render_from_mesh);
   const ResampledLevelSet made = resample_volume(object, source, settings, render_from_mesh);
   ObjectMesh result = from_level_set(made.level_set, source, settings, {});
@@ -247,6 +250,7 @@ Box bounds_of_triangles(const TriangleMesh& mesh) {
 std::string cannot_mesh(const SceneObject& object) {
   const Field* field = std::get_if<Field>(&object.source);
   if (field && !field->traits().bounds.finite()) return "its surface is unbounded or empty, so that no mesh holds it";
+  if (const auto* volume = std::get_if<LevelSetSource>(&object.source); volume && local_volume(volume->level_set)) return kLocalVolume;
   return {};
 }
 

@@ -2,11 +2,16 @@
 
 #include "raymarch/level_set/level_set_marcher.h"
 #include "raymarch/surface/offset.h"
+#include "sdf/error.h"
+#include "sdf/local_grid.h"
 
 namespace limn {
 namespace {
 
 LevelSetSettings grid_settings(const SceneObject& object, const SurfaceSettings& settings, const GradientDescriptor& gradient) {
+  const auto& source = std::get<LevelSetSource>(object.source);
+  if (local_volume(source.level_set))
+    throw InputError({source.file, "voxels", "", std::string("have no effect: ") + kLocalVolume, "its own voxels"});
   return {.voxel_size = voxel_size_for(settings, bounds(object)),
           .half_width_voxels = half_width_for(settings, gradient),
           .max_bytes = settings.max_bytes,

@@ -13,6 +13,7 @@
 #include "raymarch/measured_border.h"
 #include "raymarch/truth/parts.h"
 #include "sdf/error.h"
+#include "sdf/local_grid.h"
 #include "sdf/quantile.h"
 #include "sdf/segment.h"
 
@@ -57,6 +58,7 @@ double edge_px_at(const Scene& scene, const Camera& camera, int level) {
 }
 
 std::string best_gradient(const LevelSetSource& source) {
+  if (const LocalVolume* const local = local_volume(source.level_set)) return local->said.front().gradient;
   const GradientDescriptor* best = nullptr;
   for (const GradientDescriptor& gradient : gradients()) {
     if (cells_lacking(source.level_set, gradient) == 0 && (best == nullptr || gradient.order > best->order)) best = &gradient;

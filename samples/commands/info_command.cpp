@@ -12,6 +12,7 @@
 #include "samples/output/picture_facts.h"
 #include "samples/output/progress.h"
 #include "sdf/error.h"
+#include "sdf/local_grid.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -58,6 +59,12 @@ void report_level_set(const LevelSetSource& source, Report& report) {
                    {"voxel_size", info.voxel_size},
                    {"half_width_voxels", info.half_width_voxels},
                    {"bytes", info.bytes}};
+  if (!local_volume(source.level_set)) return;
+  std::int64_t voxels = 0, bytes = 0;
+  for (const LevelSet& grid : grids_of(source.level_set)) voxels += grid.info().active_voxels, bytes += grid.info().bytes;
+  report.counts["active_voxels"] = voxels;
+  report.counts["bytes"] = bytes;
+  report.counts["voxel_sizes"] = grids_of(source.level_set).size();
 }
 
 Report report_of(const SceneObject& object, const SurfaceSettings& settings) {

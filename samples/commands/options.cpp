@@ -407,7 +407,7 @@ void add_study(CLI::App& app, Options& options) {
       [&options](const std::string& text) { read_compared_methods(text, options); });
   add(app, {"--thresholds", "LIST", "of the rim, and of every other method that has a threshold; default the method's own", kSweep},
       [&sweep](const std::string& text) { sweep.thresholds = parse_thresholds("--thresholds", text); });
-  add(app, {"--local", "LIST", "tolerances of local meshes for the study's views together, px, such as 1,0.5,0.25; default none", kSweep},
+  add(app, {"--local", "LIST", "tolerances of local models for the study's views together, px, such as 1,0.5,0.25; default none", kSweep},
       [&sweep](const std::string& text) { sweep.local_px = parse_tolerances("--local", text); });
   add(app, {"--views", "N", "directions spread evenly on the sphere, 1..10000; 1: the camera's own; default 4", kSweep},
       [&sweep](const std::string& text) { sweep.views = parse_integer("--views", text, 1, 10'000); });

@@ -10,6 +10,7 @@
 #include "sdf/error.h"
 #include "sdf/field_program.h"
 #include "sdf/level_set.h"
+#include "sdf/local_grid.h"
 #include "subdiv/tessellate.h"
 
 namespace limn {
@@ -100,8 +101,11 @@ SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& sett
                         : static_cast<double>(source->mesh->face_count());
     size.area = scale * scale * area_of(source->mesh);
   } else {
-    const LevelSetInfo& info = std::get<LevelSetSource>(object.source).level_set.info();
+    const auto& volume = std::get<LevelSetSource>(object.source);
+    const LevelSetInfo& info = volume.level_set.info();
     size.own_voxels = static_cast<double>(info.active_voxels);
+    if (const LocalVolume* const local = local_volume(volume.level_set))
+      for (const LevelSet& larger : local->larger) size.own_voxels += static_cast<double>(larger.info().active_voxels);
     size.area = size.own_voxels * info.voxel_size * info.voxel_size / (2.0 * std::max(info.half_width_voxels, 1.0));
     size.faces = 2.0 * size.own_voxels / (2.0 * std::max(info.half_width_voxels, 1.0));
   }

@@ -9,6 +9,7 @@
 #include "raymarch/surface/resampled_volume.h"
 #include "sdf/error.h"
 #include "sdf/level_set_grids.h"
+#include "sdf/local_grid.h"
 #include "subdiv/face_orientation.h"
 #include "subdiv/mesh_level_set.h"
 #include "subdiv/tessellate.h"
@@ -51,7 +52,10 @@ Mesh local_mesh(const SceneObject& object, const SurfaceSettings& settings, bool
     refined.triangle_rule = TriangleRule::catmark;
     return refined;
   }
-  return polygons_of(std::get<LevelSetSource>(object.source).level_set);
+  const auto& volume = std::get<LevelSetSource>(object.source);
+  if (local_volume(volume.level_set))
+    throw InputError({volume.file, "object", object.name, std::string("cannot be meshed: ") + kLocalVolume, "a .vdb file"});
+  return polygons_of(volume.level_set);
 }
 
 // Materials are dropped where any of the parts has none: an array covers all faces or does not exist.
@@ -240,7 +244,14 @@ std::vector<LevelSet> world_level_sets(const Scene& scene, const SurfaceSettings
   const bool volumes = count_of<LevelSetSource>(scene) == scene.objects.size() && settings.kind != "mesh_level_set";
   if (!volumes) return {world_level_set(scene, settings, said.warnings)};
   std::vector<LevelSet> level_sets;
-  for (const SceneObject& object : scene.objects) level_sets.push_back(world_volume(object, settings, said.notes));
+  for (const SceneObject& object : scene.objects) {
+    const LevelSet& own = std::get<LevelSetSource>(object.source).level_set;
+    const bool local = local_volume(own) != nullptr;
+    if (local && settings.resample_volumes)
+      throw InputError({scene.name, "voxels", "", std::string("have no effect: ") + kLocalVolume, "its own voxels"});
+    const std::vector<LevelSet> grids = local ? grids_of(own) : std::vector{world_volume(object, settings, said.notes)};
+    level_sets.insert(level_sets.end(), grids.begin(), grids.end());
+  }
   return level_sets;
 }
 

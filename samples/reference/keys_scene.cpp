@@ -97,7 +97,7 @@ std::span<const DocumentedKey> row_columns() {
       columns.push_back(column);
       if (column.key != "surface") continue;
       for (const SurfaceSetting& setting : surface_setting_list()) columns.push_back({"", setting.name, setting.unit, setting.help});
-      columns.push_back({"", "local", "px", "tolerance of a local mesh, which is made for all views of the study"});
+      columns.push_back({"", "local", "px", "tolerance of a local model, which is made for all views of the study"});
     }
     return columns;
   }();

@@ -71,6 +71,28 @@ struct ModelMaker {
     }
   }
 
+  /// Of one local level set for all views, whose voxels may become a fourth of the smallest studied. What it takes is no more than about
+  /// what a level set of the latter does.
+  void add_local_grids(SurfaceSettings settings, const std::vector<double>& tolerances_px) const {
+    if (axes.voxels.empty()) return;
+    const int most = *std::max_element(axes.voxels.begin(), axes.voxels.end());
+    const bool remeshed = settings.kind == "mesh_level_set" && !axes.levels.empty();
+    settings.voxels = most;
+    if (remeshed) settings.level = axes.remeshed_level;
+    for (const std::string& gradient : axes.gradients) {
+      settings.gradient = gradient;
+      for (auto at = tolerances_px.rbegin(); at != tolerances_px.rend(); ++at) {
+        std::map<std::string, std::string> parameters = {
+            {"gradient", gradient}, {"voxels", std::to_string(4 * most)}, {"local", fmt::format("{}", *at)}};
+        if (remeshed) parameters["level"] = std::to_string(settings.level);
+        add(settings, std::move(parameters), {});
+        models.back().surface = "local_" + settings.kind;
+        models.back().settings.voxels = 4 * most;
+        models.back().local_px = *at;
+      }
+    }
+  }
+
   void add_grids(SurfaceSettings settings, bool remeshed, bool as_loaded, const std::string& refused) const {
     for (const std::string& gradient : axes.gradients) {
       settings.gradient = gradient;
@@ -91,7 +113,7 @@ struct ModelMaker {
   }
 };
 
-/// Why not all objects have local meshes; empty where they do.
+/// Why not all objects have local models; empty where they do.
 std::string why_no_local(const Scene& scene, const SurfaceSettings& settings) {
   for (const SceneObject& object : scene.objects) {
     if (std::string reason = why_not_local(object, settings); !reason.empty()) return reason;
@@ -120,7 +142,13 @@ void plan_models(const Axes& axes, const SceneSize& size, SurfaceSettings settin
       maker.add(settings, {}, refused);
     }
   }
-  if (!local_px.empty()) maker.add_local(settings, local_px, why_no_local(study.scene, settings));
+  if (local_px.empty()) return;
+  settings.kind = "mesh";
+  maker.add_local(settings, local_px, why_no_local(study.scene, settings));
+  for (const std::string& surface : axes.surfaces) {
+    settings.kind = surface;
+    if (has_local_bricks(surface) && why_no_local(study.scene, settings).empty()) maker.add_local_grids(settings, local_px);
+  }
 }
 
 std::map<std::string, std::string> pairs_of(const Parameters& parameters) {

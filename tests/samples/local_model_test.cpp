@@ -296,6 +296,30 @@ TEST(LocalModel, AStudySweepsLocalMeshesAsASeriesOfTheirOwn) {
   EXPECT_NE(run_limn({"study", "ellipsoid", "--local", "0"}).err.find("--local"), std::string::npos);
 }
 
+TEST(LocalModel, AStudySweepsLocalLevelSetsBesideUniformOnes) {
+  const TemporaryFolder folder;
+  const auto study = folder.path() / "study";
+  const RunResult run = run_limn({"study", "ellipsoid", "--surfaces", "level_set,mesh_level_set", "--levels", "2", "--voxels", "64",
+                                  "--gradients", "central", "--local", "0.5", "--views", "1", "--size", "150x150", "-o", study.string()});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  std::map<std::string, double> error_px;
+  std::ifstream rows(study / "rows.jsonl");
+  for (std::string line; std::getline(rows, line);) {
+    const nlohmann::json row = nlohmann::json::parse(line);
+    if (row.value("metric", "") != "border_error_p95") continue;
+    error_px[row["surface"]] = row["value"];
+    const bool local = row["surface"].get<std::string>().starts_with("local_");
+    EXPECT_EQ(row["surface_parameters"].value("local", ""), local ? "0.5" : "") << row["surface"];
+    if (local && row["surface"] != "local_mesh") {
+      EXPECT_EQ(row["surface_parameters"].value("voxels", ""), "256");
+    }
+  }
+  for (const char* surface : {"level_set", "mesh_level_set", "local_mesh", "local_level_set", "local_mesh_level_set"})
+    EXPECT_TRUE(error_px.contains(surface)) << surface;
+  EXPECT_LE(error_px["local_level_set"], 0.5);
+  EXPECT_LT(error_px["local_level_set"], error_px["level_set"]);
+}
+
 TEST(LocalModel, WhatHasNoEffectIsRefused) {
   const auto error_of = [](const std::vector<std::string>& arguments) {
     const RunResult run = run_limn(arguments);

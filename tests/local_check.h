@@ -30,11 +30,30 @@ inline double apart(const PointSample& a, const PointSample& b) {
   return std::min(std::abs(glm::dot(glm::dvec3(a.normal), between)), std::abs(glm::dot(glm::dvec3(b.normal), between)));
 }
 
-/// A model of meshes, to be asked how far it is from a point, and which side of it was hit.
-class MeshedModel {
+/// How far a hit stands off a model along its normal, either way; infinite beyond `most`.
+inline double off_surface(const PointSample& sample, const SceneModel& model, double most) {
+  double off = std::numeric_limits<double>::infinity();
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(sample.normal));
+  for (const double side : {1.0, -1.0}) {
+    CameraSettings settings;
+    settings.width_px = settings.height_px = 1;
+    settings.eye = sample.position + side * most * normal;
+    settings.target = sample.position;
+    settings.up = std::abs(normal.x) < 0.5 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+    settings.ortho_height = most;
+    const PointSample met =
+        seen_at(model, resolve_camera(settings, Box{sample.position - most, sample.position + most}), {{0.5, 0.5}}).front();
+    if (met.status == HitStatus::hit) off = std::min(off, glm::distance(met.position, sample.position));
+  }
+  return off;
+}
+
+/// A model, to be asked how far it is from a point and, where it is made of polygons, which side of one was hit.
+class ComparedModel {
  public:
-  explicit MeshedModel(const SceneModel& model) : model_(model) {
+  explicit ComparedModel(const SceneModel& model) : model_(model) {
     for (const Surface& surface : model.surfaces) {
+      if (!surface.polygons) continue;
       const Mesh& mesh = surface.polygons->mesh();
       closest_.emplace_back(triangulate(mesh, NormalKind::flat));
       std::vector<size_t>& first = first_corners_.emplace_back(1, size_t{0});
@@ -42,14 +61,17 @@ class MeshedModel {
     }
   }
   const SceneModel& model() const { return model_; }
-  /// World units to the closest point of any polygon.
-  double distance_from(const glm::dvec3& world) const {
+  bool has_polygons() const { return closest_.size() == model_.surfaces.size(); }
+  /// World units from a hit to the closest point of any polygon; of other surfaces along the hit's normal, infinite beyond `most`.
+  double distance_from(const PointSample& hit, double most) const {
+    if (!has_polygons()) return off_surface(hit, model_, most);
     double least = std::numeric_limits<double>::infinity();
-    for (const ClosestPointQuery& query : closest_) least = std::min(least, query.closest(world - model_.render_origin).distance);
+    for (const ClosestPointQuery& query : closest_) least = std::min(least, query.closest(hit.position - model_.render_origin).distance);
     return least;
   }
   /// Whether the polygon that was hit turns its back on the camera; edge on is neither.
   bool shows_back(const PointSample& hit, const Camera& camera) const {
+    if (!has_polygons()) return false;
     const auto object = static_cast<size_t>(hit.id - 1), face = static_cast<size_t>(hit.face);
     const Mesh& mesh = model_.surfaces[object].polygons->mesh();
     const size_t begin = first_corners_[object][face], end = first_corners_[object][face + 1];
@@ -70,7 +92,7 @@ inline constexpr float kGrazing = 0.2f;
 
 /// Rays through `points` of the picture of `camera`. `bound`: how far the local model may stand off, world units; a ray is at an edge where
 /// it or one of eight at `around_px` misses the fine model, grazes it, or sees it jump.
-inline void cast_at_both(const MeshedModel& local, const MeshedModel& fine, const Camera& camera, const std::vector<glm::dvec2>& points,
+inline void cast_at_both(const ComparedModel& local, const ComparedModel& fine, const Camera& camera, const std::vector<glm::dvec2>& points,
                          double bound, double around_px, LocalRays& count) {
   const std::vector<PointSample> of_local = seen_at(local.model(), camera, points), of_fine = seen_at(fine.model(), camera, points);
   const auto hit = [](const PointSample& sample) { return sample.status == HitStatus::hit; };
@@ -94,8 +116,8 @@ inline void cast_at_both(const MeshedModel& local, const MeshedModel& fine, cons
     for (size_t k = 8 * d; surrounded && k < 8 * d + 8; ++k)
       surrounded = hit(fine_around[k]) && faces_camera(fine_around[k]) && apart(fine_around[k], here) <= 2.0 * bound;
     const auto strays = [&] {
-      return !hit(met) || glm::distance(met.position, here.position) > 4.0 * bound / kGrazing || fine.distance_from(met.position) > bound ||
-             local.distance_from(here.position) > bound;
+      return !hit(met) || glm::distance(met.position, here.position) > 4.0 * bound / kGrazing ||
+             fine.distance_from(met, 4.0 * bound) > bound || local.distance_from(here, 4.0 * bound) > bound;
     };
     const bool through = surrounded && strays();
     ++(through ? count.through : count.edge);

@@ -1,9 +1,9 @@
 #include "raymarch/local/mesh_part.h"
 
 #include <algorithm>
-#include <optional>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "raymarch/local/brick_demand.h"
 

@@ -62,7 +62,7 @@ test::LocalRays cast_all(const Scene& scene, const CameraSettings& asked, int& l
   const Camera made_for = camera_at(0, 4);
   const SceneModel local = build_local_model(scene, {}, {{made_for}, kTolerance_px, {kThreshold}});
   const SceneModel fine = finest_of(scene, level);
-  const test::MeshedModel of_local(local), of_fine(fine);
+  const test::ComparedModel of_local(local), of_fine(fine);
   const double bound = test::bound_of(scene, made_for);
   test::LocalRays count;
   const auto cast = [&](const Camera& camera, const std::vector<glm::dvec2>& points) {

@@ -106,6 +106,7 @@ TEST(LocalMeshLevelSet, NoRayPassesThroughItWhereTheUniformOneStopsIt) {
     const SceneModel uniform = build_model(scene, kSettings);
     const Camera made_for = camera_of(scene, 0, 4, {150, 150});
     const SceneModel local = build_local_model(scene, kSettings, {{made_for}, kFinest_px, {0.4}});
+    const test::ComparedModel of_local(local), of_uniform(uniform);
     const double bound = test::bound_of(scene, made_for);
     std::uniform_real_distribution<double> at(0.0, 150.0);
     test::LocalRays count;
@@ -113,7 +114,7 @@ TEST(LocalMeshLevelSet, NoRayPassesThroughItWhereTheUniformOneStopsIt) {
       const Camera camera = camera_of(scene, view, 4, {150, 150});
       std::vector<glm::dvec2> points;
       for (int k = 0; k < 10000; ++k) points.emplace_back(at(random), at(random));
-      test::cast_at_both(local, uniform, camera, points, bound, test::around_of(scene, camera, bound), count);
+      test::cast_at_both(of_local, of_uniform, camera, points, bound, test::around_of(scene, camera, bound), count);
     }
     EXPECT_GT(count.hits, 5000) << name;
     EXPECT_EQ(count.through, 0) << name;

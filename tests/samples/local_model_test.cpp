@@ -160,7 +160,7 @@ TEST(LocalModel, AnExportedCageIsWatertightAndReadsBackWithTheSameBorder) {
 
 /// Every pixel of 8 views and 20,000 random rays.
 LocalRays rays_at(const Scene& scene, const SceneModel& local, const SceneModel& fine, const Camera& made_for, std::mt19937& random) {
-  const MeshedModel of_local(local), of_fine(fine);
+  const ComparedModel of_local(local), of_fine(fine);
   const double bound = bound_of(scene, made_for);
   LocalRays count;
   for (int view = 0; view < 8; ++view) {
@@ -220,7 +220,7 @@ TEST(LocalModel, NoRayMeetsABack) {
   for (const char* name : {"rook", "pipe_junction", "bracket"}) {
     const Scene scene = find_scene(name)->make();
     const SceneModel local = build_local_model(scene, {}, {{camera_of(scene, 0, 4, {300, 300})}, 0.25, {0.4}});
-    const MeshedModel of_local(local);
+    const ComparedModel of_local(local);
     std::vector<glm::dvec2> points;
     for (int k = 0; k < 300 * 300; ++k) points.emplace_back(k % 300 + 0.5, k / 300 + 0.5);
     int hits = 0, backs = 0;

@@ -36,7 +36,7 @@ ReadLevelSets read_level_sets(const std::filesystem::path& file, std::span<const
     LevelSet only = read_level_set(file, "");
     if (const auto said = local_grid_of(only, file.string()); said && said->sizes > 1)
       throw InputError({file.string(), "grid", only.info().name, "the other voxel sizes of its local level set are missing",
-                        "a file as limn export --local writes it; --grid NAME draws one grid by itself"});
+                        "a file as limn exported it; grids = NAME draws one by itself"});
     result.grids.push_back({level_sets.empty() ? only.info().name : level_sets.front().name, std::move(only)});
   }
   for (const std::string& name : names)

@@ -99,7 +99,7 @@ std::optional<LocalGrid> local_grid_of(const LevelSet& level_set, const std::str
   Words words(std::string_view(entry->bytes).substr(std::min(sizeof(std::uint32_t), entry->bytes.size())));
   if (entry->type != "string" || !read_head(words, grid) || !read_bricks(words, grid))
     throw InputError({file, "grid", level_set.info().name, std::string("its metadata '") + kName + "' are not those of a local level set",
-                      "a file as limn export --local writes it, or the grid without that entry"});
+                      "a file as limn exported it, or the grid without that entry"});
   grid.object = std::string(words.rest());
   return grid;
 }
@@ -125,7 +125,7 @@ void check(const std::vector<Found>& found, const std::string& file) {
   for (size_t k = 0; k < found.size(); ++k) {
     const LocalGrid& said = found[k].said;
     const std::string& name = found[k].grid.name;
-    const char* const expected = "a file as limn export --local writes it; --grid NAME draws one grid by itself";
+    const char* const expected = "a file as limn exported it; grids = NAME draws one by itself";
     if (said.size != static_cast<int>(k) || said.sizes != static_cast<int>(found.size()))
       throw InputError(
           {file, "grid", name,

@@ -22,6 +22,13 @@ CrossedCells crossed_cells_of(const Value* values) {
   return crossed_cells([values](int x, int y) { return values + brick_element(x, y, 0); });
 }
 
+/// Of a brick's cells those that a smaller one covers: the `part`-th along each axis, of 2^step.
+inline std::uint64_t covered_by(const glm::ivec3& part, int step) {
+  constexpr std::uint64_t kOctant = 0x33'0033;
+  if (step == 1) return kOctant << covered_bit(4 * part.x, 4 * part.y, 4 * part.z);
+  return std::uint64_t{1} << covered_bit(2 * part.x, 2 * part.y, 2 * part.z);
+}
+
 /// Without the cells that smaller bricks hold (see covered_bit).
 CrossedCells without_covered(CrossedCells crossed, std::uint64_t covered);
 

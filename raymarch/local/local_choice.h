@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "raymarch/level_set/bricks.h"
+#include "raymarch/level_set/brick_layout.h"
 #include "raymarch/local/surface_part.h"
 
 namespace limn {
@@ -32,13 +32,6 @@ struct LocalChoice {
     return {lower, lower + side};
   }
 };
-
-/// Of a brick's cells those that a smaller one covers: the `part`-th along each axis, of 2^step.
-inline std::uint64_t covered_by(const glm::ivec3& part, int step) {
-  constexpr std::uint64_t kOctant = 0x33'0033;
-  if (step == 1) return kOctant << covered_bit(4 * part.x, 4 * part.y, 4 * part.z);
-  return std::uint64_t{1} << covered_bit(2 * part.x, 2 * part.y, 2 * part.z);
-}
 
 /// `whole` has bounds. Of a field interval bounds decide, of a mesh the normals of its facets: a brick where they show no border is never
 /// taken for one, and one where they cannot tell is. Throws SizeError (InputError) before it needs more than max_bytes.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "raymarch/local/local_bricks.h"
+#include "raymarch/level_set/sized_bricks.h"
 #include "raymarch/local/local_nodes.h"
 #include "raymarch/local/mesh_part.h"
 #include "raymarch/scene/curvature.h"
@@ -14,7 +14,7 @@ namespace limn {
 namespace {
 
 void evaluate_curvatures(const void* opaque, std::span<const SurfacePoint> points, std::span<SurfaceCurvature> curvatures) {
-  FieldEvaluator evaluator(std::get<Field>(*static_cast<const LocalBricks*>(opaque)->whole));
+  FieldEvaluator evaluator(*static_cast<const Field*>(opaque));
   for (size_t i = 0; i < points.size(); ++i) curvatures[i] = facing(curvature_of_jet(evaluator.jet(points[i].position)), points[i].normal);
 }
 
@@ -31,8 +31,10 @@ std::shared_ptr<const RayBricks> bricks_of_level(const LevelNodes& nodes, const 
 /// Of one choice of bricks. `part_origin`: where the origin of `whole` stands in the space of the surface.
 Surface surface_of(const SurfacePart& whole, const LocalBrickSettings& settings, const glm::dvec3& part_origin) {
   auto state = std::make_shared<LocalBricks>();
-  state->whole = whole;
-  state->part_origin = part_origin;
+  state->sides = [whole, part_origin] {
+    const auto evaluator = std::make_shared<PartEvaluator>(whole);
+    return [evaluator, part_origin](const glm::dvec3& place) { return evaluator->is_inside(place - part_origin); };
+  };
   state->gradient = brick_gradient(*settings.gradient);
   const double half_width_voxels = settings.half_width_voxels;
   LocalChoice choice = choose_bricks(whole, settings);
@@ -53,8 +55,9 @@ Surface surface_of(const SurfacePart& whole, const LocalBrickSettings& settings,
                       .value = std::to_string(settings.voxel_size),
                       .problem = "no voxel lies inside the surface: it is thinner than a voxel, or empty",
                       .expected = "smaller voxels"});
-  if (std::holds_alternative<Field>(whole))
-    surface.curvature = {state, evaluate_curvatures, "Hessian of the field that the voxels were sampled from"};
+  if (const Field* const field = std::get_if<Field>(&whole))
+    surface.curvature = {std::make_shared<const Field>(*field), evaluate_curvatures,
+                         "Hessian of the field that the voxels were sampled from"};
   set_traced(std::move(state), surface);
   return surface;
 }

@@ -9,11 +9,6 @@ namespace limn {
 /// left to the caller); curvature only for a field. Throws InputError.
 Surface local_level_set(const SurfacePart& whole, const LocalBrickSettings& settings, const glm::dvec3& part_origin);
 
-/// A level set that has a local_volume(), for no other gradient than its bricks have nodes for. Throws InputError, naming the grid, where
-/// its grids and what it says of them do not fit together.
-Surface local_level_set_of_file(const LevelSet& local, const GradientDescriptor& gradient, const glm::dvec3& render_origin,
-                                const std::string& file);
-
 /// The same nodes as ordinary level sets, one for each voxel size that is there, the smallest first. Their names are `name` and the size's
 /// number. `part_origin`: where the origin of `whole` stands in the space of the grids.
 std::vector<LevelSet> local_level_set_grids(const SurfacePart& whole, const LocalBrickSettings& settings, const std::string& name,

@@ -1,5 +1,5 @@
-#include "raymarch/local/local_marcher.h"
 #include "raymarch/surface.h"
+#include "raymarch/surface/local_volume.h"
 #include "raymarch/surface/offset.h"
 #include "raymarch/surface/resampled_volume.h"
 #include "sdf/error.h"

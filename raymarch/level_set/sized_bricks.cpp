@@ -1,6 +1,7 @@
-#include "raymarch/local/local_bricks.h"
+#include "raymarch/level_set/sized_bricks.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "sdf/error.h"
 #include "sdf/level_set_data.h"
@@ -30,26 +31,24 @@ std::optional<bool> inside_brick(const RayBricks& bricks, const glm::dvec3& plac
   return sum < 0.0;
 }
 
-/// Beside the bricks the surface is not near, and what they were made of tells.
-bool is_inside(const LocalBricks& state, const glm::dvec3& point, std::optional<PartEvaluator>& evaluator) {
+using Side = std::function<bool(const glm::dvec3&)>;
+
+/// Beside the bricks the surface is not near, and what they were made of tells. `side`: empty, or as it was left.
+bool is_inside(const LocalBricks& state, const glm::dvec3& point, Side& side) {
   if (glm::any(glm::lessThan(point, state.bounds.lower)) || glm::any(glm::greaterThan(point, state.bounds.upper))) return false;
   for (const SingleRayBricks& size : state.sizes)
     if (const auto inside = inside_brick(*size.bricks, size.outside.index_from_render.point(point))) return *inside;
-  if (!state.whole) {
-    const glm::ivec3 node(glm::round(state.largest_from_render.point(point)));
-    return state.largest->data().accessor().getValue(nanovdb::Coord(node.x, node.y, node.z)) < 0.0f;
-  }
-  if (!evaluator) evaluator.emplace(*state.whole);
-  return evaluator->is_inside(point - state.part_origin);
+  if (!side) side = state.sides();
+  return side(point);
 }
 
 void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   const LocalBricks& state = *static_cast<const LocalBricks*>(opaque);
-  std::optional<PartEvaluator> evaluator;
+  Side side;
   std::vector<const SingleRayBricks*> sizes;
   for (const SingleRayBricks& size : state.sizes) sizes.push_back(&size);
   trace_single_rays(
-      sizes, {.gradient = state.gradient}, [&](const glm::dvec3& place) { return is_inside(state, place, evaluator); }, rays, hits);
+      sizes, {.gradient = state.gradient}, [&](const glm::dvec3& place) { return is_inside(state, place, side); }, rays, hits);
 }
 
 struct PictureState {
@@ -60,8 +59,8 @@ struct PictureState {
 SurfaceView view_picture(const std::shared_ptr<const void>& opaque, const ViewRequest& request) {
   const auto state = std::static_pointer_cast<const LocalBricks>(opaque);
   auto picture = std::make_shared<PictureState>();
-  std::optional<PartEvaluator> evaluator;
-  const bool inside = is_inside(*state, request.camera.eye, evaluator);
+  Side side;
+  const bool inside = is_inside(*state, request.camera.eye, side);
   for (const SingleRayBricks& size : state->sizes) {
     picture->views.push_back(view_bricks(size.bricks, size.outside.index_from_render, inside, request));
     if (!picture->views.back()) return {};

@@ -1,13 +1,14 @@
 // The bricks of a local level set from its file.
 
+#include "raymarch/surface/local_volume.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
-#include "raymarch/local/local_bricks.h"
-#include "raymarch/local/local_marcher.h"
-#include "raymarch/local/local_nodes.h"
+#include "raymarch/level_set/sized_bricks.h"
 #include "sdf/error.h"
 #include "sdf/level_set_data.h"
 #include "sdf/local_grid.h"
@@ -22,7 +23,7 @@ struct FileGrids {
 };
 
 [[noreturn]] void refuse(const LevelSet& grid, const std::string& file, const std::string& problem) {
-  throw InputError({file, "grid", grid.info().name, problem, "a file as limn export --local writes it"});
+  throw InputError({file, "grid", grid.info().name, problem, "a file as limn exported it"});
 }
 
 /// How often the smallest voxels are doubled in a grid, whose lattice must be theirs.
@@ -41,17 +42,16 @@ int doublings_of(const LevelSet& grid, const LevelSet& smallest, const std::stri
 std::vector<std::vector<BrickPlace>> places_of(const FileGrids& volume, const std::vector<int>& doublings, const std::string& file) {
   std::vector<std::vector<BrickPlace>> places;
   for (size_t k = 0; k < volume.said.size(); ++k) {
-    KeyNumbers at;
+    std::unordered_map<std::uint64_t, size_t> at;
     places.emplace_back();
-    for (const glm::ivec3& place : volume.said[k].bricks) at.add(key_of(8 * place)), places.back().push_back({8 * place, 0});
+    for (const glm::ivec3& place : volume.said[k].bricks) at.emplace(key_of(8 * place), at.size()), places.back().push_back({8 * place, 0});
     if (k == 0) continue;
     const int step = doublings[k] - doublings[k - 1];
     if (step != 1 && step != 2) refuse(volume.grids[k], file, "its voxels are not two or four times those of the size before");
     for (const glm::ivec3& smaller : volume.said[k - 1].bricks) {
-      const size_t number = at.find(key_of(8 * (smaller >> step)));
-      if (number == KeyNumbers::kNone)
-        refuse(volume.grids[k], file, "no brick of it holds one of '" + volume.grids[k - 1].info().name + "'");
-      places.back()[number].covered |= covered_by(smaller & ((1 << step) - 1), step);
+      const auto found = at.find(key_of(8 * (smaller >> step)));
+      if (found == at.end()) refuse(volume.grids[k], file, "no brick of it holds one of '" + volume.grids[k - 1].info().name + "'");
+      places.back()[found->second].covered |= covered_by(smaller & ((1 << step) - 1), step);
     }
   }
   return places;
@@ -86,7 +86,6 @@ Surface local_level_set_of_file(const LevelSet& local, const GradientDescriptor&
   const FileGrids volume{grids_of(local), local_volume(local)->said};
   auto state = std::make_shared<LocalBricks>();
   state->gradient = brick_gradient(gradient);
-  state->largest = volume.grids.back();
   const std::string& made_for = volume.said.front().gradient;
   if (find_gradient(made_for, file, "gradient").half_width_voxels < gradient.half_width_voxels)
     throw InputError({file, "gradient", gradient.about.name,
@@ -105,7 +104,13 @@ Surface local_level_set_of_file(const LevelSet& local, const GradientDescriptor&
     if (!(half_width > info.voxel_size && half_width < 1001.0 * info.voxel_size)) refuse(grid, file, "its band is not as wide as it says");
     Affine render_from_index = info.world_from_index;
     render_from_index.translation -= render_origin;
-    state->largest_from_render = inverse(render_from_index);
+    // The last is the grid of the largest voxels, which holds the whole surface.
+    state->sides = [grid, index_from_render = inverse(render_from_index)] {
+      return [grid, index_from_render](const glm::dvec3& place) {
+        const glm::ivec3 node(glm::round(index_from_render.point(place)));
+        return grid.data().accessor().getValue(nanovdb::Coord(node.x, node.y, node.z)) < 0.0f;
+      };
+    };
     const BrickSize size{info.voxel_size, half_width / info.voxel_size, static_cast<float>(32767.0 / half_width), render_from_index};
     const auto bricks = bricks_of_size(reader_of(grid.data()), places[k], size, state->gradient, [&] { return grid; });
     if (!bricks) continue;

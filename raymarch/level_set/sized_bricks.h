@@ -2,20 +2,17 @@
 // Internal: bricks of several voxel sizes as one surface, whatever they come from.
 
 #include <functional>
-#include <optional>
 
 #include "raymarch/level_set/brick_layout.h"
 #include "raymarch/level_set/single_rays.h"
-#include "raymarch/local/surface_part.h"
+#include "raymarch/surface.h"
 
 namespace limn {
 
 /// What such a surface traces.
 struct LocalBricks {
-  std::optional<SurfacePart> whole{};  ///< Empty where a file has the bricks.
-  glm::dvec3 part_origin{0.0};         ///< Render space: where the origin of `whole` stands.
-  std::optional<LevelSet> largest{};   ///< Of a file: the grid of the largest voxels, which holds the whole surface.
-  Affine largest_from_render{};        ///< To its index coordinates.
+  /// Makes, for one thread, what tells whether a place that no brick holds (render space) lies inside.
+  std::function<std::function<bool(const glm::dvec3&)>()> sides{};
   BrickGradient gradient = BrickGradient::central;
   std::vector<SingleRayBricks> sizes{};  ///< The smallest voxels first.
   Box bounds{};                          ///< Render space.

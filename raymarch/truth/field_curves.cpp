@@ -175,7 +175,7 @@ std::vector<Strand> strands_of(CellResult& found, const CellSearch& search, cons
   std::vector<Strand> strands;
   for (auto& [branch, families] : found.branches) {
     for (size_t family = 0; family < kCurveFamilies; ++family) {
-      std::vector<Strand> joined = assemble(std::move(families[family]), branch, -1, search.levels[family]);
+      std::vector<Strand> joined = assemble(families[family], branch, -1, search.levels[family]);
       if (settings.follow > 0.0) {
         joined = follow_strands(std::move(joined), search.sharp.branches[static_cast<size_t>(branch)], search.camera, search.viewer,
                                 {settings.tolerance_px, settings.follow}, how);
@@ -193,7 +193,7 @@ std::vector<Strand> strands_of(CellResult& found, const CellSearch& search, cons
     }
   }
   for (auto& [seam, curves] : found.seams) {
-    auto whole = assemble(std::move(curves), seam.first, seam.second, 0.0);
+    auto whole = assemble(curves, seam.first, seam.second, 0.0);
     if (search.whole_seams) {
       for (Strand& strand : whole) {
         strand.whole = true;

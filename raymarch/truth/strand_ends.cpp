@@ -14,14 +14,14 @@ constexpr double kFarthestPx = 0.1;  // between ends that are taken for one plac
 
 class Assembly {
  public:
-  explicit Assembly(CellCurves cells) {
+  explicit Assembly(const CellCurves& cells) {
     // Crossings are large: their places are sorted, and of those with one key the first stays.
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order(cells.crossings.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {cells.crossings[i].key, i};
     parallel_sort(order.begin(), order.end());
     order.erase(std::unique(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first == b.first; }), order.end());
     crossings_.reserve(order.size());
-    for (const auto& [key, place] : order) crossings_.push_back(std::move(cells.crossings[place]));
+    for (const auto& [key, place] : order) crossings_.push_back(cells.crossings[place]);
     next_.assign(crossings_.size(), {kNone, kNone});
     for (const Link& link : cells.links) {
       const std::uint32_t from = find(link.from), to = find(link.to);
@@ -135,8 +135,8 @@ std::vector<std::uint32_t> partners_of(const std::vector<FieldCurve>& pieces, co
 
 }  // namespace
 
-std::vector<Strand> assemble(CellCurves cells, int first, int second, double c) {
-  return Assembly(std::move(cells)).strands({first, second, c, false, {}});
+std::vector<Strand> assemble(const CellCurves& cells, int first, int second, double c) {
+  return Assembly(cells).strands({first, second, c, false, {}});
 }
 
 std::vector<FieldCurve> join_ends(std::vector<FieldCurve> pieces, const Camera& camera, double& worst_gap_px) {

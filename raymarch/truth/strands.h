@@ -20,7 +20,7 @@ struct Strand {
 };
 
 /// Crossings joined along their links, in an order that hangs on their keys alone.
-std::vector<Strand> assemble(CellCurves cells, int first, int second, double c);
+std::vector<Strand> assemble(const CellCurves& cells, int first, int second, double c);
 
 /// What the strands of a field share. Safe from many threads.
 class StrandScope {

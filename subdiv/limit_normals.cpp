@@ -86,7 +86,7 @@ class Normals {
   void set(int face, int vertex, const glm::dvec3& normal) {
     const double length = glm::length(normal);
     const glm::dvec3 unit = length > 0.0 && std::isfinite(length) ? normal / length : facet(face);
-    normals_[static_cast<size_t>(first_[static_cast<size_t>(face)] + corner_of(face, vertex))] = glm::vec3(unit);
+    normals_[static_cast<size_t>(first_[static_cast<size_t>(face)]) + static_cast<size_t>(corner_of(face, vertex))] = glm::vec3(unit);
   }
 
   /// The normal of the face as a polygon: where tangents vanish (collapsed edges) it is the best there is.

@@ -72,6 +72,7 @@ class Chainer {
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     std::vector<glm::ivec2> places;
+    places.reserve(cells.size());
     for (const std::int64_t cell : cells) places.emplace_back(static_cast<int>(cell % width), static_cast<int>(cell / width));
     return places;
   }

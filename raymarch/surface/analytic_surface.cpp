@@ -20,8 +20,8 @@ namespace {
 constexpr double kDirectionSlack = 1.0 + 1e-6;
 
 struct AnalyticState {
-  AnalyticState(Field render_field, int max_steps, std::shared_ptr<FieldScratch> memory)
-      : tape(std::move(render_field)), scratch(memory ? std::move(memory) : std::make_shared<FieldScratch>()) {
+  AnalyticState(const Field& render_field, int max_steps, std::shared_ptr<FieldScratch> memory)
+      : tape(render_field), scratch(memory ? std::move(memory) : std::make_shared<FieldScratch>()) {
     const FieldTraits& traits = tape.field.traits();
     if (traits.bounds.empty()) clip = {};
     const bool bounded = traits.bounds.finite();

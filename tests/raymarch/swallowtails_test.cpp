@@ -38,50 +38,53 @@ TEST(Swallowtails, ArmsThatPartAfterACuspCrossWhereTheyMeetAgain) {
   EXPECT_LT(cut.rays, 10);
 }
 
-TEST(Swallowtails, ASwallowtailOfAFiftiethOfAPixelIsThereWhereTheCurveIsKnownBetweenItsSamples) {
+/// Samples of a curve as the image has them, and which way it bends there.
+struct BentCurve {
+  std::vector<glm::dvec2> px{};
+  std::vector<double> curvatures{};
+  void add(const glm::dvec2& at, double curvature) { px.push_back(at), curvatures.push_back(curvature); }
+};
+
+/// Ten pixels up to a swallowtail of a fiftieth of a pixel, and through it: its cusps lie after samples 103 and 107.
+BentCurve narrow_swallowtail() {
+  BentCurve curve;
+  for (int i = 100; i >= 1; --i) curve.add({-0.1 * i, -0.01 * i}, 1.0);
+  for (const double x : {-0.005, 0.0, 0.005, 0.0099}) curve.add({x, 0.1 * x}, 1.0);
+  for (const double x : {0.0098, 0.003, -0.003, -0.0098}) curve.add({x, 0.001}, -1.0);
+  for (const double x : {-0.0099, -0.005, 0.001, 0.005}) curve.add({x, 0.00001 - 0.1 * x}, 1.0);
+  return curve;
+}
+
+/// With the rays that tell what lies before each of its arms.
+CutCurves cut_swallowtail(const BentCurve& bent) {
   const Camera camera = flat_view();
-  std::vector<glm::dvec2> px;
-  std::vector<double> curvatures;
-  for (int i = 100; i >= 1; --i) px.push_back({-0.1 * i, -0.01 * i}), curvatures.push_back(1.0);
-  for (const double x : {-0.005, 0.0, 0.005, 0.0099}) px.push_back({x, 0.1 * x}), curvatures.push_back(1.0);
-  for (const double x : {0.0098, 0.003, -0.003, -0.0098}) px.push_back({x, 0.001}), curvatures.push_back(-1.0);
-  for (const double x : {-0.0099, -0.005, 0.001, 0.005}) px.push_back({x, 0.00001 - 0.1 * x}), curvatures.push_back(1.0);
-  for (int i = 1; i <= 100; ++i) px.push_back({0.1 * i, -0.01 * i}), curvatures.push_back(1.0);
-  const SurfaceCurve curve = exact_curve(camera, px, curvatures);
+  const SurfaceCurve curve = exact_curve(camera, bent.px, bent.curvatures);
   const auto middle = [&](size_t i) { return 0.5 * (curve.samples[i].p.z + curve.samples[i + 1].p.z); };
   const double first = middle(103), second = middle(107);
   const LayersBefore rays = [&](const CurveSample& sample) {
     const glm::dvec3& p = sample.p;
     return LayersSeen{p.z > first ? 0 : p.z > second ? 1 : p.x < 5e-6 ? 2 : 0};
   };
-  const CutCurves cut = cut_by_invisibility({curve}, camera, 5.0, rays, {});
+  return cut_by_invisibility({curve}, camera, 5.0, rays, {});
+}
+
+TEST(Swallowtails, ASwallowtailOfAFiftiethOfAPixelIsThereWhereTheCurveIsKnownBetweenItsSamples) {
+  BentCurve curve = narrow_swallowtail();
+  for (int i = 1; i <= 100; ++i) curve.add({0.1 * i, -0.01 * i}, 1.0);
+  const CutCurves cut = cut_swallowtail(curve);
   EXPECT_TRUE(cut.conflicts.empty());
   EXPECT_EQ(invisibilities(cut.curves[0]), (std::vector<int>{0, 1, 2, 0}));
 }
 
 TEST(Swallowtails, OneTooNarrowToTellIsGoneThoughACrossingOfAnotherIsNear) {
   // The first is that of the test before; the second, a pixel on, is 0.0034 px long, and its arms lie within 0.0004 px.
-  const Camera camera = flat_view();
-  std::vector<glm::dvec2> px;
-  std::vector<double> curvatures;
-  const auto add = [&](const glm::dvec2& at, double curvature) { px.push_back(at), curvatures.push_back(curvature); };
-  for (int i = 100; i >= 1; --i) add({-0.1 * i, -0.01 * i}, 1.0);
-  for (const double x : {-0.005, 0.0, 0.005, 0.0099}) add({x, 0.1 * x}, 1.0);
-  for (const double x : {0.0098, 0.003, -0.003, -0.0098}) add({x, 0.001}, -1.0);
-  for (const double x : {-0.0099, -0.005, 0.001, 0.005}) add({x, 0.00001 - 0.1 * x}, 1.0);
-  for (int i = 1; i <= 10; ++i) add({0.1 * i, -0.01 * i}, 1.0);
-  add({1.0017, -0.1}, 1.0);
-  for (const double x : {1.0016, 0.9984}) add({x, -0.0998}, -1.0);
-  for (const double x : {0.9983, 1.0017}) add({x, -0.0996}, 1.0);
-  for (int i = 11; i <= 100; ++i) add({0.1 * i, -0.01 * i}, 1.0);
-  const SurfaceCurve curve = exact_curve(camera, px, curvatures);
-  const auto middle = [&](size_t i) { return 0.5 * (curve.samples[i].p.z + curve.samples[i + 1].p.z); };
-  const double first = middle(103), second = middle(107);
-  const LayersBefore rays = [&](const CurveSample& sample) {
-    const glm::dvec3& p = sample.p;
-    return LayersSeen{p.z > first ? 0 : p.z > second ? 1 : p.x < 5e-6 ? 2 : 0};
-  };
-  const CutCurves cut = cut_by_invisibility({curve}, camera, 5.0, rays, {});
+  BentCurve curve = narrow_swallowtail();
+  for (int i = 1; i <= 10; ++i) curve.add({0.1 * i, -0.01 * i}, 1.0);
+  curve.add({1.0017, -0.1}, 1.0);
+  for (const double x : {1.0016, 0.9984}) curve.add({x, -0.0998}, -1.0);
+  for (const double x : {0.9983, 1.0017}) curve.add({x, -0.0996}, 1.0);
+  for (int i = 11; i <= 100; ++i) curve.add({0.1 * i, -0.01 * i}, 1.0);
+  const CutCurves cut = cut_swallowtail(curve);
   EXPECT_TRUE(cut.conflicts.empty());
   EXPECT_EQ(invisibilities(cut.curves[0]), (std::vector<int>{0, 1, 2, 0}));
 }

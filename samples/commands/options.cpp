@@ -78,7 +78,7 @@ void add_switch(CLI::App& app, const OptionText& text, bool& target) { app.add_f
 CLI::Option* add_setting(CLI::App& app, Options& options, const char* name) {
   const SurfaceSetting& setting = surface_setting(name);
   const std::string flag = flag_of(name);
-  return add(app, {flag.c_str(), setting.placeholder, setting.option_help, kSurface},
+  return add(app, {flag.c_str(), setting.option_value, setting.option_help, kSurface},
              [&options, &setting, flag](const std::string& text) { ask(setting, text, flag, options.spec.surface); });
 }
 

@@ -17,7 +17,7 @@ Text number_text(const std::optional<int>& value) { return value ? Text(std::to_
 
 const SurfaceSetting kVoxels{
     .name = "voxels",
-    .placeholder = "N",
+    .option_value = "N",
     .unit = "",
     .help = "along the longest side of an object, 4 to 8192; default 256",
     .option_help = "voxels along the longest side, 4..8192; default 256",
@@ -39,7 +39,7 @@ const SurfaceSetting kVoxels{
 
 const SurfaceSetting kVoxelSize{
     .name = "voxel_size",
-    .placeholder = "H",
+    .option_value = "H",
     .unit = "world",
     .help = "instead of voxels",
     .option_help = "side of a voxel, world units; instead of a number of voxels",
@@ -60,7 +60,7 @@ const SurfaceSetting kVoxelSize{
 
 const SurfaceSetting kHalfWidth{
     .name = "half_width",
-    .placeholder = "VOXELS",
+    .option_value = "VOXELS",
     .unit = "voxels",
     .help = "of the narrow band, at least 1.8; missing: what the gradient needs",
     .option_help = "half width of the narrow band, voxels, at least 1.8; default: what the gradient needs",
@@ -81,7 +81,7 @@ const SurfaceSetting kHalfWidth{
 
 const SurfaceSetting kGradient{
     .name = "gradient",
-    .placeholder = "NAME",
+    .option_value = "NAME",
     .unit = "",
     .help = "a name of `limn list gradients`; default central",
     .option_help = "how normals are read from a level set (limn list gradients); default central",
@@ -101,7 +101,7 @@ const SurfaceSetting kGradient{
 
 const SurfaceSetting kLevel{
     .name = "level",
-    .placeholder = "N",
+    .option_value = "N",
     .unit = "",
     .help = "refinements of cages and of tessellated fields, 0 to 8; default 3",
     .option_help = "refinements of a cage or a tessellation, 0..8; default 3",
@@ -123,7 +123,7 @@ const SurfaceSetting kLevel{
 
 const SurfaceSetting kScheme{
     .name = "scheme",
-    .placeholder = "catmark|loop|bilinear",
+    .option_value = "catmark|loop|bilinear",
     .unit = "",
     .help = "subdivision of cages: catmark, loop or bilinear",
     .option_help = "catmark, loop or bilinear; default: the scene's, else loop for triangles, catmark for all others",
@@ -140,7 +140,7 @@ const SurfaceSetting kScheme{
 
 const SurfaceSetting kNormals{
     .name = "normals",
-    .placeholder = "flat|vertex|limit",
+    .option_value = "flat|vertex|limit",
     .unit = "",
     .help = "of meshes: flat, vertex or limit",
     .option_help = "flat, vertex or limit; default: limit where there is a limit surface, else vertex",
@@ -157,7 +157,7 @@ const SurfaceSetting kNormals{
 
 const SurfaceSetting kSmoothAngle{
     .name = "smooth_angle",
-    .placeholder = "DEG",
+    .option_value = "DEG",
     .unit = "degrees",
     .help = "edges that are sharper stay hard in vertex normals, 0 to 180; default 30",
     .option_help =

@@ -18,7 +18,7 @@ enum class SettingType { whole_number, number, name };
 
 struct SurfaceSetting {
   const char* name;         ///< As SurfaceDescriptor::settings has it: "half_width".
-  const char* placeholder;  ///< In the help of its option: "VOXELS".
+  const char* option_value;  ///< In the help of its option: "VOXELS".
   const char* unit;         ///< "px"; empty: a name or a count.
   const char* help;         ///< Of its key in a scene file.
   const char* option_help;

@@ -17,10 +17,10 @@ namespace limn {
 enum class SettingType { whole_number, number, name };
 
 struct SurfaceSetting {
-  const char* name;         ///< As SurfaceDescriptor::settings has it: "half_width".
+  const char* name;          ///< As SurfaceDescriptor::settings has it: "half_width".
   const char* option_value;  ///< In the help of its option: "VOXELS".
-  const char* unit;         ///< "px"; empty: a name or a count.
-  const char* help;         ///< Of its key in a scene file.
+  const char* unit;          ///< "px"; empty: a name or a count.
+  const char* help;          ///< Of its key in a scene file.
   const char* option_help;
   SettingType type;
   double low = 0.0, high = std::numeric_limits<double>::infinity();

@@ -100,6 +100,8 @@ CurveSample sample_at(const SurfaceCurve& curve, double at, const Camera& camera
   sample.line_class = a.line_class;
   sample.object = a.object;
   sample.more_on_left = a.more_on_left;
+  sample.edge = a.edge;
+  sample.faces = a.faces;
   sample.joint = false;
   sample.on_chord = !curve.between;
   sample.p = point_at(curve, i, t);

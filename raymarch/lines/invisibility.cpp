@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kShort_px = 1.0;  // pieces shorter than this are not asked by rays of their own
 constexpr double kClear_px = 0.3, kLeastClear_px = 0.12;
+constexpr double kExactShare = 0.01;   // of these beside straight edges, whose rays start on them
 constexpr double kBesideNearer = 0.3;  // of the way to a nearer line that runs along: so far off the curve rays start
 constexpr double kWorthAsking_px = 3.0;
 constexpr size_t kAskedOf = 6;  // pieces in a row: no more steps than that go by without a ray that confirms them
@@ -29,7 +30,14 @@ constexpr double kNearEnd_px = 0.3;  // pieces in which no ray starts farther fr
 class Cutter {
  public:
   Cutter(const SurfaceCurve& curve, std::uint32_t number, const Camera& camera, const NearerFolds& folds, const LayersBefore& layers_before)
-      : curve_(curve), number_(number), camera_(camera), folds_(folds), layers_before_(layers_before), walk_(curve, camera) {}
+      : curve_(curve),
+        number_(number),
+        camera_(camera),
+        folds_(folds),
+        layers_before_(layers_before),
+        walk_(curve, camera),
+        clear_px_(kClear_px * (curve.straight ? kExactShare : 1.0)),
+        least_clear_px_(kLeastClear_px * (curve.straight ? kExactShare : 1.0)) {}
 
   CutCurve run(std::vector<CurveEvent> events) {
     cut_.events = std::move(events);
@@ -103,9 +111,9 @@ class Cutter {
       if (clear_ray_at(piece, share)) return false;
       const double place = ray_at(piece, share);
       const CurveSample sample = sample_at(curve_, place, camera_);
-      const auto nearer = folds_.nearest(sample, number_, place, kClear_px);
+      const auto nearer = folds_.nearest(sample, number_, place, clear_px_);
       if (!nearer || nearer->curve != begin.nearer) return false;
-      most = std::max(most, folds_.clearance_px(sample, number_, place, kClear_px));
+      most = std::max(most, folds_.clearance_px(sample, number_, place, clear_px_));
     }
     return most > 2.0 * curve_.apart_px;
   }
@@ -113,22 +121,22 @@ class Cutter {
   /// Near that share a place where no nearer line runs so close by that a ray from beside the curve may pass it on its wrong side. Nothing
   /// where one does all along.
   std::optional<double> clear_ray_at(const CurvePiece& piece, double share) const {
-    double best = 0.0, most = kLeastClear_px;
+    double best = 0.0, most = least_clear_px_;
     const double begin = walk_.length_to(piece.from) + unclear_at(piece.begin), end = walk_.length_to(piece.to) - unclear_at(piece.end);
     for (const double off : {0.0, 0.12, -0.12, 0.24, -0.24, 0.36, -0.36, 0.45, -0.45}) {
       if (!(share + off > 0.0 && share + off < 1.0)) continue;
       const double place = ray_at(piece, share + off);
       if (const double here = walk_.length_to(place); here < begin || here > end) continue;
-      const double clear = folds_.clearance_px(sample_at(curve_, place, camera_), number_, place, kClear_px);
-      if (clear >= kClear_px) return place;
+      const double clear = folds_.clearance_px(sample_at(curve_, place, camera_), number_, place, clear_px_);
+      if (clear >= clear_px_) return place;
       if (clear > most) best = place, most = clear;
     }
-    return most > kLeastClear_px ? std::optional<double>(best) : std::nullopt;
+    return most > least_clear_px_ ? std::optional<double>(best) : std::nullopt;
   }
   LayersSeen look(double place, double lift_share = 1.0) {
     ++rays;
     CurveSample sample = sample_at(curve_, place, camera_);
-    sample.lift_share = lift_share;
+    sample.lift_share *= lift_share;
     return layers_before_(sample);
   }
   int cast(double place) { return look(place).count; }
@@ -250,8 +258,8 @@ class Cutter {
       const double place = clear.value_or(ray_at(piece, share));
       if (cast(place) == 0) return false;
       if (clear) continue;
-      const double room_px = folds_.clearance_px(sample_at(curve_, place, camera_), number_, place, kLeastClear_px);
-      if (look(place, kBesideNearer * room_px / kLeastClear_px).count == 0) return false;
+      const double room_px = folds_.clearance_px(sample_at(curve_, place, camera_), number_, place, least_clear_px_);
+      if (look(place, kBesideNearer * room_px / least_clear_px_).count == 0) return false;
     }
     return true;
   }
@@ -379,6 +387,7 @@ class Cutter {
   const NearerFolds& folds_;
   const LayersBefore& layers_before_;
   CurveWalk walk_;
+  double clear_px_, least_clear_px_;
   CutCurve cut_;
   std::vector<CurveEvent> missed_{};  ///< Found by the last search.
   bool may_search_ = true;

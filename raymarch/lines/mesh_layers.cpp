@@ -17,12 +17,11 @@ constexpr double kStepAside_px = 0.3;
 constexpr double kInPlane = 1e-5;                   // the sine of the angle between a line and a plane
 constexpr double kAcross = 0.1, kSameSheet = 0.85;  // cosines
 constexpr double kUnclear = 2.0, kMostUnclear_px = 20.0;
-constexpr double kInFace = 1e-10;  // of the extent
-constexpr double kFlatly = 0.3;    // a cosine
-constexpr double kBeside = 1.5;    // of a triangle's longest edge
+constexpr double kFlatly = 0.3;  // a cosine
+constexpr double kBeside = 1.5;  // of a triangle's longest edge
 
 /// The same triangles for all views that need cages refined as often.
-std::shared_ptr<const MeshTree> tree_of(const LineTask& task, const std::vector<size_t>& objects, double edge_px) {
+std::shared_ptr<const MeshTree> tree_of(const LineTask& task, const std::vector<size_t>& objects, double edge_px, bool smooth) {
   Scene part{task.scene.name, task.scene.camera, {}};
   std::vector<int> numbers;
   for (const size_t i : objects) {
@@ -43,17 +42,24 @@ std::shared_ptr<const MeshTree> tree_of(const LineTask& task, const std::vector<
     offset = model.render_origin;
     for (const auto& surface : model.surfaces) polygons.push_back(surface.polygons);
   }
-  return kept = std::make_shared<const MeshTree>(polygons, offset, numbers, task.extent);
+  return kept = std::make_shared<const MeshTree>(polygons, offset, numbers, task.extent, !smooth);
 }
 
 }  // namespace
+
+void make_exact(SurfaceCurve& curve) {
+  curve.straight = true;
+  curve.apart_px = curve.tangency_px = 0.0;
+  curve.nearer_px = kExactNearer_px;
+  for (CurveSample& sample : curve.samples) sample.lift_share = kExactLiftShare;
+}
 
 MeshLayers::MeshLayers(const LineTask& task, const std::vector<size_t>& objects, double edge_px, bool smooth)
     : camera_(task.camera),
       extent_(task.extent),
       smooth_(smooth),
       edge_of_materials_(task.class_of_meeting(0, 1)),
-      tree_(tree_of(task, objects, edge_px)) {
+      tree_(tree_of(task, objects, edge_px, smooth)) {
   for (const SceneObject& object : task.scene.objects) materials_.push_back(object.material);
 }
 
@@ -85,26 +91,29 @@ std::uint32_t MeshLayers::part_of(const SurfaceCurve& curve) const {
   return most == votes.end() ? tree_->parts() : most->first;
 }
 
+glm::dvec3 MeshLayers::lifted(const CurveSample& sample) const {
+  return sample.p + (sample.lift_share * kLift_px / pixels_per_unit_at(camera_, std::max(sample.depth, 1e-9))) * sample.lift;
+}
+
+double MeshLayers::reach_to_eye(const glm::dvec3& p) const {
+  return camera_.projection == Projection::perspective ? glm::distance(p, camera_.eye)
+                                                       : std::max(0.0, project(camera_, p).z) + 4.0 * extent_;
+}
+
 std::vector<LayerHit> MeshLayers::hits_to_eye(const CurveSample& sample) const {
-  const Camera& camera = camera_;
-  const double unit_px = pixels_per_unit_at(camera, std::max(sample.depth, 1e-9));
-  const glm::dvec3 start = sample.p + (sample.lift_share * kLift_px / unit_px) * sample.lift, direction = view_vector(camera, start);
-  const double reach = camera.projection == Projection::perspective ? glm::distance(start, camera.eye)
-                                                                    : std::max(0.0, project(camera, start).z) + 4.0 * extent_;
-  std::vector<LayerHit> hits = tree_->hits_along(start, direction, reach);
-  // A ray from a line of a mesh leaves the planes of the faces there and never meets them again, whatever single precision says of faces
-  // seen edge-on.
-  if (!smooth_) {
-    std::erase_if(hits, [&](const LayerHit& hit) {
-      const LayerTriangle& triangle = tree_->triangles()[hit.triangle];
-      const glm::dvec3 normal = glm::normalize(tree_->normal_of(triangle));
-      return std::fabs(glm::dot(normal, sample.p - tree_->positions()[triangle.corners[0]])) < kInFace * extent_;
-    });
-  }
-  return hits;
+  const glm::dvec3 start = lifted(sample), direction = view_vector(camera_, start);
+  const double reach = reach_to_eye(start);
+  return tree_->hits_along(start, direction, reach);
 }
 
 LayersSeen MeshLayers::before(const CurveSample& sample) const {
+  if (!smooth_) {
+    const glm::dvec3 start = lifted(sample);
+    const double reach = reach_to_eye(start);
+    const std::vector<SegmentHit> hits = tree_->exact_hits().through(
+        {.from = start, .to = start + reach * view_vector(camera_, start), .edge = sample.edge, .faces = sample.faces});
+    return {static_cast<int>(hits.size()), hits.empty() ? std::numeric_limits<double>::infinity() : hits.front().share * reach};
+  }
   const std::vector<LayerHit> hits = hits_to_eye(sample);
   return {static_cast<int>(hits.size()), hits.empty() ? std::numeric_limits<double>::infinity() : hits.front().t};
 }
@@ -153,7 +162,24 @@ bool MeshLayers::on_own_sheet(const CurveSample& a, const CurveSample& b, double
   return otherwise;
 }
 
+/// Edges of the mesh itself go through every triangle that they meet, but for those around their ends. They are lifted off as little as
+/// rays from them are, so that they lie in front of faces that they touch.
+void MeshLayers::pierce_exactly(SurfaceCurve& curve) const {
+  const size_t n = curve.samples.size();
+  for (size_t i = 0; i + (curve.closed ? 0 : 1) < n; ++i) {
+    CurveSample& sample = curve.samples[i];
+    const CurveSample& next = curve.samples[(i + 1) % n];
+    const glm::dvec3 from = lifted(sample), to = lifted(next);
+    for (const SegmentHit& hit : tree_->exact_hits().through({.from = from, .to = to, .vertices = sample.edge, .faces = sample.faces})) {
+      const glm::dvec3 normal = tree_->normal_of(tree_->triangles()[hit.triangle]), place = glm::mix(from, to, hit.share);
+      const bool leaves = (glm::dot(normal, to - from) > 0.0) == (glm::dot(normal, view_vector(camera_, place)) > 0.0);
+      sample.pierced.push_back({hit.share, leaves ? -1 : 1, 0.0});
+    }
+  }
+}
+
 void MeshLayers::pierce(SurfaceCurve& curve) const {
+  if (curve.straight) return pierce_exactly(curve);
   const std::uint32_t own = part_of(curve);
   const size_t n = curve.samples.size();
   for (size_t i = 0; i + (curve.closed ? 0 : 1) < n; ++i) {
@@ -164,11 +190,6 @@ void MeshLayers::pierce(SurfaceCurve& curve) const {
     const glm::dvec3 way = (next.p - sample.p) / length;
     for (const LayerHit& hit : tree_->hits_along(sample.p, way, length)) {
       const LayerTriangle& triangle = tree_->triangles()[hit.triangle];
-      // Faces around a vertex that a mesh's own edge ends at are met there.
-      const bool at_vertex = std::any_of(triangle.corners.begin(), triangle.corners.end(), [&](std::uint32_t corner) {
-        return tree_->positions()[corner] == sample.p || tree_->positions()[corner] == next.p;
-      });
-      if (at_vertex && curve.straight) continue;
       const glm::dvec3 normal = glm::normalize(tree_->normal_of(triangle));
       // Triangles of the curve's own sheet lie along it; another sheet of the same part goes across.
       const bool along_own = std::fabs(glm::dot(normal, way)) < kAcross || std::fabs(glm::dot(normal, sample.high)) > kSameSheet ||
@@ -192,52 +213,6 @@ void MeshLayers::pierce(SurfaceCurve& curve) const {
       sample.pierced.push_back({hit.t / length, (along > 0.0) == (towards_eye > 0.0) ? -1 : 1, std::min(unclear_px, kMostUnclear_px)});
     }
   }
-}
-
-std::vector<SurfaceCurve> MeshLayers::intersections() const {
-  const std::vector<PartMeeting>& hits = tree_->meetings().places;
-  const std::vector<std::vector<size_t>>& next = tree_->meetings().next;
-  std::vector<SurfaceCurve> curves;
-  std::vector<bool> taken(hits.size(), false);
-  const auto walk = [&](size_t start) {
-    SurfaceCurve curve;
-    size_t at = start, before = hits.size();
-    std::pair<bool, bool> before_facing;
-    for (;;) {
-      taken[at] = true;
-      CurveSample sample;
-      sample.p = hits[at].p;
-      const glm::dvec3 v = view_vector(camera_, sample.p);
-      const PartMeeting& hit = hits[at];
-      const double lower = glm::dot(hit.lower_normal, v), upper = glm::dot(hit.upper_normal, v);
-      sample.high = lower >= upper ? hit.lower_normal : hit.upper_normal;
-      sample.low = lower >= upper ? hit.upper_normal : hit.lower_normal;
-      // Past a contour of either part the line lies on its other sheet.
-      const std::pair<bool, bool> facing(lower > 0.0, upper > 0.0);
-      sample.joint = !curve.samples.empty() && facing != before_facing;
-      before_facing = facing;
-      sample.lift = v;
-      sample.line_class = class_of(hit);
-      sample.object = hits[at].object;
-      project_sample(camera_, sample);
-      curve.samples.push_back(sample);
-      const auto go = std::find_if(next[at].begin(), next[at].end(), [&](size_t k) { return k != before && !taken[k]; });
-      if (go == next[at].end()) {
-        curve.closed = at != start && std::find(next[at].begin(), next[at].end(), start) != next[at].end() && curve.samples.size() > 2;
-        break;
-      }
-      before = at;
-      at = *go;
-    }
-    if (curve.samples.size() > 1) curves.push_back(std::move(curve));
-  };
-  for (size_t i = 0; i < hits.size(); ++i) {
-    if (!taken[i] && next[i].size() != 2) walk(i);
-  }
-  for (size_t i = 0; i < hits.size(); ++i) {
-    if (!taken[i]) walk(i);
-  }
-  return curves;
 }
 
 void add_mesh_layers(const std::shared_ptr<const MeshLayers>& layers, LineContribution& out) {

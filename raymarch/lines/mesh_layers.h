@@ -8,6 +8,13 @@
 
 namespace limn {
 
+/// Faces and edges of a mesh that touch do not hide each other: exact lines lie nearer by this, px at their depth.
+inline constexpr double kExactNearer_px = 1e-4;
+/// The same as a share of what rays from other lines are lifted off by.
+inline constexpr double kExactLiftShare = 1e-3;
+/// Its steps are straight and known to rounding.
+void make_exact(SurfaceCurve& curve);
+
 /// Triangles in solver space, and one view of them. Safe from many threads.
 class MeshLayers {
  public:
@@ -28,6 +35,11 @@ class MeshLayers {
 
  private:
   LineClass class_of(const PartMeeting& meeting) const;
+  CurveSample sample_of(const PartMeeting& meeting) const;
+  void pierce_exactly(SurfaceCurve& curve) const;
+  /// Where rays from a sample start.
+  glm::dvec3 lifted(const CurveSample& sample) const;
+  double reach_to_eye(const glm::dvec3& p) const;
   /// The part that the curve runs on: what most of a few short rays through it hit.
   std::uint32_t part_of(const SurfaceCurve& curve) const;
   std::optional<std::uint32_t> triangle_under(const CurveSample& sample) const;

@@ -151,6 +151,7 @@ class MeshTracer {
       return glm::dvec3(glm::dot(d, x), glm::dot(d, y), glm::dot(d, v));
     };
     const glm::dvec3 e = seen(other);
+    const double nearer = kExactNearer_px / pixels_per_unit_at(task_.camera, std::max(1e-9, project(task_.camera, p).z));
     int layers = 0;
     for (const std::uint32_t t : stars_.at(vertex)) {
       const auto& c = triangles_[t].corners;
@@ -160,15 +161,14 @@ class MeshTracer {
       const double determinant = a.x * b.y - a.y * b.x;
       if (determinant == 0.0) continue;
       const double s = (e.x * b.y - e.y * b.x) / determinant, u = (a.x * e.y - a.y * e.x) / determinant;
-      // Half-open, so that an edge on the border of two triangles is in one of them.
-      if (s >= 0.0 && u > 0.0 && s * a.z + u * b.z > e.z) ++layers;
+      // Half-open, so that an edge on the border of two triangles is in one of them. Rays from the edge's middle have to say the same.
+      if (s >= 0.0 && u > 0.0 && 0.5 * (s * a.z + u * b.z - e.z) > nearer) ++layers;
     }
     return layers;
   }
 
   SurfaceCurve walk(std::uint32_t first, std::uint32_t start) {
     SurfaceCurve curve;
-    curve.straight = true;
     std::uint32_t vertex = start, before = start;
     for (std::uint32_t e = first;;) {
       MeshEdge& edge = edges_[e];
@@ -185,6 +185,7 @@ class MeshTracer {
         curve.closed = vertex == start && !ends_at(start) && curve.samples.size() > 2;
         if (curve.closed) add_step(start, before, other_end(first, start), curve.samples.front());
         if (!curve.closed) curve.samples.push_back(sample_at_vertex(vertex, edge));
+        make_exact(curve);
         return curve;
       }
       const auto& here = at_vertex_.at(vertex);
@@ -208,6 +209,7 @@ class MeshTracer {
     sample.lift = view_vector(task_.camera, sample.p);
     sample.line_class = edge.line_class;
     sample.object = edge.object;
+    sample.edge = {edge.a, edge.b};
     project_sample(task_.camera, sample);
     return sample;
   }

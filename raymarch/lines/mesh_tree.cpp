@@ -59,13 +59,12 @@ struct MeshTree::Embree {
 };
 
 MeshTree::MeshTree(const std::vector<std::shared_ptr<const Polygons>>& polygons, const glm::dvec3& offset, const std::vector<int>& objects,
-                   double extent)
-    : extent_(extent), embree_(std::make_unique<Embree>()) {
+                   double extent, bool exact)
+    : extent_(extent), exact_(exact), embree_(std::make_unique<Embree>()) {
   for (size_t i = 0; i < polygons.size(); ++i) {
     if (polygons[i]) add(*polygons[i], offset, objects[i]);
   }
   weld();
-  build();
 }
 
 MeshTree::~MeshTree() = default;
@@ -107,7 +106,7 @@ void MeshTree::weld() {
   parts_ = static_cast<std::uint32_t>(numbers.size());
 }
 
-void MeshTree::build() {
+void MeshTree::build() const {
   embree_->device = shared_embree_device();
   embree_->tree = rtcNewScene(embree_->device);
   rtcSetSceneFlags(embree_->tree, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
@@ -149,6 +148,7 @@ std::vector<LayerHit> MeshTree::hits_along(const glm::dvec3& origin, const glm::
   query.ray.tnear = 0.0f, query.ray.tfar = static_cast<float>(end);
   query.ray.mask = 0xffffffffu;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  std::call_once(built_, [&] { build(); });
   rtcIntersect1(embree_->tree, &collector.context, &query);
   std::vector<LayerHit>& hits = collector.hits;
   std::sort(hits.begin(), hits.end(),
@@ -162,6 +162,11 @@ std::vector<LayerHit> MeshTree::hits_along(const glm::dvec3& origin, const glm::
     if (!again) kept.push_back(hit);
   }
   return kept;
+}
+
+const ExactHits& MeshTree::exact_hits() const {
+  std::call_once(exact_made_, [&] { exact_hits_ = std::make_unique<const ExactHits>(positions_, triangles_, extent_); });
+  return *exact_hits_;
 }
 
 void MeshTree::find_around() const {
@@ -247,6 +252,18 @@ std::vector<MeshTree::EdgeFaces> MeshTree::faces_of_edges(const std::vector<char
   return edges;
 }
 
+/// By lengths along it.
+std::vector<LayerHit> MeshTree::hits_of_edge(std::uint32_t a, std::uint32_t b) const {
+  const glm::dvec3 &from = positions_[a], &to = positions_[b];
+  const double length = glm::distance(from, to);
+  if (!(length > 0.0)) return {};
+  if (!exact_) return hits_along(from, (to - from) / length, length);
+  std::vector<LayerHit> hits;
+  for (const SegmentHit& hit : exact_hits().through({.from = from, .to = to, .vertices = {a, b}}))
+    hits.push_back({hit.share * length, hit.triangle});
+  return hits;
+}
+
 PartMeetings MeshTree::find_meetings() const {
   PartMeetings result;
   std::vector<Box> boxes(parts_);
@@ -269,9 +286,7 @@ PartMeetings MeshTree::find_meetings() const {
   std::vector<std::vector<LayerHit>> hits_of(faces_of.size());
   parallel_parts(faces_of.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
     for (size_t e = range.begin(); e < range.end(); ++e) {
-      const glm::dvec3 &a = positions_[faces_of[e].a], &b = positions_[faces_of[e].b];
-      const double length = glm::distance(a, b);
-      if (length > 0.0) hits_of[e] = hits_along(a, (b - a) / length, length);
+      hits_of[e] = hits_of_edge(faces_of[e].a, faces_of[e].b);
     }
   });
   // Each pair of faces that go through each other is left where an edge of the one meets the other.
@@ -295,12 +310,12 @@ PartMeetings MeshTree::find_meetings() const {
         of_pair[{std::min(face, hit.triangle), std::max(face, hit.triangle)}].push_back(hits.size() - 1);
     }
   }
-  std::vector<std::vector<size_t>>& next = result.next;
+  std::vector<std::vector<NextMeeting>>& next = result.next;
   next.resize(hits.size());
   for (const auto& [pair, ends] : of_pair) {
     if (ends.size() != 2) continue;
-    next[ends[0]].push_back(ends[1]);
-    next[ends[1]].push_back(ends[0]);
+    next[ends[0]].push_back({ends[1], {pair.first, pair.second}});
+    next[ends[1]].push_back({ends[0], {pair.first, pair.second}});
   }
   return result;
 }

@@ -40,9 +40,16 @@ bool may_touch(const Ends& step, const Ends& nearer, double within_px) {
   return low.x <= high.x && low.y <= high.y;
 }
 
+/// Edges of a mesh that meet in a vertex: its faces say what changes there.
+bool share_an_end(const Ends& step, const Ends& nearer) {
+  const auto same = [](const End& a, const End& b) { return a.px == b.px && a.depth == b.depth; };
+  return same(step.a, nearer.a) || same(step.a, nearer.b) || same(step.b, nearer.a) || same(step.b, nearer.b);
+}
+
 /// Where `nearer` crosses `step` in the image, in front of it by more than `nearer_px`.
 std::optional<Meeting> meet(const Ends& step, const Ends& nearer, double nearer_px, const Camera& camera) {
   if (!may_touch(step, nearer, kMargin_px)) return {};
+  if (share_an_end(step, nearer)) return {};
   const glm::dvec2 d = step.b.px - step.a.px, e = nearer.b.px - nearer.a.px, between = nearer.a.px - step.a.px;
   const double determinant = cross(d, e);
   // Steps of one straight line meet nowhere, whatever rounding says.
@@ -57,9 +64,9 @@ std::optional<Meeting> meet(const Ends& step, const Ends& nearer, double nearer_
   return Meeting{t, u, cross(d, e) > 0.0};
 }
 
-bool neighbours(size_t i, size_t j, size_t count) {
+bool neighbours(const SurfaceCurve& curve, size_t i, size_t j) {
   const size_t apart = i > j ? i - j : j - i;
-  return apart <= 1 || apart + 1 == count;
+  return apart <= 1 || (curve.closed && apart + 1 == steps_of(curve));
 }
 
 /// Lines within smooth faces may be asked for or not; the others stay as they are.
@@ -128,7 +135,7 @@ std::vector<NearerCrossing> crossings_of(const std::vector<SurfaceCurve>& curves
     here.clear();
     const auto look = [&](std::uint32_t f) {
       const Fold& fold = index.folds()[f];
-      if (fold.curve == c && neighbours(fold.index, i, count)) return;
+      if (fold.curve == c && neighbours(curve, fold.index, i)) return;
       const std::optional<Meeting> meeting = meet(step, fold.ends, std::max(curve.nearer_px, fold.nearer_px), camera);
       if (!meeting) return;
       here.push_back({static_cast<double>(i) + meeting->t, meeting->onto_left ? fold.more_on_left : -fold.more_on_left, fold.curve,
@@ -179,7 +186,7 @@ StepMarks NearerFolds::unclear_steps(const StepMarks& asked) const {
       const auto look = [&](std::uint32_t f) {
         const Fold& fold = index_->folds()[f];
         if (!may_touch(step, fold.ends, greatest_sag_px(curve, curves_[fold.curve]))) return;
-        if (fold.curve == c && neighbours(fold.index, i, asked[c].size())) return;
+        if (fold.curve == c && neighbours(curve, fold.index, i)) return;
         if (!is_in_front(fold.ends, step, std::max(curve.nearer_px, fold.nearer_px), camera_)) return;
         if (!own_sag_px) own_sag_px = sag_px(curve, i, camera_);
         if (!is_unclear(step, fold.ends, *own_sag_px + sags.at(f))) return;

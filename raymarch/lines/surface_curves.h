@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "raymarch/lines.h"
+#include "raymarch/lines/exact_hits.h"
 
 namespace limn {
 
@@ -34,7 +35,9 @@ struct CurveSample {
   /// The curve changes its nature here: a contour leads into it, or it becomes a fold.
   bool joint = false;
   std::vector<Piercing> pierced{};  ///< Within the step.
-  bool on_chord = false;            ///< Between two samples, off the curve by up to the tolerance.
+  /// Of a step along a mesh's own edge: its vertices; of one along which two faces go through each other: these. In the mesh's tree.
+  std::array<std::uint32_t, 2> edge{kNoIndex, kNoIndex}, faces{kNoIndex, kNoIndex};
+  bool on_chord = false;  ///< Between two samples, off the curve by up to the tolerance.
 };
 
 /// Of one object's surface, or of two that meet.
@@ -42,7 +45,8 @@ struct SurfaceCurve {
   bool closed = false;
   bool smooth = false;  ///< A contour on smooth surface, whose cusps are where its radial curvature is 0.
   std::vector<CurveSample> samples{};
-  bool straight = false;  ///< Steps are straight edges of a mesh: rays start from their middles.
+  /// Steps are straight edges of a mesh, or lie in two faces of it: rays start from their middles, and everything about them is exact.
+  bool straight = false;
   /// How far two such curves must lie apart, px at their depth, to be told from each other: across the view, and along it.
   double apart_px = 0.03, nearer_px = 0.05;
   double tangency_px = 3.0;  ///< From a place where two curves touch they may run together for so long.

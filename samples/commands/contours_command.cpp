@@ -9,6 +9,7 @@
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
 #include "samples/commands/contours_frames.h"
+#include "samples/experiment/camera_json.h"
 #include "samples/experiment/line_scene.h"
 #include "samples/experiment/thread_settings.h"
 #include "samples/input/input_files.h"
@@ -205,6 +206,7 @@ int run(const Options& options) {
     print_certificate(options, shot.graph, index);
     Json document = certificate_json(shot.graph);
     document["solve_ms"] = shot.solve_ms;
+    document["camera"] = camera_json(shot.camera, camera_settings(options.spec.camera, input).up, bounds(input.scene));
     if (!shot.ids.empty()) document["ids"] = shot.ids;
     documents.push_back(std::move(document));
   }

@@ -232,6 +232,7 @@ constexpr DocumentedKey kJsonKeys[] = {
     {"contours", "views[].from", "", "what the lines were solved on"},
     {"contours", "views[].notes", "", "what the bound does not cover"},
     {"contours", "views[].solve_ms", "ms", "solving the lines"},
+    {"contours", "views[].camera.*", "", "as `cameras[]` of `render`: given back as options it draws that view alone"},
     {"contours", "views[].ids", "", "of the chains, where there are frames: the same line keeps its id"},
     {"contours", "tracks.ids", "", "how many ids were given"},
     {"contours", "tracks.unexplained", "", "events without a cause"},

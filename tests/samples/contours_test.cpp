@@ -154,6 +154,22 @@ TEST(Contours, EqualCallsWriteEqualBytesWhateverTheThreads) {
   EXPECT_EQ(read_bytes(folder.path() / "1.svg"), read_bytes(folder.path() / "2.svg"));
 }
 
+TEST(Contours, TheCameraOfAViewGivenBackDrawsThatViewAlone) {
+  const TemporaryFolder folder;
+  const RunResult all = run_limn({"contours", "rook", "-q", "--json", "--views", "3", "--size", "320x200", "-o", folder.file("all.svg")});
+  ASSERT_EQ(all.exit_code, 0) << all.err;
+  const nlohmann::json view = all.json().at("views").at(2), camera = view.at("camera");
+  const auto vector = [&](const char* key) {
+    const nlohmann::json& v = camera.at(key);
+    return v.at(0).dump() + "," + v.at(1).dump() + "," + v.at(2).dump();
+  };
+  const RunResult one = run_limn({"contours", "rook", "-q", "--json", "--size", "320x200", "--eye", vector("eye"), "--target",
+                                  vector("target"), "--up", vector("up"), "--fov", camera.at("fov").dump(), "-o", folder.file("one.svg")});
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_EQ(one.json().at("views").at(0).at("chains"), view.at("chains"));
+  EXPECT_EQ(one.json().at("views").at(0).at("vertices"), view.at("vertices"));
+}
+
 TEST(Contours, StyleSheetsAreReadAndTheirFaultsNamed) {
   const TemporaryFolder folder;
   folder.write("good.css",

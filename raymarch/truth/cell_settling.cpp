@@ -1,7 +1,6 @@
 #include "raymarch/truth/cell_settling.h"
 
 #include <algorithm>
-#include <climits>
 
 #include "raymarch/truth/cell_scope.h"
 #include "sdf/parallel.h"
@@ -11,69 +10,8 @@ namespace {
 
 constexpr double kClear = 0.02;  // of N.V
 constexpr int kParts = 1 << kNearCuts;
-static_assert(kParts == 4);    // a cell's parts are one block of a CellSet
+static_assert(kParts == 4);    // a cell's parts are one block of CurveTubes
 constexpr int kBlockCuts = 2;  // from the blocks whose finest cells are looked at together
-
-std::uint64_t packed(const glm::ivec3& cell) {
-  const auto part = [](int v) { return static_cast<std::uint64_t>(v) + 16; };  // blocks may begin below zero by a few
-  return (part(cell.x) << 20 | part(cell.y)) << 20 | part(cell.z);
-}
-
-/// Cells, a bit each in blocks of 4 x 4 x 4.
-class CellSet {
- public:
-  /// The cell, and those at most `reach` away from it along every axis.
-  void insert_around(const glm::ivec3& cell, int reach) {
-    const glm::ivec3 low = cell - reach, high = cell + reach;
-    for (int x = low.x >> 2; x <= high.x >> 2; ++x) {
-      for (int y = low.y >> 2; y <= high.y >> 2; ++y) {
-        for (int z = low.z >> 2; z <= high.z >> 2; ++z) {
-          bool added = false;
-          std::uint64_t& block = blocks_.at(packed({x, y, z}), added);
-          for (int i = std::max(low.x, 4 * x); i <= std::min(high.x, 4 * x + 3); ++i) {
-            for (int j = std::max(low.y, 4 * y); j <= std::min(high.y, 4 * y + 3); ++j) {
-              for (int k = std::max(low.z, 4 * z); k <= std::min(high.z, 4 * z + 3); ++k) block |= bit_of({i, j, k});
-            }
-          }
-        }
-      }
-    }
-  }
-  /// The block's cells: bit 16 x + 4 y + z of those from its corner.
-  std::uint64_t block(const glm::ivec3& index) const {
-    const std::uint64_t* found = blocks_.find(packed(index));
-    return found != nullptr ? *found : 0;
-  }
-
- private:
-  static std::uint64_t bit_of(const glm::ivec3& cell) { return std::uint64_t{1} << ((cell.x & 3) << 4 | (cell.y & 3) << 2 | (cell.z & 3)); }
-  KeyedValues<std::uint64_t> blocks_{};
-};
-
-/// What lies beside found curves: parts of cells beside one that a curve goes through.
-struct Tubes {
-  CellSet parts{};
-
-  void add(const CellGrid& grid, const CellCurves& curves) {
-    KeyedValues<glm::dvec3> points;
-    for (const Crossing& crossing : curves.crossings) {
-      bool added = false;
-      glm::dvec3& point = points.at(crossing.key, added);
-      if (added) point = (crossing.point.p - grid.corner) / grid.side;
-    }
-    glm::ivec3 last_part(INT_MIN);
-    for (const Link& link : curves.links) {
-      const glm::dvec3 a = *points.find(link.from), b = *points.find(link.to);
-      const int steps = 1 + static_cast<int>(glm::distance(a, b) * 2.0 * kParts);
-      for (int i = 0; i <= steps; ++i) {
-        const glm::dvec3 p = glm::mix(a, b, static_cast<double>(i) / steps);
-        const glm::ivec3 part(glm::floor(p * static_cast<double>(kParts)));
-        if (part != last_part) parts.insert_around(part, 1);
-        last_part = part;
-      }
-    }
-  }
-};
 
 /// At a crease bounds hold the hull of both sides, however small the box: there the box's corners say on which sides of the levels N.V may
 /// lie. Bit 0: clearly above at all of them, bit 1: clearly below.
@@ -116,7 +54,7 @@ bool clear_at_corners(const CellSearch& search, const CellScope& scope, BranchEv
 /// For one thread.
 class Settler {
  public:
-  Settler(const CellSearch& search, const CellTapes& tapes, const Tubes& tubes)
+  Settler(const CellSearch& search, const CellTapes& tapes, const CurveTubes& tubes)
       : search_(search), tapes_(tapes), tubes_(tubes), bounds_(search, tapes), whole_(search.sharp, search.grid_box()), near_(&whole_) {}
 
   /// Of the finest cells in one block, kLanes of them at most.
@@ -137,7 +75,7 @@ class Settler {
     for (size_t i = 0; i < cells.size(); ++i) {
       near_.restrict_to(search_.grid.cell(cells[i]));
       // The cell's parts that are as fine as the tubes are a block of theirs.
-      const std::uint64_t in_tubes = tubes_.parts.block(cells[i]);
+      const std::uint64_t in_tubes = tubes_.block(cells[i]);
       stays[i] = !found[i].empty() && parts_stay(inner[i], search_.grid.side, cells[i], kSettlingCuts, in_tubes);
     }
   }
@@ -192,7 +130,7 @@ class Settler {
 
   const CellSearch& search_;
   const CellTapes& tapes_;
-  const Tubes& tubes_;
+  const CurveTubes& tubes_;
   CellBounds bounds_;
   std::array<std::array<Survivors, 8>, kSettlingCuts + 1> found_{};
   BranchEvaluators whole_, near_;
@@ -200,17 +138,12 @@ class Settler {
 
 }  // namespace
 
-void settle(const CellSearch& search, const CellTapes& tapes, const std::vector<OpenCell>& open, CellResult& result,
-            const ExecutionSettings& how) {
-  Tubes tubes;
-  for (const auto& [branch, families] : result.branches) {
-    for (const CellCurves& curves : families) tubes.add(search.grid, curves);
-  }
-  for (const auto& [seam, curves] : result.seams) tubes.add(search.grid, curves);
+void settle(const CellSearch& search, const CellTapes& tapes, const std::vector<OpenCell>& open, const CurveTubes& tubes,
+            CellResult& result, const ExecutionSettings& how) {
   // Most cells have nothing open but what lies beside the curves found in them.
   std::vector<glm::ivec3> cells;
   for (const OpenCell& cell : open) {
-    if ((cell.parts & ~tubes.parts.block(cell.cell)) != 0) cells.push_back(cell.cell);
+    if ((cell.parts & ~tubes.block(cell.cell)) != 0) cells.push_back(cell.cell);
   }
   std::vector<std::uint8_t> left(cells.size(), 0);
   parallel_parts(cells.size(), size_t{64}, [&](const IndexRange<size_t>& range) {

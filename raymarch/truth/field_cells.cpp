@@ -25,6 +25,7 @@ struct Walk {
   std::vector<Children> found{};  ///< By level.
   std::map<int, CellOutput> branches{};
   std::vector<OpenCell> cells{};  ///< Finest cells that bounds could not exclude.
+  CurveTubes tubes{};
   BranchEvaluators whole{}, near{};
   LatticeRegion* kept = nullptr;
 };
@@ -157,6 +158,17 @@ std::vector<Task> tasks_of(const CellSearch& search, const CellTapes& tapes, int
   return tasks;
 }
 
+/// What every task can do of the common end.
+void finish(Walk& walk) {
+  for (const auto& [branch, curves] : walk.branches) {
+    for (const CellCurves& family : curves) walk.tubes.add(walk.search.grid, family);
+  }
+  for (const auto& [seam, curves] : walk.kept->seams) walk.tubes.add(walk.search.grid, curves);
+  walk.near = BranchEvaluators();
+  walk.whole = BranchEvaluators();
+  walk.found = {};
+}
+
 void append(const CellCurves& from, CellCurves& to) {
   to.crossings.insert(to.crossings.end(), from.crossings.begin(), from.crossings.end());
   to.links.insert(to.links.end(), from.links.begin(), from.links.end());
@@ -191,10 +203,13 @@ CellResult search_cells(const CellSearch& search, LatticeMemory* memory, const E
     if (!walk.kept->has_seams) walk.kept->seams.clear();
     descend(walk, tasks[i].scope, task_level, tasks[i].cell);
     walk.kept->has_seams = search.whole_seams;
+    finish(walk);
   });
   CellResult result;
   std::vector<OpenCell> cells;
+  CurveTubes tubes;
   for (Walk& walk : walks) {
+    tubes.add(walk.tubes);
     cells.insert(cells.end(), walk.cells.begin(), walk.cells.end());
     for (const auto& [branch, curves] : walk.branches) {
       for (size_t family = 0; family < kCurveFamilies; ++family) append(curves[family], result.branches[branch][family]);
@@ -202,7 +217,7 @@ CellResult search_cells(const CellSearch& search, LatticeMemory* memory, const E
     for (const auto& [seam, curves] : walk.kept->seams) append(curves, result.seams[seam]);
   }
   result.cells = static_cast<std::int64_t>(cells.size());
-  settle(search, tapes, cells, result, how);
+  settle(search, tapes, cells, tubes, result, how);
   return result;
 }
 

@@ -40,6 +40,8 @@ class KeyedValues {
     return places_[place];
   }
   const Value& at_place(std::uint32_t place) const { return entries_[place].second; }
+  /// Keys and values, in the order in which they came.
+  const std::vector<std::pair<std::uint64_t, Value>>& entries() const { return entries_; }
   size_t bytes() const { return entries_.capacity() * sizeof(entries_[0]) + places_.capacity() * sizeof(places_[0]); }
 
  private:

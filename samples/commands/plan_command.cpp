@@ -17,7 +17,7 @@ void add_options(CLI::App& app, Options& options) {
   add_plan(app, options);
   add_camera(app, options, true);
   add_surface(app, options, {.surface = true, .repeatable = true, .swept = true});
-  add_switch(app, {"--local", "", "try meshes that are fine where the border of these views runs and coarse elsewhere, too", kSurface},
+  add_switch(app, {"--local", "", "try models that are fine where the border of these views runs and coarse elsewhere, too", kSurface},
              options.local.asked);
   add_methods(app, options);
   add_json(app, options);

@@ -118,7 +118,7 @@ double expected_ms(const Climb& climb, int rung) {
     if (nearest == nullptr || std::abs(known.rung - rung) < std::abs(nearest->rung - rung)) nearest = &known;
   }
   const double from = size_of(climb, nearest == nullptr ? 0 : nearest->rung);
-  const double growth = std::pow(from / size_of(climb, rung), 2.0);
+  const double growth = std::pow(from / size_of(climb, rung), climb.ladder->growth);
   const double build_ms = nearest == nullptr ? climb.guess_ms : nearest->build_ms;
   // Times of single runs: what is left of one may be no more than their noise.
   const double growing_ms = std::max(build_ms - climb.ladder->fixed_ms, kLeastGrowing * build_ms);

@@ -22,6 +22,11 @@ const std::vector<int> kLevelRungs = {0, 1, 2, 3, 4, 5, 6};
 // curvature within a face.
 constexpr double kMeshConstant = 0.08;
 
+/// What is as fine everywhere takes about as much while it is built as afterwards: beyond the budget there is nothing to build.
+std::int64_t most_bytes(const PlanSettings& settings) {
+  return settings.budget_bytes ? std::min(settings.max_bytes, *settings.budget_bytes) : settings.max_bytes;
+}
+
 /// A gradient of first order never makes up for its voxels.
 bool is_tried(const GradientDescriptor& gradient) { return gradient.order > 1 && gradient.normal_constant > 0.0; }
 
@@ -143,20 +148,20 @@ std::vector<Ladder> volume_ladders(const Scene& scene, const SceneSize& size, co
 
 double Ladder::size_at(size_t rung) const {
   // Chords stand off by the square of an edge.
-  if (local) return std::sqrt(1000.0 / rungs[rung]);
+  if (by_tolerance) return std::sqrt(1000.0 / rungs[rung]);
   return by_level ? base_size / std::exp2(rungs[rung]) : base_size / rungs[rung];
 }
 
 SurfaceSettings Ladder::at(size_t rung) const {
   SurfaceSettings own = settings;
-  if (local) return own;
+  if (by_tolerance) return own;
   (by_level ? own.level : own.voxels) = rungs[rung];
   own.resample_volumes = of_file && rung + 1 < rungs.size();
   return own;
 }
 
 std::string Ladder::words_at(size_t rung) const {
-  if (local) return fmt::format("{:.3g} px", 1000.0 / rungs[rung]);
+  if (by_tolerance) return fmt::format("{:.3g} px", 1000.0 / rungs[rung]);
   if (of_file && rung + 1 == rungs.size()) return fmt::format("the file's own {} voxels", rungs[rung]);
   return by_level ? fmt::format("level {}", rungs[rung]) : fmt::format("{} voxels", rungs[rung]);
 }
@@ -175,7 +180,7 @@ std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings,
   const SceneSize size = size_of(scene, {}, false);
   if (volumes) {
     ladders = volume_ladders(scene, size, settings, longest_side);
-    for (Ladder& ladder : ladders) ladder.settings.max_bytes = settings.max_bytes;
+    for (Ladder& ladder : ladders) ladder.settings.max_bytes = most_bytes(settings);
     return ladders;
   }
   if (!fixed && wanted("mesh", settings) && all_support(scene, "mesh")) {
@@ -194,7 +199,7 @@ std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings,
       if (is_tried(gradient)) ladders.push_back(grid_ladder(kind, gradient, size, longest_side));
     }
   }
-  for (Ladder& ladder : ladders) ladder.settings.max_bytes = settings.max_bytes;
+  for (Ladder& ladder : ladders) ladder.settings.max_bytes = most_bytes(settings);
   return ladders;
 }
 

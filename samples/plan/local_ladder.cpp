@@ -1,4 +1,5 @@
-// Local meshes as a ladder of a plan: each rung asks for a smaller tolerance than the one before.
+// Local models as ladders of a plan: of meshes each rung asks for a smaller tolerance than the one before, of level sets for smaller
+// voxels, as those that are as fine everywhere.
 
 #include <algorithm>
 
@@ -17,25 +18,63 @@ const std::vector<int> kLocalRungs = {250, 500, 1000, 2000, 4000, 8000, 16000, 3
 /// for more.
 constexpr double kExpected = 0.45, kLeast = 0.3, kMost = 1.0;
 
+/// Of the plan's tolerance: what local level sets may be off by, beside what their smallest voxels are.
+constexpr double kGridShare = 0.5;
+/// Finding where the border runs takes longer than the values of a coarse grid.
+constexpr double kGridStart = 4.0;
+/// Memory and building of local level sets grow with about this power of the resolution (docs/performance.md).
+constexpr double kGridGrowth = 1.3;
+
 double tolerance_of(const Ladder& ladder, size_t rung) { return kRungsPerPixel / ladder.rungs[rung]; }
 
-}  // namespace
+LocalSettings local_for(const std::vector<PlanView>& views, const PlanSettings& settings) {
+  LocalSettings local;
+  for (const PlanView& view : views) local.cameras.push_back(view.camera);
+  if (settings.metric == PlanMetric::border) local.thresholds.push_back(settings.threshold);
+  return local;
+}
 
-std::optional<Ladder> local_ladder(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings) {
+bool all_local(const Scene& scene, const SurfaceSettings& settings) {
+  const auto has_one = [&](const SceneObject& object) { return why_not_local(object, settings).empty(); };
+  return !scene.objects.empty() && std::all_of(scene.objects.begin(), scene.objects.end(), has_one);
+}
+
+std::optional<Ladder> mesh_ladder(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings) {
   const bool wanted = settings.kinds.empty() || std::find(settings.kinds.begin(), settings.kinds.end(), "mesh") != settings.kinds.end();
-  const auto has_one = [](const SceneObject& object) { return why_not_local(object, {}).empty(); };
-  if (!wanted || scene.objects.empty() || !std::all_of(scene.objects.begin(), scene.objects.end(), has_one)) return {};
+  if (!wanted || !all_local(scene, {})) return {};
   Ladder ladder;
   ladder.title = "local mesh, limit normals";
   ladder.settings.kind = "mesh";
   ladder.settings.normals = NormalKind::limit;
   ladder.settings.max_bytes = settings.max_bytes;
-  ladder.by_level = false;
+  ladder.by_tolerance = true;
   ladder.rungs = kLocalRungs;
-  ladder.local.emplace();
-  for (const PlanView& view : views) ladder.local->cameras.push_back(view.camera);
-  if (settings.metric == PlanMetric::border) ladder.local->thresholds.push_back(settings.threshold);
+  ladder.local = local_for(views, settings);
   return ladder;
+}
+
+Ladder grid_ladder(const Ladder& uniform, const std::vector<PlanView>& views, const PlanSettings& settings) {
+  Ladder ladder = uniform;
+  ladder.title = "local " + uniform.title;
+  ladder.guess_ms *= kGridStart;
+  ladder.growth = kGridGrowth;
+  ladder.settings.max_bytes = settings.max_bytes;  // more while it is built than it keeps
+  ladder.local = local_for(views, settings);
+  ladder.local->tolerance_px = kGridShare * settings.tolerance_px;
+  return ladder;
+}
+
+}  // namespace
+
+std::vector<Ladder> local_ladders(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings,
+                                  const std::vector<Ladder>& uniform) {
+  std::vector<Ladder> ladders;
+  if (auto mesh = mesh_ladder(scene, views, settings)) ladders.push_back(std::move(*mesh));
+  for (const Ladder& ladder : uniform) {
+    if (has_local_bricks(ladder.settings.kind) && !ladder.of_file && all_local(scene, ladder.settings))
+      ladders.push_back(grid_ladder(ladder, views, settings));
+  }
+  return ladders;
 }
 
 PredictedErrors predict_local_errors(const Ladder& ladder, size_t rung) {
@@ -46,10 +85,18 @@ PredictedErrors predict_local_errors(const Ladder& ladder, size_t rung) {
   return {of(kExpected), of(kLeast), of(kMost)};
 }
 
+PredictedErrors predict_local_errors(const Ladder& ladder, const PredictedErrors& uniform) {
+  const auto with = [&](const BorderErrors& errors, double share) {
+    const double px = share * ladder.local->tolerance_px;
+    return BorderErrors{std::max(errors.silhouette_px, px), std::max(errors.inner_px, px), std::max(errors.border_px, px)};
+  };
+  return {with(uniform.expected, kExpected), with(uniform.low, 0.0), with(uniform.high, kMost)};
+}
+
 std::shared_ptr<const LocalSettings> Ladder::local_at(size_t rung) const {
   if (!local) return nullptr;
   auto result = std::make_shared<LocalSettings>(*local);
-  result->tolerance_px = tolerance_of(*this, rung);
+  if (by_tolerance) result->tolerance_px = tolerance_of(*this, rung);
   return result;
 }
 

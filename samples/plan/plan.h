@@ -26,7 +26,7 @@ struct PlanSettings {
   std::optional<double> budget_ms{};               ///< Of building and tracing one picture.
   std::optional<std::int64_t> budget_bytes{};      ///< Of the model.
   std::int64_t max_bytes = std::int64_t{4} << 30;  ///< Nothing larger is built.
-  bool local = false;                              ///< Local meshes are tried, too.
+  bool local = false;                              ///< Local models are tried, too.
   std::vector<std::string> kinds{};                ///< Only these representations; empty: all that have a resolution.
 };
 
@@ -36,19 +36,21 @@ struct Ladder {
   SurfaceSettings settings{};  ///< All but the resolution.
   bool by_level = false;       ///< Rungs are subdivision levels; else voxels along the longest side.
   bool of_file = false;        ///< Rungs are a file's volumes with other voxels; the last is the file as it is.
+  bool by_tolerance = false;   ///< Of local meshes: rungs are tolerances, and nothing else of a mesh is open.
   std::vector<int> rungs{};    ///< Rising: levels, voxels along the longest side, or of local meshes 1000 / the tolerance in pixels.
-  std::optional<LocalSettings> local{};  ///< Of local meshes; their tolerance is the rung's.
+  std::optional<LocalSettings> local{};  ///< Of local models; the tolerance of meshes is the rung's.
+  double growth = 2.0;                   ///< The power of 1 / size that building grows with.
   int normal_order = 2;                  ///< Of the normal's angle, by edge or voxel size.
   double normal_constant = 0.0;          ///< Angle = constant (curvature * size)^order, as far as theory knows.
   double base_size = 1.0;                ///< World size of an edge at level 0, or of a voxel times the number of voxels.
   double guess_ms = 1.0;                 ///< To build the first rung, as an order of magnitude: the order in which ladders are tried.
   double fixed_ms = 0.0;  ///< Of that and of every other rung, what does not grow: finding a shape's cage, as it took just now.
 
-  double size_at(size_t rung) const;  ///< World: of an edge or a voxel; of local meshes in proportion to it.
+  double size_at(size_t rung) const;  ///< World: of an edge or a (smallest) voxel; of local meshes in proportion to it.
   /// The settings with the rung's resolution.
   SurfaceSettings at(size_t rung) const;
   std::string words_at(size_t rung) const;  ///< "level 3", "128 voxels", "0.25 px".
-  /// What a local mesh of the rung is made for; null for other ladders.
+  /// What a local model of the rung is made for; null for other ladders.
   std::shared_ptr<const LocalSettings> local_at(size_t rung) const;
 };
 
@@ -74,7 +76,8 @@ struct PlanTrial {
   PredictedErrors predicted{};                            ///< By predict_errors(), the worst view's.
   BorderErrors measured{};                                ///< By measure_errors().
   std::int64_t bytes = 0;                                 ///< Of the model.
-  std::int64_t triangles = 0;                             ///< 0 where there are none.
+  std::int64_t triangles = 0,                             ///< 0 where there are none.
+      voxels = 0;                                         ///< The same.
   double build_ms = 0.0,                                  ///< Wall clock.
       trace_ms = 0.0;                                     ///< Mean over the views.
   std::string failed{};                                   ///< Why there are no figures; empty where there are.
@@ -99,8 +102,10 @@ struct PlanAnswer {
   std::optional<size_t> silhouette{};  ///< Trial of the chosen ladder that is enough for the silhouette alone, where that is a coarser one.
   ErrorFloor floor{};                  ///< What an error can be told from: truth in all views, and what a field itself scores.
   std::string doubt{};                 ///< Why nothing can be called right to the tolerance; empty where it can.
-  std::int64_t curvature_triangles = 0;  ///< Where a local mesh was chosen: of a mesh refined by curvature alone to the tolerance.
-  std::optional<size_t> uniform{};       ///< Then, too: the trial of the coarsest mesh as fine everywhere that meets the tolerance.
+  std::int64_t curvature_triangles = 0,  ///< Where a local mesh was chosen: of a mesh refined by curvature alone to the tolerance.
+      curvature_bytes = 0,               ///< Where a local model was chosen: of the one that follows curvature alone.
+      uniform_bytes = 0;                 ///< Then, too: of the trial below, else of a level set of as many voxels; 0 where it is too large.
+  std::optional<size_t> uniform{};       ///< Then, too: the trial of the coarsest model of its kind, as fine everywhere, that keeps to it.
   size_t views = 1;                      ///< What the answer holds for.
   ObjectMeshCache meshes{};              ///< What models of the scene start from: spares whoever builds one of the trials again.
   std::vector<std::string> notes{};      ///< Ladders that were given up, and why; what else a person should know.
@@ -110,10 +115,13 @@ struct PlanAnswer {
 /// was left out, and why; may be null.
 std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes = nullptr);
 
-/// Local meshes for the views, of tolerances about that of the plan. Empty where the scene has none.
-std::optional<Ladder> local_ladder(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings);
-/// What is expected of a rung of it.
+/// Local models for the views: meshes of tolerances about that of the plan, and a ladder beside each of `uniform` that is of level sets.
+std::vector<Ladder> local_ladders(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings,
+                                  const std::vector<Ladder>& uniform);
+/// What is expected of a rung of local meshes.
 PredictedErrors predict_local_errors(const Ladder& ladder, size_t rung);
+/// The same of local level sets, from what is expected of one that is as fine everywhere.
+PredictedErrors predict_local_errors(const Ladder& ladder, const PredictedErrors& uniform);
 
 /// What the engine measures for a plan: border_error.
 const Metric& plan_metric();

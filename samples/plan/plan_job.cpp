@@ -40,7 +40,6 @@ PlanSettings settings_of(const ExperimentSpec& spec, const PlanSpec& plan, const
   settings.threshold = threshold_of(spec.border, input);
   settings.budget_ms = plan.budget_ms;
   settings.budget_bytes = plan.budget_bytes;
-  if (settings.budget_bytes) settings.max_bytes = std::min(settings.max_bytes, *settings.budget_bytes);
   settings.max_bytes = std::min(settings.max_bytes, model_bytes_left(spec.limits, 0.0));
   settings.kinds = spec.surfaces;
   return settings;
@@ -79,10 +78,8 @@ ErrorFloor floor_of(const Scene& scene, const PlanJob& job, const ExecutionSetti
 
 Json parameters_json(const Ladder& ladder, const PlanTrial& trial) {
   Json json = Json::object();
-  if (ladder.local)
-    json["local"] = ladder.local_at(trial.rung)->tolerance_px;
-  else
-    json[ladder.by_level ? "level" : "voxels"] = ladder.rungs[trial.rung];
+  if (ladder.local) json["local"] = ladder.local_at(trial.rung)->tolerance_px;
+  if (!ladder.by_tolerance) json[ladder.by_level ? "level" : "voxels"] = ladder.rungs[trial.rung];
   if (ladder.settings.kind == "mesh")
     json["normals"] = name_of(ladder.settings.normals.value_or(NormalKind::limit));
   else
@@ -102,6 +99,7 @@ Json trial_json(const PlanAnswer& answer, const PlanTrial& trial, PlanMetric met
                {"inner_px", number_or_null(trial.measured.inner_px)},
                {"bytes", trial.bytes},
                {"triangles", trial.triangles},
+               {"voxels", trial.voxels},
                {"build_ms", trial.build_ms},
                {"trace_ms", trial.trace_ms},
                {"time_ms", trial.time_ms()}};
@@ -133,7 +131,9 @@ PlanJob plan_for(const ExperimentSpec& spec, const PlanSpec& plan, const SceneIn
   refuse_reference_without_effect(spec, input);
   job.settings = settings_of(spec, plan, input);
   job.settings.local = local;
-  if (local) refuse_local_without_effect(spec, input.scene, {}, {spec.surfaces.empty() ? "mesh" : spec.surfaces.front()});
+  if (local)
+    refuse_local_without_effect(spec, input.scene, {},
+                                spec.surfaces.empty() ? std::vector<std::string>{"mesh", "level_set", "mesh_level_set"} : spec.surfaces);
   const CameraSettings camera_of = camera_settings(spec.camera, input);
   const FramedSurface framed = framed_input(spec.camera, input);
   check_least(spec, input.scene, camera_of);
@@ -180,8 +180,12 @@ Json plan_json(const PlanJob& job) {
     json["bytes"] = chosen.bytes;
     json["time_ms"] = chosen.time_ms();
     if (answer.ladders[chosen.ladder].local) {
-      json["uniform_triangles"] = answer.uniform ? Json(answer.trials[*answer.uniform].triangles) : Json();
-      json["curvature_triangles"] = answer.curvature_triangles;
+      if (answer.ladders[chosen.ladder].by_tolerance) {
+        json["uniform_triangles"] = answer.uniform ? Json(answer.trials[*answer.uniform].triangles) : Json();
+        json["curvature_triangles"] = answer.curvature_triangles;
+      }
+      json["uniform_bytes"] = answer.uniform_bytes > 0 ? Json(answer.uniform_bytes) : Json();
+      json["curvature_bytes"] = answer.curvature_bytes;
     }
     json["finest"] = trial_json(answer, answer.finest, metric);
     json["finest"]["built"] = answer.finest_was_built;

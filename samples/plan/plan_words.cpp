@@ -36,17 +36,24 @@ std::string budget_words(const PlanSettings& settings) {
 /// Against what is as fine everywhere.
 void add_savings(const PlanAnswer& answer, const PlanTrial& chosen, std::vector<std::string>& out) {
   if (!answer.ladders[chosen.ladder].local) return;
-  const auto times = [&](std::int64_t triangles) {
-    return static_cast<double>(triangles) / std::max<double>(1.0, static_cast<double>(chosen.triangles));
+  // Triangles are what meshes are compared by; a voxel of a local level set takes less memory than one of a uniform one.
+  const bool of_mesh = answer.ladders[chosen.ladder].by_tolerance;
+  const auto part_of = [&](std::int64_t triangles, std::int64_t bytes) {
+    const double own = static_cast<double>(std::max<std::int64_t>(1, of_mesh ? chosen.triangles : chosen.bytes));
+    const double times = static_cast<double>(of_mesh ? triangles : bytes) / own;
+    return std::pair(of_mesh ? fmt::format("{}", triangles) : bytes_text(static_cast<double>(bytes)),
+                     fmt::format("{:.1f} times as {}", times, of_mesh ? "many" : "much"));
   };
-  std::string sentence = fmt::format("It has {} triangles", chosen.triangles);
-  if (answer.uniform) {
-    const PlanTrial& uniform = answer.trials[*answer.uniform];
-    sentence += fmt::format(", a mesh that is as fine everywhere {} ({}, {:.1f} times as many)", uniform.triangles,
-                            answer.ladders[uniform.ladder].words_at(uniform.rung), times(uniform.triangles));
+  std::string sentence = of_mesh ? fmt::format("It has {} triangles", chosen.triangles)
+                                 : fmt::format("It keeps {}", bytes_text(static_cast<double>(chosen.bytes)));
+  if (answer.uniform || answer.uniform_bytes > 0) {
+    const PlanTrial& uniform = answer.uniform ? answer.trials[*answer.uniform] : chosen;
+    const auto [size, times] = part_of(uniform.triangles, answer.uniform_bytes);
+    sentence += fmt::format(", a {} that is as fine everywhere {} ({}, {})", of_mesh ? "mesh" : "level set", size,
+                            answer.ladders[uniform.ladder].words_at(uniform.rung), times);
   }
-  sentence += fmt::format(", one refined by curvature alone, its chords within the tolerance, {} ({:.1f} times as many)",
-                          answer.curvature_triangles, times(answer.curvature_triangles));
+  const auto [size, times] = part_of(answer.curvature_triangles, answer.curvature_bytes);
+  sentence += fmt::format(", one refined by curvature alone{} {} ({})", of_mesh ? ", its chords within the tolerance," : "", size, times);
   out.push_back(sentence + fmt::format("; it holds for {}.", answer.views == 1 ? std::string("this view alone")
                                                                                : fmt::format("these {} views alone", answer.views)));
 }

@@ -33,13 +33,14 @@ BorderErrors worst(const BorderErrors& a, const BorderErrors& b) {
 }
 
 PredictedErrors predicted(const Search& search, size_t ladder, size_t rung) {
-  if (search.answer.ladders[ladder].local) return predict_local_errors(search.answer.ladders[ladder], rung);
+  const Ladder& of = search.answer.ladders[ladder];
+  if (of.by_tolerance) return predict_local_errors(of, rung);
   PredictedErrors errors;
   for (const std::vector<BorderPlace>& places : search.places) {
-    const PredictedErrors one = predict_errors(search.answer.ladders[ladder], rung, places, search.settings.threshold);
+    const PredictedErrors one = predict_errors(of, rung, places, search.settings.threshold);
     errors = {worst(errors.expected, one.expected), worst(errors.low, one.low), worst(errors.high, one.high)};
   }
-  return errors;
+  return of.local ? predict_local_errors(of, errors) : errors;
 }
 
 /// To make grids that are there ready for rays.
@@ -70,6 +71,7 @@ ExperimentObserver observer_of(Search& search) {
                 const SurfaceInfo info = total(model);
                 trial.bytes = info.bytes;
                 trial.triangles = info.triangles;
+                trial.voxels = info.voxels;
                 // Volumes are resampled once and written (limn export); what a coarser grid saves is what it takes from then on.
                 trial.build_ms = search.answer.ladders[trial.ladder].of_file ? ready_ms(model) : info.build_ms;
               },
@@ -111,7 +113,7 @@ PlanTrial try_rung(Search& search, size_t ladder, size_t rung) {
   }
   if (!trial.failed.empty()) trial.measured = {kInfinity, kInfinity};
   trial.trace_ms /= static_cast<double>(search.views.size());
-  if (of.local) search.answer.ladders[ladder].fixed_ms = start_ms(search.run.meshes());
+  if (of.by_tolerance) search.answer.ladders[ladder].fixed_ms = start_ms(search.run.meshes());
   return trial;
 }
 
@@ -144,11 +146,11 @@ std::optional<size_t> fastest(const Search& search) {
 /// The error that theory expects of a rung, worst view.
 double theory_px(const Search& search, size_t ladder, size_t rung) {
   const Ladder& of = search.answer.ladders[ladder];
-  if (of.local) return predict_local_errors(of, rung).expected.of(search.settings.metric);
-  BorderErrors errors;
+  if (of.by_tolerance) return predict_local_errors(of, rung).expected.of(search.settings.metric);
+  PredictedErrors errors;
   for (const std::vector<BorderPlace>& places : search.places)
-    errors = worst(errors, expected_errors(of, rung, places, search.settings.threshold));
-  return errors.of(search.settings.metric);
+    errors.expected = worst(errors.expected, expected_errors(of, rung, places, search.settings.threshold));
+  return (of.local ? predict_local_errors(of, errors) : errors).expected.of(search.settings.metric);
 }
 
 std::vector<Climb> climbs_of(const Search& search) {
@@ -198,7 +200,7 @@ std::optional<size_t> cheapest_next(Search& search) {
       continue;
     }
     // Which ladder wins comes first; how much coarser a local mesh may be saves little, and only if it wins.
-    const bool waits = leads && climb.ladder->local;
+    const bool waits = leads && climb.ladder->local.has_value();
     const double ms = waits ? kInfinity : expected_ms(climb, next_rung(climb, tolerance_px));
     if (!next || ms < next_ms) next = k, next_ms = ms;
   }
@@ -220,7 +222,7 @@ PlanTrial finest_of(const PlanAnswer& answer, const PlanTrial& chosen, bool& was
     if (trial.ladder == chosen.ladder && trial.failed.empty() && trial.rung > from->rung) from = &trial;
   }
   PlanTrial finest = *from;
-  const double growth = std::pow(ladder.size_at(from->rung) / ladder.size_at(last), 2.0);
+  const double growth = std::pow(ladder.size_at(from->rung) / ladder.size_at(last), ladder.growth);
   finest.rung = last;
   finest.bytes = static_cast<std::int64_t>(static_cast<double>(from->bytes) * growth);
   const double fixed_ms = std::min(ladder.fixed_ms, from->build_ms);
@@ -229,23 +231,42 @@ PlanTrial finest_of(const PlanAnswer& answer, const PlanTrial& chosen, bool& was
   return finest;
 }
 
-/// What a local mesh saves, against meshes that are as fine everywhere or wherever the surface bends as much.
+/// Whether the other ladder has the same kind of model, as fine everywhere.
+bool is_uniform_beside(const Ladder& other, const Ladder& local) {
+  if (other.local || other.settings.kind != local.settings.kind) return false;
+  return other.by_level || other.settings.gradient == local.settings.gradient;
+}
+
+/// What a level set of as many voxels as a local one keeps; 0 where it is too large to be built.
+std::int64_t uniform_bytes_beside(const Search& search, const PlanTrial& chosen) {
+  const Ladder& of = search.answer.ladders[chosen.ladder];
+  if (of.by_tolerance) return 0;
+  try {
+    return total(build_model(search.run.experiment().scene, of.at(chosen.rung))).bytes;
+  } catch (const InputError&) {
+    return 0;
+  }
+}
+
+/// What a local model saves, against those that are as fine everywhere or wherever the surface bends as much.
 void compare_local(Search& search, const PlanTrial& chosen) {
   PlanAnswer& answer = search.answer;
   const Ladder& of = answer.ladders[chosen.ladder];
   if (!of.local) return;
   for (size_t k = 0; k < answer.trials.size(); ++k) {
     const PlanTrial& trial = answer.trials[k];
-    if (!answer.ladders[trial.ladder].by_level || !trial.failed.empty()) continue;
+    if (!is_uniform_beside(answer.ladders[trial.ladder], of) || !trial.failed.empty()) continue;
     if (trial.measured.of(search.settings.metric) > search.settings.tolerance_px) continue;
     if (!answer.uniform || trial.rung < answer.trials[*answer.uniform].rung) answer.uniform = k;
   }
+  answer.uniform_bytes = answer.uniform ? answer.trials[*answer.uniform].bytes : uniform_bytes_beside(search, chosen);
   LocalSettings everywhere = *of.local;
   everywhere.tolerance_px = search.settings.tolerance_px;
   everywhere.thresholds.clear();
   everywhere.everywhere = true;
-  answer.curvature_triangles =
-      total(build_local_model(search.run.experiment().scene, of.settings, everywhere, &search.answer.meshes)).triangles;
+  const SurfaceInfo info = total(build_local_model(search.run.experiment().scene, of.at(chosen.rung), everywhere, &search.answer.meshes));
+  answer.curvature_triangles = info.triangles;
+  answer.curvature_bytes = info.bytes;
 }
 
 void choose(Search& search) {
@@ -286,7 +307,7 @@ PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, con
   search.answer.views = views.size();
   search.answer.ladders = ladders_of(scene, settings, &search.answer.notes);
   if (settings.local) {
-    if (auto local = local_ladder(scene, views, settings)) search.answer.ladders.push_back(std::move(*local));
+    for (Ladder& local : local_ladders(scene, views, settings, search.answer.ladders)) search.answer.ladders.push_back(std::move(local));
   }
   if (search.answer.ladders.empty()) {
     throw InputError({{},
@@ -298,7 +319,10 @@ PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, con
   for (const PlanView& view : views) search.places.push_back(border_places(view));
   search.climbs = climbs_of(search);
   for (const PlanTrial& trial : known) {
-    if (!trial_at(search.answer, trial.ladder, trial.rung)) take(search, trial);
+    // Local level sets hang on the plan's tolerance.
+    const Ladder& of = search.answer.ladders[trial.ladder];
+    const bool same = !of.local || of.by_tolerance;
+    if (same && !trial_at(search.answer, trial.ladder, trial.rung)) take(search, trial);
   }
   while (const auto ladder = cheapest_next(search)) {
     const int rung = next_rung(search.climbs[*ladder], settings.tolerance_px);

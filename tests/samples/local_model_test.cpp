@@ -358,5 +358,40 @@ TEST(LocalModel, APlanTriesLocalMeshesAndSaysWhatTheOneChosenSaves) {
   }
 }
 
+/// Within 16 MB no level set that is as fine everywhere has its border right.
+TEST(LocalModel, APlanTriesLocalLevelSetsAndTakesOneWhereMemoryIsShort) {
+  const Scene scene = find_scene("machined_part")->make();
+  PlanView view;
+  view.camera = camera_of(scene, 0, 1, {300, 300});
+  view.truth = solve_truth(scene, view.camera, {}, {});
+  PlanSettings settings;
+  settings.tolerance_px = 0.25;
+  settings.kinds = {"level_set"};
+  settings.local = true;
+  settings.budget_bytes = std::int64_t{16} << 20;
+  ProgressBar bar(false);
+  const PlanAnswer answer = make_plan(scene, {view}, settings, {}, bar);
+  ASSERT_TRUE(answer.chosen);
+  const PlanTrial& chosen = answer.trials[*answer.chosen];
+  const Ladder& ladder = answer.ladders[chosen.ladder];
+  ASSERT_TRUE(ladder.local);
+  EXPECT_EQ(ladder.settings.kind, "level_set");
+  EXPECT_EQ(ladder.local_at(chosen.rung)->cameras.size(), 1u);
+  EXPECT_GT(chosen.voxels, 0);
+  EXPECT_LE(chosen.bytes, *settings.budget_bytes);
+  EXPECT_LE(chosen.measured.border_px, settings.tolerance_px);
+  EXPECT_GT(answer.curvature_bytes, 0);
+  EXPECT_GT(answer.uniform_bytes, *settings.budget_bytes);
+  const std::vector<std::string> said = plan_sentences(answer, settings);
+  const auto saves = [](const std::string& sentence) {
+    return sentence.find("a level set that is as fine everywhere") != std::string::npos;
+  };
+  EXPECT_TRUE(std::any_of(said.begin(), said.end(), saves)) << said[0];
+  // The same model, built again by itself, has the same border.
+  const SceneModel again = build_local_model(scene, ladder.at(chosen.rung), *ladder.local_at(chosen.rung));
+  double trace_ms = 0.0;
+  EXPECT_EQ(measure_errors(again, view, settings.threshold, {}, trace_ms).border_px, chosen.measured.border_px);
+}
+
 }  // namespace
 }  // namespace limn

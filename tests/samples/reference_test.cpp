@@ -191,8 +191,9 @@ TEST(Reference, EveryValueOfJsonHasALineAndEveryLineAValue) {
   const std::set<std::string> rare = {"truth[].failed",         "failed",
                                       "surface.voxel_size",     "views[].conflicts[].what",
                                       "views[].conflicts[].px", "tracks.events[].beside_conflict",
-                                      "uniform_triangles",  // of plans that chose a local mesh
-                                      "curvature_triangles",    "chains[].id"};
+                                      "uniform_triangles",  // of plans that chose a local model
+                                      "curvature_triangles",    "uniform_bytes",
+                                      "curvature_bytes",        "chains[].id"};
   for (const DocumentedKey& one : json_keys())
     EXPECT_TRUE(used.contains(&one) || rare.contains(std::string(one.key))) << one.where << ": " << one.key << " has no value";
 }

@@ -8,6 +8,7 @@
 #include "raymarch/metric.h"
 #include "samples/compare/comparison.h"
 #include "samples/experiment/job.h"
+#include "samples/experiment/local_request.h"
 #include "samples/experiment/no_effect.h"
 #include "samples/experiment/thread_settings.h"
 #include "samples/python/arrays.h"
@@ -82,7 +83,7 @@ Experiment experiment_of(const CallSettings& settings, const Comparison& compari
   experiment.scene = comparison.reference().scene;
   experiment.cameras = {camera_of(settings, input)};
   for (const ComparedModel& model : comparison.models)
-    experiment.models.push_back({model.title, model.scene, model.surface, model.skipped});
+    experiment.models.push_back({model.title, model.scene, model.surface, model.skipped, model.local});
   const std::vector<MethodCall> calls = method_calls(settings.spec.border, input);
   experiment.methods.push_back({methods_text(calls), calls, truth_threshold(calls)});
   for (const Metric& metric : metrics())
@@ -124,7 +125,9 @@ std::vector<Row> measure(const py::object& scene, const CallFields& fields) {
     std::vector<std::string> warnings;
     SceneInput input = load_source(source, settings.spec, warnings);
     SurfaceSettings surface = surface_settings(settings.spec, input);
+    if (settings.local_px && surface.kind.empty()) surface.kind = "mesh";
     refuse_without_effect(settings.spec.surface, input, {.kinds = {surface.kind}});
+    if (settings.local_px) refuse_local_without_effect(settings.spec, input.scene, surface, {surface.kind});
     refuse_reference_without_effect(settings.spec, input);
     const std::string kind = surface.kind;
     surface.kind.clear();
@@ -133,6 +136,9 @@ std::vector<Row> measure(const py::object& scene, const CallFields& fields) {
         kind.empty() ? std::vector<std::string>{natural_surface(input.scene.objects.front())} : std::vector{kind};
     Comparison comparison = plan_comparison(input, surface, only, gradient_chosen);
     comparison.models.resize(std::min<size_t>(comparison.models.size(), 2));
+    if (settings.local_px)
+      plan_local(local_settings(*settings.local_px, false, method_calls(settings.spec.border, input), {camera_of(settings, input)}),
+                 comparison);
     if (!comparison.models.back().skipped.empty()) throw InputError({"", "surface", kind, comparison.models.back().skipped, ""});
     return measured_rows(experiment_of(settings, comparison, input), execution_of(settings.spec.threads, stopped));
   });

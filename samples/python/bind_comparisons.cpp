@@ -25,7 +25,9 @@ std::shared_ptr<Comparison> compare(const py::object& scene, const CallFields& f
     const ThreadLimit threads(settings.spec.threads);
     std::vector<std::string> warnings;
     SceneInput input = load_source(source, settings.spec, warnings);
-    auto comparison = std::make_shared<Comparison>(comparison_for(settings.spec, input, warnings));
+    std::optional<ComparedLocal> local;
+    if (settings.local_px) local = ComparedLocal{*settings.local_px, false};
+    auto comparison = std::make_shared<Comparison>(comparison_for(settings.spec, input, warnings, local));
     refuse_uncompared(settings.spec, input, *comparison);
     const ComparedModel& last = comparison->models.back();
     check_limits(settings.spec.limits, last.scene, last.surface, picture_load(comparison->camera, comparison->picture, 1, true));

@@ -71,7 +71,8 @@ std::shared_ptr<DrawnPicture> draw(const Source& source, CallSettings& settings,
   drawn->counts = count_hits(drawn->picture.gbuffer);
   for (std::string& reason : why_empty(input.scene, model->model, drawn->camera, drawn->counts))
     drawn->warnings.push_back(std::move(reason));
-  drawn->call = resolved_call("render", settings.spec, {input.scene, model->settings, {model->settings.kind}}, drawn->camera, picture);
+  drawn->call = resolved_call("render", settings.spec, {input.scene, model->settings, {model->settings.kind}, model->local_px},
+                              drawn->camera, picture);
   return drawn;
 }
 

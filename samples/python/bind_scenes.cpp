@@ -9,6 +9,7 @@
 #include "samples/experiment/flat_input.h"
 #include "samples/experiment/job.h"
 #include "samples/experiment/limits.h"
+#include "samples/experiment/local_request.h"
 #include "samples/experiment/no_effect.h"
 #include "samples/experiment/thread_settings.h"
 #include "samples/experiment/warnings.h"
@@ -148,7 +149,8 @@ std::shared_ptr<const ModelOfPython> model_for(const Source& source, CallSetting
   if (source.model) {
     const SurfaceSpec& surface = spec.surface;
     const bool any = !spec.surfaces.empty() || surface.voxels || surface.voxel_size || surface.half_width_voxels || surface.gradient ||
-                     surface.level || surface.level_for_view || surface.scheme || surface.normals || surface.smooth_angle_deg;
+                     surface.level || surface.level_for_view || surface.scheme || surface.normals || surface.smooth_angle_deg ||
+                     settings.local_px;
     if (any) throw InputError({"", "surface", "", "has no effect: the model is built already", "settings of the surface in limn.model()"});
     spec.input = source.model->scene.source;
     return source.model;
@@ -159,18 +161,26 @@ std::shared_ptr<const ModelOfPython> model_for(const Source& source, CallSetting
   model->scene.source = spec.input;
   model->settings = surface_settings(spec, input);
   model->settings.progress = stop_at_progress(stopped);
+  if (settings.local_px && model->settings.kind.empty()) model->settings.kind = "mesh";
+  if (settings.local_px) refuse_local_without_effect(spec, input.scene, model->settings, {model->settings.kind});
   refuse_without_effect(spec.surface, input, {.kinds = {model->settings.kind}});
   // Before anything is built: a camera that is wrong, and what would not fit.
   model->framed = framed_input(spec.camera, input);
   const Camera camera =
       camera_of_view(camera_settings(spec.camera, input), model->framed, framing_settings(spec.camera), settings.view, spec.views);
-  check_limits(spec.limits, input.scene, model->settings, picture_load(camera, picture_settings(spec.border, input), 1, false));
+  model->local_px = settings.local_px.value_or(0.0);
+  // A local level set says itself when it needs too much: what it takes is not known before.
+  if (!settings.local_px || !has_local_bricks(model->settings.kind))
+    check_limits(spec.limits, input.scene, model->settings, picture_load(camera, picture_settings(spec.border, input), 1, false));
   if (spec.surface.level_for_view) model->notes = refine_for_views(model->settings, {&camera, 1}, input.scene);
   model->mostly_flat = input.kind != InputKind::built_in && flat_share(input.scene, model->settings) > kMostlyFlat;
   // Once, for however many pictures.
   const std::vector<std::string> found = warnings_of(input.scene, model->settings, {.methods = names_of(method_calls(spec.border, input))});
   model->warnings.insert(model->warnings.end(), found.begin(), found.end());
-  model->model = build_model(input.scene, model->settings);
+  model->model = settings.local_px
+                     ? build_local_model(input.scene, model->settings,
+                                         local_settings(*settings.local_px, false, method_calls(spec.border, input), {camera}))
+                     : build_model(input.scene, model->settings);
   model->settings.progress = {};
   const SurfaceInfo info = total(model->model);
   model->warnings.insert(model->warnings.end(), info.warnings.begin(), info.warnings.end());

@@ -86,7 +86,8 @@ std::string plan(const py::object& scene, const CallFields& fields) {
     const SceneInput input = load_source(source, settings.spec, warnings);
     refuse_eye_of_views(settings.spec.camera, settings.spec.views);
     ProgressBar none(false);
-    Json json = plan_json(plan_for(settings.spec, settings.plan, input, none, execution_of(settings.spec.threads, stopped)));
+    Json json =
+        plan_json(plan_for(settings.spec, settings.plan, input, none, execution_of(settings.spec.threads, stopped), settings.plan_local));
     json["warnings"] = warnings;
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
   });

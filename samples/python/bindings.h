@@ -46,6 +46,7 @@ struct ModelOfPython {
   std::vector<std::string> warnings{}, notes{};
   FramedSurface framed{};    ///< What cameras frame where the call leaves that open.
   bool mostly_flat = false;  ///< A rim would ink whole faces.
+  double local_px = 0.0;     ///< Of a local model its tolerance; else 0.
 };
 
 /// What a call draws or measures: exactly one is set.

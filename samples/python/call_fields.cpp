@@ -203,6 +203,12 @@ void add_sweep(Readers& readers) {
 }
 
 void add_plan(Readers& readers) {
+  readers["local"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
+    settings.local_px = parse_number_above(field, text, 0.0, false, "a number of pixels above 0");
+  };
+  readers["local_models"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
+    settings.plan_local = flag_of_text(field, text);
+  };
   readers["tolerance"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
     settings.plan.tolerance_px = parse_number_above(field, text, 0.0, false, "a number of pixels above 0");
   };

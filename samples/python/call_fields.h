@@ -25,6 +25,8 @@ struct CallSettings {
   SweepSpec sweep{};
   bool fresh = false;  ///< What an earlier study left in the folder goes.
   PlanSpec plan{};
+  bool plan_local = false;           ///< The plan tries local models, too.
+  std::optional<double> local_px{};  ///< The model is local, of that tolerance.
   LineSettings lines{};
   DrawingSettings drawing{.style = built_in_style("plain")};
   JudgeSettings judge{};

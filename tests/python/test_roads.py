@@ -20,6 +20,11 @@ CALLS = {
         ["gyroid", "--surface", "level_set", "--voxels", "48", "--gradient", "cubic"],
         dict(scene="gyroid", surface="level_set", voxels=48, gradient="cubic"),
     ),
+    "local level set": (
+        ["machined_part", "--surface", "level_set", "--voxels", "256", "--local", "0.5"],
+        dict(scene="machined_part", surface="level_set", voxels=256, local=0.5),
+    ),
+    "local mesh": (["teacup", "--local", "0.5"], dict(scene="teacup", local=0.5)),
     "cage": (["teacup", "--level", "2"], dict(scene="teacup", level=2)),
     "several methods": (
         ["rook", "--method", "rim", "--method", "edge_quads", "--set", "rim.threshold=0.3", "--surface", "mesh", "--level", "2"],
@@ -242,6 +247,14 @@ class Numbers(TestCase):
             self.assertEqual(expected[name], plan[name], name)
         self.assertEqual(expected["chosen"]["parameters"], plan.chosen["parameters"])
         self.assertLessEqual(limn.measure("ellipsoid", **plan.settings, **MADE)["border_error_p95"], 0.5)
+
+    def test_a_plan_of_local_models_draws_and_measures_what_it_chose(self):
+        small = dict(size=(300, 300))
+        plan = limn.plan("machined_part", tolerance=0.5, surfaces="level_set", budget="6M", local=True, **small)
+        self.assertIn("local", plan.settings)
+        self.assertEqual(limn.model("machined_part", **plan.settings, **small).info["bytes"], plan.chosen["bytes"])
+        measured = limn.measure("machined_part", **plan.settings, **small)["border_error_p95"]
+        self.assertAlmostEqual(measured, plan.chosen["measured_px"], delta=1e-9)
 
     def test_judgements_are_the_same(self):
         self.program("contours", "machined_part", *SIZE, "-o", self.file("drawing.svg"))

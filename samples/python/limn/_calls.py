@@ -30,6 +30,7 @@ def model(
     normals: Optional[str] = None,
     smooth_angle: Optional[float] = None,
     grids: Names = None,
+    local: Optional[float] = None,
     camera: Optional[AnyCamera] = None,
     size: Optional[Tuple[int, int]] = None,
     threads: Optional[int] = None,
@@ -40,10 +41,12 @@ def model(
     surface: a representation (limn.names("surfaces")); missing: what each object is by itself. voxels along the longest side, or
     voxel_size in world units; half_width of the band in voxels; gradient: how normals are read from level sets. level: refinements of
     cages and tessellations, 0 to 8, or "auto": as many as a picture by this camera and size shows. scheme: makes meshes cages. normals:
-    "flat", "vertex" or "limit". smooth_angle: degrees. grids: of a volume. threads: 0 is all. max_memory: bytes, or such as "4G".
+    "flat", "vertex" or "limit". smooth_angle: degrees. grids: of a volume. local: pixels; the model is
+    fine where the border of this camera's picture runs, and coarse elsewhere: a mesh, or with surface "level_set" or "mesh_level_set"
+    bricks of several voxel sizes. threads: 0 is all. max_memory: bytes, or such as "4G".
     """
     fields: _text.Fields = []
-    _settings.surface_fields(fields, surface, voxels, voxel_size, half_width, gradient, level, scheme, normals, smooth_angle, grids)
+    _settings.surface_fields(fields, surface, voxels, voxel_size, half_width, gradient, level, scheme, normals, smooth_angle, grids, local)
     _settings.camera_fields(fields, camera, size)
     _settings.execution_fields(fields, threads, max_memory)
     return _limn.build(source_of(scene), fields)
@@ -75,6 +78,7 @@ def render(
     normals: Optional[str] = None,
     smooth_angle: Optional[float] = None,
     grids: Names = None,
+    local: Optional[float] = None,
     threads: Optional[int] = None,
     max_memory: Union[int, str, None] = None,
 ) -> Picture:
@@ -89,7 +93,7 @@ def render(
     files (Cryptomatte). Settings of the surface as for model(); a Model takes none.
     """
     fields: _text.Fields = []
-    _settings.surface_fields(fields, surface, voxels, voxel_size, half_width, gradient, level, scheme, normals, smooth_angle, grids)
+    _settings.surface_fields(fields, surface, voxels, voxel_size, half_width, gradient, level, scheme, normals, smooth_angle, grids, local)
     _settings.camera_fields(fields, camera, size, view, views)
     _settings.method_fields(fields, methods, parameters)
     _settings.picture_fields(fields, samples, background)
@@ -219,14 +223,15 @@ def measure(
     normals: Optional[str] = None,
     smooth_angle: Optional[float] = None,
     grids: Names = None,
+    local: Optional[float] = None,
     threads: Optional[int] = None,
 ) -> Measures:
     """What the metrics (limn.names("metrics")) say of one model: its picture against the reference's, its border against the true one.
 
-    surface: the representation that is measured; missing: the scene's own. The numbers are those of `limn compare`.
+    surface: the representation that is measured; missing: the scene's own. local: pixels, as for model(). The numbers are those of `limn compare`.
     """
     fields: _text.Fields = []
-    _settings.surface_fields(fields, surface, voxels, voxel_size, half_width, gradient, level, scheme, normals, smooth_angle, grids)
+    _settings.surface_fields(fields, surface, voxels, voxel_size, half_width, gradient, level, scheme, normals, smooth_angle, grids, local)
     _settings.camera_fields(fields, camera, size, view, views)
     _settings.method_fields(fields, methods, parameters)
     _settings.picture_fields(fields, samples, None)
@@ -256,6 +261,7 @@ def compare(
     normals: Optional[str] = None,
     smooth_angle: Optional[float] = None,
     grids: Names = None,
+    local: Optional[float] = None,
     threads: Optional[int] = None,
     max_memory: Union[int, str, None] = None,
 ) -> Comparison:
@@ -265,7 +271,7 @@ def compare(
     only these representations. methods: a column each, or "all"; missing: rim. The other settings as for render().
     """
     fields: _text.Fields = []
-    _settings.surface_fields(fields, surfaces, voxels, voxel_size, half_width, gradient, level, scheme, normals, smooth_angle, grids)
+    _settings.surface_fields(fields, surfaces, voxels, voxel_size, half_width, gradient, level, scheme, normals, smooth_angle, grids, local)
     _settings.camera_fields(fields, camera, size)
     _settings.method_fields(fields, methods, parameters, "column")
     _settings.picture_fields(fields, samples, background)
@@ -353,12 +359,13 @@ def plan(
     scheme: Optional[str] = None,
     smooth_angle: Optional[float] = None,
     grids: Names = None,
+    local: bool = False,
     threads: Optional[int] = None,
 ) -> Plan:
     """Finds the cheapest model whose border is right to a tolerance, as `limn plan` does.
 
     tolerance: pixels; 95 % of the border lies within. metric: "border" or "silhouette". budget: "64M", "200ms", or both. threshold: N.V
-    where the rim's ink ends. limn.render(scene, **plan.settings) draws from the chosen model.
+    where the rim's ink ends. local: local models are tried, too. limn.render(scene, **plan.settings) draws from the chosen model.
     """
     fields: _text.Fields = [("tolerance", _text.number(tolerance)), ("metric", str(metric))]
     _text.add_all(fields, "budget", _text.listed("budget", budget))
@@ -367,6 +374,8 @@ def plan(
     if threshold is not None:
         fields.append(("set", f"rim.threshold={_text.number(threshold)}"))
     _text.add(fields, "reference", reference)
+    if local:
+        fields.append(("local_models", "True"))
     _settings.execution_fields(fields, threads)
     return Plan(json.loads(_limn.plan(source_of(scene), fields)))
 

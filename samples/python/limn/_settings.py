@@ -81,6 +81,7 @@ def surface_fields(
     normals: Optional[str] = None,
     smooth_angle: Optional[float] = None,
     grids: Names = None,
+    local: Optional[float] = None,
 ) -> None:
     """How surfaces are modelled."""
     _text.add_all(fields, "surface", _text.listed("surface", surface))
@@ -93,6 +94,7 @@ def surface_fields(
     _text.add(fields, "normals", normals)
     _text.add(fields, "smooth_angle", None if smooth_angle is None else _text.number(smooth_angle))
     _text.add_all(fields, "grid", _text.listed("grids", grids))
+    _text.add(fields, "local", None if local is None else _text.number(local))
 
 
 def method_fields(fields: Fields, methods: Names, parameters: Optional[Mapping[str, Any]], name: str = "method") -> None:

@@ -18,11 +18,23 @@ inline SplineWeights spline_weights(double u) {
           .second = {v, 3.0 * u - 2.0, 3.0 * v - 2.0, u}};
 }
 
-/// Spline coefficients at the 4 x 4 x 4 nodes about a cell: c = f - (second differences of f along the three axes) / 6. The sum of the
-/// three in place of the full product still reproduces every polynomial of degree 3, which is all that third order in the gradient
-/// takes (quasi-interpolation: Condat, Blu, Unser 2005), and it reads axis neighbours only.
+/// Of the 4 x 4 x 4 nodes about a cell, by spline_place().
+using SplineCoefficients = std::array<double, 64>;
+constexpr size_t spline_place(int x, int y, int z) { return static_cast<size_t>((x * 4 + y) * 4 + z); }
+
+/// The spline's coefficient at a node, from values in rows of `row` along z, in planes of as many rows:
+/// c = f - (second differences of f along the three axes) / 6. The sum of the three in place of the full product still reproduces every
+/// polynomial of degree 3, which is all that third order in the gradient takes (quasi-interpolation: Condat, Blu, Unser 2005), and it
+/// reads axis neighbours only.
+template <int row>
+double spline_coefficient(const double* f) {
+  const double neighbours = f[-row * row] + f[row * row] + f[-row] + f[row] + f[-1] + f[1];
+  return 2.0 * f[0] - neighbours / 6.0;
+}
+
+/// Spline coefficients at the 4 x 4 x 4 nodes about a cell.
 template <class Accessor>
-std::array<double, 64> spline_coefficients(const Accessor& accessor, const nanovdb::Coord& node) {
+SplineCoefficients spline_coefficients(const Accessor& accessor, const nanovdb::Coord& node) {
   std::array<double, 216> f;  // nodes -2..3; the far corners of the block are never needed
   const auto index = [](int x, int y, int z) {
     const int place = (x * 6 + y) * 6 + z;
@@ -31,19 +43,15 @@ std::array<double, 64> spline_coefficients(const Accessor& accessor, const nanov
   for (int x = 0; x < 6; ++x)
     for (int y = 0; y < 6; ++y)
       if (x % 5 != 0 || y % 5 != 0) row_values(accessor, node.offsetBy(x - 2, y - 2, -2), 6, &f[index(x, y, 0)]);
-  std::array<double, 64> c;
-  for (int x = 1; x < 5; ++x)
-    for (int y = 1; y < 5; ++y)
-      for (int z = 1; z < 5; ++z) {
-        const size_t at = index(x, y, z);
-        const double neighbours = f[at - 36] + f[at + 36] + f[at - 6] + f[at + 6] + f[at - 1] + f[at + 1];
-        c[static_cast<size_t>(((x - 1) * 4 + y - 1) * 4 + z - 1)] = 2.0 * f[at] - neighbours / 6.0;
-      }
+  SplineCoefficients c;
+  for (int x = 0; x < 4; ++x)
+    for (int y = 0; y < 4; ++y)
+      for (int z = 0; z < 4; ++z) c[spline_place(x, y, z)] = spline_coefficient<6>(&f[index(x + 1, y + 1, z + 1)]);
   return c;
 }
 
 /// As jet_of_spline()'s, to the bit.
-inline double value_of_spline(const std::array<double, 64>& c, const glm::dvec3& local) {
+inline double value_of_spline(const SplineCoefficients& c, const glm::dvec3& local) {
   const SplineWeights x = spline_weights(local.x), y = spline_weights(local.y), z = spline_weights(local.z);
   double sum = 0.0;
   for (size_t i = 0; i < 4; ++i)
@@ -56,7 +64,7 @@ inline double value_of_spline(const std::array<double, 64>& c, const glm::dvec3&
 }
 
 /// Value, gradient and (where asked for) Hessian by index coordinates.
-inline FieldJet jet_of_spline(const std::array<double, 64>& c, const glm::dvec3& local, bool with_hessian) {
+inline FieldJet jet_of_spline(const SplineCoefficients& c, const glm::dvec3& local, bool with_hessian) {
   const SplineWeights x = spline_weights(local.x), y = spline_weights(local.y), z = spline_weights(local.z);
   FieldJet jet;
   glm::dmat3& h = jet.hessian;

@@ -63,33 +63,41 @@ inline double value_of_spline(const SplineCoefficients& c, const glm::dvec3& loc
   return sum;
 }
 
+/// Two numbers at once, for the plain instructions of every machine.
+using SplinePair = double __attribute__((vector_size(16)));
+
 /// Value, gradient and (where asked for) Hessian by index coordinates.
 inline FieldJet jet_of_spline(const SplineCoefficients& c, const glm::dvec3& local, bool with_hessian) {
   const SplineWeights x = spline_weights(local.x), y = spline_weights(local.y), z = spline_weights(local.z);
-  FieldJet jet;
-  glm::dmat3& h = jet.hessian;
+  SplinePair of_value_x{}, of_y_z{}, of_xx_yy{}, of_y_xy{}, of_xz_yz{}, of_z_zz{};
   for (size_t i = 0; i < 4; ++i)
     for (size_t j = 0; j < 4; ++j) {
-      double value = 0.0, first = 0.0, second = 0.0;  // of the row along z
-      for (size_t k = 0; k < 4; ++k) {
-        const double coefficient = c[(i * 4 + j) * 4 + k];
-        value += z.value[k] * coefficient;
-        first += z.first[k] * coefficient;
-        second += z.second[k] * coefficient;
+      const double* const row = &c[(i * 4 + j) * 4];
+      SplinePair value_first{};  // of the row along z
+      for (size_t k = 0; k < 4; ++k) value_first += SplinePair{z.value[k], z.first[k]} * row[k];
+      const SplinePair along_x{x.value[i], x.first[i]}, plain = along_x * y.value[j];
+      of_value_x += plain * value_first[0];
+      if (!with_hessian) {
+        of_y_z += SplinePair{x.value[i] * y.first[j], plain[0]} * value_first;
+        continue;
       }
-      jet.value += x.value[i] * y.value[j] * value;
-      jet.gradient += glm::dvec3(x.first[i] * y.value[j] * value, x.value[i] * y.first[j] * value, x.value[i] * y.value[j] * first);
-      if (!with_hessian) continue;
-      h[0][0] += x.second[i] * y.value[j] * value;
-      h[1][1] += x.value[i] * y.second[j] * value;
-      h[2][2] += x.value[i] * y.value[j] * second;
-      h[1][0] += x.first[i] * y.first[j] * value;
-      h[2][0] += x.first[i] * y.value[j] * first;
-      h[2][1] += x.value[i] * y.first[j] * first;
+      double second = 0.0;
+      for (size_t k = 0; k < 4; ++k) second += z.second[k] * row[k];
+      const SplinePair slope_y = along_x * y.first[j];
+      of_y_xy += slope_y * value_first[0];
+      of_xx_yy += SplinePair{x.second[i], x.value[i]} * SplinePair{y.value[j], y.second[j]} * value_first[0];
+      of_xz_yz += SplinePair{plain[1], slope_y[0]} * value_first[1];
+      of_z_zz += plain[0] * SplinePair{value_first[1], second};
     }
-  h[0][1] = h[1][0];
-  h[0][2] = h[2][0];
-  h[1][2] = h[2][1];
+  FieldJet jet;
+  jet.value = of_value_x[0];
+  if (!with_hessian) {
+    jet.gradient = {of_value_x[1], of_y_z[0], of_y_z[1]};
+    return jet;
+  }
+  jet.gradient = {of_value_x[1], of_y_xy[0], of_z_zz[0]};
+  const double xy = of_y_xy[1], xz = of_xz_yz[0], yz = of_xz_yz[1];
+  jet.hessian = {{of_xx_yy[0], xy, xz}, {xy, of_xx_yy[1], yz}, {xz, yz, of_z_zz[1]}};
   return jet;
 }
 

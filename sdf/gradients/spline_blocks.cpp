@@ -62,7 +62,7 @@ const SplineBlocks::Block* SplineBlocks::block_of(const Leaf& leaf) const {
 SplineCoefficients SplineBlocks::cell(const nanovdb::Coord& node) const {
   const nanovdb::Coord low = node.offsetBy(-1);
   // The cell's nodes lie in up to two blocks along each axis.
-  const auto split = [&](int axis) { return std::min(4, kSide - (low[axis] & (kSide - 1))); };
+  const auto split = [&](nanovdb::Coord::IndexType axis) { return std::min(4, kSide - (low[axis] & (kSide - 1))); };
   const auto accessor = data_.accessor();
   SplineCoefficients c;
   const std::array<int, 3> in_first{split(0), split(1), split(2)};

@@ -42,7 +42,10 @@ const SplineBlocks::Block* SplineBlocks::block_of(const Leaf& leaf) const {
   constexpr int kRow = kSide + 2;
   std::array<double, static_cast<size_t>(kRow * kRow * kRow)> f;  // a node more on every side
   const auto accessor = data_.accessor();
-  const auto index = [](int x, int y, int z) { return static_cast<size_t>((x * kRow + y) * kRow + z); };
+  const auto index = [](int x, int y, int z) {
+    const int place = (x * kRow + y) * kRow + z;
+    return static_cast<size_t>(place);
+  };
   const auto is_end = [](int x) { return x == 0 || x == kRow - 1; };
   for (int x = 0; x < kRow; ++x)
     for (int y = 0; y < kRow; ++y)

@@ -20,7 +20,10 @@ inline SplineWeights spline_weights(double u) {
 
 /// Of the 4 x 4 x 4 nodes about a cell, by spline_place().
 using SplineCoefficients = std::array<double, 64>;
-constexpr size_t spline_place(int x, int y, int z) { return static_cast<size_t>((x * 4 + y) * 4 + z); }
+constexpr size_t spline_place(int x, int y, int z) {
+  const int place = (x * 4 + y) * 4 + z;
+  return static_cast<size_t>(place);
+}
 
 /// The spline's coefficient at a node, from values in rows of `row` along z, in planes of as many rows:
 /// c = f - (second differences of f along the three axes) / 6. The sum of the three in place of the full product still reproduces every

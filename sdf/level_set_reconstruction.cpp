@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "sdf/field_program.h"
-#include "sdf/gradients/spline_cell.h"
+#include "sdf/gradients/spline_blocks.h"
 #include "sdf/level_set_data.h"
 #include "sdf/number_interval.h"
 #include "sdf/parallel.h"
@@ -17,11 +17,11 @@ namespace {
 
 constexpr double kNearCorner = 0.2;  // of a voxel
 
-/// Coefficients of the cells that a thread looked at last: making them takes far longer than a value.
+/// Coefficients of the cells that a thread looked at last: putting them together takes longer than a value.
 struct CellCache {
   struct Entry {
     nanovdb::Coord node{std::numeric_limits<int>::max(), 0, 0};
-    std::array<double, 64> coefficients{};
+    SplineCoefficients coefficients{};
   };
   std::vector<Entry> entries{kCells};
 
@@ -34,12 +34,13 @@ struct CellCache {
 
 struct Spline {
   LevelSet level_set;
+  std::shared_ptr<const SplineBlocks> blocks = std::make_shared<const SplineBlocks>(level_set.data());
   std::shared_ptr<tbb::enumerable_thread_specific<CellCache>> caches = std::make_shared<tbb::enumerable_thread_specific<CellCache>>();
 
-  const std::array<double, 64>& coefficients_at(const nanovdb::Coord& node) const {
+  const SplineCoefficients& coefficients_at(const nanovdb::Coord& node) const {
     CellCache::Entry& entry = caches->local().entries[CellCache::place_of(node)];
     if (entry.node != node) {
-      entry.coefficients = spline_coefficients(level_set.data().accessor(), node);
+      entry.coefficients = blocks->cell(node);
       entry.node = node;
     }
     return entry.coefficients;

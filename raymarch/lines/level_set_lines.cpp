@@ -9,6 +9,7 @@
 
 #include "raymarch/lines/curve_walk.h"
 #include "raymarch/lines/found_curves.h"
+#include "raymarch/lines/level_set_lattice.h"
 #include "raymarch/lines/level_set_layers.h"
 #include "raymarch/lines/line_memory.h"
 #include "sdf/field_program.h"
@@ -27,9 +28,6 @@ constexpr double kFlat = 1e-10;    // the square of the sine between the gradien
 constexpr double kClose = 1e-5;    // voxels: what is left after such a step is about its square
 constexpr double kMostOff = 0.25;  // voxels
 
-constexpr size_t kBlock = 256;
-constexpr int kRegionBits = 4, kRegion = 1 << kRegionBits;  // cells along a region's side
-constexpr int kIndexBits = 20;                              // of a cell along an axis
 constexpr size_t kMostKeptBytes = size_t{512} << 20;
 
 void append(const CellCurves& from, CellCurves& to) {
@@ -37,40 +35,10 @@ void append(const CellCurves& from, CellCurves& to) {
   to.links.insert(to.links.end(), from.links.begin(), from.links.end());
 }
 
-/// Calls `visit(part, begin, end)` for blocks of so many cells from many threads.
-template <class Visit>
-void for_blocks(size_t cells, const ExecutionSettings& execution, const Visit& visit) {
-  parallel_for(size_t{0}, (cells + kBlock - 1) / kBlock, [&](size_t part) {
-    if (execution.cancelled && execution.cancelled()) throw Cancelled{};
-    visit(part, part * kBlock, std::min(cells, (part + 1) * kBlock));
-  });
-}
-
-std::uint64_t packed(const glm::ivec3& cell, int bits) {
-  const auto part = [](int v) { return static_cast<std::uint64_t>(v); };
-  return (part(cell.x) << bits | part(cell.y)) << bits | part(cell.z);
-}
-glm::ivec3 unpacked(std::uint64_t key, int bits) {
-  const auto part = [&](int shift) { return static_cast<int>(key >> shift & ((std::uint64_t{1} << bits) - 1)); };
-  return {part(2 * bits), part(bits), part(0)};
-}
-/// Cells by their regions, and within these by their places.
-std::uint64_t region_of(const glm::ivec3& cell) { return packed(cell >> kRegionBits, kIndexBits - kRegionBits); }
-std::uint64_t key_of(const glm::ivec3& cell) { return region_of(cell) << 3 * kRegionBits | packed(cell & (kRegion - 1), kRegionBits); }
-glm::ivec3 cell_of(std::uint64_t key) {
-  return unpacked(key >> 3 * kRegionBits, kIndexBits - kRegionBits) * kRegion + unpacked(key, kRegionBits);
-}
-
-/// Cells of a cubic lattice in solver space that a contour, or the rim's curve, may go through, region by region.
-struct Lattice {
-  CellGrid grid{};
-  std::vector<glm::ivec3> cells{};
-};
-
 /// Cells whose normals may take one of the levels of N.V.
 std::vector<SurfaceCell> turning_cells(const PlacedLevelSet& placed, const LineTask& task, const std::vector<double>& levels,
                                        const ExecutionSettings& execution) {
-  std::vector<std::vector<SurfaceCell>> parts((placed.cells.size() + kBlock - 1) / kBlock);
+  std::vector<std::vector<SurfaceCell>> parts(blocks_of(placed.cells.size()));
   for_blocks(placed.cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const SurfaceCell& cell = placed.cells[i];
@@ -89,70 +57,17 @@ std::vector<SurfaceCell> turning_cells(const PlacedLevelSet& placed, const LineT
   return cells;
 }
 
-Lattice lattice_of(const PlacedLevelSet& placed, const std::vector<SurfaceCell>& cells, const ExecutionSettings& execution) {
-  Lattice lattice;
-  lattice.grid.side = placed.voxel;
-  const glm::dmat3& linear = placed.solver_from_index.linear;
-  const bool aligned = linear == glm::dmat3(linear[0][0]) && linear[0][0] > 0.0;
-  // Nodes of the lattice are nodes of the level set where that is possible; indices are to be positive.
-  glm::ivec3 lowest(0);
-  if (aligned) {
-    for (const SurfaceCell& cell : placed.cells) lowest = glm::min(lowest, cell.node);
-    lowest -= 2;
-    lattice.grid.corner = placed.solver_from_index.point(glm::dvec3(lowest));
-  } else {
-    lattice.grid.corner = placed.box.lower - 2.0 * placed.voxel;
-  }
-  const auto cell_at = [&](const glm::dvec3& p) { return glm::ivec3(glm::floor((p - lattice.grid.corner) / lattice.grid.side)); };
-  std::vector<std::vector<std::uint64_t>> parts((cells.size() + kBlock - 1) / kBlock);
-  for_blocks(cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const SurfaceCell& cell = cells[i];
-      const glm::dvec3 middle = placed.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
-      const glm::ivec3 own = aligned ? cell.node - lowest : cell_at(middle);
-      const int around = aligned && !cell.near_corner ? 0 : 1;
-      for (int x = -around; x <= around; ++x)
-        for (int y = -around; y <= around; ++y)
-          for (int z = -around; z <= around; ++z) parts[part].push_back(key_of(own + glm::ivec3(x, y, z)));
-    }
-  });
-  std::vector<std::uint64_t> keys;
-  for (const auto& part : parts) keys.insert(keys.end(), part.begin(), part.end());
-  parallel_sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  lattice.cells.resize(keys.size());
-  for_blocks(keys.size(), execution, [&](size_t, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) lattice.cells[i] = cell_of(keys[i]);
-  });
-  return lattice;
-}
-
-/// Cells of one region.
-struct Region {
-  size_t begin = 0, end = 0;
-  LatticeSamples* samples = nullptr;
-};
-std::vector<Region> regions_of(const Lattice& lattice, LatticeMemory& memory) {
-  memory.prepare(lattice.grid, kMostKeptBytes);
-  std::vector<Region> regions;
-  for (size_t begin = 0, end = 0; begin < lattice.cells.size(); begin = end) {
-    const std::uint64_t region = region_of(lattice.cells[begin]);
-    while (end < lattice.cells.size() && region_of(lattice.cells[end]) == region) ++end;
-    regions.push_back({begin, end, &memory.regions[region].branches[0]});
-  }
-  return regions;
-}
-
-CellOutput march(const CellSearch& search, size_t branch, const Lattice& lattice, LatticeMemory& memory,
+CellOutput march(const CellSearch& search, size_t branch, const SurfaceLattice& lattice, LatticeMemory& memory,
                  const ExecutionSettings& execution) {
-  const std::vector<Region> regions = regions_of(lattice, memory);
-  std::vector<CellOutput> parts(regions.size());
-  parallel_for(size_t{0}, regions.size(), [&](size_t r) {
+  memory.prepare(lattice.grid, kMostKeptBytes);
+  std::vector<LatticeSamples*> samples;
+  for (const LatticePart& region : lattice.regions) samples.push_back(&memory.regions[region.key].branches[0]);
+  std::vector<CellOutput> parts(lattice.regions.size());
+  parallel_for(size_t{0}, parts.size(), [&](size_t r) {
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
     FieldEvaluator evaluator(search.sharp.branches[branch]);
-    for (size_t i = regions[r].begin; i < regions[r].end; ++i)
-      march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, regions[r].samples, parts[r],
-                 true);
+    for (size_t i = lattice.regions[r].begin; i < lattice.regions[r].end; ++i)
+      march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, samples[r], parts[r], true);
   });
   CellOutput all;
   for (const CellOutput& part : parts) {
@@ -184,8 +99,8 @@ CellCurves march_pair(const CellSearch& search, const PlacedLevelSet& one, const
                       const ExecutionSettings& execution) {
   const PlacedLevelSet &own = one.voxel <= other.voxel ? one : other, &second = one.voxel <= other.voxel ? other : one;
   if (meeting.empty()) meeting = cells_near(own, second, execution);
-  const Lattice lattice = lattice_of(own, meeting, execution);
-  std::vector<CellCurves> parts((lattice.cells.size() + kBlock - 1) / kBlock);
+  const SurfaceLattice lattice = lattice_of(own, meeting, execution);
+  std::vector<CellCurves> parts(blocks_of(lattice.cells.size()));
   for_blocks(lattice.cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
     FieldEvaluator first(one.field), last(other.field);
     for (size_t i = begin; i < end; ++i) march_seam(first, last, search.viewer, lattice.grid, lattice.cells[i], parts[part]);

@@ -1,10 +1,15 @@
 #include "raymarch/truth/followed_curves.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <mutex>
 #include <optional>
+#include <shared_mutex>
 
 #include "raymarch/truth/lattice_samples.h"
 #include "sdf/parallel.h"
@@ -23,7 +28,7 @@ constexpr double kTurn = 0.95;        // the cosine of the angle between tangent
 constexpr double kLongest_px = 1.0;
 constexpr double kLeastTurning = 1e-3;  // of the longest step: shorter ones are not searched for turns of the image
 constexpr size_t kMostPoints = 50'000;
-constexpr size_t kBatch = 16;                          // strands that are followed at once
+constexpr size_t kAskedEvery = 64;                     // points, whether anybody else has followed the curve
 constexpr double kOnPath = 0.15, kOnPathLeast = 1e-3;  // of a step, and of the longest step
 
 glm::dvec3 tangent_of(const CurvePoint& point) { return glm::normalize(glm::cross(point.high, point.uphill)); }
@@ -93,12 +98,14 @@ class Follower {
     return polish(evaluator_, viewer_, c_, point.p, kSeedReach * settings_.longest_step);
   }
 
-  /// From the point around to it again; nothing where the curve is lost on the way.
-  std::optional<std::vector<CurvePoint>> around(const CurvePoint& start) {
+  /// From the point around to it again; nothing where the curve is lost on the way, or `stop()`, asked now and then, is true.
+  template <class Stop>
+  std::optional<std::vector<CurvePoint>> around(const CurvePoint& start, const Stop& stop) {
     std::vector<CurvePoint> path{start};
     glm::dvec3 tangent = tangent_of(start), bend(0.0);
     double step = kFirstStep * settings_.longest_step;
     while (path.size() < kMostPoints) {
+      if (path.size() % kAskedEvery == 0 && stop()) return {};
       const CurvePoint from = path.back();
       const std::optional<CurvePoint> next = advance(from, tangent, bend, step);
       if (!next) return {};
@@ -166,6 +173,53 @@ class Follower {
   double c_;
 };
 
+/// Follows a path from each strand that no earlier strand's path passes. Where hundreds of strands are pieces of one curve, as along flat
+/// walls seen edge-on, all but the first find it followed. Threads follow strands ahead of what is accepted, and paths are accepted in the
+/// order of their strands: what comes out is the same for any number of threads.
+class FirstPaths {
+ public:
+  using Accept = std::function<void(const Strand& like, std::vector<CurvePoint> path)>;
+  /// `accept` adds the path to `index`.
+  FirstPaths(const std::vector<Strand>& strands, const PathIndex& index, Accept accept)
+      : strands_(strands), index_(index), accept_(std::move(accept)), done_(strands.size(), 0), paths_(strands.size()) {}
+
+  /// From any thread; false where all strands are taken.
+  bool follow_next(Follower& follower) {
+    const size_t i = next_.fetch_add(1);
+    if (i >= strands_.size()) return false;
+    std::optional<std::vector<CurvePoint>> path;
+    for (const CurvePoint& point : strands_[i].points) {
+      const std::optional<CurvePoint> seed = point.rough ? std::nullopt : follower.seed(point);
+      if (!seed) continue;
+      const auto is_passed = [&] {
+        const std::shared_lock lock(mutex_);
+        return index_.holds(*seed);
+      };
+      if (!is_passed()) path = follower.around(*seed, is_passed);
+      break;
+    }
+    const std::lock_guard lock(mutex_);
+    paths_[i] = std::move(path);
+    done_[i] = 1;
+    for (; accepted_ < done_.size() && done_[accepted_] != 0; ++accepted_) {
+      auto& first = paths_[accepted_];
+      if (first && !index_.holds(first->front())) accept_(strands_[accepted_], std::move(*first));
+      first.reset();
+    }
+    return true;
+  }
+
+ private:
+  const std::vector<Strand>& strands_;
+  const PathIndex& index_;
+  Accept accept_;
+  std::atomic<size_t> next_{0};
+  std::shared_mutex mutex_{};  ///< Of all below, and of the index.
+  size_t accepted_ = 0;        ///< So many strands are done with.
+  std::vector<char> done_;
+  std::vector<std::optional<std::vector<CurvePoint>>> paths_;
+};
+
 /// A point that no path passes, and what it leads to on the curve.
 struct Unpassed {
   CurvePoint point{};
@@ -186,26 +240,13 @@ std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field
     result.back().points = std::move(path);
     result.back().closed = result.back().followed = true;
   };
-  // Where hundreds of strands are pieces of one curve, as along flat walls seen edge-on, all but those of one batch find it followed: what
-  // comes out is the same for batches of any size.
-  std::vector<std::optional<std::vector<CurvePoint>>> paths(found.size());
-  for (size_t begin = 0; begin < found.size(); begin += kBatch) {
-    const size_t end = std::min(begin + kBatch, found.size());
-    parallel_for(begin, end, [&](size_t i) {
+  FirstPaths paths(found, index, accept);
+  parallel_for(size_t{0}, static_cast<size_t>(tbb::this_task_arena::max_concurrency()), [&](size_t) {
+    Follower follower(field, camera, viewer, settings, c);
+    while (paths.follow_next(follower)) {
       if (how.cancelled && how.cancelled()) throw Cancelled{};
-      Follower follower(field, camera, viewer, settings, c);
-      for (const CurvePoint& point : found[i].points) {
-        const std::optional<CurvePoint> seed = point.rough ? std::nullopt : follower.seed(point);
-        if (!seed) continue;
-        if (!index.holds(*seed)) paths[i] = follower.around(*seed);
-        break;
-      }
-    });
-    for (size_t i = begin; i < end; ++i) {
-      if (paths[i] && !index.holds(paths[i]->front())) accept(found[i], std::move(*paths[i]));
-      paths[i].reset();
     }
-  }
+  });
   // What no path passes: other curves through crossings that were joined to these.
   std::vector<std::vector<Unpassed>> unpassed(found.size());
   const size_t paths_known = index.size();
@@ -227,7 +268,7 @@ std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field
         continue;
       }
       if (!seed || lost) continue;
-      if (auto path = follower.around(*seed)) {
+      if (auto path = follower.around(*seed, [] { return false; })) {
         accept(found[i], std::move(*path));
         any = true;
       } else {

@@ -2,6 +2,7 @@
 // Internal: a field at the nodes of a lattice and its surface on the lattice's edges. Cells share them, and so do views: neither knows
 // where anybody looks from.
 
+#include <bit>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
@@ -46,9 +47,11 @@ class KeyedValues {
 
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  size_t hash(std::uint64_t key) const { return static_cast<size_t>((key * 0x9e3779b97f4a7c15u) >> 32u) & (places_.size() - 1); }
+  /// The highest bits of the product, which all bits of the key have a part in: keys of cells have one coordinate above the others.
+  size_t hash(std::uint64_t key) const { return static_cast<size_t>((key * 0x9e3779b97f4a7c15u) >> shift_); }
   void grow() {
     places_.assign(places_.empty() ? 64 : 2 * places_.size(), kNone);
+    shift_ = 64 - std::countr_zero(places_.size());
     for (size_t i = 0; i < entries_.size(); ++i) {
       size_t place = hash(entries_[i].first);
       while (places_[place] != kNone) place = (place + 1) & (places_.size() - 1);
@@ -56,7 +59,8 @@ class KeyedValues {
     }
   }
   std::vector<std::pair<std::uint64_t, Value>> entries_{};
-  std::vector<std::uint32_t> places_{};
+  std::vector<std::uint32_t> places_{};  ///< A power of two of them.
+  int shift_ = 63;
 };
 
 /// Where an edge meets the surface.

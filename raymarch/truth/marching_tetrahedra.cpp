@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::array<std::array<int, 4>, 6> kTetrahedra = {
     {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}}};
+constexpr size_t kEdges = 19;  // of the tetrahedra: 12 of the cell, a diagonal of each face, and that of the cell
 // A share of the step across a face: points that Newton moves farther would change places with their neighbours.
 constexpr double kSmoothReach = 0.25;
 constexpr int kSeamSteps = 40;
@@ -71,7 +72,7 @@ class Marcher {
   void keep_edges() {
     const auto first = static_cast<std::uint32_t>(samples_->cell_edges.size());
     for (size_t i = 0; i < edges_.size(); ++i) {
-      if (!edges_[i]) continue;
+      if (edges_[i] == 0) continue;
       const auto low = static_cast<int>(i / 8), high = static_cast<int>(i % 8);
       samples_->cell_edges.push_back(samples_->edges.place_of(edge_key(low, high)));
     }
@@ -111,8 +112,10 @@ class Marcher {
   /// The surface on the edge between two corners on different sides, always found from the lower corner.
   const SurfaceSample& edge(int a, int b) {
     const auto low = static_cast<size_t>(std::min(a, b)), high = static_cast<size_t>(std::max(a, b));
-    auto& sample = edges_[8 * low + high];
-    if (sample) return *sample;
+    std::uint8_t& place = edges_[8 * low + high];
+    if (place != 0) return found_[place - size_t{1}];
+    place = static_cast<std::uint8_t>(++edges_found_);
+    SurfaceSample& sample = found_[place - size_t{1}];
     const auto root = [&] { return root_between(evaluator_, points_[low], points_[high], values_[low], values_[high]); };
     if (samples_ == nullptr) {
       sample = sample_at(root());
@@ -125,7 +128,7 @@ class Marcher {
       }
       sample = {known.p, known.gradient, facing_of(viewer_, known.p, known.gradient)};
     }
-    return *sample;
+    return sample;
   }
   SurfaceSample sample_at(const glm::dvec3& p) {
     if (seam_ != nullptr) return {p, glm::dvec3(0.0), seam_->value(p)};
@@ -256,7 +259,9 @@ class Marcher {
   std::array<glm::dvec3, 8> points_;
   std::array<double, 8> values_;
   std::array<bool, 8> inside_;
-  std::array<std::optional<SurfaceSample>, 64> edges_;
+  std::array<std::uint8_t, 64> edges_{};  ///< By both corners: one more than the place in `found_`, or 0.
+  std::array<SurfaceSample, kEdges> found_;
+  size_t edges_found_ = 0;
   std::vector<std::uint64_t> faces_;
 };
 

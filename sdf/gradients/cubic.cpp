@@ -12,7 +12,7 @@ class CellCoefficients {
  public:
   explicit CellCoefficients(const LevelSetData& data) : accessor_(data.accessor()) {}
 
-  const std::array<double, 64>& at(const nanovdb::Coord& node) {
+  const SplineCoefficients& at(const nanovdb::Coord& node) {
     const auto low = [](int x) { return static_cast<size_t>(x & 3); };
     Entry& entry = entries_[low(node[0]) * 16 + low(node[1]) * 4 + low(node[2])];
     if (!entry.filled || entry.node != node) entry = {true, node, spline_coefficients(accessor_, node)};
@@ -23,7 +23,7 @@ class CellCoefficients {
   struct Entry {
     bool filled = false;
     nanovdb::Coord node{};
-    std::array<double, 64> coefficients;
+    SplineCoefficients coefficients;
   };
   nanovdb::FloatGrid::AccessorType accessor_;
   std::array<Entry, 64> entries_;

@@ -18,11 +18,26 @@ inline SplineWeights spline_weights(double u) {
           .second = {v, 3.0 * u - 2.0, 3.0 * v - 2.0, u}};
 }
 
-/// Spline coefficients at the 4 x 4 x 4 nodes about a cell: c = f - (second differences of f along the three axes) / 6. The sum of the
-/// three in place of the full product still reproduces every polynomial of degree 3, which is all that third order in the gradient
-/// takes (quasi-interpolation: Condat, Blu, Unser 2005), and it reads axis neighbours only.
+/// Of the 4 x 4 x 4 nodes about a cell, by spline_place().
+using SplineCoefficients = std::array<double, 64>;
+constexpr size_t spline_place(int x, int y, int z) {
+  const int place = (x * 4 + y) * 4 + z;
+  return static_cast<size_t>(place);
+}
+
+/// The spline's coefficient at a node, from values in rows of `row` along z, in planes of as many rows:
+/// c = f - (second differences of f along the three axes) / 6. The sum of the three in place of the full product still reproduces every
+/// polynomial of degree 3, which is all that third order in the gradient takes (quasi-interpolation: Condat, Blu, Unser 2005), and it
+/// reads axis neighbours only.
+template <int row>
+double spline_coefficient(const double* f) {
+  const double neighbours = f[-row * row] + f[row * row] + f[-row] + f[row] + f[-1] + f[1];
+  return 2.0 * f[0] - neighbours / 6.0;
+}
+
+/// Spline coefficients at the 4 x 4 x 4 nodes about a cell.
 template <class Accessor>
-std::array<double, 64> spline_coefficients(const Accessor& accessor, const nanovdb::Coord& node) {
+SplineCoefficients spline_coefficients(const Accessor& accessor, const nanovdb::Coord& node) {
   std::array<double, 216> f;  // nodes -2..3; the far corners of the block are never needed
   const auto index = [](int x, int y, int z) {
     const int place = (x * 6 + y) * 6 + z;
@@ -31,19 +46,15 @@ std::array<double, 64> spline_coefficients(const Accessor& accessor, const nanov
   for (int x = 0; x < 6; ++x)
     for (int y = 0; y < 6; ++y)
       if (x % 5 != 0 || y % 5 != 0) row_values(accessor, node.offsetBy(x - 2, y - 2, -2), 6, &f[index(x, y, 0)]);
-  std::array<double, 64> c;
-  for (int x = 1; x < 5; ++x)
-    for (int y = 1; y < 5; ++y)
-      for (int z = 1; z < 5; ++z) {
-        const size_t at = index(x, y, z);
-        const double neighbours = f[at - 36] + f[at + 36] + f[at - 6] + f[at + 6] + f[at - 1] + f[at + 1];
-        c[static_cast<size_t>(((x - 1) * 4 + y - 1) * 4 + z - 1)] = 2.0 * f[at] - neighbours / 6.0;
-      }
+  SplineCoefficients c;
+  for (int x = 0; x < 4; ++x)
+    for (int y = 0; y < 4; ++y)
+      for (int z = 0; z < 4; ++z) c[spline_place(x, y, z)] = spline_coefficient<6>(&f[index(x + 1, y + 1, z + 1)]);
   return c;
 }
 
 /// As jet_of_spline()'s, to the bit.
-inline double value_of_spline(const std::array<double, 64>& c, const glm::dvec3& local) {
+inline double value_of_spline(const SplineCoefficients& c, const glm::dvec3& local) {
   const SplineWeights x = spline_weights(local.x), y = spline_weights(local.y), z = spline_weights(local.z);
   double sum = 0.0;
   for (size_t i = 0; i < 4; ++i)
@@ -55,33 +66,41 @@ inline double value_of_spline(const std::array<double, 64>& c, const glm::dvec3&
   return sum;
 }
 
+/// Two numbers at once, for the plain instructions of every machine.
+using SplinePair = double __attribute__((vector_size(16)));
+
 /// Value, gradient and (where asked for) Hessian by index coordinates.
-inline FieldJet jet_of_spline(const std::array<double, 64>& c, const glm::dvec3& local, bool with_hessian) {
+inline FieldJet jet_of_spline(const SplineCoefficients& c, const glm::dvec3& local, bool with_hessian) {
   const SplineWeights x = spline_weights(local.x), y = spline_weights(local.y), z = spline_weights(local.z);
-  FieldJet jet;
-  glm::dmat3& h = jet.hessian;
+  SplinePair of_value_x{}, of_y_z{}, of_xx_yy{}, of_y_xy{}, of_xz_yz{}, of_z_zz{};
   for (size_t i = 0; i < 4; ++i)
     for (size_t j = 0; j < 4; ++j) {
-      double value = 0.0, first = 0.0, second = 0.0;  // of the row along z
-      for (size_t k = 0; k < 4; ++k) {
-        const double coefficient = c[(i * 4 + j) * 4 + k];
-        value += z.value[k] * coefficient;
-        first += z.first[k] * coefficient;
-        second += z.second[k] * coefficient;
+      const double* const row = &c[(i * 4 + j) * 4];
+      SplinePair value_first{};  // of the row along z
+      for (size_t k = 0; k < 4; ++k) value_first += SplinePair{z.value[k], z.first[k]} * row[k];
+      const SplinePair along_x{x.value[i], x.first[i]}, plain = along_x * y.value[j];
+      of_value_x += plain * value_first[0];
+      if (!with_hessian) {
+        of_y_z += SplinePair{x.value[i] * y.first[j], plain[0]} * value_first;
+        continue;
       }
-      jet.value += x.value[i] * y.value[j] * value;
-      jet.gradient += glm::dvec3(x.first[i] * y.value[j] * value, x.value[i] * y.first[j] * value, x.value[i] * y.value[j] * first);
-      if (!with_hessian) continue;
-      h[0][0] += x.second[i] * y.value[j] * value;
-      h[1][1] += x.value[i] * y.second[j] * value;
-      h[2][2] += x.value[i] * y.value[j] * second;
-      h[1][0] += x.first[i] * y.first[j] * value;
-      h[2][0] += x.first[i] * y.value[j] * first;
-      h[2][1] += x.value[i] * y.first[j] * first;
+      double second = 0.0;
+      for (size_t k = 0; k < 4; ++k) second += z.second[k] * row[k];
+      const SplinePair slope_y = along_x * y.first[j];
+      of_y_xy += slope_y * value_first[0];
+      of_xx_yy += SplinePair{x.second[i], x.value[i]} * SplinePair{y.value[j], y.second[j]} * value_first[0];
+      of_xz_yz += SplinePair{plain[1], slope_y[0]} * value_first[1];
+      of_z_zz += plain[0] * SplinePair{value_first[1], second};
     }
-  h[0][1] = h[1][0];
-  h[0][2] = h[2][0];
-  h[1][2] = h[2][1];
+  FieldJet jet;
+  jet.value = of_value_x[0];
+  if (!with_hessian) {
+    jet.gradient = {of_value_x[1], of_y_z[0], of_y_z[1]};
+    return jet;
+  }
+  jet.gradient = {of_value_x[1], of_y_xy[0], of_z_zz[0]};
+  const double xy = of_y_xy[1], xz = of_xz_yz[0], yz = of_xz_yz[1];
+  jet.hessian = {{of_xx_yy[0], xy, xz}, {xy, of_xx_yy[1], yz}, {xz, yz, of_z_zz[1]}};
   return jet;
 }
 

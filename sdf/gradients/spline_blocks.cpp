@@ -1,0 +1,94 @@
+#include "sdf/gradients/spline_blocks.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace limn {
+namespace {
+
+constexpr size_t kMostBlocks = size_t{1} << 16;  // 256 MB: beyond that cells are worked out one by one
+
+/// Far from the surface whole cells lie among nodes of one value, and between blocks rays cross many of them.
+template <class Accessor>
+SplineCoefficients cell_of_tiles(const Accessor& accessor, const nanovdb::Coord& node) {
+  const auto tile = static_cast<double>(accessor.getValue(node));
+  // Blocks and tiles that the cell's nodes and their neighbours lie in hold a corner of these, too.
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto at = [&](int axis) { return (corner >> axis & 1) != 0 ? 3 : -2; };
+    const nanovdb::Coord far = node.offsetBy(at(0), at(1), at(2));
+    if (accessor.probeLeaf(far) != nullptr || static_cast<double>(accessor.getValue(far)) != tile)
+      return spline_coefficients(accessor, node);
+  }
+  const std::array<double, 3> same{tile, tile, tile};
+  SplineCoefficients c;
+  c.fill(spline_coefficient<1>(&same[1]));
+  return c;
+}
+
+}  // namespace
+
+SplineBlocks::SplineBlocks(const LevelSetData& data)
+    : data_(data), first_(data.grid->tree().getFirstNode<0>()), blocks_(data.grid->tree().nodeCount(0)) {}
+
+SplineBlocks::~SplineBlocks() {
+  for (const std::atomic<const Block*>& block : blocks_) delete block.load();
+}
+
+/// Null where there are too many.
+const SplineBlocks::Block* SplineBlocks::block_of(const Leaf& leaf) const {
+  std::atomic<const Block*>& kept = blocks_[static_cast<size_t>(&leaf - first_)];
+  if (const Block* known = kept.load(std::memory_order_acquire)) return known;
+  if (made_.load(std::memory_order_relaxed) >= kMostBlocks) return nullptr;
+  constexpr int kRow = kSide + 2;
+  std::array<double, static_cast<size_t>(kRow * kRow * kRow)> f;  // a node more on every side
+  const auto accessor = data_.accessor();
+  const auto index = [](int x, int y, int z) {
+    const int place = (x * kRow + y) * kRow + z;
+    return static_cast<size_t>(place);
+  };
+  const auto is_end = [](int x) { return x == 0 || x == kRow - 1; };
+  for (int x = 0; x < kRow; ++x)
+    for (int y = 0; y < kRow; ++y)
+      if (!is_end(x) || !is_end(y)) row_values(accessor, leaf.origin().offsetBy(x - 1, y - 1, -1), kRow, &f[index(x, y, 0)]);
+  auto made = std::make_unique<Block>();
+  size_t at = 0;
+  for (int x = 1; x <= kSide; ++x)
+    for (int y = 1; y <= kSide; ++y)
+      for (int z = 1; z <= kSide; ++z) (*made)[at++] = spline_coefficient<kRow>(&f[index(x, y, z)]);
+  const Block* none = nullptr;
+  // Another thread may have been first, with the same numbers.
+  if (!kept.compare_exchange_strong(none, made.get(), std::memory_order_acq_rel)) return none;
+  made_.fetch_add(1, std::memory_order_relaxed);
+  return made.release();
+}
+
+SplineCoefficients SplineBlocks::cell(const nanovdb::Coord& node) const {
+  const nanovdb::Coord low = node.offsetBy(-1);
+  // The cell's nodes lie in up to two blocks along each axis.
+  const auto split = [&](nanovdb::Coord::IndexType axis) { return std::min(4, kSide - (low[axis] & (kSide - 1))); };
+  const auto accessor = data_.accessor();
+  SplineCoefficients c;
+  const std::array<int, 3> in_first{split(0), split(1), split(2)};
+  for (int part = 0; part < 8; ++part) {
+    std::array<int, 3> begin{}, end{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<size_t>(axis);
+      const bool second = (part >> axis & 1) != 0;
+      begin[a] = second ? in_first[a] : 0;
+      end[a] = second ? 4 : in_first[a];
+    }
+    if (begin[0] >= end[0] || begin[1] >= end[1] || begin[2] >= end[2]) continue;
+    const nanovdb::Coord corner = low.offsetBy(begin[0], begin[1], begin[2]);
+    const Leaf* const leaf = accessor.probeLeaf(corner);
+    const Block* const block = leaf != nullptr ? block_of(*leaf) : nullptr;
+    if (block == nullptr) return cell_of_tiles(accessor, node);
+    for (int x = begin[0]; x < end[0]; ++x)
+      for (int y = begin[1]; y < end[1]; ++y) {
+        const double* const from = &(*block)[Leaf::CoordToOffset(low.offsetBy(x, y, begin[2]))];
+        std::copy(from, from + (end[2] - begin[2]), &c[spline_place(x, y, begin[2])]);
+      }
+  }
+  return c;
+}
+
+}  // namespace limn

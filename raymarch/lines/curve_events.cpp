@@ -341,11 +341,12 @@ class EventFinder {
   double one_cusp_px() const { return curve_.between ? kSmoothLens_px : kOneCusp_px; }
   double arms_apart_px() const { return curve_.between ? kSmoothLens_px : curve_.apart_px; }
 
-  /// Between the two passages the curve goes there and back on the same way, as beside the tip of a cone, and not by way of two cusps.
+  /// Between the two passages the curve goes there and back on the same way, as beside the tip of a cone, and not by way of two cusps, as
+  /// in a swallowtail, or three, as in a butterfly.
   bool is_spike(const NearerCrossing& crossing) const {
     const double from = std::min(crossing.at, crossing.on_nearer), to = std::max(crossing.at, crossing.on_nearer);
     if (walk_.length_to(to) - walk_.length_to(from) > kLongestNarrow_px) return false;
-    if (cusps_between(from, to).size() == 2) return false;
+    if (cusps_between(from, to).size() >= 2) return false;
     const std::vector<glm::dvec2> px = px_between(curve_, from, to, camera_);
     const auto farther = [&](const glm::dvec2& a, const glm::dvec2& b) { return glm::distance(a, px[0]) < glm::distance(b, px[0]); };
     const auto turn = std::max_element(px.begin(), px.end(), farther);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -87,6 +88,67 @@ TEST(Swallowtails, OneTooNarrowToTellIsGoneThoughACrossingOfAnotherIsNear) {
   const CutCurves cut = cut_swallowtail(curve);
   EXPECT_TRUE(cut.conflicts.empty());
   EXPECT_EQ(invisibilities(cut.curves[0]), (std::vector<int>{0, 1, 2, 0}));
+}
+
+/// The contour of the surface t^5 - t^3 + u t + v = 0 along t: a section of the butterfly (Arnold 1972), with three cusps, between
+/// whose arms it crosses itself three times. `size_px`: of a unit of u and v.
+class Butterfly {
+ public:
+  explicit Butterfly(double size_px) : size_px_(size_px) {}
+  glm::dvec2 px_at(double t) const {
+    const double t2 = t * t;
+    return size_px_ * glm::dvec2(3.0 * t2 - 5.0 * t2 * t2, (4.0 * t2 - 2.0) * t2 * t);
+  }
+  /// Of one sign between the cusps, at -0.5477, 0 and 0.5477.
+  double bend_at(double t) const { return 20.0 * t * t * t - 6.0 * t; }
+  /// Sheets nearer than the contour: roots below t of the polynomial over (x - t)^2, a cubic.
+  int layers_at(double t) const {
+    const auto cubic = [t](double x) { return ((x + 2.0 * t) * x + 3.0 * t * t - 1.0) * x + 4.0 * t * t * t - 2.0 * t; };
+    int layers = 0;
+    constexpr int kSteps = 20'000;
+    constexpr double kFarthest = 30.0;
+    for (int i = 0; i < kSteps; ++i) {
+      const double a = glm::mix(-kFarthest, t, static_cast<double>(i) / kSteps), b = glm::mix(-kFarthest, t, (i + 1.0) / kSteps);
+      layers += (cubic(a) < 0.0) != (cubic(b) < 0.0) ? 1 : 0;
+    }
+    return layers;
+  }
+
+ private:
+  double size_px_;
+};
+
+TEST(Swallowtails, OfAButterflyTheOuterArmsCrossThoughTheyLieOnEachOther) {
+  const Camera camera = flat_view();
+  for (const double size_px : {0.2, 0.02, 0.006}) {
+    const Butterfly butterfly(size_px);
+    // Ten pixels on each side; finely about the cusps.
+    std::vector<double> t;
+    const double farthest = std::pow(10.0 / size_px, 0.2);
+    for (int i = -400; i <= 400; ++i) t.push_back(farthest * std::sinh(4.0 * (i + 0.25) / 400.0) / std::sinh(4.0));
+    BentCurve bent;
+    for (const double at : t) bent.add(butterfly.px_at(at), butterfly.bend_at(at));
+    const SurfaceCurve curve = exact_curve(camera, bent.px, bent.curvatures);
+    const LayersBefore rays = [&](const CurveSample& sample) {
+      // exact_curve() puts each sample 0.01 farther away than the one before.
+      const double place = std::clamp((2.0 - sample.p.z) / 0.01, 0.0, 800.0);
+      const auto i = std::min(static_cast<size_t>(place), t.size() - 2);
+      return LayersSeen{butterfly.layers_at(glm::mix(t[i], t[i + 1], place - static_cast<double>(i)))};
+    };
+    const CutCurves cut = cut_by_invisibility({curve}, camera, 5.0, rays, {});
+    EXPECT_TRUE(cut.conflicts.empty()) << size_px << " px: " << cut.conflicts[0].what;
+    int crossings = 0, cusps = 0, layers = 0;
+    for (const CurveEvent& event : cut.curves[0].events) {
+      crossings += event.kind == VertexKind::crossing ? 1 : 0;
+      cusps += event.kind == VertexKind::cusp ? 1 : 0;
+      layers += event.layers.value_or(0);
+    }
+    EXPECT_EQ(cusps, 3) << size_px << " px";
+    EXPECT_EQ(crossings, 3) << size_px << " px";
+    EXPECT_EQ(layers, butterfly.layers_at(t.back()) - butterfly.layers_at(t.front())) << size_px << " px";
+    // Lines tell it, and no rays have to look for it.
+    EXPECT_LT(cut.rays, 10) << size_px << " px";
+  }
 }
 
 TEST(Swallowtails, ACurveWhoseStepsDoNotAddUpHasAConflictThoughItsFirstPieceIsTooShortForRays) {

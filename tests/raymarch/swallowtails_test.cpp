@@ -162,7 +162,7 @@ TEST(Swallowtails, ACurveWhoseStepsDoNotAddUpHasAConflictThoughItsFirstPieceIsTo
   add_way(camera, {20.0, -10.0}, {-20.0, -10.0}, 80, z, 1.0, line);
   add_way(camera, {-20.0, -10.0}, {-20.0, 10.0}, 40, z, 1.0, line);
   add_way(camera, {-20.0, 10.0}, {0.4, 10.0}, 40, z, 1.0, line);
-  for (const size_t step : {2, 4}) line.samples[step].pierced.push_back({.t = 0.5, .layers = 1});
+  for (const size_t step : {2u, 4u}) line.samples[step].pierced.push_back({.t = 0.5, .layers = 1});
   const CutCurves cut = cut_by_invisibility({line}, camera, 5.0, [](const CurveSample&) { return LayersSeen{0}; }, {});
   ASSERT_EQ(cut.curves[0].pieces.size(), 2u);
   EXPECT_LT(cut.curves[0].pieces[0].length_px, 1.0);

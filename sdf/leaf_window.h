@@ -43,6 +43,15 @@ class LeafWindow {
       std::fill_n(to + 1, 8, tiles_[column + 1]);
     to[9] = value(column + 2, x, y, 0);
   }
+  /// Values at (x, y, -3..10).
+  void load_wide_row(int x, int y, float* to) const {
+    const int column = column_of(x, y);
+    load_row(x, y, to + 2);
+    for (int z = 0; z < 2; ++z) {
+      to[z] = value(column, x, y, 5 + z);
+      to[12 + z] = value(column + 2, x, y, 1 + z);
+    }
+  }
 
  private:
   static int column_of(int x, int y) { return ((x + 8) >> 3) * 9 + ((y + 8) >> 3) * 3; }

@@ -8,14 +8,12 @@
 
 #include "sdf/field_program.h"
 #include "sdf/gradients/spline_blocks.h"
+#include "sdf/gradients/spline_hull.h"
 #include "sdf/level_set_data.h"
 #include "sdf/number_interval.h"
-#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
-
-constexpr double kNearCorner = 0.2;  // of a voxel
 
 /// Coefficients of the cells that a thread looked at last: putting them together takes longer than a value.
 struct CellCache {
@@ -110,31 +108,13 @@ double support(const void* shape, const glm::dvec3& direction, double level) {
   return sum;
 }
 
-SurfaceCell cell_of(const LevelSetData& data, const nanovdb::Coord& node, const std::array<double, 8>& values) {
-  SurfaceCell cell;
-  cell.node = {node[0], node[1], node[2]};
-  glm::dvec3 corners[8], sum(0.0);
-  for (int corner = 0; corner < 8; ++corner) {
-    const auto at = [&](int i) { return values[static_cast<size_t>(i)]; };
-    glm::dvec3 slope;
-    for (int axis = 0; axis < 3; ++axis) slope[axis] = at(corner | 1 << axis) - at(corner & ~(1 << axis));
-    corners[corner] = data.world_gradient(slope);
-    const double length = glm::length(corners[corner]);
-    if (length > 0.0) corners[corner] /= length;
-    sum += corners[corner];
-    cell.near_corner = cell.near_corner || std::fabs(at(corner)) < kNearCorner * data.per_voxel;
-  }
-  if (!(glm::length(sum) > 0.0)) return cell;
-  const glm::dvec3 normal = glm::normalize(sum);
-  cell.normal = glm::vec3(normal);
-  for (const glm::dvec3& corner : corners)
-    cell.spread = std::max(cell.spread, static_cast<float>(std::acos(std::clamp(glm::dot(corner, normal), -1.0, 1.0))));
-  return cell;
-}
-
 }  // namespace
 
-Field reconstruction_field(const LevelSet& level_set) {
+bool SplineCells::may_hold_contour(const glm::ivec3& node, const glm::dvec3& eye, double w) const {
+  return may_turn_from(blocks_->cell({node.x, node.y, node.z}), glm::dvec3(node), {eye, w});
+}
+
+Reconstruction reconstruct(const LevelSet& level_set) {
   static constexpr ShapeFunctions functions{
       {evaluate<float>, evaluate<double>, evaluate<Dual>, evaluate<Jet>, evaluate<Interval>, evaluate<Slope>, evaluate<BoxSlope>},
       support,
@@ -143,37 +123,10 @@ Field reconstruction_field(const LevelSet& level_set) {
       nullptr,
       nullptr};
   FieldLeaf leaf;
-  leaf.shape = std::make_shared<const Spline>(Spline{complete_band(level_set, find_gradient("cubic"))});
+  const auto spline = std::make_shared<const Spline>(Spline{complete_band(level_set, find_gradient("cubic"))});
+  leaf.shape = spline;
   leaf.functions = &functions;
-  return field_from_leaf(std::move(leaf), false);
-}
-
-std::vector<SurfaceCell> surface_cells(const LevelSet& level_set) {
-  const LevelSetData& data = level_set.data();
-  const auto& tree = data.grid->tree();
-  const auto leaves = static_cast<size_t>(tree.nodeCount(0));
-  const auto* const first = tree.getFirstNode<0>();
-  std::vector<std::vector<SurfaceCell>> parts(leaves);
-  parallel_for(size_t{0}, leaves, [&](size_t l) {
-    const auto accessor = data.accessor();
-    const nanovdb::Coord origin = first[l].origin();
-    // Cells reach a node beyond the block, and one may begin a node before it where that block is not there.
-    for (int x = -1; x < 8; ++x) {
-      for (int y = -1; y < 8; ++y) {
-        for (int z = -1; z < 8; ++z) {
-          const nanovdb::Coord node = origin.offsetBy(x, y, z);
-          if ((x < 0 || y < 0 || z < 0) && accessor.isActive(node)) continue;  // Another block's.
-          const std::array<double, 8> values = cell_values(accessor, node);
-          const bool inside = values[0] < 0.0;
-          if (std::all_of(values.begin(), values.end(), [&](double v) { return (v < 0.0) == inside; })) continue;
-          parts[l].push_back(cell_of(data, node, values));
-        }
-      }
-    }
-  });
-  std::vector<SurfaceCell> cells;
-  for (const auto& part : parts) cells.insert(cells.end(), part.begin(), part.end());
-  return cells;
+  return {field_from_leaf(std::move(leaf), false), spline->level_set, SplineCells(spline->level_set, spline->blocks)};
 }
 
 }  // namespace limn

@@ -1,24 +1,46 @@
 #pragma once
 // Internal: the smooth surface that a level set's cubic gradients are those of, as a field, and the cells that hold it.
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "sdf/level_set.h"
 
 namespace limn {
 
+class SplineBlocks;  // sdf/gradients/spline_blocks.h
+
+/// Cells of a level set's spline, one by one. Safe to ask from many threads at once.
+class SplineCells {
+ public:
+  SplineCells(LevelSet completed, std::shared_ptr<const SplineBlocks> blocks)
+      : level_set_(std::move(completed)), blocks_(std::move(blocks)) {}
+  /// False where bounds show that the surface does not go through the cell, or that all of it in the cell faces the eye, or none. `node`:
+  /// of its first corner. `eye`: index coordinates; with `w` 0 the direction towards it.
+  bool may_hold_contour(const glm::ivec3& node, const glm::dvec3& eye, double w) const;
+
+ private:
+  LevelSet level_set_;  ///< Whose values the blocks are made of.
+  std::shared_ptr<const SplineBlocks> blocks_;
+};
+
 /// The cubic spline through the grid's values. Its band is completed where it has no room for that. Values mean something within a voxel of
 /// the surface, and have the right sign elsewhere; there are no interval bounds.
-Field reconstruction_field(const LevelSet& level_set);
-
-/// A cell whose corners differ in sign.
-struct SurfaceCell {
-  glm::ivec3 node{0};        ///< Of its first corner, index coordinates.
-  glm::vec3 normal{0.0f};    ///< World, unit, at its middle; 0 where there is none.
-  float spread = 0.0f;       ///< How far the normals at its corners are from that, radians.
-  bool near_corner = false;  ///< The surface comes so near to a corner that the spline's may lie in another cell there.
+struct Reconstruction {
+  Field field;
+  LevelSet completed;
+  SplineCells cells;
 };
-/// In an order that does not depend on threads.
-std::vector<SurfaceCell> surface_cells(const LevelSet& level_set);
+Reconstruction reconstruct(const LevelSet& level_set);
+
+/// A cell that the surface of the spline may go through.
+struct SurfaceCell {
+  glm::ivec3 node{0};      ///< Of its first corner, index coordinates.
+  glm::vec3 normal{0.0f};  ///< World, unit; 0 where nothing is known of its normals.
+  float spread = 0.0f;     ///< No normal in the cell is farther from that, radians.
+};
+/// All such cells of a level set whose band is complete, in an order that does not depend on threads.
+std::vector<SurfaceCell> surface_cells(const LevelSet& completed);
 
 }  // namespace limn

@@ -25,6 +25,10 @@ std::vector<char> cut_steps(const std::vector<char>& unclear, const Camera& came
   std::vector<CurveSample> samples;
   std::vector<Part> parts;
   std::vector<char> marks;
+  const auto cut = static_cast<size_t>(std::count(unclear.begin(), unclear.end(), 1)), all = count + cut * (kParts - 1);
+  samples.reserve(all + 1);
+  parts.reserve(all);
+  marks.reserve(all);
   for (size_t i = 0; i < count; ++i) {
     const int n = unclear[i] != 0 ? kParts : 1;
     for (int k = 0; k < n; ++k) {
@@ -56,7 +60,7 @@ void refine_flat_crossings(std::vector<SurfaceCurve>& curves, const Camera& came
   StepMarks asked(curves.size());
   for (size_t c = 0; c < curves.size(); ++c) asked[c].assign(steps_of(curves[c]), 1);
   for (int round = 0; round < kRounds; ++round) {
-    const StepMarks unclear = NearerFolds(curves, camera, asked).unclear_steps(asked);
+    const StepMarks unclear = unclear_steps(curves, camera, asked);
     std::atomic<bool> any = false;
     parallel_for(size_t{0}, curves.size(), [&](size_t c) {
       if (std::find(unclear[c].begin(), unclear[c].end(), 1) == unclear[c].end()) {

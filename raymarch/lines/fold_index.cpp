@@ -16,8 +16,9 @@ float below(double x) {
 }
 float above(double x) { return -below(-x); }
 
-FoldReach reach_of(const Ends& ends) {
-  const glm::dvec2 low = glm::min(ends.a.px, ends.b.px), high = glm::max(ends.a.px, ends.b.px);
+FoldReach reach_of(const Fold& fold) {
+  const Ends& ends = fold.ends;
+  const glm::dvec2 low = glm::min(ends.a.px, ends.b.px) - fold.sag_px, high = glm::max(ends.a.px, ends.b.px) + fold.sag_px;
   return {{below(low.x), below(low.y)}, {above(high.x), above(high.y)}, below(std::min(ends.a.depth, ends.b.depth))};
 }
 
@@ -33,15 +34,16 @@ FoldReach reach_around(const Ends& step, double within_px) {
   return {{below(low.x), below(low.y)}, {above(high.x), above(high.y)}, above(std::max(step.a.depth, step.b.depth))};
 }
 
-FoldIndex::FoldIndex(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepMarks* steps)
+FoldIndex::FoldIndex(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepSags* sags)
     : size_px_(camera.width_px, camera.height_px),
       columns_(static_cast<size_t>((camera.width_px + 2.0 * kBeyondFrame_px) / kBucket_px) + 2),
       rows_(static_cast<size_t>((camera.height_px + 2.0 * kBeyondFrame_px) / kBucket_px) + 2) {
   for (size_t c = 0; c < curves.size(); ++c) {
     const SurfaceCurve& curve = curves[c];
     for (size_t i = 0; i < steps_of(curve); ++i) {
-      if (const int more = curve.samples[i].more_on_left; more != 0 && (steps == nullptr || (*steps)[c][i] != 0))
-        folds_.push_back({ends_of(curve, i), static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(i), more, curve.nearer_px});
+      const double sag_px = sags == nullptr ? 0.0 : (*sags)[c][i];
+      if (const int more = curve.samples[i].more_on_left; more != 0 && sag_px >= 0.0)
+        folds_.push_back({ends_of(curve, i), static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(i), more, curve.nearer_px, sag_px});
     }
   }
   // Counted, then placed.
@@ -73,7 +75,7 @@ void FoldIndex::place(size_t bucket, std::vector<std::uint32_t>& scratch) {
     std::uint32_t* cells = &cells_[crowd_of_[bucket]];
     const size_t x = bucket % columns_, y = bucket / columns_;
     const auto group_of = [&](std::uint32_t fold) {
-      const FoldReach reach = reach_of(folds_[fold].ends);
+      const FoldReach reach = reach_of(folds_[fold]);
       if (reach.high.x - reach.low.x > kShort_px || reach.high.y - reach.low.y > kShort_px) return 0;
       return 1 + cell_of(reach.low.y, y) * kCells + cell_of(reach.low.x, x);
     };
@@ -89,7 +91,7 @@ void FoldIndex::place(size_t bucket, std::vector<std::uint32_t>& scratch) {
     scratch.assign(in_.begin() + begin, in_.begin() + end);
     for (size_t i = 0; i < scratch.size(); ++i) in_[next[static_cast<size_t>(groups[i])]++] = scratch[i];
   }
-  for (std::uint32_t k = begin; k < end; ++k) reaches_[k] = reach_of(folds_[in_[k]].ends);
+  for (std::uint32_t k = begin; k < end; ++k) reaches_[k] = reach_of(folds_[in_[k]]);
 }
 
 }  // namespace limn

@@ -25,9 +25,11 @@ struct Fold {
   std::uint32_t curve = 0, index = 0;
   int more_on_left = 0;
   double nearer_px = 0.0;
+  double sag_px = 0.0;  ///< How far its line leaves it.
 };
 
-/// A rectangle of the image, and a depth: what a fold takes of the image, and its nearest depth; or what a fold has to reach to matter.
+/// A rectangle of the image, and a depth: what a fold and its line take of the image, and its nearest depth; or what a fold has to reach to
+/// matter.
 struct FoldReach {
   glm::vec2 low{0.0f}, high{0.0f};
   float depth = 0.0f;
@@ -42,13 +44,15 @@ inline bool may_reach(const FoldReach& around, const FoldReach& fold) {
 
 /// A mark, 0 or 1, for each step of each curve.
 using StepMarks = std::vector<std::vector<char>>;
+/// Of each step of each curve how far its line leaves it, px; below 0 where the step is left out.
+using StepSags = std::vector<std::vector<double>>;
 
 /// Folds by the buckets of the image that they go through. Those of bucket b are `in[first[b]]` up to `in[first[b + 1]]`. Where these are
 /// many, long ones come first and short ones follow by the cells of the bucket that their low corners lie in.
 class FoldIndex {
  public:
-  /// With `steps`, of some steps alone.
-  FoldIndex(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepMarks* steps);
+  /// With `sags`, of some steps alone, which then reach as far as their lines do.
+  FoldIndex(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepSags* sags);
 
   const std::vector<Fold>& folds() const { return folds_; }
 

@@ -33,7 +33,7 @@ struct Cover {
     const glm::dvec3 middle = placed.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
     return glm::ivec3(glm::floor((middle - grid.corner) / grid.side));
   }
-  int around(const SurfaceCell& cell) const { return aligned && !cell.near_corner ? 0 : 1; }
+  int around() const { return aligned ? 0 : 1; }
 };
 
 /// The keys of the regions that are covered, rising.
@@ -43,8 +43,7 @@ std::vector<std::uint64_t> regions_under(const Cover& cover, const std::vector<S
     std::vector<std::uint64_t>& keys = parts[part];
     for (size_t i = begin; i < end; ++i) {
       const glm::ivec3 own = cover.own(cells[i]);
-      const int around = cover.around(cells[i]);
-      const glm::ivec3 low = (own - around) >> kRegionBits, high = (own + around) >> kRegionBits;
+      const glm::ivec3 low = (own - cover.around()) >> kRegionBits, high = (own + cover.around()) >> kRegionBits;
       for (int x = low.x; x <= high.x; ++x)
         for (int y = low.y; y <= high.y; ++y)
           for (int z = low.z; z <= high.z; ++z) keys.push_back(packed({x, y, z}, kIndexBits - kRegionBits));
@@ -105,6 +104,7 @@ SurfaceLattice lattice_of(const PlacedLevelSet& placed, const std::vector<Surfac
     for (const SurfaceCell& cell : placed.cells) cover.lowest = glm::min(cover.lowest, cell.node);
     cover.lowest -= 2;
     lattice.grid.corner = placed.solver_from_index.point(glm::dvec3(cover.lowest));
+    lattice.first_node = cover.lowest;
   } else {
     lattice.grid.corner = placed.box.lower - 2.0 * placed.voxel;
   }
@@ -114,7 +114,7 @@ SurfaceLattice lattice_of(const PlacedLevelSet& placed, const std::vector<Surfac
     size_t last = 0;
     for (size_t i = begin; i < end; ++i) {
       const glm::ivec3 own = cover.own(cells[i]);
-      const int around = cover.around(cells[i]);
+      const int around = cover.around();
       for (int x = -around; x <= around; ++x)
         for (int y = -around; y <= around; ++y)
           for (int z = -around; z <= around; ++z) marks.mark(own + glm::ivec3(x, y, z), last);

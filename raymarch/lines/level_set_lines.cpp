@@ -19,13 +19,13 @@
 namespace limn {
 namespace {
 
-constexpr double kTurn = 0.03;      // radians, beyond twice the spread that a cell's corners show
-constexpr double kSeamReach = 2.0;  // voxels: farther from a surface there is no seam with it
+constexpr double kHalfDiagonal = 0.87;  // of a cell, over its side
+constexpr double kSeamReach = 2.0;      // voxels: farther from a surface there is no seam with it
 
 // Newton's steps onto a contour.
 constexpr int kMostSteps = 8;
 constexpr double kFlat = 1e-10;    // the square of the sine between the gradients of f and of its slope: less is rounding
-constexpr double kClose = 1e-5;    // voxels: what is left after such a step is about its square
+constexpr double kClose = 3e-4;    // voxels: what is left after such a step is about its square
 constexpr double kMostOff = 0.25;  // voxels
 
 constexpr size_t kMostKeptBytes = size_t{512} << 20;
@@ -38,13 +38,16 @@ void append(const CellCurves& from, CellCurves& to) {
 /// Cells whose normals may take one of the levels of N.V.
 std::vector<SurfaceCell> turning_cells(const PlacedLevelSet& placed, const LineTask& task, const std::vector<double>& levels,
                                        const ExecutionSettings& execution) {
+  const bool perspective = task.camera.projection == Projection::perspective;
   std::vector<std::vector<SurfaceCell>> parts(blocks_of(placed.cells.size()));
   for_blocks(placed.cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const SurfaceCell& cell = placed.cells[i];
       const glm::dvec3 middle = placed.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
       const double facing = std::clamp(glm::dot(glm::dvec3(cell.normal), view_vector(task.camera, middle)), -1.0, 1.0),
-                   reach = 2.0 * static_cast<double>(cell.spread) + kTurn;
+                   // From the cell's middle the eye is seen in another direction than from elsewhere in it.
+          parallax = perspective ? kHalfDiagonal * placed.voxel / glm::distance(task.camera.eye, middle) : 0.0,
+                   reach = static_cast<double>(cell.spread) + 2.0 * parallax;
       const bool may = cell.normal == glm::vec3(0.0f) || std::any_of(levels.begin(), levels.end(), [&](double level) {
                          // An arc is no shorter than its height.
                          return std::fabs(facing - level) <= reach && std::fabs(std::asin(facing) - std::asin(level)) <= reach;
@@ -57,17 +60,42 @@ std::vector<SurfaceCell> turning_cells(const PlacedLevelSet& placed, const LineT
   return cells;
 }
 
-CellOutput march(const CellSearch& search, size_t branch, const SurfaceLattice& lattice, LatticeMemory& memory,
-                 const ExecutionSettings& execution) {
+/// Tells most cells out that hold no contour, where the lattice's cells are the level set's own.
+class ContourBounds {
+ public:
+  ContourBounds(const PlacedLevelSet& placed, const SurfaceLattice& lattice, const Camera& eye)
+      : placed_(placed), first_(lattice.first_node) {
+    const bool perspective = eye.projection == Projection::perspective;
+    const Affine index_from_solver = inverse(placed.solver_from_index);
+    w_ = perspective ? 1.0 : 0.0;
+    eye_ = perspective ? index_from_solver.point(eye.eye) : index_from_solver.linear * eye.world_from_camera[2];
+  }
+  bool may_hold(const glm::ivec3& cell) const {
+    return !first_ || !placed_.bounds || placed_.bounds->may_hold_contour(*first_ + cell, eye_, w_);
+  }
+
+ private:
+  const PlacedLevelSet& placed_;
+  std::optional<glm::ivec3> first_;
+  glm::dvec3 eye_{0.0};
+  double w_ = 1.0;
+};
+
+CellOutput march(const CellSearch& search, size_t branch, const PlacedLevelSet& placed, const SurfaceLattice& lattice,
+                 LatticeMemory& memory, const ExecutionSettings& execution) {
   memory.prepare(lattice.grid, kMostKeptBytes);
   std::vector<LatticeSamples*> samples;
   for (const LatticePart& region : lattice.regions) samples.push_back(&memory.regions[region.key].branches[0]);
+  const bool contours_alone = search.families == 1u;
+  const ContourBounds bounds(placed, lattice, search.viewer.facing);
   std::vector<CellOutput> parts(lattice.regions.size());
   parallel_for(size_t{0}, parts.size(), [&](size_t r) {
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
     FieldEvaluator evaluator(search.sharp.branches[branch]);
-    for (size_t i = lattice.regions[r].begin; i < lattice.regions[r].end; ++i)
+    for (size_t i = lattice.regions[r].begin; i < lattice.regions[r].end; ++i) {
+      if (contours_alone && !bounds.may_hold(lattice.cells[i])) continue;
       march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, samples[r], parts[r], true);
+    }
   });
   CellOutput all;
   for (const CellOutput& part : parts) {
@@ -151,7 +179,7 @@ void note_edges(const LineTask& task, const PlacedLevelSet& grid, LineContributi
   const auto sharp = std::count_if(grid.cells.begin(), grid.cells.end(),
                                    [&](const SurfaceCell& cell) { return static_cast<double>(cell.spread) > half_turn; });
   if (sharp == 0 || !task.wants(LineClass::crease)) return;
-  out.notes.push_back(fmt::format("level sets have no creases: {} of {} cells turn by more than {:.0f} degrees within a voxel", sharp,
+  out.notes.push_back(fmt::format("level sets have no creases: {} of {} cells may turn by more than {:.0f} degrees within a voxel", sharp,
                                   grid.cells.size(), task.settings.crease_angle_deg));
 }
 
@@ -199,9 +227,8 @@ void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContr
   CellResult found;
   for (size_t k = 0; k < body.size(); ++k) {
     const PlacedLevelSet& grid = *tracing.grids[body[k]];
-    found.branches[static_cast<int>(k)] =
-        march(search, k, lattice_of(grid, turning_cells(grid, task, tracing.levels, tracing.execution), tracing.execution),
-              task.kept.level_sets.lattices[body[k]], tracing.execution);
+    const SurfaceLattice lattice = lattice_of(grid, turning_cells(grid, task, tracing.levels, tracing.execution), tracing.execution);
+    found.branches[static_cast<int>(k)] = march(search, k, grid, lattice, task.kept.level_sets.lattices[body[k]], tracing.execution);
     for (size_t j = 0; j < k; ++j) {
       const PlacedLevelSet& other = *tracing.grids[body[j]];
       if (intersect(grid.box, other.box).empty()) continue;

@@ -1,7 +1,6 @@
 #include "raymarch/lines/nearer_crossings.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -99,30 +98,18 @@ bool is_unclear(const Ends& step, const Ends& nearer, double sag_px) {
   return distance_of(step, nearer) < sag_px;
 }
 
-/// sag_px() of folds, each worked out once: where lines lie on each other every fold is asked for hundreds of times, from many threads.
-class FoldSags {
- public:
-  FoldSags(const std::vector<SurfaceCurve>& curves, const FoldIndex& index, const Camera& camera)
-      : curves_(curves), index_(index), camera_(camera), sags_px_(index.folds().size()) {
-    for (std::atomic<double>& sag : sags_px_) sag.store(kUnknown, std::memory_order_relaxed);
-  }
-  double at(std::uint32_t fold) {
-    std::atomic<double>& known = sags_px_[fold];
-    double sag = known.load(std::memory_order_relaxed);
-    if (sag == kUnknown) {
-      sag = sag_px(curves_[index_.folds()[fold].curve], index_.folds()[fold].index, camera_);
-      known.store(sag, std::memory_order_relaxed);
-    }
-    return sag;
-  }
-
- private:
-  static constexpr double kUnknown = -1.0;
-  const std::vector<SurfaceCurve>& curves_;
-  const FoldIndex& index_;
-  const Camera& camera_;
-  std::vector<std::atomic<double>> sags_px_;
-};
+StepSags sags_of(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepMarks& asked) {
+  StepSags sags(curves.size());
+  parallel_for(size_t{0}, curves.size(), [&](size_t c) {
+    sags[c].assign(asked[c].size(), -1.0);
+    parallel_parts(asked[c].size(), size_t{256}, [&](const IndexRange<size_t>& range) {
+      for (size_t i = range.begin(); i < range.end(); ++i) {
+        if (asked[c][i] != 0) sags[c][i] = sag_px(curves[c], i, camera);
+      }
+    });
+  });
+  return sags;
+}
 
 /// Of one curve, in order along it.
 std::vector<NearerCrossing> crossings_of(const std::vector<SurfaceCurve>& curves, size_t c, const FoldIndex& index, const Camera& camera) {
@@ -159,47 +146,12 @@ std::vector<NearerCrossing> crossings_of(const std::vector<SurfaceCurve>& curves
 
 NearerFolds::NearerFolds(const std::vector<SurfaceCurve>& curves, const Camera& camera)
     : curves_(curves), camera_(camera), index_(std::make_unique<FoldIndex>(curves, camera, nullptr)) {}
-NearerFolds::NearerFolds(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepMarks& steps)
-    : curves_(curves), camera_(camera), index_(std::make_unique<FoldIndex>(curves, camera, &steps)) {}
 NearerFolds::~NearerFolds() = default;
 
 std::vector<std::vector<NearerCrossing>> NearerFolds::crossings() const {
   std::vector<std::vector<NearerCrossing>> result(curves_.size());
   parallel_for(size_t{0}, curves_.size(), [&](size_t c) { result[c] = crossings_of(curves_, c, *index_, camera_); });
   return result;
-}
-
-StepMarks NearerFolds::unclear_steps(const StepMarks& asked) const {
-  StepMarks unclear(curves_.size());
-  std::vector<std::vector<std::uint32_t>> nearer(curves_.size());
-  FoldSags sags(curves_, *index_, camera_);
-  double widest_px = 0.0;
-  for (const SurfaceCurve& curve : curves_) widest_px = std::max(widest_px, curve.apart_px);
-  parallel_for(size_t{0}, curves_.size(), [&](size_t c) {
-    const SurfaceCurve& curve = curves_[c];
-    unclear[c].assign(asked[c].size(), 0);
-    for (size_t i = 0; i < asked[c].size(); ++i) {
-      if (asked[c][i] == 0) continue;
-      const Ends step = ends_of(curve, i);
-      const FoldReach around = reach_around(step, curve.apart_px + widest_px);
-      std::optional<double> own_sag_px;
-      const auto look = [&](std::uint32_t f) {
-        const Fold& fold = index_->folds()[f];
-        if (!may_touch(step, fold.ends, greatest_sag_px(curve, curves_[fold.curve]))) return;
-        if (fold.curve == c && neighbours(curve, fold.index, i)) return;
-        if (!is_in_front(fold.ends, step, std::max(curve.nearer_px, fold.nearer_px), camera_)) return;
-        if (!own_sag_px) own_sag_px = sag_px(curve, i, camera_);
-        if (!is_unclear(step, fold.ends, *own_sag_px + sags.at(f))) return;
-        unclear[c][i] = 1;
-        if (!is_feature(curve.samples[i].line_class)) nearer[c].push_back(f);
-      };
-      index_->for_buckets(step, [&](size_t bucket) { index_->for_folds(bucket, around, look); });
-    }
-  });
-  for (const auto& folds : nearer) {
-    for (const std::uint32_t f : folds) unclear[index_->folds()[f].curve][index_->folds()[f].index] = 1;
-  }
-  return unclear;
 }
 
 NearerFolds::Beside NearerFolds::beside(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const {
@@ -234,6 +186,37 @@ std::optional<NearerCrossing> NearerFolds::nearest(const CurveSample& sample, st
   const double squared = glm::dot(step, step),
                t = squared > 0.0 ? std::clamp(glm::dot(sample.px - a, step) / squared, 0.0, kBelowOne) : 0.0;
   return NearerCrossing{place, 0, fold.curve, static_cast<double>(fold.index) + share_in_space(fold.ends, t, camera_)};
+}
+
+StepMarks unclear_steps(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepMarks& asked) {
+  const StepSags sags = sags_of(curves, camera, asked);
+  const FoldIndex index(curves, camera, &sags);
+  StepMarks unclear(curves.size());
+  std::vector<std::vector<std::uint32_t>> nearer(curves.size());
+  parallel_for(size_t{0}, curves.size(), [&](size_t c) {
+    const SurfaceCurve& curve = curves[c];
+    unclear[c].assign(asked[c].size(), 0);
+    for (size_t i = 0; i < asked[c].size(); ++i) {
+      if (asked[c][i] == 0) continue;
+      const Ends step = ends_of(curve, i);
+      const double own_px = sags[c][i];
+      const auto look = [&](std::uint32_t f) {
+        const Fold& fold = index.folds()[f];
+        const double sag_px = own_px + fold.sag_px;
+        if (!is_unclear(step, fold.ends, sag_px) || !may_touch(step, fold.ends, greatest_sag_px(curve, curves[fold.curve]))) return;
+        if (fold.curve == c && neighbours(curve, fold.index, i)) return;
+        if (!is_in_front(fold.ends, step, std::max(curve.nearer_px, fold.nearer_px), camera)) return;
+        unclear[c][i] = 1;
+        if (!is_feature(curve.samples[i].line_class)) nearer[c].push_back(f);
+      };
+      const FoldReach around = reach_around(step, own_px + kLeastSag_px);
+      index.for_buckets(step, [&](size_t bucket) { index.for_folds(bucket, around, look); });
+    }
+  });
+  for (const auto& folds : nearer) {
+    for (const std::uint32_t f : folds) unclear[index.folds()[f].curve][index.folds()[f].index] = 1;
+  }
+  return unclear;
 }
 
 }  // namespace limn

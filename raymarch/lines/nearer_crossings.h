@@ -19,17 +19,12 @@ struct NearerCrossing {
 class NearerFolds {
  public:
   NearerFolds(const std::vector<SurfaceCurve>& curves, const Camera& camera);
-  /// Of some steps alone.
-  NearerFolds(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepMarks& steps);
   ~NearerFolds();
   NearerFolds(const NearerFolds&) = delete;
   NearerFolds& operator=(const NearerFolds&) = delete;
 
   /// Of each curve, in order along it.
   std::vector<std::vector<NearerCrossing>> crossings() const;
-  /// Of the steps asked for, by curve (0 or 1 each): those that come so near to a nearer line, or cross it at so flat an angle, that
-  /// straight steps do not tell where the lines cross; and the nearer line's own.
-  StepMarks unclear_steps(const StepMarks& asked) const;
   /// How far the nearest line in front of a place of a curve lies beside it in the image; no more than `reach_px`. A ray that starts a
   /// little beside the curve tells what lies in front of it only where this is more.
   double clearance_px(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const;
@@ -48,5 +43,9 @@ class NearerFolds {
   const Camera& camera_;
   std::unique_ptr<const FoldIndex> index_;
 };
+
+/// Of the steps asked for, by curve (0 or 1 each), among each other: those that come so near to a nearer line, or cross it at so flat an
+/// angle, that straight steps do not tell where the lines cross; and the nearer line's own.
+StepMarks unclear_steps(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepMarks& asked);
 
 }  // namespace limn

@@ -6,6 +6,7 @@
 #include "sdf/error.h"
 #include "sdf/field_program.h"
 #include "sdf/local_grid.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -39,19 +40,24 @@ SharedLevelSet place_level_set(const LineTask& task, size_t object) {
   const LevelSet& level_set = volume.level_set;
   Affine solver_from_world = scene_object.world_from_object;
   solver_from_world.translation -= task.origin;
-  FieldLeaf leaf = reconstruction_field(level_set).program().leaves[0];
+  const Reconstruction made = reconstruct(level_set);
+  FieldLeaf leaf = made.field.program().leaves[0];
   leaf.object_from_world = inverse(solver_from_world);
   PlacedLevelSet placed{field_from_leaf(leaf, false), solver_from_world};
+  placed.bounds = made.cells;
   placed.solver_from_index = compose(solver_from_world, level_set.info().world_from_index);
   const glm::dmat3& axes = placed.solver_from_index.linear;
   placed.voxel = std::max({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
   placed.box = dilate(transform(solver_from_world, level_set.info().bounds), 2.0 * placed.voxel);
-  placed.cells = surface_cells(level_set);
+  placed.cells = surface_cells(made.completed);
   const glm::dmat3 turn = glm::transpose(inverse(solver_from_world).linear);
-  for (SurfaceCell& cell : placed.cells) {
-    const glm::dvec3 normal = turn * glm::dvec3(cell.normal);
-    if (glm::length(normal) > 0.0) cell.normal = glm::vec3(glm::normalize(normal));
-  }
+  parallel_parts(placed.cells.size(), size_t{4096}, [&](const IndexRange<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      SurfaceCell& cell = placed.cells[i];
+      const glm::dvec3 normal = turn * glm::dvec3(cell.normal);
+      if (glm::length(normal) > 0.0) cell.normal = glm::vec3(glm::normalize(normal));
+    }
+  });
   return kept = std::make_shared<const PlacedLevelSet>(std::move(placed));
 }
 

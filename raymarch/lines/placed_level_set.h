@@ -1,6 +1,8 @@
 #pragma once
 // Internal: a level set in solver space, as the field of its cubic spline.
 
+#include <optional>
+
 #include "raymarch/lines/surface_curves.h"
 #include "sdf/level_set_reconstruction.h"
 
@@ -10,9 +12,10 @@ struct PlacedLevelSet {
   Field field;
   Affine solver_from_world{};  ///< From where the level set itself stands.
   Affine solver_from_index{};
-  double voxel = 1.0;                ///< The widest side of a cell.
-  Box box{};                         ///< About the surface, two voxels wider.
-  std::vector<SurfaceCell> cells{};  ///< With normals of solver space.
+  double voxel = 1.0;                   ///< The widest side of a cell.
+  Box box{};                            ///< About the surface, two voxels wider.
+  std::vector<SurfaceCell> cells{};     ///< With normals of solver space.
+  std::optional<SplineCells> bounds{};  ///< Of cells; without them any may hold a contour.
 };
 using SharedLevelSet = std::shared_ptr<const PlacedLevelSet>;
 

@@ -34,13 +34,6 @@ class KeyedValues {
     while (places_[place] != kNone && entries_[places_[place]].first != key) place = (place + 1) & (places_.size() - 1);
     return places_[place] == kNone ? nullptr : &entries_[places_[place]].second;
   }
-  /// The place of one that is there in the order in which they came, and what is at such a place.
-  std::uint32_t place_of(std::uint64_t key) const {
-    size_t place = hash(key);
-    while (entries_[places_[place]].first != key) place = (place + 1) & (places_.size() - 1);
-    return places_[place];
-  }
-  const Value& at_place(std::uint32_t place) const { return entries_[place].second; }
   /// Keys and values, in the order in which they came.
   const std::vector<std::pair<std::uint64_t, Value>>& entries() const { return entries_; }
   size_t bytes() const { return entries_.capacity() * sizeof(entries_[0]) + places_.capacity() * sizeof(places_[0]); }
@@ -68,18 +61,11 @@ struct EdgeSample {
   glm::dvec3 p{0.0}, gradient{0.0};
 };
 
-/// The edges of a cell that the surface goes through: so many places among all edges, from one on in LatticeSamples::cell_edges.
-struct CellEdges {
-  std::uint32_t first = 0, count = 0;
-};
-
 /// Of one branch; used by one thread at a time.
 struct LatticeSamples {
   KeyedValues<double> values{};
   KeyedValues<EdgeSample> edges{};
-  KeyedValues<CellEdges> cells{};  ///< Of level sets.
-  std::vector<std::uint32_t> cell_edges{};
-  size_t bytes() const { return values.bytes() + edges.bytes() + cells.bytes() + cell_edges.capacity() * sizeof(cell_edges[0]); }
+  size_t bytes() const { return values.bytes() + edges.bytes(); }
 };
 
 }  // namespace limn

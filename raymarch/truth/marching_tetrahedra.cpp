@@ -1,6 +1,7 @@
 #include "raymarch/truth/marching_tetrahedra.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace limn {
@@ -12,7 +13,8 @@ constexpr size_t kEdges = 19;  // of the tetrahedra: 12 of the cell, a diagonal 
 // A share of the step across a face: points that Newton moves farther would change places with their neighbours.
 constexpr double kSmoothReach = 0.25;
 constexpr int kSeamSteps = 40;
-constexpr double kNoSign = 1e-24;  // the square of a cosine: less may be rounding
+constexpr double kSeedOff = 0.01;  // of an edge
+constexpr int kSeedSteps = 4;
 
 glm::ivec3 offset_of(int corner) { return {corner & 1, corner >> 1 & 1, corner >> 2 & 1}; }
 
@@ -20,24 +22,6 @@ glm::ivec3 offset_of(int corner) { return {corner & 1, corner >> 1 & 1, corner >
 std::uint64_t key_of_vertex(const glm::ivec3& vertex) {
   const auto part = [](int v) { return static_cast<std::uint64_t>(v); };
   return (((part(vertex.x) << 20 | part(vertex.y)) << 20 | part(vertex.z)) << 3) + 1;
-}
-
-/// What an earlier view saw of the cell says that N.V has one sign all over it, for certain.
-bool has_one_sign(const LatticeSamples& samples, const glm::ivec3& cell, const Viewer& viewer) {
-  const CellEdges* const known = samples.cells.find(key_of_vertex(cell));
-  if (known == nullptr) return false;
-  const bool perspective = viewer.facing.projection == Projection::perspective;
-  int sign = 0;
-  for (std::uint32_t k = known->first; k < known->first + known->count; ++k) {
-    const EdgeSample& edge = samples.edges.at_place(samples.cell_edges[k]);
-    const glm::dvec3 way = perspective ? viewer.facing.eye - edge.p : viewer.facing.world_from_camera[2];
-    const double along = glm::dot(edge.gradient, way);
-    if (!(along * along > kNoSign * glm::dot(edge.gradient, edge.gradient) * glm::dot(way, way))) return false;
-    const int here = along > 0.0 ? 1 : -1;
-    if (sign == -here) return false;
-    sign = here;
-  }
-  return true;
 }
 
 struct FaceCrossing {
@@ -65,19 +49,6 @@ class Marcher {
     bool any = false;
     for (const auto& corners : kTetrahedra) any = march_tetrahedron(corners) || any;
     return any;
-  }
-
-  std::uint64_t cell_key() const { return vertex_key(0); }
-  /// For the next view, after march().
-  void keep_edges() {
-    const auto first = static_cast<std::uint32_t>(samples_->cell_edges.size());
-    for (size_t i = 0; i < edges_.size(); ++i) {
-      if (edges_[i] == 0) continue;
-      const auto low = static_cast<int>(i / 8), high = static_cast<int>(i % 8);
-      samples_->cell_edges.push_back(samples_->edges.place_of(edge_key(low, high)));
-    }
-    bool added = false;
-    samples_->cells.at(cell_key(), added) = {first, static_cast<std::uint32_t>(samples_->cell_edges.size()) - first};
   }
 
  private:
@@ -116,19 +87,44 @@ class Marcher {
     if (place != 0) return found_[place - size_t{1}];
     place = static_cast<std::uint8_t>(++edges_found_);
     SurfaceSample& sample = found_[place - size_t{1}];
-    const auto root = [&] { return root_between(evaluator_, points_[low], points_[high], values_[low], values_[high]); };
+    const auto find = [&] {
+      if (seeds_) return seed_on_edge(low, high);
+      return sample_at(root_between(evaluator_, points_[low], points_[high], values_[low], values_[high]));
+    };
     if (samples_ == nullptr) {
-      sample = sample_at(root());
+      sample = find();
     } else {
       bool added = false;
       EdgeSample& known = samples_->edges.at(edge_key(std::min(a, b), std::max(a, b)), added);
       if (added) {
-        const SurfaceSample found = sample_at(root());
+        const SurfaceSample found = find();
         known = {found.p, found.gradient};
       }
       sample = {known.p, known.gradient, facing_of(viewer_, known.p, known.gradient)};
     }
     return sample;
+  }
+  /// Within a hundredth of the edge: the curves are followed from points beside them. Newton's iteration, whose last step the gradient is
+  /// not taken anew for.
+  SurfaceSample seed_on_edge(size_t low, size_t high) {
+    const glm::dvec3 start = points_[low], way = points_[high] - start;
+    const double a = values_[low], b = values_[high];
+    double t = a / (a - b), from = 0.0, to = 1.0;
+    for (int step = 0; step < kSeedSteps; ++step) {
+      const glm::dvec3 p = start + t * way;
+      double value = 0.0;
+      glm::dvec3 gradient;
+      evaluator_.gradients(std::span(&p, 1), std::span(&value, 1), std::span(&gradient, 1));
+      ((value < 0.0) == (a < 0.0) ? from : to) = t;
+      const double next = t - value / glm::dot(gradient, way);
+      if (!(next >= from && next <= to)) break;
+      if (std::fabs(next - t) < kSeedOff) {
+        const glm::dvec3 q = start + next * way;
+        return {q, gradient, facing_of(viewer_, q, gradient)};
+      }
+      t = next;
+    }
+    return sample_at(root_between(evaluator_, start, points_[high], a, b));
   }
   SurfaceSample sample_at(const glm::dvec3& p) {
     if (seam_ != nullptr) return {p, glm::dvec3(0.0), seam_->value(p)};
@@ -151,11 +147,18 @@ class Marcher {
     const SurfaceSample &start = edge(lone, first), &end = edge(lone, second);
     if (above(start) == above(end)) return {};
     const FaceCrossing result{key_of(a, b, c), true};
-    if (std::find(faces_.begin(), faces_.end(), result.key) == faces_.end()) {
-      faces_.push_back(result.key);
-      output_->crossings.push_back({result.key, locate(lone, first, second, start, end)});
-    }
+    if (is_new(result.key)) output_->crossings.push_back({result.key, locate(lone, first, second, start, end)});
     return result;
+  }
+  bool is_new(std::uint64_t face) {
+    bool added = false;
+    if (seeds_) {
+      output_->known.at(face, added);
+      return added;
+    }
+    added = std::find(faces_.begin(), faces_.end(), face) == faces_.end();
+    if (added) faces_.push_back(face);
+    return added;
   }
 
   CurvePoint locate(int lone, int first, int second, const SurfaceSample& start, const SurfaceSample& end) {
@@ -270,8 +273,6 @@ class Marcher {
 bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
                 const std::array<double, kCurveFamilies>& levels, FamilyMask families, LatticeSamples* samples, CellOutput& output,
                 bool seeds) {
-  const bool keeps_edges = seeds && samples != nullptr && families == 1u && levels[0] == 0.0;
-  if (keeps_edges && has_one_sign(*samples, cell, viewer)) return false;
   Marcher marcher(evaluator, nullptr, viewer, grid, cell, samples, seeds);
   bool any = false;
   if (marcher.holds_surface()) {
@@ -279,7 +280,6 @@ bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid&
       if (families >> family & 1u) any = marcher.march(levels[family], output[family]) || any;
     }
   }
-  if (keeps_edges && samples->cells.find(marcher.cell_key()) == nullptr) marcher.keep_edges();
   return any;
 }
 

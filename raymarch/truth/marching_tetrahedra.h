@@ -29,6 +29,7 @@ struct Link {
 struct CellCurves {
   std::vector<Crossing> crossings{};
   std::vector<Link> links{};
+  KeyedValues<char> known{};  ///< Of seeds: keys of `crossings`, each of which is there once.
 };
 
 /// Levels of N.V that are looked for: contour generators and the rim's curve.

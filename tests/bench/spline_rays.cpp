@@ -67,7 +67,7 @@ std::vector<std::optional<SplineBody>> spline_bodies(const Scene& scene) {
     const Affine& world_from_object = object.world_from_object;
     const glm::dmat3 axes = compose(world_from_object, info.world_from_index).linear;
     const double voxel = std::max({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
-    FieldLeaf leaf = reconstruction_field(source->level_set).program().leaves[0];
+    FieldLeaf leaf = reconstruct(source->level_set).field.program().leaves[0];
     leaf.object_from_world = inverse(world_from_object);
     bodies.back() = SplineBody{field_from_leaf(leaf, false), dilate(transform(world_from_object, info.bounds), 2.0 * voxel), voxel};
   }

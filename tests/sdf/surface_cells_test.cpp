@@ -1,0 +1,101 @@
+// Bounds of a level set's spline by cells, against the spline itself at random points.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+#include <tuple>
+
+#include "sdf/level_set_data.h"
+#include "sdf/level_set_reconstruction.h"
+#include "sdf/shape.h"
+#include "tests/random_seed.h"
+
+namespace limn {
+namespace {
+
+constexpr int kPoints = 20;  // in each cell
+
+using Node = std::tuple<int, int, int>;
+
+struct Case {
+  Reconstruction made;
+  std::map<Node, SurfaceCell> cells{};
+};
+
+/// A box with sharp edges, or a smooth torus, of few voxels.
+Case random_case(std::mt19937& random, bool box) {
+  std::uniform_real_distribution<double> real(0.0, 1.0);
+  const Field shape = box ? make_shape("box", {{"half", {0.3 + 0.4 * real(random), 0.3 + 0.4 * real(random), 0.5}}})
+                          : make_shape("torus", {{"major", {0.6}}, {"minor", {0.12 + 0.2 * real(random)}}});
+  const glm::dvec3 axis = glm::normalize(glm::dvec3(real(random), real(random), real(random)) + 0.1);
+  LevelSetSettings settings;
+  settings.voxel_size = 0.04 + 0.06 * real(random);
+  settings.half_width_voxels = 4.2;
+  Case one{reconstruct(level_set_from_field(rotate(shape, axis, 6.0 * real(random)), settings))};
+  for (const SurfaceCell& cell : surface_cells(one.made.completed)) one.cells[{cell.node.x, cell.node.y, cell.node.z}] = cell;
+  return one;
+}
+
+struct CellBounds {
+  double least = 0.0, most = 0.0;
+  void add(double x) {
+    least = std::min(least, x);
+    most = std::max(most, x);
+  }
+  bool changes_sign() const { return least < 0.0 && most > 0.0; }
+};
+
+TEST(SurfaceCells, HoldTheSurfaceAndAllNormalsOfTheSpline) {
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> real(0.0, 1.0);
+  std::int64_t held = 0, bounded = 0, flat = 0, told_out = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Case one = random_case(random, k == 0);
+    const LevelSetInfo& info = one.made.completed.info();
+    FieldEvaluator evaluator(one.made.field);
+    const glm::dvec3 eye = 40.0 * (glm::dvec3(real(random), real(random), real(random)) - 0.5);
+    const double w = real(random) < 0.7 ? 1.0 : 0.0;
+    // All cells about the surface, and one more on every side.
+    std::map<Node, int> around;
+    for (const auto& [node, cell] : one.cells)
+      for (int i = 0; i < 27; ++i)
+        around[{std::get<0>(node) + i % 3 - 1, std::get<1>(node) + i / 3 % 3 - 1, std::get<2>(node) + i / 9 - 1}] = 1;
+    for (const auto& [node, unused] : around) {
+      const glm::ivec3 first(std::get<0>(node), std::get<1>(node), std::get<2>(node));
+      const auto found = one.cells.find(node);
+      CellBounds values, slopes;
+      for (int i = 0; i < kPoints; ++i) {
+        const glm::dvec3 index = glm::dvec3(first) + glm::dvec3(real(random), real(random), real(random));
+        const FieldJet jet = evaluator.jet(info.world_from_index.point(index));
+        const glm::dvec3 by_index = glm::transpose(info.world_from_index.linear) * jet.gradient;
+        values.add(jet.value);
+        slopes.add(glm::dot(by_index, eye - w * index));
+        if (found == one.cells.end() || found->second.normal == glm::vec3(0.0f)) continue;
+        ++bounded;
+        const glm::dvec3 normal(found->second.normal), n = glm::normalize(jet.gradient);
+        const double angle = std::atan2(glm::length(glm::cross(n, normal)), glm::dot(n, normal));
+        EXPECT_LE(angle, static_cast<double>(found->second.spread));
+        flat += static_cast<double>(found->second.spread) < 0.3;
+      }
+      if (values.changes_sign()) {
+        EXPECT_NE(found, one.cells.end()) << "the surface goes through an unlisted cell";
+        ++held;
+      }
+      const bool may = one.made.cells.may_hold_contour(first, eye, w);
+      if (!may) {
+        EXPECT_FALSE(values.changes_sign() && slopes.changes_sign()) << "told out";
+        told_out += found != one.cells.end();
+      }
+    }
+  }
+  // It would say nothing of cells that nothing is known of.
+  EXPECT_GT(held, 500);
+  EXPECT_GT(bounded, kPoints * held / 4);
+  EXPECT_GT(flat, 0);
+  EXPECT_GT(told_out, held / 3);
+}
+
+}  // namespace
+}  // namespace limn

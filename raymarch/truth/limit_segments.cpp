@@ -13,6 +13,7 @@
 namespace limn {
 namespace {
 
+constexpr double kRootPlace = 1e-7;  // of an edge
 constexpr int kRootSteps = 40;
 constexpr double kWidthSlack = 1e-6;  // radians: cosines say little of small angles
 
@@ -79,24 +80,31 @@ double facing_at(const PlacedLimitSurface& placed, const Camera& camera, std::ui
   return glm::dot(s.normal, view_vector(camera, s.position));
 }
 
-// The Illinois method (Dowell & Jarratt 1971): false position that halves the weight of an end which stays.
+// The Illinois method (Dowell & Jarratt 1971): false position that halves the weight of an end which stays. The secant through the last two
+// places says how far the root is.
 double root_between(const PlacedLimitSurface& placed, const Camera& camera, std::uint32_t patch, const glm::dvec2& uv0,
                     const glm::dvec2& uv1, double h0, double h1, double level) {
-  double low = 0.0, high = 1.0;
-  for (int step = 0; step < kRootSteps && high - low > 1e-7; ++step) {
+  double low = 0.0, high = 1.0, last_t = 0.0, last = h0;
+  int last_side = 0;
+  for (int step = 0; step < kRootSteps && high - low > kRootPlace; ++step) {
     double t = h0 == h1 ? 0.5 * (low + high) : low + (high - low) * h0 / (h0 - h1);
     if (!(t > low && t < high)) t = 0.5 * (low + high);
-    const double value = facing_at(placed, camera, patch, glm::mix(uv0, uv1, t)) - level;
-    if (std::abs(value) < 1e-13) return t;
-    if ((value < 0.0) == (h0 < 0.0)) {
+    const double value = facing_at(placed, camera, patch, glm::mix(uv0, uv1, t)) - level, slope = (value - last) / (t - last_t);
+    const bool is_low = (value < 0.0) == (h0 < 0.0);
+    if (std::abs(value) < kRootPlace * std::abs(slope)) return std::clamp(t - value / slope, is_low ? t : low, is_low ? high : t);
+    const int side = is_low ? -1 : 1;
+    if (is_low) {
       low = t;
       h0 = value;
-      h1 *= 0.5;
+      if (last_side == side) h1 *= 0.5;
     } else {
       high = t;
       h1 = value;
-      h0 *= 0.5;
+      if (last_side == side) h0 *= 0.5;
     }
+    last_side = side;
+    last_t = t;
+    last = value;
   }
   return 0.5 * (low + high);
 }

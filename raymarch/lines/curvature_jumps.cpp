@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kJump = 4.0;  // times as steep as beside it
 constexpr double kLeastAcross = 1e-3;
+constexpr double kAlong = 0.01;  // a sine: directions that differ from the faces' common line by less lie along it
 
 /// A contour from the change on, one way or the other.
 struct Arm {
@@ -64,9 +65,10 @@ std::optional<CurvatureJump> jump_at(const CurvatureChange& change) {
   const std::optional<glm::dvec3> one = bend_along(positive, view), other = bend_along(negative, view);
   if (!one || !other) return {};
   const glm::dvec3 across = *one - *other;
-  const bool positive_in_front = (glm::dot(across, view) > 0.0) == (glm::dot(across, positive.tangent) > 0.0);
-  const bool more_on_back = positive_in_front == (&negative == &*back);
-  return CurvatureJump{more_on_back ? -1 : 1, meeting_share(*back, *ahead)};
+  const double share = meeting_share(*back, *ahead), sight = glm::dot(across, view), run = glm::dot(across, positive.tangent);
+  if (std::min(std::fabs(sight), std::fabs(run)) < kAlong * glm::length(across)) return CurvatureJump{{}, share};
+  const bool positive_in_front = (sight > 0.0) == (run > 0.0), more_on_back = positive_in_front == (&negative == &*back);
+  return CurvatureJump{more_on_back ? -1 : 1, share};
 }
 
 }  // namespace limn

@@ -15,7 +15,9 @@ struct CurvatureChange {
 };
 
 struct CurvatureJump {
-  int layers = 0;  ///< How many more lie in front of the contour after the change than before it: 1 or -1.
+  /// How many more lie in front of the contour after the change than before it: 1 or -1. Nothing where the contour runs along the line
+  /// that the faces share, or the line of sight does: then rounding would say which of them is in front.
+  std::optional<int> layers{};
   double t = 0.0;  ///< Where between the two samples: where both arms lead.
 };
 

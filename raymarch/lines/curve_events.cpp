@@ -87,18 +87,16 @@ class EventFinder {
   struct SignChange {
     size_t before = 0, after = 0;
     double place = 0.0;
-    double turn = 0.0;            ///< Where the polyline turns back in the image: of a jump at a sample beside the place.
-    std::optional<int> layers{};  ///< Of a jump.
+    double turn = 0.0;  ///< Where the polyline turns back in the image: of a jump at a sample beside the place.
+    std::optional<CurvatureJump> jump{};
   };
   SignChange located(SignChange change) const {
     const double a = walk_.at(change.before).radial_curvature, b = walk_.at(change.after).radial_curvature;
     double t = a / (a - b);
-    if (const auto jump = jump_at({curve_, change.before, change.after, camera_})) {
-      t = jump->t;
-      change.layers = jump->layers;
-    }
+    change.jump = jump_at({curve_, change.before, change.after, camera_});
+    if (change.jump) t = change.jump->t;
     change.place = glm::mix(static_cast<double>(change.before), static_cast<double>(change.after), std::clamp(t, 0.0, 1.0 - 1e-9));
-    change.turn = change.layers ? turn_of(change) : change.place;
+    change.turn = change.jump ? turn_of(change) : change.place;
     return change;
   }
   double turn_of(const SignChange& change) const {
@@ -152,8 +150,10 @@ class EventFinder {
       events_.push_back({VertexKind::joint, place, {}, 0, 0.0});
       return;
     }
-    if (change.layers) {
-      cusps.push_back({VertexKind::cusp, place, *change.layers, 0, 0.0});
+    if (change.jump) {
+      // Rays tell, too, what a jump of the curvature does not.
+      const std::optional<int> layers = change.jump->layers;
+      (layers ? cusps : events_).push_back({VertexKind::cusp, place, layers, 0, 0.0});
       return;
     }
     const double t = (change.place - static_cast<double>(change.before)) / static_cast<double>(change.after - change.before);

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "raymarch/lines/graph_building.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -51,7 +52,9 @@ std::vector<int> partners_of(const ViewGraph& graph) {
     double cosine;    ///< -1: straight on.
     EdgeEnd a, b;
   };
-  for (const auto& ends : at) {
+  // Each end lies at one vertex.
+  parallel_for(size_t{0}, at.size(), [&](size_t v) {
+    const std::vector<EdgeEnd>& ends = at[v];
     std::vector<Pair> pairs;
     for (size_t i = 0; i < ends.size(); ++i) {
       for (size_t j = 0; j < i; ++j) {
@@ -74,7 +77,7 @@ std::vector<int> partners_of(const ViewGraph& graph) {
       partner[a] = static_cast<int>(b);
       partner[b] = static_cast<int>(a);
     }
-  }
+  });
   return partner;
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
 #include <unordered_map>
 
 #include "raymarch/lines/graph_building.h"
@@ -135,6 +135,39 @@ std::vector<LinePoint> points_of_piece(const SurfaceCurve& curve, const CurvePie
   return points;
 }
 
+/// Where an event of a curve is, and the vertex that it became.
+struct EventPlace {
+  glm::dvec3 p{0.0};
+  glm::dvec2 px{0.0};
+  double depth = 0.0;
+  int vertex = -1;
+};
+
+/// What takes the curves' own points, from many threads.
+struct CurveParts {
+  std::vector<EventPlace> events{};
+  std::vector<std::vector<LinePoint>> pieces{};
+};
+CurveParts parts_of(const SurfaceCurve& curve, const CutCurve& cut, const LineTask& task) {
+  CurveParts parts;
+  for (const CurveEvent& event : cut.events) {
+    const CurveSample sample = sample_at(curve, std::min(event.at, last_place(curve)), task.camera);
+    parts.events.push_back({sample.p, sample.px, sample.depth});
+  }
+  for (const CurvePiece& piece : cut.pieces) parts.pieces.push_back(points_of_piece(curve, piece, task));
+  return parts;
+}
+
+/// The last piece that a place lies on, or none. Of a closed curve the last one may go on past its first sample.
+std::optional<size_t> piece_at(const std::vector<CurvePiece>& pieces, double place, double steps) {
+  if (pieces.empty()) return {};
+  if (place + steps <= pieces.back().to) return pieces.size() - 1;
+  const auto next =
+      std::upper_bound(pieces.begin(), pieces.end(), place, [](double at, const CurvePiece& piece) { return at < piece.from; });
+  if (next == pieces.begin() || place > (next - 1)->to) return {};
+  return static_cast<size_t>(next - pieces.begin()) - 1;
+}
+
 struct Builder {
   const std::vector<SurfaceCurve>& curves;
   const CutCurves& cut;
@@ -142,27 +175,26 @@ struct Builder {
   ViewGraph& graph;
   double pixel;
   PlaceIndex places;
+  std::vector<CurveParts> parts;
   const Camera& camera = task.camera;
-  std::map<std::pair<std::uint32_t, int>, int> vertex_of_event{};
 
   int vertex(std::uint32_t c, int event) {
-    const auto [entry, added] = vertex_of_event.try_emplace({c, event}, -1);
-    if (!added) return entry->second;
     const CurveEvent& at = cut.curves[c].events[static_cast<size_t>(event)];
-    const CurveSample sample = sample_at(curves[c], std::min(at.at, last_place(curves[c])), camera);
+    EventPlace& here = parts[c].events[static_cast<size_t>(event)];
+    if (here.vertex >= 0) return here.vertex;
     const bool shared = at.kind == VertexKind::end || at.kind == VertexKind::joint;
     if (shared) {
-      const double reach = kSamePlace_px * std::max(pixel, 1.0 / pixels_per_unit_at(camera, std::max(sample.depth, 1e-9)));
-      entry->second = places.nearest(sample.p, reach);
-      if (entry->second >= 0) {
-        graph.vertices[static_cast<size_t>(entry->second)].kind = VertexKind::joint;
-        return entry->second;
+      const double reach = kSamePlace_px * std::max(pixel, 1.0 / pixels_per_unit_at(camera, std::max(here.depth, 1e-9)));
+      here.vertex = places.nearest(here.p, reach);
+      if (here.vertex >= 0) {
+        graph.vertices[static_cast<size_t>(here.vertex)].kind = VertexKind::joint;
+        return here.vertex;
       }
     }
-    entry->second = static_cast<int>(graph.vertices.size());
-    graph.vertices.push_back({at.kind, sample.px, sample.depth, -1});
-    if (shared) places.add(sample.p, entry->second);
-    return entry->second;
+    here.vertex = static_cast<int>(graph.vertices.size());
+    graph.vertices.push_back({at.kind, here.px, here.depth, -1});
+    if (shared) places.add(here.p, here.vertex);
+    return here.vertex;
   }
   /// The new edge's index; -1 where its class is not wanted.
   int add_edge(const CurvePiece& piece, std::vector<LinePoint> points) {
@@ -218,26 +250,23 @@ void snap_joints(std::vector<SurfaceCurve>& curves, const Camera& camera) {
 
 void add_edges(const std::vector<SurfaceCurve>& curves, const CutCurves& cut, const LineTask& task, ViewGraph& graph) {
   const double pixel = pixel_size(curves, task.camera);
-  Builder builder{curves, cut, task, graph, pixel, PlaceIndex(16.0 * kSamePlace_px * pixel)};
+  Builder builder{curves, cut, task, graph, pixel, PlaceIndex(16.0 * kSamePlace_px * pixel), std::vector<CurveParts>(curves.size())};
   std::vector<std::vector<int>> edge_of(curves.size());
-  std::vector<std::vector<std::vector<LinePoint>>> points(curves.size());
-  parallel_for(size_t{0}, curves.size(), [&](size_t c) {
-    for (const CurvePiece& piece : cut.curves[c].pieces) points[c].push_back(points_of_piece(curves[c], piece, task));
-  });
+  parallel_for(size_t{0}, curves.size(), [&](size_t c) { builder.parts[c] = parts_of(curves[c], cut.curves[c], task); });
   for (size_t c = 0; c < curves.size(); ++c) {
     const std::vector<CurvePiece>& pieces = cut.curves[c].pieces;
-    for (size_t k = 0; k < pieces.size(); ++k) edge_of[c].push_back(builder.add_edge(pieces[k], std::move(points[c][k])));
+    for (size_t k = 0; k < pieces.size(); ++k) edge_of[c].push_back(builder.add_edge(pieces[k], std::move(builder.parts[c].pieces[k])));
   }
-  for (const auto& [key, vertex] : builder.vertex_of_event) {
-    const CurveEvent& event = cut.curves[key.first].events[static_cast<size_t>(key.second)];
-    if (event.kind != VertexKind::crossing) continue;
-    const auto& pieces = cut.curves[event.nearer].pieces;
-    const auto steps = static_cast<double>(curves[event.nearer].samples.size());
-    for (size_t k = 0; k < pieces.size(); ++k) {
-      const bool within = (event.on_nearer >= pieces[k].from && event.on_nearer <= pieces[k].to) || event.on_nearer + steps <= pieces[k].to;
-      if (within) graph.vertices[static_cast<size_t>(vertex)].crossed_by = edge_of[event.nearer][k];
+  parallel_for(size_t{0}, curves.size(), [&](size_t c) {
+    for (size_t k = 0; k < cut.curves[c].events.size(); ++k) {
+      const CurveEvent& event = cut.curves[c].events[k];
+      const int vertex = builder.parts[c].events[k].vertex;
+      if (vertex < 0 || event.kind != VertexKind::crossing) continue;
+      const auto steps = static_cast<double>(curves[event.nearer].samples.size());
+      if (const auto piece = piece_at(cut.curves[event.nearer].pieces, event.on_nearer, steps))
+        graph.vertices[static_cast<size_t>(vertex)].crossed_by = edge_of[event.nearer][*piece];
     }
-  }
+  });
 }
 
 }  // namespace limn

@@ -8,7 +8,6 @@ namespace {
 constexpr double kViewTurn = 1e-10;
 constexpr double kCreaseAngle = 1e-5;  // normals that differ by more where a bisection ended: the surface has a crease there
 constexpr double kFastestTurn = 20.0;  // of N.V over the reach of Newton's iteration
-constexpr double kRootPlace = 1e-12;   // of the way, as the secant through the last two places tells
 constexpr int kRootSteps = 80;
 constexpr int kNewtonSteps = 12;
 
@@ -61,16 +60,14 @@ SurfaceSample sample_surface(FieldEvaluator& evaluator, const Viewer& viewer, co
 
 // The Illinois variant of false position (Dowell & Jarratt 1971), with a bisection where it stalls.
 glm::dvec3 root_between(FieldEvaluator& evaluator, glm::dvec3 a, glm::dvec3 b, double fa, double fb) {
-  double ta = 0.0, tb = 1.0, last = fa, last_t = 0.0;
+  double ta = 0.0, tb = 1.0;
   const glm::dvec3 start = a, way = b - a;
   int last_side = 0;
   for (int step = 0; step < kRootSteps && tb - ta > 1e-15; ++step) {
     double t = ta + (tb - ta) * fa / (fa - fb);
     if (!(t > ta && t < tb) || step % 16 == 15) t = 0.5 * (ta + tb);
-    const double f = value_at(evaluator, start + t * way), slope = (f - last) / (t - last_t);
-    if (f == 0.0 || std::fabs(f) < kRootPlace * std::fabs(slope)) return start + t * way;
-    last = f;
-    last_t = t;
+    const double f = value_at(evaluator, start + t * way);
+    if (f == 0.0) return start + t * way;
     if (below(f, 0.0) == below(fa, 0.0)) {
       const double moved = t - ta;
       ta = t;

@@ -13,6 +13,7 @@ Scene scene_of_lines(const ExperimentSpec& spec, SceneInput& input, const std::f
                      std::vector<std::string>& warnings) {
   if (spec.surfaces.empty()) return input.scene;
   SurfaceSettings settings = surface_settings(spec, input);
+  settings.gradient = "cubic";  // What lines are those of: its narrow band is wide enough for them.
   settings.progress = progress;
   if (settings.kind == "mesh") {
     Scene scene = input.scene;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "sdf/gradients/bernstein.h"
+#include "sdf/gradients/spline_cell.h"
 #include "sdf/leaf_window.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_reconstruction.h"
@@ -52,7 +53,7 @@ class BlockSpline {
   /// Of the 4 x 4 x 4 nodes about the cell from that node on.
   void cell(int x, int y, int z, std::array<float, 64>& c) const {
     for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) std::copy_n(coefficients_.at(x - 1 + i, y - 1 + j, z - 1), 4, &c[static_cast<size_t>(16 * i + 4 * j)]);
+      for (int j = 0; j < 4; ++j) std::copy_n(coefficients_.at(x - 1 + i, y - 1 + j, z - 1), 4, &c[spline_place(i, j, 0)]);
   }
 
  private:

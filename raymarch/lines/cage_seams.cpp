@@ -54,7 +54,7 @@ SeamSample sample_seam(const Tracer& tracer, const SeamEdge& edge, std::uint32_t
   for (const SeamUse& use : *edge.uses) {
     const UseCorners at = corners_of(tracer.grid, use, from);
     const auto corner = [&](int i) -> const LimitCorner& { return at.triangle->corners[static_cast<size_t>(i)]; };
-    const LimitSample s = sample(tracer.placed, at.triangle->patch, glm::mix(corner(at.from).uv, corner(at.to).uv, t));
+    const LimitSample s = sample(tracer.placed, at.triangle->patch, glm::mix(corner(at.from).uv(), corner(at.to).uv(), t));
     const glm::dvec3 &pa = tracer.grid.positions[corner(at.from).node], &pb = tracer.grid.positions[corner(at.to).node];
     const glm::dvec3& third = tracer.grid.positions[corner((use.from + 2) % 3).node];
     if (result.sides.empty()) result.p = s.valid ? s.position : glm::mix(pa, pb, t);

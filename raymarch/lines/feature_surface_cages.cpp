@@ -153,10 +153,10 @@ std::vector<FeatureSurface> cage_features(const LineTask& task, const std::vecto
       const auto& c = triangle.corners;
       const bool tip = std::any_of(c.begin(), c.end(), [](const LimitCorner& corner) { return corner.side != corner.side_back; });
       if (tip || !may_be_seen(task.camera, {grid.positions[c[0].node], grid.positions[c[1].node], grid.positions[c[2].node]})) continue;
-      triangles.push_back({triangle.patch, {c[0].uv, c[1].uv, c[2].uv}});
+      triangles.push_back({triangle.patch, {c[0].uv(), c[1].uv(), c[2].uv()}});
       surface.triangles.push_back({c[0].side, c[1].side, c[2].side});
       for (const LimitCorner& corner : c) {
-        if (place_of[corner.side].first == kNone) place_of[corner.side] = {triangle.patch, corner.uv};
+        if (place_of[corner.side].first == kNone) place_of[corner.side] = {triangle.patch, corner.uv()};
       }
     }
     surface.nodes.resize(place_of.size());

@@ -28,7 +28,8 @@ glm::dvec3 first_normal(const PlacedLimitSurface& placed, size_t k, const glm::d
   return near.valid && far.valid ? 2.0 * near.normal - far.normal : glm::dvec3(std::numeric_limits<double>::quiet_NaN());
 }
 
-/// The corners where the ways along the patch's two sides have different normals.
+}  // namespace
+
 std::vector<glm::dvec2> cone_tips(const PlacedLimitSurface& placed, size_t k, int steps) {
   const std::vector<glm::dvec2> corners = corners_of(placed.patches[k]);
   const size_t count = corners.size();
@@ -42,21 +43,16 @@ std::vector<glm::dvec2> cone_tips(const PlacedLimitSurface& placed, size_t k, in
   return tips;
 }
 
-}  // namespace
-
-void take_sides_of_tips(const PlacedLimitSurface& placed, int steps, size_t first_triangle, LimitGrid& grid, const SideOfNode& side_of) {
-  if (first_triangle == grid.triangles.size()) return;
-  const std::uint32_t k = grid.triangles[first_triangle].patch;
-  const std::vector<glm::dvec2> tips = cone_tips(placed, k, steps);
+void take_sides_of_tips(const PlacedLimitSurface& placed, std::span<const glm::dvec2> tips, std::span<LimitTriangle> triangles,
+                        const SideOfCorner& side_of) {
   if (tips.empty()) return;
-  for (size_t t = first_triangle; t < grid.triangles.size(); ++t) {
-    LimitTriangle& triangle = grid.triangles[t];
+  for (LimitTriangle& triangle : triangles) {
     for (size_t i = 0; i < 3; ++i) {
       LimitCorner& corner = triangle.corners[i];
-      if (std::find(tips.begin(), tips.end(), corner.uv) == tips.end()) continue;
+      if (std::find(tips.begin(), tips.end(), corner.uv()) == tips.end()) continue;
       const auto side_on_way_to = [&](size_t other) {
-        const LimitSample s = beside(placed, k, corner.uv, triangle.corners[other % 3].uv);
-        return s.valid ? side_of(corner.node, s.normal) : corner.side;
+        const LimitSample s = beside(placed, triangle.patch, corner.uv(), triangle.corners[other % 3].uv());
+        return s.valid ? side_of(corner, s.normal) : corner.side;
       };
       const std::uint32_t next = side_on_way_to(i + 1), back = side_on_way_to(i + 2);
       corner.side = next;

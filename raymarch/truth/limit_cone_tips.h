@@ -3,16 +3,22 @@
 // the normal that a patch yields at the tip itself is that of none of them.
 
 #include <functional>
+#include <span>
+#include <vector>
 
 #include "raymarch/truth/limit_grid.h"
 
 namespace limn {
 
-/// The side of a node that has this normal.
-using SideOfNode = std::function<std::uint32_t(std::uint32_t node, const glm::dvec3& normal)>;
+/// The corners of a patch, sampled with `steps` along its side, where the ways along its two sides have different normals.
+std::vector<glm::dvec2> cone_tips(const PlacedLimitSurface& placed, size_t patch, int steps);
 
-/// Of the triangles from `first_triangle` on, all of one patch with `steps` samples along its side: at tips of cones each edge gets a side
-/// of its own, so that curves cross the edges where the surface does, and end at the tip where they lead there.
-void take_sides_of_tips(const PlacedLimitSurface& placed, int steps, size_t first_triangle, LimitGrid& grid, const SideOfNode& side_of);
+/// The side of a corner's node that has this normal.
+using SideOfCorner = std::function<std::uint32_t(const LimitCorner& corner, const glm::dvec3& normal)>;
+
+/// Of triangles of one patch: at its tips of cones each edge gets a side of its own, so that curves cross the edges where the surface does,
+/// and end at the tip where they lead there.
+void take_sides_of_tips(const PlacedLimitSurface& placed, std::span<const glm::dvec2> tips, std::span<LimitTriangle> triangles,
+                        const SideOfCorner& side_of);
 
 }  // namespace limn

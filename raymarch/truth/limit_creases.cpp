@@ -39,7 +39,7 @@ struct SideSample {
 
 SideSample sample_side(const LimitTracer& tracer, const CreaseSide& side, double t) {
   const auto corner = [&](int i) { return side.triangle->corners[static_cast<size_t>(i)]; };
-  const LimitSample s = sample(tracer.placed, side.triangle->patch, glm::mix(corner(side.from).uv, corner(side.to).uv, t));
+  const LimitSample s = sample(tracer.placed, side.triangle->patch, glm::mix(corner(side.from).uv(), corner(side.to).uv(), t));
   if (s.valid) return {s.normal, glm::dot(s.normal, view_vector(tracer.camera, s.position))};
   return {tracer.grid.normals[side_towards(*side.triangle, side.from, side.to)], side.f0 + t * (side.f1 - side.f0)};
 }
@@ -70,7 +70,7 @@ bool is_on(const LimitTracer& tracer, double facing1, double facing2) {
 std::vector<Break> breaks_of(LimitTracer& tracer, const std::vector<CreaseSide>& sides) {
   const CreaseSide& one = sides.front();
   const auto corner = [&](int i) { return one.triangle->corners[static_cast<size_t>(i)]; };
-  const auto node_end = [&](int i) { return LimitEnd{{corner(i).node, 0, 2}, one.triangle->patch, corner(i).uv}; };
+  const auto node_end = [&](int i) { return LimitEnd{{corner(i).node, 0, 2}, one.triangle->patch, corner(i).uv()}; };
   std::vector<Break> breaks{{0.0, node_end(one.from)}};
   for (const CreaseSide& side : sides) add_breaks(tracer, side, breaks);
   breaks.push_back({1.0, node_end(one.to)});
@@ -86,7 +86,7 @@ LimitSegment piece_of(const LimitTracer& tracer, const CreaseSide& one, const Br
   segment.beside_is_bounded = true;
   segment.along = tracer.grid.positions[to.node] - tracer.grid.positions[from.node];
   const Break* ends[2] = {&first, &second};
-  for (size_t e = 0; e < 2; ++e) segment.ends[e] = {ends[e]->end.key, one.triangle->patch, glm::mix(from.uv, to.uv, ends[e]->t)};
+  for (size_t e = 0; e < 2; ++e) segment.ends[e] = {ends[e]->end.key, one.triangle->patch, glm::mix(from.uv(), to.uv(), ends[e]->t)};
   return segment;
 }
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 #include "raymarch/truth/limit_cone_tips.h"
+#include "raymarch/truth/seam_nodes.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -16,38 +16,6 @@ constexpr double kRounding = 1e-12;  // of the largest coordinate: no two evalua
 constexpr int kFinestSteps = 256;    // along a patch's side
 constexpr size_t kSeamPart = 16384;  // triangles
 constexpr double kTip_px = 0.005;    // the patches' side is so far from its ends after one step, where it shrinks as the step's square
-
-/// Nodes by place: a hash of cells twice as wide as the tolerance, of which a point's neighbourhood touches at most eight.
-class Places {
- public:
-  explicit Places(double tolerance) : tolerance_(tolerance) {}
-  std::uint32_t find_or_add(const glm::dvec3& p, std::vector<glm::dvec3>& nodes) {
-    const double side = 2.0 * tolerance_;
-    const glm::dvec3 low = glm::floor((p - tolerance_) / side), high = glm::floor((p + tolerance_) / side);
-    for (double x = low.x; x <= high.x; ++x) {
-      for (double y = low.y; y <= high.y; ++y) {
-        for (double z = low.z; z <= high.z; ++z) {
-          const auto [first, last] = cells_.equal_range(key({x, y, z}));
-          for (auto it = first; it != last; ++it) {
-            if (glm::distance(nodes[it->second], p) <= tolerance_) return it->second;
-          }
-        }
-      }
-    }
-    const auto node = static_cast<std::uint32_t>(nodes.size());
-    nodes.push_back(p);
-    cells_.emplace(key(glm::floor(p / side)), node);
-    return node;
-  }
-
- private:
-  static std::uint64_t key(const glm::dvec3& cell) {
-    const auto mixed = [](double v, std::uint64_t factor) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(v)) * factor; };
-    return mixed(cell.x, 0x9e3779b97f4a7c15u) ^ mixed(cell.y, 0xc2b2ae3d27d4eb4fu) ^ mixed(cell.z, 0x165667b19e3779f9u);
-  }
-  double tolerance_;
-  std::unordered_multimap<std::uint64_t, std::uint32_t> cells_;
-};
 
 /// Steps along a patch's side: even, so that an n-gon's shares, which have half as many, meet the lattices of its neighbours.
 int steps_of(const LimitPatch& patch, int steps) { return patch.share ? steps / 2 : steps; }
@@ -86,40 +54,18 @@ int steps_for(const PlacedLimitSurface& placed, double longest_px, double cell_p
 
 struct PatchLattice {
   int steps = 1;
-  std::vector<LimitSample> samples;  ///< Rows of v, each of u from 0; a triangle's rows grow shorter.
+  std::vector<LimitSample> samples{};  ///< Rows of v, each of u from 0; a triangle's rows grow shorter.
   bool valid = true;
+  // Of a valid one:
+  Box extent{};
+  std::vector<glm::dvec2> tips{};  ///< cone_tips()
+  double tip_px = 0.0;             ///< LimitGrid::tip_px
 };
 
 size_t lattice_index(const LimitPatch& patch, int steps, int i, int j) {
   const auto row = static_cast<size_t>(j), n = static_cast<size_t>(steps);
   const size_t before = patch.triangle ? row * (n + 1) - row * (row - 1) / 2 : row * (n + 1);
   return before + static_cast<size_t>(i);
-}
-
-PatchLattice sample_lattice(const PlacedLimitSurface& placed, size_t k, int steps) {
-  PatchLattice lattice;
-  lattice.steps = steps;
-  const LimitPatch& patch = placed.patches[k];
-  for (int j = 0; j <= steps; ++j) {
-    for (int i = 0; i <= (patch.triangle ? steps - j : steps); ++i) {
-      lattice.samples.push_back(sample(placed, k, glm::dvec2(i, j) / double(steps)));
-      lattice.valid = lattice.valid && lattice.samples.back().valid;
-    }
-  }
-  return lattice;
-}
-
-/// Samples nearer to each other than this are one node. Never so little beside the coordinates that cells of that size cannot be counted.
-double same_place(const std::vector<PatchLattice>& lattices) {
-  Box extent;
-  for (const PatchLattice& lattice : lattices) {
-    if (!lattice.valid) continue;
-    for (const LimitSample& s : lattice.samples) extent = include(extent, s.position);
-  }
-  if (extent.empty()) return 1.0;
-  const glm::dvec3 farthest = glm::max(glm::abs(extent.lower), glm::abs(extent.upper));
-  const double largest = std::max({farthest.x, farthest.y, farthest.z});
-  return std::max({kSamePlace * extent.radius(), kRounding * largest, 1e-300});
 }
 
 /// From the tips of a patch to the samples around them.
@@ -138,58 +84,189 @@ double tip_px(const PlacedLimitSurface& placed, size_t k, const PatchLattice& la
   return widest;
 }
 
-using SidesOfNodes = std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>;
-
-std::uint32_t add_side(std::uint32_t node, const glm::dvec3& normal, LimitGrid& grid) {
-  grid.normals.push_back(normal);
-  grid.node_of_side.push_back(node);
-  return static_cast<std::uint32_t>(grid.normals.size() - 1);
-}
-
-/// The side of a seam's node that has this normal, or a new one.
-std::uint32_t seam_side(std::uint32_t node, const glm::dvec3& normal, SidesOfNodes& sides, LimitGrid& grid) {
-  std::vector<std::uint32_t>& here = sides[node];
-  for (const std::uint32_t side : here) {
-    if (glm::distance(grid.normals[side], normal) < kSameNormal) return side;
-  }
-  here.push_back(add_side(node, normal, grid));
-  return here.back();
-}
-
-void add_lattice(const PlacedLimitSurface& placed, std::uint32_t k, const PatchLattice& lattice, Places& places, SidesOfNodes& sides,
-                 LimitGrid& grid) {
+PatchLattice sample_lattice(const PlacedLimitSurface& placed, size_t k, int steps, const Camera& camera) {
+  PatchLattice lattice;
+  lattice.steps = steps;
   const LimitPatch& patch = placed.patches[k];
-  const int n = lattice.steps;
+  lattice.samples.reserve(lattice_index(patch, steps, 0, steps) + 1);
+  for (int j = 0; j <= steps; ++j) {
+    for (int i = 0; i <= (patch.triangle ? steps - j : steps); ++i) {
+      lattice.samples.push_back(sample(placed, k, glm::dvec2(i, j) / double(steps)));
+      lattice.valid = lattice.valid && lattice.samples.back().valid;
+    }
+  }
+  if (!lattice.valid) return lattice;
+  for (const LimitSample& s : lattice.samples) lattice.extent = include(lattice.extent, s.position);
+  lattice.tips = cone_tips(placed, k, steps);
+  lattice.tip_px = tip_px(placed, k, lattice, camera);
+  return lattice;
+}
+
+/// Samples nearer to each other than this are one node. Never so little beside the coordinates that cells of that size cannot be counted.
+double same_place(const std::vector<PatchLattice>& lattices) {
+  Box extent;
+  for (const PatchLattice& lattice : lattices) {
+    if (lattice.valid) extent = merge(extent, lattice.extent);
+  }
+  if (extent.empty()) return 1.0;
+  const glm::dvec3 farthest = glm::max(glm::abs(extent.lower), glm::abs(extent.upper));
+  const double largest = std::max({farthest.x, farthest.y, farthest.z});
+  return std::max({kSamePlace * extent.radius(), kRounding * largest, 1e-300});
+}
+
+bool on_rim(const LimitPatch& patch, int steps, int i, int j) {
+  return i == 0 || j == 0 || (patch.triangle ? i + j == steps : i == steps || j == steps);
+}
+
+/// What the samples of a patch are in the grid. They are counted by one thread, in order; all else is done by many.
+struct LatticeNumbers {
+  struct RimCorner {
+    std::uint32_t node = 0, side = 0;
+    std::uint32_t seam = 0;  ///< Of SeamNodes.
+  };
+  std::vector<RimCorner> rim{};  ///< In the order of the samples.
+  struct Row {
+    std::uint32_t first_node = 0, first_side = 0;  ///< Of the samples inside.
+  };
+  std::vector<Row> rows{};
+  size_t first_triangle = 0;
+  std::vector<LimitTriangle> with_tips{};  ///< All triangles, where some of their corners have two sides.
+};
+
+/// A lattice's corners, by lattice_index().
+std::vector<LimitCorner> corners_of(const LimitPatch& patch, int steps, const LatticeNumbers& numbers) {
+  const auto n = static_cast<std::uint16_t>(steps);
   std::vector<LimitCorner> corners;
-  for (int j = 0; j <= n; ++j) {
-    for (int i = 0; i <= (patch.triangle ? n - j : n); ++i) {
-      const LimitSample& s = lattice.samples[lattice_index(patch, n, i, j)];
-      const bool seam = i == 0 || j == 0 || (patch.triangle ? i + j == n : i == n || j == n);
-      LimitCorner corner{static_cast<std::uint32_t>(grid.positions.size()), 0, 0, glm::dvec2(i, j) / double(n)};
-      if (seam) {
-        corner.node = places.find_or_add(s.position, grid.positions);
-        corner.side = seam_side(corner.node, s.normal, sides, grid);
+  corners.reserve(lattice_index(patch, steps, 0, steps) + 1);
+  auto rim = numbers.rim.begin();
+  for (int j = 0; j <= steps; ++j) {
+    LatticeNumbers::Row inside = numbers.rows[static_cast<size_t>(j)];
+    for (int i = 0; i <= (patch.triangle ? steps - j : steps); ++i) {
+      LimitCorner corner{0, 0, 0, static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j), n};
+      if (on_rim(patch, steps, i, j)) {
+        corner.node = rim->node;
+        corner.side = rim->side;
+        ++rim;
       } else {
-        grid.positions.push_back(s.position);
-        corner.side = add_side(corner.node, s.normal, grid);
+        corner.node = inside.first_node++;
+        corner.side = inside.first_side++;
       }
       corner.side_back = corner.side;
       corners.push_back(corner);
     }
   }
-  const size_t first_triangle = grid.triangles.size();
-  const auto add = [&](std::array<int, 2> a, std::array<int, 2> b, std::array<int, 2> c) {
-    const auto at = [&](std::array<int, 2> ij) { return corners[lattice_index(patch, n, ij[0], ij[1])]; };
-    grid.triangles.push_back({k, {at(a), at(b), at(c)}});
-  };
+  return corners;
+}
+
+/// Two triangles a cell, each diagonal from the upper left to the lower right.
+void write_triangles(const LimitPatch& patch, std::uint32_t k, int n, const std::vector<LimitCorner>& corners, LimitTriangle* to) {
+  const auto at = [&](int i, int j) { return corners[lattice_index(patch, n, i, j)]; };
   for (int j = 0; j < n; ++j) {
     for (int i = 0; i < (patch.triangle ? n - j : n); ++i) {
-      add({i, j}, {i + 1, j}, {i, j + 1});
-      if (!patch.triangle || i + j + 1 < n) add({i + 1, j}, {i + 1, j + 1}, {i, j + 1});
+      *to++ = {k, {at(i, j), at(i + 1, j), at(i, j + 1)}};
+      if (!patch.triangle || i + j + 1 < n) *to++ = {k, {at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}};
     }
   }
-  take_sides_of_tips(placed, n, first_triangle, grid,
-                     [&](std::uint32_t node, const glm::dvec3& normal) { return seam_side(node, normal, sides, grid); });
+}
+
+struct GridCounts {
+  std::uint32_t nodes = 0, sides = 0;
+  size_t triangles = 0;
+};
+
+LatticeNumbers number_lattice(const PlacedLimitSurface& placed, std::uint32_t k, const PatchLattice& lattice, SeamNodes& seams,
+                              GridCounts& counts) {
+  const LimitPatch& patch = placed.patches[k];
+  const int n = lattice.steps;
+  LatticeNumbers numbers;
+  numbers.rim.reserve(4 * static_cast<size_t>(n));
+  numbers.rows.resize(static_cast<size_t>(n) + 1);
+  const auto count_rim = [&](int i, int j) {
+    const LimitSample& s = lattice.samples[lattice_index(patch, n, i, j)];
+    const std::uint32_t seam = seams.node_at(s.position, counts.nodes);
+    numbers.rim.push_back({seams.nodes()[seam].number, seams.side_of(seam, s.normal, counts.sides), seam});
+  };
+  for (int j = 0; j <= n; ++j) {
+    const int last = patch.triangle ? n - j : n;
+    for (int i = 0; i <= last; ++i) {
+      if (on_rim(patch, n, i, j)) {
+        count_rim(i, j);
+        continue;
+      }
+      numbers.rows[static_cast<size_t>(j)] = {counts.nodes, counts.sides};
+      const auto inside = static_cast<std::uint32_t>(last - 1);
+      counts.nodes += inside;
+      counts.sides += inside;
+      i = last - 1;
+    }
+  }
+  numbers.first_triangle = counts.triangles;
+  const size_t triangles = static_cast<size_t>(patch.triangle ? n * n : 2 * n * n);
+  counts.triangles += triangles;
+  if (lattice.tips.empty()) return numbers;
+  numbers.with_tips.resize(triangles);
+  write_triangles(patch, k, n, corners_of(patch, n, numbers), numbers.with_tips.data());
+  take_sides_of_tips(placed, lattice.tips, numbers.with_tips, [&](const LimitCorner& corner, const glm::dvec3& normal) {
+    const auto rim = std::find_if(numbers.rim.begin(), numbers.rim.end(), [&](const auto& one) { return one.node == corner.node; });
+    return seams.side_of(rim->seam, normal, counts.sides);
+  });
+  return numbers;
+}
+
+/// The triangles of a patch, and its samples but for those on its rim.
+void write_lattice(const PlacedLimitSurface& placed, std::uint32_t k, const PatchLattice& lattice, const LatticeNumbers& numbers,
+                   LimitGrid& grid) {
+  const LimitPatch& patch = placed.patches[k];
+  const int n = lattice.steps;
+  for (int j = 1; j < n; ++j) {
+    const auto [node, side] = numbers.rows[static_cast<size_t>(j)];
+    for (int i = 1; i < (patch.triangle ? n - j : n); ++i) {
+      const LimitSample& s = lattice.samples[lattice_index(patch, n, i, j)];
+      const auto at = static_cast<std::uint32_t>(i - 1);
+      grid.positions[node + at] = s.position;
+      grid.normals[side + at] = s.normal;
+      grid.node_of_side[side + at] = node + at;
+    }
+  }
+  LimitTriangle* const triangles = grid.triangles.data() + numbers.first_triangle;
+  if (numbers.with_tips.empty()) {
+    write_triangles(patch, k, n, corners_of(patch, n, numbers), triangles);
+  } else {
+    std::copy(numbers.with_tips.begin(), numbers.with_tips.end(), triangles);
+  }
+}
+
+void write_seams(const SeamNodes& seams, LimitGrid& grid) {
+  for (const SeamNodes::Node& node : seams.nodes()) grid.positions[node.number] = node.position;
+  for (const SeamNodes::Side& side : seams.sides()) {
+    grid.normals[side.number] = side.normal;
+    grid.node_of_side[side.number] = side.node;
+  }
+}
+
+/// The lattices as one grid, without what LimitGrid says of its seams and blocks.
+LimitGrid joined(const PlacedLimitSurface& placed, const std::vector<PatchLattice>& lattices) {
+  LimitGrid grid;
+  SeamNodes seams(same_place(lattices));
+  GridCounts counts;
+  std::vector<LatticeNumbers> numbers(lattices.size());
+  for (size_t k = 0; k < lattices.size(); ++k) {
+    if (!lattices[k].valid) {
+      grid.invalid_patches.push_back(k);
+      continue;
+    }
+    numbers[k] = number_lattice(placed, static_cast<std::uint32_t>(k), lattices[k], seams, counts);
+    grid.tip_px = std::max(grid.tip_px, lattices[k].tip_px);
+  }
+  grid.positions.resize(counts.nodes);
+  grid.normals.resize(counts.sides);
+  grid.node_of_side.resize(counts.sides);
+  grid.triangles.resize(counts.triangles);
+  parallel_for(size_t{0}, lattices.size(), [&](size_t k) {
+    if (lattices[k].valid) write_lattice(placed, static_cast<std::uint32_t>(k), lattices[k], numbers[k], grid);
+  });
+  write_seams(seams, grid);
+  return grid;
 }
 
 void find_seams(const PlacedLimitSurface& placed, LimitGrid& grid) {
@@ -206,7 +283,7 @@ void find_seams(const PlacedLimitSurface& placed, LimitGrid& grid) {
     for (size_t t = part * kSeamPart; t < std::min((part + 1) * kSeamPart, grid.triangles.size()); ++t) {
       for (int from = 0; from < 3; ++from) {
         const LimitCorner &a = corner_of(t, from), &b = corner_of(t, from + 1);
-        if (a.node != b.node && on_side(placed.patches[grid.triangles[t].patch], a.uv, b.uv))
+        if (a.node != b.node && on_side(placed.patches[grid.triangles[t].patch], a.uv(), b.uv()))
           uses[part].push_back({static_cast<std::uint32_t>(t), from});
       }
     }
@@ -245,30 +322,15 @@ LatticeSteps lattice_steps(const PlacedLimitSurface& placed, const std::vector<P
   LatticeSteps result{steps_for(placed, longest_px, cell_px)};
   while (result.steps > 4 && triangles_of(placed, result.steps) > max_triangles) result.steps -= 2;
   result.cell_px = longest_px / result.steps;
+  result.triangles = triangles_of(placed, result.steps);
   return result;
 }
 
 LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, int steps) {
   std::vector<PatchLattice> lattices(placed.patches.size());
   parallel_for(size_t{0}, placed.patches.size(),
-               [&](size_t k) { lattices[k] = sample_lattice(placed, k, steps_of(placed.patches[k], steps)); });
-  LimitGrid grid;
-  size_t samples = 0;
-  for (const PatchLattice& lattice : lattices) samples += lattice.samples.size();
-  grid.positions.reserve(samples);
-  grid.normals.reserve(samples);
-  grid.node_of_side.reserve(samples);
-  grid.triangles.reserve(static_cast<size_t>(triangles_of(placed, steps)));
-  Places places(same_place(lattices));
-  SidesOfNodes sides;
-  for (size_t k = 0; k < lattices.size(); ++k) {
-    if (!lattices[k].valid) {
-      grid.invalid_patches.push_back(k);
-      continue;
-    }
-    add_lattice(placed, static_cast<std::uint32_t>(k), lattices[k], places, sides, grid);
-    grid.tip_px = std::max(grid.tip_px, tip_px(placed, k, lattices[k], camera));
-  }
+               [&](size_t k) { lattices[k] = sample_lattice(placed, k, steps_of(placed.patches[k], steps), camera); });
+  LimitGrid grid = joined(placed, lattices);
   find_seams(placed, grid);
   grid.blocks = blocks_of(grid);
   return grid;

@@ -56,7 +56,9 @@ struct LimitCorner {
   /// The same for all corners of one place that share a normal; index into LimitGrid::normals. On the way to the triangle's next corner,
   /// and to the one before: at the tip of a cone, as a sharp corner of smooth edges has, each way there has a normal of its own.
   std::uint32_t side = 0, side_back = 0;
-  glm::dvec2 uv{0.0};
+  std::uint16_t column = 0, row = 0, steps = 1;  ///< Of its patch's lattice. There are many corners: their places are kept small.
+
+  glm::dvec2 uv() const { return glm::dvec2(column, row) / double(steps); }
 };
 struct LimitTriangle {
   std::uint32_t patch = 0;
@@ -107,6 +109,7 @@ std::vector<LimitBlock> blocks_of(const LimitGrid& grid);
 struct LatticeSteps {
   int steps = 4;         ///< Cells along each side of a quad patch; even.
   double cell_px = 0.0;  ///< How wide they are where the patch is largest in the image.
+  std::int64_t triangles = 0;
 };
 /// A patch's side as a chord: `length` of a whole face's, whatever share of it the patch is.
 struct PatchSide {

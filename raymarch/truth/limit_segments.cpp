@@ -19,7 +19,7 @@ constexpr double kWidthSlack = 1e-6;  // radians: cosines say little of small an
 
 /// At a node: the tip of a cone, to which a curve leads between two of the ways there.
 LimitEnd tip_end(const LimitTriangle& triangle, size_t corner) {
-  return {{triangle.corners[corner].node, 0, 2}, triangle.patch, triangle.corners[corner].uv};
+  return {{triangle.corners[corner].node, 0, 2}, triangle.patch, triangle.corners[corner].uv()};
 }
 
 }  // namespace
@@ -37,8 +37,8 @@ TriangleEdge edge_of(const LimitTracer& tracer, const LimitTriangle& triangle, i
     std::uint32_t side;
     glm::dvec2 uv;
   };
-  Node a{side_towards(triangle, from, to), triangle.corners[static_cast<size_t>(from)].uv},
-      b{side_towards(triangle, to, from), triangle.corners[static_cast<size_t>(to)].uv};
+  Node a{side_towards(triangle, from, to), triangle.corners[static_cast<size_t>(from)].uv()},
+      b{side_towards(triangle, to, from), triangle.corners[static_cast<size_t>(to)].uv()};
   const bool turned = a.side > b.side;
   if (turned) std::swap(a, b);
   const double level = kind == 0 ? tracer.level.threshold : 0.0;
@@ -72,7 +72,7 @@ double root_on(LimitTracer& tracer, const LimitTriangle& triangle, int from, int
 LimitEnd end_on(LimitTracer& tracer, const LimitTriangle& triangle, int from, int to, int kind) {
   const LimitCorner &a = triangle.corners[static_cast<size_t>(from)], &b = triangle.corners[static_cast<size_t>(to)];
   const double t = root_on(tracer, triangle, from, to, kind);
-  return {root_key(side_towards(triangle, from, to), side_towards(triangle, to, from), kind), triangle.patch, glm::mix(a.uv, b.uv, t)};
+  return {root_key(side_towards(triangle, from, to), side_towards(triangle, to, from), kind), triangle.patch, glm::mix(a.uv(), b.uv(), t)};
 }
 
 double facing_at(const PlacedLimitSurface& placed, const Camera& camera, std::uint32_t patch, const glm::dvec2& uv) {

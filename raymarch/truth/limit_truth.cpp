@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "raymarch/mesh/open_sheet.h"
 #include "raymarch/truth/limit_curves.h"
 #include "raymarch/truth/proxy.h"
 #include "raymarch/truth/shares.h"
+#include "sdf/error.h"
+#include "sdf/parallel.h"
 #include "subdiv/face_orientation.h"
 
 namespace limn {
@@ -72,8 +75,8 @@ void count_left_out(const Mesh& cage, const PlacedLimitSurface& placed, const Li
 void trace_side(const SampledCage& sampled, LimitTurn turn, int index, const Camera& camera, const TruthSettings& settings,
                 CageScene& out) {
   const PlacedLimitSurface& placed = sampled.placed;
-  const LimitGrid& grid = sampled.grid;
-  out.cell_px = std::max(out.cell_px, sampled.cell_px);
+  const LimitGrid& grid = *sampled.grid;
+  out.cell_px = std::max(out.cell_px, sampled.lattice.cell_px);
   const bool front = turn != LimitTurn::back;
   out.tip_px = std::max(out.tip_px, grid.tip_px);
   if (front) count_left_out(sampled.cage, placed, grid, camera, out);
@@ -91,7 +94,10 @@ void trace_side(const SampledCage& sampled, LimitTurn turn, int index, const Cam
 void trace_object(const SceneObject& object, const SampledCage& sampled, int index, bool turned, const ShareSettings& settings,
                   CageScene& out) {
   trace_side(sampled, turned ? LimitTurn::front : LimitTurn::none, index, settings.camera, settings.truth, out);
-  if (turned) trace_side(SampledCage(object, settings, true), LimitTurn::back, index, settings.camera, settings.truth, out);
+  if (!turned) return;
+  SampledCage back(object, settings, true);
+  back.sample(settings.camera);
+  trace_side(back, LimitTurn::back, index, settings.camera, settings.truth, out);
 }
 
 /// One ray from a lifted point to the eye.
@@ -120,19 +126,44 @@ SampledCage::SampledCage(const SceneObject& object, const ShareSettings& setting
     : cage(centred(std::get<MeshSource>(object.source), turned)),
       surface(cage, *std::get<MeshSource>(object.source).scheme, std::get<MeshSource>(object.source).file),
       placed(place(surface, solver_from_centred(object, settings.origin))),
-      grid(sample_grid(placed, settings.camera, kCell_px, kMostTriangles, cell_px)) {}
+      lattice(lattice_steps(placed, patch_sides(placed), settings.camera, kCell_px, kMostTriangles)) {}
+
+void SampledCage::sample(const Camera& camera) { grid = sample_grid(placed, camera, lattice.steps); }
+
+SampledCages cages_ahead(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings) {
+  SampledCages cages(objects.size());
+  std::atomic<std::int64_t> triangles{0};
+  parallel_each(objects.size(), [&](size_t k) {
+    try {
+      auto cage = std::make_unique<SampledCage>(scene.objects[objects[k]], settings);
+      const std::int64_t own = cage->lattice.triangles;
+      if (triangles.fetch_add(own) + own > kMostTriangles) {
+        triangles.fetch_sub(own);
+        return;
+      }
+      cage->sample(settings.camera);
+      cages[k] = std::move(cage);
+    } catch (const InputError&) {
+      // Said by trace_cages(), which needs it.
+    }
+  });
+  return cages;
+}
 
 TruthShare trace_cages(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings,
-                       const std::shared_ptr<const TruthProxy>& proxy, std::unique_ptr<const SampledCage> first,
-                       const ExecutionSettings& how) {
+                       const std::shared_ptr<const TruthProxy>& proxy, SampledCages cages, const ExecutionSettings& how) {
   CageScene traced;
-  for (const size_t i : objects) {
+  for (size_t k = 0; k < objects.size(); ++k) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
-    const Surface& shown = proxy->model.surfaces[i];
+    const SceneObject& object = scene.objects[objects[k]];
+    const Surface& shown = proxy->model.surfaces[objects[k]];
     const bool turned = shown.open_sheet && shown.open_sheet->shows_back(shown, settings.camera);
-    if (!first) first = std::make_unique<const SampledCage>(scene.objects[i], settings);
-    trace_object(scene.objects[i], *first, static_cast<int>(i) + 1, turned, settings, traced);
-    first.reset();
+    auto cage = std::move(cages[k]);
+    if (!cage) {
+      cage = std::make_unique<SampledCage>(object, settings);
+      cage->sample(settings.camera);
+    }
+    trace_object(object, *cage, static_cast<int>(objects[k]) + 1, turned, settings, traced);
   }
   TruthShare share;
   share.objects = objects;

@@ -14,6 +14,7 @@
 #include "raymarch/truth/parts.h"
 #include "sdf/error.h"
 #include "sdf/local_grid.h"
+#include "sdf/parallel.h"
 #include "sdf/quantile.h"
 #include "sdf/segment.h"
 
@@ -101,16 +102,20 @@ SurfaceSettings second_settings(const SceneObject& object, int level) {
 
 template <class Settings>
 SceneModel model_of(const Scene& scene, const Settings& settings_of) {
-  // Built one by one, since each object has settings of its own, and put together about the whole scene's centre.
+  // Each object has settings of its own. They are built side by side, and put together about the whole scene's centre.
   SceneModel model;
   model.bounds = bounds(scene);
   if (!model.bounds.empty()) model.render_origin = model.bounds.center();
-  for (size_t i = 0; i < scene.objects.size(); ++i) {
-    SceneObject object = scene.objects[i];
+  std::vector<SceneObject> objects = scene.objects;
+  std::vector<SurfaceSettings> settings;
+  for (SceneObject& object : objects) {
     object.level.reset();
-    const SurfaceSettings settings = settings_of(object);
-    append_surface(object, find_surface(settings.kind).build(object, settings, model.render_origin), model);
+    settings.push_back(settings_of(object));
   }
+  std::vector<Surface> surfaces(objects.size());
+  parallel_each(objects.size(),
+                [&](size_t i) { surfaces[i] = find_surface(settings[i].kind).build(objects[i], settings[i], model.render_origin); });
+  for (size_t i = 0; i < objects.size(); ++i) append_surface(objects[i], std::move(surfaces[i]), model);
   return model;
 }
 

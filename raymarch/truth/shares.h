@@ -2,6 +2,9 @@
 // Internal: what objects of one kind bring to a border, traced each in the way of its kind: fields, and the limit surfaces of cages. The
 // border of a scene that has both is made of both shares, each hiding the other.
 
+#include <memory>
+#include <optional>
+
 #include "raymarch/truth/limit_grid.h"
 #include "raymarch/truth/parts.h"
 
@@ -39,18 +42,23 @@ struct SampledCage {
   Mesh cage{};
   LimitSurface surface;
   PlacedLimitSurface placed;
-  double cell_px = 0.0;
-  LimitGrid grid{};
+  LatticeSteps lattice{};
+  std::optional<LimitGrid> grid{};  ///< Once it is sampled.
 
+  /// Not sampled yet. Throws InputError where a cage has no limit surface.
   SampledCage(const SceneObject& object, const ShareSettings& settings, bool turned = false);
   SampledCage(const SampledCage&) = delete;
   SampledCage& operator=(const SampledCage&) = delete;
+  void sample(const Camera& camera);
 };
-/// `model` is the scene's (proxy.h), about the solver's origin: rays ask it what hides what. `first`: of the first of `objects`, where it
-/// is there already; may be null.
+using SampledCages = std::vector<std::unique_ptr<SampledCage>>;
+/// One for each of `objects`, sampled side by side as far as their grids together are no larger than one may be. Null where there is no
+/// more room, or a cage cannot be sampled: who needs it then says why.
+SampledCages cages_ahead(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings);
+
+/// `model` is the scene's (proxy.h), about the solver's origin: rays ask it what hides what. `cages` are of `objects`.
 struct TruthProxy;
 TruthShare trace_cages(const Scene& scene, const std::vector<size_t>& objects, const ShareSettings& settings,
-                       const std::shared_ptr<const TruthProxy>& proxy, std::unique_ptr<const SampledCage> first,
-                       const ExecutionSettings& how);
+                       const std::shared_ptr<const TruthProxy>& proxy, SampledCages cages, const ExecutionSettings& how);
 
 }  // namespace limn

@@ -85,20 +85,11 @@ bool interpenetrate(const std::vector<TruthShare>& shares, double extent) {
 std::shared_ptr<const TruthProxy> ready_proxy(const Scene& scene, const std::vector<size_t>& cages, const Camera& camera,
                                               const ShareSettings& sharing) {
   auto proxy = proxy_for(scene, camera, sharing.truth, 1.5);
-  for (const size_t i : cages) {
-    const Surface& shown = proxy->model.surfaces[i];
+  parallel_each(cages.size(), [&](size_t k) {
+    const Surface& shown = proxy->model.surfaces[cages[k]];
     if (shown.open_sheet) static_cast<void>(shown.open_sheet->shows_back(shown, sharing.camera));
-  }
+  });
   return proxy;
-}
-
-/// Null where it cannot be sampled: who needs it then says why.
-std::unique_ptr<const SampledCage> sampled_if_it_can_be(const SceneObject& cage, const ShareSettings& sharing) {
-  try {
-    return std::make_unique<const SampledCage>(cage, sharing);
-  } catch (const InputError&) {
-    return nullptr;
-  }
 }
 
 std::string words_of(const std::vector<size_t>& fields, const std::vector<size_t>& cages) {
@@ -116,15 +107,12 @@ BorderTruth solve_truth_traced(const Scene& scene, const Camera& camera, const T
   for (size_t i = 0; i < scene.objects.size(); ++i) (std::holds_alternative<Field>(scene.objects[i].source) ? fields : cages).push_back(i);
   const ShareSettings sharing = solver_space(scene, camera, settings);
   std::shared_ptr<const TruthProxy> proxy;
-  std::unique_ptr<const SampledCage> first;
+  SampledCages sampled;
   // Much of either is done by one thread, and the one knows nothing of the other.
-  parallel_invoke([&] { proxy = ready_proxy(scene, cages, camera, sharing); },
-                  [&] {
-                    if (!cages.empty()) first = sampled_if_it_can_be(scene.objects[cages.front()], sharing);
-                  });
+  parallel_invoke([&] { proxy = ready_proxy(scene, cages, camera, sharing); }, [&] { sampled = cages_ahead(scene, cages, sharing); });
   std::vector<TruthShare> shares;
   if (!fields.empty()) shares.push_back(trace_fields(scene, fields, sharing, how));
-  if (!cages.empty()) shares.push_back(trace_cages(scene, cages, sharing, proxy, std::move(first), how));
+  if (!cages.empty()) shares.push_back(trace_cages(scene, cages, sharing, proxy, std::move(sampled), how));
   if (shares.size() > 1 && interpenetrate(shares, sharing.extent)) return solve_truth_by_proxy(scene, camera, settings, how);
 
   BorderTruth truth;

@@ -36,7 +36,11 @@ std::shared_ptr<const MeshTree> tree_of(const LineTask& task, const std::vector<
   glm::dvec3 offset(0.0);
   if (std::all_of(part.objects.begin(), part.objects.end(), [](const SceneObject& object) { return is_cage(object); })) {
     if (const Box box = bounds(part); !box.empty()) offset = box.center();
-    for (const SceneObject& object : part.objects) polygons.push_back(refined_polygons(object, level, task.settings.max_bytes, offset));
+    polygons.resize(part.objects.size());
+    parallel_each(part.objects.size(), [&](size_t i) {
+      polygons[i] = refined_polygons(part.objects[i], level, task.settings.max_bytes, offset);
+      static_cast<void>(polygons[i]->corner_triangles());
+    });
   } else {
     const SceneModel model = proxy_model(part, level, task.settings.max_bytes);
     offset = model.render_origin;

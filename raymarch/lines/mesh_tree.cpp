@@ -1,6 +1,7 @@
 #include "raymarch/lines/mesh_tree.h"
 
 #include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +16,9 @@
 namespace limn {
 namespace {
 
-constexpr double kInPlane = 1e-5;  // the sine of the angle between an edge and a plane
-
 using Triangle = LayerTriangle;
+
+constexpr size_t kPart = 16384;  // of a loop
 
 /// The face of each corner.
 std::vector<std::int32_t> faces_of_corners(const Mesh& mesh) {
@@ -110,16 +111,24 @@ void MeshTree::build() const {
   embree_->device = shared_embree_device();
   embree_->tree = rtcNewScene(embree_->device);
   rtcSetSceneFlags(embree_->tree, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  // Few rays are asked: a better tree takes longer to build than they save.
+  rtcSetSceneBuildQuality(embree_->tree, RTC_BUILD_QUALITY_LOW);
   RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
   auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
                                                                std::max<size_t>(positions_.size(), 1)));
   auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
                                                                  std::max<size_t>(triangles_.size(), 1)));
   if (vertices == nullptr || corners == nullptr) throw MachineError("Embree could not build its tree over the mesh");
-  for (size_t i = 0; i < positions_.size(); ++i) {
-    for (int k = 0; k < 3; ++k) vertices[3 * i + static_cast<size_t>(k)] = static_cast<float>(positions_[i][k]);
-  }
-  for (size_t i = 0; i < triangles_.size(); ++i) std::copy(triangles_[i].corners.begin(), triangles_[i].corners.end(), corners + 3 * i);
+  parallel_parts(positions_.size(), kPart, [&](const IndexRange<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      for (int k = 0; k < 3; ++k) vertices[3 * i + static_cast<size_t>(k)] = static_cast<float>(positions_[i][k]);
+    }
+  });
+  parallel_parts(triangles_.size(), kPart, [&](const IndexRange<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i)
+      std::copy(triangles_[i].corners.begin(), triangles_[i].corners.end(), corners + 3 * i);
+  });
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(embree_->tree, geometry);
   rtcReleaseGeometry(geometry);
@@ -148,7 +157,8 @@ std::vector<LayerHit> MeshTree::hits_along(const glm::dvec3& origin, const glm::
   query.ray.tnear = 0.0f, query.ray.tfar = static_cast<float>(end);
   query.ray.mask = 0xffffffffu;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  std::call_once(built_, [&] { build(); });
+  // Alone: a thread that took up another ray while it waits for Embree would wait here for itself.
+  std::call_once(built_, [&] { tbb::this_task_arena::isolate([&] { build(); }); });
   rtcIntersect1(embree_->tree, &collector.context, &query);
   std::vector<LayerHit>& hits = collector.hits;
   std::sort(hits.begin(), hits.end(),
@@ -227,97 +237,6 @@ const PartMeetings& MeshTree::meetings() const {
     if (parts_ > 1) meetings_ = find_meetings();
   });
   return meetings_;
-}
-
-/// In the order of the edges; faces in theirs.
-std::vector<MeshTree::EdgeFaces> MeshTree::faces_of_edges(const std::vector<char>& asked) const {
-  struct Use {
-    std::uint32_t a, b, face;
-    bool operator<(const Use& other) const { return std::tie(a, b, face) < std::tie(other.a, other.b, other.face); }
-  };
-  std::vector<Use> uses;
-  for (std::uint32_t f = 0; f < triangles_.size(); ++f) {
-    if (asked[f] == 0) continue;
-    for (size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = triangles_[f].corners[k], b = triangles_[f].corners[(k + 1) % 3];
-      uses.push_back({std::min(a, b), std::max(a, b), f});
-    }
-  }
-  parallel_sort(uses.begin(), uses.end());
-  std::vector<EdgeFaces> edges;
-  for (const Use& use : uses) {
-    if (edges.empty() || edges.back().a != use.a || edges.back().b != use.b) edges.push_back({use.a, use.b, {}});
-    edges.back().faces.push_back(use.face);
-  }
-  return edges;
-}
-
-/// By lengths along it.
-std::vector<LayerHit> MeshTree::hits_of_edge(std::uint32_t a, std::uint32_t b) const {
-  const glm::dvec3 &from = positions_[a], &to = positions_[b];
-  const double length = glm::distance(from, to);
-  if (!(length > 0.0)) return {};
-  if (!exact_) return hits_along(from, (to - from) / length, length);
-  std::vector<LayerHit> hits;
-  for (const SegmentHit& hit : exact_hits().through({.from = from, .to = to, .vertices = {a, b}}))
-    hits.push_back({hit.share * length, hit.triangle});
-  return hits;
-}
-
-PartMeetings MeshTree::find_meetings() const {
-  PartMeetings result;
-  std::vector<Box> boxes(parts_);
-  for (const Triangle& triangle : triangles_) {
-    for (const std::uint32_t corner : triangle.corners) boxes[triangle.part] = include(boxes[triangle.part], positions_[corner]);
-  }
-  const auto meets_others = [&](const Triangle& triangle) {
-    Box own;
-    for (const std::uint32_t corner : triangle.corners) own = include(own, positions_[corner]);
-    for (std::uint32_t part = 0; part < parts_; ++part) {
-      if (part != triangle.part && !intersect(own, boxes[part]).empty()) return true;
-    }
-    return false;
-  };
-  std::vector<char> meets(triangles_.size(), 0);
-  parallel_parts(triangles_.size(), size_t{4096}, [&](const IndexRange<size_t>& range) {
-    for (size_t f = range.begin(); f < range.end(); ++f) meets[f] = meets_others(triangles_[f]);
-  });
-  const std::vector<EdgeFaces> faces_of = faces_of_edges(meets);
-  std::vector<std::vector<LayerHit>> hits_of(faces_of.size());
-  parallel_parts(faces_of.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
-    for (size_t e = range.begin(); e < range.end(); ++e) {
-      hits_of[e] = hits_of_edge(faces_of[e].a, faces_of[e].b);
-    }
-  });
-  // Each pair of faces that go through each other is left where an edge of the one meets the other.
-  std::vector<PartMeeting>& hits = result.places;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<size_t>> of_pair;
-  for (size_t e = 0; e < faces_of.size(); ++e) {
-    const std::vector<std::uint32_t>& faces = faces_of[e].faces;
-    const glm::dvec3 &a = positions_[faces_of[e].a], &b = positions_[faces_of[e].b];
-    const double length = glm::distance(a, b);
-    for (const LayerHit& hit : hits_of[e]) {
-      const Triangle& other = triangles_[hit.triangle];
-      if (other.part == triangles_[faces[0]].part) continue;
-      const Triangle& own = triangles_[faces[0]];
-      const glm::dvec3 own_normal = glm::normalize(normal_of(own)), other_normal = glm::normalize(normal_of(other));
-      // An edge in a face's plane goes through it nowhere, whatever rounding says.
-      if (std::fabs(glm::dot(b - a, other_normal)) < kInPlane * length) continue;
-      const bool lower = own.part < other.part;
-      hits.push_back({glm::mix(a, b, hit.t / length), lower ? own_normal : other_normal, lower ? other_normal : own_normal, other.object,
-                      own.object, other.material, own.material});
-      for (const std::uint32_t face : faces)
-        of_pair[{std::min(face, hit.triangle), std::max(face, hit.triangle)}].push_back(hits.size() - 1);
-    }
-  }
-  std::vector<std::vector<NextMeeting>>& next = result.next;
-  next.resize(hits.size());
-  for (const auto& [pair, ends] : of_pair) {
-    if (ends.size() != 2) continue;
-    next[ends[0]].push_back({ends[1], {pair.first, pair.second}});
-    next[ends[1]].push_back({ends[0], {pair.first, pair.second}});
-  }
-  return result;
 }
 
 }  // namespace limn

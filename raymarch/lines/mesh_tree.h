@@ -83,6 +83,7 @@ class MeshTree {
     std::uint32_t a = 0, b = 0;
     std::vector<std::uint32_t> faces{};
   };
+  std::vector<char> near_other_parts() const;
   std::vector<EdgeFaces> faces_of_edges(const std::vector<char>& asked) const;
   PartMeetings find_meetings() const;
   std::vector<LayerHit> hits_of_edge(std::uint32_t a, std::uint32_t b) const;

@@ -5,7 +5,10 @@
 
 #include <numbers>
 #include <optional>
+#include <set>
 
+#include "raymarch/lines/mesh_tree.h"
+#include "raymarch/mesh/polygons.h"
 #include "raymarch/surface.h"
 #include "tests/random_seed.h"
 #include "tests/raymarch/drawn_lines.h"
@@ -158,6 +161,47 @@ TEST(MeshLines, OfTwoRoughBallsThatOverlapAllLayersAreCounted) {
     EXPECT_LT(wrong.unsure, wrong.asked / 10);
     EXPECT_EQ(wrong.edges, 0) << "view " << view << ": " << wrong.first;
   }
+}
+
+/// Balls of few large and many small triangles, strewn so that each part reaches into some of the others.
+TEST(MeshLines, PartsMeetWhereAllEdgesMeetAllFaces) {
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  size_t met = 0;
+  for (int round = 0; round < 2 * kViews; ++round) {
+    std::vector<Mesh> meshes;
+    std::vector<std::shared_ptr<const Polygons>> polygons;
+    std::vector<int> objects;
+    for (int part = 0; part < 5; ++part) {
+      Mesh mesh = rough_ball(random, part == 0 ? 3 : 4 + 3 * part, 0.1, part == 1 ? 1 : 0, glm::dvec3(0.0));
+      const glm::dvec3 center(number(random), number(random), number(random));
+      for (glm::dvec3& p : mesh.positions) p = glm::round(kGrid * ((part == 0 ? 2.0 : 0.3 + 0.1 * part) * p + center)) / kGrid;
+      polygons.push_back(std::make_shared<const Polygons>(Mesh(mesh), NormalKind::flat));
+      objects.push_back(part + 1);
+      meshes.push_back(std::move(mesh));
+    }
+    const MeshTree tree(polygons, glm::dvec3(0.0), objects, 4.0, true);
+    ASSERT_EQ(tree.parts(), 5u);
+    size_t expected = 0;
+    for (const Mesh& one : meshes) {
+      std::set<std::pair<std::int32_t, std::int32_t>> edges;
+      for (size_t i = 0; i < one.corner_vertices.size(); i += 3) {
+        for (size_t k = 0; k < 3; ++k) edges.insert(std::minmax(one.corner_vertices[i + k], one.corner_vertices[i + (k + 1) % 3]));
+      }
+      for (const Mesh& other : meshes) {
+        if (&one == &other) continue;
+        for (size_t i = 0; i < other.corner_vertices.size(); i += 3) {
+          const auto at = [&](size_t k) { return other.positions[static_cast<size_t>(other.corner_vertices[i + k])]; };
+          for (const auto& [a, b] : edges)
+            expected +=
+                crossed_at(one.positions[static_cast<size_t>(a)], one.positions[static_cast<size_t>(b)], at(0), at(1), at(2)).has_value();
+        }
+      }
+    }
+    EXPECT_EQ(tree.meetings().places.size(), expected) << "round " << round;
+    met += expected;
+  }
+  EXPECT_GT(met, 1000u);
 }
 
 /// A face that lies in another one hides none of its edges, however both were rounded.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "sdf/error.h"
+#include "sdf/once_alone.h"
 #include "sdf/parallel.h"
 #include "subdiv/first_hits.h"
 #include "subdiv/weld.h"
@@ -59,12 +60,12 @@ MeshBody::MeshBody(const TriangleMesh& mesh) {
 }
 
 const ClosestPointData& MeshBody::tree() const {
-  std::call_once(tree_made_, [this] { tree_ = std::make_unique<const ClosestPointData>(mesh_); });
+  once_alone(tree_made_, [this] { tree_ = std::make_unique<const ClosestPointData>(mesh_); });
   return *tree_;
 }
 
 const TriangleTree& MeshBody::boxes() const {
-  std::call_once(boxes_made_, [this] { boxes_ = TriangleTree(mesh_); });
+  once_alone(boxes_made_, [this] { boxes_ = TriangleTree(mesh_); });
   return boxes_;
 }
 

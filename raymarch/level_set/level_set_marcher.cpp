@@ -12,6 +12,7 @@
 #include "raymarch/scene/curvature.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_lower.h"
+#include "sdf/once_alone.h"
 
 namespace limn {
 namespace {
@@ -40,8 +41,8 @@ struct State {
 /// Null where there are no bricks to know it from.
 const CrossedLeaves* crossed_of(const State& state) {
   if (!state.bricks || state.bricks->groups.empty()) return nullptr;
-  std::call_once(state.crossed_once,
-                 [&] { state.crossed = crossed_leaves(*state.level_set.data().grid, state.bricks->groups.front().bounds); });
+  once_alone(state.crossed_once,
+             [&] { state.crossed = crossed_leaves(*state.level_set.data().grid, state.bricks->groups.front().bounds); });
   return &state.crossed;
 }
 
@@ -163,7 +164,7 @@ BrickTrace brick_trace(const State& state) {
 
 void trace_packets(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   const State& state = *static_cast<const State*>(opaque);
-  std::call_once(state.singles_once, [&] { state.singles = for_single_rays(state.bricks, state.walked.index_from_render); });
+  once_alone(state.singles_once, [&] { state.singles = for_single_rays(state.bricks, state.walked.index_from_render); });
   const Accessor accessor = state.level_set.data().accessor();
   const auto is_inside = [&](const glm::dvec3& place) { return interpolated(accessor, state.walked.index_from_render.point(place)) < 0.0; };
   const SingleRayBricks* const size = &state.singles;

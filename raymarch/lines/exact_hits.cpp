@@ -90,7 +90,9 @@ ExactHits::ExactHits(std::span<const glm::dvec3> positions, std::span<const Laye
   tree_->device = shared_embree_device();
   tree_->scene = rtcNewScene(tree_->device);
   rtcSetSceneFlags(tree_->scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(tree_->scene, RTC_BUILD_QUALITY_LOW);
   RTCGeometry geometry = rtcNewGeometry(tree_->device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
   rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(triangles.size()));
   rtcSetGeometryUserData(geometry, tree_.get());
   rtcSetGeometryBoundsFunction(geometry, Tree::bound, nullptr);

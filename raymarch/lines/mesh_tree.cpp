@@ -1,7 +1,6 @@
 #include "raymarch/lines/mesh_tree.h"
 
 #include <embree3/rtcore.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "raymarch/mesh/embree_device.h"
 #include "raymarch/mesh/polygons.h"
 #include "sdf/error.h"
+#include "sdf/once_alone.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -157,8 +157,7 @@ std::vector<LayerHit> MeshTree::hits_along(const glm::dvec3& origin, const glm::
   query.ray.tnear = 0.0f, query.ray.tfar = static_cast<float>(end);
   query.ray.mask = 0xffffffffu;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  // Alone: a thread that took up another ray while it waits for Embree would wait here for itself.
-  std::call_once(built_, [&] { tbb::this_task_arena::isolate([&] { build(); }); });
+  once_alone(built_, [&] { build(); });
   rtcIntersect1(embree_->tree, &collector.context, &query);
   std::vector<LayerHit>& hits = collector.hits;
   std::sort(hits.begin(), hits.end(),
@@ -175,7 +174,7 @@ std::vector<LayerHit> MeshTree::hits_along(const glm::dvec3& origin, const glm::
 }
 
 const ExactHits& MeshTree::exact_hits() const {
-  std::call_once(exact_made_, [&] { exact_hits_ = std::make_unique<const ExactHits>(positions_, triangles_, extent_); });
+  once_alone(exact_made_, [&] { exact_hits_ = std::make_unique<const ExactHits>(positions_, triangles_, extent_); });
   return *exact_hits_;
 }
 
@@ -233,7 +232,7 @@ bool MeshTree::same_side(const LayerHit& a, const LayerHit& b, const glm::dvec3&
 }
 
 const PartMeetings& MeshTree::meetings() const {
-  std::call_once(meetings_made_, [&] {
+  once_alone(meetings_made_, [&] {
     if (parts_ > 1) meetings_ = find_meetings();
   });
   return meetings_;

@@ -1,11 +1,12 @@
 #include "raymarch/mesh/polygons.h"
 
+#include "sdf/once_alone.h"
 #include "subdiv/polygon.h"
 
 namespace limn {
 
 const Mesh& Polygons::mesh() const {
-  std::call_once(mesh_made_, [this] {
+  once_alone(mesh_made_, [this] {
     if (!make_) return;
     mesh_ = make_();
     make_ = {};
@@ -14,7 +15,7 @@ const Mesh& Polygons::mesh() const {
 }
 
 std::span<const glm::vec3> Polygons::corner_normals() const {
-  std::call_once(corners_made_, [this] {
+  once_alone(corners_made_, [this] {
     const Mesh& mesh = this->mesh();
     corner_normals_ = traced_ == NormalKind::flat ? face_normals_at_corners(mesh) : angle_weighted_normals(mesh, smoothing_);
     for (size_t i = 0; i < mesh.corner_normals.size(); ++i) {
@@ -26,17 +27,17 @@ std::span<const glm::vec3> Polygons::corner_normals() const {
 }
 
 std::span<const glm::vec3> Polygons::smooth_normals() const {
-  std::call_once(smooth_made_, [this] { smooth_normals_ = bake_smooth_normals(mesh()); });
+  once_alone(smooth_made_, [this] { smooth_normals_ = bake_smooth_normals(mesh()); });
   return smooth_normals_;
 }
 
 const EdgeTopology& Polygons::edges() const {
-  std::call_once(edges_made_, [this] { edges_ = build_edge_topology(mesh()); });
+  once_alone(edges_made_, [this] { edges_ = build_edge_topology(mesh()); });
   return edges_;
 }
 
 std::span<const glm::uvec3> Polygons::corner_triangles() const {
-  std::call_once(triangles_made_, [this] {
+  once_alone(triangles_made_, [this] {
     const Mesh& mesh = this->mesh();
     std::vector<glm::dvec3> corners;
     std::vector<std::array<std::int32_t, 3>> pieces;

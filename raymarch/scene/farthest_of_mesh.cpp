@@ -5,6 +5,7 @@
 
 #include "raymarch/scene/farthest_points.h"
 #include "sdf/error.h"
+#include "sdf/once_alone.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -89,7 +90,7 @@ FarthestPoints farthest_of_mesh(const MeshSource& mesh, const Affine& world_from
   vertices->source = mesh;
   vertices->world_from_object = world_from_object;
   return [vertices](std::span<const glm::dvec3> directions) {
-    std::call_once(vertices->once, [&] { vertices->find(); });
+    once_alone(vertices->once, [&] { vertices->find(); });
     return farthest(*vertices, directions);
   };
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "raymarch/surface/limit_map.h"
+#include "sdf/once_alone.h"
 
 namespace limn {
 namespace {
@@ -102,7 +103,7 @@ std::string MeshCurvature::from() const {
 }
 
 void MeshCurvature::evaluate(std::span<const SurfacePoint> points, std::span<SurfaceCurvature> curvatures) const {
-  std::call_once(once_, [this] {
+  once_alone(once_, [this] {
     auto made = std::make_unique<Made>();
     if (const Field* field = std::get_if<Field>(&source_)) {
       made->evaluators.emplace(*field);

@@ -3,7 +3,6 @@
 // mode). One ray at a time, although Embree knows packets: a pixel must not depend on its neighbours.
 
 #include <embree3/rtcore.h>
-#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <chrono>
@@ -19,6 +18,7 @@
 #include "raymarch/surface/mesh_curvature.h"
 #include "raymarch/surface/object_mesh.h"
 #include "sdf/error.h"
+#include "sdf/once_alone.h"
 #include "sdf/parallel.h"
 #include "subdiv/first_hits.h"
 
@@ -153,9 +153,8 @@ void build_tree(const MeshState& state) {
 }
 
 RTCScene tree_of(const MeshState& state) {
-  std::call_once(state.tree_made, [&state] {
-    // Alone: a thread that took up another part of the picture while it waits for Embree would wait here for itself.
-    tbb::this_task_arena::isolate([&state] { build_tree(state); });
+  once_alone(state.tree_made, [&state] {
+    build_tree(state);
     state.has_tree = true;
   });
   return state.scene.get();

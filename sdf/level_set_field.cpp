@@ -12,6 +12,7 @@
 #include "sdf/level_set_distance.h"
 #include "sdf/level_set_nano.h"
 #include "sdf/level_set_thin.h"
+#include "sdf/memory_text.h"
 #include "sdf/parallel.h"
 #include "sdf/size_error.h"
 
@@ -81,8 +82,6 @@ bool may_hold_band(FieldEvaluator& evaluator, const Lattice& lattice, const Cube
   return evaluator.bounds(reach).contains(0.0);
 }
 
-std::string gigabytes(double bytes) { return fmt::format("{:.2f} GB", bytes / 1e9); }
-
 /// Refused before the memory is taken. Halving the cubes multiplies those on a surface by four.
 void check_size(size_t cubes, int size, const LevelSetSettings& settings) {
   if (static_cast<double>(cubes) * static_cast<double>(kBlockBytes) <= static_cast<double>(settings.max_bytes)) return;
@@ -93,8 +92,8 @@ void check_size(size_t cubes, int size, const LevelSetSettings& settings) {
   throw SizeError({{},
                    "voxel size",
                    fmt::format("{:.4g}", settings.voxel_size),
-                   fmt::format("building the level set needs about {} of memory, the limit is {}", gigabytes(bytes),
-                               gigabytes(static_cast<double>(settings.max_bytes))),
+                   fmt::format("building the level set needs about {} of memory, the limit is {}", memory_text(bytes),
+                               memory_text(static_cast<double>(settings.max_bytes))),
                    fmt::format("a voxel size of about {:.2g} or more", settings.voxel_size * factor * 1.05)});
 }
 

@@ -14,6 +14,7 @@
 #include "sdf/error.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_patches.h"
+#include "sdf/memory_text.h"
 #include "sdf/parallel.h"
 #include "sdf/size_error.h"
 
@@ -204,8 +205,8 @@ void check_size(const Source& source, const LevelSetSettings& settings, double l
   throw SizeError({{},
                    "voxel size",
                    fmt::format("{:.4g}", h),
-                   fmt::format("resampling would take about {:.2f} GB of memory, the limit is {:.2f} GB", bytes / 1e9,
-                               static_cast<double>(settings.max_bytes) / 1e9),
+                   fmt::format("resampling would take about {} of memory, the limit is {}", memory_text(bytes),
+                               memory_text(static_cast<double>(settings.max_bytes))),
                    fmt::format("a voxel size of about {:.2g} or more", 1.05 * factor * h)});
 }
 

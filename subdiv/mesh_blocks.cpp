@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "sdf/memory_text.h"
 #include "sdf/size_error.h"
 #include "subdiv/mesh_distance.h"
 #include "subdiv/triangle_box.h"
@@ -55,10 +56,10 @@ class BlockFinder {
     std::sort(keys_.begin(), keys_.end());
     keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
     if (static_cast<std::int64_t>(keys_.size()) > max_blocks_)
-      throw SizeError({"", "voxel_size", fmt::format("{}", size_),
-                       fmt::format("the level set needs more than {:.1f} GB",
-                                   static_cast<double>(max_blocks_) * 1e-9 * static_cast<double>(sizeof(LevelSetBlock))),
-                       "larger voxels or a narrower band"});
+      throw SizeError(
+          {"", "voxel_size", fmt::format("{}", size_),
+           "the level set needs more than " + memory_text(static_cast<double>(max_blocks_) * static_cast<double>(sizeof(LevelSetBlock))),
+           "larger voxels or a narrower band"});
     next_compaction_ = std::max<size_t>(1 << 16, 2 * keys_.size());
   }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "sdf/memory_text.h"
 #include "sdf/size_error.h"
 #include "subdiv/opensubdiv_cage.h"
 
@@ -20,9 +21,9 @@ void check_size(const RefinedSize& size, const RefineSettings& settings, const s
   const bool countable = size.faces <= std::numeric_limits<std::int32_t>::max() / 4;
   if (size.bytes <= settings.max_bytes && countable) return;
   throw SizeError({file, "level", fmt::format("{}", settings.level),
-                   fmt::format("the refined mesh has {} vertices and {} faces and needs {:.1f} GB", size.vertices, size.faces,
-                               static_cast<double>(size.bytes) * 1e-9),
-                   fmt::format("a lower level (at most {:.1f} GB)", static_cast<double>(settings.max_bytes) * 1e-9)});
+                   fmt::format("the refined mesh has {} vertices and {} faces and needs {}", size.vertices, size.faces,
+                               memory_text(static_cast<double>(size.bytes))),
+                   fmt::format("a lower level (at most {})", memory_text(static_cast<double>(settings.max_bytes)))});
 }
 
 /// The points of the last level, from those of the cage.

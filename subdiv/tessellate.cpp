@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "sdf/memory_text.h"
 #include "sdf/size_error.h"
 #include "subdiv/dual_contour.h"
 #include "subdiv/local_field.h"
@@ -183,8 +184,8 @@ Mesh tessellate(const Field& field, const TessellateSettings& settings) {
   const RefinedSize size = predict_refined_size(cage.mesh, Scheme::bilinear, settings.level);
   if (size.bytes > settings.max_bytes)
     throw SizeError({"", "level", fmt::format("{}", settings.level),
-                     fmt::format("the mesh has {} faces and needs {:.1f} GB", size.faces, static_cast<double>(size.bytes) * 1e-9),
-                     fmt::format("a lower level (at most {:.1f} GB)", static_cast<double>(settings.max_bytes) * 1e-9)});
+                     fmt::format("the mesh has {} faces and needs {}", size.faces, memory_text(static_cast<double>(size.bytes))),
+                     fmt::format("a lower level (at most {})", memory_text(static_cast<double>(settings.max_bytes)))});
   cage = refined(field, std::move(cage), settings);
   follow_creases(field, cage.mesh, cage.snapped);
   turn_quads_along_creases(field, cage.mesh, cage.snapped.feature);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sdf/parallel.h"
 #include "subdiv/triangle_box.h"
 
 namespace limn {
@@ -25,21 +26,33 @@ void add(const FacetBounds& other, FacetBounds& facets) {
 struct TriangleTree::Builder {
   TriangleTree& tree;
   static constexpr std::uint32_t kLeaf = 4;
+  static constexpr std::uint32_t kAlone = 4096;  // as many are one thread's
 
-  /// Halves along the longest side of the boxes' middles.
-  void build(std::uint32_t first, std::uint32_t count) {
-    const size_t number = tree.nodes_.size();
-    tree.nodes_.emplace_back();
-    const auto begin = tree.leaves_.begin() + first, end = begin + count;
-    if (count <= kLeaf) {
-      Node& node = tree.nodes_[number];
-      node.first = first, node.count = count;
-      for (auto leaf = begin; leaf != end; ++leaf) {
-        node.box = merge(node.box, leaf->box);
-        if (leaf->normal != glm::dvec3(0.0)) add({leaf->normal, leaf->normal, leaf->longest_edge}, node.facets);
-      }
-      return;
+  struct TreeSizes {
+    size_t here = 1, of_one_more = 1;
+  };
+  /// How many nodes the trees of so many leaves and of one more have.
+  static TreeSizes sizes(std::uint32_t count) {
+    if (count < kLeaf) return {};
+    const auto [half, half_and_one] = sizes(count / 2);
+    const bool odd = count % 2 != 0;
+    return {count <= kLeaf ? 1 : odd ? 1 + half + half_and_one : 1 + 2 * half, odd ? 1 + 2 * half_and_one : 1 + half + half_and_one};
+  }
+
+  void make_leaf(std::uint32_t first, std::uint32_t count, Node& node) const {
+    node.first = first, node.count = count;
+    for (std::uint32_t i = first; i < first + count; ++i) {
+      const Leaf& leaf = tree.leaves_[i];
+      node.box = merge(node.box, leaf.box);
+      if (leaf.normal != glm::dvec3(0.0)) add({leaf.normal, leaf.normal, leaf.longest_edge}, node.facets);
     }
+  }
+
+  /// Halves along the longest side of the boxes' middles. The tree's root is node `number`; its left half follows, then its right half.
+  void build(size_t number, std::uint32_t first, std::uint32_t count) const {
+    Node& node = tree.nodes_[number];
+    if (count <= kLeaf) return make_leaf(first, count, node);
+    const auto begin = tree.leaves_.begin() + first, end = begin + count;
     Box middles;
     for (auto leaf = begin; leaf != end; ++leaf) middles = include(middles, leaf->box.center());
     const glm::dvec3 size = middles.size();
@@ -49,12 +62,15 @@ struct TriangleTree::Builder {
       const double x = a.box.center()[axis], y = b.box.center()[axis];
       return x != y ? x < y : a.triangle < b.triangle;
     });
-    build(first, half);
-    const auto right = static_cast<std::uint32_t>(tree.nodes_.size());
-    build(first + half, count - half);
-    Node& node = tree.nodes_[number];
-    node.right = right;
-    const Node &a = tree.nodes_[number + 1], &b = tree.nodes_[right];
+    const size_t left = number + 1, right = left + sizes(half).here;
+    node.right = static_cast<std::uint32_t>(right);
+    if (count > kAlone) {
+      parallel_invoke([&] { build(left, first, half); }, [&] { build(right, first + half, count - half); });
+    } else {
+      build(left, first, half);
+      build(right, first + half, count - half);
+    }
+    const Node &a = tree.nodes_[left], &b = tree.nodes_[right];
     node.box = merge(a.box, b.box);
     add(a.facets, node.facets), add(b.facets, node.facets);
   }
@@ -62,19 +78,22 @@ struct TriangleTree::Builder {
 
 TriangleTree::TriangleTree(const TriangleMesh& mesh) {
   leaves_.resize(mesh.triangles.size());
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const glm::uvec3& t = mesh.triangles[i];
-    Leaf& leaf = leaves_[i];
-    leaf.triangle = i;
-    const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
-    leaf.box = {glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)};
-    leaf.longest_edge = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
-    const glm::dvec3 area = glm::cross(b - a, c - a);
-    if (const double length = glm::length(area); length > 0.0) leaf.normal = area / length;
-  }
+  parallel_parts(mesh.triangles.size(), size_t{4096}, [&](const IndexRange<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      const glm::uvec3& t = mesh.triangles[i];
+      Leaf& leaf = leaves_[i];
+      leaf.triangle = static_cast<std::uint32_t>(i);
+      const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+      leaf.box = {glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)};
+      leaf.longest_edge = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+      const glm::dvec3 area = glm::cross(b - a, c - a);
+      if (const double length = glm::length(area); length > 0.0) leaf.normal = area / length;
+    }
+  });
   if (leaves_.empty()) return;
-  nodes_.reserve(leaves_.size());
-  Builder{*this}.build(0, static_cast<std::uint32_t>(leaves_.size()));
+  const auto count = static_cast<std::uint32_t>(leaves_.size());
+  nodes_.resize(Builder::sizes(count).here);
+  Builder{*this}.build(0, 0, count);
 }
 
 template <class VisitNode, class VisitLeaf>

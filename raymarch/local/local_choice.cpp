@@ -9,6 +9,7 @@
 
 #include "raymarch/level_set/brick_layout.h"
 #include "raymarch/local/brick_demand.h"
+#include "sdf/memory_text.h"
 #include "sdf/parallel.h"
 #include "sdf/size_error.h"
 
@@ -105,12 +106,11 @@ class BrickTree {
   }
 
   [[noreturn]] void refuse() const {
-    throw SizeError(
-        {{},
-         "voxel size",
-         fmt::format("{:.4g}", choice_.voxel_size),
-         fmt::format("building the local level set needs more than the limit of {:.2f} GB", static_cast<double>(max_bytes_) / 1e9),
-         "larger voxels or a larger tolerance"});
+    throw SizeError({{},
+                     "voxel size",
+                     fmt::format("{:.4g}", choice_.voxel_size),
+                     "building the local level set needs more than the limit of " + memory_text(static_cast<double>(max_bytes_)),
+                     "larger voxels or a larger tolerance"});
   }
 
   LocalChoice& choice_;

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "raymarch/local/local_demand.h"
+#include "sdf/memory_text.h"
 #include "sdf/parallel.h"
 #include "sdf/size_error.h"
 
@@ -196,8 +197,8 @@ void check_size(const LocalTriangles& mesh, const LocalSettings& settings, std::
   const double bytes = kBytes * static_cast<double>(mesh.triangles.size());
   if (bytes <= static_cast<double>(max_bytes)) return;
   throw SizeError({"", "local", fmt::format("{}", settings.tolerance_px),
-                   fmt::format("the mesh has more than {} triangles and needs more than {:.1f} GB", mesh.triangles.size(), bytes * 1e-9),
-                   fmt::format("a larger tolerance (at most {:.1f} GB)", static_cast<double>(max_bytes) * 1e-9)});
+                   fmt::format("the mesh has more than {} triangles and needs more than {}", mesh.triangles.size(), memory_text(bytes)),
+                   fmt::format("a larger tolerance (at most {})", memory_text(static_cast<double>(max_bytes)))});
 }
 
 /// For LocalView::turns; within one side of a crease.

@@ -489,7 +489,7 @@ void add_plan(CLI::App& app, Options& options) {
       app, {"--budget", "SIZE|TIME", "what the model may take: memory such as 64M, or time to build and trace such as 200ms or 2s", kPlan},
       [&plan](const std::string& text) {
         if (text.empty() || text.back() != 's')
-          plan.budget_bytes = parse_bytes("--budget", text);
+          plan.budget_bytes = parse_bytes("--budget", text, kLeastBudget);
         else
           plan.budget_ms = parse_milliseconds("--budget", text);
       })

@@ -9,6 +9,7 @@
 
 #include "samples/spec/flags.h"
 #include "sdf/error.h"
+#include "sdf/memory_text.h"
 
 namespace limn {
 namespace {
@@ -112,12 +113,7 @@ void print_note(const std::string& text) {
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-std::string bytes_text(double bytes) {
-  if (bytes < 1e3) return fmt::format("{:.0f} B", bytes);
-  if (bytes < 1e6) return fmt::format("{:.1f} kB", bytes / 1e3);
-  if (bytes < 1e9) return fmt::format("{:.1f} MB", bytes / 1e6);
-  return fmt::format("{:.2f} GB", bytes / 1e9);
-}
+std::string bytes_text(double bytes) { return memory_text(bytes); }
 
 std::string time_text(double milliseconds) {
   if (milliseconds < 10.0) return fmt::format("{:.1f} ms", milliseconds);

@@ -1,6 +1,8 @@
 #pragma once
 // What is known of one ladder while a plan climbs it, and what that lets expect of the rungs that were not built.
 
+#include <optional>
+
 #include "samples/plan/plan.h"
 
 namespace limn {
@@ -19,6 +21,7 @@ struct Climb {
   std::vector<ClimbedRung> climbed{};  ///< From coarse to fine.
   int limit = 0;                       ///< The first rung that cannot be built; one past the last where none is known.
   bool closed = false;                 ///< Given up.
+  std::optional<size_t> limit_note{};  ///< Of the plan's notes, the one that says why that rung cannot be built.
 
   const ClimbedRung* coarsest_meeting(double tolerance_px) const;
   /// The finest that fails, of those coarser than all that meet the tolerance.

@@ -22,9 +22,11 @@ const std::vector<int> kLevelRungs = {0, 1, 2, 3, 4, 5, 6};
 // curvature within a face.
 constexpr double kMeshConstant = 0.08;
 
-/// What is as fine everywhere takes about as much while it is built as afterwards: beyond the budget there is nothing to build.
-std::int64_t most_bytes(const PlanSettings& settings) {
-  return settings.budget_bytes ? std::min(settings.max_bytes, *settings.budget_bytes) : settings.max_bytes;
+/// What is as fine everywhere takes about as much while it is built as afterwards: beyond the budget there is nothing to build. But for
+/// level sets of meshes: the mesh may be larger than they are.
+std::int64_t most_bytes(const Ladder& ladder, const PlanSettings& settings) {
+  const bool by_mesh = ladder.settings.kind == "mesh_level_set";
+  return settings.budget_bytes && !by_mesh ? std::min(settings.max_bytes, *settings.budget_bytes) : settings.max_bytes;
 }
 
 /// A gradient of first order never makes up for its voxels.
@@ -180,7 +182,7 @@ std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings,
   const SceneSize size = size_of(scene, {}, false);
   if (volumes) {
     ladders = volume_ladders(scene, size, settings, longest_side);
-    for (Ladder& ladder : ladders) ladder.settings.max_bytes = most_bytes(settings);
+    for (Ladder& ladder : ladders) ladder.settings.max_bytes = most_bytes(ladder, settings);
     return ladders;
   }
   if (!fixed && wanted("mesh", settings) && all_support(scene, "mesh")) {
@@ -199,7 +201,7 @@ std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings,
       if (is_tried(gradient)) ladders.push_back(grid_ladder(kind, gradient, size, longest_side));
     }
   }
-  for (Ladder& ladder : ladders) ladder.settings.max_bytes = most_bytes(settings);
+  for (Ladder& ladder : ladders) ladder.settings.max_bytes = most_bytes(ladder, settings);
   return ladders;
 }
 

@@ -173,7 +173,15 @@ void take(Search& search, PlanTrial trial) {
   if (trial.failed.empty()) {
     climb.add({rung, trial.measured.of(search.settings.metric), trial.build_ms, trial.trace_ms});
   } else {
-    search.answer.notes.push_back(fmt::format("{}, {}: {}", climb.ladder->title, climb.ladder->words_at(trial.rung), trial.failed));
+    // Of those that cannot be built the coarsest says why for all.
+    std::vector<std::string>& notes = search.answer.notes;
+    const std::string why = fmt::format("{}, {}: {}", climb.ladder->title, climb.ladder->words_at(trial.rung), trial.failed);
+    if (!climb.limit_note) {
+      climb.limit_note = notes.size();
+      notes.push_back(why);
+    } else if (rung < climb.limit) {
+      notes[*climb.limit_note] = why;
+    }
     climb.limit = std::min(climb.limit, rung);
   }
   search.answer.trials.push_back(std::move(trial));
@@ -237,29 +245,51 @@ bool is_uniform_beside(const Ladder& other, const Ladder& local) {
   return other.by_level || other.settings.gradient == local.settings.gradient;
 }
 
-/// What a level set of as many voxels as a local one keeps; 0 where it is too large to be built.
-std::int64_t uniform_bytes_beside(const Search& search, const PlanTrial& chosen) {
-  const Ladder& of = search.answer.ladders[chosen.ladder];
-  if (of.by_tolerance) return 0;
-  try {
-    return total(build_model(search.run.experiment().scene, of.at(chosen.rung))).bytes;
-  } catch (const InputError&) {
-    return 0;
+/// The coarsest of the models that are as fine everywhere and keep to the tolerance.
+std::optional<size_t> coarsest_uniform(const Search& search, const Ladder& local) {
+  const PlanAnswer& answer = search.answer;
+  std::optional<size_t> coarsest;
+  for (size_t k = 0; k < answer.trials.size(); ++k) {
+    const PlanTrial& trial = answer.trials[k];
+    if (!is_uniform_beside(answer.ladders[trial.ladder], local) || !trial.failed.empty()) continue;
+    if (trial.measured.of(search.settings.metric) > search.settings.tolerance_px) continue;
+    if (!coarsest || trial.rung < answer.trials[*coarsest].rung) coarsest = k;
   }
+  return coarsest;
+}
+
+/// The uniform level set of as many voxels as a local one, built and measured whatever the budget says; nothing where it is too large.
+std::optional<size_t> uniform_of_as_many_voxels(Search& search, const PlanTrial& chosen) {
+  PlanAnswer& answer = search.answer;
+  for (size_t k = 0; k < answer.ladders.size(); ++k) {
+    if (!is_uniform_beside(answer.ladders[k], answer.ladders[chosen.ladder])) continue;
+    std::optional<size_t> trial = trial_at(answer, k, chosen.rung);
+    if (trial && answer.trials[*trial].failed.empty()) return trial;
+    answer.ladders[k].settings.max_bytes = search.settings.max_bytes;
+    PlanTrial beside = try_rung(search, k, chosen.rung);
+    if (!beside.failed.empty()) return {};
+    if (!trial) {
+      trial = answer.trials.size();
+      answer.trials.emplace_back();
+    }
+    answer.trials[*trial] = std::move(beside);
+    return trial;
+  }
+  return {};
 }
 
 /// What a local model saves, against those that are as fine everywhere or wherever the surface bends as much.
 void compare_local(Search& search, const PlanTrial& chosen) {
   PlanAnswer& answer = search.answer;
-  const Ladder& of = answer.ladders[chosen.ladder];
+  const Ladder of = answer.ladders[chosen.ladder];
   if (!of.local) return;
-  for (size_t k = 0; k < answer.trials.size(); ++k) {
-    const PlanTrial& trial = answer.trials[k];
-    if (!is_uniform_beside(answer.ladders[trial.ladder], of) || !trial.failed.empty()) continue;
-    if (trial.measured.of(search.settings.metric) > search.settings.tolerance_px) continue;
-    if (!answer.uniform || trial.rung < answer.trials[*answer.uniform].rung) answer.uniform = k;
+  answer.uniform = coarsest_uniform(search, of);
+  std::optional<size_t> beside = answer.uniform;
+  if (!beside && !of.by_tolerance) {
+    beside = uniform_of_as_many_voxels(search, chosen);
+    answer.uniform = coarsest_uniform(search, of);
   }
-  answer.uniform_bytes = answer.uniform ? answer.trials[*answer.uniform].bytes : uniform_bytes_beside(search, chosen);
+  if (beside) answer.uniform_bytes = answer.trials[*beside].bytes;
   LocalSettings everywhere = *of.local;
   everywhere.tolerance_px = search.settings.tolerance_px;
   everywhere.thresholds.clear();

@@ -217,7 +217,7 @@ void add_plan(Readers& readers) {
   };
   readers["budget"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
     if (text.empty() || text.back() != 's')
-      settings.plan.budget_bytes = parse_bytes(field, text);
+      settings.plan.budget_bytes = parse_bytes(field, text, kLeastBudget);
     else
       settings.plan.budget_ms = parse_milliseconds(field, text);
   };

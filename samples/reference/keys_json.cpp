@@ -134,14 +134,13 @@ constexpr DocumentedKey kJsonKeys[] = {
     {"plan", "chosen.build_ms", "ms", "making the model"},
     {"plan", "chosen.trace_ms", "ms", "tracing it"},
     {"plan", "chosen.triangles", "", "of the model; 0 where it has none"},
-    {"plan", "chosen.voxels", "", "the same"},
+    {"plan", "chosen.voxels", "", "that it stores; 0 where it has none"},
     {"plan", "uniform_triangles", "",
      "where a local mesh is chosen: of the coarsest mesh as fine everywhere that was tried and keeps to the tolerance, or null"},
     {"plan", "curvature_triangles", "", "where a local mesh is chosen: of a mesh refined by curvature alone to the tolerance"},
     {"plan", "uniform_bytes", "bytes",
      "where a local model is chosen: of the coarsest one of its kind, as fine everywhere, that was tried and keeps to the tolerance; else "
-     "of a "
-     "level set of as many voxels, or null where that is too large"},
+     "of a level set of as many voxels, or null where that is too large"},
     {"plan", "curvature_bytes", "bytes", "where a local model is chosen: of one whose parts are as fine as curvature alone asks for"},
     {"plan", "chosen.time_ms", "ms", "both"},
     {"plan", "predicted_px", "px", "of the chosen model"},

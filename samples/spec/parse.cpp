@@ -147,15 +147,19 @@ std::vector<double> parse_tolerances(const std::string& field, const std::string
   return {all.begin(), all.end()};
 }
 
-std::int64_t parse_bytes(const std::string& field, const std::string& text) {
+std::int64_t parse_bytes(const std::string& field, const std::string& text, double least) {
   const std::string expected = "a size such as 500M, 4G or 2000000";
   const std::string_view units = "kMGT";
-  const size_t unit = text.empty() ? std::string_view::npos : units.find(text.back());
+  std::string_view number = text;
+  if (number.ends_with('B')) number.remove_suffix(1);
+  const char last = number.empty() ? '\0' : number.back();
+  const size_t unit = units.find(last == 'K' ? 'k' : last);
   const bool has_unit = unit != std::string_view::npos;
-  const auto value = to_number(has_unit ? std::string_view(text).substr(0, text.size() - 1) : std::string_view(text));
+  if (has_unit) number.remove_suffix(1);
+  const auto value = to_number(number);
   if (!value || !std::isfinite(*value)) fail(field, text, "not a size in bytes", expected);
   const double bytes = *value * (has_unit ? std::pow(1000.0, static_cast<double>(unit) + 1.0) : 1.0);
-  if (bytes < 1e6 || bytes > 1e18) fail(field, text, "out of range", "at least 1M");
+  if (bytes < least || bytes > 1e18) fail(field, text, "out of range", least < 1e6 ? "at least 1k" : "at least 1M");
   return static_cast<std::int64_t>(bytes);
 }
 

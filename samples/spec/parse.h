@@ -37,8 +37,10 @@ std::vector<int> parse_integers(const std::string& text, const std::function<int
 std::vector<double> parse_thresholds(const std::string& field, const std::string& text);
 /// Numbers of pixels above 0, rising.
 std::vector<double> parse_tolerances(const std::string& field, const std::string& text);
-/// "500M", "4G", "1.5T", or bytes: decimal units.
-std::int64_t parse_bytes(const std::string& field, const std::string& text);
+/// "500M", "4GB", "1.5T", or bytes: decimal units; at least `least`.
+std::int64_t parse_bytes(const std::string& field, const std::string& text, double least = 1e6);
+/// A plan's models may be small.
+inline constexpr double kLeastBudget = 1e3;
 /// "200ms", "90s", "10m", "2h"; above 0.
 double parse_milliseconds(const std::string& field, const std::string& text);
 /// True for "silhouette", false for "border".

@@ -16,6 +16,7 @@
 #include "tests/local_check.h"
 #include "tests/plan_check.h"
 #include "tests/random_seed.h"
+#include "tests/raymarch/awkward_cages.h"
 #include "tests/samples/run_program.h"
 #include "tests/samples/scene_camera.h"
 #include "tests/temporary_folder.h"
@@ -381,7 +382,12 @@ TEST(LocalModel, APlanTriesLocalLevelSetsAndTakesOneWhereMemoryIsShort) {
   EXPECT_LE(chosen.bytes, *settings.budget_bytes);
   EXPECT_LE(chosen.measured.border_px, settings.tolerance_px);
   EXPECT_GT(answer.curvature_bytes, 0);
+  // What it saves is said against one of as many voxels, which is measured, too.
   EXPECT_GT(answer.uniform_bytes, *settings.budget_bytes);
+  ASSERT_TRUE(answer.uniform);
+  EXPECT_EQ(answer.ladders[answer.trials[*answer.uniform].ladder].words_at(answer.trials[*answer.uniform].rung),
+            ladder.words_at(chosen.rung));
+  EXPECT_LE(answer.trials[*answer.uniform].measured.border_px, settings.tolerance_px);
   const std::vector<std::string> said = plan_sentences(answer, settings);
   const auto saves = [](const std::string& sentence) {
     return sentence.find("a level set that is as fine everywhere") != std::string::npos;
@@ -391,6 +397,44 @@ TEST(LocalModel, APlanTriesLocalLevelSetsAndTakesOneWhereMemoryIsShort) {
   const SceneModel again = build_local_model(scene, ladder.at(chosen.rung), *ladder.local_at(chosen.rung));
   double trace_ms = 0.0;
   EXPECT_EQ(measure_errors(again, view, settings.threshold, {}, trace_ms).border_px, chosen.measured.border_px);
+}
+
+TEST(LocalModel, APlanTriesLocalLevelSetsOfMeshes) {
+  Scene scene;
+  scene.objects.push_back({.name = "cube", .source = MeshSource{cube_cage(3), Scheme::catmark}});
+  PlanView view;
+  view.camera = camera_of(scene, 0, 1, {160, 160});
+  view.truth = solve_truth(scene, view.camera, {}, {});
+  PlanSettings settings;
+  settings.tolerance_px = 0.5;
+  settings.kinds = {"mesh_level_set"};
+  settings.local = true;
+  ProgressBar bar(false);
+  // Half of what the best uniform one keeps.
+  const PlanAnswer free = make_plan(scene, {view}, settings, {}, bar);
+  ASSERT_TRUE(free.chosen);
+  settings.budget_bytes = free.trials[*free.chosen].bytes / 2;
+  const PlanAnswer answer = make_plan(scene, {view}, settings, {}, bar);
+  ASSERT_TRUE(answer.chosen);
+  const PlanTrial& chosen = answer.trials[*answer.chosen];
+  EXPECT_TRUE(answer.ladders[chosen.ladder].local);
+  EXPECT_EQ(answer.ladders[chosen.ladder].settings.kind, "mesh_level_set");
+  EXPECT_LE(chosen.bytes, *settings.budget_bytes);
+  EXPECT_LE(chosen.measured.border_px, settings.tolerance_px);
+  // A budget is of what is kept: that the mesh takes more is nothing that the plan would have to note.
+  for (const std::string& note : answer.notes) EXPECT_EQ(note.find("the refined mesh has"), std::string::npos) << note;
+}
+
+TEST(LocalModel, RenderTakesTheLocalLevelSetThatItsPlanChose) {
+  const TemporaryFolder folder;
+  const RunResult run = run_limn({"render", "ellipsoid", "--surface", "level_set", "--tolerance", "0.05", "--local", "--budget", "2M",
+                                  "--size", "300x300", "-o", "egg.png", "--json"},
+                                 folder.path());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_NE(run.err.find("local level set"), std::string::npos) << run.err;
+  EXPECT_GT(json.at("surface").at("voxels").get<int>(), 0);
+  EXPECT_LE(json.at("surface").at("bytes").get<int>(), 2'000'000);
 }
 
 }  // namespace

@@ -68,6 +68,11 @@ int rung_of_size(const Climb& climb, double size) {
   return rung;
 }
 
+/// Not even the finest rung is expected to come near the tolerance.
+bool shrinks_too_slowly(const Climb& climb, double tolerance_px) {
+  return expected_error(climb, climb.limit - 1, tolerance_px) > 1.5 * tolerance_px;
+}
+
 std::string off_words(const ClimbedRung& rung) {
   return std::isfinite(rung.error_px) ? fmt::format("still {:.2g} px off", rung.error_px) : "still farther off than can be measured";
 }
@@ -134,8 +139,9 @@ int next_rung(const Climb& climb, double tolerance_px) {
   const int fails = failing_rung(climb, tolerance_px), meets = meeting_rung(climb, tolerance_px);
   int farthest = meets - 1;
   if (fails >= 0) {
-    // A factor of two in size beyond a lone measurement, four where an order was seen: too far up costs more than once too often.
-    const double reach = failing_order(climb, tolerance_px) ? 0.24 : 0.49;
+    // A factor of two in size beyond a lone measurement, four where an order was seen: too far up costs more than once too often. But
+    // where that order leads nowhere, two more are enough to be sure of it.
+    const double reach = failing_order(climb, tolerance_px) && !shrinks_too_slowly(climb, tolerance_px) ? 0.24 : 0.49;
     while (farthest > fails + 1 && size_of(climb, farthest) < reach * size_of(climb, fails)) --farthest;
   } else if (meets == climb.limit) {
     farthest = std::min(farthest, (static_cast<int>(climb.ladder->rungs.size()) - 1) / 2);
@@ -164,8 +170,10 @@ std::string reason_to_stop(const Climb& climb, double tolerance_px, std::optiona
   if (climb.coarsest_meeting(tolerance_px) != nullptr || !order) return {};
   // Two neighbouring rungs may differ by chance: an order is believed once three rungs span a factor of two in size.
   const double spanned = size_of(climb, climb.climbed.front().rung) / size_of(climb, fails->rung);
-  if (climb.climbed.size() >= 3 && spanned > 1.9 && expected_error(climb, climb.limit - 1, tolerance_px) > 1.5 * tolerance_px)
-    return fmt::format("its error, {:.2g} px, shrinks too slowly (with the power {:.1f} of the size)", fails->error_px, *order);
+  if (climb.climbed.size() >= 3 && spanned > 1.9 && shrinks_too_slowly(climb, tolerance_px))
+    return *order < 0.05
+               ? fmt::format("its error, {:.2g} px, does not shrink", fails->error_px)
+               : fmt::format("its error, {:.2g} px, shrinks too slowly (with the power {:.1f} of the size)", fails->error_px, *order);
   const int next = next_rung(climb, tolerance_px);
   // Where even that is not expected to meet the tolerance, what does is finer and costs more.
   const double patience = expected_error(climb, next, tolerance_px) > tolerance_px ? kTimeNoise : 2.0 * kTimeNoise;

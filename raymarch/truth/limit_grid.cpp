@@ -84,11 +84,16 @@ double tip_px(const PlacedLimitSurface& placed, size_t k, const PatchLattice& la
   return widest;
 }
 
+size_t samples_of(const LimitPatch& patch, int steps) {
+  const auto n = static_cast<size_t>(steps) + 1;
+  return patch.triangle ? n * (n + 1) / 2 : n * n;
+}
+
 PatchLattice sample_lattice(const PlacedLimitSurface& placed, size_t k, int steps, const Camera& camera) {
   PatchLattice lattice;
   lattice.steps = steps;
   const LimitPatch& patch = placed.patches[k];
-  lattice.samples.reserve(lattice_index(patch, steps, 0, steps) + 1);
+  lattice.samples.reserve(samples_of(patch, steps));
   for (int j = 0; j <= steps; ++j) {
     for (int i = 0; i <= (patch.triangle ? steps - j : steps); ++i) {
       lattice.samples.push_back(sample(placed, k, glm::dvec2(i, j) / double(steps)));
@@ -137,7 +142,7 @@ struct LatticeNumbers {
 std::vector<LimitCorner> corners_of(const LimitPatch& patch, int steps, const LatticeNumbers& numbers) {
   const auto n = static_cast<std::uint16_t>(steps);
   std::vector<LimitCorner> corners;
-  corners.reserve(lattice_index(patch, steps, 0, steps) + 1);
+  corners.reserve(samples_of(patch, steps));
   auto rim = numbers.rim.begin();
   for (int j = 0; j <= steps; ++j) {
     LatticeNumbers::Row inside = numbers.rows[static_cast<size_t>(j)];

@@ -272,6 +272,7 @@ std::optional<size_t> uniform_of_as_many_voxels(Search& search, const PlanTrial&
       trial = answer.trials.size();
       answer.trials.emplace_back();
     }
+    search.climbs[k].add({static_cast<int>(beside.rung), beside.measured.of(search.settings.metric), beside.build_ms, beside.trace_ms});
     answer.trials[*trial] = std::move(beside);
     return trial;
   }
@@ -282,6 +283,8 @@ std::optional<size_t> uniform_of_as_many_voxels(Search& search, const PlanTrial&
 void compare_local(Search& search, const PlanTrial& chosen) {
   PlanAnswer& answer = search.answer;
   const Ladder of = answer.ladders[chosen.ladder];
+  answer.uniform.reset();
+  answer.uniform_bytes = 0;
   if (!of.local) return;
   answer.uniform = coarsest_uniform(search, of);
   std::optional<size_t> beside = answer.uniform;
@@ -316,6 +319,8 @@ void choose(Search& search) {
   const size_t last = climbed.rungs.size() - 1;
   if (climbed.of_file && !trial_at(answer, chosen.ladder, last)) answer.trials.push_back(try_rung(search, chosen.ladder, last));
   compare_local(search, chosen);
+  // What the local one was compared with may turn out to be the quicker one.
+  if (fastest(search) != answer.chosen) return choose(search);
   if (chosen.rung > 0) answer.coarser = trial_at(answer, chosen.ladder, chosen.rung - 1);
   answer.finest = finest_of(answer, chosen, answer.finest_was_built);
   answer.finest.predicted = predicted(search, chosen.ladder, last);

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "raymarch/local/local_demand.h"
+#include "sdf/error.h"
 #include "sdf/memory_text.h"
 #include "sdf/parallel.h"
 #include "sdf/size_error.h"
@@ -201,6 +202,22 @@ void check_size(const LocalTriangles& mesh, const LocalSettings& settings, std::
                    fmt::format("a larger tolerance (at most {})", memory_text(static_cast<double>(max_bytes)))});
 }
 
+/// Where a surface folds over itself no splitting makes facets lie along it, and each that is split leaves two that ask for more.
+void check_that_it_settles(const LocalTriangles& mesh, size_t base_triangles, const LocalSettings& settings) {
+  // Borders of the built-in scenes at 0.1 px take less than one triangle a pixel.
+  constexpr double kMostPerPixel = 8.0, kMostPerBase = 8.0, kNeverTooMany = 1e6;
+  double pixels = 0.0;
+  for (const Camera& camera : settings.cameras) pixels += static_cast<double>(camera.width_px) * camera.height_px;
+  const auto triangles = static_cast<double>(mesh.triangles.size());
+  if (triangles <= std::max(kNeverTooMany, kMostPerPixel * pixels) + kMostPerBase * static_cast<double>(base_triangles)) return;
+  throw InputError(
+      {"", "local", fmt::format("{}", settings.tolerance_px),
+       fmt::format("the mesh has {} triangles and still asks for more: its surface folds over itself, as where a face of a cage "
+                   "is twisted",
+                   mesh.triangles.size()),
+       "a mesh that is as fine everywhere (level)"});
+}
+
 /// For LocalView::turns; within one side of a crease.
 std::vector<double> turns_of(const LocalTriangles& mesh, const Camera& camera) {
   std::vector<double> turns(mesh.positions.size(), 0.0);
@@ -261,6 +278,7 @@ LocalTriangles refine_locally(LocalTriangles base, const LocalSource& source, co
   views.reserve(settings.cameras.size());
   for (const Camera& camera : settings.cameras) views.push_back({camera, {}, {}});
   LocalTriangles mesh = std::move(base);
+  const size_t base_triangles = mesh.triangles.size();
   Middles middles;
   // The coarse surface first: it says what is hidden.
   for (const bool only_coarse : {true, false}) {
@@ -270,6 +288,7 @@ LocalTriangles refine_locally(LocalTriangles base, const LocalSource& source, co
     for (int pass = 0; pass < kMostPasses; ++pass) {
       if (!refine_once(mesh, middles, is_new, source, views, settings, only_coarse)) break;
       check_size(mesh, settings, max_bytes);
+      check_that_it_settles(mesh, base_triangles, settings);
     }
   }
   return mesh;

@@ -23,8 +23,7 @@ class MeshBody {
   const glm::dvec3& origin() const { return origin_; }
   const Box& bounds() const { return bounds_; }  ///< Relative to origin().
   const Winding& winding() const { return *winding_; }
-  /// Embree's tree over the triangles, and one of boxes; made when they are first asked for, not by the first of many threads: one that
-  /// waits for it takes up other work, which would wait for it too.
+  /// Embree's tree over the triangles, and one of boxes; made when they are first asked for.
   const ClosestPointData& tree() const;
   const TriangleTree& boxes() const;
   /// Where the border of the surface runs, and how long it is; empty and 0 where it is closed.

@@ -11,7 +11,7 @@ bool may_hold_surface(const MeshPart& part, const Box& box);
 /// As the function of that name for fields, from the normals of the triangles near the box (see brick_demand.h).
 bool needs_smaller_voxels(const MeshPart& part, const Box& box, double voxel_size, double smaller, const LocalBrickSettings& settings);
 
-/// To be called before many threads ask: the trees that they need are made by one.
+/// Makes the trees that many threads will ask for, while none of them waits.
 void prepare_trees(const MeshPart& part, double half_width_voxels);
 
 /// Signed distances at the nodes h * (origin + (i, j, k)) of a block, numbered 64 i + 8 j + k, clamped to the band's half width (world).

@@ -42,12 +42,25 @@ size_t open_edges(const Mesh& mesh) {
   return open;
 }
 
+PlanView square_view(const Scene& scene, int side_px) {
+  PlanView view;
+  view.camera = camera_of(scene, 0, 1, {side_px, side_px});
+  view.truth = solve_truth(scene, view.camera, {}, {});
+  return view;
+}
+
+PlanSettings local_plan(const std::string& kind, double tolerance_px) {
+  PlanSettings settings;
+  settings.tolerance_px = tolerance_px;
+  settings.kinds = {kind};
+  settings.local = true;
+  return settings;
+}
+
 TEST(LocalModel, AnEllipsoidsSilhouetteTakesFewTrianglesAndKeepsToTheTolerance) {
   const Scene scene = find_scene("ellipsoid")->make();
   const SceneModel exact = build_model(scene, {.kind = "analytic"});
-  PlanView view;
-  view.camera = camera_of(scene, 0, 1, {300, 300});
-  view.truth = solve_truth(scene, view.camera, {}, {});
+  const PlanView view = square_view(scene, 300);
   const std::pair<double, std::int64_t> most[] = {{1.0, 900}, {0.25, 2000}, {0.1, 3400}};
   for (const auto& [tolerance_px, triangles] : most) {
     const SceneModel model = build_local_model(scene, {}, {{view.camera}, tolerance_px, {}});
@@ -60,9 +73,7 @@ TEST(LocalModel, AnEllipsoidsSilhouetteTakesFewTrianglesAndKeepsToTheTolerance) 
 TEST(LocalModel, OfFieldsAndCagesTheBorderKeepsToTheToleranceWithNoEdgeOpen) {
   for (const char* name : {"ellipsoid", "tilted_torus", "superellipsoid", "teacup", "rook"}) {
     const Scene scene = find_scene(name)->make();
-    PlanView view;
-    view.camera = camera_of(scene, 0, 1, {300, 300});
-    view.truth = solve_truth(scene, view.camera, {}, {});
+    const PlanView view = square_view(scene, 300);
     Scene fine = scene;
     for (SceneObject& object : fine.objects) object.level.reset();
     const bool field = std::holds_alternative<Field>(scene.objects.front().source);
@@ -337,13 +348,8 @@ TEST(LocalModel, WhatHasNoEffectIsRefused) {
 
 TEST(LocalModel, APlanTriesLocalMeshesAndSaysWhatTheOneChosenSaves) {
   const Scene scene = find_scene("ellipsoid")->make();
-  PlanView view;
-  view.camera = camera_of(scene, 0, 1, {300, 300});
-  view.truth = solve_truth(scene, view.camera, {}, {});
-  PlanSettings settings;
-  settings.tolerance_px = 0.1;
-  settings.kinds = {"mesh"};
-  settings.local = true;
+  const PlanView view = square_view(scene, 300);
+  const PlanSettings settings = local_plan("mesh", 0.1);
   ProgressBar bar(false);
   const PlanAnswer answer = make_plan(scene, {view}, settings, {}, bar);
   const auto is_local = [&](const PlanTrial& trial) { return answer.ladders[trial.ladder].local.has_value(); };
@@ -362,13 +368,8 @@ TEST(LocalModel, APlanTriesLocalMeshesAndSaysWhatTheOneChosenSaves) {
 /// Within 16 MB no level set that is as fine everywhere has its border right.
 TEST(LocalModel, APlanTriesLocalLevelSetsAndTakesOneWhereMemoryIsShort) {
   const Scene scene = find_scene("machined_part")->make();
-  PlanView view;
-  view.camera = camera_of(scene, 0, 1, {300, 300});
-  view.truth = solve_truth(scene, view.camera, {}, {});
-  PlanSettings settings;
-  settings.tolerance_px = 0.25;
-  settings.kinds = {"level_set"};
-  settings.local = true;
+  const PlanView view = square_view(scene, 300);
+  PlanSettings settings = local_plan("level_set", 0.25);
   settings.budget_bytes = std::int64_t{16} << 20;
   ProgressBar bar(false);
   const PlanAnswer answer = make_plan(scene, {view}, settings, {}, bar);
@@ -402,13 +403,8 @@ TEST(LocalModel, APlanTriesLocalLevelSetsAndTakesOneWhereMemoryIsShort) {
 TEST(LocalModel, APlanTriesLocalLevelSetsOfMeshes) {
   Scene scene;
   scene.objects.push_back({.name = "cube", .source = MeshSource{cube_cage(3), Scheme::catmark}});
-  PlanView view;
-  view.camera = camera_of(scene, 0, 1, {160, 160});
-  view.truth = solve_truth(scene, view.camera, {}, {});
-  PlanSettings settings;
-  settings.tolerance_px = 0.5;
-  settings.kinds = {"mesh_level_set"};
-  settings.local = true;
+  const PlanView view = square_view(scene, 160);
+  PlanSettings settings = local_plan("mesh_level_set", 0.5);
   ProgressBar bar(false);
   // Half of what the best uniform one keeps.
   const PlanAnswer free = make_plan(scene, {view}, settings, {}, bar);

@@ -142,7 +142,8 @@ struct LineMemory {
 ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettings& settings, const ExecutionSettings& execution,
                       LineMemory* memory = nullptr);
 
-/// The points of a chain in order, each once; a closed one's first is not repeated.
+/// The points of a chain in order, each once; a closed one's first is not repeated. Where two of its edges end beside each other at their
+/// vertex, both ends are there.
 std::vector<LinePoint> points_of(const ViewGraph& graph, const LineChain& chain);
 
 }  // namespace limn

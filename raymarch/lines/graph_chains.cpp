@@ -112,16 +112,23 @@ void add_chains(ViewGraph& graph) {
 }
 
 std::vector<LinePoint> points_of(const ViewGraph& graph, const LineChain& chain) {
+  // Edges that meet at a vertex end at the same place, mostly; where seams lie close together, up to a few hundredths of a pixel from it.
+  constexpr double kSame_px = 1e-4;
+  const auto same = [](const LinePoint& a, const LinePoint& b) { return glm::distance(a.px, b.px) < kSame_px; };
   std::vector<LinePoint> points;
+  const auto append = [&](auto first, auto last) {
+    if (!points.empty() && same(points.back(), *first)) ++first;
+    points.insert(points.end(), first, last);
+  };
   for (const ChainLink& link : chain.links) {
     const std::vector<LinePoint>& own = graph.edges[static_cast<size_t>(link.edge)].points;
-    const size_t skip = points.empty() ? 0 : 1;  // The joint, which the one before ends with.
     if (link.reversed)
-      points.insert(points.end(), own.rbegin() + static_cast<std::ptrdiff_t>(skip), own.rend());
+      append(own.rbegin(), own.rend());
     else
-      points.insert(points.end(), own.begin() + static_cast<std::ptrdiff_t>(skip), own.end());
+      append(own.begin(), own.end());
   }
-  if (chain.closed && !chain.links.empty() && graph.edges[static_cast<size_t>(chain.links[0].edge)].begin >= 0) points.pop_back();
+  const bool repeats = chain.closed && !chain.links.empty() && graph.edges[static_cast<size_t>(chain.links[0].edge)].begin >= 0;
+  if (repeats && points.size() > 1 && same(points.front(), points.back())) points.pop_back();
   return points;
 }
 

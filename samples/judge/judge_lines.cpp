@@ -29,6 +29,20 @@ void add_lines_of(const ViewGraph& graph, JudgedTracks& tracks) {
   finish_tracks(tracks.hidden);
 }
 
+/// Chains so short that a file's digits may not have them are not missed: ten times the last digit that drawings are written with.
+void excuse_shortest(const std::vector<ChainSamples>& chains, const JudgedTracks& tracks, JudgedMatches& matches) {
+  constexpr double kShortest_px = 0.001;
+  for (const ChainSamples& chain : chains) {
+    double length = 0.0;
+    for (const int i : chain.samples) length += tracks.visible.samples[static_cast<size_t>(i)].length_px;
+    if (length >= kShortest_px) continue;
+    for (const int i : chain.samples) {
+      matches.lines[static_cast<size_t>(i)].found = true;
+      matches.crowded[static_cast<size_t>(i)] = true;
+    }
+  }
+}
+
 /// The drawing within the frame, moved by -shift.
 Tracks drawn_tracks(const DrawnLines& drawing, const glm::dvec2& shift) {
   Tracks tracks;
@@ -154,6 +168,8 @@ Judgement judge_lines(const ViewGraph& graph, const DrawnLines& drawing, const J
   matches.lines = match_lines(tracks, drawing, settings, true);
   matches.ink = match_ink(tracks, drawing, settings);
   excuse_crowded(tracks, drawing, matches.crowded, matches.lines, matches.ink);
+  const std::vector<ChainSamples> chains = visible_chains(graph, tracks.visible);
+  excuse_shortest(chains, tracks, matches);
 
   std::vector<JudgeRow> rows(1);
   for (const LineClassDescriptor& one : line_classes()) {
@@ -161,7 +177,7 @@ Judgement judge_lines(const ViewGraph& graph, const DrawnLines& drawing, const J
     if (std::any_of(graph.edges.begin(), graph.edges.end(), is)) rows.push_back({.line_class = one.line_class});
   }
   for (JudgeRow& row : rows) sum_up_row(graph, tracks, matches, row);
-  find_in_lines(visible_chains(graph, tracks.visible), tracks, matches, settings, rows, judgement.findings);
+  find_in_lines(chains, tracks, matches, settings, rows, judgement.findings);
   find_in_ink(graph, tracks, matches, settings, judgement.findings);
   sort_findings(judgement.findings);
   judgement.all = rows.front();

@@ -147,12 +147,16 @@ std::vector<Abreast> lines_abreast(const TrackSample& from, const Tracks& to, co
 
 /// Two strokes on one line: more of them run side by side than lines do. The first ones drawn are the lines, the others too many.
 bool is_surplus(const JudgedTracks& tracks, const DrawnLines& drawing, const Search& search, size_t sample, double distance_px) {
-  constexpr double kAbreast_px = 0.3, kOverlap_px = 0.05;
+  constexpr double kAbreast_px = 0.3, kOverlap_px = 0.05, kMoreAngle_deg = 10.0;
   const TrackSample& at = tracks.drawn.samples[sample];
   const std::vector<Abreast> strokes = lines_abreast(at, tracks.drawn, search, kAbreast_px, 0.0);
   if (strokes.size() < 2) return false;
+  // A stroke that just counts must not lack its line because the line just does not: lines count farther off, beyond their ends, and at
+  // larger angles.
   const double reach = kAbreast_px + drawing.resolution_px + 2.0 * distance_px;
-  const size_t lines = std::max<size_t>(1, lines_abreast(at, tracks.visible, search, reach, kOverlap_px).size());
+  Search wider = search;
+  wider.least_cosine = std::cos(std::acos(search.least_cosine) + glm::radians(kMoreAngle_deg));
+  const size_t lines = std::max<size_t>(1, lines_abreast(at, tracks.visible, wider, reach, kOverlap_px).size());
   const Track& own = tracks.drawn.tracks[static_cast<size_t>(at.track)];
   const double along = (static_cast<double>(sample) - own.first + 0.5) * own.step();
   constexpr double kSame_px = 0.1;

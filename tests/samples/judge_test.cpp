@@ -242,6 +242,53 @@ TEST(Judge, RaisesNoAlarmForOtherViews) {
   }
 }
 
+/// A graph of visible contours; each chain is a list of edges, each edge a list of points.
+ViewGraph graph_of(const std::vector<std::vector<std::vector<glm::dvec2>>>& chains) {
+  ViewGraph graph;
+  for (const std::vector<std::vector<glm::dvec2>>& edges : chains) {
+    LineChain chain;
+    for (const std::vector<glm::dvec2>& points : edges) {
+      LineEdge edge;
+      for (const glm::dvec2& p : points) edge.points.push_back({.px = p, .depth = 1.0});
+      edge.begin = static_cast<int>(graph.vertices.size());
+      edge.end = edge.begin + 1;
+      graph.vertices.resize(graph.vertices.size() + 2);
+      chain.links.push_back({static_cast<int>(graph.edges.size()), false});
+      graph.edges.push_back(std::move(edge));
+    }
+    graph.chains.push_back(std::move(chain));
+  }
+  return graph;
+}
+
+Judgement own_drawing_judged(const ViewGraph& graph) {
+  return judge_lines(graph, read_back(svg_text(make_drawing(graph, 640, 360, {.style = built_in_style("plain")}), "a")), {});
+}
+
+/// A line that leaves another in a joint, at angles about those up to which lines run in one direction.
+TEST(Judge, FindsNothingWhereOneLineLeavesAnother) {
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> offset(0.0, 0.001), angle(34.5, 35.5), turn(0.0, 2.0 * std::numbers::pi);
+  for (int i = 0; i < 300; ++i) {
+    const double start = turn(random), leaving = start + glm::radians(angle(random));
+    const glm::dvec2 joint(300.0 + offset(random), 200.0 + offset(random));
+    const auto from_joint = [&](double length, double direction) {
+      return joint + length * glm::dvec2(std::cos(direction), std::sin(direction));
+    };
+    expect_clean(own_drawing_judged(graph_of({{{from_joint(0.2, leaving), joint}, {joint, from_joint(30.0, leaving + std::numbers::pi)}},
+                                              {{joint, from_joint(0.15, start)}}})));
+    if (HasFailure()) FAIL() << "angles " << start << " " << leaving;
+  }
+}
+
+TEST(Judge, DoesNotMissWhatNoFileHas) {
+  expect_clean(own_drawing_judged(graph_of({{{{100.0, 100.0}, {150.0, 120.0}}}, {{{300.00001, 200.0}, {300.00003, 200.0}}}})));
+}
+
+TEST(Judge, FindsNothingWhereEdgesOfAChainEndBesideEachOther) {
+  expect_clean(own_drawing_judged(graph_of({{{{100.0, 100.0}, {150.0, 120.0}}, {{150.01, 120.02}, {180.0, 90.0}}}})));
+}
+
 std::string svg_with(const std::string& content, const std::string& attributes = "viewBox=\"0 0 640 360\"") {
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" " + attributes + ">" + content + "</svg>";
 }

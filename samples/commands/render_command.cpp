@@ -303,8 +303,8 @@ bool choose_model(const Options& options, ProgressBar& bar, Render& render) {
   if (!options.quiet) print_note(sentences.front());
   if (!job.answer.chosen) return false;
   const PlanTrial& chosen = job.answer.trials[*job.answer.chosen];
-  render.surface = job.answer.ladders[chosen.ladder].at(chosen.rung);
-  if (const auto local = job.answer.ladders[chosen.ladder].local_at(chosen.rung)) render.local = *local;
+  render.surface = job.answer.all_series[chosen.series].at(chosen.candidate);
+  if (const auto local = job.answer.all_series[chosen.series].local_at(chosen.candidate)) render.local = *local;
   for (SceneObject& object : render.input.scene.objects) object.level.reset();
   render.meshes = std::move(job.answer.meshes);
   return true;

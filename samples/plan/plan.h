@@ -31,27 +31,27 @@ struct PlanSettings {
 };
 
 /// A representation whose resolution is open, with its resolutions from coarse to fine.
-struct Ladder {
-  std::string title{};         ///< "level set, cubic gradient".
-  SurfaceSettings settings{};  ///< All but the resolution.
-  bool by_level = false;       ///< Rungs are subdivision levels; else voxels along the longest side.
-  bool of_file = false;        ///< Rungs are a file's volumes with other voxels; the last is the file as it is.
-  bool by_tolerance = false;   ///< Of local meshes: rungs are tolerances, and nothing else of a mesh is open.
-  std::vector<int> rungs{};    ///< Rising: levels, voxels along the longest side, or of local meshes 1000 / the tolerance in pixels.
-  std::optional<LocalSettings> local{};  ///< Of local models; the tolerance of meshes is the rung's.
+struct ResolutionSeries {
+  std::string title{};            ///< "level set, cubic gradient".
+  SurfaceSettings settings{};     ///< All but the resolution.
+  bool by_level = false;          ///< Candidates are subdivision levels; else voxels along the longest side.
+  bool of_file = false;           ///< Candidates are a file's volumes with other voxels; the last is the file as it is.
+  bool by_tolerance = false;      ///< Of local meshes: candidates are tolerances, and nothing else of a mesh is open.
+  std::vector<int> candidates{};  ///< Rising: levels, voxels along the longest side, or of local meshes 1000 / the tolerance in pixels.
+  std::optional<LocalSettings> local{};  ///< Of local models; the tolerance of meshes is the candidate's.
   double growth = 2.0;                   ///< The power of 1 / size that building grows with.
   int normal_order = 2;                  ///< Of the normal's angle, by edge or voxel size.
   double normal_constant = 0.0;          ///< Angle = constant (curvature * size)^order, as far as theory knows.
   double base_size = 1.0;                ///< World size of an edge at level 0, or of a voxel times the number of voxels.
-  double guess_ms = 1.0;                 ///< To build the first rung, as an order of magnitude: the order in which ladders are tried.
-  double fixed_ms = 0.0;  ///< Of that and of every other rung, what does not grow: finding a shape's cage, as it took just now.
+  double guess_ms = 1.0;                 ///< To build the first candidate, as an order of magnitude: the order in which series are tried.
+  double fixed_ms = 0.0;  ///< Of that and of every other candidate, what does not grow: finding a shape's cage, as it took just now.
 
-  double size_at(size_t rung) const;  ///< World: of an edge or a (smallest) voxel; of local meshes in proportion to it.
-  /// The settings with the rung's resolution.
-  SurfaceSettings at(size_t rung) const;
-  std::string words_at(size_t rung) const;  ///< "level 3", "128 voxels", "0.25 px".
-  /// What a local model of the rung is made for; null for other ladders.
-  std::shared_ptr<const LocalSettings> local_at(size_t rung) const;
+  double size_at(size_t candidate) const;  ///< World: of an edge or a (smallest) voxel; of local meshes in proportion to it.
+  /// The settings with the candidate's resolution.
+  SurfaceSettings at(size_t candidate) const;
+  std::string words_at(size_t candidate) const;  ///< "level 3", "128 voxels", "0.25 px".
+  /// What a local model of the candidate is made for; null for other series.
+  std::shared_ptr<const LocalSettings> local_at(size_t candidate) const;
 };
 
 /// How far a border lies from truth: the distance that 95 % of it keep to, by the metric border_error. The worst over all views.
@@ -69,10 +69,10 @@ struct PredictedErrors {
       high{};               ///< At most.
 };
 
-/// One rung, built and measured.
+/// One candidate, built and measured.
 struct PlanTrial {
-  size_t ladder = 0,                                      ///< Index into PlanAnswer::ladders.
-      rung = 0;                                           ///< Index into Ladder::rungs.
+  size_t series = 0,                                      ///< Index into PlanAnswer::all_series.
+      candidate = 0;                                      ///< Index into ResolutionSeries::candidates.
   PredictedErrors predicted{};                            ///< By predict_errors(), the worst view's.
   BorderErrors measured{};                                ///< By measure_errors().
   std::int64_t bytes = 0;                                 ///< Of the model.
@@ -92,14 +92,14 @@ struct PlanView {
 
 /// What a plan came to.
 struct PlanAnswer {
-  std::vector<Ladder> ladders{};       ///< What trials refer to.
-  std::vector<PlanTrial> trials{};     ///< In the order in which they were made.
-  std::optional<size_t> chosen{};      ///< Index into trials: the fastest that meets tolerance and budget.
-  std::optional<size_t> coarser{};     ///< The next coarser one of its ladder, where there is one.
-  std::optional<size_t> best{};        ///< Where nothing was chosen: the nearest to the tolerance.
-  PlanTrial finest{};                  ///< Of the chosen ladder: its last rung; extrapolated from the trials unless it was one.
+  std::vector<ResolutionSeries> all_series{};  ///< What trials refer to.
+  std::vector<PlanTrial> trials{};             ///< In the order in which they were made.
+  std::optional<size_t> chosen{};              ///< Index into trials: the fastest that meets tolerance and budget.
+  std::optional<size_t> coarser{};             ///< The next coarser one of its series, where there is one.
+  std::optional<size_t> best{};                ///< Where nothing was chosen: the nearest to the tolerance.
+  PlanTrial finest{};                  ///< Of the chosen series: its last candidate; extrapolated from the trials unless it was one.
   bool finest_was_built = false;       ///< False where `finest` is extrapolated.
-  std::optional<size_t> silhouette{};  ///< Trial of the chosen ladder that is enough for the silhouette alone, where that is a coarser one.
+  std::optional<size_t> silhouette{};  ///< Trial of the chosen series that is enough for the silhouette alone, where that is a coarser one.
   ErrorFloor floor{};                  ///< What an error can be told from: truth in all views, and what a field itself scores.
   std::string doubt{};                 ///< Why nothing can be called right to the tolerance; empty where it can.
   std::int64_t curvature_triangles = 0,  ///< Where a local mesh was chosen: of a mesh refined by curvature alone to the tolerance.
@@ -108,20 +108,20 @@ struct PlanAnswer {
   std::optional<size_t> uniform{};       ///< Then, too: the trial of the coarsest model of its kind, as fine everywhere, that keeps to it.
   size_t views = 1;                      ///< What the answer holds for.
   ObjectMeshCache meshes{};              ///< What models of the scene start from: spares whoever builds one of the trials again.
-  std::vector<std::string> notes{};      ///< Ladders that were given up, and why; what else a person should know.
+  std::vector<std::string> notes{};      ///< Series that were given up, and why; what else a person should know.
 };
 
-/// The ladders that a scene can climb; empty where nothing of it has a resolution to choose (a mesh that is no cage). `notes` is told what
+/// The series that a scene can search; empty where nothing of it has a resolution to choose (a mesh that is no cage). `notes` is told what
 /// was left out, and why; may be null.
-std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes = nullptr);
+std::vector<ResolutionSeries> series_of_scene(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes = nullptr);
 
-/// Local models for the views: meshes of tolerances about that of the plan, and a ladder beside each of `uniform` that is of level sets.
-std::vector<Ladder> local_ladders(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings,
-                                  const std::vector<Ladder>& uniform);
-/// What is expected of a rung of local meshes.
-PredictedErrors predict_local_errors(const Ladder& ladder, size_t rung);
+/// Local models for the views: meshes of tolerances about that of the plan, and a series beside each of `uniform` that is of level sets.
+std::vector<ResolutionSeries> local_series(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings,
+                                           const std::vector<ResolutionSeries>& uniform);
+/// What is expected of a candidate of local meshes.
+PredictedErrors predict_local_errors(const ResolutionSeries& series, size_t candidate);
 /// The same of local level sets, from what is expected of one that is as fine everywhere.
-PredictedErrors predict_local_errors(const Ladder& ladder, const PredictedErrors& uniform);
+PredictedErrors predict_local_errors(const ResolutionSeries& series, const PredictedErrors& uniform);
 
 /// What the engine measures for a plan: border_error.
 const Metric& plan_metric();
@@ -132,7 +132,7 @@ BorderErrors measure_errors(const SceneModel& model, const PlanView& view, doubl
                             double& trace_ms);
 
 /// `known`: trials of an earlier plan for the same scene, views and threshold (any tolerance), which are not made again.
-/// Throws InputError where no ladder is left.
+/// Throws InputError where no series is left.
 PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings, const ExecutionSettings& how,
                      ProgressBar& bar, const std::vector<PlanTrial>& known = {});
 

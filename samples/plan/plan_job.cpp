@@ -76,21 +76,21 @@ ErrorFloor floor_of(const Scene& scene, const PlanJob& job, const ExecutionSetti
   return floor;
 }
 
-Json parameters_json(const Ladder& ladder, const PlanTrial& trial) {
+Json parameters_json(const ResolutionSeries& series, const PlanTrial& trial) {
   Json json = Json::object();
-  if (ladder.local) json["local"] = ladder.local_at(trial.rung)->tolerance_px;
-  if (!ladder.by_tolerance) json[ladder.by_level ? "level" : "voxels"] = ladder.rungs[trial.rung];
-  if (ladder.settings.kind == "mesh")
-    json["normals"] = name_of(ladder.settings.normals.value_or(NormalKind::limit));
+  if (series.local) json["local"] = series.local_at(trial.candidate)->tolerance_px;
+  if (!series.by_tolerance) json[series.by_level ? "level" : "voxels"] = series.candidates[trial.candidate];
+  if (series.settings.kind == "mesh")
+    json["normals"] = name_of(series.settings.normals.value_or(NormalKind::limit));
   else
-    json["gradient"] = ladder.settings.gradient;
+    json["gradient"] = series.settings.gradient;
   return json;
 }
 
 Json trial_json(const PlanAnswer& answer, const PlanTrial& trial, PlanMetric metric) {
-  const Ladder& ladder = answer.ladders[trial.ladder];
-  Json json = {{"surface", ladder.settings.kind},
-               {"parameters", parameters_json(ladder, trial)},
+  const ResolutionSeries& series = answer.all_series[trial.series];
+  Json json = {{"surface", series.settings.kind},
+               {"parameters", parameters_json(series, trial)},
                {"predicted_px", number_or_null(trial.predicted.expected.of(metric))},
                {"predicted_low_px", number_or_null(trial.predicted.low.of(metric))},
                {"predicted_high_px", number_or_null(trial.predicted.high.of(metric))},
@@ -179,8 +179,8 @@ Json plan_json(const PlanJob& job) {
     json["measured_px"] = number_or_null(chosen.measured.of(metric));
     json["bytes"] = chosen.bytes;
     json["time_ms"] = chosen.time_ms();
-    if (answer.ladders[chosen.ladder].local) {
-      if (answer.ladders[chosen.ladder].by_tolerance) {
+    if (answer.all_series[chosen.series].local) {
+      if (answer.all_series[chosen.series].by_tolerance) {
         json["uniform_triangles"] = answer.uniform ? Json(answer.trials[*answer.uniform].triangles) : Json();
         json["curvature_triangles"] = answer.curvature_triangles;
       }

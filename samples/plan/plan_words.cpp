@@ -15,8 +15,8 @@ std::string between(double low_px, double high_px) {
 }
 
 std::string model_words(const PlanAnswer& answer, const PlanTrial& trial) {
-  const Ladder& ladder = answer.ladders[trial.ladder];
-  return ladder.title + " at " + ladder.words_at(trial.rung);
+  const ResolutionSeries& series = answer.all_series[trial.series];
+  return series.title + " at " + series.words_at(trial.candidate);
 }
 
 std::string cost_words(const PlanTrial& trial) {
@@ -35,9 +35,9 @@ std::string budget_words(const PlanSettings& settings) {
 
 /// Against what is as fine everywhere.
 void add_savings(const PlanAnswer& answer, const PlanTrial& chosen, std::vector<std::string>& out) {
-  if (!answer.ladders[chosen.ladder].local) return;
+  if (!answer.all_series[chosen.series].local) return;
   // Triangles are what meshes are compared by; a voxel of a local level set takes less memory than one of a uniform one.
-  const bool of_mesh = answer.ladders[chosen.ladder].by_tolerance;
+  const bool of_mesh = answer.all_series[chosen.series].by_tolerance;
   const auto part_of = [&](std::int64_t triangles, std::int64_t bytes) {
     const double own = static_cast<double>(std::max<std::int64_t>(1, of_mesh ? chosen.triangles : chosen.bytes));
     const double times = static_cast<double>(of_mesh ? triangles : bytes) / own;
@@ -50,7 +50,7 @@ void add_savings(const PlanAnswer& answer, const PlanTrial& chosen, std::vector<
     const PlanTrial& uniform = answer.uniform ? answer.trials[*answer.uniform] : chosen;
     const auto [size, times] = part_of(uniform.triangles, answer.uniform_bytes);
     sentence += fmt::format(", a {} that is as fine everywhere {} ({}, {})", of_mesh ? "mesh" : "level set", size,
-                            answer.ladders[uniform.ladder].words_at(uniform.rung), times);
+                            answer.all_series[uniform.series].words_at(uniform.candidate), times);
   }
   const auto [size, times] = part_of(answer.curvature_triangles, answer.curvature_bytes);
   sentence += fmt::format(", one refined by curvature alone{} {} ({})", of_mesh ? ", its chords within the tolerance," : "", size, times);
@@ -67,21 +67,22 @@ void add_choice(const PlanAnswer& answer, const PlanSettings& settings, std::vec
                             cost_words(chosen)));
   if (answer.coarser) {
     const PlanTrial& coarser = answer.trials[*answer.coarser];
-    out.push_back(fmt::format("The next coarser one, {}, is {} off.", answer.ladders[coarser.ladder].words_at(coarser.rung),
+    out.push_back(fmt::format("The next coarser one, {}, is {} off.", answer.all_series[coarser.series].words_at(coarser.candidate),
                               px(coarser.measured.of(settings.metric))));
   }
   add_savings(answer, chosen, out);
   const PlanTrial& finest = answer.finest;
-  if (finest.rung != chosen.rung) {
+  if (finest.candidate != chosen.candidate) {
     out.push_back(fmt::format("The finest, {}, {} {}: {:.1f} times the time and {:.1f} times the memory.",
-                              answer.ladders[finest.ladder].words_at(finest.rung), answer.finest_was_built ? "took" : "would take about",
-                              cost_words(finest), finest.time_ms() / chosen.time_ms(),
+                              answer.all_series[finest.series].words_at(finest.candidate),
+                              answer.finest_was_built ? "took" : "would take about", cost_words(finest),
+                              finest.time_ms() / chosen.time_ms(),
                               static_cast<double>(finest.bytes) / std::max<double>(1.0, static_cast<double>(chosen.bytes))));
   }
   if (settings.metric == PlanMetric::border && answer.silhouette) {
     const PlanTrial& enough = answer.trials[*answer.silhouette];
     out.push_back(fmt::format("Silhouette and inner border need different resolutions: for the silhouette alone {} is enough ({}).",
-                              answer.ladders[enough.ladder].words_at(enough.rung), px(enough.measured.silhouette_px)));
+                              answer.all_series[enough.series].words_at(enough.candidate), px(enough.measured.silhouette_px)));
   }
 }
 

@@ -18,7 +18,7 @@ constexpr double kStep_px = 1.0;
 constexpr double kCreaseShare = 0.25;
 // Normals are not wrong by more than this.
 constexpr double kMostAngle = 0.5;
-// Constants of ladders hold to this factor, both ways, over the scenes and cages that were tried (docs/accuracy.md).
+// Constants of series hold to this factor, both ways, over the scenes and cages that were tried (docs/accuracy.md).
 constexpr double kNormalSpread = 3.0;
 
 /// The distance that 95 % of the length keep to; 0 of nothing.
@@ -55,25 +55,25 @@ double inward_shift(const BorderPlace& place, double angle, double threshold) {
   return std::min({to_silhouette, band, place.reach_px});
 }
 
-/// A rung, and N.V at the inner border.
+/// A candidate, and N.V at the inner border.
 struct Expectation {
-  const Ladder& ladder;
+  const ResolutionSeries& series;
   double size = 0.0, threshold = 0.0;
 };
 
 /// A chord's distance from its arc. Where the surface bends within an edge or voxel a mesh has vertices on the bend, and is off by no more
 /// than its radius; a grid cuts the corner, as at a crease. A mesh's edges run along creases, a grid's do not.
 double position_error(const Expectation& of, const BorderPlace& place, double factor) {
-  const double cut = of.ladder.by_level ? 0.0 : kCreaseShare * of.size;
+  const double cut = of.series.by_level ? 0.0 : kCreaseShare * of.size;
   if (!std::isfinite(place.curvature)) return factor * place.px_per_unit * cut;
-  const double chord = place.curvature * of.size * of.size / 8.0, most = of.ladder.by_level ? 1.0 / place.curvature : cut;
+  const double chord = place.curvature * of.size * of.size / 8.0, most = of.series.by_level ? 1.0 / place.curvature : cut;
   return factor * place.px_per_unit * std::min(chord, most);
 }
 
 /// Of the normal, radians. Where the radial curvature passes through 0 its change along the border says how the surface bends.
 double normal_error(const Expectation& of, const BorderPlace& place, double factor) {
   const double bend = std::max(place.curvature, std::sqrt(place.curvature_change));
-  return std::min(kMostAngle, factor * of.ladder.normal_constant * std::pow(bend * of.size, of.ladder.normal_order));
+  return std::min(kMostAngle, factor * of.series.normal_constant * std::pow(bend * of.size, of.series.normal_order));
 }
 
 BorderErrors errors_for(const Expectation& of, const std::vector<BorderPlace>& places, double factor) {
@@ -124,12 +124,12 @@ std::vector<BorderPlace> border_places(const PlanView& view) {
   return places;
 }
 
-BorderErrors expected_errors(const Ladder& ladder, size_t rung, const std::vector<BorderPlace>& places, double threshold) {
-  return errors_for({ladder, ladder.size_at(rung), threshold}, places, 1.0);
+BorderErrors expected_errors(const ResolutionSeries& series, size_t candidate, const std::vector<BorderPlace>& places, double threshold) {
+  return errors_for({series, series.size_at(candidate), threshold}, places, 1.0);
 }
 
-PredictedErrors predict_errors(const Ladder& ladder, size_t rung, const std::vector<BorderPlace>& places, double threshold) {
-  const Expectation of{ladder, ladder.size_at(rung), threshold};
+PredictedErrors predict_errors(const ResolutionSeries& series, size_t candidate, const std::vector<BorderPlace>& places, double threshold) {
+  const Expectation of{series, series.size_at(candidate), threshold};
   return {errors_for(of, places, 1.0), errors_for(of, places, 1.0 / kNormalSpread), errors_for(of, places, kNormalSpread)};
 }
 

@@ -22,12 +22,12 @@ struct BorderPlace {
 /// The true border of a view, about each px.
 std::vector<BorderPlace> border_places(const PlanView& view);
 
-/// Of a rung in one view. Normals are wrong by the ladder's constant times the power of curvature and size; half of the border by so much
-/// too far out, half too far in. An inner border then lies where the wrong N.V meets the threshold on the true surface's profile, which the
-/// next border or the silhouette ends; what gets there is lost, and counts as off by the width of its band. The bounds are those of a
-/// constant smaller and larger by kNormalSpread.
-PredictedErrors predict_errors(const Ladder& ladder, size_t rung, const std::vector<BorderPlace>& places, double threshold);
+/// Of a candidate in one view. Normals are wrong by the series' constant times the power of curvature and size; half of the border by so
+/// much too far out, half too far in. An inner border then lies where the wrong N.V meets the threshold on the true surface's profile,
+/// which the next border or the silhouette ends; what gets there is lost, and counts as off by the width of its band. The bounds are those
+/// of a constant smaller and larger by kNormalSpread.
+PredictedErrors predict_errors(const ResolutionSeries& series, size_t candidate, const std::vector<BorderPlace>& places, double threshold);
 /// `expected` alone of predict_errors, in a third of its time.
-BorderErrors expected_errors(const Ladder& ladder, size_t rung, const std::vector<BorderPlace>& places, double threshold);
+BorderErrors expected_errors(const ResolutionSeries& series, size_t candidate, const std::vector<BorderPlace>& places, double threshold);
 
 }  // namespace limn

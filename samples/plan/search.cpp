@@ -1,5 +1,5 @@
-// All ladders at once, the cheapest next rung first, until two neighbours of one stand on either side of the tolerance and no other can be
-// cheaper.
+// All series at once, the cheapest next candidate first, until two neighbours of one stand on either side of the tolerance and no other can
+// be cheaper.
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "raymarch/surface/object_mesh.h"
-#include "samples/plan/climb.h"
 #include "samples/plan/predict.h"
+#include "samples/plan/series_search.h"
 #include "sdf/error.h"
 #include "sdf/parallel.h"
 
@@ -24,7 +24,7 @@ struct Search {
   ExperimentRun run;
   PlanTrial* under_way = nullptr;  ///< What the engine measures goes there.
   PlanAnswer answer{};
-  std::vector<Climb> climbs{};                     ///< Of answer.ladders.
+  std::vector<SeriesSearch> series_searches{};     ///< Of answer.all_series.
   std::vector<std::vector<BorderPlace>> places{};  ///< Of each view.
 };
 
@@ -32,12 +32,12 @@ BorderErrors worst(const BorderErrors& a, const BorderErrors& b) {
   return {std::max(a.silhouette_px, b.silhouette_px), std::max(a.inner_px, b.inner_px), std::max(a.border_px, b.border_px)};
 }
 
-PredictedErrors predicted(const Search& search, size_t ladder, size_t rung) {
-  const Ladder& of = search.answer.ladders[ladder];
-  if (of.by_tolerance) return predict_local_errors(of, rung);
+PredictedErrors predicted(const Search& search, size_t series, size_t candidate) {
+  const ResolutionSeries& of = search.answer.all_series[series];
+  if (of.by_tolerance) return predict_local_errors(of, candidate);
   PredictedErrors errors;
   for (const std::vector<BorderPlace>& places : search.places) {
-    const PredictedErrors one = predict_errors(of, rung, places, search.settings.threshold);
+    const PredictedErrors one = predict_errors(of, candidate, places, search.settings.threshold);
     errors = {worst(errors.expected, one.expected), worst(errors.low, one.low), worst(errors.high, one.high)};
   }
   return of.local ? predict_local_errors(of, errors) : errors;
@@ -73,7 +73,7 @@ ExperimentObserver observer_of(Search& search) {
                 trial.triangles = info.triangles;
                 trial.voxels = info.voxels;
                 // Volumes are resampled once and written (limn export); what a coarser grid saves is what it takes from then on.
-                trial.build_ms = search.answer.ladders[trial.ladder].of_file ? ready_ms(model) : info.build_ms;
+                trial.build_ms = search.answer.all_series[trial.series].of_file ? ready_ms(model) : info.build_ms;
               },
           .refused = [&](auto, const std::string& reason) { search.under_way->failed = reason; },
           .seen =
@@ -93,17 +93,17 @@ double start_ms(const ObjectMeshCache& meshes) {
   return ms;
 }
 
-/// Builds and measures one rung. A rung that cannot be built fails with its reason.
-PlanTrial try_rung(Search& search, size_t ladder, size_t rung) {
+/// Builds and measures one candidate. A candidate that cannot be built fails with its reason.
+PlanTrial try_candidate(Search& search, size_t series, size_t candidate) {
   PlanTrial trial;
-  trial.ladder = ladder;
-  trial.rung = rung;
-  trial.predicted = predicted(search, ladder, rung);
-  const Ladder& of = search.answer.ladders[ladder];
-  const auto progress = search.bar.stage(fmt::format("{}, {}", of.title, of.words_at(rung)));
+  trial.series = series;
+  trial.candidate = candidate;
+  trial.predicted = predicted(search, series, candidate);
+  const ResolutionSeries& of = search.answer.all_series[series];
+  const auto progress = search.bar.stage(fmt::format("{}, {}", of.title, of.words_at(candidate)));
   if (progress) progress(0.0);
   search.under_way = &trial;
-  const size_t model = search.run.add_model({of.title, search.run.experiment().scene, of.at(rung), {}, of.local_at(rung)});
+  const size_t model = search.run.add_model({of.title, search.run.experiment().scene, of.at(candidate), {}, of.local_at(candidate)});
   std::vector<ExperimentCell> cells;
   for (size_t view = 0; view < search.views.size(); ++view) cells.push_back({model, view, 0});
   try {
@@ -113,7 +113,7 @@ PlanTrial try_rung(Search& search, size_t ladder, size_t rung) {
   }
   if (!trial.failed.empty()) trial.measured = {kInfinity, kInfinity};
   trial.trace_ms /= static_cast<double>(search.views.size());
-  if (of.by_tolerance) search.answer.ladders[ladder].fixed_ms = start_ms(search.run.meshes());
+  if (of.by_tolerance) search.answer.all_series[series].fixed_ms = start_ms(search.run.meshes());
   return trial;
 }
 
@@ -122,20 +122,20 @@ bool fits_budget(const PlanTrial& trial, const PlanSettings& settings) {
          (!settings.budget_bytes || trial.bytes <= *settings.budget_bytes);
 }
 
-std::optional<size_t> trial_at(const PlanAnswer& answer, size_t ladder, size_t rung) {
+std::optional<size_t> trial_at(const PlanAnswer& answer, size_t series, size_t candidate) {
   for (size_t k = 0; k < answer.trials.size(); ++k) {
-    if (answer.trials[k].ladder == ladder && answer.trials[k].rung == rung) return k;
+    if (answer.trials[k].series == series && answer.trials[k].candidate == candidate) return k;
   }
   return {};
 }
 
-/// The fastest of the ladders' coarsest rungs that meet everything.
+/// The fastest of the series' coarsest candidates that meet everything.
 std::optional<size_t> fastest(const Search& search) {
   std::optional<size_t> best;
-  for (size_t k = 0; k < search.climbs.size(); ++k) {
-    const ClimbedRung* rung = search.climbs[k].coarsest_meeting(search.settings.tolerance_px);
-    if (rung == nullptr) continue;
-    const size_t at = *trial_at(search.answer, k, static_cast<size_t>(rung->rung));
+  for (size_t k = 0; k < search.series_searches.size(); ++k) {
+    const MeasuredCandidate* candidate = search.series_searches[k].coarsest_meeting(search.settings.tolerance_px);
+    if (candidate == nullptr) continue;
+    const size_t at = *trial_at(search.answer, k, static_cast<size_t>(candidate->candidate));
     const PlanTrial& trial = search.answer.trials[at];
     if (!fits_budget(trial, search.settings)) continue;
     if (!best || trial.time_ms() < search.answer.trials[*best].time_ms()) best = at;
@@ -143,117 +143,121 @@ std::optional<size_t> fastest(const Search& search) {
   return best;
 }
 
-/// The error that theory expects of a rung, worst view.
-double theory_px(const Search& search, size_t ladder, size_t rung) {
-  const Ladder& of = search.answer.ladders[ladder];
-  if (of.by_tolerance) return predict_local_errors(of, rung).expected.of(search.settings.metric);
+/// The error that theory expects of a candidate, worst view.
+double theory_px(const Search& search, size_t series, size_t candidate) {
+  const ResolutionSeries& of = search.answer.all_series[series];
+  if (of.by_tolerance) return predict_local_errors(of, candidate).expected.of(search.settings.metric);
   PredictedErrors errors;
   for (const std::vector<BorderPlace>& places : search.places)
-    errors.expected = worst(errors.expected, expected_errors(of, rung, places, search.settings.threshold));
+    errors.expected = worst(errors.expected, expected_errors(of, candidate, places, search.settings.threshold));
   return (of.local ? predict_local_errors(of, errors) : errors).expected.of(search.settings.metric);
 }
 
-std::vector<Climb> climbs_of(const Search& search) {
-  std::vector<Climb> climbs;
-  for (size_t k = 0; k < search.answer.ladders.size(); ++k) {
-    Climb climb;
-    climb.ladder = &search.answer.ladders[k];
-    climb.limit = static_cast<int>(climb.ladder->rungs.size());
-    climb.guess_ms = climb.ladder->guess_ms;
-    climb.theory_px.resize(climb.ladder->rungs.size());
-    parallel_each(climb.theory_px.size(), [&](size_t rung) { climb.theory_px[rung] = theory_px(search, k, rung); });
-    climbs.push_back(std::move(climb));
+std::vector<SeriesSearch> series_searches_of(const Search& search) {
+  std::vector<SeriesSearch> series_searches;
+  for (size_t k = 0; k < search.answer.all_series.size(); ++k) {
+    SeriesSearch series_search;
+    series_search.series = &search.answer.all_series[k];
+    series_search.limit = static_cast<int>(series_search.series->candidates.size());
+    series_search.guess_ms = series_search.series->guess_ms;
+    series_search.theory_px.resize(series_search.series->candidates.size());
+    parallel_each(series_search.theory_px.size(),
+                  [&](size_t candidate) { series_search.theory_px[candidate] = theory_px(search, k, candidate); });
+    series_searches.push_back(std::move(series_search));
   }
-  return climbs;
+  return series_searches;
 }
 
 void take(Search& search, PlanTrial trial) {
-  Climb& climb = search.climbs[trial.ladder];
-  const int rung = static_cast<int>(trial.rung);
+  SeriesSearch& series_search = search.series_searches[trial.series];
+  const int candidate = static_cast<int>(trial.candidate);
   if (trial.failed.empty()) {
-    climb.add({rung, trial.measured.of(search.settings.metric), trial.build_ms, trial.trace_ms});
+    series_search.add({candidate, trial.measured.of(search.settings.metric), trial.build_ms, trial.trace_ms});
   } else {
     // Of those that cannot be built the coarsest says why for all.
     std::vector<std::string>& notes = search.answer.notes;
-    const std::string why = fmt::format("{}, {}: {}", climb.ladder->title, climb.ladder->words_at(trial.rung), trial.failed);
-    if (!climb.limit_note) {
-      climb.limit_note = notes.size();
+    const std::string why =
+        fmt::format("{}, {}: {}", series_search.series->title, series_search.series->words_at(trial.candidate), trial.failed);
+    if (!series_search.limit_note) {
+      series_search.limit_note = notes.size();
       notes.push_back(why);
-    } else if (rung < climb.limit) {
-      notes[*climb.limit_note] = why;
+    } else if (candidate < series_search.limit) {
+      notes[*series_search.limit_note] = why;
     }
-    climb.limit = std::min(climb.limit, rung);
+    series_search.limit = std::min(series_search.limit, candidate);
   }
   search.answer.trials.push_back(std::move(trial));
 }
 
-/// The ladder whose next rung is expected to cost least; those that can no longer win are closed. Empty: none is left.
+/// The series whose next candidate is expected to cost least; those that can no longer win are closed. Empty: none is left.
 std::optional<size_t> cheapest_next(Search& search) {
   const double tolerance_px = search.settings.tolerance_px;
   const std::optional<size_t> best = fastest(search);
   std::optional<size_t> next;
   double next_ms = 0.0;
-  for (size_t k = 0; k < search.climbs.size(); ++k) {
-    Climb& climb = search.climbs[k];
-    if (climb.settled(tolerance_px)) continue;
-    const bool leads = best && search.answer.trials[*best].ladder == k;  // its coarser neighbour is still to be seen
+  for (size_t k = 0; k < search.series_searches.size(); ++k) {
+    SeriesSearch& series_search = search.series_searches[k];
+    if (series_search.settled(tolerance_px)) continue;
+    const bool leads = best && search.answer.trials[*best].series == k;  // its coarser neighbour is still to be seen
     std::string reason;
-    if (!leads) reason = reason_to_stop(climb, tolerance_px, best ? std::optional(search.answer.trials[*best].time_ms()) : std::nullopt);
+    if (!leads)
+      reason = reason_to_stop(series_search, tolerance_px, best ? std::optional(search.answer.trials[*best].time_ms()) : std::nullopt);
     if (!reason.empty()) {
-      climb.closed = true;
-      search.answer.notes.push_back(climb.climbed.empty()
-                                        ? fmt::format("{} was not tried: {}", climb.ladder->title, reason)
-                                        : fmt::format("{} was given up at {}: {}", climb.ladder->title,
-                                                      climb.ladder->words_at(static_cast<size_t>(climb.climbed.back().rung)), reason));
+      series_search.closed = true;
+      search.answer.notes.push_back(
+          series_search.tried.empty()
+              ? fmt::format("{} was not tried: {}", series_search.series->title, reason)
+              : fmt::format("{} was given up at {}: {}", series_search.series->title,
+                            series_search.series->words_at(static_cast<size_t>(series_search.tried.back().candidate)), reason));
       continue;
     }
-    // Which ladder wins comes first; how much coarser a local mesh may be saves little, and only if it wins.
-    const bool waits = leads && climb.ladder->local.has_value();
-    const double ms = waits ? kInfinity : expected_ms(climb, next_rung(climb, tolerance_px));
+    // Which series wins comes first; how much coarser a local mesh may be saves little, and only if it wins.
+    const bool waits = leads && series_search.series->local.has_value();
+    const double ms = waits ? kInfinity : expected_ms(series_search, next_candidate(series_search, tolerance_px));
     if (!next || ms < next_ms) next = k, next_ms = ms;
   }
   return next;
 }
 
-/// The last rung of the chosen ladder. Extrapolated: memory and building grow with the square of the resolution, from the two finest
+/// The last candidate of the chosen series. Extrapolated: memory and building grow with the square of the resolution, from the two finest
 /// trials' own growth where that is steeper; tracing does not shrink.
 PlanTrial finest_of(const PlanAnswer& answer, const PlanTrial& chosen, bool& was_built) {
-  const Ladder& ladder = answer.ladders[chosen.ladder];
-  const size_t last = ladder.rungs.size() - 1;
+  const ResolutionSeries& series = answer.all_series[chosen.series];
+  const size_t last = series.candidates.size() - 1;
   was_built = false;
-  if (const auto trial = trial_at(answer, chosen.ladder, last); trial && answer.trials[*trial].failed.empty()) {
+  if (const auto trial = trial_at(answer, chosen.series, last); trial && answer.trials[*trial].failed.empty()) {
     was_built = true;
     return answer.trials[*trial];
   }
   const PlanTrial* from = &chosen;
   for (const PlanTrial& trial : answer.trials) {
-    if (trial.ladder == chosen.ladder && trial.failed.empty() && trial.rung > from->rung) from = &trial;
+    if (trial.series == chosen.series && trial.failed.empty() && trial.candidate > from->candidate) from = &trial;
   }
   PlanTrial finest = *from;
-  const double growth = std::pow(ladder.size_at(from->rung) / ladder.size_at(last), ladder.growth);
-  finest.rung = last;
+  const double growth = std::pow(series.size_at(from->candidate) / series.size_at(last), series.growth);
+  finest.candidate = last;
   finest.bytes = static_cast<std::int64_t>(static_cast<double>(from->bytes) * growth);
-  const double fixed_ms = std::min(ladder.fixed_ms, from->build_ms);
+  const double fixed_ms = std::min(series.fixed_ms, from->build_ms);
   finest.build_ms = fixed_ms + (from->build_ms - fixed_ms) * growth;
   finest.measured = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   return finest;
 }
 
-/// Whether the other ladder has the same kind of model, as fine everywhere.
-bool is_uniform_beside(const Ladder& other, const Ladder& local) {
+/// Whether the other series has the same kind of model, as fine everywhere.
+bool is_uniform_beside(const ResolutionSeries& other, const ResolutionSeries& local) {
   if (other.local || other.settings.kind != local.settings.kind) return false;
   return other.by_level || other.settings.gradient == local.settings.gradient;
 }
 
 /// The coarsest of the models that are as fine everywhere and keep to the tolerance.
-std::optional<size_t> coarsest_uniform(const Search& search, const Ladder& local) {
+std::optional<size_t> coarsest_uniform(const Search& search, const ResolutionSeries& local) {
   const PlanAnswer& answer = search.answer;
   std::optional<size_t> coarsest;
   for (size_t k = 0; k < answer.trials.size(); ++k) {
     const PlanTrial& trial = answer.trials[k];
-    if (!is_uniform_beside(answer.ladders[trial.ladder], local) || !trial.failed.empty()) continue;
+    if (!is_uniform_beside(answer.all_series[trial.series], local) || !trial.failed.empty()) continue;
     if (trial.measured.of(search.settings.metric) > search.settings.tolerance_px) continue;
-    if (!coarsest || trial.rung < answer.trials[*coarsest].rung) coarsest = k;
+    if (!coarsest || trial.candidate < answer.trials[*coarsest].candidate) coarsest = k;
   }
   return coarsest;
 }
@@ -261,18 +265,19 @@ std::optional<size_t> coarsest_uniform(const Search& search, const Ladder& local
 /// The uniform level set of as many voxels as a local one, built and measured whatever the budget says; nothing where it is too large.
 std::optional<size_t> uniform_of_as_many_voxels(Search& search, const PlanTrial& chosen) {
   PlanAnswer& answer = search.answer;
-  for (size_t k = 0; k < answer.ladders.size(); ++k) {
-    if (!is_uniform_beside(answer.ladders[k], answer.ladders[chosen.ladder])) continue;
-    std::optional<size_t> trial = trial_at(answer, k, chosen.rung);
+  for (size_t k = 0; k < answer.all_series.size(); ++k) {
+    if (!is_uniform_beside(answer.all_series[k], answer.all_series[chosen.series])) continue;
+    std::optional<size_t> trial = trial_at(answer, k, chosen.candidate);
     if (trial && answer.trials[*trial].failed.empty()) return trial;
-    answer.ladders[k].settings.max_bytes = search.settings.max_bytes;
-    PlanTrial beside = try_rung(search, k, chosen.rung);
+    answer.all_series[k].settings.max_bytes = search.settings.max_bytes;
+    PlanTrial beside = try_candidate(search, k, chosen.candidate);
     if (!beside.failed.empty()) return {};
     if (!trial) {
       trial = answer.trials.size();
       answer.trials.emplace_back();
     }
-    search.climbs[k].add({static_cast<int>(beside.rung), beside.measured.of(search.settings.metric), beside.build_ms, beside.trace_ms});
+    search.series_searches[k].add(
+        {static_cast<int>(beside.candidate), beside.measured.of(search.settings.metric), beside.build_ms, beside.trace_ms});
     answer.trials[*trial] = std::move(beside);
     return trial;
   }
@@ -282,7 +287,7 @@ std::optional<size_t> uniform_of_as_many_voxels(Search& search, const PlanTrial&
 /// What a local model saves, against those that are as fine everywhere or wherever the surface bends as much.
 void compare_local(Search& search, const PlanTrial& chosen) {
   PlanAnswer& answer = search.answer;
-  const Ladder of = answer.ladders[chosen.ladder];
+  const ResolutionSeries of = answer.all_series[chosen.series];
   answer.uniform.reset();
   answer.uniform_bytes = 0;
   if (!of.local) return;
@@ -297,7 +302,8 @@ void compare_local(Search& search, const PlanTrial& chosen) {
   everywhere.tolerance_px = search.settings.tolerance_px;
   everywhere.thresholds.clear();
   everywhere.everywhere = true;
-  const SurfaceInfo info = total(build_local_model(search.run.experiment().scene, of.at(chosen.rung), everywhere, &search.answer.meshes));
+  const SurfaceInfo info =
+      total(build_local_model(search.run.experiment().scene, of.at(chosen.candidate), everywhere, &search.answer.meshes));
   answer.curvature_triangles = info.triangles;
   answer.curvature_bytes = info.bytes;
 }
@@ -315,20 +321,20 @@ void choose(Search& search) {
   }
   const PlanTrial chosen = answer.trials[*answer.chosen];
   // A file is there, and costs no more than looking at it.
-  const Ladder& climbed = answer.ladders[chosen.ladder];
-  const size_t last = climbed.rungs.size() - 1;
-  if (climbed.of_file && !trial_at(answer, chosen.ladder, last)) answer.trials.push_back(try_rung(search, chosen.ladder, last));
+  const ResolutionSeries& tried = answer.all_series[chosen.series];
+  const size_t last = tried.candidates.size() - 1;
+  if (tried.of_file && !trial_at(answer, chosen.series, last)) answer.trials.push_back(try_candidate(search, chosen.series, last));
   compare_local(search, chosen);
   // What the local one was compared with may turn out to be the quicker one.
   if (fastest(search) != answer.chosen) return choose(search);
-  if (chosen.rung > 0) answer.coarser = trial_at(answer, chosen.ladder, chosen.rung - 1);
+  if (chosen.candidate > 0) answer.coarser = trial_at(answer, chosen.series, chosen.candidate - 1);
   answer.finest = finest_of(answer, chosen, answer.finest_was_built);
-  answer.finest.predicted = predicted(search, chosen.ladder, last);
+  answer.finest.predicted = predicted(search, chosen.series, last);
   for (size_t k = 0; k < answer.trials.size(); ++k) {
     const PlanTrial& trial = answer.trials[k];
-    if (trial.ladder != chosen.ladder || trial.rung >= chosen.rung || !trial.failed.empty()) continue;
+    if (trial.series != chosen.series || trial.candidate >= chosen.candidate || !trial.failed.empty()) continue;
     if (trial.measured.silhouette_px > search.settings.tolerance_px) continue;
-    if (!answer.silhouette || trial.rung < answer.trials[*answer.silhouette].rung) answer.silhouette = k;
+    if (!answer.silhouette || trial.candidate < answer.trials[*answer.silhouette].candidate) answer.silhouette = k;
   }
 }
 
@@ -340,11 +346,12 @@ PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, con
   Search search{views, settings, bar, ExperimentRun(experiment_of(scene, views, settings), how, observer_of(search))};
   for (size_t k = 0; k < views.size(); ++k) search.run.give_truth(k, {settings.threshold, views[k].truth, {}});
   search.answer.views = views.size();
-  search.answer.ladders = ladders_of(scene, settings, &search.answer.notes);
+  search.answer.all_series = series_of_scene(scene, settings, &search.answer.notes);
   if (settings.local) {
-    for (Ladder& local : local_ladders(scene, views, settings, search.answer.ladders)) search.answer.ladders.push_back(std::move(local));
+    for (ResolutionSeries& local : local_series(scene, views, settings, search.answer.all_series))
+      search.answer.all_series.push_back(std::move(local));
   }
-  if (search.answer.ladders.empty()) {
+  if (search.answer.all_series.empty()) {
     throw InputError({{},
                       "INPUT",
                       scene.name,
@@ -352,16 +359,16 @@ PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, con
                       "a scene of shapes or subdivision cages (scheme = catmark makes a mesh a cage)"});
   }
   for (const PlanView& view : views) search.places.push_back(border_places(view));
-  search.climbs = climbs_of(search);
+  search.series_searches = series_searches_of(search);
   for (const PlanTrial& trial : known) {
     // Local level sets hang on the plan's tolerance.
-    const Ladder& of = search.answer.ladders[trial.ladder];
+    const ResolutionSeries& of = search.answer.all_series[trial.series];
     const bool same = !of.local || of.by_tolerance;
-    if (same && !trial_at(search.answer, trial.ladder, trial.rung)) take(search, trial);
+    if (same && !trial_at(search.answer, trial.series, trial.candidate)) take(search, trial);
   }
-  while (const auto ladder = cheapest_next(search)) {
-    const int rung = next_rung(search.climbs[*ladder], settings.tolerance_px);
-    take(search, try_rung(search, *ladder, static_cast<size_t>(rung)));
+  while (const auto series = cheapest_next(search)) {
+    const int candidate = next_candidate(search.series_searches[*series], settings.tolerance_px);
+    take(search, try_candidate(search, *series, static_cast<size_t>(candidate)));
   }
   search.answer.meshes.starts = search.run.meshes().starts;
   choose(search);

@@ -34,18 +34,18 @@ struct Built {
   double bytes = 0.0;
 };
 
-SceneModel build(const Scene& scene, const Ladder& ladder, size_t rung) {
+SceneModel build(const Scene& scene, const ResolutionSeries& series, size_t candidate) {
   Scene bare = scene;
   for (SceneObject& object : bare.objects) object.level.reset();
-  if (const auto local = ladder.local_at(rung)) return build_local_model(bare, ladder.at(rung), *local);
-  return build_model(bare, ladder.at(rung));
+  if (const auto local = series.local_at(candidate)) return build_local_model(bare, series.at(candidate), *local);
+  return build_model(bare, series.at(candidate));
 }
 
-/// The last rung, built and traced for real; the last one that fits into memory.
-Built finest_of(const Scene& scene, const Ladder& ladder, const PlanView& view) {
-  for (size_t rung = ladder.rungs.size(); rung-- > 0;) {
+/// The last candidate, built and traced for real; the last one that fits into memory.
+Built finest_of(const Scene& scene, const ResolutionSeries& series, const PlanView& view) {
+  for (size_t candidate = series.candidates.size(); candidate-- > 0;) {
     try {
-      const SceneModel model = build(scene, ladder, rung);
+      const SceneModel model = build(scene, series, candidate);
       double trace_ms = 0.0;
       measure_errors(model, view, 0.4, {}, trace_ms);
       const SurfaceInfo info = total(model);
@@ -62,7 +62,7 @@ struct Case {
   const PlanView& view;
   const SceneModel& reference;
   int view_index;
-  std::map<std::string, Built>& finest;  ///< By ladder: built once a scene, traced in the view that asked first.
+  std::map<std::string, Built>& finest;  ///< By series: built once a scene, traced in the view that asked first.
   std::vector<PlanTrial>& known;         ///< Of the other tolerances.
 };
 
@@ -80,26 +80,26 @@ nlohmann::json run_plan(const Case& at, double tolerance_px, bool local, Sums& s
     return row;
   }
   const PlanTrial& chosen = answer.trials[*answer.chosen];
-  const Ladder& ladder = answer.ladders[chosen.ladder];
+  const ResolutionSeries& series = answer.all_series[chosen.series];
   const auto beyond = [&](const SceneModel& model, bool of_all = false) {
     return test::share_beyond(model, at.reference, at.view, settings.threshold, tolerance_px, settings.metric, of_all);
   };
-  const auto [finest, added] = at.finest.try_emplace(ladder.title);
-  if (added) finest->second = finest_of(at.scene, ladder, at.view);
-  const SceneModel model = build(at.scene, ladder, chosen.rung);
+  const auto [finest, added] = at.finest.try_emplace(series.title);
+  if (added) finest->second = finest_of(at.scene, series, at.view);
+  const SceneModel model = build(at.scene, series, chosen.candidate);
   const double share = beyond(model);
   std::optional<double> coarser;
-  if (chosen.rung > 0) coarser = beyond(build(at.scene, ladder, chosen.rung - 1));
+  if (chosen.candidate > 0) coarser = beyond(build(at.scene, series, chosen.candidate - 1));
   ++sums.chosen;
-  sums.local += ladder.local.has_value();
+  sums.local += series.local.has_value();
   sums.meets += share <= kShare;
   sums.with_coarser += coarser.has_value();
   sums.coarser_fails += coarser.value_or(0.0) > kShare;
   sums.quarter += chosen.time_ms() <= 0.25 * finest->second.time_ms;
   sums.time_ms += chosen.time_ms(), sums.finest_time_ms += finest->second.time_ms;
   sums.bytes += static_cast<double>(chosen.bytes), sums.finest_bytes += finest->second.bytes;
-  if (tolerance_px == 0.5 && sums.example.empty()) sums.example = ladder.title + ", " + ladder.words_at(chosen.rung);
-  row["chosen"] = ladder.title + ", " + ladder.words_at(chosen.rung);
+  if (tolerance_px == 0.5 && sums.example.empty()) sums.example = series.title + ", " + series.words_at(chosen.candidate);
+  row["chosen"] = series.title + ", " + series.words_at(chosen.candidate);
   row["measured_px"] = chosen.measured.of(settings.metric);
   row["predicted_px"] = chosen.predicted.expected.of(settings.metric);
   row["share_beyond"] = share;
@@ -107,7 +107,7 @@ nlohmann::json run_plan(const Case& at, double tolerance_px, bool local, Sums& s
   row["coarser_share_beyond"] = coarser ? nlohmann::json(*coarser) : nlohmann::json(nullptr);
   row["time_ms"] = chosen.time_ms(), row["bytes"] = chosen.bytes;
   row["finest_time_ms"] = finest->second.time_ms, row["finest_bytes"] = finest->second.bytes;
-  row["local"] = ladder.local.has_value();
+  row["local"] = series.local.has_value();
   row["trials"] = answer.trials.size();
   row["notes"] = answer.notes;
   return row;

@@ -352,7 +352,7 @@ TEST(LocalModel, APlanTriesLocalMeshesAndSaysWhatTheOneChosenSaves) {
   const PlanSettings settings = local_plan("mesh", 0.1);
   ProgressBar bar(false);
   const PlanAnswer answer = make_plan(scene, {view}, settings, {}, bar);
-  const auto is_local = [&](const PlanTrial& trial) { return answer.ladders[trial.ladder].local.has_value(); };
+  const auto is_local = [&](const PlanTrial& trial) { return answer.all_series[trial.series].local.has_value(); };
   EXPECT_TRUE(std::any_of(answer.trials.begin(), answer.trials.end(), is_local));
   ASSERT_TRUE(answer.chosen);
   // Which of the two is faster is for the machine to say; what is said of a local one must be so.
@@ -375,10 +375,10 @@ TEST(LocalModel, APlanTriesLocalLevelSetsAndTakesOneWhereMemoryIsShort) {
   const PlanAnswer answer = make_plan(scene, {view}, settings, {}, bar);
   ASSERT_TRUE(answer.chosen);
   const PlanTrial& chosen = answer.trials[*answer.chosen];
-  const Ladder& ladder = answer.ladders[chosen.ladder];
-  ASSERT_TRUE(ladder.local);
-  EXPECT_EQ(ladder.settings.kind, "level_set");
-  EXPECT_EQ(ladder.local_at(chosen.rung)->cameras.size(), 1u);
+  const ResolutionSeries& series = answer.all_series[chosen.series];
+  ASSERT_TRUE(series.local);
+  EXPECT_EQ(series.settings.kind, "level_set");
+  EXPECT_EQ(series.local_at(chosen.candidate)->cameras.size(), 1u);
   EXPECT_GT(chosen.voxels, 0);
   EXPECT_LE(chosen.bytes, *settings.budget_bytes);
   EXPECT_LE(chosen.measured.border_px, settings.tolerance_px);
@@ -386,8 +386,8 @@ TEST(LocalModel, APlanTriesLocalLevelSetsAndTakesOneWhereMemoryIsShort) {
   // What it saves is said against one of as many voxels, which is measured, too.
   EXPECT_GT(answer.uniform_bytes, *settings.budget_bytes);
   ASSERT_TRUE(answer.uniform);
-  EXPECT_EQ(answer.ladders[answer.trials[*answer.uniform].ladder].words_at(answer.trials[*answer.uniform].rung),
-            ladder.words_at(chosen.rung));
+  EXPECT_EQ(answer.all_series[answer.trials[*answer.uniform].series].words_at(answer.trials[*answer.uniform].candidate),
+            series.words_at(chosen.candidate));
   EXPECT_LE(answer.trials[*answer.uniform].measured.border_px, settings.tolerance_px);
   const std::vector<std::string> said = plan_sentences(answer, settings);
   const auto saves = [](const std::string& sentence) {
@@ -395,7 +395,7 @@ TEST(LocalModel, APlanTriesLocalLevelSetsAndTakesOneWhereMemoryIsShort) {
   };
   EXPECT_TRUE(std::any_of(said.begin(), said.end(), saves)) << said[0];
   // The same model, built again by itself, has the same border.
-  const SceneModel again = build_local_model(scene, ladder.at(chosen.rung), *ladder.local_at(chosen.rung));
+  const SceneModel again = build_local_model(scene, series.at(chosen.candidate), *series.local_at(chosen.candidate));
   double trace_ms = 0.0;
   EXPECT_EQ(measure_errors(again, view, settings.threshold, {}, trace_ms).border_px, chosen.measured.border_px);
 }
@@ -413,8 +413,8 @@ TEST(LocalModel, APlanTriesLocalLevelSetsOfMeshes) {
   const PlanAnswer answer = make_plan(scene, {view}, settings, {}, bar);
   ASSERT_TRUE(answer.chosen);
   const PlanTrial& chosen = answer.trials[*answer.chosen];
-  EXPECT_TRUE(answer.ladders[chosen.ladder].local);
-  EXPECT_EQ(answer.ladders[chosen.ladder].settings.kind, "mesh_level_set");
+  EXPECT_TRUE(answer.all_series[chosen.series].local);
+  EXPECT_EQ(answer.all_series[chosen.series].settings.kind, "mesh_level_set");
   EXPECT_LE(chosen.bytes, *settings.budget_bytes);
   EXPECT_LE(chosen.measured.border_px, settings.tolerance_px);
   // A budget is of what is kept: that the mesh takes more is nothing that the plan would have to note.

@@ -25,11 +25,11 @@ PlanView first_view(const Scene& scene) {
   return view;
 }
 
-Ladder made_up_ladder() {
-  Ladder ladder;
-  ladder.rungs = {16, 32, 64, 128};
-  ladder.normal_constant = 0.23;
-  return ladder;
+ResolutionSeries made_up_series() {
+  ResolutionSeries series;
+  series.candidates = {16, 32, 64, 128};
+  series.normal_constant = 0.23;
+  return series;
 }
 
 /// On a sphere of radius 1, 100 px for a world unit, seen in parallel.
@@ -47,10 +47,10 @@ BorderPlace sphere_place() {
 }
 
 TEST(PlanPrediction, OfSmallErrorsIsTheFirstOrder) {
-  const Ladder ladder = made_up_ladder();
-  const PredictedErrors found = predict_errors(ladder, 3, {sphere_place()}, kThreshold);
-  const double size = ladder.size_at(3), sine = std::sqrt(1.0 - kThreshold * kThreshold);
-  const double first_order = 100.0 * (kThreshold * ladder.normal_constant * size * size + sine * size * size / 8.0);
+  const ResolutionSeries series = made_up_series();
+  const PredictedErrors found = predict_errors(series, 3, {sphere_place()}, kThreshold);
+  const double size = series.size_at(3), sine = std::sqrt(1.0 - kThreshold * kThreshold);
+  const double first_order = 100.0 * (kThreshold * series.normal_constant * size * size + sine * size * size / 8.0);
   EXPECT_NEAR(found.expected.inner_px, first_order, 0.01 * first_order);
   EXPECT_LT(found.low.inner_px, found.expected.inner_px);
   EXPECT_GT(found.high.inner_px, found.expected.inner_px);
@@ -60,14 +60,14 @@ TEST(PlanPrediction, OfWhatIsExpectedAloneIsThatOfAll) {
   const Scene scene = find_scene("teacup")->make();
   const std::vector<BorderPlace> places = border_places(first_view(scene));
   ASSERT_GT(places.size(), 100u);
-  const Ladder ladder = made_up_ladder();
-  for (size_t rung = 0; rung < ladder.rungs.size(); ++rung) {
-    const BorderErrors all = predict_errors(ladder, rung, places, kThreshold).expected;
-    const BorderErrors alone = expected_errors(ladder, rung, places, kThreshold);
-    EXPECT_EQ(alone.silhouette_px, all.silhouette_px) << rung;
-    EXPECT_EQ(alone.inner_px, all.inner_px) << rung;
-    EXPECT_EQ(alone.border_px, all.border_px) << rung;
-    EXPECT_GT(alone.border_px, 0.0) << rung;
+  const ResolutionSeries series = made_up_series();
+  for (size_t candidate = 0; candidate < series.candidates.size(); ++candidate) {
+    const BorderErrors all = predict_errors(series, candidate, places, kThreshold).expected;
+    const BorderErrors alone = expected_errors(series, candidate, places, kThreshold);
+    EXPECT_EQ(alone.silhouette_px, all.silhouette_px) << candidate;
+    EXPECT_EQ(alone.inner_px, all.inner_px) << candidate;
+    EXPECT_EQ(alone.border_px, all.border_px) << candidate;
+    EXPECT_GT(alone.border_px, 0.0) << candidate;
   }
 }
 
@@ -78,11 +78,11 @@ TEST(PlanPrediction, IsCappedByBandsAndGapsWhereTheRadialCurvatureVanishes) {
   flat.px_per_radian = std::numeric_limits<double>::infinity();
   flat.ink_px = 3.0;
   flat.clear_px = 2.0;
-  const PredictedErrors found = predict_errors(made_up_ladder(), 0, {flat}, kThreshold);
+  const PredictedErrors found = predict_errors(made_up_series(), 0, {flat}, kThreshold);
   EXPECT_GT(found.expected.inner_px, 0.0);
   EXPECT_LE(found.high.inner_px, 3.0);
   flat.ink_px = flat.clear_px = std::numeric_limits<double>::infinity();
-  EXPECT_LE(predict_errors(made_up_ladder(), 0, {flat}, kThreshold).high.inner_px, flat.reach_px);
+  EXPECT_LE(predict_errors(made_up_series(), 0, {flat}, kThreshold).high.inner_px, flat.reach_px);
 }
 
 TEST(PlanPrediction, HoldsWhatIsMeasuredInNineOfTenTrials) {
@@ -97,8 +97,9 @@ TEST(PlanPrediction, HoldsWhatIsMeasuredInNineOfTenTrials) {
       const double measured = trial.measured.of(settings.metric);
       if (!std::isfinite(measured)) continue;
       const double low = trial.predicted.low.of(settings.metric), high = trial.predicted.high.of(settings.metric);
-      fmt::print("{:16} {:30} {:10}: predicted {:.3f} ({:.3f} to {:.3f}), measured {:.3f} px\n", name, answer.ladders[trial.ladder].title,
-                 answer.ladders[trial.ladder].words_at(trial.rung), trial.predicted.expected.of(settings.metric), low, high, measured);
+      fmt::print("{:16} {:30} {:10}: predicted {:.3f} ({:.3f} to {:.3f}), measured {:.3f} px\n", name,
+                 answer.all_series[trial.series].title, answer.all_series[trial.series].words_at(trial.candidate),
+                 trial.predicted.expected.of(settings.metric), low, high, measured);
       ++trials;
       inside += low <= measured && measured <= high;
     }

@@ -31,10 +31,10 @@ PlanView view_of(const Scene& scene, int index, int views) {
   return view;
 }
 
-SceneModel build(const Scene& scene, const Ladder& ladder, size_t rung) {
+SceneModel build(const Scene& scene, const ResolutionSeries& series, size_t candidate) {
   Scene bare = scene;
   for (SceneObject& object : bare.objects) object.level.reset();
-  return build_model(bare, ladder.at(rung));
+  return build_model(bare, series.at(candidate));
 }
 
 TEST(Plan, TheChoiceKeepsToTheToleranceAndTheNextCoarserModelDoesNot) {
@@ -53,17 +53,18 @@ TEST(Plan, TheChoiceKeepsToTheToleranceAndTheNextCoarserModelDoesNot) {
         known = answer.trials;
         ASSERT_TRUE(answer.chosen) << name << " view " << index << " " << tolerance_px << " px";
         const PlanTrial& chosen = answer.trials[*answer.chosen];
-        const Ladder& ladder = answer.ladders[chosen.ladder];
+        const ResolutionSeries& series = answer.all_series[chosen.series];
         // Along the true border, and of the border drawn: a coarse torus's also stands where none is, out of the former's sight.
-        const auto beyond = [&](size_t rung) {
-          const SceneModel model = build(scene, ladder, rung);
+        const auto beyond = [&](size_t candidate) {
+          const SceneModel model = build(scene, series, candidate);
           return std::max(share_beyond(model, reference.model, view, settings.threshold, tolerance_px, settings.metric),
                           share_of_false_border(model, view, settings.threshold, tolerance_px, settings.metric));
         };
-        EXPECT_LE(beyond(chosen.rung), 0.05) << name << " view " << index << " " << tolerance_px << " px, " << ladder.words_at(chosen.rung);
-        if (chosen.rung > 0) {
+        EXPECT_LE(beyond(chosen.candidate), 0.05)
+            << name << " view " << index << " " << tolerance_px << " px, " << series.words_at(chosen.candidate);
+        if (chosen.candidate > 0) {
           ++with_coarser;
-          coarser_fails += beyond(chosen.rung - 1) > 0.05;
+          coarser_fails += beyond(chosen.candidate - 1) > 0.05;
         }
         ++plans;
       }
@@ -89,9 +90,10 @@ TEST(Plan, RaysATenthBeyondTheMeasuredErrorSeeWhatIsThereAndRaysWithinItDoNot) {
     const TruthProxy reference = make_proxy(scene, view.camera, std::int64_t{2} << 30, 1.0);
     PlanSettings settings;
     settings.kinds = {at.kind};
-    const std::vector<Ladder> ladders = ladders_of(scene, settings);
-    const auto rung = std::find(ladders.front().rungs.begin(), ladders.front().rungs.end(), at.resolution) - ladders.front().rungs.begin();
-    const SceneModel model = build(scene, ladders.front(), static_cast<size_t>(rung));
+    const std::vector<ResolutionSeries> all_series = series_of_scene(scene, settings);
+    const auto candidate = std::find(all_series.front().candidates.begin(), all_series.front().candidates.end(), at.resolution) -
+                           all_series.front().candidates.begin();
+    const SceneModel model = build(scene, all_series.front(), static_cast<size_t>(candidate));
     double trace_ms = 0.0;
     const double measured = measure_errors(model, view, settings.threshold, {}, trace_ms).of(settings.metric);
     const auto beyond = [&](double px) { return share_beyond(model, reference.model, view, settings.threshold, px, settings.metric); };
@@ -100,7 +102,7 @@ TEST(Plan, RaysATenthBeyondTheMeasuredErrorSeeWhatIsThereAndRaysWithinItDoNot) {
   }
 }
 
-TEST(Plan, AFinerToleranceNeverGetsACoarserModelOfOneLadder) {
+TEST(Plan, AFinerToleranceNeverGetsACoarserModelOfOneSeries) {
   const Scene scene = scene_named("ellipsoid");
   const PlanView view = view_of(scene, 0, 1);
   size_t before = 0;
@@ -111,8 +113,8 @@ TEST(Plan, AFinerToleranceNeverGetsACoarserModelOfOneLadder) {
     ProgressBar bar(false);
     const PlanAnswer answer = make_plan(scene, {view}, settings, {}, bar);
     ASSERT_TRUE(answer.chosen);
-    EXPECT_GE(answer.trials[*answer.chosen].rung, before) << tolerance_px;
-    before = answer.trials[*answer.chosen].rung;
+    EXPECT_GE(answer.trials[*answer.chosen].candidate, before) << tolerance_px;
+    before = answer.trials[*answer.chosen].candidate;
     if (answer.coarser) {
       EXPECT_GT(answer.trials[*answer.coarser].measured.of(settings.metric), tolerance_px);
     }

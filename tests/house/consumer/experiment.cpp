@@ -11,6 +11,6 @@ int main() {
   const limn::PlanJob job = limn::plan_for(spec, {.tolerance_px = 1.0}, input, bar);
   if (!job.answer.chosen) return 1;
   const limn::PlanTrial& chosen = job.answer.trials[*job.answer.chosen];
-  std::printf("%s: %.3g px\n", job.answer.ladders[chosen.ladder].words_at(chosen.rung).c_str(), chosen.measured.inner_px);
+  std::printf("%s: %.3g px\n", job.answer.all_series[chosen.series].words_at(chosen.candidate).c_str(), chosen.measured.inner_px);
   return chosen.measured.inner_px <= 1.0 ? 0 : 1;
 }

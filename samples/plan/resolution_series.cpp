@@ -14,9 +14,9 @@
 namespace limn {
 namespace {
 
-// Voxels grow by the square root of two from rung to rung, levels halve the edges.
-const std::vector<int> kVoxelRungs = {16, 23, 32, 45, 64, 91, 128, 181, 256, 362, 512, 724, 1024};
-const std::vector<int> kLevelRungs = {0, 1, 2, 3, 4, 5, 6};
+// Voxels grow by the square root of two from candidate to candidate, levels halve the edges.
+const std::vector<int> kVoxelCandidates = {16, 23, 32, 45, 64, 91, 128, 181, 256, 362, 512, 724, 1024};
+const std::vector<int> kLevelCandidates = {0, 1, 2, 3, 4, 5, 6};
 
 // Angle = constant (curvature size)^order. Meshes with limit normals: the interpolated normal leaves the true one by the change of
 // curvature within a face.
@@ -24,8 +24,8 @@ constexpr double kMeshConstant = 0.08;
 
 /// What is as fine everywhere takes about as much while it is built as afterwards: beyond the budget there is nothing to build. But for
 /// level sets of meshes: the mesh may be larger than they are.
-std::int64_t most_bytes(const Ladder& ladder, const PlanSettings& settings) {
-  const bool by_mesh = ladder.settings.kind == "mesh_level_set";
+std::int64_t most_bytes(const ResolutionSeries& series, const PlanSettings& settings) {
+  const bool by_mesh = series.settings.kind == "mesh_level_set";
   return settings.budget_bytes && !by_mesh ? std::min(settings.max_bytes, *settings.budget_bytes) : settings.max_bytes;
 }
 
@@ -65,55 +65,55 @@ double mean_edge(const Mesh& mesh, const Affine& world_from_mesh) {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-/// What the first rung is expected to take to build.
-double first_ms(const Ladder& ladder, const SceneSize& size) { return expected_cost(size, ladder.at(0), 0.0).build_ms; }
+/// What the first candidate is expected to take to build.
+double first_ms(const ResolutionSeries& series, const SceneSize& size) { return expected_cost(size, series.at(0), 0.0).build_ms; }
 
 /// The longest of the objects' mean edges at level 0, since that one shows first, and what finding the cages took.
-void measure_cages(const Scene& scene, SceneSize& size, Ladder& ladder) {
-  ladder.base_size = 0.0;
+void measure_cages(const Scene& scene, SceneSize& size, ResolutionSeries& series) {
+  series.base_size = 0.0;
   const auto start = std::chrono::steady_clock::now();
   for (size_t k = 0; k < scene.objects.size(); ++k) {
     const SceneObject& object = scene.objects[k];
     if (const auto* field = std::get_if<Field>(&object.source)) {
       const Mesh cage = cage_of(*field);
-      ladder.base_size = std::max(ladder.base_size, mean_edge(cage, {}));
+      series.base_size = std::max(series.base_size, mean_edge(cage, {}));
       size.objects[k].faces = static_cast<double>(cage.face_count());
       size.objects[k].refines = true;
     } else if (const auto* mesh = std::get_if<MeshSource>(&object.source)) {
-      ladder.base_size = std::max(ladder.base_size, mean_edge(mesh->mesh, object.world_from_object));
+      series.base_size = std::max(series.base_size, mean_edge(mesh->mesh, object.world_from_object));
     }
   }
-  ladder.fixed_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  ladder.guess_ms = std::max(ladder.fixed_ms, first_ms(ladder, size));
+  series.fixed_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  series.guess_ms = std::max(series.fixed_ms, first_ms(series, size));
 }
 
-Ladder mesh_ladder(const Scene& scene, SceneSize size) {
-  Ladder ladder;
-  ladder.title = "mesh, limit normals";
-  ladder.settings.kind = "mesh";
-  ladder.settings.normals = NormalKind::limit;
-  ladder.by_level = true;
-  ladder.rungs = kLevelRungs;
-  ladder.normal_constant = kMeshConstant;
-  measure_cages(scene, size, ladder);
-  return ladder;
+ResolutionSeries mesh_series(const Scene& scene, SceneSize size) {
+  ResolutionSeries series;
+  series.title = "mesh, limit normals";
+  series.settings.kind = "mesh";
+  series.settings.normals = NormalKind::limit;
+  series.by_level = true;
+  series.candidates = kLevelCandidates;
+  series.normal_constant = kMeshConstant;
+  measure_cages(scene, size, series);
+  return series;
 }
 
 // The grid shall be what is measured: the mesh that goes into it is finer than any voxel that matters.
 constexpr int kMeshLevel = 5;
 
-Ladder grid_ladder(const char* kind, const GradientDescriptor& gradient, const SceneSize& size, double longest_side) {
-  Ladder ladder;
-  ladder.title = fmt::format("{}, {} gradient", std::string(kind) == "level_set" ? "level set" : "mesh as level set", gradient.about.name);
-  ladder.settings.kind = kind;
-  ladder.settings.gradient = gradient.about.name;
-  ladder.settings.level = kMeshLevel;
-  ladder.rungs = kVoxelRungs;
-  ladder.normal_order = gradient.order;
-  ladder.normal_constant = gradient.normal_constant;
-  ladder.base_size = longest_side;
-  ladder.guess_ms = first_ms(ladder, size);
-  return ladder;
+ResolutionSeries grid_series(const char* kind, const GradientDescriptor& gradient, const SceneSize& size, double longest_side) {
+  ResolutionSeries series;
+  series.title = fmt::format("{}, {} gradient", std::string(kind) == "level_set" ? "level set" : "mesh as level set", gradient.about.name);
+  series.settings.kind = kind;
+  series.settings.gradient = gradient.about.name;
+  series.settings.level = kMeshLevel;
+  series.candidates = kVoxelCandidates;
+  series.normal_order = gradient.order;
+  series.normal_constant = gradient.normal_constant;
+  series.base_size = longest_side;
+  series.guess_ms = first_ms(series, size);
+  return series;
 }
 
 /// Along the longest side of the object that has most.
@@ -129,65 +129,65 @@ int own_voxels(const Scene& scene) {
 }
 
 /// How coarse may this grid be? The file is the finest; with any gradient, since bands are made as wide as that needs.
-std::vector<Ladder> volume_ladders(const Scene& scene, const SceneSize& size, const PlanSettings& settings, double longest_side) {
-  std::vector<Ladder> ladders;
+std::vector<ResolutionSeries> volume_series(const Scene& scene, const SceneSize& size, const PlanSettings& settings, double longest_side) {
+  std::vector<ResolutionSeries> all_series;
   const bool only_volumes = std::all_of(scene.objects.begin(), scene.objects.end(),
                                         [](const SceneObject& object) { return std::holds_alternative<LevelSetSource>(object.source); });
-  if (!only_volumes || !wanted("level_set", settings)) return ladders;
+  if (!only_volumes || !wanted("level_set", settings)) return all_series;
   const int own = own_voxels(scene);
   for (const GradientDescriptor& gradient : gradients()) {
     if (!is_tried(gradient)) continue;
-    Ladder ladder = grid_ladder("level_set", gradient, size, longest_side);
-    ladder.of_file = true;
-    std::erase_if(ladder.rungs, [&](int voxels) { return 1.2 * voxels > own; });
-    ladder.rungs.push_back(own);
-    ladders.push_back(std::move(ladder));
+    ResolutionSeries series = grid_series("level_set", gradient, size, longest_side);
+    series.of_file = true;
+    std::erase_if(series.candidates, [&](int voxels) { return 1.2 * voxels > own; });
+    series.candidates.push_back(own);
+    all_series.push_back(std::move(series));
   }
-  return ladders;
+  return all_series;
 }
 
 }  // namespace
 
-double Ladder::size_at(size_t rung) const {
+double ResolutionSeries::size_at(size_t candidate) const {
   // Chords stand off by the square of an edge.
-  if (by_tolerance) return std::sqrt(1000.0 / rungs[rung]);
-  return by_level ? base_size / std::exp2(rungs[rung]) : base_size / rungs[rung];
+  if (by_tolerance) return std::sqrt(1000.0 / candidates[candidate]);
+  return by_level ? base_size / std::exp2(candidates[candidate]) : base_size / candidates[candidate];
 }
 
-SurfaceSettings Ladder::at(size_t rung) const {
+SurfaceSettings ResolutionSeries::at(size_t candidate) const {
   SurfaceSettings own = settings;
   if (by_tolerance) return own;
-  (by_level ? own.level : own.voxels) = rungs[rung];
-  own.resample_volumes = of_file && rung + 1 < rungs.size();
+  (by_level ? own.level : own.voxels) = candidates[candidate];
+  own.resample_volumes = of_file && candidate + 1 < candidates.size();
   return own;
 }
 
-std::string Ladder::words_at(size_t rung) const {
-  if (by_tolerance) return fmt::format("{:.3g} px", 1000.0 / rungs[rung]);
-  if (of_file && rung + 1 == rungs.size()) return fmt::format("the file's own {} voxels", rungs[rung]);
-  return by_level ? fmt::format("level {}", rungs[rung]) : fmt::format("{} voxels", rungs[rung]);
+std::string ResolutionSeries::words_at(size_t candidate) const {
+  if (by_tolerance) return fmt::format("{:.3g} px", 1000.0 / candidates[candidate]);
+  if (of_file && candidate + 1 == candidates.size()) return fmt::format("the file's own {} voxels", candidates[candidate]);
+  return by_level ? fmt::format("level {}", candidates[candidate]) : fmt::format("{} voxels", candidates[candidate]);
 }
 
 double BorderErrors::of(PlanMetric metric) const { return metric == PlanMetric::silhouette ? silhouette_px : border_px; }
 
-std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes) {
-  std::vector<Ladder> ladders;
+std::vector<ResolutionSeries> series_of_scene(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes) {
+  std::vector<ResolutionSeries> all_series;
   const bool fixed = std::any_of(scene.objects.begin(), scene.objects.end(), is_fixed);
   const bool volumes = std::any_of(scene.objects.begin(), scene.objects.end(),
                                    [](const SceneObject& object) { return std::holds_alternative<LevelSetSource>(object.source); });
   double longest_side = 0.0;
   for (const SceneObject& object : scene.objects) longest_side = std::max(longest_side, bounds(object).longest_side());
-  if (scene.objects.empty() || !std::isfinite(longest_side)) return ladders;
-  // Without the cages of fields, which only the mesh's ladder needs, and takes the time to find.
+  if (scene.objects.empty() || !std::isfinite(longest_side)) return all_series;
+  // Without the cages of fields, which only the mesh's series needs, and takes the time to find.
   const SceneSize size = size_of(scene, {}, false);
   if (volumes) {
-    ladders = volume_ladders(scene, size, settings, longest_side);
-    for (Ladder& ladder : ladders) ladder.settings.max_bytes = most_bytes(ladder, settings);
-    return ladders;
+    all_series = volume_series(scene, size, settings, longest_side);
+    for (ResolutionSeries& series : all_series) series.settings.max_bytes = most_bytes(series, settings);
+    return all_series;
   }
   if (!fixed && wanted("mesh", settings) && all_support(scene, "mesh")) {
     try {
-      ladders.push_back(mesh_ladder(scene, size));
+      all_series.push_back(mesh_series(scene, size));
     } catch (const InputError& error) {
       // A shape that cannot be tessellated may still be a level set.
       if (notes) notes->push_back(fmt::format("mesh left out: {}", error.fault().problem));
@@ -198,11 +198,11 @@ std::vector<Ladder> ladders_of(const Scene& scene, const PlanSettings& settings,
     const bool detour = std::string(kind) == "mesh_level_set" && all_support(scene, "level_set");
     if (!wanted(kind, settings) || !all_support(scene, kind) || (detour && settings.kinds.empty())) continue;
     for (const GradientDescriptor& gradient : gradients()) {
-      if (is_tried(gradient)) ladders.push_back(grid_ladder(kind, gradient, size, longest_side));
+      if (is_tried(gradient)) all_series.push_back(grid_series(kind, gradient, size, longest_side));
     }
   }
-  for (Ladder& ladder : ladders) ladder.settings.max_bytes = most_bytes(ladder, settings);
-  return ladders;
+  for (ResolutionSeries& series : all_series) series.settings.max_bytes = most_bytes(series, settings);
+  return all_series;
 }
 
 }  // namespace limn

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "sdf/parallel.h"
 #include "subdiv/mesh_audit.h"
@@ -31,14 +32,25 @@ int edge_between(int a, int b) {
 
 /// Cells to a side of the blocks that share a shortened field.
 constexpr int kBlock = 8;
+/// Rows of cells whose vertices and quads one thread makes, so that they have the same numbers on any number of threads.
+constexpr size_t kRows = 64;
 
-glm::dvec3 unit_gradient(FieldEvaluator& evaluator, const glm::dvec3& p) {
-  glm::dvec3 gradient;
-  double value = 0.0;
-  evaluator.gradients(std::span(&p, 1), std::span(&value, 1), std::span(&gradient, 1));
-  const double length = glm::length(gradient);
-  return length > 0.0 ? gradient / length : glm::dvec3(0.0);
-}
+/// Where the surface crosses an edge of the lattice.
+struct Crossing {
+  glm::dvec3 point{0.0}, normal{0.0};
+};
+
+/// What one block finds on the edges and faces that begin at its nodes.
+struct BlockFinds {
+  std::vector<size_t> edges{};  ///< As numbered by DualContour::edge_index.
+  std::vector<Crossing> crossings{};
+};
+
+/// Vertices and quads of some rows of cells.
+struct RowFinds {
+  std::vector<glm::dvec3> positions{};
+  std::vector<std::int32_t> corners{};
+};
 
 class DualContour {
  public:
@@ -55,14 +67,11 @@ class DualContour {
 
   Mesh run() {
     sample();
-    for (int z = 0; z + 1 < count_.z; ++z)
-      for (int y = 0; y + 1 < count_.y; ++y)
-        for (int x = 0; x + 1 < count_.x; ++x) cell({x, y, z});
-    for (int z = 1; z + 1 < count_.z; ++z)
-      for (int y = 1; y + 1 < count_.y; ++y)
-        for (int x = 1; x + 1 < count_.x; ++x)
-          for (int axis = 0; axis < 3; ++axis) quad({x, y, z}, axis);
-    return std::move(mesh_);
+    find_crossings();
+    Mesh mesh;
+    make_vertices(mesh);
+    make_quads(mesh);
+    return mesh;
   }
 
  private:
@@ -70,37 +79,44 @@ class DualContour {
     return (static_cast<size_t>(at.z) * static_cast<size_t>(count_.y) + static_cast<size_t>(at.y)) * static_cast<size_t>(count_.x) +
            static_cast<size_t>(at.x);
   }
+  /// Of the edge, or of the face across the axis, that begins at a node.
+  size_t edge_index(const glm::ivec3& at, int axis) const { return 3 * node_index(at) + static_cast<size_t>(axis); }
   glm::dvec3 world(const glm::ivec3& at) const { return lower_ + step_ * glm::dvec3(at); }
   static glm::ivec3 corner(const glm::ivec3& cell, int i) { return cell + glm::ivec3(i & 1, (i >> 1) & 1, (i >> 2) & 1); }
+  static glm::ivec3 along(const glm::ivec3& at, int axis) {
+    glm::ivec3 end = at;
+    ++end[axis];
+    return end;
+  }
+  bool holds(const glm::ivec3& at) const { return glm::all(glm::lessThan(at, count_)); }
   double value(const glm::ivec3& at) const { return values_[node_index(at)]; }
   bool inside(const glm::ivec3& at) const { return value(at) < 0.0; }
 
   glm::ivec3 block_count() const { return (count_ + (kBlock - 1)) / kBlock; }
-  FieldEvaluator& evaluator(const glm::ivec3& cell) {
-    const glm::ivec3 at = cell / kBlock, blocks = block_count();
-    return evaluators_[static_cast<size_t>((at.z * blocks.y + at.y) * blocks.x + at.x)];
+  template <class Visit>
+  void for_blocks(const Visit& visit) {
+    const glm::ivec3 blocks = block_count();
+    parallel_for(0, blocks.x * blocks.y * blocks.z, [&](int b) {
+      const glm::ivec3 first = kBlock * glm::ivec3(b % blocks.x, b / blocks.x % blocks.y, b / (blocks.x * blocks.y));
+      visit(static_cast<size_t>(b), first, glm::min(first + kBlock, count_));
+    });
   }
 
   /// The signs at the nodes: those of a block that the surface does not reach are known from bounds, elsewhere a block asks only the parts
   /// of the field that matter in it.
   void sample() {
     values_.resize(static_cast<size_t>(count_.x) * static_cast<size_t>(count_.y) * static_cast<size_t>(count_.z));
-    sheet_.assign(values_.size() * 12, -1);
     const glm::ivec3 blocks = block_count();
-    const int total = blocks.x * blocks.y * blocks.z;
-    evaluators_.clear();
-    for (int b = 0; b < total; ++b) evaluators_.emplace_back(field_);
-    parallel_for(0, total, [&](int b) {
-      const glm::ivec3 first = kBlock * glm::ivec3(b % blocks.x, b / blocks.x % blocks.y, b / (blocks.x * blocks.y));
-      const glm::ivec3 end = glm::min(first + kBlock, count_);
+    parts_.resize(static_cast<size_t>(blocks.x) * static_cast<size_t>(blocks.y) * static_cast<size_t>(blocks.z));
+    for_blocks([&](size_t b, const glm::ivec3& first, const glm::ivec3& end) {
       // A cell has nodes on the far side of its block, too.
       const Box box = dilate({world(first), world(end)}, 1e-6 * step_);
       FieldEvaluator whole(field_);
       const Interval bounds = whole.bounds(box);
       if (!bounds.contains(0.0)) return fill(first, end, bounds.lower);
-      FieldEvaluator& own = evaluators_[static_cast<size_t>(b)];
-      own = FieldEvaluator(whole.restricted(box));
-      sample(own, first, end);
+      parts_[b] = whole.restricted(box);
+      FieldEvaluator part(*parts_[b]);
+      sample(part, first, end);
     });
   }
 
@@ -119,26 +135,85 @@ class DualContour {
       }
   }
 
-  /// Where the field changes sign between two nodes (bisection: fields may jump in slope).
-  glm::dvec3 crossing(FieldEvaluator& evaluator, const glm::ivec3& a, const glm::ivec3& b) {
-    glm::dvec3 in = world(a), out = world(b);
-    if (!inside(a)) std::swap(in, out);
-    for (int i = 0; i < 24; ++i) {
-      const glm::dvec3 middle = 0.5 * (in + out);
-      (evaluator.value(middle) < 0.0 ? in : out) = middle;
+  /// Where the surface crosses the lattice's edges, each asked once for the four cells at it; and the signs in the middles of faces that it
+  /// crosses twice.
+  void find_crossings() {
+    crossing_of_.assign(3 * values_.size(), -1);
+    middle_inside_.assign(3 * values_.size(), 0);
+    std::vector<BlockFinds> finds(parts_.size());
+    for_blocks([&](size_t b, const glm::ivec3& first, const glm::ivec3& end) {
+      // Where bounds leave no surface in a block, it has no edge that is crossed.
+      if (!parts_[b]) return;
+      FieldEvaluator part(*parts_[b]);
+      find_crossings(part, first, end, finds[b]);
+      ask_middles(part, first, end);
+    });
+    for (const BlockFinds& block : finds) {
+      for (size_t i = 0; i < block.edges.size(); ++i) crossing_of_[block.edges[i]] = static_cast<std::int32_t>(crossings_.size() + i);
+      crossings_.insert(crossings_.end(), block.crossings.begin(), block.crossings.end());
     }
-    return 0.5 * (in + out);
+    parts_.clear();
+  }
+
+  /// Where the field changes sign between two nodes (bisection: fields may jump in slope).
+  void find_crossings(FieldEvaluator& evaluator, const glm::ivec3& first, const glm::ivec3& end, BlockFinds& finds) const {
+    std::vector<glm::dvec3> in, out;
+    for (int z = first.z; z < end.z; ++z)
+      for (int y = first.y; y < end.y; ++y)
+        for (int x = first.x; x < end.x; ++x)
+          for (int axis = 0; axis < 3; ++axis) {
+            const glm::ivec3 a{x, y, z}, b = along(a, axis);
+            if (!holds(b) || inside(a) == inside(b)) continue;
+            finds.edges.push_back(edge_index(a, axis));
+            in.push_back(world(inside(a) ? a : b)), out.push_back(world(inside(a) ? b : a));
+          }
+    const size_t count = in.size();
+    std::vector<glm::dvec3> points(count), gradients(count);
+    std::vector<double> values(count);
+    for (int halving = 0; halving < 24; ++halving) {
+      for (size_t i = 0; i < count; ++i) points[i] = 0.5 * (in[i] + out[i]);
+      evaluator.values(points, values);
+      for (size_t i = 0; i < count; ++i) (values[i] < 0.0 ? in[i] : out[i]) = points[i];
+    }
+    for (size_t i = 0; i < count; ++i) points[i] = 0.5 * (in[i] + out[i]);
+    evaluator.gradients(points, values, gradients);
+    finds.crossings.resize(count);
+    for (size_t i = 0; i < count; ++i) {
+      const double length = glm::length(gradients[i]);
+      finds.crossings[i] = {points[i], length > 0.0 ? gradients[i] / length : glm::dvec3(0.0)};
+    }
+  }
+
+  /// The corners of the face across an axis that begins at a node, in a ring.
+  static std::array<glm::ivec3, 4> ring(const glm::ivec3& at, int axis) {
+    const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+    return {at, along(at, u), along(along(at, u), v), along(at, v)};
+  }
+
+  void ask_middles(FieldEvaluator& evaluator, const glm::ivec3& first, const glm::ivec3& end) {
+    for (int z = first.z; z < end.z; ++z)
+      for (int y = first.y; y < end.y; ++y)
+        for (int x = first.x; x < end.x; ++x)
+          for (int axis = 0; axis < 3; ++axis) {
+            const std::array<glm::ivec3, 4> face = ring({x, y, z}, axis);
+            if (!holds(face[2])) continue;
+            const bool in = inside(face[0]);
+            if (inside(face[1]) == in || inside(face[2]) != in || inside(face[3]) == in) continue;
+            const glm::dvec3 middle = 0.25 * (world(face[0]) + world(face[1]) + world(face[2]) + world(face[3]));
+            middle_inside_[edge_index({x, y, z}, axis)] = evaluator.value(middle) < 0.0;
+          }
   }
 
   /// Joins the crossed edges of the cell that belong to one sheet: across each face the surface runs from edge to edge; where it crosses
   /// a face twice, the middle of the face tells which corners hang together, and both cells at the face find the same.
-  void join_sheets(const glm::ivec3& cell, std::array<int, 12>& root) {
+  void join_sheets(const glm::ivec3& cell, std::array<int, 12>& root) const {
     std::iota(root.begin(), root.end(), 0);
     const auto find = [&root](int e) {
       while (root[static_cast<size_t>(e)] != e) e = root[static_cast<size_t>(e)];
       return e;
     };
-    for (const std::array<int, 4>& face : kFaces) {
+    for (size_t f = 0; f < kFaces.size(); ++f) {
+      const std::array<int, 4>& face = kFaces[f];
       std::array<int, 4> crossed{};
       int count = 0;
       for (size_t i = 0; i < 4; ++i)
@@ -147,16 +222,14 @@ class DualContour {
       if (count == 2) root[static_cast<size_t>(find(crossed[0]))] = find(crossed[1]);
       if (count != 4) continue;
       // Edge i joins ring corners i and i + 1. The corner that stands alone has the sign that the middle has not.
-      const glm::dvec3 middle = 0.25 * (world(corner(cell, face[0])) + world(corner(cell, face[1])) + world(corner(cell, face[2])) +
-                                        world(corner(cell, face[3])));
-      const bool middle_inside = evaluator(cell).value(middle) < 0.0;
+      const bool middle_inside = middle_inside_[edge_index(corner(cell, face[0]), static_cast<int>(f) / 2)] != 0;
       const size_t alone = inside(corner(cell, face[0])) != middle_inside ? 0 : 1;
       for (const size_t i : {alone, alone + 2}) root[static_cast<size_t>(find(crossed[i % 4]))] = find(crossed[(i + 3) % 4]);
     }
     for (int e = 0; e < 12; ++e) root[static_cast<size_t>(e)] = find(e);
   }
 
-  void cell(const glm::ivec3& at) {
+  void cell(const glm::ivec3& at, std::vector<glm::dvec3>& positions) {
     int inside_count = 0;
     for (int i = 0; i < 8; ++i) inside_count += inside(corner(at, i));
     if (inside_count == 0 || inside_count == 8) return;
@@ -164,30 +237,27 @@ class DualContour {
     join_sheets(at, root);
     for (int sheet = 0; sheet < 12; ++sheet) {
       std::vector<glm::dvec3> points, normals;
-      const auto vertex = static_cast<std::int32_t>(mesh_.vertex_count());
       for (int e = 0; e < 12; ++e) {
         const CellEdge& edge = kEdges[static_cast<size_t>(e)];
-        const glm::ivec3 a = corner(at, edge.from), b = corner(at, edge.to);
-        if (root[static_cast<size_t>(e)] != sheet || inside(a) == inside(b)) continue;
-        sheet_[12 * node_index(at) + static_cast<size_t>(e)] = vertex;
-        points.push_back(crossing(evaluator(at), a, b));
-        normals.push_back(unit_gradient(evaluator(at), points.back()));
+        const std::int32_t crossing = crossing_of_[edge_index(corner(at, edge.from), edge.axis)];
+        if (root[static_cast<size_t>(e)] != sheet || crossing < 0) continue;
+        sheet_[12 * node_index(at) + static_cast<size_t>(e)] = static_cast<std::int32_t>(positions.size());
+        points.push_back(crossings_[static_cast<size_t>(crossing)].point);
+        normals.push_back(crossings_[static_cast<size_t>(crossing)].normal);
       }
       if (points.empty()) continue;
       glm::dvec3 mean(0.0);
       for (const glm::dvec3& p : points) mean += p;
       mean /= static_cast<double>(points.size());
       const glm::dvec3 first = world(at), last = world(at + 1);
-      mesh_.positions.push_back(glm::clamp(meet_planes(points, normals, mean), first, last));
+      positions.push_back(glm::clamp(meet_planes(points, normals, mean), first, last));
     }
   }
 
   /// The four cells around a lattice edge, each with the vertex of the sheet that crosses it.
-  void quad(const glm::ivec3& at, int axis) {
-    glm::ivec3 end = at;
-    ++end[axis];
+  void quad(const glm::ivec3& at, int axis, std::vector<std::int32_t>& faces) const {
     const bool from_inside = inside(at);
-    if (from_inside == inside(end)) return;
+    if (from_inside == inside(along(at, axis))) return;
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     std::array<std::int32_t, 4> corners{};
     constexpr int kU[] = {-1, 0, 0, -1}, kV[] = {-1, -1, 0, 0};
@@ -196,21 +266,60 @@ class DualContour {
       cell[u] += kU[i], cell[v] += kV[i];
       const glm::ivec3 from = at - cell;
       const int bits = from.x + 2 * from.y + 4 * from.z;
-      corners[i] = sheet_[12 * node_index(cell) + static_cast<size_t>(edge_between(bits, bits | (1 << axis)))];
+      corners[i] =
+          sheet_[12 * node_index(cell) + static_cast<size_t>(edge_between(bits, bits | (1 << axis)))] + first_vertex_[row_of(cell) / kRows];
     }
     if (!from_inside) std::reverse(corners.begin(), corners.end());
-    mesh_.face_sizes.push_back(4);
-    mesh_.corner_vertices.insert(mesh_.corner_vertices.end(), corners.begin(), corners.end());
+    faces.insert(faces.end(), corners.begin(), corners.end());
+  }
+
+  size_t row_of(const glm::ivec3& at) const {
+    return static_cast<size_t>(at.z) * static_cast<size_t>(count_.y) + static_cast<size_t>(at.y);
+  }
+  /// Calls `visit(cell, finds of its rows)` for all nodes that begin a cell, rows of different parts at the same time.
+  template <class Visit>
+  std::vector<RowFinds> by_rows(const Visit& visit) const {
+    const size_t rows = row_of({0, 0, count_.z});
+    std::vector<RowFinds> parts((rows + kRows - 1) / kRows);
+    parallel_for(size_t{0}, parts.size(), [&](size_t part) {
+      for (size_t row = part * kRows; row < std::min(rows, (part + 1) * kRows); ++row) {
+        const int y = static_cast<int>(row) % count_.y, z = static_cast<int>(row) / count_.y;
+        if (y + 1 == count_.y || z + 1 == count_.z) continue;
+        for (int x = 0; x + 1 < count_.x; ++x) visit(glm::ivec3(x, y, z), parts[part]);
+      }
+    });
+    return parts;
+  }
+
+  void make_vertices(Mesh& mesh) {
+    sheet_.assign(values_.size() * 12, -1);
+    const std::vector<RowFinds> parts = by_rows([&](const glm::ivec3& at, RowFinds& finds) { cell(at, finds.positions); });
+    for (const RowFinds& part : parts) {
+      first_vertex_.push_back(static_cast<std::int32_t>(mesh.positions.size()));
+      mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
+    }
+  }
+
+  void make_quads(Mesh& mesh) const {
+    const std::vector<RowFinds> parts = by_rows([&](const glm::ivec3& at, RowFinds& finds) {
+      if (at.x == 0 || at.y == 0 || at.z == 0) return;
+      for (int axis = 0; axis < 3; ++axis) quad(at, axis, finds.corners);
+    });
+    for (const RowFinds& part : parts) mesh.corner_vertices.insert(mesh.corner_vertices.end(), part.corners.begin(), part.corners.end());
+    mesh.face_sizes.assign(mesh.corner_vertices.size() / 4, 4);
   }
 
   Field field_;
-  std::vector<FieldEvaluator> evaluators_;  ///< Of the blocks; where the surface is, of what matters there.
   double step_ = 0.0;
   glm::dvec3 lower_{0.0};
   glm::ivec3 count_{0};
-  std::vector<double> values_;
-  std::vector<std::int32_t> sheet_;  ///< Vertex of each edge of each cell, 12 a node.
-  Mesh mesh_;
+  std::vector<double> values_{};
+  std::vector<std::optional<Field>> parts_{};  ///< Of each block: what of the field matters there; none where the surface is not.
+  std::vector<Crossing> crossings_{};
+  std::vector<std::int32_t> crossing_of_{};  ///< Of each edge, -1 where it has none.
+  std::vector<char> middle_inside_{};        ///< Of each face that is crossed twice.
+  std::vector<std::int32_t> sheet_{};        ///< Vertex of each edge of each cell, 12 a node, counted within its rows.
+  std::vector<std::int32_t> first_vertex_{};
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "sdf/parallel.h"
 #include "subdiv/mesh_audit.h"
 #include "subdiv/polygon.h"
 
@@ -36,11 +37,12 @@ std::vector<EdgeUse> sorted_uses(const Mesh& mesh) {
   std::vector<EdgeUse> uses(ends.back());
   // Each start moves on to where the next vertex starts.
   visit_uses(mesh, [&](const EdgeUse& use) { uses[ends[static_cast<size_t>(use.low)]++] = use; });
-  size_t start = 0;
-  for (size_t v = 0; v + 1 < ends.size(); start = ends[v++]) {
-    std::sort(uses.begin() + static_cast<std::ptrdiff_t>(start), uses.begin() + static_cast<std::ptrdiff_t>(ends[v]),
+  const auto begin = uses.begin();
+  parallel_for(size_t{0}, mesh.vertex_count(), [&](size_t v) {
+    const size_t start = v == 0 ? 0 : ends[v - 1];
+    std::sort(begin + static_cast<std::ptrdiff_t>(start), begin + static_cast<std::ptrdiff_t>(ends[v]),
               [](const EdgeUse& x, const EdgeUse& y) { return std::tie(x.high, x.order) < std::tie(y.high, y.order); });
-  }
+  });
   return uses;
 }
 

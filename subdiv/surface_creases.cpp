@@ -154,16 +154,18 @@ CutCorner cut_corner(LocalField& local, const Quad& quad) {
   return cut;
 }
 
-/// Whether one was moved: its neighbours may now lie across the corner.
-bool pull_onto_corners(const Field& field, Mesh& mesh, const std::vector<std::int32_t>& first, SnapResult& snapped) {
+/// Of the quads with a vertex that `moved` marks; then it marks the vertices that were moved, whose neighbours may now lie across the
+/// corner.
+void pull_onto_corners(const Field& field, Mesh& mesh, const std::vector<std::int32_t>& first, SnapResult& snapped,
+                       std::vector<char>& moved) {
   std::vector<Quad> quads;
   std::vector<size_t> faces;
   std::vector<glm::dvec3> middles;
   std::vector<double> reach;
   for (size_t f = 0; f < mesh.face_count(); ++f) {
     const auto corners = face_corners(mesh, first[f], f);
-    const auto is_feature = [&](std::int32_t v) { return snapped.feature[static_cast<size_t>(v)] != 0; };
-    if (corners.size() != 4 || std::none_of(corners.begin(), corners.end(), is_feature)) continue;
+    const auto is_moved = [&](std::int32_t v) { return moved[static_cast<size_t>(v)] != 0; };
+    if (corners.size() != 4 || std::none_of(corners.begin(), corners.end(), is_moved)) continue;
     Quad quad;
     for (size_t i = 0; i < 4; ++i) quad[i] = mesh.positions[static_cast<size_t>(corners[i])];
     quads.push_back(quad), faces.push_back(f);
@@ -176,7 +178,7 @@ bool pull_onto_corners(const Field& field, Mesh& mesh, const std::vector<std::in
   visit_groups(field, middles, reach, std::move(all), [&](LocalField& local, std::span<const std::uint32_t> members) {
     for (const std::uint32_t k : members) cut[k] = cut_corner(local, quads[k]);
   });
-  std::vector<char> moved(mesh.vertex_count(), 0);
+  moved.assign(mesh.vertex_count(), 0);
   for (size_t k = 0; k < cut.size(); ++k) {
     if (cut[k].moved < 0) continue;
     const auto corners = face_corners(mesh, first[faces[k]], faces[k]);
@@ -185,7 +187,6 @@ bool pull_onto_corners(const Field& field, Mesh& mesh, const std::vector<std::in
     mesh.positions[v] = cut[k].to;
     snapped.feature[v] = moved[v] = 1;
   }
-  return std::find(moved.begin(), moved.end(), char{1}) != moved.end();
 }
 
 /// Whether a quad's two triangles meet in a crease: they turn there, and each lies on its own side of the surface.
@@ -227,9 +228,9 @@ void follow_creases(const Field& field, Mesh& mesh, SnapResult& snapped) {
   const std::vector<std::int32_t> first = first_corners(mesh);
   const std::vector<glm::dvec3> before = mesh.positions;
   pull_onto_creases(field, mesh, first, snapped);
-  for (int round = 0; round < 3 && pull_onto_corners(field, mesh, first, snapped); ++round) {
-  }
-  std::vector<char> moved(mesh.vertex_count(), 0);
+  // At first those beside creases, then those beside vertices that were moved: what a quad finds depends on nothing but its corners.
+  std::vector<char> moved = snapped.feature;
+  for (int round = 0; round < 3; ++round) pull_onto_corners(field, mesh, first, snapped, moved);
   for (size_t v = 0; v < moved.size(); ++v) moved[v] = mesh.positions[v] != before[v];
   unfold(field, mesh, snapped, 4, &moved);
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "sdf/parallel.h"
 #include "subdiv/polygon.h"
 #include "subdiv/snap_vertex.h"
 
@@ -37,33 +38,74 @@ Moving moving_vertices(const Mesh& mesh, const std::vector<char>* which) {
   return moving;
 }
 
-std::vector<Surroundings> surroundings_of(const Mesh& mesh, const Moving& moving) {
-  std::vector<Surroundings> around(moving.vertices.size());
-  std::vector<glm::dvec3> points;
-  std::int32_t first = 0;
-  for (size_t f = 0; f < mesh.face_count(); ++f) {
-    const auto corners = face_corners(mesh, first, f);
-    first += mesh.face_sizes[f];
+/// One corner of a face, as its vertex has it: the face's place among those that are looked at, and which of its corners.
+struct FaceCorner {
+  std::uint32_t face = 0, corner = 0;
+};
+
+/// For each moving vertex the corners that it is of faces, in the order of the faces: those of the k-th are list[first[k]] up to
+/// list[first[k + 1]].
+struct CornersOfVertices {
+  std::vector<std::uint32_t> faces{}, first{};
+  std::vector<FaceCorner> list{};
+
+  CornersOfVertices(const Mesh& mesh, const std::vector<std::int32_t>& first_corner, const Moving& moving)
+      : first(moving.vertices.size() + 1, 0) {
     const auto place = [&moving](std::int32_t v) { return moving.place[static_cast<size_t>(v)]; };
-    if (std::none_of(corners.begin(), corners.end(), [&](std::int32_t v) { return place(v) >= 0; })) continue;
-    gather_corners(mesh, corners, points);
-    glm::dvec3 middle(0.0);
-    for (const glm::dvec3& p : points) middle += p;
-    middle /= static_cast<double>(points.size());
-    for (size_t i = 0; i < points.size(); ++i) {
-      if (place(corners[i]) < 0) continue;
-      Surroundings& at = around[static_cast<size_t>(place(corners[i]))];
-      at.middles.push_back(middle);
-      at.edge_length += glm::distance(points[i], points[(i + 1) % points.size()]);
-      at.outward += vector_area(points);
+    for (size_t f = 0; f < mesh.face_count(); ++f) {
+      bool any = false;
+      for (const std::int32_t v : face_corners(mesh, first_corner[f], f)) {
+        if (place(v) < 0) continue;
+        ++first[static_cast<size_t>(place(v)) + 1];
+        any = true;
+      }
+      if (any) faces.push_back(static_cast<std::uint32_t>(f));
+    }
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    list.resize(first.back());
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    for (std::uint32_t k = 0; k < faces.size(); ++k) {
+      const auto corners = face_corners(mesh, first_corner[faces[k]], faces[k]);
+      for (std::uint32_t i = 0; i < corners.size(); ++i)
+        if (place(corners[i]) >= 0) list[next[static_cast<size_t>(place(corners[i]))]++] = {k, i};
     }
   }
-  for (Surroundings& at : around) {
-    if (at.middles.empty()) continue;
-    at.edge_length /= static_cast<double>(at.middles.size());
-    const double length = glm::length(at.outward);
-    at.outward = length > 0.0 ? at.outward / length : glm::dvec3(0.0);
-  }
+};
+
+std::vector<Surroundings> surroundings_of(const Mesh& mesh, const Moving& moving) {
+  const std::vector<std::int32_t> first_corner = first_corners(mesh);
+  const CornersOfVertices corners(mesh, first_corner, moving);
+  const auto corners_of = [&](std::uint32_t k) { return face_corners(mesh, first_corner[corners.faces[k]], corners.faces[k]); };
+  std::vector<glm::dvec3> middles(corners.faces.size()), areas(corners.faces.size());
+  parallel_parts(corners.faces.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
+    std::vector<glm::dvec3> points;
+    for (size_t k = range.begin(); k < range.end(); ++k) {
+      gather_corners(mesh, corners_of(static_cast<std::uint32_t>(k)), points);
+      glm::dvec3 middle(0.0);
+      for (const glm::dvec3& p : points) middle += p;
+      middles[k] = middle / static_cast<double>(points.size());
+      areas[k] = vector_area(points);
+    }
+  });
+  std::vector<Surroundings> around(moving.vertices.size());
+  parallel_parts(around.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
+    for (size_t k = range.begin(); k < range.end(); ++k) {
+      Surroundings& at = around[k];
+      at.middles.reserve(corners.first[k + 1] - corners.first[k]);
+      for (std::uint32_t i = corners.first[k]; i < corners.first[k + 1]; ++i) {
+        const auto [face, corner] = corners.list[i];
+        const auto vertices = corners_of(face);
+        const auto position = [&](size_t c) { return mesh.positions[static_cast<size_t>(vertices[c % vertices.size()])]; };
+        at.middles.push_back(middles[face]);
+        at.edge_length += glm::distance(position(corner), position(size_t{corner} + 1));
+        at.outward += areas[face];
+      }
+      if (at.middles.empty()) continue;
+      at.edge_length /= static_cast<double>(at.middles.size());
+      const double length = glm::length(at.outward);
+      at.outward = length > 0.0 ? at.outward / length : glm::dvec3(0.0);
+    }
+  });
   return around;
 }
 

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <optional>
 
+#include "sdf/parallel.h"
 #include "subdiv/local_field.h"
 #include "subdiv/mesh_audit.h"
 #include "subdiv/polygon.h"
@@ -50,8 +51,9 @@ struct Neighbours {
 /// Those that `moves` names go half way to the middle of their neighbours, all at once.
 void move_to_means(Mesh& mesh, const Neighbours& neighbours, const std::vector<char>& moves) {
   std::vector<glm::dvec3> moved = mesh.positions;
-  for (size_t v = 0; v < moves.size(); ++v)
+  parallel_for(size_t{0}, moves.size(), [&](size_t v) {
     if (moves[v]) moved[v] = 0.5 * (mesh.positions[v] + neighbours.mean(mesh, v));
+  });
   mesh.positions = std::move(moved);
 }
 
@@ -99,12 +101,12 @@ std::vector<std::int32_t> faces_touching(const Mesh& mesh, const std::vector<std
 
 FaceMiddles::FaceMiddles(const Mesh& mesh, const std::vector<std::int32_t>& first)
     : middles(mesh.face_count(), glm::dvec3(0.0)), radii(mesh.face_count(), 0.0) {
-  for (size_t f = 0; f < mesh.face_count(); ++f) {
+  parallel_for(size_t{0}, mesh.face_count(), [&](size_t f) {
     const auto corners = face_corners(mesh, first[f], f);
     for (const std::int32_t v : corners) middles[f] += mesh.positions[static_cast<size_t>(v)];
     middles[f] /= static_cast<double>(corners.size());
     for (const std::int32_t v : corners) radii[f] = std::max(radii[f], glm::distance(mesh.positions[static_cast<size_t>(v)], middles[f]));
-  }
+  });
 }
 
 std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh, bool reflex_too) {

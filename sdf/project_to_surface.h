@@ -1,6 +1,7 @@
 #pragma once
 // Damped Newton onto a surface, over whatever gives the field's value and gradient.
 
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
@@ -9,41 +10,77 @@
 
 namespace limn {
 
-/// What project_to_surface (sdf/shape.h) does; `bounds` are the field's, `gradient_at(point, value, gradient)` evaluates it.
+/// One point on its way onto the surface, a question at a time, so that many can be asked together: what project_to_surface (sdf/shape.h)
+/// does. `extent` is the radius of the field's bounds; not above 0: they are not finite.
+class Projection {
+ public:
+  Projection(const glm::dvec3& start, double extent, double tolerance)
+      : asked_(start), tolerance_(tolerance), extent_(extent > 0.0 ? extent : std::max(1.0, glm::length(start))) {}
+
+  bool done() const { return done_; }
+  /// Where the field is to be evaluated next. Must not be done.
+  const glm::dvec3& asks() const { return asked_; }
+  void answer(double value, const glm::dvec3& gradient) {
+    if (!begun_ || std::fabs(value) < std::fabs(value_)) {
+      steps_ += begun_;
+      begun_ = true;
+      position_ = asked_, value_ = value, gradient_ = gradient;
+      return begin_step();
+    }
+    // Halved until it brings the surface nearer.
+    if (++halvings_ == kMostHalvings) return finish(false);
+    move_ *= 0.5;
+    asked_ = position_ + move_;
+  }
+
+  /// Once done: whether the surface was reached, the last place and the field there.
+  bool reached() const { return reached_; }
+  const glm::dvec3& position() const { return position_; }
+  double value() const { return value_; }
+  const glm::dvec3& gradient() const { return gradient_; }
+
+ private:
+  static constexpr int kMostSteps = 50, kMostHalvings = 30;
+
+  bool close_enough() const {
+    // Below a few units in the last place of the coordinates there is nothing left to improve.
+    const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * (extent_ + glm::length(position_));
+    return std::fabs(value_) <= std::max(tolerance_ * extent_, rounding);
+  }
+  void finish(bool reached) { done_ = true, reached_ = reached; }
+  void begin_step() {
+    if (close_enough()) return finish(true);
+    const double squared = glm::dot(gradient_, gradient_);
+    if (steps_ == kMostSteps || !(squared > 0.0)) return finish(false);
+    // A step beyond the whole object is never of use.
+    move_ = (-value_ / squared) * gradient_;
+    const double longest = 2.0 * (extent_ + glm::length(position_));
+    if (glm::length(move_) > longest) move_ *= longest / glm::length(move_);
+    halvings_ = 0;
+    asked_ = position_ + move_;
+  }
+
+  glm::dvec3 asked_, position_{0.0}, gradient_{0.0}, move_{0.0};
+  double value_ = 0.0, tolerance_, extent_;
+  int steps_ = 0, halvings_ = 0;
+  bool begun_ = false, done_ = false, reached_ = false;
+};
+
+/// For Projection.
+inline double extent_of(const Box& bounds) { return bounds.finite() ? bounds.radius() : 0.0; }
+
+/// `bounds` are the field's, `gradient_at(point, value, gradient)` evaluates it.
 template <class GradientAt>
 bool project_with(const GradientAt& gradient_at, const Box& bounds, glm::dvec3& point, double tolerance) {
-  const double extent = bounds.finite() ? bounds.radius() : std::max(1.0, glm::length(point));
-  const auto close_enough = [&](double value) {
-    // Below a few units in the last place of the coordinates there is nothing left to improve.
-    const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * (extent + glm::length(point));
-    return std::fabs(value) <= std::max(tolerance * extent, rounding);
-  };
-  glm::dvec3 gradient;
-  double value = 0.0;
-  gradient_at(point, value, gradient);
-  for (int step = 0; step < 50; ++step) {
-    if (close_enough(value)) return true;
-    const double squared = glm::dot(gradient, gradient);
-    if (!(squared > 0.0)) return false;
-    // Halved until it brings the surface nearer; a step beyond the whole object is never of use.
-    glm::dvec3 move = (-value / squared) * gradient;
-    const double longest = 2.0 * (extent + glm::length(point));
-    if (glm::length(move) > longest) move *= longest / glm::length(move);
-    bool nearer = false;
-    for (int halving = 0; halving < 30 && !nearer; ++halving, move *= 0.5) {
-      const glm::dvec3 candidate = point + move;
-      double candidate_value = 0.0;
-      glm::dvec3 candidate_gradient;
-      gradient_at(candidate, candidate_value, candidate_gradient);
-      if (!(std::fabs(candidate_value) < std::fabs(value))) continue;
-      nearer = true;
-      point = candidate;
-      value = candidate_value;
-      gradient = candidate_gradient;
-    }
-    if (!nearer) return false;
+  Projection projection(point, extent_of(bounds), tolerance);
+  while (!projection.done()) {
+    glm::dvec3 gradient;
+    double value = 0.0;
+    gradient_at(projection.asks(), value, gradient);
+    projection.answer(value, gradient);
   }
-  return close_enough(value);
+  point = projection.position();
+  return projection.reached();
 }
 
 }  // namespace limn

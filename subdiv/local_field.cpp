@@ -12,7 +12,18 @@
 
 namespace limn {
 
-LocalField::LocalField(FieldEvaluator& whole, const Field& part, const Box& box) : whole_(whole), part_(part), box_(box) {}
+glm::dvec3 direction_of(const glm::dvec3& gradient) {
+  const double length = glm::length(gradient);
+  return length > 0.0 && std::isfinite(length) ? gradient / length : glm::dvec3(0.0);
+}
+
+double distance_by(double value, const glm::dvec3& gradient) {
+  const double length = glm::length(gradient);
+  return length > 0.0 ? std::abs(value) / length : std::abs(value);
+}
+
+LocalField::LocalField(FieldEvaluator& whole, const Field& part, const Box& box)
+    : whole_(whole), part_(part), box_(box), extent_(extent_of(whole.field().traits().bounds)) {}
 
 bool LocalField::holds(const glm::dvec3& point) const {
   return glm::all(glm::greaterThanEqual(point, box_.lower)) && glm::all(glm::lessThanEqual(point, box_.upper));
@@ -21,8 +32,10 @@ bool LocalField::holds(const glm::dvec3& point) const {
 double LocalField::value(const glm::dvec3& point) { return (holds(point) ? part_ : whole_).value(point); }
 
 void LocalField::gradients(std::span<const glm::dvec3> points, std::span<double> values, std::span<glm::dvec3> gradients) {
-  const bool inside = std::all_of(points.begin(), points.end(), [&](const glm::dvec3& p) { return holds(p); });
-  (inside ? part_ : whole_).gradients(points, values, gradients);
+  if (std::all_of(points.begin(), points.end(), [&](const glm::dvec3& p) { return holds(p); }))
+    return part_.gradients(points, values, gradients);
+  for (size_t i = 0; i < points.size(); ++i)
+    (holds(points[i]) ? part_ : whole_).gradients(points.subspan(i, 1), values.subspan(i, 1), gradients.subspan(i, 1));
 }
 
 void LocalField::gradient(const glm::dvec3& point, double& value, glm::dvec3& gradient) {
@@ -33,21 +46,39 @@ glm::dvec3 LocalField::unit_gradient(const glm::dvec3& point) {
   glm::dvec3 slope;
   double value = 0.0;
   gradient(point, value, slope);
-  const double length = glm::length(slope);
-  return length > 0.0 && std::isfinite(length) ? slope / length : glm::dvec3(0.0);
+  return direction_of(slope);
 }
 
 double LocalField::distance_off(const glm::dvec3& point) {
   glm::dvec3 slope;
   double value = 0.0;
   gradient(point, value, slope);
-  const double length = glm::length(slope);
-  return length > 0.0 ? std::abs(value) / length : std::abs(value);
+  return distance_by(value, slope);
 }
 
-bool LocalField::project(glm::dvec3& point, double tolerance) {
-  const auto at = [this](const glm::dvec3& p, double& value, glm::dvec3& slope) { gradient(p, value, slope); };
-  return project_with(at, whole_.field().traits().bounds, point, tolerance);
+Landing LocalField::project(const glm::dvec3& point) { return project(std::span(&point, 1)).front(); }
+
+std::vector<Landing> LocalField::project(std::span<const glm::dvec3> points) {
+  constexpr double kTolerance = 1e-12;
+  std::vector<Projection> projections;
+  projections.reserve(points.size());
+  for (const glm::dvec3& point : points) projections.emplace_back(point, extent_, kTolerance);
+  std::vector<size_t> open(points.size());
+  std::iota(open.begin(), open.end(), size_t{0});
+  std::vector<glm::dvec3> asked, slopes;
+  std::vector<double> values;
+  while (!open.empty()) {
+    asked.clear();
+    for (const size_t i : open) asked.push_back(projections[i].asks());
+    values.resize(open.size()), slopes.resize(open.size());
+    gradients(asked, values, slopes);
+    for (size_t k = 0; k < open.size(); ++k) projections[open[k]].answer(values[k], slopes[k]);
+    std::erase_if(open, [&](size_t i) { return projections[i].done(); });
+  }
+  std::vector<Landing> landings;
+  landings.reserve(points.size());
+  for (const Projection& one : projections) landings.push_back({one.position(), one.reached(), one.value(), one.gradient()});
+  return landings;
 }
 
 namespace {

@@ -10,6 +10,19 @@
 
 namespace limn {
 
+/// Where a point came onto the surface, and the field there.
+struct Landing {
+  glm::dvec3 position{0.0};  ///< As near as it came, where it did not reach the surface.
+  bool reached = false;
+  double value = 0.0;
+  glm::dvec3 gradient{0.0};
+};
+
+/// The gradient's direction; zero where it has none.
+glm::dvec3 direction_of(const glm::dvec3& gradient);
+/// |f| / |grad f|: about the distance from the surface. |f| where the gradient vanishes.
+double distance_by(double value, const glm::dvec3& gradient);
+
 /// The same numbers as the whole field's, to the last bit, wherever it is asked; quick within its box.
 class LocalField {
  public:
@@ -19,18 +32,20 @@ class LocalField {
   double value(const glm::dvec3& point);
   void gradients(std::span<const glm::dvec3> points, std::span<double> values, std::span<glm::dvec3> gradients);
   void gradient(const glm::dvec3& point, double& value, glm::dvec3& gradient);
-  /// The gradient's direction; zero where it has none.
+  /// As direction_of and distance_by.
   glm::dvec3 unit_gradient(const glm::dvec3& point);
-  /// |f| / |grad f|: about the distance from the surface. |f| where the gradient vanishes.
   double distance_off(const glm::dvec3& point);
   /// As project_to_surface (sdf/shape.h).
-  bool project(glm::dvec3& point, double tolerance = 1e-12);
+  Landing project(const glm::dvec3& point);
+  /// Several at once take less time each.
+  std::vector<Landing> project(std::span<const glm::dvec3> points);
 
  private:
   bool holds(const glm::dvec3& point) const;
   FieldEvaluator& whole_;
   FieldEvaluator part_;
   Box box_;
+  double extent_;
 };
 
 /// Calls `visit` for groups of neighbouring points, in parallel, until each point that `which` names by its index was in one. A group's

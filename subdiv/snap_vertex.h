@@ -23,10 +23,19 @@ struct Surroundings {
 struct Snapped {
   glm::dvec3 position{0.0};
   bool feature = false;
+  double off = 0.0;  ///< About how far the surface is from there.
+};
+
+/// A vertex to be brought onto the surface.
+struct SnapTask {
+  glm::dvec3 start{0.0};
+  const Surroundings* around = nullptr;
 };
 
 /// From far to near: sides are sampled ever closer to the vertex while it walks onto their meeting line. On a smooth surface the normals
 /// soon agree and the vertex is projected; on a crease they never do.
 Snapped snap(LocalField& field, const glm::dvec3& start, const Surroundings& around);
+/// Several at once take less time each, and come to the same.
+std::vector<Snapped> snap(LocalField& field, std::span<const SnapTask> tasks);
 
 }  // namespace limn

@@ -132,14 +132,16 @@ CutCorner cut_corner(LocalField& local, const Quad& quad) {
   const double size = glm::length(outward);
   // All sides that the quad's corners lie on: a little way from each of them towards the others.
   Surroundings around{{}, length, size > 0.0 ? outward / size : glm::dvec3(0.0)};
-  std::vector<glm::dvec3> normals;
+  std::vector<glm::dvec3> normals, beside;
   for (size_t i = 0; i < 4; ++i) {
     for (size_t j = 0; j < 4; ++j) {
-      glm::dvec3 p = quad[i] + 0.05 * (quad[j] - quad[i]);
-      if (i == j || !local.project(p)) continue;
-      around.middles.push_back(p);
-      normals.push_back(local.unit_gradient(p));
+      if (i != j) beside.push_back(quad[i] + 0.05 * (quad[j] - quad[i]));
     }
+  }
+  for (const Landing& landing : local.project(beside)) {
+    if (!landing.reached) continue;
+    around.middles.push_back(landing.position);
+    normals.push_back(direction_of(landing.gradient));
   }
   if (around.middles.empty()) return cut;
   const Snapped found = snap(local, meet_planes(around.middles, normals, middle), around);

@@ -13,12 +13,6 @@
 namespace limn {
 namespace {
 
-/// A side that looks away from a vertex's faces by more (148 degrees) is the other one of a wall.
-constexpr double kWallCosine = -0.85;
-
-/// Sampled off the surface, and therefore stricter (10 degrees).
-const double kPlainlySmoothCosine = std::cos(10.0 * std::numbers::pi / 180.0);
-
 /// On a smooth surface a thousandth of an edge does not turn the normal by 5 degrees.
 const double kSameSideCosine = std::cos(5.0 * std::numbers::pi / 180.0);
 
@@ -109,105 +103,6 @@ std::vector<Surroundings> surroundings_of(const Mesh& mesh, const Moving& moving
   return around;
 }
 
-/// In a thin wall the nearest sheet may be the wrong one, whose outside is the other way. Along the outward direction the right one is
-/// where the field turns from negative to positive; the crossing nearest to `start` within one edge length is taken.
-bool project_along(LocalField& field, glm::dvec3& point, const Surroundings& around) {
-  constexpr int kSteps = 24;
-  const double step = around.edge_length / kSteps;
-  const auto at = [&](double t) { return point + t * around.outward; };
-  double best = 2.0 * around.edge_length;
-  double previous = field.value(at(-around.edge_length));
-  for (int i = -kSteps + 1; i <= kSteps; ++i) {
-    const double value = field.value(at(i * step));
-    if (previous < 0.0 && value >= 0.0) {
-      double in = (i - 1) * step, out = i * step;
-      for (int k = 0; k < 60; ++k) {
-        const double middle = 0.5 * (in + out);
-        (field.value(at(middle)) < 0.0 ? in : out) = middle;
-      }
-      if (std::abs(out) < std::abs(best)) best = out;
-    }
-    previous = value;
-  }
-  if (best > around.edge_length) return false;
-  point = at(best);
-  return true;
-}
-
-/// Onto the sheet of the surface that looks the same way as the faces around the vertex.
-bool project(LocalField& field, glm::dvec3& point, const Surroundings& around) {
-  const glm::dvec3 start = point;
-  const bool reached = field.project(point);
-  if (reached && glm::dot(field.unit_gradient(point), around.outward) > -0.1) return true;
-  glm::dvec3 along = start;
-  if (!project_along(field, along, around)) return reached;
-  point = along;
-  return true;
-}
-
-/// Points of the surface a fraction of the way to the faces' middles, with their normals; true where the normals differ as at a crease.
-bool sample_sides(LocalField& field, const glm::dvec3& x, const Surroundings& around, double fraction, std::vector<glm::dvec3>& points,
-                  std::vector<glm::dvec3>& normals) {
-  points.clear(), normals.clear();
-  for (const glm::dvec3& middle : around.middles) {
-    glm::dvec3 p = x + fraction * (middle - x);
-    if (!field.project(p)) continue;
-    const glm::dvec3 normal = field.unit_gradient(p);
-    // The other side of a thin wall is no side of this vertex; that of a knife edge is.
-    if (normal == glm::dvec3(0.0) || glm::dot(normal, around.outward) < kWallCosine) continue;
-    points.push_back(p), normals.push_back(normal);
-  }
-  for (size_t i = 1; i < normals.size(); ++i)
-    for (size_t j = 0; j < i; ++j)
-      if (glm::dot(normals[i], normals[j]) < kCreaseCosine) return true;
-  return false;
-}
-
-/// The gradient half way to the faces' middles turns less than a crease does, without any projection: most vertices are let off with this.
-bool is_plainly_smooth(LocalField& field, const glm::dvec3& x, const Surroundings& around) {
-  std::array<glm::dvec3, 8> points, gradients;
-  std::array<double, 8> values;
-  const size_t n = around.middles.size();
-  if (n > points.size()) return false;
-  for (size_t i = 0; i < n; ++i) points[i] = 0.5 * (x + around.middles[i]);
-  field.gradients(std::span(points.data(), n), std::span(values.data(), n), std::span(gradients.data(), n));
-  for (size_t i = 0; i < n; ++i) {
-    const double length = glm::length(gradients[i]);
-    if (!(length > 0.0) || !std::isfinite(length)) return false;
-    gradients[i] /= length;
-    for (size_t j = 0; j < i; ++j)
-      if (glm::dot(gradients[i], gradients[j]) < kPlainlySmoothCosine) return false;
-  }
-  return true;
-}
-
-}  // namespace
-
-Snapped snap(LocalField& field, const glm::dvec3& start, const Surroundings& around) {
-  glm::dvec3 plain = start;
-  const bool reached = project(field, plain, around);
-  if (reached && is_plainly_smooth(field, start, around)) return {plain, false};
-  std::vector<glm::dvec3> points, normals;
-  glm::dvec3 x = start;
-  bool creased = false;
-  for (const double fraction : {0.5, 0.2, 0.05, 0.01, 1e-3, 1e-5, 1e-7}) {
-    creased = sample_sides(field, x, around, fraction, points, normals);
-    if (!creased) break;
-    const glm::dvec3 next = meet_planes(points, normals, x);
-    // Planes that nearly agree meet far away: that is no crease of this vertex. Half way along an edge or a diagonal that was refined, a
-    // crease across it may be as far as its half, which is one and a half of the new edges.
-    if (!(glm::distance(next, start) < 1.5 * around.edge_length)) {
-      creased = false;
-      break;
-    }
-    x = next;
-  }
-  if (creased) return {x, true};
-  return {reached ? plain : start, false};
-}
-
-namespace {
-
 void snap_some(const Field& field, Mesh& mesh, const std::vector<char>* which, SnapResult& result) {
   const Moving moving = moving_vertices(mesh, which);
   if (moving.vertices.empty()) return;
@@ -216,12 +111,13 @@ void snap_some(const Field& field, Mesh& mesh, const std::vector<char>* which, S
   for (size_t k = 0; k < around.size(); ++k) reach[moving.vertices[k]] = kSnapReach * around[k].edge_length;
   const std::vector<glm::dvec3> starts = mesh.positions;
   visit_groups(field, starts, reach, moving.vertices, [&](LocalField& local, std::span<const std::uint32_t> members) {
-    for (const std::uint32_t v : members) {
-      const auto k = static_cast<size_t>(moving.place[v]);
-      const Snapped snapped = snap(local, starts[v], around[k]);
-      mesh.positions[v] = snapped.position;
-      result.feature[v] = snapped.feature;
-      left[k] = local.distance_off(snapped.position);
+    std::vector<SnapTask> tasks;
+    for (const std::uint32_t v : members) tasks.push_back({starts[v], &around[static_cast<size_t>(moving.place[v])]});
+    const std::vector<Snapped> snapped = snap(local, tasks);
+    for (size_t i = 0; i < members.size(); ++i) {
+      mesh.positions[members[i]] = snapped[i].position;
+      result.feature[members[i]] = snapped[i].feature;
+      left[static_cast<size_t>(moving.place[members[i]])] = snapped[i].off;
     }
   });
   for (const double value : left) result.worst_value = std::max(result.worst_value, value);
@@ -246,16 +142,26 @@ std::vector<glm::vec3> field_normals(const Field& field, const Mesh& mesh, const
   std::vector<std::uint32_t> all(mesh.face_count());
   std::iota(all.begin(), all.end(), 0u);
   visit_groups(field, faces.middles, faces.radii, std::move(all), [&](LocalField& local, std::span<const std::uint32_t> members) {
+    // At each corner, and a little way into the face, where one side of a crease has the word. Vertices can lie on a crease by chance, too.
+    std::vector<glm::dvec3> points, beside;
+    for (const std::uint32_t f : members) {
+      for (const std::int32_t v : face_corners(mesh, first[f], f)) {
+        const glm::dvec3& position = mesh.positions[static_cast<size_t>(v)];
+        points.push_back(position);
+        beside.push_back(position + 1e-3 * (faces.middles[f] - position));
+      }
+    }
+    std::vector<double> values(points.size());
+    std::vector<glm::dvec3> gradients(points.size());
+    local.gradients(points, values, gradients);
+    const std::vector<Landing> landings = local.project(beside);
+    size_t k = 0;
     for (const std::uint32_t f : members) {
       const auto corners = face_corners(mesh, first[f], f);
-      for (size_t i = 0; i < corners.size(); ++i) {
-        const auto v = static_cast<size_t>(corners[i]);
-        glm::dvec3 normal = local.unit_gradient(mesh.positions[v]);
-        // A little way into the face, where one side of a crease has the word. Vertices can lie on a crease by chance, too.
-        glm::dvec3 beside = mesh.positions[v] + 1e-3 * (faces.middles[f] - mesh.positions[v]);
-        local.project(beside);
-        const glm::dvec3 own_side = local.unit_gradient(beside);
-        if (feature[v] || glm::dot(normal, own_side) < kSameSideCosine) normal = own_side;
+      for (size_t i = 0; i < corners.size(); ++i, ++k) {
+        glm::dvec3 normal = direction_of(gradients[k]);
+        const glm::dvec3 own_side = direction_of(landings[k].gradient);
+        if (feature[static_cast<size_t>(corners[i])] || glm::dot(normal, own_side) < kSameSideCosine) normal = own_side;
         if (normal != glm::dvec3(0.0)) normals[static_cast<size_t>(first[f]) + i] = glm::vec3(normal);
       }
     }

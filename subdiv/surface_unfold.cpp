@@ -64,13 +64,14 @@ std::vector<std::int32_t> folded_among(const Field& field, const Mesh& mesh, con
   std::vector<char> bad(mesh.face_count(), 0);
   const std::vector<std::uint32_t> which(candidates.begin(), candidates.end());
   visit_groups(field, faces.middles, faces.radii, which, [&](LocalField& local, std::span<const std::uint32_t> members) {
-    std::vector<glm::dvec3> corners;
-    for (const std::uint32_t f : members) {
+    std::vector<glm::dvec3> corners, middles;
+    for (const std::uint32_t f : members) middles.push_back(faces.middles[f]);
+    const std::vector<Landing> landings = local.project(middles);
+    for (size_t i = 0; i < members.size(); ++i) {
+      const std::uint32_t f = members[i];
       gather_corners(mesh, face_corners(mesh, first[f], f), corners);
       const glm::dvec3 area = vector_area(corners);
-      glm::dvec3 middle = faces.middles[f];
-      local.project(middle);
-      bad[f] = glm::dot(area, local.unit_gradient(middle)) < 0.0 || (reflex_too && has_reflex_corner(corners, area));
+      bad[f] = glm::dot(area, direction_of(landings[i].gradient)) < 0.0 || (reflex_too && has_reflex_corner(corners, area));
     }
   });
   std::vector<std::int32_t> folded;

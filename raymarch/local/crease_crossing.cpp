@@ -15,8 +15,10 @@ struct SurfacePoint {
 };
 
 bool bring(LocalField& field, SurfacePoint& point) {
-  if (!field.project(point.position)) return false;
-  point.normal = field.unit_gradient(point.position);
+  const Landing landing = field.project(point.position);
+  point.position = landing.position;
+  if (!landing.reached) return false;
+  point.normal = direction_of(landing.gradient);
   return point.normal != glm::dvec3(0.0);
 }
 

@@ -27,9 +27,7 @@ std::array<glm::dvec3, 2> ends_of(const LocalTriangles& mesh, const LocalEdge& e
 
 /// The normal a little way from `corner` towards `inside`; zero where there is none.
 glm::dvec3 normal_beside(LocalField& field, const glm::dvec3& corner, const glm::dvec3& inside) {
-  glm::dvec3 beside = corner + kInside * (inside - corner);
-  field.project(beside);
-  return field.unit_gradient(beside);
+  return direction_of(field.project(corner + kInside * (inside - corner)).gradient);
 }
 
 /// Whether an edge's normals on one of its sides differ as those on two sides of a crease do.
@@ -54,7 +52,7 @@ EdgeMiddle middle_on(LocalField& field, const LocalTriangles& mesh, const LocalE
   around.outward = length > 0.0 ? around.outward / length : glm::dvec3(0.0);
   std::optional<glm::dvec3> crossing;
   if (may_cross(edge)) crossing = crease_crossing(field, a, b);
-  const Snapped snapped = crossing ? Snapped{*crossing, true} : snap(field, 0.5 * (a + b), around);
+  const Snapped snapped = crossing ? Snapped{*crossing, true, 0.0} : snap(field, 0.5 * (a + b), around);
   EdgeMiddle middle{snapped.position, {}, snapped.feature, crossing.has_value()};
   const glm::dvec3 normal = field.unit_gradient(snapped.position);
   middle.normals = {normal, normal};

@@ -75,12 +75,12 @@ HWY_INLINE LaneJet abs(const LaneJet& a) { return select(a.value < reals(0.0), -
 HWY_INLINE LaneJet minimum(const LaneJet& a, const LaneJet& b) { return select(a.value < b.value, a, b); }
 HWY_INLINE LaneJet maximum(const LaneJet& a, const LaneJet& b) { return select(a.value > b.value, a, b); }
 HWY_INLINE LaneJet sine(const LaneJet& a) {
-  const Reals s = sine_of_large(a.value, 0.0);
-  return chain(a, s, sine_of_large(a.value, 1.0), -s);
+  const Reals s = sine(a.value);
+  return chain(a, s, cosine(a.value), -s);
 }
 HWY_INLINE LaneJet cosine(const LaneJet& a) {
-  const Reals c = sine_of_large(a.value, 1.0);
-  return chain(a, c, -sine_of_large(a.value, 0.0), -c);
+  const Reals c = cosine(a.value);
+  return chain(a, c, -sine(a.value), -c);
 }
 
 /// The length of N jets; 0 without derivatives where it is 0.

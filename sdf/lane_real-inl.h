@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "sdf/sine.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace limn {
 namespace HWY_NAMESPACE {
@@ -75,8 +77,7 @@ HWY_INLINE Reals smooth_minimum(Reals a, Reals b, double radius) {
   return minimum(a, b) - blend * blend * blend / reals(6.0 * radius * radius);
 }
 
-/// Sines of x + shift quarter turns. Cody & Waite's reduction by pi/2 in three parts and the polynomials of the Netlib fdlibm; right to a
-/// unit in the last place up to a million.
+/// Sines of x + shift quarter turns, as small_sine_and_cosine (sine.h) has them, to the last bit.
 HWY_INLINE Reals sine_of_quarter_turns(Reals x, double shift) {
   const Reals q = round(x * (2.0 / std::numbers::pi));
   const Reals r = x - q * 1.57079632673412561417e+00 - q * 6.07710050630396597660e-11 - q * 2.02226624879595063154e-21;
@@ -108,7 +109,7 @@ static HWY_NOINLINE Reals sine_of_large(Reals x, double shift) {
   return load(lanes);
 }
 HWY_INLINE Reals shifted_sine(Reals x, double shift) {
-  if (HWY_UNLIKELY(!hn::AllTrue(RealTag(), abs(x) < reals(1e6)))) return sine_of_large(x, shift);
+  if (HWY_UNLIKELY(!hn::AllTrue(RealTag(), abs(x) < reals(kLargeAngle)))) return sine_of_large(x, shift);
   return sine_of_quarter_turns(x, shift);
 }
 HWY_INLINE Reals sine(Reals x) { return shifted_sine(x, 0.0); }

@@ -11,7 +11,10 @@
 // no derivative is ever NaN or infinite; interval types take the hull of all sides (Clarke).
 
 #include <cmath>
+#include <concepts>
 #include <type_traits>
+
+#include "sdf/sine.h"
 
 namespace limn {
 
@@ -62,10 +65,12 @@ R maximum(R a, R b) {
 }
 template <Real R>
 R sine(R x) {
+  if constexpr (std::same_as<R, double>) return sine_and_cosine(x).sine;
   return std::sin(x);
 }
 template <Real R>
 R cosine(R x) {
+  if constexpr (std::same_as<R, double>) return sine_and_cosine(x).cosine;
   return std::cos(x);
 }
 template <Real R>

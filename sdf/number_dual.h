@@ -144,13 +144,13 @@ const D& maximum(const D& a, const D& b) {
 }
 template <Differential D>
 D sine(const D& a) {
-  const double s = std::sin(a.value);
-  return chain(a, s, std::cos(a.value), -s);
+  const auto [s, c] = sine_and_cosine(a.value);
+  return chain(a, s, c, -s);
 }
 template <Differential D>
 D cosine(const D& a) {
-  const double c = std::cos(a.value);
-  return chain(a, c, -std::sin(a.value), -c);
+  const auto [s, c] = sine_and_cosine(a.value);
+  return chain(a, c, -s, -c);
 }
 
 /// The length of a vector. Written with its unit vector u: gradient u . grad x, Hessian u . Hess x + (J'J - gg')/n, in which the parts

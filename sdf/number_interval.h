@@ -101,7 +101,7 @@ inline Interval cosine(const Interval& a) {
   const auto holds = [&](double phase) {
     return std::floor((a.upper + slack - phase) / (2.0 * pi)) >= (a.lower - slack - phase) / (2.0 * pi);
   };
-  const double at_lower = std::cos(a.lower), at_upper = std::cos(a.upper);
+  const double at_lower = cosine(a.lower), at_upper = cosine(a.upper);
   const Interval ends = outward(std::min(at_lower, at_upper) - slack, std::max(at_lower, at_upper) + slack);
   return {holds(pi) ? -1.0 : std::max(ends.lower, -1.0), holds(0.0) ? 1.0 : std::min(ends.upper, 1.0)};
 }

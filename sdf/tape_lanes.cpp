@@ -130,8 +130,7 @@ void tape_values_at(const FieldTape& tape, std::span<const glm::dvec3> points, T
 bool has_bits_of_field(const FieldTape& tape) {
   static const ShapeFunctions* const metaballs = make_shape("metaballs").program().leaves.front().functions;
   const auto other = [](const TapeLeaf& leaf) { return leaf.leaf->functions == metaballs; };
-  const auto sine = [](const TapeStep& step) { return step.operation == TapeOperation::sine || step.operation == TapeOperation::cosine; };
-  return std::none_of(tape.leaves.begin(), tape.leaves.end(), other) && std::none_of(tape.steps.begin(), tape.steps.end(), sine);
+  return std::none_of(tape.leaves.begin(), tape.leaves.end(), other);
 }
 void tape_slopes(const FieldTape& tape, std::span<const TapeStep> steps, const LaneRays& rays, const LaneArray& s, TapeScratch& scratch,
                  LaneArray& values, LaneArray& slopes) {

@@ -2,6 +2,7 @@
 #include <map>
 #include <tuple>
 
+#include "sdf/sine.h"
 #include "sdf/vm/split.h"
 #include "sdf/vm/vm_number.h"
 #include "sdf/vm/vm_program.h"
@@ -18,9 +19,9 @@ double folded(const Step& step, double a, double b) {
     case Operation::square:
       return a * a;
     case Operation::sine:
-      return std::sin(a);
+      return sine_and_cosine(a).sine;
     case Operation::cosine:
-      return std::cos(a);
+      return sine_and_cosine(a).cosine;
     case Operation::add:
       return a + b;
     case Operation::subtract:

@@ -1,0 +1,56 @@
+// Sines and cosines beside those of long double.
+
+#include "sdf/sine.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "tests/random_seed.h"
+
+namespace limn {
+namespace {
+
+/// In units in the last place of the right value.
+double units_off(double value, long double right) {
+  const double nearest = std::fabs(static_cast<double>(right));
+  const double unit = std::nextafter(nearest, std::numeric_limits<double>::infinity()) - nearest;
+  return static_cast<double>(std::fabs(static_cast<long double>(value) - right)) / unit;
+}
+
+void expect_right(double x) {
+  const auto [sine, cosine] = sine_and_cosine(x);
+  EXPECT_LE(units_off(sine, std::sin(static_cast<long double>(x))), 3.0) << "sine of " << x;
+  EXPECT_LE(units_off(cosine, std::cos(static_cast<long double>(x))), 3.0) << "cosine of " << x;
+}
+
+TEST(Sine, IsRightToThreeUnitsInTheLastPlace) {
+  std::mt19937_64 random(random_seed());
+  std::uniform_real_distribution<double> angle(-50.0, 50.0), power(-30.0, 6.0);
+  std::uniform_int_distribution<int> quarters(-600000, 600000);
+  for (int i = 0; i < 100000; ++i) {
+    expect_right(angle(random));
+    expect_right(std::copysign(std::pow(10.0, power(random)), angle(random)));
+    // Beside the zeros, where the reduction has to be exact.
+    expect_right(quarters(random) * (0.5 * std::numbers::pi));
+    if (HasFailure()) return;
+  }
+}
+
+TEST(Sine, LeavesLargeAnglesToTheLibrary) {
+  EXPECT_EQ(sine_and_cosine(0.0).sine, 0.0);
+  EXPECT_EQ(sine_and_cosine(-0.0).sine, 0.0);
+  EXPECT_EQ(sine_and_cosine(0.0).cosine, 1.0);
+  for (const double x : {1e6, -1e6, 1e9, -1e300}) {
+    EXPECT_EQ(sine_and_cosine(x).sine, std::sin(x));
+    EXPECT_EQ(sine_and_cosine(x).cosine, std::cos(x));
+  }
+  for (const double x : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_TRUE(std::isnan(sine_and_cosine(x).sine));
+    EXPECT_TRUE(std::isnan(sine_and_cosine(x).cosine));
+  }
+}
+
+}  // namespace
+}  // namespace limn

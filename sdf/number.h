@@ -14,6 +14,7 @@
 #include <concepts>
 #include <type_traits>
 
+#include "sdf/powers.h"
 #include "sdf/sine.h"
 
 namespace limn {
@@ -106,8 +107,12 @@ R power_norm(R a, R b, double power) {
   const R high = maximum(std::fabs(a), std::fabs(b));
   const R pivot = power > 0.0 ? high : low;
   if (pivot == R(0)) return R(0);
-  const R ratio = std::pow(low / high, static_cast<R>(std::fabs(power)));
-  return pivot * std::pow(R(1) + ratio, static_cast<R>(1.0 / power));
+  if constexpr (std::same_as<R, double>) {
+    return pivot * power_of(1.0 + power_of(low / high, std::fabs(power)), 1.0 / power);
+  } else {
+    const R ratio = std::pow(low / high, static_cast<R>(std::fabs(power)));
+    return pivot * std::pow(R(1) + ratio, static_cast<R>(1.0 / power));
+  }
 }
 
 /// The cubic polynomial minimum, twice continuously differentiable where both arguments are: Quilez, "smooth minimum" (2013, 2024).

@@ -207,13 +207,13 @@ D power_norm(const D& a, D b, double power) {
   const double ua = std::fabs(a.value) / n, ub = std::fabs(b.value) / n;
   // With ua^p + ub^p = 1 every derivative is a product of powers of ua and ub: nothing cancels. Where a second derivative
   // is infinite (1 < p < 2, on a coordinate plane) it is taken as 0.
-  const double wa = std::copysign(std::pow(ua, power - 1.0), a.value);
-  const double wb = std::copysign(std::pow(ub, power - 1.0), b.value);
+  const double wa = std::copysign(power_of(ua, power - 1.0), a.value);
+  const double wb = std::copysign(power_of(ub, power - 1.0), b.value);
   Partials f{n, wa, wb, 0.0, 0.0, 0.0};
   if constexpr (std::same_as<D, Jet>) {
     const double curvature = (power - 1.0) / n;
-    if (ua > 0.0 || power >= 2.0) f.aa = curvature * std::pow(ua, power - 2.0) * std::pow(ub, power);
-    if (ub > 0.0 || power >= 2.0) f.bb = curvature * std::pow(ub, power - 2.0) * std::pow(ua, power);
+    if (ua > 0.0 || power >= 2.0) f.aa = curvature * power_of(ua, power - 2.0) * power_of(ub, power);
+    if (ub > 0.0 || power >= 2.0) f.bb = curvature * power_of(ub, power - 2.0) * power_of(ua, power);
     f.ab = -curvature * wa * wb;
   }
   return chain(a, b, f);

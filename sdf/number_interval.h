@@ -122,8 +122,7 @@ inline Interval corner_distance(const Interval& a, const Interval& b, const Inte
 }
 inline Interval power_norm(const Interval& a, const Interval& b, double power) {
   const double low = power_norm(mignitude(a), mignitude(b), power), high = power_norm(magnitude(a), magnitude(b), power);
-  const double slack = 64.0 * std::numeric_limits<double>::epsilon();  // pow, twice
-  return outward(low - slack * low, high + slack * high);
+  return outward(low - kPowerSlack * low, high + kPowerSlack * high);
 }
 inline Interval smooth_minimum(const Interval& a, const Interval& b, double radius) {
   return outward(smooth_minimum(a.lower, b.lower, radius) - 1e-15 * radius, smooth_minimum(a.upper, b.upper, radius) + 1e-15 * radius);
@@ -298,13 +297,12 @@ inline Interval power_norm_weight(const Interval& a, const Interval& b, double p
   const auto at = [power](double x, double y, double degenerate) {
     const double n = power_norm(x, y, power);
     if (n == 0.0) return power > 0.0 || (x == 0.0 && y == 0.0) ? degenerate : x == 0.0 ? 1.0 : 0.0;
-    return std::pow(x / n, power - 1.0);
+    return power_of(x / n, power - 1.0);
   };
   const double low_a = mignitude(a), high_a = magnitude(a), low_b = mignitude(b), high_b = magnitude(b);
   const double least = power > 0.0 ? at(low_a, high_b, 0.0) : at(high_a, low_b, 0.0);
   const double most = power > 0.0 ? at(high_a, low_b, 1.0) : at(low_a, high_b, 1.0);
-  const double slack = 64.0 * std::numeric_limits<double>::epsilon();
-  const Interval weight{std::max(least - slack, 0.0), std::min(most + slack, 1.0)};
+  const Interval weight{std::max(least - kPowerSlack, 0.0), std::min(most + kPowerSlack, 1.0)};
   if (a.lower > 0.0 || power < 0.0) return weight;
   return a.upper < 0.0 ? -weight : Interval{-weight.upper, weight.upper};
 }

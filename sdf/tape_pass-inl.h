@@ -8,6 +8,7 @@
 
 #include "sdf/lane_jet-inl.h"
 #include "sdf/lane_number-inl.h"
+#include "sdf/lane_power-inl.h"
 #include "sdf/tape_lanes.h"
 #include "sdf/tape_scalar.h"
 

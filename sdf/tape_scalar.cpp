@@ -74,11 +74,4 @@ void shape_by_lane(const FieldLeaf& leaf, TapeNumber number, int lanes, const do
   });
 }
 
-void power_norm_by_lane(TapeNumber number, int lanes, const double* a, const double* b, double power, double* target) {
-  for_parts(number, [&](auto kind) {
-    using T = decltype(kind);
-    for (int i = 0; i < lanes; ++i) put_lane(number, T(power_norm(lane_of<T>(number, a, i), lane_of<T>(number, b, i), power)), i, target);
-  });
-}
-
 }  // namespace limn

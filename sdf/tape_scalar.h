@@ -17,6 +17,5 @@ enum class TapeNumber {
 
 /// Of the first `lanes`.
 void shape_by_lane(const FieldLeaf& leaf, TapeNumber number, int lanes, const double* x, const double* y, const double* z, double* target);
-void power_norm_by_lane(TapeNumber number, int lanes, const double* a, const double* b, double power, double* target);
 
 }  // namespace limn

@@ -198,9 +198,7 @@ void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* regist
         run_corner<T>(runner, step, choice);
         break;
       case TapeOperation::power_norm:
-        power_norm_by_lane(Kind<T>::kNumber, Used * kWidth, runner.at(step.a, 0), runner.at(step.b, 0), step.constant,
-                           runner.at(step.target, 0));
-        break;
+        LIMN_STEP2(power_norm(a, b, step.constant));
       case TapeOperation::minimum:
       case TapeOperation::maximum:
       case TapeOperation::smooth_minimum:

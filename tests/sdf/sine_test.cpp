@@ -8,21 +8,15 @@
 #include <random>
 
 #include "tests/random_seed.h"
+#include "tests/units_off.h"
 
 namespace limn {
 namespace {
 
-/// In units in the last place of the right value.
-double units_off(double value, long double right) {
-  const double nearest = std::fabs(static_cast<double>(right));
-  const double unit = std::nextafter(nearest, std::numeric_limits<double>::infinity()) - nearest;
-  return static_cast<double>(std::fabs(static_cast<long double>(value) - right)) / unit;
-}
-
 void expect_right(double x) {
   const auto [sine, cosine] = sine_and_cosine(x);
-  EXPECT_LE(units_off(sine, std::sin(static_cast<long double>(x))), 3.0) << "sine of " << x;
-  EXPECT_LE(units_off(cosine, std::cos(static_cast<long double>(x))), 3.0) << "cosine of " << x;
+  EXPECT_LE(test::units_off(sine, std::sin(static_cast<long double>(x))), 3.0) << "sine of " << x;
+  EXPECT_LE(test::units_off(cosine, std::cos(static_cast<long double>(x))), 3.0) << "cosine of " << x;
 }
 
 TEST(Sine, IsRightToThreeUnitsInTheLastPlace) {

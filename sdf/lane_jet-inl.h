@@ -1,5 +1,5 @@
 // Internal: jets of vectors of doubles. Every operation is that of Jet in sdf/number_dual.h, in the same order, so that each lane has the
-// bits of a Jet; sines are the library's for the same reason. Included once a SIMD target.
+// bits of a Jet. Included once a SIMD target.
 #if defined(LIMN_LANE_JET_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef LIMN_LANE_JET_INL_H
 #undef LIMN_LANE_JET_INL_H

@@ -22,7 +22,7 @@ void tape_jets(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch&
 
 /// f at any number of points (world); sizes equal. Every bit is that of FieldEvaluator::values() where has_bits_of_field().
 void tape_values_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values);
-/// False for sines, which lanes compute on their own, and for metaballs, which they add in another order.
+/// False for metaballs, which lanes add in another order.
 bool has_bits_of_field(const FieldTape& tape);
 
 /// The distances that the jets tell at any number of points; sizes equal.

@@ -22,29 +22,24 @@ using WholeTag = hn::RebindToSigned<RealTag>;
 
 HWY_INLINE Reals logarithm(Reals x) {
   const BitTag bits;
-  const auto root_of_half = hn::Set(bits, std::uint64_t{0x3fe6a09e667f3bcd});
-  const auto shifted = hn::Add(hn::BitCast(bits, x.v), hn::Set(bits, std::uint64_t{0x3ff0000000000000} - 0x3fe6a09e667f3bcd));
+  const auto shifted = hn::Add(hn::BitCast(bits, x.v), hn::Set(bits, kOneBits - kRootOfHalfBits));
   const auto power = hn::Sub(hn::BitCast(WholeTag(), hn::ShiftRight<52>(shifted)), hn::Set(WholeTag(), std::int64_t{1023}));
   const Reals k = {hn::ConvertTo(RealTag(), power)};
-  const auto mantissa = hn::And(shifted, hn::Set(bits, std::uint64_t{0x000fffffffffffff}));
-  const Reals f = Reals{hn::BitCast(RealTag(), hn::Add(mantissa, root_of_half))} - 1.0;
+  const auto fraction = hn::Add(hn::And(shifted, hn::Set(bits, kFractionBits)), hn::Set(bits, kRootOfHalfBits));
+  const Reals f = Reals{hn::BitCast(RealTag(), fraction)} - 1.0;
   const Reals s = f / (f + 2.0), z = s * s, w = z * z;
-  const Reals even = w * (reals(3.999999999940941908e-01) + w * (reals(2.222219843214978396e-01) + w * 1.531383769920937332e-01));
-  const Reals odd = z * (reals(6.666666666666735130e-01) +
-                         w * (reals(2.857142874366239149e-01) + w * (reals(1.818357216161805012e-01) + w * 1.479819860511658591e-01)));
+  const Reals even = w * (reals(kLogarithmEven[0]) + w * (reals(kLogarithmEven[1]) + w * kLogarithmEven[2]));
+  const Reals odd = z * (reals(kLogarithmOdd[0]) + w * (reals(kLogarithmOdd[1]) + w * (reals(kLogarithmOdd[2]) + w * kLogarithmOdd[3])));
   const Reals half = f * f * 0.5;
-  return s * (half + (even + odd)) + k * 1.90821492927058770002e-10 - half + f + k * 6.93147180369123816490e-01;
+  return s * (half + (even + odd)) + k * kLn2[1] - half + f + k * kLn2[0];
 }
 
 HWY_INLINE Reals exponential(Reals x) {
-  const Reals whole = reals(6755399441055744.0);
-  const Reals k = (x * 1.44269504088896338700e+00 + whole) - whole;
-  const Reals high = x - k * 6.93147180369123816490e-01, low = k * 1.90821492927058770002e-10;
+  const Reals k = (x * kOneByLn2 + kRoundsToWhole) - kRoundsToWhole;
+  const Reals high = x - k * kLn2[0], low = k * kLn2[1];
   const Reals r = high - low, z = r * r;
-  const Reals c =
-      r - z * (reals(1.66666666666666019037e-01) +
-               z * (reals(-2.77777777770155933842e-03) +
-                    z * (reals(6.61375632143793436117e-05) + z * (reals(-1.65339022054652515390e-06) + z * 4.13813679705723846039e-08))));
+  const double(&e)[5] = kExponentialSeries;
+  const Reals c = r - z * (reals(e[0]) + z * (reals(e[1]) + z * (reals(e[2]) + z * (reals(e[3]) + z * e[4]))));
   const Reals y = r * c / (reals(2.0) - c) - low + high + 1.0;
   const auto scale = hn::ShiftLeft<52>(hn::BitCast(BitTag(), hn::ConvertTo(WholeTag(), k.v)));
   return {hn::BitCast(RealTag(), hn::Add(hn::BitCast(BitTag(), y.v), scale))};

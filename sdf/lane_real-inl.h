@@ -77,25 +77,15 @@ HWY_INLINE Reals smooth_minimum(Reals a, Reals b, double radius) {
   return minimum(a, b) - blend * blend * blend / reals(6.0 * radius * radius);
 }
 
+HWY_INLINE Reals series_of(const double (&k)[6], Reals z) {
+  return reals(k[0]) + z * (reals(k[1]) + z * (reals(k[2]) + z * (reals(k[3]) + z * (reals(k[4]) + z * k[5]))));
+}
 /// Sines of x + shift quarter turns, as small_sine_and_cosine (sine.h) has them, to the last bit.
 HWY_INLINE Reals sine_of_quarter_turns(Reals x, double shift) {
   const Reals q = round(x * (2.0 / std::numbers::pi));
-  const Reals r = x - q * 1.57079632673412561417e+00 - q * 6.07710050630396597660e-11 - q * 2.02226624879595063154e-21;
+  const Reals r = x - q * kHalfPi[0] - q * kHalfPi[1] - q * kHalfPi[2];
   const Reals z = r * r;
-  const Reals s =
-      r +
-      r * z *
-          (reals(-1.66666666666666324348e-01) +
-           z * (reals(8.33333333332248946124e-03) +
-                z * (reals(-1.98412698298579493134e-04) +
-                     z * (reals(2.75573137070700676789e-06) + z * (reals(-2.50507602534068634195e-08) + z * 1.58969099521155010221e-10)))));
-  const Reals c =
-      reals(1.0) - z * 0.5 +
-      z * z *
-          (reals(4.16666666666666019037e-02) +
-           z * (reals(-1.38888888888741095749e-03) +
-                z * (reals(2.48015872894767294178e-05) +
-                     z * (reals(-2.75573143513906633035e-07) + z * (reals(2.08757232129817482790e-09) - z * 1.13596475577881948265e-11)))));
+  const Reals s = r + r * z * series_of(kSineSeries, z), c = reals(1.0) - z * 0.5 + z * z * series_of(kCosineSeries, z);
   const Reals turn = q + shift;
   const Reals quarter = turn - floor(turn * 0.25) * 4.0;  // 0..3
   const Reals odd = quarter - floor(quarter * 0.5) * 2.0;

@@ -20,10 +20,10 @@ void visit_uses(const Mesh& mesh, Visit visit) {
   for (size_t f = 0; f < mesh.face_count(); ++f) {
     const std::int32_t size = mesh.face_sizes[f];
     for (std::int32_t i = 0; i < size; ++i) {
-      const std::int32_t a = mesh.corner_vertices[static_cast<size_t>(first + i)];
-      const std::int32_t b = mesh.corner_vertices[static_cast<size_t>(i + 1 < size ? first + i + 1 : first)];
+      const std::int32_t at = first + i, next = i + 1 < size ? at + 1 : first;
+      const std::int32_t a = mesh.corner_vertices[static_cast<size_t>(at)], b = mesh.corner_vertices[static_cast<size_t>(next)];
       // A corner repeated within a face makes an edge of no length, which is the face's fault and no edge of the mesh.
-      if (a != b) visit(EdgeUse{std::min(a, b), std::max(a, b), static_cast<std::int32_t>(f), first + i, a < b});
+      if (a != b) visit(EdgeUse{std::min(a, b), std::max(a, b), static_cast<std::int32_t>(f), at, a < b});
     }
     first += size;
   }

@@ -275,8 +275,8 @@ TEST(Judge, FindsNothingWhereOneLineLeavesAnother) {
     const auto from_joint = [&](double length, double direction) {
       return joint + length * glm::dvec2(std::cos(direction), std::sin(direction));
     };
-    expect_clean(own_drawing_judged(graph_of({{{from_joint(0.2, leaving), joint}, {joint, from_joint(30.0, leaving + std::numbers::pi)}},
-                                              {{joint, from_joint(0.15, start)}}})));
+    expect_clean(own_drawing_judged(graph_of(
+        {{{from_joint(0.2, leaving), joint}, {joint, from_joint(30.0, leaving + std::numbers::pi)}}, {{joint, from_joint(0.15, start)}}})));
     if (HasFailure()) FAIL() << "angles " << start << " " << leaving;
   }
 }

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "sdf/field_program.h"
+#include "sdf/field_restriction.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_distance.h"
 #include "sdf/level_set_nano.h"
@@ -62,13 +63,19 @@ Lattice lattice_for(const Box& bounds, const LevelSetSettings& settings) {
 struct Cube {
   glm::ivec3 origin;
   int size;
-  Field field;  ///< Equals the whole one in reach of the cube's nodes, shorter where some of its parts are of no influence.
+  Field field;  ///< The whole one near the surface in reach of the cube's nodes, shorter where some of its parts are of no influence.
 };
 
 Box nodes_of(const Cube& cube, const Lattice& lattice) { return {lattice.node(cube.origin), lattice.node(cube.origin + (cube.size - 1))}; }
 
 /// Where the cube's field may be asked: the band about its nodes, and what the search for thin places looks at beside the surface in it.
 Box reach_of(const Cube& cube, const Lattice& lattice) { return dilate(nodes_of(cube, lattice), lattice.half_width + 4.0 * lattice.h); }
+
+/// The largest value, either way, of which a build asks more than its sign: what find_band_nodes() takes to reach the far corner of an
+/// eighth of a block, and some room for rounding.
+double exact_within(const Field& field, const Lattice& lattice) {
+  return std::max(field.traits().lipschitz, 1.0) * (lattice.half_width + 3.0 * lattice.h);
+}
 
 /// False only where no node of the cube lies within the half width of the surface.
 bool may_hold_band(FieldEvaluator& evaluator, const Lattice& lattice, const Cube& cube) {
@@ -106,7 +113,7 @@ std::vector<Cube> split(const std::vector<Cube>& cubes, const Lattice& lattice) 
     for (int octant = 0; octant < 8; ++octant) {
       Cube child{cubes[i].origin + half * glm::ivec3(octant & 1, (octant >> 1) & 1, octant >> 2), half, cubes[i].field};
       if (!may_hold_band(evaluator, lattice, child)) continue;
-      child.field = evaluator.restricted(reach_of(child, lattice));
+      child.field = restricted_near_surface(cubes[i].field, reach_of(child, lattice), exact_within(cubes[i].field, lattice));
       kept[i].push_back(std::move(child));
     }
   });

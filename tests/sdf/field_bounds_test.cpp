@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "sdf/field_program.h"
+#include "sdf/field_restriction.h"
+#include "sdf/shape.h"
 #include "tests/sdf/random_field.h"
 
 namespace limn::test {
@@ -59,6 +61,52 @@ TEST(FieldBounds, ARestrictedFieldIsTheSameInItsBoxToTheLastBit) {
     }
   });
   EXPECT_LT(after, before * 3 / 4);
+}
+
+TEST(FieldBounds, AFieldRestrictedNearTheSurfaceIsTheSameThereAndHasItsSignBeyond) {
+  size_t everywhere = 0, near = 0, inside = 0, outside = 0;
+  over_random_boxes([&](const Field& field, const Box& box, const std::vector<glm::dvec3>& points) {
+    FieldEvaluator evaluator(field);
+    everywhere += evaluator.restricted(box).program().leaves.size();
+    // About as large as values in the box are, so that parts come to lie on both sides of it.
+    std::vector<double> limits{0.0};
+    for (size_t i = 0; i < 8; ++i) limits.push_back((0.5 + 0.1 * static_cast<double>(i)) * std::abs(evaluator.value(points[i])));
+    for (const double beyond : limits) {
+      FieldEvaluator restricted(restricted_near_surface(field, box, beyond));
+      near += restricted.field().program().leaves.size();
+      std::vector<FieldJet> jets(points.size()), same(points.size());
+      evaluator.jets(points, jets);
+      restricted.jets(points, same);
+      for (size_t i = 0; i < points.size(); ++i) {
+        if (std::abs(jets[i].value) <= beyond) {
+          ++inside;
+          EXPECT_EQ(jets[i].value, same[i].value);
+          EXPECT_EQ(jets[i].gradient, same[i].gradient);
+          EXPECT_EQ(jets[i].hessian, same[i].hessian);
+        } else {
+          ++outside;
+          EXPECT_GT(std::copysign(same[i].value, same[i].value * jets[i].value), beyond);
+        }
+      }
+    }
+  });
+  EXPECT_LT(near, 9 * everywhere);
+  EXPECT_GT(inside, 1000u);
+  EXPECT_GT(outside, 1000u);
+}
+
+TEST(FieldBounds, WhatASmoothUnionBlendsInIsKeptHoweverFarItsSurfaceIs) {
+  const auto ball = [](const glm::dvec3& center) { return translate(make_shape("sphere", {{"radius", {0.1}}}), center); };
+  const Field sharp = combine(Csg::union_, ball({0.0, 0.65, 0.0}), ball({0.6, 0.0, 0.0}));
+  const Field field = combine(Csg::union_, std::vector<Field>{sharp, ball({0.0, -0.6, 0.0})}, 1.0);
+  // Both balls of the sharp union are farther off than 0.4 all over the box, and either may be the nearer one; the blend brings the field
+  // below 0.4.
+  const Box box{glm::dvec3(-0.05), glm::dvec3(0.05)};
+  FieldEvaluator whole(field), restricted(restricted_near_surface(field, box, 0.4));
+  for (const glm::dvec3& p : {glm::dvec3(0.0), glm::dvec3(0.04, 0.0, 0.0), glm::dvec3(-0.03, 0.04, 0.02)}) {
+    EXPECT_LT(std::abs(whole.value(p)), 0.4);
+    EXPECT_EQ(whole.value(p), restricted.value(p));
+  }
 }
 
 }  // namespace

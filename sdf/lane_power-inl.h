@@ -26,21 +26,11 @@ HWY_INLINE Reals logarithm(Reals x) {
   const auto power = hn::Sub(hn::BitCast(WholeTag(), hn::ShiftRight<52>(shifted)), hn::Set(WholeTag(), std::int64_t{1023}));
   const Reals k = {hn::ConvertTo(RealTag(), power)};
   const auto fraction = hn::Add(hn::And(shifted, hn::Set(bits, kFractionBits)), hn::Set(bits, kRootOfHalfBits));
-  const Reals f = Reals{hn::BitCast(RealTag(), fraction)} - 1.0;
-  const Reals s = f / (f + 2.0), z = s * s, w = z * z;
-  const Reals even = w * (reals(kLogarithmEven[0]) + w * (reals(kLogarithmEven[1]) + w * kLogarithmEven[2]));
-  const Reals odd = z * (reals(kLogarithmOdd[0]) + w * (reals(kLogarithmOdd[1]) + w * (reals(kLogarithmOdd[2]) + w * kLogarithmOdd[3])));
-  const Reals half = f * f * 0.5;
-  return s * (half + (even + odd)) + k * kLn2[1] - half + f + k * kLn2[0];
+  return logarithm_of_parts(Reals{hn::BitCast(RealTag(), fraction)} - 1.0, k);
 }
 
 HWY_INLINE Reals exponential(Reals x) {
-  const Reals k = (x * kOneByLn2 + kRoundsToWhole) - kRoundsToWhole;
-  const Reals high = x - k * kLn2[0], low = k * kLn2[1];
-  const Reals r = high - low, z = r * r;
-  const double(&e)[5] = kExponentialSeries;
-  const Reals c = r - z * (reals(e[0]) + z * (reals(e[1]) + z * (reals(e[2]) + z * (reals(e[3]) + z * e[4]))));
-  const Reals y = r * c / (reals(2.0) - c) - low + high + 1.0;
+  const Reals k = power_of_two_in(x), y = exponential_less_powers_of_two(x, k);
   const auto scale = hn::ShiftLeft<52>(hn::BitCast(BitTag(), hn::ConvertTo(WholeTag(), k.v)));
   return {hn::BitCast(RealTag(), hn::Add(hn::BitCast(BitTag(), y.v), scale))};
 }

@@ -77,15 +77,13 @@ HWY_INLINE Reals smooth_minimum(Reals a, Reals b, double radius) {
   return minimum(a, b) - blend * blend * blend / reals(6.0 * radius * radius);
 }
 
-HWY_INLINE Reals series_of(const double (&k)[6], Reals z) {
-  return reals(k[0]) + z * (reals(k[1]) + z * (reals(k[2]) + z * (reals(k[3]) + z * (reals(k[4]) + z * k[5]))));
-}
+#include "sdf/elementary_steps-inl.h"
+
 /// Sines of x + shift quarter turns, as small_sine_and_cosine (sine.h) has them, to the last bit.
 HWY_INLINE Reals sine_of_quarter_turns(Reals x, double shift) {
   const Reals q = round(x * (2.0 / std::numbers::pi));
-  const Reals r = x - q * kHalfPi[0] - q * kHalfPi[1] - q * kHalfPi[2];
-  const Reals z = r * r;
-  const Reals s = r + r * z * series_of(kSineSeries, z), c = reals(1.0) - z * 0.5 + z * z * series_of(kCosineSeries, z);
+  const Reals r = less_quarter_turns(x, q);
+  const Reals s = sine_of_eighth(r), c = cosine_of_eighth(r);
   const Reals turn = q + shift;
   const Reals quarter = turn - floor(turn * 0.25) * 4.0;  // 0..3
   const Reals odd = quarter - floor(quarter * 0.5) * 2.0;

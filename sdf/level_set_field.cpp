@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 
+#include "sdf/field_leaf_bounds.h"
 #include "sdf/field_program.h"
 #include "sdf/field_restriction.h"
 #include "sdf/level_set_data.h"
@@ -153,10 +154,8 @@ struct BandNodes {
 
 /// As large as the terms are that the field is summed up from, for its rounding.
 double extent_at(const Field& field, const glm::dvec3& point) {
-  const auto largest = [](const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
   double extent = field.traits().lipschitz * largest(point);
-  for (const FieldLeaf& leaf : field.program().leaves)
-    extent = std::max(extent, leaf.lipschitz * largest(point) + leaf.value_scale * largest(leaf.object_from_world.translation));
+  for (const FieldLeaf& leaf : field.program().leaves) extent = std::max(extent, leaf_extent(leaf, point));
   return extent;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "sdf/parallel.h"
+#include "subdiv/local_field.h"
 #include "subdiv/mesh_audit.h"
 #include "subdiv/surface_snap.h"
 
@@ -135,6 +136,15 @@ class DualContour {
       }
   }
 
+  /// Calls `visit(node, axis)` for the edges, or faces, that begin at the nodes of a block.
+  template <class Visit>
+  static void for_axes(const glm::ivec3& first, const glm::ivec3& end, const Visit& visit) {
+    for (int z = first.z; z < end.z; ++z)
+      for (int y = first.y; y < end.y; ++y)
+        for (int x = first.x; x < end.x; ++x)
+          for (int axis = 0; axis < 3; ++axis) visit(glm::ivec3(x, y, z), axis);
+  }
+
   /// Where the surface crosses the lattice's edges, each asked once for the four cells at it; and the signs in the middles of faces that it
   /// crosses twice.
   void find_crossings() {
@@ -158,15 +168,12 @@ class DualContour {
   /// Where the field changes sign between two nodes (bisection: fields may jump in slope).
   void find_crossings(FieldEvaluator& evaluator, const glm::ivec3& first, const glm::ivec3& end, BlockFinds& finds) const {
     std::vector<glm::dvec3> in, out;
-    for (int z = first.z; z < end.z; ++z)
-      for (int y = first.y; y < end.y; ++y)
-        for (int x = first.x; x < end.x; ++x)
-          for (int axis = 0; axis < 3; ++axis) {
-            const glm::ivec3 a{x, y, z}, b = along(a, axis);
-            if (!holds(b) || inside(a) == inside(b)) continue;
-            finds.edges.push_back(edge_index(a, axis));
-            in.push_back(world(inside(a) ? a : b)), out.push_back(world(inside(a) ? b : a));
-          }
+    for_axes(first, end, [&](const glm::ivec3& a, int axis) {
+      const glm::ivec3 b = along(a, axis);
+      if (!holds(b) || inside(a) == inside(b)) return;
+      finds.edges.push_back(edge_index(a, axis));
+      in.push_back(world(inside(a) ? a : b)), out.push_back(world(inside(a) ? b : a));
+    });
     const size_t count = in.size();
     std::vector<glm::dvec3> points(count), gradients(count);
     std::vector<double> values(count);
@@ -178,10 +185,7 @@ class DualContour {
     for (size_t i = 0; i < count; ++i) points[i] = 0.5 * (in[i] + out[i]);
     evaluator.gradients(points, values, gradients);
     finds.crossings.resize(count);
-    for (size_t i = 0; i < count; ++i) {
-      const double length = glm::length(gradients[i]);
-      finds.crossings[i] = {points[i], length > 0.0 ? gradients[i] / length : glm::dvec3(0.0)};
-    }
+    for (size_t i = 0; i < count; ++i) finds.crossings[i] = {points[i], direction_of(gradients[i])};
   }
 
   /// The corners of the face across an axis that begins at a node, in a ring.
@@ -191,17 +195,14 @@ class DualContour {
   }
 
   void ask_middles(FieldEvaluator& evaluator, const glm::ivec3& first, const glm::ivec3& end) {
-    for (int z = first.z; z < end.z; ++z)
-      for (int y = first.y; y < end.y; ++y)
-        for (int x = first.x; x < end.x; ++x)
-          for (int axis = 0; axis < 3; ++axis) {
-            const std::array<glm::ivec3, 4> face = ring({x, y, z}, axis);
-            if (!holds(face[2])) continue;
-            const bool in = inside(face[0]);
-            if (inside(face[1]) == in || inside(face[2]) != in || inside(face[3]) == in) continue;
-            const glm::dvec3 middle = 0.25 * (world(face[0]) + world(face[1]) + world(face[2]) + world(face[3]));
-            middle_inside_[edge_index({x, y, z}, axis)] = evaluator.value(middle) < 0.0;
-          }
+    for_axes(first, end, [&](const glm::ivec3& at, int axis) {
+      const std::array<glm::ivec3, 4> face = ring(at, axis);
+      if (!holds(face[2])) return;
+      const bool in = inside(face[0]);
+      if (inside(face[1]) == in || inside(face[2]) != in || inside(face[3]) == in) return;
+      const glm::dvec3 middle = 0.25 * (world(face[0]) + world(face[1]) + world(face[2]) + world(face[3]));
+      middle_inside_[edge_index(at, axis)] = evaluator.value(middle) < 0.0;
+    });
   }
 
   /// Joins the crossed edges of the cell that belong to one sheet: across each face the surface runs from edge to edge; where it crosses

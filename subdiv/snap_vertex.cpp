@@ -64,7 +64,7 @@ bool sample_sides(LocalField& field, const glm::dvec3& x, const Surroundings& ar
   for (const Landing& landing : field.project(starts)) {
     if (!landing.reached) continue;
     const glm::dvec3 normal = direction_of(landing.gradient);
-    // The other side of a thin wall is no side of this vertex; that of a knife edge is.
+    // The other side of a thin wall does not count; the other side of a sharp edge does.
     if (normal == glm::dvec3(0.0) || glm::dot(normal, around.outward) < kWallCosine) continue;
     points.push_back(landing.position), normals.push_back(normal);
   }

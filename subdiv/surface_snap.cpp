@@ -74,10 +74,9 @@ std::vector<Surroundings> surroundings_of(const Mesh& mesh, const Moving& moving
   parallel_parts(corners.faces.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
     std::vector<glm::dvec3> points;
     for (size_t k = range.begin(); k < range.end(); ++k) {
-      gather_corners(mesh, corners_of(static_cast<std::uint32_t>(k)), points);
-      glm::dvec3 middle(0.0);
-      for (const glm::dvec3& p : points) middle += p;
-      middles[k] = middle / static_cast<double>(points.size());
+      const auto vertices = corners_of(static_cast<std::uint32_t>(k));
+      gather_corners(mesh, vertices, points);
+      middles[k] = middle_of_face(mesh, vertices);
       areas[k] = vector_area(points);
     }
   });

@@ -1,6 +1,8 @@
 #pragma once
 // Bringing the vertices of a mesh onto the surface of a field, creases and corners included.
 
+#include <span>
+
 #include "sdf/field.h"
 #include "subdiv/mesh.h"
 
@@ -27,6 +29,9 @@ void turn_quads_along_creases(const Field& field, Mesh& mesh, const std::vector<
 
 /// A quad that turns along a diagonal on a crease becomes two triangles: methods that draw edges find no other place for that crease.
 void split_quads_along_creases(const Field& field, Mesh& mesh, const std::vector<char>& feature);
+
+/// The mean of a face's corners.
+glm::dvec3 middle_of_face(const Mesh& mesh, std::span<const std::int32_t> corners);
 
 /// The faces' middles, and how far their corners lie from these at most; `first` are their first corners.
 struct FaceMiddles {

@@ -100,12 +100,17 @@ std::vector<std::int32_t> faces_touching(const Mesh& mesh, const std::vector<std
 
 }  // namespace
 
+glm::dvec3 middle_of_face(const Mesh& mesh, std::span<const std::int32_t> corners) {
+  glm::dvec3 sum(0.0);
+  for (const std::int32_t v : corners) sum += mesh.positions[static_cast<size_t>(v)];
+  return sum / static_cast<double>(corners.size());
+}
+
 FaceMiddles::FaceMiddles(const Mesh& mesh, const std::vector<std::int32_t>& first)
     : middles(mesh.face_count(), glm::dvec3(0.0)), radii(mesh.face_count(), 0.0) {
   parallel_for(size_t{0}, mesh.face_count(), [&](size_t f) {
     const auto corners = face_corners(mesh, first[f], f);
-    for (const std::int32_t v : corners) middles[f] += mesh.positions[static_cast<size_t>(v)];
-    middles[f] /= static_cast<double>(corners.size());
+    middles[f] = middle_of_face(mesh, corners);
     for (const std::int32_t v : corners) radii[f] = std::max(radii[f], glm::distance(mesh.positions[static_cast<size_t>(v)], middles[f]));
   });
 }

@@ -1,5 +1,6 @@
 // Drawings that are judged, as they are read: shapes and colours of SVG, lines of ink in pictures, and what is refused.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,5 @@
 // The judge judged: limn's own lines score nothing, and whatever is done to them is found and named.
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -22,10 +22,7 @@ std::shared_ptr<LevelSetData> join_blocks(std::span<const LevelSetBlock> blocks,
                                           const std::string& name, const glm::dvec3& origin) {
   LIMN_CHECK(voxel_size > 0.0 && half_width_voxels > 0.0);
   const auto started = std::chrono::steady_clock::now();
-  const auto is_active = [](const LevelSetBlock& block) {
-    return std::any_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word != 0; });
-  };
-  if (std::none_of(blocks.begin(), blocks.end(), is_active))
+  if (std::none_of(blocks.begin(), blocks.end(), has_active_node))
     throw InputError({.file = {}, .field = name, .value = {}, .problem = "holds no surface", .expected = "a band with active voxels"});
   auto data = finished(nano_grid(blocks, static_cast<float>(voxel_size * half_width_voxels)), voxel_size, half_width_voxels, name, origin);
   data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();

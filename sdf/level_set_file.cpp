@@ -8,6 +8,7 @@
 #include "sdf/guard.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_leaks.h"
+#include "sdf/level_set_nano.h"
 #include "sdf/local_grid.h"
 #include "sdf/read_vdb.h"
 
@@ -96,6 +97,16 @@ GridFile read_beside(ByteReader& answer) {
   return beside;
 }
 
+/// Of a grid whose signs are in order and whose band holds all cells of the surface, without OpenVDB; of any other with it.
+std::shared_ptr<LevelSetData> rebuilt(std::span<const LevelSetBlock> blocks, std::span<const VdbTile> tiles, float background,
+                                      const Affine& world_from_index, const std::string& name) {
+  if (auto grid = nano_grid_as_filed(blocks, tiles, background)) {
+    std::shared_ptr<LevelSetData> data = make_level_set(std::move(*grid), world_from_index, name, 0.0);
+    if (cells_lacking(LevelSet(data), find_gradient("cell")) == 0) return data;
+  }
+  return rebuild(blocks, tiles, background, world_from_index, name);
+}
+
 void check_surface(LevelSetData& data, const fs::path& file) {
   if (data.info.bounds.empty())
     refuse(file, no_surface_problem(data.info.name, data.info.band), "a level set with an inside (" + with_inside_remedy() + ")");
@@ -140,7 +151,7 @@ std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> b
     refuse(file, "the reader's answer is not in order", "an undamaged file");
   check_blocks(blocks, tiles, file);
 
-  std::shared_ptr<LevelSetData> data = rebuild(blocks, tiles, background, world_from_index, name);
+  std::shared_ptr<LevelSetData> data = rebuilt(blocks, tiles, background, world_from_index, name);
   check_surface(*data, file);
   if (beside.grid_class != "level set")
     data->info.warnings.emplace_back("the grid '" + name + "' has no class; it is read as a level set, since its values change sign");

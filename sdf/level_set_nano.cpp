@@ -49,10 +49,6 @@ struct Place {
   }
 };
 
-bool is_active(const LevelSetBlock& block) {
-  return std::any_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word != 0; });
-}
-
 /// x, y, z in `bits` bits each.
 std::uint64_t joined(const glm::ivec3& place, int bits) {
   const auto part = [bits](int v) { return static_cast<std::uint64_t>(v) & ((std::uint64_t{1} << bits) - 1); };
@@ -360,7 +356,7 @@ nanovdb::GridHandle<nanovdb::HostBuffer> grid_of(std::vector<Place> places, size
 
 nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const LevelSetBlock> blocks, float background, const InsideAt& inside) {
   std::vector<std::uint8_t> active(blocks.size());
-  parallel_for(size_t{0}, blocks.size(), [&](size_t i) { active[i] = is_active(blocks[i]) ? 1 : 0; });
+  parallel_for(size_t{0}, blocks.size(), [&](size_t i) { active[i] = has_active_node(blocks[i]) ? 1 : 0; });
   std::vector<Place> places;
   places.reserve(blocks.size());
   for (size_t i = 0; i < blocks.size(); ++i)

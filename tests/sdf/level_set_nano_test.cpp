@@ -12,17 +12,18 @@
 #include <set>
 #include <tuple>
 
+#include "sdf/read_vdb.h"
 #include "tests/random_seed.h"
 
 namespace limn::test {
 namespace {
 
-nanovdb::GridHandle<nanovdb::HostBuffer> by_openvdb(std::span<const LevelSetBlock> blocks, float background) {
+openvdb::FloatGrid::Ptr flood_filled(std::span<const LevelSetBlock> blocks, float background) {
   openvdb::initialize();
   const auto grid = openvdb::FloatGrid::create(background);
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   for (const LevelSetBlock& block : blocks) {
-    if (std::all_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word == 0; })) continue;
+    if (!has_active_node(block)) continue;
     auto* leaf = new openvdb::FloatTree::LeafNodeType(openvdb::Coord(block.origin.x, block.origin.y, block.origin.z));
     std::copy(std::begin(block.values), std::end(block.values), leaf->buffer().data());
     openvdb::FloatTree::LeafNodeType::NodeMaskType mask;
@@ -31,8 +32,33 @@ nanovdb::GridHandle<nanovdb::HostBuffer> by_openvdb(std::span<const LevelSetBloc
     grid->tree().addLeaf(leaf);
   }
   openvdb::tools::signedFloodFill(grid->tree());
-  return nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree>(*grid, nanovdb::StatsMode::BBox, nanovdb::ChecksumMode::Disable,
-                                                                         0);
+  return grid;
+}
+
+nanovdb::GridHandle<nanovdb::HostBuffer> by_openvdb(std::span<const LevelSetBlock> blocks, float background) {
+  return nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree>(*flood_filled(blocks, background), nanovdb::StatsMode::BBox,
+                                                                         nanovdb::ChecksumMode::Disable, 0);
+}
+
+/// What a file of this tree says: leaves with the signs of all their nodes, and the tiles inside.
+struct Filed {
+  std::vector<LevelSetBlock> blocks{};
+  std::vector<VdbTile> tiles{};
+};
+Filed filed(const openvdb::FloatGrid& grid) {
+  Filed result;
+  for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
+    LevelSetBlock& block = result.blocks.emplace_back();
+    block.origin = {leaf->origin().x(), leaf->origin().y(), leaf->origin().z()};
+    for (openvdb::Index word = 0; word < 8; ++word) block.active[word] = leaf->valueMask().getWord<openvdb::Index64>(word);
+    for (openvdb::Index n = 0; n < 512; ++n) block.values[n] = leaf->getValue(n);
+  }
+  auto tile = grid.tree().cbeginValueOff();
+  tile.setMaxDepth(openvdb::FloatTree::ValueOffCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile)
+    if (*tile < 0.0f)
+      result.tiles.push_back({{tile.getCoord().x(), tile.getCoord().y(), tile.getCoord().z()}, static_cast<std::int32_t>(tile.getLevel())});
+  return result;
 }
 
 template <class Node>
@@ -101,10 +127,7 @@ TEST(NanoGrid, IsTheOneThatOpenVdbMakesOfTheSameBlocks) {
   for (const int reach : {2, 40, 700, 4000})
     for (const int count : {1, 7, 300}) {
       const std::vector<LevelSetBlock> blocks = random_blocks(random, count, reach);
-      const bool any = std::any_of(blocks.begin(), blocks.end(), [](const LevelSetBlock& block) {
-        return std::any_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word != 0; });
-      });
-      if (!any) continue;
+      if (std::none_of(blocks.begin(), blocks.end(), has_active_node)) continue;
       SCOPED_TRACE(testing::Message() << count << " blocks within " << reach);
       const auto own = nano_grid(blocks, 2.5f), peer = by_openvdb(blocks, 2.5f);
       ASSERT_NO_FATAL_FAILURE(expect_same(*own.grid<float>(), *peer.grid<float>()));
@@ -117,8 +140,7 @@ TEST(NanoGrid, OfLeavesMadeWhenTheyAreWrittenHasTheSameBytes) {
     std::vector<LevelSetBlock> blocks;
     std::set<std::tuple<int, int, int>> taken;
     for (const LevelSetBlock& block : random_blocks(random, 300, reach)) {
-      const bool any = std::any_of(std::begin(block.active), std::end(block.active), [](std::uint64_t word) { return word != 0; });
-      if (any && taken.insert({block.origin.x, block.origin.y, block.origin.z}).second) blocks.push_back(block);
+      if (has_active_node(block) && taken.insert({block.origin.x, block.origin.y, block.origin.z}).second) blocks.push_back(block);
     }
     ASSERT_GT(blocks.size(), 10u);
     std::vector<glm::ivec3> origins;
@@ -149,6 +171,52 @@ TEST(NanoGrid, FillsRootTilesBetweenInsideNodes) {
   ASSERT_NO_FATAL_FAILURE(expect_same(*own.grid<float>(), *peer.grid<float>()));
   EXPECT_EQ(own.grid<float>()->tree().root().tileCount(), 6u);
   EXPECT_EQ(own.grid<float>()->tree().getValue({1, 2, 3 * 4096}), -2.0f);
+}
+
+TEST(NanoGrid, OfAFileIsTheOneThatOpenVdbMakesWhereSignsAreThoseOfAFloodFill) {
+  std::mt19937 random(random_seed());
+  for (const int reach : {2, 40, 700, 4000}) {
+    const openvdb::FloatGrid::Ptr tree = flood_filled(random_blocks(random, 300, reach), 2.5f);
+    const Filed file = filed(*tree);
+    const auto own = nano_grid_as_filed(file.blocks, file.tiles, 2.5f);
+    ASSERT_TRUE(own) << reach;
+    const auto peer =
+        nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree>(*tree, nanovdb::StatsMode::BBox, nanovdb::ChecksumMode::Disable, 0);
+    ASSERT_NO_FATAL_FAILURE(expect_same(*own->grid<float>(), *peer.grid<float>())) << reach;
+  }
+}
+
+TEST(NanoGrid, OfAFileIsNoneWhereASignOrATileIsAnother) {
+  std::mt19937 random(random_seed());
+  const auto below = [&](size_t n) { return random() % n; };
+  int flipped = 0;
+  for (const int reach : {2, 40, 700, 4000}) {
+    const Filed right = filed(*flood_filled(random_blocks(random, 300, reach), 2.5f));
+    ASSERT_FALSE(right.tiles.empty()) << reach;
+    for (int i = 0; i < 20; ++i) {
+      Filed wrong = right;
+      LevelSetBlock& block = wrong.blocks[below(wrong.blocks.size())];
+      const size_t n = below(512);
+      if ((block.active[n / 64] >> (n % 64) & 1u) != 0) continue;
+      ++flipped;
+      block.values[n] = -block.values[n];
+      EXPECT_FALSE(nano_grid_as_filed(wrong.blocks, wrong.tiles, 2.5f)) << reach << ": a sign";
+    }
+    for (int i = 0; i < 20; ++i) {
+      Filed wrong = right;
+      const size_t k = below(wrong.tiles.size());
+      if (i % 2 == 0)
+        wrong.tiles.erase(wrong.tiles.begin() + static_cast<std::ptrdiff_t>(k));
+      else
+        wrong.tiles[k].origin.x += wrong.tiles[k].level == 1 ? 1 << 20 : 1 << 25;
+      EXPECT_FALSE(nano_grid_as_filed(wrong.blocks, wrong.tiles, 2.5f)) << reach << ": a tile";
+    }
+    Filed empty = right;
+    std::fill(std::begin(empty.blocks[0].active), std::end(empty.blocks[0].active), std::uint64_t{0});
+    EXPECT_FALSE(nano_grid_as_filed(empty.blocks, empty.tiles, 2.5f)) << reach << ": a leaf without active nodes";
+  }
+  EXPECT_GT(flipped, 20);
+  EXPECT_FALSE(nano_grid_as_filed({}, {}, 2.5f));
 }
 
 }  // namespace

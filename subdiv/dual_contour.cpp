@@ -6,10 +6,11 @@
 #include <numeric>
 #include <optional>
 
-#include "sdf/parallel.h"
+#include "subdiv/field_lattice.h"
 #include "subdiv/local_field.h"
 #include "subdiv/mesh_audit.h"
 #include "subdiv/surface_snap.h"
+#include "subdiv/thin_walls.h"
 
 namespace limn {
 namespace {
@@ -31,8 +32,6 @@ int edge_between(int a, int b) {
   return -1;
 }
 
-/// Cells to a side of the blocks that share a shortened field.
-constexpr int kBlock = 8;
 /// Rows of cells whose vertices and quads one thread makes, so that they have the same numbers on any number of threads.
 constexpr size_t kRows = 64;
 
@@ -43,9 +42,13 @@ struct Crossing {
 
 /// What one block finds on the edges and faces that begin at its nodes.
 struct BlockFinds {
-  std::vector<size_t> edges{};  ///< As numbered by DualContour::edge_index.
+  std::vector<size_t> edges{};  ///< As numbered by FieldLattice::edge_index.
   std::vector<Crossing> crossings{};
+  std::vector<size_t> faces{};  ///< Crossed twice; as numbered by FieldLattice::edge_index.
 };
+
+/// Nodes are put back at most so often.
+constexpr int kMostRounds = 8;
 
 /// Vertices and quads of some rows of cells.
 struct RowFinds {
@@ -55,124 +58,57 @@ struct RowFinds {
 
 class DualContour {
  public:
-  DualContour(const Field& field, int cells) : field_(field) {
-    const Box box = field.traits().bounds;
-    step_ = box.longest_side() / cells;
-    // Nodes half a cell off the middle of the box, so that faces of symmetric shapes do not lie on them.
-    for (int axis = 0; axis < 3; ++axis) {
-      const int half = static_cast<int>(std::ceil(0.5 * box.size()[axis] / step_ - 1e-9)) + 2;
-      count_[axis] = 2 * half;
-      lower_[axis] = box.center()[axis] - (half - 0.5) * step_;
-    }
+  DualContour(const Field& field, int cells, ThinWalls thin_walls) : lattice_(sample_lattice(field, cells)) {
+    if (thin_walls == ThinWalls::kept) move_nodes_into_walls(field, lattice_);
   }
 
   Mesh run() {
-    sample();
-    find_crossings();
     Mesh mesh;
-    make_vertices(mesh);
+    for (int round = 0;; ++round) {
+      find_crossings();
+      make_vertices(mesh);
+      std::vector<size_t> nodes = moved_nodes_at_pinches();
+      if (nodes.empty() || round == kMostRounds) break;
+      put_back(lattice_, std::move(nodes));
+    }
     make_quads(mesh);
     return mesh;
   }
 
  private:
-  size_t node_index(const glm::ivec3& at) const {
-    return (static_cast<size_t>(at.z) * static_cast<size_t>(count_.y) + static_cast<size_t>(at.y)) * static_cast<size_t>(count_.x) +
-           static_cast<size_t>(at.x);
-  }
-  /// Of the edge, or of the face across the axis, that begins at a node.
-  size_t edge_index(const glm::ivec3& at, int axis) const { return 3 * node_index(at) + static_cast<size_t>(axis); }
-  glm::dvec3 world(const glm::ivec3& at) const { return lower_ + step_ * glm::dvec3(at); }
   static glm::ivec3 corner(const glm::ivec3& cell, int i) { return cell + glm::ivec3(i & 1, (i >> 1) & 1, (i >> 2) & 1); }
-  static glm::ivec3 along(const glm::ivec3& at, int axis) {
-    glm::ivec3 end = at;
-    ++end[axis];
-    return end;
-  }
-  bool holds(const glm::ivec3& at) const { return glm::all(glm::lessThan(at, count_)); }
-  double value(const glm::ivec3& at) const { return values_[node_index(at)]; }
-  bool inside(const glm::ivec3& at) const { return value(at) < 0.0; }
-
-  glm::ivec3 block_count() const { return (count_ + (kBlock - 1)) / kBlock; }
-  template <class Visit>
-  void for_blocks(const Visit& visit) {
-    const glm::ivec3 blocks = block_count();
-    parallel_for(0, blocks.x * blocks.y * blocks.z, [&](int b) {
-      const glm::ivec3 first = kBlock * glm::ivec3(b % blocks.x, b / blocks.x % blocks.y, b / (blocks.x * blocks.y));
-      visit(static_cast<size_t>(b), first, glm::min(first + kBlock, count_));
-    });
-  }
-
-  /// The signs at the nodes: those of a block that the surface does not reach are known from bounds, elsewhere a block asks only the parts
-  /// of the field that matter in it.
-  void sample() {
-    values_.resize(static_cast<size_t>(count_.x) * static_cast<size_t>(count_.y) * static_cast<size_t>(count_.z));
-    const glm::ivec3 blocks = block_count();
-    parts_.resize(static_cast<size_t>(blocks.x) * static_cast<size_t>(blocks.y) * static_cast<size_t>(blocks.z));
-    for_blocks([&](size_t b, const glm::ivec3& first, const glm::ivec3& end) {
-      // A cell has nodes on the far side of its block, too.
-      const Box box = dilate({world(first), world(end)}, 1e-6 * step_);
-      FieldEvaluator whole(field_);
-      const Interval bounds = whole.bounds(box);
-      if (!bounds.contains(0.0)) return fill(first, end, bounds.lower);
-      parts_[b] = whole.restricted(box);
-      FieldEvaluator part(*parts_[b]);
-      sample(part, first, end);
-    });
-  }
-
-  void fill(const glm::ivec3& first, const glm::ivec3& end, double value) {
-    for (int z = first.z; z < end.z; ++z)
-      for (int y = first.y; y < end.y; ++y)
-        std::fill_n(values_.begin() + static_cast<std::ptrdiff_t>(node_index({first.x, y, z})), end.x - first.x, value);
-  }
-
-  void sample(FieldEvaluator& evaluator, const glm::ivec3& first, const glm::ivec3& end) {
-    std::vector<glm::dvec3> row(static_cast<size_t>(end.x - first.x));
-    for (int z = first.z; z < end.z; ++z)
-      for (int y = first.y; y < end.y; ++y) {
-        for (int x = first.x; x < end.x; ++x) row[static_cast<size_t>(x - first.x)] = world({x, y, z});
-        evaluator.values(row, std::span(values_).subspan(node_index({first.x, y, z}), row.size()));
-      }
-  }
-
-  /// Calls `visit(node, axis)` for the edges, or faces, that begin at the nodes of a block.
-  template <class Visit>
-  static void for_axes(const glm::ivec3& first, const glm::ivec3& end, const Visit& visit) {
-    for (int z = first.z; z < end.z; ++z)
-      for (int y = first.y; y < end.y; ++y)
-        for (int x = first.x; x < end.x; ++x)
-          for (int axis = 0; axis < 3; ++axis) visit(glm::ivec3(x, y, z), axis);
-  }
+  static glm::ivec3 along(const glm::ivec3& at, int axis) { return FieldLattice::along(at, axis); }
+  bool inside(const glm::ivec3& at) const { return lattice_.inside(at); }
 
   /// Where the surface crosses the lattice's edges, each asked once for the four cells at it; and the signs in the middles of faces that it
   /// crosses twice.
   void find_crossings() {
-    crossing_of_.assign(3 * values_.size(), -1);
-    middle_inside_.assign(3 * values_.size(), 0);
-    std::vector<BlockFinds> finds(parts_.size());
-    for_blocks([&](size_t b, const glm::ivec3& first, const glm::ivec3& end) {
+    crossings_.clear(), crossed_twice_.clear();
+    crossing_of_.assign(3 * lattice_.values.size(), -1);
+    middle_inside_.assign(3 * lattice_.values.size(), 0);
+    std::vector<BlockFinds> finds(lattice_.parts.size());
+    lattice_.for_blocks([&](size_t b, const glm::ivec3& first, const glm::ivec3& end) {
       // Where bounds leave no surface in a block, it has no edge that is crossed.
-      if (!parts_[b]) return;
-      FieldEvaluator part(*parts_[b]);
+      if (!lattice_.parts[b]) return;
+      FieldEvaluator part(*lattice_.parts[b]);
       find_crossings(part, first, end, finds[b]);
-      ask_middles(part, first, end);
+      ask_middles(part, first, end, finds[b].faces);
     });
     for (const BlockFinds& block : finds) {
       for (size_t i = 0; i < block.edges.size(); ++i) crossing_of_[block.edges[i]] = static_cast<std::int32_t>(crossings_.size() + i);
       crossings_.insert(crossings_.end(), block.crossings.begin(), block.crossings.end());
+      crossed_twice_.insert(crossed_twice_.end(), block.faces.begin(), block.faces.end());
     }
-    parts_.clear();
   }
 
   /// Where the field changes sign between two nodes (bisection: fields may jump in slope).
   void find_crossings(FieldEvaluator& evaluator, const glm::ivec3& first, const glm::ivec3& end, BlockFinds& finds) const {
     std::vector<glm::dvec3> in, out;
-    for_axes(first, end, [&](const glm::ivec3& a, int axis) {
+    FieldLattice::for_axes(first, end, [&](const glm::ivec3& a, int axis) {
       const glm::ivec3 b = along(a, axis);
-      if (!holds(b) || inside(a) == inside(b)) return;
-      finds.edges.push_back(edge_index(a, axis));
-      in.push_back(world(inside(a) ? a : b)), out.push_back(world(inside(a) ? b : a));
+      if (!lattice_.holds(b) || inside(a) == inside(b)) return;
+      finds.edges.push_back(lattice_.edge_index(a, axis));
+      in.push_back(lattice_.world(inside(a) ? a : b)), out.push_back(lattice_.world(inside(a) ? b : a));
     });
     const size_t count = in.size();
     std::vector<glm::dvec3> points(count), gradients(count);
@@ -194,15 +130,38 @@ class DualContour {
     return {at, along(at, u), along(along(at, u), v), along(at, v)};
   }
 
-  void ask_middles(FieldEvaluator& evaluator, const glm::ivec3& first, const glm::ivec3& end) {
-    for_axes(first, end, [&](const glm::ivec3& at, int axis) {
+  void ask_middles(FieldEvaluator& evaluator, const glm::ivec3& first, const glm::ivec3& end, std::vector<size_t>& faces) {
+    std::vector<size_t> thin;
+    std::vector<LatticeEdge> diagonals;
+    FieldLattice::for_axes(first, end, [&](const glm::ivec3& at, int axis) {
       const std::array<glm::ivec3, 4> face = ring(at, axis);
-      if (!holds(face[2])) return;
+      if (!lattice_.holds(face[2])) return;
       const bool in = inside(face[0]);
       if (inside(face[1]) == in || inside(face[2]) != in || inside(face[3]) == in) return;
-      const glm::dvec3 middle = 0.25 * (world(face[0]) + world(face[1]) + world(face[2]) + world(face[3]));
-      middle_inside_[edge_index(at, axis)] = evaluator.value(middle) < 0.0;
+      faces.push_back(lattice_.edge_index(at, axis));
+      const std::array<glm::dvec3, 4> points = {lattice_.world(face[0]), lattice_.world(face[1]), lattice_.world(face[2]),
+                                                lattice_.world(face[3])};
+      const size_t index = faces.back();
+      middle_inside_[index] = evaluator.value(0.25 * (points[0] + points[1] + points[2] + points[3])) < 0.0;
+      const bool even = lattice_.is_moved(face[0]) || lattice_.is_moved(face[2]);
+      const bool odd = lattice_.is_moved(face[1]) || lattice_.is_moved(face[3]);
+      if (!even && !odd) return;
+      if (even != odd) middle_inside_[index] = even ? in : !in;
+      thin.push_back(index);
+      for (const size_t i : {size_t{0}, size_t{1}}) diagonals.push_back({points[i], points[i + 2]});
     });
+    if (thin.empty()) return;
+    // A wall thinner than a cell misses the middle. It joins the corners that lie in it, and surely two of them where it keeps the others
+    // apart.
+    const std::vector<std::optional<double>> passes = find_thin_walls(evaluator, diagonals);
+    const std::vector<char> apart = are_apart(evaluator, diagonals);
+    for (size_t i = 0; i < thin.size(); ++i) {
+      const bool even_apart = passes[2 * i].has_value() || apart[2 * i] != 0,
+                 odd_apart = passes[2 * i + 1].has_value() || apart[2 * i + 1] != 0;
+      if (even_apart == odd_apart) continue;
+      const bool first_inside = lattice_.values[thin[i] / 3] < 0.0;
+      middle_inside_[thin[i]] = even_apart ? !first_inside : first_inside;
+    }
   }
 
   /// Joins the crossed edges of the cell that belong to one sheet: across each face the surface runs from edge to edge; where it crosses
@@ -223,7 +182,7 @@ class DualContour {
       if (count == 2) root[static_cast<size_t>(find(crossed[0]))] = find(crossed[1]);
       if (count != 4) continue;
       // Edge i joins ring corners i and i + 1. The corner that stands alone has the sign that the middle has not.
-      const bool middle_inside = middle_inside_[edge_index(corner(cell, face[0]), static_cast<int>(f) / 2)] != 0;
+      const bool middle_inside = middle_inside_[lattice_.edge_index(corner(cell, face[0]), static_cast<int>(f) / 2)] != 0;
       const size_t alone = inside(corner(cell, face[0])) != middle_inside ? 0 : 1;
       for (const size_t i : {alone, alone + 2}) root[static_cast<size_t>(find(crossed[i % 4]))] = find(crossed[(i + 3) % 4]);
     }
@@ -240,9 +199,9 @@ class DualContour {
       std::vector<glm::dvec3> points, normals;
       for (int e = 0; e < 12; ++e) {
         const CellEdge& edge = kEdges[static_cast<size_t>(e)];
-        const std::int32_t crossing = crossing_of_[edge_index(corner(at, edge.from), edge.axis)];
+        const std::int32_t crossing = crossing_of_[lattice_.edge_index(corner(at, edge.from), edge.axis)];
         if (root[static_cast<size_t>(e)] != sheet || crossing < 0) continue;
-        sheet_[12 * node_index(at) + static_cast<size_t>(e)] = static_cast<std::int32_t>(positions.size());
+        sheet_[12 * lattice_.node_index(at) + static_cast<size_t>(e)] = static_cast<std::int32_t>(positions.size());
         points.push_back(crossings_[static_cast<size_t>(crossing)].point);
         normals.push_back(crossings_[static_cast<size_t>(crossing)].normal);
       }
@@ -250,9 +209,42 @@ class DualContour {
       glm::dvec3 mean(0.0);
       for (const glm::dvec3& p : points) mean += p;
       mean /= static_cast<double>(points.size());
-      const glm::dvec3 first = world(at), last = world(at + 1);
-      positions.push_back(glm::clamp(meet_planes(points, normals, mean), first, last));
+      Box box;
+      for (int i = 0; i < 8; ++i) box = include(box, lattice_.world(corner(at, i)));
+      positions.push_back(glm::clamp(meet_planes(points, normals, mean), box.lower, box.upper));
     }
+  }
+
+  std::int32_t vertex_of(const glm::ivec3& cell, int edge) const {
+    return sheet_[12 * lattice_.node_index(cell) + static_cast<size_t>(edge)] + first_vertex_[row_of(cell) / kRows];
+  }
+
+  /// Of faces crossed twice, where both cells have one vertex for all four edges: four quads would meet in the edge between these two.
+  /// What is not moved there stays.
+  std::vector<size_t> moved_nodes_at_pinches() const {
+    std::vector<size_t> nodes;
+    for (const size_t face : crossed_twice_) {
+      const size_t node = face / 3;
+      const int axis = static_cast<int>(face % 3);
+      const auto row = static_cast<size_t>(lattice_.count.x), layer = row * static_cast<size_t>(lattice_.count.y);
+      const glm::ivec3 at(static_cast<int>(node % row), static_cast<int>(node % layer / row), static_cast<int>(node / layer));
+      if (at[axis] == 0 || !is_pinched(at, axis)) continue;
+      for (const glm::ivec3& corner : ring(at, axis))
+        if (lattice_.is_moved(corner)) nodes.push_back(lattice_.node_index(corner));
+    }
+    return nodes;
+  }
+
+  bool is_pinched(const glm::ivec3& at, int axis) const {
+    for (const int side : {0, 1}) {
+      glm::ivec3 cell = at;
+      cell[axis] -= 1 - side;
+      const std::array<int, 4>& face = kFaces[static_cast<size_t>(2 * axis + 1 - side)];
+      const std::int32_t vertex = vertex_of(cell, edge_between(face[0], face[1]));
+      for (size_t i = 1; i < 4; ++i)
+        if (vertex_of(cell, edge_between(face[i], face[(i + 1) % 4])) != vertex) return false;
+    }
+    return true;
   }
 
   /// The four cells around a lattice edge, each with the vertex of the sheet that crosses it.
@@ -267,33 +259,33 @@ class DualContour {
       cell[u] += kU[i], cell[v] += kV[i];
       const glm::ivec3 from = at - cell;
       const int bits = from.x + 2 * from.y + 4 * from.z;
-      corners[i] =
-          sheet_[12 * node_index(cell) + static_cast<size_t>(edge_between(bits, bits | (1 << axis)))] + first_vertex_[row_of(cell) / kRows];
+      corners[i] = vertex_of(cell, edge_between(bits, bits | (1 << axis)));
     }
     if (!from_inside) std::reverse(corners.begin(), corners.end());
     faces.insert(faces.end(), corners.begin(), corners.end());
   }
 
   size_t row_of(const glm::ivec3& at) const {
-    return static_cast<size_t>(at.z) * static_cast<size_t>(count_.y) + static_cast<size_t>(at.y);
+    return static_cast<size_t>(at.z) * static_cast<size_t>(lattice_.count.y) + static_cast<size_t>(at.y);
   }
   /// Calls `visit(cell, finds of its rows)` for all nodes that begin a cell, rows of different parts at the same time.
   template <class Visit>
   std::vector<RowFinds> by_rows(const Visit& visit) const {
-    const size_t rows = row_of({0, 0, count_.z});
+    const size_t rows = row_of({0, 0, lattice_.count.z});
     std::vector<RowFinds> parts((rows + kRows - 1) / kRows);
     parallel_for(size_t{0}, parts.size(), [&](size_t part) {
       for (size_t row = part * kRows; row < std::min(rows, (part + 1) * kRows); ++row) {
-        const int y = static_cast<int>(row) % count_.y, z = static_cast<int>(row) / count_.y;
-        if (y + 1 == count_.y || z + 1 == count_.z) continue;
-        for (int x = 0; x + 1 < count_.x; ++x) visit(glm::ivec3(x, y, z), parts[part]);
+        const int y = static_cast<int>(row) % lattice_.count.y, z = static_cast<int>(row) / lattice_.count.y;
+        if (y + 1 == lattice_.count.y || z + 1 == lattice_.count.z) continue;
+        for (int x = 0; x + 1 < lattice_.count.x; ++x) visit(glm::ivec3(x, y, z), parts[part]);
       }
     });
     return parts;
   }
 
   void make_vertices(Mesh& mesh) {
-    sheet_.assign(values_.size() * 12, -1);
+    mesh.positions.clear(), first_vertex_.clear();
+    sheet_.assign(lattice_.values.size() * 12, -1);
     const std::vector<RowFinds> parts = by_rows([&](const glm::ivec3& at, RowFinds& finds) { cell(at, finds.positions); });
     for (const RowFinds& part : parts) {
       first_vertex_.push_back(static_cast<std::int32_t>(mesh.positions.size()));
@@ -310,22 +302,18 @@ class DualContour {
     mesh.face_sizes.assign(mesh.corner_vertices.size() / 4, 4);
   }
 
-  Field field_;
-  double step_ = 0.0;
-  glm::dvec3 lower_{0.0};
-  glm::ivec3 count_{0};
-  std::vector<double> values_{};
-  std::vector<std::optional<Field>> parts_{};  ///< Of each block: what of the field matters there; none where the surface is not.
+  FieldLattice lattice_;
   std::vector<Crossing> crossings_{};
   std::vector<std::int32_t> crossing_of_{};  ///< Of each edge, -1 where it has none.
-  std::vector<char> middle_inside_{};        ///< Of each face that is crossed twice.
+  std::vector<size_t> crossed_twice_{};      ///< Faces.
+  std::vector<char> middle_inside_{};        ///< Of each of them.
   std::vector<std::int32_t> sheet_{};        ///< Vertex of each edge of each cell, 12 a node, counted within its rows.
   std::vector<std::int32_t> first_vertex_{};
 };
 
 }  // namespace
 
-Mesh dual_contour(const Field& field, int cells) { return DualContour(field, cells).run(); }
+Mesh dual_contour(const Field& field, int cells, ThinWalls thin_walls) { return DualContour(field, cells, thin_walls).run(); }
 
 std::optional<Topology> topology_of(const Mesh& mesh) {
   if (mesh.face_sizes.empty()) return std::nullopt;

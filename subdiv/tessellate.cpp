@@ -97,37 +97,54 @@ double bad_share(const Field& field, const Cage& cage) {
 }
 
 /// The coarsest sampling whose topology a neighbouring one confirms and whose faces lie on the surface, the right way up; failing that, the
-/// best met.
-Cage find_cage(const Field& field) {
-  const Box& box = field.traits().bounds;
-  if (box.empty()) throw InputError({"", "shape", "", "the surface is empty: there is nothing to tessellate", "a shape with a surface"});
-  if (!box.finite())
-    throw InputError({"", "shape", "", "an unbounded surface cannot be tessellated", "a bounded shape, or its intersection with one"});
+/// best met, or the last one that is closed, unconfirmed. Without faces where none is.
+struct CageSearch {
+  Cage best{};
+  Mesh last{};
+  bool confirmed = false;
+};
+CageSearch search_cage(const Field& field, ThinWalls thin_walls) {
+  CageSearch search;
   Mesh previous;
   std::optional<Topology> previous_topology;
-  Cage best;
   double best_share = 0.0;
   int tried = 0;
   for (const int cells : kCells) {
-    Mesh mesh = dual_contour(field, cells);
+    Mesh mesh = dual_contour(field, cells, thin_walls);
     const std::optional<Topology> topology = topology_of(mesh);
     if (topology && topology == previous_topology) {
       for (const Mesh* candidate : {&previous, &mesh}) {
         Cage cage = snapped_cage(field, *candidate);
         const double share = bad_share(field, cage);
-        if (best.mesh.face_sizes.empty() || share < best_share) best = std::move(cage), best_share = share;
-        if (best_share <= kBadShare) return best;
+        if (!search.confirmed || share < best_share) search.best = std::move(cage), best_share = share;
+        search.confirmed = true;
+        if (best_share <= kBadShare) return search;
       }
-      if (++tried == kMostTried) return best;
+      if (++tried == kMostTried) return search;
     }
     previous = std::move(mesh);
     previous_topology = topology;
   }
-  if (!best.mesh.face_sizes.empty()) return best;
-  if (!previous_topology)
+  if (previous_topology) search.last = std::move(previous);
+  return search;
+}
+
+Cage find_cage(const Field& field) {
+  const Box& box = field.traits().bounds;
+  if (box.empty()) throw InputError({"", "shape", "", "the surface is empty: there is nothing to tessellate", "a shape with a surface"});
+  if (!box.finite())
+    throw InputError({"", "shape", "", "an unbounded surface cannot be tessellated", "a bounded shape, or its intersection with one"});
+  CageSearch search = search_cage(field, ThinWalls::kept);
+  // Where walls are too thin and too many for all samplings, a surface without them is better than none.
+  if (!search.confirmed) {
+    CageSearch without = search_cage(field, ThinWalls::lost);
+    if (without.confirmed || search.last.face_sizes.empty()) search = std::move(without);
+  }
+  if (search.confirmed) return std::move(search.best);
+  if (search.last.face_sizes.empty())
     throw InputError({"", "shape", "", fmt::format("no closed surface was found with {} cells along its longest side", kCells.back()),
                       "a shape without details thinner than that, or the surface kind level_set"});
-  return snapped_cage(field, std::move(previous));
+  return snapped_cage(field, std::move(search.last));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "raymarch/local/crease_crossing.h"
 #include "raymarch/local/local_sources.h"
 #include "raymarch/local/merge_flat.h"
+#include "raymarch/local/merge_smooth.h"
 #include "subdiv/snap_vertex.h"
 #include "subdiv/tessellate.h"
 
@@ -136,7 +137,7 @@ LocalStart start_from_field(const Field& field, std::shared_ptr<const FieldCage>
     const double folded = static_cast<double>(count_folded(start.triangles));
     if (folded <= kMostFolded * static_cast<double>(start.triangles.triangles.size())) break;
   }
-  if (start.mesh.face_materials.empty()) start.triangles = merge_flat(std::move(start.triangles));
+  if (start.mesh.face_materials.empty()) start.triangles = merge_smooth(merge_flat(std::move(start.triangles)));
   start.source.has_folds = true;
   // The walls of a tessellated field are resolved from the start; those of a cage may be thin beside its faces.
   start.source.coarse_px = 1.9;

@@ -6,7 +6,7 @@
 namespace limn {
 
 /// The same surface to rounding: vertices within flat parts, and those along straight creases between two flat parts, are merged with a
-/// neighbour (half-edge collapse, Hoppe et al. 1993) as long as triangles stay wide enough. Meshes with colours stay as they are.
+/// neighbour as long as triangles stay wide enough. Meshes with colours stay as they are.
 LocalTriangles merge_flat(LocalTriangles mesh);
 
 }  // namespace limn

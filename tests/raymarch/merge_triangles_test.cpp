@@ -1,6 +1,4 @@
-// Meshes whose flat parts are merged: the same surface, with fewer triangles.
-
-#include "raymarch/local/merge_flat.h"
+// Meshes with fewer triangles: flat parts are the same surface then, smooth ones about the same.
 
 #include <gtest/gtest.h>
 
@@ -10,6 +8,8 @@
 #include <random>
 #include <set>
 
+#include "raymarch/local/merge_flat.h"
+#include "raymarch/local/merge_smooth.h"
 #include "tests/random_seed.h"
 
 namespace limn::test {
@@ -147,13 +147,14 @@ TEST(MergeFlat, OfACylinderLeavesItsTwoRims) {
   }
 }
 
+glm::dvec3 on_ball(const glm::dvec2& uv) {
+  const double a = 2.0 * kPi * uv.x, b = kPi * uv.y;
+  return glm::dvec3(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), -std::cos(b));
+}
+
 TEST(MergeFlat, LeavesWhatBendsAndWhatHasColors) {
   Builder ball(glm::dmat3(1.0));
-  const auto place = [](const glm::dvec2& uv) {
-    const double a = 2.0 * kPi * uv.x, b = kPi * uv.y;
-    return glm::dvec3(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), -std::cos(b));
-  };
-  ball.add_grid(24, 12, place, place);
+  ball.add_grid(24, 12, on_ball, on_ball);
   ASSERT_EQ(open_edges(ball.mesh), 0u);
   EXPECT_EQ(merge_flat(ball.mesh).triangles.size(), ball.mesh.triangles.size());
   Builder cube(glm::dmat3(1.0));
@@ -171,6 +172,51 @@ TEST(MergeFlat, KeepsTheEdgesOfOpenSheets) {
   // All vertices of the rim stay, and with them a triangle for each but two.
   EXPECT_GE(merged.positions.size(), 32u);
   EXPECT_LT(merged.triangles.size(), 50u);
+}
+
+/// The largest angle between a facet and a normal at its corners, degrees.
+double worst_fit(const LocalTriangles& mesh) {
+  double least = 1.0;
+  for (const LocalTriangle& t : mesh.triangles) {
+    const glm::dvec3 a = mesh.positions[t.vertices[0]], b = mesh.positions[t.vertices[1]], c = mesh.positions[t.vertices[2]];
+    for (const glm::dvec3& normal : t.normals) least = std::min(least, glm::dot(glm::normalize(glm::cross(b - a, c - a)), normal));
+  }
+  return std::acos(least) * 180.0 / kPi;
+}
+
+TEST(MergeSmooth, OfABallLeavesAFewTrianglesThatFitTheirNormals) {
+  std::mt19937 random(random_seed());
+  for (int round = 0; round < 20; ++round) {
+    Builder ball(random_turn(random));
+    const int rings = 12 + static_cast<int>(random() % 40);
+    ball.add_grid(2 * rings, rings, on_ball, on_ball);
+    const LocalTriangles merged = merge_smooth(ball.mesh);
+    EXPECT_EQ(open_edges(merged), 0u);
+    EXPECT_LT(merged.triangles.size(), ball.mesh.triangles.size() / 2) << rings;
+    EXPECT_LT(worst_fit(merged), 30.0 + 1e-6);
+    // A ball's facets that fit within 30 degrees are those of no fewer than a hundredth of its sphere each.
+    EXPECT_GT(volume_of(merged), 0.8 * 4.0 / 3.0 * kPi);
+    for (const LocalTriangle& t : merged.triangles)
+      for (size_t k = 0; k < 3; ++k) EXPECT_LT(glm::distance(t.normals[k], merged.positions[t.vertices[k]]), 1e-6) << "the vertex's own";
+  }
+}
+
+TEST(MergeSmooth, KeepsCreasesAndWhatHasColors) {
+  std::mt19937 random(random_seed());
+  for (int round = 0; round < 20; ++round) {
+    Builder builder(random_turn(random));
+    const int segments = 12 + static_cast<int>(random() % 30);
+    add_cylinder(segments, 3, builder);
+    const LocalTriangles merged = merge_smooth(builder.mesh);
+    EXPECT_EQ(open_edges(merged), 0u);
+    EXPECT_LT(merged.triangles.size(), builder.mesh.triangles.size());
+    // The prism between its rims is what the rims make it, wherever else vertices are.
+    EXPECT_NEAR(volume_of(merged), volume_of(builder.mesh), 1e-9) << segments;
+  }
+  Builder cube(glm::dmat3(1.0));
+  add_cube(4, cube);
+  cube.mesh.colors.assign(cube.mesh.positions.size(), glm::vec3(0.5f));
+  EXPECT_EQ(merge_smooth(cube.mesh).triangles.size(), cube.mesh.triangles.size());
 }
 
 }  // namespace

@@ -7,44 +7,12 @@
 
 #include "sdf/error.h"
 #include "sdf/level_set_band.h"
+#include "sdf/level_set_crossings.h"
 #include "sdf/level_set_data.h"
 #include "sdf/parallel.h"
 
 namespace limn {
 namespace {
-
-/// The mean of where the surface meets the edges of the cell at (x, y, z) of a block, from that node.
-glm::dvec3 crossing(const NodeWindow& nodes, int x, int y, int z) {
-  const auto value = [&](int corner) {
-    const auto at = [](int i, int bit) { return static_cast<size_t>(i + bit + 1); };
-    return static_cast<double>(nodes[at(x, corner & 1)][at(y, corner >> 1 & 1)][at(z, corner >> 2)]);
-  };
-  glm::dvec3 sum(0.0);
-  int count = 0;
-  for (int corner = 0; corner < 8; ++corner)
-    for (int axis = 0; axis < 3; ++axis) {
-      if (corner >> axis & 1) continue;
-      const double a = value(corner), b = value(corner | 1 << axis);
-      if ((a < 0.0) == (b < 0.0)) continue;
-      glm::dvec3 at(corner & 1, corner >> 1 & 1, corner >> 2);
-      at[axis] += a / (a - b);
-      sum += at;
-      ++count;
-    }
-  return sum / static_cast<double>(std::max(count, 1));
-}
-
-/// Where the surface crosses the cells of a block, index coordinates.
-std::vector<glm::dvec3> crossings(const LevelSetData& data, const nanovdb::Coord& origin) {
-  const LeafWindow window(data.accessor(), origin);
-  NodeWindow nodes;
-  load_nodes(window, nodes);
-  std::vector<glm::dvec3> places;
-  for_each_cell(cells_crossed(nodes), [&](int x, int y, int z) {
-    places.push_back(glm::dvec3(origin[0] + x, origin[1] + y, origin[2] + z) + crossing(nodes, x, y, z));
-  });
-  return places;
-}
 
 void values_at(const LevelSet& level_set, const GradientDescriptor& gradient, std::span<const glm::dvec3> points,
                std::span<double> values) {
@@ -175,7 +143,7 @@ SurfacePatches surface_patches(const LevelSet& level_set, const GradientDescript
   const glm::dmat3 world_from_target = glm::inverse(target_from_world.linear);
   std::vector<std::vector<SurfacePatch>> parts(blocks.size());
   parallel_for(size_t{0}, blocks.size(), [&](size_t i) {
-    std::vector<glm::dvec3> points = crossings(data, blocks[i]);
+    std::vector<glm::dvec3> points = crossings_in_block(data, blocks[i]);
     if (points.empty()) return;
     for (glm::dvec3& point : points) point = level_set.info().world_from_index.point(point);
     settle(level_set, gradient, points);

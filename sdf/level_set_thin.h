@@ -8,7 +8,7 @@
 
 namespace limn {
 
-/// Shares of the surface up to this may be thin without a warning: knife edges are thin without end. As in the audit.
+/// Shares of the surface up to this may be thin without a warning: sharp edges are thin without end. As in the audit.
 inline constexpr double kThinPlacesShare = 0.005;
 
 struct ThinPlaces {

@@ -79,7 +79,7 @@ size_t count_far_faces(const Field& field, const Mesh& mesh) {
   return count_of(far);
 }
 
-/// Where walls end in knife edges some faces are bad whatever the sampling: so many are accepted, since finer samplings only make the cage
+/// Where walls run out to nothing some faces are bad whatever the sampling: so many are accepted, since finer samplings only make the cage
 /// larger.
 constexpr double kBadShare = 1.0 / 500.0;
 /// Samplings tried once a topology is confirmed.

@@ -9,6 +9,7 @@
 
 #include "raymarch/audit/facts.h"
 #include "raymarch/surface/object_mesh.h"
+#include "sdf/level_set_crossings.h"
 #include "subdiv/first_hits.h"
 #include "subdiv/refine.h"
 
@@ -129,10 +130,7 @@ SurfaceSamples sample_level_set(const SceneObject& object) {
   SurfaceSamples samples;
   const LevelSet& level_set = std::get<LevelSetSource>(object.source).level_set;
   const double voxel = level_set.info().voxel_size;
-  const PolygonSoup surface = mesh_from_level_set(level_set);
-  const size_t count = std::min(kMost, surface.positions.size());
-  std::vector<glm::dvec3> points;
-  for (size_t k = 0; k < count; ++k) points.push_back(surface.positions[k * surface.positions.size() / count]);
+  const std::vector<glm::dvec3> points = sample_crossings(level_set, kMost);
   const std::vector<glm::dvec3> gradients = coarse_gradients(level_set, points, 0.5 * voxel);
   for (size_t i = 0; i < points.size(); ++i) {
     const double slope = glm::length(gradients[i]);

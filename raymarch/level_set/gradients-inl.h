@@ -125,7 +125,7 @@ HWY_INLINE V3 moved(const V3& at, const V3& direction, VF t) {
 /// Newton's step along the ray towards the root of what has this value and gradient, by a quarter of a voxel at most, so that hits in one
 /// cell and the next go on from each other. `side`: the sign of the values before the trilinear root, from which the value falls (towards
 /// the other sign). A ray that grazes is taken to fall a sixteenth as steeply as it could: the step's theory is of first order. Where it
-/// rises, which at knife edges it may, it has no root near here to go to: the step fades out, and jumps nowhere between.
+/// rises, which at sharp edges it may, it has no root near here to go to: the step fades out, and jumps nowhere between.
 HWY_INLINE VF newton_step(VF value, const V3& gradient, const V3& direction, VF side) {
   const V3 product{hn::Mul(gradient.x, direction.x), hn::Mul(gradient.y, direction.y), hn::Mul(gradient.z, direction.z)};
   const VF fall = hn::Neg(hn::Mul(side, hn::Add(hn::Add(product.x, product.y), product.z)));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sdf/error.h"
+#include "sdf/level_set_crossings.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_distance.h"
 #include "tests/sdf/level_set_maker.h"
@@ -288,6 +289,22 @@ TEST(LevelSetMesh, PolygonsLieOnTheSurfaceAndTheirVolumeIsThatOfTheShape) {
   }
   // Positive only when wound outwards.
   EXPECT_NEAR(volume, 4.18879, 0.03);
+}
+
+TEST(LevelSetCrossings, LieOnTheSurfaceAndEvenlyOverIt) {
+  const Ellipsoid ellipsoid = Ellipsoid::jittered(11);
+  const LevelSet level_set = level_set_from_field(ellipsoid.field(), {.voxel_size = 0.03});
+  const std::vector<glm::dvec3> all = sample_crossings(level_set, 1'000'000), some = sample_crossings(level_set, 500);
+  ASSERT_GT(all.size(), 2'000u);
+  EXPECT_EQ(some.size(), 500u);
+  EXPECT_TRUE(sample_crossings(level_set, 0).empty());
+  glm::dvec3 mean(0.0);
+  for (const glm::dvec3& p : all) {
+    EXPECT_LT(std::abs(ellipsoid.distance(p)), 0.2 * 0.03);
+    mean += p / static_cast<double>(all.size());
+  }
+  EXPECT_LT(glm::distance(mean, ellipsoid.center), 0.03);
+  for (size_t k = 0; k < some.size(); ++k) EXPECT_EQ(some[k], all[k * all.size() / some.size()]) << k;
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ TEST(Tessellate, EveryBoundedShapeIsAClosedManifoldOnItsSurfaceWithTheRightTopol
     std::printf("  %-15s %6zu faces, euler %3d, worst vertex off by %.1e of the radius, %zu folded\n", name.c_str(), mesh.face_count(),
                 static_cast<int>(topology->euler), quality.worst_off, quality.folded);
     EXPECT_LT(quality.worst_off, 1e-9) << name;
-    // Where the ball cuts the gyroid's wall to knife edges a face in a thousand may fold.
+    // Where the ball cuts the gyroid's wall to wedges a face in a thousand may fold.
     EXPECT_LE(quality.folded, name == "gyroid" ? mesh.face_count() / 1000 : 0u) << name;
     ASSERT_EQ(mesh.corner_normals.size(), mesh.corner_vertices.size()) << name;
     for (const glm::vec3& n : mesh.corner_normals) ASSERT_NEAR(glm::length(n), 1.0f, 1e-5f) << name;
@@ -206,7 +206,7 @@ TEST(Tessellate, HolesNarrowerThanACoarseCellAreFound) {
   EXPECT_LT(worst_middle(field, mesh), 0.012);
 }
 
-TEST(Tessellate, KnifeEdgesAreFollowed) {
+TEST(Tessellate, SharpWedgesAreFollowed) {
   // The carved box's edges are wedges of 34 degrees.
   const Field field = carved_box();
   for (const int level : {1, 2}) EXPECT_LT(worst_middle(field, tessellated(field, level)), 0.006) << level;

@@ -194,8 +194,8 @@ TEST(MergeSmooth, OfABallLeavesAFewTrianglesThatFitTheirNormals) {
     EXPECT_EQ(open_edges(merged), 0u);
     EXPECT_LT(merged.triangles.size(), ball.mesh.triangles.size() / 2) << rings;
     EXPECT_LT(worst_fit(merged), 30.0 + 1e-6);
-    // A ball's facets that fit within 30 degrees are those of no fewer than a hundredth of its sphere each.
-    EXPECT_GT(volume_of(merged), 0.8 * 4.0 / 3.0 * kPi);
+    // A facet with its corners on the ball and their normals within 30 degrees of its own lies cos(30) from the middle or farther.
+    EXPECT_GT(volume_of(merged), std::pow(std::cos(kPi / 6.0), 3.0) * 4.0 / 3.0 * kPi);
     for (const LocalTriangle& t : merged.triangles)
       for (size_t k = 0; k < 3; ++k) EXPECT_LT(glm::distance(t.normals[k], merged.positions[t.vertices[k]]), 1e-6) << "the vertex's own";
   }
@@ -210,8 +210,11 @@ TEST(MergeSmooth, KeepsCreasesAndWhatHasColors) {
     const LocalTriangles merged = merge_smooth(builder.mesh);
     EXPECT_EQ(open_edges(merged), 0u);
     EXPECT_LT(merged.triangles.size(), builder.mesh.triangles.size());
-    // The prism between its rims is what the rims make it, wherever else vertices are.
-    EXPECT_NEAR(volume_of(merged), volume_of(builder.mesh), 1e-9) << segments;
+    // Its rims are all that lies sqrt(2) from the middle.
+    const auto on_rim = [](const glm::dvec3& p) { return glm::length(p) > std::sqrt(2.0) - 1e-9; };
+    EXPECT_EQ(std::count_if(merged.positions.begin(), merged.positions.end(), on_rim), 2 * segments);
+    EXPECT_GT(volume_of(merged), 0.95 * volume_of(builder.mesh)) << segments;
+    EXPECT_LT(worst_fit(merged), std::max(30.0, worst_fit(builder.mesh)) + 1e-6) << segments;
   }
   Builder cube(glm::dmat3(1.0));
   add_cube(4, cube);

@@ -12,7 +12,7 @@ namespace {
 /// The mean of where the surface meets the edges of the cell at (x, y, z) of a block, from that node.
 glm::dvec3 crossing(const NodeWindow& nodes, int x, int y, int z) {
   const auto value = [&](int corner) {
-    const auto at = [](int i, int bit) { return static_cast<size_t>(i + bit + 1); };
+    const auto at = [](int i, int bit) { return static_cast<size_t>(i) + static_cast<size_t>(bit) + 1; };
     return static_cast<double>(nodes[at(x, corner & 1)][at(y, corner >> 1 & 1)][at(z, corner >> 2)]);
   };
   glm::dvec3 sum(0.0);

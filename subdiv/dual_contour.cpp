@@ -306,7 +306,7 @@ class DualContour {
   std::vector<Crossing> crossings_{};
   std::vector<std::int32_t> crossing_of_{};  ///< Of each edge, -1 where it has none.
   std::vector<size_t> crossed_twice_{};      ///< Faces.
-  std::vector<char> middle_inside_{};        ///< Of each of them.
+  std::vector<char> middle_inside_{};        ///< Of each of them; by FieldLattice::edge_index.
   std::vector<std::int32_t> sheet_{};        ///< Vertex of each edge of each cell, 12 a node, counted within its rows.
   std::vector<std::int32_t> first_vertex_{};
 };

@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "sdf/memory_text.h"
 #include "sdf/size_error.h"
@@ -85,40 +86,46 @@ constexpr double kBadShare = 1.0 / 500.0;
 /// Samplings tried once a topology is confirmed.
 constexpr int kMostTried = 3;
 
-/// The share of faces that lie the wrong way up or off the surface, now or after the next refinement: walls thinner than an edge, and
-/// holes narrower than a face, show themselves there.
-double bad_share(const Field& field, const Cage& cage) {
+/// A cage, and what it was judged by.
+struct JudgedCage {
+  Cage cage{};
+  std::optional<Cage> finer{};  ///< Refined once; nothing where it was bad before.
+  /// The share of faces that lie the wrong way up or off the surface, now or after that refinement: walls thinner than an edge, and holes
+  /// narrower than a face, show themselves there.
+  double bad_share = 0.0;
+};
+
+JudgedCage judged(const Field& field, Cage cage) {
   const auto share = [](size_t count, const Mesh& mesh) { return static_cast<double>(count) / static_cast<double>(mesh.face_count()); };
   const double now = share(folded_faces(field, cage.mesh).size() + count_far_vertices(field, cage.mesh), cage.mesh);
   // No refinement mends what is this bad.
-  if (now > 2.0 * kBadShare) return now;
-  const Mesh finer = refined_once(field, cage.mesh, std::int64_t{8} << 30).mesh;
-  return std::max(now, share(folded_faces(field, finer).size() + count_far_faces(field, finer), finer));
+  if (now > 2.0 * kBadShare) return {std::move(cage), {}, now};
+  Cage finer = refined_once(field, cage.mesh, std::int64_t{8} << 30);
+  const double then = share(folded_faces(field, finer.mesh).size() + count_far_faces(field, finer.mesh), finer.mesh);
+  return {std::move(cage), std::move(finer), std::max(now, then)};
 }
 
-/// The coarsest sampling whose topology a neighbouring one confirms and whose faces lie on the surface, the right way up; failing that, the
-/// best met, or the last one that is closed, unconfirmed. Without faces where none is.
+/// What lattices gave.
 struct CageSearch {
-  Cage best{};
-  Mesh last{};
-  bool confirmed = false;
+  std::optional<JudgedCage> best{};  ///< Of those whose topology a neighbouring lattice confirms.
+  Mesh last{};                       ///< Of the finest lattice; without faces where it is not closed.
 };
+
+/// The coarsest lattice whose topology a neighbouring one confirms and whose faces lie on the surface, the right way up; failing that, the
+/// best met.
 CageSearch search_cage(const Field& field, ThinWalls thin_walls) {
   CageSearch search;
   Mesh previous;
   std::optional<Topology> previous_topology;
-  double best_share = 0.0;
   int tried = 0;
   for (const int cells : kCells) {
     Mesh mesh = dual_contour(field, cells, thin_walls);
     const std::optional<Topology> topology = topology_of(mesh);
     if (topology && topology == previous_topology) {
       for (const Mesh* candidate : {&previous, &mesh}) {
-        Cage cage = snapped_cage(field, *candidate);
-        const double share = bad_share(field, cage);
-        if (!search.confirmed || share < best_share) search.best = std::move(cage), best_share = share;
-        search.confirmed = true;
-        if (best_share <= kBadShare) return search;
+        JudgedCage cage = judged(field, snapped_cage(field, *candidate));
+        if (!search.best || cage.bad_share < search.best->bad_share) search.best = std::move(cage);
+        if (search.best->bad_share <= kBadShare) return search;
       }
       if (++tried == kMostTried) return search;
     }
@@ -129,29 +136,30 @@ CageSearch search_cage(const Field& field, ThinWalls thin_walls) {
   return search;
 }
 
-Cage find_cage(const Field& field) {
+JudgedCage find_cage(const Field& field) {
   const Box& box = field.traits().bounds;
   if (box.empty()) throw InputError({"", "shape", "", "the surface is empty: there is nothing to tessellate", "a shape with a surface"});
   if (!box.finite())
     throw InputError({"", "shape", "", "an unbounded surface cannot be tessellated", "a bounded shape, or its intersection with one"});
   CageSearch search = search_cage(field, ThinWalls::kept);
   // Where walls are too thin and too many for all samplings, a surface without them is better than none.
-  if (!search.confirmed) {
+  if (!search.best) {
     CageSearch without = search_cage(field, ThinWalls::lost);
-    if (without.confirmed || search.last.face_sizes.empty()) search = std::move(without);
+    if (without.best || search.last.face_sizes.empty()) search = std::move(without);
   }
-  if (search.confirmed) return std::move(search.best);
+  if (search.best) return std::move(*search.best);
   if (search.last.face_sizes.empty())
     throw InputError({"", "shape", "", fmt::format("no closed surface was found with {} cells along its longest side", kCells.back()),
                       "a shape without details thinner than that, or the surface kind level_set"});
-  return snapped_cage(field, std::move(search.last));
+  return {snapped_cage(field, std::move(search.last)), {}, 0.0};
 }
 
 }  // namespace
 
 struct FieldCage {
-  Cage cage;
+  Cage cage{};
   double found_ms = 0.0;
+  std::shared_ptr<const FieldCage> finer{};  ///< Refined once, where finding it took that already.
 };
 
 namespace {
@@ -159,51 +167,62 @@ namespace {
 template <class Make>
 std::shared_ptr<const FieldCage> timed(const Make& make) {
   const auto start = std::chrono::steady_clock::now();
-  Cage cage = make();
-  const double found_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  return std::make_shared<const FieldCage>(FieldCage{std::move(cage), found_ms});
+  FieldCage cage = make();
+  cage.found_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return std::make_shared<const FieldCage>(std::move(cage));
 }
 
 /// Of a refinement that is kept, as predicted; finer ones are made anew from the finest that is.
 constexpr std::int64_t kMostKeptBytes = std::int64_t{64} << 20;
 
-/// `cage` refined `level` times, from the finest that is kept.
-Cage refined(const Field& field, Cage cage, const TessellateSettings& settings) {
+std::shared_ptr<const FieldCage> refined_once(const Field& field, const FieldCage& cage, std::int64_t max_bytes) {
+  if (cage.finer) return cage.finer;
+  return timed([&] { return FieldCage{.cage = refined_once(field, cage.cage.mesh, max_bytes)}; });
+}
+
+/// Refined as often as its level says, from the finest that is kept.
+Cage refined(const Field& field, std::shared_ptr<const FieldCage> cage, const TessellateSettings& settings) {
   int level = 0;
   if (settings.refinements != nullptr) {
     FieldCages& kept = *settings.refinements;
     while (static_cast<int>(kept.size()) < settings.level &&
-           predict_refined_size(cage.mesh, Scheme::bilinear, static_cast<int>(kept.size()) + 1).bytes <= kMostKeptBytes) {
-      const Mesh& coarse = kept.empty() ? cage.mesh : kept.back()->cage.mesh;
-      kept.push_back(timed([&] { return refined_once(field, coarse, settings.max_bytes); }));
-    }
+           predict_refined_size(cage->cage.mesh, Scheme::bilinear, static_cast<int>(kept.size()) + 1).bytes <= kMostKeptBytes)
+      kept.push_back(refined_once(field, kept.empty() ? *cage : *kept.back(), settings.max_bytes));
     level = std::min(settings.level, static_cast<int>(kept.size()));
-    if (level > 0) cage = kept[static_cast<size_t>(level) - 1]->cage;
+    if (level > 0) cage = kept[static_cast<size_t>(level) - 1];
   }
-  for (; level < settings.level; ++level) cage = refined_once(field, cage.mesh, settings.max_bytes);
-  return cage;
+  if (level == settings.level) return cage->cage;
+  Cage result = cage->finer ? cage->finer->cage : refined_once(field, cage->cage.mesh, settings.max_bytes);
+  for (++level; level < settings.level; ++level) result = refined_once(field, result.mesh, settings.max_bytes);
+  return result;
 }
 
 }  // namespace
 
 std::shared_ptr<const FieldCage> find_field_cage(const Field& field) {
-  return timed([&] { return find_cage(field); });
+  return timed([&] {
+    JudgedCage found = find_cage(field);
+    FieldCage cage{.cage = std::move(found.cage)};
+    if (found.finer && predict_refined_size(cage.cage.mesh, Scheme::bilinear, 1).bytes <= kMostKeptBytes)
+      cage.finer = std::make_shared<const FieldCage>(FieldCage{.cage = std::move(*found.finer)});
+    return cage;
+  });
 }
 
 double time_to_find_ms(const FieldCage& cage) { return cage.found_ms; }
 
-Mesh cage_of(const Field& field) { return find_cage(field).mesh; }
+Mesh cage_of(const Field& field) { return find_cage(field).cage.mesh; }
 
 Mesh tessellate(const Field& field, const TessellateSettings& settings) {
   if (settings.level < 0 || settings.level > 8)
     throw InputError({"", "level", fmt::format("{}", settings.level), "the subdivision level is out of range", "0 to 8"});
-  Cage cage = settings.cage ? settings.cage->cage : find_cage(field);
-  const RefinedSize size = predict_refined_size(cage.mesh, Scheme::bilinear, settings.level);
+  const std::shared_ptr<const FieldCage> found = settings.cage ? settings.cage : find_field_cage(field);
+  const RefinedSize size = predict_refined_size(found->cage.mesh, Scheme::bilinear, settings.level);
   if (size.bytes > settings.max_bytes)
     throw SizeError({"", "level", fmt::format("{}", settings.level),
                      fmt::format("the mesh has {} faces and needs {}", size.faces, memory_text(static_cast<double>(size.bytes))),
                      fmt::format("a lower level (at most {})", memory_text(static_cast<double>(settings.max_bytes)))});
-  cage = refined(field, std::move(cage), settings);
+  Cage cage = refined(field, found, settings);
   follow_creases(field, cage.mesh, cage.snapped);
   turn_quads_along_creases(field, cage.mesh, cage.snapped.feature);
   split_quads_along_creases(field, cage.mesh, cage.snapped.feature);

@@ -126,6 +126,7 @@ LocalStart start_from_cage(const Mesh& cage, Scheme scheme, const Affine& render
     return start;
   }
   start.patches = placed->patches;
+  start.source.has_parameters = true;
   start.source.middles = [placed](const LocalTriangles& mesh, std::span<const LocalEdge> edges, std::span<EdgeMiddle> middles) {
     cage_middles(*placed, mesh, edges, middles);
   };

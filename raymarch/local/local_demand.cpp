@@ -25,6 +25,8 @@ constexpr double kAside_px = 4.0;
 const double kMostTurnCosine = std::cos(0.785398163397448);
 /// An edge shorter than this hides nothing, px.
 constexpr double kSmall_px = 2.0;
+/// A folded facet whose sides are shorter than this shows its back to no ray, px.
+constexpr double kFoldSide_px = 0.1;
 
 size_t next(size_t k) { return (k + 1) % 3; }
 
@@ -161,7 +163,7 @@ unsigned coarse_demand(const Seen& seen, const TriangleSample& triangle, const L
 
 /// The longest edge of a facet that is turned against the normal at one of its corners: beside a tight bend a chord may reach past the
 /// other side of it, and what is folded there shows its back.
-unsigned fold_demand(const TriangleSample& triangle) {
+unsigned fold_demand(const Seen& seen, const TriangleSample& triangle) {
   const glm::dvec3 facet = glm::cross(triangle.corners[1] - triangle.corners[0], triangle.corners[2] - triangle.corners[0]);
   bool against = false;
   for (const glm::dvec3& normal : triangle.corner_normals) against = against || glm::dot(facet, normal) < 0.0;
@@ -170,7 +172,7 @@ unsigned fold_demand(const TriangleSample& triangle) {
   double most = 0.0;
   for (size_t k = 0; k < 3; ++k) {
     const double length = glm::distance(triangle.corners[k], triangle.corners[next(k)]);
-    if (triangle.halves[k] && length > most) longest = k, most = length;
+    if (triangle.halves[k] && seen.length_px[k] >= kFoldSide_px && length > most) longest = k, most = length;
   }
   return longest < 3 ? 1u << longest : 0u;
 }
@@ -193,7 +195,7 @@ unsigned edges_to_split(const TriangleSample& triangle, std::span<const LocalVie
     const double margin_px = kHiddenMargin_px + settings.tolerance_px;
     if (!settings.everywhere && is_hidden(view.hidden, seen.px, margin_px, margin_px * seen.units_per_px)) continue;
     split |= border_demand(seen, triangle, turn_at(view, triangle), settings);
-    if (triangle.unfolds) split |= fold_demand(triangle);
+    if (triangle.unfolds) split |= fold_demand(seen, triangle);
   }
   for (size_t k = 0; k < 3; ++k)
     if (!triangle.halves[k] || (triangle.stays && !triangle.crosses[k])) split &= ~(1u << k);

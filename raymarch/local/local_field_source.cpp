@@ -127,7 +127,7 @@ constexpr int kMostStartLevel = 2;
 
 }  // namespace
 
-LocalStart start_from_field(const Field& field, std::shared_ptr<const FieldCage> cage, std::int64_t max_bytes) {
+LocalStart start_from_field(const Field& field, std::shared_ptr<const FieldCage> cage, std::int64_t max_bytes, bool steady) {
   LocalStart start;
   if (!cage) cage = find_field_cage(field);
   // Where the coarsest mesh goes across creases, no splitting of its edges would follow them.
@@ -137,7 +137,10 @@ LocalStart start_from_field(const Field& field, std::shared_ptr<const FieldCage>
     const double folded = static_cast<double>(count_folded(start.triangles));
     if (folded <= kMostFolded * static_cast<double>(start.triangles.triangles.size())) break;
   }
-  if (start.mesh.face_materials.empty()) start.triangles = merge_smooth(merge_flat(std::move(start.triangles)));
+  if (start.mesh.face_materials.empty()) {
+    start.triangles = merge_flat(std::move(start.triangles));
+    if (!steady) start.triangles = merge_smooth(std::move(start.triangles));
+  }
   start.source.has_folds = true;
   // The walls of a tessellated field are resolved from the start; those of a cage may be thin beside its faces.
   start.source.coarse_px = 1.9;

@@ -52,7 +52,8 @@ class Middles {
     // The other side of a new edge may be a triangle that stays: only where an edge was there before, and then its middle is known.
     std::vector<EdgeMiddle> made(edges.size());
     source.middles(mesh, edges, made);
-    for (size_t i = 0; i < edges.size(); ++i) made[i].halves = made[i].crosses || halves(mesh, edges[i], made[i].position);
+    for (size_t i = 0; i < edges.size(); ++i)
+      made[i].halves = made[i].crosses || source.has_parameters || halves(mesh, edges[i], made[i].position);
     for (const auto& [key, index] : missing) known_[key] = made[index];
   }
   const EdgeMiddle& at(std::uint32_t a, std::uint32_t b) const { return known_.at(key_of(a, b)); }
@@ -235,6 +236,27 @@ std::vector<double> turns_of(const LocalTriangles& mesh, const Camera& camera) {
   return turns;
 }
 
+/// Where a surface turns within itself, an edge may keep to it while the ones that pass beside it are asked to be split, each time to a
+/// narrower needle in the surface's parameters. Needles are split across, too.
+void split_needles(const LocalTriangles& mesh, std::unordered_map<std::uint64_t, char>& split) {
+  constexpr double kLeastHeight = 0.05;  // over the longest side
+  for (bool any = true; any;) {
+    any = false;
+    for (const LocalTriangle& triangle : mesh.triangles) {
+      const auto key = [&](size_t k) { return key_of(triangle.vertices[k], triangle.vertices[next(k)]); };
+      const std::array<glm::dvec2, 3> sides{triangle.uv[1] - triangle.uv[0], triangle.uv[2] - triangle.uv[1],
+                                            triangle.uv[0] - triangle.uv[2]};
+      size_t longest = 0;
+      for (size_t k = 1; k < 3; ++k)
+        if (glm::dot(sides[k], sides[k]) > glm::dot(sides[longest], sides[longest])) longest = k;
+      const double twice_area = std::abs(sides[0].x * sides[1].y - sides[0].y * sides[1].x);
+      if (twice_area >= kLeastHeight * glm::dot(sides[longest], sides[longest]) || split.count(key(longest)) > 0) continue;
+      if (split.count(key(0)) + split.count(key(1)) + split.count(key(2)) == 0) continue;
+      any = split.try_emplace(key(longest), 1).second;
+    }
+  }
+}
+
 /// One pass over the triangles that are new: false where none of them asks for anything.
 bool refine_once(LocalTriangles& mesh, Middles& middles, std::vector<char>& is_new, const LocalSource& source, std::span<LocalView> views,
                  const LocalSettings& settings, bool only_coarse) {
@@ -256,6 +278,7 @@ bool refine_once(LocalTriangles& mesh, Middles& middles, std::vector<char>& is_n
       if (asked[t] & (1u << k)) split[key_of(v[k], v[next(k)])] = 1;
   }
   if (split.empty()) return false;
+  if (source.has_parameters) split_needles(mesh, split);
   Splitter splitter(mesh, middles);
   for (const LocalTriangle& triangle : mesh.triangles) {
     unsigned edges = 0;

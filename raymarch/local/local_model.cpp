@@ -66,17 +66,18 @@ ObjectMesh from_cage(const SceneObject& object, const MeshSource& source, Scheme
 
 /// Made, or as it was made for an earlier model: then `spared_ms` is told what that took.
 std::shared_ptr<const LocalStart> field_start(const Field& field, const SurfaceSettings& settings, const glm::dvec3& render_origin,
-                                              double& spared_ms) {
+                                              bool steady, double& spared_ms) {
   KeptStart* const kept = settings.kept_start.get();
-  if (kept && kept->local && kept->render_origin == render_origin) {
+  if (kept && kept->local && kept->render_origin == render_origin && kept->steady == steady) {
     spared_ms = kept->local_ms;
     return kept->local;
   }
   const auto begin = std::chrono::steady_clock::now();
   const std::shared_ptr<const FieldCage> cage = kept_cage(field, render_origin, kept, spared_ms);
-  auto start = std::make_shared<const LocalStart>(start_from_field(field, cage, settings.max_bytes));
+  auto start = std::make_shared<const LocalStart>(start_from_field(field, cage, settings.max_bytes, steady));
   if (kept) {
     kept->local = start;
+    kept->steady = steady;
     kept->local_ms = spared_ms + std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   }
   return start;
@@ -86,7 +87,7 @@ ObjectMesh from_field(const SceneObject& object, const SurfaceSettings& settings
                       const LocalSettings& local) {
   const Field field = translate(std::get<Field>(object.source), -render_origin);
   double spared_ms = 0.0;
-  const std::shared_ptr<const LocalStart> start = field_start(field, settings, render_origin, spared_ms);
+  const std::shared_ptr<const LocalStart> start = field_start(field, settings, render_origin, local.steady, spared_ms);
   if (!is_oriented(start->triangles)) {
     ObjectMesh result = object_mesh(object, settings, render_origin);
     result.warnings.push_back("'" + object.name + "' is as fine everywhere: more than two faces of its coarse mesh share an edge");

@@ -17,8 +17,9 @@ struct LocalStart {
   std::vector<LimitPiece> patches{};  ///< What LocalTriangle::patch counts; its corners are not read. Empty for fields.
 };
 
-/// Of a field in render space, from its cage (subdiv/tessellate.h; null: it is looked for). Throws InputError as that does.
-LocalStart start_from_field(const Field& field, std::shared_ptr<const FieldCage> cage, std::int64_t max_bytes);
+/// Of a field in render space, from its cage (subdiv/tessellate.h; null: it is looked for). `steady`: for a path, along which merged facets
+/// would flicker; smooth parts stay as fine as the cage. Throws InputError as that does.
+LocalStart start_from_field(const Field& field, std::shared_ptr<const FieldCage> cage, std::int64_t max_bytes, bool steady);
 
 /// Of a cage whose limit surface stands in render space by `render_from_cage`. Empty triangles where it cannot be refined locally: where
 /// more than two faces share an edge, or faces have no limit surface of their own. Throws InputError as refine() does.

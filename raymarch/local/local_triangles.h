@@ -72,7 +72,8 @@ struct LocalSource {
   std::function<void(std::span<const CreaseCorner> corners, std::span<glm::dvec3> normals)> crease_normals{};
   /// No chord's middle stands farther off, seen from any of the views, px. Three fourths of kLocalCoarse_px at most.
   double coarse_px = 0.5;
-  bool has_folds = false;  ///< Edges do not follow all creases: facets that are folded across one are split a few times only.
+  bool has_parameters = false;  ///< Middles are halves in the surface's parameters: splitting ends, however the surface turns.
+  bool has_folds = false;       ///< Edges do not follow all creases: facets that are folded across one are split a few times only.
 };
 
 }  // namespace limn

@@ -198,7 +198,7 @@ ObjectMesh make_object_mesh(const SceneObject& object, const SurfaceSettings& se
 std::shared_ptr<const FieldCage> kept_cage(const Field& field, const glm::dvec3& render_origin, KeptStart* kept, double& spared_ms) {
   if (!kept) return find_field_cage(field);
   if (!kept->cage || kept->render_origin != render_origin) {
-    *kept = {render_origin, find_field_cage(field), {}, 0.0, {}};
+    *kept = {.render_origin = render_origin, .cage = find_field_cage(field)};
     return kept->cage;
   }
   spared_ms += time_to_find_ms(*kept->cage);

@@ -51,6 +51,7 @@ struct KeptStart {
   std::shared_ptr<const LocalStart> local{};
   double local_ms = 0.0;     ///< What making `local` took, the cage included.
   FieldCages refinements{};  ///< Of `cage`: uniform meshes of all levels and normals start from them.
+  bool steady = false;       ///< Of `local`: whether it was made for a path.
 };
 
 /// The cage of a field in render space: what is kept for that origin, or a new one, which is kept. Where it was kept, what finding it

@@ -34,6 +34,8 @@ struct RefinedSize {
 };
 /// Exact for Catmull-Clark, Loop and bilinear: counted from vertices, edges and corners. Level outside 0..8 is an InputError.
 RefinedSize predict_refined_size(const Mesh& cage, Scheme scheme, int level);
+/// The same of levels 0, ..., most_level: the cage is looked at once.
+std::vector<RefinedSize> predict_refined_sizes(const Mesh& cage, Scheme scheme, int most_level);
 
 /// The cage refined uniformly. Corner normals are filled for `limit` (split at infinitely sharp creases) and left empty otherwise.
 /// Level 0 with `limit` normals projects the cage's own vertices. Loop wants triangles (others are an InputError naming the first face).

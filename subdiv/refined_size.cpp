@@ -56,9 +56,17 @@ RefinedSize predict_from_base(const Far::TopologyRefiner& base, Scheme scheme, i
 }
 
 RefinedSize predict_refined_size(const Mesh& cage, Scheme scheme, int level) {
-  if (level < 0 || level > 8) throw InputError({"", "level", fmt::format("{}", level), "the subdivision level is out of range", "0 to 8"});
+  return predict_refined_sizes(cage, scheme, level).back();
+}
+
+std::vector<RefinedSize> predict_refined_sizes(const Mesh& cage, Scheme scheme, int most_level) {
+  if (most_level < 0 || most_level > 8)
+    throw InputError({"", "level", fmt::format("{}", most_level), "the subdivision level is out of range", "0 to 8"});
   const CleanCage clean = clean_cage(cage, scheme, {});
-  return predict_from_base(*make_refiner(clean.mesh, scheme, {}), scheme, level, !cage.vertex_colors.empty());
+  const auto base = make_refiner(clean.mesh, scheme, {});
+  std::vector<RefinedSize> sizes;
+  for (int level = 0; level <= most_level; ++level) sizes.push_back(predict_from_base(*base, scheme, level, !cage.vertex_colors.empty()));
+  return sizes;
 }
 
 std::vector<char> used_vertices(const Far::TopologyLevel& level, bool holes_too) {

@@ -26,8 +26,10 @@ int affordable_level(const SceneObject& object, const SurfaceSettings& settings)
   const int asked = object.level.value_or(settings.level);
   const auto& source = std::get<MeshSource>(object.source);
   const std::optional<Scheme> scheme = settings.scheme ? settings.scheme : source.scheme;
+  if (!scheme) return asked;
   int level = asked;
-  while (scheme && level > 0 && predict_refined_size(source.mesh, *scheme, level).faces > kMostFaces) --level;
+  const std::vector<RefinedSize> sizes = predict_refined_sizes(source.mesh, *scheme, asked);
+  while (level > 0 && sizes[static_cast<size_t>(level)].faces > kMostFaces) --level;
   return level;
 }
 

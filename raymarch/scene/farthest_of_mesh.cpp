@@ -22,8 +22,9 @@ SharedMesh on_limit(const MeshSource& source) {
   if (!source.scheme || source.mesh->face_count() > kMostRefined) return source.mesh;
   try {
     int level = kFinest;
+    const std::vector<RefinedSize> sizes = predict_refined_sizes(source.mesh, *source.scheme, kFinest);
     // A cage of few faces is coarse at the usual level still.
-    while (level > 0 && predict_refined_size(source.mesh, *source.scheme, level).faces > (level > kUsual ? kMostFine : kMostFaces)) --level;
+    while (level > 0 && sizes[static_cast<size_t>(level)].faces > (level > kUsual ? kMostFine : kMostFaces)) --level;
     return refine(source.mesh, {.scheme = *source.scheme, .level = level, .normals = NormalKind::flat}, source.file);
   } catch (const InputError&) {
     return source.mesh;  // what is wrong with the cage is told where the model is built

@@ -205,6 +205,13 @@ std::shared_ptr<const FieldCage> kept_cage(const Field& field, const glm::dvec3&
   return kept->cage;
 }
 
+SurfaceSettings keeping_mesh(SurfaceSettings settings, const Scene& scene, ObjectMeshCache* cache) {
+  if (!cache || scene.objects.size() != 1) return settings;
+  cache->kept.resize(1);
+  settings.kept_mesh = cache->kept.data();
+  return settings;
+}
+
 ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin) {
   std::shared_ptr<const KeptMesh>* const kept = settings.kept_mesh;
   // A volume with other voxels is not what the cache knows objects by.

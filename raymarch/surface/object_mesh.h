@@ -67,6 +67,10 @@ struct KeptMesh {
   ObjectMesh mesh{};
 };
 
+/// `settings` with the mesh of the only object of a scene in `cache`: who asks for it before build_model makes it for both. As they are
+/// without a cache, or of several objects, which are modelled about another origin than their own.
+SurfaceSettings keeping_mesh(SurfaceSettings settings, const Scene& scene, ObjectMeshCache* cache);
+
 /// Refines a cage, tessellates a field, meshes a level set, or takes a mesh as it is. A reflection keeps faces wound outwards.
 /// What `settings.kept_mesh` holds is taken where it fits; else it holds the new mesh afterwards. Throws InputError as those do.
 ObjectMesh object_mesh(const SceneObject& object, const SurfaceSettings& settings, const glm::dvec3& render_origin);

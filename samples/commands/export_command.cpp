@@ -94,11 +94,11 @@ std::optional<LocalSettings> local_of(const Options& options, const SceneInput& 
   if (has_local_bricks(kind) && ending_of(file) != ".vdb")
     throw InputError({"", "local", "", "a local level set is no mesh", "a .vdb file, one grid a voxel size; or surface = mesh"});
   refuse_eye_of_views(camera, options.spec.views);
+  const FramedSurface framed = framed_input(camera, input);
   std::vector<Camera> cameras;
   cameras.reserve(static_cast<size_t>(options.spec.views));
   for (int view = 0; view < options.spec.views; ++view)
-    cameras.push_back(
-        camera_of_view(camera_settings(camera, input), framed_input(camera, input), framing_settings(camera), view, options.spec.views));
+    cameras.push_back(camera_of_view(camera_settings(camera, input), framed, framing_settings(camera), view, options.spec.views));
   return local_settings(*options.local.tolerance_px, options.plan.silhouette, {}, std::move(cameras));
 }
 

@@ -324,7 +324,7 @@ void choose_method(Render& render, Options& options) {
   const bool named = !border.methods.empty() || border.look || !border.parameters.empty() || !render.input.borders.empty();
   const bool measured = options.frames.frames > 1 || options.plan.tolerance_px;
   if (named || measured || render.input.kind == InputKind::built_in) return;
-  const double share = flat_share(render.input.scene, render.surface);
+  const double share = flat_share(render.input.scene, render.surface, &render.meshes);
   if (share <= kMostlyFlat) return;
   options.spec.border.methods = {kMethodOfFlat};
   render.notes.push_back(fmt::format("{:.0f} % of the surface is flat: drawn by its lines (--method {}); --method {} inks whole faces",
@@ -390,7 +390,7 @@ int run(const Options& given) {
     check_cost(options, render.input.scene, render.surface,
                picture_load(cameras.front(), planned_picture(render), pictures_of(options),
                             std::any_of(render.outputs.begin(), render.outputs.end(), has_layers)));
-  render.warnings = warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods)});
+  render.warnings = warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods), .meshes = &render.meshes});
 
   // While the surface is built.
   std::future<void> pictures;

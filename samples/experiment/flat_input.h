@@ -6,7 +6,7 @@
 namespace limn {
 
 /// Share of the scene's surface without curvature, by the audit's check `flat`; each object counts by the area of its bounds.
-double flat_share(const Scene& scene, const SurfaceSettings& settings);
+double flat_share(const Scene& scene, const SurfaceSettings& settings, ObjectMeshCache* meshes = nullptr);
 /// Beyond this share lines are drawn where nobody names a method.
 inline constexpr double kMostlyFlat = 0.4;
 /// That method.

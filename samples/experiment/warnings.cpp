@@ -6,6 +6,7 @@
 #include <map>
 
 #include "raymarch/audit.h"
+#include "raymarch/surface/object_mesh.h"
 
 namespace limn {
 namespace {
@@ -31,13 +32,14 @@ std::vector<std::string> warnings_of(const Scene& scene, const SurfaceSettings& 
   if (methods.empty()) {
     for (const BorderMethod& method : border_methods()) methods.push_back(method.about.name);
   }
+  const SurfaceSettings kept = keeping_mesh(settings, scene, needs.meshes);
   std::vector<SharedWarning> found;
   std::map<std::string, size_t> place;
   for (const SceneObject& object : scene.objects) {
     std::vector<std::string> surfaces = needs.surfaces;
     if (surfaces.empty()) surfaces = {settings.kind.empty() ? natural_surface(object) : settings.kind};
     for (const Finding& finding :
-         audit(object, {.surface = settings, .thorough = needs.thorough, .surfaces = surfaces, .methods = methods})) {
+         audit(object, {.surface = kept, .thorough = needs.thorough, .surfaces = surfaces, .methods = methods})) {
       if (!matters(finding, surfaces, methods)) continue;
       std::string message = finding.message;
       if (needs.thorough && !finding.remedy.empty()) message += "; remedy: " + finding.remedy;

@@ -9,6 +9,7 @@ namespace limn {
 struct WarningNeeds {
   std::vector<std::string> surfaces{};  ///< Names; empty: settings.kind, or what each object is by itself.
   std::vector<std::string> methods{};   ///< Names; empty: all.
+  ObjectMeshCache* meshes = nullptr;    ///< Where a mesh that is looked at is kept for the model, or taken from; null: nowhere.
   bool thorough = false;                ///< Every check rather than the quick ones, and what helps with each finding.
 };
 

@@ -55,9 +55,7 @@ RefinedSize predict_from_base(const Far::TopologyRefiner& base, Scheme scheme, i
   return {counts.vertices, counts.faces, result_bytes(counts, has_colors) + topology + points};
 }
 
-RefinedSize predict_refined_size(const Mesh& cage, Scheme scheme, int level) {
-  return predict_refined_sizes(cage, scheme, level).back();
-}
+RefinedSize predict_refined_size(const Mesh& cage, Scheme scheme, int level) { return predict_refined_sizes(cage, scheme, level).back(); }
 
 std::vector<RefinedSize> predict_refined_sizes(const Mesh& cage, Scheme scheme, int most_level) {
   if (most_level < 0 || most_level > 8)

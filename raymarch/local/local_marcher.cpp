@@ -81,9 +81,11 @@ LocalBrickSettings with_hidden(const SurfacePart& whole, const LocalBrickSetting
 /// Files hold no grid without a surface.
 bool has_both_signs(const LevelNodes& nodes) {
   bool inside = false, outside = false;
-  for (const NodeBlock& block : nodes.blocks)
+  for (size_t i = 0; i < nodes.blocks.size(); ++i) {
+    const NodeBlock& block = nodes.blocks[i];
     for (size_t n = 0; n < 512; ++n)
       if ((block.known[n >> 6] >> (n & 63) & 1) != 0) (block.values[n] < 0.0f ? inside : outside) = true;
+  }
   return inside && outside;
 }
 

@@ -16,8 +16,7 @@ namespace {
 
 NodeBlock& block_at(LevelNodes& nodes, const glm::ivec3& origin, const SurfacePart& part) {
   const auto [number, is_new] = nodes.at.add(key_of(origin));
-  if (is_new) nodes.blocks.emplace_back(origin, part);
-  return nodes.blocks[number];
+  return is_new ? nodes.blocks.add(origin, part) : nodes.blocks[number];
 }
 
 /// The 9^3 nodes of a brick: all of its own block, and the first layers of those behind.
@@ -227,8 +226,8 @@ float LevelNodes::value(const glm::ivec3& node) const { return blocks[at.find(ke
 
 std::int64_t LevelNodes::known() const {
   std::int64_t sum = 0;
-  for (const NodeBlock& block : blocks)
-    for (const std::uint64_t word : block.known) sum += std::popcount(word);
+  for (size_t i = 0; i < blocks.size(); ++i)
+    for (const std::uint64_t word : blocks[i].known) sum += std::popcount(word);
   return sum;
 }
 

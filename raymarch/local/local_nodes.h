@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <optional>
 #include <utility>
@@ -11,19 +10,10 @@
 
 #include "raymarch/level_set/brick_layout.h"
 #include "raymarch/local/local_choice.h"
+#include "raymarch/local/node_blocks.h"
 #include "sdf/level_set_metadata.h"
 
 namespace limn {
-
-/// Nodes of one voxel size, in blocks of 8^3; bits as in LevelSetBlock.
-struct NodeBlock {
-  NodeBlock(const glm::ivec3& first, SurfacePart of) : origin(first), part(std::move(of)) {}
-  glm::ivec3 origin{0};
-  SurfacePart part;  ///< Asked for its nodes.
-  std::array<std::uint64_t, 8> wanted{}, known{};
-  std::array<float, 512> values;  ///< Of the known ones.
-  bool measured = false;          ///< Of a mesh: the values of the others are those that they will have if they are wanted.
-};
 
 inline glm::ivec3 block_of(const glm::ivec3& node) { return node & ~7; }
 inline size_t place_in_block(const glm::ivec3& node) { return static_cast<size_t>((node.x & 7) << 6 | (node.y & 7) << 3 | (node.z & 7)); }
@@ -51,7 +41,7 @@ class KeyNumbers {
 };
 
 struct LevelNodes {
-  std::deque<NodeBlock> blocks{};
+  NodeBlocks blocks{};
   KeyNumbers at{};              ///< By key_of.
   float steps_per_unit = 0.0f;  ///< Values are whole numbers of steps, none of them 0.
 

@@ -38,8 +38,7 @@ std::vector<std::string> warnings_of(const Scene& scene, const SurfaceSettings& 
   for (const SceneObject& object : scene.objects) {
     std::vector<std::string> surfaces = needs.surfaces;
     if (surfaces.empty()) surfaces = {settings.kind.empty() ? natural_surface(object) : settings.kind};
-    for (const Finding& finding :
-         audit(object, {.surface = kept, .thorough = needs.thorough, .surfaces = surfaces, .methods = methods})) {
+    for (const Finding& finding : audit(object, {.surface = kept, .thorough = needs.thorough, .surfaces = surfaces, .methods = methods})) {
       if (!matters(finding, surfaces, methods)) continue;
       std::string message = finding.message;
       if (needs.thorough && !finding.remedy.empty()) message += "; remedy: " + finding.remedy;

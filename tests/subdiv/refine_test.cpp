@@ -204,6 +204,7 @@ TEST(Refine, PredictedSizeIsWhatComesOut) {
         const Mesh mesh = refined(cage, scheme, level);
         EXPECT_EQ(size.vertices, static_cast<std::int64_t>(mesh.vertex_count())) << name << " " << name_of(scheme) << " " << level;
         EXPECT_EQ(size.faces, static_cast<std::int64_t>(mesh.face_count())) << name << " " << name_of(scheme) << " " << level;
+        EXPECT_EQ(predict_refined_sizes(cage, scheme, 4)[static_cast<size_t>(level)].bytes, size.bytes) << name << " " << level;
       }
   Mesh open = test::sphere(1);
   open.face_sizes.pop_back(), open.corner_vertices.resize(open.corner_vertices.size() - 3);

@@ -15,7 +15,7 @@ constexpr double kSmooth = 0.99985;  // the cosine of one degree
 /// A node pair of the lattice where sheets end.
 struct SeamEdge {
   std::uint32_t a = 0, b = 0;
-  const std::vector<SeamUse>* uses = nullptr;
+  std::span<const SeamUse> uses{};
   bool taken = false;
 };
 
@@ -39,7 +39,7 @@ UseCorners corners_of(const LimitGrid& grid, const SeamUse& use, std::uint32_t f
 }
 
 /// Neither an open edge nor a crease: both sides agree on the normals, and on which of them is the outside.
-bool is_smooth(const LimitGrid& grid, const std::vector<SeamUse>& uses, std::uint32_t a) {
+bool is_smooth(const LimitGrid& grid, std::span<const SeamUse> uses, std::uint32_t a) {
   if (uses.size() != 2) return false;
   const UseCorners one = corners_of(grid, uses[0], a), two = corners_of(grid, uses[1], a);
   const bool opposite = (one.from == uses[0].from) != (two.from == uses[1].from);
@@ -51,7 +51,7 @@ bool is_smooth(const LimitGrid& grid, const std::vector<SeamUse>& uses, std::uin
 SeamSample sample_seam(const Tracer& tracer, const SeamEdge& edge, std::uint32_t from, double t) {
   SeamSample result;
   result.object = tracer.object;
-  for (const SeamUse& use : *edge.uses) {
+  for (const SeamUse& use : edge.uses) {
     const UseCorners at = corners_of(tracer.grid, use, from);
     const auto corner = [&](int i) -> const LimitCorner& { return at.triangle->corners[static_cast<size_t>(i)]; };
     const LimitSample s = sample(tracer.placed, at.triangle->patch, glm::mix(corner(at.from).uv(), corner(at.to).uv(), t));
@@ -99,16 +99,18 @@ void align(const SeamSample& before, SeamSample& sample) {
 class Chains {
  public:
   explicit Chains(const Tracer& tracer) : tracer_(tracer) {
-    for (const auto& [nodes, uses] : tracer.grid.seams) {
-      if (is_smooth(tracer.grid, uses, nodes.first)) continue;
-      const SeamEdge edge{nodes.first, nodes.second, &uses};
+    for (const LimitSeam& seam : tracer.grid.seams) {
+      const auto [first, second] = seam.nodes;
+      const std::span<const SeamUse> uses = uses_of(tracer.grid, seam);
+      if (is_smooth(tracer.grid, uses, first)) continue;
+      const SeamEdge edge{first, second, uses};
       if (plain(edge) && uses.size() == 2) {
         // Beside extraordinary vertices the normals of patches differ by their error.
-        const SeamSample middle = sample_seam(tracer, edge, nodes.first, 0.5);
+        const SeamSample middle = sample_seam(tracer, edge, first, 0.5);
         if (glm::dot(middle.sides[0].normal, middle.sides[1].normal) > kSmooth) continue;
       }
-      at_node_[nodes.first].push_back(edges_.size());
-      at_node_[nodes.second].push_back(edges_.size());
+      at_node_[first].push_back(edges_.size());
+      at_node_[second].push_back(edges_.size());
       edges_.push_back(edge);
     }
   }
@@ -130,21 +132,21 @@ class Chains {
  private:
   /// Three and more sheets at an edge, and sheets that disagree on the outside, are told apart edge by edge.
   bool plain(const SeamEdge& edge) const {
-    if (edge.uses->size() == 1) return true;
-    if (edge.uses->size() != 2) return false;
-    const UseCorners one = corners_of(tracer_.grid, (*edge.uses)[0], edge.a), two = corners_of(tracer_.grid, (*edge.uses)[1], edge.a);
-    return (one.from == (*edge.uses)[0].from) != (two.from == (*edge.uses)[1].from);
+    if (edge.uses.size() == 1) return true;
+    if (edge.uses.size() != 2) return false;
+    const UseCorners one = corners_of(tracer_.grid, edge.uses[0], edge.a), two = corners_of(tracer_.grid, edge.uses[1], edge.a);
+    return (one.from == edge.uses[0].from) != (two.from == edge.uses[1].from);
   }
   bool ends_at(std::uint32_t node) const {
     const auto& edges = at_node_.at(node);
     if (edges.size() != 2) return true;
     const SeamEdge &a = edges_[edges[0]], &b = edges_[edges[1]];
-    return !plain(a) || !plain(b) || a.uses->size() != b.uses->size();
+    return !plain(a) || !plain(b) || a.uses.size() != b.uses.size();
   }
 
   Seam walk(size_t first, std::uint32_t start) {
     Seam seam;
-    seam.line_class = edges_[first].uses->size() == 1 ? LineClass::boundary : LineClass::crease;
+    seam.line_class = edges_[first].uses.size() == 1 ? LineClass::boundary : LineClass::crease;
     std::uint32_t node = start;
     for (size_t e = first;;) {
       SeamEdge& edge = edges_[e];

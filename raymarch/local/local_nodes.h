@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "raymarch/level_set/brick_layout.h"
+#include "raymarch/local/key_numbers.h"
 #include "raymarch/local/local_choice.h"
 #include "raymarch/local/node_blocks.h"
 #include "sdf/level_set_metadata.h"
@@ -17,28 +18,6 @@ namespace limn {
 
 inline glm::ivec3 block_of(const glm::ivec3& node) { return node & ~7; }
 inline size_t place_in_block(const glm::ivec3& node) { return static_cast<size_t>((node.x & 7) << 6 | (node.y & 7) << 3 | (node.z & 7)); }
-
-/// Numbers in the order in which their keys (see key_of) came. Slots are open and half of them free: a look touches one line of memory.
-class KeyNumbers {
- public:
-  static constexpr size_t kNone = ~size_t{0};
-
-  size_t find(std::uint64_t key) const;
-  /// The key's number, its own or the next one, and whether it is new.
-  std::pair<size_t, bool> add(std::uint64_t key);
-  bool contains(std::uint64_t key) const { return find(key) != kNone; }
-
- private:
-  struct Slot {
-    std::uint64_t key = 0;
-    size_t number = kNone;
-  };
-  size_t slot_of(std::uint64_t key) const;
-  void grow();
-
-  std::vector<Slot> slots_{};  ///< A power of two, or none.
-  size_t count_ = 0;
-};
 
 struct LevelNodes {
   NodeBlocks blocks{};

@@ -166,9 +166,9 @@ void follow_junction(LimitTracer& tracer, const std::vector<CreaseSide>& sides) 
 }  // namespace
 
 void cross_seams(LimitTracer& tracer) {
-  for (const auto& [nodes, uses] : tracer.grid.seams) {
+  for (const LimitSeam& seam : tracer.grid.seams) {
     std::vector<CreaseSide> sides;
-    for (const SeamUse& use : uses) sides.push_back(crease_side(tracer, use, nodes.first));
+    for (const SeamUse& use : uses_of(tracer.grid, seam)) sides.push_back(crease_side(tracer, use, seam.nodes.first));
     if (sides.size() != 2 || sides[0].on_left == sides[1].on_left) {
       if (tracer.level.turn != LimitTurn::back) follow_junction(tracer, sides);
       continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "raymarch/truth/limit_cone_tips.h"
 #include "raymarch/truth/seam_nodes.h"
@@ -293,13 +294,25 @@ void find_seams(const PlacedLimitSurface& placed, LimitGrid& grid) {
       }
     }
   });
+  using Nodes = std::pair<std::uint32_t, std::uint32_t>;
+  std::vector<std::pair<Nodes, SeamUse>> all;
   for (const auto& part : uses) {
     for (const SeamUse& use : part)
-      grid.seams[std::minmax(corner_of(use.triangle, use.from).node, corner_of(use.triangle, use.from + 1).node)].push_back(use);
+      all.emplace_back(std::minmax(corner_of(use.triangle, use.from).node, corner_of(use.triangle, use.from + 1).node), use);
+  }
+  parallel_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.first, a.second.triangle, a.second.from) < std::tie(b.first, b.second.triangle, b.second.from);
+  });
+  grid.seam_uses.reserve(all.size());
+  for (const auto& [nodes, use] : all) grid.seam_uses.push_back(use);
+  for (size_t first = 0, end = 0; first < all.size(); first = end) {
+    while (end < all.size() && all[end].first == all[first].first) ++end;
+    grid.seams.push_back({all[first].first, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end)});
   }
   const auto starts_at = [&](const SeamUse& use) { return grid.triangles[use.triangle].corners[static_cast<size_t>(use.from)].node; };
-  grid.sheet = std::any_of(grid.seams.begin(), grid.seams.end(), [&](const auto& seam) {
-    return seam.second.size() != 2 || starts_at(seam.second[0]) == starts_at(seam.second[1]);
+  grid.sheet = std::any_of(grid.seams.begin(), grid.seams.end(), [&](const LimitSeam& seam) {
+    const std::span<const SeamUse> both = uses_of(grid, seam);
+    return both.size() != 2 || starts_at(both[0]) == starts_at(both[1]);
   });
 }
 

@@ -4,7 +4,7 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -75,8 +75,11 @@ struct SeamUse {
   std::uint32_t triangle = 0;
   int from = 0;  ///< The edge runs from this corner to the next.
 };
-/// By the edge's nodes, the smaller first. Inside a patch no two triangles can disagree.
-using LimitSeams = std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<SeamUse>>;
+/// What triangles on sides of their patches have in common: inside a patch no two triangles can disagree.
+struct LimitSeam {
+  std::pair<std::uint32_t, std::uint32_t> nodes{};  ///< Of the edge, the smaller first.
+  std::uint32_t first = 0, end = 0;                 ///< Into LimitGrid::seam_uses.
+};
 
 /// Some triangles in a row: their nodes lie in a ball, and the normals of their sides in a cone. Both together tell of most that no curve
 /// goes through them.
@@ -94,13 +97,18 @@ struct LimitGrid {
   std::vector<std::uint32_t> node_of_side{};
   std::vector<LimitTriangle> triangles{};
   std::vector<LimitBlock> blocks{};  ///< All triangles, in order.
-  LimitSeams seams{};
+  std::vector<SeamUse> seam_uses{};  ///< In the order of the seams.
+  std::vector<LimitSeam> seams{};    ///< By their nodes.
   /// Some seam has not two triangles that run along it opposite ways: the surface has an end, or no outside, and its back may be seen.
   bool sheet = false;
   /// How far from interior vertices of valence 2 the nearest samples are at most, px: so near to them the surface is not resolved.
   double tip_px = 0.0;
   std::vector<size_t> invalid_patches{};  ///< Without a limit surface; they are left out.
 };
+
+inline std::span<const SeamUse> uses_of(const LimitGrid& grid, const LimitSeam& seam) {
+  return std::span(grid.seam_uses).subspan(seam.first, seam.end - seam.first);
+}
 
 /// Of all triangles of a grid, in order.
 std::vector<LimitBlock> blocks_of(const LimitGrid& grid);

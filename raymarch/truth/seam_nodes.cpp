@@ -1,5 +1,7 @@
 #include "raymarch/truth/seam_nodes.h"
 
+#include <utility>
+
 #include "raymarch/truth/limit_grid.h"
 
 namespace limn {
@@ -20,16 +22,18 @@ std::uint32_t SeamNodes::node_at(const glm::dvec3& p, std::uint32_t& next_number
   for (double x = low.x; x <= high.x; ++x) {
     for (double y = low.y; y <= high.y; ++y) {
       for (double z = low.z; z <= high.z; ++z) {
-        const auto [first, last] = cells_.equal_range(key({x, y, z}));
-        for (auto it = first; it != last; ++it) {
-          if (glm::distance(nodes_[it->second].position, p) <= tolerance_) return it->second;
+        const size_t cell = cells_.find(key({x, y, z}));
+        if (cell == KeyNumbers::kNone) continue;
+        for (std::uint32_t node = first_in_cell_[cell]; node != kNone; node = nodes_[node].next) {
+          if (glm::distance(nodes_[node].position, p) <= tolerance_) return node;
         }
       }
     }
   }
   const auto node = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.push_back({p, next_number++});
-  cells_.emplace(key(glm::floor(p / side)), node);
+  const auto [cell, is_new] = cells_.add(key(glm::floor(p / side)));
+  if (is_new) first_in_cell_.push_back(kNone);
+  nodes_.push_back({p, next_number++, kNone, std::exchange(first_in_cell_[cell], node)});
   return node;
 }
 

@@ -4,10 +4,11 @@
 
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include <glm/glm.hpp>
+
+#include "raymarch/local/key_numbers.h"
 
 namespace limn {
 
@@ -17,6 +18,7 @@ class SeamNodes {
     glm::dvec3 position{0.0};
     std::uint32_t number = 0;  ///< As LimitCorner::node.
     std::uint32_t first_side = 0xffffffffu;
+    std::uint32_t next = 0xffffffffu;  ///< In its cell.
   };
   struct Side {
     glm::dvec3 normal{0.0};
@@ -40,7 +42,8 @@ class SeamNodes {
   std::vector<Node> nodes_{};
   std::vector<Side> sides_{};
   /// By cells twice as wide as the tolerance, of which a point's neighbourhood touches at most eight.
-  std::unordered_multimap<std::uint64_t, std::uint32_t> cells_{};
+  KeyNumbers cells_{};
+  std::vector<std::uint32_t> first_in_cell_{};  ///< The latest node, by the cell's number.
 };
 
 }  // namespace limn

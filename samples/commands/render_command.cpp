@@ -390,7 +390,8 @@ int run(const Options& given) {
     check_cost(options, render.input.scene, render.surface,
                picture_load(cameras.front(), planned_picture(render), pictures_of(options),
                             std::any_of(render.outputs.begin(), render.outputs.end(), has_layers)));
-  render.warnings = warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods), .meshes = &render.meshes});
+  render.warnings =
+      warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods), .meshes = &render.meshes});
 
   // While the surface is built.
   std::future<void> pictures;

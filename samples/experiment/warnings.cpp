@@ -48,12 +48,14 @@ std::vector<std::string> warnings_of(const Scene& scene, const SurfaceSettings& 
     }
   }
   std::vector<std::string> warnings;
+  warnings.reserve(found.size());
   for (const SharedWarning& warning : found) warnings.push_back(names_text(warning.objects) + ": " + warning.message);
   return warnings;
 }
 
 std::vector<std::string> names_of(const std::vector<MethodCall>& methods) {
   std::vector<std::string> names;
+  names.reserve(methods.size());
   for (const MethodCall& call : methods) names.push_back(call.method->about.name);
   return names;
 }

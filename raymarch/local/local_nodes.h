@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "raymarch/level_set/brick_layout.h"
-#include "raymarch/local/key_numbers.h"
 #include "raymarch/local/local_choice.h"
 #include "raymarch/local/node_blocks.h"
+#include "sdf/key_numbers.h"
 #include "sdf/level_set_metadata.h"
 
 namespace limn {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -26,40 +25,22 @@ struct NodeBlock {
 /// than what is asked of the surface.
 class NodeBlocks {
  public:
-  NodeBlocks() = default;
-  NodeBlocks(NodeBlocks&& other) noexcept : chunks_(std::move(other.chunks_)), size_(std::exchange(other.size_, 0)) {}
-  NodeBlocks& operator=(NodeBlocks&& other) noexcept {
-    std::swap(chunks_, other.chunks_), std::swap(size_, other.size_);
-    return *this;
-  }
-  ~NodeBlocks() {
-    for (size_t i = 0; i < size_; ++i) std::destroy_at(&(*this)[i]);
-    for (size_t c = 0; c < chunks_.size(); ++c) LargePages::give_back(chunks_[c], bytes_of(c));
-  }
-
   NodeBlock& add(const glm::ivec3& origin, const SurfacePart& part) {
-    if (size_ == first_of(chunks_.size())) {
-      chunks_.reserve(chunks_.size() + 1);
-      chunks_.push_back(static_cast<NodeBlock*>(LargePages::take(bytes_of(chunks_.size()))));
-    }
-    NodeBlock& block = *std::construct_at(place_of(size_), origin, part);
-    ++size_;
-    return block;
+    if (size() == first_of(chunks_.size())) chunks_.emplace_back().reserve(chunks_.size() == 1 ? kFirst : kOthers);
+    return chunks_.back().emplace_back(origin, part);
   }
-  size_t size() const { return size_; }
-  bool empty() const { return size_ == 0; }
-  NodeBlock& operator[](size_t i) { return *place_of(i); }
-  const NodeBlock& operator[](size_t i) const { return *place_of(i); }
+  size_t size() const { return empty() ? 0 : first_of(chunks_.size() - 1) + chunks_.back().size(); }
+  bool empty() const { return chunks_.empty(); }
+  NodeBlock& operator[](size_t i) { return chunks_[chunk_of(i)][i - first_of(chunk_of(i))]; }
+  const NodeBlock& operator[](size_t i) const { return chunks_[chunk_of(i)][i - first_of(chunk_of(i))]; }
 
  private:
   /// A small surface takes no large page.
-  static constexpr size_t kChunkBytes = size_t{2} << 20, kFirst = 32, kOthers = kChunkBytes / sizeof(NodeBlock);
-  static constexpr size_t bytes_of(size_t chunk) { return chunk == 0 ? kFirst * sizeof(NodeBlock) : kChunkBytes; }
+  static constexpr size_t kFirst = 32, kOthers = (size_t{4} << 20) / sizeof(NodeBlock);
+  static constexpr size_t chunk_of(size_t i) { return i < kFirst ? 0 : 1 + (i - kFirst) / kOthers; }
   static constexpr size_t first_of(size_t chunk) { return chunk == 0 ? 0 : kFirst + (chunk - 1) * kOthers; }
-  NodeBlock* place_of(size_t i) const { return i < kFirst ? chunks_[0] + i : chunks_[1 + (i - kFirst) / kOthers] + (i - kFirst) % kOthers; }
 
-  std::vector<NodeBlock*> chunks_{};
-  size_t size_ = 0;
+  std::vector<std::vector<NodeBlock, LargePageAllocator<NodeBlock>>> chunks_{};
 };
 
 }  // namespace limn

@@ -8,7 +8,7 @@
 
 #include <glm/glm.hpp>
 
-#include "raymarch/local/key_numbers.h"
+#include "sdf/key_numbers.h"
 
 namespace limn {
 

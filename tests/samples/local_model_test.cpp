@@ -189,7 +189,7 @@ TEST(LocalModel, AnExportedCageIsWatertightAndReadsBackWithTheSameBorder) {
 }
 
 TEST(LocalModel, ACageHoweverTwistedHasAClosedLocalMesh) {
-  // Faces as large as the globe's, whose corners wander: limit surfaces that turn within themselves and pass through themselves.
+  // Corners that wander by half an edge and more: limit surfaces that turn within themselves and pass through themselves.
   const std::uint32_t seed = random_seed();
   for (unsigned draw = 0; draw < 16; ++draw) {
     Mesh cage = draw % 2 == 0 ? cube_cage(seed + draw) : block_cage({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}});

@@ -1,4 +1,4 @@
-#include "raymarch/local/key_numbers.h"
+#include "sdf/key_numbers.h"
 
 #include <algorithm>
 #include <bit>

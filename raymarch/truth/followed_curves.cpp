@@ -27,7 +27,9 @@ constexpr double kClosing = 0.15;     // of a step: so near it the start is the 
 constexpr double kTurn = 0.95;        // the cosine of the angle between tangents, and between normals, along a step
 constexpr double kLongest_px = 1.0;
 constexpr double kLeastTurning = 1e-3;  // of the longest step: shorter ones are not searched for turns of the image
-constexpr size_t kMostPoints = 50'000;
+constexpr double kLeastLooked = 0.25;   // of the longest step: half way along shorter ones nobody looks
+constexpr double kMostAside = 0.05;     // of a step's length, that its middle may lie off the cubic through its ends
+constexpr size_t kMostPoints = 2'000'000;  // of a curve
 constexpr size_t kAskedEvery = 64;                     // points, whether anybody else has followed the curve
 constexpr double kOnPath = 0.15, kOnPathLeast = 1e-3;  // of a step, and of the longest step
 
@@ -144,6 +146,14 @@ class Follower {
     return last > 0.0 && slope < 0.0 && slope > -2.0 * bend && 4.0 * bend * speed < slope * slope;
   }
 
+  /// Half way along a step the curve is not where its ends and tangents lead: it goes round a fold in between.
+  bool leaves_cubic(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& start, const glm::dvec3& end) {
+    const double length = glm::distance(from, to);
+    const glm::dvec3 middle = 0.5 * (from + to) + length / 8.0 * (start - end);
+    const std::optional<CurvePoint> found = polish(evaluator_, viewer_, c_, middle, kMostAside * length);
+    return !found;
+  }
+
   /// A step that is shortened until it stays on the curve and on its chord, and grows for the next one.
   std::optional<CurvePoint> advance(const CurvePoint& from, const glm::dvec3& tangent, const glm::dvec3& bend, double& step) {
     const glm::dvec2 start = image_way(from.p, tangent);
@@ -160,6 +170,7 @@ class Follower {
       const double turn = std::fabs(std::atan2(start.x * end.y - start.y * end.x, glm::dot(start, end)));
       const double sagitta = 0.5 * (glm::length(start) + glm::length(end)) * step * turn / 8.0;
       if (sagitta > most || (step > kLeastTurning * settings_.longest_step && turns_twice(from.p, next->p, start, end, step))) continue;
+      if (step > kLeastLooked * settings_.longest_step && leaves_cubic(from.p, next->p, tangent, turned)) continue;
       step *= std::clamp(0.8 * std::sqrt(most / std::max(sagitta, 1e-300)), 0.7, 2.0);
       return next;
     }

@@ -55,6 +55,7 @@ class Cutter {
     return std::move(cut_);
   }
   std::vector<LineConflict> conflicts{};
+  std::vector<CurveSample> grazing{};  ///< See CutCurves.
   std::int64_t rays = 0;
 
  private:
@@ -229,6 +230,7 @@ class Cutter {
       if (probes[i].unexplained.count == probes[i + 1].unexplained.count) continue;
       const auto found = find_missed(search, probes[i].at, probes[i + 1].at);
       if (!found) continue;
+      if (!found->piercing) grazing.push_back(sample_at(curve_, std::fmod(found->with_more, steps), camera_));
       const double at = std::fmod(found->at, steps);
       if (found->piercing)
         missed_.push_back({VertexKind::joint, at, found->layers, 0, 0.0});
@@ -402,6 +404,7 @@ CutCurves cut_by_invisibility(const std::vector<SurfaceCurve>& curves, const Cam
   CutCurves result;
   result.curves.resize(curves.size());
   std::vector<std::vector<LineConflict>> conflicts(curves.size());
+  std::vector<std::vector<CurveSample>> grazing(curves.size());
   std::atomic<std::int64_t> rays = 0;
   parallel_for(size_t{0}, curves.size(), [&](size_t c) {
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
@@ -409,9 +412,11 @@ CutCurves cut_by_invisibility(const std::vector<SurfaceCurve>& curves, const Cam
     Cutter cutter(curves[c], number, camera, folds, layers_before);
     result.curves[c] = cutter.run(events_of(curves, number, camera, extent, crossings[c]));
     conflicts[c] = std::move(cutter.conflicts);
+    grazing[c] = std::move(cutter.grazing);
     rays += cutter.rays;
   });
   for (auto& of_curve : conflicts) result.conflicts.insert(result.conflicts.end(), of_curve.begin(), of_curve.end());
+  for (auto& of_curve : grazing) result.grazing.insert(result.grazing.end(), of_curve.begin(), of_curve.end());
   result.rays = rays;
   return result;
 }

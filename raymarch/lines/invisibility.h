@@ -35,6 +35,8 @@ struct CutCurve {
 struct CutCurves {
   std::vector<CutCurve> curves{};
   std::vector<LineConflict> conflicts{};
+  /// Where rays tell of changes that no event explained at first, on the side from which they see more: there they go close by a fold.
+  std::vector<CurveSample> grazing{};
   std::int64_t rays = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "raymarch/analytic/clip_ray.h"
+#include "raymarch/truth/locate.h"
 #include "sdf/field_program.h"
 
 namespace limn {
@@ -14,6 +15,7 @@ constexpr double kStep = 0.25;  // of a voxel: how far rays look ahead near the 
 constexpr double kLift = 1e-5;
 constexpr int kHalvings = 12;       // of a step, to a root
 constexpr double kShortest = 1e-4;  // of a voxel: sheets closer together are none
+constexpr double kGrazed = 0.5;     // voxels: of a ray that goes in and out within so much the way is no longer across a sheet
 
 struct Ray {
   glm::dvec3 origin{0.0}, direction{0.0};
@@ -113,29 +115,63 @@ void count(std::vector<Change>& changes, LayersSeen& seen) {
   }
 }
 
+double voxel_of(const std::vector<SharedLevelSet>& level_sets, const std::vector<size_t>& body) {
+  double voxel = 0.0;
+  for (const size_t i : body) voxel = std::max(voxel, level_sets[i]->voxel);
+  return voxel;
+}
+
+Ray ray_from(const CurveSample& sample, const Camera& camera, double voxel) {
+  const double pixel = 1.0 / pixels_per_unit_at(camera, std::max(sample.depth, 1e-9));
+  Ray ray;
+  ray.origin = sample.p + std::max(kLift * voxel, sample.on_chord ? 0.05 * pixel : 0.0) * sample.lift;
+  ray.direction = view_vector(camera, ray.origin);
+  ray.end = camera.projection == Projection::perspective ? glm::distance(camera.eye, ray.origin) : project(camera, ray.origin).z;
+  return ray;
+}
+
 }  // namespace
 
-LayersSeen LevelSetLayers::before(const CurveSample& sample) const {
+std::vector<FieldEvaluator>& LevelSetLayers::evaluators() const {
   auto& evaluators = evaluators_.local();
   if (evaluators.empty()) {
     for (const SharedLevelSet& placed : level_sets_) evaluators.emplace_back(placed->field);
   }
-  const bool perspective = camera_.projection == Projection::perspective;
-  const double pixel = 1.0 / pixels_per_unit_at(camera_, std::max(sample.depth, 1e-9));
+  return evaluators;
+}
+
+LayersSeen LevelSetLayers::before(const CurveSample& sample) const {
+  auto& evaluators = this->evaluators();
   LayersSeen seen{0, std::numeric_limits<double>::infinity()};
   std::vector<Change> changes;
   for (const std::vector<size_t>& body : bodies_) {
-    double voxel = 0.0;
-    for (const size_t i : body) voxel = std::max(voxel, level_sets_[i]->voxel);
-    Ray ray;
-    ray.origin = sample.p + std::max(kLift * voxel, sample.on_chord ? 0.05 * pixel : 0.0) * sample.lift;
-    ray.direction = view_vector(camera_, ray.origin);
-    ray.end = perspective ? glm::distance(camera_.eye, ray.origin) : project(camera_, ray.origin).z;
+    const Ray ray = ray_from(sample, camera_, voxel_of(level_sets_, body));
     changes.clear();
     for (const size_t i : body) add_changes(evaluators[i], *level_sets_[i], ray, changes);
     count(changes, seen);
   }
   return seen;
+}
+
+std::vector<glm::dvec3> LevelSetLayers::contours_before(const CurveSample& sample) const {
+  auto& evaluators = this->evaluators();
+  const Viewer viewer = make_viewer(camera_, glm::dvec3(0.0));
+  std::vector<glm::dvec3> points;
+  std::vector<Change> changes;
+  for (const std::vector<size_t>& body : bodies_) {
+    const Ray ray = ray_from(sample, camera_, voxel_of(level_sets_, body));
+    for (const size_t i : body) {
+      const double near = kGrazed * level_sets_[i]->voxel;
+      changes.clear();
+      add_changes(evaluators[i], *level_sets_[i], ray, changes);
+      for (size_t k = 1; k < changes.size(); ++k) {
+        if (!(changes[k - 1].t > 0.0 && changes[k].t - changes[k - 1].t < near)) continue;
+        const auto found = polish(evaluators[i], viewer, 0.0, ray.at(0.5 * (changes[k - 1].t + changes[k].t)), near);
+        if (found) points.push_back(found->p);
+      }
+    }
+  }
+  return points;
 }
 
 }  // namespace limn

@@ -16,11 +16,14 @@ class LevelSetLayers {
   /// Between the sample, lifted off, and the eye (or the plane Z = 0): sign changes along the ray, a quarter of a voxel at a time near the
   /// surface and as far as the distance says elsewhere.
   LayersSeen before(const CurveSample& sample) const;
+  /// Points on contours that its ray goes close by: beside each two sign changes of it that lie closer together than half a voxel.
+  std::vector<glm::dvec3> contours_before(const CurveSample& sample) const;
 
  private:
   std::vector<SharedLevelSet> level_sets_;
   std::vector<std::vector<size_t>> bodies_;
   Camera camera_;
+  std::vector<FieldEvaluator>& evaluators() const;  ///< The calling thread's, of each level set.
   mutable tbb::enumerable_thread_specific<std::vector<FieldEvaluator>> evaluators_;
 };
 

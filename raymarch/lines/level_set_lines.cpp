@@ -239,7 +239,7 @@ void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContr
   FieldCurves curves;
   double voxel = std::numeric_limits<double>::infinity();
   for (const size_t k : body) voxel = std::min(voxel, tracing.grids[k]->voxel);
-  curves_of_cells(found, search, {task.settings.tolerance_px, task.extent, 1.0, voxel}, tracing.execution, curves);
+  curves_of_cells(found, search, {task.settings.tolerance_px, task.extent, 1.0, voxel, task.missed}, tracing.execution, curves);
   out.unrefined_px = std::max(out.unrefined_px, curves.worst_unrefined_px);
   const FieldTask fields{task, tracing.bodies, body, viewer, tracing.evaluators};
   for (SurfaceCurve& curve :
@@ -267,6 +267,7 @@ LineContribution level_set_lines(const LineTask& task, const std::vector<size_t>
   for (const std::vector<size_t>& body : bodies.bodies) add_body(tracing, body, out);
   const auto layers = std::make_shared<const LevelSetLayers>(grids, bodies.bodies, task.camera);
   out.layers_before = [layers](const CurveSample& sample) { return layers->before(sample); };
+  out.contours_before = [layers](const CurveSample& sample) { return layers->contours_before(sample); };
   return out;
 }
 

@@ -44,7 +44,7 @@ std::optional<MissedChange> find_missed(const ChangeSearch& search, double from,
   }
   const int layers = after.count - before.count;
   if (layers == 0) return {};
-  MissedChange found{0.5 * (low + high), layers, false};
+  MissedChange found{0.5 * (low + high), layers, false, layers > 0 ? high : low};
   // On the side with more layers the sheet that the line goes through comes in from in front: twice as far along the line it is twice as
   // far along the ray.
   const double total = search.walk.length_to(to) - search.walk.length_to(from),

@@ -22,6 +22,7 @@ struct MissedChange {
   int layers = 0;
   /// The line goes through that many sheets there, told by how the nearest sheet comes closer along the rays from both sides.
   bool piercing = false;
+  double with_more = 0.0;  ///< A place beside it from which rays see the more layers.
 };
 std::optional<MissedChange> find_missed(const ChangeSearch& search, double from, double to);
 

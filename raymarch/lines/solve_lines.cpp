@@ -8,6 +8,7 @@
 #include "raymarch/lines/flat_crossings.h"
 #include "raymarch/lines/graph_building.h"
 #include "raymarch/lines/line_memory.h"
+#include "raymarch/lines/missed_contours.h"
 #include "raymarch/scene/threads.h"
 #include "raymarch/truth/proxy.h"
 #include "sdf/error.h"
@@ -16,6 +17,7 @@ namespace limn {
 namespace {
 
 constexpr double kViewTurn = 1e-7;
+constexpr int kMostSearches = 4;  // for curves, where rays tell of contours that were missed
 
 void check(const LineSettings& settings) {
   const auto fail = [](const std::string& field, double value, const std::string& problem, const std::string& expected) {
@@ -103,6 +105,58 @@ std::vector<LineContribution> contributions_of(const LineTask& task, const Execu
   return all;
 }
 
+/// What lies in front of a sample, of all objects.
+LayersSeen layers_before(const std::vector<LineContribution>& contributions, const CurveSample& sample) {
+  LayersSeen all{0, std::numeric_limits<double>::infinity()};
+  for (const LineContribution& one : contributions) {
+    if (!one.layers_before) continue;
+    const LayersSeen layers = one.layers_before(sample);
+    all.count += layers.count;
+    // NaN where one does not know.
+    if (!(layers.nearest >= all.nearest)) all.nearest = layers.nearest;
+  }
+  return all;
+}
+
+/// Curves of all objects, cut where something hides them.
+struct FoundLines {
+  std::vector<LineContribution> contributions{};  ///< Without their curves.
+  std::vector<SurfaceCurve> curves{};
+  CutCurves cut{};
+  std::string from{};
+};
+
+FoundLines find_lines(const LineTask& task, const ExecutionSettings& execution) {
+  FoundLines found;
+  found.contributions = contributions_of(task, execution, found.from);
+  for (LineContribution& one : found.contributions)
+    found.curves.insert(found.curves.end(), std::make_move_iterator(one.curves.begin()), std::make_move_iterator(one.curves.end()));
+  snap_joints(found.curves, task.camera);
+  refine_flat_crossings(found.curves, task.camera);
+  const auto layers = [&](const CurveSample& sample) { return layers_before(found.contributions, sample); };
+  found.cut = cut_by_invisibility(found.curves, task.camera, task.extent, layers, execution);
+  return found;
+}
+
+ViewGraph graph_of(FoundLines found, const LineTask& task, const ExecutionSettings& execution) {
+  ViewGraph graph;
+  graph.from = found.from;
+  double unrefined_px = 0.0;
+  for (LineContribution& one : found.contributions) {
+    graph.notes.insert(graph.notes.end(), one.notes.begin(), one.notes.end());
+    graph.exact = graph.exact && one.exact;
+    unrefined_px = std::max(unrefined_px, one.unrefined_px);
+  }
+  if (execution.progress) execution.progress(0.9);
+  add_edges(found.curves, found.cut, task, graph);
+  add_chains(graph);
+  graph.conflicts = std::move(found.cut.conflicts);
+  graph.rays = found.cut.rays;
+  graph.bound_px = task.settings.tolerance_px + unrefined_px;
+  if (execution.progress) execution.progress(1.0);
+  return graph;
+}
+
 }  // namespace
 
 bool LineTask::wants(LineClass line_class) const {
@@ -127,39 +181,14 @@ ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettin
   LineMemory& used = memory != nullptr ? *memory : own;
   if (used.kept == nullptr) used.kept = std::make_shared<KeptLines>();
   return ThreadArena(execution.threads).execute([&] {
-    const LineTask task = task_of(scene, camera, settings, *used.kept);
-    ViewGraph graph;
-    std::vector<LineContribution> contributions = contributions_of(task, execution, graph.from);
-    std::vector<SurfaceCurve> curves;
-    double unrefined_px = 0.0;
-    for (LineContribution& one : contributions) {
-      curves.insert(curves.end(), std::make_move_iterator(one.curves.begin()), std::make_move_iterator(one.curves.end()));
-      graph.notes.insert(graph.notes.end(), one.notes.begin(), one.notes.end());
-      graph.exact = graph.exact && one.exact;
-      unrefined_px = std::max(unrefined_px, one.unrefined_px);
+    LineTask task = task_of(scene, camera, settings, *used.kept);
+    for (int search = 1;; ++search) {
+      FoundLines found = find_lines(task, execution);
+      const std::vector<glm::dvec3> missed =
+          search < kMostSearches ? missed_contours(found.cut.grazing, found.contributions, found.curves) : std::vector<glm::dvec3>{};
+      if (missed.empty()) return graph_of(std::move(found), task, execution);
+      task.missed.insert(task.missed.end(), missed.begin(), missed.end());
     }
-    snap_joints(curves, task.camera);
-    refine_flat_crossings(curves, task.camera);
-    const LayersBefore layers_before = [&](const CurveSample& sample) {
-      LayersSeen all{0, std::numeric_limits<double>::infinity()};
-      for (const LineContribution& one : contributions) {
-        if (!one.layers_before) continue;
-        const LayersSeen layers = one.layers_before(sample);
-        all.count += layers.count;
-        // NaN where one does not know.
-        if (!(layers.nearest >= all.nearest)) all.nearest = layers.nearest;
-      }
-      return all;
-    };
-    CutCurves cut = cut_by_invisibility(curves, task.camera, task.extent, layers_before, execution);
-    if (execution.progress) execution.progress(0.9);
-    add_edges(curves, cut, task, graph);
-    add_chains(graph);
-    graph.conflicts = std::move(cut.conflicts);
-    graph.rays = cut.rays;
-    graph.bound_px = settings.tolerance_px + unrefined_px;
-    if (execution.progress) execution.progress(1.0);
-    return graph;
   });
 }
 

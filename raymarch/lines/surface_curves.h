@@ -67,6 +67,8 @@ struct LineContribution {
   std::vector<SurfaceCurve> curves{};
   /// What of its surfaces lies between the sample, lifted off, and the eye; empty: another contribution counts them.
   std::function<LayersSeen(const CurveSample& sample)> layers_before{};
+  /// Points on contours that the sample's ray goes close by; empty where nobody knows.
+  std::function<std::vector<glm::dvec3>(const CurveSample& sample)> contours_before{};
   bool exact = true;
   double unrefined_px = 0.0;  ///< What the bound has to grow by.
   std::vector<std::string> notes{};
@@ -80,6 +82,8 @@ struct LineTask {
   double extent = 1.0;     ///< Radius of the whole scene.
   LineSettings settings{};
   KeptLines& kept;
+  /// On contours that rays told of and the search for curves had missed: level sets follow them from there, too.
+  std::vector<glm::dvec3> missed{};
 
   bool wants(LineClass line_class) const;
   /// Of a line along which two surfaces go through each other: an intersection, or where nobody asks for those the edge of their materials.

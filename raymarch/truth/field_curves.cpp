@@ -177,6 +177,9 @@ std::vector<Strand> strands_of(CellResult& found, const CellSearch& search, cons
     for (size_t family = 0; family < kCurveFamilies; ++family) {
       std::vector<Strand> joined = assemble(families[family], branch, -1, search.levels[family]);
       if (settings.follow > 0.0) {
+        if (search.levels[family] == 0.0) {
+          for (const glm::dvec3& seed : settings.seeds) joined.push_back({branch, -1, 0.0, false, {CurvePoint{seed}}});
+        }
         joined = follow_strands(std::move(joined), search.sharp.branches[static_cast<size_t>(branch)], search.camera, search.viewer,
                                 {settings.tolerance_px, settings.follow}, how);
       }

@@ -286,7 +286,7 @@ std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field
         lost = true;
       }
     }
-    if (any) continue;
+    if (any || found[i].points.size() == 1) continue;
     for (CurvePoint& point : found[i].points) {
       if (const std::optional<CurvePoint> seed = follower.seed(point)) {
         point = *seed;

@@ -323,7 +323,12 @@ class EventFinder {
   /// A crease leaves a contour, and the two arms of a cusp each other, along their common tangent: polylines of them cross again and again
   /// there, and the curves do not.
   bool is_tangency(const NearerCrossing& crossing) const {
-    if (crossing.curve == number_) return is_tip_of_cusp(crossing) || closes_undone(crossing) || is_spike(crossing);
+    if (crossing.curve == number_) {
+      // From one of its two passages to the other a closed curve goes two ways.
+      const double from = std::min(crossing.at, crossing.on_nearer), to = std::max(crossing.at, crossing.on_nearer);
+      const auto touches = [&](double one, double other) { return is_tip_of_cusp(one, other) || is_spike(one, other); };
+      return closes_undone(crossing) || touches(from, to) || (curve_.closed && touches(to, from + static_cast<double>(walk_.size())));
+    }
     const SurfaceCurve& other = curves_[crossing.curve];
     const double longest_px = std::min(curve_.tangency_px, other.tangency_px);
     for (const Stretch& own : to_ends(curve_, crossing.at, longest_px, camera_)) {
@@ -343,8 +348,7 @@ class EventFinder {
 
   /// Between the two passages the curve goes there and back on the same way, as beside the tip of a cone, and not by way of two cusps, as
   /// in a swallowtail, or three, as in a butterfly.
-  bool is_spike(const NearerCrossing& crossing) const {
-    const double from = std::min(crossing.at, crossing.on_nearer), to = std::max(crossing.at, crossing.on_nearer);
+  bool is_spike(double from, double to) const {
     if (walk_.length_to(to) - walk_.length_to(from) > kLongestNarrow_px) return false;
     if (cusps_between(from, to).size() >= 2) return false;
     const std::vector<glm::dvec2> px = px_between(curve_, from, to, camera_);
@@ -368,8 +372,7 @@ class EventFinder {
   }
 
   /// Beside the one cusp between its two passages. Arms of a curve that is known between its samples may part and cross after it.
-  bool is_tip_of_cusp(const NearerCrossing& crossing) const {
-    const double from = std::min(crossing.at, crossing.on_nearer), to = std::max(crossing.at, crossing.on_nearer);
+  bool is_tip_of_cusp(double from, double to) const {
     if (walk_.length_to(to) - walk_.length_to(from) > 2.0 * kTangency_px) return false;
     const std::vector<double> cusps = cusps_between(from, to);
     if (cusps.size() != 1) return false;
@@ -381,7 +384,7 @@ class EventFinder {
     const auto steps = static_cast<double>(walk_.size());
     std::vector<double> places;
     for (const SignChange& change : apart_) {
-      for (const double around : {0.0, steps})
+      for (const double around : {-steps, 0.0, steps})
         if (change.turn - around > from && change.turn - around < to) places.push_back(std::clamp(change.place - around, from, to));
     }
     return places;

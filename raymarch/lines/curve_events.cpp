@@ -302,6 +302,13 @@ class EventFinder {
     }
     return result;
   }
+  /// The crossings themselves lie on chords: along a step beside a cusp the curve's own point at the same share may be far from there.
+  std::vector<glm::dvec2> px_between_crossings(const SurfaceCurve& curve, double from, double to) const {
+    std::vector<glm::dvec2> px = px_between(curve, from, to, camera_);
+    px.front() = chord_px(curve, from, camera_);
+    px.back() = chord_px(curve, to, camera_);
+    return px;
+  }
   bool is_lens(const NearerCrossing& one, const NearerCrossing& other) const {
     if (one.layers != -other.layers) return false;
     const SurfaceCurve& nearer = curves_[one.curve];
@@ -313,7 +320,8 @@ class EventFinder {
     if (one.curve == number_ &&
         ((from < other.at && one.at < to) || walk_.length_to(other.at) - walk_.length_to(one.at) > kLongestOwnLens_px))
       return false;
-    const std::vector<glm::dvec2> own_px = px_between(curve_, one.at, other.at, camera_), nearer_px = px_between(nearer, from, to, camera_);
+    const std::vector<glm::dvec2> own_px = px_between_crossings(curve_, one.at, other.at),
+                                  nearer_px = px_between_crossings(nearer, from, to);
     double apart_px = curve_.smooth && nearer.smooth ? kSmoothLens_px : apart_from(nearer);
     if (curve_.between && nearer.between) apart_px = kExactLens_px;
     // Of long steps the samples of one curve alone say nothing.
@@ -351,7 +359,7 @@ class EventFinder {
   bool is_spike(double from, double to) const {
     if (walk_.length_to(to) - walk_.length_to(from) > kLongestNarrow_px) return false;
     if (cusps_between(from, to).size() >= 2) return false;
-    const std::vector<glm::dvec2> px = px_between(curve_, from, to, camera_);
+    const std::vector<glm::dvec2> px = px_between_crossings(curve_, from, to);
     const auto farther = [&](const glm::dvec2& a, const glm::dvec2& b) { return glm::distance(a, px[0]) < glm::distance(b, px[0]); };
     const auto turn = std::max_element(px.begin(), px.end(), farther);
     const std::vector<glm::dvec2> there(px.begin(), turn + 1), back(turn, px.end());
@@ -377,7 +385,9 @@ class EventFinder {
     const std::vector<double> cusps = cusps_between(from, to);
     if (cusps.size() != 1) return false;
     if (!curve_.between) return true;
-    const std::vector<glm::dvec2> there = px_between(curve_, from, cusps[0], camera_), back = px_between(curve_, cusps[0], to, camera_);
+    std::vector<glm::dvec2> there = px_between(curve_, from, cusps[0], camera_), back = px_between(curve_, cusps[0], to, camera_);
+    there.front() = chord_px(curve_, from, camera_);
+    back.back() = chord_px(curve_, to, camera_);
     return lies_along(there, back, arms_apart_px()) && lies_along(back, there, arms_apart_px());
   }
   std::vector<double> cusps_between(double from, double to) const {

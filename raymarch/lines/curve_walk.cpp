@@ -117,6 +117,14 @@ std::vector<glm::dvec2> px_between(const SurfaceCurve& curve, double from, doubl
   px.push_back(sample_at(curve, to, camera).px);
   return px;
 }
+
+glm::dvec2 chord_px(const SurfaceCurve& curve, double place, const Camera& camera) {
+  const size_t n = curve.samples.size();
+  const auto i = static_cast<size_t>(place);
+  const double t = place - static_cast<double>(i);
+  return glm::dvec2(project(camera, glm::mix(curve.samples[i % n].p, curve.samples[(i + 1) % n].p, t)));
+}
+
 bool lies_along(const std::vector<glm::dvec2>& px, const std::vector<glm::dvec2>& line, double apart_px) {
   return std::all_of(px.begin(), px.end(), [&](const glm::dvec2& p) {
     double least = glm::distance(p, line[0]);

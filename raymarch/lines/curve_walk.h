@@ -18,6 +18,8 @@ double sag_px(const SurfaceCurve& curve, size_t step, const Camera& camera);
 CurveSample sample_at(const SurfaceCurve& curve, double place, const Camera& camera);
 /// Image points between two places, theirs included; `to` may lie beyond the last sample of a closed curve.
 std::vector<glm::dvec2> px_between(const SurfaceCurve& curve, double from, double to, const Camera& camera);
+/// The image of a place on a step's chord, where crossings are found.
+glm::dvec2 chord_px(const SurfaceCurve& curve, double place, const Camera& camera);
 /// Every point is within `apart_px` of a polyline.
 bool lies_along(const std::vector<glm::dvec2>& px, const std::vector<glm::dvec2>& line, double apart_px);
 

@@ -215,6 +215,29 @@ std::vector<Strand> strands_of(CellResult& found, const CellSearch& search, cons
   return strands;
 }
 
+bool turns_back(const CurvePoint& before, const CurvePoint& here, const CurvePoint& after) {
+  if (before.crease || here.crease || after.crease) return false;
+  const glm::dvec3 there = here.p - before.p, back = after.p - here.p;
+  return glm::dot(there, back) < kReversal * glm::length(there) * glm::length(back);
+}
+
+/// Beside a place where the surface's curvature jumps a point may be found behind one that comes before it: of two steps there and back the
+/// shorter one's other end lies along the longer one, and is left out. The first and the last point stay.
+std::vector<CurvePoint> without_turns_back(const std::vector<CurvePoint>& points) {
+  std::vector<CurvePoint> kept;
+  for (size_t i = 0; i < points.size(); ++i) {
+    kept.push_back(points[i]);
+    while (kept.size() >= 3 && turns_back(kept[kept.size() - 3], kept[kept.size() - 2], kept.back())) {
+      const double there = glm::distance(kept[kept.size() - 3].p, kept[kept.size() - 2].p),
+                   back = glm::distance(kept[kept.size() - 2].p, kept.back().p);
+      const bool drops_last = back < there;
+      if (drops_last ? i + 1 == points.size() : kept.size() == 3) break;
+      kept.erase(kept.end() - (drops_last ? 1 : 3));
+    }
+  }
+  return kept;
+}
+
 void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
   const size_t n = curve.points.size();
   const std::vector<double> sagitta = sagittas(curve, refiner.camera);
@@ -241,7 +264,7 @@ void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
     stats.unrefined += between[i].unrefined;
     stats.worst_unrefined_px = std::max(stats.worst_unrefined_px, between[i].worst_px);
   }
-  curve.points = std::move(points);
+  curve.points = without_turns_back(points);
 }
 
 /// Smooth curves turn back nowhere: where the refinement of a step does it went from arm to arm and back.

@@ -64,7 +64,7 @@ struct CellCurveSettings {
   double tolerance_px = 0.005;
   double extent = 1.0;
   double lipschitz = 1.0;
-  double follow = 0.0;  ///< Where it is above 0 curves are followed by their tangents, in steps up to it: follow_strands().
+  double follow = 0.0;              ///< Where it is above 0 curves are followed by their tangents, in steps up to it: follow_strands().
   std::vector<glm::dvec3> seeds{};  ///< Contours are followed from these, too, where no crossing of cells has led to them.
 };
 /// The second half of trace_field_curves(): crossings of cells joined, cut to what is surface, refined, joined again; added to `result`.

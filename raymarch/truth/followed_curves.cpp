@@ -9,9 +9,11 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <shared_mutex>
 
 #include "raymarch/truth/lattice_samples.h"
+#include "raymarch/truth/marching_tetrahedra.h"
 #include "sdf/parallel.h"
 #include "sdf/segment.h"
 
@@ -29,7 +31,9 @@ constexpr double kLongest_px = 1.0;
 constexpr double kLeastTurning = 1e-3;  // of the longest step: shorter ones are not searched for turns of the image
 constexpr double kLeastLooked = 0.25;   // of the longest step: half way along shorter ones nobody looks
 constexpr double kMostAside = 0.05;     // of a step's length, that its middle may lie off the cubic through its ends
-constexpr size_t kMostPoints = 2'000'000;  // of a curve
+constexpr int kFinerParts = 8;          // of a cell along each axis
+constexpr size_t kMostPointsLooked = 64;
+constexpr size_t kMostPoints = 2'000'000;              // of a curve
 constexpr size_t kAskedEvery = 64;                     // points, whether anybody else has followed the curve
 constexpr double kOnPath = 0.15, kOnPathLeast = 1e-3;  // of a step, and of the longest step
 
@@ -96,8 +100,9 @@ class Follower {
   Follower(const Field& field, const Camera& camera, const Viewer& viewer, const FollowSettings& settings, double c)
       : evaluator_(field), camera_(camera), viewer_(viewer), settings_(settings), c_(c) {}
 
-  std::optional<CurvePoint> seed(const CurvePoint& point) {
-    return polish(evaluator_, viewer_, c_, point.p, kSeedReach * settings_.longest_step);
+  /// The curve's own point within `reach` longest steps of one beside it.
+  std::optional<CurvePoint> seed(const CurvePoint& point, double reach = kSeedReach) {
+    return polish(evaluator_, viewer_, c_, point.p, reach * settings_.longest_step);
   }
 
   /// From the point around to it again; nothing where the curve is lost on the way, or `stop()`, asked now and then, is true.
@@ -231,6 +236,32 @@ class FirstPaths {
   std::vector<std::optional<std::vector<CurvePoint>>> paths_;
 };
 
+/// Crossings of finer cells about a strand; nothing where it is long.
+std::optional<std::vector<CurvePoint>> finer_crossings(const Strand& strand, const Field& field, const Viewer& viewer, double cell) {
+  if (strand.points.size() > kMostPointsLooked) return {};
+  Box box;
+  for (const CurvePoint& point : strand.points) box = include(box, point.p);
+  const CellGrid grid{box.lower - 2.0 * cell, cell / kFinerParts};
+  std::set<std::array<int, 3>> cubes;  // of the size of the strand's cells, in the order of their places
+  for (const CurvePoint& point : strand.points) {
+    const glm::ivec3 own((point.p - grid.corner) / cell);
+    for (int k = 0; k < 27; ++k) cubes.insert({own.x + k / 9 - 1, own.y + k / 3 % 3 - 1, own.z + k % 3 - 1});
+  }
+  FieldEvaluator evaluator(field);
+  LatticeSamples samples;
+  CellOutput output;
+  for (const auto& cube : cubes) {
+    for (int k = 0; k < kFinerParts * kFinerParts * kFinerParts; ++k) {
+      const glm::ivec3 part(k / (kFinerParts * kFinerParts), k / kFinerParts % kFinerParts, k % kFinerParts);
+      march_cell(evaluator, viewer, grid, kFinerParts * glm::ivec3(cube[0], cube[1], cube[2]) + part, {strand.c, strand.c}, 1u, &samples,
+                 output, true);
+    }
+  }
+  std::vector<CurvePoint> points;
+  for (const Crossing& crossing : output[0].crossings) points.push_back(crossing.point);
+  return points;
+}
+
 /// A point that no path passes, and what it leads to on the curve.
 struct Unpassed {
   CurvePoint point{};
@@ -269,6 +300,21 @@ std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field
     }
   });
   Follower follower(field, camera, viewer, settings, c);
+  // Cells take two sheets that come close to each other for one, and a curve that goes on past them for two: where all crossings of finer
+  // cells are followed, these curves are what is there.
+  const auto is_told_by_finer_cells = [&](const Strand& strand) {
+    const auto crossings = finer_crossings(strand, field, viewer, settings.longest_step);
+    if (!crossings) return false;
+    for (const CurvePoint& point : *crossings) {
+      const std::optional<CurvePoint> seed = follower.seed(point, kSeedReach / kFinerParts);
+      if (!seed) return false;
+      if (index.holds(*seed)) continue;
+      auto path = follower.around(*seed, [] { return false; });
+      if (!path) return false;
+      accept(strand, std::move(*path));
+    }
+    return true;
+  };
   for (size_t i = 0; i < found.size(); ++i) {
     const auto is_rough = [](const CurvePoint& point) { return point.rough; };
     const auto smooth = static_cast<size_t>(std::count_if(found[i].points.begin(), found[i].points.end(), std::not_fn(is_rough)));
@@ -286,7 +332,7 @@ std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field
         lost = true;
       }
     }
-    if (any || found[i].points.size() == 1) continue;
+    if (any || found[i].points.size() == 1 || is_told_by_finer_cells(found[i])) continue;
     for (CurvePoint& point : found[i].points) {
       if (const std::optional<CurvePoint> seed = follower.seed(point)) {
         point = *seed;

@@ -33,6 +33,7 @@ constexpr double kLeastLooked = 0.25;   // of the longest step: half way along s
 constexpr double kMostAside = 0.05;     // of a step's length, that its middle may lie off the cubic through its ends
 constexpr int kFinerParts = 8;          // of a cell along each axis
 constexpr size_t kMostPointsLooked = 64;
+constexpr size_t kFirstMark = 64;                      // points
 constexpr size_t kMostPoints = 2'000'000;              // of a curve
 constexpr size_t kAskedEvery = 64;                     // points, whether anybody else has followed the curve
 constexpr double kOnPath = 0.15, kOnPathLeast = 1e-3;  // of a step, and of the longest step
@@ -105,30 +106,15 @@ class Follower {
     return polish(evaluator_, viewer_, c_, point.p, reach * settings_.longest_step);
   }
 
-  /// From the point around to it again; nothing where the curve is lost on the way, or `stop()`, asked now and then, is true.
+  /// From the point around to it again; nothing where the curve is lost on the way, or `stop()`, asked now and then, is true. A step that
+  /// led onto another arm may never come back: then all of it is tried in shorter steps.
   template <class Stop>
   std::optional<std::vector<CurvePoint>> around(const CurvePoint& start, const Stop& stop) {
-    std::vector<CurvePoint> path{start};
-    glm::dvec3 tangent = tangent_of(start), bend(0.0);
-    double step = kFirstStep * settings_.longest_step;
-    while (path.size() < kMostPoints) {
-      if (path.size() % kAskedEvery == 0 && stop()) return {};
-      const CurvePoint from = path.back();
-      const std::optional<CurvePoint> next = advance(from, tangent, bend, step);
-      if (!next) return {};
-      const glm::dvec3 way = next->p - from.p;
-      const double length = glm::length(way), along = glm::dot(start.p - from.p, way) / length;
-      // Where chords meet, the start may lie beside the end of the one and before the beginning of the other.
-      const bool closes = path.size() > 2 && along > -kClosing * length && along <= length &&
-                          distance_to_segment(start.p, from.p, next->p) < kClosing * length && glm::dot(tangent, tangent_of(start)) > 0.5;
-      if (closes) {
-        if (along <= 0.0) path.pop_back();
-        return path;
-      }
-      const glm::dvec3 turned = tangent_of(*next);
-      bend = (turned - tangent) / length;
-      tangent = turned;
-      path.push_back(*next);
+    for (const double share : {1.0, 0.25, 0.0625}) {
+      bool stopped = false;
+      const auto stops = [&] { return stopped = stop(); };
+      auto path = around_in_steps(start, share * settings_.longest_step, stops);
+      if (path || stopped) return path;
     }
     return {};
   }
@@ -138,6 +124,42 @@ class Follower {
   glm::dvec2 image_way(const glm::dvec3& p, const glm::dvec3& way) const {
     const double small = 1e-4 * settings_.longest_step;
     return glm::dvec2(project(camera_, p + small * way) - project(camera_, p - small * way)) / (2.0 * small);
+  }
+
+  template <class Stop>
+  std::optional<std::vector<CurvePoint>> around_in_steps(const CurvePoint& start, double longest, const Stop& stop) {
+    std::vector<CurvePoint> path{start};
+    glm::dvec3 tangent = tangent_of(start), bend(0.0);
+    double step = kFirstStep * longest;
+    size_t mark = 0;
+    while (path.size() < kMostPoints) {
+      if (path.size() % kAskedEvery == 0 && stop()) return {};
+      const CurvePoint from = path.back();
+      const std::optional<CurvePoint> next = advance(from, tangent, bend, longest, step);
+      if (!next) return {};
+      const glm::dvec3 way = next->p - from.p;
+      const double length = glm::length(way);
+      if (path.size() > 2 && passes(from, *next, tangent, start)) {
+        if (glm::dot(start.p - from.p, way) <= 0.0) path.pop_back();
+        return path;
+      }
+      // Where it comes by a later point again it goes in circles beside its start (Brent 1980, "An improved Monte Carlo factorization
+      // algorithm", has the marks).
+      if (mark > 0 && path.size() > mark + 2 && passes(from, *next, tangent, path[mark])) return {};
+      if (path.size() >= std::max(kFirstMark, 2 * mark)) mark = path.size() - 1;
+      const glm::dvec3 turned = tangent_of(*next);
+      bend = (turned - tangent) / length;
+      tangent = turned;
+      path.push_back(*next);
+    }
+    return {};
+  }
+  /// Where chords meet, a point of the curve may lie beside the end of the one and before the beginning of the other.
+  static bool passes(const CurvePoint& from, const CurvePoint& to, const glm::dvec3& tangent, const CurvePoint& point) {
+    const glm::dvec3 way = to.p - from.p;
+    const double length = glm::length(way), along = glm::dot(point.p - from.p, way) / length;
+    return along > -kClosing * length && along <= length && distance_to_segment(point.p, from.p, to.p) < kClosing * length &&
+           glm::dot(tangent, tangent_of(point)) > 0.5;
   }
 
   /// The image turns back and forth within a step, as at the two cusps of a swallowtail, by the parabola that its speed follows: what it is
@@ -160,10 +182,11 @@ class Follower {
   }
 
   /// A step that is shortened until it stays on the curve and on its chord, and grows for the next one.
-  std::optional<CurvePoint> advance(const CurvePoint& from, const glm::dvec3& tangent, const glm::dvec3& bend, double& step) {
+  std::optional<CurvePoint> advance(const CurvePoint& from, const glm::dvec3& tangent, const glm::dvec3& bend, double longest,
+                                    double& step) {
     const glm::dvec2 start = image_way(from.p, tangent);
     const double scale = pixels_per_unit_at(camera_, std::max(project(camera_, from.p).z, 1e-9));
-    step = std::min({step, settings_.longest_step, kLongest_px / scale});
+    step = std::min({step, longest, kLongest_px / scale});
     const double most = kSagitta * settings_.tolerance_px;
     for (; step > kLeastStep * settings_.longest_step; step *= 0.5) {
       const glm::dvec3 predicted = from.p + step * tangent + 0.5 * step * step * bend;

@@ -13,6 +13,7 @@
 #include "raymarch/lines/level_set_layers.h"
 #include "raymarch/lines/line_memory.h"
 #include "raymarch/lines/missed_changes.h"
+#include "raymarch/lines/missed_contours.h"
 #include "raymarch/truth/followed_curves.h"
 #include "sdf/field_program.h"
 #include "sdf/level_set.h"
@@ -227,6 +228,141 @@ TEST(LineEvents, FollowedContoursHaveEveryCuspWhateverTheirLongestStep) {
     EXPECT_EQ(cusps(0.4), fine) << tilt << " degrees";
   }
   EXPECT_GT(with_cusps, 10);
+}
+
+/// Seen along the y axis, whose contours lie in the plane y = 0 where the field is its own mirror image there.
+Camera view_from_above(int size_px) {
+  CameraSettings settings;
+  settings.target = {0.0, 0.0, 0.0};
+  settings.eye = {0.0, 20.0, 0.0};
+  settings.up = {0.0, 0.0, 1.0};
+  settings.projection = Projection::orthographic;
+  settings.ortho_height = 3.0;
+  settings.width_px = settings.height_px = size_px;
+  return resolve_camera(settings, {glm::dvec3(-1.5), glm::dvec3(1.5)});
+}
+
+Strand strand_from(const std::vector<glm::dvec3>& points, bool rough) {
+  Strand strand;
+  for (const glm::dvec3& p : points) {
+    CurvePoint point;
+    point.p = p;
+    point.rough = rough;
+    strand.points.push_back(point);
+  }
+  return strand;
+}
+
+TEST(LineEvents, AStepGoesPastNoFoldThatIsNarrowerThanItself) {
+  // A ball with a small one beside it: where they flow together the contour goes round the small one.
+  const Camera camera = view_from_above(300);
+  const Viewer viewer = make_viewer(camera, glm::dvec3(0.0));
+  std::mt19937 random(random_seed());
+  int reached = 0;
+  for (int round = 0; round < 60; ++round) {
+    const double around = std::uniform_real_distribution<double>(0.0, 2.0 * kPi)(random),
+                 radius = std::uniform_real_distribution<double>(0.03, 0.06)(random), away = 1.0 + 0.9 * radius;
+    const Field field = make_shape(
+        "metaballs", {{"centers", {0.0, 0.0, 0.0, away * std::cos(around), 0.0, away * std::sin(around)}}, {"radii", {1.0, radius}}});
+    // From the other side.
+    const Strand strand = strand_from({{-std::cos(around), 0.0, -std::sin(around)}}, false);
+    const auto followed = [&](double longest_step) {
+      const std::vector<Strand> found = follow_strands({strand}, field, camera, viewer, {0.5, longest_step}, {});
+      return found.size() == 1 && found[0].followed ? found[0].points : std::vector<CurvePoint>{};
+    };
+    const double fine = length_of(followed(0.01));
+    ASSERT_GT(fine, 6.0) << round;
+    const std::vector<CurvePoint> coarse = followed(0.35);
+    ASSERT_FALSE(coarse.empty()) << round;
+    EXPECT_NEAR(length_of(coarse), fine, 0.02) << round << ", a ball of " << radius;
+    reached += std::any_of(coarse.begin(), coarse.end(), [&](const CurvePoint& point) {
+      return glm::distance(point.p, glm::dvec3(away * std::cos(around), 0.0, away * std::sin(around))) < 1.5 * radius;
+    });
+  }
+  EXPECT_EQ(reached, 60);
+}
+
+TEST(LineEvents, ACurveOfManyPointsIsFollowedToItsEnd) {
+  const Camera camera = view_from_above(300);
+  const Field ball = make_shape("sphere", {{"radius", {1.0}}});
+  const std::vector<Strand> found = follow_strands({strand_from({{1.0, 0.0, 0.0}}, false)}, ball, camera,
+                                                   make_viewer(camera, glm::dvec3(0.0)), {0.005, 2.0 * kPi / 120'000.0}, {});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found[0].followed);
+  EXPECT_GT(found[0].points.size(), 100'000u);
+  EXPECT_NEAR(length_of(found[0].points), 2.0 * kPi, 1e-6);
+}
+
+TEST(LineEvents, RoughStrandsBesideACurveAreToldByFinerCells) {
+  // Crossings that lie off the ball, as cells find them beside a thin gap: the ball's contour is all there is, with its own strand or not.
+  constexpr double kStep = 0.05;
+  const Camera camera = view_from_above(300);
+  const Field ball = make_shape("sphere", {{"radius", {1.0}}});
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> off(-0.4 * kStep, 0.4 * kStep);
+  for (int round = 0; round < 20; ++round) {
+    const double around = std::uniform_real_distribution<double>(0.0, 2.0 * kPi)(random);
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i < 8; ++i) {
+      const double a = around + 0.5 * kStep * i;
+      points.emplace_back(std::cos(a) + off(random), off(random), std::sin(a) + off(random));
+    }
+    std::vector<Strand> strands{strand_from(points, true)};
+    if (round % 2 == 0) strands.insert(strands.begin(), strand_from({{1.0, 0.0, 0.0}}, false));
+    const std::vector<Strand> found = follow_strands(strands, ball, camera, make_viewer(camera, glm::dvec3(0.0)), {0.005, kStep}, {});
+    ASSERT_EQ(found.size(), 1u) << round;
+    EXPECT_TRUE(found[0].followed) << round;
+    EXPECT_NEAR(length_of(found[0].points), 2.0 * kPi, 1e-3) << round;
+  }
+}
+
+TEST(LineEvents, RaysThatGrazeALevelSetLeadToTheContourThatTheyPass) {
+  constexpr double kVoxel = 0.02, kRadius = 0.8;
+  LevelSetSettings settings;
+  settings.voxel_size = kVoxel;
+  settings.half_width_voxels = 4.0;
+  Scene scene;
+  scene.objects.push_back(
+      {.name = "ball", .source = LevelSetSource{level_set_from_field(make_shape("sphere", {{"radius", {kRadius}}}), settings)}});
+  const Camera camera = flat_view();
+  KeptLines kept;
+  const LineTask task{scene, camera, glm::dvec3(0.0), 1.0, {}, kept};
+  const LevelSetLayers layers({place_level_set(task, 0)}, {{0}}, camera);
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> angle(0.0, 2.0 * kPi), within(1e-5 * kVoxel, 3e-4 * kVoxel);
+  std::vector<CurveSample> grazing;
+  for (int i = 0; i < 100; ++i) {
+    const double a = angle(random), r = kRadius - within(random);
+    CurveSample sample;
+    sample.p = {r * std::cos(a), r * std::sin(a), -1.5};
+    project_sample(camera, sample);
+    const std::vector<glm::dvec3> points = layers.contours_before(sample);
+    ASSERT_EQ(points.size(), 1u) << i;
+    EXPECT_NEAR(std::hypot(points[0].x, points[0].y), kRadius, 1e-3 * kVoxel) << i;
+    EXPECT_NEAR(points[0].z, 0.0, 0.2 * kVoxel) << i;
+    EXPECT_LT(glm::distance(glm::dvec2(points[0]), glm::dvec2(sample.p)), 5e-3 * kVoxel) << i;
+    grazing.push_back(sample);
+    // One that goes by, or through the middle, leads nowhere.
+    sample.p = glm::dvec3((i % 2 == 0 ? 0.5 : 1.1) * kRadius * glm::dvec2(std::cos(a), std::sin(a)), -1.5);
+    EXPECT_TRUE(layers.contours_before(sample).empty()) << i;
+  }
+  // Where a curve goes round the ball no contour was missed; where it goes half way round, the other half was.
+  std::vector<LineContribution> contributions(1);
+  contributions[0].contours_before = [&](const CurveSample& sample) { return layers.contours_before(sample); };
+  SurfaceCurve circle;
+  for (int i = 0; i < 2000; ++i) {
+    CurveSample sample;
+    sample.p = {kRadius * std::cos(2.0 * kPi * i / 2000.0), kRadius * std::sin(2.0 * kPi * i / 2000.0), 0.0};
+    circle.samples.push_back(sample);
+  }
+  circle.closed = true;
+  EXPECT_TRUE(missed_contours(grazing, contributions, {circle}).empty());
+  circle.closed = false;
+  circle.samples.resize(1000);
+  const std::vector<glm::dvec3> missed = missed_contours(grazing, contributions, {circle});
+  const auto below = std::count_if(grazing.begin(), grazing.end(), [](const CurveSample& sample) { return sample.p.y < 0.0; });
+  EXPECT_EQ(static_cast<std::ptrdiff_t>(missed.size()), below);
+  for (const glm::dvec3& p : missed) EXPECT_LT(p.y, 0.0);
 }
 
 TEST(LineEvents, RaysThatGrazeALevelSetGoThroughBothOfItsSheets) {

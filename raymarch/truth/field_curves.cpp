@@ -20,6 +20,7 @@ constexpr double kMostBulge = 0.35, kLittleBulge = 0.05;  // of its length in sp
 constexpr int kMostLooks = 3;
 constexpr double kLongEndOn_px = 0.5;
 constexpr double kReversal = -0.9, kLeastReversal_px = 0.1;  // a cosine; of steps as long as this in space
+constexpr double kLongestCusp_px = 0.1;                      // in space: steps that hold a cusp are halved until they are no longer
 constexpr double kEndOn = 0.3;  // of a step's length in space is its length in the image where it is seen end on
 constexpr int kDeepest = 14;    // halvings of a step between two marched points
 
@@ -55,6 +56,13 @@ struct Refined {
 };
 
 glm::dvec2 image_of(const Camera& camera, const glm::dvec3& p) { return glm::dvec2(project(camera, p)); }
+
+/// The image turns back somewhere within the step, on the way that it came: how far it went shows in no chord.
+bool holds_cusp(const Refiner& refiner, const CurvePoint& a, const CurvePoint& b) {
+  if (!(a.radial_curvature * b.radial_curvature < 0.0)) return false;
+  const double depth = std::max(project(refiner.camera, a.p).z, 1e-9 * refiner.extent);
+  return glm::distance(a.p, b.p) * pixels_per_unit_at(refiner.camera, depth) > kLongestCusp_px;
+}
 
 /// Points between a and b, in order, until the chord's error is well below the tolerance: the thinning has the rest.
 void halve(const Refiner& refiner, FieldEvaluator& evaluator, double c, const CurvePoint& a, const CurvePoint& b, double sagitta_px,
@@ -99,9 +107,13 @@ void halve(const Refiner& refiner, FieldEvaluator& evaluator, double c, const Cu
   const double place = glm::distance(pm, pa) / std::max(glm::distance(pa, pb), 1e-300);
   const bool telling = a.crease == b.crease && place > 0.2 && place < 0.8;
   const bool again = depth > 0 && (error > 0.25 * refiner.tolerance_px || !telling) && glm::distance(pa, pb) > 0.5 * refiner.tolerance_px;
-  if (again) halve(refiner, evaluator, c, a, point, 0.5 * std::max(error, sagitta_px), depth - 1, out);
+  const auto fill = [&](const CurvePoint& from, const CurvePoint& to) {
+    if (again || (depth > 0 && holds_cusp(refiner, from, to)))
+      halve(refiner, evaluator, c, from, to, 0.5 * std::max(error, sagitta_px), depth - 1, out);
+  };
+  fill(a, point);
   out.points.push_back(point);
-  if (again) halve(refiner, evaluator, c, point, b, 0.5 * std::max(error, sagitta_px), depth - 1, out);
+  fill(point, b);
 }
 
 /// The curve does not go along a step that is short in the image and long in space: the step leads from one arm of it to another.
@@ -249,7 +261,7 @@ void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
       const double length = glm::distance(a.p, b.p),
                    length_px = glm::distance(image_of(refiner.camera, a.p), image_of(refiner.camera, b.p));
       // A long step may pass by where the curve goes aside and comes back.
-      const bool straight = sagitta[i] <= 0.5 * refiner.tolerance_px && length_px < kLongest_px;
+      const bool straight = sagitta[i] <= 0.5 * refiner.tolerance_px && length_px < kLongest_px && !holds_cusp(refiner, a, b);
       if (straight || length < 1e-9 * refiner.extent) continue;
       const Box around = dilate(include(include(Box{}, a.p), b.p), kFanReach * length);
       FieldEvaluator evaluator(whole.restricted(around));

@@ -31,9 +31,12 @@ std::optional<FourSamples> around_step(const SurfaceCurve& curve, size_t i) {
                ahead = glm::distance(four.p[2], four.p[3]);
   if (!(h > 0.0) || back < 0.05 * h || ahead < 0.05 * h || back > 20.0 * h || ahead > 20.0 * h) return {};
   const glm::dvec3 way = (four.p[2] - four.p[1]) / h;
-  four.least_turn = std::min(glm::dot(four.p[1] - four.p[0], way) / back, glm::dot(four.p[3] - four.p[2], way) / ahead);
-  // Where three of them turn as at a corner the curve may have one.
-  if (!curve.smooth && four.least_turn < kCorner) return {};
+  const double turn_back = glm::dot(four.p[1] - four.p[0], way) / back, turn_ahead = glm::dot(four.p[3] - four.p[2], way) / ahead;
+  four.least_turn = std::min(turn_back, turn_ahead);
+  // Where three of them turn as at a corner the curve may have one: a contour where the surface's curvature jumps.
+  const auto jumps = [&](size_t j) { return curve.samples[j % n].radial_curvature * curve.samples[(j + 1) % n].radial_curvature < 0.0; };
+  if (turn_back < kCorner && (!curve.smooth || jumps(i + n - 1))) return {};
+  if (turn_ahead < kCorner && (!curve.smooth || jumps(i + 1))) return {};
   four.s = {-back, 0.0, h, h + ahead};
   return four;
 }

@@ -19,7 +19,6 @@ constexpr int kMostHalvings = 2;                          // of cells
 constexpr double kMostBulge = 0.35, kLittleBulge = 0.05;  // of its length in space
 constexpr int kMostLooks = 3;
 constexpr double kLongEndOn_px = 0.5;
-constexpr double kTurnBack = -0.9;  // a cosine
 constexpr double kReversal = -0.8, kLeastReversal_px = 0.1;  // a cosine; of steps as long as this in space
 constexpr double kLongestCusp_px = 0.1;                      // in space: steps that hold a cusp are halved until they are no longer
 constexpr double kEndOn = 0.3;  // of a step's length in space is its length in the image where it is seen end on
@@ -228,29 +227,6 @@ std::vector<Strand> strands_of(CellResult& found, const CellSearch& search, cons
   return strands;
 }
 
-bool turns_back(const CurvePoint& before, const CurvePoint& here, const CurvePoint& after) {
-  if (before.crease || here.crease || after.crease) return false;
-  const glm::dvec3 there = here.p - before.p, back = after.p - here.p;
-  return glm::dot(there, back) < kTurnBack * glm::length(there) * glm::length(back);
-}
-
-/// Beside a place where the surface's curvature jumps a point may be found behind one that comes before it: of two steps there and back the
-/// shorter one's other end lies along the longer one, and is left out. The first and the last point stay.
-std::vector<CurvePoint> without_turns_back(const std::vector<CurvePoint>& points) {
-  std::vector<CurvePoint> kept;
-  for (size_t i = 0; i < points.size(); ++i) {
-    kept.push_back(points[i]);
-    while (kept.size() >= 3 && turns_back(kept[kept.size() - 3], kept[kept.size() - 2], kept.back())) {
-      const double there = glm::distance(kept[kept.size() - 3].p, kept[kept.size() - 2].p),
-                   back = glm::distance(kept[kept.size() - 2].p, kept.back().p);
-      const bool drops_last = back < there;
-      if (drops_last ? i + 1 == points.size() : kept.size() == 3) break;
-      kept.erase(kept.end() - (drops_last ? 1 : 3));
-    }
-  }
-  return kept;
-}
-
 void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
   const size_t n = curve.points.size();
   const std::vector<double> sagitta = sagittas(curve, refiner.camera);
@@ -277,7 +253,7 @@ void refine(const Refiner& refiner, FieldCurve& curve, FieldCurves& stats) {
     stats.unrefined += between[i].unrefined;
     stats.worst_unrefined_px = std::max(stats.worst_unrefined_px, between[i].worst_px);
   }
-  curve.points = without_turns_back(points);
+  curve.points = std::move(points);
 }
 
 /// Smooth curves turn back nowhere: where the refinement of a step does it went from arm to arm and back.

@@ -20,6 +20,7 @@ constexpr double kLongestNarrow_px = 20.0;
 constexpr double kShortestTail_px = 1.0;
 constexpr double kMostShared_px = 0.5;  // to which the crossing of its arms is known
 constexpr double kMostLensSteps = 400.0;
+constexpr double kLensEnds_px = 0.1;  // by which two sides of a short lens may differ in length
 constexpr double kLongestOwnLens_px = 0.05;
 // How thin a lens between two lines may be: those in closed form and those of smooth surfaces are followed more closely where they touch.
 constexpr double kExactLens_px = 1e-5, kSmoothLens_px = 0.002;
@@ -322,10 +323,19 @@ class EventFinder {
       return false;
     const std::vector<glm::dvec2> own_px = px_between_crossings(curve_, one.at, other.at),
                                   nearer_px = px_between_crossings(nearer, from, to);
+    // Two lines that run together are as long as each other: one that goes away and comes back in between is no side of a lens.
+    const double own_length = length_of(own_px), nearer_length = length_of(nearer_px);
+    if (std::max(own_length, nearer_length) > 2.0 * std::min(own_length, nearer_length) + kLensEnds_px) return false;
     double apart_px = curve_.smooth && nearer.smooth ? kSmoothLens_px : apart_from(nearer);
     if (curve_.between && nearer.between) apart_px = kExactLens_px;
     // Of long steps the samples of one curve alone say nothing.
     return lies_along(own_px, nearer_px, apart_px) && (!long_steps(nearer) || lies_along(nearer_px, own_px, apart_px));
+  }
+
+  static double length_of(const std::vector<glm::dvec2>& px) {
+    double length = 0.0;
+    for (size_t i = 1; i < px.size(); ++i) length += glm::distance(px[i - 1], px[i]);
+    return length;
   }
 
   /// A crease leaves a contour, and the two arms of a cusp each other, along their common tangent: polylines of them cross again and again

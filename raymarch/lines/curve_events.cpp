@@ -266,29 +266,34 @@ class EventFinder {
     const auto steps = static_cast<double>(steps_of(curve_));
     // From one place to another, the shorter way round.
     const auto way = [&](double from, double to) { return curve_.closed ? std::remainder(to - from, steps) : to - from; };
-    const auto crosses_itself = [&](const CurveEvent& event) {
+    const auto crosses_itself = [&](const auto& event) {
       const auto near = [&](double place) {
         return std::min(walk_.apart_px(place, first), walk_.apart_px(place, second)) < length + kTangency_px;
       };
-      if (event.kind != VertexKind::crossing || event.nearer != number_ || !near(event.at) || !near(event.on_nearer)) return false;
+      if (!near(event.at) || !near(event.on_nearer)) return false;
       // Both places on one side of the two cusps: of another swallowtail.
       const bool before = way(first, event.at) < 0.0 && way(first, event.on_nearer) < 0.0;
       return !before && !(way(second, event.at) > 0.0 && way(second, event.on_nearer) > 0.0);
     };
-    if (std::any_of(events_.begin(), events_.end(), crosses_itself)) return false;
+    const auto is_own = [&](const CurveEvent& event) { return event.kind == VertexKind::crossing && event.nearer == number_; };
+    if (std::any_of(events_.begin(), events_.end(), [&](const CurveEvent& event) { return is_own(event) && crosses_itself(event); }) ||
+        std::any_of(undone_crossings_.begin(), undone_crossings_.end(), crosses_itself))
+      return false;
     const std::vector<glm::dvec2> middle = px_between(curve_, first, second, camera_);
     return lies_along(middle, walk_.px_from(second, length, 1), arms_apart_px()) ||
            lies_along(middle, walk_.px_from(first, length, -1), arms_apart_px());
   }
   /// Where a line runs along a nearer one, as two rims of a tube seen down its axis do, their polylines cross again and again: two
   /// crossings of the same pair of lines, between which these lie on each other, are none.
-  std::vector<NearerCrossing> without_narrow_lenses(const std::vector<NearerCrossing>& crossings) const {
+  std::vector<NearerCrossing> without_narrow_lenses(const std::vector<NearerCrossing>& crossings) {
     std::vector<NearerCrossing> kept;
     std::map<std::uint32_t, std::vector<size_t>> open;  // Of each nearer curve, what is kept of it, in order.
     std::vector<bool> gone;
     for (const NearerCrossing& crossing : crossings) {
       auto& before = open[crossing.curve];
       if (!before.empty() && is_lens(kept[before.back()], crossing)) {
+        if (crossing.curve == number_ && joins_two_passages(kept[before.back()], crossing))
+          undone_crossings_.insert(undone_crossings_.end(), {kept[before.back()], crossing});
         gone[before.back()] = true;
         before.pop_back();
         continue;
@@ -310,6 +315,11 @@ class EventFinder {
     px.back() = chord_px(curve, to, camera_);
     return px;
   }
+  /// Of one curve: the line goes over both arms of a thin part of itself at once. One of the two crossings may be that of a swallowtail,
+  /// whose cusps stay.
+  bool joins_two_passages(const NearerCrossing& one, const NearerCrossing& other) const {
+    return walk_.apart_px(one.on_nearer, other.on_nearer) > 2.0 * walk_.apart_px(one.at, other.at) + kLensEnds_px;
+  }
   bool is_lens(const NearerCrossing& one, const NearerCrossing& other) const {
     if (one.layers != -other.layers) return false;
     const SurfaceCurve& nearer = curves_[one.curve];
@@ -323,19 +333,10 @@ class EventFinder {
       return false;
     const std::vector<glm::dvec2> own_px = px_between_crossings(curve_, one.at, other.at),
                                   nearer_px = px_between_crossings(nearer, from, to);
-    // Two lines that run together are as long as each other: one that goes away and comes back in between is no side of a lens.
-    const double own_length = length_of(own_px), nearer_length = length_of(nearer_px);
-    if (std::max(own_length, nearer_length) > 2.0 * std::min(own_length, nearer_length) + kLensEnds_px) return false;
     double apart_px = curve_.smooth && nearer.smooth ? kSmoothLens_px : apart_from(nearer);
     if (curve_.between && nearer.between) apart_px = kExactLens_px;
     // Of long steps the samples of one curve alone say nothing.
     return lies_along(own_px, nearer_px, apart_px) && (!long_steps(nearer) || lies_along(nearer_px, own_px, apart_px));
-  }
-
-  static double length_of(const std::vector<glm::dvec2>& px) {
-    double length = 0.0;
-    for (size_t i = 1; i < px.size(); ++i) length += glm::distance(px[i - 1], px[i]);
-    return length;
   }
 
   /// A crease leaves a contour, and the two arms of a cusp each other, along their common tangent: polylines of them cross again and again
@@ -505,6 +506,7 @@ class EventFinder {
   CurveWalk walk_;
   std::vector<CurveEvent> events_{};
   std::vector<SignChange> changes_{}, apart_{}, undone_{};
+  std::vector<NearerCrossing> undone_crossings_{};  ///< Of the curve with itself: two and two, which cancel out.
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <functional>
@@ -29,9 +30,10 @@ constexpr double kClosing = 0.15;     // of a step: so near it the start is the 
 constexpr double kTurn = 0.95;        // the cosine of the angle between tangents, and between normals, along a step
 constexpr double kLongest_px = 1.0;
 constexpr double kLeastTurning = 1e-3;  // of the longest step: shorter ones are not searched for turns of the image
-constexpr double kLeastLooked = 0.25;   // of the longest step: half way along shorter ones nobody looks
-constexpr double kMostAside = 0.05;     // of a step's length, that its middle may lie off the cubic through its ends
-constexpr int kFinerParts = 8;          // of a cell along each axis
+constexpr double kLeastLooked = 0.25;   // of the longest step: along shorter ones nobody looks
+constexpr std::array<double, 3> kLookedAt = {0.5, 0.25, 0.75};
+constexpr double kMostAside = 0.05;  // of a step's length, that points along it may lie off the cubic through its ends
+constexpr int kFinerParts = 8;       // of a cell along each axis
 constexpr size_t kMostPointsLooked = 64;
 constexpr size_t kFirstMark = 64;                      // points
 constexpr size_t kMostPoints = 2'000'000;              // of a curve
@@ -173,12 +175,15 @@ class Follower {
     return last > 0.0 && slope < 0.0 && slope > -2.0 * bend && 4.0 * bend * speed < slope * slope;
   }
 
-  /// Half way along a step the curve is not where its ends and tangents lead: it goes round a fold in between.
+  /// Somewhere along a step the curve is not where its ends and tangents lead: it goes round a fold in between.
   bool leaves_cubic(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& start, const glm::dvec3& end) {
     const double length = glm::distance(from, to);
-    const glm::dvec3 middle = 0.5 * (from + to) + length / 8.0 * (start - end);
-    const std::optional<CurvePoint> found = polish(evaluator_, viewer_, c_, middle, kMostAside * length);
-    return !found;
+    return std::any_of(kLookedAt.begin(), kLookedAt.end(), [&](double t) {
+      const double rest = 1.0 - t;
+      const glm::dvec3 between =
+          rest * rest * (1.0 + 2.0 * t) * from + t * t * (1.0 + 2.0 * rest) * to + length * t * rest * (rest * start - t * end);
+      return !polish(evaluator_, viewer_, c_, between, kMostAside * length);
+    });
   }
 
   /// A step that is shortened until it stays on the curve and on its chord, and grows for the next one.

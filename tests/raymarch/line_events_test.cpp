@@ -254,14 +254,14 @@ Strand strand_from(const std::vector<glm::dvec3>& points, bool rough) {
 }
 
 TEST(LineEvents, AStepGoesPastNoFoldThatIsNarrowerThanItself) {
-  // A ball with a small one beside it: where they flow together the contour goes round the small one.
-  const Camera camera = view_from_above(300);
+  // A ball with a small one beside it: where they flow together the contour goes round the small one. Steps may be a pixel long.
+  const Camera camera = view_from_above(15);
   const Viewer viewer = make_viewer(camera, glm::dvec3(0.0));
   std::mt19937 random(random_seed());
   int reached = 0;
   for (int round = 0; round < 60; ++round) {
     const double around = std::uniform_real_distribution<double>(0.0, 2.0 * kPi)(random),
-                 radius = std::uniform_real_distribution<double>(0.03, 0.06)(random), away = 1.0 + 0.9 * radius;
+                 radius = std::uniform_real_distribution<double>(0.015, 0.03)(random), away = 1.0 + 0.9 * radius;
     const Field field = make_shape(
         "metaballs", {{"centers", {0.0, 0.0, 0.0, away * std::cos(around), 0.0, away * std::sin(around)}}, {"radii", {1.0, radius}}});
     // From the other side.
@@ -270,13 +270,13 @@ TEST(LineEvents, AStepGoesPastNoFoldThatIsNarrowerThanItself) {
       const std::vector<Strand> found = follow_strands({strand}, field, camera, viewer, {0.5, longest_step}, {});
       return found.size() == 1 && found[0].followed ? found[0].points : std::vector<CurvePoint>{};
     };
-    const double fine = length_of(followed(0.01));
+    const double fine = length_of(followed(0.002));
     ASSERT_GT(fine, 6.0) << round;
     const std::vector<CurvePoint> coarse = followed(0.35);
     ASSERT_FALSE(coarse.empty()) << round;
     EXPECT_NEAR(length_of(coarse), fine, 0.02) << round << ", a ball of " << radius;
     reached += std::any_of(coarse.begin(), coarse.end(), [&](const CurvePoint& point) {
-      return glm::distance(point.p, glm::dvec3(away * std::cos(around), 0.0, away * std::sin(around))) < 1.5 * radius;
+      return glm::distance(point.p, glm::dvec3(away * std::cos(around), 0.0, away * std::sin(around))) < 2.0 * radius;
     });
   }
   EXPECT_EQ(reached, 60);
@@ -341,7 +341,8 @@ TEST(LineEvents, RaysThatGrazeALevelSetLeadToTheContourThatTheyPass) {
     EXPECT_NEAR(std::hypot(points[0].x, points[0].y), kRadius, 1e-3 * kVoxel) << i;
     EXPECT_NEAR(points[0].z, 0.0, 0.2 * kVoxel) << i;
     EXPECT_LT(glm::distance(glm::dvec2(points[0]), glm::dvec2(sample.p)), 5e-3 * kVoxel) << i;
-    grazing.push_back(sample);
+    // Not where the half circle below ends.
+    if (std::fabs(sample.p.y) > 0.01) grazing.push_back(sample);
     // One that goes by, or through the middle, leads nowhere.
     sample.p = glm::dvec3((i % 2 == 0 ? 0.5 : 1.1) * kRadius * glm::dvec2(std::cos(a), std::sin(a)), -1.5);
     EXPECT_TRUE(layers.contours_before(sample).empty()) << i;

@@ -12,7 +12,8 @@ struct FollowSettings {
 };
 
 /// Each closed curve that goes by a point of a strand, once. Points may lie a little off the curve. Strands by whose points none is found
-/// stay as they are, with their points brought onto the curve; those of a single point are left out. `field` is that of the strands' branch.
+/// stay as they are, with their points brought onto the curve; those of a single point are left out. `field` is that of the strands'
+/// branch.
 std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field, const Camera& camera, const Viewer& viewer,
                                    const FollowSettings& settings, const ExecutionSettings& how);
 

@@ -316,14 +316,19 @@ TEST(LineEvents, RoughStrandsBesideACurveAreToldByFinerCells) {
   }
 }
 
-TEST(LineEvents, RaysThatGrazeALevelSetLeadToTheContourThatTheyPass) {
-  constexpr double kVoxel = 0.02, kRadius = 0.8;
+Scene ball_of_voxels(double radius, double voxel) {
   LevelSetSettings settings;
-  settings.voxel_size = kVoxel;
+  settings.voxel_size = voxel;
   settings.half_width_voxels = 4.0;
   Scene scene;
   scene.objects.push_back(
-      {.name = "ball", .source = LevelSetSource{level_set_from_field(make_shape("sphere", {{"radius", {kRadius}}}), settings)}});
+      {.name = "ball", .source = LevelSetSource{level_set_from_field(make_shape("sphere", {{"radius", {radius}}}), settings)}});
+  return scene;
+}
+
+TEST(LineEvents, RaysThatGrazeALevelSetLeadToTheContourThatTheyPass) {
+  constexpr double kVoxel = 0.02, kRadius = 0.8;
+  const Scene scene = ball_of_voxels(kRadius, kVoxel);
   const Camera camera = flat_view();
   KeptLines kept;
   const LineTask task{scene, camera, glm::dvec3(0.0), 1.0, {}, kept};
@@ -369,12 +374,7 @@ TEST(LineEvents, RaysThatGrazeALevelSetLeadToTheContourThatTheyPass) {
 TEST(LineEvents, RaysThatGrazeALevelSetGoThroughBothOfItsSheets) {
   // Within a hundredth of a voxel of a ball's silhouette both sheets lie within one of the ray's steps.
   constexpr double kVoxel = 0.02, kRadius = 0.8;
-  LevelSetSettings settings;
-  settings.voxel_size = kVoxel;
-  settings.half_width_voxels = 4.0;
-  Scene scene;
-  scene.objects.push_back(
-      {.name = "ball", .source = LevelSetSource{level_set_from_field(make_shape("sphere", {{"radius", {kRadius}}}), settings)}});
+  const Scene scene = ball_of_voxels(kRadius, kVoxel);
   const Camera camera = flat_view();
   KeptLines kept;
   const LineTask task{scene, camera, glm::dvec3(0.0), 1.0, {}, kept};

@@ -19,7 +19,7 @@ constexpr int kMostHalvings = 2;                          // of cells
 constexpr double kMostBulge = 0.35, kLittleBulge = 0.05;  // of its length in space
 constexpr int kMostLooks = 3;
 constexpr double kLongEndOn_px = 0.5;
-constexpr double kReversal = -0.8, kLeastReversal_px = 0.1;  // a cosine; of steps as long as this in space
+constexpr double kReversal = -0.9, kLeastReversal_px = 0.1;  // a cosine; of steps as long as this in space
 constexpr double kLongestCusp_px = 0.1;                      // in space: steps that hold a cusp are halved until they are no longer
 constexpr double kEndOn = 0.3;  // of a step's length in space is its length in the image where it is seen end on
 constexpr int kDeepest = 14;    // halvings of a step between two marched points

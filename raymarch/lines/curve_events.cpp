@@ -8,6 +8,7 @@
 
 #include "raymarch/lines/curvature_jumps.h"
 #include "raymarch/lines/curve_walk.h"
+#include "raymarch/lines/frame_crossings.h"
 
 namespace limn {
 namespace {
@@ -40,7 +41,7 @@ class EventFinder {
     for (size_t i = 0; i < steps_of(curve_); ++i) {
       const CurveSample &a = walk_.at(i), &b = walk_.at(i + 1);
       const double place = static_cast<double>(i);
-      for (const double share : frame_shares(a, b)) events_.push_back({VertexKind::frame, place + share, {}, 0, 0.0});
+      for (const double share : frame_shares(camera_, a, b)) events_.push_back({VertexKind::frame, place + share, {}, 0, 0.0});
       for (const Piercing& piercing : a.pierced)
         events_.push_back({VertexKind::joint, place + std::min(piercing.t, 1.0 - 1e-9), piercing.layers, 0, 0.0, piercing.unclear_px});
       if (a.joint && (i > 0 || curve_.closed)) events_.push_back({VertexKind::joint, place, {}, 0, 0.0});
@@ -447,56 +448,6 @@ class EventFinder {
     return lies_along(own, others, apart_px) || lies_along(others, own, apart_px);
   }
   bool long_steps(const SurfaceCurve& other) const { return curve_.long_steps || other.long_steps; }
-
-  CurveSample on_step(const CurveSample& a, const CurveSample& b, double share) const {
-    CurveSample q = a;
-    q.p = glm::mix(a.p, b.p, share);
-    project_sample(camera_, q);
-    return q;
-  }
-  /// Between a share within the frame and one outside of it.
-  double frame_share(const CurveSample& a, const CurveSample& b, double inside, double outside) const {
-    for (int step = 0; step < 40; ++step) {
-      const double t = 0.5 * (inside + outside);
-      (in_frame(camera_, on_step(a, b, t)) ? inside : outside) = t;
-    }
-    return std::clamp(inside, 0.0, 1.0 - 1e-9);
-  }
-  /// Where a step enters or leaves the frame; one that lies across a corner of it does both.
-  std::vector<double> frame_shares(const CurveSample& a, const CurveSample& b) const {
-    const bool from = in_frame(camera_, a), to = in_frame(camera_, b);
-    if (from != to) return {frame_share(a, b, from ? 0.0 : 1.0, from ? 1.0 : 0.0)};
-    if (from) return {};
-    const std::optional<double> within = share_within(a, b);
-    if (!within || !in_frame(camera_, on_step(a, b, *within))) return {};
-    return {frame_share(a, b, *within, 0.0), frame_share(a, b, *within, 1.0)};
-  }
-  /// The middle of what the frame cuts out of a step whose ends lie outside of it.
-  std::optional<double> share_within(const CurveSample& a, const CurveSample& b) const {
-    const double near = 1e-9 * std::max(a.depth, b.depth);
-    if (!(near > 0.0)) return {};
-    // The part of the step that lies before the eye.
-    const double behind = (near - a.depth) / (b.depth - a.depth);
-    const double start = a.depth > 0.0 ? 0.0 : behind, end = b.depth > 0.0 ? 1.0 : behind;
-    const CurveSample one = on_step(a, b, start), two = on_step(a, b, end);
-    const glm::dvec2 way = two.px - one.px, size(camera_.width_px, camera_.height_px);
-    double low = 0.0, high = 1.0;
-    for (int axis = 0; axis < 2; ++axis) {
-      const double enters = -one.px[axis] / way[axis], leaves = (size[axis] - one.px[axis]) / way[axis];
-      if (way[axis] == 0.0) {
-        if (one.px[axis] < 0.0 || one.px[axis] > size[axis]) return {};
-        continue;
-      }
-      low = std::max(low, std::min(enters, leaves));
-      high = std::min(high, std::max(enters, leaves));
-    }
-    if (!(low < high)) return {};
-    // Shares of the image and of the step differ in perspective, where 1 / depth is linear in the image.
-    const double image = 0.5 * (low + high);
-    const double share =
-        camera_.projection == Projection::perspective ? image * one.depth / ((1.0 - image) * two.depth + image * one.depth) : image;
-    return start + share * (end - start);
-  }
 
   const std::vector<SurfaceCurve>& curves_;
   const SurfaceCurve& curve_;

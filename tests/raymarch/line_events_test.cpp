@@ -145,6 +145,18 @@ TEST(LineEvents, RaysBetweenALineAndANearerOneStartNearerToTheLine) {
   EXPECT_EQ(seen, (std::vector<int>{1, 0, 1}));
 }
 
+/// Seen along the y axis, whose contours lie in the plane y = 0 where the field is its own mirror image there.
+Camera view_from_above(int size_px) {
+  CameraSettings settings;
+  settings.target = {0.0, 0.0, 0.0};
+  settings.eye = {0.0, 20.0, 0.0};
+  settings.up = {0.0, 0.0, 1.0};
+  settings.projection = Projection::orthographic;
+  settings.ortho_height = 3.0;
+  settings.width_px = settings.height_px = size_px;
+  return resolve_camera(settings, {glm::dvec3(-1.5), glm::dvec3(1.5)});
+}
+
 double length_of(const std::vector<CurvePoint>& points) {
   double length = 0.0;
   for (size_t i = 0; i < points.size(); ++i) length += glm::distance(points[i].p, points[(i + 1) % points.size()].p);
@@ -155,14 +167,7 @@ TEST(LineEvents, ContoursAreFollowedWholeAndOnceHoweverTheirSeedsWereJoined) {
   // A torus seen along its axis: its contours are circles of known lengths.
   constexpr double kMajor = 1.0, kMinor = 0.35;
   Field torus = make_shape("torus", {{"major", {kMajor}}, {"minor", {kMinor}}});
-  CameraSettings settings;
-  settings.target = {0.0, 0.0, 0.0};
-  settings.eye = {0.0, 20.0, 0.0};
-  settings.up = {0.0, 0.0, 1.0};
-  settings.projection = Projection::orthographic;
-  settings.ortho_height = 3.0;
-  settings.width_px = settings.height_px = 300;
-  const Camera camera = resolve_camera(settings, {glm::dvec3(-1.5), glm::dvec3(1.5)});
+  const Camera camera = view_from_above(300);
   const Viewer viewer = make_viewer(camera, glm::dvec3(0.0));
   constexpr double kStep = 0.01;
   std::mt19937 random(random_seed());
@@ -228,18 +233,6 @@ TEST(LineEvents, FollowedContoursHaveEveryCuspWhateverTheirLongestStep) {
     EXPECT_EQ(cusps(0.4), fine) << tilt << " degrees";
   }
   EXPECT_GT(with_cusps, 10);
-}
-
-/// Seen along the y axis, whose contours lie in the plane y = 0 where the field is its own mirror image there.
-Camera view_from_above(int size_px) {
-  CameraSettings settings;
-  settings.target = {0.0, 0.0, 0.0};
-  settings.eye = {0.0, 20.0, 0.0};
-  settings.up = {0.0, 0.0, 1.0};
-  settings.projection = Projection::orthographic;
-  settings.ortho_height = 3.0;
-  settings.width_px = settings.height_px = size_px;
-  return resolve_camera(settings, {glm::dvec3(-1.5), glm::dvec3(1.5)});
 }
 
 Strand strand_from(const std::vector<glm::dvec3>& points, bool rough) {

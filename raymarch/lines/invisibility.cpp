@@ -316,7 +316,8 @@ class Cutter {
     return offset;
   }
 
-  /// What most of three rays say, or nothing for a piece too short to ask.
+  /// What most of three rays say; nothing for a piece too short to ask, and where they disagree beside nearer lines. `least_px` 0: at any
+  /// rate something.
   std::optional<int> by_vote(const CurvePiece& piece, double least_px) {
     if (piece.length_px < least_px) return {};
     std::map<int, int> votes;
@@ -328,7 +329,7 @@ class Cutter {
       for (const double share : {0.5, 0.3, 0.7}) {
         if (const auto place = telling_ray_at(piece, share)) ++votes[cast(*place)];
       }
-      if (votes.size() > 1) return {};
+      if (votes.size() > 1 && least_px > 0.0) return {};
     }
     if (votes.empty() && least_px > 0.0) return {};
     if (votes.empty()) ++votes[cast(ray_at(piece, 0.5))];

@@ -36,13 +36,16 @@ const Registry<LineClassDescriptor>& line_classes();
 /// As in line_classes(): "contour".
 const std::string& name_of(LineClass line_class);
 
+/// See LineSettings::smooth_meshes.
+inline constexpr std::int64_t kSmoothBytes = 5000;
+
 /// Which lines are solved, and how precisely.
 struct LineSettings {
   std::vector<LineClass> classes{};  ///< Empty: those drawn by default.
   double threshold = 0.4;            ///< Of the rim, above 0 and below 1; read where LineClass::rim is asked for.
   double crease_angle_deg = 40.0;    ///< Edges of meshes are creases where their faces' normals differ by more. In (0, 180).
-  /// Contours of meshes that are no cages are those of the smooth surface that their vertices' normals describe, averaged over the faces
-  /// but not across creases (Hertzmann & Zorin 2000).
+  /// Of meshes that are no cages the lines are those of the smooth surface through their vertices, sharp along creases and open edges
+  /// (subdiv/interpolating_cage.h). Such a mesh takes about kSmoothBytes for each triangle: InputError beyond `max_bytes`.
   bool smooth_meshes = false;
   double suggestive_angle_deg = 20.0;  ///< Suggestive contours: least angle between normal and view. In [0, 90).
   /// Suggestive contours: least derivative of the radial curvature along the view's tangential part, times the object's radius squared.
@@ -51,7 +54,7 @@ struct LineSettings {
   /// Ridges and valleys: least principal curvature, times the object's radius. Above 0. A line goes on down to half of it.
   double ridge_strength = 4.0;
   double tolerance_px = 0.005;                     ///< How far the polylines may lie from the curves.
-  std::int64_t max_bytes = std::int64_t{4} << 30;  ///< For the meshes that rays are cast against.
+  std::int64_t max_bytes = std::int64_t{4} << 30;  ///< For the meshes that rays are cast against, and for smooth_meshes.
   /// Sharp CSG of quadrics and tori by closed forms. Off: searched for in cells of space, as all other fields are.
   bool closed_forms = true;
 };
@@ -133,7 +136,7 @@ struct ViewGraph {
 
 struct KeptLines;  // raymarch/lines/line_memory.h
 /// What views of one scene share (refined cages, trees of triangles), so that the next takes less time; the lines are the same without it.
-/// For one scene and one call at a time. Empty at first.
+/// For one scene, one setting of smooth_meshes and crease_angle_deg, and one call at a time. Empty at first.
 struct LineMemory {
   std::shared_ptr<KeptLines> kept{};  ///< Made by the first call.
 };

@@ -312,7 +312,7 @@ BorderMethod contours_method() {
        a_flag("crease", true).help("where two normals of an object meet at an angle"),
        a_flag("intersection", true).help("where objects pass through each other"),
        a_flag("material", true).help("where materials of one object meet"),
-       a_flag("smooth", false).help("of meshes: contours of the smooth surface between their vertices' normals, not edges of facets"),
+       a_flag("smooth", false).help("of meshes: the lines of the smooth surface through their vertices, not edges of facets"),
        a_number("shortest", 0.0).in(0.0, 1000.0).unit("px").help("chains that are shorter are left out"),
        a_flag("hidden", false).help("hidden lines too, dashed"),
        a_number("hidden_width", 1.0).in(0.0, 64.0).unit("px").help("of hidden lines"),

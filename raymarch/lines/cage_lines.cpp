@@ -22,7 +22,7 @@ constexpr std::int64_t kMostTriangles = 3'000'000;
 
 /// Rounded up, so that views from much the same distance share their samples.
 int shared_steps(int steps) {
-  int shared = 4;
+  int shared = std::min(steps, 4);
   while (shared < steps) shared += shared / 4 % 2 == 0 ? shared / 4 : shared / 4 + 1;
   return shared;
 }

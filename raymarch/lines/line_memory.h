@@ -28,7 +28,8 @@ struct KeptLevelSets {
 };
 
 struct KeptLines {
-  std::map<size_t, KeptCage> cages{};                                         ///< By the object's index.
+  std::shared_ptr<const Scene> smoothed{};  ///< With cages in the place of its meshes; null before it is asked for.
+  std::map<size_t, KeptCage> cages{};       ///< By the object's index.
   std::map<std::pair<size_t, int>, std::shared_ptr<const MeshTree>> trees{};  ///< By the first object's index and the refinement.
   KeptLevelSets level_sets{};
   /// By the body's place among those of the scene, which are the same in all views, and the level of its cells.

@@ -7,7 +7,6 @@
 #include <unordered_map>
 
 #include "raymarch/lines/mesh_layers.h"
-#include "raymarch/lines/smooth_mesh_lines.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -227,7 +226,6 @@ class MeshTracer {
 }  // namespace
 
 LineContribution mesh_lines(const LineTask& task, const std::vector<size_t>& objects, const ExecutionSettings&) {
-  if (task.settings.smooth_meshes) return smooth_mesh_lines(task, objects);
   LineContribution out;
   const auto layers = std::make_shared<const MeshLayers>(task, objects, kEdge_px, false);
   out.curves = MeshTracer(task, *layers).run();

@@ -9,6 +9,7 @@
 #include "raymarch/lines/graph_building.h"
 #include "raymarch/lines/line_memory.h"
 #include "raymarch/lines/missed_contours.h"
+#include "raymarch/lines/smoothed_scene.h"
 #include "raymarch/scene/threads.h"
 #include "raymarch/truth/proxy.h"
 #include "sdf/error.h"
@@ -51,6 +52,13 @@ Camera turned(Camera camera) {
   axes[0] = glm::normalize(axes[0] - glm::dot(axes[0], axes[2]) * axes[2]);
   axes[1] = glm::cross(axes[2], axes[0]);
   return camera;
+}
+
+/// What is drawn in the place of the scene's meshes.
+const Scene& kept_smooth(const Scene& scene, const LineSettings& settings, KeptLines& kept) {
+  std::shared_ptr<const Scene>& smoothed = kept.smoothed;
+  if (!smoothed) smoothed = std::make_shared<const Scene>(smoothed_scene(scene, settings));
+  return *smoothed;
 }
 
 LineTask task_of(const Scene& scene, const Camera& camera, const LineSettings& settings, KeptLines& kept) {
@@ -181,7 +189,7 @@ ViewGraph solve_lines(const Scene& scene, const Camera& camera, const LineSettin
   LineMemory& used = memory != nullptr ? *memory : own;
   if (used.kept == nullptr) used.kept = std::make_shared<KeptLines>();
   return ThreadArena(execution.threads).execute([&] {
-    LineTask task = task_of(scene, camera, settings, *used.kept);
+    LineTask task = task_of(settings.smooth_meshes ? kept_smooth(scene, settings, *used.kept) : scene, camera, settings, *used.kept);
     for (int search = 1;; ++search) {
       FoundLines found = find_lines(task, execution);
       const std::vector<glm::dvec3> missed =

@@ -338,7 +338,7 @@ LatticeSteps lattice_steps(const PlacedLimitSurface& placed, const std::vector<P
                            std::int64_t max_triangles) {
   const double longest_px = longest_side_px(sides, camera);
   LatticeSteps result{steps_for(placed, longest_px, cell_px)};
-  while (result.steps > 4 && triangles_of(placed, result.steps) > max_triangles) result.steps -= 2;
+  while (result.steps > 2 && triangles_of(placed, result.steps) > max_triangles) result.steps -= 2;
   result.cell_px = longest_px / result.steps;
   result.triangles = triangles_of(placed, result.steps);
   return result;

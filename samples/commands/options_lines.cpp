@@ -50,10 +50,8 @@ void add_line_definitions(CLI::App& app, LineSettings& lines) {
         if (lines.crease_angle_deg >= 180.0)
           throw InputError({"", "--crease-angle", text, "out of range", "above 0 and below 180 degrees"});
       });
-  add_switch(
-      app,
-      {"--smooth", "", "contours of meshes as of the smooth surface between their vertices' normals, not along edges of facets", kLines},
-      lines.smooth_meshes);
+  add_switch(app, {"--smooth", "", "of meshes: the lines of the smooth surface through their vertices, not along edges of facets", kLines},
+             lines.smooth_meshes);
   add_feature_limits(app, lines);
 }
 

@@ -277,7 +277,7 @@ TEST(JudgeCommand, KnowsTheLinesThatWereAskedFor) {
     call.insert(call.end(), more.begin(), more.end());
     return run_limn(call).exit_code;
   };
-  ASSERT_EQ(run_limn({"contours", mesh, "--smooth", "-o", own}).exit_code, 0);
+  ASSERT_EQ(run_limn({"contours", mesh, "--smooth", "--lines", "contour,rim", "-o", own}).exit_code, 0);
   EXPECT_EQ(judged_with(mesh, {"--smooth"}), 0);
   EXPECT_EQ(judged_with(mesh, {}), 1);
   ASSERT_EQ(run_limn({"contours", "tilted_torus", "--lines", "contour,rim", "--threshold", "0.5", "-o", own}).exit_code, 0);

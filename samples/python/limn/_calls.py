@@ -129,7 +129,7 @@ def contours(
     """Solves the lines of the true surface, as `limn contours` does: contours, boundaries, creases, intersections, visible and hidden.
 
     lines: classes (limn.names("lines")), or "all"; missing: those drawn by default. threshold: N.V of the class rim. crease_angle:
-    degrees. smooth: contours of meshes as of the smooth surface between their vertices' normals. tolerance_px: how far polylines may lie
+    degrees. smooth: meshes as the smooth surface through their vertices. tolerance_px: how far polylines may lie
     from the curves, 0.005. surface: the lines of a model ("mesh", "level_set" or "mesh_level_set") in place of the surface itself.
     """
     fields: _text.Fields = []

@@ -36,7 +36,7 @@ const Registry<LineClassDescriptor>& line_classes();
 /// As in line_classes(): "contour".
 const std::string& name_of(LineClass line_class);
 
-/// See LineSettings::smooth_meshes.
+/// About so many bytes each triangle of a mesh takes with LineSettings::smooth_meshes.
 inline constexpr std::int64_t kSmoothBytes = 5000;
 
 /// Which lines are solved, and how precisely.
@@ -45,7 +45,7 @@ struct LineSettings {
   double threshold = 0.4;            ///< Of the rim, above 0 and below 1; read where LineClass::rim is asked for.
   double crease_angle_deg = 40.0;    ///< Edges of meshes are creases where their faces' normals differ by more. In (0, 180).
   /// Of meshes that are no cages the lines are those of the smooth surface through their vertices, sharp along creases and open edges
-  /// (subdiv/interpolating_cage.h). Such a mesh takes about kSmoothBytes for each triangle: InputError beyond `max_bytes`.
+  /// (subdiv/interpolating_cage.h). InputError where their triangles take more than `max_bytes`, by kSmoothBytes.
   bool smooth_meshes = false;
   double suggestive_angle_deg = 20.0;  ///< Suggestive contours: least angle between normal and view. In [0, 90).
   /// Suggestive contours: least derivative of the radial curvature along the view's tangential part, times the object's radius squared.

@@ -100,6 +100,22 @@ std::vector<glm::dvec3> solve(const std::vector<MaskRow>& masks, const std::vect
   return x;
 }
 
+/// From the limit of each vertex of the cage to where it is to be.
+std::vector<glm::dvec3> off_limit(const Far::TopologyRefiner& refiner, const Mesh& cage, const std::vector<glm::dvec3>& through) {
+  Points points(through.size());
+  for (size_t v = 0; v < points.size(); ++v) points[v].p = cage.positions[v];
+  const LimitFrame limit = limit_frame(refiner, Scheme::loop, points);
+  std::vector<glm::dvec3> off(through.size());
+  for (size_t v = 0; v < off.size(); ++v) off[v] = through[v] - limit.positions[v].p;
+  return off;
+}
+
+double longest(const std::vector<glm::dvec3>& off) {
+  double most = 0.0;
+  for (const glm::dvec3& one : off) most = std::max(most, glm::length(one));
+  return most;
+}
+
 }  // namespace
 
 Mesh interpolating_cage(const Mesh& mesh, const InterpolationSettings& settings, const std::string& file) {
@@ -110,20 +126,16 @@ Mesh interpolating_cage(const Mesh& mesh, const InterpolationSettings& settings,
   const std::unique_ptr<Far::TopologyRefiner> refiner = make_refiner(cage, Scheme::loop, file);
   const std::vector<MaskRow> masks = limit_masks(*refiner);
   const double tolerance = settings.tolerance * bounds(cage).longest_side();
+  std::vector<glm::dvec3> off = off_limit(*refiner, cage, through);
   // The masks hold but for ends of creases, whose own limit says what is left.
-  for (int k = 0; k < kMostCorrections; ++k) {
-    Points points(through.size());
-    for (size_t v = 0; v < points.size(); ++v) points[v].p = cage.positions[v];
-    const LimitFrame limit = limit_frame(*refiner, Scheme::loop, points);
-    std::vector<glm::dvec3> off(through.size());
-    double most = 0.0;
-    for (size_t v = 0; v < off.size(); ++v) {
-      off[v] = through[v] - limit.positions[v].p;
-      most = std::max(most, glm::length(off[v]));
-    }
-    if (most <= tolerance) break;
+  for (int k = 0; k < kMostCorrections && longest(off) > tolerance; ++k) {
+    Mesh nearer = cage;
     const std::vector<glm::dvec3> moves = solve(masks, off, 0.1 * tolerance);
-    for (size_t v = 0; v < moves.size(); ++v) cage.positions[v] += moves[v];
+    for (size_t v = 0; v < moves.size(); ++v) nearer.positions[v] += moves[v];
+    std::vector<glm::dvec3> left = off_limit(*refiner, nearer, through);
+    if (!(longest(left) < longest(off))) break;
+    cage = std::move(nearer);
+    off = std::move(left);
   }
   return cage;
 }

@@ -253,7 +253,7 @@ void add_notes(const SharedLines& lines, double shortest_px, std::vector<std::st
   if (const size_t crumbs = lines.facets && !lines.settings.smooth_meshes && shortest_px < kCrumb_px ? crumbs_of(graph) : 0; crumbs > 0) {
     notes.push_back(
         fmt::format("contours: {} of the mesh's contours are shorter than {:.0f} px: folds of single facets; smooth = true draws the "
-                    "surface between its normals",
+                    "smooth surface through its vertices",
                     crumbs, kCrumb_px));
   }
   if (!graph.conflicts.empty()) {

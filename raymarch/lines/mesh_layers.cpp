@@ -104,22 +104,16 @@ double MeshLayers::reach_to_eye(const glm::dvec3& p) const {
                                                        : std::max(0.0, project(camera_, p).z) + 4.0 * extent_;
 }
 
-std::vector<LayerHit> MeshLayers::hits_to_eye(const CurveSample& sample) const {
-  const glm::dvec3 start = lifted(sample), direction = view_vector(camera_, start);
-  const double reach = reach_to_eye(start);
-  return tree_->hits_along(start, direction, reach);
-}
-
 LayersSeen MeshLayers::before(const CurveSample& sample) const {
+  const glm::dvec3 start = lifted(sample), direction = view_vector(camera_, start);
+  const double reach = reach_to_eye(start), nothing = std::numeric_limits<double>::infinity();
   if (!smooth_) {
-    const glm::dvec3 start = lifted(sample);
-    const double reach = reach_to_eye(start);
-    const std::vector<SegmentHit> hits = tree_->exact_hits().through(
-        {.from = start, .to = start + reach * view_vector(camera_, start), .edge = sample.edge, .faces = sample.faces});
-    return {static_cast<int>(hits.size()), hits.empty() ? std::numeric_limits<double>::infinity() : hits.front().share * reach};
+    const std::vector<SegmentHit> hits =
+        tree_->exact_hits().through({.from = start, .to = start + reach * direction, .edge = sample.edge, .faces = sample.faces});
+    return {static_cast<int>(hits.size()), hits.empty() ? nothing : hits.front().share * reach};
   }
-  const std::vector<LayerHit> hits = hits_to_eye(sample);
-  return {static_cast<int>(hits.size()), hits.empty() ? std::numeric_limits<double>::infinity() : hits.front().t};
+  const std::vector<LayerHit> hits = tree_->hits_along(start, direction, reach);
+  return {static_cast<int>(hits.size()), hits.empty() ? nothing : hits.front().t};
 }
 
 /// Whether rays a little before and after the place differ by the sheet that is met there: where a surface bends tightly its own triangles

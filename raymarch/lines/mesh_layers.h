@@ -26,8 +26,6 @@ class MeshLayers {
 
   /// What lies between the sample, lifted off by more than the mesh lies beside the surface, and the eye.
   LayersSeen before(const CurveSample& sample) const;
-  /// The hits on that way, in order from the sample.
-  std::vector<LayerHit> hits_to_eye(const CurveSample& sample) const;
   /// Marks the places where the curve goes through other parts than its own: CurveSample::pierced.
   void pierce(SurfaceCurve& curve) const;
   /// Where parts go through each other.

@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "raymarch/lines.h"
+#include "sdf/error.h"
 #include "sdf/segment.h"
+#include "tests/random_seed.h"
 
 namespace limn {
 namespace {
@@ -208,6 +211,38 @@ TEST(SmoothMeshLines, AContourEndsOnTheCreasesOfACan) {
     ellipse += 2.0 * kPi / 1000.0 * 0.7 * std::hypot(std::sin(t), sine * std::cos(t));
   }
   EXPECT_NEAR(length, scale * (ellipse + 2.0 * 2.0 * cosine), 0.005 * length);
+}
+
+TEST(SmoothMeshLines, AMeshThatTakesMoreMemoryThanAllowedIsRefused) {
+  Scene scene;
+  scene.objects.push_back({.name = "mesh", .source = MeshSource{ball(16)}});
+  const auto triangles = std::int64_t{2} * 32 * 15;
+  LineSettings settings;
+  settings.smooth_meshes = true;
+  settings.max_bytes = triangles * kSmoothBytes - 1;
+  EXPECT_THROW(solve_lines(scene, camera_at({1.7, 2.3, 3.1}, true), settings, {}), InputError);
+  settings.smooth_meshes = false;
+  EXPECT_NO_THROW(solve_lines(scene, camera_at({1.7, 2.3, 3.1}, true), settings, {}));
+}
+
+/// Many of their lines run beside nearer ones, where no ray starts clear of these.
+TEST(SmoothMeshLines, RoughMeshesAreDrawnFromAllSides) {
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> real(-1.0, 1.0);
+  std::int64_t hidden = 0, visible = 0;
+  for (int k = 0; k < 16; ++k) {
+    Mesh rough = ball(8);
+    for (glm::dvec3& p : rough.positions) p *= 1.0 + 0.35 * real(random);
+    const ViewGraph graph =
+        lines_of(rough, camera_at(4.0 * glm::normalize(glm::dvec3(real(random), real(random), real(random))), k % 2 == 0));
+    for (const LineEdge& edge : graph.edges) {
+      ASSERT_GE(edge.invisibility, 0);
+      ASSERT_LT(edge.invisibility, 40);
+      ++(edge.invisibility > 0 ? hidden : visible);
+    }
+  }
+  EXPECT_GT(visible, 400);
+  EXPECT_GT(hidden, 400);
 }
 
 }  // namespace

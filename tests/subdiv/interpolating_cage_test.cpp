@@ -82,7 +82,7 @@ TEST(InterpolatingCage, TheLimitSurfaceGoesThroughTheVertices) {
   }
 }
 
-TEST(InterpolatingCage, NearsTheSurfaceThatWasSampledWithTheThirdPowerOfTheEdges) {
+TEST(InterpolatingCage, NearsTheSurfaceThatWasSampledWithAHighPowerOfTheEdges) {
   std::mt19937 random(random_seed());
   std::vector<double> errors;
   for (const int n : {12, 24, 48}) {

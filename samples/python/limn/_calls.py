@@ -129,8 +129,8 @@ def contours(
     """Solves the lines of the true surface, as `limn contours` does: contours, boundaries, creases, intersections, visible and hidden.
 
     lines: classes (limn.names("lines")), or "all"; missing: those drawn by default. threshold: N.V of the class rim. crease_angle:
-    degrees. smooth: meshes as the smooth surface through their vertices. tolerance_px: how far polylines may lie
-    from the curves, 0.005. surface: the lines of a model ("mesh", "level_set" or "mesh_level_set") in place of the surface itself.
+    degrees. smooth: meshes as the smooth surface through their vertices. tolerance_px: how far polylines may lie from the curves,
+    0.005. surface: the lines of a model ("mesh", "level_set" or "mesh_level_set") in place of the surface itself.
     """
     fields: _text.Fields = []
     _settings.surface_fields(fields, surface, voxels, voxel_size, half_width, None, level, scheme, None, None, grids)

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "sdf/parallel.h"
 #include "subdiv/edge_topology.h"
+#include "subdiv/fair_mesh.h"
 #include "subdiv/opensubdiv_cage.h"
+#include "subdiv/sharp_edges.h"
 
 namespace limn {
 namespace {
@@ -48,17 +49,6 @@ Mesh triangles_of(const Mesh& mesh) {
     }
   }
   return result;
-}
-
-void mark_creases(double angle_deg, Mesh& mesh) {
-  const EdgeTopology topology = build_edge_topology(mesh);
-  const double cosine = std::cos(angle_deg * std::numbers::pi / 180.0);
-  for (const TopologyEdge& edge : topology.edges) {
-    if (edge.face_b < 0) continue;
-    const glm::dvec3 &a = topology.face_normals[static_cast<size_t>(edge.face_a)],
-                     &b = topology.face_normals[static_cast<size_t>(edge.face_b)];
-    if (edge.opposed || angle_exceeds(a, b, cosine)) mesh.creases.push_back({edge.vertex_a, edge.vertex_b, kInfiniteSharpness});
-  }
 }
 
 /// Weights of the cage's vertices, for OpenSubdiv's refiner to weigh and add.
@@ -118,11 +108,12 @@ double longest(const std::vector<glm::dvec3>& off) {
 
 }  // namespace
 
-Mesh interpolating_cage(const Mesh& mesh, const InterpolationSettings& settings, const std::string& file) {
+InterpolatedMesh interpolating_cage(const Mesh& mesh, const InterpolationSettings& settings, const std::string& file) {
   Mesh triangles = triangles_of(mesh);
   mark_creases(settings.crease_angle_deg, triangles);
   Mesh cage = clean_cage(triangles, Scheme::loop, file).mesh;
-  const std::vector<glm::dvec3> through = cage.positions;
+  const double moved = settings.fairing_edges > 0.0 ? fair(settings.fairing_edges, cage) : 0.0;
+  std::vector<glm::dvec3> through = cage.positions;
   const std::unique_ptr<Far::TopologyRefiner> refiner = make_refiner(cage, Scheme::loop, file);
   const std::vector<MaskRow> masks = limit_masks(*refiner);
   const double tolerance = settings.tolerance * bounds(cage).longest_side();
@@ -137,7 +128,7 @@ Mesh interpolating_cage(const Mesh& mesh, const InterpolationSettings& settings,
     cage = std::move(nearer);
     off = std::move(left);
   }
-  return cage;
+  return {std::move(cage), std::move(through), moved};
 }
 
 }  // namespace limn

@@ -75,7 +75,7 @@ Settings read_settings(const Parameters& parameters) {
 
 bool same(const LineSettings& a, const LineSettings& b) {
   return a.classes == b.classes && a.threshold == b.threshold && a.crease_angle_deg == b.crease_angle_deg &&
-         a.smooth_meshes == b.smooth_meshes && a.tolerance_px == b.tolerance_px;
+         a.smooth_meshes == b.smooth_meshes && a.fairing_edges == b.fairing_edges && a.tolerance_px == b.tolerance_px;
 }
 
 bool draws_facets(const Scene& scene) {

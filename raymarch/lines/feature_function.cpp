@@ -112,9 +112,7 @@ double FeatureFunction::kept(const FeaturePoint& point) const {
     least = std::min(least, most - std::fabs(glm::dot(point.normal, view_vector(camera_, point.p))));
     if (least < 0.0) return least;
     const double found = suggestion(point);
-    // A level set's spline swings beside edges that its voxels cannot show.
-    if (surface_.step > 0.0)
-      least = std::min(least, kResolved - found / (surface_.radius * surface_.radius) * surface_.step / size_of(point));
+    if (surface_.swings) least = std::min(least, kResolved - found / (surface_.radius * surface_.radius) * surface_.step / size_of(point));
     return std::min(least, found - kWeak * settings_.suggestive_slope);
   }
   const Extreme extreme = extreme_of(point, line_class_);

@@ -96,11 +96,24 @@ struct Tracer {
     return sample;
   }
 
+  bool facet_faces_eye(const FeatureStep& step) const {
+    const auto& nodes = surface.triangles[step.from.place.triangle];
+    const glm::dvec3 &a = surface.nodes[nodes[0]].p, &b = surface.nodes[nodes[1]].p, &c = surface.nodes[nodes[2]].p;
+    return glm::dot(glm::cross(b - a, c - a), view_vector(task.camera, a)) > 0.0;
+  }
+
   /// Past its own contour a line has a layer more in front: the curve gets a joint there.
   SurfaceCurve curve_of(const std::vector<FeatureStep>& run, bool closed) const {
     SurfaceCurve curve{closed, false, {}};
-    for (const FeatureStep& step : run) {
+    for (size_t i = 0; i < run.size(); ++i) {
+      const FeatureStep& step = run[i];
       curve.samples.push_back(sample_of(step.from));
+      if (surface.facets) {
+        // On an edge between a facet that faces the eye and one that does not.
+        const bool first = i == 0 && !closed;
+        curve.samples.back().joint = !first && facet_faces_eye(run[i > 0 ? i - 1 : run.size() - 1]) != facet_faces_eye(step);
+        continue;
+      }
       if (faces_eye(step.from) == faces_eye(step.to)) continue;
       curve.samples.push_back(sample_of(turn_between(step)));
       curve.samples.back().joint = true;
@@ -201,24 +214,22 @@ void add_lines(const LineTask& task, const FeatureSurface& surface, LineClass li
 
 LineContribution feature_lines(const LineTask& task, const ExecutionSettings& execution) {
   LineContribution out;
-  std::vector<size_t> fields, cages, level_sets;
+  std::vector<size_t> fields, cages, meshes, level_sets;
   for (size_t i = 0; i < task.scene.objects.size(); ++i) {
     const SceneObject& object = task.scene.objects[i];
     if (std::holds_alternative<Field>(object.source)) {
       fields.push_back(i);
     } else if (std::holds_alternative<LevelSetSource>(object.source)) {
       level_sets.push_back(i);
-    } else if (is_cage(object)) {
-      cages.push_back(i);
     } else {
-      out.notes.push_back(fmt::format("{}: a mesh of facets has no suggestive contours, ridges and valleys", object.name));
+      (is_cage(object) ? cages : meshes).push_back(i);
     }
   }
   std::vector<FeatureSurface> surfaces = field_features(task, fields, out.notes);
-  for (auto* more : {&cage_features, &level_set_features}) {
-    std::vector<FeatureSurface> found = (*more)(task, more == &cage_features ? cages : level_sets, out.notes);
-    std::move(found.begin(), found.end(), std::back_inserter(surfaces));
-  }
+  const auto add = [&](std::vector<FeatureSurface> found) { std::move(found.begin(), found.end(), std::back_inserter(surfaces)); };
+  add(cage_features(task, cages, out.notes));
+  add(mesh_features(task, meshes, out.notes));
+  add(level_set_features(task, level_sets, out.notes));
   for (const FeatureSurface& surface : surfaces) {
     for (const LineClass line_class : {LineClass::suggestive, LineClass::ridge, LineClass::valley}) {
       if (task.wants(line_class)) add_lines(task, surface, line_class, execution, out);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "raymarch/lines/surface_curves.h"
+#include "subdiv/vertex_curvature.h"
 
 namespace limn {
 
@@ -32,7 +33,9 @@ struct FeatureSurface {
   std::vector<FeaturePoint> nodes{};
   std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< Of nodes; neighbours share them where the surface is smooth.
   double radius = 1.0;                                    ///< Of the whole object: what sizes of curvature are measured by.
-  double step = 0.0;  ///< Derivatives of curvature mean nothing over less than this, world units; 0: none.
+  double step = 0.0;    ///< Derivatives of curvature mean nothing over less than this, world units; 0: none.
+  bool swings = false;  ///< Over a step, beside edges that are finer: a spline through voxels does.
+  bool facets = false;  ///< The triangles are what is drawn, and hide what is behind them.
   std::function<FeaturePoint(const FeaturePlace&)> at{};
   /// How the normal curvature along a unit tangent changes on the geodesic that goes that way, 1 / world unit squared.
   std::function<double(const FeaturePoint&, const glm::dvec3& tangent)> change{};
@@ -46,7 +49,12 @@ struct FeatureSurface {
 /// Of all objects of a scene that are smooth. `notes` gets what is left out or coarser than it should be.
 std::vector<FeatureSurface> field_features(const LineTask& task, const std::vector<size_t>& objects, std::vector<std::string>& notes);
 std::vector<FeatureSurface> cage_features(const LineTask& task, const std::vector<size_t>& objects, std::vector<std::string>& notes);
+/// Of meshes that are drawn as they are.
+std::vector<FeatureSurface> mesh_features(const LineTask& task, const std::vector<size_t>& objects, std::vector<std::string>& notes);
 std::vector<FeatureSurface> level_set_features(const LineTask& task, const std::vector<size_t>& objects, std::vector<std::string>& notes);
+
+/// The derivative of the normal curvature along a unit tangent.
+double change_along(const VertexCurvature& curvature, const glm::dvec3& tangent);
 
 /// The tensor's tangential part: of a field's Hessian over its gradient's length, the shape operator.
 glm::dmat3 tangential(const glm::dmat3& tensor, const glm::dvec3& normal);

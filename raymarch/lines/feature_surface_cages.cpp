@@ -7,6 +7,7 @@
 
 #include "raymarch/lines/feature_mesh.h"
 #include "raymarch/lines/feature_surface.h"
+#include "raymarch/lines/line_memory.h"
 #include "raymarch/lines/placed_cage.h"
 #include "raymarch/truth/limit_grid.h"
 #include "sdf/parallel.h"
@@ -32,8 +33,9 @@ struct PatchFrame {
 
 class CagePatches {
  public:
-  CagePatches(PlacedCage cage, std::vector<CageTriangle> triangles)
-      : cage_(std::move(cage)), placed_(place(*cage_.surface, cage_.solver_from_cage)), triangles_(std::move(triangles)) {}
+  /// With `of_mesh`, whose triangles are the cage's faces, curvature is that mesh's and not the patches' own.
+  CagePatches(PlacedCage cage, std::shared_ptr<const SmoothCurvature> of_mesh)
+      : cage_(std::move(cage)), placed_(place(*cage_.surface, cage_.solver_from_cage)), of_mesh_(std::move(of_mesh)) {}
   CagePatches(const CagePatches&) = delete;
   CagePatches& operator=(const CagePatches&) = delete;
 
@@ -52,6 +54,11 @@ class CagePatches {
     }
     if (!frame.valid) return result;
     result.normal = frame.normal;
+    if (of_mesh_) {
+      result.shape = tangential(of_mesh(result).shape, result.normal);
+      result.valid = true;
+      return result;
+    }
     const auto bend = [&](const glm::dvec3& second) { return -glm::dot(frame.normal, second); };
     const glm::dvec3 &u = frame.dual_u, &v = frame.dual_v;
     result.shape = bend(frame.point.duu) * glm::outerProduct(u, u) + bend(frame.point.dvv) * glm::outerProduct(v, v) +
@@ -70,6 +77,7 @@ class CagePatches {
 
   /// Along the straight line of the patch's domain: II(c', c') = -n.c'' derived once more, less what is due to the line's own turning.
   double change(const FeaturePoint& point, const glm::dvec3& tangent) const {
+    if (of_mesh_) return change_along(of_mesh(point), tangent);
     const PatchFrame frame = frame_at(point.sheet, point.uv);
     if (!frame.valid) return 0.0;
     const double a = glm::dot(tangent, frame.dual_u), b = glm::dot(tangent, frame.dual_v);
@@ -86,6 +94,10 @@ class CagePatches {
   }
 
  private:
+  VertexCurvature of_mesh(const FeaturePoint& point) const {
+    return curvature_between(*of_mesh_, static_cast<size_t>(placed_.patches[point.sheet].face),
+                             {1.0 - point.uv.x - point.uv.y, point.uv.x, point.uv.y});
+  }
   glm::dvec2 within(std::uint32_t patch, const glm::dvec2& uv) const {
     const glm::dvec2 p = glm::clamp(uv, glm::dvec2(0.0), glm::dvec2(1.0));
     const double excess = p.x + p.y - 1.0;
@@ -131,21 +143,44 @@ class CagePatches {
 
   PlacedCage cage_;
   PlacedLimitSurface placed_;
-  std::vector<CageTriangle> triangles_;
+  std::vector<CageTriangle> triangles_{};
+  std::shared_ptr<const SmoothCurvature> of_mesh_;
 };
+
+/// Of an object that stands for a mesh; nothing of others. The limit surface of a mesh's cage goes through its vertices, and between them
+/// its curvature is the scheme's more than the mesh's: it ripples around extraordinary vertices.
+std::shared_ptr<const SmoothCurvature> curvature_of_mesh(const LineTask& task, size_t object) {
+  const std::vector<glm::dvec3>* const through = task.kept.smoothed ? &task.kept.smoothed->through[object] : nullptr;
+  if (through == nullptr || through->empty()) return nullptr;
+  std::shared_ptr<const SmoothCurvature>& kept = task.kept.curvatures[object];
+  if (kept) return kept;
+  const Affine& world_from_object = task.scene.objects[object].world_from_object;
+  std::vector<glm::dvec3> positions;
+  for (const glm::dvec3& p : *through) positions.push_back(world_from_object.point(p) - task.origin);
+  const Mesh& cage = std::get<MeshSource>(task.scene.objects[object].source).mesh;
+  SmoothCurvature made = smooth_curvature(cage, positions);
+  // What is mirrored has its faces the other way round.
+  if (glm::determinant(world_from_object.linear) < 0.0) {
+    for (VertexCurvature& vertex : made.vertices)
+      vertex = {-vertex.normal, -vertex.shape, {-vertex.change[0], -vertex.change[1], -vertex.change[2]}};
+  }
+  return kept = std::make_shared<const SmoothCurvature>(std::move(made));
+}
 
 }  // namespace
 
 std::vector<FeatureSurface> cage_features(const LineTask& task, const std::vector<size_t>& objects, std::vector<std::string>& notes) {
   std::vector<FeatureSurface> surfaces;
   for (const size_t object : objects) {
-    const auto patches = std::make_shared<CagePatches>(place_cage(task, object), std::vector<CageTriangle>{});
+    const std::shared_ptr<const SmoothCurvature> of_mesh = curvature_of_mesh(task, object);
+    const auto patches = std::make_shared<CagePatches>(place_cage(task, object), of_mesh);
     double cell_px = 0.0;
     const LimitGrid grid = sample_grid(patches->placed(), task.camera, kFeatureEdge_px, kMostFeatureTriangles, cell_px);
     FeatureSurface surface;
     Box box;
     for (const glm::dvec3& p : grid.positions) box = include(box, p);
     surface.radius = box.radius();
+    if (of_mesh) surface.step = of_mesh->mean_edge;
     // A node is a side of the grid: what shares its place and its normal.
     std::vector<std::pair<std::uint32_t, glm::dvec2>> place_of(grid.normals.size(), {kNone, {}});
     std::vector<CageTriangle> triangles;

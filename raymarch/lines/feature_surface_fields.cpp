@@ -268,6 +268,7 @@ std::vector<FeatureSurface> level_set_features(const LineTask& task, const std::
     FeatureSurface surface = surface_of(task, sheets, mesh_of(mesh), cut, longest_px);
     note_coarse(task.scene.objects[object].name, longest_px, notes);
     surface.step = placed.voxel;
+    surface.swings = true;
     surface.object = [object](const FeaturePoint&) { return static_cast<int>(object) + 1; };
     surfaces.push_back(std::move(surface));
   }

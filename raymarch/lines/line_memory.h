@@ -7,8 +7,10 @@
 #include "raymarch/lines/form_trimming.h"
 #include "raymarch/lines/mesh_tree.h"
 #include "raymarch/lines/placed_level_set.h"
+#include "raymarch/lines/smoothed_scene.h"
 #include "raymarch/truth/lattice_memory.h"
 #include "raymarch/truth/limit_grid.h"
+#include "subdiv/vertex_curvature.h"
 
 namespace limn {
 
@@ -28,8 +30,9 @@ struct KeptLevelSets {
 };
 
 struct KeptLines {
-  std::shared_ptr<const Scene> smoothed{};  ///< With cages in the place of its meshes; null before it is asked for.
-  std::map<size_t, KeptCage> cages{};       ///< By the object's index.
+  std::shared_ptr<const SmoothedScene> smoothed{};                            ///< Null before it is asked for.
+  std::map<size_t, KeptCage> cages{};                                         ///< By the object's index.
+  std::map<size_t, std::shared_ptr<const SmoothCurvature>> curvatures{};      ///< Of meshes, by the object's index.
   std::map<std::pair<size_t, int>, std::shared_ptr<const MeshTree>> trees{};  ///< By the first object's index and the refinement.
   KeptLevelSets level_sets{};
   /// By the body's place among those of the scene, which are the same in all views, and the level of its cells.

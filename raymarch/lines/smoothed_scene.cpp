@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "raymarch/truth/proxy.h"
 #include "sdf/memory_text.h"
 #include "sdf/parallel.h"
@@ -37,16 +39,24 @@ void check_size(const Scene& scene, std::int64_t max_bytes) {
 
 }  // namespace
 
-Scene smoothed_scene(const Scene& scene, const LineSettings& settings) {
+SmoothedScene smoothed_scene(const Scene& scene, const LineSettings& settings) {
   check_size(scene, settings.max_bytes);
-  Scene smoothed = scene;
-  parallel_each(smoothed.objects.size(), [&](size_t i) {
-    SceneObject& object = smoothed.objects[i];
+  SmoothedScene smoothed{scene};
+  smoothed.through.resize(scene.objects.size());
+  std::vector<double> moved(scene.objects.size(), 0.0);
+  parallel_each(scene.objects.size(), [&](size_t i) {
+    SceneObject& object = smoothed.scene.objects[i];
     if (mesh_to_smooth(object) == nullptr) return;
     auto& mesh = std::get<MeshSource>(object.source);
-    mesh.mesh = interpolating_cage(mesh.mesh, {.crease_angle_deg = settings.crease_angle_deg}, mesh.file);
+    InterpolatedMesh made =
+        interpolating_cage(mesh.mesh, {.crease_angle_deg = settings.crease_angle_deg, .fairing_edges = settings.fairing_edges}, mesh.file);
+    mesh.mesh = std::move(made.cage);
+    smoothed.through[i] = std::move(made.through);
     mesh.scheme = Scheme::loop;
+    const glm::dmat3& axes = object.world_from_object.linear;
+    moved[i] = made.moved * std::max({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
   });
+  for (const double one : moved) smoothed.moved = std::max(smoothed.moved, one);
   return smoothed;
 }
 

@@ -34,6 +34,8 @@ void check(const LineSettings& settings) {
     fail("suggestive_angle", settings.suggestive_angle_deg, "not an angle between normal and view", "from 0 to below 90 degrees");
   if (!(settings.suggestive_slope >= 0.0 && std::isfinite(settings.suggestive_slope)))
     fail("suggestive_slope", settings.suggestive_slope, "not a derivative of curvature", "a number from 0 up");
+  if (!(settings.fairing_edges >= 0.0 && settings.fairing_edges <= 1000.0))
+    fail("fair", settings.fairing_edges, "not a number of edges", "a number from 0 to 1000");
   if (!(settings.ridge_strength > 0.0 && std::isfinite(settings.ridge_strength)))
     fail("ridge_strength", settings.ridge_strength, "not a strength", "a number above 0");
 }
@@ -56,9 +58,17 @@ Camera turned(Camera camera) {
 
 /// What is drawn in the place of the scene's meshes.
 const Scene& kept_smooth(const Scene& scene, const LineSettings& settings, KeptLines& kept) {
-  std::shared_ptr<const Scene>& smoothed = kept.smoothed;
-  if (!smoothed) smoothed = std::make_shared<const Scene>(smoothed_scene(scene, settings));
-  return *smoothed;
+  std::shared_ptr<const SmoothedScene>& smoothed = kept.smoothed;
+  if (!smoothed) smoothed = std::make_shared<const SmoothedScene>(smoothed_scene(scene, settings));
+  return smoothed->scene;
+}
+
+void note_fairing(const LineTask& task, ViewGraph& graph) {
+  const double moved = task.kept.smoothed ? task.kept.smoothed->moved : 0.0;
+  if (!(moved > 0.0)) return;
+  const double depth = std::max(project(task.camera, glm::dvec3(0.0)).z, 1e-9 * task.extent);
+  graph.notes.push_back(fmt::format("fairing moved vertices by up to {:.3g}, {:.2g} px in the middle of the scene", moved,
+                                    moved * pixels_per_unit_at(task.camera, depth)));
 }
 
 LineTask task_of(const Scene& scene, const Camera& camera, const LineSettings& settings, KeptLines& kept) {
@@ -149,6 +159,7 @@ FoundLines find_lines(const LineTask& task, const ExecutionSettings& execution) 
 ViewGraph graph_of(FoundLines found, const LineTask& task, const ExecutionSettings& execution) {
   ViewGraph graph;
   graph.from = found.from;
+  note_fairing(task, graph);
   double unrefined_px = 0.0;
   for (LineContribution& one : found.contributions) {
     graph.notes.insert(graph.notes.end(), one.notes.begin(), one.notes.end());

@@ -239,6 +239,9 @@ void add_lines(Readers& readers) {
   readers["smooth"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
     settings.lines.smooth_meshes = flag_of_text(field, text);
   };
+  readers["fair"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
+    settings.lines.fairing_edges = parse_number_above(field, text, 0.0, true, "a number from 0 to 1000");
+  };
   readers["suggestive_angle"] = [](const std::string& field, const std::string& text, CallSettings& settings) {
     settings.lines.suggestive_angle_deg = number_below(field, text, 0.0, false, 90.0, "from 0 to below 90 degrees");
   };

@@ -72,7 +72,7 @@ TEST(InterpolatingCage, TheLimitSurfaceGoesThroughTheVertices) {
     InterpolationSettings settings;
     settings.crease_angle_deg = k == 1 ? 30.0 : 179.0;
     if (k == 2) mesh.holes = {3, 4, 20};
-    const Mesh cage = interpolating_cage(mesh, settings);
+    const Mesh cage = interpolating_cage(mesh, settings).cage;
     EXPECT_EQ(cage.creases.empty(), k != 1);
     std::map<double, int> moved;
     for (size_t v = 0; v < cage.vertex_count(); ++v) ++moved[glm::distance(cage.positions[v], mesh.positions[v])];
@@ -86,7 +86,7 @@ TEST(InterpolatingCage, NearsTheSurfaceThatWasSampledWithAHighPowerOfTheEdges) {
   std::mt19937 random(random_seed());
   std::vector<double> errors;
   for (const int n : {12, 24, 48}) {
-    const Mesh cage = interpolating_cage(torus(n, 0.0, random));
+    const Mesh cage = interpolating_cage(torus(n, 0.0, random)).cage;
     RefineSettings settings;
     settings.scheme = Scheme::loop;
     settings.level = 2;
@@ -120,7 +120,7 @@ Mesh box_of_parted_faces() {
 }
 
 TEST(InterpolatingCage, ABoxStaysABox) {
-  const Mesh cage = interpolating_cage(box_of_parted_faces());
+  const Mesh cage = interpolating_cage(box_of_parted_faces()).cage;
   EXPECT_EQ(cage.vertex_count(), 8u);
   EXPECT_EQ(cage.face_count(), 12u);
   EXPECT_EQ(cage.creases.size(), 12u);
@@ -137,7 +137,7 @@ TEST(InterpolatingCage, ABoxStaysABox) {
   }
   EXPECT_LT(worst, 1e-9);
   // Rounded, it bulges beyond its faces.
-  const Mesh round = interpolating_cage(box_of_parted_faces(), {.crease_angle_deg = 170.0});
+  const Mesh round = interpolating_cage(box_of_parted_faces(), {.crease_angle_deg = 170.0}).cage;
   EXPECT_TRUE(round.creases.empty());
   EXPECT_GT(bounds(round).upper.x, 1.3);
 }
@@ -146,7 +146,7 @@ TEST(InterpolatingCage, MaterialsStayWithTheirFaces) {
   Mesh mesh = box_of_parted_faces();
   mesh.material_names = {"red", "green"};
   mesh.face_materials = {0, 1, 1, 0, 1, 0};
-  const Mesh cage = interpolating_cage(mesh);
+  const Mesh cage = interpolating_cage(mesh).cage;
   ASSERT_EQ(cage.face_materials.size(), 12u);
   for (size_t f = 0; f < 12; ++f) {
     // The two faces across x come first.

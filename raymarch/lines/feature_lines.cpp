@@ -15,9 +15,10 @@ namespace {
 
 constexpr int kRefinements = 7;
 constexpr int kCuts = 24;
-constexpr double kLeastTurn = 0.3;   // of a ridge: its curvature integrated along it (Ohtake et al. 2004), radians
-constexpr double kLeastSteps = 4.0;  // of a level set's lines: its spline swings beside edges that its voxels cannot show
-constexpr double kCut_px = 1e-4;     // how precisely a line's end is found
+constexpr double kLeastTurn = 0.3;    // of a ridge: its curvature integrated along it (Ohtake et al. 2004), radians
+constexpr double kLeastSteps = 2.0;   // of a line: shorter ones are noise
+constexpr double kLeastSwings = 4.0;  // the same of a level set's, whose spline swings beside edges that its voxels cannot show
+constexpr double kCut_px = 1e-4;      // how precisely a line's end is found
 
 struct Tracer {
   const LineTask& task;
@@ -80,7 +81,7 @@ struct Tracer {
       length += apart;
     }
     const bool turns_enough = function.line_class() == LineClass::suggestive || turn > kLeastTurn;
-    return turns_enough && length > kLeastSteps * surface.step;
+    return turns_enough && length > (surface.swings ? kLeastSwings : kLeastSteps) * surface.step;
   }
 
   CurveSample sample_of(const FeatureStation& station) const {

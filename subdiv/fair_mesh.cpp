@@ -4,27 +4,32 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <complex>
 #include <numbers>
 #include <utility>
 
+#include "sdf/parallel.h"
 #include "subdiv/sharp_edges.h"
 
 namespace limn {
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using Complex = std::complex<double>;
+using Matrix = Eigen::SparseMatrix<Complex, Eigen::RowMajor>;
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
 // Cotangents of slivers would tie their vertices together, or push them apart. That of an equilateral triangle is 0.58.
 constexpr double kLeastCotangent = 0.02, kMostCotangent = 10.0;
-constexpr double kTolerance = 1e-9;  // of what the solver starts from
+constexpr double kTolerance = 1e-8;  // of the right-hand side
 
 /// Vertices tied by springs; each stands for so much of the surface, or of a crease.
 struct Springs {
-  std::map<std::pair<std::int32_t, std::int32_t>, double> weights{};  ///< Lower index first.
-  std::vector<double> shares{};                                       ///< Of each vertex; 0 where it is none of them.
-  void add(std::int32_t a, std::int32_t b, double weight) { weights[std::minmax(a, b)] += weight; }
+  struct Spring {
+    std::int32_t a = 0, b = 0;
+    double weight = 0.0;
+  };
+  std::vector<Spring> all{};     ///< Two vertices may have several.
+  std::vector<double> shares{};  ///< Of each vertex; 0 where it is none of them.
 };
 
 Springs springs_of_surface(const Mesh& mesh) {
@@ -38,7 +43,7 @@ Springs springs_of_surface(const Mesh& mesh) {
                        b = mesh.positions[static_cast<size_t>(last)] - p;
       const double twice_area = glm::length(glm::cross(a, b));
       const double cotangent = twice_area > 0.0 ? glm::dot(a, b) / twice_area : kMostCotangent;
-      springs.add(next, last, 0.5 * std::clamp(cotangent, kLeastCotangent, kMostCotangent));
+      springs.all.push_back({next, last, 0.5 * std::clamp(cotangent, kLeastCotangent, kMostCotangent)});
       springs.shares[static_cast<size_t>(at)] += twice_area / 6.0;
     }
   }
@@ -51,7 +56,7 @@ Springs springs_along(const std::vector<std::pair<std::int32_t, std::int32_t>>& 
   for (const auto& [a, b] : edges) {
     const double length = glm::distance(positions[static_cast<size_t>(a)], positions[static_cast<size_t>(b)]);
     if (!(length > 0.0)) continue;
-    springs.add(a, b, 1.0 / length);
+    springs.all.push_back({a, b, 1.0 / length});
     for (const std::int32_t v : {a, b}) springs.shares[static_cast<size_t>(v)] += 0.5 * length;
   }
   return springs;
@@ -75,9 +80,9 @@ void settle(const Springs& springs, const std::vector<char>& moves, double t, st
     start.row(i) << p.x, p.y, p.z;
     shares[i] = springs.shares[vertices[static_cast<size_t>(i)]];
   }
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& [edge, weight] : springs.weights) {
-    for (const auto& [from, to] : {edge, std::pair(edge.second, edge.first)}) {
+  std::vector<Eigen::Triplet<Complex>> entries;
+  for (const auto& [a, b, weight] : springs.all) {
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
       const Eigen::Index row = place[static_cast<size_t>(from)], column = place[static_cast<size_t>(to)];
       if (row < 0) continue;
       ties[row] += weight;
@@ -85,21 +90,24 @@ void settle(const Springs& springs, const std::vector<char>& moves, double t, st
       if (column < 0) {
         held.row(row) += weight * Eigen::RowVector3d(p.x, p.y, p.z);
       } else {
-        entries.emplace_back(row, column, -weight);
+        entries.emplace_back(row, column, Complex(0.0, -t * weight));
       }
     }
   }
-  for (Eigen::Index i = 0; i < count; ++i) entries.emplace_back(i, i, ties[i]);
-  Matrix stiffness(count, count);
-  stiffness.setFromTriplets(entries.begin(), entries.end());
-  const Matrix scaled = t * t * shares.cwiseInverse().asDiagonal() * stiffness, mass(shares.asDiagonal());
-  const Matrix system = mass + Matrix(stiffness * scaled);
-  const Columns wanted = shares.asDiagonal() * start + t * t * (stiffness * (shares.cwiseInverse().asDiagonal() * held));
-  Eigen::ConjugateGradient<Matrix, Eigen::Lower | Eigen::Upper> solver;
-  solver.setTolerance(kTolerance);
-  solver.compute(system);
-  const Columns found = solver.solveWithGuess(wanted, start);
-  for (Eigen::Index i = 0; i < count; ++i) positions[vertices[static_cast<size_t>(i)]] = {found(i, 0), found(i, 1), found(i, 2)};
+  for (Eigen::Index i = 0; i < count; ++i) entries.emplace_back(i, i, Complex(shares[i], t * ties[i]));
+  Matrix system(count, count);
+  system.setFromTriplets(entries.begin(), entries.end());
+  // 1 / (1 + s^2) is the real part of 1 / (1 + i s): of the Laplacian itself, whose matrix is far better conditioned than its square's.
+  parallel_each(Eigen::Index{3}, [&](Eigen::Index column) {
+    Eigen::BiCGSTAB<Matrix> solver(system);
+    solver.setTolerance(kTolerance);
+    Eigen::VectorXcd wanted(count);
+    wanted.real() = shares.cwiseProduct(start.col(column));
+    wanted.imag() = t * held.col(column);
+    const Eigen::VectorXcd guess = start.col(column).cast<Complex>();
+    start.col(column) = Eigen::VectorXcd(solver.solveWithGuess(wanted, guess)).real();
+  });
+  for (Eigen::Index i = 0; i < count; ++i) positions[vertices[static_cast<size_t>(i)]] = {start(i, 0), start(i, 1), start(i, 2)};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <span>
 #include <tuple>
 
+#include "sdf/parallel.h"
 #include "subdiv/edge_topology.h"
 #include "subdiv/polygon.h"
 
@@ -26,7 +27,7 @@ std::vector<Side> sides_of(const Mesh& mesh) {
     const std::uint32_t next = c % 3 == 2 ? c - 2 : c + 1;
     sides[c] = {std::minmax(mesh.corner_vertices[c], mesh.corner_vertices[next]), c, next};
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return std::tie(a.edge, a.at) < std::tie(b.edge, b.at); });
+  parallel_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return std::tie(a.edge, a.at) < std::tie(b.edge, b.at); });
   return sides;
 }
 

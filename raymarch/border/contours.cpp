@@ -70,6 +70,7 @@ Settings read_settings(const Parameters& parameters) {
   }
   settings.lines.crease_angle_deg = parameters.number("crease_angle");
   settings.lines.smooth_meshes = parameters.flag("smooth");
+  settings.lines.fairing_edges = parameters.number("fair");
   return settings;
 }
 
@@ -313,6 +314,9 @@ BorderMethod contours_method() {
        a_flag("intersection", true).help("where objects pass through each other"),
        a_flag("material", true).help("where materials of one object meet"),
        a_flag("smooth", false).help("of meshes: the lines of the smooth surface through their vertices, not edges of facets"),
+       a_number("fair", 0.0)
+           .in(0.0, 1000.0)
+           .help("with smooth: waves as short as so many mean edges are smoothed away, such as a scan's noise; 0: none"),
        a_number("shortest", 0.0).in(0.0, 1000.0).unit("px").help("chains that are shorter are left out"),
        a_flag("hidden", false).help("hidden lines too, dashed"),
        a_number("hidden_width", 1.0).in(0.0, 64.0).unit("px").help("of hidden lines"),

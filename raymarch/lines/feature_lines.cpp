@@ -109,7 +109,8 @@ struct Tracer {
     for (size_t i = 0; i < run.size(); ++i) {
       const FeatureStep& step = run[i];
       curve.samples.push_back(sample_of(step.from));
-      if (surface.facets) {
+      if (!surface.faces.empty()) {
+        curve.samples.back().faces.fill(surface.faces[step.from.place.triangle]);
         // On an edge between a facet that faces the eye and one that does not.
         const bool first = i == 0 && !closed;
         curve.samples.back().joint = !first && facet_faces_eye(run[i > 0 ? i - 1 : run.size() - 1]) != facet_faces_eye(step);
@@ -204,6 +205,8 @@ void add_lines(const LineTask& task, const FeatureSurface& surface, LineClass li
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
     found[i] = kept_curves(tracer, chains[i], worst_px[i]);
     drop_repeated_points(found[i]);
+    if (!surface.complete) return;
+    for (SurfaceCurve& curve : found[i]) surface.complete(curve);
   });
   for (size_t i = 0; i < chains.size(); ++i) {
     if (!found[i].empty()) out.unrefined_px = std::max(out.unrefined_px, worst_px[i]);

@@ -32,10 +32,11 @@ struct FeaturePlace {
 struct FeatureSurface {
   std::vector<FeaturePoint> nodes{};
   std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< Of nodes; neighbours share them where the surface is smooth.
-  double radius = 1.0;                                    ///< Of the whole object: what sizes of curvature are measured by.
+  /// Where the triangles themselves are what is drawn: of each its number among those that rays are cast against.
+  std::vector<std::uint32_t> faces{};
+  double radius = 1.0;  ///< Of the whole object: what sizes of curvature are measured by.
   double step = 0.0;    ///< Derivatives of curvature mean nothing over less than this, world units; 0: none.
   bool swings = false;  ///< Over a step, beside edges that are finer: a spline through voxels does.
-  bool facets = false;  ///< The triangles are what is drawn, and hide what is behind them.
   std::function<FeaturePoint(const FeaturePlace&)> at{};
   /// How the normal curvature along a unit tangent changes on the geodesic that goes that way, 1 / world unit squared.
   std::function<double(const FeaturePoint&, const glm::dvec3& tangent)> change{};
@@ -44,6 +45,7 @@ struct FeatureSurface {
   /// Below 0 where another sheet is the surface; empty: nowhere.
   std::function<double(const FeaturePoint&)> margin{};
   std::function<int(const FeaturePoint&)> object{};  ///< From 1.
+  std::function<void(SurfaceCurve&)> complete{};     ///< Adds what goes through a curve; empty: nothing does.
 };
 
 /// Of all objects of a scene that are smooth. `notes` gets what is left out or coarser than it should be.

@@ -123,13 +123,14 @@ class Facets {
   std::vector<std::array<std::uint32_t, 3>> beyond_;  ///< The triangle beyond each side, from a corner to the next.
 };
 
-/// One object's triangles, in solver space.
-Mesh mesh_of(const MeshTree& tree, int object) {
+/// One object's triangles, in solver space; `faces` are their numbers in the tree.
+Mesh mesh_of(const MeshTree& tree, int object, std::vector<std::uint32_t>& faces) {
   Mesh mesh;
   std::vector<std::int32_t> number(tree.positions().size(), -1);
-  for (const LayerTriangle& triangle : tree.triangles()) {
-    const auto& c = triangle.corners;
-    if (triangle.object != object || c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
+  for (std::uint32_t t = 0; t < tree.triangles().size(); ++t) {
+    const auto& c = tree.triangles()[t].corners;
+    if (tree.triangles()[t].object != object || c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
+    faces.push_back(t);
     mesh.face_sizes.push_back(3);
     for (const std::uint32_t vertex : c) {
       if (number[vertex] < 0) {
@@ -159,11 +160,11 @@ double change_along(const VertexCurvature& curvature, const glm::dvec3& tangent)
 std::vector<FeatureSurface> mesh_features(const LineTask& task, const std::vector<size_t>& objects, std::vector<std::string>&) {
   std::vector<FeatureSurface> surfaces;
   if (objects.empty()) return surfaces;
-  const MeshLayers layers(task, objects, kEdge_px, false);
+  const auto layers = std::make_shared<const MeshLayers>(task, objects, kEdge_px, false);
   for (const size_t object : objects) {
-    Mesh mesh = mesh_of(layers.tree(), static_cast<int>(object) + 1);
-    if (mesh.face_sizes.empty()) continue;
     FeatureSurface surface;
+    const Mesh mesh = mesh_of(layers->tree(), static_cast<int>(object) + 1, surface.faces);
+    if (mesh.face_sizes.empty()) continue;
     std::shared_ptr<const SmoothCurvature>& curvature = task.kept.curvatures[object];
     if (!curvature) curvature = std::make_shared<const SmoothCurvature>(curvature_of(mesh, task.settings));
     surface.step = curvature->mean_edge;
@@ -181,7 +182,10 @@ std::vector<FeatureSurface> mesh_features(const LineTask& task, const std::vecto
         if (!node.valid) node = facets->point_at(t, weights);
       }
     }
-    surface.facets = true;
+    surface.complete = [layers](SurfaceCurve& curve) {
+      make_exact(curve);
+      layers->pierce(curve);
+    };
     surface.at = [facets](const FeaturePlace& place) { return facets->at(place); };
     surface.change = [facets](const FeaturePoint& point, const glm::dvec3& tangent) { return facets->change(point, tangent); };
     surface.beside = [facets](const FeaturePoint& point, const glm::dvec3& step) { return facets->beside(point, step); };

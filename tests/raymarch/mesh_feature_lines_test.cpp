@@ -117,22 +117,28 @@ TEST(MeshFeatureLines, RidgesOfAnEllipsoidLieInItsPlanesOfSymmetry) {
   }
 }
 
-TEST(MeshFeatureLines, LinesLieOnTheFacetsAndRaysAgreeWhatHidesThem) {
+TEST(MeshFeatureLines, LinesLieOnTheFacetsAndRaysAgreeOnWhatHidesThem) {
   std::mt19937 random(random_seed());
-  const Scene scene = scene_of(torus_mesh(24, 0.02, random));
-  const LineSettings settings{.classes = {LineClass::contour, LineClass::suggestive, LineClass::ridge, LineClass::valley}};
+  // Two of them, that go through each other.
+  Scene scene = scene_of(torus_mesh(24, 0.02, random));
+  const glm::dvec3 aside(0.9, 0.15, 0.1);
+  scene.objects.push_back(scene_of(torus_mesh(24, 0.02, random)).objects[0]);
+  scene.objects[1].world_from_object.translation = aside;
+  const LineSettings settings{
+      .classes = {LineClass::contour, LineClass::intersection, LineClass::suggestive, LineClass::ridge, LineClass::valley}};
   double drawn = 0.0;
   for (int round = 0; round < 12; ++round) {
     const Camera camera = camera_from(random_direction(random), bounds(scene), round % 2 == 0);
     const ViewGraph graph = solve_lines(scene, camera, settings, {});
-    EXPECT_TRUE(graph.conflicts.empty()) << round;
+    for (const LineConflict& conflict : graph.conflicts)
+      ADD_FAILURE() << "view " << round << " at " << conflict.px.x << ", " << conflict.px.y << ": " << conflict.what;
     for (const LineClass line_class : {LineClass::suggestive, LineClass::ridge, LineClass::valley}) {
       drawn += length_px(graph, line_class, true);
       for (const Polyline& line : edges_of(graph, line_class)) {
         // The facets' chords lie beneath the torus by no more than a wave of noise and their height.
         for (const LinePoint& point : line) {
-          const glm::dvec3& p = point.position;
-          EXPECT_LE(std::fabs(std::hypot(std::hypot(p.x, p.z) - kMajor, p.y) - kMinor), 0.05);
+          const auto off = [](const glm::dvec3& p) { return std::fabs(std::hypot(std::hypot(p.x, p.z) - kMajor, p.y) - kMinor); };
+          EXPECT_LE(std::min(off(point.position), off(point.position - aside)), 0.05);
         }
       }
     }

@@ -116,6 +116,7 @@ def contours(
     suggestive_angle: Optional[float] = None,
     suggestive_slope: Optional[float] = None,
     ridge_strength: Optional[float] = None,
+    fair: Optional[float] = None,
     tolerance_px: Optional[float] = None,
     surface: Optional[str] = None,
     voxels: Optional[int] = None,
@@ -129,13 +130,14 @@ def contours(
     """Solves the lines of the true surface, as `limn contours` does: contours, boundaries, creases, intersections, visible and hidden.
 
     lines: classes (limn.names("lines")), or "all"; missing: those drawn by default. threshold: N.V of the class rim. crease_angle:
-    degrees. smooth: meshes as the smooth surface through their vertices. tolerance_px: how far polylines may lie from the curves,
+    degrees. smooth: meshes as the smooth surface through their vertices. fair: waves of meshes as short as so many mean edges are smoothed
+    away, such as a scan's noise. tolerance_px: how far polylines may lie from the curves,
     0.005. surface: the lines of a model ("mesh", "level_set" or "mesh_level_set") in place of the surface itself.
     """
     fields: _text.Fields = []
     _settings.surface_fields(fields, surface, voxels, voxel_size, half_width, None, level, scheme, None, None, grids)
     _settings.camera_fields(fields, camera, size, view, views)
-    _settings.line_fields(fields, lines, threshold, crease_angle, smooth, suggestive_angle, suggestive_slope, ridge_strength)
+    _settings.line_fields(fields, lines, threshold, crease_angle, smooth, suggestive_angle, suggestive_slope, ridge_strength, fair)
     _text.add(fields, "tolerance_px", None if tolerance_px is None else _text.number(tolerance_px))
     _settings.execution_fields(fields, threads)
     return Lines(_limn.contours(source_of(scene), fields))

@@ -134,6 +134,7 @@ def line_fields(
     suggestive_angle: Optional[float] = None,
     suggestive_slope: Optional[float] = None,
     ridge_strength: Optional[float] = None,
+    fair: Optional[float] = None,
 ) -> None:
     """Which lines."""
     _text.add_all(fields, "lines", _text.listed("lines", lines))
@@ -143,6 +144,7 @@ def line_fields(
         ("suggestive_angle", suggestive_angle),
         ("suggestive_slope", suggestive_slope),
         ("ridge_strength", ridge_strength),
+        ("fair", fair),
     ):
         _text.add(fields, name, None if value is None else _text.number(value))
     if smooth is not False:

@@ -139,7 +139,7 @@ struct ViewGraph {
 
 struct KeptLines;  // raymarch/lines/line_memory.h
 /// What views of one scene share (refined cages, trees of triangles), so that the next takes less time; the lines are the same without it.
-/// For one scene, one setting of smooth_meshes and crease_angle_deg, and one call at a time. Empty at first.
+/// For one scene, one setting of smooth_meshes, fairing_edges and crease_angle_deg, and one call at a time. Empty at first.
 struct LineMemory {
   std::shared_ptr<KeptLines> kept{};  ///< Made by the first call.
 };

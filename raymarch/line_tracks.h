@@ -29,6 +29,7 @@ enum class ChainCause : std::uint8_t {
   triple_point,   ///< Three lines cross in one image point.
   joint,          ///< A crossing, cusp or joint passes a joint of curves, or a curve's end.
   frame,          ///< The line enters or leaves the picture.
+  cut_off,        ///< A suggestive contour, ridge or valley gets strong enough to be drawn, or too weak: it ends where that is decided.
   edge_on,        ///< A face of straight edges turns to or from the eye: its sharp edges change class or are hidden all at once.
   unexplained,    ///< Nothing that changed in the graph there explains it.
 };

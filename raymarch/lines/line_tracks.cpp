@@ -4,11 +4,13 @@
 #include <array>
 
 #include "raymarch/lines/chain_changes.h"
+#include "raymarch/lines/surface_curves.h"
 
 namespace limn {
 namespace {
 
 constexpr double kBeside_px = 4.0;
+constexpr int kCutOffHalvings = 2;  // where a line may appear whole, however near two times are
 
 /// A graph at a time, with the ids of its chains.
 struct Moment {
@@ -25,7 +27,9 @@ class Follower {
     const ChainOverlaps overlaps = overlaps_of(before.chains, after.chains);
     const ChainMatch match = match_chains(before.chains, after.chains, overlaps);
     const std::vector<FoundChange> changes = changes_between(before.chains, after.chains, overlaps, match, settings_);
-    const bool settled = std::all_of(changes.begin(), changes.end(), [](const FoundChange& change) { return change.settled; });
+    const bool settled = std::all_of(changes.begin(), changes.end(), [&](const FoundChange& change) {
+      return change.settled || (halvings >= kCutOffHalvings && ends_by_cut_off(change, before, after));
+    });
     if (!settled && halvings < settings_.most_halvings) {
       double time = 0.5 * (before.time + after.time);
       ViewGraph graph = solve(time);
@@ -54,15 +58,31 @@ class Follower {
     return graph_at_(time);
   }
 
+  static const PlacedChains& chains_of(const FoundChange& change, const Moment& before, const Moment& after) {
+    return change.change == ChainChange::birth || change.change == ChainChange::split ? after.chains : before.chains;
+  }
+  static int chain_of(const FoundChange& change) {
+    return change.change == ChainChange::birth || change.change == ChainChange::split ? change.after : change.before;
+  }
+  /// Of a line of curvature, an end of which no vertex explains.
+  static bool ends_by_cut_off(const FoundChange& change, const Moment& before, const Moment& after) {
+    const auto chain = static_cast<size_t>(chain_of(change));
+    const PlacedChains& chains = chains_of(change, before, after);
+    if (!is_of_curvature(chains.graph->chains[chain].line_class)) return false;
+    const std::vector<ChainEnd>& ends = chains.chains[chain].ends;
+    return ends.empty() || std::any_of(ends.begin(), ends.end(), [](const ChainEnd& end) { return end.kind == VertexKind::end; });
+  }
+
   void add_event(const FoundChange& change, const Moment& before, const std::vector<int>& ids, const Moment& after,
                  const std::vector<int>& ids_after) {
-    const bool appears = change.change == ChainChange::birth || change.change == ChainChange::split;
-    const int chain = appears ? change.after : change.before;
+    const int chain = chain_of(change);
+    const PlacedChains& placed = chains_of(change, before, after);
+    const bool appears = &placed == &after.chains;
     const std::vector<int>&own = appears ? ids_after : ids, &others = appears ? ids : ids_after;
-    const ViewGraph& graph = *(appears ? after : before).chains.graph;
+    const ViewGraph& graph = *placed.graph;
     ChainEvent event;
     event.change = change.change;
-    event.cause = change.settled ? change.cause : ChainCause::unexplained;
+    event.cause = change.settled ? change.cause : ends_by_cut_off(change, before, after) ? ChainCause::cut_off : ChainCause::unexplained;
     event.line_class = graph.chains[static_cast<size_t>(chain)].line_class;
     event.id = own[static_cast<size_t>(chain)];
     event.other = change.other >= 0 ? others[static_cast<size_t>(change.other)] : -1;
@@ -90,8 +110,8 @@ const char* name_of(ChainChange change) {
 }
 
 const char* name_of(ChainCause cause) {
-  constexpr std::array<const char*, 10> kNames = {"lips",         "beak to beak", "swallowtail", "cusp crossing", "tangency",
-                                                  "triple point", "joint",        "frame",       "edge on",       "unexplained"};
+  constexpr std::array<const char*, 11> kNames = {"lips",  "beak to beak", "swallowtail", "cusp crossing", "tangency",   "triple point",
+                                                  "joint", "frame",        "cut-off",     "edge on",       "unexplained"};
   return kNames[static_cast<size_t>(cause)];
 }
 

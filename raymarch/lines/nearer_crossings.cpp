@@ -68,11 +68,6 @@ bool neighbours(const SurfaceCurve& curve, size_t i, size_t j) {
   return apart <= 1 || (curve.closed && apart + 1 == steps_of(curve));
 }
 
-/// Lines within smooth faces may be asked for or not; the others stay as they are.
-bool is_feature(LineClass line_class) {
-  return line_class == LineClass::suggestive || line_class == LineClass::ridge || line_class == LineClass::valley;
-}
-
 double distance_of(const Ends& one, const Ends& other) {
   const glm::dvec2 d = one.b.px - one.a.px, e = other.b.px - other.a.px, between = other.a.px - one.a.px;
   const double determinant = cross(d, e), t = cross(between, e) / determinant, u = cross(between, d) / determinant;
@@ -207,7 +202,8 @@ StepMarks unclear_steps(const std::vector<SurfaceCurve>& curves, const Camera& c
         if (fold.curve == c && neighbours(curve, fold.index, i)) return;
         if (!is_in_front(fold.ends, step, std::max(curve.nearer_px, fold.nearer_px), camera)) return;
         unclear[c][i] = 1;
-        if (!is_feature(curve.samples[i].line_class)) nearer[c].push_back(f);
+        // Lines of curvature may be asked for or not; the others stay as they are.
+        if (!is_of_curvature(curve.samples[i].line_class)) nearer[c].push_back(f);
       };
       const FoldReach around = reach_around(step, own_px + kLeastSag_px);
       index.for_buckets(step, [&](size_t bucket) { index.for_folds(bucket, around, look); });

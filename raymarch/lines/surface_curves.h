@@ -98,6 +98,11 @@ LineContribution level_set_lines(const LineTask& task, const std::vector<size_t>
 /// Suggestive contours, ridges and valleys of all objects; the others count the layers.
 LineContribution feature_lines(const LineTask& task, const ExecutionSettings& execution);
 
+/// Suggestive contours, ridges and valleys.
+inline bool is_of_curvature(LineClass line_class) {
+  return line_class == LineClass::suggestive || line_class == LineClass::ridge || line_class == LineClass::valley;
+}
+
 /// Image point and depth of `sample.p`.
 void project_sample(const Camera& camera, CurveSample& sample);
 

@@ -49,10 +49,11 @@ struct Turned {
 };
 
 /// From `first` on by `step` radians a frame about `axis`; backwards where `back`.
-Turned turn(const Scene& scene, const Camera& first, const glm::dvec3& axis, double step, int frames, bool back = false) {
+Turned turn(const Scene& scene, const Camera& first, const glm::dvec3& axis, double step, int frames, bool back = false,
+            const LineSettings& settings = {}) {
   Turned all;
   const GraphAt graph_at = [&](double time) {
-    return solve_lines(scene, turned_camera(first, glm::dvec3(0.0), axis, step * (back ? frames - 1 - time : time)), {}, {});
+    return solve_lines(scene, turned_camera(first, glm::dvec3(0.0), axis, step * (back ? frames - 1 - time : time)), settings, {});
   };
   for (int k = 0; k < frames; ++k) {
     all.graphs.push_back(graph_at(k));
@@ -187,6 +188,26 @@ double mean_distance(const std::vector<LinePoint>& from, const std::vector<LineP
     sum += least;
   }
   return sum / static_cast<double>(from.size());
+}
+
+TEST(LineTracks, LinesOfCurvatureAppearWholeAndAreNotSearchedForTheirBeginning) {
+  const Scene scene = scene_of({make_shape("torus", {{"major", {1.0}}, {"minor", {0.38}}})});
+  const Camera first = parallel_camera({0.0, 0.5, 4.0}, {0.0, 1.0, 0.0}, 3.6);
+  constexpr int kFrames = 12;
+  const Turned all = turn(scene, first, {1.0, 0.0, 0.0}, 7.0 * kPi / 180.0, kFrames, false,
+                          {.classes = {LineClass::contour, LineClass::suggestive}, .suggestive_slope = 3.0});
+  int appear = 0;
+  for (const ChainEvent& event : all.tracks.events) {
+    if (event.cause != ChainCause::cut_off) continue;
+    ++appear;
+    EXPECT_EQ(event.line_class, LineClass::suggestive) << list_of(all.tracks);
+    EXPECT_GE(event.to - event.from, 0.25) << list_of(all.tracks);
+    EXPECT_GT(event.length_px, 2.0) << list_of(all.tracks);
+  }
+  EXPECT_GE(appear, 1) << list_of(all.tracks);
+  // A search for the moment of each would take the time between two frames apart 12 times.
+  std::printf("%d appear or vanish, %lld graphs\n", appear, static_cast<long long>(all.tracks.solved));
+  EXPECT_LE(all.tracks.solved, 60) << list_of(all.tracks);
 }
 
 TEST(LineTracks, EveryLineIsNearerToItsOwnIdThanToAnyOtherOfItsKind) {

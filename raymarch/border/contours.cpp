@@ -66,7 +66,7 @@ Settings read_settings(const Parameters& parameters) {
     if (from == name) settings.from = WidthFrom::vertices, settings.channel = channel;
   }
   for (const LineClassDescriptor& one : line_classes()) {
-    if (one.by_default && parameters.flag(one.about.name)) settings.lines.classes.push_back(one.line_class);
+    if (one.line_class != LineClass::rim && parameters.flag(one.about.name)) settings.lines.classes.push_back(one.line_class);
   }
   settings.lines.crease_angle_deg = parameters.number("crease_angle");
   settings.lines.smooth_meshes = parameters.flag("smooth");
@@ -179,7 +179,7 @@ struct PenWidth {
 
 /// Edges of the surface itself are drawn thinner where somebody says so.
 bool is_inner(LineClass line_class) {
-  return line_class == LineClass::crease || line_class == LineClass::intersection || line_class == LineClass::material;
+  return line_class != LineClass::contour && line_class != LineClass::boundary && line_class != LineClass::rim;
 }
 
 /// A chain that is drawn.
@@ -306,13 +306,16 @@ BorderMethod contours_method() {
        a_number("inner_width", 0.0)
            .in(0.0, 64.0)
            .unit("px")
-           .help("of creases, intersections and material edges; 0: that of the other lines"),
+           .help("of creases, intersections, material edges and lines of curvature; 0: that of the other lines"),
        a_number("threshold", 0.2).in(0.0, 1.0).help("by curvature: the width is the distance at which N.V reaches this"),
        a_flag("contour", true).help("where N.V is 0"),
        a_flag("boundary", true).help("open edges"),
        a_flag("crease", true).help("where two normals of an object meet at an angle"),
        a_flag("intersection", true).help("where objects pass through each other"),
        a_flag("material", true).help("where materials of one object meet"),
+       a_flag("suggestive", false).help("contours of views nearby"),
+       a_flag("ridge", false).help("where the surface bends outwards most"),
+       a_flag("valley", false).help("where the surface bends inwards most"),
        a_flag("smooth", false).help("of meshes: the lines of the smooth surface through their vertices, not edges of facets"),
        a_number("fair", 0.0)
            .in(0.0, 1000.0)

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "raymarch/border/exact_coverage.h"
+#include "raymarch/lines.h"
 #include "tests/random_seed.h"
 #include "tests/raymarch/image_buffers.h"
 
@@ -349,6 +350,30 @@ TEST(ContoursMethod, ThreadsDoNotMatterAndClassesCanBeLeftOut) {
   EXPECT_LT(area(outline.border), 0.9 * area(whole.border));
   EXPECT_GT(area(outline.border), 0.5 * area(whole.border));
   for (size_t i = 0; i < whole.border.size(); ++i) EXPECT_LE(outline.border.pixels[i], whole.border.pixels[i] + 1e-4f);
+}
+
+TEST(ContoursMethod, LinesOfCurvatureAreDrawnAsWideAsInnerLines) {
+  const Scene scene = scene_of({object_of(make_shape("torus", {{"major", {1.0}}, {"minor", {0.4}}}))});
+  const SceneModel model = model_of(scene);
+  CameraSettings looking = view(160, 120);
+  looking.direction = glm::dvec3(0.3, -0.9, 0.75);
+  const Camera camera = framing(scene, looking);
+  double length_px = 0.0;
+  for (const LineEdge& edge : solve_lines(scene, camera, {.classes = {LineClass::contour, LineClass::suggestive}}, {}).edges) {
+    for (size_t i = 0; i + 1 < edge.points.size() && edge.line_class == LineClass::suggestive && edge.invisibility == 0; ++i)
+      length_px += glm::distance(edge.points[i].px, edge.points[i + 1].px);
+  }
+  ASSERT_GT(length_px, 20.0);
+  const auto ink = [&](std::map<std::string, ParameterInput> set) {
+    set.insert({"width", value(1.0)});
+    return area(drawn_contours(scene, model, camera, set).border.coverage);
+  };
+  const double outline = ink({}), wide = ink({{"suggestive", value(1.0)}}),
+               thin = ink({{"suggestive", value(1.0)}, {"inner_width", value(0.5)}});
+  // Where strokes end in others their ink is shared.
+  EXPECT_NEAR(wide - outline, length_px, 0.1 * length_px + 2.0);
+  EXPECT_NEAR(thin - outline, 0.5 * length_px, 0.1 * length_px + 2.0);
+  EXPECT_EQ(ink({{"ridge", value(1.0)}}), outline);  // A torus has none.
 }
 
 }  // namespace

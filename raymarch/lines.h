@@ -47,8 +47,9 @@ struct LineSettings {
   /// Of meshes that are no cages the lines are those of the smooth surface through their vertices, sharp along creases and open edges
   /// (subdiv/interpolating_cage.h). InputError where their triangles take more than `max_bytes`, by kSmoothBytes.
   bool smooth_meshes = false;
-  /// With smooth_meshes: waves of the mesh as short as this are smoothed away first (subdiv/fair_mesh.h), so that the noise of scans draws
-  /// no lines; in mean edges. 0 (none), or up to 1000.
+  /// Waves of such meshes, as short as this, are smoothed away first, so that the noise of scans draws no lines (subdiv/fair_mesh.h): with
+  /// smooth_meshes of what is drawn, else of what the curvature of suggestive contours, ridges and valleys is taken from. In mean edges;
+  /// 0 (none), or up to 1000. InputError where neither is asked for.
   double fairing_edges = 0.0;
   double suggestive_angle_deg = 20.0;  ///< Suggestive contours: least angle between normal and view. In [0, 90).
   /// Suggestive contours: least derivative of the radial curvature along the view's tangential part, times the object's radius squared.

@@ -319,7 +319,8 @@ BorderMethod contours_method() {
        a_flag("smooth", false).help("of meshes: the lines of the smooth surface through their vertices, not edges of facets"),
        a_number("fair", 0.0)
            .in(0.0, 1000.0)
-           .help("with smooth: waves as short as so many mean edges are smoothed away, such as a scan's noise; 0: none"),
+           .help("of meshes: waves as short as so many mean edges are smoothed away, such as a scan's noise; without smooth for lines of "
+                 "curvature alone; 0: none"),
        a_number("shortest", 0.0).in(0.0, 1000.0).unit("px").help("chains that are shorter are left out"),
        a_flag("hidden", false).help("hidden lines too, dashed"),
        a_number("hidden_width", 1.0).in(0.0, 64.0).unit("px").help("of hidden lines"),

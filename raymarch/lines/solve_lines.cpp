@@ -36,6 +36,9 @@ void check(const LineSettings& settings) {
     fail("suggestive_slope", settings.suggestive_slope, "not a derivative of curvature", "a number from 0 up");
   if (!(settings.fairing_edges >= 0.0 && settings.fairing_edges <= 1000.0))
     fail("fair", settings.fairing_edges, "not a number of edges", "a number from 0 to 1000");
+  if (settings.fairing_edges > 0.0 && !settings.smooth_meshes &&
+      std::none_of(settings.classes.begin(), settings.classes.end(), is_of_curvature))
+    fail("fair", settings.fairing_edges, "changes none of these lines", "smooth = true, or lines of curvature, such as suggestive");
   if (!(settings.ridge_strength > 0.0 && std::isfinite(settings.ridge_strength)))
     fail("ridge_strength", settings.ridge_strength, "not a strength", "a number above 0");
 }

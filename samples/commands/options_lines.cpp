@@ -53,7 +53,9 @@ void add_line_definitions(CLI::App& app, LineSettings& lines) {
   add_switch(app, {"--smooth", "", "of meshes: the lines of the smooth surface through their vertices, not along edges of facets", kLines},
              lines.smooth_meshes);
   add(app,
-      {"--fair", "EDGES", "with --smooth: waves as short as so many mean edges are smoothed away, such as a scan's noise; default 0: none",
+      {"--fair", "EDGES",
+       "of meshes: waves as short as so many mean edges are smoothed away, such as a scan's noise; without --smooth for lines of curvature "
+       "alone; default 0: none",
        kLines},
       [&lines](const std::string& text) {
         lines.fairing_edges = parse_number_above("--fair", text, 0.0, true, "a number from 0 to 1000");

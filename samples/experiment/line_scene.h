@@ -15,7 +15,7 @@ namespace limn {
 Scene scene_of_lines(const ExperimentSpec& spec, SceneInput& input, const std::function<void(double)>& progress,
                      std::vector<std::string>& warnings);
 
-/// Throws InputError where smooth_meshes finds no mesh whose smooth surface it could mean. `field` goes into the message.
+/// Throws InputError where smooth_meshes or fairing_edges finds no mesh whose smooth surface it could mean. `field` goes into the message.
 void check_smooth(const LineSettings& lines, const Scene& scene, const std::string& field = "smooth");
 
 }  // namespace limn

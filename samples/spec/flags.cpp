@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kParameters = "parameters.";
 
 /// Fields that are options of the same name, beside the settings of surfaces; the underscore is a dash there.
-constexpr std::array<std::string_view, 56> kFields = {"azimuth",
+constexpr std::array<std::string_view, 57> kFields = {"azimuth",
                                                       "look",
                                                       "shading",
                                                       "transparent",
@@ -67,7 +67,8 @@ constexpr std::array<std::string_view, 56> kFields = {"azimuth",
                                                       "crease_angle",
                                                       "suggestive_angle",
                                                       "suggestive_slope",
-                                                      "ridge_strength"};
+                                                      "ridge_strength",
+                                                      "fair"};
 
 /// Whose name is another one.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kOthers = {{{"grids", "grid"}, {"cases", "case"}}};

@@ -217,7 +217,11 @@ TEST(MeshFeatureLines, FairingOutOfRangeIsRefused) {
   const Scene scene = scene_of(torus_mesh(8, 0.0, random));
   const Camera camera = camera_from({0.5, 0.8, 0.4}, bounds(scene), true);
   for (const double edges : {-1.0, 1001.0, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_THROW(solve_lines(scene, camera, {.fairing_edges = edges}, {}), InputError) << edges;
+    EXPECT_THROW(solve_lines(scene, camera, {.smooth_meshes = true, .fairing_edges = edges}, {}), InputError) << edges;
+  // Contours of facets are as they are.
+  EXPECT_THROW(solve_lines(scene, camera, {.fairing_edges = 6.0}, {}), InputError);
+  EXPECT_NO_THROW(solve_lines(scene, camera, {.classes = {LineClass::valley}, .fairing_edges = 6.0}, {}));
+  EXPECT_NO_THROW(solve_lines(scene, camera, {.smooth_meshes = true, .fairing_edges = 6.0}, {}));
 }
 
 }  // namespace

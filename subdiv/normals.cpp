@@ -2,10 +2,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 
 #include "sdf/parallel.h"
+#include "subdiv/disjoint_sets.h"
 #include "subdiv/polygon.h"
 
 namespace limn {
@@ -74,18 +74,9 @@ struct EdgeUse {
 
 /// Memory for one vertex: sets of its corners that share a normal.
 struct Scratch {
-  std::vector<size_t> parent;
+  DisjointSets sets{};
   std::vector<EdgeUse> uses, bridges;
   std::vector<glm::dvec3> sums;
-
-  size_t find(size_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  }
-  void join(size_t a, size_t b) {
-    a = find(a), b = find(b);
-    parent[std::max(a, b)] = std::min(a, b);
-  }
 };
 
 /// The normals around one vertex after the other.
@@ -108,10 +99,10 @@ class VertexNormals {
     for (size_t i = 0; i < corners.size(); ++i) {
       const auto face = static_cast<size_t>(face_of(corners[i]));
       const std::array<glm::dvec3, 3> around = {position(previous(corners[i])), mesh_.positions[vertex], position(next(corners[i]))};
-      scratch.sums[scratch.find(i)] += corner_angle(around, 1, of_face_[face]) * of_face_[face];
+      scratch.sums[scratch.sets.find(i)] += corner_angle(around, 1, of_face_[face]) * of_face_[face];
     }
     for (size_t i = 0; i < corners.size(); ++i) {
-      const glm::dvec3& sum = scratch.sums[scratch.find(i)];
+      const glm::dvec3& sum = scratch.sums[scratch.sets.find(i)];
       const glm::dvec3 own = unit_or(of_face_[static_cast<size_t>(face_of(corners[i]))], {0.0, 0.0, 1.0});
       // Opposite faces cancel to rounding noise; then a face's own normal is the honest answer.
       normals[static_cast<size_t>(corners[i])] = glm::vec3(glm::length(sum) > 1e-9 ? glm::normalize(sum) : own);
@@ -157,7 +148,7 @@ class VertexNormals {
         if (!everywhere_ && !by_groups_ && (without_area(a) || without_area(b)))
           scratch.bridges.push_back(without_area(a) ? EdgeUse{uses[i].corner, uses[j].corner} : EdgeUse{uses[j].corner, uses[i].corner});
         else if (smooth(a, b))
-          scratch.join(static_cast<size_t>(uses[i].corner), static_cast<size_t>(uses[j].corner));
+          scratch.sets.join(static_cast<size_t>(uses[i].corner), static_cast<size_t>(uses[j].corner));
       }
     }
   }
@@ -170,13 +161,12 @@ class VertexNormals {
       if (bridges[i].other != bridges[i - 1].other) continue;
       const auto a = static_cast<size_t>(bridges[i - 1].corner), b = static_cast<size_t>(bridges[i].corner);
       const std::int32_t face_a = face_of(corners[a]), face_b = face_of(corners[b]);
-      if (!without_area(face_a) && !without_area(face_b) && smooth(face_a, face_b)) scratch.join(a, b);
+      if (!without_area(face_a) && !without_area(face_b) && smooth(face_a, face_b)) scratch.sets.join(a, b);
     }
   }
 
   void find_sets(std::int32_t vertex, std::span<const std::int32_t> corners, Scratch& scratch) const {
-    scratch.parent.resize(corners.size());
-    std::iota(scratch.parent.begin(), scratch.parent.end(), size_t{0});
+    scratch.sets.reset(corners.size());
     scratch.uses.clear();
     scratch.bridges.clear();
     for (size_t i = 0; i < corners.size(); ++i) {

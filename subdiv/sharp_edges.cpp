@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <span>
 #include <tuple>
 
 #include "sdf/parallel.h"
+#include "subdiv/disjoint_sets.h"
 #include "subdiv/edge_topology.h"
 #include "subdiv/polygon.h"
 
@@ -31,24 +31,6 @@ std::vector<Side> sides_of(const Mesh& mesh) {
   return sides;
 }
 
-/// Things of which some are one.
-class Sets {
- public:
-  explicit Sets(size_t count) : first_(count) { std::iota(first_.begin(), first_.end(), size_t{0}); }
-  /// The least that is one with `i`.
-  size_t find(size_t i) {
-    while (first_[i] != i) i = first_[i] = first_[first_[i]];
-    return i;
-  }
-  void join(size_t a, size_t b) {
-    a = find(a), b = find(b);
-    first_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<size_t> first_;
-};
-
 template <class Visit>
 void for_edges(const std::vector<Side>& sides, const Visit& visit) {
   for (size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
@@ -71,7 +53,7 @@ void mark_creases(double angle_deg, Mesh& triangles) {
 }
 
 void drop_short_creases(double length, Mesh& triangles) {
-  Sets joined(triangles.positions.size());
+  DisjointSets joined(triangles.positions.size());
   for (const Crease& crease : triangles.creases) joined.join(static_cast<size_t>(crease.vertex_a), static_cast<size_t>(crease.vertex_b));
   std::vector<double> lengths(triangles.positions.size(), 0.0);
   for (const Crease& crease : triangles.creases) {
@@ -95,7 +77,7 @@ std::vector<std::pair<std::int32_t, std::int32_t>> sharp_edges(const Mesh& trian
 
 SmoothTriangles part_at_sharp_edges(const Mesh& triangles) {
   const auto sharp = sharp_edges(triangles);
-  Sets corners(triangles.corner_vertices.size());
+  DisjointSets corners(triangles.corner_vertices.size());
   for_edges(sides_of(triangles), [&](std::span<const Side> sides) {
     if (std::binary_search(sharp.begin(), sharp.end(), sides[0].edge)) return;
     corners.join(sides[0].at, sides[1].next);

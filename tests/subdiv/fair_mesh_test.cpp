@@ -11,6 +11,7 @@
 
 #include "subdiv/sharp_edges.h"
 #include "tests/random_seed.h"
+#include "tests/subdiv/test_meshes.h"
 
 namespace limn {
 namespace {
@@ -37,33 +38,6 @@ Mesh plane(int columns, int rows) {
       }
     }
   }
-  return mesh;
-}
-
-/// An octahedron cut 4^`level` times, its vertices brought onto the sphere of radius 1.
-Mesh sphere(int level) {
-  Mesh mesh;
-  mesh.positions = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-  mesh.corner_vertices = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
-  for (int k = 0; k < level; ++k) {
-    std::vector<std::int32_t> finer;
-    for (size_t c = 0; c < mesh.corner_vertices.size(); c += 3) {
-      std::array<std::int32_t, 3> corners{}, middles{};
-      for (size_t i = 0; i < 3; ++i) corners[i] = mesh.corner_vertices[c + i];
-      for (size_t i = 0; i < 3; ++i) {
-        const glm::dvec3 p =
-            glm::normalize(mesh.positions[static_cast<size_t>(corners[i])] + mesh.positions[static_cast<size_t>(corners[(i + 1) % 3])]);
-        const auto same = [&](const glm::dvec3& q) { return glm::distance(p, q) < 1e-9; };
-        const auto at = std::find_if(mesh.positions.begin(), mesh.positions.end(), same);
-        middles[i] = static_cast<std::int32_t>(at - mesh.positions.begin());
-        if (at == mesh.positions.end()) mesh.positions.push_back(p);
-      }
-      for (size_t i = 0; i < 3; ++i) finer.insert(finer.end(), {corners[i], middles[i], middles[(i + 2) % 3]});
-      finer.insert(finer.end(), {middles[0], middles[1], middles[2]});
-    }
-    mesh.corner_vertices = finer;
-  }
-  mesh.face_sizes.assign(mesh.corner_vertices.size() / 3, 3);
   return mesh;
 }
 
@@ -94,7 +68,7 @@ TEST(FairMesh, WavesKeepWhatTheFilterLetsThrough) {
 }
 
 TEST(FairMesh, ASphereKeepsItsFormAndShrinksByItsOwnWaveNumber) {
-  const Mesh mesh = sphere(4);
+  const Mesh mesh = test::sphere(4);
   for (const double wavelength : {0.5, 2.0, 4.0}) {
     // Its positions are harmonics of degree 1: the Laplacian takes them to twice themselves.
     const double k = 2.0 * kPi / wavelength, wanted = 1.0 / (1.0 + std::pow(2.0 / (k * k), 2.0));
@@ -111,7 +85,7 @@ TEST(FairMesh, ASphereKeepsItsFormAndShrinksByItsOwnWaveNumber) {
 TEST(FairMesh, NoiseGoesAndTheShapeStays) {
   std::mt19937 random(random_seed());
   std::normal_distribution<double> noise(0.0, 0.002);
-  Mesh mesh = sphere(5);
+  Mesh mesh = test::sphere(5);
   double before = 0.0, after = 0.0;
   for (glm::dvec3& p : mesh.positions) {
     const double r = 1.0 + noise(random);

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "tests/random_seed.h"
+#include "tests/subdiv/test_meshes.h"
 
 namespace limn {
 namespace {
@@ -32,20 +33,18 @@ struct TorusMesh {
 };
 TorusMesh torus(int n, double jitter, std::mt19937& random) {
   std::uniform_real_distribution<double> moved(-jitter, jitter);
+  const Mesh quads = test::torus(2 * n, n, 1.0, 0.4);
   TorusMesh mesh;
-  for (int i = 0; i < 2 * n; ++i) {
-    for (int k = 0; k < n; ++k) {
-      const double u = kPi * (i + moved(random)) / n, v = 2.0 * kPi * (k + moved(random)) / n, r = 1.0 + 0.4 * std::cos(v);
-      mesh.places.emplace_back(u, v);
-      mesh.positions.emplace_back(r * std::cos(u), 0.4 * std::sin(v), r * std::sin(u));
-    }
+  for (const glm::dvec3& p : quads.positions) {
+    const double u = std::atan2(p.z, p.x) + moved(random) * kPi / n,
+                 v = std::atan2(p.y, std::hypot(p.x, p.z) - 1.0) + moved(random) * 2.0 * kPi / n, r = 1.0 + 0.4 * std::cos(v);
+    mesh.places.emplace_back(u, v);
+    mesh.positions.emplace_back(r * std::cos(u), 0.4 * std::sin(v), r * std::sin(u));
   }
-  const auto at = [&](int i, int k) { return static_cast<std::uint32_t>(i % (2 * n) * n + k % n); };
-  for (int i = 0; i < 2 * n; ++i) {
-    for (int k = 0; k < n; ++k) {
-      mesh.triangles.push_back({at(i, k), at(i, k + 1), at(i + 1, k + 1)});
-      mesh.triangles.push_back({at(i, k), at(i + 1, k + 1), at(i + 1, k)});
-    }
+  for (size_t c = 0; c < quads.corner_vertices.size(); c += 4) {
+    const auto corner = [&](size_t k) { return static_cast<std::uint32_t>(quads.corner_vertices[c + k]); };
+    mesh.triangles.push_back({corner(0), corner(1), corner(2)});
+    mesh.triangles.push_back({corner(0), corner(2), corner(3)});
   }
   return mesh;
 }

@@ -33,11 +33,7 @@ void check_smooth(const LineSettings& lines, const Scene& scene, const std::stri
   const auto is_smoothed = [](const SceneObject& object) { return std::holds_alternative<MeshSource>(object.source) && !is_cage(object); };
   const bool smooth = lines.smooth_meshes;
   if ((smooth || lines.fairing_edges > 0.0) && std::none_of(scene.objects.begin(), scene.objects.end(), is_smoothed))
-    throw InputError({"",
-                      smooth                    ? field
-                      : field.starts_with("--") ? "--fair"
-                                                : "fair",
-                      "", "none of the objects is a mesh of facets",
+    throw InputError({"", smooth ? field : "fair", "", "none of the objects is a mesh of facets",
                       "a loaded mesh, or surface = mesh; fields, cages and level sets are smooth as they are"});
 }
 

@@ -31,6 +31,14 @@ std::vector<Side> sides_of(const Mesh& mesh) {
   return sides;
 }
 
+/// Lower vertex first, rising.
+std::vector<std::pair<std::int32_t, std::int32_t>> creases_of(const Mesh& mesh) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
+  for (const Crease& crease : mesh.creases) edges.push_back(std::minmax(crease.vertex_a, crease.vertex_b));
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
 template <class Visit>
 void for_edges(const std::vector<Side>& sides, const Visit& visit) {
   for (size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
@@ -65,8 +73,7 @@ void drop_short_creases(double length, Mesh& triangles) {
 }
 
 std::vector<std::pair<std::int32_t, std::int32_t>> sharp_edges(const Mesh& triangles) {
-  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
-  for (const Crease& crease : triangles.creases) edges.push_back(std::minmax(crease.vertex_a, crease.vertex_b));
+  std::vector<std::pair<std::int32_t, std::int32_t>> edges = creases_of(triangles);
   for_edges(sides_of(triangles), [&](std::span<const Side> sides) {
     if (sides.size() != 2) edges.push_back(sides[0].edge);
   });
@@ -76,15 +83,18 @@ std::vector<std::pair<std::int32_t, std::int32_t>> sharp_edges(const Mesh& trian
 }
 
 SmoothTriangles part_at_sharp_edges(const Mesh& triangles) {
-  const auto sharp = sharp_edges(triangles);
-  DisjointSets corners(triangles.corner_vertices.size());
-  for_edges(sides_of(triangles), [&](std::span<const Side> sides) {
-    if (std::binary_search(sharp.begin(), sharp.end(), sides[0].edge)) return;
-    corners.join(sides[0].at, sides[1].next);
-    corners.join(sides[0].next, sides[1].at);
-  });
+  const auto creases = creases_of(triangles);
   SmoothTriangles smooth;
   smooth.corners.resize(triangles.face_count());
+  smooth.beyond.assign(triangles.face_count(), {SmoothTriangles::kNoTriangle, SmoothTriangles::kNoTriangle, SmoothTriangles::kNoTriangle});
+  DisjointSets corners(triangles.corner_vertices.size());
+  for_edges(sides_of(triangles), [&](std::span<const Side> sides) {
+    if (sides.size() != 2 || std::binary_search(creases.begin(), creases.end(), sides[0].edge)) return;
+    corners.join(sides[0].at, sides[1].next);
+    corners.join(sides[0].next, sides[1].at);
+    for (const auto& [own, other] : {std::pair(sides[0].at, sides[1].at), std::pair(sides[1].at, sides[0].at)})
+      smooth.beyond[own / 3][own % 3] = other / 3;
+  });
   std::vector<std::uint32_t> number(triangles.corner_vertices.size());
   for (std::uint32_t c = 0; c < number.size(); ++c) {
     const size_t first = corners.find(c);

@@ -22,7 +22,11 @@ std::vector<std::pair<std::int32_t, std::int32_t>> sharp_edges(const Mesh& trian
 /// Triangles whose corners share a vertex only where the mesh is smooth between them.
 struct SmoothTriangles {
   std::vector<std::array<std::uint32_t, 3>> corners{};  ///< Of each triangle, in the mesh's order: indices into `vertex`.
-  std::vector<std::uint32_t> vertex{};                  ///< Of the mesh.
+  /// Of each triangle, for its sides from one corner to the next: the triangle that the mesh smoothly goes on with, or kNoTriangle.
+  std::vector<std::array<std::uint32_t, 3>> beyond{};
+  std::vector<std::uint32_t> vertex{};  ///< Of the mesh.
+
+  static constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 };
 SmoothTriangles part_at_sharp_edges(const Mesh& triangles);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "subdiv/fair_mesh.h"
+
 namespace limn {
 namespace {
 
@@ -159,16 +161,13 @@ std::vector<VertexCurvature> vertex_curvature(const std::vector<glm::dvec3>& pos
   return vertices;
 }
 
-SmoothCurvature smooth_curvature(const Mesh& triangles, const std::vector<glm::dvec3>& positions) {
+SmoothCurvature smooth_curvature(const Mesh& triangles) {
   SmoothCurvature result{part_at_sharp_edges(triangles)};
-  std::vector<glm::dvec3> parted;
-  parted.reserve(result.triangles.vertex.size());
-  for (const std::uint32_t vertex : result.triangles.vertex) parted.push_back(positions[vertex]);
-  result.vertices = vertex_curvature(parted, result.triangles.corners);
-  for (const auto& corners : result.triangles.corners) {
-    for (size_t k = 0; k < 3; ++k) result.mean_edge += glm::distance(parted[corners[k]], parted[corners[(k + 1) % 3]]);
-  }
-  if (!result.triangles.corners.empty()) result.mean_edge /= 3.0 * static_cast<double>(result.triangles.corners.size());
+  std::vector<glm::dvec3> positions;
+  positions.reserve(result.triangles.vertex.size());
+  for (const std::uint32_t vertex : result.triangles.vertex) positions.push_back(triangles.positions[vertex]);
+  result.vertices = vertex_curvature(positions, result.triangles.corners);
+  result.mean_edge = mean_edge(triangles);
   return result;
 }
 
@@ -181,6 +180,12 @@ VertexCurvature curvature_between(const SmoothCurvature& curvature, size_t trian
     for (size_t axis = 0; axis < 3; ++axis) between.change[axis] += weights[k] * corner.change[axis];
   }
   return between;
+}
+
+double change_along(const VertexCurvature& curvature, const glm::dvec3& tangent) {
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; ++axis) sum += tangent[axis] * glm::dot(tangent, curvature.change[static_cast<size_t>(axis)] * tangent);
+  return sum;
 }
 
 }  // namespace limn

@@ -19,7 +19,7 @@ struct VertexCurvature {
   std::array<glm::dmat3, 3> change{glm::dmat3(0.0), glm::dmat3(0.0), glm::dmat3(0.0)};
 };
 
-/// Of `count` vertices with these positions. Triangles are counter-clockwise seen from outside; those that share vertices are taken as one
+/// Of vertices with these positions. Triangles are counter-clockwise seen from outside; those that share vertices are taken as one
 /// smooth surface, so that what parts at a crease needs vertices of its own on each side. Least squares over each triangle, weighted at
 /// vertices by area (Rusinkiewicz 2004, "Estimating curvatures and their derivatives on triangle meshes"); normals as Max 1999, "Weights
 /// for computing vertex normals from facet normals". On a sphere both are exact to rounding.
@@ -30,12 +30,15 @@ std::vector<VertexCurvature> vertex_curvature(const std::vector<glm::dvec3>& pos
 struct SmoothCurvature {
   SmoothTriangles triangles{};
   std::vector<VertexCurvature> vertices{};  ///< Of SmoothTriangles::vertex.
-  double mean_edge = 0.0;                   ///< mean_edge() of the mesh, at the same positions.
+  double mean_edge = 0.0;                   ///< mean_edge() of the mesh.
 };
-/// Of a mesh of triangles, its vertices at `positions`.
-SmoothCurvature smooth_curvature(const Mesh& triangles, const std::vector<glm::dvec3>& positions);
+/// Of a mesh of triangles.
+SmoothCurvature smooth_curvature(const Mesh& triangles);
 
 /// Between the corners of a triangle: those of its vertices, weighted. `normal` is not made unit.
 VertexCurvature curvature_between(const SmoothCurvature& curvature, size_t triangle, const glm::dvec3& weights);
+
+/// The derivative of the normal curvature along a unit tangent.
+double change_along(const VertexCurvature& curvature, const glm::dvec3& tangent);
 
 }  // namespace limn

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "raymarch/lines/surface_curves.h"
-#include "subdiv/vertex_curvature.h"
 
 namespace limn {
 
@@ -54,9 +53,6 @@ std::vector<FeatureSurface> cage_features(const LineTask& task, const std::vecto
 /// Of meshes that are drawn as they are.
 std::vector<FeatureSurface> mesh_features(const LineTask& task, const std::vector<size_t>& objects, std::vector<std::string>& notes);
 std::vector<FeatureSurface> level_set_features(const LineTask& task, const std::vector<size_t>& objects, std::vector<std::string>& notes);
-
-/// The derivative of the normal curvature along a unit tangent.
-double change_along(const VertexCurvature& curvature, const glm::dvec3& tangent);
 
 /// The tensor's tangential part: of a field's Hessian over its gradient's length, the shape operator.
 glm::dmat3 tangential(const glm::dmat3& tensor, const glm::dvec3& normal);

@@ -155,10 +155,10 @@ std::shared_ptr<const SmoothCurvature> curvature_of_mesh(const LineTask& task, s
   std::shared_ptr<const SmoothCurvature>& kept = task.kept.curvatures[object];
   if (kept) return kept;
   const Affine& world_from_object = task.scene.objects[object].world_from_object;
-  std::vector<glm::dvec3> positions;
-  for (const glm::dvec3& p : *through) positions.push_back(world_from_object.point(p) - task.origin);
-  const Mesh& cage = std::get<MeshSource>(task.scene.objects[object].source).mesh;
-  SmoothCurvature made = smooth_curvature(cage, positions);
+  Mesh mesh = std::get<MeshSource>(task.scene.objects[object].source).mesh;
+  mesh.positions = *through;
+  for (glm::dvec3& p : mesh.positions) p = world_from_object.point(p) - task.origin;
+  SmoothCurvature made = smooth_curvature(mesh);
   // What is mirrored has its faces the other way round.
   if (glm::determinant(world_from_object.linear) < 0.0) {
     for (VertexCurvature& vertex : made.vertices)

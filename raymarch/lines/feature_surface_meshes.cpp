@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "raymarch/lines/feature_surface.h"
 #include "raymarch/lines/line_memory.h"
@@ -14,7 +13,7 @@
 namespace limn {
 namespace {
 
-constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNone = SmoothTriangles::kNoTriangle;
 constexpr double kEdge_px = 1e9;  // facets are not refined
 constexpr int kMostFacets = 64;   // that a small step goes over
 
@@ -23,22 +22,7 @@ glm::dvec3 weights_at(const glm::dvec2& uv) { return {1.0 - uv.x - uv.y, uv.x, u
 class Facets {
  public:
   Facets(std::vector<glm::dvec3> positions, std::shared_ptr<const SmoothCurvature> curvature)
-      : positions_(std::move(positions)), curvature_(std::move(curvature)), beyond_(triangles().size(), {kNone, kNone, kNone}) {
-    std::vector<std::array<std::uint32_t, 4>> sides;  // Lower vertex, higher one, triangle, its corner.
-    for (std::uint32_t t = 0; t < triangles().size(); ++t) {
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const auto [low, high] = std::minmax(triangles()[t][k], triangles()[t][(k + 1) % 3]);
-        sides.push_back({low, high, t, k});
-      }
-    }
-    std::sort(sides.begin(), sides.end());
-    for (size_t i = 0; i + 1 < sides.size(); ++i) {
-      const auto &a = sides[i], &b = sides[i + 1];
-      if (a[0] != b[0] || a[1] != b[1]) continue;
-      beyond_[a[2]][a[3]] = b[2];
-      beyond_[b[2]][b[3]] = a[2];
-    }
-  }
+      : positions_(std::move(positions)), curvature_(std::move(curvature)) {}
 
   const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return curvature_->triangles.corners; }
 
@@ -72,13 +56,13 @@ class Facets {
       size_t side = 3;
       for (size_t k = 0; k < 3; ++k) {
         const int opposite = static_cast<int>((k + 2) % 3);
-        if (beyond_[triangle][k] == from && from != kNone) continue;
+        if (beyond(triangle)[k] == from && from != kNone) continue;
         if (rates[opposite] < 0.0 && -weights[opposite] / rates[opposite] < share)
           share = std::max(0.0, -weights[opposite] / rates[opposite]), side = k;
       }
       weights += share * rates;
       if (side == 3) return point_at(triangle, weights);
-      const std::uint32_t next = beyond_[triangle][side];
+      const std::uint32_t next = beyond(triangle)[side];
       if (next == kNone) return {};
       const glm::dvec3 p = point_at(triangle, weights).p;
       rest = turned(rest * (1.0 - share), triangle, next);
@@ -90,6 +74,7 @@ class Facets {
   }
 
  private:
+  const std::array<std::uint32_t, 3>& beyond(std::uint32_t triangle) const { return curvature_->triangles.beyond[triangle]; }
   const glm::dvec3& corner(std::uint32_t triangle, size_t k) const { return positions_[triangles()[triangle][k]]; }
   glm::dvec3 normal_of(std::uint32_t triangle) const {
     return glm::cross(corner(triangle, 1) - corner(triangle, 0), corner(triangle, 2) - corner(triangle, 0));
@@ -120,7 +105,6 @@ class Facets {
 
   std::vector<glm::dvec3> positions_;
   std::shared_ptr<const SmoothCurvature> curvature_;
-  std::vector<std::array<std::uint32_t, 3>> beyond_;  ///< The triangle beyond each side, from a corner to the next.
 };
 
 /// One object's triangles, in solver space; `faces` are their numbers in the tree.
@@ -146,16 +130,10 @@ Mesh mesh_of(const MeshTree& tree, int object, std::vector<std::uint32_t>& faces
 SmoothCurvature curvature_of(Mesh mesh, const LineSettings& settings) {
   mark_creases(settings.crease_angle_deg, mesh);
   if (settings.fairing_edges > 0.0) fair(settings.fairing_edges, mesh);
-  return smooth_curvature(mesh, mesh.positions);
+  return smooth_curvature(mesh);
 }
 
 }  // namespace
-
-double change_along(const VertexCurvature& curvature, const glm::dvec3& tangent) {
-  double sum = 0.0;
-  for (int axis = 0; axis < 3; ++axis) sum += tangent[axis] * glm::dot(tangent, curvature.change[static_cast<size_t>(axis)] * tangent);
-  return sum;
-}
 
 std::vector<FeatureSurface> mesh_features(const LineTask& task, const std::vector<size_t>& objects, std::vector<std::string>&) {
   std::vector<FeatureSurface> surfaces;

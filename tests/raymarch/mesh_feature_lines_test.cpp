@@ -149,7 +149,7 @@ TEST(MeshFeatureLines, LinesLieOnTheFacetsAndRaysAgreeOnWhatHidesThem) {
 TEST(MeshFeatureLines, FairingTakesTheLinesOfNoiseAndLeavesTheShapes) {
   std::mt19937 random(random_seed());
   const Scene exact = scene_of(make_shape("torus", {{"major", {kMajor}}, {"minor", {kMinor}}})),
-              noisy = scene_of(torus_mesh(96, 0.004, random));
+              noisy = scene_of(torus_mesh(96, 0.002, random));
   const Camera camera = camera_from({0.3, -0.9, 0.75}, bounds(exact), true);
   const LineSettings plain{.classes = {LineClass::suggestive}, .suggestive_angle_deg = 25.0, .suggestive_slope = 3.0};
   const double wanted = length_px(solve_lines(exact, camera, plain, {}), LineClass::suggestive);

@@ -194,6 +194,14 @@ TEST(SharpEdges, VerticesArePartedWhereNoSmoothWayLeadsFromSideToSide) {
     for (size_t k = 0; k < 3; ++k)
       EXPECT_EQ(parted.vertex[parted.corners[f][k]], static_cast<std::uint32_t>(mesh.corner_vertices[3 * f + k]));
   }
+  // Within a face of the cube each triangle has three neighbours or sides on its edges, and these have it.
+  for (std::uint32_t f = 0; f < parted.beyond.size(); ++f) {
+    for (const std::uint32_t next : parted.beyond[f]) {
+      if (next == SmoothTriangles::kNoTriangle) continue;
+      EXPECT_EQ(f / 8, next / 8);
+      EXPECT_EQ(std::count(parted.beyond[next].begin(), parted.beyond[next].end(), f), 1);
+    }
+  }
   // Of a sheet every open edge is sharp, and none parts anything.
   const Mesh sheet = plane(3, 3);
   EXPECT_EQ(sharp_edges(sheet).size(), 8u);

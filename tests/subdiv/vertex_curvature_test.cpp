@@ -161,10 +161,10 @@ TEST(VertexCurvature, EdgesOfABoxDoNotBendItsFaces) {
   box.corner_vertices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
   box.face_sizes.assign(12, 3);
   double most = 0.0;
-  for (const VertexCurvature& vertex : smooth_curvature(box, box.positions).vertices) most = std::max(most, size_of(vertex.shape));
+  for (const VertexCurvature& vertex : smooth_curvature(box).vertices) most = std::max(most, size_of(vertex.shape));
   EXPECT_GT(most, 0.5);
   mark_creases(40.0, box);
-  const SmoothCurvature parted = smooth_curvature(box, box.positions);
+  const SmoothCurvature parted = smooth_curvature(box);
   EXPECT_EQ(parted.vertices.size(), 24u);
   EXPECT_NEAR(parted.mean_edge, (2.0 + std::sqrt(2.0)) / 3.0, 1e-12);
   for (const VertexCurvature& vertex : parted.vertices) EXPECT_EQ(size_of(vertex.shape), 0.0);

@@ -91,9 +91,14 @@ PicturePart get_part(ByteReader& answer, const fs::path& file) {
 
 }  // namespace
 
-bool is_picture_file(const fs::path& file) {
+std::string lower_extension(const fs::path& file) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+bool is_picture_file(const fs::path& file) {
+  const std::string extension = lower_extension(file);
   constexpr std::array<std::string_view, 6> kExtensions = {".exr", ".png", ".tif", ".tiff", ".jpg", ".jpeg"};
   return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }

@@ -42,6 +42,9 @@ struct PictureFile {
   std::optional<glm::dmat4> ndc_from_world{};
 };
 
+/// ".exr" of "A.EXR".
+std::string lower_extension(const std::filesystem::path& file);
+
 bool is_picture_file(const std::filesystem::path& file);
 
 /// Throws InputError naming `file`: not there, not what its extension says, damaged, more than the limits allow (1 GB and 32 times the

@@ -1,13 +1,11 @@
 #pragma once
 // What limn asks of OpenImageIO, as a table of functions. They are in a module of their own (helpers/pictures_module.cpp), loaded when the
-// first picture other than a PNG is written, or any is read: OpenImageIO brings 260 shared libraries, which take a fifth of a second to
+// first .tif or .jpg is written, or any is read: OpenImageIO brings 260 shared libraries, which take a fifth of a second to
 // load, and most calls need none of them.
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <future>
 #include <span>
 #include <string>
@@ -16,23 +14,22 @@
 
 namespace limn {
 
-enum class PixelType : std::uint8_t { byte, half, full, whole };  ///< 8-bit unsigned, 16- and 32-bit float, 32-bit unsigned.
-
-/// A picture file's header.
+/// What a picture file's header says.
 struct PictureHeader {
   int width = 0, height = 0;
-  std::vector<std::string> channels{};  ///< Names; empty: those that files have for so many types.
-  std::vector<PixelType> types{};       ///< Of each channel.
-  int alpha_channel = -1, z_channel = -1;
-  struct Attribute {
-    std::string name{};
-    std::variant<int, std::string, std::array<float, 16>> value{};  ///< Sixteen numbers are a matrix.
-  };
-  std::vector<Attribute> attributes{};  ///< By OpenImageIO's names.
+  std::vector<std::string> channels{};  ///< Names.
 };
 
-/// Pixels of rows [first, last) in the header's types, channel after channel within each pixel.
-using PixelRows = std::function<void(int first, int last, char* to)>;
+/// A picture of bytes, with its facts by OpenImageIO's names.
+struct BytePicture {
+  int width_px = 0, height_px = 0, channels = 0;
+  std::span<const std::uint8_t> pixels{};  ///< Row after row from the top, channel after channel within each pixel.
+  struct Attribute {
+    std::string name{};
+    std::variant<int, std::string> value{};
+  };
+  std::vector<Attribute> attributes{};
+};
 
 /// Coverage of a line of text, row after row.
 struct TextMask {
@@ -44,13 +41,10 @@ struct TextMask {
 struct PictureModule {
   const char* version = nullptr;  ///< Of limn: another one's module may have other functions.
 
-  /// Asks for a few rows at a time, which stay in the cache until they are compressed.
-  std::string (*write)(const std::filesystem::path& file, const PictureHeader& header, const PixelRows& rows) = nullptr;
-  /// Size, channels and their types; byte and half stand for all that floats hold.
+  std::string (*write)(const std::filesystem::path& file, const BytePicture& picture) = nullptr;
   std::string (*read_header)(const std::filesystem::path& file, PictureHeader& header) = nullptr;
   /// One channel as floats, top row first; `values` has width x height of them.
   std::string (*read_channel)(const std::filesystem::path& file, int channel, std::span<float> values) = nullptr;
-  void (*to_half)(const float* values, std::uint16_t* halves, int count) = nullptr;
 
   /// -1 where the font cannot be read.
   int (*text_width_px)(const std::string& text, int size_px, const std::string& font) = nullptr;

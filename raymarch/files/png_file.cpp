@@ -10,6 +10,7 @@
 #include <memory>
 #include <numeric>
 
+#include "raymarch/files/deflate.h"
 #include "sdf/error.h"
 #include "sdf/parallel.h"
 
@@ -22,8 +23,8 @@ constexpr size_t kBlockBytes = size_t{1} << 18;
 struct Block {
   int first_row = 0, last_row = 0;
   std::vector<std::uint8_t> compressed{};
-  uLong checksum = 0;  // Adler-32 of the filtered rows
-  uLong filtered_bytes = 0;
+  std::uint32_t checksum = 0;  // Adler-32 of the filtered rows
+  size_t filtered_bytes = 0;
 };
 
 /// PNG's filters 0, 1 and 2: a row itself, less the pixel to the left, less the row above.
@@ -74,53 +75,34 @@ void filter_row(const PngPicture& picture, int row, TriedRows& tried, std::uint8
   std::copy(tried[best].begin(), tried[best].end(), to + 1);
 }
 
-/// What one thread needs to compress block after block: zlib's tables alone take a quarter of a megabyte, which the system clears.
-///
-/// Only runs are looked for, which a filtered picture is full of: on pictures of surfaces smaller than zlib's level 3, in half its time. A
-/// run never reaches back over a block's beginning, so that blocks need nothing of each other.
+/// What one thread needs to filter and compress block after block.
 class Compressor {
  public:
   Compressor(const PngPicture& picture, int block_rows) : picture_(picture), row_bytes_(row_bytes(picture)) {
-    constexpr int kRawWindow = -15, kMemory = 9;
-    if (deflateInit2(&stream_, 6, Z_DEFLATED, kRawWindow, kMemory, Z_RLE) != Z_OK) give_up();
     for (std::vector<std::uint8_t>& row : tried_) row.resize(row_bytes_ - 1);
-    constexpr size_t kEnd = 16;  // of a block that is flushed
     filtered_.resize(static_cast<size_t>(block_rows) * row_bytes_);
-    compressed_.resize(deflateBound(&stream_, static_cast<uLong>(filtered_.size())) + kEnd);
   }
-  Compressor(const Compressor&) = delete;
-  Compressor& operator=(const Compressor&) = delete;
-  ~Compressor() { deflateEnd(&stream_); }
 
   static size_t row_bytes(const PngPicture& picture) {
     return static_cast<size_t>(picture.width) * static_cast<size_t>(picture.channels) + 1;
   }
 
-  /// One part of a raw deflate stream that ends at a byte.
   void compress(Block& block, bool last) {
     for (int row = block.first_row; row < block.last_row; ++row)
       filter_row(picture_, row, tried_, &filtered_[static_cast<size_t>(row - block.first_row) * row_bytes_]);
-    const size_t bytes = static_cast<size_t>(block.last_row - block.first_row) * row_bytes_;
-    block.filtered_bytes = bytes;
-    block.checksum = adler32(adler32(0, nullptr, 0), filtered_.data(), static_cast<uInt>(bytes));
-    if (deflateReset(&stream_) != Z_OK) give_up();
-    stream_.next_in = filtered_.data();
-    stream_.avail_in = static_cast<uInt>(bytes);
-    stream_.next_out = compressed_.data();
-    stream_.avail_out = static_cast<uInt>(compressed_.size());
-    const int result = deflate(&stream_, last ? Z_FINISH : Z_SYNC_FLUSH);
-    if (stream_.avail_in != 0 || result != (last ? Z_STREAM_END : Z_OK)) give_up();
-    block.compressed.assign(compressed_.data(), stream_.next_out);
+    const std::span filtered(filtered_.data(), static_cast<size_t>(block.last_row - block.first_row) * row_bytes_);
+    block.filtered_bytes = filtered.size();
+    block.checksum = adler32_of(filtered);
+    const std::span compressed = deflater_.compress(filtered, last ? DeflatePart::last : DeflatePart::inner);
+    block.compressed.assign(compressed.begin(), compressed.end());
   }
 
  private:
-  [[noreturn]] static void give_up() { throw MachineError("cannot write a PNG: zlib gave up"); }
-
   const PngPicture& picture_;
   size_t row_bytes_ = 0;
-  z_stream stream_{};
+  Deflater deflater_{};
   TriedRows tried_{};
-  std::vector<std::uint8_t> filtered_{}, compressed_{};
+  std::vector<std::uint8_t> filtered_{};
 };
 
 std::vector<Block> compressed_blocks(const PngPicture& picture) {
@@ -173,7 +155,7 @@ void write_header(png_structp png, png_infop info, const PngPicture& picture) {
 void write_blocks(png_structp png, std::vector<Block>& blocks) {
   constexpr std::array<std::uint8_t, 2> kZlibHeader = {0x78, 0x9c};
   blocks.front().compressed.insert(blocks.front().compressed.begin(), kZlibHeader.begin(), kZlibHeader.end());
-  uLong checksum = adler32(0, nullptr, 0);
+  uLong checksum = adler32_of({});
   for (const Block& block : blocks) checksum = adler32_combine(checksum, block.checksum, static_cast<z_off_t>(block.filtered_bytes));
   for (const int shift : {24, 16, 8, 0}) blocks.back().compressed.push_back(static_cast<std::uint8_t>(checksum >> shift & 0xff));
   for (const Block& block : blocks) write_chunk(png, "IDAT", block.compressed);

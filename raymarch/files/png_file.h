@@ -1,5 +1,5 @@
 #pragma once
-// PNG by libpng's headers and zlib's compression, in parallel blocks of rows.
+// PNG by libpng's headers and ISA-L's compression, in parallel blocks of rows.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@ struct PngPicture {
   std::string software{};                  ///< Who wrote it.
 };
 
-/// The whole file, marked as sRGB. The same bytes whatever the number of threads. Throws MachineError where libpng or zlib fails.
+/// The whole file, marked as sRGB. The same bytes whatever the number of threads. Throws MachineError where libpng or ISA-L fails.
 std::vector<std::byte> png_file(const PngPicture& picture);
 
 }  // namespace limn

@@ -395,7 +395,9 @@ int run(const Options& given) {
 
   // While the surface is built.
   std::future<void> pictures;
-  if (!all_png) pictures = load_picture_module_early();
+  const bool by_module =
+      std::any_of(render.outputs.begin(), render.outputs.end(), [&](const auto& file) { return !is_png(file) && !has_layers(file); });
+  if (by_module) pictures = load_picture_module_early();
   const auto build_start = std::chrono::steady_clock::now();
   std::vector<std::string> levels;
   if (options.spec.surface.level_for_view && !options.plan.tolerance_px)

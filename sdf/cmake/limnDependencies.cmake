@@ -58,5 +58,15 @@ if(NOT TARGET limn_openimageio)
 endif()
 
 find_dependency(PNG)  # brings zlib
+find_dependency(OpenEXR)
+
+# ISA-L has no config file.
+if(NOT TARGET limn_isal)
+  find_path(LIMN_ISAL_INCLUDE isa-l/igzip_lib.h REQUIRED)
+  find_library(LIMN_ISAL_LIBRARY isal REQUIRED)
+  mark_as_advanced(LIMN_ISAL_INCLUDE LIMN_ISAL_LIBRARY)
+  add_library(limn_isal UNKNOWN IMPORTED)
+  set_target_properties(limn_isal PROPERTIES IMPORTED_LOCATION ${LIMN_ISAL_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${LIMN_ISAL_INCLUDE})
+endif()
 find_dependency(embree 3)
 find_dependency(hwy)

@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "raymarch/files/deflate.h"
+#include "raymarch/files/png_filter.h"
 #include "sdf/error.h"
 #include "sdf/parallel.h"
 
@@ -27,59 +28,10 @@ struct Block {
   size_t filtered_bytes = 0;
 };
 
-/// PNG's filters 0, 1 and 2: a row itself, less the pixel to the left, less the row above.
-constexpr size_t kFilters = 3;
-
-size_t cost_of(std::span<const std::uint8_t> row) {
-  // The usual heuristic (PNG specification, 12.8): the least sum of the bytes as signed numbers.
-  return std::transform_reduce(row.begin(), row.end(), std::uint32_t{0}, std::plus<>(),
-                               [](std::uint8_t byte) -> std::uint32_t { return byte < 128 ? byte : 256u - byte; });
-}
-
-/// A row by each filter.
-using TriedRows = std::array<std::vector<std::uint8_t>, kFilters>;
-
-/// The row whose filtered bytes are the smallest, its filter before it. Average and Paeth gain nothing on flat and shaded surfaces, and
-/// take as long again.
-void filter_row(const PngPicture& picture, int row, TriedRows& tried, std::uint8_t* to) {
-  const size_t count = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.channels);
-  const size_t left = static_cast<size_t>(picture.channels);
-  const std::uint8_t* const bytes = picture.pixels.data() + static_cast<size_t>(row) * count;
-  // As most rows of background are, empty or the same as the row above: no other filter leaves less than nothing, and what is found first
-  // stays. A row is empty where each byte is the one before it, and the first is nought.
-  const bool is_empty = bytes[0] == 0 && std::memcmp(bytes, bytes + 1, count - 1) == 0;
-  if (is_empty || (row > 0 && std::memcmp(bytes, bytes - count, count) == 0)) {
-    *to = is_empty ? 0 : 2;
-    std::fill_n(to + 1, count, std::uint8_t{0});
-    return;
-  }
-  // By pointers: bytes may alias what a vector keeps of itself, and then nothing is vectorised.
-  std::uint8_t *const plain = tried[0].data(), *const beside = tried[1].data(), *const below = tried[2].data();
-  std::copy_n(bytes, count, plain);
-  std::copy_n(bytes, left, beside);
-  for (size_t i = left; i < count; ++i) beside[i] = static_cast<std::uint8_t>(bytes[i] - bytes[i - left]);
-  if (row == 0) {
-    std::copy_n(bytes, count, below);
-  } else {
-    const std::uint8_t* const above = bytes - count;
-    for (size_t i = 0; i < count; ++i) below[i] = static_cast<std::uint8_t>(bytes[i] - above[i]);
-  }
-  size_t best = 0, least = cost_of(tried[0]);
-  for (size_t filter = 1; filter < kFilters; ++filter) {
-    const size_t cost = cost_of(tried[filter]);
-    if (cost >= least) continue;
-    least = cost;
-    best = filter;
-  }
-  *to = static_cast<std::uint8_t>(best);
-  std::copy(tried[best].begin(), tried[best].end(), to + 1);
-}
-
 /// What one thread needs to filter and compress block after block.
 class Compressor {
  public:
   Compressor(const PngPicture& picture, int block_rows) : picture_(picture), row_bytes_(row_bytes(picture)) {
-    for (std::vector<std::uint8_t>& row : tried_) row.resize(row_bytes_ - 1);
     filtered_.resize(static_cast<size_t>(block_rows) * row_bytes_);
   }
 
@@ -88,8 +40,12 @@ class Compressor {
   }
 
   void compress(Block& block, bool last) {
-    for (int row = block.first_row; row < block.last_row; ++row)
-      filter_row(picture_, row, tried_, &filtered_[static_cast<size_t>(row - block.first_row) * row_bytes_]);
+    const size_t count = row_bytes_ - 1;
+    for (int row = block.first_row; row < block.last_row; ++row) {
+      const std::uint8_t* const bytes = picture_.pixels.data() + static_cast<size_t>(row) * count;
+      filter_png_row({bytes, count}, row > 0 ? bytes - count : nullptr, static_cast<size_t>(picture_.channels),
+                     &filtered_[static_cast<size_t>(row - block.first_row) * row_bytes_]);
+    }
     const std::span filtered(filtered_.data(), static_cast<size_t>(block.last_row - block.first_row) * row_bytes_);
     block.filtered_bytes = filtered.size();
     block.checksum = adler32_of(filtered);
@@ -101,7 +57,6 @@ class Compressor {
   const PngPicture& picture_;
   size_t row_bytes_ = 0;
   Deflater deflater_{};
-  TriedRows tried_{};
   std::vector<std::uint8_t> filtered_{};
 };
 

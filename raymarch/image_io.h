@@ -23,9 +23,10 @@ void write_exr(const Picture& picture, const Camera& camera, const std::string& 
 
 /// The composite as .png, .tif or .jpg: un-premultiplied where the format has alpha, laid over white where it has none; sRGB, 8 bit.
 void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesystem::path& file);
+/// Of sRGB with alpha kept apart, as Picture::bytes has it, as .png.
+void write_image(const Image<glm::u8vec4>& bytes, const std::filesystem::path& file);
 /// The same PNG in memory, for pages that hold their pictures.
 std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied);
-/// Of sRGB with alpha kept apart, as Picture::bytes has it.
 std::vector<std::byte> encode_png(const Image<glm::u8vec4>& bytes);
 
 /// One named channel of an image file, top row first. Throws InputError.

@@ -1,6 +1,11 @@
 #include "sdf/large_pages.h"
 
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <mutex>
 #include <new>
 #include <vector>
@@ -37,7 +42,10 @@ class KeptBlocks {
 
   void keep(const Block& block) {
     const std::lock_guard lock(mutex_);
-    if (block.bytes > kMostKept) return std::free(block.memory);
+    if (block.bytes > kMostKept) {
+      ::munmap(block.memory, block.bytes);
+      return;
+    }
     while (kept_ + block.bytes > kMostKept) drop_oldest();
     blocks_.push_back(block);
     kept_ += block.bytes;
@@ -51,7 +59,7 @@ class KeptBlocks {
  private:
   void drop_oldest() {
     kept_ -= blocks_.front().bytes;
-    std::free(blocks_.front().memory);
+    ::munmap(blocks_.front().memory, blocks_.front().bytes);
     blocks_.erase(blocks_.begin());
   }
 
@@ -66,8 +74,41 @@ KeptBlocks& kept_blocks() {
   return *blocks;
 }
 
+/// Mapped by the system, not cut from the heap, whose gaps between blocks that are aligned like this grow by a block with every other
+/// picture. Null where there is no room.
+void* map_block(size_t bytes) {
+  const size_t mapped = bytes + kLargePageBytes;
+  void* const start = ::mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (start == MAP_FAILED) return nullptr;
+  auto* const first = static_cast<std::byte*>(start);
+  const size_t before = (kLargePageBytes - reinterpret_cast<std::uintptr_t>(start) % kLargePageBytes) % kLargePageBytes;
+  if (before > 0) ::munmap(first, before);
+  ::munmap(first + before + bytes, mapped - before - bytes);
+  return first + before;
+}
+
+constexpr size_t kLine = 64;  // bytes of the cache
+
+/// From the heap, on a line of the cache, with its own place before it. Not by aligned_alloc: up to version 2.37 glibc never finds what was
+/// given back to it again for the next block of the same size, and a call of many pictures grows by megabytes with each of them.
+void* take_line(size_t bytes) {
+  void* const place = std::malloc(bytes + kLine);
+  if (place == nullptr) return nullptr;
+  auto* const first = static_cast<std::byte*>(place);
+  std::byte* const memory = first + (kLine - reinterpret_cast<std::uintptr_t>(place) % kLine);
+  static_assert(alignof(std::max_align_t) >= sizeof place);  // room before it, which malloc leaves at least
+  std::memcpy(memory - sizeof place, &place, sizeof place);
+  return memory;
+}
+
+void give_back_line(void* memory) {
+  void* place = nullptr;
+  std::memcpy(&place, static_cast<std::byte*>(memory) - sizeof place, sizeof place);
+  std::free(place);
+}
+
 size_t rounded(size_t bytes) {
-  const size_t page = bytes >= kLargePageBytes ? kLargePageBytes : 64;
+  const size_t page = bytes >= kLargePageBytes ? kLargePageBytes : kLine;
   return (bytes + page - 1) / page * page;
 }
 
@@ -76,15 +117,15 @@ size_t rounded(size_t bytes) {
 void* LargePages::take(size_t bytes) {
   const size_t size = rounded(bytes);
   if (size < kLargePageBytes) {
-    void* const memory = std::aligned_alloc(64, size);
+    void* const memory = take_line(size);
     if (!memory) throw std::bad_alloc();
     return memory;
   }
   if (void* const kept = kept_blocks().take(size)) return kept;
-  void* memory = std::aligned_alloc(kLargePageBytes, size);
+  void* memory = map_block(size);
   if (!memory) {
     kept_blocks().drop_all();
-    memory = std::aligned_alloc(kLargePageBytes, size);
+    memory = map_block(size);
   }
   if (!memory) throw std::bad_alloc();
   ask_for_large_pages(memory, size);
@@ -93,11 +134,11 @@ void* LargePages::take(size_t bytes) {
 
 void LargePages::give_back(void* memory, size_t bytes) {
   const size_t size = rounded(bytes);
-  if (size < kLargePageBytes) return std::free(memory);
+  if (size < kLargePageBytes) return give_back_line(memory);
   try {
     kept_blocks().keep({memory, size});
   } catch (const std::bad_alloc&) {  // of the list itself
-    std::free(memory);
+    ::munmap(memory, size);
   }
 }
 

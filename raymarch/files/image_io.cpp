@@ -109,6 +109,11 @@ void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesy
   write_together({&output, 1});
 }
 
+void write_image(const Image<glm::u8vec4>& bytes, const std::filesystem::path& file) {
+  const OutputFile output = image_output(bytes, file);
+  write_together({&output, 1});
+}
+
 std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied) { return png_bytes(encoded(linear_premultiplied)); }
 std::vector<std::byte> encode_png(const Image<glm::u8vec4>& bytes) { return png_bytes(bytes); }
 

@@ -31,12 +31,6 @@ struct BytePicture {
   std::vector<Attribute> attributes{};
 };
 
-/// Coverage of a line of text, row after row.
-struct TextMask {
-  int width = 0, height = 0;
-  std::vector<float> coverage{};
-};
-
 /// Errors are OpenImageIO's words; empty: it is done.
 struct PictureModule {
   const char* version = nullptr;  ///< Of limn: another one's module may have other functions.
@@ -45,11 +39,6 @@ struct PictureModule {
   std::string (*read_header)(const std::filesystem::path& file, PictureHeader& header) = nullptr;
   /// One channel as floats, top row first; `values` has width x height of them.
   std::string (*read_channel)(const std::filesystem::path& file, int channel, std::span<float> values) = nullptr;
-
-  /// -1 where the font cannot be read.
-  int (*text_width_px)(const std::string& text, int size_px, const std::string& font) = nullptr;
-  /// Its baseline starts at (x, y). False where the font cannot be read.
-  bool (*draw_text)(const std::string& text, int x, int y, int size_px, const std::string& font, TextMask& mask) = nullptr;
 };
 
 /// What a module exports: void limn_picture_module(PictureModule&), which fills in its functions.

@@ -1,7 +1,5 @@
 // limn-pictures.so: OpenImageIO behind the functions of raymarch/files/picture_module.h, loaded when they are needed.
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
 #include "raymarch/files/picture_module.h"
@@ -44,26 +42,10 @@ std::string read_channel(const fs::path& file, int channel, std::span<float> val
   return "";
 }
 
-int text_width_px(const std::string& text, int size_px, const std::string& font) {
-  const OIIO::ROI roi = OIIO::ImageBufAlgo::text_size(text, size_px, font);
-  return roi.defined() ? roi.width() : -1;
-}
-
-bool draw_text(const std::string& text, int x, int y, int size_px, const std::string& font, TextMask& mask) {
-  OIIO::ImageBuf buffer(OIIO::ImageSpec(mask.width, mask.height, 1, OIIO::TypeDesc::FLOAT));
-  OIIO::ImageBufAlgo::zero(buffer);
-  const float white = 1.0f;
-  if (!OIIO::ImageBufAlgo::render_text(buffer, x, y, text, size_px, font, OIIO::cspan<float>(&white, 1))) return false;
-  mask.width = buffer.spec().width;
-  mask.height = buffer.spec().height;
-  mask.coverage.resize(static_cast<size_t>(mask.width) * static_cast<size_t>(mask.height));
-  return buffer.get_pixels(buffer.roi(), OIIO::TypeDesc::FLOAT, mask.coverage.data());
-}
-
 }  // namespace
 }  // namespace limn
 
 extern "C" __attribute__((visibility("default"))) void limn_picture_module(limn::PictureModule& module) {
   using namespace limn;
-  module = {kVersion, write, read_header, read_channel, text_width_px, draw_text};
+  module = {kVersion, write, read_header, read_channel};
 }

@@ -68,15 +68,25 @@ SampleInks inks_before(FrameHistory& history, size_t sample, const GBuffer& gbuf
   return inks;
 }
 
+template <class T>
+void copy_pixels(const Image<T>& from, Image<T>& to) {
+  to.width = from.width;
+  to.height = from.height;
+  to.pixels.resize(from.size());
+  parallel_parts(from.size(), size_t{1} << 16, [&](const IndexRange<size_t>& part) {
+    std::copy_n(from.pixels.data() + part.first, part.last - part.first, to.pixels.data() + part.first);
+  });
+}
+
 void keep(FrameHistory& history, size_t sample, const GBuffer& gbuffer, SampleInks& inks) {
   if (sample >= history.samples.size()) history.samples.resize(sample + 1);
   GBuffer& kept = history.samples[sample].gbuffer;
   kept.width = gbuffer.width;
   kept.height = gbuffer.height;
   kept.sample = gbuffer.sample;
-  kept.depth = gbuffer.depth;
-  kept.normal = gbuffer.normal;
-  kept.id = gbuffer.id;
+  copy_pixels(gbuffer.depth, kept.depth);
+  copy_pixels(gbuffer.normal, kept.normal);
+  copy_pixels(gbuffer.id, kept.id);
   history.samples[sample].inks = std::move(inks.now);
   if (sample == 0) history.pixels_before = std::move(inks.pixels_before);
 }

@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "raymarch/files/picture_module.h"
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
 #include "samples/compare/compare_job.h"
@@ -120,7 +119,6 @@ int run(const Options& options) {
   for (const fs::path& name : names) check_not_input(folder / name, files_of(input));
   std::vector<std::string> warnings = check(options, comparison);
   const StagedFolder staged(folder);
-  const std::future<void> pictures = load_picture_module_early();  // for the sheet's words
   draw_comparison(comparison, staged.work(), execution_settings(options.spec.threads), bar);
   bar.clear();
   add_empty(options, comparison, warnings);

@@ -29,6 +29,7 @@
 #include "samples/plan/plan_job.h"
 #include "sdf/error.h"
 #include "sdf/output_file.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -131,9 +132,15 @@ void write_animation(const Options& options, Render& render) {
   render.timings.write_ms += since_ms(start);
 }
 
-Image<glm::vec4> over_ground(Image<glm::vec4> picture, const glm::vec3& ground) {
-  for (glm::vec4& pixel : picture.pixels) pixel += (1.0f - pixel.a) * glm::vec4(ground, 1.0f);
-  return picture;
+Image<glm::vec4> over_ground(const Image<glm::vec4>& picture, const glm::vec3& ground) {
+  auto over = Image<glm::vec4>::unset(picture.width, picture.height);
+  parallel_parts(picture.size(), size_t{1} << 14, [&](const IndexRange<size_t>& part) {
+    for (size_t i = part.first; i < part.last; ++i) {
+      const glm::vec4& pixel = picture.pixels[i];
+      over.pixels[i] = pixel + (1.0f - pixel.a) * glm::vec4(ground, 1.0f);
+    }
+  });
+  return over;
 }
 
 /// Writes it; the time that took, ms. Of `render` only the frames of an animation change.

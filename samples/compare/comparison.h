@@ -136,8 +136,8 @@ Json comparison_json(const Comparison& comparison, const std::vector<std::filesy
 
 /// One picture of everything, with labels where a font is found (`has_labels`).
 struct Sheet {
-  Image<glm::vec4> picture;  ///< Linear, premultiplied RGBA.
-  bool has_labels = false;   ///< False where no font was found.
+  Image<glm::u8vec4> picture;  ///< sRGB.
+  bool has_labels = false;     ///< False where no font was found.
 };
 /// All cells of a drawn comparison, with their differences from the reference.
 Sheet contact_sheet(const Comparison& comparison);

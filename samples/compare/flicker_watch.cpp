@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
+#include "raymarch/scene/threads.h"
 #include "samples/compare/comparison.h"
 #include "samples/experiment/job.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -43,6 +46,28 @@ std::vector<MethodCall> without_hysteresis(BorderSpec spec, const SceneInput& in
   return method_calls(spec, input);
 }
 
+/// `before` and `now`: ink, and where its pixels were.
+FlipPlaces flip_places(const Picture& picture, const Image<std::int32_t>& pixels_before, const Image<std::uint8_t>& before,
+                       const Image<std::uint8_t>& now) {
+  const auto of_pixels = [&](const IndexRange<size_t>& part, FlipPlaces places) {
+    for (size_t i = part.first; i < part.last; ++i) {
+      const std::int32_t was = pixels_before.pixels[i];
+      if (was < 0) {
+        ++places.unseen;
+      } else if (before.pixels[static_cast<size_t>(was)] != now.pixels[i]) {
+        const double n_dot_v = double{picture.gbuffer.n_dot_v.pixels[i]};
+        places.lowest_n_dot_v = std::min(places.lowest_n_dot_v, n_dot_v);
+        places.highest_n_dot_v = std::max(places.highest_n_dot_v, n_dot_v);
+      }
+    }
+    return places;
+  };
+  const auto joined_places = [](const FlipPlaces& a, const FlipPlaces& b) {
+    return FlipPlaces{a.unseen + b.unseen, std::min(a.lowest_n_dot_v, b.lowest_n_dot_v), std::max(a.highest_n_dot_v, b.highest_n_dot_v)};
+  };
+  return parallel_reduce(pixels_before.size(), size_t{1} << 14, FlipPlaces{}, of_pixels, joined_places);
+}
+
 }  // namespace
 
 FlickerWatch watch_flicker(const ExperimentSpec& spec, const FramePath& path, const SceneInput& input, const SurfaceSettings& surface) {
@@ -67,22 +92,13 @@ void watch_frame(const Picture& picture, const FrameHistory& history, const Came
   const Image<std::uint8_t> before = watch.flips.ink;
   const InkFrame own{picture.border, history.pixels_before};
   FlickerWatch::Frame frame;
-  if (watch.no_reference.empty()) {
-    const Picture reference = draw_picture(watch.scene, watch.reference, camera, watch.picture, how, &watch.history);
-    frame.counts = count_flips(own, {reference.border, watch.history.pixels_before}, watch.flips);
-  } else {
-    frame.counts = count_flips(own, own, watch.flips);
-  }
-  for (size_t i = 0; i < history.pixels_before.size(); ++i) {
-    const std::int32_t was = history.pixels_before.pixels[i];
-    if (was < 0) {
-      ++frame.unseen;
-    } else if (before.pixels[static_cast<size_t>(was)] != watch.flips.ink.pixels[i]) {
-      const double n_dot_v = double{picture.gbuffer.n_dot_v.pixels[i]};
-      frame.lowest_n_dot_v = std::min(frame.lowest_n_dot_v, n_dot_v);
-      frame.highest_n_dot_v = std::max(frame.highest_n_dot_v, n_dot_v);
-    }
-  }
+  std::optional<Picture> reference;
+  if (watch.no_reference.empty()) reference = draw_picture(watch.scene, watch.reference, camera, watch.picture, how, &watch.history);
+  ThreadArena(how.threads).execute([&] {
+    const InkFrame given = reference ? InkFrame{reference->border, watch.history.pixels_before} : own;
+    frame.counts = count_flips(own, given, watch.flips);
+    frame.places = flip_places(picture, history.pixels_before, before, watch.flips.ink);
+  });
   watch.frames.push_back(frame);
 }
 
@@ -93,14 +109,14 @@ Json flicker_json(const FlickerWatch& watch) {
   Json frames = Json::array();
   for (size_t k = 0; k < watch.frames.size(); ++k) {
     const FlickerWatch::Frame& frame = watch.frames[k];
-    const bool any = frame.lowest_n_dot_v <= frame.highest_n_dot_v;
+    const bool any = frame.places.lowest_n_dot_v <= frame.places.highest_n_dot_v;
     frames.push_back({{"frame", k},
                       {"flips", frame.counts.flips},
                       {"reference_flips", compared(frame.counts.reference_flips)},
                       {"beyond", compared(frame.counts.beyond)},
                       {"border_pixels", frame.counts.border},
-                      {"unseen_pixels", frame.unseen},
-                      {"n_dot_v", any ? Json{frame.lowest_n_dot_v, frame.highest_n_dot_v} : Json()}});
+                      {"unseen_pixels", frame.places.unseen},
+                      {"n_dot_v", any ? Json{frame.places.lowest_n_dot_v, frame.places.highest_n_dot_v} : Json()}});
   }
   return {{"frames", watch.frames.size()},
           {"step_px", watch.path.step_px},

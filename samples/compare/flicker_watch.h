@@ -13,6 +13,12 @@
 
 namespace limn {
 
+/// Of a frame's pixels.
+struct FlipPlaces {
+  std::int64_t unseen = 0;                             ///< Their piece of surface was not in sight the frame before.
+  double lowest_n_dot_v = 1.0, highest_n_dot_v = 0.0;  ///< Of those that flipped; lowest above highest where none did.
+};
+
 /// A sequence being watched: the reference, drawn by the same methods without hysteresis, and the counts so far.
 struct FlickerWatch {
   FramePath path{};
@@ -25,8 +31,7 @@ struct FlickerWatch {
   FlipHistory flips{};
   struct Frame {
     FrameFlips counts{};
-    std::int64_t unseen = 0;                             ///< Pixels whose piece of surface was not in sight the frame before.
-    double lowest_n_dot_v = 1.0, highest_n_dot_v = 0.0;  ///< Of the pixels that flipped; lowest above highest where none did.
+    FlipPlaces places{};
   };
   std::vector<Frame> frames{};
 };

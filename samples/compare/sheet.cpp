@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "raymarch/picture/pixel_lanes.h"
 #include "samples/compare/compare_words.h"
 #include "samples/compare/comparison.h"
 #include "samples/compare/sheet_canvas.h"
@@ -121,7 +122,7 @@ Canvas one_method_sheet(const Comparison& comparison) {
 }  // namespace
 
 Sheet contact_sheet(const Comparison& comparison) {
-  return {comparison.is_matrix() ? matrix_sheet(comparison) : one_method_sheet(comparison), has_font()};
+  return {comparison.is_matrix() ? matrix_sheet(comparison) : encoded(one_method_sheet(comparison)), has_font()};
 }
 
 }  // namespace limn

@@ -32,6 +32,6 @@ void draw_head(Canvas& canvas, int x, int y, const std::string& title, const std
 std::vector<std::string> skipped_lines(const Comparison& comparison, int width);
 
 /// The sheet of several methods: a row each, a column for each model.
-Canvas matrix_sheet(const Comparison& comparison);
+Image<glm::u8vec4> matrix_sheet(const Comparison& comparison);
 
 }  // namespace limn

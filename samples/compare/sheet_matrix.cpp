@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "raymarch/picture/pixel_lanes.h"
 #include "samples/compare/compare_words.h"
 #include "samples/compare/sheet_canvas.h"
 #include "samples/page/panels.h"
@@ -42,47 +43,35 @@ std::vector<std::string> note_lines(const Cell& cell) {
   return shortened(std::move(lines));
 }
 
-/// What a cell of the sheet shows.
-struct SheetCell {
+/// Lines of text of a cell.
+struct CellWords {
   std::vector<std::string> captions, notes;
-  Canvas panel;
 };
 
-/// Of the cells of the comparison, in their order; empty where they are skipped. Lines are laid out by one thread while others make the
-/// pictures small.
-std::vector<SheetCell> sheet_cells(const Comparison& comparison, int panel_height) {
-  std::vector<SheetCell> cells(comparison.cells.size());
-  parallel_invoke(
-      [&] {
-        for (size_t i = 0; i < cells.size(); ++i) {
-          const Cell& cell = comparison.cells[i];
-          if (!cell.skipped.empty()) continue;
-          cells[i].captions = caption_lines(comparison, cell);
-          cells[i].notes = note_lines(cell);
-        }
-      },
-      [&] {
-        parallel_each(cells.size(), [&](size_t i) {
-          const Cell& cell = comparison.cells[i];
-          if (cell.skipped.empty()) cells[i].panel = fitted(linear_composite(cell, comparison.seen), kPanel, panel_height);
-        });
-      });
-  return cells;
+/// Of the cells of the comparison, in their order; empty where they are skipped.
+std::vector<CellWords> words_of(const Comparison& comparison) {
+  std::vector<CellWords> words(comparison.cells.size());
+  parallel_each(words.size(), [&](size_t i) {
+    const Cell& cell = comparison.cells[i];
+    if (cell.skipped.empty()) words[i] = {caption_lines(comparison, cell), note_lines(cell)};
+  });
+  return words;
 }
 
 /// Cells are in the order of Comparison::cells: all methods of a model, then those of the next.
 size_t index_of(const Comparison& comparison, size_t model, size_t method) { return model * comparison.methods.size() + method; }
 
-int row_height(const Comparison& comparison, const std::vector<SheetCell>& cells, size_t method, int panel_height) {
+int row_height(const Comparison& comparison, const std::vector<CellWords>& words, size_t method, int panel_height) {
   size_t lines = 0;
   for (const size_t model : columns_of(comparison)) {
-    const SheetCell& cell = cells[index_of(comparison, model, method)];
+    const CellWords& cell = words[index_of(comparison, model, method)];
     lines = std::max(lines, cell.captions.size() + cell.notes.size());
   }
   return kRowHead + panel_height + kLine * static_cast<int>(lines) + kSheetGap;
 }
 
-void draw_cell(Canvas& canvas, const Cell& cell, const SheetCell& shown, int panel_height, int x, int y) {
+void draw_cell(Canvas& canvas, const Comparison& comparison, size_t index, const CellWords& words, int panel_height, int x, int y) {
+  const Cell& cell = comparison.cells[index];
   if (!cell.skipped.empty()) {
     place(canvas, {}, x, y, kPanel, panel_height);
     int line_y = y + panel_height / 2 - 20;
@@ -91,10 +80,10 @@ void draw_cell(Canvas& canvas, const Cell& cell, const SheetCell& shown, int pan
       draw_text(canvas, x + 20, line_y += 20, line, kNote);
     return;
   }
-  place(canvas, shown.panel, x, y, kPanel, panel_height);
-  draw_captions(canvas, x, y + panel_height, shown.captions);
-  int line_y = y + panel_height + kLine * static_cast<int>(shown.captions.size());
-  for (const std::string& line : shown.notes) draw_text(canvas, x, line_y += kLine, line, kNote);
+  place(canvas, fitted(linear_composite(cell, comparison.seen), kPanel, panel_height), x, y, kPanel, panel_height);
+  draw_captions(canvas, x, y + panel_height, words.captions);
+  int line_y = y + panel_height + kLine * static_cast<int>(words.captions.size());
+  for (const std::string& line : words.notes) draw_text(canvas, x, line_y += kLine, line, kNote);
 }
 
 std::string one_line(const std::string& text, const TextStyle& style, int width) {
@@ -102,50 +91,79 @@ std::string one_line(const std::string& text, const TextStyle& style, int width)
   return lines.empty() ? "" : lines.front() + (lines.size() > 1 ? " ..." : "");
 }
 
-}  // namespace
+int x_of(size_t column) { return kSheetGap + static_cast<int>(column) * (kPanel + kSheetGap); }
 
-Canvas matrix_sheet(const Comparison& comparison) {
+Canvas paper(int width, int height) { return {width, height, glm::vec4(kPaper, 1.0f)}; }
+
+/// The title and the models' names.
+Canvas head_band(const Comparison& comparison, int width) {
   const std::vector<size_t> columns = columns_of(comparison);
-  const double aspect = static_cast<double>(comparison.seen.height) / comparison.seen.width;
-  const int panel_height = std::clamp(static_cast<int>(kPanel * aspect), 140, kPanel);
-  const int width = kSheetGap + std::max(static_cast<int>(columns.size()), 2) * (kPanel + kSheetGap);
   const auto intro = wrapped(summary_sentences(comparison).front(), kBody, width - 2 * kSheetGap);
   const int top = kSheetGap + 40 + 23 * static_cast<int>(intro.size()) + 8;
-  std::vector<std::string> skipped;
-  for (const ComparedModel& model : comparison.models) {
-    if (model.skipped.empty()) continue;
-    const auto more = wrapped("Not shown: " + model.title + ": " + model.skipped, kNote, width - 2 * kSheetGap);
-    skipped.insert(skipped.end(), more.begin(), more.end());
-  }
-  const std::vector<SheetCell> cells = sheet_cells(comparison, panel_height);
-  int height = top + kColumnHead;
-  for (size_t method = 0; method < comparison.methods.size(); ++method) height += row_height(comparison, cells, method, panel_height);
-  Canvas canvas(width, height + 20 * static_cast<int>(skipped.size()) + kSheetGap, glm::vec4(kPaper, 1.0f));
-
+  Canvas canvas = paper(width, top + kColumnHead);
   draw_text(canvas, kSheetGap, kSheetGap + 24,
             heading(comparison.input_name) + ": " + std::to_string(comparison.methods.size()) + " methods, " +
                 std::to_string(columns.size()) + (columns.size() == 1 ? " model" : " models"),
             kTitle);
   int y = kSheetGap + 40;
   for (const std::string& line : intro) draw_text(canvas, kSheetGap, y += 23, line, kBody);
-  const auto x_of = [](size_t column) { return kSheetGap + static_cast<int>(column) * (kPanel + kSheetGap); };
   for (size_t column = 0; column < columns.size(); ++column) {
     const ComparedModel& model = comparison.models[columns[column]];
     draw_head(canvas, x_of(column), top, (column == 0 ? "Reference: " : "") + heading(model.title), model.details);
   }
-  y = top + kColumnHead;
-  for (size_t method = 0; method < comparison.methods.size(); ++method) {
-    fill(canvas, kSheetGap, y, width - 2 * kSheetGap, 1, kFrame);
-    const ComparedMethod& one = comparison.methods[method];
-    draw_head(canvas, kSheetGap, y + 2, one.name, one_line(one.help, kNote, width - 2 * kSheetGap - 40));
-    for (size_t column = 0; column < columns.size(); ++column) {
-      const size_t index = index_of(comparison, columns[column], method);
-      draw_cell(canvas, comparison.cells[index], cells[index], panel_height, x_of(column), y + kRowHead);
-    }
-    y += row_height(comparison, cells, method, panel_height);
+  return canvas;
+}
+
+/// A method's pictures.
+Canvas method_band(const Comparison& comparison, const std::vector<CellWords>& words, size_t method, int panel_height, int width) {
+  Canvas canvas = paper(width, row_height(comparison, words, method, panel_height));
+  fill(canvas, kSheetGap, 0, width - 2 * kSheetGap, 1, kFrame);
+  const ComparedMethod& one = comparison.methods[method];
+  draw_head(canvas, kSheetGap, 2, one.name, one_line(one.help, kNote, width - 2 * kSheetGap - 40));
+  const std::vector<size_t> columns = columns_of(comparison);
+  for (size_t column = 0; column < columns.size(); ++column) {
+    const size_t index = index_of(comparison, columns[column], method);
+    draw_cell(canvas, comparison, index, words[index], panel_height, x_of(column), kRowHead);
   }
+  return canvas;
+}
+
+/// What is not shown.
+Canvas foot_band(const Comparison& comparison, int width) {
+  std::vector<std::string> skipped;
+  for (const ComparedModel& model : comparison.models) {
+    if (model.skipped.empty()) continue;
+    const auto more = wrapped("Not shown: " + model.title + ": " + model.skipped, kNote, width - 2 * kSheetGap);
+    skipped.insert(skipped.end(), more.begin(), more.end());
+  }
+  Canvas canvas = paper(width, 20 * static_cast<int>(skipped.size()) + kSheetGap);
+  int y = 0;
   for (const std::string& line : skipped) draw_text(canvas, kSheetGap, y += 20, line, kNote);
   return canvas;
+}
+
+}  // namespace
+
+Image<glm::u8vec4> matrix_sheet(const Comparison& comparison) {
+  const size_t columns = columns_of(comparison).size(), methods = comparison.methods.size();
+  const double aspect = static_cast<double>(comparison.seen.height) / comparison.seen.width;
+  const int panel_height = std::clamp(static_cast<int>(kPanel * aspect), 140, kPanel);
+  const int width = kSheetGap + std::max(static_cast<int>(columns), 2) * (kPanel + kSheetGap);
+  const std::vector<CellWords> words = words_of(comparison);
+  // Bands are drawn side by side and become bytes at once: as floats a sheet of many methods would take more memory than all its pictures.
+  std::vector<Image<glm::u8vec4>> bands(methods + 2);
+  parallel_each(bands.size(), [&](size_t i) {
+    bands[i] = encoded(i == 0         ? head_band(comparison, width)
+                       : i <= methods ? method_band(comparison, words, i - 1, panel_height, width)
+                                      : foot_band(comparison, width));
+  });
+  Image<glm::u8vec4> sheet;
+  sheet.width = width;
+  for (const Image<glm::u8vec4>& band : bands) {
+    sheet.height += band.height;
+    sheet.pixels.insert(sheet.pixels.end(), band.pixels.begin(), band.pixels.end());
+  }
+  return sheet;
 }
 
 }  // namespace limn

@@ -4,9 +4,10 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 
-#include "raymarch/files/picture_module.h"
+#include "samples/page/glyphs.h"
 
 namespace limn {
 namespace {
@@ -33,29 +34,33 @@ std::string font_file(bool bold) {
 bool has_font() { return !font_file(false).empty(); }
 
 int text_width_px(const std::string& text, const TextStyle& style) {
-  const std::string font = font_file(style.bold);
-  if (font.empty() || text.empty()) return 0;
-  return std::max(picture_module().text_width_px(text, style.size_px, font), 0);
+  // From the leftmost ink to the rightmost; spaces at the ends have none.
+  int pen = 0, left = std::numeric_limits<int>::max(), right = std::numeric_limits<int>::min();
+  for (const Glyph* glyph : glyphs_of(text, font_file(style.bold), style.size_px)) {
+    left = std::min(left, pen + glyph->left_px);
+    right = std::max(right, pen + glyph->left_px + glyph->width_px);
+    pen += glyph->advance_px;
+  }
+  return std::max(right - std::min(left, right), 0);
 }
 
 void draw_text(Image<glm::vec4>& picture, int x, int y, const std::string& text, const TextStyle& style) {
-  const std::string font = font_file(style.bold);
-  if (font.empty() || text.empty()) return;
-  const int width = text_width_px(text, style);
-  if (style.align == TextAlign::center) x -= width / 2;
-  if (style.align == TextAlign::right) x -= width;
-  const int margin = style.size_px;
-  TextMask mask{width + 2 * margin, 3 * style.size_px, {}};
-  if (!picture_module().draw_text(text, margin, 2 * style.size_px, style.size_px, font, mask)) return;
-  for (int j = 0; j < mask.height; ++j) {
-    for (int i = 0; i < mask.width; ++i) {
-      const int px = x - margin + i, py = y - 2 * style.size_px + j;
-      const float covered = mask.coverage[static_cast<size_t>(j) * static_cast<size_t>(mask.width) + static_cast<size_t>(i)];
-      if (covered <= 0.0f || !picture.inside(px, py)) continue;
-      // Fonts are hinted for blending in display values; in linear light dark letters would come out thin.
-      const float share = 1.0f - std::pow(1.0f - std::min(covered, 1.0f), 2.2f);
-      picture.at(px, py) = glm::mix(picture.at(px, py), glm::vec4(style.color, 1.0f), share);
+  if (style.align != TextAlign::left) {
+    const int width = text_width_px(text, style);
+    x -= style.align == TextAlign::center ? width / 2 : width;
+  }
+  for (const Glyph* glyph : glyphs_of(text, font_file(style.bold), style.size_px)) {
+    const std::uint8_t* covered = glyph->coverage.data();
+    for (int j = 0; j < glyph->height_px; ++j) {
+      for (int i = 0; i < glyph->width_px; ++i, ++covered) {
+        const int px = x + glyph->left_px + i, py = y - glyph->top_px + j;
+        if (*covered == 0 || !picture.inside(px, py)) continue;
+        // Fonts are hinted for blending in display values; in linear light dark letters would come out thin.
+        const float share = 1.0f - std::pow(1.0f - static_cast<float>(*covered) / 255.0f, 2.2f);
+        picture.at(px, py) = glm::mix(picture.at(px, py), glm::vec4(style.color, 1.0f), share);
+      }
     }
+    x += glyph->advance_px;
   }
 }
 

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <numeric>
+#include <mutex>
 
 #include "raymarch/files/deflate.h"
 #include "raymarch/files/png_filter.h"
@@ -28,10 +28,41 @@ struct Block {
   size_t filtered_bytes = 0;
 };
 
+/// Blocks of a background, of which most pictures have many: all rows are empty, by the same filter. Compressed once for a picture.
+class EmptyBlocks {
+ public:
+  EmptyBlocks(int rows, size_t row_bytes) : rows_(rows), row_bytes_(row_bytes) {}
+
+  /// Of a block in the middle of the stream, of as many rows as all but the last have; null where there is none such.
+  const Block* of(const Block& block, bool last, const std::uint8_t* filtered, int empty_rows) {
+    if (last || empty_rows != rows_ || block.last_row - block.first_row != rows_) return nullptr;
+    for (int row = 1; row < rows_; ++row)
+      if (filtered[static_cast<size_t>(row) * row_bytes_] != filtered[0]) return nullptr;
+    Made& made = made_[filtered[0] == 0 ? 0 : 1];
+    std::call_once(made.once, [&] {
+      const std::span bytes(filtered, static_cast<size_t>(rows_) * row_bytes_);
+      Deflater deflater;
+      const std::span compressed = deflater.compress(bytes, DeflatePart::inner, DeflateContent::runs);
+      made.block = {0, rows_, {compressed.begin(), compressed.end()}, adler32_of(bytes), bytes.size()};
+    });
+    return &made.block;
+  }
+
+ private:
+  struct Made {
+    std::once_flag once{};
+    Block block{};
+  };
+  int rows_ = 0;
+  size_t row_bytes_ = 0;
+  std::array<Made, 2> made_{};  // by filter 0, by filter 2
+};
+
 /// What one thread needs to filter and compress block after block.
 class Compressor {
  public:
-  Compressor(const PngPicture& picture, int block_rows) : picture_(picture), row_bytes_(row_bytes(picture)) {
+  Compressor(const PngPicture& picture, int block_rows, EmptyBlocks& empty_blocks)
+      : picture_(picture), row_bytes_(row_bytes(picture)), empty_blocks_(empty_blocks) {
     filtered_.resize(static_cast<size_t>(block_rows) * row_bytes_);
   }
 
@@ -41,31 +72,41 @@ class Compressor {
 
   void compress(Block& block, bool last) {
     const size_t count = row_bytes_ - 1;
+    int empty_rows = 0;
     for (int row = block.first_row; row < block.last_row; ++row) {
       const std::uint8_t* const bytes = picture_.pixels.data() + static_cast<size_t>(row) * count;
-      filter_png_row({bytes, count}, row > 0 ? bytes - count : nullptr, static_cast<size_t>(picture_.channels),
-                     &filtered_[static_cast<size_t>(row - block.first_row) * row_bytes_]);
+      empty_rows += filter_png_row({bytes, count}, row > 0 ? bytes - count : nullptr, static_cast<size_t>(picture_.channels),
+                                   &filtered_[static_cast<size_t>(row - block.first_row) * row_bytes_]);
+    }
+    if (const Block* const empty = empty_blocks_.of(block, last, filtered_.data(), empty_rows)) {
+      block.compressed = empty->compressed;
+      block.checksum = empty->checksum;
+      block.filtered_bytes = empty->filtered_bytes;
+      return;
     }
     const std::span filtered(filtered_.data(), static_cast<size_t>(block.last_row - block.first_row) * row_bytes_);
-    block.filtered_bytes = filtered.size();
-    block.checksum = adler32_of(filtered);
     const std::span compressed = deflater_.compress(filtered, last ? DeflatePart::last : DeflatePart::inner);
     block.compressed.assign(compressed.begin(), compressed.end());
+    block.checksum = adler32_of(filtered);
+    block.filtered_bytes = filtered.size();
   }
 
  private:
   const PngPicture& picture_;
   size_t row_bytes_ = 0;
+  EmptyBlocks& empty_blocks_;
   Deflater deflater_{};
   std::vector<std::uint8_t> filtered_{};
 };
 
 std::vector<Block> compressed_blocks(const PngPicture& picture) {
-  const int rows = static_cast<int>(std::max<size_t>(1, kBlockBytes / Compressor::row_bytes(picture)));
+  const size_t row_bytes = Compressor::row_bytes(picture);
+  const int rows = static_cast<int>(std::max<size_t>(1, kBlockBytes / row_bytes));
   std::vector<Block> blocks;
   for (int row = 0; row < picture.height; row += rows) blocks.push_back({row, std::min(row + rows, picture.height)});
+  EmptyBlocks empty_blocks(rows, row_bytes);
   parallel_parts(blocks.size(), size_t{1}, [&](const IndexRange<size_t>& part) {
-    Compressor compressor(picture, std::min(rows, picture.height));
+    Compressor compressor(picture, std::min(rows, picture.height), empty_blocks);
     for (size_t i = part.first; i < part.last; ++i) compressor.compress(blocks[i], i + 1 == blocks.size());
   });
   return blocks;

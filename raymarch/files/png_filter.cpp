@@ -77,7 +77,7 @@ size_t best_filter(std::span<const std::uint8_t> row, const std::uint8_t* above,
 
 }  // namespace
 
-void filter_png_row(std::span<const std::uint8_t> row, const std::uint8_t* above, size_t pixel_bytes, std::uint8_t* to) {
+bool filter_png_row(std::span<const std::uint8_t> row, const std::uint8_t* above, size_t pixel_bytes, std::uint8_t* to) {
   const size_t count = row.size();
   const std::uint8_t* const bytes = row.data();
   // As most rows of background are, empty or the same as the row above: no other filter leaves less than nothing, and what is found first
@@ -86,7 +86,7 @@ void filter_png_row(std::span<const std::uint8_t> row, const std::uint8_t* above
   if (is_empty || (above != nullptr && std::memcmp(bytes, above, count) == 0)) {
     *to = is_empty ? 0 : 2;
     std::fill_n(to + 1, count, std::uint8_t{0});
-    return;
+    return true;
   }
   const size_t filter = best_filter(row, above, pixel_bytes);
   *to++ = static_cast<std::uint8_t>(filter);
@@ -98,6 +98,7 @@ void filter_png_row(std::span<const std::uint8_t> row, const std::uint8_t* above
   } else {
     for (size_t i = 0; i < count; ++i) to[i] = static_cast<std::uint8_t>(bytes[i] - above[i]);
   }
+  return false;
 }
 
 }  // namespace limn

@@ -69,7 +69,7 @@ find_package(limn).")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME liblimn-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 # What find_package(limn) looks for, and the helper programs that the libraries run.
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "limn (= ${PROJECT_VERSION}-1), libopenvdb-dev, libboost-dev, libboost-iostreams-dev, libblosc-dev, zlib1g-dev, libosd-dev, libopenimageio-dev, libopencv-core-dev, libopencv-imgproc-dev, libhwy-dev, libembree-dev, libtbb-dev, libglm-dev, libfmt-dev, libpng-dev, libopenexr-dev, libisal-dev, nlohmann-json3-dev, libcairo2-dev, pkg-config")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "limn (= ${PROJECT_VERSION}-1), libopenvdb-dev, libboost-dev, libboost-iostreams-dev, libblosc-dev, zlib1g-dev, libosd-dev, libopenimageio-dev, libopencv-core-dev, libopencv-imgproc-dev, libhwy-dev, libembree-dev, libtbb-dev, libglm-dev, libfmt-dev, libpng-dev, libopenexr-dev, libisal-dev, nlohmann-json3-dev, libcairo2-dev, libfreetype-dev, pkg-config")
 
 set(CPACK_COMPONENT_DOC_DESCRIPTION "documentation of limn
 How to start, a cookbook, the methods and how they fail, what was measured,

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <memory>
 #include <random>
 
 #include "tests/random_seed.h"
@@ -55,11 +56,13 @@ TEST(Deflate, ZlibReadsStreamsAndParts) {
       const size_t sizes[] = {0, 1, 2, random() % 100, random() % 70000, random() % 600000};
       const Bytes bytes = some_bytes(sizes[random() % std::size(sizes)], random);
       plain.insert(plain.end(), bytes.begin(), bytes.end());
-      const std::span compressed = deflater.compress(bytes, part + 1 < parts ? DeflatePart::inner : DeflatePart::last);
+      const DeflateContent content = random() % 3 == 0 ? DeflateContent::runs : DeflateContent::mixed;
+      const std::span compressed = deflater.compress(bytes, part + 1 < parts ? DeflatePart::inner : DeflatePart::last, content);
       raw.insert(raw.end(), compressed.begin(), compressed.end());
     }
     ASSERT_EQ(inflated(raw, plain.size(), -15), plain) << "trial " << trial;
-    const std::span whole = deflater.compress(plain, DeflatePart::whole_stream);
+    const std::span whole =
+        deflater.compress(plain, DeflatePart::whole_stream, trial % 3 == 0 ? DeflateContent::runs : DeflateContent::mixed);
     ASSERT_EQ(inflated({whole.begin(), whole.end()}, plain.size(), 15), plain) << "trial " << trial;
     ASSERT_EQ(adler32_of(plain), adler32(1, plain.data(), static_cast<uInt>(plain.size())));
   }
@@ -78,13 +81,31 @@ TEST(Deflate, BytesDoNotDependOnWhatWasCompressedBefore) {
   }
 }
 
+TEST(Deflate, BytesDoNotDependOnWhereTheyAreMade) {
+  std::mt19937 random(random_seed());
+  std::vector<Bytes> all;
+  for (int i = 0; i < 20; ++i) all.push_back(some_bytes(200 + random() % 3000, random));
+  // Kept until the end, each in a place of its own.
+  std::vector<std::unique_ptr<Deflater>> deflaters;
+  std::vector<Bytes> first;
+  for (int place = 0; place < 400; ++place) {
+    Deflater& deflater = *deflaters.emplace_back(std::make_unique<Deflater>());
+    for (size_t i = 0; i < all.size(); ++i) {
+      const std::span compressed = deflater.compress(all[i], DeflatePart::whole_stream);
+      if (place == 0) first.emplace_back(compressed.begin(), compressed.end());
+      ASSERT_TRUE(std::equal(compressed.begin(), compressed.end(), first[i].begin(), first[i].end())) << "place " << place;
+    }
+  }
+}
+
 TEST(Deflate, NoiseGrowsByLittleAndRunsShrinkToNothing) {
   std::mt19937 random(random_seed());
   Deflater deflater;
   Bytes noise(300000);
   for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(random());
-  EXPECT_LT(deflater.compress(noise, DeflatePart::whole_stream).size(), noise.size() + noise.size() / 100);
+  EXPECT_LT(deflater.compress(noise, DeflatePart::whole_stream).size(), noise.size() + noise.size() / 50);
   EXPECT_LT(deflater.compress(Bytes(300000, 7), DeflatePart::whole_stream).size(), 3000u);
+  EXPECT_LT(deflater.compress(Bytes(300000, 7), DeflatePart::whole_stream, DeflateContent::runs).size(), 500u);
 }
 
 }  // namespace

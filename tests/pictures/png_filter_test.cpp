@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <random>
 #include <vector>
@@ -51,7 +52,8 @@ TEST(PngFilter, IsTheOneThatLeavesLeast) {
       }
       const bool is_first = random() % 4 == 0;
       Bytes to(row.size() + 1);
-      filter_png_row(row, is_first ? nullptr : above.data(), pixel_bytes, to.data());
+      const bool is_empty = filter_png_row(row, is_first ? nullptr : above.data(), pixel_bytes, to.data());
+      ASSERT_EQ(is_empty, std::all_of(to.begin() + 1, to.end(), [](std::uint8_t byte) { return byte == 0; }));
       ASSERT_EQ(to, filtered_plainly(row, is_first ? nullptr : &above, pixel_bytes)) << "trial " << trial << ", " << target;
       ++chosen[to[0]];
     }

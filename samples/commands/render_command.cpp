@@ -393,17 +393,18 @@ int run(const Options& given) {
 
   // A local level set says itself when it needs too much: what it takes is not known before.
   const bool is_local_volume = render.local && has_local_bricks(render.surface.kind);
-  if (!is_local_volume)
-    check_cost(options, render.input.scene, render.surface,
-               picture_load(cameras.front(), planned_picture(render), pictures_of(options),
-                            std::any_of(render.outputs.begin(), render.outputs.end(), has_layers)));
+  const bool by_module =
+      std::any_of(render.outputs.begin(), render.outputs.end(), [&](const auto& file) { return !is_png(file) && !has_layers(file); });
+  if (!is_local_volume) {
+    PictureLoad load = picture_load(cameras.front(), planned_picture(render), pictures_of(options), layered);
+    if (by_module) load.library_bytes = kPictureLibraryBytes;
+    check_cost(options, render.input.scene, render.surface, load);
+  }
   render.warnings =
       warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods), .meshes = &render.meshes});
 
   // While the surface is built.
   std::future<void> pictures;
-  const bool by_module =
-      std::any_of(render.outputs.begin(), render.outputs.end(), [&](const auto& file) { return !is_png(file) && !has_layers(file); });
   if (by_module) pictures = load_picture_module_early();
   const auto build_start = std::chrono::steady_clock::now();
   std::vector<std::string> levels;

@@ -13,12 +13,12 @@
 namespace limn {
 namespace {
 
-// Peaks at 1 to 16 million pixels. A composite, the ink and a method's own; an .exr file is put together in memory.
-constexpr double kCompositeBytes = 36.0, kExrBytes = 100.0, kSumBytes = 20.0;
+// Peaks at 1 to 16 million pixels. A composite, the ink and a method's own.
+constexpr double kCompositeBytes = 36.0, kSumBytes = 20.0;
 // Of a picture that is drawn tile by tile into bytes: these, a byte of facts for its notes, and what is compressed.
 constexpr double kPngBytes = 12.0, kColorSumBytes = 16.0;
-constexpr double kMatteBytes = 160.0;  // indices and counts of the samples, colours, and a level of ids and coverages of each kind
-constexpr double kMethodMs = 4e-5, kExrMs = 6e-4, kImageMs = 1e-4;  // a pixel
+constexpr double kMatteBytes = 90.0;  // indices and counts of the samples, colours, and a level of ids and coverages of each kind
+constexpr double kMethodMs = 4e-5, kExrMs = 1.5e-4, kImageMs = 1e-4;  // a pixel
 constexpr double kStartMs = 50.0;
 /// A machine is rarely more than twice as fast as that of the constants.
 constexpr double kTimeTrust = 2.0;
@@ -122,13 +122,11 @@ PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, i
   const double layer_bytes = 4.0 * (layers.depth + layers.n_dot_v + layers.id + layers.material + layers.face) +
                              12.0 * (layers.position + layers.normal) + layers.status;
   PictureLoad load;
-  load.library_bytes = writes_layers ? kPictureLibraryBytes : 0.0;
   load.pixels = static_cast<double>(camera.width_px) * camera.height_px;
   load.bytes_per_pixel = kCompositeBytes + layer_bytes;
   if (picture.samples > 1) load.bytes_per_pixel += kSumBytes + layer_bytes;
   if (views > 1) load.bytes_per_pixel += kCompositeBytes + layer_bytes;  // what is written while the next one is traced
   if (in_bytes) load.bytes_per_pixel = (views > 1 ? 2.0 : 1.0) * kPngBytes + (picture.samples > 1 ? kColorSumBytes : 0.0);
-  if (writes_layers) load.bytes_per_pixel += kExrBytes;
   if (picture.mattes) load.bytes_per_pixel += kMatteBytes;
   load.pictures = static_cast<double>(views) * picture.samples;
   load.other_ms =

@@ -9,7 +9,7 @@
 
 namespace limn {
 
-/// What the program takes before it does anything; the library of pictures (OpenImageIO), which comes when one that is no PNG is written;
+/// What the program takes before it does anything; the library of pictures (OpenImageIO), which comes when a .tif or .jpg is written;
 /// and that of volumes (OpenVDB), which comes when a volume is read or written.
 inline constexpr double kProgramBytes = 18e6, kPictureLibraryBytes = 125e6, kVolumeLibraryBytes = 40e6;
 
@@ -22,7 +22,7 @@ struct PictureLoad {
   double bytes_per_pixel = 0.0;  ///< Held at a time.
   double pictures = 0.0;         ///< Traced: views times samples.
   double other_ms = 0.0;         ///< Methods, writing.
-  double library_bytes = 0.0;    ///< kPictureLibraryBytes where pictures other than PNGs are written.
+  double library_bytes = 0.0;    ///< kPictureLibraryBytes where a .tif or .jpg is written.
 };
 /// Of `views` pictures drawn one after the other; `writes_layers`: as .exr files.
 PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, int views, bool writes_layers);

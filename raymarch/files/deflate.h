@@ -16,11 +16,6 @@ enum class DeflatePart : std::uint8_t {
   whole_stream  ///< A stream of its own, in zlib's wrapping (RFC 1950).
 };
 
-enum class DeflateContent : std::uint8_t {
-  mixed,
-  runs  ///< Nearly nothing but runs of one byte: by zlib's run-length coding, which takes longer, to a tenth of what igzip makes of them.
-};
-
 /// What one thread needs to compress part after part.
 class Deflater {
  public:
@@ -29,17 +24,18 @@ class Deflater {
   Deflater(const Deflater&) = delete;
   Deflater& operator=(const Deflater&) = delete;
 
-  /// What it returns is there until the next call. Throws MachineError where a library fails.
-  std::span<const std::uint8_t> compress(std::span<const std::uint8_t> bytes, DeflatePart part,
-                                         DeflateContent content = DeflateContent::mixed);
+  /// What it returns is there until the next call. Throws MachineError where the library fails.
+  std::span<const std::uint8_t> compress(std::span<const std::uint8_t> bytes, DeflatePart part);
 
  private:
   struct State;
-  std::span<const std::uint8_t> compress_runs(std::span<const std::uint8_t> bytes, DeflatePart part);
-  std::span<const std::uint8_t> compress_mixed(std::span<const std::uint8_t> bytes, DeflatePart part);
   std::unique_ptr<State> state_;
   std::vector<std::uint8_t> compressed_{};
 };
+
+/// An inner part of nearly nothing but runs of one byte, by zlib's run-length coding: it takes longer than igzip, which would make five
+/// times as much of them. Throws MachineError where zlib fails.
+std::vector<std::uint8_t> compress_runs(std::span<const std::uint8_t> bytes);
 
 /// Of a part of a zlib stream, for its checksum.
 std::uint32_t adler32_of(std::span<const std::uint8_t> bytes);

@@ -41,9 +41,7 @@ class EmptyBlocks {
     Made& made = made_[filtered[0] == 0 ? 0 : 1];
     std::call_once(made.once, [&] {
       const std::span bytes(filtered, static_cast<size_t>(rows_) * row_bytes_);
-      Deflater deflater;
-      const std::span compressed = deflater.compress(bytes, DeflatePart::inner, DeflateContent::runs);
-      made.block = {0, rows_, {compressed.begin(), compressed.end()}, adler32_of(bytes), bytes.size()};
+      made.block = {0, rows_, compress_runs(bytes), adler32_of(bytes), bytes.size()};
     });
     return &made.block;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures in and out through OpenImageIO. Files are written whole: to a temporary file beside the target, then renamed.
+// Pictures in and out. Files are written whole: to a temporary file beside the target, then renamed.
 
 #include <filesystem>
 #include <map>

@@ -61,7 +61,6 @@ std::vector<std::filesystem::path> layer_files(const Comparison& comparison) {
 // Without a font the sheet has no words; the page has them all.
 bool write_comparison(const Comparison& comparison, const std::filesystem::path& folder) {
   bool has_labels = false;
-  // Side by side: lines of text, of which the sheet has many, are drawn by one thread at a time.
   parallel_invoke(
       [&] {
         const Sheet sheet = contact_sheet(comparison);

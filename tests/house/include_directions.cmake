@@ -74,7 +74,7 @@ foreach(folder sdf subdiv raymarch samples)
       endif()
       # Heavy types stay behind .cpp files: a header that names them makes every reader pay. The exceptions carry the library's name
       # (openvdb_grid.h), are included by .cpp files alone and are not installed.
-      if(file MATCHES "\\.h$" AND line MATCHES "<(openvdb|opensubdiv|embree|OpenImageIO|opencv|assimp|CLI|toml)")
+      if(file MATCHES "\\.h$" AND line MATCHES "<(openvdb|opensubdiv|embree|OpenImageIO|openexr|isa-l|ft2build|opencv|assimp|CLI|toml)")
         if(NOT file MATCHES "/${CMAKE_MATCH_1}_[^/]*$")
           message(SEND_ERROR "${file}: ${line}\n  this library's types stay in .cpp files, or in a header named ${CMAKE_MATCH_1}_*.h")
         endif()

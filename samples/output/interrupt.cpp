@@ -20,7 +20,7 @@ namespace {
 std::atomic<int> caught_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free);
 char time_line[256] = "", memory_line[256] = "";
-std::atomic<bool> time_line_said{false}, memory_line_said{false};
+std::atomic<bool> time_line_said{false}, out_of_memory{false};
 
 constexpr unsigned kPatienceSeconds = 1;
 
@@ -29,9 +29,10 @@ void keep_line(const std::string& line, char (&kept)[256]) {
   std::memcpy(kept, whole.c_str(), whole.size() + 1);
 }
 
+void say(const char* line) { [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line, std::strlen(line)); }
+
 void say_once(const char* line, std::atomic<bool>& said) {
-  if (said.exchange(true)) return;
-  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line, std::strlen(line));
+  if (!said.exchange(true)) say(line);
 }
 
 // The alarm's own number stands for the end of the time.
@@ -49,7 +50,10 @@ void stop_now() {
 }
 
 void on_out_of_memory() {
-  say_once(memory_line, memory_line_said);
+  // Where memory ends, it ends for several threads at once: one says so and ends the program, and the others must not end it before.
+  if (out_of_memory.exchange(true))
+    for (;;) ::pause();
+  say(memory_line);
   remove_temporary_files();
   _exit(1);
 }

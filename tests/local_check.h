@@ -30,14 +30,15 @@ inline double apart(const PointSample& a, const PointSample& b) {
   return std::min(std::abs(glm::dot(glm::dvec3(a.normal), between)), std::abs(glm::dot(glm::dvec3(b.normal), between)));
 }
 
-/// How far a hit stands off a model along its normal, either way; infinite beyond `most`.
+/// How far a hit stands off a model along its normal, either way; infinite beyond `most`. Asked from far and from near: from far another
+/// part of the surface may stand before the one meant.
 inline double off_surface(const PointSample& sample, const SceneModel& model, double most) {
   double off = std::numeric_limits<double>::infinity();
   const glm::dvec3 normal = glm::normalize(glm::dvec3(sample.normal));
-  for (const double side : {1.0, -1.0}) {
+  for (const double away : {most, -most, most / 4.0, -most / 4.0, most / 16.0, -most / 16.0}) {
     CameraSettings settings;
     settings.width_px = settings.height_px = 1;
-    settings.eye = sample.position + side * most * normal;
+    settings.eye = sample.position + away * normal;
     settings.target = sample.position;
     settings.up = std::abs(normal.x) < 0.5 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
     settings.ortho_height = most;

@@ -32,7 +32,9 @@ Camera turned_camera(const Camera& camera, const glm::dvec3& target, const glm::
 
 /// For each pixel of a frame the index of the pixel that showed the same piece of surface the frame before, geometry at rest; -1 where none
 /// did: it was hidden, outside the picture, or beyond a jump or a crease (normals that differ by more than a quarter of a radian). Where
-/// nothing is hit, the same pixel if nothing was hit there either. Reads Z, N and id of both; same size.
-Image<std::int32_t> pixels_before(const GBuffer& now, const Camera& camera, const GBuffer& before, const Camera& camera_before);
+/// nothing is hit, the same pixel if nothing was hit there either. Reads Z, N and id of both; same size. `memory` is drawn into if it has
+/// that size, too.
+Image<std::int32_t> pixels_before(const GBuffer& now, const Camera& camera, const GBuffer& before, const Camera& camera_before,
+                                  Image<std::int32_t> memory = {});
 
 }  // namespace limn

@@ -10,11 +10,12 @@ struct Mattes;  // raymarch/mattes.h: which objects and materials cover each pix
 
 /// A finished picture and what it was made from.
 struct Picture {
-  GBuffer gbuffer{};                       ///< Of the pixel centres.
-  Image<float> border{};                   ///< Ink coverage in [0, 1]: mean over the samples; all methods together.
+  GBuffer gbuffer{};  ///< Of the pixel centres.
+  /// Ink coverage in [0, 1]: mean over the samples; all methods together. With PictureColors::bytes only of a sequence.
+  Image<float> border{};
   Image<std::uint8_t> border_status{};     ///< Border::status of the methods at the pixel centres, the largest; empty where none has one.
-  Image<glm::vec4> composite{};            ///< Linear, premultiplied RGBA.
-  Image<glm::u8vec4> bytes{};              ///< The composite as PNG holds it: sRGB, alpha apart. Only with PictureSettings::bytes.
+  Image<glm::vec4> composite{};            ///< Linear, premultiplied RGBA. Only with PictureColors::linear.
+  Image<glm::u8vec4> bytes{};              ///< The composite as PNG holds it: sRGB, alpha apart. Only with PictureColors::bytes.
   HitCounts counts{};                      ///< Of the pixel centres.
   std::shared_ptr<const Mattes> mattes{};  ///< Null where PictureSettings::mattes is false.
   std::vector<std::string> notes{};        ///< Of the methods.
@@ -28,6 +29,13 @@ struct MethodCall {
   Parameters parameters{};               ///< From resolve(), for the method's own list.
 };
 
+/// What becomes of a picture's colours.
+enum class PictureColors : std::uint8_t {
+  linear,  ///< Picture::composite.
+  bytes,   ///< Picture::bytes in place of composite and border, for who only writes a PNG.
+  none     ///< Neither, for who reads the ink alone.
+};
+
 /// What a picture shows beside the scene: ink, background, layers.
 struct PictureSettings {
   std::vector<MethodCall> methods{};      ///< Inks in order, the last on top.
@@ -36,7 +44,8 @@ struct PictureSettings {
   ShadingSettings shading{};              ///< Of what is beneath the inks.
   bool mattes = false;                    ///< Collects Picture::mattes from all samples.
   GBufferLayers layers{};                 ///< Of Picture::gbuffer. What the methods and the composite read may be there, too.
-  bool bytes = false;                     ///< Picture::bytes in place of composite and border, for who only writes a PNG.
+  PictureColors colors = PictureColors::linear;
+  bool hands_over_gbuffer = true;  ///< False, of a sequence: Picture::gbuffer is empty, and what the history keeps is not copied.
 };
 
 /// What these methods read, with or without what only their notes read.
@@ -48,12 +57,13 @@ GBufferLayers layers_read(const PictureSettings& settings, bool with_notes = tru
 struct FrameHistory {
   /// One sample of the last frame.
   struct Sample {
-    GBuffer gbuffer{};                 ///< Z, N and id.
-    std::vector<Image<float>> inks{};  ///< Of each method.
+    GBuffer gbuffer{};                 ///< Z, N and id, N.V of pixel-wise methods.
+    std::vector<Image<float>> inks{};  ///< Of each method; none where no method holds on to them.
   };
   Camera camera{};                      ///< Of the last frame.
-  std::vector<Sample> samples{};        ///< As many as PictureSettings::samples.
+  std::vector<Sample> samples{};        ///< As many as PictureSettings::samples; the first alone where no method holds on to its ink.
   Image<std::int32_t> pixels_before{};  ///< Of the pixel centres, from the last frame to the one before it; empty after the first.
+  GBuffer spare{};                      ///< Memory for the next frame.
 };
 
 /// With `history` the picture is the next of a sequence with the same model and settings, and becomes what the history holds.

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "raymarch/border/object_groups.h"
-#include "raymarch/frames.h"
 #include "raymarch/gbuffer/file_colors.h"
 #include "raymarch/mattes.h"
 #include "raymarch/picture/compose.h"
+#include "raymarch/picture/frame_history.h"
 #include "raymarch/picture/picture_parts.h"
 #include "raymarch/picture/pixel_lanes.h"
 #include "raymarch/picture/pixel_wise.h"
@@ -56,39 +56,6 @@ Border draw_after(const BorderInput& input, bool with_notes, const MethodCall& c
   const BorderBefore before{inks->before[method], inks->pixels_before};
   after.before = &before;
   return call.method->draw(after, call.parameters);
-}
-
-/// Hands a sample's inks of the frame before on, and where they were.
-SampleInks inks_before(FrameHistory& history, size_t sample, const GBuffer& gbuffer, const Camera& camera) {
-  SampleInks inks;
-  if (sample >= history.samples.size()) return inks;
-  FrameHistory::Sample& before = history.samples[sample];
-  inks.pixels_before = pixels_before(gbuffer, camera, before.gbuffer, history.camera);
-  inks.before = std::move(before.inks);
-  return inks;
-}
-
-template <class T>
-void copy_pixels(const Image<T>& from, Image<T>& to) {
-  to.width = from.width;
-  to.height = from.height;
-  to.pixels.resize(from.size());
-  parallel_parts(from.size(), size_t{1} << 16, [&](const IndexRange<size_t>& part) {
-    std::copy_n(from.pixels.data() + part.first, part.last - part.first, to.pixels.data() + part.first);
-  });
-}
-
-void keep(FrameHistory& history, size_t sample, const GBuffer& gbuffer, SampleInks& inks) {
-  if (sample >= history.samples.size()) history.samples.resize(sample + 1);
-  GBuffer& kept = history.samples[sample].gbuffer;
-  kept.width = gbuffer.width;
-  kept.height = gbuffer.height;
-  kept.sample = gbuffer.sample;
-  copy_pixels(gbuffer.depth, kept.depth);
-  copy_pixels(gbuffer.normal, kept.normal);
-  copy_pixels(gbuffer.id, kept.id);
-  history.samples[sample].inks = std::move(inks.now);
-  if (sample == 0) history.pixels_before = std::move(inks.pixels_before);
 }
 
 /// `finish`: of the last sample, as compose() takes it.
@@ -189,7 +156,8 @@ GBufferLayers layers_read(const PictureSettings& settings, bool with_notes) {
 Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
                      const ExecutionSettings& how, FrameHistory* history) {
   check_methods(scene, model, settings);
-  if (history == nullptr && is_pixel_wise(model, settings)) return draw_pixel_wise(scene, model, camera, settings, how);
+  const bool holds = history != nullptr && holds_ink(settings.methods);
+  if (!holds && is_pixel_wise(model, settings)) return draw_pixel_wise(scene, model, camera, settings, how, history);
   Picture picture;
   ThreadArena arena(how.threads);
   GBufferLayers first = joined(settings.layers, layers_read(settings)), later = layers_read(settings, false);
@@ -199,7 +167,8 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
     if (history != nullptr) read->depth = read->normal = true;
     *read = joined(*read, layers_read(file_colors(model)));
   }
-  GBuffer gbuffer;
+  const bool hands_over = history == nullptr || settings.hands_over_gbuffer;
+  GBuffer gbuffer = hands_over ? GBuffer{} : std::exchange(history->spare, {});
   SharedFindings shared;
   const Finish finish = finish_of(settings);
   for (int sample = 0; sample < settings.samples; ++sample) {
@@ -209,25 +178,26 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
                    sample == 0 ? first : later, gbuffer);
     picture.trace_ms += ms_since(start);
     const auto number = static_cast<size_t>(sample);
+    if (sample == 0) picture.counts = count_hits(gbuffer);
+    if (mattes) arena.execute([&] { mattes->add(gbuffer, base_colors({gbuffer, camera, model, scene})); });
     arena.execute([&] {
       const BorderInput input{gbuffer, camera, model, scene, nullptr, &shared};
       const Finish* const finishing = sample + 1 == settings.samples ? &finish : nullptr;
       if (history == nullptr) return draw_sample(input, settings.methods, settings.shading, finishing, picture, nullptr);
       SampleInks inks = inks_before(*history, number, gbuffer, camera);
       draw_sample(input, settings.methods, settings.shading, finishing, picture, &inks);
-      keep(*history, number, gbuffer, inks);
+      keep(*history, number, hands_over, gbuffer, inks);
     });
-    if (mattes) arena.execute([&] { mattes->add(gbuffer, base_colors({gbuffer, camera, model, scene})); });
-    if (sample == 0) picture.gbuffer = std::exchange(gbuffer, {});
+    if (sample == 0 && hands_over) picture.gbuffer = std::exchange(gbuffer, {});
   }
   if (mattes) picture.mattes = mattes->finish(settings.samples);
   if (history != nullptr) history->camera = camera;
-  picture.counts = count_hits(picture.gbuffer);
-  if (settings.bytes) {
+  if (!hands_over) history->spare = std::move(gbuffer);
+  if (settings.colors == PictureColors::bytes) {
     picture.bytes = arena.execute([&] { return encoded(picture.composite); });
-    picture.composite = {};
-    picture.border = {};
+    if (history == nullptr) picture.border = {};
   }
+  if (settings.colors != PictureColors::linear) picture.composite = {};
   return picture;
 }
 

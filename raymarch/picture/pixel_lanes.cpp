@@ -120,15 +120,18 @@ HWY_INLINE void ComposePacket(const PixelStage& stage, const SrgbBytes& srgb, co
     LayInk(stage.inks[m], share, color);
   }
   if (!stage.first) {
-    const Rgba sum = Load(run.composite + i);
-    color = {hn::Add(sum.red, color.red), hn::Add(sum.green, color.green), hn::Add(sum.blue, color.blue), hn::Add(sum.alpha, color.alpha)};
+    if (run.composite != nullptr) {
+      const Rgba sum = Load(run.composite + i);
+      color = {hn::Add(sum.red, color.red), hn::Add(sum.green, color.green), hn::Add(sum.blue, color.blue),
+               hn::Add(sum.alpha, color.alpha)};
+    }
     if (run.border != nullptr) ink = hn::Add(hn::LoadU(f, run.border + i), ink);
   }
   if (stage.finish != nullptr) FinishPixels(*stage.finish, ink, color);
   if (run.border != nullptr) hn::StoreU(ink, f, run.border + i);
   if (run.bytes != nullptr)
     StoreBytes(srgb, color, run.bytes + i);
-  else
+  else if (run.composite != nullptr)
     Store(color, run.composite + i);
 }
 
@@ -150,7 +153,7 @@ void ComposeRest(const PixelStage& stage, const SrgbBytes& srgb, const PixelRun&
   }
   std::copy_n(run.n_dot_v + i, count, n_dot_v);
   std::copy_n(run.id + i, count, id);
-  if (!stage.first) std::copy_n(run.composite + i, count, composite);
+  if (!stage.first && run.composite != nullptr) std::copy_n(run.composite + i, count, composite);
   if (!stage.first && run.border != nullptr) std::copy_n(run.border + i, count, border);
   ComposePacket(
       stage, srgb,
@@ -158,7 +161,7 @@ void ComposeRest(const PixelStage& stage, const SrgbBytes& srgb, const PixelRun&
   if (run.border != nullptr) std::copy_n(border, count, run.border + i);
   if (run.bytes != nullptr)
     std::copy_n(bytes, count, run.bytes + i);
-  else
+  else if (run.composite != nullptr)
     std::copy_n(composite, count, run.composite + i);
 }
 

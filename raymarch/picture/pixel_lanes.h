@@ -30,7 +30,7 @@ struct PixelRun {
   const std::int32_t* id = nullptr;
   std::span<const float* const> coverage{};  ///< Of each method.
   float* border = nullptr;                   ///< Sums of the inks together; null where nobody reads them.
-  glm::vec4* composite = nullptr;            ///< Sums; null only of a sample that is both the first and the last.
+  glm::vec4* composite = nullptr;            ///< Sums; null where nobody reads them.
   glm::u8vec4* bytes = nullptr;              ///< Of the last sample, written in place of `composite`; null: `composite` is.
 };
 void compose_pixels(const PixelStage& stage, const PixelRun& run);

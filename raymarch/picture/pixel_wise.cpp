@@ -4,12 +4,14 @@
 #include <atomic>
 #include <chrono>
 #include <iterator>
+#include <utility>
 
 #include "raymarch/border/surface_notes.h"
 #include "raymarch/border/surface_tally.h"
 #include "raymarch/gbuffer/file_colors.h"
 #include "raymarch/gbuffer/gbuffer_window.h"
 #include "raymarch/gbuffer/stream_fill.h"
+#include "raymarch/picture/frame_history.h"
 #include "raymarch/picture/picture_parts.h"
 #include "raymarch/picture/pixel_lanes.h"
 #include "raymarch/scene/threads.h"
@@ -111,11 +113,13 @@ void draw_pixels(const Sample& sample, const TracedPixels& traced) {
   sample.work_ns->fetch_add(took_ns, std::memory_order_relaxed);
 }
 
-void make_images(const PictureSettings& settings, const Camera& camera, Picture& picture) {
+void make_images(const PictureSettings& settings, bool is_frame, const Camera& camera, Picture& picture) {
   const int width = camera.width_px, height = camera.height_px;
-  if (settings.bytes) picture.bytes = Image<glm::u8vec4>::unset(width, height);
-  if (!settings.bytes) picture.border = Image<float>::unset(width, height);
-  if (!settings.bytes || settings.samples > 1) picture.composite = Image<glm::vec4>::unset(width, height);
+  const bool to_bytes = settings.colors == PictureColors::bytes;
+  if (to_bytes) picture.bytes = Image<glm::u8vec4>::unset(width, height);
+  if (!to_bytes || is_frame) picture.border = Image<float>::unset(width, height);
+  if (settings.colors == PictureColors::linear || (to_bytes && settings.samples > 1))
+    picture.composite = Image<glm::vec4>::unset(width, height);
 }
 
 void add_notes(const BorderInput& input, const PictureSettings& settings, SurfaceTally& tally, Picture& picture) {
@@ -145,10 +149,14 @@ bool is_pixel_wise(const PictureSettings& settings) {
 bool is_pixel_wise(const SceneModel& model, const PictureSettings& settings) { return is_pixel_wise(settings) && !file_colors(model).any; }
 
 Picture draw_pixel_wise(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
-                        const ExecutionSettings& how) {
+                        const ExecutionSettings& how, FrameHistory* history) {
   Picture picture;
   ThreadArena arena(how.threads);
-  const GBufferLayers first = joined(settings.layers, layers_read(settings));
+  GBufferLayers first = joined(settings.layers, layers_read(settings));
+  if (history != nullptr) {
+    first.depth = first.normal = true;
+    picture.gbuffer = std::exchange(history->spare, {});
+  }
   constexpr GBufferLayers later{
       .depth = false, .position = false, .normal = false, .n_dot_v = true, .id = true, .material = false, .face = false, .status = false};
   const ColorsById colors = colors_by_id(model.colors);
@@ -159,7 +167,7 @@ Picture draw_pixel_wise(const Scene& scene, const SceneModel& model, const Camer
     inks.push_back(call.method->pixel_ink(call.parameters));
     ink_colors.emplace_back(call.parameters.vector3("color"));
   }
-  make_images(settings, camera, picture);
+  make_images(settings, history != nullptr, camera, picture);
   SurfaceTally tally(model.colors.size(), {camera.width_px, camera.height_px}, {kTilesInARow * how.tile_px, how.tile_px});
   std::atomic<std::int64_t> work_ns{0};
   GBuffer later_pixels;
@@ -167,14 +175,10 @@ Picture draw_pixel_wise(const Scene& scene, const SceneModel& model, const Camer
   double notes_ms = 0.0;
   for (int sample = 0; sample < settings.samples; ++sample) {
     const bool is_first = sample == 0, is_last = sample + 1 == settings.samples;
-    const Sample shared{{&colors, ink_colors, is_first, is_last ? &finish : nullptr},
-                        inks,
-                        is_first ? &tally : nullptr,
-                        &picture,
-                        settings.bytes && is_last,
-                        &work_ns};
+    const Sample shared{{&colors, ink_colors, is_first, is_last ? &finish : nullptr}, inks,    is_first ? &tally : nullptr, &picture,
+                        settings.colors == PictureColors::bytes && is_last,           &work_ns};
     const PixelWork work = [&shared](const TracedPixels& traced) { draw_pixels(shared, traced); };
-    const bool kept = is_first && any(settings.layers);
+    const bool kept = is_first && (history != nullptr || any(settings.layers));
     render_pixels(model, camera, of_sample(how, sample, settings.samples), sample_offset(sample, settings.samples),
                   is_first ? first : later, kept, work, is_first ? picture.gbuffer : later_pixels);
     if (!is_first) continue;
@@ -185,7 +189,11 @@ Picture draw_pixel_wise(const Scene& scene, const SceneModel& model, const Camer
   // What the threads did in tiles, as if they had done it one after the other.
   picture.border_ms = notes_ms + 1e-6 * static_cast<double>(work_ns) / arena.threads();
   picture.trace_ms = std::max(0.0, ms_since(start) - picture.border_ms);
-  if (settings.bytes) picture.composite = {};
+  if (settings.colors == PictureColors::bytes) picture.composite = {};
+  if (history != nullptr) {
+    arena.execute([&] { follow(*history, settings.hands_over_gbuffer, camera, picture.gbuffer); });
+    if (!settings.hands_over_gbuffer) history->spare = std::exchange(picture.gbuffer, {});
+  }
   return picture;
 }
 

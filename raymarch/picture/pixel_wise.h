@@ -10,8 +10,8 @@ namespace limn {
 bool is_pixel_wise(const PictureSettings& settings);
 bool is_pixel_wise(const SceneModel& model, const PictureSettings& settings);
 
-/// As draw_picture() does without a history, the same bytes.
+/// As draw_picture() does, the same bytes. `history`: null, or of methods that do not hold on to their ink.
 Picture draw_pixel_wise(const Scene& scene, const SceneModel& model, const Camera& camera, const PictureSettings& settings,
-                        const ExecutionSettings& how);
+                        const ExecutionSettings& how, FrameHistory* history);
 
 }  // namespace limn

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <future>
 #include <memory>
 #include <numbers>
@@ -115,6 +116,8 @@ ResolvedModel resolved_model(const Render& render) {
   return {render.input.scene, render.surface, {render.surface.kind}, render.local ? render.local->tolerance_px : 0.0};
 }
 
+bool in_bytes(const Render& render) { return render.picture.colors == PictureColors::bytes; }
+
 bool plays(const Render& render, const Options& options) {
   return std::any_of(render.outputs.begin(), render.outputs.end(), [&](const fs::path& file) { return is_animated(file, options); });
 }
@@ -155,7 +158,7 @@ double write_picture(const Picture& picture, const Camera& camera, int index, co
     if (is_animated(name, options)) continue;
     const fs::path file = picture_file(name, index, options);
     OutputFile output = ending_of(file) == ".exr" ? exr_output(picture, camera, call, file)
-                        : render.picture.bytes    ? image_output(picture.bytes, file)
+                        : in_bytes(render)        ? image_output(picture.bytes, file)
                                                   : image_output(grounded ? over : picture.composite, file);
     files.push_back({file, [write = std::move(output.write)](const fs::path& temporary) {
                        if (interrupted()) throw Cancelled{};
@@ -163,42 +166,52 @@ double write_picture(const Picture& picture, const Camera& camera, int index, co
                      }});
   }
   if (plays(render, options))
-    render.frames.push_back(render.picture.bytes ? encode_png(picture.bytes) : encode_png(grounded ? over : picture.composite));
+    render.frames.push_back(in_bytes(render) ? encode_png(picture.bytes) : encode_png(grounded ? over : picture.composite));
   // A layer file and the picture beside it show the same, or are both those of an earlier call.
   write_together(files);
   return since_ms(start);
 }
 
-/// The picture before is written while the next one is traced.
+/// Pictures are written while the next one is traced, if there is a second thread.
 class Writer {
  public:
   Writer(const Options& options, Render& render) : options_(options), render_(render) {}
   ~Writer() {
-    if (under_way_.valid()) under_way_.wait();
+    for (const std::future<double>& one : under_way_) one.wait();
   }
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
   void write(Picture picture, int index) {
-    finish();
+    // Of bytes, which are small, a second one: tracing and writing take about as long, and neither should wait for the other's longest.
+    // Films keep their frames in order.
+    wait_for(in_bytes(render_) && !plays(render_, options_) ? 1 : 0);
     for (const fs::path& name : render_.outputs)
       if (!is_animated(name, options_)) render_.files.push_back(picture_file(name, index, options_).string());
     if (pictures_of(options_) == 1) {
       render_.timings.write_ms += write_picture(picture, render_.camera, index, options_, render_);
       return;
     }
-    under_way_ = std::async(std::launch::async, [this, kept = std::make_shared<const Picture>(std::move(picture)), camera = render_.camera,
-                                                 index] { return write_picture(*kept, camera, index, options_, render_); });
+    under_way_.push_back(run_beside([this, kept = std::make_shared<const Picture>(std::move(picture)), camera = render_.camera, index] {
+      return write_picture(*kept, camera, index, options_, render_);
+    }));
   }
   /// Throws what writing threw.
-  void finish() {
-    if (under_way_.valid()) render_.timings.write_ms += under_way_.get();
-  }
+  void finish() { wait_for(0); }
 
  private:
+  /// Until so many are under way, the oldest first.
+  void wait_for(size_t most) {
+    while (under_way_.size() > most) {
+      std::future<double> oldest = std::move(under_way_.front());
+      under_way_.pop_front();
+      render_.timings.write_ms += oldest.get();
+    }
+  }
+
   const Options& options_;
   Render& render_;
-  std::future<double> under_way_{};
+  std::deque<std::future<double>> under_way_{};
 };
 
 // Of many pictures the first few stand for the rest.
@@ -343,7 +356,7 @@ PictureSettings planned_picture(const Render& render) {
   PictureSettings planned = render.picture;
   for (const SceneObject& object : render.input.scene.objects) {
     const auto* const source = std::get_if<MeshSource>(&object.source);
-    if (source != nullptr && has_colors(*source->mesh)) planned.bytes = false;
+    if (source != nullptr && has_colors(*source->mesh)) planned.colors = PictureColors::linear;
   }
   return planned;
 }
@@ -382,7 +395,8 @@ int run(const Options& given) {
   if (!layered) render.picture.layers = none;
   const auto is_png = [](const fs::path& file) { return ending_of(file) == ".png" || ending_of(file) == ".apng"; };
   const bool all_png = std::all_of(render.outputs.begin(), render.outputs.end(), is_png);
-  render.picture.bytes = all_png && options.frames.frames <= 1;
+  if (all_png) render.picture.colors = PictureColors::bytes;
+  render.picture.hands_over_gbuffer = layered;
   // Made first: a camera that is wrong is told before the surface is built.
   const std::vector<Camera> cameras = cameras_of(options, render.input);
 
@@ -405,7 +419,7 @@ int run(const Options& given) {
 
   // While the surface is built.
   std::future<void> pictures;
-  if (by_module) pictures = load_picture_module_early();
+  if (by_module && !is_held_to_one_thread()) pictures = load_picture_module_early();
   const auto build_start = std::chrono::steady_clock::now();
   std::vector<std::string> levels;
   if (options.spec.surface.level_for_view && !options.plan.tolerance_px)

@@ -10,6 +10,7 @@
 #include "raymarch/picture/srgb_bytes.h"
 #include "samples/compare/comparison.h"
 #include "samples/experiment/empty_picture.h"
+#include "samples/experiment/thread_settings.h"
 #include "sdf/color.h"
 #include "sdf/error.h"
 #include "sdf/parallel.h"
@@ -69,7 +70,7 @@ std::future<void> write_layers(const ComparedModel& model, const Comparison& com
   for (size_t column = 0; column < drawings.size(); ++column) {
     if (drawings[column].refused.empty()) layers.push_back({comparison.methods[column].name, &drawings[column].picture});
   }
-  return std::async(std::launch::async, [&seen, camera = comparison.camera, call, file = model.exr, layers = std::move(layers)] {
+  return run_beside([&seen, camera = comparison.camera, call, file = model.exr, layers = std::move(layers)] {
     write_exr(seen, camera, call, file, layers);
   });
 }

@@ -47,7 +47,7 @@ std::vector<MethodCall> without_hysteresis(BorderSpec spec, const SceneInput& in
 }
 
 /// `before` and `now`: ink, and where its pixels were.
-FlipPlaces flip_places(const Picture& picture, const Image<std::int32_t>& pixels_before, const Image<std::uint8_t>& before,
+FlipPlaces flip_places(const Image<float>& n_dot_v_now, const Image<std::int32_t>& pixels_before, const Image<std::uint8_t>& before,
                        const Image<std::uint8_t>& now) {
   const auto of_pixels = [&](const IndexRange<size_t>& part, FlipPlaces places) {
     for (size_t i = part.first; i < part.last; ++i) {
@@ -55,7 +55,7 @@ FlipPlaces flip_places(const Picture& picture, const Image<std::int32_t>& pixels
       if (was < 0) {
         ++places.unseen;
       } else if (before.pixels[static_cast<size_t>(was)] != now.pixels[i]) {
-        const double n_dot_v = double{picture.gbuffer.n_dot_v.pixels[i]};
+        const double n_dot_v = double{n_dot_v_now.pixels[i]};
         places.lowest_n_dot_v = std::min(places.lowest_n_dot_v, n_dot_v);
         places.highest_n_dot_v = std::max(places.highest_n_dot_v, n_dot_v);
       }
@@ -80,6 +80,8 @@ FlickerWatch watch_flicker(const ExperimentSpec& spec, const FramePath& path, co
   watch.picture = picture_settings(spec.border, input);
   watch.picture.methods = without_hysteresis(spec.border, input);
   watch.picture.layers = layers_read(watch.picture.methods);
+  watch.picture.colors = PictureColors::none;
+  watch.picture.hands_over_gbuffer = false;
   for (const MethodCall& call : watch.picture.methods) {
     const std::string reason = call.method->unsupported(watch.reference, watch.scene);
     if (!reason.empty()) watch.no_reference = call.method->about.name + " cannot draw " + watch.reference_words + ": " + reason;
@@ -97,7 +99,9 @@ void watch_frame(const Picture& picture, const FrameHistory& history, const Came
   ThreadArena(how.threads).execute([&] {
     const InkFrame given = reference ? InkFrame{reference->border, watch.history.pixels_before} : own;
     frame.counts = count_flips(own, given, watch.flips);
-    frame.places = flip_places(picture, history.pixels_before, before, watch.flips.ink);
+    const bool handed_over = !picture.gbuffer.n_dot_v.pixels.empty();
+    const GBuffer& seen = handed_over ? picture.gbuffer : history.samples.front().gbuffer;
+    frame.places = flip_places(seen.n_dot_v, history.pixels_before, before, watch.flips.ink);
   });
   watch.frames.push_back(frame);
 }

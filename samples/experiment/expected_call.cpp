@@ -117,7 +117,7 @@ std::string what_would_do(const Scene& scene, const SurfaceSettings& settings, c
 }  // namespace
 
 PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, int views, bool writes_layers) {
-  const bool in_bytes = picture.bytes && is_pixel_wise(picture);
+  const bool in_bytes = picture.colors == PictureColors::bytes && is_pixel_wise(picture);
   const GBufferLayers layers = writes_layers ? GBufferLayers{} : layers_read(picture);
   const double layer_bytes = 4.0 * (layers.depth + layers.n_dot_v + layers.id + layers.material + layers.face) +
                              12.0 * (layers.position + layers.normal) + layers.status;

@@ -102,7 +102,7 @@ TEST(PixelWise, InksShadesAndAddsUpAsWholeImagesDo) {
         EXPECT_EQ(picture.counts.misses, counted.misses);
 
         PictureSettings in_bytes = settings;
-        in_bytes.bytes = true;
+        in_bytes.colors = PictureColors::bytes;
         const Picture coded = draw_picture(scene, model, camera, in_bytes, how);
         EXPECT_TRUE(coded.composite.pixels.empty() && coded.border.pixels.empty());
         int wrong = 0;
@@ -228,7 +228,7 @@ TEST(PixelWise, EverySimdTargetGivesTheSameBytes) {
   for (const bool bytes : {false, true}) {
     PictureSettings settings{
         {call_of("rim", {{"softness", {{0.3}, {}, {}}}}), call_of("rim"), call_of("fresnel")}, 2, glm::vec3(0.2f, 0.5f, 1.0f)};
-    settings.bytes = bytes;
+    if (bytes) settings.colors = PictureColors::bytes;
     const Picture widest = draw_picture(scene, model, camera, settings, {});
     for_each_simd_target([&](const char* target) {
       const Picture other = draw_picture(scene, model, camera, settings, {});

@@ -1,0 +1,194 @@
+// Which pixel showed the same before: several pixels of a row at a time, in double precision.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "raymarch/frames.h"
+#include "raymarch/gbuffer/picture_rows.h"
+#include "sdf/error.h"
+#include "sdf/simd.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raymarch/picture/pixels_before.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#ifndef LIMN_PIXELS_BEFORE_ONCE
+#define LIMN_PIXELS_BEFORE_ONCE
+namespace limn {
+namespace {
+
+constexpr double kSameNormal = 0.25;  // radians
+constexpr std::int32_t kNone = -1;
+
+/// A frame and the camera that saw it.
+struct Frame {
+  const GBuffer& seen;
+  const Camera& camera;
+};
+
+}  // namespace
+}  // namespace limn
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace limn::HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::ScalableTag<double>;
+using F = hn::Rebind<float, D>;
+using I = hn::Rebind<std::int32_t, D>;
+using VD = hn::Vec<D>;
+using VI = hn::Vec<I>;
+using MD = hn::Mask<D>;
+
+HWY_INLINE VD Of(double value) { return hn::Set(D(), value); }
+
+struct Vectors {
+  VD x, y, z;
+};
+
+HWY_INLINE Vectors Of(const glm::dvec3& v) { return {Of(v.x), Of(v.y), Of(v.z)}; }
+HWY_INLINE Vectors Plus(const Vectors& a, const Vectors& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
+HWY_INLINE Vectors Minus(const Vectors& a, const Vectors& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
+HWY_INLINE Vectors Times(const Vectors& a, VD by) { return {hn::Mul(a.x, by), hn::Mul(a.y, by), hn::Mul(a.z, by)}; }
+HWY_INLINE VD Dot(const Vectors& a, const Vectors& b) { return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z)); }
+HWY_INLINE Vectors Turned(const glm::dmat3& m, const Vectors& v) {
+  return Plus(Plus(Times(Of(m[0]), v.x), Times(Of(m[1]), v.y)), Times(Of(m[2]), v.z));
+}
+
+/// The surface's points where pixels saw it. World positions are kept as floats; far from the origin the depth is what still has its
+/// digits.
+HWY_INLINE Vectors PointsAt(const Frame& frame, VD column, VD row, VD depth) {
+  const Camera& camera = frame.camera;
+  const VD x = hn::Sub(hn::Add(column, Of(frame.seen.sample.x)), Of(0.5 * camera.width_px)),
+           y = hn::Sub(Of(0.5 * camera.height_px), hn::Add(row, Of(frame.seen.sample.y)));
+  const Vectors back = Of(camera.world_from_camera[2]);
+  Vectors origin = Of(camera.eye), direction = Minus(Of(glm::dvec3(0.0)), back);
+  if (camera.projection == Projection::orthographic) {
+    const VD scale = Of(camera.pixels_per_unit);
+    origin = Plus(origin, Turned(camera.world_from_camera, {hn::Div(x, scale), hn::Div(y, scale), Of(0.0)}));
+  } else {
+    const Vectors way{x, y, Of(-camera.focal_px)};
+    direction = Turned(camera.world_from_camera, Times(way, hn::Div(Of(1.0), hn::Sqrt(Dot(way, way)))));
+  }
+  return Plus(origin, Times(direction, hn::Div(depth, hn::Neg(Dot(direction, back)))));
+}
+
+HWY_INLINE VD GatherDoubles(const float* from, VI index) { return hn::PromoteTo(D(), hn::GatherIndex(F(), from, index)); }
+
+HWY_INLINE Vectors GatherNormals(const glm::vec3* from, VI index) {
+  const VI first = hn::Mul(index, hn::Set(I(), 3));
+  return {GatherDoubles(&from->x, first), GatherDoubles(&from->y, first), GatherDoubles(&from->z, first)};
+}
+
+/// Pixels side by side: of this frame, and the objects that the frame before has at the same places.
+struct PixelRow {
+  const std::int32_t* id;
+  const float* depth;
+  const glm::vec3* normal;
+  const std::int32_t* id_before;
+};
+
+/// Where the camera before saw points: pixels, rounded, and the pixels that a world unit takes.
+struct ImageBefore {
+  VD x, y, scale;
+  MD inside;
+};
+
+HWY_INLINE ImageBefore Project(const Frame& before, const Vectors& points) {
+  const Camera& camera = before.camera;
+  const glm::dmat3& axes = camera.world_from_camera;
+  const Vectors away = Minus(points, Of(camera.eye));
+  const VD z = hn::Neg(Dot(away, Of(axes[2]))), zero = Of(0.0);
+  ImageBefore image;
+  image.scale = camera.projection == Projection::orthographic ? Of(camera.pixels_per_unit) : hn::Div(Of(camera.focal_px), z);
+  const auto pixel_of = [](VD place, double sample) { return hn::Floor(hn::Add(hn::Sub(place, Of(sample)), Of(0.5))); };
+  image.x = pixel_of(hn::Add(Of(0.5 * camera.width_px), hn::Mul(image.scale, Dot(away, Of(axes[0])))), before.seen.sample.x);
+  image.y = pixel_of(hn::Sub(Of(0.5 * camera.height_px), hn::Mul(image.scale, Dot(away, Of(axes[1])))), before.seen.sample.y);
+  image.inside = hn::And(hn::And(hn::Gt(z, zero), hn::And(hn::Ge(image.x, zero), hn::Ge(image.y, zero))),
+                         hn::And(hn::Lt(image.x, Of(before.seen.width)), hn::Lt(image.y, Of(before.seen.height))));
+  return image;
+}
+
+/// A register of pixels, the first of which is the picture's i-th, at `column` and `row`.
+HWY_INLINE VI BeforePacket(const Frame& now, const Frame& before, const PixelRow& pixels, size_t i, double column, double row) {
+  const I i32;
+  const VI none = hn::Set(i32, kNone), id = hn::LoadU(i32, pixels.id), was = hn::LoadU(i32, pixels.id_before);
+  const auto missed = hn::Eq(id, hn::Zero(i32));
+  const VI of_missed = hn::IfThenElse(hn::Eq(was, hn::Zero(i32)), hn::Iota(i32, static_cast<std::int32_t>(i)), none);
+  if (hn::AllTrue(i32, missed)) return of_missed;
+  const VD depth = hn::PromoteTo(D(), hn::LoadU(F(), pixels.depth));
+  const Vectors points = PointsAt(now, hn::Iota(D(), column), Of(row), depth);
+  const ImageBefore image = Project(before, points);
+  const VD place = hn::Add(hn::Mul(image.y, Of(before.seen.width)), image.x);
+  const VI there = hn::DemoteTo(i32, hn::IfThenElseZero(image.inside, place));
+  const MD same_object = hn::Eq(hn::PromoteTo(D(), hn::GatherIndex(i32, before.seen.id.pixels.data(), there)), hn::PromoteTo(D(), id));
+  const Vectors normal = GatherNormals(pixels.normal, hn::Iota(i32, 0)), other = GatherNormals(before.seen.normal.pixels.data(), there);
+  const MD turns = hn::Lt(Dot(normal, other), Of(std::cos(kSameNormal)));
+  // Where normals turn by less than an angle, the way between two points leaves the tangent plane by less than that. A pixel on top, for
+  // ways so short that they are the depths' rounding.
+  const Vectors way = Minus(PointsAt(before, image.x, image.y, GatherDoubles(before.seen.depth.pixels.data(), there)), points);
+  const VD length = hn::Add(hn::Sqrt(Dot(way, way)), hn::Div(Of(1.0), image.scale));
+  const MD leaves = hn::Gt(hn::Abs(Dot(way, normal)), hn::Mul(Of(std::sin(kSameNormal)), length));
+  const MD followed = hn::AndNot(hn::Or(turns, leaves), hn::And(image.inside, same_object));
+  return hn::IfThenElse(missed, of_missed, hn::DemoteTo(i32, hn::IfThenElse(followed, place, Of(kNone))));
+}
+
+constexpr size_t kMostLanes = HWY_LANES(double);
+
+/// The last pixels of a row, fewer than a register has, through memory that is large enough.
+void BeforeRest(const Frame& now, const Frame& before, const PixelRow& pixels, size_t count, size_t i, double column, double row,
+                std::int32_t* to) {
+  std::int32_t id[kMostLanes] = {}, id_before[kMostLanes] = {}, out[kMostLanes];
+  float depth[kMostLanes] = {};
+  glm::vec3 normal[kMostLanes] = {};
+  std::copy_n(pixels.id, count, id);
+  std::copy_n(pixels.id_before, count, id_before);
+  std::copy_n(pixels.depth, count, depth);
+  std::copy_n(pixels.normal, count, normal);
+  hn::StoreU(BeforePacket(now, before, {id, depth, normal, id_before}, i, column, row), I(), out);
+  std::copy_n(out, count, to);
+}
+
+void BeforeRow(const Frame& now, const Frame& before, int row, std::int32_t* to) {
+  const auto width = static_cast<size_t>(now.seen.width), lanes = hn::Lanes(D());
+  const size_t first = now.seen.id.index(0, row);
+  for (size_t x = 0; x < width; x += lanes) {
+    const size_t i = first + x;
+    const PixelRow pixels{now.seen.id.pixels.data() + i, now.seen.depth.pixels.data() + i, now.seen.normal.pixels.data() + i,
+                          before.seen.id.pixels.data() + i};
+    const auto column = static_cast<double>(x);
+    if (x + lanes <= width)
+      hn::StoreU(BeforePacket(now, before, pixels, i, column, row), I(), to + x);
+    else
+      BeforeRest(now, before, pixels, width - x, i, column, row, to + x);
+  }
+}
+
+}  // namespace
+}  // namespace limn::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace limn {
+namespace {
+HWY_EXPORT(BeforeRow);
+}  // namespace
+
+Image<std::int32_t> pixels_before(const GBuffer& now, const Camera& camera, const GBuffer& before, const Camera& camera_before,
+                                  Image<std::int32_t> memory) {
+  LIMN_CHECK(now.width == before.width && now.height == before.height);
+  const bool fits = memory.width == now.width && memory.height == now.height;
+  Image<std::int32_t> result = fits ? std::move(memory) : Image<std::int32_t>::unset(now.width, now.height);
+  const Frame of_now{now, camera}, of_before{before, camera_before};
+  for_each_band(now.height, [&](int y0, int y1) {
+    for (int y = y0; y < y1; ++y) HWY_DYNAMIC_DISPATCH(BeforeRow)(of_now, of_before, y, &result.at(0, y));
+  });
+  return result;
+}
+
+}  // namespace limn
+#endif

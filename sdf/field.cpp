@@ -62,6 +62,8 @@ void FieldEvaluator::values(std::span<const glm::vec3> points, std::span<float> 
 
 void FieldEvaluator::gradients(std::span<const glm::dvec3> points, std::span<double> values, std::span<glm::dvec3> gradients) {
   LIMN_CHECK(points.size() == values.size() && points.size() == gradients.size());
+  if (const FieldTape* const tape = scratch_->tape_for(field_, points.size()))
+    return tape_gradients_at(*tape, points, scratch_->lanes, values, gradients);
   run_batches(field_.program(), scratch_->get<Dual>(), points, [&](size_t first, size_t count, const Dual* results) {
     for (size_t i = 0; i < count; ++i) {
       const auto& g = results[i].gradient;

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "sdf/error.h"
 #include "sdf/field_program.h"
+#include "sdf/tape.h"
+#include "sdf/tape_jets.h"
 
 namespace limn {
 
@@ -133,6 +136,21 @@ struct FieldEvaluator::Scratch {
   std::tuple<Registers<float>, Registers<double>, Registers<Dual>, Registers<Jet>, Registers<Interval>, Registers<Slope>,
              Registers<BoxSlope>>
       registers;
+
+  std::optional<FieldTape> tape{};
+  bool tape_has_bits = false;  ///< Of the field, where there is a tape.
+  TapeScratch lanes{};
+
+  /// For many points at a time, made where it is asked for first; null where lanes take longer or have other bits than the field.
+  const FieldTape* tape_for(const Field& field, size_t points) {
+    constexpr size_t kFewest = 8;
+    if (points < kFewest) return nullptr;
+    if (!tape) {
+      tape.emplace(field);
+      tape_has_bits = has_bits_of_field(*tape);
+    }
+    return tape_has_bits ? &*tape : nullptr;
+  }
 
   template <class T>
   Registers<T>& get() {

@@ -80,6 +80,13 @@ HWY_INLINE LaneDual<N> power_norm(const LaneDual<N>& a, const LaneDual<N>& b, do
   return select(f.nothing, nothing, chain(a, b, f.norm, f.wa, f.wb));
 }
 
+HWY_INLINE LaneGradient power_norm(const LaneGradient& a, const LaneGradient& b, double power) {
+  const PowerShares f = power_shares(a.value, b.value, power);
+  const Reals zero = reals(0.0);
+  const LaneGradient none{zero, {zero, zero, zero}};
+  return select(f.nothing, power > 0.0 ? none : minimum(a, b), combination(a, f.wa, b, f.wb, f.norm));
+}
+
 HWY_INLINE LaneJet power_norm(const LaneJet& a, LaneJet b, double power) {
   const Reals zero = reals(0.0);
   if (power > 0.0) {

@@ -18,14 +18,20 @@ namespace limn {
 namespace HWY_NAMESPACE {
 namespace {
 
-const double* run_jets(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch) {
+template <LaneDifferential D>
+const double* run_at(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch) {
   Pass pass(tape);
   for (int axis = 0; axis < 3; ++axis) pass.point[axis] = points[axis];
-  return run_tape<LaneJet>(pass, tape.steps, scratch);
+  return run_tape<D>(pass, tape.steps, scratch);
+}
+
+/// Value and gradient, sixteen of each.
+const double* gradients(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch) {
+  return run_at<LaneGradient>(tape, points, scratch);
 }
 
 void jets(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch, LaneJets& jets) {
-  const double* const found = run_jets(tape, points, scratch);
+  const double* const found = run_at<LaneJet>(tape, points, scratch);
   LaneArray* const parts[] = {&jets.value,      &jets.gradient[0], &jets.gradient[1], &jets.gradient[2], &jets.hessian[0],
                               &jets.hessian[1], &jets.hessian[2],  &jets.hessian[3],  &jets.hessian[4],  &jets.hessian[5]};
   for (int k = 0; k < 10; ++k) std::copy_n(found + k * kLanes, kLanes, parts[k]->lane);
@@ -52,7 +58,7 @@ HWY_INLINE Reals distance_of(const LaneJet& jet, LaneMask& reasonable) {
 
 /// At sixteen points; bit i of `reasonable`: whether that of lane i means anything.
 void distances(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch, LaneArray& result, unsigned& reasonable) {
-  const double* const found = run_jets(tape, points, scratch);
+  const double* const found = run_at<LaneJet>(tape, points, scratch);
   reasonable = 0;
   for (int part = 0; part < kParts; ++part) {
     LaneJet jet;
@@ -71,27 +77,49 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace limn {
 namespace {
+HWY_EXPORT(gradients);
 HWY_EXPORT(jets);
 HWY_EXPORT(distances);
+
+/// Calls `each(first, count, lanes)` for sixteen points at a time; of the last ones, fewer, the last again and again.
+template <class Each>
+void by_lanes(std::span<const glm::dvec3> points, const Each& each) {
+  for (size_t first = 0; first < points.size(); first += kLanes) {
+    const size_t count = std::min<size_t>(kLanes, points.size() - first);
+    LaneArray lanes[3];
+    for (size_t i = 0; i < kLanes; ++i) {
+      const glm::dvec3& point = points[first + std::min(i, count - 1)];
+      for (int axis = 0; axis < 3; ++axis) lanes[axis].lane[i] = point[axis];
+    }
+    each(first, count, lanes);
+  }
+}
 }  // namespace
 
 void tape_jets(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch, LaneJets& found) {
   HWY_DYNAMIC_DISPATCH(jets)(tape, points, scratch, found);
 }
 
+void tape_gradients_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values,
+                       std::span<glm::dvec3> gradients) {
+  LIMN_CHECK(points.size() == values.size() && points.size() == gradients.size());
+  by_lanes(points, [&](size_t first, size_t count, const LaneArray(&lanes)[3]) {
+    const double* const found = HWY_DYNAMIC_DISPATCH(gradients)(tape, lanes, scratch);
+    for (size_t i = 0; i < count; ++i) {
+      values[first + i] = found[i];
+      for (int axis = 0; axis < 3; ++axis) gradients[first + i][axis] = found[static_cast<size_t>(axis + 1) * kLanes + i];
+    }
+  });
+}
+
 void tape_distances(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<JetDistance> found) {
   LIMN_CHECK(points.size() == found.size());
-  for (size_t first = 0; first < points.size(); first += kLanes) {
-    const size_t count = std::min<size_t>(kLanes, points.size() - first);
-    LaneArray lanes[3], result;
-    for (size_t i = 0; i < kLanes; ++i) {
-      const glm::dvec3& point = points[first + std::min(i, count - 1)];
-      for (int axis = 0; axis < 3; ++axis) lanes[axis].lane[i] = point[axis];
-    }
+  by_lanes(points, [&](size_t first, size_t count, const LaneArray(&lanes)[3]) {
+    LaneArray result;
     unsigned reasonable = 0;
     HWY_DYNAMIC_DISPATCH(distances)(tape, lanes, scratch, result, reasonable);
     for (size_t i = 0; i < count; ++i) found[first + i] = {result.lane[i], (reasonable >> i & 1u) != 0};
-  }
+  });
 }
 
 }  // namespace limn

@@ -22,6 +22,10 @@ void tape_jets(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch&
 
 /// f at any number of points (world); sizes equal. Every bit is that of FieldEvaluator::values() where has_bits_of_field().
 void tape_values_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values);
+/// f and its gradient at any number of points (world); sizes equal. Every bit is that of FieldEvaluator::gradients() of one point where
+/// has_bits_of_field().
+void tape_gradients_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values,
+                       std::span<glm::dvec3> gradients);
 /// False for metaballs, which lanes add in another order.
 bool has_bits_of_field(const FieldTape& tape);
 

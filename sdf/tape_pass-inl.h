@@ -47,15 +47,19 @@ HWY_INLINE void put(const LaneSlope& a, double* to) {
   store(a.slope.upper, to + 4 * kLanes);
 }
 
-HWY_INLINE void get(const double* from, LaneJet& a) {
+template <LaneDifferential D>
+HWY_INLINE void get(const double* from, D& a) {
   a.value = load(from);
   for (int i = 0; i < 3; ++i) a.gradient[i] = load(from + (i + 1) * kLanes);
-  for (int i = 0; i < 6; ++i) a.hessian[i] = load(from + (i + 4) * kLanes);
+  if constexpr (kHasHessian<D>)
+    for (int i = 0; i < 6; ++i) a.hessian[i] = load(from + (i + 4) * kLanes);
 }
-HWY_INLINE void put(const LaneJet& a, double* to) {
+template <LaneDifferential D>
+HWY_INLINE void put(const D& a, double* to) {
   store(a.value, to);
   for (int i = 0; i < 3; ++i) store(a.gradient[i], to + (i + 1) * kLanes);
-  for (int i = 0; i < 6; ++i) store(a.hessian[i], to + (i + 4) * kLanes);
+  if constexpr (kHasHessian<D>)
+    for (int i = 0; i < 6; ++i) store(a.hessian[i], to + (i + 4) * kLanes);
 }
 
 template <class T>
@@ -72,6 +76,11 @@ struct Kind<LaneDual<1>> {
 };
 template <>
 struct Kind<LaneDual<3>> {
+  static constexpr int kComponents = 4;
+  static constexpr TapeNumber kNumber = TapeNumber::gradient;
+};
+template <>
+struct Kind<LaneGradient> {
   static constexpr int kComponents = 4;
   static constexpr TapeNumber kNumber = TapeNumber::gradient;
 };
@@ -139,10 +148,12 @@ HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int
   coordinate(pass, leaf, axis, at, x.value);
   for (int i = 0; i < 3; ++i) x.derivative[i] = reals(leaf.row[axis][i]);
 }
-HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int at, LaneJet& x) {
+template <LaneDifferential D>
+HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int at, D& x) {
   coordinate(pass, leaf, axis, at, x.value);
   for (int i = 0; i < 3; ++i) x.gradient[i] = reals(leaf.row[axis][i]);
-  for (Reals& h : x.hessian) h = reals(0.0);
+  if constexpr (kHasHessian<D>)
+    for (Reals& h : x.hessian) h = reals(0.0);
 }
 
 inline double along(const double* row, const glm::dvec3 (&spread)[3]) {

@@ -296,6 +296,46 @@ TEST(Tape, ValuesAtPointsHaveTheBitsOfTheField) {
   EXPECT_FALSE(has_bits_of_field(FieldTape(make_shape("metaballs"))));
 }
 
+TEST(Tape, GradientsAtPointsHaveTheBitsOfTheField) {
+  TapeScratch scratch;
+  int compared = 0, by_evaluator = 0;
+  over_random_fields(300, [&](Random& random, const Field& field, const FieldTape& tape) {
+    FieldEvaluator evaluator(field);
+    std::vector<glm::dvec3> points(37);  // lanes are left over
+    const bool on_lattice = random.index(3) == 0;
+    for (glm::dvec3& p : points) {
+      p = random.point(1.0);
+      if (on_lattice) p = glm::round(16.0 * p) / 16.0;  // zeros of either sign, and places without a direction
+    }
+    points[0] = glm::dvec3(0.0);
+    std::vector<double> own(points.size()), lanes(points.size());
+    std::vector<glm::dvec3> own_gradients(points.size()), lane_gradients(points.size());
+    const auto one = [&](size_t i, auto& values, auto& gradients) {
+      evaluator.gradients(std::span(points).subspan(i, 1), std::span(values).subspan(i, 1), std::span(gradients).subspan(i, 1));
+    };
+    for (size_t i = 0; i < points.size(); ++i) one(i, own, own_gradients);
+    const auto same = [&] {
+      return std::memcmp(own.data(), lanes.data(), own.size() * sizeof(double)) == 0 &&
+             std::memcmp(own_gradients.data(), lane_gradients.data(), own.size() * sizeof(glm::dvec3)) == 0;
+    };
+    SCOPED_TRACE(text_of(tape));
+    for (size_t count = 1; count <= points.size(); count += 1 + random.index(9)) {
+      const auto of = [count](auto& all) { return std::span(all).first(count); };
+      lanes = own, lane_gradients = own_gradients;
+      for (size_t i = 0; i < count; ++i) lanes[i] = 0.0, lane_gradients[i] = {};
+      evaluator.gradients(of(points), of(lanes), of(lane_gradients));
+      EXPECT_TRUE(same()) << count << " points";
+      ++by_evaluator;
+    }
+    if (!has_bits_of_field(tape)) return;
+    ++compared;
+    tape_gradients_at(tape, points, scratch, lanes, lane_gradients);
+    EXPECT_TRUE(same());
+  });
+  EXPECT_GT(compared, 80);
+  EXPECT_GT(by_evaluator, 1000);
+}
+
 TEST(Tape, SinesAreRightToTwoUnitsInTheLastPlace) {
   // A gyroid of period 2 pi whose walls are thin: f = |sin x cos y + ...| / sqrt 3 - half the thickness, inside its ball.
   Random random(5);
@@ -329,7 +369,11 @@ TEST(Tape, EverySimdTargetGivesTheSameBits) {
       std::array<LaneArray, 3> gradients;
       LaneBounds bounds;
       LaneJets jets;
+      std::array<double, kLanes> values_at;
+      std::array<glm::dvec3, kLanes> gradients_at;
     };
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i < kLanes; ++i) points.push_back(random.point(1.5));
     std::vector<Results> all;
     std::vector<std::vector<TapeChoice>> choices;
     for_each_simd_target([&](const char*) {
@@ -338,6 +382,7 @@ TEST(Tape, EverySimdTargetGivesTheSameBits) {
       tape_slopes(tape, tape.steps, beams.rays, beams.middle, scratch, r.with_slope, r.slopes);
       tape_gradients(tape, tape.steps, beams.rays, beams.middle, scratch, r.with_gradient, r.gradients);
       tape_jets(tape, beams.rays.origin, scratch, r.jets);
+      tape_gradients_at(tape, points, scratch, r.values_at, r.gradients_at);
       tape_slope_bounds(tape, tape.steps, beams, scratch, r.bounds);
       all.push_back(r);
       choices.push_back(scratch.choices);

@@ -9,6 +9,7 @@
 #include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 #include <tbb/partitioner.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <functional>
@@ -80,6 +81,13 @@ struct Part {
 #endif
 };
 
+/// Thrown by loops within a part of another loop that ends by an exception: TBB skips what they have not done yet, and returns. Nobody
+/// may go on with what is half done. The exception that the outer loop ends by is the first one: nobody else sees this one.
+struct Abandoned {};
+inline void leave_if_abandoned(tbb::task_group_context& context) {
+  if (context.is_group_execution_cancelled()) throw Abandoned{};
+}
+
 /// What TBB hands from thread to thread: an address and nothing else, so that all that a body refers to stays where the sanitizer sees it.
 template <class Index, class Body>
 struct Parts {
@@ -131,7 +139,10 @@ struct Reduction {
 template <class Index, class Body>
 void parallel_parts(Index count, Index grain, const Body& body) {
   const parallel_detail::Loop loop(__PRETTY_FUNCTION__);
-  tbb::parallel_for(tbb::blocked_range<Index>(0, count, static_cast<size_t>(grain)), parallel_detail::Parts<Index, Body>{&body, &loop});
+  tbb::task_group_context context;
+  tbb::parallel_for(tbb::blocked_range<Index>(0, count, static_cast<size_t>(grain)), parallel_detail::Parts<Index, Body>{&body, &loop},
+                    tbb::auto_partitioner(), context);
+  parallel_detail::leave_if_abandoned(context);
 }
 
 /// body(i) for each of first, ..., last - 1; neighbours by one thread where all are busy.
@@ -150,8 +161,10 @@ void parallel_each(Index count, const Body& body) {
     for (Index i = range.first; i < range.last; ++i) body(i);
   };
   const parallel_detail::Loop loop(__PRETTY_FUNCTION__);
+  tbb::task_group_context context;
   tbb::parallel_for(tbb::blocked_range<Index>(0, count, 1), parallel_detail::Parts<Index, decltype(all)>{&all, &loop},
-                    tbb::simple_partitioner());
+                    tbb::simple_partitioner(), context);
+  parallel_detail::leave_if_abandoned(context);
 }
 
 /// body(IndexRange, value so far) over parts as of parallel_parts, joined by join(left, right).
@@ -161,7 +174,9 @@ Value parallel_reduce(Index count, Index grain, const Value& identity, const Bod
   {
     const parallel_detail::Loop loop(__PRETTY_FUNCTION__);
     reduction.loop = &loop;
-    tbb::parallel_reduce(tbb::blocked_range<Index>(0, count, static_cast<size_t>(grain)), reduction);
+    tbb::task_group_context context;
+    tbb::parallel_reduce(tbb::blocked_range<Index>(0, count, static_cast<size_t>(grain)), reduction, tbb::auto_partitioner(), context);
+    parallel_detail::leave_if_abandoned(context);
   }
   return std::move(reduction.value);
 }
@@ -169,7 +184,9 @@ Value parallel_reduce(Index count, Index grain, const Value& identity, const Bod
 template <class First, class Second>
 void parallel_invoke(const First& first, const Second& second) {
   const parallel_detail::Loop loop(__PRETTY_FUNCTION__);
-  tbb::parallel_invoke(parallel_detail::Once<First>{&first, &loop}, parallel_detail::Once<Second>{&second, &loop});
+  tbb::task_group_context context;
+  tbb::parallel_invoke(parallel_detail::Once<First>{&first, &loop}, parallel_detail::Once<Second>{&second, &loop}, context);
+  parallel_detail::leave_if_abandoned(context);
 }
 
 /// As std::sort. TBB's own threads within a sort cannot be told of, so that under the sanitizer there are none.
@@ -179,6 +196,8 @@ void parallel_sort(Iterator begin, Iterator end, const Less& less = {}) {
   std::sort(begin, end, less);
 #else
   tbb::parallel_sort(begin, end, less);
+  // Its own context is not to be had.
+  if (tbb::is_current_task_group_canceling()) throw parallel_detail::Abandoned{};
 #endif
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sdf/apart_from_loops.h"
 #include "sdf/error.h"
 #include "sdf/segment.h"
 #include "subdiv/mesh_distance.h"
@@ -87,7 +88,7 @@ ClosestPointData::ClosestPointData(const TriangleMesh& mesh) : positions(mesh.po
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(rtc_scene, geometry);
   rtcReleaseGeometry(geometry);
-  rtcCommitScene(rtc_scene);
+  apart_from_loops([&] { rtcCommitScene(rtc_scene); });
   device = rtc_device, scene = rtc_scene;
   if (rtcGetDeviceError(rtc_device) != RTC_ERROR_NONE) throw MachineError("Embree could not arrange the triangles");
 }

@@ -10,6 +10,7 @@
 
 #include "raymarch/lines/mesh_tree.h"
 #include "raymarch/mesh/embree_device.h"
+#include "sdf/apart_from_loops.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -100,7 +101,7 @@ ExactHits::ExactHits(std::span<const glm::dvec3> positions, std::span<const Laye
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(tree_->scene, geometry);
   rtcReleaseGeometry(geometry);
-  rtcCommitScene(tree_->scene);
+  apart_from_loops([this] { rtcCommitScene(tree_->scene); });
   if (rtcGetDeviceError(tree_->device) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
 }
 

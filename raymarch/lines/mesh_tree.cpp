@@ -9,6 +9,7 @@
 
 #include "raymarch/mesh/embree_device.h"
 #include "raymarch/mesh/polygons.h"
+#include "sdf/apart_from_loops.h"
 #include "sdf/error.h"
 #include "sdf/once_alone.h"
 #include "sdf/parallel.h"
@@ -132,7 +133,7 @@ void MeshTree::build() const {
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(embree_->tree, geometry);
   rtcReleaseGeometry(geometry);
-  rtcCommitScene(embree_->tree);
+  apart_from_loops([this] { rtcCommitScene(embree_->tree); });
   if (rtcGetDeviceError(embree_->device) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
 }
 

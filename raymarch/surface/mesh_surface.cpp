@@ -17,6 +17,7 @@
 #include "raymarch/surface.h"
 #include "raymarch/surface/mesh_curvature.h"
 #include "raymarch/surface/object_mesh.h"
+#include "sdf/apart_from_loops.h"
 #include "sdf/error.h"
 #include "sdf/once_alone.h"
 #include "sdf/parallel.h"
@@ -147,7 +148,7 @@ void build_tree(const MeshState& state) {
   attach_triangles(state);
   {
     const parallel_detail::Loop loop("Embree's own, over bound_triangle");
-    rtcCommitScene(state.scene.get());
+    apart_from_loops([&state] { rtcCommitScene(state.scene.get()); });
   }
   if (rtcGetDeviceError(state.device.get()) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
 }

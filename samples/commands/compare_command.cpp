@@ -55,7 +55,7 @@ std::vector<std::string> check(const Options& options, const Comparison& compari
   for (const ComparedModel& model : comparison.models) {
     if (model.skipped.empty()) kinds.push_back(model.surface.kind);
   }
-  PictureLoad load = picture_load(comparison.camera, comparison.picture, 1, true);
+  PictureLoad load = picture_load(comparison.camera, comparison.picture, {.writes_layers = true});
   load.bytes_per_pixel += kReferenceBytes + kCellBytes * static_cast<double>(comparison.methods.size());
   for (const ComparedMethod& column : comparison.methods) {
     for (const std::string& name : names_of(column.calls)) methods.push_back(name);

@@ -410,7 +410,7 @@ int run(const Options& given) {
   const bool by_module =
       std::any_of(render.outputs.begin(), render.outputs.end(), [&](const auto& file) { return !is_png(file) && !has_layers(file); });
   if (!is_local_volume) {
-    PictureLoad load = picture_load(cameras.front(), planned_picture(render), pictures_of(options), layered);
+    PictureLoad load = picture_load(cameras.front(), planned_picture(render), {pictures_of(options), layered, options.frames.frames > 1});
     if (by_module) load.library_bytes = kPictureLibraryBytes;
     check_cost(options, render.input.scene, render.surface, load);
   }

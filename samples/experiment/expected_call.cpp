@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "raymarch/picture/frame_history.h"
 #include "raymarch/picture/pixel_wise.h"
 #include "samples/experiment/cost.h"
 #include "samples/experiment/limits.h"
@@ -17,6 +18,9 @@ namespace {
 constexpr double kCompositeBytes = 36.0, kSumBytes = 20.0;
 // Of a picture that is drawn tile by tile into bytes: these, a byte of facts for its notes, and what is compressed.
 constexpr double kPngBytes = 12.0, kColorSumBytes = 16.0;
+// Of a sequence: what both pictures, that of the model and that of the reference, leave to the next frame, memory for that frame, and where
+// pixels were; of pictures that are not drawn tile by tile some of this again for each sample.
+constexpr double kWatchedBytes = 120.0, kWatchedBeforeBytes = 15.0, kKeptSampleBytes = 57.0;
 constexpr double kMatteBytes = 90.0;  // indices and counts of the samples, colours, and a level of ids and coverages of each kind
 constexpr double kMethodMs = 4e-5, kExrMs = 1.5e-4, kImageMs = 1e-4;  // a pixel
 constexpr double kStartMs = 50.0;
@@ -116,8 +120,11 @@ std::string what_would_do(const Scene& scene, const SurfaceSettings& settings, c
 
 }  // namespace
 
-PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, int views, bool writes_layers) {
-  const bool in_bytes = picture.colors == PictureColors::bytes && is_pixel_wise(picture);
+PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, const PlannedPictures& planned) {
+  const int views = planned.views;
+  const bool writes_layers = planned.writes_layers;
+  const bool tile_by_tile = is_pixel_wise(picture) && !(planned.is_sequence && holds_ink(picture.methods));
+  const bool in_bytes = picture.colors == PictureColors::bytes && tile_by_tile;
   const GBufferLayers layers = writes_layers ? GBufferLayers{} : layers_read(picture);
   const double layer_bytes = 4.0 * (layers.depth + layers.n_dot_v + layers.id + layers.material + layers.face) +
                              12.0 * (layers.position + layers.normal) + layers.status;
@@ -127,6 +134,7 @@ PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, i
   if (picture.samples > 1) load.bytes_per_pixel += kSumBytes + layer_bytes;
   if (views > 1) load.bytes_per_pixel += kCompositeBytes + layer_bytes;  // what is written while the next one is traced
   if (in_bytes) load.bytes_per_pixel = (views > 1 ? 2.0 : 1.0) * kPngBytes + (picture.samples > 1 ? kColorSumBytes : 0.0);
+  if (planned.is_sequence) load.bytes_per_pixel += tile_by_tile ? kWatchedBytes : kWatchedBeforeBytes + picture.samples * kKeptSampleBytes;
   if (picture.mattes) load.bytes_per_pixel += kMatteBytes;
   load.pictures = static_cast<double>(views) * picture.samples;
   load.other_ms =

@@ -24,8 +24,13 @@ struct PictureLoad {
   double other_ms = 0.0;         ///< Methods, writing.
   double library_bytes = 0.0;    ///< kPictureLibraryBytes where a .tif or .jpg is written.
 };
-/// Of `views` pictures drawn one after the other; `writes_layers`: as .exr files.
-PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, int views, bool writes_layers);
+/// Pictures drawn one after the other.
+struct PlannedPictures {
+  int views = 1;
+  bool writes_layers = false;  ///< As .exr files.
+  bool is_sequence = false;    ///< The reference is drawn, too, and both are followed from frame to frame.
+};
+PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, const PlannedPictures& planned);
 
 /// What a call is expected to take: right to a factor of two for memory, for time on a machine like that of the constants.
 struct CallCost {

@@ -30,7 +30,8 @@ std::shared_ptr<Comparison> compare(const py::object& scene, const CallFields& f
     auto comparison = std::make_shared<Comparison>(comparison_for(settings.spec, input, warnings, local));
     refuse_uncompared(settings.spec, input, *comparison);
     const ComparedModel& last = comparison->models.back();
-    check_limits(settings.spec.limits, last.scene, last.surface, picture_load(comparison->camera, comparison->picture, 1, true));
+    check_limits(settings.spec.limits, last.scene, last.surface,
+                 picture_load(comparison->camera, comparison->picture, {.writes_layers = true}));
     ProgressBar none(false);
     draw_comparison(*comparison, folder, execution_of(settings.spec.threads, stopped), none);
     return comparison;

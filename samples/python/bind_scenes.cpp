@@ -171,7 +171,7 @@ std::shared_ptr<const ModelOfPython> model_for(const Source& source, CallSetting
   model->local_px = settings.local_px.value_or(0.0);
   // A local level set says itself when it needs too much: what it takes is not known before.
   if (!settings.local_px || !has_local_bricks(model->settings.kind))
-    check_limits(spec.limits, input.scene, model->settings, picture_load(camera, picture_settings(spec.border, input), 1, false));
+    check_limits(spec.limits, input.scene, model->settings, picture_load(camera, picture_settings(spec.border, input), {}));
   if (spec.surface.level_for_view) model->notes = refine_for_views(model->settings, {&camera, 1}, input.scene);
   model->mostly_flat = input.kind != InputKind::built_in && flat_share(input.scene, model->settings) > kMostlyFlat;
   // Once, for however many pictures.

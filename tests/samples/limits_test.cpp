@@ -119,6 +119,9 @@ INSTANTIATE_TEST_SUITE_P(
         EstimateCase{"mesh_level_set_384", {"render", "teacup", "--size", "64x64", "--surface", "mesh_level_set", "--voxels", "384"}},
         EstimateCase{"picture", {"render", "ellipsoid", "--size", "2000x1500"}},
         EstimateCase{"samples", {"render", "ellipsoid", "--size", "1600x1200", "--samples", "3", "--method", "sobel"}},
+        EstimateCase{"sequence", {"render", "ellipsoid", "--size", "900x600", "--frames", "4"}},
+        EstimateCase{"sequence_that_holds_on",
+                     {"render", "ellipsoid", "--size", "600x400", "--frames", "4", "--samples", "3", "--set", "hysteresis=0.1"}},
         EstimateCase{"layers", {"render", "ellipsoid", "--size", "1200x900", "exr"}}),
     [](const testing::TestParamInfo<EstimateCase>& one) { return one.param.name; });
 
@@ -133,6 +136,17 @@ TEST(Limits, MemoryIsHeldToWhereNothingWasExpected) {
   EXPECT_TRUE(held.out.empty());
   EXPECT_TRUE(folder.files().empty());
   EXPECT_LT(held.peak_bytes, 1.3 * 45e6) << "stacks of threads are counted, and not touched";
+}
+
+TEST(Limits, AStudyWhoseMemoryEndsSaysSo) {
+  if (!kAddressSpaceCanBeLimited) GTEST_SKIP() << "the sanitizers take memory of their own";
+  // Wherever it ends, in whatever loops.
+  for (const char* const memory : {"250M", "290M", "330M", "370M"}) {
+    const TemporaryFolder folder;
+    const RunResult held = run_limn({"study", "teacup", "--fresh", "--max-memory", memory, "-q", "-o", folder.file("out")}, folder.path());
+    EXPECT_EQ(held.exit_code, 1) << memory << held.err;
+    EXPECT_NE(held.err.find("memory"), std::string::npos) << memory << held.err;
+  }
 }
 
 TEST(Limits, MoreTimeThanAllowedIsRefusedBeforehand) {

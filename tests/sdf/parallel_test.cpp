@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <functional>
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace limn {
@@ -81,6 +85,70 @@ TEST(Parallel, SortsAsTheStandardLibraryDoes) {
   std::sort(expected.begin(), expected.end(), std::greater<>());
   parallel_sort(numbers.begin(), numbers.end(), std::greater<>());
   EXPECT_EQ(numbers, expected);
+}
+
+/// A part of an outer loop throws while another part is within a loop of its own, of 10,000 parts: TBB skips those that are left, and that
+/// loop must not look done. Returns how many of the parts that went on after such a loop found it half done.
+int goes_on_with_half(const std::function<void(const std::function<void()>& part)>& inner_loop) {
+  std::atomic<int> half_done = 0;
+  std::atomic<bool> thrown = false;
+  const auto wait_until_thrown = [&] {
+    // Where one thread does all, nobody throws meanwhile.
+    for (int k = 0; k < 100 && !thrown; ++k) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  try {
+    parallel_each(2, [&](int outer) {
+      if (outer == 0) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        thrown = true;
+        throw std::runtime_error("the first");
+      }
+      std::atomic<int> done = 0;
+      inner_loop([&] {
+        if (done++ == 0) wait_until_thrown();
+      });
+      half_done += done < 10'000;
+    });
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "the first");
+  }
+  return half_done;
+}
+
+TEST(Parallel, NobodyGoesOnWithALoopThatWasLeftHalfDone) {
+  for (int round = 0; round < 5; ++round) {
+    EXPECT_EQ(goes_on_with_half([](const auto& part) { parallel_for(0, 10'000, [&](int) { part(); }); }), 0) << "parallel_for";
+    EXPECT_EQ(goes_on_with_half([](const auto& part) { parallel_each(10'000, [&](int) { part(); }); }), 0) << "parallel_each";
+    EXPECT_EQ(goes_on_with_half([](const auto& part) {
+                parallel_parts(10'000, 1, [&](const IndexRange<int>& range) {
+                  for (int i = range.begin(); i < range.end(); ++i) part();
+                });
+              }),
+              0)
+        << "parallel_parts";
+    EXPECT_EQ(goes_on_with_half([](const auto& part) {
+                parallel_reduce(
+                    10'000, 1, 0,
+                    [&](const IndexRange<int>& range, int value) {
+                      for (int i = range.begin(); i < range.end(); ++i) part();
+                      return value;
+                    },
+                    std::plus<>());
+              }),
+              0)
+        << "parallel_reduce";
+    EXPECT_EQ(goes_on_with_half([](const auto& part) {
+                const std::function<void(int)> split = [&](int count) {
+                  if (count == 1) return part();
+                  parallel_invoke([&] { split(count / 2); }, [&] { split(count - count / 2); });
+                };
+                split(10'000);
+              }),
+              0)
+        << "parallel_invoke";
+  }
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ struct PictureSettings {
   ShadingSettings shading{};              ///< Of what is beneath the inks.
   bool mattes = false;                    ///< Collects Picture::mattes from all samples.
   GBufferLayers layers{};                 ///< Of Picture::gbuffer. What the methods and the composite read may be there, too.
-  PictureColors colors = PictureColors::linear;
+  PictureColors colors = PictureColors::linear;  ///< What Picture holds of them.
   bool hands_over_gbuffer = true;  ///< False, of a sequence: Picture::gbuffer is empty, and what the history keeps is not copied.
 };
 

@@ -14,10 +14,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#ifndef LIMN_PIXELS_BEFORE_ONCE
-#define LIMN_PIXELS_BEFORE_ONCE
-namespace limn {
+HWY_BEFORE_NAMESPACE();
+namespace limn::HWY_NAMESPACE {
 namespace {
+namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr double kSameNormal = 0.25;  // radians
 constexpr std::int32_t kNone = -1;
@@ -27,15 +27,6 @@ struct Frame {
   const GBuffer& seen;
   const Camera& camera;
 };
-
-}  // namespace
-}  // namespace limn
-#endif
-
-HWY_BEFORE_NAMESPACE();
-namespace limn::HWY_NAMESPACE {
-namespace {
-namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::ScalableTag<double>;
 using F = hn::Rebind<float, D>;
@@ -153,7 +144,9 @@ void BeforeRest(const Frame& now, const Frame& before, const PixelRow& pixels, s
   std::copy_n(out, count, to);
 }
 
-void BeforeRow(const Frame& now, const Frame& before, int row, std::int32_t* to) {
+void BeforeRow(const GBuffer& seen, const Camera& camera, const GBuffer& seen_before, const Camera& camera_before, int row,
+               std::int32_t* to) {
+  const Frame now{seen, camera}, before{seen_before, camera_before};
   const auto width = static_cast<size_t>(now.seen.width), lanes = hn::Lanes(D());
   const size_t first = now.seen.id.index(0, row);
   for (size_t x = 0; x < width; x += lanes) {
@@ -183,9 +176,8 @@ Image<std::int32_t> pixels_before(const GBuffer& now, const Camera& camera, cons
   LIMN_CHECK(now.width == before.width && now.height == before.height);
   const bool fits = memory.width == now.width && memory.height == now.height;
   Image<std::int32_t> result = fits ? std::move(memory) : Image<std::int32_t>::unset(now.width, now.height);
-  const Frame of_now{now, camera}, of_before{before, camera_before};
   for_each_band(now.height, [&](int y0, int y1) {
-    for (int y = y0; y < y1; ++y) HWY_DYNAMIC_DISPATCH(BeforeRow)(of_now, of_before, y, &result.at(0, y));
+    for (int y = y0; y < y1; ++y) HWY_DYNAMIC_DISPATCH(BeforeRow)(now, camera, before, camera_before, y, &result.at(0, y));
   });
   return result;
 }

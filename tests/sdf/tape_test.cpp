@@ -319,7 +319,7 @@ TEST(Tape, GradientsAtPointsHaveTheBitsOfTheField) {
              std::memcmp(own_gradients.data(), lane_gradients.data(), own.size() * sizeof(glm::dvec3)) == 0;
     };
     SCOPED_TRACE(text_of(tape));
-    for (size_t count = 1; count <= points.size(); count += 1 + random.index(9)) {
+    for (size_t count = 1; count <= points.size(); count += size_t{1} + static_cast<size_t>(random.index(9))) {
       const auto of = [count](auto& all) { return std::span(all).first(count); };
       lanes = own, lane_gradients = own_gradients;
       for (size_t i = 0; i < count; ++i) lanes[i] = 0.0, lane_gradients[i] = {};

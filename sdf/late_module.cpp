@@ -2,10 +2,18 @@
 
 #include <dlfcn.h>
 
+#include <new>
+
 #include "sdf/error.h"
 #include "sdf/guard.h"
 
 namespace limn {
+
+void want_memory(std::size_t bytes) {
+  void* memory = ::operator new(bytes);
+  asm volatile("" : "+r"(memory));  // else the compiler may leave out both
+  ::operator delete(memory);
+}
 
 void refuse_late_module(const std::string& file, const std::string& problem) {
   throw MachineError("the module " + file + " cannot be loaded: " + problem);

@@ -7,7 +7,9 @@
 namespace limn {
 
 const VolumeModule& volume_module() {
-  static const VolumeModule module = load_late_module<VolumeModule>(kVolumeModuleFile, kVolumeModuleFunction);
+  // Its pages, and the stacks of log4cplus's threads.
+  constexpr size_t kBytes = size_t{54} << 20;
+  static const VolumeModule module = load_late_module<VolumeModule>(kVolumeModuleFile, kVolumeModuleFunction, kBytes);
   return module;
 }
 

@@ -4,7 +4,7 @@
 namespace limn {
 
 const HashModule& hash_module() {
-  static const HashModule module = load_late_module<HashModule>(kHashModuleFile, kHashModuleFunction);
+  static const HashModule module = load_late_module<HashModule>(kHashModuleFile, kHashModuleFunction, 0);
   return module;
 }
 

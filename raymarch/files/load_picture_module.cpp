@@ -4,7 +4,9 @@
 namespace limn {
 
 const PictureModule& picture_module() {
-  static const PictureModule module = load_late_module<PictureModule>(kPictureModuleFile, kPictureModuleFunction);
+  // Its 260 libraries' pages, and the stacks of their threads.
+  constexpr size_t kBytes = size_t{128} << 20;
+  static const PictureModule module = load_late_module<PictureModule>(kPictureModuleFile, kPictureModuleFunction, kBytes);
   return module;
 }
 

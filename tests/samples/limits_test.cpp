@@ -154,6 +154,19 @@ TEST(Limits, AStudyWhoseMemoryEndsSaysSo) {
   EXPECT_GT(ended, 0);
 }
 
+TEST(Limits, ALibraryThatCannotBeLoadedForWantOfMemoryDoesNotAbort) {
+  if (!kAddressSpaceCanBeLimited) GTEST_SKIP() << "the sanitizers take memory of their own";
+  // From what the call is expected to take on; OpenVDB's libraries make threads while they are loaded.
+  for (const char* const memory : {"62M", "66M", "72M"}) {
+    const TemporaryFolder folder;
+    const RunResult held =
+        run_limn({"export", "ellipsoid", "--surface", "level_set", "--voxels", "32", "--max-memory", memory, "-o", folder.file("x.vdb")},
+                 folder.path());
+    EXPECT_TRUE(held.exit_code >= 0 && held.exit_code <= 2) << memory << ": " << held.exit_code << held.err;
+    EXPECT_TRUE(held.exit_code == 0 || held.err.find("--max-memory") != std::string::npos) << memory << held.err;
+  }
+}
+
 TEST(Limits, MoreTimeThanAllowedIsRefusedBeforehand) {
   const TemporaryFolder folder;
   const RunResult result = run_limn({"render", "gyroid", "--surface", "level_set", "--voxels", "1024", "--size", "64x64", "--max-time",

@@ -11,10 +11,10 @@
 #include <limits>
 #include <new>
 #include <optional>
-#include <stdexcept>
 #include <tuple>
 
 #include "sdf/error.h"
+#include "sdf/nano_memory.h"
 #include "sdf/page_advice.h"
 #include "sdf/parallel.h"
 
@@ -112,15 +112,6 @@ Layout lay_out(std::vector<Place> places) {
   return layout;
 }
 
-/// NanoVDB's own way to say that memory ended is none that anybody would know it by.
-nanovdb::HostBuffer memory_of(std::uint64_t bytes) {
-  try {
-    return nanovdb::HostBuffer::create(bytes);
-  } catch (const std::runtime_error&) {
-    throw std::bad_alloc();
-  }
-}
-
 /// Room for all nodes, and for as many root tiles between them as there could be: which of them are inside shows when nodes are written.
 nanovdb::HostBuffer take_memory(Layout& layout) {
   layout.root_tiles = layout.uppers.size();
@@ -134,7 +125,7 @@ nanovdb::HostBuffer take_memory(Layout& layout) {
   layout.lowers_at = layout.uppers_at + layout.uppers.size() * Upper::memUsage();
   layout.leaves_at = layout.lowers_at + layout.lowers.size() * Lower::memUsage();
   layout.size = layout.leaves_at + layout.leaves.size() * sizeof(Leaf);
-  nanovdb::HostBuffer buffer = memory_of(layout.size);
+  nanovdb::HostBuffer buffer = in_nano_memory([&] { return nanovdb::HostBuffer::create(layout.size); });
   ask_for_large_pages(buffer.data(), layout.size);
   layout.buffer = buffer.data();
   return buffer;

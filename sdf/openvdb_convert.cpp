@@ -3,6 +3,7 @@
 
 #include <mutex>
 
+#include "sdf/nano_memory.h"
 #include "sdf/openvdb_grid.h"
 
 namespace limn {
@@ -14,8 +15,10 @@ void initialize_openvdb() {
 
 std::shared_ptr<LevelSetData> freeze(const openvdb::FloatGrid& grid, const Affine& world_from_index, const std::string& name,
                                      double nominal_half_width) {
-  auto handle =
-      nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree>(grid, nanovdb::StatsMode::BBox, nanovdb::ChecksumMode::Disable, 0);
+  auto handle = in_nano_memory([&] {
+    return nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree>(grid, nanovdb::StatsMode::BBox, nanovdb::ChecksumMode::Disable,
+                                                                           0);
+  });
   return make_level_set(std::move(handle), world_from_index, name, nominal_half_width);
 }
 

@@ -175,8 +175,9 @@ Picture draw_pixel_wise(const Scene& scene, const SceneModel& model, const Camer
   double notes_ms = 0.0;
   for (int sample = 0; sample < settings.samples; ++sample) {
     const bool is_first = sample == 0, is_last = sample + 1 == settings.samples;
-    const Sample shared{{&colors, ink_colors, is_first, is_last ? &finish : nullptr}, inks,    is_first ? &tally : nullptr, &picture,
-                        settings.colors == PictureColors::bytes && is_last,           &work_ns};
+    const bool to_bytes = is_last && settings.colors == PictureColors::bytes;
+    const PixelStage stage{&colors, ink_colors, is_first, is_last ? &finish : nullptr};
+    const Sample shared{stage, inks, is_first ? &tally : nullptr, &picture, to_bytes, &work_ns};
     const PixelWork work = [&shared](const TracedPixels& traced) { draw_pixels(shared, traced); };
     const bool kept = is_first && (history != nullptr || any(settings.layers));
     render_pixels(model, camera, of_sample(how, sample, settings.samples), sample_offset(sample, settings.samples),

@@ -24,12 +24,14 @@ struct GroupOrder {
   double lower_in_front = 0.0;  ///< Those where the group with the lower key is clearly in front, less those where the other is.
 };
 using GroupOrders = std::map<std::pair<std::int32_t, std::int32_t>, GroupOrder>;  ///< By their keys (ids or materials), lower first.
-struct SharedLines;  // raymarch/border/contours.cpp: the lines of what is seen, solved once
+struct SharedLines;      // raymarch/border/contours.cpp: the lines of what is seen, solved once
+struct SharedExtrusion;  // raymarch/border/extrude.h: an object grown
 /// What all samples and methods that see one model from one eye share; who needs it first fills it in.
 struct SharedFindings {
-  std::shared_ptr<const GroupOrders> of_objects{},          ///< Keys are ids; null until somebody needs them.
-      of_materials{};                                       ///< Keys are materials; null until somebody needs them.
-  std::vector<std::shared_ptr<const SharedLines>> lines{};  ///< One for each settings that a method asked with.
+  std::shared_ptr<const GroupOrders> of_objects{},                   ///< Keys are ids; null until somebody needs them.
+      of_materials{};                                                ///< Keys are materials; null until somebody needs them.
+  std::vector<std::shared_ptr<const SharedLines>> lines{};           ///< One for each settings that a method asked with.
+  std::vector<std::shared_ptr<const SharedExtrusion>> extrusions{};  ///< One for each object and settings that a method asked with.
 };
 
 /// Everything a method may read. Plain references; a method keeps none of them.

@@ -26,6 +26,10 @@ ExtrudeSettings read_settings(const Parameters& parameters) {
   return settings;
 }
 
+bool grows_alike(const ExtrudeSettings& a, const ExtrudeSettings& b) {
+  return a.direction == b.direction && a.space == b.space && a.width_px == b.width_px && a.object_width == b.object_width;
+}
+
 /// Of a mesh about its own origin, of a field (which has no object space left) about the middle of its bounds.
 Affine render_from_object(const BorderInput& input, size_t object) {
   Affine result;
@@ -38,18 +42,15 @@ Affine render_from_object(const BorderInput& input, size_t object) {
   return result;
 }
 
-WindowImage<float> ink_hull(const BorderInput& input, size_t object, const ExtrudedCorners& corners, const ExtrudeSettings& settings,
+WindowImage<float> ink_hull(const BorderInput& input, size_t object, std::span<const glm::dvec3> grown, const ExtrudeSettings& settings,
                             double near) {
   const GBuffer& seen = input.gbuffer;
   const bool back = settings.mask == ExtrudeMask::back_faces;
-  std::vector<HullTriangle> triangles;
-  const std::span<const glm::uvec3> numbers = input.model.surfaces[object].polygons->corner_triangles();
-  triangles.reserve(numbers.size());
-  for (const glm::uvec3& t : numbers) triangles.push_back({corners.grown[t.x], corners.grown[t.y], corners.grown[t.z]});
   Camera camera = input.camera;
   camera.width_px = seen.width;
   camera.height_px = seen.height;
-  const WindowImage<double> depth = rasterize_hull(triangles, back ? HullFaces::back : HullFaces::all, camera, near, seen.sample);
+  const WindowImage<double> depth = rasterize_hull({grown, input.model.surfaces[object].polygons->corner_triangles()},
+                                                   back ? HullFaces::back : HullFaces::all, camera, near, seen.sample);
   const auto id = static_cast<std::int32_t>(object) + 1;
   WindowImage<float> ink = window_image(depth.window, 0.0f);
   for (int y = depth.window.y0; y < depth.window.y1; ++y) {
@@ -76,12 +77,11 @@ void add_mitre_note(const BorderInput& input, const ExtrudeSettings& settings, B
 WindowImage<float> ink_one(const BorderInput& input, size_t object, const ExtrudeSettings& settings, const EdgeVisibility& view,
                            HullNotes* notes) {
   const Surface& surface = input.model.surfaces[object];
-  if (surface.polygons) {
-    const ExtrudedCorners corners = extrude_corners(*surface.polygons, render_from_object(input, object), settings, view.camera());
-    if (notes != nullptr) notes->add(input, object, corners, settings);
-    return ink_hull(input, object, corners, settings, view.near());
-  }
-  return surface.offset.make ? ink_offset(input, object, settings) : WindowImage<float>{};
+  if (!surface.polygons && !surface.offset.make) return {};
+  const std::shared_ptr<const SharedExtrusion> extrusion = extrusion_of(input, object, settings);
+  if (!surface.polygons) return extrusion->shell ? ink_offset(input, object, settings, *extrusion->shell) : WindowImage<float>{};
+  if (notes != nullptr) notes->add(input, object, extrusion->grown, settings);
+  return ink_hull(input, object, extrusion->grown, settings, view.near());
 }
 
 void lay_ink(const WindowImage<float>& ink, Image<float>& coverage) {
@@ -90,25 +90,19 @@ void lay_ink(const WindowImage<float>& ink, Image<float>& coverage) {
   }
 }
 
-void draw_objects(const BorderInput& input, const ExtrudeSettings& settings, HullNotes& notes, Border& border) {
+void draw_objects(const BorderInput& input, const ExtrudeSettings& settings, HullNotes* notes, Border& border) {
   const EdgeVisibility view(input);
   const size_t objects = input.model.surfaces.size();
-  if (objects == 1) return lay_ink(ink_one(input, 0, settings, view, &notes), border.coverage);
+  if (objects == 1) return lay_ink(ink_one(input, 0, settings, view, notes), border.coverage);
   const ExtrudeGroups groups(input, settings);
-  for (size_t object = 0; object < objects; ++object) groups.lay(object, ink_one(input, object, settings, view, &notes), border.coverage);
+  for (size_t object = 0; object < objects; ++object) groups.lay(object, ink_one(input, object, settings, view, notes), border.coverage);
   groups.draw_seams(border.coverage);
   groups.drop_specks(border.coverage);
   if (settings.groups.by == GroupBy::all) add_group_note("extrude", input, border.notes);
   if (settings.groups.hidden) groups.draw_hidden(border);
 }
 
-Border draw(const BorderInput& input, const Parameters& parameters) {
-  const ExtrudeSettings settings = read_settings(parameters);
-  Border border;
-  border.color = glm::vec3(parameters.vector3("color"));
-  border.coverage = {input.gbuffer.width, input.gbuffer.height, 0.0f};
-  HullNotes notes;
-  draw_objects(input, settings, notes, border);
+void add_notes(const BorderInput& input, const ExtrudeSettings& settings, const HullNotes& notes, Border& border) {
   const auto without = std::count_if(input.model.surfaces.begin(), input.model.surfaces.end(),
                                      [](const Surface& surface) { return !surface.polygons && !surface.offset.make; });
   if (without > 0)
@@ -125,6 +119,16 @@ Border draw(const BorderInput& input, const Parameters& parameters) {
   }
   notes.write(settings, border.notes);
   add_mitre_note(input, settings, border);
+}
+
+Border draw(const BorderInput& input, const Parameters& parameters) {
+  const ExtrudeSettings settings = read_settings(parameters);
+  Border border;
+  border.color = glm::vec3(parameters.vector3("color"));
+  border.coverage = {input.gbuffer.width, input.gbuffer.height, 0.0f};
+  HullNotes notes;
+  draw_objects(input, settings, input.with_notes ? &notes : nullptr, border);
+  if (input.with_notes) add_notes(input, settings, notes, border);
   return border;
 }
 
@@ -136,6 +140,21 @@ std::string unsupported(const SceneModel& model, const Scene&) {
 }
 
 }  // namespace
+
+std::shared_ptr<const SharedExtrusion> extrusion_of(const BorderInput& input, size_t object, const ExtrudeSettings& settings) {
+  if (input.shared != nullptr) {
+    for (const auto& kept : input.shared->extrusions)
+      if (kept->object == object && grows_alike(kept->settings, settings)) return kept;
+  }
+  auto extrusion = std::make_shared<SharedExtrusion>(SharedExtrusion{object, settings});
+  if (const Surface& surface = input.model.surfaces[object]; surface.polygons)
+    extrusion->grown =
+        extrude_corners(*surface.polygons, render_from_object(input, object), settings, moved(input.camera, input.model.render_origin));
+  else
+    extrusion->shell = offset_shell(input, object, settings);
+  if (input.shared != nullptr) input.shared->extrusions.push_back(extrusion);
+  return extrusion;
+}
 
 WindowImage<float> ink_object(const BorderInput& input, size_t object, const ExtrudeSettings& settings) {
   return ink_one(input, object, settings, EdgeVisibility(input), nullptr);

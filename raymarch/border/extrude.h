@@ -23,16 +23,32 @@ struct ExtrudeSettings {
 /// Width of the outline of object `object` (index from 0) at depth `z`.
 double extrude_width_px(const BorderInput& input, size_t object, const ExtrudeSettings& settings, double z);
 
-/// A mesh grown: one point for each corner, in camera axes (x right, y up, z the depth).
-struct ExtrudedCorners {
-  std::vector<glm::dvec3> rest{}, grown{};
-};
-/// `render_from_object` is about the object's origin; `camera` is in render space.
-ExtrudedCorners extrude_corners(const Polygons& polygons, const Affine& render_from_object, const ExtrudeSettings& settings,
-                                const Camera& camera);
+/// A point of render space in camera axes: x right, y up, z the depth.
+glm::dvec3 in_camera_axes(const Camera& camera, const glm::dvec3& p);
+/// A mesh grown: one point for each corner, in camera axes. `render_from_object` is about the object's origin; `camera` is in render
+/// space.
+std::vector<glm::dvec3> extrude_corners(const Polygons& polygons, const Affine& render_from_object, const ExtrudeSettings& settings,
+                                        const Camera& camera);
 
-/// Ink of the offset surface of object `object` (index from 0), where it can come to. Throws InputError where it does not reach that far.
-WindowImage<float> ink_offset(const BorderInput& input, size_t object, const ExtrudeSettings& settings);
+/// The offset surface of an object, and how far off it is.
+struct OffsetShell {
+  OffsetWidth width{};
+  Surface surface{};
+};
+/// Null where the width is 0. Throws InputError where the object's distances do not reach that far.
+std::shared_ptr<const OffsetShell> offset_shell(const BorderInput& input, size_t object, const ExtrudeSettings& settings);
+/// Ink of the offset surface of object `object` (index from 0), where it can come to.
+WindowImage<float> ink_offset(const BorderInput& input, size_t object, const ExtrudeSettings& settings, const OffsetShell& offset);
+
+/// Where the ray goes through its pixel changes neither a mesh grown nor an offset surface: all samples of a view share them.
+struct SharedExtrusion {
+  size_t object = 0;                           ///< Index from 0.
+  ExtrudeSettings settings{};                  ///< Of the call that asked first.
+  std::vector<glm::dvec3> grown{};             ///< As extrude_corners() finds them; none of what has no polygons.
+  std::shared_ptr<const OffsetShell> shell{};  ///< Null of what has polygons, and where the width is 0.
+};
+/// What is shared already, or made now, and shared where `input` has room for it.
+std::shared_ptr<const SharedExtrusion> extrusion_of(const BorderInput& input, size_t object, const ExtrudeSettings& settings);
 
 /// Pixels of objects beside what lies farther back, and runs (8-connected) of those without ink (1/2 or more) on any such neighbour.
 struct OutlineGaps {
@@ -82,7 +98,7 @@ struct DrawnWidths {
 /// Gathers, for all objects, what can be said of the hull where the contour is.
 class HullNotes {
  public:
-  void add(const BorderInput& input, size_t object, const ExtrudedCorners& corners, const ExtrudeSettings& settings);
+  void add(const BorderInput& input, size_t object, std::span<const glm::dvec3> grown, const ExtrudeSettings& settings);
   DrawnWidths widths() const;
   void write(const ExtrudeSettings& settings, std::vector<std::string>& notes) const;
 

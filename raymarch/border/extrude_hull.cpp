@@ -43,13 +43,18 @@ struct Frame {
 
 }  // namespace
 
+glm::dvec3 in_camera_axes(const Camera& camera, const glm::dvec3& p) {
+  const glm::dvec3 q = glm::transpose(camera.world_from_camera) * (p - camera.eye);
+  return {q.x, q.y, -q.z};
+}
+
 // In clip space the offset is normalize(n_px) / size_px * w_clip * width * 2: clip coordinates are pixels times 2 w_clip / size_px, so that
 // after the division by w_clip it is `width` pixels long whatever the picture's shape and the depth. n_px is the normal in camera axes
 // without its depth: it is square to the contour in the image, in perspective too, since the tangent plane at a contour point holds the
 // eye. n_clip.xy itself is not where the picture is not square: its parts are stretched by 2 f / size_px, and are multiplied by size_px
 // first. Here the same is written in camera axes, where a pixel is Z / focal_px wide.
-ExtrudedCorners extrude_corners(const Polygons& polygons, const Affine& render_from_object, const ExtrudeSettings& settings,
-                                const Camera& camera) {
+std::vector<glm::dvec3> extrude_corners(const Polygons& polygons, const Affine& render_from_object, const ExtrudeSettings& settings,
+                                        const Camera& camera) {
   const Mesh& mesh = polygons.mesh();
   Frame frame{
       polygons, settings.direction, render_from_object, glm::inverse(render_from_object.linear), glm::transpose(render_from_object.linear),
@@ -57,19 +62,12 @@ ExtrudedCorners extrude_corners(const Polygons& polygons, const Affine& render_f
   if (settings.direction == ExtrudeDirection::vertex_normal) frame.normals = polygons.corner_normals();
   if (settings.direction == ExtrudeDirection::smooth_normal) frame.normals = polygons.smooth_normals();
   const glm::dmat3 camera_from_render = glm::transpose(camera.world_from_camera);
-  const auto in_camera = [&](const glm::dvec3& p) {
-    const glm::dvec3 q = camera_from_render * (p - camera.eye);
-    return glm::dvec3(q.x, q.y, -q.z);
-  };
-  ExtrudedCorners corners;
-  corners.rest.resize(mesh.corner_vertices.size());
-  corners.grown.resize(mesh.corner_vertices.size());
+  std::vector<glm::dvec3> grown(mesh.corner_vertices.size());
   parallel_for(size_t{0}, mesh.corner_vertices.size(), [&](size_t i) {
     const glm::dvec3& point = mesh.positions[static_cast<size_t>(mesh.corner_vertices[i])];
-    const glm::dvec3 rest = in_camera(point);
-    corners.rest[i] = rest;
+    const glm::dvec3 rest = in_camera_axes(camera, point);
     if (settings.space == ExtrudeSpace::object) {
-      corners.grown[i] = in_camera(point + settings.object_width * frame.in_object(i, point));
+      grown[i] = in_camera_axes(camera, point + settings.object_width * frame.in_object(i, point));
       return;
     }
     const glm::dvec3 towards = camera_from_render * unit_or_zero(frame.in_render(i, point));
@@ -81,9 +79,9 @@ ExtrudedCorners extrude_corners(const Polygons& polygons, const Affine& render_f
     // the middle of the surface. No contour is near.
     if (!frame.by_position() && towards.z > 0.0) direction *= std::min(1.0, length / kFacing);
     const double pixel = camera.projection == Projection::perspective ? rest.z / camera.focal_px : 1.0 / camera.pixels_per_unit;
-    corners.grown[i] = rest + glm::dvec3(settings.width_px * pixel * direction, 0.0);
+    grown[i] = rest + glm::dvec3(settings.width_px * pixel * direction, 0.0);
   });
-  return corners;
+  return grown;
 }
 
 }  // namespace limn

@@ -110,13 +110,19 @@ bool concave(const Polygons& polygons, const TopologyEdge& edge) {
   return glm::dot(sum, polygons.edges().face_normals[static_cast<size_t>(edge.face_a)]) > 0.0;
 }
 
+/// A corner before it grows, in camera axes.
+glm::dvec3 rest_of(const Polygons& polygons, const Camera& camera, size_t corner) {
+  const Mesh& mesh = polygons.mesh();
+  return in_camera_axes(camera, mesh.positions[static_cast<size_t>(mesh.corner_vertices[corner])]);
+}
+
 /// Across the image of the edge from a to b, away from the face that is seen from the front.
-glm::dvec2 outward_normal(const Polygons& polygons, std::int32_t front, const glm::dvec2& a, const glm::dvec2& b, const Camera& camera,
-                          const std::vector<glm::dvec3>& rest) {
+glm::dvec2 outward_normal(const Polygons& polygons, std::int32_t front, const glm::dvec2& a, const glm::dvec2& b, const Camera& camera) {
   const std::vector<std::int32_t>& first = polygons.edges().first_corners;
   glm::dvec2 middle(0.0);
   const std::int32_t begin = first[static_cast<size_t>(front)], end = first[static_cast<size_t>(front) + 1];
-  for (std::int32_t c = begin; c < end; ++c) middle += image_of(camera, rest[static_cast<size_t>(c)]) / static_cast<double>(end - begin);
+  for (std::int32_t c = begin; c < end; ++c)
+    middle += image_of(camera, rest_of(polygons, camera, static_cast<size_t>(c))) / static_cast<double>(end - begin);
   const glm::dvec2 along = glm::normalize(b - a), normal(-along.y, along.x);
   return glm::dot(middle - a, normal) > 0.0 ? -normal : normal;
 }
@@ -152,7 +158,7 @@ InkBeyond ink_beyond(const GBuffer& gbuffer, const Image<float>& coverage, doubl
   return result;
 }
 
-void HullNotes::add(const BorderInput& input, size_t object, const ExtrudedCorners& corners, const ExtrudeSettings& settings) {
+void HullNotes::add(const BorderInput& input, size_t object, std::span<const glm::dvec3> grown, const ExtrudeSettings& settings) {
   const Polygons& polygons = *input.model.surfaces[object].polygons;
   const Mesh& mesh = polygons.mesh();
   const EdgeTopology& topology = polygons.edges();
@@ -179,14 +185,15 @@ void HullNotes::add(const BorderInput& input, size_t object, const ExtrudedCorne
     image.face_b = edge.face_b;
     if (!view.place(a, b, 0.0, image) || !view.visible(image, 0.5) || image.a == image.b) continue;
     const std::int32_t front = a_front ? edge.face_a : edge.face_b, back = a_front ? edge.face_b : edge.face_a;
-    const glm::dvec2 out = outward_normal(polygons, front, image.a, image.b, view.camera(), corners.rest);
+    const glm::dvec2 out = outward_normal(polygons, front, image.a, image.b, view.camera());
     for (const std::int32_t vertex : {edge.vertex_a, edge.vertex_b}) {
       double width = -std::numeric_limits<double>::infinity();
       // The back face alone is drawn, or both are and the wider one shows.
       for (const std::int32_t face : {back, settings.mask == ExtrudeMask::stencil ? front : back}) {
         const auto c = static_cast<size_t>(corner_at(polygons, face, vertex));
-        if (!(corners.rest[c].z > view.near() && corners.grown[c].z > view.near())) continue;
-        width = std::max(width, glm::dot(image_of(view.camera(), corners.grown[c]) - image_of(view.camera(), corners.rest[c]), out));
+        const glm::dvec3 rest = rest_of(polygons, view.camera(), c);
+        if (!(rest.z > view.near() && grown[c].z > view.near())) continue;
+        width = std::max(width, glm::dot(image_of(view.camera(), grown[c]) - image_of(view.camera(), rest), out));
       }
       if (std::isfinite(width)) samples_.push_back({width, 0.5 * glm::length(image.b - image.a)});
     }

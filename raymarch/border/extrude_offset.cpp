@@ -29,6 +29,14 @@ OffsetWidth offset_width(const BorderInput& input, size_t object, const ExtrudeS
   return width;
 }
 
+/// In render space, with the picture's size.
+Camera camera_of(const BorderInput& input) {
+  Camera camera = moved(input.camera, input.model.render_origin);
+  camera.width_px = input.gbuffer.width;
+  camera.height_px = input.gbuffer.height;
+  return camera;
+}
+
 struct Shell {
   const BorderInput& input;
   const Surface& surface;
@@ -95,19 +103,21 @@ void follow(const Shell& shell, ShellBatch& batch, WindowImage<float>& ink) {
 
 }  // namespace
 
-WindowImage<float> ink_offset(const BorderInput& input, size_t object, const ExtrudeSettings& settings) {
-  Camera camera = moved(input.camera, input.model.render_origin);
-  camera.width_px = input.gbuffer.width;
-  camera.height_px = input.gbuffer.height;
-  const OffsetWidth width = offset_width(input, object, settings, camera);
-  if (width.zero()) return {};
+std::shared_ptr<const OffsetShell> offset_shell(const BorderInput& input, size_t object, const ExtrudeSettings& settings) {
+  const OffsetWidth width = offset_width(input, object, settings, camera_of(input));
+  if (width.zero()) return nullptr;
   const SurfaceOffset& offset = input.model.surfaces[object].offset;
-  const Surface surface = offset.make(offset.state.get(), width);
+  return std::make_shared<const OffsetShell>(OffsetShell{width, offset.make(offset.state.get(), width)});
+}
+
+WindowImage<float> ink_offset(const BorderInput& input, size_t object, const ExtrudeSettings& settings, const OffsetShell& offset) {
+  const Camera camera = camera_of(input);
+  const Surface& surface = offset.surface;
   const PixelTile covered = covered_pixels(surface.bounds, {camera, input.gbuffer.sample});
   WindowImage<float> ink = window_image({covered.x, covered.y, covered.x + covered.width, covered.y + covered.height}, 0.0f);
   double radius = std::numeric_limits<double>::infinity();
   if (surface.bounds.finite()) radius = 1.01 * glm::length(glm::max(glm::abs(surface.bounds.lower), glm::abs(surface.bounds.upper)));
-  const Shell shell{input, surface, width, camera, radius, static_cast<std::int32_t>(object) + 1, settings.mask};
+  const Shell shell{input, surface, offset.width, camera, radius, static_cast<std::int32_t>(object) + 1, settings.mask};
   for_each_band(ink.window.height(), [&](int y0, int y1) {
     ShellBatch batch;
     batch.rays.count = 0;

@@ -11,6 +11,7 @@ namespace {
 constexpr double kSubPixels = 1024.0;
 // With image points below 2^20 px, differences take 31 bits and edge functions 63.
 constexpr double kGuard_px = 1 << 19;
+constexpr size_t kPartTriangles = size_t{1} << 14;  // that one thread takes
 
 /// A triangle on the picture: whole 1/1024 px, and 1/Z (perspective) or Z (parallel) as an affine function of them.
 struct FlatTriangle {
@@ -46,15 +47,24 @@ void clip(const Inside& inside, Polygon& polygon, Polygon& scratch) {
   polygon.swap(scratch);
 }
 
+/// How far from the middle of the picture image points may be, at depth 1 in perspective.
+double guard_reach(const Frame& frame) { return kGuard_px / frame.scale(); }
+double nearest_of(const Frame& frame) { return frame.perspective() ? frame.near : 0.0; }
+
 void clip_to_view(const Frame& frame, Polygon& polygon, Polygon& scratch) {
   const bool perspective = frame.perspective();
-  const double near = perspective ? frame.near : 0.0;
+  const double near = nearest_of(frame), reach = guard_reach(frame);
   clip([near](const glm::dvec3& p) { return p.z - near; }, polygon, scratch);
-  const double reach = kGuard_px / frame.scale();
   for (int axis = 0; axis < 2; ++axis) {
     for (const double side : {-1.0, 1.0})
       clip([=](const glm::dvec3& p) { return reach * (perspective ? p.z : 1.0) - side * p[axis]; }, polygon, scratch);
   }
+}
+
+/// What clip_to_view() leaves as it is.
+bool is_in_view(const Frame& frame, const glm::dvec3& p) {
+  const double reach = guard_reach(frame) * (frame.perspective() ? p.z : 1.0);
+  return p.z - nearest_of(frame) >= 0.0 && reach - p.x >= 0.0 && reach + p.x >= 0.0 && reach - p.y >= 0.0 && reach + p.y >= 0.0;
 }
 
 /// Image point relative to the sample of pixel (0, 0), y up, in whole 1/1024 px.
@@ -95,6 +105,44 @@ void add_flat(const Frame& frame, std::array<glm::dvec3, 3> corners, std::vector
   if (flat.top <= flat.bottom && flat.left <= flat.right) out.push_back(flat);
 }
 
+/// Triangles of a part of the hull, and which of them each band of the picture's rows meets.
+struct FlatPart {
+  std::vector<FlatTriangle> triangles{};
+  PixelWindow window{};
+  std::vector<std::vector<std::uint32_t>> of_band{};
+};
+
+FlatPart flattened(const Frame& frame, const Hull& hull, std::span<const glm::uvec3> triangles) {
+  FlatPart part;
+  Polygon polygon, scratch;
+  for (const glm::uvec3& t : triangles) {
+    const std::array<glm::dvec3, 3> corners{hull.corners[t.x], hull.corners[t.y], hull.corners[t.z]};
+    if (is_in_view(frame, corners[0]) && is_in_view(frame, corners[1]) && is_in_view(frame, corners[2])) {
+      add_flat(frame, corners, part.triangles);
+      continue;
+    }
+    polygon.assign(corners.begin(), corners.end());
+    clip_to_view(frame, polygon, scratch);
+    for (size_t i = 2; i < polygon.size(); ++i) add_flat(frame, {polygon[0], polygon[i - 1], polygon[i]}, part.triangles);
+  }
+  part.window = {frame.camera.width_px, frame.camera.height_px, 0, 0};
+  for (const FlatTriangle& t : part.triangles)
+    part.window = {std::min(part.window.x0, t.left), std::min(part.window.y0, t.top), std::max(part.window.x1, t.right + 1),
+                   std::max(part.window.y1, t.bottom + 1)};
+  return part;
+}
+
+/// Bands are counted from row `y0` on.
+void sort_into_bands(int y0, FlatPart& part) {
+  if (part.window.empty()) return;
+  const auto band_of = [&](int y) { return static_cast<size_t>((y - y0) / kBandRows); };
+  part.of_band.resize(band_of(part.window.y1 - 1) + 1);
+  for (size_t i = 0; i < part.triangles.size(); ++i) {
+    const FlatTriangle& t = part.triangles[i];
+    for (size_t band = band_of(t.top); band <= band_of(t.bottom); ++band) part.of_band[band].push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
 /// Of two triangles that share the edge from a to b exactly one owns the points on it.
 bool owns_border(const glm::i64vec2& a, const glm::i64vec2& b) { return b.y < a.y || (b.y == a.y && b.x < a.x); }
 
@@ -122,32 +170,29 @@ void fill_row(const FlatTriangle& flat, int y, bool perspective, WindowImage<dou
 
 }  // namespace
 
-WindowImage<double> rasterize_hull(std::span<const HullTriangle> triangles, HullFaces faces, const Camera& camera, double near,
-                                   const glm::dvec2& sample) {
+WindowImage<double> rasterize_hull(const Hull& hull, HullFaces faces, const Camera& camera, double near, const glm::dvec2& sample) {
   const Frame frame{camera, sample, faces, near};
-  std::vector<FlatTriangle> flat;
-  flat.reserve(triangles.size());
-  Polygon polygon, scratch;
-  for (const HullTriangle& triangle : triangles) {
-    polygon = {triangle.a, triangle.b, triangle.c};
-    clip_to_view(frame, polygon, scratch);
-    for (size_t i = 2; i < polygon.size(); ++i) add_flat(frame, {polygon[0], polygon[i - 1], polygon[i]}, flat);
-  }
+  std::vector<FlatPart> parts((hull.triangles.size() + kPartTriangles - 1) / kPartTriangles);
+  parallel_each(parts.size(), [&](size_t part) {
+    const size_t first = part * kPartTriangles;
+    parts[part] = flattened(frame, hull, hull.triangles.subspan(first, std::min(kPartTriangles, hull.triangles.size() - first)));
+  });
   PixelWindow window{camera.width_px, camera.height_px, 0, 0};
-  for (const FlatTriangle& t : flat)
-    window = {std::min(window.x0, t.left), std::min(window.y0, t.top), std::max(window.x1, t.right + 1), std::max(window.y1, t.bottom + 1)};
+  for (const FlatPart& part : parts)
+    window = {std::min(window.x0, part.window.x0), std::min(window.y0, part.window.y0), std::max(window.x1, part.window.x1),
+              std::max(window.y1, part.window.y1)};
   if (window.empty()) return {};
   WindowImage<double> depth = window_image(window, std::numeric_limits<double>::infinity());
-  const auto band_of = [&](int y) { return static_cast<size_t>((y - window.y0) / kBandRows); };
-  std::vector<std::vector<std::uint32_t>> of_band(band_of(window.y1 - 1) + 1);
-  for (size_t i = 0; i < flat.size(); ++i) {
-    for (size_t band = band_of(flat[i].top); band <= band_of(flat[i].bottom); ++band)
-      of_band[band].push_back(static_cast<std::uint32_t>(i));
-  }
+  parallel_each(parts.size(), [&](size_t part) { sort_into_bands(window.y0, parts[part]); });
   for_each_band(window.height(), [&](int y0, int y1) {
-    for (const std::uint32_t i : of_band[static_cast<size_t>(y0 / kBandRows)]) {
-      const int first = std::max(flat[i].top, window.y0 + y0), end = std::min(flat[i].bottom + 1, window.y0 + y1);
-      for (int y = first; y < end; ++y) fill_row(flat[i], y, frame.perspective(), depth);
+    const auto band = static_cast<size_t>(y0 / kBandRows);
+    for (const FlatPart& part : parts) {
+      if (band >= part.of_band.size()) continue;
+      for (const std::uint32_t i : part.of_band[band]) {
+        const FlatTriangle& flat = part.triangles[i];
+        const int first = std::max(flat.top, window.y0 + y0), end = std::min(flat.bottom + 1, window.y0 + y1);
+        for (int y = first; y < end; ++y) fill_row(flat, y, frame.perspective(), depth);
+      }
     }
   });
   return depth;

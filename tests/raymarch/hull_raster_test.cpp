@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <random>
 
 #include "subdiv/edge_topology.h"
@@ -12,6 +13,8 @@
 
 namespace limn::test {
 namespace {
+
+constexpr glm::uvec3 kWhole(0, 1, 2);
 
 TEST(HullRaster, TrianglesThatShareAnEdgeShareNoPixelAndLeaveNone) {
   const std::uint32_t seed = random_seed();
@@ -33,8 +36,8 @@ TEST(HullRaster, TrianglesThatShareAnEdgeShareNoPixelAndLeaveNone) {
     while (on_one_line()) c = corner();
     const glm::dvec3 inside = (a + b + c) / 3.0;
     const auto covered = [&](const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& r) {
-      const HullTriangle triangle{p, q, r};
-      return rasterize_hull({&triangle, 1}, HullFaces::all, camera, 0.0, {0.5, 0.5});
+      const std::array<glm::dvec3, 3> corners{p, q, r};
+      return rasterize_hull({corners, {&kWhole, 1}}, HullFaces::all, camera, 0.0, {0.5, 0.5});
     };
     const WindowImage<double> whole = covered(a, b, c), first = covered(a, b, inside), second = covered(b, c, inside),
                               third = covered(c, a, inside);
@@ -54,8 +57,8 @@ TEST(HullRaster, TrianglesThatShareAnEdgeShareNoPixelAndLeaveNone) {
 TEST(HullRaster, DepthIsThatOfThePlaneAndTheNearPlaneCuts) {
   const Camera camera = straight_camera(64, 48, Projection::perspective, 60.0);
   // The plane Z = 2 + x / 2, from before the eye to far behind it.
-  const HullTriangle triangle{{-8.0, -6.0, -2.0}, {10.0, -6.0, 7.0}, {1.0, 12.0, 2.5}};
-  const WindowImage<double> depth = rasterize_hull({&triangle, 1}, HullFaces::all, camera, 0.5, {0.5, 0.5});
+  const std::array<glm::dvec3, 3> corners{{{-8.0, -6.0, -2.0}, {10.0, -6.0, 7.0}, {1.0, 12.0, 2.5}}};
+  const WindowImage<double> depth = rasterize_hull({corners, {&kWhole, 1}}, HullFaces::all, camera, 0.5, {0.5, 0.5});
   int filled = 0;
   for (int y = depth.window.y0; y < depth.window.y1; ++y) {
     for (int x = depth.window.x0; x < depth.window.x1; ++x) {

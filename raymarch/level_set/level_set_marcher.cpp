@@ -40,6 +40,7 @@ struct State {
 
 /// Null where there are no bricks to know it from.
 const CrossedLeaves* crossed_of(const State& state) {
+  if (!state.crossed.cells.empty()) return &state.crossed;
   if (!state.bricks || state.bricks->groups.empty()) return nullptr;
   once_alone(state.crossed_once,
              [&] { state.crossed = crossed_leaves(*state.level_set.data().grid, state.bricks->groups.front().bounds); });
@@ -278,6 +279,7 @@ Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_ob
   state->walked = walked;
   state->grid_world_from_render = object_from_render;
   state->normal_from_grid = glm::transpose(object_from_world.linear);
+  if (!level.width.zero()) state->crossed = leaves_of_level(data, walked);
   if (level.width.zero()) state->lowered = lowered_cells(level_set, gradient);
   const std::optional<BrickGradient> packed = brick_gradient(gradient);
   if (level.width.zero() && packed) {

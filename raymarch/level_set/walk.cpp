@@ -7,6 +7,8 @@
 
 #include "raymarch/level_set/bricks.h"
 #include "raymarch/level_set/level_set_marcher.h"
+#include "sdf/level_set_band.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -39,13 +41,18 @@ struct Exit {
   int axis;
 };
 
-Exit exit_of(const IndexRay& ray, const Block& block) {
+/// `leaves`: where it meets the faces ahead, by their axes.
+Exit first_of(const glm::dvec3& leaves) {
   Exit exit{std::numeric_limits<double>::infinity(), 0};
-  for (int axis = 0; axis < 3; ++axis) {
-    const double t = ray.meets(axis, block.lower[axis] + (ray.direction[axis] > 0.0 ? block.size : 0));
-    if (t < exit.t) exit = {t, axis};
-  }
+  for (int axis = 0; axis < 3; ++axis)
+    if (leaves[axis] < exit.t) exit = {leaves[axis], axis};
   return exit;
+}
+
+Exit exit_of(const IndexRay& ray, const Block& block) {
+  glm::dvec3 leaves;
+  for (int axis = 0; axis < 3; ++axis) leaves[axis] = ray.meets(axis, block.lower[axis] + (ray.direction[axis] > 0.0 ? block.size : 0));
+  return first_of(leaves);
 }
 
 /// The cell at time `t` within `block`, exactly the one beyond the face on the axis just crossed.
@@ -78,6 +85,30 @@ std::array<double, 4> cubic_along(const std::array<double, 8>& v, const glm::dve
     return result;
   };
   return join(join(line[0], line[1], from.y, d.y), join(line[2], line[3], from.y, d.y), from.z, d.z);
+}
+
+/// Signs as Walk::subtract_level() has them: far to either side the level does not matter. `nodes` is changed.
+LevelCells cells_of_level(const WalkedGrid& grid, const nanovdb::Coord& origin, NodeWindow& nodes) {
+  for (size_t x = 1; x < 10; ++x) {
+    for (size_t y = 1; y < 10; ++y) {
+      for (size_t z = 1; z < 10; ++z) {
+        float& value = nodes[x][y][z];
+        if (value < 0.0f || double{value} > grid.largest_level) continue;
+        const glm::dvec3 node = glm::dvec3(origin[0], origin[1], origin[2]) + glm::dvec3(x, y, z) - 1.0;
+        const double level = grid.grid_from_render_length * grid.level.at(grid.render_from_index.point(node));
+        value = double{value} - level < 0.0 ? -1.0f : 1.0f;
+      }
+    }
+  }
+  LevelCells cells{cells_crossed(nodes)};
+  for (size_t x = 0; x < 8; ++x) {
+    for (size_t y = 0; y < 8; ++y) {
+      unsigned bits = 0;
+      for (size_t z = 0; z < 8; ++z) bits |= (nodes[x + 1][y + 1][z + 1] < 0.0f ? 1u : 0u) << z;
+      cells.inside[x][y] = static_cast<std::uint8_t>(bits);
+    }
+  }
+  return cells;
 }
 
 /// Walks one ray through the tree.
@@ -152,8 +183,14 @@ class Walk {
   /// True where nothing of the leaf need be looked at. Else finds what bounds the surface in it.
   bool passes_leaf(const Leaf& leaf) {
     bound_ = nullptr;
+    cells_ = nullptr;
     if (crossed_ == nullptr) return false;
-    const std::int32_t brick = crossed_->brick_of_leaf[static_cast<size_t>(&leaf - crossed_->first_leaf)];
+    const auto number = static_cast<size_t>(&leaf - crossed_->first_leaf);
+    if (!crossed_->cells.empty()) {
+      cells_ = &crossed_->cells[number];
+      return !cells_->crossed.any && is_on_side(leaf);
+    }
+    const std::int32_t brick = crossed_->brick_of_leaf[number];
     if (brick < 0) return is_on_side(leaf);
     bound_ = &crossed_->bounds[static_cast<size_t>(brick)];
     return false;
@@ -162,15 +199,19 @@ class Walk {
   /// Of a cell that the surface does not cross: all its values have the sign of its first node's. False where the ray comes from the other
   /// side: then rounding has put a root on neither side of the cell's face.
   bool is_on_side(const Leaf& leaf) {
-    const bool inside = leaf.data()->mValues[Leaf::CoordToOffset({cell_.x, cell_.y, cell_.z})] < 0.0f;
+    const bool inside =
+        cells_ != nullptr ? holds_cell(cells_->inside) : leaf.data()->mValues[Leaf::CoordToOffset({cell_.x, cell_.y, cell_.z})] < 0.0f;
     if (!known_) inside_ = inside;
     known_ = true;
     return inside == inside_;
   }
 
+  bool holds_cell(const std::uint8_t (&cells)[8][8]) const { return (cells[cell_.x & 7][cell_.y & 7] >> (cell_.z & 7) & 1) != 0; }
+
   /// True where the ray meets no surface in the cell, t_ to t1: beside the crossed cells, or, where its side is known, beside the slab that
   /// holds the surface. Bricks' values are rounded to steps, so that their slab is widened by some.
   bool passes_cell(const Leaf& leaf, double t1) {
+    if (cells_ != nullptr) return !holds_cell(cells_->crossed.cells) && is_on_side(leaf);
     if (bound_ == nullptr) return false;
     for (int axis = 0; axis < 3; ++axis) {
       const int place = cell_[axis] - bound_->origin[axis];
@@ -194,20 +235,24 @@ class Walk {
   HitStatus walk_cells(const Block& leaf, const Leaf& node, GridRoot& root) {
     // Most rays pass most leaves beside the surface: no cell would tell more than the leaf does.
     if (beside_slab(std::max(t_, std::min(exit_of(ray_, leaf).t, t_max_)))) return HitStatus::miss;
+    // Only the plane across the axis just crossed changes from cell to cell.
+    glm::dvec3 leaves;
+    for (int axis = 0; axis < 3; ++axis) leaves[axis] = leaves_cell(axis);
     while (true) {
-      const Block cell{cell_, 1};
-      const Exit exit = exit_of(ray_, cell);
+      const Exit exit = first_of(leaves);
       const double until = std::max(t_, std::min(exit.t, t_max_));
       if (!passes_cell(node, until) && hit_in_cell(until, root)) return root.t < t_max_ ? HitStatus::hit : HitStatus::miss;
       t_ = std::max(t_, exit.t);
       if (t_ >= t_max_) return HitStatus::miss;
-      glm::ivec3 next = cell_;
-      next[exit.axis] += ray_.direction[exit.axis] > 0.0 ? 1 : -1;
-      if (next[exit.axis] < leaf.lower[exit.axis] || next[exit.axis] >= leaf.lower[exit.axis] + leaf.size) return HitStatus::miss;
-      cell_ = next;
+      const int next = cell_[exit.axis] + (ray_.direction[exit.axis] > 0.0 ? 1 : -1);
+      if (next < leaf.lower[exit.axis] || next >= leaf.lower[exit.axis] + leaf.size) return HitStatus::miss;
+      cell_[exit.axis] = next;
+      leaves[exit.axis] = leaves_cell(exit.axis);
       if (++steps_ > grid_.max_steps) return HitStatus::out_of_steps;
     }
   }
+
+  double leaves_cell(int axis) const { return ray_.meets(axis, cell_[axis] + (ray_.direction[axis] > 0.0 ? 1 : 0)); }
 
   /// Taking it at the nodes is exact for a constant, and for pixels good to the second order of a voxel seen from the eye.
   void subtract_level(const glm::ivec3& cell, std::array<double, 8>& values) const {
@@ -248,6 +293,7 @@ class Walk {
   const Accessor& accessor_;
   const CrossedLeaves* crossed_;
   const SurfaceBound* bound_ = nullptr;  ///< Of the leaf that is walked; null: its cells are all looked at.
+  const LevelCells* cells_ = nullptr;    ///< The same of another level.
   IndexRay ray_;
   double t_, t_max_;
   glm::ivec3 cell_{0};
@@ -268,6 +314,22 @@ CrossedLeaves crossed_leaves(const nanovdb::FloatGrid& grid, std::span<const Sur
     const Leaf* leaf = accessor.probeLeaf({bounds[i].origin[0], bounds[i].origin[1], bounds[i].origin[2]});
     if (leaf != nullptr) crossed.brick_of_leaf[static_cast<size_t>(leaf - crossed.first_leaf)] = static_cast<std::int32_t>(i);
   }
+  return crossed;
+}
+
+CrossedLeaves leaves_of_level(const LevelSetData& data, const WalkedGrid& grid) {
+  CrossedLeaves crossed;
+  crossed.first_leaf = data.grid->tree().getFirstLeaf();
+  crossed.cells.resize(data.grid->tree().nodeCount(0));
+  parallel_parts(crossed.cells.size(), size_t{32}, [&](const IndexRange<size_t>& range) {
+    const Accessor accessor = data.accessor();
+    NodeWindow nodes;
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      const LeafWindow window(accessor, crossed.first_leaf[i].origin());
+      load_nodes(window, nodes);
+      crossed.cells[i] = cells_of_level(grid, window.origin(), nodes);
+    }
+  });
   return crossed;
 }
 

@@ -28,13 +28,9 @@ struct Counts {
 /// On a surface that lies in a plane of nodes, the last cell before it may find the root, or the first one in it.
 constexpr double kRounding = 1e-14;
 
-/// Rays from all around, through the middle and past it, and from inside the surface; some along the axes, on grid planes.
-Counts compare(const LevelSet& level_set, std::mt19937_64& random) {
-  const WalkedGrid grid = walked(level_set);
-  const auto bricks = make_bricks(level_set);
-  EXPECT_NE(bricks, nullptr);
-  if (!bricks) return {};
-  const CrossedLeaves crossed = crossed_leaves(*level_set.data().grid, bricks->groups.front().bounds);
+/// `crossed` knows what the level that is looked for crosses. Rays from all around, through the middle and past it, and from inside the
+/// surface; some along the axes, on grid planes.
+Counts compare(const LevelSet& level_set, const WalkedGrid& grid, const CrossedLeaves& crossed, std::mt19937_64& random) {
   const auto accessor = level_set.data().accessor();
   const Box box = level_set.info().bounds;
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -76,10 +72,39 @@ TEST(LevelSetWalk, FindsTheSameRootsWhereItSkipsWhatTheSurfaceDoesNotCross) {
   for (const Field& field : fields) {
     const LevelSet level_set =
         level_set_from_field(field, {.voxel_size = field.traits().bounds.longest_side() / 60.0, .half_width_voxels = 3.0});
-    const Counts counts = compare(level_set, random);
+    const auto bricks = make_bricks(level_set);
+    ASSERT_NE(bricks, nullptr);
+    const Counts counts =
+        compare(level_set, walked(level_set), crossed_leaves(*level_set.data().grid, bricks->groups.front().bounds), random);
     EXPECT_EQ(counts.different, 0);
     EXPECT_GT(counts.hits, 2'000);
     EXPECT_GT(counts.misses, 200);
+  }
+}
+
+// What offsets are walked by: a level beside the grid's own, the same everywhere or as many pixels wide as seen from some eye.
+TEST(LevelSetWalk, FindsTheSameRootsOfAnotherLevelWhereItSkipsWhatThatDoesNotCross) {
+  std::mt19937_64 random(fresh_seed());
+  const Field sphere = make_shape("sphere"), box = rotate(make_shape("box", {{"half", {0.7, 0.5, 0.6}}}), {1.0, 2.0, 0.5}, 0.7);
+  for (const Field& field : {sphere, box, combine(Csg::union_, translate(sphere, {-0.9, 0, 0}), translate(box, {0.9, 0.1, 0}), 0.05)}) {
+    const double voxel = field.traits().bounds.longest_side() / 60.0;
+    const LevelSet level_set = level_set_from_field(field, {.voxel_size = voxel, .half_width_voxels = 6.0});
+    for (const bool by_depth : {false, true}) {
+      WalkedGrid grid = walked(level_set);
+      grid.level.world = (by_depth ? 0.3 : 2.5) * voxel;
+      if (by_depth) grid.level.per_depth = 0.4 * voxel, grid.level.eye = {0.0, 0.3, 4.0};
+      grid.largest_level = 4.0 * voxel;
+      grid.lower -= 4;
+      grid.upper += 4;
+      const CrossedLeaves crossed = leaves_of_level(level_set.data(), grid);
+      const Counts counts = compare(level_set, grid, crossed, random);
+      EXPECT_EQ(counts.different, 0);
+      EXPECT_GT(counts.hits, 2'000);
+      EXPECT_GT(counts.misses, 200);
+      size_t skipped = 0;
+      for (const LevelCells& cells : crossed.cells) skipped += !cells.crossed.any;
+      EXPECT_GT(skipped, crossed.cells.size() / 10);
+    }
   }
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "sdf/level_set_band.h"
+#include "sdf/nearest_place.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -98,6 +99,25 @@ class Surroundings {
   double value(const glm::ivec3& p) const { return static_cast<double>(values_[index(p)]); }
   bool in_band(const glm::ivec3& p) const { return active_[index(p)]; }
 
+  /// visit(node, axis, its value, the value at the next node along the axis) for all pairs of nodes in the band whose signs differ.
+  template <class Visit>
+  void for_each_crossing(const Visit& visit) const {
+    constexpr std::array<size_t, 3> kNext{size_t{kSide} * kSide, kSide, 1};
+    for (int x = -kReach; x < 8 + kReach; ++x)
+      for (int y = -kReach; y < 8 + kReach; ++y) {
+        const size_t row = index({x, y, -kReach});
+        for (size_t i = row; i < row + 8 + 2 * kReach; ++i) {
+          if (!active_[i]) continue;
+          const bool inside = values_[i] < 0.0f;
+          for (int axis = 0; axis < 3; ++axis) {
+            const size_t j = i + kNext[static_cast<size_t>(axis)];
+            if ((values_[j] < 0.0f) != inside && active_[j])
+              visit(glm::ivec3(x, y, static_cast<int>(i - row) - kReach), axis, double{values_[i]}, double{values_[j]});
+          }
+        }
+      }
+  }
+
  private:
   std::array<float, kSide * kSide * kSide> values_;
   std::array<bool, kSide * kSide * kSide> active_;
@@ -160,52 +180,24 @@ struct Metric {
   double farthest = kFarthest;
 };
 
-/// Where the grid's edges cross the surface between two nodes of the band: places that the file is sure of. In voxels, by axis, for
-/// loops that become SIMD.
-struct Crossings {
-  std::array<std::vector<float>, 3> at{};
-  size_t count() const { return at[0].size(); }
-};
-
-void find_crossings(const Surroundings& nodes, const Metric& metric, Crossings& crossings) {
-  for (std::vector<float>& axis : crossings.at) axis.clear();
-  for (int x = -kReach; x < 8 + kReach; ++x)
-    for (int y = -kReach; y < 8 + kReach; ++y)
-      for (int z = -kReach; z < 8 + kReach; ++z) {
-        const glm::ivec3 here(x, y, z);
-        if (!nodes.in_band(here)) continue;
-        const double a = nodes.value(here);
-        for (int axis = 0; axis < 3; ++axis) {
-          glm::ivec3 next = here;
-          ++next[axis];
-          const double b = nodes.value(next);
-          if ((a < 0.0) == (b < 0.0) || !nodes.in_band(next)) continue;
-          glm::dvec3 crossing(here);
-          crossing[axis] += a / (a - b);
-          const glm::dvec3 place = metric.length_from_index * crossing;
-          for (int k = 0; k < 3; ++k) crossings.at[static_cast<size_t>(k)].push_back(static_cast<float>(place[k]));
-        }
-      }
+/// Where the grid's edges cross the surface between two nodes of the band: places that the file is sure of. In voxels.
+void find_crossings(const Surroundings& nodes, const Metric& metric, Places& crossings) {
+  crossings.clear();
+  nodes.for_each_crossing([&](const glm::ivec3& from, int axis, double a, double b) {
+    glm::dvec3 crossing(from);
+    crossing[axis] += a / (a - b);
+    const glm::vec3 place(metric.length_from_index * crossing);
+    crossings.add(place.x, place.y, place.z);
+  });
+  if (!crossings.empty()) crossings.pad();
 }
 
 /// The crossing nearest to a place; none where there is none.
-std::optional<glm::dvec3> nearest_crossing(const Crossings& crossings, const glm::dvec3& place) {
-  const float px = static_cast<float>(place.x), py = static_cast<float>(place.y), pz = static_cast<float>(place.z);
-  const float *const x = crossings.at[0].data(), *const y = crossings.at[1].data(), *const z = crossings.at[2].data();
-  const auto squared = [&](size_t k) {
-    const float dx = x[k] - px, dy = y[k] - py, dz = z[k] - pz;
-    return dx * dx + dy * dy + dz * dz;
-  };
-  // Four least ones side by side: the compiler makes no SIMD of a single running minimum.
-  std::array<float, 4> least{1e30f, 1e30f, 1e30f, 1e30f};
-  const size_t count = crossings.count(), whole = count & ~size_t{3};
-  for (size_t k = 0; k < whole; k += 4)
-    for (size_t lane = 0; lane < 4; ++lane) least[lane] = std::min(least[lane], squared(k + lane));
-  for (size_t k = whole; k < count; ++k) least[0] = std::min(least[0], squared(k));
-  const float best = *std::min_element(least.begin(), least.end());
-  for (size_t k = 0; k < count; ++k)
-    if (squared(k) == best) return glm::dvec3(x[k], y[k], z[k]);
-  return std::nullopt;
+std::optional<glm::dvec3> nearest_crossing(const Places& crossings, const glm::dvec3& place) {
+  if (crossings.empty()) return std::nullopt;
+  const glm::vec3 p(place);
+  const size_t k = nearest_place(crossings, {p.x, p.y, p.z});
+  return glm::dvec3(crossings.at[0][k], crossings.at[1][k], crossings.at[2][k]);
 }
 
 struct NodeValue {
@@ -216,7 +208,7 @@ struct NodeValue {
 
 /// The distance at a node: by the triangle inequality no more than the distance at a place in the band and the way there, and as much where
 /// that place lies on the way to the nearest point of the surface. Its direction comes from the nearest crossing, then from the gradient.
-NodeValue distance_at(const Surroundings& nodes, const Crossings& crossings, const Metric& metric, const glm::ivec3& node) {
+NodeValue distance_at(const Surroundings& nodes, const Places& crossings, const Metric& metric, const glm::ivec3& node) {
   const glm::dvec3 p(node), place = metric.length_from_index * p;
   NodeValue result;
   const std::optional<glm::dvec3> foot = nearest_crossing(crossings, place);
@@ -264,7 +256,7 @@ bool jumps(const Surroundings& nodes, const Metric& metric, const glm::ivec3& no
 }
 
 void fill_block(const LevelSetData& data, const Metric& metric, const NanoAccessor& accessor, const MissingBlock& missing,
-                Crossings& crossings, FilledBlock& block) {
+                Places& crossings, FilledBlock& block) {
   const Surroundings nodes(accessor, missing.origin);
   const double background = std::abs(static_cast<double>(data.grid->tree().background()));
   find_crossings(nodes, metric, crossings);
@@ -328,7 +320,7 @@ std::vector<FilledBlock> fill_nodes(const LevelSetData& data, const std::vector<
   std::vector<FilledBlock> filled(missing.size());
   parallel_parts(missing.size(), size_t{16}, [&](const IndexRange<size_t>& range) {
     const NanoAccessor accessor = data.accessor();
-    Crossings crossings;
+    Places crossings;
     for (size_t i = range.begin(); i < range.end(); ++i) fill_block(data, metric, accessor, missing[i], crossings, filled[i]);
   });
   return filled;

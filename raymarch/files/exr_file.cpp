@@ -1,6 +1,5 @@
 #include "raymarch/files/exr_file.h"
 
-#include <Imath/half.h>
 #include <fcntl.h>
 #include <openexr.h>
 #include <unistd.h>
@@ -14,6 +13,7 @@
 #include <system_error>
 
 #include "raymarch/files/deflate.h"
+#include "raymarch/files/exr_lanes.h"
 #include "sdf/error.h"
 #include "sdf/parallel.h"
 
@@ -116,20 +116,27 @@ void write_header(const File& file, const ExrPicture& picture, std::span<const E
   file.check(exr_write_header(context));
 }
 
+/// Of pixels of one channel, as they are read and as halves.
+struct RowBuffer {
+  std::vector<float> values{};
+  std::vector<std::uint16_t> halves{};
+};
+
 /// Values of pixels [first, last) of one channel. Returns where they end.
-std::uint8_t* put_values(const ExrChannel& channel, size_t first, size_t last, std::vector<float>& values, std::uint8_t* to) {
-  channel.read(first, last, values.data());
+std::uint8_t* put_values(const ExrChannel& channel, size_t first, size_t last, RowBuffer& row, std::uint8_t* to) {
+  channel.read(first, last, row.values.data());
   const size_t count = last - first;
-  for (size_t i = 0; i < count && channel.type != ExrType::full; ++i) {
-    if (channel.type == ExrType::half) {
-      const std::uint16_t half = imath_float_to_half(values[i]);
-      std::memcpy(to + 2 * i, &half, sizeof half);
-    } else {
-      const auto whole = static_cast<std::uint32_t>(values[i]);
+  if (channel.type == ExrType::half) {
+    to_halves(row.values.data(), count, row.halves.data());
+    std::memcpy(to, row.halves.data(), count * sizeof(std::uint16_t));
+  } else if (channel.type == ExrType::full) {
+    std::memcpy(to, row.values.data(), count * sizeof(float));
+  } else {
+    for (size_t i = 0; i < count; ++i) {
+      const auto whole = static_cast<std::uint32_t>(row.values[i]);
       std::memcpy(to + 4 * i, &whole, sizeof whole);
     }
   }
-  if (channel.type == ExrType::full) std::memcpy(to, values.data(), count * sizeof(float));
   return to + count * bytes_of(channel.type);
 }
 
@@ -142,7 +149,9 @@ std::uint8_t difference(std::uint8_t value, std::uint8_t before) {
 class ChunkMaker {
  public:
   ChunkMaker(const ExrPicture& picture, std::span<const ExrChannel* const> channels)
-      : channels_(channels), width_(static_cast<size_t>(picture.width_px)), values_(width_) {
+      : channels_(channels), width_(static_cast<size_t>(picture.width_px)) {
+    buffer_.values.resize(width_);
+    buffer_.halves.resize(width_);
     size_t pixel_bytes = 0;
     for (const ExrChannel* channel : channels) pixel_bytes += bytes_of(channel->type);
     row_.resize(width_ * pixel_bytes);
@@ -165,7 +174,7 @@ class ChunkMaker {
  private:
   void read_row(size_t row) {
     std::uint8_t* at = row_.data();
-    for (const ExrChannel* channel : channels_) at = put_values(*channel, row * width_, (row + 1) * width_, values_, at);
+    for (const ExrChannel* channel : channels_) at = put_values(*channel, row * width_, (row + 1) * width_, buffer_, at);
   }
 
   /// The format's preparation for zip: bytes at even places before those at odd places, and then each one's difference from the one before,
@@ -179,8 +188,7 @@ class ChunkMaker {
       std::uint8_t *const even = prepared_.data() + (row - first) * pairs, *const odd = even + middle;
       even[0] = difference(from[0], last_even);
       odd[0] = difference(from[1], last_odd);
-      for (size_t i = 1; i < pairs; ++i) even[i] = difference(from[2 * i], from[2 * i - 2]);
-      for (size_t i = 1; i < pairs; ++i) odd[i] = difference(from[2 * i + 1], from[2 * i - 1]);
+      split_differences(from, pairs, even, odd);
       if (row == first) prepared_[0] = from[0];
       last_even = from[2 * pairs - 2];
       last_odd = from[2 * pairs - 1];
@@ -191,7 +199,7 @@ class ChunkMaker {
 
   std::span<const ExrChannel* const> channels_;
   size_t width_ = 0;
-  std::vector<float> values_{};
+  RowBuffer buffer_{};
   Bytes row_{}, prepared_{};
   Deflater deflater_{};
 };

@@ -292,6 +292,17 @@ TruthProxy make_proxy(const Scene& scene, const Camera& camera, std::int64_t max
   return *proxy_for(scene, camera, {.max_bytes = max_bytes}, edge_px);
 }
 
+void offer_model(const Scene& scene, const SurfaceSettings& settings, const SceneModel& model, TruthCache& cache) {
+  if (cache.proxy != nullptr) return;
+  TruthProxy proxy{model, settings.level};
+  const bool fits = std::all_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
+    const SurfaceSettings finest = finest_settings(object, settings.level, proxy);
+    const std::string kind = settings.kind.empty() ? natural_surface(object) : settings.kind;
+    return is_cage(object) && !object.level && kind == finest.kind && settings.normals == finest.normals && !settings.scheme;
+  });
+  if (fits) cache.proxy = std::make_shared<const TruthProxy>(std::move(proxy));
+}
+
 std::shared_ptr<const TruthProxy> proxy_for(const Scene& scene, const Camera& camera, const TruthSettings& settings, double edge_px) {
   auto out = std::make_shared<TruthProxy>();
   out->level = proxy_level(scene, camera, edge_px);

@@ -103,6 +103,8 @@ const ExperimentTruth& ExperimentRun::truth(size_t view, double threshold) {
     settings.threshold = threshold;
     settings.reference = experiment_.reference;
     settings.cache = &truth_cache_;
+    if (const ExperimentModel& finest = experiment_.models.front(); reference_ && !finest.local)
+      offer_model(finest.scene, finest.settings, *reference_, truth_cache_);
     settings.max_bytes = std::min(settings.max_bytes, experiment_.models.front().settings.max_bytes);
     of.truth = solve_truth(experiment_.scene, experiment_.cameras[view], settings, how_);
   } catch (const InputError& error) {

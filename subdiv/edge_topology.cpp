@@ -1,22 +1,40 @@
 #include "subdiv/edge_topology.h"
 
+#include "sdf/parallel.h"
 #include "subdiv/polygon.h"
 #include "subdiv/weld.h"
 
 namespace limn {
 namespace {
 
-/// Newell's normals; faces without area are left at 0.
-std::vector<glm::dvec3> area_normals(const Mesh& mesh) {
-  std::vector<glm::dvec3> normals, corners;
-  normals.reserve(mesh.face_count());
-  std::int32_t first = 0;
-  for (size_t f = 0; f < mesh.face_count(); ++f) {
-    gather_corners(mesh, face_corners(mesh, first, f), corners);
-    normals.push_back(zero_area(corners) ? glm::dvec3(0.0) : vector_area(corners));
-    first += mesh.face_sizes[f];
-  }
+constexpr size_t kFaces = 2048;  // that one thread takes at least
+
+/// Newell's normals; faces without area are left at 0. `first`: first_corners().
+std::vector<glm::dvec3> area_normals(const Mesh& mesh, const std::vector<std::int32_t>& first) {
+  std::vector<glm::dvec3> normals(mesh.face_count());
+  parallel_parts(normals.size(), kFaces, [&](const IndexRange<size_t>& range) {
+    std::vector<glm::dvec3> corners;
+    for (size_t f = range.begin(); f < range.end(); ++f) {
+      gather_corners(mesh, face_corners(mesh, first[f], f), corners);
+      normals[f] = zero_area(corners) ? glm::dvec3(0.0) : vector_area(corners);
+    }
+  });
   return normals;
+}
+
+/// Each face's normal by its angle at each of its corners; 0 at faces without area.
+std::vector<glm::dvec3> weighted_normals(const Mesh& mesh, const std::vector<std::int32_t>& first, const std::vector<glm::dvec3>& normals) {
+  std::vector<glm::dvec3> weighted(mesh.corner_vertices.size());
+  parallel_parts(normals.size(), kFaces, [&](const IndexRange<size_t>& range) {
+    std::vector<glm::dvec3> corners;
+    for (size_t f = range.begin(); f < range.end(); ++f) {
+      if (normals[f] == glm::dvec3(0.0)) continue;
+      gather_corners(mesh, face_corners(mesh, first[f], f), corners);
+      for (size_t i = 0; i < corners.size(); ++i)
+        weighted[static_cast<size_t>(first[f]) + i] = corner_angle(corners, i, normals[f]) * normals[f];
+    }
+  });
+  return weighted;
 }
 
 /// A sliver without area between two faces has no normal; with that of the face beyond its longest edge the contour passes along its
@@ -56,8 +74,8 @@ std::vector<std::int32_t> first_vertex_at_position(const Mesh& mesh) {
 
 EdgeTopology build_edge_topology(const Mesh& mesh) {
   EdgeTopology topology;
-  topology.face_normals = area_normals(mesh);
   topology.first_corners = first_corners(mesh);
+  topology.face_normals = area_normals(mesh, topology.first_corners);
   Mesh welded;
   welded.positions = mesh.positions;
   welded.face_sizes = mesh.face_sizes;
@@ -78,30 +96,29 @@ EdgeTopology build_edge_topology(const Mesh& mesh) {
 }
 
 std::vector<glm::vec3> bake_smooth_normals(const Mesh& mesh) {
-  const std::vector<std::int32_t> at = first_vertex_at_position(mesh);
-  const std::vector<glm::dvec3> of_face = area_normals(mesh);
-  std::vector<glm::dvec3> sums(mesh.vertex_count(), glm::dvec3(0.0)), any(mesh.vertex_count(), glm::dvec3(0.0)), corners;
-  std::int32_t first = 0;
+  const std::vector<std::int32_t> at = first_vertex_at_position(mesh), first = first_corners(mesh);
+  std::vector<glm::dvec3> normal_of = area_normals(mesh, first);
+  parallel_for(size_t{0}, normal_of.size(), [&](size_t f) {
+    const double area = glm::length(normal_of[f]);
+    normal_of[f] = area > 0.0 ? normal_of[f] / area : glm::dvec3(0.0);
+  });
+  const std::vector<glm::dvec3> weighted = weighted_normals(mesh, first, normal_of);
+  std::vector<glm::dvec3> sums(mesh.vertex_count(), glm::dvec3(0.0)), any(mesh.vertex_count(), glm::dvec3(0.0));
   for (size_t f = 0; f < mesh.face_count(); ++f) {
-    const std::span<const std::int32_t> vertices = face_corners(mesh, first, f);
-    first += mesh.face_sizes[f];
-    const double area = glm::length(of_face[f]);
-    if (!(area > 0.0)) continue;
-    const glm::dvec3 normal = of_face[f] / area;
-    gather_corners(mesh, vertices, corners);
-    for (size_t i = 0; i < vertices.size(); ++i) {
-      const auto v = static_cast<size_t>(at[static_cast<size_t>(vertices[i])]);
-      sums[v] += corner_angle(corners, i, normal) * normal;
-      any[v] = normal;
+    if (normal_of[f] == glm::dvec3(0.0)) continue;
+    for (auto c = static_cast<size_t>(first[f]); c < static_cast<size_t>(first[f + 1]); ++c) {
+      const auto v = static_cast<size_t>(at[static_cast<size_t>(mesh.corner_vertices[c])]);
+      sums[v] += weighted[c];
+      any[v] = normal_of[f];
     }
   }
   std::vector<glm::vec3> normals(mesh.vertex_count());
-  for (size_t v = 0; v < normals.size(); ++v) {
+  parallel_for(size_t{0}, normals.size(), [&](size_t v) {
     const auto source = static_cast<size_t>(at[v]);
     // Opposite faces cancel to rounding noise; then one of them is as good as the other.
     const glm::dvec3 sum = glm::length(sums[source]) > 1e-9 ? glm::normalize(sums[source]) : any[source];
     normals[v] = sum == glm::dvec3(0.0) ? glm::vec3(0.0f, 0.0f, 1.0f) : glm::vec3(sum);
-  }
+  });
   return normals;
 }
 

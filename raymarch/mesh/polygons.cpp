@@ -1,9 +1,31 @@
 #include "raymarch/mesh/polygons.h"
 
+#include <algorithm>
+
 #include "sdf/once_alone.h"
+#include "sdf/parallel.h"
 #include "subdiv/polygon.h"
 
 namespace limn {
+namespace {
+
+/// Those of some faces, by their corners.
+void add_triangles(const Mesh& mesh, const std::vector<std::int32_t>& first, const IndexRange<size_t>& faces,
+                   std::vector<glm::uvec3>& out) {
+  std::vector<glm::dvec3> corners;
+  std::vector<std::array<std::int32_t, 3>> pieces;
+  for (size_t f = faces.begin(); f < faces.end(); ++f) {
+    gather_corners(mesh, face_corners(mesh, first[f], f), corners);
+    triangulate_polygon(corners, pieces);
+    for (const auto& piece : pieces) {
+      const auto a = static_cast<size_t>(piece[0]), b = static_cast<size_t>(piece[1]), c = static_cast<size_t>(piece[2]);
+      if (!zero_area(corners[a], corners[b], corners[c]))
+        out.push_back(glm::uvec3(glm::ivec3(first[f]) + glm::ivec3(piece[0], piece[1], piece[2])));
+    }
+  }
+}
+
+}  // namespace
 
 const Mesh& Polygons::mesh() const {
   once_alone(mesh_made_, [this] {
@@ -39,19 +61,16 @@ const EdgeTopology& Polygons::edges() const {
 std::span<const glm::uvec3> Polygons::corner_triangles() const {
   once_alone(triangles_made_, [this] {
     const Mesh& mesh = this->mesh();
-    std::vector<glm::dvec3> corners;
-    std::vector<std::array<std::int32_t, 3>> pieces;
-    std::int32_t first = 0;
-    for (size_t f = 0; f < mesh.face_count(); ++f) {
-      gather_corners(mesh, face_corners(mesh, first, f), corners);
-      triangulate_polygon(corners, pieces);
-      for (const auto& piece : pieces) {
-        const auto a = static_cast<size_t>(piece[0]), b = static_cast<size_t>(piece[1]), c = static_cast<size_t>(piece[2]);
-        if (!zero_area(corners[a], corners[b], corners[c]))
-          corner_triangles_.push_back(glm::uvec3(glm::ivec3(first) + glm::ivec3(piece[0], piece[1], piece[2])));
-      }
-      first += mesh.face_sizes[f];
-    }
+    const std::vector<std::int32_t> first = first_corners(mesh);
+    constexpr size_t kFaces = 8192;
+    std::vector<std::vector<glm::uvec3>> parts((mesh.face_count() + kFaces - 1) / kFaces);
+    parallel_each(parts.size(), [&](size_t k) {
+      add_triangles(mesh, first, {k * kFaces, std::min((k + 1) * kFaces, mesh.face_count())}, parts[k]);
+    });
+    size_t count = 0;
+    for (const auto& part : parts) count += part.size();
+    corner_triangles_.reserve(count);
+    for (const auto& part : parts) corner_triangles_.insert(corner_triangles_.end(), part.begin(), part.end());
   });
   return corner_triangles_;
 }

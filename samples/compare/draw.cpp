@@ -120,11 +120,16 @@ struct Keeper {
     Picture& picture = done.drawing.picture;
     cell.border_ms = picture.border_ms;
     cell.notes = std::move(picture.notes);
-    cell.composite = packed(picture.composite);
-    picture.composite = {};
-    // The other models' ink is measured against the reference's.
-    cell.border = done.cell.model == 0 ? picture.border : std::move(picture.border);
-    for (const float coverage : cell.border.pixels) cell.ink_px += double{coverage};
+    parallel_invoke(
+        [&] {
+          cell.composite = packed(picture.composite);
+          picture.composite = {};
+        },
+        [&] {
+          // The other models' ink is measured against the reference's.
+          cell.border = done.cell.model == 0 ? picture.border : std::move(picture.border);
+          for (const float coverage : cell.border.pixels) cell.ink_px += double{coverage};
+        });
     for (const Measurement& one : done.floor) cell.floors.push_back(one.value);
     std::vector<MetricValue>& of_model = comparison.models[done.cell.model].values;
     const bool first = of_model.empty();

@@ -66,32 +66,77 @@ Image<glm::vec4> fitted_difference(const Image<glm::vec4>& difference, const Ima
   return out;
 }
 
-Window worst_window(const Image<float>& border, const Image<float>& reference, int width, int height) {
-  Window best{0, 0, std::min(width, border.width), std::min(height, border.height), -1.0};
-  // Sums over all rectangles from the top left corner.
-  std::vector<double> sums(static_cast<size_t>(border.width + 1) * static_cast<size_t>(border.height + 1), 0.0);
-  const auto at = [&](int x, int y) -> double& {
-    return sums[static_cast<size_t>(y) * static_cast<size_t>(border.width + 1) + static_cast<size_t>(x)];
-  };
-  for (int y = 0; y < border.height; ++y) {
-    for (int x = 0; x < border.width; ++x) {
-      at(x + 1, y + 1) = at(x, y + 1) + at(x + 1, y) - at(x, y) + std::abs(double{border.at(x, y)} - double{reference.at(x, y)});
+namespace {
+
+/// Pixels [x0, x1) x [y0, y1).
+struct PixelBox {
+  int x0, y0, x1, y1;
+};
+
+/// Sums of what differs over all rectangles from a corner on; beyond `box` nothing differs.
+class DifferenceSums {
+ public:
+  DifferenceSums(const Image<float>& border, const Image<float>& reference, const PixelBox& box)
+      : box_(box), stride_(static_cast<size_t>(box.x1 - box.x0 + 1)) {
+    sums_.resize(stride_ * static_cast<size_t>(box.y1 - box.y0 + 1), 0.0);
+    for (int y = box.y0; y < box.y1; ++y) {
+      double* const above = &sums_[static_cast<size_t>(y - box.y0) * stride_];
+      double* const here = above + stride_;
+      for (int x = box.x0; x < box.x1; ++x) {
+        const auto i = static_cast<size_t>(x - box.x0);
+        here[i + 1] = here[i] + above[i + 1] - above[i] + std::abs(double{border.at(x, y)} - double{reference.at(x, y)});
+      }
     }
   }
-  const glm::ivec2 middle((border.width - best.width) / 2, (border.height - best.height) / 2);
-  best.x = middle.x;
-  best.y = middle.y;
-  for (int y = 0; y + best.height <= border.height; ++y) {
-    for (int x = 0; x + best.width <= border.width; ++x) {
-      const double wrong = at(x + best.width, y + best.height) - at(x, y + best.height) - at(x + best.width, y) + at(x, y);
+  /// Of the pixels [x, x + width) x [y, y + height).
+  double of(int x, int y, int width, int height) const {
+    const int right = std::min(x + width, box_.x1), bottom = std::min(y + height, box_.y1);
+    x = std::max(x, box_.x0);
+    y = std::max(y, box_.y0);
+    if (x >= right || y >= bottom) return 0.0;
+    return to(right, bottom) - to(x, bottom) - to(right, y) + to(x, y);
+  }
+
+ private:
+  double to(int x, int y) const { return sums_[static_cast<size_t>(y - box_.y0) * stride_ + static_cast<size_t>(x - box_.x0)]; }
+
+  PixelBox box_;
+  size_t stride_;
+  std::vector<double> sums_{};
+};
+
+PixelBox box_of_differences(const Image<float>& border, const Image<float>& reference) {
+  PixelBox box{border.width, border.height, 0, 0};
+  for (int y = 0; y < border.height; ++y) {
+    const float *const a = &border.at(0, y), *const b = &reference.at(0, y);
+    const auto differs = [&](int x) { return !(a[x] == b[x]); };
+    int first = 0, last = border.width;
+    while (first < last && !differs(first)) ++first;
+    if (first == last) continue;
+    while (!differs(last - 1)) --last;
+    box = {std::min(box.x0, first), std::min(box.y0, y), std::max(box.x1, last), y + 1};
+  }
+  return box;
+}
+
+}  // namespace
+
+Window worst_window(const Image<float>& border, const Image<float>& reference, int width, int height) {
+  Window best{0, 0, std::min(width, border.width), std::min(height, border.height), 0.0};
+  best.x = (border.width - best.width) / 2;
+  best.y = (border.height - best.height) / 2;
+  const PixelBox box = box_of_differences(border, reference);
+  if (box.x0 >= box.x1) return best;
+  const DifferenceSums sums(border, reference, box);
+  const int last_x = std::min(box.x1 - 1, border.width - best.width), last_y = std::min(box.y1 - 1, border.height - best.height);
+  for (int y = std::max(0, box.y0 - best.height + 1); y <= last_y; ++y) {
+    for (int x = std::max(0, box.x0 - best.width + 1); x <= last_x; ++x) {
+      const double wrong = sums.of(x, y, best.width, best.height);
       if (wrong <= best.wrong_px + 1e-9) continue;
       best.x = x;
       best.y = y;
       best.wrong_px = wrong;
     }
-  }
-  if (best.wrong_px <= 1e-9) {
-    best = {middle.x, middle.y, best.width, best.height, 0.0};
   }
   return best;
 }

@@ -167,9 +167,9 @@ void trace_packets(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   const State& state = *static_cast<const State*>(opaque);
   once_alone(state.singles_once, [&] { state.singles = for_single_rays(state.bricks, state.walked.index_from_render); });
   const Accessor accessor = state.level_set.data().accessor();
-  const auto is_inside = [&](const glm::dvec3& place) { return interpolated(accessor, state.walked.index_from_render.point(place)) < 0.0; };
+  const auto starts_inside = [&](const glm::dvec3& place) { return is_inside(accessor, state.walked.index_from_render.point(place)); };
   const SingleRayBricks* const size = &state.singles;
-  trace_single_rays({&size, 1}, brick_trace(state), is_inside, rays, hits);
+  trace_single_rays({&size, 1}, brick_trace(state), starts_inside, rays, hits);
 }
 
 /// What a picture's tiles are traced with.
@@ -180,7 +180,7 @@ struct PictureState {
 
 bool eye_inside(const State& state, const Camera& camera) {
   const glm::dvec3 eye = state.walked.index_from_render.point(camera.eye);
-  return interpolated(state.level_set.data().accessor(), eye) < 0.0;
+  return is_inside(state.level_set.data().accessor(), eye);
 }
 
 SurfaceView view_picture(const std::shared_ptr<const void>& opaque, const ViewRequest& request) {

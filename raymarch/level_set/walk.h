@@ -49,6 +49,9 @@ struct GridRoot {
 HitStatus walk_grid(const WalkedGrid& grid, const nanovdb::FloatGrid::AccessorType& accessor, const CrossedLeaves* crossed,
                     const glm::dvec3& origin, const glm::dvec3& direction, double t_min, double t_max, GridRoot& root);
 
+/// Whether the trilinear interpolant is below zero at a place, index coordinates.
+bool is_inside(const nanovdb::FloatGrid::AccessorType& accessor, const glm::dvec3& place);
+
 /// The trilinear interpolant at a place, index coordinates.
 double interpolated(const nanovdb::FloatGrid::AccessorType& accessor, const glm::dvec3& place);
 

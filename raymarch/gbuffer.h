@@ -72,6 +72,9 @@ enum class PointRays : std::uint8_t {
   one_by_one,  ///< Each by itself; a level set's in double precision.
   in_packets   ///< As pictures are traced: many times as quick for level sets, whose hits then are a picture's own.
 };
+/// Makes what rays through single image points need, such as trees, by all threads: for before a loop over sample_points(), which would
+/// leave it to one thread while the others wait.
+void prepare_points(const SceneModel& model);
 /// Traces single image points: for tests and for metrics at sub-pixel precision. Sizes equal.
 void sample_points(const SceneModel& model, const Camera& camera, std::span<const glm::dvec2> points_px, std::span<PointSample> samples,
                    PointRays rays = PointRays::one_by_one);

@@ -147,6 +147,9 @@ struct Surface {
   void (*trace)(const void* state, const RayBatch& rays, HitBatch& hits) = nullptr;
   /// The same as pictures are traced: in packets, in single precision, for rays anywhere. Null: `trace` is as quick.
   void (*trace_packets)(const void* state, const RayBatch& rays, HitBatch& hits) = nullptr;
+  /// Makes what both need for rays anywhere, on the threads of the surrounding arena: in a loop over such rays the first would make it
+  /// while all others wait. Null: nothing to make.
+  void (*prepare)(const void* state) = nullptr;
   /// Prepares for a picture, on the threads of the surrounding arena. Null: nothing to prepare.
   SurfaceView (*view)(const std::shared_ptr<const void>& state, const ViewRequest& request) = nullptr;
   Box bounds{};                                ///< Render space; infinite where the object is.

@@ -86,6 +86,11 @@ void sort_by_tiles(std::span<const glm::dvec2> points_px, std::vector<size_t>& o
 
 }  // namespace
 
+void prepare_points(const SceneModel& model) {
+  for (const Surface& surface : model.surfaces)
+    if (surface.prepare != nullptr) surface.prepare(surface.state.get());
+}
+
 void sample_points(const SceneModel& model, const Camera& camera, std::span<const glm::dvec2> points_px, std::span<PointSample> samples,
                    PointRays rays) {
   LIMN_CHECK(points_px.size() == samples.size());

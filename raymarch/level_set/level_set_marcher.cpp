@@ -163,12 +163,16 @@ BrickTrace brick_trace(const State& state) {
   return how;
 }
 
+const SingleRayBricks& singles_of(const State& state) {
+  once_alone(state.singles_once, [&] { state.singles = for_single_rays(state.bricks, state.walked.index_from_render); });
+  return state.singles;
+}
+
 void trace_packets(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   const State& state = *static_cast<const State*>(opaque);
-  once_alone(state.singles_once, [&] { state.singles = for_single_rays(state.bricks, state.walked.index_from_render); });
   const Accessor accessor = state.level_set.data().accessor();
   const auto starts_inside = [&](const glm::dvec3& place) { return is_inside(accessor, state.walked.index_from_render.point(place)); };
-  const SingleRayBricks* const size = &state.singles;
+  const SingleRayBricks* const size = &singles_of(state);
   trace_single_rays({&size, 1}, brick_trace(state), starts_inside, rays, hits);
 }
 
@@ -289,7 +293,10 @@ Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_ob
   }
   Surface surface;
   surface.trace = trace;
-  if (state->bricks) surface.trace_packets = trace_packets;
+  if (state->bricks) {
+    surface.trace_packets = trace_packets;
+    surface.prepare = [](const void* opaque) { static_cast<void>(singles_of(*static_cast<const State*>(opaque))); };
+  }
   surface.view = view_picture;
   const Box world = transform(world_from_object, transform(data.info.world_from_index, cells));
   surface.bounds = {world.lower - render_origin, world.upper - render_origin};

@@ -10,6 +10,7 @@ BorderCurves measure_border(const SceneModel& model, const Camera& camera, const
                             const ExecutionSettings& how) {
   LIMN_CHECK(settings.threshold >= 0.0 && settings.threshold < 1.0 && settings.precision_px > 0.0);
   LIMN_CHECK(gbuffer.width == camera.width_px && gbuffer.height == camera.height_px);
+  prepare_points(model);
   BorderCrossings found = find_crossings(model, camera, gbuffer, settings, how);
   const ChainedCurves pieces = chain_crossings(model, camera, gbuffer, settings.threshold, found.crossings, found.rays);
   const ChainedCurves chains = join_necks(model, camera, settings.threshold, pieces, found.rays);

@@ -1,10 +1,12 @@
 #include "raymarch/scene/curvature.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -68,6 +70,37 @@ glm::dvec3 corner_areas(const std::array<glm::dvec3, 3>& p, double area) {
   return share;
 }
 
+/// What a triangle gives to its corners: tensors turned to their normals, times their weights.
+struct TriangleShares {
+  std::array<glm::dmat3, 3> tensors;
+  glm::dvec3 weights;
+  bool valid = false;  ///< False of a triangle without area.
+};
+constexpr size_t kSharesTogether = size_t{1} << 14;
+
+TriangleShares shares_of(const TriangleMesh& mesh, size_t t, const std::vector<std::uint32_t>& of_corner,
+                         const std::vector<glm::dvec3>& normals) {
+  TriangleShares shares;
+  std::array<glm::dvec3, 3> p, n;
+  for (size_t i = 0; i < 3; ++i) {
+    p[i] = mesh.positions[mesh.triangles[t][static_cast<int>(i)]];
+    n[i] = glm::dvec3(mesh.corner_normals[3 * t + i]);
+  }
+  const glm::dvec3 cross = glm::cross(p[1] - p[0], p[2] - p[0]);
+  const double twice_area = glm::length(cross);
+  if (!(twice_area > 0.0)) return shares;
+  const glm::dvec3 facet = cross / twice_area;
+  const glm::dmat3 tensor = tensor_of_triangle(p, n, facet);
+  if (!std::isfinite(tensor[0][0] + tensor[1][1] + tensor[2][2])) return shares;
+  shares.weights = corner_areas(p, 0.5 * twice_area);
+  for (size_t i = 0; i < 3; ++i) {
+    const glm::dmat3 onto = turn(facet, normals[of_corner[3 * t + i]]);
+    shares.tensors[i] = shares.weights[static_cast<int>(i)] * (onto * tensor * glm::transpose(onto));
+  }
+  shares.valid = true;
+  return shares;
+}
+
 /// Numbers the corners by vertex and normal; `normals` holds the first normal met of each number.
 std::vector<std::uint32_t> number_corners(const TriangleMesh& mesh, std::vector<glm::dvec3>& normals) {
   constexpr auto none = std::numeric_limits<std::uint32_t>::max();
@@ -123,25 +156,17 @@ CornerTensors corner_tensors(const TriangleMesh& mesh) {
   result.of_corner = number_corners(mesh, normals);
   result.tensors.assign(normals.size(), glm::dmat3(0.0));
   std::vector<double> weights(normals.size(), 0.0);
-  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
-    std::array<glm::dvec3, 3> p, n;
-    for (size_t i = 0; i < 3; ++i) {
-      p[i] = mesh.positions[mesh.triangles[t][static_cast<int>(i)]];
-      n[i] = glm::dvec3(mesh.corner_normals[3 * t + i]);
-    }
-    const glm::dvec3 cross = glm::cross(p[1] - p[0], p[2] - p[0]);
-    const double twice_area = glm::length(cross);
-    if (!(twice_area > 0.0)) continue;
-    const glm::dvec3 facet = cross / twice_area;
-    const glm::dmat3 tensor = tensor_of_triangle(p, n, facet);
-    const glm::dvec3 area = corner_areas(p, 0.5 * twice_area);
-    if (!std::isfinite(tensor[0][0] + tensor[1][1] + tensor[2][2])) continue;
-    for (size_t i = 0; i < 3; ++i) {
-      const std::uint32_t group = result.of_corner[3 * t + i];
-      const glm::dmat3 onto = turn(facet, normals[group]);
-      const double weight = area[static_cast<int>(i)];
-      result.tensors[group] += weight * (onto * tensor * glm::transpose(onto));
-      weights[group] += weight;
+  // Threads find the triangles' shares, which are added up in the triangles' order.
+  std::vector<TriangleShares> shares(std::min(kSharesTogether, mesh.triangles.size()));
+  for (size_t first = 0; first < mesh.triangles.size(); first += shares.size()) {
+    const size_t count = std::min(shares.size(), mesh.triangles.size() - first);
+    parallel_for(size_t{0}, count, [&](size_t k) { shares[k] = shares_of(mesh, first + k, result.of_corner, normals); });
+    for (size_t corner = 0; corner < 3 * count; ++corner) {
+      const TriangleShares& share = shares[corner / 3];
+      if (!share.valid) continue;
+      const std::uint32_t group = result.of_corner[3 * first + corner];
+      result.tensors[group] += share.tensors[corner % 3];
+      weights[group] += share.weights[static_cast<int>(corner % 3)];
     }
   }
   for (size_t i = 0; i < weights.size(); ++i) {

@@ -240,6 +240,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   surface.bounds = bounds_of_triangles(*state->mesh);
   state->bounds = surface.bounds;
   surface.trace = trace;
+  surface.prepare = [](const void* opaque) { static_cast<void>(tree_of(*static_cast<const MeshState*>(opaque))); };
   surface.view = [](const std::shared_ptr<const void>& kept, const ViewRequest& request) {
     const MeshState& mesh_state = *static_cast<const MeshState*>(kept.get());
     SurfaceView made = view_mesh({kept, mesh_state.mesh.get(), mesh_state.bounds, &mesh_state.view_memory}, request);

@@ -10,13 +10,13 @@
 #include <cmath>
 #include <functional>
 
+#include "raymarch/curves/curve_geometry.h"
 #include "raymarch/measured_border.h"
 #include "raymarch/truth/parts.h"
 #include "sdf/error.h"
 #include "sdf/local_grid.h"
 #include "sdf/parallel.h"
 #include "sdf/quantile.h"
-#include "sdf/segment.h"
 
 namespace limn {
 namespace {
@@ -179,23 +179,20 @@ void describe_points(const SceneModel& model, std::span<const CurvatureSource> c
   }
 }
 
-/// The nearest place of a border's curves of one kind and object, on their steps; infinitely far where there are none.
-glm::dvec2 nearest_on(const BorderCurves& border, CurveKind kind, int object, const glm::dvec2& p) {
-  double best = std::numeric_limits<double>::infinity();
-  glm::dvec2 nearest(best);
-  for (const BorderCurve& curve : border.curves) {
-    if (curve.kind != kind || curve.object != object) continue;
-    const size_t n = curve.points.size();
-    for (size_t i = 0; i + (curve.closed ? 0 : 1) < n; ++i) {
-      const glm::dvec2 q = closest_on_segment(p, curve.points[i].px, curve.points[(i + 1) % n].px);
-      if (const double distance = glm::distance(p, q); distance < best) {
-        best = distance;
-        nearest = q;
-      }
-    }
+/// Nearest places of a border's curves of one kind and object, on their steps.
+class NearestOf {
+ public:
+  explicit NearestOf(const BorderCurves& border) : silhouette_(border, CurveKind::silhouette), inner_(border, CurveKind::inner) {}
+  /// Infinitely far where there are none.
+  glm::dvec2 on(CurveKind kind, int object, const glm::dvec2& p) const {
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    const auto found = (kind == CurveKind::silhouette ? silhouette_ : inner_).nearest(p, object, kAny);
+    return found ? found->px : glm::dvec2(kAny);
   }
-  return nearest;
-}
+
+ private:
+  CurveIndex silhouette_, inner_;
+};
 
 using BorderOfModel = std::function<BorderCurves(const Camera& camera)>;
 
@@ -205,25 +202,25 @@ constexpr double kGivenBound_px = 0.012;
 constexpr int kMostDoubled_px = 8192;
 
 /// How far two readings of one object put its border from each other: the 95th percentile over the first one's points.
-double disagreement_px(const BorderCurves& a, const BorderCurves& b, int object) {
+double disagreement_px(const BorderCurves& a, const NearestOf& b, int object) {
   std::vector<double> distances;
   for (const BorderCurve& curve : a.curves) {
     if (curve.object != object) continue;
     // A hundred places of a curve tell as much as all of them.
     const size_t step = std::max<size_t>(1, curve.points.size() / 100);
     for (size_t i = 0; i < curve.points.size(); i += step)
-      distances.push_back(glm::distance(curve.points[i].px, nearest_on(b, curve.kind, object, curve.points[i].px)));
+      distances.push_back(glm::distance(curve.points[i].px, b.on(curve.kind, object, curve.points[i].px)));
   }
   return distances.empty() ? 0.0 : lower_quantile(std::move(distances), 0.95);
 }
 
 /// A refined cage's border nears the limit's with the square of the edges' length: of two levels, the finer one is off by a third of what
 /// lies between them (Richardson 1911). Points that the other level has nowhere near stay where they are.
-void extrapolate(BorderCurves& border, const BorderCurves& coarser, int object) {
+void extrapolate(BorderCurves& border, const NearestOf& coarser, int object) {
   for (BorderCurve& curve : border.curves) {
     if (curve.object != object) continue;
     for (BorderPoint& point : curve.points) {
-      const glm::dvec2 step = point.px - nearest_on(coarser, curve.kind, object, point.px);
+      const glm::dvec2 step = point.px - coarser.on(curve.kind, object, point.px);
       if (glm::length(step) < kFarthestStep_px) point.px += step / 3.0;
     }
   }
@@ -231,8 +228,8 @@ void extrapolate(BorderCurves& border, const BorderCurves& coarser, int object) 
 
 /// What is known of each object: cages are extrapolated, meshes and volumes that are all there is keep what their other reading says.
 /// `smooth`: of the meshes with none of their edges hard, if any.
-void judge_objects(const Scene& scene, int level, TruthReference reference, const BorderCurves& second,
-                   const std::optional<BorderCurves>& smooth, BorderTruth& truth) {
+void judge_objects(const Scene& scene, int level, TruthReference reference, const NearestOf& second, const std::optional<NearestOf>& smooth,
+                   BorderTruth& truth) {
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     if (std::holds_alternative<Field>(object.source) || (reference == TruthReference::given && !is_cage(object))) continue;
@@ -294,11 +291,13 @@ TruthProxy make_proxy(const Scene& scene, const Camera& camera, std::int64_t max
 
 void offer_model(const Scene& scene, const SurfaceSettings& settings, const SceneModel& model, TruthCache& cache) {
   if (cache.proxy != nullptr) return;
-  TruthProxy proxy{model, settings.level};
+  const bool any_cage = std::any_of(scene.objects.begin(), scene.objects.end(), is_cage);
+  TruthProxy proxy{model, any_cage ? settings.level : 0};
   const bool fits = std::all_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
     const SurfaceSettings finest = finest_settings(object, settings.level, proxy);
     const std::string kind = settings.kind.empty() ? natural_surface(object) : settings.kind;
-    return is_cage(object) && !object.level && kind == finest.kind && settings.normals == finest.normals && !settings.scheme;
+    return std::holds_alternative<MeshSource>(object.source) && kind == finest.kind && settings.normals == finest.normals &&
+           !settings.scheme && !(is_cage(object) && object.level);
   });
   if (fits) cache.proxy = std::make_shared<const TruthProxy>(std::move(proxy));
 }
@@ -338,8 +337,9 @@ void find_given_border(const Scene& scene, const Camera& camera, const BorderOfM
   truth.curves = border_of(doubled(camera));
   for (BorderCurve& curve : truth.curves.curves)
     for (BorderPoint& point : curve.points) point.px *= 0.5;
+  const NearestOf nearest(truth.curves);
   for (size_t i = 0; i < scene.objects.size(); ++i)
-    truth.bound_px = std::max(truth.bound_px, disagreement_px(coarse, truth.curves, static_cast<int>(i) + 1));
+    truth.bound_px = std::max(truth.bound_px, disagreement_px(coarse, nearest, static_cast<int>(i) + 1));
 }
 
 }  // namespace
@@ -360,12 +360,12 @@ BorderTruth solve_truth_by_proxy(const Scene& scene, const Camera& camera, const
         scene, camera, [&](const Camera& eye) { return border_of(finest.model, eye); }, truth);
   } else {
     truth.exact = false;
-    std::optional<BorderCurves> smooth;
+    std::optional<NearestOf> smooth;
     if (const auto soft = as_given ? std::nullopt : without_hard_edges(scene))
-      smooth =
-          border_of(model_of(*soft, [](const SceneObject& object) { return SurfaceSettings{.kind = natural_surface(object)}; }), camera);
+      smooth.emplace(
+          border_of(model_of(*soft, [](const SceneObject& object) { return SurfaceSettings{.kind = natural_surface(object)}; }), camera));
     const SceneModel second = model_of(scene, [&](const SceneObject& object) { return second_settings(object, finest.level); });
-    judge_objects(scene, finest.level, settings.reference, border_of(second, camera), smooth, truth);
+    judge_objects(scene, finest.level, settings.reference, NearestOf(border_of(second, camera)), smooth, truth);
   }
   describe_points(finest.model, curvature_sources(scene, finest.model), camera, truth.curves);
   for (const BorderCurve& curve : truth.curves.curves) {

@@ -85,6 +85,7 @@ bool interpenetrate(const std::vector<TruthShare>& shares, double extent) {
 std::shared_ptr<const TruthProxy> ready_proxy(const Scene& scene, const std::vector<size_t>& cages, const Camera& camera,
                                               const ShareSettings& sharing) {
   auto proxy = proxy_for(scene, camera, sharing.truth, 1.5);
+  prepare_points(proxy->model);
   parallel_each(cages.size(), [&](size_t k) {
     const Surface& shown = proxy->model.surfaces[cages[k]];
     if (shown.open_sheet) static_cast<void>(shown.open_sheet->shows_back(shown, sharing.camera));

@@ -6,6 +6,7 @@
 #include "subdiv/band_distance.h"
 #include "subdiv/mesh_block.h"
 #include "subdiv/mesh_distance.h"
+#include "subdiv/mesh_level_set.h"
 #include "subdiv/triangle_tree.h"
 
 namespace limn {
@@ -44,6 +45,9 @@ class MeshBody {
   mutable std::unique_ptr<const ClosestPointData> tree_{};
   mutable TriangleTree boxes_{};
 };
+
+/// As of its mesh (subdiv/mesh_level_set.h), where several are made of one.
+MeshLevelSet level_set_from_mesh(const MeshBody& body, const LevelSetSettings& settings);
 
 /// Bands wider than this have so many triangles in reach of a block that the tree is quicker.
 inline constexpr double kScatterReach_voxels = 6.0;

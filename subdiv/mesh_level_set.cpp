@@ -146,7 +146,10 @@ Band make_band(const MeshBody& body, const LevelSetSettings& settings, double sh
 }  // namespace
 
 MeshLevelSet level_set_from_mesh(const TriangleMesh& mesh, const LevelSetSettings& settings) {
-  const MeshBody body(mesh);
+  return level_set_from_mesh(MeshBody(mesh), settings);
+}
+
+MeshLevelSet level_set_from_mesh(const MeshBody& body, const LevelSetSettings& settings) {
   check(body.bounds(), settings);
   std::vector<std::string> warnings = body.warnings();
   const double inside = share_with_inside(body, 0.5 * settings.voxel_size);

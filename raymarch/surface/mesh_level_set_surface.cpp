@@ -1,12 +1,11 @@
 // An object's mesh, turned into a level set and traced as one.
 
-#include "subdiv/mesh_level_set.h"
-
 #include <chrono>
 
 #include "raymarch/surface.h"
 #include "raymarch/surface/object_mesh.h"
 #include "raymarch/surface/offset.h"
+#include "subdiv/mesh_body.h"
 
 namespace limn {
 namespace {
@@ -25,14 +24,17 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   if (source.polygons->has_colors())
     source.warnings.emplace_back("'" + object.name + "' is drawn in the object's own color: a level set holds no colours");
   source.polygons.reset();
-  MeshLevelSet made = level_set_from_mesh(*triangles, grid);
+  std::shared_ptr<const MeshBody> body = body_of(source);
+  MeshLevelSet made = level_set_from_mesh(*body, grid);
+  // It is larger than the mesh, and stays only where that is kept for other models, too.
+  if (settings.kept_mesh == nullptr) source.shared_body.reset(), body.reset();
   // The grid lies in render space, so that its voxels fall the same way wherever the object is.
   Surface surface = level_set_marcher(made.level_set, Affine{}, gradient, glm::dvec3(0.0), settings.max_steps);
-  const auto widen = [triangles, grid](double half_width_voxels) {
+  const auto widen = [triangles, body, grid](double half_width_voxels) {
     LevelSetSettings wider = grid;
     wider.half_width_voxels = half_width_voxels;
     wider.progress = {};
-    return level_set_from_mesh(*triangles, wider).level_set;
+    return (body ? level_set_from_mesh(*body, wider) : level_set_from_mesh(*triangles, wider)).level_set;
   };
   surface.level_set = made.level_set;
   surface.offset = level_set_offset({made.level_set, Affine{}, glm::dvec3(0.0), settings.max_steps, {}, widen});

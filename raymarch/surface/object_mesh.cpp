@@ -195,6 +195,18 @@ ObjectMesh make_object_mesh(const SceneObject& object, const SurfaceSettings& se
 
 }  // namespace
 
+std::shared_ptr<const MeshBody> body_of(ObjectMesh& mesh) {
+  SharedBody& shared = *mesh.shared_body;
+  if (shared.body) {
+    mesh.spared_ms += shared.made_ms;
+    return shared.body;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  shared.body = std::make_shared<const MeshBody>(*mesh.triangles);
+  shared.made_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return shared.body;
+}
+
 std::shared_ptr<const FieldCage> kept_cage(const Field& field, const glm::dvec3& render_origin, KeptStart* kept, double& spared_ms) {
   if (!kept) return find_field_cage(field);
   if (!kept->cage || kept->render_origin != render_origin) {

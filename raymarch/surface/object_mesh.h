@@ -7,6 +7,7 @@
 #include "raymarch/mesh/polygons.h"
 #include "raymarch/surface.h"
 #include "subdiv/mesh.h"
+#include "subdiv/mesh_body.h"
 #include "subdiv/tessellate.h"
 
 namespace limn {
@@ -30,6 +31,12 @@ struct CageSource {
 /// The smooth surface that a mesh stands for: a field, a limit surface, or none.
 using SmoothSource = std::variant<std::monostate, Field, CageSource>;
 
+/// The body that a mesh bounds, once somebody has asked for it.
+struct SharedBody {
+  std::shared_ptr<const MeshBody> body{};
+  double made_ms = 0.0;  ///< What making it took.
+};
+
 struct ObjectMesh {
   std::shared_ptr<const TriangleMesh> triangles;  ///< Render space: world minus `render_origin`, in double.
   /// What the triangles came from, in render space too; corner normals only where those are traced. Of a mesh as it is a copy, made only
@@ -39,8 +46,12 @@ struct ObjectMesh {
   SmoothSource smooth{};
   std::vector<std::string> warnings;
   std::vector<std::string> notes{};
-  double spared_ms = 0.0;  ///< What making it took, where that was done before and kept.
+  double spared_ms = 0.0;                                                    ///< What making it took, where that was done before and kept.
+  std::shared_ptr<SharedBody> shared_body = std::make_shared<SharedBody>();  ///< Of all copies.
 };
+
+/// The body of its triangles. Where it was there already, what making it took is added to `spared_ms`. By one thread at a time.
+std::shared_ptr<const MeshBody> body_of(ObjectMesh& mesh);
 
 struct LocalStart;  // raymarch/local/local_sources.h
 

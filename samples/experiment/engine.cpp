@@ -77,7 +77,7 @@ SceneModel ExperimentRun::build(size_t index) {
   // Kept beyond the model only where a later one may want it.
   const auto is_meshed = [](const ExperimentModel& one) { return one.settings.kind.starts_with("mesh"); };
   const auto later = experiment_.models.begin() + static_cast<std::ptrdiff_t>(index) + 1;
-  if (index == 0 || std::none_of(later, experiment_.models.end(), is_meshed)) meshes_.kept.clear();
+  if (index == 0 || (!experiment_.adds_models && std::none_of(later, experiment_.models.end(), is_meshed))) meshes_.kept.clear();
   if (observer_.built) observer_.built(index, model, first_ms, timing_of(std::move(times)));
   return model;
 }

@@ -61,6 +61,7 @@ Experiment experiment_of(const Scene& scene, const std::vector<PlanView>& views,
   experiment.metrics = {&plan_metric()};
   experiment.measures_floor = false;
   experiment.share_meshes = true;
+  experiment.adds_models = true;
   return experiment;
 }
 

@@ -3,8 +3,10 @@
 #include <fmt/core.h>
 
 #include <numbers>
+#include <set>
 
 #include "raymarch/surface/object_mesh.h"
+#include "sdf/level_set_data.h"
 #include "tests/raymarch/scenes.h"
 
 namespace limn::test {
@@ -169,6 +171,33 @@ TEST(MeshSurface, ACageIsRefinedToItsLevelAndAMeshIsTakenAsItIs) {
   EXPECT_EQ(build_model(scene_of({own_level}), settings).surfaces[0].info.triangles, 12 * 64);
   settings.scheme = Scheme::bilinear;
   EXPECT_EQ(build_model(scene_of({object_of(cage)}), settings).surfaces[0].info.triangles, 12 * 16);
+}
+
+// Level sets of several sizes are made of one body; what it took counts as their building time all the same.
+TEST(MeshSurface, LevelSetsOfAKeptMeshShareItsBody) {
+  const Scene scene = scene_of({object_of(box_mesh(glm::dvec3(0.8, 0.6, 0.5)))});
+  ObjectMeshCache cache;
+  std::set<std::shared_ptr<const MeshBody>> bodies;
+  for (const int voxels : {24, 40, 24}) {
+    SurfaceSettings settings = surface_kind("mesh_level_set");
+    settings.voxels = voxels;
+    const SceneModel shared = build_model(scene, settings, &cache), alone = build_model(scene, settings);
+    const SharedBody& kept = *cache.kept.front()->mesh.shared_body;
+    bodies.insert(kept.body);
+    EXPECT_GE(shared.surfaces[0].info.build_ms, bodies.size() == 1 && voxels == 24 ? 0.0 : kept.made_ms);
+    const nanovdb::FloatGrid &of_shared = *shared.surfaces[0].level_set->data().grid, &of_alone = *alone.surfaces[0].level_set->data().grid;
+    ASSERT_EQ(of_shared.tree().nodeCount(0), of_alone.tree().nodeCount(0));
+    for (std::uint32_t leaf = 0; leaf < of_shared.tree().nodeCount(0); ++leaf)
+      for (int n = 0; n < 512; ++n)
+        ASSERT_EQ(of_shared.tree().getFirstLeaf()[leaf].getValue(n), of_alone.tree().getFirstLeaf()[leaf].getValue(n));
+    // Offsets that reach farther than the band are made of it, too.
+    OffsetWidth wide;
+    wide.world = 0.3;
+    const SurfaceOffset &by_body = shared.surfaces[0].offset, &by_mesh = alone.surfaces[0].offset;
+    EXPECT_EQ(by_body.make(by_body.state.get(), wide).bounds.upper, by_mesh.make(by_mesh.state.get(), wide).bounds.upper);
+  }
+  ASSERT_EQ(bodies.size(), 1u) << "made twice";
+  EXPECT_NE(*bodies.begin(), nullptr);
 }
 
 TEST(MeshSurface, OfAFieldInAnyOrderOfLevelsAndNormalsIsWhatItIsAlone) {

@@ -318,6 +318,50 @@ TEST(TruthLimit, TheSameForAnyNumberOfThreads) {
   }
 }
 
+/// The same numbers, to the last bit.
+void expect_equal(const BorderTruth& a, const BorderTruth& b, const std::string& what) {
+  EXPECT_EQ(a.coverage.pixels, b.coverage.pixels) << what;
+  EXPECT_EQ(a.notes, b.notes) << what;
+  EXPECT_EQ(a.from, b.from) << what;
+  EXPECT_EQ(a.bound_px, b.bound_px) << what;
+  ASSERT_EQ(a.curves.curves.size(), b.curves.curves.size()) << what;
+  for (size_t k = 0; k < a.curves.curves.size(); ++k) {
+    ASSERT_EQ(a.curves.curves[k].points.size(), b.curves.curves[k].points.size()) << what;
+    for (size_t i = 0; i < a.curves.curves[k].points.size(); ++i)
+      EXPECT_EQ(a.curves.curves[k].points[i].px, b.curves.curves[k].points[i].px) << what;
+  }
+}
+
+// A comparison's reference is what its truths would make: cages of the same level onto their limit, meshes as they are.
+TEST(TruthLimit, WithAModelThatIsThereAlreadyIsThatWithout) {
+  std::mt19937 random(kSeed + 5);
+  const Mesh torus = bumpy_torus(random);
+  const Scene cage = scene_of({object_of(torus, Scheme::catmark)}), given = scene_of({object_of(torus)});
+  for (const bool is_cage : {true, false}) {
+    const Scene& scene = is_cage ? cage : given;
+    const Camera camera = random_camera(scene, random, Projection::perspective);
+    SurfaceSettings settings = surface_kind("mesh");
+    if (is_cage) settings.normals = NormalKind::limit, settings.level = proxy_level(scene, camera, 1.5);
+    const SceneModel model = build_model(scene, settings);
+    for (const TruthReference reference : {TruthReference::given, TruthReference::smooth}) {
+      TruthCache cache;
+      offer_model(scene, settings, model, cache);
+      ASSERT_NE(cache.proxy, nullptr);
+      const BorderTruth with = solve_truth(scene, camera, {.reference = reference, .cache = &cache}, {});
+      EXPECT_EQ(cache.proxy->model.surfaces.front().state, model.surfaces.front().state) << "made again";
+      expect_equal(with, solve_truth(scene, camera, {.reference = reference}, {}), is_cage ? "cage" : "mesh");
+    }
+    // What a truth would not make is not taken.
+    SurfaceSettings other = settings;
+    other.normals = is_cage ? NormalKind::vertex : NormalKind::flat;
+    TruthCache none;
+    offer_model(scene, other, model, none);
+    offer_model(scene, surface_kind("mesh_level_set"), model, none);
+    if (is_cage) offer_model(given, settings, model, none);
+    EXPECT_EQ(none.proxy, nullptr);
+  }
+}
+
 TEST(TruthLimit, OfSeveralViewsOfOneSceneIsThatOfEachAlone) {
   std::mt19937 random(kSeed + 4);
   const Scene scene = scene_of({object_of(bumpy_torus(random), Scheme::catmark)});
@@ -330,15 +374,7 @@ TEST(TruthLimit, OfSeveralViewsOfOneSceneIsThatOfEachAlone) {
     ASSERT_NE(cache.proxy, nullptr);
     EXPECT_EQ(cache.proxy->level, proxy_level(scene, camera, 1.5)) << width;
     models.insert(cache.proxy->model.surfaces.front().state);
-    EXPECT_EQ(shared.coverage.pixels, alone.coverage.pixels) << width;
-    EXPECT_EQ(shared.notes, alone.notes) << width;
-    EXPECT_EQ(shared.bound_px, alone.bound_px) << width;
-    ASSERT_EQ(shared.curves.curves.size(), alone.curves.curves.size()) << width;
-    for (size_t k = 0; k < shared.curves.curves.size(); ++k) {
-      ASSERT_EQ(shared.curves.curves[k].points.size(), alone.curves.curves[k].points.size());
-      for (size_t i = 0; i < shared.curves.curves[k].points.size(); ++i)
-        EXPECT_EQ(shared.curves.curves[k].points[i].px, alone.curves.curves[k].points[i].px);
-    }
+    expect_equal(shared, alone, std::to_string(width));
   }
   // The second view took the first one's; what the third had is too coarse for the fourth.
   EXPECT_EQ(models.size(), 3u);

@@ -36,10 +36,11 @@ void collect_missing(const LeafWindow& window, const CrossedCells& lacking, cons
   std::array<bool, 27> any{};
   for (int x = -2; x <= 10; ++x)
     for (int y = -2; y <= 10; ++y) {
-      const auto i = static_cast<size_t>(x + 2), j = static_cast<size_t>(y + 2);
+      const size_t i = static_cast<size_t>(x) + 2, j = static_cast<size_t>(y) + 2;
       for (std::uint32_t bits = read[i][j] & ~rows[i][j]; bits != 0; bits &= bits - 1) {
         const int z = std::countr_zero(bits) - 2;
-        const auto block = static_cast<size_t>(((x + 8) >> 3) * 9 + ((y + 8) >> 3) * 3 + ((z + 8) >> 3));
+        const size_t block =
+            9 * static_cast<size_t>((x + 8) >> 3) + 3 * static_cast<size_t>((y + 8) >> 3) + static_cast<size_t>((z + 8) >> 3);
         any[block] = true;
         blocks[block].nodes[static_cast<size_t>(x & 7)] |= std::uint64_t{1} << ((y & 7) << 3 | (z & 7));
       }
@@ -95,7 +96,10 @@ class Surroundings {
     }
   }
 
-  static size_t index(const glm::ivec3& p) { return static_cast<size_t>(((p.x + 8) * kSide + p.y + 8) * kSide + p.z + 8); }
+  static size_t index(const glm::ivec3& p) {
+    constexpr size_t kRow = kSide;
+    return ((static_cast<size_t>(p.x) + 8) * kRow + static_cast<size_t>(p.y) + 8) * kRow + static_cast<size_t>(p.z) + 8;
+  }
   double value(const glm::ivec3& p) const { return static_cast<double>(values_[index(p)]); }
   bool in_band(const glm::ivec3& p) const { return active_[index(p)]; }
 
@@ -335,7 +339,7 @@ LevelSet complete_band(const LevelSet& level_set, const GradientDescriptor& grad
   const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
   data->info.build_ms += ms;
   data->completed = true;
-  const LevelSet completed(data);
+  LevelSet completed(data);
   const std::int64_t left = cells_lacking(completed, gradient), nodes = node_count(filled);
   const std::int64_t crossed = level_set.info().band.crossed_cells;
   std::string text = fmt::format(

@@ -120,6 +120,7 @@ struct Runner {
   ExperimentRun* run = nullptr;
   Timing build{};
   std::int64_t bytes = 0;
+  double resolution = 0.0;
   size_t done = 0;
   std::mutex thumbnails_mutex{};
   std::map<size_t, std::vector<std::byte>> thumbnails{};  ///< PNG files of cells whose rows are not written yet, by the cell's number.
@@ -161,7 +162,7 @@ struct Runner {
   }
 
   void has_built(size_t model, const SceneModel& built, double ms, const Timing& times) {
-    if (model > 0) build = times, bytes = total(built).bytes;
+    if (model > 0) build = times, bytes = total(built).bytes, resolution = resolution_of(built, work.study.longest_side);
     if (model == 0)
       ledger.done("reference build", work.study.reference_cost.build_ms, ms);
     else
@@ -214,7 +215,7 @@ struct Runner {
     }
     const auto start = Clock::now();
     StudyRow row = row_of(work.study, work.study.cells[cell.cell.id]);
-    row.resolution = resolution_of(cell.model, work.study.longest_side);
+    row.resolution = resolution;
     row.build = build;
     row.trace = cell.seen.trace;
     row.truth = row_truth_of(cell);

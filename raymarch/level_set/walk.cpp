@@ -342,8 +342,9 @@ bool is_inside(const Accessor& accessor, const glm::dvec3& place) {
   const CellPoint at = cell_point(place);
   // Most places asked for lie far off, where a block without a leaf has one value.
   constexpr int kLast = static_cast<int>(Leaf::DIM) - 1;
-  const auto has_next = [&at](int axis) { return (at.node[axis] & kLast) < kLast; };
-  if (has_next(0) && has_next(1) && has_next(2) && !accessor.probeLeaf(at.node)) return accessor.getValue(at.node) < 0.0f;
+  const auto has_next = [](int node) { return (node & kLast) < kLast; };
+  if (has_next(at.node[0]) && has_next(at.node[1]) && has_next(at.node[2]) && !accessor.probeLeaf(at.node))
+    return accessor.getValue(at.node) < 0.0f;
   return cubic_along(cell_values(accessor, at.node), at.local, at.local)[0] < 0.0;
 }
 

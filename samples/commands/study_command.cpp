@@ -40,19 +40,11 @@ SceneInput load_swept(Options& options) {
   return load(options);
 }
 
-/// What the models may take beside the reference, pictures and truth.
+/// What the models may take where nobody limits it; else plan_study() finds what is left for them.
 void give_memory(Options& options) {
-  constexpr double kBesideBytes = 225e6, kDefault = 8e9;
-  if (!options.spec.limits.max_memory) {
+  constexpr double kDefault = 8e9;
+  if (!options.spec.limits.max_memory)
     options.sweep.max_model_bytes = static_cast<std::int64_t>(std::min(kDefault, 0.75 * machine_memory()));
-    return;
-  }
-  const double least = kProgramBytes + kBesideBytes;
-  if (static_cast<double>(*options.spec.limits.max_memory) < least) {
-    throw InputError({"", "--max-memory", bytes_text(static_cast<double>(*options.spec.limits.max_memory)), "too little for a study",
-                      fmt::format("more than {}, which its pictures and its true border take", bytes_text(least))});
-  }
-  options.sweep.max_model_bytes = model_bytes_left(options.spec.limits, kBesideBytes);
 }
 
 /// Truth is no faster for being expected to be; the calibrated part is.

@@ -9,6 +9,7 @@
 #include "raymarch/local_model.h"
 #include "samples/compare/comparison.h"
 #include "samples/experiment/job.h"
+#include "samples/experiment/limits.h"
 #include "samples/experiment/no_effect.h"
 #include "samples/input/scene_facts.h"
 #include "samples/spec/parse.h"
@@ -38,7 +39,8 @@ struct ModelMaker {
     StudyModel model{settings.kind, std::move(parameters), settings, {}, refused, expected_cost(size, settings, pixels)};
     if (model.settings.half_width_voxels > 0.0 && model.parameters.contains("gradient"))
       model.parameters["half_width"] = fmt::format("{}", model.settings.half_width_voxels);
-    if (model.refused.empty() && model.cost.bytes > 4 * max_bytes) {
+    // Levels and voxels rise in steps of four times the memory, and half of what is expected is often enough.
+    if (model.refused.empty() && model.cost.bytes > (asked ? 2 : 4) * max_bytes) {
       model.refused = fmt::format("it needs about {}; {} leaves {} for a model", bytes_text(double(model.cost.bytes)),
                                   asked ? "max_memory" : "the default of max_memory", bytes_text(double(max_bytes)));
     }
@@ -257,6 +259,20 @@ struct Given {
   std::string input_hash{};
 };
 
+/// What the models may take beside views that are known by now. Throws InputError where nothing is left for them.
+std::int64_t left_for_models(const LimitSpec& limits, const Study& study) {
+  // What the process has asked for is limited, and it asks for more than it touches: stacks, and room beside large blocks.
+  constexpr double kUntouchedBytes = 85e6;
+  const double beside = bytes_beside_models(study, static_cast<double>(study.cameras.size())) + kUntouchedBytes,
+               given = static_cast<double>(*limits.max_memory);
+  if (given > kProgramBytes + beside) return model_bytes_left(limits, beside);
+  const Camera& camera = study.cameras.front();
+  throw InputError({"", "max_memory", bytes_text(given), "too little for a study",
+                    fmt::format("more than {}, which {} view{} of {} x {} pixels and the true border take, or fewer or smaller pictures",
+                                bytes_text(kProgramBytes + beside), study.cameras.size(), study.cameras.size() == 1 ? "" : "s",
+                                camera.width_px, camera.height_px)});
+}
+
 Study plan_with(const Given& given, const DefaultAxes& defaults) {
   const StudySpec& spec = given.spec;
   Study study;
@@ -273,12 +289,14 @@ Study plan_with(const Given& given, const DefaultAxes& defaults) {
   const FramedSurface framed = framed_input(spec.experiment.camera, given.input);
   for (int view = 0; view < views; ++view)
     study.cameras.push_back(camera_of_view(camera, framed, framing_settings(spec.experiment.camera), view, views));
-  const Axes axes = resolve_axes(spec, study.scene, given.settings, given.size, defaults);
   plan_methods(spec, given.input, study);
-  plan_models(axes, given.size, given.settings, spec.experiment.limits.max_memory.has_value(), spec.sweep.local_px, study);
-  plan_reference(spec.sweep, given.input, given.settings, axes, given.size, study);
+  SurfaceSettings settings = given.settings;
+  if (spec.experiment.limits.max_memory && !spec.sweep.max_model_bytes) settings.max_bytes = left_for_models(spec.experiment.limits, study);
+  const Axes axes = resolve_axes(spec, study.scene, settings, given.size, defaults);
+  plan_models(axes, given.size, settings, spec.experiment.limits.max_memory.has_value(), spec.sweep.local_px, study);
+  plan_reference(spec.sweep, given.input, settings, axes, given.size, study);
   plan_cells(study);
-  fill_head(spec, axes, given.settings, given.input, study);
+  fill_head(spec, axes, settings, given.input, study);
   return study;
 }
 

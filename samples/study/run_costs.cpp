@@ -15,6 +15,9 @@ using Clock = std::chrono::steady_clock;
 double ms_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
 
 constexpr double kGBufferBytes = 64.0;
+// Peaks of studies of 1 to 16 views of 14,000 to 920,000 pixels, less what their models take (docs/performance.md): in each view its
+// pictures and what is measured of them, and its true border; rows, charts and pages.
+constexpr double kPixelBytes = 130.0, kViewBytes = 10e6, kStudyBytes = 90e6;
 
 /// What holding the reference in one view takes.
 double bytes_of_view(const Study& study) {
@@ -39,6 +42,7 @@ std::vector<std::vector<CellGroup>> batches_of(const StudyWork& work) {
   std::map<size_t, std::vector<CellGroup>> batches;
   for (CellGroup& group : groups_of(work)) batches[group.view / views].push_back(std::move(group));
   std::vector<std::vector<CellGroup>> result;
+  result.reserve(batches.size());
   for (auto& [index, batch] : batches) result.push_back(std::move(batch));
   return result;
 }
@@ -100,6 +104,11 @@ void calibrate(const StudyWork& work, CostLedger& ledger) {
   }
 }
 
+double bytes_beside_models(const Study& study, double views) {
+  const double in_view = study.pixels() * study.looks() * (kPixelBytes + 8.0 * static_cast<double>(study.methods.size()));
+  return kStudyBytes + views * kViewBytes + std::min(kReferenceBytes, views * in_view);
+}
+
 std::int64_t expected_bytes(const StudyWork& work) {
   std::int64_t largest = 0;
   std::set<size_t> views;
@@ -108,8 +117,8 @@ std::int64_t expected_bytes(const StudyWork& work) {
     views.insert(work.study.cells[index].view);
   }
   if (views.empty()) return 0;
-  const double held = std::min(kReferenceBytes, static_cast<double>(views.size() + 1) * bytes_of_view(work.study));
-  return largest + work.study.reference_cost.bytes + static_cast<std::int64_t>(held);
+  return largest + work.study.reference_cost.bytes +
+         static_cast<std::int64_t>(bytes_beside_models(work.study, static_cast<double>(views.size())));
 }
 
 }  // namespace limn

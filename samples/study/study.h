@@ -77,6 +77,9 @@ struct Study {
 /// Of all cells, on the machine that the constants were measured on.
 double expected_ms(const Study& study);
 
+/// What a study of so many views holds beside its models, and writes.
+double bytes_beside_models(const Study& study, double views);
+
 /// What the specification leaves open is chosen so that the study is expected to end within a minute. Throws InputError for a call that
 /// makes no study.
 Study plan_study(const StudySpec& spec, SceneInput input);

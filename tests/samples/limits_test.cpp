@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <regex>
 #include <utility>
@@ -141,17 +142,42 @@ TEST(Limits, MemoryIsHeldToWhereNothingWasExpected) {
 
 TEST(Limits, AStudyWhoseMemoryEndsSaysSo) {
   if (!kAddressSpaceCanBeLimited) GTEST_SKIP() << "the sanitizers take memory of their own";
-  // Wherever it ends, in whatever loops; with more threads it may do.
+  // Where nobody told it of the limit. Wherever it ends, in whatever loops; with more threads it may do.
   int ended = 0;
-  for (const auto& [scene, memory] : {std::pair{"teacup", "250M"}, {"teacup", "300M"}, {"rook", "250M"}, {"rook", "300M"}}) {
+  for (const auto& [scene, most_bytes] :
+       {std::pair{"teacup", 250'000'000u}, {"teacup", 300'000'000u}, {"rook", 250'000'000u}, {"rook", 300'000'000u}}) {
     const TemporaryFolder folder;
-    const RunResult held = run_limn({"study", scene, "--fresh", "--max-memory", memory, "-q", "-o", folder.file("out")}, folder.path());
-    EXPECT_TRUE(held.exit_code == 0 || held.exit_code == 1) << scene << " " << memory << ": " << held.exit_code << held.err;
+    const RunResult held = run_limn_within(most_bytes, {"study", scene, "--fresh", "-q", "-o", folder.file("out")}, folder.path());
+    EXPECT_TRUE(held.exit_code == 0 || held.exit_code == 1) << scene << " " << most_bytes << ": " << held.exit_code << held.err;
     if (held.exit_code == 0) continue;
     ++ended;
-    EXPECT_NE(held.err.find("memory"), std::string::npos) << scene << " " << memory << held.err;
+    EXPECT_NE(held.err.find("memory"), std::string::npos) << scene << " " << most_bytes << held.err;
   }
   EXPECT_GT(ended, 0);
+}
+
+TEST(Limits, AStudyFitsIntoTheMemoryThatItAccepts) {
+  if (!kAddressSpaceCanBeLimited) GTEST_SKIP() << "the sanitizers take memory of their own";
+  const auto study = [](const char* scene, const char* size, const char* views, const char* memory) {
+    const TemporaryFolder folder;
+    return run_limn(
+        {"study", scene, "--fresh", "--size", size, "--views", views, "--threads", "2", "--max-memory", memory, "-o", folder.file("out")},
+        folder.path());
+  };
+  // Just above what it asks for: the finest models are left out, and the others have room.
+  for (const auto& [scene, size, views, memory] : {std::array{"ellipsoid", "160x90", "1", "210M"},
+                                                   {"ellipsoid", "160x90", "3", "235M"},
+                                                   {"teacup", "320x180", "1", "220M"},
+                                                   {"ellipsoid", "640x360", "2", "290M"}}) {
+    const RunResult fits = study(scene, size, views, memory);
+    EXPECT_EQ(fits.exit_code, 0) << scene << ' ' << size << ' ' << memory << ": " << fits.err;
+    EXPECT_NE(fits.err.find("models left out"), std::string::npos) << scene << ' ' << size << ' ' << memory << ": " << fits.err;
+  }
+  const RunResult refused = study("ellipsoid", "640x360", "4", "300M");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(refused.err_lines(), 1) << refused.err;
+  EXPECT_NE(refused.err.find("--max-memory: too little for a study (got 300.0 MB, expected more than"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("4 views of 640 x 360 pixels"), std::string::npos) << refused.err;
 }
 
 TEST(Limits, ALibraryThatCannotBeLoadedForWantOfMemoryDoesNotAbort) {

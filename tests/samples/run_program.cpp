@@ -24,7 +24,8 @@ void to_file(const char* path, int descriptor) {
   close(file);
 }
 
-pid_t start(const std::vector<std::string>& arguments, const fs::path& where, const fs::path& out, const fs::path& err) {
+pid_t start(const std::vector<std::string>& arguments, const fs::path& where, const fs::path& out, const fs::path& err,
+            rlim_t most_bytes = RLIM_INFINITY) {
   std::vector<char*> argv;
   std::string program = LIMN_PROGRAM;
   argv.push_back(program.data());
@@ -36,6 +37,8 @@ pid_t start(const std::vector<std::string>& arguments, const fs::path& where, co
   if (child != 0) return child;
   to_file(out_name.c_str(), STDOUT_FILENO);
   to_file(err_name.c_str(), STDERR_FILENO);
+  const rlimit limit{most_bytes, most_bytes};
+  if (most_bytes != RLIM_INFINITY && setrlimit(RLIMIT_DATA, &limit) != 0) _exit(96);
   if (!folder.empty() && chdir(folder.c_str()) != 0) _exit(98);
   execv(program.c_str(), argv.data());
   _exit(97);
@@ -61,6 +64,12 @@ RunResult run_limn(const std::vector<std::string>& arguments, const fs::path& wh
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "out", err = folder.path() / "err";
   return finish(start(arguments, where, out, err), out, err);
+}
+
+RunResult run_limn_within(std::uint64_t most_bytes, const std::vector<std::string>& arguments, const fs::path& where) {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "out", err = folder.path() / "err";
+  return finish(start(arguments, where, out, err, most_bytes), out, err);
 }
 
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 // The real program as a child process.
 
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -20,6 +21,8 @@ struct RunResult {
 
 /// Runs LIMN_PROGRAM with `arguments`, in the folder `where` if given.
 RunResult run_limn(const std::vector<std::string>& arguments, const std::filesystem::path& where = {});
+/// The same where the system gives it no more than so many bytes of memory, which it does not know.
+RunResult run_limn_within(std::uint64_t most_bytes, const std::vector<std::string>& arguments, const std::filesystem::path& where = {});
 /// Starts it and sends SIGINT once `seconds` have passed.
 RunResult interrupt_limn(const std::vector<std::string>& arguments, double seconds, const std::filesystem::path& where = {});
 

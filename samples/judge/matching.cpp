@@ -113,7 +113,7 @@ struct Abreast {
 };
 
 /// The lines that cross the sample's normal within `reach_px` of it, running in its direction, in their order. Each counts once, however
-/// finely its points zigzag. With `overlap_px` those that end so near count, too.
+/// finely its points zigzag. With `overlap_px` those that end so near, or turn back, count, too.
 std::vector<Abreast> lines_abreast(const TrackSample& from, const Tracks& to, const Search& search, double reach_px, double overlap_px) {
   const glm::dvec2 normal(-from.tangent.y, from.tangent.x);
   std::vector<std::uint32_t> near;
@@ -126,11 +126,11 @@ std::vector<Abreast> lines_abreast(const TrackSample& from, const Tracks& to, co
     const glm::dvec2 d = ends.b - ends.a;
     const double run = glm::dot(d, from.tangent);
     if (std::fabs(run) < search.least_cosine * glm::length(d)) continue;
-    const double a = glm::dot(ends.a - from.at, from.tangent), b = a + run;
+    // The same number at the end of one segment and at the start of the next: else a corner on the normal may be on neither.
+    const double a = glm::dot(ends.a - from.at, from.tangent), b = glm::dot(ends.b - from.at, from.tangent);
     // Half-open, so that strokes end to end count once.
     bool crosses = (a <= 0.0) != (b <= 0.0);
-    if (one.index == 0) crosses = crosses || std::fabs(a) < overlap_px;
-    if (static_cast<size_t>(one.index) + 2 == track.points.size()) crosses = crosses || std::fabs(b) < overlap_px;
+    crosses = crosses || std::min(std::fabs(a), std::fabs(b)) < overlap_px;
     const double t = std::clamp(-a / run, 0.0, 1.0);
     if (!crosses || std::fabs(glm::dot(ends.a + t * d - from.at, normal)) > reach_px) continue;
     const auto i = static_cast<size_t>(one.index);
@@ -139,9 +139,11 @@ std::vector<Abreast> lines_abreast(const TrackSample& from, const Tracks& to, co
   std::sort(found.begin(), found.end(),
             [](const Abreast& p, const Abreast& q) { return p.track != q.track ? p.track < q.track : p.along_px < q.along_px; });
   constexpr double kZigzag_px = 0.05;
-  found.erase(std::unique(found.begin(), found.end(),
-                          [](const Abreast& p, const Abreast& q) { return p.track == q.track && q.along_px - p.along_px < kZigzag_px; }),
-              found.end());
+  const double once_px = std::max(kZigzag_px, 2.0 * overlap_px);
+  found.erase(
+      std::unique(found.begin(), found.end(),
+                  [once_px](const Abreast& p, const Abreast& q) { return p.track == q.track && q.along_px - p.along_px < once_px; }),
+      found.end());
   return found;
 }
 

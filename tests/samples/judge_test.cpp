@@ -234,6 +234,21 @@ TEST(Judge, FindsNothingWhereOneLineLeavesAnother) {
   }
 }
 
+/// A line that turns back at the end of another, in a tip that the file's digits move.
+TEST(Judge, FindsNothingWhereALineTurnsBackBesideAnother) {
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> offset(0.0, 0.001), turn(0.0, 2.0 * std::numbers::pi);
+  for (int i = 0; i < 300; ++i) {
+    const double direction = turn(random);
+    const glm::dvec2 joint(300.0 + offset(random), 200.0 + offset(random)), along(std::cos(direction), std::sin(direction)),
+        across(-along.y, along.x);
+    const glm::dvec2 tip = joint + 0.6 * along;
+    expect_clean(own_drawing_judged(graph_of(
+        {{{tip + 30.0 * along, joint}}, {{joint, joint + 0.3 * along + 0.02 * across, tip, joint + 0.3 * along - 0.02 * across, joint}}})));
+    if (HasFailure()) FAIL() << "direction " << direction;
+  }
+}
+
 TEST(Judge, DoesNotMissWhatNoFileHas) {
   const Judgement judgement =
       own_drawing_judged(graph_of({{{{100.0, 100.0}, {150.0, 120.0}}}, {{{300.00001, 200.0}, {300.00003, 200.0}}}}));

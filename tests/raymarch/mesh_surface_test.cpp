@@ -188,7 +188,7 @@ TEST(MeshSurface, LevelSetsOfAKeptMeshShareItsBody) {
     const nanovdb::FloatGrid &of_shared = *shared.surfaces[0].level_set->data().grid, &of_alone = *alone.surfaces[0].level_set->data().grid;
     ASSERT_EQ(of_shared.tree().nodeCount(0), of_alone.tree().nodeCount(0));
     for (std::uint32_t leaf = 0; leaf < of_shared.tree().nodeCount(0); ++leaf)
-      for (int n = 0; n < 512; ++n)
+      for (std::uint32_t n = 0; n < 512; ++n)
         ASSERT_EQ(of_shared.tree().getFirstLeaf()[leaf].getValue(n), of_alone.tree().getFirstLeaf()[leaf].getValue(n));
     // Offsets that reach farther than the band are made of it, too.
     OffsetWidth wide;

@@ -50,8 +50,8 @@ struct BorderTruth {
 /// Throws InputError for a threshold outside [0, 1) and for a scene that nothing affordable can stand in for.
 BorderTruth solve_truth(const Scene& scene, const Camera& camera, const TruthSettings& settings, const ExecutionSettings& how);
 
-/// Lets truths of this scene use a model that is there already, where it is one that they would make: cages alone, refined onto their
-/// limit. `settings`: what it was built with. Truths are the same without; what the cache holds already stays.
+/// Lets truths of this scene use a model that is there already, where it is one that they would make: of meshes alone, cages refined onto
+/// their limit, others as they are. `settings`: what it was built with. Truths are the same without; what the cache holds already stays.
 void offer_model(const Scene& scene, const SurfaceSettings& settings, const SceneModel& model, TruthCache& cache);
 
 /// Whether TruthSettings::reference makes a difference: the scene has a mesh that is no cage, or a volume.

@@ -23,6 +23,7 @@ using ByteTag = hn::CappedTag<std::uint8_t, 64>;
 
 HWY_INLINE Bits bits(std::uint32_t value) { return hn::Set(BitTag(), value); }
 
+/// Highway's own conversion cuts off where the machine has no instruction for it (1.0.3); this one rounds alike everywhere.
 /// Below 2^-14 a half has steps of 2^-24, as floats from 1/2 to 1 have: adding 1/2 rounds to them. Above, the exponents differ by 112, and
 /// 13 bits are rounded away.
 HWY_INLINE Bits half_of(Bits value) {

@@ -168,12 +168,10 @@ void ExperimentRun::measure_all(std::deque<ViewWork>& works) {
   const size_t pictures = works.empty() || works.front().model() == 0 ? 0 : works.size();
   ThreadArena arena(how_.threads);
   arena.execute([&] {
+    // Borders are measured side by side: what their rays need is made before.
     if (!floors.empty() && reference_) prepare_points(*reference_);
-    const auto has_truth = [](const CellsOfTruth& group, const std::deque<ViewWork>& of) {
-      return of[group.work].truths[group.cells.front()] != nullptr;
-    };
-    if (std::any_of(groups.begin(), groups.end(), [&](const CellsOfTruth& group) { return has_truth(group, works); }))
-      prepare_points(*works.front().built);
+    const auto has_truth = [&](const CellsOfTruth& group) { return works[group.work].truths[group.cells.front()] != nullptr; };
+    if (std::any_of(groups.begin(), groups.end(), has_truth)) prepare_points(*works.front().built);
     parallel_each(floors.size() + groups.size() + pictures, [&](size_t k) {
       if (k < floors.size()) {
         floors[k].values = measure_floor(floors[k].view, *floors[k].truth, floors[k].key.second);

@@ -16,8 +16,8 @@ double ms_since(Clock::time_point start) { return std::chrono::duration<double, 
 
 constexpr double kGBufferBytes = 64.0;
 // Peaks of studies of 1 to 16 views of 14,000 to 920,000 pixels, less what their models take (docs/performance.md): in each view its
-// pictures and what is measured of them, and its true border; rows, charts and pages.
-constexpr double kPixelBytes = 130.0, kViewBytes = 10e6, kStudyBytes = 90e6;
+// pictures and what is measured of them, those after small moves, and its true border; rows, charts and pages.
+constexpr double kPixelBytes = 130.0, kMovedPixelBytes = 72.0, kViewBytes = 10e6, kStudyBytes = 90e6;
 
 /// What holding the reference in one view takes.
 double bytes_of_view(const Study& study) {
@@ -105,7 +105,8 @@ void calibrate(const StudyWork& work, CostLedger& ledger) {
 }
 
 double bytes_beside_models(const Study& study, double views) {
-  const double in_view = study.pixels() * study.looks() * (kPixelBytes + 8.0 * static_cast<double>(study.methods.size()));
+  const double inks = 8.0 * static_cast<double>(study.methods.size()), moved = study.looks() - 1.0;
+  const double in_view = study.pixels() * (kPixelBytes + inks + moved * (kMovedPixelBytes + inks));
   return kStudyBytes + views * kViewBytes + std::min(kReferenceBytes, views * in_view);
 }
 

@@ -44,13 +44,21 @@ struct Use {
   const GBufferLayers* layers = nullptr;
 };
 
-/// What the tiles of a picture share.
+/// A ray of each pixel.
+struct Pass {
+  glm::dvec2 sample{0.5, 0.5};
+  Use use{};
+  GBuffer* out = nullptr;
+};
+
+/// What the tiles of a pass share.
 struct Shared {
   const SceneModel& model;
   ModelView view;
-  PictureRays rays;
+  const PictureRays& rays;
   TileWriter writer;
   Use use;
+  glm::dvec2 sample;
 };
 
 PixelTile moved(PixelTile pixels, const glm::ivec2& first) {
@@ -66,16 +74,21 @@ void finish_run(const Use& use, const TileWriter& writer, const TracedPixels& ru
   if (use.work != nullptr) (*use.work)(run);
 }
 
-void render_tiles(const Shared& shared, const PixelTile& row, int tile_px, glm::dvec2 sample) {
-  GBuffer own;
+/// What one task holds.
+struct TaskMemory {
+  GBuffer layers{};  ///< That are not kept.
+  Image<glm::vec4> sums{};
+};
+
+void render_tiles(const Shared& shared, const PixelTile& row, int tile_px, TaskMemory& own) {
   TileWriter writer = shared.writer;
   glm::ivec2 first(0);
   if (shared.use.layers != nullptr) {
-    size_layers(*shared.use.layers, row.width, row.height, own);
-    writer.out = &own;
+    size_layers(*shared.use.layers, row.width, row.height, own.layers);
+    writer.out = &own.layers;
     first = {row.x, row.y};
   }
-  TracedPixels run{*writer.out, first, {row.x, row.y, 0, row.height}, false};
+  TracedPixels run{*writer.out, first, row, own.sums, {row.x, row.y, 0, row.height}, false};
   for (int x = row.x; x < row.x + row.width; x += tile_px) {
     const PixelTile tile{x, row.y, std::min(tile_px, row.x + row.width - x), row.height};
     const bool seen = touches(shared.view, tile);
@@ -88,7 +101,7 @@ void render_tiles(const Shared& shared, const PixelTile& row, int tile_px, glm::
     if (!seen) continue;
     RayBatch rays;
     SceneHits found;
-    fill_rays(shared.rays, tile, sample, rays);
+    fill_rays(shared.rays, tile, shared.sample, rays);
     trace_scene(shared.model, shared.view, tile, rays, found);
     write_tile(writer, moved(tile, first), rays, found);
   }
@@ -97,34 +110,50 @@ void render_tiles(const Shared& shared, const PixelTile& row, int tile_px, glm::
 
 void check(const ExecutionSettings& how) { LIMN_CHECK(how.tile_px >= 1 && how.tile_px <= 16 && how.threads >= kSurroundingThreads); }
 
-void render(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset, const PixelTile& window,
-            const Use& use, GBuffer& out) {
-  check(how);
-  LIMN_CHECK(out.width == camera.width_px && out.height == camera.height_px);
-  LIMN_CHECK(window.x >= 0 && window.y >= 0 && window.x + window.width <= out.width && window.y + window.height <= out.height);
-  out.sample = offset;
-  const Camera render_camera = moved(camera, model.render_origin);
-  const SceneExtent extent = scene_extent(model);
+std::vector<std::int32_t> turned_ids(const ModelView& view) {
+  std::vector<std::int32_t> ids;
+  for (size_t i = 0; i < view.turned.size(); ++i) {
+    if (view.turned[i]) ids.push_back(static_cast<std::int32_t>(i) + 1);
+  }
+  return ids;
+}
+
+/// Of each task all passes, one after the other.
+void render_tasks(const std::vector<Shared>& passes, const PixelTile& window, const ExecutionSettings& how) {
   const int task_px = kTilesInARow * how.tile_px;
   const int columns = (window.width + task_px - 1) / task_px, rows = (window.height + how.tile_px - 1) / how.tile_px;
   const std::int64_t tasks = std::int64_t{columns} * rows;
   std::mutex progress_mutex;
   std::int64_t done = 0;
-  out.turned.clear();
+  parallel_for(std::int64_t{0}, tasks, [&](std::int64_t k) {
+    if (how.cancelled && how.cancelled()) throw Cancelled{};
+    const int x = static_cast<int>(k % columns) * task_px, y = static_cast<int>(k / columns) * how.tile_px;
+    const PixelTile row{window.x + x, window.y + y, std::min(task_px, window.width - x), std::min(how.tile_px, window.height - y)};
+    TaskMemory own;
+    for (const Shared& pass : passes) render_tiles(pass, row, how.tile_px, own);
+    if (!how.progress) return;
+    const std::lock_guard lock(progress_mutex);
+    how.progress(static_cast<double>(++done) / static_cast<double>(tasks));
+  });
+}
+
+void render(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, const PixelTile& window,
+            std::span<const Pass> passes) {
+  check(how);
+  LIMN_CHECK(window.x >= 0 && window.y >= 0 && window.x + window.width <= camera.width_px && window.y + window.height <= camera.height_px);
+  for (const Pass& pass : passes) LIMN_CHECK(pass.out->width == camera.width_px && pass.out->height == camera.height_px);
+  const Camera render_camera = moved(camera, model.render_origin);
+  const SceneExtent extent = scene_extent(model);
   const auto trace = [&] {
     const PictureRays rays = picture_rays(render_camera, extent.radius, extent.bounded);
-    const Shared shared{model, view_model(model, {render_camera, offset}), rays, tile_writer(model, rays, out), use};
-    for (size_t i = 0; i < shared.view.turned.size(); ++i)
-      if (shared.view.turned[i]) out.turned.push_back(static_cast<std::int32_t>(i) + 1);
-    parallel_for(std::int64_t{0}, tasks, [&](std::int64_t k) {
-      if (how.cancelled && how.cancelled()) throw Cancelled{};
-      const int x = static_cast<int>(k % columns) * task_px, y = static_cast<int>(k / columns) * how.tile_px;
-      const PixelTile row{window.x + x, window.y + y, std::min(task_px, window.width - x), std::min(how.tile_px, window.height - y)};
-      render_tiles(shared, row, how.tile_px, offset);
-      if (!how.progress) return;
-      const std::lock_guard lock(progress_mutex);
-      how.progress(static_cast<double>(++done) / static_cast<double>(tasks));
-    });
+    std::vector<Shared> shared;
+    for (const Pass& pass : passes) {
+      shared.push_back(
+          {model, view_model(model, {render_camera, pass.sample}), rays, tile_writer(model, rays, *pass.out), pass.use, pass.sample});
+      pass.out->sample = pass.sample;
+      pass.out->turned = turned_ids(shared.back().view);
+    }
+    render_tasks(shared, window, how);
   };
   if (how.threads == kSurroundingThreads) {
     trace();
@@ -137,14 +166,18 @@ void render(const SceneModel& model, const Camera& camera, const ExecutionSettin
 
 void render_window(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset, const PixelTile& window,
                    GBuffer& out) {
-  render(model, camera, how, offset, window, {}, out);
+  const Pass pass{offset, {}, &out};
+  render(model, camera, how, window, std::span(&pass, 1));
 }
 
-void render_pixels(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset,
-                   const GBufferLayers& layers, bool kept, const PixelWork& work, GBuffer& out) {
+void render_pixels(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, std::span<const PixelRays> rays) {
   constexpr GBufferLayers none{false, false, false, false, false, false, false, false};
-  size_layers(kept ? layers : none, camera.width_px, camera.height_px, out);
-  render(model, camera, how, offset, {0, 0, out.width, out.height}, {&work, kept ? nullptr : &layers}, out);
+  std::vector<Pass> passes;
+  for (const PixelRays& one : rays) {
+    size_layers(one.kept ? one.layers : none, camera.width_px, camera.height_px, *one.out);
+    passes.push_back({one.offset, {&one.work, one.kept ? nullptr : &one.layers}, one.out});
+  }
+  render(model, camera, how, {0, 0, camera.width_px, camera.height_px}, passes);
 }
 
 void render_gbuffer(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, glm::dvec2 offset,

@@ -93,9 +93,9 @@ void add_turned_notes(const BorderInput& input, std::vector<std::string>& notes)
   }
 }
 
-ExecutionSettings of_sample(const ExecutionSettings& how, int sample, int samples) {
+ExecutionSettings of_samples(const ExecutionSettings& how, int from, int count, int samples) {
   ExecutionSettings part = how;
-  if (how.progress) part.progress = [&how, sample, samples](double done) { how.progress((sample + done) / samples); };
+  if (how.progress) part.progress = [&how, from, count, samples](double done) { how.progress((from + count * done) / samples); };
   return part;
 }
 
@@ -174,7 +174,7 @@ Picture draw_picture(const Scene& scene, const SceneModel& model, const Camera& 
   for (int sample = 0; sample < settings.samples; ++sample) {
     const auto start = Clock::now();
     // Only the first sample's G-buffer is handed on, and only it has notes.
-    render_gbuffer(model, camera, of_sample(how, sample, settings.samples), sample_offset(sample, settings.samples),
+    render_gbuffer(model, camera, of_samples(how, sample, 1, settings.samples), sample_offset(sample, settings.samples),
                    sample == 0 ? first : later, gbuffer);
     picture.trace_ms += ms_since(start);
     const auto number = static_cast<size_t>(sample);

@@ -14,7 +14,7 @@ GBufferLayers joined(const GBufferLayers& a, const GBufferLayers& b);
 /// Of open meshes that show their back.
 void add_turned_notes(const BorderInput& input, std::vector<std::string>& notes);
 
-/// With the progress of one of `samples` samples as a part of the whole. Refers to `how`.
-ExecutionSettings of_sample(const ExecutionSettings& how, int sample, int samples);
+/// With the progress of some of `samples` samples, from one on, as a part of the whole. Refers to `how`.
+ExecutionSettings of_samples(const ExecutionSettings& how, int from, int count, int samples);
 
 }  // namespace limn

@@ -25,6 +25,7 @@ double ms_since(Clock::time_point start) { return std::chrono::duration<double, 
 
 constexpr size_t kMostMethods = kMostTalliedMethods;
 constexpr size_t kMostPixels = size_t{kTilesInARow} * 16;  // of a task's line
+constexpr int kMostTogether = 8;                           // samples: each has lists of what its tiles see
 
 /// What the tasks of a sample share.
 struct Sample {
@@ -33,15 +34,28 @@ struct Sample {
   SurfaceTally* tally = nullptr;  ///< Of the first sample.
   Picture* picture = nullptr;     ///< Images without pixels are not made.
   bool to_bytes = false;          ///< The last sample of a picture in bytes.
+  bool sums_in_tasks = false;     ///< Else in Picture::composite, or nowhere.
   std::atomic<std::int64_t>* work_ns = nullptr;
 };
 
-PixelRun run_of(const Sample& sample, size_t count, size_t at) {
+PixelTile in_task(const TracedPixels& traced) {
+  PixelTile pixels = traced.pixels;
+  pixels.x -= traced.task.x;
+  pixels.y -= traced.task.y;
+  return pixels;
+}
+
+/// Pixels side by side, from this one of the picture on.
+PixelRun run_of(const Sample& sample, const TracedPixels& traced, int x, int y) {
   Picture& picture = *sample.picture;
+  const size_t at = static_cast<size_t>(y) * static_cast<size_t>(picture.gbuffer.width) + static_cast<size_t>(x);
   PixelRun run;
-  run.count = count;
+  run.count = static_cast<size_t>(traced.pixels.width);
   if (!picture.border.pixels.empty()) run.border = &picture.border.pixels[at];
-  if (!picture.composite.pixels.empty()) run.composite = &picture.composite.pixels[at];
+  if (sample.sums_in_tasks)
+    run.composite = &traced.sums.at(x - traced.task.x, y - traced.task.y);
+  else if (!picture.composite.pixels.empty())
+    run.composite = &picture.composite.pixels[at];
   if (sample.to_bytes) run.bytes = &picture.bytes.pixels[at];
   return run;
 }
@@ -61,7 +75,7 @@ void draw_seen(const Sample& sample, const TracedPixels& traced) {
       sample.inks[m]({n_dot_v, count}, {id, count}, {coverage[m], count});
       if (sample.tally != nullptr) add_ink({coverage[m], count}, m, at, *sample.tally);
     }
-    PixelRun run = run_of(sample, count, at);
+    PixelRun run = run_of(sample, traced, pixels.x, y);
     run.n_dot_v = n_dot_v;
     run.id = id;
     run.coverage = {inks, sample.inks.size()};
@@ -70,10 +84,11 @@ void draw_seen(const Sample& sample, const TracedPixels& traced) {
 }
 
 /// Where nothing is seen: no ink and no colour.
-void draw_nothing(const Sample& sample, const PixelTile& pixels) {
+void draw_nothing(const Sample& sample, const TracedPixels& traced) {
   static constexpr float kNone[kMostPixels] = {};
   static constexpr std::int32_t kNoId[kMostPixels] = {};
   const float* const inks[kMostMethods] = {kNone, kNone, kNone, kNone, kNone};
+  const PixelTile& pixels = traced.pixels;
   Picture& picture = *sample.picture;
   const auto fill_run = [&](PixelRun run) {
     run.n_dot_v = kNone;
@@ -91,23 +106,22 @@ void draw_nothing(const Sample& sample, const PixelTile& pixels) {
     fill_rows(picture.border, pixels, ink);
     fill_rows(picture.composite, pixels, color);
     if (sample.to_bytes) fill_rows(picture.bytes, pixels, bytes);
+    if (sample.sums_in_tasks) fill_rows(traced.sums, in_task(traced), color);
     return;
   }
   if (sample.stage.finish == nullptr) return;  // nothing is added
-  for (int y = pixels.y; y < pixels.y + pixels.height; ++y) {
-    const size_t at = static_cast<size_t>(y) * static_cast<size_t>(picture.gbuffer.width) + static_cast<size_t>(pixels.x);
-    fill_run(run_of(sample, static_cast<size_t>(pixels.width), at));
-  }
+  for (int y = pixels.y; y < pixels.y + pixels.height; ++y) fill_run(run_of(sample, traced, pixels.x, y));
 }
 
 void draw_pixels(const Sample& sample, const TracedPixels& traced) {
   const auto start = Clock::now();
+  if (sample.sums_in_tasks && traced.sums.pixels.empty()) traced.sums = Image<glm::vec4>::unset(traced.task.width, traced.task.height);
   if (traced.seen) {
     if (sample.tally != nullptr) add_pixels(traced.layers, traced.first, traced.pixels, *sample.tally);
     draw_seen(sample, traced);
   } else {
     if (sample.tally != nullptr) add_nothing(traced.pixels, *sample.tally);
-    draw_nothing(sample, traced.pixels);
+    draw_nothing(sample, traced);
   }
   const std::int64_t took_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count();
   sample.work_ns->fetch_add(took_ns, std::memory_order_relaxed);
@@ -118,7 +132,7 @@ void make_images(const PictureSettings& settings, bool is_frame, const Camera& c
   const bool to_bytes = settings.colors == PictureColors::bytes;
   if (to_bytes) picture.bytes = Image<glm::u8vec4>::unset(width, height);
   if (!to_bytes || is_frame) picture.border = Image<float>::unset(width, height);
-  if (settings.colors == PictureColors::linear || (to_bytes && settings.samples > 1))
+  if (settings.colors == PictureColors::linear || (to_bytes && settings.samples > kMostTogether))
     picture.composite = Image<glm::vec4>::unset(width, height);
 }
 
@@ -172,21 +186,27 @@ Picture draw_pixel_wise(const Scene& scene, const SceneModel& model, const Camer
   std::atomic<std::int64_t> work_ns{0};
   GBuffer later_pixels;
   const auto start = Clock::now();
-  double notes_ms = 0.0;
-  for (int sample = 0; sample < settings.samples; ++sample) {
+  const auto shared_by = [&](int sample) {
     const bool is_first = sample == 0, is_last = sample + 1 == settings.samples;
-    const bool to_bytes = is_last && settings.colors == PictureColors::bytes;
     const PixelStage stage{&colors, ink_colors, is_first, is_last ? &finish : nullptr};
-    const Sample shared{stage, inks, is_first ? &tally : nullptr, &picture, to_bytes, &work_ns};
-    const PixelWork work = [&shared](const TracedPixels& traced) { draw_pixels(shared, traced); };
-    const bool kept = is_first && (history != nullptr || any(settings.layers));
-    render_pixels(model, camera, of_sample(how, sample, settings.samples), sample_offset(sample, settings.samples),
-                  is_first ? first : later, kept, work, is_first ? picture.gbuffer : later_pixels);
-    if (!is_first) continue;
-    const auto notes_start = Clock::now();
-    arena.execute([&] { add_notes({picture.gbuffer, camera, model, scene}, settings, tally, picture); });
-    notes_ms = ms_since(notes_start);
+    const bool to_bytes = settings.colors == PictureColors::bytes,
+               in_tasks = to_bytes && settings.samples > 1 && picture.composite.pixels.empty();
+    return Sample{stage, inks, is_first ? &tally : nullptr, &picture, to_bytes && is_last, in_tasks, &work_ns};
+  };
+  for (int from = 0; from < settings.samples; from += kMostTogether) {
+    std::vector<PixelRays> rays;
+    const int together = std::min(kMostTogether, settings.samples - from);
+    for (int sample = from; sample < from + together; ++sample) {
+      const bool is_first = sample == 0, kept = is_first && (history != nullptr || any(settings.layers));
+      rays.push_back({sample_offset(sample, settings.samples), is_first ? first : later, kept,
+                      [shared = shared_by(sample)](const TracedPixels& traced) { draw_pixels(shared, traced); },
+                      is_first ? &picture.gbuffer : &later_pixels});
+    }
+    render_pixels(model, camera, of_samples(how, from, together, settings.samples), rays);
   }
+  const auto notes_start = Clock::now();
+  arena.execute([&] { add_notes({picture.gbuffer, camera, model, scene}, settings, tally, picture); });
+  const double notes_ms = ms_since(notes_start);
   // What the threads did in tiles, as if they had done it one after the other.
   picture.border_ms = notes_ms + 1e-6 * static_cast<double>(work_ns) / arena.threads();
   picture.trace_ms = std::max(0.0, ms_since(start) - picture.border_ms);

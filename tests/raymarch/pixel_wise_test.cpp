@@ -76,7 +76,7 @@ TEST(PixelWise, InksShadesAndAddsUpAsWholeImagesDo) {
   const auto number = [&](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
   const Scene scene = three_objects();
   const SceneModel model = model_of(scene);
-  for (const int samples : {1, 2, 3}) {
+  for (const int samples : {1, 2, 3, 10}) {
     const int width = 150 + static_cast<int>(random() % 100), height = 70 + static_cast<int>(random() % 40);
     const Camera camera = framing(scene, view(width, height));
     PictureSettings settings;
@@ -89,7 +89,7 @@ TEST(PixelWise, InksShadesAndAddsUpAsWholeImagesDo) {
     ASSERT_TRUE(is_pixel_wise(model, settings));
 
     const auto [composite, border] = whole_images(model, camera, settings);
-    EXPECT_GT(*std::max_element(border.pixels.begin(), border.pixels.end()), 0.3f);  // of one sample in three
+    EXPECT_GT(*std::max_element(border.pixels.begin(), border.pixels.end()), 0.3f);  // of one sample in some
 
     for (const int threads : {1, 3}) {
       for (const int tile_px : {16, 5}) {
@@ -171,7 +171,8 @@ TEST(PixelWise, PairsOfOneNormalAreCountedOnceEach) {
       else
         add_nothing(run.pixels, tally);
     };
-    render_pixels(model, camera, {.tile_px = tile_px}, {0.5, 0.5}, {}, false, add, traced);
+    const PixelRays rays{.work = add, .out = &traced};
+    render_pixels(model, camera, {.tile_px = tile_px}, std::span(&rays, 1));
     join_cells(tally);
     EXPECT_EQ(tally.same_pairs, expected) << tile_px;
     EXPECT_TRUE(tally.facts.pixels == facts.pixels) << tile_px;
@@ -213,7 +214,8 @@ TEST(PixelWise, PixelsOfATaskAreGoneWithItUnlessTheyAreKept) {
           n_dot_v.at(x, y) = run.seen ? run.layers.n_dot_v.at(x - run.first.x, y - run.first.y) : 0.0f;
     };
     GBuffer out;
-    render_pixels(model, camera, {}, {0.5, 0.5}, {}, kept, copy, out);
+    const PixelRays rays{.kept = kept, .work = copy, .out = &out};
+    render_pixels(model, camera, {}, std::span(&rays, 1));
     EXPECT_TRUE(n_dot_v.pixels == whole.n_dot_v.pixels);
     EXPECT_EQ(out.width, 150);
     EXPECT_EQ(out.n_dot_v.pixels.empty(), !kept);

@@ -1,4 +1,4 @@
-// Calls of many pictures take no more memory than those of a few.
+// Calls of many pictures take no more memory than those of a few, and pictures of several samples no more than those of one.
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,13 @@
 namespace limn::test {
 namespace {
 
-double peak_bytes(const char* kind, int pictures, const std::string& size) {
+double peak_bytes(const std::string& size, int samples, const std::vector<std::string>& more) {
   const TemporaryFolder folder;
-  const RunResult result = run_limn({"render", "ellipsoid", "--surface", "analytic", "--size", size, "--samples", "1", kind,
-                                     std::to_string(pictures), "-q", "-o", folder.file("a.png")});
+  std::vector<std::string> call{"render", "ellipsoid", "--surface",         "analytic",
+                                "--size", size,        "--samples",         std::to_string(samples),
+                                "-q",     "-o",        folder.file("a.png")};
+  call.insert(call.end(), more.begin(), more.end());
+  const RunResult result = run_limn(call);
   EXPECT_EQ(result.exit_code, 0) << result.err;
   return result.peak_bytes;
 }
@@ -20,10 +23,16 @@ TEST(MemoryGrowth, ManyPicturesTakeAsMuchAsAFew) {
   // Sizes whose layers are smaller than large pages and larger.
   for (const char* size : {"960x540", "1600x900"})
     for (const char* kind : {"--views", "--turntable"}) {
-      const double few = peak_bytes(kind, 8, size), many = peak_bytes(kind, 80, size);
+      const double few = peak_bytes(size, 1, {kind, "8"}), many = peak_bytes(size, 1, {kind, "80"});
       EXPECT_GT(few, 1e6);
       EXPECT_LT(many, few + 12e6) << kind << " " << size;
     }
+}
+
+TEST(MemoryGrowth, EightSamplesTakeAsMuchAsOne) {
+  const double one = peak_bytes("1920x1080", 1, {}), eight = peak_bytes("1920x1080", 8, {});
+  EXPECT_GT(one, 1e6);
+  EXPECT_LT(eight, one + 12e6);  // sums of the whole picture would be 33 MB
 }
 
 }  // namespace

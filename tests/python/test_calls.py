@@ -131,13 +131,15 @@ class Interrupts(TestCase):
     }
 
     def test_an_interrupt_stops_the_work_and_no_more(self):
-        for name, work in self.WORK.items():
+        processes = {name: subprocess.Popen([sys.executable, "-c", INTERRUPTED.format(work=work)], stdout=subprocess.PIPE,
+                                            stderr=subprocess.PIPE, text=True) for name, work in self.WORK.items()}
+        for process in processes.values():
+            self.assertEqual(process.stdout.readline(), "ready\n")
+        time.sleep(1.5)
+        for process in processes.values():
+            process.send_signal(signal.SIGINT)
+        for name, process in processes.items():
             with self.subTest(name):
-                process = subprocess.Popen([sys.executable, "-c", INTERRUPTED.format(work=work)], stdout=subprocess.PIPE,
-                                           stderr=subprocess.PIPE, text=True)
-                self.assertEqual(process.stdout.readline(), "ready\n")
-                time.sleep(1.5)
-                process.send_signal(signal.SIGINT)
                 # No bound on time but that of patience: the work itself would take minutes or never end.
                 out, err = process.communicate(timeout=120)
                 self.assertEqual((out, process.returncode), ("stopped\nTrue\n", 0), err)

@@ -9,6 +9,7 @@
 #include "sdf/field_program.h"
 #include "sdf/gradients/spline_blocks.h"
 #include "sdf/gradients/spline_hull.h"
+#include "sdf/gradients/spline_jet.h"
 #include "sdf/level_set_data.h"
 #include "sdf/number_interval.h"
 
@@ -47,14 +48,29 @@ struct Spline {
     const CellPoint at = cell_point(level_set.data().index_from_world.point(p));
     return value_of_spline(coefficients_at(at.node), at.local);
   }
-  FieldJet jet(const glm::dvec3& p, bool with_hessian) const {
+  FieldJet slope(const glm::dvec3& p) const {
     const LevelSetData& data = level_set.data();
     const CellPoint at = cell_point(data.index_from_world.point(p));
-    FieldJet jet = jet_of_spline(coefficients_at(at.node), at.local, with_hessian);
-    const glm::dmat3& index_from_world = data.index_from_world.linear;
+    FieldJet jet = slope_of_spline(coefficients_at(at.node), at.local);
     jet.gradient = data.world_gradient(jet.gradient);
-    if (with_hessian) jet.hessian = glm::transpose(index_from_world) * jet.hessian * index_from_world;
     return jet;
+  }
+  /// The coordinates carry their derivatives, by a rigid motion: what they are derived by, the result is.
+  Jet jet(const Jet& x, const Jet& y, const Jet& z) const {
+    const Affine& index_from_world = level_set.data().index_from_world;
+    const CellPoint at = cell_point(index_from_world.point({x.value, y.value, z.value}));
+    const FieldJet by_index = spline_jet(coefficients_at(at.node), at.local);
+    glm::dmat3 motion;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<size_t>(axis);
+      motion[axis] = {x.gradient[a], y.gradient[a], z.gradient[a]};
+    }
+    const glm::dmat3 index_from = index_from_world.linear * motion, turned = by_index.hessian * index_from;
+    const glm::dvec3 gradient = by_index.gradient * index_from;
+    const auto second = [&](int a, int b) { return glm::dot(index_from[a], turned[b]); };
+    return {by_index.value,
+            {gradient.x, gradient.y, gradient.z},
+            {second(0, 0), second(0, 1), second(0, 2), second(1, 1), second(1, 2), second(2, 2)}};
   }
 };
 
@@ -79,19 +95,15 @@ void evaluate(const void* shape, const T* x, const T* y, const T* z, T* values, 
       const glm::dvec3 p = point_of(x, y, z, i);
       if constexpr (std::is_floating_point_v<T>) {
         values[i] = static_cast<T>(spline.value(p));
+      } else if constexpr (std::is_same_v<T, Jet>) {
+        values[i] = spline.jet(x[i], y[i], z[i]);
       } else {
-        const FieldJet jet = spline.jet(p, std::is_same_v<T, Jet>);
+        const FieldJet jet = spline.slope(p);
         // The chain rule through a rigid motion, which the leaf applies: x, y and z carry its derivatives.
         T sum = scaled(x[i], jet.gradient.x, jet.value);
         const auto add = [&](const T& coordinate, double slope) { sum = combination(sum, 1.0, coordinate, slope, jet.value); };
         add(y[i], jet.gradient.y);
         add(z[i], jet.gradient.z);
-        if constexpr (std::is_same_v<T, Jet>) {
-          const T* const axes[3] = {&x[i], &y[i], &z[i]};
-          for (int a = 0; a < 3; ++a) {
-            for (int b = 0; b < 3; ++b) add_outer(sum, jet.hessian[a][b], axes[a]->gradient, axes[b]->gradient);
-          }
-        }
         values[i] = sum;
       }
     }

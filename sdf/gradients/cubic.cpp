@@ -1,7 +1,7 @@
 #include <array>
 
 #include "sdf/gradients/gradients.h"
-#include "sdf/gradients/spline_cell.h"
+#include "sdf/gradients/spline_jet.h"
 
 namespace limn {
 namespace {
@@ -33,7 +33,7 @@ void gradients_of_spline(const LevelSetData& data, std::span<const glm::dvec3> p
   CellCoefficients cells(data);
   for (size_t i = 0; i < points.size(); ++i) {
     const CellPoint at = cell_point(data.index_from_world.point(points[i]));
-    gradients[i] = data.world_gradient(jet_of_spline(cells.at(at.node), at.local, false).gradient);
+    gradients[i] = data.world_gradient(slope_of_spline(cells.at(at.node), at.local).gradient);
   }
 }
 
@@ -50,7 +50,7 @@ void hessians_of_spline(const LevelSetData& data, std::span<const glm::dvec3> po
   const glm::dmat3& index_from_world = data.index_from_world.linear;
   for (size_t i = 0; i < points.size(); ++i) {
     const CellPoint at = cell_point(data.index_from_world.point(points[i]));
-    jets[i] = jet_of_spline(cells.at(at.node), at.local, true);
+    jets[i] = spline_jet(cells.at(at.node), at.local);
     jets[i].gradient = data.world_gradient(jets[i].gradient);
     jets[i].hessian = glm::transpose(index_from_world) * jets[i].hessian * index_from_world;
   }

@@ -53,7 +53,7 @@ SplineCoefficients spline_coefficients(const Accessor& accessor, const nanovdb::
   return c;
 }
 
-/// As jet_of_spline()'s, to the bit.
+/// As slope_of_spline()'s, to the bit.
 inline double value_of_spline(const SplineCoefficients& c, const glm::dvec3& local) {
   const SplineWeights x = spline_weights(local.x), y = spline_weights(local.y), z = spline_weights(local.z);
   double sum = 0.0;
@@ -69,38 +69,22 @@ inline double value_of_spline(const SplineCoefficients& c, const glm::dvec3& loc
 /// Two numbers at once, for the plain instructions of every machine.
 using SplinePair = double __attribute__((vector_size(16)));
 
-/// Value, gradient and (where asked for) Hessian by index coordinates.
-inline FieldJet jet_of_spline(const SplineCoefficients& c, const glm::dvec3& local, bool with_hessian) {
+/// Value and gradient by index coordinates. Its Hessian, too: spline_jet().
+inline FieldJet slope_of_spline(const SplineCoefficients& c, const glm::dvec3& local) {
   const SplineWeights x = spline_weights(local.x), y = spline_weights(local.y), z = spline_weights(local.z);
-  SplinePair of_value_x{}, of_y_z{}, of_xx_yy{}, of_y_xy{}, of_xz_yz{}, of_z_zz{};
+  SplinePair of_value_x{}, of_y_z{};
   for (size_t i = 0; i < 4; ++i)
     for (size_t j = 0; j < 4; ++j) {
       const double* const row = &c[(i * 4 + j) * 4];
       SplinePair value_first{};  // of the row along z
       for (size_t k = 0; k < 4; ++k) value_first += SplinePair{z.value[k], z.first[k]} * row[k];
-      const SplinePair along_x{x.value[i], x.first[i]}, plain = along_x * y.value[j];
+      const SplinePair plain = SplinePair{x.value[i], x.first[i]} * y.value[j];
       of_value_x += plain * value_first[0];
-      if (!with_hessian) {
-        of_y_z += SplinePair{x.value[i] * y.first[j], plain[0]} * value_first;
-        continue;
-      }
-      double second = 0.0;
-      for (size_t k = 0; k < 4; ++k) second += z.second[k] * row[k];
-      const SplinePair slope_y = along_x * y.first[j];
-      of_y_xy += slope_y * value_first[0];
-      of_xx_yy += SplinePair{x.second[i], x.value[i]} * SplinePair{y.value[j], y.second[j]} * value_first[0];
-      of_xz_yz += SplinePair{plain[1], slope_y[0]} * value_first[1];
-      of_z_zz += plain[0] * SplinePair{value_first[1], second};
+      of_y_z += SplinePair{x.value[i] * y.first[j], plain[0]} * value_first;
     }
   FieldJet jet;
   jet.value = of_value_x[0];
-  if (!with_hessian) {
-    jet.gradient = {of_value_x[1], of_y_z[0], of_y_z[1]};
-    return jet;
-  }
-  jet.gradient = {of_value_x[1], of_y_xy[0], of_z_zz[0]};
-  const double xy = of_y_xy[1], xz = of_xz_yz[0], yz = of_xz_yz[1];
-  jet.hessian = {{of_xx_yy[0], xy, xz}, {xy, of_xx_yy[1], yz}, {xz, yz, of_z_zz[1]}};
+  jet.gradient = {of_value_x[1], of_y_z[0], of_y_z[1]};
   return jet;
 }
 

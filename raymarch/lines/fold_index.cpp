@@ -1,5 +1,7 @@
 #include "raymarch/lines/fold_index.h"
 
+#include <tbb/task_arena.h>
+
 #include <cmath>
 
 #include "raymarch/lines/curve_walk.h"
@@ -8,19 +10,14 @@
 namespace limn {
 namespace {
 
-constexpr float kRounding = 1e-6f;  // several times what a float rounds by
+constexpr double kRounding = 4e-6;  // of a coordinate: many times what floats and sums of a few of them round by
 
-float below(double x) {
-  const auto rounded = static_cast<float>(x);
-  return rounded - kRounding * (1.0f + std::fabs(rounded));
+double rounding_of(const Ends& step) {
+  const glm::dvec2 most = glm::max(glm::abs(step.a.px), glm::abs(step.b.px));
+  return kRounding * (1.0 + std::max(most.x, most.y));
 }
-float above(double x) { return -below(-x); }
 
-FoldReach reach_of(const Fold& fold) {
-  const Ends& ends = fold.ends;
-  const glm::dvec2 low = glm::min(ends.a.px, ends.b.px) - fold.sag_px, high = glm::max(ends.a.px, ends.b.px) + fold.sag_px;
-  return {{below(low.x), below(low.y)}, {above(high.x), above(high.y)}, below(std::min(ends.a.depth, ends.b.depth))};
-}
+float as_float(double x) { return static_cast<float>(x); }
 
 }  // namespace
 
@@ -29,42 +26,82 @@ Ends ends_of(const SurfaceCurve& curve, size_t i) {
   return {{a.px, a.depth}, {b.px, b.depth}};
 }
 
-FoldReach reach_around(const Ends& step, double within_px) {
-  const glm::dvec2 low = glm::min(step.a.px, step.b.px) - within_px, high = glm::max(step.a.px, step.b.px) + within_px;
-  return {{below(low.x), below(low.y)}, {above(high.x), above(high.y)}, above(std::max(step.a.depth, step.b.depth))};
+FoldSearch search_around(const Ends& step, double within_px) {
+  const glm::dvec2 way = step.b.px - step.a.px;
+  const double length = glm::length(way), depth = std::max(step.a.depth, step.b.depth);
+  FoldSearch search{glm::vec2(step.a.px), glm::vec2(step.b.px)};
+  if (length > 0.0) search.across = glm::vec2(glm::dvec2(-way.y, way.x) / length);
+  search.within = as_float(within_px + rounding_of(step));
+  search.depth = as_float(depth + kRounding * (1.0 + std::fabs(depth)));
+  return search;
 }
 
 FoldIndex::FoldIndex(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepSags* sags)
     : size_px_(camera.width_px, camera.height_px),
       columns_(static_cast<size_t>((camera.width_px + 2.0 * kBeyondFrame_px) / kBucket_px) + 2),
       rows_(static_cast<size_t>((camera.height_px + 2.0 * kBeyondFrame_px) / kBucket_px) + 2) {
-  for (size_t c = 0; c < curves.size(); ++c) {
-    const SurfaceCurve& curve = curves[c];
-    for (size_t i = 0; i < steps_of(curve); ++i) {
-      const double sag_px = sags == nullptr ? 0.0 : (*sags)[c][i];
-      if (const int more = curve.samples[i].more_on_left; more != 0 && sag_px >= 0.0)
-        folds_.push_back({ends_of(curve, i), static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(i), more, curve.nearer_px, sag_px});
-    }
-  }
-  // Counted, then placed.
-  first_.assign(columns_ * rows_ + 1, 0);
-  for (const Fold& fold : folds_) for_buckets(fold.ends, [&](size_t bucket) { ++first_[bucket + 1]; });
-  for (size_t b = 1; b < first_.size(); ++b) first_[b] += first_[b - 1];
-  in_.resize(first_.back());
-  reaches_.resize(first_.back());
-  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for (size_t f = 0; f < folds_.size(); ++f)
-    for_buckets(folds_[f].ends, [&](size_t bucket) { in_[next[bucket]++] = static_cast<std::uint32_t>(f); });
+  gather(curves, sags);
+  sort_into_buckets();
   crowd_of_.assign(columns_ * rows_, kNotCrowded);
   std::uint32_t crowds = 0;
   for (size_t b = 0; b + 1 < first_.size(); ++b) {
-    if (first_[b + 1] - first_[b] > kManyFolds) crowd_of_[b] = crowds++ * (kCells * kCells + 1);
+    if (first_[b + 1] - first_[b] > kManyFolds) crowd_of_[b] = crowds++ * (2 * kAllCells + 1);
   }
-  cells_.resize(crowds * static_cast<size_t>(kCells * kCells + 1));
+  cells_.resize(crowds * static_cast<size_t>(2 * kAllCells + 1));
   parallel_parts(first_.size() - 1, size_t{256}, [&](const IndexRange<size_t>& range) {
     std::vector<std::uint32_t> scratch;
     for (size_t b = range.begin(); b < range.end(); ++b) place(b, scratch);
   });
+}
+
+void FoldIndex::gather(const std::vector<SurfaceCurve>& curves, const StepSags* sags) {
+  const auto for_folds_of = [&](size_t c, const auto& visit) {
+    for (size_t i = 0; i < steps_of(curves[c]); ++i) {
+      const double sag_px = sags == nullptr ? 0.0 : (*sags)[c][i];
+      if (curves[c].samples[i].more_on_left != 0 && sag_px >= 0.0) visit(i, sag_px);
+    }
+  };
+  std::vector<size_t> first(curves.size() + 1, 0);
+  parallel_for(size_t{0}, curves.size(), [&](size_t c) { for_folds_of(c, [&](size_t, double) { ++first[c + 1]; }); });
+  for (size_t c = 0; c < curves.size(); ++c) first[c + 1] += first[c];
+  folds_.resize(first.back());
+  parallel_for(size_t{0}, curves.size(), [&](size_t c) {
+    const SurfaceCurve& curve = curves[c];
+    size_t at = first[c];
+    for_folds_of(c, [&](size_t i, double sag_px) {
+      folds_[at++] = {ends_of(curve, i),
+                      static_cast<std::uint32_t>(c),
+                      static_cast<std::uint32_t>(i),
+                      curve.samples[i].more_on_left,
+                      curve.nearer_px,
+                      sag_px};
+    });
+  });
+}
+
+/// Counted, then placed, in the order of their numbers: each thread looks at all folds, for a few rows of the image.
+void FoldIndex::sort_into_buckets() {
+  const size_t bands = std::min(rows_, 2 * static_cast<size_t>(tbb::this_task_arena::max_concurrency()));
+  const auto for_all = [&](const auto& visit) {
+    parallel_for(size_t{0}, bands, [&](size_t band) {
+      const Rows rows{band * rows_ / bands, (band + 1) * rows_ / bands};
+      for (size_t f = 0; f < folds_.size(); ++f) for_buckets_in(rows, folds_[f].ends, [&](size_t bucket) { visit(f, bucket); });
+    });
+  };
+  first_.assign(columns_ * rows_ + 1, 0);
+  for_all([&](size_t, size_t bucket) { ++first_[bucket + 1]; });
+  for (size_t b = 1; b < first_.size(); ++b) first_[b] += first_[b - 1];
+  in_.resize(first_.back());
+  for (std::vector<float>* const of : {&lanes_.ax, &lanes_.ay, &lanes_.bx, &lanes_.by, &lanes_.margin, &lanes_.depth})
+    of->resize(first_.back() + kFoldPadding);
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  for_all([&](size_t f, size_t bucket) { in_[next[bucket]++] = static_cast<std::uint32_t>(f); });
+}
+
+glm::vec3 FoldIndex::corner_and_length(const Fold& fold) {
+  const double margin = fold.sag_px + rounding_of(fold.ends);
+  const glm::dvec2 low = glm::min(fold.ends.a.px, fold.ends.b.px) - margin, high = glm::max(fold.ends.a.px, fold.ends.b.px) + margin;
+  return {low.x, low.y, std::max(high.x - low.x, high.y - low.y)};
 }
 
 /// What the folds of one bucket reach, and of a crowded one their order.
@@ -75,12 +112,12 @@ void FoldIndex::place(size_t bucket, std::vector<std::uint32_t>& scratch) {
     std::uint32_t* cells = &cells_[crowd_of_[bucket]];
     const size_t x = bucket % columns_, y = bucket / columns_;
     const auto group_of = [&](std::uint32_t fold) {
-      const FoldReach reach = reach_of(folds_[fold]);
-      if (reach.high.x - reach.low.x > kShort_px || reach.high.y - reach.low.y > kShort_px) return 0;
-      return 1 + cell_of(reach.low.y, y) * kCells + cell_of(reach.low.x, x);
+      const glm::vec3 reach = corner_and_length(folds_[fold]);
+      if (reach.z > kLongest_px[0]) return 0;
+      return 1 + (reach.z > kLongest_px[1] ? 0 : kAllCells) + cell_of(reach.y, y) * kCells + cell_of(reach.x, x);
     };
     std::vector<int> groups;
-    std::vector<std::uint32_t> next(kCells * kCells + 2, 0);
+    std::vector<std::uint32_t> next(2 * kAllCells + 2, 0);
     for (std::uint32_t k = begin; k < end; ++k) {
       groups.push_back(group_of(in_[k]));
       ++next[static_cast<size_t>(groups.back()) + 1];
@@ -91,7 +128,14 @@ void FoldIndex::place(size_t bucket, std::vector<std::uint32_t>& scratch) {
     scratch.assign(in_.begin() + begin, in_.begin() + end);
     for (size_t i = 0; i < scratch.size(); ++i) in_[next[static_cast<size_t>(groups[i])]++] = scratch[i];
   }
-  for (std::uint32_t k = begin; k < end; ++k) reaches_[k] = reach_of(folds_[in_[k]]);
+  for (std::uint32_t k = begin; k < end; ++k) {
+    const Fold& fold = folds_[in_[k]];
+    const double depth = std::min(fold.ends.a.depth, fold.ends.b.depth);
+    lanes_.ax[k] = as_float(fold.ends.a.px.x), lanes_.ay[k] = as_float(fold.ends.a.px.y);
+    lanes_.bx[k] = as_float(fold.ends.b.px.x), lanes_.by[k] = as_float(fold.ends.b.px.y);
+    lanes_.margin[k] = as_float(fold.sag_px + rounding_of(fold.ends));
+    lanes_.depth[k] = as_float(depth - kRounding * (1.0 + std::fabs(depth)));
+  }
 }
 
 }  // namespace limn

@@ -2,9 +2,11 @@
 // Internal: folds and open edges by their places in the image.
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "raymarch/lines/fold_lanes.h"
 #include "raymarch/lines/surface_curves.h"
 
 namespace limn {
@@ -28,19 +30,8 @@ struct Fold {
   double sag_px = 0.0;  ///< How far its line leaves it.
 };
 
-/// A rectangle of the image, and a depth: what a fold and its line take of the image, and its nearest depth; or what a fold has to reach to
-/// matter.
-struct FoldReach {
-  glm::vec2 low{0.0f}, high{0.0f};
-  float depth = 0.0f;
-};
-/// Around a step and so many pixels more; before its farther end.
-FoldReach reach_around(const Ends& step, double within_px);
-/// False where the fold lies elsewhere, or behind; true may be due to rounding.
-inline bool may_reach(const FoldReach& around, const FoldReach& fold) {
-  return (fold.low.x <= around.high.x) & (fold.high.x >= around.low.x) & (fold.low.y <= around.high.y) & (fold.high.y >= around.low.y) &
-         (fold.depth <= around.depth);
-}
+/// Around a step: what comes within so many pixels of it, before its farther end.
+FoldSearch search_around(const Ends& step, double within_px);
 
 /// A mark, 0 or 1, for each step of each curve.
 using StepMarks = std::vector<std::vector<char>>;
@@ -48,7 +39,7 @@ using StepMarks = std::vector<std::vector<char>>;
 using StepSags = std::vector<std::vector<double>>;
 
 /// Folds by the buckets of the image that they go through. Those of bucket b are `in[first[b]]` up to `in[first[b + 1]]`. Where these are
-/// many, long ones come first and short ones follow by the cells of the bucket that their low corners lie in.
+/// many, long ones come first; short ones follow, and then tiny ones, by the cells of the bucket that their low corners lie in.
 class FoldIndex {
  public:
   /// With `sags`, of some steps alone, which then reach as far as their lines do.
@@ -58,23 +49,37 @@ class FoldIndex {
 
   /// Calls `visit(bucket)` for the buckets that a step goes through, row by row.
   template <class Visit>
-  void for_buckets(const Ends& step, const Visit& visit) const;
+  void for_buckets(const Ends& step, const Visit& visit) const {
+    for_buckets_in({0, rows_}, step, visit);
+  }
   /// The same for the buckets that hold some of a rectangle.
   template <class Visit>
   void for_buckets_within(const glm::dvec2& low, const glm::dvec2& high, const Visit& visit) const;
   /// Calls `visit(fold)` for folds of a bucket, all of those among them that may reach what is given.
   template <class Visit>
-  void for_folds(size_t bucket, const FoldReach& around, const Visit& visit) const;
+  void for_folds(size_t bucket, const FoldSearch& around, const Visit& visit) const;
 
  private:
+  struct Rows {
+    size_t begin = 0, end = 0;
+  };
   static constexpr double kBucket_px = 2.0;
-  static constexpr double kMargin_px = 1e-3;                         // so that no rounding leaves a bucket out
-  static constexpr double kBeyondFrame_px = 8.0;                     // steps farther outside the picture are left out
-  static constexpr int kCells = 16;                                  // along a crowded bucket's side
-  static constexpr float kShort_px = 0.25f, kShortReach_px = 0.26f;  // and what no rounding makes a short fold longer than
+  static constexpr double kMargin_px = 1e-3;      // so that no rounding leaves a bucket out
+  static constexpr double kBeyondFrame_px = 8.0;  // steps farther outside the picture are left out
+  static constexpr int kCells = 16;               // along a crowded bucket's side
+  static constexpr int kAllCells = kCells * kCells;
+  /// How long short and tiny folds are at most, and what no rounding makes them longer than.
+  static constexpr float kLongest_px[2] = {0.25f, 0.07f}, kReach_px[2] = {0.26f, 0.075f};
   static constexpr std::uint32_t kManyFolds = 64;
   static constexpr std::uint32_t kNotCrowded = 0xffffffffu;
 
+  void gather(const std::vector<SurfaceCurve>& curves, const StepSags* sags);
+  void sort_into_buckets();
+  /// for_buckets() of some rows.
+  template <class Visit>
+  void for_buckets_in(const Rows& rows, const Ends& step, const Visit& visit) const;
+  /// The lowest place of a fold and its line, and its longer side.
+  static glm::vec3 corner_and_length(const Fold& fold);
   void place(size_t bucket, std::vector<std::uint32_t>& scratch);
   int cell_of(float x, size_t bucket_place) const {
     const float from = static_cast<float>(static_cast<double>(bucket_place) * kBucket_px - kBeyondFrame_px);
@@ -85,13 +90,13 @@ class FoldIndex {
   size_t columns_, rows_;
   std::vector<Fold> folds_{};
   std::vector<std::uint32_t> first_{}, in_{};
-  std::vector<FoldReach> reaches_{};       ///< Beside `in_`: read in a row.
+  FoldLanes lanes_{};                      ///< Beside `in_`: read in a row.
   std::vector<std::uint32_t> crowd_of_{};  ///< Of each bucket: where its cells begin in `cells_`, or kNotCrowded.
-  std::vector<std::uint32_t> cells_{};     ///< Where the short folds of each cell begin, and where the last one's end.
+  std::vector<std::uint32_t> cells_{};     ///< Where the short folds of each cell begin, and the tiny ones; where the last one's end.
 };
 
 template <class Visit>
-void FoldIndex::for_buckets(const Ends& step, const Visit& visit) const {
+void FoldIndex::for_buckets_in(const Rows& rows, const Ends& step, const Visit& visit) const {
   if (!(step.a.depth > 0.0 && step.b.depth > 0.0)) return;
   const glm::dvec2 low = glm::max(glm::min(step.a.px, step.b.px), glm::dvec2(-kBeyondFrame_px));
   const glm::dvec2 high = glm::min(glm::max(step.a.px, step.b.px), size_px_ + kBeyondFrame_px);
@@ -99,7 +104,7 @@ void FoldIndex::for_buckets(const Ends& step, const Visit& visit) const {
   const auto bucket = [](double x) { return static_cast<size_t>((x + kBeyondFrame_px) / kBucket_px); };
   const size_t first = bucket(low.y), last = bucket(high.y);
   const glm::dvec2 d = step.b.px - step.a.px;
-  for (size_t y = first; y <= last; ++y) {
+  for (size_t y = std::max(first, rows.begin); y <= last && y < rows.end; ++y) {
     double left = low.x, right = high.x;
     if (last > first) {
       // What of the step lies in the row, and a little more.
@@ -125,10 +130,13 @@ void FoldIndex::for_buckets_within(const glm::dvec2& low, const glm::dvec2& high
 }
 
 template <class Visit>
-void FoldIndex::for_folds(size_t bucket, const FoldReach& around, const Visit& visit) const {
+void FoldIndex::for_folds(size_t bucket, const FoldSearch& around, const Visit& visit) const {
+  constexpr std::uint32_t kAtOnce = 256;
+  std::array<std::uint32_t, kAtOnce + kFoldPadding> found;
   const auto look = [&](std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t k = begin; k < end; ++k) {
-      if (may_reach(around, reaches_[k])) visit(in_[k]);
+    for (; begin < end; begin += kAtOnce) {
+      const size_t count = folds_in_reach(lanes_, around, begin, std::min(end, begin + kAtOnce), found.data());
+      for (size_t i = 0; i < count; ++i) visit(in_[found[i]]);
     }
   };
   const std::uint32_t crowd = crowd_of_[bucket];
@@ -136,9 +144,15 @@ void FoldIndex::for_folds(size_t bucket, const FoldReach& around, const Visit& v
   const std::uint32_t* cells = &cells_[crowd];
   look(first_[bucket], cells[0]);
   const size_t x = bucket % columns_, y = bucket / columns_;
-  const int left = cell_of(around.low.x - kShortReach_px, x), right = cell_of(around.high.x, x), bottom = cell_of(around.high.y, y);
-  for (int row = cell_of(around.low.y - kShortReach_px, y); row <= bottom; ++row)
-    look(cells[row * kCells + left], cells[row * kCells + right + 1]);
+  const glm::vec2 low = glm::min(around.from, around.to) - around.within, high = glm::max(around.from, around.to) + around.within;
+  const int right = cell_of(high.x, x), bottom = cell_of(high.y, y);
+  for (int tiny = 0; tiny < 2; ++tiny) {
+    const int left = cell_of(low.x - kReach_px[tiny], x);
+    for (int row = cell_of(low.y - kReach_px[tiny], y); row <= bottom; ++row) {
+      const std::uint32_t* const of_row = cells + tiny * kAllCells + row * kCells;
+      look(of_row[left], of_row[right + 1]);
+    }
+  }
 }
 
 }  // namespace limn

@@ -113,7 +113,7 @@ std::vector<NearerCrossing> crossings_of(const std::vector<SurfaceCurve>& curves
   const size_t count = steps_of(curve);
   for (size_t i = 0; i < count; ++i) {
     const Ends step = ends_of(curve, i);
-    const FoldReach around = reach_around(step, kMargin_px);
+    const FoldSearch around = search_around(step, kMargin_px);
     here.clear();
     const auto look = [&](std::uint32_t f) {
       const Fold& fold = index.folds()[f];
@@ -151,7 +151,7 @@ std::vector<std::vector<NearerCrossing>> NearerFolds::crossings() const {
 
 NearerFolds::Beside NearerFolds::beside(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const {
   Beside least{reach_px, kNoFold};
-  const FoldReach around = reach_around({{sample.px, sample.depth}, {sample.px, sample.depth}}, reach_px);
+  const FoldSearch around = search_around({{sample.px, sample.depth}, {sample.px, sample.depth}}, reach_px);
   const double own_steps = static_cast<double>(steps_of(curves_[curve]));
   index_->for_buckets_within(sample.px - reach_px, sample.px + reach_px, [&](size_t bucket) {
     // Of those equally near in a bucket the first one.
@@ -205,7 +205,7 @@ StepMarks unclear_steps(const std::vector<SurfaceCurve>& curves, const Camera& c
         // Lines of curvature may be asked for or not; the others stay as they are.
         if (!is_of_curvature(curve.samples[i].line_class)) nearer[c].push_back(f);
       };
-      const FoldReach around = reach_around(step, own_px + kLeastSag_px);
+      const FoldSearch around = search_around(step, own_px + kLeastSag_px);
       index.for_buckets(step, [&](size_t bucket) { index.for_folds(bucket, around, look); });
     }
   });

@@ -9,7 +9,9 @@
 #include <set>
 
 #include "raymarch/lines/fold_index.h"
+#include "sdf/segment.h"
 #include "tests/random_seed.h"
+#include "tests/simd_targets.h"
 
 namespace limn {
 namespace {
@@ -42,51 +44,99 @@ bool boxes_meet(const Ends& one, const Ends& other, double within_px) {
   return low.x <= high.x && low.y <= high.y;
 }
 
+/// All of the fold lies farther than that from the step's line, on one side of it.
+bool lies_beside(const Ends& step, const Ends& fold, double within_px) {
+  const glm::dvec2 way = step.b.px - step.a.px;
+  const glm::dvec2 across = glm::dvec2(-way.y, way.x) / glm::length(way);
+  const double a = glm::dot(fold.a.px - step.a.px, across), b = glm::dot(fold.b.px - step.a.px, across);
+  return std::min(a, b) > within_px || std::max(a, b) < -within_px;
+}
+
+double distance_between(const Ends& one, const Ends& other) {
+  if (!lies_beside(one, other, 0.0) && !lies_beside(other, one, 0.0)) return 0.0;
+  return std::min({distance_to_segment(one.a.px, other.a.px, other.b.px), distance_to_segment(one.b.px, other.a.px, other.b.px),
+                   distance_to_segment(other.a.px, one.a.px, one.b.px), distance_to_segment(other.b.px, one.a.px, one.b.px)});
+}
+
+struct Crowd {
+  std::vector<Ends> steps{};
+  StepSags sags{};
+  std::vector<SurfaceCurve> curves{};  ///< One a step.
+};
+/// Tiny, short, middling and long ones, most of them within a few buckets, some across the frame.
+Crowd random_crowd(std::mt19937& random) {
+  Crowd crowd;
+  for (const glm::dvec2& about : {glm::dvec2(10.0, 10.0), {20.9, 11.1}, {0.1, 29.9}, {39.0, -3.0}}) {
+    for (const double length_px : {0.01, 0.04, 0.1, 0.25, 3.0, 30.0}) {
+      for (int i = 0; i < 100; ++i) {
+        crowd.steps.push_back(random_step(random, about, i % 2 == 0 ? 0.8 : 0.05, length_px));
+        crowd.sags.push_back({random() % 2 == 0 ? 0.0 : 0.05 * length_px});
+        crowd.curves.push_back(curve_of(crowd.steps.back()));
+      }
+    }
+  }
+  return crowd;
+}
+
 TEST(FoldIndex, FindsAllFoldsOfABucketThatAStepMayMeet) {
   std::mt19937 random(random_seed());
   Camera camera;
   camera.width_px = kWidth_px;
   camera.height_px = kHeight_px;
-  std::vector<SurfaceCurve> curves;
-  std::vector<Ends> steps;
-  // Short, middling and long ones, most of them within a few buckets, some across the frame.
-  for (const glm::dvec2& crowd : {glm::dvec2(10.0, 10.0), {20.9, 11.1}, {0.1, 29.9}, {39.0, -3.0}}) {
-    for (const double length_px : {0.01, 0.1, 0.25, 3.0, 30.0}) {
-      for (int i = 0; i < 100; ++i) {
-        steps.push_back(random_step(random, crowd, 0.8, length_px));
-        curves.push_back(curve_of(steps.back()));
-      }
+  for (const bool with_sags : {false, true}) {
+    const Crowd crowd = random_crowd(random);
+    const std::vector<Ends>& steps = crowd.steps;
+    const FoldIndex index(crowd.curves, camera, with_sags ? &crowd.sags : nullptr);
+    ASSERT_EQ(index.folds().size(), steps.size());
+    // Of each bucket the folds that go through it.
+    std::map<size_t, std::vector<std::uint32_t>> in;
+    for (std::uint32_t f = 0; f < steps.size(); ++f) index.for_buckets(steps[f], [&](size_t bucket) { in[bucket].push_back(f); });
+    size_t crowded = 0, met = 0, not_told_out = 0, looked_at = 0, in_buckets = 0;
+    for (const auto& [bucket, folds] : in) crowded += folds.size() > 64;
+    EXPECT_GE(crowded, 5u);
+    for (int k = 0; k < 400; ++k) {
+      const Ends step = steps[random() % steps.size()];
+      const double within_px = k % 2 == 0 ? 1e-3 : 0.06;
+      const FoldSearch around = search_around(step, within_px);
+      index.for_buckets(step, [&](size_t bucket) {
+        std::multiset<std::uint32_t> found;
+        index.for_folds(bucket, around, [&](std::uint32_t f) { found.insert(f); });
+        for (const std::uint32_t f : in[bucket]) {
+          const double reach_px = within_px + (with_sags ? crowd.sags[f][0] : 0.0);
+          const bool before = std::min(steps[f].a.depth, steps[f].b.depth) <= std::max(step.a.depth, step.b.depth);
+          const bool meets = before && distance_between(step, steps[f]) <= reach_px;
+          met += meets;
+          not_told_out += before && boxes_meet(step, steps[f], reach_px) && !lies_beside(step, steps[f], reach_px);
+          EXPECT_LE(found.count(f), 1u);
+          EXPECT_TRUE(!meets || found.count(f) == 1) << "fold " << f << " of bucket " << bucket;
+        }
+        looked_at += found.size();
+        in_buckets += in[bucket].size();
+      });
     }
+    EXPECT_GT(met, 1000u);
+    EXPECT_LT(looked_at, not_told_out + not_told_out / 100 + 10);
+    EXPECT_GT(in_buckets, 2 * looked_at);
   }
-  const FoldIndex index(curves, camera, nullptr);
-  ASSERT_EQ(index.folds().size(), steps.size());
-  // Of each bucket the folds that go through it.
-  std::map<size_t, std::vector<std::uint32_t>> in;
-  for (std::uint32_t f = 0; f < steps.size(); ++f) index.for_buckets(steps[f], [&](size_t bucket) { in[bucket].push_back(f); });
-  size_t crowded = 0, met = 0, looked_at = 0, in_buckets = 0;
-  for (const auto& [bucket, folds] : in) crowded += folds.size() > 64;
-  EXPECT_GE(crowded, 5u);
-  for (int k = 0; k < 400; ++k) {
-    const Ends step = steps[random() % steps.size()];
-    const double within_px = k % 2 == 0 ? 1e-3 : 0.06;
-    const FoldReach around = reach_around(step, within_px);
-    index.for_buckets(step, [&](size_t bucket) {
-      std::multiset<std::uint32_t> found;
-      index.for_folds(bucket, around, [&](std::uint32_t f) { found.insert(f); });
-      for (const std::uint32_t f : in[bucket]) {
-        const bool meets =
-            boxes_meet(step, steps[f], within_px) && std::min(steps[f].a.depth, steps[f].b.depth) <= std::max(step.a.depth, step.b.depth);
-        met += meets;
-        EXPECT_LE(found.count(f), 1u);
-        EXPECT_TRUE(!meets || found.count(f) == 1) << "fold " << f << " of bucket " << bucket;
-      }
-      looked_at += found.size();
-      in_buckets += in[bucket].size();
-    });
-  }
-  EXPECT_GT(met, 1000u);
-  EXPECT_LT(looked_at, met + met / 100 + 10);
-  EXPECT_GT(in_buckets, 2 * looked_at);
+}
+
+TEST(FoldIndex, EverySimdTargetFindsTheSame) {
+  std::mt19937 random(random_seed());
+  Camera camera;
+  camera.width_px = kWidth_px;
+  camera.height_px = kHeight_px;
+  const Crowd crowd = random_crowd(random);
+  const FoldIndex index(crowd.curves, camera, &crowd.sags);
+  const auto found_by_all = [&] {
+    std::vector<std::uint32_t> found;
+    for (const Ends& step : crowd.steps)
+      index.for_buckets(
+          step, [&](size_t bucket) { index.for_folds(bucket, search_around(step, 0.01), [&](std::uint32_t f) { found.push_back(f); }); });
+    return found;
+  };
+  const std::vector<std::uint32_t> widest = found_by_all();
+  EXPECT_GT(widest.size(), crowd.steps.size());
+  test::for_each_simd_target([&](const char* target) { EXPECT_EQ(found_by_all(), widest) << target; });
 }
 
 }  // namespace

@@ -33,6 +33,15 @@ float greatest(const CellHull& b) {
   return most;
 }
 
+/// The multiple of `b` that leaves the least variation of `a`.
+float common_part(const CellHull& a, const CellHull& b) {
+  float sum_a = 0.0f, sum_b = 0.0f, ab = 0.0f, bb = 0.0f;
+  for (size_t i = 0; i < a.size(); ++i) sum_a += a[i], sum_b += b[i];
+  const float mean_a = sum_a / static_cast<float>(a.size()), mean_b = sum_b / static_cast<float>(b.size());
+  for (size_t i = 0; i < a.size(); ++i) ab += (a[i] - mean_a) * (b[i] - mean_b), bb += (b[i] - mean_b) * (b[i] - mean_b);
+  return bb > 0.0f ? ab / bb : 0.0f;
+}
+
 }  // namespace
 
 bool may_turn_from(const SplineCoefficients& c, const glm::dvec3& node, const SplineTarget& target) {
@@ -47,7 +56,13 @@ bool may_turn_from(const SplineCoefficients& c, const glm::dvec3& node, const Sp
   add_slope<16>(b, low.x, high.x, slope);
   add_slope<4>(b, low.y, high.y, slope);
   add_slope<1>(b, low.z, high.z, slope);
-  return !has_one_sign(slope, 2.0f * size * (longest.x + longest.y + longest.z));
+  const float slope_size = 2.0f * size * (longest.x + longest.y + longest.z);
+  if (has_one_sign(slope, slope_size)) return false;
+  // Both have zeros, but where surface and slope change along the same way not at one place: where both vanish, so do all sums of theirs.
+  const float times = common_part(slope, b);
+  if (!std::isfinite(times)) return true;
+  for (size_t i = 0; i < b.size(); ++i) slope[i] -= times * b[i];
+  return !has_one_sign(slope, slope_size + std::fabs(times) * size);
 }
 
 }  // namespace limn

@@ -10,7 +10,7 @@
 namespace limn {
 namespace {
 
-constexpr double kParabolasApart_px = 0.01;
+constexpr double kParabolasApart_px = 0.01, kAlikeParabolas_px = 0.001;
 constexpr double kCorner = 0.9;  // a cosine
 
 /// Four samples of a curve, the second and third of them the ends of a step, and their places over their chords' lengths.
@@ -63,14 +63,23 @@ glm::dvec3 point_between(const SurfaceCurve& curve, size_t i, double t) {
   return glm::mix(curve.samples[i % n].p, curve.samples[(i + 1) % n].p, t);
 }
 
-/// The parabolas through the step and either neighbour agree: their mean, the cubic, is far nearer to the curve than they are to each
-/// other.
-bool is_known_between(const SurfaceCurve& curve, size_t i, const Camera& camera) {
-  if (curve.between) return true;
+/// The middle of a step by the cubic through four samples, where the parabolas through the step and either neighbour agree to within
+/// `apart_px`: their mean, the cubic, is far nearer to the curve than they are to each other.
+std::optional<glm::dvec3> middle_by_neighbours(const SurfaceCurve& curve, size_t i, const Camera& camera, double apart_px) {
   const auto four = around_step(curve, i);
-  if (!four || four->least_turn < kCorner) return false;
-  const double apart = glm::distance(polynomial(*four, 0, 2, 0.5), polynomial(*four, 1, 3, 0.5));
-  return apart * pixels_per_unit_at(camera, std::max(curve.samples[i].depth, 1e-9)) < kParabolasApart_px;
+  if (!four || four->least_turn < kCorner) return {};
+  const glm::dvec3 one = polynomial(*four, 0, 2, 0.5), other = polynomial(*four, 1, 3, 0.5);
+  const double scale = pixels_per_unit_at(camera, std::max(curve.samples[i].depth, 1e-9));
+  if (!(glm::distance(one, other) * scale < apart_px)) return {};
+  return polynomial(*four, 0, 3, 0.5);
+}
+
+/// The middle of a step as far as it is known.
+std::optional<glm::dvec3> known_middle(const SurfaceCurve& curve, size_t i, const Camera& camera) {
+  if (!curve.between) return middle_by_neighbours(curve, i, camera, kParabolasApart_px);
+  // The cubic is at hand, the curve's own point is looked for.
+  if (const auto middle = middle_by_neighbours(curve, i, camera, kAlikeParabolas_px)) return middle;
+  return point_at(curve, i, 0.5);
 }
 
 }  // namespace
@@ -82,10 +91,12 @@ glm::dvec3 point_at(const SurfaceCurve& curve, size_t i, double share) {
 size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples.size() : curve.samples.size() - 1; }
 
 double sag_px(const SurfaceCurve& curve, size_t step, const Camera& camera) {
-  if (curve.straight || !is_known_between(curve, step, camera)) return 0.0;
+  if (curve.straight) return 0.0;
   const CurveSample &a = curve.samples[step], &b = curve.samples[(step + 1) % curve.samples.size()];
   if (!(a.depth > 0.0 && b.depth > 0.0) || (a.radial_curvature > 0.0) != (b.radial_curvature > 0.0)) return 0.0;
-  const glm::dvec3 middle = project(camera, point_at(curve, step, 0.5));
+  const auto known = known_middle(curve, step, camera);
+  if (!known) return 0.0;
+  const glm::dvec3 middle = project(camera, *known);
   return middle.z > 0.0 ? distance_to_segment(glm::dvec2(middle), a.px, b.px) : 0.0;
 }
 

@@ -10,8 +10,8 @@
 namespace limn {
 namespace {
 
-constexpr int kRounds = 3;
-constexpr int kParts = 8;  // of a step that is cut: its line leaves each of them by 1/64
+constexpr int kRounds = 5;
+constexpr int kParts = 4;  // of a step that is cut: its line leaves each of them by 1/16
 
 /// Parts of the steps that the curve had.
 struct Part {

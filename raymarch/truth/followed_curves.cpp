@@ -29,6 +29,7 @@ constexpr double kCorrection = 0.05;  // of a step, by which the prediction may 
 constexpr double kClosing = 0.15;     // of a step: so near it the start is the end
 constexpr double kTurn = 0.95;        // the cosine of the angle between tangents, and between normals, along a step
 constexpr double kLongest_px = 1.0;
+constexpr double kClose = 1e-3;         // of the reach of Newton's iteration, where only whether it converges is asked
 constexpr double kLeastTurning = 1e-3;  // of the longest step: shorter ones are not searched for turns of the image
 constexpr double kLeastLooked = 0.25;   // of the longest step: along shorter ones nobody looks
 constexpr std::array<double, 3> kLookedAt = {0.5, 0.25, 0.75};
@@ -98,6 +99,22 @@ class PathIndex {
   KeyedValues<std::uint32_t> last_in_{};  ///< Of each cube the last entry.
 };
 
+/// Where a path leads: its tangent as the parabola through the last three of them.
+struct Course {
+  explicit Course(const glm::dvec3& from) : tangent(from) {}
+
+  void go(const glm::dvec3& to, double length) {
+    const glm::dvec3 slope = (to - tangent) / length;  // half a step ago
+    bend_change = last_length > 0.0 ? (slope - last_slope) / (last_length + length) : glm::dvec3(0.0);
+    bend = slope + length * bend_change;
+    tangent = to, last_slope = slope, last_length = length;
+  }
+  glm::dvec3 way(double step) const { return step * (tangent + step * (bend / 2.0 + step / 3.0 * bend_change)); }
+
+  glm::dvec3 tangent{0.0}, bend{0.0}, bend_change{0.0}, last_slope{0.0};
+  double last_length = 0.0;  ///< 0: there was no step.
+};
+
 class Follower {
  public:
   Follower(const Field& field, const Camera& camera, const Viewer& viewer, const FollowSettings& settings, double c)
@@ -131,27 +148,25 @@ class Follower {
   template <class Stop>
   std::optional<std::vector<CurvePoint>> around_in_steps(const CurvePoint& start, double longest, const Stop& stop) {
     std::vector<CurvePoint> path{start};
-    glm::dvec3 tangent = tangent_of(start), bend(0.0);
+    Course course(tangent_of(start));
     double step = kFirstStep * longest;
     size_t mark = 0;
     while (path.size() < kMostPoints) {
       if (path.size() % kAskedEvery == 0 && stop()) return {};
       const CurvePoint from = path.back();
-      const std::optional<CurvePoint> next = advance(from, tangent, bend, longest, step);
+      const std::optional<CurvePoint> next = advance(from, course, longest, step);
       if (!next) return {};
       const glm::dvec3 way = next->p - from.p;
       const double length = glm::length(way);
-      if (path.size() > 2 && passes(from, *next, tangent, start)) {
+      if (path.size() > 2 && passes(from, *next, course.tangent, start)) {
         if (glm::dot(start.p - from.p, way) <= 0.0) path.pop_back();
         return path;
       }
       // Where it comes by a later point again it goes in circles beside its start (Brent 1980, "An improved Monte Carlo factorization
       // algorithm", has the marks).
-      if (mark > 0 && path.size() > mark + 2 && passes(from, *next, tangent, path[mark])) return {};
+      if (mark > 0 && path.size() > mark + 2 && passes(from, *next, course.tangent, path[mark])) return {};
       if (path.size() >= std::max(kFirstMark, 2 * mark)) mark = path.size() - 1;
-      const glm::dvec3 turned = tangent_of(*next);
-      bend = (turned - tangent) / length;
-      tangent = turned;
+      course.go(tangent_of(*next), length);
       path.push_back(*next);
     }
     return {};
@@ -182,19 +197,19 @@ class Follower {
       const double rest = 1.0 - t;
       const glm::dvec3 between =
           rest * rest * (1.0 + 2.0 * t) * from + t * t * (1.0 + 2.0 * rest) * to + length * t * rest * (rest * start - t * end);
-      return !polish(evaluator_, viewer_, c_, between, kMostAside * length);
+      return !polish(evaluator_, viewer_, c_, between, kMostAside * length, kClose);
     });
   }
 
   /// A step that is shortened until it stays on the curve and on its chord, and grows for the next one.
-  std::optional<CurvePoint> advance(const CurvePoint& from, const glm::dvec3& tangent, const glm::dvec3& bend, double longest,
-                                    double& step) {
+  std::optional<CurvePoint> advance(const CurvePoint& from, const Course& course, double longest, double& step) {
+    const glm::dvec3& tangent = course.tangent;
     const glm::dvec2 start = image_way(from.p, tangent);
     const double scale = pixels_per_unit_at(camera_, std::max(project(camera_, from.p).z, 1e-9));
     step = std::min({step, longest, kLongest_px / scale});
     const double most = kSagitta * settings_.tolerance_px;
     for (; step > kLeastStep * settings_.longest_step; step *= 0.5) {
-      const glm::dvec3 predicted = from.p + step * tangent + 0.5 * step * step * bend;
+      const glm::dvec3 predicted = from.p + course.way(step);
       const std::optional<CurvePoint> next = polish(evaluator_, viewer_, c_, predicted, 0.25 * step);
       if (!next || !(glm::distance(next->p, predicted) < kCorrection * step)) continue;
       const glm::dvec3 turned = tangent_of(*next);

@@ -87,7 +87,8 @@ glm::dvec3 root_between(FieldEvaluator& evaluator, glm::dvec3 a, glm::dvec3 b, d
   return start + (std::fabs(fa) < std::fabs(fb) ? ta : tb) * way;
 }
 
-std::optional<CurvePoint> polish(FieldEvaluator& evaluator, const Viewer& viewer, double c, const glm::dvec3& start, double reach) {
+std::optional<CurvePoint> polish(FieldEvaluator& evaluator, const Viewer& viewer, double c, const glm::dvec3& start, double reach,
+                                 double close) {
   glm::dvec3 p = start;
   const bool perspective = viewer.facing.projection == Projection::perspective;
   for (int step = 0; step < kNewtonSteps; ++step) {
@@ -109,7 +110,7 @@ std::optional<CurvePoint> polish(FieldEvaluator& evaluator, const Viewer& viewer
     const glm::dvec3 move = on_n * n + on_s * slope;
     p -= move;
     if (!(glm::length(p - start) <= reach)) return {};
-    if (glm::length(move) < 1e-7 * reach) return smooth_point(p, jet, v, slope - ns * n);
+    if (glm::length(move) < close * reach) return smooth_point(p, jet, v, slope - ns * n);
   }
   return {};
 }

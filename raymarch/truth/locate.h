@@ -38,8 +38,10 @@ struct CurvePoint {
 /// The root of f between a and b, whose values have different signs (f < 0 being one of the two).
 glm::dvec3 root_between(FieldEvaluator& evaluator, glm::dvec3 a, glm::dvec3 b, double fa, double fb);
 
-/// Newton's iteration on (f, N.V - c) with the pseudo-inverse, from p; nothing where it does not converge or goes farther than `reach`.
-std::optional<CurvePoint> polish(FieldEvaluator& evaluator, const Viewer& viewer, double c, const glm::dvec3& p, double reach);
+/// Newton's iteration on (f, N.V - c) with the pseudo-inverse, from p; nothing where it does not converge or goes farther than `reach`. It
+/// ends with a step shorter than the share `close` of that, before which normal and curvature are taken.
+std::optional<CurvePoint> polish(FieldEvaluator& evaluator, const Viewer& viewer, double c, const glm::dvec3& p, double reach,
+                                 double close = 1e-7);
 
 /// Where both fields vanish, by Newton's iteration with the pseudo-inverse, from p; nothing where it does not converge, goes farther than
 /// `reach`, or where the two surfaces touch along the way. Only `p` of the point is filled in.

@@ -13,7 +13,7 @@ constexpr size_t kEdges = 19;  // of the tetrahedra: 12 of the cell, a diagonal 
 // A share of the step across a face: points that Newton moves farther would change places with their neighbours.
 constexpr double kSmoothReach = 0.25;
 constexpr int kSeamSteps = 40;
-constexpr double kSeedOff = 0.01;  // of an edge
+constexpr double kSeedOff = 0.01;  // of an edge, and of the reach of Newton's iteration
 constexpr int kSeedSteps = 4;
 
 glm::ivec3 offset_of(int corner) { return {corner & 1, corner >> 1 & 1, corner >> 2 & 1}; }
@@ -169,7 +169,7 @@ class Marcher {
     if (seeds_) {
       const CurvePoint seed = seed_between(start, end);
       // Where the surface turns within the cell only the way along the face leads onto the curve.
-      if (polish(evaluator_, viewer_, level_, seed.p, kSmoothReach * side_)) return seed;
+      if (polish(evaluator_, viewer_, level_, seed.p, kSmoothReach * side_, kSeedOff)) return seed;
     }
     if (auto point = bisect(evaluator_, viewer_, level_, fan, 0.0, 1.0, start, end, kSmoothReach * step)) return *point;
     const double share = (level_ - start.facing) / (end.facing - start.facing);

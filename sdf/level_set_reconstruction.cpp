@@ -46,12 +46,12 @@ struct Spline {
   }
   double value(const glm::dvec3& p) const {
     const CellPoint at = cell_point(level_set.data().index_from_world.point(p));
-    return value_of_spline(coefficients_at(at.node), at.local);
+    return spline_value(coefficients_at(at.node), at.local);
   }
   FieldJet slope(const glm::dvec3& p) const {
     const LevelSetData& data = level_set.data();
     const CellPoint at = cell_point(data.index_from_world.point(p));
-    FieldJet jet = slope_of_spline(coefficients_at(at.node), at.local);
+    FieldJet jet = spline_jet(coefficients_at(at.node), at.local);
     jet.gradient = data.world_gradient(jet.gradient);
     return jet;
   }

@@ -47,6 +47,13 @@ void FindJet(const SplineCoefficients& c, const glm::dvec3& local, FieldJet& jet
   jet.hessian = {{dot(z.value, xx), of_xy, of_xz}, {of_xy, dot(z.value, yy), of_yz}, {of_xz, of_yz, dot(z.second, plain)}};
 }
 
+double FindValue(const SplineCoefficients& c, const glm::dvec3& local) {
+  alignas(64) double of_x[16], plain[4];
+  contract<hn::CappedTag<double, 8>, 16>(spline_weights(local.x).value, c.data(), of_x);
+  contract<hn::CappedTag<double, 4>, 4>(spline_weights(local.y).value, of_x, plain);
+  return dot(spline_weights(local.z).value, plain);
+}
+
 }  // namespace
 }  // namespace limn::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -58,6 +65,11 @@ FieldJet spline_jet(const SplineCoefficients& coefficients, const glm::dvec3& lo
   FieldJet jet;
   HWY_DYNAMIC_DISPATCH(FindJet)(coefficients, local, jet);
   return jet;
+}
+
+HWY_EXPORT(FindValue);
+double spline_value(const SplineCoefficients& coefficients, const glm::dvec3& local) {
+  return HWY_DYNAMIC_DISPATCH(FindValue)(coefficients, local);
 }
 }  // namespace limn
 #endif

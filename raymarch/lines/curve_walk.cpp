@@ -77,7 +77,7 @@ std::optional<glm::dvec3> middle_by_neighbours(const SurfaceCurve& curve, size_t
 /// The middle of a step as far as it is known.
 std::optional<glm::dvec3> known_middle(const SurfaceCurve& curve, size_t i, const Camera& camera) {
   if (!curve.between) return middle_by_neighbours(curve, i, camera, kParabolasApart_px);
-  // The cubic is at hand, the curve's own point is looked for.
+  // The cubic costs little beside a search for the curve's own point.
   if (const auto middle = middle_by_neighbours(curve, i, camera, kAlikeParabolas_px)) return middle;
   return point_at(curve, i, 0.5);
 }

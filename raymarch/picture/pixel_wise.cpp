@@ -25,7 +25,6 @@ double ms_since(Clock::time_point start) { return std::chrono::duration<double, 
 
 constexpr size_t kMostMethods = kMostTalliedMethods;
 constexpr size_t kMostPixels = size_t{kTilesInARow} * 16;  // of a task's line
-constexpr int kMostTogether = 8;                           // samples: each has lists of what its tiles see
 
 /// What the tasks of a sample share.
 struct Sample {
@@ -132,7 +131,7 @@ void make_images(const PictureSettings& settings, bool is_frame, const Camera& c
   const bool to_bytes = settings.colors == PictureColors::bytes;
   if (to_bytes) picture.bytes = Image<glm::u8vec4>::unset(width, height);
   if (!to_bytes || is_frame) picture.border = Image<float>::unset(width, height);
-  if (settings.colors == PictureColors::linear || (to_bytes && settings.samples > kMostTogether))
+  if (settings.colors == PictureColors::linear || (to_bytes && settings.samples > kSamplesTogether))
     picture.composite = Image<glm::vec4>::unset(width, height);
 }
 
@@ -193,9 +192,9 @@ Picture draw_pixel_wise(const Scene& scene, const SceneModel& model, const Camer
                in_tasks = to_bytes && settings.samples > 1 && picture.composite.pixels.empty();
     return Sample{stage, inks, is_first ? &tally : nullptr, &picture, to_bytes && is_last, in_tasks, &work_ns};
   };
-  for (int from = 0; from < settings.samples; from += kMostTogether) {
+  for (int from = 0; from < settings.samples; from += kSamplesTogether) {
     std::vector<PixelRays> rays;
-    const int together = std::min(kMostTogether, settings.samples - from);
+    const int together = std::min(kSamplesTogether, settings.samples - from);
     for (int sample = from; sample < from + together; ++sample) {
       const bool is_first = sample == 0, kept = is_first && (history != nullptr || any(settings.layers));
       rays.push_back({sample_offset(sample, settings.samples), is_first ? first : later, kept,

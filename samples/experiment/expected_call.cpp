@@ -133,7 +133,7 @@ PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, c
   load.bytes_per_pixel = kCompositeBytes + layer_bytes;
   if (picture.samples > 1) load.bytes_per_pixel += kSumBytes + layer_bytes;
   if (views > 1) load.bytes_per_pixel += kCompositeBytes + layer_bytes;  // what is written while the next one is traced
-  if (in_bytes) load.bytes_per_pixel = (views > 1 ? 2.0 : 1.0) * kPngBytes + (picture.samples > 1 ? kColorSumBytes : 0.0);
+  if (in_bytes) load.bytes_per_pixel = (views > 1 ? 2.0 : 1.0) * kPngBytes + (picture.samples > kSamplesTogether ? kColorSumBytes : 0.0);
   if (planned.is_sequence) load.bytes_per_pixel += tile_by_tile ? kWatchedBytes : kWatchedBeforeBytes + picture.samples * kKeptSampleBytes;
   if (picture.mattes) load.bytes_per_pixel += kMatteBytes;
   load.pictures = static_cast<double>(views) * picture.samples;

@@ -126,12 +126,24 @@ void draw_pixels(const Sample& sample, const TracedPixels& traced) {
   sample.work_ns->fetch_add(took_ns, std::memory_order_relaxed);
 }
 
-void make_images(const PictureSettings& settings, bool is_frame, const Camera& camera, Picture& picture) {
+/// Lists of what tiles see are made for each sample. Those of many triangles or objects take more than the sums that they spare: then one
+/// sample comes after the other.
+int samples_together(const SceneModel& model, const Camera& camera, int samples) {
+  constexpr double kTriangleBytes = 24.0, kSumBytes = sizeof(glm::vec4);
+  constexpr size_t kFewObjects = 64;
+  double triangles = 0.0;
+  for (const Surface& surface : model.surfaces) triangles += surface.polygons ? static_cast<double>(surface.info.triangles) : 0.0;
+  const double lists = kTriangleBytes * triangles * std::min(samples, kSamplesTogether),
+               sums = kSumBytes * camera.width_px * camera.height_px;
+  return model.surfaces.size() <= kFewObjects && lists <= sums ? kSamplesTogether : 1;
+}
+
+void make_images(const PictureSettings& settings, bool is_frame, int together, const Camera& camera, Picture& picture) {
   const int width = camera.width_px, height = camera.height_px;
   const bool to_bytes = settings.colors == PictureColors::bytes;
   if (to_bytes) picture.bytes = Image<glm::u8vec4>::unset(width, height);
   if (!to_bytes || is_frame) picture.border = Image<float>::unset(width, height);
-  if (settings.colors == PictureColors::linear || (to_bytes && settings.samples > kSamplesTogether))
+  if (settings.colors == PictureColors::linear || (to_bytes && settings.samples > together))
     picture.composite = Image<glm::vec4>::unset(width, height);
 }
 
@@ -180,7 +192,8 @@ Picture draw_pixel_wise(const Scene& scene, const SceneModel& model, const Camer
     inks.push_back(call.method->pixel_ink(call.parameters));
     ink_colors.emplace_back(call.parameters.vector3("color"));
   }
-  make_images(settings, history != nullptr, camera, picture);
+  const int most_together = samples_together(model, camera, settings.samples);
+  make_images(settings, history != nullptr, most_together, camera, picture);
   SurfaceTally tally(model.colors.size(), {camera.width_px, camera.height_px}, {kTilesInARow * how.tile_px, how.tile_px});
   std::atomic<std::int64_t> work_ns{0};
   GBuffer later_pixels;
@@ -192,9 +205,9 @@ Picture draw_pixel_wise(const Scene& scene, const SceneModel& model, const Camer
                in_tasks = to_bytes && settings.samples > 1 && picture.composite.pixels.empty();
     return Sample{stage, inks, is_first ? &tally : nullptr, &picture, to_bytes && is_last, in_tasks, &work_ns};
   };
-  for (int from = 0; from < settings.samples; from += kSamplesTogether) {
+  for (int from = 0; from < settings.samples; from += most_together) {
     std::vector<PixelRays> rays;
-    const int together = std::min(kSamplesTogether, settings.samples - from);
+    const int together = std::min(most_together, settings.samples - from);
     for (int sample = from; sample < from + together; ++sample) {
       const bool is_first = sample == 0, kept = is_first && (history != nullptr || any(settings.layers));
       rays.push_back({sample_offset(sample, settings.samples), is_first ? first : later, kept,

@@ -69,7 +69,7 @@ inline double value_of_spline(const SplineCoefficients& c, const glm::dvec3& loc
 /// Two numbers at once, for the plain instructions of every machine.
 using SplinePair = double __attribute__((vector_size(16)));
 
-/// Value and gradient by index coordinates. Its Hessian, too: spline_jet().
+/// Value and gradient by index coordinates. spline_jet() has the Hessian, too, and sums in another order: pictures keep these bits.
 inline FieldJet slope_of_spline(const SplineCoefficients& c, const glm::dvec3& local) {
   const SplineWeights x = spline_weights(local.x), y = spline_weights(local.y), z = spline_weights(local.z);
   SplinePair of_value_x{}, of_y_z{};

@@ -10,9 +10,8 @@ namespace {
 
 double peak_bytes(const std::string& size, int samples, const std::vector<std::string>& more) {
   const TemporaryFolder folder;
-  std::vector<std::string> call{"render", "ellipsoid", "--surface",         "analytic",
-                                "--size", size,        "--samples",         std::to_string(samples),
-                                "-q",     "-o",        folder.file("a.png")};
+  std::vector<std::string> call{"render", "ellipsoid",         "--size", size, "--samples", std::to_string(samples), "-q",
+                                "-o",     folder.file("a.png")};
   call.insert(call.end(), more.begin(), more.end());
   const RunResult result = run_limn(call);
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -23,16 +22,25 @@ TEST(MemoryGrowth, ManyPicturesTakeAsMuchAsAFew) {
   // Sizes whose layers are smaller than large pages and larger.
   for (const char* size : {"960x540", "1600x900"})
     for (const char* kind : {"--views", "--turntable"}) {
-      const double few = peak_bytes(size, 1, {kind, "8"}), many = peak_bytes(size, 1, {kind, "80"});
+      const double few = peak_bytes(size, 1, {"--surface", "analytic", kind, "8"}),
+                   many = peak_bytes(size, 1, {"--surface", "analytic", kind, "80"});
       EXPECT_GT(few, 1e6);
       EXPECT_LT(many, few + 12e6) << kind << " " << size;
     }
 }
 
 TEST(MemoryGrowth, EightSamplesTakeAsMuchAsOne) {
-  const double one = peak_bytes("1920x1080", 1, {}), eight = peak_bytes("1920x1080", 8, {});
+  const std::vector<std::string> formula{"--surface", "analytic"};
+  const double one = peak_bytes("1920x1080", 1, formula), eight = peak_bytes("1920x1080", 8, formula);
   EXPECT_GT(one, 1e6);
   EXPECT_LT(eight, one + 12e6);  // sums of the whole picture would be 33 MB
+}
+
+TEST(MemoryGrowth, OfLargeMeshesNoListsAreMadeForEightSamplesAtOnce) {
+  const std::vector<std::string> mesh{"--surface", "mesh", "--level", "5"};
+  const double one = peak_bytes("640x400", 1, mesh), eight = peak_bytes("640x400", 8, mesh);
+  EXPECT_GT(one, 60e6);
+  EXPECT_LT(eight, one + 12e6);
 }
 
 }  // namespace

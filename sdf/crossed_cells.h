@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
 
 namespace limn {
 
@@ -12,6 +13,13 @@ namespace limn {
 struct CrossedCells {
   std::uint8_t cells[8][8] = {};
   bool any = false;
+};
+
+/// A block of 8^3 cells of which the surface crosses some.
+struct CrossedBlock {
+  glm::ivec3 origin{0};
+  float largest = 0.0f;  ///< |value| at the nodes of crossed cells.
+  CrossedCells cells{};
 };
 
 /// Bit z of [x][y]: whether the node (x, y, z) of 9^3 is inside.

@@ -28,6 +28,7 @@ std::shared_ptr<LevelSetData> make_level_set(nanovdb::GridHandle<nanovdb::HostBu
   info.half_width_voxels = nominal_half_width > 0.0 ? nominal_half_width : found.half_width_voxels;
   info.band = std::move(found.facts);
   data->per_voxel = found.per_voxel;
+  data->crossed = std::move(found.crossed);
   return data;
 }
 

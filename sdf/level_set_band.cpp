@@ -28,6 +28,7 @@ struct Counts {
   std::int64_t crossed_cells = 0;
   std::array<std::int64_t, kMostGradients> lacking{};
   std::int64_t near_nodes = 0, unsigned_nodes = 0;
+  std::vector<CrossedBlock> crossed{};  ///< In the order of the blocks.
 
   void join(const Counts& other) {
     active += other.active;
@@ -43,6 +44,7 @@ struct Counts {
     for (size_t k = 0; k < kMostGradients; ++k) lacking[k] += other.lacking[k];
     near_nodes += other.near_nodes;
     unsigned_nodes += other.unsigned_nodes;
+    crossed.insert(crossed.end(), other.crossed.begin(), other.crossed.end());
   }
 };
 
@@ -185,12 +187,19 @@ void count_band(const Block& block, double background, Counts& found) {
                  [&](const glm::ivec3& at) { found.largest = std::max(found.largest, std::abs(static_cast<double>(block.value(at)))); });
 }
 
-void count_surface(const Block& block, const NodeBits& inside, const glm::dvec3& origin, const Scale& scale, Counts& found) {
+float largest_at(const Block& block, const CrossedCells& crossed) {
+  float largest = 0.0f;
+  for_each_node(crossed, [&](int x, int y, int z) { largest = std::max(largest, std::abs(block.value({x, y, z}))); });
+  return largest;
+}
+
+void count_surface(const Block& block, const NodeBits& inside, const glm::ivec3& origin, const Scale& scale, Counts& found) {
   for_each_place([&](size_t x, size_t y) { return before_crossing(inside, x, y); },
-                 [&](const glm::ivec3& at) { count_crossings(block, at, origin + glm::dvec3(at), scale, found); });
+                 [&](const glm::ivec3& at) { count_crossings(block, at, glm::dvec3(origin + at), scale, found); });
   const CrossedCells crossed = cells_crossed(inside);
   if (!crossed.any) return;
   found.crossed_cells += count_of(crossed);
+  found.crossed.push_back({origin, largest_at(block, crossed), crossed});
   size_t k = 0;
   for (const GradientDescriptor& gradient : gradients())
     found.lacking[k++] += count_of(cells_outside(crossed, block.active, gradient.stencil));
@@ -212,7 +221,7 @@ void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, con
   const bool crossed = find_inside(block.nodes, inside), near = find_steep(block.nodes, steep);
   if (!crossed && !near && !with_widths) return;
   block.active = active_rows(window);
-  if (crossed) count_surface(block, inside, glm::dvec3(origin[0], origin[1], origin[2]), scale, found);
+  if (crossed) count_surface(block, inside, {origin[0], origin[1], origin[2]}, scale, found);
   if (near)
     for_each_place([&](size_t x, size_t y) { return steep.row(x + 1, y + 1) >> 1 & active_at(block.active, x, y); },
                    [&](const glm::ivec3& at) {
@@ -221,8 +230,7 @@ void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, con
   if (with_widths) count_band(block, scale.background, found);
 }
 
-Counts count_blocks(const nanovdb::FloatGrid& grid, const glm::dmat3& per_side, bool with_widths) {
-  const std::vector<nanovdb::Coord> blocks = blocks_with_cells(grid);
+Counts count_blocks(const nanovdb::FloatGrid& grid, std::span<const nanovdb::Coord> blocks, const glm::dmat3& per_side, bool with_widths) {
   const Scale scale{std::abs(static_cast<double>(grid.tree().background())), per_side};
   return parallel_reduce(
       blocks.size(), size_t{64}, Counts{},
@@ -267,9 +275,33 @@ double measured_width(const Counts& found, double background, double per_voxel) 
 
 }  // namespace
 
+std::vector<CrossedBlock> crossed_blocks(const nanovdb::FloatGrid& grid) {
+  const std::vector<nanovdb::Coord> blocks = blocks_with_cells(grid);
+  using Found = std::vector<CrossedBlock>;
+  return parallel_reduce(
+      blocks.size(), size_t{64}, Found{},
+      [&](const IndexRange<size_t>& range, Found found) {
+        const NanoAccessor accessor = grid.getAccessor();
+        Block block;
+        for (size_t i = range.begin(); i < range.end(); ++i) {
+          load_nodes(LeafWindow(accessor, blocks[i]), block.nodes);
+          NodeBits inside;
+          if (!find_inside(block.nodes, inside)) continue;
+          const CrossedCells cells = cells_crossed(inside);
+          if (cells.any) found.push_back({{blocks[i][0], blocks[i][1], blocks[i][2]}, largest_at(block, cells), cells});
+        }
+        return found;
+      },
+      [](Found a, const Found& b) {
+        a.insert(a.end(), b.begin(), b.end());
+        return a;
+      });
+}
+
 BandSurvey survey_band(const nanovdb::FloatGrid& grid, const glm::dmat3& world_from_index, double voxel_size, bool measure_half_width) {
   LIMN_CHECK(gradients().size() <= kMostGradients);
-  const Counts found = count_blocks(grid, voxel_size * glm::transpose(glm::inverse(world_from_index)), measure_half_width);
+  const std::vector<nanovdb::Coord> blocks = blocks_with_cells(grid);
+  Counts found = count_blocks(grid, blocks, voxel_size * glm::transpose(glm::inverse(world_from_index)), measure_half_width);
   const double background = std::abs(static_cast<double>(grid.tree().background()));
   BandSurvey survey;
   survey.active = found.active;
@@ -280,6 +312,7 @@ BandSurvey survey_band(const nanovdb::FloatGrid& grid, const glm::dmat3& world_f
   survey.facts.lacking.assign(found.lacking.begin(), found.lacking.begin() + static_cast<std::ptrdiff_t>(gradients().size()));
   survey.facts.near_nodes = found.near_nodes;
   survey.facts.unsigned_nodes = found.unsigned_nodes;
+  survey.crossed = std::move(found.crossed);
   return survey;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 // Internal: one pass over a level set's leaves that tells where the surface is, how wide the band is and what it lacks.
 
-#include "sdf/crossed_cells.h"
 #include "sdf/leaf_window.h"
 #include "sdf/node_bits.h"
 
@@ -13,6 +12,7 @@ struct BandSurvey {
   double half_width_voxels = 0.0;
   double per_voxel = 0.0;  ///< By how much the values change over a voxel, straight across the surface.
   BandFacts facts{};
+  std::vector<CrossedBlock> crossed{};  ///< As crossed_blocks().
 };
 
 /// `voxel_size`: by how much a distance's values change over a voxel. Where the half width is known it need not be measured: then
@@ -22,6 +22,9 @@ BandSurvey survey_band(const nanovdb::FloatGrid& grid, const glm::dmat3& world_f
 /// Where cells that the surface crosses may start: the leaves, and the blocks of tiles before them whose last cells have nodes in a leaf of
 /// another sign. In the order of the leaves, each once.
 std::vector<nanovdb::Coord> blocks_with_cells(const nanovdb::FloatGrid& grid);
+
+/// Those of blocks_with_cells that have crossed cells, in their order.
+std::vector<CrossedBlock> crossed_blocks(const nanovdb::FloatGrid& grid);
 
 /// Which nodes about a block are in the band: [x + 2][y + 2], bit z + 2, each from -2 to 10.
 using ActiveRows = std::array<std::array<std::uint32_t, 13>, 13>;

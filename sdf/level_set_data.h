@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <vector>
 
+#include "sdf/crossed_cells.h"
 #include "sdf/level_set.h"
 #include "sdf/level_set_metadata.h"
 
@@ -22,7 +25,9 @@ struct LevelSetData {
   double per_voxel = 0.0;  ///< By how much values change over a voxel across the surface: its size, where they are distances.
   GridFile file{};         ///< What its file says beside; as good as nothing where it comes from none.
   std::shared_ptr<const LocalVolume> local{};  ///< Where this is the grid of the smallest voxels of several; else null.
-  bool completed = false;                      ///< By complete_band: what its stencils miss even so is nowhere in the file.
+  /// In the order of blocks_with_cells. Nothing where nobody has looked yet.
+  std::optional<std::vector<CrossedBlock>> crossed{};
+  bool completed = false;  ///< By complete_band: what its stencils miss even so is nowhere in the file.
 
   nanovdb::FloatGrid::AccessorType accessor() const { return grid->getAccessor(); }
   /// A gradient by index coordinates, as a gradient by world coordinates.

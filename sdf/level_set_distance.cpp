@@ -1,9 +1,11 @@
 #include "sdf/level_set_distance.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "sdf/error.h"
+#include "sdf/level_set_lanes.h"
 #include "sdf/shape.h"
 #include "sdf/tape_jets.h"
 
@@ -22,15 +24,31 @@ JetDistance distance_from_jet(const FieldJet& jet) {
   return {2.0 * first / (1.0 + std::sqrt(root)), true};
 }
 
-void field_values(DistanceEvaluator& distance, std::span<const glm::dvec3> points, std::span<double> values) {
+namespace {
+
+/// Whether the tape serves for the field's own values.
+bool has_tape(DistanceEvaluator& distance) {
   if (!distance.tape) {
     distance.tape.emplace(distance.evaluator.field());
     distance.has_bits_of_field = has_bits_of_field(*distance.tape);
   }
-  if (distance.has_bits_of_field)
+  return distance.has_bits_of_field;
+}
+
+}  // namespace
+
+void field_values(DistanceEvaluator& distance, std::span<const glm::dvec3> points, std::span<double> values) {
+  if (has_tape(distance))
     tape_values_at(*distance.tape, points, distance.scratch, values);
   else
     distance.evaluator.values(points, values);
+}
+
+void field_values(DistanceEvaluator& distance, const LanePoints& points, LaneNumbers& values) {
+  if (has_tape(distance)) return tape_values_at(*distance.tape, points, distance.scratch, values);
+  std::array<glm::dvec3, kMostLanePoints> places;
+  for (size_t i = 0; i < points.count; ++i) places[i] = points.point(i);
+  distance.evaluator.values(std::span(places).first(points.count), std::span(values.at).first(points.count));
 }
 
 namespace {
@@ -44,39 +62,35 @@ double projected_distance(FieldEvaluator& evaluator, const glm::dvec3& point, do
 
 }  // namespace
 
-void signed_distances(DistanceEvaluator& distance, std::span<const glm::dvec3> points, double half_width, std::span<double> distances) {
-  LIMN_CHECK(points.size() == distances.size() && points.size() <= 512);
+void signed_distances(DistanceEvaluator& distance, const LanePoints& points, double half_width, LaneNumbers& distances) {
   FieldEvaluator& evaluator = distance.evaluator;
   const FieldTraits& traits = evaluator.field().traits();
   field_values(distance, points, distances);
   if (traits.exact_distance) return;
 
-  std::array<glm::dvec3, 512> near;
-  std::array<size_t, 512> index;
-  std::array<double, 512> no_less;  // than the distance there
-  size_t count = 0;
-  // Without a branch: in a block that the band's edge cuts, it would be guessed wrong once a row.
-  for (size_t i = 0; i < points.size(); ++i) {
-    const double at_least = std::abs(distances[i]) / traits.lipschitz;
-    const bool far = at_least > half_width;
-    near[count] = points[i];
-    index[count] = i;
-    no_less[count] = at_least;
-    count += far ? 0 : 1;
-    distances[i] = far ? std::copysign(at_least, distances[i]) : distances[i];
-  }
-  if (count == 0) return;
-  distance.estimates.resize(std::max(distance.estimates.size(), count));
-  const auto estimates = std::span(distance.estimates).first(count);
-  tape_distances(*distance.tape, std::span(near).first(count), distance.scratch, estimates);
-  for (size_t k = 0; k < count; ++k) {
-    const double value = distances[index[k]], at_least = no_less[k];
-    const JetDistance& estimate = estimates[k];
-    double size = std::max(std::abs(estimate.distance), at_least);
+  NearPoints near;
+  select_near(points, traits.lipschitz, half_width, distances, near);
+  LaneNumbers estimates;
+  LaneFlags reasonable;
+  tape_distances(*distance.tape, near.points, distance.scratch, estimates, reasonable);
+  for (size_t k = 0; k < near.points.count; ++k) {
+    double& value = distances[near.index[k]];
+    const double at_least = near.no_less[k];
+    double size = std::max(std::abs(estimates[k]), at_least);
     // Far out by its first-order estimate as well, it is not worth the iteration.
-    if (!estimate.reasonable && at_least < half_width) size = projected_distance(evaluator, near[k], at_least, size);
-    distances[index[k]] = std::copysign(size, value);
+    if (!flag_of(reasonable, k) && at_least < half_width) size = projected_distance(evaluator, near.points.point(k), at_least, size);
+    value = std::copysign(size, value);
   }
+}
+
+void signed_distances(DistanceEvaluator& distance, std::span<const glm::dvec3> points, double half_width, std::span<double> distances) {
+  LIMN_CHECK(points.size() == distances.size() && points.size() <= kMostLanePoints);
+  LanePoints lanes;
+  for (const glm::dvec3& point : points) lanes.add(point);
+  lanes.fill_up();
+  LaneNumbers found;
+  signed_distances(distance, lanes, half_width, found);
+  std::copy_n(found.at, points.size(), distances.begin());
 }
 
 }  // namespace limn

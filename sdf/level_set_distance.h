@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sdf/field.h"
+#include "sdf/lane_points.h"
 #include "sdf/tape_lanes.h"
 
 namespace limn {
@@ -25,14 +26,15 @@ struct DistanceEvaluator {
   std::optional<FieldTape> tape{};  ///< Made where it is needed first.
   bool has_bits_of_field = false;   ///< Of the tape, where there is one.
   TapeScratch scratch{};
-  std::vector<JetDistance> estimates{};
 };
 
-/// f at each point, to the last bit as FieldEvaluator::values() has it; sizes equal.
+/// f at each point, to the last bit as FieldEvaluator::values() has it; sizes equal, and points of a block filled up.
 void field_values(DistanceEvaluator& distance, std::span<const glm::dvec3> points, std::span<double> values);
+void field_values(DistanceEvaluator& distance, const LanePoints& points, LaneNumbers& values);
 
 /// Signed distances at `points`, right to third order where |distance| <= half_width (world); beyond it only |distance| > half_width
-/// and the sign are. Exact fields are taken as they are. At most 512 points; sizes equal.
+/// and the sign are. Exact fields are taken as they are. At most 512 points; sizes equal, and points of a block filled up.
 void signed_distances(DistanceEvaluator& distance, std::span<const glm::dvec3> points, double half_width, std::span<double> distances);
+void signed_distances(DistanceEvaluator& distance, const LanePoints& points, double half_width, LaneNumbers& distances);
 
 }  // namespace limn

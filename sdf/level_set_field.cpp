@@ -12,6 +12,7 @@
 #include "sdf/field_restriction.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_distance.h"
+#include "sdf/level_set_lanes.h"
 #include "sdf/level_set_nano.h"
 #include "sdf/level_set_thin.h"
 #include "sdf/memory_text.h"
@@ -144,13 +145,39 @@ std::vector<Cube> band_blocks(const Field& field, const Lattice& lattice, const 
   return cubes;
 }
 
-/// Nodes of a block that may lie in the band, numbered as in LevelSetBlock.
+/// Nodes of a block that may lie in the band, by sixteen: four along y by four along z.
 struct BandNodes {
-  size_t count = 0;
-  std::array<std::uint16_t, 512> node;
-  std::array<glm::dvec3, 512> points;
-  std::array<double, 512> distances;
+  LanePoints points;
+  LaneNumbers distances;
+  std::array<std::uint16_t, kMostLanePoints / 16> first;  ///< Of each sixteen, numbered as in LevelSetBlock.
+
+  size_t count() const { return points.count; }
+  std::span<const std::uint16_t> firsts() const { return std::span(first).first(points.count / 16); }
 };
+
+/// Coordinates of a block's nodes.
+struct NodePlaces {
+  NodePlaces(const Cube& cube, const Lattice& lattice) {
+    for (int k = 0; k < kBlock; ++k) along[static_cast<size_t>(k)] = lattice.node(cube.origin + k);
+    for (size_t half = 0; half < 2; ++half)
+      for (size_t i = 0; i < 16; ++i) {
+        y[half][i] = along[4 * half + i / 4].y;
+        z[half][i] = along[4 * half + i % 4].z;
+      }
+  }
+  std::array<glm::dvec3, kBlock> along;
+  double y[2][16], z[2][16];  ///< Of sixteen nodes in either half.
+};
+
+/// Sixteen nodes at once, in the halves of y and z.
+void add_sixteen(const NodePlaces& places, size_t x, size_t half_y, size_t half_z, BandNodes& found) {
+  const size_t at = found.points.count;
+  std::fill_n(found.points.at[0] + at, 16, places.along[x].x);
+  std::copy_n(places.y[half_y], 16, found.points.at[1] + at);
+  std::copy_n(places.z[half_z], 16, found.points.at[2] + at);
+  found.first[at / 16] = static_cast<std::uint16_t>(x * 64 + half_y * 32 + half_z * 4);
+  found.points.count += 16;
+}
 
 /// As large as the terms are that the field is summed up from, for its rounding.
 double extent_at(const Field& field, const glm::dvec3& point) {
@@ -163,12 +190,11 @@ double extent_at(const Field& field, const glm::dvec3& point) {
 /// background, with the sign that the field has in the middle: it changes nowhere in them.
 void find_band_nodes(const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance, LevelSetBlock& block, BandNodes& found) {
   constexpr int kHalf = kBlock / 2;
-  std::array<glm::dvec3, kBlock> along;
-  for (int k = 0; k < kBlock; ++k) along[static_cast<size_t>(k)] = lattice.node(cube.origin + k);
+  const NodePlaces places(cube, lattice);
   std::array<glm::dvec3, 8> middles;
   std::array<double, 8> values;
   for (size_t part = 0; part < 8; ++part)
-    middles[part] = 0.5 * (along[1] + along[2]) + kHalf * lattice.h * glm::dvec3(part >> 2, part >> 1 & 1, part & 1);
+    middles[part] = 0.5 * (places.along[1] + places.along[2]) + kHalf * lattice.h * glm::dvec3(part >> 2, part >> 1 & 1, part & 1);
   field_values(distance, middles, values);
 
   const Field& field = distance.evaluator.field();
@@ -176,42 +202,30 @@ void find_band_nodes(const Cube& cube, const Lattice& lattice, DistanceEvaluator
   const double to_corner = 0.5 * (kHalf - 1) * std::sqrt(3.0) * lattice.h;
   const double limit = std::max(lipschitz, 1.0) * lattice.half_width + lipschitz * to_corner;
   const double slack = 1e-6 * limit + 1e-13 * extent_at(field, middles[0]);
-  found.count = 0;
+  found.points.count = 0;
   for (size_t part = 0; part < 8; ++part) {
-    const size_t x0 = kHalf * (part >> 2), y0 = kHalf * (part >> 1 & 1), z0 = kHalf * (part & 1);
+    const size_t half_x = part >> 2, half_y = part >> 1 & 1, half_z = part & 1;
     const bool far = std::abs(values[part]) > limit + slack;
     const auto beyond = static_cast<float>(std::copysign(lattice.half_width, values[part]));
-    for (size_t x = x0; x < x0 + kHalf; ++x)
-      for (size_t y = y0; y < y0 + kHalf; ++y) {
-        const size_t row = x * 64 + y * 8;
-        if (far) {
-          std::fill_n(block.values + row + z0, kHalf, beyond);
-          continue;
-        }
-        for (size_t z = z0; z < z0 + kHalf; ++z) {
-          found.node[found.count] = static_cast<std::uint16_t>(row + z);
-          found.points[found.count++] = {along[x].x, along[y].y, along[z].z};
-        }
+    for (size_t x = kHalf * half_x; x < kHalf * (half_x + 1); ++x) {
+      if (!far) {
+        add_sixteen(places, x, half_y, half_z, found);
+        continue;
       }
+      for (size_t row = 0; row < kHalf; ++row)
+        std::fill_n(block.values + x * 64 + (half_y * kHalf + row) * 8 + half_z * kHalf, kHalf, beyond);
+    }
   }
 }
 
 ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance) {
   BandNodes nodes;
   find_band_nodes(cube, lattice, distance, block, nodes);
-  const auto points = std::span<const glm::dvec3>(nodes.points).first(nodes.count);
-  const auto distances = std::span(nodes.distances).first(nodes.count);
-  signed_distances(distance, points, lattice.half_width, distances);
-
+  signed_distances(distance, nodes.points, lattice.half_width, nodes.distances);
   block.origin = cube.origin;
   std::memset(block.active, 0, sizeof block.active);
-  for (size_t k = 0; k < nodes.count; ++k) {
-    const size_t n = nodes.node[k];
-    const bool active = std::abs(distances[k]) <= lattice.half_width;
-    block.active[n >> 6] |= std::uint64_t{active ? 1u : 0u} << (n & 63);
-    block.values[n] = static_cast<float>(active ? distances[k] : std::copysign(lattice.half_width, distances[k]));
-  }
-  return find_thin_places(distance, std::span<const std::uint16_t>(nodes.node).first(nodes.count), points, distances, lattice.h);
+  put_distances(nodes.distances, nodes.firsts(), lattice.half_width, block);
+  return find_thin_places(distance, nodes.firsts(), nodes.points, nodes.distances, lattice.h);
 }
 
 /// Calls `visit(i, evaluator)` for a part of the cubes. Neighbours often share a field, and so what evaluates it.
@@ -230,19 +244,16 @@ void for_each_cube(std::span<const Cube> cubes, const IndexRange<size_t>& part, 
 
 /// Whether fill() will find an active node. Two nodes of each eighth are asked first: in most blocks one of them is.
 bool holds_band(const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance) {
-  const auto any_of = [&](std::span<const glm::dvec3> points, std::span<double> distances) {
-    signed_distances(distance, points, lattice.half_width, distances);
-    return std::any_of(distances.begin(), distances.end(), [&](double d) { return std::abs(d) <= lattice.half_width; });
-  };
-  std::array<glm::dvec3, 16> some;
-  std::array<double, 16> distances;
-  for (int k = 0; k < 16; ++k)
-    some[static_cast<size_t>(k)] = lattice.node(cube.origin + 4 * glm::ivec3(k >> 2 & 1, k >> 1 & 1, k & 1) + 1 + (k >> 3));
-  if (any_of(some, distances)) return true;
-  LevelSetBlock block;
   BandNodes nodes;
+  const auto any_in_band = [&] {
+    signed_distances(distance, nodes.points, lattice.half_width, nodes.distances);
+    return std::any_of(nodes.distances.at, nodes.distances.at + nodes.count(), [&](double d) { return std::abs(d) <= lattice.half_width; });
+  };
+  for (int k = 0; k < 16; ++k) nodes.points.add(lattice.node(cube.origin + 4 * glm::ivec3(k >> 2 & 1, k >> 1 & 1, k & 1) + 1 + (k >> 3)));
+  if (any_in_band()) return true;
+  LevelSetBlock block;
   find_band_nodes(cube, lattice, distance, block, nodes);
-  return any_of(std::span<const glm::dvec3>(nodes.points).first(nodes.count), std::span(nodes.distances).first(nodes.count));
+  return any_in_band();
 }
 
 /// The cubes that hold a node of the band, in their order.

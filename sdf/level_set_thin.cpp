@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "sdf/error.h"
+#include "sdf/level_set_lanes.h"
 
 namespace limn {
 namespace {
@@ -14,23 +16,30 @@ constexpr std::array<double, 12> kSteps{-0.25, -0.5, -0.75, -1.0, -1.25, -1.5, -
 constexpr size_t kInward = 8;
 constexpr size_t kMostLookedAt = 128;  ///< Every fourth node of a block.
 
-bool is_looked_at(size_t node, double distance, double voxel_size) {
-  const size_t x = node >> 6, y = (node >> 3) & 7, z = node & 7;
-  return (x + 2 * y + 3 * z) % 4 == 0 && std::abs(distance) <= 0.75 * voxel_size;
+/// Of sixteen nodes in a plane across x those with x + 2 y + 3 z = 0 modulo 4: y and z start at multiples of 4.
+std::uint16_t every_fourth(size_t x) {
+  unsigned bits = 0;
+  for (size_t i = 0; i < 16; ++i) bits |= ((x + 2 * (i / 4) + 3 * (i % 4)) % 4 == 0 ? 1u : 0u) << i;
+  return static_cast<std::uint16_t>(bits);
 }
 
 }  // namespace
 
-ThinPlaces find_thin_places(DistanceEvaluator& distance, std::span<const std::uint16_t> nodes, std::span<const glm::dvec3> points,
-                            std::span<const double> distances, double voxel_size) {
+ThinPlaces find_thin_places(DistanceEvaluator& distance, std::span<const std::uint16_t> first, const LanePoints& points,
+                            const LaneNumbers& distances, double voxel_size) {
+  static const std::array<std::uint16_t, 4> kFourth{every_fourth(0), every_fourth(1), every_fourth(2), every_fourth(3)};
   std::array<glm::dvec3, kMostLookedAt> near, gradients;
   std::array<double, kMostLookedAt> near_distances, values;
+  LaneFlags within;
+  find_within(distances, points.count, 0.75 * voxel_size, within);
   size_t count = 0;
-  for (size_t i = 0; i < nodes.size(); ++i) {
-    if (!is_looked_at(nodes[i], distances[i], voxel_size)) continue;
-    LIMN_CHECK(count < kMostLookedAt);
-    near[count] = points[i];
-    near_distances[count++] = distances[i];
+  for (size_t k = 0; k < first.size(); ++k) {
+    for (unsigned bits = within[k] & kFourth[first[k] >> 6 & 3]; bits != 0; bits &= bits - 1) {
+      const size_t i = 16 * k + static_cast<size_t>(std::countr_zero(bits));
+      LIMN_CHECK(count < kMostLookedAt);
+      near[count] = points.point(i);
+      near_distances[count++] = distances[i];
+    }
   }
   ThinPlaces found;
   if (count == 0) return found;

@@ -17,9 +17,9 @@ struct ThinPlaces {
   std::int64_t gaps = 0;   ///< Within one voxel the outward normal meets the surface again.
 };
 
-/// Looks from every fourth of the nodes nearest to the surface, along its normal. `nodes` are of one block, by their numbers in
-/// LevelSetBlock, each at most once; `points` and signed `distances` are theirs.
-ThinPlaces find_thin_places(DistanceEvaluator& distance, std::span<const std::uint16_t> nodes, std::span<const glm::dvec3> points,
-                            std::span<const double> distances, double voxel_size);
+/// Looks from every fourth of the nodes nearest to the surface, along its normal. Nodes of one block come by sixteen, four along y by four
+/// along z, from the nodes `first` on, by their numbers in LevelSetBlock; `points` and signed `distances` are theirs.
+ThinPlaces find_thin_places(DistanceEvaluator& distance, std::span<const std::uint16_t> first, const LanePoints& points,
+                            const LaneNumbers& distances, double voxel_size);
 
 }  // namespace limn

@@ -56,16 +56,20 @@ HWY_INLINE Reals distance_of(const LaneJet& jet, LaneMask& reasonable) {
   return select(reasonable, second, select(finite, first, endless));
 }
 
-/// At sixteen points; bit i of `reasonable`: whether that of lane i means anything.
-void distances(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch, LaneArray& result, unsigned& reasonable) {
-  const double* const found = run_at<LaneJet>(tape, points, scratch);
-  reasonable = 0;
-  for (int part = 0; part < kParts; ++part) {
-    LaneJet jet;
-    get(found + part * kWidth, jet);
-    LaneMask means;
-    store(distance_of(jet, means), result.lane + part * kWidth);
-    reasonable |= bits_of(means) << (part * kWidth);
+void distances(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& result, LaneFlags& reasonable) {
+  Pass pass(tape);
+  for (size_t first = 0; first < points.count; first += kLanes) {
+    for (size_t axis = 0; axis < 3; ++axis) take(points.at[axis] + first, pass.point[axis]);
+    const double* const found = run_tape<LaneJet>(pass, tape.steps, scratch);
+    unsigned bits = 0;
+    for (int part = 0; part < kParts; ++part) {
+      LaneJet jet;
+      get(found + part * kWidth, jet);
+      LaneMask means;
+      store(distance_of(jet, means), result.at + first + static_cast<size_t>(part * kWidth));
+      bits |= bits_of(means) << (part * kWidth);
+    }
+    reasonable[first / kLanes] = static_cast<std::uint16_t>(bits);
   }
 }
 
@@ -112,14 +116,8 @@ void tape_gradients_at(const FieldTape& tape, std::span<const glm::dvec3> points
   });
 }
 
-void tape_distances(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<JetDistance> found) {
-  LIMN_CHECK(points.size() == found.size());
-  by_lanes(points, [&](size_t first, size_t count, const LaneArray(&lanes)[3]) {
-    LaneArray result;
-    unsigned reasonable = 0;
-    HWY_DYNAMIC_DISPATCH(distances)(tape, lanes, scratch, result, reasonable);
-    for (size_t i = 0; i < count; ++i) found[first + i] = {result.lane[i], (reasonable >> i & 1u) != 0};
-  });
+void tape_distances(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& found, LaneFlags& reasonable) {
+  HWY_DYNAMIC_DISPATCH(distances)(tape, points, scratch, found, reasonable);
 }
 
 }  // namespace limn

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "sdf/level_set_distance.h"
+#include "sdf/lane_points.h"
 #include "sdf/tape_lanes.h"
 
 namespace limn {
@@ -22,6 +22,8 @@ void tape_jets(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch&
 
 /// f at any number of points (world); sizes equal. Every bit is that of FieldEvaluator::values() where has_bits_of_field().
 void tape_values_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values);
+/// The same of a block's points, which are filled up.
+void tape_values_at(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& values);
 /// f and its gradient at any number of points (world); sizes equal. Every bit is that of FieldEvaluator::gradients() of one point where
 /// has_bits_of_field().
 void tape_gradients_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values,
@@ -29,7 +31,7 @@ void tape_gradients_at(const FieldTape& tape, std::span<const glm::dvec3> points
 /// False for metaballs, which lanes add in another order.
 bool has_bits_of_field(const FieldTape& tape);
 
-/// The distances that the jets tell at any number of points; sizes equal.
-void tape_distances(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<JetDistance> distances);
+/// The distances that the jets tell at a block's points, which are filled up, and where they mean anything (distance_from_jet).
+void tape_distances(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& distances, LaneFlags& reasonable);
 
 }  // namespace limn

@@ -64,6 +64,15 @@ void values_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeSc
   }
 }
 
+void values_at_lanes(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& values) {
+  Pass pass(tape);
+  for (size_t first = 0; first < points.count; first += kLanes) {
+    for (size_t axis = 0; axis < 3; ++axis) take(points.at[axis] + first, pass.point[axis]);
+    const double* const found = run_tape<Reals>(pass, tape.steps, scratch);
+    for (size_t i = 0; i < kLanes; i += static_cast<size_t>(kWidth)) store(load(found + i), values.at + first + i);
+  }
+}
+
 void slopes(const FieldTape& tape, std::span<const TapeStep> steps, const LaneRays& rays, const LaneArray& s, TapeScratch& scratch,
             LaneArray& values, LaneArray& slopes) {
   Pass pass(tape);
@@ -113,6 +122,7 @@ namespace limn {
 namespace {
 HWY_EXPORT(values);
 HWY_EXPORT(values_at);
+HWY_EXPORT(values_at_lanes);
 HWY_EXPORT(slopes);
 HWY_EXPORT(gradients);
 HWY_EXPORT(bounds);
@@ -126,6 +136,9 @@ void tape_values(const FieldTape& tape, std::span<const TapeStep> steps, const L
 void tape_values_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values) {
   LIMN_CHECK(points.size() == values.size());
   HWY_DYNAMIC_DISPATCH(values_at)(tape, points, scratch, values.data());
+}
+void tape_values_at(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& values) {
+  HWY_DYNAMIC_DISPATCH(values_at_lanes)(tape, points, scratch, values);
 }
 bool has_bits_of_field(const FieldTape& tape) {
   static const ShapeFunctions* const metaballs = make_shape("metaballs").program().leaves.front().functions;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "sdf/level_set_band.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -46,55 +47,14 @@ void inspect(const NodeValues& values, Candidate& candidate) {
                 [&](int x, int y, int z) { candidate.largest = std::max(candidate.largest, std::abs(values[at(x, y, z)])); });
 }
 
-/// True where the leaf has a node of the other sign among those that the block `side` steps before it reaches (bits: x, y, z).
-bool changes_sign(const Leaf& leaf, int side, bool inside) {
-  const int dx = side & 1, dy = (side >> 1) & 1, dz = side >> 2;
-  const float* const values = leaf.data()->mValues;
-  for (int x = 0; x < (dx ? 1 : 8); ++x) {
-    for (int y = 0; y < (dy ? 1 : 8); ++y) {
-      for (int z = 0; z < (dz ? 1 : 8); ++z) {
-        if ((values[x * 64 + y * 8 + z] < 0.0f) != inside) return true;
-      }
-    }
-  }
-  return false;
-}
-
-/// A leaf, and the blocks before it whose last cells have a node in a leaf of another sign: where a band is broken or thin.
-void add_candidates(const Accessor& accessor, const Leaf& leaf, std::vector<Candidate>& found) {
-  const nanovdb::Coord o = leaf.origin();
-  found.push_back({.origin = {o[0], o[1], o[2]}});
-  for (int side = 1; side < 8; ++side) {
-    const nanovdb::Coord before = o.offsetBy(-8 * (side & 1), -8 * ((side >> 1) & 1), -8 * (side >> 2));
-    if (accessor.probeLeaf(before) || !changes_sign(leaf, side, accessor.getValue(before) < 0.0f)) continue;
-    found.push_back({.origin = {before[0], before[1], before[2]}});
-  }
-}
-
-/// The crossed ones, in the order of the leaves whatever the threads.
-std::vector<Candidate> find_candidates(const LevelSetData& data) {
-  constexpr std::uint32_t kChunk = 512;
-  const auto& tree = data.grid->tree();
-  const std::uint32_t count = tree.nodeCount(0), chunks = (count + kChunk - 1) / kChunk;
-  const Leaf* leaves = tree.getFirstNode<0>();
-  std::vector<std::vector<Candidate>> parts(chunks);
-  parallel_for(std::uint32_t{0}, chunks, [&](std::uint32_t chunk) {
-    const Accessor accessor = data.accessor();
-    const std::uint32_t first = chunk * kChunk, last = std::min(count, first + kChunk);
-    for (std::uint32_t i = first; i < last; ++i) add_candidates(accessor, leaves[i], parts[chunk]);
-    NodeValues values;
-    for (Candidate& candidate : parts[chunk]) {
-      load_nodes(accessor, candidate.origin, values);
-      inspect(values, candidate);
-    }
-    std::erase_if(parts[chunk], [](const Candidate& candidate) { return !candidate.cells.any; });
+std::vector<Candidate> candidates_of(std::span<const CrossedBlock> crossed) {
+  std::vector<Candidate> candidates(crossed.size());
+  parallel_parts(crossed.size(), size_t{1024}, [&](const IndexRange<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i)
+      candidates[i] = {
+          .origin = crossed[i].origin, .faces = touched_faces(crossed[i].cells), .largest = crossed[i].largest, .cells = crossed[i].cells};
   });
-  std::vector<Candidate> found;
-  size_t all = 0;
-  for (const auto& part : parts) all += part.size();
-  found.reserve(all);
-  for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
-  return found;
+  return candidates;
 }
 
 /// From a block to its neighbour over a face (see BrickNeighbors).
@@ -228,7 +188,9 @@ BrickNeighbors BrickLayout::neighbors_of(size_t brick) const {
   return neighbors;
 }
 
-BrickLayout lay_out_bricks(const LevelSetData& data) { return lay_out(find_candidates(data)); }
+BrickLayout lay_out_bricks(const LevelSetData& data) {
+  return lay_out(candidates_of(data.crossed ? *data.crossed : crossed_blocks(*data.grid)));
+}
 
 BrickLayout lay_out_bricks(const NodeReader& nodes, std::span<const BrickPlace> places) {
   std::vector<Candidate> candidates(places.size());

@@ -70,7 +70,7 @@ struct BrickLayout {
   BrickNeighbors neighbors_of(size_t brick) const;
 };
 
-/// Looks at every leaf of the grid, in parallel.
+/// Of the blocks that the surface crosses.
 BrickLayout lay_out_bricks(const LevelSetData& data);
 
 /// Nodes that are in no grid. Copied for each thread that asks for single values.

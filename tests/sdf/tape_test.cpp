@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 
+#include "sdf/level_set_distance.h"
 #include "sdf/tape_jets.h"
 #include "sdf/tape_lanes.h"
 #include "sdf/tape_text.h"
@@ -256,8 +257,11 @@ TEST(Tape, JetsHaveTheBitsOfTheFields) {
     evaluator.jets(points, own);
     LaneJets jets;
     tape_jets(tape, lanes, scratch, jets);
-    std::vector<JetDistance> distances(points.size());
-    tape_distances(tape, points, scratch, distances);
+    LanePoints together;
+    for (const glm::dvec3& point : points) together.add(point);
+    LaneNumbers distances;
+    LaneFlags reasonable;
+    tape_distances(tape, together, scratch, distances, reasonable);
     constexpr int kRow[] = {0, 0, 0, 1, 1, 2}, kColumn[] = {0, 1, 2, 1, 2, 2};
     for (int i = 0; i < kLanes; ++i) {
       SCOPED_TRACE("point " + std::to_string(i));
@@ -267,8 +271,9 @@ TEST(Tape, JetsHaveTheBitsOfTheFields) {
       for (int k = 0; k < 3; ++k) EXPECT_EQ(jets.gradient[k][i], jet.gradient[k]) << "derivative " << k;
       for (int k = 0; k < 6; ++k) EXPECT_EQ(jets.hessian[k][i], jet.hessian[kRow[k]][kColumn[k]]) << "second derivative " << k;
       const JetDistance distance = distance_from_jet(jet);
-      EXPECT_EQ(std::bit_cast<std::uint64_t>(distances[static_cast<size_t>(i)].distance), std::bit_cast<std::uint64_t>(distance.distance));
-      EXPECT_EQ(distances[static_cast<size_t>(i)].reasonable, distance.reasonable);
+      const auto k = static_cast<size_t>(i);
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(distances[k]), std::bit_cast<std::uint64_t>(distance.distance));
+      EXPECT_EQ(flag_of(reasonable, k), distance.reasonable);
     }
   });
 }
@@ -290,6 +295,12 @@ TEST(Tape, ValuesAtPointsHaveTheBitsOfTheField) {
     evaluator.values(points, own);
     tape_values_at(tape, points, scratch, lanes);
     EXPECT_EQ(std::memcmp(own.data(), lanes.data(), own.size() * sizeof(double)), 0);
+    LanePoints together;
+    for (const glm::dvec3& point : points) together.add(point);
+    together.fill_up();
+    LaneNumbers found;
+    tape_values_at(tape, together, scratch, found);
+    EXPECT_EQ(std::memcmp(own.data(), found.at, own.size() * sizeof(double)), 0);
   });
   EXPECT_GT(compared, 50);
   EXPECT_TRUE(has_bits_of_field(FieldTape(make_shape("gyroid"))));

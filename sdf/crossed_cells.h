@@ -68,16 +68,21 @@ void for_each_cell(const CrossedCells& crossed, const Visit& visit) {
   }
 }
 
+/// Which of the nodes (x, y, 0..8) belong to crossed cells, as bits; x and y from 0 to 8.
+inline std::uint32_t nodes_at(const CrossedCells& crossed, int x, int y) {
+  std::uint32_t cells = 0;
+  for (int dx = x > 0 ? -1 : 0; dx <= (x < 8 ? 0 : -1); ++dx) {
+    for (int dy = y > 0 ? -1 : 0; dy <= (y < 8 ? 0 : -1); ++dy) cells |= crossed.cells[x + dx][y + dy];
+  }
+  return cells | cells << 1;
+}
+
 /// Calls `visit(x, y, z)` for each node of a crossed cell.
 template <class Visit>
 void for_each_node(const CrossedCells& crossed, const Visit& visit) {
   for (int x = 0; x < 9; ++x) {
     for (int y = 0; y < 9; ++y) {
-      std::uint32_t cells = 0;
-      for (int dx = x > 0 ? -1 : 0; dx <= (x < 8 ? 0 : -1); ++dx) {
-        for (int dy = y > 0 ? -1 : 0; dy <= (y < 8 ? 0 : -1); ++dy) cells |= crossed.cells[x + dx][y + dy];
-      }
-      for (std::uint32_t bits = cells | cells << 1; bits != 0; bits &= bits - 1) visit(x, y, std::countr_zero(bits));
+      for (std::uint32_t bits = nodes_at(crossed, x, y); bits != 0; bits &= bits - 1) visit(x, y, std::countr_zero(bits));
     }
   }
 }

@@ -1,8 +1,10 @@
 #pragma once
 // Internal: a leaf of a level set with the nodes around it, as rows along z: which of them are in the band, and their values.
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 
 #include "sdf/level_set_data.h"
 
@@ -27,42 +29,55 @@ class LeafWindow {
   /// Of the middle block; null where it is none.
   const NanoLeaf* leaf() const { return leaves_[13]; }
 
-  /// Nodes (x, y, -2..10) that are in the band, as bits 0..12; x and y from -8 to 15.
-  std::uint32_t active_row(int x, int y) const {
-    const int column = column_of(x, y);
-    const std::uint32_t below = octet(column, x, y), here = octet(column + 1, x, y), above = octet(column + 2, x, y);
-    return below >> 6 | here << 2 | (above & 7u) << 10;
-  }
-  /// Values at (x, y, -1..8).
-  void load_row(int x, int y, float* to) const {
-    const int column = column_of(x, y);
-    to[0] = value(column, x, y, 7);
-    if (const NanoLeaf* here = leaves_[column + 1])
-      std::copy_n(here->data()->mValues + row_of(x, y), 8, to + 1);
-    else
-      std::fill_n(to + 1, 8, tiles_[column + 1]);
-    to[9] = value(column + 2, x, y, 0);
-  }
-  /// Values at (x, y, -3..10).
-  void load_wide_row(int x, int y, float* to) const {
-    const int column = column_of(x, y);
-    load_row(x, y, to + 2);
-    for (int z = 0; z < 2; ++z) {
-      to[z] = value(column, x, y, 5 + z);
-      to[12 + z] = value(column + 2, x, y, 1 + z);
+  /// Three blocks on top of each other.
+  struct Column {
+    const NanoLeaf* const* leaves;
+    const float* tiles;
+    const bool* active;
+
+    /// Nodes (x, y, -2..10) that are in the band, as bits 0..12.
+    std::uint32_t active_row(int x, int y) const { return octet(0, x, y) >> 6 | octet(1, x, y) << 2 | (octet(2, x, y) & 7u) << 10; }
+    /// Values at (x, y, -1..8).
+    void load_row(int x, int y, float* to) const {
+      to[0] = value(0, x, y, 7);
+      if (const NanoLeaf* here = leaves[1])
+        std::memcpy(to + 1, here->data()->mValues + row_of(x, y), 8 * sizeof(float));  // std::copy_n calls a function for it
+      else
+        std::fill_n(to + 1, 8, tiles[1]);
+      to[9] = value(2, x, y, 0);
+    }
+    /// Values at (x, y, -3..10).
+    void load_wide_row(int x, int y, float* to) const {
+      load_row(x, y, to + 2);
+      for (int z = 0; z < 2; ++z) {
+        to[z] = value(0, x, y, 5 + z);
+        to[12 + z] = value(2, x, y, 1 + z);
+      }
+    }
+
+   private:
+    float value(int block, int x, int y, int z) const {
+      return leaves[block] ? leaves[block]->data()->mValues[row_of(x, y) | z] : tiles[block];
+    }
+    std::uint32_t octet(int block, int x, int y) const {
+      if (!leaves[block]) return active[block] ? 0xffu : 0u;
+      return leaves[block]->valueMask().template getWord<std::uint8_t>(row_of(x, y) >> 3);
+    }
+  };
+
+  /// Calls visit(column, x, y) for each row of nodes from `first` to `last` along x and y, which lie between -8 and 15.
+  template <class Visit>
+  void for_each_column(int first, int last, const Visit& visit) const {
+    for (int block = 0; block < 9; ++block) {
+      const int x0 = 8 * (block / 3 - 1), y0 = 8 * (block % 3 - 1);
+      const Column column{leaves_ + 3 * block, tiles_ + 3 * block, active_ + 3 * block};
+      for (int x = std::max(x0, first); x <= std::min(x0 + 7, last); ++x)
+        for (int y = std::max(y0, first); y <= std::min(y0 + 7, last); ++y) visit(column, x, y);
     }
   }
 
  private:
-  static int column_of(int x, int y) { return ((x + 8) >> 3) * 9 + ((y + 8) >> 3) * 3; }
   static int row_of(int x, int y) { return (x & 7) << 6 | (y & 7) << 3; }
-  float value(int block, int x, int y, int z) const {
-    return leaves_[block] ? leaves_[block]->data()->mValues[row_of(x, y) | z] : tiles_[block];
-  }
-  std::uint32_t octet(int block, int x, int y) const {
-    if (!leaves_[block]) return active_[block] ? 0xffu : 0u;
-    return leaves_[block]->valueMask().template getWord<std::uint8_t>(row_of(x, y) >> 3);
-  }
 
   nanovdb::Coord origin_;
   const NanoLeaf* leaves_[27];

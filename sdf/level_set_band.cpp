@@ -188,9 +188,10 @@ void count_band(const Block& block, double background, Counts& found) {
 }
 
 float largest_at(const Block& block, const CrossedCells& crossed) {
-  float largest = 0.0f;
-  for_each_node(crossed, [&](int x, int y, int z) { largest = std::max(largest, std::abs(block.value({x, y, z}))); });
-  return largest;
+  NodeBits nodes;
+  for (int x = 0; x < 9; ++x)
+    for (int y = 0; y < 9; ++y) nodes.set_row(static_cast<size_t>(x) + 1, static_cast<size_t>(y) + 1, nodes_at(crossed, x, y) << 1);
+  return largest_value(block.nodes, nodes);
 }
 
 void count_surface(const Block& block, const NodeBits& inside, const glm::ivec3& origin, const Scale& scale, Counts& found) {

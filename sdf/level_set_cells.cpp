@@ -3,6 +3,7 @@
 
 #include "sdf/error.h"
 #include "sdf/level_set_band.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -21,19 +22,28 @@ bool changes_sign(const NanoLeaf& leaf, int side, bool inside) {
 }  // namespace
 
 std::vector<nanovdb::Coord> blocks_with_cells(const nanovdb::FloatGrid& grid) {
-  const std::uint32_t count = grid.tree().nodeCount(0);
+  const size_t count = grid.tree().nodeCount(0);
   const NanoLeaf* leaves = grid.tree().getFirstNode<0>();
-  const NanoAccessor accessor = grid.getAccessor();
-  std::vector<nanovdb::Coord> blocks, before;
-  blocks.reserve(count + count / 8);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const nanovdb::Coord o = leaves[i].origin();
-    blocks.push_back(o);
-    for (int side = 1; side < 8; ++side) {
-      const nanovdb::Coord at = o.offsetBy(-8 * (side & 1), -8 * ((side >> 1) & 1), -8 * (side >> 2));
-      if (!accessor.probeLeaf(at) && changes_sign(leaves[i], side, accessor.getValue(at) < 0.0f)) before.push_back(at);
-    }
-  }
+  using Blocks = std::vector<nanovdb::Coord>;
+  Blocks blocks(count);
+  Blocks before = parallel_reduce(
+      count, size_t{256}, Blocks{},
+      [&](const IndexRange<size_t>& range, Blocks found) {
+        const NanoAccessor accessor = grid.getAccessor();
+        for (size_t i = range.begin(); i < range.end(); ++i) {
+          const nanovdb::Coord o = leaves[i].origin();
+          blocks[i] = o;
+          for (int side = 1; side < 8; ++side) {
+            const nanovdb::Coord at = o.offsetBy(-8 * (side & 1), -8 * ((side >> 1) & 1), -8 * (side >> 2));
+            if (!accessor.probeLeaf(at) && changes_sign(leaves[i], side, accessor.getValue(at) < 0.0f)) found.push_back(at);
+          }
+        }
+        return found;
+      },
+      [](Blocks a, const Blocks& b) {
+        a.insert(a.end(), b.begin(), b.end());
+        return a;
+      });
   std::sort(before.begin(), before.end());
   before.erase(std::unique(before.begin(), before.end()), before.end());
   blocks.insert(blocks.end(), before.begin(), before.end());
@@ -42,14 +52,16 @@ std::vector<nanovdb::Coord> blocks_with_cells(const nanovdb::FloatGrid& grid) {
 
 ActiveRows active_rows(const LeafWindow& window) {
   ActiveRows rows;
-  for (int x = -2; x <= 10; ++x)
-    for (int y = -2; y <= 10; ++y) rows[static_cast<size_t>(x) + 2][static_cast<size_t>(y) + 2] = window.active_row(x, y);
+  window.for_each_column(-2, 10, [&](const LeafWindow::Column& column, int x, int y) {
+    rows[static_cast<size_t>(x) + 2][static_cast<size_t>(y) + 2] = column.active_row(x, y);
+  });
   return rows;
 }
 
 void load_nodes(const LeafWindow& window, NodeWindow& nodes) {
-  for (int x = -1; x <= 8; ++x)
-    for (int y = -1; y <= 8; ++y) window.load_row(x, y, nodes[static_cast<size_t>(x) + 1][static_cast<size_t>(y) + 1].data());
+  window.for_each_column(-1, 8, [&](const LeafWindow::Column& column, int x, int y) {
+    column.load_row(x, y, nodes[static_cast<size_t>(x) + 1][static_cast<size_t>(y) + 1].data());
+  });
 }
 
 CrossedCells cells_crossed(const NodeWindow& nodes) {

@@ -73,8 +73,8 @@ Box nodes_of(const Cube& cube, const Lattice& lattice) { return {lattice.node(cu
 /// Where the cube's field may be asked: the band about its nodes, and what the search for thin places looks at beside the surface in it.
 Box reach_of(const Cube& cube, const Lattice& lattice) { return dilate(nodes_of(cube, lattice), lattice.half_width + 4.0 * lattice.h); }
 
-/// The largest value, either way, of which a build asks more than its sign: what find_band_nodes() takes to reach the far corner of an
-/// eighth of a block, and some room for rounding.
+/// The largest value, either way, of which a build asks more than its sign: what find_band_nodes() takes to reach the far corner of a
+/// sixteenth of a block, and some room for rounding.
 double exact_within(const Field& field, const Lattice& lattice) {
   return std::max(field.traits().lipschitz, 1.0) * (lattice.half_width + 3.0 * lattice.h);
 }
@@ -186,34 +186,33 @@ double extent_at(const Field& field, const glm::dvec3& point) {
   return extent;
 }
 
-/// The nodes of those eighths of the block whose middle is no farther from the surface than the band reaches. The others are given the
-/// background, with the sign that the field has in the middle: it changes nowhere in them.
+/// The nodes of those sixteenths of the block (two along x by four by four) whose middle is no farther from the surface than the band
+/// reaches. The others are given the background, with the sign that the field has in the middle: it changes nowhere in them.
 void find_band_nodes(const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance, LevelSetBlock& block, BandNodes& found) {
-  constexpr int kHalf = kBlock / 2;
   const NodePlaces places(cube, lattice);
-  std::array<glm::dvec3, 8> middles;
-  std::array<double, 8> values;
-  for (size_t part = 0; part < 8; ++part)
-    middles[part] = 0.5 * (places.along[1] + places.along[2]) + kHalf * lattice.h * glm::dvec3(part >> 2, part >> 1 & 1, part & 1);
+  LanePoints middles;
+  LaneNumbers values;
+  const auto middle = [&](size_t k) { return 0.5 * (places.along[k] + places.along[k + 1]); };
+  for (size_t part = 0; part < 16; ++part)
+    middles.add({middle(2 * (part >> 2)).x, middle(1 + 4 * (part >> 1 & 1)).y, middle(1 + 4 * (part & 1)).z});
   field_values(distance, middles, values);
 
   const Field& field = distance.evaluator.field();
   const double lipschitz = field.traits().lipschitz;
-  const double to_corner = 0.5 * (kHalf - 1) * std::sqrt(3.0) * lattice.h;
+  const double to_corner = 0.5 * std::sqrt(1.0 + 9.0 + 9.0) * lattice.h;
   const double limit = std::max(lipschitz, 1.0) * lattice.half_width + lipschitz * to_corner;
-  const double slack = 1e-6 * limit + 1e-13 * extent_at(field, middles[0]);
+  const double slack = 1e-6 * limit + 1e-13 * extent_at(field, middles.point(0));
   found.points.count = 0;
-  for (size_t part = 0; part < 8; ++part) {
-    const size_t half_x = part >> 2, half_y = part >> 1 & 1, half_z = part & 1;
+  for (size_t part = 0; part < 16; ++part) {
+    const size_t half_y = part >> 1 & 1, half_z = part & 1;
     const bool far = std::abs(values[part]) > limit + slack;
     const auto beyond = static_cast<float>(std::copysign(lattice.half_width, values[part]));
-    for (size_t x = kHalf * half_x; x < kHalf * (half_x + 1); ++x) {
+    for (size_t x = 2 * (part >> 2); x < 2 * (part >> 2) + 2; ++x) {
       if (!far) {
         add_sixteen(places, x, half_y, half_z, found);
         continue;
       }
-      for (size_t row = 0; row < kHalf; ++row)
-        std::fill_n(block.values + x * 64 + (half_y * kHalf + row) * 8 + half_z * kHalf, kHalf, beyond);
+      for (size_t y = 4 * half_y; y < 4 * half_y + 4; ++y) std::fill_n(block.values + x * 64 + y * 8 + 4 * half_z, 4, beyond);
     }
   }
 }

@@ -57,6 +57,19 @@ void find_steep(const float* nodes, NodeBits& steep) {
   }
 }
 
+float largest_value(const float* nodes, const NodeBits& which) {
+  Floats largest = hn::Zero(Tag());
+  for (size_t i = 0; i < kNodes; i += kWidth) {
+    const size_t first = std::min(i, kNodes - kWidth), word = first >> 6, bit = first & 63;
+    const std::uint64_t bits = (which.words[word] >> bit | which.words[word + 1] << 1 << (63 - bit)) & ((1u << kWidth) - 1u);
+    if (bits == 0) continue;
+    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits & 0xffu), static_cast<std::uint8_t>(bits >> 8)};
+    const Floats size = hn::Abs(hn::LoadU(Tag(), nodes + first));
+    largest = hn::IfThenElse(hn::And(hn::LoadMaskBits(Tag(), bytes), hn::Lt(largest, size)), size, largest);
+  }
+  return hn::GetLane(hn::MaxOfLanes(Tag(), largest));
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace limn
@@ -67,6 +80,7 @@ namespace limn {
 namespace {
 HWY_EXPORT(find_inside);
 HWY_EXPORT(find_steep);
+HWY_EXPORT(largest_value);
 }  // namespace
 
 bool find_inside(const NodeWindow& nodes, NodeBits& inside) {
@@ -78,6 +92,10 @@ bool find_inside(const NodeWindow& nodes, NodeBits& inside) {
     every &= inside.words[k];
   }
   return some != 0 && every != kAll;
+}
+
+float largest_value(const NodeWindow& nodes, const NodeBits& which) {
+  return HWY_DYNAMIC_DISPATCH(largest_value)(nodes.front().front().data(), which);
 }
 
 bool find_steep(const NodeWindow& nodes, NodeBits& steep) {

@@ -19,6 +19,11 @@ struct NodeBits {
     const std::size_t first = x * 100 + y * 10, word = first >> 6, bit = first & 63;
     return static_cast<std::uint32_t>(words[word] >> bit | words[word + 1] << 1 << (63 - bit)) & 0x3ffu;
   }
+  void set_row(std::size_t x, std::size_t y, std::uint32_t bits) {
+    const std::size_t first = x * 100 + y * 10, word = first >> 6, bit = first & 63;
+    words[word] |= std::uint64_t{bits} << bit;
+    words[word + 1] |= std::uint64_t{bits} >> 1 >> (63 - bit);
+  }
 };
 
 /// Values below zero. Returns whether some are and some are not.
@@ -26,5 +31,7 @@ bool find_inside(const NodeWindow& nodes, NodeBits& inside);
 /// Of the block's own nodes those whose value is nearer to zero than half of the largest difference from one of their six neighbours.
 /// Returns whether there are any. Of the layer about the block the bits mean nothing.
 bool find_steep(const NodeWindow& nodes, NodeBits& steep);
+/// The largest |value| at these nodes; 0 where there are none. What is no number counts for nothing.
+float largest_value(const NodeWindow& nodes, const NodeBits& which);
 
 }  // namespace limn

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "sdf/level_set_band.h"
 #include "sdf/parallel.h"
@@ -138,11 +139,11 @@ void load_nodes(const Accessor& accessor, const glm::ivec3& origin, NodeValues& 
       for (int y = 0; y < (dy ? 1 : 8); ++y) {
         float* const to = &values[at(8 * dx + x, 8 * dy + y, 8 * dz)];
         const float* const row = from ? from + x * 64 + y * 8 : tiles;
-        // Lengths that the compiler knows: a call for each row would take longer than to copy it.
+        // std::copy_n would call a function for each row, which takes longer than to copy it.
         if (dz)
           *to = *row;
         else
-          std::copy_n(row, 8, to);
+          std::memcpy(to, row, 8 * sizeof(float));
       }
     }
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 #include "sdf/simd.h"
 
@@ -19,18 +21,23 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Rows of nodes along z: eight as vectors, the ninth, which the next row's first follows, on its own.
 constexpr int kRow = 8;
 
-/// Bits of the cells at (x, y), none outside of the brick.
-HWY_INLINE std::uint32_t cells_at(const CrossedCells& crossed, int x, int y) {
-  return std::min(x, y) >= 0 && std::max(x, y) < kBrickCells ? crossed.cells[x][y] : 0u;
-}
+/// Bits along z of what crossed cells hold at (x, y), for all y at once: byte y of `rows`, and those at y = 8.
+struct PlaneBits {
+  std::uint64_t rows;
+  std::uint32_t last;
+  HWY_INLINE std::uint32_t at(int y) const { return y < 8 ? static_cast<std::uint32_t>(rows >> (8 * y)) & 0xffu : last; }
+};
 
-/// Bit z: whether (x, y, z) is the first node of an edge along `axis` of a crossed cell.
-HWY_INLINE std::uint32_t edges_at(const CrossedCells& crossed, int axis, int x, int y) {
-  std::uint32_t bits = cells_at(crossed, x, y);
-  if (axis != 0) bits |= cells_at(crossed, x - 1, y);
-  if (axis != 1) bits |= cells_at(crossed, x, y - 1);
-  if (axis == 2) bits |= cells_at(crossed, x - 1, y - 1);
-  return axis == 2 ? bits : bits | bits << 1;
+/// Cells at (x, y), `across_x` those at x - 1, too, and `across_y` those at y - 1; none outside of the brick.
+HWY_INLINE PlaneBits plane_bits(const CrossedCells& crossed, int x, bool across_x, bool across_y) {
+  const auto cells = [&](int at) {
+    std::uint64_t rows = 0;
+    if (at >= 0 && at < kBrickCells) std::memcpy(&rows, crossed.cells[at], sizeof rows);
+    return rows;
+  };
+  const std::uint64_t rows = cells(x) | (across_x ? cells(x - 1) : 0u);
+  if (!across_y) return {rows, 0};
+  return {rows | rows << 8, static_cast<std::uint32_t>(rows >> 56)};
 }
 
 template <class Tag>
@@ -49,9 +56,11 @@ void measure_edges(const std::int16_t* values, int axis, BrickShape& shape) {
   auto sum = hn::Zero(whole), edges = hn::Zero(whole);
   int last_least = shape.least[axis], last_greatest = shape.greatest[axis], last_sum = 0, last_edges = 0;
   const auto one = hn::Set(whole, 1);
-  for (int x = 0; x < (axis == 0 ? 8 : 9); ++x)
+  for (int x = 0; x < (axis == 0 ? 8 : 9); ++x) {
+    const PlaneBits plane = plane_bits(shape.crossed, x, axis != 0, axis != 1);
     for (int y = 0; y < (axis == 1 ? 8 : 9); ++y) {
-      const std::uint32_t bits = edges_at(shape.crossed, axis, x, y);
+      // Bit z: whether (x, y, z) is the first node of an edge along `axis` of a crossed cell.
+      const std::uint32_t cells = plane.at(y), bits = axis == 2 ? cells : cells | cells << 1;
       if (bits == 0) continue;
       const std::int16_t* const row = values + brick_element(x, y, 0);
       for (int z = 0; z < kRow; z += kLanes) {
@@ -70,6 +79,7 @@ void measure_edges(const std::int16_t* values, int axis, BrickShape& shape) {
       last_sum += difference;
       ++last_edges;
     }
+  }
   HWY_ALIGN std::int32_t lanes[4][kLanes] = {};
   hn::Store(least, whole, lanes[0]);
   hn::Store(greatest, whole, lanes[1]);
@@ -101,11 +111,10 @@ void bound_rests(const BrickInCube& part, const double* normal, double& least, d
   auto lower = hn::Set(real, least), upper = hn::Set(real, greatest);
   const auto along_z = hn::Set(real, normal[2]), first = hn::Iota(real, static_cast<double>(part.place.z));
   const CrossedCells& crossed = part.shape->crossed;
-  for (int x = 0; x < kBrickNodes; ++x)
+  for (int x = 0; x < kBrickNodes; ++x) {
+    const PlaneBits plane = plane_bits(crossed, x, true, true);
     for (int y = 0; y < kBrickNodes; ++y) {
-      const std::uint32_t cells =
-          cells_at(crossed, x, y) | cells_at(crossed, x - 1, y) | cells_at(crossed, x, y - 1) | cells_at(crossed, x - 1, y - 1);
-      const std::uint32_t bits = cells | cells << 1;
+      const std::uint32_t cells = plane.at(y), bits = cells | cells << 1;
       if (bits == 0) continue;
       const std::int16_t* const row = part.values + brick_element(x, y, 0);
       // In the order in which glm::dot() adds.
@@ -123,6 +132,7 @@ void bound_rests(const BrickInCube& part, const double* normal, double& least, d
       least = std::min(least, rest);
       greatest = std::max(greatest, rest);
     }
+  }
   HWY_ALIGN double lanes[2][kLanes] = {};
   hn::Store(lower, real, lanes[0]);
   hn::Store(upper, real, lanes[1]);

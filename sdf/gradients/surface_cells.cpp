@@ -38,8 +38,7 @@ struct Nodes {
 class BlockSpline {
  public:
   void load(const LeafWindow& window) {
-    for (int x = -3; x <= 10; ++x)
-      for (int y = -3; y <= 10; ++y) window.load_wide_row(x, y, values_.row(x, y));
+    window.for_each_column(-3, 10, [&](const LeafWindow::Column& column, int x, int y) { column.load_wide_row(x, y, values_.row(x, y)); });
     constexpr int kX = decltype(values_)::kRow * decltype(values_)::kRow, kY = decltype(values_)::kRow;
     for (int x = -2; x <= 9; ++x)
       for (int y = -2; y <= 9; ++y) {
@@ -144,8 +143,7 @@ class CellFinder {
 
   void load_nodes(const LeafWindow& window) {
     Nodes<-1, 8>& f = nodes_;
-    for (int x = -1; x <= kBlock; ++x)
-      for (int y = -1; y <= kBlock; ++y) window.load_row(x, y, f.row(x, y));
+    window.for_each_column(-1, kBlock, [&](const LeafWindow::Column& column, int x, int y) { column.load_row(x, y, f.row(x, y)); });
     // Near the surface a node may lie on either side of the spline's.
     for (size_t i = 0; i < f.values.size(); ++i)
       sides_[i] = std::fabs(f.values[i]) < near_ ? kBoth : f.values[i] < 0.0f ? kInside : kOutside;

@@ -14,7 +14,6 @@ namespace {
 
 // The widths of the band are counted in steps of a 256th of the background, up to twice that.
 constexpr size_t kWidthSteps = 512;
-constexpr double kSlopeUnits = 1 << 20;
 constexpr size_t kMostGradients = 8;
 
 /// What one pass over the leaves finds out; whole numbers, minima and maxima, so that the order of the leaves does not matter.
@@ -23,8 +22,7 @@ struct Counts {
   Box crossings{};
   std::array<std::array<std::uint32_t, kWidthSteps>, 2> widths{};  ///< At the band's edges: outside, inside.
   double largest = 0.0;
-  /// Slopes per voxel at the surface, in 2^-20 of the background: where all that they are taken from is in the band, and elsewhere.
-  std::array<std::int64_t, 2> slope_sum{}, slope_count{};
+  SlopeSums slopes{};
   std::int64_t crossed_cells = 0;
   std::array<std::int64_t, kMostGradients> lacking{};
   std::int64_t near_nodes = 0, unsigned_nodes = 0;
@@ -37,8 +35,8 @@ struct Counts {
       for (size_t k = 0; k < kWidthSteps; ++k) widths[side][k] += other.widths[side][k];
     largest = std::max(largest, other.largest);
     for (size_t k = 0; k < 2; ++k) {
-      slope_sum[k] += other.slope_sum[k];
-      slope_count[k] += other.slope_count[k];
+      slopes.sum[k] += other.slopes.sum[k];
+      slopes.count[k] += other.slopes.count[k];
     }
     crossed_cells += other.crossed_cells;
     for (size_t k = 0; k < kMostGradients; ++k) lacking[k] += other.lacking[k];
@@ -67,48 +65,15 @@ glm::ivec3 step_along(int axis) {
   return step;
 }
 
-struct Slope {
-  double value = 0.0;
-  bool in_band = true;
-};
-
-/// What turns differences of values into slopes. `per_side`: of a gradient by index coordinates its change over the smallest side of a
-/// voxel, in whatever direction it points.
-struct Scale {
-  double background = 0.0;
-  glm::dmat3 per_side{1.0};
-};
-
-Slope slope_at(const Block& block, const glm::ivec3& here, const Scale& scale) {
-  glm::dvec3 gradient(0.0);
-  Slope slope;
-  for (int axis = 0; axis < 3; ++axis) {
-    const glm::ivec3 step = step_along(axis);
-    slope.in_band = slope.in_band && block.in_band(here + step) && block.in_band(here - step);
-    gradient[axis] = 0.5 * (static_cast<double>(block.value(here + step)) - static_cast<double>(block.value(here - step)));
-  }
-  slope.value = kSlopeUnits * std::min(1000.0, glm::length(scale.per_side * gradient) / scale.background);
-  return slope;
-}
-
-void count_crossings(const Block& block, const glm::ivec3& here, const glm::dvec3& node, const Scale& scale, Counts& found) {
+void include_crossings(const Block& block, const glm::ivec3& here, const glm::dvec3& node, Box& crossings) {
   const double a = static_cast<double>(block.value(here));
-  // Most lie where no crossing can move the bounds.
-  const bool within = glm::all(glm::lessThan(found.crossings.lower, node)) && glm::all(glm::lessThan(node + 1.0, found.crossings.upper));
-  int crossings = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double b = static_cast<double>(block.value(here + step_along(axis)));
     if ((a < 0.0) == (b < 0.0)) continue;
-    ++crossings;
-    if (within) continue;
     glm::dvec3 crossing = node;
     crossing[axis] += a / (a - b);
-    found.crossings = include(found.crossings, crossing);
+    crossings = include(crossings, crossing);
   }
-  const Slope slope = slope_at(block, here, scale);
-  const size_t kind = slope.in_band ? 0 : 1;
-  found.slope_sum[kind] += crossings * static_cast<std::int64_t>(slope.value);
-  found.slope_count[kind] += crossings;
 }
 
 /// The distance at a node outside the band next to one in it, carried on from inside: the width that the band really has there.
@@ -194,9 +159,13 @@ float largest_at(const Block& block, const CrossedCells& crossed) {
   return largest_value(block.nodes, nodes);
 }
 
-void count_surface(const Block& block, const NodeBits& inside, const glm::ivec3& origin, const Scale& scale, Counts& found) {
-  for_each_place([&](size_t x, size_t y) { return before_crossing(inside, x, y); },
-                 [&](const glm::ivec3& at) { count_crossings(block, at, glm::dvec3(origin + at), scale, found); });
+void count_surface(const Block& block, const NodeBits& inside, const glm::ivec3& origin, const SlopeScale& scale, Counts& found) {
+  // In most blocks no crossing can move the bounds.
+  const glm::dvec3 first(origin), last(origin + 8);
+  if (!glm::all(glm::lessThan(found.crossings.lower, first)) || !glm::all(glm::lessThan(last, found.crossings.upper)))
+    for_each_place([&](size_t x, size_t y) { return before_crossing(inside, x, y); },
+                   [&](const glm::ivec3& at) { include_crossings(block, at, glm::dvec3(origin + at), found.crossings); });
+  add_slopes(block.nodes, inside, block.active, scale, found.slopes);
   const CrossedCells crossed = cells_crossed(inside);
   if (!crossed.any) return;
   found.crossed_cells += count_of(crossed);
@@ -212,7 +181,7 @@ std::int64_t active_nodes(const NanoLeaf& leaf) {
   return count;
 }
 
-void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, const Scale& scale, bool with_widths, Counts& found) {
+void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, const SlopeScale& scale, bool with_widths, Counts& found) {
   const LeafWindow window(accessor, origin);
   Block block;
   load_nodes(window, block.nodes);
@@ -232,7 +201,7 @@ void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, con
 }
 
 Counts count_blocks(const nanovdb::FloatGrid& grid, std::span<const nanovdb::Coord> blocks, const glm::dmat3& per_side, bool with_widths) {
-  const Scale scale{std::abs(static_cast<double>(grid.tree().background())), per_side};
+  const SlopeScale scale{std::abs(static_cast<double>(grid.tree().background())), per_side};
   return parallel_reduce(
       blocks.size(), size_t{64}, Counts{},
       [&](const IndexRange<size_t>& range, Counts found) {
@@ -260,9 +229,9 @@ double usual_width(const std::array<std::uint32_t, kWidthSteps>& widths) {
 /// Grids that were scaled after they were made, or that hold no true distances, are measured by their own slope at the surface; a slope
 /// within a tenth of the voxel size is the voxel size.
 double change_per_voxel(const Counts& found, double background, double voxel_size) {
-  const size_t kind = found.slope_count[0] > 0 ? 0 : 1;
-  const double counted = static_cast<double>(std::max<std::int64_t>(found.slope_count[kind], 1));
-  const double slope = static_cast<double>(found.slope_sum[kind]) / counted / kSlopeUnits * background;
+  const size_t kind = found.slopes.count[0] > 0 ? 0 : 1;
+  const double counted = static_cast<double>(std::max<std::int64_t>(found.slopes.count[kind], 1));
+  const double slope = static_cast<double>(found.slopes.sum[kind]) / counted / kSlopeUnits * background;
   return slope > 0.0 && std::abs(slope / voxel_size - 1.0) > 0.1 ? slope : voxel_size;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 // Internal: one pass over a level set's leaves that tells where the surface is, how wide the band is and what it lacks.
 
+#include "sdf/band_slopes.h"
 #include "sdf/leaf_window.h"
-#include "sdf/node_bits.h"
 
 namespace limn {
 
@@ -26,8 +26,6 @@ std::vector<nanovdb::Coord> blocks_with_cells(const nanovdb::FloatGrid& grid);
 /// Those of blocks_with_cells that have crossed cells, in their order.
 std::vector<CrossedBlock> crossed_blocks(const nanovdb::FloatGrid& grid);
 
-/// Which nodes about a block are in the band: [x + 2][y + 2], bit z + 2, each from -2 to 10.
-using ActiveRows = std::array<std::array<std::uint32_t, 13>, 13>;
 ActiveRows active_rows(const LeafWindow& window);
 
 void load_nodes(const LeafWindow& window, NodeWindow& nodes);

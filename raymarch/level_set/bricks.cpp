@@ -6,6 +6,7 @@
 #include <span>
 
 #include "raymarch/level_set/brick_layout.h"
+#include "raymarch/level_set/quantise.h"
 #include "raymarch/level_set/surface_bound.h"
 #include "sdf/parallel.h"
 
@@ -74,7 +75,7 @@ template <class Reader>
 void fill_brick(const Reader& reader, const glm::ivec3& origin, float steps_per_unit, std::int16_t* to) {
   NodeValues nodes;
   reader.load(origin, nodes);
-  for (size_t k = 0; k < nodes.size(); ++k) to[k] = quantised(nodes[k], steps_per_unit);
+  quantise(nodes, steps_per_unit, to);
   std::fill(to + nodes.size(), to + kBrickStride, std::int16_t{0});
 }
 

@@ -15,7 +15,7 @@ TEST(NearestPlace, IsTheFirstOfThoseThatNoneIsNearerThan) {
   std::mt19937 random(random_seed());
   const auto place = [&] { return static_cast<float>(random() % 9) - 4.0f; };
   int ties = 0;
-  for (int trial = 0; trial < 300; ++trial) {
+  for (int trial = 0; trial < 600; ++trial) {
     Places places;
     const size_t count = 1 + random() % 200;
     for (size_t i = 0; i < count; ++i) {

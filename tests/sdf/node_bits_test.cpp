@@ -68,12 +68,30 @@ void expect_bits_of_a_plain_loop(std::mt19937& random) {
   EXPECT_GT(steep_windows, 20);
 }
 
+void expect_largest_of_a_plain_loop(std::mt19937& random) {
+  for (int round = 0; round < 100; ++round) {
+    const NodeWindow nodes = random_window(random);
+    NodeBits which;
+    float largest = 0.0f;
+    for (size_t x = 0; x < 10; ++x)
+      for (size_t y = 0; y < 10; ++y) {
+        const std::uint32_t bits = round == 0 ? 0u : static_cast<std::uint32_t>(random()) & static_cast<std::uint32_t>(random()) & 0x3ffu;
+        which.set_row(x, y, bits);
+        ASSERT_EQ(which.row(x, y), bits);
+        for (size_t z = 0; z < 10; ++z)
+          if ((bits >> z & 1u) != 0 && std::abs(nodes[x][y][z]) > largest) largest = std::abs(nodes[x][y][z]);
+      }
+    ASSERT_EQ(largest_value(nodes, which), largest);
+  }
+}
+
 TEST(NodeBits, AreThoseOfAPlainLoopOnEveryTarget) {
   std::mt19937 random(random_seed());
   int targets = 0;
   for_each_simd_target([&](const char* target) {
     SCOPED_TRACE(target);
     expect_bits_of_a_plain_loop(random);
+    expect_largest_of_a_plain_loop(random);
     EXPECT_FALSE(testing::Test::HasFatalFailure());
     ++targets;
   });

@@ -9,8 +9,9 @@
 
 namespace limn {
 
-/// Which nodes about a block are in the band: [x + 2][y + 2], bit z + 2, each from -2 to 10.
-using ActiveRows = std::array<std::array<std::uint32_t, 13>, 13>;
+/// Which nodes about a block are in the band: [x + 2][y + 2], bit z + 2, each from -2 to 10; three more rows a plane, so that planes lie
+/// as vectors do.
+using ActiveRows = std::array<std::array<std::uint32_t, 16>, 13>;
 
 /// What turns differences of values into slopes. `per_side`: of a gradient by index coordinates its change over the smallest side of a
 /// voxel, in whatever direction it points.

@@ -159,6 +159,27 @@ float largest_at(const Block& block, const CrossedCells& crossed) {
   return largest_value(block.nodes, nodes);
 }
 
+bool reads_all_of(const Stencil& wider, const Stencil& stencil) {
+  for (size_t x = 0; x < stencil.size(); ++x)
+    for (size_t y = 0; y < stencil.size(); ++y)
+      if ((stencil[x][y] & ~wider[x][y]) != 0) return false;
+  return true;
+}
+
+/// The widest stencil comes last: what lacks nothing for it lacks nothing for those that it holds.
+void count_lacking(const CrossedCells& crossed, const ActiveRows& active, Counts& found) {
+  const Stencil* whole = nullptr;
+  size_t k = gradients().size();
+  for (auto gradient = gradients().end(); gradient != gradients().begin();) {
+    --gradient;
+    --k;
+    if (whole != nullptr && reads_all_of(*whole, gradient->stencil)) continue;
+    const CrossedCells lacking = cells_outside(crossed, active, gradient->stencil);
+    found.lacking[k] += count_of(lacking);
+    if (!lacking.any) whole = &gradient->stencil;
+  }
+}
+
 void count_surface(const Block& block, const NodeBits& inside, const glm::ivec3& origin, const SlopeScale& scale, Counts& found) {
   // In most blocks no crossing can move the bounds.
   const glm::dvec3 first(origin), last(origin + 8);
@@ -170,9 +191,7 @@ void count_surface(const Block& block, const NodeBits& inside, const glm::ivec3&
   if (!crossed.any) return;
   found.crossed_cells += count_of(crossed);
   found.crossed.push_back({origin, largest_at(block, crossed), crossed});
-  size_t k = 0;
-  for (const GradientDescriptor& gradient : gradients())
-    found.lacking[k++] += count_of(cells_outside(crossed, block.active, gradient.stencil));
+  count_lacking(crossed, block.active, found);
 }
 
 std::int64_t active_nodes(const NanoLeaf& leaf) {

@@ -52,6 +52,7 @@ std::vector<nanovdb::Coord> blocks_with_cells(const nanovdb::FloatGrid& grid) {
 
 ActiveRows active_rows(const LeafWindow& window) {
   ActiveRows rows;
+  for (auto& plane : rows) plane[13] = plane[14] = plane[15] = 0;
   window.for_each_column(-2, 10, [&](const LeafWindow::Column& column, int x, int y) {
     rows[static_cast<size_t>(x) + 2][static_cast<size_t>(y) + 2] = column.active_row(x, y);
   });
@@ -83,14 +84,15 @@ struct RowsOutside {
 };
 
 RowsOutside rows_outside(const ActiveRows& rows, std::uint8_t mask) {
-  RowsOutside result{};
-  for (size_t x = 0; x < 13; ++x)
-    for (size_t y = 0; y < 13; ++y) {
-      const std::uint32_t missing = ~rows[x][y] & 0x1fffu;
-      std::uint32_t bits = 0;
-      for (int dz = 0; dz < 6; ++dz) bits |= (mask >> dz & 1) ? missing >> dz : 0u;
-      result.bytes[x][y] = static_cast<std::uint8_t>(bits & 0xffu);
+  RowsOutside result;
+  for (size_t x = 0; x < 13; ++x) {
+    std::array<std::uint32_t, 16> bits{};
+    for (int dz = 0; dz < 6; ++dz) {
+      if ((mask >> dz & 1) == 0) continue;
+      for (size_t y = 0; y < 16; ++y) bits[y] |= (~rows[x][y] & 0x1fffu) >> dz;
     }
+    for (size_t y = 0; y < 16; ++y) result.bytes[x][y] = static_cast<std::uint8_t>(bits[y] & 0xffu);
+  }
   return result;
 }
 

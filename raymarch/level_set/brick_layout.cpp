@@ -101,16 +101,25 @@ std::vector<std::array<std::int32_t, 6>> find_beside(std::span<const Candidate> 
   return beside;
 }
 
-BrickLayout lay_out(std::vector<Candidate> candidates) {
+/// The crossed ones, by key_of, each once. Their places are sorted, since they themselves are six times as large.
+std::vector<Candidate> crossed_in_order(std::span<const Candidate> candidates) {
+  using Place = std::pair<std::uint64_t, size_t>;  // key, number
+  std::vector<Place> places;
+  places.reserve(candidates.size());
+  for (size_t i = 0; i < candidates.size(); ++i)
+    if (candidates[i].cells.any) places.emplace_back(key_of(candidates[i].origin), i);
+  parallel_sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.first == b.first; }), places.end());
+  std::vector<Candidate> crossed(places.size());
+  parallel_parts(places.size(), size_t{1024}, [&](const IndexRange<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) crossed[i] = candidates[places[i].second];
+  });
+  return crossed;
+}
+
+BrickLayout lay_out(std::span<const Candidate> candidates) {
   BrickLayout layout;
-  layout.crossed = std::move(candidates);
-  std::erase_if(layout.crossed, [](const Candidate& c) { return !c.cells.any; });
-  parallel_sort(layout.crossed.begin(), layout.crossed.end(),
-                [](const Candidate& a, const Candidate& b) { return key_of(a.origin) < key_of(b.origin); });
-  // A block before two leaves is found twice.
-  layout.crossed.erase(std::unique(layout.crossed.begin(), layout.crossed.end(),
-                                   [](const Candidate& a, const Candidate& b) { return a.origin == b.origin; }),
-                       layout.crossed.end());
+  layout.crossed = crossed_in_order(candidates);
   layout.beside = find_beside(layout.crossed);
   for (size_t i = 0; i < layout.crossed.size(); ++i) {
     layout.first_layer.push_back(static_cast<std::uint32_t>(layout.layers.size()));
@@ -204,7 +213,7 @@ BrickLayout lay_out_bricks(const NodeReader& nodes, std::span<const BrickPlace> 
       inspect(values, candidates[i]);
     }
   });
-  return lay_out(std::move(candidates));
+  return lay_out(candidates);
 }
 
 }  // namespace limn

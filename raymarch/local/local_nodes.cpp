@@ -122,10 +122,9 @@ double on_its_side(double value, const glm::ivec3& node, std::optional<LargerBes
 }
 
 void evaluate_field(DistanceEvaluator& distance, NodeBlock& block, const Measure& measure) {
-  std::array<glm::dvec3, 512> points;
-  std::array<double, 512> distances;
-  std::array<std::uint16_t, 512> places;
-  size_t count = 0;
+  LanePoints points;
+  LaneNumbers distances;
+  std::array<std::uint16_t, kMostLanePoints> places;
   std::optional<LargerBeside> beside = larger_beside(measure, block);
   for_each_pending(block, [&](int n) {
     const glm::ivec3 node = node_of(block, n);
@@ -134,11 +133,13 @@ void evaluate_field(DistanceEvaluator& distance, NodeBlock& block, const Measure
       block.values[static_cast<size_t>(n)] = measure.stored(beside->interpolated(node));
       return;
     }
-    points[count] = measure.choice.origin + measure.h * glm::dvec3(node);
-    places[count++] = static_cast<std::uint16_t>(n);
+    places[points.count] = static_cast<std::uint16_t>(n);
+    points.add(measure.choice.origin + measure.h * glm::dvec3(node));
   });
-  if (count > 0) signed_distances(distance, std::span(points).first(count), measure.half_width, std::span(distances).first(count));
-  for (size_t k = 0; k < count; ++k) {
+  if (points.count == 0) return;
+  points.fill_up();
+  signed_distances(distance, points, measure.half_width, distances);
+  for (size_t k = 0; k < points.count; ++k) {
     const double value = std::clamp(distances[k], -measure.half_width, measure.half_width);
     block.values[places[k]] = measure.stored(on_its_side(value, node_of(block, places[k]), beside));
   }

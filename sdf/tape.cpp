@@ -122,6 +122,18 @@ TapeOperation tape_operation(FieldOperation operation) {
   return TapeOperation::copy;
 }
 
+bool joins_parts(TapeOperation operation) {
+  switch (operation) {
+    case TapeOperation::minimum:
+    case TapeOperation::maximum:
+    case TapeOperation::smooth_minimum:
+    case TapeOperation::smooth_maximum:
+      return true;
+    default:
+      return false;
+  }
+}
+
 void find_what_signs_decide(FieldTape& tape) {
   std::vector<bool> by_sign(tape.registers, false);
   by_sign[0] = true;
@@ -156,6 +168,7 @@ FieldTape::FieldTape(const Field& of) : field(of) {
   const FieldTraits& traits = field.traits();
   margin = traits.bounds.finite() ? 1e-5 * traits.lipschitz * (traits.bounds.radius() + glm::length(traits.bounds.center())) : kInfinity;
   find_what_signs_decide(*this);
+  joints = static_cast<size_t>(std::count_if(steps.begin(), steps.end(), [](const TapeStep& step) { return joins_parts(step.operation); }));
 }
 
 }  // namespace limn

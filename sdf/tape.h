@@ -69,6 +69,7 @@ struct FieldTape {
   std::vector<TapeLeaf> leaves;
   std::vector<TapeStep> steps;
   std::uint32_t registers = 0;
+  size_t joints = 0;  ///< Minima and maxima, smooth ones among them.
   /// Where f is nearer to 0 than this, pruned tapes give it to the last bit; elsewhere its sign, and a value no nearer to 0.
   double margin = 0.0;
 };

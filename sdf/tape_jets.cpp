@@ -56,11 +56,23 @@ HWY_INLINE Reals distance_of(const LaneJet& jet, LaneMask& reasonable) {
   return select(reasonable, second, select(finite, first, endless));
 }
 
+/// From so many on, jets of what sixteen points choose take less than jets of everything.
+constexpr size_t kManyJoints = 3;
+
+/// The jets of the whole tape: what no lane chooses is left out, and what all of them choose stays as it is.
+const double* jets_of_chosen(Pass& pass, TapeScratch& scratch) {
+  const FieldTape& tape = *pass.tape;
+  if (tape.joints < kManyJoints) return run_tape<LaneJet>(pass, tape.steps, scratch);
+  note_choices(pass, tape.steps, scratch);
+  prune_tape(tape.steps, scratch.choices, 0xffff, tape.registers, TapeUse::points, scratch.pruned);
+  return run_tape<LaneJet>(pass, scratch.pruned, scratch);
+}
+
 void distances(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& result, LaneFlags& reasonable) {
   Pass pass(tape);
   for (size_t first = 0; first < points.count; first += kLanes) {
     for (size_t axis = 0; axis < 3; ++axis) take(points.at[axis] + first, pass.point[axis]);
-    const double* const found = run_tape<LaneJet>(pass, tape.steps, scratch);
+    const double* const found = jets_of_chosen(pass, scratch);
     unsigned bits = 0;
     for (int part = 0; part < kParts; ++part) {
       LaneJet jet;

@@ -46,6 +46,7 @@ struct LaneBounds {
 struct TapeScratch {
   std::vector<double> memory{};
   std::vector<TapeChoice> choices{};  ///< What the last tape_bounds or tape_slope_bounds found, one a step.
+  std::vector<TapeStep> pruned{};
   double* registers(size_t doubles) {
     if (memory.size() < doubles + 8) memory.resize(doubles + 8);
     void* start = memory.data();

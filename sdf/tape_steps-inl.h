@@ -84,11 +84,27 @@ HWY_INLINE T chosen(const T& a, const T& b, const TapeStep& step) {
   }
 }
 
-template <class T, class Runner>
+/// Of values, what TapeChoice says of bounds: lanes in which jets take one operand as it is, whatever the other.
+HWY_INLINE void note_choice(const Reals& a, const Reals& b, const TapeStep& step, int part, TapeChoice& choice) {
+  const bool lesser = step.operation == TapeOperation::minimum || step.operation == TapeOperation::smooth_minimum;
+  const bool smooth = step.operation == TapeOperation::smooth_minimum || step.operation == TapeOperation::smooth_maximum;
+  LaneMask of_a = lesser ? a < b : a > b, of_b = no(of_a);
+  if (smooth) {
+    // -smooth_minimum(-a, -b) is the greater one where there is no blend, and of equal ones b, as of two minima.
+    const LaneMask apart = (reals(step.constant) - abs(a - b)) / reals(step.constant) <= reals(0.0);
+    of_a = both(of_a, apart);
+    of_b = both(of_b, apart);
+  }
+  add(of_b, part, choice.idle[0]);
+  add(of_a, part, choice.idle[1]);
+}
+
+template <class T, bool kNotes, class Runner>
 void run_choice(const Runner& runner, const TapeStep& step, TapeChoice* choice) {
   for (int part = 0; part < Runner::kUsed; ++part) {
     const T a = runner.read(step.a, part), b = runner.read(step.b, part);
     T result = chosen(a, b, step);
+    if constexpr (kNotes) note_choice(a, b, step, part, *choice);
     if constexpr (kBounding<T>) {
       const Idle idle = idle_of(a, b, step, runner.pass.tape->margin);
       add(idle.a, part, choice->idle[0]);
@@ -102,7 +118,7 @@ void run_choice(const Runner& runner, const TapeStep& step, TapeChoice* choice) 
   }
 }
 
-template <class T, class Runner>
+template <class T, bool kNotes, class Runner>
 void run_absolute(const Runner& runner, const TapeStep& step, TapeChoice* choice) {
   for (int part = 0; part < Runner::kUsed; ++part) {
     const T a = runner.read(step.a, part);
@@ -110,12 +126,34 @@ void run_absolute(const Runner& runner, const TapeStep& step, TapeChoice* choice
       add(a.value.upper < reals(0.0), part, choice->idle[0]);
       add(a.value.lower > reals(0.0), part, choice->idle[1]);
     }
+    if constexpr (kNotes) {
+      const LaneMask negative = a < reals(0.0);
+      add(negative, part, choice->idle[0]);
+      add(no(negative), part, choice->idle[1]);
+    }
     runner.write(step.target, part, abs(a));
   }
 }
 
+/// As note_choice; of three where no two are equal.
+HWY_INLINE void note_corner(const Reals& a, const Reals& b, const Reals& c, bool three, int part, TapeChoice& choice) {
+  const Reals zero = reals(0.0);
+  if (!three) {
+    const LaneMask a_below = a <= zero, greater = a > b;
+    add(both(a_below, no(greater)), part, choice.idle[0]);
+    add(either(both(a_below, greater), both(no(a_below), b <= zero)), part, choice.idle[1]);
+    return;
+  }
+  const Reals greatest = maximum(maximum(a, b), c);
+  const LaneMask equal = either(LaneMask{hn::Eq(a.v, b.v)}, either(LaneMask{hn::Eq(b.v, c.v)}, LaneMask{hn::Eq(a.v, c.v)}));
+  const auto idle = [&](const Reals& x) { return both(no(equal), both(x <= zero, x < greatest)); };
+  add(idle(a), part, choice.idle[0]);
+  add(idle(b), part, choice.idle[1]);
+  add(idle(c), part, choice.idle[2]);
+}
+
 /// Of a distance to a corner only the greatest part matters where the others are negative.
-template <class T, class Runner>
+template <class T, bool kNotes, class Runner>
 void run_corner(const Runner& runner, const TapeStep& step, TapeChoice* choice) {
   const bool three = step.operation == TapeOperation::corner3;
   for (int part = 0; part < Runner::kUsed; ++part) {
@@ -129,11 +167,13 @@ void run_corner(const Runner& runner, const TapeStep& step, TapeChoice* choice) 
       add(idle(b), part, choice->idle[1]);
       if (three) add(idle(c), part, choice->idle[2]);
     }
+    if constexpr (kNotes) note_corner(a, b, c, three, part, *choice);
     runner.write(step.target, part, three ? corner_distance(a, b, c) : corner_distance(a, b));
   }
 }
 
-template <class T, int Used>
+/// `kNotes`: of values, too, what choices say.
+template <class T, int Used, bool kNotes = false>
 void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* registers) {
   using Runner = Runner<T, Used>;
   const Runner runner{pass, registers};
@@ -173,7 +213,7 @@ void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* regist
       case TapeOperation::square:
         LIMN_STEP(square(a));
       case TapeOperation::absolute:
-        run_absolute<T>(runner, step, choice);
+        run_absolute<T, kNotes>(runner, step, choice);
         break;
       case TapeOperation::sine:
         LIMN_STEP(sine(a));
@@ -195,7 +235,7 @@ void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* regist
         LIMN_STEP3(norm(a, b, c));
       case TapeOperation::corner2:
       case TapeOperation::corner3:
-        run_corner<T>(runner, step, choice);
+        run_corner<T, kNotes>(runner, step, choice);
         break;
       case TapeOperation::power_norm:
         LIMN_STEP2(power_norm(a, b, step.constant));
@@ -203,10 +243,10 @@ void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* regist
       case TapeOperation::maximum:
       case TapeOperation::smooth_minimum:
       case TapeOperation::smooth_maximum:
-        run_choice<T>(runner, step, choice);
+        run_choice<T, kNotes>(runner, step, choice);
         break;
     }
-    if constexpr (kBounding<T>) ++choice;
+    if constexpr (kBounding<T> || kNotes) ++choice;
   }
 }
 #undef LIMN_STEP
@@ -227,6 +267,14 @@ const double* run_tape(Pass& pass, std::span<const TapeStep> steps, TapeScratch&
   }
   run_steps<T, kParts>(pass, steps, registers);
   return registers;
+}
+
+/// Values alone, for what they say of the steps' choices: TapeScratch::choices.
+inline void note_choices(Pass& pass, std::span<const TapeStep> steps, TapeScratch& scratch) {
+  scratch.choices.assign(steps.size(), {});
+  pass.choices = scratch.choices.data();
+  run_steps<Reals, kParts, true>(
+      pass, steps, scratch.registers(registers_used(pass.tape->registers) * static_cast<size_t>(Kind<Reals>::kComponents * kLanes)));
 }
 
 HWY_INLINE void take(const double* from, LaneArray& to) {

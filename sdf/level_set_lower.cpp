@@ -21,12 +21,16 @@ std::vector<size_t> lower_gradients(const GradientDescriptor& gradient) {
   return lower;
 }
 
+/// Of a block's nodes, as OpenVDB numbers them.
+size_t node_number(int x, int y, int z) { return static_cast<size_t>(x) * 64 + static_cast<size_t>(y) * 8 + static_cast<size_t>(z); }
+
 void lower_block(const CrossedCells& lacking, const CrossedCells& crossed, const ActiveRows& rows, const std::vector<size_t>& lower,
                  LoweredBlock& block) {
   std::vector<CrossedCells> outside;
+  outside.reserve(lower.size());
   for (const size_t k : lower) outside.push_back(cells_outside(crossed, rows, gradients()[k].stencil));
   for_each_cell(lacking, [&](int x, int y, int z) {
-    std::uint8_t& taken = block.gradient[static_cast<size_t>(x * 64 + y * 8 + z)];
+    std::uint8_t& taken = block.gradient[node_number(x, y, z)];
     for (size_t i = 0; i < lower.size() && taken == 0; ++i)
       if (i + 1 == lower.size() || (outside[i].cells[x][y] >> z & 1) == 0) taken = static_cast<std::uint8_t>(1 + lower[i]);
   });
@@ -62,7 +66,7 @@ const GradientDescriptor& gradient_in_cell(const std::vector<LoweredBlock>& lowe
   const glm::ivec3 origin = (cell >> 3) << 3, place = cell - origin;
   const auto found = std::lower_bound(lowered.begin(), lowered.end(), origin, before);
   if (found == lowered.end() || found->origin != origin) return asked;
-  const std::uint8_t taken = found->gradient[static_cast<size_t>(place.x * 64 + place.y * 8 + place.z)];
+  const std::uint8_t taken = found->gradient[node_number(place.x, place.y, place.z)];
   return taken == 0 ? asked : gradients()[taken - size_t{1}];
 }
 

@@ -49,6 +49,7 @@ void field_values(DistanceEvaluator& distance, const LanePoints& points, LaneNum
   std::array<glm::dvec3, kMostLanePoints> places;
   for (size_t i = 0; i < points.count; ++i) places[i] = points.point(i);
   distance.evaluator.values(std::span(places).first(points.count), std::span(values.at).first(points.count));
+  std::fill(values.at + points.count, values.at + (points.count + 15) / 16 * 16, 0.0);
 }
 
 namespace {

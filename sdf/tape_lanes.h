@@ -45,8 +45,8 @@ struct LaneBounds {
 /// Memory for one thread.
 struct TapeScratch {
   std::vector<double> memory{};
-  std::vector<TapeChoice> choices{};  ///< What the last tape_bounds or tape_slope_bounds found, one a step.
-  std::vector<TapeStep> pruned{};
+  std::vector<TapeChoice> choices{};  ///< What the last tape_bounds, tape_slope_bounds or tape_distances found, one a step.
+  std::vector<TapeStep> pruned{};     ///< The steps of which tape_distances took jets last.
   double* registers(size_t doubles) {
     if (memory.size() < doubles + 8) memory.resize(doubles + 8);
     void* start = memory.data();

@@ -161,21 +161,25 @@ void drop_rough(Strand& curve) {
   if (good >= 4) curve.points.erase(std::remove_if(curve.points.begin(), curve.points.end(), rough), curve.points.end());
 }
 
-/// Where a sharp edge runs along the faces it crosses, neighbouring crossings may come out in the wrong order: of a sharp turn the point is
-/// dropped. Were it a corner of the curve, the refinement would find it again.
+/// Where a curve runs along the faces it crosses, neighbouring crossings may come out in the wrong order: of a sharp turn the point is
+/// dropped, also where a closed curve ends. Were it a corner of the curve, the refinement would find it again.
 void drop_backward(Strand& curve) {
   for (bool again = true; again && curve.points.size() > 8;) {
     again = false;
+    const auto turns_back = [](const CurvePoint& before, const CurvePoint& at, const CurvePoint& after) {
+      return glm::dot(at.p - before.p, after.p - at.p) < 0.0;
+    };
     std::vector<CurvePoint> kept = {curve.points[0]};
     for (size_t i = 1; i + 1 < curve.points.size(); ++i) {
-      const glm::dvec3 before = curve.points[i].p - kept.back().p, after = curve.points[i + 1].p - curve.points[i].p;
-      if (glm::dot(before, after) < 0.0) {
+      if (turns_back(kept.back(), curve.points[i], curve.points[i + 1]))
         again = true;
-      } else {
+      else
         kept.push_back(curve.points[i]);
-      }
     }
-    kept.push_back(curve.points.back());
+    if (curve.closed && turns_back(kept.back(), curve.points.back(), kept.front()))
+      again = true;
+    else
+      kept.push_back(curve.points.back());
     if (kept.size() < 6) return;
     curve.points = std::move(kept);
   }

@@ -57,8 +57,8 @@ std::string summary(const StabilityResults& results) {
   text += "\n";
   for (const StabilityCell& cell : results.cells) {
     if (cell.outcome != StabilityOutcome::wrong) continue;
-    text += fmt::format("wrong: {}, {}{}: {}\n       again: limn stability --case {} --seed {}\n", cell.case_name, cell.surface,
-                        cell.method.empty() ? "" : ", " + cell.method, cell.message, cell.case_name, cell.seed);
+    text += fmt::format("wrong: {}, {}{}: {}\n       again: limn stability --case {} --seed {} --draws {}\n", cell.case_name, cell.surface,
+                        cell.method.empty() ? "" : ", " + cell.method, cell.message, cell.case_name, cell.seed, cell.draw + 1);
   }
   return text;
 }

@@ -46,7 +46,7 @@ struct StabilityCell {
   std::string message{};                                     ///< What was found where, or the reason.
   std::vector<std::string> said{};                           ///< Notes, warnings and audit: what the program said of it itself.
   std::string picture{};                                     ///< Of the worst view, relative to results.json; empty: there is none.
-  std::uint64_t seed = 0;                                    ///< `limn stability --case NAME --seed SEED` runs the cell again.
+  std::uint64_t seed = 0;  ///< `limn stability --case NAME --seed SEED --draws DRAW+1` runs the cell again.
   std::vector<std::pair<std::string, double>> parameters{};  ///< As drawn.
 };
 

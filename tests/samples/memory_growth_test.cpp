@@ -40,7 +40,8 @@ TEST(MemoryGrowth, OfLargeMeshesNoListsAreMadeForEightSamplesAtOnce) {
   const std::vector<std::string> mesh{"--surface", "mesh", "--level", "5"};
   const double one = peak_bytes("640x400", 1, mesh), eight = peak_bytes("640x400", 8, mesh);
   EXPECT_GT(one, 60e6);
-  EXPECT_LT(eight, one + 12e6);
+  // Lists for eight would be 80 MB. Where others use the machine, one call takes up to 15 MB more than another.
+  EXPECT_LT(eight, one + 40e6);
 }
 
 }  // namespace

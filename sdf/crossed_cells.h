@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <glm/glm.hpp>
 
 namespace limn {
@@ -68,23 +69,40 @@ void for_each_cell(const CrossedCells& crossed, const Visit& visit) {
   }
 }
 
-/// Which of the nodes (x, y, 0..8) belong to crossed cells, as bits; x and y from 0 to 8.
-inline std::uint32_t nodes_at(const CrossedCells& crossed, int x, int y) {
-  std::uint32_t cells = 0;
-  for (int dx = x > 0 ? -1 : 0; dx <= (x < 8 ? 0 : -1); ++dx) {
-    for (int dy = y > 0 ? -1 : 0; dy <= (y < 8 ? 0 : -1); ++dy) cells |= crossed.cells[x + dx][y + dy];
+/// Bits along z of cells at (x, y), for all y at once: byte y of `rows`, and those at y = 8.
+struct CellPlane {
+  std::uint64_t rows;
+  std::uint32_t last;
+  std::uint32_t at(int y) const { return y < 8 ? static_cast<std::uint32_t>(rows >> (8 * y)) & 0xffu : last; }
+};
+
+/// The crossed ones at (x, y), `across_x` those at x - 1, too, and `across_y` those at y - 1; none outside of the block. x from 0 to 8.
+inline CellPlane cells_about(const CrossedCells& crossed, int x, bool across_x = true, bool across_y = true) {
+  const auto cells = [&](int at) {
+    std::uint64_t rows = 0;
+    if (at >= 0 && at < 8) std::memcpy(&rows, crossed.cells[at], sizeof rows);
+    return rows;
+  };
+  const std::uint64_t rows = cells(x) | (across_x ? cells(x - 1) : 0u);
+  if (!across_y) return {rows, 0};
+  return {rows | rows << 8, static_cast<std::uint32_t>(rows >> 56)};
+}
+
+/// Calls `visit(x, y, bits)` for each row of nodes (x, y, 0..8); bit z: whether a crossed cell has the node.
+template <class Visit>
+void for_each_node_row(const CrossedCells& crossed, const Visit& visit) {
+  for (int x = 0; x < 9; ++x) {
+    const CellPlane plane = cells_about(crossed, x);
+    for (int y = 0; y < 9; ++y) visit(x, y, plane.at(y) | plane.at(y) << 1);
   }
-  return cells | cells << 1;
 }
 
 /// Calls `visit(x, y, z)` for each node of a crossed cell.
 template <class Visit>
 void for_each_node(const CrossedCells& crossed, const Visit& visit) {
-  for (int x = 0; x < 9; ++x) {
-    for (int y = 0; y < 9; ++y) {
-      for (std::uint32_t bits = nodes_at(crossed, x, y); bits != 0; bits &= bits - 1) visit(x, y, std::countr_zero(bits));
-    }
-  }
+  for_each_node_row(crossed, [&](int x, int y, std::uint32_t row) {
+    for (std::uint32_t bits = row; bits != 0; bits &= bits - 1) visit(x, y, std::countr_zero(bits));
+  });
 }
 
 }  // namespace limn

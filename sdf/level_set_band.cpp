@@ -154,8 +154,8 @@ void count_band(const Block& block, double background, Counts& found) {
 
 float largest_at(const Block& block, const CrossedCells& crossed) {
   NodeBits nodes;
-  for (int x = 0; x < 9; ++x)
-    for (int y = 0; y < 9; ++y) nodes.set_row(static_cast<size_t>(x) + 1, static_cast<size_t>(y) + 1, nodes_at(crossed, x, y) << 1);
+  for_each_node_row(
+      crossed, [&](int x, int y, std::uint32_t row) { nodes.set_row(static_cast<size_t>(x) + 1, static_cast<size_t>(y) + 1, row << 1); });
   return largest_value(block.nodes, nodes);
 }
 

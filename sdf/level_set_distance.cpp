@@ -37,13 +37,6 @@ bool has_tape(DistanceEvaluator& distance) {
 
 }  // namespace
 
-void field_values(DistanceEvaluator& distance, std::span<const glm::dvec3> points, std::span<double> values) {
-  if (has_tape(distance))
-    tape_values_at(*distance.tape, points, distance.scratch, values);
-  else
-    distance.evaluator.values(points, values);
-}
-
 void field_values(DistanceEvaluator& distance, const LanePoints& points, LaneNumbers& values) {
   if (has_tape(distance)) return tape_values_at(*distance.tape, points, distance.scratch, values);
   std::array<glm::dvec3, kMostLanePoints> places;

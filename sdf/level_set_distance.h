@@ -28,12 +28,11 @@ struct DistanceEvaluator {
   TapeScratch scratch{};
 };
 
-/// f at each point, to the last bit as FieldEvaluator::values() has it; sizes equal, and points of a block filled up.
-void field_values(DistanceEvaluator& distance, std::span<const glm::dvec3> points, std::span<double> values);
+/// f at each point, to the last bit as FieldEvaluator::values() has it; points are filled up.
 void field_values(DistanceEvaluator& distance, const LanePoints& points, LaneNumbers& values);
 
 /// Signed distances at `points`, right to third order where |distance| <= half_width (world); beyond it only |distance| > half_width
-/// and the sign are. Exact fields are taken as they are. At most 512 points; sizes equal, and points of a block filled up.
+/// and the sign are. Exact fields are taken as they are. At most 512 points; sizes equal, and lanes filled up.
 void signed_distances(DistanceEvaluator& distance, std::span<const glm::dvec3> points, double half_width, std::span<double> distances);
 void signed_distances(DistanceEvaluator& distance, const LanePoints& points, double half_width, LaneNumbers& distances);
 

@@ -23,6 +23,30 @@ std::uint16_t every_fourth(size_t x) {
   return static_cast<std::uint16_t>(bits);
 }
 
+constexpr size_t kMostLines = kMostLanePoints / kSteps.size();
+
+/// Along normals, kSteps of each.
+struct NormalLines {
+  size_t count = 0;
+  LanePoints samples;
+  /// What counts as off the surface: along the edge of a box the normal of one face runs within the other.
+  std::array<double, kMostLines> clear;
+};
+
+/// Counts what is found along the lines, and takes them away.
+void look_along(DistanceEvaluator& distance, NormalLines& lines, ThinPlaces& found) {
+  LaneNumbers values;
+  lines.samples.fill_up();
+  field_values(distance, lines.samples, values);
+  for (size_t i = 0; i < lines.count; ++i) {
+    const auto along = std::span(values.at).subspan(i * kSteps.size(), kSteps.size());
+    ++found.looked_at;
+    found.walls += std::any_of(along.begin(), along.begin() + kInward, [&](double f) { return f > lines.clear[i]; });
+    found.gaps += std::any_of(along.begin() + kInward, along.end(), [&](double f) { return f < -lines.clear[i]; });
+  }
+  lines.count = lines.samples.count = 0;
+}
+
 }  // namespace
 
 ThinPlaces find_thin_places(DistanceEvaluator& distance, std::span<const std::uint16_t> first, const LanePoints& points,
@@ -45,25 +69,16 @@ ThinPlaces find_thin_places(DistanceEvaluator& distance, std::span<const std::ui
   if (count == 0) return found;
   distance.evaluator.gradients(std::span(near).first(count), std::span(values).first(count), std::span(gradients).first(count));
 
-  std::array<glm::dvec3, kMostLookedAt * kSteps.size()> samples;
-  std::array<double, kMostLookedAt>
-      clear;  // What counts as off the surface: along the edge of a box the normal of one face runs within the other.
-  size_t lines = 0, sample = 0;
+  NormalLines lines;
   for (size_t i = 0; i < count; ++i) {
     const double slope = glm::length(gradients[i]);
     if (!(slope > 0.0)) continue;
     const glm::dvec3 normal = gradients[i] / slope, foot = near[i] - near_distances[i] * normal;
-    clear[lines++] = 1e-3 * voxel_size * slope;
-    for (const double step : kSteps) samples[sample++] = foot + step * voxel_size * normal;
+    if (lines.count == kMostLines) look_along(distance, lines, found);
+    lines.clear[lines.count++] = 1e-3 * voxel_size * slope;
+    for (const double step : kSteps) lines.samples.add(foot + step * voxel_size * normal);
   }
-  std::array<double, kMostLookedAt * kSteps.size()> along_lines;
-  field_values(distance, std::span(samples).first(sample), std::span(along_lines).first(sample));
-  for (size_t i = 0; i < lines; ++i) {
-    const auto along = std::span(along_lines).subspan(i * kSteps.size(), kSteps.size());
-    ++found.looked_at;
-    found.walls += std::any_of(along.begin(), along.begin() + kInward, [&](double f) { return f > clear[i]; });
-    found.gaps += std::any_of(along.begin() + kInward, along.end(), [&](double f) { return f < -clear[i]; });
-  }
+  look_along(distance, lines, found);
   return found;
 }
 

@@ -20,9 +20,7 @@ struct LaneJets {
 /// f, its gradient and its Hessian at points[0][i], points[1][i], points[2][i] (world).
 void tape_jets(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch, LaneJets& jets);
 
-/// f at any number of points (world); sizes equal. Every bit is that of FieldEvaluator::values() where has_bits_of_field().
-void tape_values_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values);
-/// The same of a block's points, which are filled up.
+/// f at points that are filled up (world). Every bit is that of FieldEvaluator::values() where has_bits_of_field().
 void tape_values_at(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& values);
 /// f and its gradient at any number of points (world); sizes equal. Every bit is that of FieldEvaluator::gradients() of one point where
 /// has_bits_of_field().
@@ -31,7 +29,7 @@ void tape_gradients_at(const FieldTape& tape, std::span<const glm::dvec3> points
 /// False for metaballs, which lanes add in another order.
 bool has_bits_of_field(const FieldTape& tape);
 
-/// The distances that the jets tell at a block's points, which are filled up, and where they mean anything (distance_from_jet).
+/// The distances that the jets tell at points that are filled up, and where they mean anything (distance_from_jet).
 void tape_distances(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& distances, LaneFlags& reasonable);
 
 }  // namespace limn

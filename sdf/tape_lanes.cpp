@@ -52,19 +52,7 @@ void values(const FieldTape& tape, std::span<const TapeStep> steps, const LaneRa
   take(run_tape<Reals>(pass, steps, scratch), values);
 }
 
-void values_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, double* values) {
-  Pass pass(tape);
-  for (size_t first = 0; first < points.size(); first += kLanes) {
-    const size_t count = std::min<size_t>(kLanes, points.size() - first);
-    for (size_t i = 0; i < kLanes; ++i) {
-      const glm::dvec3& point = points[first + std::min(i, count - 1)];
-      for (int axis = 0; axis < 3; ++axis) pass.point[axis].lane[i] = point[axis];
-    }
-    std::copy_n(run_tape<Reals>(pass, tape.steps, scratch), count, values + first);
-  }
-}
-
-void values_at_lanes(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& values) {
+void values_at(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& values) {
   Pass pass(tape);
   for (size_t first = 0; first < points.count; first += kLanes) {
     for (size_t axis = 0; axis < 3; ++axis) take(points.at[axis] + first, pass.point[axis]);
@@ -122,7 +110,6 @@ namespace limn {
 namespace {
 HWY_EXPORT(values);
 HWY_EXPORT(values_at);
-HWY_EXPORT(values_at_lanes);
 HWY_EXPORT(slopes);
 HWY_EXPORT(gradients);
 HWY_EXPORT(bounds);
@@ -133,12 +120,8 @@ void tape_values(const FieldTape& tape, std::span<const TapeStep> steps, const L
                  LaneArray& values) {
   HWY_DYNAMIC_DISPATCH(values)(tape, steps, rays, s, scratch, values);
 }
-void tape_values_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values) {
-  LIMN_CHECK(points.size() == values.size());
-  HWY_DYNAMIC_DISPATCH(values_at)(tape, points, scratch, values.data());
-}
 void tape_values_at(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& values) {
-  HWY_DYNAMIC_DISPATCH(values_at_lanes)(tape, points, scratch, values);
+  HWY_DYNAMIC_DISPATCH(values_at)(tape, points, scratch, values);
 }
 bool has_bits_of_field(const FieldTape& tape) {
   static const ShapeFunctions* const metaballs = make_shape("metaballs").program().leaves.front().functions;

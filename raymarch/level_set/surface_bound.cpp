@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 
 #include "sdf/simd.h"
 
@@ -20,25 +18,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Rows of nodes along z: eight as vectors, the ninth, which the next row's first follows, on its own.
 constexpr int kRow = 8;
-
-/// Bits along z of what crossed cells hold at (x, y), for all y at once: byte y of `rows`, and those at y = 8.
-struct PlaneBits {
-  std::uint64_t rows;
-  std::uint32_t last;
-  HWY_INLINE std::uint32_t at(int y) const { return y < 8 ? static_cast<std::uint32_t>(rows >> (8 * y)) & 0xffu : last; }
-};
-
-/// Cells at (x, y), `across_x` those at x - 1, too, and `across_y` those at y - 1; none outside of the brick.
-HWY_INLINE PlaneBits plane_bits(const CrossedCells& crossed, int x, bool across_x, bool across_y) {
-  const auto cells = [&](int at) {
-    std::uint64_t rows = 0;
-    if (at >= 0 && at < kBrickCells) std::memcpy(&rows, crossed.cells[at], sizeof rows);
-    return rows;
-  };
-  const std::uint64_t rows = cells(x) | (across_x ? cells(x - 1) : 0u);
-  if (!across_y) return {rows, 0};
-  return {rows | rows << 8, static_cast<std::uint32_t>(rows >> 56)};
-}
 
 template <class Tag>
 HWY_INLINE hn::Mask<Tag> mask_of(Tag tag, std::uint32_t bits) {
@@ -57,7 +36,7 @@ void measure_edges(const std::int16_t* values, int axis, BrickShape& shape) {
   int last_least = shape.least[axis], last_greatest = shape.greatest[axis], last_sum = 0, last_edges = 0;
   const auto one = hn::Set(whole, 1);
   for (int x = 0; x < (axis == 0 ? 8 : 9); ++x) {
-    const PlaneBits plane = plane_bits(shape.crossed, x, axis != 0, axis != 1);
+    const CellPlane plane = cells_about(shape.crossed, x, axis != 0, axis != 1);
     for (int y = 0; y < (axis == 1 ? 8 : 9); ++y) {
       // Bit z: whether (x, y, z) is the first node of an edge along `axis` of a crossed cell.
       const std::uint32_t cells = plane.at(y), bits = axis == 2 ? cells : cells | cells << 1;
@@ -112,7 +91,7 @@ void bound_rests(const BrickInCube& part, const double* normal, double& least, d
   const auto along_z = hn::Set(real, normal[2]), first = hn::Iota(real, static_cast<double>(part.place.z));
   const CrossedCells& crossed = part.shape->crossed;
   for (int x = 0; x < kBrickNodes; ++x) {
-    const PlaneBits plane = plane_bits(crossed, x, true, true);
+    const CellPlane plane = cells_about(crossed, x);
     for (int y = 0; y < kBrickNodes; ++y) {
       const std::uint32_t cells = plane.at(y), bits = cells | cells << 1;
       if (bits == 0) continue;

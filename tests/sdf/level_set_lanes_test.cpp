@@ -151,24 +151,23 @@ void expect_slopes(std::mt19937& random) {
   }
 }
 
-/// `expect(random)` with every SIMD target of the machine.
+/// Whether `expect(random)` holds with every SIMD target of the machine.
 template <class Expect>
-void on_every_target(const Expect& expect) {
+bool holds_on_every_target(const Expect& expect) {
   std::mt19937 random(random_seed());
   int targets = 0;
   for_each_simd_target([&](const char* target) {
     SCOPED_TRACE(target);
     expect(random);
-    EXPECT_FALSE(testing::Test::HasFatalFailure());
     ++targets;
   });
-  EXPECT_GE(targets, 1);
+  return targets > 0 && !testing::Test::HasFailure();
 }
 
-TEST(LevelSetLanes, PointsNearTheSurfaceAreThoseThatOneByOneLookingFinds) { on_every_target(expect_near_points); }
-TEST(LevelSetLanes, FlagsSayWhichNumbersAreWithin) { on_every_target(expect_flags); }
-TEST(LevelSetLanes, DistancesComeToTheirNodesAndNoOthersChange) { on_every_target(expect_distances_put); }
-TEST(BandSlopes, AreThoseOfCentralDifferencesAtEachCrossedEdge) { on_every_target(expect_slopes); }
+TEST(LevelSetLanes, PointsNearTheSurfaceAreThoseThatOneByOneLookingFinds) { EXPECT_TRUE(holds_on_every_target(expect_near_points)); }
+TEST(LevelSetLanes, FlagsSayWhichNumbersAreWithin) { EXPECT_TRUE(holds_on_every_target(expect_flags)); }
+TEST(LevelSetLanes, DistancesComeToTheirNodesAndNoOthersChange) { EXPECT_TRUE(holds_on_every_target(expect_distances_put)); }
+TEST(BandSlopes, AreThoseOfCentralDifferencesAtEachCrossedEdge) { EXPECT_TRUE(holds_on_every_target(expect_slopes)); }
 
 }  // namespace
 }  // namespace limn::test

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <random>
 
@@ -96,6 +97,33 @@ TEST(NodeBits, AreThoseOfAPlainLoopOnEveryTarget) {
     ++targets;
   });
   EXPECT_GE(targets, 1);
+}
+
+TEST(CrossedCells, HoldTheNodesOfTheirCornersAndNoOthers) {
+  std::mt19937 random(random_seed());
+  for (int round = 0; round < 200; ++round) {
+    CrossedCells crossed;
+    bool expected[9][9][9] = {}, found[9][9][9] = {};
+    for (int k = static_cast<int>(random() % 40); k >= 0; --k) {
+      const size_t x = random() % 8, y = random() % 8, z = random() % 8;
+      crossed.cells[x][y] = static_cast<std::uint8_t>(crossed.cells[x][y] | 1u << z);
+      for (size_t corner = 0; corner < 8; ++corner) expected[x + (corner & 1)][y + (corner >> 1 & 1)][z + (corner >> 2)] = true;
+    }
+    for_each_node(crossed, [&](int x, int y, int z) {
+      EXPECT_FALSE(found[x][y][z]) << "twice";
+      found[x][y][z] = true;
+    });
+    ASSERT_EQ(std::memcmp(found, expected, sizeof found), 0);
+    // Along one axis alone, as edges have their cells.
+    for (int x = 0; x < 8; ++x) {
+      const CellPlane beside = cells_about(crossed, x, false, true), behind = cells_about(crossed, x, true, false);
+      for (int y = 0; y < 8; ++y) {
+        ASSERT_EQ(beside.at(y), crossed.cells[x][y] | (y > 0 ? crossed.cells[x][y - 1] : 0));
+        ASSERT_EQ(behind.at(y), crossed.cells[x][y] | (x > 0 ? crossed.cells[x - 1][y] : 0));
+      }
+      ASSERT_EQ(beside.at(8), crossed.cells[x][7]);
+    }
+  }
 }
 
 TEST(NodeBits, GiveTheCrossedCellsOfTheNodesThemselves) {

@@ -13,14 +13,8 @@ namespace limn::test {
 /// Takes the widest target again when it goes.
 class ChosenTarget {
  public:
-  explicit ChosenTarget(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-  }
-  ~ChosenTarget() {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
+  explicit ChosenTarget(std::int64_t target) { hwy::GetChosenTarget().Update(target); }
+  ~ChosenTarget() { hwy::GetChosenTarget().Update(hwy::SupportedTargets()); }
   ChosenTarget(const ChosenTarget&) = delete;
   ChosenTarget& operator=(const ChosenTarget&) = delete;
 };

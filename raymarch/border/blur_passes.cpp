@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
+#include <memory>
 
+#include "raymarch/border/filter_module.h"
 #include "raymarch/gbuffer/picture_rows.h"
 #include "sdf/parallel.h"
 
@@ -29,25 +29,25 @@ void blur_lines(int width, int height, BlurKernel kernel, int radius_px, const s
   // Twice the radius and more, or the lines that neighbouring bands both filter would be most of the work.
   const int band_rows = std::max(64, 2 * taps);
   const std::vector<float> weights = blur_taps(kernel, radius_px);
+  const FilterModule& filters = filter_module();
+  const auto line = static_cast<size_t>(width);
   parallel_for(0, (height + band_rows - 1) / band_rows, [&](int band) {
     const int y0 = band * band_rows, y1 = std::min(height, y0 + band_rows);
-    cv::Mat source(y1 - y0 + 2 * radius_px, width, CV_32F), blurred(y1 - y0, width, CV_32F);
-    for (int row = 0; row < source.rows; ++row) {
-      const int y = std::clamp(y0 - radius_px + row, 0, height - 1);
-      if (row > 0 && y == std::clamp(y0 - radius_px + row - 1, 0, height - 1)) {
-        source.row(row - 1).copyTo(source.row(row));
+    const auto rows = static_cast<size_t>(y1 - y0), read_rows = rows + 2 * static_cast<size_t>(radius_px);
+    const auto source = std::make_unique_for_overwrite<float[]>(read_rows * line),
+               blurred = std::make_unique_for_overwrite<float[]>(rows * line);
+    for (size_t row = 0; row < read_rows; ++row) {
+      const int y = y0 - radius_px + static_cast<int>(row), inside = std::clamp(y, 0, height - 1);
+      float* const to = source.get() + row * line;
+      if (row > 0 && inside == std::clamp(y - 1, 0, height - 1)) {
+        std::copy_n(to - line, line, to);
       } else {
-        read(y, source.ptr<float>(row));
+        read(inside, to);
       }
     }
-    // A part of a matrix: the filters see the true lines above and below it.
-    const cv::Mat middle = source.rowRange(radius_px, radius_px + y1 - y0);
-    if (kernel == BlurKernel::box) {
-      cv::boxFilter(middle, blurred, CV_32F, {taps, taps}, {-1, -1}, true, cv::BORDER_REPLICATE);
-    } else {
-      cv::sepFilter2D(middle, blurred, CV_32F, weights, weights, {-1, -1}, 0.0, cv::BORDER_REPLICATE);
-    }
-    for (int y = y0; y < y1; ++y) write(y, blurred.ptr<float>(y - y0));
+    const FilterBand lines{source.get(), blurred.get(), width, y1 - y0, radius_px};
+    kernel == BlurKernel::box ? filters.blur_box(lines) : filters.blur_separably(lines, weights);
+    for (size_t row = 0; row < rows; ++row) write(y0 + static_cast<int>(row), blurred.get() + row * line);
   });
 }
 

@@ -1,7 +1,11 @@
 #include "samples/stability/case_context.h"
 
 #include <fmt/format.h>
-#include <hwy/targets.h>
+
+#include "sdf/simd.h"
+// clang-format off: which targets, before the header that asks.
+#include <hwy/highway.h>
+// clang-format on
 
 #include <algorithm>
 #include <glm/gtc/quaternion.hpp>
@@ -24,22 +28,17 @@ class SimdChoice {
  public:
   explicit SimdChoice(bool least) : least_(least) {
     if (!least_) return;
-    const auto all = static_cast<std::int64_t>(hwy::SupportedTargets());
-    std::int64_t slowest = all;
+    std::int64_t slowest = hwy::SupportedTargets() & HWY_TARGETS;
     while ((slowest & (slowest - 1)) != 0) slowest &= slowest - 1;
-    choose(slowest);
+    hwy::GetChosenTarget().Update(slowest);
   }
   ~SimdChoice() {
-    if (least_) choose(0);
+    if (least_) hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   }
   SimdChoice(const SimdChoice&) = delete;
   SimdChoice& operator=(const SimdChoice&) = delete;
 
  private:
-  static void choose(std::int64_t targets) {
-    hwy::SetSupportedTargetsForTest(targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
   bool least_;
 };
 

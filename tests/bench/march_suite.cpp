@@ -131,10 +131,8 @@ json simd_rows(const std::vector<Contestant>& contestants, const BenchCase& it, 
     for (std::int64_t target = 1; target > 0 && target <= all; target <<= 1) {
       // Lower bits are the better targets.
       if (!(all & target) || (all & (target - 1)) == 0) continue;
-      hwy::SetSupportedTargetsForTest(all & ~(target - 1));
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+      hwy::GetChosenTarget().Update(all & ~(target - 1));
       contestant.draw();
-      hwy::SetSupportedTargetsForTest(0);
       hwy::GetChosenTarget().Update(hwy::SupportedTargets());
       contestant.take(narrow);
       double worst = 0.0;

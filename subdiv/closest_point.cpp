@@ -1,11 +1,10 @@
-#include <embree3/rtcore.h>
-
 #include <cmath>
 #include <limits>
 
 #include "sdf/apart_from_loops.h"
 #include "sdf/error.h"
 #include "sdf/segment.h"
+#include "subdiv/embree_module.h"
 #include "subdiv/mesh_distance.h"
 
 namespace limn {
@@ -69,33 +68,33 @@ ClosestPointData::ClosestPointData(const TriangleMesh& mesh) : positions(mesh.po
     for (int i = 0; i < 3; ++i) box = include(box, positions[t[i]]);
   center = box.empty() ? glm::dvec3(0.0) : box.center();
   extent = box.radius();
-  RTCDevice rtc_device = rtcNewDevice(nullptr);
+  RTCDevice rtc_device = embree().rtcNewDevice(nullptr);
   if (rtc_device == nullptr) throw MachineError("Embree could not start: out of memory, most likely");
-  RTCScene rtc_scene = rtcNewScene(rtc_device);
-  rtcSetSceneFlags(rtc_scene, RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(rtc_device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  RTCScene rtc_scene = embree().rtcNewScene(rtc_device);
+  embree().rtcSetSceneFlags(rtc_scene, RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = embree().rtcNewGeometry(rtc_device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertices = static_cast<float*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
+      embree().rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
   for (size_t i = 0; i < positions.size(); ++i) {
     const glm::vec3 p(positions[i] - center);
     vertices[3 * i] = p.x, vertices[3 * i + 1] = p.y, vertices[3 * i + 2] = p.z;
   }
   auto* indices = static_cast<unsigned*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), triangles.size()));
+      embree().rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), triangles.size()));
   for (size_t i = 0; i < triangles.size(); ++i)
     for (int k = 0; k < 3; ++k) indices[3 * i + static_cast<size_t>(k)] = triangles[i][k];
-  rtcSetGeometryPointQueryFunction(geometry, visit);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(rtc_scene, geometry);
-  rtcReleaseGeometry(geometry);
-  apart_from_loops([&] { rtcCommitScene(rtc_scene); });
+  embree().rtcSetGeometryPointQueryFunction(geometry, visit);
+  embree().rtcCommitGeometry(geometry);
+  embree().rtcAttachGeometry(rtc_scene, geometry);
+  embree().rtcReleaseGeometry(geometry);
+  apart_from_loops([&] { embree().rtcCommitScene(rtc_scene); });
   device = rtc_device, scene = rtc_scene;
-  if (rtcGetDeviceError(rtc_device) != RTC_ERROR_NONE) throw MachineError("Embree could not arrange the triangles");
+  if (embree().rtcGetDeviceError(rtc_device) != RTC_ERROR_NONE) throw MachineError("Embree could not arrange the triangles");
 }
 
 ClosestPointData::~ClosestPointData() {
-  if (scene != nullptr) rtcReleaseScene(static_cast<RTCScene>(scene));
-  if (device != nullptr) rtcReleaseDevice(static_cast<RTCDevice>(device));
+  if (scene != nullptr) embree().rtcReleaseScene(static_cast<RTCScene>(scene));
+  if (device != nullptr) embree().rtcReleaseDevice(static_cast<RTCDevice>(device));
 }
 
 std::optional<ClosestPoint> ClosestPointData::within(const glm::dvec3& point, double radius, std::span<const std::uint32_t> likely) const {
@@ -115,7 +114,7 @@ std::optional<ClosestPoint> ClosestPointData::within(const glm::dvec3& point, do
   query.radius = query_radius(std::sqrt(search.best_squared), search.slack);
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
-  rtcPointQuery(static_cast<RTCScene>(scene), &query, &context, nullptr, &search);
+  embree().rtcPointQuery(static_cast<RTCScene>(scene), &query, &context, nullptr, &search);
   if (search.triangle >= triangles.size()) return std::nullopt;
   return ClosestPoint{std::sqrt(search.best_squared), search.closest, search.triangle};
 }

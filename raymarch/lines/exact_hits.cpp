@@ -1,7 +1,5 @@
 #include "raymarch/lines/exact_hits.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +10,7 @@
 #include "raymarch/mesh/embree_device.h"
 #include "sdf/apart_from_loops.h"
 #include "sdf/error.h"
+#include "subdiv/embree_module.h"
 
 namespace limn {
 namespace {
@@ -53,8 +52,8 @@ struct ExactHits::Tree {
   RTCScene scene = nullptr;
 
   ~Tree() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
+    if (scene != nullptr) embree().rtcReleaseScene(scene);
+    if (device != nullptr) embree().rtcReleaseDevice(device);
   }
 
   std::array<glm::dvec3, 3> corners_of(std::uint32_t triangle) const {
@@ -89,20 +88,20 @@ ExactHits::ExactHits(std::span<const glm::dvec3> positions, std::span<const Laye
   tree_->triangles = triangles;
   tree_->pad = kPad * extent;
   tree_->device = shared_embree_device();
-  tree_->scene = rtcNewScene(tree_->device);
-  rtcSetSceneFlags(tree_->scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(tree_->scene, RTC_BUILD_QUALITY_LOW);
-  RTCGeometry geometry = rtcNewGeometry(tree_->device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(triangles.size()));
-  rtcSetGeometryUserData(geometry, tree_.get());
-  rtcSetGeometryBoundsFunction(geometry, Tree::bound, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, Tree::meet);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(tree_->scene, geometry);
-  rtcReleaseGeometry(geometry);
-  apart_from_loops([this] { rtcCommitScene(tree_->scene); });
-  if (rtcGetDeviceError(tree_->device) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
+  tree_->scene = embree().rtcNewScene(tree_->device);
+  embree().rtcSetSceneFlags(tree_->scene, RTC_SCENE_FLAG_ROBUST);
+  embree().rtcSetSceneBuildQuality(tree_->scene, RTC_BUILD_QUALITY_LOW);
+  RTCGeometry geometry = embree().rtcNewGeometry(tree_->device, RTC_GEOMETRY_TYPE_USER);
+  embree().rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
+  embree().rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(triangles.size()));
+  embree().rtcSetGeometryUserData(geometry, tree_.get());
+  embree().rtcSetGeometryBoundsFunction(geometry, Tree::bound, nullptr);
+  embree().rtcSetGeometryIntersectFunction(geometry, Tree::meet);
+  embree().rtcCommitGeometry(geometry);
+  embree().rtcAttachGeometry(tree_->scene, geometry);
+  embree().rtcReleaseGeometry(geometry);
+  apart_from_loops([this] { embree().rtcCommitScene(tree_->scene); });
+  if (embree().rtcGetDeviceError(tree_->device) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
 }
 
 ExactHits::~ExactHits() = default;
@@ -118,7 +117,7 @@ std::vector<SegmentHit> ExactHits::through(const Segment& segment) const {
   ray.ray.tnear = 0.0f, ray.ray.tfar = 1.0f;
   ray.ray.mask = 0xffffffffu;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(tree_->scene, &query.context, &ray);
+  embree().rtcIntersect1(tree_->scene, &query.context, &ray);
   std::sort(query.hits.begin(), query.hits.end(),
             [](const SegmentHit& a, const SegmentHit& b) { return std::tie(a.share, a.triangle) < std::tie(b.share, b.triangle); });
   return std::move(query.hits);

@@ -1,7 +1,5 @@
 #include "raymarch/lines/mesh_tree.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -13,6 +11,7 @@
 #include "sdf/error.h"
 #include "sdf/once_alone.h"
 #include "sdf/parallel.h"
+#include "subdiv/embree_module.h"
 
 namespace limn {
 namespace {
@@ -55,8 +54,8 @@ struct MeshTree::Embree {
   RTCDevice device = nullptr;
   RTCScene tree = nullptr;
   ~Embree() {
-    if (tree != nullptr) rtcReleaseScene(tree);
-    if (device != nullptr) rtcReleaseDevice(device);
+    if (tree != nullptr) embree().rtcReleaseScene(tree);
+    if (device != nullptr) embree().rtcReleaseDevice(device);
   }
 };
 
@@ -110,16 +109,16 @@ void MeshTree::weld() {
 
 void MeshTree::build() const {
   embree_->device = shared_embree_device();
-  embree_->tree = rtcNewScene(embree_->device);
-  rtcSetSceneFlags(embree_->tree, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  embree_->tree = embree().rtcNewScene(embree_->device);
+  embree().rtcSetSceneFlags(embree_->tree, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
   // Few rays are asked: a better tree takes longer to build than they save.
-  rtcSetSceneBuildQuality(embree_->tree, RTC_BUILD_QUALITY_LOW);
-  RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                               std::max<size_t>(positions_.size(), 1)));
-  auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
-                                                                 std::max<size_t>(triangles_.size(), 1)));
+  embree().rtcSetSceneBuildQuality(embree_->tree, RTC_BUILD_QUALITY_LOW);
+  RTCGeometry geometry = embree().rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  embree().rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
+  auto* vertices = static_cast<float*>(embree().rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                        3 * sizeof(float), std::max<size_t>(positions_.size(), 1)));
+  auto* corners = static_cast<unsigned*>(embree().rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                          3 * sizeof(unsigned), std::max<size_t>(triangles_.size(), 1)));
   if (vertices == nullptr || corners == nullptr) throw MachineError("Embree could not build its tree over the mesh");
   parallel_parts(positions_.size(), kPart, [&](const IndexRange<size_t>& range) {
     for (size_t i = range.begin(); i < range.end(); ++i) {
@@ -130,11 +129,11 @@ void MeshTree::build() const {
     for (size_t i = range.begin(); i < range.end(); ++i)
       std::copy(triangles_[i].corners.begin(), triangles_[i].corners.end(), corners + 3 * i);
   });
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(embree_->tree, geometry);
-  rtcReleaseGeometry(geometry);
-  apart_from_loops([this] { rtcCommitScene(embree_->tree); });
-  if (rtcGetDeviceError(embree_->device) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
+  embree().rtcCommitGeometry(geometry);
+  embree().rtcAttachGeometry(embree_->tree, geometry);
+  embree().rtcReleaseGeometry(geometry);
+  apart_from_loops([this] { embree().rtcCommitScene(embree_->tree); });
+  if (embree().rtcGetDeviceError(embree_->device) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
 }
 
 std::vector<LayerHit> MeshTree::hits_along(const glm::dvec3& origin, const glm::dvec3& direction, double end) const {
@@ -159,7 +158,7 @@ std::vector<LayerHit> MeshTree::hits_along(const glm::dvec3& origin, const glm::
   query.ray.mask = 0xffffffffu;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   once_alone(built_, [&] { build(); });
-  rtcIntersect1(embree_->tree, &collector.context, &query);
+  embree().rtcIntersect1(embree_->tree, &collector.context, &query);
   std::vector<LayerHit>& hits = collector.hits;
   std::sort(hits.begin(), hits.end(),
             [](const LayerHit& a, const LayerHit& b) { return std::tie(a.t, a.triangle) < std::tie(b.t, b.triangle); });

@@ -1,15 +1,14 @@
 #include "raymarch/mesh/embree_device.h"
 
-#include <embree3/rtcore.h>
-
 #include "sdf/error.h"
+#include "subdiv/embree_module.h"
 
 namespace limn {
 
 RTCDeviceTy* shared_embree_device() {
-  static const RTCDevice device = rtcNewDevice(nullptr);
+  static const RTCDevice device = embree().rtcNewDevice(nullptr);
   if (device == nullptr) throw MachineError("Embree could not start: out of memory, most likely");
-  rtcRetainDevice(device);
+  embree().rtcRetainDevice(device);
   return device;
 }
 

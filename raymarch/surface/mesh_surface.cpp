@@ -2,8 +2,6 @@
 // slip through between the corners that meet at a vertex (two of a thousand rays aimed at the vertices of a globe, in its robust
 // mode). One ray at a time, although Embree knows packets: a pixel must not depend on its neighbours.
 
-#include <embree3/rtcore.h>
-
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -21,16 +19,17 @@
 #include "sdf/error.h"
 #include "sdf/once_alone.h"
 #include "sdf/parallel.h"
+#include "subdiv/embree_module.h"
 #include "subdiv/first_hits.h"
 
 namespace limn {
 namespace {
 
 struct EmbreeDevice {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCDevice device) const { embree().rtcReleaseDevice(device); }
 };
 struct EmbreeScene {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  void operator()(RTCScene scene) const { embree().rtcReleaseScene(scene); }
 };
 template <class Handle, class Release>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
@@ -126,31 +125,31 @@ void bound_triangle(const RTCBoundsFunctionArguments* arguments) {
 }
 
 void attach_triangles(const MeshState& state) {
-  const auto geometry = rtcNewGeometry(state.device.get(), RTC_GEOMETRY_TYPE_USER);
+  const auto geometry = embree().rtcNewGeometry(state.device.get(), RTC_GEOMETRY_TYPE_USER);
   // The scene's quality does not hold for what is within it. A tree of better quality takes three times as long to build, and rays save
   // less.
-  rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(state.mesh->triangles.size()));
+  embree().rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
+  embree().rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(state.mesh->triangles.size()));
   // Embree takes no const; what it is handed back is read only.
-  rtcSetGeometryUserData(geometry, const_cast<TriangleMesh*>(state.mesh.get()));
-  rtcSetGeometryBoundsFunction(geometry, bound_triangle, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, test_candidate);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(state.scene.get(), geometry);
-  rtcReleaseGeometry(geometry);
+  embree().rtcSetGeometryUserData(geometry, const_cast<TriangleMesh*>(state.mesh.get()));
+  embree().rtcSetGeometryBoundsFunction(geometry, bound_triangle, nullptr);
+  embree().rtcSetGeometryIntersectFunction(geometry, test_candidate);
+  embree().rtcCommitGeometry(geometry);
+  embree().rtcAttachGeometry(state.scene.get(), geometry);
+  embree().rtcReleaseGeometry(geometry);
 }
 
 void build_tree(const MeshState& state) {
   state.device.reset(shared_embree_device());
-  state.scene.reset(rtcNewScene(state.device.get()));
-  rtcSetSceneFlags(state.scene.get(), RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(state.scene.get(), RTC_BUILD_QUALITY_LOW);
+  state.scene.reset(embree().rtcNewScene(state.device.get()));
+  embree().rtcSetSceneFlags(state.scene.get(), RTC_SCENE_FLAG_ROBUST);
+  embree().rtcSetSceneBuildQuality(state.scene.get(), RTC_BUILD_QUALITY_LOW);
   attach_triangles(state);
   {
     const parallel_detail::Loop loop("Embree's own, over bound_triangle");
-    apart_from_loops([&state] { rtcCommitScene(state.scene.get()); });
+    apart_from_loops([&state] { embree().rtcCommitScene(state.scene.get()); });
   }
-  if (rtcGetDeviceError(state.device.get()) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
+  if (embree().rtcGetDeviceError(state.device.get()) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
 }
 
 RTCScene tree_of(const MeshState& state) {
@@ -224,7 +223,7 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
     RTCRayHit ray = embree_ray(rays, i);
     RayContext context{{}, {glm::dvec3(rays.origin(i)), glm::dvec3(rays.direction(i))}, rays.t_min[i], rays.t_max[i], {}};
     rtcInitIntersectContext(&context.context);
-    rtcIntersect1(tree, &context.context, &ray);
+    embree().rtcIntersect1(tree, &context.context, &ray);
     const TriangleHit& hit = context.nearest;
     // Rounding to float may reach t_max, which a hit must not.
     if (static_cast<float>(hit.t) < rays.t_max[i]) write_hit(state, hit, i, hits);

@@ -1,7 +1,5 @@
 #include "samples/study/chart_canvas.h"
 
-#include <cairo-svg.h>
-#include <cairo.h>
 #include <fmt/format.h>
 
 #include <array>
@@ -13,6 +11,7 @@
 #include <sstream>
 
 #include "raymarch/files/png_file.h"
+#include "samples/output/cairo_module.h"
 #include "samples/page/html.h"
 #include "sdf/error.h"
 #include "sdf/output_together.h"
@@ -32,16 +31,17 @@ constexpr std::array<ChartColor, 7> kStyleColors = {{{0.000, 0.447, 0.698},
 struct Surface {
   cairo_surface_t* surface;
   cairo_t* context;
-  explicit Surface(cairo_surface_t* made) : surface(made), context(cairo_create(made)) {}
+  explicit Surface(cairo_surface_t* made) : surface(made), context(cairo().create(made)) {}
   Surface(const Surface&) = delete;
   Surface& operator=(const Surface&) = delete;
   ~Surface() {
-    cairo_destroy(context);
-    cairo_surface_destroy(surface);
+    cairo().destroy(context);
+    cairo().surface_destroy(surface);
   }
   void check() const {
-    const cairo_status_t status = cairo_status(context) != CAIRO_STATUS_SUCCESS ? cairo_status(context) : cairo_surface_status(surface);
-    if (status != CAIRO_STATUS_SUCCESS) throw MachineError(fmt::format("a chart could not be drawn: {}", cairo_status_to_string(status)));
+    const cairo_status_t status =
+        cairo().status(context) != CAIRO_STATUS_SUCCESS ? cairo().status(context) : cairo().surface_status(surface);
+    if (status != CAIRO_STATUS_SUCCESS) throw MachineError(fmt::format("a chart could not be drawn: {}", cairo().status_to_string(status)));
   }
 };
 
@@ -51,9 +51,9 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned int lengt
 }
 
 void paint(const Surface& target, double width, double height, const std::function<void(ChartCanvas&)>& draw) {
-  cairo_set_source_rgb(target.context, 1.0, 1.0, 1.0);
-  cairo_rectangle(target.context, 0.0, 0.0, width, height);
-  cairo_fill(target.context);
+  cairo().set_source_rgb(target.context, 1.0, 1.0, 1.0);
+  cairo().rectangle(target.context, 0.0, 0.0, width, height);
+  cairo().fill(target.context);
   ChartCanvas canvas(target.context, width, height);
   draw(canvas);
 }
@@ -62,10 +62,10 @@ std::string svg_of(double width, double height, const std::string& title, const 
                    const std::function<void(ChartCanvas&)>& draw) {
   std::string bytes;
   {
-    const Surface target(cairo_svg_surface_create_for_stream(append, &bytes, width, height));
-    cairo_svg_surface_set_document_unit(target.surface, CAIRO_SVG_UNIT_PX);
+    const Surface target(cairo().svg_surface_create_for_stream(append, &bytes, width, height));
+    cairo().svg_surface_set_document_unit(target.surface, CAIRO_SVG_UNIT_PX);
     paint(target, width, height, draw);
-    cairo_surface_finish(target.surface);
+    cairo().surface_finish(target.surface);
     target.check();
   }
   // Cairo counts the surfaces of the whole process and names the outermost group by that, which nothing refers to.
@@ -80,14 +80,14 @@ std::string svg_of(double width, double height, const std::string& title, const 
 std::string png_of(double width, double height, const std::function<void(ChartCanvas&)>& draw) {
   constexpr double kScale = 2.0;
   const int width_px = static_cast<int>(kScale * width), height_px = static_cast<int>(kScale * height);
-  const Surface target(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px));
-  cairo_scale(target.context, kScale, kScale);
+  const Surface target(cairo().image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px));
+  cairo().scale(target.context, kScale, kScale);
   paint(target, width, height, draw);
   target.check();
-  cairo_surface_flush(target.surface);
+  cairo().surface_flush(target.surface);
   // Cairo's own PNG writer takes ten times as long. A pixel is a number of 32 bits: red, green and blue in the lower three bytes.
-  const unsigned char* const data = cairo_image_surface_get_data(target.surface);
-  const auto stride = static_cast<size_t>(cairo_image_surface_get_stride(target.surface));
+  const unsigned char* const data = cairo().image_surface_get_data(target.surface);
+  const auto stride = static_cast<size_t>(cairo().image_surface_get_stride(target.surface));
   std::vector<std::uint8_t> pixels;
   pixels.reserve(3 * static_cast<size_t>(width_px) * static_cast<size_t>(height_px));
   for (size_t y = 0; y < static_cast<size_t>(height_px); ++y) {
@@ -102,8 +102,8 @@ std::string png_of(double width, double height, const std::function<void(ChartCa
 }
 
 void choose_font(cairo_t* context, const ChartText& style) {
-  cairo_select_font_face(context, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(context, style.size_px);
+  cairo().select_font_face(context, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo().set_font_size(context, style.size_px);
 }
 
 std::vector<ChartPoint> corners(const ChartPoint& at, size_t shape, double r) {
@@ -132,11 +132,11 @@ std::vector<ChartPoint> corners(const ChartPoint& at, size_t shape, double r) {
 
 ChartColor style_color(size_t style) { return kStyleColors[style % kStyleColors.size()]; }
 
-void ChartCanvas::set(const ChartColor& color) { cairo_set_source_rgba(context_, color.red, color.green, color.blue, color.alpha); }
+void ChartCanvas::set(const ChartColor& color) { cairo().set_source_rgba(context_, color.red, color.green, color.blue, color.alpha); }
 
 void ChartCanvas::trace(const std::vector<ChartPoint>& points) {
-  cairo_new_path(context_);
-  for (const ChartPoint& point : points) cairo_line_to(context_, point.x, point.y);
+  cairo().new_path(context_);
+  for (const ChartPoint& point : points) cairo().line_to(context_, point.x, point.y);
 }
 
 void ChartCanvas::line(const std::vector<ChartPoint>& points, const ChartColor& color, double thickness, bool dashed) {
@@ -144,17 +144,17 @@ void ChartCanvas::line(const std::vector<ChartPoint>& points, const ChartColor& 
   const double dash[] = {5.0, 4.0};
   set(color);
   trace(points);
-  cairo_set_line_width(context_, thickness);
-  cairo_set_line_join(context_, CAIRO_LINE_JOIN_ROUND);
-  cairo_set_dash(context_, dash, dashed ? 2 : 0, 0.0);
-  cairo_stroke(context_);
+  cairo().set_line_width(context_, thickness);
+  cairo().set_line_join(context_, CAIRO_LINE_JOIN_ROUND);
+  cairo().set_dash(context_, dash, dashed ? 2 : 0, 0.0);
+  cairo().stroke(context_);
 }
 
 void ChartCanvas::area(const std::vector<ChartPoint>& points, const ChartColor& color) {
   set(color);
   trace(points);
-  cairo_close_path(context_);
-  cairo_fill(context_);
+  cairo().close_path(context_);
+  cairo().fill(context_);
 }
 
 void ChartCanvas::box(const ChartBox& place, const ChartColor& color) {
@@ -177,41 +177,41 @@ void ChartCanvas::frame(const ChartBox& place, const ChartColor& color) {
 void ChartCanvas::marker(const ChartPoint& at, size_t style, double radius, bool filled) {
   const size_t shape = style % kMarkers;
   if (shape == 0) {
-    cairo_new_path(context_);
-    cairo_arc(context_, at.x, at.y, radius, 0.0, 2.0 * std::numbers::pi);
+    cairo().new_path(context_);
+    cairo().arc(context_, at.x, at.y, radius, 0.0, 2.0 * std::numbers::pi);
   } else {
     trace(corners(at, shape, radius));
   }
-  cairo_close_path(context_);
-  cairo_set_dash(context_, nullptr, 0, 0.0);
-  cairo_set_line_width(context_, filled ? 1.0 : 1.6);
+  cairo().close_path(context_);
+  cairo().set_dash(context_, nullptr, 0, 0.0);
+  cairo().set_line_width(context_, filled ? 1.0 : 1.6);
   if (filled) {
     set(style_color(style));
-    cairo_fill_preserve(context_);
-    cairo_set_source_rgb(context_, 1.0, 1.0, 1.0);
+    cairo().fill_preserve(context_);
+    cairo().set_source_rgb(context_, 1.0, 1.0, 1.0);
   } else {
     set(style_color(style));
   }
-  cairo_stroke(context_);
+  cairo().stroke(context_);
 }
 
 double ChartCanvas::text_width(const std::string& words, const ChartText& style) const {
   choose_font(context_, style);
   cairo_text_extents_t extents;
-  cairo_text_extents(context_, words.c_str(), &extents);
+  cairo().text_extents(context_, words.c_str(), &extents);
   return extents.x_advance;
 }
 
 void ChartCanvas::text(const ChartPoint& at, const std::string& words, const ChartText& style) {
   const double width = text_width(words, style);
   const double shift = style.align == ChartAlign::left ? 0.0 : style.align == ChartAlign::center ? -0.5 * width : -width;
-  cairo_save(context_);
-  cairo_translate(context_, at.x, at.y);
-  cairo_rotate(context_, -style.turn_deg * std::numbers::pi / 180.0);
-  cairo_move_to(context_, shift, 0.0);
+  cairo().save(context_);
+  cairo().translate(context_, at.x, at.y);
+  cairo().rotate(context_, -style.turn_deg * std::numbers::pi / 180.0);
+  cairo().move_to(context_, shift, 0.0);
   set(style.color);
-  cairo_show_text(context_, words.c_str());
-  cairo_restore(context_);
+  cairo().show_text(context_, words.c_str());
+  cairo().restore(context_);
 }
 
 std::vector<std::string> ChartCanvas::lines(const std::string& words, double width, const ChartText& style) const {
@@ -228,11 +228,11 @@ std::vector<std::string> ChartCanvas::lines(const std::string& words, double wid
 }
 
 void ChartCanvas::begin_clip(const ChartBox& place) {
-  cairo_save(context_);
-  cairo_rectangle(context_, place.x, place.y, place.width, place.height);
-  cairo_clip(context_);
+  cairo().save(context_);
+  cairo().rectangle(context_, place.x, place.y, place.width, place.height);
+  cairo().clip(context_);
 }
-void ChartCanvas::end_clip() { cairo_restore(context_); }
+void ChartCanvas::end_clip() { cairo().restore(context_); }
 
 std::vector<std::filesystem::path> write_chart(const std::filesystem::path& stem, double width, double height, const std::string& title,
                                                const std::string& words, const std::function<void(ChartCanvas&)>& draw) {

@@ -13,7 +13,7 @@ step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${work}/prefix)
 # The component that the package limn is made of: the program with what it needs to run, and nothing that only a compiler reads.
 step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${work}/program --component program)
 foreach(file bin/limn libexec/limn/limn-read-mesh libexec/limn/limn-read-vdb libexec/limn/limn-read-picture libexec/limn/limn-read-svg libexec/limn/limn-pictures.so
-    libexec/limn/limn-hash.so libexec/limn/limn-filters.so libexec/limn/limn-volumes.so share/man/man1/limn.1 share/man/man1/limn-render.1 share/bash-completion/completions/limn
+    libexec/limn/limn-hash.so libexec/limn/limn-filters.so libexec/limn/limn-embree.so libexec/limn/limn-cairo.so libexec/limn/limn-volumes.so share/man/man1/limn.1 share/man/man1/limn-render.1 share/bash-completion/completions/limn
     share/fish/vendor_completions.d/limn.fish share/limn/workflow/Snakefile)
   if(NOT EXISTS ${work}/program/${file})
     message(FATAL_ERROR "the component program lacks ${file}")

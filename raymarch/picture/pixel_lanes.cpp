@@ -172,10 +172,25 @@ void Compose(const PixelStage& stage, const SrgbBytes& srgb, const PixelRun& run
   if (i < run.count) ComposeRest(stage, srgb, run, i);
 }
 
+/// All pixels are as this one.
+HWY_INLINE bool AllAre(const Rgba& colors, const glm::vec4& one) {
+  const F f;
+  const auto are = [&](VF values, float value) { return hn::Eq(values, hn::Set(f, value)); };
+  return hn::AllTrue(
+      f, hn::And(hn::And(are(colors.red, one.x), are(colors.green, one.y)), hn::And(are(colors.blue, one.z), are(colors.alpha, one.w))));
+}
+
 void Encode(const SrgbBytes& srgb, const glm::vec4* colors, glm::u8vec4* bytes, size_t count) {
   const size_t lanes = hn::Lanes(F());
   size_t i = 0;
-  for (; i + lanes <= count; i += lanes) StoreBytes(srgb, Load(colors + i), bytes + i);
+  for (; i + lanes <= count; i += lanes) {
+    const Rgba color = Load(colors + i);
+    // As most of a background is.
+    if (i > 0 && AllAre(color, colors[i - 1]))
+      std::fill_n(bytes + i, lanes, bytes[i - 1]);
+    else
+      StoreBytes(srgb, color, bytes + i);
+  }
   if (i == count) return;
   glm::vec4 rest[kMostLanes] = {};
   glm::u8vec4 coded[kMostLanes];

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "raymarch/image_io.h"
-#include "raymarch/picture/srgb_bytes.h"
+#include "raymarch/picture/pixel_lanes.h"
 #include "samples/compare/comparison.h"
 #include "samples/experiment/empty_picture.h"
 #include "samples/experiment/thread_settings.h"
@@ -17,25 +17,6 @@
 
 namespace limn {
 namespace {
-
-// A gigabyte of float pictures becomes a quarter of it; the page and the sheet show eight bits anyway.
-Image<glm::u8vec4> packed(const Image<glm::vec4>& picture) {
-  auto out = Image<glm::u8vec4>::unset(picture.width, picture.height);
-  const SrgbBytes& srgb = srgb_bytes();
-  parallel_parts(out.size(), size_t{1} << 14, [&](const IndexRange<size_t>& part) {
-    for (size_t i = part.first; i < part.last; ++i) {
-      const glm::vec4& color = picture.pixels[i];
-      // As most of a background is.
-      if (i > part.first && color == picture.pixels[i - 1]) {
-        out.pixels[i] = out.pixels[i - 1];
-        continue;
-      }
-      const glm::vec3 rgb = color.a > 0.0f ? glm::vec3(color) / color.a : glm::vec3(0.0f);
-      out.pixels[i] = {srgb(rgb.r), srgb(rgb.g), srgb(rgb.b), to_byte(color.a)};
-    }
-  });
-  return out;
-}
 
 Experiment experiment_of(const Comparison& comparison) {
   Experiment experiment;
@@ -122,7 +103,8 @@ struct Keeper {
     cell.notes = std::move(picture.notes);
     parallel_invoke(
         [&] {
-          cell.composite = packed(picture.composite);
+          // A gigabyte of float pictures becomes a quarter of it; the page and the sheet show eight bits anyway.
+          cell.composite = encoded(picture.composite);
           picture.composite = {};
         },
         [&] {

@@ -11,7 +11,7 @@ namespace limn {
 
 /// Of an Image; like any other vector, but for where its memory comes from.
 template <class T>
-using Pixels = std::vector<T, LargePageAllocator<T>>;
+using Pixels = LargeVector<T>;
 
 /// A plain picture: row-major, origin top left, pixel (x, y) covers [x, x+1) x [y, y+1), its centre is at +0.5.
 ///

@@ -3,6 +3,7 @@
 // the first touch of a picture's small pages takes longer than a border.
 
 #include <cstddef>
+#include <vector>
 
 namespace limn {
 
@@ -29,5 +30,9 @@ struct LargePageAllocator {
   void construct(U*) {}
   bool operator==(const LargePageAllocator&) const { return true; }  ///< Memory of one may be given back by another.
 };
+
+/// Whoever fills it touches its pages first: many threads at once, where many fill it.
+template <class T>
+using LargeVector = std::vector<T, LargePageAllocator<T>>;
 
 }  // namespace limn

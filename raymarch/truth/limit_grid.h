@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sdf/camera.h"
+#include "sdf/large_pages.h"
 #include "subdiv/refine.h"
 
 namespace limn {
@@ -92,10 +93,10 @@ struct LimitBlock {
 };
 
 struct LimitGrid {
-  std::vector<glm::dvec3> positions{};  ///< Of nodes, world.
-  std::vector<glm::dvec3> normals{};    ///< Of sides, world, unit.
-  std::vector<std::uint32_t> node_of_side{};
-  std::vector<LimitTriangle> triangles{};
+  LargeVector<glm::dvec3> positions{};  ///< Of nodes, world.
+  LargeVector<glm::dvec3> normals{};    ///< Of sides, world, unit.
+  LargeVector<std::uint32_t> node_of_side{};
+  LargeVector<LimitTriangle> triangles{};
   std::vector<LimitBlock> blocks{};  ///< All triangles, in order.
   std::vector<SeamUse> seam_uses{};  ///< In the order of the seams.
   std::vector<LimitSeam> seams{};    ///< By their nodes.

@@ -157,12 +157,16 @@ Image<glm::u8vec4> matrix_sheet(const Comparison& comparison) {
                        : i <= methods ? method_band(comparison, words, i - 1, panel_height, width)
                                       : foot_band(comparison, width));
   });
-  Image<glm::u8vec4> sheet;
-  sheet.width = width;
+  std::vector<int> tops;
+  int height = 0;
   for (const Image<glm::u8vec4>& band : bands) {
-    sheet.height += band.height;
-    sheet.pixels.insert(sheet.pixels.end(), band.pixels.begin(), band.pixels.end());
+    tops.push_back(height);
+    height += band.height;
   }
+  auto sheet = Image<glm::u8vec4>::unset(width, height);
+  parallel_each(bands.size(), [&](size_t i) {
+    std::copy(bands[i].pixels.begin(), bands[i].pixels.end(), sheet.pixels.begin() + static_cast<std::ptrdiff_t>(sheet.index(0, tops[i])));
+  });
   return sheet;
 }
 

@@ -20,6 +20,7 @@ constexpr double kMostBulge = 0.35, kLittleBulge = 0.05;  // of its length in sp
 constexpr int kMostLooks = 3;
 constexpr double kLongEndOn_px = 0.5;
 constexpr double kReversal = -0.9, kLeastReversal_px = 0.1;  // a cosine; of steps as long as this in space
+constexpr double kLeastTurn_px = 1e-5;                       // in the image: shorter steps may turn back by rounding
 constexpr double kLongestCusp_px = 0.1;                      // in space: steps that hold a cusp are halved until they are no longer
 constexpr double kEndOn = 0.3;  // of a step's length in space is its length in the image where it is seen end on
 constexpr int kDeepest = 14;    // halvings of a step between two marched points
@@ -276,9 +277,30 @@ std::int64_t count_reversals(const Refiner& refiner, const FieldCurve& curve) {
   return reversals;
 }
 
+/// A smooth contour's image turns back where the radial curvature is 0 and nowhere else (Koenderink 1984, "What does the occluding contour
+/// tell us about solid shape?"): where it does so more often its points go back and forth between two arms.
+std::int64_t count_false_cusps(const Refiner& refiner, const FieldCurve& curve) {
+  const size_t n = curve.points.size(), steps = curve.closed ? n : n - 1;
+  const auto is_crease = [](const CurvePoint& point) { return point.crease; };
+  if (curve.c != 0.0 || n < 2 || std::any_of(curve.points.begin(), curve.points.end(), is_crease)) return 0;
+  std::vector<glm::dvec2> ways;  // of steps that rounding cannot turn
+  std::int64_t turns = 0, zeros = 0;
+  glm::dvec2 here = image_of(refiner.camera, curve.points[0].p);
+  for (size_t i = 0; i < steps; ++i) {
+    const CurvePoint &from = curve.points[i], &to = curve.points[(i + 1) % n];
+    zeros += (from.radial_curvature > 0.0) != (to.radial_curvature > 0.0);
+    const glm::dvec2 there = image_of(refiner.camera, to.p);
+    if (glm::distance(here, there) < kLeastTurn_px) continue;
+    ways.push_back(there - here);
+    here = there;
+  }
+  for (size_t i = 0; i + (curve.closed ? 0 : 1) < ways.size(); ++i) turns += glm::dot(ways[i], ways[(i + 1) % ways.size()]) < 0.0;
+  return std::max<std::int64_t>(turns - zeros, 0);
+}
+
 /// Steps of a refined curve that lead from one arm of it to another.
 std::int64_t count_broken(const Refiner& refiner, const FieldCurve& curve) {
-  std::int64_t broken = count_reversals(refiner, curve);
+  std::int64_t broken = count_reversals(refiner, curve) + count_false_cusps(refiner, curve);
   FieldEvaluator whole(refiner.field);
   for (size_t i = 0; i + (curve.closed ? 0 : 1) < curve.points.size(); ++i) {
     const CurvePoint &a = curve.points[i], &b = curve.points[(i + 1) % curve.points.size()];

@@ -73,6 +73,22 @@ TEST(StabilityCorpus, HasACaseForEveryRowOfTheCatalogue) {
   for (const std::string& row : rows()) EXPECT_TRUE(found.contains(row)) << row;
 }
 
+/// Seeds whose contours went back and forth between the two arms beside a cusp, twenty times in the first, or came back there at all.
+TEST(StabilityCorpus, ContoursThatWentToAndFroBesideTheirCuspsAreRight) {
+  const std::vector<StabilityCase> corpus = stability_corpus();
+  const auto torus =
+      std::find_if(corpus.begin(), corpus.end(), [](const StabilityCase& one) { return one.text.name == "cusps_of_a_torus"; });
+  ASSERT_NE(torus, corpus.end());
+  for (const std::uint64_t seed : {96, 342, 373, 422, 430, 609, 652}) {
+    StabilityRunSettings settings;
+    settings.seed = seed;
+    settings.draws = 1;
+    const StabilityResults run = run_stability({*torus}, settings);
+    ASSERT_EQ(run.cells.size(), 1u);
+    EXPECT_EQ(run.cells[0].outcome, StabilityOutcome::held) << "seed " << seed << ": " << words_of(run.cells[0]);
+  }
+}
+
 /// LIMN_ALL=1: everything the corpus holds, several draws; else one case of each check, drawn at random.
 TEST(StabilityCorpus, NothingIsWrongWhateverTheSeed) {
   const bool all = std::getenv("LIMN_ALL") != nullptr;

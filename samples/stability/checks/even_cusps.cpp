@@ -8,6 +8,7 @@ namespace limn {
 namespace {
 
 constexpr double kTail_px = 1e-4;  // a swallowtail's tail shorter than this may lie between two points of the contour
+constexpr double kAcross = 0.1;    // of the steps before and after it: one so short may go straight across the tip of a cusp
 
 struct Cusps {
   int of_curvature = 0;  ///< Changes of the radial curvature's sign.
@@ -30,19 +31,30 @@ std::vector<double> zeros_of_curvature(const WholeContour& contour) {
   return zeros;
 }
 
+/// In the image. Beside a cusp the curve is (t^2, t^3): a step from -t to t is perpendicular to both ways there, and tells of no turn.
+std::vector<glm::dvec2> telling_steps(const WholeContour& contour) {
+  std::vector<glm::dvec2> steps;
+  const size_t count = contour.points.size();
+  for (size_t i = 0; i < count; ++i) {
+    const glm::dvec2 step = contour.points[(i + 1) % count].px - contour.points[i].px;
+    if (glm::length(step) > 0.0) steps.push_back(step);
+  }
+  std::vector<glm::dvec2> telling;
+  for (size_t i = 0; i < steps.size(); ++i) {
+    const double before = glm::length(steps[(i + steps.size() - 1) % steps.size()]), after = glm::length(steps[(i + 1) % steps.size()]);
+    if (glm::length(steps[i]) >= kAcross * std::min(before, after)) telling.push_back(steps[i]);
+  }
+  return telling;
+}
+
 Cusps count_cusps(const WholeContour& contour) {
   Cusps cusps;
-  const size_t count = contour.points.size();
   const std::vector<double> zeros = zeros_of_curvature(contour);
   for (size_t i = 0; i + 1 < zeros.size(); ++i) {
     ++cusps.of_curvature;
     cusps.tails += zeros[i + 1] - zeros[i] < kTail_px;
   }
-  std::vector<glm::dvec2> steps;
-  for (size_t i = 0; i < count; ++i) {
-    const glm::dvec2 step = contour.points[(i + 1) % count].px - contour.points[i].px;
-    if (glm::length(step) > 0.0) steps.push_back(step);
-  }
+  const std::vector<glm::dvec2> steps = telling_steps(contour);
   for (size_t i = 0; i < steps.size(); ++i) cusps.of_image += glm::dot(steps[i], steps[(i + 1) % steps.size()]) < 0.0;
   return cusps;
 }

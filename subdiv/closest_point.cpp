@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <new>
 
 #include "sdf/apart_from_loops.h"
 #include "sdf/error.h"
@@ -75,12 +76,14 @@ ClosestPointData::ClosestPointData(const TriangleMesh& mesh) : positions(mesh.po
   RTCGeometry geometry = embree().rtcNewGeometry(rtc_device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertices = static_cast<float*>(
       embree().rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
+  auto* indices = static_cast<unsigned*>(
+      embree().rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), triangles.size()));
+  device = rtc_device, scene = rtc_scene;
+  if (!triangles.empty() && (vertices == nullptr || indices == nullptr)) throw std::bad_alloc();
   for (size_t i = 0; i < positions.size(); ++i) {
     const glm::vec3 p(positions[i] - center);
     vertices[3 * i] = p.x, vertices[3 * i + 1] = p.y, vertices[3 * i + 2] = p.z;
   }
-  auto* indices = static_cast<unsigned*>(
-      embree().rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), triangles.size()));
   for (size_t i = 0; i < triangles.size(); ++i)
     for (int k = 0; k < 3; ++k) indices[3 * i + static_cast<size_t>(k)] = triangles[i][k];
   embree().rtcSetGeometryPointQueryFunction(geometry, visit);
@@ -88,8 +91,7 @@ ClosestPointData::ClosestPointData(const TriangleMesh& mesh) : positions(mesh.po
   embree().rtcAttachGeometry(rtc_scene, geometry);
   embree().rtcReleaseGeometry(geometry);
   apart_from_loops([&] { embree().rtcCommitScene(rtc_scene); });
-  device = rtc_device, scene = rtc_scene;
-  if (embree().rtcGetDeviceError(rtc_device) != RTC_ERROR_NONE) throw MachineError("Embree could not arrange the triangles");
+  check_tree(rtc_device);
 }
 
 ClosestPointData::~ClosestPointData() {

@@ -41,4 +41,7 @@ inline constexpr const char* kEmbreeModuleFunction = "limn_embree_module";
 /// Loaded once. Throws MachineError where it is not there or is another version's.
 const EmbreeModule& embree();
 
+/// After a tree over triangles was made: throws std::bad_alloc where its memory ended, and MachineError where anything else failed.
+void check_tree(RTCDevice device);
+
 }  // namespace limn

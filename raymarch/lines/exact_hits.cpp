@@ -9,7 +9,6 @@
 #include "raymarch/lines/mesh_tree.h"
 #include "raymarch/mesh/embree_device.h"
 #include "sdf/apart_from_loops.h"
-#include "sdf/error.h"
 #include "subdiv/embree_module.h"
 
 namespace limn {
@@ -101,7 +100,7 @@ ExactHits::ExactHits(std::span<const glm::dvec3> positions, std::span<const Laye
   embree().rtcAttachGeometry(tree_->scene, geometry);
   embree().rtcReleaseGeometry(geometry);
   apart_from_loops([this] { embree().rtcCommitScene(tree_->scene); });
-  if (embree().rtcGetDeviceError(tree_->device) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
+  check_tree(tree_->device);
 }
 
 ExactHits::~ExactHits() = default;

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <new>
 #include <numeric>
 
 #include "raymarch/mesh/embree_device.h"
 #include "raymarch/mesh/polygons.h"
 #include "sdf/apart_from_loops.h"
-#include "sdf/error.h"
 #include "sdf/once_alone.h"
 #include "sdf/parallel.h"
 #include "subdiv/embree_module.h"
@@ -119,7 +119,7 @@ void MeshTree::build() const {
                                                                         3 * sizeof(float), std::max<size_t>(positions_.size(), 1)));
   auto* corners = static_cast<unsigned*>(embree().rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                                           3 * sizeof(unsigned), std::max<size_t>(triangles_.size(), 1)));
-  if (vertices == nullptr || corners == nullptr) throw MachineError("Embree could not build its tree over the mesh");
+  if (vertices == nullptr || corners == nullptr) throw std::bad_alloc();
   parallel_parts(positions_.size(), kPart, [&](const IndexRange<size_t>& range) {
     for (size_t i = range.begin(); i < range.end(); ++i) {
       for (int k = 0; k < 3; ++k) vertices[3 * i + static_cast<size_t>(k)] = static_cast<float>(positions_[i][k]);
@@ -133,7 +133,7 @@ void MeshTree::build() const {
   embree().rtcAttachGeometry(embree_->tree, geometry);
   embree().rtcReleaseGeometry(geometry);
   apart_from_loops([this] { embree().rtcCommitScene(embree_->tree); });
-  if (embree().rtcGetDeviceError(embree_->device) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
+  check_tree(embree_->device);
 }
 
 std::vector<LayerHit> MeshTree::hits_along(const glm::dvec3& origin, const glm::dvec3& direction, double end) const {

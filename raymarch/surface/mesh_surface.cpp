@@ -16,7 +16,6 @@
 #include "raymarch/surface/mesh_curvature.h"
 #include "raymarch/surface/object_mesh.h"
 #include "sdf/apart_from_loops.h"
-#include "sdf/error.h"
 #include "sdf/once_alone.h"
 #include "sdf/parallel.h"
 #include "subdiv/embree_module.h"
@@ -149,7 +148,7 @@ void build_tree(const MeshState& state) {
     const parallel_detail::Loop loop("Embree's own, over bound_triangle");
     apart_from_loops([&state] { embree().rtcCommitScene(state.scene.get()); });
   }
-  if (embree().rtcGetDeviceError(state.device.get()) != RTC_ERROR_NONE) throw MachineError("Embree could not build its tree over the mesh");
+  check_tree(state.device.get());
 }
 
 RTCScene tree_of(const MeshState& state) {

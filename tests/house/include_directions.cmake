@@ -6,7 +6,7 @@ set(allowed_subdiv sdf subdiv)
 set(allowed_raymarch sdf subdiv raymarch)
 set(allowed_samples sdf subdiv raymarch samples)
 # Inside a library each folder may include those before it. The headers at the top of raymarch/ are its seams, which know no folder.
-set(rooms_samples scenes spec output page input lines judge experiment compare plan stability reference study python commands)
+set(rooms_samples scenes spec output page input lines judge experiment compare plan stability reference study python commands helpers)
 set(rooms_raymarch scene analytic mesh level_set surface gbuffer local curves border truth lines measured_border picture look metric files audit helpers)
 set(wrong 0)
 set(seen 0)

@@ -111,6 +111,13 @@ TEST(SrgbBytes, OfManyPixelsAreThoseOfEachByItself) {
       color = random() % 3 == 0 ? glm::vec4(number(), number(), number(), 1.0f) : glm::vec4(any(), any(), any(), any());
     // Alphas halfway between two codes.
     for (int code = 0; code < 255; ++code) colors[static_cast<size_t>(code)].a = (static_cast<float>(code) + 0.5f) / 255.0f;
+    // Stretches of one colour, as a background has, of any length and anywhere; one that differs in a channel alone ends it.
+    for (int k = 0; k < 200; ++k) {
+      const size_t first = 255 + random() % (colors.size() - 400), length = random() % 100;
+      std::fill_n(colors.begin() + static_cast<std::ptrdiff_t>(first), length, colors[first]);
+      colors[first + length] = colors[first];
+      colors[first + length][static_cast<int>(random() % 4)] = number();
+    }
     std::vector<glm::u8vec4> bytes(colors.size());
     encode_pixels(colors, bytes);
     for (size_t i = 0; i < colors.size(); ++i) {

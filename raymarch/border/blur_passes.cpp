@@ -19,6 +19,7 @@ std::vector<float> blur_taps(BlurKernel kernel, int radius_px) {
     sum += taps.back();
   }
   std::vector<float> weights;
+  weights.reserve(taps.size());
   for (const double tap : taps) weights.push_back(static_cast<float>(tap / sum));
   return weights;
 }
@@ -88,6 +89,7 @@ Image<float> enlarged(const Image<float>& source, int scale, int width, int heig
     return Place{low, std::min(low + 1, count - 1), at - static_cast<float>(low)};
   };
   std::vector<Place> columns;
+  columns.reserve(static_cast<size_t>(width));
   for (int x = 0; x < width; ++x) columns.push_back(place_of(x, source.width));
   Image<float> large(width, height);
   for_each_band(height, [&](int y0, int y1) {

@@ -79,7 +79,7 @@ TEST(StabilityCorpus, ContoursThatWentToAndFroBesideTheirCuspsAreRight) {
   const auto torus =
       std::find_if(corpus.begin(), corpus.end(), [](const StabilityCase& one) { return one.text.name == "cusps_of_a_torus"; });
   ASSERT_NE(torus, corpus.end());
-  for (const std::uint64_t seed : {96, 342, 373, 422, 430, 609, 652}) {
+  for (const unsigned seed : {96u, 342u, 373u, 422u, 430u, 609u, 652u}) {
     StabilityRunSettings settings;
     settings.seed = seed;
     settings.draws = 1;

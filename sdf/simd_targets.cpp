@@ -1,5 +1,5 @@
 // Which SIMD targets the machine has: the two functions of Highway's library that its headers ask for. The library measures the clock for
-// 4 ms whenever a program starts, a third of all that limn takes until it reads its first argument; with these it need not be linked.
+// 4 ms whenever a program starts, as long as all else that a call starts with; with these it need not be linked.
 
 #include "sdf/simd.h"
 // clang-format off: which targets, before the header that asks.

@@ -1,37 +1,43 @@
 #pragma once
 // Internal: Embree's functions, in a module of their own (helpers/embree_module.cpp), loaded when the first tree over triangles is made:
-// Embree's library takes 2 ms to load, a third of all that limn takes until it reads its first argument.
+// a call that makes none need not wait for it.
 
 #include <embree3/rtcore.h>
 
 namespace limn {
 
-/// Those that limn calls, under their own names.
+/// Those that limn calls.
+#define LIMN_EMBREE_FUNCTIONS(X)      \
+  X(rtcNewDevice)                     \
+  X(rtcRetainDevice)                  \
+  X(rtcReleaseDevice)                 \
+  X(rtcGetDeviceError)                \
+  X(rtcNewScene)                      \
+  X(rtcReleaseScene)                  \
+  X(rtcSetSceneFlags)                 \
+  X(rtcSetSceneBuildQuality)          \
+  X(rtcCommitScene)                   \
+  X(rtcNewGeometry)                   \
+  X(rtcReleaseGeometry)               \
+  X(rtcCommitGeometry)                \
+  X(rtcAttachGeometry)                \
+  X(rtcSetNewGeometryBuffer)          \
+  X(rtcSetGeometryBuildQuality)       \
+  X(rtcSetGeometryUserData)           \
+  X(rtcSetGeometryUserPrimitiveCount) \
+  X(rtcSetGeometryBoundsFunction)     \
+  X(rtcSetGeometryIntersectFunction)  \
+  X(rtcSetGeometryPointQueryFunction) \
+  X(rtcIntersect1)                    \
+  X(rtcPointQuery)
+
+/// Under their own names.
 struct EmbreeModule {
   const char* version = nullptr;  ///< Of limn: another one's module may have other functions.
 
-  decltype(&::rtcNewDevice) rtcNewDevice = nullptr;
-  decltype(&::rtcRetainDevice) rtcRetainDevice = nullptr;
-  decltype(&::rtcReleaseDevice) rtcReleaseDevice = nullptr;
-  decltype(&::rtcGetDeviceError) rtcGetDeviceError = nullptr;
-  decltype(&::rtcNewScene) rtcNewScene = nullptr;
-  decltype(&::rtcReleaseScene) rtcReleaseScene = nullptr;
-  decltype(&::rtcSetSceneFlags) rtcSetSceneFlags = nullptr;
-  decltype(&::rtcSetSceneBuildQuality) rtcSetSceneBuildQuality = nullptr;
-  decltype(&::rtcCommitScene) rtcCommitScene = nullptr;
-  decltype(&::rtcNewGeometry) rtcNewGeometry = nullptr;
-  decltype(&::rtcReleaseGeometry) rtcReleaseGeometry = nullptr;
-  decltype(&::rtcCommitGeometry) rtcCommitGeometry = nullptr;
-  decltype(&::rtcAttachGeometry) rtcAttachGeometry = nullptr;
-  decltype(&::rtcSetNewGeometryBuffer) rtcSetNewGeometryBuffer = nullptr;
-  decltype(&::rtcSetGeometryBuildQuality) rtcSetGeometryBuildQuality = nullptr;
-  decltype(&::rtcSetGeometryUserData) rtcSetGeometryUserData = nullptr;
-  decltype(&::rtcSetGeometryUserPrimitiveCount) rtcSetGeometryUserPrimitiveCount = nullptr;
-  decltype(&::rtcSetGeometryBoundsFunction) rtcSetGeometryBoundsFunction = nullptr;
-  decltype(&::rtcSetGeometryIntersectFunction) rtcSetGeometryIntersectFunction = nullptr;
-  decltype(&::rtcSetGeometryPointQueryFunction) rtcSetGeometryPointQueryFunction = nullptr;
-  decltype(&::rtcIntersect1) rtcIntersect1 = nullptr;
-  decltype(&::rtcPointQuery) rtcPointQuery = nullptr;
+#define LIMN_EMBREE_FUNCTION(name) decltype(&::name) name = nullptr;
+  LIMN_EMBREE_FUNCTIONS(LIMN_EMBREE_FUNCTION)
+#undef LIMN_EMBREE_FUNCTION
 };
 
 /// What the module exports: void limn_embree_module(EmbreeModule&), which fills in its functions.

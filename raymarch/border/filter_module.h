@@ -1,6 +1,6 @@
 #pragma once
 // Filters of pictures, OpenCV's, in a module of their own (helpers/filters_module.cpp): one method uses them, and loading OpenCV with what
-// it stands on takes 4 ms, nearly half of all that limn takes until it reads its first argument.
+// it stands on takes 4 ms, as long as all else that a call starts with.
 
 #include <span>
 

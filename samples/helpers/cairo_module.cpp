@@ -5,47 +5,8 @@
 #include "sdf/version.h"
 
 extern "C" __attribute__((visibility("default"))) void limn_cairo_module(limn::CairoModule& module) {
-  module = {limn::kVersion,
-            cairo_surface_destroy,
-            cairo_destroy,
-            cairo_new_path,
-            cairo_move_to,
-            cairo_line_to,
-            cairo_curve_to,
-            cairo_arc,
-            cairo_arc_negative,
-            cairo_close_path,
-            cairo_set_source_rgb,
-            cairo_fill,
-            cairo_set_line_width,
-            cairo_set_dash,
-            cairo_stroke,
-            cairo_pdf_surface_create,
-            cairo_pdf_surface_set_metadata,
-            cairo_create,
-            cairo_translate,
-            cairo_scale,
-            cairo_set_line_join,
-            cairo_set_line_cap,
-            cairo_surface_finish,
-            cairo_surface_status,
-            cairo_status_to_string,
-            cairo_status,
-            cairo_rectangle,
-            cairo_svg_surface_create_for_stream,
-            cairo_svg_surface_set_document_unit,
-            cairo_image_surface_create,
-            cairo_surface_flush,
-            cairo_image_surface_get_data,
-            cairo_image_surface_get_stride,
-            cairo_select_font_face,
-            cairo_set_font_size,
-            cairo_set_source_rgba,
-            cairo_fill_preserve,
-            cairo_text_extents,
-            cairo_save,
-            cairo_rotate,
-            cairo_show_text,
-            cairo_restore,
-            cairo_clip};
+  module.version = limn::kVersion;
+#define LIMN_CAIRO_FUNCTION(name) module.name = ::cairo_##name;
+  LIMN_CAIRO_FUNCTIONS(LIMN_CAIRO_FUNCTION)
+#undef LIMN_CAIRO_FUNCTION
 }

@@ -5,27 +5,8 @@
 #include "sdf/version.h"
 
 extern "C" __attribute__((visibility("default"))) void limn_embree_module(limn::EmbreeModule& module) {
-  module = {limn::kVersion,
-            rtcNewDevice,
-            rtcRetainDevice,
-            rtcReleaseDevice,
-            rtcGetDeviceError,
-            rtcNewScene,
-            rtcReleaseScene,
-            rtcSetSceneFlags,
-            rtcSetSceneBuildQuality,
-            rtcCommitScene,
-            rtcNewGeometry,
-            rtcReleaseGeometry,
-            rtcCommitGeometry,
-            rtcAttachGeometry,
-            rtcSetNewGeometryBuffer,
-            rtcSetGeometryBuildQuality,
-            rtcSetGeometryUserData,
-            rtcSetGeometryUserPrimitiveCount,
-            rtcSetGeometryBoundsFunction,
-            rtcSetGeometryIntersectFunction,
-            rtcSetGeometryPointQueryFunction,
-            rtcIntersect1,
-            rtcPointQuery};
+  module.version = limn::kVersion;
+#define LIMN_EMBREE_FUNCTION(name) module.name = ::name;
+  LIMN_EMBREE_FUNCTIONS(LIMN_EMBREE_FUNCTION)
+#undef LIMN_EMBREE_FUNCTION
 }

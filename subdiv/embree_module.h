@@ -35,7 +35,7 @@ namespace limn {
 struct EmbreeModule {
   const char* version = nullptr;  ///< Of limn: another one's module may have other functions.
 
-#define LIMN_EMBREE_FUNCTION(name) decltype(&::name) name = nullptr;
+#define LIMN_EMBREE_FUNCTION(name) decltype(&::name) name = nullptr;  // NOLINT(bugprone-macro-parentheses): declares it
   LIMN_EMBREE_FUNCTIONS(LIMN_EMBREE_FUNCTION)
 #undef LIMN_EMBREE_FUNCTION
 };

@@ -57,7 +57,7 @@ namespace limn {
 struct CairoModule {
   const char* version = nullptr;  ///< Of limn: another one's module may have other functions.
 
-#define LIMN_CAIRO_FUNCTION(name) decltype(&::cairo_##name) name = nullptr;
+#define LIMN_CAIRO_FUNCTION(name) decltype(&::cairo_##name) name = nullptr;  // NOLINT(bugprone-macro-parentheses): declares it
   LIMN_CAIRO_FUNCTIONS(LIMN_CAIRO_FUNCTION)
 #undef LIMN_CAIRO_FUNCTION
 };

@@ -36,6 +36,7 @@ constexpr std::array<double, 3> kLookedAt = {0.5, 0.25, 0.75};
 constexpr double kMostAside = 0.05;  // of a step's length, that points along it may lie off the cubic through its ends
 constexpr int kFinerParts = 8;       // of a cell along each axis
 constexpr size_t kMostPointsLooked = 64;
+constexpr size_t kPartPoints = 64;
 constexpr size_t kFirstMark = 64;                      // points
 constexpr size_t kMostPoints = 2'000'000;              // of a curve
 constexpr size_t kAskedEvery = 64;                     // points, whether anybody else has followed the curve
@@ -75,7 +76,6 @@ class PathIndex {
     }
     return false;
   }
-  size_t size() const { return segments_.size(); }
 
  private:
   struct Segment {
@@ -309,6 +309,132 @@ std::optional<std::vector<CurvePoint>> finer_crossings(const Strand& strand, con
 struct Unpassed {
   CurvePoint point{};
   std::optional<CurvePoint> seed{};
+  bool is_known = false;  ///< A path passes that.
+};
+
+/// Points of a strand that one thread looks at.
+struct StrandPart {
+  size_t strand = 0, begin = 0, end = 0;
+};
+std::vector<StrandPart> parts_of(const std::vector<Strand>& strands) {
+  std::vector<StrandPart> parts;
+  for (size_t i = 0; i < strands.size(); ++i) {
+    for (size_t begin = 0; begin < strands[i].points.size(); begin += kPartPoints)
+      parts.push_back({i, begin, std::min(begin + kPartPoints, strands[i].points.size())});
+  }
+  return parts;
+}
+
+class StrandFollower {
+ public:
+  StrandFollower(std::vector<Strand>& found, const Field& field, const Camera& camera, const Viewer& viewer, const FollowSettings& settings)
+      : found_(found),
+        field_(field),
+        viewer_(viewer),
+        settings_(settings),
+        new_follower_([&] { return Follower(field, camera, viewer, settings, found.front().c); }),
+        follower_(new_follower_()),
+        first_(settings.longest_step),
+        later_(settings.longest_step) {}
+
+  std::vector<Strand> run(const ExecutionSettings& how) {
+    FirstPaths paths(found_, first_, [&](const Strand& like, std::vector<CurvePoint> path) { accept(like, std::move(path), first_); });
+    parallel_for(size_t{0}, static_cast<size_t>(tbb::this_task_arena::max_concurrency()), [&](size_t) {
+      Follower follower = new_follower_();
+      while (paths.follow_next(follower)) {
+        if (how.cancelled && how.cancelled()) throw Cancelled{};
+      }
+    });
+    // What no path passes: other curves through crossings that were joined to these.
+    const std::vector<std::vector<Unpassed>> unpassed = find_unpassed();
+    for (size_t i = 0; i < found_.size(); ++i) {
+      if (!follow_unpassed(found_[i], unpassed[i]) && found_[i].points.size() > 1 && !is_told_by_finer_cells(found_[i])) keep(found_[i]);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void accept(const Strand& like, std::vector<CurvePoint> path, PathIndex& index) {
+    index.add(path);
+    result_.push_back(like);
+    result_.back().points = std::move(path);
+    result_.back().closed = result_.back().followed = true;
+  }
+
+  /// By strands.
+  std::vector<std::vector<Unpassed>> find_unpassed() const {
+    const std::vector<StrandPart> parts = parts_of(found_);
+    std::vector<std::vector<Unpassed>> of_part(parts.size()), unpassed(found_.size());
+    parallel_for(size_t{0}, parts.size(), [&](size_t k) {
+      Follower follower = new_follower_();
+      for (size_t i = parts[k].begin; i < parts[k].end; ++i) {
+        const CurvePoint& point = found_[parts[k].strand].points[i];
+        if (point.rough || first_.holds(point)) continue;
+        const std::optional<CurvePoint> seed = follower.seed(point);
+        of_part[k].push_back({point, seed, seed && first_.holds(*seed)});
+      }
+    });
+    for (size_t k = 0; k < parts.size(); ++k) {
+      std::vector<Unpassed>& all = unpassed[parts[k].strand];
+      all.insert(all.end(), of_part[k].begin(), of_part[k].end());
+    }
+    return unpassed;
+  }
+
+  /// True where a path passes any of the strand's points.
+  bool follow_unpassed(const Strand& strand, const std::vector<Unpassed>& unpassed) {
+    const auto smooth = std::count_if(strand.points.begin(), strand.points.end(), [](const CurvePoint& point) { return !point.rough; });
+    bool any = unpassed.size() < static_cast<size_t>(smooth), lost = false;
+    for (const auto& [point, seed, is_known] : unpassed) {
+      if (is_known || later_.holds(point) || (seed && later_.holds(*seed))) {
+        any = true;
+        continue;
+      }
+      if (!seed || lost) continue;
+      auto path = follower_.around(*seed, [] { return false; });
+      lost = !path;
+      if (!path) continue;
+      accept(strand, std::move(*path), later_);
+      any = true;
+    }
+    return any;
+  }
+
+  /// Cells take two sheets that come close to each other for one, and a curve that goes on past them for two: where all crossings of finer
+  /// cells are followed, these curves are what is there.
+  bool is_told_by_finer_cells(const Strand& strand) {
+    const auto crossings = finer_crossings(strand, field_, viewer_, settings_.longest_step);
+    if (!crossings) return false;
+    for (const CurvePoint& point : *crossings) {
+      const std::optional<CurvePoint> seed = follower_.seed(point, kSeedReach / kFinerParts);
+      if (!seed) return false;
+      if (first_.holds(*seed) || later_.holds(*seed)) continue;
+      auto path = follower_.around(*seed, [] { return false; });
+      if (!path) return false;
+      accept(strand, std::move(*path), later_);
+    }
+    return true;
+  }
+
+  void keep(Strand& strand) {
+    for (CurvePoint& point : strand.points) {
+      if (const std::optional<CurvePoint> seed = follower_.seed(point)) {
+        point = *seed;
+      } else {
+        point.rough = true;
+      }
+    }
+    result_.push_back(std::move(strand));
+  }
+
+  std::vector<Strand>& found_;
+  const Field& field_;
+  const Viewer& viewer_;
+  const FollowSettings& settings_;
+  std::function<Follower()> new_follower_;
+  Follower follower_;
+  PathIndex first_, later_;  ///< Paths that all threads know, and those that came after these.
+  std::vector<Strand> result_{};
 };
 
 }  // namespace
@@ -316,76 +442,7 @@ struct Unpassed {
 std::vector<Strand> follow_strands(std::vector<Strand> found, const Field& field, const Camera& camera, const Viewer& viewer,
                                    const FollowSettings& settings, const ExecutionSettings& how) {
   if (found.empty()) return found;
-  const double c = found.front().c;
-  std::vector<Strand> result;
-  PathIndex index(settings.longest_step);
-  const auto accept = [&](const Strand& like, std::vector<CurvePoint> path) {
-    index.add(path);
-    result.push_back(like);
-    result.back().points = std::move(path);
-    result.back().closed = result.back().followed = true;
-  };
-  FirstPaths paths(found, index, accept);
-  parallel_for(size_t{0}, static_cast<size_t>(tbb::this_task_arena::max_concurrency()), [&](size_t) {
-    Follower follower(field, camera, viewer, settings, c);
-    while (paths.follow_next(follower)) {
-      if (how.cancelled && how.cancelled()) throw Cancelled{};
-    }
-  });
-  // What no path passes: other curves through crossings that were joined to these.
-  std::vector<std::vector<Unpassed>> unpassed(found.size());
-  const size_t paths_known = index.size();
-  parallel_for(size_t{0}, found.size(), [&](size_t i) {
-    Follower follower(field, camera, viewer, settings, c);
-    for (const CurvePoint& point : found[i].points) {
-      if (point.rough || index.holds(point)) continue;
-      unpassed[i].push_back({point, follower.seed(point)});
-    }
-  });
-  Follower follower(field, camera, viewer, settings, c);
-  // Cells take two sheets that come close to each other for one, and a curve that goes on past them for two: where all crossings of finer
-  // cells are followed, these curves are what is there.
-  const auto is_told_by_finer_cells = [&](const Strand& strand) {
-    const auto crossings = finer_crossings(strand, field, viewer, settings.longest_step);
-    if (!crossings) return false;
-    for (const CurvePoint& point : *crossings) {
-      const std::optional<CurvePoint> seed = follower.seed(point, kSeedReach / kFinerParts);
-      if (!seed) return false;
-      if (index.holds(*seed)) continue;
-      auto path = follower.around(*seed, [] { return false; });
-      if (!path) return false;
-      accept(strand, std::move(*path));
-    }
-    return true;
-  };
-  for (size_t i = 0; i < found.size(); ++i) {
-    const auto is_rough = [](const CurvePoint& point) { return point.rough; };
-    const auto smooth = static_cast<size_t>(std::count_if(found[i].points.begin(), found[i].points.end(), std::not_fn(is_rough)));
-    bool any = unpassed[i].size() < smooth, lost = false;
-    for (const auto& [point, seed] : unpassed[i]) {
-      if ((index.size() > paths_known && index.holds(point)) || (seed && index.holds(*seed))) {
-        any = true;
-        continue;
-      }
-      if (!seed || lost) continue;
-      if (auto path = follower.around(*seed, [] { return false; })) {
-        accept(found[i], std::move(*path));
-        any = true;
-      } else {
-        lost = true;
-      }
-    }
-    if (any || found[i].points.size() == 1 || is_told_by_finer_cells(found[i])) continue;
-    for (CurvePoint& point : found[i].points) {
-      if (const std::optional<CurvePoint> seed = follower.seed(point)) {
-        point = *seed;
-      } else {
-        point.rough = true;
-      }
-    }
-    result.push_back(std::move(found[i]));
-  }
-  return result;
+  return StrandFollower(found, field, camera, viewer, settings).run(how);
 }
 
 }  // namespace limn

@@ -16,15 +16,21 @@ class Assembly {
  public:
   explicit Assembly(const CellCurves& cells) {
     // Crossings are large: their places are sorted, and of those with one key the first stays.
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(cells.crossings.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {cells.crossings[i].key, i};
-    parallel_sort(order.begin(), order.end());
-    order.erase(std::unique(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first == b.first; }), order.end());
-    crossings_.reserve(order.size());
-    for (const auto& [key, place] : order) crossings_.push_back(cells.crossings[place]);
+    order_.resize(cells.crossings.size());
+    for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = {cells.crossings[i].key, i};
+    parallel_sort(order_.begin(), order_.end());
+    order_.erase(std::unique(order_.begin(), order_.end(), [](const auto& a, const auto& b) { return a.first == b.first; }), order_.end());
+    crossings_.resize(order_.size());
+    constexpr size_t kGrain = 2048;
+    parallel_parts(order_.size(), kGrain, [&](const IndexRange<size_t>& range) {
+      for (size_t i = range.begin(); i < range.end(); ++i) crossings_[i] = cells.crossings[order_[i].second];
+    });
+    std::vector<std::array<std::uint32_t, 2>> ends(cells.links.size());
+    parallel_parts(ends.size(), kGrain, [&](const IndexRange<size_t>& range) {
+      for (size_t i = range.begin(); i < range.end(); ++i) ends[i] = {find(cells.links[i].from), find(cells.links[i].to)};
+    });
     next_.assign(crossings_.size(), {kNone, kNone});
-    for (const Link& link : cells.links) {
-      const std::uint32_t from = find(link.from), to = find(link.to);
+    for (const auto& [from, to] : ends) {
       attach(from, to);
       attach(to, from);
     }
@@ -54,16 +60,16 @@ class Assembly {
 
  private:
   std::uint32_t find(std::uint64_t key) const {
-    const auto at =
-        std::lower_bound(crossings_.begin(), crossings_.end(), key, [](const Crossing& a, std::uint64_t k) { return a.key < k; });
-    return static_cast<std::uint32_t>(at - crossings_.begin());
+    const auto at = std::lower_bound(order_.begin(), order_.end(), key, [](const auto& a, std::uint64_t k) { return a.first < k; });
+    return static_cast<std::uint32_t>(at - order_.begin());
   }
   void attach(std::uint32_t from, std::uint32_t to) {
     auto& slots = next_[from];
     (slots[0] == kNone ? slots[0] : slots[1]) = to;
   }
 
-  std::vector<Crossing> crossings_;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order_{};  ///< Keys of crossings, rising, and their places among the cells'.
+  std::vector<Crossing> crossings_{};                             ///< In that order.
   std::vector<std::array<std::uint32_t, 2>> next_;
 };
 

@@ -29,6 +29,7 @@ constexpr double kCorrection = 0.05;  // of a step, by which the prediction may 
 constexpr double kClosing = 0.15;     // of a step: so near it the start is the end
 constexpr double kTurn = 0.95;        // the cosine of the angle between tangents, and between normals, along a step
 constexpr double kLongest_px = 1.0;
+constexpr double kPolished = 1e-4;        // of the reach of Newton's iteration, whose error is squared with each step
 constexpr double kClose = 1e-3;         // of the reach of Newton's iteration, where only whether it converges is asked
 constexpr double kLeastTurning = 1e-3;  // of the longest step: shorter ones are not searched for turns of the image
 constexpr double kLeastLooked = 0.25;   // of the longest step: along shorter ones nobody looks
@@ -122,7 +123,7 @@ class Follower {
 
   /// The curve's own point within `reach` longest steps of one beside it.
   std::optional<CurvePoint> seed(const CurvePoint& point, double reach = kSeedReach) {
-    return polish(evaluator_, viewer_, c_, point.p, reach * settings_.longest_step);
+    return polish(evaluator_, viewer_, c_, point.p, reach * settings_.longest_step, kPolished);
   }
 
   /// From the point around to it again; nothing where the curve is lost on the way, or `stop()`, asked now and then, is true. A step that
@@ -210,7 +211,7 @@ class Follower {
     const double most = kSagitta * settings_.tolerance_px;
     for (; step > kLeastStep * settings_.longest_step; step *= 0.5) {
       const glm::dvec3 predicted = from.p + course.way(step);
-      const std::optional<CurvePoint> next = polish(evaluator_, viewer_, c_, predicted, 0.25 * step);
+      const std::optional<CurvePoint> next = polish(evaluator_, viewer_, c_, predicted, 0.25 * step, kPolished);
       if (!next || !(glm::distance(next->p, predicted) < kCorrection * step)) continue;
       const glm::dvec3 turned = tangent_of(*next);
       if (!(glm::dot(turned, tangent) > kTurn && glm::dot(next->high, from.high) > kTurn)) continue;

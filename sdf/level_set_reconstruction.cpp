@@ -3,12 +3,13 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 #include "sdf/field_program.h"
+#include "sdf/gradients/hull_lanes.h"
 #include "sdf/gradients/spline_blocks.h"
-#include "sdf/gradients/spline_hull.h"
 #include "sdf/gradients/spline_jet.h"
 #include "sdf/level_set_data.h"
 #include "sdf/number_interval.h"
@@ -123,8 +124,27 @@ double support(const void* shape, const glm::dvec3& direction, double level) {
 
 }  // namespace
 
-bool SplineCells::may_hold_contour(const glm::ivec3& node, const glm::dvec3& eye, double w) const {
-  return may_turn_from(blocks_->cell({node.x, node.y, node.z}), glm::dvec3(node), {eye, w});
+std::vector<SurfaceCell> SplineCells::that_may_hold_contours(std::span<const SurfaceCell> cells, const glm::dvec3& eye, double w) const {
+  std::vector<SurfaceCell> kept;
+  SplineBlocks::Reader reader(*blocks_);
+  HullCells hulls;
+  WaysToTarget ways;
+  for (size_t begin = 0; begin < cells.size(); begin += kHullCells) {
+    hulls.count = std::min(kHullCells, cells.size() - begin);
+    for (size_t k = 0; k < hulls.count; ++k) {
+      const glm::ivec3& node = cells[begin + k].node;
+      reader.read({node.x, node.y, node.z}, &hulls.coefficients[0][k], kHullCells);
+      const glm::dvec3 way = eye - w * glm::dvec3(node);
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<size_t>(axis);
+        ways.from_low[a][k] = static_cast<float>(way[axis]);
+        ways.from_high[a][k] = static_cast<float>(way[axis] - w);
+      }
+    }
+    for (CellBits rest = may_turn_from(hulls, ways); rest != 0; rest &= rest - 1)
+      kept.push_back(cells[begin + static_cast<size_t>(std::countr_zero(rest))]);
+  }
+  return kept;
 }
 
 Reconstruction reconstruct(const LevelSet& level_set) {

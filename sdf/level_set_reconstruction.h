@@ -2,6 +2,7 @@
 // Internal: the smooth surface that a level set's cubic gradients are those of, as a field, and the cells that hold it.
 
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -11,14 +12,20 @@ namespace limn {
 
 class SplineBlocks;  // sdf/gradients/spline_blocks.h
 
-/// Cells of a level set's spline, one by one. Safe to ask from many threads at once.
+/// A cell that the surface of the spline may go through.
+struct SurfaceCell {
+  glm::ivec3 node{0};      ///< Of its first corner, index coordinates.
+  glm::vec3 normal{0.0f};  ///< World, unit; 0 where nothing is known of its normals.
+  float spread = 0.0f;     ///< No normal in the cell is farther from that, radians.
+};
+/// Cells of a level set's spline. Safe to ask from many threads at once.
 class SplineCells {
  public:
   SplineCells(LevelSet completed, std::shared_ptr<const SplineBlocks> blocks)
       : level_set_(std::move(completed)), blocks_(std::move(blocks)) {}
-  /// False where bounds show that the surface does not go through the cell, or that all of it in the cell faces the eye, or none. `node`:
-  /// of its first corner. `eye`: index coordinates; with `w` 0 the direction towards it.
-  bool may_hold_contour(const glm::ivec3& node, const glm::dvec3& eye, double w) const;
+  /// Without those of which bounds show that the surface does not go through them, or that all of it in them faces the eye, or none. Quick
+  /// where neighbours follow each other. `eye`: index coordinates; with `w` 0 the direction towards it.
+  std::vector<SurfaceCell> that_may_hold_contours(std::span<const SurfaceCell> cells, const glm::dvec3& eye, double w) const;
 
  private:
   LevelSet level_set_;  ///< Whose values the blocks are made of.
@@ -34,13 +41,7 @@ struct Reconstruction {
 };
 Reconstruction reconstruct(const LevelSet& level_set);
 
-/// A cell that the surface of the spline may go through.
-struct SurfaceCell {
-  glm::ivec3 node{0};      ///< Of its first corner, index coordinates.
-  glm::vec3 normal{0.0f};  ///< World, unit; 0 where nothing is known of its normals.
-  float spread = 0.0f;     ///< No normal in the cell is farther from that, radians.
-};
-/// All such cells of a level set whose band is complete, in an order that does not depend on threads.
+/// All such cells of a level set whose band is complete, in an order that does not depend on threads: near each other one after the other.
 std::vector<SurfaceCell> surface_cells(const LevelSet& completed);
 
 }  // namespace limn

@@ -35,65 +35,51 @@ void append(const CellCurves& from, CellCurves& to) {
   to.links.insert(to.links.end(), from.links.begin(), from.links.end());
 }
 
+/// Without cells that hold no contour, by bounds.
+std::vector<SurfaceCell> without_clear(const PlacedLevelSet& placed, std::vector<SurfaceCell> cells, const Camera& eye) {
+  if (!placed.bounds) return cells;
+  const bool perspective = eye.projection == Projection::perspective;
+  const Affine index_from_solver = inverse(placed.solver_from_index);
+  const glm::dvec3 at = perspective ? index_from_solver.point(eye.eye) : index_from_solver.linear * eye.world_from_camera[2];
+  return placed.bounds->that_may_hold_contours(cells, at, perspective ? 1.0 : 0.0);
+}
+
 /// Cells whose normals may take one of the levels of N.V.
-std::vector<SurfaceCell> turning_cells(const PlacedLevelSet& placed, const LineTask& task, const std::vector<double>& levels,
-                                       const ExecutionSettings& execution) {
+std::vector<SurfaceCell> turning_cells(const PlacedLevelSet& placed, const LineTask& task, const Camera& facing,
+                                       const std::vector<double>& levels, const ExecutionSettings& execution) {
   const bool perspective = task.camera.projection == Projection::perspective;
   std::vector<std::vector<SurfaceCell>> parts(blocks_of(placed.cells.size()));
   for_blocks(placed.cells.size(), execution, [&](size_t part, size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const SurfaceCell& cell = placed.cells[i];
       const glm::dvec3 middle = placed.solver_from_index.point(glm::dvec3(cell.node) + 0.5);
-      const double facing = std::clamp(glm::dot(glm::dvec3(cell.normal), view_vector(task.camera, middle)), -1.0, 1.0),
+      const double toward_eye = std::clamp(glm::dot(glm::dvec3(cell.normal), view_vector(task.camera, middle)), -1.0, 1.0),
                    // From the cell's middle the eye is seen in another direction than from elsewhere in it.
           parallax = perspective ? kHalfDiagonal * placed.voxel / glm::distance(task.camera.eye, middle) : 0.0,
                    reach = static_cast<double>(cell.spread) + 2.0 * parallax;
       const bool may = cell.normal == glm::vec3(0.0f) || std::any_of(levels.begin(), levels.end(), [&](double level) {
                          // An arc is no shorter than its height.
-                         return std::fabs(facing - level) <= reach && std::fabs(std::asin(facing) - std::asin(level)) <= reach;
+                         return std::fabs(toward_eye - level) <= reach && std::fabs(std::asin(toward_eye) - std::asin(level)) <= reach;
                        });
       if (may) parts[part].push_back(cell);
     }
+    if (levels.size() == 1 && levels[0] == 0.0) parts[part] = without_clear(placed, std::move(parts[part]), facing);
   });
   std::vector<SurfaceCell> cells;
   for (const auto& part : parts) cells.insert(cells.end(), part.begin(), part.end());
   return cells;
 }
 
-/// Tells most cells out that hold no contour, where the lattice's cells are the level set's own.
-class ContourBounds {
- public:
-  ContourBounds(const PlacedLevelSet& placed, const SurfaceLattice& lattice, const Camera& eye)
-      : placed_(placed), first_(lattice.first_node) {
-    const bool perspective = eye.projection == Projection::perspective;
-    const Affine index_from_solver = inverse(placed.solver_from_index);
-    w_ = perspective ? 1.0 : 0.0;
-    eye_ = perspective ? index_from_solver.point(eye.eye) : index_from_solver.linear * eye.world_from_camera[2];
-  }
-  bool may_hold(const glm::ivec3& cell) const {
-    return !first_ || !placed_.bounds || placed_.bounds->may_hold_contour(*first_ + cell, eye_, w_);
-  }
-
- private:
-  const PlacedLevelSet& placed_;
-  std::optional<glm::ivec3> first_;
-  glm::dvec3 eye_{0.0};
-  double w_ = 1.0;
-};
-
-CellOutput march(const CellSearch& search, size_t branch, const PlacedLevelSet& placed, const SurfaceLattice& lattice,
-                 LatticeMemory& memory, const ExecutionSettings& execution) {
+CellOutput march(const CellSearch& search, size_t branch, const SurfaceLattice& lattice, LatticeMemory& memory,
+                 const ExecutionSettings& execution) {
   memory.prepare(lattice.grid, kMostKeptBytes);
   std::vector<LatticeSamples*> samples;
   for (const LatticePart& region : lattice.regions) samples.push_back(&memory.regions[region.key].branches[0]);
-  const bool contours_alone = search.families == 1u;
-  const ContourBounds bounds(placed, lattice, search.viewer.facing);
   std::vector<CellOutput> parts(lattice.regions.size());
   parallel_for(size_t{0}, parts.size(), [&](size_t r) {
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
     FieldEvaluator evaluator(search.sharp.branches[branch]);
     for (size_t i = lattice.regions[r].begin; i < lattice.regions[r].end; ++i) {
-      if (contours_alone && !bounds.may_hold(lattice.cells[i])) continue;
       march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, samples[r], parts[r], true);
     }
   });
@@ -227,8 +213,9 @@ void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContr
   CellResult found;
   for (size_t k = 0; k < body.size(); ++k) {
     const PlacedLevelSet& grid = *tracing.grids[body[k]];
-    const SurfaceLattice lattice = lattice_of(grid, turning_cells(grid, task, tracing.levels, tracing.execution), tracing.execution);
-    found.branches[static_cast<int>(k)] = march(search, k, grid, lattice, task.kept.level_sets.lattices[body[k]], tracing.execution);
+    const SurfaceLattice lattice =
+        lattice_of(grid, turning_cells(grid, task, viewer.facing, tracing.levels, tracing.execution), tracing.execution);
+    found.branches[static_cast<int>(k)] = march(search, k, lattice, task.kept.level_sets.lattices[body[k]], tracing.execution);
     for (size_t j = 0; j < k; ++j) {
       const PlacedLevelSet& other = *tracing.grids[body[j]];
       if (intersect(grid.box, other.box).empty()) continue;

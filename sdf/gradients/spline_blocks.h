@@ -19,6 +19,23 @@ class SplineBlocks {
   /// spline_coefficients() of a cell, to the bit.
   SplineCoefficients cell(const nanovdb::Coord& node) const;
 
+  /// Of cells near each other, one after the other: which blocks they lie in is found once.
+  class Reader {
+   public:
+    explicit Reader(const SplineBlocks& blocks);
+    /// cell(), at `to[place * stride]`.
+    void read(const nanovdb::Coord& node, float* to, size_t stride);
+
+   private:
+    const SplineBlocks& blocks_;
+    nanovdb::FloatGrid::AccessorType accessor_;
+    nanovdb::Coord origin_;  ///< Of the middle block.
+    std::array<const std::array<double, 512>*, 27> around_{};
+    std::uint32_t known_ = 0;  ///< Bits of `around_`.
+
+    const double* block(int number);
+  };
+
  private:
   using Leaf = nanovdb::FloatGrid::TreeType::LeafNodeType;
   static constexpr int kSide = static_cast<int>(Leaf::DIM);

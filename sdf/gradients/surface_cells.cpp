@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "sdf/gradients/bernstein.h"
+#include "sdf/gradients/hull_lanes.h"
 #include "sdf/gradients/spline_cell.h"
 #include "sdf/leaf_window.h"
 #include "sdf/level_set_data.h"
@@ -20,6 +20,7 @@ constexpr float kNearCorner = 0.35f;
 constexpr float kTurnRounding = 1e-4f;  // radians
 
 constexpr int kBlock = 8;
+constexpr float kSixth = 1.0f / 6.0f;
 
 /// Values by nodes from `first` to `last` along each axis, of a block whose first node is 0.
 template <int first, int last>
@@ -44,72 +45,24 @@ class BlockSpline {
       for (int y = -2; y <= 9; ++y) {
         const float* const f = values_.at(x, y, -2);
         float* const c = coefficients_.row(x, y);
-        for (int z = 0; z < 12; ++z)
-          c[z] = 2.0f * f[z] - kHullSixth * (f[z - kX] + f[z + kX] + f[z - kY] + f[z + kY] + f[z - 1] + f[z + 1]);
+        for (int z = 0; z < 12; ++z) c[z] = 2.0f * f[z] - kSixth * (f[z - kX] + f[z + kX] + f[z - kY] + f[z + kY] + f[z - 1] + f[z + 1]);
       }
   }
   float value(int x, int y, int z) const { return *values_.at(x, y, z); }
   /// Of the 4 x 4 x 4 nodes about the cell from that node on.
-  void cell(int x, int y, int z, std::array<float, 64>& c) const {
+  void add_cell(int x, int y, int z, HullCells& cells) const {
     for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) std::copy_n(coefficients_.at(x - 1 + i, y - 1 + j, z - 1), 4, &c[spline_place(i, j, 0)]);
+      for (int j = 0; j < 4; ++j) {
+        const float* const row = coefficients_.at(x - 1 + i, y - 1 + j, z - 1);
+        for (int k = 0; k < 4; ++k) cells.coefficients[spline_place(i, j, k)][cells.count] = row[k];
+      }
+    ++cells.count;
   }
 
  private:
   Nodes<-3, 10> values_;
   Nodes<-2, 9> coefficients_;
 };
-
-/// A third of the derivative along an axis, its degree raised to that of the others.
-template <size_t stride>
-void slope_along(const CellHull& b, CellHull& slope) {
-  for_rows<stride>([&](size_t i) {
-    const float d0 = b[i + stride] - b[i], d1 = b[i + 2 * stride] - b[i + stride], d2 = b[i + 3 * stride] - b[i + 2 * stride];
-    slope[i] = d0;
-    slope[i + stride] = kHullThird * (d0 + 2.0f * d1);
-    slope[i + 2 * stride] = kHullThird * (2.0f * d1 + d2);
-    slope[i + 3 * stride] = d2;
-  });
-}
-
-bool may_hold_zero(const CellHull& b) {
-  float least = b[0], most = b[0], size = 0.0f;
-  for (const float x : b) {
-    least = std::min(least, x);
-    most = std::max(most, x);
-    size = std::max(size, std::fabs(x));
-  }
-  return least <= kHullRounding * size && most >= -kHullRounding * size;
-}
-
-/// A cone about the gradients' mean that holds them all; leaves the normal 0 where none does.
-void bound_normals(const CellHull& b, const glm::mat3& world_from_slope, SurfaceCell& cell) {
-  CellHull x, y, z, lengths, along;
-  slope_along<16>(b, x);
-  slope_along<4>(b, y);
-  slope_along<1>(b, z);
-  glm::vec3 sum(0.0f);
-  for (size_t i = 0; i < 64; ++i) sum += glm::vec3(x[i], y[i], z[i]);
-  const glm::vec3 mean = world_from_slope * sum;
-  const float length = glm::length(mean);
-  if (!(length > 0.0f)) return;
-  const glm::vec3 normal = mean / length;
-  for (size_t i = 0; i < 64; ++i) {
-    const float u = world_from_slope[0][0] * x[i] + world_from_slope[1][0] * y[i] + world_from_slope[2][0] * z[i],
-                v = world_from_slope[0][1] * x[i] + world_from_slope[1][1] * y[i] + world_from_slope[2][1] * z[i],
-                w = world_from_slope[0][2] * x[i] + world_from_slope[1][2] * y[i] + world_from_slope[2][2] * z[i];
-    lengths[i] = u * u + v * v + w * w;
-    along[i] = normal.x * u + normal.y * v + normal.z * w;
-  }
-  float most = 0.0f;  // the square of the greatest sine
-  for (size_t i = 0; i < 64; ++i) {
-    if (!(along[i] > 0.0f)) return;
-    most = std::max(most, 1.0f - along[i] * along[i] / lengths[i]);
-  }
-  cell.normal = normal;
-  // What a sine rounds by counts for more the smaller it is.
-  cell.spread = std::asin(std::min(1.0f, std::sqrt(most + 1e-6f))) + kTurnRounding;
-}
 
 class CellFinder {
  public:
@@ -132,10 +85,13 @@ class CellFinder {
           if ((x < 0 || y < 0 || z < 0) && accessor.isActive(node)) continue;  // Another block's.
           if (!loaded) spline_.load(window);
           loaded = true;
-          add(x, y, z, node, cells);
+          nodes_to_bound_[to_bound_.count] = {node[0], node[1], node[2]};
+          spline_.add_cell(x, y, z, to_bound_);
+          if (to_bound_.count == kHullCells) add_bounded(cells);
         }
       }
     }
+    add_bounded(cells);
   }
 
  private:
@@ -156,15 +112,21 @@ class CellFinder {
     }
     return sides == kBoth;
   }
-  void add(int x, int y, int z, const nanovdb::Coord& node, std::vector<SurfaceCell>& cells) const {
-    CellHull b;
-    spline_.cell(x, y, z, b);
-    make_bernstein(b);
-    if (!may_hold_zero(b)) return;
-    SurfaceCell cell;
-    cell.node = {node[0], node[1], node[2]};
-    bound_normals(b, world_from_slope_, cell);
-    cells.push_back(cell);
+  /// Those whose surface may go through them.
+  void add_bounded(std::vector<SurfaceCell>& cells) {
+    find_normal_cones(to_bound_, world_from_slope_, cones_);
+    for (size_t k = 0; k < to_bound_.count; ++k) {
+      if ((cones_.may_hold_zero >> k & 1u) == 0) continue;
+      SurfaceCell cell;
+      cell.node = nodes_to_bound_[k];
+      if ((cones_.bounded >> k & 1u) != 0) {
+        cell.normal = {cones_.normal[0][k], cones_.normal[1][k], cones_.normal[2][k]};
+        // What a sine rounds by counts for more the smaller it is.
+        cell.spread = std::asin(std::min(1.0f, std::sqrt(cones_.sine_squared[k] + 1e-6f))) + kTurnRounding;
+      }
+      cells.push_back(cell);
+    }
+    to_bound_.count = 0;
   }
 
   const LevelSetData& data_;
@@ -173,6 +135,9 @@ class CellFinder {
   Nodes<-1, 8> nodes_;
   std::array<std::uint8_t, std::tuple_size_v<decltype(nodes_.values)>> sides_;
   BlockSpline spline_;
+  HullCells to_bound_{};
+  std::array<glm::ivec3, kHullCells> nodes_to_bound_{};
+  NormalCones cones_{};
 };
 
 }  // namespace

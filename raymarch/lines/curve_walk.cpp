@@ -21,7 +21,8 @@ struct FourSamples {
 };
 /// Nothing at the ends of an open curve, and where neighbours are much nearer or farther than the step is long: those say little, and much
 /// of rounding.
-std::optional<FourSamples> around_step(const SurfaceCurve& curve, size_t i) {
+template <class Curve>
+std::optional<FourSamples> around_step(const Curve& curve, size_t i) {
   const size_t n = curve.samples.size();
   const bool inner = curve.closed ? n >= 4 : i >= 1 && i + 2 < n;
   if (curve.straight || !inner) return {};
@@ -57,7 +58,8 @@ glm::dvec3 polynomial(const FourSamples& four, size_t first, size_t last, double
 
 /// Between samples i and i + 1: where the curve is smooth by the cubic through four of them. Its image may turn back at a cusp there, the
 /// curve itself does not.
-glm::dvec3 point_between(const SurfaceCurve& curve, size_t i, double t) {
+template <class Curve>
+glm::dvec3 by_neighbours(const Curve& curve, size_t i, double t) {
   if (const auto four = around_step(curve, i)) return polynomial(*four, 0, 3, t);
   const size_t n = curve.samples.size();
   return glm::mix(curve.samples[i % n].p, curve.samples[(i + 1) % n].p, t);
@@ -85,8 +87,17 @@ std::optional<glm::dvec3> known_middle(const SurfaceCurve& curve, size_t i, cons
 }  // namespace
 
 glm::dvec3 point_at(const SurfaceCurve& curve, size_t i, double share) {
-  return curve.between ? curve.between(i % curve.samples.size(), share) : point_between(curve, i, share);
+  return curve.between ? curve.between(i % curve.samples.size(), share) : by_neighbours(curve, i, share);
 }
+
+CurvePath path_of(const SurfaceCurve& curve) {
+  CurvePath path{curve.closed, curve.smooth, curve.straight, {}};
+  path.samples.reserve(curve.samples.size());
+  for (const CurveSample& sample : curve.samples) path.samples.push_back({sample.p, sample.radial_curvature});
+  return path;
+}
+
+glm::dvec3 point_between(const CurvePath& path, size_t i, double share) { return by_neighbours(path, i, share); }
 
 size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples.size() : curve.samples.size() - 1; }
 

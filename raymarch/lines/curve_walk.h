@@ -12,6 +12,18 @@ bool in_frame(const Camera& camera, const CurveSample& sample);
 /// Between samples i and i + 1 (of a closed curve the first again) the curve's own point where it is known; else one of a smooth curve
 /// through them and their neighbours.
 glm::dvec3 point_at(const SurfaceCurve& curve, size_t i, double share);
+/// Samples of a curve without all that is known of them.
+struct CurvePath {
+  struct Sample {
+    glm::dvec3 p{0.0};
+    double radial_curvature = 0.0;
+  };
+  bool closed = false, smooth = false, straight = false;
+  std::vector<Sample> samples{};
+};
+CurvePath path_of(const SurfaceCurve& curve);
+/// As point_at(), where nothing but the samples is known of the curve.
+glm::dvec3 point_between(const CurvePath& path, size_t i, double share);
 /// How far the curve leaves a step in the image; 0 where nothing but the step is known of it, and where it turns back at a cusp.
 double sag_px(const SurfaceCurve& curve, size_t step, const Camera& camera);
 /// The point at a place on a curve: the index of a step plus the share of it.

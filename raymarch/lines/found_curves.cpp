@@ -20,6 +20,7 @@ CurveSample sample_of(const FieldTask& fields, const CurvePoint& point) {
 /// A contour on smooth surface, or the level curve of the rim.
 SurfaceCurve smooth_curve(const FieldTask& fields, const FieldCurve& found) {
   SurfaceCurve curve{found.closed, found.c == 0.0, {}};
+  curve.samples.reserve(found.points.size());
   for (const CurvePoint& point : found.points) {
     CurveSample sample = sample_of(fields, point);
     const glm::dvec3 v = fields.viewer.toward_eye(sample.p);

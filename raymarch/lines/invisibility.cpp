@@ -80,18 +80,33 @@ class Cutter {
 
   /// The sample of a piece nearest to the share of its length, or a point on a chord where it holds none.
   double ray_at(const CurvePiece& piece, double share) const {
-    const double begin = walk_.length_to(piece.from), wanted = begin + share * piece.length_px;
-    double best = -1.0, least = std::numeric_limits<double>::infinity();
-    const double shift = curve_.straight ? 0.5 : 0.0;
-    for (double place = std::floor(piece.from) + 1.0 - shift; place < piece.to; place += 1.0) {
-      if (place <= piece.from) continue;
-      const double here = walk_.length_to(place), off = std::fabs(here - wanted),
-                   room = std::min(here - begin, begin + piece.length_px - here);
-      if (off >= least || room < std::min(kNearEnd_px, 0.2 * piece.length_px)) continue;
-      least = off;
-      best = place;
-    }
-    return best >= 0.0 ? best : glm::mix(piece.from, piece.to, share);
+    const double begin = walk_.length_to(piece.from), wanted = begin + share * piece.length_px,
+                 room = std::min(kNearEnd_px, 0.2 * piece.length_px);
+    double from = std::floor(piece.from) + (curve_.straight ? 0.5 : 1.0);
+    if (from <= piece.from) from += 1.0;
+    const auto place_of = [&](std::ptrdiff_t k) { return from + static_cast<double>(k); };
+    const auto length_at = [&](std::ptrdiff_t k) { return walk_.length_to(place_of(k)); };
+    // Lengths rise along the piece: the first sample of those from `low` to `high` for which something holds from there on.
+    const auto first_with = [](std::ptrdiff_t low, std::ptrdiff_t high, const auto& holds) {
+      while (low < high) {
+        const std::ptrdiff_t middle = low + (high - low) / 2;
+        if (holds(middle))
+          high = middle;
+        else
+          low = middle + 1;
+      }
+      return low;
+    };
+    const auto count = static_cast<std::ptrdiff_t>(std::max(0.0, std::ceil(piece.to - from)));
+    const std::ptrdiff_t first = first_with(0, count, [&](std::ptrdiff_t k) { return length_at(k) - begin >= room; }),
+                         end = first_with(first, count, [&](std::ptrdiff_t k) { return begin + piece.length_px - length_at(k) < room; });
+    if (first == end) return glm::mix(piece.from, piece.to, share);
+    const std::ptrdiff_t after = first_with(first, end, [&](std::ptrdiff_t k) { return length_at(k) >= wanted; });
+    if (after == first) return place_of(first);
+    const double before = length_at(after - 1);
+    if (after < end && length_at(after) - wanted < wanted - before) return place_of(after);
+    // The first of those as far along.
+    return place_of(first_with(first, after, [&](std::ptrdiff_t k) { return length_at(k) >= before; }));
   }
   /// The place at that share, or nothing where rays from so near to a piercing say nothing.
   std::optional<double> telling_ray_at(const CurvePiece& piece, double share) const {

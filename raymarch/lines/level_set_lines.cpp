@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "raymarch/lines/curve_walk.h"
@@ -197,9 +198,9 @@ void add_points_between(const LineTask& task, const PlacedLevelSet& grid, Surfac
   if (!contour) return;
   const auto evaluators =
       std::make_shared<tbb::enumerable_thread_specific<FieldEvaluator>>([field = grid.field] { return FieldEvaluator(field); });
-  curve.between = [evaluators, known = std::make_shared<const SurfaceCurve>(curve), camera = task.camera, most = grid.voxel](size_t step,
-                                                                                                                             double share) {
-    const glm::dvec3 near = point_at(*known, step, share), p = onto_contour(evaluators->local(), camera, near, kClose * most);
+  curve.between = [evaluators, path = std::make_shared<const CurvePath>(path_of(curve)), camera = task.camera, most = grid.voxel](
+                      size_t step, double share) {
+    const glm::dvec3 near = point_between(*path, step, share), p = onto_contour(evaluators->local(), camera, near, kClose * most);
     return glm::distance(p, near) < kMostOff * most ? p : near;
   };
 }
@@ -229,11 +230,11 @@ void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContr
   curves_of_cells(found, search, {task.settings.tolerance_px, task.extent, 1.0, voxel, task.missed}, tracing.execution, curves);
   out.unrefined_px = std::max(out.unrefined_px, curves.worst_unrefined_px);
   const FieldTask fields{task, tracing.bodies, body, viewer, tracing.evaluators};
-  for (SurfaceCurve& curve :
-       surface_curves(fields, curves.curves.size(), [&](size_t i) -> const FieldCurve& { return curves.curves[i]; })) {
-    if (body.size() == 1) add_points_between(task, *tracing.grids[body[0]], curve);
-    out.curves.push_back(std::move(curve));
-  }
+  std::vector<SurfaceCurve> found_curves =
+      surface_curves(fields, curves.curves.size(), [&](size_t i) -> const FieldCurve& { return curves.curves[i]; });
+  if (body.size() == 1)
+    parallel_for(size_t{0}, found_curves.size(), [&](size_t i) { add_points_between(task, *tracing.grids[body[0]], found_curves[i]); });
+  out.curves.insert(out.curves.end(), std::make_move_iterator(found_curves.begin()), std::make_move_iterator(found_curves.end()));
 }
 
 }  // namespace

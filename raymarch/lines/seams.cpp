@@ -108,12 +108,17 @@ SurfaceCurve curve_of_seam(const Camera& camera, const Seam& seam) {
 void set_fold(const Camera& camera, SurfaceCurve& curve) {
   double left = 0.0;
   const size_t n = curve.samples.size();
+  const auto to_empty_side = [&](const CurveSample& at) {
+    const glm::dvec2 outwards = image_direction(camera, at.p, at.high);
+    return at.radial_curvature < 0.0 ? outwards : -outwards;
+  };
+  glm::dvec2 from_a = to_empty_side(curve.samples[0]);
   for (size_t i = 0; i + (curve.closed ? 0 : 1) < n; ++i) {
     const CurveSample &a = curve.samples[i], &b = curve.samples[(i + 1) % n];
-    for (const CurveSample* at : {&a, &b}) {
-      const glm::dvec2 outwards = image_direction(camera, at->p, at->high);
-      left += leftness(a.px, b.px, at->radial_curvature < 0.0 ? outwards : -outwards);
-    }
+    const glm::dvec2 from_b = to_empty_side(b);
+    left += leftness(a.px, b.px, from_a);
+    left += leftness(a.px, b.px, from_b);
+    from_a = from_b;
   }
   for (CurveSample& sample : curve.samples) sample.more_on_left = left > 0.0 ? 2 : -2;
 }

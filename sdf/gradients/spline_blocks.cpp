@@ -94,7 +94,7 @@ SplineCoefficients SplineBlocks::cell(const nanovdb::Coord& node) const {
 SplineBlocks::Reader::Reader(const SplineBlocks& blocks)
     : blocks_(blocks), accessor_(blocks.data_.accessor()), origin_(nanovdb::Coord::max()) {}
 
-const double* SplineBlocks::Reader::block(int number) {
+inline const double* SplineBlocks::Reader::block(int number) {
   const Block*& kept = around_[static_cast<size_t>(number)];
   if ((known_ >> number & 1u) == 0) {
     const Leaf* const leaf =
@@ -108,23 +108,25 @@ const double* SplineBlocks::Reader::block(int number) {
 void SplineBlocks::Reader::read(const nanovdb::Coord& node, float* to, size_t stride) {
   const nanovdb::Coord origin = node & ~(kSide - 1);
   if (origin != origin_) origin_ = origin, known_ = 0;
-  // Of the block's own nodes 0 to 7: from -1 on.
-  const std::array<int, 3> low{node[0] - origin[0] - 1, node[1] - origin[1] - 1, node[2] - origin[2] - 1};
-  for (int x = 0; x < 4; ++x)
+  // From the first node of the blocks before the middle one.
+  const std::array<int, 3> low{node[0] - origin[0] + kSide - 1, node[1] - origin[1] + kSide - 1, node[2] - origin[2] + kSide - 1};
+  const auto block_at = [&](size_t axis, int i) { return (low[axis] + i) / kSide; };
+  for (int x = 0; x < 4; ++x) {
     for (int y = 0; y < 4; ++y) {
-      const int at_x = low[0] + x + kSide, at_y = low[1] + y + kSide, at_z = low[2] + kSide, column = at_x / kSide * 9 + at_y / kSide * 3;
-      const double *const first = block(column + at_z / kSide), *const last = block(column + (at_z + 3) / kSide);
+      const int column = 9 * block_at(0, x) + 3 * block_at(1, y);
+      const double *const first = block(column + block_at(2, 0)), *const last = block(column + block_at(2, 3));
       if (first == nullptr || last == nullptr) {
         const SplineCoefficients c = blocks_.cell(node);
         for (size_t i = 0; i < c.size(); ++i) to[i * stride] = static_cast<float>(c[i]);
         return;
       }
-      const int row = at_x % kSide * kSide * kSide + at_y % kSide * kSide;
+      const int row = (low[0] + x) % kSide * kSide * kSide + (low[1] + y) % kSide * kSide;
       for (int z = 0; z < 4; ++z) {
-        const double* const from = (at_z + z) / kSide == at_z / kSide ? first : last;
-        to[spline_place(x, y, z) * stride] = static_cast<float>(from[row + (at_z + z) % kSide]);
+        const double* const from = block_at(2, z) == block_at(2, 0) ? first : last;
+        to[spline_place(x, y, z) * stride] = static_cast<float>(from[row + (low[2] + z) % kSide]);
       }
     }
+  }
 }
 
 }  // namespace limn

@@ -10,6 +10,7 @@
 #include "sdf/field_program.h"
 #include "sdf/gradients/hull_lanes.h"
 #include "sdf/gradients/spline_blocks.h"
+#include "sdf/gradients/spline_edges.h"
 #include "sdf/gradients/spline_jet.h"
 #include "sdf/level_set_data.h"
 #include "sdf/number_interval.h"
@@ -145,6 +146,59 @@ std::vector<SurfaceCell> SplineCells::that_may_hold_contours(std::span<const Sur
       kept.push_back(cells[begin + static_cast<size_t>(std::countr_zero(rest))]);
   }
   return kept;
+}
+
+struct SplineCellReader::State {
+  const LevelSetData& data;
+  SplineBlocks::Reader reader;
+  SplineCoefficients coefficients{};
+  std::array<double, 8> corners{};
+};
+
+SplineCellReader::SplineCellReader(const SplineCells& cells)
+    : state_(std::make_unique<State>(cells.level_set_.data(), SplineBlocks::Reader(*cells.blocks_))) {}
+SplineCellReader::~SplineCellReader() = default;
+
+void SplineCellReader::read(const glm::ivec3& node) {
+  SplineCoefficients& c = state_->coefficients;
+  state_->reader.read({node.x, node.y, node.z}, c.data(), 1);
+  // At a node three of four weights are left along each axis.
+  const auto sum = [](double before, double at, double after) { return (1.0 / 6.0) * (before + after) + (2.0 / 3.0) * at; };
+  std::array<double, 32> along_z{};
+  for (size_t i = 0; i < 16; ++i) {
+    for (size_t z = 0; z < 2; ++z) along_z[2 * i + z] = sum(c[4 * i + z], c[4 * i + z + 1], c[4 * i + z + 2]);
+  }
+  for (size_t corner = 0; corner < 8; ++corner) {
+    const size_t x = corner & 1u, y = corner >> 1u & 1u, z = corner >> 2u;
+    const auto row = [&](size_t i, size_t j) { return along_z[2 * (4 * (x + i) + y + j) + z]; };
+    const auto plane = [&](size_t i) { return sum(row(i, 0), row(i, 1), row(i, 2)); };
+    state_->corners[corner] = sum(plane(0), plane(1), plane(2));
+  }
+}
+
+std::array<double, 8> SplineCellReader::corner_values() const { return state_->corners; }
+
+void SplineCellReader::find_on_edges(std::span<const CellEdge> edges, double close, std::span<EdgePoint> points) const {
+  EdgesOfCell lanes;
+  EdgeRoots roots;
+  for (size_t first = 0; first < edges.size(); first += kEdgeLanes) {
+    lanes.count = std::min(kEdgeLanes, edges.size() - first);
+    for (size_t k = 0; k < lanes.count; ++k) {
+      const auto [from, to] = edges[first + k];
+      lanes.at_start[k] = state_->corners[from];
+      lanes.at_end[k] = state_->corners[to];
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        const double start = from >> axis & 1u, end = to >> axis & 1u;
+        lanes.from[axis][k] = start;
+        lanes.way[axis][k] = end - start;
+      }
+    }
+    find_roots(state_->coefficients, lanes, close, roots);
+    for (size_t k = 0; k < lanes.count; ++k) {
+      const glm::dvec3 gradient(roots.gradient[0][k], roots.gradient[1][k], roots.gradient[2][k]);
+      points[first + k] = {(roots.found >> k & 1u) != 0, roots.share[k], state_->data.world_gradient(gradient)};
+    }
+  }
 }
 
 Reconstruction reconstruct(const LevelSet& level_set) {

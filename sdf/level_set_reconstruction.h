@@ -1,6 +1,8 @@
 #pragma once
 // Internal: the smooth surface that a level set's cubic gradients are those of, as a field, and the cells that hold it.
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <utility>
@@ -28,8 +30,37 @@ class SplineCells {
   std::vector<SurfaceCell> that_may_hold_contours(std::span<const SurfaceCell> cells, const glm::dvec3& eye, double w) const;
 
  private:
+  friend class SplineCellReader;
   LevelSet level_set_;  ///< Whose values the blocks are made of.
   std::shared_ptr<const SplineBlocks> blocks_;
+};
+
+/// A line between two corners of a cell: 0 to 7, bit 0 along x, bit 1 along y, bit 2 along z.
+struct CellEdge {
+  std::uint8_t from = 0, to = 0;
+};
+/// About where the surface meets it.
+struct EdgePoint {
+  bool found = false;
+  double share = 0.0;        ///< Of the way.
+  glm::dvec3 gradient{0.0};  ///< World, from beside that place.
+};
+
+/// One cell after the other, by one thread; quick where they lie near each other. Keeps a reference to the cells.
+class SplineCellReader {
+ public:
+  explicit SplineCellReader(const SplineCells& cells);
+  ~SplineCellReader();
+  /// `node`: of the cell's first corner, index coordinates.
+  void read(const glm::ivec3& node);
+  /// By corners. Cells that share one tell the same of it, to the bit.
+  std::array<double, 8> corner_values() const;
+  /// Of edges whose ends have values of different signs: to within `close` of an edge's length, where Newton's iteration gets there.
+  void find_on_edges(std::span<const CellEdge> edges, double close, std::span<EdgePoint> points) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 /// The cubic spline through the grid's values. Its band is completed where it has no room for that. Values mean something within a voxel of

@@ -104,6 +104,7 @@ SurfaceLattice lattice_of(const PlacedLevelSet& placed, const std::vector<Surfac
     for (const SurfaceCell& cell : placed.cells) cover.lowest = glm::min(cover.lowest, cell.node);
     cover.lowest -= 2;
     lattice.grid.corner = placed.solver_from_index.point(glm::dvec3(cover.lowest));
+    lattice.first_node = cover.lowest;
   } else {
     lattice.grid.corner = placed.box.lower - 2.0 * placed.voxel;
   }

@@ -2,6 +2,7 @@
 // Internal: the cells of a cubic lattice in solver space that surface cells of a level set cover, region by region.
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "raymarch/lines/placed_level_set.h"
@@ -32,6 +33,8 @@ struct SurfaceLattice {
   CellGrid grid{};
   std::vector<glm::ivec3> cells{};     ///< By regions, each once.
   std::vector<LatticePart> regions{};  ///< Rising keys.
+  /// Of the level set's own cell at the lattice's first, index coordinates; nothing where its cells are others.
+  std::optional<glm::ivec3> first_node{};
 };
 
 /// Of some of the cells of a level set. Cells of the lattice are those of the level set where its axes are the solver's; else those around

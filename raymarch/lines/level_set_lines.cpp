@@ -71,8 +71,8 @@ std::vector<SurfaceCell> turning_cells(const PlacedLevelSet& placed, const LineT
   return cells;
 }
 
-CellOutput march(const CellSearch& search, size_t branch, const SurfaceLattice& lattice, LatticeMemory& memory,
-                 const ExecutionSettings& execution) {
+CellOutput march(const CellSearch& search, size_t branch, const PlacedLevelSet& placed, const SurfaceLattice& lattice,
+                 LatticeMemory& memory, const ExecutionSettings& execution) {
   memory.prepare(lattice.grid, kMostKeptBytes);
   std::vector<LatticeSamples*> samples;
   for (const LatticePart& region : lattice.regions) samples.push_back(&memory.regions[region.key].branches[0]);
@@ -80,8 +80,11 @@ CellOutput march(const CellSearch& search, size_t branch, const SurfaceLattice& 
   parallel_for(size_t{0}, parts.size(), [&](size_t r) {
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
     FieldEvaluator evaluator(search.sharp.branches[branch]);
+    std::optional<SplineCellReader> spline;
+    if (lattice.first_node && placed.bounds) spline.emplace(*placed.bounds);
+    const Seeds seeds{true, spline ? &*spline : nullptr, lattice.first_node.value_or(glm::ivec3(0))};
     for (size_t i = lattice.regions[r].begin; i < lattice.regions[r].end; ++i) {
-      march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, samples[r], parts[r], true);
+      march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, samples[r], parts[r], seeds);
     }
   });
   CellOutput all;
@@ -216,7 +219,7 @@ void add_body(const Tracing& tracing, const std::vector<size_t>& body, LineContr
     const PlacedLevelSet& grid = *tracing.grids[body[k]];
     const SurfaceLattice lattice =
         lattice_of(grid, turning_cells(grid, task, viewer.facing, tracing.levels, tracing.execution), tracing.execution);
-    found.branches[static_cast<int>(k)] = march(search, k, lattice, task.kept.level_sets.lattices[body[k]], tracing.execution);
+    found.branches[static_cast<int>(k)] = march(search, k, grid, lattice, task.kept.level_sets.lattices[body[k]], tracing.execution);
     for (size_t j = 0; j < k; ++j) {
       const PlacedLevelSet& other = *tracing.grids[body[j]];
       if (intersect(grid.box, other.box).empty()) continue;

@@ -298,7 +298,7 @@ std::optional<std::vector<CurvePoint>> finer_crossings(const Strand& strand, con
     for (int k = 0; k < kFinerParts * kFinerParts * kFinerParts; ++k) {
       const glm::ivec3 part(k / (kFinerParts * kFinerParts), k / kFinerParts % kFinerParts, k % kFinerParts);
       march_cell(evaluator, viewer, grid, kFinerParts * glm::ivec3(cube[0], cube[1], cube[2]) + part, {strand.c, strand.c}, 1u, &samples,
-                 output, true);
+                 output, {true});
     }
   }
   std::vector<CurvePoint> points;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 namespace limn {
 namespace {
@@ -33,11 +34,12 @@ class Marcher {
  public:
   /// With `seam`, it is that field's zeros that are looked for instead of N.V's levels.
   Marcher(FieldEvaluator& evaluator, FieldEvaluator* seam, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
-          LatticeSamples* samples, bool seeds)
+          LatticeSamples* samples, const Seeds& seeds)
       : evaluator_(evaluator), seam_(seam), viewer_(viewer), samples_(samples), seeds_(seeds), cell_(cell), side_(grid.side) {
     for (int i = 0; i < 8; ++i) points_[static_cast<size_t>(i)] = grid.vertex(cell + offset_of(i));
     find_values();
     for (size_t i = 0; i < 8; ++i) inside_[i] = values_[i] < 0.0;
+    if (seeds_.spline != nullptr && holds_surface()) find_edges(*seeds_.spline);
   }
 
   bool holds_surface() const { return std::find(inside_.begin(), inside_.end(), !inside_[0]) != inside_.end(); }
@@ -53,6 +55,11 @@ class Marcher {
 
  private:
   void find_values() {
+    if (seeds_.spline != nullptr) {
+      seeds_.spline->read(seeds_.first_node + cell_);
+      values_ = seeds_.spline->corner_values();
+      return;
+    }
     if (samples_ == nullptr) return evaluator_.values(points_, values_);
     std::array<glm::dvec3, 8> points;
     std::array<size_t, 8> corners{};
@@ -80,6 +87,26 @@ class Marcher {
 
   bool in(int corner) const { return inside_[static_cast<size_t>(corner)]; }
 
+  /// All at once that no other cell has found; what is left edge() finds.
+  void find_edges(const SplineCellReader& spline) {
+    std::array<CellEdge, kEdges> edges{};
+    std::array<EdgePoint, kEdges> points{};
+    size_t count = 0;
+    for (int low = 0; low < 8; ++low) {
+      for (int high = low + 1; high < 8; ++high) {
+        if ((low & high) != low || in(low) == in(high) || samples_->edges.find(edge_key(low, high)) != nullptr) continue;
+        edges[count++] = {static_cast<std::uint8_t>(low), static_cast<std::uint8_t>(high)};
+      }
+    }
+    spline.find_on_edges(std::span(edges).first(count), kSeedOff, std::span(points).first(count));
+    for (size_t k = 0; k < count; ++k) {
+      if (!points[k].found) continue;
+      const glm::dvec3 &start = points_[edges[k].from], &end = points_[edges[k].to];
+      bool added = false;
+      samples_->edges.at(edge_key(edges[k].from, edges[k].to), added) = {start + points[k].share * (end - start), points[k].gradient};
+    }
+  }
+
   /// The surface on the edge between two corners on different sides, always found from the lower corner.
   const SurfaceSample& edge(int a, int b) {
     const auto low = static_cast<size_t>(std::min(a, b)), high = static_cast<size_t>(std::max(a, b));
@@ -88,7 +115,7 @@ class Marcher {
     place = static_cast<std::uint8_t>(++edges_found_);
     SurfaceSample& sample = found_[place - size_t{1}];
     const auto find = [&] {
-      if (seeds_) return seed_on_edge(low, high);
+      if (seeds_.wanted) return seed_on_edge(low, high);
       return sample_at(root_between(evaluator_, points_[low], points_[high], values_[low], values_[high]));
     };
     if (samples_ == nullptr) {
@@ -152,7 +179,7 @@ class Marcher {
   }
   bool is_new(std::uint64_t face) {
     bool added = false;
-    if (seeds_) {
+    if (seeds_.wanted) {
       output_->known.at(face, added);
       return added;
     }
@@ -166,7 +193,7 @@ class Marcher {
     const Fan fan{at(lone), at(first), at(second) - at(first), values_[static_cast<size_t>(lone)]};
     const double step = glm::length(end.p - start.p);
     if (seam_ != nullptr) return locate_seam(fan, start, end);
-    if (seeds_) {
+    if (seeds_.wanted) {
       const CurvePoint seed = seed_between(start, end);
       // Where the surface turns within the cell only the way along the face leads onto the curve.
       if (polish(evaluator_, viewer_, level_, seed.p, kSmoothReach * side_, kSeedOff)) return seed;
@@ -254,7 +281,7 @@ class Marcher {
   FieldEvaluator* seam_;
   const Viewer& viewer_;
   LatticeSamples* samples_;
-  bool seeds_;
+  Seeds seeds_;
   glm::ivec3 cell_;
   CellCurves* output_ = nullptr;
   double side_;
@@ -272,7 +299,7 @@ class Marcher {
 
 bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
                 const std::array<double, kCurveFamilies>& levels, FamilyMask families, LatticeSamples* samples, CellOutput& output,
-                bool seeds) {
+                const Seeds& seeds) {
   Marcher marcher(evaluator, nullptr, viewer, grid, cell, samples, seeds);
   bool any = false;
   if (marcher.holds_surface()) {
@@ -285,7 +312,7 @@ bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid&
 
 bool march_seam(FieldEvaluator& first, FieldEvaluator& second, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
                 CellCurves& output) {
-  Marcher marcher(first, &second, viewer, grid, cell, nullptr, false);
+  Marcher marcher(first, &second, viewer, grid, cell, nullptr, {});
   return marcher.holds_surface() && marcher.march(0.0, output);
 }
 

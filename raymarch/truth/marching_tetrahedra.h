@@ -7,6 +7,7 @@
 
 #include "raymarch/truth/lattice_samples.h"
 #include "raymarch/truth/locate.h"
+#include "sdf/level_set_reconstruction.h"
 
 namespace limn {
 
@@ -43,13 +44,20 @@ using CellOutput = std::array<CellCurves, kCurveFamilies>;
 bool march_seam(FieldEvaluator& first, FieldEvaluator& second, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
                 CellCurves& output);
 
+/// Points that are interpolated and lie beside the curve, for those who follow it from there.
+struct Seeds {
+  bool wanted = false;
+  /// Of the field, whose cells are the grid's, from that node on; null: the field itself is asked.
+  SplineCellReader* spline = nullptr;
+  glm::ivec3 first_node{0};
+};
+
 /// So many cells around the marched one is the field evaluated.
 inline constexpr double kMarchReach = 7.5;
 /// True where a curve goes through the cell. `evaluator` need be right within kMarchReach of it. Cell indices below 2^19. `samples`, if not
-/// null, are those of the field, with what other cells have found. `seeds`: points are interpolated and lie beside the curve, for those who
-/// follow it from there.
+/// null, are those of the field, with what other cells have found.
 bool march_cell(FieldEvaluator& evaluator, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
                 const std::array<double, kCurveFamilies>& levels, FamilyMask families, LatticeSamples* samples, CellOutput& output,
-                bool seeds = false);
+                const Seeds& seeds = {});
 
 }  // namespace limn

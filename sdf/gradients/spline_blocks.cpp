@@ -105,7 +105,8 @@ inline const double* SplineBlocks::Reader::block(int number) {
   return kept != nullptr ? kept->data() : nullptr;
 }
 
-void SplineBlocks::Reader::read(const nanovdb::Coord& node, float* to, size_t stride) {
+template <class Number>
+void SplineBlocks::Reader::read(const nanovdb::Coord& node, Number* to, size_t stride) {
   const nanovdb::Coord origin = node & ~(kSide - 1);
   if (origin != origin_) origin_ = origin, known_ = 0;
   // From the first node of the blocks before the middle one.
@@ -117,16 +118,19 @@ void SplineBlocks::Reader::read(const nanovdb::Coord& node, float* to, size_t st
       const double *const first = block(column + block_at(2, 0)), *const last = block(column + block_at(2, 3));
       if (first == nullptr || last == nullptr) {
         const SplineCoefficients c = blocks_.cell(node);
-        for (size_t i = 0; i < c.size(); ++i) to[i * stride] = static_cast<float>(c[i]);
+        for (size_t i = 0; i < c.size(); ++i) to[i * stride] = static_cast<Number>(c[i]);
         return;
       }
       const int row = (low[0] + x) % kSide * kSide * kSide + (low[1] + y) % kSide * kSide;
       for (int z = 0; z < 4; ++z) {
         const double* const from = block_at(2, z) == block_at(2, 0) ? first : last;
-        to[spline_place(x, y, z) * stride] = static_cast<float>(from[row + (low[2] + z) % kSide]);
+        to[spline_place(x, y, z) * stride] = static_cast<Number>(from[row + (low[2] + z) % kSide]);
       }
     }
   }
 }
+
+template void SplineBlocks::Reader::read(const nanovdb::Coord& node, float* to, size_t stride);
+template void SplineBlocks::Reader::read(const nanovdb::Coord& node, double* to, size_t stride);
 
 }  // namespace limn

@@ -23,8 +23,9 @@ class SplineBlocks {
   class Reader {
    public:
     explicit Reader(const SplineBlocks& blocks);
-    /// cell(), at `to[place * stride]`.
-    void read(const nanovdb::Coord& node, float* to, size_t stride);
+    /// cell(), at `to[place * stride]`; in floats or doubles.
+    template <class Number>
+    void read(const nanovdb::Coord& node, Number* to, size_t stride);
 
    private:
     const SplineBlocks& blocks_;

@@ -194,14 +194,12 @@ class Marcher {
     const double step = glm::length(end.p - start.p);
     if (seam_ != nullptr) return locate_seam(fan, start, end);
     if (seeds_.wanted) {
-      const CurvePoint seed = seed_between(start, end);
       // Where the surface turns within the cell only the way along the face leads onto the curve.
-      if (polish(evaluator_, viewer_, level_, seed.p, kSmoothReach * side_, kSeedOff)) return seed;
+      if (auto seed = polish(evaluator_, viewer_, level_, point_between(start, end), kSmoothReach * side_, kSeedOff)) return *seed;
     }
     if (auto point = bisect(evaluator_, viewer_, level_, fan, 0.0, 1.0, start, end, kSmoothReach * step)) return *point;
-    const double share = (level_ - start.facing) / (end.facing - start.facing);
     CurvePoint point;
-    point.p = start.p + share * (end.p - start.p);
+    point.p = point_between(start, end);
     if (auto polished = polish(evaluator_, viewer_, level_, point.p, side_)) {
       point = *polished;
     } else {
@@ -212,13 +210,8 @@ class Marcher {
     return point;
   }
 
-  CurvePoint seed_between(const SurfaceSample& start, const SurfaceSample& end) const {
-    const double share = (level_ - start.facing) / (end.facing - start.facing);
-    CurvePoint point;
-    point.p = start.p + share * (end.p - start.p);
-    point.high = point.low = glm::normalize(glm::mix(start.gradient, end.gradient, share));
-    point.uphill = start.facing > end.facing ? start.p - end.p : end.p - start.p;
-    return point;
+  glm::dvec3 point_between(const SurfaceSample& start, const SurfaceSample& end) const {
+    return glm::mix(start.p, end.p, (level_ - start.facing) / (end.facing - start.facing));
   }
 
   /// Along the face: Newton first, false position where that leads away.

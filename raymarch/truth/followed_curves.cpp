@@ -326,6 +326,11 @@ std::vector<StrandPart> parts_of(const std::vector<Strand>& strands) {
   return parts;
 }
 
+size_t smooth_points(const Strand& strand) {
+  return static_cast<size_t>(
+      std::count_if(strand.points.begin(), strand.points.end(), [](const CurvePoint& point) { return !point.rough; }));
+}
+
 class StrandFollower {
  public:
   StrandFollower(std::vector<Strand>& found, const Field& field, const Camera& camera, const Viewer& viewer, const FollowSettings& settings)
@@ -348,8 +353,13 @@ class StrandFollower {
     });
     // What no path passes: other curves through crossings that were joined to these.
     const std::vector<std::vector<Unpassed>> unpassed = find_unpassed();
+    std::vector<std::optional<Crossings>> finer(found_.size());
+    parallel_for(size_t{0}, found_.size(), [&](size_t i) {
+      if (leads_nowhere(found_[i], unpassed[i])) finer[i] = crossings_about(found_[i]);
+    });
     for (size_t i = 0; i < found_.size(); ++i) {
-      if (!follow_unpassed(found_[i], unpassed[i]) && found_[i].points.size() > 1 && !is_told_by_finer_cells(found_[i])) keep(found_[i]);
+      if (follow_unpassed(found_[i], unpassed[i]) || found_[i].points.size() == 1) continue;
+      if (!is_told_by(finer[i] ? *finer[i] : crossings_about(found_[i]), found_[i])) keep(found_[i]);
     }
     return std::move(result_);
   }
@@ -384,8 +394,7 @@ class StrandFollower {
 
   /// True where a path passes any of the strand's points.
   bool follow_unpassed(const Strand& strand, const std::vector<Unpassed>& unpassed) {
-    const auto smooth = std::count_if(strand.points.begin(), strand.points.end(), [](const CurvePoint& point) { return !point.rough; });
-    bool any = unpassed.size() < static_cast<size_t>(smooth), lost = false;
+    bool any = unpassed.size() < smooth_points(strand), lost = false;
     for (const auto& [point, seed, is_known] : unpassed) {
       if (is_known || later_.holds(point) || (seed && later_.holds(*seed))) {
         any = true;
@@ -401,10 +410,18 @@ class StrandFollower {
     return any;
   }
 
+  /// Of finer cells; nothing where the strand is too long for that.
+  using Crossings = std::optional<std::vector<CurvePoint>>;
+  Crossings crossings_about(const Strand& strand) const { return finer_crossings(strand, field_, viewer_, settings_.longest_step); }
+
+  /// Whatever is followed later.
+  static bool leads_nowhere(const Strand& strand, const std::vector<Unpassed>& unpassed) {
+    return strand.points.size() > 1 && unpassed.size() == smooth_points(strand) &&
+           std::none_of(unpassed.begin(), unpassed.end(), [](const Unpassed& one) { return one.seed.has_value(); });
+  }
   /// Cells take two sheets that come close to each other for one, and a curve that goes on past them for two: where all crossings of finer
   /// cells are followed, these curves are what is there.
-  bool is_told_by_finer_cells(const Strand& strand) {
-    const auto crossings = finer_crossings(strand, field_, viewer_, settings_.longest_step);
+  bool is_told_by(const Crossings& crossings, const Strand& strand) {
     if (!crossings) return false;
     for (const CurvePoint& point : *crossings) {
       const std::optional<CurvePoint> seed = follower_.seed(point, kSeedReach / kFinerParts);

@@ -81,8 +81,20 @@ class EventFinder {
   void find_cusps() {
     std::vector<CurveEvent> cusps;
     for (const SignChange& change : apart_) add_cusp(change, cusps);
+    for (const CurveEvent& event : events_) {
+      if (event.kind == VertexKind::crossing && event.nearer == number_) add_own_crossing(event.at, event.on_nearer);
+    }
+    for (const NearerCrossing& crossing : undone_crossings_) add_own_crossing(crossing.at, crossing.on_nearer);
     settle_narrow_swallowtails(cusps);
     events_.insert(events_.end(), cusps.begin(), cusps.end());
+  }
+
+  /// Of the curve with itself, with its places' image lengths along the curve.
+  struct OwnCrossing {
+    double at = 0.0, on_nearer = 0.0, at_px = 0.0, on_nearer_px = 0.0;
+  };
+  void add_own_crossing(double at, double on_nearer) {
+    own_crossings_.push_back({at, on_nearer, walk_.length_to(at), walk_.length_to(on_nearer)});
   }
 
   /// Samples around a change of the radial curvature's sign.
@@ -201,6 +213,7 @@ class EventFinder {
       if (cusps[k].layers == cusps[k + 1].layers && is_narrow(cusps[k].at, cusps[k + 1].at)) {
         if (const auto crossing = crossing_of_arms(cusps[k], cusps[k + 1])) {
           events_.push_back(*crossing);
+          add_own_crossing(crossing->at, crossing->on_nearer);
           k += 2;
           continue;
         }
@@ -267,19 +280,17 @@ class EventFinder {
     const auto steps = static_cast<double>(steps_of(curve_));
     // From one place to another, the shorter way round.
     const auto way = [&](double from, double to) { return curve_.closed ? std::remainder(to - from, steps) : to - from; };
-    const auto crosses_itself = [&](const auto& event) {
-      const auto near = [&](double place) {
-        return std::min(walk_.apart_px(place, first), walk_.apart_px(place, second)) < length + kTangency_px;
+    const double from_px = walk_.length_to(first), to_px = walk_.length_to(second);
+    const auto crosses_itself = [&](const OwnCrossing& crossing) {
+      const auto near = [&](double px) {
+        return std::min(walk_.apart_of_lengths(px, from_px), walk_.apart_of_lengths(px, to_px)) < length + kTangency_px;
       };
-      if (!near(event.at) || !near(event.on_nearer)) return false;
+      if (!near(crossing.at_px) || !near(crossing.on_nearer_px)) return false;
       // Both places on one side of the two cusps: of another swallowtail.
-      const bool before = way(first, event.at) < 0.0 && way(first, event.on_nearer) < 0.0;
-      return !before && !(way(second, event.at) > 0.0 && way(second, event.on_nearer) > 0.0);
+      const bool before = way(first, crossing.at) < 0.0 && way(first, crossing.on_nearer) < 0.0;
+      return !before && !(way(second, crossing.at) > 0.0 && way(second, crossing.on_nearer) > 0.0);
     };
-    const auto is_own = [&](const CurveEvent& event) { return event.kind == VertexKind::crossing && event.nearer == number_; };
-    if (std::any_of(events_.begin(), events_.end(), [&](const CurveEvent& event) { return is_own(event) && crosses_itself(event); }) ||
-        std::any_of(undone_crossings_.begin(), undone_crossings_.end(), crosses_itself))
-      return false;
+    if (std::any_of(own_crossings_.begin(), own_crossings_.end(), crosses_itself)) return false;
     const std::vector<glm::dvec2> middle = px_between(curve_, first, second, camera_);
     return lies_along(middle, walk_.px_from(second, length, 1), arms_apart_px()) ||
            lies_along(middle, walk_.px_from(first, length, -1), arms_apart_px());
@@ -311,10 +322,7 @@ class EventFinder {
   }
   /// The crossings themselves lie on chords: along a step beside a cusp the curve's own point at the same share may be far from there.
   std::vector<glm::dvec2> px_between_crossings(const SurfaceCurve& curve, double from, double to) const {
-    std::vector<glm::dvec2> px = px_between(curve, from, to, camera_);
-    px.front() = chord_px(curve, from, camera_);
-    px.back() = chord_px(curve, to, camera_);
-    return px;
+    return px_between(curve, chord_px(curve, from, camera_), from, to, chord_px(curve, to, camera_));
   }
   /// Of one curve: the line goes over both arms of a thin part of itself at once. One of the two crossings may be that of a swallowtail,
   /// whose cusps stay.
@@ -397,9 +405,9 @@ class EventFinder {
     const std::vector<double> cusps = cusps_between(from, to);
     if (cusps.size() != 1) return false;
     if (!curve_.between) return true;
-    std::vector<glm::dvec2> there = px_between(curve_, from, cusps[0], camera_), back = px_between(curve_, cusps[0], to, camera_);
-    there.front() = chord_px(curve_, from, camera_);
-    back.back() = chord_px(curve_, to, camera_);
+    const glm::dvec2 cusp = sample_at(curve_, cusps[0], camera_).px;
+    const std::vector<glm::dvec2> there = px_between(curve_, chord_px(curve_, from, camera_), from, cusps[0], cusp),
+                                  back = px_between(curve_, cusp, cusps[0], to, chord_px(curve_, to, camera_));
     return lies_along(there, back, arms_apart_px()) && lies_along(back, there, arms_apart_px());
   }
   std::vector<double> cusps_between(double from, double to) const {
@@ -421,9 +429,14 @@ class EventFinder {
   static std::vector<Stretch> to_ends(const SurfaceCurve& curve, double place, double longest_px, const Camera& camera) {
     std::vector<Stretch> all;
     const auto n = static_cast<std::ptrdiff_t>(curve.samples.size());
+    // Most curves have no end nearby, and the place itself need not be found.
+    std::optional<CurveSample> known;
+    const auto from = [&]() -> const CurveSample& {
+      if (!known) known = sample_at(curve, place, camera);
+      return *known;
+    };
     for (const int way : {1, -1}) {
-      const CurveSample from = sample_at(curve, place, camera);
-      Stretch stretch{glm::dvec3(0.0), {from.px}};
+      Stretch stretch{glm::dvec3(0.0), {curve.long_steps ? from().px : glm::dvec2(0.0)}};
       double length = 0.0;
       auto i = static_cast<std::ptrdiff_t>(place) + (way > 0 ? 1 : 0);
       for (std::ptrdiff_t count = 0; count < n && length <= longest_px; ++count, i += way) {
@@ -433,7 +446,8 @@ class EventFinder {
         stretch.px.push_back(sample.px);
         if (!sample.joint && (curve.closed || (i > 0 && i < n - 1))) continue;
         stretch.end = sample.p;
-        stretch.past_cusp = curve.smooth && from.radial_curvature * sample.radial_curvature < 0.0;
+        stretch.px[0] = from().px;
+        stretch.past_cusp = curve.smooth && from().radial_curvature * sample.radial_curvature < 0.0;
         all.push_back(stretch);
         break;
       }
@@ -457,6 +471,7 @@ class EventFinder {
   CurveWalk walk_;
   std::vector<CurveEvent> events_{};
   std::vector<SignChange> changes_{}, apart_{}, undone_{};
+  std::vector<OwnCrossing> own_crossings_{};        ///< Those undone among them.
   std::vector<NearerCrossing> undone_crossings_{};  ///< Of the curve with itself: two and two, which cancel out.
 };
 

@@ -136,10 +136,14 @@ CurveSample sample_at(const SurfaceCurve& curve, double at, const Camera& camera
 }
 
 std::vector<glm::dvec2> px_between(const SurfaceCurve& curve, double from, double to, const Camera& camera) {
+  return px_between(curve, sample_at(curve, from, camera).px, from, to, sample_at(curve, to, camera).px);
+}
+
+std::vector<glm::dvec2> px_between(const SurfaceCurve& curve, const glm::dvec2& from_px, double from, double to, const glm::dvec2& to_px) {
   const size_t n = curve.samples.size();
-  std::vector<glm::dvec2> px{sample_at(curve, from, camera).px};
+  std::vector<glm::dvec2> px{from_px};
   for (double i = std::floor(from) + 1.0; i < to; i += 1.0) px.push_back(curve.samples[static_cast<size_t>(i) % n].px);
-  px.push_back(sample_at(curve, to, camera).px);
+  px.push_back(to_px);
   return px;
 }
 
@@ -171,8 +175,8 @@ double CurveWalk::length_to(double place) const {
   return turns * lengths_.back() + glm::mix(lengths_[i], lengths_[i + 1], rest - static_cast<double>(i));
 }
 
-double CurveWalk::apart_px(double one, double other) const {
-  const double way = std::fabs(length_to(one) - length_to(other));
+double CurveWalk::apart_of_lengths(double one_px, double other_px) const {
+  const double way = std::fabs(one_px - other_px);
   return curve_.closed ? std::min(way, lengths_.back() - way) : way;
 }
 

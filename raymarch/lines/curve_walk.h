@@ -30,6 +30,8 @@ double sag_px(const SurfaceCurve& curve, size_t step, const Camera& camera);
 CurveSample sample_at(const SurfaceCurve& curve, double place, const Camera& camera);
 /// Image points between two places, theirs included; `to` may lie beyond the last sample of a closed curve.
 std::vector<glm::dvec2> px_between(const SurfaceCurve& curve, double from, double to, const Camera& camera);
+/// The same where the image points of both places are known.
+std::vector<glm::dvec2> px_between(const SurfaceCurve& curve, const glm::dvec2& from_px, double from, double to, const glm::dvec2& to_px);
 /// The image of a place on a step's chord, where crossings are found.
 glm::dvec2 chord_px(const SurfaceCurve& curve, double place, const Camera& camera);
 /// Every point is within `apart_px` of a polyline.
@@ -46,7 +48,8 @@ class CurveWalk {
   /// Image length from the curve's first point to a place, which may lie beyond the last.
   double length_to(double place) const;
   /// Image length between two places, the shorter way round.
-  double apart_px(double one, double other) const;
+  double apart_px(double one, double other) const { return apart_of_lengths(length_to(one), length_to(other)); }
+  double apart_of_lengths(double one_px, double other_px) const;
   /// Image points from a place on, one way or the other, over some length and half a pixel.
   std::vector<glm::dvec2> px_from(double place, double length_px, int way) const;
 

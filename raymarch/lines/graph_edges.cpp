@@ -112,11 +112,14 @@ double last_place(const SurfaceCurve& curve) {
   return curve.closed ? std::numeric_limits<double>::infinity() : static_cast<double>(curve.samples.size() - 1);
 }
 
-/// The points of an edge, as few as the tolerance allows, in the order of the curve.
-std::vector<LinePoint> points_of_piece(const SurfaceCurve& curve, const CurvePiece& piece, const LineTask& task) {
+/// The points of an edge, as few as the tolerance allows, in the order of the curve. `at_events`: the curve's samples there.
+std::vector<LinePoint> points_of_piece(const SurfaceCurve& curve, const CurvePiece& piece, const std::vector<CurveSample>& at_events,
+                                       const LineTask& task) {
   const size_t n = curve.samples.size();
-  const CurveSample first = sample_at(curve, piece.from, task.camera),
-                    last = sample_at(curve, std::min(piece.to, last_place(curve)), task.camera);
+  const auto sample_of = [&](int event, double place) {
+    return event >= 0 ? at_events[static_cast<size_t>(event)] : sample_at(curve, std::min(place, last_place(curve)), task.camera);
+  };
+  const CurveSample first = sample_of(piece.begin, piece.from), last = sample_of(piece.end, piece.to);
   std::vector<const CurveSample*> samples{&first};
   for (double place = std::floor(piece.from) + 1.0; place < piece.to; place += 1.0)
     samples.push_back(&curve.samples[static_cast<size_t>(place) % n]);
@@ -150,11 +153,15 @@ struct CurveParts {
 };
 CurveParts parts_of(const SurfaceCurve& curve, const CutCurve& cut, const LineTask& task) {
   CurveParts parts;
+  std::vector<CurveSample> samples;
+  samples.reserve(cut.events.size());
+  parts.events.reserve(cut.events.size());
+  parts.pieces.reserve(cut.pieces.size());
   for (const CurveEvent& event : cut.events) {
-    const CurveSample sample = sample_at(curve, std::min(event.at, last_place(curve)), task.camera);
+    const CurveSample& sample = samples.emplace_back(sample_at(curve, std::min(event.at, last_place(curve)), task.camera));
     parts.events.push_back({sample.p, sample.px, sample.depth});
   }
-  for (const CurvePiece& piece : cut.pieces) parts.pieces.push_back(points_of_piece(curve, piece, task));
+  for (const CurvePiece& piece : cut.pieces) parts.pieces.push_back(points_of_piece(curve, piece, samples, task));
   return parts;
 }
 

@@ -45,59 +45,78 @@ constexpr double kOnPath = 0.15, kOnPathLeast = 1e-3;  // of a step, and of the 
 
 glm::dvec3 tangent_of(const CurvePoint& point) { return glm::normalize(glm::cross(point.high, point.uphill)); }
 
-/// Segments of curves by the cubes that they lie in.
+/// Segments of closed curves by the cubes that they lie in.
 class PathIndex {
  public:
   explicit PathIndex(double side) : side_(side) {}
 
   void add(const std::vector<CurvePoint>& points) {
-    for (size_t i = 0; i < points.size(); ++i) {
-      const CurvePoint &a = points[i], &b = points[(i + 1) % points.size()];
-      const double reach = reach_of(glm::distance(a.p, b.p));
-      const glm::ivec3 low = cube_of(glm::min(a.p, b.p) - reach), high = cube_of(glm::max(a.p, b.p) + reach);
-      segments_.push_back({a.p, b.p, glm::normalize(a.uphill) + glm::normalize(b.uphill)});
+    const size_t first = points_.size();
+    for (const CurvePoint& point : points) points_.push_back({point.p, glm::normalize(point.uphill)});
+    points_.push_back(points_[first]);
+    // Most segments lie in the same cube as the one before.
+    glm::ivec3 cube(std::numeric_limits<int>::min());
+    std::uint32_t run = kNone;
+    for (size_t i = first; i + 1 < points_.size(); ++i) {
+      const glm::dvec3 &a = points_[i].p, &b = points_[i + 1].p;
+      const double reach = reach_of(glm::distance(a, b));
+      const glm::ivec3 low = cube_of(glm::min(a, b) - reach), high = cube_of(glm::max(a, b) + reach);
+      if (low == high && low == cube) {
+        runs_[run].end = static_cast<std::uint32_t>(i + 1);
+        continue;
+      }
       for (int x = low.x; x <= high.x; ++x)
         for (int y = low.y; y <= high.y; ++y)
-          for (int z = low.z; z <= high.z; ++z) {
-            bool added = false;
-            std::uint32_t& last = last_in_.at(key_of({x, y, z}), added);
-            entries_.push_back({static_cast<std::uint32_t>(segments_.size() - 1), added ? kNone : last});
-            last = static_cast<std::uint32_t>(entries_.size() - 1);
-          }
+          for (int z = low.z; z <= high.z; ++z) run = add_to({x, y, z}, static_cast<std::uint32_t>(i));
+      cube = low == high ? low : glm::ivec3(std::numeric_limits<int>::min());
     }
   }
   /// Another arm that runs close by has the higher N.V on its other side.
   bool holds(const CurvePoint& point) const {
     const std::uint32_t* const last = last_in_.find(key_of(cube_of(point.p)));
-    for (std::uint32_t at = last != nullptr ? *last : kNone; at != kNone; at = entries_[at].before) {
-      const Segment& segment = segments_[entries_[at].segment];
-      if (glm::dot(segment.uphill, point.uphill) > 0.0 &&
-          distance_to_segment(point.p, segment.a, segment.b) < reach_of(glm::distance(segment.a, segment.b)))
-        return true;
+    for (std::uint32_t at = last != nullptr ? *last : kNone; at != kNone; at = runs_[at].before) {
+      for (std::uint32_t i = runs_[at].begin; i < runs_[at].end; ++i) {
+        const PathPoint &a = points_[i], &b = points_[i + 1];
+        if (glm::dot(a.uphill + b.uphill, point.uphill) > 0.0 && distance_to_segment(point.p, a.p, b.p) < reach_of(glm::distance(a.p, b.p)))
+          return true;
+      }
     }
     return false;
   }
 
  private:
-  struct Segment {
-    glm::dvec3 a{0.0}, b{0.0}, uphill{0.0};
+  struct PathPoint {
+    glm::dvec3 p{0.0}, uphill{0.0};
   };
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  /// Segments in a row that lie in a cube, from one point to the next, and the run before it in the same cube.
+  struct Run {
+    std::uint32_t begin = 0, end = 0, before = kNone;
+  };
+
+  /// Returns the segment's run in the cube.
+  std::uint32_t add_to(const glm::ivec3& cube, std::uint32_t segment) {
+    bool added = false;
+    std::uint32_t& last = last_in_.at(key_of(cube), added);
+    if (!added && runs_[last].end == segment) {
+      ++runs_[last].end;
+    } else {
+      runs_.push_back({segment, segment + 1, added ? kNone : last});
+      last = static_cast<std::uint32_t>(runs_.size() - 1);
+    }
+    return last;
+  }
   double reach_of(double length) const { return kOnPath * length + kOnPathLeast * side_; }
   glm::ivec3 cube_of(const glm::dvec3& p) const { return glm::ivec3(glm::floor(p / side_)); }
   static std::uint64_t key_of(const glm::ivec3& cube) {
     const auto part = [](int v) { return static_cast<std::uint64_t>(v) & 0x1fffffu; };
     return (part(cube.x) << 42u | part(cube.y) << 21u | part(cube.z)) + 1;
   }
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  /// A segment in a cube, and the entry before it in the same cube.
-  struct Entry {
-    std::uint32_t segment = 0, before = kNone;
-  };
 
   double side_;
-  std::vector<Segment> segments_{};
-  std::vector<Entry> entries_{};
-  KeyedValues<std::uint32_t> last_in_{};  ///< Of each cube the last entry.
+  std::vector<PathPoint> points_{};  ///< Of each curve the first one again after its last.
+  std::vector<Run> runs_{};
+  KeyedValues<std::uint32_t> last_in_{};  ///< Of each cube the last run.
 };
 
 /// Where a path leads: its tangent as the parabola through the last three of them.

@@ -64,7 +64,7 @@ void refine_flat_crossings(std::vector<SurfaceCurve>& curves, const Camera& came
     std::atomic<bool> any = false;
     parallel_for(size_t{0}, curves.size(), [&](size_t c) {
       if (std::find(unclear[c].begin(), unclear[c].end(), 1) == unclear[c].end()) {
-        asked[c].assign(steps_of(curves[c]), 0);
+        asked[c].clear();
         return;
       }
       asked[c] = cut_steps(unclear[c], camera, curves[c]);

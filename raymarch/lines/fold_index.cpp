@@ -56,6 +56,7 @@ FoldIndex::FoldIndex(const std::vector<SurfaceCurve>& curves, const Camera& came
 
 void FoldIndex::gather(const std::vector<SurfaceCurve>& curves, const StepSags* sags) {
   const auto for_folds_of = [&](size_t c, const auto& visit) {
+    if (sags != nullptr && (*sags)[c].empty()) return;
     for (size_t i = 0; i < steps_of(curves[c]); ++i) {
       const double sag_px = sags == nullptr ? 0.0 : (*sags)[c][i];
       if (curves[c].samples[i].more_on_left != 0 && sag_px >= 0.0) visit(i, sag_px);

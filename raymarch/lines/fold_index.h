@@ -33,9 +33,10 @@ struct Fold {
 /// Around a step: what comes within so many pixels of it, before its farther end.
 FoldSearch search_around(const Ends& step, double within_px);
 
-/// A mark, 0 or 1, for each step of each curve.
+/// A mark, 0 or 1, for each step of each curve; none of a curve stand for 0 of all its steps.
 using StepMarks = std::vector<std::vector<char>>;
-/// Of each step of each curve how far its line leaves it, px; below 0 where the step is left out.
+/// Of each step of each curve how far its line leaves it, px; below 0 where the step is left out, none
+/// of a curve that is.
 using StepSags = std::vector<std::vector<double>>;
 
 /// Folds by the buckets of the image that they go through. Those of bucket b are `in[first[b]]` up to `in[first[b + 1]]`. Where these are

@@ -197,9 +197,9 @@ StepMarks unclear_steps(const std::vector<SurfaceCurve>& curves, const Camera& c
       const double own_px = sags[c][i];
       const auto look = [&](std::uint32_t f) {
         const Fold& fold = index.folds()[f];
+        if (fold.curve == c && neighbours(curve, fold.index, i)) return;
         const double sag_px = own_px + fold.sag_px;
         if (!is_unclear(step, fold.ends, sag_px) || !may_touch(step, fold.ends, greatest_sag_px(curve, curves[fold.curve]))) return;
-        if (fold.curve == c && neighbours(curve, fold.index, i)) return;
         if (!is_in_front(fold.ends, step, std::max(curve.nearer_px, fold.nearer_px), camera)) return;
         unclear[c][i] = 1;
         // Lines of curvature may be asked for or not; the others stay as they are.

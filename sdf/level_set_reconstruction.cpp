@@ -33,10 +33,15 @@ struct CellCache {
   }
 };
 
+bool is_identity(const std::array<double, 3>& x, const std::array<double, 3>& y, const std::array<double, 3>& z) {
+  return x == std::array{1.0, 0.0, 0.0} && y == std::array{0.0, 1.0, 0.0} && z == std::array{0.0, 0.0, 1.0};
+}
+
 struct Spline {
   LevelSet level_set;
   std::shared_ptr<const SplineBlocks> blocks = std::make_shared<const SplineBlocks>(level_set.data());
   std::shared_ptr<tbb::enumerable_thread_specific<CellCache>> caches = std::make_shared<tbb::enumerable_thread_specific<CellCache>>();
+  bool is_uniform = level_set.data().index_from_world.linear == glm::dmat3(level_set.data().index_from_world.linear[0][0]);
 
   const SplineCoefficients& coefficients_at(const nanovdb::Coord& node) const {
     CellCache::Entry& entry = caches->local().entries[CellCache::place_of(node)];
@@ -63,6 +68,16 @@ struct Spline {
     const Affine& index_from_world = level_set.data().index_from_world;
     const CellPoint at = cell_point(index_from_world.point({x.value, y.value, z.value}));
     const FieldJet by_index = spline_jet(coefficients_at(at.node), at.local);
+    // Most level sets' axes are the world's: what is left of the chain rule then, to the bit.
+    if (is_uniform && is_identity(x.gradient, y.gradient, z.gradient)) {
+      const double scale = index_from_world.linear[0][0];
+      const glm::dvec3& g = by_index.gradient;
+      const glm::dmat3& h = by_index.hessian;
+      const auto second = [&](int a, int b) { return scale * (h[b][a] * scale); };
+      return {by_index.value,
+              {g.x * scale, g.y * scale, g.z * scale},
+              {second(0, 0), second(0, 1), second(0, 2), second(1, 1), second(1, 2), second(2, 2)}};
+    }
     glm::dmat3 motion;
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<size_t>(axis);

@@ -3,6 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include <cmath>
+#include <utility>
 
 #include "raymarch/lines/curve_walk.h"
 #include "sdf/parallel.h"
@@ -80,23 +81,32 @@ void FoldIndex::gather(const std::vector<SurfaceCurve>& curves, const StepSags* 
   });
 }
 
-/// Counted, then placed, in the order of their numbers: each thread looks at all folds, for a few rows of the image.
+/// Counted, then placed, in the order of their numbers: each thread takes folds in a row.
 void FoldIndex::sort_into_buckets() {
-  const size_t bands = std::min(rows_, 2 * static_cast<size_t>(tbb::this_task_arena::max_concurrency()));
-  const auto for_all = [&](const auto& visit) {
-    parallel_for(size_t{0}, bands, [&](size_t band) {
-      const Rows rows{band * rows_ / bands, (band + 1) * rows_ / bands};
-      for (size_t f = 0; f < folds_.size(); ++f) for_buckets_in(rows, folds_[f].ends, [&](size_t bucket) { visit(f, bucket); });
-    });
+  const size_t buckets = columns_ * rows_, parts = static_cast<size_t>(tbb::this_task_arena::max_concurrency());
+  const auto for_part = [&](size_t part, const auto& visit) {
+    for (size_t f = part * folds_.size() / parts; f < (part + 1) * folds_.size() / parts; ++f)
+      for_buckets(folds_[f].ends, [&](size_t bucket) { visit(f, bucket); });
   };
-  first_.assign(columns_ * rows_ + 1, 0);
-  for_all([&](size_t, size_t bucket) { ++first_[bucket + 1]; });
-  for (size_t b = 1; b < first_.size(); ++b) first_[b] += first_[b - 1];
-  in_.resize(first_.back());
+  // How many folds of each part a bucket holds, then where those begin.
+  std::vector<std::vector<std::uint32_t>> next(parts);
+  parallel_for(size_t{0}, parts, [&](size_t part) {
+    next[part].assign(buckets, 0);
+    for_part(part, [&](size_t, size_t bucket) { ++next[part][bucket]; });
+  });
+  first_.assign(buckets + 1, 0);
+  std::uint32_t at = 0;
+  for (size_t b = 0; b < buckets; ++b) {
+    first_[b] = at;
+    for (std::vector<std::uint32_t>& of_part : next) at += std::exchange(of_part[b], at);
+  }
+  first_[buckets] = at;
+  in_.resize(at);
   for (std::vector<float>* const of : {&lanes_.ax, &lanes_.ay, &lanes_.bx, &lanes_.by, &lanes_.margin, &lanes_.depth})
-    of->resize(first_.back() + kFoldPadding);
-  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for_all([&](size_t f, size_t bucket) { in_[next[bucket]++] = static_cast<std::uint32_t>(f); });
+    of->resize(at + kFoldPadding);
+  parallel_for(size_t{0}, parts, [&](size_t part) {
+    for_part(part, [&](size_t f, size_t bucket) { in_[next[part][bucket]++] = static_cast<std::uint32_t>(f); });
+  });
 }
 
 glm::vec3 FoldIndex::corner_and_length(const Fold& fold) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "raymarch/lines/fold_lanes.h"
@@ -46,13 +47,11 @@ class FoldIndex {
   /// With `sags`, of some steps alone, which then reach as far as their lines do.
   FoldIndex(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepSags* sags);
 
-  const std::vector<Fold>& folds() const { return folds_; }
+  std::span<const Fold> folds() const { return folds_; }
 
   /// Calls `visit(bucket)` for the buckets that a step goes through, row by row.
   template <class Visit>
-  void for_buckets(const Ends& step, const Visit& visit) const {
-    for_buckets_in({0, rows_}, step, visit);
-  }
+  void for_buckets(const Ends& step, const Visit& visit) const;
   /// The same for the buckets that hold some of a rectangle.
   template <class Visit>
   void for_buckets_within(const glm::dvec2& low, const glm::dvec2& high, const Visit& visit) const;
@@ -61,9 +60,6 @@ class FoldIndex {
   void for_folds(size_t bucket, const FoldSearch& around, const Visit& visit) const;
 
  private:
-  struct Rows {
-    size_t begin = 0, end = 0;
-  };
   static constexpr double kBucket_px = 2.0;
   static constexpr double kMargin_px = 1e-3;      // so that no rounding leaves a bucket out
   static constexpr double kBeyondFrame_px = 8.0;  // steps farther outside the picture are left out
@@ -76,9 +72,6 @@ class FoldIndex {
 
   void gather(const std::vector<SurfaceCurve>& curves, const StepSags* sags);
   void sort_into_buckets();
-  /// for_buckets() of some rows.
-  template <class Visit>
-  void for_buckets_in(const Rows& rows, const Ends& step, const Visit& visit) const;
   /// The lowest place of a fold and its line, and its longer side.
   static glm::vec3 corner_and_length(const Fold& fold);
   void place(size_t bucket, std::vector<std::uint32_t>& scratch);
@@ -90,14 +83,15 @@ class FoldIndex {
   glm::dvec2 size_px_;
   size_t columns_, rows_;
   std::vector<Fold> folds_{};
-  std::vector<std::uint32_t> first_{}, in_{};
+  std::vector<std::uint32_t> first_{};
+  std::vector<std::uint32_t> in_{};
   FoldLanes lanes_{};                      ///< Beside `in_`: read in a row.
   std::vector<std::uint32_t> crowd_of_{};  ///< Of each bucket: where its cells begin in `cells_`, or kNotCrowded.
   std::vector<std::uint32_t> cells_{};     ///< Where the short folds of each cell begin, and the tiny ones; where the last one's end.
 };
 
 template <class Visit>
-void FoldIndex::for_buckets_in(const Rows& rows, const Ends& step, const Visit& visit) const {
+void FoldIndex::for_buckets(const Ends& step, const Visit& visit) const {
   if (!(step.a.depth > 0.0 && step.b.depth > 0.0)) return;
   const glm::dvec2 low = glm::max(glm::min(step.a.px, step.b.px), glm::dvec2(-kBeyondFrame_px));
   const glm::dvec2 high = glm::min(glm::max(step.a.px, step.b.px), size_px_ + kBeyondFrame_px);
@@ -105,7 +99,7 @@ void FoldIndex::for_buckets_in(const Rows& rows, const Ends& step, const Visit& 
   const auto bucket = [](double x) { return static_cast<size_t>((x + kBeyondFrame_px) / kBucket_px); };
   const size_t first = bucket(low.y), last = bucket(high.y);
   const glm::dvec2 d = step.b.px - step.a.px;
-  for (size_t y = std::max(first, rows.begin); y <= last && y < rows.end; ++y) {
+  for (size_t y = first; y <= last; ++y) {
     double left = low.x, right = high.x;
     if (last > first) {
       // What of the step lies in the row, and a little more.

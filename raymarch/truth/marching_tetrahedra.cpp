@@ -194,8 +194,7 @@ class Marcher {
     const double step = glm::length(end.p - start.p);
     if (seam_ != nullptr) return locate_seam(fan, start, end);
     if (seeds_.wanted) {
-      // Where the surface turns within the cell only the way along the face leads onto the curve.
-      if (auto seed = polish(evaluator_, viewer_, level_, point_between(start, end), kSmoothReach * side_, kSeedOff)) return *seed;
+      if (const auto seed = locate_seed(fan, start, end)) return *seed;
     }
     if (auto point = bisect(evaluator_, viewer_, level_, fan, 0.0, 1.0, start, end, kSmoothReach * step)) return *point;
     CurvePoint point;
@@ -212,6 +211,22 @@ class Marcher {
 
   glm::dvec3 point_between(const SurfaceSample& start, const SurfaceSample& end) const {
     return glm::mix(start.p, end.p, (level_ - start.facing) / (end.facing - start.facing));
+  }
+
+  /// Newton's iteration from between two places on the face. Where the surface turns within the cell only the way along the face leads
+  /// onto the curve: then from nearer ones.
+  std::optional<CurvePoint> locate_seed(const Fan& fan, SurfaceSample start, SurfaceSample end) {
+    double low = 0.0, high = 1.0;
+    for (int step = 0; step < kSeedSteps; ++step) {
+      if (auto seed = polish(evaluator_, viewer_, level_, point_between(start, end), kSmoothReach * side_, kSeedOff)) return seed;
+      const double share = std::clamp((level_ - start.facing) / (end.facing - start.facing), 0.1, 0.9), place = glm::mix(low, high, share);
+      const auto middle = fan.at(evaluator_, viewer_, place);
+      if (!middle) break;
+      const bool as_start = above(*middle) == above(start);
+      (as_start ? start : end) = *middle;
+      (as_start ? low : high) = place;
+    }
+    return {};
   }
 
   /// Along the face: Newton first, false position where that leads away.

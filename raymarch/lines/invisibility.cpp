@@ -143,7 +143,7 @@ class Cutter {
       if (!(share + off > 0.0 && share + off < 1.0)) continue;
       const double place = ray_at(piece, share + off);
       if (const double here = walk_.length_to(place); here < begin || here > end) continue;
-      const double clear = folds_.clearance_px(sample_at(curve_, place, camera_), number_, place, clear_px_);
+      const double clear = folds_.clearance_px(sample_at(curve_, place, camera_), number_, place, clear_px_, most);
       if (clear >= clear_px_) return place;
       if (clear > most) best = place, most = clear;
     }

@@ -13,6 +13,7 @@ namespace {
 constexpr double kStep = 0.25;  // of a voxel: how far rays look ahead near the surface
 // Of a voxel: rays start from the curves' own points, beside other lines that may lie within a hundredth of a pixel.
 constexpr double kLift = 1e-5;
+constexpr double kFar = 1.25;       // voxels: from there on rays step no farther than to what is left, but for a voxel
 constexpr int kHalvings = 12;       // of a step, to a root
 constexpr double kShortest = 1e-4;  // of a voxel: sheets closer together are none
 constexpr double kGrazed = 0.5;     // voxels: of a ray that goes in and out within so much the way is no longer across a sheet
@@ -31,7 +32,8 @@ struct Change {
 
 /// The level set along a ray.
 struct RaySample {
-  double t = 0.0, f = 0.0, slope = 0.0;
+  double t = 0.0, f = 0.0;
+  double slope = 0.0;  ///< 0 where it is not known, so far from the surface that both of its neighbours lie on the same side.
   bool inside() const { return f < 0.0; }
 };
 
@@ -39,12 +41,17 @@ struct RaySample {
 /// slopes tell where it may go through both of them within one.
 class RootFinder {
  public:
-  RootFinder(FieldEvaluator& evaluator, const Ray& ray, double shortest, std::vector<Change>& changes)
-      : evaluator_(evaluator), ray_(ray), shortest_(shortest), changes_(changes) {}
+  RootFinder(FieldEvaluator& evaluator, const Ray& ray, double voxel, std::vector<Change>& changes)
+      : evaluator_(evaluator), ray_(ray), shortest_(kShortest * voxel), far_(kFar * voxel), changes_(changes) {}
 
-  RaySample at(double t) {
+  /// `long_step`: led there, so that the slope is likely not needed.
+  RaySample at(double t, bool long_step) {
     const glm::dvec3 p = ray_.at(t);
-    RaySample sample{t, 0.0, 0.0};
+    if (long_step) {
+      const RaySample far{t, evaluator_.value(p)};
+      if (std::fabs(far.f) > far_) return far;
+    }
+    RaySample sample{t};
     glm::dvec3 gradient(0.0);
     evaluator_.gradients(std::span(&p, 1), std::span(&sample.f, 1), std::span(&gradient, 1));
     sample.slope = glm::dot(gradient, ray_.direction);
@@ -67,7 +74,7 @@ class RootFinder {
       if (fa - down * x > 0.0) return;
     }
     const double turn = a.slope - b.slope != 0.0 ? a.slope / (a.slope - b.slope) : 0.5;
-    const RaySample middle = at(a.t + std::clamp(turn, 0.1, 0.9) * length);
+    const RaySample middle = at(a.t + std::clamp(turn, 0.1, 0.9) * length, false);
     find(a, middle);
     find(middle, b);
   }
@@ -84,7 +91,7 @@ class RootFinder {
 
   FieldEvaluator& evaluator_;
   const Ray& ray_;
-  double shortest_;
+  double shortest_, far_;
   std::vector<Change>& changes_;
 };
 
@@ -92,11 +99,12 @@ class RootFinder {
 void add_changes(FieldEvaluator& evaluator, const PlacedLevelSet& placed, const Ray& ray, std::vector<Change>& changes) {
   double t = 0.0, t_end = ray.end;
   if (!clip_ray(placed.box, ray.origin, ray.direction, t, t_end)) return;
-  RootFinder roots(evaluator, ray, kShortest * placed.voxel, changes);
-  RaySample here = roots.at(t);
+  RootFinder roots(evaluator, ray, placed.voxel, changes);
+  RaySample here = roots.at(t, true);
   if (here.inside()) changes.push_back({0.0, 1});
   while (here.t < t_end) {
-    const RaySample next = roots.at(std::min(t_end, here.t + std::max(kStep * placed.voxel, std::fabs(here.f) - placed.voxel)));
+    const double step = std::max(kStep * placed.voxel, std::fabs(here.f) - placed.voxel);
+    const RaySample next = roots.at(std::min(t_end, here.t + step), step > kStep * placed.voxel);
     roots.find(here, next);
     here = next;
   }

@@ -31,9 +31,17 @@ constexpr double kMostOff = 0.25;  // voxels
 
 constexpr size_t kMostKeptBytes = size_t{512} << 20;
 
-void append(const CellCurves& from, CellCurves& to) {
-  to.crossings.insert(to.crossings.end(), from.crossings.begin(), from.crossings.end());
-  to.links.insert(to.links.end(), from.links.begin(), from.links.end());
+CellCurves joined(const std::vector<const CellCurves*>& parts) {
+  CellCurves all;
+  size_t crossings = 0, links = 0;
+  for (const CellCurves* part : parts) crossings += part->crossings.size(), links += part->links.size();
+  all.crossings.reserve(crossings);
+  all.links.reserve(links);
+  for (const CellCurves* part : parts) {
+    all.crossings.insert(all.crossings.end(), part->crossings.begin(), part->crossings.end());
+    all.links.insert(all.links.end(), part->links.begin(), part->links.end());
+  }
+  return all;
 }
 
 /// Without cells that hold no contour, by bounds.
@@ -88,8 +96,10 @@ CellOutput march(const CellSearch& search, size_t branch, const PlacedLevelSet& 
     }
   });
   CellOutput all;
-  for (const CellOutput& part : parts) {
-    for (size_t family = 0; family < kCurveFamilies; ++family) append(part[family], all[family]);
+  for (size_t family = 0; family < kCurveFamilies; ++family) {
+    std::vector<const CellCurves*> of_family;
+    for (const CellOutput& part : parts) of_family.push_back(&part[family]);
+    all[family] = joined(of_family);
   }
   return all;
 }
@@ -123,9 +133,9 @@ CellCurves march_pair(const CellSearch& search, const PlacedLevelSet& one, const
     FieldEvaluator first(one.field), last(other.field);
     for (size_t i = begin; i < end; ++i) march_seam(first, last, search.viewer, lattice.grid, lattice.cells[i], parts[part]);
   });
-  CellCurves all;
-  for (const CellCurves& part : parts) append(part, all);
-  return all;
+  std::vector<const CellCurves*> all;
+  for (const CellCurves& part : parts) all.push_back(&part);
+  return joined(all);
 }
 
 /// Level sets that overlap are one body, as fields are.

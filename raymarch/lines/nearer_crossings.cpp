@@ -149,14 +149,17 @@ std::vector<std::vector<NearerCrossing>> NearerFolds::crossings() const {
   return result;
 }
 
-NearerFolds::Beside NearerFolds::beside(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const {
+NearerFolds::Beside NearerFolds::beside(const CurveSample& sample, std::uint32_t curve, double place, double reach_px,
+                                        double enough_px) const {
   Beside least{reach_px, kNoFold};
   const FoldSearch around = search_around({{sample.px, sample.depth}, {sample.px, sample.depth}}, reach_px);
   const double own_steps = static_cast<double>(steps_of(curves_[curve]));
   index_->for_buckets_within(sample.px - reach_px, sample.px + reach_px, [&](size_t bucket) {
+    if (least.px < enough_px) return;
     // Of those equally near in a bucket the first one.
     Beside here = least;
     index_->for_folds(bucket, around, [&](std::uint32_t f) {
+      if (here.px < enough_px) return;
       const Fold& fold = index_->folds()[f];
       if (std::min(fold.ends.a.depth, fold.ends.b.depth) >= sample.depth) return;
       const double apart = std::fabs(static_cast<double>(fold.index) + 0.5 - std::fmod(place, own_steps));
@@ -169,12 +172,12 @@ NearerFolds::Beside NearerFolds::beside(const CurveSample& sample, std::uint32_t
   return least;
 }
 
-double NearerFolds::clearance_px(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const {
-  return beside(sample, curve, place, reach_px).px;
+double NearerFolds::clearance_px(const CurveSample& sample, std::uint32_t curve, double place, double reach_px, double enough_px) const {
+  return beside(sample, curve, place, reach_px, enough_px).px;
 }
 
 std::optional<NearerCrossing> NearerFolds::nearest(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const {
-  const Beside found = beside(sample, curve, place, reach_px);
+  const Beside found = beside(sample, curve, place, reach_px, 0.0);
   if (found.fold == kNoFold) return {};
   const Fold& fold = index_->folds()[found.fold];
   const glm::dvec2 a = fold.ends.a.px, step = fold.ends.b.px - a;

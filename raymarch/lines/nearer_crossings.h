@@ -26,8 +26,9 @@ class NearerFolds {
   /// Of each curve, in order along it.
   std::vector<std::vector<NearerCrossing>> crossings() const;
   /// How far the nearest line in front of a place of a curve lies beside it in the image; no more than `reach_px`. A ray that starts a
-  /// little beside the curve tells what lies in front of it only where this is more.
-  double clearance_px(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const;
+  /// little beside the curve tells what lies in front of it only where this is more. Where a line is nearer than `enough_px` it may be the
+  /// distance of another one that is.
+  double clearance_px(const CurveSample& sample, std::uint32_t curve, double place, double reach_px, double enough_px = 0.0) const;
   /// The line in front of a place of a curve that lies nearest beside it in the image, and where on it; nothing within `reach_px`. Its
   /// layers are left 0.
   std::optional<NearerCrossing> nearest(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const;
@@ -37,7 +38,7 @@ class NearerFolds {
     double px = 0.0;
     std::uint32_t fold = 0;  ///< Into the index; kNoFold: none within reach.
   };
-  Beside beside(const CurveSample& sample, std::uint32_t curve, double place, double reach_px) const;
+  Beside beside(const CurveSample& sample, std::uint32_t curve, double place, double reach_px, double enough_px) const;
 
   const std::vector<SurfaceCurve>& curves_;
   const Camera& camera_;

@@ -91,6 +91,15 @@ double FieldEvaluator::value(const glm::dvec3& point) {
 }
 
 FieldJet FieldEvaluator::jet(const glm::dvec3& point) {
+  const FieldProgram& program = field_.program();
+  if (program.instructions.size() == 1) {
+    const FieldLeaf& leaf = program.leaves[program.instructions[0].leaf];
+    const Affine& map = leaf.object_from_world;
+    if (leaf.functions->jet != nullptr && leaf.value_scale == 1.0) {
+      const auto along = [&](int axis) { return RowMap<double>(map, axis)(point); };
+      return leaf.functions->jet(leaf.shape.get(), {along(0), along(1), along(2)}, map.linear);
+    }
+  }
   FieldJet result;
   jets(std::span(&point, 1), std::span(&result, 1));
   return result;

@@ -42,6 +42,9 @@ struct ShapeFunctions {
   glm::dvec3 (*tip)(const void* shape);
   /// {f <= level} in closed form, object space; nothing for levels at which there is none. Null where the shape has none at any level.
   std::optional<ClosedForm> (*closed_form)(const void* shape, double level) = nullptr;
+  /// What `evaluate` gives of a Jet, to the bit, at one place in object space: derivatives by world coordinates, of which the place is a
+  /// linear function. Null where that is no quicker.
+  FieldJet (*jet)(const void* shape, const glm::dvec3& place, const glm::dmat3& object_from_world) = nullptr;
 };
 
 inline constexpr int kNoMaterial = -1;

@@ -33,10 +33,6 @@ struct CellCache {
   }
 };
 
-bool is_identity(const std::array<double, 3>& x, const std::array<double, 3>& y, const std::array<double, 3>& z) {
-  return x == std::array{1.0, 0.0, 0.0} && y == std::array{0.0, 1.0, 0.0} && z == std::array{0.0, 0.0, 1.0};
-}
-
 struct Spline {
   LevelSet level_set;
   std::shared_ptr<const SplineBlocks> blocks = std::make_shared<const SplineBlocks>(level_set.data());
@@ -63,32 +59,33 @@ struct Spline {
     jet.gradient = data.world_gradient(jet.gradient);
     return jet;
   }
-  /// The coordinates carry first derivatives, by a rigid motion: the chain rule for it and for index coordinates at once.
-  Jet jet(const Jet& x, const Jet& y, const Jet& z) const {
+  /// By coordinates of which the place is a linear function: the chain rule for it and for index coordinates at once.
+  FieldJet jet(const glm::dvec3& place, const glm::dmat3& motion) const {
     const Affine& index_from_world = level_set.data().index_from_world;
-    const CellPoint at = cell_point(index_from_world.point({x.value, y.value, z.value}));
+    const CellPoint at = cell_point(index_from_world.point(place));
     const FieldJet by_index = spline_jet(coefficients_at(at.node), at.local);
+    const glm::dvec3& g = by_index.gradient;
+    const glm::dmat3& h = by_index.hessian;
     // Most level sets' axes are the world's: what is left of the chain rule then, to the bit.
-    if (is_uniform && is_identity(x.gradient, y.gradient, z.gradient)) {
+    if (is_uniform && motion == glm::dmat3(1.0)) {
       const double scale = index_from_world.linear[0][0];
-      const glm::dvec3& g = by_index.gradient;
-      const glm::dmat3& h = by_index.hessian;
-      const auto second = [&](int a, int b) { return scale * (h[b][a] * scale); };
-      return {by_index.value,
-              {g.x * scale, g.y * scale, g.z * scale},
-              {second(0, 0), second(0, 1), second(0, 2), second(1, 1), second(1, 2), second(2, 2)}};
+      return {by_index.value, g * scale, {scale * (h[0] * scale), scale * (h[1] * scale), scale * (h[2] * scale)}};
     }
+    const glm::dmat3 index_from = index_from_world.linear * motion, turned = h * index_from;
+    const auto second = [&](int a, int b) { return glm::dot(index_from[a], turned[b]); };
+    const double xy = second(0, 1), xz = second(0, 2), yz = second(1, 2);
+    return {by_index.value, g * index_from, {second(0, 0), xy, xz, xy, second(1, 1), yz, xz, yz, second(2, 2)}};
+  }
+  Jet jet(const Jet& x, const Jet& y, const Jet& z) const {
     glm::dmat3 motion;
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<size_t>(axis);
       motion[axis] = {x.gradient[a], y.gradient[a], z.gradient[a]};
     }
-    const glm::dmat3 index_from = index_from_world.linear * motion, turned = by_index.hessian * index_from;
-    const glm::dvec3 gradient = by_index.gradient * index_from;
-    const auto second = [&](int a, int b) { return glm::dot(index_from[a], turned[b]); };
-    return {by_index.value,
-            {gradient.x, gradient.y, gradient.z},
-            {second(0, 0), second(0, 1), second(0, 2), second(1, 1), second(1, 2), second(2, 2)}};
+    const FieldJet jet = this->jet({x.value, y.value, z.value}, motion);
+    const glm::dvec3& g = jet.gradient;
+    const glm::dmat3& h = jet.hessian;
+    return {jet.value, {g.x, g.y, g.z}, {h[0][0], h[1][0], h[2][0], h[1][1], h[2][1], h[2][2]}};
   }
 };
 
@@ -126,6 +123,10 @@ void evaluate(const void* shape, const T* x, const T* y, const T* z, T* values, 
       }
     }
   }
+}
+
+FieldJet jet(const void* shape, const glm::dvec3& place, const glm::dmat3& object_from_world) {
+  return static_cast<const Spline*>(shape)->jet(place, object_from_world);
 }
 
 double support(const void* shape, const glm::dvec3& direction, double level) {
@@ -223,7 +224,9 @@ Reconstruction reconstruct(const LevelSet& level_set) {
       nullptr,
       nullptr,
       nullptr,
-      nullptr};
+      nullptr,
+      nullptr,
+      jet};
   FieldLeaf leaf;
   const auto spline = std::make_shared<const Spline>(Spline{complete_band(level_set, find_gradient("cubic"))});
   leaf.shape = spline;

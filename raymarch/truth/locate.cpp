@@ -100,17 +100,18 @@ std::optional<CurvePoint> polish(FieldEvaluator& evaluator, const Viewer& viewer
     const glm::dvec3 hv = jet.hessian * v, hn = jet.hessian * n;
     glm::dvec3 slope = (hv - facing * hn) / length;
     if (perspective) slope += (facing * v - n) / glm::length(viewer.facing.eye - p);
-    // The distance around a sharp edge is rounded outside: what turns that fast is the edge and no smooth surface.
-    if (!(glm::length(slope) * reach < kFastestTurn)) return {};
     const double f = jet.value / length, h = facing - c;
     const double nn = 1.0, ns = glm::dot(n, slope), ss = glm::dot(slope, slope);
+    // The distance around a sharp edge is rounded outside: what turns that fast is the edge and no smooth surface.
+    if (!(ss * reach * reach < kFastestTurn * kFastestTurn)) return {};
     const double determinant = nn * ss - ns * ns;
     if (!(determinant > 1e-12 * ss) || !std::isfinite(determinant)) return {};
     const double on_n = (ss * f - ns * h) / determinant, on_s = (nn * h - ns * f) / determinant;
     const glm::dvec3 move = on_n * n + on_s * slope;
     p -= move;
-    if (!(glm::length(p - start) <= reach)) return {};
-    if (glm::length(move) < close * reach) return smooth_point(p, jet, v, slope - ns * n);
+    const glm::dvec3 moved = p - start;
+    if (!(glm::dot(moved, moved) <= reach * reach)) return {};
+    if (glm::dot(move, move) < close * close * reach * reach) return smooth_point(p, jet, v, slope - ns * n);
   }
   return {};
 }

@@ -14,22 +14,18 @@ constexpr double kFarthestPx = 0.1;  // between ends that are taken for one plac
 
 class Assembly {
  public:
-  explicit Assembly(const CellCurves& cells) {
+  explicit Assembly(const CellCurves& cells) : cells_(cells) {
     // Crossings are large: their places are sorted, and of those with one key the first stays.
     order_.resize(cells.crossings.size());
     for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = {cells.crossings[i].key, i};
     parallel_sort(order_.begin(), order_.end());
     order_.erase(std::unique(order_.begin(), order_.end(), [](const auto& a, const auto& b) { return a.first == b.first; }), order_.end());
-    crossings_.resize(order_.size());
     constexpr size_t kGrain = 2048;
-    parallel_parts(order_.size(), kGrain, [&](const IndexRange<size_t>& range) {
-      for (size_t i = range.begin(); i < range.end(); ++i) crossings_[i] = cells.crossings[order_[i].second];
-    });
     std::vector<std::array<std::uint32_t, 2>> ends(cells.links.size());
     parallel_parts(ends.size(), kGrain, [&](const IndexRange<size_t>& range) {
       for (size_t i = range.begin(); i < range.end(); ++i) ends[i] = {find(cells.links[i].from), find(cells.links[i].to)};
     });
-    next_.assign(crossings_.size(), {kNone, kNone});
+    next_.assign(order_.size(), {kNone, kNone});
     for (const auto& [from, to] : ends) {
       attach(from, to);
       attach(to, from);
@@ -38,21 +34,25 @@ class Assembly {
 
   std::vector<Strand> strands(const Strand& like) {
     std::vector<Strand> result;
-    std::vector<bool> taken(crossings_.size(), false);
+    std::vector<bool> taken(order_.size(), false);
+    std::vector<std::uint32_t> way;
     for (const bool ends_only : {true, false}) {
-      for (std::uint32_t i = 0; i < crossings_.size(); ++i) {
+      for (std::uint32_t i = 0; i < order_.size(); ++i) {
         if (taken[i] || (ends_only && next_[i][1] != kNone)) continue;
-        Strand strand = like;
+        way.clear();
         std::uint32_t at = i, before = kNone;
         while (at != kNone && !taken[at]) {
           taken[at] = true;
-          strand.points.push_back(crossings_[at].point);
+          way.push_back(at);
           const std::uint32_t go = next_[at][0] == before ? next_[at][1] : next_[at][0];
           before = at;
           at = go;
         }
+        if (way.size() == 1) continue;
+        Strand& strand = result.emplace_back(like);
         strand.closed = !ends_only;
-        if (strand.points.size() > 1) result.push_back(std::move(strand));
+        strand.points.reserve(way.size());
+        for (const std::uint32_t place : way) strand.points.push_back(cells_.crossings[order_[place].second].point);
       }
     }
     return result;
@@ -68,8 +68,8 @@ class Assembly {
     (slots[0] == kNone ? slots[0] : slots[1]) = to;
   }
 
+  const CellCurves& cells_;
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order_{};  ///< Keys of crossings, rising, and their places among the cells'.
-  std::vector<Crossing> crossings_{};                             ///< In that order.
   std::vector<std::array<std::uint32_t, 2>> next_;
 };
 

@@ -20,6 +20,7 @@
 namespace limn {
 namespace {
 
+constexpr size_t kEdgesOfCell = 4;      // new ones that the surface meets, more or less
 constexpr double kHalfDiagonal = 0.87;  // of a cell, over its side
 constexpr double kSeamReach = 2.0;      // voxels: farther from a surface there is no seam with it
 
@@ -90,6 +91,7 @@ CellOutput march(const CellSearch& search, size_t branch, const PlacedLevelSet& 
     FieldEvaluator evaluator(search.sharp.branches[branch]);
     std::optional<SplineCellReader> spline;
     if (lattice.first_node && placed.bounds) spline.emplace(*placed.bounds);
+    if (spline) samples[r]->edges.reserve(kEdgesOfCell * (lattice.regions[r].end - lattice.regions[r].begin));
     const Seeds seeds{true, spline ? &*spline : nullptr, lattice.first_node.value_or(glm::ivec3(0))};
     for (size_t i = lattice.regions[r].begin; i < lattice.regions[r].end; ++i) {
       march_cell(evaluator, search.viewer, lattice.grid, lattice.cells[i], search.levels, search.families, samples[r], parts[r], seeds);

@@ -36,14 +36,20 @@ class KeyedValues {
   }
   /// Keys and values, in the order in which they came.
   const std::vector<std::pair<std::uint64_t, Value>>& entries() const { return entries_; }
+  /// Room for so many.
+  void reserve(size_t count) {
+    entries_.reserve(count);
+    if (2 * count >= places_.size()) resize(std::bit_ceil(2 * count + 1));
+  }
   size_t bytes() const { return entries_.capacity() * sizeof(entries_[0]) + places_.capacity() * sizeof(places_[0]); }
 
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   /// The highest bits of the product, which all bits of the key have a part in: keys of cells have one coordinate above the others.
   size_t hash(std::uint64_t key) const { return static_cast<size_t>((key * 0x9e3779b97f4a7c15u) >> shift_); }
-  void grow() {
-    places_.assign(places_.empty() ? 64 : 2 * places_.size(), kNone);
+  void grow() { resize(places_.empty() ? 64 : 2 * places_.size()); }
+  void resize(size_t places) {
+    places_.assign(places, kNone);
     shift_ = 64 - std::countr_zero(places_.size());
     for (size_t i = 0; i < entries_.size(); ++i) {
       size_t place = hash(entries_[i].first);

@@ -42,25 +42,28 @@ std::optional<FourSamples> around_step(const Curve& curve, size_t i) {
   return four;
 }
 
-/// The polynomial through samples `first` to `last` (Lagrange).
-glm::dvec3 polynomial(const FourSamples& four, size_t first, size_t last, double t) {
-  const double x = t * four.s[2];
-  glm::dvec3 result(0.0);
-  for (size_t k = first; k <= last; ++k) {
-    double weight = 1.0;
-    for (size_t j = first; j <= last; ++j) {
-      if (j != k) weight *= (x - four.s[j]) / (four.s[k] - four.s[j]);
-    }
-    result += weight * four.p[k];
-  }
-  return result;
+/// At one place: the parabolas through all samples but one, and the cubic through all of them.
+struct Interpolated {
+  glm::dvec3 without_last{0.0}, without_first{0.0}, cubic{0.0};
+};
+/// From lines through two samples up (Neville 1934, "Iterative interpolation").
+Interpolated interpolated(const FourSamples& four, double t) {
+  const std::array<double, 4>& s = four.s;
+  const double x = t * s[2];
+  const auto joined = [&](const glm::dvec3& lower, const glm::dvec3& upper, size_t first, size_t last) {
+    return lower + (x - s[first]) / (s[last] - s[first]) * (upper - lower);
+  };
+  const glm::dvec3 before = joined(four.p[0], four.p[1], 0, 1), here = joined(four.p[1], four.p[2], 1, 2),
+                   after = joined(four.p[2], four.p[3], 2, 3), without_last = joined(before, here, 0, 2),
+                   without_first = joined(here, after, 1, 3);
+  return {without_last, without_first, joined(without_last, without_first, 0, 3)};
 }
 
 /// Between samples i and i + 1: where the curve is smooth by the cubic through four of them. Its image may turn back at a cusp there, the
 /// curve itself does not.
 template <class Curve>
 glm::dvec3 by_neighbours(const Curve& curve, size_t i, double t) {
-  if (const auto four = around_step(curve, i)) return polynomial(*four, 0, 3, t);
+  if (const auto four = around_step(curve, i)) return interpolated(*four, t).cubic;
   const size_t n = curve.samples.size();
   return glm::mix(curve.samples[i % n].p, curve.samples[(i + 1) % n].p, t);
 }
@@ -70,10 +73,10 @@ glm::dvec3 by_neighbours(const Curve& curve, size_t i, double t) {
 std::optional<glm::dvec3> middle_by_neighbours(const SurfaceCurve& curve, size_t i, const Camera& camera, double apart_px) {
   const auto four = around_step(curve, i);
   if (!four || four->least_turn < kCorner) return {};
-  const glm::dvec3 one = polynomial(*four, 0, 2, 0.5), other = polynomial(*four, 1, 3, 0.5);
+  const Interpolated middle = interpolated(*four, 0.5);
   const double scale = pixels_per_unit_at(camera, std::max(curve.samples[i].depth, 1e-9));
-  if (!(glm::distance(one, other) * scale < apart_px)) return {};
-  return polynomial(*four, 0, 3, 0.5);
+  if (!(glm::distance(middle.without_last, middle.without_first) * scale < apart_px)) return {};
+  return middle.cubic;
 }
 
 /// The middle of a step as far as it is known.

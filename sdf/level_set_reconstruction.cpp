@@ -37,6 +37,7 @@ struct Spline {
   LevelSet level_set;
   std::shared_ptr<const SplineBlocks> blocks = std::make_shared<const SplineBlocks>(level_set.data());
   std::shared_ptr<tbb::enumerable_thread_specific<CellCache>> caches = std::make_shared<tbb::enumerable_thread_specific<CellCache>>();
+  /// One factor leads to index coordinates.
   bool is_uniform = level_set.data().index_from_world.linear == glm::dmat3(level_set.data().index_from_world.linear[0][0]);
 
   const SplineCoefficients& coefficients_at(const nanovdb::Coord& node) const {

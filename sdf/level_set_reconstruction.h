@@ -20,6 +20,7 @@ struct SurfaceCell {
   glm::vec3 normal{0.0f};  ///< World, unit; 0 where nothing is known of its normals.
   float spread = 0.0f;     ///< No normal in the cell is farther from that, radians.
 };
+
 /// Cells of a level set's spline. Safe to ask from many threads at once.
 class SplineCells {
  public:
@@ -72,7 +73,8 @@ struct Reconstruction {
 };
 Reconstruction reconstruct(const LevelSet& level_set);
 
-/// All such cells of a level set whose band is complete, in an order that does not depend on threads: near each other one after the other.
+/// All cells that the surface may go through, of a level set whose band is complete, in an order that does not depend on threads: near each
+/// other one after the other.
 std::vector<SurfaceCell> surface_cells(const LevelSet& completed);
 
 }  // namespace limn

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>
@@ -130,6 +131,72 @@ TEST(SurfaceCells, HoldTheSurfaceAndAllNormalsOfTheSpline) {
   EXPECT_GT(flat, 0);
   EXPECT_GT(told_out, held / 3);
   EXPECT_GT(contours, 100);
+}
+
+TEST(SplineCellReader, TellsCornersAndEdgesAsTheFieldDoes) {
+  constexpr double kClose = 0.01;
+  std::mt19937 random(random_seed());
+  std::int64_t edges_met = 0, found = 0;
+  for (const bool box : {true, false}) {
+    const Case one = random_case(random, box);
+    const LevelSetInfo& info = one.made.completed.info();
+    FieldEvaluator evaluator(one.made.field);
+    SplineCellReader reader(one.made.cells);
+    std::map<Node, double> known;  // of nodes
+    for (const auto& [node, cell] : one.cells) {
+      reader.read(cell.node);
+      const std::array<double, 8> values = reader.corner_values();
+      const auto corner = [&](size_t k) { return cell.node + glm::ivec3(k & 1u, k >> 1u & 1u, k >> 2u); };
+      for (size_t k = 0; k < 8; ++k) {
+        const glm::ivec3 at = corner(k);
+        EXPECT_NEAR(values[k], evaluator.value(info.world_from_index.point(glm::dvec3(at))), 1e-12);
+        const auto [before, added] = known.insert({{at.x, at.y, at.z}, values[k]});
+        EXPECT_EQ(before->second, values[k]) << "two cells disagree about their corner";
+      }
+      std::vector<CellEdge> edges;
+      for (std::uint8_t a = 0; a < 8; ++a)
+        for (std::uint8_t b = 0; b < 8; ++b)
+          if (a != b && (values[a] < 0.0) != (values[b] < 0.0)) edges.push_back({a, b});
+      std::vector<EdgePoint> points(edges.size());
+      reader.find_on_edges(edges, kClose, points);
+      for (size_t i = 0; i < edges.size(); ++i) {
+        ++edges_met;
+        if (!points[i].found) continue;
+        ++found;
+        EXPECT_GE(points[i].share, 0.0);
+        EXPECT_LE(points[i].share, 1.0);
+        // Within so much of a place where the sign changes.
+        const glm::dvec3 from(corner(edges[i].from)), to(corner(edges[i].to));
+        const auto value_at = [&](double share) { return evaluator.value(info.world_from_index.point(glm::mix(from, to, share))); };
+        const double before = value_at(std::max(0.0, points[i].share - kClose)), after = value_at(std::min(1.0, points[i].share + kClose));
+        EXPECT_NE(before < 0.0, after < 0.0);
+        const glm::dvec3 place = info.world_from_index.point(glm::mix(from, to, points[i].share));
+        EXPECT_LT(glm::distance(points[i].gradient, evaluator.jet(place).gradient), 0.2);
+      }
+    }
+  }
+  EXPECT_GT(found, 1000);
+  EXPECT_GT(found, edges_met * 9 / 10);
+}
+
+TEST(Reconstruction, OnePointAloneGivesTheJetThatManyGive) {
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> real(-0.8, 0.8);
+  for (const bool turned : {false, true}) {
+    const Case one = random_case(random, false);
+    const Field field =
+        turned ? rotate(one.made.field, glm::normalize(glm::dvec3(real(random), 1.0, real(random))), real(random)) : one.made.field;
+    FieldEvaluator evaluator(field);
+    for (int i = 0; i < 300; ++i) {
+      const glm::dvec3 p(real(random), real(random), real(random));
+      FieldJet many;
+      evaluator.jets(std::span(&p, 1), std::span(&many, 1));
+      const FieldJet alone = evaluator.jet(p);
+      EXPECT_EQ(alone.value, many.value);
+      EXPECT_EQ(alone.gradient, many.gradient);
+      EXPECT_EQ(alone.hessian, many.hessian);
+    }
+  }
 }
 
 }  // namespace

@@ -102,8 +102,8 @@ void FoldIndex::sort_into_buckets() {
   }
   first_[buckets] = at;
   in_.resize(at);
-  for (std::vector<float>* const of : {&lanes_.ax, &lanes_.ay, &lanes_.bx, &lanes_.by, &lanes_.margin, &lanes_.depth})
-    of->resize(at + kFoldPadding);
+  const std::array<std::vector<float>*, 6> lanes = {&lanes_.ax, &lanes_.ay, &lanes_.bx, &lanes_.by, &lanes_.margin, &lanes_.depth};
+  parallel_for(size_t{0}, lanes.size(), [&](size_t i) { lanes[i]->resize(at + kFoldPadding); });
   parallel_for(size_t{0}, parts, [&](size_t part) {
     for_part(part, [&](size_t f, size_t bucket) { in_[next[part][bucket]++] = static_cast<std::uint32_t>(f); });
   });

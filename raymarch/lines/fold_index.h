@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "raymarch/lines/fold_lanes.h"
@@ -39,6 +41,23 @@ using StepMarks = std::vector<std::vector<char>>;
 /// Of each step of each curve how far its line leaves it, px; below 0 where the step is left out, none
 /// of a curve that is.
 using StepSags = std::vector<std::vector<double>>;
+
+/// For std::vector: elements that it is given no value for are left unset. Whoever fills it touches its memory first, many threads at once.
+template <class T>
+struct UnsetAllocator : std::allocator<T> {
+  /// Leaves it unset.
+  template <class U>
+  void construct(U*) {}
+  /// As std::allocator.
+  template <class U, class... Values>
+  void construct(U* at, Values&&... values) {
+    std::construct_at(at, std::forward<Values>(values)...);
+  }
+  template <class U>
+  struct rebind {
+    using other = UnsetAllocator<U>;
+  };
+};
 
 /// Folds by the buckets of the image that they go through. Those of bucket b are `in[first[b]]` up to `in[first[b + 1]]`. Where these are
 /// many, long ones come first; short ones follow, and then tiny ones, by the cells of the bucket that their low corners lie in.
@@ -82,9 +101,9 @@ class FoldIndex {
 
   glm::dvec2 size_px_;
   size_t columns_, rows_;
-  std::vector<Fold> folds_{};
+  std::vector<Fold, UnsetAllocator<Fold>> folds_{};
   std::vector<std::uint32_t> first_{};
-  std::vector<std::uint32_t> in_{};
+  std::vector<std::uint32_t, UnsetAllocator<std::uint32_t>> in_{};
   FoldLanes lanes_{};                      ///< Beside `in_`: read in a row.
   std::vector<std::uint32_t> crowd_of_{};  ///< Of each bucket: where its cells begin in `cells_`, or kNotCrowded.
   std::vector<std::uint32_t> cells_{};     ///< Where the short folds of each cell begin, and the tiny ones; where the last one's end.

@@ -51,12 +51,17 @@ class PlaceIndex {
 
 /// World units of a pixel where the nearest of the curves runs; the middle of what is seen elsewhere.
 double pixel_size(const std::vector<SurfaceCurve>& curves, const Camera& camera) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const SurfaceCurve& curve : curves) {
-    for (const CurveSample& sample : curve.samples) {
-      if (sample.depth > 0.0) least = std::min(least, 1.0 / pixels_per_unit_at(camera, sample.depth));
+  const double unseen = std::numeric_limits<double>::infinity();
+  const auto of_curves = [&](const IndexRange<size_t>& range, double least) {
+    for (size_t c = range.begin(); c < range.end(); ++c) {
+      for (const CurveSample& sample : curves[c].samples) {
+        if (sample.depth > 0.0) least = std::min(least, 1.0 / pixels_per_unit_at(camera, sample.depth));
+      }
     }
-  }
+    return least;
+  };
+  const double least =
+      parallel_reduce(curves.size(), size_t{1}, unseen, of_curves, [](double one, double other) { return std::min(one, other); });
   return std::isfinite(least) ? least : 1.0;
 }
 
@@ -260,6 +265,10 @@ void add_edges(const std::vector<SurfaceCurve>& curves, const CutCurves& cut, co
   Builder builder{curves, cut, task, graph, pixel, PlaceIndex(16.0 * kSamePlace_px * pixel), std::vector<CurveParts>(curves.size())};
   std::vector<std::vector<int>> edge_of(curves.size());
   parallel_for(size_t{0}, curves.size(), [&](size_t c) { builder.parts[c] = parts_of(curves[c], cut.curves[c], task); });
+  size_t pieces_of_all = 0, events_of_all = 0;
+  for (const CutCurve& of_curve : cut.curves) pieces_of_all += of_curve.pieces.size(), events_of_all += of_curve.events.size();
+  graph.edges.reserve(graph.edges.size() + pieces_of_all);
+  graph.vertices.reserve(graph.vertices.size() + events_of_all);
   for (size_t c = 0; c < curves.size(); ++c) {
     const std::vector<CurvePiece>& pieces = cut.curves[c].pieces;
     for (size_t k = 0; k < pieces.size(); ++k) edge_of[c].push_back(builder.add_edge(pieces[k], std::move(builder.parts[c].pieces[k])));

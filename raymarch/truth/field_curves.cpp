@@ -109,7 +109,7 @@ std::vector<Strand> strands_of(CellResult& found, const CellSearch& search, cons
 
 void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurveSettings& settings, const ExecutionSettings& how,
                      FieldCurves& result) {
-  const std::vector<Strand> strands = strands_of(found, search, settings, how, result);
+  std::vector<Strand> strands = strands_of(found, search, settings, how, result);
   StrandScope scope(search.sharp, settings.extent);
   const StrandSettings cutting{search.sharp,          scope,           search.camera,     search.viewer,
                                settings.tolerance_px, settings.extent, settings.lipschitz};
@@ -117,10 +117,10 @@ void curves_of_cells(CellResult& found, const CellSearch& search, const CellCurv
   std::vector<FieldCurves> stats(strands.size());
   parallel_for(size_t{0}, strands.size(), [&](size_t i) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
-    const Strand& strand = strands[i];
+    Strand& strand = strands[i];
     // A lone smooth branch is the surface.
     if (strand.followed && search.sharp.branches.size() == 1) {
-      cut[i].push_back({strand.c, strand.closed, false, false, strand.points});
+      cut[i].push_back({strand.c, strand.closed, false, false, std::move(strand.points)});
       return;
     }
     cut[i] = cut_to_surface(strand, cutting);

@@ -23,12 +23,18 @@ constexpr int kFinerParts = 8;  // of a cell along each axis
 constexpr size_t kMostPointsLooked = 64;
 constexpr size_t kPartPoints = 64;
 
+/// With what makes it quick to add.
+struct FoundPath {
+  std::vector<CurvePoint> points{};
+  PathIndex::Prepared prepared{};
+};
+
 /// Follows a path from each strand that no earlier strand's path passes. Where hundreds of strands are pieces of one curve, as along flat
 /// walls seen edge-on, all but the first find it followed. Threads follow strands ahead of what is accepted, and paths are accepted in the
 /// order of their strands: what comes out is the same for any number of threads.
 class FirstPaths {
  public:
-  using Accept = std::function<void(const Strand& like, std::vector<CurvePoint> path)>;
+  using Accept = std::function<void(const Strand& like, FoundPath path)>;
   /// `accept` adds the path to `index`.
   FirstPaths(const std::vector<Strand>& strands, const PathIndex& index, Accept accept)
       : strands_(strands), index_(index), accept_(std::move(accept)), done_(strands.size(), 0), paths_(strands.size()) {}
@@ -37,7 +43,7 @@ class FirstPaths {
   bool follow_next(CurveFollower& follower) {
     const size_t i = next_.fetch_add(1);
     if (i >= strands_.size()) return false;
-    std::optional<std::vector<CurvePoint>> path;
+    std::optional<FoundPath> path;
     for (const CurvePoint& point : strands_[i].points) {
       const std::optional<CurvePoint> seed = point.rough ? std::nullopt : follower.seed(point);
       if (!seed) continue;
@@ -45,7 +51,11 @@ class FirstPaths {
         const std::shared_lock lock(mutex_);
         return index_.holds(*seed);
       };
-      if (!is_passed()) path = follower.around(*seed, is_passed);
+      if (is_passed()) break;
+      if (auto points = follower.around(*seed, is_passed)) {
+        PathIndex::Prepared prepared = index_.prepare(*points);
+        path = FoundPath{std::move(*points), std::move(prepared)};
+      }
       break;
     }
     const std::lock_guard lock(mutex_);
@@ -53,7 +63,7 @@ class FirstPaths {
     done_[i] = 1;
     for (; accepted_ < done_.size() && done_[accepted_] != 0; ++accepted_) {
       auto& first = paths_[accepted_];
-      if (first && !index_.holds(first->front())) accept_(strands_[accepted_], std::move(*first));
+      if (first && !index_.holds(first->points.front())) accept_(strands_[accepted_], std::move(*first));
       first.reset();
     }
     return true;
@@ -67,7 +77,7 @@ class FirstPaths {
   std::shared_mutex mutex_{};  ///< Of all below, and of the index.
   size_t accepted_ = 0;        ///< So many strands are done with.
   std::vector<char> done_;
-  std::vector<std::optional<std::vector<CurvePoint>>> paths_;
+  std::vector<std::optional<FoundPath>> paths_;
 };
 
 /// Crossings of finer cells about a strand; nothing where it is long.
@@ -134,7 +144,10 @@ class StrandFollower {
         later_(settings.longest_step) {}
 
   std::vector<Strand> run(const ExecutionSettings& how) {
-    FirstPaths paths(found_, first_, [&](const Strand& like, std::vector<CurvePoint> path) { accept(like, std::move(path), first_); });
+    FirstPaths paths(found_, first_, [&](const Strand& like, FoundPath path) {
+      first_.add(std::move(path.prepared));
+      accept(like, std::move(path.points));
+    });
     parallel_for(size_t{0}, static_cast<size_t>(tbb::this_task_arena::max_concurrency()), [&](size_t) {
       CurveFollower follower = new_follower_();
       while (paths.follow_next(follower)) {
@@ -155,11 +168,15 @@ class StrandFollower {
   }
 
  private:
-  void accept(const Strand& like, std::vector<CurvePoint> path, PathIndex& index) {
-    index.add(path);
+  void accept(const Strand& like, std::vector<CurvePoint> path) {
     result_.push_back(like);
     result_.back().points = std::move(path);
     result_.back().closed = result_.back().followed = true;
+  }
+
+  void accept_later(const Strand& like, std::vector<CurvePoint> path) {
+    later_.add(later_.prepare(path));
+    accept(like, std::move(path));
   }
 
   /// By strands.
@@ -194,7 +211,7 @@ class StrandFollower {
       auto path = follower_.around(*seed, [] { return false; });
       lost = !path;
       if (!path) continue;
-      accept(strand, std::move(*path), later_);
+      accept_later(strand, std::move(*path));
       any = true;
     }
     return any;
@@ -219,7 +236,7 @@ class StrandFollower {
       if (first_.holds(*seed) || later_.holds(*seed)) continue;
       auto path = follower_.around(*seed, [] { return false; });
       if (!path) return false;
-      accept(strand, std::move(*path), later_);
+      accept_later(strand, std::move(*path));
     }
     return true;
   }

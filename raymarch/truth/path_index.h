@@ -17,7 +17,11 @@ class PathIndex {
   /// `side`: of the cubes, world units.
   explicit PathIndex(double side) : side_(side) {}
 
-  void add(const std::vector<CurvePoint>& points);
+  /// A curve, ready to be added.
+  class Prepared;
+  /// What takes the time, from any thread.
+  Prepared prepare(const std::vector<CurvePoint>& points) const;
+  void add(Prepared path);
   /// Another arm that runs close by has the higher N.V on its other side.
   bool holds(const CurvePoint& point) const;
 
@@ -31,8 +35,6 @@ class PathIndex {
     std::uint32_t begin = 0, end = 0, before = kNone;
   };
 
-  /// Returns the segment's run in the cube.
-  std::uint32_t add_to(const glm::ivec3& cube, std::uint32_t segment);
   double reach_of(double length) const;
   glm::ivec3 cube_of(const glm::dvec3& p) const { return glm::ivec3(glm::floor(p / side_)); }
 
@@ -40,6 +42,16 @@ class PathIndex {
   std::vector<PathPoint> points_{};  ///< Of each curve the first one again after its last.
   std::vector<Run> runs_{};
   KeyedValues<std::uint32_t> last_in_{};  ///< Of each cube the last run.
+};
+
+class PathIndex::Prepared {
+  friend class PathIndex;
+  struct CubeRun {
+    std::uint64_t cube = 0;
+    Run run{};
+  };
+  std::vector<PathPoint> points_{};
+  std::vector<CubeRun> runs_{};
 };
 
 }  // namespace limn

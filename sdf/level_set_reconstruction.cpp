@@ -166,14 +166,15 @@ std::vector<SurfaceCell> SplineCells::that_may_hold_contours(std::span<const Sur
 }
 
 struct SplineCellReader::State {
+  explicit State(const LevelSetData& read, const SplineBlocks& blocks) : data(read), reader(blocks) {}
+
   const LevelSetData& data;
   SplineBlocks::Reader reader;
   SplineCoefficients coefficients{};
   std::array<double, 8> corners{};
 };
 
-SplineCellReader::SplineCellReader(const SplineCells& cells)
-    : state_(std::make_unique<State>(cells.level_set_.data(), SplineBlocks::Reader(*cells.blocks_))) {}
+SplineCellReader::SplineCellReader(const SplineCells& cells) : state_(std::make_unique<State>(cells.level_set_.data(), *cells.blocks_)) {}
 SplineCellReader::~SplineCellReader() = default;
 
 void SplineCellReader::read(const glm::ivec3& node) {

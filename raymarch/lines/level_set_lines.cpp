@@ -32,15 +32,18 @@ constexpr double kMostOff = 0.25;  // voxels
 
 constexpr size_t kMostKeptBytes = size_t{512} << 20;
 
-CellCurves joined(const std::vector<const CellCurves*>& parts) {
+/// `curves_of` each part.
+template <class Part, class CurvesOf>
+CellCurves joined(const std::vector<Part>& parts, const CurvesOf& curves_of) {
   CellCurves all;
   size_t crossings = 0, links = 0;
-  for (const CellCurves* part : parts) crossings += part->crossings.size(), links += part->links.size();
+  for (const Part& part : parts) crossings += curves_of(part).crossings.size(), links += curves_of(part).links.size();
   all.crossings.reserve(crossings);
   all.links.reserve(links);
-  for (const CellCurves* part : parts) {
-    all.crossings.insert(all.crossings.end(), part->crossings.begin(), part->crossings.end());
-    all.links.insert(all.links.end(), part->links.begin(), part->links.end());
+  for (const Part& part : parts) {
+    const CellCurves& curves = curves_of(part);
+    all.crossings.insert(all.crossings.end(), curves.crossings.begin(), curves.crossings.end());
+    all.links.insert(all.links.end(), curves.links.begin(), curves.links.end());
   }
   return all;
 }
@@ -98,11 +101,8 @@ CellOutput march(const CellSearch& search, size_t branch, const PlacedLevelSet& 
     }
   });
   CellOutput all;
-  for (size_t family = 0; family < kCurveFamilies; ++family) {
-    std::vector<const CellCurves*> of_family;
-    for (const CellOutput& part : parts) of_family.push_back(&part[family]);
-    all[family] = joined(of_family);
-  }
+  for (size_t family = 0; family < kCurveFamilies; ++family)
+    all[family] = joined(parts, [&](const CellOutput& part) -> const CellCurves& { return part[family]; });
   return all;
 }
 
@@ -135,9 +135,7 @@ CellCurves march_pair(const CellSearch& search, const PlacedLevelSet& one, const
     FieldEvaluator first(one.field), last(other.field);
     for (size_t i = begin; i < end; ++i) march_seam(first, last, search.viewer, lattice.grid, lattice.cells[i], parts[part]);
   });
-  std::vector<const CellCurves*> all;
-  for (const CellCurves& part : parts) all.push_back(&part);
-  return joined(all);
+  return joined(parts, [](const CellCurves& part) -> const CellCurves& { return part; });
 }
 
 /// Level sets that overlap are one body, as fields are.

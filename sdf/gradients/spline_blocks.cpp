@@ -107,7 +107,7 @@ inline const double* SplineBlocks::Reader::block(int number) {
 
 template <class Number>
 void SplineBlocks::Reader::read(const nanovdb::Coord& node, Number* to, size_t stride) {
-  const nanovdb::Coord origin = node & ~(kSide - 1);
+  const nanovdb::Coord origin = node & ~static_cast<nanovdb::Coord::IndexType>(kSide - 1);
   if (origin != origin_) origin_ = origin, known_ = 0;
   // From the first node of the blocks before the middle one.
   const std::array<int, 3> low{node[0] - origin[0] + kSide - 1, node[1] - origin[1] + kSide - 1, node[2] - origin[2] + kSide - 1};

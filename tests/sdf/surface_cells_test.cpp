@@ -146,7 +146,8 @@ TEST(SplineCellReader, TellsCornersAndEdgesAsTheFieldDoes) {
     for (const auto& [node, cell] : one.cells) {
       reader.read(cell.node);
       const std::array<double, 8> values = reader.corner_values();
-      const auto corner = [&](size_t k) { return cell.node + glm::ivec3(k & 1u, k >> 1u & 1u, k >> 2u); };
+      const glm::ivec3 first = cell.node;
+      const auto corner = [&](size_t k) { return first + glm::ivec3(k & 1u, k >> 1u & 1u, k >> 2u); };
       for (size_t k = 0; k < 8; ++k) {
         const glm::ivec3 at = corner(k);
         EXPECT_NEAR(values[k], evaluator.value(info.world_from_index.point(glm::dvec3(at))), 1e-12);

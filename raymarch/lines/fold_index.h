@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "raymarch/lines/fold_lanes.h"
@@ -48,15 +47,6 @@ struct UnsetAllocator : std::allocator<T> {
   /// Leaves it unset.
   template <class U>
   void construct(U*) {}
-  /// As std::allocator.
-  template <class U, class... Values>
-  void construct(U* at, Values&&... values) {
-    std::construct_at(at, std::forward<Values>(values)...);
-  }
-  template <class U>
-  struct rebind {
-    using other = UnsetAllocator<U>;
-  };
 };
 
 /// Folds by the buckets of the image that they go through. Those of bucket b are `in[first[b]]` up to `in[first[b + 1]]`. Where these are

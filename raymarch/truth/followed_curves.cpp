@@ -145,7 +145,7 @@ class StrandFollower {
 
   std::vector<Strand> run(const ExecutionSettings& how) {
     FirstPaths paths(found_, first_, [&](const Strand& like, FoundPath path) {
-      first_.add(std::move(path.prepared));
+      first_.add(path.prepared);
       accept(like, std::move(path.points));
     });
     parallel_for(size_t{0}, static_cast<size_t>(tbb::this_task_arena::max_concurrency()), [&](size_t) {

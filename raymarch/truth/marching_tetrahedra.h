@@ -44,10 +44,10 @@ using CellOutput = std::array<CellCurves, kCurveFamilies>;
 bool march_seam(FieldEvaluator& first, FieldEvaluator& second, const Viewer& viewer, const CellGrid& grid, const glm::ivec3& cell,
                 CellCurves& output);
 
-/// Points that are interpolated and lie beside the curve, for those who follow it from there.
+/// Points that lie on the curve to within a hundredth of a cell and not on the faces, for those who follow it from there.
 struct Seeds {
   bool wanted = false;
-  /// Of the field, whose cells are the grid's, from that node on; null: the field itself is asked.
+  /// Of the field, whose cells are the grid's, from that node on; needs `samples`. Null: the field itself is asked.
   SplineCellReader* spline = nullptr;
   glm::ivec3 first_node{0};
 };

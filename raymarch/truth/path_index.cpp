@@ -44,7 +44,7 @@ PathIndex::Prepared PathIndex::prepare(const std::vector<CurvePoint>& points) co
   return path;
 }
 
-void PathIndex::add(Prepared path) {
+void PathIndex::add(const Prepared& path) {
   const auto first = static_cast<std::uint32_t>(points_.size());
   points_.insert(points_.end(), path.points_.begin(), path.points_.end());
   for (const Prepared::CubeRun& one : path.runs_) {

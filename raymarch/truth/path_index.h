@@ -21,7 +21,7 @@ class PathIndex {
   class Prepared;
   /// What takes the time, from any thread.
   Prepared prepare(const std::vector<CurvePoint>& points) const;
-  void add(Prepared path);
+  void add(const Prepared& path);
   /// Another arm that runs close by has the higher N.V on its other side.
   bool holds(const CurvePoint& point) const;
 

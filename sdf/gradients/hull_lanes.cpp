@@ -123,7 +123,7 @@ CellBits bits_of(M mask, size_t first) {
 
 CellBits of_count(size_t count) { return (CellBits{1} << count) - 1; }
 
-/// Gradients in world axes.
+/// Thirds of gradients by index coordinates.
 struct Slopes {
   Hull x, y, z;
 };

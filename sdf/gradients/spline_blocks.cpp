@@ -63,31 +63,8 @@ const SplineBlocks::Block* SplineBlocks::block_of(const Leaf& leaf) const {
 }
 
 SplineCoefficients SplineBlocks::cell(const nanovdb::Coord& node) const {
-  const nanovdb::Coord low = node.offsetBy(-1);
-  // The cell's nodes lie in up to two blocks along each axis.
-  const auto split = [&](nanovdb::Coord::IndexType axis) { return std::min(4, kSide - (low[axis] & (kSide - 1))); };
-  const auto accessor = data_.accessor();
   SplineCoefficients c;
-  const std::array<int, 3> in_first{split(0), split(1), split(2)};
-  for (int part = 0; part < 8; ++part) {
-    std::array<int, 3> begin{}, end{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<size_t>(axis);
-      const bool second = (part >> axis & 1) != 0;
-      begin[a] = second ? in_first[a] : 0;
-      end[a] = second ? 4 : in_first[a];
-    }
-    if (begin[0] >= end[0] || begin[1] >= end[1] || begin[2] >= end[2]) continue;
-    const nanovdb::Coord corner = low.offsetBy(begin[0], begin[1], begin[2]);
-    const Leaf* const leaf = accessor.probeLeaf(corner);
-    const Block* const block = leaf != nullptr ? block_of(*leaf) : nullptr;
-    if (block == nullptr) return cell_of_tiles(accessor, node);
-    for (int x = begin[0]; x < end[0]; ++x)
-      for (int y = begin[1]; y < end[1]; ++y) {
-        const double* const from = &(*block)[Leaf::CoordToOffset(low.offsetBy(x, y, begin[2]))];
-        std::copy(from, from + (end[2] - begin[2]), &c[spline_place(x, y, begin[2])]);
-      }
-  }
+  Reader(*this).read(node, c.data(), 1);
   return c;
 }
 
@@ -117,7 +94,7 @@ void SplineBlocks::Reader::read(const nanovdb::Coord& node, Number* to, size_t s
       const int column = 9 * block_at(0, x) + 3 * block_at(1, y);
       const double *const first = block(column + block_at(2, 0)), *const last = block(column + block_at(2, 3));
       if (first == nullptr || last == nullptr) {
-        const SplineCoefficients c = blocks_.cell(node);
+        const SplineCoefficients c = cell_of_tiles(accessor_, node);
         for (size_t i = 0; i < c.size(); ++i) to[i * stride] = static_cast<Number>(c[i]);
         return;
       }

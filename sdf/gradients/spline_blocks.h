@@ -10,6 +10,11 @@ namespace limn {
 
 /// Of a level set that outlives it. Safe to ask from many threads at once.
 class SplineBlocks {
+  using Leaf = nanovdb::FloatGrid::TreeType::LeafNodeType;
+  static constexpr int kSide = static_cast<int>(Leaf::DIM);
+  static constexpr size_t kNodes = Leaf::SIZE;
+  using Block = std::array<double, kNodes>;
+
  public:
   explicit SplineBlocks(const LevelSetData& data);
   ~SplineBlocks();
@@ -31,18 +36,13 @@ class SplineBlocks {
     const SplineBlocks& blocks_;
     nanovdb::FloatGrid::AccessorType accessor_;
     nanovdb::Coord origin_;  ///< Of the middle block.
-    std::array<const std::array<double, 512>*, 27> around_{};
+    std::array<const Block*, 27> around_{};
     std::uint32_t known_ = 0;  ///< Bits of `around_`.
 
     const double* block(int number);
   };
 
  private:
-  using Leaf = nanovdb::FloatGrid::TreeType::LeafNodeType;
-  static constexpr int kSide = static_cast<int>(Leaf::DIM);
-  static constexpr size_t kNodes = Leaf::SIZE;
-  using Block = std::array<double, kNodes>;
-
   const Block* block_of(const Leaf& leaf) const;
 
   const LevelSetData& data_;

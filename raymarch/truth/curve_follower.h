@@ -26,6 +26,7 @@ class CurveFollower {
 
  private:
   struct Course;
+  struct Ahead;
 
   /// The image of a way from a point, px.
   glm::dvec2 image_way(const glm::dvec3& p, const glm::dvec3& way) const;
@@ -35,8 +36,12 @@ class CurveFollower {
   bool turns_twice(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec2& start, const glm::dvec2& end, double step) const;
   /// Somewhere along a step the curve is not where its ends and tangents lead: it goes round a fold in between.
   bool leaves_cubic(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& start, const glm::dvec3& end);
-  /// A step that is shortened until it stays on the curve and on its chord, and grows for the next one.
-  std::optional<CurvePoint> advance(const CurvePoint& from, const Course& course, double longest, double& step);
+  /// The longest step within all bounds, as far as the one to `to` tells, as a share of that: from 1 on `to` is within them.
+  double fitting_share(const CurvePoint& from, const Course& course, double step, const Ahead& to) const;
+  /// Between the two the curve or its image may do more than its ends tell.
+  bool goes_round(const CurvePoint& from, const Course& course, double step, const Ahead& to);
+  /// A step that is shortened until it stays on the curve and on its chord, and set for the next one.
+  std::optional<Ahead> advance(const CurvePoint& from, const Course& course, double longest, double& step);
 
   FieldEvaluator evaluator_;
   const Camera& camera_;

@@ -95,11 +95,13 @@ std::optional<CurvePoint> polish(FieldEvaluator& evaluator, const Viewer& viewer
     const FieldJet jet = evaluator.jet(p);
     const double length = glm::length(jet.gradient);
     if (!(length > 0.0) || !std::isfinite(length)) return {};
-    const glm::dvec3 n = jet.gradient / length, v = viewer.toward_eye(p);
+    const glm::dvec3 to_eye = viewer.facing.eye - p;
+    const double away = glm::length(to_eye);
+    const glm::dvec3 n = jet.gradient / length, v = perspective ? to_eye * (1.0 / away) : viewer.toward_eye(p);
     const double facing = glm::dot(n, v);
     const glm::dvec3 hv = jet.hessian * v, hn = jet.hessian * n;
     glm::dvec3 slope = (hv - facing * hn) / length;
-    if (perspective) slope += (facing * v - n) / glm::length(viewer.facing.eye - p);
+    if (perspective) slope += (facing * v - n) / away;
     const double f = jet.value / length, h = facing - c;
     const double nn = 1.0, ns = glm::dot(n, slope), ss = glm::dot(slope, slope);
     // The distance around a sharp edge is rounded outside: what turns that fast is the edge and no smooth surface.

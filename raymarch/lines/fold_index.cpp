@@ -2,11 +2,12 @@
 
 #include <tbb/task_arena.h>
 
+#include <array>
 #include <cmath>
 #include <utility>
 
-#include "raymarch/lines/curve_walk.h"
 #include "sdf/parallel.h"
+#include "sdf/segment.h"
 
 namespace limn {
 namespace {
@@ -147,6 +148,48 @@ void FoldIndex::place(size_t bucket, std::vector<std::uint32_t>& scratch) {
     lanes_.margin[k] = as_float(fold.sag_px + rounding_of(fold.ends));
     lanes_.depth[k] = as_float(depth - kRounding * (1.0 + std::fabs(depth)));
   }
+}
+
+bool FoldIndex::in_reach(const Ends& step) const {
+  const glm::dvec2 low = glm::min(step.a.px, step.b.px), high = glm::max(step.a.px, step.b.px), most = size_px_ + kBeyondFrame_px;
+  return step.a.depth > 0.0 && step.b.depth > 0.0 && high.x >= -kBeyondFrame_px && high.y >= -kBeyondFrame_px && low.x <= most.x &&
+         low.y <= most.y;
+}
+
+bool FoldIndex::add_to(Run& run, const Run::Step& step) {
+  const double reach = step.within_px + rounding_of(step.ends), depth = std::max(step.ends.a.depth, step.ends.b.depth);
+  const glm::dvec2 low = glm::min(step.ends.a.px, step.ends.b.px) - reach, high = glm::max(step.ends.a.px, step.ends.b.px) + reach;
+  const bool begins = run.steps.empty();
+  const glm::dvec2 all_low = begins ? low : glm::min(low, run.low), all_high = begins ? high : glm::max(high, run.high),
+                   size = all_high - all_low;
+  if (!begins && (run.steps.size() == kRunSteps || std::max(size.x, size.y) > kRun_px)) return false;
+  run.low = all_low, run.high = all_high;
+  run.depth = begins ? depth : std::max(depth, run.depth);
+  run.steps.push_back(step);
+  return true;
+}
+
+void FoldIndex::gather_near(Run& run) const {
+  // About the chord from the first step to the last.
+  const Ends chord{run.steps.front().ends.a, run.steps.back().ends.b};
+  double within_px = 0.0;
+  for (const Run::Step& step : run.steps)
+    within_px = std::max(within_px, step.within_px + rounding_of(step.ends) +
+                                        std::max(distance_to_segment(step.ends.a.px, chord.a.px, chord.b.px),
+                                                 distance_to_segment(step.ends.b.px, chord.a.px, chord.b.px)));
+  FoldSearch around = search_around(chord, within_px);
+  around.depth = as_float(run.depth + kRounding * (1.0 + std::fabs(run.depth)));
+  run.places.clear();
+  for_buckets_within(run.low, run.high,
+                     [&](size_t bucket) { for_places(bucket, around, [&](std::uint32_t place) { run.places.push_back(place); }); });
+  const size_t count = run.places.size(), room = count + kFoldPadding;
+  if (run.found.size() < room) run.found.resize(2 * room);
+  const auto copy = [&](const std::vector<float>& from, std::vector<float>& to) {
+    if (to.size() < room) to.resize(2 * room);
+    for (size_t i = 0; i < count; ++i) to[i] = from[run.places[i]];
+  };
+  copy(lanes_.ax, run.lanes.ax), copy(lanes_.ay, run.lanes.ay), copy(lanes_.bx, run.lanes.bx), copy(lanes_.by, run.lanes.by);
+  copy(lanes_.margin, run.lanes.margin), copy(lanes_.depth, run.lanes.depth);
 }
 
 }  // namespace limn

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "raymarch/lines/curve_walk.h"
 #include "raymarch/lines/fold_lanes.h"
 #include "raymarch/lines/surface_curves.h"
 
@@ -66,9 +67,33 @@ class FoldIndex {
   void for_buckets_within(const glm::dvec2& low, const glm::dvec2& high, const Visit& visit) const;
   /// Calls `visit(fold)` for folds of a bucket, all of those among them that may reach what is given.
   template <class Visit>
-  void for_folds(size_t bucket, const FoldSearch& around, const Visit& visit) const;
+  void for_folds(size_t bucket, const FoldSearch& around, const Visit& visit) const {
+    for_places(bucket, around, [&](std::uint32_t place) { visit(in_[place]); });
+  }
+  /// Calls `visit(step, its ends, fold)` for the folds that may come within `within_px(step)` of each step of a curve; of steps for which
+  /// that is negative, and of those far outside the picture, none. A fold may be visited more than once. Short steps are looked up
+  /// together.
+  template <class Within, class Visit>
+  void for_folds_along(const SurfaceCurve& curve, const Within& within_px, const Visit& visit) const;
 
  private:
+  /// Steps in a row, and the folds that come near any of them.
+  struct Run {
+    struct Step {
+      size_t index = 0;
+      Ends ends{};
+      double within_px = 0.0;
+    };
+    std::vector<Step> steps{};
+    glm::dvec2 low{0.0}, high{0.0};       ///< Around the steps and what comes within reach of them.
+    double depth = 0.0;                   ///< The farthest of any.
+    std::vector<std::uint32_t> places{};  ///< In the index, of the folds.
+    FoldLanes lanes{};                    ///< Beside them, and more.
+    std::vector<std::uint32_t> found{};
+  };
+  static constexpr size_t kRunSteps = 16;
+  static constexpr double kRun_px = 0.7;  // the longer side of what is around a run
+
   static constexpr double kBucket_px = 2.0;
   static constexpr double kMargin_px = 1e-3;      // so that no rounding leaves a bucket out
   static constexpr double kBeyondFrame_px = 8.0;  // steps farther outside the picture are left out
@@ -84,6 +109,14 @@ class FoldIndex {
   /// The lowest place of a fold and its line, and its longer side.
   static glm::vec3 corner_and_length(const Fold& fold);
   void place(size_t bucket, std::vector<std::uint32_t>& scratch);
+  /// As for_folds(), by places in `in_`.
+  template <class Visit>
+  void for_places(size_t bucket, const FoldSearch& around, const Visit& visit) const;
+  bool in_reach(const Ends& step) const;
+  /// False where the run is better looked up without the step.
+  static bool add_to(Run& run, const Run::Step& step);
+  /// Finds the folds of a run.
+  void gather_near(Run& run) const;
   int cell_of(float x, size_t bucket_place) const {
     const float from = static_cast<float>(static_cast<double>(bucket_place) * kBucket_px - kBeyondFrame_px);
     return static_cast<int>(std::clamp((x - from) * static_cast<float>(kCells / kBucket_px), 0.0f, static_cast<float>(kCells - 1)));
@@ -134,13 +167,13 @@ void FoldIndex::for_buckets_within(const glm::dvec2& low, const glm::dvec2& high
 }
 
 template <class Visit>
-void FoldIndex::for_folds(size_t bucket, const FoldSearch& around, const Visit& visit) const {
+void FoldIndex::for_places(size_t bucket, const FoldSearch& around, const Visit& visit) const {
   constexpr std::uint32_t kAtOnce = 256;
   std::array<std::uint32_t, kAtOnce + kFoldPadding> found;
   const auto look = [&](std::uint32_t begin, std::uint32_t end) {
     for (; begin < end; begin += kAtOnce) {
       const size_t count = folds_in_reach(lanes_, around, begin, std::min(end, begin + kAtOnce), found.data());
-      for (size_t i = 0; i < count; ++i) visit(in_[found[i]]);
+      for (size_t i = 0; i < count; ++i) visit(found[i]);
     }
   };
   const std::uint32_t crowd = crowd_of_[bucket];
@@ -157,6 +190,34 @@ void FoldIndex::for_folds(size_t bucket, const FoldSearch& around, const Visit& 
       look(of_row[left], of_row[right + 1]);
     }
   }
+}
+
+template <class Within, class Visit>
+void FoldIndex::for_folds_along(const SurfaceCurve& curve, const Within& within_px, const Visit& visit) const {
+  Run run;
+  const auto finish = [&] {
+    if (run.steps.size() == 1) {
+      const Run::Step& step = run.steps[0];
+      const FoldSearch around = search_around(step.ends, step.within_px);
+      for_buckets(step.ends, [&](size_t bucket) { for_folds(bucket, around, [&](std::uint32_t f) { visit(step.index, step.ends, f); }); });
+    } else if (!run.steps.empty()) {
+      gather_near(run);
+      for (const Run::Step& step : run.steps) {
+        const size_t count = folds_in_reach(run.lanes, search_around(step.ends, step.within_px), 0,
+                                            static_cast<std::uint32_t>(run.places.size()), run.found.data());
+        for (size_t i = 0; i < count; ++i) visit(step.index, step.ends, in_[run.places[run.found[i]]]);
+      }
+    }
+    run.steps.clear();
+  };
+  for (size_t i = 0; i < steps_of(curve); ++i) {
+    const Run::Step step{i, ends_of(curve, i), within_px(i)};
+    if (step.within_px < 0.0 || !in_reach(step.ends)) continue;
+    if (add_to(run, step)) continue;
+    finish();
+    add_to(run, step);
+  }
+  finish();
 }
 
 }  // namespace limn

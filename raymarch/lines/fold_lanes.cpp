@@ -50,12 +50,12 @@ size_t FindInReach(const FoldLanes& folds, const FoldSearch& search, std::uint32
   const D d;
   const hn::Rebind<std::uint32_t, D> u;
   const Asked asked = asked_of(search);
+  const auto lanes = hn::Iota(u, 0);
   size_t count = 0;
   for (std::uint32_t at = begin; at < end; at += static_cast<std::uint32_t>(hn::Lanes(d))) {
     const auto reach = hn::AndNot(out_of_reach(folds, asked, at), hn::FirstN(d, end - at));
-    if (hn::AllFalse(d, reach)) continue;
     // A store that compresses on its way takes many times as long on some processors.
-    hn::StoreU(hn::Compress(hn::Iota(u, at), hn::RebindMask(u, reach)), u, found + count);
+    hn::StoreU(hn::Compress(hn::Add(lanes, hn::Set(u, at)), hn::RebindMask(u, reach)), u, found + count);
     count += hn::CountTrue(d, reach);
   }
   return count;

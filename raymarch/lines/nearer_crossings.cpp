@@ -108,32 +108,26 @@ StepSags sags_of(const std::vector<SurfaceCurve>& curves, const Camera& camera, 
 
 /// Of one curve, in order along it.
 std::vector<NearerCrossing> crossings_of(const std::vector<SurfaceCurve>& curves, size_t c, const FoldIndex& index, const Camera& camera) {
-  std::vector<NearerCrossing> result, here;
+  std::vector<NearerCrossing> result;
   const SurfaceCurve& curve = curves[c];
-  const size_t count = steps_of(curve);
-  for (size_t i = 0; i < count; ++i) {
-    const Ends step = ends_of(curve, i);
-    const FoldSearch around = search_around(step, kMargin_px);
-    here.clear();
-    const auto look = [&](std::uint32_t f) {
-      const Fold& fold = index.folds()[f];
-      if (fold.curve == c && neighbours(curve, fold.index, i)) return;
-      const std::optional<Meeting> meeting = meet(step, fold.ends, std::max(curve.nearer_px, fold.nearer_px), camera);
-      if (!meeting) return;
-      here.push_back({static_cast<double>(i) + meeting->t, meeting->onto_left ? fold.more_on_left : -fold.more_on_left, fold.curve,
-                      static_cast<double>(fold.index) + meeting->u});
-    };
-    index.for_buckets(step, [&](size_t bucket) { index.for_folds(bucket, around, look); });
-    // A step that lies in several buckets meets another in each of them.
-    std::sort(here.begin(), here.end(), [](const NearerCrossing& a, const NearerCrossing& b) {
-      return std::tie(a.at, a.curve, a.on_nearer) < std::tie(b.at, b.curve, b.on_nearer);
-    });
-    const auto same = [](const NearerCrossing& a, const NearerCrossing& b) {
-      return a.at == b.at && a.curve == b.curve && a.on_nearer == b.on_nearer;
-    };
-    here.erase(std::unique(here.begin(), here.end(), same), here.end());
-    result.insert(result.end(), here.begin(), here.end());
-  }
+  index.for_folds_along(
+      curve, [](size_t) { return kMargin_px; },
+      [&](size_t i, const Ends& step, std::uint32_t f) {
+        const Fold& fold = index.folds()[f];
+        if (fold.curve == c && neighbours(curve, fold.index, i)) return;
+        const std::optional<Meeting> meeting = meet(step, fold.ends, std::max(curve.nearer_px, fold.nearer_px), camera);
+        if (!meeting) return;
+        result.push_back({static_cast<double>(i) + meeting->t, meeting->onto_left ? fold.more_on_left : -fold.more_on_left, fold.curve,
+                          static_cast<double>(fold.index) + meeting->u});
+      });
+  std::sort(result.begin(), result.end(), [](const NearerCrossing& a, const NearerCrossing& b) {
+    return std::tie(a.at, a.curve, a.on_nearer) < std::tie(b.at, b.curve, b.on_nearer);
+  });
+  // A step that lies in several buckets meets another in each of them.
+  const auto same = [](const NearerCrossing& a, const NearerCrossing& b) {
+    return a.at == b.at && a.curve == b.curve && a.on_nearer == b.on_nearer;
+  };
+  result.erase(std::unique(result.begin(), result.end(), same), result.end());
   return result;
 }
 
@@ -194,23 +188,20 @@ StepMarks unclear_steps(const std::vector<SurfaceCurve>& curves, const Camera& c
   parallel_for(size_t{0}, curves.size(), [&](size_t c) {
     const SurfaceCurve& curve = curves[c];
     unclear[c].assign(asked[c].size(), 0);
-    for (size_t i = 0; i < asked[c].size(); ++i) {
-      if (asked[c][i] == 0) continue;
-      const Ends step = ends_of(curve, i);
-      const double own_px = sags[c][i];
-      const auto look = [&](std::uint32_t f) {
-        const Fold& fold = index.folds()[f];
-        if (fold.curve == c && neighbours(curve, fold.index, i)) return;
-        const double sag_px = own_px + fold.sag_px;
-        if (!is_unclear(step, fold.ends, sag_px) || !may_touch(step, fold.ends, greatest_sag_px(curve, curves[fold.curve]))) return;
-        if (!is_in_front(fold.ends, step, std::max(curve.nearer_px, fold.nearer_px), camera)) return;
-        unclear[c][i] = 1;
-        // Lines of curvature may be asked for or not; the others stay as they are.
-        if (!is_of_curvature(curve.samples[i].line_class)) nearer[c].push_back(f);
-      };
-      const FoldSearch around = search_around(step, own_px + kLeastSag_px);
-      index.for_buckets(step, [&](size_t bucket) { index.for_folds(bucket, around, look); });
-    }
+    const std::vector<double>& own_px = sags[c];
+    if (own_px.empty()) return;
+    index.for_folds_along(
+        curve, [&](size_t i) { return own_px[i] < 0.0 ? -1.0 : own_px[i] + kLeastSag_px; },
+        [&](size_t i, const Ends& step, std::uint32_t f) {
+          const Fold& fold = index.folds()[f];
+          if (fold.curve == c && neighbours(curve, fold.index, i)) return;
+          const double sag_px = own_px[i] + fold.sag_px;
+          if (!is_unclear(step, fold.ends, sag_px) || !may_touch(step, fold.ends, greatest_sag_px(curve, curves[fold.curve]))) return;
+          if (!is_in_front(fold.ends, step, std::max(curve.nearer_px, fold.nearer_px), camera)) return;
+          unclear[c][i] = 1;
+          // Lines of curvature may be asked for or not; the others stay as they are.
+          if (!is_of_curvature(curve.samples[i].line_class)) nearer[c].push_back(f);
+        });
   });
   for (const auto& folds : nearer) {
     for (const std::uint32_t f : folds) unclear[index.folds()[f].curve][index.folds()[f].index] = 1;

@@ -120,6 +120,74 @@ TEST(FoldIndex, FindsAllFoldsOfABucketThatAStepMayMeet) {
   }
 }
 
+/// Winding lines of tiny to long steps, from a few places, some of which leave the frame.
+std::vector<SurfaceCurve> random_lines(std::mt19937& random) {
+  std::vector<SurfaceCurve> lines;
+  std::normal_distribution<double> normal;
+  for (const double length_px : {0.01, 0.05, 0.15, 0.5, 3.0}) {
+    for (int i = 0; i < 12; ++i) {
+      SurfaceCurve line;
+      const glm::dvec2 about = i % 3 == 0 ? glm::dvec2(39.5, 12.0) : i % 3 == 1 ? glm::dvec2(12.0, 12.1) : glm::dvec2(-7.9, 15.0);
+      CurveSample sample;
+      sample.px = about + 0.3 * glm::dvec2(normal(random), normal(random));
+      sample.more_on_left = 2;
+      double heading = 6.0 * normal(random), depth = 2.0 + 0.3 * normal(random);
+      for (int k = 0; k < 60; ++k) {
+        sample.depth = depth = std::max(0.1, depth + 0.02 * normal(random));
+        line.samples.push_back(sample);
+        heading += 0.2 * normal(random);
+        sample.px += length_px * glm::dvec2(std::cos(heading), std::sin(heading));
+      }
+      line.closed = i % 2 == 0;
+      lines.push_back(std::move(line));
+    }
+  }
+  return lines;
+}
+
+TEST(FoldIndex, FindsAllFoldsAlongALine) {
+  std::mt19937 random(random_seed());
+  Camera camera;
+  camera.width_px = kWidth_px;
+  camera.height_px = kHeight_px;
+  const std::vector<SurfaceCurve> lines = random_lines(random);
+  const FoldIndex index(lines, camera, nullptr);
+  std::vector<std::set<size_t>> buckets(index.folds().size());
+  for (size_t f = 0; f < buckets.size(); ++f) index.for_buckets(index.folds()[f].ends, [&](size_t bucket) { buckets[f].insert(bucket); });
+  size_t met = 0, visited = 0, plausible = 0, asked = 0;
+  for (const SurfaceCurve& line : lines) {
+    std::vector<double> within_px(steps_of(line));
+    for (double& within : within_px) within = random() % 8 == 0 ? -1.0 : random() % 2 == 0 ? 1e-3 : 0.04;
+    std::vector<std::set<std::uint32_t>> found(within_px.size());
+    index.for_folds_along(
+        line, [&](size_t i) { return within_px[i]; },
+        [&](size_t i, const Ends& step, std::uint32_t f) {
+          EXPECT_EQ(step.a.px, ends_of(line, i).a.px);
+          EXPECT_EQ(step.b.depth, ends_of(line, i).b.depth);
+          found[i].insert(f);
+        });
+    for (size_t i = 0; i < found.size(); ++i) {
+      const Ends step = ends_of(line, i);
+      EXPECT_TRUE(within_px[i] >= 0.0 || found[i].empty());
+      if (within_px[i] < 0.0) continue;
+      asked += 1;
+      visited += found[i].size();
+      for (std::uint32_t f = 0; f < index.folds().size(); ++f) {
+        const Ends& fold = index.folds()[f].ends;
+        const bool before = std::min(fold.a.depth, fold.b.depth) <= std::max(step.a.depth, step.b.depth);
+        plausible += before && boxes_meet(step, fold, within_px[i] + 0.01) && !lies_beside(step, fold, within_px[i] + 0.01);
+        bool shared = false;
+        if (!before || distance_between(step, fold) > within_px[i]) continue;
+        index.for_buckets(step, [&](size_t bucket) { shared = shared || buckets[f].count(bucket) > 0; });
+        met += shared;
+        EXPECT_TRUE(!shared || found[i].count(f) > 0) << "step " << i << ", fold " << f;
+      }
+    }
+  }
+  EXPECT_GT(met, 2 * asked);
+  EXPECT_LE(visited, plausible);
+}
+
 TEST(FoldIndex, EverySimdTargetFindsTheSame) {
   std::mt19937 random(random_seed());
   Camera camera;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "raymarch/analytic/clip_ray.h"
 #include "raymarch/truth/locate.h"
@@ -10,10 +11,9 @@
 namespace limn {
 namespace {
 
-constexpr double kStep = 0.25;  // of a voxel: how far rays look ahead near the surface
+constexpr double kStep = 0.25;  // of a voxel: how far rays look ahead in cells that may hold the surface
 // Of a voxel: rays start from the curves' own points, beside other lines that may lie within a hundredth of a pixel.
 constexpr double kLift = 1e-5;
-constexpr double kFar = 1.25;       // voxels: from there on rays step no farther than to what is left, but for a voxel
 constexpr int kHalvings = 12;       // of a step, to a root
 constexpr double kShortest = 1e-4;  // of a voxel: sheets closer together are none
 constexpr double kGrazed = 0.5;     // voxels: of a ray that goes in and out within so much the way is no longer across a sheet
@@ -33,7 +33,7 @@ struct Change {
 /// The level set along a ray.
 struct RaySample {
   double t = 0.0, f = 0.0;
-  double slope = 0.0;  ///< 0 where it is not known, so far from the surface that both of its neighbours lie on the same side.
+  double slope = 0.0;
   bool inside() const { return f < 0.0; }
 };
 
@@ -42,15 +42,10 @@ struct RaySample {
 class RootFinder {
  public:
   RootFinder(FieldEvaluator& evaluator, const Ray& ray, double voxel, std::vector<Change>& changes)
-      : evaluator_(evaluator), ray_(ray), shortest_(kShortest * voxel), far_(kFar * voxel), changes_(changes) {}
+      : evaluator_(evaluator), ray_(ray), shortest_(kShortest * voxel), changes_(changes) {}
 
-  /// `long_step`: led there, so that the slope is likely not needed.
-  RaySample at(double t, bool long_step) {
+  RaySample at(double t) {
     const glm::dvec3 p = ray_.at(t);
-    if (long_step) {
-      const RaySample far{t, evaluator_.value(p)};
-      if (std::fabs(far.f) > far_) return far;
-    }
     RaySample sample{t};
     glm::dvec3 gradient(0.0);
     evaluator_.gradients(std::span(&p, 1), std::span(&sample.f, 1), std::span(&gradient, 1));
@@ -74,7 +69,7 @@ class RootFinder {
       if (fa - down * x > 0.0) return;
     }
     const double turn = a.slope - b.slope != 0.0 ? a.slope / (a.slope - b.slope) : 0.5;
-    const RaySample middle = at(a.t + std::clamp(turn, 0.1, 0.9) * length, false);
+    const RaySample middle = at(a.t + std::clamp(turn, 0.1, 0.9) * length);
     find(a, middle);
     find(middle, b);
   }
@@ -91,7 +86,7 @@ class RootFinder {
 
   FieldEvaluator& evaluator_;
   const Ray& ray_;
-  double shortest_, far_;
+  double shortest_;
   std::vector<Change>& changes_;
 };
 
@@ -99,14 +94,21 @@ class RootFinder {
 void add_changes(FieldEvaluator& evaluator, const PlacedLevelSet& placed, const Ray& ray, std::vector<Change>& changes) {
   double t = 0.0, t_end = ray.end;
   if (!clip_ray(placed.box, ray.origin, ray.direction, t, t_end)) return;
+  std::vector<RayStretch> stretches;
+  placed.mask.find_stretches({placed.index_from_solver.point(ray.origin), placed.index_from_solver.linear * ray.direction}, t, t_end,
+                             stretches);
   RootFinder roots(evaluator, ray, placed.voxel, changes);
-  RaySample here = roots.at(t, true);
+  RaySample here = roots.at(t);
   if (here.inside()) changes.push_back({0.0, 1});
-  while (here.t < t_end) {
-    const double step = std::max(kStep * placed.voxel, std::fabs(here.f) - placed.voxel);
-    const RaySample next = roots.at(std::min(t_end, here.t + step), step > kStep * placed.voxel);
-    roots.find(here, next);
-    here = next;
+  for (const RayStretch& stretch : stretches) {
+    // Between two of them nothing changes, but for what rounding leaves of a corner.
+    const RaySample before = std::exchange(here, roots.at(stretch.begin));
+    if (before.inside() != here.inside()) roots.find(before, here);
+    while (here.t < stretch.end) {
+      const RaySample next = roots.at(std::min(stretch.end, here.t + kStep * placed.voxel));
+      roots.find(here, next);
+      here = next;
+    }
   }
 }
 

@@ -13,8 +13,8 @@ class LevelSetLayers {
   LevelSetLayers(std::vector<SharedLevelSet> level_sets, std::vector<std::vector<size_t>> bodies, const Camera& camera)
       : level_sets_(std::move(level_sets)), bodies_(std::move(bodies)), camera_(camera) {}
 
-  /// Between the sample, lifted off, and the eye (or the plane Z = 0): sign changes along the ray, a quarter of a voxel at a time near the
-  /// surface and as far as the distance says elsewhere.
+  /// Between the sample, lifted off, and the eye (or the plane Z = 0): sign changes along the ray, a quarter of a voxel at a time in cells
+  /// that the surface may go through.
   LayersSeen before(const CurveSample& sample) const;
   /// Points on contours that its ray goes close by: beside each two sign changes of it that lie closer together than half a voxel.
   std::vector<glm::dvec3> contours_before(const CurveSample& sample) const;

@@ -52,8 +52,7 @@ CellCurves joined(const std::vector<Part>& parts, const CurvesOf& curves_of) {
 std::vector<SurfaceCell> without_clear(const PlacedLevelSet& placed, std::vector<SurfaceCell> cells, const Camera& eye) {
   if (!placed.bounds) return cells;
   const bool perspective = eye.projection == Projection::perspective;
-  const Affine index_from_solver = inverse(placed.solver_from_index);
-  const glm::dvec3 at = perspective ? index_from_solver.point(eye.eye) : index_from_solver.linear * eye.world_from_camera[2];
+  const glm::dvec3 at = perspective ? placed.index_from_solver.point(eye.eye) : placed.index_from_solver.linear * eye.world_from_camera[2];
   return placed.bounds->that_may_hold_contours(cells, at, perspective ? 1.0 : 0.0);
 }
 

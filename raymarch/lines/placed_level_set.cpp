@@ -46,10 +46,12 @@ SharedLevelSet place_level_set(const LineTask& task, size_t object) {
   PlacedLevelSet placed{field_from_leaf(leaf, false), solver_from_world};
   placed.bounds = made.cells;
   placed.solver_from_index = compose(solver_from_world, level_set.info().world_from_index);
+  placed.index_from_solver = inverse(placed.solver_from_index);
   const glm::dmat3& axes = placed.solver_from_index.linear;
   placed.voxel = std::max({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
   placed.box = dilate(transform(solver_from_world, level_set.info().bounds), 2.0 * placed.voxel);
   placed.cells = surface_cells(made.completed);
+  placed.mask = SurfaceCellMask(placed.cells);
   const glm::dmat3 turn = glm::transpose(inverse(solver_from_world).linear);
   parallel_parts(placed.cells.size(), size_t{4096}, [&](const IndexRange<size_t>& range) {
     for (size_t i = range.begin(); i < range.end(); ++i) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "raymarch/lines/surface_cell_mask.h"
 #include "raymarch/lines/surface_curves.h"
 #include "sdf/level_set_reconstruction.h"
 
@@ -11,10 +12,11 @@ namespace limn {
 struct PlacedLevelSet {
   Field field;
   Affine solver_from_world{};  ///< From where the level set itself stands.
-  Affine solver_from_index{};
+  Affine solver_from_index{}, index_from_solver{};
   double voxel = 1.0;                   ///< The widest side of a cell.
   Box box{};                            ///< About the surface, two voxels wider.
   std::vector<SurfaceCell> cells{};     ///< With normals of solver space.
+  SurfaceCellMask mask{};               ///< The same cells.
   std::optional<SplineCells> bounds{};  ///< Of cells; without them any may hold a contour.
 };
 using SharedLevelSet = std::shared_ptr<const PlacedLevelSet>;

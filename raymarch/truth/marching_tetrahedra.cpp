@@ -48,6 +48,7 @@ class Marcher {
     output_ = &output;
     level_ = level;
     faces_.clear();
+    if (!turns()) return false;
     bool any = false;
     for (const auto& corners : kTetrahedra) any = march_tetrahedron(corners) || any;
     return any;
@@ -87,6 +88,19 @@ class Marcher {
 
   bool in(int corner) const { return inside_[static_cast<size_t>(corner)]; }
 
+  /// Of the places where the surface meets the cell's edges, those of the tetrahedra, some lie above the level and some below.
+  bool turns() {
+    bool any_above = false, any_below = false;
+    for (int low = 0; low < 8; ++low) {
+      for (int high = low + 1; high < 8; ++high) {
+        if ((low & high) != low || in(low) == in(high)) continue;
+        (above(edge(low, high)) ? any_above : any_below) = true;
+        if (any_above && any_below) return true;
+      }
+    }
+    return false;
+  }
+
   /// All at once that no other cell has found; what is left edge() finds.
   void find_edges(const SplineCellReader& spline) {
     std::array<CellEdge, kEdges> edges{};
@@ -94,8 +108,11 @@ class Marcher {
     size_t count = 0;
     for (int low = 0; low < 8; ++low) {
       for (int high = low + 1; high < 8; ++high) {
-        if ((low & high) != low || in(low) == in(high) || samples_->edges.find(edge_key(low, high)) != nullptr) continue;
-        edges[count++] = {static_cast<std::uint8_t>(low), static_cast<std::uint8_t>(high)};
+        if ((low & high) != low || in(low) == in(high)) continue;
+        if (const EdgeSample* const known = samples_->edges.find(edge_key(low, high)))
+          keep_edge(low, high, *known);
+        else
+          edges[count++] = {static_cast<std::uint8_t>(low), static_cast<std::uint8_t>(high)};
       }
     }
     spline.find_on_edges(std::span(edges).first(count), kSeedOff, std::span(points).first(count));
@@ -103,14 +120,21 @@ class Marcher {
       if (!points[k].found) continue;
       const glm::dvec3 &start = points_[edges[k].from], &end = points_[edges[k].to];
       bool added = false;
-      samples_->edges.at(edge_key(edges[k].from, edges[k].to), added) = {start + points[k].share * (end - start), points[k].gradient};
+      EdgeSample& sample = samples_->edges.at(edge_key(edges[k].from, edges[k].to), added);
+      sample = {start + points[k].share * (end - start), points[k].gradient};
+      keep_edge(edges[k].from, edges[k].to, sample);
     }
+  }
+  std::uint8_t& place_of_edge(int low, int high) { return edges_[static_cast<size_t>(8 * low + high)]; }
+  void keep_edge(int low, int high, const EdgeSample& sample) {
+    found_[edges_found_] = {sample.p, sample.gradient, facing_of(viewer_, sample.p, sample.gradient)};
+    place_of_edge(low, high) = static_cast<std::uint8_t>(++edges_found_);
   }
 
   /// The surface on the edge between two corners on different sides, always found from the lower corner.
   const SurfaceSample& edge(int a, int b) {
     const auto low = static_cast<size_t>(std::min(a, b)), high = static_cast<size_t>(std::max(a, b));
-    std::uint8_t& place = edges_[8 * low + high];
+    std::uint8_t& place = place_of_edge(static_cast<int>(low), static_cast<int>(high));
     if (place != 0) return found_[place - size_t{1}];
     place = static_cast<std::uint8_t>(++edges_found_);
     SurfaceSample& sample = found_[place - size_t{1}];

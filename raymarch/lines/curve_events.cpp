@@ -9,6 +9,7 @@
 #include "raymarch/lines/curvature_jumps.h"
 #include "raymarch/lines/curve_walk.h"
 #include "raymarch/lines/frame_crossings.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -29,8 +30,14 @@ constexpr double kTangency_px = 3.0;  // along one curve, from a cusp
 
 class EventFinder {
  public:
-  EventFinder(const std::vector<SurfaceCurve>& curves, std::uint32_t number, const Camera& camera, double extent)
-      : curves_(curves), curve_(curves[number]), number_(number), camera_(camera), extent_(extent), walk_(curve_, camera) {}
+  EventFinder(const EventSearch& search, std::uint32_t number, const CurveWalk& walk)
+      : curves_(search.curves),
+        have_ends_(search.have_ends),
+        curve_(search.curves[number]),
+        number_(number),
+        camera_(search.camera),
+        extent_(search.extent),
+        walk_(walk) {}
 
   std::vector<CurveEvent> run(const std::vector<NearerCrossing>& crossings) {
     if (curve_.smooth) find_sign_changes();
@@ -235,7 +242,7 @@ class EventFinder {
     const int way = ahead_along ? -1 : 1;
     const std::vector<glm::dvec2> along = walk_.px_from(goes_along.at, length, -way), leaving = walk_.px_from(leaves.at, length, way);
     size_t common = 1;
-    while (common < leaving.size() && lies_along({leaving[common]}, along, arms_apart_px())) ++common;
+    while (common < leaving.size() && lies_along(leaving[common], along, arms_apart_px())) ++common;
     double half_px = 0.0;
     for (size_t i = 1; i < common; ++i) half_px += 0.5 * glm::distance(leaving[i - 1], leaving[i]);
     if (half_px > kMostShared_px) return {};
@@ -340,10 +347,14 @@ class EventFinder {
     if (one.curve == number_ &&
         ((from < other.at && one.at < to) || walk_.length_to(other.at) - walk_.length_to(one.at) > kLongestOwnLens_px))
       return false;
-    const std::vector<glm::dvec2> own_px = px_between_crossings(curve_, one.at, other.at),
-                                  nearer_px = px_between_crossings(nearer, from, to);
     double apart_px = curve_.smooth && nearer.smooth ? kSmoothLens_px : apart_from(nearer);
     if (curve_.between && nearer.between) apart_px = kExactLens_px;
+    const std::vector<glm::dvec2> nearer_px = px_between_crossings(nearer, from, to);
+    // Most are told by the first sample in between.
+    if (const double inner = std::floor(one.at) + 1.0;
+        inner < other.at && !lies_along(walk_.at(static_cast<size_t>(inner)).px, nearer_px, apart_px))
+      return false;
+    const std::vector<glm::dvec2> own_px = px_between_crossings(curve_, one.at, other.at);
     // Of long steps the samples of one curve alone say nothing.
     return lies_along(own_px, nearer_px, apart_px) && (!long_steps(nearer) || lies_along(nearer_px, own_px, apart_px));
   }
@@ -357,6 +368,7 @@ class EventFinder {
       const auto touches = [&](double one, double other) { return is_tip_of_cusp(one, other) || is_spike(one, other); };
       return closes_undone(crossing) || touches(from, to) || (curve_.closed && touches(to, from + static_cast<double>(walk_.size())));
     }
+    if (have_ends_[number_] == 0 || have_ends_[crossing.curve] == 0) return false;
     const SurfaceCurve& other = curves_[crossing.curve];
     const double longest_px = std::min(curve_.tangency_px, other.tangency_px);
     for (const Stretch& own : to_ends(curve_, crossing.at, longest_px, camera_)) {
@@ -464,11 +476,12 @@ class EventFinder {
   bool long_steps(const SurfaceCurve& other) const { return curve_.long_steps || other.long_steps; }
 
   const std::vector<SurfaceCurve>& curves_;
+  const std::vector<char>& have_ends_;
   const SurfaceCurve& curve_;
   std::uint32_t number_;
   const Camera& camera_;
   double extent_;
-  CurveWalk walk_;
+  const CurveWalk& walk_;
   std::vector<CurveEvent> events_{};
   std::vector<SignChange> changes_{}, apart_{}, undone_{};
   std::vector<OwnCrossing> own_crossings_{};        ///< Those undone among them.
@@ -477,9 +490,17 @@ class EventFinder {
 
 }  // namespace
 
-std::vector<CurveEvent> events_of(const std::vector<SurfaceCurve>& curves, std::uint32_t number, const Camera& camera, double extent,
+EventSearch::EventSearch(const std::vector<SurfaceCurve>& all, const Camera& eye, double scene_extent)
+    : curves(all), camera(eye), extent(scene_extent), have_ends(all.size()) {
+  parallel_for(size_t{0}, curves.size(), [&](size_t c) {
+    const SurfaceCurve& curve = curves[c];
+    have_ends[c] = !curve.closed || std::any_of(curve.samples.begin(), curve.samples.end(), [](const CurveSample& s) { return s.joint; });
+  });
+}
+
+std::vector<CurveEvent> events_of(const EventSearch& search, std::uint32_t number, const CurveWalk& walk,
                                   const std::vector<NearerCrossing>& crossings) {
-  return EventFinder(curves, number, camera, extent).run(crossings);
+  return EventFinder(search, number, walk).run(crossings);
 }
 
 }  // namespace limn

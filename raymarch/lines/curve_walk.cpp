@@ -10,7 +10,7 @@
 namespace limn {
 namespace {
 
-constexpr double kParabolasApart_px = 0.01, kAlikeParabolas_px = 0.001;
+constexpr double kParabolasApart_px = 0.01, kAlikeParabolas_px = 0.002;
 constexpr double kCorner = 0.9;  // a cosine
 
 /// Four samples of a curve, the second and third of them the ends of a step, and their places over their chords' lengths.
@@ -26,8 +26,9 @@ std::optional<FourSamples> around_step(const Curve& curve, size_t i) {
   const size_t n = curve.samples.size();
   const bool inner = curve.closed ? n >= 4 : i >= 1 && i + 2 < n;
   if (curve.straight || !inner) return {};
-  FourSamples four{{curve.samples[(i + n - 1) % n].p, curve.samples[i % n].p, curve.samples[(i + 1) % n].p, curve.samples[(i + 2) % n].p},
-                   {}};
+  // A division takes longer than the rest.
+  const auto at = [&](size_t k) -> decltype(curve.samples[0]) { return curve.samples[k < n ? k : k % n]; };
+  FourSamples four{{at(i > 0 ? i - 1 : n - 1).p, at(i).p, at(i + 1).p, at(i + 2).p}, {}};
   const double h = glm::distance(four.p[1], four.p[2]), back = glm::distance(four.p[0], four.p[1]),
                ahead = glm::distance(four.p[2], four.p[3]);
   if (!(h > 0.0) || back < 0.05 * h || ahead < 0.05 * h || back > 20.0 * h || ahead > 20.0 * h) return {};
@@ -35,7 +36,7 @@ std::optional<FourSamples> around_step(const Curve& curve, size_t i) {
   const double turn_back = glm::dot(four.p[1] - four.p[0], way) / back, turn_ahead = glm::dot(four.p[3] - four.p[2], way) / ahead;
   four.least_turn = std::min(turn_back, turn_ahead);
   // Where three of them turn as at a corner the curve may have one: a contour where the surface's curvature jumps.
-  const auto jumps = [&](size_t j) { return curve.samples[j % n].radial_curvature * curve.samples[(j + 1) % n].radial_curvature < 0.0; };
+  const auto jumps = [&](size_t j) { return at(j).radial_curvature * at(j + 1).radial_curvature < 0.0; };
   if (turn_back < kCorner && (!curve.smooth || jumps(i + n - 1))) return {};
   if (turn_ahead < kCorner && (!curve.smooth || jumps(i + 1))) return {};
   four.s = {-back, 0.0, h, h + ahead};
@@ -106,7 +107,7 @@ size_t steps_of(const SurfaceCurve& curve) { return curve.closed ? curve.samples
 
 double sag_px(const SurfaceCurve& curve, size_t step, const Camera& camera) {
   if (curve.straight) return 0.0;
-  const CurveSample &a = curve.samples[step], &b = curve.samples[(step + 1) % curve.samples.size()];
+  const CurveSample &a = curve.samples[step], &b = curve.samples[step + 1 < curve.samples.size() ? step + 1 : 0];
   if (!(a.depth > 0.0 && b.depth > 0.0) || (a.radial_curvature > 0.0) != (b.radial_curvature > 0.0)) return 0.0;
   const auto known = known_middle(curve, step, camera);
   if (!known) return 0.0;
@@ -157,12 +158,16 @@ glm::dvec2 chord_px(const SurfaceCurve& curve, double place, const Camera& camer
   return glm::dvec2(project(camera, glm::mix(curve.samples[i % n].p, curve.samples[(i + 1) % n].p, t)));
 }
 
+bool lies_along(const glm::dvec2& px, const std::vector<glm::dvec2>& line, double apart_px) {
+  if (glm::distance(px, line[0]) < apart_px) return true;
+  for (size_t i = 0; i + 1 < line.size(); ++i) {
+    if (distance_to_segment(px, line[i], line[i + 1]) < apart_px) return true;
+  }
+  return false;
+}
+
 bool lies_along(const std::vector<glm::dvec2>& px, const std::vector<glm::dvec2>& line, double apart_px) {
-  return std::all_of(px.begin(), px.end(), [&](const glm::dvec2& p) {
-    double least = glm::distance(p, line[0]);
-    for (size_t i = 0; i + 1 < line.size(); ++i) least = std::min(least, distance_to_segment(p, line[i], line[i + 1]));
-    return least < apart_px;
-  });
+  return std::all_of(px.begin(), px.end(), [&](const glm::dvec2& p) { return lies_along(p, line, apart_px); });
 }
 
 CurveWalk::CurveWalk(const SurfaceCurve& curve, const Camera& camera) : curve_(curve), camera_(camera) {

@@ -34,7 +34,8 @@ std::vector<glm::dvec2> px_between(const SurfaceCurve& curve, double from, doubl
 std::vector<glm::dvec2> px_between(const SurfaceCurve& curve, const glm::dvec2& from_px, double from, double to, const glm::dvec2& to_px);
 /// The image of a place on a step's chord, where crossings are found.
 glm::dvec2 chord_px(const SurfaceCurve& curve, double place, const Camera& camera);
-/// Every point is within `apart_px` of a polyline.
+/// The point, or every point, is within `apart_px` of a polyline.
+bool lies_along(const glm::dvec2& px, const std::vector<glm::dvec2>& line, double apart_px);
 bool lies_along(const std::vector<glm::dvec2>& px, const std::vector<glm::dvec2>& line, double apart_px);
 
 /// Lengths along one curve. Keeps a reference to it.
@@ -43,7 +44,7 @@ class CurveWalk {
   CurveWalk(const SurfaceCurve& curve, const Camera& camera);
 
   size_t size() const { return curve_.samples.size(); }
-  const CurveSample& at(size_t i) const { return curve_.samples[i % size()]; }
+  const CurveSample& at(size_t i) const { return curve_.samples[i < size() ? i : i % size()]; }
   double length_px() const { return lengths_.back(); }
   /// Image length from the curve's first point to a place, which may lie beyond the last.
   double length_to(double place) const;

@@ -29,13 +29,14 @@ constexpr double kNearEnd_px = 0.3;  // pieces in which no ray starts farther fr
 /// One curve being cut.
 class Cutter {
  public:
-  Cutter(const SurfaceCurve& curve, std::uint32_t number, const Camera& camera, const NearerFolds& folds, const LayersBefore& layers_before)
+  Cutter(const SurfaceCurve& curve, std::uint32_t number, const CurveWalk& walk, const Camera& camera, const NearerFolds& folds,
+         const LayersBefore& layers_before)
       : curve_(curve),
         number_(number),
         camera_(camera),
         folds_(folds),
         layers_before_(layers_before),
-        walk_(curve, camera),
+        walk_(walk),
         clear_px_(kClear_px * (curve.straight ? kExactShare : 1.0)),
         least_clear_px_(kLeastClear_px * (curve.straight ? kExactShare : 1.0)) {}
 
@@ -404,7 +405,7 @@ class Cutter {
   const Camera& camera_;
   const NearerFolds& folds_;
   const LayersBefore& layers_before_;
-  CurveWalk walk_;
+  const CurveWalk& walk_;
   double clear_px_, least_clear_px_;
   CutCurve cut_;
   std::vector<CurveEvent> missed_{};  ///< Found by the last search.
@@ -417,6 +418,7 @@ CutCurves cut_by_invisibility(const std::vector<SurfaceCurve>& curves, const Cam
                               const LayersBefore& layers_before, const ExecutionSettings& execution) {
   const NearerFolds folds(curves, camera);
   const auto crossings = folds.crossings();
+  const EventSearch search(curves, camera, extent);
   CutCurves result;
   result.curves.resize(curves.size());
   std::vector<std::vector<LineConflict>> conflicts(curves.size());
@@ -425,8 +427,9 @@ CutCurves cut_by_invisibility(const std::vector<SurfaceCurve>& curves, const Cam
   parallel_for(size_t{0}, curves.size(), [&](size_t c) {
     if (execution.cancelled && execution.cancelled()) throw Cancelled{};
     const auto number = static_cast<std::uint32_t>(c);
-    Cutter cutter(curves[c], number, camera, folds, layers_before);
-    result.curves[c] = cutter.run(events_of(curves, number, camera, extent, crossings[c]));
+    const CurveWalk walk(curves[c], camera);
+    Cutter cutter(curves[c], number, walk, camera, folds, layers_before);
+    result.curves[c] = cutter.run(events_of(search, number, walk, crossings[c]));
     conflicts[c] = std::move(cutter.conflicts);
     grazing[c] = std::move(cutter.grazing);
     rays += cutter.rays;

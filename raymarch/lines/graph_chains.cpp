@@ -85,6 +85,7 @@ std::vector<int> partners_of(const ViewGraph& graph) {
 
 void add_chains(ViewGraph& graph) {
   const std::vector<int> partner = partners_of(graph);
+  graph.chains.reserve(graph.edges.size());
   std::vector<bool> taken(graph.edges.size(), false);
   const auto walk = [&](int start) {  // from an edge's end: in at it, out at the other
     const LineEdge& first = graph.edges[static_cast<size_t>(start / 2)];

@@ -151,11 +151,27 @@ struct EventPlace {
   int vertex = -1;
 };
 
+/// A piece as it is drawn.
+struct DrawnPiece {
+  bool wanted = false;
+  bool turned = false;  ///< Against the order of the curve.
+  LineClass line_class = LineClass::contour;
+  int object = 1;
+  std::vector<LinePoint> points{};
+};
 /// What takes the curves' own points, from many threads.
 struct CurveParts {
   std::vector<EventPlace> events{};
-  std::vector<std::vector<LinePoint>> pieces{};
+  std::vector<DrawnPiece> pieces{};
 };
+DrawnPiece drawn_piece(const SurfaceCurve& curve, const CurvePiece& piece, const std::vector<CurveSample>& at_events,
+                       const LineTask& task) {
+  const CurveSample& step = curve.samples[static_cast<size_t>(piece.from) % curve.samples.size()];
+  if (!task.wants(step.line_class)) return {};
+  DrawnPiece drawn{true, step.more_on_left < 0, step.line_class, step.object, points_of_piece(curve, piece, at_events, task)};
+  if (drawn.turned) std::reverse(drawn.points.begin(), drawn.points.end());
+  return drawn;
+}
 CurveParts parts_of(const SurfaceCurve& curve, const CutCurve& cut, const LineTask& task) {
   CurveParts parts;
   std::vector<CurveSample> samples;
@@ -166,7 +182,7 @@ CurveParts parts_of(const SurfaceCurve& curve, const CutCurve& cut, const LineTa
     const CurveSample& sample = samples.emplace_back(sample_at(curve, std::min(event.at, last_place(curve)), task.camera));
     parts.events.push_back({sample.p, sample.px, sample.depth});
   }
-  for (const CurvePiece& piece : cut.pieces) parts.pieces.push_back(points_of_piece(curve, piece, samples, task));
+  for (const CurvePiece& piece : cut.pieces) parts.pieces.push_back(drawn_piece(curve, piece, samples, task));
   return parts;
 }
 
@@ -209,19 +225,14 @@ struct Builder {
     return here.vertex;
   }
   /// The new edge's index; -1 where its class is not wanted.
-  int add_edge(const CurvePiece& piece, std::vector<LinePoint> points) {
-    const SurfaceCurve& curve = curves[piece.curve];
-    const CurveSample& step = curve.samples[static_cast<size_t>(piece.from) % curve.samples.size()];
-    if (!task.wants(step.line_class)) return -1;
-    LineEdge edge{
-        step.line_class, step.object, piece.invisibility, piece.certain, !curve.smooth, static_cast<int>(piece.curve), -1, -1, {}};
+  int add_edge(const CurvePiece& piece, DrawnPiece drawn) {
+    if (!drawn.wanted) return -1;
+    const bool sharp = !curves[piece.curve].smooth;
+    LineEdge edge{drawn.line_class,       drawn.object, piece.invisibility, piece.certain, sharp, static_cast<int>(piece.curve), -1, -1,
+                  std::move(drawn.points)};
     if (piece.begin >= 0) edge.begin = vertex(piece.curve, piece.begin);
     if (piece.end >= 0) edge.end = vertex(piece.curve, piece.end);
-    edge.points = std::move(points);
-    if (step.more_on_left < 0) {
-      std::reverse(edge.points.begin(), edge.points.end());
-      std::swap(edge.begin, edge.end);
-    }
+    if (drawn.turned) std::swap(edge.begin, edge.end);
     graph.edges.push_back(std::move(edge));
     return static_cast<int>(graph.edges.size()) - 1;
   }

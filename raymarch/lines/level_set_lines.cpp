@@ -27,7 +27,7 @@ constexpr double kSeamReach = 2.0;      // voxels: farther from a surface there 
 // Newton's steps onto a contour.
 constexpr int kMostSteps = 8;
 constexpr double kFlat = 1e-10;    // the square of the sine between the gradients of f and of its slope: less is rounding
-constexpr double kClose = 3e-4;    // voxels: what is left after such a step is about its square
+constexpr double kClose = 1e-3;    // voxels: what is left after such a step is about its square
 constexpr double kMostOff = 0.25;  // voxels
 
 constexpr size_t kMostKeptBytes = size_t{512} << 20;

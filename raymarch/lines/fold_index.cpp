@@ -12,7 +12,9 @@
 namespace limn {
 namespace {
 
-constexpr double kRounding = 4e-6;  // of a coordinate: many times what floats and sums of a few of them round by
+constexpr size_t kBucketsOfFold = 2;     // at most
+constexpr size_t kFoldsOfThread = 4096;  // at least
+constexpr double kRounding = 4e-6;       // of a coordinate: many times what floats and sums of a few of them round by
 
 double rounding_of(const Ends& step) {
   const glm::dvec2 most = glm::max(glm::abs(step.a.px), glm::abs(step.b.px));
@@ -39,10 +41,9 @@ FoldSearch search_around(const Ends& step, double within_px) {
 }
 
 FoldIndex::FoldIndex(const std::vector<SurfaceCurve>& curves, const Camera& camera, const StepSags* sags)
-    : size_px_(camera.width_px, camera.height_px),
-      columns_(static_cast<size_t>((camera.width_px + 2.0 * kBeyondFrame_px) / kBucket_px) + 2),
-      rows_(static_cast<size_t>((camera.height_px + 2.0 * kBeyondFrame_px) / kBucket_px) + 2) {
+    : size_px_(camera.width_px, camera.height_px) {
   gather(curves, sags);
+  choose_buckets();
   sort_into_buckets();
   crowd_of_.assign(columns_ * rows_, kNotCrowded);
   std::uint32_t crowds = 0;
@@ -82,9 +83,18 @@ void FoldIndex::gather(const std::vector<SurfaceCurve>& curves, const StepSags* 
   });
 }
 
+void FoldIndex::choose_buckets() {
+  const auto count = [&](double size_px) { return static_cast<size_t>((size_px + 2.0 * kBeyondFrame_px) / bucket_px_) + 2; };
+  for (;; bucket_px_ *= 2.0) {
+    columns_ = count(size_px_.x), rows_ = count(size_px_.y);
+    if (bucket_px_ >= kMostBucket_px || columns_ * rows_ <= kBucketsOfFold * folds_.size()) return;
+  }
+}
+
 /// Counted, then placed, in the order of their numbers: each thread takes folds in a row.
 void FoldIndex::sort_into_buckets() {
-  const size_t buckets = columns_ * rows_, parts = static_cast<size_t>(tbb::this_task_arena::max_concurrency());
+  const size_t buckets = columns_ * rows_, most = static_cast<size_t>(tbb::this_task_arena::max_concurrency()),
+               parts = std::min(most, 1 + folds_.size() / kFoldsOfThread);
   const auto for_part = [&](size_t part, const auto& visit) {
     for (size_t f = part * folds_.size() / parts; f < (part + 1) * folds_.size() / parts; ++f)
       for_buckets(folds_[f].ends, [&](size_t bucket) { visit(f, bucket); });

@@ -94,7 +94,7 @@ class FoldIndex {
   static constexpr size_t kRunSteps = 16;
   static constexpr double kRun_px = 0.7;  // the longer side of what is around a run
 
-  static constexpr double kBucket_px = 2.0;
+  static constexpr double kLeastBucket_px = 2.0, kMostBucket_px = 64.0;
   static constexpr double kMargin_px = 1e-3;      // so that no rounding leaves a bucket out
   static constexpr double kBeyondFrame_px = 8.0;  // steps farther outside the picture are left out
   static constexpr int kCells = 16;               // along a crowded bucket's side
@@ -105,6 +105,7 @@ class FoldIndex {
   static constexpr std::uint32_t kNotCrowded = 0xffffffffu;
 
   void gather(const std::vector<SurfaceCurve>& curves, const StepSags* sags);
+  void choose_buckets();
   void sort_into_buckets();
   /// The lowest place of a fold and its line, and its longer side.
   static glm::vec3 corner_and_length(const Fold& fold);
@@ -118,12 +119,13 @@ class FoldIndex {
   /// Finds the folds of a run.
   void gather_near(Run& run) const;
   int cell_of(float x, size_t bucket_place) const {
-    const float from = static_cast<float>(static_cast<double>(bucket_place) * kBucket_px - kBeyondFrame_px);
-    return static_cast<int>(std::clamp((x - from) * static_cast<float>(kCells / kBucket_px), 0.0f, static_cast<float>(kCells - 1)));
+    const float from = static_cast<float>(static_cast<double>(bucket_place) * bucket_px_ - kBeyondFrame_px);
+    return static_cast<int>(std::clamp((x - from) * static_cast<float>(kCells / bucket_px_), 0.0f, static_cast<float>(kCells - 1)));
   }
 
   glm::dvec2 size_px_;
-  size_t columns_, rows_;
+  double bucket_px_ = kLeastBucket_px;  ///< A side. Where folds are few buckets are large, so that an index of a few is made at once.
+  size_t columns_ = 0, rows_ = 0;
   std::vector<Fold, UnsetAllocator<Fold>> folds_{};
   std::vector<std::uint32_t> first_{};
   std::vector<std::uint32_t, UnsetAllocator<std::uint32_t>> in_{};
@@ -138,14 +140,14 @@ void FoldIndex::for_buckets(const Ends& step, const Visit& visit) const {
   const glm::dvec2 low = glm::max(glm::min(step.a.px, step.b.px), glm::dvec2(-kBeyondFrame_px));
   const glm::dvec2 high = glm::min(glm::max(step.a.px, step.b.px), size_px_ + kBeyondFrame_px);
   if (!(low.x <= high.x && low.y <= high.y)) return;
-  const auto bucket = [](double x) { return static_cast<size_t>((x + kBeyondFrame_px) / kBucket_px); };
+  const auto bucket = [&](double x) { return static_cast<size_t>((x + kBeyondFrame_px) / bucket_px_); };
   const size_t first = bucket(low.y), last = bucket(high.y);
   const glm::dvec2 d = step.b.px - step.a.px;
   for (size_t y = first; y <= last; ++y) {
     double left = low.x, right = high.x;
     if (last > first) {
       // What of the step lies in the row, and a little more.
-      const double top = static_cast<double>(y) * kBucket_px - kBeyondFrame_px - kMargin_px, bottom = top + kBucket_px + 2.0 * kMargin_px;
+      const double top = static_cast<double>(y) * bucket_px_ - kBeyondFrame_px - kMargin_px, bottom = top + bucket_px_ + 2.0 * kMargin_px;
       const double at_top = step.a.px.x + d.x * std::clamp((top - step.a.px.y) / d.y, 0.0, 1.0),
                    at_bottom = step.a.px.x + d.x * std::clamp((bottom - step.a.px.y) / d.y, 0.0, 1.0);
       left = std::max(left, std::min(at_top, at_bottom) - kMargin_px);
@@ -158,8 +160,8 @@ void FoldIndex::for_buckets(const Ends& step, const Visit& visit) const {
 
 template <class Visit>
 void FoldIndex::for_buckets_within(const glm::dvec2& low, const glm::dvec2& high, const Visit& visit) const {
-  const auto bucket = [](double x, size_t count) {
-    return static_cast<size_t>(std::clamp((x + kBeyondFrame_px) / kBucket_px, 0.0, static_cast<double>(count - 1)));
+  const auto bucket = [&](double x, size_t count) {
+    return static_cast<size_t>(std::clamp((x + kBeyondFrame_px) / bucket_px_, 0.0, static_cast<double>(count - 1)));
   };
   for (size_t y = bucket(low.y, rows_); y <= bucket(high.y, rows_); ++y) {
     for (size_t x = bucket(low.x, columns_); x <= bucket(high.x, columns_); ++x) visit(y * columns_ + x);

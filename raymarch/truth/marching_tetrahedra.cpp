@@ -125,7 +125,10 @@ class Marcher {
       keep_edge(edges[k].from, edges[k].to, sample);
     }
   }
-  std::uint8_t& place_of_edge(int low, int high) { return edges_[static_cast<size_t>(8 * low + high)]; }
+  std::uint8_t& place_of_edge(int low, int high) {
+    const int place = 8 * low + high;
+    return edges_[static_cast<size_t>(place)];
+  }
   void keep_edge(int low, int high, const EdgeSample& sample) {
     found_[edges_found_] = {sample.p, sample.gradient, facing(sample.p, sample.gradient)};
     place_of_edge(low, high) = static_cast<std::uint8_t>(++edges_found_);

@@ -9,12 +9,12 @@
 namespace limn {
 namespace {
 
-constexpr double kFirstStep = 0.25;  // of the longest one
-constexpr double kLeastStep = 1e-5;  // of the longest one
-constexpr double kSagitta = 0.3;     // of the tolerance
-constexpr double kCorrection = 0.1;  // of a step, by which the prediction may be off
-constexpr double kClosing = 0.15;    // of a step: so near it the start is the end
-constexpr double kTurn = 0.95;       // the cosine of the angle between tangents, and between normals, along a step
+constexpr double kFirstStep = 0.25;   // of the longest one
+constexpr double kLeastStep = 1e-5;   // of the longest one
+constexpr double kSagitta = 0.3;      // of the tolerance
+constexpr double kCorrection = 0.05;  // of a step, by which the prediction may be off
+constexpr double kClosing = 0.15;     // of a step: so near it the start is the end
+constexpr double kTurn = 0.95;        // the cosine of the angle between tangents, and between normals, along a step
 constexpr double kLongest_px = 1.0;
 constexpr double kPolished = 0.03;      // of the reach of Newton's iteration, whose error is squared with each step
 constexpr double kSeedPolished = 1e-4;  // the same of seeds

@@ -1,20 +1,9 @@
 #pragma once
 // Internal: where along a curve the number of layers in front of it may change.
 
-#include "raymarch/lines/curve_walk.h"
-#include "raymarch/lines/invisibility.h"
+#include "raymarch/lines/true_crossings.h"
 
 namespace limn {
-
-/// What the curves have in common. Keeps references to what it is made of.
-struct EventSearch {
-  EventSearch(const std::vector<SurfaceCurve>& curves, const Camera& camera, double extent);
-
-  const std::vector<SurfaceCurve>& curves;
-  const Camera& camera;
-  double extent;
-  std::vector<char> have_ends;  ///< Of each curve 1 where it has ends, or joints.
-};
 
 /// In order along the curve of that number: crossings behind nearer curves, cusps, joints, the picture's frame, and the ends of an open
 /// one. Crossings that are the work of polylines alone are left out: where curves touch or run along each other.

@@ -18,6 +18,13 @@ namespace {
 
 constexpr int kWidth_px = 40, kHeight_px = 30;
 
+Camera small_frame() {
+  Camera camera;
+  camera.width_px = kWidth_px;
+  camera.height_px = kHeight_px;
+  return camera;
+}
+
 Ends random_step(std::mt19937& random, const glm::dvec2& around_px, double spread_px, double length_px) {
   std::normal_distribution<double> normal;
   const glm::dvec2 from = around_px + spread_px * glm::dvec2(normal(random), normal(random));
@@ -80,9 +87,7 @@ Crowd random_crowd(std::mt19937& random) {
 
 TEST(FoldIndex, FindsAllFoldsOfABucketThatAStepMayMeet) {
   std::mt19937 random(random_seed());
-  Camera camera;
-  camera.width_px = kWidth_px;
-  camera.height_px = kHeight_px;
+  const Camera camera = small_frame();
   for (const bool with_sags : {false, true}) {
     const Crowd crowd = random_crowd(random);
     const std::vector<Ends>& steps = crowd.steps;
@@ -147,9 +152,7 @@ std::vector<SurfaceCurve> random_lines(std::mt19937& random) {
 
 TEST(FoldIndex, FindsAllFoldsAlongALine) {
   std::mt19937 random(random_seed());
-  Camera camera;
-  camera.width_px = kWidth_px;
-  camera.height_px = kHeight_px;
+  const Camera camera = small_frame();
   const std::vector<SurfaceCurve> lines = random_lines(random);
   const FoldIndex index(lines, camera, nullptr);
   std::vector<std::set<size_t>> buckets(index.folds().size());
@@ -190,9 +193,7 @@ TEST(FoldIndex, FindsAllFoldsAlongALine) {
 
 TEST(FoldIndex, EverySimdTargetFindsTheSame) {
   std::mt19937 random(random_seed());
-  Camera camera;
-  camera.width_px = kWidth_px;
-  camera.height_px = kHeight_px;
+  const Camera camera = small_frame();
   const Crowd crowd = random_crowd(random);
   const FoldIndex index(crowd.curves, camera, &crowd.sags);
   const auto found_by_all = [&] {

@@ -33,7 +33,7 @@ struct Change {
 /// The level set along a ray.
 struct RaySample {
   double t = 0.0, f = 0.0;
-  double slope = 0.0;
+  double slope = 0.0;  ///< Along the ray.
   bool inside() const { return f < 0.0; }
 };
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sdf/page_advice.h"
+#include "sdf/passing_pages.h"
 
 namespace limn {
 namespace {
@@ -116,20 +117,9 @@ size_t rounded(size_t bytes) {
 
 void* LargePages::take(size_t bytes) {
   const size_t size = rounded(bytes);
-  if (size < kLargePageBytes) {
-    void* const memory = take_line(size);
-    if (!memory) throw std::bad_alloc();
-    return memory;
-  }
-  if (void* const kept = kept_blocks().take(size)) return kept;
-  void* memory = map_block(size);
-  if (!memory) {
-    kept_blocks().drop_all();
-    memory = map_block(size);
-  }
-  if (!memory) throw std::bad_alloc();
-  ask_for_large_pages(memory, size);
-  return memory;
+  if (size >= kLargePageBytes)
+    if (void* const kept = kept_blocks().take(size)) return kept;
+  return PassingPages::take(bytes);
 }
 
 void LargePages::give_back(void* memory, size_t bytes) {
@@ -143,5 +133,24 @@ void LargePages::give_back(void* memory, size_t bytes) {
 }
 
 void LargePages::release() { kept_blocks().drop_all(); }
+
+void* PassingPages::take(size_t bytes) {
+  const size_t size = rounded(bytes);
+  const bool large = size >= kLargePageBytes;
+  void* memory = large ? map_block(size) : take_line(size);
+  if (!memory && large) {
+    kept_blocks().drop_all();
+    memory = map_block(size);
+  }
+  if (!memory) throw std::bad_alloc();
+  if (large) ask_for_large_pages(memory, size);
+  return memory;
+}
+
+void PassingPages::give_back(void* memory, size_t bytes) {
+  const size_t size = rounded(bytes);
+  if (size < kLargePageBytes) return give_back_line(memory);
+  ::munmap(memory, size);
+}
 
 }  // namespace limn

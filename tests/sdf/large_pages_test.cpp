@@ -1,6 +1,7 @@
 // Memory that pictures take and give back.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -12,6 +13,7 @@
 
 #include "sdf/image.h"
 #include "sdf/parallel.h"
+#include "sdf/passing_pages.h"
 
 namespace limn {
 namespace {
@@ -49,6 +51,32 @@ TEST(LargePages, NoMoreThanASmallPartWaits) {
   EXPECT_EQ(LargePages::take(100 * kMegabyte), given[3]);
   LargePages::give_back(given[3], 100 * kMegabyte);
   LargePages::release();
+}
+
+/// Kilobytes of this process that are in memory.
+long resident_kb() {
+  long pages = 0, resident = 0;
+  std::FILE* const file = std::fopen("/proc/self/statm", "r");
+  EXPECT_NE(file, nullptr);
+  if (file == nullptr) return 0;
+  EXPECT_EQ(std::fscanf(file, "%ld %ld", &pages, &resident), 2);
+  std::fclose(file);
+  return resident * (::sysconf(_SC_PAGESIZE) / 1024);
+}
+
+TEST(PassingPages, WhatIsGivenBackIsGone) {
+  LargePages::release();
+  const long before = resident_kb();
+  {
+    PassingVector<int> large(50 * kMegabyte / sizeof(int)), small(7);
+    std::fill(large.begin(), large.end(), 3);
+    std::fill(small.begin(), small.end(), 4);
+    PassingVector<int> moved = std::move(large);
+    EXPECT_EQ(std::count(moved.begin(), moved.end(), 3), static_cast<std::ptrdiff_t>(moved.size()));
+    EXPECT_EQ(std::count(small.begin(), small.end(), 4), 7);
+    EXPECT_GT(resident_kb() - before, 45 * 1024);
+  }
+  EXPECT_LT(resident_kb() - before, 5 * 1024);
 }
 
 // Images of many threads hold what they were filled with, whatever was given back before them.

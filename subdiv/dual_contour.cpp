@@ -317,7 +317,7 @@ Mesh dual_contour(const Field& field, int cells, ThinWalls thin_walls) { return 
 
 std::optional<Topology> topology_of(const Mesh& mesh) {
   if (mesh.face_sizes.empty()) return std::nullopt;
-  const std::vector<Edge> edges = build_edges(mesh);
+  const Edges edges = build_edges(mesh);
   for (const Edge& edge : edges)
     if (edge.face_count != 2 || !edge.consistent) return std::nullopt;
   std::vector<std::int32_t> part;

@@ -14,7 +14,7 @@ struct TopologyEdge {
 };
 
 struct EdgeTopology {
-  std::vector<TopologyEdge> edges{};
+  PassingVector<TopologyEdge> edges{};
   std::vector<glm::dvec3>
       face_normals{};  ///< Newell's, as long as the area; of a face without area: that of the face beyond its longest edge.
   std::vector<std::int32_t> first_corners{};  ///< As first_corners(mesh).

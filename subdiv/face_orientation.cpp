@@ -48,7 +48,7 @@ void turn_faces(Mesh& mesh) { turn_parts(mesh, std::vector<std::int32_t>(mesh.fa
 
 std::int64_t turn_outwards(Mesh& mesh) {
   if (!may_be_inverted(mesh)) return 0;
-  const std::vector<Edge> edges = build_edges(mesh);
+  const Edges edges = build_edges(mesh);
   MeshParts found = find_parts(mesh, edges);
   if (std::none_of(found.parts.begin(), found.parts.end(), [](const MeshPart& part) { return part.inverted; })) return 0;
   double volume = 0.0;

@@ -14,8 +14,6 @@
 namespace limn {
 namespace {
 
-using Points = std::vector<WeightedPoint>;
-
 // Eigenvalues of the limit masks lie between these: all weights are positive and add up to 1, and the smallest one that regular and
 // irregular triangulations have is 0.15, of an octahedron.
 constexpr double kLeastEigenvalue = 0.1, kMostEigenvalue = 1.0;

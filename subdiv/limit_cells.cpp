@@ -107,7 +107,7 @@ std::vector<Child> children_of(const Far::TopologyLevel& base, const Far::Topolo
 }
 
 std::vector<glm::dvec3> subdivided(const Far::TopologyRefiner& refiner, const std::vector<glm::dvec3>& positions) {
-  std::vector<WeightedPoint> points(positions.size()), finer(static_cast<size_t>(refiner.GetLevel(1).GetNumVertices()));
+  Points points(positions.size()), finer(static_cast<size_t>(refiner.GetLevel(1).GetNumVertices()));
   for (size_t v = 0; v < points.size(); ++v) points[v].p = positions[v];
   Far::PrimvarRefinerReal<double>(refiner).Interpolate(1, points, finer);
   std::vector<glm::dvec3> result;
@@ -120,7 +120,7 @@ std::vector<glm::dvec3> subdivided(const Far::TopologyRefiner& refiner, const st
 std::unique_ptr<LimitTip> tip_of(const Far::TopologyLevel& level, const Mesh& mesh, Scheme scheme) {
   const Far::ConstIndexArray corners = level.GetFaceVertices(0);
   if (corners.size() != 4) return nullptr;
-  std::vector<WeightedPoint> points(mesh.vertex_count());
+  Points points(mesh.vertex_count());
   for (size_t v = 0; v < points.size(); ++v) points[v].p = mesh.positions[v];
   for (int i = 0; i < 4; ++i) {
     if (level.GetVertexFaces(corners[i]).size() != 2 || level.IsVertexBoundary(corners[i])) continue;

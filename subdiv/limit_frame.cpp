@@ -2,15 +2,16 @@
 #include <opensubdiv/far/primvarRefiner.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "sdf/error.h"
+#include "sdf/parallel.h"
 #include "subdiv/opensubdiv_cage.h"
 
 namespace limn {
 namespace {
 
 namespace Sdc = OpenSubdiv::Sdc;
-using Points = std::vector<WeightedPoint>;
 
 /// The edge of `level` that joins two vertices; it must be there.
 int edge_between(const Far::TopologyLevel& level, int a, int b) {
@@ -181,18 +182,21 @@ void check_room_for_masks(const Far::TopologyRefiner& refiner) {
   }
 }
 
-LimitFrame limit_frame(const Far::TopologyRefiner& refiner, Scheme scheme, const Points& points) {
-  if (scheme == Scheme::catmark) check_room_for_masks(refiner);
-  LimitFrame frame{points, points, points, {}};
-  Far::PrimvarRefinerReal<double>(refiner).Limit(points, frame.positions, frame.tangent1, frame.tangent2);
-  if (scheme == Scheme::bilinear) return frame;
-  const Far::TopologyLevel& level = refiner.GetLevel(refiner.GetMaxLevel());
-  std::vector<OneRing> unsettled;
-  for (int v = 0; v < level.GetNumVertices(); ++v) {
+namespace {
+
+/// What masks do not tell, of a run of vertices; `frame` is written at these only.
+struct Unsettled {
+  std::vector<int> vertices{};  ///< Semi-sharp ones, in order.
+  std::vector<OneRing> rings{};
+};
+
+Unsettled settle_vertices(const Far::TopologyLevel& level, Scheme scheme, const Points& points, int first, int last, LimitFrame& frame) {
+  Unsettled unsettled;
+  for (int v = first; v < last; ++v) {
     if (level.IsVertexNonManifold(v) || level.GetVertexFaces(v).size() == 0) continue;
     if (still_semi_sharp(level, v)) {
-      unsettled.push_back(one_ring(level, scheme, points, v));
-      frame.semi_sharp.push_back({v, {}});
+      unsettled.vertices.push_back(v);
+      unsettled.rings.push_back(one_ring(level, scheme, points, v));
     } else if (level.GetVertexRule(v) == Sdc::Crease::RULE_SMOOTH && level.GetVertexFaces(v).size() == 2 && !level.IsVertexBoundary(v)) {
       settle_valence_two(one_ring(level, scheme, points, v), static_cast<size_t>(v), frame);
     } else if (level.GetVertexRule(v) == Sdc::Crease::RULE_DART) {
@@ -203,7 +207,29 @@ LimitFrame limit_frame(const Far::TopologyRefiner& refiner, Scheme scheme, const
       frame.positions[i].p = limit.position, frame.tangent1[i].p = limit.tangent1, frame.tangent2[i].p = limit.tangent2;
     }
   }
-  if (!unsettled.empty()) settle_semi_sharp(std::move(unsettled), scheme, crease_method(refiner), frame);
+  return unsettled;
+}
+
+}  // namespace
+
+LimitFrame limit_frame(const Far::TopologyRefiner& refiner, Scheme scheme, const Points& points) {
+  if (scheme == Scheme::catmark) check_room_for_masks(refiner);
+  LimitFrame frame;
+  limit_points(refiner, scheme, points, frame);
+  if (scheme == Scheme::bilinear) return frame;
+  const Far::TopologyLevel& level = refiner.GetLevel(refiner.GetMaxLevel());
+  constexpr int kTogether = 4096;
+  std::vector<Unsettled> parts(static_cast<size_t>((level.GetNumVertices() + kTogether - 1) / kTogether));
+  parallel_each(parts.size(), [&](size_t i) {
+    const int first = static_cast<int>(i) * kTogether;
+    parts[i] = settle_vertices(level, scheme, points, first, std::min(first + kTogether, level.GetNumVertices()), frame);
+  });
+  std::vector<OneRing> rings;
+  for (Unsettled& part : parts) {
+    for (const int v : part.vertices) frame.semi_sharp.push_back({v, {}});
+    std::move(part.rings.begin(), part.rings.end(), std::back_inserter(rings));
+  }
+  if (!rings.empty()) settle_semi_sharp(std::move(rings), scheme, crease_method(refiner), frame);
   return frame;
 }
 

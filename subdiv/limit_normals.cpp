@@ -48,12 +48,13 @@ std::vector<Sector> sectors_at(const Far::TopologyLevel& level, int vertex) {
 
 class Normals {
  public:
-  Normals(const Far::TopologyRefiner& refiner, Scheme scheme, const std::vector<WeightedPoint>& points, const LimitFrame& limit)
+  Normals(const Far::TopologyRefiner& refiner, Scheme scheme, const Points& points, const LimitFrame& limit)
       : level_(refiner.GetLevel(refiner.GetMaxLevel())), scheme_(scheme), points_(points), limit_(limit) {
-    first_.reserve(static_cast<size_t>(level_.GetNumFaces()) + 1);
-    int sum = 0;
-    for (int f = 0; f < level_.GetNumFaces(); ++f) first_.push_back(sum), sum += level_.GetFaceVertices(f).size();
-    normals_.assign(static_cast<size_t>(sum), glm::vec3(0.0f));
+    // Quads, or triangles for Loop.
+    const auto faces = static_cast<size_t>(level_.GetNumFaces()), corners = static_cast<size_t>(level_.GetNumFaceVertices());
+    sides_ = faces > 0 ? corners / faces : 0;
+    LIMN_CHECK(sides_ * faces == corners);
+    normals_.assign(corners, glm::vec3(0.0f));
   }
 
   std::vector<glm::vec3> run(const std::vector<int>* vertices) {
@@ -86,7 +87,7 @@ class Normals {
   void set(int face, int vertex, const glm::dvec3& normal) {
     const double length = glm::length(normal);
     const glm::dvec3 unit = length > 0.0 && std::isfinite(length) ? normal / length : facet(face);
-    normals_[static_cast<size_t>(first_[static_cast<size_t>(face)]) + static_cast<size_t>(corner_of(face, vertex))] = glm::vec3(unit);
+    normals_[static_cast<size_t>(face) * sides_ + static_cast<size_t>(corner_of(face, vertex))] = glm::vec3(unit);
   }
 
   /// The normal of the face as a polygon: where tangents vanish (collapsed edges) it is the best there is.
@@ -176,17 +177,17 @@ class Normals {
 
   const Far::TopologyLevel& level_;
   Scheme scheme_;
-  const std::vector<WeightedPoint>& points_;
+  const Points& points_;
   const LimitFrame& limit_;
-  std::vector<int> first_;
+  size_t sides_ = 0;  ///< Of each face.
   std::vector<glm::vec3> normals_;
   std::vector<Sector> borders_;
 };
 
 }  // namespace
 
-std::vector<glm::vec3> limit_normals(const Far::TopologyRefiner& refiner, Scheme scheme, const std::vector<WeightedPoint>& points,
-                                     const LimitFrame& limit, const std::vector<int>* vertices) {
+std::vector<glm::vec3> limit_normals(const Far::TopologyRefiner& refiner, Scheme scheme, const Points& points, const LimitFrame& limit,
+                                     const std::vector<int>* vertices) {
   return Normals(refiner, scheme, points, limit).run(vertices);
 }
 

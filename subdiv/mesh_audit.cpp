@@ -17,7 +17,7 @@ double single_step(double x) { return x > 0.0 ? std::ldexp(1.0, std::ilogb(x) - 
 
 }  // namespace
 
-void count_edges(const std::vector<Edge>& edges, MeshFacts& facts) {
+void count_edges(const Edges& edges, MeshFacts& facts) {
   for (const Edge& edge : edges) {
     facts.open_edges += edge.face_count == 1;
     facts.non_manifold_edges += edge.face_count > 2;
@@ -25,7 +25,7 @@ void count_edges(const std::vector<Edge>& edges, MeshFacts& facts) {
   }
 }
 
-void count_vertices(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& facts) {
+void count_vertices(const Mesh& mesh, const Edges& edges, MeshFacts& facts) {
   const auto quads = std::count(mesh.face_sizes.begin(), mesh.face_sizes.end(), 4);
   const auto triangles = std::count(mesh.face_sizes.begin(), mesh.face_sizes.end(), 3);
   facts.regular_valence = quads >= triangles ? 4 : 6;
@@ -46,7 +46,7 @@ void count_vertices(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts&
   }
 }
 
-void measure_edges(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& facts) {
+void measure_edges(const Mesh& mesh, const Edges& edges, MeshFacts& facts) {
   std::vector<double> lengths;
   lengths.reserve(edges.size());
   const auto at = [&](std::int32_t v) { return mesh.positions[static_cast<size_t>(v)]; };
@@ -73,7 +73,7 @@ MeshFacts mesh_facts(const Mesh& mesh) {
   if (!mesh.holes.empty()) return mesh_facts(without_holes(mesh));
   MeshFacts facts;
   facts.faces = facts.looked_at = static_cast<std::int64_t>(mesh.face_count());
-  const std::vector<Edge> edges = build_edges(mesh);
+  const Edges edges = build_edges(mesh);
   count_edges(edges, facts);
   count_vertices(mesh, edges, facts);
   count_parts(mesh, edges, facts);

@@ -2,8 +2,10 @@
 // What is wrong with a mesh, counted: edges, faces, parts, the digits of its coordinates.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "sdf/passing_pages.h"
 #include "subdiv/mesh.h"
 
 namespace limn {
@@ -17,8 +19,12 @@ struct Edge {
   std::int32_t face_count = 0;  ///< At least 1.
   bool consistent = true;       ///< The two faces run along it in opposite directions, as on an orientable surface.
 };
+using Edges = PassingVector<Edge>;
+
 /// All edges of a mesh, each once.
-std::vector<Edge> build_edges(const Mesh& mesh);
+Edges build_edges(const Mesh& mesh);
+/// The same of faces whose corners are at vertices 0, ..., vertex_count - 1.
+Edges build_edges(std::span<const std::int32_t> face_sizes, std::span<const std::int32_t> corner_vertices, size_t vertex_count);
 
 /// Connected parts by shared vertices: a part index for each face, and their count.
 std::int32_t part_of_faces(const Mesh& mesh, std::vector<std::int32_t>& part);

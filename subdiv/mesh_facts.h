@@ -5,13 +5,13 @@
 
 namespace limn {
 
-void count_edges(const std::vector<Edge>& edges, MeshFacts& facts);
-void count_vertices(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& facts);
-void count_parts(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& facts);
+void count_edges(const Edges& edges, MeshFacts& facts);
+void count_vertices(const Mesh& mesh, const Edges& edges, MeshFacts& facts);
+void count_parts(const Mesh& mesh, const Edges& edges, MeshFacts& facts);
 void count_duplicates(const Mesh& mesh, MeshFacts& facts);
 /// Of the first `counted` faces; the others are their neighbours.
-void measure_faces(const Mesh& mesh, const std::vector<Edge>& edges, size_t counted, MeshFacts& facts);
-void measure_edges(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& facts);
+void measure_faces(const Mesh& mesh, const Edges& edges, size_t counted, MeshFacts& facts);
+void measure_edges(const Mesh& mesh, const Edges& edges, MeshFacts& facts);
 void measure_coordinates(const Mesh& mesh, MeshFacts& facts);
 
 }  // namespace limn

@@ -64,7 +64,7 @@ void count_duplicates(const Mesh& mesh, MeshFacts& facts) {
   }
 }
 
-void measure_faces(const Mesh& mesh, const std::vector<Edge>& edges, size_t counted, MeshFacts& facts) {
+void measure_faces(const Mesh& mesh, const Edges& edges, size_t counted, MeshFacts& facts) {
   std::vector<glm::dvec3> normals(mesh.face_count(), glm::dvec3(0.0)), corners;
   std::vector<double> areas(mesh.face_count(), 0.0);
   std::vector<char> obtuse(mesh.face_count(), 0);

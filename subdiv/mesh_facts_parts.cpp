@@ -5,7 +5,7 @@
 
 namespace limn {
 
-void count_parts(const Mesh& mesh, const std::vector<Edge>& edges, MeshFacts& facts) {
+void count_parts(const Mesh& mesh, const Edges& edges, MeshFacts& facts) {
   const MeshParts found = find_parts(mesh, edges);
   facts.parts = static_cast<std::int64_t>(found.parts.size());
   for (const MeshPart& part : found.parts) {

@@ -109,7 +109,7 @@ MeshFacts sampled_mesh_facts(const Mesh& mesh, size_t count) {
   };
   const Mesh part = mesh_of_faces(mesh, first, all, vertices);
 
-  std::vector<Edge> edges;
+  Edges edges;
   for (size_t i = 0; i < uses.size();) {
     size_t end = i + 1;
     while (end < uses.size() && uses[end].edge == uses[i].edge) ++end;

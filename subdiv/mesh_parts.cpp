@@ -26,7 +26,7 @@ void visit_triangles(const Mesh& mesh, Visit visit) {
   }
 }
 
-MeshParts measure(const Mesh& mesh, const std::vector<Edge>& edges) {
+MeshParts measure(const Mesh& mesh, const Edges& edges) {
   MeshParts found;
   found.parts.resize(static_cast<size_t>(part_of_faces(mesh, found.of_face)));
   for (const Edge& edge : edges) {
@@ -112,7 +112,7 @@ bool may_be_inverted(const Mesh& mesh) {
   return std::any_of(found.parts.begin(), found.parts.end(), [](const MeshPart& part) { return part.volume < 0.0 && part.encloses(); });
 }
 
-MeshParts find_parts(const Mesh& mesh, const std::vector<Edge>& edges) {
+MeshParts find_parts(const Mesh& mesh, const Edges& edges) {
   MeshParts found = measure(mesh, edges);
   for (MeshPart& part : found.parts) part.inverted = part.volume < 0.0 && part.encloses();
   find_cavities(mesh, found);

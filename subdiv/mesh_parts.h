@@ -31,6 +31,6 @@ struct MeshParts {
 bool may_be_inverted(const Mesh& mesh);
 
 /// `edges` as build_edges gives them.
-MeshParts find_parts(const Mesh& mesh, const std::vector<Edge>& edges);
+MeshParts find_parts(const Mesh& mesh, const Edges& edges);
 
 }  // namespace limn

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sdf/passing_pages.h"
 #include "subdiv/polygon.h"
 #include "subdiv/refine.h"
 
@@ -39,9 +40,22 @@ struct WeightedPoint {
   void AddWithWeight(const WeightedPoint& other, double weight) { p += weight * other.p; }
 };
 
+using Points = PassingVector<WeightedPoint>;
+
+/// A refined level about to become a Mesh: OpenSubdiv's last level, and what was computed on it.
+struct Refined {
+  const Far::TopologyRefiner& refiner;
+  Points positions;
+  Points colors;
+  std::vector<glm::vec3> normals;  ///< At the corners of the level's faces, holes among them; or none.
+};
+
+/// With the materials, groups and rules of the cage. `level_number`: that of the positions, 0 or the last.
+Mesh as_mesh(Refined refined, const Mesh& cage, int level_number, bool keep_holes);
+
 /// The limit at the vertices of a refiner's last level (whose faces are all quads, or triangles for Loop).
 struct LimitFrame {
-  std::vector<WeightedPoint> positions, tangent1, tangent2;  ///< Tangents hold where the vertex has one tangent plane.
+  Points positions, tangent1, tangent2;  ///< Tangents hold where the vertex has one tangent plane.
   /// Where a semi-sharp feature had not worn off: the vertex, and a unit normal for each of its faces in OpenSubdiv's order.
   struct Ring {
     int vertex = 0;
@@ -50,13 +64,16 @@ struct LimitFrame {
   std::vector<Ring> semi_sharp;
 };
 
+/// Position and tangents by OpenSubdiv's masks alone, in parallel. `points`: of the vertices of the last level.
+void limit_points(const Far::TopologyRefiner& refiner, Scheme scheme, const Points& points, LimitFrame& frame);
+
 /// OpenSubdiv's masks for smooth, creased and corner vertices. Its masks take darts (ends of creases) for smooth vertices and semi-sharp
 /// ones for infinitely sharp ones; these two are worked out from the subdivision of their one-rings.
-LimitFrame limit_frame(const Far::TopologyRefiner& refiner, Scheme scheme, const std::vector<WeightedPoint>& points);
+LimitFrame limit_frame(const Far::TopologyRefiner& refiner, Scheme scheme, const Points& points);
 
 /// Unit normals of the limit at the corners of the last level's faces, in the order of its faces; those at `vertices` only if given.
-std::vector<glm::vec3> limit_normals(const Far::TopologyRefiner& refiner, Scheme scheme, const std::vector<WeightedPoint>& points,
-                                     const LimitFrame& limit, const std::vector<int>* vertices = nullptr);
+std::vector<glm::vec3> limit_normals(const Far::TopologyRefiner& refiner, Scheme scheme, const Points& points, const LimitFrame& limit,
+                                     const std::vector<int>* vertices = nullptr);
 
 /// True where a semi-sharp feature has not yet worn off.
 bool still_semi_sharp(const Far::TopologyLevel& level, int vertex);
@@ -70,7 +87,7 @@ struct OneRing {
   float center_sharpness = 0.0f;
   size_t face_total = 0;
 };
-OneRing one_ring(const Far::TopologyLevel& level, Scheme scheme, const std::vector<WeightedPoint>& points, int vertex);
+OneRing one_ring(const Far::TopologyLevel& level, Scheme scheme, const Points& points, int vertex);
 
 /// Loose fans of several one-rings as one mesh, centre first in each.
 struct Fans {

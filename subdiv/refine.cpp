@@ -13,7 +13,6 @@
 namespace limn {
 namespace {
 
-using Points = std::vector<WeightedPoint>;
 using Primvars = Far::PrimvarRefinerReal<double>;
 
 void check_size(const RefinedSize& size, const RefineSettings& settings, const std::string& file) {
@@ -41,102 +40,6 @@ Points cage_points(const Mesh& cage) {
   Points points(cage.vertex_count());
   for (size_t v = 0; v < points.size(); ++v) points[v].p = cage.positions[v];
   return points;
-}
-
-/// A refined level about to become a Mesh: OpenSubdiv's last level, and what was computed on it.
-struct Refined {
-  const Far::TopologyRefiner& refiner;
-  Points positions;
-  Points colors;
-  std::vector<glm::vec3> normals;
-};
-
-/// The base face of each face of the last level.
-std::vector<std::int32_t> ancestors(const Far::TopologyRefiner& refiner) {
-  std::vector<std::int32_t> of(static_cast<size_t>(refiner.GetLevel(0).GetNumFaces()));
-  for (size_t f = 0; f < of.size(); ++f) of[f] = static_cast<std::int32_t>(f);
-  for (int l = 1; l <= refiner.GetMaxLevel(); ++l) {
-    const Far::TopologyLevel& level = refiner.GetLevel(l);
-    std::vector<std::int32_t> finer(static_cast<size_t>(level.GetNumFaces()));
-    for (size_t f = 0; f < finer.size(); ++f) finer[f] = of[static_cast<size_t>(level.GetFaceParentFace(static_cast<int>(f)))];
-    of = std::move(finer);
-  }
-  return of;
-}
-
-/// Sharpness that is left, for edges and vertices that have it by their own and not by lying on a border.
-void copy_tags(const Far::TopologyLevel& level, const std::vector<std::int32_t>& number, Mesh& mesh) {
-  for (int e = 0; e < level.GetNumEdges(); ++e) {
-    const float sharpness = level.GetEdgeSharpness(e);
-    const Far::ConstIndexArray ends = level.GetEdgeVertices(e);
-    const std::int32_t a = number[static_cast<size_t>(ends[0])], b = number[static_cast<size_t>(ends[1])];
-    if (sharpness > 0.0f && !level.IsEdgeBoundary(e) && a >= 0 && b >= 0) mesh.creases.push_back({a, b, sharpness});
-  }
-  for (int v = 0; v < level.GetNumVertices(); ++v) {
-    const float sharpness = level.GetVertexSharpness(v);
-    if (sharpness > 0.0f && number[static_cast<size_t>(v)] >= 0) mesh.corners.push_back({number[static_cast<size_t>(v)], sharpness});
-  }
-}
-
-void copy_faces(const Far::TopologyLevel& level, const std::vector<std::int32_t>& ancestor, const std::vector<std::int32_t>& number,
-                const std::vector<glm::vec3>& normals, const Mesh& cage, bool keep_holes, Mesh& mesh) {
-  const auto faces = static_cast<size_t>(level.GetNumFaces()), corners = static_cast<size_t>(level.GetNumFaceVertices());
-  mesh.face_sizes.reserve(faces);
-  mesh.corner_vertices.reserve(corners);
-  if (!normals.empty()) mesh.corner_normals.reserve(corners);
-  if (!cage.face_materials.empty()) mesh.face_materials.reserve(faces);
-  if (!cage.face_groups.empty()) mesh.face_groups.reserve(faces);
-  size_t corner = 0;
-  for (int f = 0; f < level.GetNumFaces(); ++f) {
-    const Far::ConstIndexArray vertices = level.GetFaceVertices(f);
-    const size_t first = corner;
-    corner += static_cast<size_t>(vertices.size());
-    if (level.IsFaceHole(f)) {
-      if (!keep_holes) continue;
-      mesh.holes.push_back(static_cast<std::int32_t>(mesh.face_sizes.size()));
-    }
-    mesh.face_sizes.push_back(vertices.size());
-    for (const int v : vertices) mesh.corner_vertices.push_back(number[static_cast<size_t>(v)]);
-    if (!normals.empty())
-      for (size_t i = first; i < corner; ++i) mesh.corner_normals.push_back(normals[i]);
-    const auto parent = static_cast<size_t>(ancestor[static_cast<size_t>(f)]);
-    if (!cage.face_materials.empty()) mesh.face_materials.push_back(cage.face_materials[parent]);
-    if (!cage.face_groups.empty()) mesh.face_groups.push_back(cage.face_groups[parent]);
-  }
-}
-
-Mesh as_mesh(const Refined& refined, const Mesh& cage, int level_number, bool keep_holes) {
-  const Far::TopologyLevel& level = refined.refiner.GetLevel(level_number);
-  Mesh mesh;
-  std::vector<std::int32_t> number(static_cast<size_t>(level.GetNumVertices()), -1);
-  const std::vector<char> used = used_vertices(level, keep_holes);
-  std::int32_t count = 0;
-  mesh.positions.reserve(number.size());
-  if (!refined.colors.empty()) mesh.vertex_colors.reserve(number.size());
-  for (size_t v = 0; v < number.size(); ++v) {
-    if (!used[v]) continue;
-    number[v] = count++;
-    mesh.positions.push_back(refined.positions[v].p);
-    if (!refined.colors.empty()) mesh.vertex_colors.push_back(glm::vec3(glm::max(refined.colors[v].p, 0.0)));
-  }
-  std::vector<std::int32_t> ancestor;
-  if (level_number == 0) {
-    ancestor.resize(static_cast<size_t>(level.GetNumFaces()));
-    for (size_t f = 0; f < ancestor.size(); ++f) ancestor[f] = static_cast<std::int32_t>(f);
-  } else {
-    ancestor = ancestors(refined.refiner);
-  }
-  copy_faces(level, ancestor, number, refined.normals, cage, keep_holes, mesh);
-  copy_tags(level, number, mesh);
-  mesh.material_names = cage.material_names;
-  mesh.material_colors = cage.material_colors;
-  mesh.draws_colors = cage.draws_colors;
-  mesh.group_names = cage.group_names;
-  mesh.boundary = cage.boundary;
-  mesh.crease_method = cage.crease_method;
-  // At level 0 triangles are left to subdivide, later there are quads only.
-  if (level_number == 0) mesh.triangle_rule = cage.triangle_rule;
-  return mesh;
 }
 
 /// Level 0 on the limit: the masks need quads, so one refinement is made and read at the children of the cage's vertices and corners.
@@ -209,7 +112,7 @@ Mesh refine(const Mesh& cage, const RefineSettings& settings, const std::string&
     pull_back_to_cage(refined);
     if (!settings.to_limit) refined.positions = cage_points(clean.mesh);
   }
-  return as_mesh(refined, clean.mesh, settings.level, settings.keep_holes);
+  return as_mesh(std::move(refined), clean.mesh, settings.level, settings.keep_holes);
 }
 
 }  // namespace limn

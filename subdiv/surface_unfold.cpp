@@ -28,7 +28,7 @@ struct Neighbours {
   std::vector<std::uint32_t> first{}, list{};
 
   explicit Neighbours(const Mesh& mesh) : first(mesh.vertex_count() + 1, 0) {
-    const std::vector<Edge> edges = build_edges(mesh);
+    const Edges edges = build_edges(mesh);
     for (const Edge& edge : edges) ++first[static_cast<size_t>(edge.vertex_a) + 1], ++first[static_cast<size_t>(edge.vertex_b) + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
     list.resize(first.back());

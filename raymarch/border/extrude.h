@@ -3,6 +3,7 @@
 
 #include "raymarch/border/object_groups.h"
 #include "raymarch/mesh/polygons.h"
+#include "sdf/passing_pages.h"
 #include "sdf/quantile.h"
 
 namespace limn {
@@ -27,8 +28,8 @@ double extrude_width_px(const BorderInput& input, size_t object, const ExtrudeSe
 glm::dvec3 in_camera_axes(const Camera& camera, const glm::dvec3& p);
 /// A mesh grown: one point for each corner, in camera axes. `render_from_object` is about the object's origin; `camera` is in render
 /// space.
-std::vector<glm::dvec3> extrude_corners(const Polygons& polygons, const Affine& render_from_object, const ExtrudeSettings& settings,
-                                        const Camera& camera);
+PassingVector<glm::dvec3> extrude_corners(const Polygons& polygons, const Affine& render_from_object, const ExtrudeSettings& settings,
+                                          const Camera& camera);
 
 /// The offset surface of an object, and how far off it is.
 struct OffsetShell {
@@ -44,7 +45,7 @@ WindowImage<float> ink_offset(const BorderInput& input, size_t object, const Ext
 struct SharedExtrusion {
   size_t object = 0;                           ///< Index from 0.
   ExtrudeSettings settings{};                  ///< Of the call that asked first.
-  std::vector<glm::dvec3> grown{};             ///< As extrude_corners() finds them; none of what has no polygons.
+  PassingVector<glm::dvec3> grown{};           ///< As extrude_corners() finds them; none of what has no polygons.
   std::shared_ptr<const OffsetShell> shell{};  ///< Null of what has polygons, and where the width is 0.
 };
 /// What is shared already, or made now, and shared where `input` has room for it.

@@ -53,8 +53,8 @@ glm::dvec3 in_camera_axes(const Camera& camera, const glm::dvec3& p) {
 // without its depth: it is square to the contour in the image, in perspective too, since the tangent plane at a contour point holds the
 // eye. n_clip.xy itself is not where the picture is not square: its parts are stretched by 2 f / size_px, and are multiplied by size_px
 // first. Here the same is written in camera axes, where a pixel is Z / focal_px wide.
-std::vector<glm::dvec3> extrude_corners(const Polygons& polygons, const Affine& render_from_object, const ExtrudeSettings& settings,
-                                        const Camera& camera) {
+PassingVector<glm::dvec3> extrude_corners(const Polygons& polygons, const Affine& render_from_object, const ExtrudeSettings& settings,
+                                          const Camera& camera) {
   const Mesh& mesh = polygons.mesh();
   Frame frame{
       polygons, settings.direction, render_from_object, glm::inverse(render_from_object.linear), glm::transpose(render_from_object.linear),
@@ -62,7 +62,7 @@ std::vector<glm::dvec3> extrude_corners(const Polygons& polygons, const Affine& 
   if (settings.direction == ExtrudeDirection::vertex_normal) frame.normals = polygons.corner_normals();
   if (settings.direction == ExtrudeDirection::smooth_normal) frame.normals = polygons.smooth_normals();
   const glm::dmat3 camera_from_render = glm::transpose(camera.world_from_camera);
-  std::vector<glm::dvec3> grown(mesh.corner_vertices.size());
+  PassingVector<glm::dvec3> grown(mesh.corner_vertices.size());
   parallel_for(size_t{0}, mesh.corner_vertices.size(), [&](size_t i) {
     const glm::dvec3& point = mesh.positions[static_cast<size_t>(mesh.corner_vertices[i])];
     const glm::dvec3 rest = in_camera_axes(camera, point);

@@ -3,10 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "raymarch/border/edge_visibility.h"
 #include "raymarch/border/extrude.h"
 #include "raymarch/border/silhouette.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -158,6 +160,37 @@ InkBeyond ink_beyond(const GBuffer& gbuffer, const Image<float>& coverage, doubl
   return result;
 }
 
+namespace {
+
+/// A convex edge between a face that turns to the eye and one that does not.
+struct OutlineEdge {
+  size_t edge = 0;
+  bool a_front = false;  ///< The first one does.
+};
+
+std::vector<OutlineEdge> outline_edges(const Polygons& polygons, const Camera& camera) {
+  constexpr size_t kTogether = 16384;
+  const Mesh& mesh = polygons.mesh();
+  const EdgeTopology& topology = polygons.edges();
+  std::vector<std::vector<OutlineEdge>> parts((topology.edges.size() + kTogether - 1) / kTogether);
+  parallel_each(parts.size(), [&](size_t part) {
+    for (size_t e = part * kTogether; e < std::min((part + 1) * kTogether, topology.edges.size()); ++e) {
+      const TopologyEdge& edge = topology.edges[e];
+      if (edge.face_b < 0 || edge.opposed) continue;
+      const glm::dvec3 &a = mesh.positions[static_cast<size_t>(edge.vertex_a)], &b = mesh.positions[static_cast<size_t>(edge.vertex_b)];
+      const glm::dvec3 to_eye = view_vector(camera, 0.5 * (a + b));
+      const bool a_front = glm::dot(topology.face_normals[static_cast<size_t>(edge.face_a)], to_eye) > 0.0;
+      const bool b_front = glm::dot(topology.face_normals[static_cast<size_t>(edge.face_b)], to_eye) > 0.0;
+      if (a_front != b_front && !concave(polygons, edge)) parts[part].push_back({e, a_front});
+    }
+  });
+  std::vector<OutlineEdge> all;
+  for (const std::vector<OutlineEdge>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+}  // namespace
+
 void HullNotes::add(const BorderInput& input, size_t object, std::span<const glm::dvec3> grown, const ExtrudeSettings& settings) {
   const Polygons& polygons = *input.model.surfaces[object].polygons;
   const Mesh& mesh = polygons.mesh();
@@ -165,20 +198,22 @@ void HullNotes::add(const BorderInput& input, size_t object, std::span<const glm
   inverted_objects_ += closed(topology) && signed_volume(polygons) < 0.0;
   if (settings.direction == ExtrudeDirection::vertex_normal) {
     const std::span<const glm::vec3> normals = polygons.corner_normals();
-    for (size_t f = 0; f < mesh.face_count(); ++f) {
-      for (std::int32_t c = topology.first_corners[f]; c < topology.first_corners[f + 1]; ++c)
-        wrong_corners_ += glm::dot(glm::dvec3(normals[static_cast<size_t>(c)]), topology.face_normals[f]) < 0.0;
-    }
+    wrong_corners_ += parallel_reduce(
+        mesh.face_count(), size_t{8192}, std::int64_t{0},
+        [&](const IndexRange<size_t>& range, std::int64_t count) {
+          for (size_t f = range.begin(); f < range.end(); ++f)
+            for (std::int32_t c = topology.first_corners[f]; c < topology.first_corners[f + 1]; ++c)
+              count += glm::dot(glm::dvec3(normals[static_cast<size_t>(c)]), topology.face_normals[f]) < 0.0;
+          return count;
+        },
+        std::plus<>());
     corners_ += static_cast<std::int64_t>(normals.size());
   }
   const EdgeVisibility view(input);
-  for (const TopologyEdge& edge : topology.edges) {
-    if (edge.face_b < 0 || edge.opposed) continue;
+  for (const OutlineEdge& outline : outline_edges(polygons, view.camera())) {
+    const TopologyEdge& edge = topology.edges[outline.edge];
+    const bool a_front = outline.a_front;
     const glm::dvec3 &a = mesh.positions[static_cast<size_t>(edge.vertex_a)], &b = mesh.positions[static_cast<size_t>(edge.vertex_b)];
-    const glm::dvec3 to_eye = view_vector(view.camera(), 0.5 * (a + b));
-    const bool a_front = glm::dot(topology.face_normals[static_cast<size_t>(edge.face_a)], to_eye) > 0.0;
-    const bool b_front = glm::dot(topology.face_normals[static_cast<size_t>(edge.face_b)], to_eye) > 0.0;
-    if (a_front == b_front || concave(polygons, edge)) continue;
     ImageEdge image;
     image.object = static_cast<std::int32_t>(object);
     image.face_a = edge.face_a;

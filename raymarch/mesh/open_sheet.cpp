@@ -65,7 +65,7 @@ Seen look(const Surface& surface, const Camera& camera, int side) {
 }
 
 bool is_open(const Polygons& polygons) {
-  const std::vector<TopologyEdge>& edges = polygons.edges().edges;
+  const PassingVector<TopologyEdge>& edges = polygons.edges().edges;
   return std::any_of(edges.begin(), edges.end(), [](const TopologyEdge& edge) { return edge.face_b < 0; });
 }
 

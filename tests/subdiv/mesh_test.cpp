@@ -244,7 +244,7 @@ RC_GTEST_PROP(Edges, AreThoseOfAMapFromVerticesToFacesInItsOrder, ()) {
       if (a != b) map[std::minmax(a, b)].emplace_back(f, a < b);
     }
   }
-  const std::vector<Edge> edges = build_edges(mesh);
+  const Edges edges = build_edges(mesh);
   RC_ASSERT(edges.size() == map.size());
   size_t i = 0;
   for (const auto& [ends, uses] : map) {

@@ -1,6 +1,7 @@
 // Intersection over union of the strips of ink along its own boundary: what a wide band's middle would hide.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "raymarch/metric.h"
@@ -14,30 +15,31 @@ namespace {
 /// such a strip altogether, which makes it plain intersection over union.
 constexpr double kStrip = 0.003;
 
-/// Of each pixel and its two neighbours in the row, the least; beyond the row there is none.
-void erode_row(const std::uint8_t* from, std::uint8_t* to, int width) {
-  for (int x = 0; x < width; ++x) to[x] = from[x];
-  for (int x = 1; x < width; ++x) to[x] &= from[x - 1];
-  for (int x = 0; x + 1 < width; ++x) to[x] &= from[x + 1];
+/// Of each pixel and its two neighbours in the row, whether all are ink; beyond the row ink goes on.
+void erode_row(const std::uint64_t* from, std::uint64_t* to, const InkBits& shape) {
+  for (size_t w = 0; w < shape.stride; ++w) {
+    const bool first = w == 0, last = w + 1 == shape.stride;
+    const std::uint64_t before = from[w] << 1 | (first ? 1 : from[w - 1] >> 63);
+    // The pixel behind the last one of the row.
+    const std::uint64_t own = last ? from[w] | ~shape.last_word() : from[w], after = own >> 1 | (last ? 1 : from[w + 1]) << 63;
+    to[w] = from[w] & before & after;
+  }
 }
 
 /// Erosion with a 3 x 3 square: with a row of three, then with a column. Beyond the picture ink goes on: its sides are no boundary.
-void erode(Image<std::uint8_t>& ink, Image<std::uint8_t>& rows) {
-  const int width = ink.width;
-  for (int y = 0; y < ink.height; ++y) erode_row(&ink.at(0, y), &rows.at(0, y), width);
+void erode(InkBits& ink, InkBits& rows) {
+  for (int y = 0; y < ink.height; ++y) erode_row(ink.row(y), rows.row(y), ink);
   for (int y = 0; y < ink.height; ++y) {
-    const std::uint8_t *own = &rows.at(0, y), *above = &rows.at(0, std::max(y - 1, 0)),
-                       *below = &rows.at(0, std::min(y + 1, ink.height - 1));
-    std::uint8_t* const to = &ink.at(0, y);
-    for (int x = 0; x < width; ++x) to[x] = own[x] & above[x] & below[x];
+    const std::uint64_t *own = rows.row(y), *above = rows.row(std::max(y - 1, 0)), *below = rows.row(std::min(y + 1, ink.height - 1));
+    for (size_t w = 0; w < ink.stride; ++w) ink.row(y)[w] = own[w] & above[w] & below[w];
   }
 }
 
 /// Ink that is no ink any more after `steps` erosions.
-Image<std::uint8_t> strip(const Image<std::uint8_t>& ink, int steps) {
-  Image<std::uint8_t> left = ink, rows(ink.width, ink.height);
+InkBits strip(const InkBits& ink, int steps) {
+  InkBits left = ink, rows = ink;
   for (int step = 0; step < steps; ++step) erode(left, rows);
-  for (size_t i = 0; i < ink.size(); ++i) left.pixels[i] = ink.pixels[i] && !left.pixels[i];
+  for (size_t i = 0; i < ink.words.size(); ++i) left.words[i] = ink.words[i] & ~left.words[i];
   return left;
 }
 
@@ -45,13 +47,13 @@ std::vector<MetricValue> measure(const MetricInput& input) {
   const Image<float>&ink = input.picture.border, &reference = input.reference.border;
   LIMN_CHECK(ink.width == reference.width && ink.height == reference.height);
   const int steps = std::max(1, static_cast<int>(std::lround(kStrip * std::hypot(ink.width, ink.height))));
-  const Image<std::uint8_t> a = strip(ink_mask(ink), steps), b = strip(ink_mask(reference), steps);
-  double common = 0.0, all = 0.0;
-  for (size_t i = 0; i < a.size(); ++i) {
-    common += a.pixels[i] && b.pixels[i];
-    all += a.pixels[i] || b.pixels[i];
+  const InkBits a = strip(ink_bits(ink), steps), b = strip(ink_bits(reference), steps);
+  std::int64_t common = 0, all = 0;
+  for (size_t i = 0; i < a.words.size(); ++i) {
+    common += std::popcount(a.words[i] & b.words[i]);
+    all += std::popcount(a.words[i] | b.words[i]);
   }
-  return {{"boundary_iou", all > 0.0 ? common / all : 1.0, ""}};
+  return {{"boundary_iou", all > 0 ? static_cast<double>(common) / static_cast<double>(all) : 1.0, ""}};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "raymarch/metric.h"
+#include "raymarch/metric/inked_pixels.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -12,10 +13,10 @@ std::vector<MetricValue> measure(const MetricInput& input) {
   const Image<float>&ink = input.picture.border, &reference = input.reference.border;
   LIMN_CHECK(ink.width == reference.width && ink.height == reference.height);
   double common = 0.0, all = 0.0;
-  for (size_t i = 0; i < ink.size(); ++i) {
+  visit_inked(ink, reference, [&](size_t i) {
     common += double{std::min(ink.pixels[i], reference.pixels[i])};
     all += double{std::max(ink.pixels[i], reference.pixels[i])};
-  }
+  });
   // Two empty borders are the same border.
   return {{"overlap", all > 0.0 ? common / all : 1.0, ""}};
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "raymarch/metric.h"
+#include "raymarch/metric/inked_pixels.h"
 #include "sdf/error.h"
 
 namespace limn {
@@ -13,12 +14,12 @@ std::vector<MetricValue> measure(const MetricInput& input) {
   const Image<float>&ink = input.picture.border, &reference = input.reference.border;
   LIMN_CHECK(ink.width == reference.width && ink.height == reference.height);
   double differ = 0.0, missing = 0.0, false_ink = 0.0;
-  for (size_t i = 0; i < ink.size(); ++i) {
+  visit_inked(ink, reference, [&](size_t i) {
     const double difference = double{ink.pixels[i]} - double{reference.pixels[i]};
     differ += std::abs(difference) > 1.0 / 510.0;  // half a step of eight bits
     missing += std::max(-difference, 0.0);
     false_ink += std::max(difference, 0.0);
-  }
+  });
   return {{"pixels_differ", differ, "px"}, {"pixels_missing", missing, "px"}, {"pixels_false", false_ink, "px"}};
 }
 

@@ -1,5 +1,6 @@
 // Pieces of ink and holes in it, against the reference's.
 
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -25,21 +26,27 @@ std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t i) {
   return i;
 }
 
-/// A row between paper: `mask` may be null, for a row of paper alone.
-void add_runs(const std::uint8_t* mask, int width, std::vector<Run>& runs) {
-  Run run{0, 1, false};
-  for (int x = 0; x < width; ++x, ++run.last) {
-    const bool ink = mask != nullptr && mask[x] != 0;
-    if (ink == run.ink) continue;
-    runs.push_back(run);
-    run = {run.last, run.last, ink};
+/// The first pixel from `x` on, before `width`, whose ink is `ink`; `width` where there is none.
+int next_of(const std::uint64_t* row, int width, int x, bool ink) {
+  while (x < width) {
+    const std::uint64_t word = ink ? row[x / 64] : ~row[x / 64], rest = word >> (x % 64);
+    if (rest != 0) return x + std::countr_zero(rest);  // beyond the row there is no ink: no farther than `width`
+    x = (x / 64 + 1) * 64;
   }
-  if (run.ink) {
-    runs.push_back(run);
-    run = {run.last, run.last, false};
+  return width;
+}
+
+/// A row between paper, whose first pixel is 1: `row` may be null, for one of paper alone.
+void add_runs(const std::uint64_t* row, int width, std::vector<Run>& runs) {
+  int first = 0;
+  for (int x = row != nullptr ? next_of(row, width, 0, true) : width; x < width;) {
+    const int end = next_of(row, width, x, false);
+    runs.push_back({first, x + 1, false});
+    runs.push_back({x + 1, end + 1, true});
+    first = end + 1;
+    x = next_of(row, width, end, true);
   }
-  ++run.last;
-  runs.push_back(run);
+  runs.push_back({first, width + 2, false});
 }
 
 /// Joins runs of one row, [first, middle), with those of the next, [middle, end).
@@ -59,15 +66,15 @@ void join_rows(const std::vector<Run>& runs, size_t first, size_t middle, std::v
 // Ink hangs together over corners, paper does not: so a closed line of ink parts its inside from its outside (Rosenfeld 1970). A frame of
 // paper about the picture joins all that is outside.
 Counts count(const Image<float>& coverage) {
-  const Image<std::uint8_t> mask = ink_mask(coverage);
+  const InkBits ink = ink_bits(coverage);
   std::vector<Run> runs;
   std::vector<std::uint32_t> parents;
   size_t before = 0, row = 0;
-  for (int y = -1; y <= mask.height; ++y) {
-    const bool framed = y < 0 || y == mask.height;
+  for (int y = -1; y <= ink.height; ++y) {
+    const bool framed = y < 0 || y == ink.height;
     before = row;
     row = runs.size();
-    add_runs(framed ? nullptr : &mask.at(0, y), mask.width, runs);
+    add_runs(framed ? nullptr : ink.row(y), ink.width, runs);
     while (parents.size() < runs.size()) parents.push_back(static_cast<std::uint32_t>(parents.size()));
     join_rows(runs, before, row, parents);
   }

@@ -42,14 +42,27 @@ LimitBlock block_of(const LimitGrid& grid, std::uint32_t first, std::uint32_t en
 }  // namespace
 
 std::vector<LimitBlock> blocks_of(const LimitGrid& grid) {
-  std::vector<LimitBlock> blocks;
+  // Stretches of the grid, each from where a patch begins.
+  constexpr std::uint32_t kStretch = 1u << 16;
   const auto count = static_cast<std::uint32_t>(grid.triangles.size());
-  for (std::uint32_t first = 0; first < count;) {
-    std::uint32_t end = first + 1;
-    while (end < std::min(first + kBlockTriangles, count) && grid.triangles[end].patch == grid.triangles[first].patch) ++end;
-    blocks.push_back({first, end});
-    first = end;
-  }
+  const auto begin = [&](std::uint32_t i) {
+    i = std::min(i, count);
+    while (i > 0 && i < count && grid.triangles[i].patch == grid.triangles[i - 1].patch) ++i;
+    return i;
+  };
+  std::vector<std::vector<LimitBlock>> stretches(count / kStretch + 1);
+  parallel_each(stretches.size(), [&](size_t s) {
+    const auto from = static_cast<std::uint32_t>(s) * kStretch;
+    const std::uint32_t last = begin(from + kStretch);
+    for (std::uint32_t first = begin(from); first < last;) {
+      std::uint32_t end = first + 1;
+      while (end < std::min(first + kBlockTriangles, last) && grid.triangles[end].patch == grid.triangles[first].patch) ++end;
+      stretches[s].push_back({first, end});
+      first = end;
+    }
+  });
+  std::vector<LimitBlock> blocks;
+  for (const std::vector<LimitBlock>& stretch : stretches) blocks.insert(blocks.end(), stretch.begin(), stretch.end());
   parallel_parts(blocks.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
     for (size_t b = range.begin(); b < range.end(); ++b) blocks[b] = block_of(grid, blocks[b].first, blocks[b].end);
   });

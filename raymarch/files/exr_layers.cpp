@@ -1,6 +1,7 @@
 // The layers of a picture, as channels and header of one EXR file.
 
 #include <algorithm>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "raymarch/files/exr_file.h"
 #include "raymarch/files/matte_layers.h"
@@ -31,14 +32,21 @@ ExrType type_of_ids(const Image<std::int32_t>& ids) {
 }
 
 const auto kItself = [](auto value) { return value; };
-auto component(int axis) {
-  return [axis](const auto& v) { return v[axis]; };
+
+/// Of vectors the one component: a step of a fixed length through their numbers, where a subscript of glm's asks which it is each time.
+template <glm::length_t count>
+void add_component(std::vector<ExrChannel>& channels, const std::string& name, ExrType type,
+                   const LargeVector<glm::vec<count, float>>& vectors, int axis) {
+  const float* const first_number = vectors.empty() ? nullptr : glm::value_ptr(vectors.front()) + axis;
+  channels.push_back({name, type, [first_number](size_t first, size_t last, float* values) {
+                        for (size_t i = first; i < last; ++i) *values++ = first_number[static_cast<size_t>(count) * i];
+                      }});
 }
 
 void add_layer(std::vector<ExrChannel>& channels, const NamedLayer& layer) {
   const auto half = ExrType::half;
   const char* const rgba[] = {".R", ".G", ".B", ".A"};
-  for (int i = 0; i < 4; ++i) add_channel(channels, layer.name + rgba[i], half, layer.picture->composite.pixels, component(i));
+  for (int i = 0; i < 4; ++i) add_component(channels, layer.name + rgba[i], half, layer.picture->composite.pixels, i);
   add_channel(channels, layer.name + ".Y", half, layer.picture->border.pixels, kItself);
   if (!layer.picture->border_status.pixels.empty())
     add_channel(channels, layer.name + ".status", half, layer.picture->border_status.pixels, kItself);
@@ -50,10 +58,10 @@ std::vector<ExrChannel> channels_of(const Picture& picture) {
   std::vector<ExrChannel> channels;
   const char* const rgba[] = {"R", "G", "B", "A"};
   const char* const xyz[] = {"X", "Y", "Z"};
-  for (int i = 0; i < 4; ++i) add_channel(channels, rgba[i], half, picture.composite.pixels, component(i));
+  for (int i = 0; i < 4; ++i) add_component(channels, rgba[i], half, picture.composite.pixels, i);
   add_channel(channels, "Z", full, seen.depth.pixels, kItself);
-  for (int i = 0; i < 3; ++i) add_channel(channels, std::string("P.") + xyz[i], full, seen.position.pixels, component(i));
-  for (int i = 0; i < 3; ++i) add_channel(channels, std::string("N.") + xyz[i], full, seen.normal.pixels, component(i));
+  for (int i = 0; i < 3; ++i) add_component(channels, std::string("P.") + xyz[i], full, seen.position.pixels, i);
+  for (int i = 0; i < 3; ++i) add_component(channels, std::string("N.") + xyz[i], full, seen.normal.pixels, i);
   add_channel(channels, "NdotV.Y", full, seen.n_dot_v.pixels, kItself);
   add_channel(channels, "border.Y", half, picture.border.pixels, kItself);
   add_channel(channels, "id.Y", type_of_ids(seen.id), seen.id.pixels, kItself);
@@ -61,7 +69,7 @@ std::vector<ExrChannel> channels_of(const Picture& picture) {
   add_channel(channels, "status.Y", half, seen.status.pixels, kItself);
   if (!picture.border_status.pixels.empty()) add_channel(channels, "border_status.Y", half, picture.border_status.pixels, kItself);
   if (picture.mattes != nullptr)
-    for (int i = 0; i < 3; ++i) add_channel(channels, std::string("albedo.") + rgba[i], half, picture.mattes->albedo.pixels, component(i));
+    for (int i = 0; i < 3; ++i) add_component(channels, std::string("albedo.") + rgba[i], half, picture.mattes->albedo.pixels, i);
   return channels;
 }
 

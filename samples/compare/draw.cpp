@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "raymarch/image_io.h"
+#include "raymarch/metric/inked_pixels.h"
 #include "raymarch/picture/pixel_lanes.h"
 #include "samples/compare/comparison.h"
 #include "samples/experiment/empty_picture.h"
@@ -110,7 +111,7 @@ struct Keeper {
         [&] {
           // The other models' ink is measured against the reference's.
           cell.border = done.cell.model == 0 ? picture.border : std::move(picture.border);
-          for (const float coverage : cell.border.pixels) cell.ink_px += double{coverage};
+          visit_inked(cell.border, cell.border, [&](size_t i) { cell.ink_px += double{cell.border.pixels[i]}; });
         });
     for (const Measurement& one : done.floor) cell.floors.push_back(one.value);
     std::vector<MetricValue>& of_model = comparison.models[done.cell.model].values;

@@ -159,7 +159,8 @@ class ExperimentRun {
   /// Measures the cells of several views side by side, and tells of them in their order.
   void finish(std::deque<ViewWork>& works);
   void measure_all(std::deque<ViewWork>& works);
-  void measure_group(ViewWork& work, std::span<const size_t> cells);
+  void measure_curves(ViewWork& work, std::span<const size_t> cells);
+  void measure_ink(ViewWork& work, size_t cell);
   void measure_gbuffer(ViewWork& work);
   std::vector<Measurement> measure_floor(size_t view, const ExperimentTruth& truth, bool has_threshold) const;
   void tell(ViewWork& work);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 
 #include "raymarch/measured_border.h"
 #include "raymarch/scene/threads.h"
@@ -14,18 +15,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double ms_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
 
+bool of_ink(const Metric& metric) { return metric.subject == MetricSubject::ink || metric.subject == MetricSubject::motion; }
+
+/// Of a metric of ink. `inked`: the reference is.
 bool has_subject(const Metric& metric, const MetricInput& input, bool inked) {
-  switch (metric.subject) {
-    case MetricSubject::gbuffer:
-      return true;
-    case MetricSubject::ink:
-      return inked;
-    case MetricSubject::curves:
-      return input.curves != nullptr && input.truth != nullptr;
-    case MetricSubject::motion:
-      return inked && !input.moved.empty() && !input.reference_moved.empty();
-  }
-  return false;
+  return inked && (metric.subject == MetricSubject::ink || (!input.moved.empty() && !input.reference_moved.empty()));
 }
 
 void add(const Metric& metric, const MetricInput& input, std::vector<Measurement>& to) {
@@ -106,40 +100,43 @@ void ExperimentRun::measure_gbuffer(ViewWork& work) {
     if (metric->subject == MetricSubject::gbuffer) add(*metric, input, work.of_gbuffer);
 }
 
-void ExperimentRun::measure_group(ViewWork& work, std::span<const size_t> cells) {
+void ExperimentRun::measure_curves(ViewWork& work, std::span<const size_t> cells) {
   if (how_.cancelled && how_.cancelled()) throw Cancelled{};
   const Camera& camera = experiment_.cameras[work.view()];
   const ExperimentTruth* const truth = work.truths[cells.front()];
   const bool drawn = std::any_of(cells.begin(), cells.end(), [&](size_t i) { return work.drawings[i]->refused.empty(); });
-  BorderCurves curves;
-  CurveFindings findings;
-  const bool has_curves = drawn && truth != nullptr && truth->truth;
+  if (!drawn || truth == nullptr || !truth->truth) return;
   auto start = Clock::now();
-  if (has_curves) curves = measure_border(*work.built, camera, work.seen->picture.gbuffer, {.threshold = truth->threshold}, how_);
+  const BorderCurves curves = measure_border(*work.built, camera, work.seen->picture.gbuffer, {.threshold = truth->threshold}, how_);
+  CurveFindings findings;
   for (const size_t i : cells) {
     const Drawing &drawing = *work.drawings[i], &against = *work.against[i];
     if (!drawing.refused.empty()) continue;
     MetricInput input{drawing.picture, against.picture, camera};
-    if (has_curves) {
-      input.curves = &curves;
-      input.truth = &*truth->truth;
-      input.model = work.built;
-      input.findings = &findings;
-    }
-    input.moved = drawing.moved;
-    input.reference_moved = against.moved;
-    input.moved_before = work.seen->before;
-    if (needs_reference()) input.reference_moved_before = views_.at(work.view()).seen->before;
-    const bool own_threshold = has_threshold(work.cells[i].method);
-    for (const Metric* metric : experiment_.metrics) {
-      if (metric->subject == MetricSubject::gbuffer || !has_subject(*metric, input, against.refused.empty())) continue;
-      if (metric->subject == MetricSubject::curves && !own_threshold && !metric->any_threshold) continue;
-      add(*metric, input, work.of_cells[i]);
-    }
-    work.measure_ms[i] = ms_since(start);
-    if (observer_.drawn) observer_.drawn(work.cells[i], drawing, against);
+    input.curves = &curves;
+    input.truth = &*truth->truth;
+    input.model = work.built;
+    input.findings = &findings;
+    add_curve_metrics(input, has_threshold(work.cells[i].method), work.of_curves[i]);
+    work.curves_ms[i] = ms_since(start);
     start = Clock::now();
   }
+}
+
+void ExperimentRun::measure_ink(ViewWork& work, size_t cell) {
+  if (how_.cancelled && how_.cancelled()) throw Cancelled{};
+  const auto start = Clock::now();
+  const Drawing &drawing = *work.drawings[cell], &against = *work.against[cell];
+  if (!drawing.refused.empty()) return;
+  MetricInput input{drawing.picture, against.picture, experiment_.cameras[work.view()]};
+  input.moved = drawing.moved;
+  input.reference_moved = against.moved;
+  input.moved_before = work.seen->before;
+  if (needs_reference()) input.reference_moved_before = views_.at(work.view()).seen->before;
+  for (const Metric* metric : experiment_.metrics)
+    if (of_ink(*metric) && has_subject(*metric, input, against.refused.empty())) add(*metric, input, work.of_ink[cell]);
+  work.ink_ms[cell] = ms_since(start);
+  if (observer_.drawn) observer_.drawn(work.cells[cell], drawing, against);
 }
 
 void ExperimentRun::measure_all(std::deque<ViewWork>& works) {
@@ -151,8 +148,9 @@ void ExperimentRun::measure_all(std::deque<ViewWork>& works) {
   };
   std::vector<Floor> floors;
   for (ViewWork& work : works) {
-    work.of_cells.resize(work.cells.size());
-    work.measure_ms.resize(work.cells.size());
+    const size_t count = work.cells.size();
+    work.of_curves.resize(count), work.of_ink.resize(count);
+    work.curves_ms.resize(count), work.ink_ms.resize(count);
     for (size_t i = 0; i < work.cells.size(); ++i) {
       const ExperimentTruth* const truth = work.truths[i];
       if (!measures_floor_of(work.cells[i], truth)) continue;
@@ -165,23 +163,25 @@ void ExperimentRun::measure_all(std::deque<ViewWork>& works) {
   // What the reference scores is measured only once, so that of its own cells nothing else is.
   std::vector<CellsOfTruth> groups = by_truth(works);
   std::erase_if(groups, [&](const CellsOfTruth& group) { return works[group.work].model() == 0; });
-  const size_t pictures = works.empty() || works.front().model() == 0 ? 0 : works.size();
+  size_t cells = 0;
+  for (const ViewWork& work : works) cells += work.cells.size();
+  std::vector<std::function<void()>> parts;
+  parts.reserve(floors.size() + groups.size() + works.size() + cells);
+  for (Floor& floor : floors)
+    parts.emplace_back([this, &floor] { floor.values = measure_floor(floor.view, *floor.truth, floor.key.second); });
+  for (const CellsOfTruth& group : groups) parts.emplace_back([this, &works, &group] { measure_curves(works[group.work], group.cells); });
+  for (ViewWork& work : works) {
+    if (work.model() == 0) continue;
+    parts.emplace_back([this, &work] { measure_gbuffer(work); });
+    for (size_t i = 0; i < work.cells.size(); ++i) parts.emplace_back([this, &work, i] { measure_ink(work, i); });
+  }
   ThreadArena arena(how_.threads);
   arena.execute([&] {
     // Borders are measured side by side: what their rays need is made before.
     if (!floors.empty() && reference_) prepare_points(*reference_);
     const auto has_truth = [&](const CellsOfTruth& group) { return works[group.work].truths[group.cells.front()] != nullptr; };
     if (std::any_of(groups.begin(), groups.end(), has_truth)) prepare_points(*works.front().built);
-    parallel_each(floors.size() + groups.size() + pictures, [&](size_t k) {
-      if (k < floors.size()) {
-        floors[k].values = measure_floor(floors[k].view, *floors[k].truth, floors[k].key.second);
-      } else if (k < floors.size() + groups.size()) {
-        const CellsOfTruth& group = groups[k - floors.size()];
-        measure_group(works[group.work], group.cells);
-      } else {
-        measure_gbuffer(works[k - floors.size() - groups.size()]);
-      }
-    });
+    parallel_each(parts.size(), [&](size_t k) { parts[k](); });
   });
   for (Floor& floor : floors) views_[floor.view].floors.emplace(floor.key, std::move(floor.values));
 }
@@ -201,15 +201,15 @@ void ExperimentRun::tell(ViewWork& work) {
       done.measurements.assign(done.floor.begin(), done.floor.end());
     } else {
       // In the order of the metrics, which is that of their kinds.
-      done.measurements = std::move(work.of_cells[i]);
-      done.measurements.insert(done.measurements.begin(), work.of_gbuffer.begin(), work.of_gbuffer.end());
+      for (const std::vector<Measurement>* of : {&work.of_gbuffer, &work.of_curves[i], &work.of_ink[i]})
+        done.measurements.insert(done.measurements.end(), of->begin(), of->end());
       const auto place = [&](const Measurement& one) {
         return std::find(experiment_.metrics.begin(), experiment_.metrics.end(), one.metric) - experiment_.metrics.begin();
       };
       std::stable_sort(done.measurements.begin(), done.measurements.end(),
                        [&](const Measurement& a, const Measurement& b) { return place(a) < place(b); });
     }
-    done.measure_ms = work.measure_ms[i];
+    done.measure_ms = work.curves_ms[i] + work.ink_ms[i];
     if (observer_.measured) observer_.measured(done);
   }
 }
@@ -221,10 +221,11 @@ void ExperimentRun::finish(std::deque<ViewWork>& works) {
   // Side by side cells take longer than one after the other would.
   double sum = 0.0;
   for (const ViewWork& work : works)
-    for (const double ms : work.measure_ms) sum += ms;
+    for (size_t i = 0; i < work.cells.size(); ++i) sum += work.curves_ms[i] + work.ink_ms[i];
   const double share = sum > 0.0 ? ms_since(start) / sum : 1.0;
   for (ViewWork& work : works) {
-    for (double& ms : work.measure_ms) ms *= share;
+    for (std::vector<double>* of : {&work.curves_ms, &work.ink_ms})
+      for (double& ms : *of) ms *= share;
     tell(work);
     if (work.model() != 0) spare_.push_back(std::move(work.drawn.seen.picture.gbuffer));
   }

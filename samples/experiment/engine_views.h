@@ -19,10 +19,10 @@ struct ViewWork {
   std::vector<Drawing*> drawings{};
   std::vector<const Drawing*> against{};  ///< The reference's, empty where no metric needs it.
   std::vector<const ExperimentTruth*> truths{};
-  std::vector<std::vector<Measurement>> of_cells{};
-  std::vector<double> measure_ms{};
-  std::vector<Measurement> of_gbuffer{};  ///< The same for all cells.
-  std::future<void> under_way{};          ///< The observer's, of what was seen; the last member, so that it is waited for first.
+  std::vector<std::vector<Measurement>> of_curves{}, of_ink{};
+  std::vector<double> curves_ms{}, ink_ms{};  ///< What measuring them took.
+  std::vector<Measurement> of_gbuffer{};      ///< The same for all cells.
+  std::future<void> under_way{};              ///< The observer's, of what was seen; the last member, so that it is waited for first.
 
   size_t model() const { return cells.front().model; }
   size_t view() const { return cells.front().view; }

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "sdf/page_advice.h"
-#include "sdf/passing_pages.h"
 
 namespace limn {
 namespace {

@@ -15,24 +15,35 @@ struct LargePages {
   static void release();                              ///< Hands what waits to the system.
 };
 
-/// For std::vector: elements that it is given no value for are left unset.
-template <class T>
-struct LargePageAllocator {
+/// The same, but what is given back is the system's at once: for large arrays of which no second one of the same size follows, such as
+/// those that a mesh is made from.
+struct PassingPages {
+  static void* take(size_t bytes);                    ///< At least one byte, unset. Throws std::bad_alloc.
+  static void give_back(void* memory, size_t bytes);  ///< What take() gave, and how much that was. Never throws.
+};
+
+/// For std::vector: elements that it is given no value for are left unset. Memory of one may be given back by another.
+template <class T, class Pages>
+struct PageAllocator {
   using value_type = T;  ///< As std::vector asks.
-  LargePageAllocator() = default;
+  PageAllocator() = default;
   /// All are alike.
   template <class U>
-  LargePageAllocator(const LargePageAllocator<U>&) {}
-  T* allocate(size_t count) { return static_cast<T*>(LargePages::take(count * sizeof(T))); }      ///< Room for `count` elements.
-  void deallocate(T* memory, size_t count) { LargePages::give_back(memory, count * sizeof(T)); }  ///< What allocate() gave.
+  PageAllocator(const PageAllocator<U, Pages>&) {}
+  T* allocate(size_t count) { return static_cast<T*>(Pages::take(count * sizeof(T))); }      ///< Room for `count` elements.
+  void deallocate(T* memory, size_t count) { Pages::give_back(memory, count * sizeof(T)); }  ///< What allocate() gave.
   /// Leaves it unset.
   template <class U>
   void construct(U*) {}
-  bool operator==(const LargePageAllocator&) const { return true; }  ///< Memory of one may be given back by another.
+  bool operator==(const PageAllocator&) const { return true; }  ///< All are alike.
 };
+template <class T>
+using LargePageAllocator = PageAllocator<T, LargePages>;
 
-/// Whoever fills it touches its pages first: many threads at once, where many fill it.
+/// Whoever fills them touches their pages first: many threads at once, where many fill them.
 template <class T>
 using LargeVector = std::vector<T, LargePageAllocator<T>>;
+template <class T>
+using PassingVector = std::vector<T, PageAllocator<T, PassingPages>>;
 
 }  // namespace limn

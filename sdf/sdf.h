@@ -20,7 +20,6 @@
 #include "sdf/large_pages.h"
 #include "sdf/level_set.h"
 #include "sdf/output_together.h"
-#include "sdf/passing_pages.h"
 #include "sdf/registry.h"
 #include "sdf/shape.h"
 #include "sdf/vm_field.h"

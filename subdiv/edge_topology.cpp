@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "sdf/large_pages.h"
 #include "sdf/parallel.h"
-#include "sdf/passing_pages.h"
 #include "subdiv/polygon.h"
 #include "subdiv/weld.h"
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "sdf/large_pages.h"
 #include "sdf/parallel.h"
-#include "sdf/passing_pages.h"
 #include "subdiv/mesh_audit.h"
 #include "subdiv/polygon.h"
 

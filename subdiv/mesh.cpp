@@ -113,6 +113,13 @@ std::vector<char> drawn_vertices(const Mesh& mesh) {
   return drawn;
 }
 
+void copy_names(const Mesh& from, Mesh& to) {
+  to.material_names = from.material_names;
+  to.material_colors = from.material_colors;
+  to.group_names = from.group_names;
+  to.draws_colors = from.draws_colors;
+}
+
 Box bounds(const Mesh& mesh) {
   const std::vector<char> drawn = drawn_vertices(mesh);
   Box box;

@@ -59,6 +59,9 @@ struct Mesh {
 
 /// For each vertex whether a face that is drawn uses it (what no face uses, or holes alone, does not count).
 std::vector<char> drawn_vertices(const Mesh& mesh);
+/// Names of materials and groups, colours of materials, and whether colours are drawn: what a mesh that is made of another one shares with
+/// it, face by face.
+void copy_names(const Mesh& from, Mesh& to);
 /// The box around the vertices that are drawn, in the file's units; empty where there are none.
 Box bounds(const Mesh& mesh);
 /// Index of each face's first corner, with one past the end at the back: size face_count() + 1.

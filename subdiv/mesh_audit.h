@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "sdf/passing_pages.h"
+#include "sdf/large_pages.h"
 #include "subdiv/mesh.h"
 
 namespace limn {

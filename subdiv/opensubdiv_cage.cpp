@@ -211,10 +211,7 @@ CleanCage clean_cage(const Mesh& cage, Scheme scheme, const std::string& file) {
     if (!cage.face_materials.empty()) clean.mesh.face_materials.push_back(cage.face_materials[static_cast<size_t>(f)]);
     if (!cage.face_groups.empty()) clean.mesh.face_groups.push_back(cage.face_groups[static_cast<size_t>(f)]);
   }
-  clean.mesh.material_names = cage.material_names;
-  clean.mesh.material_colors = cage.material_colors;
-  clean.mesh.draws_colors = cage.draws_colors;
-  clean.mesh.group_names = cage.group_names;
+  copy_names(cage, clean.mesh);
   check_valence(clean.mesh, file);
   return clean;
 }

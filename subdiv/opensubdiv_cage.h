@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sdf/passing_pages.h"
+#include "sdf/large_pages.h"
 #include "subdiv/polygon.h"
 #include "subdiv/refine.h"
 

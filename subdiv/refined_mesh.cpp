@@ -137,10 +137,7 @@ Mesh as_mesh(Refined refined, const Mesh& cage, int level_number, bool keep_hole
   const std::vector<std::int32_t> number = copy_vertices(level, refined, keep_holes, mesh);
   copy_faces(level, ancestors(refined.refiner, level_number), number, std::move(refined.normals), cage, keep_holes, mesh);
   copy_tags(level, number, mesh);
-  mesh.material_names = cage.material_names;
-  mesh.material_colors = cage.material_colors;
-  mesh.draws_colors = cage.draws_colors;
-  mesh.group_names = cage.group_names;
+  copy_names(cage, mesh);
   mesh.boundary = cage.boundary;
   mesh.crease_method = cage.crease_method;
   // At level 0 triangles are left to subdivide, later there are quads only.

@@ -3,7 +3,7 @@
 
 #include "raymarch/border/object_groups.h"
 #include "raymarch/mesh/polygons.h"
-#include "sdf/passing_pages.h"
+#include "sdf/large_pages.h"
 #include "sdf/quantile.h"
 
 namespace limn {

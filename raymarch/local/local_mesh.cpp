@@ -321,10 +321,7 @@ Mesh as_mesh(const LocalTriangles& local, const Mesh& base_mesh) {
   Mesh mesh;
   mesh.positions = local.positions;
   mesh.vertex_colors = local.colors;
-  mesh.material_names = base_mesh.material_names;
-  mesh.material_colors = base_mesh.material_colors;
-  mesh.group_names = base_mesh.group_names;
-  mesh.draws_colors = base_mesh.draws_colors;
+  copy_names(base_mesh, mesh);
   mesh.face_sizes.assign(local.triangles.size(), 3);
   for (const LocalTriangle& triangle : local.triangles) {
     for (size_t k = 0; k < 3; ++k) {

@@ -13,7 +13,6 @@
 
 #include "sdf/image.h"
 #include "sdf/parallel.h"
-#include "sdf/passing_pages.h"
 
 namespace limn {
 namespace {

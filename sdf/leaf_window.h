@@ -33,10 +33,7 @@ class LeafWindow {
   struct Column {
     const NanoLeaf* const* leaves;
     const float* tiles;
-    const bool* active;
 
-    /// Nodes (x, y, -2..10) that are in the band, as bits 0..12.
-    std::uint32_t active_row(int x, int y) const { return octet(0, x, y) >> 6 | octet(1, x, y) << 2 | (octet(2, x, y) & 7u) << 10; }
     /// Values at (x, y, -1..8).
     void load_row(int x, int y, float* to) const {
       to[0] = value(0, x, y, 7);
@@ -59,18 +56,21 @@ class LeafWindow {
     float value(int block, int x, int y, int z) const {
       return leaves[block] ? leaves[block]->data()->mValues[row_of(x, y) | z] : tiles[block];
     }
-    std::uint32_t octet(int block, int x, int y) const {
-      if (!leaves[block]) return active[block] ? 0xffu : 0u;
-      return leaves[block]->valueMask().template getWord<std::uint8_t>(row_of(x, y) >> 3);
-    }
   };
+
+  /// Nodes of a block at x that are in the band: bit z of byte y. The blocks are numbered along x, y and z, from 0 to 2.
+  std::uint64_t active_plane(int block_x, int block_y, int block_z, int x) const {
+    const int block = 9 * block_x + 3 * block_y + block_z;
+    if (!leaves_[block]) return active_[block] ? ~std::uint64_t{0} : 0;
+    return leaves_[block]->valueMask().template getWord<std::uint64_t>(x & 7);
+  }
 
   /// Calls visit(column, x, y) for each row of nodes from `first` to `last` along x and y, which lie between -8 and 15.
   template <class Visit>
   void for_each_column(int first, int last, const Visit& visit) const {
     for (int block = 0; block < 9; ++block) {
       const int x0 = 8 * (block / 3 - 1), y0 = 8 * (block % 3 - 1);
-      const Column column{leaves_ + 3 * block, tiles_ + 3 * block, active_ + 3 * block};
+      const Column column{leaves_ + 3 * block, tiles_ + 3 * block};
       for (int x = std::max(x0, first); x <= std::min(x0 + 7, last); ++x)
         for (int y = std::max(y0, first); y <= std::min(y0 + 7, last); ++y) visit(column, x, y);
     }

@@ -94,7 +94,8 @@ void count_widths(const Block& block, const glm::ivec3& here, double background,
   }
 }
 
-/// Nodes half a voxel and less from the surface have a neighbour beyond it, as its normal has a component of 0.577 at least.
+/// A node within half a voxel of the surface has a neighbour beyond it, as the normal there has a component of 0.577 at least. Of
+/// neighbours outside the band the difference counts for nothing.
 void count_near(const Block& block, const glm::ivec3& here, Counts& found) {
   const float value = block.value(here);
   float largest = 0.0f;
@@ -109,6 +110,15 @@ void count_near(const Block& block, const glm::ivec3& here, Counts& found) {
   if (!(std::abs(value) < 0.5f * largest)) return;
   ++found.near_nodes;
   found.unsigned_nodes += beyond ? 0 : 1;
+}
+
+/// Bits 0..7: nodes of a row that have a neighbour of the other sign.
+std::uint32_t beside_crossing(const NodeBits& inside, size_t x, size_t y) {
+  const std::uint32_t row = inside.row(x + 1, y + 1), own = row >> 1;
+  const auto other = [&](std::uint32_t beside) { return own ^ beside; };
+  return (other(inside.row(x, y + 1) >> 1) | other(inside.row(x + 2, y + 1) >> 1) | other(inside.row(x + 1, y) >> 1) |
+          other(inside.row(x + 1, y + 2) >> 1) | other(row) | other(own >> 1)) &
+         0xffu;
 }
 
 /// Bits 2..9 of a row stand for the block's own nodes.
@@ -180,6 +190,18 @@ void count_lacking(const CrossedCells& crossed, const ActiveRows& active, Counts
   }
 }
 
+void count_near(const Block& block, const NodeBits& inside, const NodeBits& steep, Counts& found) {
+  for (size_t x = 0; x < 8; ++x)
+    for (size_t y = 0; y < 8; ++y) {
+      const std::uint32_t near = steep.row(x + 1, y + 1) >> 1 & active_at(block.active, x, y);
+      if (near == 0) continue;
+      const std::uint32_t edge = at_edge_of_band(block.active, x + 2, y + 2) >> 2, whole = near & ~edge;
+      found.near_nodes += std::popcount(whole);
+      found.unsigned_nodes += std::popcount(whole & ~beside_crossing(inside, x, y));
+      for (std::uint32_t left = near & edge; left != 0; left &= left - 1) count_near(block, {x, y, std::countr_zero(left)}, found);
+    }
+}
+
 void count_surface(const Block& block, const NodeBits& inside, const glm::ivec3& origin, const SlopeScale& scale, Counts& found) {
   // In most blocks no crossing can move the bounds.
   const glm::dvec3 first(origin), last(origin + 8);
@@ -207,15 +229,11 @@ void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, con
   // A block of a tile: all of its nodes are in the band, or none is.
   found.active += window.leaf() ? active_nodes(*window.leaf()) : accessor.isActive(origin) ? 512 : 0;
   NodeBits inside, steep;
-  const bool crossed = find_inside(block.nodes, inside), near = find_steep(block.nodes, steep);
+  const bool crossed = find_inside(block.nodes, inside), near = find_steep(block.nodes, static_cast<float>(0.5 * scale.background), steep);
   if (!crossed && !near && !with_widths) return;
   block.active = active_rows(window);
   if (crossed) count_surface(block, inside, {origin[0], origin[1], origin[2]}, scale, found);
-  if (near)
-    for_each_place([&](size_t x, size_t y) { return steep.row(x + 1, y + 1) >> 1 & active_at(block.active, x, y); },
-                   [&](const glm::ivec3& at) {
-                     if (std::abs(static_cast<double>(block.value(at))) < 0.5 * scale.background) count_near(block, at, found);
-                   });
+  if (near) count_near(block, inside, steep, found);
   if (with_widths) count_band(block, scale.background, found);
 }
 

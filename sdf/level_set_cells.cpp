@@ -52,10 +52,19 @@ std::vector<nanovdb::Coord> blocks_with_cells(const nanovdb::FloatGrid& grid) {
 
 ActiveRows active_rows(const LeafWindow& window) {
   ActiveRows rows;
-  for (auto& plane : rows) plane[13] = plane[14] = plane[15] = 0;
-  window.for_each_column(-2, 10, [&](const LeafWindow::Column& column, int x, int y) {
-    rows[static_cast<size_t>(x) + 2][static_cast<size_t>(y) + 2] = column.active_row(x, y);
-  });
+  for (size_t x = 0; x < rows.size(); ++x) {
+    const int at = static_cast<int>(x) + 6, block_x = at >> 3;  // x - 2, from the first block on
+    // Bytes of the rows along z: of y = -8 to 15.
+    std::uint8_t planes[3][24];
+    for (int block_z = 0; block_z < 3; ++block_z)
+      for (int block_y = 0; block_y < 3; ++block_y) {
+        const std::uint64_t plane = window.active_plane(block_x, block_y, block_z, at);
+        std::memcpy(planes[block_z] + 8 * block_y, &plane, sizeof plane);
+      }
+    for (size_t y = 0; y < 16; ++y)
+      rows[x][y] = static_cast<std::uint32_t>(planes[0][y + 6] >> 6 | planes[1][y + 6] << 2 | (planes[2][y + 6] & 7) << 10);
+    rows[x][13] = rows[x][14] = rows[x][15] = 0;
+  }
   return rows;
 }
 

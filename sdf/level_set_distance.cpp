@@ -67,13 +67,16 @@ void signed_distances(DistanceEvaluator& distance, const LanePoints& points, dou
   LaneNumbers estimates;
   LaneFlags reasonable;
   tape_distances(*distance.tape, near.points, distance.scratch, estimates, reasonable);
-  for (size_t k = 0; k < near.points.count; ++k) {
-    double& value = distances[near.index[k]];
-    const double at_least = near.no_less[k];
-    double size = std::max(std::abs(estimates[k]), at_least);
-    // Far out by its first-order estimate as well, it is not worth the iteration.
-    if (!flag_of(reasonable, k) && at_least < half_width) size = projected_distance(evaluator, near.points.point(k), at_least, size);
-    value = std::copysign(size, value);
+  sign_sizes(near, estimates);
+  for (size_t first = 0; first < near.points.count; first += 16) {
+    const size_t end = std::min(first + 16, near.points.count);
+    for (size_t k = first; reasonable[first / 16] != 0xffffu && k < end; ++k) {
+      // Far out by its first-order estimate as well, it is not worth the iteration.
+      if (flag_of(reasonable, k) || near.no_less[k] >= half_width) continue;
+      const double size = projected_distance(evaluator, near.points.point(k), near.no_less[k], std::abs(estimates[k]));
+      estimates[k] = std::copysign(size, near.value[k]);
+    }
+    for (size_t k = first; k < end; ++k) distances[near.index[k]] = estimates[k];
   }
 }
 

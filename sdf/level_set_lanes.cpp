@@ -18,21 +18,48 @@ namespace HWY_NAMESPACE {
 namespace {
 
 constexpr size_t kLanes = 16;
+constexpr unsigned kAll = (1u << kWidth) - 1u;
 
 HWY_INLINE Reals with_sign(Reals size, Reals sign) { return {hn::CopySign(size.v, sign.v)}; }
 
-void divide_far(const LanePoints& points, double lipschitz, double half_width, LaneNumbers& values, LaneNumbers& no_less, LaneFlags& near) {
+void select_near(const LanePoints& points, double lipschitz, double half_width, LaneNumbers& values, NearPoints& near) {
+  size_t count = 0;
   for (size_t i = 0; i < points.count; i += kLanes) {
-    unsigned bits = 0;
     for (int part = 0; part < kParts; ++part) {
       const size_t at = i + static_cast<size_t>(part * kWidth);
-      const Reals value = load(values.at + at), least = abs(value) / reals(lipschitz);
+      const Reals value = load(values.at + at), least = lipschitz == 1.0 ? abs(value) : abs(value) / reals(lipschitz);
       const LaneMask far = least > reals(half_width);
       store(select(far, with_sign(least, value), value), values.at + at);
-      store(least, no_less.at + at);
-      bits |= bits_of(no(far)) << (part * kWidth);
+      unsigned bits = bits_of(no(far));
+      if (at + static_cast<size_t>(kWidth) > points.count) bits &= at < points.count ? (1u << (points.count - at)) - 1u : 0u;
+      if (bits == kAll) {
+        for (size_t axis = 0; axis < 3; ++axis) hn::StoreU(load(points.at[axis] + at).v, RealTag(), near.points.at[axis] + count);
+        hn::StoreU(value.v, RealTag(), near.value.at + count);
+        hn::StoreU(least.v, RealTag(), near.no_less.at + count);
+        for (size_t k = 0; k < static_cast<size_t>(kWidth); ++k) near.index[count + k] = static_cast<std::uint16_t>(at + k);
+        count += static_cast<size_t>(kWidth);
+        continue;
+      }
+      if (bits == 0) continue;
+      HWY_ALIGN double of_value[kLanes], of_least[kLanes];
+      store(value, of_value);
+      store(least, of_least);
+      for (; bits != 0; bits &= bits - 1) {
+        const auto k = static_cast<size_t>(std::countr_zero(bits));
+        for (size_t axis = 0; axis < 3; ++axis) near.points.at[axis][count] = points.at[axis][at + k];
+        near.value[count] = of_value[k];
+        near.no_less[count] = of_least[k];
+        near.index[count++] = static_cast<std::uint16_t>(at + k);
+      }
     }
-    near[i / kLanes] = static_cast<std::uint16_t>(bits);
+  }
+  near.points.count = count;
+}
+
+void sign_sizes(const NearPoints& near, LaneNumbers& sizes) {
+  for (size_t i = 0; i < near.points.count; i += static_cast<size_t>(kWidth)) {
+    const Reals size = maximum(abs(load(sizes.at + i)), load(near.no_less.at + i));
+    store(with_sign(size, load(near.value.at + i)), sizes.at + i);
   }
 }
 
@@ -73,32 +100,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace limn {
 namespace {
-HWY_EXPORT(divide_far);
+HWY_EXPORT(select_near);
+HWY_EXPORT(sign_sizes);
 HWY_EXPORT(find_within);
 HWY_EXPORT(put_distances);
 }  // namespace
 
 void select_near(const LanePoints& points, double lipschitz, double half_width, LaneNumbers& values, NearPoints& near) {
-  LaneNumbers no_less;
-  LaneFlags flags;
-  HWY_DYNAMIC_DISPATCH(divide_far)(points, lipschitz, half_width, values, no_less, flags);
-  size_t count = 0;
-  const auto take = [&](size_t i) {
-    for (size_t axis = 0; axis < 3; ++axis) near.points.at[axis][count] = points.at[axis][i];
-    near.no_less[count] = no_less[i];
-    near.index[count++] = static_cast<std::uint16_t>(i);
-  };
-  for (size_t i = 0; i < points.count; i += 16) {
-    const unsigned wanted = flags[i / 16] & (points.count - i < 16 ? (1u << (points.count - i)) - 1u : 0xffffu);
-    if (wanted == 0xffffu) {
-      for (size_t k = i; k < i + 16; ++k) take(k);
-    } else {
-      for (unsigned bits = wanted; bits != 0; bits &= bits - 1) take(i + static_cast<size_t>(std::countr_zero(bits)));
-    }
-  }
-  near.points.count = count;
+  HWY_DYNAMIC_DISPATCH(select_near)(points, lipschitz, half_width, values, near);
   near.points.fill_up();
 }
+void sign_sizes(const NearPoints& near, LaneNumbers& sizes) { HWY_DYNAMIC_DISPATCH(sign_sizes)(near, sizes); }
 void find_within(const LaneNumbers& numbers, size_t count, double limit, LaneFlags& within) {
   HWY_DYNAMIC_DISPATCH(find_within)(numbers, count, limit, within);
 }

@@ -44,16 +44,16 @@ HWY_INLINE Floats larger_difference(Floats largest, Floats value, const float* n
   return hn::IfThenElse(hn::Lt(largest, difference), difference, largest);
 }
 
-void find_steep(const float* nodes, NodeBits& steep) {
+void find_steep(const float* nodes, float most, NodeBits& steep) {
   constexpr size_t kFirst = 100, kLast = 899;  // what has neighbours in memory on both sides; the block's own are 111..888
-  const Floats half = hn::Set(Tag(), 0.5f);
+  const Floats half = hn::Set(Tag(), 0.5f), limit = hn::Set(Tag(), most);
   for (size_t i = kFirst; i <= kLast; i += kWidth) {
     const size_t first = std::min(i, kLast + 1 - kWidth);
     const float* const at = nodes + first;
     const Floats value = hn::LoadU(Tag(), at);
     Floats largest = hn::Zero(Tag());
     for (const std::ptrdiff_t step : {-100, 100, -10, 10, -1, 1}) largest = larger_difference(largest, value, at + step);
-    set_bits(hn::Lt(hn::Abs(value), hn::Mul(half, largest)), first, steep);
+    set_bits(hn::Lt(hn::Abs(value), hn::Min(hn::Mul(half, largest), limit)), first, steep);
   }
 }
 
@@ -98,8 +98,8 @@ float largest_value(const NodeWindow& nodes, const NodeBits& which) {
   return HWY_DYNAMIC_DISPATCH(largest_value)(nodes.front().front().data(), which);
 }
 
-bool find_steep(const NodeWindow& nodes, NodeBits& steep) {
-  HWY_DYNAMIC_DISPATCH(find_steep)(nodes.front().front().data(), steep);
+bool find_steep(const NodeWindow& nodes, float most, NodeBits& steep) {
+  HWY_DYNAMIC_DISPATCH(find_steep)(nodes.front().front().data(), most, steep);
   std::uint64_t some = 0;
   for (const std::uint64_t word : steep.words) some |= word;
   return some != 0;

@@ -28,9 +28,9 @@ struct NodeBits {
 
 /// Values below zero. Returns whether some are and some are not.
 bool find_inside(const NodeWindow& nodes, NodeBits& inside);
-/// Of the block's own nodes those whose value is nearer to zero than half of the largest difference from one of their six neighbours.
-/// Returns whether there are any. Of the layer about the block the bits mean nothing.
-bool find_steep(const NodeWindow& nodes, NodeBits& steep);
+/// Of the block's own nodes those whose value is nearer to zero than half of the largest difference from one of their six neighbours, and
+/// than `most`. Returns whether there are any. Of the layer about the block the bits mean nothing.
+bool find_steep(const NodeWindow& nodes, float most, NodeBits& steep);
 /// The largest |value| at these nodes; 0 where there are none. What is no number counts for nothing.
 float largest_value(const NodeWindow& nodes, const NodeBits& which);
 

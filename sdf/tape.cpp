@@ -150,6 +150,48 @@ void find_what_signs_decide(FieldTape& tape) {
   }
 }
 
+/// Whether the result has no second derivatives where the operands have none.
+bool stays_flat(TapeOperation operation) {
+  switch (operation) {
+    case TapeOperation::coordinates:
+    case TapeOperation::constant:
+    case TapeOperation::copy:
+    case TapeOperation::absolute:
+    case TapeOperation::minimum:
+    case TapeOperation::maximum:
+      return true;
+    default:
+      return runs_flat(operation) && operation != TapeOperation::norm2 && operation != TapeOperation::norm3;
+  }
+}
+
+/// Jets of many shapes start from coordinates that are moved and scaled. Pruning makes copies only of what steps read that do not run flat.
+void find_flat_steps(FieldTape& tape) {
+  constexpr size_t kNobody = std::numeric_limits<size_t>::max();
+  std::vector<bool> flat(tape.registers, false);
+  std::vector<size_t> maker(tape.registers, kNobody);
+  const auto asked = [&](std::uint32_t use) {
+    if (maker[use] != kNobody) tape.steps[maker[use]].bare = false;
+  };
+  for (size_t i = 0; i < tape.steps.size(); ++i) {
+    TapeStep& step = tape.steps[i];
+    if (step.operation == TapeOperation::narrow) continue;  // jets stay as they are
+    const std::uint32_t uses[] = {step.a, step.b, step.c};
+    const std::span used(uses, static_cast<size_t>(operands(step.operation)));
+    const bool of_flat = std::all_of(used.begin(), used.end(), [&](std::uint32_t use) { return flat[use]; });
+    step.flat = of_flat && runs_flat(step.operation);
+    if (!step.flat) std::for_each(used.begin(), used.end(), asked);
+    const bool still = of_flat && stays_flat(step.operation);
+    step.bare = still && (step.flat || step.operation == TapeOperation::coordinates);
+    const std::uint32_t results = step.operation == TapeOperation::coordinates ? 3 : 1;
+    for (std::uint32_t k = 0; k < results; ++k) {
+      flat[step.target + k] = still;
+      maker[step.target + k] = i;
+    }
+  }
+  asked(0);
+}
+
 }  // namespace
 
 FieldTape::FieldTape(const Field& of) : field(of) {
@@ -168,6 +210,7 @@ FieldTape::FieldTape(const Field& of) : field(of) {
   const FieldTraits& traits = field.traits();
   margin = traits.bounds.finite() ? 1e-5 * traits.lipschitz * (traits.bounds.radius() + glm::length(traits.bounds.center())) : kInfinity;
   find_what_signs_decide(*this);
+  find_flat_steps(*this);
   joints = static_cast<size_t>(std::count_if(steps.begin(), steps.end(), [](const TapeStep& step) { return joins_parts(step.operation); }));
 }
 

@@ -44,6 +44,8 @@ enum class TapeOperation : std::uint8_t {
 struct TapeStep {
   TapeOperation operation = TapeOperation::copy;
   bool inside_shape = false;  ///< Others may read its operands too.
+  bool flat = false;          ///< What it reads has no second derivatives anywhere, and is not asked for them (runs_flat).
+  bool bare = false;          ///< The same of its result: jets leave it without them.
   bool sign_decides = false;  ///< Between its result and the field's there are nothing but minima, maxima and changes of sign.
   std::uint8_t axes = 7;      ///< Bit i: the i-th coordinate is read.
   std::uint32_t target = 0;

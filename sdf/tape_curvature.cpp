@@ -166,7 +166,7 @@ void curvature(const FieldTape& tape, std::span<const TapeStep> steps, const Lan
   Pass pass(tape);
   pass.beams = &beams;
   pass.rays = &beams.rays;
-  for (int axis = 0; axis < 3; ++axis) pass.point[axis] = beams.rays.origin[axis];
+  for (int axis = 0; axis < 3; ++axis) pass.point[axis] = beams.rays.origin[axis].lane;
   const glm::dvec3 reach(glm::length(beams.origin_spread[0]), glm::length(beams.origin_spread[1]), glm::length(beams.origin_spread[2]));
   for (int i = 0; i < kLanes; i += kWidth) {
     const auto& o = beams.rays.origin;

@@ -21,7 +21,7 @@ namespace {
 template <LaneDifferential D>
 const double* run_at(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch& scratch) {
   Pass pass(tape);
-  for (int axis = 0; axis < 3; ++axis) pass.point[axis] = points[axis];
+  for (int axis = 0; axis < 3; ++axis) pass.point[axis] = points[axis].lane;
   return run_tape<D>(pass, tape.steps, scratch);
 }
 
@@ -71,7 +71,7 @@ const double* jets_of_chosen(Pass& pass, TapeScratch& scratch) {
 void distances(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& result, LaneFlags& reasonable) {
   Pass pass(tape);
   for (size_t first = 0; first < points.count; first += kLanes) {
-    for (size_t axis = 0; axis < 3; ++axis) take(points.at[axis] + first, pass.point[axis]);
+    for (size_t axis = 0; axis < 3; ++axis) pass.point[axis] = points.at[axis] + first;
     const double* const found = jets_of_chosen(pass, scratch);
     unsigned bits = 0;
     for (int part = 0; part < kParts; ++part) {

@@ -25,8 +25,9 @@ void set_points(Pass& pass, const LaneRays& rays, const LaneArray& s) {
   pass.rays = &rays;
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 0; i < kLanes; i += kWidth) {
-      store(load(rays.origin[axis].lane + i) + load(s.lane + i) * load(rays.direction[axis].lane + i), pass.point[axis].lane + i);
+      store(load(rays.origin[axis].lane + i) + load(s.lane + i) * load(rays.direction[axis].lane + i), pass.on_rays[axis].lane + i);
     }
+    pass.point[axis] = pass.on_rays[axis].lane;
   }
 }
 
@@ -54,10 +55,13 @@ void values(const FieldTape& tape, std::span<const TapeStep> steps, const LaneRa
 
 void values_at(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& values) {
   Pass pass(tape);
-  for (size_t first = 0; first < points.count; first += kLanes) {
-    for (size_t axis = 0; axis < 3; ++axis) take(points.at[axis] + first, pass.point[axis]);
-    const double* const found = run_tape<Reals>(pass, tape.steps, scratch);
-    for (size_t i = 0; i < kLanes; i += static_cast<size_t>(kWidth)) store(load(found + i), values.at + first + i);
+  for (size_t first = 0; first < points.count;) {
+    for (size_t axis = 0; axis < 3; ++axis) pass.point[axis] = points.at[axis] + first;
+    const bool many = points.count - first > (kTogether - 1) * kLanes;
+    const double* const found = many ? run_values_together(pass, tape.steps, scratch) : run_tape<Reals>(pass, tape.steps, scratch);
+    const size_t end = first + (many ? kTogether * kLanes : kLanes);
+    for (size_t i = first; i < end; i += static_cast<size_t>(kWidth)) store(load(found + (i - first)), values.at + i);
+    first = end;
   }
 }
 

@@ -5,6 +5,22 @@
 
 namespace limn {
 
+/// Whether jets without second derivatives are read without them (run_flat).
+inline bool runs_flat(TapeOperation operation) {
+  switch (operation) {
+    case TapeOperation::negate:
+    case TapeOperation::add_constant:
+    case TapeOperation::multiply_constant:
+    case TapeOperation::add:
+    case TapeOperation::subtract:
+    case TapeOperation::norm2:
+    case TapeOperation::norm3:
+      return true;
+    default:
+      return false;
+  }
+}
+
 inline int operands(TapeOperation operation) {
   switch (operation) {
     case TapeOperation::coordinates:

@@ -123,22 +123,26 @@ HWY_INLINE T constant_of(double x) {
 /// What a pass is about: points, or stretches of beams.
 struct Pass {
   explicit Pass(const FieldTape& of) : tape(&of) {}
+  Pass(const Pass&) = delete;
+  Pass& operator=(const Pass&) = delete;
   const FieldTape* tape;
   const LaneRays* rays = nullptr;
   const LaneBeams* beams = nullptr;
-  LaneArray point[3];  ///< o + s d.
-  LaneArray extent;    ///< How large coordinates and their parts are: for rounding.
-  LaneArray speed;     ///< At least |d|.
+  const double* point[3]{};  ///< By axis, as many as the pass has lanes.
+  LaneArray on_rays[3];      ///< o + s d, where the points are these.
+  LaneArray extent;          ///< How large coordinates and their parts are: for rounding.
+  LaneArray speed;           ///< At least |d|.
   TapeChoice* choices = nullptr;
 };
 
-HWY_INLINE Reals row_of(const double* row, const LaneArray* p, int at) {
-  return load(p[0].lane + at) * row[0] + load(p[1].lane + at) * row[1] + load(p[2].lane + at) * row[2];
+HWY_INLINE Reals row_of(const double* row, const double* const (&p)[3], int at) {
+  return load(p[0] + at) * row[0] + load(p[1] + at) * row[1] + load(p[2] + at) * row[2];
 }
+HWY_INLINE Reals row_of(const double* row, const LaneArray (&p)[3], int at) { return row_of(row, {p[0].lane, p[1].lane, p[2].lane}, at); }
 
 HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int at, Reals& x) {
   const double* row = leaf.row[axis];
-  x = (leaf.translated_only ? load(pass.point[axis].lane + at) : row_of(row, pass.point, at)) + row[3];
+  x = (leaf.translated_only ? load(pass.point[axis] + at) : row_of(row, pass.point, at)) + row[3];
 }
 HWY_INLINE void coordinate(const Pass& pass, const TapeLeaf& leaf, int axis, int at, LaneDual<1>& x) {
   coordinate(pass, leaf, axis, at, x.value);

@@ -6,6 +6,8 @@
 #define LIMN_TAPE_STEPS_INL_H
 #endif
 
+#include <algorithm>
+#include <concepts>
 #include <span>
 
 #include "sdf/tape_pass-inl.h"
@@ -33,11 +35,12 @@ HWY_INLINE void add(LaneMask mask, int part, std::uint16_t& bits) {
   bits = static_cast<std::uint16_t>(bits | bits_of(mask) << (part * kWidth));
 }
 
-/// `Used` vectors of a register's lanes are filled.
+/// `Used` vectors of a register's lanes are filled. Only numbers of one component have more than sixteen lanes.
 template <class T, int Used>
 struct Runner {
+  static_assert(Used <= kParts || Kind<T>::kComponents == 1);
   static constexpr int kUsed = Used;
-  static constexpr int kSize = Kind<T>::kComponents * kLanes;
+  static constexpr int kSize = Kind<T>::kComponents * std::max(kLanes, Used* kWidth);
   const Pass& pass;
   double* registers;
 
@@ -48,6 +51,17 @@ struct Runner {
     return a;
   }
   HWY_INLINE void write(std::uint32_t index, int part, const T& a) const { put(a, at(index, part)); }
+  /// Of jets without second derivatives what else they have.
+  HWY_INLINE LaneGradient read_flat(std::uint32_t index, int part) const {
+    LaneGradient a;
+    get(at(index, part), a);
+    return a;
+  }
+  HWY_INLINE void write_flat(const TapeStep& step, int part, const LaneGradient& a) const {
+    double* const to = at(step.target, part);
+    put(a, to);
+    for (int i = LaneGradient::kComponents; !step.bare && i < LaneJet::kComponents; ++i) store(reals(0.0), to + i * kLanes);
+  }
 };
 
 #define LIMN_STEP(expression)                        \
@@ -172,6 +186,45 @@ void run_corner(const Runner& runner, const TapeStep& step, TapeChoice* choice) 
   }
 }
 
+#define LIMN_FLAT(expression)                              \
+  for (int part = 0; part < Runner::kUsed; ++part) {       \
+    const LaneGradient a = runner.read_flat(step.a, part); \
+    runner.write_flat(step, part, expression);             \
+  }                                                        \
+  return true
+#define LIMN_FLAT2(expression)                             \
+  for (int part = 0; part < Runner::kUsed; ++part) {       \
+    const LaneGradient a = runner.read_flat(step.a, part); \
+    const LaneGradient b = runner.read_flat(step.b, part); \
+    expression;                                            \
+  }                                                        \
+  return true
+
+/// A step of jets without second derivatives, which are not read then; false where it is run like any other.
+template <class Runner>
+bool run_flat(const Runner& runner, const TapeStep& step) {
+  switch (step.operation) {
+    case TapeOperation::negate:
+      LIMN_FLAT(-a);
+    case TapeOperation::add_constant:
+      LIMN_FLAT(a + step.constant);
+    case TapeOperation::multiply_constant:
+      LIMN_FLAT(a * step.constant);
+    case TapeOperation::add:
+      LIMN_FLAT2(runner.write_flat(step, part, a + b));
+    case TapeOperation::subtract:
+      LIMN_FLAT2(runner.write_flat(step, part, a - b));
+    case TapeOperation::norm2:
+      LIMN_FLAT2(runner.write(step.target, part, norm_of_flat<2>({&a, &b})));
+    case TapeOperation::norm3:
+      LIMN_FLAT2(const LaneGradient c = runner.read_flat(step.c, part); runner.write(step.target, part, norm_of_flat<3>({&a, &b, &c})));
+    default:  // as runs_flat() has it
+      return false;
+  }
+}
+#undef LIMN_FLAT
+#undef LIMN_FLAT2
+
 /// `kNotes`: of values, too, what choices say.
 template <class T, int Used, bool kNotes = false>
 void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* registers) {
@@ -179,20 +232,31 @@ void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* regist
   const Runner runner{pass, registers};
   TapeChoice* choice = pass.choices;
   for (const TapeStep& step : steps) {
+    if constexpr (std::same_as<T, LaneJet>)
+      if (step.flat && run_flat(runner, step)) continue;
     switch (step.operation) {
       case TapeOperation::coordinates:
         for (int axis = 0; axis < 3; ++axis) {
           if (!(step.axes >> axis & 1)) continue;
           for (int part = 0; part < Runner::kUsed; ++part) {
+            const std::uint32_t target = step.target + static_cast<std::uint32_t>(axis);
+            if constexpr (std::same_as<T, LaneJet>)
+              if (step.bare) {
+                LaneGradient x;
+                coordinate(pass, pass.tape->leaves[step.leaf], axis, part * kWidth, x);
+                put(x, runner.at(target, part));
+                continue;
+              }
             T x;
             coordinate(pass, pass.tape->leaves[step.leaf], axis, part * kWidth, x);
-            runner.write(step.target + static_cast<std::uint32_t>(axis), part, x);
+            runner.write(target, part, x);
           }
         }
         break;
       case TapeOperation::shape:
-        shape_by_lane(*pass.tape->leaves[step.leaf].leaf, Kind<T>::kNumber, Used * kWidth, runner.at(step.a, 0), runner.at(step.b, 0),
-                      runner.at(step.c, 0), runner.at(step.target, 0));
+        for (int part = 0; part < Used; part += kParts)
+          shape_by_lane(*pass.tape->leaves[step.leaf].leaf, Kind<T>::kNumber, std::min(Used, kParts) * kWidth, runner.at(step.a, part),
+                        runner.at(step.b, part), runner.at(step.c, part), runner.at(step.target, part));
         break;
       case TapeOperation::narrow:
         if constexpr (kBounding<T>) {
@@ -252,6 +316,16 @@ void run_steps(const Pass& pass, std::span<const TapeStep> steps, double* regist
 #undef LIMN_STEP
 #undef LIMN_STEP2
 #undef LIMN_STEP3
+
+/// Sixteens of values that go through the steps together: one waits for roots and memory where the next one need not.
+constexpr int kTogether = 4;
+
+/// Values at kTogether times as many points.
+inline const double* run_values_together(const Pass& pass, std::span<const TapeStep> steps, TapeScratch& scratch) {
+  double* const registers = scratch.registers(registers_used(pass.tape->registers) * static_cast<size_t>(kTogether * kLanes));
+  run_steps<Reals, kTogether * kParts>(pass, steps, registers);
+  return registers;
+}
 
 template <class T>
 const double* run_tape(Pass& pass, std::span<const TapeStep> steps, TapeScratch& scratch) {

@@ -4,12 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <memory>
 #include <random>
 
 #include "sdf/band_slopes.h"
+#include "sdf/level_set_band.h"
+#include "sdf/level_set_nano.h"
 #include "tests/random_seed.h"
 #include "tests/simd_targets.h"
 
@@ -45,11 +48,17 @@ void expect_near_points(std::mt19937& random) {
       ASSERT_LT(k, near->points.count);
       ASSERT_EQ(near->index[k], i);
       ASSERT_EQ(near->no_less[k], no_less);
+      ASSERT_EQ(near->value[k], before[i]);
       ASSERT_EQ(near->points.point(k), points->point(i));
       ++k;
     }
     ASSERT_EQ(near->points.count, k);
     for (size_t i = k; k > 0 && i % 16 != 0; ++i) ASSERT_EQ(near->points.point(i), near->points.point(k - 1));
+    LaneNumbers sizes, sought;
+    for (double& x : sought.at) x = place(random);
+    sizes = sought;
+    sign_sizes(*near, sizes);
+    for (size_t i = 0; i < k; ++i) ASSERT_EQ(sizes[i], std::copysign(std::max(std::abs(sought[i]), near->no_less[i]), near->value[i])) << i;
   }
 }
 
@@ -151,6 +160,70 @@ void expect_slopes(std::mt19937& random) {
   }
 }
 
+/// Blocks of a plane with holes in its band, and with values that are nothing like a distance.
+std::vector<LevelSetBlock> random_blocks(std::mt19937& random, float background) {
+  std::uniform_real_distribution<float> number(-1.0f, 1.0f);
+  const glm::vec3 normal(number(random), number(random), number(random));
+  const float offset = 4.0f * number(random);
+  const bool wild = random() % 2 == 0;
+  std::vector<LevelSetBlock> blocks;
+  for (int k = 0; k < 8; ++k) {
+    if (random() % 8 == 0) continue;
+    LevelSetBlock& block = blocks.emplace_back();
+    block.origin = 8 * glm::ivec3(k & 1, k >> 1 & 1, k >> 2);
+    for (std::uint64_t& word : block.active) word = random() % 4 == 0 ? std::uint64_t{random()} << 32 | random() | 1u : ~std::uint64_t{0};
+    for (int n = 0; n < 512; ++n) {
+      const glm::vec3 place(block.origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7));
+      float value = glm::dot(normal, place - 8.0f) + offset;
+      if (wild && random() % 8 == 0) value = background * number(random);
+      const bool active = (block.active[n >> 6] >> (n & 63) & 1u) != 0;
+      block.values[n] = active ? glm::clamp(value, -background, background) : std::copysign(background, value);
+    }
+  }
+  return blocks;
+}
+
+/// The nodes of the band that are near the surface by their own value, and those of them that have no neighbour beyond it.
+std::array<std::int64_t, 2> near_nodes_of_a_plain_loop(const nanovdb::FloatGrid& grid, double background) {
+  const auto accessor = grid.getAccessor();
+  std::array<std::int64_t, 2> counts{};
+  for (int n = 0; n < 16 * 16 * 16; ++n) {
+    const nanovdb::Coord here(n >> 8, n >> 4 & 15, n & 15);
+    const float value = accessor.getValue(here);
+    if (!accessor.isActive(here) || !(std::abs(static_cast<double>(value)) < 0.5 * background)) continue;
+    float largest = 0.0f;
+    bool beyond = false;
+    for (const nanovdb::Coord& step : {nanovdb::Coord(1, 0, 0), nanovdb::Coord(0, 1, 0), nanovdb::Coord(0, 0, 1)})
+      for (const nanovdb::Coord& other : {here + step, here - step}) {
+        beyond = beyond || (accessor.getValue(other) < 0.0f) != (value < 0.0f);
+        if (accessor.isActive(other)) largest = std::max(largest, std::abs(accessor.getValue(other) - value));
+      }
+    if (!(std::abs(value) < 0.5f * largest)) continue;
+    ++counts[0];
+    counts[1] += beyond ? 0 : 1;
+  }
+  return counts;
+}
+
+void expect_near_nodes(std::mt19937& random) {
+  std::array<std::int64_t, 2> all{};
+  for (int round = 0; round < 40; ++round) {
+    const float background = 0.3f + 0.1f * static_cast<float>(random() % 40);
+    const std::vector<LevelSetBlock> blocks = random_blocks(random, background);
+    if (blocks.empty()) continue;
+    const auto handle = nano_grid(blocks, background);
+    const nanovdb::FloatGrid& grid = *handle.grid<float>();
+    const auto expected = near_nodes_of_a_plain_loop(grid, static_cast<double>(background));
+    const BandFacts facts = survey_band(grid, glm::dmat3(1.0), 1.0, false).facts;
+    ASSERT_EQ(facts.near_nodes, expected[0]);
+    ASSERT_EQ(facts.unsigned_nodes, expected[1]);
+    for (size_t k = 0; k < 2; ++k) all[k] += expected[k];
+  }
+  EXPECT_GT(all[0], 1000);
+  EXPECT_GT(all[1], 20);
+  EXPECT_LT(all[1], all[0]);
+}
+
 /// Whether `expect(random)` holds with every SIMD target of the machine.
 template <class Expect>
 bool holds_on_every_target(const Expect& expect) {
@@ -167,6 +240,7 @@ bool holds_on_every_target(const Expect& expect) {
 TEST(LevelSetLanes, PointsNearTheSurfaceAreThoseThatOneByOneLookingFinds) { EXPECT_TRUE(holds_on_every_target(expect_near_points)); }
 TEST(LevelSetLanes, FlagsSayWhichNumbersAreWithin) { EXPECT_TRUE(holds_on_every_target(expect_flags)); }
 TEST(LevelSetLanes, DistancesComeToTheirNodesAndNoOthersChange) { EXPECT_TRUE(holds_on_every_target(expect_distances_put)); }
+TEST(LevelSetLanes, NodesNearTheSurfaceAreThoseOfAPlainLoop) { EXPECT_TRUE(holds_on_every_target(expect_near_nodes)); }
 TEST(BandSlopes, AreThoseOfCentralDifferencesAtEachCrossedEdge) { EXPECT_TRUE(holds_on_every_target(expect_slopes)); }
 
 }  // namespace

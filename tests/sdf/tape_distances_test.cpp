@@ -63,6 +63,22 @@ TEST(TapeDistances, OfWhatIsChosenHaveTheBitsOfTheWholeField) {
   EXPECT_GT(shorter, 50);
 }
 
+/// A plane has no second derivatives, whatever the registers held before.
+TEST(TapeDistances, OfAPlaneAreTheFieldsOwn) {
+  TapeScratch scratch;
+  Random random(random_seed());
+  const Field wavy = make_shape("gyroid");
+  const Field plane = make_shape("plane", {{"normal", {0.6, 0.0, 0.8}}, {"offset", {0.25}}});
+  const std::vector<Field> planes{plane, translate(plane, {1.0, 0.0, 0.0})};
+  for (const Field& field : {planes[0], planes[1], combine(Csg::intersection, planes)})
+    for (int trial = 0; trial < 20; ++trial) {
+      const std::vector<glm::dvec3> points = points_together(random);
+      expect_distances_of_the_jets(wavy, FieldTape(wavy), points, scratch);
+      expect_distances_of_the_jets(field, FieldTape(field), points, scratch);
+    }
+  EXPECT_FALSE(testing::Test::HasFailure());
+}
+
 /// Equal values with different slopes: which one is taken must not depend on what the other lanes take.
 TEST(TapeDistances, WherePartsAreEqualHaveTheBitsOfTheWholeField) {
   TapeScratch scratch;

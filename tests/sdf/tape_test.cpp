@@ -285,7 +285,7 @@ TEST(Tape, ValuesAtPointsHaveTheBitsOfTheField) {
     if (!has_bits_of_field(tape)) return;
     ++compared;
     FieldEvaluator evaluator(field);
-    std::vector<glm::dvec3> points(37);  // lanes are left over
+    std::vector<glm::dvec3> points(1 + static_cast<size_t>(random.index(200)));  // some together, some sixteens, and lanes left over
     const bool on_lattice = random.index(3) == 0;
     for (glm::dvec3& p : points) {
       p = random.point(1.0);

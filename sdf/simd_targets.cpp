@@ -1,5 +1,9 @@
-// Which SIMD targets the machine has: the two functions of Highway's library that its headers ask for. The library measures the clock for
-// 4 ms whenever a program starts, as long as all else that a call starts with; with these it need not be linked.
+// Which SIMD targets the machine has: the functions of Highway's library that its headers ask for. The library measures the clock for 4 ms
+// whenever a program starts, as long as all else that a call starts with; with these it need not be linked.
+
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
 
 #include "sdf/simd.h"
 // clang-format off: which targets, before the header that asks.
@@ -37,6 +41,17 @@ std::int64_t targets_of_machine() { return HWY_STATIC_TARGET; }
 }  // namespace
 
 namespace hwy {
+
+/// Where one of Highway's own checks fails: they are there in debug builds and under sanitizers.
+void Abort(const char* file, int line, const char* format, ...) {
+  std::fprintf(stderr, "%s:%d: ", file, line);
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vfprintf(stderr, format, arguments);
+  va_end(arguments);
+  std::fputc('\n', stderr);
+  std::abort();
+}
 
 std::int64_t SupportedTargets() { return targets_of_machine() | HWY_EMU128 | HWY_SCALAR; }
 

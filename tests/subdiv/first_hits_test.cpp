@@ -80,7 +80,7 @@ TEST(FirstHits, OfEquallyNearTrianglesAreTheLowestAndTheSameForOneThread) {
   const size_t once = mesh.triangles.size();
   // More than a piece that one thread takes.
   while (mesh.triangles.size() < 200'000)
-    mesh.triangles.insert(mesh.triangles.end(), mesh.triangles.begin(), mesh.triangles.begin() + once);
+    mesh.triangles.insert(mesh.triangles.end(), mesh.triangles.begin(), mesh.triangles.begin() + static_cast<std::ptrdiff_t>(once));
   const std::vector<SegmentRay> rays = rays_in(random, 200);
   const std::vector<SegmentHit> hits = first_hits(mesh, rays);
   int met = 0;

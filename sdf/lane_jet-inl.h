@@ -132,74 +132,41 @@ HWY_INLINE D cosine(const D& a) {
   return chain(a, c, -sine(a.value), -c);
 }
 
-/// The value and gradient of the length of N numbers: of every norm, as if it had no second derivatives. `nowhere`: where it is 0, and has
-/// no derivatives; `length` is 1 there.
-template <int N, class D>
-HWY_INLINE LaneGradient length_of(const D* const (&x)[N], LaneMask& nowhere, Reals& length, Reals (&share)[N]) {
+/// The length of N numbers; 0 without derivatives where it is 0. Operands without second derivatives give a jet (`R`) that has some.
+template <LaneDifferential R, int N, LaneDifferential D>
+HWY_INLINE R norm_of(const D* const (&x)[N]) {
   const Reals zero = reals(0.0);
   Reals squares = zero;
   for (const D* xi : x) squares = squares + xi->value * xi->value;
-  LaneGradient r;
+  R r;
   r.value = square_root(squares);
   for (Reals& g : r.gradient) g = zero;
-  nowhere = {hn::Eq(r.value.v, zero.v)};
-  length = select(nowhere, reals(1.0), r.value);
-  for (int k = 0; k < N; ++k) {
-    share[k] = x[k]->value / length;
-    for (int i = 0; i < 3; ++i) r.gradient[i] = r.gradient[i] + share[k] * x[k]->gradient[i];
-  }
-  return r;
-}
-/// `r` has what its parts' own second derivatives give; what lengths bend by themselves is added.
-template <int N, class D>
-HWY_INLINE void bend_length(const D* const (&x)[N], LaneMask nowhere, Reals length, LaneJet& r) {
-  const Reals zero = reals(0.0), inverse = reals(1.0) / length;
-  for (const D* xi : x) add_outer(r, inverse, xi->gradient, xi->gradient);
-  add_outer(r, -inverse, r.gradient, r.gradient);  // the bits of -1 / length
-  for (Reals& h : r.hessian) h = select(nowhere, zero, h);
-}
-
-/// The length of N jets; 0 without derivatives where it is 0.
-template <int N, LaneDifferential D>
-HWY_INLINE D norm_of(const D* const (&x)[N]) {
-  const Reals zero = reals(0.0);
-  LaneMask nowhere;
-  Reals length, share[N];
-  const LaneGradient first = length_of<N>(x, nowhere, length, share);
-  D r;
-  r.value = first.value;
-  for (int i = 0; i < 3; ++i) r.gradient[i] = first.gradient[i];
-  if constexpr (kHasHessian<D>) {
+  if constexpr (kHasHessian<R>)
     for (Reals& h : r.hessian) h = zero;
-    for (int k = 0; k < N; ++k)
-      for (int i = 0; i < 6; ++i) r.hessian[i] = r.hessian[i] + share[k] * x[k]->hessian[i];
-    bend_length<N>(x, nowhere, length, r);
+  const LaneMask nowhere = {hn::Eq(r.value.v, zero.v)};
+  const Reals length = select(nowhere, reals(1.0), r.value);
+  for (const D* xi : x) {
+    const Reals u = xi->value / length;
+    for (int i = 0; i < 3; ++i) r.gradient[i] = r.gradient[i] + u * xi->gradient[i];
+    if constexpr (kHasHessian<D>)
+      for (int i = 0; i < 6; ++i) r.hessian[i] = r.hessian[i] + u * xi->hessian[i];
   }
-  for (Reals& g : r.gradient) g = select(nowhere, zero, g);
-  return r;
-}
-/// The same of jets without second derivatives.
-template <int N>
-HWY_INLINE LaneJet norm_of_flat(const LaneGradient* const (&x)[N]) {
-  const Reals zero = reals(0.0);
-  LaneMask nowhere;
-  Reals length, share[N];
-  const LaneGradient first = length_of<N>(x, nowhere, length, share);
-  LaneJet r;
-  r.value = first.value;
-  for (int i = 0; i < 3; ++i) r.gradient[i] = first.gradient[i];
-  for (Reals& h : r.hessian) h = zero;
-  bend_length<N>(x, nowhere, length, r);
+  if constexpr (kHasHessian<R>) {
+    const Reals inverse = reals(1.0) / length;
+    for (const D* xi : x) add_outer(r, inverse, xi->gradient, xi->gradient);
+    add_outer(r, -inverse, r.gradient, r.gradient);  // the bits of -1 / length
+    for (Reals& h : r.hessian) h = select(nowhere, zero, h);
+  }
   for (Reals& g : r.gradient) g = select(nowhere, zero, g);
   return r;
 }
 template <LaneDifferential D>
 HWY_INLINE D norm(const D& x, const D& y) {
-  return norm_of<2, D>({&x, &y});
+  return norm_of<D, 2, D>({&x, &y});
 }
 template <LaneDifferential D>
 HWY_INLINE D norm(const D& x, const D& y, const D& z) {
-  return norm_of<3, D>({&x, &y, &z});
+  return norm_of<D, 3, D>({&x, &y, &z});
 }
 
 template <LaneDifferential D>

@@ -215,9 +215,10 @@ bool run_flat(const Runner& runner, const TapeStep& step) {
     case TapeOperation::subtract:
       LIMN_FLAT2(runner.write_flat(step, part, a - b));
     case TapeOperation::norm2:
-      LIMN_FLAT2(runner.write(step.target, part, norm_of_flat<2>({&a, &b})));
+      LIMN_FLAT2(runner.write(step.target, part, norm_of<LaneJet, 2, LaneGradient>({&a, &b})));
     case TapeOperation::norm3:
-      LIMN_FLAT2(const LaneGradient c = runner.read_flat(step.c, part); runner.write(step.target, part, norm_of_flat<3>({&a, &b, &c})));
+      LIMN_FLAT2(const LaneGradient c = runner.read_flat(step.c, part);
+                 runner.write(step.target, part, norm_of<LaneJet, 3, LaneGradient>({&a, &b, &c})));
     default:  // as runs_flat() has it
       return false;
   }

@@ -12,9 +12,9 @@ namespace limn {
 
 /// One point on its way onto the surface, a question at a time, so that many can be asked together: what project_to_surface (sdf/shape.h)
 /// does. `extent` is the radius of the field's bounds; not above 0: they are not finite.
-class Projection {
+class SurfaceProjection {
  public:
-  Projection(const glm::dvec3& start, double extent, double tolerance)
+  SurfaceProjection(const glm::dvec3& start, double extent, double tolerance)
       : asked_(start), tolerance_(tolerance), extent_(extent > 0.0 ? extent : std::max(1.0, glm::length(start))) {}
 
   bool done() const { return done_; }
@@ -66,13 +66,13 @@ class Projection {
   bool begun_ = false, done_ = false, reached_ = false;
 };
 
-/// For Projection.
+/// For SurfaceProjection.
 inline double extent_of(const Box& bounds) { return bounds.finite() ? bounds.radius() : 0.0; }
 
 /// `bounds` are the field's, `gradient_at(point, value, gradient)` evaluates it.
 template <class GradientAt>
 bool project_with(const GradientAt& gradient_at, const Box& bounds, glm::dvec3& point, double tolerance) {
-  Projection projection(point, extent_of(bounds), tolerance);
+  SurfaceProjection projection(point, extent_of(bounds), tolerance);
   while (!projection.done()) {
     glm::dvec3 gradient;
     double value = 0.0;

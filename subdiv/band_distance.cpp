@@ -22,14 +22,14 @@
 namespace limn {
 
 /// f(p) = slope . p + constant; in voxels from the block's first node.
-struct LinearForm {
+struct AffineForm {
   glm::dvec3 slope;
   double constant;
 };
 
 struct PreparedTriangle {
-  LinearForm height;
-  LinearForm across[3], along[3];  ///< Of each edge; `across` is positive outside.
+  AffineForm height;
+  AffineForm across[3], along[3];  ///< Of each edge; `across` is positive outside.
   double length[3];
   std::uint64_t rows;  ///< Those of which some node may be nearer to it than to what is known.
 };
@@ -59,14 +59,14 @@ using Vec = hn::Vec<Lanes8>;
 /// Squared distances of one row to the triangle; true where any node's became less.
 HWY_INLINE bool TakeRow(const PreparedTriangle& triangle, double x, double y, double* HWY_RESTRICT squared) {
   const Lanes8 d;
-  const auto base = [x, y](const LinearForm& f) { return f.constant + f.slope.x * x + f.slope.y * y; };
+  const auto base = [x, y](const AffineForm& f) { return f.constant + f.slope.x * x + f.slope.y * y; };
   const double height = base(triangle.height);
   double across[3], along[3];
   for (int k = 0; k < 3; ++k) across[k] = base(triangle.across[k]), along[k] = base(triangle.along[k]);
   bool changed = false;
   for (size_t first = 0; first < 8; first += hn::Lanes(d)) {
     const Vec z = hn::Iota(d, static_cast<double>(first));
-    const auto at = [&](const LinearForm& f, double start) { return hn::Add(hn::Set(d, start), hn::Mul(z, hn::Set(d, f.slope.z))); };
+    const auto at = [&](const AffineForm& f, double start) { return hn::Add(hn::Set(d, start), hn::Mul(z, hn::Set(d, f.slope.z))); };
     Vec outside = hn::Set(d, -1.0), in_plane = hn::Set(d, std::numeric_limits<double>::infinity());
     for (int k = 0; k < 3; ++k) {
       const Vec w = at(triangle.across[k], across[k]), s = at(triangle.along[k], along[k]);
@@ -139,7 +139,7 @@ void TakeTriangles(const PreparedTriangle* triangles, size_t count, BlockDistanc
       const int row = std::countr_zero(rows), x = row >> 3, y = row & 7;
       // By the plane: it cannot come nearer than what is known.
       const double known = block.row_farthest[row];
-      const LinearForm& h = triangle.height;
+      const AffineForm& h = triangle.height;
       const double low = h.constant + h.slope.x * x + h.slope.y * y, high = low + 7.0 * h.slope.z;
       if (std::min(low, high) >= known || std::max(low, high) <= -known) continue;
       if (TakeRow(triangle, x, y, block.squared + 8 * row)) UpdateRow(row, block);
@@ -157,7 +157,7 @@ namespace {
 HWY_EXPORT(FindRows);
 HWY_EXPORT(TakeTriangles);
 
-LinearForm form(const glm::dvec3& slope, const glm::dvec3& zero) { return {slope, -glm::dot(slope, zero)}; }
+AffineForm form(const glm::dvec3& slope, const glm::dvec3& zero) { return {slope, -glm::dot(slope, zero)}; }
 
 /// False for slivers, whose plane is not known well enough.
 bool prepare(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, PreparedTriangle& out) {

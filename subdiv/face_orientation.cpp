@@ -50,9 +50,9 @@ std::int64_t turn_outwards(Mesh& mesh) {
   if (!may_be_inverted(mesh)) return 0;
   const Edges edges = build_edges(mesh);
   MeshParts found = find_parts(mesh, edges);
-  if (std::none_of(found.parts.begin(), found.parts.end(), [](const MeshPart& part) { return part.inverted; })) return 0;
+  if (std::none_of(found.parts.begin(), found.parts.end(), [](const ConnectedPart& part) { return part.inverted; })) return 0;
   double volume = 0.0;
-  for (const MeshPart& part : found.parts) volume += part.encloses() ? part.volume : 0.0;
+  for (const ConnectedPart& part : found.parts) volume += part.encloses() ? part.volume : 0.0;
   const bool whole = volume < 0.0;
   std::vector<char> turned(found.parts.size(), whole);
   if (whole) {

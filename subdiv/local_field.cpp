@@ -60,7 +60,7 @@ Landing LocalField::project(const glm::dvec3& point) { return project(std::span(
 
 std::vector<Landing> LocalField::project(std::span<const glm::dvec3> points) {
   constexpr double kTolerance = 1e-12;
-  std::vector<Projection> projections;
+  std::vector<SurfaceProjection> projections;
   projections.reserve(points.size());
   for (const glm::dvec3& point : points) projections.emplace_back(point, extent_, kTolerance);
   std::vector<size_t> open(points.size());
@@ -77,7 +77,7 @@ std::vector<Landing> LocalField::project(std::span<const glm::dvec3> points) {
   }
   std::vector<Landing> landings;
   landings.reserve(points.size());
-  for (const Projection& one : projections) landings.push_back({one.position(), one.reached(), one.value(), one.gradient()});
+  for (const SurfaceProjection& one : projections) landings.push_back({one.position(), one.reached(), one.value(), one.gradient()});
   return landings;
 }
 

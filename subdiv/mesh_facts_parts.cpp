@@ -8,7 +8,7 @@ namespace limn {
 void count_parts(const Mesh& mesh, const Edges& edges, MeshFacts& facts) {
   const MeshParts found = find_parts(mesh, edges);
   facts.parts = static_cast<std::int64_t>(found.parts.size());
-  for (const MeshPart& part : found.parts) {
+  for (const ConnectedPart& part : found.parts) {
     facts.closed_parts += part.closed;
     if (part.closed) facts.volume += part.volume;
     facts.inverted_parts += part.inverted;

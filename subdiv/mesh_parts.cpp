@@ -30,20 +30,20 @@ MeshParts measure(const Mesh& mesh, const Edges& edges) {
   MeshParts found;
   found.parts.resize(static_cast<size_t>(part_of_faces(mesh, found.of_face)));
   for (const Edge& edge : edges) {
-    MeshPart& part = found.parts[static_cast<size_t>(found.of_face[static_cast<size_t>(edge.face_a)])];
+    ConnectedPart& part = found.parts[static_cast<size_t>(found.of_face[static_cast<size_t>(edge.face_a)])];
     const bool agree = edge.face_count != 2 || edge.consistent;
     part.consistent = part.consistent && agree;
     part.closed = part.closed && edge.face_count == 2 && agree;
   }
   visit_triangles(mesh, [&](size_t f, const Triangle& t) {
-    MeshPart& part = found.parts[static_cast<size_t>(found.of_face[f])];
+    ConnectedPart& part = found.parts[static_cast<size_t>(found.of_face[f])];
     // About a vertex of its own: about a point far from a small part all digits would cancel.
     if (part.box.empty()) part.point = t[0];
     part.volume += glm::dot(t[0] - part.point, glm::cross(t[1] - part.point, t[2] - part.point)) / 6.0;
     part.area += 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]);
     for (const glm::dvec3& p : t) part.box = include(part.box, p);
   });
-  for (MeshPart& part : found.parts) part.volume += glm::dot(part.point - part.box.center(), part.area) / 3.0;
+  for (ConnectedPart& part : found.parts) part.volume += glm::dot(part.point - part.box.center(), part.area) / 3.0;
   return found;
 }
 
@@ -77,18 +77,18 @@ bool holds(const Box& outer, const Box& inner) {
 /// pass over the triangles.
 void find_cavities(const Mesh& mesh, MeshParts& found) {
   struct Asked {
-    MeshPart* part;
+    ConnectedPart* part;
     int winding = 0;
   };
   std::vector<Asked> asked;
-  for (MeshPart& part : found.parts) {
-    const auto around = [&](const MeshPart& other) { return other.closed && other.volume > 0.0 && holds(other.box, part.box); };
+  for (ConnectedPart& part : found.parts) {
+    const auto around = [&](const ConnectedPart& other) { return other.closed && other.volume > 0.0 && holds(other.box, part.box); };
     if (part.inverted && part.closed && std::any_of(found.parts.begin(), found.parts.end(), around)) asked.push_back({&part});
   }
   if (asked.empty()) return;
   std::sort(asked.begin(), asked.end(), [](const Asked& a, const Asked& b) { return a.part->point.y < b.part->point.y; });
   visit_triangles(mesh, [&](size_t f, const Triangle& t) {
-    const MeshPart& part = found.parts[static_cast<size_t>(found.of_face[f])];
+    const ConnectedPart& part = found.parts[static_cast<size_t>(found.of_face[f])];
     if (!part.closed || !(part.volume > 0.0)) return;
     const auto [low, high] = std::minmax({t[0].y, t[1].y, t[2].y});
     auto at = std::lower_bound(asked.begin(), asked.end(), low, [](const Asked& a, double y) { return a.part->point.y < y; });
@@ -102,19 +102,20 @@ void find_cavities(const Mesh& mesh, MeshParts& found) {
 
 }  // namespace
 
-bool MeshPart::encloses() const {
+bool ConnectedPart::encloses() const {
   const glm::dvec3 half = 0.5 * (box.upper - box.lower);
   return consistent && glm::dot(half, glm::abs(area)) / 3.0 <= kSureShare * std::abs(volume);
 }
 
 bool may_be_inverted(const Mesh& mesh) {
   const MeshParts found = measure(mesh, {});
-  return std::any_of(found.parts.begin(), found.parts.end(), [](const MeshPart& part) { return part.volume < 0.0 && part.encloses(); });
+  return std::any_of(found.parts.begin(), found.parts.end(),
+                     [](const ConnectedPart& part) { return part.volume < 0.0 && part.encloses(); });
 }
 
 MeshParts find_parts(const Mesh& mesh, const Edges& edges) {
   MeshParts found = measure(mesh, edges);
-  for (MeshPart& part : found.parts) part.inverted = part.volume < 0.0 && part.encloses();
+  for (ConnectedPart& part : found.parts) part.inverted = part.volume < 0.0 && part.encloses();
   find_cavities(mesh, found);
   return found;
 }

@@ -8,7 +8,7 @@
 
 namespace limn {
 
-struct MeshPart {
+struct ConnectedPart {
   bool closed = true;      ///< Every edge has two faces, which agree on the outside.
   bool consistent = true;  ///< No two faces at an edge disagree on it; edges may be open.
   double volume = 0.0;     ///< Signed, about the middle of its box; the file's units.
@@ -23,7 +23,7 @@ struct MeshPart {
 };
 
 struct MeshParts {
-  std::vector<MeshPart> parts{};
+  std::vector<ConnectedPart> parts{};
   std::vector<std::int32_t> of_face{};  ///< Index into `parts` for each face.
 };
 

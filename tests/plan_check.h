@@ -35,10 +35,10 @@ struct Asked {
 struct Side {
   std::vector<glm::dvec2> points{};
   std::vector<bool> counts{};
-  Side(const std::vector<CurveSample>& samples, const BorderCurves& truth, std::optional<CurveKind> kind, double offset_px) {
+  Side(const std::vector<BorderSample>& samples, const BorderCurves& truth, std::optional<CurveKind> kind, double offset_px) {
     const CurveIndex borders(truth, kind);
     const double clear_px = 0.99 * std::abs(offset_px);
-    for (const CurveSample& sample : samples) {
+    for (const BorderSample& sample : samples) {
       points.push_back(sample.px + offset_px * sample.outward);
       counts.push_back(!borders.nearest(points.back(), 0, clear_px));
     }
@@ -49,7 +49,7 @@ struct Side {
 inline Asked ask(const SceneModel& model, const SceneModel& reference, const PlanView& view, CurveKind kind, double threshold,
                  double tolerance_px) {
   const bool inner = kind == CurveKind::inner;
-  const std::vector<CurveSample> samples = within_picture(resample(view.truth.curves, kind, 1.0), view.camera, 1.0 + tolerance_px);
+  const std::vector<BorderSample> samples = within_picture(resample(view.truth.curves, kind, 1.0), view.camera, 1.0 + tolerance_px);
   const std::optional<CurveKind> near_by = inner ? std::nullopt : std::optional(kind);  // inner borders end no sheet
   const Side inside(samples, view.truth.curves, near_by, -tolerance_px), outside(samples, view.truth.curves, near_by, tolerance_px);
   const auto true_in = seen_at(reference, view.camera, inside.points), true_out = seen_at(reference, view.camera, outside.points);

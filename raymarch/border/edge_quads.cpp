@@ -69,10 +69,10 @@ bool is_line(const EdgeSettings& settings, const TopologyEdge& edge, const EdgeT
   return settings.crease && angle_exceeds(n1, n2, settings.crease_cosine);
 }
 
-void add_pieces(const ImageEdge& edge, std::span<const Stretch> seen, const LineWidth& width, std::vector<LinePiece>& pieces) {
+void add_pieces(const ImageEdge& edge, std::span<const EdgeStretch> seen, const LineWidth& width, std::vector<LinePiece>& pieces) {
   const auto point = [&](double s) { return edge.a + s * (edge.b - edge.a); };
   const auto at = [&](double s) { return width.at(edge.q_a + s * (edge.q_b - edge.q_a)); };
-  for (const Stretch& stretch : seen) pieces.push_back({point(stretch.from), point(stretch.to), at(stretch.from), at(stretch.to)});
+  for (const EdgeStretch& stretch : seen) pieces.push_back({point(stretch.from), point(stretch.to), at(stretch.from), at(stretch.to)});
 }
 
 /// Edges that one task takes; the pieces of each block are joined in the order of the edges.
@@ -86,7 +86,7 @@ void add_object(const EdgeSettings& settings, const Polygons& polygons, std::int
   const double margin_px = std::max(settings.width_px, settings.far_width_px) + 1.0;
   std::vector<std::vector<LinePiece>> of_block(blocks);
   const auto work = [&](size_t block) {
-    std::vector<Stretch> seen;
+    std::vector<EdgeStretch> seen;
     EdgeVisibility::Scratch scratch;
     for (size_t i = block * kBlock; i < std::min(topology.edges.size(), (block + 1) * kBlock); ++i) {
       const TopologyEdge& edge = topology.edges[i];

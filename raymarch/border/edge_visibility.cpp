@@ -104,7 +104,7 @@ bool EdgeVisibility::visible(const ImageEdge& edge, double s) const {
   return scratch.visible[0];
 }
 
-void EdgeVisibility::visible_stretches(const ImageEdge& edge, Scratch& scratch, std::vector<Stretch>& seen) const {
+void EdgeVisibility::visible_stretches(const ImageEdge& edge, Scratch& scratch, std::vector<EdgeStretch>& seen) const {
   const double length = glm::length(edge.b - edge.a);
   const int count = std::max(1, static_cast<int>(std::ceil(length / kStep_px)));
   scratch.places.clear();
@@ -119,7 +119,7 @@ void EdgeVisibility::visible_stretches(const ImageEdge& edge, Scratch& scratch, 
   // Bisected all at once; whether the lower end of the first is seen says it of all of them, since they take turns.
   for (double gap = length / count; gap > kPlace_px && !scratch.changes.empty(); gap *= 0.5) {
     scratch.places.clear();
-    for (const Stretch& change : scratch.changes) scratch.places.push_back(0.5 * (change.from + change.to));
+    for (const EdgeStretch& change : scratch.changes) scratch.places.push_back(0.5 * (change.from + change.to));
     ask(edge, scratch.places, scratch);
     for (size_t i = 0; i < scratch.changes.size(); ++i) {
       const bool lower_seen = now == (i % 2 == 0);
@@ -127,7 +127,7 @@ void EdgeVisibility::visible_stretches(const ImageEdge& edge, Scratch& scratch, 
     }
   }
   double start = 0.0;
-  for (const Stretch& change : scratch.changes) {
+  for (const EdgeStretch& change : scratch.changes) {
     // What is drawn ends where it was last seen.
     if (now) seen.push_back({start, change.from});
     start = change.to;

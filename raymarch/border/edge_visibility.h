@@ -20,7 +20,7 @@ struct ImageEdge {
 };
 
 /// A stretch of an image edge, from 0 at `a` to 1 at `b`.
-struct Stretch {
+struct EdgeStretch {
   double from = 0.0, to = 1.0;
 };
 
@@ -37,12 +37,12 @@ class EdgeVisibility {
     std::vector<glm::dvec2> points_px;
     std::vector<PointSample> samples;
     std::vector<char> visible;
-    std::vector<Stretch> changes;
+    std::vector<EdgeStretch> changes;
   };
   /// The stretches that nothing hides, appended to `seen`: their ends to 1/64 px. Rays go through points a quarter of a pixel apart: what
   /// is drawn of a hidden edge lies within 1/8 px, along the edge, of a point that is seen; a stretch seen is missed only where it is
   /// shorter than 1/4 px.
-  void visible_stretches(const ImageEdge& edge, Scratch& scratch, std::vector<Stretch>& seen) const;
+  void visible_stretches(const ImageEdge& edge, Scratch& scratch, std::vector<EdgeStretch>& seen) const;
 
   /// At one point of the edge, 0 at `a` to 1 at `b`: one ray.
   bool visible(const ImageEdge& edge, double s) const;

@@ -47,7 +47,7 @@ class Matcher {
  public:
   Matcher(const BorderCurves& truth, const BorderCurves& measured, std::optional<CurveKind> kind, const Camera& camera)
       : measured_(measured), candidates_(measured), reach_(search_reach_px(camera)) {
-    for (const CurveSample& sample : resample(truth, kind, kSpacing_px)) {
+    for (const BorderSample& sample : resample(truth, kind, kSpacing_px)) {
       if (samples_.empty() || samples_.back().curve != sample.curve) {
         runs_.push_back({samples_.size(), samples_.size(), truth.curves[sample.curve].closed});
       }
@@ -79,7 +79,7 @@ class Matcher {
     }
   }
 
-  const std::vector<CurveSample>& samples() const { return samples_; }
+  const std::vector<BorderSample>& samples() const { return samples_; }
   const MatchCandidate* partner(size_t i) const { return chosen_[i] == kNone ? nullptr : &near_[i][chosen_[i]]; }
 
   /// The stretches of each measured curve that are partners: from one sample's partner to the next one's, and a pixel about each.
@@ -223,7 +223,7 @@ class Matcher {
   const BorderCurves& measured_;
   MatchCandidates candidates_;
   double reach_;
-  std::vector<CurveSample> samples_{};
+  std::vector<BorderSample> samples_{};
   std::vector<std::vector<MatchCandidate>> near_{};
   std::vector<Run> runs_{};
   std::vector<size_t> run_of_{}, chosen_{};
@@ -254,7 +254,7 @@ std::vector<MeasuredSample> measured_samples(const Matcher& matcher, const Borde
   for (auto& of_curve : stretches) merge(of_curve);
   std::vector<MeasuredSample> result;
   double along = 0.0, round = 0.0;
-  for (const CurveSample& sample : resample(measured, kind, kSpacing_px)) {
+  for (const BorderSample& sample : resample(measured, kind, kSpacing_px)) {
     const BorderCurve& curve = measured.curves[sample.curve];
     if (result.empty() || result.back().at.curve != sample.curve) {
       along = -0.5 * sample.weight_px;

@@ -17,7 +17,7 @@ inline constexpr double kIllShift_px = 0.05, kThin_px = 0.3, kBrief_px = 1.0;
 
 /// A sample of the true border, and what was measured of it.
 struct MatchedSample {
-  CurveSample at{};
+  BorderSample at{};
   bool inside = false;                      ///< Of the picture, by a pixel: what metrics count.
   std::optional<double> displacement_px{};  ///< Along its outward normal, positive outwards; empty: missing.
   size_t curve = 0;                         ///< Its partner: index of the measured curve,
@@ -27,7 +27,7 @@ struct MatchedSample {
 
 /// A sample of the measured border.
 struct MeasuredSample {
-  CurveSample at{};
+  BorderSample at{};
   bool inside = false;
   bool matched = false;  ///< Some true sample's partner, or between two neighbours' partners; else false border.
 };

@@ -29,8 +29,8 @@ glm::dvec2 end_direction(const BorderCurve& curve, bool last) {
 
 }  // namespace
 
-std::vector<CurveSample> resample(const BorderCurves& curves, std::optional<CurveKind> kind, double step_px) {
-  std::vector<CurveSample> samples;
+std::vector<BorderSample> resample(const BorderCurves& curves, std::optional<CurveKind> kind, double step_px) {
+  std::vector<BorderSample> samples;
   for (size_t c = 0; c < curves.curves.size(); ++c) {
     const BorderCurve& curve = curves.curves[c];
     const double length = length_px(curve);
@@ -59,8 +59,8 @@ bool is_within_picture(const glm::dvec2& px, const Camera& camera, double margin
   return px.x >= margin_px && px.y >= margin_px && px.x <= camera.width_px - margin_px && px.y <= camera.height_px - margin_px;
 }
 
-std::vector<CurveSample> within_picture(std::vector<CurveSample> samples, const Camera& camera, double margin_px) {
-  std::erase_if(samples, [&](const CurveSample& sample) { return !is_within_picture(sample.px, camera, margin_px); });
+std::vector<BorderSample> within_picture(std::vector<BorderSample> samples, const Camera& camera, double margin_px) {
+  std::erase_if(samples, [&](const BorderSample& sample) { return !is_within_picture(sample.px, camera, margin_px); });
   return samples;
 }
 
@@ -146,9 +146,9 @@ NearestDistances CurveIndex::nearest_distances(const glm::dvec2& px, CurveKind k
   return best;
 }
 
-std::optional<Meeting> CurveIndex::meeting(const glm::dvec2& px, const glm::dvec2& direction, int object, double reach_px) const {
+std::optional<CurveMeeting> CurveIndex::meeting(const glm::dvec2& px, const glm::dvec2& direction, int object, double reach_px) const {
   if (segments_.empty()) return std::nullopt;
-  std::optional<Meeting> best;
+  std::optional<CurveMeeting> best;
   const auto look = [&](const Segment& segment) {
     if (object != 0 && segment.object != object) return;
     const glm::dvec2 along = segment.b - segment.a;
@@ -158,7 +158,7 @@ std::optional<Meeting> CurveIndex::meeting(const glm::dvec2& px, const glm::dvec
     // A little beyond both ends, so that no line slips through between two segments.
     const double squared = glm::dot(along, along), s = glm::dot(px + t * direction - segment.a, along) / squared;
     if (!(s >= -1e-9 && s <= 1.0 + 1e-9) || std::abs(t) > reach_px) return;
-    if (!best || std::abs(t) < std::abs(best->along_px)) best = Meeting{t};
+    if (!best || std::abs(t) < std::abs(best->along_px)) best = CurveMeeting{t};
   };
   const glm::dvec2 a = px - reach_px * direction, b = px + reach_px * direction;
   if (std::max(a.y, b.y) < grid_.origin.y || std::min(a.y, b.y) > grid_.origin.y + grid_.rows * grid_.cell_px) return best;

@@ -11,7 +11,7 @@
 namespace limn {
 
 /// A point of a curve. `outward` is unit, px, y down: away from what the curve bounds.
-struct CurveSample {
+struct BorderSample {
   glm::dvec2 px{0.0}, outward{0.0};
   double weight_px = 0.0;  ///< Length of curve it stands for.
   CurveKind kind = CurveKind::silhouette;
@@ -22,14 +22,14 @@ struct CurveSample {
 };
 
 /// Samples in the middles of pieces of equal length, about `step_px`, at least one a curve. `kind` empty: both kinds.
-std::vector<CurveSample> resample(const BorderCurves& curves, std::optional<CurveKind> kind, double step_px);
+std::vector<BorderSample> resample(const BorderCurves& curves, std::optional<CurveKind> kind, double step_px);
 
 /// False nearer than `margin_px` to the picture's sides or beyond them: there a measured border, which knows pixel centres only, has no
 /// partner for truth.
 bool is_within_picture(const glm::dvec2& px, const Camera& camera, double margin_px = 1.0);
 
 /// Drops the samples that are not.
-std::vector<CurveSample> within_picture(std::vector<CurveSample> samples, const Camera& camera, double margin_px = 1.0);
+std::vector<BorderSample> within_picture(std::vector<BorderSample> samples, const Camera& camera, double margin_px = 1.0);
 
 struct NearestPoint {
   double distance_px = 0.0;
@@ -43,7 +43,7 @@ struct NearestDistances {
 };
 
 /// Where a straight line through a curve's sample, along its outward normal, meets other curves.
-struct Meeting {
+struct CurveMeeting {
   double along_px = 0.0;  ///< Positive outwards.
 };
 
@@ -64,7 +64,7 @@ class CurveIndex {
 
   /// The nearest meeting within `reach_px` of the line through `px` along `direction` (unit) with curves of `object` (0: any) whose own
   /// outward normal does not point against `direction`.
-  std::optional<Meeting> meeting(const glm::dvec2& px, const glm::dvec2& direction, int object, double reach_px) const;
+  std::optional<CurveMeeting> meeting(const glm::dvec2& px, const glm::dvec2& direction, int object, double reach_px) const;
 
  private:
   struct Segment {

@@ -8,7 +8,7 @@ namespace {
 /// Of a hit's position and normal, which are floats in scenes of about unit size: the error that a model cannot help.
 constexpr double kFloat = 1e-6;
 
-const BorderPoint& point_at(const BorderCurves& curves, const CurveSample& sample) {
+const BorderPoint& point_at(const BorderCurves& curves, const BorderSample& sample) {
   const BorderCurve& curve = curves.curves[sample.curve];
   return curve.points[sample.fraction < 0.5 ? sample.segment : (sample.segment + 1) % curve.points.size()];
 }
@@ -24,12 +24,12 @@ double shift_px(const BorderPoint& point, const Camera& camera) {
 
 }  // namespace
 
-std::vector<IllReason> ill_places(const BorderCurves& truth, std::span<const CurveSample> samples, const Camera& camera) {
+std::vector<IllReason> ill_places(const BorderCurves& truth, std::span<const BorderSample> samples, const Camera& camera) {
   const CurveIndex silhouettes(truth, CurveKind::silhouette), inner(truth, CurveKind::inner);
   std::vector<double> lengths_px;
   for (const BorderCurve& curve : truth.curves) lengths_px.push_back(length_px(curve));
   std::vector<IllReason> result;
-  for (const CurveSample& sample : samples) {
+  for (const BorderSample& sample : samples) {
     const CurveIndex& own = sample.kind == CurveKind::inner ? inner : silhouettes;
     IllReason reason = IllReason::none;
     if (own.nearest(sample.px, sample.object, kThin_px, -sample.outward)) reason = IllReason::thin;

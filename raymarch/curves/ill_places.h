@@ -8,6 +8,6 @@
 namespace limn {
 
 /// One for each sample of `truth`. Nothing but truth and camera decides.
-std::vector<IllReason> ill_places(const BorderCurves& truth, std::span<const CurveSample> samples, const Camera& camera);
+std::vector<IllReason> ill_places(const BorderCurves& truth, std::span<const BorderSample> samples, const Camera& camera);
 
 }  // namespace limn

@@ -78,7 +78,7 @@ void MatchCandidates::visit_near(const glm::dvec2& px, double reach_px, const Vi
 }
 
 /// Where the distance along the curve is least, if that is on this segment; a vertex belongs to the segment that it begins, or to the last.
-std::optional<MatchCandidate> MatchCandidates::nearest_on(const CurveSample& sample, std::uint32_t index, double reach_px) const {
+std::optional<MatchCandidate> MatchCandidates::nearest_on(const BorderSample& sample, std::uint32_t index, double reach_px) const {
   const Segment& s = segments_[index];
   const double share = closest_share(sample.px - s.a, s.along);
   const bool starts = s.before == index, ends = s.after == index;
@@ -104,7 +104,7 @@ std::optional<MatchCandidate> MatchCandidates::nearest_on(const CurveSample& sam
   return MatchCandidate{found.curve, found.along_px, distance, std::copysign(distance, across)};
 }
 
-std::optional<MatchCandidate> MatchCandidates::meeting_on(const CurveSample& sample, std::uint32_t index, double reach_px) const {
+std::optional<MatchCandidate> MatchCandidates::meeting_on(const BorderSample& sample, std::uint32_t index, double reach_px) const {
   const Segment& s = segments_[index];
   const double facing = glm::dot(sample.outward, turned(s.along));
   if (!(facing > 0.0)) return std::nullopt;
@@ -115,7 +115,7 @@ std::optional<MatchCandidate> MatchCandidates::meeting_on(const CurveSample& sam
   return MatchCandidate{s.curve, s.start_px + share * s.length_px, std::abs(t), t};
 }
 
-std::vector<MatchCandidate> MatchCandidates::of(const CurveSample& sample, double reach_px) const {
+std::vector<MatchCandidate> MatchCandidates::of(const BorderSample& sample, double reach_px) const {
   if (segments_.empty()) return {};
   std::vector<OfSegment> nearest_of, meetings_of;
   visit_near(sample.px, reach_px, [&](std::uint32_t index) {

@@ -24,7 +24,7 @@ class MatchCandidates {
   /// One for each place within `reach_px` where the distance of a curve of the same kind and object that faces the same way is least, the
   /// nearest first, kMost at most. The normal's meeting with such a stretch says the displacement, unless it lies four times as far as the
   /// stretch does; beside corners the nearest point does.
-  std::vector<MatchCandidate> of(const CurveSample& sample, double reach_px) const;
+  std::vector<MatchCandidate> of(const BorderSample& sample, double reach_px) const;
 
   double length_px(size_t curve) const { return lengths_[curve]; }
 
@@ -43,8 +43,8 @@ class MatchCandidates {
   /// Segments within reach, and some beyond; those in several cells several times.
   template <class Visit>
   void visit_near(const glm::dvec2& px, double reach_px, const Visit& visit) const;
-  std::optional<MatchCandidate> nearest_on(const CurveSample& sample, std::uint32_t index, double reach_px) const;
-  std::optional<MatchCandidate> meeting_on(const CurveSample& sample, std::uint32_t index, double reach_px) const;
+  std::optional<MatchCandidate> nearest_on(const BorderSample& sample, std::uint32_t index, double reach_px) const;
+  std::optional<MatchCandidate> meeting_on(const BorderSample& sample, std::uint32_t index, double reach_px) const;
 
   std::vector<Segment> segments_{};
   std::vector<double> lengths_{};

@@ -38,7 +38,7 @@ std::optional<double> share_through(const glm::dvec3& from, const glm::dvec3& to
 struct Query {
   RTCIntersectContext context{};  ///< First, so that its address is this one's.
   Segment segment{};
-  std::vector<SegmentHit> hits{};
+  std::vector<ExactHit> hits{};
 };
 
 }  // namespace
@@ -105,7 +105,7 @@ ExactHits::ExactHits(std::span<const glm::dvec3> positions, std::span<const Laye
 
 ExactHits::~ExactHits() = default;
 
-std::vector<SegmentHit> ExactHits::through(const Segment& segment) const {
+std::vector<ExactHit> ExactHits::through(const Segment& segment) const {
   Query query;
   rtcInitIntersectContext(&query.context);
   query.segment = segment;
@@ -118,7 +118,7 @@ std::vector<SegmentHit> ExactHits::through(const Segment& segment) const {
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   embree().rtcIntersect1(tree_->scene, &query.context, &ray);
   std::sort(query.hits.begin(), query.hits.end(),
-            [](const SegmentHit& a, const SegmentHit& b) { return std::tie(a.share, a.triangle) < std::tie(b.share, b.triangle); });
+            [](const ExactHit& a, const ExactHit& b) { return std::tie(a.share, a.triangle) < std::tie(b.share, b.triangle); });
   return std::move(query.hits);
 }
 

@@ -16,7 +16,7 @@ struct LayerTriangle;
 inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 
 /// Where a segment goes through a triangle: the share of the segment, above 0 and below 1.
-struct SegmentHit {
+struct ExactHit {
   double share = 0.0;
   std::uint32_t triangle = 0;
 };
@@ -40,7 +40,7 @@ class ExactHits {
   ExactHits& operator=(const ExactHits&) = delete;
 
   /// In order along the segment.
-  std::vector<SegmentHit> through(const Segment& segment) const;
+  std::vector<ExactHit> through(const Segment& segment) const;
 
  private:
   struct Tree;

@@ -108,7 +108,7 @@ LayersSeen MeshLayers::before(const CurveSample& sample) const {
   const glm::dvec3 start = lifted(sample), direction = view_vector(camera_, start);
   const double reach = reach_to_eye(start), nothing = std::numeric_limits<double>::infinity();
   if (!smooth_) {
-    const std::vector<SegmentHit> hits =
+    const std::vector<ExactHit> hits =
         tree_->exact_hits().through({.from = start, .to = start + reach * direction, .edge = sample.edge, .faces = sample.faces});
     return {static_cast<int>(hits.size()), hits.empty() ? nothing : hits.front().share * reach};
   }
@@ -168,7 +168,7 @@ void MeshLayers::pierce_exactly(SurfaceCurve& curve) const {
     CurveSample& sample = curve.samples[i];
     const CurveSample& next = curve.samples[(i + 1) % n];
     const glm::dvec3 from = lifted(sample), to = lifted(next);
-    for (const SegmentHit& hit : tree_->exact_hits().through({.from = from, .to = to, .vertices = sample.edge, .faces = sample.faces})) {
+    for (const ExactHit& hit : tree_->exact_hits().through({.from = from, .to = to, .vertices = sample.edge, .faces = sample.faces})) {
       const glm::dvec3 normal = tree_->normal_of(tree_->triangles()[hit.triangle]), place = glm::mix(from, to, hit.share);
       const bool leaves = (glm::dot(normal, to - from) > 0.0) == (glm::dot(normal, view_vector(camera_, place)) > 0.0);
       sample.pierced.push_back({hit.share, leaves ? -1 : 1, 0.0});

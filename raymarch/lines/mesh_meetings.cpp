@@ -124,7 +124,7 @@ std::vector<LayerHit> MeshTree::hits_of_edge(std::uint32_t a, std::uint32_t b) c
   if (!(length > 0.0)) return {};
   if (!exact_) return hits_along(from, (to - from) / length, length);
   std::vector<LayerHit> hits;
-  for (const SegmentHit& hit : exact_hits().through({.from = from, .to = to, .vertices = {a, b}}))
+  for (const ExactHit& hit : exact_hits().through({.from = from, .to = to, .vertices = {a, b}}))
     hits.push_back({hit.share * length, hit.triangle});
   return hits;
 }

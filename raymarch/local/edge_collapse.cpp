@@ -9,8 +9,8 @@ CollapsingMesh::CollapsingMesh(LocalTriangles& mesh) : mesh_(mesh), at_(mesh.pos
     for (const std::uint32_t v : mesh.triangles[t].vertices) at_[v].push_back(static_cast<std::uint32_t>(t));
 }
 
-Fan CollapsingMesh::fan_of(std::uint32_t v) const {
-  Fan fan;
+VertexFan CollapsingMesh::fan_of(std::uint32_t v) const {
+  VertexFan fan;
   fan.triangles = at_[v];
   std::vector<std::uint32_t> ahead, behind;
   for (const std::uint32_t t : fan.triangles) {
@@ -54,8 +54,8 @@ double CollapsingMesh::fit_of(const std::array<std::uint32_t, 3>& vertices, cons
   return least;
 }
 
-bool CollapsingMesh::is_linked(std::uint32_t v, std::uint32_t u, const Fan& fan) const {
-  const Fan other = fan_of(u);
+bool CollapsingMesh::is_linked(std::uint32_t v, std::uint32_t u, const VertexFan& fan) const {
+  const VertexFan other = fan_of(u);
   std::vector<std::uint32_t> ring = other.ring;
   if (!other.closed) {
     for (const std::uint32_t t : other.triangles)
@@ -68,7 +68,7 @@ bool CollapsingMesh::is_linked(std::uint32_t v, std::uint32_t u, const Fan& fan)
   return shared == 2 && std::binary_search(fan.ring.begin(), fan.ring.end(), u) && v != u;
 }
 
-void CollapsingMesh::collapse(std::uint32_t v, std::uint32_t u, const Fan& fan) {
+void CollapsingMesh::collapse(std::uint32_t v, std::uint32_t u, const VertexFan& fan) {
   for (const std::uint32_t t : fan.triangles) {
     auto& corners = mesh_.triangles[t].vertices;
     if (has_vertex(t, u)) {

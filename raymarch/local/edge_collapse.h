@@ -9,10 +9,10 @@
 namespace limn {
 
 /// Normals are known to about a single-precision unit in the last place.
-inline constexpr double kSameNormal = 1e-6;
+inline constexpr double kSameVertexNormal = 1e-6;
 
 /// The triangles around a vertex, and what is known of them.
-struct Fan {
+struct VertexFan {
   std::vector<std::uint32_t> triangles{};
   std::vector<std::uint32_t> ring{};  ///< Neighbours, in no order.
   bool closed = true;
@@ -29,7 +29,7 @@ class CollapsingMesh {
   const LocalTriangle& triangle(std::uint32_t t) const { return mesh_.triangles[t]; }
   LocalTriangle& triangle(std::uint32_t t) { return mesh_.triangles[t]; }
 
-  Fan fan_of(std::uint32_t v) const;
+  VertexFan fan_of(std::uint32_t v) const;
   size_t corner_of(std::uint32_t t, std::uint32_t v) const;
   bool has_vertex(std::uint32_t t, std::uint32_t v) const;
   /// Across a triangle, twice as long as its area.
@@ -40,10 +40,10 @@ class CollapsingMesh {
   double fit_of(const std::array<std::uint32_t, 3>& vertices, const std::array<glm::dvec3, 3>& normals) const;
   /// Whether v and its neighbour u share no other neighbours than those of the two triangles at their edge: else the surface would meet
   /// itself.
-  bool is_linked(std::uint32_t v, std::uint32_t u, const Fan& fan) const;
+  bool is_linked(std::uint32_t v, std::uint32_t u, const VertexFan& fan) const;
 
   /// v goes to its neighbour u; `fan` is v's. The corners keep the normals that they had at v.
-  void collapse(std::uint32_t v, std::uint32_t u, const Fan& fan);
+  void collapse(std::uint32_t v, std::uint32_t u, const VertexFan& fan);
   /// What is left, numbered anew in the same order.
   void compact();
 

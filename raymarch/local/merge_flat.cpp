@@ -30,7 +30,7 @@ class Merger {
       bool any = false;
       for (std::uint32_t v = 0; v < due.size(); ++v) {
         if (!due[v]) continue;
-        const Fan fan = mesh_.fan_of(v);
+        const VertexFan fan = mesh_.fan_of(v);
         const std::optional<std::uint32_t> target = target_of(v, fan);
         if (!target) continue;
         mesh_.collapse(v, *target, fan);
@@ -52,18 +52,19 @@ class Merger {
     if (!(length > 0.0)) return false;
     // A facet's own normal is as exact as its shape lets it be.
     for (const glm::dvec3& normal : triangle.normals)
-      if (glm::distance(normal, triangle.normals[0]) > kSameNormal || glm::dot(area, normal) < (1.0 - kSameNormal) * length) return false;
+      if (glm::distance(normal, triangle.normals[0]) > kSameVertexNormal || glm::dot(area, normal) < (1.0 - kSameVertexNormal) * length)
+        return false;
     return true;
   }
 
   const glm::dvec3& normal_of(std::uint32_t t) const { return mesh_.triangle(t).normals[0]; }
 
   /// Whether all corners of the triangles around v lie in one another's planes, as far as normals say that these are one.
-  bool in_planes(std::uint32_t v, const Fan& fan) const {
+  bool in_planes(std::uint32_t v, const VertexFan& fan) const {
     for (const std::uint32_t t : fan.triangles) {
       const glm::dvec3 normal = glm::normalize(mesh_.area_of(mesh_.triangle(t).vertices));
       for (const std::uint32_t other : fan.triangles) {
-        if (glm::distance(normal_of(t), normal_of(other)) > kSameNormal) continue;
+        if (glm::distance(normal_of(t), normal_of(other)) > kSameVertexNormal) continue;
         for (const std::uint32_t u : mesh_.triangle(other).vertices) {
           const glm::dvec3 away = position(u) - position(v);
           if (std::abs(glm::dot(away, normal)) > kOff * glm::length(away)) return false;
@@ -74,7 +75,7 @@ class Merger {
   }
 
   /// The ends of the edges in the middle of a fan whose two triangles lie in different planes.
-  std::vector<std::uint32_t> creases_of(const Fan& fan) const {
+  std::vector<std::uint32_t> creases_of(const VertexFan& fan) const {
     std::vector<std::uint32_t> ends;
     for (const std::uint32_t u : fan.ring) {
       const glm::dvec3* first = nullptr;
@@ -82,7 +83,7 @@ class Merger {
         if (!mesh_.has_vertex(t, u)) continue;
         if (first == nullptr)
           first = &normal_of(t);
-        else if (glm::distance(*first, normal_of(t)) > kSameNormal)
+        else if (glm::distance(*first, normal_of(t)) > kSameVertexNormal)
           ends.push_back(u);
       }
     }
@@ -95,14 +96,14 @@ class Merger {
   }
 
   /// The neighbours that lie on a straight line through v along which the normal stays the same, as on a cylinder; v has one normal.
-  std::vector<std::uint32_t> ruling_of(std::uint32_t v, const Fan& fan) const {
+  std::vector<std::uint32_t> ruling_of(std::uint32_t v, const VertexFan& fan) const {
     const glm::dvec3& normal = mesh_.triangle(fan.triangles[0]).normals[mesh_.corner_of(fan.triangles[0], v)];
     for (const std::uint32_t t : fan.triangles)
-      if (glm::distance(mesh_.triangle(t).normals[mesh_.corner_of(t, v)], normal) > kSameNormal) return {};
+      if (glm::distance(mesh_.triangle(t).normals[mesh_.corner_of(t, v)], normal) > kSameVertexNormal) return {};
     std::vector<std::uint32_t> same;
     for (const std::uint32_t u : fan.ring) {
       const bool turns = std::any_of(fan.triangles.begin(), fan.triangles.end(), [&](std::uint32_t t) {
-        return mesh_.has_vertex(t, u) && glm::distance(mesh_.triangle(t).normals[mesh_.corner_of(t, u)], normal) > kSameNormal;
+        return mesh_.has_vertex(t, u) && glm::distance(mesh_.triangle(t).normals[mesh_.corner_of(t, u)], normal) > kSameVertexNormal;
       });
       if (!turns) same.push_back(u);
     }
@@ -112,12 +113,12 @@ class Merger {
     return {};
   }
 
-  bool is_plane(std::uint32_t v, const Fan& fan) const {
+  bool is_plane(std::uint32_t v, const VertexFan& fan) const {
     return std::all_of(fan.triangles.begin(), fan.triangles.end(), [this](std::uint32_t t) { return flat_[t]; }) && in_planes(v, fan);
   }
 
   /// Where a vertex may go so that the surface stays the same; none where it has to stay.
-  std::vector<std::uint32_t> places_for(std::uint32_t v, const Fan& fan) const {
+  std::vector<std::uint32_t> places_for(std::uint32_t v, const VertexFan& fan) const {
     if (fan.triangles.size() < 3 || !fan.closed) return {};
     if (!is_plane(v, fan)) return ruling_of(v, fan);
     const std::vector<std::uint32_t> creases = creases_of(fan);
@@ -126,7 +127,7 @@ class Merger {
   }
 
   /// Of those places the one that leaves the widest triangles.
-  std::optional<std::uint32_t> target_of(std::uint32_t v, const Fan& fan) const {
+  std::optional<std::uint32_t> target_of(std::uint32_t v, const VertexFan& fan) const {
     std::optional<std::uint32_t> best;
     double widest = kLeastHeight;
     for (const std::uint32_t u : places_for(v, fan)) {
@@ -138,7 +139,7 @@ class Merger {
 
   /// Of the triangles that are left when v goes to u: the least height over the longest side; 0 where one fits its normals less well than
   /// some triangle does now.
-  double least_height(std::uint32_t v, std::uint32_t u, const Fan& fan, double enough) const {
+  double least_height(std::uint32_t v, std::uint32_t u, const VertexFan& fan, double enough) const {
     double fit = 1.0;
     for (const std::uint32_t t : fan.triangles) fit = std::min(fit, mesh_.fit_of(mesh_.triangle(t).vertices, mesh_.triangle(t).normals));
     double least = std::numeric_limits<double>::infinity();
@@ -146,7 +147,7 @@ class Merger {
       if (mesh_.has_vertex(t, u)) continue;
       std::array<std::uint32_t, 3> corners = mesh_.triangle(t).vertices;
       corners[mesh_.corner_of(t, v)] = u;
-      if (mesh_.fit_of(corners, mesh_.triangle(t).normals) < fit - kSameNormal) return 0.0;
+      if (mesh_.fit_of(corners, mesh_.triangle(t).normals) < fit - kSameVertexNormal) return 0.0;
       least = std::min(least, mesh_.height_of(corners));
       if (!(least > enough)) return least;
     }

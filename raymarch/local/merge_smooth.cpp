@@ -17,12 +17,12 @@ constexpr double kLeastHeight = 0.2;
 constexpr int kMostPasses = 8;
 
 /// The normal at u in the triangles of a fan; nothing where they differ, as where the edge between u and the fan's vertex is a crease.
-std::optional<glm::dvec3> normal_at(const CollapsingMesh& mesh, std::uint32_t u, const Fan& fan) {
+std::optional<glm::dvec3> normal_at(const CollapsingMesh& mesh, std::uint32_t u, const VertexFan& fan) {
   std::optional<glm::dvec3> normal;
   for (const std::uint32_t t : fan.triangles) {
     if (!mesh.has_vertex(t, u)) continue;
     const glm::dvec3& own = mesh.triangle(t).normals[mesh.corner_of(t, u)];
-    if (normal && glm::distance(*normal, own) > kSameNormal) return std::nullopt;
+    if (normal && glm::distance(*normal, own) > kSameVertexNormal) return std::nullopt;
     normal = own;
   }
   return normal;
@@ -30,7 +30,7 @@ std::optional<glm::dvec3> normal_at(const CollapsingMesh& mesh, std::uint32_t u,
 
 /// Of the triangles that are left when v goes to u, where the normal is `normal`, how well they fit the normals at their corners; -1 where
 /// one becomes a needle.
-double fit_of(const CollapsingMesh& mesh, std::uint32_t v, std::uint32_t u, const glm::dvec3& normal, const Fan& fan) {
+double fit_of(const CollapsingMesh& mesh, std::uint32_t v, std::uint32_t u, const glm::dvec3& normal, const VertexFan& fan) {
   double least = 1.0;
   for (const std::uint32_t t : fan.triangles) {
     if (mesh.has_vertex(t, u)) continue;
@@ -50,7 +50,7 @@ struct Target {
 };
 
 /// Of a smooth vertex: the neighbour to which it goes best.
-std::optional<Target> target_of(const CollapsingMesh& mesh, std::uint32_t v, const Fan& fan) {
+std::optional<Target> target_of(const CollapsingMesh& mesh, std::uint32_t v, const VertexFan& fan) {
   if (fan.triangles.size() < 3 || !fan.closed || !normal_at(mesh, v, fan)) return std::nullopt;
   std::optional<Target> best;
   double most = kLeastFit;
@@ -69,7 +69,7 @@ bool merge_once(CollapsingMesh& mesh) {
   bool any = false;
   for (std::uint32_t v = 0; v < stays.size(); ++v) {
     if (stays[v] != 0 || mesh.is_merged(v)) continue;
-    const Fan fan = mesh.fan_of(v);
+    const VertexFan fan = mesh.fan_of(v);
     const std::optional<Target> target = target_of(mesh, v, fan);
     if (!target) continue;
     for (const std::uint32_t u : fan.ring) stays[u] = 1;

@@ -13,7 +13,7 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 struct Displacement {
   double value = 0.0;
-  const CurveSample* at = nullptr;
+  const BorderSample* at = nullptr;
 };
 
 struct Shares {

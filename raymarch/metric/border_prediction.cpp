@@ -23,7 +23,7 @@ struct TruthPoint {
   double radial_curvature = 0.0;
 };
 
-TruthPoint truth_at(const BorderCurves& curves, const CurveSample& sample, const Camera& camera) {
+TruthPoint truth_at(const BorderCurves& curves, const BorderSample& sample, const Camera& camera) {
   const BorderCurve& curve = curves.curves[sample.curve];
   const BorderPoint &a = curve.points[sample.segment], &b = curve.points[(sample.segment + 1) % curve.points.size()];
   const double s = sample.fraction;
@@ -102,7 +102,7 @@ struct Lines {
 Lines lines_across(const std::vector<MatchedSample>& samples, const BorderCurves& truth, const Camera& camera) {
   Lines found;
   for (size_t i = 0; i < samples.size(); ++i) {
-    const CurveSample& sample = samples[i].at;
+    const BorderSample& sample = samples[i].at;
     const double px_per_radian = displacement_per_radian(camera, truth, sample);
     if (!std::isfinite(px_per_radian)) continue;
     const TruthPoint point = truth_at(truth, sample, camera);
@@ -190,7 +190,7 @@ struct Width {
   double plain_px = kNothing, exact_px = kNothing;
 };
 
-Width predicted_width(const Camera& camera, const CurveSample& sample, const TruthPoint& point, double threshold) {
+Width predicted_width(const Camera& camera, const BorderSample& sample, const TruthPoint& point, double threshold) {
   const double k = point.radial_curvature, sine = std::sqrt(1.0 - threshold * threshold);
   if (!(k > 0.0)) return {};
   const double plain = 0.5 * threshold * threshold / k;
@@ -223,7 +223,7 @@ WidthPrediction predict_width(const Camera& camera, const BorderTruth& truth, co
   for (const MatchedSample& sample : samples) {
     const Width predicted = predicted_width(camera, sample.at, truth_at(truth.curves, sample.at, camera), threshold);
     if (!std::isfinite(predicted.exact_px) || !sample.displacement_px) continue;
-    CurveSample own = sample.at;
+    BorderSample own = sample.at;
     own.px += *sample.displacement_px * own.outward;
     const std::optional<double> width = border_width_px(own, inner, silhouettes, width_reach_px(camera));
     if (!width) continue;
@@ -242,7 +242,7 @@ WidthPrediction predict_width(const Camera& camera, const BorderTruth& truth, co
 
 }  // namespace
 
-double displacement_per_radian(const Camera& camera, const BorderCurves& truth, const CurveSample& sample) {
+double displacement_per_radian(const Camera& camera, const BorderCurves& truth, const BorderSample& sample) {
   const TruthPoint point = truth_at(truth, sample, camera);
   const double z = -glm::dot(point.position - camera.eye, camera.world_from_camera[2]);
   const SeenPoint seen = seen_point(camera, sample.px.x, sample.px.y, z, point.normal);

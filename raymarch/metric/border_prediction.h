@@ -53,7 +53,7 @@ struct BorderPrediction {
 
 /// How far the inner border moves along `sample.outward` for each radian by which N.V is too low, to first order, px; NaN where `truth`
 /// knows no curvature. `sample` is one of `truth`'s.
-double displacement_per_radian(const Camera& camera, const BorderCurves& truth, const CurveSample& sample);
+double displacement_per_radian(const Camera& camera, const BorderCurves& truth, const BorderSample& sample);
 
 /// Compares with what was measured: `curves` of `model` (raymarch/measured_border.h). The model is asked for its normals at the truth's
 /// image points. `truth` must know positions, normals and curvatures; where it does not, nothing is predicted.

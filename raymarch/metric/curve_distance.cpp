@@ -18,7 +18,7 @@ constexpr double kStep_px = 0.25;
 constexpr size_t kSubjects = 3;
 const char* const kSuffixes[kSubjects] = {"", "_silhouette", "_inner"};
 
-void add(const CurveSample& sample, double distance_px, CurveDistances& to) {
+void add(const BorderSample& sample, double distance_px, CurveDistances& to) {
   const double distance = std::isfinite(distance_px) ? distance_px : kNothing;
   to.largest = std::max(distance, to.largest);
   to.sum += sample.weight_px * distance;
@@ -28,7 +28,7 @@ void add(const CurveSample& sample, double distance_px, CurveDistances& to) {
 std::array<CurveDistances, kSubjects> from_to(const BorderCurves& from, const BorderCurves& to, const Camera& camera) {
   const CurveIndex index(to, {});
   std::array<CurveDistances, kSubjects> result;
-  const std::vector<CurveSample> samples = within_picture(resample(from, {}, kStep_px), camera);
+  const std::vector<BorderSample> samples = within_picture(resample(from, {}, kStep_px), camera);
   std::vector<NearestDistances> nearest(samples.size());
   parallel_parts(samples.size(), size_t{256}, [&](const IndexRange<size_t>& part) {
     for (size_t i = part.first; i < part.last; ++i) nearest[i] = index.nearest_distances(samples[i].px, samples[i].kind);

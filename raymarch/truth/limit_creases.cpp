@@ -95,7 +95,7 @@ void follow_crease(LimitTracer& tracer, const CreaseSide& one, const CreaseSide&
   for (size_t k = 0; k + 1 < breaks.size(); ++k) {
     const double middle = 0.5 * (breaks[k].t + breaks[k + 1].t);
     const SideSample at_one = sample_side(tracer, one, middle), at_two = sample_side(tracer, two, middle);
-    if (glm::distance(at_one.normal, at_two.normal) < kSameNormal || !is_on(tracer, at_one.facing, at_two.facing)) continue;
+    if (glm::distance(at_one.normal, at_two.normal) < kSameLimitNormal || !is_on(tracer, at_one.facing, at_two.facing)) continue;
     const bool one_high = at_one.facing >= at_two.facing;
     const CreaseSide &high = one_high ? one : two, &low = one_high ? two : one;
     const CreaseSide& covered = tracer.level.kind == CurveKind::silhouette ? high : low;

@@ -50,7 +50,7 @@ SurfaceCurvature curvature_at(const PlacedLimitSurface& placed, size_t patch, co
 enum class LimitTurn { none, front, back };
 
 /// Between unit normals at one place: a crease is sharper, a patch's error is not.
-inline constexpr double kSameNormal = 2e-3;
+inline constexpr double kSameLimitNormal = 2e-3;
 
 struct LimitCorner {
   std::uint32_t node = 0;  ///< The same for all corners at one place.

@@ -41,7 +41,7 @@ std::uint32_t SeamNodes::side_of(std::uint32_t node, const glm::dvec3& normal, s
   std::uint32_t* link = &nodes_[node].first_side;
   for (; *link != kNone; link = &sides_[*link].next) {
     const Side& side = sides_[*link];
-    if (glm::distance(side.normal, normal) < kSameNormal) return side.number;
+    if (glm::distance(side.normal, normal) < kSameLimitNormal) return side.number;
   }
   *link = static_cast<std::uint32_t>(sides_.size());  // before the vector moves
   sides_.push_back({normal, next_number++, nodes_[node].number});

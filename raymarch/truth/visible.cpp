@@ -22,9 +22,9 @@ struct Hider {
   bool hides_itself(const TracedCurve& curve, const TracedPoint& q) const {
     return curve.kind == CurveKind::silhouette && !curve.sheet && q.radial_curvature < 0.0;
   }
-  Seen see(const TracedCurve& curve, const TracedPoint& q) const {
-    if (!in_frame(q) || !q.shown || hides_itself(curve, q)) return Seen::hidden;
-    return scene.blocked(q, curve.object) ? Seen::hidden : Seen::visible;
+  PointVisibility see(const TracedCurve& curve, const TracedPoint& q) const {
+    if (!in_frame(q) || !q.shown || hides_itself(curve, q)) return PointVisibility::hidden;
+    return scene.blocked(q, curve.object) ? PointVisibility::hidden : PointVisibility::visible;
   }
   TracedPoint between(const TracedCurve& curve, size_t i, double t) const {
     if (scene.between) return scene.between(curve, i, t);
@@ -112,13 +112,13 @@ void for_all(size_t count, const ExecutionSettings& how, const Work& work) {
 }
 
 /// Fills what lies between tested points: all alike where both ends are, else cut where a bisection over the points says.
-void fill_between(const Hider& hider, const TracedCurve& curve, std::vector<Seen>& seen, size_t low, size_t high) {
+void fill_between(const Hider& hider, const TracedCurve& curve, std::vector<PointVisibility>& seen, size_t low, size_t high) {
   const size_t n = curve.points.size();
-  const Seen at_low = seen[low], at_high = seen[high % n];
+  const PointVisibility at_low = seen[low], at_high = seen[high % n];
   size_t a = low, b = high;
   while (b - a > 1) {
     const size_t middle = (a + b) / 2;
-    const Seen here = at_low == at_high ? at_low : hider.see(curve, curve.points[middle % n]);
+    const PointVisibility here = at_low == at_high ? at_low : hider.see(curve, curve.points[middle % n]);
     seen[middle % n] = here;
     if (at_low == at_high) {
       for (size_t i = a + 1; i < b; ++i) seen[i % n] = at_low;
@@ -139,7 +139,7 @@ TracedPoint visible_end(const Hider& hider, const TracedCurve& curve, const Curv
   for (int step = 0; step < 40 && std::fabs(hidden - shown) * length > hider.settings.split_px; ++step) {
     const double t = 0.5 * (shown + hidden);
     const TracedPoint q = hider.between(curve, i, t);
-    if (hider.see(curve, q) == Seen::visible) {
+    if (hider.see(curve, q) == PointVisibility::visible) {
       shown = t;
       best = q;
     } else {
@@ -158,10 +158,10 @@ double length_of(const TracedCurve& curve) {
 }
 
 /// The stretches of visible points, with their ends bisected.
-void cut(const Hider& hider, const TracedCurve& curve, const CurveCrossings& crossings, const std::vector<Seen>& seen,
+void cut(const Hider& hider, const TracedCurve& curve, const CurveCrossings& crossings, const std::vector<PointVisibility>& seen,
          std::vector<TracedCurve>& parts) {
   const size_t n = curve.points.size();
-  const auto hidden = std::find(seen.begin(), seen.end(), Seen::hidden);
+  const auto hidden = std::find(seen.begin(), seen.end(), PointVisibility::hidden);
   if (hidden == seen.end()) {
     parts.push_back(curve);
     return;
@@ -176,10 +176,10 @@ void cut(const Hider& hider, const TracedCurve& curve, const CurveCrossings& cro
   const size_t count = curve.closed ? n + 1 : n;
   for (size_t k = 0; k < count; ++k) {
     const size_t i = (start + k) % n;
-    const bool visible = seen[i] == Seen::visible;
+    const bool visible = seen[i] == PointVisibility::visible;
     if (k > 0) {
       const size_t before = (i + n - 1) % n;
-      const bool was = seen[before] == Seen::visible;
+      const bool was = seen[before] == PointVisibility::visible;
       if (was != visible) part.points.push_back(visible_end(hider, curve, crossings, before, was));
       if (was && !visible) finish();
     }
@@ -212,11 +212,11 @@ std::vector<TracedCurve> visible_parts(const std::vector<TracedCurve>& given, co
   const Hider hider{scene, settings};
   std::vector<TracedCurve> curves = given;
   auto crossings = image_crossings(curves, scene.camera);
-  std::vector<std::vector<Seen>> seen(curves.size());
+  std::vector<std::vector<PointVisibility>> seen(curves.size());
   std::vector<std::vector<size_t>> tests(curves.size());
   for_all(curves.size(), how, [&](size_t c) {
     insert_between_crossings(hider, curves[c], crossings[c]);
-    seen[c].assign(curves[c].points.size(), Seen::unknown);
+    seen[c].assign(curves[c].points.size(), PointVisibility::unknown);
     tests[c] = points_to_test(curves[c], find_breaks(hider, curves[c], crossings[c]), settings.spacing_px);
   });
   struct Place {

@@ -34,12 +34,12 @@ struct Walk {
     size_t points = 0;
     double length_px = 0.0;
   };
-  std::optional<Way> way_to_crossing(size_t step, bool forward, const std::vector<Seen>& seen) const {
+  std::optional<Way> way_to_crossing(size_t step, bool forward, const std::vector<PointVisibility>& seen) const {
     const bool closed = curves[c].closed;
     const size_t n = size(), steps = crossings.size();
     Way way;
     size_t at = forward ? (step + 1) % n : step;
-    const Seen passed = seen[at];
+    const PointVisibility passed = seen[at];
     while (way.points < n && seen[at] == passed) {
       ++way.points;
       if (!closed && at == (forward ? n - 1 : 0)) return std::nullopt;
@@ -71,7 +71,7 @@ struct Walk {
 }  // namespace
 
 void move_ends_to_crossings(const std::vector<TracedCurve>& curves, size_t c, const CurveCrossings& crossings, double near_px,
-                            std::vector<Seen>& seen) {
+                            std::vector<PointVisibility>& seen) {
   const size_t n = seen.size();
   const Walk walk{curves, c, crossings, near_px};
   for (size_t step = 0; step < crossings.size(); ++step) {
@@ -79,7 +79,7 @@ void move_ends_to_crossings(const std::vector<TracedCurve>& curves, size_t c, co
     const auto forward = walk.way_to_crossing(step, true, seen), back = walk.way_to_crossing(step, false, seen);
     if (!forward && !back) continue;
     const bool ahead = forward && (!back || forward->length_px < back->length_px);
-    const Seen stays = seen[ahead ? step : (step + 1) % n];
+    const PointVisibility stays = seen[ahead ? step : (step + 1) % n];
     for (size_t k = 0; k < (ahead ? forward->points : back->points); ++k) seen[ahead ? (step + 1 + k) % n : (step + n - k) % n] = stays;
   }
 }

@@ -6,11 +6,11 @@
 
 namespace limn {
 
-enum class Seen : std::uint8_t { unknown, hidden, visible };
+enum class PointVisibility : std::uint8_t { unknown, hidden, visible };
 
 /// Moves changes between points to the nearest step that a silhouette crosses, where the points passed over lie within `near_px` of that
 /// silhouette. `seen` is of the points of curves[c].
 void move_ends_to_crossings(const std::vector<TracedCurve>& curves, size_t c, const CurveCrossings& crossings, double near_px,
-                            std::vector<Seen>& seen);
+                            std::vector<PointVisibility>& seen);
 
 }  // namespace limn

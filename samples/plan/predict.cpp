@@ -103,7 +103,7 @@ std::vector<BorderPlace> border_places(const PlanView& view) {
   const BorderBands bands(curves);
   const double reach_px = search_reach_px(view.camera);
   std::vector<BorderPlace> places;
-  for (const CurveSample& sample : resample(curves, {}, kStep_px)) {
+  for (const BorderSample& sample : resample(curves, {}, kStep_px)) {
     const BorderCurve& curve = curves.curves[sample.curve];
     const BorderPoint &a = curve.points[sample.segment], &b = curve.points[(sample.segment + 1) % curve.points.size()];
     BorderPlace place;

@@ -28,7 +28,7 @@ void add_valence_two(Cages& out) {
   add_face(prism, {5, 4, 3, 2, 1, 0});
   for (int i = 0; i < 6; ++i) add_face(prism, {i, (i + 1) % 6, 6 + (i + 1) % 6, 6 + i});
   add_face(prism, {6, 7, 8, 9, 10, 11});
-  out.push_back({kind, "hexagon split in pentagons", with_valence_two(jittered(prism, 0.08, 5), 7, 0.4)});
+  out.push_back({kind, "hexagon split in pentagons", with_valence_two(shaken(prism, 0.08, 5), 7, 0.4)});
   out.push_back({kind, "bilinear", with_valence_two(cube, 1, 0.3), Scheme::bilinear});
   out.push_back({kind, "loop, three triangles of a tetrahedron",
                  mesh_of({{1, 0, 0}, {-0.6, 0.8, 0}, {-0.5, -0.9, 0.1}, {0, 0.1, 1.2}}, {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}}),
@@ -80,9 +80,9 @@ void add_boundaries(Cages& out) {
     for (size_t f = 0; f < turned.face_count(); ++f) turned = turned_face(turned, f);
     out.push_back({kind, "wave turned round", ruled(turned, rule)});
     const auto bowl = [](double x, double y) { return 1.1 * (x * x + y * y); };
-    out.push_back({kind, "bowl", ruled(jittered(grid_cage(4, 4, bowl), 0.04, 5), rule)});
+    out.push_back({kind, "bowl", ruled(shaken(grid_cage(4, 4, bowl), 0.04, 5), rule)});
     if (rule != kNone)
-      out.push_back({kind, "strip", ruled(jittered(grid_cage(5, 1, [](double x, double) { return std::sin(3.0 * x); }), 0.1, 6), rule)});
+      out.push_back({kind, "strip", ruled(shaken(grid_cage(5, 1, [](double x, double) { return std::sin(3.0 * x); }), 0.1, 6), rule)});
     out.push_back({kind, "loop wave", ruled(halved(wave_cage(4, 4, 8)), rule), Scheme::loop});
     out.push_back({kind, "bilinear wave", ruled(wave_cage(3, 3, 8), rule), Scheme::bilinear});
   }
@@ -100,20 +100,19 @@ void add_non_manifold(Cages& out) {
     return static_cast<std::int32_t>(std::find(wall.positions.begin(), wall.positions.end(), p) - wall.positions.begin());
   };
   add_face(wall, {at({1, 0, 0}), at({1, 1, 0}), at({1, 1, 1}), at({1, 0, 1})});
-  out.push_back({edges, "two cubes and the wall between", jittered(wall, 0.08, 41)});
+  out.push_back({edges, "two cubes and the wall between", shaken(wall, 0.08, 41)});
   Mesh fin = cube_cage(43);
   fin.positions.emplace_back(-0.9, 0.9, 2.0);
   fin.positions.emplace_back(1.1, 0.9, 1.9);
   add_face(fin, {6, 7, 9, 8});
   out.push_back({edges, "cube with a fin", fin});
-  out.push_back({edges, "two cubes at an edge", jittered(block_cage({{0, 0, 0}, {1, 1, 0}}), 0.06, 44)});
+  out.push_back({edges, "two cubes at an edge", shaken(block_cage({{0, 0, 0}, {1, 1, 0}}), 0.06, 44)});
   out.push_back({edges, "sheets that disagree", turned_face(wave_cage(3, 3, 45), 4)});
-  out.push_back(
-      {edges, "halves that disagree", turned_face(jittered(grid_cage(2, 1, [](double x, double) { return x * x; }), 0.1, 46), 1)});
+  out.push_back({edges, "halves that disagree", turned_face(shaken(grid_cage(2, 1, [](double x, double) { return x * x; }), 0.1, 46), 1)});
   out.push_back({edges, "loop book", halved(book_cage({0.0, 130.0, 250.0})), Scheme::loop});
   out.push_back({edges, "bilinear book", book_cage({0.0, 130.0, 250.0}), Scheme::bilinear});
   out.push_back({edges, "a soft crease into the spine", creased(book_cage({0.0, 130.0, 250.0}), {{1, 4, 2.0f}})});
-  out.push_back({vertices, "two cubes", jittered(block_cage({{0, 0, 0}, {1, 1, 1}}), 0.06, 47)});
+  out.push_back({vertices, "two cubes", shaken(block_cage({{0, 0, 0}, {1, 1, 1}}), 0.06, 47)});
   out.push_back({vertices, "two sheets", merged(joined(wave_cage(2, 2, 48), wave_cage(2, 2, 49), {2.1, 2.0, 0.4}), 8, 9)});
   out.push_back(
       {vertices, "two fans", merged(joined(fan_cage(4, true, true, 1.0), fan_cage(5, false, true, -1.0), {0.0, 0.0, 2.0}), 0, 9)});
@@ -149,8 +148,8 @@ void add_others(Cages& out) {
   holes = octahedron_cage();
   holes.holes = {1, 6};
   out.push_back({"holes", "loop", holes, Scheme::loop});
-  out.push_back({"genus", "one", jittered(slab_cage(1), 0.07, 53)});
-  out.push_back({"genus", "three", jittered(slab_cage(3), 0.07, 54)});
+  out.push_back({"genus", "one", shaken(slab_cage(1), 0.07, 53)});
+  out.push_back({"genus", "three", shaken(slab_cage(3), 0.07, 54)});
   out.push_back({"repeated corners", "globe", globe_cage(5, 4)});
   Mesh smooth = octahedron_cage();
   smooth.triangle_rule = TriangleRule::smooth;

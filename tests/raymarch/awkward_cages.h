@@ -31,7 +31,7 @@ inline Mesh mesh_of(std::vector<glm::dvec3> positions, const std::vector<std::ve
 }
 
 /// Every vertex moved a little, always the same way.
-inline Mesh jittered(Mesh mesh, double by, unsigned seed) {
+inline Mesh shaken(Mesh mesh, double by, unsigned seed) {
   std::mt19937 random(seed);
   for (glm::dvec3& p : mesh.positions) {
     for (int axis = 0; axis < 3; ++axis) p[axis] += by * (static_cast<double>(random() % 2001) / 1000.0 - 1.0);
@@ -112,7 +112,7 @@ inline Mesh cube_cage(unsigned seed) {
   for (int i = 0; i < 8; ++i) mesh.positions.emplace_back((i & 1) ? 1.0 : -1.0, (i & 2) ? 0.8 : -0.8, (i & 4) ? 0.9 : -0.9);
   mesh.corner_vertices = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
   mesh.face_sizes.assign(6, 4);
-  return jittered(std::move(mesh), 0.12, seed);
+  return shaken(std::move(mesh), 0.12, seed);
 }
 
 /// columns x rows quads over z = height(x, y); vertex (i, j) is number j (columns + 1) + i.
@@ -133,7 +133,7 @@ Mesh grid_cage(int columns, int rows, const Height& height) {
 }
 inline Mesh wave_cage(int columns, int rows, unsigned seed) {
   const auto height = [](double x, double y) { return 0.7 * std::sin(2.4 * x + 0.3) + 0.5 * std::cos(2.0 * y) * x; };
-  return jittered(grid_cage(columns, rows, height), 0.05, seed);
+  return shaken(grid_cage(columns, rows, height), 0.05, seed);
 }
 /// Each quad as two triangles.
 inline Mesh halved(const Mesh& mesh) {

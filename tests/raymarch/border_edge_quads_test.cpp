@@ -37,7 +37,7 @@ bool wanted(const Solid& solid, const SolidEdge& edge, const Kinds& kinds, const
 }
 
 /// What `visible_stretches` says of the edge.
-std::vector<Stretch> stretches(const SampledEdge& edge, const BorderInput& input, const Solid& solid, size_t object) {
+std::vector<EdgeStretch> stretches(const SampledEdge& edge, const BorderInput& input, const Solid& solid, size_t object) {
   const EdgeVisibility view(input);
   ImageEdge image;
   EXPECT_TRUE(view.place(edge.edge.a - input.model.render_origin, edge.edge.b - input.model.render_origin, 4.0, image));
@@ -48,15 +48,15 @@ std::vector<Stretch> stretches(const SampledEdge& edge, const BorderInput& input
   const glm::dvec3 to_eye = view_vector(input.camera, edge.edge.a);
   image.turned_away = edge.edge.faces.size() == 2 && glm::dot(normal_of(solid.faces[edge.edge.faces[0]]), to_eye) <= 0.0 &&
                       glm::dot(normal_of(solid.faces[edge.edge.faces[1]]), to_eye) <= 0.0;
-  std::vector<Stretch> result;
+  std::vector<EdgeStretch> result;
   EdgeVisibility::Scratch scratch;
   view.visible_stretches(image, scratch, result);
   return result;
 }
 
-double outside(const std::vector<Stretch>& stretches, double s) {
+double outside(const std::vector<EdgeStretch>& stretches, double s) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Stretch& stretch : stretches) nearest = std::min(nearest, std::max({0.0, stretch.from - s, s - stretch.to}));
+  for (const EdgeStretch& stretch : stretches) nearest = std::min(nearest, std::max({0.0, stretch.from - s, s - stretch.to}));
   return nearest;
 }
 
@@ -72,9 +72,9 @@ constexpr double kPoint_px = 1.0 / kPointsPerPixel;
 constexpr double kLeak_px = 0.125 + 1.0 / 64.0 + kPoint_px, kMissed_px = 0.25 + 2.0 * kPoint_px;
 
 /// Edge against edge: what is said to be seen against what is.
-void compare_edge(const std::vector<Solid>& solids, const Solid& own, const SampledEdge& edge, const std::vector<Stretch>& said,
+void compare_edge(const std::vector<Solid>& solids, const Solid& own, const SampledEdge& edge, const std::vector<EdgeStretch>& said,
                   const Camera& camera, std::vector<std::pair<glm::dvec2, glm::dvec2>>& allowed, Comparison& result) {
-  const std::vector<Stretch> truly = runs(edge);
+  const std::vector<EdgeStretch> truly = runs(edge);
   const double length = edge.length_px();
   for (size_t i = 0; i < edge.seen.size(); ++i) {
     if (edge.seen[i]) continue;
@@ -88,7 +88,7 @@ void compare_edge(const std::vector<Solid>& solids, const Solid& own, const Samp
       result.leak_px = std::max(result.leak_px, leak);
     }
   }
-  for (const Stretch& run : truly) {
+  for (const EdgeStretch& run : truly) {
     allowed.push_back({edge.image(run.from), edge.image(run.to)});
     if ((run.to - run.from) * length < kMissed_px) continue;
     for (size_t i = 0; i < edge.seen.size(); ++i) {
@@ -110,7 +110,7 @@ Comparison compare(const std::vector<Solid>& solids, const Kinds& kinds, const B
       if (!wanted(solid, edge, kinds, input.camera)) continue;
       const SampledEdge sampled = sample_edge(solids, solid, edge, input.camera);
       compare_edge(solids, solid, sampled, stretches(sampled, input, solid, object), input.camera, allowed, result);
-      for (const Stretch& run : runs(sampled)) {
+      for (const EdgeStretch& run : runs(sampled)) {
         if ((run.to - run.from) * sampled.length_px() < kMissed_px) continue;
         for (double s = run.from; s <= run.to; s += 0.1 / sampled.length_px()) {
           const glm::dvec2 at = sampled.image(s);

@@ -15,12 +15,6 @@
 
 namespace limn {
 
-inline Scene scene_of(const Field& field) {
-  Scene scene;
-  scene.objects.push_back({.name = "shape", .source = field});
-  return scene;
-}
-
 /// A random direction, near or far, either projection.
 inline Camera random_camera(std::mt19937& random, const Scene& scene, bool perspective) {
   std::normal_distribution<double> normal;

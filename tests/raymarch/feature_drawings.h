@@ -7,16 +7,11 @@
 
 #include "raymarch/lines.h"
 #include "sdf/segment.h"
+#include "tests/raymarch/line_views.h"
 
 namespace limn {
 
 inline constexpr double kMajor = 1.0, kMinor = 0.4;  // of a torus
-
-inline Scene scene_of(const Field& field) {
-  Scene scene;
-  scene.objects.push_back({.name = "shape", .source = field});
-  return scene;
-}
 
 inline Camera camera_from(const glm::dvec3& direction, const Box& box, bool perspective) {
   CameraSettings settings;
@@ -50,7 +45,7 @@ inline std::vector<Polyline> edges_of(const ViewGraph& graph, LineClass line_cla
   return lines;
 }
 
-inline double distance_to(const std::vector<Polyline>& lines, const glm::dvec2& p) {
+inline double distance_to_any(const std::vector<Polyline>& lines, const glm::dvec2& p) {
   double least = 1e9;
   for (const Polyline& line : lines) {
     for (size_t i = 0; i + 1 < line.size(); ++i) least = std::min(least, distance_to_segment(p, line[i].px, line[i + 1].px));
@@ -63,7 +58,7 @@ inline double farthest(const ViewGraph& one, const ViewGraph& other) {
   const std::vector<Polyline> lines = edges_of(other, LineClass::suggestive);
   double most = 0.0;
   for (const Polyline& line : edges_of(one, LineClass::suggestive)) {
-    for (const LinePoint& point : line) most = std::max(most, distance_to(lines, point.px));
+    for (const LinePoint& point : line) most = std::max(most, distance_to_any(lines, point.px));
   }
   return most;
 }

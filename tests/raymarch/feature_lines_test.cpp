@@ -99,7 +99,7 @@ TEST(FeatureLines, SuggestiveContoursOfATorusAreThoseOfItsClosedForm) {
           // The model's radius is that of a mesh of it.
           if (!turned_enough || torus.slope(a.x, a.y) * radius * radius < 1.1 * settings.suggestive_slope) continue;
           ++places;
-          worst = std::max(worst, distance_to(lines, glm::dvec2(project(camera, Torus::point(a.x, a.y)))));
+          worst = std::max(worst, distance_to_any(lines, glm::dvec2(project(camera, Torus::point(a.x, a.y)))));
         }
       }
     }
@@ -119,7 +119,7 @@ TEST(FeatureLines, SuggestiveContoursGoOnFromTheCuspsOfContours) {
   for (const LineVertex& vertex : graph.vertices) {
     if (vertex.kind != VertexKind::cusp) continue;
     ++cusps;
-    EXPECT_LE(distance_to(edges_of(graph, LineClass::suggestive), vertex.px), 0.05) << vertex.px.x << ", " << vertex.px.y;
+    EXPECT_LE(distance_to_any(edges_of(graph, LineClass::suggestive), vertex.px), 0.05) << vertex.px.x << ", " << vertex.px.y;
   }
   EXPECT_GE(cusps, 2);
 }
@@ -175,7 +175,7 @@ TEST(FeatureLines, RidgesOfAnEllipsoidLieInItsPlanesOfSymmetry) {
         const double h = 1e-3,
                      bent = (curvature_of(axes, beside(h)).k_max + curvature_of(axes, beside(-h)).k_max - 2.0 * here.k_max) / (h * h);
         const double sharpness = -bent / (here.k_max * here.k_max * here.k_max);
-        const double apart = distance_to(ridges, glm::dvec2(project(camera, p)));
+        const double apart = distance_to_any(ridges, glm::dvec2(project(camera, p)));
         const bool is_largest = across > here.k_min * 1.05 && std::fabs(across - here.k_max) < 1e-9;
         if (is_largest && sharpness > 0.1) {
           ++places;

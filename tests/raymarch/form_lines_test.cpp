@@ -74,12 +74,6 @@ Field random_body(std::mt19937& random) {
   return body;
 }
 
-Scene scene_of(const Field& field) {
-  Scene scene;
-  scene.objects.push_back({.name = "body", .source = field});
-  return scene;
-}
-
 Camera random_camera(std::mt19937& random, const Box& box, bool perspective) {
   const glm::dvec3 way = direction(random);
   return line_view(box, way, uniform(random, 2.5, 6.0), perspective);

@@ -1,11 +1,18 @@
 #pragma once
-// Views from which tests of lines look.
+// What tests of lines look at, and from where.
 
 #include <cmath>
 
+#include "raymarch/scene.h"
 #include "sdf/camera.h"
 
 namespace limn {
+
+inline Scene scene_of(const Field& field) {
+  Scene scene;
+  scene.objects.push_back({.name = "shape", .source = field});
+  return scene;
+}
 
 /// 640x480, from `distance` radii of the box away along the unit `direction`, either projection; the picture holds the box.
 inline Camera line_view(const Box& box, const glm::dvec3& direction, double distance, bool perspective) {

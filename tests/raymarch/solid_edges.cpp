@@ -81,8 +81,8 @@ SampledEdge sample_edge(const std::vector<Solid>& solids, const Solid& own, cons
   return sampled;
 }
 
-std::vector<Stretch> runs(const SampledEdge& edge) {
-  std::vector<Stretch> result;
+std::vector<EdgeStretch> runs(const SampledEdge& edge) {
+  std::vector<EdgeStretch> result;
   const double half = 0.5 / static_cast<double>(edge.seen.size());
   for (size_t i = 0; i < edge.seen.size(); ++i) {
     if (!edge.seen[i]) continue;

@@ -43,7 +43,7 @@ struct SampledEdge {
 
 SampledEdge sample_edge(const std::vector<Solid>& solids, const Solid& own, const SolidEdge& edge, const Camera& camera);
 /// Runs of points seen, as stretches of the edge.
-std::vector<Stretch> runs(const SampledEdge& edge);
+std::vector<EdgeStretch> runs(const SampledEdge& edge);
 /// Seen from a place in the image a fiftieth of a pixel away: rounding may take it for either.
 bool seen_nearby(const std::vector<Solid>& solids, const Solid* own, const SolidEdge& edge, const glm::dvec3& point, const Camera& camera);
 

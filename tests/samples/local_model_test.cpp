@@ -193,7 +193,7 @@ TEST(LocalModel, ACageHoweverTwistedHasAClosedLocalMesh) {
   const std::uint32_t seed = random_seed();
   for (unsigned draw = 0; draw < 16; ++draw) {
     Mesh cage = draw % 2 == 0 ? cube_cage(seed + draw) : block_cage({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}});
-    cage = jittered(std::move(cage), draw % 4 < 2 ? 0.5 : 1.5, seed + draw);
+    cage = shaken(std::move(cage), draw % 4 < 2 ? 0.5 : 1.5, seed + draw);
     Scene scene;
     scene.objects.push_back({.name = "cage", .source = MeshSource{cage, Scheme::catmark}});
     for (const double tolerance_px : {8.0, 0.5}) {

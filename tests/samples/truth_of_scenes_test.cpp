@@ -24,9 +24,9 @@ struct Stretch {
 };
 
 Stretch longest_contradicted(const BorderCurves& truth, const SceneModel& model, const Camera& camera) {
-  const std::vector<CurveSample> samples = within_picture(resample(truth, CurveKind::inner, kSpacing_px), camera);
+  const std::vector<BorderSample> samples = within_picture(resample(truth, CurveKind::inner, kSpacing_px), camera);
   std::vector<glm::dvec2> points;
-  for (const CurveSample& sample : samples) {
+  for (const BorderSample& sample : samples) {
     points.push_back(sample.px - kBeside_px * sample.outward);
     points.push_back(sample.px + kBeside_px * sample.outward);
   }
@@ -36,7 +36,7 @@ Stretch longest_contradicted(const BorderCurves& truth, const SceneModel& model,
   const CurveIndex silhouettes(truth, CurveKind::silhouette), inner(truth, CurveKind::inner);
   Stretch longest, current;
   for (size_t i = 0; i < samples.size(); ++i) {
-    const CurveSample& at = samples[i];
+    const BorderSample& at = samples[i];
     const bool asked = !silhouettes.nearest(at.px, 0, kClear_px) && !inner.nearest(at.px, 0, kClear_px, -at.outward);
     const bool right = !asked || (is_ink(2 * i) && !is_ink(2 * i + 1));
     const bool goes_on = i > 0 && samples[i].curve == samples[i - 1].curve && current.length_px > 0.0;

@@ -16,8 +16,11 @@ void wait_for(std::future<void> work) {
   if (work.valid()) work.get();
 }
 
-/// What the views of one model may take that wait to be measured.
-constexpr double kKeptViewsBytes = 64e6;
+double bytes_of_views(const WaitingModel& model) {
+  return model.views.empty() ? 0.0 : static_cast<double>(model.views.size()) * bytes_of(model.views.front());
+}
+
+double bytes_of(const WaitingModel& model) { return bytes_of_views(model) + static_cast<double>(total(model.built).bytes); }
 
 template <class Same>
 std::span<const ExperimentCell> leading(std::span<const ExperimentCell> cells, const Same& same) {
@@ -213,47 +216,67 @@ void ExperimentRun::run_reference(Cells cells) {
   if (!reference_) reference_ = build(0);
   while (!cells.empty()) {
     const Cells group = leading(cells, same_view);
-    std::deque<ViewWork> work(1);
-    look_at_reference(group, work.front());
-    finish(work);
+    ViewWork work;
+    look_at_reference(group, work);
+    ViewWork* const only = &work;
+    finish({&only, 1});
     cells = cells.subspan(group.size());
   }
   // All that it has to draw is there, and it is the largest of all.
   if (experiment_.picture) reference_.reset();
 }
 
-void ExperimentRun::run_model(Cells cells) {
+void ExperimentRun::run_model(Cells cells, std::deque<WaitingModel>& waiting) {
   const size_t index = cells.front().model;
   if (index == 0) return run_reference(cells);
   const auto refuse = [&](const std::string& reason) {
     if (observer_.refused) observer_.refused(cells, reason);
   };
   if (!experiment_.models[index].refused.empty()) return refuse(experiment_.models[index].refused);
-  std::optional<SceneModel> model;
+  // Times are taken first, while nothing else runs; then views are measured side by side, as many as may be kept.
+  double others = 0.0;
+  for (const WaitingModel& one : waiting) others += bytes_of(one);
   try {
-    model = build(index);
+    waiting.push_back({build(index), {}});
   } catch (const InputError& error) {
     return refuse(reason_of(error));
   } catch (const std::bad_alloc&) {
-    return refuse("out of memory");
+    if (waiting.empty()) return refuse("out of memory");
+    finish(waiting);
+    waiting.clear();
+    return run_model(cells, waiting);
   }
-  // Times are taken first, while nothing else runs; then views are measured side by side, as many as may be kept.
-  std::deque<ViewWork> works;
+  WaitingModel& model = waiting.back();
   for (; !cells.empty(); cells = cells.subspan(leading(cells, same_view).size())) {
-    look_at_view(*model, leading(cells, same_view), works.emplace_back());
-    if (static_cast<double>(works.size()) * bytes_of(works.front()) > kKeptViewsBytes) finish(works);
+    look_at_view(model.built, leading(cells, same_view), model.views.emplace_back());
+    if (others + bytes_of_views(model) <= experiment_.waiting_bytes) continue;
+    finish(waiting);
+    others = 0.0;
+    while (waiting.size() > 1) waiting.pop_front();
   }
+  if (others + bytes_of(model) <= experiment_.waiting_bytes) return;
+  finish(waiting);
+  waiting.clear();
+}
+
+void ExperimentRun::finish(std::deque<WaitingModel>& waiting) {
+  std::vector<ViewWork*> works;
+  for (WaitingModel& model : waiting)
+    for (ViewWork& work : model.views) works.push_back(&work);
   finish(works);
+  for (WaitingModel& model : waiting) model.views.clear();
 }
 
 void ExperimentRun::run(Cells cells) {
+  std::deque<WaitingModel> waiting;
   while (!cells.empty()) {
     const Cells group = leading(cells, same_model);
-    run_model(group);
+    run_model(group, waiting);
     // Views of the first model need all truths that there are.
     truth_cache_ = {};
     cells = cells.subspan(group.size());
   }
+  finish(waiting);
 }
 
 }  // namespace limn

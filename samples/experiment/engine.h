@@ -45,6 +45,8 @@ struct Experiment {
   TruthReference reference = TruthReference::given;  ///< What the true border of meshes and volumes is asked of.
   bool measures_floor = true;                        ///< What the reference scores is measured, too (MeasuredCell::floor).
   int repeats = 1;  ///< Builds and pictures for the time of one, as long as they take less than kMostRepeat_ms.
+  /// What views may take, with their models, that wait until others are built and traced, too: those are measured side by side.
+  double waiting_bytes = 128e6;
 };
 
 /// What has taken longer is not repeated: builds of one model with the first, and repeated pictures of it in one view without. One
@@ -108,7 +110,8 @@ struct ExperimentObserver {
   std::function<void(MeasuredCell& cell)> measured{};
 };
 
-struct ViewWork;  // samples/experiment/engine_views.h: one model in one view
+struct ViewWork;      // samples/experiment/engine_views.h: one model in one view
+struct WaitingModel;  // there, too: a model whose views wait to be measured
 
 /// An experiment under way: what several cells share (the reference, its pictures, truths) is made once and kept. Used from one thread, all
 /// of whose work runs on the threads of the surrounding task arena.
@@ -118,8 +121,9 @@ class ExperimentRun {
   ExperimentRun(Experiment experiment, const ExecutionSettings& how, ExperimentObserver observer);
   ~ExperimentRun();
 
-  /// Does the cells: those of one model one after the other are built once, those of one view of it traced once. Throws InputError where
-  /// the reference cannot be built, and Cancelled.
+  /// Does the cells: those of one model one after the other are built once, those of one view of it traced once. Several models that are
+  /// small are built and traced one after the other, then measured side by side. Throws InputError where the reference cannot be built, and
+  /// Cancelled.
   void run(std::span<const ExperimentCell> cells);
 
   /// Another way to model the scene; returns its index.
@@ -150,15 +154,16 @@ class ExperimentRun {
   using Cells = std::span<const ExperimentCell>;
 
   SceneModel build(size_t model);
-  void run_model(Cells cells);
+  void run_model(Cells cells, std::deque<WaitingModel>& waiting);
   void run_reference(Cells cells);
   /// What needs all threads, or whose time counts: traces, draws, and solves the truths.
   void look_at_view(const SceneModel& built, Cells cells, ViewWork& work);
   void look_at_reference(Cells cells, ViewWork& work);
   void prepare_cells(ViewWork& work);
   /// Measures the cells of several views side by side, and tells of them in their order.
-  void finish(std::deque<ViewWork>& works);
-  void measure_all(std::deque<ViewWork>& works);
+  void finish(std::span<ViewWork* const> works);
+  void finish(std::deque<WaitingModel>& waiting);  ///< Their views are done and gone then; the models stay.
+  void measure_all(std::span<ViewWork* const> works);
   void measure_curves(ViewWork& work, std::span<const size_t> cells);
   void measure_ink(ViewWork& work, size_t cell);
   void measure_gbuffer(ViewWork& work);

@@ -32,12 +32,12 @@ struct CellsOfTruth {
   std::vector<size_t> cells{};
 };
 
-std::vector<CellsOfTruth> by_truth(const std::deque<ViewWork>& views) {
+std::vector<CellsOfTruth> by_truth(std::span<ViewWork* const> views) {
   std::vector<CellsOfTruth> groups;
   for (size_t w = 0; w < views.size(); ++w) {
     std::map<const ExperimentTruth*, size_t> group_of;
-    for (size_t i = 0; i < views[w].truths.size(); ++i) {
-      const ExperimentTruth* const truth = views[w].truths[i];
+    for (size_t i = 0; i < views[w]->truths.size(); ++i) {
+      const ExperimentTruth* const truth = views[w]->truths[i];
       const auto [found, is_new] = group_of.try_emplace(truth, groups.size());
       if (is_new || truth == nullptr) {
         found->second = groups.size();
@@ -139,7 +139,7 @@ void ExperimentRun::measure_ink(ViewWork& work, size_t cell) {
   if (observer_.drawn) observer_.drawn(work.cells[cell], drawing, against);
 }
 
-void ExperimentRun::measure_all(std::deque<ViewWork>& works) {
+void ExperimentRun::measure_all(std::span<ViewWork* const> works) {
   struct Floor {
     size_t view = 0;
     FloorKey key{};
@@ -147,7 +147,8 @@ void ExperimentRun::measure_all(std::deque<ViewWork>& works) {
     std::vector<Measurement> values{};
   };
   std::vector<Floor> floors;
-  for (ViewWork& work : works) {
+  for (ViewWork* const of : works) {
+    ViewWork& work = *of;
     const size_t count = work.cells.size();
     work.of_curves.resize(count), work.of_ink.resize(count);
     work.curves_ms.resize(count), work.ink_ms.resize(count);
@@ -162,25 +163,30 @@ void ExperimentRun::measure_all(std::deque<ViewWork>& works) {
   }
   // What the reference scores is measured only once, so that of its own cells nothing else is.
   std::vector<CellsOfTruth> groups = by_truth(works);
-  std::erase_if(groups, [&](const CellsOfTruth& group) { return works[group.work].model() == 0; });
+  std::erase_if(groups, [&](const CellsOfTruth& group) { return works[group.work]->model() == 0; });
   size_t cells = 0;
-  for (const ViewWork& work : works) cells += work.cells.size();
+  for (const ViewWork* const work : works) cells += work->cells.size();
   std::vector<std::function<void()>> parts;
   parts.reserve(floors.size() + groups.size() + works.size() + cells);
   for (Floor& floor : floors)
     parts.emplace_back([this, &floor] { floor.values = measure_floor(floor.view, *floor.truth, floor.key.second); });
-  for (const CellsOfTruth& group : groups) parts.emplace_back([this, &works, &group] { measure_curves(works[group.work], group.cells); });
-  for (ViewWork& work : works) {
-    if (work.model() == 0) continue;
-    parts.emplace_back([this, &work] { measure_gbuffer(work); });
-    for (size_t i = 0; i < work.cells.size(); ++i) parts.emplace_back([this, &work, i] { measure_ink(work, i); });
+  for (const CellsOfTruth& group : groups) parts.emplace_back([this, works, &group] { measure_curves(*works[group.work], group.cells); });
+  for (ViewWork* const work : works) {
+    if (work->model() == 0) continue;
+    parts.emplace_back([this, work] { measure_gbuffer(*work); });
+    for (size_t i = 0; i < work->cells.size(); ++i) parts.emplace_back([this, work, i] { measure_ink(*work, i); });
   }
   ThreadArena arena(how_.threads);
   arena.execute([&] {
     // Borders are measured side by side: what their rays need is made before.
     if (!floors.empty() && reference_) prepare_points(*reference_);
-    const auto has_truth = [&](const CellsOfTruth& group) { return works[group.work].truths[group.cells.front()] != nullptr; };
-    if (std::any_of(groups.begin(), groups.end(), has_truth)) prepare_points(*works.front().built);
+    const SceneModel* prepared = nullptr;
+    for (const CellsOfTruth& group : groups) {
+      const ViewWork& work = *works[group.work];
+      if (work.truths[group.cells.front()] == nullptr || work.built == prepared) continue;
+      prepared = work.built;
+      prepare_points(*prepared);
+    }
     parallel_each(parts.size(), [&](size_t k) { parts[k](); });
   });
   for (Floor& floor : floors) views_[floor.view].floors.emplace(floor.key, std::move(floor.values));
@@ -214,22 +220,21 @@ void ExperimentRun::tell(ViewWork& work) {
   }
 }
 
-void ExperimentRun::finish(std::deque<ViewWork>& works) {
+void ExperimentRun::finish(std::span<ViewWork* const> works) {
   if (how_.cancelled && how_.cancelled()) throw Cancelled{};
   const auto start = Clock::now();
   measure_all(works);
   // Side by side cells take longer than one after the other would.
   double sum = 0.0;
-  for (const ViewWork& work : works)
-    for (size_t i = 0; i < work.cells.size(); ++i) sum += work.curves_ms[i] + work.ink_ms[i];
+  for (const ViewWork* const work : works)
+    for (size_t i = 0; i < work->cells.size(); ++i) sum += work->curves_ms[i] + work->ink_ms[i];
   const double share = sum > 0.0 ? ms_since(start) / sum : 1.0;
-  for (ViewWork& work : works) {
-    for (std::vector<double>* of : {&work.curves_ms, &work.ink_ms})
+  for (ViewWork* const work : works) {
+    for (std::vector<double>* of : {&work->curves_ms, &work->ink_ms})
       for (double& ms : *of) ms *= share;
-    tell(work);
-    if (work.model() != 0) spare_.push_back(std::move(work.drawn.seen.picture.gbuffer));
+    tell(*work);
+    if (work->model() != 0) spare_.push_back(std::move(work->drawn.seen.picture.gbuffer));
   }
-  works.clear();
 }
 
 GBuffer ExperimentRun::take_spare() {

@@ -31,4 +31,10 @@ struct ViewWork {
 /// What it keeps of pictures, about.
 double bytes_of(const ViewWork& work);
 
+/// Stays where it is: its views point to it.
+struct WaitingModel {
+  SceneModel built{};
+  std::deque<ViewWork> views{};
+};
+
 }  // namespace limn

@@ -76,6 +76,7 @@ Experiment experiment_of(const Study& study) {
   experiment.repeats = kStudyRepeats;
   experiment.share_meshes = true;
   experiment.reference = study.truth_reference;
+  experiment.waiting_bytes = study.waiting_bytes;
   return experiment;
 }
 
@@ -118,9 +119,12 @@ struct Runner {
   ProgressBar& bar;
   StudyJournal& journal;
   ExperimentRun* run = nullptr;
-  Timing build{};
-  std::int64_t bytes = 0;
-  double resolution = 0.0;
+  struct Built {
+    Timing build{};
+    std::int64_t bytes = 0;
+    double resolution = 0.0;
+  };
+  std::map<size_t, Built> models{};  ///< By the engine's number of the model.
   size_t done = 0;
   std::mutex thumbnails_mutex{};
   std::map<size_t, std::vector<std::byte>> thumbnails{};  ///< PNG files of cells whose rows are not written yet, by the cell's number.
@@ -162,7 +166,7 @@ struct Runner {
   }
 
   void has_built(size_t model, const SceneModel& built, double ms, const Timing& times) {
-    if (model > 0) build = times, bytes = total(built).bytes, resolution = resolution_of(built, work.study.longest_side);
+    if (model > 0) models[model] = {times, total(built).bytes, resolution_of(built, work.study.longest_side)};
     if (model == 0)
       ledger.done("reference build", work.study.reference_cost.build_ms, ms);
     else
@@ -215,12 +219,13 @@ struct Runner {
     }
     const auto start = Clock::now();
     StudyRow row = row_of(work.study, work.study.cells[cell.cell.id]);
-    row.resolution = resolution;
-    row.build = build;
+    const Built& of = models.at(cell.cell.model);
+    row.resolution = of.resolution;
+    row.build = of.build;
     row.trace = cell.seen.trace;
     row.truth = row_truth_of(cell);
     row.border_ms = cell.drawing.picture.border_ms;
-    row.bytes = bytes;
+    row.bytes = of.bytes;
     std::vector<StudyRow> measured;
     for (const Measurement& one : cell.measurements) {
       if (std::isnan(one.value.value)) continue;

@@ -119,7 +119,7 @@ std::int64_t expected_bytes(const StudyWork& work) {
   }
   if (views.empty()) return 0;
   return largest + work.study.reference_cost.bytes +
-         static_cast<std::int64_t>(bytes_beside_models(work.study, static_cast<double>(views.size())));
+         static_cast<std::int64_t>(bytes_beside_models(work.study, static_cast<double>(views.size())) + work.study.waiting_bytes);
 }
 
 }  // namespace limn

@@ -27,6 +27,9 @@ struct Block {
 /// picture; the next picture needs blocks of the same sizes.
 class KeptBlocks {
  public:
+  /// As many as there can be: nothing is allocated while the mutex is held, where what frees memory may ask for it (release()).
+  KeptBlocks() { blocks_.reserve(kMostKept / kLargePageBytes); }
+
   /// Null where there is none of that size.
   void* take(size_t bytes) {
     const std::lock_guard lock(mutex_);
@@ -51,9 +54,12 @@ class KeptBlocks {
     kept_ += block.bytes;
   }
 
-  void drop_all() {
+  /// False where there were none.
+  bool drop_all() {
     const std::lock_guard lock(mutex_);
+    const bool any = !blocks_.empty();
     while (!blocks_.empty()) drop_oldest();
+    return any;
   }
 
  private:
@@ -124,14 +130,10 @@ void* LargePages::take(size_t bytes) {
 void LargePages::give_back(void* memory, size_t bytes) {
   const size_t size = rounded(bytes);
   if (size < kLargePageBytes) return give_back_line(memory);
-  try {
-    kept_blocks().keep({memory, size});
-  } catch (const std::bad_alloc&) {  // of the list itself
-    ::munmap(memory, size);
-  }
+  kept_blocks().keep({memory, size});
 }
 
-void LargePages::release() { kept_blocks().drop_all(); }
+bool LargePages::release() { return kept_blocks().drop_all(); }
 
 void* PassingPages::take(size_t bytes) {
   const size_t size = rounded(bytes);

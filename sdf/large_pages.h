@@ -12,7 +12,7 @@ namespace limn {
 struct LargePages {
   static void* take(size_t bytes);                    ///< At least one byte, unset. Throws std::bad_alloc.
   static void give_back(void* memory, size_t bytes);  ///< What take() gave, and how much that was. Never throws.
-  static void release();                              ///< Hands what waits to the system.
+  static bool release();                              ///< Hands what waits to the system; false where nothing does.
 };
 
 /// The same, but what is given back is the system's at once: for large arrays of which no second one of the same size follows, such as

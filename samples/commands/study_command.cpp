@@ -16,6 +16,7 @@
 #include "samples/study/study_files.h"
 #include "samples/study/study_summary.h"
 #include "sdf/error.h"
+#include "sdf/large_pages.h"
 
 namespace limn {
 namespace {
@@ -157,6 +158,8 @@ StudyFolder do_cells(const Options& options, const Study& study, const Place& pl
   if (!options.quiet) announce(study, work, cells.size() - work.cells.size(), ledger);
   const size_t known = held.record.head.warnings.size();
   run_cells(work, ledger, held.record, held.rows, bar);
+  // No more pictures of these sizes come; charts are drawn by a library that cannot ask for their memory.
+  LargePages::release();
   bar.clear();
   const std::vector<std::string>& warnings = held.record.head.warnings;
   print_warnings(options, {warnings.begin() + static_cast<std::ptrdiff_t>(known), warnings.end()});

@@ -87,7 +87,7 @@ void hold_limits(const LimitSpec& limits, bool goes_on) {
     stop_after(*limits.max_time_ms, in_flags(fmt::format("max_time: stopped after {}", time_text(*limits.max_time_ms))));
   const std::string less = "use fewer voxels, a lower level or a smaller picture";
   if (limits.max_memory) limit_memory(limits);
-  if (goes_on) return;
+  if (goes_on) return go_on_when_out_of_memory();
   end_when_out_of_memory(in_flags(limits.max_memory ? fmt::format("max_memory: the limit of {} was reached; {}",
                                                                   bytes_text(static_cast<double>(*limits.max_memory)), less)
                                                     : "out of memory; " + less));

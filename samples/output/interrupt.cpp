@@ -10,6 +10,7 @@
 #include <cstring>
 #include <new>
 
+#include "sdf/large_pages.h"
 #include "sdf/output_file.h"
 #include "sdf/output_together.h"
 
@@ -50,6 +51,7 @@ void stop_now() {
 }
 
 void on_out_of_memory() {
+  if (LargePages::release()) return;
   // Where memory ends, it ends for several threads at once: one says so and ends the program, and the others must not end it before.
   if (out_of_memory.exchange(true))
     for (;;) ::pause();
@@ -98,7 +100,15 @@ void stop_after(double after_ms, const std::string& line) {
 
 void end_when_out_of_memory(const std::string& line) {
   keep_line(line, memory_line);
+  LargePages::release();  // makes what it needs, which the handler must not have to
   std::set_new_handler(on_out_of_memory);
+}
+
+void go_on_when_out_of_memory() {
+  LargePages::release();
+  std::set_new_handler([] {
+    if (!LargePages::release()) throw std::bad_alloc();
+  });
 }
 
 bool interrupted() { return caught_signal.load(std::memory_order_relaxed) != 0; }

@@ -273,9 +273,6 @@ std::int64_t left_for_models(const LimitSpec& limits, const Study& study) {
                                 camera.width_px, camera.height_px)});
 }
 
-/// Where memory is limited few models wait to be measured: bytes_beside_models() has room for that.
-constexpr double kFewWaitingBytes = 32e6;
-
 Study plan_with(const Given& given, const DefaultAxes& defaults) {
   const StudySpec& spec = given.spec;
   Study study;
@@ -294,8 +291,13 @@ Study plan_with(const Given& given, const DefaultAxes& defaults) {
     study.cameras.push_back(camera_of_view(camera, framed, framing_settings(spec.experiment.camera), view, views));
   plan_methods(spec, given.input, study);
   SurfaceSettings settings = given.settings;
-  if (spec.experiment.limits.max_memory) study.waiting_bytes = kFewWaitingBytes;
-  if (spec.experiment.limits.max_memory && !spec.sweep.max_model_bytes) settings.max_bytes = left_for_models(spec.experiment.limits, study);
+  if (spec.experiment.limits.max_memory && !spec.sweep.max_model_bytes) {
+    // Those that wait to be measured share what is left with the one that is built.
+    constexpr double kWaitingShare = 0.125;
+    const auto left = static_cast<double>(left_for_models(spec.experiment.limits, study));
+    study.waiting_bytes = std::min(study.waiting_bytes, kWaitingShare * left);
+    settings.max_bytes = static_cast<std::int64_t>(left - study.waiting_bytes);
+  }
   const Axes axes = resolve_axes(spec, study.scene, settings, given.size, defaults);
   plan_models(axes, given.size, settings, spec.experiment.limits.max_memory.has_value(), spec.sweep.local_px, study);
   plan_reference(spec.sweep, given.input, settings, axes, given.size, study);

@@ -52,6 +52,19 @@ TEST(LargePages, NoMoreThanASmallPartWaits) {
   LargePages::release();
 }
 
+TEST(LargePages, ReleasingSaysWhetherAnythingWaited) {
+  LargePages::release();
+  EXPECT_FALSE(LargePages::release());
+  // As many small blocks as may wait, and one more: the list of them has room.
+  std::vector<void*> given;
+  for (int i = 0; i < 129; ++i) given.push_back(LargePages::take(2 * kMegabyte));
+  for (void* const memory : given) LargePages::give_back(memory, 2 * kMegabyte);
+  EXPECT_EQ(LargePages::take(2 * kMegabyte), given.back());
+  LargePages::give_back(given.back(), 2 * kMegabyte);
+  EXPECT_TRUE(LargePages::release());
+  EXPECT_FALSE(LargePages::release());
+}
+
 /// Kilobytes of this process that are in memory.
 long resident_kb() {
   long pages = 0, resident = 0;

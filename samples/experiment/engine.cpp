@@ -16,6 +16,9 @@ void wait_for(std::future<void> work) {
   if (work.valid()) work.get();
 }
 
+/// What the views of one model may take that wait to be measured, whether or not models wait, too.
+constexpr double kWaitingViewsBytes = 64e6;
+
 double bytes_of_views(const WaitingModel& model) {
   return model.views.empty() ? 0.0 : static_cast<double>(model.views.size()) * bytes_of(model.views.front());
 }
@@ -249,7 +252,7 @@ void ExperimentRun::run_model(Cells cells, std::deque<WaitingModel>& waiting) {
   WaitingModel& model = waiting.back();
   for (; !cells.empty(); cells = cells.subspan(leading(cells, same_view).size())) {
     look_at_view(model.built, leading(cells, same_view), model.views.emplace_back());
-    if (others + bytes_of_views(model) <= experiment_.waiting_bytes) continue;
+    if (others + bytes_of_views(model) <= std::max(experiment_.waiting_bytes, kWaitingViewsBytes)) continue;
     finish(waiting);
     others = 0.0;
     while (waiting.size() > 1) waiting.pop_front();

@@ -45,7 +45,8 @@ struct Experiment {
   TruthReference reference = TruthReference::given;  ///< What the true border of meshes and volumes is asked of.
   bool measures_floor = true;                        ///< What the reference scores is measured, too (MeasuredCell::floor).
   int repeats = 1;  ///< Builds and pictures for the time of one, as long as they take less than kMostRepeat_ms.
-  /// What views may take, with their models, that wait until others are built and traced, too: those are measured side by side.
+  /// What models may take, with their views, that wait until others are built and traced, too: those are measured side by side. 0: views of
+  /// one model alone are.
   double waiting_bytes = 128e6;
 };
 

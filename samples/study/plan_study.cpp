@@ -291,13 +291,9 @@ Study plan_with(const Given& given, const DefaultAxes& defaults) {
     study.cameras.push_back(camera_of_view(camera, framed, framing_settings(spec.experiment.camera), view, views));
   plan_methods(spec, given.input, study);
   SurfaceSettings settings = given.settings;
-  if (spec.experiment.limits.max_memory && !spec.sweep.max_model_bytes) {
-    // Those that wait to be measured share what is left with the one that is built.
-    constexpr double kWaitingShare = 0.125;
-    const auto left = static_cast<double>(left_for_models(spec.experiment.limits, study));
-    study.waiting_bytes = std::min(study.waiting_bytes, kWaitingShare * left);
-    settings.max_bytes = static_cast<std::int64_t>(left - study.waiting_bytes);
-  }
+  // All that is left is the models' then: none waits while another one is built.
+  if (spec.experiment.limits.max_memory) study.waiting_bytes = 0.0;
+  if (spec.experiment.limits.max_memory && !spec.sweep.max_model_bytes) settings.max_bytes = left_for_models(spec.experiment.limits, study);
   const Axes axes = resolve_axes(spec, study.scene, settings, given.size, defaults);
   plan_models(axes, given.size, settings, spec.experiment.limits.max_memory.has_value(), spec.sweep.local_px, study);
   plan_reference(spec.sweep, given.input, settings, axes, given.size, study);

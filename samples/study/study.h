@@ -63,7 +63,7 @@ struct Study {
   std::vector<StudyModel> models{};                        ///< In the order in which they are built.
   std::vector<StudyCell> cells{};                          ///< In the order of work: models, their views, methods.
   bool flicker = false;                                    ///< Flicker is measured, too.
-  double waiting_bytes = 128e6;                            ///< See Experiment.
+  double waiting_bytes = 128e6;                            ///< See Experiment. 0 where memory is limited.
   StudyHead head{};                                        ///< What the folder says of it.
   double longest_side = 0.0;                               ///< World, of the scene.
   double truth_terms = 0.0;  ///< How much there is to trace for truth: grows with what a field's surface has of shape.

@@ -50,6 +50,8 @@ FieldEvaluator& FieldEvaluator::operator=(FieldEvaluator&&) noexcept = default;
 
 void FieldEvaluator::values(std::span<const glm::dvec3> points, std::span<double> values) {
   LIMN_CHECK(points.size() == values.size());
+  if (const FieldTape* const tape = scratch_->tape_for(field_, points.size()))
+    return tape_values_at(*tape, points, scratch_->lanes, values);
   run_batches(field_.program(), scratch_->get<double>(), points,
               [&](size_t first, size_t count, const double* results) { std::copy_n(results, count, values.data() + first); });
 }

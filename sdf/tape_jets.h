@@ -22,6 +22,8 @@ void tape_jets(const FieldTape& tape, const LaneArray (&points)[3], TapeScratch&
 
 /// f at points that are filled up (world). Every bit is that of FieldEvaluator::values() where has_bits_of_field().
 void tape_values_at(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& values);
+/// The same at any number of points; sizes equal.
+void tape_values_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values);
 /// f and its gradient at any number of points (world); sizes equal. Every bit is that of FieldEvaluator::gradients() of one point where
 /// has_bits_of_field().
 void tape_gradients_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values,

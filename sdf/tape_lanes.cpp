@@ -127,6 +127,20 @@ void tape_values(const FieldTape& tape, std::span<const TapeStep> steps, const L
 void tape_values_at(const FieldTape& tape, const LanePoints& points, TapeScratch& scratch, LaneNumbers& values) {
   HWY_DYNAMIC_DISPATCH(values_at)(tape, points, scratch, values);
 }
+void tape_values_at(const FieldTape& tape, std::span<const glm::dvec3> points, TapeScratch& scratch, std::span<double> values) {
+  LIMN_CHECK(points.size() == values.size());
+  LanePoints lanes;
+  LaneNumbers found;
+  while (!points.empty()) {
+    const size_t count = std::min(points.size(), kMostLanePoints);
+    lanes.count = 0;
+    for (const glm::dvec3& point : points.first(count)) lanes.add(point);
+    lanes.fill_up();
+    tape_values_at(tape, lanes, scratch, found);
+    std::copy_n(found.at, count, values.data());
+    points = points.subspan(count), values = values.subspan(count);
+  }
+}
 bool has_bits_of_field(const FieldTape& tape) {
   static const ShapeFunctions* const metaballs = make_shape("metaballs").program().leaves.front().functions;
   const auto other = [](const TapeLeaf& leaf) { return leaf.leaf->functions == metaballs; };

@@ -7,10 +7,9 @@
 #include <optional>
 
 #include "subdiv/field_lattice.h"
-#include "subdiv/local_field.h"
+#include "subdiv/lattice_crossings.h"
 #include "subdiv/mesh_audit.h"
 #include "subdiv/surface_snap.h"
-#include "subdiv/thin_walls.h"
 
 namespace limn {
 namespace {
@@ -35,18 +34,6 @@ int edge_between(int a, int b) {
 /// Rows of cells whose vertices and quads one thread makes, so that they have the same numbers on any number of threads.
 constexpr size_t kRows = 64;
 
-/// Where the surface crosses an edge of the lattice.
-struct Crossing {
-  glm::dvec3 point{0.0}, normal{0.0};
-};
-
-/// What one block finds on the edges and faces that begin at its nodes.
-struct BlockFinds {
-  std::vector<size_t> edges{};  ///< As numbered by FieldLattice::edge_index.
-  std::vector<Crossing> crossings{};
-  std::vector<size_t> faces{};  ///< Crossed twice; as numbered by FieldLattice::edge_index.
-};
-
 /// Nodes are put back at most so often.
 constexpr int kMostRounds = 8;
 
@@ -65,7 +52,7 @@ class DualContour {
   Mesh run() {
     Mesh mesh;
     for (int round = 0;; ++round) {
-      find_crossings();
+      found_ = find_crossings(lattice_);
       make_vertices(mesh);
       std::vector<size_t> nodes = moved_nodes_at_pinches();
       if (nodes.empty() || round == kMostRounds) break;
@@ -79,90 +66,6 @@ class DualContour {
   static glm::ivec3 corner(const glm::ivec3& cell, int i) { return cell + glm::ivec3(i & 1, (i >> 1) & 1, (i >> 2) & 1); }
   static glm::ivec3 along(const glm::ivec3& at, int axis) { return FieldLattice::along(at, axis); }
   bool inside(const glm::ivec3& at) const { return lattice_.inside(at); }
-
-  /// Where the surface crosses the lattice's edges, each asked once for the four cells at it; and the signs in the middles of faces that it
-  /// crosses twice.
-  void find_crossings() {
-    crossings_.clear(), crossed_twice_.clear();
-    crossing_of_.assign(3 * lattice_.values.size(), -1);
-    middle_inside_.assign(3 * lattice_.values.size(), 0);
-    std::vector<BlockFinds> finds(lattice_.parts.size());
-    lattice_.for_blocks([&](size_t b, const glm::ivec3& first, const glm::ivec3& end) {
-      // Where bounds leave no surface in a block, it has no edge that is crossed.
-      if (!lattice_.parts[b]) return;
-      FieldEvaluator part(*lattice_.parts[b]);
-      find_crossings(part, first, end, finds[b]);
-      ask_middles(part, first, end, finds[b].faces);
-    });
-    for (const BlockFinds& block : finds) {
-      for (size_t i = 0; i < block.edges.size(); ++i) crossing_of_[block.edges[i]] = static_cast<std::int32_t>(crossings_.size() + i);
-      crossings_.insert(crossings_.end(), block.crossings.begin(), block.crossings.end());
-      crossed_twice_.insert(crossed_twice_.end(), block.faces.begin(), block.faces.end());
-    }
-  }
-
-  /// Where the field changes sign between two nodes (bisection: fields may jump in slope).
-  void find_crossings(FieldEvaluator& evaluator, const glm::ivec3& first, const glm::ivec3& end, BlockFinds& finds) const {
-    std::vector<glm::dvec3> in, out;
-    FieldLattice::for_axes(first, end, [&](const glm::ivec3& a, int axis) {
-      const glm::ivec3 b = along(a, axis);
-      if (!lattice_.holds(b) || inside(a) == inside(b)) return;
-      finds.edges.push_back(lattice_.edge_index(a, axis));
-      in.push_back(lattice_.world(inside(a) ? a : b)), out.push_back(lattice_.world(inside(a) ? b : a));
-    });
-    const size_t count = in.size();
-    std::vector<glm::dvec3> points(count), gradients(count);
-    std::vector<double> values(count);
-    for (int halving = 0; halving < 24; ++halving) {
-      for (size_t i = 0; i < count; ++i) points[i] = 0.5 * (in[i] + out[i]);
-      evaluator.values(points, values);
-      for (size_t i = 0; i < count; ++i) (values[i] < 0.0 ? in[i] : out[i]) = points[i];
-    }
-    for (size_t i = 0; i < count; ++i) points[i] = 0.5 * (in[i] + out[i]);
-    evaluator.gradients(points, values, gradients);
-    finds.crossings.resize(count);
-    for (size_t i = 0; i < count; ++i) finds.crossings[i] = {points[i], direction_of(gradients[i])};
-  }
-
-  /// The corners of the face across an axis that begins at a node, in a ring.
-  static std::array<glm::ivec3, 4> ring(const glm::ivec3& at, int axis) {
-    const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
-    return {at, along(at, u), along(along(at, u), v), along(at, v)};
-  }
-
-  void ask_middles(FieldEvaluator& evaluator, const glm::ivec3& first, const glm::ivec3& end, std::vector<size_t>& faces) {
-    std::vector<size_t> thin;
-    std::vector<LatticeEdge> diagonals;
-    FieldLattice::for_axes(first, end, [&](const glm::ivec3& at, int axis) {
-      const std::array<glm::ivec3, 4> face = ring(at, axis);
-      if (!lattice_.holds(face[2])) return;
-      const bool in = inside(face[0]);
-      if (inside(face[1]) == in || inside(face[2]) != in || inside(face[3]) == in) return;
-      faces.push_back(lattice_.edge_index(at, axis));
-      const std::array<glm::dvec3, 4> points = {lattice_.world(face[0]), lattice_.world(face[1]), lattice_.world(face[2]),
-                                                lattice_.world(face[3])};
-      const size_t index = faces.back();
-      middle_inside_[index] = evaluator.value(0.25 * (points[0] + points[1] + points[2] + points[3])) < 0.0;
-      const bool even = lattice_.is_moved(face[0]) || lattice_.is_moved(face[2]);
-      const bool odd = lattice_.is_moved(face[1]) || lattice_.is_moved(face[3]);
-      if (!even && !odd) return;
-      if (even != odd) middle_inside_[index] = even ? in : !in;
-      thin.push_back(index);
-      for (const size_t i : {size_t{0}, size_t{1}}) diagonals.push_back({points[i], points[i + 2]});
-    });
-    if (thin.empty()) return;
-    // A wall thinner than a cell misses the middle. It joins the corners that lie in it, and surely two of them where it keeps the others
-    // apart.
-    const std::vector<std::optional<double>> passes = find_thin_walls(evaluator, diagonals);
-    const std::vector<char> apart = are_apart(evaluator, diagonals);
-    for (size_t i = 0; i < thin.size(); ++i) {
-      const bool even_apart = passes[2 * i].has_value() || apart[2 * i] != 0,
-                 odd_apart = passes[2 * i + 1].has_value() || apart[2 * i + 1] != 0;
-      if (even_apart == odd_apart) continue;
-      const bool first_inside = lattice_.values[thin[i] / 3] < 0.0;
-      middle_inside_[thin[i]] = even_apart ? !first_inside : first_inside;
-    }
-  }
 
   /// Joins the crossed edges of the cell that belong to one sheet: across each face the surface runs from edge to edge; where it crosses
   /// a face twice, the middle of the face tells which corners hang together, and both cells at the face find the same.
@@ -182,7 +85,7 @@ class DualContour {
       if (count == 2) root[static_cast<size_t>(find(crossed[0]))] = find(crossed[1]);
       if (count != 4) continue;
       // Edge i joins ring corners i and i + 1. The corner that stands alone has the sign that the middle has not.
-      const bool middle_inside = middle_inside_[lattice_.edge_index(corner(cell, face[0]), static_cast<int>(f) / 2)] != 0;
+      const bool middle_inside = found_.middle_inside[lattice_.edge_index(corner(cell, face[0]), static_cast<int>(f) / 2)] != 0;
       const size_t alone = inside(corner(cell, face[0])) != middle_inside ? 0 : 1;
       for (const size_t i : {alone, alone + 2}) root[static_cast<size_t>(find(crossed[i % 4]))] = find(crossed[(i + 3) % 4]);
     }
@@ -199,11 +102,11 @@ class DualContour {
       std::vector<glm::dvec3> points, normals;
       for (int e = 0; e < 12; ++e) {
         const CellEdge& edge = kEdges[static_cast<size_t>(e)];
-        const std::int32_t crossing = crossing_of_[lattice_.edge_index(corner(at, edge.from), edge.axis)];
+        const std::int32_t crossing = found_.of_edge[lattice_.edge_index(corner(at, edge.from), edge.axis)];
         if (root[static_cast<size_t>(e)] != sheet || crossing < 0) continue;
         sheet_[12 * lattice_.node_index(at) + static_cast<size_t>(e)] = static_cast<std::int32_t>(positions.size());
-        points.push_back(crossings_[static_cast<size_t>(crossing)].point);
-        normals.push_back(crossings_[static_cast<size_t>(crossing)].normal);
+        points.push_back(found_.crossings[static_cast<size_t>(crossing)].point);
+        normals.push_back(found_.crossings[static_cast<size_t>(crossing)].normal);
       }
       if (points.empty()) continue;
       glm::dvec3 mean(0.0);
@@ -223,7 +126,7 @@ class DualContour {
   /// What is not moved there stays.
   std::vector<size_t> moved_nodes_at_pinches() const {
     std::vector<size_t> nodes;
-    for (const size_t face : crossed_twice_) {
+    for (const size_t face : found_.crossed_twice) {
       const size_t node = face / 3;
       const int axis = static_cast<int>(face % 3);
       const auto row = static_cast<size_t>(lattice_.count.x), layer = row * static_cast<size_t>(lattice_.count.y);
@@ -303,11 +206,8 @@ class DualContour {
   }
 
   FieldLattice lattice_;
-  std::vector<Crossing> crossings_{};
-  std::vector<std::int32_t> crossing_of_{};  ///< Of each edge, -1 where it has none.
-  std::vector<size_t> crossed_twice_{};      ///< Faces.
-  std::vector<char> middle_inside_{};        ///< Of each of them; by FieldLattice::edge_index.
-  std::vector<std::int32_t> sheet_{};        ///< Vertex of each edge of each cell, 12 a node, counted within its rows.
+  LatticeCrossings found_{};
+  std::vector<std::int32_t> sheet_{};  ///< Vertex of each edge of each cell, 12 a node, counted within its rows.
   std::vector<std::int32_t> first_vertex_{};
 };
 

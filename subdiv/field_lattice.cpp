@@ -32,9 +32,35 @@ struct Move {
   double distance = 0.0;
 };
 
-/// Whether a node may leave its neighbours of the same sign for a wall: not where it alone keeps that wall and others apart.
-bool may_move(FieldEvaluator& field, const FieldLattice& lattice, const glm::ivec3& at, const glm::dvec3& to) {
-  std::vector<LatticeEdge> edges;
+/// Edges between nodes of one sign.
+struct EqualEnds {
+  std::vector<LatticeEdge> edges{};
+  std::vector<std::array<glm::ivec3, 2>> nodes{};
+};
+
+/// Those where the field is near enough to zero to fall and rise again.
+EqualEnds equal_ends(const FieldLattice& lattice, const glm::ivec3& first, const glm::ivec3& end, double lipschitz) {
+  EqualEnds found;
+  const double reach = lipschitz * lattice.step;
+  FieldLattice::for_axes(first, end, [&](const glm::ivec3& a, int axis) {
+    const glm::ivec3 b = FieldLattice::along(a, axis);
+    if (!lattice.holds(b) || lattice.inside(a) != lattice.inside(b)) return;
+    if (std::abs(lattice.value(a)) + std::abs(lattice.value(b)) >= reach) return;
+    found.edges.push_back({lattice.on_lattice(a), lattice.on_lattice(b)});
+    found.nodes.push_back({a, b});
+  });
+  return found;
+}
+
+/// A move that is possible as far as its own edge tells, and the edges from there to neighbours of another sign.
+struct PossibleMove {
+  Move move{};
+  size_t edge = 0;
+  size_t first = 0, end = 0;  ///< Among all such edges.
+};
+
+/// Nothing at the border of the lattice.
+bool edges_after_move(const FieldLattice& lattice, const glm::ivec3& at, const glm::dvec3& to, std::vector<LatticeEdge>& edges) {
   for (int axis = 0; axis < 3; ++axis)
     for (const int by : {-1, 1}) {
       glm::ivec3 other = at;
@@ -42,39 +68,48 @@ bool may_move(FieldEvaluator& field, const FieldLattice& lattice, const glm::ive
       if (other[axis] < 0 || !lattice.holds(other)) return false;
       if (lattice.inside(other) != lattice.inside(at)) edges.push_back({to, lattice.on_lattice(other)});
     }
-  const std::vector<char> apart = are_apart(field, edges);
-  return std::find(apart.begin(), apart.end(), 1) == apart.end();
+  return true;
 }
 
-std::vector<Move> find_moves(const Field& field, FieldEvaluator& part, const FieldLattice& lattice, const glm::ivec3& first,
-                             const glm::ivec3& end) {
-  std::vector<LatticeEdge> edges;
-  std::vector<std::array<glm::ivec3, 2>> ends;
-  const double reach = field.traits().lipschitz * lattice.step;
-  FieldLattice::for_axes(first, end, [&](const glm::ivec3& a, int axis) {
-    const glm::ivec3 b = FieldLattice::along(a, axis);
-    if (!lattice.holds(b) || lattice.inside(a) != lattice.inside(b)) return;
-    // Farther from zero than the field can fall and rise again.
-    if (std::abs(lattice.value(a)) + std::abs(lattice.value(b)) >= reach) return;
-    edges.push_back({lattice.on_lattice(a), lattice.on_lattice(b)});
-    ends.push_back({a, b});
-  });
-  std::vector<Move> moves;
-  if (edges.empty()) return moves;
-  const std::vector<std::optional<double>> middles = find_thin_walls(part, edges);
-  // Neighbours may lie beyond the block.
-  FieldEvaluator whole(field);
-  for (size_t i = 0; i < edges.size(); ++i) {
+/// For each wall the nearer of its edge's nodes first.
+std::vector<PossibleMove> possible_moves(const FieldLattice& lattice, const EqualEnds& ends,
+                                         const std::vector<std::optional<double>>& middles, std::vector<LatticeEdge>& edges) {
+  std::vector<PossibleMove> moves;
+  for (size_t i = 0; i < middles.size(); ++i) {
     if (!middles[i]) continue;
     const double share = *middles[i];
-    const glm::dvec3 to = glm::mix(edges[i].from, edges[i].to, share);
+    const glm::dvec3 to = glm::mix(ends.edges[i].from, ends.edges[i].to, share);
     const std::array<double, 2> shares = {share, 1.0 - share};
     const size_t nearer = share < 0.5 ? 0 : 1;
     for (const size_t k : {nearer, 1 - nearer}) {
-      if (shares[k] > kFarthestMove || !may_move(whole, lattice, ends[i][k], to)) continue;
-      moves.push_back({lattice.node_index(ends[i][k]), to, shares[k] * lattice.step});
-      break;
+      const size_t first = edges.size();
+      if (shares[k] > kFarthestMove) continue;
+      if (edges_after_move(lattice, ends.nodes[i][k], to, edges))
+        moves.push_back({{lattice.node_index(ends.nodes[i][k]), to, shares[k] * lattice.step}, i, first, edges.size()});
+      else
+        edges.resize(first);
     }
+  }
+  return moves;
+}
+
+std::vector<Move> find_moves(const Field& field, const Field& part, const FieldLattice& lattice, const glm::ivec3& first,
+                             const glm::ivec3& end) {
+  const EqualEnds ends = equal_ends(lattice, first, end, field.traits().lipschitz);
+  std::vector<LatticeEdge> edges;
+  const std::vector<PossibleMove> possible = possible_moves(lattice, ends, find_thin_walls(part, ends.edges), edges);
+  std::vector<Move> moves;
+  if (possible.empty()) return moves;
+  // A node must not leave its neighbours of the same sign for a wall where it alone keeps that wall and others apart. Neighbours may lie
+  // beyond the block.
+  const Box around = dilate({lattice.on_lattice(first - 1), lattice.on_lattice(end + 1)}, 1e-6 * lattice.step);
+  const std::vector<char> apart = are_apart(FieldEvaluator(field).restricted(around), edges);
+  std::optional<size_t> moved;
+  for (const PossibleMove& one : possible) {
+    const auto from = apart.begin() + static_cast<std::ptrdiff_t>(one.first), to = apart.begin() + static_cast<std::ptrdiff_t>(one.end);
+    if (one.edge == moved || std::find(from, to, 1) != to) continue;
+    moves.push_back(one.move);
+    moved = one.edge;
   }
   return moves;
 }
@@ -111,8 +146,7 @@ void move_nodes_into_walls(const Field& field, FieldLattice& lattice) {
   std::vector<std::vector<Move>> asked(lattice.parts.size());
   lattice.for_blocks([&](size_t b, const glm::ivec3& first, const glm::ivec3& end) {
     if (!lattice.parts[b]) return;
-    FieldEvaluator part(*lattice.parts[b]);
-    asked[b] = find_moves(field, part, lattice, first, end);
+    asked[b] = find_moves(field, *lattice.parts[b], lattice, first, end);
   });
   std::unordered_map<size_t, Move> nearest;
   for (const std::vector<Move>& block : asked)

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "sdf/error.h"
+#include "sdf/field_program.h"
 #include "sdf/parallel.h"
 #include "sdf/project_to_surface.h"
 
@@ -29,31 +30,57 @@ bool LocalField::holds(const glm::dvec3& point) const {
   return glm::all(glm::greaterThanEqual(point, box_.lower)) && glm::all(glm::lessThanEqual(point, box_.upper));
 }
 
+bool LocalField::hold_all(std::span<const glm::dvec3> points) const {
+  return std::all_of(points.begin(), points.end(), [&](const glm::dvec3& p) { return holds(p); });
+}
+
 double LocalField::value(const glm::dvec3& point) { return (holds(point) ? part_ : whole_).value(point); }
 
+void LocalField::values(std::span<const glm::dvec3> points, std::span<double> values) {
+  if (hold_all(points)) return part_.values(points, values);
+  for (size_t i = 0; i < points.size(); ++i) values[i] = value(points[i]);
+}
+
 void LocalField::gradients(std::span<const glm::dvec3> points, std::span<double> values, std::span<glm::dvec3> gradients) {
-  if (std::all_of(points.begin(), points.end(), [&](const glm::dvec3& p) { return holds(p); }))
-    return part_.gradients(points, values, gradients);
-  for (size_t i = 0; i < points.size(); ++i)
-    (holds(points[i]) ? part_ : whole_).gradients(points.subspan(i, 1), values.subspan(i, 1), gradients.subspan(i, 1));
+  if (hold_all(points)) return part_.gradients(points, values, gradients);
+  // Those within the box together.
+  std::vector<glm::dvec3> held;
+  for (const glm::dvec3& point : points)
+    if (holds(point)) held.push_back(point);
+  std::vector<double> held_values(held.size());
+  std::vector<glm::dvec3> held_gradients(held.size());
+  part_.gradients(held, held_values, held_gradients);
+  size_t k = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (holds(points[i]))
+      values[i] = held_values[k], gradients[i] = held_gradients[k], ++k;
+    else
+      whole_.gradients(points.subspan(i, 1), values.subspan(i, 1), gradients.subspan(i, 1));
+  }
 }
 
 void LocalField::gradient(const glm::dvec3& point, double& value, glm::dvec3& gradient) {
   gradients(std::span(&point, 1), std::span(&value, 1), std::span(&gradient, 1));
 }
 
-glm::dvec3 LocalField::unit_gradient(const glm::dvec3& point) {
-  glm::dvec3 slope;
-  double value = 0.0;
-  gradient(point, value, slope);
-  return direction_of(slope);
+glm::dvec3 LocalField::unit_gradient(const glm::dvec3& point) { return unit_gradients(std::span(&point, 1)).front(); }
+
+std::vector<glm::dvec3> LocalField::unit_gradients(std::span<const glm::dvec3> points) {
+  std::vector<double> values(points.size());
+  std::vector<glm::dvec3> slopes(points.size());
+  gradients(points, values, slopes);
+  for (glm::dvec3& slope : slopes) slope = direction_of(slope);
+  return slopes;
 }
 
-double LocalField::distance_off(const glm::dvec3& point) {
-  glm::dvec3 slope;
-  double value = 0.0;
-  gradient(point, value, slope);
-  return distance_by(value, slope);
+double LocalField::distance_off(const glm::dvec3& point) { return distances_off(std::span(&point, 1)).front(); }
+
+std::vector<double> LocalField::distances_off(std::span<const glm::dvec3> points) {
+  std::vector<double> distances(points.size());
+  std::vector<glm::dvec3> slopes(points.size());
+  gradients(points, distances, slopes);
+  for (size_t i = 0; i < points.size(); ++i) distances[i] = distance_by(distances[i], slopes[i]);
+  return distances;
 }
 
 Landing LocalField::project(const glm::dvec3& point) { return project(std::span(&point, 1)).front(); }
@@ -86,7 +113,14 @@ namespace {
 using Evaluators = tbb::enumerable_thread_specific<FieldEvaluator>;
 
 /// Points in a group: bounding the field over a box takes as long as a few values of it.
-constexpr size_t kGroup = 32;
+constexpr size_t kLeast = 32;
+/// Where little of the field is left, leaving out more of it saves little: points times instructions, and points, of a group that is not
+/// halved again.
+constexpr size_t kLeastWork = 512, kMost = 256;
+
+bool is_group(size_t points, const Field& part) {
+  return points <= kLeast || (points <= kMost && points * part.program().instructions.size() <= kLeastWork);
+}
 
 struct Visit {
   std::span<const glm::dvec3> points;
@@ -113,7 +147,7 @@ void split(const Visit& job, const Field& around, std::span<std::uint32_t> membe
     box.upper = glm::max(box.upper, job.points[i] + job.reach[i]);
   }
   const Field part = FieldEvaluator(around).restricted(box);
-  if (members.size() <= kGroup) {
+  if (is_group(members.size(), part)) {
     LocalField local(job.whole.local(), part, box);
     job.visit(local, members);
     return;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <ranges>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,7 @@ class LocalField {
   LocalField(FieldEvaluator& whole, const Field& part, const Box& box);
 
   double value(const glm::dvec3& point);
+  void values(std::span<const glm::dvec3> points, std::span<double> values);
   void gradients(std::span<const glm::dvec3> points, std::span<double> values, std::span<glm::dvec3> gradients);
   void gradient(const glm::dvec3& point, double& value, glm::dvec3& gradient);
   /// As direction_of and distance_by.
@@ -39,9 +41,12 @@ class LocalField {
   Landing project(const glm::dvec3& point);
   /// Several at once take less time each.
   std::vector<Landing> project(std::span<const glm::dvec3> points);
+  std::vector<glm::dvec3> unit_gradients(std::span<const glm::dvec3> points);
+  std::vector<double> distances_off(std::span<const glm::dvec3> points);
 
  private:
   bool holds(const glm::dvec3& point) const;
+  bool hold_all(std::span<const glm::dvec3> points) const;
   FieldEvaluator& whole_;
   FieldEvaluator part_;
   Box box_;
@@ -56,5 +61,14 @@ void visit_groups(const Field& field, std::span<const glm::dvec3> points, std::s
 /// Of all points, within one distance.
 void visit_groups(const Field& field, std::span<const glm::dvec3> points, double reach,
                   const std::function<void(LocalField&, std::span<const std::uint32_t>)>& visit);
+
+/// Those of a group.
+template <class Range>
+std::vector<std::ranges::range_value_t<Range>> members_of(const Range& all, std::span<const std::uint32_t> members) {
+  std::vector<std::ranges::range_value_t<Range>> own;
+  own.reserve(members.size());
+  for (const std::uint32_t i : members) own.push_back(all[i]);
+  return own;
+}
 
 }  // namespace limn

@@ -25,6 +25,15 @@ void check_size(const RefinedSize& size, const RefineSettings& settings, const s
                    fmt::format("a lower level (at most {})", memory_text(static_cast<double>(settings.max_bytes)))});
 }
 
+/// Sharp edges or vertices, as those of borders are, too.
+bool has_sharpness(const Far::TopologyLevel& level) {
+  for (int e = 0; e < level.GetNumEdges(); ++e)
+    if (level.GetEdgeSharpness(e) > 0.0f) return true;
+  for (int v = 0; v < level.GetNumVertices(); ++v)
+    if (level.GetVertexSharpness(v) > 0.0f) return true;
+  return false;
+}
+
 /// The points of the last level, from those of the cage.
 Points interpolate(const Far::TopologyRefiner& refiner, Points points) {
   const Primvars primvars(refiner);
@@ -98,7 +107,8 @@ Mesh refine(const Mesh& cage, const RefineSettings& settings, const std::string&
 
   if (levels > 0) {
     Far::TopologyRefiner::UniformOptions options(levels);
-    options.fullTopologyInLastLevel = true;
+    // Without limits and sharpness nobody asks the last level for more than the vertices of its faces.
+    options.fullTopologyInLastLevel = limit || has_sharpness(refiner->GetLevel(0));
     refiner->RefineUniform(options);
   }
   Refined refined{*refiner, interpolate(*refiner, cage_points(clean.mesh)), {}, {}};

@@ -55,24 +55,28 @@ Plain onto_own_sheet(LocalField& field, const SnapTask& task, const Landing& lan
   return {along, true, field.distance_off(along)};
 }
 
-/// Points of the surface a fraction of the way to the faces' middles, with their normals; true where the normals differ as at a crease.
-bool sample_sides(LocalField& field, const glm::dvec3& x, const Surroundings& around, double fraction, std::vector<glm::dvec3>& points,
-                  std::vector<glm::dvec3>& normals) {
-  std::vector<glm::dvec3> starts;
-  for (const glm::dvec3& middle : around.middles) starts.push_back(x + fraction * (middle - x));
-  points.clear(), normals.clear();
-  for (const Landing& landing : field.project(starts)) {
-    if (!landing.reached) continue;
-    const glm::dvec3 normal = direction_of(landing.gradient);
-    // The other side of a thin wall does not count; the other side of a sharp edge does.
-    if (normal == glm::dvec3(0.0) || glm::dot(normal, around.outward) < kWallCosine) continue;
-    points.push_back(landing.position), normals.push_back(normal);
+/// Points of the surface beside a vertex, with their normals.
+struct Sides {
+  std::vector<glm::dvec3> points{}, normals{};
+
+  Sides(std::span<const Landing> landings, const Surroundings& around) {
+    for (const Landing& landing : landings) {
+      if (!landing.reached) continue;
+      const glm::dvec3 normal = direction_of(landing.gradient);
+      // The other side of a thin wall does not count; the other side of a sharp edge does.
+      if (normal == glm::dvec3(0.0) || glm::dot(normal, around.outward) < kWallCosine) continue;
+      points.push_back(landing.position), normals.push_back(normal);
+    }
   }
-  for (size_t i = 1; i < normals.size(); ++i)
-    for (size_t j = 0; j < i; ++j)
-      if (glm::dot(normals[i], normals[j]) < kCreaseCosine) return true;
-  return false;
-}
+
+  /// Whether the normals differ as at a crease.
+  bool differ() const {
+    for (size_t i = 1; i < normals.size(); ++i)
+      for (size_t j = 0; j < i; ++j)
+        if (glm::dot(normals[i], normals[j]) < kCreaseCosine) return true;
+    return false;
+  }
+};
 
 /// Vertices of more faces are looked at closely.
 constexpr size_t kMostFaces = 8;
@@ -110,25 +114,54 @@ std::vector<bool> plainly_smooth(LocalField& field, std::span<const SnapTask> ta
   return smooth;
 }
 
-Snapped onto_crease(LocalField& field, const SnapTask& task, const Plain& plain) {
-  std::vector<glm::dvec3> points, normals;
-  glm::dvec3 x = task.start;
-  bool creased = false;
-  for (const double fraction : {0.5, 0.2, 0.05, 0.01, 1e-3, 1e-5, 1e-7}) {
-    creased = sample_sides(field, x, *task.around, fraction, points, normals);
-    if (!creased) break;
-    const glm::dvec3 next = meet_planes(points, normals, x);
+/// A vertex on its way to where the sides around it meet.
+struct CreaseSearch {
+  size_t task = 0;
+  glm::dvec3 x{0.0};
+  bool creased = true;  ///< As far as is known.
+
+  /// One step, by what lies beside x.
+  void go_on(const Sides& sides, const SnapTask& of) {
+    creased = sides.differ();
+    if (!creased) return;
+    const glm::dvec3 next = meet_planes(sides.points, sides.normals, x);
     // Planes that nearly agree meet far away: that is no crease of this vertex. Half way along an edge or a diagonal that was refined, a
     // crease across it may be as far as its half, which is one and a half of the new edges.
-    if (!(glm::distance(next, task.start) < 1.5 * task.around->edge_length)) {
-      creased = false;
-      break;
-    }
-    x = next;
+    creased = glm::distance(next, of.start) < 1.5 * of.around->edge_length;
+    if (creased) x = next;
   }
-  if (creased) return {x, true, field.distance_off(x)};
-  if (plain.reached) return {plain.position, false, plain.off};
-  return {task.start, false, field.distance_off(task.start)};
+};
+
+/// From closer and closer beside the vertices, all of them together.
+void search_creases(LocalField& field, std::span<const SnapTask> tasks, std::vector<CreaseSearch>& searches) {
+  std::vector<glm::dvec3> starts;
+  const auto goes_on = [](const CreaseSearch& search) { return search.creased; };
+  for (const double fraction : {0.5, 0.2, 0.05, 0.01, 1e-3, 1e-5, 1e-7}) {
+    if (std::none_of(searches.begin(), searches.end(), goes_on)) return;
+    starts.clear();
+    for (const CreaseSearch& search : searches) {
+      if (!search.creased) continue;
+      for (const glm::dvec3& middle : tasks[search.task].around->middles) starts.push_back(search.x + fraction * (middle - search.x));
+    }
+    const std::vector<Landing> landings = field.project(starts);
+    std::span<const Landing> left(landings);
+    for (CreaseSearch& search : searches) {
+      if (!search.creased) continue;
+      const SnapTask& task = tasks[search.task];
+      search.go_on(Sides(left.first(task.around->middles.size()), *task.around), task);
+      left = left.subspan(task.around->middles.size());
+    }
+  }
+}
+
+/// Of those that are not where the surface was reached.
+void find_distances_off(LocalField& field, const std::vector<Plain>& plain, std::vector<Snapped>& snapped) {
+  std::vector<size_t> which;
+  std::vector<glm::dvec3> points;
+  for (size_t i = 0; i < snapped.size(); ++i)
+    if (snapped[i].feature || !plain[i].reached) which.push_back(i), points.push_back(snapped[i].position);
+  const std::vector<double> off = field.distances_off(points);
+  for (size_t k = 0; k < which.size(); ++k) snapped[which[k]].off = off[k];
 }
 
 }  // namespace
@@ -140,9 +173,15 @@ std::vector<Snapped> snap(LocalField& field, std::span<const SnapTask> tasks) {
   std::vector<Plain> plain;
   for (size_t i = 0; i < tasks.size(); ++i) plain.push_back(onto_own_sheet(field, tasks[i], landings[i]));
   const std::vector<bool> smooth = plainly_smooth(field, tasks, plain);
-  std::vector<Snapped> snapped;
+  std::vector<CreaseSearch> searches;
   for (size_t i = 0; i < tasks.size(); ++i)
-    snapped.push_back(smooth[i] ? Snapped{plain[i].position, false, plain[i].off} : onto_crease(field, tasks[i], plain[i]));
+    if (!smooth[i]) searches.push_back({i, tasks[i].start});
+  search_creases(field, tasks, searches);
+  std::vector<Snapped> snapped;
+  for (size_t i = 0; i < tasks.size(); ++i) snapped.push_back({plain[i].reached ? plain[i].position : tasks[i].start, false, plain[i].off});
+  for (const CreaseSearch& search : searches)
+    if (search.creased) snapped[search.task] = {search.x, true, 0.0};
+  find_distances_off(field, plain, snapped);
   return snapped;
 }
 

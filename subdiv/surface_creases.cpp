@@ -45,7 +45,8 @@ std::vector<EdgeAcross> edges_across(const Field& field, const Mesh& mesh, const
   normals.assign(mesh.vertex_count(), glm::dvec3(0.0));
   const std::vector<double> reach(mesh.vertex_count(), 0.0);
   visit_groups(field, mesh.positions, reach, std::move(which), [&](LocalField& local, std::span<const std::uint32_t> members) {
-    for (const std::uint32_t v : members) normals[v] = local.unit_gradient(mesh.positions[v]);
+    const std::vector<glm::dvec3> found = local.unit_gradients(members_of(mesh.positions, members));
+    for (size_t i = 0; i < members.size(); ++i) normals[members[i]] = found[i];
   });
   std::vector<EdgeAcross> across;
   for (const size_t f : quads) {
@@ -64,6 +65,42 @@ struct Move {
   glm::dvec3 to{0.0};
 };
 
+/// For each edge of a group, which of its ends belongs onto the crease that crosses it.
+std::vector<std::optional<Move>> moves_onto_creases(LocalField& local, const Mesh& mesh, const std::vector<glm::dvec3>& normals,
+                                                    const std::vector<EdgeAcross>& edges) {
+  std::vector<Surroundings> around;
+  std::vector<SnapTask> tasks, ends;
+  for (const auto& [a, b] : edges) {
+    const glm::dvec3 outward = normals[a] + normals[b];
+    around.push_back({{mesh.positions[a], mesh.positions[b]},
+                      glm::distance(mesh.positions[a], mesh.positions[b]),
+                      glm::length(outward) > 0.0 ? glm::normalize(outward) : outward});
+  }
+  for (size_t e = 0; e < edges.size(); ++e) tasks.push_back({0.5 * (around[e].middles[0] + around[e].middles[1]), &around[e]});
+  const std::vector<Snapped> crossings = snap(local, tasks);
+  struct Pull {
+    size_t edge = 0, nearer = 0;
+  };
+  std::vector<Pull> pulls;
+  for (size_t e = 0; e < edges.size(); ++e) {
+    if (!crossings[e].feature) continue;
+    const auto [a, b] = edges[e];
+    const std::vector<glm::dvec3>& at = around[e].middles;
+    // The end must not slide along the crease, which would fold its faces: straight to the line where the two sides meet.
+    const size_t nearer = glm::distance(at[0], crossings[e].position) <= glm::distance(at[1], crossings[e].position) ? 0 : 1;
+    pulls.push_back({e, nearer});
+    ends.push_back({meet_planes(at, {normals[a], normals[b]}, at[nearer]), &around[e]});
+  }
+  const std::vector<Snapped> to = snap(local, ends);
+  std::vector<std::optional<Move>> moves(edges.size());
+  for (size_t k = 0; k < pulls.size(); ++k) {
+    const auto [e, nearer] = pulls[k];
+    if (to[k].feature && glm::distance(to[k].position, around[e].middles[nearer]) < 0.75 * around[e].edge_length)
+      moves[e] = {nearer == 0 ? edges[e].a : edges[e].b, to[k].position};
+  }
+  return moves;
+}
+
 void pull_onto_creases(const Field& field, Mesh& mesh, const std::vector<std::int32_t>& first, SnapResult& snapped) {
   std::vector<glm::dvec3> normals;
   const std::vector<EdgeAcross> across =
@@ -78,19 +115,8 @@ void pull_onto_creases(const Field& field, Mesh& mesh, const std::vector<std::in
   std::vector<std::uint32_t> all(across.size());
   std::iota(all.begin(), all.end(), 0u);
   visit_groups(field, middles, reach, std::move(all), [&](LocalField& local, std::span<const std::uint32_t> members) {
-    for (const std::uint32_t e : members) {
-      const auto [a, b] = across[e];
-      const glm::dvec3 ends[] = {mesh.positions[a], mesh.positions[b]};
-      const double length = glm::distance(ends[0], ends[1]);
-      const glm::dvec3 outward = normals[a] + normals[b];
-      const Surroundings around{{ends[0], ends[1]}, length, glm::length(outward) > 0.0 ? glm::normalize(outward) : outward};
-      const Snapped crossing = snap(local, middles[e], around);
-      if (!crossing.feature) continue;
-      // The end must not slide along the crease, which would fold its faces: straight to the line where the two sides meet.
-      const size_t nearer = glm::distance(ends[0], crossing.position) <= glm::distance(ends[1], crossing.position) ? 0 : 1;
-      const Snapped to = snap(local, meet_planes({ends[0], ends[1]}, {normals[a], normals[b]}, ends[nearer]), around);
-      if (to.feature && glm::distance(to.position, ends[nearer]) < 0.75 * length) moves[e] = {nearer == 0 ? a : b, to.position};
-    }
+    const std::vector<std::optional<Move>> found = moves_onto_creases(local, mesh, normals, members_of(across, members));
+    for (size_t i = 0; i < members.size(); ++i) moves[members[i]] = found[i];
   });
   // One after another: a vertex that was moved is the crease's for its other edges, too.
   for (size_t e = 0; e < across.size(); ++e) {
@@ -117,15 +143,23 @@ double off_surface(LocalField& local, const Quad& q) {
 
 constexpr double kOff = 1e-3;  // Of an edge.
 
-CutCorner cut_corner(LocalField& local, const Quad& quad) {
-  CutCorner cut;
+glm::dvec3 middle_of(const Quad& q) { return 0.25 * (q[0] + q[1] + q[2] + q[3]); }
+
+double mean_edge(const Quad& quad) {
   double length = 0.0;
   for (size_t i = 0; i < 4; ++i) length += 0.25 * glm::distance(quad[i], quad[(i + 1) % 4]);
-  // Where the quad is flat and lies on the surface, one look is enough.
-  const glm::dvec3 n0 = glm::cross(quad[1] - quad[0], quad[2] - quad[0]), n1 = glm::cross(quad[2] - quad[0], quad[3] - quad[0]);
-  const glm::dvec3 middle = 0.25 * (quad[0] + quad[1] + quad[2] + quad[3]);
-  const bool flat = glm::dot(n0, n1) > 0.99 * glm::length(n0) * glm::length(n1);
-  if (flat && local.distance_off(middle) <= 0.25 * kOff * length) return cut;
+  return length;
+}
+
+/// Flat and on the surface: one look is enough.
+bool lies_on_surface(const Quad& q, double middle_off) {
+  const glm::dvec3 n0 = glm::cross(q[1] - q[0], q[2] - q[0]), n1 = glm::cross(q[2] - q[0], q[3] - q[0]);
+  return glm::dot(n0, n1) > 0.99 * glm::length(n0) * glm::length(n1) && middle_off <= 0.25 * kOff * mean_edge(q);
+}
+
+CutCorner cut_corner(LocalField& local, const Quad& quad) {
+  CutCorner cut;
+  const double length = mean_edge(quad);
   const double before = off_surface(local, quad);
   if (!(before > kOff * length)) return cut;
   const glm::dvec3 outward = glm::cross(quad[2] - quad[0], quad[3] - quad[1]);
@@ -144,7 +178,7 @@ CutCorner cut_corner(LocalField& local, const Quad& quad) {
     normals.push_back(direction_of(landing.gradient));
   }
   if (around.middles.empty()) return cut;
-  const Snapped found = snap(local, meet_planes(around.middles, normals, middle), around);
+  const Snapped found = snap(local, meet_planes(around.middles, normals, middle_of(quad)), around);
   if (!found.feature) return cut;
   double best = 0.1 * before;
   for (int i = 0; i < 4; ++i) {
@@ -171,14 +205,16 @@ void pull_onto_corners(const Field& field, Mesh& mesh, const std::vector<std::in
     Quad quad;
     for (size_t i = 0; i < 4; ++i) quad[i] = mesh.positions[static_cast<size_t>(corners[i])];
     quads.push_back(quad), faces.push_back(f);
-    middles.push_back(0.25 * (quad[0] + quad[1] + quad[2] + quad[3]));
+    middles.push_back(middle_of(quad));
     reach.push_back(kSnapReach * std::max(glm::distance(quad[0], quad[2]), glm::distance(quad[1], quad[3])));
   }
   std::vector<CutCorner> cut(quads.size());
   std::vector<std::uint32_t> all(quads.size());
   std::iota(all.begin(), all.end(), 0u);
   visit_groups(field, middles, reach, std::move(all), [&](LocalField& local, std::span<const std::uint32_t> members) {
-    for (const std::uint32_t k : members) cut[k] = cut_corner(local, quads[k]);
+    const std::vector<double> off = local.distances_off(members_of(middles, members));
+    for (size_t i = 0; i < members.size(); ++i)
+      if (!lies_on_surface(quads[members[i]], off[i])) cut[members[i]] = cut_corner(local, quads[members[i]]);
   });
   moved.assign(mesh.vertex_count(), 0);
   for (size_t k = 0; k < cut.size(); ++k) {
@@ -251,7 +287,8 @@ void turn_quads_along_creases(const Field& field, Mesh& mesh, const std::vector<
   }
   std::vector<double> off(middles.size());
   visit_groups(field, middles, 0.0, [&](LocalField& local, std::span<const std::uint32_t> members) {
-    for (const std::uint32_t m : members) off[m] = local.distance_off(middles[m]);
+    const std::vector<double> found = local.distances_off(members_of(middles, members));
+    for (size_t i = 0; i < members.size(); ++i) off[members[i]] = found[i];
   });
   for (size_t k = 0; k < faces.size(); ++k) {
     // Quads are cut from their first corner to their third.
@@ -272,7 +309,7 @@ void split_quads_along_creases(const Field& field, Mesh& mesh, const std::vector
     faces.push_back(f);
     Quad& quad = quads.emplace_back();
     for (size_t i = 0; i < 4; ++i) quad[i] = mesh.positions[static_cast<size_t>(corners[i])];
-    middles.push_back(0.25 * (quad[0] + quad[1] + quad[2] + quad[3]));
+    middles.push_back(middle_of(quad));
     reach.push_back(kSnapReach * std::max(glm::distance(quad[0], quad[2]), glm::distance(quad[1], quad[3])));
   }
   std::vector<char> creased(mesh.face_count(), 0);

@@ -33,11 +33,13 @@ void split_quads_along_creases(const Field& field, Mesh& mesh, const std::vector
 /// The mean of a face's corners.
 glm::dvec3 middle_of_face(const Mesh& mesh, std::span<const std::int32_t> corners);
 
-/// The faces' middles, and how far their corners lie from these at most; `first` are their first corners.
+/// The faces' middles, and how far their corners lie from these at most; `first` are the first corners of all faces.
 struct FaceMiddles {
   std::vector<glm::dvec3> middles{};
   std::vector<double> radii{};
   FaceMiddles(const Mesh& mesh, const std::vector<std::int32_t>& first);
+  /// Of these faces alone, in their order.
+  FaceMiddles(const Mesh& mesh, const std::vector<std::int32_t>& first, std::span<const std::int32_t> faces);
 };
 
 /// Unit normals at the corners: the gradient at the vertex, at creases that of the corner's own side.

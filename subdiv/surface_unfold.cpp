@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 
 #include "sdf/parallel.h"
 #include "subdiv/local_field.h"
-#include "subdiv/mesh_audit.h"
 #include "subdiv/polygon.h"
 #include "subdiv/surface_snap.h"
 
@@ -23,33 +21,61 @@ bool has_reflex_corner(const std::vector<glm::dvec3>& corners, const glm::dvec3&
   return false;
 }
 
-/// The vertices at the other ends of each one's edges: a mesh keeps them while its vertices move.
-struct Neighbours {
-  std::vector<std::uint32_t> first{}, list{};
+/// Faces with a vertex that is marked, in their order.
+std::vector<std::int32_t> faces_touching(const Mesh& mesh, const std::vector<std::int32_t>& first, const std::vector<char>& marked) {
+  std::vector<char> touches(mesh.face_count(), 0);
+  parallel_for(size_t{0}, touches.size(), [&](size_t f) {
+    const auto corners = face_corners(mesh, first[f], f);
+    touches[f] = std::any_of(corners.begin(), corners.end(), [&](std::int32_t v) { return marked[static_cast<size_t>(v)] != 0; });
+  });
+  std::vector<std::int32_t> faces;
+  for (size_t f = 0; f < touches.size(); ++f)
+    if (touches[f]) faces.push_back(static_cast<std::int32_t>(f));
+  return faces;
+}
 
-  explicit Neighbours(const Mesh& mesh) : first(mesh.vertex_count() + 1, 0) {
-    const Edges edges = build_edges(mesh);
-    for (const Edge& edge : edges) ++first[static_cast<size_t>(edge.vertex_a) + 1], ++first[static_cast<size_t>(edge.vertex_b) + 1];
+/// The vertices at the other ends of the edges of those that are to move, in the order of their numbers; of the others nothing.
+struct Neighbours {
+  std::vector<std::uint32_t> first{}, end{}, list{};
+
+  Neighbours(const Mesh& mesh, const std::vector<std::int32_t>& first_corner, const std::vector<char>& moves)
+      : first(mesh.vertex_count() + 1, 0), end(mesh.vertex_count(), 0) {
+    const std::vector<std::int32_t> faces = faces_touching(mesh, first_corner, moves);
+    // Each face at an edge tells its ends of each other.
+    const auto visit = [&](const auto& see) {
+      for (const std::int32_t f : faces) {
+        const auto corners = face_corners(mesh, first_corner[static_cast<size_t>(f)], static_cast<size_t>(f));
+        for (size_t i = 0; i < corners.size(); ++i) {
+          const auto a = static_cast<size_t>(corners[i]), b = static_cast<size_t>(corners[(i + 1) % corners.size()]);
+          if (a == b) continue;
+          if (moves[a]) see(a, b);
+          if (moves[b]) see(b, a);
+        }
+      }
+    };
+    visit([&](size_t v, size_t) { ++first[v + 1]; });
     std::partial_sum(first.begin(), first.end(), first.begin());
     list.resize(first.back());
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    for (const Edge& edge : edges) {
-      const auto a = static_cast<size_t>(edge.vertex_a), b = static_cast<size_t>(edge.vertex_b);
-      list[next[a]++] = static_cast<std::uint32_t>(b);
-      list[next[b]++] = static_cast<std::uint32_t>(a);
-    }
+    std::copy(first.begin(), first.end() - 1, end.begin());
+    visit([&](size_t v, size_t other) { list[end[v]++] = static_cast<std::uint32_t>(other); });
+    parallel_for(size_t{0}, mesh.vertex_count(), [&](size_t v) {
+      const auto from = list.begin() + first[v], to = list.begin() + end[v];
+      std::sort(from, to);
+      end[v] = static_cast<std::uint32_t>(std::unique(from, to) - list.begin());
+    });
   }
 
   glm::dvec3 mean(const Mesh& mesh, size_t v) const {
-    if (first[v] == first[v + 1]) return mesh.positions[v];
+    if (first[v] == end[v]) return mesh.positions[v];
     glm::dvec3 sum(0.0);
-    for (std::uint32_t i = first[v]; i < first[v + 1]; ++i) sum += mesh.positions[list[i]];
-    return sum / static_cast<double>(first[v + 1] - first[v]);
+    for (std::uint32_t i = first[v]; i < end[v]; ++i) sum += mesh.positions[list[i]];
+    return sum / static_cast<double>(end[v] - first[v]);
   }
 };
 
 /// Those that `moves` names go half way to the middle of their neighbours, all at once.
-void move_to_means(Mesh& mesh, const Neighbours& neighbours, const std::vector<char>& moves) {
+void move_to_means(Mesh& mesh, const std::vector<std::int32_t>& first_corner, const std::vector<char>& moves) {
+  const Neighbours neighbours(mesh, first_corner, moves);
   std::vector<glm::dvec3> moved = mesh.positions;
   parallel_for(size_t{0}, moves.size(), [&](size_t v) {
     if (moves[v]) moved[v] = 0.5 * (mesh.positions[v] + neighbours.mean(mesh, v));
@@ -60,41 +86,29 @@ void move_to_means(Mesh& mesh, const Neighbours& neighbours, const std::vector<c
 /// Which of `candidates` lie folded, in their order.
 std::vector<std::int32_t> folded_among(const Field& field, const Mesh& mesh, const std::vector<std::int32_t>& first,
                                        const std::vector<std::int32_t>& candidates, bool reflex_too) {
-  const FaceMiddles faces(mesh, first);
-  std::vector<char> bad(mesh.face_count(), 0);
-  const std::vector<std::uint32_t> which(candidates.begin(), candidates.end());
-  visit_groups(field, faces.middles, faces.radii, which, [&](LocalField& local, std::span<const std::uint32_t> members) {
-    std::vector<glm::dvec3> corners, middles;
-    for (const std::uint32_t f : members) middles.push_back(faces.middles[f]);
-    const std::vector<Landing> landings = local.project(middles);
+  const FaceMiddles faces(mesh, first, candidates);
+  std::vector<char> bad(candidates.size(), 0);
+  std::vector<std::uint32_t> all(candidates.size());
+  std::iota(all.begin(), all.end(), 0u);
+  visit_groups(field, faces.middles, faces.radii, std::move(all), [&](LocalField& local, std::span<const std::uint32_t> members) {
+    std::vector<glm::dvec3> corners;
+    const std::vector<Landing> landings = local.project(members_of(faces.middles, members));
     for (size_t i = 0; i < members.size(); ++i) {
-      const std::uint32_t f = members[i];
+      const auto f = static_cast<size_t>(candidates[members[i]]);
       gather_corners(mesh, face_corners(mesh, first[f], f), corners);
       const glm::dvec3 area = vector_area(corners);
-      bad[f] = glm::dot(area, direction_of(landings[i].gradient)) < 0.0 || (reflex_too && has_reflex_corner(corners, area));
+      bad[members[i]] = glm::dot(area, direction_of(landings[i].gradient)) < 0.0 || (reflex_too && has_reflex_corner(corners, area));
     }
   });
   std::vector<std::int32_t> folded;
-  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(folded),
-               [&](std::int32_t f) { return bad[static_cast<size_t>(f)]; });
+  for (size_t k = 0; k < candidates.size(); ++k)
+    if (bad[k]) folded.push_back(candidates[k]);
   return folded;
 }
 
 std::vector<std::int32_t> all_faces(const Mesh& mesh) {
   std::vector<std::int32_t> faces(mesh.face_count());
   std::iota(faces.begin(), faces.end(), 0);
-  return faces;
-}
-
-/// Faces with a vertex that has moved: only they can have changed.
-std::vector<std::int32_t> faces_touching(const Mesh& mesh, const std::vector<std::int32_t>& first, const std::vector<char>& moved) {
-  std::vector<std::int32_t> faces;
-  for (size_t f = 0; f < mesh.face_count(); ++f) {
-    const auto corners = face_corners(mesh, first[f], f);
-    if (std::any_of(corners.begin(), corners.end(), [&](std::int32_t v) { return moved[static_cast<size_t>(v)] != 0; })) {
-      faces.push_back(static_cast<std::int32_t>(f));
-    }
-  }
   return faces;
 }
 
@@ -106,12 +120,15 @@ glm::dvec3 middle_of_face(const Mesh& mesh, std::span<const std::int32_t> corner
   return sum / static_cast<double>(corners.size());
 }
 
-FaceMiddles::FaceMiddles(const Mesh& mesh, const std::vector<std::int32_t>& first)
-    : middles(mesh.face_count(), glm::dvec3(0.0)), radii(mesh.face_count(), 0.0) {
-  parallel_for(size_t{0}, mesh.face_count(), [&](size_t f) {
+FaceMiddles::FaceMiddles(const Mesh& mesh, const std::vector<std::int32_t>& first) : FaceMiddles(mesh, first, all_faces(mesh)) {}
+
+FaceMiddles::FaceMiddles(const Mesh& mesh, const std::vector<std::int32_t>& first, std::span<const std::int32_t> faces)
+    : middles(faces.size(), glm::dvec3(0.0)), radii(faces.size(), 0.0) {
+  parallel_for(size_t{0}, faces.size(), [&](size_t k) {
+    const auto f = static_cast<size_t>(faces[k]);
     const auto corners = face_corners(mesh, first[f], f);
-    middles[f] = middle_of_face(mesh, corners);
-    for (const std::int32_t v : corners) radii[f] = std::max(radii[f], glm::distance(mesh.positions[static_cast<size_t>(v)], middles[f]));
+    middles[k] = middle_of_face(mesh, corners);
+    for (const std::int32_t v : corners) radii[k] = std::max(radii[k], glm::distance(mesh.positions[static_cast<size_t>(v)], middles[k]));
   });
 }
 
@@ -122,7 +139,6 @@ std::vector<std::int32_t> folded_faces(const Field& field, const Mesh& mesh, boo
 void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds, const std::vector<char>* moved) {
   const std::vector<std::int32_t> first = first_corners(mesh);
   std::vector<std::int32_t> candidates = moved != nullptr ? faces_touching(mesh, first, *moved) : all_faces(mesh);
-  std::optional<Neighbours> neighbours;
   for (int round = 0; round < rounds; ++round) {
     const std::vector<std::int32_t> folded = folded_among(field, mesh, first, candidates, true);
     if (folded.empty()) return;
@@ -131,10 +147,9 @@ void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds, con
       for (const std::int32_t v : face_corners(mesh, first[static_cast<size_t>(f)], static_cast<size_t>(f)))
         // After a few rounds creased vertices take part: the surface matters more than the line.
         if (!snapped.feature[static_cast<size_t>(v)] || round >= rounds / 2) moves[static_cast<size_t>(v)] = 1;
-    if (!neighbours) neighbours.emplace(mesh);
-    move_to_means(mesh, *neighbours, moves);
+    move_to_means(mesh, first, moves);
     snap_vertices(field, mesh, moves, snapped);
-    // A folded face whose vertices all stayed is folded still.
+    // Only faces with a vertex that has moved can have changed, and a folded face whose vertices all stayed is folded still.
     for (const std::int32_t f : folded)
       for (const std::int32_t v : face_corners(mesh, first[static_cast<size_t>(f)], static_cast<size_t>(f)))
         moves[static_cast<size_t>(v)] = 1;
@@ -143,11 +158,11 @@ void unfold(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds, con
 }
 
 void relax(const Field& field, Mesh& mesh, SnapResult& snapped, int rounds) {
-  const Neighbours neighbours(mesh);
+  const std::vector<std::int32_t> first = first_corners(mesh);
   for (int round = 0; round < rounds; ++round) {
     std::vector<char> moves(mesh.vertex_count(), 0);
     for (size_t v = 0; v < moves.size(); ++v) moves[v] = snapped.feature[v] == 0;
-    move_to_means(mesh, neighbours, moves);
+    move_to_means(mesh, first, moves);
     snap_vertices(field, mesh, moves, snapped);
   }
 }

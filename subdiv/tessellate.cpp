@@ -55,7 +55,8 @@ size_t count_far_vertices(const Field& field, const Mesh& mesh) {
   const double most = kFarVertex * field.traits().bounds.radius();
   std::vector<char> far(mesh.vertex_count(), 0);
   visit_groups(field, mesh.positions, most, [&](LocalField& local, std::span<const std::uint32_t> members) {
-    for (const std::uint32_t v : members) far[v] = local.distance_off(mesh.positions[v]) > most;
+    const std::vector<double> off = local.distances_off(members_of(mesh.positions, members));
+    for (size_t i = 0; i < members.size(); ++i) far[members[i]] = off[i] > most;
   });
   return count_of(far);
 }
@@ -72,9 +73,11 @@ size_t count_far_faces(const Field& field, const Mesh& mesh) {
   std::vector<char> far(mesh.face_count(), 0);
   visit_groups(field, faces.middles, 0.0, [&](LocalField& local, std::span<const std::uint32_t> members) {
     std::vector<glm::dvec3> corners;
-    for (const std::uint32_t f : members) {
+    const std::vector<double> off = local.distances_off(members_of(faces.middles, members));
+    for (size_t i = 0; i < members.size(); ++i) {
+      const std::uint32_t f = members[i];
       gather_corners(mesh, face_corners(mesh, first[f], f), corners);
-      far[f] = local.distance_off(faces.middles[f]) > kFarFace * mean_edge(corners);
+      far[f] = off[i] > kFarFace * mean_edge(corners);
     }
   });
   return count_of(far);

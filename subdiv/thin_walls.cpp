@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "subdiv/local_field.h"
+#include "subdiv/lattice_edges.h"
 
 namespace limn {
 namespace {
@@ -43,7 +43,7 @@ double lowest_by_tangents(const Valley& valley, double& t) {
   return a.value + a.slope * s;
 }
 
-std::vector<Valley> valleys(FieldEvaluator& field, std::span<const LatticeEdge> edges) {
+std::vector<Valley> valleys(LocalField& field, std::span<const LatticeEdge> edges) {
   std::vector<glm::dvec3> points, gradients;
   for (const LatticeEdge& edge : edges) points.push_back(edge.from), points.push_back(edge.to);
   gradients.resize(points.size());
@@ -62,7 +62,7 @@ std::vector<Valley> valleys(FieldEvaluator& field, std::span<const LatticeEdge> 
 }
 
 /// Cutting planes: each step asks where the tangents meet, and goes on in the half that falls towards it.
-void descend(FieldEvaluator& field, std::span<const LatticeEdge> edges, std::vector<Valley>& valleys) {
+void descend(LocalField& field, std::span<const LatticeEdge> edges, std::vector<Valley>& valleys) {
   std::vector<size_t> asked;
   std::vector<glm::dvec3> points, gradients;
   std::vector<double> places, values;
@@ -91,7 +91,7 @@ void descend(FieldEvaluator& field, std::span<const LatticeEdge> edges, std::vec
 }
 
 /// The ends of the stretches about `beyond`, by bisection.
-std::vector<Interval> stretches(FieldEvaluator& field, std::span<const LatticeEdge> edges, std::span<const Valley> valleys) {
+std::vector<Interval> stretches(LocalField& field, std::span<const LatticeEdge> edges, std::span<const Valley> valleys) {
   std::vector<Interval> result(valleys.size());
   std::vector<glm::dvec3> points(valleys.size());
   std::vector<double> values(valleys.size()), in(valleys.size()), out(valleys.size());
@@ -108,7 +108,7 @@ std::vector<Interval> stretches(FieldEvaluator& field, std::span<const LatticeEd
 }
 
 /// The cosine between the normals at the two ends of each stretch.
-std::vector<double> cosines(FieldEvaluator& field, std::span<const LatticeEdge> edges, std::span<const Valley> valleys,
+std::vector<double> cosines(LocalField& field, std::span<const LatticeEdge> edges, std::span<const Valley> valleys,
                             std::span<const Interval> within) {
   std::vector<glm::dvec3> points, gradients;
   for (size_t i = 0; i < valleys.size(); ++i)
@@ -121,9 +121,8 @@ std::vector<double> cosines(FieldEvaluator& field, std::span<const LatticeEdge> 
   return result;
 }
 
-}  // namespace
-
-std::vector<std::optional<double>> find_thin_walls(FieldEvaluator& field, std::span<const LatticeEdge> edges) {
+/// Of the edges of a group.
+std::vector<std::optional<double>> walls_on(LocalField& field, std::span<const LatticeEdge> edges) {
   std::vector<std::optional<double>> middles(edges.size());
   std::vector<Valley> found = valleys(field, edges);
   descend(field, edges, found);
@@ -137,7 +136,7 @@ std::vector<std::optional<double>> find_thin_walls(FieldEvaluator& field, std::s
   return middles;
 }
 
-std::vector<char> are_apart(FieldEvaluator& field, std::span<const LatticeEdge> edges) {
+std::vector<char> apart_on(LocalField& field, std::span<const LatticeEdge> edges) {
   std::vector<char> apart(edges.size(), 0);
   std::vector<glm::dvec3> points;
   for (const LatticeEdge& edge : edges)
@@ -156,5 +155,13 @@ std::vector<char> are_apart(FieldEvaluator& field, std::span<const LatticeEdge> 
     if (between[i] < kApart) apart[beyond[i].edge] = 1;
   return apart;
 }
+
+}  // namespace
+
+std::vector<std::optional<double>> find_thin_walls(const Field& field, std::span<const LatticeEdge> edges) {
+  return by_groups<std::optional<double>>(field, edges, walls_on);
+}
+
+std::vector<char> are_apart(const Field& field, std::span<const LatticeEdge> edges) { return by_groups<char>(field, edges, apart_on); }
 
 }  // namespace limn

@@ -55,5 +55,41 @@ TEST(LocalField, VisitsEachNamedPointOnceAndAnswersAsTheWholeFieldInsideItsBoxAn
   }
 }
 
+TEST(LocalField, SaysOfManyPointsWhatTheWholeFieldSaysOfEach) {
+  std::vector<Field> parts;
+  for (int i = 0; i < 12; ++i) parts.push_back(translate(make_shape("box", {{"half", {0.6, 0.4, 0.5}}}), {double(i), 0.3 * (i % 3), 0.0}));
+  const Field field = combine(Csg::union_, parts, 0.0);
+  std::mt19937_64 random(20261129);
+  std::uniform_real_distribution<double> in(-1.0, 12.0);
+  std::vector<glm::dvec3> points(300);
+  for (glm::dvec3& p : points) p = {in(random), 0.2 * in(random), 0.1 * in(random)};
+  std::vector<int> right(points.size(), 0);
+  visit_groups(field, points, 0.05, [&](LocalField& local, std::span<const std::uint32_t> members) {
+    std::vector<glm::dvec3> held = members_of(points, members);
+    // All within the group's box, some without, none within.
+    std::vector<glm::dvec3> some = held, none = held;
+    for (size_t i = 0; i < some.size(); i += 3) some[i].x += 4.0;
+    for (glm::dvec3& p : none) p.x += 40.0;
+    FieldEvaluator whole(field);
+    for (const std::vector<glm::dvec3>* asked : {&held, &some, &none}) {
+      std::vector<double> values(asked->size()), with_gradients(asked->size());
+      std::vector<glm::dvec3> gradients(asked->size());
+      local.values(*asked, values);
+      local.gradients(*asked, with_gradients, gradients);
+      const std::vector<glm::dvec3> directions = local.unit_gradients(*asked);
+      const std::vector<double> off = local.distances_off(*asked);
+      for (size_t i = 0; i < asked->size(); ++i) {
+        const glm::dvec3& p = (*asked)[i];
+        double value = 0.0;
+        glm::dvec3 gradient;
+        whole.gradients(std::span(&p, 1), std::span(&value, 1), std::span(&gradient, 1));
+        right[members[i]] += values[i] == whole.value(p) && with_gradients[i] == value && gradients[i] == gradient;
+        right[members[i]] += directions[i] == direction_of(gradient) && off[i] == distance_by(value, gradient);
+      }
+    }
+  });
+  for (size_t i = 0; i < points.size(); ++i) EXPECT_EQ(right[i], 6) << i;
+}
+
 }  // namespace
 }  // namespace limn

@@ -44,7 +44,7 @@ TEST_F(ThinWallsTest, AreFoundInTheMiddleOfWhatAnEdgeHasOfThem) {
     const LatticeEdge edge{through - 0.2 * share * along, through + 0.2 * (1.0 - share) * along};
     ASSERT_GT(evaluator.value(edge.from), 0.0);
     ASSERT_GT(evaluator.value(edge.to), 0.0);
-    const std::vector<std::optional<double>> found = find_thin_walls(evaluator, std::span(&edge, 1));
+    const std::vector<std::optional<double>> found = find_thin_walls(field, std::span(&edge, 1));
     ASSERT_EQ(found.size(), 1u);
     ASSERT_TRUE(found[0]) << thickness;
     EXPECT_NEAR(*found[0], share, 1e-6);
@@ -62,10 +62,10 @@ TEST_F(ThinWallsTest, AreNotSeenInRidgesAndWhereNoneAre) {
       const glm::dvec3 middle(1.0 + depth, 1.0 + depth, z);
       const LatticeEdge edge{middle - 0.2 * across, middle + 0.2 * across};
       ASSERT_GT(evaluator.value(edge.from), 0.0);
-      EXPECT_FALSE(find_thin_walls(evaluator, std::span(&edge, 1))[0]) << depth;
+      EXPECT_FALSE(find_thin_walls(box, std::span(&edge, 1))[0]) << depth;
     }
   }
-  EXPECT_TRUE(find_thin_walls(evaluator, {}).empty());
+  EXPECT_TRUE(find_thin_walls(box, {}).empty());
 }
 
 TEST_F(ThinWallsTest, OfPlatesAreMeshedWithBothSides) {

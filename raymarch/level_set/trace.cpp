@@ -209,7 +209,23 @@ HWY_INLINE bool meets(const BrickTree::Node& node, float slack, const RayBatch& 
   return !hn::AllFalse(d, hn::Le(near, far));
 }
 
-/// As search_tile, for rays of any kind.
+/// The first lane of a packet that has a ray; the packet's end where none has.
+size_t leading_lane(const RayBatch& rays, size_t first, size_t end) {
+  while (first < end && !(rays.t_min[first] < rays.t_max[first])) ++first;
+  return first;
+}
+
+/// Whether the second of two boxes lies farther along a ray than the first.
+bool is_farther(const BrickTree::Node& first, const BrickTree::Node& second, const IndexRays& rays, size_t i) {
+  float along = 0.0f;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const std::int32_t from = first.lower[axis] + first.upper[axis], to = second.lower[axis] + second.upper[axis];
+    along += rays.direction[axis][i] * static_cast<float>(to - from);
+  }
+  return along > 0.0f;
+}
+
+/// As search_tile, for rays of any kind; nearer boxes first, so that roots spare the boxes behind them.
 HWY_NOINLINE void search_tree(const BrickTrace& what, const BrickTree& tree, const RayBatch& rays, Search& search) {
   const F d;
   const BrickView& view = *what.view;
@@ -217,16 +233,21 @@ HWY_NOINLINE void search_tree(const BrickTrace& what, const BrickTree& tree, con
   const BrickGroups& groups = bricks.groups.front();
   const size_t lanes = hn::Lanes(d), count = static_cast<size_t>(rays.count);
   const VF side = set(view.side);
+  // Wider than bricks are entered by more than rounding: no order leaves out a brick whose root is as near as one that is found already.
+  const float slack = 1.5f * view.slack_voxels;
   for (size_t i = 0; i < count; i += lanes) {
+    const size_t leader = leading_lane(rays, i, i + lanes);
+    if (leader == i + lanes) continue;
     std::uint32_t stack[BrickTree::kMostDepth + 1];
     size_t waiting = 0;
     stack[waiting++] = 0;
     while (waiting > 0) {
       const BrickTree::Node& node = tree.nodes[stack[--waiting]];
-      if (!meets(node, view.slack_voxels, rays, search, i)) continue;
+      if (!meets(node, slack, rays, search, i)) continue;
       if (node.brick < 0) {
-        stack[waiting++] = node.first;
-        stack[waiting++] = node.first + 1;
+        const bool in_order = is_farther(tree.nodes[node.first], tree.nodes[node.first + 1], search.rays, leader);
+        stack[waiting++] = node.first + (in_order ? 1 : 0);
+        stack[waiting++] = node.first + (in_order ? 0 : 1);
         continue;
       }
       const Bound bound = bound_of(groups.bounds[static_cast<size_t>(node.brick)], node.brick, view.slack_voxels);

@@ -141,10 +141,10 @@ struct FieldEvaluator::Scratch {
   bool tape_has_bits = false;  ///< Of the field, where there is a tape.
   TapeScratch lanes{};
 
-  /// For many points at a time, made where it is asked for first; null where lanes take longer or have other bits than the field.
-  const FieldTape* tape_for(const Field& field, size_t points) {
-    constexpr size_t kFewest = 8;
-    if (points < kFewest) return nullptr;
+  /// For at least so many points that lanes take less time; made where it is asked for first. Null for fewer, and where lanes have other
+  /// bits than the field.
+  const FieldTape* tape_for(const Field& field, size_t points, size_t fewest) {
+    if (points < fewest) return nullptr;
     if (!tape) {
       tape.emplace(field);
       tape_has_bits = has_bits_of_field(*tape);

@@ -9,7 +9,7 @@ namespace limn {
 namespace {
 
 /// Of edges from a node inside to one outside, by bisection, since fields may jump in slope.
-std::vector<Crossing> crossings_on(LocalField& field, std::span<const LatticeEdge> edges) {
+std::vector<SurfaceCrossing> crossings_on(LocalField& field, std::span<const LatticeEdge> edges) {
   std::vector<LatticeEdge> parts(edges.begin(), edges.end());
   std::vector<glm::dvec3> points(edges.size()), gradients(edges.size());
   std::vector<double> values(edges.size());
@@ -23,7 +23,7 @@ std::vector<Crossing> crossings_on(LocalField& field, std::span<const LatticeEdg
   }
   halve();
   field.gradients(points, values, gradients);
-  std::vector<Crossing> crossings;
+  std::vector<SurfaceCrossing> crossings;
   for (size_t i = 0; i < points.size(); ++i) crossings.push_back({points[i], direction_of(gradients[i])});
   return crossings;
 }
@@ -38,7 +38,7 @@ struct TwiceCrossedFace {
 /// What one block finds on the edges and faces that begin at its nodes.
 struct BlockFinds {
   std::vector<size_t> edges{};  ///< As numbered by FieldLattice::edge_index.
-  std::vector<Crossing> crossings{};
+  std::vector<SurfaceCrossing> crossings{};
   std::vector<size_t> faces{};  ///< Crossed twice; as numbered by FieldLattice::edge_index.
 };
 
@@ -51,7 +51,7 @@ void find_in_block(const FieldLattice& lattice, const Field& part, const glm::iv
     finds.edges.push_back(lattice.edge_index(a, axis));
     edges.push_back({lattice.world(lattice.inside(a) ? a : b), lattice.world(lattice.inside(a) ? b : a)});
   });
-  finds.crossings = by_groups<Crossing>(part, edges, crossings_on);
+  finds.crossings = by_groups<SurfaceCrossing>(part, edges, crossings_on);
 }
 
 /// A wall thinner than a cell misses the middle. It joins the corners that lie in it, and surely two of them where it keeps the others

@@ -9,13 +9,13 @@
 namespace limn {
 
 /// Where the surface crosses an edge of the lattice.
-struct Crossing {
+struct SurfaceCrossing {
   glm::dvec3 point{0.0}, normal{0.0};
 };
 
 /// Edges and faces are numbered by FieldLattice::edge_index.
 struct LatticeCrossings {
-  std::vector<Crossing> crossings{};
+  std::vector<SurfaceCrossing> crossings{};
   std::vector<std::int32_t> of_edge{};  ///< Which of them each edge has; -1: none.
   std::vector<size_t> crossed_twice{};  ///< Faces.
   std::vector<char> middle_inside{};    ///< Of each of these: the sign in its middle, or what a thin wall there makes of it.

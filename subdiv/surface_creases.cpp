@@ -137,8 +137,9 @@ using Quad = std::array<glm::dvec3, 4>;
 
 /// How far the triangles of a quad lie off the surface, by the better of its diagonals.
 double off_surface(LocalField& local, const Quad& q) {
-  const auto off = [&](size_t a, size_t b, size_t c) { return local.distance_off((q[a] + q[b] + q[c]) / 3.0); };
-  return std::min(off(0, 1, 2) + off(0, 2, 3), off(1, 2, 3) + off(1, 3, 0));
+  const auto middle = [&](size_t a, size_t b, size_t c) { return (q[a] + q[b] + q[c]) / 3.0; };
+  const std::vector<double> off = local.distances_off(std::array{middle(0, 1, 2), middle(0, 2, 3), middle(1, 2, 3), middle(1, 3, 0)});
+  return std::min(off[0] + off[1], off[2] + off[3]);
 }
 
 constexpr double kOff = 1e-3;  // Of an edge.

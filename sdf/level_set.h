@@ -23,7 +23,8 @@ struct BandFacts {
   std::int64_t crossed_cells = 0;  ///< Cells whose eight nodes differ in sign.
   /// By gradient, in the order of gradients(): the crossed cells for which it reads a node outside the band, where there is no distance.
   std::vector<std::int64_t> lacking{};
-  std::int64_t near_nodes = 0;      ///< Nodes of the band that are within half a voxel of the surface by their own value.
+  /// Nodes of the band that are within half a voxel of the surface by their own value; not counted (0) in level sets that limn made.
+  std::int64_t near_nodes = 0;
   std::int64_t unsigned_nodes = 0;  ///< Those of them without a neighbour of the other sign: surface that no change of sign shows.
 };
 

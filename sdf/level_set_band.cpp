@@ -222,28 +222,29 @@ std::int64_t active_nodes(const NanoLeaf& leaf) {
   return count;
 }
 
-void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, const SlopeScale& scale, bool with_widths, Counts& found) {
+void count_block(const NanoAccessor& accessor, const nanovdb::Coord& origin, const SlopeScale& scale, bool of_others, Counts& found) {
   const LeafWindow window(accessor, origin);
   Block block;
   load_nodes(window, block.nodes);
   // A block of a tile: all of its nodes are in the band, or none is.
   found.active += window.leaf() ? active_nodes(*window.leaf()) : accessor.isActive(origin) ? 512 : 0;
   NodeBits inside, steep;
-  const bool crossed = find_inside(block.nodes, inside), near = find_steep(block.nodes, static_cast<float>(0.5 * scale.background), steep);
-  if (!crossed && !near && !with_widths) return;
+  const bool crossed = find_inside(block.nodes, inside),
+             near = of_others && find_steep(block.nodes, static_cast<float>(0.5 * scale.background), steep);
+  if (!crossed && !near && !of_others) return;
   block.active = active_rows(window);
   if (crossed) count_surface(block, inside, {origin[0], origin[1], origin[2]}, scale, found);
   if (near) count_near(block, inside, steep, found);
-  if (with_widths) count_band(block, scale.background, found);
+  if (of_others) count_band(block, scale.background, found);
 }
 
-Counts count_blocks(const nanovdb::FloatGrid& grid, std::span<const nanovdb::Coord> blocks, const glm::dmat3& per_side, bool with_widths) {
+Counts count_blocks(const nanovdb::FloatGrid& grid, std::span<const nanovdb::Coord> blocks, const glm::dmat3& per_side, bool of_others) {
   const SlopeScale scale{std::abs(static_cast<double>(grid.tree().background())), per_side};
   return parallel_reduce(
       blocks.size(), size_t{64}, Counts{},
       [&](const IndexRange<size_t>& range, Counts found) {
         const NanoAccessor accessor = grid.getAccessor();
-        for (size_t i = range.begin(); i < range.end(); ++i) count_block(accessor, blocks[i], scale, with_widths, found);
+        for (size_t i = range.begin(); i < range.end(); ++i) count_block(accessor, blocks[i], scale, of_others, found);
         return found;
       },
       [](Counts a, const Counts& b) {
@@ -305,16 +306,16 @@ std::vector<CrossedBlock> crossed_blocks(const nanovdb::FloatGrid& grid) {
       });
 }
 
-BandSurvey survey_band(const nanovdb::FloatGrid& grid, const glm::dmat3& world_from_index, double voxel_size, bool measure_half_width) {
+BandSurvey survey_band(const nanovdb::FloatGrid& grid, const glm::dmat3& world_from_index, double voxel_size, bool of_others) {
   LIMN_CHECK(gradients().size() <= kMostGradients);
   const std::vector<nanovdb::Coord> blocks = blocks_with_cells(grid);
-  Counts found = count_blocks(grid, blocks, voxel_size * glm::transpose(glm::inverse(world_from_index)), measure_half_width);
+  Counts found = count_blocks(grid, blocks, voxel_size * glm::transpose(glm::inverse(world_from_index)), of_others);
   const double background = std::abs(static_cast<double>(grid.tree().background()));
   BandSurvey survey;
   survey.active = found.active;
   survey.crossings = found.crossings;
   survey.per_voxel = change_per_voxel(found, background, voxel_size);
-  if (measure_half_width) survey.half_width_voxels = measured_width(found, background, survey.per_voxel);
+  if (of_others) survey.half_width_voxels = measured_width(found, background, survey.per_voxel);
   survey.facts.crossed_cells = found.crossed_cells;
   survey.facts.lacking.assign(found.lacking.begin(), found.lacking.begin() + static_cast<std::ptrdiff_t>(gradients().size()));
   survey.facts.near_nodes = found.near_nodes;

@@ -241,25 +241,49 @@ void for_each_cube(std::span<const Cube> cubes, const IndexRange<size_t>& part, 
   }
 }
 
-/// Whether fill() will find an active node. Two nodes of each eighth are asked first: in most blocks one of them is.
-bool holds_band(const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance) {
+/// Two nodes of each eighth of a block: in most blocks that hold a part of the band one of them is in it.
+constexpr size_t kFirstAsked = 16, kAskedTogether = 8;
+
+/// What waits to be asked together, of one field.
+struct Asked {
+  std::array<size_t, kAskedTogether> cubes;
+  size_t count = 0;
   BandNodes nodes;
-  const auto any_in_band = [&] {
-    signed_distances(distance, nodes.points, lattice.half_width, nodes.distances);
-    return std::any_of(nodes.distances.at, nodes.distances.at + nodes.count(), [&](double d) { return std::abs(d) <= lattice.half_width; });
+};
+
+/// Of the cubes asked so far, whether fill() will find an active node.
+void tell_band(std::span<const Cube> cubes, const Lattice& lattice, DistanceEvaluator& distance, Asked& asked,
+               std::vector<std::uint8_t>& holds) {
+  BandNodes& nodes = asked.nodes;
+  const auto any_in_band = [&](size_t first, size_t count) {
+    const double* const from = nodes.distances.at + first;
+    return std::any_of(from, from + count, [&](double d) { return std::abs(d) <= lattice.half_width; });
   };
-  for (int k = 0; k < 16; ++k) nodes.points.add(lattice.node(cube.origin + 4 * glm::ivec3(k >> 2 & 1, k >> 1 & 1, k & 1) + 1 + (k >> 3)));
-  if (any_in_band()) return true;
-  LevelSetBlock block;
-  find_band_nodes(cube, lattice, distance, block, nodes);
-  return any_in_band();
+  signed_distances(distance, nodes.points, lattice.half_width, nodes.distances);
+  for (size_t k = 0; k < asked.count; ++k) holds[asked.cubes[k]] = any_in_band(kFirstAsked * k, kFirstAsked) ? 1 : 0;
+  for (size_t k = 0; k < asked.count; ++k) {
+    const size_t i = asked.cubes[k];
+    if (holds[i] != 0) continue;
+    LevelSetBlock block;
+    find_band_nodes(cubes[i], lattice, distance, block, nodes);
+    signed_distances(distance, nodes.points, lattice.half_width, nodes.distances);
+    holds[i] = any_in_band(0, nodes.count()) ? 1 : 0;
+  }
+  asked.count = nodes.points.count = 0;
 }
 
 /// The cubes that hold a node of the band, in their order.
 std::vector<Cube> with_band(std::vector<Cube> cubes, const Lattice& lattice) {
   std::vector<std::uint8_t> holds(cubes.size());
   parallel_parts(cubes.size(), size_t{1}, [&](const IndexRange<size_t>& part) {
-    for_each_cube(cubes, part, [&](size_t i, DistanceEvaluator& distance) { holds[i] = holds_band(cubes[i], lattice, distance) ? 1 : 0; });
+    Asked asked;
+    for_each_cube(cubes, part, [&](size_t i, DistanceEvaluator& distance) {
+      for (size_t k = 0; k < kFirstAsked; ++k)
+        asked.nodes.points.add(lattice.node(cubes[i].origin + 4 * glm::ivec3(k >> 2 & 1, k >> 1 & 1, k & 1) + 1 + static_cast<int>(k >> 3)));
+      asked.cubes[asked.count++] = i;
+      const bool is_last = i + 1 == part.last || &cubes[i + 1].field.program() != &cubes[i].field.program();
+      if (asked.count == kAskedTogether || is_last) tell_band(cubes, lattice, distance, asked, holds);
+    });
   });
   size_t kept = 0;
   for (size_t i = 0; i < cubes.size(); ++i)

@@ -77,7 +77,7 @@ void finish_run(const Use& use, const TileWriter& writer, const TracedPixels& ru
 /// What one task holds.
 struct TaskMemory {
   GBuffer layers{};  ///< That are not kept.
-  Image<glm::vec4> sums{};
+  Image<float> sums{};
 };
 
 void render_tiles(const Shared& shared, const PixelTile& row, int tile_px, TaskMemory& own) {

@@ -71,7 +71,11 @@ void write_tile(const TileWriter& writer, const PixelTile& tile, const RayBatch&
     const glm::dvec3 p = glm::dvec3(rays.origin(i)) + static_cast<double>(hits.t[i]) * glm::dvec3(rays.direction(i));
     return glm::vec3(p + writer.model->render_origin);
   });
-  write_layer(out.id, tile, [&](int i) { return found.object[i] + 1; });
+  if (!out.id.pixels.empty()) {
+    alignas(64) std::int32_t ids[kRayBatchSize];
+    for (int i = 0; i < rays.count; ++i) ids[i] = found.object[i] + 1;
+    copy_layer(out.id, tile, ids);
+  }
   write_layer(out.material, tile,
               [&](int i) { return seen(i) ? writer.model->materials[static_cast<size_t>(found.object[i])] + hits.material[i] : 0; });
   write_layer(out.face, tile, [&](int i) { return seen(i) ? hits.face[i] : -1; });

@@ -14,12 +14,12 @@ inline constexpr int kTilesInARow = 8;
 
 /// Pixels that one thread has just traced: a few tiles side by side.
 struct TracedPixels {
-  const GBuffer& layers;   ///< Their layers, in the cache.
-  glm::ivec2 first{0};     ///< Of the picture: where `layers` begins.
-  const PixelTile& task;   ///< Of the picture: what they are some of.
-  Image<glm::vec4>& sums;  ///< Of the task, for what adds up its rays: empty at first, and gone with the task.
-  PixelTile pixels{};      ///< Of the picture.
-  bool seen = false;       ///< False where no surface can be seen in any of them; then `layers` must not be read.
+  const GBuffer& layers;  ///< Their layers, in the cache.
+  glm::ivec2 first{0};    ///< Of the picture: where `layers` begins.
+  const PixelTile& task;  ///< Of the picture: what they are some of.
+  Image<float>& sums;     ///< Of the task, for what adds up its rays, of any size: empty at first, and gone with the task.
+  PixelTile pixels{};     ///< Of the picture.
+  bool seen = false;      ///< False where no surface can be seen in any of them; then `layers` must not be read.
 };
 using PixelWork = std::function<void(const TracedPixels&)>;
 

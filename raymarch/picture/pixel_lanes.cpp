@@ -39,13 +39,31 @@ HWY_INLINE void Store(const Rgba& color, glm::vec4* to) {
   hn::StoreInterleaved4(color.red, color.green, color.blue, color.alpha, F(), &to->x);
 }
 
+HWY_INLINE Rgba LoadPlanes(const float* from, size_t plane) {
+  const F f;
+  return {hn::LoadU(f, from), hn::LoadU(f, from + plane), hn::LoadU(f, from + 2 * plane), hn::LoadU(f, from + 3 * plane)};
+}
+
+HWY_INLINE void StorePlanes(const Rgba& color, float* to, size_t plane) {
+  const F f;
+  hn::StoreU(color.red, f, to);
+  hn::StoreU(color.green, f, to + plane);
+  hn::StoreU(color.blue, f, to + 2 * plane);
+  hn::StoreU(color.alpha, f, to + 3 * plane);
+}
+
 HWY_INLINE Rgba Headlight(const ColorsById& colors, const PixelRun& run, size_t i) {
   const F f;
   const VI id = hn::LoadU(I(), run.id + i);
   const VF light = hn::Add(hn::Set(f, 0.25f), hn::Mul(hn::Set(f, 0.75f), hn::LoadU(f, run.n_dot_v + i)));
-  return {hn::Mul(hn::GatherIndex(f, colors.red.data(), id), light), hn::Mul(hn::GatherIndex(f, colors.green.data(), id), light),
-          hn::Mul(hn::GatherIndex(f, colors.blue.data(), id), light),
-          hn::IfThenElseZero(hn::RebindMask(f, hn::Ne(id, hn::Zero(I()))), hn::Set(f, 1.0f))};
+  const VF alpha = hn::IfThenElseZero(hn::RebindMask(f, hn::Ne(id, hn::Zero(I()))), hn::Set(f, 1.0f));
+  const std::int32_t first = run.id[i];
+  if (hn::AllTrue(I(), hn::Eq(id, hn::Set(I(), first)))) {  // as within objects; gathers take longer than all the rest
+    const auto of_one = [&](const std::vector<float>& channel) { return hn::Mul(hn::Set(f, channel[static_cast<size_t>(first)]), light); };
+    return {of_one(colors.red), of_one(colors.green), of_one(colors.blue), alpha};
+  }
+  const auto of_each = [&](const std::vector<float>& channel) { return hn::Mul(hn::GatherIndex(f, channel.data(), id), light); };
+  return {of_each(colors.red), of_each(colors.green), of_each(colors.blue), alpha};
 }
 
 HWY_INLINE void LayInk(const glm::vec3& ink, VF share, Rgba& color) {
@@ -120,8 +138,8 @@ HWY_INLINE void ComposePacket(const PixelStage& stage, const SrgbBytes& srgb, co
     LayInk(stage.inks[m], share, color);
   }
   if (!stage.first) {
-    if (run.composite != nullptr) {
-      const Rgba sum = Load(run.composite + i);
+    if (run.planes != nullptr || run.composite != nullptr) {
+      const Rgba sum = run.planes != nullptr ? LoadPlanes(run.planes + i, run.plane) : Load(run.composite + i);
       color = {hn::Add(sum.red, color.red), hn::Add(sum.green, color.green), hn::Add(sum.blue, color.blue),
                hn::Add(sum.alpha, color.alpha)};
     }
@@ -131,6 +149,8 @@ HWY_INLINE void ComposePacket(const PixelStage& stage, const SrgbBytes& srgb, co
   if (run.border != nullptr) hn::StoreU(ink, f, run.border + i);
   if (run.bytes != nullptr)
     StoreBytes(srgb, color, run.bytes + i);
+  else if (run.planes != nullptr)
+    StorePlanes(color, run.planes + i, run.plane);
   else if (run.composite != nullptr)
     Store(color, run.composite + i);
 }
@@ -143,6 +163,7 @@ void ComposeRest(const PixelStage& stage, const SrgbBytes& srgb, const PixelRun&
   float n_dot_v[kMostLanes] = {}, border[kMostLanes] = {};
   std::int32_t id[kMostLanes] = {};
   glm::vec4 composite[kMostLanes] = {};
+  float planes[4 * kMostLanes] = {};
   glm::u8vec4 bytes[kMostLanes] = {};
   std::vector<std::array<float, kMostLanes>> coverage(run.coverage.size());
   std::vector<const float*> inks;
@@ -154,13 +175,20 @@ void ComposeRest(const PixelStage& stage, const SrgbBytes& srgb, const PixelRun&
   std::copy_n(run.n_dot_v + i, count, n_dot_v);
   std::copy_n(run.id + i, count, id);
   if (!stage.first && run.composite != nullptr) std::copy_n(run.composite + i, count, composite);
+  const auto each_plane = [&](const auto& visit) {
+    for (size_t k = 0; run.planes != nullptr && k < 4; ++k) visit(run.planes + k * run.plane + i, planes + k * kMostLanes);
+  };
+  if (!stage.first) each_plane([&](const float* from, float* to) { std::copy_n(from, count, to); });
   if (!stage.first && run.border != nullptr) std::copy_n(run.border + i, count, border);
-  ComposePacket(
-      stage, srgb,
-      {kMostLanes, n_dot_v, id, inks, run.border != nullptr ? border : nullptr, composite, run.bytes != nullptr ? bytes : nullptr}, 0);
+  ComposePacket(stage, srgb,
+                {kMostLanes, n_dot_v, id, inks, run.border != nullptr ? border : nullptr, composite,
+                 run.planes != nullptr ? planes : nullptr, kMostLanes, run.bytes != nullptr ? bytes : nullptr},
+                0);
   if (run.border != nullptr) std::copy_n(border, count, run.border + i);
   if (run.bytes != nullptr)
     std::copy_n(bytes, count, run.bytes + i);
+  else if (run.planes != nullptr)
+    each_plane([&](float* to, const float* from) { std::copy_n(from, count, to); });
   else if (run.composite != nullptr)
     std::copy_n(composite, count, run.composite + i);
 }

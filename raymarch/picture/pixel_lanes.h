@@ -30,8 +30,10 @@ struct PixelRun {
   const std::int32_t* id = nullptr;
   std::span<const float* const> coverage{};  ///< Of each method.
   float* border = nullptr;                   ///< Sums of the inks together; null where nobody reads them.
-  glm::vec4* composite = nullptr;            ///< Sums; null where nobody reads them.
-  glm::u8vec4* bytes = nullptr;              ///< Of the last sample, written in place of `composite`; null: `composite` is.
+  glm::vec4* composite = nullptr;            ///< Sums; null where nobody reads them, or `planes` has them.
+  float* planes = nullptr;                   ///< Sums of red; those of green, blue and alpha follow, `plane` apart.
+  size_t plane = 0;
+  glm::u8vec4* bytes = nullptr;  ///< Of the last sample, written in place of sums; null: those are.
 };
 void compose_pixels(const PixelStage& stage, const PixelRun& run);
 

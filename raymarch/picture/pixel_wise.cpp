@@ -37,11 +37,10 @@ struct Sample {
   std::atomic<std::int64_t>* work_ns = nullptr;
 };
 
-PixelTile in_task(const TracedPixels& traced) {
-  PixelTile pixels = traced.pixels;
-  pixels.x -= traced.task.x;
-  pixels.y -= traced.task.y;
-  return pixels;
+/// Sums of a task, row by row: red, green, blue and alpha of the row after each other.
+constexpr int kPlanes = 4;
+float* sums_at(const TracedPixels& traced, int x, int y, int plane) {
+  return &traced.sums.at(x - traced.task.x, kPlanes * (y - traced.task.y) + plane);
 }
 
 /// Pixels side by side, from this one of the picture on.
@@ -51,10 +50,12 @@ PixelRun run_of(const Sample& sample, const TracedPixels& traced, int x, int y) 
   PixelRun run;
   run.count = static_cast<size_t>(traced.pixels.width);
   if (!picture.border.pixels.empty()) run.border = &picture.border.pixels[at];
-  if (sample.sums_in_tasks)
-    run.composite = &traced.sums.at(x - traced.task.x, y - traced.task.y);
-  else if (!picture.composite.pixels.empty())
+  if (sample.sums_in_tasks) {
+    run.planes = sums_at(traced, x, y, 0);
+    run.plane = static_cast<size_t>(traced.task.width);
+  } else if (!picture.composite.pixels.empty()) {
     run.composite = &picture.composite.pixels[at];
+  }
   if (sample.to_bytes) run.bytes = &picture.bytes.pixels[at];
   return run;
 }
@@ -105,7 +106,8 @@ void draw_nothing(const Sample& sample, const TracedPixels& traced) {
     fill_rows(picture.border, pixels, ink);
     fill_rows(picture.composite, pixels, color);
     if (sample.to_bytes) fill_rows(picture.bytes, pixels, bytes);
-    if (sample.sums_in_tasks) fill_rows(traced.sums, in_task(traced), color);
+    for (int y = pixels.y; sample.sums_in_tasks && y < pixels.y + pixels.height; ++y)
+      for (int k = 0; k < kPlanes; ++k) std::fill_n(sums_at(traced, pixels.x, y, k), pixels.width, color[k]);
     return;
   }
   if (sample.stage.finish == nullptr) return;  // nothing is added
@@ -114,7 +116,7 @@ void draw_nothing(const Sample& sample, const TracedPixels& traced) {
 
 void draw_pixels(const Sample& sample, const TracedPixels& traced) {
   const auto start = Clock::now();
-  if (sample.sums_in_tasks && traced.sums.pixels.empty()) traced.sums = Image<glm::vec4>::unset(traced.task.width, traced.task.height);
+  if (sample.sums_in_tasks && traced.sums.pixels.empty()) traced.sums = Image<float>::unset(traced.task.width, kPlanes * traced.task.height);
   if (traced.seen) {
     if (sample.tally != nullptr) add_pixels(traced.layers, traced.first, traced.pixels, *sample.tally);
     draw_seen(sample, traced);

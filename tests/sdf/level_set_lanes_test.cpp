@@ -214,7 +214,7 @@ void expect_near_nodes(std::mt19937& random) {
     const auto handle = nano_grid(blocks, background);
     const nanovdb::FloatGrid& grid = *handle.grid<float>();
     const auto expected = near_nodes_of_a_plain_loop(grid, static_cast<double>(background));
-    const BandFacts facts = survey_band(grid, glm::dmat3(1.0), 1.0, false).facts;
+    const BandFacts facts = survey_band(grid, glm::dmat3(1.0), 1.0, true).facts;
     ASSERT_EQ(facts.near_nodes, expected[0]);
     ASSERT_EQ(facts.unsigned_nodes, expected[1]);
     for (size_t k = 0; k < 2; ++k) all[k] += expected[k];

@@ -20,13 +20,18 @@ constexpr int kNodes = 512;
 
 int node_index(int x, int y, int z) { return x * 64 + y * 8 + z; }
 glm::ivec3 node_at(int index) { return {index >> 6, (index >> 3) & 7, index & 7}; }
+/// Where a node's neighbour stands in BlockFace.
+size_t on_face(const glm::ivec3& at, size_t axis) {
+  return static_cast<size_t>(axis == 0 ? 8 * at.y + at.z : axis == 1 ? 8 * at.x + at.z : 8 * at.x + at.y);
+}
 
 class BlockFiller {
  public:
   BlockFiller(const glm::ivec3& origin, const BlockDistanceArray& distances, const Winding& winding, const BlockSettings& settings,
-              const std::optional<BlockLayer>& below)
+              const FilledBlocks* filled)
       : origin_(origin), winding_(winding), settings_(settings), distances_(distances) {
-    if (below && below->origin == origin - glm::ivec3(0, 0, 8)) below_ = &*below;
+    if (filled != nullptr && winding.closed())
+      for (int axis = 0; axis < 3; ++axis) before_[static_cast<size_t>(axis)] = filled->before(origin, axis);
   }
 
   BlockResult run(LevelSetBlock& block) {
@@ -114,24 +119,29 @@ class BlockFiller {
     return winding_.closed() ? 0.0 : winding_.gradient_bound(center, radius + settings_.half_width);
   }
 
-  /// Of a closed mesh, where a straight step leads to a node of the block below that lies well off the surface: there its side is certain.
-  bool follow_below(Component& component) {
-    if (below_ == nullptr || !winding_.closed()) return false;
-    for (const int node : members(component)) {
-      if (node % 8 != 0) continue;
-      const auto under = static_cast<size_t>(node / 8);
-      const double off = below_->distances[under];
-      if (off < 0.5 * settings_.voxel_size || !(off + distance(node) > 1.000001 * settings_.voxel_size)) continue;
-      component.speaker = node, component.number = below_->inside[under] ? 1.0 : 0.0;
-      mark(members(component), below_->inside[under]);
-      return true;
+  /// Of a closed mesh, where a straight step leads to a node of a block before this one that lies well off the surface: there its side is
+  /// certain.
+  bool follow_before(Component& component) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      if (before_[axis] == nullptr) continue;
+      for (const int node : members(component)) {
+        const glm::ivec3 at = node_at(node);
+        if (at[static_cast<int>(axis)] != 0) continue;
+        const size_t beside = on_face(at, axis);
+        const double off = before_[axis]->distances[beside];
+        if (off < 0.5 * settings_.voxel_size || !(off + distance(node) > 1.000001 * settings_.voxel_size)) continue;
+        const bool inside = before_[axis]->inside[beside];
+        component.speaker = node, component.number = inside ? 1.0 : 0.0;
+        mark(members(component), inside);
+        return true;
+      }
     }
     return false;
   }
 
   void settle(Component& component) {
     constexpr int kSmall = 8;
-    if (follow_below(component)) return;
+    if (follow_before(component)) return;
     if (component.size() <= kSmall && follow_neighbour(component)) return;
     settle_part(members(component), glm::ivec3(0), 8, &component);
   }
@@ -276,8 +286,8 @@ class BlockFiller {
   glm::ivec3 origin_;
   const Winding& winding_;
   const BlockSettings& settings_;
-  const BlockLayer* below_ = nullptr;  ///< Null where the block filled before is not the one below.
-  double block_slope_bound_ = -1.0;    ///< Below 0: not asked for yet.
+  std::array<const BlockFace*, 3> before_{};  ///< Null where the block there is not known.
+  double block_slope_bound_ = -1.0;           ///< Below 0: not asked for yet.
   BlockDistanceArray distances_;
   std::array<bool, kNodes> inside_{};
   std::array<int, kNodes> component_{};
@@ -313,16 +323,40 @@ void measure_block(const glm::ivec3& origin, const ClosestPointData& distance, d
 }
 
 BlockResult fill_block(const glm::ivec3& origin, const BlockDistanceArray& distances, const Winding& winding, const BlockSettings& settings,
-                       std::optional<BlockLayer>& layer, LevelSetBlock& block) {
-  BlockFiller filler(origin, distances, winding, settings, layer);
+                       FilledBlocks* filled, LevelSetBlock& block) {
+  BlockFiller filler(origin, distances, winding, settings, filled);
   const BlockResult result = filler.run(block);
-  layer.emplace();
-  layer->origin = origin;
-  for (size_t i = 0; i < layer->distances.size(); ++i) {
-    layer->distances[i] = distances[8 * i + 7];
-    layer->inside[i] = filler.is_inside(8 * i + 7);
-  }
+  if (filled == nullptr || !winding.closed()) return result;
+  BlockFaces faces;
+  for (int a = 0; a < 8; ++a)
+    for (int b = 0; b < 8; ++b)
+      for (size_t axis = 0; axis < 3; ++axis) {
+        const glm::ivec3 at = axis == 0 ? glm::ivec3(7, a, b) : axis == 1 ? glm::ivec3(a, 7, b) : glm::ivec3(a, b, 7);
+        const auto node = static_cast<size_t>(node_index(at.x, at.y, at.z)), to = static_cast<size_t>(8 * a + b);
+        faces[axis].distances[to] = distances[node];
+        faces[axis].inside[to] = filler.is_inside(node);
+      }
+  filled->add(origin, faces);
   return result;
+}
+
+void FilledBlocks::add(const glm::ivec3& origin, const BlockFaces& faces) {
+  if (slabs_[0].blocks.empty() || slabs_[0].x != origin.x) {
+    std::swap(slabs_[0], slabs_[1]);
+    slabs_[0] = {origin.x, {}};
+  }
+  slabs_[0].blocks.emplace(std::pair(origin.y, origin.z), faces);
+}
+
+const BlockFace* FilledBlocks::before(const glm::ivec3& origin, int axis) const {
+  glm::ivec3 at = origin;
+  at[axis] -= 8;
+  for (const Slab& slab : slabs_) {
+    if (slab.x != at.x) continue;
+    const auto found = slab.blocks.find({at.y, at.z});
+    if (found != slab.blocks.end()) return &found->second[static_cast<size_t>(axis)];
+  }
+  return nullptr;
 }
 
 }  // namespace limn

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <array>
-#include <optional>
+#include <map>
+#include <utility>
 
 #include "sdf/level_set.h"
 #include "subdiv/mesh_distance.h"
@@ -25,16 +26,32 @@ using BlockDistanceArray = std::array<double, 512>;
 void measure_block(const glm::ivec3& origin, const ClosestPointData& distance, double voxel_size, double reach,
                    BlockDistanceArray& distances);
 
-/// The nodes of a block that face the next one along z, and on which side of the surface they lie.
-struct BlockLayer {
-  glm::ivec3 origin{0};                ///< The block's.
-  std::array<double, 64> distances{};  ///< By 8 x + y.
+/// The nodes of a block that face the next one along an axis, and on which side of the surface they lie.
+struct BlockFace {
+  std::array<double, 64> distances{};  ///< By the other two coordinates, 8 times the first of them.
   std::array<bool, 64> inside{};
 };
+using BlockFaces = std::array<BlockFace, 3>;
 
-/// Signs at the nodes voxel_size * (origin + (i, j, k)) of one block, and what becomes of its distances. `layer` is that of the block
-/// filled before, if any: of a closed mesh, nodes that it shares a side with ask nothing. Then it is this block's.
+/// Faces of blocks that are filled, for those behind them; of blocks filled in the order of x, y and z, as long as they are needed.
+class FilledBlocks {
+ public:
+  void add(const glm::ivec3& origin, const BlockFaces& faces);
+  /// That of the block before `origin` along the axis; null where none is known.
+  const BlockFace* before(const glm::ivec3& origin, int axis) const;
+
+ private:
+  /// Blocks of one x.
+  struct Slab {
+    int x = 0;
+    std::map<std::pair<int, int>, BlockFaces> blocks{};  ///< By y and z.
+  };
+  std::array<Slab, 2> slabs_{};  ///< The last, and the one before it.
+};
+
+/// Signs at the nodes voxel_size * (origin + (i, j, k)) of one block, and what becomes of its distances. `filled`: of a closed mesh, nodes
+/// that straight steps join to blocks among them ask nothing. Then this block is one of them; null: none are.
 BlockResult fill_block(const glm::ivec3& origin, const BlockDistanceArray& distances, const Winding& winding, const BlockSettings& settings,
-                       std::optional<BlockLayer>& layer, LevelSetBlock& block);
+                       FilledBlocks* filled, LevelSetBlock& block);
 
 }  // namespace limn

@@ -124,11 +124,11 @@ Band make_band(const MeshBody& body, const LevelSetSettings& settings, double sh
     std::vector<LevelSetBlock> blocks(wave.size());
     std::vector<char> membrane(wave.size(), 0), active(wave.size(), 0), inside(wave.size(), 0);
     parallel_parts(wave.size(), size_t{1}, [&](const IndexRange<size_t>& part) {
-      std::optional<BlockLayer> layer;
+      FilledBlocks filled;
       for (size_t i = part.first; i < part.last; ++i) {
         BlockDistanceArray unsigned_distances;
         distances.measure(wave[i], unsigned_distances);
-        const BlockResult result = fill_block(wave[i], unsigned_distances, body.winding(), block_settings, layer, blocks[i]);
+        const BlockResult result = fill_block(wave[i], unsigned_distances, body.winding(), block_settings, &filled, blocks[i]);
         membrane[i] = result.membrane, active[i] = result.any_active, inside[i] = result.any_inside;
         progress.step();
       }

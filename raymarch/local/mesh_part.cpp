@@ -151,8 +151,7 @@ void block_distances(const MeshPart& part, const glm::ivec3& origin, double h, d
   else
     band_distances(body.mesh(), near, origin, h, half_width, distances);
   LevelSetBlock block;
-  std::optional<BlockLayer> none;
-  fill_block(origin, distances, body.winding(), {h, half_width, 0.0}, none, block);
+  fill_block(origin, distances, body.winding(), {h, half_width, 0.0}, nullptr, block);
   std::copy_n(block.values, 512, values.begin());
 }
 

@@ -44,6 +44,7 @@ struct BlockDistances {
   alignas(64) double squared[512];
   alignas(64) float known[512];  ///< Distances, not squared, rounded up: what a triangle must come below.
   double row_farthest[64];       ///< The largest distance (not squared) in each row.
+  alignas(64) float row_known[64];  ///< The largest of `known` in each row.
 };
 
 }  // namespace limn
@@ -88,19 +89,47 @@ HWY_INLINE void UpdateRow(int row, BlockDistances& block) {
   const Lanes8 d;
   const hn::Rebind<float, Lanes8> f;
   Vec most = hn::Zero(d);
+  auto most_known = hn::Zero(f);
   for (size_t first = 0; first < 8; first += hn::Lanes(d)) {
-    const Vec known = hn::Sqrt(hn::Load(d, block.squared + 8 * row + first));
-    most = hn::Max(most, known);
-    hn::Store(hn::DemoteTo(f, hn::Mul(known, hn::Set(d, 1.0 + 1e-6))), f, block.known + 8 * row + first);
+    const Vec distance = hn::Sqrt(hn::Load(d, block.squared + 8 * row + first));
+    const auto known = hn::DemoteTo(f, hn::Mul(distance, hn::Set(d, 1.0 + 1e-6)));
+    most = hn::Max(most, distance);
+    most_known = hn::Max(most_known, known);
+    hn::Store(known, f, block.known + 8 * row + first);
   }
   block.row_farthest[row] = hn::GetLane(hn::MaxOfLanes(d, most));
+  block.row_known[row] = hn::GetLane(hn::MaxOfLanes(f, most_known));
+}
+
+/// Single precision has rounding.
+inline constexpr float kRoom = 1e-4f;
+
+/// Rows that may come as near to the sphere as the farthest that is known of them, as bits: all of those that RowsInReach() finds.
+HWY_INLINE std::uint64_t RowsNear(const TriangleSphere& sphere, const BlockDistances& block) {
+  const hn::CappedTag<float, 8> d;  // the rows of one x
+  const auto radius = hn::Set(d, sphere.radius * (1.0f + kRoom) + kRoom);
+  const float beyond_z = std::max(std::max(-sphere.z, sphere.z - 7.0f), 0.0f);
+  std::uint64_t rows = 0;
+  for (int x = 0; x < 8; ++x) {
+    const float dx = static_cast<float>(x) - sphere.x;
+    for (size_t y = 0; y < 8; y += hn::Lanes(d)) {
+      const auto dy = hn::Sub(hn::Iota(d, static_cast<float>(y)), hn::Set(d, sphere.y));
+      const auto squared = hn::Add(hn::Add(hn::Mul(dy, dy), hn::Set(d, beyond_z * beyond_z)), hn::Set(d, dx * dx));
+      const auto reach = hn::Add(hn::Load(d, block.row_known + 8 * x + static_cast<int>(y)), radius);
+      std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(d, hn::Le(squared, hn::Mul(hn::Mul(reach, reach), hn::Set(d, 1.0f + kRoom))), bits);
+      rows |= (bits[0] & ((std::uint64_t{1} << hn::Lanes(d)) - 1)) << (8 * static_cast<size_t>(x) + y);
+    }
+  }
+  return rows;
 }
 
 /// The rows of which some node may be nearer to a triangle in the sphere than to what is known, as bits: in single precision, with room for
 /// its rounding.
 HWY_INLINE std::uint64_t RowsInReach(const TriangleSphere& sphere, const BlockDistances& block) {
   const hn::CappedTag<float, 16> d;
-  constexpr float kRoom = 1e-4f;
+  const std::uint64_t rows_near = RowsNear(sphere, block);
+  if (rows_near == 0) return 0;
   alignas(64) float across[64];
   const auto z = hn::Iota(d, 0.0f);
   for (size_t k = 0; k < 64; k += hn::Lanes(d)) {
@@ -115,7 +144,10 @@ HWY_INLINE std::uint64_t RowsInReach(const TriangleSphere& sphere, const BlockDi
   for (int x = 0; x < 8; ++x) {
     const float dx = static_cast<float>(x) - sphere.x;
     const auto squared_x = hn::Set(d, dx * dx);
+    if ((rows_near >> (8 * x) & 0xffu) == 0) continue;
     for (size_t k = 0; k < 64; k += hn::Lanes(d)) {
+      constexpr std::uint64_t kRows = hn::MaxLanes(d) > 8 ? 3 : 1;  // of a vector
+      if ((rows_near >> (8 * static_cast<size_t>(x) + k / 8) & kRows) == 0) continue;
       const auto reach = hn::Add(hn::Load(d, block.known + 64 * x + k), radius);
       const auto near = hn::Le(hn::Add(hn::Load(d, across + k), squared_x), hn::Mul(hn::Mul(reach, reach), hn::Set(d, 1.0f + kRoom)));
       if (hn::AllFalse(d, near)) continue;
@@ -263,6 +295,7 @@ void band_distances(const TriangleMesh& mesh, std::span<const std::uint32_t> tri
   std::fill(std::begin(block.squared), std::end(block.squared), reach_voxels * reach_voxels * (1.0 + 1e-12));
   std::fill(std::begin(block.known), std::end(block.known), static_cast<float>(reach_voxels * (1.0 + 1e-6)));
   std::fill(std::begin(block.row_farthest), std::end(block.row_farthest), reach_voxels * (1.0 + 1e-12));
+  std::fill(std::begin(block.row_known), std::end(block.row_known), block.known[0]);
   const double beyond = block.squared[0];
   BlockMeasure measure(mesh, origin, voxel_size, block);
   visit_spread(triangles, [&measure](std::uint32_t index) { measure.add(index); });

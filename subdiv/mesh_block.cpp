@@ -13,6 +13,8 @@
 #include <span>
 #include <vector>
 
+#include "subdiv/column_crossings.h"
+
 namespace limn {
 namespace {
 
@@ -27,11 +29,10 @@ size_t on_face(const glm::ivec3& at, size_t axis) {
 
 class BlockFiller {
  public:
-  BlockFiller(const glm::ivec3& origin, const BlockDistanceArray& distances, const Winding& winding, const BlockSettings& settings,
-              const FilledBlocks* filled)
-      : origin_(origin), winding_(winding), settings_(settings), distances_(distances) {
-    if (filled != nullptr && winding.closed())
-      for (int axis = 0; axis < 3; ++axis) before_[static_cast<size_t>(axis)] = filled->before(origin, axis);
+  BlockFiller(const glm::ivec3& origin, const BlockDistanceArray& distances, const BlockMesh& mesh, const BlockSettings& settings)
+      : origin_(origin), winding_(mesh.winding), settings_(settings), triangles_(mesh.triangles), distances_(distances) {
+    if (mesh.filled == nullptr || !winding_.closed()) return;
+    for (int axis = 0; axis < 3; ++axis) before_[static_cast<size_t>(axis)] = mesh.filled->before(origin, axis);
   }
 
   BlockResult run(LevelSetBlock& block) {
@@ -41,13 +42,15 @@ class BlockFiller {
     }
     find_components();
     for (Component& component : components_) settle(component);
+    settle_by_columns();
     for (const auto& [node, distance] : near_membrane_) distances_[static_cast<size_t>(node)] = distance;
     for (size_t node = 0; node < kNodes; ++node)
       if (inside_[node]) distances_[node] = -distances_[node];
     return write(block);
   }
 
-  bool is_inside(size_t node) const { return inside_[node]; }
+  /// Of a closed mesh.
+  int number_at(size_t node) const { return number_of(components_[static_cast<size_t>(component_[node])]); }
 
  private:
   /// Nodes that steps join which cannot cross a triangle.
@@ -57,6 +60,7 @@ class BlockFiller {
     double number = 0.0;                ///< There.
     int size() const { return end - begin; }
   };
+  static int number_of(const Component& component) { return static_cast<int>(std::lround(component.number)); }
 
   glm::dvec3 world(int node) const { return settings_.voxel_size * glm::dvec3(origin_ + node_at(node)); }
   double distance(int node) const { return distances_[static_cast<size_t>(node)]; }
@@ -130,20 +134,60 @@ class BlockFiller {
         const size_t beside = on_face(at, axis);
         const double off = before_[axis]->distances[beside];
         if (off < 0.5 * settings_.voxel_size || !(off + distance(node) > 1.000001 * settings_.voxel_size)) continue;
-        const bool inside = before_[axis]->inside[beside];
-        component.speaker = node, component.number = inside ? 1.0 : 0.0;
-        mark(members(component), inside);
+        tell(component, node, before_[axis]->numbers[beside]);
         return true;
       }
     }
     return false;
   }
 
+  /// `number` holds for all of it, as the node tells.
+  void tell(Component& component, int node, double number) {
+    component.speaker = node, component.number = number;
+    mark(members(component), number > 0.5);
+  }
+
   void settle(Component& component) {
     constexpr int kSmall = 8;
     if (follow_before(component)) return;
     if (component.size() <= kSmall && follow_neighbour(component)) return;
-    settle_part(members(component), glm::ivec3(0), 8, &component);
+    if (component.size() <= kSmall && winding_.closed() && !triangles_.empty())
+      waiting_.push_back(&component);
+    else
+      settle_part(members(component), glm::ivec3(0), 8, &component);
+  }
+
+  /// Nodes that no clear step leads to lie very close to the surface, mostly one by one. From a node beside them in the same column, whose
+  /// number is known, the triangles between lead to theirs.
+  void settle_by_columns() {
+    for (int axis = 2; axis >= 0 && !waiting_.empty(); --axis) {
+      std::uint64_t wanted = 0;
+      for (const Component* component : waiting_)
+        wanted |= std::uint64_t{1} << on_face(node_at(component->first), static_cast<size_t>(axis));
+      const ColumnCrossings crossings(winding_, triangles_, {origin_, settings_.voxel_size, axis}, wanted);
+      std::erase_if(waiting_, [&](Component* component) { return follow_column(crossings, axis, *component); });
+    }
+    for (Component* component : waiting_) settle_part(members(*component), glm::ivec3(0), 8, component);
+    waiting_.clear();
+  }
+
+  /// From the nearest nodes on either side, which have to agree.
+  bool follow_column(const ColumnCrossings& crossings, int axis, Component& component) {
+    const glm::ivec3 at = node_at(component.first);
+    const auto column = static_cast<int>(on_face(at, static_cast<size_t>(axis)));
+    std::optional<int> number;
+    for (const int step : {-1, 1}) {
+      for (glm::ivec3 next = at; next[axis] >= 0 && next[axis] <= 7; next[axis] += step) {
+        const Component& other = components_[static_cast<size_t>(component_[static_cast<size_t>(node_index(next.x, next.y, next.z))])];
+        if (other.speaker < 0) continue;
+        const std::optional<int> carried = crossings.carried(column, next[axis], number_of(other), at[axis]);
+        if (!carried || (number && *number != *carried)) return false;
+        number = carried;
+        break;
+      }
+    }
+    if (number) tell(component, component.first, *number);
+    return number.has_value();
   }
 
   /// A few nodes close to the surface, which slanting steps may join to a component that has its answer.
@@ -162,8 +206,7 @@ class BlockFiller {
           for (const int node : members(component)) farthest = std::max(farthest, glm::distance(world(other.speaker), world(node)));
           if (!decides(other.number, farthest, block_slope_bound())) continue;
         }
-        component.speaker = other.speaker, component.number = other.number;
-        mark(members(component), other.number > 0.5);
+        tell(component, other.speaker, other.number);
         return true;
       }
     }
@@ -190,8 +233,10 @@ class BlockFiller {
     const double bound =
         size == 8 ? block_slope_bound() : slope_bound(world(0) + settings_.voxel_size * (glm::dvec3(corner) + 0.5 * (size - 1)), radius);
     if (decides(number, farthest, bound)) {
-      if (whole) whole->speaker = speaker, whole->number = number;
-      mark(nodes, number > 0.5);
+      if (whole)
+        tell(*whole, speaker, number);
+      else
+        mark(nodes, number > 0.5);
       return;
     }
     if (size <= 2) {
@@ -286,6 +331,7 @@ class BlockFiller {
   glm::ivec3 origin_;
   const Winding& winding_;
   const BlockSettings& settings_;
+  std::span<const std::uint32_t> triangles_;
   std::array<const BlockFace*, 3> before_{};  ///< Null where the block there is not known.
   double block_slope_bound_ = -1.0;           ///< Below 0: not asked for yet.
   BlockDistanceArray distances_;
@@ -293,6 +339,7 @@ class BlockFiller {
   std::array<int, kNodes> component_{};
   std::vector<int> members_;
   std::vector<Component> components_;
+  std::vector<Component*> waiting_;                    ///< Small ones that have no answer yet.
   std::vector<std::pair<int, double>> near_membrane_;  ///< Nodes, and their distances once the continuation over holes counts.
   BlockResult result_;
 };
@@ -322,11 +369,11 @@ void measure_block(const glm::ivec3& origin, const ClosestPointData& distance, d
   }
 }
 
-BlockResult fill_block(const glm::ivec3& origin, const BlockDistanceArray& distances, const Winding& winding, const BlockSettings& settings,
-                       FilledBlocks* filled, LevelSetBlock& block) {
-  BlockFiller filler(origin, distances, winding, settings, filled);
+BlockResult fill_block(const glm::ivec3& origin, const BlockDistanceArray& distances, const BlockMesh& mesh, const BlockSettings& settings,
+                       LevelSetBlock& block) {
+  BlockFiller filler(origin, distances, mesh, settings);
   const BlockResult result = filler.run(block);
-  if (filled == nullptr || !winding.closed()) return result;
+  if (mesh.filled == nullptr || !mesh.winding.closed() || settings.shell > 0.0) return result;
   BlockFaces faces;
   for (int a = 0; a < 8; ++a)
     for (int b = 0; b < 8; ++b)
@@ -334,9 +381,9 @@ BlockResult fill_block(const glm::ivec3& origin, const BlockDistanceArray& dista
         const glm::ivec3 at = axis == 0 ? glm::ivec3(7, a, b) : axis == 1 ? glm::ivec3(a, 7, b) : glm::ivec3(a, b, 7);
         const auto node = static_cast<size_t>(node_index(at.x, at.y, at.z)), to = static_cast<size_t>(8 * a + b);
         faces[axis].distances[to] = distances[node];
-        faces[axis].inside[to] = filler.is_inside(node);
+        faces[axis].numbers[to] = filler.number_at(node);
       }
-  filled->add(origin, faces);
+  mesh.filled->add(origin, faces);
   return result;
 }
 

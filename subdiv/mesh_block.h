@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "sdf/level_set.h"
@@ -29,7 +31,7 @@ void measure_block(const glm::ivec3& origin, const ClosestPointData& distance, d
 /// The nodes of a block that face the next one along an axis, and on which side of the surface they lie.
 struct BlockFace {
   std::array<double, 64> distances{};  ///< By the other two coordinates, 8 times the first of them.
-  std::array<bool, 64> inside{};
+  std::array<int, 64> numbers{};       ///< The winding numbers.
 };
 using BlockFaces = std::array<BlockFace, 3>;
 
@@ -49,9 +51,15 @@ class FilledBlocks {
   std::array<Slab, 2> slabs_{};  ///< The last, and the one before it.
 };
 
-/// Signs at the nodes voxel_size * (origin + (i, j, k)) of one block, and what becomes of its distances. `filled`: of a closed mesh, nodes
-/// that straight steps join to blocks among them ask nothing. Then this block is one of them; null: none are.
-BlockResult fill_block(const glm::ivec3& origin, const BlockDistanceArray& distances, const Winding& winding, const BlockSettings& settings,
-                       FilledBlocks* filled, LevelSetBlock& block);
+/// The mesh, and what spares asking for its winding number where it is closed.
+struct BlockMesh {
+  const Winding& winding;
+  std::span<const std::uint32_t> triangles{};  ///< All that come near the block; none: not known.
+  FilledBlocks* filled = nullptr;              ///< Blocks whose sides are known; then the block is one of them. Null: none are.
+};
+
+/// Signs at the nodes voxel_size * (origin + (i, j, k)) of one block, and what becomes of its distances.
+BlockResult fill_block(const glm::ivec3& origin, const BlockDistanceArray& distances, const BlockMesh& mesh, const BlockSettings& settings,
+                       LevelSetBlock& block);
 
 }  // namespace limn

@@ -49,6 +49,9 @@ class Winding {
   };
   const std::vector<BorderEdge>& border() const { return border_; }
   bool closed() const { return border_.empty(); }
+  const glm::dvec3& corner(std::uint32_t triangle, int i) const { return mesh_.positions[mesh_.triangles[triangle][i]]; }
+  /// How often the triangle is there.
+  int times(std::uint32_t triangle) const { return times_.empty() ? 1 : times_[triangle]; }
   /// Gradient of the number away from the triangles: it depends on the border alone (Biot and Savart's law).
   glm::dvec3 gradient(const glm::dvec3& point) const;
   /// No gradient within `radius` of `center` is longer than this.
@@ -61,7 +64,6 @@ class Winding {
     std::uint32_t first = 0, count = 0;  ///< Triangles of a leaf, in order_.
     std::uint32_t left = 0, right = 0;   ///< Both 0 for a leaf.
   };
-  const glm::dvec3& corner(std::uint32_t triangle, int i) const { return mesh_.positions[mesh_.triangles[triangle][i]]; }
   struct Builder;
   void find_border(std::span<const std::uint32_t> first_at);
 

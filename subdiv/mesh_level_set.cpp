@@ -94,13 +94,18 @@ class Distances {
   }
   const std::vector<glm::ivec3>& near() const { return lists_.origins; }
 
-  void measure(const glm::ivec3& origin, BlockDistanceArray& distances) const {
-    if (by_tree_) return measure_block(origin, body_.tree(), voxel_size_, reach_, distances);
+  /// That come near the block; none where nobody knows.
+  std::span<const std::uint32_t> triangles(const glm::ivec3& origin) const {
+    if (by_tree_) return {};
     const auto found = std::lower_bound(lists_.origins.begin(), lists_.origins.end(), origin, before);
     // Blocks that are looked at for the sake of a hole may have no triangle near them.
     const bool listed = found != lists_.origins.end() && *found == origin;
-    const auto triangles = listed ? lists_.of(static_cast<size_t>(found - lists_.origins.begin())) : std::span<const std::uint32_t>{};
-    band_distances(body_.mesh(), triangles, origin, voxel_size_, reach_, distances);
+    return listed ? lists_.of(static_cast<size_t>(found - lists_.origins.begin())) : std::span<const std::uint32_t>{};
+  }
+
+  void measure(const glm::ivec3& origin, BlockDistanceArray& distances) const {
+    if (by_tree_) return measure_block(origin, body_.tree(), voxel_size_, reach_, distances);
+    band_distances(body_.mesh(), triangles(origin), origin, voxel_size_, reach_, distances);
   }
 
  private:
@@ -128,7 +133,8 @@ Band make_band(const MeshBody& body, const LevelSetSettings& settings, double sh
       for (size_t i = part.first; i < part.last; ++i) {
         BlockDistanceArray unsigned_distances;
         distances.measure(wave[i], unsigned_distances);
-        const BlockResult result = fill_block(wave[i], unsigned_distances, body.winding(), block_settings, &filled, blocks[i]);
+        const BlockMesh mesh{body.winding(), distances.triangles(wave[i]), &filled};
+        const BlockResult result = fill_block(wave[i], unsigned_distances, mesh, block_settings, blocks[i]);
         membrane[i] = result.membrane, active[i] = result.any_active, inside[i] = result.any_inside;
         progress.step();
       }

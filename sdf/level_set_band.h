@@ -15,8 +15,9 @@ struct BandSurvey {
   std::vector<CrossedBlock> crossed{};  ///< As crossed_blocks().
 };
 
-/// `voxel_size`: by how much a distance's values change over a voxel. `of_others`: of grids that limn did not make, how wide the band is and
-/// which surface has no inside is measured; of limn's own it is known, and `half_width_voxels`, `near_nodes` and `unsigned_nodes` stay 0.
+/// `voxel_size`: by how much a distance's values change over a voxel. `of_others`: of grids that limn did not make, how wide the band is
+/// and which surface has no inside is measured; of limn's own it is known, and `half_width_voxels`, `near_nodes` and `unsigned_nodes` stay
+/// 0.
 BandSurvey survey_band(const nanovdb::FloatGrid& grid, const glm::dmat3& world_from_index, double voxel_size, bool of_others);
 
 /// Where cells that the surface crosses may start: the leaves, and the blocks of tiles before them whose last cells have nodes in a leaf of

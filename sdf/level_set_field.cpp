@@ -279,7 +279,8 @@ std::vector<Cube> with_band(std::vector<Cube> cubes, const Lattice& lattice) {
     Asked asked;
     for_each_cube(cubes, part, [&](size_t i, DistanceEvaluator& distance) {
       for (size_t k = 0; k < kFirstAsked; ++k)
-        asked.nodes.points.add(lattice.node(cubes[i].origin + 4 * glm::ivec3(k >> 2 & 1, k >> 1 & 1, k & 1) + 1 + static_cast<int>(k >> 3)));
+        asked.nodes.points.add(
+            lattice.node(cubes[i].origin + 4 * glm::ivec3(k >> 2 & 1, k >> 1 & 1, k & 1) + 1 + static_cast<int>(k >> 3)));
       asked.cubes[asked.count++] = i;
       const bool is_last = i + 1 == part.last || &cubes[i + 1].field.program() != &cubes[i].field.program();
       if (asked.count == kAskedTogether || is_last) tell_band(cubes, lattice, distance, asked, holds);

@@ -42,8 +42,8 @@ struct TriangleSphere {
 /// What has been found so far, 64 rows of 8 nodes.
 struct BlockDistances {
   alignas(64) double squared[512];
-  alignas(64) float known[512];  ///< Distances, not squared, rounded up: what a triangle must come below.
-  double row_farthest[64];       ///< The largest distance (not squared) in each row.
+  alignas(64) float known[512];     ///< Distances, not squared, rounded up: what a triangle must come below.
+  double row_farthest[64];          ///< The largest distance (not squared) in each row.
   alignas(64) float row_known[64];  ///< The largest of `known` in each row.
 };
 

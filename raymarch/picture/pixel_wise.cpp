@@ -116,7 +116,8 @@ void draw_nothing(const Sample& sample, const TracedPixels& traced) {
 
 void draw_pixels(const Sample& sample, const TracedPixels& traced) {
   const auto start = Clock::now();
-  if (sample.sums_in_tasks && traced.sums.pixels.empty()) traced.sums = Image<float>::unset(traced.task.width, kPlanes * traced.task.height);
+  if (sample.sums_in_tasks && traced.sums.pixels.empty())
+    traced.sums = Image<float>::unset(traced.task.width, kPlanes * traced.task.height);
   if (traced.seen) {
     if (sample.tally != nullptr) add_pixels(traced.layers, traced.first, traced.pixels, *sample.tally);
     draw_seen(sample, traced);

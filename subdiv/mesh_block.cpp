@@ -40,8 +40,8 @@ class BlockFiller {
       for (double& d : distances_) d -= settings_.shell;
       return write(block);
     }
-    find_components();
-    for (Component& component : components_) settle(component);
+    joined_ = components_of(distances_, settings_.voxel_size, !winding_.closed());
+    for (Component& component : joined_.components) settle(component);
     settle_by_columns();
     for (const auto& [node, distance] : near_membrane_) distances_[static_cast<size_t>(node)] = distance;
     for (size_t node = 0; node < kNodes; ++node)
@@ -50,26 +50,19 @@ class BlockFiller {
   }
 
   /// Of a closed mesh.
-  int number_at(size_t node) const { return number_of(components_[static_cast<size_t>(component_[node])]); }
+  int number_at(int node) const { return number_of(component_of(node)); }
 
  private:
-  /// Nodes that steps join which cannot cross a triangle.
-  struct Component {
-    int first = 0, begin = 0, end = 0;  ///< Its nodes in members_.
-    int speaker = -1;                   ///< The node that answered for all of it; -1: not yet, or not for all.
-    double number = 0.0;                ///< There.
-    int size() const { return end - begin; }
-  };
+  using Component = BlockComponent;
   static int number_of(const Component& component) { return static_cast<int>(std::lround(component.number)); }
 
   glm::dvec3 world(int node) const { return settings_.voxel_size * glm::dvec3(origin_ + node_at(node)); }
   double distance(int node) const { return distances_[static_cast<size_t>(node)]; }
-  std::span<const int> members(const Component& component) const {
-    return std::span(members_).subspan(static_cast<size_t>(component.begin), static_cast<size_t>(component.size()));
-  }
+  std::span<const int> members(const Component& component) const { return joined_.members_of(component); }
+  const Component& component_of(int node) const { return joined_.components[static_cast<size_t>(joined_.of[static_cast<size_t>(node)])]; }
   /// Whether a straight step of `length` voxels between two nodes stays clear of all triangles.
   bool clear_step(int from, int to, double length) const {
-    return distance(from) + distance(to) > 1.000001 * length * settings_.voxel_size;
+    return distance(from) + distance(to) > kClearStep * length * settings_.voxel_size;
   }
 
   template <class Visit>
@@ -80,32 +73,6 @@ class BlockFiller {
       if (at[axis] > 0) visit(node - kStrides[axis]);
       if (at[axis] < 7) visit(node + kStrides[axis]);
     }
-  }
-
-  void find_components() {
-    component_.fill(-1);
-    members_.reserve(kNodes);
-    for (int node = 0; node < kNodes; ++node)
-      if (component_[static_cast<size_t>(node)] < 0) gather(node);
-    // Large ones first: small ones may learn their side from them.
-    std::stable_sort(components_.begin(), components_.end(), [](const Component& a, const Component& b) { return a.size() > b.size(); });
-    for (size_t i = 0; i < components_.size(); ++i)
-      for (const int node : members(components_[i])) component_[static_cast<size_t>(node)] = static_cast<int>(i);
-  }
-
-  void gather(int first) {
-    const int begin = static_cast<int>(members_.size());
-    members_.push_back(first);
-    component_[static_cast<size_t>(first)] = first;
-    for (size_t i = static_cast<size_t>(begin); i < members_.size(); ++i) {
-      const int from = members_[i];
-      for_each_neighbour(from, [&](int node) {
-        if (component_[static_cast<size_t>(node)] >= 0 || !clear_step(from, node, 1.0)) return;
-        component_[static_cast<size_t>(node)] = first;
-        members_.push_back(node);
-      });
-    }
-    components_.push_back({.first = first, .begin = begin, .end = static_cast<int>(members_.size())});
   }
 
   /// How far the number may differ between two nodes that only the potential of the border parts, and what the tree is off by.
@@ -133,7 +100,7 @@ class BlockFiller {
         if (at[static_cast<int>(axis)] != 0) continue;
         const size_t beside = on_face(at, axis);
         const double off = before_[axis]->distances[beside];
-        if (off < 0.5 * settings_.voxel_size || !(off + distance(node) > 1.000001 * settings_.voxel_size)) continue;
+        if (off < 0.5 * settings_.voxel_size || !(off + distance(node) > kClearStep * settings_.voxel_size)) continue;
         tell(component, node, before_[axis]->numbers[beside]);
         return true;
       }
@@ -178,7 +145,7 @@ class BlockFiller {
     std::optional<int> number;
     for (const int step : {-1, 1}) {
       for (glm::ivec3 next = at; next[axis] >= 0 && next[axis] <= 7; next[axis] += step) {
-        const Component& other = components_[static_cast<size_t>(component_[static_cast<size_t>(node_index(next.x, next.y, next.z))])];
+        const Component& other = component_of(node_index(next.x, next.y, next.z));
         if (other.speaker < 0) continue;
         const std::optional<int> carried = crossings.carried(column, next[axis], number_of(other), at[axis]);
         if (!carried || (number && *number != *carried)) return false;
@@ -199,7 +166,7 @@ class BlockFiller {
         const int squared = offset.x * offset.x + offset.y * offset.y + offset.z * offset.z;
         if (squared < 2 || glm::any(glm::lessThan(next, glm::ivec3(0))) || glm::any(glm::greaterThan(next, glm::ivec3(7)))) continue;
         const int to = node_index(next.x, next.y, next.z);
-        const Component& other = components_[static_cast<size_t>(component_[static_cast<size_t>(to)])];
+        const Component& other = component_of(to);
         if (other.speaker < 0 || !clear_step(from, to, std::sqrt(static_cast<double>(squared)))) continue;
         if (!winding_.closed()) {
           double farthest = 0.0;
@@ -336,9 +303,7 @@ class BlockFiller {
   double block_slope_bound_ = -1.0;           ///< Below 0: not asked for yet.
   BlockDistanceArray distances_;
   std::array<bool, kNodes> inside_{};
-  std::array<int, kNodes> component_{};
-  std::vector<int> members_;
-  std::vector<Component> components_;
+  BlockComponents joined_;
   std::vector<Component*> waiting_;                    ///< Small ones that have no answer yet.
   std::vector<std::pair<int, double>> near_membrane_;  ///< Nodes, and their distances once the continuation over holes counts.
   BlockResult result_;
@@ -379,31 +344,13 @@ BlockResult fill_block(const glm::ivec3& origin, const BlockDistanceArray& dista
     for (int b = 0; b < 8; ++b)
       for (size_t axis = 0; axis < 3; ++axis) {
         const glm::ivec3 at = axis == 0 ? glm::ivec3(7, a, b) : axis == 1 ? glm::ivec3(a, 7, b) : glm::ivec3(a, b, 7);
-        const auto node = static_cast<size_t>(node_index(at.x, at.y, at.z)), to = static_cast<size_t>(8 * a + b);
-        faces[axis].distances[to] = distances[node];
+        const int node = node_index(at.x, at.y, at.z);
+        const auto to = static_cast<size_t>(8 * a + b);
+        faces[axis].distances[to] = distances[static_cast<size_t>(node)];
         faces[axis].numbers[to] = filler.number_at(node);
       }
   mesh.filled->add(origin, faces);
   return result;
-}
-
-void FilledBlocks::add(const glm::ivec3& origin, const BlockFaces& faces) {
-  if (slabs_[0].blocks.empty() || slabs_[0].x != origin.x) {
-    std::swap(slabs_[0], slabs_[1]);
-    slabs_[0] = {origin.x, {}};
-  }
-  slabs_[0].blocks.emplace(std::pair(origin.y, origin.z), faces);
-}
-
-const BlockFace* FilledBlocks::before(const glm::ivec3& origin, int axis) const {
-  glm::ivec3 at = origin;
-  at[axis] -= 8;
-  for (const Slab& slab : slabs_) {
-    if (slab.x != at.x) continue;
-    const auto found = slab.blocks.find({at.y, at.z});
-    if (found != slab.blocks.end()) return &found->second[static_cast<size_t>(axis)];
-  }
-  return nullptr;
 }
 
 }  // namespace limn

@@ -39,6 +39,15 @@ struct TriangleSphere {
   float x, y, z, radius;
 };
 
+/// Of 64 places, 8 by 8: k / 8 and k % 8.
+struct PlacesOf64 {
+  alignas(64) float first[64], second[64];
+  constexpr PlacesOf64() : first(), second() {
+    for (int k = 0; k < 64; ++k) first[k] = static_cast<float>(k / 8), second[k] = static_cast<float>(k % 8);
+  }
+};
+inline constexpr PlacesOf64 kRowPlaces{};
+
 /// What has been found so far, 64 rows of 8 nodes.
 struct BlockDistances {
   alignas(64) double squared[512];
@@ -106,20 +115,18 @@ inline constexpr float kRoom = 1e-4f;
 
 /// Rows that may come as near to the sphere as the farthest that is known of them, as bits: all of those that RowsInReach() finds.
 HWY_INLINE std::uint64_t RowsNear(const TriangleSphere& sphere, const BlockDistances& block) {
-  const hn::CappedTag<float, 8> d;  // the rows of one x
-  const auto radius = hn::Set(d, sphere.radius * (1.0f + kRoom) + kRoom);
+  const hn::CappedTag<float, 16> d;
   const float beyond_z = std::max(std::max(-sphere.z, sphere.z - 7.0f), 0.0f);
+  const auto radius = hn::Set(d, sphere.radius * (1.0f + kRoom) + kRoom), squared_z = hn::Set(d, beyond_z * beyond_z);
   std::uint64_t rows = 0;
-  for (int x = 0; x < 8; ++x) {
-    const float dx = static_cast<float>(x) - sphere.x;
-    for (size_t y = 0; y < 8; y += hn::Lanes(d)) {
-      const auto dy = hn::Sub(hn::Iota(d, static_cast<float>(y)), hn::Set(d, sphere.y));
-      const auto squared = hn::Add(hn::Add(hn::Mul(dy, dy), hn::Set(d, beyond_z * beyond_z)), hn::Set(d, dx * dx));
-      const auto reach = hn::Add(hn::Load(d, block.row_known + 8 * x + static_cast<int>(y)), radius);
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, hn::Le(squared, hn::Mul(hn::Mul(reach, reach), hn::Set(d, 1.0f + kRoom))), bits);
-      rows |= (bits[0] & ((std::uint64_t{1} << hn::Lanes(d)) - 1)) << (8 * static_cast<size_t>(x) + y);
-    }
+  for (size_t row = 0; row < 64; row += hn::Lanes(d)) {
+    const auto dx = hn::Sub(hn::Load(d, kRowPlaces.first + row), hn::Set(d, sphere.x));
+    const auto dy = hn::Sub(hn::Load(d, kRowPlaces.second + row), hn::Set(d, sphere.y));
+    const auto squared = hn::Add(hn::Add(hn::Mul(dy, dy), squared_z), hn::Mul(dx, dx));
+    const auto reach = hn::Add(hn::Load(d, block.row_known + row), radius);
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, hn::Le(squared, hn::Mul(hn::Mul(reach, reach), hn::Set(d, 1.0f + kRoom))), bits);
+    rows |= ((bits[0] | std::uint64_t{bits[1]} << 8) & ((std::uint64_t{1} << hn::Lanes(d)) - 1)) << row;
   }
   return rows;
 }
@@ -131,12 +138,10 @@ HWY_INLINE std::uint64_t RowsInReach(const TriangleSphere& sphere, const BlockDi
   const std::uint64_t rows_near = RowsNear(sphere, block);
   if (rows_near == 0) return 0;
   alignas(64) float across[64];
-  const auto z = hn::Iota(d, 0.0f);
   for (size_t k = 0; k < 64; k += hn::Lanes(d)) {
     // Lanes of one row, or of whole rows one after the other.
-    const auto at = hn::Add(z, hn::Set(d, static_cast<float>(k)));
-    const auto row = hn::Floor(hn::Mul(at, hn::Set(d, 0.125f)));
-    const auto dy = hn::Sub(row, hn::Set(d, sphere.y)), dz = hn::Sub(hn::Sub(at, hn::Mul(row, hn::Set(d, 8.0f))), hn::Set(d, sphere.z));
+    const auto dy = hn::Sub(hn::Load(d, kRowPlaces.first + k), hn::Set(d, sphere.y)),
+               dz = hn::Sub(hn::Load(d, kRowPlaces.second + k), hn::Set(d, sphere.z));
     hn::Store(hn::Add(hn::Mul(dy, dy), hn::Mul(dz, dz)), d, across + k);
   }
   const auto radius = hn::Set(d, sphere.radius * (1.0f + kRoom) + kRoom);

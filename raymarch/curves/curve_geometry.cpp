@@ -27,6 +27,9 @@ glm::dvec2 end_direction(const BorderCurve& curve, bool last) {
   return glm::dvec2(0.0);
 }
 
+/// No less than the square of anything whose root is at most `distance`: most segments are told to be farther without a root.
+double square_about(double distance) { return distance * distance * (1.0 + 1e-12); }
+
 }  // namespace
 
 std::vector<BorderSample> resample(const BorderCurves& curves, std::optional<CurveKind> kind, double step_px) {
@@ -117,6 +120,7 @@ void CurveIndex::visit_outwards(const glm::dvec2& px, const double& reach_px, co
 std::optional<NearestPoint> CurveIndex::nearest(const glm::dvec2& px, int object, double reach_px, std::optional<glm::dvec2> facing) const {
   if (segments_.empty()) return std::nullopt;
   NearestPoint best{reach_px, {}, false};
+  double most_squared = square_about(reach_px);
   bool found = false;
   visit_outwards(px, best.distance_px, [&](const Segment& segment) {
     if (object != 0 && segment.object != object) return;
@@ -124,9 +128,13 @@ std::optional<NearestPoint> CurveIndex::nearest(const glm::dvec2& px, int object
     if (facing && !(glm::dot(*facing, glm::dvec2(-along.y, along.x)) > 0.0)) return;
     const double s = closest_share(px - segment.a, along);
     const glm::dvec2 point = segment.a + s * along;
-    const double distance = glm::length(px - point);
+    const glm::dvec2 away = px - point;
+    const double squared = glm::dot(away, away);
+    if (!(squared <= most_squared)) return;
+    const double distance = std::sqrt(squared);
     if (!(distance <= best.distance_px) || (found && distance == best.distance_px)) return;
     found = true;
+    most_squared = square_about(distance);
     best = {distance, point, (segment.starts && s == 0.0) || (segment.ends && s == 1.0)};
   });
   if (!found) return std::nullopt;
@@ -138,10 +146,12 @@ NearestDistances CurveIndex::nearest_distances(const glm::dvec2& px, CurveKind k
   if (segments_.empty()) return best;
   // What is nearest of one kind is no nearer than what is nearest of all.
   const bool has_kind = kind == CurveKind::silhouette ? has_silhouette_ : has_inner_;
+  double any_squared = best.any_px, of_kind_squared = best.of_kind_px;
   visit_outwards(px, has_kind ? best.of_kind_px : best.any_px, [&](const Segment& segment) {
-    const double distance = glm::length(px - closest_on_segment(px, segment.a, segment.b));
-    if (distance < best.any_px) best.any_px = distance;
-    if (segment.kind == kind && distance < best.of_kind_px) best.of_kind_px = distance;
+    const glm::dvec2 away = px - closest_on_segment(px, segment.a, segment.b);
+    const double squared = glm::dot(away, away);
+    if (squared < any_squared) any_squared = squared, best.any_px = std::sqrt(squared);
+    if (segment.kind == kind && squared < of_kind_squared) of_kind_squared = squared, best.of_kind_px = std::sqrt(squared);
   });
   return best;
 }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <numeric>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "raymarch/gbuffer/picture_rays.h"
@@ -69,19 +71,17 @@ PointSample sample_of(const Setup& setup, const TracedBatch& batch, int i) {
 /// What a packet's rays meet then is near to each other.
 void sort_by_tiles(std::span<const glm::dvec2> points_px, std::vector<size_t>& order) {
   constexpr double kTile_px = 8.0;
-  struct Place {
-    double row, column;
-    size_t point;
+  // By rows, then by columns, as one number; far beside all pictures they are all the same.
+  const auto tile_of = [](double px) {
+    constexpr double kFar = 1 << 30;
+    const double tile = std::floor(px / kTile_px);
+    return tile > -kFar ? static_cast<std::uint64_t>(std::min(tile, kFar) + kFar) : 0u;
   };
-  std::vector<Place> places;
+  std::vector<std::pair<std::uint64_t, size_t>> places;
   places.reserve(points_px.size());
-  for (size_t k = 0; k < points_px.size(); ++k) {
-    const glm::dvec2 at = glm::floor(points_px[k] / kTile_px);
-    places.push_back({at.y, at.x, k});
-  }
-  std::sort(places.begin(), places.end(),
-            [](const Place& a, const Place& b) { return std::tie(a.row, a.column, a.point) < std::tie(b.row, b.column, b.point); });
-  for (size_t k = 0; k < places.size(); ++k) order[k] = places[k].point;
+  for (size_t k = 0; k < points_px.size(); ++k) places.emplace_back(tile_of(points_px[k].y) << 32 | tile_of(points_px[k].x), k);
+  std::sort(places.begin(), places.end());
+  for (size_t k = 0; k < places.size(); ++k) order[k] = places[k].second;
 }
 
 }  // namespace

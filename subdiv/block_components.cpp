@@ -37,7 +37,7 @@ Joined joined_nodes(const BlockDistanceArray& distances, double voxel_size) {
 
 /// All that steps reach from `found`, into it.
 void flood(const Joined& joined, Bits& found) {
-  const auto& [across, rows, nodes] = joined;
+  const Bits &across = joined[0], &rows = joined[1], &nodes = joined[2];
   const auto spread = [&](size_t x) {
     std::uint64_t bits = found[x];
     if (x > 0) bits |= found[x - 1] & across[x - 1];

@@ -151,7 +151,7 @@ void block_distances(const MeshPart& part, const glm::ivec3& origin, double h, d
   else
     band_distances(body.mesh(), near, origin, h, half_width, distances);
   LevelSetBlock block;
-  fill_block(origin, distances, {.winding = body.winding()}, {h, half_width, 0.0}, block);
+  fill_block(origin, distances, {.winding = body.winding(), .triangles = near}, {h, half_width, 0.0}, block);
   std::copy_n(block.values, 512, values.begin());
 }
 

@@ -79,15 +79,16 @@ void ColumnCrossings::meet(const std::array<glm::dvec3, 3>& corners, int times, 
   crossings_.push_back({column, at, unsure, left == 3 ? -times : times});
 }
 
-std::optional<int> ColumnCrossings::carried(int column, int from, int number, int to) const {
+std::optional<int> ColumnCrossings::change(int column, int from, int to) const {
   if ((unclear_ >> column & 1) != 0) return std::nullopt;
   const double low = std::min(from, to), high = std::max(from, to);
+  int sum = 0;
   for (const Crossing& crossing : crossings_) {
     if (crossing.column != column) continue;
     if (std::abs(crossing.at - low) <= crossing.unsure || std::abs(crossing.at - high) <= crossing.unsure) return std::nullopt;
-    if (crossing.at > low && crossing.at < high) number += to > from ? crossing.change : -crossing.change;
+    if (crossing.at > low && crossing.at < high) sum += to > from ? crossing.change : -crossing.change;
   }
-  return number;
+  return sum;
 }
 
 }  // namespace limn

@@ -1,5 +1,5 @@
 #pragma once
-// Internal: where a closed mesh crosses the columns of a block's nodes along one axis, and the winding numbers between.
+// Internal: where a mesh crosses the columns of a block's nodes along one axis, and how its winding number changes there.
 
 #include <array>
 #include <cstdint>
@@ -24,9 +24,9 @@ class ColumnCrossings {
   /// In the columns whose bit is set in `wanted`. `triangles`: all of the mesh that come near the block.
   ColumnCrossings(const Winding& winding, std::span<const std::uint32_t> triangles, const BlockColumns& columns, std::uint64_t wanted);
 
-  /// The winding number at the node `to` of a column, carried on from `number` at its node `from`: each triangle crossed between changes it
-  /// by one, as often as the triangle is there. Nothing where rounding leaves open whether or where the column meets a triangle.
-  std::optional<int> carried(int column, int from, int number, int to) const;
+  /// By how much the triangles between two nodes of a column change the winding number, from the one to the other: each by one, as often as
+  /// it is there. Nothing where rounding leaves open whether or where the column meets a triangle.
+  std::optional<int> change(int column, int from, int to) const;
 
  private:
   struct Crossing {

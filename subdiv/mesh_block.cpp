@@ -118,7 +118,7 @@ class BlockFiller {
     constexpr int kSmall = 8;
     if (follow_before(component)) return;
     if (component.size() <= kSmall && follow_neighbour(component)) return;
-    if (component.size() <= kSmall && winding_.closed() && !triangles_.empty())
+    if (component.size() <= kSmall && !triangles_.empty())
       waiting_.push_back(&component);
     else
       settle_part(members(component), glm::ivec3(0), 8, &component);
@@ -138,17 +138,32 @@ class BlockFiller {
     waiting_.clear();
   }
 
+  /// Of an open mesh the number changes smoothly, too. What the bounds then allow is decided as the node's own number would be.
+  bool decides_along_column(double number, int speaker, const Component& component) {
+    if (winding_.closed()) return true;
+    return std::abs(number - 0.5) > block_slope_bound() * (farthest_from(speaker, component) + settings_.half_width) + 3.0 * kTreeError;
+  }
+
+  double farthest_from(int speaker, const Component& component) const {
+    double farthest = 0.0;
+    for (const int node : members(component)) farthest = std::max(farthest, glm::distance(world(speaker), world(node)));
+    return farthest;
+  }
+
   /// From the nearest nodes on either side, which have to agree.
   bool follow_column(const ColumnCrossings& crossings, int axis, Component& component) {
     const glm::ivec3 at = node_at(component.first);
     const auto column = static_cast<int>(on_face(at, static_cast<size_t>(axis)));
-    std::optional<int> number;
+    std::optional<double> number;
     for (const int step : {-1, 1}) {
       for (glm::ivec3 next = at; next[axis] >= 0 && next[axis] <= 7; next[axis] += step) {
         const Component& other = component_of(node_index(next.x, next.y, next.z));
         if (other.speaker < 0) continue;
-        const std::optional<int> carried = crossings.carried(column, next[axis], number_of(other), at[axis]);
-        if (!carried || (number && *number != *carried)) return false;
+        const std::optional<int> change = crossings.change(column, next[axis], at[axis]);
+        if (!change) return false;
+        const double carried = (winding_.closed() ? number_of(other) : other.number) + *change;
+        if (!decides_along_column(carried, other.speaker, component)) return false;
+        if (number && (*number > 0.5) != (carried > 0.5)) return false;
         number = carried;
         break;
       }
@@ -168,11 +183,7 @@ class BlockFiller {
         const int to = node_index(next.x, next.y, next.z);
         const Component& other = component_of(to);
         if (other.speaker < 0 || !clear_step(from, to, std::sqrt(static_cast<double>(squared)))) continue;
-        if (!winding_.closed()) {
-          double farthest = 0.0;
-          for (const int node : members(component)) farthest = std::max(farthest, glm::distance(world(other.speaker), world(node)));
-          if (!decides(other.number, farthest, block_slope_bound())) continue;
-        }
+        if (!winding_.closed() && !decides(other.number, farthest_from(other.speaker, component), block_slope_bound())) continue;
         tell(component, other.speaker, other.number);
         return true;
       }

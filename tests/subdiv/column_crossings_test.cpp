@@ -52,10 +52,10 @@ Counts expect_numbers_of_the_tree(const TriangleMesh& mesh, const glm::ivec3& or
             static_cast<int>(std::lround(winding.number(voxel_size * glm::dvec3(origin + node_of(column, k, axis)))));
       for (int from = 0; from < 8; ++from)
         for (int to = 0; to < 8; ++to) {
-          const std::optional<int> carried = crossings.carried(column, from, numbers[static_cast<size_t>(from)], to);
-          ++(carried ? counts.told : counts.untold);
-          EXPECT_EQ(carried.value_or(numbers[static_cast<size_t>(to)]), numbers[static_cast<size_t>(to)])
-              << "axis " << axis << " column " << column;
+          const int expected = numbers[static_cast<size_t>(to)] - numbers[static_cast<size_t>(from)];
+          const std::optional<int> change = crossings.change(column, from, to);
+          ++(change ? counts.told : counts.untold);
+          EXPECT_EQ(change.value_or(expected), expected) << "axis " << axis << " column " << column;
         }
     }
   }
@@ -93,13 +93,13 @@ TEST(ColumnCrossings, SayNothingWhereColumnsRunAlongEdgesOrEndOnFaces) {
   const TriangleMesh mesh = triangulate(test::cube(), NormalKind::flat);
   const Winding winding(mesh, first_at_position(mesh.positions));
   const ColumnCrossings crossings(winding, all_triangles(mesh), {glm::ivec3(-4), 0.5, 2}, ~std::uint64_t{0});
-  EXPECT_FALSE(crossings.carried(8 * 2 + 4, 0, 0, 4));  // within the face x = -1
-  EXPECT_FALSE(crossings.carried(8 * 4 + 4, 0, 0, 2));  // on the face z = -1, and on its diagonal
-  EXPECT_FALSE(crossings.carried(8 * 4 + 4, 0, 0, 4));  // through that diagonal
-  EXPECT_FALSE(crossings.carried(8 * 3 + 4, 0, 0, 2));  // on that face
-  EXPECT_EQ(crossings.carried(8 * 3 + 4, 0, 0, 4), 1);
-  EXPECT_EQ(crossings.carried(8 * 3 + 4, 0, 0, 7), 0);
-  EXPECT_EQ(crossings.carried(8 * 1 + 4, 0, 0, 7), 0);  // beside it
+  EXPECT_FALSE(crossings.change(8 * 2 + 4, 0, 4));  // within the face x = -1
+  EXPECT_FALSE(crossings.change(8 * 4 + 4, 0, 2));  // on the face z = -1, and on its diagonal
+  EXPECT_FALSE(crossings.change(8 * 4 + 4, 0, 4));  // through that diagonal
+  EXPECT_FALSE(crossings.change(8 * 3 + 4, 0, 2));  // on that face
+  EXPECT_EQ(crossings.change(8 * 3 + 4, 0, 4), 1);
+  EXPECT_EQ(crossings.change(8 * 3 + 4, 0, 7), 0);
+  EXPECT_EQ(crossings.change(8 * 1 + 4, 0, 7), 0);  // beside it
 }
 
 TEST(ColumnCrossings, FarFromTheOriginPlacesAreLessCertainAndNeverWrong) {

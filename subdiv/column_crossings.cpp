@@ -53,7 +53,8 @@ void ColumnCrossings::add(const std::array<glm::dvec3, 3>& corners, int times, s
 }
 
 void ColumnCrossings::meet(const std::array<glm::dvec3, 3>& corners, int times, int column) {
-  const double x = column / 8, y = column % 8;
+  const int row = column / 8;
+  const double x = row, y = column % 8;
   std::array<double, 3> weights;  // of each corner: twice the area that the column and the edge facing the corner span
   double all_unsure = 0.0;
   int left = 0, right = 0;

@@ -356,7 +356,7 @@ BlockResult fill_block(const glm::ivec3& origin, const BlockDistanceArray& dista
       for (size_t axis = 0; axis < 3; ++axis) {
         const glm::ivec3 at = axis == 0 ? glm::ivec3(7, a, b) : axis == 1 ? glm::ivec3(a, 7, b) : glm::ivec3(a, b, 7);
         const int node = node_index(at.x, at.y, at.z);
-        const auto to = static_cast<size_t>(8 * a + b);
+        const size_t to = on_face(at, axis);
         faces[axis].distances[to] = distances[static_cast<size_t>(node)];
         faces[axis].numbers[to] = filler.number_at(node);
       }

@@ -1,8 +1,9 @@
 // One block of a mesh's level set. The sign is the generalised winding number above one half, but it is asked for as seldom as possible:
 // a straight step from p to q of length h cannot meet a triangle while d(p) + d(q) > h, so nodes joined by such steps lie on one side, and
-// one of them answers for all; small groups close to the surface follow a slanting step. Near the holes of an open mesh the number changes
-// smoothly through one half; there every node is asked, and the surface {w = 1/2}, which closes the hole, counts as surface with its
-// distance to first order, |w - 1/2| / |grad w|.
+// one of them answers for all; small groups close to the surface follow a slanting step, or a column of nodes through the triangles
+// between, each of which changes the number by one. Near the holes of an open mesh the number changes smoothly through one half; there
+// every node is asked, and the surface {w = 1/2}, which closes the hole, counts as surface with its distance to first order,
+// |w - 1/2| / |grad w|.
 #include "subdiv/mesh_block.h"
 
 #include <algorithm>

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <random>
 
+#include "subdiv/band_distance.h"
+#include "subdiv/mesh_block.h"
 #include "subdiv/weld.h"
 #include "test_meshes.h"
 #include "tests/random_seed.h"
@@ -110,6 +112,52 @@ TEST(ColumnCrossings, FarFromTheOriginPlacesAreLessCertainAndNeverWrong) {
   for (glm::dvec3& p : mesh.positions) p += voxel_size * glm::dvec3(origin + 3);
   const Counts counts = expect_numbers_of_the_tree(triangulate(mesh, NormalKind::flat), origin, voxel_size);
   EXPECT_GT(counts.told, 100 * std::max(counts.untold, 1));
+}
+
+/// Some faces less: with holes.
+Mesh without_some(const Mesh& mesh, std::mt19937& random) {
+  Mesh rest;
+  rest.positions = mesh.positions;
+  size_t corner = 0;
+  for (const std::int32_t size : mesh.face_sizes) {
+    const auto end = corner + static_cast<size_t>(size);
+    if (random() % 25 != 0) {
+      rest.face_sizes.push_back(size);
+      for (size_t i = corner; i < end; ++i) rest.corner_vertices.push_back(mesh.corner_vertices[i]);
+    }
+    corner = end;
+  }
+  return rest;
+}
+
+TEST(ColumnCrossings, ChangeNoNodeOfABlockWhetherItsMeshIsClosedOrHasHoles) {
+  std::mt19937 random(random_seed());
+  int inside = 0, outside = 0, open = 0;
+  for (int round = 0; round < 30; ++round) {
+    const Mesh whole = test::jittered(test::torus(24, 14, 2.0, 0.9), 0.04, static_cast<unsigned>(random()));
+    const TriangleMesh mesh = triangulate(round % 3 == 0 ? whole : without_some(whole, random), NormalKind::flat);
+    const Winding winding(mesh, first_at_position(mesh.positions));
+    open += winding.closed() ? 0 : 1;
+    const double voxel_size = std::uniform_real_distribution<double>(0.03, 0.2)(random);
+    const BlockSettings settings{voxel_size, 3.0 * voxel_size, 0.0};
+    const std::vector<std::uint32_t> all = all_triangles(mesh);
+    for (int k = 0; k < 8; ++k) {
+      const glm::dvec3 at = mesh.positions[random() % mesh.positions.size()] / voxel_size;
+      const glm::ivec3 origin = 8 * glm::ivec3(glm::floor(at / 8.0));
+      BlockDistanceArray distances;
+      band_distances(mesh, all, origin, voxel_size, settings.half_width, distances);
+      LevelSetBlock with, without;
+      fill_block(origin, distances, {.winding = winding, .triangles = all}, settings, with);
+      fill_block(origin, distances, {.winding = winding}, settings, without);
+      for (size_t n = 0; n < 512; ++n) {
+        ASSERT_EQ(with.values[n], without.values[n]) << "node " << n << " of a block at " << origin.x << ' ' << origin.y << ' ' << origin.z;
+        ++(with.values[n] < 0.0f ? inside : outside);
+      }
+    }
+  }
+  EXPECT_GT(inside, 10000);
+  EXPECT_GT(outside, 10000);
+  EXPECT_GT(open, 10);
 }
 
 }  // namespace

@@ -17,8 +17,7 @@ LevelSet volumes::moved(const LevelSet& level_set, const Affine& world_from_grid
     grid->tree().root().setBackground(static_cast<float>(scale * static_cast<double>(grid->background())), false);
   }
   const auto data = freeze(*grid, compose(world_from_grid, info.world_from_index), info.name, info.half_width_voxels);
-  data->info.warnings = info.warnings;
-  data->file = level_set.data().file;
+  take_over(level_set, *data);
   if (!same) data->file.doubles.clear();
   return LevelSet(data);
 }

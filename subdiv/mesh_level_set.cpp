@@ -103,9 +103,10 @@ class Distances {
     return listed ? lists_.of(static_cast<size_t>(found - lists_.origins.begin())) : std::span<const std::uint32_t>{};
   }
 
-  void measure(const glm::ivec3& origin, BlockDistanceArray& distances) const {
+  /// `triangles`: as triangles() has them.
+  void measure(const glm::ivec3& origin, std::span<const std::uint32_t> triangles, BlockDistanceArray& distances) const {
     if (by_tree_) return measure_block(origin, body_.tree(), voxel_size_, reach_, distances);
-    band_distances(body_.mesh(), triangles(origin), origin, voxel_size_, reach_, distances);
+    band_distances(body_.mesh(), triangles, origin, voxel_size_, reach_, distances);
   }
 
  private:
@@ -132,8 +133,8 @@ Band make_band(const MeshBody& body, const LevelSetSettings& settings, double sh
       FilledBlocks filled;
       for (size_t i = part.first; i < part.last; ++i) {
         BlockDistanceArray unsigned_distances;
-        distances.measure(wave[i], unsigned_distances);
         const BlockMesh mesh{body.winding(), distances.triangles(wave[i]), &filled};
+        distances.measure(wave[i], mesh.triangles, unsigned_distances);
         const BlockResult result = fill_block(wave[i], unsigned_distances, mesh, block_settings, blocks[i]);
         membrane[i] = result.membrane, active[i] = result.any_active, inside[i] = result.any_inside;
         progress.step();

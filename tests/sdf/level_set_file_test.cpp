@@ -11,6 +11,7 @@
 #include "sdf/guard.h"
 #include "sdf/guard_helper.h"
 #include "sdf/level_set_data.h"
+#include "sdf/level_set_grids.h"
 #include "tests/random_seed.h"
 #include "tests/sdf/level_set_maker.h"
 #include "tests/temporary_folder.h"
@@ -243,12 +244,14 @@ TEST_F(LevelSetFiles, AnInsideThatLeakedOutOfAnOpenMeshIsSaidAndNoneOfClosedOnes
     const openvdb::Vec3d half(0.63 + 0.031 * k, 0.57, 0.71 - 0.023 * k);
     const LevelSet closed = read_level_set(write({box_of_quads(angle, half, false)}), "");
     EXPECT_GT(closed.info().band.near_nodes, 1000);
+    EXPECT_EQ(moved(closed, {glm::dmat3(2.0), glm::dvec3(0.3)}).info().band.near_nodes, closed.info().band.near_nodes);
     for (const std::string& warning : closed.info().warnings) ADD_FAILURE() << warning;
     // Where nothing at all changes sign it is refused; where crumbs do it is read and said.
     std::string said;
     try {
       const LevelSet open = read_level_set(write({box_of_quads(angle, half, true)}), "");
       EXPECT_GT(open.info().band.unsigned_nodes, open.info().band.near_nodes / 2);
+      EXPECT_EQ(moved(open, {glm::dmat3(2.0), glm::dvec3(0.3)}).info().band.unsigned_nodes, open.info().band.unsigned_nodes);
       ASSERT_FALSE(open.info().warnings.empty());
       said = open.info().warnings.back();
       EXPECT_SAYS(said, "of the surface in this volume has no inside");

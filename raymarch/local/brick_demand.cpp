@@ -65,26 +65,33 @@ constexpr double kMostTurn = 0.15;
 /// A border lies so far inside the bricks that are small for it, in their voxels: stencils there read no node that a larger brick tells.
 constexpr double kBorderMargin_voxels = 2.0;
 
-/// How much N.V changes along the surface in a box about it, to first order. The surface leaves its tangent plane by no more than half its
-/// turn times its length, so that any multiple of the normal may be taken from the change: least is one at which a component vanishes.
-double most_change(const SecondOrder& surface, const glm::dvec3& farthest) {
+/// The largest value that `change` . way takes where the way from the surface's place leads to a point of the surface between `lower` and
+/// `upper`. The surface leaves its tangent plane by no more than half its turn times its length, so that any multiple of the normal may be
+/// taken from the change: the bound is convex in it and has corners only where a component vanishes, so that the least is one of these.
+double most_change(const SecondOrder& surface, const glm::dvec3& change, const glm::dvec3& lower, const glm::dvec3& upper) {
+  const glm::dvec3 farthest = glm::max(glm::abs(lower), glm::abs(upper));
   const double leaves = 0.5 * surface.curvature * glm::dot(farthest, farthest);
-  double least = glm::dot(glm::abs(surface.change), farthest);
+  const auto bound = [&](const glm::dvec3& left) {
+    const glm::dvec3 most = glm::max(left * lower, left * upper);
+    return most.x + most.y + most.z;
+  };
+  double least = bound(change);
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(surface.normal[axis]) < 1e-3) continue;
-    const double times = surface.change[axis] / surface.normal[axis];
-    least = std::min(least, glm::dot(glm::abs(surface.change - times * surface.normal), farthest) + 2.0 * std::abs(times) * leaves);
+    const double times = change[axis] / surface.normal[axis];
+    least = std::min(least, bound(change - times * surface.normal) + std::abs(times) * leaves);
   }
   return least;
 }
 
 /// True where N.V comes to no such value within the brick and `margin` about it, by its second order at the middle.
 bool passes_beside(const SecondOrder& surface, const Box& box, double margin, double value) {
-  const double rest = std::abs(surface.facing - value);
-  const glm::dvec3 farthest = glm::max(glm::abs(box.upper - surface.at), glm::abs(box.lower - surface.at)) + margin;
+  const glm::dvec3 lower = box.lower - margin - surface.at, upper = box.upper + margin - surface.at;
   // What the next order may add: as much as the turn of the normal over the brick, squared.
-  const double turn = surface.curvature * glm::length(farthest);
-  return rest > most_change(surface, farthest) + turn * turn;
+  const double turn = surface.curvature * glm::length(glm::max(glm::abs(lower), glm::abs(upper)));
+  const double rest = value - surface.facing;
+  const double towards = most_change(surface, rest < 0.0 ? -surface.change : surface.change, lower, upper);
+  return std::abs(rest) > towards + turn * turn;
 }
 
 /// Of a box with creases: whether normals of the surface in it and a little beside lie on both sides of a border's N.V, or near it.
@@ -104,8 +111,8 @@ bool creases_hold_border(FieldEvaluator& evaluator, const Box& box, const Camera
   for (size_t k = 0; k < points.size(); ++k) {
     const double slope = glm::length(gradients[k]);
     if (!(slope > 0.0)) return true;
-    // Every point of the surface in the box has one of the points nearer than that.
-    if (std::abs(values[k]) > std::sqrt(3.0) * spacing * slope) continue;
+    // Every point of the surface in the box has one of the points within half a cube's diagonal, 0.87 spacings.
+    if (std::abs(values[k]) > spacing * slope) continue;
     const double facing = glm::dot(gradients[k], view_vector(camera, points[k])) / slope;
     least = std::min(least, facing), most = std::max(most, facing);
   }

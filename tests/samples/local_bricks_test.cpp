@@ -92,6 +92,72 @@ TEST(LocalBricks, BricksHoldTheWholeSurfaceOnceAndNeighboursDifferByOneSize) {
   }
 }
 
+/// N.V at a place of the surface or near it.
+double facing_at(FieldEvaluator& evaluator, const Camera& camera, const glm::dvec3& p) {
+  return glm::dot(glm::normalize(evaluator.jet(p).gradient), view_vector(camera, p));
+}
+
+/// Takes a place to where the field is zero and N.V has the value, by Newton's steps for both; false where they lead nowhere.
+bool bring_to_border(FieldEvaluator& evaluator, const Camera& camera, double value, glm::dvec3& p) {
+  constexpr double kStep = 1e-5;
+  for (int k = 0; k < 40; ++k) {
+    const FieldJet jet = evaluator.jet(p);
+    const double facing = facing_at(evaluator, camera, p) - value;
+    if (std::abs(jet.value) < 1e-11 && std::abs(facing) < 1e-9) return true;
+    glm::dvec3 change;
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::dvec3 step(0.0);
+      step[axis] = kStep;
+      change[axis] = (facing_at(evaluator, camera, p + step) - facing_at(evaluator, camera, p - step)) / (2.0 * kStep);
+    }
+    // The shortest step: of g a + c b with g.step = -value and c.step = -facing.
+    const glm::dvec3 &g = jet.gradient, &c = change;
+    const double gg = glm::dot(g, g), gc = glm::dot(g, c), cc = glm::dot(c, c), det = gg * cc - gc * gc;
+    if (!(det > 1e-12 * gg * cc)) return false;
+    p += g * ((-jet.value * cc + facing * gc) / det) + c * ((-facing * gg + jet.value * gc) / det);
+  }
+  return false;
+}
+
+/// Stencils at the border read no node that a larger brick tells: wherever the surface lies within two of the smallest voxels of a place
+/// of the border, it has the smallest bricks. And most of these are such ones: the choice is hardly larger than it has to be.
+TEST(LocalBricks, TheSmallestHoldTheBorderWithTwoVoxelsAboutItAndLittleElse) {
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  for (const char* name : {"ellipsoid", "tilted_torus"}) {
+    const Scene scene = find_scene(name)->make();
+    const Field field = std::get<Field>(scene.objects.front().source);
+    const Camera camera = camera_of(scene, 1, 4, {300, 300});
+    const LocalBrickSettings settings{.local = {{camera}, kFinest_px, {0.4}}, .voxel_size = 0.002, .gradient = &find_gradient("central")};
+    const LocalChoice choice = choose_bricks(field, settings);
+    const BricksOfLevels bricks = bricks_of(choice);
+    FieldEvaluator evaluator(field);
+    const glm::dvec3 half = 0.6 * bounds(scene).size();
+    std::set<std::uint64_t> asked_for;
+    int places = 0, missing = 0;
+    for (int k = 0; k < 40000; ++k) {
+      glm::dvec3 at = bounds(scene).center() + half * glm::dvec3(part(random), part(random), part(random));
+      if (!bring_to_border(evaluator, camera, k % 2 ? 0.0 : 0.4, at)) continue;
+      for (int beside = 0; beside < 8; ++beside) {
+        glm::dvec3 p = at + 2.0 * settings.voxel_size * glm::dvec3(part(random), part(random), part(random));
+        if (!project_to_surface(evaluator, p, 1e-12)) continue;
+        const glm::dvec3 way = glm::abs(p - at);
+        if (std::max({way.x, way.y, way.z}) > 2.0 * settings.voxel_size) continue;
+        ++places;
+        missing += !bricks[0].contains(key_of(cell_at(choice, 0, p) & ~7));
+      }
+      for (int corner = 0; corner < 27; ++corner) {
+        const glm::dvec3 p = at + 2.0 * settings.voxel_size * glm::dvec3(corner / 9 - 1, corner / 3 % 3 - 1, corner % 3 - 1);
+        if (const std::uint64_t key = key_of(cell_at(choice, 0, p) & ~7); bricks[0].contains(key)) asked_for.insert(key);
+      }
+    }
+    EXPECT_GT(places, 20000) << name;
+    EXPECT_EQ(missing, 0) << name;
+    // Second order tells it from the brick's middle.
+    EXPECT_GT(static_cast<double>(asked_for.size()), 0.6 * static_cast<double>(bricks[0].size())) << name;
+  }
+}
+
 /// What a brick's mask says is held by smaller ones is what they hold, cell by cell.
 TEST(LocalBricks, MasksOfBricksAreTheSmallerBricksInThem) {
   const Scene scene = find_scene("tilted_torus")->make();

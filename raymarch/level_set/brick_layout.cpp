@@ -32,20 +32,17 @@ std::uint8_t touched_faces(const CrossedCells& crossed) {
   return faces;
 }
 
-/// Whether some values are below zero and some are not: two sums that become SIMD.
-bool changes_sign(const NodeValues& values) {
+/// Whether some are below zero and some are not: a sum that becomes SIMD.
+bool changes_sign(const NodeSteps& steps) {
   int negative = 0;
-  for (const float value : values) negative += value < 0.0f ? 1 : 0;
-  return negative != 0 && negative != static_cast<int>(values.size());
+  for (const std::int16_t value : steps) negative += value < 0 ? 1 : 0;
+  return negative != 0 && negative != static_cast<int>(steps.size());
 }
 
-void inspect(const NodeValues& values, Candidate& candidate) {
-  if (!changes_sign(values)) return;
-  candidate.cells = without_covered(crossed_cells_of(values.data()), candidate.covered);
-  if (!candidate.cells.any) return;
-  candidate.faces = touched_faces(candidate.cells);
-  for_each_node(candidate.cells,
-                [&](int x, int y, int z) { candidate.largest = std::max(candidate.largest, std::abs(values[at(x, y, z)])); });
+void inspect(const NodeSteps& steps, Candidate& candidate) {
+  if (!changes_sign(steps)) return;
+  candidate.cells = without_covered(crossed_cells_of(steps.data()), candidate.covered);
+  if (candidate.cells.any) candidate.faces = touched_faces(candidate.cells);
 }
 
 std::vector<Candidate> candidates_of(std::span<const CrossedBlock> crossed) {
@@ -205,12 +202,12 @@ BrickLayout lay_out_bricks(const LevelSetData& data) {
 BrickLayout lay_out_bricks(const NodeReader& nodes, std::span<const BrickPlace> places) {
   std::vector<Candidate> candidates(places.size());
   parallel_parts(places.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
-    NodeValues values;
+    NodeSteps steps;
     for (size_t i = range.begin(); i < range.end(); ++i) {
       candidates[i].origin = places[i].origin;
       candidates[i].covered = places[i].covered;
-      nodes.load(places[i].origin, values);
-      inspect(values, candidates[i]);
+      nodes.load(places[i].origin, steps);
+      inspect(steps, candidates[i]);
     }
   });
   return lay_out(candidates);

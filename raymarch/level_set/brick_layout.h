@@ -13,6 +13,7 @@
 namespace limn {
 
 using NodeValues = std::array<float, kBrickNodes * kBrickNodes * kBrickNodes>;
+using NodeSteps = std::array<std::int16_t, kBrickNodes * kBrickNodes * kBrickNodes>;
 
 /// The values at the 9^3 nodes of the cells from `origin` on, from up to eight leaves.
 void load_nodes(const nanovdb::FloatGrid::AccessorType& accessor, const glm::ivec3& origin, NodeValues& values);
@@ -37,7 +38,7 @@ struct Candidate {
   glm::ivec3 origin{0};
   std::uint64_t covered = 0;  ///< What smaller bricks hold of it.
   std::uint8_t faces = 0;
-  float largest = 0.0f;  ///< |value| at the nodes of crossed cells.
+  float largest = 0.0f;  ///< |value| at the nodes of crossed cells, of a grid's.
   CrossedCells cells{};
 };
 
@@ -73,16 +74,16 @@ struct BrickLayout {
 /// Of the blocks that the surface crosses.
 BrickLayout lay_out_bricks(const LevelSetData& data);
 
-/// Nodes that are in no grid. Copied for each thread that asks for single values.
+/// Nodes that are in no grid, as the steps that bricks hold (see quantised()). Copied for each thread that asks for single ones.
 struct NodeReader {
   const void* state = nullptr;
-  void (*load_brick)(const void* state, const glm::ivec3& origin, NodeValues& values) = nullptr;  ///< As load_nodes.
+  void (*load_brick)(const void* state, const glm::ivec3& origin, NodeSteps& steps) = nullptr;  ///< In the order of load_nodes.
   /// `last` is the reader's to remember something by.
-  float (*node_value)(const void* state, const glm::ivec3& node, const void*& last) = nullptr;
+  std::int16_t (*node_steps)(const void* state, const glm::ivec3& node, const void*& last) = nullptr;
   mutable const void* last = nullptr;  ///< Of one thread.
 
-  void load(const glm::ivec3& origin, NodeValues& values) const { load_brick(state, origin, values); }
-  float value(const glm::ivec3& node) const { return node_value(state, node, last); }
+  void load(const glm::ivec3& origin, NodeSteps& steps) const { load_brick(state, origin, steps); }
+  std::int16_t steps(const glm::ivec3& node) const { return node_steps(state, node, last); }
 };
 
 /// A block of cells, and what smaller bricks hold of it.

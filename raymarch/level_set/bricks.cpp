@@ -72,16 +72,16 @@ float scale_for(const BrickLayout& layout, float background) {
 }
 
 template <class Reader>
-void fill_brick(const Reader& reader, const glm::ivec3& origin, float steps_per_unit, std::int16_t* to) {
-  NodeValues nodes;
-  reader.load(origin, nodes);
-  quantise(nodes, steps_per_unit, to);
-  std::fill(to + nodes.size(), to + kBrickStride, std::int16_t{0});
+void fill_brick(const Reader& reader, const glm::ivec3& origin, std::int16_t* to) {
+  NodeSteps steps;
+  reader.load(origin, steps);
+  std::copy(steps.begin(), steps.end(), to);
+  std::fill(to + steps.size(), to + kBrickStride, std::int16_t{0});
 }
 
 /// A layer's nodes lie as they would in a brick whose first ones are its block's.
 template <class Reader>
-void fill_layer(const Reader& reader, const BrickLayer& layer, const glm::ivec3& origin, float steps_per_unit, std::int16_t* block) {
+void fill_layer(const Reader& reader, const BrickLayer& layer, const glm::ivec3& origin, std::int16_t* block) {
   const int axis = layer.face / 2, depth = layer_depth(axis), from = layer.first_node();
   glm::ivec3 count(kBrickNodes);
   count[axis] = depth;
@@ -91,7 +91,7 @@ void fill_layer(const Reader& reader, const BrickLayer& layer, const glm::ivec3&
         glm::ivec3 node(x, y, z), slot = node;
         node[axis] += from;
         slot[axis] += layer.slot;
-        block[brick_element(slot.x, slot.y, slot.z)] = quantised(reader.value(origin + node), steps_per_unit);
+        block[brick_element(slot.x, slot.y, slot.z)] = reader.steps(origin + node);
       }
     }
   }
@@ -99,14 +99,14 @@ void fill_layer(const Reader& reader, const BrickLayer& layer, const glm::ivec3&
 
 /// `reader()` makes what one thread reads nodes with.
 template <class MakeReader>
-BrickShapes fill(const MakeReader& reader, const BrickLayout& layout, float steps_per_unit, RayBricks& bricks) {
+BrickShapes fill(const MakeReader& reader, const BrickLayout& layout, RayBricks& bricks) {
   const size_t crossed = layout.crossed.size();
   BrickShapes shapes(crossed);
   parallel_parts(crossed, size_t{64}, [&](const IndexRange<size_t>& range) {
     const auto nodes = reader();
     for (size_t i = range.begin(); i < range.end(); ++i) {
       std::int16_t* const values = bricks.values.data() + i * kBrickStride;
-      fill_brick(nodes, layout.crossed[i].origin, steps_per_unit, values);
+      fill_brick(nodes, layout.crossed[i].origin, values);
       shapes[i] = shape_of(values, layout.crossed[i].cells);  // quantised() keeps signs
       const BrickInCube whole{glm::ivec3(0), values, &shapes[i]};
       bricks.groups[0].bounds[i] = bound_surface(layout.crossed[i].origin, std::span(&whole, 1));
@@ -118,7 +118,7 @@ BrickShapes fill(const MakeReader& reader, const BrickLayout& layout, float step
     const auto nodes = reader();
     for (size_t i = range.begin(); i < range.end(); ++i) {
       const BrickLayer& layer = layout.layers[i];
-      fill_layer(nodes, layer, layout.crossed[layer.brick].origin, steps_per_unit, bricks.values.data() + layer.block * kBrickStride);
+      fill_layer(nodes, layer, layout.crossed[layer.brick].origin, bricks.values.data() + layer.block * kBrickStride);
     }
   });
   return shapes;
@@ -133,7 +133,7 @@ void make_from(const MakeReader& reader, const BrickLayout& layout, float scale,
   bricks.values.resize(layout.blocks * kBrickStride + kReadBeyond);
   if (std::any_of(layout.crossed.begin(), layout.crossed.end(), [](const Candidate& c) { return c.covered != 0; }))
     for (const Candidate& candidate : layout.crossed) bricks.covered.push_back(candidate.covered);
-  const BrickShapes shapes = fill(reader, layout, scale, bricks);
+  const BrickShapes shapes = fill(reader, layout, bricks);
   for (const int shift : {4, 5}) bricks.groups.push_back(group_bricks(layout, shapes, bricks, shift));
   bricks.lower = glm::ivec3(std::numeric_limits<int>::max());
   bricks.upper = glm::ivec3(std::numeric_limits<int>::lowest());
@@ -147,8 +147,15 @@ void make_from(const MakeReader& reader, const BrickLayout& layout, float scale,
 
 struct GridReader {
   Accessor accessor;
-  void load(const glm::ivec3& origin, NodeValues& values) const { load_nodes(accessor, origin, values); }
-  float value(const glm::ivec3& node) const { return accessor.getValue(nanovdb::Coord(node.x, node.y, node.z)); }
+  float steps_per_unit = 0.0f;
+  void load(const glm::ivec3& origin, NodeSteps& steps) const {
+    NodeValues values;
+    load_nodes(accessor, origin, values);
+    quantise(values, steps_per_unit, steps.data());
+  }
+  std::int16_t steps(const glm::ivec3& node) const {
+    return quantised(accessor.getValue(nanovdb::Coord(node.x, node.y, node.z)), steps_per_unit);
+  }
 };
 
 std::vector<glm::ivec3> origins_of(const BrickLayout& layout) {
@@ -181,7 +188,7 @@ std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool wit
   if (!layout.crossed.empty()) {
     const float scale = scale_for(layout, std::abs(data.grid->tree().background()));
     if (scale == 0.0f) return nullptr;
-    make_from([&data] { return GridReader{data.accessor()}; }, layout, scale, *bricks);
+    make_from([&] { return GridReader{data.accessor(), scale}; }, layout, scale, *bricks);
     if (with_spline) bricks->spline = make_spline_bricks(data, origins_of(layout));
   }
   bricks->prepare_ms = ms_since(start);

@@ -8,19 +8,19 @@
 namespace limn {
 namespace {
 
-SurfaceBlocks surface_blocks(const NodeValues& values, float near) {
+SurfaceBlocks surface_blocks(const NodeSteps& steps, float near_steps) {
   SurfaceBlocks blocks;
   for (int block = 0; block < 64; ++block) {
     const glm::ivec3 first(2 * (block >> 4), 2 * (block >> 2 & 3), 2 * (block & 3));
-    float least = std::numeric_limits<float>::max(), most = -least;
+    int least = std::numeric_limits<std::int16_t>::max(), most = std::numeric_limits<std::int16_t>::min();
     for (int k = 0; k < 27; ++k) {
-      const float value = values[static_cast<size_t>(brick_element(first.x + k / 9, first.y + k / 3 % 3, first.z + k % 3))];
+      const int value = steps[static_cast<size_t>(brick_element(first.x + k / 9, first.y + k / 3 % 3, first.z + k % 3))];
       least = std::min(least, value), most = std::max(most, value);
     }
     const std::uint64_t bit = std::uint64_t{1} << block;
-    if (least < near && most > -near)
+    if (static_cast<float>(least) < near_steps && static_cast<float>(most) > -near_steps)
       blocks.near |= bit;
-    else if (most < 0.0f)
+    else if (most < 0)
       blocks.inside |= bit;
   }
   return blocks;
@@ -33,11 +33,11 @@ Larger larger_of(const LevelNodes& nodes, int step, const std::vector<LocalBrick
   Larger larger{&nodes, step, {}, std::vector<std::uint64_t>(bricks.size()), std::vector<SurfaceBlocks>(bricks.size())};
   for (const LocalBrick& brick : bricks) larger.bricks.add(key_of(8 * brick.place));
   parallel_parts(bricks.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
-    NodeValues values;
+    NodeSteps steps;
     for (size_t i = range.begin(); i < range.end(); ++i) {
-      load_brick(nodes, 8 * bricks[i].place, values);
+      load_brick(nodes, 8 * bricks[i].place, steps);
       larger.open[i] = ~bricks[i].covered;
-      larger.blocks[i] = surface_blocks(values, static_cast<float>(kNear_voxels * h));
+      larger.blocks[i] = surface_blocks(steps, static_cast<float>(kNear_voxels * h) * nodes.steps_per_unit);
     }
   });
   return larger;
@@ -57,6 +57,15 @@ LargerBeside::LargerBeside(const Larger& larger, const glm::ivec3& origin) : lar
   }
 }
 
+std::uint64_t LargerBeside::near_nodes(size_t word) const {
+  constexpr std::uint64_t kFirstRow = 0xff, kFirstColumn = 0x0101010101010101;
+  const auto if_near = [&](unsigned before, std::uint64_t nodes) {
+    return (near_ >> (before | (word == 0 ? 1u : 0u)) & 1) != 0 ? nodes : 0;
+  };
+  return if_near(0, ~kFirstRow & ~kFirstColumn) | if_near(2, kFirstRow & ~kFirstColumn) | if_near(4, kFirstColumn & ~kFirstRow) |
+         if_near(6, kFirstRow & kFirstColumn);
+}
+
 double LargerBeside::interpolated(const glm::ivec3& node) {
   const int times = 1 << larger_.step;
   const glm::ivec3 part = node & (times - 1);
@@ -68,7 +77,8 @@ double LargerBeside::interpolated(const glm::ivec3& node) {
     if (weight == 0) continue;
     const glm::ivec3 at = (node >> larger_.step) + side;
     // All are powers of two: exact.
-    sum += scale * weight * static_cast<double>(larger_.nodes->find(block_of(at), last_)->values[place_in_block(at)]);
+    sum +=
+        scale * weight * static_cast<double>(larger_.nodes->value_of(larger_.nodes->find(block_of(at), last_)->steps[place_in_block(at)]));
   }
   return sum;
 }

@@ -29,8 +29,8 @@ class LargerBeside {
   LargerBeside(const Larger& larger, const glm::ivec3& origin);
 
   bool any() const { return (near_ | inside_ | outside_) != 0; }
-  /// True where the node lies on cells that their surface passes or comes near to.
-  bool on_near(const glm::ivec3& node) const { return (near_ >> before(node) & 1) != 0; }
+  /// Bits of the block's nodes along x = `word` that lie on cells that their surface passes or comes near to (as in LevelSetBlock).
+  std::uint64_t near_nodes(size_t word) const;
   /// True where the node lies on cells that are wholly on the other side of their surface than `inside` says.
   bool on_other_side(const glm::ivec3& node, bool inside) const { return ((inside ? outside_ : inside_) >> before(node) & 1) != 0; }
 

@@ -84,7 +84,7 @@ bool has_both_signs(const LevelNodes& nodes) {
   for (size_t i = 0; i < nodes.blocks.size(); ++i) {
     const NodeBlock& block = nodes.blocks[i];
     for (size_t n = 0; n < 512; ++n)
-      if ((block.known[n >> 6] >> (n & 63) & 1) != 0) (block.values[n] < 0.0f ? inside : outside) = true;
+      if ((block.known[n >> 6] >> (n & 63) & 1) != 0) (block.steps[n] < 0 ? inside : outside) = true;
   }
   return inside && outside;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "raymarch/level_set/quantise.h"
 #include "raymarch/local/larger_bricks.h"
 #include "raymarch/local/mesh_part.h"
 #include "sdf/level_set_distance.h"
@@ -75,10 +76,10 @@ void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil
   for (size_t first = 0; first < bricks.size(); first += kAtOnce) {
     const size_t count = std::min(bricks.size() - first, kAtOnce);
     parallel_parts(count, size_t{64}, [&](const IndexRange<size_t>& range) {
-      NodeValues values;
+      NodeSteps steps;
       for (size_t i = range.begin(); i < range.end(); ++i) {
-        load_brick(nodes, 8 * bricks[first + i].place, values);
-        const CrossedCells crossed = without_covered(crossed_cells_of(values.data()), bricks[first + i].covered);
+        load_brick(nodes, 8 * bricks[first + i].place, steps);
+        const CrossedCells crossed = without_covered(crossed_cells_of(steps.data()), bricks[first + i].covered);
         crosses[i] = crossed.any;
         if (crossed.any) read[i] = nodes_read(crossed, stencil);
       }
@@ -96,16 +97,15 @@ struct Measure {
   bool smallest = false;
   const Larger* larger = nullptr;  ///< Null: nothing is taken from larger bricks.
 
-  float stored(double value) const { return static_cast<float>(quantised(static_cast<float>(value), steps_per_unit)) / steps_per_unit; }
+  std::int16_t steps(double value) const { return quantised(static_cast<float>(value), steps_per_unit); }
 };
 
 glm::ivec3 node_of(const NodeBlock& block, int n) { return block.origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7); }
 
+/// Calls `visit(n)` for each node of a word of bits, `word` of eight.
 template <class Visit>
-void for_each_pending(const NodeBlock& block, const Visit& visit) {
-  for (size_t word = 0; word < 8; ++word)
-    for (std::uint64_t bits = block.wanted[word] & ~block.known[word]; bits != 0; bits &= bits - 1)
-      visit(static_cast<int>(word) << 6 | std::countr_zero(bits));
+void for_each_bit(std::uint64_t bits, size_t word, const Visit& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(static_cast<int>(word) << 6 | std::countr_zero(bits));
 }
 
 std::optional<LargerBeside> larger_beside(const Measure& measure, const NodeBlock& block) {
@@ -117,32 +117,63 @@ std::optional<LargerBeside> larger_beside(const Measure& measure, const NodeBloc
 
 /// The surface's own value, or the larger bricks': cells far from their surface must not meet it on their faces, where it would end.
 /// Creases that larger voxels round off reach so far.
-double on_its_side(double value, const glm::ivec3& node, std::optional<LargerBeside>& beside) {
-  return beside && beside->on_other_side(node, value < 0.0) ? beside->interpolated(node) : value;
+double on_its_side(double value, const glm::ivec3& node, LargerBeside& beside) {
+  return beside.on_other_side(node, value < 0.0) ? beside.interpolated(node) : value;
+}
+
+/// Nodes of a block that the surface is asked for.
+struct AskedNodes {
+  LanePoints points;
+  std::array<std::uint16_t, kMostLanePoints> numbers;  ///< Of the nodes in their block.
+
+  /// The nodes of a word, row by row along z.
+  void add(std::uint64_t bits, size_t word, const double (&at)[3][8]) {
+    for (size_t y = 0; y < 8; ++y, bits >>= 8) {
+      const auto first = static_cast<std::uint16_t>(word << 6 | y << 3);
+      for (std::uint32_t row = bits & 0xff; row != 0; row &= row - 1) {
+        const auto z = static_cast<size_t>(std::countr_zero(row));
+        numbers[points.count] = static_cast<std::uint16_t>(first + z);
+        points.add({at[0][word], at[1][y], at[2][z]});
+      }
+    }
+  }
+};
+
+/// What a larger brick tells is not asked of the field.
+void ask_field(const NodeBlock& block, const Measure& measure, const LargerBeside* beside, AskedNodes& asked) {
+  double at[3][8];
+  for (int axis = 0; axis < 3; ++axis)
+    for (int k = 0; k < 8; ++k) at[axis][k] = measure.choice.origin[axis] + measure.h * static_cast<double>(block.origin[axis] + k);
+  for (size_t word = 0; word < 8; ++word) {
+    const std::uint64_t pending = block.wanted[word] & ~block.known[word];
+    asked.add(beside ? pending & ~beside->near_nodes(word) : pending, word, at);
+  }
+  asked.points.fill_up();
+}
+
+void take_from_larger(NodeBlock& block, const Measure& measure, LargerBeside& beside) {
+  for (size_t word = 0; word < 8; ++word)
+    for_each_bit(block.wanted[word] & ~block.known[word] & beside.near_nodes(word), word,
+                 [&](int n) { block.steps[static_cast<size_t>(n)] = measure.steps(beside.interpolated(node_of(block, n))); });
 }
 
 void evaluate_field(DistanceEvaluator& distance, NodeBlock& block, const Measure& measure) {
-  LanePoints points;
-  LaneNumbers distances;
-  std::array<std::uint16_t, kMostLanePoints> places;
   std::optional<LargerBeside> beside = larger_beside(measure, block);
-  for_each_pending(block, [&](int n) {
-    const glm::ivec3 node = node_of(block, n);
-    // What a larger brick tells is not asked of the field.
-    if (beside && beside->on_near(node)) {
-      block.values[static_cast<size_t>(n)] = measure.stored(beside->interpolated(node));
-      return;
-    }
-    places[points.count] = static_cast<std::uint16_t>(n);
-    points.add(measure.choice.origin + measure.h * glm::dvec3(node));
-  });
-  if (points.count == 0) return;
-  points.fill_up();
-  signed_distances(distance, points, measure.half_width, distances);
-  for (size_t k = 0; k < points.count; ++k) {
-    const double value = std::clamp(distances[k], -measure.half_width, measure.half_width);
-    block.values[places[k]] = measure.stored(on_its_side(value, node_of(block, places[k]), beside));
-  }
+  if (beside) take_from_larger(block, measure, *beside);
+  AskedNodes asked;
+  ask_field(block, measure, beside ? &*beside : nullptr, asked);
+  if (asked.points.count == 0) return;
+  LaneNumbers distances;
+  signed_distances(distance, asked.points, measure.half_width, distances);
+  std::array<float, kMostLanePoints> values;
+  for (size_t k = 0; k < asked.points.count; ++k)
+    values[k] = static_cast<float>(std::clamp(distances[k], -measure.half_width, measure.half_width));
+  if (beside)
+    for (size_t k = 0; k < asked.points.count; ++k)
+      values[k] = static_cast<float>(on_its_side(static_cast<double>(values[k]), node_of(block, asked.numbers[k]), *beside));
+  std::array<std::int16_t, kMostLanePoints> steps;
+  quantise(std::span(values).first(asked.points.count), measure.steps_per_unit, steps.data());
+  for (size_t k = 0; k < asked.points.count; ++k) block.steps[asked.numbers[k]] = steps[k];
 }
 
 /// All nodes of the block at once, as a uniform level set has them: the signs of some follow from others.
@@ -151,38 +182,40 @@ void evaluate_mesh(const MeshPart& part, NodeBlock& block, const Measure& measur
     std::array<float, 512> own;
     block_distances(part, block.origin, measure.h, measure.half_width, measure.smallest, own);
     for (size_t n = 0; n < 512; ++n)
-      if ((block.known[n >> 6] >> (n & 63) & 1) == 0) block.values[n] = own[n];
+      if ((block.known[n >> 6] >> (n & 63) & 1) == 0) block.steps[n] = quantised(own[n], measure.steps_per_unit);
     block.measured = true;
   }
   std::optional<LargerBeside> beside = larger_beside(measure, block);
-  for_each_pending(block, [&](int n) {
-    const glm::ivec3 node = node_of(block, n);
-    float& value = block.values[static_cast<size_t>(n)];
-    const bool near = beside && beside->on_near(node);
-    value = measure.stored(near ? beside->interpolated(node) : on_its_side(static_cast<double>(value), node, beside));
-  });
+  if (!beside) return;
+  take_from_larger(block, measure, *beside);
+  for (size_t word = 0; word < 8; ++word)
+    for_each_bit(block.wanted[word] & ~block.known[word] & ~beside->near_nodes(word), word, [&](int n) {
+      std::int16_t& steps = block.steps[static_cast<size_t>(n)];
+      if (const glm::ivec3 node = node_of(block, n); beside->on_other_side(node, steps < 0))
+        steps = measure.steps(beside->interpolated(node));
+    });
 }
 
 void evaluate(std::optional<DistanceEvaluator>& distance, NodeBlock& block, const Measure& measure) {
-  if (const Field* field = std::get_if<Field>(&block.part)) {
+  if (const Field* field = std::get_if<Field>(block.part)) {
     if (!distance || &distance->evaluator.field().program() != &field->program()) distance.emplace(*field);
     evaluate_field(*distance, block, measure);
   } else {
-    evaluate_mesh(std::get<MeshPart>(block.part), block, measure);
+    evaluate_mesh(std::get<MeshPart>(*block.part), block, measure);
   }
   for (size_t word = 0; word < 8; ++word) block.known[word] |= block.wanted[word];
 }
 
 }  // namespace
 
-void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeValues& values) {
+void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeSteps& steps) {
   for (int corner = 0; corner < 8; ++corner) {
     const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
-    const float* const from = nodes.blocks[nodes.at.find(key_of(origin + 8 * step))].values.data();
+    const std::int16_t* const from = nodes.blocks[nodes.at.find(key_of(origin + 8 * step))].steps.data();
     for (int x = 0; x < (step.x ? 1 : 8); ++x)
       for (int y = 0; y < (step.y ? 1 : 8); ++y) {
-        float* const to = &values[static_cast<size_t>(brick_element(8 * step.x + x, 8 * step.y + y, 8 * step.z))];
-        const float* const row = from + (x << 6 | y << 3);
+        std::int16_t* const to = &steps[static_cast<size_t>(brick_element(8 * step.x + x, 8 * step.y + y, 8 * step.z))];
+        const std::int16_t* const row = from + (x << 6 | y << 3);
         // Lengths that the compiler knows.
         if (step.z)
           *to = *row;
@@ -198,7 +231,9 @@ const NodeBlock* LevelNodes::find(const glm::ivec3& origin, const NodeBlock*& la
   return last = number == KeyNumbers::kNone ? nullptr : &blocks[number];
 }
 
-float LevelNodes::value(const glm::ivec3& node) const { return blocks[at.find(key_of(block_of(node)))].values[place_in_block(node)]; }
+float LevelNodes::value(const glm::ivec3& node) const {
+  return value_of(blocks[at.find(key_of(block_of(node)))].steps[place_in_block(node)]);
+}
 
 std::int64_t LevelNodes::known() const {
   std::int64_t sum = 0;
@@ -210,14 +245,14 @@ std::int64_t LevelNodes::known() const {
 NodeReader LevelNodes::reader() const {
   return {
       this,
-      [](const void* of, const glm::ivec3& origin, NodeValues& values) { load_brick(*static_cast<const LevelNodes*>(of), origin, values); },
+      [](const void* of, const glm::ivec3& origin, NodeSteps& steps) { load_brick(*static_cast<const LevelNodes*>(of), origin, steps); },
       [](const void* of, const glm::ivec3& node, const void*& last) {
         const auto* block = static_cast<const NodeBlock*>(last);
         static_cast<const LevelNodes*>(of)->find(block_of(node), block);
         last = block;
         const size_t n = place_in_block(node);
         const bool known = block && (block->known[n >> 6] >> (n & 63) & 1) != 0;
-        return known ? block->values[n] : std::numeric_limits<float>::max();
+        return known ? block->steps[n] : std::numeric_limits<std::int16_t>::max();
       }};
 }
 
@@ -254,7 +289,7 @@ LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t
     std::copy_n(nodes.blocks[i].known.begin(), 8, blocks[i].active);
     // What is not known is given a sign by its neighbours.
     for (size_t n = 0; n < 512; ++n)
-      blocks[i].values[n] = (nodes.blocks[i].known[n >> 6] >> (n & 63) & 1) != 0 ? nodes.blocks[i].values[n] : 0.0f;
+      blocks[i].values[n] = (nodes.blocks[i].known[n >> 6] >> (n & 63) & 1) != 0 ? nodes.value_of(nodes.blocks[i].steps[n]) : 0.0f;
   });
   const double h = choice.voxel_of(level);
   auto data = std::make_shared<LevelSetData>();
@@ -263,7 +298,7 @@ LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t
   const auto lies_inside = [&](const glm::dvec3& place) {
     const glm::ivec3 node(glm::round(place));
     const size_t number = nodes.at.find(key_of(block_of(node)));
-    if (number != KeyNumbers::kNone && nodes.blocks[number].measured) return nodes.blocks[number].values[place_in_block(node)] < 0.0f;
+    if (number != KeyNumbers::kNone && nodes.blocks[number].measured) return nodes.blocks[number].steps[place_in_block(node)] < 0;
     return signs(choice.origin + h * place);
   };
   if (signs) inside = lies_inside;

@@ -24,6 +24,7 @@ struct LevelNodes {
   KeyNumbers at{};              ///< By key_of.
   float steps_per_unit = 0.0f;  ///< Values are whole numbers of steps, none of them 0.
 
+  float value_of(std::int16_t steps) const { return static_cast<float>(steps) / steps_per_unit; }
   /// Of a node that is known.
   float value(const glm::ivec3& node) const;
   /// Null where there is none. `last`: the block found before, or null; becomes the one that is found.
@@ -33,7 +34,7 @@ struct LevelNodes {
 };
 
 /// Of a brick whose nodes are known.
-void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeValues& values);
+void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeSteps& steps);
 
 /// Samples the surface at the nodes of the chosen bricks and at those that the gradient's stencils read beside them, and nowhere else; from
 /// the largest voxels to the smallest. A node that lies on open cells of a larger brick takes that brick's interpolant, where its surface

@@ -13,12 +13,12 @@ namespace limn {
 
 /// Bits as in LevelSetBlock.
 struct NodeBlock {
-  NodeBlock(const glm::ivec3& first, SurfacePart of) : origin(first), part(std::move(of)) {}
+  NodeBlock(const glm::ivec3& first, const SurfacePart& of) : origin(first), part(&of) {}
   glm::ivec3 origin{0};
-  SurfacePart part;  ///< Asked for its nodes.
+  bool measured = false;              ///< Of a mesh: the steps of the others are those that they will have if they are wanted.
+  const SurfacePart* part = nullptr;  ///< Asked for its nodes: of a brick, as long as there are nodes to be measured.
   std::array<std::uint64_t, 8> wanted{}, known{};
-  std::array<float, 512> values;  ///< Of the known ones.
-  bool measured = false;          ///< Of a mesh: the values of the others are those that they will have if they are wanted.
+  std::array<std::int16_t, 512> steps;  ///< Of the known ones.
 };
 
 /// Blocks in the order in which they came; they stay where they are. In chunks of large pages: the first touch of small ones takes longer

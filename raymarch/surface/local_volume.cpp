@@ -8,6 +8,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "raymarch/level_set/quantise.h"
 #include "raymarch/level_set/sized_bricks.h"
 #include "sdf/error.h"
 #include "sdf/level_set_data.h"
@@ -57,15 +58,24 @@ std::vector<std::vector<BrickPlace>> places_of(const FileGrids& volume, const st
   return places;
 }
 
-NodeReader reader_of(const LevelSetData& data) {
-  return {&data,
-          [](const void* of, const glm::ivec3& origin, NodeValues& values) {
-            load_nodes(static_cast<const LevelSetData*>(of)->accessor(), origin, values);
+struct FileNodes {
+  const LevelSetData& data;
+  float steps_per_unit = 0.0f;
+};
+
+NodeReader reader_of(const FileNodes& nodes) {
+  return {&nodes,
+          [](const void* of, const glm::ivec3& origin, NodeSteps& steps) {
+            const auto& [data, steps_per_unit] = *static_cast<const FileNodes*>(of);
+            NodeValues values;
+            load_nodes(data.accessor(), origin, values);
+            quantise(values, steps_per_unit, steps.data());
           },
           [](const void* of, const glm::ivec3& node, const void*&) {
-            const auto accessor = static_cast<const LevelSetData*>(of)->accessor();
+            const auto& [data, steps_per_unit] = *static_cast<const FileNodes*>(of);
+            const auto accessor = data.accessor();
             const nanovdb::Coord at(node.x, node.y, node.z);
-            return accessor.isActive(at) ? accessor.getValue(at) : std::numeric_limits<float>::max();
+            return accessor.isActive(at) ? quantised(accessor.getValue(at), steps_per_unit) : std::numeric_limits<std::int16_t>::max();
           }};
 }
 
@@ -112,7 +122,8 @@ Surface local_level_set_of_file(const LevelSet& local, const GradientDescriptor&
       };
     };
     const BrickSize size{info.voxel_size, half_width / info.voxel_size, static_cast<float>(32767.0 / half_width), render_from_index};
-    const auto bricks = bricks_of_size(reader_of(grid.data()), places[k], size, state->gradient, [&] { return grid; });
+    const FileNodes nodes{grid.data(), size.steps_per_unit};
+    const auto bricks = bricks_of_size(reader_of(nodes), places[k], size, state->gradient, [&] { return grid; });
     if (!bricks) continue;
     if (surface.info.voxel_size == 0.0) surface.info.voxel_size = info.voxel_size;
     add_size(bricks, *state, surface.info);

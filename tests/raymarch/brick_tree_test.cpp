@@ -16,6 +16,7 @@ namespace {
 
 /// Of the eye over the face between two bricks.
 constexpr double kAbove = 20.0;
+constexpr float kStepsPerUnit = 1500.0f;
 
 /// Which brick answers, and with what.
 struct Answer {
@@ -33,19 +34,21 @@ struct BentPlane {
     const double plane = node.z - (face + height + slope * (node.x - 6.0) + 0.3 * (node.y - y));
     return static_cast<float>(node.z < face ? plane + 0.002 * (node.x - 4.0) : plane);
   }
-  static void read(const void* self, const glm::ivec3& origin, NodeValues& values) {
+  static void read(const void* self, const glm::ivec3& origin, NodeSteps& steps) {
     for (int k = 0; k < 729; ++k)
-      values[static_cast<size_t>(brick_element(k / 81, k / 9 % 9, k % 9))] =
-          static_cast<const BentPlane*>(self)->value_at(origin + glm::ivec3(k / 81, k / 9 % 9, k % 9));
+      steps[static_cast<size_t>(brick_element(k / 81, k / 9 % 9, k % 9))] =
+          quantised(static_cast<const BentPlane*>(self)->value_at(origin + glm::ivec3(k / 81, k / 9 % 9, k % 9)), kStepsPerUnit);
   }
-  static float one(const void* self, const glm::ivec3& node, const void*&) { return static_cast<const BentPlane*>(self)->value_at(node); }
+  static std::int16_t one(const void* self, const glm::ivec3& node, const void*&) {
+    return quantised(static_cast<const BentPlane*>(self)->value_at(node), kStepsPerUnit);
+  }
 };
 
 /// Two bricks, one on the other.
 SingleRayBricks two_bricks(const BentPlane& plane, bool upper_first) {
   std::vector<BrickPlace> places{{{0, 0, plane.face}}, {{0, 0, plane.face - 8}}};
   if (!upper_first) std::swap(places[0], places[1]);
-  const std::shared_ptr<RayBricks> bricks = make_bricks({&plane, BentPlane::read, BentPlane::one}, places, 1500.0f);
+  const std::shared_ptr<RayBricks> bricks = make_bricks({&plane, BentPlane::read, BentPlane::one}, places, kStepsPerUnit);
   bricks->voxel_size = 1.0;
   return for_single_rays(bricks, Affine{});
 }

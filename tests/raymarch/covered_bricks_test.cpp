@@ -16,14 +16,16 @@ namespace {
 double height(double x, double y) { return 7.3 + 0.31 * x - 0.17 * y; }
 float value_at(const glm::ivec3& node) { return static_cast<float>(node.z - height(node.x, node.y)); }
 
+constexpr float kStepsPerUnit = 1000.0f;
+
 NodeReader plane_nodes() {
   return {nullptr,
-          [](const void*, const glm::ivec3& origin, NodeValues& values) {
+          [](const void*, const glm::ivec3& origin, NodeSteps& steps) {
             for (int k = 0; k < 729; ++k)
-              values[static_cast<size_t>(brick_element(k / 81, k / 9 % 9, k % 9))] =
-                  value_at(origin + glm::ivec3(k / 81, k / 9 % 9, k % 9));
+              steps[static_cast<size_t>(brick_element(k / 81, k / 9 % 9, k % 9))] =
+                  quantised(value_at(origin + glm::ivec3(k / 81, k / 9 % 9, k % 9)), kStepsPerUnit);
           },
-          [](const void*, const glm::ivec3& node, const void*&) { return value_at(node); }};
+          [](const void*, const glm::ivec3& node, const void*&) { return quantised(value_at(node), kStepsPerUnit); }};
 }
 
 /// As covered_bit, cell by cell.
@@ -40,7 +42,7 @@ TEST(CoveredBricks, RaysMeetTheSurfaceInTheOpenCellsOnly) {
     for (int k = 0; k < 8; ++k) places.push_back({8 * glm::ivec3(k >> 2, k >> 1 & 1, k & 1), mask(random) | mask(random)});
     // One is whole, and of one nothing is left.
     places[1].covered = 0, places[5].covered = ~std::uint64_t{0};
-    const std::shared_ptr<RayBricks> bricks = make_bricks(plane_nodes(), places, 1000.0f);
+    const std::shared_ptr<RayBricks> bricks = make_bricks(plane_nodes(), places, kStepsPerUnit);
     bricks->voxel_size = 1.0;
     const SingleRayBricks rays_bricks = for_single_rays(bricks, Affine{});
     const SingleRayBricks* const sizes[] = {&rays_bricks};

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sdf/field.h"
@@ -21,7 +22,8 @@ JetDistance distance_from_jet(const FieldJet& jet);
 
 /// Evaluates distances to one field; owns its scratch memory, so keep one for each thread.
 struct DistanceEvaluator {
-  explicit DistanceEvaluator(const Field& field) : evaluator(field) {}
+  /// `memory`: of an evaluator that is no longer needed, whose size another field mostly fits.
+  explicit DistanceEvaluator(const Field& field, TapeScratch memory = {}) : evaluator(field), scratch(std::move(memory)) {}
   FieldEvaluator evaluator;
   std::optional<FieldTape> tape{};  ///< Made where it is needed first.
   bool has_bits_of_field = false;   ///< Of the tape, where there is one.

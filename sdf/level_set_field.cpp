@@ -233,9 +233,8 @@ void for_each_cube(std::span<const Cube> cubes, const IndexRange<size_t>& part, 
   std::optional<DistanceEvaluator> distance;
   for (size_t i = part.first; i < part.last; ++i) {
     if (!distance || &distance->evaluator.field().program() != &cubes[i].field.program()) {
-      TapeScratch scratch = distance ? std::move(distance->scratch) : TapeScratch();  // a quarter of a megabyte that is cleared when taken
-      distance.emplace(cubes[i].field);
-      distance->scratch = std::move(scratch);
+      // A quarter of a megabyte that would be cleared when taken.
+      distance.emplace(cubes[i].field, distance ? std::move(distance->scratch) : TapeScratch());
     }
     visit(i, *distance);
   }

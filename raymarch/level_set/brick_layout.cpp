@@ -1,6 +1,7 @@
 #include "raymarch/level_set/brick_layout.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -32,16 +33,8 @@ std::uint8_t touched_faces(const CrossedCells& crossed) {
   return faces;
 }
 
-/// Whether some are below zero and some are not: a sum that becomes SIMD.
-bool changes_sign(const NodeSteps& steps) {
-  int negative = 0;
-  for (const std::int16_t value : steps) negative += value < 0 ? 1 : 0;
-  return negative != 0 && negative != static_cast<int>(steps.size());
-}
-
 void inspect(const NodeSteps& steps, Candidate& candidate) {
-  if (!changes_sign(steps)) return;
-  candidate.cells = without_covered(crossed_cells_of(steps.data()), candidate.covered);
+  candidate.cells = without_covered(crossed_cells_of(steps), candidate.covered);
   if (candidate.cells.any) candidate.faces = touched_faces(candidate.cells);
 }
 
@@ -153,6 +146,24 @@ void load_nodes(const Accessor& accessor, const glm::ivec3& origin, NodeValues& 
       }
     }
   }
+}
+
+CrossedCells crossed_cells_of(const NodeSteps& steps) {
+  static_assert(std::endian::native == std::endian::little);
+  // Bits 15, 31, 47 and 63 become bits 0 to 3.
+  const auto signs_of_four = [](const std::int16_t* from) {
+    std::uint64_t four = 0;
+    std::memcpy(&four, from, sizeof four);
+    return static_cast<std::uint32_t>((four >> 15 & 0x0001'0001'0001'0001) * 0x0001'0002'0004'0008 >> 48 & 15);
+  };
+  SignRows inside;
+  const std::int16_t* row = steps.data();
+  for (auto& plane : inside)
+    for (std::uint32_t& bits : plane) {
+      bits = signs_of_four(row) | signs_of_four(row + 4) << 4 | (row[8] < 0 ? 0x100u : 0u);
+      row += kBrickNodes;
+    }
+  return crossed_cells_of_signs(inside);
 }
 
 CrossedCells without_covered(CrossedCells crossed, std::uint64_t covered) {

@@ -23,6 +23,9 @@ CrossedCells crossed_cells_of(const Value* values) {
   return crossed_cells([values](int x, int y) { return values + brick_element(x, y, 0); });
 }
 
+/// Of steps four at a time: their highest bits are gathered by one multiplication.
+CrossedCells crossed_cells_of(const NodeSteps& steps);
+
 /// Of a brick's cells those that a smaller one covers: the `part`-th along each axis, of 2^step.
 inline std::uint64_t covered_by(const glm::ivec3& part, int step) {
   constexpr std::uint64_t kOctant = 0x33'0033;

@@ -8,20 +8,39 @@
 namespace limn {
 namespace {
 
-SurfaceBlocks surface_blocks(const NodeSteps& steps, float near_steps) {
-  SurfaceBlocks blocks;
-  for (int block = 0; block < 64; ++block) {
-    const glm::ivec3 first(2 * (block >> 4), 2 * (block >> 2 & 3), 2 * (block & 3));
-    int least = std::numeric_limits<std::int16_t>::max(), most = std::numeric_limits<std::int16_t>::min();
-    for (int k = 0; k < 27; ++k) {
-      const int value = steps[static_cast<size_t>(brick_element(first.x + k / 9, first.y + k / 3 % 3, first.z + k % 3))];
-      least = std::min(least, value), most = std::max(most, value);
+/// The least and the most of each three numbers that stand `apart`.
+template <size_t kCount>
+struct Extremes {
+  std::array<std::int16_t, kCount> least, most;
+
+  void of_three(const std::int16_t* low, const std::int16_t* high, size_t apart) {
+    for (size_t k = 0; k < kCount; ++k) {
+      least[k] = std::min({low[k], low[k + apart], low[k + 2 * apart]});
+      most[k] = std::max({high[k], high[k + apart], high[k + 2 * apart]});
     }
-    const std::uint64_t bit = std::uint64_t{1} << block;
-    if (static_cast<float>(least) < near_steps && static_cast<float>(most) > -near_steps)
-      blocks.near |= bit;
-    else if (most < 0)
-      blocks.inside |= bit;
+  }
+};
+
+/// Planes, rows and single nodes of each 3^3 one after the other: most of it becomes SIMD.
+SurfaceBlocks surface_blocks(const NodeSteps& steps, float near_steps) {
+  constexpr size_t kRow = kBrickNodes, kPlane = kRow * kRow;
+  SurfaceBlocks blocks;
+  Extremes<kPlane> planes;
+  Extremes<kRow> rows;
+  std::uint64_t bit = 1;
+  for (size_t x = 0; x < 4; ++x) {
+    planes.of_three(&steps[2 * x * kPlane], &steps[2 * x * kPlane], kPlane);
+    for (size_t y = 0; y < 4; ++y) {
+      rows.of_three(&planes.least[2 * y * kRow], &planes.most[2 * y * kRow], kRow);
+      for (size_t z = 0; z < 4; ++z, bit <<= 1) {
+        const std::int16_t least = std::min({rows.least[2 * z], rows.least[2 * z + 1], rows.least[2 * z + 2]}),
+                           most = std::max({rows.most[2 * z], rows.most[2 * z + 1], rows.most[2 * z + 2]});
+        if (static_cast<float>(least) < near_steps && static_cast<float>(most) > -near_steps)
+          blocks.near |= bit;
+        else if (most < 0)
+          blocks.inside |= bit;
+      }
+    }
   }
   return blocks;
 }

@@ -62,19 +62,23 @@ Surface surface_of(const SurfacePart& whole, const LocalBrickSettings& settings,
   return surface;
 }
 
-/// With what a coarse surface hides in the pictures.
+/// Bricks as fine as any part of the mesh has to be.
+Surface coarse_surface(const SurfacePart& whole, const LocalBrickSettings& settings) {
+  LocalBrickSettings coarse = settings;
+  coarse.border = false;
+  coarse.half_width_voxels = std::min(settings.half_width_voxels, 2.0);
+  coarse.gradient = &find_gradient("cell");
+  return surface_of(whole, coarse, glm::dvec3(0.0));
+}
+
+/// With what hides what in the pictures: a field itself tells sooner than bricks of it, which would have to be made first.
 LocalBrickSettings with_hidden(const SurfacePart& whole, const LocalBrickSettings& settings) {
   if (const MeshPart* const mesh = std::get_if<MeshPart>(&whole)) prepare_trees(*mesh, settings.half_width_voxels);
+  const Field* const field = std::get_if<Field>(&whole);
+  const Surface surface =
+      field ? find_surface("analytic").build({.name = "whole", .source = *field}, {}, glm::dvec3(0.0)) : coarse_surface(whole, settings);
   LocalBrickSettings result = settings;
-  result.border = false;
-  result.half_width_voxels = std::min(settings.half_width_voxels, 2.0);
-  const GradientDescriptor& cell = find_gradient("cell");
-  result.gradient = &cell;
-  const Surface coarse = surface_of(whole, result, glm::dvec3(0.0));
-  for (const Camera& camera : settings.local.cameras) result.hidden.push_back(small_picture(coarse, camera));
-  result.border = true;
-  result.half_width_voxels = settings.half_width_voxels;
-  result.gradient = settings.gradient;
+  for (const Camera& camera : settings.local.cameras) result.hidden.push_back(small_picture(surface, camera));
   return result;
 }
 

@@ -79,7 +79,7 @@ void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil
       NodeSteps steps;
       for (size_t i = range.begin(); i < range.end(); ++i) {
         load_brick(nodes, 8 * bricks[first + i].place, steps);
-        const CrossedCells crossed = without_covered(crossed_cells_of(steps.data()), bricks[first + i].covered);
+        const CrossedCells crossed = without_covered(crossed_cells_of(steps), bricks[first + i].covered);
         crosses[i] = crossed.any;
         if (crossed.any) read[i] = nodes_read(crossed, stencil);
       }
@@ -198,7 +198,8 @@ void evaluate_mesh(const MeshPart& part, NodeBlock& block, const Measure& measur
 
 void evaluate(std::optional<DistanceEvaluator>& distance, NodeBlock& block, const Measure& measure) {
   if (const Field* field = std::get_if<Field>(block.part)) {
-    if (!distance || &distance->evaluator.field().program() != &field->program()) distance.emplace(*field);
+    if (!distance || &distance->evaluator.field().program() != &field->program())
+      distance.emplace(*field, distance ? std::move(distance->scratch) : TapeScratch());
     evaluate_field(*distance, block, measure);
   } else {
     evaluate_mesh(std::get<MeshPart>(*block.part), block, measure);

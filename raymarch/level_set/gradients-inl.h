@@ -125,7 +125,8 @@ HWY_INLINE V3 moved(const V3& at, const V3& direction, VF t) {
 /// Newton's step along the ray towards the root of what has this value and gradient, by a quarter of a voxel at most, so that hits in one
 /// cell and the next go on from each other. `side`: the sign of the values before the trilinear root, from which the value falls (towards
 /// the other sign). A ray that grazes is taken to fall a sixteenth as steeply as it could: the step's theory is of first order. Where it
-/// rises, which at sharp edges it may, it has no root near here to go to: the step fades out, and jumps nowhere between.
+/// rises, which at sharp edges it may, it has no root near here to go to: the step, however long it may be, fades out, and jumps nowhere
+/// between. Faded before it is cut off it would go from a quarter of a voxel to none within a hundredth of how far rays lie apart.
 HWY_INLINE VF newton_step(VF value, const V3& gradient, const V3& direction, VF side) {
   const V3 product{hn::Mul(gradient.x, direction.x), hn::Mul(gradient.y, direction.y), hn::Mul(gradient.z, direction.z)};
   const VF fall = hn::Neg(hn::Mul(side, hn::Add(hn::Add(product.x, product.y), product.z)));
@@ -134,8 +135,8 @@ HWY_INLINE VF newton_step(VF value, const V3& gradient, const V3& direction, VF 
   const VF most_fall = hn::IfThenElse(flat, set(1.0f), steepest), least_fall = hn::Mul(set(1.0f / 16.0f), most_fall);
   const VF share = hn::Min(hn::Add(set(1.0f), hn::Div(fall, most_fall)), set(1.0f));
   const VF most = hn::Div(set(0.25f), hn::Max(hn::Abs(direction.x), hn::Max(hn::Abs(direction.y), hn::Abs(direction.z))));
-  const VF step = hn::IfThenElse(flat, hn::Zero(F()), hn::Mul(share, hn::Div(hn::Mul(side, value), hn::Max(fall, least_fall))));
-  return hn::Max(hn::Min(step, most), hn::Neg(most));
+  const VF step = hn::IfThenElse(flat, hn::Zero(F()), hn::Div(hn::Mul(side, value), hn::Max(fall, least_fall)));
+  return hn::Mul(share, hn::Max(hn::Min(step, most), hn::Neg(most)));
 }
 
 /// A hit's gradient, and how far along the ray it lies from the trilinear root.

@@ -120,10 +120,10 @@ void settle(const State& state, const GradientDescriptor& gradient, const Access
     const double fall = -side * (product.x + product.y + product.z);
     const double most_fall = std::abs(product.x) + std::abs(product.y) + std::abs(product.z);
     if (most_fall == 0.0) continue;
-    const double step = rest / std::max(fall, most_fall / 16.0) * std::min(1.0 + fall / most_fall, 1.0);
+    const double step = rest / std::max(fall, most_fall / 16.0), share = std::min(1.0 + fall / most_fall, 1.0);
     const glm::dvec3 way = state.walked.index_from_render.vector(direction);
     const double most = 0.25 / std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)});
-    const double move = std::clamp(step, -most, most), t = roots.t[k] + move;
+    const double move = share * std::clamp(step, -most, most), t = roots.t[k] + move;
     if (t < static_cast<double>(rays.t_min[i]) || t >= static_cast<double>(rays.t_max[i])) continue;
     roots.t[k] = t;
     roots.points[k] += move * along;

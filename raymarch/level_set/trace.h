@@ -31,7 +31,7 @@ inline constexpr size_t kMostBrickSizes = 24;
 void trace_bricks(std::span<const BrickTrace> sizes, const PixelTile& tile, const RayBatch& rays, HitBatch& hits);
 
 /// The same for rays that have nothing in common but the side of the surface on which they start: the views' tiles are not read. `trees`
-/// has one for each of `sizes`.
+/// has one for each of `sizes`. Packets are whole: `rays.count` is a multiple of 16, and lanes without a ray are idle (t_min above t_max).
 void trace_bricks_singly(std::span<const BrickTrace> sizes, std::span<const BrickTree* const> trees, const RayBatch& rays, HitBatch& hits);
 
 }  // namespace limn

@@ -56,8 +56,13 @@ SingleRayBricks two_bricks(const BentPlane& plane, bool upper_first) {
 std::vector<Answer> answers(const SingleRayBricks& bricks, const BrickTree& tree, int face, std::span<const glm::dvec2> places) {
   RayBatch rays;
   HitBatch found;
-  rays.count = static_cast<int>(places.size());
-  for (int i = 0; i < rays.count; ++i) rays.set(i, {places[static_cast<size_t>(i)], face + kAbove}, {0.0, 0.0, -1.0}, 0.0, 100.0);
+  // Packets are whole: lanes without a ray are idle.
+  rays.count = (static_cast<int>(places.size()) + 15) / 16 * 16;
+  for (int i = 0; i < rays.count; ++i) {
+    const bool idle = i >= static_cast<int>(places.size());
+    const glm::dvec2 place = idle ? glm::dvec2(0.0) : places[static_cast<size_t>(i)];
+    rays.set(i, {place, face + kAbove}, {0.0, 0.0, -1.0}, 0.0, idle ? -1.0 : 100.0);
+  }
   std::fill_n(found.status, kRayBatchSize, HitStatus::miss);
   const BrickTrace how{.view = &bricks.outside, .gradient = BrickGradient::cell};
   const BrickTree* const trees[] = {&tree};

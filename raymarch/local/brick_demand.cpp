@@ -111,8 +111,9 @@ bool creases_hold_border(FieldEvaluator& evaluator, const Box& box, const Camera
   for (size_t k = 0; k < points.size(); ++k) {
     const double slope = glm::length(gradients[k]);
     if (!(slope > 0.0)) return true;
-    // Every point of the surface in the box has one of the points within half a cube's diagonal, 0.87 spacings.
-    if (std::abs(values[k]) > spacing * slope) continue;
+    // Every point of the surface in the box has one of the points within half a cube's diagonal, 0.87 spacings; twice that, since larger
+    // voxels round off a crease that lies beside it.
+    if (std::abs(values[k]) > std::sqrt(3.0) * spacing * slope) continue;
     const double facing = glm::dot(gradients[k], view_vector(camera, points[k])) / slope;
     least = std::min(least, facing), most = std::max(most, facing);
   }

@@ -65,6 +65,11 @@ SmallPicture small_picture(const Surface& surface, const Camera& camera) {
   return picture;
 }
 
+SmallPicture small_picture(const TriangleMesh& mesh, const Camera& camera) {
+  const Camera small = smaller(camera);
+  return {small, hidden_parts(mesh, small)};
+}
+
 bool is_hidden(const SmallPicture& picture, const Box& box, double margin_px, double whole_pixels_per_unit) {
   std::array<glm::dvec3, 8> points;
   for (size_t corner = 0; corner < 8; ++corner) {

@@ -15,6 +15,9 @@ struct SmallPicture {
 /// At most kMostSmall_px wide and high. `surface` in render space.
 SmallPicture small_picture(const Surface& surface, const Camera& camera);
 
+/// Of a mesh without holes; `mesh` and `camera` in one space.
+SmallPicture small_picture(const TriangleMesh& mesh, const Camera& camera);
+
 /// True where nothing of a brick is seen in the picture, whatever stands off by `margin_px` of the whole one.
 bool is_hidden(const SmallPicture& picture, const Box& box, double margin_px, double whole_pixels_per_unit);
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
@@ -42,22 +45,49 @@ struct Raster {
   }
 };
 
+/// Of two pictures, one of which may not be begun.
+HiddenParts nearer(HiddenParts a, const HiddenParts& b) {
+  if (a.depth.empty()) return b;
+  for (size_t i = 0; i < b.depth.size(); ++i) a.depth[i] = std::min(a.depth[i], b.depth[i]);
+  return a;
+}
+
+/// Triangles whose vertices are at `pixels`: `vertices_of(i, k)` is the k-th vertex of the i-th. Parts of them are drawn side by side: the
+/// nearest depth of all is the same in any order.
+template <class VerticesOf>
+HiddenParts draw(std::span<const glm::dvec3> pixels, size_t count, const VerticesOf& vertices_of, const Camera& camera) {
+  const size_t size = static_cast<size_t>(camera.width_px) * static_cast<size_t>(camera.height_px);
+  const auto draw_part = [&](const IndexRange<size_t>& part, HiddenParts parts) {
+    if (parts.depth.empty()) parts = {camera.width_px, camera.height_px, std::vector(size, std::numeric_limits<float>::infinity())};
+    Raster raster{parts, camera.projection == Projection::perspective};
+    for (size_t i = part.first; i < part.last; ++i) {
+      const std::array points{pixels[vertices_of(i, 0)], pixels[vertices_of(i, 1)], pixels[vertices_of(i, 2)]};
+      if (!raster.pinhole || (points[0].z > 0.0 && points[1].z > 0.0 && points[2].z > 0.0)) raster.draw(points);
+    }
+    return parts;
+  };
+  // To clear another picture takes as long as to draw as many triangles as it has pixels.
+  return parallel_reduce(count, std::max(size, size_t{1}), HiddenParts{}, draw_part, nearer);
+}
+
+std::vector<glm::dvec3> projected(std::span<const glm::dvec3> positions, const Camera& camera) {
+  std::vector<glm::dvec3> pixels(positions.size());
+  parallel_parts(positions.size(), size_t{1} << 14, [&](const IndexRange<size_t>& part) {
+    for (size_t i = part.begin(); i < part.end(); ++i) pixels[i] = project(camera, positions[i]);
+  });
+  return pixels;
+}
+
 }  // namespace
 
 HiddenParts hidden_parts(const LocalTriangles& mesh, const Camera& camera) {
-  HiddenParts parts{camera.width_px, camera.height_px, {}};
-  parts.depth.assign(static_cast<size_t>(parts.width) * static_cast<size_t>(parts.height), std::numeric_limits<float>::infinity());
-  Raster raster{parts, camera.projection == Projection::perspective};
-  for (const LocalTriangle& triangle : mesh.triangles) {
-    std::array<glm::dvec3, 3> points{};
-    bool in_front = true;
-    for (size_t k = 0; k < 3; ++k) {
-      points[k] = project(camera, mesh.positions[triangle.vertices[k]]);
-      in_front = in_front && (!raster.pinhole || points[k].z > 0.0);
-    }
-    if (in_front) raster.draw(points);
-  }
-  return parts;
+  const auto vertices_of = [&](size_t i, size_t k) { return mesh.triangles[i].vertices[k]; };
+  return draw(projected(mesh.positions, camera), mesh.triangles.size(), vertices_of, camera);
+}
+
+HiddenParts hidden_parts(const TriangleMesh& mesh, const Camera& camera) {
+  const auto vertices_of = [&](size_t i, size_t k) { return mesh.triangles[i][static_cast<glm::length_t>(k)]; };
+  return draw(projected(mesh.positions, camera), mesh.triangles.size(), vertices_of, camera);
 }
 
 bool is_hidden(const HiddenParts& parts, std::span<const glm::dvec3> points, double margin_px, double margin) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "raymarch/local/local_triangles.h"
+#include "subdiv/mesh.h"
 
 namespace limn {
 
@@ -14,6 +15,7 @@ struct HiddenParts {
 };
 
 HiddenParts hidden_parts(const LocalTriangles& mesh, const Camera& camera);
+HiddenParts hidden_parts(const TriangleMesh& mesh, const Camera& camera);
 
 /// True where everything within `margin_px` of the points (pixels and depth, as project() gives them) is covered by what is nearer by at
 /// least `margin` world units.

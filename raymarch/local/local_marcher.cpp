@@ -71,14 +71,25 @@ Surface coarse_surface(const SurfacePart& whole, const LocalBrickSettings& setti
   return surface_of(whole, coarse, glm::dvec3(0.0));
 }
 
-/// With what hides what in the pictures: a field itself tells sooner than bricks of it, which would have to be made first.
+/// Draws what hides what in a picture. A field tells it itself, and so do the facets of a mesh that is closed: bricks would have to be made
+/// for that alone, as they are where a mesh has holes that its level set closes.
+std::function<SmallPicture(const Camera&)> hiding(const SurfacePart& whole, const LocalBrickSettings& settings) {
+  const auto traced = [](Surface surface) {
+    return [surface = std::move(surface)](const Camera& camera) { return small_picture(surface, camera); };
+  };
+  if (const Field* const field = std::get_if<Field>(&whole))
+    return traced(find_surface("analytic").build({.name = "whole", .source = *field}, {}, glm::dvec3(0.0)));
+  const MeshPart& mesh = std::get<MeshPart>(whole);
+  prepare_trees(mesh, settings.half_width_voxels);
+  if (mesh.body->length_of_holes() == 0.0 && mesh.body->warnings().empty())
+    return [body = mesh.body](const Camera& camera) { return small_picture(body->mesh(), camera); };
+  return traced(coarse_surface(whole, settings));
+}
+
 LocalBrickSettings with_hidden(const SurfacePart& whole, const LocalBrickSettings& settings) {
-  if (const MeshPart* const mesh = std::get_if<MeshPart>(&whole)) prepare_trees(*mesh, settings.half_width_voxels);
-  const Field* const field = std::get_if<Field>(&whole);
-  const Surface surface =
-      field ? find_surface("analytic").build({.name = "whole", .source = *field}, {}, glm::dvec3(0.0)) : coarse_surface(whole, settings);
+  const std::function<SmallPicture(const Camera&)> picture_of = hiding(whole, settings);
   LocalBrickSettings result = settings;
-  for (const Camera& camera : settings.local.cameras) result.hidden.push_back(small_picture(surface, camera));
+  for (const Camera& camera : settings.local.cameras) result.hidden.push_back(picture_of(camera));
   return result;
 }
 

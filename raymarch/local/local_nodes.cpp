@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "raymarch/level_set/quantise.h"
@@ -92,9 +93,8 @@ void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil
 /// How the nodes of one size are measured.
 struct Measure {
   const LocalChoice& choice;
-  double h = 0.0, half_width = 0.0;  ///< World.
+  NodeLattice lattice;
   float steps_per_unit = 0.0f;
-  bool smallest = false;
   const Larger* larger = nullptr;  ///< Null: nothing is taken from larger bricks.
 
   std::int16_t steps(double value) const { return quantised(static_cast<float>(value), steps_per_unit); }
@@ -143,7 +143,7 @@ struct AskedNodes {
 void ask_field(const NodeBlock& block, const Measure& measure, const LargerBeside* beside, AskedNodes& asked) {
   double at[3][8];
   for (int axis = 0; axis < 3; ++axis)
-    for (int k = 0; k < 8; ++k) at[axis][k] = measure.choice.origin[axis] + measure.h * static_cast<double>(block.origin[axis] + k);
+    for (int k = 0; k < 8; ++k) at[axis][k] = measure.choice.origin[axis] + measure.lattice.h * static_cast<double>(block.origin[axis] + k);
   for (size_t word = 0; word < 8; ++word) {
     const std::uint64_t pending = block.wanted[word] & ~block.known[word];
     asked.add(beside ? pending & ~beside->near_nodes(word) : pending, word, at);
@@ -164,10 +164,10 @@ void evaluate_field(DistanceEvaluator& distance, NodeBlock& block, const Measure
   ask_field(block, measure, beside ? &*beside : nullptr, asked);
   if (asked.points.count == 0) return;
   LaneNumbers distances;
-  signed_distances(distance, asked.points, measure.half_width, distances);
+  const double half_width = measure.lattice.half_width;
+  signed_distances(distance, asked.points, half_width, distances);
   std::array<float, kMostLanePoints> values;
-  for (size_t k = 0; k < asked.points.count; ++k)
-    values[k] = static_cast<float>(std::clamp(distances[k], -measure.half_width, measure.half_width));
+  for (size_t k = 0; k < asked.points.count; ++k) values[k] = static_cast<float>(std::clamp(distances[k], -half_width, half_width));
   if (beside)
     for (size_t k = 0; k < asked.points.count; ++k)
       values[k] = static_cast<float>(on_its_side(static_cast<double>(values[k]), node_of(block, asked.numbers[k]), *beside));
@@ -177,10 +177,10 @@ void evaluate_field(DistanceEvaluator& distance, NodeBlock& block, const Measure
 }
 
 /// All nodes of the block at once, as a uniform level set has them: the signs of some follow from others.
-void evaluate_mesh(const MeshPart& part, NodeBlock& block, const Measure& measure) {
+void evaluate_mesh(const MeshPart& part, NodeBlock& block, const Measure& measure, FilledBlocks& filled) {
   if (!block.measured) {
     std::array<float, 512> own;
-    block_distances(part, block.origin, measure.h, measure.half_width, measure.smallest, own);
+    block_distances(part, block.origin, measure.lattice, filled, own);
     for (size_t n = 0; n < 512; ++n)
       if ((block.known[n >> 6] >> (n & 63) & 1) == 0) block.steps[n] = quantised(own[n], measure.steps_per_unit);
     block.measured = true;
@@ -196,15 +196,47 @@ void evaluate_mesh(const MeshPart& part, NodeBlock& block, const Measure& measur
     });
 }
 
-void evaluate(std::optional<DistanceEvaluator>& distance, NodeBlock& block, const Measure& measure) {
-  if (const Field* field = std::get_if<Field>(block.part)) {
-    if (!distance || &distance->evaluator.field().program() != &field->program())
-      distance.emplace(*field, distance ? std::move(distance->scratch) : TapeScratch());
-    evaluate_field(*distance, block, measure);
-  } else {
-    evaluate_mesh(std::get<MeshPart>(*block.part), block, measure);
+/// Evaluates blocks one after the other, for one thread.
+class BlockEvaluator {
+ public:
+  explicit BlockEvaluator(const Measure& measure) : measure_(measure) {}
+
+  void evaluate(NodeBlock& block) {
+    if (const Field* const field = std::get_if<Field>(block.part)) {
+      if (!distance_ || &distance_->evaluator.field().program() != &field->program())
+        distance_.emplace(*field, distance_ ? std::move(distance_->scratch) : TapeScratch());
+      evaluate_field(*distance_, block, measure_);
+    } else {
+      evaluate_mesh(std::get<MeshPart>(*block.part), block, measure_, filled_);
+    }
+    for (size_t word = 0; word < 8; ++word) block.known[word] |= block.wanted[word];
   }
-  for (size_t word = 0; word < 8; ++word) block.known[word] |= block.wanted[word];
+
+ private:
+  const Measure& measure_;
+  std::optional<DistanceEvaluator> distance_{};
+  FilledBlocks filled_{};  ///< Of a mesh.
+};
+
+/// Of a mesh one block tells the next on which side of it nodes lie: by x, y and z. Those of a field stay beside the bricks that they came
+/// with, whose part of the field they ask.
+std::vector<size_t> order_of(const NodeBlocks& blocks) {
+  std::vector<size_t> order(blocks.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  if (blocks.empty() || std::holds_alternative<Field>(*blocks[0].part)) return order;
+  std::vector<std::uint64_t> keys(blocks.size());
+  for (size_t i = 0; i < blocks.size(); ++i) keys[i] = key_of(blocks[i].origin);
+  parallel_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return keys[a] < keys[b]; });
+  return order;
+}
+
+void evaluate_all(NodeBlocks& blocks, const Measure& measure) {
+  const std::vector<size_t> order = order_of(blocks);
+  const size_t at_once = std::clamp(order.size() / 64, size_t{16}, size_t{512});
+  parallel_parts(order.size(), at_once, [&](const IndexRange<size_t>& range) {
+    BlockEvaluator evaluator(measure);
+    for (size_t i = range.begin(); i < range.end(); ++i) evaluator.evaluate(blocks[order[i]]);
+  });
 }
 
 }  // namespace
@@ -266,18 +298,14 @@ std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientD
     nodes.steps_per_unit = static_cast<float>(32767.0 / half_width);
     Larger larger;
     if (level + 1 < levels.size()) larger = larger_of(levels[level + 1], choice.step(level), choice.levels[level + 1], h);
-    const auto evaluate_all = [&](const Larger* with) {
-      const Measure measure{choice, h, half_width, nodes.steps_per_unit, choice.doublings[level] == 0, with};
-      parallel_parts(nodes.blocks.size(), size_t{16}, [&](const IndexRange<size_t>& range) {
-        std::optional<DistanceEvaluator> distance;
-        for (size_t i = range.begin(); i < range.end(); ++i) evaluate(distance, nodes.blocks[i], measure);
-      });
-    };
+    Measure measure{.choice = choice, .lattice = {h, half_width, choice.doublings[level] == 0}, .steps_per_unit = nodes.steps_per_unit};
+    if (larger.nodes && !choice.levels[level + 1].empty()) measure.larger = &larger;
     for (const LocalBrick& brick : bricks) want_brick(brick, nodes);
-    evaluate_all(larger.nodes && !choice.levels[level + 1].empty() ? &larger : nullptr);
+    evaluate_all(nodes.blocks, measure);
     // Stencils read the surface's own values beyond the brick: they are nearer to the surface's normals than a larger brick's interpolant.
     want_stencils(bricks, gradient.stencil, nodes);
-    evaluate_all(nullptr);
+    measure.larger = nullptr;
+    evaluate_all(nodes.blocks, measure);
   }
   return levels;
 }

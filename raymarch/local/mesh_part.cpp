@@ -135,9 +135,10 @@ void prepare_trees(const MeshPart& part, double half_width_voxels) {
   if (half_width_voxels > kScatterReach_voxels || part.body->mesh().triangles.size() > kManyTriangles) part.body->tree();
 }
 
-void block_distances(const MeshPart& part, const glm::ivec3& origin, double h, double half_width, bool smallest,
+void block_distances(const MeshPart& part, const glm::ivec3& origin, const NodeLattice& lattice, FilledBlocks& filled,
                      std::array<float, 512>& values) {
   const MeshBody& body = *part.body;
+  const auto [h, half_width, smallest] = lattice;
   bool by_tree = half_width > kScatterReach_voxels * h;
   std::vector<std::uint32_t> near;
   if (!by_tree) {
@@ -151,7 +152,7 @@ void block_distances(const MeshPart& part, const glm::ivec3& origin, double h, d
   else
     band_distances(body.mesh(), near, origin, h, half_width, distances);
   LevelSetBlock block;
-  fill_block(origin, distances, {.winding = body.winding(), .triangles = near}, {h, half_width, 0.0}, block);
+  fill_block(origin, distances, {.winding = body.winding(), .triangles = near, .filled = &filled}, {h, half_width, 0.0}, block);
   std::copy_n(block.values, 512, values.begin());
 }
 

@@ -3,13 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <numeric>
-#include <optional>
 
-#include "raymarch/level_set/quantise.h"
-#include "raymarch/local/larger_bricks.h"
-#include "raymarch/local/mesh_part.h"
-#include "sdf/level_set_distance.h"
+#include "raymarch/local/node_measure.h"
 #include "sdf/level_set_nano.h"
 #include "sdf/parallel.h"
 
@@ -90,155 +85,6 @@ void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil
   }
 }
 
-/// How the nodes of one size are measured.
-struct Measure {
-  const LocalChoice& choice;
-  NodeLattice lattice;
-  float steps_per_unit = 0.0f;
-  const Larger* larger = nullptr;  ///< Null: nothing is taken from larger bricks.
-
-  std::int16_t steps(double value) const { return quantised(static_cast<float>(value), steps_per_unit); }
-};
-
-glm::ivec3 node_of(const NodeBlock& block, int n) { return block.origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7); }
-
-/// Calls `visit(n)` for each node of a word of bits, `word` of eight.
-template <class Visit>
-void for_each_bit(std::uint64_t bits, size_t word, const Visit& visit) {
-  for (; bits != 0; bits &= bits - 1) visit(static_cast<int>(word) << 6 | std::countr_zero(bits));
-}
-
-std::optional<LargerBeside> larger_beside(const Measure& measure, const NodeBlock& block) {
-  std::optional<LargerBeside> beside;
-  if (measure.larger) beside.emplace(*measure.larger, block.origin);
-  if (beside && !beside->any()) beside.reset();
-  return beside;
-}
-
-/// The surface's own value, or the larger bricks': cells far from their surface must not meet it on their faces, where it would end.
-/// Creases that larger voxels round off reach so far.
-double on_its_side(double value, const glm::ivec3& node, LargerBeside& beside) {
-  return beside.on_other_side(node, value < 0.0) ? beside.interpolated(node) : value;
-}
-
-/// Nodes of a block that the surface is asked for.
-struct AskedNodes {
-  LanePoints points;
-  std::array<std::uint16_t, kMostLanePoints> numbers;  ///< Of the nodes in their block.
-
-  /// The nodes of a word, row by row along z.
-  void add(std::uint64_t bits, size_t word, const double (&at)[3][8]) {
-    for (size_t y = 0; y < 8; ++y, bits >>= 8) {
-      const auto first = static_cast<std::uint16_t>(word << 6 | y << 3);
-      for (std::uint32_t row = bits & 0xff; row != 0; row &= row - 1) {
-        const auto z = static_cast<size_t>(std::countr_zero(row));
-        numbers[points.count] = static_cast<std::uint16_t>(first + z);
-        points.add({at[0][word], at[1][y], at[2][z]});
-      }
-    }
-  }
-};
-
-/// What a larger brick tells is not asked of the field.
-void ask_field(const NodeBlock& block, const Measure& measure, const LargerBeside* beside, AskedNodes& asked) {
-  double at[3][8];
-  for (int axis = 0; axis < 3; ++axis)
-    for (int k = 0; k < 8; ++k) at[axis][k] = measure.choice.origin[axis] + measure.lattice.h * static_cast<double>(block.origin[axis] + k);
-  for (size_t word = 0; word < 8; ++word) {
-    const std::uint64_t pending = block.wanted[word] & ~block.known[word];
-    asked.add(beside ? pending & ~beside->near_nodes(word) : pending, word, at);
-  }
-  asked.points.fill_up();
-}
-
-void take_from_larger(NodeBlock& block, const Measure& measure, LargerBeside& beside) {
-  for (size_t word = 0; word < 8; ++word)
-    for_each_bit(block.wanted[word] & ~block.known[word] & beside.near_nodes(word), word,
-                 [&](int n) { block.steps[static_cast<size_t>(n)] = measure.steps(beside.interpolated(node_of(block, n))); });
-}
-
-void evaluate_field(DistanceEvaluator& distance, NodeBlock& block, const Measure& measure) {
-  std::optional<LargerBeside> beside = larger_beside(measure, block);
-  if (beside) take_from_larger(block, measure, *beside);
-  AskedNodes asked;
-  ask_field(block, measure, beside ? &*beside : nullptr, asked);
-  if (asked.points.count == 0) return;
-  LaneNumbers distances;
-  const double half_width = measure.lattice.half_width;
-  signed_distances(distance, asked.points, half_width, distances);
-  std::array<float, kMostLanePoints> values;
-  for (size_t k = 0; k < asked.points.count; ++k) values[k] = static_cast<float>(std::clamp(distances[k], -half_width, half_width));
-  if (beside)
-    for (size_t k = 0; k < asked.points.count; ++k)
-      values[k] = static_cast<float>(on_its_side(static_cast<double>(values[k]), node_of(block, asked.numbers[k]), *beside));
-  std::array<std::int16_t, kMostLanePoints> steps;
-  quantise(std::span(values).first(asked.points.count), measure.steps_per_unit, steps.data());
-  for (size_t k = 0; k < asked.points.count; ++k) block.steps[asked.numbers[k]] = steps[k];
-}
-
-/// All nodes of the block at once, as a uniform level set has them: the signs of some follow from others.
-void evaluate_mesh(const MeshPart& part, NodeBlock& block, const Measure& measure, FilledBlocks& filled) {
-  if (!block.measured) {
-    std::array<float, 512> own;
-    block_distances(part, block.origin, measure.lattice, filled, own);
-    for (size_t n = 0; n < 512; ++n)
-      if ((block.known[n >> 6] >> (n & 63) & 1) == 0) block.steps[n] = quantised(own[n], measure.steps_per_unit);
-    block.measured = true;
-  }
-  std::optional<LargerBeside> beside = larger_beside(measure, block);
-  if (!beside) return;
-  take_from_larger(block, measure, *beside);
-  for (size_t word = 0; word < 8; ++word)
-    for_each_bit(block.wanted[word] & ~block.known[word] & ~beside->near_nodes(word), word, [&](int n) {
-      std::int16_t& steps = block.steps[static_cast<size_t>(n)];
-      if (const glm::ivec3 node = node_of(block, n); beside->on_other_side(node, steps < 0))
-        steps = measure.steps(beside->interpolated(node));
-    });
-}
-
-/// Evaluates blocks one after the other, for one thread.
-class BlockEvaluator {
- public:
-  explicit BlockEvaluator(const Measure& measure) : measure_(measure) {}
-
-  void evaluate(NodeBlock& block) {
-    if (const Field* const field = std::get_if<Field>(block.part)) {
-      if (!distance_ || &distance_->evaluator.field().program() != &field->program())
-        distance_.emplace(*field, distance_ ? std::move(distance_->scratch) : TapeScratch());
-      evaluate_field(*distance_, block, measure_);
-    } else {
-      evaluate_mesh(std::get<MeshPart>(*block.part), block, measure_, filled_);
-    }
-    for (size_t word = 0; word < 8; ++word) block.known[word] |= block.wanted[word];
-  }
-
- private:
-  const Measure& measure_;
-  std::optional<DistanceEvaluator> distance_{};
-  FilledBlocks filled_{};  ///< Of a mesh.
-};
-
-/// Of a mesh one block tells the next on which side of it nodes lie: by x, y and z. Those of a field stay beside the bricks that they came
-/// with, whose part of the field they ask.
-std::vector<size_t> order_of(const NodeBlocks& blocks) {
-  std::vector<size_t> order(blocks.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  if (blocks.empty() || std::holds_alternative<Field>(*blocks[0].part)) return order;
-  std::vector<std::uint64_t> keys(blocks.size());
-  for (size_t i = 0; i < blocks.size(); ++i) keys[i] = key_of(blocks[i].origin);
-  parallel_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return keys[a] < keys[b]; });
-  return order;
-}
-
-void evaluate_all(NodeBlocks& blocks, const Measure& measure) {
-  const std::vector<size_t> order = order_of(blocks);
-  const size_t at_once = std::clamp(order.size() / 64, size_t{16}, size_t{512});
-  parallel_parts(order.size(), at_once, [&](const IndexRange<size_t>& range) {
-    BlockEvaluator evaluator(measure);
-    for (size_t i = range.begin(); i < range.end(); ++i) evaluator.evaluate(blocks[order[i]]);
-  });
-}
-
 }  // namespace
 
 void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeSteps& steps) {
@@ -298,14 +144,14 @@ std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientD
     nodes.steps_per_unit = static_cast<float>(32767.0 / half_width);
     Larger larger;
     if (level + 1 < levels.size()) larger = larger_of(levels[level + 1], choice.step(level), choice.levels[level + 1], h);
-    Measure measure{.choice = choice, .lattice = {h, half_width, choice.doublings[level] == 0}, .steps_per_unit = nodes.steps_per_unit};
+    NodeMeasure measure{.choice = choice, .lattice = {h, half_width, choice.doublings[level] == 0}, .steps_per_unit = nodes.steps_per_unit};
     if (larger.nodes && !choice.levels[level + 1].empty()) measure.larger = &larger;
     for (const LocalBrick& brick : bricks) want_brick(brick, nodes);
-    evaluate_all(nodes.blocks, measure);
+    measure_wanted(nodes.blocks, measure);
     // Stencils read the surface's own values beyond the brick: they are nearer to the surface's normals than a larger brick's interpolant.
     want_stencils(bricks, gradient.stencil, nodes);
     measure.larger = nullptr;
-    evaluate_all(nodes.blocks, measure);
+    measure_wanted(nodes.blocks, measure);
   }
   return levels;
 }

@@ -126,7 +126,7 @@ HWY_INLINE V3 moved(const V3& at, const V3& direction, VF t) {
 /// cell and the next go on from each other. `side`: the sign of the values before the trilinear root, from which the value falls (towards
 /// the other sign). A ray that grazes is taken to fall a sixteenth as steeply as it could: the step's theory is of first order. Where it
 /// rises, which at sharp edges it may, it has no root near here to go to: the step, however long it may be, fades out, and jumps nowhere
-/// between. Faded before it is cut off it would go from a quarter of a voxel to none within a hundredth of how far rays lie apart.
+/// between. Faded before it is cut off it would go from a quarter of a voxel to none within a few thousandths of one.
 HWY_INLINE VF newton_step(VF value, const V3& gradient, const V3& direction, VF side) {
   const V3 product{hn::Mul(gradient.x, direction.x), hn::Mul(gradient.y, direction.y), hn::Mul(gradient.z, direction.z)};
   const VF fall = hn::Neg(hn::Mul(side, hn::Add(hn::Add(product.x, product.y), product.z)));

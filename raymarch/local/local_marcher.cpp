@@ -62,7 +62,7 @@ Surface surface_of(const SurfacePart& whole, const LocalBrickSettings& settings,
   return surface;
 }
 
-/// Bricks as fine as any part of the mesh has to be.
+/// Bricks as fine as any part of the surface has to be.
 Surface coarse_surface(const SurfacePart& whole, const LocalBrickSettings& settings) {
   LocalBrickSettings coarse = settings;
   coarse.border = false;
@@ -71,14 +71,19 @@ Surface coarse_surface(const SurfacePart& whole, const LocalBrickSettings& setti
   return surface_of(whole, coarse, glm::dvec3(0.0));
 }
 
+/// For more pictures than this bricks that are made once are quicker than to ask a field for each.
+constexpr size_t kFewPictures = 32;
+
 /// Draws what hides what in a picture. A field tells it itself, and so do the facets of a mesh that is closed: bricks would have to be made
-/// for that alone, as they are where a mesh has holes that its level set closes.
+/// for that alone, as they are for many pictures and where a mesh has holes that its level set closes.
 std::function<SmallPicture(const Camera&)> hiding(const SurfacePart& whole, const LocalBrickSettings& settings) {
   const auto traced = [](Surface surface) {
     return [surface = std::move(surface)](const Camera& camera) { return small_picture(surface, camera); };
   };
-  if (const Field* const field = std::get_if<Field>(&whole))
+  if (const Field* const field = std::get_if<Field>(&whole)) {
+    if (settings.local.cameras.size() > kFewPictures) return traced(coarse_surface(whole, settings));
     return traced(find_surface("analytic").build({.name = "whole", .source = *field}, {}, glm::dvec3(0.0)));
+  }
   const MeshPart& mesh = std::get<MeshPart>(whole);
   prepare_trees(mesh, settings.half_width_voxels);
   if (mesh.body->length_of_holes() == 0.0 && mesh.body->warnings().empty())

@@ -197,17 +197,15 @@ void fill_signs(const LevelSetBlock& block, float background, float* to) {
   }
 }
 
-void write_leaf(const LevelSetBlock& block, float background, const InsideAt& inside_at, Leaf& leaf) {
+void write_leaf(const LevelSetBlock& block, float background, bool has_signs, Leaf& leaf) {
   auto& data = *leaf.data();
   clear_head(data, data.mValues);
   data.setOrigin(coord(origin_of(block.origin, kLeafSide)));
   for (int word = 0; word < 8; ++word) data.mValueMask.getWord<std::uint64_t>(word) = block.active[word];
-  if (inside_at) {
+  if (has_signs) {
     std::copy(std::begin(block.values), std::end(block.values), data.mValues);
-    const glm::ivec3 origin = origin_of(block.origin, kLeafSide);
     for (std::uint32_t n = 0; n < Leaf::SIZE; ++n)
-      if (!data.mValueMask.isOn(n))
-        data.mValues[n] = inside_at(glm::dvec3(origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7))) ? -background : background;
+      if (!data.mValueMask.isOn(n)) data.mValues[n] = block.values[n] < 0.0f ? -background : background;
     return;
   }
   fill_signs(block, background, data.mValues);
@@ -332,7 +330,7 @@ nanovdb::GridHandle<nanovdb::HostBuffer> grid_of(std::vector<Place> places, size
   for (size_t i = 0; i < layout.leaves.size(); ++i) leaf_of[layout.leaves[i].index] = i;
   parallel_parts(count, size_t{1}, [&](const IndexRange<size_t>& part) {
     fill(part, [&](size_t i, const LevelSetBlock& block) {
-      if (leaf_of[i] != kNone) write_leaf(block, background, inside, layout.leaf(leaf_of[i]));
+      if (leaf_of[i] != kNone) write_leaf(block, background, inside != nullptr, layout.leaf(leaf_of[i]));
     });
   });
   parallel_for(size_t{0}, layout.lowers.size(), [&](size_t i) {

@@ -19,7 +19,8 @@ inline bool has_active_node(const LevelSetBlock& block) {
 
 /// What nanovdb::openToNanoVDB makes of an OpenVDB tree with these leaves, flood-filled (signedFloodFill): the same nodes in the same
 /// order with the same values. Blocks without active nodes are left out; of several with one origin the last counts.
-/// `inside`, where given, tells the sign of what is not active instead, at a place in index coordinates: for bands that are patches.
+/// `inside`, where given, tells the sign of tiles instead, at a place in index coordinates, and nodes that are not active keep that of the
+/// block's value: for bands that are patches.
 nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const LevelSetBlock> blocks, float background,
                                                    const std::function<bool(const glm::dvec3&)>& inside = {});
 

@@ -120,10 +120,8 @@ Surface local_level_set(const SurfacePart& whole, const LocalBrickSettings& sett
 
 std::vector<LevelSet> local_level_set_grids(const SurfacePart& whole, const LocalBrickSettings& settings, const std::string& name,
                                             const glm::dvec3& part_origin) {
-  LocalChoice choice = choose_bricks(whole, with_hidden(whole, settings));
+  const LocalChoice choice = choose_bricks(whole, with_hidden(whole, settings));
   const std::vector<LevelNodes> levels = sample_bricks(choice, *settings.gradient, settings.half_width_voxels);
-  choice.origin += part_origin;
-  const auto inside = [&](const glm::dvec3& place) { return PartEvaluator(whole).is_inside(place - part_origin); };
   std::vector<size_t> there;
   for (size_t level = 0; level < levels.size(); ++level)
     if (has_both_signs(levels[level])) there.push_back(level);
@@ -137,8 +135,9 @@ std::vector<LevelSet> local_level_set_grids(const SurfacePart& whole, const Loca
                    .half_width = settings.half_width_voxels * choice.voxel_of(level),
                    .bounds = {bounds.lower + part_origin, bounds.upper + part_origin}};
     for (const LocalBrick& brick : choice.levels[level]) said.bricks.push_back(brick.place);
-    grids.push_back(level_set_of(levels[level], choice, level, settings.half_width_voxels, name + "_" + std::to_string(level), inside,
-                                 local_metadata(said)));
+    const FiledLevel filed{[&](const glm::dvec3& place) { return PartEvaluator(whole).is_inside(place); }, local_metadata(said),
+                           part_origin};
+    grids.push_back(level_set_of(levels[level], choice, level, settings.half_width_voxels, name + "_" + std::to_string(level), &filed));
   }
   return grids;
 }

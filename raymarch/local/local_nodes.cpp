@@ -156,38 +156,46 @@ std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientD
   return levels;
 }
 
+namespace {
+
+/// What is not known has a value of `sides`' sign; without these its neighbours will tell it.
+LevelSetBlock filed_block(const LevelNodes& nodes, const NodeBlock& block, NodeSides* sides) {
+  LevelSetBlock filed;
+  filed.origin = block.origin;
+  std::copy_n(block.known.begin(), 8, filed.active);
+  std::array<std::uint64_t, 8> inside{};
+  if (sides) inside = sides->inside(block);
+  for (size_t n = 0; n < 512; ++n) {
+    const bool known = (block.known[n >> 6] >> (n & 63) & 1) != 0;
+    filed.values[n] = known ? nodes.value_of(block.steps[n]) : (inside[n >> 6] >> (n & 63) & 1) != 0 ? -1.0f : 0.0f;
+  }
+  return filed;
+}
+
+}  // namespace
+
 LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels, const std::string& name,
-                      const std::function<bool(const glm::dvec3&)>& signs, const std::optional<GridMetadata>& said) {
-  std::vector<LevelSetBlock> blocks(nodes.blocks.size());
-  parallel_for(size_t{0}, blocks.size(), [&](size_t i) {
-    blocks[i].origin = nodes.blocks[i].origin;
-    std::copy_n(nodes.blocks[i].known.begin(), 8, blocks[i].active);
-    // What is not known is given a sign by its neighbours.
-    for (size_t n = 0; n < 512; ++n)
-      blocks[i].values[n] = (nodes.blocks[i].known[n >> 6] >> (n & 63) & 1) != 0 ? nodes.value_of(nodes.blocks[i].steps[n]) : 0.0f;
-  });
+                      const FiledLevel* filed) {
   const double h = choice.voxel_of(level);
+  std::vector<LevelSetBlock> blocks(nodes.blocks.size());
+  parallel_parts(blocks.size(), size_t{16}, [&](const IndexRange<size_t>& range) {
+    NodeSides sides(choice.origin, h);
+    for (size_t i = range.begin(); i < range.end(); ++i) blocks[i] = filed_block(nodes, nodes.blocks[i], filed ? &sides : nullptr);
+  });
   auto data = std::make_shared<LevelSetData>();
   std::function<bool(const glm::dvec3&)> inside;
-  // A mesh's blocks have been measured as a whole.
-  const auto lies_inside = [&](const glm::dvec3& place) {
-    const glm::ivec3 node(glm::round(place));
-    const size_t number = nodes.at.find(key_of(block_of(node)));
-    if (number != KeyNumbers::kNone && nodes.blocks[number].measured) return nodes.blocks[number].steps[place_in_block(node)] < 0;
-    return signs(choice.origin + h * place);
-  };
-  if (signs) inside = lies_inside;
+  if (filed) inside = [&](const glm::dvec3& place) { return filed->inside(choice.origin + h * place); };
   data->handle = nano_grid(blocks, static_cast<float>(half_width_voxels * h), inside);
   data->grid = data->handle.grid<float>();
   data->info.name = name;
-  data->info.world_from_index = {glm::dmat3(h), choice.origin};
+  data->info.world_from_index = {glm::dmat3(h), choice.origin + (filed ? filed->part_origin : glm::dvec3(0.0))};
   data->info.voxel_size = h;
   data->info.half_width_voxels = half_width_voxels;
   data->info.active_voxels = nodes.known();
   data->info.bytes = static_cast<std::int64_t>(data->handle.size());
   data->index_from_world = inverse(data->info.world_from_index);
   data->per_voxel = h;
-  if (said) data->file.metadata.push_back(*said);
+  if (filed) data->file.metadata.push_back(filed->said);
   return LevelSet(data);
 }
 

@@ -41,9 +41,15 @@ void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeSteps& st
 /// is near, and else its sign: on the face between two sizes both sides have the same surface, without a crack.
 std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient, double half_width_voxels);
 
-/// The level's nodes as an ordinary level set. `signs`, where given, tells whether a place (of the choice's space) lies inside: what is not
-/// known has its sign from there. `said` goes into its file.
+/// What the grid of a file has besides.
+struct FiledLevel {
+  std::function<bool(const glm::dvec3&)> inside{};  ///< Whether a place of the bricks' parts (see SurfacePart) lies inside.
+  GridMetadata said{};                              ///< Goes into the file.
+  glm::dvec3 part_origin{0.0};                      ///< Where that space's origin stands in the world.
+};
+
+/// The level's nodes as an ordinary level set. Where it is filed what is not known has its sign from the surface, else from its neighbours.
 LevelSet level_set_of(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels, const std::string& name,
-                      const std::function<bool(const glm::dvec3&)>& signs = {}, const std::optional<GridMetadata>& said = {});
+                      const FiledLevel* filed = nullptr);
 
 }  // namespace limn

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "raymarch/level_set/quantise.h"
-#include "sdf/level_set_distance.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -33,19 +32,29 @@ double on_its_side(double value, const glm::ivec3& node, LargerBeside& beside) {
   return beside.on_other_side(node, value < 0.0) ? beside.interpolated(node) : value;
 }
 
+/// Where the nodes of a block stand along each axis.
+struct NodePlaces {
+  double at[3][8];
+
+  NodePlaces(const glm::dvec3& origin, double h, const glm::ivec3& first) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int k = 0; k < 8; ++k) at[axis][k] = origin[axis] + h * static_cast<double>(first[axis] + k);
+  }
+};
+
 /// Nodes of a block that the surface is asked for.
 struct AskedNodes {
   LanePoints points;
   std::array<std::uint16_t, kMostLanePoints> numbers;  ///< Of the nodes in their block.
 
   /// The nodes of a word, row by row along z.
-  void add(std::uint64_t bits, size_t word, const double (&at)[3][8]) {
+  void add(std::uint64_t bits, size_t word, const NodePlaces& places) {
     for (size_t y = 0; y < 8; ++y, bits >>= 8) {
       const auto first = static_cast<std::uint16_t>(word << 6 | y << 3);
       for (std::uint32_t row = bits & 0xff; row != 0; row &= row - 1) {
         const auto z = static_cast<size_t>(std::countr_zero(row));
         numbers[points.count] = static_cast<std::uint16_t>(first + z);
-        points.add({at[0][word], at[1][y], at[2][z]});
+        points.add({places.at[0][word], places.at[1][y], places.at[2][z]});
       }
     }
   }
@@ -53,12 +62,10 @@ struct AskedNodes {
 
 /// What a larger brick tells is not asked of the field.
 void ask_field(const NodeBlock& block, const NodeMeasure& measure, const LargerBeside* beside, AskedNodes& asked) {
-  double at[3][8];
-  for (int axis = 0; axis < 3; ++axis)
-    for (int k = 0; k < 8; ++k) at[axis][k] = measure.choice.origin[axis] + measure.lattice.h * static_cast<double>(block.origin[axis] + k);
+  const NodePlaces places(measure.choice.origin, measure.lattice.h, block.origin);
   for (size_t word = 0; word < 8; ++word) {
     const std::uint64_t pending = block.wanted[word] & ~block.known[word];
-    asked.add(beside ? pending & ~beside->near_nodes(word) : pending, word, at);
+    asked.add(beside ? pending & ~beside->near_nodes(word) : pending, word, places);
   }
   asked.points.fill_up();
 }
@@ -108,6 +115,12 @@ void evaluate_mesh(const MeshPart& part, NodeBlock& block, const NodeMeasure& me
     });
 }
 
+/// Neighbouring blocks often share a field, and so what evaluates it.
+void turn_to(const Field& field, std::optional<DistanceEvaluator>& distance) {
+  if (!distance || &distance->evaluator.field().program() != &field.program())
+    distance.emplace(field, distance ? std::move(distance->scratch) : TapeScratch());
+}
+
 /// Evaluates blocks one after the other, for one thread.
 class BlockEvaluator {
  public:
@@ -115,8 +128,7 @@ class BlockEvaluator {
 
   void evaluate(NodeBlock& block) {
     if (const Field* const field = std::get_if<Field>(block.part)) {
-      if (!distance_ || &distance_->evaluator.field().program() != &field->program())
-        distance_.emplace(*field, distance_ ? std::move(distance_->scratch) : TapeScratch());
+      turn_to(*field, distance_);
       evaluate_field(*distance_, block, measure_);
     } else {
       evaluate_mesh(std::get<MeshPart>(*block.part), block, measure_, filled_);
@@ -151,6 +163,25 @@ void measure_wanted(NodeBlocks& blocks, const NodeMeasure& measure) {
     BlockEvaluator evaluator(measure);
     for (size_t i = range.begin(); i < range.end(); ++i) evaluator.evaluate(blocks[order[i]]);
   });
+}
+
+std::array<std::uint64_t, 8> NodeSides::inside(const NodeBlock& block) {
+  std::array<std::uint64_t, 8> bits{};
+  if (block.measured) {
+    for (size_t n = 0; n < 512; ++n) bits[n >> 6] |= std::uint64_t{block.steps[n] < 0} << (n & 63);
+    return bits;
+  }
+  const Field& field = std::get<Field>(*block.part);
+  turn_to(field, distance_);
+  AskedNodes asked;
+  const NodePlaces places(origin_, h_, block.origin);
+  for (size_t word = 0; word < 8; ++word) asked.add(~block.known[word], word, places);
+  if (asked.points.count == 0) return bits;
+  asked.points.fill_up();
+  LaneNumbers values;
+  field_values(*distance_, asked.points, values);
+  for (size_t k = 0; k < asked.points.count; ++k) bits[asked.numbers[k] >> 6] |= std::uint64_t{values[k] < 0.0} << (asked.numbers[k] & 63);
+  return bits;
 }
 
 }  // namespace limn

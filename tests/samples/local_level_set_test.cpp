@@ -271,6 +271,37 @@ TEST(LocalLevelSet, ItsGridsHoldTheFieldsDistancesAndItsSigns) {
   }
 }
 
+/// Nodes beside the bricks, far from the surface or not, and also where the scene lies far from its own origin.
+TEST(LocalLevelSet, NodesOfItsGridsThatHoldNoDistanceAreOnTheFieldsSide) {
+  for (const char* name : {"tilted_torus", "machined_part"}) {
+    Scene scene = find_scene(name)->make();
+    const Field field = translate(std::get<Field>(scene.objects.front().source), {40.0, -7.0, 3.0});
+    scene.objects.front().source = field;
+    const std::vector<LevelSet> grids =
+        local_level_sets(scene, {.kind = "level_set", .voxels = 256}, {{camera_of(scene, 0, 4, {300, 300})}, kFinest_px, {0.4}});
+    FieldEvaluator evaluator(field);
+    int inside = 0, outside = 0, wrong = 0;
+    for (const LevelSet& grid : grids) {
+      const auto& tree = grid.data().grid->tree();
+      for (std::uint32_t leaf = 0; leaf < tree.nodeCount(0); ++leaf) {
+        const auto& nodes = tree.getFirstNode<0>()[leaf];
+        for (std::uint32_t n = 0; n < 512; n += 7) {
+          if (nodes.isActive(n)) continue;
+          const nanovdb::Coord at = nodes.offsetToGlobalCoord(n);
+          const double value = evaluator.value(grid.info().world_from_index.point({at[0], at[1], at[2]}));
+          // The grid's own space rounds otherwise.
+          if (std::abs(value) < 1e-9) continue;
+          ++(value < 0.0 ? inside : outside);
+          wrong += (nodes.getValue(n) < 0.0f) != (value < 0.0);
+        }
+      }
+    }
+    EXPECT_GT(inside, 1000) << name;
+    EXPECT_GT(outside, 1000) << name;
+    EXPECT_EQ(wrong, 0) << name;
+  }
+}
+
 TEST(LocalLevelSet, WhatHasNoFieldIsRefusedWithWhatWouldWork) {
   const Scene scene = find_scene("teacup")->make();
   try {

@@ -16,7 +16,8 @@ import sys
 import tempfile
 import time
 
-STUDY = ["--size", "160x120", "--levels", "0..3", "--voxels", "16,32", "--views", "2"]
+# Long enough that a task can be killed between its first rows, which are written once a second, and its last.
+STUDY = ["--size", "160x120", "--levels", "0..3", "--voxels", "16,32", "--views", "8"]
 SHARDS = 3
 
 

@@ -37,6 +37,11 @@ bool has_tape(DistanceEvaluator& distance) {
 
 }  // namespace
 
+void turn_to(const Field& field, std::optional<DistanceEvaluator>& distance) {
+  if (distance && &distance->evaluator.field().program() == &field.program()) return;
+  distance.emplace(field, distance ? std::move(distance->scratch) : TapeScratch());
+}
+
 void field_values(DistanceEvaluator& distance, const LanePoints& points, LaneNumbers& values) {
   if (has_tape(distance)) return tape_values_at(*distance.tape, points, distance.scratch, values);
   std::array<glm::dvec3, kMostLanePoints> places;

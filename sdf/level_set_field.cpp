@@ -227,15 +227,12 @@ ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, 
   return find_thin_places(distance, nodes.firsts(), nodes.points, nodes.distances, lattice.h);
 }
 
-/// Calls `visit(i, evaluator)` for a part of the cubes. Neighbours often share a field, and so what evaluates it.
+/// Calls `visit(i, evaluator)` for a part of the cubes.
 template <class Visit>
 void for_each_cube(std::span<const Cube> cubes, const IndexRange<size_t>& part, const Visit& visit) {
   std::optional<DistanceEvaluator> distance;
   for (size_t i = part.first; i < part.last; ++i) {
-    if (!distance || &distance->evaluator.field().program() != &cubes[i].field.program()) {
-      // A quarter of a megabyte that would be cleared when taken.
-      distance.emplace(cubes[i].field, distance ? std::move(distance->scratch) : TapeScratch());
-    }
+    turn_to(cubes[i].field, distance);
     visit(i, *distance);
   }
 }

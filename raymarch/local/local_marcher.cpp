@@ -104,7 +104,7 @@ bool has_both_signs(const LevelNodes& nodes) {
   for (size_t i = 0; i < nodes.blocks.size(); ++i) {
     const NodeBlock& block = nodes.blocks[i];
     for (size_t n = 0; n < 512; ++n)
-      if ((block.known[n >> 6] >> (n & 63) & 1) != 0) (block.steps[n] < 0 ? inside : outside) = true;
+      if (block.is_known(n)) (block.steps[n] < 0 ? inside : outside) = true;
   }
   return inside && outside;
 }
@@ -126,6 +126,12 @@ std::vector<LevelSet> local_level_set_grids(const SurfacePart& whole, const Loca
   for (size_t level = 0; level < levels.size(); ++level)
     if (has_both_signs(levels[level])) there.push_back(level);
   const Box bounds = bounds_of(whole);
+  // Beyond the bounds, which hold the surface, all is on one side.
+  const bool beyond = PartEvaluator(whole).is_inside(bounds.upper + bounds.longest_side());
+  const auto inside = [&](const glm::dvec3& place) {
+    const bool within = glm::all(glm::greaterThanEqual(place, bounds.lower)) && glm::all(glm::lessThanEqual(place, bounds.upper));
+    return within ? PartEvaluator(whole).is_inside(place) : beyond;
+  };
   std::vector<LevelSet> grids;
   for (const size_t level : there) {
     LocalGrid said{.object = name,
@@ -135,8 +141,7 @@ std::vector<LevelSet> local_level_set_grids(const SurfacePart& whole, const Loca
                    .half_width = settings.half_width_voxels * choice.voxel_of(level),
                    .bounds = {bounds.lower + part_origin, bounds.upper + part_origin}};
     for (const LocalBrick& brick : choice.levels[level]) said.bricks.push_back(brick.place);
-    const FiledLevel filed{[&](const glm::dvec3& place) { return PartEvaluator(whole).is_inside(place); }, local_metadata(said),
-                           part_origin};
+    const FiledLevel filed{inside, local_metadata(said), part_origin};
     grids.push_back(level_set_of(levels[level], choice, level, settings.half_width_voxels, name + "_" + std::to_string(level), &filed));
   }
   return grids;

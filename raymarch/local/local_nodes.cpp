@@ -130,8 +130,7 @@ NodeReader LevelNodes::reader() const {
         static_cast<const LevelNodes*>(of)->find(block_of(node), block);
         last = block;
         const size_t n = place_in_block(node);
-        const bool known = block && (block->known[n >> 6] >> (n & 63) & 1) != 0;
-        return known ? block->steps[n] : std::numeric_limits<std::int16_t>::max();
+        return block && block->is_known(n) ? block->steps[n] : std::numeric_limits<std::int16_t>::max();
       }};
 }
 
@@ -166,8 +165,7 @@ LevelSetBlock filed_block(const LevelNodes& nodes, const NodeBlock& block, NodeS
   std::array<std::uint64_t, 8> inside{};
   if (sides) inside = sides->inside(block);
   for (size_t n = 0; n < 512; ++n) {
-    const bool known = (block.known[n >> 6] >> (n & 63) & 1) != 0;
-    filed.values[n] = known ? nodes.value_of(block.steps[n]) : (inside[n >> 6] >> (n & 63) & 1) != 0 ? -1.0f : 0.0f;
+    filed.values[n] = block.is_known(n) ? nodes.value_of(block.steps[n]) : (inside[n >> 6] >> (n & 63) & 1) != 0 ? -1.0f : 0.0f;
   }
   return filed;
 }

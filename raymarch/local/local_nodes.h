@@ -4,8 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <optional>
-#include <utility>
+#include <string>
 #include <vector>
 
 #include "raymarch/level_set/brick_layout.h"

@@ -19,6 +19,8 @@ struct NodeBlock {
   const SurfacePart* part = nullptr;  ///< Asked for its nodes: of a brick, as long as there are nodes to be measured.
   std::array<std::uint64_t, 8> wanted{}, known{};
   std::array<std::int16_t, 512> steps;  ///< Of the known ones.
+
+  bool is_known(size_t n) const { return (known[n >> 6] >> (n & 63) & 1) != 0; }
 };
 
 /// Blocks in the order in which they came; they stay where they are. In chunks of large pages: the first touch of small ones takes longer

@@ -101,7 +101,7 @@ void evaluate_mesh(const MeshPart& part, NodeBlock& block, const NodeMeasure& me
     std::array<float, 512> own;
     block_distances(part, block.origin, measure.lattice, filled, own);
     for (size_t n = 0; n < 512; ++n)
-      if ((block.known[n >> 6] >> (n & 63) & 1) == 0) block.steps[n] = quantised(own[n], measure.steps_per_unit);
+      if (!block.is_known(n)) block.steps[n] = quantised(own[n], measure.steps_per_unit);
     block.measured = true;
   }
   std::optional<LargerBeside> beside = larger_beside(measure, block);
@@ -113,12 +113,6 @@ void evaluate_mesh(const MeshPart& part, NodeBlock& block, const NodeMeasure& me
       if (const glm::ivec3 node = node_of(block, n); beside->on_other_side(node, steps < 0))
         steps = measure.steps(beside->interpolated(node));
     });
-}
-
-/// Neighbouring blocks often share a field, and so what evaluates it.
-void turn_to(const Field& field, std::optional<DistanceEvaluator>& distance) {
-  if (!distance || &distance->evaluator.field().program() != &field.program())
-    distance.emplace(field, distance ? std::move(distance->scratch) : TapeScratch());
 }
 
 /// Evaluates blocks one after the other, for one thread.

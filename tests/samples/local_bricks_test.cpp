@@ -297,8 +297,7 @@ TEST(LocalBricks, NoEdgeEndsOnTheFaceOfALargerCellThatRoundsItOff) {
 bool is_known(const LevelNodes& nodes, const glm::ivec3& node) {
   const NodeBlock* last = nullptr;
   const NodeBlock* const block = nodes.find(block_of(node), last);
-  const size_t n = place_in_block(node);
-  return block && (block->known[n >> 6] >> (n & 63) & 1) != 0;
+  return block && block->is_known(place_in_block(node));
 }
 
 /// Sampled is what bricks and the stencils of their crossed cells read, counted here node by node, and nothing else.

@@ -44,15 +44,24 @@ struct LaneBounds {
 
 /// Memory for one thread.
 struct TapeScratch {
-  std::vector<double> memory{};
   std::vector<TapeChoice> choices{};  ///< What the last tape_bounds, tape_slope_bounds or tape_distances found, one a step.
   std::vector<TapeStep> pruned{};     ///< The steps of which tape_distances took jets last.
+
+  /// So many, at a multiple of 64 bytes, as they were left: every step writes a register before another reads it.
   double* registers(size_t doubles) {
-    if (memory.size() < doubles + 8) memory.resize(doubles + 8);
-    void* start = memory.data();
-    size_t space = memory.size() * sizeof(double);
+    constexpr size_t kAligned = 64 / sizeof(double);
+    if (size_ < doubles) {
+      size_ = doubles;
+      memory_ = std::make_unique_for_overwrite<double[]>(doubles + kAligned);
+    }
+    void* start = memory_.get();
+    size_t space = (size_ + kAligned) * sizeof(double);
     return static_cast<double*>(std::align(64, doubles * sizeof(double), start, space));
   }
+
+ private:
+  std::unique_ptr<double[]> memory_{};
+  size_t size_ = 0;
 };
 
 /// f at s[i] of each ray.

@@ -15,6 +15,8 @@
 #include <functional>
 #include <utility>
 
+#include "sdf/thread_places.h"
+
 #if defined(LIMN_SPAN)
 #include <optional>
 
@@ -63,9 +65,12 @@ inline void hear_done() {}
 struct Loop {
 #if defined(LIMN_SPAN)
   mutable SpanOfLoop span;
-  explicit Loop(const char* place) : span(place) {}
+  explicit Loop(const char* place) : span(place) { begin_loop(); }
 #else
-  explicit Loop(const char*) { tell_begun(); }
+  explicit Loop(const char*) {
+    begin_loop();
+    tell_begun();
+  }
   ~Loop() { hear_done(); }
 #endif
 };
@@ -73,10 +78,14 @@ struct Part {
 #if defined(LIMN_SPAN)
   std::optional<SpanOfPart> span{};
   explicit Part(const Loop* loop) {
+    begin_part();
     if (loop != nullptr) span.emplace(loop->span);
   }
 #else
-  explicit Part(const Loop*) { hear_begun(); }
+  explicit Part(const Loop*) {
+    begin_part();
+    hear_begun();
+  }
   ~Part() { tell_done(); }
 #endif
 };

@@ -1,7 +1,9 @@
 #include "sdf/parallel.h"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -149,6 +151,36 @@ TEST(Parallel, NobodyGoesOnWithALoopThatWasLeftHalfDone) {
               0)
         << "parallel_invoke";
   }
+}
+
+std::vector<int> processors_of_this_thread() {
+  cpu_set_t set;
+  EXPECT_EQ(sched_getaffinity(0, sizeof set, &set), 0);
+  std::vector<int> processors;
+  for (int k = 0; k < CPU_SETSIZE; ++k)
+    if (CPU_ISSET(static_cast<size_t>(k), &set)) processors.push_back(k);
+  return processors;
+}
+
+// Else a call may be over before its second thread has a processor to itself.
+TEST(Parallel, OtherThreadsKeepOffTheProcessorOnWhichTheFirstLoopBegan) {
+  const std::vector<int> all = processors_of_this_thread();
+  if (all.size() < 2) GTEST_SKIP() << "one processor";
+  std::vector<int> of_part[2];
+  std::thread::id thread_of_part[2];
+  std::atomic<int> arrived{0};
+  parallel_each(2, [&](int part) {
+    of_part[part] = processors_of_this_thread();
+    thread_of_part[part] = std::this_thread::get_id();
+    ++arrived;
+    while (arrived < 2) std::this_thread::yield();  // two threads, then
+  });
+  for (int part = 0; part < 2; ++part) {
+    const bool is_own = thread_of_part[part] == std::this_thread::get_id();
+    EXPECT_EQ(of_part[part].size(), is_own ? all.size() : all.size() - 1);
+    EXPECT_TRUE(std::includes(all.begin(), all.end(), of_part[part].begin(), of_part[part].end()));
+  }
+  EXPECT_EQ(processors_of_this_thread(), all);
 }
 
 }  // namespace
